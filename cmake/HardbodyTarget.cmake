@@ -1,0 +1,37 @@
+# Compile options that every target of this project shares.
+#
+# hardbody_target(<target>) applies them. None of them is exported: a consumer compiles with its own flags, which is
+# safe because public types hold only Vector3d and Matrix3d, whose layout does not depend on -march.
+
+if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES AND PROJECT_IS_TOP_LEVEL)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "Build type" FORCE)
+endif()
+
+find_program(HARDBODY_CCACHE ccache)
+if(HARDBODY_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER AND PROJECT_IS_TOP_LEVEL)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${HARDBODY_CCACHE})
+endif()
+
+function(hardbody_target target)
+  target_compile_features(${target} PUBLIC cxx_std_20)
+  set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF CXX_VISIBILITY_PRESET hidden
+    VISIBILITY_INLINES_HIDDEN ON POSITION_INDEPENDENT_CODE ON)
+  target_compile_options(${target} PRIVATE
+    # No contraction: the same source gives the same bits with and without FMA in the instruction set.
+    -ffp-contract=off
+    # Nobody reads errno or the floating-point flags; without these sqrt is a call.
+    -fno-math-errno -fno-trapping-math
+    -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wdouble-promotion -Wnon-virtual-dtor
+    -Woverloaded-virtual -Wold-style-cast
+    $<$<BOOL:${HARDBODY_WERROR}>:-Werror>
+    # RelWithDebInfo is -O2 by default; the kernels want -O3 there too.
+    $<$<CONFIG:Release,RelWithDebInfo>:-O3>)
+  if(HARDBODY_ARCH)
+    target_compile_options(${target} PRIVATE -march=${HARDBODY_ARCH})
+  endif()
+  if(HARDBODY_SANITIZE)
+    target_compile_options(${target} PRIVATE -fsanitize=${HARDBODY_SANITIZE} -fno-sanitize-recover=all
+      -fno-omit-frame-pointer)
+    target_link_options(${target} PUBLIC -fsanitize=${HARDBODY_SANITIZE})
+  endif()
+endfunction()

@@ -1,0 +1,14 @@
+#pragma once
+
+/// The whole public interface of libed.
+
+#include <ed/analysis.h>
+#include <ed/impulse.h>
+#include <ed/motion.h>
+#include <ed/observables.h>
+#include <ed/random.h>
+#include <ed/simulation.h>
+#include <ed/start.h>
+#include <ed/system.h>
+#include <ed/time_of_contact.h>
+#include <ed/tolerances.h>

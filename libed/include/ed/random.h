@@ -1,0 +1,28 @@
+#pragma once
+
+#include <ed/export.h>
+
+#include <Eigen/Core>
+
+#include <cstdint>
+
+namespace ed {
+
+/// Pseudo-random numbers with the same bits on every machine: xoshiro256** seeded by splitmix64 (Blackman and Vigna),
+/// normal deviates by the ratio of uniforms (Leva, ACM TOMS 18 (1992) 449), which never puts a logarithm into a result.
+class ED_EXPORT Random {
+ public:
+  explicit Random(std::uint64_t seed);
+
+  std::uint64_t bits();
+  double uniform();                ///< in [0, 1)
+  double normal();                 ///< mean 0, variance 1
+  Eigen::Vector3d normal3();       ///< three of them
+  Eigen::Vector3d direction();     ///< uniform on the unit sphere
+  Eigen::Matrix3d rotation();      ///< uniform over all orientations
+
+ private:
+  std::uint64_t state_[4];
+};
+
+}  // namespace ed

@@ -1,0 +1,122 @@
+#pragma once
+
+#include <ed/export.h>
+#include <ed/motion.h>
+#include <ed/system.h>
+
+#include <Eigen/Core>
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace ed {
+
+/// What the run loop counted since its construction.
+struct Counters {
+  std::uint64_t collisions = 0;
+  std::uint64_t predictions = 0;          ///< contact searches started, refinements included
+  std::uint64_t evaluations = 0;          ///< points in time at which a pair was looked at
+  std::uint64_t kernel_calls = 0;         ///< evaluations of the gap function along one normal
+  std::uint64_t refinements = 0;          ///< searches that went on from an earlier lower bound
+  std::uint64_t cold_restarts = 0;        ///< warm normals that led to a spurious maximum
+  std::uint64_t rescues = 0;              ///< searches that needed the fallback which cannot fail
+  std::uint64_t neighbour_rebuilds = 0;   ///< envelopes renewed
+  std::uint64_t envelope_checks = 0;      ///< looks at whether a body leaves its envelope
+  std::uint64_t candidate_tests = 0;      ///< pairs of envelopes tested in rebuilds
+  std::uint64_t overlaps = 0;             ///< pairs found overlapping by more than rounding: always 0 in a sound run
+};
+
+struct Collision {
+  double time;  ///< since the simulation's start
+  int i;
+  int j;
+};
+
+/// A pair that could not be predicted as it should, with all that is needed to look at it again.
+struct FailedPair {
+  std::string reason;
+  geom::Ellipsoid shape_i{Eigen::Vector3d::Ones()};
+  geom::Ellipsoid shape_j{Eigen::Vector3d::Ones()};
+  Motion motion_i;
+  Motion motion_j;  ///< in the image nearest to i
+  double time;      ///< simulated time
+  int i;
+  int j;
+};
+
+/// All bodies at one time, as the observables want them.
+struct Snapshot {
+  double time = 0;
+  std::vector<Eigen::Vector3d> position;  ///< unwrapped: continuous across the box's faces
+  std::vector<Eigen::Vector3d> axis;      ///< of revolution, unit
+  std::vector<Eigen::Vector3d> phi_lab;   ///< integral of omega (spin excluded), world frame, since the start
+  std::vector<Eigen::Vector2d> phi_body;  ///< the same, components along body x and y
+};
+
+struct SimulationOptions {
+  /// Thickness of the neighbour-list envelopes (length); 0: a first guess, which `tune_envelopes` improves.
+  double envelope = 0;
+};
+
+/// Event-driven dynamics of hard ellipsoids of revolution in a periodic cubic box.
+///
+/// Asynchronous: each body carries its own time. Neighbour lists with dilated envelopes; one calendar entry a body; a pair
+/// is looked at once after a collision and its certified lower bound put into the calendar, to be refined only when it
+/// comes up. Nothing allocates in steady state. The same system and options give the same bits on every machine.
+class ED_EXPORT Simulation {
+ public:
+  /// Throws std::invalid_argument if the bodies are not of revolution, two of them overlap, a number is not finite, or the
+  /// box is too small for nearest images (see smallest_number).
+  explicit Simulation(const System& system, const SimulationOptions& options = {});
+  ~Simulation();
+  Simulation(Simulation&&) noexcept;
+  Simulation& operator=(Simulation&&) noexcept;
+
+  double time() const;
+
+  /// Processes all events up to `time`, but at most `max_collisions` collisions. True if `time` was reached.
+  bool run_until(double time, std::uint64_t max_collisions = ~std::uint64_t{0});
+
+  /// Processes events until `number` more collisions have happened.
+  void run_collisions(std::uint64_t number);
+
+  /// Scales all positions and the box by a factor s, down to target_box / box if that leaves no overlap, else so that a
+  /// tenth of the closest pair's gap is left; not below what the neighbour lists allow in one step, and not at all if
+  /// 1 - s would be below least_gain. Returns the new box. Velocities are unchanged.
+  double shrink_box(double target_box, double least_gain = 0);
+
+  /// Chooses the envelope's thickness by the work that the counters show, never by a clock. Runs up to
+  /// about 60 collisions a body.
+  void tune_envelopes();
+  double envelope() const;
+
+  double box() const;
+  const Counters& counters() const;
+
+  /// Sum over collisions of r_AB . dp, the momentum that B gains along the vector between the centres.
+  double virial() const;
+
+  /// Kinetic energies now; free flight does not change them.
+  KineticState kinetic() const;
+
+  /// All bodies at time(), wrapped into the box.
+  System system() const;
+
+  /// All bodies at time().
+  void sample(Snapshot& snapshot) const;
+
+  /// Keeps the next `number` collisions in collisions().
+  void record_collisions(std::size_t number);
+  const std::vector<Collision>& collisions() const;
+
+  /// At most the first 16 pairs that failed.
+  const std::vector<FailedPair>& failures() const;
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace ed

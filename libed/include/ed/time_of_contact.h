@@ -1,0 +1,46 @@
+#pragma once
+
+#include <ed/export.h>
+#include <ed/motion.h>
+
+#include <geom/ellipsoid.h>
+
+#include <Eigen/Core>
+
+#include <limits>
+
+namespace ed {
+
+enum class ContactStatus {
+  hit,          ///< the bodies touch at `time`, approaching, and not before
+  separated,    ///< certified: no contact up to `time` = t_max
+  overlapping,  ///< they overlap at the start by more than rounding
+  failed,       ///< the search ended without an answer; certified: no contact before `time`
+};
+
+ED_EXPORT const char* to_string(ContactStatus status);
+
+/// The answer of a contact search; `point` and `normal` are NaN unless it is a hit.
+struct [[nodiscard]] ContactResult {
+  ContactStatus status = ContactStatus::failed;
+  double time = std::numeric_limits<double>::quiet_NaN();
+  /// Where they touch, world frame at `time`.
+  Eigen::Vector3d point = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
+  /// Unit, from A to B.
+  Eigen::Vector3d normal = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
+  int evaluations = 0;  ///< points in time that were looked at
+};
+
+/// The first time in [max of the motions' times, t_max] at which two freely moving bodies touch and approach.
+///
+/// Certified: for a fixed direction n the gap g_n(t) = n.r(t) - hA(n, t) - hB(-n, t) is a lower bound of the distance,
+/// and its second derivative is bounded below by -K over any interval ahead, K from the motion alone. The search
+/// advances to the first root of the bounding parabola and improves n there; it never steps over a contact, however
+/// grazing, and converges quadratically (docs/time-of-contact.md has the proof). t_max may be infinite.
+///
+/// Bodies: ellipsoids of revolution whose moments of inertia share the axis of revolution. Others throw
+/// std::invalid_argument (not available yet), as do values that are not finite and inertia that no body can have.
+ED_EXPORT ContactResult time_of_contact(const geom::Ellipsoid& a, const Motion& motion_a, const geom::Ellipsoid& b,
+                                        const Motion& motion_b, double t_max);
+
+}  // namespace ed

@@ -1,0 +1,196 @@
+#pragma once
+
+/// The contact finder: one function over gauges (see uniaxial_gauge.h for what a gauge is).
+///
+/// Why no contact is ever stepped over. For a fixed unit n let g(tau) be the gap along n at time t + tau; the distance is
+/// the maximum over n, so d(t + tau) >= g(tau) for every n. Let K >= -g'' on [0, T]. Integrating twice,
+///
+///     g(tau) >= q(tau) = g + g' tau - K tau^2 / 2   on [0, T],
+///
+/// so that there is no contact before the first root of q in [0, T]. The search goes there and starts again with a better
+/// n. Near a contact d ~ |g'| (tc - t) and q's root falls short of tc by K (tc - t)^2 / (2 |g'|) at most: convergence is
+/// quadratic. No resolution parameter enters; a grazing contact costs more steps, not a wrong answer.
+///
+/// Rounding. When the bodies touch (g within kTouching * size) and approach, that is the contact. When they touch and
+/// part, or rest (|g'| within kResting * speed, where its sign is rounding), g and g' are set to 0 if below, and the step is at least sqrt(2 kTouching size / K): the deepest overlap that q allows on
+/// the way is then kTouching * size, below what g itself resolves.
+
+#include "sphere_window.h"
+
+#include <ed/tolerances.h>
+
+#include <geom/internal/dual_newton.h>
+#include <geom/tolerances.h>
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+namespace ed::internal {
+
+struct FinderCounters {
+  std::uint64_t predictions = 0;  ///< calls
+  std::uint64_t evaluations = 0;  ///< points in time at which a pair was looked at
+  std::uint64_t kernel_calls = 0;  ///< evaluations of g at a normal
+  std::uint64_t cold_restarts = 0;  ///< a warm normal had led to a spurious maximum
+  std::uint64_t rescues = 0;        ///< the fallback that cannot fail was needed
+};
+
+enum class Outcome {
+  contact,      ///< at `time`: the bodies touch and approach along the normal
+  clear,        ///< certified: no contact up to t_end
+  bound,        ///< certified: no contact before `time`; the budget of evaluations is spent
+  overlapping,  ///< at `time` the bodies overlap by more than rounding; proved
+};
+
+struct Finding {
+  Outcome outcome;
+  double time;
+  bool approaching = false;  ///< of bodies that overlap: whether the overlap grows
+};
+
+/// First root tau > 0 of g + gp tau - K tau^2 / 2 for g >= 0; infinite if there is none.
+inline double first_root(double g, double gp, double K) {
+  constexpr double kNever = std::numeric_limits<double>::infinity();
+  const double discriminant = gp * gp + 2 * K * g;
+  if (!(discriminant >= 0)) return kNever;
+  const double root = std::sqrt(discriminant);
+  if (gp < 0) return 2 * g / (root - gp);
+  return K > 0 ? (gp + root) / K : kNever;
+}
+
+enum class Quality { usable, overlap };
+
+/// Improves n at one point in time until it is good enough for a step, or proves that the bodies overlap.
+template <class Gauge>
+Quality improve_normal(const Gauge& gauge, const typename Gauge::State& state, Eigen::Vector3d& n,
+                       typename Gauge::Evaluation& e, FinderCounters& count) {
+  using geom::internal::Ascent;
+  const double size = gauge.size();
+  const double rounding = geom::kRoundingFactor * size;
+  const auto evaluate = [&](const Eigen::Vector3d& m) { return gauge.evaluate(state, m); };
+  const auto done = [size](const auto& trial) {
+    return trial.decrement <= kLooseDecrement * trial.g || trial.decrement <= kTightDecrement * size;
+  };
+  ++count.evaluations;
+  for (int attempt = 0; attempt < 2; ++attempt) {
+    int budget = geom::kMaxIterations;
+    const Ascent ascent = geom::internal::ascend(evaluate, rounding, done, budget, n, e);
+    count.kernel_calls += static_cast<std::uint64_t>(geom::kMaxIterations - budget);
+    // Any normal with g >= 0 is a valid certificate, converged or not.
+    if (e.g >= -kOverlap * size) return Quality::usable;
+    // A stationary point no deeper than this is the global maximum (see geom/distance.h).
+    if (ascent == Ascent::converged && -e.g <= gauge.certified_depth()) return Quality::overlap;
+    if (attempt == 0) {
+      ++count.cold_restarts;
+      n = gauge.cold_normal(state);
+    }
+  }
+  ++count.rescues;
+  if (!gauge.separating_normal(state, n)) return Quality::overlap;
+  e = gauge.evaluate(state, n);
+  return e.g >= -kOverlap * size ? Quality::usable : Quality::overlap;
+}
+
+/// Newton's method on d(t) = 0 with converged normals, from a time close to the contact. True if it ended on a contact at
+/// which the bodies approach; t and n are changed only then.
+template <class Gauge>
+bool refine_contact(const Gauge& gauge, double earliest, double reach, double& t, Eigen::Vector3d& n,
+                    FinderCounters& count) {
+  const double size = gauge.size();
+  const double rounding = geom::kRoundingFactor * size;
+  double time = t;
+  Eigen::Vector3d normal = n;
+  const auto done = [](const auto& trial) { return trial.step2 <= geom::kNormalTolerance2; };
+  for (int iteration = 0; iteration < 4; ++iteration) {
+    const auto state = gauge.at(time);
+    const auto evaluate = [&](const Eigen::Vector3d& m) { return gauge.evaluate(state, m); };
+    typename Gauge::Evaluation e;
+    int budget = 12;
+    (void)geom::internal::ascend(evaluate, rounding, done, budget, normal, e);
+    count.kernel_calls += static_cast<std::uint64_t>(12 - budget);
+    ++count.evaluations;
+    const double d = e.g + 0.5 * e.decrement;
+    const double rate = gauge.rate(state, e, normal);
+    if (!(rate < -kResting * gauge.speed()) || !(std::abs(d) <= -rate * reach)) return false;
+    normal = geom::internal::step_on_sphere(normal, e.step, e.step2);
+    if (std::abs(d) <= kTouching * size) {
+      t = time;
+      n = normal;
+      return true;
+    }
+    time = std::max(earliest, time - d / rate);
+  }
+  return false;
+}
+
+/// Finds the first contact in [t_begin, t_end], or proves that there is none, or, after `max_evaluations` points in time,
+/// says up to when there is certainly none.
+///
+/// `n` (from A to B) is the warm start and is left at the last normal; zero: cold start.
+template <class Gauge>
+Finding certified_contact(const Gauge& gauge, double t_begin, double t_end, int max_evaluations,
+                          Eigen::Vector3d& n, FinderCounters& count) {
+  ++count.predictions;
+  const Window window = gauge.window(t_begin, t_end);
+  const double size = gauge.size();
+  double t = window.begin;
+  bool cold = n.isZero(0);
+  for (int evaluation = 0; evaluation < max_evaluations; ++evaluation) {
+    if (!(t < window.end)) return {Outcome::clear, t_end};
+    const auto state = gauge.at(t);
+    if (cold) n = gauge.cold_normal(state);
+    cold = false;
+    typename Gauge::Evaluation e;
+    const Quality quality = improve_normal(gauge, state, n, e, count);
+    double g = e.g;
+    double gp = gauge.rate(state, e, n);
+    if (quality == Quality::overlap) return {Outcome::overlapping, t, gp < 0};
+    if (g <= kTouching * size) {
+      if (gp < -kResting * gauge.speed()) return {Outcome::contact, t};
+      g = std::max(g, 0.0);
+      gp = std::max(gp, 0.0);
+    }
+    const double horizon = window.end - t;
+    const auto certificate = gauge.certificate(state, e, n);
+    const double K_horizon = certificate.curvature(horizon);
+    // A concave parabola that is positive at both ends has no root between.
+    if (K_horizon >= 0 && g > 0 && g + horizon * (gp - 0.5 * K_horizon * horizon) > 0) {
+      return {Outcome::clear, t_end};
+    }
+    double K = K_horizon;
+    double tau = std::min(horizon, first_root(g, gp, K));
+    for (int attempt = 0; attempt < 2 && tau < horizon; ++attempt) {
+      const double reach = std::min(horizon, 2 * tau);
+      const double K_reach = certificate.curvature(reach);
+      const double tau_reach = std::min(reach, first_root(g, gp, K_reach));
+      if (tau_reach > tau) {
+        tau = tau_reach;
+        K = K_reach;
+      }
+    }
+    if (tau >= horizon) return {Outcome::clear, t_end};
+    if (gp < 0) {
+      const double tangent = -g / gp;
+      if (tangent - tau <= kTangentAgreement * size / gauge.speed()) {
+        double contact_time = t + tangent;
+        Eigen::Vector3d normal = geom::internal::step_on_sphere(n, e.step, e.step2);
+        if (refine_contact(gauge, t, tangent + size / gauge.speed() * 1e-6, contact_time, normal, count)) {
+          n = normal;
+          return {contact_time <= t_end ? Outcome::contact : Outcome::clear, contact_time};
+        }
+      }
+    } else {
+      tau = std::max(tau, std::sqrt(2 * kTouching * size / K));
+    }
+    // Below the resolution of time, with g above that of distance: cannot be, but must not become an endless loop.
+    if (!(t + tau > t)) return {Outcome::contact, t};
+    t += tau;
+  }
+  return {t < window.end ? Outcome::bound : Outcome::clear, t};
+}
+
+}  // namespace ed::internal

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <geom/export.h>
+#include <geom/shape.h>
+
+#include <Eigen/Core>
+
+#include <optional>
+
+namespace geom {
+
+/// {x : (x/a)^2 + (y/b)^2 + (z/c)^2 <= 1} in the body's frame.
+class GEOM_EXPORT Ellipsoid {
+ public:
+  /// Semi-axes along body x, y, z. Throws std::invalid_argument unless each is finite, within
+  /// [kMinSemiAxis, kMaxSemiAxis], and the largest is at most kMaxAspectRatio times the smallest.
+  explicit Ellipsoid(const Eigen::Vector3d& semi_axes);
+
+  const Eigen::Vector3d& semi_axes() const { return semi_axes_; }
+
+  /// The index (0, 1, 2) of the axis of revolution if two semi-axes are equal (2 for a sphere), else nothing.
+  std::optional<int> symmetry_axis() const {
+    return symmetry_axis_ < 0 ? std::nullopt : std::optional<int>(symmetry_axis_);
+  }
+
+  /// f(x) = (x/a)^2 + (y/b)^2 + (z/c)^2 - 1 (the paper's eq. Shapes): negative inside.
+  double value(const Eigen::Vector3d& x) const;
+  Eigen::Vector3d gradient(const Eigen::Vector3d& x) const;
+  Eigen::Matrix3d hessian(const Eigen::Vector3d& x) const;
+
+  /// h(n) = |D n|, s(n) = D^2 n / h with D = diag(a, b, c); n != 0, any length.
+  Support support(const Eigen::Vector3d& n) const;
+  /// hess h = (D^2 - s s^T) / h: its eigenvalues across n are the principal radii of curvature at s, for |n| = 1.
+  Eigen::Matrix3d support_hessian(const Eigen::Vector3d& n) const;
+
+  double bounding_radius() const { return bounding_radius_; }
+  double inscribed_radius() const { return inscribed_radius_; }
+  /// The smallest principal radius of curvature of the surface, amin^2 / amax.
+  double min_curvature_radius() const { return min_curvature_radius_; }
+  double volume() const;
+  /// Principal moments of inertia about body x, y, z at uniform density: m (b^2 + c^2) / 5, ...
+  Eigen::Vector3d inertia(double mass) const;
+
+ private:
+  Eigen::Vector3d semi_axes_;
+  double bounding_radius_;
+  double inscribed_radius_;
+  double min_curvature_radius_;
+  int symmetry_axis_;
+};
+
+}  // namespace geom

@@ -1,0 +1,9 @@
+#pragma once
+
+/// The whole public interface of libgeom.
+
+#include <geom/distance.h>
+#include <geom/ellipsoid.h>
+#include <geom/pose.h>
+#include <geom/shape.h>
+#include <geom/tolerances.h>

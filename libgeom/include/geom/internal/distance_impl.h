@@ -1,0 +1,166 @@
+#pragma once
+
+/// The frame around the dual Newton that turns a converged normal into a DistanceResult; used by every shape.
+
+#include <geom/distance.h>
+
+#include <Eigen/Geometry>
+
+#include <cmath>
+#include <utility>
+
+namespace geom::internal {
+
+/// Support height, point and Hessian in the world frame at once.
+struct CurvedSupport {
+  double height;
+  Eigen::Vector3d point;
+  Eigen::Matrix3d hessian;
+};
+
+/// A SupportShape turned into the world frame (about its own centre).
+template <SupportShape Shape>
+struct WorldSupport {
+  const Shape& shape;
+  const Eigen::Matrix3d& R;
+
+  Eigen::Vector3d point(const Eigen::Vector3d& n) const {
+    return R * Support(shape.support(R.transpose() * n)).point;
+  }
+  CurvedSupport operator()(const Eigen::Vector3d& n) const {
+    const Eigen::Vector3d n_body = R.transpose() * n;
+    const Support s = shape.support(n_body);
+    return {s.height, R * s.point, R * Eigen::Matrix3d(shape.support_hessian(n_body)) * R.transpose()};
+  }
+};
+
+/// Evaluates g and its Newton step for two bodies given by their world-frame supports, B's centre at r from A's.
+template <class SupportA, class SupportB>
+class GeneralPair {
+ public:
+  GeneralPair(SupportA a, SupportB b, const Eigen::Vector3d& r, double floor)
+      : a_(std::move(a)), b_(std::move(b)), r_(r), floor_(floor) {}
+
+  Evaluation operator()(const Eigen::Vector3d& n) const {
+    const CurvedSupport s_a = a_(n);
+    const CurvedSupport s_b = b_(-n);
+    Evaluation out;
+    out.g = r_.dot(n) - s_a.height - s_b.height;
+    const Eigen::Vector3d y = r_ - s_a.point + s_b.point - out.g * n;
+    // The Newton system in an orthonormal basis (e, f) across n.
+    const Eigen::Vector3d e =
+        (std::abs(n.x()) < 0.6 ? Eigen::Vector3d(0, n.z(), -n.y()) : Eigen::Vector3d(n.z(), 0, -n.x())).normalized();
+    const Eigen::Vector3d f = n.cross(e);
+    const Eigen::Matrix3d H = s_a.hessian + s_b.hessian;
+    const Eigen::Vector3d He = H * e;
+    double m_ee = e.dot(He) + out.g;
+    double m_ff = f.dot(H * f) + out.g;
+    const double m_ef = f.dot(He);
+    const double half_difference = 0.5 * (m_ee - m_ff);
+    const double smallest =
+        0.5 * (m_ee + m_ff) - std::sqrt(half_difference * half_difference + m_ef * m_ef);
+    if (smallest < floor_) {
+      m_ee += floor_ - smallest;
+      m_ff += floor_ - smallest;
+    }
+    const double y_e = y.dot(e);
+    const double y_f = y.dot(f);
+    const double inv_det = 1 / (m_ee * m_ff - m_ef * m_ef);
+    const double d_e = (m_ff * y_e - m_ef * y_f) * inv_det;
+    const double d_f = (m_ee * y_f - m_ef * y_e) * inv_det;
+    out.decrement = d_e * y_e + d_f * y_f;
+    set_step(out, d_e * e + d_f * f, d_e * d_e + d_f * d_f);
+    return out;
+  }
+
+  Eigen::Vector3d point_a(const Eigen::Vector3d& n) const { return a_.point(n); }
+  Eigen::Vector3d point_b(const Eigen::Vector3d& n) const { return r_ + b_.point(-n); }
+
+ private:
+  SupportA a_;
+  SupportB b_;
+  Eigen::Vector3d r_;
+  double floor_;
+};
+
+/// Lengths that the certificates and tolerances of one query need.
+struct PairScale {
+  double size;           ///< |r| + both bounding radii: what rounding errors are relative to
+  double certified_depth;  ///< the sum of both smallest radii of curvature
+};
+
+template <class Shape>
+double min_curvature_radius_or_zero(const Shape& shape) {
+  if constexpr (requires { shape.min_curvature_radius(); }) {
+    return shape.min_curvature_radius();
+  } else {
+    return 0;
+  }
+}
+
+/// The answer at a converged normal n: witness points, half of the tangential mismatch given to each.
+template <class Pair>
+DistanceResult witness_result(const Pair& pair, const Eigen::Vector3d& p_WA, const Eigen::Vector3d& n,
+                              int iterations) {
+  DistanceResult result;
+  const Eigen::Vector3d x_a = pair.point_a(n);
+  const Eigen::Vector3d x_b = pair.point_b(n);
+  const Eigen::Vector3d gap = x_b - x_a;
+  result.distance = n.dot(gap);
+  const Eigen::Vector3d y = gap - result.distance * n;
+  result.normal = n;
+  result.point_a = p_WA + x_a + 0.5 * y;
+  result.point_b = result.point_a + result.distance * n;
+  result.residual = y.norm();
+  result.iterations = iterations;
+  result.status = result.distance >= 0 ? DistanceStatus::separated : DistanceStatus::overlapping;
+  return result;
+}
+
+/// Ascends from `start`, then from cold() if that led to a stationary point without a certificate.
+///
+/// `cold` is called only when it is needed. Returns a result whose status declines when neither start gives a certified
+/// answer; `iterations` is then the number of evaluations spent.
+template <class Pair, class Cold>
+DistanceResult solve_dual(const Pair& pair, const Cold& cold, const PairScale& scale,
+                          const Eigen::Vector3d& p_WA, const DistanceOptions& options) {
+  const double rounding = kRoundingFactor * scale.size;
+  const auto done = [](const Evaluation& e) { return e.step2 <= kNormalTolerance2; };
+  const double start2 = options.start.squaredNorm();
+  const bool warm = start2 > 0 && std::isfinite(start2);
+  int spent = 0;
+  for (int attempt = warm ? 0 : 1; attempt < 2; ++attempt) {
+    Eigen::Vector3d n = attempt == 0 ? Eigen::Vector3d(options.start / std::sqrt(start2)) : cold();
+    int budget = options.max_iterations;
+    Evaluation e;
+    const Ascent ascent = ascend(pair, rounding, done, budget, n, e);
+    spent += options.max_iterations - budget;
+    if (ascent != Ascent::converged) continue;
+    if (e.g < -scale.certified_depth - rounding) continue;
+    return witness_result(pair, p_WA, step_on_sphere(n, e.step, e.step2), spent);
+  }
+  DistanceResult declined;
+  declined.iterations = spent;
+  return declined;
+}
+
+}  // namespace geom::internal
+
+namespace geom {
+
+template <SupportShape ShapeA, SupportShape ShapeB>
+DistanceResult distance(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const Pose& X_WB,
+                        const DistanceOptions& options) {
+  using internal::WorldSupport;
+  const Eigen::Vector3d r = X_WB.position() - X_WA.position();
+  const double rho = internal::min_curvature_radius_or_zero(a) + internal::min_curvature_radius_or_zero(b);
+  // Shapes with flat faces or edges have rho = 0; a small share of the inscribed spheres keeps the step bounded.
+  const double floor = std::max(0.5 * rho, 1e-3 * (a.inscribed_radius() + b.inscribed_radius()));
+  const internal::GeneralPair pair(WorldSupport<ShapeA>{a, X_WA.rotation()},
+                                   WorldSupport<ShapeB>{b, X_WB.rotation()}, r, floor);
+  const auto cold = [&r] { return r.squaredNorm() > 0 ? r.normalized() : Eigen::Vector3d::UnitX(); };
+  const internal::PairScale scale{r.norm() + a.bounding_radius() + b.bounding_radius(), rho};
+  return internal::solve_dual(pair, cold, scale, X_WA.position(), options);
+}
+
+}  // namespace geom

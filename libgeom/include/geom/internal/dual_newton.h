@@ -1,0 +1,98 @@
+#pragma once
+
+/// Newton's method for d = max over unit n of g(n) = n.r - hA(n) - hB(-n), r the vector from A's centre to B's.
+///
+/// With support points sA = grad hA(n) and sB' = -grad hB(-n), the gradient of g along the sphere is
+/// y = r - sA - sB' - g n, and the Riemannian Hessian is -(M + g I) with M = P (HA + HB) P, H the Hessians of the support
+/// functions, P = I - n n^T. The Newton step solves (M + g I) delta = y across n. g is 1-homogeneous and concave, so
+/// M is positive semidefinite, and M + g I positive definite wherever g > 0.
+///
+/// Where g < 0 the matrix may lose definiteness. Its smallest eigenvalue is then lifted to (rhoA + rhoB) / 2, rho the
+/// smallest radius of curvature, which makes every step an ascent direction; the step length is capped, and halved
+/// (kBacktrack) when g falls.
+
+#include <geom/tolerances.h>
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace geom::internal {
+
+/// One evaluation of g at a unit vector n.
+struct Evaluation {
+  double g;              ///< length
+  double decrement;      ///< y.delta >= 0: twice the increase of g that the Newton model promises; length
+  double step2;          ///< |step|^2
+  Eigen::Vector3d step;  ///< delta, across n, capped to kMaxNormalStep
+};
+
+/// Sets the Newton step `delta`, |delta|^2 = `delta2`, scaled to kMaxNormalStep if it is longer.
+inline void set_step(Evaluation& e, const Eigen::Vector3d& delta, double delta2) {
+  e.step = delta;
+  e.step2 = delta2;
+  if (delta2 > kMaxNormalStep * kMaxNormalStep) {
+    e.step *= kMaxNormalStep / std::sqrt(delta2);
+    e.step2 = kMaxNormalStep * kMaxNormalStep;
+  }
+}
+
+/// 1 / sqrt(1 + s). For small s by its series, whose first omitted term, 231/1024 s^6 < 3e-17 where it is used, is
+/// below rounding: a few multiplications instead of a square root and a division in the longest dependency chain.
+inline double inverse_sqrt_1p(double s) {
+  if (s < 2e-3) return 1 - s * (0.5 - s * (0.375 - s * (0.3125 - s * (0.2734375 - s * 0.24609375))));
+  return 1 / std::sqrt(1 + s);
+}
+
+/// n + step on the unit sphere, for a unit n and a step across it of squared length step2.
+inline Eigen::Vector3d step_on_sphere(const Eigen::Vector3d& n, const Eigen::Vector3d& step, double step2) {
+  return inverse_sqrt_1p(step2) * (n + step);
+}
+
+enum class Ascent { converged, stalled, exhausted };
+
+/// Shortens the step from n to the evaluation's improvement until g no longer falls by more than `rounding`.
+///
+/// On entry `trial` is the evaluation that fell; on return it belongs to `n_trial`, or to nothing if not converged.
+template <class Evaluate, class E>
+Ascent backtrack(const Evaluate& evaluate, double rounding, const Eigen::Vector3d& n, const E& e, int& budget,
+                 Eigen::Vector3d& n_trial, E& trial) {
+  double fraction = 1;
+  while (trial.g < e.g - rounding) {
+    if (budget <= 0) return Ascent::exhausted;
+    fraction *= kBacktrack;
+    if (!(fraction * fraction * e.step2 > 1e-30)) return Ascent::stalled;
+    n_trial = step_on_sphere(n, fraction * e.step, fraction * fraction * e.step2);
+    trial = evaluate(n_trial);
+    --budget;
+  }
+  return Ascent::converged;
+}
+
+/// Improves the unit vector n by Newton steps with backtracking until `done(e)` holds for the evaluation e at n.
+///
+/// `evaluate(n)` returns an Evaluation (or a struct derived from it); `rounding` is the decrease of g that counts as
+/// rounding; `budget` is lowered by one for each evaluation. On return `e` belongs to `n`, also when not converged.
+template <class Evaluate, class E, class Done>
+Ascent ascend(const Evaluate& evaluate, double rounding, const Done& done, int& budget, Eigen::Vector3d& n,
+              E& e) {
+  e = evaluate(n);
+  --budget;
+  while (!done(e)) {
+    if (budget <= 0) return Ascent::exhausted;
+    Eigen::Vector3d n_trial = step_on_sphere(n, e.step, e.step2);
+    E trial = evaluate(n_trial);
+    --budget;
+    if (trial.g < e.g - rounding) {
+      const Ascent outcome = backtrack(evaluate, rounding, n, e, budget, n_trial, trial);
+      if (outcome != Ascent::converged) return outcome;
+    }
+    n = n_trial;
+    e = trial;
+  }
+  return Ascent::converged;
+}
+
+}  // namespace geom::internal

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <geom/export.h>
+
+#include <Eigen/Core>
+
+namespace geom {
+
+/// Position and orientation of a body B in a world W: p_W = rotation * p_B + position.
+///
+/// A Pose is valid by construction, so that no query needs to check it again: the constructors throw
+/// std::invalid_argument when a number is not finite, or when the rotation is further than kPoseTolerance from a
+/// proper orthonormal matrix; a rotation within that tolerance is replaced by the nearest orthonormal one.
+class GEOM_EXPORT Pose {
+ public:
+  /// The identity.
+  Pose() = default;
+
+  /// `rotation`: columns are the body's axes in world coordinates.
+  Pose(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& position);
+
+  static Pose translation(const Eigen::Vector3d& position);
+
+  /// From a quaternion (w, x, y, z), body to world; its norm must be 1 within kPoseTolerance.
+  static Pose from_quaternion(double w, double x, double y, double z,
+                              const Eigen::Vector3d& position = Eigen::Vector3d::Zero());
+
+  const Eigen::Matrix3d& rotation() const { return rotation_; }
+  const Eigen::Vector3d& position() const { return position_; }
+
+  /// Coordinates of a body point in the world.
+  Eigen::Vector3d to_world(const Eigen::Vector3d& p_B) const { return rotation_ * p_B + position_; }
+  /// Coordinates of a world point in the body.
+  Eigen::Vector3d to_body(const Eigen::Vector3d& p_W) const {
+    return rotation_.transpose() * (p_W - position_);
+  }
+
+ private:
+  Eigen::Matrix3d rotation_ = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d position_ = Eigen::Vector3d::Zero();
+};
+
+}  // namespace geom

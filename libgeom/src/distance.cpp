@@ -1,0 +1,144 @@
+#include <geom/internal/perram_wertheim.h>
+
+#include <geom/distance.h>
+#include <geom/internal/uniaxial.h>
+
+#include <Eigen/LU>
+
+#include <cmath>
+
+namespace geom {
+namespace {
+
+using internal::CurvedSupport;
+using internal::Evaluation;
+using internal::GeneralPair;
+using internal::PairScale;
+using internal::Spheroid;
+
+/// An ellipsoid turned into the world frame, h = sqrt(n.Q n), with Q = R diag(a^2) R^T computed once.
+struct WorldEllipsoid {
+  Eigen::Matrix3d Q;
+
+  WorldEllipsoid(const Ellipsoid& shape, const Pose& X)
+      : Q(X.rotation() * shape.semi_axes().cwiseAbs2().asDiagonal() * X.rotation().transpose()) {}
+
+  Eigen::Vector3d point(const Eigen::Vector3d& n) const {
+    const Eigen::Vector3d q = Q * n;
+    return q / std::sqrt(n.dot(q));
+  }
+  CurvedSupport operator()(const Eigen::Vector3d& n) const {
+    const Eigen::Vector3d q = Q * n;
+    const double h = std::sqrt(n.dot(q));
+    const double inv_h = 1 / h;
+    const Eigen::Vector3d s = inv_h * q;
+    return {h, s, inv_h * (Q - s * s.transpose())};
+  }
+};
+
+/// Two bodies of revolution, in the form that solve_dual wants.
+struct UniaxialPair {
+  const Spheroid& a;
+  const Spheroid& b;
+  const Eigen::Vector3d& r;
+  const Eigen::Vector3d& u_a;
+  const Eigen::Vector3d& u_b;
+
+  Evaluation operator()(const Eigen::Vector3d& n) const { return evaluate_uniaxial(a, b, r, u_a, u_b, n); }
+  Eigen::Vector3d point_a(const Eigen::Vector3d& n) const { return support_point(a, u_a, n); }
+  Eigen::Vector3d point_b(const Eigen::Vector3d& n) const { return r - support_point(b, u_b, n); }
+};
+
+Spheroid spheroid(const Ellipsoid& shape, int axis) {
+  return {shape.semi_axes()[axis], shape.semi_axes()[axis == 0 ? 1 : 0], shape.min_curvature_radius()};
+}
+
+using EllipsoidPair = GeneralPair<WorldEllipsoid, WorldEllipsoid>;
+
+/// Newton with Armijo's rule from a normal with g > 0: g never falls, so that the ascent stays where M + g I is positive
+/// definite and the only stationary point is the answer.
+DistanceResult armijo_ascent(const EllipsoidPair& pair, Eigen::Vector3d n, const PairScale& scale,
+                             const Eigen::Vector3d& p_WA, DistanceResult declined) {
+  const double rounding = kRoundingFactor * scale.size;
+  Evaluation e = pair(n);
+  ++declined.iterations;
+  for (int newton = 0; newton < 200; ++newton) {
+    if (e.step2 <= kNormalTolerance2) {
+      return internal::witness_result(pair, p_WA, internal::step_on_sphere(n, e.step, e.step2), declined.iterations);
+    }
+    double t = 1;
+    while (true) {
+      const Eigen::Vector3d trial = (n + t * e.step).normalized();
+      const Evaluation e_trial = pair(trial);
+      ++declined.iterations;
+      if (e_trial.g >= e.g + 1e-4 * t * e.decrement - rounding) {
+        n = trial;
+        e = e_trial;
+        break;
+      }
+      t *= 0.5;
+      if (t < 1e-12) return declined;
+    }
+  }
+  return declined;
+}
+
+}  // namespace
+
+namespace internal {
+
+DistanceResult perram_wertheim_distance(const Ellipsoid& a, const Pose& X_WA, const Ellipsoid& b, const Pose& X_WB,
+                                        int iterations_before) {
+  DistanceResult declined;
+  declined.iterations = iterations_before;
+  const WorldEllipsoid w_a(a, X_WA);
+  const WorldEllipsoid w_b(b, X_WB);
+  const Eigen::Vector3d r = X_WB.position() - X_WA.position();
+  const ContactFunction contact = perram_wertheim(w_a.Q, w_b.Q, r);
+  if (!(contact.F > 1)) return declined;
+  const double rho = a.min_curvature_radius() + b.min_curvature_radius();
+  const PairScale scale{r.norm() + a.bounding_radius() + b.bounding_radius(), rho};
+  return armijo_ascent(EllipsoidPair(w_a, w_b, r, 0.5 * rho), contact.normal, scale, X_WA.position(), declined);
+}
+
+}  // namespace internal
+
+const char* to_string(DistanceStatus status) {
+  switch (status) {
+    case DistanceStatus::separated: return "separated";
+    case DistanceStatus::overlapping: return "overlapping";
+    case DistanceStatus::not_converged: return "not_converged";
+    case DistanceStatus::singular: return "singular";
+  }
+  return "unknown";
+}
+
+DistanceResult distance(const Ellipsoid& a, const Pose& X_WA, const Ellipsoid& b, const Pose& X_WB,
+                        const DistanceOptions& options) {
+  const Eigen::Vector3d r = X_WB.position() - X_WA.position();
+  const double rho = a.min_curvature_radius() + b.min_curvature_radius();
+  const PairScale scale{r.norm() + a.bounding_radius() + b.bounding_radius(), rho};
+  const auto axis_a = a.symmetry_axis();
+  const auto axis_b = b.symmetry_axis();
+  DistanceResult result;
+  if (axis_a && axis_b) {
+    const Spheroid s_a = spheroid(a, *axis_a);
+    const Spheroid s_b = spheroid(b, *axis_b);
+    const Eigen::Vector3d u_a = X_WA.rotation().col(*axis_a);
+    const Eigen::Vector3d u_b = X_WB.rotation().col(*axis_b);
+    const auto cold = [&] { return internal::cold_normal(s_a, s_b, r, u_a, u_b); };
+    result = internal::solve_dual(UniaxialPair{s_a, s_b, r, u_a, u_b}, cold, scale, X_WA.position(), options);
+  } else {
+    const EllipsoidPair pair(WorldEllipsoid(a, X_WA), WorldEllipsoid(b, X_WB), r, 0.5 * rho);
+    const auto cold = [&] {
+      const Eigen::Matrix3d Q = WorldEllipsoid(a, X_WA).Q + WorldEllipsoid(b, X_WB).Q;
+      const Eigen::Vector3d n = Q.inverse() * r;
+      return n.squaredNorm() > 0 ? n.normalized() : Eigen::Vector3d::UnitX();
+    };
+    result = internal::solve_dual(pair, cold, scale, X_WA.position(), options);
+  }
+  if (result.status != DistanceStatus::not_converged) return result;
+  return internal::perram_wertheim_distance(a, X_WA, b, X_WB, result.iterations);
+}
+
+}  // namespace geom

@@ -1,0 +1,61 @@
+#include <geom/pose.h>
+#include <geom/tolerances.h>
+
+#include <Eigen/LU>
+
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+namespace geom {
+namespace {
+
+[[noreturn]] void refuse(const char* what, double value, const char* accepted) {
+  std::ostringstream message;
+  message << "Pose: " << what << " (" << value << "); accepted: " << accepted;
+  throw std::invalid_argument(message.str());
+}
+
+void require_finite_position(const Eigen::Vector3d& position) {
+  for (const double x : {position.x(), position.y(), position.z()}) {
+    if (!std::isfinite(x)) refuse("position is not finite", x, "three finite numbers");
+  }
+}
+
+}  // namespace
+
+Pose::Pose(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& position)
+    : rotation_(rotation), position_(position) {
+  require_finite_position(position);
+  const double error = (rotation.transpose() * rotation - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
+  if (!(error <= kPoseTolerance)) {
+    refuse("rotation is not orthonormal: largest entry of R^T R - 1", error, "at most 1e-6");
+  }
+  if (!(rotation.determinant() > 0)) {
+    refuse("rotation is a reflection: determinant", rotation.determinant(), "+1");
+  }
+  // Newton's iteration for the polar decomposition: squares the error, so that once is enough from 1e-6.
+  if (error > 1e-15) rotation_ = rotation * (1.5 * Eigen::Matrix3d::Identity() - 0.5 * rotation.transpose() * rotation);
+}
+
+Pose Pose::translation(const Eigen::Vector3d& position) {
+  return {Eigen::Matrix3d::Identity(), position};
+}
+
+Pose Pose::from_quaternion(double w, double x, double y, double z, const Eigen::Vector3d& position) {
+  const double norm = std::sqrt(w * w + x * x + y * y + z * z);
+  if (!(std::abs(norm - 1) <= kPoseTolerance)) {
+    refuse("quaternion (w, x, y, z) is not of length 1: its length", norm, "1 within 1e-6");
+  }
+  w /= norm;
+  x /= norm;
+  y /= norm;
+  z /= norm;
+  Eigen::Matrix3d R;
+  R << 1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y),  //
+      2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x),   //
+      2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y);
+  return {R, position};
+}
+
+}  // namespace geom

@@ -1,0 +1,1 @@
+# Tests of this part; see hardbody_test in CMakeLists.txt.
