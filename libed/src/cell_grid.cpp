@@ -1,5 +1,7 @@
 #include "cell_grid.h"
 
+#include "periodic.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -58,27 +60,45 @@ int CellGrid::cell_of(const Eigen::Vector3d& p) const {
 void CellGrid::place(int i, const Eigen::Vector3d& position) {
   const int cell = cell_of(position);
   int& current = cell_of_body_[static_cast<std::size_t>(i)];
-  if (cell == current) return;
   if (current >= 0) {
-    std::vector<int>& old = bodies_[static_cast<std::size_t>(current)];
-    *std::find(old.begin(), old.end(), i) = old.back();
+    std::vector<Entry>& old = bodies_[static_cast<std::size_t>(current)];
+    const auto entry = std::find_if(old.begin(), old.end(), [i](const Entry& e) { return e.body == i; });
+    *entry = old.back();
     old.pop_back();
   }
-  bodies_[static_cast<std::size_t>(cell)].push_back(i);
+  bodies_[static_cast<std::size_t>(cell)].push_back({position, i});
   current = cell;
 }
 
-void CellGrid::collect(const Eigen::Vector3d& position, std::vector<int>& out) const {
+void CellGrid::scale(double factor) {
+  box_ *= factor;
+  for (std::vector<Entry>& cell : bodies_) {
+    for (Entry& entry : cell) entry.position *= factor;
+  }
+}
+
+std::span<const NearBody> CellGrid::collect(const Eigen::Vector3d& position, double reach,
+                                            std::vector<NearBody>& buffer) const {
   const int cx = coordinate(position.x());
   const int cy = coordinate(position.y());
   const int cz = coordinate(position.z());
   const auto wrap = [this](int k) { return k < 0 ? k + cells_ : (k >= cells_ ? k - cells_ : k); };
+  const double reach2 = reach * reach;
+  std::size_t found = 0;
   for (const Eigen::Vector3i& offset : stencil_) {
     const int cell =
         (wrap(cx + offset.x()) * cells_ + wrap(cy + offset.y())) * cells_ + wrap(cz + offset.z());
-    const std::vector<int>& bodies = bodies_[static_cast<std::size_t>(cell)];
-    out.insert(out.end(), bodies.begin(), bodies.end());
+    const std::vector<Entry>& entries = bodies_[static_cast<std::size_t>(cell)];
+    if (buffer.size() < found + entries.size()) buffer.resize(2 * (found + entries.size()));
+    for (const Entry& entry : entries) {
+      // Written always and kept if it counts: whether it does is not predictable, and a branch would cost more.
+      NearBody& near = buffer[found];
+      near.body = entry.body;
+      near.r = nearest_image(entry.position - position, box_);
+      found += near.r.squaredNorm() <= reach2 ? 1 : 0;
+    }
   }
+  return {buffer.data(), found};
 }
 
 }  // namespace ed::internal

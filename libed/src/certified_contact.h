@@ -15,6 +15,7 @@
 /// part, or rest (|g'| within kResting * speed, where its sign is rounding), g and g' are set to 0 if below, and the step is at least sqrt(2 kTouching size / K): the deepest overlap that q allows on
 /// the way is then kTouching * size, below what g itself resolves.
 
+#include "select.h"
 #include "sphere_window.h"
 
 #include <ed/tolerances.h>
@@ -24,7 +25,6 @@
 
 #include <Eigen/Core>
 
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -62,24 +62,43 @@ inline double first_root(double g, double gp, double K) {
   return K > 0 ? (gp + root) / K : kNever;
 }
 
-enum class Quality { usable, overlap };
+enum class Quality {
+  usable,   ///< g is not below zero by more than rounding: the normal certifies a step
+  clear,    ///< it certifies that there is no contact within the horizon
+  overlap,  ///< the bodies overlap by more than rounding; proved
+};
 
-/// Improves n at one point in time until it is good enough for a step, or proves that the bodies overlap.
+/// Improves n at one point in time until it certifies the whole horizon (by the gauge's crude bound), or is good enough for
+/// a step, or proves that the bodies overlap.
 template <class Gauge>
-Quality improve_normal(const Gauge& gauge, const typename Gauge::State& state, Eigen::Vector3d& n,
-                       typename Gauge::Evaluation& e, FinderCounters& count) {
+Quality improve_normal(const Gauge& gauge, const typename Gauge::State& state, double horizon,
+                       Eigen::Vector3d& n, typename Gauge::Evaluation& e, FinderCounters& count) {
   using geom::internal::Ascent;
   const double size = gauge.size();
   const double rounding = geom::kRoundingFactor * size;
-  const auto evaluate = [&](const Eigen::Vector3d& m) { return gauge.evaluate(state, m); };
-  const auto done = [size](const auto& trial) {
-    return trial.decrement <= kLooseDecrement * trial.g || trial.decrement <= kTightDecrement * size;
+  const double worst_turn = 0.5 * gauge.curvature_limit() * horizon;
+  // A concave parabola that is positive at both ends has no root between.
+  const auto certifies = [&](const auto& trial) {
+    return trial.g > kTouching * size && trial.g + horizon * (gauge.rate(state, trial, n) - worst_turn) > 0;
   };
   ++count.evaluations;
+  ++count.kernel_calls;
+  // Most pairs end here, with the normal they came with and no Newton step computed.
+  const typename Gauge::Gap gap = gauge.gap(state, n);
+  if (certifies(gap)) return Quality::clear;
+  e = gauge.complete(state, gap, n);
+
+  bool clear = false;
+  const auto evaluate = [&](const Eigen::Vector3d& m) { return gauge.evaluate(state, m); };
+  const auto done = [&](const typename Gauge::Evaluation& trial) {
+    clear = certifies(trial);
+    return clear || trial.decrement <= kLooseDecrement * trial.g || trial.decrement <= kTightDecrement * size;
+  };
   for (int attempt = 0; attempt < 2; ++attempt) {
     int budget = geom::kMaxIterations;
     const Ascent ascent = geom::internal::ascend(evaluate, rounding, done, budget, n, e);
     count.kernel_calls += static_cast<std::uint64_t>(geom::kMaxIterations - budget);
+    if (clear) return Quality::clear;
     // Any normal with g >= 0 is a valid certificate, converged or not.
     if (e.g >= -kOverlap * size) return Quality::usable;
     // A stationary point no deeper than this is the global maximum (see geom/distance.h).
@@ -87,6 +106,8 @@ Quality improve_normal(const Gauge& gauge, const typename Gauge::State& state, E
     if (attempt == 0) {
       ++count.cold_restarts;
       n = gauge.cold_normal(state);
+      e = gauge.evaluate(state, n);
+      ++count.kernel_calls;
     }
   }
   ++count.rescues;
@@ -94,6 +115,9 @@ Quality improve_normal(const Gauge& gauge, const typename Gauge::State& state, E
   e = gauge.evaluate(state, n);
   return e.g >= -kOverlap * size ? Quality::usable : Quality::overlap;
 }
+
+/// Evaluations for one converged normal near a contact, where the normal is nearly right to begin with.
+inline constexpr int kRefineBudget = 12;
 
 /// Newton's method on d(t) = 0 with converged normals, from a time close to the contact. True if it ended on a contact at
 /// which the bodies approach; t and n are changed only then.
@@ -108,10 +132,10 @@ bool refine_contact(const Gauge& gauge, double earliest, double reach, double& t
   for (int iteration = 0; iteration < 4; ++iteration) {
     const auto state = gauge.at(time);
     const auto evaluate = [&](const Eigen::Vector3d& m) { return gauge.evaluate(state, m); };
-    typename Gauge::Evaluation e;
-    int budget = 12;
+    typename Gauge::Evaluation e = evaluate(normal);
+    int budget = kRefineBudget;
     (void)geom::internal::ascend(evaluate, rounding, done, budget, normal, e);
-    count.kernel_calls += static_cast<std::uint64_t>(12 - budget);
+    count.kernel_calls += static_cast<std::uint64_t>(1 + kRefineBudget - budget);
     ++count.evaluations;
     const double d = e.g + 0.5 * e.decrement;
     const double rate = gauge.rate(state, e, normal);
@@ -122,7 +146,7 @@ bool refine_contact(const Gauge& gauge, double earliest, double reach, double& t
       n = normal;
       return true;
     }
-    time = std::max(earliest, time - d / rate);
+    time = larger(earliest, time - d / rate);
   }
   return false;
 }
@@ -145,28 +169,24 @@ Finding certified_contact(const Gauge& gauge, double t_begin, double t_end, int 
     if (cold) n = gauge.cold_normal(state);
     cold = false;
     typename Gauge::Evaluation e;
-    const Quality quality = improve_normal(gauge, state, n, e, count);
+    const double horizon = window.end - t;
+    const Quality quality = improve_normal(gauge, state, horizon, n, e, count);
+    if (quality == Quality::clear) return {Outcome::clear, t_end};
     double g = e.g;
     double gp = gauge.rate(state, e, n);
     if (quality == Quality::overlap) return {Outcome::overlapping, t, gp < 0};
     if (g <= kTouching * size) {
       if (gp < -kResting * gauge.speed()) return {Outcome::contact, t};
-      g = std::max(g, 0.0);
-      gp = std::max(gp, 0.0);
+      g = larger(g, 0.0);
+      gp = larger(gp, 0.0);
     }
-    const double horizon = window.end - t;
     const auto certificate = gauge.certificate(state, e, n);
-    const double K_horizon = certificate.curvature(horizon);
-    // A concave parabola that is positive at both ends has no root between.
-    if (K_horizon >= 0 && g > 0 && g + horizon * (gp - 0.5 * K_horizon * horizon) > 0) {
-      return {Outcome::clear, t_end};
-    }
-    double K = K_horizon;
-    double tau = std::min(horizon, first_root(g, gp, K));
+    double K = certificate.curvature(horizon);
+    double tau = smaller(horizon, first_root(g, gp, K));
     for (int attempt = 0; attempt < 2 && tau < horizon; ++attempt) {
-      const double reach = std::min(horizon, 2 * tau);
+      const double reach = smaller(horizon, 2 * tau);
       const double K_reach = certificate.curvature(reach);
-      const double tau_reach = std::min(reach, first_root(g, gp, K_reach));
+      const double tau_reach = smaller(reach, first_root(g, gp, K_reach));
       if (tau_reach > tau) {
         tau = tau_reach;
         K = K_reach;
@@ -184,7 +204,7 @@ Finding certified_contact(const Gauge& gauge, double t_begin, double t_end, int 
         }
       }
     } else {
-      tau = std::max(tau, std::sqrt(2 * kTouching * size / K));
+      tau = larger(tau, std::sqrt(2 * kTouching * size / K));
     }
     // Below the resolution of time, with g above that of distance: cannot be, but must not become an endless loop.
     if (!(t + tau > t)) return {Outcome::contact, t};

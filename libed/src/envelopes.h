@@ -8,6 +8,7 @@
 
 #include "axis_motion.h"
 #include "neighbour_lists.h"
+#include "periodic.h"
 
 #include <geom/internal/uniaxial.h>
 
@@ -31,18 +32,6 @@ inline double smallest_box(double bounding_radius) {
 /// The thickest envelope for which the nearest image is safe in this box.
 inline double thickest_envelope(double box, double bounding_radius) {
   return (0.5 * box - 2 * bounding_radius) / 4;
-}
-
-/// Rounds to the nearest integer, |x| < 2^51, without the function call that baseline x86-64 needs for it.
-inline double nearest_integer(double x) {
-  constexpr double kShift = 6755399441055744.0;  // 1.5 * 2^52
-  return (x + kShift) - kShift;
-}
-
-inline Eigen::Vector3d nearest_image(const Eigen::Vector3d& d, double box) {
-  const double inverse = 1 / box;
-  return {d.x() - box * nearest_integer(d.x() * inverse), d.y() - box * nearest_integer(d.y() * inverse),
-          d.z() - box * nearest_integer(d.z() * inverse)};
 }
 
 /// An upper bound of the angle between unit vectors a chord apart: 2 asin(c/2) = c + c^3/24 + 3 c^5/640 + ..., whose tail
@@ -108,20 +97,28 @@ class DilatedEnvelopes {
     return 0.15 * exit_thickness_ / (motion.velocity.norm() + surface_speed(motion) + 1e-300);
   }
 
-  /// Whether the envelopes of i and k may meet (false: they do not, proved), and a normal from i to k for a start.
-  bool may_meet(int i, int k, double box, Eigen::Vector3d& normal) const {
-    const std::size_t a = static_cast<std::size_t>(i);
-    const std::size_t b = static_cast<std::size_t>(k);
-    const Eigen::Vector3d r = nearest_image(centre_[b] - centre_[a], box);
+  /// Whether the envelopes of i and k, the centres r apart (nearest image), may meet; false: they do not, proved. Sets a
+  /// normal from i to k to start from.
+  bool may_meet(int i, int k, const Eigen::Vector3d& r, Eigen::Vector3d& normal) const {
+    const Eigen::Vector3d& u_i = axis_[static_cast<std::size_t>(i)];
+    const Eigen::Vector3d& u_k = axis_[static_cast<std::size_t>(k)];
     const double limit = 2 * thickness_;
-    if (r.squaredNorm() > reach() * reach()) return false;
-    normal = geom::internal::cold_normal(shape_, shape_, r, axis_[a], axis_[b]);
-    auto e = geom::internal::evaluate_uniaxial(shape_, shape_, r, axis_[a], axis_[b], normal);
+    // Most pairs are told apart by the gap along the line of centres already.
+    const double r2 = r.squaredNorm();
+    const double distance = std::sqrt(r2);
+    const double r_i = u_i.dot(r);
+    const double r_k = u_k.dot(r);
+    const double h_i = std::sqrt(shape_.b2 * r2 + shape_.c * (r_i * r_i));
+    const double h_k = std::sqrt(shape_.b2 * r2 + shape_.c * (r_k * r_k));
+    // Both sides times the distance; the share of 1e-9 covers the cancellation in h for discs.
+    if (r2 - h_i - h_k > limit * distance + 1e-9 * r2) return false;
+    normal = geom::internal::cold_normal(shape_, shape_, r, u_i, u_k);
+    auto e = geom::internal::evaluate_uniaxial(shape_, shape_, r, u_i, u_k, normal);
     if (e.g > limit) return false;
     // Two more Newton steps at the most; a pair that is still undecided is taken, which is always safe.
     for (int step = 0; step < 2 && e.g + e.decrement > limit; ++step) {
       normal = geom::internal::step_on_sphere(normal, e.step, e.step2);
-      e = geom::internal::evaluate_uniaxial(shape_, shape_, r, axis_[a], axis_[b], normal);
+      e = geom::internal::evaluate_uniaxial(shape_, shape_, r, u_i, u_k, normal);
       if (e.g > limit) return false;
     }
     normal = geom::internal::step_on_sphere(normal, e.step, e.step2);

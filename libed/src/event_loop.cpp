@@ -307,13 +307,11 @@ void EventLoop::rebuild(int i) {
     lists_.remove(index);
   }
   renew_exit(i);
-  candidates_.clear();
-  cells_->collect(motion.position, candidates_);
-  for (const int k : candidates_) {
+  const auto candidates = cells_->collect(motion.position, envelopes_->reach(), near_);
+  counters_.candidate_tests += candidates.size();
+  for (const auto& [k, r] : candidates) {
     Vector3d normal;
-    if (k == i) continue;
-    ++counters_.candidate_tests;
-    if (envelopes_->may_meet(i, k, box_, normal)) predict(lists_.add(i, k, normal), i, kFirstLook);
+    if (k != i && envelopes_->may_meet(i, k, r, normal)) predict(lists_.add(i, k, normal), i, kFirstLook);
   }
   reschedule_orphans();
   reschedule(i);
@@ -332,11 +330,9 @@ void EventLoop::rebuild_all() {
     renew_exit(i);
   }
   for (int i = 0; i < number(); ++i) {
-    candidates_.clear();
-    cells_->collect(motions_[at(i)].position, candidates_);
-    for (const int k : candidates_) {
+    for (const auto& [k, r] : cells_->collect(motions_[at(i)].position, envelopes_->reach(), near_)) {
       Vector3d normal;
-      if (k > i && envelopes_->may_meet(i, k, box_, normal)) predict(lists_.add(i, k, normal), i, kFirstLook);
+      if (k > i && envelopes_->may_meet(i, k, r, normal)) predict(lists_.add(i, k, normal), i, kFirstLook);
     }
   }
   orphans_.clear();
@@ -470,7 +466,7 @@ double EventLoop::contact_scale(const Pair& pair, double enough) const {
     if (n.dot(r) > 0) best = std::min(best, 1 - e.g / n.dot(r));
     return best <= enough || e.step2 < geom::kNormalTolerance2;
   };
-  UniaxialEvaluation e;
+  UniaxialEvaluation e = evaluate(n);
   int budget = geom::kMaxIterations;
   (void)geom::internal::ascend(evaluate, geom::kRoundingFactor * 2 * bounding_radius_, done, budget, n, e);
   return best;

@@ -97,7 +97,7 @@ class EventLoop {
   std::vector<double> exits_;         ///< lower bound of when a body leaves its envelope
   std::vector<std::int32_t> first_;   ///< what a body's calendar entry is: a pair, or kExit
   std::vector<int> orphans_;          ///< bodies whose first event has gone to another owner
-  std::vector<int> candidates_;
+  std::vector<NearBody> near_;
   std::vector<std::int32_t> old_pairs_;
 
   double list_scale_ = 1;  ///< by what the box has shrunk since all lists were made

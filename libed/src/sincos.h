@@ -8,6 +8,7 @@
 /// |x| <= 2^20; polynomials of degree 13 and 14 on [-pi/4, pi/4] (the minimax coefficients of Cephes' sin.c). Error below 2
 /// units in the last place of 1 against long double (tests/unit/sincos_test.cpp); beyond the range, the C library's.
 
+#include <bit>
 #include <cmath>
 #include <cstdint>
 
@@ -24,7 +25,7 @@ inline SinCos sincos(double x) {
   constexpr double kShift = 6755399441055744.0;
   const double shifted = x * 0.63661977236758134308 + kShift;
   const double k = shifted - kShift;
-  const auto quadrant = static_cast<std::int64_t>(k);
+  const auto quadrant = std::bit_cast<std::uint64_t>(shifted);
   double r = x - k * 1.57079632673412561417;
   r -= k * 6.07710050630396597660e-11;
   r -= k * 2.02226624879595063154e-21;
@@ -44,10 +45,13 @@ inline SinCos sincos(double x) {
                 z * (2.48015872888517045348e-5 +
                      z * (-2.75573141792967388112e-7 +
                           z * (2.08757008419747316778e-9 + z * -1.13585365213876817300e-11)))));
-  const bool swap = (quadrant & 1) != 0;
-  const double sin = swap ? c : s;
-  const double cos = swap ? s : c;
-  return {(quadrant & 2) != 0 ? -sin : sin, ((quadrant + 1) & 2) != 0 ? -cos : cos};
+  // Quadrant by bit operations: branches on a random angle would be mispredicted half of the time.
+  auto sin = std::bit_cast<std::uint64_t>(s);
+  auto cos = std::bit_cast<std::uint64_t>(c);
+  const std::uint64_t exchange = (sin ^ cos) & (std::uint64_t{0} - (quadrant & 1));
+  sin ^= exchange ^ ((quadrant & 2) << 62);
+  cos ^= exchange ^ (((quadrant + 1) & 2) << 62);
+  return {std::bit_cast<double>(sin), std::bit_cast<double>(cos)};
 }
 
 }  // namespace ed::internal

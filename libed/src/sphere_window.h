@@ -1,8 +1,9 @@
 #pragma once
 
+#include "select.h"
+
 #include <Eigen/Core>
 
-#include <algorithm>
 #include <cmath>
 
 namespace ed::internal {
@@ -24,12 +25,12 @@ inline Window sphere_window(const Eigen::Vector3d& r, const Eigen::Vector3d& v, 
   Window window{t_begin, t_end};
   if (excess > 0) {
     if (approach >= 0 || discriminant < 0) return {t_end, t_end};
-    window.begin = std::max(t_begin, now + excess / (std::sqrt(discriminant) - approach));
+    window.begin = larger(t_begin, now + excess / (std::sqrt(discriminant) - approach));
   }
   // The spheres part again only if they no longer overlap at the end.
   const double span = t_end - now;
   if (!(excess + span * (2 * approach + span * v2) <= 0) && v2 > 0 && discriminant > 0) {
-    window.end = std::min(t_end, now + (std::sqrt(discriminant) - approach) / v2);
+    window.end = smaller(t_end, now + (std::sqrt(discriminant) - approach) / v2);
   }
   return window;
 }

@@ -48,7 +48,7 @@ System insert_bodies(const Species& species, int number, double packing_fraction
   const double reach = 2 * shape.bounding_radius();
   internal::CellGrid cells(number, system.box, reach);
   std::vector<geom::Pose> poses;
-  std::vector<int> near;
+  std::vector<internal::NearBody> near;
   for (int i = 0; i < number; ++i) {
     for (int attempt = 0;; ++attempt) {
       if (attempt == kInsertions) throw std::runtime_error("random start: no place found for a body");
@@ -56,13 +56,10 @@ System insert_bodies(const Species& species, int number, double packing_fraction
       const double y = random.uniform() - 0.5;
       const double z = random.uniform() - 0.5;
       const geom::Pose pose(random.rotation(), system.box * Vector3d(x, y, z));
-      near.clear();
-      cells.collect(pose.position(), near);
-      const bool blocked = std::any_of(near.begin(), near.end(), [&](int k) {
-        const geom::Pose& other = poses[static_cast<std::size_t>(k)];
-        const Vector3d r = internal::nearest_image(other.position() - pose.position(), system.box);
-        return r.squaredNorm() < reach * reach &&
-               overlaps(shape, pose, geom::Pose(other.rotation(), pose.position() + r));
+      const auto others = cells.collect(pose.position(), reach, near);
+      const bool blocked = std::any_of(others.begin(), others.end(), [&](const internal::NearBody& other) {
+        const geom::Pose& X = poses[static_cast<std::size_t>(other.body)];
+        return overlaps(shape, pose, geom::Pose(X.rotation(), pose.position() + other.r));
       });
       if (blocked) continue;
       poses.push_back(pose);

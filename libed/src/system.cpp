@@ -78,7 +78,7 @@ Audit audit(const System& system) {
   const int n = system.size();
   std::vector<geom::Pose> poses(static_cast<std::size_t>(n));
   const double reach = 2 * system.species.shape.bounding_radius();
-  internal::CellGrid cells(n, system.box, std::min(reach, system.box));
+  internal::CellGrid cells(n, system.box, reach);
   for (int i = 0; i < n; ++i) {
     const Body& body = system.bodies[static_cast<std::size_t>(i)];
     if (!body.position.allFinite() || !body.rotation.allFinite() || !body.velocity.allFinite() ||
@@ -89,17 +89,12 @@ Audit audit(const System& system) {
     poses[static_cast<std::size_t>(i)] = geom::Pose(body.rotation, body.position);
     cells.place(i, body.position);
   }
-  std::vector<int> near;
+  std::vector<internal::NearBody> near;
   for (int i = 0; i < n; ++i) {
     const geom::Pose& X_i = poses[static_cast<std::size_t>(i)];
-    near.clear();
-    cells.collect(X_i.position(), near);
-    for (const int j : near) {
+    for (const auto& [j, r] : cells.collect(X_i.position(), reach, near)) {
       if (j <= i) continue;
-      const geom::Pose& X_j = poses[static_cast<std::size_t>(j)];
-      const Vector3d r = internal::nearest_image(X_j.position() - X_i.position(), system.box);
-      if (r.squaredNorm() > reach * reach) continue;
-      const geom::Pose X_image(X_j.rotation(), X_i.position() + r);
+      const geom::Pose X_image(poses[static_cast<std::size_t>(j)].rotation(), X_i.position() + r);
       const geom::DistanceResult d =
           geom::distance(system.species.shape, X_i, system.species.shape, X_image);
       if (!(d.status == geom::DistanceStatus::separated || d.status == geom::DistanceStatus::overlapping)) {

@@ -4,14 +4,17 @@
 ///
 /// A gauge, as `certified_contact` wants it, has
 ///   State at(t)                           the pair at time t
-///   Evaluation evaluate(state, n)         g and the Newton step of n
-///   double rate(state, e, n)              dg/dt at fixed n
+///   Gap gap(state, n)                     g, and what its rate needs
+///   Evaluation complete(state, gap, n)    g and the Newton step of n; evaluate(state, n) is both at once
+///   double rate(state, gap or e, n)       dg/dt at fixed n
 ///   Certificate certificate(state, e, n)  with curvature(tau) >= -d2g/dt2 at fixed n over [t, t + tau]
 ///   Vector3d cold_normal(state)
 ///   bool separating_normal(state, n)      the fallback: a normal with g > 0, or false, which proves an overlap
+///   double curvature_limit()              >= -d2g/dt2 for every n and t
 ///   double size(), certified_depth(), speed(), and window(t_begin, t_end)
 
 #include "axis_motion.h"
+#include "select.h"
 #include "sphere_window.h"
 
 #include <ed/tolerances.h>
@@ -21,7 +24,6 @@
 
 #include <Eigen/Core>
 
-#include <algorithm>
 #include <cmath>
 
 namespace ed::internal {
@@ -55,22 +57,22 @@ struct SupportCurvature {
   /// Without spin C = 0 and h'' depends on s = x^2 alone: falling in s for a rod (c > 0), rising for a disc.
   double bound_across(const Spheroid& S, double tau) const {
     const double rate2 = rate * rate;
-    const double r2 = std::min(1.0, x * x + xd * xd / (rate2 + 1e-300));
+    const double r2 = smaller(1.0, x * x + xd * xd / (rate2 + 1e-300));
     const double r = std::sqrt(r2);
     const double magnitude = std::abs(x);
-    const double outward = x < 0 ? -xd : xd;  // d|x|/dt; sgn(0) = +1
+    const double outward = std::copysign(1.0, x) * xd;  // d|x|/dt; at x = 0 either sign is covered below
     // |x| after tau under the strongest pull towards (and beyond) zero; negative: it may have passed zero.
     const double end = magnitude + tau * (outward - 0.5 * rate2 * r * tau);
-    const double low = std::max(0.0, std::min(magnitude, end));
+    const double low = larger(0.0, smaller(magnitude, end));
     const double s_low = low * low;
     if (S.c > 0) {
       const double h2 = S.b2 + S.c * s_low;
       return S.c * rate2 * (S.b2 * (r2 - s_low) - s_low * h2) / (h2 * std::sqrt(h2));
     }
-    const double high = std::min(r, std::max(magnitude + std::max(0.0, outward) * tau, -end));
+    const double high = smaller(r, larger(magnitude + larger(0.0, outward) * tau, -end));
     const double s_high = high * high;
     const double h2_low = S.b2 + S.c * s_low;
-    const double h_high = std::sqrt(std::max(S.a2, S.b2 + S.c * s_high));
+    const double h_high = std::sqrt(larger(S.a2, S.b2 + S.c * s_high));
     return -S.c * rate2 * (s_high / h_high - S.b2 * (r2 - s_high) / (h2_low * std::sqrt(h2_low)));
   }
 
@@ -81,32 +83,32 @@ struct SupportCurvature {
     const double r2 = offset * offset + xd * xd / (rate2 + 1e-300);
     const double r = std::sqrt(r2);
     const double swing = 0.5 * rate2 * r * tau * tau;
-    const double low = std::max(centre - r, x + std::min(0.0, xd) * tau - swing);
-    const double high = std::min(centre + r, x + std::max(0.0, xd) * tau + swing);
-    const double x2_max = std::min(1.0, std::max(low * low, high * high));
-    const double x2_min = low * high <= 0 ? 0 : std::min(low * low, high * high);
+    const double low = larger(centre - r, x + smaller(0.0, xd) * tau - swing);
+    const double high = smaller(centre + r, x + larger(0.0, xd) * tau + swing);
+    const double x2_max = smaller(1.0, larger(low * low, high * high));
+    const double x2_min = low * high <= 0 ? 0 : smaller(low * low, high * high);
     const double at_low = low * (low - centre);
     const double at_high = high * (high - centre);
-    const double off2_max = std::max((low - centre) * (low - centre), (high - centre) * (high - centre));
+    const double off2_max = larger((low - centre) * (low - centre), (high - centre) * (high - centre));
     const double off2_min = (low - centre) * (high - centre) <= 0
                                 ? 0
-                                : std::min((low - centre) * (low - centre), (high - centre) * (high - centre));
+                                : smaller((low - centre) * (low - centre), (high - centre) * (high - centre));
     if (S.c > 0) {
       const double h2_min = S.b2 + S.c * x2_min;
       const double h_min = std::sqrt(h2_min);
       const double middle = 0.5 * centre;  // where x (x - C) is least
       const double product =
-          low <= middle && middle <= high ? -middle * middle : std::min(at_low, at_high);
+          low <= middle && middle <= high ? -middle * middle : smaller(at_low, at_high);
       const double pull = -product;
       const double h_pull = pull > 0 ? h_min : std::sqrt(S.b2 + S.c * x2_max);
-      return S.c * rate2 * (S.b2 * std::max(0.0, r2 - off2_min) / (h2_min * h_min) + pull / h_pull);
+      return S.c * rate2 * (S.b2 * larger(0.0, r2 - off2_min) / (h2_min * h_min) + pull / h_pull);
     }
-    const double h_min = std::sqrt(std::max(S.a2, S.b2 + S.c * x2_max));
+    const double h_min = std::sqrt(larger(S.a2, S.b2 + S.c * x2_max));
     const double h2_max = S.b2 + S.c * x2_min;
     const double h_max = std::sqrt(h2_max);
-    const double product = std::max(at_low, at_high);
+    const double product = larger(at_low, at_high);
     return -S.c * rate2 *
-           (product / (product > 0 ? h_min : h_max) - S.b2 * std::max(0.0, r2 - off2_max) / (h2_max * h_max));
+           (product / (product > 0 ? h_min : h_max) - S.b2 * larger(0.0, r2 - off2_max) / (h2_max * h_max));
   }
 };
 
@@ -116,6 +118,7 @@ class UniaxialGauge {
   struct State {
     Eigen::Vector3d r, u_a, u_b, du_a, du_b;
   };
+  using Gap = geom::internal::UniaxialGap;
   using Evaluation = UniaxialEvaluation;
 
   struct Certificate {
@@ -137,11 +140,18 @@ class UniaxialGauge {
     return s;
   }
 
-  UniaxialEvaluation evaluate(const State& s, const Eigen::Vector3d& n) const {
-    return geom::internal::evaluate_uniaxial(A_, B_, s.r, s.u_a, s.u_b, n);
+  Gap gap(const State& s, const Eigen::Vector3d& n) const {
+    return geom::internal::uniaxial_gap(A_, B_, s.r, s.u_a, s.u_b, n);
   }
 
-  double rate(const State& s, const UniaxialEvaluation& e, const Eigen::Vector3d& n) const {
+  Evaluation complete(const State& s, const Gap& gap, const Eigen::Vector3d& n) const {
+    return geom::internal::uniaxial_step(A_, B_, s.r, s.u_a, s.u_b, n, gap);
+  }
+
+  Evaluation evaluate(const State& s, const Eigen::Vector3d& n) const { return complete(s, gap(s, n), n); }
+
+  template <class GapOrEvaluation>
+  double rate(const State& s, const GapOrEvaluation& e, const Eigen::Vector3d& n) const {
     return v_.dot(n) - e.lever_a * s.du_a.dot(n) - e.lever_b * s.du_b.dot(n);
   }
 
@@ -163,6 +173,12 @@ class UniaxialGauge {
 
   Window window(double t_begin, double t_end) const {
     return sphere_window(r_now_, v_, reach_, now_, t_begin, t_end);
+  }
+
+  /// A bound of -d2g/dt2 for every n and t, cheap and crude. From the formula of SupportCurvature: h >= b for a rod, and
+  /// b^2 r^2 / h^2 - x (x - C) <= r^2 + C^2 / 4 <= 1; h >= a for a disc, and x (x - C) <= 1.
+  double curvature_limit() const {
+    return A_.turning_limit * (a_.rate * a_.rate) + B_.turning_limit * (b_.rate * b_.rate);
   }
 
   double size() const { return reach_; }

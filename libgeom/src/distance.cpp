@@ -55,8 +55,8 @@ Spheroid spheroid(const Ellipsoid& shape, int axis) {
 
 using EllipsoidPair = GeneralPair<WorldEllipsoid, WorldEllipsoid>;
 
-/// Newton with Armijo's rule from a normal with g > 0: g never falls, so that the ascent stays where M + g I is positive
-/// definite and the only stationary point is the answer.
+/// Newton with Armijo's rule. g never falls: from a normal with g > 0 the ascent stays where M + g I is positive definite
+/// and the only stationary point is the answer. From one with g < 0 it may end on one that is too deep to be certified.
 DistanceResult armijo_ascent(const EllipsoidPair& pair, Eigen::Vector3d n, const PairScale& scale,
                              const Eigen::Vector3d& p_WA, DistanceResult declined) {
   const double rounding = kRoundingFactor * scale.size;
@@ -64,6 +64,7 @@ DistanceResult armijo_ascent(const EllipsoidPair& pair, Eigen::Vector3d n, const
   ++declined.iterations;
   for (int newton = 0; newton < 200; ++newton) {
     if (e.step2 <= kNormalTolerance2) {
+      if (e.g < -scale.certified_depth - rounding) return declined;
       return internal::witness_result(pair, p_WA, internal::step_on_sphere(n, e.step, e.step2), declined.iterations);
     }
     double t = 1;
@@ -95,10 +96,13 @@ DistanceResult perram_wertheim_distance(const Ellipsoid& a, const Pose& X_WA, co
   const WorldEllipsoid w_b(b, X_WB);
   const Eigen::Vector3d r = X_WB.position() - X_WA.position();
   const ContactFunction contact = perram_wertheim(w_a.Q, w_b.Q, r);
-  if (!(contact.F > 1)) return declined;
   const double rho = a.min_curvature_radius() + b.min_curvature_radius();
+  // Shrunk by sqrt F the bodies touch, so that the depth is at least this. F itself is no test: its rounding error is
+  // that of a matrix inverse, and F <= 1 is computed for bodies that are apart by less.
+  const double least_depth = (1 - std::sqrt(contact.F)) * (a.inscribed_radius() + b.inscribed_radius());
+  if (!(least_depth <= rho)) return declined;
   const PairScale scale{r.norm() + a.bounding_radius() + b.bounding_radius(), rho};
-  return armijo_ascent(EllipsoidPair(w_a, w_b, r, 0.5 * rho), contact.normal, scale, X_WA.position(), declined);
+  return armijo_ascent(EllipsoidPair(w_a, w_b, r, rho, 0.5 * rho), contact.normal, scale, X_WA.position(), declined);
 }
 
 }  // namespace internal
@@ -129,7 +133,7 @@ DistanceResult distance(const Ellipsoid& a, const Pose& X_WA, const Ellipsoid& b
     const auto cold = [&] { return internal::cold_normal(s_a, s_b, r, u_a, u_b); };
     result = internal::solve_dual(UniaxialPair{s_a, s_b, r, u_a, u_b}, cold, scale, X_WA.position(), options);
   } else {
-    const EllipsoidPair pair(WorldEllipsoid(a, X_WA), WorldEllipsoid(b, X_WB), r, 0.5 * rho);
+    const EllipsoidPair pair(WorldEllipsoid(a, X_WA), WorldEllipsoid(b, X_WB), r, rho, 0.5 * rho);
     const auto cold = [&] {
       const Eigen::Matrix3d Q = WorldEllipsoid(a, X_WA).Q + WorldEllipsoid(b, X_WB).Q;
       const Eigen::Vector3d n = Q.inverse() * r;

@@ -34,8 +34,11 @@ Pose::Pose(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& position)
   if (!(rotation.determinant() > 0)) {
     refuse("rotation is a reflection: determinant", rotation.determinant(), "+1");
   }
-  // Newton's iteration for the polar decomposition: squares the error, so that once is enough from 1e-6.
-  if (error > 1e-15) rotation_ = rotation * (1.5 * Eigen::Matrix3d::Identity() - 0.5 * rotation.transpose() * rotation);
+  if (error <= 1e-15) return;
+  // Newton's iteration for the polar decomposition squares the error: two steps take 1e-6 to rounding.
+  for (int step = 0; step < 2; ++step) {
+    rotation_ = rotation_ * (1.5 * Eigen::Matrix3d::Identity() - 0.5 * rotation_.transpose() * rotation_);
+  }
 }
 
 Pose Pose::translation(const Eigen::Vector3d& position) {

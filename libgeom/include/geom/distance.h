@@ -23,9 +23,10 @@ enum class DistanceStatus {
 GEOM_EXPORT const char* to_string(DistanceStatus status);
 
 struct DistanceOptions {
-  /// Warm start: a guess of the normal from A to B, for instance the last answer's. Any length; zero: cold start.
+  /// Warm start: a guess of the normal from A to B, for instance the last answer's. Any length from 1e-145 to 1e150;
+  /// else, also if it is not finite: cold start.
   Eigen::Vector3d start = Eigen::Vector3d::Zero();
-  int max_iterations = kMaxIterations;  ///< evaluations of the pair, >= 1
+  int max_iterations = kMaxIterations;  ///< evaluations of the pair from each start, >= 1; the fallback's excluded
 };
 
 /// The answer of a distance query; every number is NaN when `status` declines it. World frame.

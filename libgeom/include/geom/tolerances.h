@@ -25,6 +25,10 @@ inline constexpr double kRoundingFactor = 16 * 2.3e-16;
 /// Longest Newton step of the unit normal (radian, nearly); longer ones are scaled to it.
 inline constexpr double kMaxNormalStep = 0.6;
 
+/// Newton's matrix, where it is definite by theory (g > -(rhoA + rhoB)): smallest eigenvalue kept >=
+/// kLeastEigenvalue * (rhoA + rhoB), against a division by zero only. Dimensionless.
+inline constexpr double kLeastEigenvalue = 1e-6;
+
 /// By what a step that lowers g is shortened. Dimensionless.
 inline constexpr double kBacktrack = 0.35;
 

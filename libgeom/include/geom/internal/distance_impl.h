@@ -38,8 +38,9 @@ struct WorldSupport {
 template <class SupportA, class SupportB>
 class GeneralPair {
  public:
-  GeneralPair(SupportA a, SupportB b, const Eigen::Vector3d& r, double floor)
-      : a_(std::move(a)), b_(std::move(b)), r_(r), floor_(floor) {}
+  /// `rho`: the sum of both smallest radii of curvature; `floor`: what eigenvalues are lifted to where g <= -rho.
+  GeneralPair(SupportA a, SupportB b, const Eigen::Vector3d& r, double rho, double floor)
+      : a_(std::move(a)), b_(std::move(b)), r_(r), rho_(rho), floor_(floor) {}
 
   Evaluation operator()(const Eigen::Vector3d& n) const {
     const CurvedSupport s_a = a_(n);
@@ -59,9 +60,10 @@ class GeneralPair {
     const double half_difference = 0.5 * (m_ee - m_ff);
     const double smallest =
         0.5 * (m_ee + m_ff) - std::sqrt(half_difference * half_difference + m_ef * m_ef);
-    if (smallest < floor_) {
-      m_ee += floor_ - smallest;
-      m_ff += floor_ - smallest;
+    const double least = out.g > -rho_ ? kLeastEigenvalue * 2 * floor_ : floor_;
+    if (smallest < least) {
+      m_ee += least - smallest;
+      m_ff += least - smallest;
     }
     const double y_e = y.dot(e);
     const double y_f = y.dot(f);
@@ -80,6 +82,7 @@ class GeneralPair {
   SupportA a_;
   SupportB b_;
   Eigen::Vector3d r_;
+  double rho_;
   double floor_;
 };
 
@@ -127,12 +130,13 @@ DistanceResult solve_dual(const Pair& pair, const Cold& cold, const PairScale& s
   const double rounding = kRoundingFactor * scale.size;
   const auto done = [](const Evaluation& e) { return e.step2 <= kNormalTolerance2; };
   const double start2 = options.start.squaredNorm();
-  const bool warm = start2 > 0 && std::isfinite(start2);
+  // A square that is nearly subnormal has lost the digits that make start / sqrt(start2) a unit vector.
+  const bool warm = start2 > 1e-290 && std::isfinite(start2);
   int spent = 0;
   for (int attempt = warm ? 0 : 1; attempt < 2; ++attempt) {
     Eigen::Vector3d n = attempt == 0 ? Eigen::Vector3d(options.start / std::sqrt(start2)) : cold();
-    int budget = options.max_iterations;
-    Evaluation e;
+    Evaluation e = pair(n);
+    int budget = options.max_iterations - 1;
     const Ascent ascent = ascend(pair, rounding, done, budget, n, e);
     spent += options.max_iterations - budget;
     if (ascent != Ascent::converged) continue;
@@ -157,7 +161,7 @@ DistanceResult distance(const ShapeA& a, const Pose& X_WA, const ShapeB& b, cons
   // Shapes with flat faces or edges have rho = 0; a small share of the inscribed spheres keeps the step bounded.
   const double floor = std::max(0.5 * rho, 1e-3 * (a.inscribed_radius() + b.inscribed_radius()));
   const internal::GeneralPair pair(WorldSupport<ShapeA>{a, X_WA.rotation()},
-                                   WorldSupport<ShapeB>{b, X_WB.rotation()}, r, floor);
+                                   WorldSupport<ShapeB>{b, X_WB.rotation()}, r, rho, floor);
   const auto cold = [&r] { return r.squaredNorm() > 0 ? r.normalized() : Eigen::Vector3d::UnitX(); };
   const internal::PairScale scale{r.norm() + a.bounding_radius() + b.bounding_radius(), rho};
   return internal::solve_dual(pair, cold, scale, X_WA.position(), options);

@@ -7,9 +7,10 @@
 /// functions, P = I - n n^T. The Newton step solves (M + g I) delta = y across n. g is 1-homogeneous and concave, so
 /// M is positive semidefinite, and M + g I positive definite wherever g > 0.
 ///
-/// Where g < 0 the matrix may lose definiteness. Its smallest eigenvalue is then lifted to (rhoA + rhoB) / 2, rho the
-/// smallest radius of curvature, which makes every step an ascent direction; the step length is capped, and halved
-/// (kBacktrack) when g falls.
+/// With rho the smallest radius of curvature, M >= rhoA + rhoB everywhere, so that the matrix is definite for
+/// g > -(rhoA + rhoB) too. Below, its smallest eigenvalue is lifted to (rhoA + rhoB) / 2, which makes every step an ascent
+/// direction. Above it is left alone: a lifted matrix converges linearly only, and |delta|^2 <= kNormalTolerance2 would
+/// not bound the error. The step length is capped, and shortened (kBacktrack) when g falls.
 
 #include <geom/tolerances.h>
 
@@ -74,12 +75,11 @@ Ascent backtrack(const Evaluate& evaluate, double rounding, const Eigen::Vector3
 /// Improves the unit vector n by Newton steps with backtracking until `done(e)` holds for the evaluation e at n.
 ///
 /// `evaluate(n)` returns an Evaluation (or a struct derived from it); `rounding` is the decrease of g that counts as
-/// rounding; `budget` is lowered by one for each evaluation. On return `e` belongs to `n`, also when not converged.
+/// rounding; `budget` is lowered by one for each evaluation. On entry `e` is the evaluation at n; on return it is so again,
+/// also when not converged.
 template <class Evaluate, class E, class Done>
 Ascent ascend(const Evaluate& evaluate, double rounding, const Done& done, int& budget, Eigen::Vector3d& n,
               E& e) {
-  e = evaluate(n);
-  --budget;
   while (!done(e)) {
     if (budget <= 0) return Ascent::exhausted;
     Eigen::Vector3d n_trial = step_on_sphere(n, e.step, e.step2);

@@ -23,8 +23,9 @@ struct ContactFunction {
 GEOM_EXPORT ContactFunction perram_wertheim(const Eigen::Matrix3d& Q_a, const Eigen::Matrix3d& Q_b,
                                             const Eigen::Vector3d& r);
 
-/// The distance of two separated ellipsoids from the normal of the contact function: the fallback of `distance`.
-/// Declines (not_converged) when F <= 1: the contact function proves nothing about depth.
+/// The distance of two ellipsoids from the normal of the contact function: the fallback of `distance`. It finds every
+/// distance of separated bodies; of overlaps the contact function proves little, and those that end deeper than is
+/// certified (see distance.h) are declined (not_converged).
 GEOM_EXPORT DistanceResult perram_wertheim_distance(const Ellipsoid& a, const Pose& X_WA, const Ellipsoid& b,
                                                     const Pose& X_WB, int iterations_before);
 

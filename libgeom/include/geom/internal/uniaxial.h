@@ -28,52 +28,76 @@ struct Spheroid {
   double b2 = 1;   ///< b^2
   double c = 0;    ///< a^2 - b^2, computed as (a - b)(a + b)
   double rho = 1;  ///< smallest radius of curvature, min(a, b)^2 / max(a, b)
+  double turning_limit = 0;  ///< |c| / min(a, b): d2h/dt2 <= turning_limit * Omega^2 at fixed n while u turns at Omega
 
   Spheroid() = default;
   Spheroid(double a, double b) : Spheroid(a, b, std::min(a, b) * (std::min(a, b) / std::max(a, b))) {}
   Spheroid(double a, double b, double min_curvature_radius)
-      : a2(a * a), b2(b * b), c((a - b) * (a + b)), rho(min_curvature_radius) {}
+      : a2(a * a),
+        b2(b * b),
+        c((a - b) * (a + b)),
+        rho(min_curvature_radius),
+        turning_limit(std::abs(c) / std::min(a, b)) {}
+};
+
+/// The first half of an evaluation: g, what its time derivative needs, and what the second half goes on with.
+struct UniaxialGap {
+  double g;        ///< n.r - hA(n) - hB(-n)
+  double lever_a;  ///< c x / h of A: dhA/dt = lever_a * (n.duA/dt) at fixed n
+  double lever_b;  ///< the same of B
+  double x_a, x_b;  ///< n.uA, n.uB
+  double z;         ///< n.r
+  double w2_a, w2_b;  ///< |w|^2, w = u - x n
+  double inv_h_a, inv_h_b;
+  double inv_h2_a, inv_h2_b;
 };
 
 /// An evaluation that also carries what the time derivative of g needs.
 struct UniaxialEvaluation : Evaluation {
-  double x_a, x_b;  ///< n.uA, n.uB
-  double lever_a;   ///< c x / h of A: dhA/dt = lever_a * (n.duA/dt) at fixed n
-  double lever_b;   ///< the same of B
+  double x_a, x_b;
+  double lever_a, lever_b;
 };
 
-/// g and its Newton step at the unit vector n, for A at the origin and B at r.
-inline UniaxialEvaluation evaluate_uniaxial(const Spheroid& A, const Spheroid& B, const Eigen::Vector3d& r,
-                                            const Eigen::Vector3d& u_a, const Eigen::Vector3d& u_b,
-                                            const Eigen::Vector3d& n) {
-  // The order of the operations keeps the dependency chain short: it is what the time goes into.
-  const double x_a = u_a.dot(n);
-  const double x_b = u_b.dot(n);
-  const double z = r.dot(n);
-  const Eigen::Vector3d w_a = u_a - x_a * n;
-  const Eigen::Vector3d w_b = u_b - x_b * n;
-  const double w2_a = w_a.squaredNorm();
-  const double w2_b = w_b.squaredNorm();
-  const double h2_a = A.b2 * w2_a + A.a2 * (x_a * x_a);
-  const double h2_b = B.b2 * w2_b + B.a2 * (x_b * x_b);
+/// g at the unit vector n, for A at the origin and B at r.
+inline UniaxialGap uniaxial_gap(const Spheroid& A, const Spheroid& B, const Eigen::Vector3d& r,
+                                const Eigen::Vector3d& u_a, const Eigen::Vector3d& u_b,
+                                const Eigen::Vector3d& n) {
+  // Here and below the order of the operations keeps the dependency chain short: it is what the time goes into.
+  UniaxialGap out;
+  out.x_a = u_a.dot(n);
+  out.x_b = u_b.dot(n);
+  out.z = r.dot(n);
+  out.w2_a = (u_a - out.x_a * n).squaredNorm();
+  out.w2_b = (u_b - out.x_b * n).squaredNorm();
+  const double h2_a = A.b2 * out.w2_a + A.a2 * (out.x_a * out.x_a);
+  const double h2_b = B.b2 * out.w2_b + B.a2 * (out.x_b * out.x_b);
   const double h_a = std::sqrt(h2_a);
   const double h_b = std::sqrt(h2_b);
-  const double inv_h2_a = 1 / h2_a;  // beside the square root, not behind it
-  const double inv_h2_b = 1 / h2_b;
-  const double inv_h_a = h_a * inv_h2_a;
-  const double inv_h_b = h_b * inv_h2_b;
-  const double g = (z - h_a) - h_b;
-  const double lever_a = (A.c * x_a) * inv_h_a;
-  const double lever_b = (B.c * x_b) * inv_h_b;
-  const Eigen::Vector3d y = (r - z * n) - (lever_a * w_a + lever_b * w_b);
-  const double f_a = A.b2 * inv_h_a;
-  const double f_b = B.b2 * inv_h_b;
-  const double e_a = (A.c * inv_h2_a) * f_a;
-  const double e_b = (B.c * inv_h2_b) * f_b;
+  out.inv_h2_a = 1 / h2_a;  // beside the square root, not behind it
+  out.inv_h2_b = 1 / h2_b;
+  out.inv_h_a = h_a * out.inv_h2_a;
+  out.inv_h_b = h_b * out.inv_h2_b;
+  out.g = (out.z - h_a) - h_b;
+  out.lever_a = (A.c * out.x_a) * out.inv_h_a;
+  out.lever_b = (B.c * out.x_b) * out.inv_h_b;
+  return out;
+}
+
+/// The second half: the Newton step of n.
+inline UniaxialEvaluation uniaxial_step(const Spheroid& A, const Spheroid& B, const Eigen::Vector3d& r,
+                                        const Eigen::Vector3d& u_a, const Eigen::Vector3d& u_b,
+                                        const Eigen::Vector3d& n, const UniaxialGap& gap) {
+  const Eigen::Vector3d w_a = u_a - gap.x_a * n;
+  const Eigen::Vector3d w_b = u_b - gap.x_b * n;
+  const Eigen::Vector3d y = (r - gap.z * n) - (gap.lever_a * w_a + gap.lever_b * w_b);
+  const double f_a = A.b2 * gap.inv_h_a;
+  const double f_b = B.b2 * gap.inv_h_b;
+  const double e_a = (A.c * gap.inv_h2_a) * f_a;
+  const double e_b = (B.c * gap.inv_h2_b) * f_b;
   const double ww = w_a.dot(w_b);
-  const double t1 = e_a * w2_a + e_b * w2_b;
-  const double D = (e_a * e_b) * (w2_a * w2_b - ww * ww);
-  double sigma = (f_a + f_b) + g;
+  const double t1 = e_a * gap.w2_a + e_b * gap.w2_b;
+  const double D = (e_a * e_b) * (gap.w2_a * gap.w2_b - ww * ww);
+  double sigma = (f_a + f_b) + gap.g;
   // Both eigenvalues are at least `floor` if and only if the quadratic q^2 + q t1 + D and q + t1/2 are non-negative at
   // q = sigma - floor; the square root is needed only when they are not.
   const double floor = 0.5 * (A.rho + B.rho);
@@ -87,14 +111,21 @@ inline UniaxialEvaluation evaluate_uniaxial(const Spheroid& A, const Spheroid& B
   const double y_b = e_b * w_b.dot(y);
   const Eigen::Vector3d adjugate_y = (sigma + t1) * y - (y_a * w_a + y_b * w_b);
   UniaxialEvaluation out;
-  out.g = g;
+  out.g = gap.g;
   out.decrement = inv_det * y.dot(adjugate_y);
   set_step(out, inv_det * adjugate_y, (inv_det * inv_det) * adjugate_y.squaredNorm());
-  out.x_a = x_a;
-  out.x_b = x_b;
-  out.lever_a = lever_a;
-  out.lever_b = lever_b;
+  out.x_a = gap.x_a;
+  out.x_b = gap.x_b;
+  out.lever_a = gap.lever_a;
+  out.lever_b = gap.lever_b;
   return out;
+}
+
+/// g and its Newton step at the unit vector n.
+inline UniaxialEvaluation evaluate_uniaxial(const Spheroid& A, const Spheroid& B, const Eigen::Vector3d& r,
+                                            const Eigen::Vector3d& u_a, const Eigen::Vector3d& u_b,
+                                            const Eigen::Vector3d& n) {
+  return uniaxial_step(A, B, r, u_a, u_b, n, uniaxial_gap(A, B, r, u_a, u_b, n));
 }
 
 /// Support point s(n) = (b^2 n + c x u) / h, unit n.
