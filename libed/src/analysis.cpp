@@ -98,8 +98,7 @@ std::optional<double> first_crossing(std::span<const double> x, std::span<const 
   return std::nullopt;
 }
 
-std::optional<StretchedExponential> fit_stretched_exponential(std::span<const double> t,
-                                                              std::span<const double> y) {
+std::optional<StretchedExponential> fit_stretched_exponential(std::span<const double> t, std::span<const double> y) {
   if (t.size() < 4) return std::nullopt;
   StretchedResiduals residuals{t, y};
   // Start: beta = 1 and the time at which y has fallen to 1/e of its first value.

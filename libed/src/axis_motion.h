@@ -49,7 +49,9 @@ struct BodyFrame {
 };
 
 /// The part of omega across the axis; its length is constant during flight.
-inline Eigen::Vector3d omega_across(const AxisMotion& m) { return m.rate * (m.e0 + m.e1).cross(m.e2); }
+inline Eigen::Vector3d omega_across(const AxisMotion& m) {
+  return m.rate * (m.e0 + m.e1).cross(m.e2);
+}
 
 /// Sets the rotation from the axis u (unit) and the angular velocity across it; frame.spin is kept.
 void set_rotation(const UniaxialInertia& inertia, const Eigen::Vector3d& u, const Eigen::Vector3d& omega,

@@ -8,8 +8,8 @@ namespace ed::internal {
 
 /// The event calendar: the body with the earliest event, in O(log N) an update.
 ///
-/// A tournament tree: leaf i holds the time of body i's earliest event, an inner node the smaller of its two children's.
-/// Ties go to the body with the lower number.
+/// A tournament tree: leaf i holds the time of body i's earliest event, an inner node the smaller of its two
+/// children's. Ties go to the body with the lower number.
 class Calendar {
  public:
   explicit Calendar(int number) : leaves_(1) {

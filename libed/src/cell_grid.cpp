@@ -86,8 +86,7 @@ std::span<const NearBody> CellGrid::collect(const Eigen::Vector3d& position, dou
   const double reach2 = reach * reach;
   std::size_t found = 0;
   for (const Eigen::Vector3i& offset : stencil_) {
-    const int cell =
-        (wrap(cx + offset.x()) * cells_ + wrap(cy + offset.y())) * cells_ + wrap(cz + offset.z());
+    const int cell = (wrap(cx + offset.x()) * cells_ + wrap(cy + offset.y())) * cells_ + wrap(cz + offset.z());
     const std::vector<Entry>& entries = bodies_[static_cast<std::size_t>(cell)];
     if (buffer.size() < found + entries.size()) buffer.resize(2 * (found + entries.size()));
     for (const Entry& entry : entries) {

@@ -27,8 +27,7 @@ class CellGrid {
 
   /// All bodies within `reach` (at most that of the constructor) of `position`, nearest images; they stand in `buffer`,
   /// which grows as needed and is never shrunk.
-  std::span<const NearBody> collect(const Eigen::Vector3d& position, double reach,
-                                    std::vector<NearBody>& buffer) const;
+  std::span<const NearBody> collect(const Eigen::Vector3d& position, double reach, std::vector<NearBody>& buffer) const;
 
  private:
   struct Entry {
@@ -40,10 +39,10 @@ class CellGrid {
   int cell_of(const Eigen::Vector3d& position) const;
 
   double box_;
-  int cells_;                              ///< along an edge
+  int cells_;                               ///< along an edge
   std::vector<std::vector<Entry>> bodies_;  ///< of each cell
-  std::vector<int> cell_of_body_;          ///< -1: not placed
-  std::vector<Eigen::Vector3i> stencil_;   ///< offsets of the cells to look into, each once
+  std::vector<int> cell_of_body_;           ///< -1: not placed
+  std::vector<Eigen::Vector3i> stencil_;    ///< offsets of the cells to look into, each once
 };
 
 }  // namespace ed::internal

@@ -2,18 +2,19 @@
 
 /// The contact finder: one function over gauges (see uniaxial_gauge.h for what a gauge is).
 ///
-/// Why no contact is ever stepped over. For a fixed unit n let g(tau) be the gap along n at time t + tau; the distance is
-/// the maximum over n, so d(t + tau) >= g(tau) for every n. Let K >= -g'' on [0, T]. Integrating twice,
+/// Why no contact is ever stepped over. For a fixed unit n let g(tau) be the gap along n at time t + tau; the distance
+/// is the maximum over n, so d(t + tau) >= g(tau) for every n. Let K >= -g'' on [0, T]. Integrating twice,
 ///
 ///     g(tau) >= q(tau) = g + g' tau - K tau^2 / 2   on [0, T],
 ///
-/// so that there is no contact before the first root of q in [0, T]. The search goes there and starts again with a better
-/// n. Near a contact d ~ |g'| (tc - t) and q's root falls short of tc by K (tc - t)^2 / (2 |g'|) at most: convergence is
-/// quadratic. No resolution parameter enters; a grazing contact costs more steps, not a wrong answer.
+/// so that there is no contact before the first root of q in [0, T]. The search goes there and starts again with a
+/// better n. Near a contact d ~ |g'| (tc - t) and q's root falls short of tc by K (tc - t)^2 / (2 |g'|) at most:
+/// convergence is quadratic. No resolution parameter enters; a grazing contact costs more steps, not a wrong answer.
 ///
 /// Rounding. When the bodies touch (g within kTouching * size) and approach, that is the contact. When they touch and
-/// part, or rest (|g'| within kResting * speed, where its sign is rounding), g and g' are set to 0 if below, and the step is at least sqrt(2 kTouching size / K): the deepest overlap that q allows on
-/// the way is then kTouching * size, below what g itself resolves.
+/// part, or rest (|g'| within kResting * speed, where its sign is rounding), g and g' are set to 0 if below, and the
+/// step is at least sqrt(2 kTouching size / K): the deepest overlap that q allows on the way is then kTouching * size,
+/// below what g itself resolves.
 
 #include "select.h"
 #include "sphere_window.h"
@@ -32,9 +33,9 @@
 namespace ed::internal {
 
 struct FinderCounters {
-  std::uint64_t predictions = 0;  ///< calls
-  std::uint64_t evaluations = 0;  ///< points in time at which a pair was looked at
-  std::uint64_t kernel_calls = 0;  ///< evaluations of g at a normal
+  std::uint64_t predictions = 0;    ///< calls
+  std::uint64_t evaluations = 0;    ///< points in time at which a pair was looked at
+  std::uint64_t kernel_calls = 0;   ///< evaluations of g at a normal
   std::uint64_t cold_restarts = 0;  ///< a warm normal had led to a spurious maximum
   std::uint64_t rescues = 0;        ///< the fallback that cannot fail was needed
 };
@@ -68,11 +69,11 @@ enum class Quality {
   overlap,  ///< the bodies overlap by more than rounding; proved
 };
 
-/// Improves n at one point in time until it certifies the whole horizon (by the gauge's crude bound), or is good enough for
-/// a step, or proves that the bodies overlap.
+/// Improves n at one point in time until it certifies the whole horizon (by the gauge's crude bound), or is good enough
+/// for a step, or proves that the bodies overlap.
 template <class Gauge>
-Quality improve_normal(const Gauge& gauge, const typename Gauge::State& state, double horizon,
-                       Eigen::Vector3d& n, typename Gauge::Evaluation& e, FinderCounters& count) {
+Quality improve_normal(const Gauge& gauge, const typename Gauge::State& state, double horizon, Eigen::Vector3d& n,
+                       typename Gauge::Evaluation& e, FinderCounters& count) {
   using geom::internal::Ascent;
   const double size = gauge.size();
   const double rounding = geom::kRoundingFactor * size;
@@ -119,8 +120,8 @@ Quality improve_normal(const Gauge& gauge, const typename Gauge::State& state, d
 /// Evaluations for one converged normal near a contact, where the normal is nearly right to begin with.
 inline constexpr int kRefineBudget = 12;
 
-/// Newton's method on d(t) = 0 with converged normals, from a time close to the contact. True if it ended on a contact at
-/// which the bodies approach; t and n are changed only then.
+/// Newton's method on d(t) = 0 with converged normals, from a time close to the contact. True if it ended on a contact
+/// at which the bodies approach; t and n are changed only then.
 template <class Gauge>
 bool refine_contact(const Gauge& gauge, double earliest, double reach, double& t, Eigen::Vector3d& n,
                     FinderCounters& count) {
@@ -151,13 +152,13 @@ bool refine_contact(const Gauge& gauge, double earliest, double reach, double& t
   return false;
 }
 
-/// Finds the first contact in [t_begin, t_end], or proves that there is none, or, after `max_evaluations` points in time,
-/// says up to when there is certainly none.
+/// Finds the first contact in [t_begin, t_end], or proves that there is none, or, after `max_evaluations` points in
+/// time, says up to when there is certainly none.
 ///
 /// `n` (from A to B) is the warm start and is left at the last normal; zero: cold start.
 template <class Gauge>
-Finding certified_contact(const Gauge& gauge, double t_begin, double t_end, int max_evaluations,
-                          Eigen::Vector3d& n, FinderCounters& count) {
+Finding certified_contact(const Gauge& gauge, double t_begin, double t_end, int max_evaluations, Eigen::Vector3d& n,
+                          FinderCounters& count) {
   ++count.predictions;
   const Window window = gauge.window(t_begin, t_end);
   const double size = gauge.size();

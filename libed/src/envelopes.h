@@ -2,9 +2,9 @@
 
 /// Dilated envelopes: the region within a distance delta of where a body of revolution was when its list was made.
 ///
-/// A body at (r, u) lies inside the envelope of (r0, u0) while |r - r0| + |a - b| theta <= delta, theta the angle between u
-/// and u0, because the support function changes by at most |a - b| a radian. Two bodies whose envelopes do not meet, gap of
-/// the bodies at (r0, u0) > 2 delta, cannot touch.
+/// A body at (r, u) lies inside the envelope of (r0, u0) while |r - r0| + |a - b| theta <= delta, theta the angle
+/// between u and u0, because the support function changes by at most |a - b| a radian. Two bodies whose envelopes do
+/// not meet, gap of the bodies at (r0, u0) > 2 delta, cannot touch.
 
 #include "axis_motion.h"
 #include "neighbour_lists.h"
@@ -23,8 +23,9 @@ namespace ed::internal {
 /// The thinnest envelope in use, in units of the bounding radius.
 inline constexpr double kThinnestEnvelope = 0.02;
 
-/// The smallest box in which the nearest image of a neighbour is the only one that can touch. Neighbours' envelope centres
-/// are within 2 R + 2 delta of each other, their centres then within 2 R + 4 delta, which must be below half the box.
+/// The smallest box in which the nearest image of a neighbour is the only one that can touch. Neighbours' envelope
+/// centres are within 2 R + 2 delta of each other, their centres then within 2 R + 4 delta, which must be below half
+/// the box.
 inline double smallest_box(double bounding_radius) {
   return 2 * (2 + 4 * kThinnestEnvelope) * bounding_radius;
 }
@@ -34,8 +35,8 @@ inline double thickest_envelope(double box, double bounding_radius) {
   return (0.5 * box - 2 * bounding_radius) / 4;
 }
 
-/// An upper bound of the angle between unit vectors a chord apart: 2 asin(c/2) = c + c^3/24 + 3 c^5/640 + ..., whose tail
-/// after the second term is below c^5/120 for c <= 1.
+/// An upper bound of the angle between unit vectors a chord apart: 2 asin(c/2) = c + c^3/24 + 3 c^5/640 + ..., whose
+/// tail after the second term is below c^5/120 for c <= 1.
 inline double angle_bound(double chord) {
   if (!(chord <= 1)) return 3.1416;
   const double c2 = chord * chord;
@@ -45,8 +46,8 @@ inline double angle_bound(double chord) {
 class DilatedEnvelopes {
  public:
   /// `thickness`: delta. Bodies leave at `exit_thickness` <= delta already, which is what a shrinking box eats up.
-  DilatedEnvelopes(int number, const geom::internal::Spheroid& shape, double axis_difference,
-                   double bounding_radius, double thickness, double exit_thickness)
+  DilatedEnvelopes(int number, const geom::internal::Spheroid& shape, double axis_difference, double bounding_radius,
+                   double thickness, double exit_thickness)
       : shape_(shape),
         axis_difference_(axis_difference),
         bounding_radius_(bounding_radius),
@@ -61,8 +62,9 @@ class DilatedEnvelopes {
   double reach() const { return 2 * (bounding_radius_ + thickness_); }
   /// By what the box may shrink in all before the lists must be made anew.
   ///
-  /// Pairs outside the lists had a gap above 2 delta when the lists were made. Shrinking by s brings a pair of gap G and
-  /// hA + hB = h down to s (G + h) - h, which stays above 2 delta_exit while 1 - s <= 2 (delta - delta_exit) / (2 delta + h).
+  /// Pairs outside the lists had a gap above 2 delta when the lists were made. Shrinking by s brings a pair of gap G
+  /// and hA + hB = h down to s (G + h) - h, which stays above 2 delta_exit while 1 - s <= 2 (delta - delta_exit) / (2
+  /// delta + h).
   double least_scale() const { return 1 - 2 * (thickness_ - exit_thickness_) / reach(); }
   const Eigen::Vector3d& centre(int i) const { return centre_[static_cast<std::size_t>(i)]; }
 
@@ -97,8 +99,8 @@ class DilatedEnvelopes {
     return 0.15 * exit_thickness_ / (motion.velocity.norm() + surface_speed(motion) + 1e-300);
   }
 
-  /// Whether the envelopes of i and k, the centres r apart (nearest image), may meet; false: they do not, proved. Sets a
-  /// normal from i to k to start from.
+  /// Whether the envelopes of i and k, the centres r apart (nearest image), may meet; false: they do not, proved. Sets
+  /// a normal from i to k to start from.
   bool may_meet(int i, int k, const Eigen::Vector3d& r, Eigen::Vector3d& normal) const {
     const Eigen::Vector3d& u_i = axis_[static_cast<std::size_t>(i)];
     const Eigen::Vector3d& u_k = axis_[static_cast<std::size_t>(k)];
@@ -126,9 +128,7 @@ class DilatedEnvelopes {
   }
 
  private:
-  double surface_speed(const AxisMotion& motion) const {
-    return axis_difference_ * motion.rate * motion.e2.norm();
-  }
+  double surface_speed(const AxisMotion& motion) const { return axis_difference_ * motion.rate * motion.e2.norm(); }
 
   geom::internal::Spheroid shape_;
   double axis_difference_;  ///< |a - b|

@@ -18,15 +18,17 @@ using geom::internal::support_point;
 
 constexpr std::size_t kMaxFailures = 16;
 
-/// Points in time that a pair is looked at when it is predicted, and when it comes up again. One gives a bound that lasts
-/// for most pairs; what is left is close, and gets a second look at once.
+/// Points in time that a pair is looked at when it is predicted, and when it comes up again. One gives a bound that
+/// lasts for most pairs; what is left is close, and gets a second look at once.
 constexpr int kFirstLook = 1;
 constexpr int kSecondLook = 2;
 
 /// While the box shrinks bodies count as leaving their envelopes at this share of the thickness.
 constexpr double kShrinkingExit = 0.8;
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+std::size_t at(int i) {
+  return static_cast<std::size_t>(i);
+}
 
 int symmetry_axis(const Species& species) {
   const auto axis = species.shape.symmetry_axis();
@@ -122,9 +124,13 @@ void EventLoop::record_collisions(std::size_t number) {
 
 // ---- State of the bodies -------------------------------------------------------------------------------------------
 
-void EventLoop::move(int i) { advance(inertia_, now_, motions_[at(i)], frames_[at(i)]); }
+void EventLoop::move(int i) {
+  advance(inertia_, now_, motions_[at(i)], frames_[at(i)]);
+}
 
-Vector3d EventLoop::position_now(int i) const { return motions_[at(i)].position_at(now_); }
+Vector3d EventLoop::position_now(int i) const {
+  return motions_[at(i)].position_at(now_);
+}
 
 Vector3d EventLoop::axis_now(int i) const {
   const AxisMotion& m = motions_[at(i)];
@@ -451,8 +457,8 @@ void EventLoop::process_contact(std::int32_t index) {
 
 /// The factor by which r would have to shrink for the pair to touch, from above and no better than `enough`.
 ///
-/// For every n with n.r > 0 the pair is apart for scales above (hA + hB) / n.r = 1 - g / n.r; the best n is near the one
-/// that maximises g, which is improved until the pair is out of the question or converged.
+/// For every n with n.r > 0 the pair is apart for scales above (hA + hB) / n.r = 1 - g / n.r; the best n is near the
+/// one that maximises g, which is improved until the pair is out of the question or converged.
 double EventLoop::contact_scale(const Pair& pair, double enough) const {
   const AxisMotion& a = motions_[at(pair.i)];
   const AxisMotion& b = motions_[at(pair.j)];
@@ -475,8 +481,8 @@ double EventLoop::contact_scale(const Pair& pair, double enough) const {
 double EventLoop::shrink_box(double target_box, double least_gain) {
   if (list_scale_ <= 0.9 * envelopes_->least_scale() + 0.1) set_envelope(0, true);
   for (int i = 0; i < number(); ++i) move(i);
-  double factor = std::max({target_box / box_, envelopes_->least_scale() / list_scale_,
-                            1.01 * smallest_box(bounding_radius_) / box_});
+  double factor = std::max(
+      {target_box / box_, envelopes_->least_scale() / list_scale_, 1.01 * smallest_box(bounding_radius_) / box_});
   factor = std::min(factor, 1.0);
   for (int i = 0; i < number(); ++i) {
     for (const std::int32_t index : lists_.of(i)) {

@@ -17,12 +17,12 @@ namespace ed::internal {
 
 /// The event loop behind Simulation.
 ///
-/// Times inside are measured from the start of the current epoch (kEpoch long); at its end all bodies are moved there and
-/// every time is shifted, so that no digits are lost however long a run lasts.
+/// Times inside are measured from the start of the current epoch (kEpoch long); at its end all bodies are moved there
+/// and every time is shifted, so that no digits are lost however long a run lasts.
 ///
 /// Each pair of neighbours carries a certified lower bound of its contact time, made after the last collision of either
-/// body, and is refined only when the calendar comes to it. A pair counts in the calendar entry of one of its bodies, its
-/// owner: the one that was predicted last.
+/// body, and is refined only when the calendar comes to it. A pair counts in the calendar entry of one of its bodies,
+/// its owner: the one that was predicted last.
 class EventLoop {
  public:
   EventLoop(const System& system, double envelope);
@@ -30,8 +30,8 @@ class EventLoop {
   double time() const { return epochs_ * kEpoch + now_; }
   bool run_until(double time, std::uint64_t max_collisions);
   double shrink_box(double target_box, double least_gain);
-  /// New envelopes of this thickness (clamped to what the box allows), and lists, for all bodies. With `shrinking`, bodies
-  /// leave theirs early, so that the lists stay valid while the box shrinks a little.
+  /// New envelopes of this thickness (clamped to what the box allows), and lists, for all bodies. With `shrinking`,
+  /// bodies leave theirs early, so that the lists stay valid while the box shrinks a little.
   void set_envelope(double thickness, bool shrinking = false);
 
   double box() const { return box_; }
@@ -94,9 +94,9 @@ class EventLoop {
   std::optional<CellGrid> cells_;
   NeighbourLists lists_;
   Calendar calendar_;
-  std::vector<double> exits_;         ///< lower bound of when a body leaves its envelope
-  std::vector<std::int32_t> first_;   ///< what a body's calendar entry is: a pair, or kExit
-  std::vector<int> orphans_;          ///< bodies whose first event has gone to another owner
+  std::vector<double> exits_;        ///< lower bound of when a body leaves its envelope
+  std::vector<std::int32_t> first_;  ///< what a body's calendar entry is: a pair, or kExit
+  std::vector<int> orphans_;         ///< bodies whose first event has gone to another owner
   std::vector<NearBody> near_;
   std::vector<std::int32_t> old_pairs_;
 

@@ -12,13 +12,13 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-constexpr double kLongestLag = 40;       ///< default cap: MSD slopes have settled well before, errors grow beyond
-constexpr double kShortestLag = 1e-3;    ///< in units of the longest lag
+constexpr double kLongestLag = 40;     ///< default cap: MSD slopes have settled well before, errors grow beyond
+constexpr double kShortestLag = 1e-3;  ///< in units of the longest lag
 constexpr double kLagsPerDecade = 20;
 constexpr int kOriginsPerLongestLag = 16;
 constexpr std::size_t kMaxBlocks = 32;
-constexpr double kFitFrom = 0.4;         ///< diffusion is fitted from this share of the longest lag
-constexpr double kLinearity = 0.2;       ///< of the logarithmic slope of a displacement that counts as diffusion
+constexpr double kFitFrom = 0.4;    ///< diffusion is fitted from this share of the longest lag
+constexpr double kLinearity = 0.2;  ///< of the logarithmic slope of a displacement that counts as diffusion
 /// C2 is fitted from this many mean collision intervals: before, rotation is ballistic.
 constexpr double kBallisticCollisions = 5;
 
@@ -114,7 +114,8 @@ double diffusion(const Curve& curve, double divisor) {
   return *rate / divisor;
 }
 
-/// The C2 fit with the ballistic part and the noise at the end left out; nothing where rotation is ballistic all the way.
+/// The C2 fit with the ballistic part and the noise at the end left out; nothing where rotation is ballistic all the
+/// way.
 std::optional<StretchedExponential> fit_c2(const Curve& c2, double collision_rate) {
   const double from = kBallisticCollisions / collision_rate;
   const auto decayed = first_crossing(c2.t, c2.y, 1 / std::exp(1.0));
@@ -137,8 +138,12 @@ double nematic_order(const std::vector<Eigen::Vector3d>& axes) {
   return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(Q, Eigen::EigenvaluesOnly).eigenvalues()[2];
 }
 
-double c2_between(const Snapshot& origin, const Snapshot& now) { return correlate(origin, now).c2; }
-double msd_between(const Snapshot& origin, const Snapshot& now) { return correlate(origin, now).msd; }
+double c2_between(const Snapshot& origin, const Snapshot& now) {
+  return correlate(origin, now).c2;
+}
+double msd_between(const Snapshot& origin, const Snapshot& now) {
+  return correlate(origin, now).msd;
+}
 
 class Observables::Impl {
  public:
@@ -299,7 +304,7 @@ class Observables::Impl {
 };
 
 void Observables::Impl::add_lag_rows(Results& results) const {
-  const auto estimate = [&](std::size_t k, double LagSums::* member) {
+  const auto estimate = [&](std::size_t k, double LagSums::*member) {
     return with_block_error([&](const Block* one) {
       LagSums sums;
       if (one != nullptr) {
@@ -350,7 +355,7 @@ Results Observables::Impl::results(const Simulation& simulation) const {
     const Curve all = curve(block, c2);
     return first_crossing(all.t, all.y, 1 / std::exp(1.0)).value_or(std::numeric_limits<double>::quiet_NaN());
   });
-  const auto fitted = [&](double StretchedExponential::* member) {
+  const auto fitted = [&](double StretchedExponential::*member) {
     return with_block_error([&](const Block* block) {
       const auto fit = fit_c2(curve(block, c2), results.collision_rate.value);
       return fit ? (*fit).*member : std::numeric_limits<double>::quiet_NaN();
@@ -365,8 +370,14 @@ Observables::Observables(const ObservablesOptions& options) : impl_(std::make_un
 Observables::~Observables() = default;
 Observables::Observables(Observables&&) noexcept = default;
 Observables& Observables::operator=(Observables&&) noexcept = default;
-double Observables::next_time() const { return impl_->next_time(); }
-void Observables::measure(const Simulation& simulation) { impl_->measure(simulation); }
-Results Observables::results(const Simulation& simulation) const { return impl_->results(simulation); }
+double Observables::next_time() const {
+  return impl_->next_time();
+}
+void Observables::measure(const Simulation& simulation) {
+  impl_->measure(simulation);
+}
+Results Observables::results(const Simulation& simulation) const {
+  return impl_->results(simulation);
+}
 
 }  // namespace ed

@@ -29,11 +29,13 @@ std::uint64_t Random::bits() {
   return result;
 }
 
-double Random::uniform() { return static_cast<double>(bits() >> 11) * 0x1p-53; }
+double Random::uniform() {
+  return static_cast<double>(bits() >> 11) * 0x1p-53;
+}
 
 double Random::normal() {
-  // Leva's constants: two quadratic curves that enclose the region of acceptance closely; the logarithm decides in 1 % of
-  // the draws, and only whether a point is accepted.
+  // Leva's constants: two quadratic curves that enclose the region of acceptance closely; the logarithm decides in 1 %
+  // of the draws, and only whether a point is accepted.
   while (true) {
     const double u = 1 - uniform();
     const double v = 1.7156 * (uniform() - 0.5);

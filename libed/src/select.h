@@ -6,7 +6,11 @@
 namespace ed::internal {
 
 // As std::min and std::max, also in that the first argument is returned when they do not compare (NaN).
-inline double smaller(double a, double b) { return b < a ? b : a; }
-inline double larger(double a, double b) { return a < b ? b : a; }
+inline double smaller(double a, double b) {
+  return b < a ? b : a;
+}
+inline double larger(double a, double b) {
+  return a < b ? b : a;
+}
 
 }  // namespace ed::internal

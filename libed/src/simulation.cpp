@@ -18,8 +18,8 @@ class Simulation::Impl : public internal::EventLoop {
 
 namespace {
 
-/// Work of a stretch of the run in units of one evaluation of the gap function, from counters alone so that it is the same
-/// on every machine. The weights are relative times, measured with a profiler at X0 = 3, phi = 0.40.
+/// Work of a stretch of the run in units of one evaluation of the gap function, from counters alone so that it is the
+/// same on every machine. The weights are relative times, measured with a profiler at X0 = 3, phi = 0.40.
 double work(const Counters& from, const Counters& to) {
   const auto difference = [](std::uint64_t a, std::uint64_t b) { return static_cast<double>(b - a); };
   return difference(from.kernel_calls, to.kernel_calls) + difference(from.predictions, to.predictions) +
@@ -57,16 +57,36 @@ Simulation::~Simulation() = default;
 Simulation::Simulation(Simulation&&) noexcept = default;
 Simulation& Simulation::operator=(Simulation&&) noexcept = default;
 
-double Simulation::time() const { return impl_->time(); }
-double Simulation::box() const { return impl_->box(); }
-double Simulation::envelope() const { return impl_->envelope(); }
-double Simulation::virial() const { return impl_->virial(); }
-KineticState Simulation::kinetic() const { return impl_->kinetic(); }
-System Simulation::system() const { return impl_->system(); }
-void Simulation::sample(Snapshot& snapshot) const { impl_->sample(snapshot); }
-void Simulation::record_collisions(std::size_t number) { impl_->record_collisions(number); }
-const std::vector<Collision>& Simulation::collisions() const { return impl_->collisions(); }
-const std::vector<FailedPair>& Simulation::failures() const { return impl_->failures(); }
+double Simulation::time() const {
+  return impl_->time();
+}
+double Simulation::box() const {
+  return impl_->box();
+}
+double Simulation::envelope() const {
+  return impl_->envelope();
+}
+double Simulation::virial() const {
+  return impl_->virial();
+}
+KineticState Simulation::kinetic() const {
+  return impl_->kinetic();
+}
+System Simulation::system() const {
+  return impl_->system();
+}
+void Simulation::sample(Snapshot& snapshot) const {
+  impl_->sample(snapshot);
+}
+void Simulation::record_collisions(std::size_t number) {
+  impl_->record_collisions(number);
+}
+const std::vector<Collision>& Simulation::collisions() const {
+  return impl_->collisions();
+}
+const std::vector<FailedPair>& Simulation::failures() const {
+  return impl_->failures();
+}
 
 const Counters& Simulation::counters() const {
   impl_->snapshot = impl_->counters();

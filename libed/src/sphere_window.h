@@ -14,8 +14,8 @@ struct Window {
   double end;
 };
 
-/// When the bounding spheres of two bodies (distance r, relative velocity v at `now`, radii adding up to `reach`) overlap
-/// within [t_begin, t_end].
+/// When the bounding spheres of two bodies (distance r, relative velocity v at `now`, radii adding up to `reach`)
+/// overlap within [t_begin, t_end].
 inline Window sphere_window(const Eigen::Vector3d& r, const Eigen::Vector3d& v, double reach, double now,
                             double t_begin, double t_end) {
   const double excess = r.squaredNorm() - reach * reach;

@@ -18,8 +18,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Packing fraction of the random insertion. Low enough that a place is found within a few tries for every shape up to an
-/// aspect ratio of 10, where the excluded volume is 13 times that of a sphere.
+/// Packing fraction of the random insertion. Low enough that a place is found within a few tries for every shape up to
+/// an aspect ratio of 10, where the excluded volume is 13 times that of a sphere.
 constexpr double kDilute = 0.04;
 
 /// Tries to insert one body before giving up.
@@ -89,12 +89,13 @@ void draw_velocities(System& system, Random& random) {
 System compress(System system, double target_box, const StartOptions& options) {
   Simulation simulation(system);
   // The box shrinks at fixed times, not after a given number of collisions: right after a collision two bodies touch. A
-  // pause of a few collisions moves the closest pair apart, which is all that the next step needs; its length follows the
-  // collision rate.
+  // pause of a few collisions moves the closest pair apart, which is all that the next step needs; its length follows
+  // the collision rate.
   const double wanted = system.size() * kPauseCollisions;
   double pause = 0.1;
-  // Bodies that roll on each other in small hops leave next to no room for a while: a gain far below the usual one is not
-  // worth the work, and would squeeze them into smaller hops. The threshold falls only if nothing better comes for long.
+  // Bodies that roll on each other in small hops leave next to no room for a while: a gain far below the usual one is
+  // not worth the work, and would squeeze them into smaller hops. The threshold falls only if nothing better comes for
+  // long.
   double usual_gain = 0;
   double checkpoint = simulation.box();
   for (int round = 1; simulation.box() > target_box; ++round) {
@@ -147,8 +148,7 @@ void rescale_velocities(System& system) {
     const Vector3d u = body.rotation.col(axis);
     const double w = body.angular_velocity.dot(u);
     body.velocity *= translation;
-    body.angular_velocity =
-        rotation * (body.angular_velocity - w * u) + (system.species.spins ? spin * w : 0.0) * u;
+    body.angular_velocity = rotation * (body.angular_velocity - w * u) + (system.species.spins ? spin * w : 0.0) * u;
   }
 }
 

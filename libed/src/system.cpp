@@ -95,8 +95,7 @@ Audit audit(const System& system) {
     for (const auto& [j, r] : cells.collect(X_i.position(), reach, near)) {
       if (j <= i) continue;
       const geom::Pose X_image(poses[static_cast<std::size_t>(j)].rotation(), X_i.position() + r);
-      const geom::DistanceResult d =
-          geom::distance(system.species.shape, X_i, system.species.shape, X_image);
+      const geom::DistanceResult d = geom::distance(system.species.shape, X_i, system.species.shape, X_image);
       if (!(d.status == geom::DistanceStatus::separated || d.status == geom::DistanceStatus::overlapping)) {
         ++result.unanswered;
         continue;

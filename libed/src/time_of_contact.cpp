@@ -47,10 +47,14 @@ Body make_body(const Ellipsoid& shape, const Motion& motion, const char* name) {
 
 ContactStatus status_of(Outcome outcome) {
   switch (outcome) {
-    case Outcome::contact: return ContactStatus::hit;
-    case Outcome::clear: return ContactStatus::separated;
-    case Outcome::overlapping: return ContactStatus::overlapping;
-    case Outcome::bound: break;
+    case Outcome::contact:
+      return ContactStatus::hit;
+    case Outcome::clear:
+      return ContactStatus::separated;
+    case Outcome::overlapping:
+      return ContactStatus::overlapping;
+    case Outcome::bound:
+      break;
   }
   return ContactStatus::failed;
 }
@@ -62,8 +66,7 @@ ContactResult search(const Body& a, const Body& b, double reach, double t_max) {
   const internal::UniaxialGauge<kSpin> gauge(a.shape, a.top.axis, b.shape, b.top.axis, r, now, reach);
   Eigen::Vector3d n = Eigen::Vector3d::Zero();
   internal::FinderCounters count;
-  const internal::Finding finding =
-      internal::certified_contact(gauge, now, t_max, kMaxEvaluations, n, count);
+  const internal::Finding finding = internal::certified_contact(gauge, now, t_max, kMaxEvaluations, n, count);
   ContactResult result;
   result.status = status_of(finding.outcome);
   result.time = finding.time;
@@ -72,8 +75,8 @@ ContactResult search(const Body& a, const Body& b, double reach, double t_max) {
     const auto state = gauge.at(finding.time);
     const Eigen::Vector3d p_a =
         a.top.axis.position_at(finding.time) + geom::internal::support_point(a.shape, state.u_a, n);
-    const Eigen::Vector3d p_b = a.top.axis.position_at(finding.time) + state.r -
-                                geom::internal::support_point(b.shape, state.u_b, n);
+    const Eigen::Vector3d p_b =
+        a.top.axis.position_at(finding.time) + state.r - geom::internal::support_point(b.shape, state.u_b, n);
     result.point = 0.5 * (p_a + p_b);
     result.normal = n;
   }
@@ -84,16 +87,20 @@ ContactResult search(const Body& a, const Body& b, double reach, double t_max) {
 
 const char* to_string(ContactStatus status) {
   switch (status) {
-    case ContactStatus::hit: return "hit";
-    case ContactStatus::separated: return "separated";
-    case ContactStatus::overlapping: return "overlapping";
-    case ContactStatus::failed: return "failed";
+    case ContactStatus::hit:
+      return "hit";
+    case ContactStatus::separated:
+      return "separated";
+    case ContactStatus::overlapping:
+      return "overlapping";
+    case ContactStatus::failed:
+      return "failed";
   }
   return "unknown";
 }
 
-ContactResult time_of_contact(const Ellipsoid& a, const Motion& motion_a, const Ellipsoid& b,
-                              const Motion& motion_b, double t_max) {
+ContactResult time_of_contact(const Ellipsoid& a, const Motion& motion_a, const Ellipsoid& b, const Motion& motion_b,
+                              double t_max) {
   const Body body_a = make_body(a, motion_a, "A");
   const Body body_b = make_body(b, motion_b, "B");
   if (!(t_max >= std::max(motion_a.time, motion_b.time))) {

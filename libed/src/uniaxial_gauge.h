@@ -40,9 +40,9 @@ using geom::internal::UniaxialEvaluation;
 /// h^2 = b^2 + c x^2. |xdd| <= Omega^2 r bounds the reach of x over tau; the bracket is then taken at its worst end.
 template <bool kSpin>
 struct SupportCurvature {
-  double x;     ///< n.u
-  double xd;    ///< n.du/dt
-  double rate;  ///< Omega
+  double x;       ///< n.u
+  double xd;      ///< n.du/dt
+  double rate;    ///< Omega
   double centre;  ///< C = n.e0; used with spin only
 
   double bound(const Spheroid& S, double tau) const {
@@ -97,8 +97,7 @@ struct SupportCurvature {
       const double h2_min = S.b2 + S.c * x2_min;
       const double h_min = std::sqrt(h2_min);
       const double middle = 0.5 * centre;  // where x (x - C) is least
-      const double product =
-          low <= middle && middle <= high ? -middle * middle : smaller(at_low, at_high);
+      const double product = low <= middle && middle <= high ? -middle * middle : smaller(at_low, at_high);
       const double pull = -product;
       const double h_pull = pull > 0 ? h_min : std::sqrt(S.b2 + S.c * x2_max);
       return S.c * rate2 * (S.b2 * larger(0.0, r2 - off2_min) / (h2_min * h_min) + pull / h_pull);
@@ -127,7 +126,8 @@ class UniaxialGauge {
     double curvature(double tau) const { return a.bound(gauge.A_, tau) + b.bound(gauge.B_, tau); }
   };
 
-  /// `r_now`: the vector from A's centre to B's at `now`, in the image that is meant. `reach`: sum of the bounding radii.
+  /// `r_now`: the vector from A's centre to B's at `now`, in the image that is meant. `reach`: sum of the bounding
+  /// radii.
   UniaxialGauge(const Spheroid& A, const AxisMotion& a, const Spheroid& B, const AxisMotion& b,
                 const Eigen::Vector3d& r_now, double now, double reach)
       : A_(A), B_(B), a_(a), b_(b), r_now_(r_now), v_(b.velocity - a.velocity), now_(now), reach_(reach) {}
@@ -159,9 +159,7 @@ class UniaxialGauge {
     return {*this, reduce(a_, s.du_a, e.x_a, n), reduce(b_, s.du_b, e.x_b, n)};
   }
 
-  Eigen::Vector3d cold_normal(const State& s) const {
-    return geom::internal::cold_normal(A_, B_, s.r, s.u_a, s.u_b);
-  }
+  Eigen::Vector3d cold_normal(const State& s) const { return geom::internal::cold_normal(A_, B_, s.r, s.u_a, s.u_b); }
 
   /// A normal with g > 0 by the Perram-Wertheim contact function, or false, which proves an overlap.
   bool separating_normal(const State& s, Eigen::Vector3d& n) const {
@@ -171,12 +169,10 @@ class UniaxialGauge {
     return true;
   }
 
-  Window window(double t_begin, double t_end) const {
-    return sphere_window(r_now_, v_, reach_, now_, t_begin, t_end);
-  }
+  Window window(double t_begin, double t_end) const { return sphere_window(r_now_, v_, reach_, now_, t_begin, t_end); }
 
-  /// A bound of -d2g/dt2 for every n and t, cheap and crude. From the formula of SupportCurvature: h >= b for a rod, and
-  /// b^2 r^2 / h^2 - x (x - C) <= r^2 + C^2 / 4 <= 1; h >= a for a disc, and x (x - C) <= 1.
+  /// A bound of -d2g/dt2 for every n and t, cheap and crude. From the formula of SupportCurvature: h >= b for a rod,
+  /// and b^2 r^2 / h^2 - x (x - C) <= r^2 + C^2 / 4 <= 1; h >= a for a disc, and x (x - C) <= 1.
   double curvature_limit() const {
     return A_.turning_limit * (a_.rate * a_.rate) + B_.turning_limit * (b_.rate * b_.rate);
   }

@@ -21,8 +21,8 @@ ED_EXPORT Estimate mean_of_blocks(std::span<const double> values);
 /// Least-squares slope of y against x; nothing for fewer than two different x.
 ED_EXPORT std::optional<double> slope(std::span<const double> x, std::span<const double> y);
 
-/// The first x at which y, falling, crosses `level`: quadratic interpolation through the three nearest points; nothing if
-/// it does not.
+/// The first x at which y, falling, crosses `level`: quadratic interpolation through the three nearest points; nothing
+/// if it does not.
 ED_EXPORT std::optional<double> first_crossing(std::span<const double> x, std::span<const double> y, double level);
 
 /// A exp[-(t / tau)^beta], the paper's fit of C2.

@@ -23,8 +23,8 @@ ED_EXPORT double normal_velocity(const ContactBody& a, const ContactBody& b, con
 ///
 ///     J = -2 v_n / (1/mA + 1/mB + (rA x n).IA^-1 (rA x n) + (rB x n).IB^-1 (rB x n)).
 ///
-/// Returns J >= 0, or 0 and changes nothing if the contact points do not approach. Energy, momentum and angular momentum
-/// are conserved to rounding for every unit n, also one that is not the true normal.
+/// Returns J >= 0, or 0 and changes nothing if the contact points do not approach. Energy, momentum and angular
+/// momentum are conserved to rounding for every unit n, also one that is not the true normal.
 ED_EXPORT double collide(ContactBody& a, ContactBody& b, const Eigen::Vector3d& normal);
 
 }  // namespace ed

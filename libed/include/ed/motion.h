@@ -10,10 +10,10 @@ namespace ed {
 
 /// A rigid body that moves freely: its state at `time`. World frame unless a name says otherwise.
 struct Motion {
-  geom::Pose pose;                                                 ///< body to world at `time`
-  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();              ///< of the centre of mass
-  Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();      ///< omega, world frame
-  Eigen::Vector3d inertia = Eigen::Vector3d::Ones();               ///< principal moments about body x, y, z; > 0
+  geom::Pose pose;                                             ///< body to world at `time`
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();          ///< of the centre of mass
+  Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();  ///< omega, world frame
+  Eigen::Vector3d inertia = Eigen::Vector3d::Ones();           ///< principal moments about body x, y, z; > 0
   double time = 0;
 };
 

@@ -36,10 +36,10 @@ struct Results {
   Estimate Z;               ///< 1 + sum of r_AB.dp / (3 N kT t), kT the measured translational temperature
   Estimate translational_kT;
   Estimate rotational_kT;
-  Estimate S;           ///< largest eigenvalue of Q, averaged over frames
-  Estimate D_trans;     ///< slope of the MSD / 6 over [0.4, 1] of the longest lag
-  Estimate D_rot;       ///< slope of rot_msd / 4 there (the paper's 4t, two components)
-  Estimate D_rot_body;  ///< slope of rot_msd_body / 4
+  Estimate S;            ///< largest eigenvalue of Q, averaged over frames
+  Estimate D_trans;      ///< slope of the MSD / 6 over [0.4, 1] of the longest lag
+  Estimate D_rot;        ///< slope of rot_msd / 4 there (the paper's 4t, two components)
+  Estimate D_rot_body;   ///< slope of rot_msd_body / 4
   Estimate t_C2_1overe;  ///< where C2 falls to 1/e
   Estimate tau_C2;       ///< of A exp[-(t/tau)^beta], ballistic part excluded
   Estimate beta_C2;
@@ -55,10 +55,10 @@ struct ObservablesOptions {
 
 /// Observables of a run, measured while it goes on, in memory that does not grow with its length.
 ///
-/// Time origins follow each other at a sixteenth of the longest lag (more for very large systems); each is correlated with
-/// the states at 20 lags a decade after it. Origins are gathered in blocks of one longest lag; when there are more than 32
-/// blocks, neighbours are merged. Diffusion coefficients are null until the mean square displacement grows linearly (its
-/// logarithmic slope over the fit window within 0.2 of 1).
+/// Time origins follow each other at a sixteenth of the longest lag (more for very large systems); each is correlated
+/// with the states at 20 lags a decade after it. Origins are gathered in blocks of one longest lag; when there are more
+/// than 32 blocks, neighbours are merged. Diffusion coefficients are null until the mean square displacement grows
+/// linearly (its logarithmic slope over the fit window within 0.2 of 1).
 class ED_EXPORT Observables {
  public:
   explicit Observables(const ObservablesOptions& options);

@@ -15,11 +15,11 @@ class ED_EXPORT Random {
   explicit Random(std::uint64_t seed);
 
   std::uint64_t bits();
-  double uniform();                ///< in [0, 1)
-  double normal();                 ///< mean 0, variance 1
-  Eigen::Vector3d normal3();       ///< three of them
-  Eigen::Vector3d direction();     ///< uniform on the unit sphere
-  Eigen::Matrix3d rotation();      ///< uniform over all orientations
+  double uniform();             ///< in [0, 1)
+  double normal();              ///< mean 0, variance 1
+  Eigen::Vector3d normal3();    ///< three of them
+  Eigen::Vector3d direction();  ///< uniform on the unit sphere
+  Eigen::Matrix3d rotation();   ///< uniform over all orientations
 
  private:
   std::uint64_t state_[4];

@@ -16,16 +16,16 @@ namespace ed {
 /// What the run loop counted since its construction.
 struct Counters {
   std::uint64_t collisions = 0;
-  std::uint64_t predictions = 0;          ///< contact searches started, refinements included
-  std::uint64_t evaluations = 0;          ///< points in time at which a pair was looked at
-  std::uint64_t kernel_calls = 0;         ///< evaluations of the gap function along one normal
-  std::uint64_t refinements = 0;          ///< searches that went on from an earlier lower bound
-  std::uint64_t cold_restarts = 0;        ///< warm normals that led to a spurious maximum
-  std::uint64_t rescues = 0;              ///< searches that needed the fallback which cannot fail
-  std::uint64_t neighbour_rebuilds = 0;   ///< envelopes renewed
-  std::uint64_t envelope_checks = 0;      ///< looks at whether a body leaves its envelope
-  std::uint64_t candidate_tests = 0;      ///< pairs of envelopes tested in rebuilds
-  std::uint64_t overlaps = 0;             ///< pairs found overlapping by more than rounding: always 0 in a sound run
+  std::uint64_t predictions = 0;         ///< contact searches started, refinements included
+  std::uint64_t evaluations = 0;         ///< points in time at which a pair was looked at
+  std::uint64_t kernel_calls = 0;        ///< evaluations of the gap function along one normal
+  std::uint64_t refinements = 0;         ///< searches that went on from an earlier lower bound
+  std::uint64_t cold_restarts = 0;       ///< warm normals that led to a spurious maximum
+  std::uint64_t rescues = 0;             ///< searches that needed the fallback which cannot fail
+  std::uint64_t neighbour_rebuilds = 0;  ///< envelopes renewed
+  std::uint64_t envelope_checks = 0;     ///< looks at whether a body leaves its envelope
+  std::uint64_t candidate_tests = 0;     ///< pairs of envelopes tested in rebuilds
+  std::uint64_t overlaps = 0;            ///< pairs found overlapping by more than rounding: always 0 in a sound run
 };
 
 struct Collision {
@@ -62,13 +62,14 @@ struct SimulationOptions {
 
 /// Event-driven dynamics of hard ellipsoids of revolution in a periodic cubic box.
 ///
-/// Asynchronous: each body carries its own time. Neighbour lists with dilated envelopes; one calendar entry a body; a pair
-/// is looked at once after a collision and its certified lower bound put into the calendar, to be refined only when it
-/// comes up. Nothing allocates in steady state. The same system and options give the same bits on every machine.
+/// Asynchronous: each body carries its own time. Neighbour lists with dilated envelopes; one calendar entry a body; a
+/// pair is looked at once after a collision and its certified lower bound put into the calendar, to be refined only
+/// when it comes up. Nothing allocates in steady state. The same system and options give the same bits on every
+/// machine.
 class ED_EXPORT Simulation {
  public:
-  /// Throws std::invalid_argument if the bodies are not of revolution, two of them overlap, a number is not finite, or the
-  /// box is too small for nearest images (see smallest_number).
+  /// Throws std::invalid_argument if the bodies are not of revolution, two of them overlap, a number is not finite, or
+  /// the box is too small for nearest images (see smallest_number).
   explicit Simulation(const System& system, const SimulationOptions& options = {});
   ~Simulation();
   Simulation(Simulation&&) noexcept;

@@ -20,12 +20,13 @@ struct StartOptions {
 /// packing, 0.64 for spheres, up to 0.70 for ellipsoids of revolution (Donev et al., Science 303 (2004) 990).
 ED_EXPORT double densest_start(const geom::Ellipsoid& shape);
 
-/// Random positions and orientations at a low packing fraction, random velocities, then the paper's compression: dynamics
-/// alternates with shrinking the box by the largest factor that leaves no overlap. No two bodies overlap at any moment.
+/// Random positions and orientations at a low packing fraction, random velocities, then the paper's compression:
+/// dynamics alternates with shrinking the box by the largest factor that leaves no overlap. No two bodies overlap at
+/// any moment.
 ///
-/// Velocities: total momentum zero; translational kT = 1 on 3N - 3 degrees of freedom, rotational kT = 1 on 2N and, if the
-/// species spins, spin kT = 1 on N, each rescaled separately (at the end too, so that nearly spherical bodies, which hardly
-/// exchange energy, have the right temperatures).
+/// Velocities: total momentum zero; translational kT = 1 on 3N - 3 degrees of freedom, rotational kT = 1 on 2N and, if
+/// the species spins, spin kT = 1 on N, each rescaled separately (at the end too, so that nearly spherical bodies,
+/// which hardly exchange energy, have the right temperatures).
 ///
 /// Throws std::invalid_argument for a packing fraction that is not positive or above densest_start, or a number below
 /// smallest_number; std::runtime_error if the compression gets stuck.

@@ -70,9 +70,9 @@ struct Audit {
   double minimum_distance;  ///< over all pairs (nearest image), < 0: overlap; box if no two bounding spheres meet
   int closest_i = -1;
   int closest_j = -1;
-  int overlaps = 0;       ///< pairs closer than -kAuditOverlap
-  int unanswered = 0;     ///< pairs whose distance query declined
-  bool finite = true;     ///< all numbers of the state are finite
+  int overlaps = 0;    ///< pairs closer than -kAuditOverlap
+  int unanswered = 0;  ///< pairs whose distance query declined
+  bool finite = true;  ///< all numbers of the state are finite
   KineticState kinetic;
 };
 

@@ -4,8 +4,8 @@
 
 namespace ed {
 
-/// Contact search: the normal is good enough for a step when decrement <= kLooseDecrement * g. Dimensionless. Any normal
-/// is valid; a better one gives a longer step, and beyond this the next Newton step costs more than it gains.
+/// Contact search: the normal is good enough for a step when decrement <= kLooseDecrement * g. Dimensionless. Any
+/// normal is valid; a better one gives a longer step, and beyond this the next Newton step costs more than it gains.
 inline constexpr double kLooseDecrement = 0.05;
 
 /// Contact search: the normal is converged when decrement <= kTightDecrement * size. Dimensionless.
@@ -14,15 +14,15 @@ inline constexpr double kTightDecrement = 2e-17;
 /// Contact search: bodies touch when g <= kTouching * size. Dimensionless; a few times the rounding error of g.
 inline constexpr double kTouching = 2e-15;
 
-/// Contact search: bodies that touch approach when g' < -kResting * speed, speed a bound of |g'|. Dimensionless; some tens
-/// of rounding errors, so that the impulse's normal velocity has the same sign.
+/// Contact search: bodies that touch approach when g' < -kResting * speed, speed a bound of |g'|. Dimensionless; some
+/// tens of rounding errors, so that the impulse's normal velocity has the same sign.
 inline constexpr double kResting = 1e-14;
 
 /// Contact search: g < -kOverlap * size is an overlap and not the rounding error of a contact. Dimensionless.
 inline constexpr double kOverlap = 1e-10;
 
-/// Contact search: Newton's method on d(t) may take over when the root of the certified parabola and that of its tangent
-/// differ by at most kTangentAgreement times size / speed. Dimensionless.
+/// Contact search: Newton's method on d(t) may take over when the root of the certified parabola and that of its
+/// tangent differ by at most kTangentAgreement times size / speed. Dimensionless.
 inline constexpr double kTangentAgreement = 1e-13;
 
 /// Length of an epoch: local times are measured from its start, so that they never grow and lose digits. Time unit; a
