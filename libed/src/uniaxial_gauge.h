@@ -171,8 +171,8 @@ class UniaxialGauge {
 
   Window window(double t_begin, double t_end) const { return sphere_window(r_now_, v_, reach_, now_, t_begin, t_end); }
 
-  /// A bound of -d2g/dt2 for every n and t, cheap and crude. From the formula of SupportCurvature: h >= b for a rod,
-  /// and b^2 r^2 / h^2 - x (x - C) <= r^2 + C^2 / 4 <= 1; h >= a for a disc, and x (x - C) <= 1.
+  /// A bound of -d2g/dt2 for every n and t, cheap and crude. From the formula of SupportCurvature, with y = x - C: for a
+  /// rod h >= b, and the bracket is at most r^2 - 2 y^2 - C y <= r^2 + C^2 / 8 <= 1; for a disc h >= a, and x y <= 1.
   double curvature_limit() const {
     return A_.turning_limit * (a_.rate * a_.rate) + B_.turning_limit * (b_.rate * b_.rate);
   }
