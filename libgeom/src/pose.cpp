@@ -27,7 +27,8 @@ void require_finite_position(const Eigen::Vector3d& position) {
 Pose::Pose(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& position)
     : rotation_(rotation), position_(position) {
   require_finite_position(position);
-  const double error = (rotation.transpose() * rotation - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
+  const Eigen::Matrix3d excess = rotation.transpose() * rotation - Eigen::Matrix3d::Identity();
+  const double error = excess.cwiseAbs().maxCoeff<Eigen::PropagateNaN>();
   if (!(error <= kPoseTolerance)) {
     refuse("rotation is not orthonormal: largest entry of R^T R - 1", error, "at most 1e-6");
   }

@@ -100,7 +100,9 @@ inline UniaxialEvaluation uniaxial_step(const Spheroid& A, const Spheroid& B, co
   double sigma = (f_a + f_b) + gap.g;
   // Both eigenvalues are at least `floor` if and only if the quadratic q^2 + q t1 + D and q + t1/2 are non-negative at
   // q = sigma - floor; the square root is needed only when they are not.
-  const double floor = 0.5 * (A.rho + B.rho);
+  // By theory M >= rho = rhoA + rhoB, so that M + g I is definite while g > -rho; deeper it must be made so.
+  const double rho = A.rho + B.rho;
+  const double floor = gap.g > -rho ? kLeastEigenvalue * rho : 0.5 * rho;
   const double q = sigma - floor;
   if (!(q * (q + t1) + D >= 0 && q + 0.5 * t1 >= 0)) [[unlikely]] {
     const double smallest = sigma + 0.5 * t1 - std::sqrt(std::max(0.0, 0.25 * t1 * t1 - D));

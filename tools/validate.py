@@ -1,0 +1,246 @@
+"""Runs hardbody at state points with known answers and compares. See tools/validate."""
+
+import argparse
+import concurrent.futures
+import csv
+import json
+import math
+import pathlib
+import subprocess
+import sys
+
+REFERENCE = pathlib.Path(__file__).resolve().parent.parent / "tests" / "reference"
+
+
+def read_csv(name):
+    """Rows of a reference file as dictionaries; comment lines are skipped."""
+    with open(REFERENCE / name, newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(line for line in file if not line.startswith("#")))
+
+
+def number(text):
+    return float(text) if text else None
+
+
+class Runner:
+    """Runs the program, at most `jobs` at a time, and keeps what has been run before."""
+
+    def __init__(self, program, out, jobs):
+        self.program = str(pathlib.Path(program).resolve())
+        self.out = pathlib.Path(out)
+        self.pool = concurrent.futures.ThreadPoolExecutor(jobs)
+
+    def submit(self, name, **settings):
+        return self.pool.submit(self._run, name, settings)
+
+    def _run(self, name, settings):
+        directory = self.out / name
+        config = self.out / f"{name}.toml"
+        text = (
+            f'seed = {settings.get("seed", 1)}\n'
+            f'[system]\nnumber = {settings.get("number", 512)}\npacking_fraction = {settings["phi"]}\n'
+            f'[shape]\nkind = "ellipsoid"\naspect_ratio = {settings["X0"]}\n'
+            f'[dynamics]\ninertia = "{settings.get("inertia", "paper")}"\n'
+            f'[equilibration]\ntime = {settings["equilibration"]}\n'
+            f'[production]\ntime = {settings["production"]}\n'
+        )
+        summary = directory / "summary.json"
+        if not (config.exists() and config.read_text() == text and summary.exists()):
+            self.out.mkdir(parents=True, exist_ok=True)
+            config.write_text(text)
+            subprocess.run(
+                [self.program, "run", str(config), "--out", str(directory), "--force"],
+                check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        result = json.loads(summary.read_text())
+        result["directory"] = directory
+        return result
+
+
+class Table:
+    """Rows of: what, measured, reference, deviation, allowed."""
+
+    def __init__(self):
+        self.failed = 0
+        self.rows = 0
+
+    def heading(self, text):
+        print(f"\n### {text}\n")
+        print("| state | quantity | measured | reference | deviation | sigma | allowed | |")
+        print("|---|---|---|---|---|---|---|---|", flush=True)
+
+    def relative(self, state, quantity, measured, error, reference, allowed, reference_error=0.0):
+        """|measured / reference - 1| <= allowed; the distance in combined standard errors is shown beside."""
+        if measured is None:
+            self._row(state, quantity, "null", f"{reference:.5g}", "", "", f"{100 * allowed:g} %", False)
+            return
+        deviation = measured / reference - 1
+        combined = math.hypot(error or 0.0, reference_error or 0.0)
+        sigma = f"{(measured - reference) / combined:+.1f}" if combined > 0 else ""
+        self._row(state, quantity, f"{measured:.5g} +- {error or math.nan:.2g}", f"{reference:.5g}",
+                  f"{100 * deviation:+.2f} %", sigma, f"{100 * allowed:g} %", abs(deviation) <= allowed)
+
+    def sigmas(self, state, quantity, measured, error, reference, allowed):
+        """|measured - reference| <= allowed standard errors."""
+        deviation = (measured - reference) / error
+        self._row(state, quantity, f"{measured:.5g} +- {error:.2g}", f"{reference:.5g}",
+                  f"{measured - reference:+.2g}", f"{deviation:+.1f}", f"{allowed:g} sigma", abs(deviation) <= allowed)
+
+    def limit(self, state, quantity, measured, limit, ok):
+        self._row(state, quantity, f"{measured:.2e}", "", "", "", limit, ok)
+
+    def _row(self, state, quantity, measured, reference, deviation, sigma, allowed, ok):
+        self.rows += 1
+        self.failed += 0 if ok else 1
+        verdict = "ok" if ok else "**off**"
+        print(f"| {state} | {quantity} | {measured} | {reference} | {deviation} | {sigma} | {allowed} | {verdict} |",
+              flush=True)
+
+
+def observable(result, name):
+    entry = result["observables"][name]
+    return entry["value"], entry["error"]
+
+
+def production_for(rate, collisions, number_of_bodies=512):
+    """Time in which `number_of_bodies` at that collision rate collide `collisions` times."""
+    return round(2 * collisions / (rate * number_of_bodies), 1)
+
+
+def dynamics(runner, table, collisions):
+    """The seven state points of dynamics.csv: rate, Z, D and the decay of C2."""
+    rows = read_csv("dynamics.csv")
+    runs = []
+    for row in rows:
+        production = max(600.0, production_for(float(row["rate"]), collisions))
+        runs.append(runner.submit(f"dynamics-{row['X0']}-{row['phi']}", X0=row["X0"], phi=row["phi"],
+                                  equilibration=30, production=production))
+    table.heading("Dynamics of ellipsoids of revolution (dynamics.csv: independent simulation, N = 512)")
+    for row, run in zip(rows, runs):
+        result = run.result()
+        state = f"X0 {float(row['X0']):.3g}, phi {row['phi']}"
+        for name, column, allowed in (
+                ("collision_rate", "rate", 0.005), ("Z", "Z", 0.01), ("D_trans", "D_trans", 0.03),
+                ("D_rot", "D_rot", 0.03), ("D_rot_body", "D_rot_body", 0.03), ("t_C2_1overe", "t_C2_1overe", 0.02)):
+            value, error = observable(result, name)
+            table.relative(state, name, value, error, float(row[column]), allowed, number(row.get(f"{column}_err")))
+        for name in ("kT_trans", "kT_rot"):
+            value, error = observable(result, name)
+            table.sigmas(state, name, value, error, 1.0, 3)
+
+
+def pressure(runner, table, collisions):
+    """Z of spheroids against independent Monte Carlo (simulations.csv)."""
+    rows = [row for row in read_csv("simulations.csv") if row["system"].startswith("spheroids")]
+    runs = [runner.submit(f"pressure-{row['X0']}-{row['phi']}", X0=row["X0"], phi=row["phi"], equilibration=30,
+                          production=production_for(4 * float(row["Z"]), collisions)) for row in rows]
+    table.heading("Pressure of spheroids (simulations.csv: independent Monte Carlo)")
+    for row, run in zip(rows, runs):
+        value, error = observable(run.result(), "Z")
+        table.relative(f"X0 {row['X0']}, phi {row['phi']}", "Z", value, error, float(row["Z"]), 0.01,
+                       float(row["Z_err"]))
+
+
+def spheres(runner, table, collisions):
+    """Hard spheres: Z and the collision rate 3/sqrt(pi) (Z - 1) in units of the radius."""
+    wanted = (0.10, 0.20, 0.30, 0.40, 0.45)
+    rows = [row for row in read_csv("hard_sphere_eos.csv") if any(abs(float(row["phi"]) - phi) < 1e-9 for phi in wanted)]
+    runs = []
+    for row in rows:
+        rate = 3 / math.sqrt(math.pi) * (float(row["Z_BannermanLueWoodcock2010"]) - 1)
+        runs.append(runner.submit(f"spheres-{row['phi']}", X0=1, phi=row["phi"], equilibration=30,
+                                  production=production_for(rate, collisions)))
+    table.heading("Hard spheres (hard_sphere_eos.csv: Bannerman, Lue and Woodcock 2010)")
+    for row, run in zip(rows, runs):
+        result = run.result()
+        Z = float(row["Z_BannermanLueWoodcock2010"])
+        table.relative(f"phi {row['phi']}", "Z", *observable(result, "Z"), Z, 0.01)
+        table.relative(f"phi {row['phi']}", "collision_rate", *observable(result, "collision_rate"),
+                       3 / math.sqrt(math.pi) * (Z - 1), 0.005)
+
+
+def dilute(runner, table, collisions):
+    """Collision rates at phi = 0.05 against Enskog theory with Vega's pressure."""
+    column = "coll_rate=nu0*chi"
+    wanted = (1 / 3, 0.5, 2.0, 3.0)
+    rows = [row for row in read_csv("enskog_spheroids.csv")
+            if row["phi"] == "0.05" and any(abs(float(row["X0"]) - x) < 1e-4 for x in wanted)]
+    runs = [runner.submit(f"dilute-{row['X0']}", X0=row["X0"], phi=row["phi"], equilibration=30,
+                          production=production_for(float(row[column]), collisions)) for row in rows]
+    table.heading("Dilute spheroids (enskog_spheroids.csv: kinetic theory)")
+    for row, run in zip(rows, runs):
+        table.relative(f"X0 {float(row['X0']):.3g}, phi 0.05", "collision_rate",
+                       *observable(run.result(), "collision_rate"), float(row[column]), 0.01)
+
+
+def rotor(runner, table, _):
+    """C2 of bodies that hardly ever collide against the exact free rotor, over independent seeds."""
+    X0 = 3.0
+    moment = 0.4 * X0 ** (-2.0 / 3.0)
+    seeds = range(1, 17)
+    runs = [runner.submit(f"rotor-{seed}", X0=X0, phi=1e-5, number=4096, equilibration=0, production=32, seed=seed)
+            for seed in seeds]
+    exact = [(float(r["tau=t*sqrt(kT/I)"]), float(r["C2_linear_rotor"])) for r in read_csv("free_rotor_c2.csv")]
+    curves = []
+    for run in runs:
+        with open(run.result()["directory"] / "observables" / "c2.csv", newline="", encoding="utf-8") as file:
+            curves.append([(float(row[0]), float(row[1])) for row in list(csv.reader(file))[1:]])
+    table.heading("Free rotor: C2 at X0 = 3, phi = 1e-5, 16 x 4096 bodies (free_rotor_c2.csv: exact)")
+    chosen = [k for k, (t, _) in enumerate(curves[0]) if 0.1 < t / math.sqrt(moment) < 4.5][::3]
+    for k in chosen:
+        tau = curves[0][k][0] / math.sqrt(moment)
+        values = [curve[k][1] for curve in curves]
+        mean = sum(values) / len(values)
+        error = math.sqrt(sum((v - mean) ** 2 for v in values) / (len(values) * (len(values) - 1)))
+        table.sigmas(f"tau {tau:.3f}", "C2", mean, error, interpolate(exact, tau), 3)
+
+
+def interpolate(points, x):
+    """Cubic (Lagrange) interpolation in a table with equal steps."""
+    k = min(max(next(i for i, p in enumerate(points) if p[0] >= x) - 2, 0), len(points) - 4)
+    near = points[k:k + 4]
+    return sum(y * math.prod((x - b) / (a - b) for b, _ in near if b != a) for a, y in near)
+
+
+def conservation(runner, table, _):
+    """Energy and the smallest distance after more than a million collisions, over shapes and both kinds of inertia."""
+    states = [(X0, phi, inertia) for inertia in ("paper", "uniform")
+              for X0, phi in ((0.1, 0.25), (0.333333, 0.4), (1, 0.45), (2, 0.45), (3, 0.4), (5, 0.3), (10, 0.2))]
+    runs = []
+    for X0, phi, inertia in states:
+        runs.append(runner.submit(f"conservation-{X0}-{inertia}", X0=X0, phi=phi, inertia=inertia, number=600,
+                                  equilibration=5, production=200 if X0 in (1, 2, 3, 0.333333) else 60))
+    table.heading("Conservation and overlaps at the end of a run")
+    for (X0, phi, inertia), run in zip(states, runs):
+        result = run.result()
+        collisions = result["counters"]["collisions"]
+        state = f"X0 {X0:.3g}, phi {phi}, {inertia}, {collisions:.1e} collisions"
+        audit = result["audit"]
+        drift = abs(audit["energy_relative_drift"])
+        table.limit(state, "energy drift", drift, "1e-11", drift <= 1e-11)
+        table.limit(state, "minimum distance", audit["minimum_distance"], ">= -1e-12", audit["minimum_distance"] >= -1e-12)
+        bad = result["counters"]["overlaps"] + result["counters"]["rescues"]
+        table.limit(state, "overlaps + rescues", bad, "0", bad == 0)
+
+
+GROUPS = {"dynamics": dynamics, "pressure": pressure, "spheres": spheres, "dilute": dilute, "rotor": rotor,
+          "conservation": conservation}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("groups", nargs="*", choices=[[], *GROUPS], help="default: all")
+    parser.add_argument("--hardbody", required=True)
+    parser.add_argument("--out", required=True)
+    parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--collisions", type=float, default=3e6, help="of each run, at least")
+    arguments = parser.parse_args()
+    table = Table()
+    runner = Runner(arguments.hardbody, arguments.out, arguments.jobs)
+    for name in arguments.groups or GROUPS:
+        GROUPS[name](runner, table, arguments.collisions)
+    print(f"\n{table.rows} comparisons, {table.failed} off")
+    return 1 if table.failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
