@@ -11,6 +11,9 @@
 /// better n. Near a contact d ~ |g'| (tc - t) and q's root falls short of tc by K (tc - t)^2 / (2 |g'|) at most:
 /// convergence is quadratic. No resolution parameter enters; a grazing contact costs more steps, not a wrong answer.
 ///
+/// The end. When the root of q and that of its tangent are close, Newton's method on d(t) takes over; its contact is
+/// accepted only with a proof that there is none between the certified bound and it (see refine_contact).
+///
 /// Rounding. When the bodies touch (g within kTouching * size) and approach, that is the contact. When they touch and
 /// part, or rest (|g'| within kResting * speed, where its sign is rounding), g and g' are set to 0 if below, and the
 /// step is at least sqrt(2 kTouching size / K): the deepest overlap that q allows on the way is then kTouching * size,
@@ -33,11 +36,12 @@
 namespace ed::internal {
 
 struct FinderCounters {
-  std::uint64_t predictions = 0;    ///< calls
-  std::uint64_t evaluations = 0;    ///< points in time at which a pair was looked at
-  std::uint64_t kernel_calls = 0;   ///< evaluations of g at a normal
-  std::uint64_t cold_restarts = 0;  ///< a warm normal had led to a spurious maximum
-  std::uint64_t rescues = 0;        ///< the fallback that cannot fail was needed
+  std::uint64_t predictions = 0;         ///< calls
+  std::uint64_t evaluations = 0;         ///< points in time at which a pair was looked at
+  std::uint64_t newton_evaluations = 0;  ///< those of the final Newton on d(t) alone
+  std::uint64_t kernel_calls = 0;        ///< evaluations of g at a normal
+  std::uint64_t cold_restarts = 0;       ///< a warm normal had led to a spurious maximum
+  std::uint64_t rescues = 0;             ///< the fallback that cannot fail was needed
 };
 
 enum class Outcome {
@@ -120,17 +124,19 @@ Quality improve_normal(const Gauge& gauge, const typename Gauge::State& state, d
 /// Evaluations for one converged normal near a contact, where the normal is nearly right to begin with.
 inline constexpr int kRefineBudget = 12;
 
-/// Newton's method on d(t) = 0 with converged normals, from a time close to the contact. True if it ended on a contact
-/// at which the bodies approach; t and n are changed only then.
+/// Newton's method on d(t) = 0 with converged normals, from `t`. True if it ended on a contact in `near` that is
+/// certainly the first one after near.begin; t and n are changed only then.
+///
+/// d, a maximum of functions with second derivatives >= -K, has d'(s) <= d'(tc) + K (tc - s) for s < tc. So if
+/// d'(tc) < -K (tc - near.begin), the distance falls all the way from near.begin to tc, and there is no contact before.
 template <class Gauge>
-bool refine_contact(const Gauge& gauge, double earliest, double reach, double& t, Eigen::Vector3d& n,
-                    FinderCounters& count) {
+bool refine_contact(const Gauge& gauge, const Window& near, double& t, Eigen::Vector3d& n, FinderCounters& count) {
   const double size = gauge.size();
   const double rounding = geom::kRoundingFactor * size;
   double time = t;
   Eigen::Vector3d normal = n;
   const auto done = [](const auto& trial) { return trial.step2 <= geom::kNormalTolerance2; };
-  for (int iteration = 0; iteration < 4; ++iteration) {
+  for (int iteration = 0; iteration < 6 && time >= near.begin && time <= near.end; ++iteration) {
     const auto state = gauge.at(time);
     const auto evaluate = [&](const Eigen::Vector3d& m) { return gauge.evaluate(state, m); };
     typename Gauge::Evaluation e = evaluate(normal);
@@ -138,16 +144,18 @@ bool refine_contact(const Gauge& gauge, double earliest, double reach, double& t
     (void)geom::internal::ascend(evaluate, rounding, done, budget, normal, e);
     count.kernel_calls += static_cast<std::uint64_t>(1 + kRefineBudget - budget);
     ++count.evaluations;
+    ++count.newton_evaluations;
     const double d = e.g + 0.5 * e.decrement;
     const double rate = gauge.rate(state, e, normal);
-    if (!(rate < -kResting * gauge.speed()) || !(std::abs(d) <= -rate * reach)) return false;
+    const double span = time - near.begin;
+    if (!(rate < -kResting * gauge.speed() - gauge.curvature_limit() * span)) return false;
     normal = geom::internal::step_on_sphere(normal, e.step, e.step2);
     if (std::abs(d) <= kTouching * size) {
       t = time;
       n = normal;
       return true;
     }
-    time = larger(earliest, time - d / rate);
+    time -= d / rate;
   }
   return false;
 }
@@ -195,11 +203,14 @@ Finding certified_contact(const Gauge& gauge, double t_begin, double t_end, int 
     }
     if (tau >= horizon) return {Outcome::clear, t_end};
     if (gp < 0) {
-      const double tangent = -g / gp;
-      if (tangent - tau <= kTangentAgreement * size / gauge.speed()) {
-        double contact_time = t + tangent;
+      // The contact, if the motion goes on nearly straight, is between the certified bound and a little beyond the
+      // tangent's root. Newton is worth trying if it is close, and likely to be certified there.
+      const double spread = -g / gp - tau;
+      if (spread <= kTangentAgreement * size / gauge.speed() && 8 * spread * gauge.curvature_limit() < -gp) {
+        const Window near{t + tau - kTouching * size / gauge.speed(), t + tau + 3 * spread + kTouching * size / -gp};
+        double contact_time = t - g / gp;
         Eigen::Vector3d normal = geom::internal::step_on_sphere(n, e.step, e.step2);
-        if (refine_contact(gauge, t, tangent + size / gauge.speed() * 1e-6, contact_time, normal, count)) {
+        if (refine_contact(gauge, near, contact_time, normal, count)) {
           n = normal;
           return {contact_time <= t_end ? Outcome::contact : Outcome::clear, contact_time};
         }

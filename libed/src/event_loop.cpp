@@ -411,9 +411,11 @@ void EventLoop::process_exit(int i) {
 }
 
 void EventLoop::refine(std::int32_t index) {
-  ++counters_.refinements;
+  const auto search_evaluations = [this] { return finder_.evaluations - finder_.newton_evaluations; };
+  const std::uint64_t before = search_evaluations();
   const int owner = lists_.pair(index).owner;
   predict(index, owner, kSecondLook);
+  counters_.refinements += search_evaluations() - before;
   reschedule(owner);
 }
 

@@ -16,10 +16,12 @@ namespace ed {
 /// What the run loop counted since its construction.
 struct Counters {
   std::uint64_t collisions = 0;
-  std::uint64_t predictions = 0;         ///< contact searches started, refinements included
-  std::uint64_t evaluations = 0;         ///< points in time at which a pair was looked at
-  std::uint64_t kernel_calls = 0;        ///< evaluations of the gap function along one normal
-  std::uint64_t refinements = 0;         ///< searches that went on from an earlier lower bound
+  std::uint64_t predictions = 0;   ///< contact searches started, refinements included
+  std::uint64_t evaluations = 0;   ///< points in time at which a pair was looked at
+  std::uint64_t kernel_calls = 0;  ///< evaluations of the gap function along one normal
+  /// Evaluations after a prediction's first: what its lower bound had to be refined by when it came up. The final
+  /// Newton on a contact (2 evaluations a collision) is not counted here.
+  std::uint64_t refinements = 0;
   std::uint64_t cold_restarts = 0;       ///< warm normals that led to a spurious maximum
   std::uint64_t rescues = 0;             ///< searches that needed the fallback which cannot fail
   std::uint64_t neighbour_rebuilds = 0;  ///< envelopes renewed

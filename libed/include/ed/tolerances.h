@@ -21,9 +21,10 @@ inline constexpr double kResting = 1e-14;
 /// Contact search: g < -kOverlap * size is an overlap and not the rounding error of a contact. Dimensionless.
 inline constexpr double kOverlap = 1e-10;
 
-/// Contact search: Newton's method on d(t) may take over when the root of the certified parabola and that of its
-/// tangent differ by at most kTangentAgreement times size / speed. Dimensionless.
-inline constexpr double kTangentAgreement = 1e-13;
+/// Contact search: Newton's method on d(t) is tried when the root of the certified parabola and that of its tangent
+/// differ by at most kTangentAgreement * size / speed. Dimensionless. Its result is certified by itself; this only
+/// keeps it from being tried in vain.
+inline constexpr double kTangentAgreement = 3e-4;
 
 /// Length of an epoch: local times are measured from its start, so that they never grow and lose digits. Time unit; a
 /// power of two.
