@@ -1,1 +1,8 @@
-# Tests of this part; see hardbody_test in CMakeLists.txt.
+# The program as a user meets it: its files, messages and exit statuses. Debian's python3, no modules beyond its own.
+if(TARGET hardbody)
+  find_program(HARDBODY_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH)
+  find_program(HARDBODY_PYTHON python3 REQUIRED)
+  add_test(NAME cli_test COMMAND ${HARDBODY_PYTHON} ${CMAKE_CURRENT_SOURCE_DIR}/cli/test_cli.py)
+  set_tests_properties(cli_test PROPERTIES LABELS cli TIMEOUT 600
+    ENVIRONMENT "HARDBODY=$<TARGET_FILE:hardbody>;HARDBODY_DEMO=${PROJECT_SOURCE_DIR}/apps/demo.toml")
+endif()

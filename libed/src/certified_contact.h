@@ -212,7 +212,8 @@ Finding certified_contact(const Gauge& gauge, double t_begin, double t_end, int 
         Eigen::Vector3d normal = geom::internal::step_on_sphere(n, e.step, e.step2);
         if (refine_contact(gauge, near, contact_time, normal, count)) {
           n = normal;
-          return {contact_time <= t_end ? Outcome::contact : Outcome::clear, contact_time};
+          if (contact_time > t_end) return {Outcome::clear, t_end};
+          return {Outcome::contact, contact_time};
         }
       }
     } else {

@@ -59,14 +59,34 @@ ContactStatus status_of(Outcome outcome) {
   return ContactStatus::failed;
 }
 
+/// Bodies that have further to go than this many sizes before they can touch are moved most of the way at once.
+constexpr double kFar = 100;
+
+/// Moves bodies that start far apart to shortly before their bounding spheres meet, and sets their clocks to 0 there;
+/// returns by how much. What is rounded on a long way is then the place and the time where the search starts, once, and
+/// not every distance on the way into the contact.
+double skip_the_way(Body& a, Body& b, double reach, double duration) {
+  const Eigen::Vector3d r = b.top.axis.position_at(0) - a.top.axis.position_at(0);
+  const Eigen::Vector3d v = b.top.axis.velocity - a.top.axis.velocity;
+  const internal::Window window = internal::sphere_window(r, v, reach, 0, 0, duration);
+  const double speed = v.norm();
+  if (!(window.begin < window.end) || !(window.begin * speed > kFar * reach)) return 0;
+  const double way = window.begin - reach / speed;
+  for (Body* body : {&a, &b}) {
+    internal::advance(body->top.inertia, way, body->top.axis, body->top.frame);
+    body->top.axis.time = 0;
+  }
+  return way;
+}
+
+/// The search from time 0 on the bodies' clocks.
 template <bool kSpin>
-ContactResult search(const Body& a, const Body& b, double reach, double t_max) {
-  const double now = std::max(a.top.axis.time, b.top.axis.time);
-  const Eigen::Vector3d r = b.top.axis.position_at(now) - a.top.axis.position_at(now);
-  const internal::UniaxialGauge<kSpin> gauge(a.shape, a.top.axis, b.shape, b.top.axis, r, now, reach);
+ContactResult search(const Body& a, const Body& b, double reach, double duration) {
+  const Eigen::Vector3d r = b.top.axis.position_at(0) - a.top.axis.position_at(0);
+  const internal::UniaxialGauge<kSpin> gauge(a.shape, a.top.axis, b.shape, b.top.axis, r, 0, reach);
   Eigen::Vector3d n = Eigen::Vector3d::Zero();
   internal::FinderCounters count;
-  const internal::Finding finding = internal::certified_contact(gauge, now, t_max, kMaxEvaluations, n, count);
+  const internal::Finding finding = internal::certified_contact(gauge, 0, duration, kMaxEvaluations, n, count);
   ContactResult result;
   result.status = status_of(finding.outcome);
   result.time = finding.time;
@@ -101,16 +121,25 @@ const char* to_string(ContactStatus status) {
 
 ContactResult time_of_contact(const Ellipsoid& a, const Motion& motion_a, const Ellipsoid& b, const Motion& motion_b,
                               double t_max) {
-  const Body body_a = make_body(a, motion_a, "A");
-  const Body body_b = make_body(b, motion_b, "B");
-  if (!(t_max >= std::max(motion_a.time, motion_b.time))) {
+  Body body_a = make_body(a, motion_a, "A");
+  Body body_b = make_body(b, motion_b, "B");
+  const double now = std::max(motion_a.time, motion_b.time);
+  if (!(t_max >= now)) {
     std::ostringstream message;
     message << "time_of_contact: t_max is " << t_max << "; accepted: at least the later of both motions' times";
     throw std::invalid_argument(message.str());
   }
+  // The search counts from 0: a clock that shows a long time has few digits left for the contact.
+  body_a.top.axis.time -= now;
+  body_b.top.axis.time -= now;
   const double reach = a.bounding_radius() + b.bounding_radius();
+  const double way = skip_the_way(body_a, body_b, reach, t_max - now);
+  const double duration = t_max - now - way;
   const bool spin = body_a.top.inertia.spins || body_b.top.inertia.spins;
-  return spin ? search<true>(body_a, body_b, reach, t_max) : search<false>(body_a, body_b, reach, t_max);
+  ContactResult result =
+      spin ? search<true>(body_a, body_b, reach, duration) : search<false>(body_a, body_b, reach, duration);
+  result.time = result.status == ContactStatus::separated ? t_max : std::min(t_max, now + (way + result.time));
+  return result;
 }
 
 }  // namespace ed

@@ -8,6 +8,9 @@
 
 #include <Eigen/Core>
 
+#include <algorithm>
+#include <limits>
+
 namespace geom_test {
 
 struct ManufacturedPair {
@@ -33,6 +36,31 @@ ManufacturedPair manufacture(const ShapeA& a, const ShapeB& b, double distance, 
   const Eigen::Vector3d p_AB = s_a - s_b + distance * n;
   const geom::Pose X_WB(X_turned.rotation(), X_WA.position() + p_AB);
   return {X_WA, X_WB, n, distance, p_AB.norm() + radii};
+}
+
+/// g(n) = n.p_AB - hA(n) - hB(-n), from the public support functions: a lower bound of the distance for any unit n.
+template <geom::SupportShape ShapeA, geom::SupportShape ShapeB>
+double lower_bound(const ShapeA& a, const geom::Pose& X_WA, const ShapeB& b, const geom::Pose& X_WB,
+                   const Eigen::Vector3d& n) {
+  return n.dot(X_WB.position() - X_WA.position()) - a.support(X_WA.rotation().transpose() * n).height -
+         b.support(X_WB.rotation().transpose() * -n).height;
+}
+
+/// The contract of distance.h: |error of d| <= 1e-13 * size.
+inline double distance_tolerance(double size) {
+  return 1e-13 * size;
+}
+
+/// Bound of the angle between the computed and the true normal, in radian.
+///
+/// The last Newton step is at most 1e-6 long, and its quadratic remainder 1e-12 times the relative change of the
+/// curvature for a radian, at most about the aspect ratio; ten times that is allowed. The second part is rounding: some
+/// epsilons of size in the tangential mismatch of the support points, over the smallest eigenvalue of M + g I.
+inline double normal_tolerance(const geom::Ellipsoid& a, const geom::Ellipsoid& b, double distance, double size) {
+  const double aspect_ratio =
+      std::max(a.bounding_radius() / a.inscribed_radius(), b.bounding_radius() / b.inscribed_radius());
+  const double curvature = a.min_curvature_radius() + b.min_curvature_radius() + std::min(distance, 0.0);
+  return 1e-11 * aspect_ratio + 32 * std::numeric_limits<double>::epsilon() * size / curvature;
 }
 
 }  // namespace geom_test

@@ -45,7 +45,9 @@ class Random {
   }
 
   /// Uniform over the rotations, the position within a cube of side 2 * extent about the origin.
-  geom::Pose pose(double extent) { return pose(Eigen::Vector3d(extent * signed_unit(), extent * signed_unit(), extent * signed_unit())); }
+  geom::Pose pose(double extent) {
+    return pose(Eigen::Vector3d(extent * signed_unit(), extent * signed_unit(), extent * signed_unit()));
+  }
 
   /// A spheroid with semi-axis 1 across its axis and `aspect_ratio` along it, its axis along x, y or z of the body.
   geom::Ellipsoid spheroid(double aspect_ratio) {

@@ -103,9 +103,11 @@ double min_curvature_radius_or_zero(const Shape& shape) {
 
 /// The answer at a converged normal n: witness points, half of the tangential mismatch given to each.
 template <class Pair>
-DistanceResult witness_result(const Pair& pair, const Eigen::Vector3d& p_WA, const Eigen::Vector3d& n,
+DistanceResult witness_result(const Pair& pair, const Eigen::Vector3d& p_WA, const Eigen::Vector3d& n_rounded,
                               int iterations) {
   DistanceResult result;
+  // The steps' rounding errors, some epsilons times size / radius of curvature each, have come between |n| and 1.
+  const Eigen::Vector3d n = (1.5 - 0.5 * n_rounded.squaredNorm()) * n_rounded;
   const Eigen::Vector3d x_a = pair.point_a(n);
   const Eigen::Vector3d x_b = pair.point_b(n);
   const Eigen::Vector3d gap = x_b - x_a;

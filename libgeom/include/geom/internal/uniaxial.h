@@ -111,7 +111,11 @@ inline UniaxialEvaluation uniaxial_step(const Spheroid& A, const Spheroid& B, co
   const double inv_det = 1 / (sigma * (sigma + t1) + D);
   const double y_a = e_a * w_a.dot(y);
   const double y_b = e_b * w_b.dot(y);
-  const Eigen::Vector3d adjugate_y = (sigma + t1) * y - (y_a * w_a + y_b * w_b);
+  Eigen::Vector3d adjugate_y = (sigma + t1) * y - (y_a * w_a + y_b * w_b);
+  // y has a component along n of -2 (|n| - 1) (fA + fB + g), which the step multiplies by sigma (sigma + t1) /
+  // (sigma (sigma + t1) + D). That is harmless while the factor is between 0 and 1; else (a disc and a needle, or a
+  // lifted sigma) |n| - 1 would grow at every step by up to several times.
+  if (D < 0 || gap.g <= -rho) [[unlikely]] adjugate_y -= adjugate_y.dot(n) * n;
   UniaxialEvaluation out;
   out.g = gap.g;
   out.decrement = inv_det * y.dot(adjugate_y);

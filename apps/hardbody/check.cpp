@@ -1,0 +1,92 @@
+#include "checkpoint.h"
+#include "commands.h"
+#include "config.h"
+#include "errors.h"
+#include "run_directory.h"
+#include "run_record.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+#include <stdexcept>
+
+namespace hardbody {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Relative difference of the packing fractions of state and config that is rounding.
+constexpr double kPackingTolerance = 1e-12;
+
+void row(const char* name, const std::string& value) {
+  fmt::print("  {:<26} {}\n", name, value);
+}
+
+std::string yes_or_no(bool yes) {
+  return yes ? "yes" : "NO";
+}
+
+ed::Audit audit(const ed::System& system, const std::string& name) {
+  try {
+    return ed::audit(system);
+  } catch (const std::invalid_argument& error) {
+    throw InputError(fmt::format("{}: holds an impossible state: {}", name, error.what()));
+  }
+}
+
+void print_state(const Checkpoint& checkpoint, const ed::Audit& audit) {
+  const ed::KineticState& kinetic = audit.kinetic;
+  row("state at", fmt::format("time {:g} of {}, written by hardbody {}", checkpoint.time, checkpoint.phase,
+                              checkpoint.program_version));
+  row("bodies", fmt::format("{}", checkpoint.system.size()));
+  row("all numbers finite", yes_or_no(audit.finite));
+  row("overlaps", fmt::format("{}", audit.overlaps));
+  row("distances not answered", fmt::format("{}", audit.unanswered));
+  row("minimum distance", audit.closest_i < 0 ? std::string("no two bounding spheres meet")
+                                              : fmt::format("{:.6g} l, bodies {} and {}", audit.minimum_distance,
+                                                            audit.closest_i, audit.closest_j));
+  row("energy", fmt::format("{:.10g} kT (translation {:.6g}, rotation {:.6g}, spin {:.6g})", kinetic.energy(),
+                            kinetic.translational_energy, kinetic.rotational_energy, kinetic.spin_energy));
+  row("translational temperature", fmt::format("{:.6f} on 3N - 3 degrees of freedom", kinetic.translational_kT));
+  row("rotational temperature", fmt::format("{:.6f} on 2N", kinetic.rotational_kT));
+  row("momentum", fmt::format("{:.2e} sqrt(m kT) a body", kinetic.momentum.norm() / checkpoint.system.size()));
+}
+
+/// Whether the state is that of the config it was made with.
+bool print_config(const Checkpoint& checkpoint, const std::string& name) {
+  const Config config = parse_config(checkpoint.config, name + " (its config)");
+  const ed::System& system = checkpoint.system;
+  const double phi = ed::packing_fraction(system);
+  const bool same_phi = std::abs(phi / config.packing_fraction - 1) < kPackingTolerance;
+  const bool same_number = system.size() == config.number;
+  const bool same_shape = system.species.shape.semi_axes() == config.species.shape.semi_axes();
+  row("packing fraction", fmt::format("{:.15g}, as configured: {}", phi, yes_or_no(same_phi)));
+  row("number as configured", yes_or_no(same_number));
+  row("shape as configured", yes_or_no(same_shape));
+  return same_phi && same_number && same_shape;
+}
+
+}  // namespace
+
+int check(const std::string& path) {
+  if (fs::path(path).extension() == ".gsd") {
+    throw InputError(fmt::format("{}: checking a .gsd file is not available yet; accepted now: a run directory", path));
+  }
+  if (!fs::is_directory(path)) {
+    throw InputError(
+        fmt::format("{}: is {}; accepted: a run directory", path, fs::exists(path) ? "not a directory" : "not there"));
+  }
+  const fs::path file = fs::path(path) / kCheckpointFile;
+  const Checkpoint checkpoint = read_checkpoint(file);
+  const ed::Audit result = audit(checkpoint.system, file.string());
+  fmt::print("{}\n", file.string());
+  print_state(checkpoint, result);
+  std::vector<std::string> list = defects(result);
+  if (!print_config(checkpoint, file.string())) list.emplace_back("the state is not that of its config");
+  for (const std::string& defect : list) fmt::print("  *** NOT SOUND: {} ***\n", defect);
+  fmt::print("{}\n", list.empty() ? "sound" : "NOT SOUND");
+  return list.empty() ? 0 : 1;
+}
+
+}  // namespace hardbody

@@ -1,0 +1,23 @@
+#pragma once
+
+/// The subcommands, one source file each. They return the program's exit status and throw what errors.h says.
+
+#include <string>
+#include <vector>
+
+namespace hardbody {
+
+struct RunArguments {
+  std::string config;                  ///< path of the TOML file
+  std::string out;                     ///< run directory; empty: out/<stem of the config>
+  std::vector<std::string> overrides;  ///< section.key=value
+  bool force = false;                  ///< overwrite an existing run
+};
+
+/// An empty path: standard output.
+int init(const std::string& path);
+int run(const RunArguments& arguments);
+int check(const std::string& path);
+int replay(const std::string& path);
+
+}  // namespace hardbody

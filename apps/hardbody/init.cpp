@@ -1,0 +1,31 @@
+#include "commands.h"
+#include "config_text.h"
+#include "errors.h"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+
+namespace hardbody {
+
+int init(const std::string& path) {
+  const std::string text = template_text();
+  if (path.empty()) {
+    (void)std::fputs(text.c_str(), stdout);
+    return 0;
+  }
+  // x: fails if the file exists.
+  std::FILE* file = std::fopen(path.c_str(), "wx");
+  if (file == nullptr) {
+    throw InputError(errno == EEXIST ? fmt::format("{}: exists already; accepted: a new file", path)
+                                     : fmt::format("{}: cannot be written: {}", path, std::strerror(errno)));
+  }
+  const bool written = std::fputs(text.c_str(), file) >= 0;
+  if (std::fclose(file) != 0 || !written) throw InputError(fmt::format("{}: cannot be written completely", path));
+  fmt::print("{} written; next: hardbody run {}\n", path, path);
+  return 0;
+}
+
+}  // namespace hardbody

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <string_view>
+
+namespace hardbody {
+
+/// A run's log.txt: what happened when. Each line is on the disk before the run goes on.
+class Log {
+ public:
+  /// Starts a new file. Throws std::runtime_error.
+  explicit Log(const std::filesystem::path& path);
+
+  void line(std::string_view text);
+
+  /// Since the construction.
+  double seconds() const;
+
+ private:
+  std::ofstream file_;
+  std::chrono::steady_clock::time_point start_;
+};
+
+}  // namespace hardbody

@@ -1,0 +1,132 @@
+#include "commands.h"
+#include "errors.h"
+#include "text_file.h"
+#include "version.h"
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <cstdio>
+#include <exception>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace hardbody {
+namespace {
+
+constexpr int kBadInput = 2;
+constexpr int kFailed = 1;
+
+/// What the user asked for.
+struct Request {
+  RunArguments run;
+  std::string init_file;
+  std::string check_path;
+  std::string replay_file;
+};
+
+void add_init(CLI::App& app, Request& request) {
+  CLI::App* init = app.add_subcommand("init", "Write a commented config to start from");
+  init->add_option("FILE", request.init_file, "New file; without it the config goes to standard output");
+}
+
+void add_run(CLI::App& app, Request& request) {
+  CLI::App* run = app.add_subcommand("run", "Run one state point: start, equilibration, production");
+  run->add_option("CONFIG", request.run.config, "Config, as `hardbody init` writes it")->required();
+  run->add_option("--out", request.run.out, "Run directory; without it out/<name of the config>");
+  run->add_option("--set", request.run.overrides, "section.key=value: overrides the config; may be repeated")
+      ->allow_extra_args(false)
+      ->type_name("KEY=VALUE");
+  run->add_flag("--force", request.run.force, "Overwrite the run that the directory holds");
+}
+
+void add_check(CLI::App& app, Request& request) {
+  CLI::App* check = app.add_subcommand("check", "Audit a run's last state: overlaps, conservation, finite values");
+  check->add_option("DIR", request.check_path, "Run directory")->required();
+}
+
+void add_replay(CLI::App& app, Request& request) {
+  CLI::App* replay = app.add_subcommand("replay", "Show a pair from failures/ step by step");
+  replay->add_option("FILE", request.replay_file, "failures/*.json")->required();
+}
+
+/// Commands of later versions: not in the help, with an honest answer.
+void add_later_commands(CLI::App& app) {
+  for (const char* name : {"resume", "analyze", "report", "sweep", "distance"}) {
+    CLI::App* later = app.add_subcommand(name, "")->group("");
+    later->set_help_flag();
+    later->allow_extras();
+    later->callback([name] {
+      throw InputError(
+          fmt::format("hardbody {}: is not available yet; accepted now: init, run, "
+                      "check, replay",
+                      name));
+    });
+  }
+}
+
+int dispatch(const CLI::App& app, const Request& request) {
+  if (app.got_subcommand("init")) return init(request.init_file);
+  if (app.got_subcommand("run")) return run(request.run);
+  if (app.got_subcommand("check")) return check(request.check_path);
+  return replay(request.replay_file);
+}
+
+/// `--set a=1 b=2` means `--set a=1 --set b=2`. CLI11 would take a config path after it as a third value.
+std::vector<std::string> expand_overrides(int argc, char** argv) {
+  std::vector<std::string> arguments;
+  bool in_set = false;
+  for (int k = 1; k < argc; ++k) {
+    const std::string_view argument = argv[k];
+    const bool assignment = !argument.starts_with("-") && argument.find('=') != std::string_view::npos;
+    if (in_set && assignment && arguments.back() != "--set") arguments.emplace_back("--set");
+    in_set = argument == "--set" || (in_set && assignment);
+    arguments.emplace_back(argument);
+  }
+  return arguments;
+}
+
+int run_command_line(int argc, char** argv) {
+  Request request;
+  CLI::App app("Event-driven molecular dynamics of hard ellipsoids", "hardbody");
+  app.set_version_flag("--version", version_text());
+  app.require_subcommand(1);
+  app.footer(
+      "Exit status: 0 fine, 2 bad input, 1 failed; 130 and 143: stopped by SIGINT and SIGTERM, results "
+      "saved.");
+  add_init(app, request);
+  add_run(app, request);
+  add_check(app, request);
+  add_replay(app, request);
+  add_later_commands(app);
+  std::vector<std::string> arguments = expand_overrides(argc, argv);
+  // CLI11 takes them from the back.
+  std::reverse(arguments.begin(), arguments.end());
+  try {
+    app.parse(std::move(arguments));
+  } catch (const CLI::Success& wanted) {  // --help, --version
+    return app.exit(wanted);
+  } catch (const CLI::ParseError& error) {
+    throw InputError(fmt::format("command line: {}; accepted: see hardbody --help", one_line(error.what())));
+  }
+  return dispatch(app, request);
+}
+
+int report(const std::exception& error, int status) {
+  (void)std::fputs((one_line(error.what(), 2000) + '\n').c_str(), stderr);
+  return status;
+}
+
+}  // namespace
+}  // namespace hardbody
+
+int main(int argc, char** argv) {
+  try {
+    return hardbody::run_command_line(argc, argv);
+  } catch (const hardbody::InputError& error) {
+    return hardbody::report(error, hardbody::kBadInput);
+  } catch (const std::exception& error) {
+    return hardbody::report(error, hardbody::kFailed);
+  }
+}

@@ -1,0 +1,191 @@
+#include "phases.h"
+
+#include "signals.h"
+
+#include <ed/observables.h>
+#include <ed/simulation.h>
+#include <ed/start.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace hardbody {
+namespace {
+
+/// Between two looks at the clock and at signals: some tenths of a second.
+constexpr std::uint64_t kSlice = 20000;
+
+/// "auto": equilibration looks at its criterion after each unit of time, and gives up after this many.
+constexpr double kEquilibrationCap = 500;
+
+/// "auto": production in units of the equilibration time, and its limits.
+constexpr double kProductionFactor = 30;
+constexpr double kLeastProduction = 30;
+constexpr double kMostProduction = 5000;
+
+/// Below this packing fraction the envelopes keep their first guess. Tuning runs for tens of collisions a
+/// body, which take a long time in a dilute gas, and there is next to nothing to gain.
+constexpr double kTunedPacking = 0.005;
+
+/// Runs to `time` in slices, shows where the phase is; false if a signal came first.
+class Runner {
+ public:
+  Runner(ed::Simulation& simulation, std::string phase, Progress& progress)
+      : simulation_(simulation),
+        progress_(progress),
+        phase_(std::move(phase)),
+        begin_(simulation.time()),
+        collisions_(simulation.counters().collisions),
+        energy_(simulation.kinetic().energy()) {
+    progress.begin();
+  }
+
+  bool run_to(double time, double planned_end) {
+    while (pending_signal() == 0) {
+      const bool arrived = simulation_.run_until(time, kSlice);
+      if (progress_.due()) progress_.show(text(planned_end));
+      if (arrived) return true;
+    }
+    return false;
+  }
+
+ private:
+  std::string text(double planned_end) const {
+    const double done = simulation_.time() - begin_;
+    const double total = planned_end - begin_;
+    const double seconds = progress_.seconds();
+    const auto collisions = static_cast<double>(simulation_.counters().collisions - collisions_);
+    return fmt::format("{} {:.2f} of {}{:g}  {:.0f} collisions/s  {}  energy drift {:.1e}", phase_, done,
+                       phase_ == "equilibration" && planned_end - begin_ == kEquilibrationCap ? "at most " : "", total,
+                       collisions / std::max(seconds, 1e-9), eta(seconds, done, total),
+                       std::abs(simulation_.kinetic().energy() / energy_ - 1));
+  }
+
+  ed::Simulation& simulation_;
+  Progress& progress_;
+  std::string phase_;
+  double begin_;
+  std::uint64_t collisions_;
+  double energy_;
+};
+
+double production_time(const Config& config, const Equilibration& equilibration) {
+  if (config.production_time) return *config.production_time;
+  return std::clamp(kProductionFactor * equilibration.time, kLeastProduction, kMostProduction);
+}
+
+/// Runs until the criterion holds or the config's time is over; the phase began at `begin`.
+void run_equilibration(const Config& config, ed::Simulation& simulation, Runner& runner, Equilibration& result) {
+  const double length = config.equilibration_time.value_or(kEquilibrationCap);
+  const double begin = simulation.time();
+  ed::Snapshot origin;
+  ed::Snapshot now;
+  simulation.sample(origin);
+  for (double done = 0; done < length && !result.stopped;) {
+    done = std::min(done + 1, length);
+    result.stopped = !runner.run_to(begin + done, begin + length);
+    simulation.sample(now);
+    result.c2 = ed::c2_between(origin, now);
+    result.msd = ed::msd_between(origin, now);
+    if (!config.equilibration_time && result.reached(config)) break;
+  }
+  result.time = simulation.time() - begin;
+  // The exact number that was asked for, without the rounding of begin + time.
+  if (config.equilibration_time && !result.stopped) result.time = length;
+}
+
+}  // namespace
+
+std::optional<ed::System> make_start(const Config& config, Progress& progress, Log& log) {
+  log.line(fmt::format("start: {} bodies placed at random, compressed to packing fraction {:g}", config.number,
+                       config.packing_fraction));
+  progress.begin();
+  ed::StartOptions options;
+  options.number = config.number;
+  options.packing_fraction = config.packing_fraction;
+  options.seed = static_cast<std::uint64_t>(config.seed);
+  options.progress = [&](double reached) {
+    if (progress.due()) {
+      progress.show(fmt::format("compression: packing fraction {:.4f} of {:g}", reached, config.packing_fraction));
+    }
+    return pending_signal() == 0;
+  };
+  try {
+    ed::System start = ed::random_start(config.species, options);
+    if (pending_signal() != 0) return std::nullopt;
+    log.line("start: done");
+    return start;
+  } catch (const std::runtime_error&) {
+    if (pending_signal() != 0) return std::nullopt;
+    throw;
+  }
+}
+
+Equilibration equilibrate(const Config& config, const ed::System& start, Progress& progress, Log& log) {
+  log.line(config.equilibration_time ? fmt::format("equilibration: {:g} time units", *config.equilibration_time)
+                                     : fmt::format("equilibration: auto, at most {:g} time units", kEquilibrationCap));
+  ed::Simulation simulation(start);
+  Equilibration result;
+  result.kinetic_at_start = simulation.kinetic();
+  if (config.packing_fraction >= kTunedPacking) {
+    simulation.tune_envelopes();
+    result.envelope = simulation.envelope();
+    log.line(fmt::format("equilibration: envelope thickness {:.4g} l", result.envelope));
+  }
+  Runner runner(simulation, "equilibration", progress);
+  run_equilibration(config, simulation, runner, result);
+  result.system = simulation.system();
+  result.overlaps = simulation.counters().overlaps;
+  result.failures = simulation.failures();
+  log.line(fmt::format("equilibration: {} after {:g} time units, C2 {:.4f}, MSD {:.4g} l^2",
+                       result.stopped ? "stopped" : "done", result.time, result.c2, result.msd));
+  if (!config.equilibration_time && !result.stopped && !result.reached(config)) {
+    const std::string warning = fmt::format(
+        "warning: not equilibrated after {:g} time units: C2 is {:.3f} (wanted below 0.05), MSD {:.3g} l^2 "
+        "(wanted above 1); production goes on",
+        result.time, result.c2, result.msd);
+    log.line(warning);
+    progress.say(warning);
+  }
+  return result;
+}
+
+Production produce(const Config& config, const Equilibration& equilibration, Progress& progress, Log& log) {
+  Production result;
+  result.planned = production_time(config, equilibration);
+  log.line(fmt::format("production: {:g} time units", result.planned));
+  const double clock = log.seconds();
+  // A new simulation: its time starts at 0 and its counters count production only.
+  ed::Simulation simulation(equilibration.system, {.envelope = equilibration.envelope});
+  simulation.record_collisions(static_cast<std::size_t>(config.events));
+  ed::ObservablesOptions options{};
+  options.number = config.number;
+  options.duration = result.planned;
+  ed::Observables observables(options);
+  result.kinetic_at_start = simulation.kinetic();
+  Runner runner(simulation, "production", progress);
+  for (bool end = false; !end && !result.stopped;) {
+    const double next = observables.next_time();
+    const double target = std::min(next, result.planned);
+    result.stopped = !runner.run_to(target, result.planned);
+    if (!result.stopped && next <= result.planned) observables.measure(simulation);
+    end = target == result.planned && observables.next_time() > result.planned;
+  }
+  result.results = observables.results(simulation);
+  result.wall_seconds = log.seconds() - clock;
+  result.time = result.stopped ? simulation.time() : result.planned;
+  result.system = simulation.system();
+  result.envelope = simulation.envelope();
+  result.counters = simulation.counters();
+  result.collisions = simulation.collisions();
+  result.failures = simulation.failures();
+  log.line(fmt::format("production: {} at {:g} time units, {} collisions in {:.3f} s",
+                       result.stopped ? "stopped" : "done", result.time, result.counters.collisions,
+                       result.wall_seconds));
+  return result;
+}
+
+}  // namespace hardbody

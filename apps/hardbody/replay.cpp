@@ -1,0 +1,138 @@
+#include "commands.h"
+#include "errors.h"
+#include "failure_file.h"
+
+#include <ed/impulse.h>
+#include <ed/motion.h>
+#include <ed/time_of_contact.h>
+#include <geom/distance.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <stdexcept>
+#include <string>
+
+namespace hardbody {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr int kStepsBefore = 5;
+constexpr int kStepsAfter = 15;
+
+std::string text(const Vector3d& v) {
+  return fmt::format("({:.9g}, {:.9g}, {:.9g})", v.x(), v.y(), v.z());
+}
+
+struct Pair {
+  geom::Ellipsoid a;
+  geom::Ellipsoid b;
+  ed::Motion motion_a;
+  ed::Motion motion_b;
+
+  /// The pair at another time.
+  Pair at(double t) const { return {a, b, ed::propagate(motion_a, t), ed::propagate(motion_b, t)}; }
+
+  geom::DistanceResult distance() const { return geom::distance(a, motion_a.pose, b, motion_b.pose); }
+
+  double size() const { return a.bounding_radius() + b.bounding_radius(); }
+
+  /// No point of a body moves faster than this relative to the other body.
+  double speed() const {
+    return (motion_b.velocity - motion_a.velocity).norm() + motion_a.angular_velocity.norm() * a.bounding_radius() +
+           motion_b.angular_velocity.norm() * b.bounding_radius();
+  }
+};
+
+ed::ContactBody contact_body(const ed::Motion& motion, const Vector3d& point) {
+  ed::ContactBody body;
+  body.arm = point - motion.pose.position();
+  body.velocity = motion.velocity;
+  body.angular_velocity = motion.angular_velocity;
+  return body;
+}
+
+/// Rate at which the distance changes: the relative normal velocity of the closest points.
+double distance_rate(const Pair& pair, const geom::DistanceResult& d) {
+  return ed::normal_velocity(contact_body(pair.motion_a, d.point_a), contact_body(pair.motion_b, d.point_b), d.normal);
+}
+
+std::string bodies(const ed::FailedPair& failed, const Pair& pair) {
+  std::string out = fmt::format("reason: {}\n", failed.reason.empty() ? "none given" : failed.reason);
+  out += fmt::format("time {:.17g}, bodies {} (a) and {} (b)\n", failed.time, failed.i, failed.j);
+  const auto add = [&](const char* name, const geom::Ellipsoid& shape, const ed::Motion& motion) {
+    out += fmt::format("{}: semi-axes {}, inertia {}\n   position {}\n   velocity {}\n   angular velocity {}\n", name,
+                       text(shape.semi_axes()), text(motion.inertia), text(motion.pose.position()),
+                       text(motion.velocity), text(motion.angular_velocity));
+  };
+  add("a", pair.a, pair.motion_a);
+  add("b", pair.b, pair.motion_b);
+  return out;
+}
+
+std::string distance_now(const Pair& pair) {
+  const geom::DistanceResult d = pair.distance();
+  std::string out = fmt::format("\nstep 1, distance at that time: {:.17g} ({}, {} iterations, residual {:.2g})\n",
+                                d.distance, geom::to_string(d.status), d.iterations, d.residual);
+  if (!std::isfinite(d.distance)) return out;
+  out += fmt::format("   normal from a to b {}\n   closest point of a {}\n   closest point of b {}\n", text(d.normal),
+                     text(d.point_a), text(d.point_b));
+  return out + fmt::format("   the distance changes by {:.9g} a time unit\n", distance_rate(pair, d));
+}
+
+std::string contact(const Pair& pair, double from, double until) {
+  const ed::ContactResult found = ed::time_of_contact(pair.a, pair.motion_a, pair.b, pair.motion_b, until);
+  std::string out = fmt::format("\nstep 2, time of contact, searched for {:.6g} time units: {}, {} looks\n",
+                                until - from, ed::to_string(found.status), found.evaluations);
+  if (found.status == ed::ContactStatus::overlapping) return out;
+  if (found.status != ed::ContactStatus::hit) {
+    return out + fmt::format("   certified: no contact before {:.17g} time units\n", found.time - from);
+  }
+  const geom::DistanceResult d = pair.at(found.time).distance();
+  return out + fmt::format(
+                   "   they touch after {:.17g}\n   point {}\n   normal from a to b {}\n"
+                   "   distance there {:.3g} ({})\n",
+                   found.time - from, text(found.point), text(found.normal), d.distance, geom::to_string(d.status));
+}
+
+std::string course(const Pair& pair, double from, double step) {
+  std::string out = "\nstep 3, the distance over time (free motion, no collision)\n";
+  out += fmt::format("  {:>14} {:>24} {:>14}  {:<14} {}\n", "time", "distance", "rate", "status", "normal");
+  for (int k = -kStepsBefore; k <= kStepsAfter; ++k) {
+    const Pair now = pair.at(from + k * step);
+    const geom::DistanceResult d = now.distance();
+    const bool answered = std::isfinite(d.distance);
+    out += fmt::format("  {:>14.6g} {:>24} {:>14}  {:<14} {}\n", k * step,
+                       answered ? fmt::format("{:.16g}", d.distance) : "-",
+                       answered ? fmt::format("{:.6g}", distance_rate(now, d)) : "-", geom::to_string(d.status),
+                       answered ? text(d.normal) : "-");
+  }
+  return out;
+}
+
+/// Composed as a whole before anything is printed: a pair that the library refuses leaves one line and no more.
+std::string replayed(const ed::FailedPair& failed) {
+  const double from = std::max(failed.motion_i.time, failed.motion_j.time);
+  const Pair pair = Pair{failed.shape_i, failed.shape_j, failed.motion_i, failed.motion_j}.at(from);
+  // In twenty steps the fastest points move by about the size of the pair; bodies at rest: any time does.
+  const double window = pair.speed() > 0 ? pair.size() / pair.speed() : 1.0;
+  return bodies(failed, pair) + distance_now(pair) + contact(pair, from, from + 2 * window) +
+         course(pair, from, window / (kStepsBefore + kStepsAfter));
+}
+
+}  // namespace
+
+int replay(const std::string& path) {
+  const ed::FailedPair failed = read_failure(path);
+  try {
+    (void)std::fputs(replayed(failed).c_str(), stdout);
+  } catch (const std::invalid_argument& error) {
+    throw InputError(fmt::format("{}: {}", path, error.what()));
+  }
+  return 0;
+}
+
+}  // namespace hardbody

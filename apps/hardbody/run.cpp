@@ -1,0 +1,137 @@
+#include "checkpoint.h"
+#include "commands.h"
+#include "config.h"
+#include "config_text.h"
+#include "errors.h"
+#include "failure_file.h"
+#include "log.h"
+#include "observable_files.h"
+#include "phases.h"
+#include "progress.h"
+#include "run_directory.h"
+#include "run_record.h"
+#include "signals.h"
+#include "summary.h"
+#include "table.h"
+#include "version.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+
+namespace hardbody {
+namespace {
+
+std::filesystem::path directory_for(const RunArguments& arguments) {
+  if (!arguments.out.empty()) return arguments.out;
+  return std::filesystem::path("out") / std::filesystem::path(arguments.config).stem();
+}
+
+void write_failures(const RunDirectory& directory, const RunRecord& record) {
+  int count = 0;
+  for (const auto* failures : {&record.equilibration.failures, &record.production.failures}) {
+    for (const ed::FailedPair& pair : *failures) {
+      directory.write(fmt::format("{}/pair_{:02}.json", kFailuresDirectory, ++count), failure_json(pair));
+    }
+  }
+}
+
+void write_checkpoint(const RunDirectory& directory, const RunRecord& record) {
+  Checkpoint checkpoint;
+  checkpoint.program_version = version();
+  checkpoint.config = resolved_text(record.config);
+  for (const std::string& feature : cpu_features()) {
+    checkpoint.cpu_features += (checkpoint.cpu_features.empty() ? "" : " ") + feature;
+  }
+  checkpoint.phase = record.last_phase();
+  checkpoint.time = record.last_time();
+  checkpoint.system = record.last_state();
+  directory.write(kCheckpointFile, encode_checkpoint(checkpoint));
+}
+
+/// The summary comes last: where it is, the other files are complete.
+void write_results(const RunDirectory& directory, const RunRecord& record) {
+  const ed::Results& results = record.production.results;
+  write_checkpoint(directory, record);
+  directory.write(kMsdFile, msd_csv(results));
+  directory.write(kRotationalMsdFile, rotational_msd_csv(results));
+  directory.write(kC2File, c2_csv(results));
+  directory.write(kBlocksFile, blocks_csv(results));
+  if (record.config.events > 0) directory.write(kEventsFile, events_csv(record.production.collisions));
+  write_failures(directory, record);
+  directory.write(kSummaryFile, summary_json(record));
+}
+
+/// Nothing was measured: only the config and the log stay.
+int stopped_at_the_start(const RunDirectory& directory, Progress& progress, Log& log) {
+  const int signal = pending_signal();
+  const std::string text = fmt::format("stopped by {} during the start: nothing was measured", signal_name(signal));
+  log.line(text);
+  progress.say(fmt::format("{}: {}", directory.path().string(), text));
+  return exit_status_of(signal);
+}
+
+int conclude(const RunDirectory& directory, const RunRecord& record, Progress& progress, Log& log) {
+  const int signal = pending_signal();
+  std::exception_ptr failure;
+  try {
+    write_results(directory, record);
+    log.line("files written");
+  } catch (const std::exception&) {
+    failure = std::current_exception();
+  }
+  progress.clear();
+  // The table also when a full disk has kept the files from being written: hours of work may stand in it.
+  (void)std::fputs(results_table(record, directory.path().string()).c_str(), stdout);
+  (void)std::fflush(stdout);
+  if (failure) std::rethrow_exception(failure);
+  const std::vector<std::string> list = defects(record);
+  for (const std::string& defect : list) {
+    log.line("NOT SOUND: " + defect);
+    progress.say(fmt::format("{}: NOT SOUND: {}", directory.path().string(), defect));
+  }
+  if (record.stopped()) {
+    const std::string text = fmt::format("stopped by {} during {} at time {:g}: what was measured is written",
+                                         signal_name(signal), record.last_phase(), record.last_time());
+    log.line(text);
+    progress.say(fmt::format("{}: {}", directory.path().string(), text));
+    return exit_status_of(signal);
+  }
+  log.line("end");
+  return list.empty() ? 0 : 1;
+}
+
+int run_phases(const Config& config, const RunDirectory& directory, Log& log) {
+  Progress progress;
+  const std::optional<ed::System> start = make_start(config, progress, log);
+  if (!start) return stopped_at_the_start(directory, progress, log);
+  RunRecord record;
+  record.config = config;
+  record.equilibration = equilibrate(config, *start, progress, log);
+  // A state with an overlap is no start for a production run.
+  const bool sound = defects(ed::audit(record.equilibration.system)).empty();
+  if (!record.equilibration.stopped && sound) record.production = produce(config, record.equilibration, progress, log);
+  audit_record(record);
+  record.total_seconds = log.seconds();
+  return conclude(directory, record, progress, log);
+}
+
+}  // namespace
+
+int run(const RunArguments& arguments) {
+  install_signal_handlers();
+  const Config config = load_config(arguments.config, arguments.overrides);
+  const RunDirectory directory = RunDirectory::create(directory_for(arguments), arguments.force, resolved_text(config));
+  Log log(directory.file(kLogFile));
+  log.line(fmt::format("hardbody {}: {} with {}", version(), kConfigFile, arguments.config));
+  try {
+    return run_phases(config, directory, log);
+  } catch (const std::exception& error) {
+    log.line(fmt::format("failed: {}", error.what()));
+    throw;
+  }
+}
+
+}  // namespace hardbody

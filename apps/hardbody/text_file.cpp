@@ -1,0 +1,87 @@
+#include "text_file.h"
+
+#include "errors.h"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+#include <stdexcept>
+
+#include <unistd.h>
+
+namespace hardbody {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Close {
+  void operator()(std::FILE* file) const { std::fclose(file); }
+};
+using File = std::unique_ptr<std::FILE, Close>;
+
+[[noreturn]] void fail_to_write(const fs::path& path, int error) {
+  throw std::runtime_error(fmt::format("{}: cannot be written: {}", path.string(), std::strerror(error)));
+}
+
+}  // namespace
+
+std::string read_file(const fs::path& path, std::size_t limit) {
+  const auto fail = [&](const char* why) {
+    return InputError(fmt::format("{}: cannot be read: {}", path.string(), why));
+  };
+  std::error_code ignored;
+  if (fs::is_directory(path, ignored)) throw fail("it is a directory");
+  const File file(std::fopen(path.c_str(), "rb"));
+  if (!file) throw fail(std::strerror(errno));
+  std::string content;
+  char buffer[1 << 16];
+  while (const std::size_t read = std::fread(buffer, 1, sizeof buffer, file.get())) {
+    content.append(buffer, read);
+    if (content.size() > limit) {
+      throw InputError(fmt::format("{}: is longer than {} bytes; accepted: shorter files", path.string(), limit));
+    }
+  }
+  if (std::ferror(file.get()) != 0) throw fail(std::strerror(errno));
+  return content;
+}
+
+void write_file(const fs::path& path, std::string_view content) {
+  fs::path temporary = path;
+  temporary += ".part";
+  {
+    File file(std::fopen(temporary.c_str(), "wb"));
+    if (!file) fail_to_write(path, errno);
+    const bool written = std::fwrite(content.data(), 1, content.size(), file.get()) == content.size() &&
+                         std::fflush(file.get()) == 0 && ::fsync(::fileno(file.get())) == 0;
+    const int error = errno;
+    const bool closed = std::fclose(file.release()) == 0;
+    if (!written || !closed) {
+      const int why = written ? errno : error;
+      std::remove(temporary.c_str());
+      fail_to_write(path, why);
+    }
+  }
+  if (std::rename(temporary.c_str(), path.c_str()) != 0) {
+    const int error = errno;
+    std::remove(temporary.c_str());
+    fail_to_write(path, error);
+  }
+}
+
+std::string one_line(std::string_view text, std::size_t longest) {
+  std::string line;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    const bool blank = byte <= ' ' || byte == 127;
+    if (blank && (line.empty() || line.back() == ' ')) continue;
+    line += blank ? ' ' : c;
+  }
+  while (!line.empty() && line.back() == ' ') line.pop_back();
+  if (line.size() > longest) line = line.substr(0, longest) + "...";
+  return line;
+}
+
+}  // namespace hardbody

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace hardbody {
+
+/// The whole file. Throws InputError if it cannot be read or is longer than `limit` bytes.
+std::string read_file(const std::filesystem::path& path, std::size_t limit);
+
+/// Writes under a temporary name, flushes to the disk and renames, so that a reader (or a crash) never sees
+/// half a file. Throws std::runtime_error.
+void write_file(const std::filesystem::path& path, std::string_view content);
+
+/// Text for a one-line message: line breaks and control characters become blanks, long text is cut.
+std::string one_line(std::string_view text, std::size_t longest = 400);
+
+}  // namespace hardbody

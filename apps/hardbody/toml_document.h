@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace hardbody {
+
+/// A real as TOML writes it: the shortest digits that read back as the same number, and never an integer.
+std::string toml_real(double x);
+
+/// A value of a TOML file, as much of it as a config needs.
+struct Value {
+  enum class Kind { boolean, integer, real, text, array, table, other };
+  Kind kind = Kind::other;
+  std::int64_t integer = 0;
+  double real = 0;  ///< also set for integers
+  std::string text;
+  std::vector<Value> items;
+  std::string shown;  ///< as TOML on one line, shortened, for messages
+};
+
+/// A value and the place it came from.
+struct Entry {
+  std::string key;    ///< section.key, or key at the top
+  std::string where;  ///< file:line, or --set section.key=value: the start of every message about it
+  int line = 0;       ///< 0: from the command line
+  Value value;
+};
+
+struct Section {
+  std::string name;
+  std::string where;
+  int line = 0;
+};
+
+/// A TOML file of two levels (keys at the top, keys in sections) with values from the command line laid over
+/// it.
+struct TomlDocument {
+  std::string name;               ///< of the file
+  std::vector<Section> sections;  ///< in the order of the file
+  std::vector<Entry> entries;     ///< in the order of the file, then of the command line; each key once
+
+  const Entry* find(std::string_view key) const;
+  /// file:line of the section's head, or file:1.
+  std::string where_of(std::string_view section) const;
+};
+
+/// Throws InputError for what is not TOML (duplicate keys included) and for an override that is not
+/// key=value.
+///
+/// The value of an override is read as TOML; what is none is taken as a string, so that a shell needs no
+/// second quotes.
+TomlDocument read_toml(std::string_view text, const std::string& name, const std::vector<std::string>& overrides);
+
+}  // namespace hardbody

@@ -1,0 +1,54 @@
+#include "version.h"
+
+#include <fmt/format.h>
+#include <Eigen/Core>
+#include <nlohmann/json.hpp>
+
+#include <string_view>
+
+namespace hardbody {
+namespace {
+
+std::string compiler() {
+#if defined(__clang__)
+  return fmt::format("clang {}.{}.{}", __clang_major__, __clang_minor__, __clang_patchlevel__);
+#elif defined(__GNUC__)
+  return fmt::format("g++ {}.{}.{}", __GNUC__, __GNUC_MINOR__, __GNUC_PATCHLEVEL__);
+#else
+  return "an unknown compiler";
+#endif
+}
+
+}  // namespace
+
+const char* version() {
+  return HARDBODY_VERSION;
+}
+
+std::string version_text() {
+  const std::string_view arch = HARDBODY_ARCH_NAME;
+  const std::string_view type = HARDBODY_BUILD_TYPE;
+  std::string text = fmt::format("hardbody {}\nlicence: BSD-3-Clause\n", version());
+  text +=
+      fmt::format("built with {}, build type {}, {}\n", compiler(), type.empty() ? "none" : type,
+                  arch.empty() ? std::string("no -march (the compiler's baseline)") : fmt::format("-march={}", arch));
+  text += fmt::format(
+      "libraries: Eigen {}.{}.{} (MPL-2.0), fmt {}.{}.{} (MIT), nlohmann json {}.{}.{} (MIT), toml++ (MIT), ",
+      EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION, FMT_VERSION / 10000, FMT_VERSION / 100 % 100,
+      FMT_VERSION % 100, NLOHMANN_JSON_VERSION_MAJOR, NLOHMANN_JSON_VERSION_MINOR, NLOHMANN_JSON_VERSION_PATCH);
+  text += "CLI11 (BSD-3-Clause), xxHash (BSD-2-Clause); CGAL is not used\n";
+  return text;
+}
+
+std::vector<std::string> cpu_features() {
+  std::vector<std::string> features;
+#if defined(__x86_64__) && defined(__GNUC__)
+  __builtin_cpu_init();
+  if (__builtin_cpu_supports("fma")) features.emplace_back("fma");
+  if (__builtin_cpu_supports("avx2")) features.emplace_back("avx2");
+  if (__builtin_cpu_supports("avx512f")) features.emplace_back("avx512f");
+#endif
+  return features;
+}
+
+}  // namespace hardbody

@@ -1,0 +1,137 @@
+#include <cell_grid.h>
+
+#include <ed/random.h>
+
+#include <Eigen/Core>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <ostream>
+#include <vector>
+
+namespace {
+
+using ed::internal::CellGrid;
+using ed::internal::NearBody;
+using Eigen::Vector3d;
+
+struct Case {
+  int number;
+  double box;
+  double reach;
+};
+
+void PrintTo(const Case& c, std::ostream* out) { *out << c.number << " bodies, box " << c.box << ", reach " << c.reach; }
+
+Vector3d nearest_image(const Vector3d& r, double box) {
+  return {r.x() - box * std::round(r.x() / box), r.y() - box * std::round(r.y() / box),
+          r.z() - box * std::round(r.z() / box)};
+}
+
+/// Exactly the bodies whose nearest image is within `reach` (but for rounding), each once, with the vector to it.
+void expect_exact(const CellGrid& grid, const std::vector<Vector3d>& positions, const Vector3d& centre, double box,
+                  double reach, std::vector<NearBody>& buffer) {
+  std::vector<int> times_found(positions.size(), 0);
+  for (const NearBody& near : grid.collect(centre, reach, buffer)) {
+    const auto i = static_cast<std::size_t>(near.body);
+    ++times_found[i];
+    // The images may differ where two are equally near; lengths may not.
+    const double distance = nearest_image(positions[i] - centre, box).norm();
+    EXPECT_NEAR(near.r.norm(), distance, 1e-14 * box);
+    EXPECT_LE(nearest_image(centre + near.r - positions[i], box).norm(), 1e-14 * box);
+    EXPECT_LE(distance, reach * (1 + 1e-12));
+  }
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    EXPECT_LE(times_found[i], 1) << "body " << i << " was collected twice";
+    const double distance = nearest_image(positions[i] - centre, box).norm();
+    EXPECT_TRUE(times_found[i] == 1 || distance >= reach * (1 - 1e-12)) << "body " << i << " at " << distance;
+  }
+}
+
+/// Anywhere, in any image; one in four within rounding of a multiple of the box.
+Vector3d draw(ed::Random& random, double box) {
+  Vector3d p;
+  for (double& x : p) {
+    x = random.uniform() < 0.25 ? std::floor(5 * random.uniform() - 2) : 5 * random.uniform() - 2.5;
+    x *= box;
+    if (random.uniform() < 0.1) x = std::nextafter(x, -10 * box);
+  }
+  return p;
+}
+
+class CellGridIn : public testing::TestWithParam<Case> {};
+
+TEST_P(CellGridIn, CollectsExactlyWhatIsWithinReach) {
+  const auto& [number, box, reach] = GetParam();
+  ed::Random random(11);
+  CellGrid grid(number, box, reach);
+  std::vector<Vector3d> positions(static_cast<std::size_t>(number));
+  std::vector<NearBody> buffer;
+  for (int round = 0; round < 5; ++round) {
+    for (int i = 0; i < number; ++i) {
+      // Later rounds move half of them: what was placed before must leave its old cell.
+      if (round > 0 && random.uniform() < 0.5) continue;
+      positions[static_cast<std::size_t>(i)] = draw(random, box);
+      grid.place(i, positions[static_cast<std::size_t>(i)]);
+    }
+    for (int k = 0; k < 40; ++k) {
+      // Up to the reach that the grid was made for.
+      const double asked = k % 2 == 0 ? reach : random.uniform() * reach;
+      expect_exact(grid, positions, draw(random, box), box, asked, buffer);
+    }
+    for (const Vector3d& centre : positions) expect_exact(grid, positions, centre, box, reach, buffer);
+  }
+}
+
+TEST_P(CellGridIn, CoversTheScaledReachAfterScaling) {
+  const auto& [number, box, reach] = GetParam();
+  ed::Random random(12);
+  CellGrid grid(number, box, reach);
+  std::vector<Vector3d> positions(static_cast<std::size_t>(number));
+  std::vector<NearBody> buffer;
+  for (int i = 0; i < number; ++i) {
+    positions[static_cast<std::size_t>(i)] = box * Vector3d(random.uniform(), random.uniform(), random.uniform());
+    grid.place(i, positions[static_cast<std::size_t>(i)]);
+  }
+  const double factor = 0.83;
+  grid.scale(factor);
+  for (Vector3d& p : positions) p *= factor;
+  for (const Vector3d& centre : positions) expect_exact(grid, positions, centre, factor * box, factor * reach, buffer);
+}
+
+// From reaches beyond the box, where the stencil wraps onto itself, to a grid of many cells.
+INSTANTIATE_TEST_SUITE_P(Boxes, CellGridIn,
+                         testing::Values(Case{1, 1.0, 3.0}, Case{5, 1.0, 1.0}, Case{8, 1.0, 0.6}, Case{20, 1.0, 0.49},
+                                         Case{40, 2.0, 0.7}, Case{150, 3.0, 0.8}, Case{200, 10.0, 2.0},
+                                         Case{300, 10.0, 0.5}));
+
+TEST(CellGrid, BufferIsKeptAndNeverShrunk) {
+  constexpr int kNumber = 200;
+  ed::Random random(13);
+  CellGrid grid(kNumber, 10, 4);
+  for (int i = 0; i < kNumber; ++i) {
+    grid.place(i, 10 * Vector3d(random.uniform(), random.uniform(), random.uniform()));
+  }
+  std::vector<NearBody> buffer;
+  (void)grid.collect({5, 5, 5}, 4, buffer);
+  const std::size_t size = buffer.size();
+  const NearBody* const place = buffer.data();
+  const auto found = grid.collect({5, 5, 5}, 1, buffer);
+  EXPECT_EQ(buffer.size(), size);
+  EXPECT_EQ(found.data(), place) << "a second look must not allocate";
+}
+
+TEST(CellGrid, ABodyPlacedTwiceIsOneAndStandsWhereItWasPutLast) {
+  CellGrid grid(2, 1, 0.3);
+  grid.place(0, {0.5, 0.5, 0.5});
+  grid.place(0, {1.5, -0.5, 0.5});  // the same place, other images
+  grid.place(0, {0.51, 0.5, 0.5});  // the same cell
+  std::vector<NearBody> buffer;
+  const auto found = grid.collect({0.5, 0.5, 0.5}, 0.3, buffer);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].body, 0);
+  EXPECT_NEAR(found[0].r.x(), 0.01, 1e-15);
+}
+
+}  // namespace

@@ -1,0 +1,127 @@
+/// distance() of shapes that are not the library's: the template path, with and without a curvature bound.
+
+#include "common/geom_expect.h"
+#include "common/geom_manufactured.h"
+#include "common/geom_shapes.h"
+
+#include <geom/geom.h>
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+
+#include <cmath>
+
+namespace geom {
+namespace {
+
+using Eigen::Vector3d;
+using geom_test::answers;
+using geom_test::declined;
+using geom_test::distance_tolerance;
+using geom_test::ManufacturedPair;
+using geom_test::normal_tolerance;
+using geom_test::PlainBall;
+using geom_test::Random;
+using geom_test::SweptEllipsoid;
+using geom_test::WrappedEllipsoid;
+
+static_assert(SupportShape<PlainBall>);
+static_assert(SupportShape<WrappedEllipsoid>);
+static_assert(SupportShape<SweptEllipsoid>);
+static_assert(!ImplicitSurface<PlainBall>);
+
+struct NoHessian {
+  Support support(const Vector3d& n) const { return {n.norm(), n.normalized()}; }
+  double bounding_radius() const { return 1; }
+  double inscribed_radius() const { return 1; }
+};
+static_assert(!SupportShape<NoHessian>);
+
+struct HalfSpaceOfTheConcept {
+  double value(const Vector3d& x) const { return x.z(); }
+  Vector3d gradient(const Vector3d&) const { return Vector3d::UnitZ(); }
+  Eigen::Matrix3d hessian(const Vector3d&) const { return Eigen::Matrix3d::Zero(); }
+};
+static_assert(ImplicitSurface<HalfSpaceOfTheConcept>);
+
+double extent_of(const ManufacturedPair& pair) {
+  return pair.X_WA.position().norm() + 2 * pair.size;
+}
+
+TEST(UserShape, BallsWithoutACurvatureBoundAreAnsweredApartAndDeclinedOverlapping) {
+  const PlainBall a{1};
+  const PlainBall b{0.5};
+  Random random(1);
+  for (const double gap : {100.0, 1.0, 1e-3, 1e-9}) {
+    const ManufacturedPair pair = geom_test::manufacture(a, b, gap, random);
+    const DistanceResult r = distance(a, pair.X_WA, b, pair.X_WB);
+    ASSERT_TRUE(answers(r, gap, 1e-15 * extent_of(pair), extent_of(pair))) << gap;
+    ASSERT_LE((r.normal - pair.normal).norm(), 1e-15 * extent_of(pair)) << gap;
+  }
+  for (const double depth : {1e-9, 1e-3, 1.0, 1.5}) {
+    const ManufacturedPair pair = geom_test::manufacture(a, b, -depth, random);
+    ASSERT_TRUE(declined(distance(a, pair.X_WA, b, pair.X_WB))) << depth;
+  }
+}
+
+TEST(UserShape, ConcentricBallsAreDeclined) {
+  EXPECT_TRUE(declined(distance(PlainBall{1}, Pose(), PlainBall{1}, Pose())));
+}
+
+TEST(UserShape, AnUnknownEllipsoidIsAnsweredLikeOurs) {
+  Random random(2);
+  for (int i = 0; i < 1000; ++i) {
+    const Ellipsoid a = i % 2 ? random.spheroid(random.log_uniform(0.1, 10)) : random.biaxial(10);
+    const Ellipsoid b = i % 3 ? random.spheroid(random.log_uniform(0.1, 10)) : random.biaxial(10);
+    const double rho = a.min_curvature_radius() + b.min_curvature_radius();
+    const double gap = random.coin() ? random.log_uniform(1e-9, 10) : -rho * random.uniform(0.01, 0.9);
+    const ManufacturedPair pair = geom_test::manufacture(a, b, gap, random);
+    const DistanceResult ours = distance(a, pair.X_WA, b, pair.X_WB);
+    const DistanceResult theirs = distance(WrappedEllipsoid{a}, pair.X_WA, WrappedEllipsoid{b}, pair.X_WB);
+    const DistanceResult mixed = distance(a, pair.X_WA, WrappedEllipsoid{b}, pair.X_WB);
+    ASSERT_TRUE(answers(theirs, gap, distance_tolerance(pair.size), extent_of(pair))) << "pair " << i;
+    ASSERT_TRUE(answers(mixed, gap, distance_tolerance(pair.size), extent_of(pair))) << "pair " << i;
+    ASSERT_EQ(theirs.status, ours.status) << "pair " << i;
+    const double tolerance = 2 * normal_tolerance(a, b, gap, pair.size);
+    ASSERT_LE((theirs.normal - ours.normal).norm(), tolerance) << "pair " << i;
+    ASSERT_LE((mixed.normal - ours.normal).norm(), tolerance) << "pair " << i;
+  }
+}
+
+TEST(UserShape, SweepingABallAlongLessensTheDistanceByItsRadius) {
+  Random random(3);
+  for (int i = 0; i < 1000; ++i) {
+    const SweptEllipsoid a{random.biaxial(5), random.log_uniform(0.01, 1)};
+    const SweptEllipsoid b{random.spheroid(random.log_uniform(0.2, 5)), random.log_uniform(0.01, 1)};
+    // Down to the certified depth, to which the skins add.
+    const double rho = a.min_curvature_radius() + b.min_curvature_radius();
+    const double gap = random.coin() ? random.log_uniform(1e-9, 10) : -rho * random.uniform(0.01, 0.9);
+    const ManufacturedPair pair = geom_test::manufacture(a, b, gap, random);
+    const DistanceResult swept = distance(a, pair.X_WA, b, pair.X_WB);
+    ASSERT_TRUE(answers(swept, gap, distance_tolerance(pair.size), extent_of(pair))) << "pair " << i;
+    const double core_gap = gap + a.skin + b.skin;
+    if (core_gap < 0) continue;
+    const DistanceResult core = distance(a.core, pair.X_WA, b.core, pair.X_WB);
+    ASSERT_TRUE(answers(core, core_gap, distance_tolerance(pair.size), extent_of(pair))) << "pair " << i;
+    ASSERT_LE((core.normal - swept.normal).norm(), 2 * normal_tolerance(a.core, b.core, 0, pair.size));
+  }
+}
+
+TEST(UserShape, AStartAndALimitOnIterationsMeanTheSame) {
+  Random random(4);
+  for (int i = 0; i < 500; ++i) {
+    const WrappedEllipsoid a{random.biaxial(10)};
+    const WrappedEllipsoid b{random.biaxial(10)};
+    const ManufacturedPair pair = geom_test::manufacture(a, b, random.log_uniform(1e-6, 10), random);
+    const DistanceResult exact = distance(a, pair.X_WA, b, pair.X_WB, {.start = 3 * pair.normal, .max_iterations = 1});
+    ASSERT_TRUE(answers(exact, pair.distance, distance_tolerance(pair.size), extent_of(pair))) << "pair " << i;
+    // Without the ellipsoids' fallback, one evaluation from elsewhere is no answer.
+    const DistanceResult r = distance(a, pair.X_WA, b, pair.X_WB, {.start = -pair.normal, .max_iterations = 1});
+    ASSERT_TRUE(declined(r)) << "pair " << i;
+    ASSERT_EQ(r.iterations, 2) << "one evaluation from each start";
+  }
+}
+
+}  // namespace
+}  // namespace geom

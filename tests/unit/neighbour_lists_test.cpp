@@ -1,0 +1,96 @@
+#include <neighbour_lists.h>
+
+#include <ed/random.h>
+
+#include <Eigen/Core>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <map>
+#include <set>
+#include <utility>
+#include <vector>
+
+namespace {
+
+using ed::internal::kNever;
+using ed::internal::NeighbourLists;
+using ed::internal::Pair;
+using ed::internal::PairEvent;
+using Eigen::Vector3d;
+
+/// Lists, slots and pairs tell the same story, and it is that of the model: index -> (i, j).
+void expect_consistent(const NeighbourLists& lists, const std::map<std::int32_t, std::pair<int, int>>& model) {
+  std::size_t entries = 0;
+  for (int body = 0; body < lists.number(); ++body) {
+    std::set<std::int32_t> wanted;
+    for (const auto& [index, bodies] : model) {
+      if (bodies.first == body || bodies.second == body) wanted.insert(index);
+    }
+    const std::vector<std::int32_t>& list = lists.of(body);
+    ASSERT_EQ(std::set<std::int32_t>(list.begin(), list.end()), wanted) << "body " << body;
+    ASSERT_EQ(list.size(), wanted.size()) << "body " << body << " lists a pair twice";
+    for (std::size_t slot = 0; slot < list.size(); ++slot) {
+      const Pair& pair = lists.pair(list[slot]);
+      ASSERT_TRUE(pair.i == body || pair.j == body);
+      ASSERT_EQ(static_cast<std::size_t>(pair.i == body ? pair.slot_i : pair.slot_j), slot);
+    }
+    entries += list.size();
+  }
+  ASSERT_EQ(entries, 2 * model.size());
+  for (const auto& [index, bodies] : model) {
+    const Pair& pair = lists.pair(index);
+    ASSERT_EQ(pair.i, bodies.first);
+    ASSERT_EQ(pair.j, bodies.second);
+    ASSERT_EQ(pair.partner(pair.i), pair.j);
+    ASSERT_EQ(pair.partner(pair.j), pair.i);
+  }
+}
+
+TEST(NeighbourLists, AgreesWithASetOfPairsThroughRandomChanges) {
+  constexpr int kNumber = 12;
+  ed::Random random(21);
+  NeighbourLists lists(kNumber);
+  std::map<std::int32_t, std::pair<int, int>> model;
+  std::set<std::pair<int, int>> present;
+  for (int change = 0; change < 3000; ++change) {
+    // Between nearly empty and nearly full.
+    const bool adding = random.uniform() < (change / 500 % 2 == 0 ? 0.7 : 0.3);
+    if (adding) {
+      const int i = static_cast<int>(random.uniform() * kNumber);
+      const int j = static_cast<int>(random.uniform() * kNumber);
+      if (i == j || present.count(std::minmax(i, j)) != 0) continue;
+      const Vector3d normal = random.direction();
+      const std::int32_t index = lists.add(i, j, normal);
+      ASSERT_EQ(model.count(index), 0u) << "an index in use was handed out again";
+      EXPECT_EQ(lists.pair(index).normal, normal);
+      model[index] = {i, j};
+      present.insert(std::minmax(i, j));
+    } else if (!model.empty()) {
+      const auto skip = static_cast<std::ptrdiff_t>(random.uniform() * static_cast<double>(model.size()));
+      const auto victim = std::next(model.begin(), skip);
+      lists.remove(victim->first);
+      present.erase(std::minmax(victim->second.first, victim->second.second));
+      model.erase(victim);
+    }
+    ASSERT_NO_FATAL_FAILURE(expect_consistent(lists, model));
+  }
+}
+
+TEST(NeighbourLists, ANewPairKnowsNothingEvenWhereAnOldOneStood) {
+  NeighbourLists lists(3);
+  const std::int32_t first = lists.add(0, 1, Vector3d::UnitX());
+  lists.pair(first).time = 3;
+  lists.pair(first).event = PairEvent::contact;
+  lists.pair(first).owner = 1;
+  lists.remove(first);
+  const std::int32_t second = lists.add(2, 1, Vector3d::UnitY());
+  EXPECT_EQ(second, first) << "the place of a removed pair is used again: the pool does not grow for ever";
+  EXPECT_EQ(lists.pair(second).time, kNever);
+  EXPECT_EQ(lists.pair(second).event, PairEvent::clear);
+  EXPECT_EQ(lists.pair(second).owner, 2);
+}
+
+}  // namespace
