@@ -257,7 +257,7 @@ Vector3d check_moments(const Entry& entry, const Config& config) {
   constexpr std::string_view kAccepted =
       "\"paper\", \"uniform\" or three positive moments [I1, I2, I3] of which none exceeds the sum of the "
       "other two";
-  const Vector3d given = read_three(entry, kAccepted);
+  Vector3d given = read_three(entry, kAccepted);
   if (!(given.maxCoeff() <= (given.sum() - given.maxCoeff()) * (1 + 1e-12))) throw bad(entry, kAccepted);
   const Vector3d moments = axis_last(given, config.semi_axes ? axis_of_revolution(*config.semi_axes) : 2);
   if (moments.x() != moments.y()) {

@@ -58,8 +58,7 @@ class Runner {
     const double total = planned_end - begin_;
     const double seconds = progress_.seconds();
     const auto collisions = static_cast<double>(simulation_.counters().collisions - collisions_);
-    return fmt::format("{} {:.2f} of {}{:g}  {:.0f} collisions/s  {}  energy drift {:.1e}", phase_, done,
-                       phase_ == "equilibration" && planned_end - begin_ == kEquilibrationCap ? "at most " : "", total,
+    return fmt::format("{} {:.2f} of {:g}  {:.0f} collisions/s  {}  energy drift {:.1e}", phase_, done, total,
                        collisions / std::max(seconds, 1e-9), eta(seconds, done, total),
                        std::abs(simulation_.kinetic().energy() / energy_ - 1));
   }
@@ -77,7 +76,7 @@ double production_time(const Config& config, const Equilibration& equilibration)
   return std::clamp(kProductionFactor * equilibration.time, kLeastProduction, kMostProduction);
 }
 
-/// Runs until the criterion holds or the config's time is over; the phase began at `begin`.
+/// Runs until the criterion holds or the config's time is over.
 void run_equilibration(const Config& config, ed::Simulation& simulation, Runner& runner, Equilibration& result) {
   const double length = config.equilibration_time.value_or(kEquilibrationCap);
   const double begin = simulation.time();
@@ -135,7 +134,7 @@ Equilibration equilibrate(const Config& config, const ed::System& start, Progres
     result.envelope = simulation.envelope();
     log.line(fmt::format("equilibration: envelope thickness {:.4g} l", result.envelope));
   }
-  Runner runner(simulation, "equilibration", progress);
+  Runner runner(simulation, config.equilibration_time ? "equilibration" : "equilibration (auto, at most)", progress);
   run_equilibration(config, simulation, runner, result);
   result.system = simulation.system();
   result.overlaps = simulation.counters().overlaps;

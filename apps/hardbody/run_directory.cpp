@@ -49,7 +49,6 @@ RunDirectory RunDirectory::create(const fs::path& path, bool force, std::string_
     }
     if (!trace.empty()) remove_run(path);
     RunDirectory directory(path);
-    fs::create_directories(path / "observables");
     directory.write(kConfigFile, config);
     return directory;
   } catch (const fs::filesystem_error& error) {

@@ -75,9 +75,13 @@ std::string audit_lines(const RunRecord& record) {
       static_cast<double>(p.counters.refinements) / std::max(1.0, static_cast<double>(p.counters.collisions)));
   text += fmt::format("  energy drift {:.1e} (relative), momentum drift {:.1e} sqrt(m kT) a body\n",
                       record.energy_relative_drift, record.momentum_drift);
-  text += fmt::format(
-      "  minimum distance at the end {:.3g} l, overlaps {}\n", record.audit.minimum_distance,
-      record.equilibration.overlaps + p.counters.overlaps + static_cast<std::uint64_t>(record.audit.overlaps));
+  const std::uint64_t overlaps =
+      record.equilibration.overlaps + p.counters.overlaps + static_cast<std::uint64_t>(record.audit.overlaps);
+  // The audit looks at pairs whose bounding spheres meet; without one its distance is not that of a pair.
+  text += fmt::format("  minimum distance at the end {}, overlaps {}\n",
+                      record.audit.closest_i < 0 ? std::string("not known: no two bounding spheres meet")
+                                                 : fmt::format("{:.3g} l", record.audit.minimum_distance),
+                      overlaps);
   return text;
 }
 

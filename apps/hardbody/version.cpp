@@ -9,6 +9,10 @@
 namespace hardbody {
 namespace {
 
+// Arrays: either may be empty.
+constexpr char kArch[] = HARDBODY_ARCH_NAME;
+constexpr char kBuildType[] = HARDBODY_BUILD_TYPE;
+
 std::string compiler() {
 #if defined(__clang__)
   return fmt::format("clang {}.{}.{}", __clang_major__, __clang_minor__, __clang_patchlevel__);
@@ -26,12 +30,11 @@ const char* version() {
 }
 
 std::string version_text() {
-  const std::string_view arch = HARDBODY_ARCH_NAME;
-  const std::string_view type = HARDBODY_BUILD_TYPE;
+  const std::string_view arch(kArch);
+  const std::string_view type(kBuildType);
   std::string text = fmt::format("hardbody {}\nlicence: BSD-3-Clause\n", version());
-  text +=
-      fmt::format("built with {}, build type {}, {}\n", compiler(), type.empty() ? "none" : type,
-                  arch.empty() ? std::string("no -march (the compiler's baseline)") : fmt::format("-march={}", arch));
+  text += fmt::format("built with {}, build type {}, {}\n", compiler(), type.empty() ? "none" : type,
+                      arch.empty() ? "no -march (the compiler's baseline)" : fmt::format("-march={}", arch));
   text += fmt::format(
       "libraries: Eigen {}.{}.{} (MPL-2.0), fmt {}.{}.{} (MIT), nlohmann json {}.{}.{} (MIT), toml++ (MIT), ",
       EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION, FMT_VERSION / 10000, FMT_VERSION / 100 % 100,

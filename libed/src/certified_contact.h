@@ -149,7 +149,7 @@ bool refine_contact(const Gauge& gauge, const Window& near, double& t, Eigen::Ve
     const double rate = gauge.rate(state, e, normal);
     const double span = time - near.begin;
     if (!(rate < -kResting * gauge.speed() - gauge.curvature_limit() * span)) return false;
-    normal = geom::internal::step_on_sphere(normal, e.step, e.step2);
+    normal = geom::internal::step_on_sphere(normal, e.step);
     if (std::abs(d) <= kTouching * size) {
       t = time;
       n = normal;
@@ -209,7 +209,7 @@ Finding certified_contact(const Gauge& gauge, double t_begin, double t_end, int 
       if (spread <= kTangentAgreement * size / gauge.speed() && 8 * spread * gauge.curvature_limit() < -gp) {
         const Window near{t + tau - kTouching * size / gauge.speed(), t + tau + 3 * spread + kTouching * size / -gp};
         double contact_time = t - g / gp;
-        Eigen::Vector3d normal = geom::internal::step_on_sphere(n, e.step, e.step2);
+        Eigen::Vector3d normal = geom::internal::step_on_sphere(n, e.step);
         if (refine_contact(gauge, near, contact_time, normal, count)) {
           n = normal;
           if (contact_time > t_end) return {Outcome::clear, t_end};

@@ -119,11 +119,11 @@ class DilatedEnvelopes {
     if (e.g > limit) return false;
     // Two more Newton steps at the most; a pair that is still undecided is taken, which is always safe.
     for (int step = 0; step < 2 && e.g + e.decrement > limit; ++step) {
-      normal = geom::internal::step_on_sphere(normal, e.step, e.step2);
+      normal = geom::internal::step_on_sphere(normal, e.step);
       e = geom::internal::evaluate_uniaxial(shape_, shape_, r, u_i, u_k, normal);
       if (e.g > limit) return false;
     }
-    normal = geom::internal::step_on_sphere(normal, e.step, e.step2);
+    normal = geom::internal::step_on_sphere(normal, e.step);
     return true;
   }
 

@@ -55,8 +55,9 @@ Spheroid spheroid(const Ellipsoid& shape, int axis) {
 
 using EllipsoidPair = GeneralPair<WorldEllipsoid, WorldEllipsoid>;
 
-/// Newton with Armijo's rule. g never falls: from a normal with g > 0 the ascent stays where M + g I is positive definite
-/// and the only stationary point is the answer. From one with g < 0 it may end on one that is too deep to be certified.
+/// Newton with Armijo's rule. g never falls: from a normal with g > 0 the ascent stays where M + g I is positive
+/// definite and the only stationary point is the answer. From one with g < 0 it may end on one that is too deep to be
+/// certified.
 DistanceResult armijo_ascent(const EllipsoidPair& pair, Eigen::Vector3d n, const PairScale& scale,
                              const Eigen::Vector3d& p_WA, DistanceResult declined) {
   const double rounding = kRoundingFactor * scale.size;
@@ -65,7 +66,7 @@ DistanceResult armijo_ascent(const EllipsoidPair& pair, Eigen::Vector3d n, const
   for (int newton = 0; newton < 200; ++newton) {
     if (e.step2 <= kNormalTolerance2) {
       if (e.g < -scale.certified_depth - rounding) return declined;
-      return internal::witness_result(pair, p_WA, internal::step_on_sphere(n, e.step, e.step2), declined.iterations);
+      return internal::witness_result(pair, p_WA, internal::step_on_sphere(n, e.step), declined.iterations);
     }
     double t = 1;
     while (true) {
@@ -109,10 +110,14 @@ DistanceResult perram_wertheim_distance(const Ellipsoid& a, const Pose& X_WA, co
 
 const char* to_string(DistanceStatus status) {
   switch (status) {
-    case DistanceStatus::separated: return "separated";
-    case DistanceStatus::overlapping: return "overlapping";
-    case DistanceStatus::not_converged: return "not_converged";
-    case DistanceStatus::singular: return "singular";
+    case DistanceStatus::separated:
+      return "separated";
+    case DistanceStatus::overlapping:
+      return "overlapping";
+    case DistanceStatus::not_converged:
+      return "not_converged";
+    case DistanceStatus::singular:
+      return "singular";
   }
   return "unknown";
 }

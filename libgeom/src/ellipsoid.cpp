@@ -40,7 +40,9 @@ Ellipsoid::Ellipsoid(const Eigen::Vector3d& semi_axes)
   }
 }
 
-double Ellipsoid::value(const Eigen::Vector3d& x) const { return x.cwiseQuotient(semi_axes_).squaredNorm() - 1; }
+double Ellipsoid::value(const Eigen::Vector3d& x) const {
+  return x.cwiseQuotient(semi_axes_).squaredNorm() - 1;
+}
 
 Eigen::Vector3d Ellipsoid::gradient(const Eigen::Vector3d& x) const {
   return 2 * x.cwiseQuotient(semi_axes_.cwiseAbs2());
@@ -62,7 +64,9 @@ Eigen::Matrix3d Ellipsoid::support_hessian(const Eigen::Vector3d& n) const {
   return H / s.height;
 }
 
-double Ellipsoid::volume() const { return 4.0 / 3.0 * std::numbers::pi * semi_axes_.prod(); }
+double Ellipsoid::volume() const {
+  return 4.0 / 3.0 * std::numbers::pi * semi_axes_.prod();
+}
 
 Eigen::Vector3d Ellipsoid::inertia(double mass) const {
   const Eigen::Vector3d a2 = semi_axes_.cwiseAbs2();

@@ -6,8 +6,7 @@
 
 namespace geom::internal {
 
-ContactFunction perram_wertheim(const Eigen::Matrix3d& Q_a, const Eigen::Matrix3d& Q_b,
-                                const Eigen::Vector3d& r) {
+ContactFunction perram_wertheim(const Eigen::Matrix3d& Q_a, const Eigen::Matrix3d& Q_b, const Eigen::Vector3d& r) {
   // F' is decreasing, positive at 0 and negative at 1: [low, high] always brackets its zero.
   double low = 0;
   double high = 1;
@@ -19,7 +18,7 @@ ContactFunction perram_wertheim(const Eigen::Matrix3d& Q_a, const Eigen::Matrix3
     w = G_inv * r;  // dw/dlambda = -G^-1 dG w
     const Eigen::Vector3d dGw = dG * w;
     const double rw = r.dot(w);
-    const double d1 = w.dot(dGw);           // -d(r.w)/dlambda
+    const double d1 = w.dot(dGw);            // -d(r.w)/dlambda
     const double d2 = dGw.dot(G_inv * dGw);  // (1/2) d2(r.w)/dlambda2
     const double m = lambda * (1 - lambda);
     const double slope = (1 - 2 * lambda) * rw - m * d1;

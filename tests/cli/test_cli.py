@@ -626,7 +626,7 @@ class Signals(Case):
         _, stderr = process.communicate(timeout=60)
         self.assertEqual(process.returncode, 130)
         self.assertIn("nothing was measured", stderr)
-        self.assertEqual(sorted(os.listdir(self.path("out"))), ["config.toml", "log.txt", "observables"])
+        self.assertEqual(sorted(os.listdir(self.path("out"))), ["config.toml", "log.txt"])
         self.assertIn("SIGINT", self.read("out/log.txt"))
 
 

@@ -150,6 +150,18 @@ class BruteForce {
     return result;
   }
 
+  /// Plain conservative advancement: the first time at which d is at most the floor, or t_end. For comparison of costs;
+  /// it cannot tell a contact from a near miss.
+  double advance(double t_end) {
+    double t = 0;
+    while (t < t_end && !parted_for_good(t)) {
+      const double d = distance(t);
+      if (d <= floor_) return t;
+      t += d / rate_;
+    }
+    return t_end;
+  }
+
   /// How deep the bodies go in once they have met at time t: the largest -d until they are apart again. Stops looking
   /// when it is more than `enough`.
   double depth_after(double t, double enough) {

@@ -76,7 +76,7 @@ TEST(StepOnSphere, IsUnitAndInTheDirectionOfNPlusStep) {
   for (int i = 0; i < 1000; ++i) {
     const Vector3d n = random.direction();
     const Vector3d step = random.log_uniform(1e-12, kMaxNormalStep) * n.cross(random.direction());
-    const Vector3d moved = step_on_sphere(n, step, step.squaredNorm());
+    const Vector3d moved = step_on_sphere(n, step);
     ASSERT_NEAR(moved.norm(), 1, 4 * kEpsilon);
     ASSERT_LE((moved - (n + step).normalized()).norm(), 4 * kEpsilon);
   }
@@ -146,7 +146,7 @@ TEST(Kernels, StepsLieAcrossTheNormalAreCappedAndAscend) {
       // (at most 100 a body) a relative weight of 1e-4 where the decrement is not tiny.
       if (e.decrement < 1e-2) continue;
       const double share = 1e-6;
-      const double uphill = pair.uniaxial(step_on_sphere(n, share * e.step, share * share * e.step2)).g;
+      const double uphill = pair.uniaxial(step_on_sphere(n, share * e.step)).g;
       ASSERT_GT(uphill, e.g) << "pair " << i;
     }
   }
@@ -163,7 +163,7 @@ TEST(Kernels, ANewtonStepSquaresTheErrorOfTheNormal) {
     const double off = 1e-5;
     const Vector3d n = (pair.placed.normal + off * pair.placed.normal.cross(random.direction())).normalized();
     for (const Evaluation& e : {Evaluation(pair.uniaxial(n)), pair.general(n)}) {
-      const Vector3d next = step_on_sphere(n, e.step, e.step2);
+      const Vector3d next = step_on_sphere(n, e.step);
       // The factor of off^2 is the relative change of curvature for a radian, about X0 <= 5, over the share of the
       // curvature that the overlap leaves, 1/5 at the least; 4 times that.
       ASSERT_LE((next - pair.placed.normal).norm(), 100 * off * off) << "pair " << i;
@@ -181,7 +181,7 @@ TEST(Kernels, TheNormalStaysUnitOverManySteps) {
     Vector3d n = pair.placed.normal;
     for (int step = 0; step < kSteps; ++step) {
       const UniaxialEvaluation e = pair.uniaxial(n);
-      n = step_on_sphere(n, e.step, e.step2);
+      n = step_on_sphere(n, e.step);
     }
     // A few roundings a step, amplified by that factor but not by its powers: 4 * 5 epsilons.
     ASSERT_NEAR(n.norm(), 1, kSteps * 20 * kEpsilon) << "pair " << i;

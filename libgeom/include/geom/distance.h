@@ -66,8 +66,8 @@ DistanceResult distance(const ShapeA& a, const Pose& X_WA, const ShapeB& b, cons
 
 /// The same for two ellipsoids: basis-free kernel if both are bodies of revolution, and a fallback that cannot fail on
 /// separated bodies (Perram-Wertheim: concave maximisation in one variable, then an ascent that stays on g > 0).
-GEOM_EXPORT DistanceResult distance(const Ellipsoid& a, const Pose& X_WA, const Ellipsoid& b,
-                                    const Pose& X_WB, const DistanceOptions& options = {});
+GEOM_EXPORT DistanceResult distance(const Ellipsoid& a, const Pose& X_WA, const Ellipsoid& b, const Pose& X_WB,
+                                    const DistanceOptions& options = {});
 
 }  // namespace geom
 

@@ -31,9 +31,7 @@ class GEOM_EXPORT Pose {
   /// Coordinates of a body point in the world.
   Eigen::Vector3d to_world(const Eigen::Vector3d& p_B) const { return rotation_ * p_B + position_; }
   /// Coordinates of a world point in the body.
-  Eigen::Vector3d to_body(const Eigen::Vector3d& p_W) const {
-    return rotation_.transpose() * (p_W - position_);
-  }
+  Eigen::Vector3d to_body(const Eigen::Vector3d& p_W) const { return rotation_.transpose() * (p_W - position_); }
 
  private:
   Eigen::Matrix3d rotation_ = Eigen::Matrix3d::Identity();

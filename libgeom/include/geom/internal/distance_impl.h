@@ -24,9 +24,7 @@ struct WorldSupport {
   const Shape& shape;
   const Eigen::Matrix3d& R;
 
-  Eigen::Vector3d point(const Eigen::Vector3d& n) const {
-    return R * Support(shape.support(R.transpose() * n)).point;
-  }
+  Eigen::Vector3d point(const Eigen::Vector3d& n) const { return R * Support(shape.support(R.transpose() * n)).point; }
   CurvedSupport operator()(const Eigen::Vector3d& n) const {
     const Eigen::Vector3d n_body = R.transpose() * n;
     const Support s = shape.support(n_body);
@@ -58,8 +56,7 @@ class GeneralPair {
     double m_ff = f.dot(H * f) + out.g;
     const double m_ef = f.dot(He);
     const double half_difference = 0.5 * (m_ee - m_ff);
-    const double smallest =
-        0.5 * (m_ee + m_ff) - std::sqrt(half_difference * half_difference + m_ef * m_ef);
+    const double smallest = 0.5 * (m_ee + m_ff) - std::sqrt(half_difference * half_difference + m_ef * m_ef);
     const double least = out.g > -rho_ ? kLeastEigenvalue * 2 * floor_ : floor_;
     if (smallest < least) {
       m_ee += least - smallest;
@@ -88,7 +85,7 @@ class GeneralPair {
 
 /// Lengths that the certificates and tolerances of one query need.
 struct PairScale {
-  double size;           ///< |r| + both bounding radii: what rounding errors are relative to
+  double size;             ///< |r| + both bounding radii: what rounding errors are relative to
   double certified_depth;  ///< the sum of both smallest radii of curvature
 };
 
@@ -103,11 +100,8 @@ double min_curvature_radius_or_zero(const Shape& shape) {
 
 /// The answer at a converged normal n: witness points, half of the tangential mismatch given to each.
 template <class Pair>
-DistanceResult witness_result(const Pair& pair, const Eigen::Vector3d& p_WA, const Eigen::Vector3d& n_rounded,
-                              int iterations) {
+DistanceResult witness_result(const Pair& pair, const Eigen::Vector3d& p_WA, const Eigen::Vector3d& n, int iterations) {
   DistanceResult result;
-  // The steps' rounding errors, some epsilons times size / radius of curvature each, have come between |n| and 1.
-  const Eigen::Vector3d n = (1.5 - 0.5 * n_rounded.squaredNorm()) * n_rounded;
   const Eigen::Vector3d x_a = pair.point_a(n);
   const Eigen::Vector3d x_b = pair.point_b(n);
   const Eigen::Vector3d gap = x_b - x_a;
@@ -127,8 +121,8 @@ DistanceResult witness_result(const Pair& pair, const Eigen::Vector3d& p_WA, con
 /// `cold` is called only when it is needed. Returns a result whose status declines when neither start gives a certified
 /// answer; `iterations` is then the number of evaluations spent.
 template <class Pair, class Cold>
-DistanceResult solve_dual(const Pair& pair, const Cold& cold, const PairScale& scale,
-                          const Eigen::Vector3d& p_WA, const DistanceOptions& options) {
+DistanceResult solve_dual(const Pair& pair, const Cold& cold, const PairScale& scale, const Eigen::Vector3d& p_WA,
+                          const DistanceOptions& options) {
   const double rounding = kRoundingFactor * scale.size;
   const auto done = [](const Evaluation& e) { return e.step2 <= kNormalTolerance2; };
   const double start2 = options.start.squaredNorm();
@@ -143,7 +137,7 @@ DistanceResult solve_dual(const Pair& pair, const Cold& cold, const PairScale& s
     spent += options.max_iterations - budget;
     if (ascent != Ascent::converged) continue;
     if (e.g < -scale.certified_depth - rounding) continue;
-    return witness_result(pair, p_WA, step_on_sphere(n, e.step, e.step2), spent);
+    return witness_result(pair, p_WA, step_on_sphere(n, e.step), spent);
   }
   DistanceResult declined;
   declined.iterations = spent;
@@ -162,8 +156,8 @@ DistanceResult distance(const ShapeA& a, const Pose& X_WA, const ShapeB& b, cons
   const double rho = internal::min_curvature_radius_or_zero(a) + internal::min_curvature_radius_or_zero(b);
   // Shapes with flat faces or edges have rho = 0; a small share of the inscribed spheres keeps the step bounded.
   const double floor = std::max(0.5 * rho, 1e-3 * (a.inscribed_radius() + b.inscribed_radius()));
-  const internal::GeneralPair pair(WorldSupport<ShapeA>{a, X_WA.rotation()},
-                                   WorldSupport<ShapeB>{b, X_WB.rotation()}, r, rho, floor);
+  const internal::GeneralPair pair(WorldSupport<ShapeA>{a, X_WA.rotation()}, WorldSupport<ShapeB>{b, X_WB.rotation()},
+                                   r, rho, floor);
   const auto cold = [&r] { return r.squaredNorm() > 0 ? r.normalized() : Eigen::Vector3d::UnitX(); };
   const internal::PairScale scale{r.norm() + a.bounding_radius() + b.bounding_radius(), rho};
   return internal::solve_dual(pair, cold, scale, X_WA.position(), options);

@@ -3,14 +3,14 @@
 /// Newton's method for d = max over unit n of g(n) = n.r - hA(n) - hB(-n), r the vector from A's centre to B's.
 ///
 /// With support points sA = grad hA(n) and sB' = -grad hB(-n), the gradient of g along the sphere is
-/// y = r - sA - sB' - g n, and the Riemannian Hessian is -(M + g I) with M = P (HA + HB) P, H the Hessians of the support
-/// functions, P = I - n n^T. The Newton step solves (M + g I) delta = y across n. g is 1-homogeneous and concave, so
-/// M is positive semidefinite, and M + g I positive definite wherever g > 0.
+/// y = r - sA - sB' - g n, and the Riemannian Hessian is -(M + g I) with M = P (HA + HB) P, H the Hessians of the
+/// support functions, P = I - n n^T. The Newton step solves (M + g I) delta = y across n. g is 1-homogeneous and
+/// concave, so M is positive semidefinite, and M + g I positive definite wherever g > 0.
 ///
 /// With rho the smallest radius of curvature, M >= rhoA + rhoB everywhere, so that the matrix is definite for
-/// g > -(rhoA + rhoB) too. Below, its smallest eigenvalue is lifted to (rhoA + rhoB) / 2, which makes every step an ascent
-/// direction. Above it is left alone: a lifted matrix converges linearly only, and |delta|^2 <= kNormalTolerance2 would
-/// not bound the error. The step length is capped, and shortened (kBacktrack) when g falls.
+/// g > -(rhoA + rhoB) too. Below, its smallest eigenvalue is lifted to (rhoA + rhoB) / 2, which makes every step an
+/// ascent direction. Above it is left alone: a lifted matrix converges linearly only, and |delta|^2 <=
+/// kNormalTolerance2 would not bound the error. The step length is capped, and shortened (kBacktrack) when g falls.
 
 #include <geom/tolerances.h>
 
@@ -47,9 +47,13 @@ inline double inverse_sqrt_1p(double s) {
   return 1 / std::sqrt(1 + s);
 }
 
-/// n + step on the unit sphere, for a unit n and a step across it of squared length step2.
-inline Eigen::Vector3d step_on_sphere(const Eigen::Vector3d& n, const Eigen::Vector3d& step, double step2) {
-  return inverse_sqrt_1p(step2) * (n + step);
+/// n + step on the unit sphere, for a unit n and a step across it.
+///
+/// The length is measured, not taken as sqrt(1 + |step|^2): a rounding error of |n| tilts the Newton step along n (y.n
+/// is -2 (|n| - 1) (fA + fB + g) in the kernels), and would otherwise grow over steps and warm starts.
+inline Eigen::Vector3d step_on_sphere(const Eigen::Vector3d& n, const Eigen::Vector3d& step) {
+  const Eigen::Vector3d m = n + step;
+  return inverse_sqrt_1p(m.squaredNorm() - 1) * m;
 }
 
 enum class Ascent { converged, stalled, exhausted };
@@ -65,7 +69,7 @@ Ascent backtrack(const Evaluate& evaluate, double rounding, const Eigen::Vector3
     if (budget <= 0) return Ascent::exhausted;
     fraction *= kBacktrack;
     if (!(fraction * fraction * e.step2 > 1e-30)) return Ascent::stalled;
-    n_trial = step_on_sphere(n, fraction * e.step, fraction * fraction * e.step2);
+    n_trial = step_on_sphere(n, fraction * e.step);
     trial = evaluate(n_trial);
     --budget;
   }
@@ -75,14 +79,13 @@ Ascent backtrack(const Evaluate& evaluate, double rounding, const Eigen::Vector3
 /// Improves the unit vector n by Newton steps with backtracking until `done(e)` holds for the evaluation e at n.
 ///
 /// `evaluate(n)` returns an Evaluation (or a struct derived from it); `rounding` is the decrease of g that counts as
-/// rounding; `budget` is lowered by one for each evaluation. On entry `e` is the evaluation at n; on return it is so again,
-/// also when not converged.
+/// rounding; `budget` is lowered by one for each evaluation. On entry `e` is the evaluation at n; on return it is so
+/// again, also when not converged.
 template <class Evaluate, class E, class Done>
-Ascent ascend(const Evaluate& evaluate, double rounding, const Done& done, int& budget, Eigen::Vector3d& n,
-              E& e) {
+Ascent ascend(const Evaluate& evaluate, double rounding, const Done& done, int& budget, Eigen::Vector3d& n, E& e) {
   while (!done(e)) {
     if (budget <= 0) return Ascent::exhausted;
-    Eigen::Vector3d n_trial = step_on_sphere(n, e.step, e.step2);
+    Eigen::Vector3d n_trial = step_on_sphere(n, e.step);
     E trial = evaluate(n_trial);
     --budget;
     if (trial.g < e.g - rounding) {

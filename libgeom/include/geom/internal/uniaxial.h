@@ -24,10 +24,10 @@ namespace geom::internal {
 
 /// What the kernel needs of an ellipsoid of revolution with semi-axes a (along its axis) and b.
 struct Spheroid {
-  double a2 = 1;   ///< a^2
-  double b2 = 1;   ///< b^2
-  double c = 0;    ///< a^2 - b^2, computed as (a - b)(a + b)
-  double rho = 1;  ///< smallest radius of curvature, min(a, b)^2 / max(a, b)
+  double a2 = 1;             ///< a^2
+  double b2 = 1;             ///< b^2
+  double c = 0;              ///< a^2 - b^2, computed as (a - b)(a + b)
+  double rho = 1;            ///< smallest radius of curvature, min(a, b)^2 / max(a, b)
   double turning_limit = 0;  ///< |c| / min(a, b): d2h/dt2 <= turning_limit * Omega^2 at fixed n while u turns at Omega
 
   Spheroid() = default;
@@ -42,11 +42,11 @@ struct Spheroid {
 
 /// The first half of an evaluation: g, what its time derivative needs, and what the second half goes on with.
 struct UniaxialGap {
-  double g;        ///< n.r - hA(n) - hB(-n)
-  double lever_a;  ///< c x / h of A: dhA/dt = lever_a * (n.duA/dt) at fixed n
-  double lever_b;  ///< the same of B
-  double x_a, x_b;  ///< n.uA, n.uB
-  double z;         ///< n.r
+  double g;           ///< n.r - hA(n) - hB(-n)
+  double lever_a;     ///< c x / h of A: dhA/dt = lever_a * (n.duA/dt) at fixed n
+  double lever_b;     ///< the same of B
+  double x_a, x_b;    ///< n.uA, n.uB
+  double z;           ///< n.r
   double w2_a, w2_b;  ///< |w|^2, w = u - x n
   double inv_h_a, inv_h_b;
   double inv_h2_a, inv_h2_b;
@@ -60,8 +60,7 @@ struct UniaxialEvaluation : Evaluation {
 
 /// g at the unit vector n, for A at the origin and B at r.
 inline UniaxialGap uniaxial_gap(const Spheroid& A, const Spheroid& B, const Eigen::Vector3d& r,
-                                const Eigen::Vector3d& u_a, const Eigen::Vector3d& u_b,
-                                const Eigen::Vector3d& n) {
+                                const Eigen::Vector3d& u_a, const Eigen::Vector3d& u_b, const Eigen::Vector3d& n) {
   // Here and below the order of the operations keeps the dependency chain short: it is what the time goes into.
   UniaxialGap out;
   out.x_a = u_a.dot(n);
@@ -111,11 +110,7 @@ inline UniaxialEvaluation uniaxial_step(const Spheroid& A, const Spheroid& B, co
   const double inv_det = 1 / (sigma * (sigma + t1) + D);
   const double y_a = e_a * w_a.dot(y);
   const double y_b = e_b * w_b.dot(y);
-  Eigen::Vector3d adjugate_y = (sigma + t1) * y - (y_a * w_a + y_b * w_b);
-  // y has a component along n of -2 (|n| - 1) (fA + fB + g), which the step multiplies by sigma (sigma + t1) /
-  // (sigma (sigma + t1) + D). That is harmless while the factor is between 0 and 1; else (a disc and a needle, or a
-  // lifted sigma) |n| - 1 would grow at every step by up to several times.
-  if (D < 0 || gap.g <= -rho) [[unlikely]] adjugate_y -= adjugate_y.dot(n) * n;
+  const Eigen::Vector3d adjugate_y = (sigma + t1) * y - (y_a * w_a + y_b * w_b);
   UniaxialEvaluation out;
   out.g = gap.g;
   out.decrement = inv_det * y.dot(adjugate_y);
