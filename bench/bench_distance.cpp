@@ -2,8 +2,8 @@
 ///
 /// Every benchmark walks through kPairs pairs of equal bodies whose distance is known, in random relative orientation;
 /// they fit in the second-level cache, so that the kernel is timed and not the memory. A failure is an answer that is
-/// declined or wrong by more than 1e-13 of the pair's size; it is counted, not hidden. Times of two machines differ more
-/// than those of two kernels: the table at the end gives ratios within this run.
+/// declined or wrong by more than 1e-13 of the pair's size; it is counted, not hidden. Times of two machines differ
+/// more than those of two kernels: the table at the end gives ratios within this run.
 
 #include <geom/geom.h>
 
@@ -94,8 +94,8 @@ void distance_benchmark(benchmark::State& state, Kernel kernel, Start start, dou
     failures += !(std::abs(r.distance - gap) <= 1e-13 * size);  // NaN, a declined answer, is a failure too
   }
   state.SetItemsProcessed(state.iterations() * kPairs);
-  state.counters["query"] = benchmark::Counter(
-      kPairs, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+  state.counters["query"] =
+      benchmark::Counter(kPairs, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
   state.counters["iterations"] = static_cast<double>(iterations) / kPairs;
   state.counters["failures"] = failures;
 }

@@ -1,1 +1,13 @@
-# Tests of this part; see hardbody_test in CMakeLists.txt.
+# Tests of this part; see hardbody_test in CMakeLists.txt. HARDBODY_FULL=1 in the environment raises the counts of the
+# property tests tenfold.
+hardbody_test(finder_unit_test unit
+  unit/calendar_test.cpp
+  unit/cell_grid_test.cpp
+  unit/impulse_test.cpp
+  unit/motion_test.cpp
+  unit/neighbour_lists_test.cpp
+  unit/random_test.cpp
+  unit/sincos_test.cpp
+  unit/time_of_contact_test.cpp)
+hardbody_test(finder_curvature_bound_test property property/curvature_bound_test.cpp)
+hardbody_test(finder_missed_contacts_test property property/missed_contacts_test.cpp)

@@ -16,8 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Relative difference of the packing fractions of state and config that is rounding.
-constexpr double kPackingTolerance = 1e-12;
+/// Relative difference between state and config that is rounding (of another machine's cube root, say).
+constexpr double kRounding = 1e-12;
 
 void row(const char* name, const std::string& value) {
   fmt::print("  {:<26} {}\n", name, value);
@@ -58,9 +58,9 @@ bool print_config(const Checkpoint& checkpoint, const std::string& name) {
   const Config config = parse_config(checkpoint.config, name + " (its config)");
   const ed::System& system = checkpoint.system;
   const double phi = ed::packing_fraction(system);
-  const bool same_phi = std::abs(phi / config.packing_fraction - 1) < kPackingTolerance;
+  const bool same_phi = std::abs(phi / config.packing_fraction - 1) < kRounding;
   const bool same_number = system.size() == config.number;
-  const bool same_shape = system.species.shape.semi_axes() == config.species.shape.semi_axes();
+  const bool same_shape = system.species.shape.semi_axes().isApprox(config.species.shape.semi_axes(), kRounding);
   row("packing fraction", fmt::format("{:.15g}, as configured: {}", phi, yes_or_no(same_phi)));
   row("number as configured", yes_or_no(same_number));
   row("shape as configured", yes_or_no(same_shape));

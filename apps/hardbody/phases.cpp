@@ -83,17 +83,16 @@ void run_equilibration(const Config& config, ed::Simulation& simulation, Runner&
   ed::Snapshot origin;
   ed::Snapshot now;
   simulation.sample(origin);
-  for (double done = 0; done < length && !result.stopped;) {
-    done = std::min(done + 1, length);
-    result.stopped = !runner.run_to(begin + done, begin + length);
+  while (result.time < length && !result.stopped) {
+    // The time asked for, not the clock's: begin + time is rounded.
+    const double next = std::min(result.time + 1, length);
+    result.stopped = !runner.run_to(begin + next, begin + length);
+    result.time = result.stopped ? simulation.time() - begin : next;
     simulation.sample(now);
     result.c2 = ed::c2_between(origin, now);
     result.msd = ed::msd_between(origin, now);
     if (!config.equilibration_time && result.reached(config)) break;
   }
-  result.time = simulation.time() - begin;
-  // The exact number that was asked for, without the rounding of begin + time.
-  if (config.equilibration_time && !result.stopped) result.time = length;
 }
 
 }  // namespace

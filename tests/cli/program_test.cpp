@@ -16,12 +16,14 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <limits>
 #include <string>
 
 #include <sys/wait.h>
+#include <unistd.h>
 
 namespace {
 
@@ -32,11 +34,10 @@ namespace fs = std::filesystem;
 constexpr const char* kConfig = "[system]\nnumber = 64\npacking_fraction = 0.02\n[shape]\naspect_ratio = 2\n";
 
 ed::System dilute_state() {
-  const double b = 1 / std::cbrt(2.0);
   ed::StartOptions options;
   options.number = 64;
   options.packing_fraction = 0.02;
-  return ed::random_start(ed::paper_species(geom::Ellipsoid({b, b, 2 * b})), options);
+  return ed::random_start(hardbody::parse_config(kConfig, "memory").species, options);
 }
 
 Checkpoint checkpoint_of(const ed::System& system) {

@@ -105,14 +105,13 @@ class Fluid {
     return pair;
   }
 
-  /// A pair that touches at time 0, moved together along its normal, with the normal velocity of the contact points made
-  /// `share` of their relative velocity (> 0: parting), and then a distance `gap` (< 0: an overlap) put between.
+  /// A pair that touches at time 0, moved together along its normal, with the normal velocity of the contact points
+  /// made `share` of their relative velocity (> 0: parting), and then a distance `gap` (< 0: an overlap) put between.
   MovingPair touching_pair(double boost, double share, double gap) {
     while (true) {
       MovingPair pair = thermal_pair(boost);
       const geom::Pose X_a(pair.a.rotation, pair.a.position);
-      const geom::DistanceResult d =
-          geom::distance(shape_, X_a, shape_, geom::Pose(pair.b.rotation, pair.b.position));
+      const geom::DistanceResult d = geom::distance(shape_, X_a, shape_, geom::Pose(pair.b.rotation, pair.b.position));
       if (d.status != geom::DistanceStatus::separated) continue;
       pair.b.position -= d.distance * d.normal;
       const Eigen::Vector3d v = contact_velocity(pair.a, pair.b, d.point_a);

@@ -61,9 +61,9 @@ class FreeMotion {
   geom::Pose pose(double t) const {
     const double angle = precession_ * t;
     const Eigen::Vector3d along = momentum_direction_.dot(start_.axis()) * momentum_direction_;
-    const Eigen::Vector3d u = (along + std::cos(angle) * (start_.axis() - along) +
-                               std::sin(angle) * momentum_direction_.cross(start_.axis()))
-                                  .normalized();
+    const Eigen::Vector3d u =
+        (along + std::cos(angle) * (start_.axis() - along) + std::sin(angle) * momentum_direction_.cross(start_.axis()))
+            .normalized();
     Eigen::Matrix3d frame;
     frame.col(2) = u;
     frame.col(0) = u.unitOrthogonal();
@@ -90,14 +90,14 @@ struct BruteContact {
 
 /// First contact of two bodies by steps d / (largest possible |dd/dt|).
 ///
-/// The step is certified, but vanishes with d; below `floor` it is floor / rate instead, over which d changes by no more
-/// than floor. What could hide between two such steps is found by minimising d(t) around every sampled minimum below ten
-/// floors.
+/// The step is certified, but vanishes with d; below `floor` it is floor / rate instead, over which d changes by no
+/// more than floor. What could hide between two such steps is found by minimising d(t) around every sampled minimum
+/// below ten floors.
 class BruteForce {
  public:
   /// `floor` in units of size(), the sum of both bounding radii.
-  BruteForce(const geom::Ellipsoid& shape_a, const FreeMotion& a, const geom::Ellipsoid& shape_b,
-             const FreeMotion& b, double floor)
+  BruteForce(const geom::Ellipsoid& shape_a, const FreeMotion& a, const geom::Ellipsoid& shape_b, const FreeMotion& b,
+             double floor)
       : shape_a_(shape_a), shape_b_(shape_b), a_(a), b_(b) {
     const auto tip_rate = [](const geom::Ellipsoid& s, const FreeMotion& m) {
       return (s.bounding_radius() - s.inscribed_radius()) * m.turning_rate();
@@ -117,8 +117,7 @@ class BruteForce {
 
   double distance(double t) {
     ++evaluations_;
-    const geom::DistanceResult d =
-        geom::distance(shape_a_, a_.pose(t), shape_b_, b_.pose(t), {.start = normal_});
+    const geom::DistanceResult d = geom::distance(shape_a_, a_.pose(t), shape_b_, b_.pose(t), {.start = normal_});
     if (d.status == geom::DistanceStatus::separated || d.status == geom::DistanceStatus::overlapping) {
       normal_ = d.normal;
       return d.distance;

@@ -25,7 +25,7 @@ constexpr int kAudits = 100;
 constexpr double kEnergyDrift = 1e-11;
 
 /// Momentum a body, in units of its thermal momentum: the same rounding, added up without a reference magnitude.
-constexpr double kMomentumDrift = 1e-12;
+constexpr double kMomentumDrift = 1e-13;
 
 std::uint64_t collisions_of_a_run() {
   return ed_test::full_length() ? 1000000 : 100000;

@@ -1,5 +1,5 @@
-// The bound on which the finder's certificate rests: K(tau) >= h'' over the whole of [0, tau], for the support function h
-// of a turning body at a fixed direction. HARDBODY_FULL=1 draws ten times as many states.
+// The bound on which the finder's certificate rests: K(tau) >= h'' over the whole of [0, tau], for the support function
+// h of a turning body at a fixed direction. HARDBODY_FULL=1 draws ten times as many states.
 
 #include <common/finder_ensemble.h>
 #include <common/finder_gauge.h>
@@ -22,12 +22,15 @@
 
 namespace {
 
-using Eigen::Vector3d;
 using ed::internal::SupportCurvature;
+using Eigen::Vector3d;
 using geom::internal::Spheroid;
 using namespace finder_test;
 
-/// A turning body and a direction n, reduced to what h(t) depends on: x(t) = n.u(t) = C + p cos(Omega t) + q sin(Omega t).
+using Real = long double;
+
+/// A turning body and a direction n, reduced to what h(t) depends on: x(t) = n.u(t) = C + p cos(Omega t) + q sin(Omega
+/// t).
 struct Turning {
   double a;
   double b;
@@ -58,16 +61,18 @@ struct Turning {
   /// No h'' of this body is larger; what rounding errors are measured by.
   double scale() const { return std::abs((a - b) * (a + b)) / std::min(a, b) * rate * rate; }
 
-  long double support(long double t) const {
-    const long double xt = static_cast<long double>(centre) + p * std::cos(rate * t) + q * std::sin(rate * t);
-    const long double a2 = static_cast<long double>(a) * a;
-    const long double b2 = static_cast<long double>(b) * b;
+  Real support(Real t) const {
+    const auto real = [](double value) { return static_cast<Real>(value); };
+    const Real angle = real(rate) * t;
+    const Real xt = real(centre) + real(p) * std::cos(angle) + real(q) * std::sin(angle);
+    const Real a2 = real(a) * real(a);
+    const Real b2 = real(b) * real(b);
     return std::sqrt(b2 * (1 - xt) * (1 + xt) + a2 * xt * xt);
   }
 };
 
-/// A random body and motion; a third of the states are close to one in which the bound is delicate: x or its rate nearly
-/// zero, n nearly in the plane of turning or nearly along L.
+/// A random body and motion; a third of the states are close to one in which the bound is delicate: x or its rate
+/// nearly zero, n nearly in the plane of turning or nearly along L.
 Turning draw(ed::Random& random, bool rod, bool spin) {
   Turning s;
   const double ratio = log_uniform(random, 1.001, 10);
@@ -140,7 +145,9 @@ struct Case {
   bool spin;
 };
 
-void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
+void PrintTo(const Case& c, std::ostream* out) {
+  *out << c.name;
+}
 
 class CurvatureBound : public testing::TestWithParam<Case> {};
 
@@ -161,15 +168,14 @@ TEST_P(CurvatureBound, IsTheSecondDerivativeAtOnce) {
   ed::Random random(20 + 2 * c.rod + c.spin);
   for (int k = 0; k < 2000; ++k) {
     const Turning s = draw(random, c.rod, c.spin);
-    // Fourth-order central differences in long double: the truncation, step^4 / 90 times the sixth derivative (up to 1e6
-    // of the scale at an aspect ratio of 10), and the rounding, 1e-19 h / step^2 (h up to 1000 scales at one of 1.001),
-    // both stay below 1e-8 of the scale.
-    const long double step = 3e-4L / s.rate;
-    const long double near = s.support(step) + s.support(-step);
-    const long double far = s.support(2 * step) + s.support(-2 * step);
+    // Fourth-order central differences in long double: the truncation, step^4 / 90 times the sixth derivative (up to
+    // 1e6 of the scale at an aspect ratio of 10), and the rounding, 1e-19 h / step^2 (h up to 1000 scales at one
+    // of 1.001), both stay below 1e-8 of the scale.
+    const Real step = 3e-4L / static_cast<Real>(s.rate);
+    const Real near = s.support(step) + s.support(-step);
+    const Real far = s.support(2 * step) + s.support(-2 * step);
     const auto differences = static_cast<double>((16 * near - far - 30 * s.support(0)) / (12 * step * step));
-    const double at_once =
-        c.spin ? s.curvature<true>().bound(s.shape(), 0) : s.curvature<false>().bound(s.shape(), 0);
+    const double at_once = c.spin ? s.curvature<true>().bound(s.shape(), 0) : s.curvature<false>().bound(s.shape(), 0);
     EXPECT_NEAR(at_once, differences, 1e-8 * s.scale());
     EXPECT_NEAR(at_once, s.second_derivative(0), 1e-12 * s.scale());
   }
@@ -248,8 +254,12 @@ void expect_certificate_of_pair() {
   }
 }
 
-TEST(PairCertificate, ParabolaStaysBelowTheGapWithoutSpin) { expect_certificate_of_pair<false>(); }
+TEST(PairCertificate, ParabolaStaysBelowTheGapWithoutSpin) {
+  expect_certificate_of_pair<false>();
+}
 
-TEST(PairCertificate, ParabolaStaysBelowTheGapWithSpin) { expect_certificate_of_pair<true>(); }
+TEST(PairCertificate, ParabolaStaysBelowTheGapWithSpin) {
+  expect_certificate_of_pair<true>();
+}
 
 }  // namespace

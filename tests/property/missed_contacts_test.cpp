@@ -1,5 +1,5 @@
-// Does the finder ever miss a contact? Pairs of near neighbours of a dense fluid, in every kind of motion that is hard for
-// it, against brute force (common/finder_reference.h). HARDBODY_FULL=1 runs ten times as many.
+// Does the finder ever miss a contact? Pairs of near neighbours of a dense fluid, in every kind of motion that is hard
+// for it, against brute force (common/finder_reference.h). HARDBODY_FULL=1 runs ten times as many.
 
 #include <common/finder_ensemble.h>
 #include <common/finder_gauge.h>
@@ -21,9 +21,9 @@ using ed::internal::Finding;
 using ed::internal::Outcome;
 using namespace finder_test;
 
-/// Times of one contact agree within this (time unit: that in which a thermal body moves its size). A grazing contact of
-/// speed 1e-5 turns the rounding error 1e-15 of a distance into 1e-10 of time; a contact found after another one that was
-/// missed is off by far more.
+/// Times of one contact agree within this (time unit: that in which a thermal body moves its size). A grazing contact
+/// of speed 1e-5 turns the rounding error 1e-15 of a distance into 1e-10 of time; a contact found after another one
+/// that was missed is off by far more.
 constexpr double kSameTime = 1e-7;
 
 /// In units of the pair's size. A contact no deeper than this cannot be told from a near miss of this width.
@@ -39,7 +39,9 @@ constexpr double kGrazing = 1e-2;
 constexpr double kHorizon = 4;
 
 /// Of brute force (see there), in units of the pair's size.
-double brute_floor() { return full_run() ? 1e-9 : 1e-8; }
+double brute_floor() {
+  return full_run() ? 1e-9 : 1e-8;
+}
 
 struct Tally {
   long pairs = 0;  ///< of this class by what brute force says of them
@@ -160,9 +162,7 @@ Tallies try_pairs(Fluid& fluid, int contacts, double divisor) {
     BruteForce brute(fluid.shape(), a, fluid.shape(), b, brute_floor());
     const BruteContact truth = brute.first_contact(kHorizon);
     const Finding finding = find_contact(fluid, pair, kHorizon, count, divisor);
-    Tally& tally = !truth.found                           ? tallies.apart
-                   : grazes(fluid, pair, truth.time) ? tallies.grazing
-                                                          : tallies.steep;
+    Tally& tally = !truth.found ? tallies.apart : grazes(fluid, pair, truth.time) ? tallies.grazing : tallies.steep;
     judge(brute, truth, finding, kHorizon, tally);
     if (touching) ++tallies.restarts;
     if (!truth.found && truth.least_gap < kNearMiss * fluid.size()) ++tallies.near_misses;

@@ -22,7 +22,9 @@ struct Case {
   double reach;
 };
 
-void PrintTo(const Case& c, std::ostream* out) { *out << c.number << " bodies, box " << c.box << ", reach " << c.reach; }
+void PrintTo(const Case& c, std::ostream* out) {
+  *out << c.number << " bodies, box " << c.box << ", reach " << c.reach;
+}
 
 Vector3d nearest_image(const Vector3d& r, double box) {
   return {r.x() - box * std::round(r.x() / box), r.y() - box * std::round(r.y() / box),

@@ -38,7 +38,9 @@ double energy(const ContactBody& b) {
          0.5 * b.angular_velocity.dot(b.inverse_inertia.inverse() * b.angular_velocity);
 }
 
-Vector3d momentum(const ContactBody& b) { return b.velocity / b.inverse_mass; }
+Vector3d momentum(const ContactBody& b) {
+  return b.velocity / b.inverse_mass;
+}
 
 /// About the contact point, where the centre is at -arm.
 Vector3d angular_momentum(const ContactBody& b) {
@@ -69,8 +71,8 @@ TEST(Collide, ConservesWhatItMustForEveryNormal) {
     }
     ++collisions;
     EXPECT_GT(J, 0);
-    // Rounding only: some tens of operations, on numbers as large as the largest energy and momentum in play (the inverse
-    // of the inertia, condition 100, is this test's).
+    // Rounding only: some tens of operations, on numbers as large as the largest energy and momentum in play (the
+    // inverse of the inertia, condition 100, is this test's).
     const double E = energy(a0) + energy(b0);
     EXPECT_NEAR(energy(a) + energy(b), E, 1e-13 * (E + J * J));
     const double P = momentum(a0).norm() + momentum(b0).norm() + J;

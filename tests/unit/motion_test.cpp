@@ -129,7 +129,9 @@ Vector3d angular_momentum(const Motion& m) {
   return R * (m.inertia.asDiagonal() * (R.transpose() * m.angular_velocity));
 }
 
-double rotational_energy(const Motion& m) { return 0.5 * m.angular_velocity.dot(angular_momentum(m)); }
+double rotational_energy(const Motion& m) {
+  return 0.5 * m.angular_velocity.dot(angular_momentum(m));
+}
 
 void expect_same(const Motion& a, const Motion& b, double tolerance) {
   EXPECT_LE((a.pose.rotation() - b.pose.rotation()).cwiseAbs().maxCoeff(), tolerance);
@@ -196,9 +198,9 @@ TEST(Propagate, SphericalTopTurnsUniformly) {
     const double dt = 5 * random.normal();
     const double rate = start.angular_velocity.norm();
     Motion expected = start;
-    expected.pose =
-        geom::Pose(Eigen::AngleAxisd(rate * dt, start.angular_velocity / rate).toRotationMatrix() * start.pose.rotation(),
-                   start.pose.position() + dt * start.velocity);
+    expected.pose = geom::Pose(
+        Eigen::AngleAxisd(rate * dt, start.angular_velocity / rate).toRotationMatrix() * start.pose.rotation(),
+        start.pose.position() + dt * start.velocity);
     expect_same(propagate(start, start.time + dt), expected, kRounding);
   }
 }
@@ -247,8 +249,7 @@ TEST(Propagate, AgreesWithTheMotionThatTheBruteForceTestsUse) {
     state.spin = start.angular_velocity.dot(state.axis());
     state.across = start.angular_velocity - state.spin * state.axis();
     const double t = 5 * random.normal();
-    const finder_test::BodyState there =
-        finder_test::FreeMotion(state, {start.inertia.x(), start.inertia.z()}).at(t);
+    const finder_test::BodyState there = finder_test::FreeMotion(state, {start.inertia.x(), start.inertia.z()}).at(t);
     Motion expected = start;
     expected.pose = geom::Pose(there.rotation, there.position);
     expected.angular_velocity = there.omega();
@@ -318,7 +319,8 @@ TEST(BodyFrameIntegrals, AreTheQuadratureOfOmegaWithAndWithoutSpin) {
     if (k % 2 == 0) {
       top.inertia.spins = false;
       top.frame.spin = 0;
-      ed::internal::set_rotation(top.inertia, top.axis.axis(), ed::internal::omega_across(top.axis), top.axis, top.frame);
+      ed::internal::set_rotation(top.inertia, top.axis.axis(), ed::internal::omega_across(top.axis), top.axis,
+                                 top.frame);
     }
     const double span = 2 * random.normal();
     const Integrals wanted = quadrature(top, span, 2000);

@@ -19,16 +19,20 @@ constexpr int kDraws = 1'000'000;
 
 /// A mean over kDraws of a variable with this variance is within four standard errors (one failure in 16,000 seeds; the
 /// seeds are fixed).
-double four_errors(double variance) { return 4 * std::sqrt(variance / kDraws); }
+double four_errors(double variance) {
+  return 4 * std::sqrt(variance / kDraws);
+}
 
 TEST(Random, BitsAreThoseOfThePublishedGenerator) {
   // xoshiro256** after splitmix64, worked out from the published algorithms with exact integers.
   Random zero(0);
-  for (const std::uint64_t expected : {0x99ec5f36cb75f2b4u, 0xbf6e1f784956452au, 0x1a5f849d4933e6e0u, 0x6aa594f1262d2d2cu}) {
+  for (const std::uint64_t expected :
+       {0x99ec5f36cb75f2b4u, 0xbf6e1f784956452au, 0x1a5f849d4933e6e0u, 0x6aa594f1262d2d2cu}) {
     EXPECT_EQ(zero.bits(), expected);
   }
   Random other(12345);
-  for (const std::uint64_t expected : {0xbe6a36374160d49bu, 0x214aaa0637a688c6u, 0xf69d16de9954d388u, 0xc60048c4e96e033u}) {
+  for (const std::uint64_t expected :
+       {0xbe6a36374160d49bu, 0x214aaa0637a688c6u, 0xf69d16de9954d388u, 0xc60048c4e96e033u}) {
     EXPECT_EQ(other.bits(), expected);
   }
 }
@@ -80,9 +84,9 @@ TEST(Random, NormalHasTheMomentsAndTheTailsOfAGaussian) {
     beyond_three += std::abs(x) > 3 ? 1 : 0;
   }
   EXPECT_NEAR(moment[1], 0, four_errors(1));
-  EXPECT_NEAR(moment[2], 1, four_errors(2));    // <x^4> - 1
-  EXPECT_NEAR(moment[3], 0, four_errors(15));   // <x^6>
-  EXPECT_NEAR(moment[4], 3, four_errors(96));   // <x^8> - 9
+  EXPECT_NEAR(moment[2], 1, four_errors(2));   // <x^4> - 1
+  EXPECT_NEAR(moment[3], 0, four_errors(15));  // <x^6>
+  EXPECT_NEAR(moment[4], 3, four_errors(96));  // <x^8> - 9
   EXPECT_NEAR(static_cast<double>(within_one) / kDraws, 0.6826894921, four_errors(0.6827 * 0.3173));
   EXPECT_NEAR(static_cast<double>(beyond_three) / kDraws, 0.0026997961, four_errors(0.0027));
 }

@@ -35,7 +35,9 @@ using geom::Ellipsoid;
 
 constexpr double kForever = std::numeric_limits<double>::infinity();
 
-Ellipsoid sphere(double radius) { return Ellipsoid(Vector3d::Constant(radius)); }
+Ellipsoid sphere(double radius) {
+  return Ellipsoid(Vector3d::Constant(radius));
+}
 
 Motion at(const Vector3d& position, const Vector3d& velocity) {
   Motion m;
@@ -79,7 +81,8 @@ void expect_separated_until(const ContactResult& result, double t_max) {
 // ---- Known answers -------------------------------------------------------------------------------------------------
 
 TEST(TimeOfContact, HeadOnSpheresMeetWhenTheGapIsUsedUp) {
-  const ContactResult r = time_of_contact(sphere(1), at({0, 0, 0}, {0.5, 0, 0}), sphere(2), at({10, 0, 0}, {-3, 0, 0}), 5);
+  const ContactResult r =
+      time_of_contact(sphere(1), at({0, 0, 0}, {0.5, 0, 0}), sphere(2), at({10, 0, 0}, {-3, 0, 0}), 5);
   ASSERT_EQ(r.status, ContactStatus::hit);
   EXPECT_NEAR(r.time, 2, 1e-15);
   EXPECT_LE((r.normal - Vector3d::UnitX()).norm(), 1e-15);
@@ -107,7 +110,7 @@ TEST(TimeOfContact, SpheresMeetWhereTheQuadraticEquationSays) {
     const Eigen::Matrix<Real, 3, 1> p = (m_b.pose.position().cast<Real>() - m_a.pose.position().cast<Real>());
     const Eigen::Matrix<Real, 3, 1> v = (m_b.velocity.cast<Real>() - m_a.velocity.cast<Real>());
     const Real half_b = p.dot(v);
-    const Real c = p.squaredNorm() - static_cast<Real>(reach) * reach;
+    const Real c = p.squaredNorm() - static_cast<Real>(reach) * static_cast<Real>(reach);
     const Real discriminant = half_b * half_b - v.squaredNorm() * c;
     const ContactResult r = time_of_contact(a, m_a, b, m_b, kForever);
     // Closer to tangential than rounding can tell.
@@ -232,7 +235,8 @@ TEST(TimeOfContact, NeverAnswersForMoreThanItWasAsked) {
 }
 
 TEST(TimeOfContact, TouchingBodiesThatApproachHitAtOnce) {
-  const ContactResult spheres = time_of_contact(sphere(1), at({0, 0, 0}, {1, 0, 0}), sphere(1), at({2, 0, 0}, {0, 0, 0}), 1);
+  const ContactResult spheres =
+      time_of_contact(sphere(1), at({0, 0, 0}, {1, 0, 0}), sphere(1), at({2, 0, 0}, {0, 0, 0}), 1);
   ASSERT_EQ(spheres.status, ContactStatus::hit);
   EXPECT_EQ(spheres.time, 0);
   const Ellipsoid needle({1, 1, 3});

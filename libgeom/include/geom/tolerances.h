@@ -7,10 +7,10 @@ namespace geom {
 /// Pose: |R^T R - 1| (largest entry) or | |q| - 1 | <= kPoseTolerance, else the orientation is refused. Dimensionless.
 inline constexpr double kPoseTolerance = 1e-6;
 
-/// Ellipsoid: kMinSemiAxis <= semi-axis <= kMaxSemiAxis. Length, in the user's unit; squares and their products stay
-/// far from under- and overflow.
-inline constexpr double kMinSemiAxis = 1e-60;
-inline constexpr double kMaxSemiAxis = 1e60;
+/// Ellipsoid: kMinSemiAxis <= semi-axis <= kMaxSemiAxis. Length, in the user's unit; sixth powers, the determinants of
+/// matrices of squares, neither underflow nor overflow.
+inline constexpr double kMinSemiAxis = 1e-50;
+inline constexpr double kMaxSemiAxis = 1e50;
 
 /// Ellipsoid: amax / amin <= kMaxAspectRatio. Dimensionless. The range in which the kernels are tested.
 inline constexpr double kMaxAspectRatio = 1e4;

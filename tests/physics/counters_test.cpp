@@ -1,0 +1,40 @@
+// The work of the event loop, in counters: the same on every machine, so that a loss of speed shows without a clock.
+
+#include <common/ed_states.h>
+
+#include <ed/ed.h>
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+
+namespace {
+
+TEST(Counters, EvaluationsAndRefinementsPerCollisionStayWithinTheirBounds) {
+  constexpr std::uint64_t kCollisions = 100000;
+  ed::Simulation simulation(ed_test::equilibrated({3, 0.40, 512}, 1));
+  simulation.tune_envelopes();
+  const ed::Counters before = simulation.counters();
+  simulation.run_collisions(kCollisions);
+  const ed::Counters after = simulation.counters();
+
+  const auto per_collision = [](std::uint64_t from, std::uint64_t to) {
+    return static_cast<double>(to - from) / static_cast<double>(kCollisions);
+  };
+  const double evaluations = per_collision(before.evaluations, after.evaluations);
+  const double refinements = per_collision(before.refinements, after.refinements);
+  const double predictions = per_collision(before.predictions, after.predictions);
+  const double rebuilds = per_collision(before.neighbour_rebuilds, after.neighbour_rebuilds);
+  std::printf("a collision: %.2f evaluations, %.2f refinements, %.2f predictions, %.2f rebuilds; envelope %.3f\n",
+              evaluations, refinements, predictions, rebuilds, simulation.envelope());
+  ASSERT_EQ(after.collisions - before.collisions, kCollisions);
+  EXPECT_LE(evaluations, 45);
+  EXPECT_LE(refinements, 2);
+  // A body has 20 to 25 neighbours here and each collision predicts those of two bodies: far fewer evaluations would
+  // mean that pairs are not looked at.
+  EXPECT_GE(evaluations, 20);
+  EXPECT_GE(evaluations, predictions);
+  EXPECT_GT(rebuilds, 0);
+}
+
+}  // namespace

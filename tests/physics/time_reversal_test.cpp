@@ -1,0 +1,117 @@
+// Time reversal: negate all velocities and every body goes back where it came from.
+//
+// The dynamics is chaotic: a rounding error made on the way out is multiplied on the way back by G = exp(lambda T). G
+// is measured in each test, by going back a second time from a state in which all bodies are moved by kNudge. The
+// return must be as good as an error of kRoundings roundings (of a coordinate, of the order of the box) times G allows;
+// the horizon keeps that far below the distance that the bodies have gone, so that a wrong collision cannot hide.
+
+#include <common/ed_states.h>
+
+#include <ed/ed.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+namespace {
+
+using ed_test::Inertia;
+using ed_test::State;
+
+constexpr double kNudge = 1e-11;
+
+/// Rounding errors that add up, in units of the roundoff of the largest coordinate: a few for each of the collisions
+/// and renewed envelopes of a body, and the largest of all coordinates is looked at.
+constexpr double kRoundings = 30;
+
+/// What a return may be off at most, whatever G is: a ten thousandth of a semi-axis.
+constexpr double kFarFromWrong = 1e-4;
+
+double periodic_distance(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double box) {
+  Eigen::Vector3d d = a - b;
+  for (int k = 0; k < 3; ++k) d[k] -= box * std::round(d[k] / box);
+  return d.norm();
+}
+
+/// The largest difference in position or axis (as a length: the semi-axes are of order 1).
+double difference(const ed::System& a, const ed::System& b) {
+  const int axis = *a.species.shape.symmetry_axis();
+  double worst = 0;
+  for (std::size_t i = 0; i < a.bodies.size(); ++i) {
+    worst = std::max(worst, periodic_distance(a.bodies[i].position, b.bodies[i].position, a.box));
+    worst = std::max(worst, (a.bodies[i].rotation.col(axis) - b.bodies[i].rotation.col(axis)).norm());
+  }
+  return worst;
+}
+
+ed::System reversed(ed::System system) {
+  for (ed::Body& body : system.bodies) {
+    body.velocity *= -1;
+    body.angular_velocity *= -1;
+  }
+  return system;
+}
+
+ed::System advanced(const ed::System& system, double time, std::uint64_t* collisions = nullptr) {
+  ed::Simulation simulation(system);
+  simulation.run_until(time);
+  if (collisions != nullptr) *collisions = simulation.counters().collisions;
+  return simulation.system();
+}
+
+void expect_return(const State& state, double horizon) {
+  const ed::System begin = ed_test::start(state);
+  std::uint64_t out = 0;
+  std::uint64_t back = 0;
+  const ed::System turn = reversed(advanced(begin, horizon, &out));
+  const ed::System end = advanced(turn, horizon, &back);
+  ed::System nudged = turn;
+  ed::Random random(state.seed);
+  for (ed::Body& body : nudged.bodies) body.position += kNudge * random.direction();
+  const double growth = difference(end, advanced(nudged, horizon)) / kNudge;
+  const double off = difference(end, begin);
+  const double tolerance = kRoundings * std::numeric_limits<double>::epsilon() * 0.5 * begin.box * growth;
+  std::printf("%s: %llu collisions, growth %.1e, off by %.1e, tolerance %.1e, way %.2f\n",
+              ed_test::describe(state).c_str(), static_cast<unsigned long long>(out), growth, off, tolerance,
+              difference(turn, begin));
+  EXPECT_EQ(out, back);
+  EXPECT_GT(out, 500U);
+  // The growth is that of a small difference, not one that has saturated.
+  ASSERT_LT(growth * kNudge, 0.1);
+  ASSERT_LT(tolerance, kFarFromWrong);
+  EXPECT_LE(off, tolerance);
+  // Going back undoes something.
+  EXPECT_GT(difference(turn, begin), 0.1);
+  // Velocities return reversed.
+  double velocity_off = 0;
+  for (std::size_t i = 0; i < begin.bodies.size(); ++i) {
+    velocity_off = std::max(velocity_off, (begin.bodies[i].velocity + end.bodies[i].velocity).norm());
+  }
+  // What positions differ by goes into velocities at each collision, over a mean free time: the rate, at most 40 here.
+  EXPECT_LE(velocity_off, 40 * tolerance);
+}
+
+TEST(TimeReversal, RodsReturn) {
+  expect_return({3, 0.40, 256, Inertia::paper, 31}, 0.4);
+}
+
+TEST(TimeReversal, SpinningRodsReturn) {
+  expect_return({3, 0.40, 256, Inertia::uniform, 32}, 0.4);
+}
+
+TEST(TimeReversal, DiscsReturn) {
+  expect_return({0.5, 0.40, 256, Inertia::paper, 33}, 0.4);
+}
+
+TEST(TimeReversal, SpinningDiscsReturn) {
+  expect_return({0.33, 0.40, 256, Inertia::uniform, 34}, 0.4);
+}
+
+TEST(TimeReversal, SpheresReturn) {
+  expect_return({1, 0.45, 256, Inertia::paper, 35}, 0.6);
+}
+
+}  // namespace
