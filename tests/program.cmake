@@ -4,7 +4,7 @@ if(TARGET hardbody)
   find_program(HARDBODY_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH)
   find_program(HARDBODY_PYTHON python3 REQUIRED)
   add_test(NAME cli_test COMMAND ${HARDBODY_PYTHON} ${CMAKE_CURRENT_SOURCE_DIR}/cli/test_cli.py)
-  set_tests_properties(cli_test PROPERTIES LABELS cli TIMEOUT 600
+  set_tests_properties(cli_test PROPERTIES LABELS cli TIMEOUT 1200
     ENVIRONMENT "HARDBODY=$<TARGET_FILE:hardbody>;HARDBODY_DEMO=${PROJECT_SOURCE_DIR}/apps/demo.toml")
 
   hardbody_test(program_test cli cli/program_test.cpp)

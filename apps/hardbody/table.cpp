@@ -35,7 +35,7 @@ constexpr std::array kRows = {
     Row{"D_rot_body", &ed::Results::D_rot_body, "sqrt(kT/m)/l", "the same, components along the body's axes"},
     Row{"t_C2(1/e)", &ed::Results::t_C2_1overe, "l sqrt(m/kT)", "<P2(u(t).u(0))> = 1/e"},
     Row{"tau_C2", &ed::Results::tau_C2, "l sqrt(m/kT)", "of A exp[-(t/tau)^beta]"},
-    Row{"beta_C2", &ed::Results::beta_C2, "1", ""},
+    Row{"beta_C2", &ed::Results::beta_C2, "1", "of the same"},
     Row{"S", &ed::Results::S, "1", "nematic order: largest eigenvalue of Q, by frame"},
     Row{"kT_trans", &ed::Results::translational_kT, "kT", "on 3N - 3 degrees of freedom"},
     Row{"kT_rot", &ed::Results::rotational_kT, "kT", "on 2N"},

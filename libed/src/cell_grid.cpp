@@ -35,6 +35,8 @@ CellGrid::CellGrid(int number, double box, double reach)
                         std::max(1, static_cast<int>(1.3 * std::cbrt(static_cast<double>(number)))))),
       cell_of_body_(static_cast<std::size_t>(number), -1) {
   bodies_.resize(static_cast<std::size_t>(cells_) * cells_ * cells_);
+  // Room for what a cell holds at times, so that moving bodies about does not allocate.
+  for (std::vector<Entry>& cell : bodies_) cell.reserve(8 + 2 * static_cast<std::size_t>(number) / bodies_.size());
   const double width = box / cells_;
   const std::vector<int> along = offsets(cells_, width, reach);
   for (const int x : along) {

@@ -341,6 +341,8 @@ void EventLoop::rebuild_all() {
       if (k > i && envelopes_->may_meet(i, k, r, normal)) predict(lists_.add(i, k, normal), i, kFirstLook);
     }
   }
+  // Nothing allocates from here on, but for records that a long run breaks.
+  old_pairs_.reserve(lists_.reserve());
   orphans_.clear();
   for (int i = 0; i < number(); ++i) reschedule(i);
 }
@@ -484,7 +486,7 @@ double EventLoop::shrink_box(double target_box, double least_gain) {
   if (list_scale_ <= 0.9 * envelopes_->least_scale() + 0.1) set_envelope(0, true);
   for (int i = 0; i < number(); ++i) move(i);
   double factor = std::max(
-      {target_box / box_, envelopes_->least_scale() / list_scale_, 1.01 * smallest_box(bounding_radius_) / box_});
+      {target_box / box_, envelopes_->least_scale() / list_scale_, smallest_box(bounding_radius_) / box_});
   factor = std::min(factor, 1.0);
   for (int i = 0; i < number(); ++i) {
     for (const std::int32_t index : lists_.of(i)) {

@@ -1,5 +1,7 @@
 #include "neighbour_lists.h"
 
+#include <algorithm>
+
 namespace ed::internal {
 
 std::int32_t NeighbourLists::add(std::int32_t i, std::int32_t j, const Eigen::Vector3d& normal) {
@@ -32,6 +34,15 @@ void NeighbourLists::remove(std::int32_t index) {
   unlink(p.i, p.slot_i);
   unlink(p.j, p.slot_j);
   free_.push_back(index);
+}
+
+std::size_t NeighbourLists::reserve() {
+  std::size_t longest = 0;
+  for (const std::vector<std::int32_t>& list : of_body_) longest = std::max(longest, list.size());
+  for (std::vector<std::int32_t>& list : of_body_) list.reserve(2 * longest);
+  pairs_.reserve(2 * pairs_.size());
+  free_.reserve(pairs_.capacity());
+  return 2 * longest;
 }
 
 void NeighbourLists::unlink(std::int32_t body, std::int32_t slot) {

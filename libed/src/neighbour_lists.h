@@ -45,6 +45,10 @@ class NeighbourLists {
   std::int32_t add(std::int32_t i, std::int32_t j, const Eigen::Vector3d& normal);
   void remove(std::int32_t index);
 
+  /// Makes room for every list to become twice as long as the longest is now, so that none has to grow while a run goes
+  /// on. Returns that length.
+  std::size_t reserve();
+
  private:
   void unlink(std::int32_t body, std::int32_t slot);
 

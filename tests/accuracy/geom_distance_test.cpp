@@ -25,12 +25,7 @@ using geom_test::LongDistance;
 using geom_test::ManufacturedPair;
 using geom_test::Random;
 
-// A tenth in builds without optimisation, where a pair takes 50 us.
-#ifdef NDEBUG
-constexpr int kUniaxialPairs = 1'000'000;
-#else
-constexpr int kUniaxialPairs = 100'000;
-#endif
+constexpr int kUniaxialPairs = geom_test::repetitions(1'000'000);
 constexpr int kOtherPairs = kUniaxialPairs / 10;
 
 // The contract of distance.h.

@@ -12,6 +12,22 @@
 
 namespace geom_test {
 
+/// `count`, or a tenth of it in builds without optimisation or with sanitizers: these are ten to a hundred times
+/// slower.
+constexpr int repetitions(int count) {
+#if !defined(__OPTIMIZE__) || defined(__SANITIZE_ADDRESS__)
+  return count / 10;
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer)
+  return count / 10;
+#else
+  return count;
+#endif
+#else
+  return count;
+#endif
+}
+
 /// Draws from std::mt19937_64 without the distributions of <random>, whose results differ between standard libraries.
 class Random {
  public:

@@ -27,8 +27,8 @@ constexpr double kNudge = 1e-11;
 /// and renewed envelopes of a body, and the largest of all coordinates is looked at.
 constexpr double kRoundings = 30;
 
-/// What a return may be off at most, whatever G is: a ten thousandth of a semi-axis.
-constexpr double kFarFromWrong = 1e-4;
+/// What a return may be off at most, whatever G is: a millionth of a semi-axis.
+constexpr double kFarFromWrong = 1e-6;
 
 double periodic_distance(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double box) {
   Eigen::Vector3d d = a - b;
@@ -36,13 +36,12 @@ double periodic_distance(const Eigen::Vector3d& a, const Eigen::Vector3d& b, dou
   return d.norm();
 }
 
-/// The largest difference in position or axis (as a length: the semi-axes are of order 1).
+/// The largest difference in position or rotation matrix (the semi-axes are of order 1: lengths, both).
 double difference(const ed::System& a, const ed::System& b) {
-  const int axis = *a.species.shape.symmetry_axis();
   double worst = 0;
   for (std::size_t i = 0; i < a.bodies.size(); ++i) {
     worst = std::max(worst, periodic_distance(a.bodies[i].position, b.bodies[i].position, a.box));
-    worst = std::max(worst, (a.bodies[i].rotation.col(axis) - b.bodies[i].rotation.col(axis)).norm());
+    worst = std::max(worst, (a.bodies[i].rotation - b.bodies[i].rotation).norm());
   }
   return worst;
 }

@@ -25,6 +25,7 @@ using geom_test::distance_tolerance;
 using geom_test::ManufacturedPair;
 using geom_test::normal_tolerance;
 using geom_test::Random;
+using geom_test::repetitions;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -115,7 +116,7 @@ TEST(Distance, OfTwoBodiesInAPlaneIsThatOfTheirEllipsesThere) {
 
 TEST(Distance, OfTouchingBodiesIsZeroWithinRounding) {
   Random random(2);
-  for (int i = 0; i < 1000; ++i) {
+  for (int i = 0; i < repetitions(1000); ++i) {
     const Ellipsoid a = i % 2 ? random.spheroid(random.log_uniform(0.1, 10)) : random.biaxial(10);
     const Ellipsoid b = i % 3 ? random.spheroid(random.log_uniform(0.1, 10)) : random.biaxial(10);
     const ManufacturedPair pair = geom_test::manufacture(a, b, 0, random);
@@ -167,7 +168,7 @@ TEST(Distance, ACertifiedOverlapIsTheShortestTranslationThatPartsTheBodies) {
 
 TEST(Distance, AWarmStartGivesTheColdAnswer) {
   Random random(5);
-  for (int i = 0; i < 2000; ++i) {
+  for (int i = 0; i < repetitions(2000); ++i) {
     const Ellipsoid a = i % 2 ? random.spheroid(random.log_uniform(0.1, 10)) : random.biaxial(10);
     const Ellipsoid b = i % 3 ? random.spheroid(random.log_uniform(0.1, 10)) : random.biaxial(10);
     const ManufacturedPair pair = geom_test::manufacture(a, b, random.log_uniform(1e-9, 10), random);
@@ -213,7 +214,7 @@ TEST(Distance, AnyStartGivesTheSameAnswer) {
 
 TEST(Distance, SwappedBodiesGiveTheMirroredAnswer) {
   Random random(8);
-  for (int i = 0; i < 1000; ++i) {
+  for (int i = 0; i < repetitions(1000); ++i) {
     const Ellipsoid a = i % 2 ? random.spheroid(random.log_uniform(0.1, 10)) : random.biaxial(10);
     const Ellipsoid b = i % 3 ? random.spheroid(random.log_uniform(0.1, 10)) : random.biaxial(10);
     const ManufacturedPair pair = geom_test::manufacture(a, b, random.log_uniform(1e-6, 10), random);
@@ -248,7 +249,7 @@ TEST(Distance, AnswersAreTheSameBitForBitWhenAskedAgain) {
 TEST(Distance, OneIterationIsNeverAWrongAnswer) {
   Random random(10);
   int answered = 0;
-  for (int i = 0; i < 5000; ++i) {
+  for (int i = 0; i < repetitions(5000); ++i) {
     const Ellipsoid a = i % 2 ? random.spheroid(random.log_uniform(0.1, 10)) : random.biaxial(10);
     const Ellipsoid b = i % 3 ? random.spheroid(random.log_uniform(0.1, 10)) : random.biaxial(10);
     const double rho = a.min_curvature_radius() + b.min_curvature_radius();
@@ -265,7 +266,7 @@ TEST(Distance, OneIterationIsNeverAWrongAnswer) {
       }
     }
   }
-  EXPECT_GT(answered, 5000);  // all that are apart, half of 10000, and the shallow ones of the rest
+  EXPECT_GT(answered, repetitions(5000));  // all that are apart, half of 10000, and the shallow ones of the rest
 }
 
 TEST(Distance, LimitsOnIterationsBelowOneCountAsOne) {

@@ -24,6 +24,7 @@ using geom_test::lower_bound;
 using geom_test::ManufacturedPair;
 using geom_test::normal_tolerance;
 using geom_test::Random;
+using geom_test::repetitions;
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
@@ -73,7 +74,7 @@ TEST(InverseSquareRoot, OfOnePlusSIsRightToRounding) {
 
 TEST(StepOnSphere, IsUnitAndInTheDirectionOfNPlusStep) {
   Random random(1);
-  for (int i = 0; i < 1000; ++i) {
+  for (int i = 0; i < repetitions(1000); ++i) {
     const Vector3d n = random.direction();
     const Vector3d step = random.log_uniform(1e-12, kMaxNormalStep) * n.cross(random.direction());
     const Vector3d moved = step_on_sphere(n, step);
@@ -84,7 +85,7 @@ TEST(StepOnSphere, IsUnitAndInTheDirectionOfNPlusStep) {
 
 TEST(UniaxialKernel, GapIsTheLowerBoundOfThePublicSupportFunctions) {
   Random random(2);
-  for (int i = 0; i < 2000; ++i) {
+  for (int i = 0; i < repetitions(2000); ++i) {
     const SpheroidPair pair = random_pair(random, 100);
     const Vector3d n = random.direction();
     const double wanted = lower_bound(pair.a, pair.placed.X_WA, pair.b, pair.placed.X_WB, n);
@@ -94,7 +95,7 @@ TEST(UniaxialKernel, GapIsTheLowerBoundOfThePublicSupportFunctions) {
 
 TEST(UniaxialKernel, AgreesWithTheGeneralKernelAtEveryNormal) {
   Random random(3);
-  for (int i = 0; i < 5000; ++i) {
+  for (int i = 0; i < repetitions(5000); ++i) {
     const SpheroidPair pair = random_pair(random, 10);
     const Vector3d n =
         random.coin() ? random.direction() : (pair.placed.normal + 0.1 * random.direction()).normalized();
@@ -133,7 +134,7 @@ TEST(UniaxialKernel, LeversAreTheDerivativesOfTheSupportHeights) {
 
 TEST(Kernels, StepsLieAcrossTheNormalAreCappedAndAscend) {
   Random random(5);
-  for (int i = 0; i < 5000; ++i) {
+  for (int i = 0; i < repetitions(5000); ++i) {
     const SpheroidPair pair = random_pair(random, 10);
     const Vector3d n = random.direction();
     for (const Evaluation& e : {Evaluation(pair.uniaxial(n)), pair.general(n)}) {
@@ -154,7 +155,7 @@ TEST(Kernels, StepsLieAcrossTheNormalAreCappedAndAscend) {
 
 TEST(Kernels, ANewtonStepSquaresTheErrorOfTheNormal) {
   Random random(6);
-  for (int i = 0; i < 1000; ++i) {
+  for (int i = 0; i < repetitions(1000); ++i) {
     const double X0_a = random.log_uniform(0.2, 5);
     const double X0_b = random.log_uniform(0.2, 5);
     const double rho = Spheroid(X0_a, 1).rho + Spheroid(X0_b, 1).rho;
@@ -192,7 +193,7 @@ TEST(Kernels, TheNormalStaysUnitOverManySteps) {
 
 TEST(ColdStart, IsTheSolutionOfTheSumOfBothSupportMatrices) {
   Random random(8);
-  for (int i = 0; i < 1000; ++i) {
+  for (int i = 0; i < repetitions(1000); ++i) {
     const SpheroidPair pair = random_pair(random, 10);
     const auto support_matrix = [](const Spheroid& s, const Vector3d& u) -> Matrix3d {
       return s.b2 * Matrix3d::Identity() + s.c * u * u.transpose();

@@ -221,13 +221,13 @@ TEST(Ellipsoid, SymmetryAxisIsTheOneThatDiffersFromTwoEqualOnes) {
 }
 
 TEST(Ellipsoid, RefusesSemiAxesThatAreNotPositiveAndFinite) {
-  for (const double bad : {0.0, -0.0, -1.0, kNaN, kInfinity, -kInfinity, 1e-61, 1e61}) {
+  for (const double bad : {0.0, -0.0, -1.0, kNaN, kInfinity, -kInfinity, 1e-51, 1e51}) {
     for (int axis = 0; axis < 3; ++axis) {
       Vector3d semi_axes(1, 1, 1);
       semi_axes[axis] = bad;
       const std::string message = refusal(semi_axes);
       ASSERT_THAT(message, HasSubstr("semi-axis")) << bad << " as axis " << axis;
-      ASSERT_THAT(message, HasSubstr("accepted: 1e-60 to 1e+60")) << bad << " as axis " << axis;
+      ASSERT_THAT(message, HasSubstr("accepted: 1e-50 to 1e+50")) << bad << " as axis " << axis;
     }
   }
   EXPECT_THAT(refusal({1, -2.5, 1}), HasSubstr("-2.5"));
@@ -236,7 +236,7 @@ TEST(Ellipsoid, RefusesSemiAxesThatAreNotPositiveAndFinite) {
 
 TEST(Ellipsoid, RefusesAspectRatiosBeyondTheTestedRange) {
   EXPECT_EQ(refusal({1, 1e4, 1}), "accepted");
-  EXPECT_EQ(refusal({1e-60, 1e-60, 1e-57}), "accepted");
+  EXPECT_EQ(refusal({1e-50, 1e-50, 1e-47}), "accepted");
   const std::string message = refusal({1, 1, 1.5e4});
   EXPECT_THAT(message, HasSubstr("ratio"));
   EXPECT_THAT(message, HasSubstr("15000"));

@@ -24,6 +24,7 @@ using geom_test::lower_bound;
 using geom_test::ManufacturedPair;
 using geom_test::normal_tolerance;
 using geom_test::Random;
+using geom_test::repetitions;
 
 Matrix3d support_matrix(const Ellipsoid& shape, const Pose& X) {
   return X.rotation() * shape.semi_axes().cwiseAbs2().asDiagonal() * X.rotation().transpose();
@@ -91,7 +92,7 @@ TEST(ContactFunction, ScalesWithTheSquareOfTheSeparationAndIsSymmetric) {
 
 TEST(ContactFunction, ItsNormalProvesTheSeparation) {
   Random random(3);
-  for (int i = 0; i < 2000; ++i) {
+  for (int i = 0; i < repetitions(2000); ++i) {
     const Ellipsoid a = any_ellipsoid(random, 30);
     const Ellipsoid b = any_ellipsoid(random, 30);
     const ManufacturedPair pair = geom_test::manufacture(a, b, random.log_uniform(1e-3, 10), random);
@@ -109,7 +110,7 @@ TEST(ContactFunction, ItsNormalProvesTheSeparation) {
 
 TEST(ContactFunction, IsBelowOneForBodiesThatOverlap) {
   Random random(4);
-  for (int i = 0; i < 2000; ++i) {
+  for (int i = 0; i < repetitions(2000); ++i) {
     const Ellipsoid a = any_ellipsoid(random, 10);
     const Ellipsoid b = any_ellipsoid(random, 10);
     const double rho = a.min_curvature_radius() + b.min_curvature_radius();
@@ -122,7 +123,7 @@ TEST(ContactFunction, IsBelowOneForBodiesThatOverlap) {
 
 TEST(PerramWertheimFallback, GivesTheDistanceOfEverySeparatedPair) {
   Random random(5);
-  for (int i = 0; i < 20'000; ++i) {
+  for (int i = 0; i < repetitions(20'000); ++i) {
     const Ellipsoid a = any_ellipsoid(random, 100);
     const Ellipsoid b = any_ellipsoid(random, 100);
     const ManufacturedPair pair = geom_test::manufacture(a, b, random.log_uniform(1e-9, 10), random);
@@ -138,7 +139,7 @@ TEST(PerramWertheimFallback, GivesTheDistanceOfEverySeparatedPair) {
 
 TEST(PerramWertheimFallback, AnswersCertifiedOverlapsRightOrDeclinesThem) {
   Random random(6);
-  constexpr int kPairs = 5000;
+  constexpr int kPairs = repetitions(5000);
   int answered = 0;
   for (int i = 0; i < kPairs; ++i) {
     const Ellipsoid a = any_ellipsoid(random, 10);

@@ -23,6 +23,7 @@ using geom_test::ManufacturedPair;
 using geom_test::normal_tolerance;
 using geom_test::PlainBall;
 using geom_test::Random;
+using geom_test::repetitions;
 using geom_test::SweptEllipsoid;
 using geom_test::WrappedEllipsoid;
 
@@ -71,7 +72,7 @@ TEST(UserShape, ConcentricBallsAreDeclined) {
 
 TEST(UserShape, AnUnknownEllipsoidIsAnsweredLikeOurs) {
   Random random(2);
-  for (int i = 0; i < 1000; ++i) {
+  for (int i = 0; i < repetitions(1000); ++i) {
     const Ellipsoid a = i % 2 ? random.spheroid(random.log_uniform(0.1, 10)) : random.biaxial(10);
     const Ellipsoid b = i % 3 ? random.spheroid(random.log_uniform(0.1, 10)) : random.biaxial(10);
     const double rho = a.min_curvature_radius() + b.min_curvature_radius();
@@ -91,7 +92,7 @@ TEST(UserShape, AnUnknownEllipsoidIsAnsweredLikeOurs) {
 
 TEST(UserShape, SweepingABallAlongLessensTheDistanceByItsRadius) {
   Random random(3);
-  for (int i = 0; i < 1000; ++i) {
+  for (int i = 0; i < repetitions(1000); ++i) {
     const SweptEllipsoid a{random.biaxial(5), random.log_uniform(0.01, 1)};
     const SweptEllipsoid b{random.spheroid(random.log_uniform(0.2, 5)), random.log_uniform(0.01, 1)};
     // Down to the certified depth, to which the skins add.

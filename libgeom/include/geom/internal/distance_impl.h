@@ -6,6 +6,7 @@
 
 #include <Eigen/Geometry>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -128,13 +129,14 @@ DistanceResult solve_dual(const Pair& pair, const Cold& cold, const PairScale& s
   const double start2 = options.start.squaredNorm();
   // A square that is nearly subnormal has lost the digits that make start / sqrt(start2) a unit vector.
   const bool warm = start2 > 1e-290 && std::isfinite(start2);
+  const int limit = std::max(1, options.max_iterations);
   int spent = 0;
   for (int attempt = warm ? 0 : 1; attempt < 2; ++attempt) {
     Eigen::Vector3d n = attempt == 0 ? Eigen::Vector3d(options.start / std::sqrt(start2)) : cold();
     Evaluation e = pair(n);
-    int budget = options.max_iterations - 1;
+    int budget = limit - 1;
     const Ascent ascent = ascend(pair, rounding, done, budget, n, e);
-    spent += options.max_iterations - budget;
+    spent += limit - budget;
     if (ascent != Ascent::converged) continue;
     if (e.g < -scale.certified_depth - rounding) continue;
     return witness_result(pair, p_WA, step_on_sphere(n, e.step), spent);

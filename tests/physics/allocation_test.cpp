@@ -1,0 +1,109 @@
+// Nothing allocates in the event loop in steady state: every form of operator new of this program counts its calls.
+
+#include <common/ed_states.h>
+
+#include <ed/ed.h>
+
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <new>
+
+namespace {
+
+std::uint64_t allocations = 0;
+
+void* allocate(std::size_t size) {
+  ++allocations;
+  void* const memory = std::malloc(size > 0 ? size : 1);
+  if (memory == nullptr) throw std::bad_alloc();
+  return memory;
+}
+
+void* allocate_aligned(std::size_t size, std::align_val_t alignment) {
+  ++allocations;
+  const auto step = static_cast<std::size_t>(alignment);
+  void* const memory = std::aligned_alloc(step, (size + step) / step * step);
+  if (memory == nullptr) throw std::bad_alloc();
+  return memory;
+}
+
+}  // namespace
+
+// The other forms (nothrow, array) call these.
+void* operator new(std::size_t size) {
+  return allocate(size);
+}
+void* operator new[](std::size_t size) {
+  return allocate(size);
+}
+void* operator new(std::size_t size, std::align_val_t alignment) {
+  return allocate_aligned(size, alignment);
+}
+void* operator new[](std::size_t size, std::align_val_t alignment) {
+  return allocate_aligned(size, alignment);
+}
+void operator delete(void* memory) noexcept {
+  std::free(memory);
+}
+void operator delete[](void* memory) noexcept {
+  std::free(memory);
+}
+void operator delete(void* memory, std::size_t) noexcept {
+  std::free(memory);
+}
+void operator delete[](void* memory, std::size_t) noexcept {
+  std::free(memory);
+}
+void operator delete(void* memory, std::align_val_t) noexcept {
+  std::free(memory);
+}
+void operator delete[](void* memory, std::align_val_t) noexcept {
+  std::free(memory);
+}
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
+  std::free(memory);
+}
+void operator delete[](void* memory, std::size_t, std::align_val_t) noexcept {
+  std::free(memory);
+}
+
+namespace {
+
+using ed_test::Inertia;
+using ed_test::State;
+
+TEST(Allocations, AreCounted) {
+  const std::uint64_t before = allocations;
+  ::operator delete(::operator new(16));
+  EXPECT_EQ(allocations, before + 1);
+}
+
+void expect_no_allocation(const State& state) {
+  // Lists, cells and buffers grow until each has met its largest size.
+  constexpr std::uint64_t kWarmUp = 100000;
+  constexpr std::uint64_t kCollisions = 10000;
+  ed::Simulation simulation(ed_test::start(state));
+  simulation.run_collisions(kWarmUp);
+  const std::uint64_t before = allocations;
+  const std::uint64_t rebuilds = simulation.counters().neighbour_rebuilds;
+  simulation.run_collisions(kCollisions);
+  const std::uint64_t count = allocations - before;
+  std::printf("%s: %llu allocations in %llu collisions\n", ed_test::describe(state).c_str(),
+              static_cast<unsigned long long>(count), static_cast<unsigned long long>(kCollisions));
+  EXPECT_EQ(count, 0U);
+  EXPECT_GT(simulation.counters().neighbour_rebuilds, rebuilds + 100);
+}
+
+TEST(Allocations, NoneInSteadyStateOfRods) {
+  expect_no_allocation({3, 0.40, 256, Inertia::paper, 51});
+}
+
+TEST(Allocations, NoneInSteadyStateOfSpinningDiscs) {
+  expect_no_allocation({0.5, 0.40, 256, Inertia::uniform, 52});
+}
+
+}  // namespace
