@@ -143,21 +143,46 @@ class KeepTimes : public benchmark::ConsoleReporter {
   std::map<std::string, double> ns_;
 };
 
+/// ns per query of the four benchmarks of one X0 and gap, or their sums.
+struct Times {
+  double uniaxial_cold = 0;
+  double uniaxial_warm = 0;
+  double general_cold = 0;
+  double general_warm = 0;
+
+  Times& operator+=(const Times& t) {
+    uniaxial_cold += t.uniaxial_cold;
+    uniaxial_warm += t.uniaxial_warm;
+    general_cold += t.general_cold;
+    general_warm += t.general_warm;
+    return *this;
+  }
+  Times operator/(double n) const { return {uniaxial_cold / n, uniaxial_warm / n, general_cold / n, general_warm / n}; }
+};
+
+void print_row(const std::string& name, const Times& t) {
+  std::printf("%-20s | %7.1f %7.1f %7.2f | %7.1f %7.1f %7.2f | %7.2f %7.2f\n", name.c_str(), t.uniaxial_cold,
+              t.uniaxial_warm, t.uniaxial_cold / t.uniaxial_warm, t.general_cold, t.general_warm,
+              t.general_cold / t.general_warm, t.general_cold / t.uniaxial_cold, t.general_warm / t.uniaxial_warm);
+}
+
 void print_ratios(const KeepTimes& times) {
-  std::printf("\n%6s %7s | %8s %8s %9s | %8s %8s %9s | %15s %15s\n", "X0", "gap", "uniaxial", "warm", "cold/warm",
-              "general", "warm", "cold/warm", "gen/uni cold", "gen/uni warm");
+  std::printf("\n%-20s | %-23s | %-23s | %-15s\n", "ns per query", "uniaxial", "general", "general/uniaxial");
+  std::printf("%-20s | %7s %7s %7s | %7s %7s %7s | %7s %7s\n", "", "cold", "warm", "ratio", "cold", "warm", "ratio",
+              "cold", "warm");
+  Times sum;
   for (const double aspect_ratio : kAspectRatios) {
     for (const double gap : kGaps) {
-      const double uniaxial_cold = times.ns(Kernel::uniaxial, Start::cold, aspect_ratio, gap);
-      const double uniaxial_warm = times.ns(Kernel::uniaxial, Start::warm, aspect_ratio, gap);
-      const double general_cold = times.ns(Kernel::general, Start::cold, aspect_ratio, gap);
-      const double general_warm = times.ns(Kernel::general, Start::warm, aspect_ratio, gap);
-      std::printf("%6g %7g | %8.1f %8.1f %9.2f | %8.1f %8.1f %9.2f | %15.2f %15.2f\n", aspect_ratio, gap, uniaxial_cold,
-                  uniaxial_warm, uniaxial_cold / uniaxial_warm, general_cold, general_warm, general_cold / general_warm,
-                  general_cold / uniaxial_cold, general_warm / uniaxial_warm);
+      const auto ns = [&](Kernel kernel, Start start) { return times.ns(kernel, start, aspect_ratio, gap); };
+      const Times t{ns(Kernel::uniaxial, Start::cold), ns(Kernel::uniaxial, Start::warm),
+                    ns(Kernel::general, Start::cold), ns(Kernel::general, Start::warm)};
+      sum += t;
+      char name[40];
+      std::snprintf(name, sizeof name, "X0 %g gap %g", aspect_ratio, gap);
+      print_row(name, t);
     }
   }
-  std::printf("ns per query; cold columns are named after the kernel\n");
+  print_row("mean", sum / static_cast<double>(kAspectRatios.size() * kGaps.size()));
 }
 
 }  // namespace

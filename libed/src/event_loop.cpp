@@ -485,8 +485,8 @@ double EventLoop::contact_scale(const Pair& pair, double enough) const {
 double EventLoop::shrink_box(double target_box, double least_gain) {
   if (list_scale_ <= 0.9 * envelopes_->least_scale() + 0.1) set_envelope(0, true);
   for (int i = 0; i < number(); ++i) move(i);
-  double factor = std::max(
-      {target_box / box_, envelopes_->least_scale() / list_scale_, smallest_box(bounding_radius_) / box_});
+  double factor =
+      std::max({target_box / box_, envelopes_->least_scale() / list_scale_, smallest_box(bounding_radius_) / box_});
   factor = std::min(factor, 1.0);
   for (int i = 0; i < number(); ++i) {
     for (const std::int32_t index : lists_.of(i)) {

@@ -18,9 +18,13 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Packing fraction of the random insertion. Low enough that a place is found within a few tries for every shape up to
-/// an aspect ratio of 10, where the excluded volume is 13 times that of a sphere.
+/// Packing fraction of the random insertion up to an aspect ratio of 10, where the excluded volume is 13 times a
+/// body's; beyond, it falls as the excluded volume grows. Low enough that a place is found within a few tries.
 constexpr double kDilute = 0.04;
+
+double dilute_packing(const geom::Ellipsoid& shape) {
+  return kDilute * std::min(1.0, 10 * shape.inscribed_radius() / shape.bounding_radius());
+}
 
 /// Tries to insert one body before giving up.
 constexpr int kInsertions = 100000;
@@ -41,10 +45,10 @@ System insert_bodies(const Species& species, int number, double packing_fraction
   const geom::Ellipsoid& shape = species.shape;
   System system;
   system.species = species;
-  system.box = std::max(box_for(shape, number, std::min(packing_fraction, kDilute)),
+  system.box = std::max(box_for(shape, number, std::min(packing_fraction, dilute_packing(shape))),
                         1.05 * internal::smallest_box(shape.bounding_radius()));
   // A box at the wanted packing fraction is taken as it is, so that nothing is left to compress.
-  if (packing_fraction <= kDilute) system.box = box_for(shape, number, packing_fraction);
+  if (packing_fraction <= dilute_packing(shape)) system.box = box_for(shape, number, packing_fraction);
   const double reach = 2 * shape.bounding_radius();
   internal::CellGrid cells(number, system.box, reach);
   std::vector<geom::Pose> poses;
@@ -130,7 +134,7 @@ System compress(System system, double target_box, const StartOptions& options) {
 
 double densest_start(const geom::Ellipsoid& shape) {
   const double ratio = shape.bounding_radius() / shape.inscribed_radius();
-  return 0.64 + 0.06 * std::min(1.0, (ratio - 1) / 0.4);
+  return 0.62 + 0.06 * std::min(1.0, (ratio - 1) / 0.4);
 }
 
 void rescale_velocities(System& system) {

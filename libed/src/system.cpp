@@ -77,7 +77,10 @@ Audit audit(const System& system) {
   result.kinetic = kinetic_state(system);
   const int n = system.size();
   std::vector<geom::Pose> poses(static_cast<std::size_t>(n));
-  const double reach = 2 * system.species.shape.bounding_radius();
+  // Bounding spheres that meet, and a mean distance more, so that there is a closest pair to name in a dilute system
+  // too.
+  const double reach =
+      std::min(2 * system.species.shape.bounding_radius() + system.box / std::cbrt(n), 0.5 * system.box);
   internal::CellGrid cells(n, system.box, reach);
   for (int i = 0; i < n; ++i) {
     const Body& body = system.bodies[static_cast<std::size_t>(i)];

@@ -32,7 +32,8 @@ class ReferenceTable {
 
   std::size_t size() const { return rows_.size(); }
 
-  double value(std::size_t row, const std::string& column) const { return std::stod(rows_.at(row).at(index(column))); }
+  const std::string& text(std::size_t row, const std::string& column) const { return rows_.at(row).at(index(column)); }
+  double value(std::size_t row, const std::string& column) const { return std::stod(text(row, column)); }
 
   /// The value in the one row whose key columns have these values (to the six digits of the tables).
   double at(std::initializer_list<std::pair<std::string, double>> keys, const std::string& column) const {

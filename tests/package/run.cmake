@@ -1,3 +1,5 @@
+cmake_minimum_required(VERSION 3.25)
+
 # Installs a build tree to a temporary prefix, and configures, builds and runs an outside project against it.
 #
 #   cmake -DBUILD_DIR=... -DWORK_DIR=... -DCOMPONENTS="geom;ed" -DFLAGS=... -DCOMPILER=... -P run.cmake

@@ -16,8 +16,9 @@ struct StartOptions {
   std::function<bool(double packing_fraction)> progress;
 };
 
-/// The largest packing fraction that a start from a random dilute configuration is asked to reach: that of random close
-/// packing, 0.64 for spheres, up to 0.70 for ellipsoids of revolution (Donev et al., Science 303 (2004) 990).
+/// The largest packing fraction that a start from a random dilute configuration is asked to reach: 0.02 below random
+/// close packing, which is 0.64 for spheres and 0.70 for ellipsoids of revolution (Donev et al., Science 303 (2004)
+/// 990) and where the compression takes for ever.
 ED_EXPORT double densest_start(const geom::Ellipsoid& shape);
 
 /// Random positions and orientations at a low packing fraction, random velocities, then the paper's compression:

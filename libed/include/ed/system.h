@@ -65,9 +65,10 @@ struct KineticState {
   double energy() const { return translational_energy + rotational_energy + spin_energy; }
 };
 
-/// Distances of all pairs closer than a bounding-sphere contact, and the kinetic state.
+/// Distances of all pairs that are near (bounding spheres that meet, or within a mean distance of it), and the kinetic
+/// state.
 struct Audit {
-  double minimum_distance;  ///< over all pairs (nearest image), < 0: overlap; box if no two bounding spheres meet
+  double minimum_distance;  ///< over all pairs (nearest image), < 0: overlap; box if none are near
   int closest_i = -1;
   int closest_j = -1;
   int overlaps = 0;    ///< pairs closer than -kAuditOverlap

@@ -1,0 +1,46 @@
+#pragma once
+
+/// A run as the program does it: start, equilibration, production with observables.
+
+#include <common/ed_states.h>
+
+#include <ed/ed.h>
+
+#include <cstdint>
+
+namespace ed_test {
+
+struct Protocol {
+  double equilibration;    ///< time units
+  double duration;         ///< of the production
+  double longest_lag = 0;  ///< 0: as ObservablesOptions has it
+};
+
+struct Measured {
+  ed::Results results;
+  ed::Audit audit;
+  std::uint64_t collisions = 0;
+  std::uint64_t overlaps = 0;
+};
+
+inline Measured measure(const State& state, const Protocol& protocol) {
+  ed::System system = equilibrated(state, protocol.equilibration);
+  double envelope = 0;
+  {
+    ed::Simulation simulation(system);
+    simulation.tune_envelopes();
+    system = simulation.system();
+    envelope = simulation.envelope();
+  }
+  ed::Simulation simulation(system, {envelope});
+  ed::Observables observables({state.number, protocol.duration, protocol.longest_lag});
+  while (observables.next_time() <= protocol.duration) {
+    simulation.run_until(observables.next_time());
+    observables.measure(simulation);
+  }
+  simulation.run_until(protocol.duration);
+  return {observables.results(simulation), ed::audit(simulation.system()), simulation.counters().collisions,
+          simulation.counters().overlaps};
+}
+
+}  // namespace ed_test
