@@ -11,6 +11,6 @@ function(hardbody_package_test name components flags)
   set_tests_properties(${name} PROPERTIES LABELS package TIMEOUT 300)
 endfunction()
 
-hardbody_package_test(package_geom_and_ed "geom;ed" "")
+hardbody_package_test(package_geom_and_ed "geom,ed" "")
 hardbody_package_test(package_geom_alone "geom" "")
-hardbody_package_test(package_other_march "geom;ed" "-march=x86-64-v3")
+hardbody_package_test(package_other_march "geom,ed" "-march=x86-64-v3")

@@ -134,7 +134,7 @@ System compress(System system, double target_box, const StartOptions& options) {
 
 double densest_start(const geom::Ellipsoid& shape) {
   const double ratio = shape.bounding_radius() / shape.inscribed_radius();
-  return 0.62 + 0.06 * std::min(1.0, (ratio - 1) / 0.4);
+  return 0.68 - 0.06 * std::max(0.0, 1 - (ratio - 1) / 0.4);
 }
 
 void rescale_velocities(System& system) {

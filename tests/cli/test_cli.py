@@ -331,7 +331,7 @@ class BadConfig(Case):
             ("number = 64", "number = [64]", "system.number"),
             ("packing_fraction = 0.2", "packing_fraction = 0", "system.packing_fraction"),
             ("packing_fraction = 0.2", "packing_fraction = -0.1", "system.packing_fraction"),
-            ("packing_fraction = 0.2", "packing_fraction = 0.71", "system.packing_fraction", "0.71", "0.7000"),
+            ("packing_fraction = 0.2", "packing_fraction = 0.71", "system.packing_fraction", "0.71", "0.6800"),
             ("packing_fraction = 0.2", "packing_fraction = nan", "system.packing_fraction"),
             ("packing_fraction = 0.2", "packing_fraction = inf", "system.packing_fraction"),
             ("packing_fraction = 0.2", 'packing_fraction = "0.2"', "system.packing_fraction"),
