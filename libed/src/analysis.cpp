@@ -30,9 +30,11 @@ struct StretchedResiduals {
       const double log_x = std::log(t[k]) - p[1];
       const double power = std::exp(p[2] * log_x);
       const double decay = std::exp(-power);
+      // At t = 0 and long after tau both derivatives vanish, but 0 x infinity would not.
+      const double fall = power > 0 && decay > 0 ? p[0] * decay * power : 0;
       J(row, 0) = decay;
-      J(row, 1) = p[0] * decay * power * p[2];
-      J(row, 2) = -p[0] * decay * power * log_x;
+      J(row, 1) = fall * p[2];
+      J(row, 2) = fall == 0 ? 0 : -fall * log_x;
     }
     return 0;
   }
@@ -110,7 +112,8 @@ std::optional<StretchedExponential> fit_stretched_exponential(std::span<const do
   solver.parameters.xtol = 1e-10;
   solver.parameters.ftol = 1e-12;
   const auto status = solver.minimize(p);
-  if (status <= 0 || !p.allFinite() || !(p[2] > 0.1 && p[2] < 3)) return std::nullopt;
+  // Of an amplitude of zero neither tau nor beta can be told.
+  if (status <= 0 || !p.allFinite() || p[0] == 0 || !(p[2] > 0.1 && p[2] < 3)) return std::nullopt;
   return StretchedExponential{p[0], std::exp(p[1]), p[2]};
 }
 

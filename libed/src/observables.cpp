@@ -119,7 +119,8 @@ double diffusion(const Curve& curve, double divisor) {
 std::optional<StretchedExponential> fit_c2(const Curve& c2, double collision_rate) {
   const double from = kBallisticCollisions / collision_rate;
   const auto decayed = first_crossing(c2.t, c2.y, 1 / std::exp(1.0));
-  if (!decayed || *decayed < 3 * from) return std::nullopt;
+  // Without collisions `from` is no number.
+  if (!decayed || !(*decayed >= 3 * from)) return std::nullopt;
   Curve window;
   for (std::size_t k = 0; k < c2.t.size() && c2.y[k] > 0.03; ++k) {
     if (c2.t[k] < from) continue;

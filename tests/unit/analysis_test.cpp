@@ -193,6 +193,16 @@ TEST(StretchedExponential, TakesValuesBelowZero) {
   EXPECT_NEAR(fit->tau, 1, 0.1);
 }
 
+TEST(StretchedExponential, TakesTheTimeZero) {
+  const std::vector<double> t = grid(0, 0.1, 60);
+  const auto fit =
+      ed::fit_stretched_exponential(t, values_at(t, [](double s) { return 0.9 * std::exp(-std::pow(s / 0.7, 0.8)); }));
+  ASSERT_TRUE(fit);
+  EXPECT_NEAR(fit->amplitude, 0.9, 1e-7);
+  EXPECT_NEAR(fit->tau, 0.7, 1e-7);
+  EXPECT_NEAR(fit->beta, 0.8, 1e-7);
+}
+
 TEST(StretchedExponential, IsNothingForTooFewPoints) {
   EXPECT_FALSE(ed::fit_stretched_exponential({}, {}));
   EXPECT_FALSE(ed::fit_stretched_exponential(std::vector<double>{1, 2, 3}, std::vector<double>{0.9, 0.5, 0.2}));

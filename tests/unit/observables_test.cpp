@@ -1,0 +1,289 @@
+// Observables on motion whose correlations are known exactly: bodies too far apart to meet. And what a run that is too
+// short, stopped or very long must give.
+
+#include <common/ed_states.h>
+
+#include <ed/ed.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace {
+
+using ed_test::Inertia;
+using Eigen::Vector3d;
+
+/// Sums over some thousand terms of order 1, and positions of order 100 that differ by 1.
+constexpr double kRounding = 1e-11;
+
+/// 27 bodies on a grid, 200 apart, with random orientations, velocities and temperatures of exactly 1.
+ed::System free_bodies(double aspect_ratio, Inertia inertia, std::uint64_t seed) {
+  ed::System system = ed_test::grid(ed_test::species(aspect_ratio, inertia), 3, 200);
+  ed::Random random(seed);
+  for (ed::Body& body : system.bodies) {
+    body.rotation = random.rotation();
+    body.velocity = random.normal3();
+    Vector3d omega = random.normal3();
+    if (!system.species.spins) omega.z() = 0;
+    body.angular_velocity = body.rotation * omega;
+  }
+  ed::rescale_velocities(system);
+  return system;
+}
+
+ed::Results measured(const ed::System& system, const ed::ObservablesOptions& options, double until) {
+  ed::Simulation simulation(system);
+  ed::Observables observables(options);
+  double last = -1;
+  while (observables.next_time() <= until) {
+    EXPECT_GT(observables.next_time(), last);
+    last = observables.next_time();
+    simulation.run_until(last);
+    observables.measure(simulation);
+  }
+  simulation.run_until(until);
+  EXPECT_EQ(simulation.counters().collisions, 0U);
+  return observables.results(simulation);
+}
+
+TEST(Observables, FreeFlightGivesTheExactDisplacements) {
+  const ed::System system = free_bodies(3, Inertia::paper, 1);
+  const ed::Results results = measured(system, {system.size(), 20, 1}, 20);
+  double v2 = 0;
+  double w2 = 0;
+  for (const ed::Body& body : system.bodies) {
+    v2 += body.velocity.squaredNorm() / system.size();
+    w2 += body.angular_velocity.squaredNorm() / system.size();
+  }
+  ASSERT_EQ(results.lags.size(), 61U);
+  EXPECT_DOUBLE_EQ(results.lags.back().lag, 1);
+  EXPECT_NEAR(results.lags.front().lag, 1e-3, 1e-15);
+  for (const ed::LagRow& row : results.lags) {
+    const double t2 = row.lag * row.lag;
+    // Displacements of 1e-3 between positions of 300 have 1e-10 of relative rounding error.
+    EXPECT_NEAR(row.msd.value / t2, v2, 1e-9 * v2) << row.lag;
+    EXPECT_NEAR(row.rot_msd.value / t2, w2, 1e-9 * w2) << row.lag;
+    EXPECT_NEAR(row.rot_msd_body.value / t2, w2, 1e-9 * w2) << row.lag;
+    double c2 = 0;
+    for (const ed::Body& body : system.bodies) {
+      const double x = std::cos(body.angular_velocity.norm() * row.lag);
+      c2 += (1.5 * x * x - 0.5) / system.size();
+    }
+    EXPECT_NEAR(row.c2.value, c2, kRounding) << row.lag;
+    // All origins are alike.
+    EXPECT_NEAR(row.msd.error, 0, 1e-9 * v2 * t2) << row.lag;
+  }
+}
+
+TEST(Observables, FreeFlightIsNotDiffusion) {
+  const ed::System system = free_bodies(3, Inertia::paper, 2);
+  const ed::Results results = measured(system, {system.size(), 20, 1}, 20);
+  for (const ed::Estimate& D : {results.D_trans, results.D_rot, results.D_rot_body}) {
+    EXPECT_TRUE(std::isnan(D.value));
+    EXPECT_TRUE(std::isnan(D.error));
+  }
+  // No collisions: no rate, no pressure from them; rotation is ballistic all the way.
+  EXPECT_TRUE(std::isnan(results.collision_rate.value));
+  EXPECT_TRUE(std::isnan(results.Z.value));
+  EXPECT_TRUE(std::isnan(results.tau_C2.value));
+  EXPECT_TRUE(std::isnan(results.beta_C2.value));
+}
+
+TEST(Observables, SpinIsNoRotationalDisplacement) {
+  // The axis of a body that only spins stays; the spin does not count in Delta Phi.
+  ed::System system = free_bodies(3, Inertia::uniform, 3);
+  for (ed::Body& body : system.bodies) body.angular_velocity = 2.0 * body.rotation.col(2);
+  const ed::Results results = measured(system, {system.size(), 4, 1}, 4);
+  for (const ed::LagRow& row : results.lags) {
+    EXPECT_NEAR(row.rot_msd.value, 0, kRounding);
+    EXPECT_NEAR(row.rot_msd_body.value, 0, kRounding);
+    EXPECT_NEAR(row.c2.value, 1, kRounding);
+  }
+  EXPECT_NEAR(results.rotational_kT.value, 0, kRounding);
+}
+
+TEST(Observables, BodyComponentsOfTheRotationTurnWithTheBody) {
+  // A symmetric top: in the body's frame the angular velocity across the axis turns at (1 - I3 / I) times the spin, so
+  // that its integral goes round a circle: |Delta Phi|^2 = (2 w / k)^2 sin^2(k t / 2).
+  ed::System system = free_bodies(3, Inertia::uniform, 4);
+  const double across = 0.8;
+  const double spin = 2.5;
+  for (ed::Body& body : system.bodies) body.angular_velocity = body.rotation * Vector3d(across, 0, spin);
+  const double k = (1 - system.species.inertia.z() / system.species.inertia.x()) * spin;
+  const ed::Results results = measured(system, {system.size(), 8, 2}, 8);
+  for (const ed::LagRow& row : results.lags) {
+    EXPECT_NEAR(row.rot_msd_body.value, std::pow(2 * across / k * std::sin(0.5 * k * row.lag), 2), kRounding);
+  }
+}
+
+TEST(Observables, TemperaturesAndOrderAreThoseOfTheState) {
+  ed::System system = free_bodies(3, Inertia::paper, 5);
+  for (ed::Body& body : system.bodies) {
+    body.angular_velocity.setZero();
+    body.rotation.setIdentity();
+  }
+  const ed::Results results = measured(system, {system.size(), 10, 1}, 10);
+  EXPECT_NEAR(results.translational_kT.value, 1, kRounding);
+  EXPECT_NEAR(results.translational_kT.error, 0, kRounding);
+  EXPECT_NEAR(results.rotational_kT.value, 0, kRounding);
+  EXPECT_NEAR(results.S.value, 1, kRounding);
+  EXPECT_DOUBLE_EQ(results.duration, 10);
+  for (const ed::BlockRow& row : results.blocks) {
+    EXPECT_GT(row.end, row.begin);
+    EXPECT_NEAR(row.S, 1, kRounding);
+    EXPECT_EQ(row.collision_rate, 0);
+  }
+}
+
+TEST(Observables, MemoryIsBoundedAndNothingIsLostWhenBlocksAreMerged) {
+  const ed::System system = free_bodies(3, Inertia::paper, 6);
+  double v2 = 0;
+  for (const ed::Body& body : system.bodies) v2 += body.velocity.squaredNorm() / system.size();
+  for (const double lags : {10, 31, 33, 64, 65, 150}) {
+    const double longest = 0.1;
+    const ed::Results results = measured(system, {system.size(), lags * longest, longest}, lags * longest);
+    EXPECT_LE(results.blocks.size(), 32U) << lags;
+    EXPECT_GE(results.blocks.size(), std::min<std::size_t>(static_cast<std::size_t>(lags) - 1, 16U)) << lags;
+    EXPECT_NEAR(results.lags.back().msd.value, v2 * longest * longest, 1e-9) << lags;
+    // Blocks follow each other without a gap.
+    EXPECT_EQ(results.blocks.front().begin, 0);
+    for (std::size_t k = 1; k < results.blocks.size(); ++k) {
+      EXPECT_EQ(results.blocks[k].begin, results.blocks[k - 1].end) << lags;
+    }
+  }
+}
+
+TEST(Observables, OfARunThatWasStoppedAreThoseSoFar) {
+  const ed::System system = free_bodies(3, Inertia::paper, 7);
+  const ed::Results results = measured(system, {system.size(), 1000, 10}, 15.3);
+  EXPECT_DOUBLE_EQ(results.duration, 15.3);
+  ASSERT_EQ(results.lags.size(), 61U);
+  EXPECT_TRUE(std::isfinite(results.translational_kT.value));
+  // A run that has not even seen the longest lag.
+  const ed::Results shorter = measured(system, {system.size(), 1000, 10}, 2);
+  ASSERT_FALSE(shorter.lags.empty());
+  EXPECT_LE(shorter.lags.back().lag, 2 * (1 + 1e-12));
+  EXPECT_TRUE(std::isnan(shorter.D_trans.value));
+}
+
+TEST(Observables, OfNoRunAreNull) {
+  const ed::System system = free_bodies(3, Inertia::paper, 8);
+  const ed::Simulation simulation(system);
+  const ed::Observables observables({system.size(), 10});
+  EXPECT_EQ(observables.next_time(), 0);
+  const ed::Results results = observables.results(simulation);
+  EXPECT_EQ(results.duration, 0);
+  EXPECT_TRUE(results.lags.empty());
+  EXPECT_TRUE(results.blocks.empty());
+  for (const ed::Estimate& estimate :
+       {results.collision_rate, results.Z, results.translational_kT, results.rotational_kT, results.S, results.D_trans,
+        results.D_rot, results.D_rot_body, results.t_C2_1overe, results.tau_C2, results.beta_C2}) {
+    EXPECT_TRUE(std::isnan(estimate.value));
+    EXPECT_TRUE(std::isnan(estimate.error));
+  }
+}
+
+TEST(Observables, WantNothingMoreWhenTheDurationIsCovered) {
+  const ed::System system = free_bodies(3, Inertia::paper, 9);
+  ed::Simulation simulation(system);
+  ed::Observables observables({system.size(), 3});
+  int samples = 0;
+  while (std::isfinite(observables.next_time())) {
+    ASSERT_LE(observables.next_time(), 3);
+    simulation.run_until(observables.next_time());
+    observables.measure(simulation);
+    ASSERT_LT(++samples, 1000000);
+  }
+  // 16 origins a longest lag (a sixteenth of the duration), 61 lags each, some at the same times.
+  EXPECT_GT(samples, 1000);
+  EXPECT_LE(samples, 257 * 62);
+}
+
+/// A fluid whose diffusion is certain to have set in, against a direct evaluation of the same run.
+TEST(Observables, AgreeWithADirectEvaluation) {
+  const ed::System system = ed_test::start({2, 0.45, 40, Inertia::paper, 10});
+  ed::Simulation simulation(system);
+  ed::Observables observables({system.size(), 32, 2});
+  std::vector<ed::Snapshot> origins;  // one longest lag apart
+  ed::Snapshot now;
+  while (observables.next_time() <= 32) {
+    simulation.run_until(observables.next_time());
+    observables.measure(simulation);
+    simulation.sample(now);
+    if (now.time >= 2.0 * static_cast<double>(origins.size()) * (1 - 1e-12)) origins.push_back(now);
+  }
+  simulation.run_until(32);
+  const ed::Results results = observables.results(simulation);
+  const auto collisions = static_cast<double>(simulation.counters().collisions);
+  EXPECT_NEAR(results.collision_rate.value, 2 * collisions / (40 * 32), kRounding);
+  EXPECT_NEAR(results.Z.value, 1 + simulation.virial() / (3 * 40 * 32 * results.translational_kT.value), kRounding);
+  // The 15 disjoint stretches are a subset of the 16 x 15 overlapping ones: both estimate the same mean.
+  std::vector<double> msd;
+  std::vector<double> c2;
+  for (std::size_t k = 1; k < origins.size(); ++k) {
+    msd.push_back(ed::msd_between(origins[k - 1], origins[k]));
+    c2.push_back(ed::c2_between(origins[k - 1], origins[k]));
+  }
+  const ed::Estimate direct_msd = ed::mean_of_blocks(msd);
+  const ed::Estimate direct_c2 = ed::mean_of_blocks(c2);
+  ASSERT_GE(msd.size(), 15U);
+  EXPECT_NEAR(results.lags.back().msd.value, direct_msd.value, 3 * direct_msd.error);
+  EXPECT_NEAR(results.lags.back().c2.value, direct_c2.value, 3 * direct_c2.error);
+  EXPECT_TRUE(results.D_trans.value > 0);
+  EXPECT_TRUE(results.t_C2_1overe.value > 0);
+}
+
+TEST(NematicOrder, IsOneForAlignedAndAntiparallelAxes) {
+  std::vector<Vector3d> axes(100, Vector3d(1, 2, 2) / 3);
+  EXPECT_NEAR(ed::nematic_order(axes), 1, kRounding);
+  for (std::size_t k = 0; k < axes.size(); k += 2) axes[k] *= -1;
+  EXPECT_NEAR(ed::nematic_order(axes), 1, kRounding);
+}
+
+TEST(NematicOrder, OfKnownDistributions) {
+  // Along x, y and z alike: isotropic to second order.
+  EXPECT_NEAR(ed::nematic_order({Vector3d::UnitX(), Vector3d::UnitY(), Vector3d::UnitZ()}), 0, kRounding);
+  // In a plane: Q = diag(1/4, 1/4, -1/2).
+  EXPECT_NEAR(ed::nematic_order({Vector3d::UnitX(), Vector3d::UnitY()}), 0.25, kRounding);
+  // On a cone of angle theta about z: P2(cos theta).
+  std::vector<Vector3d> cone;
+  const double theta = 0.3;
+  for (int k = 0; k < 12; ++k) {
+    const double phi = 2 * std::acos(-1.0) * k / 12;
+    cone.emplace_back(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta));
+  }
+  EXPECT_NEAR(ed::nematic_order(cone), 1.5 * std::pow(std::cos(theta), 2) - 0.5, kRounding);
+}
+
+TEST(NematicOrder, OfIsotropicAxesIsSmall) {
+  ed::Random random(11);
+  std::vector<Vector3d> axes;
+  for (int k = 0; k < 20000; ++k) axes.push_back(random.direction());
+  const double S = ed::nematic_order(axes);
+  // Elements of Q have standard deviation about 1 / sqrt(5 N) on the diagonal: 0.003; the largest eigenvalue of such a
+  // matrix is positive and within a few times that.
+  EXPECT_GT(S, 0);
+  EXPECT_LT(S, 0.02);
+}
+
+TEST(SnapshotCorrelations, OfKnownDisplacements) {
+  ed::Snapshot origin;
+  origin.position = {Vector3d::Zero(), Vector3d(1, 1, 1)};
+  origin.axis = {Vector3d::UnitZ(), Vector3d::UnitX()};
+  origin.phi_lab.assign(2, Vector3d::Zero());
+  origin.phi_body.assign(2, Eigen::Vector2d::Zero());
+  ed::Snapshot now = origin;
+  now.position[0] += Vector3d(3, 0, 4);
+  now.axis[1] = Vector3d::UnitY();
+  EXPECT_NEAR(ed::msd_between(origin, now), 12.5, kRounding);
+  // P2(1) = 1 and P2(0) = -1/2.
+  EXPECT_NEAR(ed::c2_between(origin, now), 0.25, kRounding);
+  now.axis[0] *= -1;
+  EXPECT_NEAR(ed::c2_between(origin, now), 0.25, kRounding);
+}
+
+}  // namespace
