@@ -8,9 +8,10 @@ function(hardbody_package_test name components flags)
   add_test(NAME ${name} COMMAND ${CMAKE_COMMAND} -DBUILD_DIR=${PROJECT_BINARY_DIR}
     -DWORK_DIR=${CMAKE_CURRENT_BINARY_DIR}/${name} "-DCOMPONENTS=${components}" -DCOMPILER=${CMAKE_CXX_COMPILER}
     "-DFLAGS=${consumer_flags} ${flags}" -P ${CMAKE_CURRENT_SOURCE_DIR}/package/run.cmake)
-  set_tests_properties(${name} PROPERTIES LABELS package TIMEOUT 300)
+  set_tests_properties(${name} PROPERTIES LABELS package TIMEOUT 300
+    RESOURCE_LOCK install)  # all install from the same build tree
 endfunction()
 
 hardbody_package_test(package_geom_and_ed "geom,ed" "")
 hardbody_package_test(package_geom_alone "geom" "")
-hardbody_package_test(package_other_march "geom,ed" "-march=x86-64-v3")
+hardbody_package_test(package_other_march "geom,ed" "-march=native")

@@ -3,6 +3,7 @@
 import argparse
 import concurrent.futures
 import csv
+import hashlib
 import json
 import math
 import pathlib
@@ -28,6 +29,8 @@ class Runner:
     def __init__(self, program, out, jobs):
         self.program = str(pathlib.Path(program).resolve())
         self.out = pathlib.Path(out)
+        # Results are kept for the very binary that made them.
+        self.binary = hashlib.sha256(pathlib.Path(self.program).read_bytes()).hexdigest()
         self.pool = concurrent.futures.ThreadPoolExecutor(jobs)
 
     def submit(self, name, **settings):
@@ -37,6 +40,7 @@ class Runner:
         directory = self.out / name
         config = self.out / f"{name}.toml"
         text = (
+            f'# program {self.binary}\n'
             f'seed = {settings.get("seed", 1)}\n'
             f'[system]\nnumber = {settings.get("number", 512)}\npacking_fraction = {settings["phi"]}\n'
             f'[shape]\nkind = "ellipsoid"\naspect_ratio = {settings["X0"]}\n'

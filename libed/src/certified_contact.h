@@ -16,8 +16,8 @@
 ///
 /// Rounding. When the bodies touch (g within kTouching * size) and approach, that is the contact. When they touch and
 /// part, or rest (|g'| within kResting * speed, where its sign is rounding), g and g' are set to 0 if below, and the
-/// step is at least sqrt(2 kTouching size / K): the deepest overlap that q allows on the way is then kTouching * size,
-/// below what g itself resolves.
+/// step is at least sqrt(2 kTouching size / K), K the crude bound that holds for every n and t: the deepest overlap
+/// that q allows on the way is then kTouching * size, below what g itself resolves.
 
 #include "select.h"
 #include "sphere_window.h"
@@ -141,10 +141,11 @@ bool refine_contact(const Gauge& gauge, const Window& near, double& t, Eigen::Ve
     const auto evaluate = [&](const Eigen::Vector3d& m) { return gauge.evaluate(state, m); };
     typename Gauge::Evaluation e = evaluate(normal);
     int budget = kRefineBudget;
-    (void)geom::internal::ascend(evaluate, rounding, done, budget, normal, e);
+    const auto ascent = geom::internal::ascend(evaluate, rounding, done, budget, normal, e);
     count.kernel_calls += static_cast<std::uint64_t>(1 + kRefineBudget - budget);
     ++count.evaluations;
     ++count.newton_evaluations;
+    if (ascent != geom::internal::Ascent::converged) return false;
     const double d = e.g + 0.5 * e.decrement;
     const double rate = gauge.rate(state, e, normal);
     const double span = time - near.begin;
@@ -183,7 +184,7 @@ Finding certified_contact(const Gauge& gauge, double t_begin, double t_end, int 
     if (quality == Quality::clear) return {Outcome::clear, t_end};
     double g = e.g;
     double gp = gauge.rate(state, e, n);
-    if (quality == Quality::overlap) return {Outcome::overlapping, t, gp < 0};
+    if (quality == Quality::overlap) return {Outcome::overlapping, t, gp < -kResting * gauge.speed()};
     if (g <= kTouching * size) {
       if (gp < -kResting * gauge.speed()) return {Outcome::contact, t};
       g = larger(g, 0.0);
@@ -217,7 +218,8 @@ Finding certified_contact(const Gauge& gauge, double t_begin, double t_end, int 
         }
       }
     } else {
-      tau = larger(tau, std::sqrt(2 * kTouching * size / K));
+      // By the bound that holds over any reach: K may be one for a short reach.
+      tau = larger(tau, std::sqrt(2 * kTouching * size / gauge.curvature_limit()));
     }
     // Below the resolution of time, with g above that of distance: cannot be, but must not become an endless loop.
     if (!(t + tau > t)) return {Outcome::contact, t};

@@ -438,6 +438,7 @@ void EventLoop::process_contact(std::int32_t index) {
   ContactBody a = contact_body(i, n);
   ContactBody b = contact_body(j, -n);
   const double J = collide(a, b, n);
+  if (!(J > 0)) ++counters_.parting_contacts;
   ++counters_.collisions;
   const Vector3d r = nearest_image(motions_[at(j)].position - motions_[at(i)].position, box_);
   virial_ += J * r.dot(n);
@@ -488,6 +489,9 @@ double EventLoop::shrink_box(double target_box, double least_gain) {
   double factor =
       std::max({target_box / box_, envelopes_->least_scale() / list_scale_, smallest_box(bounding_radius_) / box_});
   factor = std::min(factor, 1.0);
+  if (1 - factor < least_gain) return box_;
+  // The last step may be small, however large the usual one is.
+  least_gain = std::min(least_gain, 0.5 * (1 - target_box / box_));
   for (int i = 0; i < number(); ++i) {
     for (const std::int32_t index : lists_.of(i)) {
       const Pair& pair = lists_.pair(index);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <deque>
 #include <limits>
+#include <stdexcept>
 
 namespace ed {
 namespace {
@@ -149,6 +150,10 @@ double msd_between(const Snapshot& origin, const Snapshot& now) {
 class Observables::Impl {
  public:
   explicit Impl(const ObservablesOptions& options) : options_(options) {
+    if (!(options.duration > 0) || !std::isfinite(options.duration) || options.number < 1) {
+      throw std::invalid_argument(
+          "Observables: duration and number; accepted: a positive finite time, at least 1 body");
+    }
     double longest = options.longest_lag;
     if (!(longest > 0)) longest = std::min(kLongestLag, options.duration / 16);
     lags_ = log_lags(longest);

@@ -13,7 +13,6 @@ namespace ed {
 class Simulation::Impl : public internal::EventLoop {
  public:
   using EventLoop::EventLoop;
-  mutable Counters snapshot;
 };
 
 namespace {
@@ -37,13 +36,17 @@ void check_start(const System& system) {
   }
   const Audit state = audit(system);
   if (!state.finite) throw std::invalid_argument("a position, orientation or velocity is not finite");
-  if (state.overlaps > 0 || state.unanswered > 0) {
-    std::ostringstream message;
-    message << state.overlaps + state.unanswered << " pairs of bodies overlap at the start, the worst answered by "
-            << -state.minimum_distance << " (bodies " << state.closest_i << " and " << state.closest_j
-            << "); accepted: none deeper than " << kAuditOverlap;
-    throw std::invalid_argument(message.str());
+  if (state.overlaps == 0 && state.unanswered == 0) return;
+  std::ostringstream message;
+  message << state.overlaps + state.unanswered << " pairs of bodies overlap at the start";
+  if (state.overlaps > 0) {
+    message << ", the worst answered by " << -state.minimum_distance << " (bodies " << state.closest_i << " and "
+            << state.closest_j << ")";
+  } else {
+    message << ", too deeply to say how much";
   }
+  message << "; accepted: none deeper than " << kAuditOverlap;
+  throw std::invalid_argument(message.str());
 }
 
 }  // namespace
@@ -88,12 +91,12 @@ const std::vector<FailedPair>& Simulation::failures() const {
   return impl_->failures();
 }
 
-const Counters& Simulation::counters() const {
-  impl_->snapshot = impl_->counters();
-  return impl_->snapshot;
+Counters Simulation::counters() const {
+  return impl_->counters();
 }
 
 bool Simulation::run_until(double time, std::uint64_t max_collisions) {
+  if (std::isnan(time)) throw std::invalid_argument("run_until: time is not a number");
   return impl_->run_until(time, max_collisions);
 }
 

@@ -139,11 +139,11 @@ double densest_start(const geom::Ellipsoid& shape) {
 
 void rescale_velocities(System& system) {
   const int n = system.size();
-  const int axis = *system.species.shape.symmetry_axis();
   Vector3d mean = Vector3d::Zero();
   for (const Body& body : system.bodies) mean += body.velocity / n;
   for (Body& body : system.bodies) body.velocity -= mean;
-  const KineticState now = kinetic_state(system);
+  const KineticState now = kinetic_state(system);  // refuses bodies that are not of revolution
+  const int axis = *system.species.shape.symmetry_axis();
   const auto factor = [](double wanted, double energy) { return energy > 0 ? std::sqrt(wanted / energy) : 0.0; };
   const double translation = factor(0.5 * (3 * n - 3), now.translational_energy);
   const double rotation = factor(0.5 * 2 * n, now.rotational_energy);
@@ -157,6 +157,9 @@ void rescale_velocities(System& system) {
 }
 
 System random_start(const Species& species, const StartOptions& options) {
+  if (!species.shape.symmetry_axis()) {
+    throw std::invalid_argument("semi_axes: three different semi-axes are not available yet; accepted: two equal ones");
+  }
   const double densest = densest_start(species.shape);
   if (!(options.packing_fraction > 0 && options.packing_fraction <= densest)) {
     std::ostringstream message;

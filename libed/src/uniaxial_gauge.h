@@ -9,7 +9,7 @@
 ///   double rate(state, gap or e, n)       dg/dt at fixed n
 ///   Certificate certificate(state, e, n)  with curvature(tau) >= -d2g/dt2 at fixed n over [t, t + tau]
 ///   Vector3d cold_normal(state)
-///   bool separating_normal(state, n)      the fallback: a normal with g > 0, or false, which proves an overlap
+///   bool separating_normal(state, n)      the fallback: a normal with g > 0 (to rounding), or false: an overlap
 ///   double curvature_limit()              >= -d2g/dt2 for every n and t
 ///   double size(), certified_depth(), speed(), and window(t_begin, t_end)
 
@@ -161,18 +161,19 @@ class UniaxialGauge {
 
   Eigen::Vector3d cold_normal(const State& s) const { return geom::internal::cold_normal(A_, B_, s.r, s.u_a, s.u_b); }
 
-  /// A normal with g > 0 by the Perram-Wertheim contact function, or false, which proves an overlap.
+  /// The normal of the Perram-Wertheim contact function, or false if the bodies overlap, by more than the rounding
+  /// error of that function: g(normal) = (sqrt(F) - 1)(hA + hB).
   bool separating_normal(const State& s, Eigen::Vector3d& n) const {
     const auto contact = geom::internal::perram_wertheim(quadric(A_, s.u_a), quadric(B_, s.u_b), s.r);
-    if (!(contact.F > 1)) return false;
+    if (!(contact.F > 1 - 2 * kOverlap)) return false;
     n = contact.normal;
     return true;
   }
 
   Window window(double t_begin, double t_end) const { return sphere_window(r_now_, v_, reach_, now_, t_begin, t_end); }
 
-  /// A bound of -d2g/dt2 for every n and t, cheap and crude. From the formula of SupportCurvature, with y = x - C: for a
-  /// rod h >= b, and the bracket is at most r^2 - 2 y^2 - C y <= r^2 + C^2 / 8 <= 1; for a disc h >= a, and x y <= 1.
+  /// A bound of -d2g/dt2 for every n and t, cheap and crude. From the formula of SupportCurvature, with y = x - C: for
+  /// a rod h >= b, and the bracket is at most r^2 - 2 y^2 - C y <= r^2 + C^2 / 8 <= 1; for a disc h >= a, and x y <= 1.
   double curvature_limit() const {
     return A_.turning_limit * (a_.rate * a_.rate) + B_.turning_limit * (b_.rate * b_.rate);
   }

@@ -54,8 +54,7 @@ inline std::vector<MovingPair> near_neighbours(double aspect_ratio, double packi
   const geom::Ellipsoid shape = spheroid(aspect_ratio);
   ed::StartOptions options;
   options.packing_fraction = packing_fraction;
-  // A tenth above the least: the compression needs some room too.
-  options.number = std::max(number, 11 * ed::smallest_number(shape, packing_fraction) / 10);
+  options.number = std::max(number, ed::smallest_number(shape, packing_fraction));
   options.seed = seed;
   ed::Simulation simulation(ed::random_start(ed::paper_species(shape), options));
   simulation.run_collisions(static_cast<std::uint64_t>(20 * options.number));

@@ -17,6 +17,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <limits>
+#include <numbers>
 #include <ostream>
 #include <string>
 
@@ -89,9 +90,9 @@ Turning draw(ed::Random& random, bool rod, bool spin) {
   };
   const double cos_n = cosine();
   const double cos_u = spin ? cosine() : 0;
-  double phase = 2 * M_PI * random.uniform();
+  double phase = 2 * std::numbers::pi * random.uniform();
   if (random.uniform() < 0.3) {
-    phase = 0.5 * M_PI * std::floor(4 * random.uniform());  // a turning point, or the fastest one
+    phase = 0.5 * std::numbers::pi * std::floor(4 * random.uniform());  // a turning point, or the fastest one
     if (random.uniform() < 0.7) phase += (2 * random.uniform() - 1) * log_uniform(random, 1e-12, 1e-2);
   }
   const double amplitude = std::sqrt((1 - cos_n * cos_n) * (1 - cos_u * cos_u));
@@ -189,9 +190,9 @@ TEST_P(CurvatureBound, HoldsForeverFromAnyState) {
     const double forever = std::numeric_limits<double>::infinity();
     const double bound =
         c.spin ? s.curvature<true>().bound(s.shape(), forever) : s.curvature<false>().bound(s.shape(), forever);
-    EXPECT_GE(bound, largest(s, 2 * M_PI / s.rate) - 1e-12 * s.scale());
+    EXPECT_GE(bound, largest(s, 2 * std::numbers::pi / s.rate) - 1e-12 * s.scale());
     EXPECT_LE(bound, kFactorsApart * s.scale());
-    EXPECT_LE(largest(s, 2 * M_PI / s.rate), s.shape().turning_limit * s.rate * s.rate * (1 + 1e-12));
+    EXPECT_LE(largest(s, 2 * std::numbers::pi / s.rate), s.shape().turning_limit * s.rate * s.rate * (1 + 1e-12));
   }
 }
 

@@ -19,6 +19,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <numbers>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -156,7 +157,7 @@ TEST(TimeOfContact, NeedleTurningInPlaceSweepsIntoASphere) {
   const ContactResult r = time_of_contact(needle, turning, ball, resting, 100);
   expect_touching(r, needle, turning, ball, resting);
   double apart = 0;
-  double inside = M_PI;  // a quarter turn
+  double inside = std::numbers::pi;  // a quarter turn
   while (inside - apart > 1e-15 * inside) {
     const double middle = 0.5 * (apart + inside);
     if (middle <= apart || middle >= inside) break;

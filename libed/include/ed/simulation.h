@@ -27,7 +27,8 @@ struct Counters {
   std::uint64_t neighbour_rebuilds = 0;  ///< envelopes renewed
   std::uint64_t envelope_checks = 0;     ///< looks at whether a body leaves its envelope
   std::uint64_t candidate_tests = 0;     ///< pairs of envelopes tested in rebuilds
-  std::uint64_t overlaps = 0;            ///< pairs found overlapping by more than rounding: always 0 in a sound run
+  std::uint64_t overlaps = 0;            ///< pairs found deeper than 1e-12 of their size: always 0 in a sound run
+  std::uint64_t parting_contacts = 0;    ///< contacts at which the bodies did not approach: no impulse; always 0
 };
 
 struct Collision {
@@ -96,7 +97,7 @@ class ED_EXPORT Simulation {
   double envelope() const;
 
   double box() const;
-  const Counters& counters() const;
+  Counters counters() const;
 
   /// Sum over collisions of r_AB . dp, the momentum that B gains along the vector between the centres.
   double virial() const;

@@ -19,7 +19,7 @@ inline constexpr double kTouching = 2e-15;
 inline constexpr double kResting = 1e-14;
 
 /// Contact search: g < -kOverlap * size is an overlap and not the rounding error of a contact. Dimensionless.
-inline constexpr double kOverlap = 1e-10;
+inline constexpr double kOverlap = 1e-12;
 
 /// Contact search: Newton's method on d(t) is tried when the root of the certified parabola and that of its tangent
 /// differ by at most kTangentAgreement * size / speed. Dimensionless. Its result is certified by itself; this only

@@ -1,0 +1,356 @@
+// The event loop on cases solved by hand, and what it refuses.
+
+#include <common/ed_hash.h>
+#include <common/ed_states.h>
+
+#include <ed/ed.h>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace {
+
+using ed_test::Inertia;
+using Eigen::Vector3d;
+using testing::HasSubstr;
+
+/// Positions of order 10, a few events.
+constexpr double kRounding = 1e-13;
+
+ed::Species sphere() {
+  return ed::paper_species(geom::Ellipsoid({1, 1, 1}));
+}
+
+/// Two bodies in a box, the first at the origin.
+ed::System two_bodies(const ed::Species& species, double box, const Vector3d& r) {
+  ed::System system;
+  system.box = box;
+  system.species = species;
+  system.bodies.resize(2);
+  system.bodies[1].position = r;
+  return system;
+}
+
+std::string message_of(const ed::System& system) {
+  try {
+    const ed::Simulation simulation(system);
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "no std::invalid_argument";
+}
+
+TEST(Simulation, SpheresThatMeetHeadOnExchangeVelocities) {
+  ed::System system = two_bodies(sphere(), 20, {5, 0, 0});
+  system.bodies[0].velocity = {2, 0.5, 0};
+  system.bodies[1].velocity = {-1, 0.5, 0};
+  ed::Simulation simulation(system);
+  simulation.record_collisions(10);
+  simulation.run_until(2);
+  // A gap of 3 at speed 3.
+  ASSERT_EQ(simulation.collisions().size(), 1U);
+  EXPECT_NEAR(simulation.collisions()[0].time, 1, kRounding);
+  EXPECT_EQ(simulation.collisions()[0].i, 0);
+  EXPECT_EQ(simulation.collisions()[0].j, 1);
+  const ed::System end = simulation.system();
+  EXPECT_NEAR((end.bodies[0].velocity - Vector3d(-1, 0.5, 0)).norm(), 0, kRounding);
+  EXPECT_NEAR((end.bodies[1].velocity - Vector3d(2, 0.5, 0)).norm(), 0, kRounding);
+  EXPECT_NEAR((end.bodies[0].position - Vector3d(1, 1, 0)).norm(), 0, kRounding);
+  EXPECT_NEAR((end.bodies[1].position - Vector3d(6, 1, 0)).norm(), 0, kRounding);
+  // r_AB . dp = 2 x 3: B gains 3 along the line of centres.
+  EXPECT_NEAR(simulation.virial(), 6, kRounding);
+  EXPECT_EQ(simulation.counters().collisions, 1U);
+}
+
+TEST(Simulation, BodiesMeetThroughTheFacesOfTheBox) {
+  ed::System system = two_bodies(sphere(), 12, {5, 5, 5});
+  system.bodies[0].position = {-5, -5, -5};
+  // The nearest image of body 1 is at (-7, -7, -7): 2 sqrt(3) away, a gap of 1.464 at speed sqrt(3).
+  system.bodies[0].velocity = {-1, -1, -1};
+  ed::Simulation simulation(system);
+  simulation.record_collisions(1);
+  simulation.run_collisions(1);
+  ASSERT_EQ(simulation.collisions().size(), 1U);
+  EXPECT_NEAR(simulation.collisions()[0].time, 2 - 2 / std::sqrt(3.0), kRounding);
+}
+
+TEST(Simulation, CollisionsComeAtTheirTimesHoweverLongTheRun) {
+  // Of two equal spheres in a row with their images one rests, and each collision hands the velocity on.
+  ed::System system = two_bodies(sphere(), 10, {5, 0, 0});
+  system.bodies[0].velocity = {1, 0, 0};
+  ed::Simulation simulation(system);
+  simulation.record_collisions(5000);
+  simulation.run_until(20000);
+  // A gap of 3 at speed 1 first, then of 10 - 4.
+  ASSERT_EQ(simulation.collisions().size(), 3333U);
+  for (std::size_t k = 0; k < 3333; ++k) {
+    const double wanted = 3 + 6 * static_cast<double>(k);
+    // Errors of single collisions add up, at worst linearly.
+    ASSERT_NEAR(simulation.collisions()[k].time, wanted, 1e-14 * static_cast<double>(k + 10));
+  }
+  EXPECT_EQ(simulation.time(), 20000);
+}
+
+TEST(Simulation, AgreesWithTimeOfContactOnOnePair) {
+  ed::Random random(21);
+  for (const double X0 : {0.3, 3.0}) {
+    const ed::Species species = ed_test::species(X0, Inertia::uniform);
+    for (int round = 0; round < 50; ++round) {
+      const double R = species.shape.bounding_radius();
+      ed::System system = two_bodies(species, 20 * R, 3 * R * random.direction());
+      for (ed::Body& body : system.bodies) {
+        body.rotation = random.rotation();
+        body.angular_velocity = random.normal3();
+        body.velocity = 0.1 * random.normal3();
+      }
+      system.bodies[1].velocity -= system.bodies[1].position;
+      const auto motion = [&](int i) {
+        const ed::Body& b = system.bodies[static_cast<std::size_t>(i)];
+        return ed::Motion{geom::Pose(b.rotation, b.position), b.velocity, b.angular_velocity, species.inertia, 0};
+      };
+      const ed::ContactResult contact = ed::time_of_contact(species.shape, motion(0), species.shape, motion(1), 2);
+      ed::Simulation simulation(system);
+      simulation.record_collisions(1);
+      simulation.run_until(2, 1);
+      ASSERT_EQ(simulation.collisions().size(), contact.status == ed::ContactStatus::hit ? 1U : 0U);
+      if (contact.status == ed::ContactStatus::hit) {
+        ASSERT_NEAR(simulation.collisions()[0].time, contact.time, 1e-12);
+      }
+    }
+  }
+}
+
+TEST(Simulation, StopsAtTheTimeOrTheNumberOfCollisions) {
+  ed::Simulation simulation(ed_test::start({2, 0.3, 48, Inertia::paper, 22}));
+  EXPECT_FALSE(simulation.run_until(100, 10));
+  EXPECT_EQ(simulation.counters().collisions, 10U);
+  const double time = simulation.time();
+  EXPECT_LT(time, 100);
+  EXPECT_TRUE(simulation.run_until(time + 0.5));
+  EXPECT_EQ(simulation.time(), time + 0.5);
+  // A time that has passed changes nothing.
+  const std::uint64_t hash = ed_test::hash_of(simulation);
+  EXPECT_TRUE(simulation.run_until(time));
+  EXPECT_EQ(ed_test::hash_of(simulation), hash);
+  const std::uint64_t collisions = simulation.counters().collisions;
+  simulation.run_collisions(25);
+  EXPECT_EQ(simulation.counters().collisions, collisions + 25);
+}
+
+TEST(Simulation, RecordsOnlyTheCollisionsAskedFor) {
+  ed::Simulation simulation(ed_test::start({2, 0.3, 48, Inertia::paper, 23}));
+  simulation.run_collisions(5);
+  EXPECT_TRUE(simulation.collisions().empty());
+  simulation.record_collisions(7);
+  simulation.run_collisions(20);
+  ASSERT_EQ(simulation.collisions().size(), 7U);
+  for (const ed::Collision& collision : simulation.collisions()) {
+    EXPECT_LT(collision.i, collision.j);
+    EXPECT_GE(collision.i, 0);
+    EXPECT_LT(collision.j, 48);
+  }
+  simulation.record_collisions(3);
+  EXPECT_TRUE(simulation.collisions().empty());
+  simulation.run_collisions(20);
+  EXPECT_EQ(simulation.collisions().size(), 3U);
+}
+
+TEST(Simulation, StateGoesInAndOutUnchanged) {
+  const ed::System system = ed_test::start({0.5, 0.3, 48, Inertia::uniform, 24});
+  const ed::Simulation simulation(system);
+  const ed::System out = simulation.system();
+  EXPECT_EQ(out.box, system.box);
+  ASSERT_EQ(out.size(), system.size());
+  for (std::size_t i = 0; i < system.bodies.size(); ++i) {
+    const ed::Body& a = system.bodies[i];
+    const ed::Body& b = out.bodies[i];
+    EXPECT_LE((a.position - b.position).norm(), kRounding);
+    EXPECT_LE((a.rotation - b.rotation).norm(), kRounding);
+    EXPECT_EQ(a.velocity, b.velocity);
+    EXPECT_LE((a.angular_velocity - b.angular_velocity).norm(), 1e-14 * a.angular_velocity.norm());
+  }
+  const ed::KineticState inside = simulation.kinetic();
+  const ed::KineticState outside = ed::kinetic_state(system);
+  EXPECT_NEAR(inside.translational_energy, outside.translational_energy, 1e-12);
+  EXPECT_NEAR(inside.rotational_energy, outside.rotational_energy, 1e-12);
+  EXPECT_NEAR(inside.spin_energy, outside.spin_energy, 1e-12);
+}
+
+TEST(Simulation, SamplesAreUnwrapped) {
+  ed::System system = two_bodies(sphere(), 10, {0, 5, 0});
+  system.bodies[0].velocity = {3, 0, 0};
+  ed::Simulation simulation(system);
+  ed::Snapshot snapshot;
+  simulation.run_until(12.5);
+  simulation.sample(snapshot);
+  EXPECT_EQ(snapshot.time, 12.5);
+  EXPECT_NEAR((snapshot.position[0] - Vector3d(37.5, 0, 0)).norm(), 0, kRounding);
+  EXPECT_NEAR((snapshot.position[1] - Vector3d(0, 5, 0)).norm(), 0, kRounding);
+  // The system is wrapped: 37.5 - 4 x 10.
+  EXPECT_NEAR((simulation.system().bodies[0].position - Vector3d(-2.5, 0, 0)).norm(), 0, kRounding);
+}
+
+TEST(Simulation, ShrinkingTheBoxLeavesNoOverlapAndTheVelocities) {
+  ed::Simulation simulation(ed_test::start({3, 0.2, 72, Inertia::paper, 25}));
+  const ed::KineticState before = simulation.kinetic();
+  const double box = simulation.box();
+  double last = box;
+  for (int round = 0; round < 200; ++round) {
+    simulation.run_until(simulation.time() + 0.02);
+    const double energy = simulation.kinetic().energy();
+    const double shrunk = simulation.shrink_box(0);
+    EXPECT_EQ(shrunk, simulation.box());
+    ASSERT_LE(shrunk, last);
+    EXPECT_NEAR(simulation.kinetic().energy() / energy, 1, 1e-14);
+    last = shrunk;
+    if (round % 20 == 0) {
+      const ed::Audit audit = ed::audit(simulation.system());
+      ASSERT_GE(audit.minimum_distance, -ed::kAuditOverlap);
+      ASSERT_EQ(audit.unanswered, 0);
+    }
+  }
+  EXPECT_LT(last, 0.95 * box);
+  EXPECT_EQ(simulation.counters().overlaps, 0U);
+  EXPECT_NEAR(simulation.kinetic().energy() / before.energy(), 1, 1e-12);
+}
+
+TEST(Simulation, ShrinkingStopsAtTheTarget) {
+  ed::Simulation simulation(ed_test::grid(sphere(), 4, 4));
+  const double target = 15.9;
+  for (int round = 0; round < 20 && simulation.box() > target; ++round) (void)simulation.shrink_box(target);
+  EXPECT_NEAR(simulation.box(), target, 1e-13);
+  EXPECT_EQ(simulation.shrink_box(17), simulation.box());
+  // Not worth it: 1 - s would be below the least gain.
+  EXPECT_NEAR(simulation.shrink_box(0.999 * target, 0.01), target, 1e-13);
+}
+
+TEST(Simulation, TuningIsTheSameEachTime) {
+  const ed::System system = ed_test::start({3, 0.3, 64, Inertia::paper, 26});
+  ed::Simulation a(system);
+  ed::Simulation b(system);
+  a.tune_envelopes();
+  b.tune_envelopes();
+  EXPECT_EQ(a.envelope(), b.envelope());
+  EXPECT_GT(a.envelope(), 0);
+  EXPECT_EQ(ed_test::hash_of(a), ed_test::hash_of(b));
+  // About 60 collisions a body at most.
+  EXPECT_LE(a.counters().collisions, 64U * 60U);
+}
+
+TEST(Simulation, OfBodiesAtRestComesToItsEnd) {
+  ed::Simulation simulation(ed_test::grid(sphere(), 3, 5));
+  EXPECT_TRUE(simulation.run_until(10));
+  EXPECT_EQ(simulation.counters().collisions, 0U);
+  EXPECT_EQ(simulation.time(), 10);
+}
+
+TEST(Simulation, BodiesThatTouchFromTheStartAreNoOverlap) {
+  ed::System system = two_bodies(sphere(), 20, {2, 0, 0});
+  system.bodies[0].velocity = {1, 0, 0};
+  ed::Simulation approaching(system);
+  approaching.record_collisions(1);
+  approaching.run_until(1);
+  ASSERT_EQ(approaching.collisions().size(), 1U);
+  EXPECT_NEAR(approaching.collisions()[0].time, 0, kRounding);
+  EXPECT_EQ(approaching.counters().overlaps, 0U);
+  system.bodies[0].velocity = {-1, 0, 0};
+  ed::Simulation parting(system);
+  parting.run_until(1);
+  EXPECT_EQ(parting.counters().collisions, 0U);
+  EXPECT_EQ(parting.counters().overlaps, 0U);
+}
+
+TEST(SimulationRefuses, BodiesThatOverlapAtTheStart) {
+  const ed::Species rod = ed::paper_species(geom::Ellipsoid({1, 1, 3}));
+  EXPECT_EQ(message_of(two_bodies(rod, 20, {2.1, 0, 0})), "no std::invalid_argument");
+  for (const double depth : {1e-11, 1e-6, 0.5}) {
+    const std::string message = message_of(two_bodies(rod, 20, {2 - depth, 0, 0}));
+    EXPECT_THAT(message, HasSubstr("overlap")) << depth;
+    EXPECT_THAT(message, HasSubstr("bodies 0 and 1")) << depth;
+  }
+  // So deep that the distance is not answered, down to bodies in one place.
+  for (const double x : {0.5, 0.0}) {
+    EXPECT_THAT(message_of(two_bodies(rod, 20, {x, 0, 0})), HasSubstr("1 pairs of bodies overlap"));
+  }
+}
+
+TEST(SimulationRefuses, ABoxTooSmallForNearestImages) {
+  const ed::Species rod = ed::paper_species(geom::Ellipsoid({1, 1, 3}));
+  for (const double box : {6.1, 9.0, 12.0}) {
+    const std::string message = message_of(two_bodies(rod, box, {3, 0, 0}));
+    EXPECT_THAT(message, HasSubstr("box")) << box;
+    EXPECT_THAT(message, HasSubstr("number")) << box;
+  }
+}
+
+TEST(SimulationRefuses, ABodyThatMeetsItsOwnImage) {
+  // The box is shorter than the body.
+  const ed::Species rod = ed::paper_species(geom::Ellipsoid({1, 1, 3}));
+  EXPECT_THAT(message_of(two_bodies(rod, 5, {2.4, 0, 0})), HasSubstr("box"));
+}
+
+TEST(SimulationRefuses, BoxesAndNumbersThatAreNone) {
+  const double infinity = std::numeric_limits<double>::infinity();
+  for (const double box : {0.0, -5.0, infinity, std::numeric_limits<double>::quiet_NaN()}) {
+    EXPECT_THAT(message_of(two_bodies(sphere(), box, {3, 0, 0})), HasSubstr("box")) << box;
+  }
+  ed::System lonely = two_bodies(sphere(), 20, {3, 0, 0});
+  lonely.bodies.resize(1);
+  EXPECT_THAT(message_of(lonely), HasSubstr("number"));
+  lonely.bodies.clear();
+  EXPECT_THAT(message_of(lonely), HasSubstr("number"));
+}
+
+TEST(SimulationRefuses, ThreeDifferentSemiAxesAndMoments) {
+  ed::Species biaxial = sphere();
+  biaxial.shape = geom::Ellipsoid({1, 2, 3});
+  EXPECT_THAT(message_of(two_bodies(biaxial, 40, {8, 0, 0})), HasSubstr("semi_axes"));
+  ed::Species asymmetric = ed::uniform_species(geom::Ellipsoid({1, 1, 3}));
+  asymmetric.inertia.x() *= 1.1;
+  EXPECT_THAT(message_of(two_bodies(asymmetric, 40, {8, 0, 0})), HasSubstr("inertia"));
+}
+
+TEST(SimulationRefuses, MassesAndMomentsThatNoBodyHas) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const double bad : {0.0, -1.0, nan, std::numeric_limits<double>::infinity()}) {
+    ed::Species species = sphere();
+    species.mass = bad;
+    EXPECT_THAT(message_of(two_bodies(species, 20, {3, 0, 0})), HasSubstr("mass")) << bad;
+    species = sphere();
+    species.inertia.setConstant(bad);
+    EXPECT_THAT(message_of(two_bodies(species, 20, {3, 0, 0})), HasSubstr("inertia")) << bad;
+  }
+  // The moment about the axis cannot exceed the sum of the others.
+  ed::Species impossible = ed::uniform_species(geom::Ellipsoid({1, 1, 3}));
+  impossible.inertia.z() = 3 * impossible.inertia.x();
+  EXPECT_THAT(message_of(two_bodies(impossible, 20, {8, 0, 0})), HasSubstr("inertia"));
+}
+
+TEST(SimulationRefuses, NumbersThatAreNotFinite) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const ed::System sound = two_bodies(sphere(), 20, {3, 0, 0});
+  const std::vector<std::function<void(ed::Body&)>> breakages = {
+      [&](ed::Body& b) { b.position.x() = nan; }, [&](ed::Body& b) { b.velocity.y() = nan; },
+      [&](ed::Body& b) { b.angular_velocity.z() = std::numeric_limits<double>::infinity(); },
+      [&](ed::Body& b) { b.rotation(0, 1) = nan; }};
+  for (const auto& breakage : breakages) {
+    ed::System broken = sound;
+    breakage(broken.bodies[1]);
+    EXPECT_THAT(message_of(broken), HasSubstr("finite"));
+  }
+}
+
+TEST(SimulationRefuses, RotationsThatAreNotOrthonormal) {
+  ed::System system = two_bodies(sphere(), 20, {3, 0, 0});
+  system.bodies[0].rotation *= 1.01;
+  EXPECT_NE(message_of(system), "no std::invalid_argument");
+}
+
+}  // namespace

@@ -1,0 +1,150 @@
+// Species, boxes, kinetic energies, and the audit that every claim of "no overlap" rests on.
+
+#include <common/ed_states.h>
+
+#include <ed/ed.h>
+
+#include <gtest/gtest.h>
+#include <Eigen/Geometry>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace {
+
+using ed_test::Inertia;
+using Eigen::Vector3d;
+
+constexpr double kRounding = 1e-14;
+
+ed::System two_bodies(const ed::Species& species, double box, const Vector3d& r, const Eigen::Matrix3d& rotation) {
+  ed::System system;
+  system.box = box;
+  system.species = species;
+  system.bodies.resize(2);
+  system.bodies[0].position = Vector3d(0.4 * box, -0.3 * box, 0.1 * box);
+  system.bodies[1].position = system.bodies[0].position + r;
+  system.bodies[1].rotation = rotation;
+  return system;
+}
+
+TEST(Species, OfThePaperHasTheInertiaOfItsInscribedSphereAndNoSpin) {
+  for (const double X0 : {0.25, 1.0, 4.0}) {
+    const geom::Ellipsoid shape = ed_test::spheroid(X0);
+    const ed::Species species = ed::paper_species(shape, 2.5);
+    const double a = shape.semi_axes().minCoeff();
+    EXPECT_NEAR(species.inertia.x(), 0.4 * 2.5 * a * a, kRounding);
+    EXPECT_EQ(species.inertia.x(), species.inertia.y());
+    EXPECT_EQ(species.mass, 2.5);
+    EXPECT_FALSE(species.spins);
+  }
+}
+
+TEST(Species, OfUniformDensityHasTheInertiaOfAnEllipsoidAndSpins) {
+  const ed::Species species = ed::uniform_species(geom::Ellipsoid({1, 1, 3}), 2);
+  EXPECT_NEAR(species.inertia.x(), 2 * (1.0 + 9.0) / 5, kRounding);
+  EXPECT_NEAR(species.inertia.y(), 2 * (1.0 + 9.0) / 5, kRounding);
+  EXPECT_NEAR(species.inertia.z(), 2 * 2.0 / 5, kRounding);
+  EXPECT_TRUE(species.spins);
+}
+
+TEST(Box, HoldsItsPackingFraction) {
+  const geom::Ellipsoid shape = ed_test::spheroid(3);
+  const double box = ed::box_for(shape, 512, 0.4);
+  EXPECT_NEAR(512 * 4 * std::numbers::pi / 3 / (box * box * box), 0.4, 1e-14);
+  ed::System system = ed_test::grid(ed::paper_species(shape), 8, box / 8);
+  EXPECT_NEAR(ed::packing_fraction(system), 0.4, 1e-14);
+}
+
+TEST(SmallestNumber, IsTheFirstWhoseBoxIsLargeEnough) {
+  for (const double X0 : {0.2, 1.0, 3.0, 8.0}) {
+    for (const double phi : {0.05, 0.3, 0.5}) {
+      const geom::Ellipsoid shape = ed_test::spheroid(X0);
+      const int least = ed::smallest_number(shape, phi);
+      ASSERT_GE(least, 2);
+      // box / 2 > 2 R + 4 delta_min, with delta_min above nothing.
+      const double twice = 4 * shape.bounding_radius();
+      EXPECT_GT(ed::box_for(shape, least, phi), twice);
+      // The thinnest envelope in use costs 4 % of the box.
+      if (least > 2) {
+        EXPECT_LT(ed::box_for(shape, least - 1, phi), twice * 1.05);
+      }
+    }
+  }
+}
+
+TEST(KineticState, SplitsTheEnergyByKindOfMotion) {
+  const ed::Species species = ed::uniform_species(geom::Ellipsoid({1, 1, 3}), 2);
+  ed::System system = ed_test::grid(species, 2, 20);
+  const Eigen::Matrix3d turned = Eigen::AngleAxisd(0.7, Vector3d(1, 2, 3).normalized()).toRotationMatrix();
+  system.bodies[0].rotation = turned;
+  system.bodies[0].velocity = {1, 2, -2};
+  system.bodies[0].angular_velocity = turned * Vector3d(0.5, 0, 3);
+  const ed::KineticState state = ed::kinetic_state(system);
+  EXPECT_NEAR(state.translational_energy, 0.5 * 2 * 9, kRounding);
+  EXPECT_NEAR(state.rotational_energy, 0.5 * 4 * 0.25, kRounding);
+  EXPECT_NEAR(state.spin_energy, 0.5 * 0.8 * 9, kRounding);
+  EXPECT_NEAR(state.energy(), 9 + 0.5 + 3.6, 1e-13);
+  EXPECT_NEAR(state.translational_kT, 2 * 9 / (3.0 * 8 - 3), kRounding);
+  EXPECT_NEAR(state.rotational_kT, 2 * 0.5 / (2.0 * 8), kRounding);
+  EXPECT_NEAR((state.momentum - Vector3d(2, 4, -4)).norm(), 0, kRounding);
+}
+
+TEST(Audit, FindsTheClosestPairAndItsDistance) {
+  ed::System system = ed_test::grid(ed::paper_species(geom::Ellipsoid({1, 1, 3})), 3, 7);
+  system.bodies[5].position.z() += 0.25;  // towards its neighbour 3 across the face of the box: 7 - 6 - 0.25
+  const ed::Audit audit = ed::audit(system);
+  EXPECT_NEAR(audit.minimum_distance, 0.75, 1e-13);
+  EXPECT_EQ(audit.closest_i, 3);
+  EXPECT_EQ(audit.closest_j, 5);
+  EXPECT_EQ(audit.overlaps, 0);
+  EXPECT_EQ(audit.unanswered, 0);
+  EXPECT_TRUE(audit.finite);
+}
+
+TEST(Audit, SeesOverlapsBeyondRoundingWhereverTheyAre) {
+  // Crossed rods touch at the distance of their two short semi-axes; through the faces of the box as well.
+  const ed::Species species = ed::paper_species(geom::Ellipsoid({1, 1, 3}));
+  const Eigen::Matrix3d crossed = Eigen::AngleAxisd(0.5 * std::numbers::pi, Vector3d::UnitX()).toRotationMatrix();
+  constexpr double kBox = 15;
+  for (const double sign : {-1.0, 1.0}) {
+    for (const double image : {-1.0, 0.0, 1.0}) {
+      for (const double gap : {-1e-3, -1e-9, -1e-11, 1e-11, 1e-3}) {
+        const Vector3d r(sign * (2 + gap) + image * kBox, 0, -image * kBox);
+        const ed::Audit audit = ed::audit(two_bodies(species, kBox, r, crossed));
+        // Coordinates of order 10 are rounded to 1e-15 each.
+        EXPECT_NEAR(audit.minimum_distance, gap, 2e-14);
+        EXPECT_EQ(audit.overlaps, gap < -ed::kAuditOverlap ? 1 : 0) << gap;
+      }
+    }
+  }
+}
+
+TEST(Audit, SharesTheRoundingOfTheStateOnly) {
+  const ed::Species species = ed::paper_species(geom::Ellipsoid({1, 1, 3}));
+  const ed::Audit audit = ed::audit(two_bodies(species, 15, Vector3d(2, 0, 0), Eigen::Matrix3d::Identity()));
+  EXPECT_EQ(audit.overlaps, 0);
+  EXPECT_NEAR(audit.minimum_distance, 0, 1e-14);
+}
+
+TEST(Audit, SaysWhenAStateIsNotFinite) {
+  const ed::Species species = ed::paper_species(geom::Ellipsoid({1, 1, 3}));
+  const ed::System sound = two_bodies(species, 15, Vector3d(5, 0, 0), Eigen::Matrix3d::Identity());
+  EXPECT_TRUE(ed::audit(sound).finite);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  ed::System broken = sound;
+  broken.bodies[1].position.y() = nan;
+  EXPECT_FALSE(ed::audit(broken).finite);
+  broken = sound;
+  broken.bodies[0].rotation(1, 2) = nan;
+  EXPECT_FALSE(ed::audit(broken).finite);
+  broken = sound;
+  broken.bodies[1].velocity.z() = std::numeric_limits<double>::infinity();
+  EXPECT_FALSE(ed::audit(broken).finite);
+  broken = sound;
+  broken.bodies[0].angular_velocity.x() = nan;
+  EXPECT_FALSE(ed::audit(broken).finite);
+}
+
+}  // namespace
