@@ -57,7 +57,7 @@ inline std::vector<MovingPair> near_neighbours(double aspect_ratio, double packi
   options.number = std::max(number, ed::smallest_number(shape, packing_fraction));
   options.seed = seed;
   ed::Simulation simulation(ed::random_start(ed::paper_species(shape), options));
-  simulation.run_collisions(static_cast<std::uint64_t>(20 * options.number));
+  simulation.run_collisions(20 * static_cast<std::uint64_t>(options.number));
   const ed::System system = simulation.system();
   std::vector<MovingPair> neighbours;
   for (int i = 0; i < system.size(); ++i) {
@@ -127,11 +127,14 @@ class Fluid {
 
   /// The pair as it was up to `longest` before, where the bodies were apart; nothing if no such time is found.
   std::optional<MovingPair> approach(const MovingPair& pair, double longest) const {
-    for (double before = longest; before > 1e-4 * longest; before *= 0.6) {
+    constexpr int kAttempts = 18;
+    double before = longest;
+    for (int attempt = 0; attempt < kAttempts; ++attempt) {
       const MovingPair start = earlier(pair, before);
       const geom::DistanceResult d = geom::distance(shape_, geom::Pose(start.a.rotation, start.a.position), shape_,
                                                     geom::Pose(start.b.rotation, start.b.position));
       if (d.status == geom::DistanceStatus::separated && d.distance > 1e-9 * size()) return start;
+      before *= 0.6;
     }
     return std::nullopt;
   }
