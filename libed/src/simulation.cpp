@@ -109,7 +109,7 @@ double Simulation::shrink_box(double target_box, double least_gain) {
 }
 
 void Simulation::tune_envelopes() {
-  const auto stretch = static_cast<std::uint64_t>(2 * impl_->number());
+  const auto stretch = 2 * static_cast<std::uint64_t>(impl_->number());
   const auto cost = [&](double thickness) {
     impl_->set_envelope(thickness);
     run_collisions(stretch / 2);

@@ -90,7 +90,7 @@ void draw_velocities(System& system, Random& random) {
   rescale_velocities(system);
 }
 
-System compress(System system, double target_box, const StartOptions& options) {
+System compress(const System& system, double target_box, const StartOptions& options) {
   Simulation simulation(system);
   // The box shrinks at fixed times, not after a given number of collisions: right after a collision two bodies touch. A
   // pause of a few collisions moves the closest pair apart, which is all that the next step needs; its length follows
@@ -179,7 +179,7 @@ System random_start(const Species& species, const StartOptions& options) {
   System system = insert_bodies(species, options.number, options.packing_fraction, random);
   draw_velocities(system, random);
   const double target = box_for(species.shape, options.number, options.packing_fraction);
-  if (system.box > target) system = compress(std::move(system), target, options);
+  if (system.box > target) system = compress(system, target, options);
   rescale_velocities(system);
   return system;
 }

@@ -127,7 +127,7 @@ class Fluid {
 
   /// The pair as it was up to `longest` before, where the bodies were apart; nothing if no such time is found.
   std::optional<MovingPair> approach(const MovingPair& pair, double longest) const {
-    constexpr int kAttempts = 18;
+    constexpr int kAttempts = 19;
     double before = longest;
     for (int attempt = 0; attempt < kAttempts; ++attempt) {
       const MovingPair start = earlier(pair, before);
