@@ -152,11 +152,11 @@ class UniaxialGauge {
 
   template <class GapOrEvaluation>
   double rate(const State& s, const GapOrEvaluation& e, const Eigen::Vector3d& n) const {
-    return v_.dot(n) - e.lever_a * s.du_a.dot(n) - e.lever_b * s.du_b.dot(n);
+    return v_.dot(n) - e.lever[0] * s.du_a.dot(n) - e.lever[1] * s.du_b.dot(n);
   }
 
   Certificate certificate(const State& s, const UniaxialEvaluation& e, const Eigen::Vector3d& n) const {
-    return {*this, reduce(a_, s.du_a, e.x_a, n), reduce(b_, s.du_b, e.x_b, n)};
+    return {*this, reduce(a_, s.du_a, e.x[0], n), reduce(b_, s.du_b, e.x[1], n)};
   }
 
   Eigen::Vector3d cold_normal(const State& s) const { return geom::internal::cold_normal(A_, B_, s.r, s.u_a, s.u_b); }

@@ -40,13 +40,15 @@ struct WorldEllipsoid {
 struct UniaxialPair {
   const Spheroid& a;
   const Spheroid& b;
-  const Eigen::Vector3d& r;
+  const Eigen::Vector3d& r_ab;
   const Eigen::Vector3d& u_a;
   const Eigen::Vector3d& u_b;
 
-  Evaluation operator()(const Eigen::Vector3d& n) const { return evaluate_uniaxial(a, b, r, u_a, u_b, n); }
-  Eigen::Vector3d point_a(const Eigen::Vector3d& n) const { return support_point(a, u_a, n); }
-  Eigen::Vector3d point_b(const Eigen::Vector3d& n) const { return r - support_point(b, u_b, n); }
+  Evaluation operator()(const Eigen::Vector3d& n) const { return evaluate_uniaxial(a, b, r_ab, u_a, u_b, n); }
+  void support_points(const Eigen::Vector3d& n, Eigen::Vector3d& s_a, Eigen::Vector3d& s_b) const {
+    internal::support_points(a, b, u_a, u_b, n, s_a, s_b);
+  }
+  const Eigen::Vector3d& r() const { return r_ab; }
 };
 
 Spheroid spheroid(const Ellipsoid& shape, int axis) {
@@ -54,6 +56,29 @@ Spheroid spheroid(const Ellipsoid& shape, int axis) {
 }
 
 using EllipsoidPair = GeneralPair<WorldEllipsoid, WorldEllipsoid>;
+
+DistanceResult uniaxial_distance(const Ellipsoid& a, const Pose& X_WA, int axis_a, const Ellipsoid& b, const Pose& X_WB,
+                                 int axis_b, const Eigen::Vector3d& r, const PairScale& scale,
+                                 const DistanceOptions& options) {
+  const Spheroid s_a = spheroid(a, axis_a);
+  const Spheroid s_b = spheroid(b, axis_b);
+  const Eigen::Vector3d u_a = X_WA.rotation().col(axis_a);
+  const Eigen::Vector3d u_b = X_WB.rotation().col(axis_b);
+  const auto cold = [&] { return internal::cold_normal(s_a, s_b, r, u_a, u_b); };
+  return internal::solve_dual(UniaxialPair{s_a, s_b, r, u_a, u_b}, cold, scale, X_WA.position(), options);
+}
+
+DistanceResult general_distance(const Ellipsoid& a, const Pose& X_WA, const Ellipsoid& b, const Pose& X_WB,
+                                const Eigen::Vector3d& r, const PairScale& scale, const DistanceOptions& options) {
+  const WorldEllipsoid w_a(a, X_WA);
+  const WorldEllipsoid w_b(b, X_WB);
+  const auto cold = [&] {
+    const Eigen::Vector3d n = (w_a.Q + w_b.Q).inverse() * r;
+    return n.squaredNorm() > 0 ? n.normalized() : Eigen::Vector3d::UnitX();
+  };
+  return internal::solve_dual(EllipsoidPair(w_a, w_b, r, scale.certified_depth, 0.5 * scale.certified_depth), cold,
+                              scale, X_WA.position(), options);
+}
 
 /// Newton with Armijo's rule. g never falls: from a normal with g > 0 the ascent stays where M + g I is positive
 /// definite and the only stationary point is the answer. From one with g < 0 it may end on one that is too deep to be
@@ -129,25 +154,12 @@ DistanceResult distance(const Ellipsoid& a, const Pose& X_WA, const Ellipsoid& b
   const PairScale scale{r.norm() + a.bounding_radius() + b.bounding_radius(), rho};
   const auto axis_a = a.symmetry_axis();
   const auto axis_b = b.symmetry_axis();
-  DistanceResult result;
-  if (axis_a && axis_b) {
-    const Spheroid s_a = spheroid(a, *axis_a);
-    const Spheroid s_b = spheroid(b, *axis_b);
-    const Eigen::Vector3d u_a = X_WA.rotation().col(*axis_a);
-    const Eigen::Vector3d u_b = X_WB.rotation().col(*axis_b);
-    const auto cold = [&] { return internal::cold_normal(s_a, s_b, r, u_a, u_b); };
-    result = internal::solve_dual(UniaxialPair{s_a, s_b, r, u_a, u_b}, cold, scale, X_WA.position(), options);
-  } else {
-    const EllipsoidPair pair(WorldEllipsoid(a, X_WA), WorldEllipsoid(b, X_WB), r, rho, 0.5 * rho);
-    const auto cold = [&] {
-      const Eigen::Matrix3d Q = WorldEllipsoid(a, X_WA).Q + WorldEllipsoid(b, X_WB).Q;
-      const Eigen::Vector3d n = Q.inverse() * r;
-      return n.squaredNorm() > 0 ? n.normalized() : Eigen::Vector3d::UnitX();
-    };
-    result = internal::solve_dual(pair, cold, scale, X_WA.position(), options);
+  DistanceResult result = axis_a && axis_b ? uniaxial_distance(a, X_WA, *axis_a, b, X_WB, *axis_b, r, scale, options)
+                                           : general_distance(a, X_WA, b, X_WB, r, scale, options);
+  if (result.status == DistanceStatus::not_converged) [[unlikely]] {
+    result = internal::perram_wertheim_distance(a, X_WA, b, X_WB, result.iterations);
   }
-  if (result.status != DistanceStatus::not_converged) return result;
-  return internal::perram_wertheim_distance(a, X_WA, b, X_WB, result.iterations);
+  return result;
 }
 
 }  // namespace geom

@@ -55,7 +55,7 @@ void expect_enskog_rate(double aspect_ratio, std::uint64_t seed) {
   constexpr double kTheory = 0.01;
   const ed_test::ReferenceTable table("enskog_spheroids.csv");
   const double wanted = table.at({{"X0", aspect_ratio}, {"phi", kDilute}}, "coll_rate=nu0*chi");
-  const double duration = ed_test::full_length() ? 4000 : 400;
+  const double duration = ed_test::full_length() ? 4000 : 800;
   const Measured run =
       ed_test::measure({aspect_ratio, kDilute, 512, Inertia::paper, seed}, {40, duration, duration / 20});
   const ed::Estimate rate = run.results.collision_rate;

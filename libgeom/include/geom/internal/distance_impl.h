@@ -73,8 +73,12 @@ class GeneralPair {
     return out;
   }
 
-  Eigen::Vector3d point_a(const Eigen::Vector3d& n) const { return a_.point(n); }
-  Eigen::Vector3d point_b(const Eigen::Vector3d& n) const { return r_ + b_.point(-n); }
+  /// Support points of A at n and of B at -n, each from its own centre.
+  void support_points(const Eigen::Vector3d& n, Eigen::Vector3d& s_a, Eigen::Vector3d& s_b) const {
+    s_a = a_.point(n);
+    s_b = b_.point(-n);
+  }
+  const Eigen::Vector3d& r() const { return r_; }
 
  private:
   SupportA a_;
@@ -103,9 +107,10 @@ double min_curvature_radius_or_zero(const Shape& shape) {
 template <class Pair>
 DistanceResult witness_result(const Pair& pair, const Eigen::Vector3d& p_WA, const Eigen::Vector3d& n, int iterations) {
   DistanceResult result;
-  const Eigen::Vector3d x_a = pair.point_a(n);
-  const Eigen::Vector3d x_b = pair.point_b(n);
-  const Eigen::Vector3d gap = x_b - x_a;
+  Eigen::Vector3d x_a;
+  Eigen::Vector3d s_b;
+  pair.support_points(n, x_a, s_b);
+  const Eigen::Vector3d gap = (pair.r() + s_b) - x_a;
   result.distance = n.dot(gap);
   const Eigen::Vector3d y = gap - result.distance * n;
   result.normal = n;
@@ -127,7 +132,7 @@ DistanceResult solve_dual(const Pair& pair, const Cold& cold, const PairScale& s
   const double rounding = kRoundingFactor * scale.size;
   const auto done = [](const Evaluation& e) { return e.step2 <= kNormalTolerance2; };
   const double start2 = options.start.squaredNorm();
-  // A square that is nearly subnormal has lost the digits that make start / sqrt(start2) a unit vector.
+  // A square that is nearly subnormal has lost the digits that make start / |start| a unit vector.
   const bool warm = start2 > 1e-290 && std::isfinite(start2);
   const int limit = std::max(1, options.max_iterations);
   int spent = 0;

@@ -40,63 +40,66 @@ struct Spheroid {
         turning_limit(std::abs(c) / std::min(a, b)) {}
 };
 
+/// One number of A and one of B: both bodies go through the same operations, two to an SSE2 register.
+using Both = Eigen::Array2d;
+
 /// The first half of an evaluation: g, what its time derivative needs, and what the second half goes on with.
 struct UniaxialGap {
-  double g;           ///< n.r - hA(n) - hB(-n)
-  double lever_a;     ///< c x / h of A: dhA/dt = lever_a * (n.duA/dt) at fixed n
-  double lever_b;     ///< the same of B
-  double x_a, x_b;    ///< n.uA, n.uB
-  double z;           ///< n.r
-  double w2_a, w2_b;  ///< |w|^2, w = u - x n
-  double inv_h_a, inv_h_b;
-  double inv_h2_a, inv_h2_b;
+  double g;     ///< n.r - hA(n) - hB(-n)
+  double z;     ///< n.r
+  Both lever;   ///< c x / h: dh/dt = lever * (n.du/dt) at fixed n
+  Both x;       ///< n.u
+  Both w2;      ///< |w|^2, w = u - x n
+  Both inv_h;   ///< 1 / h
+  Both inv_h2;  ///< 1 / h^2
 };
 
 /// An evaluation that also carries what the time derivative of g needs.
 struct UniaxialEvaluation : Evaluation {
-  double x_a, x_b;
-  double lever_a, lever_b;
+  Both x;
+  Both lever;
 };
 
 /// g at the unit vector n, for A at the origin and B at r.
-inline UniaxialGap uniaxial_gap(const Spheroid& A, const Spheroid& B, const Eigen::Vector3d& r,
-                                const Eigen::Vector3d& u_a, const Eigen::Vector3d& u_b, const Eigen::Vector3d& n) {
+[[gnu::always_inline]] inline UniaxialGap uniaxial_gap(const Spheroid& A, const Spheroid& B, const Eigen::Vector3d& r,
+                                                       const Eigen::Vector3d& u_a, const Eigen::Vector3d& u_b,
+                                                       const Eigen::Vector3d& n) {
   // Here and below the order of the operations keeps the dependency chain short: it is what the time goes into.
+  const Both ux(u_a.x(), u_b.x()), uy(u_a.y(), u_b.y()), uz(u_a.z(), u_b.z());
   UniaxialGap out;
-  out.x_a = u_a.dot(n);
-  out.x_b = u_b.dot(n);
+  out.x = ux * n.x() + uy * n.y() + uz * n.z();
+  const Both wx = ux - out.x * n.x();
+  const Both wy = uy - out.x * n.y();
+  const Both wz = uz - out.x * n.z();
+  out.w2 = wx * wx + wy * wy + wz * wz;
+  const Both h2 = Both(A.b2, B.b2) * out.w2 + Both(A.a2, B.a2) * (out.x * out.x);
+  const Both h = h2.sqrt();
+  out.inv_h2 = 1 / h2;  // beside the square root, not behind it
+  out.inv_h = h * out.inv_h2;
   out.z = r.dot(n);
-  out.w2_a = (u_a - out.x_a * n).squaredNorm();
-  out.w2_b = (u_b - out.x_b * n).squaredNorm();
-  const double h2_a = A.b2 * out.w2_a + A.a2 * (out.x_a * out.x_a);
-  const double h2_b = B.b2 * out.w2_b + B.a2 * (out.x_b * out.x_b);
-  const double h_a = std::sqrt(h2_a);
-  const double h_b = std::sqrt(h2_b);
-  out.inv_h2_a = 1 / h2_a;  // beside the square root, not behind it
-  out.inv_h2_b = 1 / h2_b;
-  out.inv_h_a = h_a * out.inv_h2_a;
-  out.inv_h_b = h_b * out.inv_h2_b;
-  out.g = (out.z - h_a) - h_b;
-  out.lever_a = (A.c * out.x_a) * out.inv_h_a;
-  out.lever_b = (B.c * out.x_b) * out.inv_h_b;
+  out.g = (out.z - h[0]) - h[1];
+  out.lever = (Both(A.c, B.c) * out.x) * out.inv_h;
   return out;
 }
 
 /// The second half: the Newton step of n.
-inline UniaxialEvaluation uniaxial_step(const Spheroid& A, const Spheroid& B, const Eigen::Vector3d& r,
-                                        const Eigen::Vector3d& u_a, const Eigen::Vector3d& u_b,
-                                        const Eigen::Vector3d& n, const UniaxialGap& gap) {
-  const Eigen::Vector3d w_a = u_a - gap.x_a * n;
-  const Eigen::Vector3d w_b = u_b - gap.x_b * n;
-  const Eigen::Vector3d y = (r - gap.z * n) - (gap.lever_a * w_a + gap.lever_b * w_b);
-  const double f_a = A.b2 * gap.inv_h_a;
-  const double f_b = B.b2 * gap.inv_h_b;
-  const double e_a = (A.c * gap.inv_h2_a) * f_a;
-  const double e_b = (B.c * gap.inv_h2_b) * f_b;
-  const double ww = w_a.dot(w_b);
-  const double t1 = e_a * gap.w2_a + e_b * gap.w2_b;
-  const double D = (e_a * e_b) * (gap.w2_a * gap.w2_b - ww * ww);
-  double sigma = (f_a + f_b) + gap.g;
+[[gnu::always_inline]] inline UniaxialEvaluation uniaxial_step(const Spheroid& A, const Spheroid& B,
+                                                               const Eigen::Vector3d& r, const Eigen::Vector3d& u_a,
+                                                               const Eigen::Vector3d& u_b, const Eigen::Vector3d& n,
+                                                               const UniaxialGap& gap) {
+  const Both wx = Both(u_a.x(), u_b.x()) - gap.x * n.x();
+  const Both wy = Both(u_a.y(), u_b.y()) - gap.x * n.y();
+  const Both wz = Both(u_a.z(), u_b.z()) - gap.x * n.z();
+  const double yx = (r.x() - gap.z * n.x()) - (gap.lever * wx).sum();
+  const double yy = (r.y() - gap.z * n.y()) - (gap.lever * wy).sum();
+  const double yz = (r.z() - gap.z * n.z()) - (gap.lever * wz).sum();
+  const Both f = Both(A.b2, B.b2) * gap.inv_h;
+  const Both e = (Both(A.c, B.c) * gap.inv_h2) * f;
+  const Both e_w2 = e * gap.w2;
+  const double ww = wx[0] * wx[1] + wy[0] * wy[1] + wz[0] * wz[1];
+  const double t1 = e_w2.sum();
+  const double D = e_w2.prod() - e.prod() * (ww * ww);
+  double sigma = f.sum() + gap.g;
   // Both eigenvalues are at least `floor` if and only if the quadratic q^2 + q t1 + D and q + t1/2 are non-negative at
   // q = sigma - floor; the square root is needed only when they are not.
   // By theory M >= rho = rhoA + rhoB, so that M + g I is definite while g > -rho; deeper it must be made so.
@@ -108,28 +111,46 @@ inline UniaxialEvaluation uniaxial_step(const Spheroid& A, const Spheroid& B, co
     if (smallest < floor) sigma += floor - smallest;
   }
   const double inv_det = 1 / (sigma * (sigma + t1) + D);
-  const double y_a = e_a * w_a.dot(y);
-  const double y_b = e_b * w_b.dot(y);
-  const Eigen::Vector3d adjugate_y = (sigma + t1) * y - (y_a * w_a + y_b * w_b);
+  const Both pull = e * (wx * yx + wy * yy + wz * yz);
+  const double s = sigma + t1;
+  const Eigen::Vector3d adjugate_y(s * yx - (pull * wx).sum(), s * yy - (pull * wy).sum(), s * yz - (pull * wz).sum());
   UniaxialEvaluation out;
   out.g = gap.g;
-  out.decrement = inv_det * y.dot(adjugate_y);
+  out.decrement = inv_det * (yx * adjugate_y.x() + yy * adjugate_y.y() + yz * adjugate_y.z());
   set_step(out, inv_det * adjugate_y, (inv_det * inv_det) * adjugate_y.squaredNorm());
-  out.x_a = gap.x_a;
-  out.x_b = gap.x_b;
-  out.lever_a = gap.lever_a;
-  out.lever_b = gap.lever_b;
+  out.x = gap.x;
+  out.lever = gap.lever;
   return out;
 }
 
 /// g and its Newton step at the unit vector n.
-inline UniaxialEvaluation evaluate_uniaxial(const Spheroid& A, const Spheroid& B, const Eigen::Vector3d& r,
-                                            const Eigen::Vector3d& u_a, const Eigen::Vector3d& u_b,
-                                            const Eigen::Vector3d& n) {
+[[gnu::always_inline]] inline UniaxialEvaluation evaluate_uniaxial(const Spheroid& A, const Spheroid& B,
+                                                                   const Eigen::Vector3d& r, const Eigen::Vector3d& u_a,
+                                                                   const Eigen::Vector3d& u_b,
+                                                                   const Eigen::Vector3d& n) {
   return uniaxial_step(A, B, r, u_a, u_b, n, uniaxial_gap(A, B, r, u_a, u_b, n));
 }
 
-/// Support point s(n) = (b^2 n + c x u) / h, unit n.
+/// Support points s(n) = (b^2 n + c x u) / h of A at n and of B at -n, each from its own centre; unit n.
+[[gnu::always_inline]] inline void support_points(const Spheroid& A, const Spheroid& B, const Eigen::Vector3d& u_a,
+                                                  const Eigen::Vector3d& u_b, const Eigen::Vector3d& n,
+                                                  Eigen::Vector3d& s_a, Eigen::Vector3d& s_b) {
+  const Both ux(u_a.x(), u_b.x()), uy(u_a.y(), u_b.y()), uz(u_a.z(), u_b.z());
+  const Both b2(A.b2, B.b2);
+  const Both x = ux * n.x() + uy * n.y() + uz * n.z();
+  const Both w2 = (ux - x * n.x()).square() + (uy - x * n.y()).square() + (uz - x * n.z()).square();
+  const Both h = (b2 * w2 + Both(A.a2, B.a2) * (x * x)).sqrt();
+  const Both signed_inv_h = Both(1, -1) / h;  // s(-n) = -s(n)
+  const Both along_n = b2 * signed_inv_h;
+  const Both along_u = (Both(A.c, B.c) * x) * signed_inv_h;
+  const Both sx = along_n * n.x() + along_u * ux;
+  const Both sy = along_n * n.y() + along_u * uy;
+  const Both sz = along_n * n.z() + along_u * uz;
+  s_a = {sx[0], sy[0], sz[0]};
+  s_b = {sx[1], sy[1], sz[1]};
+}
+
+/// Support point of one body at the unit vector n, from its centre.
 inline Eigen::Vector3d support_point(const Spheroid& S, const Eigen::Vector3d& u, const Eigen::Vector3d& n) {
   const double x = u.dot(n);
   const double h = std::sqrt(S.b2 * (u - x * n).squaredNorm() + S.a2 * (x * x));
@@ -146,12 +167,12 @@ inline Eigen::Vector3d cold_normal(const Spheroid& A, const Spheroid& B, const E
   const double k = u_a.dot(u_b);
   const double r_a = r.dot(u_a);
   const double r_b = r.dot(u_b);
-  const double inv_det = 1 / ((1 + p) * (1 + q) - p * q * (k * k));
-  const double x_a = ((1 + q) * r_a - q * k * r_b) * inv_det;
-  const double x_b = ((1 + p) * r_b - p * k * r_a) * inv_det;
-  const Eigen::Vector3d n = r - (p * x_a) * u_a - (q * x_b) * u_b;
+  const double det = (1 + p) * (1 + q) - p * q * (k * k);  // > 0
+  const double x_a = (1 + q) * r_a - q * k * r_b;
+  const double x_b = (1 + p) * r_b - p * k * r_a;
+  const Eigen::Vector3d n = det * r - (p * x_a) * u_a - (q * x_b) * u_b;
   const double length2 = n.squaredNorm();
-  return length2 > 0 ? Eigen::Vector3d(n / std::sqrt(length2)) : u_a;
+  return length2 > 0 ? Eigen::Vector3d((1 / std::sqrt(length2)) * n) : u_a;
 }
 
 }  // namespace geom::internal
