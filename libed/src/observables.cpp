@@ -91,6 +91,18 @@ std::vector<double> log_lags(double longest) {
   return lags;
 }
 
+/// By what the standard error of block averages must be multiplied for a correlation at `lag`: the origins of a block
+/// lie in one `length` of time, but look ahead by the lag, so that neighbouring blocks share data.
+///
+/// For displacements of a Brownian particle the averages over the origins of two neighbouring blocks have the
+/// correlation coefficient rho = f / (8 - 2 f), f = lag / length <= 1 (the variance is the integral of
+/// (1 - s/length) (1 - s/lag)^2 over the offset s, the covariance that of s (1 - s/lag)^2), and the mean of many blocks
+/// then has the variance (1 + 2 rho) times that of independent ones: at most 4/3.
+double shared_data_factor(double lag, double length) {
+  const double f = std::min(1.0, lag / length);
+  return std::sqrt(1 + 2 * f / (8 - 2 * f));
+}
+
 /// A correlation against lag, for one block or for all.
 struct Curve {
   std::vector<double> t;
@@ -272,9 +284,10 @@ class Observables::Impl {
     return result;
   }
 
-  /// The value from all data, with the standard error of the values from each block.
+  /// The value from all data, with the standard error of the values from each block, for a quantity that depends on
+  /// correlations up to `lag`.
   template <class Of>
-  Estimate with_block_error(const Of& of) const {
+  Estimate with_block_error(double lag, const Of& of) const {
     Estimate all{of(nullptr), std::numeric_limits<double>::quiet_NaN()};
     if (!std::isfinite(all.value)) return {};
     std::vector<double> values;
@@ -282,13 +295,13 @@ class Observables::Impl {
       const double value = of(block);
       if (std::isfinite(value)) values.push_back(value);
     }
-    all.error = mean_of_blocks(values).error;
+    all.error = shared_data_factor(lag, origins_per_block_ * spacing_) * mean_of_blocks(values).error;
     return all;
   }
 
   template <class Value>
   Estimate diffusion_estimate(double divisor, const Value& value) const {
-    return with_block_error([&](const Block* block) {
+    return with_block_error(lags_.back(), [&](const Block* block) {
       const Curve all = curve(block, value);
       // A block whose origins have not reached the longest lag would be fitted over another window.
       if (all.t.empty() || all.t.back() < lags_.back()) return std::numeric_limits<double>::quiet_NaN();
@@ -311,7 +324,7 @@ class Observables::Impl {
 
 void Observables::Impl::add_lag_rows(Results& results) const {
   const auto estimate = [&](std::size_t k, double LagSums::*member) {
-    return with_block_error([&](const Block* one) {
+    return with_block_error(lags_[k], [&](const Block* one) {
       LagSums sums;
       if (one != nullptr) {
         sums = one->lags[k];
@@ -357,12 +370,12 @@ Results Observables::Impl::results(const Simulation& simulation) const {
   results.D_rot = diffusion_estimate(4, [](const LagSums& s) { return s.rot_msd; });
   results.D_rot_body = diffusion_estimate(4, [](const LagSums& s) { return s.rot_msd_body; });
   const auto c2 = [](const LagSums& s) { return s.c2; };
-  results.t_C2_1overe = with_block_error([&](const Block* block) {
+  results.t_C2_1overe = with_block_error(lags_.back(), [&](const Block* block) {
     const Curve all = curve(block, c2);
     return first_crossing(all.t, all.y, 1 / std::exp(1.0)).value_or(std::numeric_limits<double>::quiet_NaN());
   });
   const auto fitted = [&](double StretchedExponential::*member) {
-    return with_block_error([&](const Block* block) {
+    return with_block_error(lags_.back(), [&](const Block* block) {
       const auto fit = fit_c2(curve(block, c2), results.collision_rate.value);
       return fit ? (*fit).*member : std::numeric_limits<double>::quiet_NaN();
     });
