@@ -10,6 +10,7 @@
 #include <cmath>
 #include <filesystem>
 #include <stdexcept>
+#include <utility>
 
 namespace hardbody {
 namespace {
@@ -83,6 +84,7 @@ int check(const std::string& path) {
   fmt::print("{}\n", file.string());
   print_state(checkpoint, result);
   std::vector<std::string> list = defects(result);
+  for (std::string& defect : conservation_defects(result.kinetic, checkpoint.system)) list.push_back(std::move(defect));
   if (!print_config(checkpoint, file.string())) list.emplace_back("the state is not that of its config");
   for (const std::string& defect : list) fmt::print("  *** NOT SOUND: {} ***\n", defect);
   fmt::print("{}\n", list.empty() ? "sound" : "NOT SOUND");

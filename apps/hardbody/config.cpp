@@ -340,14 +340,25 @@ void read_dynamics(const TomlDocument& document, const geom::Ellipsoid& shape, C
   config.eps_d = eps_d->value.real;
 }
 
-/// A number and a unit: 60s, 5m, 1.5h.
-bool is_duration(const std::string& text) {
-  if (text.size() < 2 || std::string_view("smh").find(text.back()) == std::string_view::npos) return false;
+/// Seconds of a number and a unit, 60s, 5m, 1.5h; nothing for anything else.
+std::optional<double> parse_duration(const std::string& text) {
+  if (text.size() < 2 || text.size() > 16) return std::nullopt;
   const std::string number = text.substr(0, text.size() - 1);
   const auto digit = [](char c) { return (c >= '0' && c <= '9') || c == '.'; };
-  if (!std::all_of(number.begin(), number.end(), digit)) return false;
-  if (std::count(number.begin(), number.end(), '.') > 1) return false;
-  return std::any_of(number.begin(), number.end(), [](char c) { return c >= '1' && c <= '9'; });
+  if (!std::all_of(number.begin(), number.end(), digit) || std::count(number.begin(), number.end(), '.') > 1) {
+    return std::nullopt;
+  }
+  if (std::none_of(number.begin(), number.end(), [](char c) { return c >= '1' && c <= '9'; })) return std::nullopt;
+  switch (text.back()) {
+    case 's':
+      return std::stod(number);
+    case 'm':
+      return 60 * std::stod(number);
+    case 'h':
+      return 3600 * std::stod(number);
+    default:
+      return std::nullopt;
+  }
 }
 
 void read_output(const TomlDocument& document, Config& config) {
@@ -362,7 +373,7 @@ void read_output(const TomlDocument& document, Config& config) {
   }
   if (const Entry* frames = document.find("output.frames")) throw not_yet(*frames, "no key frames");
   if (const Entry* every = document.find("output.checkpoint_every")) {
-    if (every->value.kind != Value::Kind::text || !is_duration(every->value.text)) {
+    if (every->value.kind != Value::Kind::text || !parse_duration(every->value.text)) {
       throw bad(*every, "a string of a positive number and a unit, as in \"60s\", \"5m\", \"1h\"");
     }
     config.checkpoint_every = every->value.text;
@@ -376,6 +387,10 @@ double Config::true_aspect_ratio() const {
   // From the axes as given: the rescaled ones would turn 3 into 2.9999999999999996.
   const int axis = axis_of_revolution(*semi_axes);
   return (*semi_axes)[axis] / (*semi_axes)[(axis + 1) % 3];
+}
+
+double Config::checkpoint_seconds() const {
+  return parse_duration(checkpoint_every).value_or(std::numeric_limits<double>::infinity());
 }
 
 Config parse_config(std::string_view text, const std::string& name, const std::vector<std::string>& overrides) {

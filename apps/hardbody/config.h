@@ -37,13 +37,14 @@ struct Config {
 
   // [output]
   std::int64_t events = 0;
-  std::string checkpoint_every = "60s";
+  std::string checkpoint_every = "60s";  ///< a number and s, m or h
 
   /// The bodies, in the program's units: (a b c)^(1/3) = 1, the axis of revolution along body z.
   ed::Species species;
 
   /// X0 = a/b, a along the axis of revolution.
   double true_aspect_ratio() const;
+  double checkpoint_seconds() const;
 };
 
 /// Reads and checks a config. `overrides`: section.key=value. Throws InputError.

@@ -33,9 +33,10 @@ constexpr double kTunedPacking = 0.005;
 /// Runs to `time` in slices, shows where the phase is; false if a signal came first.
 class Runner {
  public:
-  Runner(ed::Simulation& simulation, std::string phase, Progress& progress)
+  Runner(ed::Simulation& simulation, std::string phase, Progress& progress, Saver& saver)
       : simulation_(simulation),
         progress_(progress),
+        saver_(saver),
         phase_(std::move(phase)),
         begin_(simulation.time()),
         collisions_(simulation.counters().collisions),
@@ -47,6 +48,7 @@ class Runner {
     while (pending_signal() == 0) {
       const bool arrived = simulation_.run_until(time, kSlice);
       if (progress_.due()) progress_.show(text(planned_end));
+      if (saver_.due()) saver_.save(simulation_.system(), simulation_.time() - begin_);
       if (arrived) return true;
     }
     return false;
@@ -65,6 +67,7 @@ class Runner {
 
   ed::Simulation& simulation_;
   Progress& progress_;
+  Saver& saver_;
   std::string phase_;
   double begin_;
   std::uint64_t collisions_;
@@ -122,18 +125,23 @@ std::optional<ed::System> make_start(const Config& config, Progress& progress, L
   }
 }
 
-Equilibration equilibrate(const Config& config, const ed::System& start, Progress& progress, Log& log) {
+Equilibration equilibrate(const Config& config, const ed::System& start, Progress& progress, Saver& saver, Log& log) {
   log.line(config.equilibration_time ? fmt::format("equilibration: {:g} time units", *config.equilibration_time)
                                      : fmt::format("equilibration: auto, at most {:g} time units", kEquilibrationCap));
+  saver.begin("equilibration");
   ed::Simulation simulation(start);
   Equilibration result;
   result.kinetic_at_start = simulation.kinetic();
   if (config.packing_fraction >= kTunedPacking) {
-    simulation.tune_envelopes();
+    simulation.tune_envelopes([&] {
+      if (progress.due()) progress.show("equilibration: choosing the thickness of the neighbour lists");
+      return pending_signal() == 0;
+    });
     result.envelope = simulation.envelope();
     log.line(fmt::format("equilibration: envelope thickness {:.4g} l", result.envelope));
   }
-  Runner runner(simulation, config.equilibration_time ? "equilibration" : "equilibration (auto, at most)", progress);
+  Runner runner(simulation, config.equilibration_time ? "equilibration" : "equilibration (auto, at most)", progress,
+                saver);
   run_equilibration(config, simulation, runner, result);
   result.system = simulation.system();
   result.overlaps = simulation.counters().overlaps;
@@ -151,7 +159,9 @@ Equilibration equilibrate(const Config& config, const ed::System& start, Progres
   return result;
 }
 
-Production produce(const Config& config, const Equilibration& equilibration, Progress& progress, Log& log) {
+Production produce(const Config& config, const Equilibration& equilibration, Progress& progress, Saver& saver,
+                   Log& log) {
+  saver.begin("production");
   Production result;
   result.planned = production_time(config, equilibration);
   log.line(fmt::format("production: {:g} time units", result.planned));
@@ -164,7 +174,7 @@ Production produce(const Config& config, const Equilibration& equilibration, Pro
   options.duration = result.planned;
   ed::Observables observables(options);
   result.kinetic_at_start = simulation.kinetic();
-  Runner runner(simulation, "production", progress);
+  Runner runner(simulation, "production", progress, saver);
   for (bool end = false; !end && !result.stopped;) {
     const double next = observables.next_time();
     const double target = std::min(next, result.planned);

@@ -4,6 +4,7 @@
 #include "log.h"
 #include "progress.h"
 #include "run_record.h"
+#include "saver.h"
 
 #include <ed/system.h>
 
@@ -17,8 +18,9 @@ namespace hardbody {
 /// Random dilute state, compressed; nothing if a signal came first.
 std::optional<ed::System> make_start(const Config& config, Progress& progress, Log& log);
 
-Equilibration equilibrate(const Config& config, const ed::System& start, Progress& progress, Log& log);
+Equilibration equilibrate(const Config& config, const ed::System& start, Progress& progress, Saver& saver, Log& log);
 
-Production produce(const Config& config, const Equilibration& equilibration, Progress& progress, Log& log);
+Production produce(const Config& config, const Equilibration& equilibration, Progress& progress, Saver& saver,
+                   Log& log);
 
 }  // namespace hardbody

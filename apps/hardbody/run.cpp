@@ -1,4 +1,3 @@
-#include "checkpoint.h"
 #include "commands.h"
 #include "config.h"
 #include "config_text.h"
@@ -10,6 +9,7 @@
 #include "progress.h"
 #include "run_directory.h"
 #include "run_record.h"
+#include "saver.h"
 #include "signals.h"
 #include "summary.h"
 #include "table.h"
@@ -38,23 +38,10 @@ void write_failures(const RunDirectory& directory, const RunRecord& record) {
   }
 }
 
-void write_checkpoint(const RunDirectory& directory, const RunRecord& record) {
-  Checkpoint checkpoint;
-  checkpoint.program_version = version();
-  checkpoint.config = resolved_text(record.config);
-  for (const std::string& feature : cpu_features()) {
-    checkpoint.cpu_features += (checkpoint.cpu_features.empty() ? "" : " ") + feature;
-  }
-  checkpoint.phase = record.last_phase();
-  checkpoint.time = record.last_time();
-  checkpoint.system = record.last_state();
-  directory.write(kCheckpointFile, encode_checkpoint(checkpoint));
-}
-
 /// The summary comes last: where it is, the other files are complete.
-void write_results(const RunDirectory& directory, const RunRecord& record) {
+void write_results(const RunDirectory& directory, const RunRecord& record, const Saver& saver) {
   const ed::Results& results = record.production.results;
-  write_checkpoint(directory, record);
+  saver.write(record.last_state(), record.last_time());
   directory.write(kMsdFile, msd_csv(results));
   directory.write(kRotationalMsdFile, rotational_msd_csv(results));
   directory.write(kC2File, c2_csv(results));
@@ -73,11 +60,11 @@ int stopped_at_the_start(const RunDirectory& directory, Progress& progress, Log&
   return exit_status_of(signal);
 }
 
-int conclude(const RunDirectory& directory, const RunRecord& record, Progress& progress, Log& log) {
+int conclude(const RunDirectory& directory, const RunRecord& record, const Saver& saver, Progress& progress, Log& log) {
   const int signal = pending_signal();
   std::exception_ptr failure;
   try {
-    write_results(directory, record);
+    write_results(directory, record, saver);
     log.line("files written");
   } catch (const std::exception&) {
     failure = std::current_exception();
@@ -107,15 +94,18 @@ int run_phases(const Config& config, const RunDirectory& directory, Log& log) {
   Progress progress;
   const std::optional<ed::System> start = make_start(config, progress, log);
   if (!start) return stopped_at_the_start(directory, progress, log);
+  Saver saver(directory, config, progress, log);
   RunRecord record;
   record.config = config;
-  record.equilibration = equilibrate(config, *start, progress, log);
+  record.equilibration = equilibrate(config, *start, progress, saver, log);
   // A state with an overlap is no start for a production run.
   const bool sound = defects(ed::audit(record.equilibration.system)).empty();
-  if (!record.equilibration.stopped && sound) record.production = produce(config, record.equilibration, progress, log);
+  if (!record.equilibration.stopped && sound) {
+    record.production = produce(config, record.equilibration, progress, saver, log);
+  }
   audit_record(record);
   record.total_seconds = log.seconds();
-  return conclude(directory, record, progress, log);
+  return conclude(directory, record, saver, progress, log);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <utility>
 
 #include <sys/resource.h>
 
@@ -11,6 +12,10 @@ namespace {
 
 constexpr double kDecayedC2 = 0.05;
 constexpr double kTravelled = 1;  ///< of the mean square displacement, l^2
+
+/// Rounding adds up to a relative energy drift of 1e-12 in a million collisions, and grows like the square root.
+constexpr double kEnergyDrift = 1e-9;
+constexpr double kMomentumDrift = 1e-9;  ///< of a body, in sqrt(m kT)
 
 }  // namespace
 
@@ -50,8 +55,28 @@ std::vector<std::string> defects(const ed::Audit& audit) {
   return list;
 }
 
+std::vector<std::string> conservation_defects(const ed::KineticState& kinetic, const ed::System& system) {
+  std::vector<std::string> list;
+  const double n = system.size();
+  const double wanted = 0.5 * (3 * n - 3) + n + (system.species.spins ? 0.5 * n : 0.0);
+  const double drift = std::abs(kinetic.energy() / wanted - 1);
+  if (!(drift <= kEnergyDrift)) {
+    list.push_back(fmt::format("the energy is {:.12g} kT instead of {:g}: off by {:.1e}, allowed {:.0e}",
+                               kinetic.energy(), wanted, drift, kEnergyDrift));
+  }
+  const double momentum = kinetic.momentum.norm() / n;
+  if (!(momentum <= kMomentumDrift)) {
+    list.push_back(
+        fmt::format("the momentum is {:.1e} sqrt(m kT) a body instead of 0, allowed {:.0e}", momentum, kMomentumDrift));
+  }
+  return list;
+}
+
 std::vector<std::string> defects(const RunRecord& record) {
   std::vector<std::string> list = defects(record.audit);
+  for (std::string& defect : conservation_defects(record.audit.kinetic, record.last_state())) {
+    list.push_back(std::move(defect));
+  }
   if (record.equilibration.overlaps > 0) {
     list.push_back(fmt::format("{} overlaps were met during equilibration", record.equilibration.overlaps));
   }

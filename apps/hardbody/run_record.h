@@ -68,4 +68,8 @@ std::vector<std::string> defects(const RunRecord& record);
 /// The same for a single state.
 std::vector<std::string> defects(const ed::Audit& audit);
 
+/// Energy and momentum that the dynamics has not conserved: every run starts with momentum zero and the energy that
+/// kT = 1 gives, (3N - 3)/2 + N, and N/2 more if the bodies spin.
+std::vector<std::string> conservation_defects(const ed::KineticState& kinetic, const ed::System& system);
+
 }  // namespace hardbody

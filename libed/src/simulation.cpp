@@ -108,14 +108,22 @@ double Simulation::shrink_box(double target_box, double least_gain) {
   return impl_->shrink_box(target_box, least_gain);
 }
 
-void Simulation::tune_envelopes() {
+void Simulation::tune_envelopes(const std::function<bool()>& keep_going) {
+  constexpr std::uint64_t kSlice = 10000;
+  bool stopped = false;
+  const auto run = [&](std::uint64_t number) {
+    for (std::uint64_t done = 0; done < number && !stopped; done += kSlice) {
+      run_collisions(std::min(kSlice, number - done));
+      stopped = keep_going && !keep_going();
+    }
+  };
   const auto stretch = 2 * static_cast<std::uint64_t>(impl_->number());
   const auto cost = [&](double thickness) {
     impl_->set_envelope(thickness);
-    run_collisions(stretch / 2);
+    run(stretch / 2);
     const Counters before = impl_->counters();
-    run_collisions(stretch);
-    return work(before, impl_->counters());
+    run(stretch);
+    return stopped ? std::numeric_limits<double>::infinity() : work(before, impl_->counters());
   };
   // Walk in steps of 25 % from the current thickness, in the direction that gets cheaper.
   constexpr double kStep = 1.25;
@@ -123,7 +131,7 @@ void Simulation::tune_envelopes() {
   double best_cost = cost(best);
   for (const double factor : {kStep, 1 / kStep}) {
     bool improved = false;
-    for (int step = 0; step < 6; ++step) {
+    for (int step = 0; step < 6 && !stopped; ++step) {
       const double trial = best * factor;
       const double trial_cost = cost(trial);
       if (!(trial_cost < best_cost) || impl_->envelope() != trial) break;

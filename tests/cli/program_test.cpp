@@ -230,4 +230,19 @@ TEST(Table, EstimatesShowTwoDigitsOfTheError) {
   EXPECT_EQ(hardbody::format_estimate({nan, nan}), "-");
 }
 
+TEST(Check, JudgesEnergyAndMomentum) {
+  const ed::System sound = dilute_state();
+  EXPECT_EQ(check_status(checkpoint_of(sound)), 0);
+  ed::System hot = sound;
+  for (ed::Body& body : hot.bodies) body.velocity *= 1 + 1e-8;
+  EXPECT_EQ(check_status(checkpoint_of(hot)), 1);
+  ed::System drifting = sound;
+  for (ed::Body& body : drifting.bodies) body.velocity.x() += 1e-8;
+  EXPECT_EQ(check_status(checkpoint_of(drifting)), 1);
+  // Spin is part of the energy.
+  ed::System spinning = sound;
+  spinning.species.spins = true;
+  EXPECT_EQ(hardbody::conservation_defects(ed::kinetic_state(spinning), spinning).size(), 1U);
+}
+
 }  // namespace

@@ -629,6 +629,18 @@ class Signals(Case):
         self.assertEqual(sorted(os.listdir(self.path("out"))), ["config.toml", "log.txt"])
         self.assertIn("SIGINT", self.read("out/log.txt"))
 
+    def test_killed(self):
+        config = self.LONG.replace("events = 500", 'events = 500\ncheckpoint_every = "0.1s"')
+        process = self.start(config, "production: 100000")
+        time.sleep(1)
+        process.kill()
+        process.communicate(timeout=30)
+        # No summary, but a sound state of about when it was killed.
+        self.assertFalse(os.path.exists(self.path("out/summary.json")))
+        check = self.hardbody("check", "out")
+        self.assertEqual(check.returncode, 0, check.stdout)
+        self.assertIn("of production", check.stdout)
+
 
 class Check(Case):
     def test_sound(self):

@@ -10,8 +10,8 @@
 
 namespace ed {
 
-/// Time correlations at one lag. Errors are standard errors over blocks, corrected for the data that neighbouring blocks
-/// share.
+/// Time correlations at one lag. Errors are standard errors over blocks, corrected for the data that neighbouring
+/// blocks share.
 struct LagRow {
   double lag;
   Estimate msd;           ///< <|r(t) - r(0)|^2>

@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -67,8 +68,8 @@ struct SimulationOptions {
 ///
 /// Asynchronous: each body carries its own time. Neighbour lists with dilated envelopes; one calendar entry a body; a
 /// pair is looked at once after a collision and its certified lower bound put into the calendar, to be refined only
-/// when it comes up. Nothing allocates in steady state. The same system and options give the same bits on every
-/// machine.
+/// when it comes up. Nothing allocates in steady state. The same system and options give the same bits
+/// from one binary; another compiler's binary for the same instruction set has been found to give them too.
 class ED_EXPORT Simulation {
  public:
   /// Throws std::invalid_argument if the bodies are not of revolution, two of them overlap, a number is not finite, or
@@ -91,9 +92,9 @@ class ED_EXPORT Simulation {
   /// 1 - s would be below least_gain. Returns the new box. Velocities are unchanged.
   double shrink_box(double target_box, double least_gain = 0);
 
-  /// Chooses the envelope's thickness by the work that the counters show, never by a clock. Runs up to
-  /// about 60 collisions a body.
-  void tune_envelopes();
+  /// Chooses the envelope's thickness by the work that the counters show, never by a clock. Runs up to about 20
+  /// collisions a body. `keep_going` is asked after every few thousand collisions; false: stops with the best so far.
+  void tune_envelopes(const std::function<bool()>& keep_going = {});
   double envelope() const;
 
   double box() const;
