@@ -48,7 +48,7 @@ enum class Outcome {
   contact,      ///< at `time`: the bodies touch and approach along the normal
   clear,        ///< certified: no contact up to t_end
   bound,        ///< certified: no contact before `time`; the budget of evaluations is spent
-  overlapping,  ///< at `time` the bodies overlap by more than rounding; proved
+  overlapping,  ///< at `time` the bodies overlap by more than kOverlap * size; proved
 };
 
 struct Finding {
@@ -68,9 +68,9 @@ inline double first_root(double g, double gp, double K) {
 }
 
 enum class Quality {
-  usable,   ///< g is not below zero by more than rounding: the normal certifies a step
+  usable,   ///< g >= -kOverlap * size: the normal certifies a step
   clear,    ///< it certifies that there is no contact within the horizon
-  overlap,  ///< the bodies overlap by more than rounding; proved
+  overlap,  ///< the bodies overlap by more than kOverlap * size; proved
 };
 
 /// Improves n at one point in time until it certifies the whole horizon (by the gauge's crude bound), or is good enough
@@ -225,9 +225,14 @@ Finding certified_contact(const Gauge& gauge, double t_begin, double t_end, int 
       // By the bound that holds over any reach: K may be one for a short reach.
       tau = larger(tau, std::sqrt(2 * kTouching * size / gauge.curvature_limit()));
     }
-    // Below the resolution of time, with g above that of distance: cannot be, but must not become an endless loop.
-    if (!(t + tau > t)) return {Outcome::contact, t};
-    t += tau;
+    if (t + tau > t) {
+      t += tau;
+    } else {
+      // Below the resolution of time (late times only: g is above that of distance). Bodies that approach touch before
+      // the next double; others are looked at again then.
+      if (gp < 0) return {Outcome::contact, t};
+      t = std::nextafter(t, std::numeric_limits<double>::infinity());
+    }
   }
   return {t < window.end ? Outcome::bound : Outcome::clear, t};
 }

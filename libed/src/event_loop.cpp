@@ -118,7 +118,7 @@ Counters EventLoop::counters() const {
 
 void EventLoop::record_collisions(std::size_t number) {
   collisions_.clear();
-  collisions_.reserve(number);
+  collisions_.reserve(std::min<std::size_t>(number, std::size_t{1} << 20));  // more grow as they come
   collisions_wanted_ = number;
 }
 

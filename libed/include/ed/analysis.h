@@ -15,7 +15,8 @@ struct Estimate {
   double error = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// Mean and standard error of the mean of independent values; error NaN for fewer than two.
+/// Mean and standard error of the mean, sqrt(s^2 / n), of independent values; error NaN for fewer than two, both NaN
+/// for none.
 ED_EXPORT Estimate mean_of_blocks(std::span<const double> values);
 
 /// Least-squares slope of y against x; nothing for fewer than two different x.
@@ -27,9 +28,9 @@ ED_EXPORT std::optional<double> first_crossing(std::span<const double> x, std::s
 
 /// A exp[-(t / tau)^beta], the paper's fit of C2.
 struct StretchedExponential {
-  double amplitude;
-  double tau;
-  double beta;
+  double amplitude;  ///< dimensionless
+  double tau;        ///< in the unit of t
+  double beta;       ///< dimensionless; 1 for simple diffusion
 };
 
 /// Least-squares fit (Levenberg-Marquardt); y > 0 is not needed. Nothing for fewer than four points, or if the fit does

@@ -8,8 +8,9 @@
 
 namespace ed {
 
-/// Pseudo-random numbers with the same bits on every machine: xoshiro256** seeded by splitmix64 (Blackman and Vigna),
-/// normal deviates by the ratio of uniforms (Leva, ACM TOMS 18 (1992) 449), which never puts a logarithm into a result.
+/// Pseudo-random numbers that do not depend on the machine's libm: xoshiro256** seeded by splitmix64 (Blackman and
+/// Vigna), normal deviates by the ratio of uniforms (Leva, ACM TOMS 18 (1992) 449), which never puts a logarithm into a
+/// result.
 class ED_EXPORT Random {
  public:
   explicit Random(std::uint64_t seed);

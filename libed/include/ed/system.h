@@ -80,9 +80,13 @@ struct Audit {
 /// A pair counts as overlapping in an audit when its distance is below -kAuditOverlap (length).
 inline constexpr double kAuditOverlap = 1e-12;
 
+/// Sums over all bodies, in units of kT where m and kT are 1. Throws std::invalid_argument for bodies that are not of
+/// revolution.
 ED_EXPORT KineticState kinetic_state(const System& system);
 
-/// Checks a state from scratch by `geom::distance`, sharing nothing with the event loop.
+/// Checks a state from scratch by `geom::distance`, sharing nothing with the event loop. Distances are exact to 1e-13
+/// times the pair's size. Throws std::invalid_argument for bodies that are not of revolution or a rotation that is not
+/// one; numbers that are not finite are reported, not thrown.
 ED_EXPORT Audit audit(const System& system);
 
 }  // namespace ed

@@ -18,7 +18,8 @@ inline constexpr double kTouching = 2e-15;
 /// tens of rounding errors, so that the impulse's normal velocity has the same sign.
 inline constexpr double kResting = 1e-14;
 
-/// Contact search: g < -kOverlap * size is an overlap and not the rounding error of a contact. Dimensionless.
+/// Contact search: g < -kOverlap * size is an overlap; above, it is taken for a contact whose time was rounded (that of
+/// a run's late collisions, or of a state that was written and read). Dimensionless.
 inline constexpr double kOverlap = 1e-12;
 
 /// Contact search: Newton's method on d(t) is tried when the root of the certified parabola and that of its tangent
