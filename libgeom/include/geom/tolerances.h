@@ -35,4 +35,28 @@ inline constexpr double kBacktrack = 0.35;
 /// distance: at most this many evaluations of g before the fallback.
 inline constexpr int kMaxIterations = 60;
 
+/// newton_distance: at most this many evaluations of the equations.
+inline constexpr int kMaxNewtonIterations = 100;
+
+/// newton_distance: largest coordinate of a step of the points (and of beta |f_x|) <= kMaxNewtonLength, longer steps
+/// are scaled to it. Relative to |p_AB| + |xA - p_WA| + |xB - p_WB| of the seed, as are the next three.
+inline constexpr double kMaxNewtonLength = 0.1;
+
+/// newton_distance: converged when a step <= kNewtonStep. It is still applied, and convergence is quadratic.
+inline constexpr double kNewtonStep = 1e-10;
+
+/// newton_distance: so also if a step <= kNewtonStall is more than half as long as the one before: both are rounding.
+inline constexpr double kNewtonStall = 1e-6;
+
+/// newton_distance: the answer is accepted if either point is within kNewtonResidual of its surface and the two bounds
+/// of the distance, that of the tangent planes and that of the points, differ by no more than that.
+inline constexpr double kNewtonResidual = 1e-13;
+
+/// newton_distance: ... and the normals are antiparallel, |nA + nB| <= kNewtonAngle. Its square counts.
+inline constexpr double kNewtonAngle = 1e-8;
+
+/// check_seed: f >= -kMaxSeedDepth |f_x| |x|, x from the body's centre: a seed's point may lie inside its body by that
+/// share of its distance from the centre. Dimensionless.
+inline constexpr double kMaxSeedDepth = 0.1;
+
 }  // namespace geom
