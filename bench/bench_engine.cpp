@@ -1,5 +1,8 @@
-/// Collisions a second of the whole engine, one core, with the counters that explain them. First line: the state point
-/// that everything else is compared with, N = 512, X0 = 3, packing fraction 0.40.
+/// Collisions a second of the whole engine, one core, with the counters that explain them.
+///
+/// engine/...: the default path. First line: the state point that everything else is compared with, N = 512, X0 = 3,
+/// packing fraction 0.40. methods/...: every finder, kind of neighbour list and distance method; the tables at the end
+/// give ratios within the run, and the fastest kind of list, which is what neighbours = "auto" takes.
 
 #include <ed/simulation.h>
 #include <ed/start.h>
@@ -8,52 +11,172 @@
 
 #include <cmath>
 #include <cstdint>
+#include <cstdio>
 #include <iomanip>
+#include <map>
 #include <sstream>
 #include <string>
+#include <vector>
 
 namespace {
 
 constexpr int kNumber = 512;
-constexpr std::uint64_t kCollisions = 50000;  // of an iteration
 constexpr int kStretches = 6;
 
-/// Started, tuned and warmed up as the program does it.
-ed::Simulation prepare(double X0, double packing_fraction, bool uniform) {
-  const geom::Ellipsoid shape({std::pow(X0, -1.0 / 3), std::pow(X0, -1.0 / 3), std::pow(X0, 2.0 / 3)});
-  ed::StartOptions options;
-  options.number = kNumber;
-  options.packing_fraction = packing_fraction;
-  ed::Simulation simulation(ed::random_start(uniform ? ed::uniform_species(shape) : ed::paper_species(shape), options));
-  simulation.tune_envelopes();
-  simulation.run_collisions(kCollisions);
-  return simulation;
+struct StatePoint {
+  double X0;
+  double packing_fraction;
+  bool uniform = false;  // inertia; with spin
+
+  std::string name() const {
+    std::ostringstream text;
+    text << std::setprecision(3) << "X0:" << X0 << "/phi:" << packing_fraction << (uniform ? "/spin" : "");
+    return text.str();
+  }
+};
+
+struct Method {
+  ed::Finder finder = ed::Finder::certified;
+  ed::Neighbours neighbours = ed::Neighbours::dilated;
+  ed::DistanceMethod distance = ed::DistanceMethod::dual;
+
+  std::string name() const {
+    const char* const lists[] = {"dilated", "obp", "cells"};
+    const char* const distances[] = {"dual", "newton8", "newton5"};
+    return std::string(finder == ed::Finder::certified ? "certified" : "bracketing") + "/" +
+           lists[static_cast<int>(neighbours)] + "/" + distances[static_cast<int>(distance)];
+  }
+  /// Of an iteration: some tenths of a second.
+  std::uint64_t collisions() const {
+    if (finder == ed::Finder::certified) return 50000;
+    return distance == ed::DistanceMethod::dual ? 3000 : 500;
+  }
+};
+
+/// The paper's own: bracketing, 5 equations, oriented boxes.
+constexpr Method kPaper{ed::Finder::bracketing, ed::Neighbours::obp, ed::DistanceMethod::newton5};
+
+const ed::System& start(const StatePoint& state) {
+  static std::map<std::string, ed::System> starts;
+  ed::System& system = starts[state.name()];
+  if (system.bodies.empty()) {
+    const geom::Ellipsoid shape(
+        {std::pow(state.X0, -1.0 / 3), std::pow(state.X0, -1.0 / 3), std::pow(state.X0, 2.0 / 3)});
+    ed::StartOptions options;
+    options.number = kNumber;
+    options.packing_fraction = state.packing_fraction;
+    system = ed::random_start(state.uniform ? ed::uniform_species(shape) : ed::paper_species(shape), options);
+    ed::Simulation simulation(system);
+    simulation.run_collisions(100 * kNumber);
+    system = simulation.system();
+  }
+  return system;
 }
 
-void engine(benchmark::State& state, double X0, double packing_fraction, bool uniform) {
-  ed::Simulation simulation = prepare(X0, packing_fraction, uniform);
+/// Tuned as the program does it: on a copy.
+ed::Simulation prepare(const StatePoint& state, const Method& method) {
+  ed::SimulationOptions options;
+  options.neighbours = method.neighbours;
+  options.contact.finder = method.finder;
+  options.contact.distance = method.distance;
+  ed::Simulation trial(start(state), options);
+  trial.tune_envelopes();
+  options.envelope = trial.envelope();
+  return ed::Simulation(start(state), options);
+}
+
+void engine(benchmark::State& timing, const StatePoint& state, const Method& method) {
+  ed::Simulation simulation = prepare(state, method);
   const ed::Counters before = simulation.counters();
-  for (auto _ : state) simulation.run_collisions(kCollisions);
+  for (auto _ : timing) simulation.run_collisions(method.collisions());
   const ed::Counters after = simulation.counters();
   const auto collisions = static_cast<double>(after.collisions - before.collisions);
   const auto each = [&](std::uint64_t ed::Counters::*counter) {
     return static_cast<double>(after.*counter - before.*counter) / collisions;
   };
-  state.counters["collisions/s"] = benchmark::Counter(collisions, benchmark::Counter::kIsRate);
-  state.counters["evaluations"] = each(&ed::Counters::evaluations);
-  state.counters["refinements"] = each(&ed::Counters::refinements);
-  state.counters["kernel_calls"] = each(&ed::Counters::kernel_calls);
-  state.counters["rebuilds"] = each(&ed::Counters::neighbour_rebuilds);
-  state.counters["rescues"] = static_cast<double>(after.rescues);
+  timing.counters["collisions/s"] = benchmark::Counter(collisions, benchmark::Counter::kIsRate);
+  timing.counters["evaluations"] = each(&ed::Counters::evaluations);
+  timing.counters["refinements"] = each(&ed::Counters::refinements);
+  timing.counters["kernel_calls"] = each(&ed::Counters::kernel_calls);
+  timing.counters["rebuilds"] = each(&ed::Counters::neighbour_rebuilds);
+  timing.counters["rescues"] = static_cast<double>(after.rescues);
+  timing.counters["missed"] = static_cast<double>(after.overlaps);
 }
 
-void add(double X0, double packing_fraction, bool uniform) {
-  std::ostringstream name;
-  name << std::setprecision(3) << "engine/X0:" << X0 << "/phi:" << packing_fraction << (uniform ? "/spin" : "");
-  benchmark::RegisterBenchmark(name.str().c_str(),
-                               [=](benchmark::State& state) { engine(state, X0, packing_fraction, uniform); })
+std::string method_name(const StatePoint& state, const Method& method) {
+  return "methods/" + state.name() + "/" + method.name();
+}
+
+void add(const std::string& name, const StatePoint& state, const Method& method) {
+  benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& timing) { engine(timing, state, method); })
       ->Unit(benchmark::kMillisecond)
       ->Iterations(kStretches);  // fixed: a start takes longer than the stretches that are timed
+}
+
+const std::vector<StatePoint>& method_states() {
+  static const std::vector<StatePoint> states{{3, 0.40}, {2, 0.40}, {1.0 / 3, 0.40}, {1, 0.40},
+                                              {3, 0.05}, {1, 0.05}, {3, 0.01},       {1, 0.01}};
+  return states;
+}
+
+std::vector<Method> methods() {
+  std::vector<Method> all;
+  for (const auto neighbours : {ed::Neighbours::dilated, ed::Neighbours::obp, ed::Neighbours::cells}) {
+    all.push_back({ed::Finder::certified, neighbours, ed::DistanceMethod::dual});
+    for (const auto distance : {ed::DistanceMethod::dual, ed::DistanceMethod::newton8, ed::DistanceMethod::newton5}) {
+      all.push_back({ed::Finder::bracketing, neighbours, distance});
+    }
+  }
+  return all;
+}
+
+/// Prints as usual and keeps the rates.
+class KeepRates : public benchmark::ConsoleReporter {
+ public:
+  void ReportRuns(const std::vector<Run>& runs) override {
+    for (const Run& run : runs) {
+      const bool wanted = run.repetitions == 1 || run.aggregate_name == "median";
+      const auto rate = run.counters.find("collisions/s");
+      if (wanted && rate != run.counters.end()) rates_[run.run_name.function_name] = rate->second.value;
+    }
+    benchmark::ConsoleReporter::ReportRuns(runs);
+  }
+
+  /// NaN if the filter left that benchmark out.
+  double rate(const StatePoint& state, const Method& method) const {
+    const auto found = rates_.find(method_name(state, method));
+    return found == rates_.end() ? std::nan("") : found->second;
+  }
+
+ private:
+  std::map<std::string, double> rates_;
+};
+
+void print_methods(const KeepRates& rates) {
+  std::printf("\n%-18s %-22s %10s %10s %10s | %13s %11s\n", "collisions/s", "finder, distance", "dilated", "obp",
+              "cells", "dilated / obp", "obp / cells");
+  for (const StatePoint& state : method_states()) {
+    for (const Method& method : methods()) {
+      if (method.neighbours != ed::Neighbours::dilated) continue;
+      const auto rate = [&](ed::Neighbours neighbours) {
+        return rates.rate(state, {method.finder, neighbours, method.distance});
+      };
+      const double dilated = rate(ed::Neighbours::dilated);
+      const double obp = rate(ed::Neighbours::obp);
+      const double cells = rate(ed::Neighbours::cells);
+      if (std::isnan(dilated + obp + cells)) continue;
+      std::string name = method.name();
+      name.erase(name.find("/dilated"), 8);
+      std::printf("%-18s %-22s %10.0f %10.0f %10.0f | %13.2f %11.2f\n", state.name().c_str(), name.c_str(), dilated,
+                  obp, cells, dilated / obp, obp / cells);
+    }
+    const double paper = rates.rate(state, kPaper);
+    const double ours = rates.rate(state, Method{});
+    if (!std::isnan(paper + ours)) {
+      std::printf("%-18s default path %.0f, the paper's %.0f: %.1f times\n", state.name().c_str(), ours, paper,
+                  ours / paper);
+    }
+  }
 }
 
 }  // namespace
@@ -62,17 +185,24 @@ int main(int argc, char** argv) {
   benchmark::AddCustomContext("march", HARDBODY_ARCH_NAME);
   benchmark::AddCustomContext("number", std::to_string(kNumber));
   benchmark::Initialize(&argc, argv);
-  add(3, 0.40, false);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
+  const auto add_engine = [](const StatePoint& state) { add("engine/" + state.name(), state, Method{}); };
+  add_engine({3, 0.40});
   for (const double X0 : {1.0 / 3, 0.5, 1.0, 2.0, 3.0, 5.0}) {
     for (const double packing_fraction : {0.30, 0.40}) {
-      if (X0 != 3 || packing_fraction != 0.40) add(X0, packing_fraction, false);
+      if (X0 != 3 || packing_fraction != 0.40) add_engine({X0, packing_fraction});
     }
   }
   // State points that other codes were measured at, and what spin costs.
-  add(2, 0.45, false);
-  add(1.25, 0.50, false);
-  add(3, 0.40, true);
-  add(0.5, 0.40, true);
-  benchmark::RunSpecifiedBenchmarks();
+  add_engine({2, 0.45});
+  add_engine({1.25, 0.50});
+  add_engine({3, 0.40, true});
+  add_engine({0.5, 0.40, true});
+  for (const StatePoint& state : method_states()) {
+    for (const Method& method : methods()) add(method_name(state, method), state, method);
+  }
+  KeepRates rates;
+  benchmark::RunSpecifiedBenchmarks(&rates);
   benchmark::Shutdown();
+  print_methods(rates);
 }

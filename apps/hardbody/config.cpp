@@ -28,6 +28,9 @@ constexpr double kLongestTime = 1e9;
 
 constexpr double kLeastPacking = 1e-9;
 
+/// What neighbours = "auto" takes: the fastest at every X0, phi and finder that bench_engine looks at.
+constexpr const char* kFastestNeighbours = "dilated";
+
 constexpr std::array<std::string_view, 6> kSections = {"system",        "shape",      "dynamics",
                                                        "equilibration", "production", "output"};
 constexpr std::array<std::string_view, 18> kKeys = {
@@ -312,25 +315,33 @@ void read_number(const TomlDocument& document, Config& config) {
   read_integer(document, "system.number", 2, kMostBodies, number);
   config.number = static_cast<int>(number);
   const geom::Ellipsoid& shape = config.species.shape;
-  const int least = ed::smallest_number(shape, config.packing_fraction);
+  const bool cells = config.neighbours == "cells";
+  const int least =
+      ed::smallest_number(shape, config.packing_fraction, cells ? ed::Neighbours::cells : ed::Neighbours::dilated);
   if (config.number >= least) return;
   const Entry* entry = document.find("system.number");
   if (entry == nullptr) entry = document.find("system.packing_fraction");
   throw InputError(fmt::format(
       "{}: system.number is {}: the box, {:.4g} long at this packing fraction, is then too small for bodies "
       "of bounding "
-      "radius {:.4g} (a body would meet two images of another); accepted: a number of at least {}",
+      "radius {:.4g} ({}); accepted: a number of at least {}",
       entry->where, config.number, ed::box_for(shape, config.number, config.packing_fraction), shape.bounding_radius(),
+      cells ? "three cells as wide as two of them must fit along an edge" : "a body would meet two images of another",
       least));
 }
 
 void read_dynamics(const TomlDocument& document, const geom::Ellipsoid& shape, Config& config) {
   config.species = read_inertia(document, shape, config);
-  read_choice(document, "dynamics.finder", {{"certified", true}, {"bracketing", false}}, config.finder);
-  read_choice(document, "dynamics.distance", {{"dual", true}, {"newton8", false}, {"newton5", false}}, config.distance);
-  read_choice(document, "dynamics.neighbours", {{"auto", true}, {"dilated", true}, {"obp", false}, {"cells", false}},
+  read_choice(document, "dynamics.finder", {{"certified", true}, {"bracketing", true}}, config.finder);
+  read_choice(document, "dynamics.distance", {{"dual", true}, {"newton8", true}, {"newton5", true}}, config.distance);
+  if (config.finder == "certified" && config.distance != "dual") {
+    throw bad(*document.find("dynamics.distance"), "\"dual\" with finder = \"certified\"; others with \"bracketing\"");
+  }
+  config.neighbours = "auto";
+  read_choice(document, "dynamics.neighbours", {{"auto", true}, {"dilated", true}, {"obp", true}, {"cells", true}},
               config.neighbours);
-  if (config.neighbours == "auto") config.neighbours = "dilated";
+  config.neighbours_chosen = config.neighbours == "auto";
+  if (config.neighbours_chosen) config.neighbours = kFastestNeighbours;
   const Entry* eps_d = document.find("dynamics.eps_d");
   if (eps_d == nullptr) return;
   const double limit = shape.inscribed_radius();
@@ -387,6 +398,18 @@ double Config::true_aspect_ratio() const {
   // From the axes as given: the rescaled ones would turn 3 into 2.9999999999999996.
   const int axis = axis_of_revolution(*semi_axes);
   return (*semi_axes)[axis] / (*semi_axes)[(axis + 1) % 3];
+}
+
+ed::SimulationOptions Config::simulation_options(double envelope) const {
+  ed::SimulationOptions options;
+  options.envelope = envelope;
+  if (neighbours == "obp") options.neighbours = ed::Neighbours::obp;
+  if (neighbours == "cells") options.neighbours = ed::Neighbours::cells;
+  if (finder == "bracketing") options.contact.finder = ed::Finder::bracketing;
+  if (distance == "newton8") options.contact.distance = ed::DistanceMethod::newton8;
+  if (distance == "newton5") options.contact.distance = ed::DistanceMethod::newton5;
+  options.contact.eps_d = eps_d;
+  return options;
 }
 
 double Config::checkpoint_seconds() const {

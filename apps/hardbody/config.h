@@ -1,5 +1,6 @@
 #pragma once
 
+#include <ed/simulation.h>
 #include <ed/system.h>
 
 #include <Eigen/Core>
@@ -31,6 +32,7 @@ struct Config {
   double eps_d = 1e-6;
   std::string distance = "dual";
   std::string neighbours = "dilated";  ///< what "auto" chose
+  bool neighbours_chosen = true;       ///< by "auto"
 
   std::optional<double> equilibration_time;  ///< nothing: "auto"
   std::optional<double> production_time;
@@ -45,6 +47,9 @@ struct Config {
   /// X0 = a/b, a along the axis of revolution.
   double true_aspect_ratio() const;
   double checkpoint_seconds() const;
+
+  /// [dynamics], as the simulation takes it; `envelope`: the thickness of the neighbour-list envelopes, 0 for a guess.
+  ed::SimulationOptions simulation_options(double envelope = 0) const;
 };
 
 /// Reads and checks a config. `overrides`: section.key=value. Throws InputError.

@@ -54,10 +54,11 @@ std::string dynamics_text(const Config& config) {
               "\"paper\": 2/5 m min(a,b)^2, no spin about the axis of revolution;") +
          more("\"uniform\": uniform density, with spin; or moments [I1, I2, I3]") +
          more("about the axes as semi_axes names them, in m l^2, with spin") +
-         line("finder", quoted(config.finder), "of contact times: certified, without a tolerance to choose") +
-         line("eps_d", toml_real(config.eps_d), "in l; no effect with the certified finder") +
-         line("distance", quoted(config.distance), "no effect with the certified finder") +
-         line("neighbours", quoted(config.neighbours), "neighbour lists: \"auto\" or \"dilated\"");
+         line("finder", quoted(config.finder), "of contact times: \"certified\", or \"bracketing\" (the paper's)") +
+         line("eps_d", toml_real(config.eps_d), "in l, for \"bracketing\": shallower contacts may be missed") +
+         line("distance", quoted(config.distance), "for \"bracketing\": \"dual\", \"newton8\" or \"newton5\"") +
+         line("neighbours", quoted(config.neighbours),
+              "lists: \"auto\", \"dilated\", \"obp\" (the paper's) or \"cells\"");
 }
 
 std::string times_text(const Config& config) {

@@ -98,6 +98,16 @@ void run_equilibration(const Config& config, ed::Simulation& simulation, Runner&
   }
 }
 
+/// Chosen on a copy of the state: every finder and every kind of neighbour list then goes on from the same start.
+double tuned_envelope(const Config& config, const ed::System& start, Progress& progress) {
+  ed::Simulation trial(start, config.simulation_options());
+  trial.tune_envelopes([&] {
+    if (progress.due()) progress.show("equilibration: choosing the thickness of the neighbour lists");
+    return pending_signal() == 0;
+  });
+  return trial.envelope();
+}
+
 }  // namespace
 
 std::optional<ed::System> make_start(const Config& config, Progress& progress, Log& log) {
@@ -129,17 +139,15 @@ Equilibration equilibrate(const Config& config, const ed::System& start, Progres
   log.line(config.equilibration_time ? fmt::format("equilibration: {:g} time units", *config.equilibration_time)
                                      : fmt::format("equilibration: auto, at most {:g} time units", kEquilibrationCap));
   saver.begin("equilibration");
-  ed::Simulation simulation(start);
+  log.line(fmt::format("finder: {}; neighbours: {}{}", config.finder, config.neighbours,
+                       config.neighbours_chosen ? " (chosen by \"auto\")" : ""));
   Equilibration result;
-  result.kinetic_at_start = simulation.kinetic();
-  if (config.packing_fraction >= kTunedPacking) {
-    simulation.tune_envelopes([&] {
-      if (progress.due()) progress.show("equilibration: choosing the thickness of the neighbour lists");
-      return pending_signal() == 0;
-    });
-    result.envelope = simulation.envelope();
+  if (config.packing_fraction >= kTunedPacking && config.neighbours != "cells") {
+    result.envelope = tuned_envelope(config, start, progress);
     log.line(fmt::format("equilibration: envelope thickness {:.4g} l", result.envelope));
   }
+  ed::Simulation simulation(start, config.simulation_options(result.envelope));
+  result.kinetic_at_start = simulation.kinetic();
   Runner runner(simulation, config.equilibration_time ? "equilibration" : "equilibration (auto, at most)", progress,
                 saver);
   run_equilibration(config, simulation, runner, result);
@@ -167,7 +175,7 @@ Production produce(const Config& config, const Equilibration& equilibration, Pro
   log.line(fmt::format("production: {:g} time units", result.planned));
   const double clock = log.seconds();
   // A new simulation: its time starts at 0 and its counters count production only.
-  ed::Simulation simulation(equilibration.system, {.envelope = equilibration.envelope});
+  ed::Simulation simulation(equilibration.system, config.simulation_options(equilibration.envelope));
   simulation.record_collisions(static_cast<std::size_t>(config.events));
   ed::ObservablesOptions options{};
   options.number = config.number;

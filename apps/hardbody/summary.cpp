@@ -96,6 +96,7 @@ std::string summary_json(const RunRecord& record) {
   json["equilibrated"] = record.equilibration.reached(config);
   json["interrupted"] = record.stopped();
   json["sound"] = defects(record).empty();
+  json["finder"] = {{"kind", config.finder}, {"distance", config.distance}, {"eps_d", config.eps_d}};
   json["neighbours"] = {{"kind", config.neighbours}, {"envelope", production.envelope}};
   json["cpu_features"] = cpu_features();
   json["units"] = units();

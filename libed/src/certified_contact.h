@@ -19,11 +19,13 @@
 /// step is at least sqrt(2 kTouching size / K), K the crude bound that holds for every n and t: the deepest overlap
 /// that q allows on the way is then kTouching * size, below what g itself resolves.
 
+#include "neighbour_lists.h"
 #include "select.h"
 #include "sphere_window.h"
 
 #include <ed/tolerances.h>
 
+#include <geom/distance.h>
 #include <geom/internal/dual_newton.h>
 #include <geom/tolerances.h>
 
@@ -32,6 +34,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
 
 namespace ed::internal {
 
@@ -55,11 +58,12 @@ struct Finding {
   Outcome outcome;
   double time;
   bool approaching = false;  ///< of bodies that overlap: whether the overlap grows
+  /// Bracketing only: the last failure of Newton's method for the distance, for which the dual stood in.
+  std::optional<geom::DistanceStatus> unsolved = std::nullopt;
 };
 
 /// First root tau > 0 of g + gp tau - K tau^2 / 2 for g >= 0; infinite if there is none.
 inline double first_root(double g, double gp, double K) {
-  constexpr double kNever = std::numeric_limits<double>::infinity();
   const double discriminant = gp * gp + 2 * K * g;
   if (!(discriminant >= 0)) return kNever;
   const double root = std::sqrt(discriminant);

@@ -1,6 +1,10 @@
 #include "event_loop.h"
 
+#include "bracketing_contact.h"
+#include "contact_checks.h"
+#include "dilated_envelopes.h"
 #include "motion_checks.h"
+#include "oriented_envelopes.h"
 #include "uniaxial_gauge.h"
 
 #include <geom/distance.h>
@@ -26,6 +30,9 @@ constexpr int kSecondLook = 2;
 /// While the box shrinks bodies count as leaving their envelopes at this share of the thickness.
 constexpr double kShrinkingExit = 0.8;
 
+/// Bodies that overlap and part are looked at again after this share of the time in which they could cross each other.
+constexpr double kPartingLook = 1e-3;
+
 std::size_t at(int i) {
   return static_cast<std::size_t>(i);
 }
@@ -36,6 +43,12 @@ int symmetry_axis(const Species& species) {
     throw std::invalid_argument("semi_axes: three different semi-axes are not available yet; accepted: two equal ones");
   }
   return *axis;
+}
+
+geom::Ellipsoid upright(const Species& species) {
+  const int axis = symmetry_axis(species);
+  const Vector3d& a = species.shape.semi_axes();
+  return geom::Ellipsoid({a[(axis + 1) % 3], a[(axis + 2) % 3], a[axis]});
 }
 
 UniaxialInertia uniaxial_inertia(const Species& species, int axis) {
@@ -57,8 +70,10 @@ UniaxialInertia uniaxial_inertia(const Species& species, int axis) {
 
 }  // namespace
 
-EventLoop::EventLoop(const System& system, double envelope)
-    : species_(system.species),
+EventLoop::EventLoop(const System& system, const SimulationOptions& options)
+    : options_(options),
+      species_(system.species),
+      upright_(upright(system.species)),
       shape_axis_(symmetry_axis(system.species)),
       shape_(species_.shape.semi_axes()[shape_axis_], species_.shape.semi_axes()[(shape_axis_ + 1) % 3]),
       inertia_(uniaxial_inertia(species_, shape_axis_)),
@@ -77,6 +92,8 @@ EventLoop::EventLoop(const System& system, double envelope)
             << " at this packing fraction)";
     throw std::invalid_argument(message.str());
   }
+  check_contact_options(options.contact, species_.shape.inscribed_radius());
+  if (options.neighbours == Neighbours::cells) check_cells();
   motions_.resize(at(system.size()));
   frames_.resize(at(system.size()));
   for (int i = 0; i < system.size(); ++i) {
@@ -92,17 +109,41 @@ EventLoop::EventLoop(const System& system, double envelope)
     frame.spin = inertia_.spins ? spin : 0;
     set_rotation(inertia_, u, body.angular_velocity - spin * u, motion, frame);
   }
-  set_envelope(envelope);
+  set_envelope(options.envelope);
+}
+
+void EventLoop::check_cells() const {
+  const int cells = CellEnvelopes::cells_along(box_, bounding_radius_);
+  if (cells >= CellEnvelopes::kLeastCells) return;
+  std::ostringstream message;
+  message << "neighbours = \"cells\": only " << cells << " cells of twice the bounding radius " << bounding_radius_
+          << " fit along the box's edge of " << box_ << "; accepted: at least " << CellEnvelopes::kLeastCells;
+  throw std::invalid_argument(message.str());
 }
 
 void EventLoop::set_envelope(double thickness, bool shrinking) {
   // A share of the mean distance of neighbours: a first guess that is within a factor of two of the best.
   if (!(thickness > 0)) thickness = 0.22 * box_ / std::cbrt(static_cast<double>(number()));
   const double thinnest = kThinnestEnvelope * bounding_radius_;
-  thickness = std::clamp(thickness, thinnest, std::max(thinnest, thickest_envelope(box_, bounding_radius_)));
-  const double exit_thickness = (shrinking ? kShrinkingExit : 1.0) * thickness;
-  envelopes_.emplace(number(), shape_, bounding_radius_ - species_.shape.inscribed_radius(), bounding_radius_,
-                     thickness, exit_thickness);
+  const double exit_share = shrinking ? kShrinkingExit : 1.0;
+  switch (options_.neighbours) {
+    case Neighbours::dilated:
+      thickness = std::clamp(thickness, thinnest, std::max(thinnest, thickest_envelope(box_, bounding_radius_)));
+      envelopes_ =
+          std::make_unique<DilatedEnvelopes>(number(), shape_, bounding_radius_ - species_.shape.inscribed_radius(),
+                                             bounding_radius_, thickness, exit_share * thickness);
+      break;
+    case Neighbours::obp:
+      thickness = std::min(thickness, thickest_oriented_envelope(shape_, bounding_radius_, box_));
+      envelopes_ = std::make_unique<OrientedEnvelopes>(number(), shape_, bounding_radius_, thickness, inertia_.spins);
+      break;
+    case Neighbours::cells: {
+      auto cells = std::make_unique<CellEnvelopes>(number(), box_, bounding_radius_);
+      body_cells_ = cells.get();
+      envelopes_ = std::move(cells);
+      break;
+    }
+  }
   rebuild_all();
 }
 
@@ -207,14 +248,33 @@ void EventLoop::sample(Snapshot& snapshot) const {
 
 // ---- Prediction ----------------------------------------------------------------------------------------------------
 
-template <bool kSpin>
-void EventLoop::predict_pair(Pair& pair, int max_evaluations) {
+/// From the centre of i to that of j now, in the image in which they can touch.
+Vector3d EventLoop::between(const Pair& pair) const {
+  const Vector3d d = position_now(pair.j) - position_now(pair.i);
+  return body_cells_ != nullptr ? body_cells_->image_of_cells(pair.i, pair.j, d) : nearest_image(d, box_);
+}
+
+Finding EventLoop::find_contact(Pair& pair, double end, int max_evaluations) {
   const AxisMotion& a = motions_[at(pair.i)];
   const AxisMotion& b = motions_[at(pair.j)];
+  const Vector3d r = between(pair);
+  if (options_.contact.finder == Finder::bracketing) {
+    return bracketing_contact({upright_, upright_, a, b, r, now_}, now_, end, options_.contact, pair.normal, finder_);
+  }
+  if (inertia_.spins) {
+    const UniaxialGauge<true> gauge(shape_, a, shape_, b, r, now_, 2 * bounding_radius_);
+    return certified_contact(gauge, now_, end, max_evaluations, pair.normal, finder_);
+  }
+  const UniaxialGauge<false> gauge(shape_, a, shape_, b, r, now_, 2 * bounding_radius_);
+  return certified_contact(gauge, now_, end, max_evaluations, pair.normal, finder_);
+}
+
+void EventLoop::search(Pair& pair, int max_evaluations) {
   const double end = std::max(now_, std::min(exits_[at(pair.i)], exits_[at(pair.j)]));
-  const Vector3d r = nearest_image(b.position_at(now_) - a.position_at(now_), box_);
-  const UniaxialGauge<kSpin> gauge(shape_, a, shape_, b, r, now_, 2 * bounding_radius_);
-  const Finding finding = certified_contact(gauge, now_, end, max_evaluations, pair.normal, finder_);
+  const Finding finding = find_contact(pair, end, max_evaluations);
+  if (finding.unsolved) {
+    report(pair, now_, std::string("Newton's method for the distance: ") + geom::to_string(*finding.unsolved));
+  }
   switch (finding.outcome) {
     case Outcome::clear:
       pair.event = PairEvent::clear;
@@ -229,12 +289,21 @@ void EventLoop::predict_pair(Pair& pair, int max_evaluations) {
       pair.time = finding.time;
       break;
     case Outcome::overlapping:
-      report_overlap(pair, finding.time);
+      ++counters_.overlaps;
+      report(pair, finding.time, "the bodies overlap by more than rounding");
       // Approaching: let them collide now. Parting: look again when they have moved a little.
       pair.event = finding.approaching ? PairEvent::contact : PairEvent::bound;
-      pair.time = finding.approaching ? finding.time : finding.time + 1e-3 * gauge.size() / gauge.speed();
+      pair.time = finding.approaching ? finding.time : finding.time + kPartingLook * parting_time(pair);
       break;
   }
+}
+
+/// The least time in which the bodies of a pair can move by the sum of their bounding radii.
+double EventLoop::parting_time(const Pair& pair) const {
+  const AxisMotion& a = motions_[at(pair.i)];
+  const AxisMotion& b = motions_[at(pair.j)];
+  const double reach = 2 * bounding_radius_;
+  return reach / ((b.velocity - a.velocity).norm() + reach * (a.rate + b.rate));
 }
 
 void EventLoop::predict(std::int32_t index, int owner, int max_evaluations) {
@@ -242,11 +311,7 @@ void EventLoop::predict(std::int32_t index, int owner, int max_evaluations) {
   const std::int32_t partner = pair.partner(owner);
   if (pair.owner == partner && first_[at(partner)] == index) orphans_.push_back(partner);
   pair.owner = owner;
-  if (inertia_.spins) {
-    predict_pair<true>(pair, max_evaluations);
-  } else {
-    predict_pair<false>(pair, max_evaluations);
-  }
+  search(pair, max_evaluations);
 }
 
 void EventLoop::predict_all_of(int body, std::int32_t skip) {
@@ -274,17 +339,11 @@ void EventLoop::reschedule_orphans() {
   orphans_.clear();
 }
 
-void EventLoop::report_overlap(const Pair& pair, double time) {
-  ++counters_.overlaps;
+void EventLoop::report(const Pair& pair, double time, const std::string& reason) {
   if (failures_.size() >= kMaxFailures) return;
-  FailedPair failed{"the bodies overlap by more than rounding",
-                    species_.shape,
-                    species_.shape,
-                    motion_of(pair.i),
-                    motion_of(pair.j),
-                    epochs_ * kEpoch + time,
-                    pair.i,
-                    pair.j};
+  FailedPair failed{
+      reason, species_.shape, species_.shape, motion_of(pair.i), motion_of(pair.j), epochs_ * kEpoch + time,
+      pair.i, pair.j};
   const Vector3d p_i = failed.motion_i.pose.position();
   const Vector3d r = nearest_image(failed.motion_j.pose.position() - p_i, box_);
   failed.motion_j.pose = geom::Pose(failed.motion_j.pose.rotation(), p_i + r);
@@ -303,7 +362,7 @@ void EventLoop::rebuild(int i) {
   move(i);
   wrap(i);
   const AxisMotion& motion = motions_[at(i)];
-  envelopes_->place(i, motion.position, motion.axis());
+  envelopes_->place(i, motion.position, motion.axis(), frames_[at(i)].x_axis);
   cells_->place(i, motion.position);
   old_pairs_.assign(lists_.of(i).begin(), lists_.of(i).end());
   for (const std::int32_t index : old_pairs_) {
@@ -331,7 +390,7 @@ void EventLoop::rebuild_all() {
   for (int i = 0; i < number(); ++i) {
     move(i);
     wrap(i);
-    envelopes_->place(i, motions_[at(i)].position, motions_[at(i)].axis());
+    envelopes_->place(i, motions_[at(i)].position, motions_[at(i)].axis(), frames_[at(i)].x_axis);
     cells_->place(i, motions_[at(i)].position);
     renew_exit(i);
   }

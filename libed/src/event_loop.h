@@ -2,6 +2,7 @@
 
 #include "axis_motion.h"
 #include "calendar.h"
+#include "cell_envelopes.h"
 #include "cell_grid.h"
 #include "certified_contact.h"
 #include "envelopes.h"
@@ -10,7 +11,11 @@
 #include <ed/impulse.h>
 #include <ed/simulation.h>
 
+#include <geom/internal/uniaxial.h>
+
+#include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace ed::internal {
@@ -25,7 +30,7 @@ namespace ed::internal {
 /// its owner: the one that was predicted last.
 class EventLoop {
  public:
-  EventLoop(const System& system, double envelope);
+  EventLoop(const System& system, const SimulationOptions& options);
 
   double time() const { return epochs_ * kEpoch + now_; }
   bool run_until(double time, std::uint64_t max_collisions);
@@ -36,6 +41,7 @@ class EventLoop {
 
   double box() const { return box_; }
   double envelope() const { return envelopes_->thickness(); }
+  Neighbours neighbours() const { return options_.neighbours; }
   int number() const { return static_cast<int>(motions_.size()); }
   Counters counters() const;
   double virial() const { return virial_; }
@@ -61,13 +67,16 @@ class EventLoop {
   void renew_exit(int body);
 
   void predict(std::int32_t index, int owner, int max_evaluations);
-  template <bool kSpin>
-  void predict_pair(Pair& pair, int max_evaluations);
+  Finding find_contact(Pair& pair, double end, int max_evaluations);
+  void search(Pair& pair, int max_evaluations);
+  Eigen::Vector3d between(const Pair& pair) const;
+  double parting_time(const Pair& pair) const;
+  void check_cells() const;
   void predict_all_of(int body, std::int32_t skip);
   void reschedule(int body);
   void reschedule_orphans();
   double contact_scale(const Pair& pair, double enough) const;
-  void report_overlap(const Pair& pair, double time);
+  void report(const Pair& pair, double time, const std::string& reason);
 
   void move(int body);
   Eigen::Vector3d position_now(int body) const;
@@ -76,8 +85,11 @@ class EventLoop {
   Motion motion_of(int body) const;
   ContactBody contact_body(int body, const Eigen::Vector3d& normal) const;
 
+  SimulationOptions options_;
+
   // What all bodies share.
   Species species_;
+  geom::Ellipsoid upright_;  ///< the shape with its axis of revolution along body z
   int shape_axis_;
   geom::internal::Spheroid shape_;
   UniaxialInertia inertia_;
@@ -90,7 +102,8 @@ class EventLoop {
   std::vector<Eigen::Vector3i> images_;
 
   // Neighbours and events.
-  std::optional<DilatedEnvelopes> envelopes_;
+  std::unique_ptr<Envelopes> envelopes_;
+  const CellEnvelopes* body_cells_ = nullptr;  ///< envelopes_, if they are cells
   std::optional<CellGrid> cells_;
   NeighbourLists lists_;
   Calendar calendar_;

@@ -53,7 +53,7 @@ void check_start(const System& system) {
 
 Simulation::Simulation(const System& system, const SimulationOptions& options) {
   check_start(system);
-  impl_ = std::make_unique<Impl>(system, options.envelope);
+  impl_ = std::make_unique<Impl>(system, options);
 }
 
 Simulation::~Simulation() = default;
@@ -105,10 +105,14 @@ void Simulation::run_collisions(std::uint64_t number) {
 }
 
 double Simulation::shrink_box(double target_box, double least_gain) {
+  if (impl_->neighbours() != Neighbours::dilated) {
+    throw std::logic_error("shrink_box: needs the neighbour lists of dilated bodies");
+  }
   return impl_->shrink_box(target_box, least_gain);
 }
 
 void Simulation::tune_envelopes(const std::function<bool()>& keep_going) {
+  if (impl_->neighbours() == Neighbours::cells) return;
   constexpr std::uint64_t kSlice = 10000;
   bool stopped = false;
   const auto run = [&](std::uint64_t number) {

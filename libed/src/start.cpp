@@ -1,5 +1,5 @@
 #include "cell_grid.h"
-#include "envelopes.h"
+#include "dilated_envelopes.h"
 
 #include <ed/random.h>
 #include <ed/simulation.h>

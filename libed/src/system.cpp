@@ -1,5 +1,6 @@
+#include "cell_envelopes.h"
 #include "cell_grid.h"
-#include "envelopes.h"
+#include "dilated_envelopes.h"
 
 #include <ed/system.h>
 
@@ -47,8 +48,11 @@ double box_for(const geom::Ellipsoid& shape, int number, double packing_fraction
   return std::cbrt(number * shape.volume() / packing_fraction);
 }
 
-int smallest_number(const geom::Ellipsoid& shape, double packing_fraction) {
-  const double box = internal::smallest_box(shape.bounding_radius());
+int smallest_number(const geom::Ellipsoid& shape, double packing_fraction, Neighbours neighbours) {
+  const double R = shape.bounding_radius();
+  const double box = neighbours == Neighbours::cells
+                         ? std::max(internal::smallest_box(R), internal::CellEnvelopes::smallest_box(R))
+                         : internal::smallest_box(R);
   return std::max(2, static_cast<int>(std::ceil(packing_fraction * box * box * box / shape.volume())));
 }
 

@@ -1,4 +1,6 @@
+#include "bracketing_contact.h"
 #include "certified_contact.h"
+#include "contact_checks.h"
 #include "motion_checks.h"
 #include "uniaxial_gauge.h"
 
@@ -35,6 +37,7 @@ int common_axis(const Ellipsoid& shape, const Motion& motion, const char* name) 
 
 struct Body {
   Spheroid shape;
+  Ellipsoid ellipsoid;  ///< the axis of revolution along body z
   internal::TopMotion top;
 };
 
@@ -42,7 +45,8 @@ Body make_body(const Ellipsoid& shape, const Motion& motion, const char* name) {
   internal::check_motion(motion);
   const int axis = common_axis(shape, motion, name);
   const double b = shape.semi_axes()[(axis + 1) % 3];
-  return {Spheroid(shape.semi_axes()[axis], b, shape.min_curvature_radius()), internal::top_motion(motion, axis)};
+  const double a = shape.semi_axes()[axis];
+  return {Spheroid(a, b, shape.min_curvature_radius()), Ellipsoid({b, b, a}), internal::top_motion(motion, axis)};
 }
 
 ContactStatus status_of(Outcome outcome) {
@@ -79,24 +83,38 @@ double skip_the_way(Body& a, Body& b, double reach, double duration) {
   return way;
 }
 
+Eigen::Vector3d axis_at(const internal::AxisMotion& m, double t) {
+  const internal::SinCos sc = internal::sincos(m.rate * (t - m.time));
+  return m.e0 + sc.cos * m.e1 + sc.sin * m.e2;
+}
+
 /// The search from time 0 on the bodies' clocks.
-template <bool kSpin>
-ContactResult search(const Body& a, const Body& b, double reach, double duration) {
-  const Eigen::Vector3d r = b.top.axis.position_at(0) - a.top.axis.position_at(0);
-  const internal::UniaxialGauge<kSpin> gauge(a.shape, a.top.axis, b.shape, b.top.axis, r, 0, reach);
+ContactResult search(const Body& a, const Body& b, double reach, double duration, const ContactOptions& options) {
+  const internal::AxisMotion& m_a = a.top.axis;
+  const internal::AxisMotion& m_b = b.top.axis;
+  const Eigen::Vector3d r = m_b.position_at(0) - m_a.position_at(0);
   Eigen::Vector3d n = Eigen::Vector3d::Zero();
   internal::FinderCounters count;
-  const internal::Finding finding = internal::certified_contact(gauge, 0, duration, kMaxEvaluations, n, count);
+  const auto certified = [&](const auto& gauge) {
+    return internal::certified_contact(gauge, 0, duration, kMaxEvaluations, n, count);
+  };
+  internal::Finding finding;
+  if (options.finder == Finder::bracketing) {
+    finding = internal::bracketing_contact({a.ellipsoid, b.ellipsoid, m_a, m_b, r, 0}, 0, duration, options, n, count);
+  } else if (a.top.inertia.spins || b.top.inertia.spins) {
+    finding = certified(internal::UniaxialGauge<true>(a.shape, m_a, b.shape, m_b, r, 0, reach));
+  } else {
+    finding = certified(internal::UniaxialGauge<false>(a.shape, m_a, b.shape, m_b, r, 0, reach));
+  }
   ContactResult result;
   result.status = status_of(finding.outcome);
   result.time = finding.time;
   result.evaluations = static_cast<int>(count.evaluations);
+  result.rescues = options.finder == Finder::bracketing ? static_cast<int>(count.rescues) : 0;
   if (result.status == ContactStatus::hit) {
-    const auto state = gauge.at(finding.time);
-    const Eigen::Vector3d p_a =
-        a.top.axis.position_at(finding.time) + geom::internal::support_point(a.shape, state.u_a, n);
-    const Eigen::Vector3d p_b =
-        a.top.axis.position_at(finding.time) + state.r - geom::internal::support_point(b.shape, state.u_b, n);
+    const double t = finding.time;
+    const Eigen::Vector3d p_a = m_a.position_at(t) + geom::internal::support_point(a.shape, axis_at(m_a, t), n);
+    const Eigen::Vector3d p_b = m_b.position_at(t) - geom::internal::support_point(b.shape, axis_at(m_b, t), n);
     result.point = 0.5 * (p_a + p_b);
     result.normal = n;
   }
@@ -120,7 +138,8 @@ const char* to_string(ContactStatus status) {
 }
 
 ContactResult time_of_contact(const Ellipsoid& a, const Motion& motion_a, const Ellipsoid& b, const Motion& motion_b,
-                              double t_max) {
+                              double t_max, const ContactOptions& options) {
+  internal::check_contact_options(options, std::min(a.inscribed_radius(), b.inscribed_radius()));
   Body body_a = make_body(a, motion_a, "A");
   Body body_b = make_body(b, motion_b, "B");
   const double now = std::max(motion_a.time, motion_b.time);
@@ -135,9 +154,7 @@ ContactResult time_of_contact(const Ellipsoid& a, const Motion& motion_a, const 
   const double reach = a.bounding_radius() + b.bounding_radius();
   const double way = skip_the_way(body_a, body_b, reach, t_max - now);
   const double duration = t_max - now - way;
-  const bool spin = body_a.top.inertia.spins || body_b.top.inertia.spins;
-  ContactResult result =
-      spin ? search<true>(body_a, body_b, reach, duration) : search<false>(body_a, body_b, reach, duration);
+  ContactResult result = search(body_a, body_b, reach, duration, options);
   result.time = result.status == ContactStatus::separated ? t_max : std::min(t_max, now + (way + result.time));
   return result;
 }

@@ -111,6 +111,27 @@ struct SupportCurvature {
   }
 };
 
+/// Axis and its rate of change at time t.
+template <bool kSpin>
+void turn(const AxisMotion& m, double t, Eigen::Vector3d& u, Eigen::Vector3d& du) {
+  const double dt = t - m.time;
+  if (dt == 0) {  // a body that has just collided: no sine needed
+    u = kSpin ? Eigen::Vector3d(m.e0 + m.e1) : m.e1;
+    du = m.rate * m.e2;
+    return;
+  }
+  const SinCos sc = sincos(m.rate * dt);
+  u = sc.cos * m.e1 + sc.sin * m.e2;
+  if constexpr (kSpin) u += m.e0;
+  du = m.rate * (sc.cos * m.e2 - sc.sin * m.e1);
+}
+
+template <bool kSpin>
+SupportCurvature<kSpin> support_curvature(const AxisMotion& m, const Eigen::Vector3d& du, double x,
+                                          const Eigen::Vector3d& n) {
+  return {x, du.dot(n), m.rate, kSpin ? m.e0.dot(n) : 0.0};
+}
+
 template <bool kSpin>
 class UniaxialGauge {
  public:
@@ -135,8 +156,8 @@ class UniaxialGauge {
   State at(double t) const {
     State s;
     s.r = r_now_ + (t - now_) * v_;
-    turn(a_, t, s.u_a, s.du_a);
-    turn(b_, t, s.u_b, s.du_b);
+    turn<kSpin>(a_, t, s.u_a, s.du_a);
+    turn<kSpin>(b_, t, s.u_b, s.du_b);
     return s;
   }
 
@@ -156,7 +177,7 @@ class UniaxialGauge {
   }
 
   Certificate certificate(const State& s, const UniaxialEvaluation& e, const Eigen::Vector3d& n) const {
-    return {*this, reduce(a_, s.du_a, e.x[0], n), reduce(b_, s.du_b, e.x[1], n)};
+    return {*this, support_curvature<kSpin>(a_, s.du_a, e.x[0], n), support_curvature<kSpin>(b_, s.du_b, e.x[1], n)};
   }
 
   Eigen::Vector3d cold_normal(const State& s) const { return geom::internal::cold_normal(A_, B_, s.r, s.u_a, s.u_b); }
@@ -184,26 +205,8 @@ class UniaxialGauge {
   double speed() const { return v_.norm() + reach_ * (a_.rate + b_.rate); }
 
  private:
-  static void turn(const AxisMotion& m, double t, Eigen::Vector3d& u, Eigen::Vector3d& du) {
-    const double dt = t - m.time;
-    if (dt == 0) {  // a body that has just collided: no sine needed
-      u = kSpin ? Eigen::Vector3d(m.e0 + m.e1) : m.e1;
-      du = m.rate * m.e2;
-      return;
-    }
-    const SinCos sc = sincos(m.rate * dt);
-    u = sc.cos * m.e1 + sc.sin * m.e2;
-    if constexpr (kSpin) u += m.e0;
-    du = m.rate * (sc.cos * m.e2 - sc.sin * m.e1);
-  }
-
   static Eigen::Matrix3d quadric(const Spheroid& S, const Eigen::Vector3d& u) {
     return S.b2 * Eigen::Matrix3d::Identity() + S.c * u * u.transpose();
-  }
-
-  static SupportCurvature<kSpin> reduce(const AxisMotion& m, const Eigen::Vector3d& du, double x,
-                                        const Eigen::Vector3d& n) {
-    return {x, du.dot(n), m.rate, kSpin ? m.e0.dot(n) : 0.0};
   }
 
   const Spheroid& A_;

@@ -215,6 +215,34 @@ class Run(Case):
                 self.assertEqual(self.read(f"{name}/events.csv"), self.read(f"{name}2/events.csv"))
                 self.assertEqual(self.read(f"{name}/config.toml"), self.read(f"{name}2/config.toml"))
 
+    def test_every_finder_and_list_gives_the_same_collisions(self):
+        config = SMALL.replace("time = 1\n", "time = 0\n").replace("time = 5", "time = 1")
+        runs = {
+            f"{finder}_{neighbours}_{distance}": [
+                "--set", f"dynamics.finder={finder}", "--set", f"dynamics.neighbours={neighbours}",
+                "--set", f"dynamics.distance={distance}",
+            ]
+            for finder, distances in [("certified", ["dual"]), ("bracketing", ["dual", "newton8", "newton5"])]
+            for neighbours in ["dilated", "obp", "cells"]
+            for distance in distances
+        }
+        first = None
+        for name, arguments in runs.items():
+            self.run_small(name, *arguments, config=config)
+            rows = [line.split(",") for line in self.read(f"{name}/events.csv").splitlines()[1:]]
+            first = first or rows
+            self.assertGreater(len(rows), 50)
+            self.assertEqual([r[1:] for r in rows], [r[1:] for r in first], name)
+            self.assertLess(max(abs(float(a[0]) - float(b[0])) for a, b in zip(rows, first)), 1e-9, name)
+        summary = self.summary("bracketing_obp_newton5")
+        self.assertEqual(summary["finder"], {"kind": "bracketing", "distance": "newton5", "eps_d": 1e-6})
+        self.assertEqual(summary["neighbours"]["kind"], "obp")
+        self.assertIn("bracketing; neighbours: obp", self.read("bracketing_obp_newton5/log.txt"))
+
+    def test_auto_says_what_it_chose(self):
+        self.run_small("out")
+        self.assertIn('neighbours: dilated (chosen by "auto")', self.read("out/log.txt"))
+
     def test_axes_in_any_order_are_one_shape(self):
         base = SMALL.replace("number = 64", "number = 128")
         for name, axes in {"z": "[1, 1, 3]", "x": "[3, 1, 1]", "y": "[0.5, 1.5, 0.5]"}.items():
@@ -375,12 +403,9 @@ class BadConfig(Case):
             ("inertia = [1, 1]", "dynamics.inertia"),
             ("inertia = 3", "dynamics.inertia"),
             ("inertia = [1, 1.5, 1]", "dynamics.inertia", "not available yet"),
-            ('finder = "bracketing"', "dynamics.finder", "not available yet", "certified"),
             ('finder = "best"', "dynamics.finder", "certified"),
-            ('distance = "newton8"', "dynamics.distance", "not available yet"),
-            ('distance = "newton5"', "dynamics.distance", "not available yet"),
-            ('neighbours = "obp"', "dynamics.neighbours", "not available yet"),
-            ('neighbours = "cells"', "dynamics.neighbours", "not available yet"),
+            ('distance = "newton8"', "dynamics.distance", "bracketing"),
+            ('distance = "newton6"', "dynamics.distance", "newton5", "dual"),
             ('neighbours = "none"', "dynamics.neighbours", "dilated"),
             ("eps_d = 0", "dynamics.eps_d"),
             ("eps_d = -1e-6", "dynamics.eps_d"),
@@ -465,7 +490,6 @@ class BadConfig(Case):
             "numbr=64": ["did you mean system.number?"],
             "system.number=many": ['"many"'],
             "production.time=-1": ["production.time"],
-            "dynamics.finder=bracketing": ["not available yet"],
             "system.number": ["section.key=value"],
             "=3": ["section.key=value"],
             "system.number=": ["section.key=value"],

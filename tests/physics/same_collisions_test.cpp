@@ -1,5 +1,5 @@
-// The physics does not depend on how the event loop is run: the thickness of the envelopes, where runs are cut into
-// pieces, and when they are looked at.
+// The physics does not depend on how the event loop is run: the finder, the kind of neighbour lists and the thickness
+// of their envelopes, where runs are cut into pieces, and when they are looked at.
 
 #include <common/ed_hash.h>
 #include <common/ed_states.h>
@@ -11,6 +11,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -24,31 +26,94 @@ using ed_test::State;
 /// than 1e3. A wrong or missing collision changes times by a good part of the mean time between collisions, 1e-4.
 constexpr double kSameTime = 1e-9;
 
-std::vector<ed::Collision> first_collisions(const ed::System& system, double envelope, std::size_t number) {
-  ed::Simulation simulation(system, {envelope});
+constexpr std::size_t kNumber = 1000;
+
+std::vector<ed::Collision> first_collisions(const ed::System& system, const ed::SimulationOptions& options,
+                                            std::size_t number = kNumber) {
+  ed::Simulation simulation(system, options);
   simulation.record_collisions(number);
   simulation.run_collisions(number);
   EXPECT_EQ(simulation.counters().overlaps, 0U);
   return simulation.collisions();
 }
 
+/// The largest difference of times.
+double compare(const std::vector<ed::Collision>& a, const std::vector<ed::Collision>& b, const std::string& what) {
+  EXPECT_EQ(a.size(), kNumber);
+  EXPECT_EQ(b.size(), kNumber);
+  double worst = 0;
+  for (std::size_t k = 0; k < std::min(a.size(), b.size()); ++k) {
+    if (a[k].i != b[k].i || a[k].j != b[k].j) {
+      ADD_FAILURE() << what << ": collision " << k << " is of " << b[k].i << " and " << b[k].j << " instead of "
+                    << a[k].i << " and " << a[k].j;
+      return std::numeric_limits<double>::infinity();
+    }
+    worst = std::max(worst, std::abs(a[k].time - b[k].time));
+    EXPECT_GE(b[k].time, b[k > 0 ? k - 1 : 0].time) << what;
+  }
+  return worst;
+}
+
 void expect_same_collisions(const State& state, double thin, double thick) {
-  constexpr std::size_t kNumber = 1000;
   const ed::System system = ed_test::equilibrated(state, 0.5);
   ASSERT_NE(ed::Simulation(system, {thin}).envelope(), ed::Simulation(system, {thick}).envelope());
-  const auto a = first_collisions(system, thin, kNumber);
-  const auto b = first_collisions(system, thick, kNumber);
-  ASSERT_EQ(a.size(), kNumber);
-  ASSERT_EQ(b.size(), kNumber);
-  double worst = 0;
-  for (std::size_t k = 0; k < kNumber; ++k) {
-    ASSERT_EQ(a[k].i, b[k].i) << "collision " << k;
-    ASSERT_EQ(a[k].j, b[k].j) << "collision " << k;
-    worst = std::max(worst, std::abs(a[k].time - b[k].time));
-    ASSERT_GE(a[k].time, a[k > 0 ? k - 1 : 0].time);
-  }
+  const double worst =
+      compare(first_collisions(system, {thin}), first_collisions(system, {thick}), ed_test::describe(state));
   std::printf("%s: times differ by %.1e at most\n", ed_test::describe(state).c_str(), worst);
   EXPECT_LE(worst, kSameTime);
+}
+
+struct Mode {
+  const char* name;
+  ed::Finder finder;
+  ed::Neighbours neighbours;
+  ed::DistanceMethod distance = ed::DistanceMethod::dual;
+  ed::ContactRoot root = ed::ContactRoot::newton;
+};
+
+/// The paper's finder, lists and distances, in every combination that differs, against the default path.
+void expect_same_collisions_in_every_mode(const State& state) {
+  using ed::DistanceMethod;
+  using ed::Finder;
+  using ed::Neighbours;
+  const ed::System system = ed_test::equilibrated(state, 0.5);
+  const auto reference = first_collisions(system, {});
+  for (const Mode& mode :
+       {Mode{"certified, obp", Finder::certified, Neighbours::obp},
+        Mode{"certified, cells", Finder::certified, Neighbours::cells},
+        Mode{"bracketing, dilated", Finder::bracketing, Neighbours::dilated},
+        Mode{"bracketing, obp", Finder::bracketing, Neighbours::obp},
+        Mode{"bracketing, cells", Finder::bracketing, Neighbours::cells},
+        Mode{"bracketing, dilated, 1-D root", Finder::bracketing, Neighbours::dilated, DistanceMethod::dual,
+             ed::ContactRoot::one_dimensional},
+        Mode{"bracketing, obp, newton5", Finder::bracketing, Neighbours::obp, DistanceMethod::newton5},
+        Mode{"bracketing, obp, newton8", Finder::bracketing, Neighbours::obp, DistanceMethod::newton8}}) {
+    ed::SimulationOptions options;
+    options.neighbours = mode.neighbours;
+    options.contact.finder = mode.finder;
+    options.contact.distance = mode.distance;
+    options.contact.root = mode.root;
+    options.contact.eps_d = 1e-6;
+    const double worst = compare(reference, first_collisions(system, options), mode.name);
+    std::printf("%s, %s: times differ by %.1e at most\n", ed_test::describe(state).c_str(), mode.name, worst);
+    EXPECT_LE(worst, kSameTime) << mode.name;
+  }
+}
+
+TEST(SameCollisions, InEveryModeOfDiscs) {
+  expect_same_collisions_in_every_mode({0.33, 0.40, 512, Inertia::paper, 51});
+}
+
+TEST(SameCollisions, InEveryModeOfShortRods) {
+  expect_same_collisions_in_every_mode({2, 0.40, 512, Inertia::paper, 52});
+}
+
+TEST(SameCollisions, InEveryModeOfRods) {
+  expect_same_collisions_in_every_mode({3, 0.40, 512, Inertia::paper, 53});
+}
+
+TEST(SameCollisions, InEveryModeOfSpinningRods) {
+  expect_same_collisions_in_every_mode({2, 0.40, 256, Inertia::uniform, 54});
 }
 
 TEST(SameCollisions, WhateverTheEnvelopeOfRods) {

@@ -3,6 +3,7 @@
 /// The whole public interface of libed.
 
 #include <ed/analysis.h>
+#include <ed/contact_options.h>
 #include <ed/impulse.h>
 #include <ed/motion.h>
 #include <ed/observables.h>

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <ed/contact_options.h>
 #include <ed/export.h>
 #include <ed/motion.h>
 #include <ed/system.h>
@@ -23,13 +24,16 @@ struct Counters {
   /// Evaluations after a prediction's first: what its lower bound had to be refined by when it came up. The final
   /// Newton on a contact (2 evaluations a collision) is not counted here.
   std::uint64_t refinements = 0;
-  std::uint64_t cold_restarts = 0;       ///< warm normals that led to a spurious maximum
-  std::uint64_t rescues = 0;             ///< searches that needed the fallback which cannot fail
+  std::uint64_t cold_restarts = 0;  ///< warm normals that led to a spurious maximum
+  /// Certified: searches that needed the fallback which cannot fail. Bracketing: distances that Newton's method
+  /// declined and the dual answered.
+  std::uint64_t rescues = 0;
   std::uint64_t neighbour_rebuilds = 0;  ///< envelopes renewed
   std::uint64_t envelope_checks = 0;     ///< looks at whether a body leaves its envelope
   std::uint64_t candidate_tests = 0;     ///< pairs of envelopes tested in rebuilds
-  std::uint64_t overlaps = 0;            ///< pairs found deeper than 1e-12 of their size: always 0 in a sound run
-  std::uint64_t parting_contacts = 0;    ///< contacts at which the bodies did not approach: no impulse; always 0
+  /// Pairs found deeper than 1e-12 of their size: always 0 in a sound run. With Finder::bracketing, contacts missed.
+  std::uint64_t overlaps = 0;
+  std::uint64_t parting_contacts = 0;  ///< contacts at which the bodies did not approach: no impulse; always 0
 };
 
 struct Collision {
@@ -62,18 +66,23 @@ struct Snapshot {
 struct SimulationOptions {
   /// Thickness of the neighbour-list envelopes (length); 0: a first guess, which `tune_envelopes` improves.
   double envelope = 0;
+  Neighbours neighbours = Neighbours::dilated;
+  ContactOptions contact{};
 };
 
 /// Event-driven dynamics of hard ellipsoids of revolution in a periodic cubic box.
 ///
 /// Asynchronous: each body carries its own time. Neighbour lists with dilated envelopes; one calendar entry a body; a
 /// pair is looked at once after a collision and its certified lower bound put into the calendar, to be refined only
-/// when it comes up. Nothing allocates in steady state. The same system and options give the same bits
-/// from one binary; another compiler's binary for the same instruction set has been found to give them too.
+/// when it comes up (with Finder::bracketing each search is carried to its end at once). Both the finder and the
+/// neighbour lists can be the paper's; the collisions are the same. Nothing allocates in steady state. The same system
+/// and options give the same bits from one binary; another compiler's binary for the same instruction set has been
+/// found to give them too.
 class ED_EXPORT Simulation {
  public:
-  /// Throws std::invalid_argument if the bodies are not of revolution, two of them overlap, a number is not finite, or
-  /// the box is too small for nearest images (see smallest_number).
+  /// Throws std::invalid_argument if the bodies are not of revolution, two of them overlap, a number is not finite, the
+  /// box is too small for nearest images (see smallest_number; with cells, for three along an edge), or the contact
+  /// options are not usable.
   explicit Simulation(const System& system, const SimulationOptions& options = {});
   ~Simulation();
   Simulation(Simulation&&) noexcept;
@@ -89,7 +98,8 @@ class ED_EXPORT Simulation {
 
   /// Scales all positions and the box by a factor s, down to target_box / box if that leaves no overlap, else so that a
   /// tenth of the closest pair's gap is left; not below what the neighbour lists allow in one step, and not at all if
-  /// 1 - s would be below least_gain. Returns the new box. Velocities are unchanged.
+  /// 1 - s would be below least_gain. Returns the new box. Velocities are unchanged. Throws std::logic_error unless the
+  /// neighbours are `dilated`.
   double shrink_box(double target_box, double least_gain = 0);
 
   /// Chooses the envelope's thickness by the work that the counters show, never by a clock. Runs up to about 20

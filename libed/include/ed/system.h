@@ -49,10 +49,18 @@ ED_EXPORT double packing_fraction(const System& system);
 /// Edge of the cubic box in which `number` bodies of this shape have that packing fraction.
 ED_EXPORT double box_for(const geom::Ellipsoid& shape, int number, double packing_fraction);
 
-/// The smallest number of bodies whose box at this packing fraction is large enough for the nearest image of every pair
-/// to be the only one that matters: box / 2 > 2 R + 4 delta_min, with R the bounding radius and delta_min the thinnest
-/// neighbour-list envelope in use.
-ED_EXPORT int smallest_number(const geom::Ellipsoid& shape, double packing_fraction);
+/// What keeps the list of the bodies that a body can meet short.
+enum class Neighbours {
+  dilated,  ///< bodies whose shapes, made thicker by the envelope's thickness, meet
+  obp,      ///< the paper's: bodies whose oriented bounding parallelepipeds meet
+  cells,    ///< the paper's plain algorithm: bodies in the same or an adjacent cell; no thickness
+};
+
+/// The smallest number of bodies whose box at this packing fraction is large enough for one image of every pair to be
+/// the only one that matters: box / 2 > 2 R + 4 delta_min, with R the bounding radius and delta_min the thinnest
+/// neighbour-list envelope in use; for cells, box > 6 R, three cells.
+ED_EXPORT int smallest_number(const geom::Ellipsoid& shape, double packing_fraction,
+                              Neighbours neighbours = Neighbours::dilated);
 
 /// Kinetic energies and what they give for kT.
 struct KineticState {

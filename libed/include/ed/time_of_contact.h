@@ -1,5 +1,6 @@
 #pragma once
 
+#include <ed/contact_options.h>
 #include <ed/export.h>
 #include <ed/motion.h>
 
@@ -29,6 +30,7 @@ struct [[nodiscard]] ContactResult {
   /// Unit, from A to B.
   Eigen::Vector3d normal = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
   int evaluations = 0;  ///< points in time that were looked at
+  int rescues = 0;      ///< distances that newton8 or newton5 declined and the dual answered
 };
 
 /// The first time in [max of the motions' times, t_max] at which two freely moving bodies touch and approach.
@@ -45,7 +47,10 @@ struct [[nodiscard]] ContactResult {
 ///
 /// Bodies: ellipsoids of revolution whose moments of inertia share the axis of revolution. Others throw
 /// std::invalid_argument (not available yet), as do values that are not finite and inertia that no body can have.
+///
+/// `options.finder = Finder::bracketing` searches as the paper does instead: that is no proof, and `separated` then
+/// says only that no contact was found. `failed`, with either finder, if the budget of evaluations was spent.
 ED_EXPORT ContactResult time_of_contact(const geom::Ellipsoid& a, const Motion& motion_a, const geom::Ellipsoid& b,
-                                        const Motion& motion_b, double t_max);
+                                        const Motion& motion_b, double t_max, const ContactOptions& options = {});
 
 }  // namespace ed

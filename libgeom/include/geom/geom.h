@@ -5,6 +5,7 @@
 #include <geom/distance.h>
 #include <geom/ellipsoid.h>
 #include <geom/newton.h>
+#include <geom/obb.h>
 #include <geom/pose.h>
 #include <geom/shape.h>
 #include <geom/tolerances.h>

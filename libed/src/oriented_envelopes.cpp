@@ -1,0 +1,128 @@
+#include "oriented_envelopes.h"
+
+#include "certified_contact.h"
+#include "neighbour_lists.h"
+#include "periodic.h"
+#include "plane_gauge.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ed::internal {
+namespace {
+
+using Eigen::Vector3d;
+using geom::internal::Spheroid;
+
+/// Looks at each plane when a body's exit is predicted; a bound that is not final is renewed when it comes up.
+constexpr int kLooks = 2;
+
+/// No exit is predicted further ahead than this, looked at again then, and no envelope that lasts longer than that is
+/// made anew early. In units of the time in which the surface can cross the thickness.
+constexpr double kHorizon = 10;
+constexpr double kWorthwhile = 0.15;
+
+Vector3d half_extents(const Spheroid& shape, double thickness) {
+  const double b = std::sqrt(shape.b2) + thickness;
+  return {b, b, std::sqrt(shape.a2) + thickness};
+}
+
+/// How far a body's centre can be from that of its box while it stays inside, along each of the box's axes.
+///
+/// Along axis e_k the centre is within extent_k - h(e_k, u). The squares of the three h add up to a^2 + 2 b^2 whatever
+/// u, and none exceeds its extent, which bounds each from below by what the other two leave; min(a, b) does too.
+Vector3d slack(const Spheroid& shape, double thickness) {
+  const Vector3d extents = half_extents(shape, thickness);
+  const double trace = shape.a2 + 2 * shape.b2;
+  const double least2 = std::min(shape.a2, shape.b2);
+  Vector3d result;
+  for (int k = 0; k < 3; ++k) {
+    const double others = extents.squaredNorm() - extents[k] * extents[k];
+    result[k] = extents[k] - std::sqrt(std::max(least2, trace - others));
+  }
+  return result;
+}
+
+}  // namespace
+
+double thickest_oriented_envelope(const Spheroid& shape, double bounding_radius, double box) {
+  // Bodies that touch while both are in their boxes have centres within 2 R; each centre moves by at most 2 |slack|
+  // inside its box, so that before and after they are within 2 R + 4 |slack|, which must be below half the periodic
+  // box.
+  const double room = 0.25 * (0.5 * box - 2 * bounding_radius);
+  double low = 0;
+  double high = box;
+  for (int step = 0; step < 60; ++step) {
+    const double middle = 0.5 * (low + high);
+    (slack(shape, middle).norm() < room ? low : high) = middle;
+  }
+  return low;
+}
+
+OrientedEnvelopes::OrientedEnvelopes(int number, const Spheroid& shape, double bounding_radius, double thickness,
+                                     bool spins)
+    : shape_(shape),
+      bounding_radius_(bounding_radius),
+      thickness_(thickness),
+      spins_(spins),
+      reach_(2 * std::min(half_extents(shape, thickness).norm(), bounding_radius + slack(shape, thickness).norm())),
+      half_extents_(half_extents(shape, thickness)),
+      boxes_(static_cast<std::size_t>(number)) {}
+
+void OrientedEnvelopes::place(int i, const Vector3d& position, const Vector3d& axis, const Vector3d& x_axis) {
+  geom::OrientedBox& box = boxes_[static_cast<std::size_t>(i)];
+  box.centre = position;
+  box.axes.col(0) = x_axis;
+  box.axes.col(1) = axis.cross(x_axis);
+  box.axes.col(2) = axis;
+  box.half_extents = half_extents_;
+}
+
+void OrientedEnvelopes::scale(double factor) {
+  for (geom::OrientedBox& box : boxes_) box.centre *= factor;
+}
+
+template <bool kSpin>
+double OrientedEnvelopes::exit(const geom::OrientedBox& box, const AxisMotion& motion, const Vector3d& position,
+                               double now) const {
+  FinderCounters count;
+  double earliest = now + kHorizon * crossing_time(motion);
+  for (int k = 0; k < 3; ++k) {
+    for (const double side : {1.0, -1.0}) {
+      Vector3d n = side * box.axes.col(k);
+      const double offset = n.dot(box.centre) + box.half_extents[k];
+      const PlaneGauge<kSpin> gauge(shape_, motion, position, now, offset, bounding_radius_);
+      const Finding finding = certified_contact(gauge, now, earliest, kLooks, n, count);
+      if (finding.outcome == Outcome::overlapping) return now;
+      earliest = std::min(earliest, finding.time);
+    }
+  }
+  return earliest;
+}
+
+double OrientedEnvelopes::exit_time(int i, const AxisMotion& motion, const Vector3d& position, const Vector3d& /*axis*/,
+                                    double now, double box) const {
+  const geom::OrientedBox& envelope = boxes_[static_cast<std::size_t>(i)];
+  const Vector3d here = envelope.centre + nearest_image(position - envelope.centre, box);
+  return spins_ ? exit<true>(envelope, motion, here, now) : exit<false>(envelope, motion, here, now);
+}
+
+double OrientedEnvelopes::crossing_time(const AxisMotion& motion) const {
+  const double surface_speed = std::abs(std::sqrt(shape_.a2) - std::sqrt(shape_.b2)) * motion.rate;
+  return thickness_ / (motion.velocity.norm() + surface_speed + 1e-9 * thickness_);
+}
+
+double OrientedEnvelopes::worthwhile(const AxisMotion& motion) const {
+  return kWorthwhile * crossing_time(motion);
+}
+
+bool OrientedEnvelopes::may_meet(int i, int k, const Vector3d& r, Vector3d& normal) const {
+  const geom::OrientedBox& a = boxes_[static_cast<std::size_t>(i)];
+  geom::OrientedBox b = boxes_[static_cast<std::size_t>(k)];
+  b.centre = a.centre + r;
+  if (!geom::boxes_meet(a, b)) return false;
+  normal = geom::internal::cold_normal(shape_, shape_, r, a.axes.col(2), b.axes.col(2));
+  return true;
+}
+
+}  // namespace ed::internal
