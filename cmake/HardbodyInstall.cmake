@@ -3,14 +3,32 @@ include(CMakePackageConfigHelpers)
 
 set(HARDBODY_CMAKE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/hardbody)
 
-foreach(component geom ed)
+# hardbody_install(<component>): what was not built is not installed.
+function(hardbody_install component)
+  if(NOT TARGET hardbody_${component})
+    return()
+  endif()
   install(TARGETS hardbody_${component} EXPORT hardbody-${component}
     LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
     ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
-  install(DIRECTORY lib${component}/include/${component} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/hardbody)
   install(EXPORT hardbody-${component} NAMESPACE hardbody:: FILE hardbody-${component}-targets.cmake
     DESTINATION ${HARDBODY_CMAKE_DIR})
-endforeach()
+endfunction()
+
+set(HARDBODY_HEADER_DIR ${CMAKE_INSTALL_INCLUDEDIR}/hardbody)
+hardbody_install(geom)
+install(DIRECTORY libgeom/include/geom DESTINATION ${HARDBODY_HEADER_DIR})
+hardbody_install(ed)
+install(DIRECTORY libed/include/ed DESTINATION ${HARDBODY_HEADER_DIR})
+hardbody_install(geom_seeds)
+hardbody_install(geom_cgal)
+install(FILES libgeom/seeds/include/geom/internal/support_body.h DESTINATION ${HARDBODY_HEADER_DIR}/geom/internal)
+if(HARDBODY_WITH_SEEDS)
+  install(FILES libgeom/seeds/include/geom/seeds.h DESTINATION ${HARDBODY_HEADER_DIR}/geom)
+endif()
+if(HARDBODY_WITH_CGAL)
+  install(FILES libgeom/seeds/include/geom/cgal.h DESTINATION ${HARDBODY_HEADER_DIR}/geom)
+endif()
 
 configure_package_config_file(cmake/hardbody-config.cmake.in hardbody-config.cmake
   INSTALL_DESTINATION ${HARDBODY_CMAKE_DIR})

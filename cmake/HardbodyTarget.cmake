@@ -1,6 +1,6 @@
 # Compile options that every target of this project shares.
 #
-# hardbody_target(<target>) applies them. None of them is exported: a consumer compiles with its own flags, which is
+# hardbody_target(<target> [BASELINE]) applies them; BASELINE leaves HARDBODY_ARCH out. None of them is exported: a consumer compiles with its own flags, which is
 # safe because public types hold only Vector3d and Matrix3d, whose layout does not depend on -march.
 
 if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES AND PROJECT_IS_TOP_LEVEL)
@@ -13,6 +13,7 @@ if(HARDBODY_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER AND PROJECT_IS_TOP_LEVEL)
 endif()
 
 function(hardbody_target target)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "BASELINE" "" "")
   target_compile_features(${target} PUBLIC cxx_std_20)
   set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF CXX_VISIBILITY_PRESET hidden
     VISIBILITY_INLINES_HIDDEN ON POSITION_INDEPENDENT_CODE ON)
@@ -26,7 +27,7 @@ function(hardbody_target target)
     $<$<BOOL:${HARDBODY_WERROR}>:-Werror>
     # RelWithDebInfo is -O2 by default; the kernels want -O3 there too.
     $<$<CONFIG:Release,RelWithDebInfo>:-O3>)
-  if(HARDBODY_ARCH)
+  if(HARDBODY_ARCH AND NOT arg_BASELINE)
     target_compile_options(${target} PRIVATE -march=${HARDBODY_ARCH})
   endif()
   if(HARDBODY_SANITIZE)
