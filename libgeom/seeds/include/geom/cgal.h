@@ -1,0 +1,31 @@
+#pragma once
+
+/// Closest points from CGAL, as seeds of newton_distance. Part of hardbody::geom_cgal.
+///
+/// CGAL's Polytope_distance_d is under the GPL, version 3 or later: so is a program that links hardbody::geom_cgal.
+
+#include <geom/export.h>
+#include <geom/internal/support_body.h>
+#include <geom/newton.h>
+#include <geom/pose.h>
+#include <geom/shape.h>
+
+namespace geom {
+
+namespace internal {
+GEOM_EXPORT WitnessPair cgal_seed(const SupportBody& a, const SupportBody& b);
+}
+
+/// The closest points of two polytopes inscribed in the bodies, from CGAL's Polytope_distance_d in exact arithmetic.
+/// World frame.
+///
+/// A polytope has 200 vertices, support points of directions that are evenly spread once the body's widths along its
+/// axes are scaled to one; between them it lies inside the body by up to about 2 % of the widths. The points are those
+/// of the bodies to about 1 % of the size of the pair. `overlapping` if the polytopes meet, which proves that the
+/// bodies overlap. Allocates; takes milliseconds.
+template <SupportShape ShapeA, SupportShape ShapeB>
+WitnessPair cgal_seed(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const Pose& X_WB) {
+  return internal::cgal_seed(internal::SupportBody(a, X_WA), internal::SupportBody(b, X_WB));
+}
+
+}  // namespace geom

@@ -1,0 +1,86 @@
+#include <geom/cgal.h>
+
+#include <CGAL/Gmpzf.h>
+#include <CGAL/Polytope_distance_d.h>
+#include <CGAL/Polytope_distance_d_traits_3.h>
+#include <CGAL/Simple_cartesian.h>
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+namespace geom::internal {
+namespace {
+
+/// Doubles in, exact integers with exponents inside: with plain doubles the simplex method returns garbage.
+using Kernel = CGAL::Simple_cartesian<double>;
+using Traits = CGAL::Polytope_distance_d_traits_3<Kernel, CGAL::Gmpzf, double>;
+using PolytopeDistance = CGAL::Polytope_distance_d<Traits>;
+
+constexpr int kVertices = 200;
+
+/// Directions spread evenly over the sphere, along a spiral that turns by the golden angle from one to the next.
+std::vector<Eigen::Vector3d> make_directions() {
+  const double golden_angle = std::numbers::pi * (3 - std::sqrt(5.0));
+  std::vector<Eigen::Vector3d> directions;
+  directions.reserve(kVertices);
+  for (int i = 0; i < kVertices; ++i) {
+    const double z = (2 * i + 1.0) / kVertices - 1;
+    const double rho = std::sqrt(1 - z * z);
+    directions.emplace_back(rho * std::cos(golden_angle * i), rho * std::sin(golden_angle * i), z);
+  }
+  return directions;
+}
+
+/// The vertices of a polytope inscribed in the body, about `origin`, lengths over `unit`.
+///
+/// A direction is divided by the body's half-widths along its axes: those of an ellipsoid are then the images of an
+/// even distribution over a sphere, where plain directions would crowd at the tips and leave the sides bare.
+std::vector<Kernel::Point_3> polytope(const SupportBody& body, const Eigen::Vector3d& origin, double unit) {
+  static const std::vector<Eigen::Vector3d> directions = make_directions();
+  Eigen::Vector3d half_widths;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Eigen::Vector3d e = Eigen::Vector3d::Unit(axis);
+    half_widths[axis] = 0.5 * (body.support_B(e) - body.support_B(-e))[axis];
+  }
+  std::vector<Kernel::Point_3> points;
+  points.reserve(directions.size());
+  for (const Eigen::Vector3d& u : directions) {
+    const Eigen::Vector3d s = body.support_B(unit * u.cwiseQuotient(half_widths));
+    const Eigen::Vector3d x = (body.pose().to_world(s) - origin) / unit;
+    points.emplace_back(x.x(), x.y(), x.z());
+  }
+  return points;
+}
+
+/// A point in homogeneous coordinates, as CGAL returns it.
+template <class Iterator>
+Eigen::Vector3d to_vector(Iterator coordinate) {
+  Eigen::Vector3d x;
+  for (int axis = 0; axis < 3; ++axis) x[axis] = CGAL::to_double(*coordinate++);
+  return x / CGAL::to_double(*coordinate);
+}
+
+}  // namespace
+
+WitnessPair cgal_seed(const SupportBody& a, const SupportBody& b) {
+  WitnessPair seed;
+  const Eigen::Vector3d& origin = a.pose().position();
+  const double unit = std::max(a.inscribed_radius(), b.inscribed_radius());
+  const std::vector<Kernel::Point_3> points_a = polytope(a, origin, unit);
+  const std::vector<Kernel::Point_3> points_b = polytope(b, origin, unit);
+  const PolytopeDistance closest(points_a.begin(), points_a.end(), points_b.begin(), points_b.end());
+  if (!closest.is_finite() || CGAL::is_zero(closest.squared_distance_numerator())) {
+    seed.status = SeedStatus::overlapping;
+    return seed;
+  }
+  seed.point_a = origin + unit * to_vector(closest.realizing_point_p_coordinates_begin());
+  seed.point_b = origin + unit * to_vector(closest.realizing_point_q_coordinates_begin());
+  if (seed.point_a.allFinite() && seed.point_b.allFinite()) seed.status = SeedStatus::usable;
+  return seed;
+}
+
+}  // namespace geom::internal
