@@ -1,6 +1,7 @@
 /// distance() of shapes that are not the library's: the template path, with and without a curvature bound.
 
 #include "common/geom_expect.h"
+#include "common/geom_implicit.h"
 #include "common/geom_manufactured.h"
 #include "common/geom_shapes.h"
 
@@ -22,6 +23,7 @@ using geom_test::distance_tolerance;
 using geom_test::ManufacturedPair;
 using geom_test::normal_tolerance;
 using geom_test::PlainBall;
+using geom_test::PowerBody;
 using geom_test::Random;
 using geom_test::repetitions;
 using geom_test::SweptEllipsoid;
@@ -31,6 +33,9 @@ static_assert(SupportShape<PlainBall>);
 static_assert(SupportShape<WrappedEllipsoid>);
 static_assert(SupportShape<SweptEllipsoid>);
 static_assert(!ImplicitSurface<PlainBall>);
+
+static_assert(ImplicitSurface<PowerBody>);
+static_assert(!SupportShape<PowerBody>);
 
 struct NoHessian {
   Support support(const Vector3d& n) const { return {n.norm(), n.normalized()}; }
@@ -121,6 +126,48 @@ TEST(UserShape, AStartAndALimitOnIterationsMeanTheSame) {
     const DistanceResult r = distance(a, pair.X_WA, b, pair.X_WB, {.start = -pair.normal, .max_iterations = 1});
     ASSERT_TRUE(declined(r)) << "pair " << i;
     ASSERT_EQ(r.iterations, 2) << "one evaluation from each start";
+  }
+}
+
+// |x/a|^n + |y/b|^m + |z/c|^p <= 1 has no closed support function: Newton's method on the equation is the way.
+TEST(UserShape, ABodyGivenByItsEquationAloneHasItsDistance) {
+  Random random(5);
+  int answered = 0;
+  const int pairs = repetitions(2000);
+  for (int i = 0; i < pairs; ++i) {
+    const auto exponent = [&] { return random.uniform(2, 4); };
+    const auto semi_axis = [&] { return random.log_uniform(1, 3); };
+    const PowerBody a{{semi_axis(), semi_axis(), semi_axis()}, {exponent(), exponent(), exponent()}};
+    const PowerBody b{{semi_axis(), semi_axis(), semi_axis()}, {exponent(), exponent(), exponent()}};
+    const auto [pair, point_a, point_b] = geom_test::manufacture_surfaces(a, b, random.log_uniform(1e-6, 10), random);
+    // From near the answer it is found; from the line of centres it is found or nothing is.
+    const double error = 1e-3 * pair.size;
+    const WitnessPair near{point_a + error * random.direction(), point_b + error * random.direction(),
+                           SeedStatus::usable};
+    for (const NewtonSystem system : {NewtonSystem::eight, NewtonSystem::five}) {
+      const DistanceResult r = newton_distance(a, pair.X_WA, b, pair.X_WB, system, near);
+      ASSERT_TRUE(answers(r, pair.distance, distance_tolerance(pair.size), extent_of(pair))) << "pair " << i;
+      const WitnessPair centres = centre_seed(a, pair.X_WA, b, pair.X_WB);
+      const DistanceResult crude = newton_distance(a, pair.X_WA, b, pair.X_WB, system, centres);
+      if (crude.status == DistanceStatus::separated) {
+        ASSERT_TRUE(answers(crude, pair.distance, distance_tolerance(pair.size), extent_of(pair))) << "pair " << i;
+        ++answered;
+      } else {
+        ASSERT_TRUE(declined(crude)) << "pair " << i;
+      }
+    }
+  }
+  EXPECT_GE(answered, 0.95 * 2 * pairs);
+}
+
+// Nothing bounds the curvature of such a body: no depth is certified.
+TEST(UserShape, OverlapsOfABodyGivenByItsEquationAreDeclined) {
+  Random random(6);
+  for (int i = 0; i < 200; ++i) {
+    const PowerBody a{{1, 1.5, 2}, {2, 3, 4}};
+    const auto [pair, point_a, point_b] = geom_test::manufacture_surfaces(a, a, -0.01, random);
+    const WitnessPair seed{point_a, point_b, SeedStatus::usable};
+    ASSERT_TRUE(declined(newton_distance(a, pair.X_WA, a, pair.X_WB, NewtonSystem::eight, seed))) << "pair " << i;
   }
 }
 

@@ -325,7 +325,7 @@ template <SupportShape ShapeA, SupportShape ShapeB>
 WitnessPair normal_seed(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const Pose& X_WB,
                         const Eigen::Vector3d& n) {
   const Eigen::Vector3d u = n.stableNormalized();
-  if (!(u.squaredNorm() > 0.5)) return {};  // zero or NaN
+  if (!n.allFinite() || !(u.squaredNorm() > 0.5)) return {};
   const Support s_a = a.support(X_WA.rotation().transpose() * u);
   const Support s_b = b.support(X_WB.rotation().transpose() * -u);
   return {X_WA.to_world(s_a.point), X_WB.to_world(s_b.point), SeedStatus::usable};
