@@ -28,9 +28,6 @@ constexpr double kLongestTime = 1e9;
 
 constexpr double kLeastPacking = 1e-9;
 
-/// What neighbours = "auto" takes: the fastest at every X0, phi and finder that bench_engine looks at.
-constexpr const char* kFastestNeighbours = "dilated";
-
 constexpr std::array<std::string_view, 6> kSections = {"system",        "shape",      "dynamics",
                                                        "equilibration", "production", "output"};
 constexpr std::array<std::string_view, 18> kKeys = {
@@ -330,6 +327,14 @@ void read_number(const TomlDocument& document, Config& config) {
       least));
 }
 
+/// What neighbours = "auto" takes.
+void choose_neighbours(Config& config) {
+  const auto finder = config.finder == "certified" ? ed::Finder::certified : ed::Finder::bracketing;
+  const bool cells = ed::fastest_neighbours(config.species.shape, config.number, config.packing_fraction, finder) ==
+                     ed::Neighbours::cells;
+  config.neighbours = cells ? "cells" : "dilated";
+}
+
 void read_dynamics(const TomlDocument& document, const geom::Ellipsoid& shape, Config& config) {
   config.species = read_inertia(document, shape, config);
   read_choice(document, "dynamics.finder", {{"certified", true}, {"bracketing", true}}, config.finder);
@@ -341,7 +346,6 @@ void read_dynamics(const TomlDocument& document, const geom::Ellipsoid& shape, C
   read_choice(document, "dynamics.neighbours", {{"auto", true}, {"dilated", true}, {"obp", true}, {"cells", true}},
               config.neighbours);
   config.neighbours_chosen = config.neighbours == "auto";
-  if (config.neighbours_chosen) config.neighbours = kFastestNeighbours;
   const Entry* eps_d = document.find("dynamics.eps_d");
   if (eps_d == nullptr) return;
   const double limit = shape.inscribed_radius();
@@ -427,6 +431,7 @@ Config parse_config(std::string_view text, const std::string& name, const std::v
   read_dynamics(document, read_shape(document, config), config);
   read_packing(document, config);
   read_number(document, config);
+  if (config.neighbours_chosen) choose_neighbours(config);
   return config;
 }
 

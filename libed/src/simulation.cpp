@@ -1,3 +1,4 @@
+#include "cell_envelopes.h"
 #include "event_loop.h"
 
 #include <ed/simulation.h>
@@ -49,7 +50,21 @@ void check_start(const System& system) {
   throw std::invalid_argument(message.str());
 }
 
+/// Mean number of bodies in 27 cells below which cells are faster: measured for X0 = 0.2 to 5, phi = 0.01 to 0.2.
+constexpr double kFewInCells = 25;
+constexpr double kFewInCellsBracketing = 10;
+
 }  // namespace
+
+Neighbours fastest_neighbours(const geom::Ellipsoid& shape, int number, double packing_fraction, Finder finder) {
+  const int cells =
+      internal::CellEnvelopes::cells_along(box_for(shape, number, packing_fraction), shape.bounding_radius());
+  if (cells < internal::CellEnvelopes::kLeastCells) return Neighbours::dilated;
+  if (shape.bounding_radius() == shape.inscribed_radius()) return Neighbours::dilated;
+  const double in_cells = 27.0 * number / (static_cast<double>(cells) * cells * cells);
+  const double few = finder == Finder::certified ? kFewInCells : kFewInCellsBracketing;
+  return in_cells < few ? Neighbours::cells : Neighbours::dilated;
+}
 
 Simulation::Simulation(const System& system, const SimulationOptions& options) {
   check_start(system);

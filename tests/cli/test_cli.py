@@ -242,6 +242,9 @@ class Run(Case):
     def test_auto_says_what_it_chose(self):
         self.run_small("out")
         self.assertIn('neighbours: dilated (chosen by "auto")', self.read("out/log.txt"))
+        self.run_small("dilute", "--set", "system.packing_fraction=0.02", "--set", "system.number=512")
+        self.assertIn('neighbours: cells (chosen by "auto")', self.read("dilute/log.txt"))
+        self.assertIn('neighbours = "cells"', self.read("dilute/config.toml"))
 
     def test_axes_in_any_order_are_one_shape(self):
         base = SMALL.replace("number = 64", "number = 128")
