@@ -5,6 +5,8 @@
 #include <fcl/geometry/shape/ellipsoid.h>
 #include <fcl/narrowphase/distance.h>
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <exception>
 #include <memory>
@@ -15,10 +17,22 @@ namespace {
 /// FCL's default, an absolute length.
 constexpr double kFclTolerance = 1e-6;
 
+/// FCL is not asked of pairs whose gap is smaller, relative to their size: they touch, to rounding, and there an
+/// assertion of its GJK (doSimplex2) compares two sums of rounding errors.
+constexpr double kLeastGap = 1e-12;
+
+/// A turn by 1 radian about no axis in particular. The same assertion can fail too where its GJK, which starts along x,
+/// meets supporting planes through the origin; of pairs that a user has aligned with the axes that is no coincidence.
+const Eigen::Matrix3d& askew() {
+  static const Eigen::Matrix3d R =
+      Eigen::AngleAxisd(1, Eigen::Vector3d(0.41, -0.67, 0.53).normalized()).toRotationMatrix();
+  return R;
+}
+
 fcl::Transform3d to_fcl(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& position) {
   fcl::Transform3d X = fcl::Transform3d::Identity();
-  X.linear() = rotation;
-  X.translation() = position;
+  X.linear() = askew() * rotation;
+  X.translation() = askew() * position;
   return X;
 }
 
@@ -32,8 +46,10 @@ WitnessPair fcl_seed(const Ellipsoid& a, const Pose& X_WA, const Ellipsoid& b, c
     seed.status = SeedStatus::overlapping;
     return seed;
   }
-  const double unit = std::min(a.inscribed_radius(), b.inscribed_radius());
   const Eigen::Vector3d p_AB = X_WB.position() - X_WA.position();
+  const double size = p_AB.norm() + a.bounding_radius() + b.bounding_radius();
+  if (!(ours.distance >= kLeastGap * size)) return seed;
+  const double unit = std::min(a.inscribed_radius(), b.inscribed_radius());
   const fcl::CollisionObjectd fcl_a(std::make_shared<fcl::Ellipsoidd>(a.semi_axes() / unit),
                                     to_fcl(X_WA.rotation(), Eigen::Vector3d::Zero()));
   const fcl::CollisionObjectd fcl_b(std::make_shared<fcl::Ellipsoidd>(b.semi_axes() / unit),
@@ -47,8 +63,8 @@ WitnessPair fcl_seed(const Ellipsoid& a, const Pose& X_WA, const Ellipsoid& b, c
   } catch (const std::exception&) {
     return seed;
   }
-  seed.point_a = X_WA.position() + unit * result.nearest_points[0];
-  seed.point_b = X_WA.position() + unit * result.nearest_points[1];
+  seed.point_a = X_WA.position() + unit * (askew().transpose() * result.nearest_points[0]);
+  seed.point_b = X_WA.position() + unit * (askew().transpose() * result.nearest_points[1]);
   if (seed.point_a.allFinite() && seed.point_b.allFinite()) seed.status = SeedStatus::usable;
   return seed;
 }

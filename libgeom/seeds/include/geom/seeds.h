@@ -18,12 +18,16 @@ namespace geom {
 ///
 /// FCL is called only where it has an answer, and never where Debian's build of it, with assertions on, would end the
 /// process:
-/// - `distance` comes first: of pairs that overlap or touch FCL is not asked (`overlapping`);
+/// - `distance` comes first: FCL is not asked of pairs that overlap (`overlapping`), nor of those that touch, their gap
+///   below 1e-12 of their size (`declined`): an assertion of its GJK fails on some of them;
+/// - turned by an arbitrary rotation: the same assertion is a matter of chance then, and of chances of 1e-16, also for
+///   bodies that are aligned with the axes;
 /// - only with GST_LIBCCD, GST_INDEP ends the process on overlaps;
 /// - only for the unsigned distance: with signed ones a pair that FCL takes for overlapping goes to its EPA, where the
 ///   assertions are;
-/// - at the tolerance 1e-6, an absolute length, hence lengths over the smaller inscribed radius; below 1e-7 it asserts.
-/// Where FCL throws, or takes the pair for overlapping all the same (gaps at rounding), the seed is `declined`.
+/// - at its default tolerance of 1e-6, an absolute length, for which lengths are divided by the smaller inscribed
+///   radius.
+/// Where FCL throws, or takes the pair for overlapping all the same, the seed is `declined`.
 GEOM_EXPORT WitnessPair fcl_seed(const Ellipsoid& a, const Pose& X_WA, const Ellipsoid& b, const Pose& X_WB);
 
 namespace internal {

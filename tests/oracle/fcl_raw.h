@@ -1,0 +1,23 @@
+#pragma once
+
+/// FCL asked directly, without the checks of fcl_seed: it may end the process. For oracle tests and benchmarks.
+
+#include <geom/geom.h>
+
+#include <Eigen/Core>
+
+namespace geom_test {
+
+struct FclDistance {
+  enum class Outcome { answered, threw };
+  Outcome outcome;
+  double distance;  ///< FCL's; unsigned queries give -1 for what FCL takes for an overlap
+  Eigen::Vector3d point_a;
+  Eigen::Vector3d point_b;
+};
+
+/// FCL's distance of two ellipsoids with GST_LIBCCD at its default tolerance of 1e-6 (an absolute length).
+FclDistance fcl_distance(const geom::Ellipsoid& a, const geom::Pose& X_WA, const geom::Ellipsoid& b,
+                         const geom::Pose& X_WB, bool signed_distance);
+
+}  // namespace geom_test
