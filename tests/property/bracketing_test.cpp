@@ -5,6 +5,7 @@
 // not even that.
 
 #include <common/ed_states.h>
+#include <common/finder_ensemble.h>
 
 #include <ed/ed.h>
 
@@ -120,6 +121,59 @@ TEST(Bracketing, ContactsMissedAtThreeResolutions) {
         << method.name;
   }
   EXPECT_LE(methods[2].missed, methods[0].missed);
+}
+
+/// Contacts that graze, made on purpose: bodies that touch nearly tangentially, or pass with an overlap of 1e-10 to
+/// 1e-3 of their size, turning up to 20 times as fast as thermal bodies.
+MovingPair grazing_pair(finder_test::Fluid& fluid) {
+  ed::Random& random = fluid.random();
+  const Vector3d inertia = fluid.spins() ? fluid.shape().inertia(1.0) : ed::paper_species(fluid.shape()).inertia;
+  const auto motion = [&](const finder_test::BodyState& s) {
+    return ed::Motion{geom::Pose(s.rotation, s.position), s.velocity, s.omega(), inertia, 0};
+  };
+  while (true) {
+    const double boost = finder_test::log_uniform(random, 1, 20);
+    const bool tangential = random.uniform() < 0.5;
+    const double share = tangential ? 0 : -finder_test::log_uniform(random, 1e-4, 1e-2);
+    const double gap = tangential ? -fluid.size() * finder_test::log_uniform(random, 1e-10, 1e-3) : 0;
+    const auto start =
+        fluid.approach(fluid.touching_pair(boost, share, gap), finder_test::log_uniform(random, 0.01, 0.3));
+    if (start) return {motion(start->a), motion(start->b)};
+  }
+}
+
+TEST(Bracketing, GrazingContactsMissedAtFourResolutions) {
+  using ed::ContactRoot;
+  using ed::DistanceMethod;
+  std::array<Method, 5> methods{
+      bracketing(1e-2, DistanceMethod::dual, ContactRoot::newton, "eps_d 1e-2, dual"),
+      bracketing(1e-3, DistanceMethod::dual, ContactRoot::newton, "eps_d 1e-3, dual"),
+      bracketing(1e-4, DistanceMethod::dual, ContactRoot::newton, "eps_d 1e-4, dual"),
+      bracketing(1e-5, DistanceMethod::dual, ContactRoot::newton, "eps_d 1e-5, dual"),
+      bracketing(1e-5, DistanceMethod::newton5, ContactRoot::newton, "eps_d 1e-5, newton5"),
+  };
+  const long contacts = ed_test::full_length() ? 17000 : 700;
+  std::uint64_t seed = 300;
+  for (const double aspect_ratio : {1.0 / 3, 2.0, 3.0}) {
+    const auto pairs = finder_test::near_neighbours(aspect_ratio, 0.40, 100, seed++);
+    for (const bool spins : {false, true}) {
+      finder_test::Fluid fluid(aspect_ratio, spins, pairs, seed++);
+      const long before = methods[0].contacts;
+      while (methods[0].contacts - before < contacts) {
+        const MovingPair pair = grazing_pair(fluid);
+        const ed::ContactResult certified = ed::time_of_contact(fluid.shape(), pair.a, fluid.shape(), pair.b, kHorizon);
+        for (Method& method : methods) compare(fluid.shape(), pair, method, certified);
+      }
+    }
+  }
+  for (const Method& method : methods) {
+    std::printf("grazing, %-20s %ld of %ld contacts missed, %ld early, %ld distances by the dual instead\n",
+                method.name, method.missed, method.contacts, method.early, method.rescues);
+    EXPECT_EQ(method.early, 0) << method.name;
+  }
+  // That the finder with a resolution does miss contacts, and fewer with a finer one.
+  EXPECT_GT(methods[0].missed, 0);
+  EXPECT_LE(methods[3].missed, methods[0].missed);
 }
 
 }  // namespace
