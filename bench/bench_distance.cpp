@@ -4,6 +4,10 @@
 /// they fit in the second-level cache, so that the kernel is timed and not the memory. A failure is an answer that is
 /// declined or wrong by more than 1e-13 of the pair's size; it is counted, not hidden. Times of two machines differ
 /// more than those of two kernels: the table at the end gives ratios within this run.
+///
+/// Behind it, distance_methods.h: the paper's method from each seed and other libraries, in a table of their own.
+
+#include "distance_methods.h"
 
 #include <geom/geom.h>
 
@@ -23,7 +27,7 @@
 
 namespace {
 
-constexpr int kPairs = 1000;
+constexpr int kPairs = bench::kMethodPairs;
 constexpr std::uint64_t kSeed = 20240601;
 constexpr double kWarmAngle = 0.01;  // radian; how far a normal turns between two queries of a pair in motion
 
@@ -133,6 +137,9 @@ class KeepTimes : public benchmark::ConsoleReporter {
     benchmark::ConsoleReporter::ReportRuns(runs);
   }
 
+  /// By the benchmark's name.
+  const std::map<std::string, double>& ns() const { return ns_; }
+
   /// NaN if the filter left that benchmark out.
   double ns(Kernel kernel, Start start, double aspect_ratio, double gap) const {
     const auto found = ns_.find(benchmark_name(kernel, start, aspect_ratio, gap));
@@ -189,10 +196,12 @@ void print_ratios(const KeepTimes& times) {
 
 int main(int argc, char** argv) {
   register_benchmarks();
+  bench::register_method_benchmarks();
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
   KeepTimes times;
   benchmark::RunSpecifiedBenchmarks(&times);
   benchmark::Shutdown();
   print_ratios(times);
+  bench::print_method_table(times.ns());
 }

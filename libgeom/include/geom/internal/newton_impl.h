@@ -17,6 +17,7 @@
 #include <limits>
 #include <sstream>
 #include <stdexcept>
+#include <string>
 
 namespace geom::internal {
 
@@ -248,23 +249,26 @@ DistanceResult newton_distance_unchecked(const ShapeA& a, const Pose& X_WA, cons
              : solve_newton<FiveEquations>(surface_a, surface_b, start, frame, options.max_iterations);
 }
 
+/// Refuses a seed's point; `name` is the member of WitnessPair, `reason` what is wrong and what is accepted.
+[[noreturn]] inline void refuse_seed(const char* name, const Eigen::Vector3d& point, const std::string& reason) {
+  std::ostringstream message;
+  message << "newton_distance: " << name << " of the seed, (" << point.x() << ", " << point.y() << ", " << point.z()
+          << "), " << reason;
+  throw std::invalid_argument(message.str());
+}
+
 /// Throws unless `point` (world frame) is finite and at most kMaxSeedDepth inside the body.
 template <ImplicitSurface Shape>
 void check_seed_point(const char* name, const Shape& shape, const Pose& X, const Eigen::Vector3d& point) {
-  std::ostringstream message;
-  message << "newton_distance: " << name << " of the seed, (" << point.x() << ", " << point.y() << ", " << point.z()
-          << "), ";
-  if (!point.allFinite()) {
-    message << "is not finite; accepted: three finite numbers";
-    throw std::invalid_argument(message.str());
-  }
+  if (!point.allFinite()) refuse_seed(name, point, "is not finite; accepted: three finite numbers");
   const Eigen::Vector3d x = X.to_body(point);
-  const double slope = Eigen::Vector3d(shape.gradient(x)).norm() * x.norm();
   const double f = shape.value(x);
-  if (f >= -kMaxSeedDepth * slope) return;
-  message << "lies inside its body: f = " << f << "; accepted: on the surface, outside, or inside by at most "
-          << kMaxSeedDepth << " of its distance from the body's centre, f >= " << -kMaxSeedDepth * slope;
-  throw std::invalid_argument(message.str());
+  const double least = -kMaxSeedDepth * Eigen::Vector3d(shape.gradient(x)).norm() * x.norm();
+  if (f >= least) return;
+  std::ostringstream reason;
+  reason << "lies inside its body: f = " << f << "; accepted: on the surface, outside, or inside by at most "
+         << kMaxSeedDepth << " of its distance from the body's centre, f >= " << least;
+  refuse_seed(name, point, reason.str());
 }
 
 /// The t > 0 where the ray t u from the centre leaves the body, to 1e-9 relative; NaN if the centre is not inside.
