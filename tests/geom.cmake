@@ -7,6 +7,7 @@ hardbody_test(geom_unit_test unit
   unit/geom_obb_test.cpp
   unit/geom_perram_wertheim_test.cpp
   unit/geom_pose_test.cpp
+  unit/geom_superellipsoid_test.cpp
   unit/geom_user_shape_test.cpp)
 hardbody_test(geom_property_test property property/geom_distance_test.cpp)
 hardbody_test(geom_accuracy_test accuracy accuracy/geom_distance_test.cpp)

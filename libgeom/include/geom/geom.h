@@ -8,4 +8,5 @@
 #include <geom/obb.h>
 #include <geom/pose.h>
 #include <geom/shape.h>
+#include <geom/superellipsoid.h>
 #include <geom/tolerances.h>

@@ -15,6 +15,10 @@ inline constexpr double kMaxSemiAxis = 1e50;
 /// Ellipsoid: amax / amin <= kMaxAspectRatio. Dimensionless. The range in which the kernels are tested.
 inline constexpr double kMaxAspectRatio = 1e4;
 
+/// Superellipsoid: kMinExponent <= e1, e2 <= kMaxExponent. Dimensionless. The range in which the kernels are tested.
+inline constexpr double kMinExponent = 0.2;
+inline constexpr double kMaxExponent = 1.6;
+
 /// distance: converged when |delta|^2 <= kNormalTolerance2, delta the Newton step of the unit normal. Dimensionless.
 /// The step is still applied, and convergence is quadratic: the normal is then right to 1e-12 or to rounding.
 inline constexpr double kNormalTolerance2 = 1e-12;

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <geom/export.h>
+#include <geom/internal/nested_norm.h>
+#include <geom/shape.h>
+
+#include <Eigen/Core>
+
+namespace geom {
+
+/// Barr's superellipsoid {x : (|x/a|^(2/e2) + |y/b|^(2/e2))^(e2/e1) + |z/c|^(2/e1) <= 1} in the body's frame: e < 1 has
+/// flat faces and rounded edges (a box for e -> 0), e = 1 is the ellipsoid, e > 1 has edges (an octahedron for e = 2).
+/// e1 shapes the profile along z, e2 the section across it.
+class GEOM_EXPORT Superellipsoid {
+ public:
+  /// Semi-axes along body x, y, z. Throws std::invalid_argument unless each is finite and within [kMinSemiAxis,
+  /// kMaxSemiAxis], the largest at most kMaxAspectRatio times the smallest, and both exponents are within
+  /// [kMinExponent, kMaxExponent].
+  Superellipsoid(const Eigen::Vector3d& semi_axes, double e1, double e2);
+
+  const Eigen::Vector3d& semi_axes() const { return semi_axes_; }
+  double e1() const { return e1_; }
+  double e2() const { return e2_; }
+
+  /// f(x) = N(x)^2 - 1 with N the norm whose unit ball the body is, 1-homogeneous: negative inside. For e1 = e2 = 1 it
+  /// is the Ellipsoid's. Smooth but in the planes x = 0, y = 0, z = 0, where second derivatives are infinite for e > 1.
+  double value(const Eigen::Vector3d& x) const;
+  Eigen::Vector3d gradient(const Eigen::Vector3d& x) const;
+  Eigen::Matrix3d hessian(const Eigen::Vector3d& x) const;
+
+  /// h(n) = N*(a n_x, b n_y, c n_z) with N* the dual norm, exponents 2/(2 - e); n != 0, any length.
+  Support support(const Eigen::Vector3d& n) const;
+  /// hess h, two rank-ones; across n. Huge where n is along a flat face's normal.
+  Eigen::Matrix3d support_hessian(const Eigen::Vector3d& n) const;
+
+  /// The largest and the least distance of the surface from the centre.
+  double bounding_radius() const { return bounding_radius_; }
+  double inscribed_radius() const { return inscribed_radius_; }
+  /// By Beta functions (Jaklic, Leonardis and Solina, Segmentation and Recovery of Superquadrics (2000), sec. 2.5).
+  double volume() const;
+  /// Principal moments about body x, y, z at uniform density.
+  Eigen::Vector3d inertia(double mass) const;
+
+ private:
+  Eigen::Vector3d semi_axes_;
+  double e1_;
+  double e2_;
+  internal::NestedNorm norm_;  ///< of x/a: the body is its unit ball
+  internal::NestedNorm dual_;  ///< of a n: the support function
+  double bounding_radius_;
+  double inscribed_radius_;
+};
+
+}  // namespace geom

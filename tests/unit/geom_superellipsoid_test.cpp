@@ -1,0 +1,209 @@
+// Superellipsoid: support function and norm form against each other and against finite differences, mass properties
+// against reference values, radii against sampling, refusals.
+
+#include "common/ed_reference.h"
+#include "common/geom_random.h"
+
+#include <geom/geom.h>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <stdexcept>
+#include <vector>
+
+namespace geom {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+using geom_test::Random;
+using testing::HasSubstr;
+
+static_assert(SupportShape<Superellipsoid>);
+static_assert(ImplicitSurface<Superellipsoid>);
+
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+
+/// Every pair of exponents, with and without a fast path.
+std::vector<Superellipsoid> shapes() {
+  std::vector<Superellipsoid> all;
+  for (const double e1 : {0.2, 0.5, 0.7, 1.0, 1.2, 1.6}) {
+    for (const double e2 : {0.2, 0.4, 0.5, 2.0 / 3, 0.8, 1.0, 4.0 / 3, 1.5, 1.6}) {
+      all.emplace_back(Vector3d(1, 1.7, 0.6), e1, e2);
+    }
+  }
+  return all;
+}
+
+TEST(Superellipsoid, SupportPointIsOnTheSurfaceWithThatNormal) {
+  Random random(1);
+  for (const Superellipsoid& shape : shapes()) {
+    for (int k = 0; k < 200; ++k) {
+      const Vector3d n = random.direction();
+      const Support s = shape.support(n);
+      ASSERT_NEAR(s.point.dot(n), s.height, 8 * kEpsilon * shape.bounding_radius());
+      // Value and gradient lose digits where a coordinate is near zero and its exponent is high: 2/e = 10.
+      ASSERT_NEAR(shape.value(s.point), 0, 1e-13);
+      // The body is on one side of the plane through s with normal n.
+      const Vector3d other = shape.support(random.direction()).point;
+      ASSERT_LE(other.dot(n), s.height * (1 + 8 * kEpsilon));
+    }
+  }
+}
+
+/// The gradient of f at the support point of n is along n.
+TEST(Superellipsoid, NormFormAndSupportFunctionBelongTogether) {
+  Random random(2);
+  for (const Superellipsoid& shape : shapes()) {
+    for (int k = 0; k < 200; ++k) {
+      const Vector3d n = random.direction();
+      const Vector3d gradient = shape.gradient(shape.support(n).point);
+      // s(n) has the exponent e of n, so that an error of n is one of s to the power 1/e: up to (1e-16)^(1/5) where n
+      // is near a plane. Away from the planes it is rounding.
+      if (n.cwiseAbs().minCoeff() < 0.1) continue;
+      ASSERT_LT(gradient.normalized().cross(n).norm(), 1e-12) << shape.e1() << ' ' << shape.e2();
+    }
+  }
+}
+
+template <class F>
+Matrix3d difference_jacobian(const F& f, const Vector3d& x, double step) {
+  Matrix3d jacobian;
+  for (int i = 0; i < 3; ++i) {
+    const Vector3d d = step * Vector3d::Unit(i);
+    jacobian.col(i) = (f(x + d) - f(x - d)) / (2 * step);
+  }
+  return jacobian;
+}
+
+TEST(Superellipsoid, DerivativesAgreeWithDifferences) {
+  Random random(3);
+  for (const Superellipsoid& shape : shapes()) {
+    for (int k = 0; k < 30; ++k) {
+      const Vector3d n = random.direction();
+      if (n.cwiseAbs().minCoeff() < 0.1) continue;  // derivatives of high order grow without bound near the planes
+      const auto point = [&](const Vector3d& m) { return shape.support(m).point; };
+      const Matrix3d H = shape.support_hessian(n);
+      const Matrix3d difference = difference_jacobian(point, n, 1e-5);
+      ASSERT_LT((H - difference).norm(), 1e-5 * (1 + H.norm())) << shape.e1() << ' ' << shape.e2();
+      // 1-homogeneous: the Hessian vanishes along n.
+      ASSERT_LT((H * n).norm(), 20 * kEpsilon * H.norm());
+      const Vector3d x = random.uniform(0.3, 1.5) * n;
+      const auto gradient = [&](const Vector3d& y) { return shape.gradient(y); };
+      const Matrix3d F = shape.hessian(x);
+      ASSERT_LT((F - difference_jacobian(gradient, x, 1e-6)).norm(), 1e-4 * (1 + F.norm()))
+          << shape.e1() << ' ' << shape.e2();
+      const auto value = [&](double t) { return shape.value(x + t * n); };
+      ASSERT_NEAR(shape.gradient(x).dot(n), (value(1e-6) - value(-1e-6)) / 2e-6, 1e-6 * (1 + shape.gradient(x).norm()));
+    }
+  }
+}
+
+TEST(Superellipsoid, WithExponentsOneIsTheEllipsoid) {
+  Random random(4);
+  const Ellipsoid ellipsoid({1, 1.7, 0.6});
+  const Superellipsoid same({1, 1.7, 0.6}, 1, 1);
+  for (int k = 0; k < 10000; ++k) {
+    const Vector3d n = random.direction();
+    const Support a = ellipsoid.support(n);
+    const Support b = same.support(n);
+    ASSERT_NEAR(a.height, b.height, 4 * kEpsilon * a.height);
+    for (int i = 0; i < 3; ++i) ASSERT_NEAR(a.point[i], b.point[i], 4 * kEpsilon * std::abs(a.point[i]));
+    ASSERT_NEAR(ellipsoid.value(n), same.value(n), 8 * kEpsilon * (1 + ellipsoid.value(n)));
+    ASSERT_LT((ellipsoid.support_hessian(n) - same.support_hessian(n)).norm(), 1e-14);
+    ASSERT_LT((ellipsoid.hessian(n) - same.hessian(n)).norm(), 1e-13);
+  }
+  EXPECT_DOUBLE_EQ(same.volume(), ellipsoid.volume());
+  EXPECT_LT((same.inertia(1) - ellipsoid.inertia(1)).norm(), 1e-14);
+  EXPECT_DOUBLE_EQ(same.bounding_radius(), 1.7);
+  EXPECT_DOUBLE_EQ(same.inscribed_radius(), 0.6);
+}
+
+TEST(Superellipsoid, IsFiniteInTheCoordinatePlanes) {
+  for (const Superellipsoid& shape : shapes()) {
+    for (const Vector3d& n : {Vector3d(1, 0, 0), Vector3d(0, 1, 0), Vector3d(0, 0, -1), Vector3d(1, 1, 0),
+                             Vector3d(0, 1, -1), Vector3d(1, 1, 1), Vector3d(1, 1e-300, 0)}) {
+      const Support s = shape.support(n);
+      ASSERT_TRUE(std::isfinite(s.height) && s.point.allFinite());
+      ASSERT_TRUE(shape.support_hessian(n).allFinite());
+      ASSERT_TRUE(shape.gradient(n).allFinite() && shape.hessian(n).allFinite());
+      ASSERT_NEAR(shape.value(s.point), 0, 1e-13);
+    }
+    // Tips are where they must be.
+    EXPECT_EQ(shape.support(Vector3d::UnitX()).height, 1);
+    EXPECT_EQ(shape.support(-Vector3d::UnitZ()).point, Vector3d(0, 0, -0.6));
+  }
+}
+
+TEST(Superellipsoid, VolumeAndInertiaAgreeWithTheReference) {
+  const ed_test::ReferenceTable table("superellipsoid_mass_barr.csv");
+  int rows = 0;
+  double worst = 0;
+  for (std::size_t row = 0; row < table.size(); ++row) {
+    const double e1 = table.value(row, "e1");
+    const double e2 = table.value(row, "e2");
+    if (std::min(e1, e2) < kMinExponent || std::max(e1, e2) > kMaxExponent) continue;
+    ++rows;
+    const Superellipsoid shape({table.value(row, "a"), table.value(row, "b"), table.value(row, "c")}, e1, e2);
+    const double V = table.value(row, "V");
+    worst = std::max(worst, std::abs(shape.volume() / V - 1));
+    const Vector3d I = shape.inertia(V);
+    const Vector3d wanted(table.value(row, "Ixx"), table.value(row, "Iyy"), table.value(row, "Izz"));
+    worst = std::max(worst, (I - wanted).cwiseQuotient(wanted).cwiseAbs().maxCoeff());
+  }
+  std::printf("%d rows, largest relative difference %.1e\n", rows, worst);
+  EXPECT_GT(rows, 200);
+  EXPECT_LE(worst, 1e-12);
+}
+
+TEST(Superellipsoid, RadiiAreTight) {
+  Random random(5);
+  for (const Superellipsoid& shape : shapes()) {
+    double furthest = 0;
+    double nearest = std::numeric_limits<double>::infinity();
+    const auto look = [&](const Vector3d& n) {
+      const double r = shape.support(n).point.norm();
+      const double h = shape.support(n).height / n.norm();
+      ASSERT_LE(r, shape.bounding_radius() * (1 + 4 * kEpsilon));
+      ASSERT_GE(h, shape.inscribed_radius() * (1 - 4 * kEpsilon));
+      furthest = std::max(furthest, r);
+      nearest = std::min(nearest, h);
+    };
+    for (int k = 0; k < 20000; ++k) look(random.direction());
+    for (int k = 0; k < 3; ++k) look(Vector3d::Unit(k));
+    // The furthest point of a box-like body is the support point of its own direction: a few rounds lead there.
+    Vector3d x(1, 1.7, 0.6);
+    for (int k = 0; k < 200; ++k) x = shape.support(x).point;
+    look(x);
+    EXPECT_NEAR(furthest, shape.bounding_radius(), 1e-3 * shape.bounding_radius()) << shape.e1() << ' ' << shape.e2();
+    EXPECT_NEAR(nearest, shape.inscribed_radius(), 2e-3 * shape.inscribed_radius()) << shape.e1() << ' ' << shape.e2();
+  }
+}
+
+template <class F>
+std::string message_of(const F& f) {
+  try {
+    f();
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "nothing was refused";
+}
+
+TEST(Superellipsoid, RefusesBadInputByName) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THAT(message_of([] { Superellipsoid({1, 0, 1}, 1, 1); }), HasSubstr("semi-axis is 0"));
+  EXPECT_THAT(message_of([] { Superellipsoid({1, -1, 1}, 1, 1); }), HasSubstr("semi-axis is -1"));
+  EXPECT_THAT(message_of([&] { Superellipsoid({1, nan, 1}, 1, 1); }), HasSubstr("semi-axis is nan"));
+  EXPECT_THAT(message_of([] { Superellipsoid({1, 1e5, 1}, 1, 1); }), HasSubstr("ratio"));
+  EXPECT_THAT(message_of([] { Superellipsoid({1, 1, 1}, 0.1, 1); }), HasSubstr("e1 is 0.1; accepted: 0.2 to 1.6"));
+  EXPECT_THAT(message_of([] { Superellipsoid({1, 1, 1}, 1, 2); }), HasSubstr("e2 is 2; accepted: 0.2 to 1.6"));
+  EXPECT_THAT(message_of([&] { Superellipsoid({1, 1, 1}, 1, nan); }), HasSubstr("e2 is nan"));
+}
+
+}  // namespace
+}  // namespace geom
