@@ -19,5 +19,9 @@ int init(const std::string& path);
 int run(const RunArguments& arguments);
 int check(const std::string& path);
 int replay(const std::string& path);
+/// "-": standard input.
+int distance(const std::string& path);
+/// The formats of its lines, for --help.
+std::string distance_help();
 
 }  // namespace hardbody

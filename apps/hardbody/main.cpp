@@ -25,6 +25,7 @@ struct Request {
   std::string init_file;
   std::string check_path;
   std::string replay_file;
+  std::string distance_file = "-";
 };
 
 void add_init(CLI::App& app, Request& request) {
@@ -52,17 +53,21 @@ void add_replay(CLI::App& app, Request& request) {
   replay->add_option("FILE", request.replay_file, "failures/*.json")->required();
 }
 
+void add_distance(CLI::App& app, Request& request) {
+  CLI::App* distance = app.add_subcommand("distance", "Distances of pairs of bodies: JSON lines in, JSON lines out");
+  distance->add_option("FILE", request.distance_file, "One pair a line; without it, or with -: standard input");
+  distance->footer(distance_help());
+}
+
 /// Commands of later versions: not in the help, with an honest answer.
 void add_later_commands(CLI::App& app) {
-  for (const char* name : {"resume", "analyze", "report", "sweep", "distance"}) {
+  for (const char* name : {"resume", "analyze", "report", "sweep"}) {
     CLI::App* later = app.add_subcommand(name, "")->group("");
     later->set_help_flag();
     later->allow_extras();
     later->callback([name] {
       throw InputError(
-          fmt::format("hardbody {}: is not available yet; accepted now: init, run, "
-                      "check, replay",
-                      name));
+          fmt::format("hardbody {}: is not available yet; accepted now: init, run, check, replay, distance", name));
     });
   }
 }
@@ -71,6 +76,7 @@ int dispatch(const CLI::App& app, const Request& request) {
   if (app.got_subcommand("init")) return init(request.init_file);
   if (app.got_subcommand("run")) return run(request.run);
   if (app.got_subcommand("check")) return check(request.check_path);
+  if (app.got_subcommand("distance")) return distance(request.distance_file);
   return replay(request.replay_file);
 }
 
@@ -100,6 +106,7 @@ int run_command_line(int argc, char** argv) {
   add_run(app, request);
   add_check(app, request);
   add_replay(app, request);
+  add_distance(app, request);
   add_later_commands(app);
   std::vector<std::string> arguments = expand_overrides(argc, argv);
   // CLI11 takes them from the back.

@@ -23,6 +23,35 @@ std::string compiler() {
 #endif
 }
 
+/// Of this binary: that of its sources, unless what it contains asks for more.
+const char* licence() {
+#if HARDBODY_WITH_CGAL
+  return "GPL-3.0-or-later for this binary, because it contains CGAL's Polytope_distance_d; BSD-3-Clause for its "
+         "sources";
+#else
+  return "BSD-3-Clause";
+#endif
+}
+
+std::string libraries() {
+  std::string list = fmt::format("Eigen {}.{}.{} (MPL-2.0), fmt {}.{}.{} (MIT), nlohmann json {}.{}.{} (MIT)",
+                                 EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION, FMT_VERSION / 10000,
+                                 FMT_VERSION / 100 % 100, FMT_VERSION % 100, NLOHMANN_JSON_VERSION_MAJOR,
+                                 NLOHMANN_JSON_VERSION_MINOR, NLOHMANN_JSON_VERSION_PATCH);
+  list += ", toml++ (MIT), CLI11 (BSD-3-Clause), xxHash (BSD-2-Clause)";
+#if HARDBODY_WITH_SEEDS
+  list += ", FCL (BSD-3-Clause), libccd (BSD-3-Clause)";
+#else
+  list += "; FCL and libccd are not built in";
+#endif
+#if HARDBODY_WITH_CGAL
+  list += ", CGAL Polytope_distance_d (GPL-3.0-or-later), GMP (LGPL-3.0-or-later)";
+#else
+  list += "; CGAL is not built in";
+#endif
+  return list;
+}
+
 }  // namespace
 
 const char* version() {
@@ -32,15 +61,10 @@ const char* version() {
 std::string version_text() {
   const std::string_view arch(kArch);
   const std::string_view type(kBuildType);
-  std::string text = fmt::format("hardbody {}\nlicence: BSD-3-Clause\n", version());
-  text += fmt::format("built with {}, build type {}, {}\n", compiler(), type.empty() ? "none" : type,
-                      arch.empty() ? "no -march (the compiler's baseline)" : fmt::format("-march={}", arch));
-  text += fmt::format(
-      "libraries: Eigen {}.{}.{} (MPL-2.0), fmt {}.{}.{} (MIT), nlohmann json {}.{}.{} (MIT), toml++ (MIT), ",
-      EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION, FMT_VERSION / 10000, FMT_VERSION / 100 % 100,
-      FMT_VERSION % 100, NLOHMANN_JSON_VERSION_MAJOR, NLOHMANN_JSON_VERSION_MINOR, NLOHMANN_JSON_VERSION_PATCH);
-  text += "CLI11 (BSD-3-Clause), xxHash (BSD-2-Clause); CGAL is not used\n";
-  return text;
+  return fmt::format("hardbody {}\nlicence: {}\nbuilt with {}, build type {}, {}\nlibraries: {}\n", version(),
+                     licence(), compiler(), type.empty() ? "none" : type,
+                     arch.empty() ? "no -march (the compiler's baseline)" : fmt::format("-march={}", arch),
+                     libraries());
 }
 
 std::vector<std::string> cpu_features() {

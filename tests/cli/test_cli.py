@@ -3,6 +3,7 @@
     HARDBODY=build/release/apps/hardbody/hardbody /usr/bin/python3 tests/cli/test_cli.py [TestClass[.test]]
 """
 
+import contextlib
 import csv
 import json
 import math
@@ -12,6 +13,7 @@ import signal
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 import unittest
 
@@ -570,9 +572,12 @@ class CommandLine(Case):
     def test_version_and_help(self):
         result = self.hardbody("--version")
         self.assertEqual(result.returncode, 0)
-        for part in ["hardbody 0.", "BSD-3-Clause", "Eigen", "built with"]:
+        for part in ["hardbody 0.", "BSD-3-Clause", "Eigen", "MPL-2.0", "built with", "FCL", "libccd", "CGAL"]:
             self.assertIn(part, result.stdout)
-        for command in [[], ["init"], ["run"], ["check"], ["replay"]]:
+        # A binary with CGAL in it says so where it names its licence.
+        licence = re.search("^licence: (.*)$", result.stdout, re.M)[1]
+        self.assertEqual("GPL-3.0-or-later" in licence, "CGAL is not built in" not in result.stdout, result.stdout)
+        for command in [[], ["init"], ["run"], ["check"], ["replay"], ["distance"]]:
             result = self.hardbody(*command, "--help")
             self.assertEqual(result.returncode, 0)
             self.assertIn("Usage", result.stdout)
@@ -587,7 +592,6 @@ class CommandLine(Case):
         for arguments in [["resume", "out"], ["analyze", "out"], ["report", "out", "-o", "x.html"], ["sweep", "--help"]]:
             with self.subTest(arguments):
                 self.assert_refused(self.hardbody(*arguments), arguments[0], "not available yet")
-        self.assert_refused(self.hardbody("distance"), "not available yet")
 
 
 class Signals(Case):
@@ -775,6 +779,9 @@ class Replay(Case):
         self.assert_refused(self.replay("{\n\n]"), "pair.json:3: ", "JSON")
         self.assert_refused(self.replay("[]"), "format")
         self.assert_refused(self.replay("{}"), "format")
+        self.assert_refused(self.replay('{"format": "hardbody pair", "time": 1e999}'), "pair.json", "range of a double")
+        self.assert_refused(self.replay('{"format": 1, "format": 2}'), "pair.json", '"format" twice')
+        self.assert_refused(self.replay("[" * 100000), "pair.json", "nested")
         without = self.pair()
         del without["b"]
         self.assert_refused(self.replay(without), "b is missing")
@@ -798,6 +805,376 @@ class Replay(Case):
         for change, *parts in cases:
             with self.subTest(change):
                 self.assert_refused(self.replay(self.pair(**change)), *parts)
+
+
+def placed(semi_axes, position, orientation=None):
+    """A body of a query."""
+    more = {} if orientation is None else {"orientation": orientation}
+    return {"shape": {"kind": "ellipsoid", "semi_axes": semi_axes}, "position": position, **more}
+
+
+def turned(angle, axis):
+    """The quaternion w, x, y, z of a turn about an axis (any length)."""
+    length = math.hypot(*axis)
+    return [math.cos(angle / 2)] + [math.sin(angle / 2) * x / length for x in axis]
+
+
+class Distance(Case):
+    NEEDLE = placed([1, 1, 3], [0, 0, 0])
+    README_PAIR = {"a": NEEDLE, "b": placed([2, 2, 0.5], [4, 0, 2.4])}
+    METHODS = ["newton8", "newton5"]
+    SEEDS = ["dual", "centres", "fcl", "ccd", "cgal"]
+
+    def distance(self, text, *arguments):
+        """The process that has read `text` on stdin."""
+        text = text if isinstance(text, bytes) else text.encode()
+        result = subprocess.run([HARDBODY, "distance", *arguments], cwd=self.here, input=text, capture_output=True, timeout=120)
+        result.stdout = result.stdout.decode()
+        result.stderr = result.stderr.decode()
+        return result
+
+    def parse(self, stdout):
+        def refuse(constant):
+            raise ValueError(f"{constant} in {stdout}")
+
+        return [json.loads(line, parse_constant=refuse) for line in stdout.splitlines()]
+
+    def answers(self, *queries):
+        """Of good lines."""
+        result = self.distance("".join(json.dumps(q) + "\n" for q in queries))
+        self.assertEqual((result.returncode, result.stderr), (0, ""), result.stdout)
+        answers = self.parse(result.stdout)
+        self.assertEqual(len(answers), len(queries))
+        return answers
+
+    def built_in(self, seed):
+        result = self.distance(json.dumps({**self.README_PAIR, "method": "newton8", "seed": seed}))
+        if result.returncode == 0:
+            return True
+        error = self.parse(result.stdout)[0]["error"]
+        self.assertIn(f'line 1: seed "{seed}" is not built in', error)
+        self.assertIn('accepted: "dual", "centres"', error)
+        return False
+
+    def assert_consistent(self, answer):
+        """point_b - point_a = distance * normal, of length 1."""
+        self.assertAlmostEqual(math.hypot(*answer["normal"]), 1, 14)
+        for a, b, n in zip(answer["point_a"], answer["point_b"], answer["normal"]):
+            self.assertAlmostEqual(b - a, answer["distance"] * n, 14)
+
+    def assert_declined(self, answer):
+        for key in ["distance", "point_a", "point_b", "normal"]:
+            self.assertIsNone(answer[key])
+        self.assertIn(answer["status"], ["not_converged", "singular"])
+        self.assertIsInstance(answer["iterations"], int)
+
+    def test_known_answers(self):
+        quarter = turned(math.pi / 2, [1, 0, 0])  # body z goes to world -y
+        cases = [
+            (placed([1, 1, 1], [1, 2, 3]), placed([2, 2, 2], [1, 2, 9]), 3, [0, 0, 1], [1, 2, 4]),
+            (placed([1, 1, 1], [0, 0, 0]), placed([2, 2, 2], [-1.5, 2, 0]), -0.5, [-0.6, 0.8, 0], [-0.6, 0.8, 0]),
+            (self.NEEDLE, placed([2, 2, 0.5], [0, 0, 5]), 1.5, [0, 0, 1], [0, 0, 3]),
+            (self.NEEDLE, placed([2, 3, 0.5], [-7, 0, 0]), 4, [-1, 0, 0], [-1, 0, 0]),
+            (self.NEEDLE, placed([0.5, 2, 3], [0, 6, 0]), 3, [0, 1, 0], [0, 1, 0]),
+            (placed([1, 1, 3], [0, 0, 0], quarter), placed([1, 1, 1], [0, 5, 0]), 1, [0, 1, 0], [0, 3, 0]),
+            (placed([1, 1, 3], [0, 0, 0], [-q for q in quarter]), placed([1, 1, 1], [0, 0, 5]), 3, [0, 0, 1], [0, 0, 1]),
+        ]
+        for (a, b, distance, normal, point_a), answer in zip(cases, self.answers(*({"a": c[0], "b": c[1]} for c in cases))):
+            self.assertEqual(list(answer), ["distance", "point_a", "point_b", "normal", "status", "iterations"])
+            self.assertAlmostEqual(answer["distance"], distance, 14)
+            self.assertEqual(answer["status"], "separated" if distance > 0 else "overlapping")
+            for k in range(3):
+                self.assertAlmostEqual(answer["normal"][k], normal[k], 14)
+                self.assertAlmostEqual(answer["point_a"][k], point_a[k], 14)
+            self.assert_consistent(answer)
+
+    def test_default_orientation(self):
+        spelt = {"a": {**self.NEEDLE, "orientation": [1, 0, 0, 0]}, "b": self.README_PAIR["b"], "method": "dual", "seed": "dual"}
+        short, full = self.answers(self.README_PAIR, spelt)
+        self.assertEqual(short, full)
+
+    def test_example_of_the_readme(self):
+        with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "README.md")) as readme:
+            example = re.search(r"^\$ echo '(.*)' \| hardbody distance\n(.*)$", readme.read(), re.M)
+        self.assertEqual(json.loads(example[1])["b"]["position"], [4, 0, 2.4])
+        answer, printed = self.answers(json.loads(example[1]))[0], json.loads(example[2])
+        self.assertEqual(list(answer), list(printed))
+        self.assertEqual(answer["status"], printed["status"])
+        self.assertAlmostEqual(answer["distance"], printed["distance"], 14)
+        self.assert_consistent(answer)
+        # The normals of both surfaces where they are closest.
+        for body, point, sign in [("a", "point_a", 1), ("b", "point_b", -1)]:
+            body = json.loads(example[1])[body]
+            x = [p - c for p, c in zip(answer[point], body["position"])]
+            axes = body["shape"]["semi_axes"]
+            self.assertAlmostEqual(sum((u / s) ** 2 for u, s in zip(x, axes)), 1, 13)
+            gradient = [u / s**2 for u, s in zip(x, axes)]
+            for g, n in zip(gradient, answer["normal"]):
+                self.assertAlmostEqual(g / math.hypot(*gradient), sign * n, 12)
+
+    def test_every_method_and_seed_agrees(self):
+        pairs = [
+            self.README_PAIR,
+            {"a": placed([1, 1, 3], [0, 0, 0], turned(0.7, [1, 2, 3])), "b": placed([1, 1, 3], [4, 3, -1], turned(2, [1, 0, -1]))},
+            {"a": placed([1, 2, 3], [5, 5, 5], turned(1.1, [0, 1, 1])), "b": placed([0.5, 1.5, 1], [8, 9, 4], turned(0.3, [3, 1, 1]))},
+            {"a": placed([1, 1, 1], [0, 0, 0]), "b": placed([1, 1, 1], [0, 3, 4])},
+        ]
+        queries = [
+            {**pair, "method": method, "seed": seed}
+            for pair in pairs
+            for seed in self.SEEDS
+            if self.built_in(seed)
+            for method in self.METHODS
+        ]
+        dual = self.answers(*pairs)
+        per_pair = len(queries) // len(pairs)
+        for k, answer in enumerate(self.answers(*queries)):
+            with self.subTest(queries[k]):
+                self.assertEqual(answer["status"], "separated")
+                self.assertLess(abs(answer["distance"] - dual[k // per_pair]["distance"]), 1e-12)
+                self.assert_consistent(answer)
+        # The seed that nobody names is the dual's.
+        newton, named = self.answers({**pairs[1], "method": "newton8"}, {**pairs[1], "method": "newton8", "seed": "dual"})
+        self.assertEqual(newton, named)
+
+    def test_shallow_overlap(self):
+        pair = {"a": self.NEEDLE, "b": placed([1, 1, 3], [1.9, 0, 0])}
+        for answer in self.answers(pair, {**pair, "method": "newton8"}, {**pair, "method": "newton5"}):
+            self.assertEqual(answer["status"], "overlapping")
+            self.assertAlmostEqual(answer["distance"], -0.1, 13)
+            self.assert_consistent(answer)
+
+    def test_declined(self):
+        deep = {"a": placed([1, 1, 3], [0, 0, 0]), "b": placed([2, 2, 0.5], [0, 0, 0.1])}
+        same = {"a": self.NEEDLE, "b": self.NEEDLE}
+        queries = [deep, same, {**deep, "method": "newton8"}, {**same, "method": "newton5", "seed": "centres"}]
+        answers = self.answers(*queries)
+        for answer in answers:
+            self.assert_declined(answer)
+        self.assertNotIn("seed_status", answers[0])
+        self.assertEqual([a["seed_status"] for a in answers[2:]], ["declined", "declined"])
+        # FCL and CGAL have no points for bodies that overlap.
+        for seed in ["fcl", "cgal"]:
+            if self.built_in(seed):
+                answer = self.answers({**deep, "method": "newton8", "seed": seed})[0]
+                self.assert_declined(answer)
+                self.assertEqual((answer["status"], answer["seed_status"]), ("not_converged", "overlapping"))
+
+    def test_extreme_bodies(self):
+        # Whatever a seed makes of them, there is an answer or none.
+        pairs = [
+            {"a": placed([s, s, s], [0, 0, 0]), "b": placed([t, 1e3 * t, 1e4 * t], [x, x / 3, 0], turned(1, [1, 2, 3]))}
+            for s, t, x in [(1, 1, 1e200), (1e-50, 1e46, 1e49), (1e50, 1e46, 1e300), (1, 1e-4, 1), (1e-9, 1e-9, 1e-30), (1, 1, 0)]
+        ]
+        methods = [{"method": m, "seed": s} for s in self.SEEDS if self.built_in(s) for m in self.METHODS]
+        for answer in self.answers(*({**pair, **method} for pair in pairs for method in [{}, *methods])):
+            if answer["distance"] is None:
+                self.assert_declined(answer)
+            else:
+                self.assertIn(answer["status"], ["separated", "overlapping"])
+
+    def bad(self, change=(), a=None, shape=None):
+        """The pair of the README with something else in it, as a line."""
+        body = {**self.NEEDLE, **(a or {}), "shape": {**self.NEEDLE["shape"], **(shape or {})}}
+        return json.dumps({**self.README_PAIR, "a": body, **dict(change)})
+
+    def test_bad_lines(self):
+        flat = lambda text: self.bad().replace("[0, 0, 0]", text, 1)
+        cases = [
+            ("{", "not valid JSON", "column"),
+            ("not JSON at all", "not valid JSON", "column 2"),
+            (self.bad() + self.bad(), "not valid JSON"),
+            ("\x00", "not valid JSON"),
+            (b'{"id": "\xff"}', "not valid JSON"),
+            (flat("[0, 0, NaN]"), "not valid JSON", "finite"),
+            (flat("[0, 0, -Infinity]"), "not valid JSON", "finite"),
+            (flat("[0, 0, 1e999]"), "range of a double"),
+            ("[" * 100000, "nested"),
+            ('{"id":' * 1000 + "1" + "}" * 1000, "nested"),
+            (self.bad().replace('"b":', '"a":'), '"a" twice'),
+            ("17", "is 17", "an object with a, b, method, seed, id"),
+            ("null", "is null"),
+            ("{}", "a is missing"),
+            (json.dumps({"a": self.NEEDLE}), "b is missing"),
+            (self.bad({"b": 3}), "b is 3", "shape, position, orientation"),
+            (self.bad({"b": {"position": [0, 0, 0]}}), "b.shape is missing"),
+            (self.bad({"methd": "dual"}), "unknown key methd, did you mean method?"),
+            (self.bad({"velocity": 1}), "unknown key velocity;"),
+            (self.bad(a={"positon": [0, 0, 0]}), "unknown key a.positon, did you mean a.position?"),
+            (self.bad(a={"orientaton": [1, 0, 0, 0]}), "unknown key a.orientaton, did you mean a.orientation?"),
+            (self.bad(shape={"semi_axis": 1}), "unknown key a.shape.semi_axis, did you mean a.shape.semi_axes?"),
+            (self.bad(shape={"exponents": [1, 1]}), "unknown key a.shape.exponents"),
+            (self.bad({"method": "newton6"}), 'method is "newton6"', '"dual", "newton8", "newton5"'),
+            (self.bad({"method": 8}), "method is 8"),
+            (self.bad({"seed": "gjk", "method": "newton8"}), 'seed is "gjk"', '"centres"'),
+            (self.bad({"seed": None}), "seed is null"),
+            (self.bad({"seed": "centres"}), 'seed is "centres"', "newton8"),
+            (self.bad({"seed": "centres", "method": "dual"}), 'seed is "centres"', "newton8"),
+            (self.bad(a={"position": [0, 0]}), "a.position is [0,0]", "three finite numbers"),
+            (self.bad(a={"position": [0, 0, "1"]}), "a.position is", "three finite numbers"),
+            (self.bad(a={"position": [0, 0, True]}), "a.position is [0,0,true]"),
+            (self.bad(a={"position": None}), "a.position is null"),
+            (self.bad(a={"position": {"x": 1}}), "a.position is"),
+            (self.bad(a={"orientation": [1, 1, 0, 0]}), "a.orientation is [1,1,0,0]", "length 1", "1e-6"),
+            (self.bad(a={"orientation": [1 + 2e-6, 0, 0, 0]}), "a.orientation is"),
+            (self.bad(a={"orientation": [0, 0, 0, 0]}), "a.orientation is"),
+            (self.bad(a={"orientation": [1, 0, 0]}), "a.orientation is [1,0,0]", "unit quaternion"),
+            (self.bad(a={"shape": "sphere"}).replace("}}", "}"), "not valid JSON"),
+            (json.dumps({"a": {"shape": "sphere", "position": [0, 0, 0]}}), 'a.shape is "sphere"', '"ellipsoid"'),
+            (self.bad(shape={"kind": "sphere"}), 'a.shape.kind is "sphere"', '"ellipsoid"'),
+            (self.bad(shape={"kind": "superellipsoid", "exponents": [1, 1]}), "a.shape.kind", "not available yet"),
+            (json.dumps({"a": {"shape": {"semi_axes": [1, 1, 1]}, "position": [0, 0, 0]}}), "a.shape.kind is missing"),
+            (json.dumps({"a": {"shape": {"kind": "ellipsoid"}, "position": [0, 0, 0]}}), "a.shape.semi_axes is missing"),
+            (self.bad(shape={"semi_axes": [1, 1]}), "a.shape.semi_axes is [1,1]"),
+            (self.bad(shape={"semi_axes": [1, -1, 1]}), "a.shape.semi_axes is [1,-1,1]", "semi-axis is -1"),
+            (self.bad(shape={"semi_axes": [1, 0, 1]}), "a.shape.semi_axes is [1,0,1]"),
+            (self.bad(shape={"semi_axes": [1, 1, 1e60]}), "a.shape.semi_axes is"),
+            (self.bad(shape={"semi_axes": [1, 1, 20000]}), "a.shape.semi_axes is [1,1,20000]", "ratio", "10000"),
+            (self.bad(shape={"semi_axes": "1,1,1"}), "a.shape.semi_axes is"),
+            (self.bad({"\u00e9" * 500: 1}), "unknown key"),
+        ]
+        good = json.dumps(self.README_PAIR).encode()
+        lines = [good]
+        for line, *_ in cases:
+            lines += [line if isinstance(line, bytes) else line.encode(), good]
+        result = self.distance(b"\n".join(lines))
+        self.assertEqual((result.returncode, result.stderr), (2, ""))
+        replies = self.parse(result.stdout)
+        self.assertEqual(len(replies), len(lines))
+        for number, reply in enumerate(replies, 1):
+            if number % 2 == 1:
+                self.assertEqual(reply, replies[0])
+                continue
+            line, *parts = cases[number // 2 - 1]
+            with self.subTest(line[:100]):
+                self.assertEqual(list(reply), ["error"])
+                self.assertTrue(reply["error"].startswith(f"line {number}: "), reply)
+                self.assertLess(len(reply["error"]), 500)
+                for part in ["; accepted: ", *parts]:
+                    self.assertIn(part, reply["error"])
+
+    def test_orientation_within_tolerance(self):
+        query = {**self.README_PAIR, "a": {**self.NEEDLE, "orientation": [1 + 5e-7, 0, 0, 0]}}
+        self.assertEqual(*self.answers(self.README_PAIR, query))
+
+    def test_id_is_echoed(self):
+        ids = [7, -1.5, "text", "\u00e9 \"\n\\", "", None, True, [], [1, [2, {}]], {"k": [None], "a": ""}, 2**63, 1e300]
+        for identity, answer in zip(ids, self.answers(*({**self.README_PAIR, "id": i} for i in ids))):
+            self.assertEqual((answer["id"], type(answer["id"])), (identity, type(identity)))
+            self.assertEqual(answer["status"], "separated")
+        result = self.distance("".join(json.dumps({"id": i, "b": 3}) + "\n" for i in ids))
+        self.assertEqual(result.returncode, 2)
+        self.assertEqual([(r["id"], "error" in r) for r in self.parse(result.stdout)], [(i, True) for i in ids])
+
+    def test_seventeen_digits(self):
+        query = json.dumps({**self.README_PAIR, "a": placed([1, 1, 1], [0, 0, 0]), "b": placed([1, 1, 1], [0.1, 0, 2.3])})
+        text = self.distance(query).stdout
+        numbers = re.findall(r"-?\d+\.\d+(?:e-?\d+)?", text)
+        self.assertTrue(numbers)
+        for number in numbers:
+            self.assertEqual(number, f"{float(number):.17g}")
+        # As good as the digits: 2 and a rounding error from the exact square root.
+        self.assertAlmostEqual(self.parse(text)[0]["distance"], math.hypot(0.1, 2.3) - 2, 15)
+
+    def test_file_and_stdin(self):
+        text = json.dumps(self.README_PAIR) + "\n" + json.dumps({"id": 2}) + "\n"
+        self.write("pairs.jsonl", text)
+        results = [self.distance("", "pairs.jsonl"), self.distance(text, "-"), self.distance(text)]
+        for result in results:
+            self.assertEqual((result.returncode, result.stderr), (2, ""))
+            self.assertEqual(result.stdout, results[0].stdout)
+        self.assertEqual(len(self.parse(results[0].stdout)), 2)
+
+    def test_blank_lines_and_line_ends(self):
+        line = json.dumps(self.README_PAIR)
+        result = self.distance(f"\n{line}\r\n  \t\n\r\n{line}\n\n3\n{line}")
+        replies = self.parse(result.stdout)
+        self.assertEqual([r.get("status") for r in replies], ["separated", "separated", None, "separated"])
+        self.assertTrue(replies[2]["error"].startswith("line 7: "))
+        for nothing in ["", "\n", " \n\n "]:
+            result = self.distance(nothing)
+            self.assertEqual((result.returncode, result.stdout, result.stderr), (0, "", ""))
+
+    def test_long_lines(self):
+        line = json.dumps(self.README_PAIR)
+        longest = line + " " * (2**20 - len(line))
+        result = self.distance("\n".join([longest, longest + " ", line, "x" * 5_000_000, line, " " * 2**21]))
+        self.assertEqual(result.returncode, 2)
+        replies = self.parse(result.stdout)
+        self.assertEqual(["error" in r for r in replies], [False, True, False, True, False, True])
+        self.assertIn("line 4: is too long", replies[3]["error"])
+
+    def test_unreadable(self):
+        self.assert_refused(self.hardbody("distance", "none.jsonl"), "none.jsonl", "No such file", "accepted")
+        self.assert_refused(self.hardbody("distance", "."), "directory", "accepted")
+        closed = subprocess.run(f"{HARDBODY} distance <&-", shell=True, capture_output=True, text=True, timeout=60)
+        self.assert_refused(closed, "standard input")
+        self.assert_refused(self.hardbody("distance", "one", "two"), "hardbody --help")
+
+    @contextlib.contextmanager
+    def started(self, stdout=subprocess.PIPE, **more):
+        """A process that reads a pipe; killed after a minute, so that an answer kept back is not waited for."""
+        with subprocess.Popen(
+            [HARDBODY, "distance"], stdin=subprocess.PIPE, stdout=stdout, stderr=subprocess.PIPE, text=True, **more
+        ) as process:
+            timer = threading.Timer(60, process.kill)
+            timer.start()
+            try:
+                yield process
+            finally:
+                process.kill()
+                timer.cancel()
+
+    def test_talks_line_by_line(self):
+        with self.started() as process:
+            for k in range(5):
+                # In two pieces, as a pipe may deliver it.
+                text = json.dumps({**self.README_PAIR, "id": k}) + "\n"
+                for piece in [text[:20], text[20:]]:
+                    process.stdin.write(piece)
+                    process.stdin.flush()
+                self.assertEqual(json.loads(process.stdout.readline())["id"], k)
+            process.stdin.close()
+            self.assertEqual(process.wait(), 0)
+
+    def status_after_feeding(self, process):
+        """Lines for ever: the program has to end by itself."""
+        line = json.dumps(self.README_PAIR) + "\n"
+        with self.assertRaises(BrokenPipeError):
+            for _ in range(1_000_000):
+                process.stdin.write(line)
+        with contextlib.suppress(BrokenPipeError):
+            process.stdin.close()
+        return process.wait()
+
+    def test_nobody_reads_the_answers(self):
+        for ignored, status in [(False, -signal.SIGPIPE), (True, 1)]:
+            # Python ignores SIGPIPE itself; restored: the default action.
+            with self.subTest(ignored=ignored), self.started(restore_signals=not ignored) as process:
+                process.stdout.close()
+                self.assertEqual(self.status_after_feeding(process), status)
+                self.assertEqual(process.stderr.read().count("\n"), 1 if ignored else 0)
+
+    @unittest.skipUnless(os.path.exists("/dev/full"), "no /dev/full")
+    def test_full_disk(self):
+        with open("/dev/full", "w") as full, self.started(stdout=full) as process:
+            self.assertEqual(self.status_after_feeding(process), 1)
+            self.assertIn("standard output: cannot be written: No space left", process.stderr.read())
+        # From a file the answers are written later, and still not lost in silence.
+        self.write("pair.jsonl", json.dumps(self.README_PAIR))
+        result = subprocess.run(
+            f"{HARDBODY} distance pair.jsonl >/dev/full", shell=True, cwd=self.here, capture_output=True, text=True, timeout=60
+        )
+        self.assertEqual((result.returncode, result.stderr.count("\n")), (1, 1))
+
+    def test_ten_thousand_lines(self):
+        pair = lambda k: {
+            "a": placed([1, 1, 3], [0, 0, 0], turned(k, [1, 2, 3])),
+            "b": placed([1, 2, 0.5], [6, math.sin(k), 0], turned(k, [3, -1, 0])),
+        }
+        answers = self.answers(*({**pair(k), "id": k} for k in range(10_000)))
+        self.assertEqual([a["id"] for a in answers], list(range(10_000)))
+        self.assertEqual({a["status"] for a in answers}, {"separated"})
 
 
 if __name__ == "__main__":

@@ -1,0 +1,53 @@
+#include "distance_seeds.h"
+
+#if HARDBODY_WITH_SEEDS
+#include <geom/seeds.h>
+#endif
+#if HARDBODY_WITH_CGAL
+#include <geom/cgal.h>
+#endif
+
+#include <fmt/format.h>
+
+namespace hardbody {
+namespace {
+
+using geom::Ellipsoid;
+
+#if HARDBODY_WITH_SEEDS
+constexpr SeedFunction kFcl = geom::fcl_seed;
+constexpr SeedFunction kCcd = geom::ccd_seed<Ellipsoid, Ellipsoid>;
+#else
+constexpr SeedFunction kFcl = nullptr;
+constexpr SeedFunction kCcd = nullptr;
+#endif
+
+#if HARDBODY_WITH_CGAL
+constexpr SeedFunction kCgal = geom::cgal_seed<Ellipsoid, Ellipsoid>;
+#else
+constexpr SeedFunction kCgal = nullptr;
+#endif
+
+constexpr SeedSource kSources[] = {
+    {"dual", geom::dual_seed<Ellipsoid, Ellipsoid>, ""},
+    {"centres", geom::centre_seed<Ellipsoid, Ellipsoid>, ""},
+    {"fcl", kFcl, "HARDBODY_WITH_SEEDS"},
+    {"ccd", kCcd, "HARDBODY_WITH_SEEDS"},
+    {"cgal", kCgal, "HARDBODY_WITH_CGAL"},
+};
+
+}  // namespace
+
+std::span<const SeedSource> seed_sources() {
+  return kSources;
+}
+
+std::string built_in_seeds() {
+  std::string list;
+  for (const SeedSource& source : kSources) {
+    if (source.function != nullptr) list += fmt::format("{}\"{}\"", list.empty() ? "" : ", ", source.name);
+  }
+  return list;
+}
+
+}  // namespace hardbody

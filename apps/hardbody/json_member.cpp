@@ -1,0 +1,126 @@
+#include "json_member.h"
+
+#include "suggest.h"
+#include "text_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <utility>
+
+namespace hardbody {
+namespace {
+
+using nlohmann::json;
+
+/// Deeper than anything that is meant; far less than the recursion of json::dump can take.
+constexpr int kDeepest = 100;
+constexpr std::size_t kShownLength = 60;
+constexpr int kNumberOverflow = 406;
+
+/// For messages: a value as JSON on one line, shortened.
+std::string shown(const json& value) {
+  return one_line(value.dump(), kShownLength);
+}
+
+/// Parser callback that refuses what json::parse would take: the last of several members of one name, any depth.
+class StrictObjects {
+ public:
+  bool operator()(int depth, json::parse_event_t event, const json& parsed) {
+    if (depth > kDeepest) throw JsonError(fmt::format("is nested more than {} deep", kDeepest));
+    if (event == json::parse_event_t::object_start) keys_.emplace_back();
+    if (event == json::parse_event_t::object_end) keys_.pop_back();
+    if (event == json::parse_event_t::key && !keys_.back().insert(parsed.get<std::string>()).second) {
+      throw JsonError(fmt::format("has the key {} twice in one object", shown(parsed)));
+    }
+    return true;
+  }
+
+ private:
+  std::vector<std::set<std::string>> keys_;  ///< of the objects that are open
+};
+
+}  // namespace
+
+json parse_json(std::string_view text) {
+  StrictObjects strict;
+  try {
+    return json::parse(
+        text, [&](int depth, json::parse_event_t event, json& parsed) { return strict(depth, event, parsed); });
+  } catch (const json::parse_error& error) {
+    // The parser counts bytes from 1, and one more if it ran into the end.
+    throw JsonError("is not valid JSON", std::min(error.byte == 0 ? 0 : error.byte - 1, text.size()));
+  } catch (const json::out_of_range& error) {
+    throw JsonError(error.id == kNumberOverflow ? "has a number beyond the range of a double" : "is not valid JSON");
+  }
+}
+
+std::string JsonMember::path_of(std::string_view key) const {
+  return name.empty() ? std::string(key) : fmt::format("{}.{}", name, key);
+}
+
+JsonMember JsonMember::at(const char* key, std::string_view accepted) const {
+  if (!has(key)) throw InputError(fmt::format("{} is missing; accepted: {}", path_of(key), accepted));
+  return {&json->at(key), path_of(key)};
+}
+
+void JsonMember::allow(std::span<const std::string_view> keys) const {
+  const std::string accepted = fmt::format("{}", fmt::join(keys, ", "));
+  if (!json->is_object()) throw bad(fmt::format("an object with {}", accepted));
+  for (const auto& member : json->items()) {
+    if (std::find(keys.begin(), keys.end(), member.key()) != keys.end()) continue;
+    const std::optional<std::string> nearest = nearest_name(member.key(), keys);
+    throw InputError(fmt::format("unknown key {}{}; accepted: {}", one_line(path_of(member.key()), kShownLength),
+                                 nearest ? fmt::format(", did you mean {}?", path_of(*nearest)) : "", accepted));
+  }
+}
+
+InputError JsonMember::bad(std::string_view accepted) const {
+  return InputError(
+      fmt::format("{} is {}; accepted: {}", name.empty() ? "the top level" : name, shown(*json), accepted));
+}
+
+InputError JsonMember::refused(std::string_view why) const {
+  // The library's messages end in what is accepted, too.
+  constexpr std::string_view kAccepted = "; accepted: ";
+  const std::size_t cut = std::min(why.find(kAccepted), why.size());
+  return InputError(fmt::format("{} is {} ({}){}", name, shown(*json), one_line(why.substr(0, cut)), why.substr(cut)));
+}
+
+double JsonMember::number() const {
+  if (!json->is_number() || !std::isfinite(json->get<double>())) throw bad("a finite number");
+  return json->get<double>();
+}
+
+std::string JsonMember::text(std::string_view accepted) const {
+  if (!json->is_string()) throw bad(accepted);
+  return json->get<std::string>();
+}
+
+std::vector<double> JsonMember::numbers(std::size_t size, const char* accepted) const {
+  const auto is_number = [](const auto& x) { return x.is_number() && std::isfinite(x.template get<double>()); };
+  if (!json->is_array() || json->size() != size || !std::all_of(json->begin(), json->end(), is_number)) {
+    throw bad(accepted);
+  }
+  return json->get<std::vector<double>>();
+}
+
+Eigen::Vector3d JsonMember::vector() const {
+  const std::vector<double> v = numbers(3, "three finite numbers");
+  return {v[0], v[1], v[2]};
+}
+
+geom::Ellipsoid read_ellipsoid(const JsonMember& shape) {
+  const JsonMember axes = shape.at("semi_axes", "three positive numbers");
+  const Eigen::Vector3d values = axes.vector();
+  return axes.checked([&] { return geom::Ellipsoid(values); });
+}
+
+geom::Pose read_orientation(const JsonMember& orientation, const Eigen::Vector3d& position) {
+  const std::vector<double> q = orientation.numbers(4, "a unit quaternion [w, x, y, z]");
+  return orientation.checked([&] { return geom::Pose::from_quaternion(q[0], q[1], q[2], q[3], position); });
+}
+
+}  // namespace hardbody
