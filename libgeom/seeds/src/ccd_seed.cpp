@@ -99,7 +99,7 @@ WitnessPair ccd_seed(const SupportBody& a, const SupportBody& b) {
   if (mpr.overlap(0, contact)) {
     seed.point_a = a.pose().position() + a.support_W(contact.normal);
     seed.point_b = b.pose().position() + b.support_W(-contact.normal);
-    if (seed.point_a.allFinite() && seed.point_b.allFinite()) seed.status = SeedStatus::usable;
+    seed.status = SeedStatus::usable;
     return seed;
   }
   // Inflated by this the inscribed spheres meet.
@@ -108,7 +108,7 @@ WitnessPair ccd_seed(const SupportBody& a, const SupportBody& b) {
   const double back = skin - 0.5 * contact.depth;
   seed.point_a = a.pose().position() + contact.point - back * contact.normal;
   seed.point_b = a.pose().position() + contact.point + back * contact.normal;
-  if (seed.point_a.allFinite() && seed.point_b.allFinite()) seed.status = SeedStatus::usable;
+  seed.status = SeedStatus::usable;
   return seed;
 }
 

@@ -79,7 +79,7 @@ WitnessPair cgal_seed(const SupportBody& a, const SupportBody& b) {
   }
   seed.point_a = origin + unit * to_vector(closest.realizing_point_p_coordinates_begin());
   seed.point_b = origin + unit * to_vector(closest.realizing_point_q_coordinates_begin());
-  if (seed.point_a.allFinite() && seed.point_b.allFinite()) seed.status = SeedStatus::usable;
+  seed.status = SeedStatus::usable;
   return seed;
 }
 

@@ -65,8 +65,8 @@ WitnessPair fcl_seed(const Ellipsoid& a, const Pose& X_WA, const Ellipsoid& b, c
   }
   seed.point_a = X_WA.position() + unit * (askew().transpose() * result.nearest_points[0]);
   seed.point_b = X_WA.position() + unit * (askew().transpose() * result.nearest_points[1]);
-  if (seed.point_a.allFinite() && seed.point_b.allFinite()) seed.status = SeedStatus::usable;
-  return seed;
+  seed.status = SeedStatus::usable;
+  return internal::checked(a, X_WA, b, X_WB, seed);
 }
 
 }  // namespace geom

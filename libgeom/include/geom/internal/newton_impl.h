@@ -257,13 +257,19 @@ DistanceResult newton_distance_unchecked(const ShapeA& a, const Pose& X_WA, cons
   throw std::invalid_argument(message.str());
 }
 
+/// The least f that check_seed accepts at a point x, in the body's frame.
+template <ImplicitSurface Shape>
+double least_seed_value(const Shape& shape, const Eigen::Vector3d& x) {
+  return -kMaxSeedDepth * Eigen::Vector3d(shape.gradient(x)).norm() * x.norm();
+}
+
 /// Throws unless `point` (world frame) is finite and at most kMaxSeedDepth inside the body.
 template <ImplicitSurface Shape>
 void check_seed_point(const char* name, const Shape& shape, const Pose& X, const Eigen::Vector3d& point) {
   if (!point.allFinite()) refuse_seed(name, point, "is not finite; accepted: three finite numbers");
   const Eigen::Vector3d x = X.to_body(point);
   const double f = shape.value(x);
-  const double least = -kMaxSeedDepth * Eigen::Vector3d(shape.gradient(x)).norm() * x.norm();
+  const double least = least_seed_value(shape, x);
   if (f >= least) return;
   std::ostringstream reason;
   reason << "lies inside its body: f = " << f << "; accepted: on the surface, outside, or inside by at most "

@@ -25,7 +25,8 @@ GEOM_EXPORT WitnessPair cgal_seed(const SupportBody& a, const SupportBody& b);
 /// bodies overlap. Allocates; takes milliseconds.
 template <SupportShape ShapeA, SupportShape ShapeB>
 WitnessPair cgal_seed(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const Pose& X_WB) {
-  return internal::cgal_seed(internal::SupportBody(a, X_WA), internal::SupportBody(b, X_WB));
+  const WitnessPair seed = internal::cgal_seed(internal::SupportBody(a, X_WA), internal::SupportBody(b, X_WB));
+  return internal::checked(a, X_WA, b, X_WB, seed);
 }
 
 }  // namespace geom

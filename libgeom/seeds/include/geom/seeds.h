@@ -2,7 +2,8 @@
 
 /// Closest points from other libraries, as seeds of newton_distance: FCL and libccd. Part of hardbody::geom_seeds.
 ///
-/// World frame, in and out. Nothing here throws on numerical grounds: a seed that has no points says so by its status.
+/// World frame, in and out. Nothing here throws on numerical grounds: a seed that has no points says so by its status,
+/// and check_seed accepts every `usable` one.
 
 #include <geom/ellipsoid.h>
 #include <geom/export.h>
@@ -27,7 +28,8 @@ namespace geom {
 ///   assertions are;
 /// - at its default tolerance of 1e-6, an absolute length, for which lengths are divided by the smaller inscribed
 ///   radius.
-/// Where FCL throws, or takes the pair for overlapping all the same, the seed is `declined`.
+/// Where FCL throws, takes the pair for overlapping all the same, or returns a point deep inside a body (one in 1e5 or
+/// so), the seed is `declined`.
 GEOM_EXPORT WitnessPair fcl_seed(const Ellipsoid& a, const Pose& X_WA, const Ellipsoid& b, const Pose& X_WB);
 
 namespace internal {
@@ -43,7 +45,8 @@ GEOM_EXPORT WitnessPair ccd_seed(const SupportBody& a, const SupportBody& b);
 /// does not settle.
 template <SupportShape ShapeA, SupportShape ShapeB>
 WitnessPair ccd_seed(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const Pose& X_WB) {
-  return internal::ccd_seed(internal::SupportBody(a, X_WA), internal::SupportBody(b, X_WB));
+  const WitnessPair seed = internal::ccd_seed(internal::SupportBody(a, X_WA), internal::SupportBody(b, X_WB));
+  return internal::checked(a, X_WA, b, X_WB, seed);
 }
 
 }  // namespace geom

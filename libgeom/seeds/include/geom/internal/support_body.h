@@ -1,7 +1,9 @@
 #pragma once
 
-/// A body of any SupportShape, without its type: what the adapters, compiled once, take.
+/// What the adapters have in common: bodies of any SupportShape without their type, for code that is compiled once, and
+/// the last look at a seed.
 
+#include <geom/newton.h>
 #include <geom/pose.h>
 #include <geom/shape.h>
 
@@ -39,5 +41,23 @@ class SupportBody {
   const Pose* X_WB_;
   double inscribed_radius_;
 };
+
+/// Whether check_seed would accept the point; for a shape without an equation, whether it is finite.
+template <class Shape>
+bool is_seed_point(const Shape& shape, const Pose& X_WB, const Eigen::Vector3d& p_W) {
+  if (!p_W.allFinite()) return false;
+  if constexpr (ImplicitSurface<Shape>) {
+    const Eigen::Vector3d x = X_WB.to_body(p_W);
+    return shape.value(x) >= least_seed_value(shape, x);
+  }
+  return true;
+}
+
+/// The seed, or a declined one if a point of a usable seed is not one that check_seed accepts.
+template <class ShapeA, class ShapeB>
+WitnessPair checked(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const Pose& X_WB, const WitnessPair& seed) {
+  const bool good = is_seed_point(a, X_WA, seed.point_a) && is_seed_point(b, X_WB, seed.point_b);
+  return seed.status == SeedStatus::usable && !good ? WitnessPair{} : seed;
+}
 
 }  // namespace geom::internal
