@@ -5,6 +5,7 @@
 #include <geom/internal/dual_newton.h>
 #include <geom/pose.h>
 #include <geom/shape.h>
+#include <geom/superellipsoid.h>
 #include <geom/tolerances.h>
 
 #include <Eigen/Core>
@@ -67,6 +68,20 @@ DistanceResult distance(const ShapeA& a, const Pose& X_WA, const ShapeB& b, cons
 /// The same for two ellipsoids: basis-free kernel if both are bodies of revolution, and a fallback that cannot fail on
 /// separated bodies (Perram-Wertheim: concave maximisation in one variable, then an ascent that stays on g > 0).
 GEOM_EXPORT DistanceResult distance(const Ellipsoid& a, const Pose& X_WA, const Ellipsoid& b, const Pose& X_WB,
+                                    const DistanceOptions& options = {});
+
+/// The same where a body is a superellipsoid: Newton's method on the sphere with steps made on flat faces, then on the
+/// closest points, then continued from rounder bodies (src/norm_body_distance.h).
+///
+/// Answers are certified by two bounds, g(n) from below and the distance of two points from above, that differ by less
+/// than kBoundGap (1e-12) of the sum of both bounding radii; where edges nearly touch and rounding keeps the bounds
+/// apart, by a positive g that is stationary to 1e-14 of it. Overlaps deeper than that have no such proof, and are
+/// declined with `not_converged`.
+GEOM_EXPORT DistanceResult distance(const Superellipsoid& a, const Pose& X_WA, const Superellipsoid& b,
+                                    const Pose& X_WB, const DistanceOptions& options = {});
+GEOM_EXPORT DistanceResult distance(const Superellipsoid& a, const Pose& X_WA, const Ellipsoid& b, const Pose& X_WB,
+                                    const DistanceOptions& options = {});
+GEOM_EXPORT DistanceResult distance(const Ellipsoid& a, const Pose& X_WA, const Superellipsoid& b, const Pose& X_WB,
                                     const DistanceOptions& options = {});
 
 }  // namespace geom

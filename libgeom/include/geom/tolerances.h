@@ -33,6 +33,10 @@ inline constexpr double kMaxNormalStep = 0.6;
 /// kLeastEigenvalue * (rhoA + rhoB), against a division by zero only. Dimensionless.
 inline constexpr double kLeastEigenvalue = 1e-6;
 
+/// Bodies with flat faces: `separated` when a lower and an upper bound of the distance differ by less than kBoundGap
+/// times the sum of both bounding radii. Dimensionless.
+inline constexpr double kBoundGap = 1e-12;
+
 /// By what a step that lowers g is shortened. Dimensionless.
 inline constexpr double kBacktrack = 0.35;
 

@@ -1,0 +1,195 @@
+// Distances of superellipsoids whose answer is known before it is computed: B is placed so that the support points of a
+// chosen normal are the witness points. Five ways to choose it, three of them where flat faces, edges and vertices make
+// it hard. HARDBODY_FULL=1: 100,000 pairs a cell and class instead of 500.
+
+#include "common/geom_manufactured.h"
+#include "common/geom_random.h"
+
+#include <geom/geom.h>
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+
+namespace geom {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+using geom_test::Random;
+
+constexpr std::array kExponents{0.2, 0.3, 0.5, 0.7, 1.0, 1.3, 1.6};
+
+enum class Set { random_normal, random_point, aligned, edges, faces };
+
+struct SetTraits {
+  Set set;
+  const char* name;
+  double tolerance;  ///< of the distance, relative to the size of the pair
+  double declined;   ///< share that may be declined
+};
+
+constexpr std::array<SetTraits, 5> kSets{{{Set::random_normal, "random normal", 1e-12, 0},
+                                          {Set::random_point, "random point", 1e-12, 0},
+                                          {Set::aligned, "aligned copies", 1e-12, 0},
+                                          {Set::edges, "edges and vertices", 5e-10, 0.02},
+                                          {Set::faces, "faces", 5e-10, 0}}};
+
+Vector3d surface_point(const Superellipsoid& shape, const Vector3d& direction) {
+  return direction / std::sqrt(1 + shape.value(direction));
+}
+
+Vector3d small_turn(const Vector3d& v, Random& random) {
+  return (v + random.log_uniform(1e-6, 0.1) * random.direction()).normalized();
+}
+
+/// Near the middle of an edge, or near a vertex.
+Vector3d edge_point(const Superellipsoid& shape, Random& random) {
+  Vector3d v = random.coin() ? Vector3d(1, 1, 0) : (random.coin() ? Vector3d(1, 0, 1) : Vector3d(1, 1, 1));
+  for (int k = 0; k < 3; ++k) v[k] = random.coin() ? v[k] : -v[k];
+  return surface_point(shape, small_turn(v.normalized(), random));
+}
+
+/// Orientations of two equal bodies, and the normal between them.
+struct Orientation {
+  Matrix3d R_a, R_b;
+  Vector3d n;
+};
+
+Orientation choose(Set set, const Superellipsoid& shape, Random& random) {
+  Orientation o{random.pose(0).rotation(), random.pose(0).rotation(), random.direction()};
+  const auto normal_at = [&](const Vector3d& x) { return Vector3d(shape.gradient(x).normalized()); };
+  // Turns B so that its normal m (body frame) faces n.
+  const auto face = [&](const Vector3d& m) {
+    o.R_b = Eigen::Quaterniond::FromTwoVectors(o.R_b * m, -o.n).toRotationMatrix() * o.R_b;
+  };
+  switch (set) {
+    case Set::random_normal:
+      break;
+    case Set::random_point:
+      o.n = o.R_a * normal_at(surface_point(shape, random.direction()));
+      break;
+    case Set::aligned:
+      o.n = o.R_a * normal_at(surface_point(shape, random.direction()));
+      o.R_b = Eigen::AngleAxisd(random.log_uniform(1e-6, 0.1), random.direction()).toRotationMatrix() * o.R_a;
+      break;
+    case Set::edges:
+      o.n = o.R_a * normal_at(edge_point(shape, random));
+      face(normal_at(edge_point(shape, random)));
+      break;
+    case Set::faces: {
+      const int k = static_cast<int>(3 * random.uniform());
+      o.n = o.R_a * small_turn(Vector3d::Unit(k), random);
+      face(small_turn(Vector3d::Unit((k + 1) % 3), random));
+      break;
+    }
+  }
+  return o;
+}
+
+struct Tally {
+  long pairs = 0;
+  long wrong = 0;
+  long declined = 0;
+  double worst = 0;
+};
+
+void try_pair(const Superellipsoid& shape, const SetTraits& traits, Random& random, Tally& tally) {
+  const Orientation o = choose(traits.set, shape, random);
+  const double gap = random.log_uniform(1e-8, 1);
+  const Vector3d s_a = o.R_a * shape.support(o.R_a.transpose() * o.n).point;
+  const Vector3d s_b = o.R_b * shape.support(o.R_b.transpose() * -o.n).point;
+  const Pose X_WA(o.R_a, Vector3d::Zero());
+  const Pose X_WB(o.R_b, s_a - s_b + gap * o.n);
+  // What rounding has left of the gap: g at the chosen normal.
+  const double wanted = geom_test::lower_bound(shape, X_WA, shape, X_WB, o.n);
+  const DistanceResult r = distance(shape, X_WA, shape, X_WB);
+  ++tally.pairs;
+  if (r.status == DistanceStatus::not_converged) {
+    ++tally.declined;
+    return;
+  }
+  const double error = std::abs(r.distance - wanted) / (X_WB.position().norm() + 2 * shape.bounding_radius());
+  tally.worst = std::max(tally.worst, error);
+  if (!(error <= traits.tolerance)) ++tally.wrong;
+  ASSERT_NEAR((r.point_b - r.point_a - r.distance * r.normal).norm(), 0, 1e-14);
+}
+
+TEST(SuperellipsoidDistance, OfKnownAnswers) {
+  const long pairs = std::getenv("HARDBODY_FULL") != nullptr ? 100000 : 500;
+  for (const SetTraits& traits : kSets) {
+    Tally all;
+    for (const double e1 : kExponents) {
+      for (const double e2 : kExponents) {
+        Random random(static_cast<unsigned>(1000 * e1 + 10 * e2) + static_cast<unsigned>(traits.set));
+        Tally cell;
+        for (long k = 0; k < pairs; ++k) {
+          const Vector3d axes =
+              k % 3 == 0
+                  ? Vector3d(1, 1, 1)
+                  : (k % 3 == 1 ? Vector3d(1, 1, 2) : Vector3d(1, random.uniform(0.6, 1.6), random.uniform(0.4, 2.4)));
+          try_pair(Superellipsoid(axes, e1, e2), traits, random, cell);
+        }
+        EXPECT_EQ(cell.wrong, 0) << traits.name << ", e1 = " << e1 << ", e2 = " << e2;
+        EXPECT_LE(static_cast<double>(cell.declined), traits.declined * static_cast<double>(pairs))
+            << traits.name << ", e1 = " << e1 << ", e2 = " << e2;
+        all.pairs += cell.pairs;
+        all.declined += cell.declined;
+        all.worst = std::max(all.worst, cell.worst);
+      }
+    }
+    std::printf("%-20s %ld pairs, %ld declined, largest error %.1e of the size\n", traits.name, all.pairs, all.declined,
+                all.worst);
+  }
+}
+
+/// Mixed pairs, and a superellipsoid that is an ellipsoid.
+TEST(SuperellipsoidDistance, OfMixedPairs) {
+  Random random(7);
+  const Ellipsoid needle({0.5, 0.5, 2});
+  const Superellipsoid same({0.5, 0.5, 2}, 1, 1);
+  const Superellipsoid brick({1, 2, 1.5}, 0.5, 0.4);
+  for (int k = 0; k < 2000; ++k) {
+    const double gap = random.log_uniform(1e-9, 10);
+    const auto pair = geom_test::manufacture(needle, brick, gap, random);
+    const DistanceResult r = distance(needle, pair.X_WA, brick, pair.X_WB);
+    ASSERT_EQ(r.status, DistanceStatus::separated);
+    ASSERT_NEAR(r.distance, gap, 1e-13 * pair.size);
+    const DistanceResult turned = distance(brick, pair.X_WB, needle, pair.X_WA);
+    ASSERT_NEAR(turned.distance, gap, 1e-13 * pair.size);
+    ASSERT_LT((turned.normal + r.normal).norm(), 1e-6);
+    const DistanceResult warm = distance(same, pair.X_WA, brick, pair.X_WB, {.start = r.normal});
+    ASSERT_NEAR(warm.distance, gap, 1e-13 * pair.size);
+  }
+}
+
+/// Faces parallel to each other: every normal but one gives less, and no single pair of points is the closest.
+TEST(SuperellipsoidDistance, OfParallelFaces) {
+  for (const double e : {0.2, 0.5, 0.8}) {
+    const Superellipsoid box({1, 2, 3}, e, e);
+    for (const Vector3d& shift : {Vector3d(2.5, 0, 0), Vector3d(2.5, 0.1, -0.2), Vector3d(0, 4 + 1e-7, 0.3)}) {
+      const DistanceResult r = distance(box, Pose(), box, Pose::translation(shift));
+      ASSERT_EQ(r.status, DistanceStatus::separated) << e;
+      const double lower = geom_test::lower_bound(box, Pose(), box, Pose::translation(shift), r.normal);
+      EXPECT_NEAR(r.distance, lower, 1e-12);
+    }
+    EXPECT_NEAR(distance(box, Pose(), box, Pose::translation({2.5, 0, 0})).distance, 0.5, 1e-15);
+  }
+}
+
+TEST(SuperellipsoidDistance, DeepOverlapsAreDeclined) {
+  const Superellipsoid box({1, 2, 3}, 0.5, 0.5);
+  for (const Vector3d& shift : {Vector3d(0, 0, 0), Vector3d(0.5, 0, 0), Vector3d(0.1, 3, 0.3)}) {
+    const DistanceResult r = distance(box, Pose(), box, Pose::translation(shift));
+    EXPECT_EQ(r.status, DistanceStatus::not_converged);
+    EXPECT_TRUE(std::isnan(r.distance));
+  }
+}
+
+}  // namespace
+}  // namespace geom
