@@ -16,16 +16,19 @@ using internal::GeneralPair;
 using internal::PairScale;
 using internal::Spheroid;
 
-/// An ellipsoid turned into the world frame, h = sqrt(n.Q n), with Q = R diag(a^2) R^T computed once.
+/// An ellipsoid turned into the world frame: h = |L n| = sqrt(n.Q n), L = diag(a) R^T, Q = L^T L.
 struct WorldEllipsoid {
+  Eigen::Matrix3d L;
   Eigen::Matrix3d Q;
 
   WorldEllipsoid(const Ellipsoid& shape, const Pose& X)
-      : Q(X.rotation() * shape.semi_axes().cwiseAbs2().asDiagonal() * X.rotation().transpose()) {}
+      : L(shape.semi_axes().asDiagonal() * X.rotation().transpose()), Q(L.transpose() * L) {}
 
-  Eigen::Vector3d point(const Eigen::Vector3d& n) const {
-    const Eigen::Vector3d q = Q * n;
-    return q / std::sqrt(n.dot(q));
+  /// By L, which loses no digits for flat bodies, as n.Q n does.
+  Support support(const Eigen::Vector3d& n) const {
+    const Eigen::Vector3d m = L * n;
+    const double h = m.norm();
+    return {h, L.transpose() * m / h};
   }
   CurvedSupport operator()(const Eigen::Vector3d& n) const {
     const Eigen::Vector3d q = Q * n;
@@ -45,8 +48,8 @@ struct UniaxialPair {
   const Eigen::Vector3d& u_b;
 
   Evaluation operator()(const Eigen::Vector3d& n) const { return evaluate_uniaxial(a, b, r_ab, u_a, u_b, n); }
-  void support_points(const Eigen::Vector3d& n, Eigen::Vector3d& s_a, Eigen::Vector3d& s_b) const {
-    internal::support_points(a, b, u_a, u_b, n, s_a, s_b);
+  internal::SupportPair support_pair(const Eigen::Vector3d& n) const {
+    return internal::support_pair(a, b, u_a, u_b, n);
   }
   const Eigen::Vector3d& r() const { return r_ab; }
 };

@@ -296,6 +296,30 @@ TEST(Distance, HugeCoordinatesAreAnsweredOrDeclined) {
   }
 }
 
+/// A disc a thousand times flatter than the pair is wide: its radius of curvature is a thousand times the pair's size.
+TEST(Distance, ThinDiscsBesideSmallBodiesAreExact) {
+  geom_test::Random random(91);
+  double worst = 0;
+  for (int k = 0; k < 20000; ++k) {
+    const double thickness = random.log_uniform(3e-4, 1e-2);
+    const Ellipsoid disc({1, 1, thickness});
+    const double size = random.log_uniform(1e-6, 0.1);
+    const Ellipsoid small({size, size, size * random.log_uniform(0.1, 10)});
+    const double gap = random.log_uniform(1e-3, 1);
+    const auto pair = geom_test::manufacture(small, disc, gap, random);
+    const DistanceResult r = distance(small, pair.X_WA, disc, pair.X_WB);
+    ASSERT_EQ(r.status, DistanceStatus::separated);
+    worst = std::max(worst, std::abs(r.distance - gap) / pair.size);
+  }
+  EXPECT_LE(worst, 1e-13);
+  // Found by comparing with Newton's method on the paper's equations.
+  const Ellipsoid a({1e-9, 1e-9, 27e-9});
+  const Ellipsoid b({8.097062272213431e-07, 8.097062272213431e-07, 6.302222260393241e-10});
+  const Pose X_WB = Pose::from_quaternion(-0.0507428889856333, -0.35249911080877466, -0.9160836000867449,
+                                          0.18428340605850424, {0, 0, -2.1386748627220715e-07});
+  EXPECT_NEAR(distance(a, Pose(), b, X_WB).distance, 1.725823320003823e-07, 1e-13 * 1e-6);
+}
+
 TEST(Distance, StatusesHaveNames) {
   EXPECT_EQ(std::string(to_string(DistanceStatus::separated)), "separated");
   EXPECT_EQ(std::string(to_string(DistanceStatus::overlapping)), "overlapping");

@@ -126,7 +126,7 @@ TEST(Superellipsoid, WithExponentsOneIsTheEllipsoid) {
 TEST(Superellipsoid, IsFiniteInTheCoordinatePlanes) {
   for (const Superellipsoid& shape : shapes()) {
     for (const Vector3d& n : {Vector3d(1, 0, 0), Vector3d(0, 1, 0), Vector3d(0, 0, -1), Vector3d(1, 1, 0),
-                             Vector3d(0, 1, -1), Vector3d(1, 1, 1), Vector3d(1, 1e-300, 0)}) {
+                              Vector3d(0, 1, -1), Vector3d(1, 1, 1), Vector3d(1, 1e-300, 0)}) {
       const Support s = shape.support(n);
       ASSERT_TRUE(std::isfinite(s.height) && s.point.allFinite());
       ASSERT_TRUE(shape.support_hessian(n).allFinite());

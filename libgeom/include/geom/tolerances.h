@@ -23,6 +23,10 @@ inline constexpr double kMaxExponent = 1.6;
 /// The step is still applied, and convergence is quadratic: the normal is then right to 1e-12 or to rounding.
 inline constexpr double kNormalTolerance2 = 1e-12;
 
+/// distance: another Newton step is taken while |y|^2 > kResidualTolerance * size * (g + rhoA + rhoB). Dimensionless:
+/// twice the relative error of the distance that it leaves.
+inline constexpr double kResidualTolerance = 2e-15;
+
 /// distance: a step is shortened when g falls by more than kRoundingFactor * (|n.r| + hA + hB). Dimensionless.
 inline constexpr double kRoundingFactor = 16 * 2.3e-16;
 

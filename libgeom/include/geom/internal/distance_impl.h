@@ -25,7 +25,10 @@ struct WorldSupport {
   const Shape& shape;
   const Eigen::Matrix3d& R;
 
-  Eigen::Vector3d point(const Eigen::Vector3d& n) const { return R * Support(shape.support(R.transpose() * n)).point; }
+  Support support(const Eigen::Vector3d& n) const {
+    const Support s = shape.support(R.transpose() * n);
+    return {s.height, R * s.point};
+  }
   CurvedSupport operator()(const Eigen::Vector3d& n) const {
     const Eigen::Vector3d n_body = R.transpose() * n;
     const Support s = shape.support(n_body);
@@ -73,10 +76,10 @@ class GeneralPair {
     return out;
   }
 
-  /// Support points of A at n and of B at -n, each from its own centre.
-  void support_points(const Eigen::Vector3d& n, Eigen::Vector3d& s_a, Eigen::Vector3d& s_b) const {
-    s_a = a_.point(n);
-    s_b = b_.point(-n);
+  SupportPair support_pair(const Eigen::Vector3d& n) const {
+    const Support a = a_.support(n);
+    const Support b = b_.support(-n);
+    return {a.height, b.height, a.point, b.point};
   }
   const Eigen::Vector3d& r() const { return r_; }
 
@@ -107,19 +110,40 @@ double min_curvature_radius_or_zero(const Shape& shape) {
 template <class Pair>
 DistanceResult witness_result(const Pair& pair, const Eigen::Vector3d& p_WA, const Eigen::Vector3d& n, int iterations) {
   DistanceResult result;
-  Eigen::Vector3d x_a;
-  Eigen::Vector3d s_b;
-  pair.support_points(n, x_a, s_b);
-  const Eigen::Vector3d gap = (pair.r() + s_b) - x_a;
-  result.distance = n.dot(gap);
-  const Eigen::Vector3d y = gap - result.distance * n;
+  const SupportPair s = pair.support_pair(n);
+  const Eigen::Vector3d gap = (pair.r() + s.s_b) - s.s_a;
+  result.distance = (n.dot(pair.r()) - s.h_a) - s.h_b;
+  const Eigen::Vector3d y = gap - n.dot(gap) * n;
   result.normal = n;
-  result.point_a = p_WA + x_a + 0.5 * y;
+  result.point_a = p_WA + s.s_a + 0.5 * y;
   result.point_b = result.point_a + result.distance * n;
   result.residual = y.norm();
   result.iterations = iterations;
   result.status = result.distance >= 0 ? DistanceStatus::separated : DistanceStatus::overlapping;
   return result;
+}
+
+/// Whether the support points of an answer differ by so much that the distance may be wrong: it is below the true one
+/// by |y|^2 / (2 lambda), lambda >= g + rho the least eigenvalue of M + g I.
+inline bool needs_polish(const PairScale& scale, const DistanceResult& r) {
+  return r.residual * r.residual > kResidualTolerance * scale.size * (r.distance + scale.certified_depth);
+}
+
+/// Takes more Newton steps while they are needed and help.
+///
+/// Where the radii of curvature are much larger than the pair, a thin disc beside a small body, Newton's step from
+/// |delta| = 1e-6 is not yet right to rounding.
+template <class Pair>
+[[gnu::noinline, gnu::cold]] void polish(const Pair& pair, const PairScale& scale, const Eigen::Vector3d& p_WA,
+                                         DistanceResult& result) {
+  constexpr int kMostSteps = 4;
+  for (int step = 0; step < kMostSteps && needs_polish(scale, result); ++step) {
+    const Evaluation e = pair(result.normal);
+    const DistanceResult next =
+        witness_result(pair, p_WA, step_on_sphere(result.normal, e.step), result.iterations + 1);
+    if (!(next.residual < result.residual)) return;
+    result = next;
+  }
 }
 
 /// Ascends from `start`, then from cold() if that led to a stationary point without a certificate.
@@ -144,7 +168,10 @@ DistanceResult solve_dual(const Pair& pair, const Cold& cold, const PairScale& s
     spent += limit - budget;
     if (ascent != Ascent::converged) continue;
     if (e.g < -scale.certified_depth - rounding) continue;
-    return witness_result(pair, p_WA, step_on_sphere(n, e.step), spent);
+    DistanceResult result = witness_result(pair, p_WA, step_on_sphere(n, e.step), spent);
+    if (needs_polish(scale, result)) [[unlikely]]
+      polish(pair, scale, p_WA, result);
+    return result;
   }
   DistanceResult declined;
   declined.iterations = spent;

@@ -59,6 +59,13 @@ inline Eigen::Vector3d step_on_sphere(const Eigen::Vector3d& n, const Eigen::Vec
   return inverse_sqrt_1p(m.squaredNorm() - 1) * m;
 }
 
+/// Support heights and points of A at n and of B at -n, each from its own centre. The heights are not n.s: for a thin
+/// disc that product loses digits by cancellation.
+struct SupportPair {
+  double h_a, h_b;
+  Eigen::Vector3d s_a, s_b;
+};
+
 enum class Ascent { converged, stalled, exhausted };
 
 /// Shortens the step from n to the evaluation's improvement until g no longer falls by more than `rounding`.

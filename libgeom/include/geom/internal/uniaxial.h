@@ -131,23 +131,22 @@ struct UniaxialEvaluation : Evaluation {
   return uniaxial_step(A, B, r, u_a, u_b, n, uniaxial_gap(A, B, r, u_a, u_b, n));
 }
 
-/// Support points s(n) = (b^2 n + c x u) / h of A at n and of B at -n, each from its own centre; unit n.
-[[gnu::always_inline]] inline void support_points(const Spheroid& A, const Spheroid& B, const Eigen::Vector3d& u_a,
-                                                  const Eigen::Vector3d& u_b, const Eigen::Vector3d& n,
-                                                  Eigen::Vector3d& s_a, Eigen::Vector3d& s_b) {
+/// s(n) = (b^2 w' + a^2 x u) / h with w' = n - x u (without the cancellation of b^2 n + c x u for discs), A and B at
+/// once; unit n.
+[[gnu::always_inline]] inline SupportPair support_pair(const Spheroid& A, const Spheroid& B, const Eigen::Vector3d& u_a,
+                                                       const Eigen::Vector3d& u_b, const Eigen::Vector3d& n) {
   const Both ux(u_a.x(), u_b.x()), uy(u_a.y(), u_b.y()), uz(u_a.z(), u_b.z());
-  const Both b2(A.b2, B.b2);
+  const Both b2(A.b2, B.b2), a2(A.a2, B.a2);
   const Both x = ux * n.x() + uy * n.y() + uz * n.z();
-  const Both w2 = (ux - x * n.x()).square() + (uy - x * n.y()).square() + (uz - x * n.z()).square();
-  const Both h = (b2 * w2 + Both(A.a2, B.a2) * (x * x)).sqrt();
+  const Both wx = n.x() - x * ux, wy = n.y() - x * uy, wz = n.z() - x * uz;
+  const Both h = (b2 * (wx * wx + wy * wy + wz * wz) + a2 * (x * x)).sqrt();
   const Both signed_inv_h = Both(1, -1) / h;  // s(-n) = -s(n)
-  const Both along_n = b2 * signed_inv_h;
-  const Both along_u = (Both(A.c, B.c) * x) * signed_inv_h;
-  const Both sx = along_n * n.x() + along_u * ux;
-  const Both sy = along_n * n.y() + along_u * uy;
-  const Both sz = along_n * n.z() + along_u * uz;
-  s_a = {sx[0], sy[0], sz[0]};
-  s_b = {sx[1], sy[1], sz[1]};
+  const Both across = b2 * signed_inv_h;
+  const Both along = (a2 * x) * signed_inv_h;
+  const Both sx = across * wx + along * ux;
+  const Both sy = across * wy + along * uy;
+  const Both sz = across * wz + along * uz;
+  return {h[0], h[1], {sx[0], sy[0], sz[0]}, {sx[1], sy[1], sz[1]}};
 }
 
 /// Support point of one body at the unit vector n, from its centre.
