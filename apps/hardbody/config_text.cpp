@@ -75,8 +75,8 @@ std::string output_text(const Config& config) {
          line("events", fmt::format("{}", config.events), "so many collisions of production go to events.csv") +
          line("trajectory", "[]", "none yet") +
          line("checkpoint_every", quoted(config.checkpoint_every),
-              "so far checkpoint.bin is written once: at the end, or when") +
-         more("the run is stopped");
+              "of checkpoint.bin: a number and s, m or h; it is also written at") +
+         more("the end, and when the run is stopped");
 }
 
 }  // namespace

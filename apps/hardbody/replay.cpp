@@ -6,6 +6,7 @@
 #include <ed/motion.h>
 #include <ed/time_of_contact.h>
 #include <geom/distance.h>
+#include <geom/newton.h>
 
 #include <fmt/format.h>
 
@@ -83,6 +84,27 @@ std::string distance_now(const Pair& pair) {
   return out + fmt::format("   the distance changes by {:.9g} a time unit\n", distance_rate(pair, d));
 }
 
+/// What the paper's equations make of the same pair.
+std::string newton_now(const Pair& pair) {
+  std::string out;
+  const geom::Pose& X_WA = pair.motion_a.pose;
+  const geom::Pose& X_WB = pair.motion_b.pose;
+  const auto line = [&](const char* name, geom::NewtonSystem system, const char* seed_name,
+                        const geom::WitnessPair& seed) {
+    const geom::DistanceResult d = geom::newton_distance(pair.a, X_WA, pair.b, X_WB, system, seed);
+    const std::string value = std::isfinite(d.distance) ? fmt::format("{:.17g}", d.distance) : "no answer";
+    out += fmt::format("   {} from the {}: {} ({}, {} iterations)\n", name, seed_name, value, geom::to_string(d.status),
+                       d.iterations);
+  };
+  const auto both = [&](const char* seed_name, const geom::WitnessPair& seed) {
+    line("newton8", geom::NewtonSystem::eight, seed_name, seed);
+    line("newton5", geom::NewtonSystem::five, seed_name, seed);
+  };
+  both("dual's points", geom::dual_seed(pair.a, X_WA, pair.b, X_WB));
+  both("line of centres", geom::centre_seed(pair.a, X_WA, pair.b, X_WB));
+  return out;
+}
+
 std::string contact(const Pair& pair, double from, double until) {
   const ed::ContactResult found = ed::time_of_contact(pair.a, pair.motion_a, pair.b, pair.motion_b, until);
   std::string out = fmt::format("\nstep 2, time of contact, searched for {:.6g} time units: {}, {} looks\n",
@@ -119,7 +141,7 @@ std::string replayed(const ed::FailedPair& failed) {
   const Pair pair = Pair{failed.shape_i, failed.shape_j, failed.motion_i, failed.motion_j}.at(from);
   // In twenty steps the fastest points move by about the size of the pair; bodies at rest: any time does.
   const double window = pair.speed() > 0 ? pair.size() / pair.speed() : 1.0;
-  return bodies(failed, pair) + distance_now(pair) + contact(pair, from, from + 2 * window) +
+  return bodies(failed, pair) + distance_now(pair) + newton_now(pair) + contact(pair, from, from + 2 * window) +
          course(pair, from, window / (kStepsBefore + kStepsAfter));
 }
 

@@ -64,6 +64,16 @@ std::string numbers(const RunRecord& record) {
   return text + "  (+- one standard error, from blocks; -: the run is too short for it)\n";
 }
 
+/// Empty for a run without rescues.
+std::string rescue_line(const RunRecord& record) {
+  const std::uint64_t rescues = record.production.counters.rescues;
+  if (rescues == 0) return "";
+  return fmt::format("  rescues {}: {}\n", rescues,
+                     record.config.finder == "bracketing"
+                         ? "distances that Newton's method declined and the dual answered; the first ones in failures/"
+                         : "pairs whose normal the Perram-Wertheim fallback found, which is slower and as safe");
+}
+
 std::string audit_lines(const RunRecord& record) {
   const Production& p = record.production;
   std::string text = fmt::format(
@@ -82,7 +92,7 @@ std::string audit_lines(const RunRecord& record) {
                       record.audit.closest_i < 0 ? std::string("not known: no two bounding spheres meet")
                                                  : fmt::format("{:.3g} l", record.audit.minimum_distance),
                       overlaps);
-  return text;
+  return text + rescue_line(record);
 }
 
 }  // namespace

@@ -103,7 +103,7 @@ class Search {
   };
 
   Look look(double t);
-  geom::DistanceResult distance(const MovingBody& a, const MovingBody& b);
+  geom::DistanceResult distance(double t, const MovingBody& a, const MovingBody& b);
   MovingBody body_a(double t) const { return moving_body(pair_.a, t, Vector3d::Zero()); }
   MovingBody body_b(double t) const { return moving_body(pair_.b, t, pair_.r_now + (t - pair_.now) * v_); }
 
@@ -122,10 +122,10 @@ class Search {
   double size_;
   double fastest_;  ///< an overestimate of |dd/dt|
   bool first_ = true;
-  std::optional<geom::DistanceStatus> unsolved_;
+  std::optional<Unsolved> unsolved_;
 };
 
-geom::DistanceResult Search::distance(const MovingBody& a, const MovingBody& b) {
+geom::DistanceResult Search::distance(double t, const MovingBody& a, const MovingBody& b) {
   const auto dual = [&] { return geom::distance(pair_.shape_a, a.pose, pair_.shape_b, b.pose, {.start = n_}); };
   const bool first = first_;
   first_ = false;
@@ -145,7 +145,7 @@ geom::DistanceResult Search::distance(const MovingBody& a, const MovingBody& b) 
     return result;
   }
   ++count_.rescues;
-  unsolved_ = result.status;
+  unsolved_ = Unsolved{result.status, t};
   return dual();
 }
 
@@ -155,7 +155,7 @@ Search::Look Search::look(double t) {
   at.time = t;
   at.a = body_a(t);
   at.b = body_b(t);
-  const geom::DistanceResult result = distance(at.a, at.b);
+  const geom::DistanceResult result = distance(t, at.a, at.b);
   if (options_.distance == DistanceMethod::dual) count_.kernel_calls += static_cast<std::uint64_t>(result.iterations);
   if (result.status != geom::DistanceStatus::separated && result.status != geom::DistanceStatus::overlapping) {
     // Neither way answers: the overlap is deep (separated bodies are always answered). The centres part or approach.

@@ -210,23 +210,23 @@ System EventLoop::system() const {
   result.species = species_;
   result.bodies.resize(motions_.size());
   for (int i = 0; i < number(); ++i) {
-    const Motion motion = motion_of(i);
+    const Motion motion = motion_of(i, now_);
     result.bodies[at(i)] = {nearest_image(motion.pose.position(), box_), motion.pose.rotation(), motion.velocity,
                             motion.angular_velocity};
   }
   return result;
 }
 
-Motion EventLoop::motion_of(int i) const {
+Motion EventLoop::motion_of(int i, double t) const {
   AxisMotion m = motions_[at(i)];
   BodyFrame f = frames_[at(i)];
-  advance(inertia_, now_, m, f);
+  advance(inertia_, t, m, f);
   const Vector3d u = m.axis();
   Eigen::Matrix3d R;
   R.col(shape_axis_) = u;
   R.col((shape_axis_ + 1) % 3) = f.x_axis;
   R.col((shape_axis_ + 2) % 3) = u.cross(f.x_axis);
-  return {geom::Pose(R, m.position), m.velocity, omega_across(m) + f.spin * u, species_.inertia, time()};
+  return {geom::Pose(R, m.position), m.velocity, omega_across(m) + f.spin * u, species_.inertia, epochs_ * kEpoch + t};
 }
 
 void EventLoop::sample(Snapshot& snapshot) const {
@@ -273,7 +273,8 @@ void EventLoop::search(Pair& pair, int max_evaluations) {
   const double end = std::max(now_, std::min(exits_[at(pair.i)], exits_[at(pair.j)]));
   const Finding finding = find_contact(pair, end, max_evaluations);
   if (finding.unsolved) {
-    report(pair, now_, std::string("Newton's method for the distance: ") + geom::to_string(*finding.unsolved));
+    report(pair, finding.unsolved->time,
+           std::string("Newton's method for the distance: ") + geom::to_string(finding.unsolved->status));
   }
   switch (finding.outcome) {
     case Outcome::clear:
@@ -341,12 +342,11 @@ void EventLoop::reschedule_orphans() {
 
 void EventLoop::report(const Pair& pair, double time, const std::string& reason) {
   if (failures_.size() >= kMaxFailures) return;
-  FailedPair failed{
-      reason, species_.shape, species_.shape, motion_of(pair.i), motion_of(pair.j), epochs_ * kEpoch + time,
-      pair.i, pair.j};
-  const Vector3d p_i = failed.motion_i.pose.position();
-  const Vector3d r = nearest_image(failed.motion_j.pose.position() - p_i, box_);
-  failed.motion_j.pose = geom::Pose(failed.motion_j.pose.rotation(), p_i + r);
+  FailedPair failed{reason, species_.shape, species_.shape, motion_of(pair.i, time), motion_of(pair.j, time),
+                    0,      pair.i,         pair.j};
+  failed.time = failed.motion_i.time;
+  const Vector3d r = between(pair) + (time - now_) * (failed.motion_j.velocity - failed.motion_i.velocity);
+  failed.motion_j.pose = geom::Pose(failed.motion_j.pose.rotation(), failed.motion_i.pose.position() + r);
   failures_.push_back(failed);
 }
 

@@ -82,7 +82,7 @@ class EventLoop {
   Eigen::Vector3d position_now(int body) const;
   Eigen::Vector3d axis_now(int body) const;
   void wrap(int body);
-  Motion motion_of(int body) const;
+  Motion motion_of(int body, double t) const;
   ContactBody contact_body(int body, const Eigen::Vector3d& normal) const;
 
   SimulationOptions options_;

@@ -42,7 +42,8 @@ struct Collision {
   int j;
 };
 
-/// A pair that could not be predicted as it should, with all that is needed to look at it again.
+/// A pair that could not be predicted as it should, at the moment where that failed, with all that is needed to look at
+/// it again.
 struct FailedPair {
   std::string reason;
   geom::Ellipsoid shape_i{Eigen::Vector3d::Ones()};
