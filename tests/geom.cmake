@@ -1,5 +1,6 @@
 # Tests of this part; see hardbody_test in CMakeLists.txt.
 hardbody_test(geom_unit_test unit
+  unit/geom_batch_test.cpp
   unit/geom_distance_test.cpp
   unit/geom_dual_newton_test.cpp
   unit/geom_ellipsoid_test.cpp
@@ -9,6 +10,13 @@ hardbody_test(geom_unit_test unit
   unit/geom_pose_test.cpp
   unit/geom_superellipsoid_test.cpp
   unit/geom_user_shape_test.cpp)
+hardbody_test(geom_batch_test property property/geom_batch_test.cpp)
 hardbody_test(geom_property_test property property/geom_distance_test.cpp
   property/geom_superellipsoid_distance_test.cpp)
 hardbody_test(geom_accuracy_test accuracy accuracy/geom_distance_test.cpp)
+
+# Code compiled for newer processors must not be linked into anything else.
+add_test(NAME geom_kernel_symbols COMMAND ${CMAKE_COMMAND} -DNM=${CMAKE_NM}
+  "-DOBJECTS=$<FILTER:$<TARGET_OBJECTS:hardbody_geom>,INCLUDE,batch_kernel_>"
+  -P ${CMAKE_CURRENT_SOURCE_DIR}/package/kernel_symbols.cmake)
+set_tests_properties(geom_kernel_symbols PROPERTIES LABELS package)

@@ -2,6 +2,7 @@
 
 /// The whole public interface of libgeom.
 
+#include <geom/batch.h>
 #include <geom/distance.h>
 #include <geom/ellipsoid.h>
 #include <geom/newton.h>

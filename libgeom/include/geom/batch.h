@@ -1,0 +1,60 @@
+#pragma once
+
+#include <geom/distance.h>
+#include <geom/ellipsoid.h>
+#include <geom/export.h>
+#include <geom/pose.h>
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <span>
+
+namespace geom {
+
+/// What the kernel of `distance_batch` is compiled for. All of them follow one source and answer the same to rounding;
+/// the bits differ.
+enum class InstructionSet {
+  best,      ///< the last of the following that this processor has
+  portable,  ///< what the whole library is compiled for: by default any processor of the architecture
+  avx2,      ///< x86-64 with AVX2 and FMA: 4 pairs at a time
+  avx512,    ///< x86-64 with AVX-512 F, VL, DQ, BW: 8 pairs at a time
+};
+
+GEOM_EXPORT const char* to_string(InstructionSet set);
+
+/// Whether this build has a kernel for `set` and this processor can run it.
+GEOM_EXPORT bool is_available(InstructionSet set);
+
+/// What InstructionSet::best stands for on this processor. Results depend on it in their last bits.
+GEOM_EXPORT InstructionSet batch_instruction_set();
+
+struct BatchOptions {
+  /// Warm starts, DistanceOptions::start of each pair: guesses of the normals from A to B. Empty: cold starts.
+  std::span<const Eigen::Vector3d> starts = {};
+  InstructionSet instruction_set = InstructionSet::best;
+};
+
+/// What a batch did beside answering.
+struct BatchSummary {
+  InstructionSet instruction_set;  ///< the one that was used; never `best`
+  std::size_t redone;              ///< pairs that went to `distance`, see there
+};
+
+/// results[i] = distance(a[i], X_WA[i], b[i], X_WB[i], {.start = options.starts[i]}), many pairs at a time.
+///
+/// Each of the four input spans holds one element a pair, or a single one that serves all pairs: equal bodies, or one
+/// body against many. Throws std::invalid_argument, before anything is computed, if the size of a span is neither 1 nor
+/// results.size(), if `starts` is neither empty nor of that size, or if `instruction_set` is not available.
+///
+/// Same answers as `distance`: the distance within 1e-14 of the pair's size (|p_AB| + both bounding radii), the same
+/// status (but for touching bodies, whose distance may round to either sign, and overlaps as deep as the certified
+/// depth, which `distance` may decline and a batch answer, or the reverse), the same certificate. Pairs that Newton's
+/// method without safeguards does not answer are given to `distance`: where g falls, where it ends deeper than is
+/// certified, where it needs a last step more, and where numbers over- or underflow (bodies beyond 1e-25 ... 1e25);
+/// `iterations` then counts the evaluations of `distance` alone. Never allocates.
+GEOM_EXPORT BatchSummary distance_batch(std::span<const Ellipsoid> a, std::span<const Pose> X_WA,
+                                        std::span<const Ellipsoid> b, std::span<const Pose> X_WB,
+                                        std::span<DistanceResult> results, const BatchOptions& options = {});
+
+}  // namespace geom

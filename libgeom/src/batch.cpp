@@ -1,0 +1,246 @@
+#include "batch_kernel.h"
+
+#include <geom/batch.h>
+
+#include <algorithm>
+#include <array>
+#include <sstream>
+#include <stdexcept>
+
+namespace geom {
+namespace {
+
+using internal::BatchKernels;
+using internal::BatchOutput;
+using internal::BatchRow;
+using internal::GeneralInput;
+using internal::kBlockPairs;
+using internal::kLongestVector;
+using internal::UniaxialInput;
+
+/// Null pointers where the build has no such kernels or the processor cannot run them.
+BatchKernels find_kernels(InstructionSet set) {
+#ifdef HARDBODY_X86_KERNELS
+  const bool avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi") &&
+                    __builtin_cpu_supports("bmi2");
+  if (set == InstructionSet::avx2 && avx2) return internal::batch_kernels_avx2();
+  const bool avx512 = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
+                      __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw");
+  if (set == InstructionSet::avx512 && avx2 && avx512) return internal::batch_kernels_avx512();
+#endif
+  if (set == InstructionSet::portable) return internal::batch_kernels_portable();
+  return {nullptr, nullptr};
+}
+
+/// An input span and its step from one pair to the next: 0 where one element serves all.
+template <class T>
+struct Input {
+  const T* data;
+  std::size_t stride;
+
+  const T& operator[](std::size_t pair) const { return data[pair * stride]; }
+};
+
+[[noreturn]] void refuse_size(const char* name, std::size_t size, const char* other, std::size_t pairs) {
+  std::ostringstream message;
+  message << "distance_batch: " << name << " has " << size << " elements; accepted: " << other << ", or as many as"
+          << " results, which has " << pairs;
+  throw std::invalid_argument(message.str());
+}
+
+template <class T>
+Input<T> checked(const char* name, std::span<const T> span, std::size_t pairs) {
+  if (span.size() != pairs && span.size() != 1) refuse_size(name, span.size(), "1", pairs);
+  return {span.data(), span.size() == 1 ? std::size_t{0} : std::size_t{1}};
+}
+
+/// What a batch is asked, and where its answers go.
+struct Query {
+  Input<Ellipsoid> a;
+  Input<Pose> X_WA;
+  Input<Ellipsoid> b;
+  Input<Pose> X_WB;
+  std::span<const Eigen::Vector3d> starts;
+  std::span<DistanceResult> results;
+
+  bool shapes_shared() const { return a.stride == 0 && b.stride == 0; }
+  DistanceResult by_distance(std::size_t pair) const {
+    DistanceOptions options;
+    if (!starts.empty()) options.start = starts[pair];
+    return distance(a[pair], X_WA[pair], b[pair], X_WB[pair], options);
+  }
+};
+
+void put(const Eigen::Vector3d& v, BatchRow* rows, int lane) {
+  for (int i = 0; i < 3; ++i) rows[i][lane] = v[i];
+}
+
+Eigen::Vector3d get(const BatchRow* rows, int lane) {
+  return {rows[0][lane], rows[1][lane], rows[2][lane]};
+}
+
+void put_shapes(const Ellipsoid& a, const Ellipsoid& b, GeneralInput& in, int lane) {
+  put(a.semi_axes(), in.rows + GeneralInput::semi_axes_a, lane);
+  put(b.semi_axes(), in.rows + GeneralInput::semi_axes_b, lane);
+}
+
+void put_shapes(const Ellipsoid& a, const Ellipsoid& b, UniaxialInput& in, int lane) {
+  const auto along = [](const Ellipsoid& shape) { return shape.semi_axes()[*shape.symmetry_axis()]; };
+  const auto across = [](const Ellipsoid& shape) { return shape.semi_axes()[*shape.symmetry_axis() == 0 ? 1 : 0]; };
+  in.rows[UniaxialInput::along_a][lane] = along(a);
+  in.rows[UniaxialInput::across_a][lane] = across(a);
+  in.rows[UniaxialInput::along_b][lane] = along(b);
+  in.rows[UniaxialInput::across_b][lane] = across(b);
+}
+
+void put_rotations(const Query& query, std::size_t pair, GeneralInput& in, int lane) {
+  const double* const R_a = query.X_WA[pair].rotation().data();
+  const double* const R_b = query.X_WB[pair].rotation().data();
+  for (int i = 0; i < 9; ++i) in.rows[GeneralInput::rotation_a + i][lane] = R_a[i];
+  for (int i = 0; i < 9; ++i) in.rows[GeneralInput::rotation_b + i][lane] = R_b[i];
+}
+
+void put_rotations(const Query& query, std::size_t pair, UniaxialInput& in, int lane) {
+  put(query.X_WA[pair].rotation().col(*query.a[pair].symmetry_axis()), in.rows + UniaxialInput::axis_a, lane);
+  put(query.X_WB[pair].rotation().col(*query.b[pair].symmetry_axis()), in.rows + UniaxialInput::axis_b, lane);
+}
+
+/// In place: a result built elsewhere would be copied in other pieces than it was written, which stalls.
+void read_answer(const BatchOutput& out, int lane, DistanceResult& result) {
+  result.distance = out.rows[BatchOutput::distance][lane];
+  result.point_a = get(out.rows + BatchOutput::point_a, lane);
+  result.point_b = get(out.rows + BatchOutput::point_b, lane);
+  result.normal = get(out.rows + BatchOutput::normal, lane);
+  result.status = result.distance >= 0 ? DistanceStatus::separated : DistanceStatus::overlapping;
+  result.iterations = static_cast<int>(out.rows[BatchOutput::iterations][lane]);
+  result.residual = out.rows[BatchOutput::residual][lane];
+}
+
+/// Collects pairs of one kind until there are enough for a call of their kernel.
+template <class KernelInput>
+class Block {
+ public:
+  using Kernel = void(const KernelInput& in, int pairs, BatchOutput& out);
+
+  Block(const Query& query, Kernel* kernel) : query_(query), kernel_(kernel) {
+    if (query.starts.empty()) {
+      for (int i = 0; i < 3; ++i) std::fill_n(in_.rows[KernelInput::start + i], kBlockPairs, 0.0);
+    }
+  }
+
+  void add(std::size_t pair) {
+    const int lane = count_++;
+    pairs_[lane] = pair;
+    if (lane >= shapes_put_ || !query_.shapes_shared()) {
+      const Ellipsoid& a = query_.a[pair];
+      const Ellipsoid& b = query_.b[pair];
+      put_shapes(a, b, in_, lane);
+      in_.rows[KernelInput::depth][lane] = a.min_curvature_radius() + b.min_curvature_radius();
+      in_.rows[KernelInput::radii][lane] = a.bounding_radius() + b.bounding_radius();
+      shapes_put_ = lane + 1;
+    }
+    put_rotations(query_, pair, in_, lane);
+    put(query_.X_WA[pair].position(), in_.rows + KernelInput::position_a, lane);
+    put(query_.X_WB[pair].position(), in_.rows + KernelInput::position_b, lane);
+    if (!query_.starts.empty()) put(query_.starts[pair], in_.rows + KernelInput::start, lane);
+    if (count_ == kBlockPairs) flush();
+  }
+
+  /// Answers what has been collected.
+  void flush() {
+    if (count_ == 0) return;
+    const int filled = (count_ + kLongestVector - 1) / kLongestVector * kLongestVector;
+    for (auto& row : in_.rows) std::fill(row + count_, row + filled, row[count_ - 1]);
+    kernel_(in_, count_, out_);
+    for (int lane = 0; lane < count_; ++lane) {
+      DistanceResult& result = query_.results[pairs_[lane]];
+      if (out_.rows[BatchOutput::answered][lane] > 0) [[likely]] {
+        read_answer(out_, lane, result);
+      } else {
+        result = query_.by_distance(pairs_[lane]);
+        ++redone_;
+      }
+    }
+    count_ = 0;
+  }
+
+  std::size_t redone() const { return redone_; }
+
+ private:
+  const Query& query_;
+  Kernel* kernel_;
+  int count_ = 0;
+  int shapes_put_ = 0;  ///< lanes that hold the shapes already
+  std::size_t redone_ = 0;
+  std::array<std::size_t, kBlockPairs> pairs_;
+  KernelInput in_;
+  BatchOutput out_;
+};
+
+[[noreturn]] void refuse_instruction_set(InstructionSet wanted) {
+  std::ostringstream message;
+  message << "distance_batch: instruction_set is " << to_string(wanted)
+          << ", which this processor or this build does not have; accepted: best";
+  for (const InstructionSet set : {InstructionSet::portable, InstructionSet::avx2, InstructionSet::avx512}) {
+    if (is_available(set)) message << ", " << to_string(set);
+  }
+  throw std::invalid_argument(message.str());
+}
+
+}  // namespace
+
+const char* to_string(InstructionSet set) {
+  switch (set) {
+    case InstructionSet::best:
+      return "best";
+    case InstructionSet::portable:
+      return "portable";
+    case InstructionSet::avx2:
+      return "avx2";
+    case InstructionSet::avx512:
+      return "avx512";
+  }
+  return "unknown";
+}
+
+bool is_available(InstructionSet set) {
+  return set == InstructionSet::best || find_kernels(set).general != nullptr;
+}
+
+InstructionSet batch_instruction_set() {
+  for (const InstructionSet set : {InstructionSet::avx512, InstructionSet::avx2}) {
+    if (is_available(set)) return set;
+  }
+  return InstructionSet::portable;
+}
+
+BatchSummary distance_batch(std::span<const Ellipsoid> a, std::span<const Pose> X_WA, std::span<const Ellipsoid> b,
+                            std::span<const Pose> X_WB, std::span<DistanceResult> results,
+                            const BatchOptions& options) {
+  const std::size_t pairs = results.size();
+  const Query query{checked("a", a, pairs), checked("X_WA", X_WA, pairs),
+                    checked("b", b, pairs), checked("X_WB", X_WB, pairs),
+                    options.starts,         results};
+  if (!options.starts.empty() && options.starts.size() != pairs) {
+    refuse_size("starts", options.starts.size(), "0", pairs);
+  }
+  const InstructionSet set =
+      options.instruction_set == InstructionSet::best ? batch_instruction_set() : options.instruction_set;
+  const BatchKernels kernels = find_kernels(set);
+  if (kernels.general == nullptr) refuse_instruction_set(set);
+
+  Block<UniaxialInput> uniaxial(query, kernels.uniaxial);
+  Block<GeneralInput> general(query, kernels.general);
+  for (std::size_t pair = 0; pair < pairs; ++pair) {
+    if (query.a[pair].symmetry_axis() && query.b[pair].symmetry_axis()) {
+      uniaxial.add(pair);
+    } else {
+      general.add(pair);
+    }
+  }
+  uniaxial.flush();
+  general.flush();
+  return {set, uniaxial.redone() + general.redone()};
+}
+
+}  // namespace geom
