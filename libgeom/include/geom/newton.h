@@ -80,6 +80,10 @@ GEOM_EXPORT DistanceResult newton_distance(const Ellipsoid& a, const Pose& X_WA,
 template <ImplicitSurface ShapeA, ImplicitSurface ShapeB>
 void check_seed(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const Pose& X_WB, const WitnessPair& seed);
 
+/// The seed, or a declined one if check_seed would refuse it. Never throws.
+template <ImplicitSurface ShapeA, ImplicitSurface ShapeB>
+WitnessPair checked_seed(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const Pose& X_WB, const WitnessPair& seed);
+
 /// The points where the line of centres leaves A and enters B: cheap and crude. Declined if the centres coincide, or a
 /// centre is not inside its body. Relative accuracy of the points 1e-9.
 template <ImplicitSurface ShapeA, ImplicitSurface ShapeB>
@@ -109,3 +113,26 @@ GEOM_EXPORT DistanceResult newton_distance_unchecked(const Ellipsoid& a, const P
 }  // namespace geom
 
 #include <geom/internal/newton_impl.h>
+
+namespace geom {
+namespace internal {
+
+/// Whether check_seed accepts the point of a usable seed.
+template <ImplicitSurface Shape>
+bool is_seed_point(const Shape& shape, const Pose& X_WB, const Eigen::Vector3d& p_W) {
+  if (!p_W.allFinite()) return false;
+  const Eigen::Vector3d x = X_WB.to_body(p_W);
+  return shape.value(x) >= least_seed_value(shape, x);
+}
+
+}  // namespace internal
+
+template <ImplicitSurface ShapeA, ImplicitSurface ShapeB>
+WitnessPair checked_seed(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const Pose& X_WB,
+                         const WitnessPair& seed) {
+  if (seed.status != SeedStatus::usable) return seed;
+  const bool good = internal::is_seed_point(a, X_WA, seed.point_a) && internal::is_seed_point(b, X_WB, seed.point_b);
+  return good ? seed : WitnessPair{};
+}
+
+}  // namespace geom

@@ -6,6 +6,15 @@
 
 namespace geom {
 
+class Pose;
+
+namespace internal {
+
+/// A pose without the checks, for loops: the rotation must be orthonormal to rounding, the numbers finite.
+Pose unchecked_pose(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& position);
+
+}  // namespace internal
+
 /// Position and orientation of a body B in a world W: p_W = rotation * p_B + position.
 ///
 /// A Pose is valid by construction, so that no query needs to check it again: the constructors throw
@@ -34,8 +43,17 @@ class GEOM_EXPORT Pose {
   Eigen::Vector3d to_body(const Eigen::Vector3d& p_W) const { return rotation_.transpose() * (p_W - position_); }
 
  private:
+  friend Pose internal::unchecked_pose(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& position);
+
   Eigen::Matrix3d rotation_ = Eigen::Matrix3d::Identity();
   Eigen::Vector3d position_ = Eigen::Vector3d::Zero();
 };
+
+inline Pose internal::unchecked_pose(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& position) {
+  Pose pose;
+  pose.rotation_ = rotation;
+  pose.position_ = position;
+  return pose;
+}
 
 }  // namespace geom

@@ -41,12 +41,13 @@ fcl::Transform3d to_fcl(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& 
 WitnessPair fcl_seed(const Ellipsoid& a, const Pose& X_WA, const Ellipsoid& b, const Pose& X_WB) {
   const DistanceResult ours = distance(a, X_WA, b, X_WB);
   WitnessPair seed;
-  // Of ellipsoids `distance` answers every separated pair: what it declines overlaps deeply.
+  const Eigen::Vector3d p_AB = X_WB.position() - X_WA.position();
   if (!(ours.status == DistanceStatus::separated && ours.distance > 0)) {
-    seed.status = SeedStatus::overlapping;
+    // Declined: deep in each other, or so far apart that their distance overflows.
+    const bool concentric = p_AB.norm() < a.inscribed_radius() + b.inscribed_radius();
+    if (ours.status == DistanceStatus::overlapping || concentric) seed.status = SeedStatus::overlapping;
     return seed;
   }
-  const Eigen::Vector3d p_AB = X_WB.position() - X_WA.position();
   const double size = p_AB.norm() + a.bounding_radius() + b.bounding_radius();
   if (!(ours.distance >= kLeastGap * size)) return seed;
   const double unit = std::min(a.inscribed_radius(), b.inscribed_radius());

@@ -19,8 +19,9 @@ namespace geom {
 ///
 /// FCL is called only where it has an answer, and never where Debian's build of it, with assertions on, would end the
 /// process:
-/// - `distance` comes first: FCL is not asked of pairs that overlap (`overlapping`), nor of those that touch, their gap
-///   below 1e-12 of their size (`declined`): an assertion of its GJK fails on some of them;
+/// - `distance` comes first: FCL is not asked of pairs that overlap (`overlapping` where `distance` says so or the
+///   inscribed spheres meet, else `declined`), nor of those that touch, their gap below 1e-12 of their size
+///   (`declined`): an assertion of its GJK fails on some of them;
 /// - turned by an arbitrary rotation: the same assertion is a matter of chance then, and of chances of 1e-16, also for
 ///   bodies that are aligned with the axes;
 /// - only with GST_LIBCCD, GST_INDEP ends the process on overlaps;

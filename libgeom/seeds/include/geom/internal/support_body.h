@@ -42,15 +42,10 @@ class SupportBody {
   double inscribed_radius_;
 };
 
-/// Whether check_seed would accept the point; for a shape without an equation, whether it is finite.
+/// For a shape without an equation: whether the point is finite.
 template <class Shape>
-bool is_seed_point(const Shape& shape, const Pose& X_WB, const Eigen::Vector3d& p_W) {
-  if (!p_W.allFinite()) return false;
-  if constexpr (ImplicitSurface<Shape>) {
-    const Eigen::Vector3d x = X_WB.to_body(p_W);
-    return shape.value(x) >= least_seed_value(shape, x);
-  }
-  return true;
+bool is_seed_point(const Shape& /*shape*/, const Pose& /*X_WB*/, const Eigen::Vector3d& p_W) {
+  return p_W.allFinite();
 }
 
 /// The seed, or a declined one if a point of a usable seed is not one that check_seed accepts.
