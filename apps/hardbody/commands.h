@@ -2,6 +2,7 @@
 
 /// The subcommands, one source file each. They return the program's exit status and throw what errors.h says.
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,7 +10,7 @@ namespace hardbody {
 
 struct RunArguments {
   std::string config;                  ///< path of the TOML file
-  std::string out;                     ///< run directory; empty: out/<stem of the config>
+  std::optional<std::string> out;      ///< run directory; by default out/<stem of the config>
   std::vector<std::string> overrides;  ///< section.key=value
   bool force = false;                  ///< overwrite an existing run
 };

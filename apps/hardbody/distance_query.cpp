@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <stdexcept>
 #include <utility>
 
 namespace hardbody {
@@ -114,14 +113,9 @@ DistanceQuery parse_query(std::string_view line, std::string& id) {
 DistanceAnswer answer(const DistanceQuery& query) {
   const auto& [a, b, X_WA, X_WB, newton, seed_function] = query;
   if (!newton) return {geom::distance(a, X_WA, b, X_WB), {}};
-  const geom::WitnessPair seed = seed_function(a, X_WA, b, X_WB);
+  const geom::WitnessPair seed = geom::checked_seed(a, X_WA, b, X_WB, seed_function(a, X_WA, b, X_WB));
   if (seed.status != geom::SeedStatus::usable) return {{}, seed.status};
-  try {
-    return {geom::newton_distance(a, X_WA, b, X_WB, *newton, seed), {}};
-  } catch (const std::invalid_argument&) {
-    // Points deep inside their bodies: the seed's mistake, not the user's.
-    return {{}, geom::SeedStatus::declined};
-  }
+  return {geom::newton_distance(a, X_WA, b, X_WB, *newton, seed), {}};
 }
 
 std::string answer_json(const std::string& id, const DistanceAnswer& answer) {

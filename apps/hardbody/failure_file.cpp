@@ -26,15 +26,30 @@ Json list(const Vector3d& v) {
   return {v.x(), v.y(), v.z()};
 }
 
-Json body_json(const geom::Ellipsoid& shape, const ed::Motion& motion) {
-  const Matrix3d& R = motion.pose.rotation();
+Json placed_json(const geom::Ellipsoid& shape, const geom::Pose& pose) {
+  const Matrix3d& R = pose.rotation();
   return {{"shape", {{"kind", "ellipsoid"}, {"semi_axes", list(shape.semi_axes())}}},
-          {"position", list(motion.pose.position())},
-          {"rotation", {list(R.row(0)), list(R.row(1)), list(R.row(2))}},
-          {"velocity", list(motion.velocity)},
-          {"angular_velocity", list(motion.angular_velocity)},
-          {"inertia", list(motion.inertia)},
-          {"time", motion.time}};
+          {"position", list(pose.position())},
+          {"rotation", {list(R.row(0)), list(R.row(1)), list(R.row(2))}}};
+}
+
+Json body_json(const geom::Ellipsoid& shape, const ed::Motion& motion) {
+  Json json = placed_json(shape, motion.pose);
+  json["velocity"] = list(motion.velocity);
+  json["angular_velocity"] = list(motion.angular_velocity);
+  json["inertia"] = list(motion.inertia);
+  json["time"] = motion.time;
+  return json;
+}
+
+Json newton_json(const ed::FailedDistance& call) {
+  const bool seeded = call.seed.status == geom::SeedStatus::usable;
+  return {{"method", call.method == ed::DistanceMethod::newton8 ? "newton8" : "newton5"},
+          {"status", geom::to_string(call.status)},
+          {"point_a", seeded ? list(call.seed.point_a) : Json(nullptr)},
+          {"point_b", seeded ? list(call.seed.point_b) : Json(nullptr)},
+          {"a", placed_json(call.shape_a, call.X_WA)},
+          {"b", placed_json(call.shape_b, call.X_WB)}};
 }
 
 /// A body's index.
@@ -46,7 +61,10 @@ int read_index(const JsonMember& member) {
   return json.get<int>();
 }
 
-geom::Pose read_pose(const JsonMember& body) {
+enum class Rounding { removed, kept };
+
+/// A rotation that is orthonormal to rounding only is made exactly so, unless its bits are wanted.
+geom::Pose read_pose(const JsonMember& body, Rounding rounding = Rounding::removed) {
   const Vector3d position = body.at("position", "three finite numbers").vector();
   if (body.has("orientation")) return read_orientation(body.at("orientation", ""), position);
   const JsonMember member =
@@ -57,7 +75,8 @@ geom::Pose read_pose(const JsonMember& body) {
     R.row(k) =
         JsonMember{&member.json->at(static_cast<std::size_t>(k)), fmt::format("{}[{}]", member.name, k)}.vector();
   }
-  return member.checked([&] { return geom::Pose(R, position); });
+  const geom::Pose pose = member.checked([&] { return geom::Pose(R, position); });
+  return rounding == Rounding::kept ? geom::internal::unchecked_pose(R, position) : pose;
 }
 
 geom::Ellipsoid read_shape(const JsonMember& body) {
@@ -76,23 +95,65 @@ ed::Motion read_motion(const JsonMember& body, const geom::Ellipsoid& shape) {
   return motion;
 }
 
-ed::FailedPair read_pair(const JsonMember& root) {
+ed::DistanceMethod read_method(const JsonMember& method) {
+  constexpr const char* kMethods = "\"newton8\" or \"newton5\"";
+  const std::string name = method.text(kMethods);
+  if (name != "newton8" && name != "newton5") throw method.bad(kMethods);
+  return name == "newton8" ? ed::DistanceMethod::newton8 : ed::DistanceMethod::newton5;
+}
+
+geom::DistanceStatus read_status(const JsonMember& status) {
+  using Status = geom::DistanceStatus;
+  const std::string name = status.text("the status of a distance");
+  for (const Status known : {Status::separated, Status::overlapping, Status::not_converged, Status::singular}) {
+    if (name == geom::to_string(known)) return known;
+  }
+  throw status.bad("the status of a distance");
+}
+
+ed::FailedDistance read_newton(const JsonMember& newton) {
+  const JsonMember a = newton.at("a", "a body");
+  const JsonMember b = newton.at("b", "a body");
+  ed::FailedDistance call;
+  call.method = read_method(newton.at("method", "\"newton8\" or \"newton5\""));
+  call.status = read_status(newton.at("status", "the status of a distance"));
+  call.shape_a = read_shape(a);
+  call.shape_b = read_shape(b);
+  call.X_WA = read_pose(a, Rounding::kept);
+  call.X_WB = read_pose(b, Rounding::kept);
+  const JsonMember point_a = newton.at("point_a", "three finite numbers or null");
+  const JsonMember point_b = newton.at("point_b", "three finite numbers or null");
+  if (point_a.json->is_null() && point_b.json->is_null()) return call;
+  call.seed = {point_a.vector(), point_b.vector(), geom::SeedStatus::usable};
+  return call;
+}
+
+Failure read_pair(const JsonMember& root) {
   const JsonMember format = root.at("format", "\"hardbody pair\", in a file as written to failures/");
   if (*format.json != kFormat) throw format.bad("\"hardbody pair\"");
   const JsonMember a = root.at("a", "a body");
   const JsonMember b = root.at("b", "a body");
-  ed::FailedPair pair;
+  Failure failure;
+  ed::FailedPair& pair = failure.pair;
   pair.shape_i = read_shape(a);
   pair.shape_j = read_shape(b);
   pair.motion_i = read_motion(a, pair.shape_i);
   pair.motion_j = read_motion(b, pair.shape_j);
   if (root.has("reason") && root.json->at("reason").is_string()) {
-    pair.reason = one_line(root.json->at("reason").get<std::string>());
+    failure.reason = one_line(root.json->at("reason").get<std::string>());
   }
   pair.time = root.has("time") ? root.at("time", "").number() : std::max(pair.motion_i.time, pair.motion_j.time);
   pair.i = root.has("i") ? read_index(root.at("i", "")) : 0;
   pair.j = root.has("j") ? read_index(root.at("j", "")) : 1;
-  return pair;
+  if (root.has("eps_d")) {
+    pair.finder = ed::Finder::bracketing;
+    pair.eps_d = root.at("eps_d", "").number();
+  }
+  if (root.has("newton")) {
+    pair.reason = ed::FailureReason::distance;
+    pair.distance = read_newton(root.at("newton", ""));
+  }
+  return failure;
 }
 
 /// file:line, if the line is known.
@@ -104,18 +165,21 @@ std::string where(const std::string& name, const std::string& text, const JsonEr
 
 }  // namespace
 
-std::string failure_json(const ed::FailedPair& pair) {
-  const Json json = {{"format", kFormat},
-                     {"reason", pair.reason},
-                     {"time", pair.time},
-                     {"i", pair.i},
-                     {"j", pair.j},
-                     {"a", body_json(pair.shape_i, pair.motion_i)},
-                     {"b", body_json(pair.shape_j, pair.motion_j)}};
+std::string failure_json(const Failure& failure) {
+  const ed::FailedPair& pair = failure.pair;
+  Json json = {{"format", kFormat},
+               {"reason", failure.reason},
+               {"time", pair.time},
+               {"i", pair.i},
+               {"j", pair.j},
+               {"a", body_json(pair.shape_i, pair.motion_i)},
+               {"b", body_json(pair.shape_j, pair.motion_j)}};
+  if (pair.finder == ed::Finder::bracketing) json["eps_d"] = pair.eps_d;
+  if (pair.distance) json["newton"] = newton_json(*pair.distance);
   return json.dump(2) + "\n";
 }
 
-ed::FailedPair read_failure(const std::filesystem::path& path) {
+Failure read_failure(const std::filesystem::path& path) {
   const std::string name = path.string();
   const std::string text = read_file(path, kLongest);
   try {

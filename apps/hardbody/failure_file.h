@@ -13,14 +13,24 @@ namespace hardbody {
 /// {"format": "hardbody pair", "reason": .., "time": .., "i": .., "j": ..,
 ///  "a": {"shape": {"kind": "ellipsoid", "semi_axes": [..]}, "position": [..], "rotation": [[..], [..],
 ///  [..]],
-///        "velocity": [..], "angular_velocity": [..], "inertia": [..], "time": ..}, "b": {..}}
+///        "velocity": [..], "angular_velocity": [..], "inertia": [..], "time": ..}, "b": {..},
+///  "eps_d": ..,
+///  "newton": {"method": "newton8" or "newton5", "status": .., "point_a": [..] or null, "point_b": ..,
+///             "a": {"shape": .., "position": .., "rotation": ..}, "b": {..}}}
 ///
+/// eps_d: with the finder "bracketing" only. newton: the call of newton_distance that gave no answer, if
+/// that is the reason; its points are null where there was no seed, its frame has its origin at a's centre.
 /// World frame; rotation: rows of the matrix from body to world, or instead of it "orientation": [w, x, y,
 /// z]. Numbers are written so that they read back as the same double.
-std::string failure_json(const ed::FailedPair& pair);
+struct Failure {
+  std::string reason;  ///< in words; a file may have another than to_string(pair.reason)
+  ed::FailedPair pair;
+};
+
+std::string failure_json(const Failure& failure);
 
 /// Throws InputError. Only the bodies' shapes, positions and orientations must be there: bodies are at rest
 /// by default, their inertia is that of uniform density.
-ed::FailedPair read_failure(const std::filesystem::path& path);
+Failure read_failure(const std::filesystem::path& path);
 
 }  // namespace hardbody

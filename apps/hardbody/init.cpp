@@ -19,11 +19,14 @@ int init(const std::string& path) {
   // x: fails if the file exists.
   std::FILE* file = std::fopen(path.c_str(), "wx");
   if (file == nullptr) {
-    throw InputError(errno == EEXIST ? fmt::format("{}: exists already; accepted: a new file", path)
-                                     : fmt::format("{}: cannot be written: {}", path, std::strerror(errno)));
+    throw InputError(errno == EEXIST
+                         ? fmt::format("{}: exists already; accepted: a new file", path)
+                         : fmt::format("{}: cannot be written: {}; accepted: a new file", path, std::strerror(errno)));
   }
   const bool written = std::fputs(text.c_str(), file) >= 0;
-  if (std::fclose(file) != 0 || !written) throw InputError(fmt::format("{}: cannot be written completely", path));
+  if (std::fclose(file) != 0 || !written) {
+    throw InputError(fmt::format("{}: cannot be written completely; accepted: a new file on a disk with room", path));
+  }
   fmt::print("{} written; next: hardbody run {}\n", path, path);
   return 0;
 }

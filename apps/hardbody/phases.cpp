@@ -15,8 +15,13 @@
 namespace hardbody {
 namespace {
 
-/// Between two looks at the clock and at signals: some tenths of a second.
-constexpr std::uint64_t kSlice = 20000;
+/// Seconds between two looks at the clock and at signals.
+constexpr double kLook = 0.1;
+
+/// Collisions in the first slice of a phase: little work for the slowest finder, and it grows by kGrowth at most.
+constexpr double kFirstSlice = 10;
+constexpr double kGrowth = 4;
+constexpr double kLongestSlice = 1e6;
 
 /// "auto": equilibration looks at its criterion after each unit of time, and gives up after this many.
 constexpr double kEquilibrationCap = 500;
@@ -46,7 +51,7 @@ class Runner {
 
   bool run_to(double time, double planned_end) {
     while (pending_signal() == 0) {
-      const bool arrived = simulation_.run_until(time, kSlice);
+      const bool arrived = run_slice(time);
       if (progress_.due()) progress_.show(text(planned_end));
       if (saver_.due()) saver_.save(simulation_.system(), simulation_.time() - begin_);
       if (arrived) return true;
@@ -55,6 +60,18 @@ class Runner {
   }
 
  private:
+  /// Where a slice ends changes no bit of the run, so that its length may follow the clock.
+  bool run_slice(double time) {
+    const double begin = progress_.seconds();
+    const bool arrived = simulation_.run_until(time, static_cast<std::uint64_t>(slice_));
+    const double seconds = progress_.seconds() - begin;
+    // A slice that was cut short by `time` says nothing of longer ones.
+    if (!arrived || seconds > kLook) {
+      slice_ = std::clamp(slice_ * std::min(kGrowth, kLook / std::max(seconds, 1e-9)), 1.0, kLongestSlice);
+    }
+    return arrived;
+  }
+
   std::string text(double planned_end) const {
     const double done = simulation_.time() - begin_;
     const double total = planned_end - begin_;
@@ -70,6 +87,7 @@ class Runner {
   Saver& saver_;
   std::string phase_;
   double begin_;
+  double slice_ = kFirstSlice;
   std::uint64_t collisions_;
   double energy_;
 };
@@ -152,7 +170,7 @@ Equilibration equilibrate(const Config& config, const ed::System& start, Progres
                 saver);
   run_equilibration(config, simulation, runner, result);
   result.system = simulation.system();
-  result.overlaps = simulation.counters().overlaps;
+  result.counters = simulation.counters();
   result.failures = simulation.failures();
   log.line(fmt::format("equilibration: {} after {:g} time units, C2 {:.4f}, MSD {:.4g} l^2",
                        result.stopped ? "stopped" : "done", result.time, result.c2, result.msd));

@@ -61,8 +61,9 @@ double distance_rate(const Pair& pair, const geom::DistanceResult& d) {
   return ed::normal_velocity(contact_body(pair.motion_a, d.point_a), contact_body(pair.motion_b, d.point_b), d.normal);
 }
 
-std::string bodies(const ed::FailedPair& failed, const Pair& pair) {
-  std::string out = fmt::format("reason: {}\n", failed.reason.empty() ? "none given" : failed.reason);
+std::string bodies(const Failure& failure, const Pair& pair) {
+  const ed::FailedPair& failed = failure.pair;
+  std::string out = fmt::format("reason: {}\n", failure.reason.empty() ? "none given" : failure.reason);
   out += fmt::format("time {:.17g}, bodies {} (a) and {} (b)\n", failed.time, failed.i, failed.j);
   const auto add = [&](const char* name, const geom::Ellipsoid& shape, const ed::Motion& motion) {
     out += fmt::format("{}: semi-axes {}, inertia {}\n   position {}\n   velocity {}\n   angular velocity {}\n", name,
@@ -84,6 +85,26 @@ std::string distance_now(const Pair& pair) {
   return out + fmt::format("   the distance changes by {:.9g} a time unit\n", distance_rate(pair, d));
 }
 
+std::string value_of(const geom::DistanceResult& d) {
+  return std::isfinite(d.distance) ? fmt::format("{:.17g}", d.distance) : "no answer";
+}
+
+/// The call that failed, repeated bit for bit.
+std::string failed_call(const ed::FailedPair& failed) {
+  if (!failed.distance) return "";
+  const ed::FailedDistance& call = *failed.distance;
+  const bool eight = call.method == ed::DistanceMethod::newton8;
+  const geom::DistanceResult d = geom::internal::newton_distance_unchecked(
+      call.shape_a, call.X_WA, call.shape_b, call.X_WB, eight ? geom::NewtonSystem::eight : geom::NewtonSystem::five,
+      call.seed);
+  const std::string points = call.seed.status == geom::SeedStatus::usable
+                                 ? fmt::format("{} and {}", text(call.seed.point_a), text(call.seed.point_b))
+                                 : "no points";
+  return fmt::format("   the call that failed, {} from {}: {} ({}, {} iterations; in the run: {})\n",
+                     eight ? "newton8" : "newton5", points, value_of(d), geom::to_string(d.status), d.iterations,
+                     geom::to_string(call.status));
+}
+
 /// What the paper's equations make of the same pair.
 std::string newton_now(const Pair& pair) {
   std::string out;
@@ -91,10 +112,10 @@ std::string newton_now(const Pair& pair) {
   const geom::Pose& X_WB = pair.motion_b.pose;
   const auto line = [&](const char* name, geom::NewtonSystem system, const char* seed_name,
                         const geom::WitnessPair& seed) {
-    const geom::DistanceResult d = geom::newton_distance(pair.a, X_WA, pair.b, X_WB, system, seed);
-    const std::string value = std::isfinite(d.distance) ? fmt::format("{:.17g}", d.distance) : "no answer";
-    out += fmt::format("   {} from the {}: {} ({}, {} iterations)\n", name, seed_name, value, geom::to_string(d.status),
-                       d.iterations);
+    const geom::DistanceResult d =
+        geom::newton_distance(pair.a, X_WA, pair.b, X_WB, system, geom::checked_seed(pair.a, X_WA, pair.b, X_WB, seed));
+    out += fmt::format("   {} from the {}: {} ({}, {} iterations)\n", name, seed_name, value_of(d),
+                       geom::to_string(d.status), d.iterations);
   };
   const auto both = [&](const char* seed_name, const geom::WitnessPair& seed) {
     line("newton8", geom::NewtonSystem::eight, seed_name, seed);
@@ -120,6 +141,18 @@ std::string contact(const Pair& pair, double from, double until) {
                    found.time - from, text(found.point), text(found.normal), d.distance, geom::to_string(d.status));
 }
 
+/// The same by the finder of the run, if that was the paper's.
+std::string contact_by_bracketing(const ed::FailedPair& failed, const Pair& pair, double from, double until) {
+  if (failed.finder != ed::Finder::bracketing) return "";
+  ed::ContactOptions options;
+  options.finder = failed.finder;
+  options.eps_d = failed.eps_d;
+  if (failed.distance) options.distance = failed.distance->method;
+  const ed::ContactResult found = ed::time_of_contact(pair.a, pair.motion_a, pair.b, pair.motion_b, until, options);
+  return fmt::format("   by bracketing, eps_d = {:g}: {} after {:.17g}, {} looks, {} rescues\n", failed.eps_d,
+                     ed::to_string(found.status), found.time - from, found.evaluations, found.rescues);
+}
+
 std::string course(const Pair& pair, double from, double step) {
   std::string out = "\nstep 3, the distance over time (free motion, no collision)\n";
   out += fmt::format("  {:>14} {:>24} {:>14}  {:<14} {}\n", "time", "distance", "rate", "status", "normal");
@@ -136,21 +169,23 @@ std::string course(const Pair& pair, double from, double step) {
 }
 
 /// Composed as a whole before anything is printed: a pair that the library refuses leaves one line and no more.
-std::string replayed(const ed::FailedPair& failed) {
+std::string replayed(const Failure& failure) {
+  const ed::FailedPair& failed = failure.pair;
   const double from = std::max(failed.motion_i.time, failed.motion_j.time);
   const Pair pair = Pair{failed.shape_i, failed.shape_j, failed.motion_i, failed.motion_j}.at(from);
   // In twenty steps the fastest points move by about the size of the pair; bodies at rest: any time does.
   const double window = pair.speed() > 0 ? pair.size() / pair.speed() : 1.0;
-  return bodies(failed, pair) + distance_now(pair) + newton_now(pair) + contact(pair, from, from + 2 * window) +
+  return bodies(failure, pair) + distance_now(pair) + failed_call(failed) + newton_now(pair) +
+         contact(pair, from, from + 2 * window) + contact_by_bracketing(failed, pair, from, from + 2 * window) +
          course(pair, from, window / (kStepsBefore + kStepsAfter));
 }
 
 }  // namespace
 
 int replay(const std::string& path) {
-  const ed::FailedPair failed = read_failure(path);
+  const Failure failure = read_failure(path);
   try {
-    (void)std::fputs(replayed(failed).c_str(), stdout);
+    (void)std::fputs(replayed(failure).c_str(), stdout);
   } catch (const std::invalid_argument& error) {
     throw InputError(fmt::format("{}: {}", path, error.what()));
   }

@@ -25,21 +25,31 @@ namespace hardbody {
 namespace {
 
 std::filesystem::path directory_for(const RunArguments& arguments) {
-  if (!arguments.out.empty()) return arguments.out;
+  if (arguments.out && arguments.out->empty()) throw InputError("--out is empty; accepted: the name of a directory");
+  if (arguments.out) return *arguments.out;
   return std::filesystem::path("out") / std::filesystem::path(arguments.config).stem();
 }
 
-void write_failures(const RunDirectory& directory, const RunRecord& record) {
+RunDirectory create_directory(const RunArguments& arguments, const Config& config) {
+  const Overwrite overwrite = arguments.force ? Overwrite::allowed : Overwrite::refused;
+  return RunDirectory::create(directory_for(arguments), overwrite, arguments.config, resolved_text(config));
+}
+
+void write_failures(const RunDirectory& directory, const RunRecord& record, Log& log) {
   int count = 0;
   for (const auto* failures : {&record.equilibration.failures, &record.production.failures}) {
     for (const ed::FailedPair& pair : *failures) {
-      directory.write(fmt::format("{}/pair_{:02}.json", kFailuresDirectory, ++count), failure_json(pair));
+      directory.write(fmt::format("{}/pair_{:02}.json", kFailuresDirectory, ++count),
+                      failure_json({ed::to_string(pair.reason), pair}));
     }
   }
+  const std::uint64_t left_out = record.failures_left_out();
+  if (left_out > 0)
+    log.line(fmt::format("failures: {} pairs in {}/, {} more left out", count, kFailuresDirectory, left_out));
 }
 
 /// The summary comes last: where it is, the other files are complete.
-void write_results(const RunDirectory& directory, const RunRecord& record, const Saver& saver) {
+void write_results(const RunDirectory& directory, const RunRecord& record, const Saver& saver, Log& log) {
   const ed::Results& results = record.production.results;
   saver.write(record.last_state(), record.last_time());
   directory.write(kMsdFile, msd_csv(results));
@@ -47,7 +57,7 @@ void write_results(const RunDirectory& directory, const RunRecord& record, const
   directory.write(kC2File, c2_csv(results));
   directory.write(kBlocksFile, blocks_csv(results));
   if (record.config.events > 0) directory.write(kEventsFile, events_csv(record.production.collisions));
-  write_failures(directory, record);
+  write_failures(directory, record, log);
   directory.write(kSummaryFile, summary_json(record));
 }
 
@@ -64,7 +74,7 @@ int conclude(const RunDirectory& directory, const RunRecord& record, const Saver
   const int signal = pending_signal();
   std::exception_ptr failure;
   try {
-    write_results(directory, record, saver);
+    write_results(directory, record, saver, log);
     log.line("files written");
   } catch (const std::exception&) {
     failure = std::current_exception();
@@ -113,7 +123,7 @@ int run_phases(const Config& config, const RunDirectory& directory, Log& log) {
 int run(const RunArguments& arguments) {
   install_signal_handlers();
   const Config config = load_config(arguments.config, arguments.overrides);
-  const RunDirectory directory = RunDirectory::create(directory_for(arguments), arguments.force, resolved_text(config));
+  const RunDirectory directory = create_directory(arguments, config);
   Log log(directory.file(kLogFile));
   log.line(fmt::format("hardbody {}: {} with {}", version(), kConfigFile, arguments.config));
   try {

@@ -24,6 +24,15 @@ std::string trace_of_a_run(const fs::path& directory) {
   return "";
 }
 
+void keep_user_config(const fs::path& directory, const fs::path& user_config) {
+  for (const char* name : kFiles) {
+    std::error_code ignored;
+    if (!fs::equivalent(directory / name, user_config, ignored)) continue;
+    throw InputError(fmt::format("{}: --force would delete {}, the config of this run; accepted: another directory",
+                                 directory.string(), user_config.string()));
+  }
+}
+
 /// Removes what a run writes and nothing else, so that a new run never stands beside results of an old one.
 void remove_run(const fs::path& directory) {
   for (const char* name : kFiles) fs::remove(directory / name);
@@ -36,17 +45,19 @@ void remove_run(const fs::path& directory) {
 
 }  // namespace
 
-RunDirectory RunDirectory::create(const fs::path& path, bool force, std::string_view config) {
+RunDirectory RunDirectory::create(const fs::path& path, Overwrite overwrite, const fs::path& user_config,
+                                  std::string_view config) {
   try {
     if (fs::exists(path) && !fs::is_directory(path)) {
       throw InputError(fmt::format("{}: is not a directory; accepted: a new or empty directory", path.string()));
     }
     const std::string trace = trace_of_a_run(path);
-    if (!trace.empty() && !force) {
+    if (!trace.empty() && overwrite == Overwrite::refused) {
       throw InputError(
           fmt::format("{}: holds a run already ({}); accepted: another directory, or --force to overwrite it",
                       path.string(), trace));
     }
+    keep_user_config(path, user_config);
     if (!trace.empty()) remove_run(path);
     RunDirectory directory(path);
     directory.write(kConfigFile, config);

@@ -18,13 +18,17 @@ inline constexpr const char* kC2File = "observables/c2.csv";
 inline constexpr const char* kBlocksFile = "observables/blocks.csv";
 inline constexpr const char* kFailuresDirectory = "failures";
 
+enum class Overwrite { refused, allowed };
+
 /// Where a run writes its files.
 class RunDirectory {
  public:
-  /// Creates the directory (and its parents) and writes `config` into it, before anything else. With `force`
-  /// the files of an earlier run are removed, nothing else. Throws InputError if the path cannot be used, or
-  /// holds a run and `force` is not given; then nothing has been changed.
-  static RunDirectory create(const std::filesystem::path& path, bool force, std::string_view config);
+  /// Creates the directory (and its parents) and writes `config` into it, before anything else. Where overwriting
+  /// is allowed the files of an earlier run are removed, nothing else. Throws InputError if the path cannot be
+  /// used, holds a run that may not be overwritten, or has `user_config`, the file that the config was read from,
+  /// among the files to be removed; then nothing has been changed.
+  static RunDirectory create(const std::filesystem::path& path, Overwrite overwrite,
+                             const std::filesystem::path& user_config, std::string_view config);
 
   const std::filesystem::path& path() const { return path_; }
   std::filesystem::path file(const std::string& name) const { return path_ / name; }

@@ -77,8 +77,8 @@ std::vector<std::string> defects(const RunRecord& record) {
   for (std::string& defect : conservation_defects(record.audit.kinetic, record.last_state())) {
     list.push_back(std::move(defect));
   }
-  if (record.equilibration.overlaps > 0) {
-    list.push_back(fmt::format("{} overlaps were met during equilibration", record.equilibration.overlaps));
+  if (record.equilibration.counters.overlaps > 0) {
+    list.push_back(fmt::format("{} overlaps were met during equilibration", record.equilibration.counters.overlaps));
   }
   if (record.production.counters.overlaps > 0) {
     list.push_back(fmt::format("{} overlaps were met during production", record.production.counters.overlaps));

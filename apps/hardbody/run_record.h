@@ -21,7 +21,7 @@ struct Equilibration {
   double c2 = 1;         ///< <P2(u(t).u(0))> between its begin and its end
   double msd = 0;        ///< <|r(t) - r(0)|^2> between them
   bool stopped = false;  ///< by a signal
-  std::uint64_t overlaps = 0;
+  ed::Counters counters;
   std::vector<ed::FailedPair> failures;
 
   bool reached(const Config& config) const;
@@ -55,6 +55,9 @@ struct RunRecord {
 
   bool stopped() const { return equilibration.stopped || production.stopped; }
   const ed::System& last_state() const;
+  std::uint64_t failures_left_out() const {
+    return equilibration.counters.unrecorded_failures + production.counters.unrecorded_failures;
+  }
   double last_time() const { return production.planned > 0 ? production.time : equilibration.time; }
   const char* last_phase() const { return production.planned > 0 ? "production" : "equilibration"; }
 };

@@ -95,6 +95,8 @@ std::string summary_json(const RunRecord& record) {
   json["observables"] = observables(production.results);
   json["equilibrated"] = record.equilibration.reached(config);
   json["interrupted"] = record.stopped();
+  json["failures"] = {{"recorded", record.equilibration.failures.size() + record.production.failures.size()},
+                      {"left_out", record.failures_left_out()}};
   json["sound"] = defects(record).empty();
   json["finder"] = {{"kind", config.finder}, {"distance", config.distance}, {"eps_d", config.eps_d}};
   json["neighbours"] = {{"kind", config.neighbours}, {"envelope", production.envelope}};

@@ -86,7 +86,7 @@ std::string audit_lines(const RunRecord& record) {
   text += fmt::format("  energy drift {:.1e} (relative), momentum drift {:.1e} sqrt(m kT) a body\n",
                       record.energy_relative_drift, record.momentum_drift);
   const std::uint64_t overlaps =
-      record.equilibration.overlaps + p.counters.overlaps + static_cast<std::uint64_t>(record.audit.overlaps);
+      record.equilibration.counters.overlaps + p.counters.overlaps + static_cast<std::uint64_t>(record.audit.overlaps);
   // The audit looks at pairs whose bounding spheres meet; without one its distance is not that of a pair.
   text += fmt::format("  minimum distance at the end {}, overlaps {}\n",
                       record.audit.closest_i < 0 ? std::string("not known: no two bounding spheres meet")

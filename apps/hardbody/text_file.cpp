@@ -30,7 +30,7 @@ using File = std::unique_ptr<std::FILE, Close>;
 
 std::string read_file(const fs::path& path, std::size_t limit) {
   const auto fail = [&](const char* why) {
-    return InputError(fmt::format("{}: cannot be read: {}", path.string(), why));
+    return InputError(fmt::format("{}: cannot be read: {}; accepted: a readable file", path.string(), why));
   };
   std::error_code ignored;
   if (fs::is_directory(path, ignored)) throw fail("it is a directory");

@@ -26,6 +26,10 @@ struct AxisMotion {
   double time;
 
   Eigen::Vector3d axis() const { return e0 + e1; }
+  Eigen::Vector3d axis_at(double t) const {
+    const SinCos sc = sincos(rate * (t - time));
+    return e0 + sc.cos * e1 + sc.sin * e2;
+  }
   Eigen::Vector3d position_at(double t) const { return position + (t - time) * velocity; }
 };
 

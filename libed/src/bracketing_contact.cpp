@@ -1,7 +1,7 @@
 #include "bracketing_contact.h"
 
-#include "sincos.h"
 #include "sphere_window.h"
+#include "uniaxial_gauge.h"
 
 #include <ed/tolerances.h>
 
@@ -41,14 +41,14 @@ struct MovingBody {
 };
 
 MovingBody moving_body(const AxisMotion& m, double t, const Vector3d& position) {
-  const SinCos sc = sincos(m.rate * (t - m.time));
-  const Vector3d u = (m.e0 + sc.cos * m.e1 + sc.sin * m.e2).normalized();
-  const Vector3d du = m.rate * (sc.cos * m.e2 - sc.sin * m.e1);
+  Vector3d u, du;
+  turn<true>(m, t, u, du);
+  u.normalize();
   Eigen::Matrix3d R;
   R.col(0) = u.unitOrthogonal();
   R.col(1) = u.cross(R.col(0));
   R.col(2) = u;
-  return {geom::Pose(R, position), m.velocity, u.cross(du)};
+  return {geom::internal::unchecked_pose(R, position), m.velocity, u.cross(du)};
 }
 
 /// f, f_x, f_xx of a body's surface at a point, and the time derivatives of f and f_x there: the surface moves with the
@@ -61,12 +61,13 @@ struct MovingSurface {
   Eigen::Matrix3d f_xx;
 
   MovingSurface(const geom::Ellipsoid& shape, const MovingBody& body, const Vector3d& x) {
-    const Eigen::Matrix3d& R = body.pose.rotation();
-    const Vector3d x_body = body.pose.to_body(x);
+    constexpr double kUnitLength = 1;
+    const geom::internal::WorldSurface<geom::Ellipsoid> surface{shape, body.pose.rotation(), kUnitLength};
+    const geom::internal::LocalSurface local = surface(x - body.pose.position());
     const Vector3d w = body.velocity_at(x);
-    f = shape.value(x_body);
-    f_x = R * shape.gradient(x_body);
-    f_xx = R * shape.hessian(x_body) * R.transpose();
+    f = local.value;
+    f_x = local.gradient;
+    f_xx = local.hessian;
     f_t = -f_x.dot(w);
     f_xt = body.omega.cross(f_x) - f_xx * w;
   }
@@ -78,13 +79,19 @@ double turning_speed(const geom::Ellipsoid& shape, const AxisMotion& motion) {
   return (shape.bounding_radius() - shape.inscribed_radius()) * motion.rate;
 }
 
+bool is_answer(const geom::DistanceResult& result) {
+  return result.status == geom::DistanceStatus::separated || result.status == geom::DistanceStatus::overlapping;
+}
+
 class Search {
  public:
-  Search(const PairInFlight& pair, const ContactOptions& options, Vector3d& n, FinderCounters& count)
+  Search(const PairInFlight& pair, const ContactOptions& options, Vector3d& n, FinderCounters& count,
+         std::optional<Unsolved>& unsolved)
       : pair_(pair),
         options_(options),
         n_(n),
         count_(count),
+        unsolved_(unsolved),
         v_(pair.b.velocity - pair.a.velocity),
         size_(pair.shape_a.bounding_radius() + pair.shape_b.bounding_radius()),
         fastest_(v_.norm() + turning_speed(pair.shape_a, pair.a) + turning_speed(pair.shape_b, pair.b)) {}
@@ -104,6 +111,8 @@ class Search {
 
   Look look(double t);
   geom::DistanceResult distance(double t, const MovingBody& a, const MovingBody& b);
+  geom::DistanceResult dual_distance(const MovingBody& a, const MovingBody& b) const;
+  geom::WitnessPair seed(const MovingBody& a, const MovingBody& b);
   MovingBody body_a(double t) const { return moving_body(pair_.a, t, Vector3d::Zero()); }
   MovingBody body_b(double t) const { return moving_body(pair_.b, t, pair_.r_now + (t - pair_.now) * v_); }
 
@@ -118,35 +127,48 @@ class Search {
   const ContactOptions& options_;
   Vector3d& n_;
   FinderCounters& count_;
+  std::optional<Unsolved>& unsolved_;
   Vector3d v_;
   double size_;
-  double fastest_;  ///< an overestimate of |dd/dt|
-  bool first_ = true;
-  std::optional<Unsolved> unsolved_;
+  double fastest_;     ///< an overestimate of |dd/dt|
+  bool first_ = true;  ///< no distance has been asked for yet
 };
 
-geom::DistanceResult Search::distance(double t, const MovingBody& a, const MovingBody& b) {
-  const auto dual = [&] { return geom::distance(pair_.shape_a, a.pose, pair_.shape_b, b.pose, {.start = n_}); };
+geom::DistanceResult Search::dual_distance(const MovingBody& a, const MovingBody& b) const {
+  return geom::distance(pair_.shape_a, a.pose, pair_.shape_b, b.pose, {.start = n_});
+}
+
+/// Where Newton's method starts. The normal that a search begins with may be crude, or old: the first distance starts
+/// from the user's points or the dual's, later ones from the support points along the normal before.
+geom::WitnessPair Search::seed(const MovingBody& a, const MovingBody& b) {
   const bool first = first_;
   first_ = false;
-  if (options_.distance == DistanceMethod::dual) return dual();
-  geom::WitnessPair seed;
-  if (first && options_.seed) seed = options_.seed(pair_.shape_a, a.pose, pair_.shape_b, b.pose);
-  if (seed.status != geom::SeedStatus::usable) {
-    seed = n_.isZero(0) ? geom::dual_seed(pair_.shape_a, a.pose, pair_.shape_b, b.pose)
-                        : geom::normal_seed(pair_.shape_a, a.pose, pair_.shape_b, b.pose, n_);
+  if (!first) return geom::normal_seed(pair_.shape_a, a.pose, pair_.shape_b, b.pose, n_);
+  if (options_.seed) {
+    const geom::WitnessPair users = options_.seed(pair_.shape_a, a.pose, pair_.shape_b, b.pose);
+    if (users.status == geom::SeedStatus::usable) return users;
   }
+  const geom::DistanceResult dual = dual_distance(a, b);
+  count_.kernel_calls += static_cast<std::uint64_t>(dual.iterations);
+  if (!is_answer(dual)) return {};
+  return {dual.point_a, dual.point_b, geom::SeedStatus::usable};
+}
+
+geom::DistanceResult Search::distance(double t, const MovingBody& a, const MovingBody& b) {
+  const auto counted = [&](const geom::DistanceResult& result) {
+    count_.kernel_calls += static_cast<std::uint64_t>(result.iterations);
+    return result;
+  };
+  if (options_.distance == DistanceMethod::dual) return counted(dual_distance(a, b));
+  const geom::WitnessPair start = seed(a, b);
   const auto system =
       options_.distance == DistanceMethod::newton8 ? geom::NewtonSystem::eight : geom::NewtonSystem::five;
   const geom::DistanceResult result =
-      geom::internal::newton_distance_unchecked(pair_.shape_a, a.pose, pair_.shape_b, b.pose, system, seed);
-  count_.kernel_calls += static_cast<std::uint64_t>(result.iterations);
-  if (result.status == geom::DistanceStatus::separated || result.status == geom::DistanceStatus::overlapping) {
-    return result;
-  }
+      counted(geom::internal::newton_distance_unchecked(pair_.shape_a, a.pose, pair_.shape_b, b.pose, system, start));
+  if (is_answer(result)) return result;
   ++count_.rescues;
-  unsolved_ = Unsolved{result.status, t};
-  return dual();
+  unsolved_ = Unsolved{t, {options_.distance, result.status, pair_.shape_a, pair_.shape_b, a.pose, b.pose, start}};
+  return counted(dual_distance(a, b));
 }
 
 Search::Look Search::look(double t) {
@@ -156,13 +178,14 @@ Search::Look Search::look(double t) {
   at.a = body_a(t);
   at.b = body_b(t);
   const geom::DistanceResult result = distance(t, at.a, at.b);
-  if (options_.distance == DistanceMethod::dual) count_.kernel_calls += static_cast<std::uint64_t>(result.iterations);
-  if (result.status != geom::DistanceStatus::separated && result.status != geom::DistanceStatus::overlapping) {
+  if (!is_answer(result)) {
     // Neither way answers: the overlap is deep (separated bodies are always answered). The centres part or approach.
+    const Vector3d& r = at.b.pose.position();
     at.d = -std::numeric_limits<double>::infinity();
-    at.normal = at.b.pose.position().normalized();
+    at.normal = r.isZero(0) ? Vector3d(Vector3d::UnitX()) : Vector3d(r.stableNormalized());
     at.rate = at.normal.dot(v_);
-    at.point_a = at.point_b = 0.5 * at.b.pose.position();
+    at.point_a = at.point_b = 0.5 * r;
+    n_ = at.normal;
     return at;
   }
   at.d = result.distance;
@@ -179,30 +202,26 @@ Finding Search::run(double t_begin, double t_end) {
   ++count_.predictions;
   const Window window = sphere_window(pair_.r_now, v_, size_, pair_.now, t_begin, t_end);
   Finding finding{Outcome::clear, t_end};
-  const auto concluded = [&](Finding f) {
-    f.unsolved = unsolved_;
-    return f;
-  };
   if (!(window.begin < window.end)) return finding;
   Look here = look(window.begin);  // step 2
   for (int distances = 0; distances < kMaxDistances; ++distances) {
-    if (here.d < -kOverlap * size_) return concluded({Outcome::overlapping, here.time, approaches(here)});
+    if (here.d < -kOverlap * size_) return {Outcome::overlapping, here.time, approaches(here)};
     if (touches(here)) {
-      if (approaches(here)) return concluded({Outcome::contact, here.time});
+      if (approaches(here)) return {Outcome::contact, here.time};
       here.d = std::numeric_limits<double>::min();  // they have just collided, and part
     }
-    if (!(here.time < window.end)) return concluded(finding);         // step 8
+    if (!(here.time < window.end)) return finding;                    // step 8
     const double step = std::max(here.d, options_.eps_d) / fastest_;  // step 3
     const Look next = look(std::max(std::nextafter(here.time, window.end), std::min(here.time + step, window.end)));
     if (next.d < 0 && here.d > 0) {  // step 5
       const double guess = here.time + (next.time - here.time) * here.d / (here.d - next.d);
-      if (refine(here, next, guess, finding)) return concluded(finding);
+      if (refine(here, next, guess, finding)) return finding;
     } else if (here.d < options_.eps_d && next.d < options_.eps_d) {  // step 6
-      if (grazes(here, next, finding)) return concluded(finding);
+      if (grazes(here, next, finding)) return finding;
     }
     here = next;  // step 7
   }
-  return concluded({Outcome::bound, here.time});
+  return {Outcome::bound, here.time};
 }
 
 /// Step 6: both distances are in (0, eps_d); the parabola through them and the distance half way may have zeros.
@@ -291,8 +310,8 @@ bool Search::refine_in_one_dimension(Look outside, Look inside, Finding& finding
 }  // namespace
 
 Finding bracketing_contact(const PairInFlight& pair, double t_begin, double t_end, const ContactOptions& options,
-                           Vector3d& n, FinderCounters& count) {
-  return Search(pair, options, n, count).run(t_begin, t_end);
+                           Vector3d& n, FinderCounters& count, std::optional<Unsolved>& unsolved) {
+  return Search(pair, options, n, count, unsolved).run(t_begin, t_end);
 }
 
 }  // namespace ed::internal

@@ -15,6 +15,8 @@
 
 #include <Eigen/Core>
 
+#include <optional>
+
 namespace ed::internal {
 
 /// Two bodies of revolution in free flight; shapes have their axis of revolution along body z.
@@ -27,10 +29,16 @@ struct PairInFlight {
   double now;
 };
 
+/// A distance that Newton's method has declined, and when.
+struct Unsolved {
+  double time;
+  FailedDistance call;
+};
+
 /// Finds a contact in [t_begin, t_end] by the paper's steps 1 to 9. Outcome::clear says that none was found, which is
 /// no proof. Where Newton's method for a distance fails the dual answers instead: `count.rescues` is raised and
-/// Finding::unsolved is the failure's status. `n` as in certified_contact.
+/// `unsolved` set to the last such failure. `n` as in certified_contact.
 Finding bracketing_contact(const PairInFlight& pair, double t_begin, double t_end, const ContactOptions& options,
-                           Eigen::Vector3d& n, FinderCounters& count);
+                           Eigen::Vector3d& n, FinderCounters& count, std::optional<Unsolved>& unsolved);
 
 }  // namespace ed::internal

@@ -34,7 +34,6 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <optional>
 
 namespace ed::internal {
 
@@ -54,18 +53,10 @@ enum class Outcome {
   overlapping,  ///< at `time` the bodies overlap by more than kOverlap * size; proved
 };
 
-/// A distance that Newton's method has declined, and when.
-struct Unsolved {
-  geom::DistanceStatus status;
-  double time;
-};
-
 struct Finding {
   Outcome outcome;
   double time;
   bool approaching = false;  ///< of bodies that overlap: whether the overlap grows
-  /// Bracketing only: the last failure of Newton's method for the distance, for which the dual stood in.
-  std::optional<Unsolved> unsolved = std::nullopt;
 };
 
 /// First root tau > 0 of g + gp tau - K tau^2 / 2 for g >= 0; infinite if there is none.

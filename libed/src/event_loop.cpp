@@ -1,6 +1,5 @@
 #include "event_loop.h"
 
-#include "bracketing_contact.h"
 #include "contact_checks.h"
 #include "dilated_envelopes.h"
 #include "motion_checks.h"
@@ -19,8 +18,6 @@ namespace {
 
 using Eigen::Vector3d;
 using geom::internal::support_point;
-
-constexpr std::size_t kMaxFailures = 16;
 
 /// Points in time that a pair is looked at when it is predicted, and when it comes up again. One gives a bound that
 /// lasts for most pairs; what is left is close, and gets a second look at once.
@@ -109,6 +106,7 @@ EventLoop::EventLoop(const System& system, const SimulationOptions& options)
     frame.spin = inertia_.spins ? spin : 0;
     set_rotation(inertia_, u, body.angular_velocity - spin * u, motion, frame);
   }
+  failures_.reserve(kReasons * kMaxFailuresRecorded);
   set_envelope(options.envelope);
 }
 
@@ -171,12 +169,6 @@ void EventLoop::move(int i) {
 
 Vector3d EventLoop::position_now(int i) const {
   return motions_[at(i)].position_at(now_);
-}
-
-Vector3d EventLoop::axis_now(int i) const {
-  const AxisMotion& m = motions_[at(i)];
-  const SinCos sc = sincos(m.rate * (now_ - m.time));
-  return m.e0 + sc.cos * m.e1 + sc.sin * m.e2;
 }
 
 void EventLoop::wrap(int i) {
@@ -259,7 +251,8 @@ Finding EventLoop::find_contact(Pair& pair, double end, int max_evaluations) {
   const AxisMotion& b = motions_[at(pair.j)];
   const Vector3d r = between(pair);
   if (options_.contact.finder == Finder::bracketing) {
-    return bracketing_contact({upright_, upright_, a, b, r, now_}, now_, end, options_.contact, pair.normal, finder_);
+    return bracketing_contact({upright_, upright_, a, b, r, now_}, now_, end, options_.contact, pair.normal, finder_,
+                              unsolved_);
   }
   if (inertia_.spins) {
     const UniaxialGauge<true> gauge(shape_, a, shape_, b, r, now_, 2 * bounding_radius_);
@@ -272,9 +265,9 @@ Finding EventLoop::find_contact(Pair& pair, double end, int max_evaluations) {
 void EventLoop::search(Pair& pair, int max_evaluations) {
   const double end = std::max(now_, std::min(exits_[at(pair.i)], exits_[at(pair.j)]));
   const Finding finding = find_contact(pair, end, max_evaluations);
-  if (finding.unsolved) {
-    report(pair, finding.unsolved->time,
-           std::string("Newton's method for the distance: ") + geom::to_string(finding.unsolved->status));
+  if (unsolved_) {
+    report(pair, unsolved_->time, FailureReason::distance);
+    unsolved_.reset();
   }
   switch (finding.outcome) {
     case Outcome::clear:
@@ -291,7 +284,7 @@ void EventLoop::search(Pair& pair, int max_evaluations) {
       break;
     case Outcome::overlapping:
       ++counters_.overlaps;
-      report(pair, finding.time, "the bodies overlap by more than rounding");
+      report(pair, finding.time, FailureReason::overlap);
       // Approaching: let them collide now. Parting: look again when they have moved a little.
       pair.event = finding.approaching ? PairEvent::contact : PairEvent::bound;
       pair.time = finding.approaching ? finding.time : finding.time + kPartingLook * parting_time(pair);
@@ -340,21 +333,33 @@ void EventLoop::reschedule_orphans() {
   orphans_.clear();
 }
 
-void EventLoop::report(const Pair& pair, double time, const std::string& reason) {
-  if (failures_.size() >= kMaxFailures) return;
-  FailedPair failed{reason, species_.shape, species_.shape, motion_of(pair.i, time), motion_of(pair.j, time),
-                    0,      pair.i,         pair.j};
-  failed.time = failed.motion_i.time;
+void EventLoop::report(const Pair& pair, double time, FailureReason reason) {
+  std::size_t& recorded = failures_of_[static_cast<std::size_t>(reason)];
+  if (recorded == kMaxFailuresRecorded) {
+    ++counters_.unrecorded_failures;
+    return;
+  }
+  ++recorded;
+  FailedPair& failed = failures_.emplace_back();  // reserved: no allocation
+  failed.reason = reason;
+  failed.shape_i = failed.shape_j = species_.shape;
+  failed.motion_i = motion_of(pair.i, time);
+  failed.motion_j = motion_of(pair.j, time);
   const Vector3d r = between(pair) + (time - now_) * (failed.motion_j.velocity - failed.motion_i.velocity);
   failed.motion_j.pose = geom::Pose(failed.motion_j.pose.rotation(), failed.motion_i.pose.position() + r);
-  failures_.push_back(failed);
+  failed.time = failed.motion_i.time;
+  failed.i = pair.i;
+  failed.j = pair.j;
+  failed.finder = options_.contact.finder;
+  failed.eps_d = options_.contact.eps_d;
+  if (reason == FailureReason::distance) failed.distance = unsolved_->call;
 }
 
 // ---- Envelopes and lists -------------------------------------------------------------------------------------------
 
 void EventLoop::renew_exit(int i) {
   ++counters_.envelope_checks;
-  exits_[at(i)] = envelopes_->exit_time(i, motions_[at(i)], position_now(i), axis_now(i), now_, box_);
+  exits_[at(i)] = envelopes_->exit_time(i, motions_[at(i)], position_now(i), motions_[at(i)].axis_at(now_), now_, box_);
 }
 
 void EventLoop::rebuild(int i) {
@@ -497,7 +502,14 @@ void EventLoop::process_contact(std::int32_t index) {
   ContactBody a = contact_body(i, n);
   ContactBody b = contact_body(j, -n);
   const double J = collide(a, b, n);
-  if (!(J > 0)) ++counters_.parting_contacts;
+  if (!(J > 0)) {
+    // Nothing has changed, so that the same contact would be found again: look when the bodies have moved a little.
+    ++counters_.parting_contacts;
+    pair.event = PairEvent::bound;
+    pair.time = now_ + kPartingLook * parting_time(pair);
+    reschedule(pair.owner);
+    return;
+  }
   ++counters_.collisions;
   const Vector3d r = nearest_image(motions_[at(j)].position - motions_[at(i)].position, box_);
   virial_ += J * r.dot(n);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "axis_motion.h"
+#include "bracketing_contact.h"
 #include "calendar.h"
 #include "cell_envelopes.h"
 #include "cell_grid.h"
@@ -13,9 +14,9 @@
 
 #include <geom/internal/uniaxial.h>
 
+#include <array>
 #include <memory>
 #include <optional>
-#include <string>
 #include <vector>
 
 namespace ed::internal {
@@ -55,6 +56,8 @@ class EventLoop {
 
  private:
   static constexpr std::int32_t kExit = -1;
+  static constexpr std::size_t kReasons = 2;               ///< of FailureReason
+  static constexpr std::size_t kMaxFailuresRecorded = 16;  ///< for each reason
 
   void process_next();
   void process_exit(int body);
@@ -76,11 +79,10 @@ class EventLoop {
   void reschedule(int body);
   void reschedule_orphans();
   double contact_scale(const Pair& pair, double enough) const;
-  void report(const Pair& pair, double time, const std::string& reason);
+  void report(const Pair& pair, double time, FailureReason reason);
 
   void move(int body);
   Eigen::Vector3d position_now(int body) const;
-  Eigen::Vector3d axis_now(int body) const;
   void wrap(int body);
   Motion motion_of(int body, double t) const;
   ContactBody contact_body(int body, const Eigen::Vector3d& normal) const;
@@ -122,6 +124,8 @@ class EventLoop {
   std::vector<Collision> collisions_;
   std::size_t collisions_wanted_ = 0;
   std::vector<FailedPair> failures_;
+  std::array<std::size_t, kReasons> failures_of_{};  ///< recorded, by reason
+  std::optional<Unsolved> unsolved_;                 ///< by the last search
 };
 
 }  // namespace ed::internal

@@ -56,6 +56,16 @@ constexpr double kFewInCellsBracketing = 10;
 
 }  // namespace
 
+const char* to_string(FailureReason reason) {
+  switch (reason) {
+    case FailureReason::overlap:
+      return "the bodies overlap by more than rounding";
+    case FailureReason::distance:
+      return "Newton's method for the distance gave no answer";
+  }
+  return "unknown";
+}
+
 Neighbours fastest_neighbours(const geom::Ellipsoid& shape, int number, double packing_fraction, Finder finder) {
   const int cells =
       internal::CellEnvelopes::cells_along(box_for(shape, number, packing_fraction), shape.bounding_radius());
@@ -128,7 +138,7 @@ double Simulation::shrink_box(double target_box, double least_gain) {
 
 void Simulation::tune_envelopes(const std::function<bool()>& keep_going) {
   if (impl_->neighbours() == Neighbours::cells) return;
-  constexpr std::uint64_t kSlice = 10000;
+  constexpr std::uint64_t kSlice = 100;
   bool stopped = false;
   const auto run = [&](std::uint64_t number) {
     for (std::uint64_t done = 0; done < number && !stopped; done += kSlice) {

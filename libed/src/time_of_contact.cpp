@@ -7,6 +7,7 @@
 #include <ed/time_of_contact.h>
 
 #include <algorithm>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
 
@@ -83,11 +84,6 @@ double skip_the_way(Body& a, Body& b, double reach, double duration) {
   return way;
 }
 
-Eigen::Vector3d axis_at(const internal::AxisMotion& m, double t) {
-  const internal::SinCos sc = internal::sincos(m.rate * (t - m.time));
-  return m.e0 + sc.cos * m.e1 + sc.sin * m.e2;
-}
-
 /// The search from time 0 on the bodies' clocks.
 ContactResult search(const Body& a, const Body& b, double reach, double duration, const ContactOptions& options) {
   const internal::AxisMotion& m_a = a.top.axis;
@@ -100,7 +96,9 @@ ContactResult search(const Body& a, const Body& b, double reach, double duration
   };
   internal::Finding finding;
   if (options.finder == Finder::bracketing) {
-    finding = internal::bracketing_contact({a.ellipsoid, b.ellipsoid, m_a, m_b, r, 0}, 0, duration, options, n, count);
+    std::optional<internal::Unsolved> unsolved;  // counted as rescues, which is all that is told
+    finding = internal::bracketing_contact({a.ellipsoid, b.ellipsoid, m_a, m_b, r, 0}, 0, duration, options, n, count,
+                                           unsolved);
   } else if (a.top.inertia.spins || b.top.inertia.spins) {
     finding = certified(internal::UniaxialGauge<true>(a.shape, m_a, b.shape, m_b, r, 0, reach));
   } else {
@@ -113,8 +111,8 @@ ContactResult search(const Body& a, const Body& b, double reach, double duration
   result.rescues = options.finder == Finder::bracketing ? static_cast<int>(count.rescues) : 0;
   if (result.status == ContactStatus::hit) {
     const double t = finding.time;
-    const Eigen::Vector3d p_a = m_a.position_at(t) + geom::internal::support_point(a.shape, axis_at(m_a, t), n);
-    const Eigen::Vector3d p_b = m_b.position_at(t) - geom::internal::support_point(b.shape, axis_at(m_b, t), n);
+    const Eigen::Vector3d p_a = m_a.position_at(t) + geom::internal::support_point(a.shape, m_a.axis_at(t), n);
+    const Eigen::Vector3d p_b = m_b.position_at(t) - geom::internal::support_point(b.shape, m_b.axis_at(t), n);
     result.point = 0.5 * (p_a + p_b);
     result.normal = n;
   }

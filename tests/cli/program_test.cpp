@@ -143,7 +143,7 @@ TEST(Defects, OverlapsMetOnTheWayCount) {
   record.equilibration.kinetic_at_start = ed::kinetic_state(record.equilibration.system);
   hardbody::audit_record(record);
   EXPECT_TRUE(hardbody::defects(record).empty());
-  record.equilibration.overlaps = 1;
+  record.equilibration.counters.overlaps = 1;
   EXPECT_EQ(hardbody::defects(record).size(), 1u);
   record.production.counters.overlaps = 1;
   EXPECT_EQ(hardbody::defects(record).size(), 2u);
@@ -151,8 +151,9 @@ TEST(Defects, OverlapsMetOnTheWayCount) {
 
 TEST(FailureFile, ReadsBackTheSameBits) {
   ed::Random random(4);
-  ed::FailedPair pair;
-  pair.reason = "a \"reason\"";
+  hardbody::Failure failure;
+  failure.reason = "a \"reason\"";
+  ed::FailedPair& pair = failure.pair;
   pair.shape_i = geom::Ellipsoid({0.7, 0.7, 1.0 / 3});
   pair.shape_j = geom::Ellipsoid({1.1, 1.1, 2.0 / 7});
   pair.time = 12.345678901234567;
@@ -166,14 +167,27 @@ TEST(FailureFile, ReadsBackTheSameBits) {
     motion->time = random.uniform();
   }
   const fs::path path = fs::path(testing::TempDir()) / ("hardbody_pair_" + std::to_string(::getpid()) + ".json");
-  const std::string text = hardbody::failure_json(pair);
+  pair.finder = ed::Finder::bracketing;
+  pair.eps_d = 1.0 / 3e6;
+  pair.distance = ed::FailedDistance{ed::DistanceMethod::newton5,
+                                     geom::DistanceStatus::singular,
+                                     pair.shape_i,
+                                     pair.shape_j,
+                                     geom::Pose(random.rotation(), random.normal3()),
+                                     geom::Pose(random.rotation(), random.normal3()),
+                                     {random.normal3(), random.normal3(), geom::SeedStatus::usable}};
+  const std::string text = hardbody::failure_json(failure);
   hardbody::write_file(path, text);
-  const ed::FailedPair read = hardbody::read_failure(path);
+  const hardbody::Failure file = hardbody::read_failure(path);
+  const ed::FailedPair& read = file.pair;
   fs::remove(path);
-  EXPECT_EQ(hardbody::failure_json(read), text);
+  EXPECT_EQ(hardbody::failure_json(file), text);
   EXPECT_EQ(read.motion_j.velocity, pair.motion_j.velocity);
   EXPECT_EQ(read.motion_i.pose.position(), pair.motion_i.pose.position());
-  EXPECT_EQ(read.reason, pair.reason);
+  EXPECT_EQ(file.reason, failure.reason);
+  ASSERT_TRUE(read.distance.has_value());
+  EXPECT_EQ(read.distance->X_WB.rotation(), pair.distance->X_WB.rotation());
+  EXPECT_EQ(read.distance->seed.point_a, pair.distance->seed.point_a);
 }
 
 TEST(Config, ResolvedTextReadsBackAsTheSameConfig) {

@@ -509,7 +509,7 @@ class BadConfig(Case):
 
 class BadPaths(Case):
     def test_config(self):
-        self.assert_refused(self.hardbody("run", "none.toml"), "none.toml", "No such file")
+        self.assert_refused(self.hardbody("run", "none.toml"), "none.toml", "No such file", "accepted: a readable file")
         self.assert_refused(self.hardbody("run", self.here), "directory")
         self.assert_refused(self.hardbody("run", "/dev/zero"), "/dev/zero", "longer")
         self.assertEqual(os.listdir(self.here), [])
@@ -544,6 +544,23 @@ class BadPaths(Case):
         self.assertFalse(os.path.exists(self.path("out/events.csv")))
         self.assertEqual(os.listdir(self.path("out/failures")), [])
         self.assertEqual(self.read("out/notes.txt"), "mine")
+
+    def test_force_never_deletes_the_config_of_the_run(self):
+        self.write("config.toml", SMALL)
+        self.write("summary.json", "old")
+        os.makedirs(self.path("linked"))
+        os.link(self.path("config.toml"), self.path("linked/log.txt"))
+        for out in [".", self.here, "linked"]:
+            with self.subTest(out):
+                result = self.hardbody("run", "config.toml", "--out", out, "--force")
+                self.assert_refused(result, "--force would delete config.toml", "accepted: another directory")
+                self.assertEqual(self.read("config.toml"), SMALL)
+                self.assertEqual(self.read("summary.json"), "old")
+
+    def test_empty_directory_name(self):
+        self.write("small.toml", SMALL)
+        self.assert_refused(self.hardbody("run", "small.toml", "--out", ""), "--out is empty", "accepted")
+        self.assertEqual(os.listdir(self.here), ["small.toml"])
 
     def test_directory_with_other_files_is_fine(self):
         os.makedirs(self.path("out"))
@@ -647,6 +664,29 @@ class Signals(Case):
         self.assertEqual(summary["time"]["production"], 0)
         self.assertTrue(all(o["value"] is None for o in summary["observables"].values()))
         self.assertEqual(self.hardbody("check", "out").returncode, 0)
+
+    def test_slowest_finder(self):
+        # Some hundred collisions a second: a look at signals must not wait for a fixed number of them.
+        slow = (
+            self.LONG.replace("number = 64", "number = 512").replace("ratio = 2", "ratio = 3")
+            + '[dynamics]\nfinder = "bracketing"\ndistance = "newton8"\nneighbours = "{}"\n'
+        )
+        endless = slow.replace("time = 1\n", "time = 1000\n")
+        for config, neighbours, phase, number, status in [
+            (endless, "cells", "equilibration: 1000", signal.SIGTERM, 143),
+            (slow.replace("time = 1\n", "time = 0\n"), "cells", "production: 100000", signal.SIGINT, 130),
+            (endless, "obp", "finder: bracketing", signal.SIGINT, 130),  # while envelopes are tuned
+        ]:
+            with self.subTest(phase=phase, neighbours=neighbours):
+                process = self.start(config.format(neighbours), phase)
+                time.sleep(1)
+                process.send_signal(number)
+                begin = time.monotonic()
+                _, stderr = process.communicate(timeout=30)
+                self.assertLess(time.monotonic() - begin, 3, phase)
+                self.assertEqual(process.returncode, status, stderr)
+                self.assertTrue(self.summary("out")["interrupted"])
+                os.rename(self.path("out"), self.path(f"out_{phase[:5]}_{neighbours}"))
 
     def test_start(self):
         # Dense spheres: the compression takes a while.
@@ -766,6 +806,45 @@ class Replay(Case):
         self.assertEqual(inside.returncode, 0)
         self.assertIn("overlapping", inside.stdout)
 
+    # Bodies with a face point inside as seed: a call that fails.
+    NEWTON = {
+        "method": "newton5",
+        "status": "not_converged",
+        "point_a": [1, 0, 0],
+        "point_b": [2, 0, 0],
+        "a": {key: body([0, 0, 0])[key] for key in ["shape", "position", "rotation"]},
+        "b": {key: body([3, 0, 0])[key] for key in ["shape", "position", "rotation"]},
+    }
+
+    def test_repeats_the_call_that_failed(self):
+        result = self.replay(self.pair(eps_d=1e-4, newton=self.NEWTON))
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertRegex(
+            result.stdout,
+            r"the call that failed, newton5 from \(1, 0, 0\) and \(2, 0, 0\): (?:1|0\.9{15}\d*) \(separated, \d+ iterations; in the run: not_c",
+        )
+        self.assertIn("by bracketing, eps_d = 0.0001: hit", result.stdout)
+        none = self.replay(self.pair(newton={**self.NEWTON, "point_a": None, "point_b": None}))
+        self.assertIn("newton5 from no points: no answer (not_converged, 0 iterations", none.stdout)
+
+    def test_extreme_pairs(self):
+        # Newton's seeds do not reach the surface here; each method says so by its status.
+        for axes, x in [
+            ([1e-2, 1e-2, 1e2], 1e-6), ([1, 1, 1e-4], 1e-9), ([1e50, 1e50, 1e49], 1e60), ([1, 1, 2], 0),
+            ([1, 1, 2], 1e16), ([1, 1, 2], 1e200),
+        ]:
+            with self.subTest(axes=axes, x=x):
+                shape = {"kind": "ellipsoid", "semi_axes": axes}
+                at_rest = {"orientation": [1, 0, 0, 0], "shape": shape}
+                pair = {
+                    "format": "hardbody pair",
+                    "a": {**at_rest, "position": [0, 0, 0]},
+                    "b": {**at_rest, "position": [x, 0.3 * x, 0.2 * x]},
+                }
+                result = self.replay(pair)
+                self.assertEqual(result.returncode, 0, result.stderr)
+                self.assertEqual(result.stdout.count("newton8 from the"), 2)
+
     def test_least_that_is_needed(self):
         shape = {"kind": "ellipsoid", "semi_axes": [1, 1, 2]}
         a = {"shape": shape, "position": [0, 0, 0], "orientation": [1, 0, 0, 0]}
@@ -775,7 +854,7 @@ class Replay(Case):
         self.assertRegex(result.stdout, r"distance at that time: 1 \(separated")
 
     def test_bad_files(self):
-        self.assert_refused(self.hardbody("replay", "none.json"), "none.json")
+        self.assert_refused(self.hardbody("replay", "none.json"), "none.json", "accepted: a readable file")
         self.assert_refused(self.replay("{\n\n]"), "pair.json:3: ", "JSON")
         self.assert_refused(self.replay("[]"), "format")
         self.assert_refused(self.replay("{}"), "format")
@@ -801,6 +880,11 @@ class Replay(Case):
             ({"b": body([3, 0, 0], inertia=[1, 1.5, 1.2])}, "pair.json"),
             ({"b": body([3, 0, 0], time="now")}, "b.time"),
             ({"i": -1}, "i is -1"),
+            ({"eps_d": 0}, "eps_d"),
+            ({"newton": {**self.NEWTON, "method": "newton9"}}, "newton.method", "newton8"),
+            ({"newton": {**self.NEWTON, "status": "bad"}}, "newton.status"),
+            ({"newton": {**self.NEWTON, "point_a": None}}, "newton.point_a"),
+            ({"newton": {**self.NEWTON, "b": 1}}, "newton.b"),
         ]
         for change, *parts in cases:
             with self.subTest(change):

@@ -8,6 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -242,6 +243,23 @@ TEST(Simulation, TuningIsTheSameEachTime) {
   EXPECT_EQ(ed_test::hash_of(a), ed_test::hash_of(b));
   // About 60 collisions a body at most.
   EXPECT_LE(a.counters().collisions, 64U * 60U);
+}
+
+TEST(Simulation, TuningAsksOftenWhetherToGoOn) {
+  const ed::System system = ed_test::start({3, 0.3, 64, Inertia::paper, 26});
+  ed::Simulation simulation(system);
+  std::uint64_t asked_at = 0;
+  std::uint64_t longest = 0;
+  simulation.tune_envelopes([&] {
+    longest = std::max(longest, simulation.counters().collisions - asked_at);
+    asked_at = simulation.counters().collisions;
+    return true;
+  });
+  EXPECT_GT(asked_at, 0U);
+  EXPECT_LE(longest, 500U);
+  ed::Simulation stopped(system);
+  stopped.tune_envelopes([] { return false; });
+  EXPECT_LE(stopped.counters().collisions, 500U);
 }
 
 TEST(Simulation, OfBodiesAtRestComesToItsEnd) {

@@ -4,6 +4,8 @@
 
 #include <geom/newton.h>
 
+#include <Eigen/Core>
+
 #include <functional>
 
 namespace ed {
@@ -28,8 +30,25 @@ enum class ContactRoot {
 };
 
 /// A guess of the closest points of two bodies to start Newton's method from.
+///
+/// It is called in the event loop with bodies in any relation, overlapping ones too; the frame has the world's axes and
+/// its origin at A's centre, the bodies' axes of revolution are along body z. It may decline and it may be wrong: its
+/// points are not checked, and the worst that bad ones do is a distance that Newton's method declines and the dual
+/// answers (`rescues`). It must not throw, and must give the same points for the same bodies, or a run is not
+/// reproducible. Whether it allocates is its own affair.
 using SeedFunction = std::function<geom::WitnessPair(const geom::Ellipsoid& a, const geom::Pose& X_WA,
                                                      const geom::Ellipsoid& b, const geom::Pose& X_WB)>;
+
+/// A call of geom::newton_distance that gave no answer, to be repeated bit for bit. Axes of revolution along body z.
+struct FailedDistance {
+  DistanceMethod method = DistanceMethod::newton8;
+  geom::DistanceStatus status = geom::DistanceStatus::not_converged;
+  geom::Ellipsoid shape_a{Eigen::Vector3d::Ones()};
+  geom::Ellipsoid shape_b{Eigen::Vector3d::Ones()};
+  geom::Pose X_WA;
+  geom::Pose X_WB;
+  geom::WitnessPair seed;
+};
 
 /// Everything but `finder` is for "bracketing" alone.
 struct ContactOptions {
@@ -38,8 +57,8 @@ struct ContactOptions {
       1e-6;  ///< length; 0 < eps_d < the smallest semi-axis. Contacts shallower than about this can be missed
   DistanceMethod distance = DistanceMethod::dual;
   ContactRoot root = ContactRoot::newton;
-  /// For the first distance of a search with newton8 or newton5; where it declines, and if there is none: the support
-  /// points along the last known normal. Later ones go on from the distance before.
+  /// For the first distance of a search with newton8 or newton5; where it declines, and if there is none: the dual's
+  /// points. Later ones start from the support points along the normal before.
   SeedFunction seed;
 };
 

@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <string>
+#include <optional>
 #include <vector>
 
 namespace ed {
@@ -33,7 +33,9 @@ struct Counters {
   std::uint64_t candidate_tests = 0;     ///< pairs of envelopes tested in rebuilds
   /// Pairs found deeper than 1e-12 of their size: always 0 in a sound run. With Finder::bracketing, contacts missed.
   std::uint64_t overlaps = 0;
-  std::uint64_t parting_contacts = 0;  ///< contacts at which the bodies did not approach: no impulse; always 0
+  /// Contacts at which the bodies did not approach: no impulse, not a collision. Always 0 in a sound run.
+  std::uint64_t parting_contacts = 0;
+  std::uint64_t unrecorded_failures = 0;  ///< failed pairs beyond those that failures() has room for
 };
 
 struct Collision {
@@ -42,17 +44,27 @@ struct Collision {
   int j;
 };
 
+enum class FailureReason {
+  overlap,   ///< the bodies overlap by more than rounding
+  distance,  ///< Newton's method for a distance gave no answer
+};
+
+ED_EXPORT const char* to_string(FailureReason reason);
+
 /// A pair that could not be predicted as it should, at the moment where that failed, with all that is needed to look at
 /// it again.
 struct FailedPair {
-  std::string reason;
+  FailureReason reason = FailureReason::overlap;
   geom::Ellipsoid shape_i{Eigen::Vector3d::Ones()};
   geom::Ellipsoid shape_j{Eigen::Vector3d::Ones()};
   Motion motion_i;
   Motion motion_j;  ///< in the image nearest to i
-  double time;      ///< simulated time
-  int i;
-  int j;
+  double time = 0;  ///< simulated time
+  int i = 0;
+  int j = 1;
+  Finder finder = Finder::certified;
+  double eps_d = 0;                        ///< of Finder::bracketing
+  std::optional<FailedDistance> distance;  ///< what gave no answer, if that is the reason
 };
 
 /// All bodies at one time, as the observables want them.
@@ -109,7 +121,7 @@ class ED_EXPORT Simulation {
   double shrink_box(double target_box, double least_gain = 0);
 
   /// Chooses the envelope's thickness by the work that the counters show, never by a clock. Runs up to about 20
-  /// collisions a body. `keep_going` is asked after every few thousand collisions; false: stops with the best so far.
+  /// collisions a body. `keep_going` is asked after every hundred collisions; false: stops with the best so far.
   void tune_envelopes(const std::function<bool()>& keep_going = {});
   double envelope() const;
 
@@ -132,7 +144,7 @@ class ED_EXPORT Simulation {
   void record_collisions(std::size_t number);
   const std::vector<Collision>& collisions() const;
 
-  /// At most the first 16 pairs that failed.
+  /// The first pairs that failed, at most 16 for each reason.
   const std::vector<FailedPair>& failures() const;
 
  private:
