@@ -12,6 +12,7 @@ hardbody_test(geom_unit_test unit
   unit/geom_user_shape_test.cpp)
 hardbody_test(geom_batch_test property property/geom_batch_test.cpp)
 hardbody_test(geom_property_test property property/geom_distance_test.cpp
+  property/geom_penetration_test.cpp
   property/geom_superellipsoid_distance_test.cpp)
 hardbody_test(geom_accuracy_test accuracy accuracy/geom_distance_test.cpp)
 

@@ -94,7 +94,10 @@ DistanceResult armijo_ascent(const EllipsoidPair& pair, Eigen::Vector3d n, const
   for (int newton = 0; newton < 200; ++newton) {
     if (e.step2 <= kNormalTolerance2) {
       if (e.g < -scale.certified_depth - rounding) return declined;
-      return internal::witness_result(pair, p_WA, internal::step_on_sphere(n, e.step), declined.iterations);
+      DistanceResult result =
+          internal::witness_result(pair, p_WA, internal::step_on_sphere(n, e.step), declined.iterations);
+      result.error_bound = internal::newton_error_bound(scale, result);
+      return result;
     }
     double t = 1;
     while (true) {
@@ -111,6 +114,14 @@ DistanceResult armijo_ascent(const EllipsoidPair& pair, Eigen::Vector3d n, const
     }
   }
   return declined;
+}
+
+DistanceResult deep_distance(const Ellipsoid& a, const Pose& X_WA, const Ellipsoid& b, const Pose& X_WB,
+                             const Eigen::Vector3d& r, const PairScale& scale, const DistanceResult& declined) {
+  const EllipsoidPair pair(WorldEllipsoid(a, X_WA), WorldEllipsoid(b, X_WB), r, scale.certified_depth,
+                           0.5 * scale.certified_depth);
+  const Eigen::Vector3d start = r.squaredNorm() > 0 ? r.normalized() : Eigen::Vector3d::UnitX();
+  return internal::search_sphere(pair, scale, start, X_WA.position(), declined.iterations);
 }
 
 }  // namespace
@@ -161,6 +172,7 @@ DistanceResult distance(const Ellipsoid& a, const Pose& X_WA, const Ellipsoid& b
                                            : general_distance(a, X_WA, b, X_WB, r, scale, options);
   if (result.status == DistanceStatus::not_converged) [[unlikely]] {
     result = internal::perram_wertheim_distance(a, X_WA, b, X_WB, result.iterations);
+    if (result.status == DistanceStatus::not_converged) result = deep_distance(a, X_WA, b, X_WB, r, scale, result);
   }
   return result;
 }

@@ -124,25 +124,45 @@ TEST(Distance, OfTouchingBodiesIsZeroWithinRounding) {
   }
 }
 
-TEST(Distance, OfConcentricBodiesThatAreNoSpheresIsDeclined) {
-  // Their depth, the sum of two semi-axes, is more than the sum of the smallest radii of curvature.
+TEST(Distance, OfConcentricParallelBodiesIsTheSumOfTheShortestAxes) {
   Random random(3);
   for (int i = 0; i < 100; ++i) {
-    const Ellipsoid a = i % 2 ? random.spheroid(random.log_uniform(1.5, 10)) : Ellipsoid({1, 1.5, 2.5});
-    const Ellipsoid b = i % 3 ? random.spheroid(random.log_uniform(0.1, 0.5)) : Ellipsoid({0.8, 1.5, 3});
+    const Vector3d axes_a(random.log_uniform(0.1, 1), random.log_uniform(1, 3), random.log_uniform(1, 10));
+    const Vector3d axes_b(random.log_uniform(0.1, 1), random.log_uniform(1, 3), random.log_uniform(1, 10));
     const Pose X_WA = random.pose(1.0);
-    ASSERT_TRUE(declined(distance(a, X_WA, b, X_WA))) << i;
-    ASSERT_TRUE(declined(distance(a, X_WA, b, random.pose(X_WA.position())))) << i;
+    const DistanceResult r = distance(Ellipsoid(axes_a), X_WA, Ellipsoid(axes_b), X_WA);
+    ASSERT_EQ(r.status, DistanceStatus::overlapping);
+    ASSERT_NEAR(r.distance, -(axes_a + axes_b).minCoeff(), 1e-14 * (axes_a + axes_b).maxCoeff()) << i;
+    ASSERT_LE(r.error_bound, kDepthGap * (X_WA.position().norm() + (axes_a + axes_b).sum()));
   }
 }
 
-TEST(Distance, DeclinesAnOverlapDeeperThanIsCertified) {
-  // Two needles crossed at a right angle: pushed together along the common normal, they overlap by 1.9 with a sum of
-  // smallest radii of curvature of 2/5. The way out is sideways or along the normal, nobody knows without a search.
+/// Two needles crossed at a right angle, their centres nearly at one point: along y, the common normal, they overlap by
+/// 1.9, and a way out along either of them is longer.
+TEST(Distance, OfCrossedNeedlesIsAlongTheCommonNormal) {
   const Ellipsoid needle({1, 1, 5});
   const Pose X_WB = turned_about_y(std::numbers::pi / 2, {0, 0.1, 0});
-  EXPECT_TRUE(declined(distance(needle, Pose(), needle, X_WB)));
-  EXPECT_TRUE(declined(distance(needle, Pose(), needle, X_WB, {.start = {0, 1, 0}})));
+  // From any start the same: the search is over all normals.
+  for (const Vector3d& start : {Vector3d(0, 0, 0), Vector3d(0, 1, 0), Vector3d(0, -1, 0), Vector3d(1, 0, 0)}) {
+    const DistanceResult r = distance(needle, Pose(), needle, X_WB, {.start = start});
+    ASSERT_EQ(r.status, DistanceStatus::overlapping);
+    EXPECT_NEAR(r.distance, -1.9, 1e-14);
+    EXPECT_NEAR(r.normal.y(), 1, 1e-12);
+    EXPECT_LE(r.error_bound, 1e-6);
+  }
+}
+
+/// The local penetration is the nearest stationary one: from the wrong side, the wrong one.
+TEST(Distance, LocalPenetrationDependsOnTheStart) {
+  const Ellipsoid needle({1, 1, 5});
+  const Pose X_WB = turned_about_y(std::numbers::pi / 2, {0, 0.1, 0});
+  const auto local = [&](const Vector3d& start) {
+    return distance(needle, Pose(), needle, X_WB, {.start = start, .penetration = Penetration::local});
+  };
+  EXPECT_NEAR(local({0.1, 1, 0}).distance, -1.9, 1e-14);
+  EXPECT_NEAR(local({0.1, -1, 0}).distance, -2.1, 1e-14);
+  EXPECT_EQ(local({0.1, -1, 0}).status, DistanceStatus::overlapping);
+  EXPECT_EQ(local({0.1, -1, 0}).error_bound, std::numeric_limits<double>::infinity());
 }
 
 TEST(Distance, ACertifiedOverlapIsTheShortestTranslationThatPartsTheBodies) {

@@ -33,6 +33,11 @@ class GEOM_EXPORT Superellipsoid {
   /// hess h, two rank-ones; across n. Huge where n is along a flat face's normal.
   Eigen::Matrix3d support_hessian(const Eigen::Vector3d& n) const;
 
+  /// N, of x/a: the body is {x : N(x/a) <= 1}.
+  const internal::NestedNorm& norm() const { return norm_; }
+  /// Its dual N*, of a n.
+  const internal::NestedNorm& dual_norm() const { return dual_; }
+
   /// The largest and the least distance of the surface from the centre.
   double bounding_radius() const { return bounding_radius_; }
   double inscribed_radius() const { return inscribed_radius_; }

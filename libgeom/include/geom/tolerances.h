@@ -41,6 +41,16 @@ inline constexpr double kLeastEigenvalue = 1e-6;
 /// times the sum of both bounding radii. Dimensionless.
 inline constexpr double kBoundGap = 1e-12;
 
+/// The same where the slow last resort was needed; a larger gap is declined.
+inline constexpr double kWidestGap = 1e-9;
+
+/// Penetration::global: no translation is shorter than the one returned by more than kDepthGap times the sum of both
+/// bounding radii, proved by branch and bound; overlaps for which kMostDepthSamples evaluations do not prove
+/// kWidestDepthGap are declined. Dimensionless.
+inline constexpr double kDepthGap = 1e-7;
+inline constexpr double kWidestDepthGap = 1e-3;
+inline constexpr int kMostDepthSamples = 100000;
+
 /// By what a step that lowers g is shortened. Dimensionless.
 inline constexpr double kBacktrack = 0.35;
 

@@ -3,11 +3,13 @@
 /// The frame around the dual Newton that turns a converged normal into a DistanceResult; used by every shape.
 
 #include <geom/distance.h>
+#include <geom/internal/sphere_search.h>
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace geom::internal {
@@ -40,7 +42,8 @@ struct WorldSupport {
 template <class SupportA, class SupportB>
 class GeneralPair {
  public:
-  /// `rho`: the sum of both smallest radii of curvature; `floor`: what eigenvalues are lifted to where g <= -rho.
+  /// `rho`: the sum of both smallest radii of curvature; `floor`: what eigenvalues are lifted to
+  /// where g <= -rho, at least.
   GeneralPair(SupportA a, SupportB b, const Eigen::Vector3d& r, double rho, double floor)
       : a_(std::move(a)), b_(std::move(b)), r_(r), rho_(rho), floor_(floor) {}
 
@@ -61,10 +64,12 @@ class GeneralPair {
     const double m_ef = f.dot(He);
     const double half_difference = 0.5 * (m_ee - m_ff);
     const double smallest = 0.5 * (m_ee + m_ff) - std::sqrt(half_difference * half_difference + m_ef * m_ef);
-    const double least = out.g > -rho_ ? kLeastEigenvalue * 2 * floor_ : floor_;
-    if (smallest < least) {
-      m_ee += least - smallest;
-      m_ff += least - smallest;
+    // Only a matrix that is not definite is lifted: a lifted one converges linearly.
+    const double least = kLeastEigenvalue * 2 * floor_;
+    if (smallest < least) [[unlikely]] {
+      const double lift = (out.g > -rho_ ? least : std::max(floor_, -smallest)) - smallest;
+      m_ee += lift;
+      m_ff += lift;
     }
     const double y_e = y.dot(e);
     const double y_f = y.dot(f);
@@ -123,10 +128,15 @@ DistanceResult witness_result(const Pair& pair, const Eigen::Vector3d& p_WA, con
   return result;
 }
 
-/// Whether the support points of an answer differ by so much that the distance may be wrong: it is below the true one
-/// by |y|^2 / (2 lambda), lambda >= g + rho the least eigenvalue of M + g I.
+/// By how much the distance of an answer can be below the true one: along every great circle from n, g'' <= -lambda
+/// with lambda = g(n) + rho, so that g grows by |y|^2 / (2 lambda) at most.
+inline double newton_error_bound(const PairScale& scale, const DistanceResult& r) {
+  const double lambda = r.distance + scale.certified_depth;
+  return lambda > 0 ? 0.5 * r.residual * r.residual / lambda : std::hypot(r.distance, r.residual) - r.distance;
+}
+
 inline bool needs_polish(const PairScale& scale, const DistanceResult& r) {
-  return r.residual * r.residual > kResidualTolerance * scale.size * (r.distance + scale.certified_depth);
+  return r.error_bound > 0.5 * kResidualTolerance * scale.size;
 }
 
 /// Takes more Newton steps while they are needed and help.
@@ -139,10 +149,10 @@ template <class Pair>
   constexpr int kMostSteps = 4;
   for (int step = 0; step < kMostSteps && needs_polish(scale, result); ++step) {
     const Evaluation e = pair(result.normal);
-    const DistanceResult next =
-        witness_result(pair, p_WA, step_on_sphere(result.normal, e.step), result.iterations + 1);
+    DistanceResult next = witness_result(pair, p_WA, step_on_sphere(result.normal, e.step), result.iterations + 1);
     if (!(next.residual < result.residual)) return;
     result = next;
+    result.error_bound = newton_error_bound(scale, result);
   }
 }
 
@@ -167,14 +177,55 @@ DistanceResult solve_dual(const Pair& pair, const Cold& cold, const PairScale& s
     const Ascent ascent = ascend(pair, rounding, done, budget, n, e);
     spent += limit - budget;
     if (ascent != Ascent::converged) continue;
-    if (e.g < -scale.certified_depth - rounding) continue;
+    const bool certified = e.g >= -scale.certified_depth - rounding;
+    if (!certified && options.penetration == Penetration::global) continue;
     DistanceResult result = witness_result(pair, p_WA, step_on_sphere(n, e.step), spent);
+    if (!certified) {
+      result.error_bound = std::numeric_limits<double>::infinity();
+      return result;
+    }
+    result.error_bound = newton_error_bound(scale, result);
     if (needs_polish(scale, result)) [[unlikely]]
       polish(pair, scale, p_WA, result);
     return result;
   }
   DistanceResult declined;
   declined.iterations = spent;
+  return declined;
+}
+
+/// The last resort: branch and bound over all normals (sphere_search.h). It finds the shortest translation that parts
+/// bodies deep in each other, and the distance of bodies for which Newton's method did not converge.
+template <class Pair>
+[[gnu::noinline, gnu::cold]] DistanceResult search_sphere(const Pair& pair, const PairScale& scale,
+                                                          const Eigen::Vector3d& start, const Eigen::Vector3d& p_WA,
+                                                          int iterations) {
+  const auto sample = [&pair](const Eigen::Vector3d& n) {
+    const SupportPair s = pair.support_pair(n);
+    return Tangent{n, (pair.r() + s.s_b) - s.s_a, (n.dot(pair.r()) - s.h_a) - s.h_b};
+  };
+  const auto done = [](const Evaluation& e) { return e.step2 <= kNormalTolerance2; };
+  const auto polish = [&](const Eigen::Vector3d& start_n) {
+    Eigen::Vector3d n = start_n;
+    Evaluation e = pair(n);
+    int budget = kMaxIterations;
+    (void)ascend(pair, kRoundingFactor * scale.size, done, budget, n, e);
+    iterations += kMaxIterations - budget + 1;
+    const Tangent before = sample(n);
+    const Tangent after = sample(step_on_sphere(n, e.step));
+    return after.g >= before.g ? after : before;
+  };
+  SphereSearch<decltype(sample), decltype(polish)> sphere(sample, polish, scale.certified_depth, polish(start));
+  sphere.run_to(kDepthGap * scale.size, kMostDepthSamples);
+  // Concave there: what is left is to come close to the one maximum.
+  if (sphere.best().g > 0) sphere.run_to(kBoundGap * scale.size, kMostDepthSamples);
+  DistanceResult result = witness_result(pair, p_WA, sphere.best().n, iterations + sphere.samples());
+  const double least = newton_error_bound(scale, result);
+  result.error_bound = sphere.upper() - sphere.best().g;
+  if (result.distance + scale.certified_depth > 0) result.error_bound = std::min(result.error_bound, least);
+  if (result.error_bound < (result.distance > 0 ? kWidestGap : kWidestDepthGap) * scale.size) return result;
+  DistanceResult declined;
+  declined.iterations = result.iterations;
   return declined;
 }
 
@@ -194,7 +245,9 @@ DistanceResult distance(const ShapeA& a, const Pose& X_WA, const ShapeB& b, cons
                                    r, rho, floor);
   const auto cold = [&r] { return r.squaredNorm() > 0 ? r.normalized() : Eigen::Vector3d::UnitX(); };
   const internal::PairScale scale{r.norm() + a.bounding_radius() + b.bounding_radius(), rho};
-  return internal::solve_dual(pair, cold, scale, X_WA.position(), options);
+  const DistanceResult result = internal::solve_dual(pair, cold, scale, X_WA.position(), options);
+  if (result.status != DistanceStatus::not_converged) return result;
+  return internal::search_sphere(pair, scale, cold(), X_WA.position(), result.iterations);
 }
 
 }  // namespace geom

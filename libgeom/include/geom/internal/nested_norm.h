@@ -69,6 +69,8 @@ class PlaneNorm {
  public:
   explicit PlaneNorm(double q) : q_(q), power_(q - 1), root_(1 / q) {}
 
+  double exponent() const { return q_; }
+
   struct Value {
     double norm;
     double du;  ///< (u / N)^(q-1)
@@ -107,23 +109,43 @@ class NestedNorm {
     Eigen::Vector3d gradient;  ///< dN/dw, each in [0, 1]
   };
 
+  double outer_exponent() const { return outer_.exponent(); }
+  double inner_exponent() const { return inner_.exponent(); }
+
   Value operator()(const Eigen::Vector3d& w) const {
     const PlaneNorm::Value inner = inner_(w.x(), w.y());
     const PlaneNorm::Value outer = outer_(inner.norm, w.z());
     return {outer.norm, {outer.du * inner.du, outer.du * inner.dv, outer.dv}};
   }
 
-  /// The Hessian, two rank-ones that vanish along w to rounding. Where a w vanishes and q < 2 (a flat face) it is
-  /// infinite; w is kept above kLeast of the largest, which leaves it huge.
-  Eigen::Matrix3d hessian(const Eigen::Vector3d& w_given) const {
-    const Eigen::Vector3d w = w_given.cwiseMax(kLeast * w_given.maxCoeff());
+  /// With the Hessian, across across^T + along along^T.
+  struct Curved : Value {
+    Eigen::Vector3d across;  ///< in the plane of w0 and w1
+    Eigen::Vector3d along;
+  };
+
+  /// All of it from one evaluation of either plane's norm. Both vectors are orthogonal to w to rounding. Where a w
+  /// vanishes and q < 2 (a flat face) the Hessian is infinite; there it is that of w kept above kLeast of the largest,
+  /// which is huge.
+  Curved curved(const Eigen::Vector3d& w) const {
+    const double least = kLeast * w.maxCoeff();
+    if (w.minCoeff() < least) [[unlikely]] {
+      Curved at = curved(w.cwiseMax(2 * least));
+      static_cast<Value&>(at) = (*this)(w);
+      return at;
+    }
     const PlaneNorm::Value inner = inner_(w.x(), w.y());
     const PlaneNorm::Value outer = outer_(inner.norm, w.z());
-    const Eigen::Vector3d across(w.y(), -w.x(), 0);
-    const Eigen::Vector3d along(w.z() * inner.du, w.z() * inner.dv, -inner.norm);
-    const double l_inner = outer.du * inner_.curvature(inner, w.x(), w.y());
-    const double l_outer = outer_.curvature(outer, inner.norm, w.z());
-    return l_inner * across * across.transpose() + l_outer * along * along.transpose();
+    const double k_inner = std::sqrt(outer.du * inner_.curvature(inner, w.x(), w.y()));
+    const double k_outer = std::sqrt(outer_.curvature(outer, inner.norm, w.z()));
+    return {{outer.norm, {outer.du * inner.du, outer.du * inner.dv, outer.dv}},
+            {k_inner * w.y(), -k_inner * w.x(), 0},
+            {k_outer * w.z() * inner.du, k_outer * w.z() * inner.dv, -k_outer * inner.norm}};
+  }
+
+  Eigen::Matrix3d hessian(const Eigen::Vector3d& w) const {
+    const Curved at = curved(w);
+    return at.across * at.across.transpose() + at.along * at.along.transpose();
   }
 
  private:

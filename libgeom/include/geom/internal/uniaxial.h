@@ -104,11 +104,12 @@ struct UniaxialEvaluation : Evaluation {
   // q = sigma - floor; the square root is needed only when they are not.
   // By theory M >= rho = rhoA + rhoB, so that M + g I is definite while g > -rho; deeper it must be made so.
   const double rho = A.rho + B.rho;
-  const double floor = gap.g > -rho ? kLeastEigenvalue * rho : 0.5 * rho;
+  const double floor = kLeastEigenvalue * rho;
   const double q = sigma - floor;
   if (!(q * (q + t1) + D >= 0 && q + 0.5 * t1 >= 0)) [[unlikely]] {
     const double smallest = sigma + 0.5 * t1 - std::sqrt(std::max(0.0, 0.25 * t1 * t1 - D));
-    if (smallest < floor) sigma += floor - smallest;
+    // Only a matrix that is not definite is lifted: a lifted one converges linearly.
+    if (smallest < floor) sigma += (gap.g > -rho ? floor : std::max(0.5 * rho, -smallest)) - smallest;
   }
   const double inv_det = 1 / (sigma * (sigma + t1) + D);
   const Both pull = e * (wx * yx + wy * yy + wz * yz);
