@@ -1,14 +1,15 @@
 /// Collisions a second of the whole engine, one core, with the counters that explain them.
 ///
 /// engine/...: the default path. First line: the state point that everything else is compared with, N = 512, X0 = 3,
-/// packing fraction 0.40. methods/...: every finder, kind of neighbour list and distance method; the tables at the end
-/// give ratios within the run, and the fastest kind of list, which is what neighbours = "auto" takes.
+/// packing fraction 0.40. methods/...: every finder, kind of neighbour list and distance method. dilute/...: dilated
+/// envelopes against cells, the choice of neighbours = "auto". The tables at the end give ratios within the run.
 
 #include <ed/simulation.h>
 #include <ed/start.h>
 
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -100,17 +101,21 @@ void engine(benchmark::State& timing, const StatePoint& state, const Method& met
   timing.counters["kernel_calls"] = each(&ed::Counters::kernel_calls);
   timing.counters["rebuilds"] = each(&ed::Counters::neighbour_rebuilds);
   timing.counters["rescues"] = static_cast<double>(after.rescues);
-  timing.counters["missed"] = static_cast<double>(after.overlaps);
+  timing.counters["overlaps"] = static_cast<double>(after.overlaps);
 }
 
 std::string method_name(const StatePoint& state, const Method& method) {
   return "methods/" + state.name() + "/" + method.name();
 }
 
-void add(const std::string& name, const StatePoint& state, const Method& method) {
+std::string dilute_name(const StatePoint& state, const Method& method) {
+  return "dilute/" + state.name() + "/" + method.name();
+}
+
+void add(const std::string& name, const StatePoint& state, const Method& method, int stretches = kStretches) {
   benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& timing) { engine(timing, state, method); })
       ->Unit(benchmark::kMillisecond)
-      ->Iterations(kStretches);  // fixed: a start takes longer than the stretches that are timed
+      ->Iterations(stretches);  // fixed: a start takes longer than the stretches that are timed
 }
 
 const std::vector<StatePoint>& method_states() {
@@ -118,6 +123,29 @@ const std::vector<StatePoint>& method_states() {
                                               {3, 0.05}, {1, 0.05}, {3, 0.01},       {1, 0.01}};
   return states;
 }
+
+/// Where cells may be the fastest, three of them along an edge at the least.
+const std::vector<StatePoint>& dilute_states() {
+  static const std::vector<StatePoint> states = [] {
+    std::vector<StatePoint> all;
+    for (const double X0 : {1.0 / 3, 2.0, 3.0, 5.0, 10.0}) {
+      for (const double packing_fraction : {0.02, 0.04, 0.06, 0.08, 0.10, 0.15}) {
+        const double R = std::max(std::pow(X0, 2.0 / 3), std::pow(X0, -1.0 / 3));
+        const double box = std::cbrt(4.0 / 3 * M_PI * kNumber / packing_fraction);
+        if (box > 3.001 * 2 * R) all.push_back({X0, packing_fraction});
+      }
+    }
+    return all;
+  }();
+  return states;
+}
+
+constexpr Method kDilute[] = {
+    {ed::Finder::certified, ed::Neighbours::dilated, ed::DistanceMethod::dual},
+    {ed::Finder::certified, ed::Neighbours::cells, ed::DistanceMethod::dual},
+    {ed::Finder::bracketing, ed::Neighbours::dilated, ed::DistanceMethod::dual},
+    {ed::Finder::bracketing, ed::Neighbours::cells, ed::DistanceMethod::dual},
+};
 
 std::vector<Method> methods() {
   std::vector<Method> all;
@@ -143,10 +171,11 @@ class KeepRates : public benchmark::ConsoleReporter {
   }
 
   /// NaN if the filter left that benchmark out.
-  double rate(const StatePoint& state, const Method& method) const {
-    const auto found = rates_.find(method_name(state, method));
+  double rate(const std::string& name) const {
+    const auto found = rates_.find(name);
     return found == rates_.end() ? std::nan("") : found->second;
   }
+  double rate(const StatePoint& state, const Method& method) const { return rate(method_name(state, method)); }
 
  private:
   std::map<std::string, double> rates_;
@@ -179,6 +208,20 @@ void print_methods(const KeepRates& rates) {
   }
 }
 
+void print_dilute(const KeepRates& rates) {
+  std::printf("\ncells / dilated\n%-18s %12s %12s | %12s\n", "", "certified", "bracketing", "in 27 cells");
+  for (const StatePoint& state : dilute_states()) {
+    const auto rate = [&](std::size_t k) { return rates.rate(dilute_name(state, kDilute[k])); };
+    const double certified = rate(1) / rate(0);
+    const double bracketing = rate(3) / rate(2);
+    if (std::isnan(certified) && std::isnan(bracketing)) continue;
+    const ed::System& system = start(state);
+    const double cells = std::floor(system.box / (2 * system.species.shape.bounding_radius()));
+    std::printf("%-18s %12.2f %12.2f | %12.1f\n", state.name().c_str(), certified, bracketing,
+                27 * kNumber / (cells * cells * cells));
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -201,8 +244,12 @@ int main(int argc, char** argv) {
   for (const StatePoint& state : method_states()) {
     for (const Method& method : methods()) add(method_name(state, method), state, method);
   }
+  for (const StatePoint& state : dilute_states()) {
+    for (const Method& method : kDilute) add(dilute_name(state, method), state, method, 2);
+  }
   KeepRates rates;
   benchmark::RunSpecifiedBenchmarks(&rates);
   benchmark::Shutdown();
   print_methods(rates);
+  print_dilute(rates);
 }

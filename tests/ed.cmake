@@ -2,6 +2,7 @@
 hardbody_test(ed_unit_test unit
   unit/analysis_test.cpp
   unit/envelopes_test.cpp
+  unit/event_loop_test.cpp
   unit/observables_test.cpp
   unit/simulation_test.cpp
   unit/start_test.cpp

@@ -74,9 +74,10 @@ struct MovingSurface {
 };
 
 /// By how much turning can change the distance, in a unit of time: eq. (distOver) has |w| L here, L the bounding
-/// radius; |w| |a - b|, the largest slope of the support function, is an overestimate too, and makes longer steps.
+/// radius; the speed of the axis times |a - b|, the largest slope of the support function, is an overestimate too, and
+/// makes longer steps.
 double turning_speed(const geom::Ellipsoid& shape, const AxisMotion& motion) {
-  return (shape.bounding_radius() - shape.inscribed_radius()) * motion.rate;
+  return (shape.bounding_radius() - shape.inscribed_radius()) * motion.rate * motion.e2.norm();
 }
 
 bool is_answer(const geom::DistanceResult& result) {
@@ -210,7 +211,7 @@ Finding Search::run(double t_begin, double t_end) {
       if (approaches(here)) return {Outcome::contact, here.time};
       here.d = std::numeric_limits<double>::min();  // they have just collided, and part
     }
-    if (!(here.time < window.end)) return finding;                    // step 8
+    if (!(here.time < window.end) || fastest_ == 0) return finding;   // step 8
     const double step = std::max(here.d, options_.eps_d) / fastest_;  // step 3
     const Look next = look(std::max(std::nextafter(here.time, window.end), std::min(here.time + step, window.end)));
     if (next.d < 0 && here.d > 0) {  // step 5

@@ -262,6 +262,41 @@ TEST(Simulation, TuningAsksOftenWhetherToGoOn) {
   EXPECT_LE(stopped.counters().collisions, 500U);
 }
 
+TEST(FastestNeighbours, AreThoseThatWereMeasured) {
+  struct Row {
+    double X0, packing_fraction;
+    double certified, bracketing;  ///< collisions/s with cells over those with dilated envelopes, medians of three
+  };
+  // bench_engine --benchmark_filter=dilute/ --benchmark_repetitions=3, N = 512.
+  const Row rows[] = {
+      {1.0 / 3, 0.02, 2.21, 1.25}, {1.0 / 3, 0.04, 2.15, 1.09}, {1.0 / 3, 0.06, 1.75, 0.96},
+      {1.0 / 3, 0.08, 1.57, 0.85}, {1.0 / 3, 0.1, 1.41, 0.75},  {1.0 / 3, 0.15, 1.06, 0.58},
+      {2, 0.02, 1.66, 1.16},       {2, 0.04, 1.54, 1.10},       {2, 0.06, 1.42, 0.98},
+      {2, 0.08, 1.22, 0.91},       {2, 0.1, 1.16, 0.84},        {2, 0.15, 0.84, 0.69},
+      {3, 0.02, 1.95, 1.22},       {3, 0.04, 1.66, 0.98},       {3, 0.06, 1.04, 0.76},
+      {3, 0.08, 0.96, 0.63},       {3, 0.1, 0.71, 0.49},        {3, 0.15, 0.43, 0.34},
+      {5, 0.02, 1.40, 0.76},       {5, 0.04, 0.84, 0.42},       {5, 0.06, 0.52, 0.28},
+      {5, 0.08, 0.46, 0.23},       {5, 0.1, 0.27, 0.16},        {5, 0.15, 0.23, 0.13},
+      {10, 0.02, 0.50, 0.17},      {10, 0.04, 0.28, 0.09},      {10, 0.06, 0.15, 0.05},
+      {10, 0.08, 0.13, 0.04},
+  };
+  constexpr double kNoise = 0.05;
+  const auto expect_faster = [](const Row& row, ed::Finder finder, double ratio) {
+    if (std::abs(ratio - 1) < kNoise) return;
+    const ed::Neighbours wanted = ratio > 1 ? ed::Neighbours::cells : ed::Neighbours::dilated;
+    EXPECT_EQ(ed::fastest_neighbours(ed_test::spheroid(row.X0), 512, row.packing_fraction, finder), wanted)
+        << row.X0 << ", " << row.packing_fraction << ", ratio " << ratio;
+  };
+  for (const Row& row : rows) {
+    expect_faster(row, ed::Finder::certified, row.certified);
+    expect_faster(row, ed::Finder::bracketing, row.bracketing);
+  }
+  // Spheres never leave a dilated envelope by turning; a dense fluid; less than three cells along an edge.
+  EXPECT_EQ(ed::fastest_neighbours(ed_test::spheroid(1), 512, 0.01), ed::Neighbours::dilated);
+  EXPECT_EQ(ed::fastest_neighbours(ed_test::spheroid(3), 512, 0.40), ed::Neighbours::dilated);
+  EXPECT_EQ(ed::fastest_neighbours(ed_test::spheroid(10), 64, 0.02), ed::Neighbours::dilated);
+}
+
 TEST(Simulation, OfBodiesAtRestComesToItsEnd) {
   ed::Simulation simulation(ed_test::grid(sphere(), 3, 5));
   EXPECT_TRUE(simulation.run_until(10));

@@ -79,18 +79,46 @@ void expect_separated_until(const ContactResult& result, double t_max) {
   EXPECT_TRUE(result.normal.hasNaN());
 }
 
+/// The suite runs with every finder; see the list of options at its end.
+class BothFinders : public testing::TestWithParam<ed::ContactOptions> {
+ protected:
+  ContactResult contact(const Ellipsoid& a, const Motion& motion_a, const Ellipsoid& b, const Motion& motion_b,
+                        double t_max) const {
+    return time_of_contact(a, motion_a, b, motion_b, t_max, GetParam());
+  }
+};
+
+ed::ContactOptions bracketing(ed::DistanceMethod distance, ed::ContactRoot root = ed::ContactRoot::newton) {
+  ed::ContactOptions options;
+  options.finder = ed::Finder::bracketing;
+  options.distance = distance;
+  options.root = root;
+  return options;
+}
+
+std::string name_of(const testing::TestParamInfo<ed::ContactOptions>& info) {
+  const char* const kNames[] = {"certified", "dual", "dual_one_dimensional", "newton8", "newton5"};
+  return kNames[info.index];
+}
+
+INSTANTIATE_TEST_SUITE_P(TimeOfContact, BothFinders,
+                         testing::Values(ed::ContactOptions{}, bracketing(ed::DistanceMethod::dual),
+                                         bracketing(ed::DistanceMethod::dual, ed::ContactRoot::one_dimensional),
+                                         bracketing(ed::DistanceMethod::newton8),
+                                         bracketing(ed::DistanceMethod::newton5)),
+                         name_of);
+
 // ---- Known answers -------------------------------------------------------------------------------------------------
 
-TEST(TimeOfContact, HeadOnSpheresMeetWhenTheGapIsUsedUp) {
-  const ContactResult r =
-      time_of_contact(sphere(1), at({0, 0, 0}, {0.5, 0, 0}), sphere(2), at({10, 0, 0}, {-3, 0, 0}), 5);
+TEST_P(BothFinders, HeadOnSpheresMeetWhenTheGapIsUsedUp) {
+  const ContactResult r = contact(sphere(1), at({0, 0, 0}, {0.5, 0, 0}), sphere(2), at({10, 0, 0}, {-3, 0, 0}), 5);
   ASSERT_EQ(r.status, ContactStatus::hit);
   EXPECT_NEAR(r.time, 2, 1e-15);
   EXPECT_LE((r.normal - Vector3d::UnitX()).norm(), 1e-15);
   EXPECT_LE((r.point - Vector3d(2, 0, 0)).norm(), 1e-14);
 }
 
-TEST(TimeOfContact, SpheresMeetWhereTheQuadraticEquationSays) {
+TEST_P(BothFinders, SpheresMeetWhereTheQuadraticEquationSays) {
   ed::Random random(51);
   int hits = 0;
   int misses = 0;
@@ -113,7 +141,7 @@ TEST(TimeOfContact, SpheresMeetWhereTheQuadraticEquationSays) {
     const Real half_b = p.dot(v);
     const Real c = p.squaredNorm() - static_cast<Real>(reach) * static_cast<Real>(reach);
     const Real discriminant = half_b * half_b - v.squaredNorm() * c;
-    const ContactResult r = time_of_contact(a, m_a, b, m_b, kForever);
+    const ContactResult r = contact(a, m_a, b, m_b, kForever);
     // Closer to tangential than rounding can tell.
     if (std::abs(static_cast<double>(discriminant)) < 1e-12 * static_cast<double>(half_b * half_b)) continue;
     if (half_b >= 0 || discriminant < 0) {
@@ -135,16 +163,16 @@ TEST(TimeOfContact, SpheresMeetWhereTheQuadraticEquationSays) {
   EXPECT_GT(misses, 5000);
 }
 
-TEST(TimeOfContact, ParallelNeedlesMeetTipToTip) {
+TEST_P(BothFinders, ParallelNeedlesMeetTipToTip) {
   const Ellipsoid needle({1, 1, 3});
-  const ContactResult r = time_of_contact(needle, at({0, 0, 0}, {0, 0, 1}), needle, at({0, 0, 9}, {0, 0, -1}), 10);
+  const ContactResult r = contact(needle, at({0, 0, 0}, {0, 0, 1}), needle, at({0, 0, 9}, {0, 0, -1}), 10);
   ASSERT_EQ(r.status, ContactStatus::hit);
   EXPECT_NEAR(r.time, 1.5, 1e-14);
   EXPECT_LE((r.point - Vector3d(0, 0, 4.5)).norm(), 1e-14);
   EXPECT_LE((r.normal - Vector3d::UnitZ()).norm(), 1e-14);
 }
 
-TEST(TimeOfContact, NeedleTurningInPlaceSweepsIntoASphere) {
+TEST_P(BothFinders, NeedleTurningInPlaceSweepsIntoASphere) {
   // In the plane of turning the sphere of radius 1 sits where only the tip of the needle passes: the ellipse
   // (x / 3)^2 + y^2 = 1 comes no nearer to the axis than its support height, so that the first touch is off the tip and
   // has no simple closed form; a bisection on the distance, which falls all the way, gives it.
@@ -154,7 +182,7 @@ TEST(TimeOfContact, NeedleTurningInPlaceSweepsIntoASphere) {
   turning.angular_velocity = {0, 0.5, 0};  // its axis runs from z towards x
   turning.inertia = {2, 2, 0.4};
   const Motion resting = at({3.2, 0, 0}, {0, 0, 0});
-  const ContactResult r = time_of_contact(needle, turning, ball, resting, 100);
+  const ContactResult r = contact(needle, turning, ball, resting, 100);
   expect_touching(r, needle, turning, ball, resting);
   double apart = 0;
   double inside = std::numbers::pi;  // a quarter turn
@@ -165,43 +193,43 @@ TEST(TimeOfContact, NeedleTurningInPlaceSweepsIntoASphere) {
   }
   EXPECT_NEAR(r.time, apart, 1e-13);
   // A sphere beyond the tip's reach is never hit, however long.
-  expect_separated_until(time_of_contact(needle, turning, ball, at({4.001, 0, 0}, {0, 0, 0}), kForever), kForever);
+  expect_separated_until(contact(needle, turning, ball, at({4.001, 0, 0}, {0, 0, 0}), kForever), kForever);
 }
 
-TEST(TimeOfContact, DiscsThatSlideFaceToFaceNeverMeet) {
+TEST_P(BothFinders, DiscsThatSlideFaceToFaceNeverMeet) {
   const Ellipsoid disc({3, 3, 0.3});
-  expect_separated_until(
-      time_of_contact(disc, at({0, 0, 0}, {1, 0, 0}), disc, at({-20, 0, 0.6 + 1e-9}, {3, 1, 0}), kForever), kForever);
+  expect_separated_until(contact(disc, at({0, 0, 0}, {1, 0, 0}), disc, at({-20, 0, 0.6 + 1e-9}, {3, 1, 0}), kForever),
+                         kForever);
 }
 
 // ---- Bodies that never meet, touch already, or overlap -------------------------------------------------------------
 
-TEST(TimeOfContact, BodiesThatPartAreSeparatedForEver) {
+TEST_P(BothFinders, BodiesThatPartAreSeparatedForEver) {
   const Ellipsoid needle({1, 1, 4});
   Motion b = at({5, 0, 0}, {1, 0, 0});
   b.angular_velocity = {0, 1, 0};
-  expect_separated_until(time_of_contact(needle, at({0, 0, 0}, {-1, 0, 0}), needle, b, kForever), kForever);
+  expect_separated_until(contact(needle, at({0, 0, 0}, {-1, 0, 0}), needle, b, kForever), kForever);
 }
 
-TEST(TimeOfContact, BodiesAtRestAreSeparatedForEver) {
+TEST_P(BothFinders, BodiesAtRestAreSeparatedForEver) {
   const Ellipsoid needle({1, 1, 4});
-  expect_separated_until(time_of_contact(needle, Motion(), needle, at({2.1, 0, 0}, {0, 0, 0}), kForever), kForever);
+  expect_separated_until(contact(needle, Motion(), needle, at({2.1, 0, 0}, {0, 0, 0}), kForever), kForever);
   // Within each other's bounding spheres and spinning about their own axes only.
   Motion spinning;
   spinning.angular_velocity = {0, 0, 7};
   spinning.inertia = {1, 1, 0.3};
-  expect_separated_until(time_of_contact(needle, spinning, needle, at({2.1, 0, 0}, {0, 0, 0}), kForever), kForever);
+  expect_separated_until(contact(needle, spinning, needle, at({2.1, 0, 0}, {0, 0, 0}), kForever), kForever);
 }
 
-TEST(TimeOfContact, SearchEndsAtTMax) {
+TEST_P(BothFinders, SearchEndsAtTMax) {
   const Motion a = at({0, 0, 0}, {1, 0, 0});
   const Motion b = at({4, 0, 0}, {0, 0, 0});
-  expect_separated_until(time_of_contact(sphere(1), a, sphere(1), b, 1.999), 1.999);
-  EXPECT_EQ(time_of_contact(sphere(1), a, sphere(1), b, 2.001).status, ContactStatus::hit);
-  expect_separated_until(time_of_contact(sphere(1), a, sphere(1), b, 0), 0);  // nothing to search
+  expect_separated_until(contact(sphere(1), a, sphere(1), b, 1.999), 1.999);
+  EXPECT_EQ(contact(sphere(1), a, sphere(1), b, 2.001).status, ContactStatus::hit);
+  expect_separated_until(contact(sphere(1), a, sphere(1), b, 0), 0);  // nothing to search
 }
 
-TEST(TimeOfContact, NeverAnswersForMoreThanItWasAsked) {
+TEST_P(BothFinders, NeverAnswersForMoreThanItWasAsked) {
   // t_max next to the contact, where the last Newton step may land on either side of it.
   ed::Random random(52);
   const Ellipsoid a({1, 1, 3});
@@ -216,11 +244,11 @@ TEST(TimeOfContact, NeverAnswersForMoreThanItWasAsked) {
     m_a.angular_velocity = random.normal3();
     m_b.angular_velocity = random.normal3();
     m_b.velocity -= m_b.pose.position();
-    const ContactResult r = time_of_contact(a, m_a, b, m_b, kForever);
+    const ContactResult r = contact(a, m_a, b, m_b, kForever);
     if (r.status != ContactStatus::hit) continue;
     for (int step = -20; step <= 20; ++step) {
       const double t_max = r.time * (1 + step * 0x1p-52);
-      const ContactResult until = time_of_contact(a, m_a, b, m_b, t_max);
+      const ContactResult until = contact(a, m_a, b, m_b, t_max);
       if (until.status == ContactStatus::hit) {
         ++hits;
         EXPECT_LE(until.time, t_max);
@@ -235,56 +263,54 @@ TEST(TimeOfContact, NeverAnswersForMoreThanItWasAsked) {
   EXPECT_GT(separated, 100);
 }
 
-TEST(TimeOfContact, TouchingBodiesThatApproachHitAtOnce) {
-  const ContactResult spheres =
-      time_of_contact(sphere(1), at({0, 0, 0}, {1, 0, 0}), sphere(1), at({2, 0, 0}, {0, 0, 0}), 1);
+TEST_P(BothFinders, TouchingBodiesThatApproachHitAtOnce) {
+  const ContactResult spheres = contact(sphere(1), at({0, 0, 0}, {1, 0, 0}), sphere(1), at({2, 0, 0}, {0, 0, 0}), 1);
   ASSERT_EQ(spheres.status, ContactStatus::hit);
   EXPECT_EQ(spheres.time, 0);
   const Ellipsoid needle({1, 1, 3});
-  const ContactResult needles =
-      time_of_contact(needle, at({0, 0, 0}, {0, 0, 0}), needle, at({0, 0, 6}, {0, 0, -1e-3}), 1);
+  const ContactResult needles = contact(needle, at({0, 0, 0}, {0, 0, 0}), needle, at({0, 0, 6}, {0, 0, -1e-3}), 1);
   ASSERT_EQ(needles.status, ContactStatus::hit);
   EXPECT_EQ(needles.time, 0);
 }
 
-TEST(TimeOfContact, TouchingBodiesThatPartDoNotHit) {
-  expect_separated_until(
-      time_of_contact(sphere(1), at({0, 0, 0}, {0, 0, 0}), sphere(1), at({2, 0, 0}, {1e-6, 1, 0}), kForever), kForever);
+TEST_P(BothFinders, TouchingBodiesThatPartDoNotHit) {
+  expect_separated_until(contact(sphere(1), at({0, 0, 0}, {0, 0, 0}), sphere(1), at({2, 0, 0}, {1e-6, 1, 0}), kForever),
+                         kForever);
   // A needle's tip swings away from the ball it touches, and comes back after half a turn.
   const Ellipsoid needle({1, 1, 3});
   Motion turning;
   turning.angular_velocity = {0, 1, 0};
   const Motion resting = at({0, 0, 4}, {0, 0, 0});
-  const ContactResult r = time_of_contact(needle, turning, sphere(1), resting, 3);
+  const ContactResult r = contact(needle, turning, sphere(1), resting, 3);
   expect_separated_until(r, 3);
 }
 
-TEST(TimeOfContact, SpinningBodiesThatTouchAndRestDoNotHit) {
+TEST_P(BothFinders, SpinningBodiesThatTouchAndRestDoNotHit) {
   Motion a;
   a.angular_velocity = {0, 0, 5};
   a.inertia = {1, 1, 0.5};
   const Ellipsoid needle({1, 1, 3});
-  expect_separated_until(time_of_contact(needle, a, needle, at({2, 0, 0}, {0, 0, 0}), kForever), kForever);
+  expect_separated_until(contact(needle, a, needle, at({2, 0, 0}, {0, 0, 0}), kForever), kForever);
 }
 
-TEST(TimeOfContact, OverlappingBodiesAreSaidToOverlapAtTheStart) {
+TEST_P(BothFinders, OverlappingBodiesAreSaidToOverlapAtTheStart) {
   const Ellipsoid needle({1, 1, 3});
   for (const double depth : {1e-6, 0.1, 1.0, 2.0}) {
     const ContactResult r =
-        time_of_contact(needle, Motion(), needle, at({2 - depth, 0, 0}, {1, 0, 0}), 10);  // parting makes no difference
+        contact(needle, Motion(), needle, at({2 - depth, 0, 0}, {1, 0, 0}), 10);  // parting makes no difference
     EXPECT_EQ(r.status, ContactStatus::overlapping) << depth;
     EXPECT_EQ(r.time, 0);
     EXPECT_TRUE(r.point.hasNaN());
   }
 }
 
-TEST(TimeOfContact, TimesAreAbsoluteAndMayDiffer) {
+TEST_P(BothFinders, TimesAreAbsoluteAndMayDiffer) {
   // B's state is given later than A's: the search begins there, however early A's is.
   Motion a = at({0, 0, 0}, {1, 0, 0});
   Motion b = at({7, 0, 0}, {-1, 0, 0});
   a.time = 10;
   b.time = 12;
-  const ContactResult r = time_of_contact(sphere(1), a, sphere(1), b, 20);
+  const ContactResult r = contact(sphere(1), a, sphere(1), b, 20);
   ASSERT_EQ(r.status, ContactStatus::hit);
   EXPECT_NEAR(r.time, 13.5, 1e-14);
   EXPECT_NEAR(r.point.x(), 4.5, 1e-14);
@@ -591,6 +617,45 @@ TEST(TimeOfContact, RefusesBadInputAndNamesIt) {
   EXPECT_PRED2(has, refusal([](Query& q) { q.a = Ellipsoid({1, 2, 3}); }), "body A with semi-axes [1 2 3]");
   EXPECT_PRED2(has, refusal([](Query& q) { q.b = Ellipsoid({1, 2, 3}); }), "body B with semi-axes [1 2 3]");
   EXPECT_PRED2(has, refusal([](Query& q) { q.m_b.inertia = {0.5, 1, 1}; }), "body B with semi-axes [1 1 3]");
+}
+
+std::string refusal_of(const ed::ContactOptions& options) {
+  const Query q;
+  try {
+    (void)time_of_contact(q.a, q.m_a, q.b, q.m_b, q.t_max, options);
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(TimeOfContact, RefusesBadOptions) {
+  EXPECT_EQ(refusal_of(bracketing(ed::DistanceMethod::newton5)), "accepted");
+  for (const double eps_d : {0.0, -1e-6, 1.0, kForever, std::numeric_limits<double>::quiet_NaN()}) {
+    ed::ContactOptions options = bracketing(ed::DistanceMethod::dual);
+    options.eps_d = eps_d;
+    const std::string message = refusal_of(options);
+    EXPECT_NE(message.find("eps_d is "), std::string::npos) << message;
+    EXPECT_NE(message.find("accepted: above 0 and below the smallest semi-axis, 1"), std::string::npos) << message;
+  }
+  ed::ContactOptions certified;
+  certified.distance = ed::DistanceMethod::newton8;
+  EXPECT_NE(refusal_of(certified).find("accepted: \"dual\""), std::string::npos);
+}
+
+TEST(TimeOfContact, RescuesAreCountedAndTheContactIsTheSame) {
+  // A seed in the middle of each body: Newton's method does not come back from there.
+  const Query q;
+  const ContactResult wanted = time_of_contact(q.a, q.m_a, q.b, q.m_b, q.t_max);
+  ed::ContactOptions options = bracketing(ed::DistanceMethod::newton5);
+  EXPECT_EQ(time_of_contact(q.a, q.m_a, q.b, q.m_b, q.t_max, options).rescues, 0);
+  options.seed = [](const Ellipsoid&, const geom::Pose& X_WA, const Ellipsoid&, const geom::Pose& X_WB) {
+    return geom::WitnessPair{X_WA.position(), X_WB.position(), geom::SeedStatus::usable};
+  };
+  const ContactResult r = time_of_contact(q.a, q.m_a, q.b, q.m_b, q.t_max, options);
+  ASSERT_EQ(r.status, ContactStatus::hit);
+  EXPECT_NEAR(r.time, wanted.time, 1e-14);
+  EXPECT_GT(r.rescues, 0);
 }
 
 TEST(TimeOfContact, StatusHasAName) {
