@@ -71,8 +71,24 @@ struct Query {
   }
 };
 
-void put(const Eigen::Vector3d& v, BatchRow* rows, int lane) {
-  for (int i = 0; i < 3; ++i) rows[i][lane] = v[i];
+/// Two pairs at a time: half as many stores.
+struct TwoPairs {
+  std::size_t first;
+  std::size_t second;
+  int lane;  ///< of the first; the second's is the next
+};
+
+template <int Size>
+void put(const double* first, const double* second, BatchRow* rows, int lane) {
+  for (int i = 0; i < Size; ++i) {
+    rows[i][lane] = first[i];
+    rows[i][lane + 1] = second[i];
+  }
+}
+
+template <class VectorA, class VectorB>
+void put(const VectorA& first, const VectorB& second, BatchRow* rows, int lane) {
+  put<3>(first.data(), second.data(), rows, lane);
 }
 
 Eigen::Vector3d get(const BatchRow* rows, int lane) {
@@ -80,8 +96,10 @@ Eigen::Vector3d get(const BatchRow* rows, int lane) {
 }
 
 void put_shapes(const Ellipsoid& a, const Ellipsoid& b, GeneralInput& in, int lane) {
-  put(a.semi_axes(), in.rows + GeneralInput::semi_axes_a, lane);
-  put(b.semi_axes(), in.rows + GeneralInput::semi_axes_b, lane);
+  for (int i = 0; i < 3; ++i) {
+    in.rows[GeneralInput::semi_axes_a + i][lane] = a.semi_axes()[i];
+    in.rows[GeneralInput::semi_axes_b + i][lane] = b.semi_axes()[i];
+  }
 }
 
 void put_shapes(const Ellipsoid& a, const Ellipsoid& b, UniaxialInput& in, int lane) {
@@ -93,16 +111,20 @@ void put_shapes(const Ellipsoid& a, const Ellipsoid& b, UniaxialInput& in, int l
   in.rows[UniaxialInput::across_b][lane] = across(b);
 }
 
-void put_rotations(const Query& query, std::size_t pair, GeneralInput& in, int lane) {
-  const double* const R_a = query.X_WA[pair].rotation().data();
-  const double* const R_b = query.X_WB[pair].rotation().data();
-  for (int i = 0; i < 9; ++i) in.rows[GeneralInput::rotation_a + i][lane] = R_a[i];
-  for (int i = 0; i < 9; ++i) in.rows[GeneralInput::rotation_b + i][lane] = R_b[i];
+void put_rotations(const Query& query, const TwoPairs& two, GeneralInput& in) {
+  const auto rotation = [](const Pose& X) { return X.rotation().data(); };
+  put<9>(rotation(query.X_WA[two.first]), rotation(query.X_WA[two.second]), in.rows + GeneralInput::rotation_a,
+         two.lane);
+  put<9>(rotation(query.X_WB[two.first]), rotation(query.X_WB[two.second]), in.rows + GeneralInput::rotation_b,
+         two.lane);
 }
 
-void put_rotations(const Query& query, std::size_t pair, UniaxialInput& in, int lane) {
-  put(query.X_WA[pair].rotation().col(*query.a[pair].symmetry_axis()), in.rows + UniaxialInput::axis_a, lane);
-  put(query.X_WB[pair].rotation().col(*query.b[pair].symmetry_axis()), in.rows + UniaxialInput::axis_b, lane);
+void put_rotations(const Query& query, const TwoPairs& two, UniaxialInput& in) {
+  const auto axis = [](const Ellipsoid& shape, const Pose& X) { return &X.rotation()(0, *shape.symmetry_axis()); };
+  put<3>(axis(query.a[two.first], query.X_WA[two.first]), axis(query.a[two.second], query.X_WA[two.second]),
+         in.rows + UniaxialInput::axis_a, two.lane);
+  put<3>(axis(query.b[two.first], query.X_WB[two.first]), axis(query.b[two.second], query.X_WB[two.second]),
+         in.rows + UniaxialInput::axis_b, two.lane);
 }
 
 /// In place: a result built elsewhere would be copied in other pieces than it was written, which stalls.
@@ -114,6 +136,7 @@ void read_answer(const BatchOutput& out, int lane, DistanceResult& result) {
   result.status = result.distance >= 0 ? DistanceStatus::separated : DistanceStatus::overlapping;
   result.iterations = static_cast<int>(out.rows[BatchOutput::iterations][lane]);
   result.residual = out.rows[BatchOutput::residual][lane];
+  result.error_bound = out.rows[BatchOutput::error_bound][lane];
 }
 
 /// Collects pairs of one kind until there are enough for a call of their kernel.
@@ -129,20 +152,7 @@ class Block {
   }
 
   void add(std::size_t pair) {
-    const int lane = count_++;
-    pairs_[lane] = pair;
-    if (lane >= shapes_put_ || !query_.shapes_shared()) {
-      const Ellipsoid& a = query_.a[pair];
-      const Ellipsoid& b = query_.b[pair];
-      put_shapes(a, b, in_, lane);
-      in_.rows[KernelInput::depth][lane] = a.min_curvature_radius() + b.min_curvature_radius();
-      in_.rows[KernelInput::radii][lane] = a.bounding_radius() + b.bounding_radius();
-      shapes_put_ = lane + 1;
-    }
-    put_rotations(query_, pair, in_, lane);
-    put(query_.X_WA[pair].position(), in_.rows + KernelInput::position_a, lane);
-    put(query_.X_WB[pair].position(), in_.rows + KernelInput::position_b, lane);
-    if (!query_.starts.empty()) put(query_.starts[pair], in_.rows + KernelInput::start, lane);
+    pairs_[count_++] = pair;
     if (count_ == kBlockPairs) flush();
   }
 
@@ -150,7 +160,8 @@ class Block {
   void flush() {
     if (count_ == 0) return;
     const int filled = (count_ + kLongestVector - 1) / kLongestVector * kLongestVector;
-    for (auto& row : in_.rows) std::fill(row + count_, row + filled, row[count_ - 1]);
+    for (int lane = count_; lane < filled; ++lane) pairs_[lane] = pairs_[count_ - 1];
+    for (int lane = 0; lane < filled; lane += 2) put_pairs({pairs_[lane], pairs_[lane + 1], lane});
     kernel_(in_, count_, out_);
     for (int lane = 0; lane < count_; ++lane) {
       DistanceResult& result = query_.results[pairs_[lane]];
@@ -167,6 +178,30 @@ class Block {
   std::size_t redone() const { return redone_; }
 
  private:
+  void put_pairs(const TwoPairs& two) {
+    const int lane = two.lane;
+    if (lane >= shapes_put_ || !query_.shapes_shared()) {
+      put_both_shapes(two.first, lane);
+      put_both_shapes(two.second, lane + 1);
+      shapes_put_ = lane + 2;
+    }
+    put_rotations(query_, two, in_);
+    put(query_.X_WA[two.first].position(), query_.X_WA[two.second].position(), in_.rows + KernelInput::position_a,
+        lane);
+    put(query_.X_WB[two.first].position(), query_.X_WB[two.second].position(), in_.rows + KernelInput::position_b,
+        lane);
+    if (query_.starts.empty()) return;
+    put(query_.starts[two.first], query_.starts[two.second], in_.rows + KernelInput::start, lane);
+  }
+
+  void put_both_shapes(std::size_t pair, int lane) {
+    const Ellipsoid& a = query_.a[pair];
+    const Ellipsoid& b = query_.b[pair];
+    put_shapes(a, b, in_, lane);
+    in_.rows[KernelInput::depth][lane] = a.min_curvature_radius() + b.min_curvature_radius();
+    in_.rows[KernelInput::radii][lane] = a.bounding_radius() + b.bounding_radius();
+  }
+
   const Query& query_;
   Kernel* kernel_;
   int count_ = 0;

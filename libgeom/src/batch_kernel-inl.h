@@ -155,7 +155,8 @@ struct State {
     active = 3,     ///< 1: goes on
     converged = 4,  ///< 1: the normal is the answer's
     iterations = 5,
-    normal = 6,        ///< the last two normals: row normal + 3 (round % 2) is the one to evaluate
+    normal = 6,        ///< the one to evaluate in even rounds, the one before it in odd rounds,
+    older_normal = 9,  ///< and the reverse
     common_rows = 12,  ///< further rows are of the kind of pair
   };
 };
@@ -193,7 +194,7 @@ HWY_INLINE void start_from(StateRow* rows, int lane, const Real3& start, Real3 c
   store(constant(0), rows[State::converged], lane);
   store(constant(0), rows[State::iterations], lane);
   store3(n, rows + State::normal, lane);
-  store3(n, rows + State::normal + 3, lane);
+  store3(n, rows + State::older_normal, lane);
 }
 
 /// |r| without a root, at most a factor of sqrt(3) too small: tolerances relative to it are then stricter.
@@ -206,8 +207,8 @@ HWY_INLINE Real length_at_least(const Real3& r) {
 template <class Pairs>
 HWY_INLINE int advance(StateRow* rows, int lane, int round) {
   const Real one = constant(1), zero = constant(0);
-  StateRow* const row_n = rows + State::normal + 3 * (round % 2);
-  StateRow* const row_previous = rows + State::normal + 3 - 3 * (round % 2);
+  StateRow* const row_n = rows + (round % 2 == 0 ? State::normal : State::older_normal);
+  StateRow* const row_previous = rows + (round % 2 == 0 ? State::older_normal : State::normal);
   const Real3 n = load3(row_n, lane);
   const Evaluation e = Pairs::evaluate(rows, lane, n);
   const Real step2 = dot(e.step, e.step);
@@ -266,11 +267,12 @@ HWY_INLINE Answer finish(const StateRow* rows, int lane, const Witness& w, Batch
   const Real y2 = dot(y, y);
   const Real rounding = load(rows[State::rounding], lane);
   const Real depth_left = distance + load(rows[State::rho], lane);
-  const Lanes certified = depth_left >= hn::Neg(rounding);
+  const Lanes certified = depth_left > constant(0);
   const Lanes polished = y2 <= constant(kResidualTolerance / kRoundingFactor) * rounding * depth_left;
   const Lanes converged = load(rows[State::converged], lane) > constant(0);
   store(distance, out.rows[BatchOutput::distance], lane);
   store(hn::Sqrt(y2), out.rows[BatchOutput::residual], lane);
+  store(constant(0.5) * y2 / depth_left, out.rows[BatchOutput::error_bound], lane);  // as newton_error_bound
   store(load(rows[State::iterations], lane), out.rows[BatchOutput::iterations], lane);
   store(flag(hn::And(converged, hn::And(certified, polished))), out.rows[BatchOutput::answered], lane);
   return {distance, add(w.s_a, constant(0.5), y)};
@@ -305,7 +307,7 @@ class Block {
       }
       vectors_ = kept;
       if (moved_ == 0 && going_on <= kLongestVector && vectors_ * kLanes > kLongestVector) {
-        move_together(State::normal + 3 * ((round + 1) % 2));
+        move_together(round % 2 == 0 ? State::older_normal : State::normal);
       }
     }
     for (int i = 0; i < moved_; ++i) copy_lane(kBlockPairs + i, home_[i]);

@@ -57,9 +57,10 @@ struct BatchOutput {
     point_b = 4,
     normal = 7,
     residual = 10,
-    iterations = 11,
-    answered = 12,  ///< 1: the numbers of this pair are an answer; 0: they mean nothing
-    count = 13,
+    error_bound = 11,
+    iterations = 12,
+    answered = 13,  ///< 1: the numbers of this pair are an answer; 0: they mean nothing
+    count = 14,
   };
   alignas(64) BatchRow rows[count];
 };

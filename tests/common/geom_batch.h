@@ -10,6 +10,7 @@
 
 #include <Eigen/Core>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -67,6 +68,10 @@ inline testing::AssertionResult same_answer(const geom::DistanceResult& batch, c
   if (batch.status != scalar.status && !(std::abs(scalar.distance) <= tolerance)) {
     return testing::AssertionFailure() << "status " << to_string(batch.status) << ", of distance "
                                        << to_string(scalar.status);
+  }
+  // The kernels answer where the certificate is as tight as rounding, and else leave the pair to `distance`.
+  if (!(batch.error_bound >= 0 && batch.error_bound <= std::max(scalar.error_bound, 1.01e-15 * scale))) {
+    return testing::AssertionFailure() << "error bound " << batch.error_bound << ", of distance " << scalar.error_bound;
   }
   return answers(batch, scalar.distance, tolerance, extent);
 }

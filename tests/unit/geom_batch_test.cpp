@@ -59,7 +59,8 @@ void expect_same_as_distance(const Pairs& pairs, InstructionSet set) {
 
 bool same_bits(const DistanceResult& r, const DistanceResult& s) {
   return r.distance == s.distance && r.point_a == s.point_a && r.point_b == s.point_b && r.normal == s.normal &&
-         r.status == s.status && r.iterations == s.iterations && r.residual == s.residual;
+         r.status == s.status && r.iterations == s.iterations && r.residual == s.residual &&
+         r.error_bound == s.error_bound;
 }
 
 std::string refusal(const auto& call) {

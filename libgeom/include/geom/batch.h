@@ -48,11 +48,11 @@ struct BatchSummary {
 /// results.size(), if `starts` is neither empty nor of that size, or if `instruction_set` is not available.
 ///
 /// Same answers as `distance`: the distance within 1e-14 of the pair's size (|p_AB| + both bounding radii), the same
-/// status (but for touching bodies, whose distance may round to either sign, and overlaps as deep as the certified
-/// depth, which `distance` may decline and a batch answer, or the reverse), the same certificate. Pairs that Newton's
-/// method without safeguards does not answer are given to `distance`: where g falls, where it ends deeper than is
-/// certified, where it needs a last step more, and where numbers over- or underflow (bodies beyond 1e-25 ... 1e25);
-/// `iterations` then counts the evaluations of `distance` alone. Never allocates.
+/// status (but for touching bodies, whose distance may round to either sign), the same certificates. An answer does not
+/// depend on the other pairs, not in its last bit. What the kernels do not answer goes to `distance`: overlaps deeper
+/// than the sum of both bodies' `min_curvature_radius`, pairs that need many evaluations or a last step more, and those
+/// whose numbers over- or underflow (bodies beyond 1e-25 ... 1e25); `iterations` then counts the evaluations there.
+/// Never allocates.
 GEOM_EXPORT BatchSummary distance_batch(std::span<const Ellipsoid> a, std::span<const Pose> X_WA,
                                         std::span<const Ellipsoid> b, std::span<const Pose> X_WB,
                                         std::span<DistanceResult> results, const BatchOptions& options = {});
