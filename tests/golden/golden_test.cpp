@@ -38,8 +38,8 @@ std::string fingerprint() {
 }
 
 /// Positions, rotations, velocities, angular velocities; time, collisions, virial, integrals of the angular velocity.
-std::uint64_t state_hash(const State& state) {
-  ed::Simulation simulation(ed_test::start(state));
+std::uint64_t state_hash(const State& state, const ed::SimulationOptions& options = {}) {
+  ed::Simulation simulation(ed_test::start(state), options);
   simulation.run_collisions(kCollisions);
   EXPECT_EQ(simulation.counters().collisions, kCollisions);
   EXPECT_EQ(simulation.counters().overlaps, 0U);
@@ -52,8 +52,9 @@ std::string hexadecimal(std::uint64_t hash) {
   return text;
 }
 
-void expect_hash(const State& state, const std::map<std::string, std::string>& golden) {
-  const std::string hash = hexadecimal(state_hash(state));
+void expect_hash(const State& state, const std::map<std::string, std::string>& golden,
+                 const ed::SimulationOptions& options = {}) {
+  const std::string hash = hexadecimal(state_hash(state, options));
   const auto known = golden.find(fingerprint());
   if (known != golden.end()) {
     EXPECT_EQ(hash, known->second) << ed_test::describe(state) << ", " << fingerprint();
@@ -61,7 +62,7 @@ void expect_hash(const State& state, const std::map<std::string, std::string>& g
   }
   std::printf("%s: no golden hash for the fingerprint \"%s\"; this build has %s\n", ed_test::describe(state).c_str(),
               fingerprint().c_str(), hash.c_str());
-  EXPECT_EQ(hexadecimal(state_hash(state)), hash) << "two runs of the same build differ";
+  EXPECT_EQ(hexadecimal(state_hash(state, options)), hash) << "two runs of the same build differ";
 }
 
 TEST(Golden, StateOfRods) {
@@ -70,6 +71,24 @@ TEST(Golden, StateOfRods) {
 
 TEST(Golden, StateOfSpinningDiscs) {
   expect_hash({0.5, 0.30, 128, Inertia::uniform, 7}, {{"x86-64", "0x9edf168a0e913608"}});
+}
+
+TEST(Golden, StateOfRodsInOrientedBoxes) {
+  ed::SimulationOptions options;
+  options.neighbours = ed::Neighbours::obp;
+  expect_hash({3, 0.30, 128, Inertia::paper, 7}, {{"x86-64", "0xa7642827322361c8"}}, options);
+}
+
+TEST(Golden, StateOfRodsInCells) {
+  ed::SimulationOptions options;
+  options.neighbours = ed::Neighbours::cells;
+  expect_hash({2, 0.30, 128, Inertia::paper, 7}, {{"x86-64", "0x1a3901e597054083"}}, options);
+}
+
+TEST(Golden, StateOfRodsByThePapersFinder) {
+  ed::SimulationOptions options;
+  options.contact.finder = ed::Finder::bracketing;
+  expect_hash({3, 0.30, 128, Inertia::paper, 7}, {{"x86-64", "0xad28a896b570bb23"}}, options);
 }
 
 /// What the hash is made of depends on the seed and on nothing else.

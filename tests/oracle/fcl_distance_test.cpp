@@ -111,7 +111,9 @@ TEST(FclOracle, SeparatedPairsAgreeOrFclIsWrong) {
   print("separated", comparison, aborts);
   EXPECT_EQ(comparison.undecided, 0);
   EXPECT_EQ(comparison.pairs, pairs - aborts);
-  EXPECT_GE(comparison.agree, comparison.pairs / 10) << "an oracle that never agrees is none";
+  EXPECT_GE(comparison.agree, 0.3 * pairs) << "an oracle that never agrees is none";
+  EXPECT_LE(aborts, pairs / 100);
+  EXPECT_LE(comparison.max_disagreement, 1e-2);
 }
 
 struct Depths {
@@ -177,6 +179,9 @@ TEST(FclOracle, OverlapsAgreeOrFclIsWrong) {
       depths.max_disagreement, depths.fcl_threw, aborts, depths.undecided);
   EXPECT_EQ(depths.undecided, 0);
   EXPECT_EQ(depths.pairs, pairs - aborts);
+  EXPECT_GE(depths.agree, 0.8 * pairs);
+  EXPECT_LE(aborts, pairs / 100);
+  EXPECT_LE(depths.max_disagreement, 1e-2);
 }
 
 }  // namespace

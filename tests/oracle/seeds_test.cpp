@@ -4,9 +4,11 @@
 #include "common/forked.h"
 #include "common/geom_manufactured.h"
 
-#include <geom/cgal.h>
 #include <geom/geom.h>
 #include <geom/seeds.h>
+#if HARDBODY_WITH_CGAL
+#include <geom/cgal.h>
+#endif
 
 #include <gtest/gtest.h>
 
@@ -105,7 +107,7 @@ void print(const char* name, const SeedCounts& counts, int aborts) {
 
 TEST(SeedsOracle, FclSeedNeverEndsTheProcess) {
   SeedCounts counts;
-  const int aborts = geom_test::run_forked(scaled(10'000, 100'000), counts, [](int i, SeedCounts& record) {
+  const int aborts = geom_test::run_forked(scaled(50'000, 100'000), counts, [](int i, SeedCounts& record) {
     const Pair p = hostile_pair(i);
     count(p, fcl_seed(p.a, p.X_WA, p.b, p.X_WB), record);
   });
@@ -127,6 +129,24 @@ TEST(SeedsOracle, CcdSeedNeverEndsTheProcess) {
   EXPECT_EQ(counts.broken, 0);
 }
 
+TEST(SeedsOracle, FclSeedCallsAPairOverlappingOnlyWhereThatIsKnown) {
+  const Ellipsoid needle({1, 1, 3});
+  const auto status = [&](const Vector3d& p_B) {
+    return fcl_seed(needle, Pose(), needle, Pose::translation(p_B)).status;
+  };
+  EXPECT_EQ(status({0, 0, 0}), SeedStatus::overlapping);
+  EXPECT_EQ(status({1.5, 0, 0}), SeedStatus::overlapping);  // inscribed spheres meet; too deep for `distance`
+  EXPECT_EQ(status({1.999, 0, 0}), SeedStatus::overlapping);
+  EXPECT_EQ(status({2, 0, 0}), SeedStatus::declined);  // touching
+  EXPECT_EQ(status({2.001, 0, 0}), SeedStatus::usable);
+  // Apart, by more than a square can hold.
+  for (const double far : {1e155, 1e200, 1e300}) {
+    EXPECT_NE(status({far, 0, 0}), SeedStatus::overlapping) << far;
+    EXPECT_NE(status({far, far, -far}), SeedStatus::overlapping) << far;
+  }
+}
+
+#if HARDBODY_WITH_CGAL
 TEST(SeedsOracle, CgalSeedNeverEndsTheProcess) {
   SeedCounts counts;
   const int aborts = geom_test::run_forked(scaled(1'000, 10'000), counts, [](int i, SeedCounts& record) {
@@ -137,6 +157,8 @@ TEST(SeedsOracle, CgalSeedNeverEndsTheProcess) {
   EXPECT_EQ(aborts, 0);
   EXPECT_EQ(counts.broken, 0);
 }
+
+#endif
 
 using SeedFunction = std::function<WitnessPair(const Ellipsoid&, const Pose&, const Ellipsoid&, const Pose&)>;
 
@@ -172,7 +194,8 @@ void print_row(const char* seed, const std::string& shapes, const Solved& s) {
 
 /// Both systems from one kind of seed, on separated pairs of spheroids of X0 = 0.1..10 and of biaxial ellipsoids: gaps
 /// log-uniform in [1e-6, 10] of the two equal semi-axes, the shortest of the biaxial ones.
-Solved expect_solved(const char* name, int pairs, double least_share, const SeedFunction& seed_of) {
+/// `least_share`: of the pairs that are solved, with eight equations and with five.
+Solved expect_solved(const char* name, int pairs, std::array<double, 2> least_share, const SeedFunction& seed_of) {
   const std::vector<double> aspect_ratios{0.1, 0.2, 0.5, 1, 2, 5, 10};
   const int each = pairs / static_cast<int>(aspect_ratios.size() + 1);
   Solved all;
@@ -199,7 +222,7 @@ Solved expect_solved(const char* name, int pairs, double least_share, const Seed
   print_row(name, "all", all);
   for (std::size_t k = 0; k < 2; ++k) {
     EXPECT_EQ(all.wrong[k], 0) << name;
-    EXPECT_GE(all.right[k], least_share * all.pairs) << name;
+    EXPECT_GE(all.right[k], least_share[k] * all.pairs) << name;
   }
   return all;
 }
@@ -208,14 +231,16 @@ TEST(SeedsOracle, NewtonSolvesSeparatedPairsFromEverySeed) {
   std::printf("%-8s %-8s %7s %9s %11s %11s %6s\n", "seed", "shapes", "pairs", "usable", "newton8", "newton5", "wrong");
   const auto fcl = [](auto&... pair) { return fcl_seed(pair...); };
   const auto ccd = [](auto&... pair) { return ccd_seed(pair...); };
-  const auto cgal = [](auto&... pair) { return cgal_seed(pair...); };
   const auto centres = [](auto&... pair) { return centre_seed(pair...); };
   const auto dual = [](auto&... pair) { return dual_seed(pair...); };
-  expect_solved("fcl", scaled(40'000, 100'000), 0.9, fcl);
-  expect_solved("cgal", scaled(4'000, 100'000), 0.9, cgal);
-  expect_solved("ccd", scaled(10'000, 100'000), 0.9, ccd);
-  expect_solved("centres", scaled(10'000, 100'000), 0.9, centres);
-  expect_solved("dual", scaled(10'000, 100'000), 1.0, dual);
+  expect_solved("fcl", scaled(100'000, 100'000), {0.99, 0.99}, fcl);
+#if HARDBODY_WITH_CGAL
+  const auto cgal = [](auto&... pair) { return cgal_seed(pair...); };
+  expect_solved("cgal", scaled(4'000, 100'000), {0.99, 0.99}, cgal);
+#endif
+  expect_solved("ccd", scaled(10'000, 100'000), {0.99, 0.99}, ccd);
+  expect_solved("centres", scaled(10'000, 100'000), {0.99, 0.95}, centres);
+  expect_solved("dual", scaled(10'000, 100'000), {1.0, 1.0}, dual);
 }
 
 }  // namespace

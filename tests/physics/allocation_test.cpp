@@ -82,24 +82,58 @@ TEST(Allocations, AreCounted) {
   EXPECT_EQ(allocations, before + 1);
 }
 
-void expect_no_allocation(const State& state) {
-  // Lists, cells and buffers grow until each has met its largest size.
-  constexpr std::uint64_t kWarmUp = 100000;
-  constexpr std::uint64_t kCollisions = 10000;
-  ed::Simulation simulation(ed_test::start(state));
-  simulation.run_collisions(kWarmUp);
+struct Length {
+  std::uint64_t warm_up = 100000;  ///< lists, cells and buffers grow until each has met its largest size
+  std::uint64_t collisions = 10000;
+};
+
+void expect_no_allocation(const State& state, const ed::SimulationOptions& options = {}, const Length& length = {}) {
+  ed::Simulation simulation(ed_test::start(state), options);
+  simulation.run_collisions(length.warm_up);
   const std::uint64_t before = allocations;
   const std::uint64_t rebuilds = simulation.counters().neighbour_rebuilds;
-  simulation.run_collisions(kCollisions);
+  simulation.run_collisions(length.collisions);
   const std::uint64_t count = allocations - before;
   std::printf("%s: %llu allocations in %llu collisions\n", ed_test::describe(state).c_str(),
-              static_cast<unsigned long long>(count), static_cast<unsigned long long>(kCollisions));
+              static_cast<unsigned long long>(count), static_cast<unsigned long long>(length.collisions));
   EXPECT_EQ(count, 0U);
-  EXPECT_GT(simulation.counters().neighbour_rebuilds, rebuilds + 100);
+  EXPECT_GT(simulation.counters().neighbour_rebuilds, rebuilds + length.collisions / 100);
 }
 
 TEST(Allocations, NoneInSteadyStateOfRods) {
   expect_no_allocation({3, 0.40, 256, Inertia::paper, 51});
+}
+
+TEST(Allocations, NoneInSteadyStateWithOrientedBoxes) {
+  ed::SimulationOptions options;
+  options.neighbours = ed::Neighbours::obp;
+  expect_no_allocation({3, 0.40, 256, Inertia::paper, 53}, options);
+}
+
+TEST(Allocations, NoneInSteadyStateWithCells) {
+  ed::SimulationOptions options;
+  options.neighbours = ed::Neighbours::cells;
+  expect_no_allocation({2, 0.20, 256, Inertia::paper, 54}, options);
+}
+
+TEST(Allocations, NoneInSteadyStateOfThePapersFinder) {
+  ed::SimulationOptions options;
+  options.neighbours = ed::Neighbours::obp;
+  options.contact.finder = ed::Finder::bracketing;
+  options.contact.distance = ed::DistanceMethod::newton5;
+  expect_no_allocation({3, 0.40, 256, Inertia::paper, 55}, options, {8000, 2000});
+}
+
+TEST(Allocations, NoneByDistancesThatNewtonsMethodDeclines) {
+  // Seeds in the middle of the bodies: a failure with each search, the first ones recorded.
+  ed::SimulationOptions options;
+  options.contact.finder = ed::Finder::bracketing;
+  options.contact.distance = ed::DistanceMethod::newton5;
+  options.contact.seed = [](const geom::Ellipsoid&, const geom::Pose& X_WA, const geom::Ellipsoid&,
+                            const geom::Pose& X_WB) {
+    return geom::WitnessPair{X_WA.position(), X_WB.position(), geom::SeedStatus::usable};
+  };
+  expect_no_allocation({3, 0.40, 256, Inertia::paper, 56}, options, {4000, 1000});
 }
 
 TEST(Allocations, NoneInSteadyStateOfSpinningDiscs) {

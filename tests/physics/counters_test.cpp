@@ -37,4 +37,34 @@ TEST(Counters, EvaluationsAndRefinementsPerCollisionStayWithinTheirBounds) {
   EXPECT_GT(rebuilds, 0);
 }
 
+TEST(Counters, OfThePapersFinderAndListsAreWhatTheDocumentationSays) {
+  const ed::System system = ed_test::equilibrated({3, 0.40, 512}, 1);
+  // A simulation looks at each pair of neighbours once before it starts.
+  const auto neighbours_a_body = [&](ed::Neighbours kind) {
+    ed::SimulationOptions options;
+    options.neighbours = kind;
+    ed::Simulation trial(system, options);
+    trial.tune_envelopes();
+    options.envelope = trial.envelope();
+    const ed::Simulation simulation(system, options);
+    return 2 * static_cast<double>(simulation.counters().predictions) / system.size();
+  };
+  const double cells = neighbours_a_body(ed::Neighbours::cells);
+  const double boxes = neighbours_a_body(ed::Neighbours::obp);
+
+  constexpr std::uint64_t kCollisions = 2000;
+  ed::SimulationOptions options;
+  options.contact.finder = ed::Finder::bracketing;
+  ed::Simulation simulation(system, options);
+  const ed::Counters before = simulation.counters();
+  simulation.run_collisions(kCollisions);
+  const auto distances =
+      static_cast<double>(simulation.counters().evaluations - before.evaluations) / static_cast<double>(kCollisions);
+  std::printf("bracketing: %.1f distances a collision; neighbours of a body: %.1f in cells, %.1f in boxes\n", distances,
+              cells, boxes);
+  EXPECT_NEAR(distances, 240, 24);
+  EXPECT_NEAR(cells, 220, 11);
+  EXPECT_NEAR(boxes, 18, 2);
+}
+
 }  // namespace

@@ -116,11 +116,8 @@ TEST(Bracketing, ContactsMissedAtThreeResolutions) {
                 method.missed, method.contacts, method.early, method.rescues);
     // A contact where the certified search has none would be one that *it* has missed.
     EXPECT_EQ(method.early, 0) << method.name;
-    // The paper: eps_d of 1e-4 or less is "a good choice".
-    EXPECT_LE(method.missed, method.options.eps_d > 5e-4 ? method.contacts / 100 : method.contacts / 1000)
-        << method.name;
+    EXPECT_EQ(method.missed, 0) << method.name;
   }
-  EXPECT_LE(methods[2].missed, methods[0].missed);
 }
 
 /// Contacts that graze, made on purpose: bodies that touch nearly tangentially, or pass with an overlap of 1e-10 to
@@ -152,7 +149,7 @@ TEST(Bracketing, GrazingContactsMissedAtFourResolutions) {
       bracketing(1e-5, DistanceMethod::dual, ContactRoot::newton, "eps_d 1e-5, dual"),
       bracketing(1e-5, DistanceMethod::newton5, ContactRoot::newton, "eps_d 1e-5, newton5"),
   };
-  const long contacts = ed_test::full_length() ? 17000 : 700;
+  const long contacts = ed_test::full_length() ? 17000 : 250;
   std::uint64_t seed = 300;
   for (const double aspect_ratio : {1.0 / 3, 2.0, 3.0}) {
     const auto pairs = finder_test::near_neighbours(aspect_ratio, 0.40, 100, seed++);
@@ -170,10 +167,34 @@ TEST(Bracketing, GrazingContactsMissedAtFourResolutions) {
     std::printf("grazing, %-20s %ld of %ld contacts missed, %ld early, %ld distances by the dual instead\n",
                 method.name, method.missed, method.contacts, method.early, method.rescues);
     EXPECT_EQ(method.early, 0) << method.name;
+    if (method.options.eps_d < 5e-3) {
+      EXPECT_EQ(method.missed, 0) << method.name;
+    }
   }
-  // That the finder with a resolution does miss contacts, and fewer with a finer one.
+  // That the finder with a resolution does miss contacts.
   EXPECT_GT(methods[0].missed, 0);
-  EXPECT_LE(methods[3].missed, methods[0].missed);
+}
+
+TEST(Bracketing, ParabolaFindsContactsThatStepsPassOver) {
+  // Parallel rods whose circles of radius 1 pass with an overlap of 1e-9 to 1e-7: in contact over a way of 4
+  // sqrt(overlap), 1e-4 to 1e-3, which steps of eps_d = 1e-2 meet once in some tens of times. The rest is the
+  // parabola's (step 6).
+  const geom::Ellipsoid rod({1, 1, 1.5});
+  ed::Random random(401);
+  ed::ContactOptions options;
+  options.finder = ed::Finder::bracketing;
+  options.eps_d = 1e-2;
+  for (int k = 0; k < 500; ++k) {
+    const double offset = 2 - finder_test::log_uniform(random, 1e-9, 1e-7);
+    const double start = 3 + random.uniform();
+    const ed::Motion a{geom::Pose(), {1, 0, 0}, Vector3d::Zero(), rod.inertia(1), 0};
+    const ed::Motion b{geom::Pose::translation({start, offset, 0}), Vector3d::Zero(), Vector3d::Zero(), rod.inertia(1),
+                       0};
+    const ed::ContactResult r = ed::time_of_contact(rod, a, rod, b, 10, options);
+    ASSERT_EQ(r.status, ContactStatus::hit) << 2 - offset;
+    // The rounding error of the distance, 1e-15, over the normal velocity, sqrt(overlap) or more.
+    EXPECT_NEAR(r.time, start - std::sqrt((2 - offset) * (2 + offset)), 1e-9);
+  }
 }
 
 }  // namespace
