@@ -8,6 +8,7 @@ hardbody_test(geom_unit_test unit
   unit/geom_obb_test.cpp
   unit/geom_perram_wertheim_test.cpp
   unit/geom_pose_test.cpp
+  unit/geom_queries_test.cpp
   unit/geom_superellipsoid_test.cpp
   unit/geom_user_shape_test.cpp)
 hardbody_test(geom_batch_test property property/geom_batch_test.cpp)

@@ -79,8 +79,8 @@ DistanceResult general_distance(const Ellipsoid& a, const Pose& X_WA, const Elli
     const Eigen::Vector3d n = (w_a.Q + w_b.Q).inverse() * r;
     return n.squaredNorm() > 0 ? n.normalized() : Eigen::Vector3d::UnitX();
   };
-  return internal::solve_dual(EllipsoidPair(w_a, w_b, r, scale.certified_depth, 0.5 * scale.certified_depth), cold,
-                              scale, X_WA.position(), options);
+  return internal::solve_dual(EllipsoidPair(w_a, w_b, r, kLeastEigenvalue * scale.certified_depth), cold, scale,
+                              X_WA.position(), options);
 }
 
 /// Newton with Armijo's rule. g never falls: from a normal with g > 0 the ascent stays where M + g I is positive
@@ -118,8 +118,8 @@ DistanceResult armijo_ascent(const EllipsoidPair& pair, Eigen::Vector3d n, const
 
 DistanceResult deep_distance(const Ellipsoid& a, const Pose& X_WA, const Ellipsoid& b, const Pose& X_WB,
                              const Eigen::Vector3d& r, const PairScale& scale, const DistanceResult& declined) {
-  const EllipsoidPair pair(WorldEllipsoid(a, X_WA), WorldEllipsoid(b, X_WB), r, scale.certified_depth,
-                           0.5 * scale.certified_depth);
+  const EllipsoidPair pair(WorldEllipsoid(a, X_WA), WorldEllipsoid(b, X_WB), r,
+                           kLeastEigenvalue * scale.certified_depth);
   const Eigen::Vector3d start = r.squaredNorm() > 0 ? r.normalized() : Eigen::Vector3d::UnitX();
   return internal::search_sphere(pair, scale, start, X_WA.position(), declined.iterations);
 }
@@ -142,7 +142,8 @@ DistanceResult perram_wertheim_distance(const Ellipsoid& a, const Pose& X_WA, co
   const double least_depth = (1 - std::sqrt(contact.F)) * (a.inscribed_radius() + b.inscribed_radius());
   if (!(least_depth <= rho)) return declined;
   const PairScale scale{r.norm() + a.bounding_radius() + b.bounding_radius(), rho};
-  return armijo_ascent(EllipsoidPair(w_a, w_b, r, rho, 0.5 * rho), contact.normal, scale, X_WA.position(), declined);
+  return armijo_ascent(EllipsoidPair(w_a, w_b, r, kLeastEigenvalue * rho), contact.normal, scale, X_WA.position(),
+                       declined);
 }
 
 }  // namespace internal

@@ -62,8 +62,8 @@ void try_pair(const A& a, const Pose& X_WA, const B& b, const Pose& X_WB, const 
   for (const Vector3d& n : all) most = std::max(most, geom_test::lower_bound(a, X_WA, b, X_WB, n));
   const double here = geom_test::lower_bound(a, X_WA, b, X_WB, r.normal);
   // The bound says that no direction is better by more than it; none has ever been found to be better at all.
-  const bool right =
-      most <= r.distance + 1e-12 * size && r.error_bound <= 2e-7 * size && std::abs(here - r.distance) <= 1e-14 * size;
+  const bool right = most <= r.distance + 1e-12 * size && r.error_bound <= kWidestDepthGap * size &&
+                     std::abs(here - r.distance) <= 1e-14 * size;
   if (!right) ++tally.wrong;
 }
 

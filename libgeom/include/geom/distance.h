@@ -68,7 +68,7 @@ struct [[nodiscard]] DistanceResult {
 /// (Blaschke), so that a stationary point of depth -g <= rho is the global maximum too: the ball of radius -g around
 /// the origin lies inside the ball of radius rho that touches the boundary at the same point. Deeper overlaps can have
 /// several local maxima; branch and bound over all normals (internal/sphere_search.h) finds the largest, at any depth,
-/// concentric bodies included: no translation is shorter than the one returned by more than `error_bound`, mostly 1e-7
+/// concentric bodies included: no translation is shorter than the one returned by more than `error_bound`, mostly 1e-9
 /// of the size, 1e-3 at most, or the pair is declined. (The answer is exact to rounding as a local maximum; the bound
 /// says how much better another one could be.) That takes tens of microseconds instead of a fraction of one;
 /// Penetration::local avoids it.

@@ -33,8 +33,8 @@ inline constexpr double kRoundingFactor = 16 * 2.3e-16;
 /// Longest Newton step of the unit normal (radian, nearly); longer ones are scaled to it.
 inline constexpr double kMaxNormalStep = 0.6;
 
-/// Newton's matrix, where it is definite by theory (g > -(rhoA + rhoB)): smallest eigenvalue kept >=
-/// kLeastEigenvalue * (rhoA + rhoB), against a division by zero only. Dimensionless.
+/// Newton's matrix: smallest eigenvalue kept >= kLeastEigenvalue * (rhoA + rhoB), against a division by zero where it
+/// is definite by theory (g > -(rhoA + rhoB)). Dimensionless.
 inline constexpr double kLeastEigenvalue = 1e-6;
 
 /// Bodies with flat faces: `separated` when a lower and an upper bound of the distance differ by less than kBoundGap
@@ -47,7 +47,7 @@ inline constexpr double kWidestGap = 1e-9;
 /// Penetration::global: no translation is shorter than the one returned by more than kDepthGap times the sum of both
 /// bounding radii, proved by branch and bound; overlaps for which kMostDepthSamples evaluations do not prove
 /// kWidestDepthGap are declined. Dimensionless.
-inline constexpr double kDepthGap = 1e-7;
+inline constexpr double kDepthGap = 1e-9;
 inline constexpr double kWidestDepthGap = 1e-3;
 inline constexpr int kMostDepthSamples = 100000;
 

@@ -42,10 +42,9 @@ struct WorldSupport {
 template <class SupportA, class SupportB>
 class GeneralPair {
  public:
-  /// `rho`: the sum of both smallest radii of curvature; `floor`: what eigenvalues are lifted to
-  /// where g <= -rho, at least.
-  GeneralPair(SupportA a, SupportB b, const Eigen::Vector3d& r, double rho, double floor)
-      : a_(std::move(a)), b_(std::move(b)), r_(r), rho_(rho), floor_(floor) {}
+  /// `least`: the smallest eigenvalue that Newton's matrix is left with, length.
+  GeneralPair(SupportA a, SupportB b, const Eigen::Vector3d& r, double least)
+      : a_(std::move(a)), b_(std::move(b)), r_(r), least_(least) {}
 
   Evaluation operator()(const Eigen::Vector3d& n) const {
     const CurvedSupport s_a = a_(n);
@@ -64,10 +63,9 @@ class GeneralPair {
     const double m_ef = f.dot(He);
     const double half_difference = 0.5 * (m_ee - m_ff);
     const double smallest = 0.5 * (m_ee + m_ff) - std::sqrt(half_difference * half_difference + m_ef * m_ef);
-    // Only a matrix that is not definite is lifted: a lifted one converges linearly.
-    const double least = kLeastEigenvalue * 2 * floor_;
-    if (smallest < least) [[unlikely]] {
-      const double lift = (out.g > -rho_ ? least : std::max(floor_, -smallest)) - smallest;
+    // Only a matrix that is not definite is lifted, by no more than it needs: a lifted one converges linearly.
+    if (smallest < least_) [[unlikely]] {
+      const double lift = std::max(least_, -smallest) - smallest;
       m_ee += lift;
       m_ff += lift;
     }
@@ -92,8 +90,7 @@ class GeneralPair {
   SupportA a_;
   SupportB b_;
   Eigen::Vector3d r_;
-  double rho_;
-  double floor_;
+  double least_;
 };
 
 /// Lengths that the certificates and tolerances of one query need.
@@ -240,9 +237,9 @@ DistanceResult distance(const ShapeA& a, const Pose& X_WA, const ShapeB& b, cons
   const Eigen::Vector3d r = X_WB.position() - X_WA.position();
   const double rho = internal::min_curvature_radius_or_zero(a) + internal::min_curvature_radius_or_zero(b);
   // Shapes with flat faces or edges have rho = 0; a small share of the inscribed spheres keeps the step bounded.
-  const double floor = std::max(0.5 * rho, 1e-3 * (a.inscribed_radius() + b.inscribed_radius()));
+  const double least = kLeastEigenvalue * std::max(rho, 2e-3 * (a.inscribed_radius() + b.inscribed_radius()));
   const internal::GeneralPair pair(WorldSupport<ShapeA>{a, X_WA.rotation()}, WorldSupport<ShapeB>{b, X_WB.rotation()},
-                                   r, rho, floor);
+                                   r, least);
   const auto cold = [&r] { return r.squaredNorm() > 0 ? r.normalized() : Eigen::Vector3d::UnitX(); };
   const internal::PairScale scale{r.norm() + a.bounding_radius() + b.bounding_radius(), rho};
   const DistanceResult result = internal::solve_dual(pair, cold, scale, X_WA.position(), options);

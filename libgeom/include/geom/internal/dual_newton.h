@@ -8,9 +8,9 @@
 /// concave, so M is positive semidefinite, and M + g I positive definite wherever g > 0.
 ///
 /// With rho the smallest radius of curvature, M >= rhoA + rhoB everywhere, so that the matrix is definite for
-/// g > -(rhoA + rhoB) too. Below, its smallest eigenvalue is lifted to (rhoA + rhoB) / 2, which makes every step an
-/// ascent direction. Above it is left alone: a lifted matrix converges linearly only, and |delta|^2 <=
-/// kNormalTolerance2 would not bound the error. The step length is capped, and shortened (kBacktrack) when g falls.
+/// g > -(rhoA + rhoB) too. Below, eigenvalues that are not positive are lifted, which makes every step an ascent
+/// direction. Others are left alone: a lifted matrix converges linearly only, and |delta|^2 <= kNormalTolerance2 would
+/// not bound the error. The step length is capped, and shortened (kBacktrack) when g falls.
 
 #include <geom/tolerances.h>
 

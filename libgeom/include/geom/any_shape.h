@@ -1,0 +1,30 @@
+#pragma once
+
+/// Shapes that are chosen at run time: a closed variant of those that libgeom brings.
+
+#include <geom/distance.h>
+#include <geom/ellipsoid.h>
+#include <geom/export.h>
+#include <geom/pose.h>
+#include <geom/superellipsoid.h>
+
+#include <Eigen/Core>
+
+#include <variant>
+
+namespace geom {
+
+using Shape = std::variant<Ellipsoid, Superellipsoid>;
+
+/// `distance` of the shapes inside: one dispatch a query.
+GEOM_EXPORT DistanceResult distance(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB,
+                                    const DistanceOptions& options = {});
+
+/// See the shapes' own functions of these names.
+GEOM_EXPORT Support support(const Shape& shape, const Eigen::Vector3d& n);
+GEOM_EXPORT double bounding_radius(const Shape& shape);
+GEOM_EXPORT double inscribed_radius(const Shape& shape);
+GEOM_EXPORT double volume(const Shape& shape);
+GEOM_EXPORT Eigen::Vector3d inertia(const Shape& shape, double mass);
+
+}  // namespace geom

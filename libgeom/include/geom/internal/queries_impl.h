@@ -1,0 +1,94 @@
+#pragma once
+
+#include <geom/queries.h>
+
+namespace geom {
+namespace internal {
+
+/// A body of one point.
+struct Point {
+  Support support(const Eigen::Vector3d& /*n*/) const { return {0, Eigen::Vector3d::Zero()}; }
+  Eigen::Matrix3d support_hessian(const Eigen::Vector3d& /*n*/) const { return Eigen::Matrix3d::Zero(); }
+  double bounding_radius() const { return 0; }
+  double inscribed_radius() const { return 0; }
+  double min_curvature_radius() const { return 0; }
+};
+
+/// From the distance of the point, as body A, to the shape, as body B.
+inline ClosestPoint closest_point_from(const Eigen::Vector3d& p_W, const DistanceResult& r) {
+  ClosestPoint closest;
+  closest.distance = r.distance;
+  closest.point = p_W + r.distance * r.normal;  // what mismatch there is of the support points goes to the shape
+  closest.normal = -r.normal;
+  closest.status = r.status;
+  return closest;
+}
+
+/// Whether a point that both bodies are likely to share, if they share any, is in both.
+template <class ShapeA, class ShapeB>
+bool share_a_point(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const Pose& X_WB) {
+  if constexpr (ImplicitSurface<ShapeA> && ImplicitSurface<ShapeB>) {
+    const double r_a = a.inscribed_radius();
+    const double r_b = b.inscribed_radius();
+    const Eigen::Vector3d between = (r_b * X_WA.position() + r_a * X_WB.position()) / (r_a + r_b);
+    return contains(a, X_WA, between) && contains(b, X_WB, between);
+  } else {
+    return false;
+  }
+}
+
+}  // namespace internal
+
+template <SupportShape ShapeA, SupportShape ShapeB>
+Answer overlap(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const Pose& X_WB, const Eigen::Vector3d& start) {
+  const Eigen::Vector3d r = X_WB.position() - X_WA.position();
+  const double inscribed = a.inscribed_radius() + b.inscribed_radius();
+  if (r.squaredNorm() <= inscribed * inscribed) return Answer::yes;
+  const double start2 = start.squaredNorm();
+  const bool warm = start2 > 0 && std::isfinite(start2);
+  if (distance_lower_bound(a, X_WA, b, X_WB, warm ? start : r) > 0) return Answer::no;
+  if (internal::share_a_point(a, X_WA, b, X_WB)) return Answer::yes;
+  // A local answer decides, unless it is a stationary point too deep to be certified.
+  DistanceResult d = distance(a, X_WA, b, X_WB, {.start = start, .penetration = Penetration::local});
+  if (d.status == DistanceStatus::overlapping && !std::isfinite(d.error_bound)) {
+    d = distance(a, X_WA, b, X_WB, {.start = start});
+  }
+  if (d.status == DistanceStatus::separated) return d.distance > 0 ? Answer::no : Answer::yes;
+  return d.status == DistanceStatus::overlapping ? Answer::yes : Answer::unknown;
+}
+
+template <SupportShape Shape>
+ClosestPoint closest_point(const Shape& shape, const Pose& X_WB, const Eigen::Vector3d& p_W) {
+  // Poses are finite, points need not be.
+  if (!p_W.allFinite()) return {};
+  return internal::closest_point_from(p_W, distance(internal::Point(), Pose::translation(p_W), shape, X_WB));
+}
+
+template <SupportShape Shape>
+RayHit ray_cast(const Shape& shape, const Pose& X_WB, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) {
+  constexpr int kMostSteps = 200;
+  RayHit hit;
+  const double speed = direction.norm();
+  if (!origin.allFinite() || !(speed > 0) || !std::isfinite(speed)) return hit;
+  const double touching = 1e-14 * (shape.bounding_radius() + (origin - X_WB.position()).norm());
+  double t = 0;
+  for (int step = 0; step < kMostSteps; ++step) {
+    const ClosestPoint closest = closest_point(shape, X_WB, origin + t * direction);
+    if (closest.status != DistanceStatus::separated && closest.status != DistanceStatus::overlapping) return hit;
+    if (closest.distance <= touching) {
+      hit = {step == 0 && closest.distance < 0 ? RayStatus::inside : RayStatus::hit, t, origin + t * direction,
+             closest.normal};
+      return hit;
+    }
+    const double approach = -closest.normal.dot(direction);
+    // Above its tangent plane the body has no point.
+    if (!(approach > 1e-16 * speed)) {
+      hit.status = RayStatus::missed;
+      return hit;
+    }
+    t += closest.distance / approach;
+  }
+  return hit;
+}
+
+}  // namespace geom

@@ -1,0 +1,98 @@
+#pragma once
+
+/// Questions other than the distance of two bodies: do they overlap, at least how far apart are they, what is the
+/// closest point, is a point inside, what does a ray hit. All of them never throw and never allocate.
+
+#include <geom/any_shape.h>
+#include <geom/distance.h>
+#include <geom/ellipsoid.h>
+#include <geom/export.h>
+#include <geom/pose.h>
+#include <geom/shape.h>
+#include <geom/superellipsoid.h>
+#include <geom/tolerances.h>
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace geom {
+
+/// A lower bound of the distance of two bodies, certain whatever the direction n (world, from A to B, not zero): the
+/// width of the gap between their tangent planes across n. Negative where they overlap in that projection. The line of
+/// centres is a good first n, the normal of the last `distance` a better one.
+template <SupportShape ShapeA, SupportShape ShapeB>
+double distance_lower_bound(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const Pose& X_WB,
+                            const Eigen::Vector3d& n) {
+  const Eigen::Vector3d unit = n.normalized();
+  return unit.dot(X_WB.position() - X_WA.position()) - Support(a.support(X_WA.rotation().transpose() * unit)).height -
+         Support(b.support(X_WB.rotation().transpose() * -unit)).height;
+}
+
+enum class Answer { no, yes, unknown };
+
+/// Whether two bodies overlap (touching counts as overlap). Mostly decided by one support evaluation, across `start` or
+/// the line of centres, or by the inscribed spheres; else by `distance`. `unknown` only where `distance` declines.
+template <SupportShape ShapeA, SupportShape ShapeB>
+Answer overlap(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const Pose& X_WB,
+               const Eigen::Vector3d& start = Eigen::Vector3d::Zero());
+
+/// The point of a body that is closest to a point, which may be inside.
+struct [[nodiscard]] ClosestPoint {
+  double distance = std::numeric_limits<double>::quiet_NaN();  ///< < 0: the point is inside, by so much
+  Eigen::Vector3d point = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());  ///< of the surface
+  /// Unit, outward: the point asked for is point + distance * normal.
+  Eigen::Vector3d normal = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
+  DistanceStatus status = DistanceStatus::not_converged;  ///< `overlapping`: inside
+};
+
+/// World frame; accuracy and certificates as those of `distance`.
+template <SupportShape Shape>
+ClosestPoint closest_point(const Shape& shape, const Pose& X_WB, const Eigen::Vector3d& p_W);
+GEOM_EXPORT ClosestPoint closest_point(const Superellipsoid& shape, const Pose& X_WB, const Eigen::Vector3d& p_W);
+
+/// Whether a point of the world is in the body or on its surface.
+template <ImplicitSurface Shape>
+bool contains(const Shape& shape, const Pose& X_WB, const Eigen::Vector3d& p_W) {
+  return shape.value(X_WB.to_body(p_W)) <= 0;
+}
+
+enum class RayStatus {
+  hit,            ///< at `t`
+  missed,         ///< certified: no point of the ray is in the body
+  inside,         ///< the ray starts inside: t = 0
+  not_converged,  ///< no answer
+};
+
+struct [[nodiscard]] RayHit {
+  RayStatus status = RayStatus::not_converged;
+  double t = std::numeric_limits<double>::quiet_NaN();  ///< in units of the direction's length
+  Eigen::Vector3d point = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
+  Eigen::Vector3d normal = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());  ///< unit, outward
+};
+
+/// The first point of origin + t direction, t >= 0, in the body; direction != 0. World frame.
+///
+/// Advances from tangent plane to tangent plane of the closest points: a step never passes the body, and the last ones
+/// converge quadratically, to 1e-14 of the lengths involved. Rays that graze take more steps.
+template <SupportShape Shape>
+RayHit ray_cast(const Shape& shape, const Pose& X_WB, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction);
+/// In closed form.
+GEOM_EXPORT RayHit ray_cast(const Ellipsoid& shape, const Pose& X_WB, const Eigen::Vector3d& origin,
+                            const Eigen::Vector3d& direction);
+
+/// The same for shapes chosen at run time.
+GEOM_EXPORT double distance_lower_bound(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB,
+                                        const Eigen::Vector3d& n);
+GEOM_EXPORT Answer overlap(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB,
+                           const Eigen::Vector3d& start = Eigen::Vector3d::Zero());
+GEOM_EXPORT ClosestPoint closest_point(const Shape& shape, const Pose& X_WB, const Eigen::Vector3d& p_W);
+GEOM_EXPORT bool contains(const Shape& shape, const Pose& X_WB, const Eigen::Vector3d& p_W);
+GEOM_EXPORT RayHit ray_cast(const Shape& shape, const Pose& X_WB, const Eigen::Vector3d& origin,
+                            const Eigen::Vector3d& direction);
+
+}  // namespace geom
+
+#include <geom/internal/queries_impl.h>

@@ -1,0 +1,62 @@
+#include <geom/queries.h>
+
+namespace geom {
+
+using Eigen::Vector3d;
+
+ClosestPoint closest_point(const Superellipsoid& shape, const Pose& X_WB, const Vector3d& p_W) {
+  if (!p_W.allFinite()) return {};
+  // A ball too small to be told from a point, for the methods that flat faces and edges need.
+  const double radius = std::max(1e-25 * shape.inscribed_radius(), kMinSemiAxis);
+  return internal::closest_point_from(
+      p_W, distance(Ellipsoid(Vector3d::Constant(radius)), Pose::translation(p_W), shape, X_WB));
+}
+
+RayHit ray_cast(const Ellipsoid& shape, const Pose& X_WB, const Vector3d& origin, const Vector3d& direction) {
+  RayHit hit;
+  const double speed = direction.norm();
+  if (!origin.allFinite() || !(speed > 0) || !std::isfinite(speed)) return hit;
+  // In coordinates in which the body is the unit ball.
+  const Vector3d o = X_WB.to_body(origin).cwiseQuotient(shape.semi_axes());
+  const Vector3d d = (X_WB.rotation().transpose() * direction).cwiseQuotient(shape.semi_axes());
+  const auto at = [&](RayStatus status, double t) {
+    const Vector3d x = (o + t * d).normalized().cwiseProduct(shape.semi_axes());
+    hit = {status, t, status == RayStatus::inside ? origin : X_WB.to_world(x),
+           (X_WB.rotation() * shape.gradient(x)).normalized()};
+  };
+  if (o.squaredNorm() < 1) {
+    at(RayStatus::inside, 0);
+    return hit;
+  }
+  // From the point of the ray closest to the centre: b^2 - 4 a c would cancel.
+  const double t_closest = -o.dot(d) / d.squaredNorm();
+  const double rest = 1 - (o + t_closest * d).squaredNorm();
+  if (!(t_closest >= 0) || !(rest >= 0)) {
+    hit.status = RayStatus::missed;
+  } else {
+    at(RayStatus::hit, std::max(0.0, t_closest - std::sqrt(rest) / d.norm()));
+  }
+  return hit;
+}
+
+double distance_lower_bound(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB, const Vector3d& n) {
+  return std::visit([&](const auto& s, const auto& t) { return distance_lower_bound(s, X_WA, t, X_WB, n); }, a, b);
+}
+
+Answer overlap(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB, const Vector3d& start) {
+  return std::visit([&](const auto& s, const auto& t) { return overlap(s, X_WA, t, X_WB, start); }, a, b);
+}
+
+ClosestPoint closest_point(const Shape& shape, const Pose& X_WB, const Vector3d& p_W) {
+  return std::visit([&](const auto& s) { return closest_point(s, X_WB, p_W); }, shape);
+}
+
+bool contains(const Shape& shape, const Pose& X_WB, const Vector3d& p_W) {
+  return std::visit([&](const auto& s) { return contains(s, X_WB, p_W); }, shape);
+}
+
+RayHit ray_cast(const Shape& shape, const Pose& X_WB, const Vector3d& origin, const Vector3d& direction) {
+  return std::visit([&](const auto& s) { return ray_cast(s, X_WB, origin, direction); }, shape);
+}
+
+}  // namespace geom

@@ -1,0 +1,179 @@
+#include "common/geom_expect.h"
+#include "common/geom_manufactured.h"
+#include "common/geom_random.h"
+#include "common/geom_shapes.h"
+
+#include <geom/geom.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace geom {
+namespace {
+
+using Eigen::Vector3d;
+using geom_test::Random;
+
+const Ellipsoid kNeedle({1, 1, 3});
+const Superellipsoid kBrick({1, 2, 1.5}, 0.5, 0.4);
+const Superellipsoid kOcta({1.2, 0.8, 1.5}, 1.4, 1.5);
+
+template <class Check>
+void for_each_shape(const Check& check) {
+  check(kNeedle);
+  check(Ellipsoid({0.3, 1, 2}));
+  check(kBrick);
+  check(kOcta);
+  check(geom_test::WrappedEllipsoid{kNeedle});
+}
+
+TEST(Overlap, AgreesWithTheDistance) {
+  Random random(1);
+  for_each_shape([&](const auto& a) {
+    for_each_shape([&](const auto& b) {
+      int apart = 0;
+      for (int k = 0; k < 200; ++k) {
+        const double reach = a.bounding_radius() + b.bounding_radius();
+        const Pose X_WA = random.pose(0);
+        const Pose X_WB(random.pose(0).rotation(), random.uniform(0, 1) * reach * random.direction());
+        const DistanceResult d = distance(a, X_WA, b, X_WB);
+        const Answer answer = overlap(a, X_WA, b, X_WB, k % 2 == 0 ? Vector3d(Vector3d::Zero()) : d.normal);
+        ASSERT_EQ(answer, d.distance > 0 ? Answer::no : Answer::yes) << d.distance;
+        apart += d.distance > 0;
+      }
+      EXPECT_GT(apart, 20);
+      EXPECT_LT(apart, 180);
+    });
+  });
+}
+
+TEST(Overlap, OfBodiesThatNearlyTouch) {
+  Random random(2);
+  for (int k = 0; k < 1000; ++k) {
+    const double gap = (k % 2 == 0 ? 1 : -1) * random.log_uniform(1e-12, 1e-3);
+    const auto pair = geom_test::manufacture(kNeedle, kOcta, gap, random);
+    ASSERT_EQ(overlap(kNeedle, pair.X_WA, kOcta, pair.X_WB), gap > 0 ? Answer::no : Answer::yes) << gap;
+  }
+}
+
+TEST(LowerBound, IsNeverAboveTheDistanceAndReachesItAtTheNormal) {
+  Random random(3);
+  for (int k = 0; k < 1000; ++k) {
+    const auto pair = geom_test::manufacture(kNeedle, kBrick, random.log_uniform(1e-6, 10), random);
+    const double any = distance_lower_bound(kNeedle, pair.X_WA, kBrick, pair.X_WB, 3 * random.direction());
+    ASSERT_LE(any, pair.distance + 1e-14 * pair.size);
+    const double best = distance_lower_bound(kNeedle, pair.X_WA, kBrick, pair.X_WB, 0.1 * pair.normal);
+    ASSERT_NEAR(best, pair.distance, 1e-14 * pair.size);
+  }
+}
+
+TEST(ClosestPoint, OfPointsOnTheNormalsOfTheSurface) {
+  Random random(4);
+  for_each_shape([&](const auto& shape) {
+    for (int k = 0; k < 500; ++k) {
+      const Pose X = random.pose(1.0);
+      const Vector3d n = random.direction();
+      const Support s = shape.support(n);
+      const double gap = random.log_uniform(1e-9, 10);
+      const ClosestPoint closest = closest_point(shape, X, X.to_world(s.point + gap * n));
+      const double size = shape.bounding_radius() + gap + X.position().norm();
+      ASSERT_EQ(closest.status, DistanceStatus::separated);
+      ASSERT_NEAR(closest.distance, gap, 1e-13 * size);
+      ASSERT_LE((X.to_world(s.point + gap * n) - closest.point - closest.distance * closest.normal).norm(),
+                1e-14 * size);
+      ASSERT_NEAR(X.to_body(closest.point).dot(n), s.height, 1e-9 * size);
+    }
+  });
+}
+
+TEST(ClosestPoint, OfPointsInside) {
+  const ClosestPoint centre = closest_point(kNeedle, Pose(), Vector3d::Zero());
+  EXPECT_EQ(centre.status, DistanceStatus::overlapping);
+  EXPECT_NEAR(centre.distance, -1, 1e-14);
+  EXPECT_NEAR(std::hypot(centre.point.x(), centre.point.y()), 1, 1e-6);
+  EXPECT_NEAR(closest_point(kBrick, Pose(), {0, 0, 0}).distance, -1, 1e-14);
+  EXPECT_NEAR(closest_point(kBrick, Pose(), {0.25, 0, 0}).distance, -0.75, 1e-14);
+  Random random(5);
+  for (int k = 0; k < 500; ++k) {
+    // Within the smallest radius of curvature the foot of the normal is the closest point.
+    const Vector3d n = random.direction();
+    const double depth = kNeedle.min_curvature_radius() * random.uniform(0.01, 1);
+    const Vector3d p = kNeedle.support(n).point - depth * n;
+    const ClosestPoint closest = closest_point(kNeedle, Pose(), p);
+    ASSERT_EQ(closest.status, DistanceStatus::overlapping);
+    ASSERT_NEAR(closest.distance, -depth, 1e-14);
+    ASSERT_LE((p - closest.point - closest.distance * closest.normal).norm(), 1e-14);
+    ASSERT_TRUE(contains(kNeedle, Pose(), p));
+  }
+}
+
+TEST(ClosestPoint, OfAPointThatIsNotFiniteIsDeclined) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(closest_point(kNeedle, Pose(), {nan, 0, 0}).status, DistanceStatus::not_converged);
+  EXPECT_EQ(closest_point(kBrick, Pose(), {nan, 0, 0}).status, DistanceStatus::not_converged);
+  EXPECT_FALSE(contains(kNeedle, Pose(), {nan, 0, 0}));
+}
+
+/// Rays towards known points of the surface, from outside.
+TEST(RayCast, HitsThePointItIsAimedAt) {
+  Random random(6);
+  for_each_shape([&](const auto& shape) {
+    for (int k = 0; k < 500; ++k) {
+      const Pose X = random.pose(1.0);
+      const Vector3d n = random.direction();
+      const Vector3d target = shape.support(n).point;
+      // Against the normal by at least 0.1: a convex body is not met before.
+      Vector3d back = random.direction();
+      if (back.dot(n) < 0.1) back += (0.1 - back.dot(n) + random.uniform(0, 1)) * n;
+      const double speed = random.log_uniform(0.1, 10);
+      const double t = random.log_uniform(0.01, 10);
+      const Vector3d origin = X.to_world(target + t * speed * back.normalized());
+      const RayHit hit = ray_cast(shape, X, origin, X.rotation() * (-speed * back.normalized()));
+      ASSERT_EQ(hit.status, RayStatus::hit);
+      const double size = shape.bounding_radius() + t * speed + X.position().norm();
+      ASSERT_NEAR(hit.t, t, 3e-13 * size / speed);
+      ASSERT_LE((hit.point - X.to_world(target)).norm(), 3e-13 * size);
+    }
+  });
+}
+
+TEST(RayCast, MissesStartsInsideAndPointsAway) {
+  for_each_shape([&](const auto& shape) {
+    const double R = shape.bounding_radius();
+    EXPECT_EQ(ray_cast(shape, Pose(), {2 * R, 0, 0}, {1, 0, 0}).status, RayStatus::missed);
+    EXPECT_EQ(ray_cast(shape, Pose(), {2 * R, 1.01 * R, 0}, {-1, 0, 0}).status, RayStatus::missed);
+    const RayHit inside = ray_cast(shape, Pose(), {0, 0, 0.1 * R}, {0, 0, 1});
+    EXPECT_EQ(inside.status, RayStatus::inside);
+    EXPECT_EQ(inside.t, 0);
+    EXPECT_EQ(ray_cast(shape, Pose(), {2 * R, 0, 0}, {0, 0, 0}).status, RayStatus::not_converged);
+  });
+  EXPECT_NEAR(ray_cast(kNeedle, Pose(), {0, 0, 10}, {0, 0, -2}).t, 3.5, 1e-15);
+}
+
+TEST(AnyShape, AnswersAsTheShapeInside) {
+  Random random(7);
+  const Shape shapes[] = {kNeedle, kBrick};
+  for (int k = 0; k < 100; ++k) {
+    const auto pair = geom_test::manufacture(kNeedle, kBrick, random.log_uniform(1e-6, 10), random);
+    EXPECT_EQ(distance(shapes[0], pair.X_WA, shapes[1], pair.X_WB).distance,
+              distance(kNeedle, pair.X_WA, kBrick, pair.X_WB).distance);
+    EXPECT_EQ(overlap(shapes[0], pair.X_WA, shapes[1], pair.X_WB), Answer::no);
+    EXPECT_EQ(distance_lower_bound(shapes[0], pair.X_WA, shapes[1], pair.X_WB, pair.normal),
+              distance_lower_bound(kNeedle, pair.X_WA, kBrick, pair.X_WB, pair.normal));
+  }
+  const Vector3d p(3, 1, 2);
+  EXPECT_EQ(closest_point(shapes[1], Pose(), p).distance, closest_point(kBrick, Pose(), p).distance);
+  EXPECT_EQ(ray_cast(shapes[1], Pose(), p, -p).t, ray_cast(kBrick, Pose(), p, -p).t);
+  EXPECT_FALSE(contains(shapes[1], Pose(), p));
+  EXPECT_TRUE(contains(shapes[0], Pose(), {0, 0, 3}));
+  EXPECT_EQ(volume(shapes[0]), kNeedle.volume());
+  EXPECT_EQ(inertia(shapes[1], 2.0), kBrick.inertia(2.0));
+  EXPECT_EQ(support(shapes[1], p).height, kBrick.support(p).height);
+  EXPECT_EQ(bounding_radius(shapes[1]), kBrick.bounding_radius());
+  EXPECT_EQ(inscribed_radius(shapes[1]), kBrick.inscribed_radius());
+}
+
+}  // namespace
+}  // namespace geom
