@@ -9,6 +9,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include <Eigen/Core>
 
 #include <cmath>
@@ -171,6 +173,69 @@ TEST(UserShape, OverlapsOfABodyGivenByItsEquationAreDeclined) {
     const auto [pair, point_a, point_b] = geom_test::manufacture_surfaces(a, a, -0.01, random);
     const WitnessPair seed{point_a, point_b, SeedStatus::usable};
     ASSERT_TRUE(declined(newton_distance(a, pair.X_WA, a, pair.X_WB, NewtonSystem::eight, seed))) << "pair " << i;
+  }
+}
+
+/// Distance of two segments from their ends (Ericson, Real-Time Collision Detection (2005), sec. 5.1.9), by brute force
+/// over the four end-to-segment distances and the interior solution.
+double segment_distance(const Vector3d& p0, const Vector3d& p1, const Vector3d& q0, const Vector3d& q1) {
+  const auto to_segment = [](const Vector3d& x, const Vector3d& s0, const Vector3d& s1) {
+    const Vector3d d = s1 - s0;
+    return (x - s0 - std::clamp((x - s0).dot(d) / d.squaredNorm(), 0.0, 1.0) * d).norm();
+  };
+  double least =
+      std::min({to_segment(p0, q0, q1), to_segment(p1, q0, q1), to_segment(q0, p0, p1), to_segment(q1, p0, p1)});
+  const Vector3d u = p1 - p0;
+  const Vector3d v = q1 - q0;
+  const Vector3d n = u.cross(v);
+  if (n.norm() < 1e-12) return least;
+  const Vector3d w = q0 - p0;
+  const double s = w.cross(v).dot(n) / n.squaredNorm();
+  const double t = w.cross(u).dot(n) / n.squaredNorm();
+  if (s >= 0 && s <= 1 && t >= 0 && t <= 1) least = std::min(least, std::abs(w.dot(n)) / n.norm());
+  return least;
+}
+
+TEST(UserShape, SpherocylindersHaveTheDistanceOfTheirSegmentsLessTheRadii) {
+  Random random(6);
+  int beside = 0;
+  for (int i = 0; i < 500; ++i) {
+    const geom_test::Spherocylinder a{random.log_uniform(0.1, 5), random.log_uniform(0.1, 1)};
+    const geom_test::Spherocylinder b{random.log_uniform(0.1, 5), random.log_uniform(0.1, 1)};
+    const Pose X_WA = random.pose(1.0);
+    const bool parallel = i % 5 == 0;
+    const Vector3d r = random.uniform(0, 1.5) * (a.bounding_radius() + b.bounding_radius()) * random.direction();
+    const Pose X_WB(parallel ? X_WA.rotation() : random.pose(0).rotation(), X_WA.position() + r);
+    const Vector3d u = a.half_length * X_WA.rotation().col(2);
+    const Vector3d v = b.half_length * X_WB.rotation().col(2);
+    const double axes = segment_distance(-u, u, r - v, r + v);
+    const double wanted = axes - a.radius - b.radius;
+    // Where the axes meet, nearly, other ways out are shorter.
+    if (axes < 1e-3) continue;
+    const DistanceResult d = distance(a, X_WA, b, X_WB);
+    ASSERT_EQ(d.status, wanted > 0 ? DistanceStatus::separated : DistanceStatus::overlapping) << i;
+    const double size = a.bounding_radius() + b.bounding_radius() + r.norm();
+    ASSERT_NEAR(d.distance, wanted, 2 * kWidestGap * size) << i;
+    ASSERT_LE(std::abs(d.distance - wanted), d.error_bound + 1e-14 * size) << i;
+    beside += std::abs(d.normal.dot(u)) < 1e-6 * u.norm();
+  }
+  EXPECT_GT(beside, 100) << "contacts of the cylinders' sides, where the support function has its kink";
+}
+
+TEST(UserShape, SuperquadricsOfThreePowersHaveTheirDistance) {
+  Random random(7);
+  for (int i = 0; i < 300; ++i) {
+    const auto body = [&] {
+      return geom_test::Superquadric({1, random.uniform(0.5, 2), random.uniform(0.5, 2)},
+                                     {random.uniform(1.3, 6), random.uniform(1.3, 6), random.uniform(1.3, 6)});
+    };
+    const auto a = body();
+    const auto b = body();
+    const double gap = random.log_uniform(1e-6, 1);
+    const auto pair = geom_test::manufacture(a, b, gap, random);
+    const DistanceResult d = distance(a, pair.X_WA, b, pair.X_WB);
+    ASSERT_EQ(d.status, DistanceStatus::separated) << i;
+    ASSERT_NEAR(d.distance, gap, 1e-11 * extent_of(pair)) << i;
   }
 }
 

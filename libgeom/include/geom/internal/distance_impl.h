@@ -3,6 +3,7 @@
 /// The frame around the dual Newton that turns a converged normal into a DistanceResult; used by every shape.
 
 #include <geom/distance.h>
+#include <geom/internal/simplex_descent.h>
 #include <geom/internal/sphere_search.h>
 
 #include <Eigen/Geometry>
@@ -191,6 +192,41 @@ DistanceResult solve_dual(const Pair& pair, const Cold& cold, const PairScale& s
   return declined;
 }
 
+/// A pair whose bodies have lost a skin of the thickness of their smallest radius of curvature: still convex
+/// (Blaschke).
+template <class Pair>
+struct CorePair {
+  const Pair& pair;
+  double rho_a, rho_b;
+
+  SupportPair support_pair(const Eigen::Vector3d& n) const {
+    const SupportPair s = pair.support_pair(n);
+    return {s.h_a - rho_a, s.h_b - rho_b, s.s_a - rho_a * n, s.s_b + rho_b * n};
+  }
+  const Eigen::Vector3d& r() const { return pair.r(); }
+};
+
+/// Where Newton's method does not converge, because support points jump: the closest points of the cores.
+template <class Pair>
+[[gnu::noinline, gnu::cold]] DistanceResult descend_cores(const CorePair<Pair>& cores, double size,
+                                                          const Eigen::Vector3d& start, const Eigen::Vector3d& p_WA,
+                                                          int iterations) {
+  const SimplexAnswer found = descend(cores, start, kBoundGap * size);
+  DistanceResult result;
+  result.iterations = iterations + found.iterations;
+  const double bound = std::max(0.0, found.upper - found.lower);
+  if (!(found.lower > 0) || !(bound < kWidestGap * size)) return result;
+  result.distance = found.lower - cores.rho_a - cores.rho_b;
+  result.normal = found.n;
+  const Eigen::Vector3d y = found.closest.p() - found.lower * found.n;
+  result.point_a = p_WA + found.closest.a + cores.rho_a * found.n + 0.5 * y;
+  result.point_b = result.point_a + result.distance * found.n;
+  result.residual = y.norm();
+  result.error_bound = bound;
+  result.status = result.distance >= 0 ? DistanceStatus::separated : DistanceStatus::overlapping;
+  return result;
+}
+
 /// The last resort: branch and bound over all normals (sphere_search.h). It finds the shortest translation that parts
 /// bodies deep in each other, and the distance of bodies for which Newton's method did not converge.
 template <class Pair>
@@ -242,8 +278,17 @@ DistanceResult distance(const ShapeA& a, const Pose& X_WA, const ShapeB& b, cons
                                    r, least);
   const auto cold = [&r] { return r.squaredNorm() > 0 ? r.normalized() : Eigen::Vector3d::UnitX(); };
   const internal::PairScale scale{r.norm() + a.bounding_radius() + b.bounding_radius(), rho};
-  const DistanceResult result = internal::solve_dual(pair, cold, scale, X_WA.position(), options);
+  DistanceResult result = internal::solve_dual(pair, cold, scale, X_WA.position(), options);
   if (result.status != DistanceStatus::not_converged) return result;
+  const internal::CorePair cores{pair, internal::min_curvature_radius_or_zero(a),
+                                 internal::min_curvature_radius_or_zero(b)};
+  result = internal::descend_cores(cores, scale.size, cold(), X_WA.position(), result.iterations);
+  if (result.status != DistanceStatus::not_converged) {
+    // From there Newton's method has a second chance: where it converges it is the more exact.
+    DistanceResult polished = internal::solve_dual(pair, cold, scale, X_WA.position(), {.start = result.normal});
+    polished.iterations += result.iterations;
+    return polished.error_bound < result.error_bound ? polished : result;
+  }
   return internal::search_sphere(pair, scale, cold(), X_WA.position(), result.iterations);
 }
 
