@@ -2,7 +2,8 @@
 ///
 /// engine/...: the default path. First line: the state point that everything else is compared with, N = 512, X0 = 3,
 /// packing fraction 0.40. methods/...: every finder, kind of neighbour list and distance method. dilute/...: dilated
-/// envelopes against cells, the choice of neighbours = "auto". The tables at the end give ratios within the run.
+/// envelopes against cells, the choice of neighbours = "auto". rescues/...: the share of the distances that Newton's
+/// method declines. The tables at the end give ratios within the run.
 
 #include <ed/simulation.h>
 #include <ed/start.h>
@@ -28,6 +29,7 @@ struct StatePoint {
   double X0;
   double packing_fraction;
   bool uniform = false;  // inertia; with spin
+  int number = kNumber;
 
   std::string name() const {
     std::ostringstream text;
@@ -64,11 +66,11 @@ const ed::System& start(const StatePoint& state) {
     const geom::Ellipsoid shape(
         {std::pow(state.X0, -1.0 / 3), std::pow(state.X0, -1.0 / 3), std::pow(state.X0, 2.0 / 3)});
     ed::StartOptions options;
-    options.number = kNumber;
+    options.number = state.number;
     options.packing_fraction = state.packing_fraction;
     system = ed::random_start(state.uniform ? ed::uniform_species(shape) : ed::paper_species(shape), options);
     ed::Simulation simulation(system);
-    simulation.run_collisions(100 * kNumber);
+    simulation.run_collisions(100 * static_cast<std::uint64_t>(state.number));
     system = simulation.system();
   }
   return system;
@@ -101,6 +103,8 @@ void engine(benchmark::State& timing, const StatePoint& state, const Method& met
   timing.counters["kernel_calls"] = each(&ed::Counters::kernel_calls);
   timing.counters["rebuilds"] = each(&ed::Counters::neighbour_rebuilds);
   timing.counters["rescues"] = static_cast<double>(after.rescues);
+  timing.counters["rescued %"] = 100 * static_cast<double>(after.rescues - before.rescues) /
+                                 static_cast<double>(after.evaluations - before.evaluations);
   timing.counters["overlaps"] = static_cast<double>(after.overlaps);
 }
 
@@ -139,6 +143,18 @@ const std::vector<StatePoint>& dilute_states() {
   }();
   return states;
 }
+
+/// Where Newton's method for the distance is least at home, and the paper's state.
+struct HardState {
+  StatePoint state;
+  ed::Neighbours neighbours;
+};
+constexpr HardState kHardStates[] = {
+    {{10, 0.10, false, 600}, ed::Neighbours::cells},
+    {{10, 0.40, false, 1024}, ed::Neighbours::obp},
+    {{0.12, 0.25}, ed::Neighbours::obp},
+    {{3, 0.40}, ed::Neighbours::obp},
+};
 
 constexpr Method kDilute[] = {
     {ed::Finder::certified, ed::Neighbours::dilated, ed::DistanceMethod::dual},
@@ -246,6 +262,12 @@ int main(int argc, char** argv) {
   }
   for (const StatePoint& state : dilute_states()) {
     for (const Method& method : kDilute) add(dilute_name(state, method), state, method, 2);
+  }
+  for (const auto& [state, neighbours] : kHardStates) {
+    for (const auto distance : {ed::DistanceMethod::newton8, ed::DistanceMethod::newton5}) {
+      const Method method{ed::Finder::bracketing, neighbours, distance};
+      add("rescues/" + state.name() + "/" + method.name(), state, method, 1);
+    }
   }
   KeepRates rates;
   benchmark::RunSpecifiedBenchmarks(&rates);

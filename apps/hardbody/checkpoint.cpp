@@ -25,7 +25,6 @@ constexpr std::size_t kBodyBytes = 18 * sizeof(double);
 constexpr std::size_t kLongest = std::size_t{1} << 31;
 
 // ---- Writing
-// -------------------------------------------------------------------------------------------------------
 
 template <class T>
 void put(std::string& bytes, const T& value) {
@@ -60,7 +59,6 @@ void put_system(std::string& bytes, const ed::System& system) {
 }
 
 // ---- Reading
-// -------------------------------------------------------------------------------------------------------
 
 /// Takes values off the front of the payload.
 class Reader {

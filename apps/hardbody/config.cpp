@@ -52,7 +52,6 @@ constexpr std::array<std::string_view, 18> kKeys = {
 };
 
 // ---- Messages
-// ------------------------------------------------------------------------------------------------------
 
 InputError bad(const Entry& entry, std::string_view accepted) {
   return InputError(fmt::format("{}: {} is {}; accepted: {}", entry.where, entry.key, entry.value.shown, accepted));
@@ -64,7 +63,6 @@ InputError not_yet(const Entry& entry, std::string_view accepted) {
 }
 
 // ---- Names
-// ---------------------------------------------------------------------------------------------------------
 
 bool known_section(std::string_view name) {
   return std::find(kSections.begin(), kSections.end(), name) != kSections.end();
@@ -113,7 +111,6 @@ void check_names(const TomlDocument& document) {
 }
 
 // ---- Values
-// --------------------------------------------------------------------------------------------------------
 
 bool is_number(const Value& value) {
   return (value.kind == Value::Kind::integer || value.kind == Value::Kind::real) && std::isfinite(value.real);
@@ -189,7 +186,6 @@ Vector3d read_three(const Entry& entry, std::string_view accepted) {
 }
 
 // ---- Shape and inertia
-// ---------------------------------------------------------------------------------------------
 
 constexpr std::string_view kAxesAccepted = "three positive finite numbers of which two are equal";
 
@@ -289,7 +285,6 @@ ed::Species read_inertia(const TomlDocument& document, const geom::Ellipsoid& sh
 }
 
 // ---- Sections
-// ------------------------------------------------------------------------------------------------------
 
 void read_packing(const TomlDocument& document, Config& config) {
   const geom::Ellipsoid& shape = config.species.shape;
@@ -319,9 +314,8 @@ void read_number(const TomlDocument& document, Config& config) {
   const Entry* entry = document.find("system.number");
   if (entry == nullptr) entry = document.find("system.packing_fraction");
   throw InputError(fmt::format(
-      "{}: system.number is {}: the box, {:.4g} long at this packing fraction, is then too small for bodies "
-      "of bounding "
-      "radius {:.4g} ({}); accepted: a number of at least {}",
+      "{}: system.number is {}: the box, {:.4g} long at this packing fraction, is then too small for bodies of "
+      "bounding radius {:.4g} ({}); accepted: a number of at least {}",
       entry->where, config.number, ed::box_for(shape, config.number, config.packing_fraction), shape.bounding_radius(),
       cells ? "three cells as wide as two of them must fit along an edge" : "a body would meet two images of another",
       least));

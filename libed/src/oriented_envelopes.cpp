@@ -109,7 +109,8 @@ double OrientedEnvelopes::exit_time(int i, const AxisMotion& motion, const Vecto
 
 double OrientedEnvelopes::crossing_time(const AxisMotion& motion) const {
   const double surface_speed = std::abs(std::sqrt(shape_.a2) - std::sqrt(shape_.b2)) * motion.rate;
-  return thickness_ / (motion.velocity.norm() + surface_speed + 1e-9 * thickness_);
+  constexpr double kLeastRate = 1e-9;  // thicknesses a time unit: below it a body is as good as at rest
+  return thickness_ / (motion.velocity.norm() + surface_speed + kLeastRate * thickness_);
 }
 
 double OrientedEnvelopes::worthwhile(const AxisMotion& motion) const {

@@ -45,7 +45,7 @@ class OrientedEnvelopes final : public Envelopes {
   double exit(const geom::OrientedBox& box, const AxisMotion& motion, const Eigen::Vector3d& position,
               double now) const;
 
-  /// The time in which the surface can cross the thickness, at most 1e9.
+  /// The time in which the surface can cross the thickness; of bodies at rest 1e9, so that times stay finite.
   double crossing_time(const AxisMotion& motion) const;
 
   geom::internal::Spheroid shape_;

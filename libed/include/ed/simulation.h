@@ -31,7 +31,9 @@ struct Counters {
   std::uint64_t neighbour_rebuilds = 0;  ///< envelopes renewed
   std::uint64_t envelope_checks = 0;     ///< looks at whether a body leaves its envelope
   std::uint64_t candidate_tests = 0;     ///< pairs of envelopes tested in rebuilds
-  /// Pairs found deeper than 1e-12 of their size: always 0 in a sound run. With Finder::bracketing, contacts missed.
+  /// Times a pair was found deeper than 1e-12 of its size: always 0 in a sound run. With Finder::bracketing not the
+  /// number of contacts missed: one shows only if the bodies are still that deep when they are looked at again, and
+  /// then at each look.
   std::uint64_t overlaps = 0;
   /// Contacts at which the bodies did not approach: no impulse, not a collision. Always 0 in a sound run.
   std::uint64_t parting_contacts = 0;

@@ -14,9 +14,9 @@ namespace ed {
 
 enum class ContactStatus {
   hit,          ///< the bodies touch at `time`, approaching, and not before
-  separated,    ///< certified: no contact up to `time` = t_max
-  overlapping,  ///< they overlap at the start by more than kOverlap times the sum of their bounding radii
-  failed,       ///< the search ended without an answer; certified: no contact before `time`
+  separated,    ///< no contact up to `time` = t_max; certified by Finder::certified, not found by Finder::bracketing
+  overlapping,  ///< they overlap at `time` by more than kOverlap times the sum of their bounding radii
+  failed,       ///< the search ended at `time` without an answer; no contact before, in the same sense as `separated`
 };
 
 ED_EXPORT const char* to_string(ContactStatus status);
@@ -48,8 +48,8 @@ struct [[nodiscard]] ContactResult {
 /// Bodies: ellipsoids of revolution whose moments of inertia share the axis of revolution. Others throw
 /// std::invalid_argument (not available yet), as do values that are not finite and inertia that no body can have.
 ///
-/// `options.finder = Finder::bracketing` searches as the paper does instead: that is no proof, and `separated` then
-/// says only that no contact was found. `failed`, with either finder, if the budget of evaluations was spent.
+/// `options.finder = Finder::bracketing` searches as the paper does instead, which is no proof. `failed`, with either
+/// finder, if the budget of evaluations was spent.
 ED_EXPORT ContactResult time_of_contact(const geom::Ellipsoid& a, const Motion& motion_a, const geom::Ellipsoid& b,
                                         const Motion& motion_b, double t_max, const ContactOptions& options = {});
 
