@@ -1,5 +1,9 @@
-# Installs the libraries as the CMake package "hardbody" with one component a library.
+# Installs the libraries as the CMake package "hardbody" with one component a library, and the program with its manual.
+#
+# Two install components, which are the two Debian packages (HardbodyPackage.cmake): "dev", the default here, and
+# "program".
 include(CMakePackageConfigHelpers)
+set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME dev)
 
 set(HARDBODY_CMAKE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/hardbody)
 
@@ -36,4 +40,9 @@ write_basic_package_version_file(hardbody-config-version.cmake COMPATIBILITY Sam
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/hardbody-config.cmake
   ${CMAKE_CURRENT_BINARY_DIR}/hardbody-config-version.cmake
   DESTINATION ${HARDBODY_CMAKE_DIR})
+
+if(TARGET hardbody)
+  install(TARGETS hardbody RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
+  install(FILES docs/man/hardbody.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT program)
+endif()
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})

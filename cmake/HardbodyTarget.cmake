@@ -12,11 +12,18 @@ if(HARDBODY_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER AND PROJECT_IS_TOP_LEVEL)
   set(CMAKE_CXX_COMPILER_LAUNCHER ${HARDBODY_CCACHE})
 endif()
 
+# Shared libraries are found from each other and from the program wherever the prefix is moved to.
+if(BUILD_SHARED_LIBS AND NOT DEFINED CMAKE_INSTALL_RPATH)
+  set(CMAKE_INSTALL_RPATH "$ORIGIN;$ORIGIN/../${CMAKE_INSTALL_LIBDIR}")
+endif()
+
 function(hardbody_target target)
   cmake_parse_arguments(PARSE_ARGV 1 arg "BASELINE" "" "")
   target_compile_features(${target} PUBLIC cxx_std_20)
   set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF CXX_VISIBILITY_PRESET hidden
-    VISIBILITY_INLINES_HIDDEN ON POSITION_INDEPENDENT_CODE ON)
+    VISIBILITY_INLINES_HIDDEN ON POSITION_INDEPENDENT_CODE ON
+    # Static and shared libraries are made of the same object files: no macro tells them apart, and ccache knows them.
+    DEFINE_SYMBOL "")
   target_compile_options(${target} PRIVATE
     # No contraction: the same source gives the same bits with and without FMA in the instruction set.
     -ffp-contract=off

@@ -1,20 +1,65 @@
-# The installed package as an outside project meets it. FLAGS: a consumer may compile with another -march than the
-# libraries were built with.
+# The installed package as an outside project meets it (package/consumer), static and shared, and the Debian packages.
 set(consumer_flags "")
 if(HARDBODY_SANITIZE)
   set(consumer_flags "-fsanitize=${HARDBODY_SANITIZE}")
 endif()
-function(hardbody_package_test name components flags)
-  add_test(NAME ${name} COMMAND ${CMAKE_COMMAND} -DBUILD_DIR=${PROJECT_BINARY_DIR}
-    -DWORK_DIR=${CMAKE_CURRENT_BINARY_DIR}/${name} "-DCOMPONENTS=${components}" -DCOMPILER=${CMAKE_CXX_COMPILER}
-    "-DFLAGS=${consumer_flags} ${flags}" -P ${CMAKE_CURRENT_SOURCE_DIR}/package/run.cmake)
-  set_tests_properties(${name} PROPERTIES LABELS package TIMEOUT 300
-    RESOURCE_LOCK install)  # all install from the same build tree
+set(package_dir ${CMAKE_CURRENT_BINARY_DIR}/package)
+
+function(hardbody_package_script name script)
+  add_test(NAME ${name} COMMAND ${CMAKE_COMMAND} -DCOMPILER=${CMAKE_CXX_COMPILER}
+    -DLAUNCHER=${CMAKE_CXX_COMPILER_LAUNCHER} -DFLAGS=${consumer_flags} -DWORK_DIR=${package_dir}/${name} ${ARGN}
+    -P ${CMAKE_CURRENT_SOURCE_DIR}/package/${script})
+  set_tests_properties(${name} PROPERTIES LABELS package TIMEOUT 600)
 endfunction()
 
-hardbody_package_test(package_geom_and_ed "geom,ed" "")
-hardbody_package_test(package_geom_alone "geom" "")
-hardbody_package_test(package_other_march "geom,ed" "-march=native")
-if(HARDBODY_WITH_SEEDS AND HARDBODY_WITH_CGAL)
-  hardbody_package_test(package_seeds "geom,geom_seeds,geom_cgal" "")
+# hardbody_package_tests(<linkage> <argument of install.cmake>...)
+function(hardbody_package_tests linkage)
+  set(prefix ${package_dir}/${linkage}_prefix)
+  hardbody_package_script(package_${linkage}_install install.cmake -DBUILD_DIR=${PROJECT_BINARY_DIR} -DPREFIX=${prefix}
+    ${ARGN})
+  # All install from the same build tree.
+  set_tests_properties(package_${linkage}_install PROPERTIES FIXTURES_SETUP package_${linkage} RESOURCE_LOCK install)
+
+  # Whoever asks for no seeds needs none of their packages.
+  set(hidden -DHIDDEN=fcl,ccd,octomap,CGAL)
+  set(unneeded "-DUNNEEDED=lib(fcl|ccd|octomap|octomath|gmp|mpfr|hwy)")
+  hardbody_package_script(package_${linkage}_geom run.cmake -DPREFIX=${prefix} -DCOMPONENTS=geom ${hidden} ${unneeded})
+  hardbody_package_script(package_${linkage}_geom_ed run.cmake -DPREFIX=${prefix} -DCOMPONENTS=geom,ed ${hidden}
+    ${unneeded} -DOTHER_FLAGS=-march=native)
+  set(names geom geom_ed)
+  if(HARDBODY_WITH_SEEDS)
+    hardbody_package_script(package_${linkage}_geom_seeds run.cmake -DPREFIX=${prefix} -DCOMPONENTS=geom,geom_seeds
+      -DHIDDEN=CGAL)
+    # ... which proves that they are hidden above.
+    hardbody_package_script(package_${linkage}_hidden run.cmake -DPREFIX=${prefix} -DCOMPONENTS=geom,geom_seeds
+      ${hidden} -DREFUSED=ccd)
+    list(APPEND names geom_seeds hidden)
+    if(HARDBODY_WITH_CGAL)
+      hardbody_package_script(package_${linkage}_geom_cgal run.cmake -DPREFIX=${prefix}
+        -DCOMPONENTS=geom,geom_seeds,geom_cgal)
+      list(APPEND names geom_cgal)
+    endif()
+  endif()
+  hardbody_package_script(package_${linkage}_unknown run.cmake -DPREFIX=${prefix} -DCOMPONENTS=geom,optics
+    "-DREFUSED=wanted: geom, optics.+this installation has: [a-z_, ]*geom")
+  list(APPEND names unknown)
+  list(TRANSFORM names PREPEND package_${linkage}_)
+  set_tests_properties(${names} PROPERTIES FIXTURES_REQUIRED package_${linkage})
+endfunction()
+
+if(NOT BUILD_SHARED_LIBS)
+  hardbody_package_tests(static)
+endif()
+hardbody_package_tests(shared -DSHARED=ON -DSOURCE_DIR=${PROJECT_SOURCE_DIR})
+find_program(HARDBODY_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH)
+if(HARDBODY_PYTHON)
+  add_test(NAME package_exports COMMAND ${HARDBODY_PYTHON} ${CMAKE_CURRENT_SOURCE_DIR}/package/exports.py
+    ${package_dir}/shared_prefix ${CMAKE_NM})
+  set_tests_properties(package_exports PROPERTIES LABELS package TIMEOUT 60 FIXTURES_REQUIRED package_shared)
+endif()
+
+find_program(HARDBODY_DPKG_DEB dpkg-deb)
+if(TARGET hardbody AND HARDBODY_DPKG_DEB AND NOT HARDBODY_SANITIZE AND NOT BUILD_SHARED_LIBS)
+  hardbody_package_script(package_deb deb.cmake -DBUILD_DIR=${PROJECT_BINARY_DIR} -DVERSION=${PROJECT_VERSION})
+  set_tests_properties(package_deb PROPERTIES RESOURCE_LOCK install)
 endif()

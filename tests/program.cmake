@@ -6,9 +6,13 @@ if(TARGET hardbody)
   add_test(NAME cli_test COMMAND ${HARDBODY_PYTHON} ${CMAKE_CURRENT_SOURCE_DIR}/cli/test_cli.py)
   set_tests_properties(cli_test PROPERTIES LABELS cli TIMEOUT 1200
     ENVIRONMENT "HARDBODY=$<TARGET_FILE:hardbody>;HARDBODY_DEMO=${PROJECT_SOURCE_DIR}/apps/demo.toml")
+  add_test(NAME manual_test COMMAND ${HARDBODY_PYTHON} ${CMAKE_CURRENT_SOURCE_DIR}/cli/test_manual.py)
+  set_tests_properties(manual_test PROPERTIES LABELS cli TIMEOUT 60 ENVIRONMENT "HARDBODY=$<TARGET_FILE:hardbody>")
 
   hardbody_test(program_test cli cli/program_test.cpp)
   target_link_libraries(program_test PRIVATE hardbody_program)
   target_compile_definitions(program_test PRIVATE HARDBODY_PROGRAM="$<TARGET_FILE:hardbody>")
   add_dependencies(program_test hardbody)
+else()
+  list(APPEND unbuilt_tests cli/program_test.cpp)
 endif()

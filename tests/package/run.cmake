@@ -1,27 +1,41 @@
 cmake_minimum_required(VERSION 3.25)
+include(${CMAKE_CURRENT_LIST_DIR}/common.cmake)
 
-# Installs a build tree to a temporary prefix, and configures, builds and runs an outside project against it.
+# Configures, builds and runs an outside project against the package installed in PREFIX.
 #
-#   cmake -DBUILD_DIR=... -DWORK_DIR=... -DCOMPONENTS=geom,ed -DFLAGS=... -DCOMPILER=... -P run.cmake
-set(prefix ${WORK_DIR}/prefix)
+#   cmake -DPREFIX=... -DWORK_DIR=... -DCOMPONENTS=geom,ed -DFLAGS=... -DCOMPILER=... -P run.cmake
+#
+# HIDDEN=fcl,ccd: packages that cannot be found. REFUSED=text: find_package must fail, with that in its message.
+# OTHER_FLAGS: the project is built a second time, with these flags, and must give the same answers, bit for bit.
+# UNNEEDED=regex: what the dynamic linker must not load with the project's programs.
 file(REMOVE_RECURSE ${WORK_DIR})
-
-function(must)
-  execute_process(COMMAND ${ARGN} RESULT_VARIABLE status)
-  if(NOT status EQUAL 0)
-    list(JOIN ARGN " " command)
-    message(FATAL_ERROR "failed (${status}): ${command}")
+if(REFUSED)
+  configure_consumer(status ${WORK_DIR}/build "${FLAGS}")
+  string(REGEX REPLACE "[ \n]+" " " message "${configure_errors}")
+  if(status EQUAL 0 OR NOT message MATCHES "${REFUSED}")
+    message(FATAL_ERROR "wanted: a refusal that says \"${REFUSED}\"")
   endif()
-endfunction()
-
-must(${CMAKE_COMMAND} --install ${BUILD_DIR} --prefix ${prefix})
-must(${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR}/consumer -B ${WORK_DIR}/build "-DCOMPONENTS=${COMPONENTS}"
-  -DCMAKE_PREFIX_PATH=${prefix} -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_COMPILER=${COMPILER} "-DCMAKE_CXX_FLAGS=${FLAGS}")
-must(${CMAKE_COMMAND} --build ${WORK_DIR}/build)
-must(${WORK_DIR}/build/geom_consumer)
-if(COMPONENTS MATCHES "geom_seeds")
-  must(${WORK_DIR}/build/seeds_consumer)
+  return()
 endif()
-if(COMPONENTS MATCHES "(^|,)ed(,|$)")
-  must(${WORK_DIR}/build/ed_consumer)
+
+build_consumer(${WORK_DIR}/build "${FLAGS}")
+if(UNNEEDED)
+  must_print(loaded ldd ${WORK_DIR}/build/geom_consumer)
+  message(STATUS "geom_consumer loads\n${loaded}")
+  if(loaded MATCHES "${UNNEEDED}")
+    message(FATAL_ERROR "geom_consumer loads ${CMAKE_MATCH_0}")
+  endif()
+endif()
+if(OTHER_FLAGS)
+  build_consumer(${WORK_DIR}/other "${FLAGS} ${OTHER_FLAGS}")
+  foreach(program geom_consumer ed_consumer)
+    must_print(wanted ${WORK_DIR}/build/${program} answers)
+    must_print(got ${WORK_DIR}/other/${program} answers)
+    string(LENGTH "${wanted}" length)
+    if(length LESS 1000 OR NOT got STREQUAL wanted)
+      file(WRITE ${WORK_DIR}/${program}.wanted "${wanted}")
+      file(WRITE ${WORK_DIR}/${program}.got "${got}")
+      message(FATAL_ERROR "${program} answers otherwise with ${OTHER_FLAGS}: diff ${WORK_DIR}/${program}.{wanted,got}")
+    endif()
+  endforeach()
 endif()
