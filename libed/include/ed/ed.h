@@ -1,6 +1,10 @@
 #pragma once
 
+/// @file
 /// The whole public interface of libed.
+
+/// @namespace ed
+/// Event-driven dynamics of hard bodies: libed.
 
 #include <ed/analysis.h>
 #include <ed/contact_options.h>

@@ -31,6 +31,7 @@ struct BlockRow {
   double S;
 };
 
+/// What a run measured. Errors are standard errors over blocks.
 struct Results {
   double duration = 0;
   Estimate collision_rate;  ///< collisions a body takes part in, a time unit: 2 N_coll / (N t)
@@ -48,6 +49,7 @@ struct Results {
   std::vector<BlockRow> blocks;
 };
 
+/// What `Observables` has to know beforehand.
 struct ObservablesOptions {
   int number;              ///< of bodies
   double duration;         ///< planned; the run may be stopped earlier
@@ -62,10 +64,11 @@ struct ObservablesOptions {
 /// linearly (its logarithmic slope over the fit window within 0.2 of 1).
 class ED_EXPORT Observables {
  public:
+  /// Of a run that is about to start, at time 0.
   explicit Observables(const ObservablesOptions& options);
   ~Observables();
-  Observables(Observables&&) noexcept;
-  Observables& operator=(Observables&&) noexcept;
+  Observables(Observables&&) noexcept;             ///< the one moved from can only be assigned to or destroyed
+  Observables& operator=(Observables&&) noexcept;  ///< the same
 
   /// The next time (since the start) at which the state is wanted; infinite when the planned duration is covered.
   double next_time() const;
@@ -84,8 +87,9 @@ class ED_EXPORT Observables {
 /// Largest eigenvalue of Q = 3/2 <u u^T> - 1/2 (averaged over bodies): the nematic order of one frame.
 ED_EXPORT double nematic_order(const std::vector<Eigen::Vector3d>& axes);
 
-/// <P2(u.u0)> and <|r - r0|^2> between two snapshots.
+/// <P2(u.u0)> between two snapshots.
 ED_EXPORT double c2_between(const Snapshot& origin, const Snapshot& now);
+/// <|r - r0|^2> between two snapshots.
 ED_EXPORT double msd_between(const Snapshot& origin, const Snapshot& now);
 
 }  // namespace ed

@@ -13,9 +13,9 @@ namespace ed {
 /// result.
 class ED_EXPORT Random {
  public:
-  explicit Random(std::uint64_t seed);
+  explicit Random(std::uint64_t seed);  ///< every seed is a good one
 
-  std::uint64_t bits();
+  std::uint64_t bits();         ///< 64 random bits
   double uniform();             ///< in [0, 1)
   double normal();              ///< mean 0, variance 1
   Eigen::Vector3d normal3();    ///< three of them

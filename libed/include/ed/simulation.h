@@ -40,17 +40,20 @@ struct Counters {
   std::uint64_t unrecorded_failures = 0;  ///< failed pairs beyond those that failures() has room for
 };
 
+/// Two bodies that collided.
 struct Collision {
   double time;  ///< since the simulation's start
   int i;
   int j;
 };
 
+/// Why a pair could not be predicted as it should.
 enum class FailureReason {
   overlap,   ///< the bodies overlap by more than rounding
   distance,  ///< Newton's method for a distance gave no answer
 };
 
+/// The enumerator's name.
 ED_EXPORT const char* to_string(FailureReason reason);
 
 /// A pair that could not be predicted as it should, at the moment where that failed, with all that is needed to look at
@@ -78,6 +81,7 @@ struct Snapshot {
   std::vector<Eigen::Vector2d> phi_body;  ///< the same, components along body x and y
 };
 
+/// How a simulation finds neighbours and contacts.
 struct SimulationOptions {
   /// Thickness of the neighbour-list envelopes (length); 0: a first guess, which `tune_envelopes` improves.
   double envelope = 0;
@@ -105,10 +109,10 @@ class ED_EXPORT Simulation {
   /// options are not usable.
   explicit Simulation(const System& system, const SimulationOptions& options = {});
   ~Simulation();
-  Simulation(Simulation&&) noexcept;
-  Simulation& operator=(Simulation&&) noexcept;
+  Simulation(Simulation&&) noexcept;             ///< the one moved from can only be assigned to or destroyed
+  Simulation& operator=(Simulation&&) noexcept;  ///< the same
 
-  double time() const;
+  double time() const;  ///< since the start
 
   /// Processes all events up to `time`, but at most `max_collisions` collisions. True if `time` was reached.
   bool run_until(double time, std::uint64_t max_collisions = ~std::uint64_t{0});
@@ -125,10 +129,10 @@ class ED_EXPORT Simulation {
   /// Chooses the envelope's thickness by the work that the counters show, never by a clock. Runs up to about 20
   /// collisions a body. `keep_going` is asked after every hundred collisions; false: stops with the best so far.
   void tune_envelopes(const std::function<bool()>& keep_going = {});
-  double envelope() const;
+  double envelope() const;  ///< thickness now, a length
 
-  double box() const;
-  Counters counters() const;
+  double box() const;         ///< edge length
+  Counters counters() const;  ///< since the construction
 
   /// Sum over collisions of r_AB . dp, the momentum that B gains along the vector between the centres.
   double virial() const;
@@ -144,7 +148,7 @@ class ED_EXPORT Simulation {
 
   /// Keeps the next `number` collisions in collisions().
   void record_collisions(std::size_t number);
-  const std::vector<Collision>& collisions() const;
+  const std::vector<Collision>& collisions() const;  ///< those that were asked for, so far
 
   /// The first pairs that failed, at most 16 for each reason.
   const std::vector<FailedPair>& failures() const;

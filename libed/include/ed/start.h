@@ -8,6 +8,7 @@
 
 namespace ed {
 
+/// Which start is wanted.
 struct StartOptions {
   int number = 512;
   double packing_fraction = 0.4;

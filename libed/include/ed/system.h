@@ -34,6 +34,7 @@ struct System {
   Species species;
   std::vector<Body> bodies;
 
+  /// The number of bodies.
   int size() const { return static_cast<int>(bodies.size()); }
 };
 
@@ -44,6 +45,7 @@ ED_EXPORT Species paper_species(const geom::Ellipsoid& shape, double mass = 1);
 /// Uniform density, with spin.
 ED_EXPORT Species uniform_species(const geom::Ellipsoid& shape, double mass = 1);
 
+/// Volume of the bodies over volume of the box.
 ED_EXPORT double packing_fraction(const System& system);
 
 /// Edge of the cubic box in which `number` bodies of this shape have that packing fraction.
@@ -70,6 +72,7 @@ struct KineticState {
   double translational_kT = 0;   ///< on 3N - 3 degrees of freedom (momentum is zero)
   double rotational_kT = 0;      ///< on 2N
   Eigen::Vector3d momentum = Eigen::Vector3d::Zero();
+  /// All three together.
   double energy() const { return translational_energy + rotational_energy + spin_energy; }
 };
 

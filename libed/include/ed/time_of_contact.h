@@ -12,6 +12,7 @@
 
 namespace ed {
 
+/// How a contact search ended.
 enum class ContactStatus {
   hit,          ///< the bodies touch at `time`, approaching, and not before
   separated,    ///< no contact up to `time` = t_max; certified by Finder::certified, not found by Finder::bracketing
@@ -19,6 +20,7 @@ enum class ContactStatus {
   failed,       ///< the search ended at `time` without an answer; no contact before, in the same sense as `separated`
 };
 
+/// The enumerator's name.
 ED_EXPORT const char* to_string(ContactStatus status);
 
 /// The answer of a contact search; `point` and `normal` are NaN unless it is a hit.

@@ -1,5 +1,6 @@
 #pragma once
 
+/// @file
 /// Every tolerance of libed, with the inequality it enters and its unit. "size" is the sum of both bounding radii.
 
 namespace ed {

@@ -1,5 +1,6 @@
 #pragma once
 
+/// @file
 /// Shapes that are chosen at run time: a closed variant of those that libgeom brings.
 
 #include <geom/distance.h>
@@ -14,17 +15,20 @@
 
 namespace geom {
 
+/// A body whose kind is chosen at run time.
 using Shape = std::variant<Ellipsoid, Superellipsoid>;
 
 /// `distance` of the shapes inside: one dispatch a query.
 GEOM_EXPORT DistanceResult distance(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB,
                                     const DistanceOptions& options = {});
 
-/// See the shapes' own functions of these names.
+/// The member functions of the shape inside; see there.
+/// @{
 GEOM_EXPORT Support support(const Shape& shape, const Eigen::Vector3d& n);
 GEOM_EXPORT double bounding_radius(const Shape& shape);
 GEOM_EXPORT double inscribed_radius(const Shape& shape);
 GEOM_EXPORT double volume(const Shape& shape);
 GEOM_EXPORT Eigen::Vector3d inertia(const Shape& shape, double mass);
+/// @}
 
 }  // namespace geom

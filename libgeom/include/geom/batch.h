@@ -21,6 +21,7 @@ enum class InstructionSet {
   avx512,    ///< x86-64 with AVX-512 F, VL, DQ, BW: 8 pairs at a time
 };
 
+/// The enumerator's name.
 GEOM_EXPORT const char* to_string(InstructionSet set);
 
 /// Whether this build has a kernel for `set` and this processor can run it.
@@ -29,6 +30,7 @@ GEOM_EXPORT bool is_available(InstructionSet set);
 /// What InstructionSet::best stands for on this processor. Results depend on it in their last bits.
 GEOM_EXPORT InstructionSet batch_instruction_set();
 
+/// How `distance_batch` starts and with what.
 struct BatchOptions {
   /// Warm starts, DistanceOptions::start of each pair: guesses of the normals from A to B. Empty: cold starts.
   std::span<const Eigen::Vector3d> starts = {};

@@ -14,6 +14,7 @@
 
 namespace geom {
 
+/// Whether a query has an answer, and which.
 enum class DistanceStatus {
   separated,      ///< the bodies are apart (or touch): the answer is right to tolerance, certified
   overlapping,    ///< they overlap: the penetration depth is right to tolerance, certified
@@ -21,6 +22,7 @@ enum class DistanceStatus {
   singular,       ///< no answer: a linear system of the method was singular
 };
 
+/// The enumerator's name.
 GEOM_EXPORT const char* to_string(DistanceStatus status);
 
 /// What is asked of bodies that overlap.
@@ -29,6 +31,7 @@ enum class Penetration {
   local,   ///< the nearest stationary one (the paper's beta < 0), at any depth: not certified, cheap
 };
 
+/// Where a distance query starts, and how far it goes.
 struct DistanceOptions {
   /// Warm start: a guess of the normal from A to B, for instance the last answer's. Any length from 1e-145 to 1e150;
   /// else, also if it is not finite: cold start.
@@ -90,12 +93,14 @@ GEOM_EXPORT DistanceResult distance(const Ellipsoid& a, const Pose& X_WA, const 
 /// Answers are certified by two bounds, g(n) from below and the distance of two points from above, that differ by less
 /// than kBoundGap (1e-12) of the sum of both bounding radii; where edges nearly touch and rounding keeps the bounds
 /// apart, by a positive g that is stationary to 1e-14 of it. `error_bound` tells. Overlaps are searched as above.
+/// @{
 GEOM_EXPORT DistanceResult distance(const Superellipsoid& a, const Pose& X_WA, const Superellipsoid& b,
                                     const Pose& X_WB, const DistanceOptions& options = {});
 GEOM_EXPORT DistanceResult distance(const Superellipsoid& a, const Pose& X_WA, const Ellipsoid& b, const Pose& X_WB,
                                     const DistanceOptions& options = {});
 GEOM_EXPORT DistanceResult distance(const Ellipsoid& a, const Pose& X_WA, const Superellipsoid& b, const Pose& X_WB,
                                     const DistanceOptions& options = {});
+/// @}
 
 }  // namespace geom
 

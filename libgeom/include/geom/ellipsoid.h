@@ -16,7 +16,7 @@ class GEOM_EXPORT Ellipsoid {
   /// [kMinSemiAxis, kMaxSemiAxis], and the largest is at most kMaxAspectRatio times the smallest.
   explicit Ellipsoid(const Eigen::Vector3d& semi_axes);
 
-  const Eigen::Vector3d& semi_axes() const { return semi_axes_; }
+  const Eigen::Vector3d& semi_axes() const { return semi_axes_; }  ///< along body x, y, z
 
   /// The index (0, 1, 2) of the axis of revolution if two semi-axes are equal (2 for a sphere), else nothing.
   std::optional<int> symmetry_axis() const {
@@ -25,19 +25,19 @@ class GEOM_EXPORT Ellipsoid {
 
   /// f(x) = (x/a)^2 + (y/b)^2 + (z/c)^2 - 1 (the paper's eq. Shapes): negative inside.
   double value(const Eigen::Vector3d& x) const;
-  Eigen::Vector3d gradient(const Eigen::Vector3d& x) const;
-  Eigen::Matrix3d hessian(const Eigen::Vector3d& x) const;
+  Eigen::Vector3d gradient(const Eigen::Vector3d& x) const;  ///< of f
+  Eigen::Matrix3d hessian(const Eigen::Vector3d& x) const;   ///< of f
 
   /// h(n) = |D n|, s(n) = D^2 n / h with D = diag(a, b, c); n != 0, any length.
   Support support(const Eigen::Vector3d& n) const;
   /// hess h = (D^2 - s s^T) / h: its eigenvalues across n are the principal radii of curvature at s, for |n| = 1.
   Eigen::Matrix3d support_hessian(const Eigen::Vector3d& n) const;
 
-  double bounding_radius() const { return bounding_radius_; }
-  double inscribed_radius() const { return inscribed_radius_; }
+  double bounding_radius() const { return bounding_radius_; }    ///< the largest semi-axis
+  double inscribed_radius() const { return inscribed_radius_; }  ///< the smallest semi-axis
   /// The smallest principal radius of curvature of the surface, amin^2 / amax.
   double min_curvature_radius() const { return min_curvature_radius_; }
-  double volume() const;
+  double volume() const;  ///< 4 pi a b c / 3
   /// Principal moments of inertia about body x, y, z at uniform density: m (b^2 + c^2) / 5, ...
   Eigen::Vector3d inertia(double mass) const;
 

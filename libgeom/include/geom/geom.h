@@ -1,6 +1,10 @@
 #pragma once
 
+/// @file
 /// The whole public interface of libgeom.
+
+/// @namespace geom
+/// Distances of smooth convex bodies: libgeom, and seeds from other libraries.
 
 #include <geom/any_shape.h>
 #include <geom/batch.h>

@@ -1,5 +1,6 @@
 #pragma once
 
+/// @file
 /// The paper's distance equations, solved by Newton's method from a guess of the closest points.
 ///
 /// `distance` (distance.h) needs no guess, is faster and answers every separated pair. This is the other way, for
@@ -18,12 +19,14 @@
 
 namespace geom {
 
+/// Whether a seed has points to start from.
 enum class SeedStatus {
   usable,       ///< the points are finite, on or near their surfaces
   overlapping,  ///< no points: the bodies overlap, for which this seed has none to offer
   declined,     ///< no points for another reason
 };
 
+/// The enumerator's name.
 GEOM_EXPORT const char* to_string(SeedStatus status);
 
 /// A guess of the closest points of two bodies (of the deepest ones, if they overlap). World frame; the points are NaN
@@ -34,11 +37,13 @@ struct [[nodiscard]] WitnessPair {
   SeedStatus status = SeedStatus::declined;
 };
 
+/// Which of the paper's equations are solved.
 enum class NewtonSystem {
   eight,  ///< eqs. (dist8) in the unknowns xA, xB, alpha, beta
   five,   ///< xB eliminated by eq. (dist8d): unknowns xA, alpha, beta
 };
 
+/// How far `newton_distance` goes.
 struct NewtonOptions {
   int max_iterations = kMaxNewtonIterations;  ///< evaluations of the equations, >= 1
 };

@@ -28,14 +28,15 @@ class GEOM_EXPORT Pose {
   /// `rotation`: columns are the body's axes in world coordinates.
   Pose(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& position);
 
+  /// Position alone, not turned.
   static Pose translation(const Eigen::Vector3d& position);
 
   /// From a quaternion (w, x, y, z), body to world; its norm must be 1 within kPoseTolerance.
   static Pose from_quaternion(double w, double x, double y, double z,
                               const Eigen::Vector3d& position = Eigen::Vector3d::Zero());
 
-  const Eigen::Matrix3d& rotation() const { return rotation_; }
-  const Eigen::Vector3d& position() const { return position_; }
+  const Eigen::Matrix3d& rotation() const { return rotation_; }  ///< columns: the body's axes in the world
+  const Eigen::Vector3d& position() const { return position_; }  ///< of the body's origin
 
   /// Coordinates of a body point in the world.
   Eigen::Vector3d to_world(const Eigen::Vector3d& p_B) const { return rotation_ * p_B + position_; }

@@ -1,5 +1,6 @@
 #pragma once
 
+/// @file
 /// Questions other than the distance of two bodies: do they overlap, at least how far apart are they, what is the
 /// closest point, is a point inside, what does a ray hit. All of them never throw and never allocate.
 
@@ -31,6 +32,7 @@ double distance_lower_bound(const ShapeA& a, const Pose& X_WA, const ShapeB& b, 
          Support(b.support(X_WB.rotation().transpose() * -unit)).height;
 }
 
+/// Of `overlap`.
 enum class Answer { no, yes, unknown };
 
 /// Whether two bodies overlap (touching counts as overlap). Mostly decided by one support evaluation, across `start` or
@@ -51,6 +53,7 @@ struct [[nodiscard]] ClosestPoint {
 /// World frame; accuracy and certificates as those of `distance`.
 template <SupportShape Shape>
 ClosestPoint closest_point(const Shape& shape, const Pose& X_WB, const Eigen::Vector3d& p_W);
+/// The same, compiled into the library.
 GEOM_EXPORT ClosestPoint closest_point(const Superellipsoid& shape, const Pose& X_WB, const Eigen::Vector3d& p_W);
 
 /// Whether a point of the world is in the body or on its surface.
@@ -59,6 +62,7 @@ bool contains(const Shape& shape, const Pose& X_WB, const Eigen::Vector3d& p_W) 
   return shape.value(X_WB.to_body(p_W)) <= 0;
 }
 
+/// What became of a ray.
 enum class RayStatus {
   hit,            ///< at `t`
   missed,         ///< certified: no point of the ray is in the body
@@ -66,6 +70,7 @@ enum class RayStatus {
   not_converged,  ///< no answer
 };
 
+/// Where a ray meets a body. World frame.
 struct [[nodiscard]] RayHit {
   RayStatus status = RayStatus::not_converged;
   double t = std::numeric_limits<double>::quiet_NaN();  ///< in units of the direction's length
@@ -84,6 +89,7 @@ GEOM_EXPORT RayHit ray_cast(const Ellipsoid& shape, const Pose& X_WB, const Eige
                             const Eigen::Vector3d& direction);
 
 /// The same for shapes chosen at run time.
+/// @{
 GEOM_EXPORT double distance_lower_bound(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB,
                                         const Eigen::Vector3d& n);
 GEOM_EXPORT Answer overlap(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB,
@@ -92,6 +98,7 @@ GEOM_EXPORT ClosestPoint closest_point(const Shape& shape, const Pose& X_WB, con
 GEOM_EXPORT bool contains(const Shape& shape, const Pose& X_WB, const Eigen::Vector3d& p_W);
 GEOM_EXPORT RayHit ray_cast(const Shape& shape, const Pose& X_WB, const Eigen::Vector3d& origin,
                             const Eigen::Vector3d& direction);
+/// @}
 
 }  // namespace geom
 

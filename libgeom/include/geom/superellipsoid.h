@@ -18,15 +18,15 @@ class GEOM_EXPORT Superellipsoid {
   /// [kMinExponent, kMaxExponent].
   Superellipsoid(const Eigen::Vector3d& semi_axes, double e1, double e2);
 
-  const Eigen::Vector3d& semi_axes() const { return semi_axes_; }
-  double e1() const { return e1_; }
-  double e2() const { return e2_; }
+  const Eigen::Vector3d& semi_axes() const { return semi_axes_; }  ///< along body x, y, z
+  double e1() const { return e1_; }                                ///< of the profile along z
+  double e2() const { return e2_; }                                ///< of the section across it
 
   /// f(x) = N(x)^2 - 1 with N the norm whose unit ball the body is, 1-homogeneous: negative inside. For e1 = e2 = 1 it
   /// is the Ellipsoid's. Smooth but in the planes x = 0, y = 0, z = 0, where second derivatives are infinite for e > 1.
   double value(const Eigen::Vector3d& x) const;
-  Eigen::Vector3d gradient(const Eigen::Vector3d& x) const;
-  Eigen::Matrix3d hessian(const Eigen::Vector3d& x) const;
+  Eigen::Vector3d gradient(const Eigen::Vector3d& x) const;  ///< of f
+  Eigen::Matrix3d hessian(const Eigen::Vector3d& x) const;   ///< of f
 
   /// h(n) = N*(a n_x, b n_y, c n_z) with N* the dual norm, exponents 2/(2 - e); n != 0, any length.
   Support support(const Eigen::Vector3d& n) const;
@@ -38,9 +38,8 @@ class GEOM_EXPORT Superellipsoid {
   /// Its dual N*, of a n.
   const internal::NestedNorm& dual_norm() const { return dual_; }
 
-  /// The largest and the least distance of the surface from the centre.
-  double bounding_radius() const { return bounding_radius_; }
-  double inscribed_radius() const { return inscribed_radius_; }
+  double bounding_radius() const { return bounding_radius_; }    ///< largest distance of the surface from the centre
+  double inscribed_radius() const { return inscribed_radius_; }  ///< the least
   /// By Beta functions (Jaklic, Leonardis and Solina, Segmentation and Recovery of Superquadrics (2000), sec. 2.5).
   double volume() const;
   /// Principal moments about body x, y, z at uniform density.

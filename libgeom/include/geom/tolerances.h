@@ -1,5 +1,6 @@
 #pragma once
 
+/// @file
 /// Every tolerance of libgeom, with the inequality it enters and its unit.
 
 namespace geom {
@@ -9,15 +10,19 @@ inline constexpr double kPoseTolerance = 1e-6;
 
 /// Ellipsoid: kMinSemiAxis <= semi-axis <= kMaxSemiAxis. Length, in the user's unit; sixth powers, the determinants of
 /// matrices of squares, neither underflow nor overflow.
+/// @{
 inline constexpr double kMinSemiAxis = 1e-50;
 inline constexpr double kMaxSemiAxis = 1e50;
+/// @}
 
 /// Ellipsoid: amax / amin <= kMaxAspectRatio. Dimensionless. The range in which the kernels are tested.
 inline constexpr double kMaxAspectRatio = 1e4;
 
 /// Superellipsoid: kMinExponent <= e1, e2 <= kMaxExponent. Dimensionless. The range in which the kernels are tested.
+/// @{
 inline constexpr double kMinExponent = 0.2;
 inline constexpr double kMaxExponent = 1.6;
+/// @}
 
 /// distance: converged when |delta|^2 <= kNormalTolerance2, delta the Newton step of the unit normal. Dimensionless.
 /// The step is still applied, and convergence is quadratic: the normal is then right to 1e-12 or to rounding.
@@ -47,9 +52,11 @@ inline constexpr double kWidestGap = 1e-9;
 /// Penetration::global: no translation is shorter than the one returned by more than kDepthGap times the sum of both
 /// bounding radii, proved by branch and bound; overlaps for which kMostDepthSamples evaluations do not prove
 /// kWidestDepthGap are declined. Dimensionless.
+/// @{
 inline constexpr double kDepthGap = 1e-9;
 inline constexpr double kWidestDepthGap = 1e-3;
 inline constexpr int kMostDepthSamples = 100000;
+/// @}
 
 /// By what a step that lowers g is shortened. Dimensionless.
 inline constexpr double kBacktrack = 0.35;

@@ -1,5 +1,6 @@
 #pragma once
 
+/// @file
 /// Closest points from CGAL, as seeds of newton_distance. Part of hardbody::geom_cgal.
 ///
 /// CGAL's Polytope_distance_d is under the GPL, version 3 or later: so is a program that links hardbody::geom_cgal.

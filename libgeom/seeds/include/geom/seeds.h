@@ -1,5 +1,6 @@
 #pragma once
 
+/// @file
 /// Closest points from other libraries, as seeds of newton_distance: FCL and libccd. Part of hardbody::geom_seeds.
 ///
 /// World frame, in and out. Nothing here throws on numerical grounds: a seed that has no points says so by its status,
