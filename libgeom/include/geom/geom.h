@@ -10,6 +10,7 @@
 #include <geom/batch.h>
 #include <geom/distance.h>
 #include <geom/ellipsoid.h>
+#include <geom/mass.h>
 #include <geom/newton.h>
 #include <geom/obb.h>
 #include <geom/pose.h>
