@@ -45,7 +45,7 @@ enum class NewtonSystem {
 
 /// How far `newton_distance` goes.
 struct NewtonOptions {
-  int max_iterations = kMaxNewtonIterations;  ///< evaluations of the equations, >= 1
+  int max_iterations = kMaxNewtonIterations;  ///< evaluations of the equations in each of two attempts, >= 1
 };
 
 /// Signed distance of two smooth convex bodies A = {f <= 0} at X_WA and B = {g <= 0} at X_WB, from the paper's
@@ -55,7 +55,8 @@ struct NewtonOptions {
 ///     xA + beta f_x(xA) = xB       (dist8d)
 ///
 /// Newton's method, y <- y - t J^-1 F(y) with the analytic Jacobian (the paper's eq. (NRiter) lost the minus sign) and
-/// step lengths t <= 1 (see internal/newton_impl.h). The distance is beta |f_x|: where the bodies overlap beta < 0, and
+/// step lengths t <= 1, and where that does not settle a second attempt, with |F| falling (see
+/// internal/newton_impl.h). The distance is beta |f_x|: where the bodies overlap beta < 0, and
 /// it is the paper's "negative distance", minus the length of the shortest translation that parts them.
 ///
 /// What is certified. The equations have several solutions; one with beta > 0 is the answer: the outward normals are
@@ -65,8 +66,12 @@ struct NewtonOptions {
 /// Both are checked on the solution found, not assumed of the seed: no seed leads to a wrong answer, a bad one only to
 /// a declined one.
 ///
-/// Accuracy: |error of d| <= 1e-13 times the size of the pair (|p_AB| + |xA - p_WA| + |xB - p_WB|). `residual`: the
-/// part of xB - xA that is not along the normal. `iterations`: evaluations of the equations. `singular`: the Jacobian
+/// Bodies with flat faces or sharp edges, whose normals do not tell how far off a point is, need a support function for
+/// that (superellipsoids have one): g(n) of distance.h bounds the distance from below.
+///
+/// Accuracy: |error of d| <= 1e-13 times the size of the pair (|p_AB| + |xA - p_WA| + |xB - p_WB|). `error_bound`: of
+/// the solution found; what is beyond it is rounding. `residual`: the part of xB - xA that is not along the normal.
+/// `iterations`: evaluations of the equations. `singular`: the Jacobian
 /// was, or a gradient vanished.
 ///
 /// A seed whose status is not `usable` is answered with `not_converged` after no iteration. Throws

@@ -64,8 +64,11 @@ inline constexpr double kBacktrack = 0.35;
 /// distance: at most this many evaluations of g before the fallback.
 inline constexpr int kMaxIterations = 60;
 
-/// newton_distance: at most this many evaluations of the equations.
+/// newton_distance: at most this many evaluations of the equations in each of two attempts.
 inline constexpr int kMaxNewtonIterations = 100;
+
+/// newton_distance, second attempt: a step that does not lower |F| is halved at most that often.
+inline constexpr int kMaxNewtonHalvings = 8;
 
 /// newton_distance: largest coordinate of a step of the points (and of beta |f_x|) <= kMaxNewtonLength, longer steps
 /// are scaled to it. Relative to |p_AB| + |xA - p_WA| + |xB - p_WB| of the seed, as are the next three.

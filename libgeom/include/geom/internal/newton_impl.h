@@ -152,49 +152,95 @@ struct NewtonFrame {
   double certified_depth;  ///< the sum of both smallest radii of curvature
 };
 
+/// g(n) of distance.h, dimensionless: a lower bound of the distance. NaN for shapes without a support function.
+template <ImplicitSurface ShapeA, ImplicitSurface ShapeB>
+double certain_gap(const WorldSurface<ShapeA>& a, const WorldSurface<ShapeB>& b, const NewtonFrame& frame,
+                   const Eigen::Vector3d& n) {
+  if constexpr (SupportShape<ShapeA> && SupportShape<ShapeB>) {
+    const double h_a = Support(a.shape.support(a.R.transpose() * n)).height;
+    const double h_b = Support(b.shape.support(b.R.transpose() * -n)).height;
+    return n.dot(frame.r) - (h_a + h_b) / frame.length;
+  } else {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+}
+
+/// What a solution of eqs. (dist8) is worth.
+enum class Verdict {
+  answer,
+  too_deep,   ///< a solution, but one that need not be the answer
+  imprecise,  ///< it does not hold well enough
+};
+
+struct JudgedResult {
+  DistanceResult result;  ///< declined unless `verdict` is `answer`
+  Verdict verdict = Verdict::imprecise;
+};
+
 /// The answer at a solution of eqs. (dist8), or a declined one if it is not the answer or does not hold well enough.
 ///
 /// A last step of eqs. (dist8b) and (dist8c) alone, -f f_x / |f_x|^2, takes the points onto their surfaces to second
 /// order. With theta the angle between the normals and y the part of xB - xA across them, the distance of the tangent
-/// planes, n.(xB - xA), then errs by no more than |y|^2 / (2 d) (or |y|) upwards and theta^2 / 2 radii of curvature
-/// downwards.
-inline DistanceResult certified_result(const LocalSurface& f, const LocalSurface& g, const NewtonState& solution,
-                                       const NewtonFrame& frame, int iterations) {
-  DistanceResult result;
-  result.iterations = iterations;
+/// planes, n.(xB - xA), then errs by no more than |y|^2 / (2 d) (or |y|) upwards and, downwards, by theta^2 / 2 radii
+/// of curvature.
+///
+/// Those are unbounded on flat faces. Bodies that have a support function have the lower bound g(n) too, which is
+/// taken instead. At a sharp edge the normal of f changes with the last digit of the point; there n is the direction of
+/// xB - xA, for which g(n) certifies the distance whatever the normals.
+template <ImplicitSurface ShapeA, ImplicitSurface ShapeB>
+JudgedResult judge_solution(const WorldSurface<ShapeA>& a, const WorldSurface<ShapeB>& b, const LocalSurface& f,
+                            const LocalSurface& g, const NewtonState& solution, const NewtonFrame& frame) {
+  JudgedResult judged;
   const double norm_f = f.gradient.norm();
   const double norm_g = g.gradient.norm();
-  const Eigen::Vector3d n = f.gradient / norm_f;
+  Eigen::Vector3d n = f.gradient / norm_f;
   const Eigen::Vector3d m = g.gradient / norm_g;
   const double offset_a = f.value / norm_f;
   const double offset_b = g.value / norm_g;
+  if (!(std::abs(offset_a) <= kNewtonResidual && std::abs(offset_b) <= kNewtonResidual)) return judged;
   const Eigen::Vector3d s_a = solution.s_a - offset_a * n;
   const Eigen::Vector3d gap = frame.r + (solution.s_b - offset_b * m) - s_a;
-  const double d = n.dot(gap);
+  const bool antiparallel = (n + m).norm() <= kNewtonAngle;
+  double d = n.dot(gap);
+  if (!antiparallel) {
+    const double length = gap.norm();
+    if (!(d > 0 && certain_gap(a, b, frame, gap / length) > 0)) return judged;
+    n = gap / length;
+    d = length;
+  }
   const Eigen::Vector3d y = gap - d * n;
   const double mismatch = y.norm();
-  const double error = d > mismatch ? 0.5 * mismatch * (mismatch / d) : mismatch;
-  const bool holds = std::abs(offset_a) <= kNewtonResidual && std::abs(offset_b) <= kNewtonResidual &&
-                     error <= kNewtonResidual && (n + m).norm() <= kNewtonAngle;
-  const bool answers = d * frame.length >= -frame.certified_depth - kRoundingFactor * frame.length;
-  if (!holds || !answers) return result;
+  double error = d > mismatch ? 0.5 * mismatch * (mismatch / d) : mismatch;
+  if constexpr (SupportShape<ShapeA> && SupportShape<ShapeB>) {
+    const double lowest = certain_gap(a, b, frame, n);
+    error += std::max(0.0, d - lowest);
+    d = lowest;
+  }
+  if (!(error <= kNewtonResidual)) return judged;
+  judged.verdict = Verdict::too_deep;
+  if (!(d * frame.length >= -frame.certified_depth - kRoundingFactor * frame.length)) return judged;
+  judged.verdict = Verdict::answer;
+  DistanceResult& result = judged.result;
   result.distance = d * frame.length;
   result.normal = n;
   result.point_a = frame.p_WA + frame.length * (s_a + 0.5 * y);
   result.point_b = result.point_a + result.distance * n;
   result.residual = mismatch * frame.length;
+  result.error_bound = error * frame.length;
   result.status = d >= 0 ? DistanceStatus::separated : DistanceStatus::overlapping;
-  return result;
+  return judged;
 }
 
-/// Newton's method from `start`.
-///
-/// Steps are shortened to kMaxNewtonLength. That is all the damping: of 1000 pairs with X0 = 10, from the points on the
-/// line of centres, it raised those that are solved from 56 % to 99 % (eight equations) and from 41 % to 91 % (five),
-/// while shortening steps until |F| or |J^-1 F| falls lowered them: on the way from a bad guess |F| has to grow.
+/// How steps are shortened, besides to kMaxNewtonLength.
+enum class Damping {
+  none,
+  residual,  ///< halved until |F| falls, up to kMaxNewtonHalvings times
+};
+
+/// One attempt of Newton's method from `start`.
 template <class Equations, ImplicitSurface ShapeA, ImplicitSurface ShapeB>
-DistanceResult solve_newton(const WorldSurface<ShapeA>& a, const WorldSurface<ShapeB>& b, const NewtonState& start,
-                            const NewtonFrame& frame, int max_iterations) {
+DistanceResult attempt_newton(const WorldSurface<ShapeA>& a, const WorldSurface<ShapeB>& b, const NewtonState& start,
+                              const NewtonFrame& frame, int max_iterations, Damping damping) {
   DistanceResult declined;
   double previous_length = std::numeric_limits<double>::infinity();
   auto point = newton_point<Equations>(a, b, frame.r, start);
@@ -202,21 +248,56 @@ DistanceResult solve_newton(const WorldSurface<ShapeA>& a, const WorldSurface<Sh
   while (iterations < max_iterations) {
     const Eigen::PartialPivLU<typename Equations::Matrix> lu(Equations::jacobian(point.f, point.g, point.y));
     typename Equations::Vector step = -lu.solve(point.F);
-    const double length = Equations::length(step);
+    double length = Equations::length(step);
     if (!std::isfinite(length)) {
       declined.status = DistanceStatus::singular;
       break;
     }
     if (length > kMaxNewtonLength) step *= kMaxNewtonLength / length;
-    point = newton_point<Equations>(a, b, frame.r, Equations::moved(point.y, step));
+    auto next = newton_point<Equations>(a, b, frame.r, Equations::moved(point.y, step));
     ++iterations;
-    // Convergence is quadratic until the steps are rounding, which is when they stop shrinking.
+    if (damping == Damping::residual) {
+      const double residual2 = point.F.squaredNorm();
+      for (int k = 0; k < kMaxNewtonHalvings && !(next.F.squaredNorm() < residual2); ++k) {
+        step *= 0.5;
+        length *= 0.5;
+        next = newton_point<Equations>(a, b, frame.r, Equations::moved(point.y, step));
+        ++iterations;
+      }
+    }
+    point = next;
+    // Convergence is quadratic until the steps are rounding, which is when they stop shrinking. Where a face is flat
+    // they stay long (nothing is changed by a move along it), and what tells is that the equations hold.
     const bool rounding = length <= kNewtonStall && length > 0.5 * previous_length;
-    if (length <= kNewtonStep || rounding) return certified_result(point.f, point.g, point.y, frame, iterations);
+    if (length <= kNewtonStep || rounding || point.F.cwiseAbs().maxCoeff() <= kNewtonResidual) {
+      JudgedResult judged = judge_solution(a, b, point.f, point.g, point.y, frame);
+      judged.result.iterations = iterations;
+      if (judged.verdict != Verdict::imprecise) return judged.result;
+    }
     previous_length = length;
   }
   declined.iterations = iterations;
   return declined;
+}
+
+/// Newton's method from `start`, twice if need be.
+///
+/// First steps are shortened to kMaxNewtonLength and no more: of 1000 ellipsoids with X0 = 10, from the points on the
+/// line of centres, that raised the share of pairs that are solved from 56 % to 99 % (eight equations) and from 41 % to
+/// 91 % (five), while shortening steps until |F| falls lowered it: on the way from a bad guess |F| has to grow.
+///
+/// Across an edge of a superellipsoid the normal turns by a right angle within nothing, and steps overshoot for ever.
+/// There |F| tells: from libccd's points, of pairs with exponents 1.6 the first attempt solves 40 %, the second, with
+/// |F| falling, nearly all of the rest.
+template <class Equations, ImplicitSurface ShapeA, ImplicitSurface ShapeB>
+DistanceResult solve_newton(const WorldSurface<ShapeA>& a, const WorldSurface<ShapeB>& b, const NewtonState& start,
+                            const NewtonFrame& frame, int max_iterations) {
+  DistanceResult first = attempt_newton<Equations>(a, b, start, frame, max_iterations, Damping::none);
+  const bool ended = first.status == DistanceStatus::not_converged && first.iterations < max_iterations;
+  if (!std::isnan(first.distance) || ended) return first;
+  DistanceResult second = attempt_newton<Equations>(a, b, start, frame, max_iterations, Damping::residual);
+  second.iterations += first.iterations;
+  return second;
 }
 
 template <ImplicitSurface ShapeA, ImplicitSurface ShapeB>
