@@ -1,23 +1,32 @@
 # CPack runs this between the installation into its own directory and the making of the packages; see
 # HardbodyPackage.cmake.
-function(hardbody_gzip file)
-  # -n: no time, no name; the same bytes every time.
-  execute_process(COMMAND gzip -9n ${file} COMMAND_ERROR_IS_FATAL ANY)
-endfunction()
-
+string(TIMESTAMP date "%a, %d %b %Y %H:%M:%S +0000" UTC)  # SOURCE_DATE_EPOCH, where it is set
 foreach(component IN LISTS CPACK_COMPONENTS_ALL)
   string(TOUPPER ${component} upper)
-  set(root ${CPACK_TEMPORARY_DIRECTORY}/${component}/usr/share)
-  set(doc ${root}/doc/${CPACK_DEBIAN_${upper}_PACKAGE_NAME})
-  file(REMOVE_RECURSE ${root}/doc)  # LICENSE: its text is in copyright
-  file(COPY_FILE ${CPACK_HARDBODY_CHANGELOG} ${CPACK_TEMPORARY_DIRECTORY}/changelog)
+  set(package ${CPACK_DEBIAN_${upper}_PACKAGE_NAME})
+  set(share ${CPACK_TEMPORARY_DIRECTORY}/${component}/usr/share)
+  set(doc ${share}/doc/${package})
+  file(REMOVE_RECURSE ${share}/doc)  # LICENSE: its text is in copyright
   file(MAKE_DIRECTORY ${doc})
-  file(RENAME ${CPACK_TEMPORARY_DIRECTORY}/changelog ${doc}/changelog)
   file(COPY_FILE ${CPACK_HARDBODY_COPYRIGHT} ${doc}/copyright)
-  file(GLOB pages ${root}/man/*/*.1)
-  foreach(file IN LISTS pages ITEMS ${doc}/changelog)
-    hardbody_gzip(${file})
+  file(COPY_FILE ${CPACK_HARDBODY_CHANGELOG} ${doc}/changelog)
+  file(WRITE ${doc}/changelog.Debian
+    "hardbody (${CPACK_PACKAGE_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE}) unstable; urgency=medium\n\n"
+    "  * Version ${CPACK_PACKAGE_VERSION}; what is new is in changelog.gz.\n\n"
+    " -- ${CPACK_PACKAGE_CONTACT}  ${date}\n")
+  file(GLOB pages ${share}/man/*/*.1)
+  foreach(file IN LISTS pages ITEMS ${doc}/changelog ${doc}/changelog.Debian)
+    # -n: no time, no name; the same bytes every time.
+    execute_process(COMMAND gzip -9n ${file} COMMAND_ERROR_IS_FATAL ANY)
   endforeach()
-  file(CHMOD_RECURSE ${root} FILE_PERMISSIONS OWNER_READ OWNER_WRITE GROUP_READ WORLD_READ
-    DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
+  # Whatever the umask is. Other files have their permissions from install().
+  set(readable OWNER_READ OWNER_WRITE GROUP_READ WORLD_READ)
+  set(enterable ${readable} OWNER_EXECUTE GROUP_EXECUTE WORLD_EXECUTE)
+  file(CHMOD_RECURSE ${share} FILE_PERMISSIONS ${readable} DIRECTORY_PERMISSIONS ${enterable})
+  file(GLOB_RECURSE entries LIST_DIRECTORIES true ${CPACK_TEMPORARY_DIRECTORY}/${component}/*)
+  foreach(entry IN LISTS entries)
+    if(IS_DIRECTORY ${entry})
+      file(CHMOD ${entry} PERMISSIONS ${enterable})
+    endif()
+  endforeach()
 endforeach()

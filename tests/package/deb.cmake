@@ -35,7 +35,8 @@ foreach(name hardbody libhardbody-dev)
   if(length GREATER 80)
     message(SEND_ERROR "${name}: a synopsis of ${length} characters")
   endif()
-  must_match(${name} "${content}" "\\./usr/share/doc/${name}/copyright\n" "\\./usr/share/doc/${name}/changelog\\.gz\n")
+  must_match(${name} "${content}" "\\./usr/share/doc/${name}/copyright\n" "\\./usr/share/doc/${name}/changelog\\.gz\n"
+    "\\./usr/share/doc/${name}/changelog\\.Debian\\.gz\n")
   # Everything under /usr, owned by root, writable by nobody else, no directory without permission to enter.
   string(REGEX REPLACE "\n$" "" lines "${content}")
   string(REPLACE "\n" ";" lines "${lines}")
