@@ -136,7 +136,8 @@ class Search {
 };
 
 geom::DistanceResult Search::dual_distance(const MovingBody& a, const MovingBody& b) const {
-  return geom::distance(pair_.shape_a, a.pose, pair_.shape_b, b.pose, {.start = n_});
+  return geom::distance(pair_.shape_a, a.pose, pair_.shape_b, b.pose,
+                        {.start = n_, .penetration = geom::Penetration::local});
 }
 
 /// Where Newton's method starts. The normal that a search begins with may be crude, or old: the first distance starts

@@ -5,7 +5,7 @@
 #include <ed/simulation.h>
 #include <ed/start.h>
 
-#include <geom/distance.h>
+#include <geom/queries.h>
 
 #include <algorithm>
 #include <cmath>
@@ -37,7 +37,7 @@ constexpr double kStuckGrowth = 1e-5;
 constexpr int kStuckRounds = 2000;
 
 bool overlaps(const geom::Ellipsoid& shape, const geom::Pose& a, const geom::Pose& b) {
-  return geom::distance(shape, a, shape, b).status != geom::DistanceStatus::separated;
+  return geom::overlap(shape, a, shape, b) != geom::Answer::no;
 }
 
 /// Random sequential insertion into a box large enough for it.
