@@ -1,3 +1,5 @@
+#include "tessellation.h"
+
 #include <geom/cgal.h>
 
 #include <CGAL/Gmpzf.h>
@@ -8,8 +10,6 @@
 #include <Eigen/Core>
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
 #include <vector>
 
 namespace geom::internal {
@@ -22,34 +22,12 @@ using PolytopeDistance = CGAL::Polytope_distance_d<Traits>;
 
 constexpr int kVertices = 200;
 
-/// Directions spread evenly over the sphere, along a spiral that turns by the golden angle from one to the next.
-std::vector<Eigen::Vector3d> make_directions() {
-  const double golden_angle = std::numbers::pi * (3 - std::sqrt(5.0));
-  std::vector<Eigen::Vector3d> directions;
-  directions.reserve(kVertices);
-  for (int i = 0; i < kVertices; ++i) {
-    const double z = (2 * i + 1.0) / kVertices - 1;
-    const double rho = std::sqrt(1 - z * z);
-    directions.emplace_back(rho * std::cos(golden_angle * i), rho * std::sin(golden_angle * i), z);
-  }
-  return directions;
-}
-
 /// The vertices of a polytope inscribed in the body, about `origin`, lengths over `unit`.
-///
-/// A direction is divided by the body's half-widths along its axes: those of an ellipsoid are then the images of an
-/// even distribution over a sphere, where plain directions would crowd at the tips and leave the sides bare.
 std::vector<Kernel::Point_3> polytope(const SupportBody& body, const Eigen::Vector3d& origin, double unit) {
-  static const std::vector<Eigen::Vector3d> directions = make_directions();
-  Eigen::Vector3d half_widths;
-  for (int axis = 0; axis < 3; ++axis) {
-    const Eigen::Vector3d e = Eigen::Vector3d::Unit(axis);
-    half_widths[axis] = 0.5 * (body.support_B(e) - body.support_B(-e))[axis];
-  }
+  static const std::vector<Eigen::Vector3d> directions = spiral_directions(kVertices);
   std::vector<Kernel::Point_3> points;
   points.reserve(directions.size());
-  for (const Eigen::Vector3d& u : directions) {
-    const Eigen::Vector3d s = body.support_B(unit * u.cwiseQuotient(half_widths));
+  for (const Eigen::Vector3d& s : inscribed_vertices(body, directions)) {
     const Eigen::Vector3d x = (body.pose().to_world(s) - origin) / unit;
     points.emplace_back(x.x(), x.y(), x.z());
   }

@@ -1,7 +1,10 @@
+#include "tessellation.h"
+
 #include <geom/seeds.h>
 
 #include <geom/distance.h>
 
+#include <fcl/geometry/shape/convex.h>
 #include <fcl/geometry/shape/ellipsoid.h>
 #include <fcl/narrowphase/distance.h>
 
@@ -10,8 +13,10 @@
 #include <algorithm>
 #include <exception>
 #include <memory>
+#include <vector>
 
 namespace geom {
+namespace internal {
 namespace {
 
 /// FCL's default, an absolute length.
@@ -36,12 +41,26 @@ fcl::Transform3d to_fcl(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& 
   return X;
 }
 
+constexpr int kVertices = 500;
+
+/// An ellipsoid as what it is, anything else as a polytope; lengths over `unit`.
+///
+/// A polytope without faces: FCL finds its support points by looking at all vertices then. With faces it would walk
+/// along the edges, which ends at the right vertex only where the mesh is convex, and one between support points need
+/// not be.
+std::shared_ptr<fcl::CollisionGeometryd> to_fcl(const SupportBody& body, double unit) {
+  if (body.ellipsoid() != nullptr) return std::make_shared<fcl::Ellipsoidd>(body.ellipsoid()->semi_axes() / unit);
+  static const std::vector<Eigen::Vector3d> directions = spiral_directions(kVertices);
+  auto vertices = std::make_shared<std::vector<Eigen::Vector3d>>(inscribed_vertices(body, directions));
+  for (Eigen::Vector3d& x : *vertices) x /= unit;
+  return std::make_shared<fcl::Convexd>(vertices, 0, std::make_shared<const std::vector<int>>());
+}
+
 }  // namespace
 
-WitnessPair fcl_seed(const Ellipsoid& a, const Pose& X_WA, const Ellipsoid& b, const Pose& X_WB) {
-  const DistanceResult ours = distance(a, X_WA, b, X_WB);
+WitnessPair fcl_seed(const SupportBody& a, const SupportBody& b, const DistanceResult& ours) {
   WitnessPair seed;
-  const Eigen::Vector3d p_AB = X_WB.position() - X_WA.position();
+  const Eigen::Vector3d p_AB = b.pose().position() - a.pose().position();
   if (!(ours.status == DistanceStatus::separated && ours.distance > 0)) {
     // Declined: deep in each other, or so far apart that their distance overflows.
     const bool concentric = p_AB.norm() < a.inscribed_radius() + b.inscribed_radius();
@@ -51,10 +70,8 @@ WitnessPair fcl_seed(const Ellipsoid& a, const Pose& X_WA, const Ellipsoid& b, c
   const double size = p_AB.norm() + a.bounding_radius() + b.bounding_radius();
   if (!(ours.distance >= kLeastGap * size)) return seed;
   const double unit = std::min(a.inscribed_radius(), b.inscribed_radius());
-  const fcl::CollisionObjectd fcl_a(std::make_shared<fcl::Ellipsoidd>(a.semi_axes() / unit),
-                                    to_fcl(X_WA.rotation(), Eigen::Vector3d::Zero()));
-  const fcl::CollisionObjectd fcl_b(std::make_shared<fcl::Ellipsoidd>(b.semi_axes() / unit),
-                                    to_fcl(X_WB.rotation(), p_AB / unit));
+  const fcl::CollisionObjectd fcl_a(to_fcl(a, unit), to_fcl(a.pose().rotation(), Eigen::Vector3d::Zero()));
+  const fcl::CollisionObjectd fcl_b(to_fcl(b, unit), to_fcl(b.pose().rotation(), p_AB / unit));
   fcl::DistanceRequestd request(/*enable_nearest_points_=*/true, /*enable_signed_distance=*/false);
   request.gjk_solver_type = fcl::GST_LIBCCD;
   request.distance_tolerance = kFclTolerance;
@@ -64,10 +81,16 @@ WitnessPair fcl_seed(const Ellipsoid& a, const Pose& X_WA, const Ellipsoid& b, c
   } catch (const std::exception&) {
     return seed;
   }
-  seed.point_a = X_WA.position() + unit * (askew().transpose() * result.nearest_points[0]);
-  seed.point_b = X_WA.position() + unit * (askew().transpose() * result.nearest_points[1]);
+  seed.point_a = a.pose().position() + unit * (askew().transpose() * result.nearest_points[0]);
+  seed.point_b = a.pose().position() + unit * (askew().transpose() * result.nearest_points[1]);
   seed.status = SeedStatus::usable;
-  return internal::checked(a, X_WA, b, X_WB, seed);
+  return seed;
+}
+
+}  // namespace internal
+
+WitnessPair fcl_seed(const Ellipsoid& a, const Pose& X_WA, const Ellipsoid& b, const Pose& X_WB) {
+  return fcl_seed<Ellipsoid, Ellipsoid>(a, X_WA, b, X_WB);
 }
 
 }  // namespace geom

@@ -15,8 +15,19 @@
 
 namespace geom {
 
-/// The nearest points that FCL finds for two ellipsoids that are apart. About 3e-6 times the larger inscribed radius
-/// from the true distance at the median, 1e-3 at the worst seen; the points themselves by more, the flatter the bodies.
+namespace internal {
+/// `ours`: what `distance` says of the pair. Not checked yet.
+GEOM_EXPORT WitnessPair fcl_seed(const SupportBody& a, const SupportBody& b, const DistanceResult& ours);
+}  // namespace internal
+
+/// The nearest points that FCL finds for two bodies that are apart. An ellipsoid is FCL's own, any other shape an
+/// fcl::Convex: a polytope inscribed in it, of 500 support points.
+///
+/// Ellipsoids: about 3e-6 times the larger inscribed radius from the true distance at the median, 1e-3 at the worst
+/// seen; the points themselves by more, the flatter the bodies. Superellipsoids: 7e-4 of the size of the pair at the
+/// median, 9e-3 at the worst seen, their points 4e-3 and 3e-2. Takes a few microseconds for ellipsoids and 0.1 to 0.2
+/// milliseconds for polytopes, most of it to make them. Newton's method converges from these points for 100 % of the
+/// pairs with eight equations and 99.7 % with five (tests/oracle/superellipsoid_seeds_test.cpp prints it by exponent).
 ///
 /// FCL is called only where it has an answer, and never where Debian's build of it, with assertions on, would end the
 /// process:
@@ -31,7 +42,15 @@ namespace geom {
 /// - at its default tolerance of 1e-6, an absolute length, for which lengths are divided by the smaller inscribed
 ///   radius.
 /// Where FCL throws, takes the pair for overlapping all the same, or returns a point deep inside a body (one in 1e5 or
-/// so), the seed is `declined`.
+/// so), the seed is `declined`. Allocates.
+template <SupportShape ShapeA, SupportShape ShapeB>
+WitnessPair fcl_seed(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const Pose& X_WB) {
+  const DistanceResult ours = distance(a, X_WA, b, X_WB);
+  const WitnessPair seed = internal::fcl_seed(internal::SupportBody(a, X_WA), internal::SupportBody(b, X_WB), ours);
+  return internal::checked(a, X_WA, b, X_WB, seed);
+}
+
+/// The same, compiled into the library.
 GEOM_EXPORT WitnessPair fcl_seed(const Ellipsoid& a, const Pose& X_WA, const Ellipsoid& b, const Pose& X_WB);
 
 namespace internal {
@@ -43,8 +62,9 @@ GEOM_EXPORT WitnessPair ccd_seed(const SupportBody& a, const SupportBody& b);
 /// by what was added, is taken. Overlapping bodies: the support points along MPR's normal, a guess that is good for
 /// shallow overlaps only.
 ///
-/// The points are those of the bodies to about 1e-3 of the size of the pair. Declined if the centres coincide or MPR
-/// does not settle.
+/// The points are those of the bodies to about 1e-3 of the size of the pair; superellipsoids: 4e-4 at the median, 4e-2
+/// at the worst seen. Takes 25 microseconds for those. Newton's method converges from these points for 100 % of the
+/// pairs with eight equations and 99.7 % with five. Declined if the centres coincide or MPR does not settle.
 template <SupportShape ShapeA, SupportShape ShapeB>
 WitnessPair ccd_seed(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const Pose& X_WB) {
   const WitnessPair seed = internal::ccd_seed(internal::SupportBody(a, X_WA), internal::SupportBody(b, X_WB));

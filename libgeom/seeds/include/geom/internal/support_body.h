@@ -3,11 +3,14 @@
 /// What the adapters have in common: bodies of any SupportShape without their type, for code that is compiled once, and
 /// the last look at a seed.
 
+#include <geom/ellipsoid.h>
 #include <geom/newton.h>
 #include <geom/pose.h>
 #include <geom/shape.h>
 
 #include <Eigen/Core>
+
+#include <type_traits>
 
 namespace geom::internal {
 
@@ -19,7 +22,10 @@ class SupportBody {
       : shape_(&shape),
         support_point_(&support_point<Shape>),
         X_WB_(&X_WB),
-        inscribed_radius_(shape.inscribed_radius()) {}
+        inscribed_radius_(shape.inscribed_radius()),
+        bounding_radius_(shape.bounding_radius()) {
+    if constexpr (std::is_same_v<Shape, Ellipsoid>) ellipsoid_ = &shape;
+  }
 
   /// The support point along n (body frame, any length but 0), in the body frame.
   Eigen::Vector3d support_B(const Eigen::Vector3d& n) const { return support_point_(shape_, n); }
@@ -29,6 +35,9 @@ class SupportBody {
   }
   const Pose& pose() const { return *X_WB_; }
   double inscribed_radius() const { return inscribed_radius_; }
+  double bounding_radius() const { return bounding_radius_; }
+  /// nullptr: it is none.
+  const Ellipsoid* ellipsoid() const { return ellipsoid_; }
 
  private:
   template <class Shape>
@@ -40,6 +49,8 @@ class SupportBody {
   Eigen::Vector3d (*support_point_)(const void*, const Eigen::Vector3d&);
   const Pose* X_WB_;
   double inscribed_radius_;
+  double bounding_radius_;
+  const Ellipsoid* ellipsoid_ = nullptr;
 };
 
 /// For a shape without an equation: whether the point is finite.
