@@ -1,5 +1,6 @@
 #include "oracle/fcl_raw.h"
 
+#include <fcl/geometry/shape/convex.h>
 #include <fcl/geometry/shape/ellipsoid.h>
 #include <fcl/narrowphase/distance.h>
 
@@ -9,28 +10,46 @@
 namespace geom_test {
 namespace {
 
-fcl::CollisionObjectd to_fcl(const geom::Ellipsoid& shape, const geom::Pose& X) {
+fcl::CollisionObjectd placed(const std::shared_ptr<fcl::CollisionGeometryd>& shape, const geom::Pose& X) {
   fcl::Transform3d transform = fcl::Transform3d::Identity();
   transform.linear() = X.rotation();
   transform.translation() = X.position();
-  return {std::make_shared<fcl::Ellipsoidd>(shape.semi_axes()), transform};
+  return {shape, transform};
+}
+
+fcl::CollisionObjectd to_fcl(const geom::Ellipsoid& shape, const geom::Pose& X) {
+  return placed(std::make_shared<fcl::Ellipsoidd>(shape.semi_axes()), X);
+}
+
+/// Without faces: FCL looks at all points then.
+fcl::CollisionObjectd to_fcl(const std::vector<Eigen::Vector3d>& points, const geom::Pose& X) {
+  return placed(std::make_shared<fcl::Convexd>(std::make_shared<const std::vector<Eigen::Vector3d>>(points), 0,
+                                               std::make_shared<const std::vector<int>>()),
+                X);
+}
+
+FclDistance ask(const fcl::CollisionObjectd& a, const fcl::CollisionObjectd& b, bool signed_distance) {
+  fcl::DistanceRequestd request(/*enable_nearest_points_=*/true, signed_distance);
+  request.gjk_solver_type = fcl::GST_LIBCCD;
+  fcl::DistanceResultd result;
+  try {
+    const double d = fcl::distance(&a, &b, request, result);
+    return {FclDistance::Outcome::answered, d, result.nearest_points[0], result.nearest_points[1]};
+  } catch (const std::exception&) {
+    return {FclDistance::Outcome::threw, 0, {}, {}};
+  }
 }
 
 }  // namespace
 
 FclDistance fcl_distance(const geom::Ellipsoid& a, const geom::Pose& X_WA, const geom::Ellipsoid& b,
                          const geom::Pose& X_WB, bool signed_distance) {
-  const fcl::CollisionObjectd fcl_a = to_fcl(a, X_WA);
-  const fcl::CollisionObjectd fcl_b = to_fcl(b, X_WB);
-  fcl::DistanceRequestd request(/*enable_nearest_points_=*/true, signed_distance);
-  request.gjk_solver_type = fcl::GST_LIBCCD;
-  fcl::DistanceResultd result;
-  try {
-    const double d = fcl::distance(&fcl_a, &fcl_b, request, result);
-    return {FclDistance::Outcome::answered, d, result.nearest_points[0], result.nearest_points[1]};
-  } catch (const std::exception&) {
-    return {FclDistance::Outcome::threw, 0, {}, {}};
-  }
+  return ask(to_fcl(a, X_WA), to_fcl(b, X_WB), signed_distance);
+}
+
+FclDistance fcl_distance(const std::vector<Eigen::Vector3d>& a, const geom::Pose& X_WA,
+                         const std::vector<Eigen::Vector3d>& b, const geom::Pose& X_WB) {
+  return ask(to_fcl(a, X_WA), to_fcl(b, X_WB), /*signed_distance=*/false);
 }
 
 }  // namespace geom_test

@@ -6,6 +6,8 @@
 
 #include <Eigen/Core>
 
+#include <vector>
+
 namespace geom_test {
 
 struct FclDistance {
@@ -19,5 +21,9 @@ struct FclDistance {
 /// FCL's distance of two ellipsoids with GST_LIBCCD at its default tolerance of 1e-6 (an absolute length).
 FclDistance fcl_distance(const geom::Ellipsoid& a, const geom::Pose& X_WA, const geom::Ellipsoid& b,
                          const geom::Pose& X_WB, bool signed_distance);
+
+/// The same, unsigned, for the convex hulls of two sets of points.
+FclDistance fcl_distance(const std::vector<Eigen::Vector3d>& a, const geom::Pose& X_WA,
+                         const std::vector<Eigen::Vector3d>& b, const geom::Pose& X_WB);
 
 }  // namespace geom_test

@@ -1,0 +1,381 @@
+/// Superellipsoids and mixed pairs: FCL's distance of tessellated bodies against ours, seeds of other libraries, and
+/// what Newton's method makes of them.
+
+#include "common/finder_scale.h"
+#include "common/forked.h"
+#include "common/geom_manufactured.h"
+#include "oracle/fcl_raw.h"
+
+#include <geom/geom.h>
+#include <geom/seeds.h>
+#if HARDBODY_WITH_CGAL
+#include <geom/cgal.h>
+#endif
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <limits>
+#include <stdexcept>
+#include <variant>
+#include <vector>
+
+namespace geom {
+namespace {
+
+using Eigen::Vector3d;
+using finder_test::scaled;
+using geom_test::FclDistance;
+using geom_test::lower_bound;
+using geom_test::ManufacturedPair;
+using geom_test::Random;
+
+constexpr std::array kExponents{0.2, 0.3, 0.5, 0.7, 1.0, 1.3, 1.6};
+
+double any_exponent(Random& random) {
+  return kExponents[static_cast<std::size_t>(random.uniform() * kExponents.size())];
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+
+constexpr double kFclTolerance = 1e-6;  // what its distance_tolerance promises, an absolute length
+
+/// Directions on the faces of an octahedron, each face with side `side`: 4 side^2 + 2 nodes and 8 side^2 triangles.
+template <class Visit>
+void for_each_triangle(int side, const Visit& visit) {
+  for (int octant = 0; octant < 8; ++octant) {
+    const Vector3d sign(octant & 1 ? -1 : 1, octant & 2 ? -1 : 1, octant & 4 ? -1 : 1);
+    const auto node = [&](int i, int j) { return Vector3d(sign.cwiseProduct(Vector3d(i, j, side - i - j)) / side); };
+    for (int i = 0; i < side; ++i) {
+      for (int j = 0; i + j < side; ++j) {
+        visit(node(i, j), node(i + 1, j), node(i, j + 1));
+        if (i + j + 2 <= side) visit(node(i + 1, j), node(i, j + 1), node(i + 1, j + 1));
+      }
+    }
+  }
+}
+
+/// A body and a polytope inscribed in it.
+struct Tessellated {
+  Superellipsoid shape;
+  std::vector<Vector3d> vertices;
+  double error;  ///< bound of h - h_P over all directions: how far the body reaches out of the polytope
+};
+
+/// About 500 support points, and the bound of what lies between them.
+///
+/// On a triangle of directions n = sum of l_i n_i, sum of l_i = 1, l_i >= 0: h(n) <= sum of l_i h(n_i), for h is
+/// convex, and h_P(n) >= n.v for every vertex v. So h(n) - h_P(n) <= max_i (h(n_i) - n_i.v), with the vertex that is
+/// best at the centre, over |n| for a unit direction.
+Tessellated tessellate(const Superellipsoid& shape) {
+  Tessellated out{shape, {}, 0};
+  const auto scaled_to_widths = [&](const Vector3d& u) { return Vector3d(u.cwiseQuotient(shape.semi_axes())); };
+  for_each_triangle(11, [&](const auto&... corners) {
+    (out.vertices.push_back(shape.support(scaled_to_widths(corners)).point), ...);
+  });
+  const auto before = [](const Vector3d& x, const Vector3d& y) {
+    return std::lexicographical_compare(x.begin(), x.end(), y.begin(), y.end());
+  };
+  std::sort(out.vertices.begin(), out.vertices.end(), before);
+  out.vertices.erase(std::unique(out.vertices.begin(), out.vertices.end()), out.vertices.end());
+  for_each_triangle(55, [&](const auto&... corners) {
+    const std::array<Vector3d, 3> n{scaled_to_widths(corners)...};
+    const Vector3d centre = (n[0] + n[1] + n[2]) / 3;
+    const Vector3d& v = *std::max_element(out.vertices.begin(), out.vertices.end(),
+                                          [&](const auto& x, const auto& y) { return centre.dot(x) < centre.dot(y); });
+    double most = 0;
+    double radius = 0;
+    for (const Vector3d& corner : n) {
+      most = std::max(most, shape.support(corner).height - corner.dot(v));
+      radius = std::max(radius, (corner - centre).norm());
+    }
+    out.error = std::max(out.error, most / (centre.norm() - radius));
+  });
+  return out;
+}
+
+/// h(n) - h_P(n): how far the body reaches out of its polytope in one direction.
+double height_over(const Tessellated& body, const Vector3d& n) {
+  double height = -std::numeric_limits<double>::infinity();
+  for (const Vector3d& v : body.vertices) height = std::max(height, n.dot(v));
+  return body.shape.support(n).height - height;
+}
+
+const std::vector<Tessellated>& tessellated_bodies() {
+  static const std::vector<Tessellated> bodies = [] {
+    std::vector<Tessellated> all;
+    Random random(1);
+    for (const double e1 : kExponents) {
+      for (const double e2 : {e1, any_exponent(random)}) {
+        all.push_back(tessellate(Superellipsoid(random.biaxial(3).semi_axes(), e1, e2)));
+      }
+    }
+    return all;
+  }();
+  return bodies;
+}
+
+struct Comparison {
+  int pairs = 0;
+  int agree = 0;
+  int fcl_far = 0;    ///< larger than that of our points and the tessellation error: both are certified bounds
+  int fcl_near = 0;   ///< smaller than g(n), which no points of the bodies come below
+  int undecided = 0;  ///< ours does not hold
+  int fcl_threw = 0;
+  double worst = 0;       ///< of the disagreements, beyond what was allowed
+  double margins = 0;     ///< sum of the tessellation errors, over all directions
+  int agree_closely = 0;  ///< with the tessellation error along FCL's own normal alone
+  double close_margins = 0;
+};
+
+TEST(SuperellipsoidOracle, FclAgreesToTheTessellationOrIsWrong) {
+  const std::vector<Tessellated>& bodies = tessellated_bodies();
+  for (const Tessellated& body : bodies) EXPECT_GE(body.vertices.size(), 100U);
+  Comparison comparison;
+  const int pairs = scaled(3'000, 50'000);
+  const int aborts = geom_test::run_forked(pairs, comparison, [&](int i, Comparison& record) {
+    Random random(static_cast<std::uint64_t>(i) + 1);
+    const Tessellated& a = bodies[static_cast<std::size_t>(random.uniform() * static_cast<double>(bodies.size()))];
+    const Tessellated& b = bodies[static_cast<std::size_t>(random.uniform() * static_cast<double>(bodies.size()))];
+    const ManufacturedPair pair = geom_test::manufacture(a.shape, b.shape, random.log_uniform(1e-3, 10), random);
+    const DistanceResult ours = distance(a.shape, pair.X_WA, b.shape, pair.X_WB);
+    ++record.pairs;
+    const double g = lower_bound(a.shape, pair.X_WA, b.shape, pair.X_WB, ours.normal);
+    const double rounding = 1e-12 * (pair.size + pair.X_WA.position().norm());
+    const double upper = (ours.point_b - ours.point_a).norm();
+    const bool on_surfaces = std::abs(a.shape.value(pair.X_WA.to_body(ours.point_a))) <= 1e-9 &&
+                             std::abs(b.shape.value(pair.X_WB.to_body(ours.point_b))) <= 1e-9;
+    if (ours.status != DistanceStatus::separated || !(upper - g <= rounding) || !on_surfaces) {
+      ++record.undecided;
+      return;
+    }
+    const FclDistance fcl = geom_test::fcl_distance(a.vertices, pair.X_WA, b.vertices, pair.X_WB);
+    if (fcl.outcome == FclDistance::Outcome::threw) {
+      ++record.fcl_threw;
+      return;
+    }
+    const double margin = a.error + b.error;
+    record.margins += margin;
+    // The polytopes are inside: their distance is between ours and ours plus the tessellation error.
+    const double below = g - kFclTolerance - rounding - fcl.distance;
+    const double above = fcl.distance - (upper + margin + kFclTolerance + rounding);
+    record.worst = std::max({record.worst, below, above});
+    // Along the normal n of the polytopes' closest points d_P = g_P(n) = g(n) + e(n) <= d + e(n).
+    const Vector3d n = (fcl.point_b - fcl.point_a).normalized();
+    const double close_margin =
+        height_over(a, pair.X_WA.rotation().transpose() * n) + height_over(b, pair.X_WB.rotation().transpose() * -n);
+    record.close_margins += close_margin;
+    record.agree_closely += below <= 0 && fcl.distance <= upper + close_margin + kFclTolerance + rounding;
+    ++(below > 0 ? record.fcl_near : above > 0 ? record.fcl_far : record.agree);
+  });
+  std::printf(
+      "%d pairs, %d agree within %g and the tessellation error (%.2g on average; %d with the error along FCL's normal "
+      "alone, %.2g); FCL wrong, certified: %d too far, %d too near (by up to %.1e); %d threw, %d aborts, %d "
+      "undecided\n",
+      comparison.pairs, comparison.agree, kFclTolerance, comparison.margins / comparison.pairs,
+      comparison.agree_closely, comparison.close_margins / comparison.pairs, comparison.fcl_far, comparison.fcl_near,
+      comparison.worst, comparison.fcl_threw, aborts, comparison.undecided);
+  EXPECT_EQ(comparison.undecided, 0);
+  EXPECT_GE(comparison.agree_closely, 1'000);
+  EXPECT_GE(comparison.agree, 0.95 * pairs);
+  EXPECT_LE(comparison.worst, 1e-2);
+  EXPECT_LE(aborts, pairs / 100);
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+
+struct Pair {
+  Shape a, b;
+  Pose X_WA, X_WB;
+};
+
+Shape any_shape(Random& random, double unit) {
+  const Vector3d axes = unit * random.biaxial(random.coin() ? 3 : 100).semi_axes();
+  if (random.uniform() < 0.25) return Ellipsoid(axes);
+  return Superellipsoid(axes, any_exponent(random), any_exponent(random));
+}
+
+/// Pairs that overlap, touch or share their centre, aligned with the axes or not, some huge or tiny.
+Pair hostile_pair(int i) {
+  Random random(static_cast<std::uint64_t>(i) + 1);
+  const double unit = i % 7 == 0 ? random.log_uniform(1e-9, 1e9) : 1;
+  const Shape a = any_shape(random, unit);
+  const Shape b = i % 2 == 0 ? a : any_shape(random, unit);
+  const double size = bounding_radius(a) + bounding_radius(b);
+  const std::array gaps{0.0, 1e-16, -1e-16, 1e-14, 1e-12, 2e-12, 1e-9, 1e-7, -1e-9, -1e-4, -1e-2, 1e-3, 0.1};
+  const double gap = size * gaps[static_cast<std::size_t>(random.uniform() * gaps.size())];
+  switch (static_cast<int>(4 * random.uniform())) {
+    case 0: {  // faces, edges or tips against each other, along an axis or a diagonal
+      Vector3d n = Vector3d::Unit(static_cast<int>(3 * random.uniform()));
+      if (random.coin()) n = (n + Vector3d::Unit(static_cast<int>(3 * random.uniform()))).normalized();
+      return {a, b, Pose(), Pose::translation((support(a, n).height + support(b, -n).height + gap) * n)};
+    }
+    case 1:
+      return {a, b, random.pose(0.0),
+              random.pose(random.coin() ? Vector3d(Vector3d::Zero()) : gap * random.direction())};
+    case 2:
+      return {a, b, random.pose(size), random.pose(size)};
+    default: {
+      const ManufacturedPair pair =
+          std::visit([&](const auto& s, const auto& t) { return geom_test::manufacture(s, t, gap, random); }, a, b);
+      return {a, b, pair.X_WA, pair.X_WB};
+    }
+  }
+}
+
+struct SeedCounts {
+  int usable = 0;
+  int overlapping = 0;
+  int declined = 0;
+  int broken = 0;  ///< usable, but refused by check_seed; or not usable, but with a number
+  int wrong = 0;   ///< answers of Newton's method that distance contradicts
+};
+
+bool is_answer(const DistanceResult& r) {
+  return r.status == DistanceStatus::separated || r.status == DistanceStatus::overlapping;
+}
+
+/// Whether the gap that the bodies certify along the normal of `r` is not its distance.
+template <class A, class B>
+bool is_wrong(const A& a, const Pose& X_WA, const B& b, const Pose& X_WB, const DistanceResult& r) {
+  const double size = (X_WB.position() - X_WA.position()).norm() + a.bounding_radius() + b.bounding_radius();
+  const DistanceResult ours = distance(a, X_WA, b, X_WB);
+  return std::abs(lower_bound(a, X_WA, b, X_WB, r.normal) - r.distance) > 1e-12 * size ||
+         (is_answer(ours) && std::abs(ours.distance - r.distance) > 1e-9 * size + ours.error_bound);
+}
+
+template <class Seed>
+void expect_no_abort(const char* name, int pairs, const Seed& seed_of) {
+  SeedCounts counts;
+  const int aborts = geom_test::run_forked(pairs, counts, [&](int i, SeedCounts& record) {
+    const Pair p = hostile_pair(i);
+    std::visit(
+        [&](const auto& a, const auto& b) {
+          const WitnessPair seed = seed_of(a, p.X_WA, b, p.X_WB);
+          ++(seed.status == SeedStatus::usable        ? record.usable
+             : seed.status == SeedStatus::overlapping ? record.overlapping
+                                                      : record.declined);
+          if (seed.status != SeedStatus::usable && !std::isnan(seed.point_a.x())) ++record.broken;
+          try {
+            check_seed(a, p.X_WA, b, p.X_WB, seed);
+          } catch (const std::invalid_argument&) {
+            ++record.broken;
+            return;
+          }
+          for (const NewtonSystem system : {NewtonSystem::eight, NewtonSystem::five}) {
+            const DistanceResult r = newton_distance(a, p.X_WA, b, p.X_WB, system, seed);
+            if (is_answer(r) && is_wrong(a, p.X_WA, b, p.X_WB, r)) ++record.wrong;
+          }
+        },
+        p.a, p.b);
+  });
+  std::printf("%s, hostile pairs: %d usable, %d overlapping, %d declined, %d broken, %d wrong answers, %d aborts\n",
+              name, counts.usable, counts.overlapping, counts.declined, counts.broken, counts.wrong, aborts);
+  EXPECT_EQ(aborts, 0) << name;
+  EXPECT_EQ(counts.broken, 0) << name;
+  EXPECT_EQ(counts.wrong, 0) << name;
+  EXPECT_GT(counts.usable, 0) << name;
+}
+
+TEST(SuperellipsoidOracle, SeedsNeverEndTheProcess) {
+  expect_no_abort("fcl", scaled(2'000, 100'000), [](const auto&... pair) { return fcl_seed(pair...); });
+  expect_no_abort("ccd", scaled(2'000, 100'000), [](const auto&... pair) { return ccd_seed(pair...); });
+#if HARDBODY_WITH_CGAL
+  expect_no_abort("cgal", scaled(200, 10'000), [](const auto&... pair) { return cgal_seed(pair...); });
+#endif
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+
+struct Solved {
+  int pairs = 0;
+  int seeds = 0;  ///< usable ones
+  std::array<int, 2> right{};
+  std::array<int, 2> wrong{};
+
+  Solved& operator+=(const Solved& s) {
+    pairs += s.pairs;
+    seeds += s.seeds;
+    for (std::size_t k = 0; k < 2; ++k) {
+      right[k] += s.right[k];
+      wrong[k] += s.wrong[k];
+    }
+    return *this;
+  }
+};
+
+template <class A, class B, class Seed>
+void solve(const A& a, const B& b, const Seed& seed_of, Random& random, Solved& solved) {
+  const ManufacturedPair pair = geom_test::manufacture(a, b, random.log_uniform(1e-6, 10), random);
+  const WitnessPair seed = seed_of(a, pair.X_WA, b, pair.X_WB);
+  ++solved.pairs;
+  solved.seeds += seed.status == SeedStatus::usable;
+  const double wanted = lower_bound(a, pair.X_WA, b, pair.X_WB, pair.normal);
+  for (const NewtonSystem system : {NewtonSystem::eight, NewtonSystem::five}) {
+    const DistanceResult r = newton_distance(a, pair.X_WA, b, pair.X_WB, system, seed);
+    const std::size_t column = system == NewtonSystem::eight ? 0 : 1;
+    const bool right = r.status == DistanceStatus::separated && std::abs(r.distance - wanted) <= 1e-12 * pair.size;
+    solved.right[column] += right;
+    solved.wrong[column] += is_answer(r) && !right;
+  }
+}
+
+/// Pairs of one e1 and e2, semi-axes drawn from [1, 3], gaps log-uniform in [1e-6, 10]; the second body of every third
+/// is an ellipsoid.
+template <class Seed>
+Solved solve_cell(double e1, double e2, int pairs, const Seed& seed_of) {
+  Solved cell;
+  Random random(static_cast<std::uint64_t>(1000 * e1 + 10 * e2));
+  for (int i = 0; i < pairs; ++i) {
+    const Superellipsoid a(random.biaxial(3).semi_axes(), e1, e2);
+    const Ellipsoid axes = random.biaxial(3);
+    if (i % 3 == 0) {
+      solve(a, axes, seed_of, random, cell);
+    } else {
+      solve(a, Superellipsoid(axes.semi_axes(), e1, e2), seed_of, random, cell);
+    }
+  }
+  return cell;
+}
+
+template <class Seed>
+void expect_solved(const char* name, int pairs_a_cell, std::array<double, 2> least_share, const Seed& seed_of) {
+  std::printf("\n%s: %d pairs a cell; solved in %%, eight equations / five\n e1\\e2", name, pairs_a_cell);
+  for (const double e2 : kExponents) std::printf("  %9g", e2);
+  std::printf("\n");
+  Solved all;
+  for (const double e1 : kExponents) {
+    std::printf("%6g", e1);
+    for (const double e2 : kExponents) {
+      const Solved cell = solve_cell(e1, e2, pairs_a_cell, seed_of);
+      std::printf("  %4.0f/%4.0f", 100.0 * cell.right[0] / cell.pairs, 100.0 * cell.right[1] / cell.pairs);
+      all += cell;
+    }
+    std::printf("\n");
+  }
+  std::printf("all: %.2f %% of the seeds usable, solved %.2f / %.2f %%, wrong %d / %d\n", 100.0 * all.seeds / all.pairs,
+              100.0 * all.right[0] / all.pairs, 100.0 * all.right[1] / all.pairs, all.wrong[0], all.wrong[1]);
+  for (std::size_t k = 0; k < 2; ++k) {
+    EXPECT_EQ(all.wrong[k], 0) << name;
+    EXPECT_GE(all.right[k], least_share[k] * all.pairs) << name;
+  }
+}
+
+TEST(SuperellipsoidOracle, NewtonSolvesSeparatedPairsFromEverySeed) {
+  expect_solved("fcl", scaled(60, 2'000), {0.999, 0.99}, [](const auto&... pair) { return fcl_seed(pair...); });
+  expect_solved("ccd", scaled(60, 2'000), {0.999, 0.99}, [](const auto&... pair) { return ccd_seed(pair...); });
+#if HARDBODY_WITH_CGAL
+  expect_solved("cgal", scaled(12, 500), {0.99, 0.98}, [](const auto&... pair) { return cgal_seed(pair...); });
+#endif
+  expect_solved("centres", scaled(60, 2'000), {0.98, 0.96}, [](const auto&... pair) { return centre_seed(pair...); });
+  expect_solved("dual", scaled(60, 2'000), {0.999, 0.999}, [](const auto&... pair) { return dual_seed(pair...); });
+}
+
+}  // namespace
+}  // namespace geom
