@@ -2,8 +2,8 @@
 
 #include "distance_seeds.h"
 
+#include <geom/any_shape.h>
 #include <geom/distance.h>
-#include <geom/ellipsoid.h>
 #include <geom/newton.h>
 #include <geom/pose.h>
 
@@ -13,12 +13,19 @@
 
 namespace hardbody {
 
+enum class Method {
+  dual,
+  newton8,  ///< the paper's equations
+  newton5,
+};
+
 /// What one line of `hardbody distance` asks.
 struct DistanceQuery {
-  geom::Ellipsoid a, b;
+  geom::Shape a, b;
   geom::Pose X_WA, X_WB;
-  std::optional<geom::NewtonSystem> newton;  ///< the paper's equations; nothing: the dual method
-  SeedFunction seed;                         ///< for `newton`
+  Method method;
+  SeedFunction seed;              ///< for the paper's equations
+  geom::Penetration penetration;  ///< for the dual method
 };
 
 struct DistanceAnswer {
@@ -29,16 +36,27 @@ struct DistanceAnswer {
 /// Of one line, `{"a":{"shape":{..},"position":[..],"orientation":[..]},"b":{..},"method":..,"seed":..,"id":..}`: see
 /// distance_help(). The JSON text of "id" goes to `id` even if the rest of the line is bad. Throws InputError, with a
 /// message that does not say which line.
+///
+/// Two readers: scan_query for lines that are as nearly all are, and a JSON library for the others. What both read they
+/// read alike.
 DistanceQuery parse_query(std::string_view line, std::string& id);
 
 /// Never throws: what no method answers is declined.
 DistanceAnswer answer(const DistanceQuery& query);
 
 /// {"distance":..,..}, without a line break. Numbers with 17 significant digits, so that they read back as the same
-/// double; a declined answer's are null.
+/// double; a declined answer's are null, and so is an infinite error bound.
 std::string answer_json(const std::string& id, const DistanceAnswer& answer);
 
 /// {"error":".."}
 std::string error_json(const std::string& id, const std::string& message);
+
+struct Reply {
+  std::string text;  ///< one line, without a line break
+  bool good;         ///< answered or declined; false: an error
+};
+
+/// All of the above for one line, the `number`th. Never throws on account of the line.
+Reply reply_to(std::string_view line, long number);
 
 }  // namespace hardbody

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <geom/ellipsoid.h>
+#include <geom/any_shape.h>
 #include <geom/newton.h>
 #include <geom/pose.h>
 
@@ -10,7 +10,7 @@
 
 namespace hardbody {
 
-using SeedFunction = geom::WitnessPair (*)(const geom::Ellipsoid& a, const geom::Pose& X_WA, const geom::Ellipsoid& b,
+using SeedFunction = geom::WitnessPair (*)(const geom::Shape& a, const geom::Pose& X_WA, const geom::Shape& b,
                                            const geom::Pose& X_WB);
 
 /// A way to guess closest points, by the name that queries use.

@@ -964,7 +964,8 @@ class Distance(Case):
             (placed([1, 1, 3], [0, 0, 0], [-q for q in quarter]), placed([1, 1, 1], [0, 0, 5]), 3, [0, 0, 1], [0, 0, 1]),
         ]
         for (a, b, distance, normal, point_a), answer in zip(cases, self.answers(*({"a": c[0], "b": c[1]} for c in cases))):
-            self.assertEqual(list(answer), ["distance", "point_a", "point_b", "normal", "status", "iterations"])
+            self.assertEqual(list(answer), ["distance", "point_a", "point_b", "normal", "status", "iterations", "error_bound"])
+            self.assertLess(answer["error_bound"], 1e-12)
             self.assertAlmostEqual(answer["distance"], distance, 14)
             self.assertEqual(answer["status"], "separated" if distance > 0 else "overlapping")
             for k in range(3):
@@ -1021,6 +1022,60 @@ class Distance(Case):
         newton, named = self.answers({**pairs[1], "method": "newton8"}, {**pairs[1], "method": "newton8", "seed": "dual"})
         self.assertEqual(newton, named)
 
+    def test_superellipsoids(self):
+        barr = lambda axes, exponents, position, *turn: {
+            **placed(axes, position, *turn),
+            "shape": {"kind": "superellipsoid", "semi_axes": axes, "exponents": exponents},
+        }
+        diagonal = 3**-0.5
+        brick = barr([1, 1, 1], [0.5, 0.5], [0, 0, 0])
+        reach = 3**0.25  # of the brick along (1,1,1): x^4 + y^4 + z^4 = 1 at the length 3^(1/4)
+        pairs = [
+            ({"a": brick, "b": placed([1, 1, 1], [0, 0, 3])}, 1),
+            ({"a": brick, "b": barr([1, 2, 3], [0.3, 1.2], [4, 0, 0])}, 2),
+            ({"a": placed([0.5, 0.5, 0.5], [3 * diagonal] * 3), "b": brick}, 3 - 0.5 - reach),
+            ({"a": barr([1, 2, 3], [1, 1], [0, 0, 0], turned(0.7, [1, 2, 3])), "b": brick | {"position": [4, 3, -2]}}, None),
+            ({"a": placed([1, 2, 3], [0, 0, 0], turned(0.7, [1, 2, 3])), "b": brick | {"position": [4, 3, -2]}}, None),
+        ]
+        dual = self.answers(*(pair for pair, _ in pairs))
+        self.assertAlmostEqual(dual[3]["distance"], dual[4]["distance"], 12)
+        seeds = [seed for seed in self.SEEDS if self.built_in(seed)]
+        ways = [{"method": method, "seed": seed} for method in self.METHODS for seed in seeds]
+        answers = self.answers(*({**pair, **way} for pair, _ in pairs for way in ways))
+        for k, (_, distance) in enumerate(pairs):
+            of_pair = [dual[k], *answers[k * len(ways) : (k + 1) * len(ways)]]
+            for answer in of_pair:
+                if answer["distance"] is None:
+                    self.assert_declined(answer)  # a seed too crude
+                    continue
+                self.assertEqual(answer["status"], "separated")
+                self.assertAlmostEqual(answer["distance"], dual[k]["distance"], 12)
+                self.assertLess(answer["error_bound"], 1e-11)
+                self.assert_consistent(answer)
+            self.assertEqual(dual[k]["status"], "separated")
+            if distance is not None:
+                self.assertAlmostEqual(dual[k]["distance"], distance, 13)
+            self.assertGreaterEqual(sum(answer["distance"] is not None for answer in of_pair), 0.9 * len(of_pair))
+
+    def test_penetration(self):
+        deep = {"a": self.NEEDLE, "b": placed([2, 2, 0.5], [0, 0, 0.1])}
+        best, named, local = self.answers(deep, {**deep, "penetration": "global"}, {**deep, "penetration": "local"})
+        self.assertEqual(best, named)
+        for answer in [best, local]:
+            self.assertEqual(answer["status"], "overlapping")
+            self.assert_consistent(answer)
+        self.assertLess(best["error_bound"], 1e-3 * 10)
+        self.assertIsNone(local["error_bound"])  # nothing is certified
+        self.assertLessEqual(local["distance"], best["distance"] + best["error_bound"])
+
+    def test_both_readers(self):
+        # An escape in the id, and the line goes to the slower reader; the answer is the same.
+        for more in [{}, {"method": "newton5"}, {"method": "newton8", "seed": "centres"}, {"penetration": "local"}]:
+            fast, slow = self.answers({**self.README_PAIR, **more, "id": "x"}, {**self.README_PAIR, **more, "id": "\n"})
+            self.assertEqual({**fast, "id": "\n"}, slow)
+        pretty = json.dumps(self.README_PAIR, indent=1).replace("\n", "\t ")
+        self.assertEqual(self.parse(self.distance(pretty).stdout), self.answers(self.README_PAIR))
+
     def test_shallow_overlap(self):
         pair = {"a": self.NEEDLE, "b": placed([1, 1, 3], [1.9, 0, 0])}
         for answer in self.answers(pair, {**pair, "method": "newton8"}, {**pair, "method": "newton5"}):
@@ -1075,7 +1130,7 @@ class Distance(Case):
             ("[" * 100000, "nested"),
             ('{"id":' * 1000 + "1" + "}" * 1000, "nested"),
             (self.bad().replace('"b":', '"a":'), '"a" twice'),
-            ("17", "is 17", "an object with a, b, method, seed, id"),
+            ("17", "is 17", "an object with a, b, method, seed, penetration, id"),
             ("null", "is null"),
             ("{}", "a is missing"),
             (json.dumps({"a": self.NEEDLE}), "b is missing"),
@@ -1105,7 +1160,19 @@ class Distance(Case):
             (self.bad(a={"shape": "sphere"}).replace("}}", "}"), "not valid JSON"),
             (json.dumps({"a": {"shape": "sphere", "position": [0, 0, 0]}}), 'a.shape is "sphere"', '"ellipsoid"'),
             (self.bad(shape={"kind": "sphere"}), 'a.shape.kind is "sphere"', '"ellipsoid"'),
-            (self.bad(shape={"kind": "superellipsoid", "exponents": [1, 1]}), "a.shape.kind", "not available yet"),
+            (self.bad(shape={"kind": "superellipsoid"}), "a.shape.exponents is missing", "two numbers [e1, e2]"),
+            (self.bad(shape={"kind": "superellipsoid", "exponents": [1]}), "a.shape.exponents is [1]", "two numbers"),
+            (self.bad(shape={"kind": "superellipsoid", "exponents": [1, 0.1]}), "a.shape.exponents is [1,0.1]", "0.2 to 1.6"),
+            (self.bad(shape={"kind": "superellipsoid", "exponents": [1, 1], "semi_axes": [1, 0, 1]}), "a.shape.semi_axes is [1,0,1]"),
+            (self.bad(shape={"kind": "superellipsoid", "exponent": 1}), "did you mean a.shape.exponents?"),
+            (self.bad({"penetration": "deep"}), 'penetration is "deep"', '"global", "local"'),
+            (self.bad({"penetration": "local", "method": "newton8"}), "penetration is for the method"),
+            (self.bad({"method": ""}), 'method is ""'),
+            (self.bad().replace("1, 1, 3", "1, 1, 03"), "not valid JSON"),
+            (self.bad().replace("1, 1, 3", "1, 1, +3"), "not valid JSON"),
+            (self.bad().replace("1, 1, 3", "1, 1, 3."), "not valid JSON"),
+            (self.bad().replace("1, 1, 3", "1, 1, 3,"), "not valid JSON"),
+            (self.bad() + "x", "not valid JSON"),
             (json.dumps({"a": {"shape": {"semi_axes": [1, 1, 1]}, "position": [0, 0, 0]}}), "a.shape.kind is missing"),
             (json.dumps({"a": {"shape": {"kind": "ellipsoid"}, "position": [0, 0, 0]}}), "a.shape.semi_axes is missing"),
             (self.bad(shape={"semi_axes": [1, 1]}), "a.shape.semi_axes is [1,1]"),
