@@ -205,6 +205,8 @@ struct CorePair {
   }
   const Eigen::Vector3d& r() const { return pair.r(); }
 };
+template <class Pair>
+CorePair(const Pair&, double, double) -> CorePair<Pair>;
 
 /// Where Newton's method does not converge, because support points jump: the closest points of the cores.
 template <class Pair>
