@@ -1,0 +1,149 @@
+#pragma once
+
+/// The bytes of a fuzz input as numbers, shapes and poses.
+
+#include <geom/geom.h>
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+#include <type_traits>
+
+namespace fuzz {
+
+/// Reads from the front; zeros behind the end.
+///
+/// Most bit patterns are no numbers that get past a constructor. So a tag decides what a number is: any bits, or one of
+/// ranges that matter.
+class Input {
+ public:
+  Input(const std::uint8_t* data, std::size_t size) : data_(data), size_(size) {}
+
+  std::uint8_t byte() {
+    if (size_ == 0) return 0;
+    --size_;
+    return *data_++;
+  }
+
+  /// Any double at all.
+  double bits() { return read<double>(); }
+
+  /// In [0, 1).
+  double fraction() { return read<std::uint16_t>() / 65536.0; }
+
+  /// A coordinate: mostly within a few units, and often a round number.
+  double coordinate() {
+    switch (byte() % 8) {
+      case 0:
+        return bits();
+      case 1:
+        return 0;
+      case 2:
+        return std::ldexp(2 * fraction() - 1, read<std::int8_t>());
+      case 3:
+        return static_cast<std::int8_t>(byte()) / 8.0;
+      case 4:
+        return std::nextafter(static_cast<std::int8_t>(byte()) / 4.0, std::numeric_limits<double>::infinity());
+      default:
+        return 8 * (fraction() - 0.5);
+    }
+  }
+
+  /// A length: mostly 0.01 to 100.
+  double length() {
+    switch (byte() % 8) {
+      case 0:
+        return bits();
+      case 1:
+        return 1;
+      case 2:
+        return std::ldexp(1 + fraction(), read<std::int8_t>());
+      case 3:
+        return (1 + byte() % 32) / 4.0;
+      default:
+        return std::pow(10.0, 4 * fraction() - 2);
+    }
+  }
+
+  double exponent() {
+    constexpr std::array kOften{0.2, 0.25, 0.3, 0.5, 2.0 / 3, 1.0, 1.3, 1.5, 1.6};
+    switch (byte() % 4) {
+      case 0:
+        return bits();
+      case 1:
+        return kOften[byte() % kOften.size()];
+      default:
+        return 0.2 + 1.4 * fraction();
+    }
+  }
+
+  Eigen::Vector3d vector() {
+    return in_order([this] { return coordinate(); });
+  }
+
+  /// Throws std::invalid_argument as the constructors do.
+  geom::Shape shape() {
+    const bool barr = byte() % 2 == 1;
+    const Eigen::Vector3d axes =
+        byte() % 4 == 0 ? Eigen::Vector3d(Eigen::Vector3d::Constant(length())) : in_order([this] { return length(); });
+    if (!barr) return geom::Ellipsoid(axes);
+    const double e1 = exponent();
+    return geom::Superellipsoid(axes, e1, exponent());
+  }
+
+  geom::Pose pose(const Eigen::Vector3d& position) {
+    std::array<double, 4> q{1, 0, 0, 0};
+    const int kind = byte() % 4;
+    if (kind == 1) {  // a turn of the cube
+      q = {0.5, byte() % 2 == 0 ? 0.5 : -0.5, 0.5, 0.5};
+    } else if (kind > 1) {
+      for (double& x : q) x = kind == 2 ? fraction() - 0.5 : coordinate();
+      const double norm = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+      if (byte() % 16 != 0) {
+        for (double& x : q) x /= norm;
+      }
+    }
+    return geom::Pose::from_quaternion(q[0], q[1], q[2], q[3], position);
+  }
+
+ private:
+  template <class T>
+  T read() {
+    static_assert(std::is_trivially_copyable_v<T>);
+    std::array<std::uint8_t, sizeof(T)> bytes;
+    for (std::uint8_t& b : bytes) b = byte();
+    T value;
+    std::memcpy(&value, bytes.data(), sizeof value);
+    return value;
+  }
+
+  template <class Draw>
+  static Eigen::Vector3d in_order(const Draw& draw) {
+    const double x = draw();
+    const double y = draw();
+    return {x, y, draw()};
+  }
+
+  const std::uint8_t* data_;
+  std::size_t size_;
+};
+
+/// Bodies that are apart or overlap by little: across the line of centres, which is what a look costs nothing at. The
+/// search over all normals, of deep overlaps (and where squares overflow), is a thousand times slower than all the
+/// rest; fuzzers ration it.
+inline bool are_shallow(const geom::Shape& a, const geom::Pose& X_WA, const geom::Shape& b, const geom::Pose& X_WB) {
+  const Eigen::Vector3d r = X_WB.position() - X_WA.position();
+  const double r_a = geom::inscribed_radius(a);
+  const double r_b = geom::inscribed_radius(b);
+  return std::isfinite(r.squaredNorm()) && r.norm() > 0.5 * (r_a + r_b) &&
+         geom::distance_lower_bound(a, X_WA, b, X_WB, r) > -0.1 * std::min(r_a, r_b);
+}
+
+}  // namespace fuzz

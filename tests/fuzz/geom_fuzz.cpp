@@ -1,0 +1,187 @@
+/// libFuzzer: distances and queries of geom/queries.h on raw doubles. Ellipsoids, superellipsoids and mixed pairs.
+///
+/// What must hold whatever the numbers: constructors refuse by std::invalid_argument and nothing else throws; an answer
+/// has no number that is not finite, and the gap that its normal certifies is its distance; what is no answer has none.
+
+#include "fuzz/fuzz_input.h"
+
+#include <geom/geom.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <optional>
+#include <stdexcept>
+#include <variant>
+
+namespace {
+
+using Eigen::Vector3d;
+using fuzz::Input;
+using geom::DistanceResult;
+using geom::DistanceStatus;
+using geom::Pose;
+using geom::Shape;
+
+struct Pair {
+  Shape a, b;
+  Pose X_WA, X_WB;
+};
+
+/// As code, to be repeated.
+void print(const Shape& shape, const Pose& X) {
+  const auto list = [](const auto& values) {
+    for (int k = 0; k < values.size(); ++k) std::fprintf(stderr, "%s%.17g", k == 0 ? "" : ", ", values.reshaped()[k]);
+  };
+  std::visit([&](const auto& s) { list(s.semi_axes()); }, shape);
+  if (const auto* barr = std::get_if<geom::Superellipsoid>(&shape)) {
+    std::fprintf(stderr, "; exponents %.17g, %.17g", barr->e1(), barr->e2());
+  }
+  std::fprintf(stderr, "; rotation by columns ");
+  list(X.rotation());
+  std::fprintf(stderr, "; position ");
+  list(X.position());
+  std::fprintf(stderr, "\n");
+}
+
+const Pair* asked = nullptr;  ///< by the input that runs
+
+void require(bool holds, const char* what) {
+  if (holds) return;
+  std::fprintf(stderr, "does not hold: %s\n", what);
+  if (asked != nullptr) {
+    print(asked->a, asked->X_WA);
+    print(asked->b, asked->X_WB);
+  }
+  std::abort();
+}
+
+/// What errors are relative to. Infinite where squares overflow: then nothing is compared.
+double size_of(const Pair& pair) {
+  return (pair.X_WB.position() - pair.X_WA.position()).norm() + geom::bounding_radius(pair.a) +
+         geom::bounding_radius(pair.b);
+}
+
+bool is_answer(DistanceStatus status) {
+  return status == DistanceStatus::separated || status == DistanceStatus::overlapping;
+}
+
+void check(const Pair& pair, const DistanceResult& r) {
+  if (!is_answer(r.status)) {
+    require(std::isnan(r.distance), "a declined answer has no distance");
+    return;
+  }
+  require(std::isfinite(r.distance), "an answer is finite");
+  require(r.point_a.allFinite() && r.point_b.allFinite(), "its points are finite");
+  require(std::abs(r.normal.norm() - 1) < 1e-9, "its normal is a unit vector");
+  require(!std::isnan(r.residual), "its residual is a number");
+  require((r.distance >= 0) == (r.status == DistanceStatus::separated), "its sign is what the status says");
+  const double size = size_of(pair);
+  require(r.error_bound >= -1e-14 * size, "its error bound is a number, none below 0 but for rounding");
+  const double g = geom::distance_lower_bound(pair.a, pair.X_WA, pair.b, pair.X_WB, r.normal);
+  require(!(std::abs(g - r.distance) > 1e-8 * size), "its distance is the gap across its normal");
+}
+
+/// The search over all normals, of deep overlaps, is a thousand times slower than all the rest: now and then.
+bool may_be_slow(Input& input) {
+  return input.byte() == 1;
+}
+
+void ask_distance(const Pair& pair, Input& input) {
+  geom::DistanceOptions options;
+  if (!may_be_slow(input)) options.penetration = geom::Penetration::local;
+  if (input.byte() % 2 == 1) options.start = input.vector();
+  const DistanceResult r = geom::distance(pair.a, pair.X_WA, pair.b, pair.X_WB, options);
+  check(pair, r);
+}
+
+void ask_newton(const Pair& pair, Input& input) {
+  const auto system = input.byte() % 2 == 0 ? geom::NewtonSystem::eight : geom::NewtonSystem::five;
+  const int kind = input.byte() % 3;
+  const Vector3d u = input.vector();
+  const Vector3d v = input.vector();
+  std::visit(
+      [&](const auto& a, const auto& b) {
+        const geom::WitnessPair any{u, v, geom::SeedStatus::usable};
+        const geom::WitnessPair seed = kind == 0   ? any
+                                       : kind == 1 ? geom::normal_seed(a, pair.X_WA, b, pair.X_WB, u)
+                                                   : geom::centre_seed(a, pair.X_WA, b, pair.X_WB);
+        const auto good = geom::checked_seed(a, pair.X_WA, b, pair.X_WB, seed);
+        check(pair, geom::newton_distance(a, pair.X_WA, b, pair.X_WB, system, good));
+      },
+      pair.a, pair.b);
+}
+
+void ask_point(const Pair& pair, Input& input) {
+  const Vector3d p = input.vector();
+  if (geom::contains(pair.a, pair.X_WA, p) && !may_be_slow(input)) return;
+  const geom::ClosestPoint closest = geom::closest_point(pair.a, pair.X_WA, p);
+  if (is_answer(closest.status)) {
+    require(std::isfinite(closest.distance) && closest.point.allFinite() && closest.normal.allFinite(),
+            "a closest point is finite");
+  }
+}
+
+void ask_ray(const Pair& pair, Input& input) {
+  const Vector3d origin = input.vector();
+  if (geom::contains(pair.a, pair.X_WA, origin) && !may_be_slow(input)) return;
+  const geom::RayHit hit = geom::ray_cast(pair.a, pair.X_WA, origin, input.vector());
+  if (hit.status == geom::RayStatus::hit || hit.status == geom::RayStatus::inside) {
+    require(hit.t >= 0 && std::isfinite(hit.t) && hit.point.allFinite() && hit.normal.allFinite(), "a hit is finite");
+  }
+}
+
+void ask_overlap(const Pair& pair, Input& input) {
+  const DistanceResult r =
+      geom::distance(pair.a, pair.X_WA, pair.b, pair.X_WB, {.penetration = geom::Penetration::local});
+  const bool certified = is_answer(r.status) && std::isfinite(r.error_bound);
+  if (!certified && !may_be_slow(input)) return;
+  const geom::Answer answer = geom::overlap(pair.a, pair.X_WA, pair.b, pair.X_WB, input.vector());
+  if (answer == geom::Answer::unknown || !certified || !(std::abs(r.distance) > 1e-8 * size_of(pair))) return;
+  require((answer == geom::Answer::yes) == (r.distance < 0), "overlap says what distance says");
+}
+
+std::optional<Pair> read_pair(Input& input) {
+  try {
+    const Shape a = input.shape();
+    const Shape b = input.shape();
+    const Pose X_WA = input.pose(input.vector());
+    const Vector3d p_B = input.vector();
+    const bool beside = input.byte() % 8 != 1;  // near enough to be interesting, far enough to be apart
+    const double reach = geom::bounding_radius(a) + geom::bounding_radius(b);
+    return Pair{a, b, X_WA, input.pose(beside ? X_WA.position() + input.fraction() * reach * p_B : p_B)};
+  } catch (const std::invalid_argument&) {
+    return {};
+  }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  Input input(data, size);
+  const int question = input.byte() % 8;
+  const std::optional<Pair> pair = read_pair(input);
+  if (!pair || (!fuzz::are_shallow(pair->a, pair->X_WA, pair->b, pair->X_WB) && !may_be_slow(input))) return 0;
+  asked = &*pair;
+  switch (question) {
+    case 0:
+      ask_newton(*pair, input);
+      break;
+    case 1:
+      ask_point(*pair, input);
+      break;
+    case 2:
+      ask_ray(*pair, input);
+      break;
+    case 3:
+      ask_overlap(*pair, input);
+      break;
+    default:
+      ask_distance(*pair, input);
+  }
+  asked = nullptr;
+  return 0;
+}
