@@ -26,8 +26,9 @@ GEOM_EXPORT WitnessPair fcl_seed(const SupportBody& a, const SupportBody& b, con
 /// Ellipsoids: about 3e-6 times the larger inscribed radius from the true distance at the median, 1e-3 at the worst
 /// seen; the points themselves by more, the flatter the bodies. Superellipsoids: 7e-4 of the size of the pair at the
 /// median, 9e-3 at the worst seen, their points 4e-3 and 3e-2. Takes a few microseconds for ellipsoids and 0.1 to 0.2
-/// milliseconds for polytopes, most of it to make them. Newton's method converges from these points for 100 % of the
-/// pairs with eight equations and 99.7 % with five (tests/oracle/superellipsoid_seeds_test.cpp prints it by exponent).
+/// milliseconds for polytopes, most of it to make them. Newton's method converges from these points for all
+/// pairs of ellipsoids; of superellipsoids for 99.98 % with eight equations and 99.7 % with five
+/// (tests/oracle/superellipsoid_seeds_test.cpp prints it by exponent).
 ///
 /// FCL is called only where it has an answer, and never where Debian's build of it, with assertions on, would end the
 /// process:
@@ -63,8 +64,8 @@ GEOM_EXPORT WitnessPair ccd_seed(const SupportBody& a, const SupportBody& b);
 /// shallow overlaps only.
 ///
 /// The points are those of the bodies to about 1e-3 of the size of the pair; superellipsoids: 4e-4 at the median, 4e-2
-/// at the worst seen. Takes 25 microseconds for those. Newton's method converges from these points for 100 % of the
-/// pairs with eight equations and 99.7 % with five. Declined if the centres coincide or MPR does not settle.
+/// at the worst seen. Takes 25 microseconds for those. Newton's method converges from these points for 99.98 % of them
+/// with eight equations and 99.8 % with five. Declined if the centres coincide or MPR does not settle.
 template <SupportShape ShapeA, SupportShape ShapeB>
 WitnessPair ccd_seed(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const Pose& X_WB) {
   const WitnessPair seed = internal::ccd_seed(internal::SupportBody(a, X_WA), internal::SupportBody(b, X_WB));
