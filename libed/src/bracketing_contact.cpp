@@ -147,7 +147,7 @@ geom::WitnessPair Search::seed(const MovingBody& a, const MovingBody& b) {
   first_ = false;
   if (!first) return geom::normal_seed(pair_.shape_a, a.pose, pair_.shape_b, b.pose, n_);
   if (options_.seed) {
-    const geom::WitnessPair users = options_.seed(pair_.shape_a, a.pose, pair_.shape_b, b.pose);
+    geom::WitnessPair users = options_.seed(pair_.shape_a, a.pose, pair_.shape_b, b.pose);
     if (users.status == geom::SeedStatus::usable) return users;
   }
   const geom::DistanceResult dual = dual_distance(a, b);
@@ -165,7 +165,7 @@ geom::DistanceResult Search::distance(double t, const MovingBody& a, const Movin
   const geom::WitnessPair start = seed(a, b);
   const auto system =
       options_.distance == DistanceMethod::newton8 ? geom::NewtonSystem::eight : geom::NewtonSystem::five;
-  const geom::DistanceResult result =
+  geom::DistanceResult result =
       counted(geom::internal::newton_distance_unchecked(pair_.shape_a, a.pose, pair_.shape_b, b.pose, system, start));
   if (is_answer(result)) return result;
   ++count_.rescues;
