@@ -15,7 +15,6 @@ using Eigen::Vector3d;
 using internal::DualSample;
 using internal::NormBody;
 using internal::NormBodyPair;
-using internal::Tangent;
 using Answer = NormBodyPair::Answer;
 
 /// Exact for ellipsoids whose axes are parallel: n along (QA + QB)^-1 r.
@@ -62,15 +61,15 @@ Answer search(const NormBodyPair& pair, const DualSample& best, int& iterations)
 Answer solve(const NormBodyPair& pair, const Vector3d& start, const Vector3d& cold, const DistanceOptions& options,
              int& iterations) {
   const int limit = std::max(1, options.max_iterations);
-  const Answer dual = pair.dual(start, std::min(25, limit), iterations);
+  Answer dual = pair.dual(start, std::min(25, limit), iterations);
   if (ends(dual, pair, options)) return dual;
   DualSample best = dual.at;
   if (!(dual.converged && dual.at.g < 0)) {
-    const Answer primal = pair.primal(dual.at, limit, iterations);
+    Answer primal = pair.primal(dual.at, limit, iterations);
     if (ends(primal, pair, options)) return primal;
-    const Answer again = pair.dual(pair.continued(cold, iterations), 2 * limit, iterations);
+    Answer again = pair.dual(pair.continued(cold, iterations), 2 * limit, iterations);
     if (ends(again, pair, options)) return again;
-    const Answer last = pair.primal(again.at, 4 * limit, iterations);
+    Answer last = pair.primal(again.at, 4 * limit, iterations);
     if (ends(last, pair, options)) return last;
     for (const Answer* answer : {&primal, &again, &last}) {
       if (answer->at.g > best.g) best = answer->at;

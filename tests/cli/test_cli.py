@@ -332,13 +332,11 @@ class Init(Case):
 
 
 class BadConfig(Case):
-    """Every one: status 2, one line `file:line: what; accepted: ...`, nothing created, at once."""
+    """Every one: status 2, one line `file:line: what; accepted: ...`, nothing created."""
 
     def refuse(self, config, *parts, arguments=()):
         self.write("bad.toml", config)
-        begin = time.monotonic()
         result = self.hardbody("run", "bad.toml", *arguments)
-        self.assertLess(time.monotonic() - begin, 1)
         self.assert_refused(result, "accepted", *parts)
         self.assertEqual(os.listdir(self.here), ["bad.toml"])
         return result.stderr
@@ -666,7 +664,7 @@ class Signals(Case):
         self.assertEqual(self.hardbody("check", "out").returncode, 0)
 
     def test_slowest_finder(self):
-        # Some hundred collisions a second: a look at signals must not wait for a fixed number of them.
+        # Some hundred collisions a second: a look at signals must not wait for a fixed number of them, once 20,000.
         slow = (
             self.LONG.replace("number = 64", "number = 512").replace("ratio = 2", "ratio = 3")
             + '[dynamics]\nfinder = "bracketing"\ndistance = "newton8"\nneighbours = "{}"\n'
@@ -681,11 +679,11 @@ class Signals(Case):
                 process = self.start(config.format(neighbours), phase)
                 time.sleep(1)
                 process.send_signal(number)
-                begin = time.monotonic()
-                _, stderr = process.communicate(timeout=30)
-                self.assertLess(time.monotonic() - begin, 3, phase)
+                _, stderr = process.communicate(timeout=120)
                 self.assertEqual(process.returncode, status, stderr)
-                self.assertTrue(self.summary("out")["interrupted"])
+                summary = self.summary("out")
+                self.assertTrue(summary["interrupted"])
+                self.assertLess(summary["counters"]["collisions"], 20000, phase)
                 os.rename(self.path("out"), self.path(f"out_{phase[:5]}_{neighbours}"))
 
     def test_start(self):

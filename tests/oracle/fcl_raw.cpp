@@ -2,6 +2,7 @@
 
 #include <fcl/geometry/shape/convex.h>
 #include <fcl/geometry/shape/ellipsoid.h>
+#include <fcl/narrowphase/detail/convexity_based_algorithm/gjk_libccd.h>
 #include <fcl/narrowphase/distance.h>
 
 #include <exception>
@@ -40,6 +41,16 @@ FclDistance ask(const fcl::CollisionObjectd& a, const fcl::CollisionObjectd& b, 
   }
 }
 
+struct FedBody {
+  const void* body;
+  SupportFunction support;
+};
+
+void fed_support(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* out) {
+  const auto& fed = *static_cast<const FedBody*>(object);
+  Eigen::Map<Eigen::Vector3d>(out->v) = fed.support(fed.body, Eigen::Map<const Eigen::Vector3d>(direction->v));
+}
+
 }  // namespace
 
 FclDistance fcl_distance(const geom::Ellipsoid& a, const geom::Pose& X_WA, const geom::Ellipsoid& b,
@@ -50,6 +61,18 @@ FclDistance fcl_distance(const geom::Ellipsoid& a, const geom::Pose& X_WA, const
 FclDistance fcl_distance(const std::vector<Eigen::Vector3d>& a, const geom::Pose& X_WA,
                          const std::vector<Eigen::Vector3d>& b, const geom::Pose& X_WB) {
   return ask(to_fcl(a, X_WA), to_fcl(b, X_WB), /*signed_distance=*/false);
+}
+
+double fcl_gjk_distance(const void* a, const void* b, SupportFunction support) {
+  constexpr unsigned kIterations = 1000;
+  constexpr double kTolerance = 1e-6;
+  FedBody fed_a{a, support};
+  FedBody fed_b{b, support};
+  double distance = -1;
+  fcl::Vector3d p_a, p_b;
+  const bool apart = fcl::detail::GJKDistance<double>(&fed_a, fed_support, &fed_b, fed_support, kIterations, kTolerance,
+                                                      &distance, &p_a, &p_b);
+  return apart ? distance : -1;
 }
 
 }  // namespace geom_test

@@ -26,4 +26,11 @@ FclDistance fcl_distance(const geom::Ellipsoid& a, const geom::Pose& X_WA, const
 FclDistance fcl_distance(const std::vector<Eigen::Vector3d>& a, const geom::Pose& X_WA,
                          const std::vector<Eigen::Vector3d>& b, const geom::Pose& X_WB);
 
+/// A support function: the point of the body furthest along `direction` (any length but 0), both in world axes.
+using SupportFunction = Eigen::Vector3d (*)(const void* body, const Eigen::Vector3d& direction);
+
+/// FCL's own GJK (the one behind GST_LIBCCD, at its defaults) fed with a support function; -1 for what it takes for an
+/// overlap.
+double fcl_gjk_distance(const void* a, const void* b, SupportFunction support);
+
 }  // namespace geom_test

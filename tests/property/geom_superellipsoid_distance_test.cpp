@@ -4,12 +4,11 @@
 
 #include "common/geom_manufactured.h"
 #include "common/geom_random.h"
+#include "common/geom_superellipsoid_sets.h"
 
 #include <geom/geom.h>
 
 #include <gtest/gtest.h>
-
-#include <Eigen/Geometry>
 
 #include <array>
 #include <cmath>
@@ -19,78 +18,26 @@
 namespace geom {
 namespace {
 
-using Eigen::Matrix3d;
 using Eigen::Vector3d;
+using geom_test::choose;
+using geom_test::kExponents;
+using geom_test::Orientation;
+using geom_test::PairSet;
+using geom_test::place;
 using geom_test::Random;
 
-constexpr std::array kExponents{0.2, 0.3, 0.5, 0.7, 1.0, 1.3, 1.6};
-
-enum class Set { random_normal, random_point, aligned, edges, faces };
-
 struct SetTraits {
-  Set set;
+  PairSet set;
   const char* name;
   double tolerance;  ///< of the distance, relative to the size of the pair
   double declined;   ///< share that may be declined
 };
 
-constexpr std::array<SetTraits, 5> kSets{{{Set::random_normal, "random normal", 1e-12, 0},
-                                          {Set::random_point, "random point", 1e-12, 0},
-                                          {Set::aligned, "aligned copies", 1e-12, 0},
-                                          {Set::edges, "edges and vertices", 5e-10, 0},
-                                          {Set::faces, "faces", 5e-10, 0}}};
-
-Vector3d surface_point(const Superellipsoid& shape, const Vector3d& direction) {
-  return direction / std::sqrt(1 + shape.value(direction));
-}
-
-Vector3d small_turn(const Vector3d& v, Random& random) {
-  return (v + random.log_uniform(1e-6, 0.1) * random.direction()).normalized();
-}
-
-/// Near the middle of an edge, or near a vertex.
-Vector3d edge_point(const Superellipsoid& shape, Random& random) {
-  Vector3d v = random.coin() ? Vector3d(1, 1, 0) : (random.coin() ? Vector3d(1, 0, 1) : Vector3d(1, 1, 1));
-  for (int k = 0; k < 3; ++k) v[k] = random.coin() ? v[k] : -v[k];
-  return surface_point(shape, small_turn(v.normalized(), random));
-}
-
-/// Orientations of two equal bodies, and the normal between them.
-struct Orientation {
-  Matrix3d R_a, R_b;
-  Vector3d n;
-};
-
-Orientation choose(Set set, const Superellipsoid& shape, Random& random) {
-  Orientation o{random.pose(0).rotation(), random.pose(0).rotation(), random.direction()};
-  const auto normal_at = [&](const Vector3d& x) { return Vector3d(shape.gradient(x).normalized()); };
-  // Turns B so that its normal m (body frame) faces n.
-  const auto face = [&](const Vector3d& m) {
-    o.R_b = Eigen::Quaterniond::FromTwoVectors(o.R_b * m, -o.n).toRotationMatrix() * o.R_b;
-  };
-  switch (set) {
-    case Set::random_normal:
-      break;
-    case Set::random_point:
-      o.n = o.R_a * normal_at(surface_point(shape, random.direction()));
-      break;
-    case Set::aligned:
-      o.n = o.R_a * normal_at(surface_point(shape, random.direction()));
-      o.R_b = Eigen::AngleAxisd(random.log_uniform(1e-6, 0.1), random.direction()).toRotationMatrix() * o.R_a;
-      break;
-    case Set::edges:
-      o.n = o.R_a * normal_at(edge_point(shape, random));
-      face(normal_at(edge_point(shape, random)));
-      break;
-    case Set::faces: {
-      const int k = static_cast<int>(3 * random.uniform());
-      o.n = o.R_a * small_turn(Vector3d::Unit(k), random);
-      face(small_turn(Vector3d::Unit((k + 1) % 3), random));
-      break;
-    }
-  }
-  return o;
-}
+constexpr std::array<SetTraits, 5> kSets{{{PairSet::random_normal, "random normal", 1e-12, 0},
+                                          {PairSet::random_point, "random point", 1e-12, 0},
+                                          {PairSet::aligned, "aligned copies", 1e-12, 0},
+                                          {PairSet::edges, "edges and vertices", 5e-10, 0},
+                                          {PairSet::faces, "faces", 5e-10, 0}}};
 
 struct Tally {
   long pairs = 0;
@@ -102,10 +49,8 @@ struct Tally {
 void try_pair(const Superellipsoid& shape, const SetTraits& traits, Random& random, Tally& tally) {
   const Orientation o = choose(traits.set, shape, random);
   const double gap = random.log_uniform(1e-8, 1);
-  const Vector3d s_a = o.R_a * shape.support(o.R_a.transpose() * o.n).point;
-  const Vector3d s_b = o.R_b * shape.support(o.R_b.transpose() * -o.n).point;
-  const Pose X_WA(o.R_a, Vector3d::Zero());
-  const Pose X_WB(o.R_b, s_a - s_b + gap * o.n);
+  Pose X_WA, X_WB;
+  place(o, shape, gap, X_WA, X_WB);
   // What rounding has left of the gap: g at the chosen normal.
   const double wanted = geom_test::lower_bound(shape, X_WA, shape, X_WB, o.n);
   const DistanceResult r = distance(shape, X_WA, shape, X_WB);
@@ -196,10 +141,8 @@ TEST(SuperellipsoidDistance, OfOverlaps) {
           const Superellipsoid shape({1, random.uniform(0.6, 1.6), random.uniform(0.4, 2.4)}, e1, e2);
           const Orientation o = choose(traits.set, shape, random);
           const double depth = random.log_uniform(1e-8, 1e-3);
-          const Vector3d s_a = o.R_a * shape.support(o.R_a.transpose() * o.n).point;
-          const Vector3d s_b = o.R_b * shape.support(o.R_b.transpose() * -o.n).point;
-          const Pose X_WA(o.R_a, Vector3d::Zero());
-          const Pose X_WB(o.R_b, s_a - s_b - depth * o.n);
+          Pose X_WA, X_WB;
+          place(o, shape, -depth, X_WA, X_WB);
           const double wanted = geom_test::lower_bound(shape, X_WA, shape, X_WB, o.n);
           const DistanceResult r = distance(shape, X_WA, shape, X_WB);
           const double size = X_WB.position().norm() + 2 * shape.bounding_radius();
