@@ -22,54 +22,14 @@ void tangent_basis(const Vector3d& n, Vector3d& e, Vector3d& f) {
   f = n.cross(e);
 }
 
-/// v with the signs of `signs`; a component that is zero there has either sign.
-Vector3d with_signs(const Vector3d& v, const Vector3d& signs) {
-  return {std::copysign(1.0, signs.x()) * v.x(), std::copysign(1.0, signs.y()) * v.y(),
-          std::copysign(1.0, signs.z()) * v.z()};
-}
-
 }  // namespace
-
-NormBody NormBody::softened(double share) const {
-  const auto soft = [share](double e) { return 1 + share * (e - 1); };
-  const double e1 = soft(2 / norm_.outer_exponent());
-  const double e2 = soft(2 / norm_.inner_exponent());
-  return {axes_, NestedNorm(2 / e1, 2 / e2), NestedNorm(2 / (2 - e1), 2 / (2 - e2)), R_};
-}
-
-RankedSupport NormBody::support(const Vector3d& n) const {
-  const Vector3d v = axes_.cwiseProduct(R_.transpose() * n);
-  const NestedNorm::Curved at = dual_.curved(v.cwiseAbs());
-  const Vector3d scale = with_signs(axes_, v);
-  return {at.norm, R_ * at.gradient.cwiseProduct(scale), R_ * at.across.cwiseProduct(scale),
-          R_ * at.along.cwiseProduct(scale)};
-}
-
-Vector3d NormBody::normal(const Vector3d& x) const {
-  const Vector3d w = (R_.transpose() * x).cwiseQuotient(axes_);
-  return (R_ * with_signs(norm_(w.cwiseAbs()).gradient, w).cwiseQuotient(axes_)).normalized();
-}
-
-Vector3d NormBody::on_surface(const Vector3d& x) const {
-  return x / norm_((R_.transpose() * x).cwiseQuotient(axes_).cwiseAbs()).norm;
-}
-
-void NormBody::derivatives(const Vector3d& x, Vector3d& gradient, Vector3d& t1, Vector3d& t2) const {
-  const Vector3d w = (R_.transpose() * x).cwiseQuotient(axes_);
-  const NestedNorm::Curved at = norm_.curved(w.cwiseAbs());
-  const Vector3d scale = with_signs(axes_.cwiseInverse(), w);
-  gradient = R_ * at.gradient.cwiseProduct(scale);
-  t1 = R_ * at.across.cwiseProduct(scale);
-  t2 = R_ * at.along.cwiseProduct(scale);
-}
 
 DualSample NormBodyPair::sample(const Vector3d& n) const {
   DualSample s;
   s.n = n;
-  s.a = a_.support(n);
-  s.b = b_.support(-n);
-  s.g = r_.dot(n) - s.a.height - s.b.height;
-  const Vector3d gap = r_ - s.a.point + s.b.point;
+  s.support = bodies_.support(n);
+  s.g = r_.dot(n) - s.support.height[0] - s.support.height[1];
+  const Vector3d gap = r_ - s.support.point.a() + s.support.point.b();
   s.y = gap - gap.dot(n) * n;
   s.residual = s.y.norm();
   return s;
@@ -77,22 +37,19 @@ DualSample NormBodyPair::sample(const Vector3d& n) const {
 
 Tangent NormBodyPair::tangent(const Vector3d& n) const {
   const DualSample s = sample(n);
-  return {n, r_ - s.a.point + s.b.point, s.g};
+  return {n, r_ - s.support.point.a() + s.support.point.b(), s.g};
 }
 
 NormBodyPair::Step NormBodyPair::newton_step(const DualSample& s) const {
   Vector3d e, f;
   tangent_basis(s.n, e, f);
-  double m_ee = s.g;
-  double m_ff = s.g;
-  double m_ef = 0;
-  for (const Vector3d* t : {&s.a.t1, &s.a.t2, &s.b.t1, &s.b.t2}) {
-    const double t_e = t->dot(e);
-    const double t_f = t->dot(f);
-    m_ee += t_e * t_e;
-    m_ff += t_f * t_f;
-    m_ef += t_e * t_f;
-  }
+  const Lanes t1_e = s.support.t1.dot(e);
+  const Lanes t1_f = s.support.t1.dot(f);
+  const Lanes t2_e = s.support.t2.dot(e);
+  const Lanes t2_f = s.support.t2.dot(f);
+  double m_ee = s.g + sum(t1_e * t1_e + t2_e * t2_e);
+  double m_ff = s.g + sum(t1_f * t1_f + t2_f * t2_f);
+  const double m_ef = sum(t1_e * t1_f + t2_e * t2_f);
   const double half_difference = 0.5 * (m_ee - m_ff);
   const double smallest = 0.5 * (m_ee + m_ff) - std::sqrt(half_difference * half_difference + m_ef * m_ef);
   Step step;
@@ -126,13 +83,17 @@ bool NormBodyPair::retract(DualSample& s, const Step& step, double cap) const {
     s = trial;
     return true;
   };
-  const Vector3d move_a = s.a.hessian_times(step.delta);
-  const Vector3d move_b = -s.b.hessian_times(step.delta);  // B's support point is that of -n, whose step is -delta
-  const bool flatter_is_a = s.a.trace() >= s.b.trace();
+  // B's support point is that of -n, whose step is -delta.
+  const LaneVector delta = LaneVector::of(step.delta, -step.delta);
+  const LaneVector move = s.support.t1.dot(delta) * s.support.t1 + s.support.t2.dot(delta) * s.support.t2;
+  const LaneVector from = s.support.point;
+  const Lanes traces = s.traces();
+  const bool flatter_is_a = traces[0] >= traces[1];
   double fraction = 1;
   for (int k = 0; k < 3; ++k, fraction *= 0.4) {
+    const LaneVector normals = bodies_.normals(from + both(fraction) * move);
     for (const bool by_a : {flatter_is_a, !flatter_is_a}) {
-      const Vector3d n = by_a ? a_.normal(s.a.point + fraction * move_a) : -b_.normal(s.b.point + fraction * move_b);
+      const Vector3d n = by_a ? normals.a() : Vector3d(-normals.b());
       if (n.dot(s.n) > kTurned && take(n)) return true;
     }
     if (k == 0 && take((s.n + cap * step.delta).normalized())) return true;
@@ -146,7 +107,8 @@ bool NormBodyPair::advance(DualSample& s, const Step& step) const {
   constexpr int kShortenings = 18;
   const double length = step.delta.norm();
   const double cap = std::min(1.0, kMaxNormalStep / length);
-  if (std::max(s.a.trace(), s.b.trace()) > kFlat * scale_ && retract(s, step, cap)) return true;
+  const Lanes traces = s.traces();
+  if (std::max(traces[0], traces[1]) > kFlat * scale_ && retract(s, step, cap)) return true;
   double fraction = cap;
   // A step whose promise is rounding is tried once.
   const int tries = length < 1e-9 && step.decrement < 1e-16 * scale_ ? 2 : kShortenings;
@@ -184,11 +146,11 @@ NormBodyPair::Answer NormBodyPair::dual(const Vector3d& start, int max_iteration
 
 /// Raises `best` to the best lower bound that the two points offer: the normals at them, and their direction.
 void NormBodyPair::bound(const Points& points, Answer& best) const {
-  const Vector3d D = points.gap;
-  const double upper = D.norm();
-  const Vector3d n_a = a_.normal(points.a);
-  for (const Vector3d& n : {n_a, Vector3d(-b_.normal(points.b)), Vector3d(upper > 0 ? Vector3d(D / upper) : n_a)}) {
-    const double lower = r_.dot(n) - a_.height(n) - b_.height(-n);
+  const double upper = points.gap.norm();
+  const LaneVector normals = bodies_.normals(points.on);
+  const Vector3d n_a = normals.a();
+  for (const Vector3d& n : {n_a, Vector3d(-normals.b()), upper > 0 ? Vector3d(points.gap / upper) : n_a}) {
+    const double lower = r_.dot(n) - sum(bodies_.heights(LaneVector::of(n, -n)));
     if (!(upper - lower < best.gap)) continue;
     best.gap = upper - lower;
     best.at.n = n;
@@ -197,56 +159,52 @@ void NormBodyPair::bound(const Points& points, Answer& best) const {
 
 /// The step of both points, in their tangent planes, that minimises the model of |D|^2 / 2: its Hessian is [I + alpha
 /// FA, -I; -I, I + beta FB], F the Hessian of the body's norm, positive semidefinite for alpha, beta >= 0.
-void NormBodyPair::primal_step(const Points& points, double mu, Vector3d& d_a, Vector3d& d_b) const {
-  Vector3d g_a, g_b, s_a, t_a, s_b, t_b, e, f;
-  a_.derivatives(points.a, g_a, s_a, t_a);
-  b_.derivatives(points.b, g_b, s_b, t_b);
-  const double alpha = std::max(0.0, points.gap.dot(g_a) / g_a.squaredNorm());
-  const double beta = std::max(0.0, -points.gap.dot(g_b) / g_b.squaredNorm());
-  Eigen::Matrix<double, 3, 2> E_a, E_b;
-  tangent_basis(g_a.normalized(), e, f);
-  E_a << e, f;
-  tangent_basis(g_b.normalized(), e, f);
-  E_b << e, f;
-  const auto curved = [](const Eigen::Matrix<double, 3, 2>& E, const Vector3d& s, const Vector3d& t) {
-    const Eigen::Vector2d s_E = E.transpose() * s;
-    const Eigen::Vector2d t_E = E.transpose() * t;
-    return Eigen::Matrix2d(s_E * s_E.transpose() + t_E * t_E.transpose());
-  };
+LaneVector NormBodyPair::primal_step(const Points& points, double mu) const {
+  LaneVector gradient, s, t;
+  bodies_.derivatives(points.on, gradient, s, t);
+  const Lanes gap_along = LaneVector::of(points.gap, -points.gap).dot(gradient) / gradient.dot(gradient);
+  const Lanes weight = select(below(gap_along, both(0)), both(0), gap_along);
+  Vector3d e_a, f_a, e_b, f_b;
+  tangent_basis(gradient.a().normalized(), e_a, f_a);
+  tangent_basis(gradient.b().normalized(), e_b, f_b);
+  const LaneVector e = LaneVector::of(e_a, e_b);
+  const LaneVector f = LaneVector::of(f_a, f_b);
+  const Lanes s_e = s.dot(e), s_f = s.dot(f), t_e = t.dot(e), t_f = t.dot(f);
+  const Lanes m_ee = 1 + mu + weight * (s_e * s_e + t_e * t_e);
+  const Lanes m_ef = weight * (s_e * s_f + t_e * t_f);
+  const Lanes m_ff = 1 + mu + weight * (s_f * s_f + t_f * t_f);
   Eigen::Matrix4d M;
-  M.topLeftCorner<2, 2>() = (1 + mu) * Eigen::Matrix2d::Identity() + alpha * curved(E_a, s_a, t_a);
-  M.bottomRightCorner<2, 2>() = (1 + mu) * Eigen::Matrix2d::Identity() + beta * curved(E_b, s_b, t_b);
-  M.topRightCorner<2, 2>() = -E_a.transpose() * E_b;
+  M.topLeftCorner<2, 2>() << m_ee[0], m_ef[0], m_ef[0], m_ff[0];
+  M.bottomRightCorner<2, 2>() << m_ee[1], m_ef[1], m_ef[1], m_ff[1];
+  M.topRightCorner<2, 2>() << -e_a.dot(e_b), -e_a.dot(f_b), -f_a.dot(e_b), -f_a.dot(f_b);
   M.bottomLeftCorner<2, 2>() = M.topRightCorner<2, 2>().transpose();
-  Eigen::Vector4d downhill;
-  downhill << E_a.transpose() * points.gap, -E_b.transpose() * points.gap;
-  const Eigen::Vector4d step = M.partialPivLu().solve(downhill);
-  d_a = E_a * step.head<2>();
-  d_b = E_b * step.tail<2>();
+  const Vector3d& D = points.gap;
+  const Eigen::Vector4d step =
+      M.partialPivLu().solve(Eigen::Vector4d(e_a.dot(D), f_a.dot(D), -e_b.dot(D), -f_b.dot(D)));
+  return Lanes{step[0], step[2]} * e + Lanes{step[1], step[3]} * f;
 }
 
 /// Newton's method for the closest points themselves, with Levenberg's term mu; keeps the best bounds.
 NormBodyPair::Answer NormBodyPair::primal(const DualSample& start, int max_iterations, int& iterations) const {
   constexpr double kLeastMu = 1e-12;
   constexpr double kMostMu = 1e-3;
-  const auto points = [this](const Vector3d& x_a, const Vector3d& x_b) {
-    const Points p{a_.on_surface(x_a), b_.on_surface(x_b), Vector3d::Zero()};
-    return Points{p.a, p.b, r_ + p.b - p.a};
+  const auto points = [this](const LaneVector& x) {
+    const LaneVector on = bodies_.on_surface(x);
+    return Points{on, r_ + on.b() - on.a()};
   };
   Answer best;
   best.at.n = start.n;
-  Points here = points(start.a.point, start.b.point);
+  Points here = points(start.support.point);
   double mu = 1e-9;
   for (int k = 0; k < max_iterations; ++k) {
     ++iterations;
     bound(here, best);
     if (best.gap < kTightGap * scale_) break;
-    Vector3d d_a, d_b;
-    primal_step(here, mu, d_a, d_b);
-    double fraction = std::min(1.0, 0.5 * scale_ / std::max(d_a.norm(), d_b.norm()));
+    const LaneVector step = primal_step(here, mu);
+    double fraction = std::min(1.0, 0.5 * scale_ / std::max(step.a().norm(), step.b().norm()));
     bool moved = false;
     for (int t = 0; t < 30 && !moved; ++t, fraction *= 0.4) {
-      const Points trial = points(here.a + fraction * d_a, here.b + fraction * d_b);
+      const Points trial = points(here.on + both(fraction) * step);
       moved = trial.gap.norm() < here.gap.norm();
       if (moved) here = trial;
     }
@@ -261,7 +219,7 @@ NormBodyPair::Answer NormBodyPair::primal(const DualSample& start, int max_itera
 
 Vector3d NormBodyPair::continued(Vector3d n, int& iterations) const {
   for (const double share : {0.3, 0.6, 0.8, 0.9, 0.96}) {
-    const NormBodyPair soft(a_.softened(share), b_.softened(share), r_, scale_, floor_ / 5e-4);
+    const NormBodyPair soft(bodies_.softened(share), r_, scale_, floor_ / 5e-4);
     n = soft.dual(n, 25, iterations).at.n;
   }
   return n;

@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Vector3d;
 using internal::DualSample;
-using internal::NormBody;
+using internal::NormBodies;
 using internal::NormBodyPair;
 using Answer = NormBodyPair::Answer;
 
@@ -34,6 +34,9 @@ bool ends(const Answer& answer, const NormBodyPair& pair, const DistanceOptions&
 
 constexpr double kSharp = 1e-12;          ///< mismatch of support points that Newton's method leaves at most
 constexpr double kSharpDepthGap = 1e-12;  ///< both in units of the pair's scale
+
+/// Steps of the dual method before the primal one is asked, which is faster where edges or vertices meet.
+constexpr int kPatience = 9;
 
 /// Branch and bound from the best normal so far, which it raises to a local maximum first.
 Answer search(const NormBodyPair& pair, const DualSample& best, int& iterations) {
@@ -61,7 +64,9 @@ Answer search(const NormBodyPair& pair, const DualSample& best, int& iterations)
 Answer solve(const NormBodyPair& pair, const Vector3d& start, const Vector3d& cold, const DistanceOptions& options,
              int& iterations) {
   const int limit = std::max(1, options.max_iterations);
-  Answer dual = pair.dual(start, std::min(25, limit), iterations);
+  Answer dual = pair.dual(start, std::min(kPatience, limit), iterations);
+  // Of bodies that overlap it is the only fast method.
+  if (!dual.converged && !(dual.at.g > 0)) dual = pair.dual(dual.at.n, std::min(25, limit), iterations);
   if (ends(dual, pair, options)) return dual;
   DualSample best = dual.at;
   if (!(dual.converged && dual.at.g < 0)) {
@@ -82,8 +87,8 @@ template <class A, class B>
 DistanceResult norm_body_distance(const A& a, const Pose& X_WA, const B& b, const Pose& X_WB,
                                   const DistanceOptions& options) {
   const Vector3d r = X_WB.position() - X_WA.position();
-  const NormBodyPair pair(NormBody(a, X_WA.rotation()), NormBody(b, X_WB.rotation()), r,
-                          a.bounding_radius() + b.bounding_radius(), a.inscribed_radius() + b.inscribed_radius());
+  const NormBodyPair pair(NormBodies(internal::NormShape(a), X_WA.rotation(), internal::NormShape(b), X_WB.rotation()),
+                          r, a.bounding_radius() + b.bounding_radius(), a.inscribed_radius() + b.inscribed_radius());
   const Vector3d cold = cold_normal(a.semi_axes(), X_WA.rotation(), b.semi_axes(), X_WB.rotation(), r);
   const double start2 = options.start.squaredNorm();
   const bool warm = start2 > 1e-290 && std::isfinite(start2);
@@ -94,7 +99,7 @@ DistanceResult norm_body_distance(const A& a, const Pose& X_WA, const B& b, cons
   const DualSample& at = answer.at;
   result.distance = at.g;
   result.normal = at.n;
-  result.point_a = X_WA.position() + at.a.point + 0.5 * at.y;
+  result.point_a = X_WA.position() + at.support.point.a() + 0.5 * at.y;
   result.point_b = result.point_a + at.g * at.n;
   result.residual = at.residual;
   result.error_bound =
