@@ -5,6 +5,7 @@ hardbody_test(geom_unit_test unit
   unit/geom_dual_newton_test.cpp
   unit/geom_ellipsoid_test.cpp
   unit/geom_lanes_test.cpp
+  unit/geom_majorant_test.cpp
   unit/geom_mass_test.cpp
   unit/geom_newton_test.cpp
   unit/geom_obb_test.cpp

@@ -1,4 +1,4 @@
-#include "norm_body_pair.h"
+#include <geom/internal/norm_body_pair.h>
 
 #include <geom/tolerances.h>
 
@@ -15,6 +15,13 @@ using Eigen::Vector3d;
 constexpr double kTightGap = 1e-14;       ///< in units of the scale: as good as it gets
 constexpr double kTightResidual = 1e-14;  ///< the same, of the mismatch of the support points
 constexpr double kSmallResidual = 1e-8;   ///< what rounding of the support points can come to
+constexpr double kSharp = 1e-12;          ///< mismatch of support points that Newton's method leaves at most
+constexpr double kSharpDepthGap = 1e-12;
+
+/// Steps of the dual method before the primal one is asked, which is faster where edges or vertices meet.
+constexpr int kPatience = 9;
+/// Steps of the dual method behind a primal answer that leaves something to gain.
+constexpr int kPolish = 4;
 
 /// An orthonormal basis across n.
 void tangent_basis(const Vector3d& n, Vector3d& e, Vector3d& f) {
@@ -40,32 +47,41 @@ Tangent NormBodyPair::tangent(const Vector3d& n) const {
   return {n, r_ - s.support.point.a() + s.support.point.b(), s.g};
 }
 
-NormBodyPair::Step NormBodyPair::newton_step(const DualSample& s) const {
-  Vector3d e, f;
-  tangent_basis(s.n, e, f);
-  const Lanes t1_e = s.support.t1.dot(e);
-  const Lanes t1_f = s.support.t1.dot(f);
-  const Lanes t2_e = s.support.t2.dot(e);
-  const Lanes t2_f = s.support.t2.dot(f);
-  double m_ee = s.g + sum(t1_e * t1_e + t2_e * t2_e);
-  double m_ff = s.g + sum(t1_f * t1_f + t2_f * t2_f);
-  const double m_ef = sum(t1_e * t1_f + t2_e * t2_f);
-  const double half_difference = 0.5 * (m_ee - m_ff);
-  const double smallest = 0.5 * (m_ee + m_ff) - std::sqrt(half_difference * half_difference + m_ef * m_ef);
-  Step step;
-  step.lifted = smallest < floor_;
-  if (step.lifted) {
-    m_ee += floor_ - smallest;
-    m_ff += floor_ - smallest;
+NormBodyPair::TangentMatrix NormBodyPair::tangent_matrix(const DualSample& s) const {
+  TangentMatrix M;
+  tangent_basis(s.n, M.e, M.f);
+  const Lanes t1_e = s.support.t1.dot(M.e);
+  const Lanes t1_f = s.support.t1.dot(M.f);
+  const Lanes t2_e = s.support.t2.dot(M.e);
+  const Lanes t2_f = s.support.t2.dot(M.f);
+  M.ee = s.g + sum(t1_e * t1_e + t2_e * t2_e);
+  M.ff = s.g + sum(t1_f * t1_f + t2_f * t2_f);
+  M.ef = sum(t1_e * t1_f + t2_e * t2_f);
+  const double half_difference = 0.5 * (M.ee - M.ff);
+  const double smallest = 0.5 * (M.ee + M.ff) - std::sqrt(half_difference * half_difference + M.ef * M.ef);
+  M.lifted = smallest < floor_;
+  if (M.lifted) {
+    M.ee += floor_ - smallest;
+    M.ff += floor_ - smallest;
   }
-  const double y_e = s.y.dot(e);
-  const double y_f = s.y.dot(f);
-  const double inv_det = 1 / (m_ee * m_ff - m_ef * m_ef);
-  const double d_e = (m_ff * y_e - m_ef * y_f) * inv_det;
-  const double d_f = (m_ee * y_f - m_ef * y_e) * inv_det;
-  step.delta = d_e * e + d_f * f;
-  step.decrement = d_e * y_e + d_f * y_f;
-  return step;
+  return M;
+}
+
+Vector3d NormBodyPair::TangentMatrix::solve(const Vector3d& y) const {
+  const double y_e = y.dot(e);
+  const double y_f = y.dot(f);
+  const double inv_det = 1 / (ee * ff - ef * ef);
+  return ((ff * y_e - ef * y_f) * inv_det) * e + ((ee * y_f - ef * y_e) * inv_det) * f;
+}
+
+Vector3d NormBodyPair::tangent_solve(const DualSample& s, const Vector3d& y) const {
+  return tangent_matrix(s).solve(y);
+}
+
+NormBodyPair::Step NormBodyPair::newton_step(const DualSample& s) const {
+  const TangentMatrix M = tangent_matrix(s);
+  const Vector3d delta = M.solve(s.y);
+  return {delta, delta.dot(s.y), M.lifted};
 }
 
 /// g grows, or stays while the mismatch of the support points falls: near the maximum g's growth is below rounding.
@@ -101,7 +117,6 @@ bool NormBodyPair::retract(DualSample& s, const Step& step, double cap) const {
   return false;
 }
 
-/// One step uphill: retractions first where a face is flat, then Newton's step, shortened; false: none was found.
 bool NormBodyPair::advance(DualSample& s, const Step& step) const {
   constexpr double kFlat = 0.15;  // trace of H above this share of the size: the support point runs
   constexpr int kShortenings = 18;
@@ -223,6 +238,74 @@ Vector3d NormBodyPair::continued(Vector3d n, int& iterations) const {
     n = soft.dual(n, 25, iterations).at.n;
   }
   return n;
+}
+
+Vector3d NormBodyPair::cold_normal() const {
+  const Eigen::Matrix3d Q = bodies_.quadrics();
+  const Vector3d n = Q.inverse() * r_;
+  return n.squaredNorm() > 0 ? n.normalized() : Vector3d::UnitX();
+}
+
+/// Whether an answer of one of the methods ends the query.
+bool NormBodyPair::ends(const Answer& answer, Penetration penetration) const {
+  if (!answer.converged) return false;
+  return answer.at.g > 0 || answer.gap < kBoundGap * scale_ || penetration == Penetration::local;
+}
+
+/// Branch and bound from the best normal so far, which it raises to a local maximum first.
+NormBodyPair::Answer NormBodyPair::search(const DualSample& best, int& iterations) const {
+  const auto at = [this](const Vector3d& n) { return tangent(n); };
+  const auto polish = [&](const Vector3d& n) { return tangent(dual(n, kMaxIterations, iterations).at.n); };
+  SphereSearch<decltype(at), decltype(polish)> sphere(at, polish, 0, tangent(best.n));
+  sphere.run_to(kDepthGap * scale_, kMostDepthSamples);
+  const bool apart = sphere.best().g > 0;
+  if (apart) {
+    // Concave there: what is left is to come close to the one maximum.
+    sphere.run_to(kBoundGap * scale_, kMostDepthSamples);
+  } else if (sample(sphere.best().n).residual > kSharp * scale_) {
+    // Edges on faces: the ascent stops short of the maximum, but triangles do not.
+    sphere.run_to(kSharpDepthGap * scale_, kMostDepthSamples);
+  }
+  iterations += sphere.samples();
+  Answer answer;
+  answer.at = sample(sphere.best().n);
+  answer.gap = sphere.upper() - sphere.best().g;
+  if (apart) answer.gap = std::min(answer.gap, answer.at.gap());
+  answer.converged = answer.gap < (apart ? kWidestGap : kWidestDepthGap) * scale_;
+  return answer;
+}
+
+/// The primal method ends when its bounds are close; where that leaves more than rounding, some dual steps may find a
+/// better normal.
+NormBodyPair::Answer NormBodyPair::polished(const Answer& answer, int& iterations) const {
+  if (!(answer.gap > kTightGap * scale_)) return answer;
+  Answer better = dual(answer.at.n, kPolish, iterations);
+  if (!(better.at.g > answer.at.g)) return answer;
+  better.gap = std::min(better.gap, answer.gap);  // the upper bound has not moved
+  better.converged = true;
+  return better;
+}
+
+NormBodyPair::Answer NormBodyPair::solve(const Vector3d& start, const Vector3d& cold, Penetration penetration,
+                                         int max_iterations, int& iterations) const {
+  const int limit = std::max(1, max_iterations);
+  Answer first = dual(start, std::min(kPatience, limit), iterations);
+  // Of bodies that overlap it is the only fast method.
+  if (!first.converged && !(first.at.g > 0)) first = dual(first.at.n, std::min(25, limit), iterations);
+  if (ends(first, penetration)) return first;
+  DualSample best = first.at;
+  if (!(first.converged && first.at.g < 0)) {
+    Answer by_points = primal(first.at, limit, iterations);
+    if (ends(by_points, penetration)) return polished(by_points, iterations);
+    Answer again = dual(continued(cold, iterations), 2 * limit, iterations);
+    if (ends(again, penetration)) return again;
+    Answer last = primal(again.at, 4 * limit, iterations);
+    if (ends(last, penetration)) return polished(last, iterations);
+    for (const Answer* answer : {&by_points, &again, &last}) {
+      if (answer->at.g > best.g) best = answer->at;
+    }
+  }
+  return search(best, iterations);
 }
 
 }  // namespace geom::internal

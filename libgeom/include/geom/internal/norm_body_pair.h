@@ -16,6 +16,8 @@
 /// What is certified: g(n) is a lower bound of the distance for every n, and |r + xB - xA| an upper one for every two
 /// points of the bodies.
 
+#include <geom/distance.h>
+#include <geom/export.h>
 #include <geom/internal/norm_bodies.h>
 #include <geom/internal/sphere_search.h>
 
@@ -43,7 +45,7 @@ struct DualSample {
   Lanes traces() const { return support.t1.dot(support.t1) + support.t2.dot(support.t2); }
 };
 
-class NormBodyPair {
+class GEOM_EXPORT NormBodyPair {
  public:
   /// B's centre at r from A's. `scale`: the sum of both bounding radii; `least`: that of both inscribed ones.
   NormBodyPair(const NormBodies& bodies, const Eigen::Vector3d& r, double scale, double least)
@@ -56,13 +58,31 @@ class NormBodyPair {
     bool converged = false;                                ///< the gap is rounding, or at.n is stationary to rounding
   };
 
+  /// One Newton step of the normal; not taken yet.
+  struct Step {
+    Eigen::Vector3d delta;
+    double decrement;
+    bool lifted;  ///< the matrix had to be made definite: the step promises nothing
+  };
+
+  DualSample sample(const Eigen::Vector3d& n) const;
+  Step newton_step(const DualSample& s) const;
+  /// One step uphill: retractions first where a face is flat, then Newton's step, shortened; false: none was found.
+  bool advance(DualSample& s, const Step& step) const;
+  /// x across s.n with (M + g I) x = y, M the sum of the Hessians, made definite as in a Newton step.
+  Eigen::Vector3d tangent_solve(const DualSample& s, const Eigen::Vector3d& y) const;
+
   Answer dual(const Eigen::Vector3d& start, int max_iterations, int& iterations) const;
   Answer primal(const DualSample& start, int max_iterations, int& iterations) const;
-  /// A normal for bodies that grow from nearly ellipsoids to these.
-  Eigen::Vector3d continued(Eigen::Vector3d n, int& iterations) const;
-  DualSample sample(const Eigen::Vector3d& n) const;
-  Tangent tangent(const Eigen::Vector3d& n) const;
+  /// All methods, each where the one before has not ended; `cold`: of cold_normal().
+  Answer solve(const Eigen::Vector3d& start, const Eigen::Vector3d& cold, Penetration penetration, int max_iterations,
+               int& iterations) const;
+
+  /// Exact for ellipsoids whose axes are parallel: along (QA + QB)^-1 r, Q = R diag(a^2) R^T.
+  Eigen::Vector3d cold_normal() const;
   double scale() const { return scale_; }
+  const NormBodies& bodies() const { return bodies_; }
+  const Eigen::Vector3d& between() const { return r_; }
 
  private:
   /// Points on both surfaces, from their centres, and the vector between them.
@@ -70,14 +90,22 @@ class NormBodyPair {
     LaneVector on;
     Eigen::Vector3d gap;
   };
-  struct Step {
-    Eigen::Vector3d delta;
-    double decrement;
-    bool lifted;  ///< the matrix had to be made definite: the step promises nothing
+  /// M + g I across n, in a basis of the tangent plane, its smallest eigenvalue kept above a floor.
+  struct TangentMatrix {
+    Eigen::Vector3d e, f;
+    double ee, ef, ff;
+    bool lifted;
+
+    Eigen::Vector3d solve(const Eigen::Vector3d& y) const;
   };
 
-  Step newton_step(const DualSample& s) const;
-  bool advance(DualSample& s, const Step& step) const;
+  TangentMatrix tangent_matrix(const DualSample& s) const;
+  bool ends(const Answer& answer, Penetration penetration) const;
+  Tangent tangent(const Eigen::Vector3d& n) const;
+  /// A normal for bodies that grow from nearly ellipsoids to these.
+  Eigen::Vector3d continued(Eigen::Vector3d n, int& iterations) const;
+  Answer search(const DualSample& best, int& iterations) const;
+  Answer polished(const Answer& answer, int& iterations) const;
   bool retract(DualSample& s, const Step& step, double cap) const;
   bool improves(const DualSample& from, const DualSample& to) const;
   void bound(const Points& points, Answer& best) const;
