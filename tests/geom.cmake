@@ -4,6 +4,7 @@ hardbody_test(geom_unit_test unit
   unit/geom_distance_test.cpp
   unit/geom_dual_newton_test.cpp
   unit/geom_ellipsoid_test.cpp
+  unit/geom_extreme_input_test.cpp
   unit/geom_lanes_test.cpp
   unit/geom_majorant_test.cpp
   unit/geom_mass_test.cpp
@@ -18,7 +19,8 @@ hardbody_test(geom_batch_test property property/geom_batch_test.cpp)
 hardbody_test(geom_property_test property property/geom_distance_test.cpp
   property/geom_penetration_test.cpp
   property/geom_superellipsoid_distance_test.cpp)
-hardbody_test(geom_accuracy_test accuracy accuracy/geom_distance_test.cpp accuracy/geom_table_test.cpp)
+hardbody_test(geom_accuracy_test accuracy accuracy/geom_distance_test.cpp accuracy/geom_extreme_test.cpp
+  accuracy/geom_table_test.cpp)
 
 # Code compiled for newer processors must not be linked into anything else.
 add_test(NAME geom_kernel_symbols COMMAND ${CMAKE_COMMAND} -DNM=${CMAKE_NM}

@@ -60,7 +60,7 @@ geom::Shape read_shape(const JsonMember& shape) {
 Body read_body(const JsonMember& body) {
   body.allow(kBodyKeys);
   const geom::Shape shape = read_shape(body.at("shape", "{\"kind\":\"ellipsoid\",\"semi_axes\":[a,b,c]}"));
-  const Vector3d position = body.at("position", "three finite numbers").vector();
+  const Vector3d position = read_position(body);
   if (!body.has("orientation")) return {shape, geom::Pose::translation(position)};
   return {shape, read_orientation(body.at("orientation", ""), position)};
 }

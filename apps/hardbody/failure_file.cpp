@@ -65,7 +65,7 @@ enum class Rounding { removed, kept };
 
 /// A rotation that is orthonormal to rounding only is made exactly so, unless its bits are wanted.
 geom::Pose read_pose(const JsonMember& body, Rounding rounding = Rounding::removed) {
-  const Vector3d position = body.at("position", "three finite numbers").vector();
+  const Vector3d position = read_position(body);
   if (body.has("orientation")) return read_orientation(body.at("orientation", ""), position);
   const JsonMember member =
       body.at("rotation", "the three rows of a rotation matrix (or orientation: a unit quaternion)");

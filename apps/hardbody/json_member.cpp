@@ -118,6 +118,12 @@ geom::Ellipsoid read_ellipsoid(const JsonMember& shape) {
   return axes.checked([&] { return geom::Ellipsoid(values); });
 }
 
+Eigen::Vector3d read_position(const JsonMember& body) {
+  const JsonMember position = body.at("position", "three finite numbers");
+  const Eigen::Vector3d values = position.vector();
+  return position.checked([&] { return geom::Pose::translation(values).position(); });
+}
+
 geom::Pose read_orientation(const JsonMember& orientation, const Eigen::Vector3d& position) {
   const std::vector<double> q = orientation.numbers(4, "a unit quaternion [w, x, y, z]");
   return orientation.checked([&] { return geom::Pose::from_quaternion(q[0], q[1], q[2], q[3], position); });

@@ -69,6 +69,8 @@ struct JsonMember {
 
 /// Of {"semi_axes": [a, b, c]}.
 geom::Ellipsoid read_ellipsoid(const JsonMember& shape);
+/// Of {"position": [x, y, z]}, as one that a pose may have.
+Eigen::Vector3d read_position(const JsonMember& body);
 /// Of [w, x, y, z].
 geom::Pose read_orientation(const JsonMember& orientation, const Eigen::Vector3d& position);
 

@@ -16,9 +16,12 @@ namespace {
   throw std::invalid_argument(message.str());
 }
 
-void require_finite_position(const Eigen::Vector3d& position) {
+void check_position(const Eigen::Vector3d& position) {
+  constexpr const char* kAccepted = "three finite numbers, none beyond +-1e100";
+  static_assert(kMaxCoordinate == 1e100);
   for (const double x : {position.x(), position.y(), position.z()}) {
-    if (!std::isfinite(x)) refuse("position is not finite", x, "three finite numbers");
+    if (!std::isfinite(x)) refuse("position is not finite", x, kAccepted);
+    if (std::abs(x) > kMaxCoordinate) refuse("position is too far away", x, kAccepted);
   }
 }
 
@@ -26,7 +29,7 @@ void require_finite_position(const Eigen::Vector3d& position) {
 
 Pose::Pose(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& position)
     : rotation_(rotation), position_(position) {
-  require_finite_position(position);
+  check_position(position);
   const Eigen::Matrix3d excess = rotation.transpose() * rotation - Eigen::Matrix3d::Identity();
   const double error = excess.cwiseAbs().maxCoeff<Eigen::PropagateNaN>();
   if (!(error <= kPoseTolerance)) {

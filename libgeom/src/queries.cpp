@@ -5,24 +5,29 @@ namespace geom {
 using Eigen::Vector3d;
 
 ClosestPoint closest_point(const Superellipsoid& shape, const Pose& X_WB, const Vector3d& p_W) {
-  if (!p_W.allFinite()) return {};
-  // A ball too small to be told from a point, for the methods that flat faces and edges need.
+  if (!internal::is_within_reach(p_W)) return {};
+  // As a small ball, for the methods that flat faces and edges need.
   const double radius = std::max(1e-25 * shape.inscribed_radius(), kMinSemiAxis);
   return internal::closest_point_from(
-      p_W, distance(Ellipsoid(Vector3d::Constant(radius)), Pose::translation(p_W), shape, X_WB));
+      p_W, distance(Ellipsoid(Vector3d::Constant(radius)), Pose::translation(p_W), shape, X_WB), radius);
 }
 
 RayHit ray_cast(const Ellipsoid& shape, const Pose& X_WB, const Vector3d& origin, const Vector3d& direction) {
   RayHit hit;
-  const double speed = direction.norm();
-  if (!origin.allFinite() || !(speed > 0) || !std::isfinite(speed)) return hit;
+  const Vector3d u = internal::unit_vector(direction);
+  const double speed = direction.dot(u);
+  if (!internal::is_within_reach(origin) || !std::isfinite(speed)) return hit;
   // In coordinates in which the body is the unit ball.
   const Vector3d o = X_WB.to_body(origin).cwiseQuotient(shape.semi_axes());
-  const Vector3d d = (X_WB.rotation().transpose() * direction).cwiseQuotient(shape.semi_axes());
-  const auto at = [&](RayStatus status, double t) {
-    const Vector3d x = (o + t * d).normalized().cwiseProduct(shape.semi_axes());
+  const Vector3d d = (X_WB.rotation().transpose() * u).cwiseQuotient(shape.semi_axes());
+  const auto at = [&](RayStatus status, double way) {
+    const double t = way / speed;
+    if (!std::isfinite(t)) return;
+    const Vector3d at_unit_ball = o + way * d;
+    const Vector3d m = at_unit_ball.squaredNorm() > 0 ? internal::unit_vector(at_unit_ball) : -internal::unit_vector(d);
+    const Vector3d x = m.cwiseProduct(shape.semi_axes());
     hit = {status, t, status == RayStatus::inside ? origin : X_WB.to_world(x),
-           (X_WB.rotation() * shape.gradient(x)).normalized()};
+           X_WB.rotation() * internal::unit_vector(m.cwiseQuotient(shape.semi_axes()))};
   };
   if (o.squaredNorm() < 1) {
     at(RayStatus::inside, 0);

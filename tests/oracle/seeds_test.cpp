@@ -139,8 +139,8 @@ TEST(SeedsOracle, FclSeedCallsAPairOverlappingOnlyWhereThatIsKnown) {
   EXPECT_EQ(status({1.999, 0, 0}), SeedStatus::overlapping);
   EXPECT_EQ(status({2, 0, 0}), SeedStatus::declined);  // touching
   EXPECT_EQ(status({2.001, 0, 0}), SeedStatus::usable);
-  // Apart, by more than a square can hold.
-  for (const double far : {1e155, 1e200, 1e300}) {
+  // Apart, by as much as there is.
+  for (const double far : {1e60, 1e99, kMaxCoordinate}) {
     EXPECT_NE(status({far, 0, 0}), SeedStatus::overlapping) << far;
     EXPECT_NE(status({far, far, -far}), SeedStatus::overlapping) << far;
   }

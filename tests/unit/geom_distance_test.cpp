@@ -299,19 +299,14 @@ TEST(Distance, LimitsOnIterationsBelowOneCountAsOne) {
   }
 }
 
-TEST(Distance, HugeCoordinatesAreAnsweredOrDeclined) {
+TEST(Distance, HugeCoordinatesAreAnswered) {
   const Ellipsoid shapes[] = {Ellipsoid({1, 1, 3}), Ellipsoid({1, 2, 3})};
   for (const Ellipsoid& a : shapes) {
-    for (const double far : {1e8, 1e30, 1e100, 1e150, 1e160, 1e200, 1e300, 1.7e308}) {
+    for (const double far : {1e8, 1e30, 1e60, kMaxCoordinate}) {
       const Pose X_WA = Pose::translation({-far, 0, 0});
       const Pose X_WB = Pose::translation({far, 0, 0});
       const DistanceResult r = distance(a, X_WA, a, X_WB);
-      if (r.status == DistanceStatus::separated) {
-        ASSERT_TRUE(answers(r, 2 * far - 2, 1e-13 * far, far)) << far;
-      } else {
-        ASSERT_TRUE(declined(r)) << far;
-        ASSERT_GT(far, 1e150) << "squares of lengths overflow beyond";
-      }
+      ASSERT_TRUE(answers(r, 2 * far - 2, 1e-13 * far, far)) << far;
     }
   }
 }

@@ -298,7 +298,7 @@ TEST(Newton, SeedsThatHaveNoPointsSaySo) {
     EXPECT_TRUE(geom_test::all_nan(seed.point_a) && geom_test::all_nan(seed.point_b));
   }
   EXPECT_EQ(normal_seed(a, Pose(), a, X_WB, {1e-200, 0, 0}).point_a, Vector3d(1, 0, 0));
-  EXPECT_EQ(dual_seed(a, Pose(), a, Pose::translation({1e200, 0, 0})).status, SeedStatus::declined) << "no answer";
+  EXPECT_EQ(dual_seed(a, Pose(), a, Pose::translation({1e100, 0, 0})).status, SeedStatus::usable);
   EXPECT_STREQ(to_string(SeedStatus::usable), "usable");
   EXPECT_STREQ(to_string(SeedStatus::overlapping), "overlapping");
   EXPECT_STREQ(to_string(SeedStatus::declined), "declined");

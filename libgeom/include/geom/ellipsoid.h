@@ -12,8 +12,9 @@ namespace geom {
 /// {x : (x/a)^2 + (y/b)^2 + (z/c)^2 <= 1} in the body's frame.
 class GEOM_EXPORT Ellipsoid {
  public:
-  /// Semi-axes along body x, y, z. Throws std::invalid_argument unless each is finite, within
-  /// [kMinSemiAxis, kMaxSemiAxis], and the largest is at most kMaxAspectRatio times the smallest.
+  /// Semi-axes along body x, y, z. Throws std::invalid_argument unless each is within [kMinSemiAxis, kMaxSemiAxis],
+  /// 1e-50 to 1e50, and the largest is at most kMaxAspectRatio, 1e4, times the smallest. Everything that is accepted is
+  /// answered within the contract of distance.h, beside bodies of any size.
   explicit Ellipsoid(const Eigen::Vector3d& semi_axes);
 
   const Eigen::Vector3d& semi_axes() const { return semi_axes_; }  ///< along body x, y, z

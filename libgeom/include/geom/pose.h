@@ -18,8 +18,9 @@ Pose unchecked_pose(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& posi
 /// Position and orientation of a body B in a world W: p_W = rotation * p_B + position.
 ///
 /// A Pose is valid by construction, so that no query needs to check it again: the constructors throw
-/// std::invalid_argument when a number is not finite, or when the rotation is further than kPoseTolerance from a
-/// proper orthonormal matrix; a rotation within that tolerance is replaced by the nearest orthonormal one.
+/// std::invalid_argument when a number is not finite, a coordinate of the position is beyond +-kMaxCoordinate (1e100),
+/// or the rotation is further than kPoseTolerance (1e-6) from a proper orthonormal matrix; a rotation within that
+/// tolerance is replaced by the nearest orthonormal one.
 class GEOM_EXPORT Pose {
  public:
   /// The identity.

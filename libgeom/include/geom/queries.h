@@ -23,14 +23,10 @@ namespace geom {
 
 /// A lower bound of the distance of two bodies, certain whatever the direction n (world, from A to B, not zero): the
 /// width of the gap between their tangent planes across n. Negative where they overlap in that projection. The line of
-/// centres is a good first n, the normal of the last `distance` a better one.
+/// centres is a good first n, the normal of the last `distance` a better one. NaN if n is zero or not finite.
 template <SupportShape ShapeA, SupportShape ShapeB>
 double distance_lower_bound(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const Pose& X_WB,
-                            const Eigen::Vector3d& n) {
-  const Eigen::Vector3d unit = n.normalized();
-  return unit.dot(X_WB.position() - X_WA.position()) - Support(a.support(X_WA.rotation().transpose() * unit)).height -
-         Support(b.support(X_WB.rotation().transpose() * -unit)).height;
-}
+                            const Eigen::Vector3d& n);
 
 /// Of `overlap`.
 enum class Answer { no, yes, unknown };
@@ -50,17 +46,16 @@ struct [[nodiscard]] ClosestPoint {
   DistanceStatus status = DistanceStatus::not_converged;  ///< `overlapping`: inside
 };
 
-/// World frame; accuracy and certificates as those of `distance`.
+/// World frame; accuracy and certificates as those of `distance`. Declined (`not_converged`) for points that are not
+/// finite or beyond kMaxCoordinate.
 template <SupportShape Shape>
 ClosestPoint closest_point(const Shape& shape, const Pose& X_WB, const Eigen::Vector3d& p_W);
 /// The same, compiled into the library.
 GEOM_EXPORT ClosestPoint closest_point(const Superellipsoid& shape, const Pose& X_WB, const Eigen::Vector3d& p_W);
 
-/// Whether a point of the world is in the body or on its surface.
+/// Whether a point of the world is in the body or on its surface. No point beyond kMaxCoordinate is.
 template <ImplicitSurface Shape>
-bool contains(const Shape& shape, const Pose& X_WB, const Eigen::Vector3d& p_W) {
-  return shape.value(X_WB.to_body(p_W)) <= 0;
-}
+bool contains(const Shape& shape, const Pose& X_WB, const Eigen::Vector3d& p_W);
 
 /// What became of a ray.
 enum class RayStatus {
@@ -75,10 +70,13 @@ struct [[nodiscard]] RayHit {
   RayStatus status = RayStatus::not_converged;
   double t = std::numeric_limits<double>::quiet_NaN();  ///< in units of the direction's length
   Eigen::Vector3d point = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
-  Eigen::Vector3d normal = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());  ///< unit, outward
+  /// Unit, outward. `inside`: of the surface nearby, or, in the centre, against the ray.
+  Eigen::Vector3d normal = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
 };
 
-/// The first point of origin + t direction, t >= 0, in the body; direction != 0. World frame.
+/// The first point of origin + t direction, t >= 0, in the body; direction != 0, of any length. World frame. Declined
+/// (`not_converged`) if a number is not finite, the direction's length and t included, or the origin beyond
+/// kMaxCoordinate.
 ///
 /// Advances from tangent plane to tangent plane of the closest points: a step never passes the body, and the last ones
 /// converge quadratically, to 1e-14 of the lengths involved. Rays that graze take more steps.

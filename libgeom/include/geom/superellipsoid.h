@@ -13,9 +13,10 @@ namespace geom {
 /// e1 shapes the profile along z, e2 the section across it.
 class GEOM_EXPORT Superellipsoid {
  public:
-  /// Semi-axes along body x, y, z. Throws std::invalid_argument unless each is finite and within [kMinSemiAxis,
-  /// kMaxSemiAxis], the largest at most kMaxAspectRatio times the smallest, and both exponents are within
-  /// [kMinExponent, kMaxExponent].
+  /// Semi-axes along body x, y, z. Throws std::invalid_argument unless each is within [kMinSemiAxis, kMaxSemiAxis],
+  /// 1e-50 to 1e50, the largest at most kMaxAspectRatio, 1e4, times the smallest, and both exponents are within
+  /// [kMinExponent, kMaxExponent], 0.2 to 1.6. Beyond an aspect ratio of 10 distances can be less exact and slower
+  /// (distance.h says how).
   Superellipsoid(const Eigen::Vector3d& semi_axes, double e1, double e2);
 
   const Eigen::Vector3d& semi_axes() const { return semi_axes_; }  ///< along body x, y, z

@@ -8,14 +8,18 @@ namespace geom {
 /// Pose: |R^T R - 1| (largest entry) or | |q| - 1 | <= kPoseTolerance, else the orientation is refused. Dimensionless.
 inline constexpr double kPoseTolerance = 1e-6;
 
-/// Ellipsoid: kMinSemiAxis <= semi-axis <= kMaxSemiAxis. Length, in the user's unit; sixth powers, the determinants of
-/// matrices of squares, neither underflow nor overflow.
+/// Pose: |coordinate of the position| <= kMaxCoordinate, else it is refused; queries decline points beyond. Length, in
+/// the user's unit: squares do not overflow, nor do those of lengths relative to kMinSemiAxis.
+inline constexpr double kMaxCoordinate = 1e100;
+
+/// Ellipsoid, Superellipsoid: kMinSemiAxis <= semi-axis <= kMaxSemiAxis. Length, in the user's unit; sixth powers, the
+/// determinants of matrices of squares, neither underflow nor overflow.
 /// @{
 inline constexpr double kMinSemiAxis = 1e-50;
 inline constexpr double kMaxSemiAxis = 1e50;
 /// @}
 
-/// Ellipsoid: amax / amin <= kMaxAspectRatio. Dimensionless. The range in which the kernels are tested.
+/// Ellipsoid, Superellipsoid: amax / amin <= kMaxAspectRatio. Dimensionless. The range in which the kernels are tested.
 inline constexpr double kMaxAspectRatio = 1e4;
 
 /// Superellipsoid: kMinExponent <= e1, e2 <= kMaxExponent. Dimensionless. The range in which the kernels are tested.

@@ -14,13 +14,29 @@ struct Point {
   double min_curvature_radius() const { return 0; }
 };
 
-/// From the distance of the point, as body A, to the shape, as body B.
-inline ClosestPoint closest_point_from(const Eigen::Vector3d& p_W, const DistanceResult& r) {
+/// v / |v|, also where |v|^2 under- or overflows; NaN if v is zero or not finite.
+inline Eigen::Vector3d unit_vector(const Eigen::Vector3d& v) {
+  const double v2 = v.squaredNorm();
+  if (v2 > 1e-290 && v2 < 1e300) [[likely]]
+    return v / std::sqrt(v2);
+  const Eigen::Vector3d scaled = v / v.cwiseAbs().maxCoeff();
+  return scaled / scaled.norm();
+}
+
+/// Whether a point's coordinates are finite and as small as those of a Pose.
+inline bool is_within_reach(const Eigen::Vector3d& p_W) {
+  return (p_W.array().abs() <= kMaxCoordinate).all();
+}
+
+/// From the distance of a ball of that radius about the point, as body A, to the shape, as body B.
+inline ClosestPoint closest_point_from(const Eigen::Vector3d& p_W, const DistanceResult& r, double radius) {
   ClosestPoint closest;
-  closest.distance = r.distance;
-  closest.point = p_W + r.distance * r.normal;  // what mismatch there is of the support points goes to the shape
+  closest.distance = r.distance + radius;             // exactly so, whatever the radius: support functions add up
+  closest.point = p_W + closest.distance * r.normal;  // what mismatch there is of the support points goes to the shape
   closest.normal = -r.normal;
   closest.status = r.status;
+  if (closest.status == DistanceStatus::overlapping && closest.distance >= 0)
+    closest.status = DistanceStatus::separated;
   return closest;
 }
 
@@ -38,6 +54,19 @@ bool share_a_point(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const Pos
 }
 
 }  // namespace internal
+
+template <SupportShape ShapeA, SupportShape ShapeB>
+double distance_lower_bound(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const Pose& X_WB,
+                            const Eigen::Vector3d& n) {
+  const Eigen::Vector3d unit = internal::unit_vector(n);
+  return unit.dot(X_WB.position() - X_WA.position()) - Support(a.support(X_WA.rotation().transpose() * unit)).height -
+         Support(b.support(X_WB.rotation().transpose() * -unit)).height;
+}
+
+template <ImplicitSurface Shape>
+bool contains(const Shape& shape, const Pose& X_WB, const Eigen::Vector3d& p_W) {
+  return internal::is_within_reach(p_W) && shape.value(X_WB.to_body(p_W)) <= 0;
+}
 
 template <SupportShape ShapeA, SupportShape ShapeB>
 Answer overlap(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const Pose& X_WB, const Eigen::Vector3d& start) {
@@ -59,34 +88,36 @@ Answer overlap(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const Pose& X
 
 template <SupportShape Shape>
 ClosestPoint closest_point(const Shape& shape, const Pose& X_WB, const Eigen::Vector3d& p_W) {
-  // Poses are finite, points need not be.
-  if (!p_W.allFinite()) return {};
-  return internal::closest_point_from(p_W, distance(internal::Point(), Pose::translation(p_W), shape, X_WB));
+  if (!internal::is_within_reach(p_W)) return {};
+  return internal::closest_point_from(p_W, distance(internal::Point(), Pose::translation(p_W), shape, X_WB), 0);
 }
 
 template <SupportShape Shape>
 RayHit ray_cast(const Shape& shape, const Pose& X_WB, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) {
   constexpr int kMostSteps = 200;
   RayHit hit;
-  const double speed = direction.norm();
-  if (!origin.allFinite() || !(speed > 0) || !std::isfinite(speed)) return hit;
+  const Eigen::Vector3d u = internal::unit_vector(direction);
+  const double speed = direction.dot(u);
+  if (!internal::is_within_reach(origin) || !std::isfinite(speed)) return hit;
   const double touching = 1e-14 * (shape.bounding_radius() + (origin - X_WB.position()).norm());
-  double t = 0;
+  double way = 0;
   for (int step = 0; step < kMostSteps; ++step) {
-    const ClosestPoint closest = closest_point(shape, X_WB, origin + t * direction);
+    const ClosestPoint closest = closest_point(shape, X_WB, origin + way * u);
     if (closest.status != DistanceStatus::separated && closest.status != DistanceStatus::overlapping) return hit;
     if (closest.distance <= touching) {
-      hit = {step == 0 && closest.distance < 0 ? RayStatus::inside : RayStatus::hit, t, origin + t * direction,
+      const double t = way / speed;
+      if (!std::isfinite(t)) return hit;
+      hit = {step == 0 && closest.distance < 0 ? RayStatus::inside : RayStatus::hit, t, origin + way * u,
              closest.normal};
       return hit;
     }
-    const double approach = -closest.normal.dot(direction);
+    const double approach = -closest.normal.dot(u);
     // Above its tangent plane the body has no point.
-    if (!(approach > 1e-16 * speed)) {
+    if (!(approach > 1e-16)) {
       hit.status = RayStatus::missed;
       return hit;
     }
-    t += closest.distance / approach;
+    way += closest.distance / approach;
   }
   return hit;
 }
