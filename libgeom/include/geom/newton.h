@@ -94,17 +94,22 @@ void check_seed(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const Pose& 
 template <ImplicitSurface ShapeA, ImplicitSurface ShapeB>
 WitnessPair checked_seed(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const Pose& X_WB, const WitnessPair& seed);
 
-/// The points where the line of centres leaves A and enters B: cheap and crude. Declined if the centres coincide, or a
-/// centre is not inside its body. Relative accuracy of the points 1e-9.
+/// The points where the line of centres leaves A and enters B: crude. Declined if the centres coincide, or a centre is
+/// not inside its body. Relative accuracy of the points 1e-9. Takes 0.3 microseconds for ellipsoids, 3 for
+/// superellipsoids. Newton's method converges from these points for 99.8 % of the pairs of ellipsoids with eight
+/// equations and 96.5 % with five (82 % at X0 = 0.1), of superellipsoids for 99.2 % and 98.3 %. How often it does from
+/// each seed: docs/accuracy.md.
 template <ImplicitSurface ShapeA, ImplicitSurface ShapeB>
 WitnessPair centre_seed(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const Pose& X_WB);
 
 /// The support points of A along n and of B along -n; n in the world frame, of any length. Declined if n is zero or not
-/// finite.
+/// finite. Takes 0.05 microseconds for ellipsoids, 0.3 for superellipsoids; as good as the normal is.
 template <SupportShape ShapeA, SupportShape ShapeB>
 WitnessPair normal_seed(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const Pose& X_WB, const Eigen::Vector3d& n);
 
-/// The witness points of `distance`; declined where that declines.
+/// The witness points of `distance`; declined where that declines. Takes what that takes, 0.4 microseconds for
+/// ellipsoids, 2 to 3 for superellipsoids. Newton's method converges from these points for all pairs of ellipsoids; of
+/// superellipsoids for 99.99 % and more with eight equations and 99.97 % with five.
 template <SupportShape ShapeA, SupportShape ShapeB>
 WitnessPair dual_seed(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const Pose& X_WB);
 
