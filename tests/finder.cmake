@@ -13,3 +13,4 @@ hardbody_test(finder_unit_test unit
 hardbody_test(finder_curvature_bound_test property property/curvature_bound_test.cpp)
 hardbody_test(finder_missed_contacts_test property property/missed_contacts_test.cpp)
 hardbody_test(finder_bracketing_test property property/bracketing_test.cpp)
+hardbody_test(finder_support_contact_test property property/support_contact_test.cpp)

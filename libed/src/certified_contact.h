@@ -19,6 +19,7 @@
 /// step is at least sqrt(2 kTouching size / K), K the crude bound that holds for every n and t: the deepest overlap
 /// that q allows on the way is then kTouching * size, below what g itself resolves.
 
+#include "curvature_steps.h"
 #include "neighbour_lists.h"
 #include "select.h"
 #include "sphere_window.h"
@@ -59,15 +60,6 @@ struct Finding {
   bool approaching = false;  ///< of bodies that overlap: whether the overlap grows
 };
 
-/// First root tau > 0 of g + gp tau - K tau^2 / 2 for g >= 0; infinite if there is none.
-inline double first_root(double g, double gp, double K) {
-  const double discriminant = gp * gp + 2 * K * g;
-  if (!(discriminant >= 0)) return kNever;
-  const double root = std::sqrt(discriminant);
-  if (gp < 0) return 2 * g / (root - gp);
-  return K > 0 ? (gp + root) / K : kNever;
-}
-
 enum class Quality {
   usable,   ///< g >= -kOverlap * size: the normal certifies a step
   clear,    ///< it certifies that there is no contact within the horizon
@@ -81,28 +73,21 @@ Quality improve_normal(const Gauge& gauge, const typename Gauge::State& state, d
                        typename Gauge::Evaluation& e, FinderCounters& count) {
   using geom::internal::Ascent;
   const double size = gauge.size();
-  const double rounding = geom::kRoundingFactor * size;
-  const double worst_turn = 0.5 * gauge.curvature_limit() * horizon;
-  // A concave parabola that is positive at both ends has no root between.
-  const auto certifies = [&](const auto& trial) {
-    return trial.g > kTouching * size && trial.g + horizon * (gauge.rate(state, trial, n) - worst_turn) > 0;
-  };
   ++count.evaluations;
   ++count.kernel_calls;
   // Most pairs end here, with the normal they came with and no Newton step computed.
   const typename Gauge::Gap gap = gauge.gap(state, n);
-  if (certifies(gap)) return Quality::clear;
+  if (clears(gauge, state, gap, n, horizon)) return Quality::clear;
   e = gauge.complete(state, gap, n);
 
   bool clear = false;
-  const auto evaluate = [&](const Eigen::Vector3d& m) { return gauge.evaluate(state, m); };
   const auto done = [&](const typename Gauge::Evaluation& trial) {
-    clear = certifies(trial);
+    clear = clears(gauge, state, trial, n, horizon);
     return clear || trial.decrement <= kLooseDecrement * trial.g || trial.decrement <= kTightDecrement * size;
   };
   for (int attempt = 0; attempt < 2; ++attempt) {
     int budget = geom::kMaxIterations;
-    const Ascent ascent = geom::internal::ascend(evaluate, rounding, done, budget, n, e);
+    const Ascent ascent = ascend(gauge, state, done, budget, n, e);
     count.kernel_calls += static_cast<std::uint64_t>(geom::kMaxIterations - budget);
     if (clear) return Quality::clear;
     // Any normal with g >= 0 is a valid certificate, converged or not.
@@ -127,30 +112,24 @@ inline constexpr int kRefineBudget = 12;
 
 /// Newton's method on d(t) = 0 with converged normals, from `t`. True if it ended on a contact in `near` that is
 /// certainly the first one after near.begin; t and n are changed only then.
-///
-/// d, a maximum of functions with second derivatives >= -K, has d'(s) <= d'(tc) + K (tc - s) for s < tc. So if
-/// d'(tc) < -K (tc - near.begin), the distance falls all the way from near.begin to tc, and there is no contact before.
 template <class Gauge>
 bool refine_contact(const Gauge& gauge, const Window& near, double& t, Eigen::Vector3d& n, FinderCounters& count) {
   const double size = gauge.size();
-  const double rounding = geom::kRoundingFactor * size;
   double time = t;
   Eigen::Vector3d normal = n;
   const auto done = [](const auto& trial) { return trial.step2 <= geom::kNormalTolerance2; };
   for (int iteration = 0; iteration < 6 && time >= near.begin && time <= near.end; ++iteration) {
     const auto state = gauge.at(time);
-    const auto evaluate = [&](const Eigen::Vector3d& m) { return gauge.evaluate(state, m); };
-    typename Gauge::Evaluation e = evaluate(normal);
+    typename Gauge::Evaluation e = gauge.evaluate(state, normal);
     int budget = kRefineBudget;
-    const auto ascent = geom::internal::ascend(evaluate, rounding, done, budget, normal, e);
+    const auto ascent = ascend(gauge, state, done, budget, normal, e);
     count.kernel_calls += static_cast<std::uint64_t>(1 + kRefineBudget - budget);
     ++count.evaluations;
     ++count.newton_evaluations;
     if (ascent != geom::internal::Ascent::converged) return false;
     const double d = e.g + 0.5 * e.decrement;
-    const double rate = gauge.rate(state, e, normal);
-    const double span = time - near.begin;
-    if (!(rate < -kResting * gauge.speed() - gauge.curvature_limit() * span)) return false;
+    const double rate = contact_rate(gauge, state, e, normal);
+    if (!(rate < 0) || !falls_since(gauge, state, e, normal, rate, time - near.begin)) return false;
     normal = geom::internal::step_on_sphere(normal, e.step);
     if (std::abs(d) <= kTouching * size) {
       t = time;
@@ -185,9 +164,10 @@ Finding certified_contact(const Gauge& gauge, double t_begin, double t_end, int 
     if (quality == Quality::clear) return {Outcome::clear, t_end};
     double g = e.g;
     double gp = gauge.rate(state, e, n);
-    if (quality == Quality::overlap) return {Outcome::overlapping, t, gp < -kResting * gauge.speed()};
-    if (g <= kTouching * size) {
-      if (gp < -kResting * gauge.speed()) {
+    if (quality == Quality::overlap || g <= kTouching * size) {
+      const bool approaching = contact_rate(gauge, state, e, n) < -kResting * gauge.speed();
+      if (quality == Quality::overlap) return {Outcome::overlapping, t, approaching};
+      if (approaching) {
         // A decrement at the level of rounding leaves an error of its square root in the normal: one more step.
         n = geom::internal::step_on_sphere(n, e.step);
         return {Outcome::contact, t};
@@ -195,24 +175,13 @@ Finding certified_contact(const Gauge& gauge, double t_begin, double t_end, int 
       g = larger(g, 0.0);
       gp = larger(gp, 0.0);
     }
-    const auto certificate = gauge.certificate(state, e, n);
-    double K = certificate.curvature(horizon);
-    double tau = smaller(horizon, first_root(g, gp, K));
-    for (int attempt = 0; attempt < 2 && tau < horizon; ++attempt) {
-      const double reach = smaller(horizon, 2 * tau);
-      const double K_reach = certificate.curvature(reach);
-      const double tau_reach = smaller(reach, first_root(g, gp, K_reach));
-      if (tau_reach > tau) {
-        tau = tau_reach;
-        K = K_reach;
-      }
-    }
+    double tau = certified_step(gauge, state, e, n, g, gp, horizon);
     if (tau >= horizon) return {Outcome::clear, t_end};
     if (gp < 0) {
       // The contact, if the motion goes on nearly straight, is between the certified bound and a little beyond the
       // tangent's root. Newton is worth trying if it is close, and likely to be certified there.
       const double spread = -g / gp - tau;
-      if (spread <= kTangentAgreement * size / gauge.speed() && 8 * spread * gauge.curvature_limit() < -gp) {
+      if (worth_refining(gauge, gp, spread)) {
         const Window near{t + tau - kTouching * size / gauge.speed(), t + tau + 3 * spread + kTouching * size / -gp};
         double contact_time = t - g / gp;
         Eigen::Vector3d normal = geom::internal::step_on_sphere(n, e.step);
@@ -223,8 +192,7 @@ Finding certified_contact(const Gauge& gauge, double t_begin, double t_end, int 
         }
       }
     } else {
-      // By the bound that holds over any reach: K may be one for a short reach.
-      tau = larger(tau, std::sqrt(2 * kTouching * size / gauge.curvature_limit()));
+      tau = larger(tau, least_step(gauge, state, n, tau));
     }
     if (t + tau > t) {
       t += tau;

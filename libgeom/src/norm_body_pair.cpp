@@ -47,31 +47,32 @@ Tangent NormBodyPair::tangent(const Vector3d& n) const {
   return {n, r_ - s.support.point.a() + s.support.point.b(), s.g};
 }
 
+/// With t_k the vectors of the rank-ones and p_k = n x t_k: det S = sum over k < l of (p_k.t_l)^2, all terms positive,
+/// so that nothing cancels where one body is flat and the other is not; the smallest eigenvalue is det S over the
+/// largest.
 NormBodyPair::TangentMatrix NormBodyPair::tangent_matrix(const DualSample& s) const {
+  const LaneVector n = LaneVector::same(s.n);
   TangentMatrix M;
-  tangent_basis(s.n, M.e, M.f);
-  const Lanes t1_e = s.support.t1.dot(M.e);
-  const Lanes t1_f = s.support.t1.dot(M.f);
-  const Lanes t2_e = s.support.t2.dot(M.e);
-  const Lanes t2_f = s.support.t2.dot(M.f);
-  M.ee = s.g + sum(t1_e * t1_e + t2_e * t2_e);
-  M.ff = s.g + sum(t1_f * t1_f + t2_f * t2_f);
-  M.ef = sum(t1_e * t1_f + t2_e * t2_f);
-  const double half_difference = 0.5 * (M.ee - M.ff);
-  const double smallest = 0.5 * (M.ee + M.ff) - std::sqrt(half_difference * half_difference + M.ef * M.ef);
+  M.p1 = n.cross(s.support.t1);
+  M.p2 = n.cross(s.support.t2);
+  const Lanes within = M.p1.dot(s.support.t2);
+  const Lanes across11 = M.p1.dot(swapped(s.support.t1));
+  const Lanes across12 = M.p1.dot(swapped(s.support.t2));
+  const Lanes across22 = M.p2.dot(swapped(s.support.t2));
+  const double det = sum(within * within + across12 * across12) + across11[0] * across11[0] + across22[0] * across22[0];
+  const double trace = sum(s.traces());
+  const double largest = 0.5 * trace + std::sqrt(std::max(0.0, 0.25 * trace * trace - det));
+  const double smallest = s.g + (largest > 0 ? det / largest : 0);
   M.lifted = smallest < floor_;
-  if (M.lifted) {
-    M.ee += floor_ - smallest;
-    M.ff += floor_ - smallest;
-  }
+  M.identity = M.lifted ? s.g + floor_ - smallest : s.g;
+  M.determinant = M.identity * (M.identity + trace) + det;
   return M;
 }
 
+/// By the adjugate, g I + sum p_k p_k^T.
 Vector3d NormBodyPair::TangentMatrix::solve(const Vector3d& y) const {
-  const double y_e = y.dot(e);
-  const double y_f = y.dot(f);
-  const double inv_det = 1 / (ee * ff - ef * ef);
-  return ((ff * y_e - ef * y_f) * inv_det) * e + ((ee * y_f - ef * y_e) * inv_det) * f;
+  const LaneVector up = p1.dot(y) * p1 + p2.dot(y) * p2;
+  return (identity * y + up.a() + up.b()) / determinant;
 }
 
 Vector3d NormBodyPair::tangent_solve(const DualSample& s, const Vector3d& y) const {

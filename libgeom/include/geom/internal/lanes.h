@@ -117,6 +117,10 @@ inline LaneVector operator-(const LaneVector& u, const LaneVector& v) {
 inline LaneVector operator*(Lanes s, const LaneVector& v) {
   return {s * v.x, s * v.y, s * v.z};
 }
+/// A's where B's was and the other way round.
+inline LaneVector swapped(const LaneVector& v) {
+  return {Lanes{v.x[1], v.x[0]}, Lanes{v.y[1], v.y[0]}, Lanes{v.z[1], v.z[0]}};
+}
 inline LaneVector normalized(const LaneVector& v) {
   return (1 / sqrt(v.dot(v))) * v;
 }

@@ -90,10 +90,11 @@ class GEOM_EXPORT NormBodyPair {
     LaneVector on;
     Eigen::Vector3d gap;
   };
-  /// M + g I across n, in a basis of the tangent plane, its smallest eigenvalue kept above a floor.
+  /// M + g I across n, M = S the sum of rank-ones t_k t_k^T, its smallest eigenvalue kept above a floor.
   struct TangentMatrix {
-    Eigen::Vector3d e, f;
-    double ee, ef, ff;
+    LaneVector p1, p2;  ///< n x t_k
+    double identity;    ///< g, or more
+    double determinant;
     bool lifted;
 
     Eigen::Vector3d solve(const Eigen::Vector3d& y) const;

@@ -1,0 +1,180 @@
+#include "support_gauge.h"
+
+namespace ed::internal {
+
+using Eigen::Vector3d;
+using geom::internal::both;
+using geom::internal::sqrt;
+using geom::internal::sum;
+
+namespace {
+
+/// Share of g that each body may be made larger by to keep its majorant flat.
+constexpr double kAllowance = 0.0125;
+
+/// Steps shorter than this, in units of size / speed, are tried to be made longer by their tilted ends.
+constexpr double kShortStep = 1e-7;
+constexpr double kShortest = 1e-12;
+
+geom::internal::Lanes norm(const geom::internal::LaneVector& v) {
+  return sqrt(v.dot(v));
+}
+
+/// Sum over i of D2_i b_i^2.
+geom::internal::Lanes weighted(const geom::internal::LaneVector& D2, const geom::internal::LaneVector& b) {
+  return D2.x * b.x * b.x + D2.y * b.y * b.y + D2.z * b.z * b.z;
+}
+
+geom::internal::Lanes larger_of(geom::internal::Lanes a, geom::internal::Lanes b) {
+  return geom::internal::select(geom::internal::below(a, b), b, a);
+}
+
+geom::internal::Lanes smaller_of(geom::internal::Lanes a, geom::internal::Lanes b) {
+  return geom::internal::select(geom::internal::below(a, b), a, b);
+}
+
+}  // namespace
+
+SupportGauge::Evaluation SupportGauge::evaluation(const State& s, const DualSample& sample) const {
+  Evaluation e;
+  e.sample = sample;
+  e.newton = s.pair.newton_step(sample);
+  e.g = sample.g;
+  e.decrement = e.newton.decrement;
+  geom::internal::set_step(e, e.newton.delta, e.newton.delta.squaredNorm());
+  return e;
+}
+
+double SupportGauge::surface_speed() const {
+  const auto lever = [](const NormBodyShape& s) {
+    return std::sqrt(std::max(0.0, s.bounding_radius * s.bounding_radius - s.inscribed_radius * s.inscribed_radius));
+  };
+  return lever(A_) * a_.top.max_omega() + lever(B_) * b_.top.max_omega();
+}
+
+double SupportGauge::Certificate::curvature(double tau) const {
+  const Lanes omega{gauge.a_.top.max_omega(), gauge.b_.top.max_omega()};
+  const Lanes alpha{gauge.a_.top.max_alpha(), gauge.b_.top.max_alpha()};
+  const Lanes jerk{gauge.a_.top.max_jerk(), gauge.b_.top.max_jerk()};
+  const Lanes both_turn = turning + omega;
+  const Lanes most_slip = smaller_of(slip + alpha * tau, both_turn);
+  const Lanes M3 = most_slip * both_turn * both_turn + 3 * alpha * both_turn + jerk;
+  const Lanes change = d1 + tau * (d2 + (tau / 6) * d_max * M3);
+  const Lanes bodies = reach * M3 * (tau / 3) + change * change / height;
+  const double centres = turning * turning_across * (turning * (distance + speed * tau) / 3 + speed) * tau;
+  return gauge.curvature_share_ * (bend + centres + sum(bodies));
+}
+
+SupportGauge::Certificate SupportGauge::certificate(const State& s, const DualSample& at,
+                                                    const NormBodies::Majorant& majorant, const Vector3d& Omega) const {
+  const Vector3d& r = s.pair.between();
+  const Vector3d turned = Omega.cross(at.n);
+  const LaneVector n = LaneVector::of(at.n, -at.n);
+  const LaneVector W = LaneVector::same(Omega);
+  const LaneVector slip = W - s.omega;
+  const LaneVector mu1 = slip.cross(n);
+  const LaneVector mu2 = slip.cross(W.cross(n)) - s.omega.cross(mu1) - s.alpha.cross(n);
+  const NormBodies& bodies = s.pair.bodies();
+  Certificate c{.gauge = *this,
+                .rate = turned.dot(r) + at.n.dot(v_) - sum(majorant.gradient.dot(mu1)),
+                .turning = Omega.norm(),
+                .turning_across = turned.norm(),
+                .distance = r.norm(),
+                .speed = v_.norm(),
+                .bend = -Omega.cross(turned).dot(r) - 2 * turned.dot(v_) + sum(majorant.gradient.dot(mu2)),
+                .slip = norm(slip),
+                .reach = norm(majorant.gradient),
+                .height = majorant.height,
+                .d1 = sqrt(weighted(majorant.D2, bodies.to_body(mu1))),
+                .d2 = 0.5 * sqrt(weighted(majorant.D2, bodies.to_body(mu2))),
+                .d_max = sqrt(larger_of(majorant.D2.x, larger_of(majorant.D2.y, majorant.D2.z)))};
+  return c;
+}
+
+/// The longest step of one choice, or less than `best` if it is certainly no longer than that.
+double SupportGauge::longest_step(const State& s, const DualSample& at, const NormBodies::Majorant& majorant, double g,
+                                  const Vector3d& Omega, double horizon, double best) const {
+  const Certificate c = certificate(s, at, majorant, Omega);
+  const double gap = g - sum(majorant.offset);
+  if (!(gap >= 0)) return 0;
+  double tau = smaller(horizon, first_root(gap, c.rate, c.curvature(horizon)));
+  for (int attempt = 0; attempt < 4 && tau < horizon; ++attempt) {
+    const double reach = smaller(horizon, attempt < 2 ? larger(3 * tau, 1.2 * best) : 2 * tau);
+    if (!(reach > tau)) break;
+    tau = larger(tau, smaller(reach, first_root(gap, c.rate, c.curvature(reach))));
+  }
+  return tau;
+}
+
+/// n x dn/dt of the normal that stays the best, by (M + g I) dn/dt = P d(r - sA - sB)/dt at fixed n.
+Vector3d SupportGauge::turning_of_best_normal(const State& s, const DualSample& at) const {
+  const LaneVector n = LaneVector::of(at.n, -at.n);
+  const LaneVector turned = s.omega.cross(n);
+  const auto& support = at.support;
+  const LaneVector seen = support.t1.dot(turned) * support.t1 + support.t2.dot(turned) * support.t2;
+  const LaneVector moved = s.omega.cross(support.point) - seen;  // d s(n)/dt at fixed n
+  const Vector3d y = v_ - moved.a() + moved.b();
+  const Vector3d rate = s.pair.tangent_solve(at, y);
+  const Vector3d mean = 0.5 * (s.omega.a() + s.omega.b());
+  return at.n.cross(rate) + mean.dot(at.n) * at.n;
+}
+
+double SupportGauge::certified_step(const State& s, const Evaluation& e, const Vector3d& /*n*/, double g, double /*gp*/,
+                                    double horizon) const {
+  const NormBodies& bodies = s.pair.bodies();
+  const Vector3d fixed = Vector3d::Zero();
+  const Vector3d best_turning = turning_of_best_normal(s, e.sample);
+  double tau = 0;
+  const auto try_all = [&](const NormBodies::Majorant& majorant) {
+    for (const Vector3d* Omega : {&fixed, &best_turning}) {
+      if (tau >= horizon) return;
+      tau = larger(tau, longest_step(s, e.sample, majorant, g, *Omega, horizon, tau));
+    }
+  };
+  const NormBodies::Majorant raised = bodies.majorant(e.sample.support, kAllowance * g);
+  try_all(raised);
+  if (raised.raised && tau < horizon) try_all(bodies.majorant(e.sample.support, 0));
+  return tau;
+}
+
+bool SupportGauge::tilted_end_clears(const State& s, const Vector3d& n, double tau) const {
+  const LaneVector n2 = LaneVector::of(n, -n);
+  const LaneVector tilted = n2 + both(tau) * n2.cross(s.omega);
+  const double end = n.dot(s.pair.between() + tau * v_) - sum(s.pair.bodies().heights(tilted));
+  const auto bend = [](const NormBodyShape& shape, const FreeTop& top) {
+    return shape.bounding_radius * (top.max_omega() * top.max_omega() + top.max_alpha());
+  };
+  return end - 0.5 * tau * tau * (bend(A_, a_.top) + bend(B_, b_.top)) > 0;
+}
+
+double SupportGauge::least_step(const State& s, const Vector3d& n, double tau) const {
+  const double unit = size() / speed();
+  if (tau > kShortStep * unit) return tau;
+  double longest = kTouching * unit;
+  for (double trial = kShortest * unit; trial < 0.1 * unit && tilted_end_clears(s, n, trial); trial *= 8)
+    longest = trial;
+  return longest;
+}
+
+bool SupportGauge::falls_since(const State& s, const Evaluation& e, const Vector3d& /*n*/, double rate,
+                               double span) const {
+  if (!(rate < -kResting * speed())) return false;
+  if (!(span > 0)) return true;
+  // Backwards omega, v and Omega change sign, and with them g' and mu1; mu2, alpha and K do not.
+  const NormBodies::Majorant majorant = s.pair.bodies().majorant(e.sample.support, 0);
+  for (const Vector3d& Omega : {Vector3d(Vector3d::Zero()), turning_of_best_normal(s, e.sample)}) {
+    const Certificate c = certificate(s, e.sample, majorant, Omega);
+    if (-c.rate > 0.5 * span * c.curvature(span)) return true;
+  }
+  return false;
+}
+
+bool SupportGauge::separating_normal(const State& s, Vector3d& n) const {
+  int iterations = 0;
+  const NormBodyPair::Answer answer = s.pair.solve(s.pair.cold_normal(), s.pair.cold_normal(),
+                                                   geom::Penetration::global, geom::kMaxIterations, iterations);
+  n = answer.at.n;
+  return answer.at.g >= -kOverlap * size();
+}
+
+}  // namespace ed::internal

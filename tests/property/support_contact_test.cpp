@@ -1,0 +1,235 @@
+// Contact times of superellipsoids against a search that shares nothing with the finder but the distance and the free
+// motion: conservative advancement, whose steps are the distance over a bound of its rate. Pairs of five kinds of
+// orientation (faces, edges and vertices included), of which many graze. HARDBODY_FULL=1: 100,000 contacts.
+
+#include "common/geom_random.h"
+#include "common/geom_superellipsoid_sets.h"
+
+#include <certified_contact.h>
+#include <support_gauge.h>
+
+#include <geom/geom.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <limits>
+
+namespace ed::internal {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+using geom::Superellipsoid;
+using geom_test::PairSet;
+using geom_test::Random;
+
+constexpr double kShortest = 2e-5;   ///< the least step of the reference, in units of size over the largest rate
+constexpr double kGrazing = 1e-2;    ///< normal velocity below this share of the relative one
+constexpr double kResolved = 1e-12;  ///< overlaps below this, in units of the size, are rounding
+constexpr double kHorizon = 3;
+
+struct MovingPair {
+  Superellipsoid shape_a, shape_b;
+  RigidMotion a, b;
+
+  double size() const { return shape_a.bounding_radius() + shape_b.bounding_radius(); }
+  geom::DistanceResult distance(double t, const Vector3d& start = Vector3d::Zero()) const {
+    const geom::Pose X_WA(a.top.at(t).R, a.position_at(t));
+    const geom::Pose X_WB(b.top.at(t).R, b.position_at(t));
+    return geom::distance(shape_a, X_WA, shape_b, X_WB, {.start = start});
+  }
+  /// A bound of |dd/dt|.
+  double rate() const {
+    return (b.velocity - a.velocity).norm() + shape_a.bounding_radius() * a.top.max_omega() +
+           shape_b.bounding_radius() * b.top.max_omega();
+  }
+};
+
+double exponent(Random& random) {
+  constexpr std::array kExponents{0.25, 0.3, 0.5, 0.7, 0.9, 1.3, 1.6};
+  return kExponents[static_cast<std::size_t>(random.uniform() * kExponents.size())];
+}
+
+Superellipsoid random_shape(Random& random) {
+  constexpr std::array<std::array<double, 3>, 4> kAxes{{{1, 1, 1}, {1, 1, 2}, {1, 1, 0.5}, {1, 0.8, 0.6}}};
+  const auto& a = kAxes[static_cast<std::size_t>(random.uniform() * kAxes.size())];
+  const double e1 = exponent(random);
+  return Superellipsoid({a[0], a[1], a[2]}, e1, random.coin() ? e1 : exponent(random));
+}
+
+Vector3d thermal(Random& random) {
+  return random.uniform(0.2, 3) * random.direction();
+}
+
+/// Of uniform density; that of bodies with three different moments, until these can move, of a ball.
+Vector3d uniform_inertia(const Superellipsoid& shape) {
+  const Vector3d I = shape.inertia(1);
+  return I.x() != I.y() ? Vector3d(Vector3d::Constant(I.mean())) : I;
+}
+
+/// Equal bodies near each other. Grazing: the normal part of the relative velocity is next to nothing.
+MovingPair random_pair(Random& random) {
+  const Superellipsoid shape = random_shape(random);
+  const auto set = static_cast<PairSet>(static_cast<int>(5 * random.uniform()));
+  const geom_test::Orientation o = geom_test::choose(set, shape, random);
+  geom::Pose X_WA, X_WB;
+  const bool grazes = random.uniform() < 0.7;
+  geom_test::place(o, shape, grazes ? random.log_uniform(1e-9, 1e-2) : random.log_uniform(1e-6, 1), X_WA, X_WB);
+  const Vector3d inertia = uniform_inertia(shape);
+  MovingPair pair{shape, shape, {}, {}};
+  Vector3d v = thermal(random);
+  const double turning = random.coin() ? 1.0 : random.log_uniform(1e-3, 1);
+  pair.a.position = X_WA.position();
+  pair.b.position = X_WB.position();
+  const auto spin = [&](const Matrix3d& R) {
+    const Vector3d w = thermal(random).cwiseQuotient(inertia.cwiseSqrt());
+    return Vector3d(turning * (R * w));
+  };
+  pair.a.top = FreeTop(inertia, X_WA.rotation(), spin(X_WA.rotation()));
+  pair.b.top = FreeTop(inertia, X_WB.rotation(), spin(X_WB.rotation()));
+  if (grazes) {
+    // The contact points approach each other slowly, or part.
+    const Vector3d p_a = o.R_a * shape.support(o.R_a.transpose() * o.n).point;
+    const Vector3d p_b = o.R_b * shape.support(o.R_b.transpose() * -o.n).point;
+    const Vector3d relative = v + pair.b.top.at(0).omega.cross(p_b) - pair.a.top.at(0).omega.cross(p_a);
+    v -= (relative.dot(o.n) + random.log_uniform(1e-6, 1e-1) * (random.coin() ? 1 : -1)) * o.n;
+  }
+  pair.b.velocity = v;
+  return pair;
+}
+
+/// The least distance near t, by golden sections of [t - h, t + h]; `at` is where.
+double least_distance(const MovingPair& pair, double begin, double end, double& at) {
+  constexpr double kGolden = 0.61803398874989485;
+  double m = end - kGolden * (end - begin);
+  double p = begin + kGolden * (end - begin);
+  double d_m = pair.distance(m).distance;
+  double d_p = pair.distance(p).distance;
+  for (int k = 0; k < 40; ++k) {
+    if (d_m < d_p) {
+      end = p;
+      p = m;
+      d_p = d_m;
+      m = end - kGolden * (end - begin);
+      d_m = pair.distance(m).distance;
+    } else {
+      begin = m;
+      m = p;
+      d_m = d_p;
+      p = begin + kGolden * (end - begin);
+      d_p = pair.distance(p).distance;
+    }
+  }
+  at = m;
+  return std::min(d_m, d_p);
+}
+
+/// A time at which the bodies overlap by more than kResolved, or infinity: the first that steps of the distance over
+/// its largest rate find, which are never shorter than kShortest, or a minimum between three of them.
+double reference(const MovingPair& pair, double t_end) {
+  const double rate = pair.rate();
+  const double overlap = -kResolved * pair.size();
+  const double shortest = kShortest * pair.size() / rate;
+  double t = 0, t1 = 0, t2 = 0, d1 = 0, d2 = 0;
+  while (t < t_end) {
+    const double d = pair.distance(t).distance;
+    if (d < overlap) return t;
+    double at;
+    if (d1 < d2 && d1 <= d && d1 < 1e-6 * pair.size() && least_distance(pair, t2, t, at) < overlap) return at;
+    t2 = t1;
+    d2 = d1;
+    t1 = t;
+    d1 = d;
+    t += std::max(0.999 * d / rate, shortest);
+  }
+  return std::numeric_limits<double>::infinity();
+}
+
+Finding find(const SupportGauge& gauge, FinderCounters& count) {
+  Vector3d n = Vector3d::Zero();
+  return certified_contact(gauge, 0, kHorizon, 100000, n, count);
+}
+
+/// A gauge whose bounds of the curvature are half the right ones.
+class HalvedGauge : public SupportGauge {
+ public:
+  template <class... Arguments>
+  explicit HalvedGauge(const Arguments&... arguments) : SupportGauge(arguments...) {
+    curvature_share_ = 0.5;
+  }
+};
+
+struct Tally {
+  long pairs = 0, contacts = 0, grazing = 0, missed = 0, late = 0, wrong = 0, unanswered = 0, shallow = 0;
+};
+
+NormBodyShape norm_body(const Superellipsoid& s) {
+  return {geom::internal::NormShape(s), s.bounding_radius(), s.inscribed_radius()};
+}
+
+void judge(const MovingPair& pair, const Finding& finding, double wanted, Tally& tally) {
+  ++tally.pairs;
+  if (finding.outcome == Outcome::contact) {
+    ++tally.contacts;
+    const geom::DistanceResult at = pair.distance(finding.time);
+    if (!(std::abs(at.distance) <= 1e-13 * pair.size())) ++tally.wrong;
+    if (wanted < finding.time - 1e-12) ++tally.late;
+    if (!(wanted < kHorizon) && finding.time < 0.9 * kHorizon) ++tally.shallow;
+    const double h = 1e-5;
+    const double rate = (pair.distance(finding.time + h).distance - pair.distance(finding.time - h).distance) / (2 * h);
+    if (std::abs(rate) < kGrazing * (pair.b.velocity - pair.a.velocity).norm()) ++tally.grazing;
+    return;
+  }
+  if (finding.outcome != Outcome::clear) {
+    ++tally.unanswered;
+    return;
+  }
+  if (wanted < kHorizon) ++tally.missed;
+}
+
+const long kContacts = std::getenv("HARDBODY_FULL") != nullptr ? 100000 : 2000;
+
+template <class Gauge>
+Tally search_pairs() {
+  Random random(1);
+  Tally tally;
+  FinderCounters count;
+  while (tally.contacts < kContacts) {
+    const MovingPair pair = random_pair(random);
+    const NormBodyShape a = norm_body(pair.shape_a);
+    const NormBodyShape b = norm_body(pair.shape_b);
+    const Gauge gauge(a, pair.a, b, pair.b, pair.b.position - pair.a.position, 0);
+    judge(pair, find(gauge, count), reference(pair, kHorizon), tally);
+  }
+  std::printf(
+      "%ld pairs, %ld contacts, %ld grazing: %ld missed, %ld late, %ld wrong, %ld unanswered; %ld shallower than the "
+      "reference sees; %.2f points in time and %.2f kernel calls a search, %llu rescues\n",
+      tally.pairs, tally.contacts, tally.grazing, tally.missed, tally.late, tally.wrong, tally.unanswered,
+      tally.shallow, static_cast<double>(count.evaluations) / static_cast<double>(count.predictions),
+      static_cast<double>(count.kernel_calls) / static_cast<double>(count.predictions),
+      static_cast<unsigned long long>(count.rescues));
+  return tally;
+}
+
+TEST(SupportContact, MissesNoContact) {
+  const Tally tally = search_pairs<SupportGauge>();
+  EXPECT_EQ(tally.missed, 0);
+  EXPECT_EQ(tally.late, 0);
+  EXPECT_EQ(tally.wrong, 0);
+  EXPECT_EQ(tally.unanswered, 0);
+  EXPECT_GE(tally.grazing * 10, tally.contacts);
+  EXPECT_LE(tally.shallow * 100, tally.contacts);
+}
+
+TEST(SupportContact, IsMissedWithHalfTheCurvature) {
+  const Tally tally = search_pairs<HalvedGauge>();
+  EXPECT_GT(tally.missed + tally.late + tally.unanswered, 0);
+}
+
+}  // namespace
+}  // namespace ed::internal
