@@ -4,6 +4,7 @@ hardbody_test(finder_unit_test unit
   unit/calendar_test.cpp
   unit/cell_grid_test.cpp
   unit/free_top_test.cpp
+  unit/general_contact_test.cpp
   unit/impulse_test.cpp
   unit/motion_test.cpp
   unit/neighbour_lists_test.cpp

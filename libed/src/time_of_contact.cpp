@@ -2,14 +2,17 @@
 #include "certified_contact.h"
 #include "contact_checks.h"
 #include "motion_checks.h"
+#include "support_gauge.h"
 #include "uniaxial_gauge.h"
 
 #include <ed/time_of_contact.h>
+#include <ed/tolerances.h>
 
 #include <algorithm>
 #include <optional>
 #include <sstream>
 #include <stdexcept>
+#include <variant>
 
 namespace ed {
 namespace {
@@ -21,8 +24,8 @@ using internal::Spheroid;
 /// More points in time than any search has been seen to need by a factor of a thousand.
 constexpr int kMaxEvaluations = 100000;
 
-/// The axis about which both the shape and the inertia are symmetric.
-int common_axis(const Ellipsoid& shape, const Motion& motion, const char* name) {
+/// The axis about which both the shape and the inertia are symmetric, or -1.
+int common_axis(const Ellipsoid& shape, const Motion& motion) {
   const Eigen::Vector3d& a = shape.semi_axes();
   const Eigen::Vector3d& I = motion.inertia;
   for (const int axis : {2, 0, 1}) {
@@ -30,24 +33,66 @@ int common_axis(const Ellipsoid& shape, const Motion& motion, const char* name) 
     const int j = (axis + 2) % 3;
     if (a[i] == a[j] && I[i] == I[j]) return axis;
   }
-  std::ostringstream message;
-  message << "body " << name << " with semi-axes [" << a.transpose() << "] and inertia [" << I.transpose()
-          << "] has no axis of revolution; others are not available yet";
-  throw std::invalid_argument(message.str());
+  return -1;
 }
 
-struct Body {
+/// A body of revolution.
+struct UniaxialBody {
   Spheroid shape;
   Ellipsoid ellipsoid;  ///< the axis of revolution along body z
   internal::TopMotion top;
+
+  Eigen::Vector3d position_at(double t) const { return top.axis.position_at(t); }
+  const Eigen::Vector3d& velocity() const { return top.axis.velocity; }
+  void rebase(double now) { top.axis.time -= now; }
+  /// To time t, from where its clock shows 0.
+  void restart_at(double t) {
+    internal::advance(top.inertia, t, top.axis, top.frame);
+    top.axis.time = 0;
+  }
 };
 
-Body make_body(const Ellipsoid& shape, const Motion& motion, const char* name) {
-  internal::check_motion(motion);
-  const int axis = common_axis(shape, motion, name);
+UniaxialBody uniaxial_body(const Ellipsoid& shape, const Motion& motion) {
+  const int axis = common_axis(shape, motion);
   const double b = shape.semi_axes()[(axis + 1) % 3];
   const double a = shape.semi_axes()[axis];
   return {Spheroid(a, b, shape.min_curvature_radius()), Ellipsoid({b, b, a}), internal::top_motion(motion, axis)};
+}
+
+/// Any other.
+struct GeneralBody {
+  internal::NormBodyShape shape;
+  internal::RigidMotion motion;
+  Eigen::Vector3d inertia;
+
+  Eigen::Vector3d position_at(double t) const { return motion.position_at(t); }
+  const Eigen::Vector3d& velocity() const { return motion.velocity; }
+  void rebase(double now) { motion.time -= now; }
+  void restart_at(double t) {
+    const internal::TopState top = motion.top.at(t - motion.time);
+    motion.position = motion.position_at(t);
+    motion.top = internal::FreeTop(inertia, top.R, top.omega);
+    motion.time = 0;
+  }
+};
+
+void check_exponents(const geom::Superellipsoid& shape) {
+  for (const double e : {shape.e1(), shape.e2()}) {
+    if (e >= kMinExponentInMotion && e <= kMaxExponentInMotion) continue;
+    std::ostringstream message;
+    message << "exponent is " << e << "; accepted of bodies in motion: " << kMinExponentInMotion << " to "
+            << kMaxExponentInMotion;
+    throw std::invalid_argument(message.str());
+  }
+}
+
+GeneralBody general_body(const geom::Shape& shape, const Motion& motion) {
+  if (const auto* s = std::get_if<geom::Superellipsoid>(&shape)) check_exponents(*s);
+  const auto norm = std::visit([](const auto& s) { return geom::internal::NormShape(s); }, shape);
+  return {{norm, geom::bounding_radius(shape), geom::inscribed_radius(shape)},
+          {motion.pose.position(), motion.velocity,
+           internal::FreeTop(motion.inertia, motion.pose.rotation(), motion.angular_velocity), motion.time},
+          motion.inertia};
 }
 
 ContactStatus status_of(Outcome outcome) {
@@ -70,22 +115,30 @@ constexpr double kFar = 100;
 /// Moves bodies that start far apart to shortly before their bounding spheres meet, and sets their clocks to 0 there;
 /// returns by how much. What is rounded on a long way is then the place and the time where the search starts, once, and
 /// not every distance on the way into the contact.
+template <class Body>
 double skip_the_way(Body& a, Body& b, double reach, double duration) {
-  const Eigen::Vector3d r = b.top.axis.position_at(0) - a.top.axis.position_at(0);
-  const Eigen::Vector3d v = b.top.axis.velocity - a.top.axis.velocity;
+  const Eigen::Vector3d r = b.position_at(0) - a.position_at(0);
+  const Eigen::Vector3d v = b.velocity() - a.velocity();
   const internal::Window window = internal::sphere_window(r, v, reach, 0, 0, duration);
   const double speed = v.norm();
   if (!(window.begin < window.end) || !(window.begin * speed > kFar * reach)) return 0;
   const double way = window.begin - reach / speed;
-  for (Body* body : {&a, &b}) {
-    internal::advance(body->top.inertia, way, body->top.axis, body->top.frame);
-    body->top.axis.time = 0;
-  }
+  a.restart_at(way);
+  b.restart_at(way);
   return way;
 }
 
+ContactResult result_of(const internal::Finding& finding, const internal::FinderCounters& count) {
+  ContactResult result;
+  result.status = status_of(finding.outcome);
+  result.time = finding.time;
+  result.evaluations = static_cast<int>(count.evaluations);
+  return result;
+}
+
 /// The search from time 0 on the bodies' clocks.
-ContactResult search(const Body& a, const Body& b, double reach, double duration, const ContactOptions& options) {
+ContactResult search(const UniaxialBody& a, const UniaxialBody& b, double reach, double duration,
+                     const ContactOptions& options) {
   const internal::AxisMotion& m_a = a.top.axis;
   const internal::AxisMotion& m_b = b.top.axis;
   const Eigen::Vector3d r = m_b.position_at(0) - m_a.position_at(0);
@@ -104,10 +157,7 @@ ContactResult search(const Body& a, const Body& b, double reach, double duration
   } else {
     finding = certified(internal::UniaxialGauge<false>(a.shape, m_a, b.shape, m_b, r, 0, reach));
   }
-  ContactResult result;
-  result.status = status_of(finding.outcome);
-  result.time = finding.time;
-  result.evaluations = static_cast<int>(count.evaluations);
+  ContactResult result = result_of(finding, count);
   result.rescues = options.finder == Finder::bracketing ? static_cast<int>(count.rescues) : 0;
   if (result.status == ContactStatus::hit) {
     const double t = finding.time;
@@ -117,6 +167,50 @@ ContactResult search(const Body& a, const Body& b, double reach, double duration
     result.normal = n;
   }
   return result;
+}
+
+ContactResult search(const GeneralBody& a, const GeneralBody& b, double /*reach*/, double duration,
+                     const ContactOptions& options) {
+  if (options.finder == Finder::bracketing) {
+    throw std::invalid_argument(
+        "finder is bracketing, which is not available yet for bodies that are not ellipsoids of revolution; accepted "
+        "now: certified");
+  }
+  const Eigen::Vector3d r = b.position_at(0) - a.position_at(0);
+  const internal::SupportGauge gauge(a.shape, a.motion, b.shape, b.motion, r, 0);
+  Eigen::Vector3d n = Eigen::Vector3d::Zero();
+  internal::FinderCounters count;
+  const internal::Finding finding = internal::certified_contact(gauge, 0, duration, kMaxEvaluations, n, count);
+  ContactResult result = result_of(finding, count);
+  if (result.status == ContactStatus::hit) {
+    const auto state = gauge.at(finding.time);
+    const auto points = internal::SupportGauge::contact_points(state.pair.sample(n), state.pair.between());
+    result.point = a.position_at(finding.time) + points.a();
+    result.normal = n;
+  }
+  return result;
+}
+
+/// The search on clocks that count from 0: one that shows a long time has few digits left for the contact.
+template <class Body>
+ContactResult search_from(double now, Body a, Body b, double reach, double t_max, const ContactOptions& options) {
+  a.rebase(now);
+  b.rebase(now);
+  const double way = skip_the_way(a, b, reach, t_max - now);
+  ContactResult result = search(a, b, reach, t_max - now - way, options);
+  result.time = result.status == ContactStatus::separated ? t_max : std::min(t_max, now + (way + result.time));
+  return result;
+}
+
+/// The later of both motions' times.
+double checked_begin(const Motion& motion_a, const Motion& motion_b, double t_max) {
+  internal::check_motion(motion_a);
+  internal::check_motion(motion_b);
+  const double now = std::max(motion_a.time, motion_b.time);
+  if (t_max >= now) return now;
+  std::ostringstream message;
+  message << "time_of_contact: t_max is " << t_max << "; accepted: at least the later of both motions' times";
+  throw std::invalid_argument(message.str());
 }
 
 }  // namespace
@@ -138,23 +232,25 @@ const char* to_string(ContactStatus status) {
 ContactResult time_of_contact(const Ellipsoid& a, const Motion& motion_a, const Ellipsoid& b, const Motion& motion_b,
                               double t_max, const ContactOptions& options) {
   internal::check_contact_options(options, std::min(a.inscribed_radius(), b.inscribed_radius()));
-  Body body_a = make_body(a, motion_a, "A");
-  Body body_b = make_body(b, motion_b, "B");
-  const double now = std::max(motion_a.time, motion_b.time);
-  if (!(t_max >= now)) {
-    std::ostringstream message;
-    message << "time_of_contact: t_max is " << t_max << "; accepted: at least the later of both motions' times";
-    throw std::invalid_argument(message.str());
-  }
-  // The search counts from 0: a clock that shows a long time has few digits left for the contact.
-  body_a.top.axis.time -= now;
-  body_b.top.axis.time -= now;
+  const double now = checked_begin(motion_a, motion_b, t_max);
   const double reach = a.bounding_radius() + b.bounding_radius();
-  const double way = skip_the_way(body_a, body_b, reach, t_max - now);
-  const double duration = t_max - now - way;
-  ContactResult result = search(body_a, body_b, reach, duration, options);
-  result.time = result.status == ContactStatus::separated ? t_max : std::min(t_max, now + (way + result.time));
-  return result;
+  if (common_axis(a, motion_a) >= 0 && common_axis(b, motion_b) >= 0) {
+    return search_from(now, uniaxial_body(a, motion_a), uniaxial_body(b, motion_b), reach, t_max, options);
+  }
+  return search_from(now, general_body(a, motion_a), general_body(b, motion_b), reach, t_max, options);
+}
+
+ContactResult time_of_contact(const geom::Shape& a, const Motion& motion_a, const geom::Shape& b,
+                              const Motion& motion_b, double t_max, const ContactOptions& options) {
+  const auto* ellipsoid_a = std::get_if<Ellipsoid>(&a);
+  const auto* ellipsoid_b = std::get_if<Ellipsoid>(&b);
+  if (ellipsoid_a != nullptr && ellipsoid_b != nullptr) {
+    return time_of_contact(*ellipsoid_a, motion_a, *ellipsoid_b, motion_b, t_max, options);
+  }
+  internal::check_contact_options(options, std::min(geom::inscribed_radius(a), geom::inscribed_radius(b)));
+  const double now = checked_begin(motion_a, motion_b, t_max);
+  return search_from(now, general_body(a, motion_a), general_body(b, motion_b),
+                     geom::bounding_radius(a) + geom::bounding_radius(b), t_max, options);
 }
 
 }  // namespace ed

@@ -613,10 +613,6 @@ TEST(TimeOfContact, RefusesBadInputAndNamesIt) {
   EXPECT_PRED2(has, refusal([&](Query& q) { q.m_b.time = nan; }), "time");
   EXPECT_PRED2(has, refusal([](Query& q) { q.m_a.inertia = {1, 1, 3}; }), "inertia is [1, 1, 3]");
   EXPECT_PRED2(has, refusal([](Query& q) { q.m_a.inertia = {1, 1, -1}; }), "inertia is [1, 1, -1]");
-  // Three axes, or an inertia about another axis than the shape's, for either body.
-  EXPECT_PRED2(has, refusal([](Query& q) { q.a = Ellipsoid({1, 2, 3}); }), "body A with semi-axes [1 2 3]");
-  EXPECT_PRED2(has, refusal([](Query& q) { q.b = Ellipsoid({1, 2, 3}); }), "body B with semi-axes [1 2 3]");
-  EXPECT_PRED2(has, refusal([](Query& q) { q.m_b.inertia = {0.5, 1, 1}; }), "body B with semi-axes [1 1 3]");
 }
 
 std::string refusal_of(const ed::ContactOptions& options) {
