@@ -231,5 +231,31 @@ TEST(SupportContact, IsMissedWithHalfTheCurvature) {
   EXPECT_GT(tally.missed + tally.late + tally.unanswered, 0);
 }
 
+/// What a single normal promises: no contact within the step, however good or bad the normal is.
+TEST(SupportContact, NoOverlapWithinACertifiedStep) {
+  Random random(2);
+  const int pairs = std::getenv("HARDBODY_FULL") != nullptr ? 100000 : 2000;
+  int long_steps = 0;
+  for (int k = 0; k < pairs; ++k) {
+    const MovingPair pair = random_pair(random);
+    const NormBodyShape a = norm_body(pair.shape_a);
+    const NormBodyShape b = norm_body(pair.shape_b);
+    const SupportGauge gauge(a, pair.a, b, pair.b, pair.b.position - pair.a.position, 0);
+    const SupportGauge::State state = gauge.at(0);
+    const geom::DistanceResult d = pair.distance(0);
+    const double tilt = random.coin() ? 0 : random.log_uniform(1e-9, 1e-1);
+    const Vector3d n = (d.normal + tilt * random.direction()).normalized();
+    const SupportGauge::Evaluation e = gauge.evaluate(state, n);
+    if (!(e.g > 0)) continue;
+    const double step = certified_step(gauge, state, e, n, e.g, gauge.rate(state, e, n), kHorizon);
+    ASSERT_GT(step, 0);
+    if (step > 1e-2) ++long_steps;
+    for (const double share : {1e-3, 0.1, 0.3, 0.5, 0.7, 0.9, 0.99, 1.0}) {
+      ASSERT_GT(pair.distance(share * step).distance, -1e-14 * pair.size()) << "pair " << k << ", step " << step;
+    }
+  }
+  EXPECT_GT(long_steps, pairs / 100);
+}
+
 }  // namespace
 }  // namespace ed::internal
