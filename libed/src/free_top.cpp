@@ -1,31 +1,14 @@
 #include "free_top.h"
 
 #include "motion_checks.h"
-#include "sincos.h"
-
-#include <Eigen/Geometry>
 
 #include <cmath>
-#include <stdexcept>
 
 namespace ed::internal {
 namespace {
 
 using Eigen::Matrix3d;
-using Eigen::Vector2d;
 using Eigen::Vector3d;
-
-/// The bounds are exact maxima; states carry rounding errors of some units in the last place.
-constexpr double kBoundMargin = 1 + 1e-14;
-
-/// Sine and cosine of any angle: sincos' own range first. remainder is exact on every processor, and 2 pi rounded adds
-/// 4e-17 of the angle, below its own rounding.
-SinCos turn(double angle) {
-  constexpr double kTwoPi = 6.283185307179586477;
-  if (std::abs(angle) > 1e6) [[unlikely]]
-    angle = std::remainder(angle, kTwoPi);
-  return sincos(angle);
-}
 
 /// Means of the cosine and the sine over [0, x]: sin(x) / x and (1 - cos(x)) / x.
 SinCos mean_turn(double x) {
@@ -37,32 +20,16 @@ SinCos mean_turn(double x) {
 
 /// v turned about the unit vector l.
 Vector3d rotated(const Vector3d& v, const Vector3d& l, const SinCos& sc) {
-  return sc.cos * v + sc.sin * l.cross(v) + ((1 - sc.cos) * l.dot(v)) * l;
+  return sc.cos * v + sc.sin * l.cross(v) + ((1 - sc.cos) * inner(l, v)) * l;
 }
 
-/// The rotation matrix whose column `axis` is along u and whose next one is near x.
-Matrix3d frame(int axis, const Vector3d& u, const Vector3d& x) {
-  const Vector3d u1 = u.normalized();
-  const Vector3d x1 = (x - u1.dot(x) * u1).normalized();
-  Matrix3d R;
-  R.col(axis) = u1;
-  R.col((axis + 1) % 3) = x1;
-  R.col((axis + 2) % 3) = u1.cross(x1);
-  return R;
-}
-
-bool two_are_equal(const Vector3d& inertia) {
-  return symmetry_axis_of_inertia(inertia) >= 0;
-}
-
-std::variant<UniformTurn, SymmetricTop> make_top(const Vector3d& inertia, const Matrix3d& rotation,
-                                                 const Vector3d& omega) {
-  if (!two_are_equal(inertia)) {
-    throw std::invalid_argument(
-        "inertia has three different moments: the motion of asymmetric tops is not available yet; accepted: two "
-        "equal moments");
-  }
+std::variant<UniformTurn, SymmetricTop, AsymmetricTop> make_top(const Vector3d& inertia, const Matrix3d& rotation,
+                                                                const Vector3d& omega) {
   const int axis = symmetry_axis_of_inertia(inertia);
+  if (axis < 0) {
+    if (const auto top = AsymmetricTop::make(inertia, rotation, omega)) return *top;
+    return UniformTurn(rotation, omega);
+  }
   if (inertia[axis] == inertia[(axis + 1) % 3] || omega.isZero(0)) return UniformTurn(rotation, omega);
   return SymmetricTop(axis, inertia, rotation, omega);
 }
@@ -74,8 +41,8 @@ std::variant<UniformTurn, SymmetricTop> make_top(const Vector3d& inertia, const 
 UniformTurn::UniformTurn(const Matrix3d& rotation, const Vector3d& omega)
     : start_(frame(2, rotation.col(2), rotation.col(0))),
       omega_(omega),
-      direction_(omega.isZero(0) ? Vector3d::UnitZ() : Vector3d(omega.stableNormalized())),
-      rate_(omega.stableNorm()) {}
+      direction_(omega.isZero(0) ? Vector3d::UnitZ() : Vector3d(omega / length(omega))),
+      rate_(length(omega)) {}
 
 Matrix3d UniformTurn::rotation(double tau) const {
   const SinCos sc = turn(rate_ * tau);
@@ -95,7 +62,7 @@ Vector3d UniformTurn::turned_world(double tau) const {
 }
 
 Vector3d UniformTurn::turned_body(double tau) const {
-  return tau * (start_.transpose() * omega_);
+  return tau * transposed_product(start_, omega_);
 }
 
 // ---- Symmetric top -------------------------------------------------------------------------------------------------
@@ -107,12 +74,12 @@ SymmetricTop::SymmetricTop(int axis, const Vector3d& inertia, const Matrix3d& ro
   x_ = R.col((axis + 1) % 3);
   y_ = R.col((axis + 2) % 3);
   const double perpendicular = inertia[(axis + 1) % 3];
-  spin_ = omega.dot(u_);
-  across_ = {omega.dot(x_), omega.dot(y_)};
+  spin_ = inner(omega, u_);
+  across_ = {inner(omega, x_), inner(omega, y_)};
   // L / I_perp.
   const Vector3d turning = across_.x() * x_ + across_.y() * y_ + (inertia[axis] / perpendicular * spin_) * u_;
-  precession_ = turning.stableNorm();
-  l_ = turning.stableNormalized();
+  precession_ = length(turning);
+  l_ = turning / precession_;
   own_ = spin_ * ((perpendicular - inertia[axis]) / perpendicular);
 }
 
@@ -132,15 +99,15 @@ TopState SymmetricTop::at(double tau) const {
 }
 
 TopBounds SymmetricTop::bounds() const {
-  // omega - (omega.l) l = k (u - (u.l) l) turns about l at Omega: the same lengths at all times.
-  const double alpha = kBoundMargin * precession_ * std::abs(own_) * l_.cross(u_).norm();
-  return {kBoundMargin * (precession_ * l_ + own_ * u_).norm(), alpha, kBoundMargin * precession_ * alpha};
+  // omega - (omega.l) l = k (u - (u.l) l) turns about l at Omega: the same lengths at all times. 1e-15: rounding of u.
+  const double alpha = kBoundMargin * precession_ * std::abs(own_) * (length(l_.cross(u_)) + 1e-15);
+  return {kBoundMargin * length(precession_ * l_ + own_ * u_), alpha, kBoundMargin * precession_ * alpha};
 }
 
 Vector3d SymmetricTop::turned_world(double tau) const {
   // omega = Omega l + k u,  u = e0 + cos(Omega tau) (u(0) - e0) + sin(Omega tau) l x u(0),  e0 = (l.u) l.
   const SinCos mean = mean_turn(precession_ * tau);
-  const Vector3d e0 = l_.dot(u_) * l_;
+  const Vector3d e0 = inner(l_, u_) * l_;
   return tau * (precession_ * l_ + own_ * (e0 + mean.cos * (u_ - e0) + mean.sin * l_.cross(u_)));
 }
 

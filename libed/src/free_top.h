@@ -3,35 +3,27 @@
 /// Exact free rotation of any rigid body about its centre of mass, for one flight: constants once, then any time.
 ///
 /// Notation: I1, I2, I3 principal moments; L = R I R^T omega the angular momentum, constant in the world; l = L / |L|;
-/// E the kinetic energy of rotation.
+/// E the kinetic energy of rotation. The kind follows from the moments alone, exactly equal or not: nothing is gained
+/// by a tolerance, because an asymmetric top's formulas are as accurate for moments that nearly agree.
 ///
-/// Spherical top (three equal moments), or omega along a principal axis, or no rotation: omega is constant.
+/// - Spherical top (three equal moments), or omega along a principal axis, or no rotation: omega is constant.
+/// - Symmetric top (two equal moments I_perp, about any body axis u): with Omega = |L| / I_perp and
+///   k = (omega.u) (1 - I_3 / I_perp), R(tau) = Rot(l, Omega tau) R(0) Rot(e_u, k tau) and omega = Omega l + k u(tau)
+///   (Landau and Lifshitz, Mechanics, sec. 33 and 35).
+/// - Asymmetric top: elliptic functions, see asymmetric_top.h.
 ///
-/// Symmetric top (two equal moments I_perp, about any body axis u): with Omega = |L| / I_perp and
-/// k = (omega.u) (1 - I_3 / I_perp), R(tau) = Rot(l, Omega tau) R(0) Rot(e_u, k tau) and omega = Omega l + k u(tau)
-/// (Landau and Lifshitz, Mechanics, sec. 33, 35).
-///
-/// Determinism: +, -, *, / and sqrt, libed's own sine and cosine, and exact functions of the C library (remainder).
+/// Determinism: +, -, *, / and sqrt, libed's own sine, cosine and exponential, and exact functions of the C library
+/// (nearbyint, remainder, frexp). Eigen's matrix products and sums are avoided, because their order, and whether they
+/// fuse multiplications and additions, depends on the instruction set they are compiled for.
+
+#include "asymmetric_top.h"
+#include "top_state.h"
 
 #include <Eigen/Core>
 
 #include <variant>
 
 namespace ed::internal {
-
-/// Rotation at an instant.
-struct TopState {
-  Eigen::Matrix3d R;      ///< body to world, orthonormal to 1e-15
-  Eigen::Vector3d omega;  ///< world frame
-  Eigen::Vector3d alpha;  ///< d omega / dt, world frame
-};
-
-/// Upper bounds over all times.
-struct TopBounds {
-  double omega = 0;  ///< of |omega|
-  double alpha = 0;  ///< of |d omega/dt|
-  double jerk = 0;   ///< of |d2 omega/dt2|, world frame
-};
 
 /// Constant angular velocity.
 class UniformTurn {
@@ -78,11 +70,12 @@ class FreeTop {
   /// At rest, body axes along the world's.
   FreeTop();
 
-  /// The state at tau = 0. Moments positive and such as a body can have (check_inertia), rotation orthonormal, omega in
-  /// the world frame; numbers finite. Throws std::invalid_argument for three different moments (not available yet).
+  /// The state at tau = 0. Moments positive and such as a body can have (check_inertia), rotation orthonormal to 1e-8,
+  /// omega in the world frame; numbers finite (not checked).
   FreeTop(const Eigen::Vector3d& inertia, const Eigen::Matrix3d& rotation, const Eigen::Vector3d& omega);
 
-  /// The state at tau, of either sign and any length. Error: rounding, some 1e-16 (1 + |omega| |tau|).
+  /// The state at tau, of either sign and any length. Error: rounding, below 2e-15 (1 + |omega| |tau|); for asymmetric
+  /// tops, and what rounding of omega itself makes of the motion, which is more near the separatrix.
   TopState at(double tau) const;
   Eigen::Matrix3d rotation(double tau) const;
 
@@ -92,15 +85,16 @@ class FreeTop {
   double max_alpha() const { return bounds_.alpha; }
   double max_jerk() const { return bounds_.jerk; }
 
-  /// Integral of omega over [0, tau], world frame.
+  /// Integral of omega over [0, tau], world frame: in closed form for spherical and symmetric tops. For asymmetric ones
+  /// by quadrature to rounding, 1e-15 (1 + |omega| |tau|)^2, in a time proportional to |omega| |tau|.
   Eigen::Vector3d turned_world(double tau) const;
 
-  /// Integral of the components of omega along the body's axes over [0, tau]: what rotational diffusion in the body
-  /// frame is made of.
+  /// Integral of the components of omega along the body's axes over [0, tau], as accurate: what rotational diffusion in
+  /// the body frame is made of.
   Eigen::Vector3d turned_body(double tau) const;
 
  private:
-  std::variant<UniformTurn, SymmetricTop> top_;
+  std::variant<UniformTurn, SymmetricTop, AsymmetricTop> top_;
   TopBounds bounds_;
 };
 

@@ -1,0 +1,79 @@
+#pragma once
+
+/// What the kinds of free tops answer; see free_top.h.
+
+#include "sincos.h"
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include <cmath>
+
+namespace ed::internal {
+
+/// Rotation at an instant.
+struct TopState {
+  Eigen::Matrix3d R;      ///< body to world, orthonormal to 1e-15
+  Eigen::Vector3d omega;  ///< world frame
+  Eigen::Vector3d alpha;  ///< d omega / dt, world frame
+};
+
+/// Upper bounds over all times.
+struct TopBounds {
+  double omega = 0;  ///< of |omega|
+  double alpha = 0;  ///< of |d omega/dt|
+  double jerk = 0;   ///< of |d2 omega/dt2|, world frame
+};
+
+/// The bounds are exact maxima; states carry rounding errors of some units in the last place.
+inline constexpr double kBoundMargin = 1 + 1e-14;
+
+/// Sine and cosine of any angle: sincos' own range first. remainder is exact on every processor, and 2 pi rounded adds
+/// 4e-17 of the angle, below its own rounding.
+inline SinCos turn(double angle) {
+  constexpr double kTwoPi = 6.283185307179586477;
+  if (std::abs(angle) > 1e6) [[unlikely]]
+    angle = std::remainder(angle, kTwoPi);
+  return sincos(angle);
+}
+
+// Eigen's own products and sums depend on the instruction set: in their order, and in fusing multiplications with
+// additions. These do not.
+
+inline double inner(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return a.x() * b.x() + a.y() * b.y() + a.z() * b.z();
+}
+
+inline Eigen::Vector3d product(const Eigen::Matrix3d& m, const Eigen::Vector3d& v) {
+  return v.x() * m.col(0) + v.y() * m.col(1) + v.z() * m.col(2);
+}
+
+inline Eigen::Vector3d transposed_product(const Eigen::Matrix3d& m, const Eigen::Vector3d& v) {
+  return {inner(m.col(0), v), inner(m.col(1), v), inner(m.col(2), v)};
+}
+
+/// |v|, however large or small.
+inline double length(const Eigen::Vector3d& v) {
+  const double largest = v.cwiseAbs().maxCoeff();
+  return largest > 0 ? largest * std::sqrt(inner(v / largest, v / largest)) : 0;
+}
+
+/// Makes u and x, unit and orthogonal to 1e-8 already, so to rounding (Gram and Schmidt; one step of Newton's method
+/// for the lengths).
+inline void polish(Eigen::Vector3d& u, Eigen::Vector3d& x) {
+  u *= 1.5 - 0.5 * inner(u, u);
+  x -= inner(u, x) * u;
+  x *= 1.5 - 0.5 * inner(x, x);
+}
+
+/// The rotation matrix whose column `axis` is u and whose next one, in cyclic order, is x, polished.
+inline Eigen::Matrix3d frame(int axis, Eigen::Vector3d u, Eigen::Vector3d x) {
+  polish(u, x);
+  Eigen::Matrix3d R;
+  R.col(axis) = u;
+  R.col((axis + 1) % 3) = x;
+  R.col((axis + 2) % 3) = u.cross(x);
+  return R;
+}
+
+}  // namespace ed::internal
