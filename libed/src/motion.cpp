@@ -1,4 +1,5 @@
 #include "axis_motion.h"
+#include "free_top.h"
 #include "motion_checks.h"
 
 #include <ed/motion.h>
@@ -66,22 +67,12 @@ TopMotion top_motion(const Motion& motion, int axis) {
 Motion propagate(const Motion& motion, double t) {
   internal::check_motion(motion);
   if (!std::isfinite(t)) throw std::invalid_argument("propagate: t is not finite; accepted: finite numbers");
-  const int axis = internal::symmetry_axis_of_inertia(motion.inertia);
-  if (axis < 0) {
-    throw std::invalid_argument(
-        "inertia has three different moments: the motion of asymmetric tops is not available yet; accepted: two "
-        "equal moments");
-  }
-  internal::TopMotion top = internal::top_motion(motion, axis);
-  internal::advance(top.inertia, t, top.axis, top.frame);
-  const Eigen::Vector3d u = top.axis.axis();
-  Eigen::Matrix3d R;
-  R.col(axis) = u;
-  R.col((axis + 1) % 3) = top.frame.x_axis;
-  R.col((axis + 2) % 3) = u.cross(top.frame.x_axis);
+  const double tau = t - motion.time;
+  const internal::FreeTop top(motion.inertia, motion.pose.rotation(), motion.angular_velocity);
+  const internal::TopState there = top.at(tau);
   Motion result = motion;
-  result.pose = geom::Pose(R, top.axis.position);
-  result.angular_velocity = internal::omega_across(top.axis) + top.frame.spin * u;
+  result.pose = geom::Pose(there.R, motion.pose.position() + tau * motion.velocity);
+  result.angular_velocity = there.omega;
   result.time = t;
   return result;
 }

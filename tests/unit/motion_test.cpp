@@ -61,10 +61,6 @@ std::vector<TopRow> read_rows() {
   return rows;
 }
 
-bool symmetric(const TopRow& row) {
-  return row.inertia.x() == row.inertia.y() || row.inertia.y() == row.inertia.z() || row.inertia.x() == row.inertia.z();
-}
-
 /// The body axes renamed in cyclic order: old axis k becomes axis (k + shift) mod 3.
 Matrix3d renamed(int shift) {
   Matrix3d P = Matrix3d::Zero();
@@ -75,7 +71,6 @@ Matrix3d renamed(int shift) {
 TEST(Propagate, FollowsTheReferenceTopsAboutEveryBodyAxis) {
   int rows = 0;
   for (const TopRow& row : read_rows()) {
-    if (!symmetric(row)) continue;
     ++rows;
     for (int shift = 0; shift < 3; ++shift) {
       // In a world frame turned by Q nothing else changes.
@@ -95,23 +90,10 @@ TEST(Propagate, FollowsTheReferenceTopsAboutEveryBodyAxis) {
       EXPECT_EQ(end.time, 2 + row.t);
     }
   }
-  EXPECT_GE(rows, 1);
+  EXPECT_EQ(rows, 4);
 }
 
-TEST(Propagate, RefusesTheAsymmetricReferenceTops) {
-  int rows = 0;
-  for (const TopRow& row : read_rows()) {
-    if (symmetric(row)) continue;
-    ++rows;
-    Motion start;
-    start.angular_velocity = row.omega_start;
-    start.inertia = row.inertia;
-    EXPECT_THROW((void)propagate(start, row.t), std::invalid_argument);
-  }
-  EXPECT_GE(rows, 1);
-}
-
-/// Random state of a top with two equal moments, about body axis `axis`.
+/// Random state of a top with two equal moments, about body axis `axis`, or with three different ones (axis 3).
 Motion draw(ed::Random& random, int axis) {
   Motion m;
   m.pose = geom::Pose(random.rotation(), random.normal3());
@@ -119,7 +101,12 @@ Motion draw(ed::Random& random, int axis) {
   m.angular_velocity = 2 * random.normal3();
   const double perpendicular = 0.3 + random.uniform();
   m.inertia = Vector3d::Constant(perpendicular);
-  m.inertia[axis] = 2 * perpendicular * (0.05 + 0.95 * random.uniform());  // from needles to discs
+  const double other = 0.05 + 0.95 * random.uniform();
+  if (axis < 3) {
+    m.inertia[axis] = 2 * perpendicular * other;  // from needles to discs
+  } else {
+    m.inertia = perpendicular * Vector3d(1 + other, 1.3, 0.3 + other);
+  }
   m.time = random.normal();
   return m;
 }
@@ -147,7 +134,7 @@ constexpr double kRounding = 2e-13;
 TEST(Propagate, KeepsEnergyAngularMomentumAndARotationMatrix) {
   ed::Random random(41);
   for (int k = 0; k < 3000; ++k) {
-    const Motion start = draw(random, k % 3);
+    const Motion start = draw(random, k % 4);
     const Motion end = propagate(start, start.time + 10 * random.normal());
     EXPECT_LE((angular_momentum(end) - angular_momentum(start)).norm(), kRounding);
     EXPECT_NEAR(rotational_energy(end), rotational_energy(start), kRounding * (1 + rotational_energy(start)));
@@ -161,7 +148,7 @@ TEST(Propagate, KeepsEnergyAngularMomentumAndARotationMatrix) {
 TEST(Propagate, TwoStepsAreOne) {
   ed::Random random(42);
   for (int k = 0; k < 3000; ++k) {
-    const Motion start = draw(random, k % 3);
+    const Motion start = draw(random, k % 4);
     const double t1 = start.time + 3 * random.normal();
     const double t2 = t1 + 3 * random.normal();
     expect_same(propagate(propagate(start, t1), t2), propagate(start, t2), kRounding);
@@ -171,7 +158,7 @@ TEST(Propagate, TwoStepsAreOne) {
 TEST(Propagate, BackAndForthOrWithReversedVelocitiesReturns) {
   ed::Random random(43);
   for (int k = 0; k < 3000; ++k) {
-    const Motion start = draw(random, k % 3);
+    const Motion start = draw(random, k % 4);
     const double t = start.time + 5 * random.normal();
     Motion end = propagate(start, t);
     expect_same(propagate(end, start.time), start, kRounding);
@@ -286,7 +273,7 @@ TEST(Propagate, RefusesWhatNoBodyCanHaveAndNamesIt) {
   // No moment exceeds the sum of the other two.
   EXPECT_PRED2(has, refusal([](Motion& m) { m.inertia = {1, 1, 2.001}; }), "none exceeds the sum");
   EXPECT_EQ(refusal([](Motion& m) { m.inertia = {1, 1, 2}; }), "accepted");  // a thin disc
-  EXPECT_PRED2(has, refusal([](Motion& m) { m.inertia = {1, 1.1, 1.2}; }), "three different moments");
+  EXPECT_EQ(refusal([](Motion& m) { m.inertia = {1, 1.1, 1.2}; }), "accepted");
 }
 
 // ---- Integrals of the angular velocity -----------------------------------------------------------------------------

@@ -17,12 +17,16 @@ struct Motion {
   double time = 0;
 };
 
-/// The same motion, its state taken at time t (before or after motion.time): exact, by the closed form, so that the
-/// error is rounding, about 1e-16 |omega| |t - motion.time| radian, whatever the time between.
+/// The same motion, its state taken at time t (before or after motion.time), by closed forms: the error is rounding,
+/// below 2e-15 (1 + |omega| |t - motion.time|) radian, whatever the time between.
 ///
-/// Spherical and symmetric tops (two moments equal, about any body axis): the body turns about its constant angular
-/// momentum L at rate |L| / I_perp while it spins about its own axis. Throws std::invalid_argument for three different
-/// moments (not available yet), and for values that are not finite or moments that no body can have.
+/// The angular momentum L stays where it is. Three equal moments: the body turns uniformly. Two equal moments, about
+/// any body axis: it turns about L at rate |L| / I_perp while it spins about its own axis. Three different moments:
+/// elliptic functions of time (Landau and Lifshitz, Mechanics, sec. 37), also for moments that nearly agree and for any
+/// omega. Close to rotation about the axis of the middle moment, which is unstable, and to the motions that lead there,
+/// the motion itself magnifies small differences: the result is then as good as omega is known to rounding.
+///
+/// Throws std::invalid_argument for values that are not finite or moments that no body can have.
 ED_EXPORT Motion propagate(const Motion& motion, double t);
 
 }  // namespace ed
