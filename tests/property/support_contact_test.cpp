@@ -66,12 +66,6 @@ Vector3d thermal(Random& random) {
   return random.uniform(0.2, 3) * random.direction();
 }
 
-/// Of uniform density; that of bodies with three different moments, until these can move, of a ball.
-Vector3d uniform_inertia(const Superellipsoid& shape) {
-  const Vector3d I = shape.inertia(1);
-  return I.x() != I.y() ? Vector3d(Vector3d::Constant(I.mean())) : I;
-}
-
 /// Equal bodies near each other. Grazing: the normal part of the relative velocity is next to nothing.
 MovingPair random_pair(Random& random) {
   const Superellipsoid shape = random_shape(random);
@@ -80,7 +74,7 @@ MovingPair random_pair(Random& random) {
   geom::Pose X_WA, X_WB;
   const bool grazes = random.uniform() < 0.7;
   geom_test::place(o, shape, grazes ? random.log_uniform(1e-9, 1e-2) : random.log_uniform(1e-6, 1), X_WA, X_WB);
-  const Vector3d inertia = uniform_inertia(shape);
+  const Vector3d inertia = shape.inertia(1);  // of uniform density
   MovingPair pair{shape, shape, {}, {}};
   Vector3d v = thermal(random);
   const double turning = random.coin() ? 1.0 : random.log_uniform(1e-3, 1);
