@@ -68,7 +68,8 @@ DistanceResult uniaxial_distance(const Ellipsoid& a, const Pose& X_WA, int axis_
   const Eigen::Vector3d u_a = X_WA.rotation().col(axis_a);
   const Eigen::Vector3d u_b = X_WB.rotation().col(axis_b);
   const auto cold = [&] { return internal::cold_normal(s_a, s_b, r, u_a, u_b); };
-  return internal::solve_dual(UniaxialPair{s_a, s_b, r, u_a, u_b}, cold, scale, X_WA.position(), options);
+  const auto shares = [&](const Eigen::Vector3d& p_W) { return internal::both_contain(a, X_WA, b, X_WB, p_W); };
+  return internal::solve_dual(UniaxialPair{s_a, s_b, r, u_a, u_b}, cold, scale, X_WA.position(), options, shares);
 }
 
 DistanceResult general_distance(const Ellipsoid& a, const Pose& X_WA, const Ellipsoid& b, const Pose& X_WB,
@@ -79,8 +80,9 @@ DistanceResult general_distance(const Ellipsoid& a, const Pose& X_WA, const Elli
     const Eigen::Vector3d n = (w_a.Q + w_b.Q).inverse() * r;
     return n.squaredNorm() > 0 ? n.normalized() : Eigen::Vector3d::UnitX();
   };
+  const auto shares = [&](const Eigen::Vector3d& p_W) { return internal::both_contain(a, X_WA, b, X_WB, p_W); };
   return internal::solve_dual(EllipsoidPair(w_a, w_b, r, kLeastEigenvalue * scale.certified_depth), cold, scale,
-                              X_WA.position(), options);
+                              X_WA.position(), options, shares);
 }
 
 /// Newton with Armijo's rule. g never falls: from a normal with g > 0 the ascent stays where M + g I is positive

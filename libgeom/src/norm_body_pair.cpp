@@ -142,20 +142,22 @@ NormBodyPair::Answer NormBodyPair::dual(const Vector3d& start, int max_iteration
   Answer answer;
   answer.at = sample(start);
   Step step = newton_step(answer.at);
-  for (int k = 0; k < max_iterations; ++k) {
+  bool settled = false;  // no step is needed, or none helps
+  for (int k = 0; k < max_iterations && !settled; ++k) {
     ++iterations;
-    if ((answer.at.g > 0 && answer.at.gap() < kTightGap * scale_) || answer.at.residual < kTightResidual * scale_) {
-      break;
-    }
-    if (!advance(answer.at, step)) break;
-    step = newton_step(answer.at);
+    settled = (answer.at.g > 0 && answer.at.gap() < kTightGap * scale_) || answer.at.residual < kTightResidual * scale_;
+    if (settled) break;
+    settled = !advance(answer.at, step);
+    if (!settled) step = newton_step(answer.at);
   }
   answer.gap = answer.at.gap();
   // Where edges nearly touch, rounding of the support points alone can leave a mismatch too large for the bounds: there
   // the decrement, twice what the distance can be above g by the quadratic model of a concave function, decides.
-  // A decrement alone says nothing on a flat face, where the model holds for no step at all.
-  const bool stationary =
-      answer.at.residual < kSmallResidual * scale_ && step.decrement < kTightGap * scale_ && !step.lifted;
+  // A decrement alone says nothing on a flat face, where the model holds for no step at all, nor while steps still
+  // help.
+  const bool stationary = settled && answer.at.residual < kSmallResidual * scale_ &&
+                          step.decrement < kTightGap * scale_ && !step.lifted &&
+                          (!(answer.at.g > 0) || answer.gap < kWidestGap * scale_);
   answer.converged = answer.gap < kBoundGap * scale_ || stationary;
   return answer;
 }
@@ -250,7 +252,14 @@ Vector3d NormBodyPair::cold_normal() const {
 /// Whether an answer of one of the methods ends the query.
 bool NormBodyPair::ends(const Answer& answer, Penetration penetration) const {
   if (!answer.converged) return false;
-  return answer.at.g > 0 || answer.gap < kBoundGap * scale_ || penetration == Penetration::local;
+  if (answer.at.g > 0 || answer.gap < kBoundGap * scale_) return true;
+  return penetration == Penetration::local && shares_a_point(answer.at);
+}
+
+bool NormBodyPair::shares_a_point(const DualSample& s) const {
+  const Vector3d middle = 0.5 * (s.support.point.a() + r_ + s.support.point.b());
+  const Lanes norms = bodies_.norms(LaneVector::of(middle, middle - r_));
+  return norms[0] <= 1 && norms[1] <= 1;
 }
 
 /// Branch and bound from the best normal so far, which it raises to a local maximum first.
@@ -270,7 +279,7 @@ NormBodyPair::Answer NormBodyPair::search(const DualSample& best, int& iteration
   iterations += sphere.samples();
   Answer answer;
   answer.at = sample(sphere.best().n);
-  answer.gap = sphere.upper() - sphere.best().g;
+  answer.gap = std::max(0.0, sphere.upper() - sphere.best().g);
   if (apart) answer.gap = std::min(answer.gap, answer.at.gap());
   answer.converged = answer.gap < (apart ? kWidestGap : kWidestDepthGap) * scale_;
   return answer;

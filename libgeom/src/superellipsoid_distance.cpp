@@ -2,6 +2,7 @@
 #include <geom/internal/norm_body_pair.h>
 #include <geom/tolerances.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -21,7 +22,7 @@ DistanceResult norm_body_distance(const A& a, const Pose& X_WA, const B& b, cons
   const NormBodyPair pair(NormBodies(internal::NormShape(a), X_WA.rotation(), internal::NormShape(b), X_WB.rotation()),
                           r, a.bounding_radius() + b.bounding_radius(), a.inscribed_radius() + b.inscribed_radius());
   const double start2 = options.start.squaredNorm();
-  const bool warm = start2 > 1e-290 && std::isfinite(start2);
+  const bool warm = start2 > kLeastStart2 && std::isfinite(start2);
   DistanceResult result;
   const Vector3d cold = pair.cold_normal();
   const Answer answer = pair.solve(warm ? Vector3d(options.start / std::sqrt(start2)) : cold, cold, options.penetration,
@@ -33,8 +34,9 @@ DistanceResult norm_body_distance(const A& a, const Pose& X_WA, const B& b, cons
   result.point_a = X_WA.position() + at.support.point.a() + 0.5 * at.y;
   result.point_b = result.point_a + at.g * at.n;
   result.residual = at.residual;
-  result.error_bound =
-      at.g > 0 || answer.gap < kWidestDepthGap * pair.scale() ? answer.gap : std::numeric_limits<double>::infinity();
+  const bool bounded = at.g > 0 || answer.gap < kWidestDepthGap * pair.scale();
+  // The upper bound can be below g by rounding.
+  result.error_bound = bounded ? std::max(0.0, answer.gap) : std::numeric_limits<double>::infinity();
   result.status = at.g >= 0 ? DistanceStatus::separated : DistanceStatus::overlapping;
   return result;
 }

@@ -80,7 +80,7 @@ void check(const Pair& pair, const DistanceResult& r) {
   require(!std::isnan(r.residual), "its residual is a number");
   require((r.distance >= 0) == (r.status == DistanceStatus::separated), "its sign is what the status says");
   const double size = size_of(pair);
-  require(r.error_bound >= -1e-14 * size, "its error bound is a number, none below 0 but for rounding");
+  require(r.error_bound >= 0, "its error bound is a number, none below 0");
   const double g = geom::distance_lower_bound(pair.a, pair.X_WA, pair.b, pair.X_WB, r.normal);
   require(!(std::abs(g - r.distance) > 1e-8 * size), "its distance is the gap across its normal");
 }

@@ -208,7 +208,7 @@ void expect_right(const A& a, const B& b, double gap, Random& random) {
   const double extent = pair.X_WA.position().norm() + 2 * pair.size;
   const DistanceResult r = distance(a, pair.X_WA, b, pair.X_WB);
   ASSERT_TRUE(answers(r, gap, tolerance, extent));
-  ASSERT_GE(r.error_bound, -1e-15 * pair.size);
+  ASSERT_GE(r.error_bound, 0);
   ASSERT_LE(r.error_bound, kWidestGap * pair.size);
   if (std::abs(gap) > tolerance) {
     ASSERT_EQ(overlap(a, pair.X_WA, b, pair.X_WB), gap > 0 ? Answer::no : Answer::yes);

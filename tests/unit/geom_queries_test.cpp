@@ -175,5 +175,57 @@ TEST(AnyShape, AnswersAsTheShapeInside) {
   EXPECT_EQ(inscribed_radius(shapes[1]), kBrick.inscribed_radius());
 }
 
+/// Flat and long bodies have stationary points with g < 0 though they are apart: neither `overlap` nor a local answer
+/// may take one for an overlap, whatever normal they start from.
+template <class ShapeA, class ShapeB>
+void expect_apart(const ShapeA& a, const ShapeB& b, Random& random, long& unknown) {
+  const double gap = random.log_uniform(1e-7, 1) * (a.bounding_radius() + b.bounding_radius());
+  const auto pair = geom_test::manufacture(a, b, gap, random);
+  for (const Vector3d& start : {Vector3d(Vector3d::Zero()), Vector3d(-pair.normal), random.direction()}) {
+    const Answer answer = overlap(a, pair.X_WA, b, pair.X_WB, start);
+    ASSERT_NE(answer, Answer::yes) << gap;
+    if (answer == Answer::unknown) ++unknown;
+    const DistanceResult local =
+        distance(a, pair.X_WA, b, pair.X_WB, {.start = start, .penetration = Penetration::local});
+    ASSERT_NE(local.status, DistanceStatus::overlapping) << gap;
+    ASSERT_GE(local.error_bound, 0);
+  }
+}
+
+Vector3d stretched_axes(Random& random) {
+  const double most = random.log_uniform(1, 1e3);
+  return {1, random.log_uniform(1 / most, 1), random.log_uniform(1 / most, 1)};
+}
+
+TEST(Queries, BodiesApartDoNotOverlapHoweverFlatAndFromAnyStart) {
+  Random random(31);
+  long unknown = 0;
+  for (int k = 0; k < 4000; ++k) {
+    expect_apart(Ellipsoid(stretched_axes(random)), Ellipsoid(stretched_axes(random)), random, unknown);
+  }
+  EXPECT_EQ(unknown, 0);
+  for (int k = 0; k < 1000; ++k) {
+    const Superellipsoid a(stretched_axes(random), random.uniform(0.3, 1.5), random.uniform(0.3, 1.5));
+    const Superellipsoid b(stretched_axes(random), random.uniform(0.3, 1.5), random.uniform(0.3, 1.5));
+    expect_apart(a, b, random, unknown);
+  }
+  EXPECT_LE(unknown, 30) << "of 3,000";
+}
+
+TEST(Queries, OverlapsAreYesBySharedPoints) {
+  Random random(32);
+  for (int k = 0; k < 2000; ++k) {
+    const Superellipsoid a({1, random.uniform(0.5, 2), random.uniform(0.5, 2)}, random.uniform(0.3, 1.5),
+                           random.uniform(0.3, 1.5));
+    const double depth = random.log_uniform(1e-9, 1e-3);
+    const auto pair = geom_test::manufacture(a, a, -depth, random);
+    ASSERT_EQ(overlap(a, pair.X_WA, a, pair.X_WB), Answer::yes) << depth;
+    const DistanceResult local = distance(a, pair.X_WA, a, pair.X_WB, {.penetration = Penetration::local});
+    ASSERT_EQ(local.status, DistanceStatus::overlapping) << depth;
+    const ClosestPoint inside = closest_point(a, pair.X_WA, pair.X_WA.position());
+    ASSERT_GE(inside.error_bound, 0);
+  }
+}
+
 }  // namespace
 }  // namespace geom

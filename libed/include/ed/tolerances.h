@@ -34,7 +34,9 @@ inline constexpr double kEpoch = 1;
 
 /// Superellipsoids in motion: kMinExponentInMotion <= e1, e2 <= kMaxExponentInMotion. Dimensionless. The range in which
 /// contact searches are tested; flatter faces lose support points and their curvature to rounding.
+/// @{
 inline constexpr double kMinExponentInMotion = 0.25;
 inline constexpr double kMaxExponentInMotion = 1.6;
+/// @}
 
 }  // namespace ed

@@ -28,7 +28,9 @@ GEOM_EXPORT const char* to_string(DistanceStatus status);
 /// What is asked of bodies that overlap.
 enum class Penetration {
   global,  ///< the shortest of all translations that part them
-  local,   ///< the nearest stationary one (the paper's beta < 0), at any depth: not certified, cheap
+  /// The nearest stationary one (the paper's beta < 0), at any depth: cheap. That the bodies overlap is certain (by a
+  /// point that both hold), that no translation is shorter is not. Where no such point shows, as `global`.
+  local,
 };
 
 /// Where a distance query starts, and how far it goes.
@@ -43,7 +45,7 @@ struct DistanceOptions {
 /// The answer of a distance query; every number is NaN when `status` declines it. World frame.
 ///
 /// `point_b - point_a = distance * normal` to rounding. Either point lies on its surface to within about
-/// residual^2 / (2 * radius of curvature).
+/// residual^2 / (2 * radius of curvature); at an edge, of deep overlaps of superellipsoids, to within the residual.
 struct [[nodiscard]] DistanceResult {
   double distance = std::numeric_limits<double>::quiet_NaN();  ///< < 0: minus the penetration depth
   Eigen::Vector3d point_a = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
@@ -73,8 +75,9 @@ struct [[nodiscard]] DistanceResult {
 /// several local maxima; branch and bound over all normals (internal/sphere_search.h) finds the largest, at any depth,
 /// concentric bodies included: no translation is shorter than the one returned by more than `error_bound`, mostly 1e-9
 /// of the size, 1e-3 at most, or the pair is declined. (The answer is exact to rounding as a local maximum; the bound
-/// says how much better another one could be.) That takes tens of microseconds instead of a fraction of one;
-/// Penetration::local avoids it.
+/// says how much better another one could be.) That takes 0.1 to 0.3 milliseconds for ellipsoids, and for
+/// superellipsoids 0.04 at a depth of 1e-6 of the size, 0.15 at 0.1 and 1 beyond, 30 at worst; Penetration::local
+/// avoids it.
 ///
 /// Accuracy: |error of d| <= 1e-13 times the size of the pair (|p_AB| + both bounding radii); normals 1e-7 worst, 1e-12
 /// typically. Both are asserted by tests/accuracy. Never throws, never allocates.
@@ -88,7 +91,7 @@ GEOM_EXPORT DistanceResult distance(const Ellipsoid& a, const Pose& X_WA, const 
                                     const DistanceOptions& options = {});
 
 /// The same where a body is a superellipsoid: Newton's method on the sphere with steps made on flat faces, then on the
-/// closest points, then continued from rounder bodies (src/norm_body_distance.h).
+/// closest points, then continued from rounder bodies (internal/norm_body_pair.h).
 ///
 /// Answers are certified by two bounds, g(n) from below and the distance of two points from above, that differ by less
 /// than kBoundGap (1e-12) of the sum of both bounding radii; where edges nearly touch and rounding keeps the bounds

@@ -32,7 +32,9 @@ double distance_lower_bound(const ShapeA& a, const Pose& X_WA, const ShapeB& b, 
 enum class Answer { no, yes, unknown };
 
 /// Whether two bodies overlap (touching counts as overlap). Mostly decided by one support evaluation, across `start` or
-/// the line of centres, or by the inscribed spheres; else by `distance`. `unknown` only where `distance` declines.
+/// the line of centres, or by the inscribed spheres; else by `distance`: `no` by a positive lower bound, `yes` by a
+/// point that both bodies hold or a negative upper bound (or where they touch to rounding), `unknown` where there is
+/// neither.
 template <SupportShape ShapeA, SupportShape ShapeB>
 Answer overlap(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const Pose& X_WB,
                const Eigen::Vector3d& start = Eigen::Vector3d::Zero());
@@ -44,10 +46,13 @@ struct [[nodiscard]] ClosestPoint {
   /// Unit, outward: the point asked for is point + distance * normal.
   Eigen::Vector3d normal = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
   DistanceStatus status = DistanceStatus::not_converged;  ///< `overlapping`: inside
+  /// Length: distance <= true distance <= distance + error_bound, as DistanceResult's.
+  double error_bound = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// World frame; accuracy and certificates as those of `distance`. Declined (`not_converged`) for points that are not
-/// finite or beyond kMaxCoordinate.
+/// World frame; accuracy and certificates as those of `distance`, and its cost: points inside a superellipsoid take
+/// half a millisecond on average, tens of them at worst. Declined (`not_converged`) for points that are not finite or
+/// beyond kMaxCoordinate.
 template <SupportShape Shape>
 ClosestPoint closest_point(const Shape& shape, const Pose& X_WB, const Eigen::Vector3d& p_W);
 /// The same, compiled into the library.
@@ -79,7 +84,8 @@ struct [[nodiscard]] RayHit {
 /// kMaxCoordinate.
 ///
 /// Advances from tangent plane to tangent plane of the closest points: a step never passes the body, and the last ones
-/// converge quadratically, to 1e-14 of the lengths involved. Rays that graze take more steps.
+/// converge quadratically, to 1e-14 of the lengths involved; rays that graze take more steps, and meet the body where
+/// its surface is to 1e-14 of them, the ray to the square root of that.
 template <SupportShape Shape>
 RayHit ray_cast(const Shape& shape, const Pose& X_WB, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction);
 /// In closed form.

@@ -19,6 +19,10 @@ inline constexpr double kMinSemiAxis = 1e-50;
 inline constexpr double kMaxSemiAxis = 1e50;
 /// @}
 
+/// DistanceOptions::start is taken if its square is above this: one that is nearly subnormal has lost the digits that
+/// make start / |start| a unit vector. Square of the start's unit.
+inline constexpr double kLeastStart2 = 1e-290;
+
 /// Ellipsoid, Superellipsoid: amax / amin <= kMaxAspectRatio. Dimensionless. The range in which the kernels are tested.
 inline constexpr double kMaxAspectRatio = 1e4;
 

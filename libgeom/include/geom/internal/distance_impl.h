@@ -156,16 +156,17 @@ template <class Pair>
 
 /// Ascends from `start`, then from cold() if that led to a stationary point without a certificate.
 ///
-/// `cold` is called only when it is needed. Returns a result whose status declines when neither start gives a certified
-/// answer; `iterations` is then the number of evaluations spent.
-template <class Pair, class Cold>
+/// A stationary point with g < 0 is no proof of overlap: flat bodies that are apart have some. Where a local answer is
+/// asked for, one beyond the certified depth counts only if shares(point) says that both bodies hold the point in the
+/// middle of its witness points. `cold` is called only when it is needed. Returns a result whose status declines when
+/// neither start gives a certified answer; `iterations` is then the number of evaluations spent.
+template <class Pair, class Cold, class Shares>
 DistanceResult solve_dual(const Pair& pair, const Cold& cold, const PairScale& scale, const Eigen::Vector3d& p_WA,
-                          const DistanceOptions& options) {
+                          const DistanceOptions& options, const Shares& shares) {
   const double rounding = kRoundingFactor * scale.size;
   const auto done = [](const Evaluation& e) { return e.step2 <= kNormalTolerance2; };
   const double start2 = options.start.squaredNorm();
-  // A square that is nearly subnormal has lost the digits that make start / |start| a unit vector.
-  const bool warm = start2 > 1e-290 && std::isfinite(start2);
+  const bool warm = start2 > kLeastStart2 && std::isfinite(start2);
   const int limit = std::max(1, options.max_iterations);
   int spent = 0;
   for (int attempt = warm ? 0 : 1; attempt < 2; ++attempt) {
@@ -179,6 +180,7 @@ DistanceResult solve_dual(const Pair& pair, const Cold& cold, const PairScale& s
     if (!certified && options.penetration == Penetration::global) continue;
     DistanceResult result = witness_result(pair, p_WA, step_on_sphere(n, e.step), spent);
     if (!certified) {
+      if (!shares(Eigen::Vector3d(0.5 * (result.point_a + result.point_b)))) continue;
       result.error_bound = std::numeric_limits<double>::infinity();
       return result;
     }
@@ -207,6 +209,16 @@ struct CorePair {
 };
 template <class Pair>
 CorePair(const Pair&, double, double) -> CorePair<Pair>;
+
+/// Whether a point of the world is in both bodies; of shapes without an equation that is not known: false.
+template <class ShapeA, class ShapeB>
+bool both_contain(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const Pose& X_WB, const Eigen::Vector3d& p_W) {
+  if constexpr (ImplicitSurface<ShapeA> && ImplicitSurface<ShapeB>) {
+    return a.value(X_WA.to_body(p_W)) <= 0 && b.value(X_WB.to_body(p_W)) <= 0;
+  } else {
+    return false;
+  }
+}
 
 /// Where Newton's method does not converge, because support points jump: the closest points of the cores.
 template <class Pair>
@@ -256,7 +268,7 @@ template <class Pair>
   if (sphere.best().g > 0) sphere.run_to(kBoundGap * scale.size, kMostDepthSamples);
   DistanceResult result = witness_result(pair, p_WA, sphere.best().n, iterations + sphere.samples());
   const double least = newton_error_bound(scale, result);
-  result.error_bound = sphere.upper() - sphere.best().g;
+  result.error_bound = std::max(0.0, sphere.upper() - sphere.best().g);
   if (result.distance + scale.certified_depth > 0) result.error_bound = std::min(result.error_bound, least);
   if (result.error_bound < (result.distance > 0 ? kWidestGap : kWidestDepthGap) * scale.size) return result;
   DistanceResult declined;
@@ -280,14 +292,16 @@ DistanceResult distance(const ShapeA& a, const Pose& X_WA, const ShapeB& b, cons
                                    r, least);
   const auto cold = [&r] { return r.squaredNorm() > 0 ? r.normalized() : Eigen::Vector3d::UnitX(); };
   const internal::PairScale scale{r.norm() + a.bounding_radius() + b.bounding_radius(), rho};
-  DistanceResult result = internal::solve_dual(pair, cold, scale, X_WA.position(), options);
+  const auto shares = [&](const Eigen::Vector3d& p_W) { return internal::both_contain(a, X_WA, b, X_WB, p_W); };
+  DistanceResult result = internal::solve_dual(pair, cold, scale, X_WA.position(), options, shares);
   if (result.status != DistanceStatus::not_converged) return result;
   const internal::CorePair cores{pair, internal::min_curvature_radius_or_zero(a),
                                  internal::min_curvature_radius_or_zero(b)};
   result = internal::descend_cores(cores, scale.size, cold(), X_WA.position(), result.iterations);
   if (result.status != DistanceStatus::not_converged) {
     // From there Newton's method has a second chance: where it converges it is the more exact.
-    DistanceResult polished = internal::solve_dual(pair, cold, scale, X_WA.position(), {.start = result.normal});
+    DistanceResult polished =
+        internal::solve_dual(pair, cold, scale, X_WA.position(), {.start = result.normal}, shares);
     polished.iterations += result.iterations;
     return polished.error_bound < result.error_bound ? polished : result;
   }

@@ -208,9 +208,11 @@ class NormBodies {
     const LaneVector w = product(inverse_axes_, R_.transposed_times(x));
     return normalized(R_ * product(norm_(magnitudes(w)).gradient, signed_like(inverse_axes_, w)));
   }
-  LaneVector on_surface(const LaneVector& x) const {
-    return (1 / norm_(magnitudes(product(inverse_axes_, R_.transposed_times(x)))).norm) * x;
+  /// N(x/a): at most 1 in the body.
+  Lanes norms(const LaneVector& x) const {
+    return norm_(magnitudes(product(inverse_axes_, R_.transposed_times(x)))).norm;
   }
+  LaneVector on_surface(const LaneVector& x) const { return (1 / norms(x)) * x; }
   /// grad N, and hess N = t1 t1^T + t2 t2^T, of points of the surfaces.
   void derivatives(const LaneVector& x, LaneVector& gradient, LaneVector& t1, LaneVector& t2) const {
     const LaneVector w = product(inverse_axes_, R_.transposed_times(x));

@@ -102,6 +102,8 @@ class GEOM_EXPORT NormBodyPair {
 
   TangentMatrix tangent_matrix(const DualSample& s) const;
   bool ends(const Answer& answer, Penetration penetration) const;
+  /// Whether the point in the middle of the witness points is in both bodies.
+  bool shares_a_point(const DualSample& s) const;
   Tangent tangent(const Eigen::Vector3d& n) const;
   /// A normal for bodies that grow from nearly ellipsoids to these.
   Eigen::Vector3d continued(Eigen::Vector3d n, int& iterations) const;

@@ -17,7 +17,7 @@ struct Point {
 /// v / |v|, also where |v|^2 under- or overflows; NaN if v is zero or not finite.
 inline Eigen::Vector3d unit_vector(const Eigen::Vector3d& v) {
   const double v2 = v.squaredNorm();
-  if (v2 > 1e-290 && v2 < 1e300) [[likely]]
+  if (v2 > kLeastStart2 && v2 < 1e300) [[likely]]
     return v / std::sqrt(v2);
   const Eigen::Vector3d scaled = v / v.cwiseAbs().maxCoeff();
   return scaled / scaled.norm();
@@ -34,6 +34,7 @@ inline ClosestPoint closest_point_from(const Eigen::Vector3d& p_W, const Distanc
   closest.distance = r.distance + radius;             // exactly so, whatever the radius: support functions add up
   closest.point = p_W + closest.distance * r.normal;  // what mismatch there is of the support points goes to the shape
   closest.normal = -r.normal;
+  closest.error_bound = r.error_bound;
   closest.status = r.status;
   if (closest.status == DistanceStatus::overlapping && closest.distance >= 0)
     closest.status = DistanceStatus::separated;
@@ -43,14 +44,22 @@ inline ClosestPoint closest_point_from(const Eigen::Vector3d& p_W, const Distanc
 /// Whether a point that both bodies are likely to share, if they share any, is in both.
 template <class ShapeA, class ShapeB>
 bool share_a_point(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const Pose& X_WB) {
-  if constexpr (ImplicitSurface<ShapeA> && ImplicitSurface<ShapeB>) {
-    const double r_a = a.inscribed_radius();
-    const double r_b = b.inscribed_radius();
-    const Eigen::Vector3d between = (r_b * X_WA.position() + r_a * X_WB.position()) / (r_a + r_b);
-    return contains(a, X_WA, between) && contains(b, X_WB, between);
-  } else {
-    return false;
-  }
+  const double r_a = a.inscribed_radius();
+  const double r_b = b.inscribed_radius();
+  const Eigen::Vector3d between = (r_b * X_WA.position() + r_a * X_WB.position()) / (r_a + r_b);
+  return both_contain(a, X_WA, b, X_WB, between);
+}
+
+/// What an answer of `distance` says for certain: apart, by a positive lower bound; overlapping, by a negative upper
+/// bound or a point that both bodies hold, or touching to rounding.
+template <class ShapeA, class ShapeB>
+Answer certain_answer(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const Pose& X_WB, const DistanceResult& d) {
+  if (d.status == DistanceStatus::separated) return d.distance > 0 ? Answer::no : Answer::yes;
+  if (d.status != DistanceStatus::overlapping) return Answer::unknown;
+  if (d.distance + d.error_bound < 0) return Answer::yes;
+  if (both_contain(a, X_WA, b, X_WB, Eigen::Vector3d(0.5 * (d.point_a + d.point_b)))) return Answer::yes;
+  const double size = (X_WB.position() - X_WA.position()).norm() + a.bounding_radius() + b.bounding_radius();
+  return -d.distance <= kRoundingFactor * size ? Answer::yes : Answer::unknown;
 }
 
 }  // namespace internal
@@ -74,16 +83,13 @@ Answer overlap(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const Pose& X
   const double inscribed = a.inscribed_radius() + b.inscribed_radius();
   if (r.squaredNorm() <= inscribed * inscribed) return Answer::yes;
   const double start2 = start.squaredNorm();
-  const bool warm = start2 > 0 && std::isfinite(start2);
+  const bool warm = start2 > kLeastStart2 && std::isfinite(start2);
   if (distance_lower_bound(a, X_WA, b, X_WB, warm ? start : r) > 0) return Answer::no;
   if (internal::share_a_point(a, X_WA, b, X_WB)) return Answer::yes;
-  // A local answer decides, unless it is a stationary point too deep to be certified.
-  DistanceResult d = distance(a, X_WA, b, X_WB, {.start = start, .penetration = Penetration::local});
-  if (d.status == DistanceStatus::overlapping && !std::isfinite(d.error_bound)) {
-    d = distance(a, X_WA, b, X_WB, {.start = start});
-  }
-  if (d.status == DistanceStatus::separated) return d.distance > 0 ? Answer::no : Answer::yes;
-  return d.status == DistanceStatus::overlapping ? Answer::yes : Answer::unknown;
+  const DistanceResult local = distance(a, X_WA, b, X_WB, {.start = start, .penetration = Penetration::local});
+  const Answer answer = internal::certain_answer(a, X_WA, b, X_WB, local);
+  if (answer != Answer::unknown) return answer;
+  return internal::certain_answer(a, X_WA, b, X_WB, distance(a, X_WA, b, X_WB));
 }
 
 template <SupportShape Shape>
