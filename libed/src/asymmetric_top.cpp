@@ -338,7 +338,7 @@ struct Phase {
   double angle;
 };
 
-Phase trigonometric_phase(const ThetaSeries& s, double tau) {
+[[gnu::always_inline]] inline Phase trigonometric_phase(const ThetaSeries& s, double tau) {
   const SinCos x = product(s.start, turn(s.rate * tau));
   const double y = 2 * (x.cos - x.sin) * (x.cos + x.sin);
   const double angle = s.secular * tau;
@@ -347,7 +347,7 @@ Phase trigonometric_phase(const ThetaSeries& s, double tau) {
 }
 
 /// Everything over cosh v: no square overflows.
-Phase hyperbolic_phase(const ThetaSeries& s, double tau) {
+[[gnu::always_inline]] inline Phase hyperbolic_phase(const ThetaSeries& s, double tau) {
   double v = s.rate * tau;
   double turns = std::nearbyint(v / s.half_period);
   if (std::abs(turns) > 1e6) [[unlikely]] {
@@ -375,23 +375,54 @@ Phase hyperbolic_phase(const ThetaSeries& s, double tau) {
   return {sign * sech, sign * tanh, sech, 1, tanh, s.q * (e2 + 1 / e2), angle};
 }
 
-Phase phase(const ThetaSeries& s, double tau) {
+[[gnu::always_inline]] inline Phase phase(const ThetaSeries& s, double tau) {
   return s.hyperbolic ? hyperbolic_phase(s, tau) : trigonometric_phase(s, tau);
 }
 
 /// M up to length, in the order lead, next, last.
-std::array<double, 3> momentum(const ThetaSeries& s, const Phase& f) {
+[[gnu::always_inline]] inline std::array<double, 3> momentum(const ThetaSeries& s, const Phase& f) {
   const double m1 = f.f1 * value(s.m1, f.y);
   const double m2 = f.f2 * value(s.m2, f.y);
   const double m3 = f.f3 * value(s.m3, f.y);
   return s.lead_is_3 ? std::array{m3, m1, m2} : std::array{m1, m2, m3};
 }
 
+/// Of the matrix body -> frame of L (l along z): the columns of the axes lead and next, and the z of the last.
+struct Columns {
+  Vector3d lead, next;
+  double last_z;
+};
+
+/// orientation: of lead, next and last in the body.
+[[gnu::always_inline]] inline Columns columns(const ThetaSeries& s, double orientation, double tau) {
+  const Phase f = phase(s, tau);
+  const auto [a, b, c] = momentum(s, f);
+  const double re = f.re * value(s.re, f.y);
+  const double im = f.im * value(s.im, f.y);
+  const SinCos sc = turn(f.angle);
+  // With M of length 1, rho^2 = M_b^2 + M_c^2 and z = exp(i phi), the first two columns across l are rho z and
+  // z (-M_a M_b + i M_c) / rho.
+  const double rho2 = b * b + c * c;
+  const double inverse = 1 / std::sqrt(rho2 + a * a);
+  const double unit = 1 / std::sqrt(rho2 * (re * re + im * im));
+  const double zx = unit * (sc.cos * re - sc.sin * im);
+  const double zy = unit * (sc.sin * re + sc.cos * im);
+  const double lead = rho2 * inverse;
+  const double next = -a * b * inverse;
+  const double aside = orientation * c;
+  return {
+      {lead * zx, lead * zy, a * inverse}, {next * zx - aside * zy, next * zy + aside * zx, b * inverse}, c * inverse};
+}
+
+[[gnu::always_inline]] inline TopAxes in_world(const Columns& b, const Matrix3d& world, double orientation) {
+  return polished(product(world, b.lead), product(world, b.next), orientation);
+}
+
 }  // namespace
 
 std::optional<AsymmetricTop> AsymmetricTop::make(const Vector3d& inertia, const Matrix3d& rotation,
                                                  const Vector3d& omega) {
-  const Matrix3d R = frame(2, rotation.col(2), rotation.col(0));
+  const Matrix3d R = matrix(polished(rotation.col(0), rotation.col(1), 1), {0, 1, 2});
   const std::optional<Flight> flight = labelled(inertia, transposed_product(R, omega));
   if (!flight) return std::nullopt;
   const Flight& f = *flight;
@@ -409,64 +440,29 @@ std::optional<AsymmetricTop> AsymmetricTop::make(const Vector3d& inertia, const 
     top.euler_[i] = f.orientation * (f.I[order[(i + 1) % 3]] - f.I[order[(i + 2) % 3]]) / I;
   }
   // The frame of L is where it must be for the start.
-  const Columns b = top.columns(0);
-  const Matrix3d start = top.matrix({b.lead, b.next, f.orientation * b.lead.cross(b.next)});
-  top.world_ = frame(2, product(R, start.row(2)), product(R, start.row(0)));
+  const Columns b = columns(top.series_, f.orientation, 0);
+  const Matrix3d start = matrix(polished(b.lead, b.next, f.orientation), top.axes_);
+  top.world_ = matrix(polished(product(R, start.row(2)), product(R, start.row(0)), 1), {2, 0, 1});
   return top;
 }
 
-AsymmetricTop::Columns AsymmetricTop::columns(double tau) const {
-  const Phase f = phase(series_, tau);
-  const auto [a, b, c] = momentum(series_, f);
-  const double re = f.re * value(series_.re, f.y);
-  const double im = f.im * value(series_.im, f.y);
-  const SinCos sc = turn(f.angle);
-  // With M of length 1, rho^2 = M_b^2 + M_c^2 and z = exp(i phi), the first two columns across l are rho z and
-  // z (-M_a M_b + i M_c) / rho.
-  const double rho2 = b * b + c * c;
-  const double inverse = 1 / std::sqrt(rho2 + a * a);
-  const double unit = 1 / std::sqrt(rho2 * (re * re + im * im));
-  const double zx = unit * (sc.cos * re - sc.sin * im);
-  const double zy = unit * (sc.sin * re + sc.cos * im);
-  const double lead = rho2 * inverse;
-  const double next = -a * b * inverse;
-  const double aside = orientation_ * c;
-  return {
-      {lead * zx, lead * zy, a * inverse}, {next * zx - aside * zy, next * zy + aside * zx, b * inverse}, c * inverse};
-}
-
-AsymmetricTop::Axes AsymmetricTop::in_world(const Columns& b) const {
-  Axes a{product(world_, b.lead), product(world_, b.next), {}};
-  polish(a.lead, a.next);
-  a.last = orientation_ * a.lead.cross(a.next);
-  return a;
-}
-
-Matrix3d AsymmetricTop::matrix(const Axes& a) const {
-  Matrix3d R;
-  R.col(axes_[0]) = a.lead;
-  R.col(axes_[1]) = a.next;
-  R.col(axes_[2]) = a.last;
-  return R;
-}
-
 Matrix3d AsymmetricTop::rotation(double tau) const {
-  return matrix(in_world(columns(tau)));
+  return matrix(in_world(columns(series_, orientation_, tau), world_, orientation_), axes_);
 }
 
 TopState AsymmetricTop::at(double tau) const {
-  const Columns b = columns(tau);
-  const Axes a = in_world(b);
+  const Columns b = columns(series_, orientation_, tau);
+  const TopAxes a = in_world(b, world_, orientation_);
   const double u = rates_[0] * b.lead.z();
   const double v = rates_[1] * b.next.z();
   const double w = rates_[2] * b.last_z;
-  return {matrix(a), u * a.lead + v * a.next + w * a.last,
-          (euler_[0] * v * w) * a.lead + (euler_[1] * w * u) * a.next + (euler_[2] * u * v) * a.last};
+  return {matrix(a, axes_), u * a.first + v * a.second + w * a.third,
+          (euler_[0] * v * w) * a.first + (euler_[1] * w * u) * a.second + (euler_[2] * u * v) * a.third};
 }
 
 Vector3d AsymmetricTop::turned_world(double tau) const {
   const Vector3d across = integral(tau, std::max(bounds_.omega, series_.rate), [this](double t) {
-    const Columns b = columns(t);
+    const Columns b = columns(series_, orientation_, t);
     const Vector3d last = orientation_ * b.lead.cross(b.next);
     return Vector3d(rates_[0] * b.lead.z() * b.lead + rates_[1] * b.next.z() * b.next + rates_[2] * last.z() * last);
   });

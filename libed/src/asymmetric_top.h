@@ -79,21 +79,7 @@ class AsymmetricTop {
   Eigen::Vector3d turned_body(double tau) const;
 
  private:
-  /// Of the matrix body -> frame of L (l along z): the columns of the axes lead and next, and the z of the last.
-  struct Columns {
-    Eigen::Vector3d lead, next;
-    double last_z;
-  };
-
-  /// Body axes in the world frame.
-  struct Axes {
-    Eigen::Vector3d lead, next, last;
-  };
-
   AsymmetricTop() = default;
-  Columns columns(double tau) const;
-  Axes in_world(const Columns& columns) const;
-  Eigen::Matrix3d matrix(const Axes& axes) const;
 
   ThetaSeries series_;
   std::array<int, 3> axes_;      ///< body axes lead, next and last: 3, 1, 2 or 1, 2, 3

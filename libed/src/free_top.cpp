@@ -19,7 +19,7 @@ SinCos mean_turn(double x) {
 }
 
 /// v turned about the unit vector l.
-Vector3d rotated(const Vector3d& v, const Vector3d& l, const SinCos& sc) {
+[[gnu::always_inline]] inline Vector3d rotated(const Vector3d& v, const Vector3d& l, const SinCos& sc) {
   return sc.cos * v + sc.sin * l.cross(v) + ((1 - sc.cos) * inner(l, v)) * l;
 }
 
@@ -39,14 +39,14 @@ std::variant<UniformTurn, SymmetricTop, AsymmetricTop> make_top(const Vector3d& 
 // ---- Constant angular velocity -------------------------------------------------------------------------------------
 
 UniformTurn::UniformTurn(const Matrix3d& rotation, const Vector3d& omega)
-    : start_(frame(2, rotation.col(2), rotation.col(0))),
+    : start_(polished(rotation.col(0), rotation.col(1), 1)),
       omega_(omega),
       direction_(omega.isZero(0) ? Vector3d::UnitZ() : Vector3d(omega / length(omega))),
       rate_(length(omega)) {}
 
 Matrix3d UniformTurn::rotation(double tau) const {
   const SinCos sc = turn(rate_ * tau);
-  return frame(2, rotated(start_.col(2), direction_, sc), rotated(start_.col(0), direction_, sc));
+  return matrix(polished(rotated(start_.first, direction_, sc), rotated(start_.second, direction_, sc), 1), {0, 1, 2});
 }
 
 TopState UniformTurn::at(double tau) const {
@@ -62,62 +62,61 @@ Vector3d UniformTurn::turned_world(double tau) const {
 }
 
 Vector3d UniformTurn::turned_body(double tau) const {
-  return tau * transposed_product(start_, omega_);
+  return tau * Vector3d(inner(start_.first, omega_), inner(start_.second, omega_), inner(start_.third, omega_));
 }
 
 // ---- Symmetric top -------------------------------------------------------------------------------------------------
 
 SymmetricTop::SymmetricTop(int axis, const Vector3d& inertia, const Matrix3d& rotation, const Vector3d& omega)
-    : axis_(axis) {
-  const Matrix3d R = frame(axis, rotation.col(axis), rotation.col((axis + 1) % 3));
-  u_ = R.col(axis);
-  x_ = R.col((axis + 1) % 3);
-  y_ = R.col((axis + 2) % 3);
-  const double perpendicular = inertia[(axis + 1) % 3];
-  spin_ = inner(omega, u_);
-  across_ = {inner(omega, x_), inner(omega, y_)};
+    : axes_{axis, (axis + 1) % 3, (axis + 2) % 3}, start_(polished(rotation.col(axes_[0]), rotation.col(axes_[1]), 1)) {
+  const double perpendicular = inertia[axes_[1]];
+  spin_ = inner(omega, start_.first);
+  across_ = {inner(omega, start_.second), inner(omega, start_.third)};
   // L / I_perp.
-  const Vector3d turning = across_.x() * x_ + across_.y() * y_ + (inertia[axis] / perpendicular * spin_) * u_;
+  const Vector3d turning =
+      across_.x() * start_.second + across_.y() * start_.third + (inertia[axis] / perpendicular * spin_) * start_.first;
   precession_ = length(turning);
   l_ = turning / precession_;
   own_ = spin_ * ((perpendicular - inertia[axis]) / perpendicular);
 }
 
-Matrix3d SymmetricTop::rotation(double tau) const {
+/// First about u, then about l.
+[[gnu::always_inline]] inline TopAxes SymmetricTop::axes_at(double tau) const {
   const SinCos about_u = turn(own_ * tau);
   const SinCos about_l = turn(precession_ * tau);
-  return frame(axis_, rotated(u_, l_, about_l), rotated(about_u.cos * x_ + about_u.sin * y_, l_, about_l));
+  const Vector3d x = about_u.cos * start_.second + about_u.sin * start_.third;
+  return polished(rotated(start_.first, l_, about_l), rotated(x, l_, about_l), 1);
+}
+
+Matrix3d SymmetricTop::rotation(double tau) const {
+  return matrix(axes_at(tau), axes_);
 }
 
 TopState SymmetricTop::at(double tau) const {
-  TopState state;
-  state.R = rotation(tau);
-  const Vector3d now = state.R.col(axis_);
-  state.omega = precession_ * l_ + own_ * now;
-  state.alpha = (precession_ * own_) * l_.cross(now);
-  return state;
+  const TopAxes now = axes_at(tau);
+  return {matrix(now, axes_), precession_ * l_ + own_ * now.first, (precession_ * own_) * l_.cross(now.first)};
 }
 
 TopBounds SymmetricTop::bounds() const {
   // omega - (omega.l) l = k (u - (u.l) l) turns about l at Omega: the same lengths at all times. 1e-15: rounding of u.
-  const double alpha = kBoundMargin * precession_ * std::abs(own_) * (length(l_.cross(u_)) + 1e-15);
-  return {kBoundMargin * length(precession_ * l_ + own_ * u_), alpha, kBoundMargin * precession_ * alpha};
+  const double alpha = kBoundMargin * precession_ * std::abs(own_) * (length(l_.cross(start_.first)) + 1e-15);
+  return {kBoundMargin * length(precession_ * l_ + own_ * start_.first), alpha, kBoundMargin * precession_ * alpha};
 }
 
 Vector3d SymmetricTop::turned_world(double tau) const {
   // omega = Omega l + k u,  u = e0 + cos(Omega tau) (u(0) - e0) + sin(Omega tau) l x u(0),  e0 = (l.u) l.
   const SinCos mean = mean_turn(precession_ * tau);
-  const Vector3d e0 = inner(l_, u_) * l_;
-  return tau * (precession_ * l_ + own_ * (e0 + mean.cos * (u_ - e0) + mean.sin * l_.cross(u_)));
+  const Vector3d e0 = inner(l_, start_.first) * l_;
+  return tau * (precession_ * l_ + own_ * (e0 + mean.cos * (start_.first - e0) + mean.sin * l_.cross(start_.first)));
 }
 
 Vector3d SymmetricTop::turned_body(double tau) const {
   // Across the axis, omega turns at -k in the body's frame.
   const SinCos mean = mean_turn(own_ * tau);
   Vector3d turned;
-  turned[axis_] = tau * spin_;
-  turned[(axis_ + 1) % 3] = tau * (mean.cos * across_.x() + mean.sin * across_.y());
-  turned[(axis_ + 2) % 3] = tau * (mean.cos * across_.y() - mean.sin * across_.x());
+  turned[axes_[0]] = tau * spin_;
+  turned[axes_[1]] = tau * (mean.cos * across_.x() + mean.sin * across_.y());
+  turned[axes_[2]] = tau * (mean.cos * across_.y() - mean.sin * across_.x());
   return turned;
 }
 

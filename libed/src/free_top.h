@@ -21,6 +21,7 @@
 
 #include <Eigen/Core>
 
+#include <array>
 #include <variant>
 
 namespace ed::internal {
@@ -36,7 +37,7 @@ class UniformTurn {
   Eigen::Vector3d turned_body(double tau) const;
 
  private:
-  Eigen::Matrix3d start_;
+  TopAxes start_;  ///< body x, y, z at tau = 0
   Eigen::Vector3d omega_;
   Eigen::Vector3d direction_;  ///< of omega; any unit vector without rotation
   double rate_;                ///< |omega|
@@ -53,15 +54,15 @@ class SymmetricTop {
   Eigen::Vector3d turned_body(double tau) const;
 
  private:
-  int axis_;
-  Eigen::Vector3d u_;  ///< the body's axis at tau = 0
-  Eigen::Vector3d x_;  ///< the next body axis in cyclic order at tau = 0
-  Eigen::Vector3d y_;  ///< the one after
+  TopAxes axes_at(double tau) const;
+
+  std::array<int, 3> axes_;  ///< body axes: u and the next two in cyclic order
+  TopAxes start_;            ///< these at tau = 0
   Eigen::Vector3d l_;
   double precession_;       ///< Omega
   double own_;              ///< k
   double spin_;             ///< omega.u
-  Eigen::Vector2d across_;  ///< omega along x and y at tau = 0
+  Eigen::Vector2d across_;  ///< omega along the axes after u at tau = 0
 };
 
 /// Free rotation about the centre of mass, constants computed once a flight.

@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include <array>
 #include <cmath>
 
 namespace ed::internal {
@@ -58,21 +59,28 @@ inline double length(const Eigen::Vector3d& v) {
   return largest > 0 ? largest * std::sqrt(inner(v / largest, v / largest)) : 0;
 }
 
-/// Makes u and x, unit and orthogonal to 1e-8 already, so to rounding (Gram and Schmidt; one step of Newton's method
-/// for the lengths).
-inline void polish(Eigen::Vector3d& u, Eigen::Vector3d& x) {
+// Inlined, so that these small structs stay in registers: stored by halves and loaded as vectors, they would stall.
+
+/// Three body axes in the world frame (or in another one).
+struct TopAxes {
+  Eigen::Vector3d first, second, third;
+};
+
+/// u and x, unit and orthogonal to 1e-8 already, made so to rounding (Gram and Schmidt; one step of Newton's method for
+/// the lengths), and u x x, or its opposite if orientation is -1.
+[[gnu::always_inline]] inline TopAxes polished(Eigen::Vector3d u, Eigen::Vector3d x, double orientation) {
   u *= 1.5 - 0.5 * inner(u, u);
   x -= inner(u, x) * u;
   x *= 1.5 - 0.5 * inner(x, x);
+  return {u, x, orientation * u.cross(x)};
 }
 
-/// The rotation matrix whose column `axis` is u and whose next one, in cyclic order, is x, polished.
-inline Eigen::Matrix3d frame(int axis, Eigen::Vector3d u, Eigen::Vector3d x) {
-  polish(u, x);
+/// The rotation matrix with these axes as its columns of these numbers.
+[[gnu::always_inline]] inline Eigen::Matrix3d matrix(const TopAxes& axes, const std::array<int, 3>& numbers) {
   Eigen::Matrix3d R;
-  R.col(axis) = u;
-  R.col((axis + 1) % 3) = x;
-  R.col((axis + 2) % 3) = u.cross(x);
+  R.col(numbers[0]) = axes.first;
+  R.col(numbers[1]) = axes.second;
+  R.col(numbers[2]) = axes.third;
   return R;
 }
 
