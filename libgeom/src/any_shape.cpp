@@ -29,4 +29,22 @@ Vector3d inertia(const Shape& shape, double mass) {
   return std::visit([&](const auto& s) { return s.inertia(mass); }, shape);
 }
 
+OrientedBox oriented_box(const Shape& shape, const Pose& X_WB) {
+  return std::visit([&](const auto& s) { return oriented_box(s, X_WB); }, shape);
+}
+
+DistanceResult newton_distance(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB, NewtonSystem system,
+                               const WitnessPair& seed, const NewtonOptions& options) {
+  return std::visit(
+      [&](const auto& s, const auto& t) { return newton_distance(s, X_WA, t, X_WB, system, seed, options); }, a, b);
+}
+
+WitnessPair dual_seed(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB) {
+  return std::visit([&](const auto& s, const auto& t) { return dual_seed(s, X_WA, t, X_WB); }, a, b);
+}
+
+WitnessPair centre_seed(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB) {
+  return std::visit([&](const auto& s, const auto& t) { return centre_seed(s, X_WA, t, X_WB); }, a, b);
+}
+
 }  // namespace geom

@@ -171,7 +171,9 @@ void judge(const MovingPair& pair, const Finding& finding, double wanted, Tally&
   if (finding.outcome == Outcome::contact) {
     ++tally.contacts;
     const geom::DistanceResult at = pair.distance(finding.time);
-    if (!(std::abs(at.distance) <= 1e-13 * pair.size())) ++tally.wrong;
+    // The true distance is between at.distance and that plus its bound.
+    const double rounding = 1e-13 * pair.size();
+    if (!(at.distance <= rounding && at.distance + at.error_bound >= -rounding)) ++tally.wrong;
     if (wanted < finding.time - 1e-12) ++tally.late;
     if (!(wanted < kHorizon) && finding.time < 0.9 * kHorizon) ++tally.shallow;
     const double h = 1e-5;

@@ -160,6 +160,14 @@ TEST(AnyShape, AnswersAsTheShapeInside) {
     EXPECT_EQ(distance(shapes[0], pair.X_WA, shapes[1], pair.X_WB).distance,
               distance(kNeedle, pair.X_WA, kBrick, pair.X_WB).distance);
     EXPECT_EQ(overlap(shapes[0], pair.X_WA, shapes[1], pair.X_WB), Answer::no);
+    const WitnessPair seed = dual_seed(shapes[0], pair.X_WA, shapes[1], pair.X_WB);
+    EXPECT_EQ(seed.point_a, dual_seed(kNeedle, pair.X_WA, kBrick, pair.X_WB).point_a);
+    EXPECT_EQ(centre_seed(shapes[0], pair.X_WA, shapes[1], pair.X_WB).point_b,
+              centre_seed(kNeedle, pair.X_WA, kBrick, pair.X_WB).point_b);
+    const DistanceResult newton =
+        newton_distance(shapes[0], pair.X_WA, shapes[1], pair.X_WB, NewtonSystem::eight, seed);
+    EXPECT_EQ(newton.status, newton_distance(kNeedle, pair.X_WA, kBrick, pair.X_WB, NewtonSystem::eight, seed).status);
+    EXPECT_EQ(oriented_box(shapes[1], pair.X_WB).half_extents, oriented_box(kBrick, pair.X_WB).half_extents);
     EXPECT_EQ(distance_lower_bound(shapes[0], pair.X_WA, shapes[1], pair.X_WB, pair.normal),
               distance_lower_bound(kNeedle, pair.X_WA, kBrick, pair.X_WB, pair.normal));
   }

@@ -6,6 +6,8 @@
 #include <geom/distance.h>
 #include <geom/ellipsoid.h>
 #include <geom/export.h>
+#include <geom/newton.h>
+#include <geom/obb.h>
 #include <geom/pose.h>
 #include <geom/superellipsoid.h>
 
@@ -29,6 +31,16 @@ GEOM_EXPORT double bounding_radius(const Shape& shape);
 GEOM_EXPORT double inscribed_radius(const Shape& shape);
 GEOM_EXPORT double volume(const Shape& shape);
 GEOM_EXPORT Eigen::Vector3d inertia(const Shape& shape, double mass);
+/// @}
+
+/// The functions of obb.h and newton.h for the shapes inside; see there.
+/// @{
+GEOM_EXPORT OrientedBox oriented_box(const Shape& shape, const Pose& X_WB);
+GEOM_EXPORT DistanceResult newton_distance(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB,
+                                           NewtonSystem system, const WitnessPair& seed,
+                                           const NewtonOptions& options = {});
+GEOM_EXPORT WitnessPair dual_seed(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB);
+GEOM_EXPORT WitnessPair centre_seed(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB);
 /// @}
 
 }  // namespace geom
