@@ -16,6 +16,7 @@ function(hardbody_fuzzer name)
   target_link_libraries(${name}_fuzz_replay PRIVATE ${name}_fuzz_target)
   add_test(NAME ${name}_fuzz_replay COMMAND ${name}_fuzz_replay ${CMAKE_CURRENT_BINARY_DIR}/corpus/${name} 50)
   set_tests_properties(${name}_fuzz_replay PROPERTIES LABELS unit FIXTURES_REQUIRED fuzz_corpus TIMEOUT 600)
+  hardbody_needed_by(unit ${name}_fuzz_replay)
 
   if(HARDBODY_FUZZ)
     add_executable(${name}_fuzz $<TARGET_OBJECTS:${name}_fuzz_target>)

@@ -121,6 +121,41 @@ class Case(unittest.TestCase):
             self.assertIn(part, result.stderr)
 
 
+class Methods(Case):
+    """Finders, distances and neighbour lists."""
+
+    def test_every_finder_and_list_gives_the_same_collisions(self):
+        config = SMALL.replace("time = 1\n", "time = 0\n").replace("time = 5", "time = 1")
+        runs = {
+            f"{finder}_{neighbours}_{distance}": [
+                "--set", f"dynamics.finder={finder}", "--set", f"dynamics.neighbours={neighbours}",
+                "--set", f"dynamics.distance={distance}",
+            ]
+            for finder, distances in [("certified", ["dual"]), ("bracketing", ["dual", "newton8", "newton5"])]
+            for neighbours in ["dilated", "obp", "cells"]
+            for distance in distances
+        }
+        first = None
+        for name, arguments in runs.items():
+            self.run_small(name, *arguments, config=config)
+            rows = [line.split(",") for line in self.read(f"{name}/events.csv").splitlines()[1:]]
+            first = first or rows
+            self.assertGreater(len(rows), 50)
+            self.assertEqual([r[1:] for r in rows], [r[1:] for r in first], name)
+            self.assertLess(max(abs(float(a[0]) - float(b[0])) for a, b in zip(rows, first)), 1e-9, name)
+        summary = self.summary("bracketing_obp_newton5")
+        self.assertEqual(summary["finder"], {"kind": "bracketing", "distance": "newton5", "eps_d": 1e-6})
+        self.assertEqual(summary["neighbours"]["kind"], "obp")
+        self.assertIn("bracketing; neighbours: obp", self.read("bracketing_obp_newton5/log.txt"))
+
+    def test_auto_says_what_it_chose(self):
+        self.run_small("out")
+        self.assertIn('neighbours: dilated (chosen by "auto")', self.read("out/log.txt"))
+        self.run_small("dilute", "--set", "system.packing_fraction=0.02", "--set", "system.number=512")
+        self.assertIn('neighbours: cells (chosen by "auto")', self.read("dilute/log.txt"))
+        self.assertIn('neighbours = "cells"', self.read("dilute/config.toml"))
+
+
 class Run(Case):
     def test_writes_every_file(self):
         result = self.run_small("out")
@@ -192,71 +227,6 @@ class Run(Case):
         self.run_small("out", "--set", "output.events=0")
         self.assertFalse(os.path.exists(self.path("out/events.csv")))
 
-    def test_same_seed_same_numbers(self):
-        self.run_small("one")
-        self.run_small("two")
-        self.run_small("three", "--set", "seed=4")
-        for name in ["events.csv", "checkpoint.bin", "config.toml"] + [f"observables/{f}" for f in OBSERVABLE_FILES]:
-            self.assertEqual(self.bytes_of(f"one/{name}"), self.bytes_of(f"two/{name}"), name)
-            self.assertNotEqual(self.bytes_of(f"one/{name}"), self.bytes_of(f"three/{name}"), name)
-        one, two = self.summary("one"), self.summary("two")
-        for key in ["state", "time", "counters", "audit", "observables", "neighbours"]:
-            self.assertEqual(one[key], two[key])
-
-    def test_resolved_config_gives_the_same_run(self):
-        shapes = {
-            "aspect_ratio": "aspect_ratio = 2",
-            "axes": "semi_axes = [5.1, 1.7, 1.7]",
-            "moments": 'semi_axes = [1.0, 3.3, 1.0]\n[dynamics]\ninertia = [0.3, 0.2, 0.3]\nneighbours = "auto"',
-        }
-        for name, shape in shapes.items():
-            with self.subTest(name):
-                self.run_small(name, config=SMALL.replace("aspect_ratio = 2", shape).replace("number = 64", "number = 128"))
-                again = self.hardbody("run", f"{name}/config.toml", "--out", f"{name}2")
-                self.assertEqual(again.returncode, 0, again.stderr)
-                self.assertEqual(self.read(f"{name}/events.csv"), self.read(f"{name}2/events.csv"))
-                self.assertEqual(self.read(f"{name}/config.toml"), self.read(f"{name}2/config.toml"))
-
-    def test_every_finder_and_list_gives_the_same_collisions(self):
-        config = SMALL.replace("time = 1\n", "time = 0\n").replace("time = 5", "time = 1")
-        runs = {
-            f"{finder}_{neighbours}_{distance}": [
-                "--set", f"dynamics.finder={finder}", "--set", f"dynamics.neighbours={neighbours}",
-                "--set", f"dynamics.distance={distance}",
-            ]
-            for finder, distances in [("certified", ["dual"]), ("bracketing", ["dual", "newton8", "newton5"])]
-            for neighbours in ["dilated", "obp", "cells"]
-            for distance in distances
-        }
-        first = None
-        for name, arguments in runs.items():
-            self.run_small(name, *arguments, config=config)
-            rows = [line.split(",") for line in self.read(f"{name}/events.csv").splitlines()[1:]]
-            first = first or rows
-            self.assertGreater(len(rows), 50)
-            self.assertEqual([r[1:] for r in rows], [r[1:] for r in first], name)
-            self.assertLess(max(abs(float(a[0]) - float(b[0])) for a, b in zip(rows, first)), 1e-9, name)
-        summary = self.summary("bracketing_obp_newton5")
-        self.assertEqual(summary["finder"], {"kind": "bracketing", "distance": "newton5", "eps_d": 1e-6})
-        self.assertEqual(summary["neighbours"]["kind"], "obp")
-        self.assertIn("bracketing; neighbours: obp", self.read("bracketing_obp_newton5/log.txt"))
-
-    def test_auto_says_what_it_chose(self):
-        self.run_small("out")
-        self.assertIn('neighbours: dilated (chosen by "auto")', self.read("out/log.txt"))
-        self.run_small("dilute", "--set", "system.packing_fraction=0.02", "--set", "system.number=512")
-        self.assertIn('neighbours: cells (chosen by "auto")', self.read("dilute/log.txt"))
-        self.assertIn('neighbours = "cells"', self.read("dilute/config.toml"))
-
-    def test_axes_in_any_order_are_one_shape(self):
-        base = SMALL.replace("number = 64", "number = 128")
-        for name, axes in {"z": "[1, 1, 3]", "x": "[3, 1, 1]", "y": "[0.5, 1.5, 0.5]"}.items():
-            self.run_small(name, config=base.replace("aspect_ratio = 2", f"semi_axes = {axes}"))
-        self.run_small("ratio", config=base.replace("aspect_ratio = 2", "aspect_ratio = 3"))
-        for name in ["x", "y", "ratio"]:
-            self.assertEqual(self.summary(name)["state"], self.summary("z")["state"])
-            self.assertEqual(self.read(f"{name}/events.csv"), self.read("z/events.csv"))
-
     def test_inertia_is_used(self):
         self.run_small("paper")
         self.run_small("uniform", "--set", "dynamics.inertia=uniform")
@@ -313,6 +283,44 @@ class Run(Case):
         self.assertEqual(result.returncode, 0, result.stderr)
         state = self.summary("out/short")["state"]
         self.assertEqual((state["number"], state["aspect_ratio"], state["packing_fraction"]), (512, 3, 0.4))
+
+
+class SameRun(Case):
+    """Runs that must not differ."""
+
+    def test_same_seed_same_numbers(self):
+        self.run_small("one")
+        self.run_small("two")
+        self.run_small("three", "--set", "seed=4")
+        for name in ["events.csv", "checkpoint.bin", "config.toml"] + [f"observables/{f}" for f in OBSERVABLE_FILES]:
+            self.assertEqual(self.bytes_of(f"one/{name}"), self.bytes_of(f"two/{name}"), name)
+            self.assertNotEqual(self.bytes_of(f"one/{name}"), self.bytes_of(f"three/{name}"), name)
+        one, two = self.summary("one"), self.summary("two")
+        for key in ["state", "time", "counters", "audit", "observables", "neighbours"]:
+            self.assertEqual(one[key], two[key])
+
+    def test_resolved_config_gives_the_same_run(self):
+        shapes = {
+            "aspect_ratio": "aspect_ratio = 2",
+            "axes": "semi_axes = [5.1, 1.7, 1.7]",
+            "moments": 'semi_axes = [1.0, 3.3, 1.0]\n[dynamics]\ninertia = [0.3, 0.2, 0.3]\nneighbours = "auto"',
+        }
+        for name, shape in shapes.items():
+            with self.subTest(name):
+                self.run_small(name, config=SMALL.replace("aspect_ratio = 2", shape).replace("number = 64", "number = 128"))
+                again = self.hardbody("run", f"{name}/config.toml", "--out", f"{name}2")
+                self.assertEqual(again.returncode, 0, again.stderr)
+                self.assertEqual(self.read(f"{name}/events.csv"), self.read(f"{name}2/events.csv"))
+                self.assertEqual(self.read(f"{name}/config.toml"), self.read(f"{name}2/config.toml"))
+
+    def test_axes_in_any_order_are_one_shape(self):
+        base = SMALL.replace("number = 64", "number = 128")
+        for name, axes in {"z": "[1, 1, 3]", "x": "[3, 1, 1]", "y": "[0.5, 1.5, 0.5]"}.items():
+            self.run_small(name, config=base.replace("aspect_ratio = 2", f"semi_axes = {axes}"))
+        self.run_small("ratio", config=base.replace("aspect_ratio = 2", "aspect_ratio = 3"))
+        for name in ["x", "y", "ratio"]:
+            self.assertEqual(self.summary(name)["state"], self.summary("z")["state"])
+            self.assertEqual(self.read(f"{name}/events.csv"), self.read("z/events.csv"))
 
 
 class Init(Case):
