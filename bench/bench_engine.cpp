@@ -3,24 +3,34 @@
 /// engine/...: the default path. First line: the state point that everything else is compared with, N = 512, X0 = 3,
 /// packing fraction 0.40. methods/...: every finder, kind of neighbour list and distance method. dilute/...: dilated
 /// envelopes against cells, the choice of neighbours = "auto". rescues/...: the share of the distances that Newton's
-/// method declines. The tables at the end give ratios within the run.
+/// method declines. vectors/...: pairs looked at one by one, and in the vectors of each instruction set. The tables at
+/// the end give ratios within the run.
+
+#include "engine_rates.h"
 
 #include <ed/simulation.h>
 #include <ed/start.h>
 
 #include <benchmark/benchmark.h>
 
+#include <malloc.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <fstream>
 #include <iomanip>
 #include <map>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <vector>
 
 namespace {
+
+using hardbody_bench::KeepRates;
 
 constexpr int kNumber = 512;
 constexpr int kStretches = 6;
@@ -42,6 +52,7 @@ struct Method {
   ed::Finder finder = ed::Finder::certified;
   ed::Neighbours neighbours = ed::Neighbours::dilated;
   ed::DistanceMethod distance = ed::DistanceMethod::dual;
+  std::optional<geom::InstructionSet> batches = geom::InstructionSet::best;
 
   std::string name() const {
     const char* const lists[] = {"dilated", "obp", "cells"};
@@ -70,7 +81,9 @@ const ed::System& start(const StatePoint& state) {
     options.packing_fraction = state.packing_fraction;
     system = ed::random_start(state.uniform ? ed::uniform_species(shape) : ed::paper_species(shape), options);
     ed::Simulation simulation(system);
-    simulation.run_collisions(100 * static_cast<std::uint64_t>(state.number));
+    // Large starts are boxes repeated: some collisions a body make them differ.
+    const std::uint64_t each = state.number <= 2000 ? 100 : 3;
+    simulation.run_collisions(each * static_cast<std::uint64_t>(state.number));
     system = simulation.system();
   }
   return system;
@@ -82,6 +95,7 @@ ed::Simulation prepare(const StatePoint& state, const Method& method) {
   options.neighbours = method.neighbours;
   options.contact.finder = method.finder;
   options.contact.distance = method.distance;
+  options.batches = method.batches;
   ed::Simulation trial(start(state), options);
   trial.tune_envelopes();
   options.envelope = trial.envelope();
@@ -92,20 +106,38 @@ void engine(benchmark::State& timing, const StatePoint& state, const Method& met
   ed::Simulation simulation = prepare(state, method);
   const ed::Counters before = simulation.counters();
   for (auto _ : timing) simulation.run_collisions(method.collisions());
-  const ed::Counters after = simulation.counters();
-  const auto collisions = static_cast<double>(after.collisions - before.collisions);
-  const auto each = [&](std::uint64_t ed::Counters::*counter) {
-    return static_cast<double>(after.*counter - before.*counter) / collisions;
-  };
-  timing.counters["collisions/s"] = benchmark::Counter(collisions, benchmark::Counter::kIsRate);
-  timing.counters["evaluations"] = each(&ed::Counters::evaluations);
-  timing.counters["refinements"] = each(&ed::Counters::refinements);
-  timing.counters["kernel_calls"] = each(&ed::Counters::kernel_calls);
-  timing.counters["rebuilds"] = each(&ed::Counters::neighbour_rebuilds);
-  timing.counters["rescues"] = static_cast<double>(after.rescues);
-  timing.counters["rescued %"] = 100 * static_cast<double>(after.rescues - before.rescues) /
-                                 static_cast<double>(after.evaluations - before.evaluations);
-  timing.counters["overlaps"] = static_cast<double>(after.overlaps);
+  hardbody_bench::report_rates(timing, before, simulation.counters());
+}
+
+/// Of the process, resident.
+double memory() {
+  std::ifstream statm("/proc/self/statm");
+  double total = 0;
+  double resident = 0;
+  statm >> total >> resident;
+  return resident * static_cast<double>(sysconf(_SC_PAGESIZE));
+}
+
+constexpr int kScaleNumbers[] = {1000, 10000, 100000, 1000000};
+
+StatePoint scale_state(int number) {
+  return {2, 0.40, false, number};
+}
+
+std::string scale_name(int number) {
+  return "scale/" + std::to_string(number);
+}
+
+void scale(benchmark::State& timing, int number) {
+  const ed::System& system = start(scale_state(number));
+  malloc_trim(0);
+  const double before = memory();
+  ed::Simulation simulation = prepare(scale_state(number), Method{});
+  const ed::Counters counters = simulation.counters();
+  for (auto _ : timing) simulation.run_collisions(100000);
+  hardbody_bench::report_rates(timing, counters, simulation.counters());
+  malloc_trim(0);
+  timing.counters["kB a body"] = (memory() - before) / 1000 / system.size();
 }
 
 std::string method_name(const StatePoint& state, const Method& method) {
@@ -120,6 +152,33 @@ void add(const std::string& name, const StatePoint& state, const Method& method,
   benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& timing) { engine(timing, state, method); })
       ->Unit(benchmark::kMillisecond)
       ->Iterations(stretches);  // fixed: a start takes longer than the stretches that are timed
+}
+
+/// Rods, discs, spheres; spin; the dense states of other codes.
+const std::vector<StatePoint>& vector_states() {
+  static const std::vector<StatePoint> states{{3, 0.40}, {1.0 / 3, 0.40}, {1, 0.40},
+                                              {5, 0.40}, {1.25, 0.50},    {1.1, 0.40},
+                                              {3, 0.10}, {3, 0.40, true}, {0.5, 0.40, true}};
+  return states;
+}
+
+/// First: one by one.
+const std::vector<Method>& vector_methods() {
+  static const std::vector<Method> methods = [] {
+    std::vector<Method> all(1);
+    all[0].batches.reset();
+    for (const auto set : {geom::InstructionSet::portable, geom::InstructionSet::avx2, geom::InstructionSet::avx512}) {
+      if (!geom::is_available(set)) continue;
+      all.emplace_back();
+      all.back().batches = set;
+    }
+    return all;
+  }();
+  return methods;
+}
+
+std::string vector_name(const StatePoint& state, const Method& method) {
+  return "vectors/" + state.name() + "/" + (method.batches ? geom::to_string(*method.batches) : "one by one");
 }
 
 const std::vector<StatePoint>& method_states() {
@@ -174,29 +233,6 @@ std::vector<Method> methods() {
   return all;
 }
 
-/// Prints as usual and keeps the rates.
-class KeepRates : public benchmark::ConsoleReporter {
- public:
-  void ReportRuns(const std::vector<Run>& runs) override {
-    for (const Run& run : runs) {
-      const bool wanted = run.repetitions == 1 || run.aggregate_name == "median";
-      const auto rate = run.counters.find("collisions/s");
-      if (wanted && rate != run.counters.end()) rates_[run.run_name.function_name] = rate->second.value;
-    }
-    benchmark::ConsoleReporter::ReportRuns(runs);
-  }
-
-  /// NaN if the filter left that benchmark out.
-  double rate(const std::string& name) const {
-    const auto found = rates_.find(name);
-    return found == rates_.end() ? std::nan("") : found->second;
-  }
-  double rate(const StatePoint& state, const Method& method) const { return rate(method_name(state, method)); }
-
- private:
-  std::map<std::string, double> rates_;
-};
-
 void print_methods(const KeepRates& rates) {
   std::printf("\n%-18s %-22s %10s %10s %10s | %13s %11s\n", "collisions/s", "finder, distance", "dilated", "obp",
               "cells", "dilated / obp", "obp / cells");
@@ -204,7 +240,7 @@ void print_methods(const KeepRates& rates) {
     for (const Method& method : methods()) {
       if (method.neighbours != ed::Neighbours::dilated) continue;
       const auto rate = [&](ed::Neighbours neighbours) {
-        return rates.rate(state, {method.finder, neighbours, method.distance});
+        return rates.rate(method_name(state, {method.finder, neighbours, method.distance}));
       };
       const double dilated = rate(ed::Neighbours::dilated);
       const double obp = rate(ed::Neighbours::obp);
@@ -215,12 +251,40 @@ void print_methods(const KeepRates& rates) {
       std::printf("%-18s %-22s %10.0f %10.0f %10.0f | %13.2f %11.2f\n", state.name().c_str(), name.c_str(), dilated,
                   obp, cells, dilated / obp, obp / cells);
     }
-    const double paper = rates.rate(state, kPaper);
-    const double ours = rates.rate(state, Method{});
+    const double paper = rates.rate(method_name(state, kPaper));
+    const double ours = rates.rate(method_name(state, Method{}));
     if (!std::isnan(paper + ours)) {
       std::printf("%-18s default path %.0f, the paper's %.0f: %.1f times\n", state.name().c_str(), ours, paper,
                   ours / paper);
     }
+  }
+}
+
+void print_scale(const KeepRates& rates) {
+  const double smallest = rates.rate(scale_name(kScaleNumbers[0]));
+  if (std::isnan(smallest)) return;
+  std::printf("\n%10s %14s %10s\n", "bodies", "collisions/s", "ratio");
+  for (const int number : kScaleNumbers) {
+    const double rate = rates.rate(scale_name(number));
+    if (!std::isnan(rate)) std::printf("%10d %14.0f %10.2f\n", number, rate, rate / smallest);
+  }
+}
+
+void print_vectors(const KeepRates& rates) {
+  std::printf("\ncollisions/s, pairs looked at one by one and in vectors; ratio to one by one\n%-18s", "");
+  for (const Method& method : vector_methods()) {
+    std::printf("%18s", method.batches ? geom::to_string(*method.batches) : "one by one");
+  }
+  std::printf("\n");
+  for (const StatePoint& state : vector_states()) {
+    const double one_by_one = rates.rate(vector_name(state, vector_methods()[0]));
+    if (std::isnan(one_by_one)) continue;
+    std::printf("%-18s", state.name().c_str());
+    for (const Method& method : vector_methods()) {
+      const double rate = rates.rate(vector_name(state, method));
+      std::printf("%12.0f %5.2f", rate, rate / one_by_one);
+    }
+    std::printf("\n");
   }
 }
 
@@ -232,7 +296,7 @@ void print_dilute(const KeepRates& rates) {
     const double bracketing = rate(3) / rate(2);
     if (std::isnan(certified) && std::isnan(bracketing)) continue;
     const ed::System& system = start(state);
-    const double cells = std::floor(system.box / (2 * system.species.shape.bounding_radius()));
+    const double cells = std::floor(system.box / (2 * ed::bounding_radius(system.species[0].shape)));
     std::printf("%-18s %12.2f %12.2f | %12.1f\n", state.name().c_str(), certified, bracketing,
                 27 * kNumber / (cells * cells * cells));
   }
@@ -269,9 +333,19 @@ int main(int argc, char** argv) {
       add("rescues/" + state.name() + "/" + method.name(), state, method, 1);
     }
   }
+  for (const int number : kScaleNumbers) {
+    benchmark::RegisterBenchmark(scale_name(number).c_str(), [=](benchmark::State& timing) { scale(timing, number); })
+        ->Unit(benchmark::kMillisecond)
+        ->Iterations(kStretches);
+  }
+  for (const StatePoint& state : vector_states()) {
+    for (const Method& method : vector_methods()) add(vector_name(state, method), state, method);
+  }
   KeepRates rates;
   benchmark::RunSpecifiedBenchmarks(&rates);
   benchmark::Shutdown();
   print_methods(rates);
   print_dilute(rates);
+  print_vectors(rates);
+  print_scale(rates);
 }

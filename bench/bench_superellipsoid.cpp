@@ -1,9 +1,10 @@
 /// Time of one distance query of two superellipsoids: set of orientations x exponent x start (cold, warm), and FCL's
-/// own GJK fed with the same support function.
+/// own GJK fed with the same support function. Overlaps: set x depth x what is asked (Penetration).
 ///
 /// Every benchmark walks through kPairs pairs of known distance, log-uniform between 1e-6 and 1 in units of a
-/// semi-axis. A failure is an answer that is declined or wrong by more than the contract of geom/distance.h allows
-/// (1e-12 of the pair's size); it is counted, not hidden. The table at the end gives ratios within this run.
+/// semi-axis, or of a known way out, its length in units of the pair's size. A failure is an answer that is declined or
+/// wrong by more than the contract of geom/distance.h allows (1e-12 of the size), of overlaps one that is longer than
+/// the known way; it is counted, not hidden. The tables at the end give ratios within this run.
 
 #include "common/geom_manufactured.h"
 #include "common/geom_random.h"
@@ -26,6 +27,7 @@
 #include <limits>
 #include <map>
 #include <string>
+#include <tuple>
 #include <vector>
 
 namespace {
@@ -55,6 +57,8 @@ constexpr std::array<NamedSet, 5> kSets{{{PairSet::random_normal, "random_normal
 /// Both exponents; kMixed: one of each kind, drawn from kExponents for each pair.
 constexpr double kMixed = 0;
 constexpr std::array kRows{0.2, 0.3, 0.5, 0.7, 1.3, 1.6, kMixed};
+/// Of overlaps, whose exponents are mixed.
+constexpr std::array kDepths{1e-6, 1e-3, 0.1};
 
 struct Query {
   Superellipsoid shape;  ///< of both bodies
@@ -70,9 +74,10 @@ double pick_exponent(double row, Random& random) {
   return geom_test::kExponents[static_cast<std::size_t>(random.uniform() * geom_test::kExponents.size())];
 }
 
-const std::vector<Query>& queries(PairSet set, double row) {
-  static std::map<std::pair<PairSet, double>, std::vector<Query>> cache;
-  std::vector<Query>& out = cache[{set, row}];
+/// `depth`, in units of the size that the pair has where it touches; 0: apart.
+const std::vector<Query>& queries(PairSet set, double row, double depth = 0) {
+  static std::map<std::tuple<PairSet, double, double>, std::vector<Query>> cache;
+  std::vector<Query>& out = cache[{set, row, depth}];
   Random random(1);
   while (out.size() < kPairs) {
     const double e1 = pick_exponent(row, random);
@@ -80,7 +85,10 @@ const std::vector<Query>& queries(PairSet set, double row) {
     const Vector3d axes(1, random.uniform(0.6, 1.6), random.uniform(0.4, 2.4));
     Query q{Superellipsoid(axes, e1, e2), {}, {}, 0, 0, {}};
     const geom_test::Orientation o = geom_test::choose(set, q.shape, random);
-    geom_test::place(o, q.shape, random.log_uniform(1e-6, 1), q.X_WA, q.X_WB);
+    const double gap = random.log_uniform(1e-6, 1);
+    geom_test::place(o, q.shape, 0, q.X_WA, q.X_WB);
+    const double touching_size = q.X_WB.position().norm() + 2 * q.shape.bounding_radius();
+    geom_test::place(o, q.shape, depth > 0 ? -depth * touching_size : gap, q.X_WA, q.X_WB);
     q.distance = geom_test::lower_bound(q.shape, q.X_WA, q.shape, q.X_WB, o.n);
     q.size = q.X_WB.position().norm() + 2 * q.shape.bounding_radius();
     q.start = Eigen::AngleAxisd(kWarmAngle, o.n.cross(random.direction()).normalized()) * o.n;
@@ -118,6 +126,37 @@ void ours(benchmark::State& state, PairSet set, double row, bool warm) {
   }
   state.counters["iterations"] = static_cast<double>(iterations) / kPairs;
   state.counters["failures"] = failures;
+}
+
+DistanceResult ask_depth(const Query& q, geom::Penetration penetration) {
+  return geom::distance(q.shape, q.X_WA, q.shape, q.X_WB, {.penetration = penetration});
+}
+
+/// `longer`: answers that are longer than the known way out, of local ones no failure. Pushed past an edge, a few
+/// bodies are apart: that is an answer too.
+void overlaps(benchmark::State& state, PairSet set, double depth, geom::Penetration penetration) {
+  const std::vector<Query>& all = queries(set, kMixed, depth);
+  for (auto _ : state) {
+    for (const Query& q : all) benchmark::DoNotOptimize(ask_depth(q, penetration).distance);
+  }
+  int iterations = 0;
+  int declined = 0;
+  int longer = 0;
+  for (const Query& q : all) {
+    const DistanceResult r = ask_depth(q, penetration);
+    iterations += r.iterations;
+    declined += std::isnan(r.distance);
+    longer += r.distance < q.distance - kTolerance * q.size;
+  }
+  state.counters["iterations"] = static_cast<double>(iterations) / kPairs;
+  state.counters["failures"] = declined + (penetration == geom::Penetration::global ? longer : 0);
+  state.counters["longer"] = longer;
+}
+
+std::string overlap_name(const char* what, const char* set, double depth) {
+  char name[80];
+  std::snprintf(name, sizeof name, "superellipsoid/overlap_%s/%s/depth:%g", what, set, depth);
+  return name;
 }
 
 #ifdef HARDBODY_WITH_SEEDS
@@ -184,6 +223,15 @@ void register_benchmarks() {
       add("fcl_gjk", [=](benchmark::State& s) { fcl(s, set.set, row); });
 #endif
     }
+    for (const double depth : kDepths) {
+      const auto add = [&](const char* what, geom::Penetration penetration) {
+        benchmark::RegisterBenchmark(overlap_name(what, set.name, depth).c_str(), [=](benchmark::State& s) {
+          overlaps(s, set.set, depth, penetration);
+        })->Unit(benchmark::kMicrosecond);
+      };
+      add("global", geom::Penetration::global);
+      add("local", geom::Penetration::local);
+    }
   }
 }
 
@@ -236,6 +284,21 @@ void print_ratios(const KeepRuns& runs) {
   }
 }
 
+void print_overlaps(const KeepRuns& runs) {
+  std::printf("\n%-14s %-6s | %33s | %s\n", "us per overlap", "depth", "global: us, evaluations, failed",
+              "local: us, evaluations, failed, longer than known");
+  for (const NamedSet& set : kSets) {
+    for (const double depth : kDepths) {
+      const std::string global = overlap_name("global", set.name, depth);
+      const std::string local = overlap_name("local", set.name, depth);
+      if (std::isnan(runs.microseconds(global)) || std::isnan(runs.microseconds(local))) continue;
+      std::printf("%-14s %-6g | %13.1f %13.1f %5g | %9.2f %7.1f %5g %5g\n", set.name, depth, runs.microseconds(global),
+                  runs.counter(global, "iterations"), runs.counter(global, "failures"), runs.microseconds(local),
+                  runs.counter(local, "iterations"), runs.counter(local, "failures"), runs.counter(local, "longer"));
+    }
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -246,4 +309,5 @@ int main(int argc, char** argv) {
   benchmark::RunSpecifiedBenchmarks(&runs);
   benchmark::Shutdown();
   print_ratios(runs);
+  print_overlaps(runs);
 }

@@ -3,9 +3,11 @@
 hardbody_test(finder_unit_test unit
   unit/calendar_test.cpp
   unit/cell_grid_test.cpp
+  unit/first_looks_test.cpp
   unit/free_top_test.cpp
   unit/general_contact_test.cpp
   unit/impulse_test.cpp
+  unit/meetings_test.cpp
   unit/motion_test.cpp
   unit/neighbour_lists_test.cpp
   unit/random_test.cpp
@@ -13,5 +15,8 @@ hardbody_test(finder_unit_test unit
   unit/time_of_contact_test.cpp)
 hardbody_test(finder_curvature_bound_test property property/curvature_bound_test.cpp)
 hardbody_test(finder_missed_contacts_test property property/missed_contacts_test.cpp)
+hardbody_test(finder_rounding_test property property/rounding_test.cpp)
+# It judges in quadruple precision: double is promoted everywhere, on purpose.
+set_source_files_properties(property/rounding_test.cpp PROPERTIES COMPILE_OPTIONS -Wno-double-promotion)
 hardbody_test(finder_bracketing_test property property/bracketing_test.cpp)
 hardbody_test(finder_support_contact_test property property/support_contact_test.cpp)

@@ -3,8 +3,11 @@
 #
 #     cmake --preset fuzz && cmake --build --preset fuzz
 #     python3 tests/fuzz/make_corpus.py corpus
-#     build/fuzz/tests/line_fuzz -dict=tests/fuzz/line.dict -max_len=1024 corpus/line
-#     build/fuzz/tests/geom_fuzz -max_len=192 corpus/geom
+#     build/fuzz/tests/line_fuzz -entropic=0 -dict=tests/fuzz/line.dict -max_len=1024 -runs=10000000 corpus/line
+#     build/fuzz/tests/geom_fuzz -entropic=0 -max_len=192 -runs=10000000 corpus/geom
+#     build/fuzz/tests/checkpoint_fuzz -max_len=512 -runs=1000000 corpus/checkpoint
+#
+# (libFuzzer's entropic scheduling would take a quarter of the time.)
 function(hardbody_fuzzer name)
   add_library(${name}_fuzz_target OBJECT fuzz/${name}_fuzz.cpp)
   hardbody_target(${name}_fuzz_target)
@@ -36,4 +39,5 @@ set_tests_properties(fuzz_corpus PROPERTIES LABELS unit FIXTURES_SETUP fuzz_corp
 hardbody_fuzzer(geom)
 if(TARGET hardbody_program)
   hardbody_fuzzer(line hardbody_program nlohmann_json::nlohmann_json)
+  hardbody_fuzzer(checkpoint hardbody_program)
 endif()

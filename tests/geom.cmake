@@ -22,8 +22,4 @@ hardbody_test(geom_property_test property property/geom_distance_test.cpp
 hardbody_test(geom_accuracy_test accuracy accuracy/geom_distance_test.cpp accuracy/geom_extreme_test.cpp
   accuracy/geom_table_test.cpp)
 
-# Code compiled for newer processors must not be linked into anything else.
-add_test(NAME geom_kernel_symbols COMMAND ${CMAKE_COMMAND} -DNM=${CMAKE_NM}
-  "-DOBJECTS=$<FILTER:$<TARGET_OBJECTS:hardbody_geom>,INCLUDE,batch_kernel_>"
-  -P ${CMAKE_CURRENT_SOURCE_DIR}/package/kernel_symbols.cmake)
-set_tests_properties(geom_kernel_symbols PROPERTIES LABELS package)
+hardbody_kernel_symbols_test(geom_kernel_symbols hardbody_geom batch_kernel _ZN4geom8internal[0-9]+batch_kernels_)

@@ -4,6 +4,7 @@
 #include "errors.h"
 #include "run_directory.h"
 #include "run_record.h"
+#include "table.h"
 
 #include <fmt/format.h>
 
@@ -11,6 +12,7 @@
 #include <filesystem>
 #include <stdexcept>
 #include <utility>
+#include <variant>
 
 namespace hardbody {
 namespace {
@@ -50,22 +52,59 @@ void print_state(const Checkpoint& checkpoint, const ed::Audit& audit) {
   row("energy", fmt::format("{:.10g} kT (translation {:.6g}, rotation {:.6g}, spin {:.6g})", kinetic.energy(),
                             kinetic.translational_energy, kinetic.rotational_energy, kinetic.spin_energy));
   row("translational temperature", fmt::format("{:.6f} on 3N - 3 degrees of freedom", kinetic.translational_kT));
-  row("rotational temperature", fmt::format("{:.6f} on 2N", kinetic.rotational_kT));
+  row("rotational temperature", fmt::format("{:.6f} on {}", kinetic.rotational_kT,
+                                            freedoms_text(kinetic.rotational_freedoms, checkpoint.system.size())));
   row("momentum", fmt::format("{:.2e} sqrt(m kT) a body", kinetic.momentum.norm() / checkpoint.system.size()));
+}
+
+bool near(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return (a - b).norm() <= kRounding * b.norm();
+}
+
+bool same_shape(const ed::BodyShape& a, const ed::BodyShape& b) {
+  if (a.index() != b.index()) return false;
+  const auto* s = std::get_if<geom::Superellipsoid>(&a);
+  const auto* t = std::get_if<geom::Superellipsoid>(&b);
+  const bool exponents = s == nullptr || (s->e1() == t->e1() && s->e2() == t->e2());
+  return exponents && near(ed::half_extents(a), ed::half_extents(b));
+}
+
+bool same_dynamics(const ed::Species& a, const ed::Species& b) {
+  return std::abs(a.mass / b.mass - 1) <= kRounding && near(a.inertia, b.inertia) && a.spins == b.spins;
+}
+
+/// What of the state is as its config says.
+struct Agreement {
+  bool number = true;
+  bool shape = true;
+  bool dynamics = true;
+};
+
+Agreement compare(const ed::System& system, const Config& config) {
+  Agreement result;
+  result.number = system.size() == config.number;
+  int body = 0;
+  for (const ed::Component& component : config.components()) {
+    for (int k = 0; k < component.number && body < system.size(); ++k, ++body) {
+      const ed::Species& species = system.species_of(body);
+      result.shape = result.shape && same_shape(species.shape, component.species.shape);
+      result.dynamics = result.dynamics && same_dynamics(species, component.species);
+    }
+  }
+  return result;
 }
 
 /// Whether the state is that of the config it was made with.
 bool print_config(const Checkpoint& checkpoint, const std::string& name) {
   const Config config = parse_config(checkpoint.config, name + " (its config)");
-  const ed::System& system = checkpoint.system;
-  const double phi = ed::packing_fraction(system);
+  const double phi = ed::packing_fraction(checkpoint.system);
   const bool same_phi = std::abs(phi / config.packing_fraction - 1) < kRounding;
-  const bool same_number = system.size() == config.number;
-  const bool same_shape = system.species.shape.semi_axes().isApprox(config.species.shape.semi_axes(), kRounding);
+  const Agreement same = compare(checkpoint.system, config);
   row("packing fraction", fmt::format("{:.15g}, as configured: {}", phi, yes_or_no(same_phi)));
-  row("number as configured", yes_or_no(same_number));
-  row("shape as configured", yes_or_no(same_shape));
-  return same_phi && same_number && same_shape;
+  row("number as configured", yes_or_no(same.number));
+  row("shape as configured", yes_or_no(same.shape));
+  row("inertia as configured", yes_or_no(same.dynamics));
+  return same_phi && same.number && same.shape && same.dynamics;
 }
 
 }  // namespace

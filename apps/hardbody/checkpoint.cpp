@@ -1,186 +1,214 @@
 #include "checkpoint.h"
 
+#include "config_text.h"
 #include "errors.h"
 #include "text_file.h"
+#include "toml_document.h"
+#include "version.h"
+
+#include <ed/internal/archive_types.h>
 
 #include <fmt/format.h>
 
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <stdexcept>
 
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
 namespace hardbody {
+
+using ed::internal::Is;
+using ed::internal::Reader;
+using ed::internal::Writer;
+
+// ---- Members, found by the archive through their types -------------------------------------------------------------
+
+template <class Archive, Is<Upkeep> T>
+void fields(Archive& archive, T& upkeep) {
+  archive(upkeep.seconds, upkeep.production_seconds, upkeep.checkpoints, upkeep.checkpoints_failed, upkeep.resumed);
+}
+
+template <class Archive, Is<Equilibration> T>
+void fields(Archive& archive, T& e) {
+  archive(e.kinetic_at_start, e.time, e.envelope, e.relaxation, e.counters, e.failures);
+}
+
+template <class Archive, Is<Production> T>
+void fields(Archive& archive, T& p) {
+  archive(p.kinetic_at_start, p.time, p.planned, p.longest_lag, p.next_look, p.precise, p.wave_numbers);
+}
+
+template <class Archive, Is<EventsMark> T>
+void fields(Archive& archive, T& mark) {
+  archive(mark.rows, mark.bytes);
+}
+
+template <class Archive, Is<RunState> T>
+void fields(Archive& archive, T& run) {
+  archive(run.finished, run.equilibration, run.monitor, run.production, run.events, run.simulation, run.observables);
+}
+
 namespace {
 
 constexpr std::string_view kMagic = "HARDBODY";
 constexpr std::uint32_t kByteOrder = 0x01020304;
-constexpr std::uint32_t kFormat = 1;
+constexpr std::uint32_t kFormat = 4;
+constexpr std::uint32_t kOtherRun = 3;  ///< whose run only an older program can go on with
+constexpr std::uint32_t kOneEllipsoid =
+    1;  ///< of one ellipsoid of revolution; like 2 without what a run needs to go on
 constexpr std::size_t kHead = 8 + 4 + 4 + 8;  ///< magic, byte order, format, length of the payload
 constexpr std::size_t kTail = 8;              ///< checksum
-constexpr std::size_t kBodyBytes = 18 * sizeof(double);
-constexpr std::size_t kLongest = std::size_t{1} << 31;
+constexpr std::size_t kLongest = std::size_t{1} << 35;
 
-// ---- Writing
-
-template <class T>
-void put(std::string& bytes, const T& value) {
-  static_assert(std::is_arithmetic_v<T>);
-  char raw[sizeof(T)];
-  std::memcpy(raw, &value, sizeof(T));
-  bytes.append(raw, sizeof(T));
-}
-
-void put_text(std::string& bytes, std::string_view text) {
-  put(bytes, static_cast<std::uint64_t>(text.size()));
-  bytes.append(text);
-}
-
-void put_vector(std::string& bytes, const Eigen::Vector3d& v) {
-  for (int k = 0; k < 3; ++k) put(bytes, v[k]);
-}
-
-void put_system(std::string& bytes, const ed::System& system) {
-  put(bytes, system.box);
-  put_vector(bytes, system.species.shape.semi_axes());
-  put(bytes, system.species.mass);
-  put_vector(bytes, system.species.inertia);
-  put(bytes, static_cast<std::uint8_t>(system.species.spins ? 1 : 0));
-  put(bytes, static_cast<std::uint64_t>(system.bodies.size()));
-  for (const ed::Body& body : system.bodies) {
-    put_vector(bytes, body.position);
-    for (int k = 0; k < 3; ++k) put_vector(bytes, body.rotation.col(k));
-    put_vector(bytes, body.velocity);
-    put_vector(bytes, body.angular_velocity);
-  }
-}
-
-// ---- Reading
-
-/// Takes values off the front of the payload.
-class Reader {
- public:
-  Reader(std::string_view bytes, const std::string& name) : bytes_(bytes), name_(name) {}
-
-  std::string_view take(std::uint64_t length) {
-    if (length > bytes_.size()) throw damaged();
-    const std::string_view taken = bytes_.substr(0, length);
-    bytes_.remove_prefix(length);
-    return taken;
-  }
-
-  template <class T>
-  T value() {
-    T result;
-    std::memcpy(&result, take(sizeof(T)).data(), sizeof(T));
-    return result;
-  }
-
-  std::string text() { return std::string(take(value<std::uint64_t>())); }
-
-  Eigen::Vector3d vector() {
-    const auto x = value<double>();
-    const auto y = value<double>();
-    const auto z = value<double>();
-    return {x, y, z};
-  }
-
-  std::size_t left() const { return bytes_.size(); }
-
-  InputError damaged() const {
-    return InputError(fmt::format("{}: holds an impossible state; accepted: an undamaged checkpoint", name_));
-  }
-
- private:
-  std::string_view bytes_;
-  std::string name_;
-};
-
-ed::System take_system(Reader& reader) {
+/// One species, without its kind, and bodies without their species.
+ed::System take_one_ellipsoid(Reader& reader) {
   ed::System system;
-  system.box = reader.value<double>();
-  try {
-    system.species.shape = geom::Ellipsoid(reader.vector());
-  } catch (const std::invalid_argument&) {
-    throw reader.damaged();
-  }
-  system.species.mass = reader.value<double>();
-  system.species.inertia = reader.vector();
-  system.species.spins = reader.value<std::uint8_t>() != 0;
-  const auto number = reader.value<std::uint64_t>();
-  const bool sound = system.box > 0 && std::isfinite(system.box) && system.species.shape.symmetry_axis() &&
-                     number > 0 && number == reader.left() / kBodyBytes && reader.left() % kBodyBytes == 0;
-  if (!sound) throw reader.damaged();
-  system.bodies.resize(number);
-  for (ed::Body& body : system.bodies) {
-    body.position = reader.vector();
-    for (int k = 0; k < 3; ++k) body.rotation.col(k) = reader.vector();
-    body.velocity = reader.vector();
-    body.angular_velocity = reader.vector();
+  reader(system.box);
+  ed::Species& species = system.species.emplace_back();
+  species.shape = geom::Ellipsoid(reader.value<Eigen::Vector3d>());
+  reader(species.mass, species.inertia, species.spins);
+  for (auto number = reader.value<std::uint64_t>(); number > 0; --number) {
+    ed::Body& body = system.bodies.emplace_back();
+    reader(body.position, body.rotation, body.velocity, body.angular_velocity);
   }
   return system;
 }
 
+Checkpoint take_checkpoint(std::uint32_t format, std::string_view payload) {
+  Reader reader(payload);
+  Checkpoint checkpoint;
+  reader(checkpoint.program_version, checkpoint.config, checkpoint.cpu_features);
+  if (format >= kOtherRun) reader(checkpoint.arch);
+  reader(checkpoint.phase, checkpoint.time);
+  if (format == kOneEllipsoid) {
+    checkpoint.system = take_one_ellipsoid(reader);
+  } else {
+    reader(checkpoint.system);
+  }
+  if (format == kFormat) reader(checkpoint.run, checkpoint.upkeep);
+  if (format == kOtherRun) (void)reader.raw(reader.left());
+  reader.finish();
+  const ed::System& system = checkpoint.system;
+  ed::internal::expect(reader, system.box > 0 && std::isfinite(system.box), "the box");
+  ed::internal::expect(reader, !system.bodies.empty(), "no bodies");
+  ed::check_species(system);
+  return checkpoint;
+}
+
+struct Payload {
+  std::uint32_t format;
+  std::string_view bytes;
+};
+
 /// The payload of a file whose head and checksum are right.
-std::string_view checked_payload(std::string_view bytes, const std::string& name) {
+Payload checked_payload(std::string_view bytes, const std::string& name) {
   const auto refuse = [&](const std::string& why) {
     return InputError(fmt::format("{}: {}; accepted: an undamaged checkpoint", name, why));
   };
   if (!bytes.starts_with(kMagic)) throw refuse("is not a hardbody checkpoint");
   const std::string cut = fmt::format("is cut off after {} bytes", bytes.size());
   if (bytes.size() < kHead + kTail) throw refuse(cut);
-  Reader head(bytes.substr(kMagic.size(), kHead - kMagic.size()), name);
+  Reader head(bytes.substr(kMagic.size(), kHead - kMagic.size()));
   if (head.value<std::uint32_t>() != kByteOrder) throw refuse("was written with another byte order, or is damaged");
   const auto format = head.value<std::uint32_t>();
   const auto length = head.value<std::uint64_t>();
-  if (format != kFormat) {
-    throw refuse(fmt::format("has format version {}, this program reads version {}", format, kFormat));
+  if (format < kOneEllipsoid || format > kFormat) {
+    throw refuse(
+        fmt::format("has format version {}, this program reads versions {} to {}", format, kOneEllipsoid, kFormat));
   }
   if (length > bytes.size() - kHead - kTail) throw refuse(cut);
   if (length < bytes.size() - kHead - kTail) throw refuse("is longer than it says, so it is damaged");
-  Reader tail(bytes.substr(kHead + length), name);
+  Reader tail(bytes.substr(kHead + length));
   if (tail.value<std::uint64_t>() != XXH3_64bits(bytes.data(), kHead + length)) {
     throw refuse("is damaged: its checksum does not fit");
   }
-  return bytes.substr(kHead, length);
+  return {format, bytes.substr(kHead, length)};
+}
+
+/// A key and its value in each of two configs that differ; "nothing" where it is missing.
+struct Difference {
+  std::string key;
+  std::string here;
+  std::string there;
+};
+
+std::optional<Difference> difference(const TomlDocument& here, const TomlDocument& there) {
+  for (const Entry& entry : here.entries) {
+    const Entry* other = there.find(entry.key);
+    if (other == nullptr) return Difference{entry.key, entry.value.shown, "nothing"};
+    if (other->value.shown != entry.value.shown) return Difference{entry.key, entry.value.shown, other->value.shown};
+  }
+  for (const Entry& entry : there.entries) {
+    if (here.find(entry.key) == nullptr) return Difference{entry.key, "nothing", entry.value.shown};
+  }
+  return std::nullopt;
+}
+
+std::string or_none(const std::string& features) {
+  return features.empty() ? "none" : features;
 }
 
 }  // namespace
 
-std::string encode_checkpoint(const Checkpoint& checkpoint) {
-  std::string payload;
-  for (const std::string* text :
-       {&checkpoint.program_version, &checkpoint.config, &checkpoint.cpu_features, &checkpoint.phase}) {
-    put_text(payload, *text);
-  }
-  put(payload, checkpoint.time);
-  put_system(payload, checkpoint.system);
+std::string seal_checkpoint(std::string_view payload) {
   std::string bytes(kMagic);
-  put(bytes, kByteOrder);
-  put(bytes, kFormat);
-  put(bytes, static_cast<std::uint64_t>(payload.size()));
+  bytes += ed::internal::bytes_of(kByteOrder);
+  bytes += ed::internal::bytes_of(kFormat);
+  bytes += ed::internal::bytes_of(std::uint64_t{payload.size()});
   bytes += payload;
-  put(bytes, static_cast<std::uint64_t>(XXH3_64bits(bytes.data(), bytes.size())));
+  bytes += ed::internal::bytes_of(std::uint64_t{XXH3_64bits(bytes.data(), bytes.size())});
   return bytes;
 }
 
+std::string encode_checkpoint(const Checkpoint& checkpoint) {
+  Writer payload;
+  payload(checkpoint.program_version, checkpoint.config, checkpoint.cpu_features, checkpoint.arch, checkpoint.phase,
+          checkpoint.time, checkpoint.system, checkpoint.run, checkpoint.upkeep);
+  return seal_checkpoint(payload.bytes());
+}
+
 Checkpoint decode_checkpoint(std::string_view bytes, const std::string& name) {
-  Reader reader(checked_payload(bytes, name), name);
-  Checkpoint checkpoint;
-  checkpoint.program_version = reader.text();
-  checkpoint.config = reader.text();
-  checkpoint.cpu_features = reader.text();
-  checkpoint.phase = reader.text();
-  checkpoint.time = reader.value<double>();
-  checkpoint.system = take_system(reader);
-  return checkpoint;
+  const Payload payload = checked_payload(bytes, name);
+  try {
+    return take_checkpoint(payload.format, payload.bytes);
+  } catch (const std::invalid_argument& error) {
+    throw InputError(
+        fmt::format("{}: holds an impossible state ({}); accepted: an undamaged checkpoint", name, error.what()));
+  }
 }
 
 Checkpoint read_checkpoint(const std::filesystem::path& path) {
   return decode_checkpoint(read_file(path, kLongest), path.string());
+}
+
+void check_same_config(const Checkpoint& checkpoint, const Config& config, const std::string& config_name) {
+  const std::string there_name = config_name + " (of the checkpoint)";
+  // Both through the same writer: what was written by hand otherwise is no difference.
+  const TomlDocument here = read_toml(resolved_text(config), config_name, {});
+  const TomlDocument there = read_toml(resolved_text(parse_config(checkpoint.config, there_name)), there_name, {});
+  const std::optional<Difference> found = difference(here, there);
+  if (!found) return;
+  throw InputError(fmt::format("{}: {} is {}, the checkpoint was made with {}; accepted: the config of the run",
+                               config_name, found->key, found->here, found->there));
+}
+
+void check_resumable(const Checkpoint& checkpoint, const std::string& name) {
+  const auto refuse = [&](const std::string& what, const std::string& made, const std::string& here) {
+    throw InputError(fmt::format(
+        "{}: was made {} {}, here {}, which would change bits; accepted: the same, or a new run of its config.toml",
+        name, what, made, here));
+  };
+  if (checkpoint.phase != "start" && !checkpoint.run) {
+    throw InputError(fmt::format(
+        "{}: is of an older format that holds no running state; accepted: a new run of its config.toml", name));
+  }
+  if (checkpoint.program_version != version()) refuse("by hardbody", checkpoint.program_version, version());
+  if (checkpoint.arch != build_arch()) refuse("by a program built with", checkpoint.arch, build_arch());
+  if (checkpoint.cpu_features != cpu_feature_text()) {
+    refuse("on a processor with", or_none(checkpoint.cpu_features), or_none(cpu_feature_text()));
+  }
 }
 
 }  // namespace hardbody

@@ -1,31 +1,62 @@
 #pragma once
 
+#include "run_record.h"
+
+#include <ed/simulation.h>
 #include <ed/system.h>
 
+#include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 
 namespace hardbody {
 
+/// What a run needs, beside its config, to go on bit for bit.
+struct RunState {
+  bool finished = false;  ///< nothing is left to do but to write what was measured
+  /// Without its system. While it goes on: as of the last full unit of time.
+  Equilibration equilibration;
+  std::string monitor;    ///< ed::EquilibrationMonitor::save; not in production
+  Production production;  ///< what it began with
+  EventsMark events;
+  std::string simulation;   ///< ed::Simulation::save
+  std::string observables;  ///< ed::Observables::save; of production
+};
+
 /// checkpoint.bin: a state and what it belongs to.
 ///
 /// Layout: "HARDBODY", a mark of the byte order, the format's version, the length of the payload; the
-/// payload; the XXH3 checksum of everything before it.
+/// payload; the XXH3 checksum of everything before it. Versions 1 (one ellipsoid of revolution for all bodies) and 2
+/// hold no RunState, version 3 another one: they can be checked, not resumed.
 struct Checkpoint {
   std::string program_version;
   std::string config;        ///< the run's resolved config.toml
   std::string cpu_features;  ///< of the processor that made it, blank-separated
-  std::string phase;         ///< "equilibration" or "production"
+  std::string arch;          ///< what the program was compiled for
+  std::string phase;         ///< "start", "equilibration" or "production"
   double time = 0;           ///< since the phase began
   ed::System system;
+  std::optional<RunState> run;  ///< nothing in a "start", which goes on from the system
+  Upkeep upkeep;                ///< last, so that the checkpoints of two like runs differ in their last 48 bytes only
 };
 
 std::string encode_checkpoint(const Checkpoint& checkpoint);
 
-/// Throws InputError, `name: why`, for anything but an undamaged checkpoint of this version and byte order.
+/// A payload with head and checksum: what decode_checkpoint takes for whole.
+std::string seal_checkpoint(std::string_view payload);
+
+/// Throws InputError, `name: why`, for anything but an undamaged checkpoint of a version that is known, in this byte
+/// order.
 Checkpoint decode_checkpoint(std::string_view bytes, const std::string& name);
 
 Checkpoint read_checkpoint(const std::filesystem::path& path);
+
+/// Whether the config is still that of the run. Throws InputError, naming the key that differs.
+void check_same_config(const Checkpoint& checkpoint, const Config& config, const std::string& config_name);
+
+/// Whether this program, on this processor, goes on with the same bits. Throws InputError, naming what differs.
+void check_resumable(const Checkpoint& checkpoint, const std::string& name);
 
 }  // namespace hardbody

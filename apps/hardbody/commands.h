@@ -16,8 +16,9 @@ struct RunArguments {
 };
 
 /// An empty path: standard output.
-int init(const std::string& path);
+int init(const std::string& path, const std::string& template_name);
 int run(const RunArguments& arguments);
+int resume(const std::string& path);
 int check(const std::string& path);
 int replay(const std::string& path);
 /// "-": standard input.

@@ -1,11 +1,13 @@
 #include "config.h"
 
+#include "config_species.h"
+#include "config_values.h"
 #include "errors.h"
 #include "suggest.h"
 #include "text_file.h"
 #include "toml_document.h"
 
-#include <ed/start.h>
+#include <ed/polydispersity.h>
 
 #include <fmt/format.h>
 
@@ -14,53 +16,53 @@
 #include <cmath>
 #include <initializer_list>
 #include <limits>
+#include <stdexcept>
 
 namespace hardbody {
 namespace {
 
-using Eigen::Vector3d;
-
-constexpr std::size_t kLongestConfig = 1 << 20;  ///< bytes
-constexpr std::int64_t kMostBodies = 1'000'000;
+constexpr std::size_t kLongestConfig = 1 << 20;    ///< bytes
 constexpr std::int64_t kMostEvents = 100'000'000;  ///< they are kept in memory: 16 bytes each
-constexpr double kThinnest = 1e-2;                 ///< least aspect ratio; the largest is the inverse
 constexpr double kLongestTime = 1e9;
-
 constexpr double kLeastPacking = 1e-9;
 
-constexpr std::array<std::string_view, 6> kSections = {"system",        "shape",      "dynamics",
+constexpr std::array<std::string_view, 7> kSections = {"system",        "shape",      "species", "dynamics",
                                                        "equilibration", "production", "output"};
-constexpr std::array<std::string_view, 18> kKeys = {
+constexpr std::array<std::string_view, 33> kKeys = {
     "seed",
     "system.number",
     "system.packing_fraction",
+    "system.start",
+    "system.nematic_order",
     "shape.kind",
     "shape.aspect_ratio",
     "shape.semi_axes",
     "shape.exponents",
+    "species.kind",
+    "species.aspect_ratio",
+    "species.semi_axes",
+    "species.exponents",
+    "species.fraction",
+    "species.number",
+    "species.mass",
+    "species.inertia",
+    "species.sizes",
+    "species.width",
+    "species.size_seed",
     "dynamics.inertia",
     "dynamics.finder",
     "dynamics.eps_d",
     "dynamics.distance",
     "dynamics.neighbours",
     "equilibration.time",
+    "equilibration.cap",
     "production.time",
+    "production.target_error",
     "output.events",
     "output.trajectory",
     "output.frames",
     "output.checkpoint_every",
 };
-
-// ---- Messages
-
-InputError bad(const Entry& entry, std::string_view accepted) {
-  return InputError(fmt::format("{}: {} is {}; accepted: {}", entry.where, entry.key, entry.value.shown, accepted));
-}
-
-InputError not_yet(const Entry& entry, std::string_view accepted) {
-  return InputError(fmt::format("{}: {} = {} is not available yet; accepted now: {}", entry.where, entry.key,
-                                entry.value.shown, accepted));
-}
 
 // ---- Names
 
@@ -68,17 +70,41 @@ bool known_section(std::string_view name) {
   return std::find(kSections.begin(), kSections.end(), name) != kSections.end();
 }
 
+/// "[2]" of species[2] and species[2].mass; empty where there is none.
+std::string_view index_in(std::string_view name) {
+  const std::size_t open = name.find('[');
+  const std::size_t close = name.find(']');
+  if (open == std::string_view::npos || close == std::string_view::npos || close < open) return {};
+  return name.substr(open, close - open + 1);
+}
+
+std::string without_index(std::string_view name) {
+  const std::string_view index = index_in(name);
+  std::string result(name);
+  return index.empty() ? result : result.erase(result.find(index), index.size());
+}
+
+/// species.mass as species[2].mass.
+std::string with_index(std::string_view key, std::string_view index) {
+  std::string result(key);
+  return key.starts_with("species.") ? result.insert(result.find('.'), index) : result;
+}
+
 void check_sections(const TomlDocument& document) {
   for (const Section& section : document.sections) {
-    if (known_section(section.name)) continue;
-    if (section.name == "species") {
-      throw InputError(fmt::format("{}: species is not available yet; accepted now: one [shape]", section.where));
+    const bool several = section.several;
+    const std::string name = several ? without_index(section.name) : section.name;
+    if (known_section(name) && several == (name == "species")) continue;
+    if (known_section(name)) {
+      throw InputError(fmt::format(
+          "{}: [{}] is {}; accepted: {}", section.where, name, several ? "there as an array, [[..]]" : "one section",
+          several ? fmt::format("[{}], once", name) : std::string("[[species]], one for each kind of bodies")));
     }
-    const auto nearest = nearest_name(section.name, kSections);
-    throw InputError(fmt::format(
-        "{}: unknown section [{}]{}; accepted: [system], [shape], [dynamics], "
-        "[equilibration], [production], [output]",
-        section.where, one_line(section.name, 40), nearest ? fmt::format(", did you mean [{}]?", *nearest) : ""));
+    const auto nearest = nearest_name(name, kSections);
+    throw InputError(
+        fmt::format("{}: unknown section [{}]{}; accepted: [system], [shape] or [[species]], [dynamics], "
+                    "[equilibration], [production], [output]",
+                    section.where, one_line(name, 40), nearest ? fmt::format(", did you mean [{}]?", *nearest) : ""));
   }
 }
 
@@ -94,39 +120,43 @@ std::string keys_near(std::string_view key) {
   return list;
 }
 
+/// A key of a [[species]] that the file does not have, from the command line.
+void check_index(const TomlDocument& document, const Entry& entry) {
+  const std::string section = entry.key.substr(0, entry.key.find('.'));
+  if (!section.starts_with("species")) return;
+  int number = 0;
+  for (const Section& s : document.sections) {
+    if (s.name == section) return;
+    if (s.several) ++number;
+  }
+  throw InputError(number == 0 ? fmt::format("{}: {} needs sections [[species]] in the file, which has none; accepted: "
+                                             "[[species]], or keys of [shape]",
+                                             entry.where, entry.key)
+                               : fmt::format("{}: there is no {} in the file; accepted: species[1] to species[{}]",
+                                             entry.where, section, number));
+}
+
 void check_names(const TomlDocument& document) {
   check_sections(document);
   for (const Entry& entry : document.entries) {
-    if (std::find(kKeys.begin(), kKeys.end(), entry.key) != kKeys.end()) continue;
-    if (known_section(entry.key)) throw bad(entry, fmt::format("a section [{}] with keys", entry.key));
-    if (entry.key == "species" || entry.key.starts_with("species.")) {
-      throw InputError(fmt::format("{}: {} is not available yet; accepted now: one [shape]", entry.where, entry.key));
+    const std::string key = without_index(entry.key);
+    const std::string_view index = index_in(entry.key);
+    const bool indexed = index.empty() || entry.key == with_index(key, index);
+    if (indexed && std::find(kKeys.begin(), kKeys.end(), key) != kKeys.end()) {
+      check_index(document, entry);
+      continue;
     }
-    const auto nearest = nearest_name(entry.key, kKeys);
+    if (entry.key == "species") throw bad(entry, "sections [[species]], one for each kind of bodies");
+    if (known_section(entry.key)) throw bad(entry, fmt::format("a section [{}] with keys", entry.key));
+    const auto nearest = nearest_name(key, kKeys);
     const std::string name = one_line(entry.key, 60);
     throw InputError(nearest ? fmt::format("{}: unknown key {}, did you mean {}?; accepted: {}", entry.where, name,
-                                           *nearest, keys_near(*nearest))
+                                           with_index(*nearest, index), keys_near(*nearest))
                              : fmt::format("{}: unknown key {}; accepted: {}", entry.where, name, keys_near("")));
   }
 }
 
 // ---- Values
-
-bool is_number(const Value& value) {
-  return (value.kind == Value::Kind::integer || value.kind == Value::Kind::real) && std::isfinite(value.real);
-}
-
-void read_integer(const TomlDocument& document, std::string_view key, std::int64_t least, std::int64_t most,
-                  std::int64_t& result) {
-  const Entry* entry = document.find(key);
-  if (entry == nullptr) return;
-  if (entry->value.kind != Value::Kind::integer || entry->value.integer < least || entry->value.integer > most) {
-    throw bad(*entry, most == std::numeric_limits<std::int64_t>::max()
-                          ? fmt::format("an integer, at least {}", least)
-                          : fmt::format("an integer from {} to {}", least, most));
-  }
-  result = entry->value.integer;
-}
 
 /// A time: a number in [least, kLongestTime], 0 excluded if least is, or "auto".
 void read_time(const TomlDocument& document, std::string_view key, bool zero, std::optional<double>& result) {
@@ -144,154 +174,51 @@ void read_time(const TomlDocument& document, std::string_view key, bool zero, st
   result = value.real;
 }
 
-struct Choice {
-  std::string_view name;
-  bool available;
-};
-
-std::string list_of(std::initializer_list<Choice> choices) {
-  std::string list;
-  for (const Choice& choice : choices) {
-    if (!choice.available) continue;
-    if (!list.empty()) list += ", ";
-    list += fmt::format("\"{}\"", choice.name);
-  }
-  return list;
-}
-
-void read_choice(const TomlDocument& document, std::string_view key, std::initializer_list<Choice> choices,
-                 std::string& result) {
-  const Entry* entry = document.find(key);
-  if (entry == nullptr) return;
-  for (const Choice& choice : choices) {
-    if (entry->value.kind != Value::Kind::text || entry->value.text != choice.name) continue;
-    if (!choice.available) throw not_yet(*entry, list_of(choices));
-    result = choice.name;
-    return;
-  }
-  throw bad(*entry, list_of(choices));
-}
-
-/// Three finite positive numbers.
-Vector3d read_three(const Entry& entry, std::string_view accepted) {
-  const Value& value = entry.value;
-  if (value.kind != Value::Kind::array || value.items.size() != 3) throw bad(entry, accepted);
-  Vector3d result;
-  for (int k = 0; k < 3; ++k) {
-    const Value& item = value.items[static_cast<std::size_t>(k)];
-    if (!is_number(item) || !(item.real > 0)) throw bad(entry, accepted);
-    result[k] = item.real;
-  }
-  return result;
-}
-
-// ---- Shape and inertia
-
-constexpr std::string_view kAxesAccepted = "three positive finite numbers of which two are equal";
-
-/// Where the axis of revolution stands in [a, b, c]; 2 for a sphere.
-int axis_of_revolution(const Vector3d& axes) {
-  if (axes.x() == axes.y()) return 2;
-  if (axes.y() == axes.z()) return 0;
-  return axes.x() == axes.z() ? 1 : -1;
-}
-
-/// The values about body x, y, z after the permutation that makes `axis` the z axis; the other two are equal.
-Vector3d axis_last(const Vector3d& v, int axis) {
-  return {v[(axis + 1) % 3], v[(axis + 2) % 3], v[axis]};
-}
-
-Vector3d semi_axes_from_aspect_ratio(const Entry& entry, double& aspect_ratio) {
-  if (!is_number(entry.value) || !(entry.value.real >= kThinnest && entry.value.real <= 1 / kThinnest)) {
-    throw bad(entry, fmt::format("a number from {:g} to {:g} (X0 = a/b, a along the axis of revolution)", kThinnest,
-                                 1 / kThinnest));
-  }
-  aspect_ratio = entry.value.real;
-  const double b = 1 / std::cbrt(aspect_ratio);
-  return {b, b, aspect_ratio * b};
-}
-
-Vector3d semi_axes_from_list(const Entry& entry, Vector3d& given) {
-  given = read_three(entry, kAxesAccepted);
-  const int axis = axis_of_revolution(given);
-  if (axis < 0) {
-    throw InputError(fmt::format("{}: {} is {}: three different semi-axes are not available yet; accepted now: {}",
-                                 entry.where, entry.key, entry.value.shown, kAxesAccepted));
-  }
-  const double ratio = given[axis] / given[(axis + 1) % 3];
-  if (!(ratio >= kThinnest && ratio <= 1 / kThinnest)) {
-    throw bad(entry, fmt::format("semi-axes whose ratio is from {:g} to {:g}", kThinnest, 1 / kThinnest));
-  }
-  const double b = 1 / std::cbrt(ratio);
-  return {b, b, ratio * b};
-}
-
-geom::Ellipsoid read_shape(const TomlDocument& document, Config& config) {
-  const Entry* kind = document.find("shape.kind");
-  const Entry* exponents = document.find("shape.exponents");
-  if (kind != nullptr && kind->value.text == "superellipsoid") throw not_yet(*kind, "\"ellipsoid\"");
-  if (kind != nullptr && kind->value.text != "ellipsoid") throw bad(*kind, "\"ellipsoid\"");
-  if (exponents != nullptr) throw not_yet(*exponents, "kind = \"ellipsoid\", which has no exponents");
-  const Entry* ratio = document.find("shape.aspect_ratio");
-  const Entry* axes = document.find("shape.semi_axes");
-  if (ratio != nullptr && axes != nullptr) {
-    const Entry& later = ratio->line != 0 && (axes->line == 0 || axes->line > ratio->line) ? *axes : *ratio;
-    throw InputError(fmt::format("{}: shape.aspect_ratio is {} and shape.semi_axes is {}; accepted: only one of them",
-                                 later.where, ratio->value.shown, axes->value.shown));
-  }
-  if (ratio != nullptr) {
-    return geom::Ellipsoid(semi_axes_from_aspect_ratio(*ratio, config.aspect_ratio.emplace()));
-  }
-  if (axes != nullptr) return geom::Ellipsoid(semi_axes_from_list(*axes, config.semi_axes.emplace()));
-  throw InputError(
-      fmt::format("{}: the section [shape] needs shape.aspect_ratio or shape.semi_axes and has none; "
-                  "accepted: one of them",
-                  document.where_of("shape")));
-}
-
-Vector3d check_moments(const Entry& entry, const Config& config) {
-  constexpr std::string_view kAccepted =
-      "\"paper\", \"uniform\" or three positive moments [I1, I2, I3] of which none exceeds the sum of the "
-      "other two";
-  Vector3d given = read_three(entry, kAccepted);
-  if (!(given.maxCoeff() <= (given.sum() - given.maxCoeff()) * (1 + 1e-12))) throw bad(entry, kAccepted);
-  const Vector3d moments = axis_last(given, config.semi_axes ? axis_of_revolution(*config.semi_axes) : 2);
-  if (moments.x() != moments.y()) {
-    throw InputError(
-        fmt::format("{}: {} is {}: two different moments across the axis of revolution are not available "
-                    "yet; accepted now: equal ones",
-                    entry.where, entry.key, entry.value.shown));
-  }
-  return given;
-}
-
-ed::Species read_inertia(const TomlDocument& document, const geom::Ellipsoid& shape, Config& config) {
-  const Entry* entry = document.find("dynamics.inertia");
-  if (entry != nullptr && entry->value.kind == Value::Kind::text) {
-    if (entry->value.text != "paper" && entry->value.text != "uniform") {
-      throw bad(*entry, "\"paper\", \"uniform\" or three moments [I1, I2, I3]");
-    }
-    config.inertia = entry->value.text;
-  } else if (entry != nullptr) {
-    config.inertia_moments = check_moments(*entry, config);
-    config.inertia = "moments";
-  }
-  if (config.inertia == "paper") return ed::paper_species(shape);
-  ed::Species species = ed::uniform_species(shape);
-  if (config.inertia == "moments") {
-    species.inertia = axis_last(config.inertia_moments, config.semi_axes ? axis_of_revolution(*config.semi_axes) : 2);
-  }
-  return species;
-}
-
 // ---- Sections
 
+void read_times(const TomlDocument& document, Config& config) {
+  read_time(document, "equilibration.time", true, config.equilibration_time);
+  read_time(document, "production.time", false, config.production_time);
+  if (const Entry* cap = document.find("equilibration.cap")) {
+    if (!is_number(cap->value) || !(cap->value.real >= 1 && cap->value.real <= kLongestTime)) {
+      throw bad(*cap, fmt::format("a number from 1 to {:g} (time unit l sqrt(m/kT))", kLongestTime));
+    }
+    config.equilibration_cap = cap->value.real;
+  }
+  const Entry* error = document.find("production.target_error");
+  if (error == nullptr) return;
+  if (config.production_time) throw bad(*error, "no target_error, or production.time = \"auto\"");
+  if (!is_number(error->value) || !(error->value.real >= 1e-4 && error->value.real <= 1)) {
+    throw bad(*error, "a number from 0.0001 to 1 (standard error over value, of D_trans and D_rot)");
+  }
+  config.target_error = error->value.real;
+}
+
+void read_start(const TomlDocument& document, Config& config) {
+  read_choice(document, "system.start", {"random", "cubic", "fcc"}, config.start);
+  const Entry* order = document.find("system.nematic_order");
+  if (order == nullptr) return;
+  if (!is_number(order->value) || !(order->value.real >= 0 && order->value.real < 1)) {
+    throw bad(*order, "a number at least 0, below 1 (the order parameter S of the start)");
+  }
+  const bool spheres = std::all_of(config.species.begin(), config.species.end(), [](const SpeciesConfig& s) {
+    return ed::bounding_radius(s.body.shape) == ed::inscribed_radius(s.body.shape);
+  });
+  if (spheres) throw bad(*order, "no key nematic_order: spheres have no orientation");
+  config.nematic_order = order->value.real;
+}
+
+/// Above, on a lattice. How dense it can be depends on the number of bodies too: check_lattice.
+constexpr double kDensestLattice = 0.9999;
+
 void read_packing(const TomlDocument& document, Config& config) {
-  const geom::Ellipsoid& shape = config.species.shape;
-  const double densest = ed::densest_start(shape);
+  const double densest = config.lattice() ? kDensestLattice : ed::densest_start(config.components());
   // Rounded down: the value that the message names is accepted.
   const std::string accepted =
-      fmt::format("a number from {:g} to {:.4f} for this shape", kLeastPacking, std::floor(densest * 1e4) / 1e4);
+      fmt::format("a number from {:g} to {:.4f} for {}", kLeastPacking, std::floor(densest * 1e4) / 1e4,
+                  config.lattice() ? "a lattice"
+                  : config.mixture ? "these shapes"
+                                   : "this shape");
   const Entry* packing = document.find("system.packing_fraction");
   if (packing == nullptr) {
     throw InputError(
@@ -302,47 +229,82 @@ void read_packing(const TomlDocument& document, Config& config) {
   config.packing_fraction = phi;
 }
 
-void read_number(const TomlDocument& document, Config& config) {
-  std::int64_t number = config.number;
-  read_integer(document, "system.number", 2, kMostBodies, number);
-  config.number = static_cast<int>(number);
-  const geom::Ellipsoid& shape = config.species.shape;
+/// The smallest number of bodies, in the same proportions, whose box is large enough.
+int least_number(const Config& config, ed::Neighbours neighbours, double box, double largest_radius) {
+  if (!config.mixture) {
+    return ed::smallest_number(config.species[0].body.shape, config.packing_fraction, neighbours);
+  }
+  const double ratio = ed::smallest_box(largest_radius, neighbours) / box;
+  return static_cast<int>(std::ceil(config.number * (ratio * ratio * ratio)));
+}
+
+void check_box(const TomlDocument& document, const Config& config) {
+  const std::vector<ed::Component> components = config.components();
+  double largest = 0;
+  for (const ed::Component& c : components) largest = std::max(largest, ed::bounding_radius(c.species.shape));
   const bool cells = config.neighbours == "cells";
-  const int least =
-      ed::smallest_number(shape, config.packing_fraction, cells ? ed::Neighbours::cells : ed::Neighbours::dilated);
+  const double box = ed::box_for(components, config.packing_fraction);
+  const int least = least_number(config, cells ? ed::Neighbours::cells : ed::Neighbours::dilated, box, largest);
   if (config.number >= least) return;
-  const Entry* entry = document.find("system.number");
-  if (entry == nullptr) entry = document.find("system.packing_fraction");
+  const Entry* number = document.find("system.number");
+  const Entry* entry = number != nullptr ? number : document.find("system.packing_fraction");
+  const bool by_species = config.mixture && number == nullptr;
   throw InputError(fmt::format(
-      "{}: system.number is {}: the box, {:.4g} long at this packing fraction, is then too small for bodies of "
-      "bounding radius {:.4g} ({}); accepted: a number of at least {}",
-      entry->where, config.number, ed::box_for(shape, config.number, config.packing_fraction), shape.bounding_radius(),
+      "{}: {} is {}: the box, {:.4g} long at this packing fraction, is then too small for bodies of "
+      "bounding radius {:.4g}{} ({}); accepted: a number of at least {}{}",
+      entry->where, by_species ? "the number of bodies" : "system.number", config.number, box, largest,
+      config.mixture ? ", the largest" : "",
       cells ? "three cells as wide as two of them must fit along an edge" : "a body would meet two images of another",
-      least));
+      least, config.mixture ? " in these proportions, or bodies of less unequal sizes" : ""));
 }
 
-/// What neighbours = "auto" takes.
+/// Makes the start, which is all that tells whether it can be made.
+void check_lattice(const TomlDocument& document, const Config& config) {
+  const std::optional<ed::LatticeOptions> lattice = config.lattice();
+  if (!lattice) return;
+  try {
+    (void)ed::lattice_start(config.components(), *lattice);
+  } catch (const std::invalid_argument& error) {
+    const std::string_view message = error.what();
+    const Entry* entry = nullptr;
+    for (const char* key : {"system.number", "system.packing_fraction", "system.nematic_order"}) {
+      if (message.starts_with(std::string_view(key).substr(sizeof("system")))) entry = document.find(key);
+    }
+    if (entry == nullptr) entry = document.find("system.start");
+    throw InputError(fmt::format("{}: system.{}", entry->where, message));
+  }
+}
+
+/// What neighbours = "auto" takes. Only ellipsoids of revolution have been measured; for others, and for bodies of
+/// several sizes, dilated bodies are what costs little at any density.
 void choose_neighbours(Config& config) {
+  config.neighbours = "dilated";
+  if (config.mixture || !std::holds_alternative<geom::Ellipsoid>(config.species[0].body.shape)) return;
+  if (!config.all_of_revolution()) return;
   const auto finder = config.finder == "certified" ? ed::Finder::certified : ed::Finder::bracketing;
-  const bool cells = ed::fastest_neighbours(config.species.shape, config.number, config.packing_fraction, finder) ==
-                     ed::Neighbours::cells;
-  config.neighbours = cells ? "cells" : "dilated";
+  if (ed::fastest_neighbours(config.species[0].body.shape, config.number, config.packing_fraction, finder) ==
+      ed::Neighbours::cells) {
+    config.neighbours = "cells";
+  }
 }
 
-void read_dynamics(const TomlDocument& document, const geom::Ellipsoid& shape, Config& config) {
-  config.species = read_inertia(document, shape, config);
-  read_choice(document, "dynamics.finder", {{"certified", true}, {"bracketing", true}}, config.finder);
-  read_choice(document, "dynamics.distance", {{"dual", true}, {"newton8", true}, {"newton5", true}}, config.distance);
+void read_finder(const TomlDocument& document, Config& config) {
+  read_choice(document, "dynamics.finder", {"certified", "bracketing"}, config.finder);
+  read_choice(document, "dynamics.distance", {"dual", "newton8", "newton5"}, config.distance);
   if (config.finder == "certified" && config.distance != "dual") {
     throw bad(*document.find("dynamics.distance"), "\"dual\" with finder = \"certified\"; others with \"bracketing\"");
   }
+}
+
+void read_dynamics(const TomlDocument& document, Config& config) {
+  read_finder(document, config);
   config.neighbours = "auto";
-  read_choice(document, "dynamics.neighbours", {{"auto", true}, {"dilated", true}, {"obp", true}, {"cells", true}},
-              config.neighbours);
+  read_choice(document, "dynamics.neighbours", {"auto", "dilated", "obp", "cells"}, config.neighbours);
   config.neighbours_chosen = config.neighbours == "auto";
   const Entry* eps_d = document.find("dynamics.eps_d");
   if (eps_d == nullptr) return;
-  const double limit = shape.inscribed_radius();
+  double limit = std::numeric_limits<double>::infinity();
+  for (const ed::Component& c : config.components()) limit = std::min(limit, ed::inscribed_radius(c.species.shape));
   if (!is_number(eps_d->value) || !(eps_d->value.real > 0 && eps_d->value.real < limit)) {
     throw bad(*eps_d, fmt::format("a number above 0 and below the smallest semi-axis, {:.4g}", limit));
   }
@@ -391,11 +353,23 @@ void read_output(const TomlDocument& document, Config& config) {
 
 }  // namespace
 
-double Config::true_aspect_ratio() const {
-  if (aspect_ratio) return *aspect_ratio;
-  // From the axes as given: the rescaled ones would turn 3 into 2.9999999999999996.
-  const int axis = axis_of_revolution(*semi_axes);
-  return (*semi_axes)[axis] / (*semi_axes)[(axis + 1) % 3];
+std::vector<ed::Component> Config::components() const {
+  std::vector<ed::Component> list;
+  for (const SpeciesConfig& s : species) {
+    if (s.factors.empty()) list.push_back({s.body, s.number});
+    for (const double factor : s.factors) list.push_back({ed::scaled(s.body, factor), 1});
+  }
+  return list;
+}
+
+std::vector<ed::BodyGroup> Config::groups() const {
+  std::vector<ed::BodyGroup> list;
+  for (const SpeciesConfig& s : species) list.push_back({s.number, s.rotation_axes()});
+  return list;
+}
+
+bool Config::all_of_revolution() const {
+  return std::all_of(species.begin(), species.end(), [](const SpeciesConfig& s) { return s.rotation_axes() == 2; });
 }
 
 ed::SimulationOptions Config::simulation_options(double envelope) const {
@@ -410,6 +384,16 @@ ed::SimulationOptions Config::simulation_options(double envelope) const {
   return options;
 }
 
+std::optional<ed::LatticeOptions> Config::lattice() const {
+  if (start == "random") return std::nullopt;
+  ed::LatticeOptions options;
+  options.lattice = start == "fcc" ? ed::Lattice::fcc : ed::Lattice::simple_cubic;
+  options.packing_fraction = packing_fraction;
+  options.seed = static_cast<std::uint64_t>(seed);
+  options.nematic_order = nematic_order;
+  return options;
+}
+
 double Config::checkpoint_seconds() const {
   return parse_duration(checkpoint_every).value_or(std::numeric_limits<double>::infinity());
 }
@@ -419,12 +403,14 @@ Config parse_config(std::string_view text, const std::string& name, const std::v
   check_names(document);
   Config config;
   read_integer(document, "seed", 0, std::numeric_limits<std::int64_t>::max(), config.seed);
-  read_time(document, "equilibration.time", true, config.equilibration_time);
-  read_time(document, "production.time", false, config.production_time);
+  read_times(document, config);
   read_output(document, config);
-  read_dynamics(document, read_shape(document, config), config);
+  read_species(document, config);
+  read_dynamics(document, config);
+  read_start(document, config);
   read_packing(document, config);
-  read_number(document, config);
+  check_box(document, config);
+  check_lattice(document, config);
   if (config.neighbours_chosen) choose_neighbours(config);
   return config;
 }

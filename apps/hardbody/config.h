@@ -1,6 +1,8 @@
 #pragma once
 
+#include <ed/observables.h>
 #include <ed/simulation.h>
+#include <ed/start.h>
 #include <ed/system.h>
 
 #include <Eigen/Core>
@@ -13,6 +15,50 @@
 
 namespace hardbody {
 
+/// A shape as the user gave it.
+struct ShapeConfig {
+  std::string kind = "ellipsoid";  ///< or "superellipsoid"
+  // Exactly one of the two.
+  std::optional<double> aspect_ratio;
+  std::optional<Eigen::Vector3d> semi_axes;
+  Eigen::Vector2d exponents{1, 1};  ///< e1, e2 of a superellipsoid
+
+  /// a/b, a along the axis of revolution (of superellipsoids: body z) and b the two equal semi-axes across it; nothing
+  /// for shapes with three different ones.
+  std::optional<double> true_aspect_ratio() const;
+};
+
+/// Bodies of one kind, as the user gave them ([shape], or one of several [[species]]) and as the run takes them.
+struct SpeciesConfig {
+  ShapeConfig shape;
+  std::string inertia = "paper";             ///< or "uniform", or "moments"
+  Eigen::Vector3d inertia_moments{0, 0, 0};  ///< for "moments": as given, about the axes that semi_axes names
+  double mass = 1;
+  std::optional<double> fraction;  ///< of the number of bodies; nothing: the number itself was given
+  int number = 0;
+
+  std::string sizes = "equal";            ///< or "uniform", "gaussian", "lognormal"
+  double width = 0;                       ///< of the distribution of sizes: standard deviation / mean
+  std::optional<std::int64_t> size_seed;  ///< nothing: the run's
+
+  /// A body of nominal size, in the program's units. An ellipsoid's axis of revolution is along body z.
+  ed::Species body;
+  /// Size of each body relative to the nominal one; empty: all 1.
+  std::vector<double> factors;
+
+  /// Degrees of freedom of rotation that count as such: 2 of bodies of revolution (spin excluded), 3 of others.
+  int rotation_axes() const;
+};
+
+/// Of sizes that were drawn.
+struct SizeStatistics {
+  double mean;
+  double deviation;  ///< standard, of the sample
+  double smallest;
+  double largest;
+};
+SizeStatistics statistics_of(const std::vector<double>& sizes);
+
 /// A run's configuration, checked: every value is one that the run can use.
 struct Config {
   std::int64_t seed = 1;
@@ -20,14 +66,14 @@ struct Config {
   // [system]
   int number = 512;
   double packing_fraction = 0;
+  std::string start = "random";         ///< or "cubic", "fcc": on a lattice
+  std::optional<double> nematic_order;  ///< of the start; nothing: uniform orientations, or on a lattice aligned ones
 
-  // [shape]: exactly one of the two, as the user gave it
-  std::optional<double> aspect_ratio;
-  std::optional<Eigen::Vector3d> semi_axes;
+  // [shape], or one or more [[species]]
+  bool mixture = false;  ///< [[species]]: lengths are taken as they are given
+  std::vector<SpeciesConfig> species;
 
   // [dynamics]
-  std::string inertia = "paper";             ///< or "uniform", or "moments"
-  Eigen::Vector3d inertia_moments{0, 0, 0};  ///< for "moments": as given, about the axes that semi_axes names
   std::string finder = "certified";
   double eps_d = 1e-6;
   std::string distance = "dual";
@@ -35,18 +81,25 @@ struct Config {
   bool neighbours_chosen = true;       ///< by "auto"
 
   std::optional<double> equilibration_time;  ///< nothing: "auto"
+  double equilibration_cap = 500;            ///< of "auto"
   std::optional<double> production_time;
+  std::optional<double> target_error;  ///< of "auto": relative, of D_trans and D_rot
 
   // [output]
   std::int64_t events = 0;
   std::string checkpoint_every = "60s";  ///< a number and s, m or h
 
-  /// The bodies, in the program's units: (a b c)^(1/3) = 1, the axis of revolution along body z.
-  ed::Species species;
+  /// The bodies in the order of their species; of a species with sizes one component a body.
+  std::vector<ed::Component> components() const;
+  /// The species, as the observables take them.
+  std::vector<ed::BodyGroup> groups() const;
+  /// Whether all bodies have an axis of revolution.
+  bool all_of_revolution() const;
 
-  /// X0 = a/b, a along the axis of revolution.
-  double true_aspect_ratio() const;
   double checkpoint_seconds() const;
+
+  /// The start on a lattice; nothing: a random one.
+  std::optional<ed::LatticeOptions> lattice() const;
 
   /// [dynamics], as the simulation takes it; `envelope`: the thickness of the neighbour-list envelopes, 0 for a guess.
   ed::SimulationOptions simulation_options(double envelope = 0) const;

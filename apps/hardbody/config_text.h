@@ -2,7 +2,9 @@
 
 #include "config.h"
 
+#include <optional>
 #include <string>
+#include <string_view>
 
 namespace hardbody {
 
@@ -10,8 +12,10 @@ namespace hardbody {
 /// same Config, to the bit.
 std::string config_text(const Config& config, const std::string& header);
 
-/// What `hardbody init` writes.
-std::string template_text();
+/// What `hardbody init --template NAME` writes; nothing if there is no such template.
+std::optional<std::string> template_text(std::string_view name);
+/// "ellipsoid, superball, mixture": the first is the default.
+std::string template_names();
 
 /// What a run directory holds: the defaults filled in.
 std::string resolved_text(const Config& config);

@@ -22,8 +22,6 @@ using nlohmann::json;
 
 constexpr std::string_view kQueryKeys[] = {"a", "b", "method", "seed", "penetration", "id"};
 constexpr std::string_view kBodyKeys[] = {"shape", "position", "orientation"};
-constexpr std::string_view kEllipsoidKeys[] = {"kind", "semi_axes"};
-constexpr std::string_view kSuperellipsoidKeys[] = {"kind", "semi_axes", "exponents"};
 
 constexpr const char* kMethods = "\"dual\", \"newton8\", \"newton5\"";
 constexpr const char* kPenetrations = "\"global\", \"local\"";
@@ -32,30 +30,6 @@ struct Body {
   geom::Shape shape;
   geom::Pose pose;
 };
-
-geom::Superellipsoid read_superellipsoid(const JsonMember& shape) {
-  const JsonMember axes = shape.at("semi_axes", "three positive numbers");
-  const Vector3d a = axes.vector();
-  const JsonMember exponents = shape.at("exponents", "two numbers [e1, e2]");
-  const std::vector<double> e = exponents.numbers(2, "two numbers [e1, e2]");
-  // Axes first, so that what the library refuses is blamed on the right member.
-  axes.checked([&] { return geom::Superellipsoid(a, 1, 1); });
-  return exponents.checked([&] { return geom::Superellipsoid(a, e[0], e[1]); });
-}
-
-geom::Shape read_shape(const JsonMember& shape) {
-  constexpr const char* kAccepted = "\"ellipsoid\", \"superellipsoid\"";
-  if (!shape.json->is_object()) throw shape.bad("{\"kind\":\"ellipsoid\",\"semi_axes\":[a,b,c]}");
-  const JsonMember kind = shape.at("kind", kAccepted);
-  // First of all: another kind has other keys.
-  if (*kind.json == "superellipsoid") {
-    shape.allow(kSuperellipsoidKeys);
-    return read_superellipsoid(shape);
-  }
-  if (*kind.json != "ellipsoid") throw kind.bad(kAccepted);
-  shape.allow(kEllipsoidKeys);
-  return read_ellipsoid(shape);
-}
 
 Body read_body(const JsonMember& body) {
   body.allow(kBodyKeys);

@@ -9,31 +9,22 @@
 
 #include <fmt/format.h>
 
-#include <variant>
-
 namespace hardbody {
 namespace {
 
-/// A seed of libgeom for the shapes inside, which are chosen at run time.
-template <auto Seed>
-geom::WitnessPair of_shapes(const geom::Shape& a, const geom::Pose& X_WA, const geom::Shape& b,
-                            const geom::Pose& X_WB) {
-  return std::visit([&](const auto& s, const auto& t) { return Seed(s, X_WA, t, X_WB); }, a, b);
-}
-
-constexpr SeedFunction kDual = of_shapes<[](const auto&... pair) { return geom::dual_seed(pair...); }>;
-constexpr SeedFunction kCentres = of_shapes<[](const auto&... pair) { return geom::centre_seed(pair...); }>;
+constexpr SeedFunction kDual = geom::dual_seed;
+constexpr SeedFunction kCentres = geom::centre_seed;
 
 #if HARDBODY_WITH_SEEDS
-constexpr SeedFunction kFcl = of_shapes<[](const auto&... pair) { return geom::fcl_seed(pair...); }>;
-constexpr SeedFunction kCcd = of_shapes<[](const auto&... pair) { return geom::ccd_seed(pair...); }>;
+constexpr SeedFunction kFcl = geom::fcl_seed;
+constexpr SeedFunction kCcd = geom::ccd_seed;
 #else
 constexpr SeedFunction kFcl = nullptr;
 constexpr SeedFunction kCcd = nullptr;
 #endif
 
 #if HARDBODY_WITH_CGAL
-constexpr SeedFunction kCgal = of_shapes<[](const auto&... pair) { return geom::cgal_seed(pair...); }>;
+constexpr SeedFunction kCgal = geom::cgal_seed;
 #else
 constexpr SeedFunction kCgal = nullptr;
 #endif

@@ -11,6 +11,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <variant>
 
 namespace hardbody {
 namespace {
@@ -26,14 +27,21 @@ Json list(const Vector3d& v) {
   return {v.x(), v.y(), v.z()};
 }
 
-Json placed_json(const geom::Ellipsoid& shape, const geom::Pose& pose) {
+Json shape_json(const ed::BodyShape& shape) {
+  if (const auto* s = std::get_if<geom::Superellipsoid>(&shape)) {
+    return {{"kind", "superellipsoid"}, {"semi_axes", list(s->semi_axes())}, {"exponents", {s->e1(), s->e2()}}};
+  }
+  return {{"kind", "ellipsoid"}, {"semi_axes", list(std::get<geom::Ellipsoid>(shape).semi_axes())}};
+}
+
+Json placed_json(const ed::BodyShape& shape, const geom::Pose& pose) {
   const Matrix3d& R = pose.rotation();
-  return {{"shape", {{"kind", "ellipsoid"}, {"semi_axes", list(shape.semi_axes())}}},
+  return {{"shape", shape_json(shape)},
           {"position", list(pose.position())},
           {"rotation", {list(R.row(0)), list(R.row(1)), list(R.row(2))}}};
 }
 
-Json body_json(const geom::Ellipsoid& shape, const ed::Motion& motion) {
+Json body_json(const ed::BodyShape& shape, const ed::Motion& motion) {
   Json json = placed_json(shape, motion.pose);
   json["velocity"] = list(motion.velocity);
   json["angular_velocity"] = list(motion.angular_velocity);
@@ -42,14 +50,18 @@ Json body_json(const geom::Ellipsoid& shape, const ed::Motion& motion) {
   return json;
 }
 
+ed::BodyShape body_shape(const geom::Shape& shape) {
+  return std::visit([](const auto& s) -> ed::BodyShape { return s; }, shape);
+}
+
 Json newton_json(const ed::FailedDistance& call) {
   const bool seeded = call.seed.status == geom::SeedStatus::usable;
   return {{"method", call.method == ed::DistanceMethod::newton8 ? "newton8" : "newton5"},
           {"status", geom::to_string(call.status)},
           {"point_a", seeded ? list(call.seed.point_a) : Json(nullptr)},
           {"point_b", seeded ? list(call.seed.point_b) : Json(nullptr)},
-          {"a", placed_json(call.shape_a, call.X_WA)},
-          {"b", placed_json(call.shape_b, call.X_WB)}};
+          {"a", placed_json(body_shape(call.shape_a), call.X_WA)},
+          {"b", placed_json(body_shape(call.shape_b), call.X_WB)}};
 }
 
 /// A body's index.
@@ -79,18 +91,22 @@ geom::Pose read_pose(const JsonMember& body, Rounding rounding = Rounding::remov
   return rounding == Rounding::kept ? geom::internal::unchecked_pose(R, position) : pose;
 }
 
-geom::Ellipsoid read_shape(const JsonMember& body) {
+/// Without a kind an ellipsoid.
+geom::Shape read_geom_shape(const JsonMember& body) {
   const JsonMember shape = body.at("shape", "{\"kind\": \"ellipsoid\", \"semi_axes\": [a, b, c]}");
-  if (shape.has("kind") && *shape.at("kind", "").json != "ellipsoid") throw shape.at("kind", "").bad("\"ellipsoid\"");
-  return read_ellipsoid(shape);
+  return shape.has("kind") ? read_shape(shape) : geom::Shape(read_ellipsoid(shape));
 }
 
-ed::Motion read_motion(const JsonMember& body, const geom::Ellipsoid& shape) {
+ed::BodyShape read_body_shape(const JsonMember& body) {
+  return body_shape(read_geom_shape(body));
+}
+
+ed::Motion read_motion(const JsonMember& body, const ed::BodyShape& shape) {
   ed::Motion motion;
   motion.pose = read_pose(body);
   if (body.has("velocity")) motion.velocity = body.at("velocity", "").vector();
   if (body.has("angular_velocity")) motion.angular_velocity = body.at("angular_velocity", "").vector();
-  motion.inertia = body.has("inertia") ? body.at("inertia", "").vector() : shape.inertia(1);
+  motion.inertia = body.has("inertia") ? body.at("inertia", "").vector() : ed::uniform_species(shape).inertia;
   if (body.has("time")) motion.time = body.at("time", "").number();
   return motion;
 }
@@ -117,8 +133,8 @@ ed::FailedDistance read_newton(const JsonMember& newton) {
   ed::FailedDistance call;
   call.method = read_method(newton.at("method", "\"newton8\" or \"newton5\""));
   call.status = read_status(newton.at("status", "the status of a distance"));
-  call.shape_a = read_shape(a);
-  call.shape_b = read_shape(b);
+  call.shape_a = read_geom_shape(a);
+  call.shape_b = read_geom_shape(b);
   call.X_WA = read_pose(a, Rounding::kept);
   call.X_WB = read_pose(b, Rounding::kept);
   const JsonMember point_a = newton.at("point_a", "three finite numbers or null");
@@ -135,8 +151,8 @@ Failure read_pair(const JsonMember& root) {
   const JsonMember b = root.at("b", "a body");
   Failure failure;
   ed::FailedPair& pair = failure.pair;
-  pair.shape_i = read_shape(a);
-  pair.shape_j = read_shape(b);
+  pair.shape_i = read_body_shape(a);
+  pair.shape_j = read_body_shape(b);
   pair.motion_i = read_motion(a, pair.shape_i);
   pair.motion_j = read_motion(b, pair.shape_j);
   if (root.has("reason") && root.json->at("reason").is_string()) {

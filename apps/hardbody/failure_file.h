@@ -18,10 +18,10 @@ namespace hardbody {
 ///  "newton": {"method": "newton8" or "newton5", "status": .., "point_a": [..] or null, "point_b": ..,
 ///             "a": {"shape": .., "position": .., "rotation": ..}, "b": {..}}}
 ///
-/// eps_d: with the finder "bracketing" only. newton: the call of newton_distance that gave no answer, if
-/// that is the reason; its points are null where there was no seed, its frame has its origin at a's centre.
-/// World frame; rotation: rows of the matrix from body to world, or instead of it "orientation": [w, x, y,
-/// z]. Numbers are written so that they read back as the same double.
+/// shape: or {"kind": "superellipsoid", "semi_axes": [..], "exponents": [e1, e2]}. eps_d: with the finder "bracketing"
+/// only. newton: the call of newton_distance that gave no answer, if that is the reason; its points are null where
+/// there was no seed, its frame has its origin at a's centre. World frame; rotation: rows of the matrix from body to
+/// world, or instead of it "orientation": [w, x, y, z]. Numbers are written so that they read back as the same double.
 struct Failure {
   std::string reason;  ///< in words; a file may have another than to_string(pair.reason)
   ed::FailedPair pair;

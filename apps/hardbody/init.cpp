@@ -1,6 +1,7 @@
 #include "commands.h"
 #include "config_text.h"
 #include "errors.h"
+#include "text_file.h"
 
 #include <fmt/format.h>
 
@@ -10,8 +11,12 @@
 
 namespace hardbody {
 
-int init(const std::string& path) {
-  const std::string text = template_text();
+int init(const std::string& path, const std::string& name) {
+  const std::optional<std::string> found = template_text(name);
+  if (!found) {
+    throw InputError(fmt::format("--template {}: is not known; accepted: {}", one_line(name, 40), template_names()));
+  }
+  const std::string& text = *found;
   if (path.empty()) {
     (void)std::fputs(text.c_str(), stdout);
     return 0;

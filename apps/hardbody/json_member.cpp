@@ -42,6 +42,19 @@ class StrictObjects {
   std::vector<std::set<std::string>> keys_;  ///< of the objects that are open
 };
 
+constexpr std::string_view kEllipsoidKeys[] = {"kind", "semi_axes"};
+constexpr std::string_view kSuperellipsoidKeys[] = {"kind", "semi_axes", "exponents"};
+
+geom::Superellipsoid read_superellipsoid(const JsonMember& shape) {
+  const JsonMember axes = shape.at("semi_axes", "three positive numbers");
+  const Eigen::Vector3d a = axes.vector();
+  const JsonMember exponents = shape.at("exponents", "two numbers [e1, e2]");
+  const std::vector<double> e = exponents.numbers(2, "two numbers [e1, e2]");
+  // Axes first, so that what the library refuses is blamed on the right member.
+  axes.checked([&] { return geom::Superellipsoid(a, 1, 1); });
+  return exponents.checked([&] { return geom::Superellipsoid(a, e[0], e[1]); });
+}
+
 }  // namespace
 
 json parse_json(std::string_view text) {
@@ -116,6 +129,20 @@ geom::Ellipsoid read_ellipsoid(const JsonMember& shape) {
   const JsonMember axes = shape.at("semi_axes", "three positive numbers");
   const Eigen::Vector3d values = axes.vector();
   return axes.checked([&] { return geom::Ellipsoid(values); });
+}
+
+geom::Shape read_shape(const JsonMember& shape) {
+  constexpr const char* kAccepted = "\"ellipsoid\", \"superellipsoid\"";
+  if (!shape.json->is_object()) throw shape.bad("{\"kind\":\"ellipsoid\",\"semi_axes\":[a,b,c]}");
+  const JsonMember kind = shape.at("kind", kAccepted);
+  // First of all: another kind has other keys.
+  if (*kind.json == "superellipsoid") {
+    shape.allow(kSuperellipsoidKeys);
+    return read_superellipsoid(shape);
+  }
+  if (*kind.json != "ellipsoid") throw kind.bad(kAccepted);
+  shape.allow(kEllipsoidKeys);
+  return read_ellipsoid(shape);
 }
 
 Eigen::Vector3d read_position(const JsonMember& body) {

@@ -5,6 +5,7 @@
 
 #include "errors.h"
 
+#include <geom/any_shape.h>
 #include <geom/ellipsoid.h>
 #include <geom/pose.h>
 
@@ -69,6 +70,9 @@ struct JsonMember {
 
 /// Of {"semi_axes": [a, b, c]}.
 geom::Ellipsoid read_ellipsoid(const JsonMember& shape);
+/// Of {"kind": "ellipsoid" or "superellipsoid", "semi_axes": [a, b, c], "exponents": [e1, e2]}, the last of a
+/// superellipsoid only; no other keys.
+geom::Shape read_shape(const JsonMember& shape);
 /// Of {"position": [x, y, z]}, as one that a pose may have.
 Eigen::Vector3d read_position(const JsonMember& body);
 /// Of [w, x, y, z].

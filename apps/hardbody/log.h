@@ -10,9 +10,12 @@ namespace hardbody {
 /// A run's log.txt: what happened when. Each line is on the disk before the run goes on.
 class Log {
  public:
-  /// Starts a new file. Throws std::runtime_error.
-  explicit Log(const std::filesystem::path& path);
+  enum class Begin { afresh, at_the_end };  ///< of what the file holds
 
+  /// Throws std::runtime_error.
+  Log(const std::filesystem::path& path, Begin begin);
+
+  /// A line that cannot be written is lost; the run is worth more.
   void line(std::string_view text);
 
   /// Since the construction.

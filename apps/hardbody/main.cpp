@@ -23,6 +23,8 @@ constexpr int kFailed = 1;
 struct Request {
   RunArguments run;
   std::string init_file;
+  std::string init_template = "ellipsoid";
+  std::string resume_path;
   std::string check_path;
   std::string replay_file;
   std::string distance_file = "-";
@@ -31,6 +33,8 @@ struct Request {
 void add_init(CLI::App& app, Request& request) {
   CLI::App* init = app.add_subcommand("init", "Write a commented config to start from");
   init->add_option("FILE", request.init_file, "New file; without it the config goes to standard output");
+  init->add_option("--template", request.init_template,
+                   "What to start from: ellipsoid (the default), superball, mixture");
 }
 
 void add_run(CLI::App& app, Request& request) {
@@ -41,6 +45,11 @@ void add_run(CLI::App& app, Request& request) {
       ->allow_extra_args(false)
       ->type_name("KEY=VALUE");
   run->add_flag("--force", request.run.force, "Overwrite the run that the directory holds");
+}
+
+void add_resume(CLI::App& app, Request& request) {
+  CLI::App* resume = app.add_subcommand("resume", "Go on with a run that was stopped or killed, bit for bit");
+  resume->add_option("DIR", request.resume_path, "Run directory")->required();
 }
 
 void add_check(CLI::App& app, Request& request) {
@@ -61,20 +70,21 @@ void add_distance(CLI::App& app, Request& request) {
 
 /// Commands of later versions: not in the help, with an honest answer.
 void add_later_commands(CLI::App& app) {
-  for (const char* name : {"resume", "analyze", "report", "sweep"}) {
+  for (const char* name : {"analyze", "report", "sweep"}) {
     CLI::App* later = app.add_subcommand(name, "")->group("");
     later->set_help_flag();
     later->allow_extras();
     later->callback([name] {
-      throw InputError(
-          fmt::format("hardbody {}: is not available yet; accepted now: init, run, check, replay, distance", name));
+      throw InputError(fmt::format(
+          "hardbody {}: is not available yet; accepted now: init, run, resume, check, replay, distance", name));
     });
   }
 }
 
 int dispatch(const CLI::App& app, const Request& request) {
-  if (app.got_subcommand("init")) return init(request.init_file);
+  if (app.got_subcommand("init")) return init(request.init_file, request.init_template);
   if (app.got_subcommand("run")) return run(request.run);
+  if (app.got_subcommand("resume")) return resume(request.resume_path);
   if (app.got_subcommand("check")) return check(request.check_path);
   if (app.got_subcommand("distance")) return distance(request.distance_file);
   return replay(request.replay_file);
@@ -96,7 +106,7 @@ std::vector<std::string> expand_overrides(int argc, char** argv) {
 
 int run_command_line(int argc, char** argv) {
   Request request;
-  CLI::App app("Event-driven molecular dynamics of hard ellipsoids", "hardbody");
+  CLI::App app("Event-driven molecular dynamics of hard ellipsoids and superellipsoids", "hardbody");
   app.set_version_flag("--version", version_text());
   app.require_subcommand(1);
   app.footer(
@@ -104,6 +114,7 @@ int run_command_line(int argc, char** argv) {
       "saved.");
   add_init(app, request);
   add_run(app, request);
+  add_resume(app, request);
   add_check(app, request);
   add_replay(app, request);
   add_distance(app, request);

@@ -1,7 +1,9 @@
 #include "phases.h"
 
+#include "errors.h"
 #include "signals.h"
 
+#include <ed/internal/archive_types.h>
 #include <ed/observables.h>
 #include <ed/simulation.h>
 #include <ed/start.h>
@@ -10,7 +12,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <limits>
+#include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace hardbody {
 namespace {
@@ -23,37 +29,39 @@ constexpr double kFirstSlice = 10;
 constexpr double kGrowth = 4;
 constexpr double kLongestSlice = 1e6;
 
-/// "auto": equilibration looks at its criterion after each unit of time, and gives up after this many.
-constexpr double kEquilibrationCap = 500;
-
 /// "auto": production in units of the equilibration time, and its limits.
 constexpr double kProductionFactor = 30;
 constexpr double kLeastProduction = 30;
 constexpr double kMostProduction = 5000;
+constexpr double kLongestLag = 40;  ///< or the equilibration, if that took longer
+/// With a target error: it is asked for when so many longest lags have passed, and then each time that the run has
+/// grown by a factor.
+constexpr double kFirstLook = 16;
+constexpr double kNextLook = 1.25;
 
 /// Below this packing fraction the envelopes keep their first guess. Tuning runs for tens of collisions a
 /// body, which take a long time in a dilute gas, and there is next to nothing to gain.
 constexpr double kTunedPacking = 0.005;
 
-/// Runs to `time` in slices, shows where the phase is; false if a signal came first.
+/// Runs to `time` in slices, shows where the phase is and saves it; false if a signal came first, or it has stalled.
 class Runner {
  public:
-  Runner(ed::Simulation& simulation, std::string phase, Progress& progress, Saver& saver)
+  Runner(ed::Simulation& simulation, std::string phase, Progress& progress, Saver& saver,
+         std::function<Checkpoint()> checkpoint)
       : simulation_(simulation),
         progress_(progress),
         saver_(saver),
+        checkpoint_(std::move(checkpoint)),
         phase_(std::move(phase)),
         begin_(simulation.time()),
         collisions_(simulation.counters().collisions),
-        energy_(simulation.kinetic().energy()) {
-    progress.begin();
-  }
+        energy_(simulation.kinetic().energy()) {}
 
   bool run_to(double time, double planned_end) {
-    while (pending_signal() == 0) {
+    while (pending_signal() == 0 && !simulation_.stall()) {
       const bool arrived = run_slice(time);
       if (progress_.due()) progress_.show(text(planned_end));
-      if (saver_.due()) saver_.save(simulation_.system(), simulation_.time() - begin_);
+      if (saver_.due()) saver_.save(checkpoint_);
       if (arrived) return true;
     }
     return false;
@@ -73,69 +81,151 @@ class Runner {
   }
 
   std::string text(double planned_end) const {
-    const double done = simulation_.time() - begin_;
-    const double total = planned_end - begin_;
+    const double done = simulation_.time();
     const double seconds = progress_.seconds();
     const auto collisions = static_cast<double>(simulation_.counters().collisions - collisions_);
-    return fmt::format("{} {:.2f} of {:g}  {:.0f} collisions/s  {}  energy drift {:.1e}", phase_, done, total,
-                       collisions / std::max(seconds, 1e-9), eta(seconds, done, total),
+    return fmt::format("{} {:.2f} of {:g}  {:.0f} collisions/s  {}  energy drift {:.1e}", phase_, done, planned_end,
+                       collisions / std::max(seconds, 1e-9), eta(seconds, done - begin_, planned_end - begin_),
                        std::abs(simulation_.kinetic().energy() / energy_ - 1));
   }
 
   ed::Simulation& simulation_;
   Progress& progress_;
   Saver& saver_;
+  std::function<Checkpoint()> checkpoint_;
   std::string phase_;
-  double begin_;
+  double begin_;  ///< of what this process does
   double slice_ = kFirstSlice;
   std::uint64_t collisions_;
   double energy_;
 };
 
-double production_time(const Config& config, const Equilibration& equilibration) {
-  if (config.production_time) return *config.production_time;
-  return std::clamp(kProductionFactor * equilibration.time, kLeastProduction, kMostProduction);
+/// How long production is to be, and what is measured in it.
+Production planned_production(const Config& config, const Equilibration& equilibration) {
+  Production plan;
+  const double length = std::clamp(kProductionFactor * equilibration.time, kLeastProduction, kMostProduction);
+  plan.planned = config.production_time.value_or(config.target_error ? kMostProduction : length);
+  // A state that was slow to equilibrate decays as slowly.
+  plan.longest_lag = config.production_time ? std::min(*config.production_time / 16, kLongestLag)
+                                            : std::min(length / 16, std::max(kLongestLag, equilibration.time));
+  plan.next_look = kFirstLook * plan.longest_lag;
+  const double q = equilibration.relaxation.q;
+  plan.wave_numbers = {q, q / 4, q / 2, 2 * q};  // at the first peak of S(q), and about it
+  return plan;
 }
 
-/// Runs until the criterion holds or the config's time is over.
-void run_equilibration(const Config& config, ed::Simulation& simulation, Runner& runner, Equilibration& result) {
-  const double length = config.equilibration_time.value_or(kEquilibrationCap);
-  const double begin = simulation.time();
-  ed::Snapshot origin;
-  ed::Snapshot now;
-  simulation.sample(origin);
-  while (result.time < length && !result.stopped) {
-    // The time asked for, not the clock's: begin + time is rounded.
-    const double next = std::min(result.time + 1, length);
-    result.stopped = !runner.run_to(begin + next, begin + length);
-    result.time = result.stopped ? simulation.time() - begin : next;
-    simulation.sample(now);
-    result.c2 = ed::c2_between(origin, now);
-    result.msd = ed::msd_between(origin, now);
-    if (!config.equilibration_time && result.reached(config)) break;
+bool is_sphere(const SpeciesConfig& species) {
+  return ed::bounding_radius(species.body.shape) == ed::inscribed_radius(species.body.shape);
+}
+
+std::vector<ed::RelaxingGroup> relaxing_groups(const Config& config) {
+  std::vector<ed::RelaxingGroup> groups;
+  for (const SpeciesConfig& species : config.species) groups.push_back({species.number, !is_sphere(species)});
+  return groups;
+}
+
+bool precise_enough(const ed::Estimate& D, double target) {
+  return D.error <= target * std::abs(D.value);
+}
+
+/// Whether the diffusion coefficients have the error asked for. Spheres turn freely and have no D_rot.
+bool is_precise(const Config& config, const ed::Results& results) {
+  const bool turn = !std::all_of(config.species.begin(), config.species.end(), is_sphere);
+  return precise_enough(results.D_trans, *config.target_error) &&
+         (!turn || precise_enough(results.D_rot, *config.target_error));
+}
+
+double equilibration_length(const Config& config) {
+  return config.equilibration_time.value_or(config.equilibration_cap);
+}
+
+bool is_over(const Config& config, const Equilibration& result) {
+  return result.time >= equilibration_length(config) || (!config.equilibration_time && result.reached());
+}
+
+/// Runs until the criterion holds or the config's time is over; what was reached. `run.result` keeps to full units of
+/// time, at which the criterion is asked, wherever it is stopped: going on from there must not depend on that.
+Equilibration run_equilibration(const Config& config, EquilibrationRun& run, Runner& runner) {
+  const double length = equilibration_length(config);
+  while (!is_over(config, run.result)) {
+    // The time asked for, not the clock's, which is rounded.
+    const double next = std::min(run.result.time + 1, length);
+    const bool arrived = runner.run_to(next, length);
+    if (!arrived) {
+      Equilibration now = run.result;
+      now.time = run.simulation.time();
+      now.stopped = true;
+      return now;
+    }
+    if (next - run.result.time == 1) run.monitor.measure(run.simulation);
+    run.result.time = next;
+    run.result.relaxation = run.monitor.state();
   }
+  return run.result;
 }
 
 /// Chosen on a copy of the state: every finder and every kind of neighbour list then goes on from the same start.
-double tuned_envelope(const Config& config, const ed::System& start, Progress& progress) {
+double tuned_envelope(const Config& config, const ed::System& start, Progress& progress, Log& log) {
   ed::Simulation trial(start, config.simulation_options());
   trial.tune_envelopes([&] {
     if (progress.due()) progress.show("equilibration: choosing the thickness of the neighbour lists");
     return pending_signal() == 0;
   });
+  if (trial.stall()) log.line("while the thickness of the neighbour lists was chosen: " + ed::describe(*trial.stall()));
   return trial.envelope();
+}
+
+/// What `restore` gives; as InputError if it does not fit.
+template <class F>
+auto restored(const std::string& name, const F& restore) {
+  try {
+    return restore();
+  } catch (const std::invalid_argument& error) {
+    throw InputError(
+        fmt::format("{}: holds an impossible state ({}); accepted: an undamaged checkpoint", name, error.what()));
+  }
+}
+
+ed::Simulation restored_simulation(const Config& config, const Checkpoint& checkpoint, const std::string& name) {
+  return restored(name, [&] {
+    ed::Simulation simulation =
+        ed::Simulation::restore(checkpoint.run->simulation, checkpoint.system.species, config.simulation_options());
+    if (ed::internal::bytes_of(simulation.system()) == ed::internal::bytes_of(checkpoint.system)) return simulation;
+    throw std::invalid_argument("state: two that should be the same differ");
+  });
+}
+
+ed::ObservablesOptions observables_options(const Config& config, const Production& production) {
+  ed::ObservablesOptions options{};
+  options.number = config.number;
+  options.duration = production.planned;
+  options.longest_lag = production.longest_lag;
+  options.wave_numbers = production.wave_numbers;
+  options.groups = config.groups();
+  return options;
+}
+
+std::string order_text(const Config& config) {
+  return config.nematic_order ? fmt::format(", S = {:g} about z", *config.nematic_order) : "";
 }
 
 }  // namespace
 
 std::optional<ed::System> make_start(const Config& config, Progress& progress, Log& log) {
-  log.line(fmt::format("start: {} bodies placed at random, compressed to packing fraction {:g}", config.number,
-                       config.packing_fraction));
+  if (const std::optional<ed::LatticeOptions> lattice = config.lattice()) {
+    log.line(fmt::format("start: {} bodies on a lattice ({}) at packing fraction {:g}{}", config.number, config.start,
+                         config.packing_fraction, order_text(config)));
+    ed::System start = ed::lattice_start(config.components(), *lattice);
+    log.line("start: done");
+    return start;
+  }
+  log.line(fmt::format("start: {} bodies placed at random{}, compressed to packing fraction {:g}", config.number,
+                       order_text(config), config.packing_fraction));
   progress.begin();
   ed::StartOptions options;
-  options.number = config.number;
   options.packing_fraction = config.packing_fraction;
   options.seed = static_cast<std::uint64_t>(config.seed);
+  options.nematic_order = config.nematic_order;
   options.progress = [&](double reached) {
     if (progress.due()) {
       progress.show(fmt::format("compression: packing fraction {:.4f} of {:g}", reached, config.packing_fraction));
@@ -143,7 +233,7 @@ std::optional<ed::System> make_start(const Config& config, Progress& progress, L
     return pending_signal() == 0;
   };
   try {
-    ed::System start = ed::random_start(config.species, options);
+    ed::System start = ed::random_start(config.components(), options);
     if (pending_signal() != 0) return std::nullopt;
     log.line("start: done");
     return start;
@@ -153,73 +243,170 @@ std::optional<ed::System> make_start(const Config& config, Progress& progress, L
   }
 }
 
-Equilibration equilibrate(const Config& config, const ed::System& start, Progress& progress, Saver& saver, Log& log) {
-  log.line(config.equilibration_time ? fmt::format("equilibration: {:g} time units", *config.equilibration_time)
-                                     : fmt::format("equilibration: auto, at most {:g} time units", kEquilibrationCap));
-  saver.begin("equilibration");
+Checkpoint checkpoint_of(const ed::System& start) {
+  Checkpoint checkpoint;
+  checkpoint.phase = "start";
+  checkpoint.system = start;
+  return checkpoint;
+}
+
+// ---- Equilibration
+
+std::optional<EquilibrationRun> begin_equilibration(const Config& config, const ed::System& start, Progress& progress,
+                                                    Log& log) {
+  log.line(config.equilibration_time
+               ? fmt::format("equilibration: {:g} time units", *config.equilibration_time)
+               : fmt::format("equilibration: auto, at most {:g} time units", config.equilibration_cap));
   log.line(fmt::format("finder: {}; neighbours: {}{}", config.finder, config.neighbours,
                        config.neighbours_chosen ? " (chosen by \"auto\")" : ""));
   Equilibration result;
   if (config.packing_fraction >= kTunedPacking && config.neighbours != "cells") {
-    result.envelope = tuned_envelope(config, start, progress);
+    result.envelope = tuned_envelope(config, start, progress, log);
+    // The best of those that were tried would not be that of an undisturbed run.
+    if (pending_signal() != 0) return std::nullopt;
     log.line(fmt::format("equilibration: envelope thickness {:.4g} l", result.envelope));
   }
   ed::Simulation simulation(start, config.simulation_options(result.envelope));
+  ed::EquilibrationMonitor monitor(simulation, relaxing_groups(config));
   result.kinetic_at_start = simulation.kinetic();
-  Runner runner(simulation, config.equilibration_time ? "equilibration" : "equilibration (auto, at most)", progress,
-                saver);
-  run_equilibration(config, simulation, runner, result);
-  result.system = simulation.system();
-  result.counters = simulation.counters();
-  result.failures = simulation.failures();
-  log.line(fmt::format("equilibration: {} after {:g} time units, C2 {:.4f}, MSD {:.4g} l^2",
-                       result.stopped ? "stopped" : "done", result.time, result.c2, result.msd));
-  if (!config.equilibration_time && !result.stopped && !result.reached(config)) {
+  result.relaxation = monitor.state();
+  return EquilibrationRun{std::move(simulation), std::move(monitor), std::move(result)};
+}
+
+EquilibrationRun resumed_equilibration(const Config& config, const Checkpoint& checkpoint, const std::string& name) {
+  ed::Simulation simulation = restored_simulation(config, checkpoint, name);
+  ed::EquilibrationMonitor monitor = restored(
+      name, [&] { return ed::EquilibrationMonitor::restore(checkpoint.run->monitor, relaxing_groups(config)); });
+  return {std::move(simulation), std::move(monitor), checkpoint.run->equilibration};
+}
+
+Checkpoint checkpoint_of(const EquilibrationRun& run) {
+  Checkpoint checkpoint;
+  checkpoint.phase = "equilibration";
+  checkpoint.time = run.simulation.time();
+  checkpoint.system = run.simulation.system();
+  RunState& state = checkpoint.run.emplace();
+  state.equilibration = run.result;
+  state.monitor = run.monitor.save();
+  state.simulation = run.simulation.save();
+  return checkpoint;
+}
+
+Equilibration equilibrate(const Config& config, EquilibrationRun& run, Progress& progress, Saver& saver, Log& log) {
+  progress.begin();
+  Runner runner(run.simulation, config.equilibration_time ? "equilibration" : "equilibration (auto, at most)", progress,
+                saver, [&run] { return checkpoint_of(run); });
+  Equilibration result = run_equilibration(config, run, runner);
+  result.system = run.simulation.system();
+  result.counters = run.simulation.counters();
+  result.failures = run.simulation.failures();
+  const ed::Relaxation& relaxation = result.relaxation;
+  log.line(fmt::format(
+      "equilibration: {} after {:g} time units and {} relaxations, C2 {:.4f}, F_self {:.4f} at q = {:.4g}{}",
+      result.stopped ? "stopped" : "done", result.time, relaxation.relaxations, relaxation.c2, relaxation.f_self,
+      relaxation.q, config.species.size() > 1 ? " (of the slowest species)" : ""));
+  if (!config.equilibration_time && !result.stopped && !result.reached()) {
     const std::string warning = fmt::format(
-        "warning: not equilibrated after {:g} time units: C2 is {:.3f} (wanted below 0.05), MSD {:.3g} l^2 "
-        "(wanted above 1); production goes on",
-        result.time, result.c2, result.msd);
+        "warning: not equilibrated after {:g} time units: C2 is {:.3f} and F_self {:.3f} (wanted below 0.05, twice in "
+        "a "
+        "row), {} relaxations, Z changed by {:.2g} and S by {:.2g} between the last two; production goes on",
+        result.time, relaxation.c2, relaxation.f_self, relaxation.relaxations, relaxation.Z_change,
+        relaxation.S_change);
     log.line(warning);
     progress.say(warning);
   }
   return result;
 }
 
-Production produce(const Config& config, const Equilibration& equilibration, Progress& progress, Saver& saver,
-                   Log& log) {
-  saver.begin("production");
-  Production result;
-  result.planned = production_time(config, equilibration);
-  log.line(fmt::format("production: {:g} time units", result.planned));
-  const double clock = log.seconds();
+// ---- Production
+
+namespace {
+
+/// With a target error, once in a while, at times that do not depend on a clock.
+void look_at_errors(const Config& config, ProductionRun& run) {
+  run.result.precise = is_precise(config, run.observables.results(run.simulation));
+  run.result.next_look *= kNextLook;
+}
+
+}  // namespace
+
+ProductionRun begin_production(const Config& config, const Equilibration& equilibration, const RunDirectory& directory,
+                               Log& log) {
+  Production production = planned_production(config, equilibration);
+  log.line(
+      config.target_error
+          ? fmt::format("production: until the relative errors of D_trans and D_rot are {:g}, at most {:g} time units",
+                        *config.target_error, production.planned)
+          : fmt::format("production: {:g} time units", production.planned));
   // A new simulation: its time starts at 0 and its counters count production only.
-  ed::Simulation simulation(equilibration.system, config.simulation_options(equilibration.envelope));
-  simulation.record_collisions(static_cast<std::size_t>(config.events));
-  ed::ObservablesOptions options{};
-  options.number = config.number;
-  options.duration = result.planned;
-  ed::Observables observables(options);
-  result.kinetic_at_start = simulation.kinetic();
-  Runner runner(simulation, "production", progress, saver);
-  for (bool end = false; !end && !result.stopped;) {
-    const double next = observables.next_time();
+  ProductionRun run{ed::Simulation(equilibration.system, config.simulation_options(equilibration.envelope)),
+                    ed::Observables(observables_options(config, production)), EventsFile(directory, config.events),
+                    equilibration, std::move(production)};
+  run.result.kinetic_at_start = run.simulation.kinetic();
+  return run;
+}
+
+ProductionRun resumed_production(const Config& config, const Checkpoint& checkpoint, const RunDirectory& directory,
+                                 const std::string& name) {
+  const RunState& state = *checkpoint.run;
+  ProductionRun run{
+      restored_simulation(config, checkpoint, name),
+      restored(
+          name,
+          [&] { return ed::Observables::restore(state.observables, observables_options(config, state.production)); }),
+      EventsFile(directory, config.events), state.equilibration, state.production};
+  run.result.wall_seconds = checkpoint.upkeep.production_seconds;
+  run.events.check(state.events);
+  return run;
+}
+
+Checkpoint checkpoint_of(ProductionRun& run) {
+  run.events.take(run.simulation);
+  Checkpoint checkpoint;
+  checkpoint.phase = "production";
+  checkpoint.time = run.simulation.time();
+  checkpoint.system = run.simulation.system();
+  checkpoint.upkeep.production_seconds = run.result.wall_seconds;
+  RunState& state = checkpoint.run.emplace();
+  state.equilibration = run.before;
+  state.production = run.result;
+  state.events = run.events.mark();
+  state.simulation = run.simulation.save();
+  state.observables = run.observables.save();
+  return checkpoint;
+}
+
+void produce(const Config& config, ProductionRun& run, EventsMark events, Progress& progress, Saver& saver, Log& log) {
+  Production& result = run.result;
+  const double earlier = result.wall_seconds;
+  const double clock = log.seconds();
+  const auto seconds = [&] { return earlier + log.seconds() - clock; };
+  run.events.open(events, run.simulation);
+  progress.begin();
+  Runner runner(run.simulation, "production", progress, saver, [&] {
+    result.wall_seconds = seconds();
+    return checkpoint_of(run);
+  });
+  for (bool end = result.precise; !end && !result.stopped;) {
+    const double next = run.observables.next_time();
     const double target = std::min(next, result.planned);
     result.stopped = !runner.run_to(target, result.planned);
-    if (!result.stopped && next <= result.planned) observables.measure(simulation);
-    end = target == result.planned && observables.next_time() > result.planned;
+    if (result.stopped) break;
+    if (next <= result.planned) run.observables.measure(run.simulation);
+    if (config.target_error && target >= result.next_look) look_at_errors(config, run);
+    end = result.precise || (target == result.planned && run.observables.next_time() > result.planned);
+    result.time = target;
   }
-  result.results = observables.results(simulation);
-  result.wall_seconds = log.seconds() - clock;
-  result.time = result.stopped ? simulation.time() : result.planned;
-  result.system = simulation.system();
-  result.envelope = simulation.envelope();
-  result.counters = simulation.counters();
-  result.collisions = simulation.collisions();
-  result.failures = simulation.failures();
+  result.results = run.observables.results(run.simulation);
+  result.wall_seconds = seconds();
+  if (result.stopped) result.time = run.simulation.time();
+  result.system = run.simulation.system();
+  result.envelope = run.simulation.envelope();
+  result.counters = run.simulation.counters();
+  result.failures = run.simulation.failures();
   log.line(fmt::format("production: {} at {:g} time units, {} collisions in {:.3f} s",
                        result.stopped ? "stopped" : "done", result.time, result.counters.collisions,
                        result.wall_seconds));
-  return result;
 }
 
 }  // namespace hardbody

@@ -1,26 +1,64 @@
 #pragma once
 
+#include "checkpoint.h"
 #include "config.h"
+#include "events_file.h"
 #include "log.h"
 #include "progress.h"
 #include "run_record.h"
 #include "saver.h"
 
+#include <ed/equilibration.h>
+#include <ed/observables.h>
+#include <ed/simulation.h>
 #include <ed/system.h>
 
 #include <optional>
 
 namespace hardbody {
 
-/// The three phases of a run. Each returns early when a signal has come. What they do to the state depends on
-/// the config alone, never on a clock or on how often they look up.
+/// The three phases of a run: what each begins with, how it goes on, and what a checkpoint holds of it. Each ends early
+/// when a signal has come or the simulation has stalled. What they do to the state depends on the config alone, never
+/// on a clock, on how often they look up or on whether they were resumed.
 
-/// Random dilute state, compressed; nothing if a signal came first.
+/// Random dilute state, compressed, or a lattice; nothing if a signal came first.
 std::optional<ed::System> make_start(const Config& config, Progress& progress, Log& log);
 
-Equilibration equilibrate(const Config& config, const ed::System& start, Progress& progress, Saver& saver, Log& log);
+/// The start by itself.
+Checkpoint checkpoint_of(const ed::System& start);
 
-Production produce(const Config& config, const Equilibration& equilibration, Progress& progress, Saver& saver,
-                   Log& log);
+/// Equilibration on its way.
+struct EquilibrationRun {
+  ed::Simulation simulation;
+  ed::EquilibrationMonitor monitor;
+  Equilibration result;  ///< as of the last full unit of time
+};
+
+/// Chooses the thickness of the envelopes first; nothing if a signal came before it was chosen.
+std::optional<EquilibrationRun> begin_equilibration(const Config& config, const ed::System& start, Progress& progress,
+                                                    Log& log);
+/// Throws InputError if the state does not fit. Changes nothing.
+EquilibrationRun resumed_equilibration(const Config& config, const Checkpoint& checkpoint, const std::string& name);
+Checkpoint checkpoint_of(const EquilibrationRun& run);
+Equilibration equilibrate(const Config& config, EquilibrationRun& run, Progress& progress, Saver& saver, Log& log);
+
+/// Production on its way.
+struct ProductionRun {
+  ed::Simulation simulation;
+  ed::Observables observables;
+  EventsFile events;
+  Equilibration before;
+  Production result;
+};
+
+ProductionRun begin_production(const Config& config, const Equilibration& equilibration, const RunDirectory& directory,
+                               Log& log);
+/// Throws InputError if the state does not fit. Changes nothing.
+ProductionRun resumed_production(const Config& config, const Checkpoint& checkpoint, const RunDirectory& directory,
+                                 const std::string& name);
+/// Appends the collisions so far to events.csv, which throws if it cannot be written.
+Checkpoint checkpoint_of(ProductionRun& run);
+/// `events`: how far events.csv goes.
+void produce(const Config& config, ProductionRun& run, EventsMark events, Progress& progress, Saver& saver, Log& log);
 
 }  // namespace hardbody

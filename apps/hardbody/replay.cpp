@@ -5,6 +5,7 @@
 #include <ed/impulse.h>
 #include <ed/motion.h>
 #include <ed/time_of_contact.h>
+#include <geom/any_shape.h>
 #include <geom/distance.h>
 #include <geom/newton.h>
 
@@ -15,6 +16,7 @@
 #include <cstdio>
 #include <stdexcept>
 #include <string>
+#include <variant>
 
 namespace hardbody {
 namespace {
@@ -29,22 +31,22 @@ std::string text(const Vector3d& v) {
 }
 
 struct Pair {
-  geom::Ellipsoid a;
-  geom::Ellipsoid b;
+  ed::BodyShape a;
+  ed::BodyShape b;
   ed::Motion motion_a;
   ed::Motion motion_b;
 
   /// The pair at another time.
   Pair at(double t) const { return {a, b, ed::propagate(motion_a, t), ed::propagate(motion_b, t)}; }
 
-  geom::DistanceResult distance() const { return geom::distance(a, motion_a.pose, b, motion_b.pose); }
+  geom::DistanceResult distance() const { return ed::distance(a, motion_a.pose, b, motion_b.pose); }
 
-  double size() const { return a.bounding_radius() + b.bounding_radius(); }
+  double size() const { return ed::bounding_radius(a) + ed::bounding_radius(b); }
 
   /// No point of a body moves faster than this relative to the other body.
   double speed() const {
-    return (motion_b.velocity - motion_a.velocity).norm() + motion_a.angular_velocity.norm() * a.bounding_radius() +
-           motion_b.angular_velocity.norm() * b.bounding_radius();
+    return (motion_b.velocity - motion_a.velocity).norm() + motion_a.angular_velocity.norm() * ed::bounding_radius(a) +
+           motion_b.angular_velocity.norm() * ed::bounding_radius(b);
   }
 };
 
@@ -61,14 +63,26 @@ double distance_rate(const Pair& pair, const geom::DistanceResult& d) {
   return ed::normal_velocity(contact_body(pair.motion_a, d.point_a), contact_body(pair.motion_b, d.point_b), d.normal);
 }
 
+std::string shape_text(const ed::BodyShape& shape) {
+  const std::string axes = "semi-axes " + text(ed::half_extents(shape));
+  const auto* s = std::get_if<geom::Superellipsoid>(&shape);
+  return s == nullptr ? axes : fmt::format("superellipsoid, {}, exponents ({:.9g}, {:.9g})", axes, s->e1(), s->e2());
+}
+
+/// The shipped shapes alone: a file has no others.
+geom::Shape geom_shape(const ed::BodyShape& shape) {
+  if (const auto* s = std::get_if<geom::Superellipsoid>(&shape)) return *s;
+  return std::get<geom::Ellipsoid>(shape);
+}
+
 std::string bodies(const Failure& failure, const Pair& pair) {
   const ed::FailedPair& failed = failure.pair;
   std::string out = fmt::format("reason: {}\n", failure.reason.empty() ? "none given" : failure.reason);
   out += fmt::format("time {:.17g}, bodies {} (a) and {} (b)\n", failed.time, failed.i, failed.j);
-  const auto add = [&](const char* name, const geom::Ellipsoid& shape, const ed::Motion& motion) {
-    out += fmt::format("{}: semi-axes {}, inertia {}\n   position {}\n   velocity {}\n   angular velocity {}\n", name,
-                       text(shape.semi_axes()), text(motion.inertia), text(motion.pose.position()),
-                       text(motion.velocity), text(motion.angular_velocity));
+  const auto add = [&](const char* name, const ed::BodyShape& shape, const ed::Motion& motion) {
+    out += fmt::format("{}: {}, inertia {}\n   position {}\n   velocity {}\n   angular velocity {}\n", name,
+                       shape_text(shape), text(motion.inertia), text(motion.pose.position()), text(motion.velocity),
+                       text(motion.angular_velocity));
   };
   add("a", pair.a, pair.motion_a);
   add("b", pair.b, pair.motion_b);
@@ -94,9 +108,11 @@ std::string failed_call(const ed::FailedPair& failed) {
   if (!failed.distance) return "";
   const ed::FailedDistance& call = *failed.distance;
   const bool eight = call.method == ed::DistanceMethod::newton8;
-  const geom::DistanceResult d = geom::internal::newton_distance_unchecked(
-      call.shape_a, call.X_WA, call.shape_b, call.X_WB, eight ? geom::NewtonSystem::eight : geom::NewtonSystem::five,
-      call.seed);
+  const auto system = eight ? geom::NewtonSystem::eight : geom::NewtonSystem::five;
+  const auto solve = [&](const auto& a, const auto& b) {
+    return geom::internal::newton_distance_unchecked(a, call.X_WA, b, call.X_WB, system, call.seed);
+  };
+  const geom::DistanceResult d = std::visit(solve, call.shape_a, call.shape_b);
   const std::string points = call.seed.status == geom::SeedStatus::usable
                                  ? fmt::format("{} and {}", text(call.seed.point_a), text(call.seed.point_b))
                                  : "no points";
@@ -108,21 +124,24 @@ std::string failed_call(const ed::FailedPair& failed) {
 /// What the paper's equations make of the same pair.
 std::string newton_now(const Pair& pair) {
   std::string out;
+  const geom::Shape a = geom_shape(pair.a);
+  const geom::Shape b = geom_shape(pair.b);
   const geom::Pose& X_WA = pair.motion_a.pose;
   const geom::Pose& X_WB = pair.motion_b.pose;
   const auto line = [&](const char* name, geom::NewtonSystem system, const char* seed_name,
                         const geom::WitnessPair& seed) {
-    const geom::DistanceResult d =
-        geom::newton_distance(pair.a, X_WA, pair.b, X_WB, system, geom::checked_seed(pair.a, X_WA, pair.b, X_WB, seed));
+    const geom::DistanceResult d = geom::newton_distance(a, X_WA, b, X_WB, system, seed);
     out += fmt::format("   {} from the {}: {} ({}, {} iterations)\n", name, seed_name, value_of(d),
                        geom::to_string(d.status), d.iterations);
   };
-  const auto both = [&](const char* seed_name, const geom::WitnessPair& seed) {
+  const auto both = [&](const char* seed_name, const geom::WitnessPair& found) {
+    const geom::WitnessPair seed =
+        std::visit([&](const auto& A, const auto& B) { return geom::checked_seed(A, X_WA, B, X_WB, found); }, a, b);
     line("newton8", geom::NewtonSystem::eight, seed_name, seed);
     line("newton5", geom::NewtonSystem::five, seed_name, seed);
   };
-  both("dual's points", geom::dual_seed(pair.a, X_WA, pair.b, X_WB));
-  both("line of centres", geom::centre_seed(pair.a, X_WA, pair.b, X_WB));
+  both("dual's points", geom::dual_seed(a, X_WA, b, X_WB));
+  both("line of centres", geom::centre_seed(a, X_WA, b, X_WB));
   return out;
 }
 

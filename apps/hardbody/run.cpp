@@ -1,3 +1,4 @@
+#include "checkpoint.h"
 #include "commands.h"
 #include "config.h"
 #include "config_text.h"
@@ -13,6 +14,7 @@
 #include "signals.h"
 #include "summary.h"
 #include "table.h"
+#include "text_file.h"
 #include "version.h"
 
 #include <fmt/format.h>
@@ -20,6 +22,10 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace hardbody {
 namespace {
@@ -48,16 +54,40 @@ void write_failures(const RunDirectory& directory, const RunRecord& record, Log&
     log.line(fmt::format("failures: {} pairs in {}/, {} more left out", count, kFailuresDirectory, left_out));
 }
 
+/// Where a run begins, or goes on.
+struct Continuation {
+  std::optional<ed::System> start;
+  std::optional<EquilibrationRun> equilibration;
+  std::optional<ProductionRun> production;
+  EventsMark events;
+  Upkeep upkeep;
+};
+
+/// The state in which the run has ended.
+Checkpoint last_checkpoint(Continuation& at, const RunRecord& record) {
+  Checkpoint checkpoint = at.production      ? checkpoint_of(*at.production)
+                          : at.equilibration ? checkpoint_of(*at.equilibration)
+                                             : checkpoint_of(*at.start);
+  if (checkpoint.run) checkpoint.run->finished = !record.stopped();
+  return checkpoint;
+}
+
 /// The summary comes last: where it is, the other files are complete.
-void write_results(const RunDirectory& directory, const RunRecord& record, const Saver& saver, Log& log) {
+void write_results(const RunDirectory& directory, RunRecord& record, Continuation& at, Saver& saver, Log& log) {
   const ed::Results& results = record.production.results;
-  saver.write(record.last_state(), record.last_time());
+  saver.write(last_checkpoint(at, record));
   directory.write(kMsdFile, msd_csv(results));
   directory.write(kRotationalMsdFile, rotational_msd_csv(results));
+  directory.write(kAlpha2File, alpha2_csv(results));
+  directory.write(kVelocityFile, velocity_csv(results));
+  directory.write(kC1File, c1_csv(results));
   directory.write(kC2File, c2_csv(results));
+  directory.write(kFSelfFile, f_self_csv(results));
+  directory.write(kPairsFile, pairs_csv(results));
+  directory.write(kStructureFile, structure_csv(results));
   directory.write(kBlocksFile, blocks_csv(results));
-  if (record.config.events > 0) directory.write(kEventsFile, events_csv(record.production.collisions));
   write_failures(directory, record, log);
+  record.upkeep = saver.upkeep();
   directory.write(kSummaryFile, summary_json(record));
 }
 
@@ -70,11 +100,12 @@ int stopped_at_the_start(const RunDirectory& directory, Progress& progress, Log&
   return exit_status_of(signal);
 }
 
-int conclude(const RunDirectory& directory, const RunRecord& record, const Saver& saver, Progress& progress, Log& log) {
+int conclude(const RunDirectory& directory, RunRecord& record, Continuation& at, Saver& saver, Progress& progress,
+             Log& log) {
   const int signal = pending_signal();
   std::exception_ptr failure;
   try {
-    write_results(directory, record, saver, log);
+    write_results(directory, record, at, saver, log);
     log.line("files written");
   } catch (const std::exception&) {
     failure = std::current_exception();
@@ -89,9 +120,10 @@ int conclude(const RunDirectory& directory, const RunRecord& record, const Saver
     log.line("NOT SOUND: " + defect);
     progress.say(fmt::format("{}: NOT SOUND: {}", directory.path().string(), defect));
   }
-  if (record.stopped()) {
-    const std::string text = fmt::format("stopped by {} during {} at time {:g}: what was measured is written",
-                                         signal_name(signal), record.last_phase(), record.last_time());
+  if (record.stopped() && !record.stall) {
+    const std::string text =
+        fmt::format("stopped by {} during {} at time {:g}: what was measured is written, hardbody resume goes on",
+                    signal_name(signal), record.last_phase(), record.last_time());
     log.line(text);
     progress.say(fmt::format("{}: {}", directory.path().string(), text));
     return exit_status_of(signal);
@@ -100,22 +132,92 @@ int conclude(const RunDirectory& directory, const RunRecord& record, const Saver
   return list.empty() ? 0 : 1;
 }
 
-int run_phases(const Config& config, const RunDirectory& directory, Log& log) {
-  Progress progress;
-  const std::optional<ed::System> start = make_start(config, progress, log);
-  if (!start) return stopped_at_the_start(directory, progress, log);
-  Saver saver(directory, config, progress, log);
-  RunRecord record;
-  record.config = config;
-  record.equilibration = equilibrate(config, *start, progress, saver, log);
+/// Up to the begin of equilibration, from wherever the run stands; false: a signal came before there was a start.
+bool prepare(const Config& config, Continuation& at, Progress& progress, Saver& saver, Log& log) {
+  if (at.equilibration || at.production) return true;
+  if (!at.start) at.start = make_start(config, progress, log);
+  if (!at.start) return false;
+  if (saver.due()) saver.save([&at] { return checkpoint_of(*at.start); });
+  at.equilibration = begin_equilibration(config, *at.start, progress, log);
+  return true;
+}
+
+void run_equilibration(const Config& config, const RunDirectory& directory, Continuation& at, RunRecord& record,
+                       Progress& progress, Saver& saver, Log& log) {
+  record.equilibration = equilibrate(config, *at.equilibration, progress, saver, log);
+  record.stall = at.equilibration->simulation.stall();
   // A state with an overlap is no start for a production run.
   const bool sound = defects(ed::audit(record.equilibration.system)).empty();
-  if (!record.equilibration.stopped && sound) {
-    record.production = produce(config, record.equilibration, progress, saver, log);
+  if (record.equilibration.stopped || !sound) return;
+  at.production = begin_production(config, record.equilibration, directory, log);
+  at.equilibration.reset();
+}
+
+void run_production(const Config& config, Continuation& at, RunRecord& record, Progress& progress, Saver& saver,
+                    Log& log) {
+  produce(config, *at.production, at.events, progress, saver, log);
+  record.equilibration = at.production->before;
+  record.production = at.production->result;
+  record.stall = at.production->simulation.stall();
+}
+
+int run_phases(const Config& config, const RunDirectory& directory, Continuation at, Log& log) {
+  Progress progress;
+  Saver saver(directory, config, at.upkeep, progress, log);
+  if (!prepare(config, at, progress, saver, log)) return stopped_at_the_start(directory, progress, log);
+  RunRecord record;
+  record.config = config;
+  if (at.equilibration) run_equilibration(config, directory, at, record, progress, saver, log);
+  if (at.production) run_production(config, at, record, progress, saver, log);
+  if (!at.equilibration && !at.production) {  // a signal came while the lists were tuned
+    record.equilibration.system = *at.start;
+    record.equilibration.kinetic_at_start = ed::kinetic_state(*at.start);
+    record.equilibration.stopped = true;
   }
   audit_record(record);
-  record.total_seconds = log.seconds();
-  return conclude(directory, record, saver, progress, log);
+  return conclude(directory, record, at, saver, progress, log);
+}
+
+int run_logged(const Config& config, const RunDirectory& directory, Continuation at, Log& log) {
+  try {
+    return run_phases(config, directory, std::move(at), log);
+  } catch (const std::exception& error) {
+    log.line(fmt::format("failed: {}", error.what()));
+    throw;
+  }
+}
+
+// ---- Resuming
+
+/// Everything that can be refused is refused here, before anything is changed.
+Continuation continuation(const Config& config, const Checkpoint& checkpoint, const RunDirectory& directory,
+                          const std::string& name) {
+  Continuation at;
+  at.upkeep = checkpoint.upkeep;
+  ++at.upkeep.resumed;
+  if (checkpoint.phase == "start") {
+    at.start = checkpoint.system;
+  } else if (checkpoint.phase == "equilibration") {
+    at.equilibration = resumed_equilibration(config, checkpoint, name);
+  } else if (checkpoint.phase != "production") {
+    throw InputError(fmt::format("{}: holds an impossible state (phase \"{}\"); accepted: an undamaged checkpoint",
+                                 name, one_line(checkpoint.phase, 40)));
+  } else {
+    at.production = resumed_production(config, checkpoint, directory, name);
+    at.events = checkpoint.run->events;
+  }
+  return at;
+}
+
+/// Without a checkpoint: the same run again, which is the same to every bit.
+int start_over(const Config& config, const RunDirectory& directory) {
+  if (directory.has(kSummaryFile)) {
+    throw InputError(fmt::format("{}: holds results but no {}; accepted: a run that was stopped or killed",
+                                 directory.path().string(), kCheckpointFile));
+  }
+  Log log(directory.file(kLogFile), Log::Begin::at_the_end);
+  log.line(fmt::format("hardbody {}: resumed without a checkpoint: starts over", version()));
+  return run_logged(config, directory, {}, log);
 }
 
 }  // namespace
@@ -124,14 +226,30 @@ int run(const RunArguments& arguments) {
   install_signal_handlers();
   const Config config = load_config(arguments.config, arguments.overrides);
   const RunDirectory directory = create_directory(arguments, config);
-  Log log(directory.file(kLogFile));
+  Log log(directory.file(kLogFile), Log::Begin::afresh);
   log.line(fmt::format("hardbody {}: {} with {}", version(), kConfigFile, arguments.config));
-  try {
-    return run_phases(config, directory, log);
-  } catch (const std::exception& error) {
-    log.line(fmt::format("failed: {}", error.what()));
-    throw;
+  return run_logged(config, directory, {}, log);
+}
+
+int resume(const std::string& path) {
+  install_signal_handlers();
+  const RunDirectory directory = RunDirectory::open(path);
+  const std::string config_name = directory.file(kConfigFile).string();
+  const Config config = load_config(config_name, {});
+  if (!directory.has(kCheckpointFile)) return start_over(config, directory);
+  const std::string name = directory.file(kCheckpointFile).string();
+  const Checkpoint checkpoint = read_checkpoint(name);
+  check_same_config(checkpoint, config, config_name);
+  if (checkpoint.run && checkpoint.run->finished && directory.has(kSummaryFile)) {
+    fmt::print("{}: the run is finished: nothing to do\n", path);
+    return 0;
   }
+  check_resumable(checkpoint, name);
+  Continuation at = continuation(config, checkpoint, directory, name);
+  directory.reopen();
+  Log log(directory.file(kLogFile), Log::Begin::at_the_end);
+  log.line(fmt::format("hardbody {}: resumed from {} at time {:g}", version(), checkpoint.phase, checkpoint.time));
+  return run_logged(config, directory, std::move(at), log);
 }
 
 }  // namespace hardbody

@@ -6,15 +6,22 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cerrno>
+#include <cstring>
 #include <stdexcept>
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
 
 namespace hardbody {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array kFiles = {kConfigFile, kSummaryFile,       kCheckpointFile, kEventsFile, kLogFile,
-                               kMsdFile,    kRotationalMsdFile, kC2File,         kBlocksFile};
+constexpr std::array kFiles = {kConfigFile, kSummaryFile,       kCheckpointFile, kEventsFile,    kLogFile,
+                               kMsdFile,    kRotationalMsdFile, kAlpha2File,     kVelocityFile,  kC1File,
+                               kC2File,     kFSelfFile,         kPairsFile,      kStructureFile, kBlocksFile};
 
 /// The first file of an earlier run; empty if there is none.
 std::string trace_of_a_run(const fs::path& directory) {
@@ -22,6 +29,18 @@ std::string trace_of_a_run(const fs::path& directory) {
     if (fs::exists(directory / name)) return name;
   }
   return "";
+}
+
+InputError holds_a_run(const fs::path& directory, const std::string& trace) {
+  return InputError(
+      fmt::format("{}: holds a run already ({}); accepted: another directory, hardbody resume to go on with it, or "
+                  "--force to overwrite it",
+                  directory.string(), trace));
+}
+
+InputError unusable(const fs::path& directory, const std::string& why) {
+  return InputError(
+      fmt::format("{}: cannot be used as run directory: {}; accepted: a writable directory", directory.string(), why));
 }
 
 void keep_user_config(const fs::path& directory, const fs::path& user_config) {
@@ -45,31 +64,57 @@ void remove_run(const fs::path& directory) {
 
 }  // namespace
 
+DirectoryLock::DirectoryLock(const fs::path& directory)
+    : descriptor_(::open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+  if (descriptor_ >= 0 && ::flock(descriptor_, LOCK_EX | LOCK_NB) == 0) return;
+  const int error = errno;
+  if (descriptor_ >= 0) ::close(descriptor_);
+  if (error != EWOULDBLOCK) throw unusable(directory, fmt::format("it cannot be locked: {}", std::strerror(error)));
+  throw InputError(fmt::format("{}: another hardbody process is at work in it; accepted: another directory, or wait",
+                               directory.string()));
+}
+
+DirectoryLock::~DirectoryLock() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
 RunDirectory RunDirectory::create(const fs::path& path, Overwrite overwrite, const fs::path& user_config,
                                   std::string_view config) {
   try {
     if (fs::exists(path) && !fs::is_directory(path)) {
       throw InputError(fmt::format("{}: is not a directory; accepted: a new or empty directory", path.string()));
     }
-    const std::string trace = trace_of_a_run(path);
-    if (!trace.empty() && overwrite == Overwrite::refused) {
-      throw InputError(
-          fmt::format("{}: holds a run already ({}); accepted: another directory, or --force to overwrite it",
-                      path.string(), trace));
-    }
+    std::string trace = trace_of_a_run(path);
+    if (!trace.empty() && overwrite == Overwrite::refused) throw holds_a_run(path, trace);
     keep_user_config(path, user_config);
-    if (!trace.empty()) remove_run(path);
+    fs::create_directories(path);
     RunDirectory directory(path);
+    // Again, now that nobody else can begin one.
+    if (trace.empty()) trace = trace_of_a_run(path);
+    if (!trace.empty() && overwrite == Overwrite::refused) throw holds_a_run(path, trace);
+    if (!trace.empty()) remove_run(path);
     directory.write(kConfigFile, config);
     return directory;
   } catch (const fs::filesystem_error& error) {
-    throw InputError(fmt::format("{}: cannot be used as run directory: {}; accepted: a writable directory",
-                                 path.string(), error.code().message()));
+    throw unusable(path, error.code().message());
   } catch (const InputError&) {
     throw;
   } catch (const std::runtime_error& error) {
     throw InputError(error.what());
   }
+}
+
+RunDirectory RunDirectory::open(const fs::path& path) {
+  if (!fs::is_directory(path)) {
+    throw InputError(fmt::format("{}: is {}; accepted: the directory of a run", path.string(),
+                                 fs::exists(path) ? "not a directory" : "not there"));
+  }
+  if (!fs::exists(path / kConfigFile)) {
+    throw InputError(
+        fmt::format("{}: holds no run: {} is not there; accepted: the directory of a run", path.string(), kConfigFile));
+  }
+  if (::access(path.c_str(), W_OK | X_OK) != 0) throw unusable(path, std::strerror(errno));
+  return RunDirectory(path);
 }
 
 void RunDirectory::write(const std::string& name, std::string_view content) const {

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace hardbody {
 
@@ -14,13 +15,33 @@ inline constexpr const char* kEventsFile = "events.csv";
 inline constexpr const char* kLogFile = "log.txt";
 inline constexpr const char* kMsdFile = "observables/msd.csv";
 inline constexpr const char* kRotationalMsdFile = "observables/rotational_msd.csv";
+inline constexpr const char* kAlpha2File = "observables/alpha2.csv";
+inline constexpr const char* kFSelfFile = "observables/f_self.csv";
+inline constexpr const char* kVelocityFile = "observables/velocity.csv";
+inline constexpr const char* kC1File = "observables/c1.csv";
 inline constexpr const char* kC2File = "observables/c2.csv";
+inline constexpr const char* kPairsFile = "observables/g_r.csv";
+inline constexpr const char* kStructureFile = "observables/s_q.csv";
 inline constexpr const char* kBlocksFile = "observables/blocks.csv";
 inline constexpr const char* kFailuresDirectory = "failures";
 
 enum class Overwrite { refused, allowed };
 
-/// Where a run writes its files.
+/// Keeps other processes off a directory, by flock on the directory itself: no file is left behind, and the system ends
+/// it with the process, however that ends.
+class DirectoryLock {
+ public:
+  /// Throws InputError if another process has it, or the directory cannot be locked.
+  explicit DirectoryLock(const std::filesystem::path& directory);
+  ~DirectoryLock();
+  DirectoryLock(DirectoryLock&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
+  DirectoryLock& operator=(DirectoryLock&&) = delete;
+
+ private:
+  int descriptor_;
+};
+
+/// Where a run writes its files; no other process can as long as this lives.
 class RunDirectory {
  public:
   /// Creates the directory (and its parents) and writes `config` into it, before anything else. Where overwriting
@@ -30,16 +51,27 @@ class RunDirectory {
   static RunDirectory create(const std::filesystem::path& path, Overwrite overwrite,
                              const std::filesystem::path& user_config, std::string_view config);
 
+  /// The directory of a run that has been begun. Changes nothing. Throws InputError if it is none, cannot be written
+  /// to or is in use.
+  static RunDirectory open(const std::filesystem::path& path);
+
   const std::filesystem::path& path() const { return path_; }
   std::filesystem::path file(const std::string& name) const { return path_ / name; }
 
   /// Writes one file as write_file does; `name` may have a directory in it, which is created.
   void write(const std::string& name, std::string_view content) const;
 
+  /// Whether there is such a file.
+  bool has(const std::string& name) const { return std::filesystem::exists(file(name)); }
+
+  /// Removes the summary, which says that a run is complete, before the run goes on.
+  void reopen() const { std::filesystem::remove(file(kSummaryFile)); }
+
  private:
-  explicit RunDirectory(std::filesystem::path path) : path_(std::move(path)) {}
+  explicit RunDirectory(std::filesystem::path path) : path_(std::move(path)), lock_(path_) {}
 
   std::filesystem::path path_;
+  DirectoryLock lock_;
 };
 
 }  // namespace hardbody

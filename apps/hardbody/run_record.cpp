@@ -10,20 +10,18 @@
 namespace hardbody {
 namespace {
 
-constexpr double kDecayedC2 = 0.05;
-constexpr double kTravelled = 1;  ///< of the mean square displacement, l^2
-
 /// Rounding adds up to a relative energy drift of 1e-12 in a million collisions, and grows like the square root.
 constexpr double kEnergyDrift = 1e-9;
 constexpr double kMomentumDrift = 1e-9;  ///< of a body, in sqrt(m kT)
 
-}  // namespace
-
-bool Equilibration::reached(const Config& config) const {
-  // Spheres without friction turn freely: how their orientations decay says nothing of the state.
-  const bool sphere = config.true_aspect_ratio() == 1;
-  return msd > kTravelled && (sphere || c2 < kDecayedC2);
+/// sqrt(m kT), m the mean mass: exactly 1 where all masses are 1.
+double thermal_momentum(const ed::System& system) {
+  double mass = 0;
+  for (int i = 0; i < system.size(); ++i) mass += system.species_of(i).mass;
+  return std::sqrt(mass / system.size());
 }
+
+}  // namespace
 
 const ed::System& RunRecord::last_state() const {
   return production.planned > 0 ? production.system : equilibration.system;
@@ -36,8 +34,7 @@ void audit_record(RunRecord& record) {
       record.production.planned > 0 ? record.production.kinetic_at_start : record.equilibration.kinetic_at_start;
   const ed::KineticState& end = record.audit.kinetic;
   record.energy_relative_drift = std::abs(end.energy() - begin.energy()) / begin.energy();
-  // The thermal momentum sqrt(m kT) is 1.
-  record.momentum_drift = (end.momentum - begin.momentum).norm() / state.size();
+  record.momentum_drift = (end.momentum - begin.momentum).norm() / (state.size() * thermal_momentum(state));
   struct rusage usage = {};
   if (getrusage(RUSAGE_SELF, &usage) == 0) record.peak_memory_bytes = std::int64_t{1024} * usage.ru_maxrss;
 }
@@ -58,13 +55,13 @@ std::vector<std::string> defects(const ed::Audit& audit) {
 std::vector<std::string> conservation_defects(const ed::KineticState& kinetic, const ed::System& system) {
   std::vector<std::string> list;
   const double n = system.size();
-  const double wanted = 0.5 * (3 * n - 3) + n + (system.species.spins ? 0.5 * n : 0.0);
+  const double wanted = 0.5 * (3 * n - 3 + kinetic.rotational_freedoms + kinetic.spin_freedoms);
   const double drift = std::abs(kinetic.energy() / wanted - 1);
   if (!(drift <= kEnergyDrift)) {
     list.push_back(fmt::format("the energy is {:.12g} kT instead of {:g}: off by {:.1e}, allowed {:.0e}",
                                kinetic.energy(), wanted, drift, kEnergyDrift));
   }
-  const double momentum = kinetic.momentum.norm() / n;
+  const double momentum = kinetic.momentum.norm() / (n * thermal_momentum(system));
   if (!(momentum <= kMomentumDrift)) {
     list.push_back(
         fmt::format("the momentum is {:.1e} sqrt(m kT) a body instead of 0, allowed {:.0e}", momentum, kMomentumDrift));
@@ -77,6 +74,7 @@ std::vector<std::string> defects(const RunRecord& record) {
   for (std::string& defect : conservation_defects(record.audit.kinetic, record.last_state())) {
     list.push_back(std::move(defect));
   }
+  if (record.stall) list.push_back(fmt::format("{} {}", record.last_phase(), ed::describe(*record.stall)));
   if (record.equilibration.counters.overlaps > 0) {
     list.push_back(fmt::format("{} overlaps were met during equilibration", record.equilibration.counters.overlaps));
   }

@@ -2,11 +2,13 @@
 
 #include "config.h"
 
+#include <ed/equilibration.h>
 #include <ed/observables.h>
 #include <ed/simulation.h>
 #include <ed/system.h>
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,14 +19,13 @@ struct Equilibration {
   ed::System system;
   ed::KineticState kinetic_at_start;
   double time = 0;
-  double envelope = 0;   ///< tuned thickness; 0: the simulation's own guess
-  double c2 = 1;         ///< <P2(u(t).u(0))> between its begin and its end
-  double msd = 0;        ///< <|r(t) - r(0)|^2> between them
-  bool stopped = false;  ///< by a signal
+  double envelope = 0;        ///< tuned thickness; 0: the simulation's own guess
+  ed::Relaxation relaxation;  ///< as of its last full unit of time
+  bool stopped = false;       ///< by a signal
   ed::Counters counters;
   std::vector<ed::FailedPair> failures;
 
-  bool reached(const Config& config) const;
+  bool reached() const { return relaxation.reached; }
 };
 
 /// What production measured.
@@ -32,14 +33,32 @@ struct Production {
   ed::System system;
   ed::KineticState kinetic_at_start;
   double time = 0;
-  double planned = 0;
+  double planned = 0;  ///< or, with a target error, at the most
+  double longest_lag = 0;
+  double next_look = 0;              ///< with a target error: when it is asked next whether that is reached
+  bool precise = false;              ///< it is, which has ended production
+  std::vector<double> wave_numbers;  ///< of F_self; the first is that of the first peak of S(q)
   bool stopped = false;
   double wall_seconds = 0;
   double envelope = 0;
   ed::Counters counters;
   ed::Results results;
-  std::vector<ed::Collision> collisions;
   std::vector<ed::FailedPair> failures;
+};
+
+/// What depends on when and how often a run was saved and resumed; grows from one process to the next.
+struct Upkeep {
+  double seconds = 0;                    ///< wall time since the program took the run up
+  double production_seconds = 0;         ///< wall time of production
+  std::uint64_t checkpoints = 0;         ///< written
+  std::uint64_t checkpoints_failed = 0;  ///< that could not be written
+  std::uint64_t resumed = 0;             ///< times
+};
+
+/// How far events.csv goes.
+struct EventsMark {
+  std::uint64_t rows = 0;   ///< collisions
+  std::uint64_t bytes = 0;  ///< header included; 0: there is no file
 };
 
 /// Everything that a run's files and its table say.
@@ -50,7 +69,8 @@ struct RunRecord {
   ed::Audit audit;                   ///< of the last state
   double energy_relative_drift = 0;  ///< |E_end - E_start| / E_start over the last phase
   double momentum_drift = 0;         ///< |P_end - P_start| / (N sqrt(m kT)) over the last phase
-  double total_seconds = 0;          ///< wall time since the program took the run up
+  Upkeep upkeep;
+  std::optional<ed::Stall> stall;  ///< what ended the run, if that did
   std::int64_t peak_memory_bytes = 0;
 
   bool stopped() const { return equilibration.stopped || production.stopped; }
@@ -72,7 +92,8 @@ std::vector<std::string> defects(const RunRecord& record);
 std::vector<std::string> defects(const ed::Audit& audit);
 
 /// Energy and momentum that the dynamics has not conserved: every run starts with momentum zero and the energy that
-/// kT = 1 gives, (3N - 3)/2 + N, and N/2 more if the bodies spin.
+/// kT = 1 gives, 1/2 for each degree of freedom: 3N - 3 of translation, 2 a body of revolution and 1 more if it spins,
+/// 3 of any other.
 std::vector<std::string> conservation_defects(const ed::KineticState& kinetic, const ed::System& system);
 
 }  // namespace hardbody

@@ -1,6 +1,5 @@
 #include "saver.h"
 
-#include "checkpoint.h"
 #include "config_text.h"
 #include "version.h"
 
@@ -8,38 +7,47 @@
 
 #include <exception>
 #include <string>
+#include <utility>
 
 namespace hardbody {
 
-Saver::Saver(const RunDirectory& directory, const Config& config, Progress& progress, Log& log)
-    : directory_(directory), config_(config), progress_(progress), log_(log), last_(Clock::now()) {}
+Saver::Saver(const RunDirectory& directory, const Config& config, Upkeep earlier, Progress& progress, Log& log)
+    : directory_(directory), config_(config), upkeep_(earlier), progress_(progress), log_(log), last_(Clock::now()) {}
 
 bool Saver::due() const {
   return std::chrono::duration<double>(Clock::now() - last_).count() >= config_.checkpoint_seconds();
 }
 
-void Saver::save(const ed::System& system, double time) {
+Upkeep Saver::upkeep() const {
+  Upkeep now = upkeep_;
+  now.seconds += log_.seconds();
+  return now;
+}
+
+void Saver::save(const std::function<Checkpoint()>& make) {
   try {
-    write(system, time);
+    write(make());
   } catch (const std::exception& error) {
-    const std::string text = fmt::format("no checkpoint at time {:g} of {}: {}", time, phase_, error.what());
+    ++upkeep_.checkpoints_failed;
+    const std::string text = fmt::format("no checkpoint: {}", error.what());
     log_.line(text);
     progress_.say(text);
   }
   last_ = Clock::now();
 }
 
-void Saver::write(const ed::System& system, double time) const {
-  Checkpoint checkpoint;
+void Saver::write(Checkpoint checkpoint) {
   checkpoint.program_version = version();
   checkpoint.config = resolved_text(config_);
-  for (const std::string& feature : cpu_features()) {
-    checkpoint.cpu_features += (checkpoint.cpu_features.empty() ? "" : " ") + feature;
-  }
-  checkpoint.phase = phase_;
-  checkpoint.time = time;
-  checkpoint.system = system;
+  checkpoint.cpu_features = cpu_feature_text();
+  checkpoint.arch = build_arch();
+  const double production_seconds = checkpoint.upkeep.production_seconds;
+  checkpoint.upkeep = upkeep();
+  checkpoint.upkeep.production_seconds = production_seconds;
+  // Itself included: if it is not written nobody reads that it was.
+  ++checkpoint.upkeep.checkpoints;
   directory_.write(kCheckpointFile, encode_checkpoint(checkpoint));
+  ++upkeep_.checkpoints;
 }
 
 }  // namespace hardbody

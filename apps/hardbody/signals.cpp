@@ -27,6 +27,8 @@ void install_signal_handlers() {
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
   std::signal(SIGPIPE, SIG_IGN);
+  // A file beyond the limit is an error of its write, like a full disk.
+  std::signal(SIGXFSZ, SIG_IGN);
 }
 
 int pending_signal() {

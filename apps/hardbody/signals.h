@@ -3,7 +3,8 @@
 namespace hardbody {
 
 /// From now on the first SIGINT or SIGTERM only sets a mark, so that a run can save what it has; the second
-/// one kills. A closed pipe on stdout or stderr (SIGPIPE) does not end the run.
+/// one kills. A closed pipe on stdout or stderr (SIGPIPE), or a file longer than allowed (SIGXFSZ), does not end the
+/// run.
 void install_signal_handlers();
 
 /// SIGINT or SIGTERM if one has come, else 0.

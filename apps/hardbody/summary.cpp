@@ -4,7 +4,13 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
 
 namespace hardbody {
 namespace {
@@ -23,16 +29,32 @@ Json list(const Eigen::Vector3d& v) {
   return {v.x(), v.y(), v.z()};
 }
 
-Json units() {
-  return {{"length", "l = (a b c)^(1/3) of the semi-axes = 1"},
-          {"mass", "m = 1"},
+/// What D_rot is divided by.
+std::string rotation_divisor(const Config& config) {
+  if (config.all_of_revolution()) return "/ 4, two components, spin excluded";
+  const bool none = std::all_of(config.species.begin(), config.species.end(),
+                                [](const SpeciesConfig& s) { return s.rotation_axes() == 3; });
+  if (none) return "/ 6, three components";
+  return "/ (2 c), c the number of components: 2 of bodies of revolution, spin excluded, 3 of others, of all their "
+         "mean";
+}
+
+Json units(const Config& config) {
+  return {{"length",
+           config.mixture ? "l = 1: semi-axes are taken as they are given" : "l = (a b c)^(1/3) of the semi-axes = 1"},
+          {"mass", config.mixture ? "m = 1: masses are taken as they are given" : "m = 1"},
           {"energy", "kT = 1"},
           {"time", "l sqrt(m/kT)"},
           {"D_trans", "slope of the MSD / 6"},
-          {"D_rot", "slope of <|integral of omega dt|^2> / 4, two components, spin excluded, world frame"},
+          {"D_rot", "slope of <|integral of omega dt|^2> " + rotation_divisor(config) + ", world frame"},
           {"D_rot_body", "the same with the components along the body's axes accumulated"},
           {"collision_rate", "collisions a body takes part in, a time unit"},
-          {"momentum_drift", "|P_end - P_start| / (N sqrt(m kT))"}};
+          {"pressure_tensor", "P V / (N kT), of trace 3 Z"},
+          {"director", "eigenvector of Q of its largest eigenvalue; the error in radians"},
+          {"wave_numbers", "of F_self, 1/l; tau_F, beta_F, t_F_1overe are of the first"},
+          {"fit_windows", "from and to, l sqrt(m/kT)"},
+          {"momentum_drift", config.mixture ? "|P_end - P_start| / (N sqrt(m kT)), m the mean mass"
+                                            : "|P_end - P_start| / (N sqrt(m kT))"}};
 }
 
 Json counters(const ed::Counters& c) {
@@ -46,29 +68,150 @@ Json counters(const ed::Counters& c) {
           {"cold_restarts", c.cold_restarts},
           {"envelope_checks", c.envelope_checks},
           {"kernel_calls", c.kernel_calls},
-          {"candidate_tests", c.candidate_tests}};
+          {"candidate_tests", c.candidate_tests},
+          {"parting_contacts", c.parting_contacts}};
 }
 
-Json observables(const ed::Results& r) {
-  return {{"collision_rate", estimate(r.collision_rate)},
-          {"Z", estimate(r.Z)},
-          {"D_trans", estimate(r.D_trans)},
-          {"D_rot", estimate(r.D_rot)},
-          {"D_rot_body", estimate(r.D_rot_body)},
-          {"S", estimate(r.S)},
-          {"tau_C2", estimate(r.tau_C2)},
-          {"beta_C2", estimate(r.beta_C2)},
-          {"t_C2_1overe", estimate(r.t_C2_1overe)},
-          {"kT_trans", estimate(r.translational_kT)},
-          {"kT_rot", estimate(r.rotational_kT)}};
+Json axes(const std::array<ed::Estimate, 3>& estimates) {
+  return {estimate(estimates[0]), estimate(estimates[1]), estimate(estimates[2])};
+}
+
+Json list(const Eigen::Matrix3d& m) {
+  Json rows = Json::array();
+  for (int i = 0; i < 3; ++i) rows.push_back({number(m(i, 0)), number(m(i, 1)), number(m(i, 2))});
+  return rows;
+}
+
+/// null where nothing is known.
+Json director(const ed::Director& d) {
+  return {{"value", d.axis.allFinite() ? list(d.axis) : Json(nullptr)}, {"error", number(d.error)}};
+}
+Json pressure(const ed::TensorEstimate& P) {
+  const bool known = P.value.allFinite();
+  return {{"value", known ? list(P.value) : Json(nullptr)}, {"error", known ? list(P.error) : Json(nullptr)}};
+}
+
+Json window(const ed::FitWindow& w) {
+  return std::isfinite(w.from) ? Json{w.from, w.to} : Json(nullptr);
+}
+
+/// The lags that fits have used.
+Json fit_windows(const ed::Correlations& r) {
+  return {{"D", window(r.window_D)}, {"C2", window(r.window_C2)}, {"F", window(r.window_F)}};
+}
+
+/// Of bodies without an axis of revolution: about body x, y, z.
+void add_axes(Json& json, const ed::GroupResults& r) {
+  json["kT_axes"] = axes(r.axis_kT);
+  json["D_rot_axes"] = axes(r.D_rot_axis);
+  json["t_C2_1overe_axes"] = axes(r.t_C2_1overe_axis);
+}
+
+Json observables(const ed::Results& r, const Config& config) {
+  Json json = {{"collision_rate", estimate(r.collision_rate)},
+               {"Z", estimate(r.Z)},
+               {"D_trans", estimate(r.D_trans)},
+               {"D_rot", estimate(r.D_rot)},
+               {"D_rot_body", estimate(r.D_rot_body)},
+               {"S", estimate(r.S)},
+               {"director", director(r.director)},
+               {"pressure_tensor", pressure(r.pressure)},
+               {"tau_C2", estimate(r.tau_C2)},
+               {"beta_C2", estimate(r.beta_C2)},
+               {"t_C2_1overe", estimate(r.t_C2_1overe)},
+               {"tau_F", estimate(r.tau_F)},
+               {"beta_F", estimate(r.beta_F)},
+               {"t_F_1overe", estimate(r.t_F_1overe)},
+               {"q_peak", estimate(r.q_peak)},
+               {"S_peak", estimate(r.S_peak)},
+               {"kT_trans", estimate(r.translational_kT)},
+               {"kT_rot", estimate(r.rotational_kT)}};
+  if (!config.mixture && !config.all_of_revolution())
+    add_axes(json, r.groups.empty() ? ed::GroupResults{} : r.groups[0]);
+  return json;
+}
+
+/// Of one species of a mixture.
+Json observables(const ed::GroupResults& r, const SpeciesConfig& species) {
+  Json json = {{"D_trans", estimate(r.D_trans)},       {"D_rot", estimate(r.D_rot)},
+               {"D_rot_body", estimate(r.D_rot_body)}, {"S", estimate(r.S)},
+               {"director", director(r.director)},     {"tau_C2", estimate(r.tau_C2)},
+               {"beta_C2", estimate(r.beta_C2)},       {"t_C2_1overe", estimate(r.t_C2_1overe)},
+               {"tau_F", estimate(r.tau_F)},           {"beta_F", estimate(r.beta_F)},
+               {"t_F_1overe", estimate(r.t_F_1overe)}, {"q_peak", estimate(r.q_peak)},
+               {"S_peak", estimate(r.S_peak)},         {"kT_trans", estimate(r.translational_kT)},
+               {"kT_rot", estimate(r.rotational_kT)}};
+  if (species.rotation_axes() == 3) add_axes(json, r);
+  return json;
+}
+
+/// kind, aspect_ratio, semi_axes, exponents of a body of nominal size.
+void add_shape(Json& json, const SpeciesConfig& species) {
+  const std::optional<double> ratio = species.shape.true_aspect_ratio();
+  json["kind"] = species.shape.kind;
+  json["aspect_ratio"] = ratio ? Json(*ratio) : Json(nullptr);
+  if (const auto* s = std::get_if<geom::Superellipsoid>(&species.body.shape)) {
+    json["semi_axes"] = list(s->semi_axes());
+    json["exponents"] = {s->e1(), s->e2()};
+  } else {
+    json["semi_axes"] = list(std::get<geom::Ellipsoid>(species.body.shape).semi_axes());
+    json["exponents"] = nullptr;
+  }
+}
+
+Json state(const Config& config) {
+  Json json = {{"number", config.number}, {"packing_fraction", config.packing_fraction}};
+  if (config.mixture) {
+    for (const char* key : {"kind", "aspect_ratio", "semi_axes", "exponents"}) json[key] = nullptr;
+    json["kind"] = "mixture";
+  } else {
+    add_shape(json, config.species[0]);
+  }
+  return json;
+}
+
+/// What was drawn; null for bodies of one size.
+Json sizes(const SpeciesConfig& species) {
+  if (species.factors.empty()) return nullptr;
+  const SizeStatistics drawn = statistics_of(species.factors);
+  return {{"distribution", species.sizes},         {"width", species.width},     {"mean", drawn.mean},
+          {"standard_deviation", drawn.deviation}, {"smallest", drawn.smallest}, {"largest", drawn.largest}};
+}
+
+Json species_list(const Config& config, const ed::Results& results) {
+  Json all = Json::array();
+  for (std::size_t k = 0; k < config.species.size(); ++k) {
+    const SpeciesConfig& species = config.species[k];
+    Json json = {{"number", species.number}};
+    add_shape(json, species);
+    json["mass"] = species.body.mass;
+    json["inertia"] = list(species.body.inertia);
+    json["spins"] = species.body.spins;
+    json["sizes"] = sizes(species);
+    const ed::GroupResults group = k < results.groups.size() ? results.groups[k] : ed::GroupResults{};
+    json["observables"] = observables(group, species);
+    json["fit_windows"] = fit_windows(group);
+    all.push_back(std::move(json));
+  }
+  return all;
+}
+
+Json equilibration(const ed::Relaxation& r) {
+  return {{"relaxations", r.relaxations},
+          {"relaxation_time", number(r.relaxation_time)},
+          {"C2", number(r.c2)},
+          {"F_self", number(r.f_self)},
+          {"q", number(r.q)},
+          {"Z_change", number(r.Z_change)},
+          {"S_change", number(r.S_change)}};
 }
 
 Json performance(const RunRecord& record) {
   const Production& p = record.production;
   const double rate = static_cast<double>(p.counters.collisions) / p.wall_seconds;
-  return {{"collisions_per_second", number(rate)},
-          {"wall_seconds", p.wall_seconds},
-          {"total_wall_seconds", record.total_seconds},
+  return {{"collisions_per_second", number(rate)},        {"wall_seconds", p.wall_seconds},
+          {"total_wall_seconds", record.upkeep.seconds},  {"resumed", record.upkeep.resumed},
+          {"checkpoints", record.upkeep.checkpoints},     {"checkpoints_failed", record.upkeep.checkpoints_failed},
           {"peak_memory_bytes", record.peak_memory_bytes}};
 }
 
@@ -80,28 +223,32 @@ std::string summary_json(const RunRecord& record) {
   Json json;
   json["version"] = version();
   json["seed"] = config.seed;
-  json["state"] = {{"number", config.number},
-                   {"packing_fraction", config.packing_fraction},
-                   {"kind", "ellipsoid"},
-                   {"aspect_ratio", config.true_aspect_ratio()},
-                   {"semi_axes", list(config.species.shape.semi_axes())},
-                   {"exponents", nullptr}};
+  json["state"] = state(config);
   json["time"] = {{"equilibration", record.equilibration.time}, {"production", production.time}};
   json["counters"] = counters(production.counters);
+  json["counters_of_equilibration"] = counters(record.equilibration.counters);
   json["performance"] = performance(record);
   json["audit"] = {{"minimum_distance", number(record.audit.minimum_distance)},
                    {"energy_relative_drift", number(record.energy_relative_drift)},
                    {"momentum_drift", number(record.momentum_drift)}};
-  json["observables"] = observables(production.results);
-  json["equilibrated"] = record.equilibration.reached(config);
+  json["observables"] = observables(production.results, config);
+  json["fit_windows"] = fit_windows(production.results);
+  json["wave_numbers"] = production.wave_numbers;
+  if (config.mixture) json["species"] = species_list(config, production.results);
+  json["equilibrated"] = record.equilibration.reached();
+  json["equilibration"] = equilibration(record.equilibration.relaxation);
+  if (config.target_error) {
+    json["target_error"] = {{"asked", *config.target_error}, {"reached", production.precise}};
+  }
   json["interrupted"] = record.stopped();
+  json["stalled"] = record.stall ? Json(ed::describe(*record.stall)) : Json(nullptr);
   json["failures"] = {{"recorded", record.equilibration.failures.size() + record.production.failures.size()},
                       {"left_out", record.failures_left_out()}};
   json["sound"] = defects(record).empty();
   json["finder"] = {{"kind", config.finder}, {"distance", config.distance}, {"eps_d", config.eps_d}};
   json["neighbours"] = {{"kind", config.neighbours}, {"envelope", production.envelope}};
   json["cpu_features"] = cpu_features();
-  json["units"] = units();
+  json["units"] = units(config);
   return json.dump(2) + "\n";
 }
 

@@ -6,8 +6,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <optional>
+#include <variant>
 
 namespace hardbody {
 namespace {
@@ -20,48 +21,132 @@ int decimals_of(double error) {
   return std::clamp(1 - static_cast<int>(std::floor(std::log10(error))), 0, 12);
 }
 
-struct Row {
-  const char* name;
-  ed::Estimate ed::Results::*value;
-  const char* unit;
-  const char* meaning;
-};
+/// A line of the table.
+std::string number_line(const std::string& name, const ed::Estimate& value, const char* unit,
+                        const std::string& meaning) {
+  return fmt::format("  {:<15} {:<22} {:<14} {}\n", name, format_estimate(value), unit, meaning);
+}
 
-constexpr std::array kRows = {
-    Row{"collision rate", &ed::Results::collision_rate, "sqrt(kT/m)/l", "collisions of a body in a time unit"},
-    Row{"Z", &ed::Results::Z, "1", "P V / (N kT)"},
-    Row{"D_trans", &ed::Results::D_trans, "l sqrt(kT/m)", "MSD / 6t"},
-    Row{"D_rot", &ed::Results::D_rot, "sqrt(kT/m)/l", "<|integral of omega|^2> / 4t: 2 components, world frame"},
-    Row{"D_rot_body", &ed::Results::D_rot_body, "sqrt(kT/m)/l", "the same, components along the body's axes"},
-    Row{"t_C2(1/e)", &ed::Results::t_C2_1overe, "l sqrt(m/kT)", "<P2(u(t).u(0))> = 1/e"},
-    Row{"tau_C2", &ed::Results::tau_C2, "l sqrt(m/kT)", "of A exp[-(t/tau)^beta]"},
-    Row{"beta_C2", &ed::Results::beta_C2, "1", "of the same"},
-    Row{"S", &ed::Results::S, "1", "nematic order: largest eigenvalue of Q, by frame"},
-    Row{"kT_trans", &ed::Results::translational_kT, "kT", "on 3N - 3 degrees of freedom"},
-    Row{"kT_rot", &ed::Results::rotational_kT, "kT", "on 2N"},
-};
+/// How many components of its rotation D_rot counts, and what it divides by.
+std::string rotation_text(double rotation_axes) {
+  if (rotation_axes == 2) return "<|integral of omega|^2> / 4t: 2 components, world frame";
+  if (rotation_axes == 3) return "<|integral of omega|^2> / 6t: 3 components, world frame";
+  return fmt::format("<|integral of omega|^2> / {:.4g}t: {:.4g} components on average, world frame", 2 * rotation_axes,
+                     rotation_axes);
+}
+
+/// What all bodies have, and each species.
+std::string diffusion_lines(const ed::Correlations& r, double rotation_axes) {
+  return number_line("D_trans", r.D_trans, "l sqrt(kT/m)", "MSD / 6t") +
+         number_line("D_rot", r.D_rot, "sqrt(kT/m)/l", rotation_text(rotation_axes)) +
+         number_line("D_rot_body", r.D_rot_body, "sqrt(kT/m)/l", "the same, components along the body's axes") +
+         number_line("t_C2(1/e)", r.t_C2_1overe, "l sqrt(m/kT)",
+                     rotation_axes == 2 ? "<P2(u(t).u(0))> = 1/e" : "<P2(u(t).u(0))> = 1/e, u body z") +
+         number_line("tau_C2", r.tau_C2, "l sqrt(m/kT)", "of A exp[-(t/tau)^beta]") +
+         number_line("beta_C2", r.beta_C2, "1", "of the same");
+}
+
+/// About each body axis, of bodies without an axis of revolution.
+std::string axis_lines(const ed::GroupResults& r) {
+  std::string text;
+  constexpr const char* kNames[] = {"x", "y", "z"};
+  for (std::size_t k = 0; k < 3; ++k) {
+    text += number_line(fmt::format("kT_rot about {}", kNames[k]), r.axis_kT[k], "kT", "on N: one body axis");
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    text += number_line(fmt::format("D_rot about {}", kNames[k]), r.D_rot_axis[k], "sqrt(kT/m)/l",
+                        "that component / 2t, body axis");
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    text += number_line(fmt::format("t_C2(1/e) of {}", kNames[k]), r.t_C2_1overe_axis[k], "l sqrt(m/kT)",
+                        "u that body axis");
+  }
+  return text;
+}
+
+std::string temperature_lines(const ed::Estimate& translation, const ed::Estimate& rotation, const char* translational,
+                              const std::string& rotational) {
+  return number_line("kT_trans", translation, "kT", translational) + number_line("kT_rot", rotation, "kT", rotational);
+}
+
+std::string axes_text(const ed::BodyShape& shape) {
+  const Eigen::Vector3d axes = ed::half_extents(shape);
+  return fmt::format("semi-axes {:.5g}, {:.5g}, {:.5g}", axes.x(), axes.y(), axes.z());
+}
+
+/// "hard ellipsoids, X0 = 3 (semi-axes ..)"
+std::string bodies_text(const SpeciesConfig& species) {
+  const ed::BodyShape& shape = species.body.shape;
+  if (const auto* s = std::get_if<geom::Superellipsoid>(&shape)) {
+    return fmt::format("hard superellipsoids ({}, exponents {:g}, {:g})", axes_text(shape), s->e1(), s->e2());
+  }
+  const std::optional<double> ratio = species.shape.true_aspect_ratio();
+  if (ratio) return fmt::format("hard ellipsoids, X0 = {:g} ({})", *ratio, axes_text(shape));
+  return fmt::format("hard ellipsoids ({})", axes_text(shape));
+}
+
+std::string species_text(const SpeciesConfig& species, std::size_t index) {
+  std::string text =
+      fmt::format("species {}: {} {}, mass {:g}", index + 1, species.number, bodies_text(species), species.mass);
+  if (species.factors.empty()) return text + "\n";
+  const SizeStatistics drawn = statistics_of(species.factors);
+  return text + fmt::format("; sizes {}, drawn {:.4g} +- {:.2g}, {:.4g} to {:.4g}\n", species.sizes, drawn.mean,
+                            drawn.deviation, drawn.smallest, drawn.largest);
+}
+
+std::string state_text(const Config& config) {
+  const std::string rest = fmt::format("packing fraction {:g}, seed {}\n", config.packing_fraction, config.seed);
+  if (!config.mixture) {
+    return fmt::format("hardbody {}: {} {}, {}", version(), config.number, bodies_text(config.species[0]), rest);
+  }
+  std::string text = fmt::format("hardbody {}: {} hard bodies of {} species, {}", version(), config.number,
+                                 config.species.size(), rest);
+  for (std::size_t k = 0; k < config.species.size(); ++k) text += species_text(config.species[k], k);
+  return text;
+}
 
 std::string head(const RunRecord& record) {
   const Config& config = record.config;
-  const Eigen::Vector3d& axes = config.species.shape.semi_axes();
-  std::string text = fmt::format(
-      "hardbody {}: {} hard ellipsoids, X0 = {:g} (semi-axes {:.5g}, {:.5g}, {:.5g}), packing "
-      "fraction {:g}, seed {}\n",
-      version(), config.number, config.true_aspect_ratio(), axes.x(), axes.y(), axes.z(), config.packing_fraction,
-      config.seed);
-  text += fmt::format("time: equilibration {:g}{}, production {:g}{}\n", record.equilibration.time,
-                      record.equilibration.reached(config) ? "" : " (C2 < 0.05 and MSD > 1 not reached)",
-                      record.production.time, record.stopped() ? " (stopped early)" : "");
-  return text + "units: kT = m = 1, length l = (abc)^(1/3) of the semi-axes, time l sqrt(m/kT)\n";
+  std::string text = state_text(config);
+  text += fmt::format(
+      "time: equilibration {:g}{}, production {:g}{}\n", record.equilibration.time,
+      record.equilibration.reached() ? "" : " (not equilibrated: C2 and F_self below 0.05 twice in a row not reached)",
+      record.production.time, record.stopped() ? " (stopped early)" : "");
+  return text + (config.mixture ? "units: kT = 1, lengths and masses as given in [[species]], time l sqrt(m/kT)\n"
+                                : "units: kT = m = 1, length l = (abc)^(1/3) of the semi-axes, time l sqrt(m/kT)\n");
+}
+
+/// The lines of each species of a mixture.
+std::string species_numbers(const RunRecord& record) {
+  std::string text;
+  const std::vector<ed::GroupResults>& groups = record.production.results.groups;
+  if (!record.config.mixture) return text;
+  for (std::size_t k = 0; k < groups.size(); ++k) {
+    const SpeciesConfig& species = record.config.species[k];
+    const int axes = species.rotation_axes();
+    text += '\n';
+    text += species_text(species, k) + diffusion_lines(groups[k], axes) +
+            number_line("S", groups[k].S, "1", "nematic order of this species") +
+            temperature_lines(groups[k].translational_kT, groups[k].rotational_kT,
+                              "on its share of 3N - 3 degrees of freedom", axes == 2 ? "on 2 a body" : "on 3 a body");
+    if (axes == 3) text += axis_lines(groups[k]);
+  }
+  return text;
 }
 
 std::string numbers(const RunRecord& record) {
-  std::string text;
-  for (const Row& row : kRows) {
-    text += fmt::format("  {:<15} {:<22} {:<14} {}\n", row.name, format_estimate(record.production.results.*row.value),
-                        row.unit, row.meaning);
-  }
-  return text + "  (+- one standard error, from blocks; -: the run is too short for it)\n";
+  const ed::Results& r = record.production.results;
+  const Config& config = record.config;
+  double rotation_axes = 0;
+  for (const SpeciesConfig& s : config.species) rotation_axes += s.rotation_axes() * s.number;
+  std::string text =
+      number_line("collision rate", r.collision_rate, "sqrt(kT/m)/l", "collisions of a body in a time unit") +
+      number_line("Z", r.Z, "1", "P V / (N kT)") + diffusion_lines(r, rotation_axes / config.number) +
+      number_line("S", r.S, "1", "nematic order: largest eigenvalue of Q, by frame") +
+      temperature_lines(r.translational_kT, r.rotational_kT, "on 3N - 3 degrees of freedom",
+                        fmt::format("on {}", freedoms_text(std::lround(rotation_axes), config.number)));
+  if (!config.mixture && !config.all_of_revolution() && !r.groups.empty()) text += axis_lines(r.groups[0]);
+  return text + species_numbers(record) + "  (+- one standard error, from blocks; -: the run is too short for it)\n";
 }
 
 /// Empty for a run without rescues.
@@ -96,6 +181,11 @@ std::string audit_lines(const RunRecord& record) {
 }
 
 }  // namespace
+
+std::string freedoms_text(long freedoms, int number) {
+  if (freedoms % number == 0) return fmt::format("{}N", freedoms / number);
+  return fmt::format("{}", freedoms);
+}
 
 std::string format_estimate(const ed::Estimate& estimate) {
   if (!std::isfinite(estimate.value)) return "-";

@@ -12,6 +12,9 @@ namespace hardbody {
 /// value that the run was too short for.
 std::string format_estimate(const ed::Estimate& estimate);
 
+/// "2N", "3N", or the number itself.
+std::string freedoms_text(long freedoms, int number);
+
 /// A run's headline numbers, with units and conventions, as shown on the terminal.
 std::string results_table(const RunRecord& record, const std::string& directory);
 

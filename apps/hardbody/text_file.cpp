@@ -10,6 +10,7 @@
 #include <memory>
 #include <stdexcept>
 
+#include <fcntl.h>
 #include <unistd.h>
 
 namespace hardbody {
@@ -69,6 +70,26 @@ void write_file(const fs::path& path, std::string_view content) {
     std::remove(temporary.c_str());
     fail_to_write(path, error);
   }
+}
+
+void write_at(const fs::path& path, std::uint64_t position, std::string_view content) {
+  const auto place = static_cast<::off_t>(position);
+  const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
+  if (file < 0) fail_to_write(path, errno);
+  std::size_t done = 0;
+  bool good = ::ftruncate(file, place) == 0;
+  while (good && done < content.size()) {
+    const ::ssize_t written =
+        ::pwrite(file, content.data() + done, content.size() - done, place + static_cast<::off_t>(done));
+    good = written > 0 || (written < 0 && errno == EINTR);
+    if (written > 0) done += static_cast<std::size_t>(written);
+  }
+  good = good && ::fsync(file) == 0;
+  const int error = errno;
+  // Shorter needs no room: this does what it can, and what is left over is cut off by the next call.
+  if (!good) (void)!::ftruncate(file, place);
+  ::close(file);
+  if (!good) fail_to_write(path, error);
 }
 
 std::string one_line(std::string_view text, std::size_t longest) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -12,6 +13,10 @@ std::string read_file(const std::filesystem::path& path, std::size_t limit);
 /// Writes under a temporary name, flushes to the disk and renames, so that a reader (or a crash) never sees
 /// half a file. Throws std::runtime_error.
 void write_file(const std::filesystem::path& path, std::string_view content);
+
+/// Makes the file end with `content` after its first `position` bytes (at most its length), on the disk; a new file is
+/// begun at position 0. Throws std::runtime_error; the first `position` bytes are then as they were, and the last.
+void write_at(const std::filesystem::path& path, std::uint64_t position, std::string_view content);
 
 /// Text for a one-line message: line breaks and control characters become blanks, long text is cut.
 std::string one_line(std::string_view text, std::size_t longest = 400);

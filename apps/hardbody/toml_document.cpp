@@ -67,11 +67,20 @@ void add_entry(TomlDocument& document, std::string key, const toml::key& name, c
   document.entries.push_back({std::move(key), fmt::format("{}:{}", document.name, line), line, value_of(node)});
 }
 
-void add_section(TomlDocument& document, const toml::key& name, const toml::table& section) {
-  const int line = line_of(name.source());
-  document.sections.push_back({std::string(name.str()), fmt::format("{}:{}", document.name, line), line});
-  for (const auto& [key, node] : section) {
-    add_entry(document, fmt::format("{}.{}", name.str(), key.str()), key, node);
+void add_section(TomlDocument& document, const std::string& name, bool several, int line, const toml::table& section) {
+  document.sections.push_back({name, several, fmt::format("{}:{}", document.name, line), line});
+  for (const auto& [key, node] : section) add_entry(document, fmt::format("{}.{}", name, key.str()), key, node);
+}
+
+/// [name], or several [[name]]: name[1], name[2], ..
+void add_sections(TomlDocument& document, const toml::key& name, const toml::node& node) {
+  if (const toml::table* section = node.as_table()) {
+    add_section(document, std::string(name.str()), false, line_of(name.source()), *section);
+    return;
+  }
+  int number = 0;
+  for (const toml::node& one : *node.as_array()) {
+    add_section(document, fmt::format("{}[{}]", name.str(), ++number), true, line_of(one.source()), *one.as_table());
   }
 }
 
@@ -138,8 +147,8 @@ TomlDocument read_toml(std::string_view text, const std::string& name, const std
   document.name = name;
   const toml::table root = parse(text, name);
   for (const auto& [key, node] : root) {
-    if (const toml::table* section = node.as_table()) {
-      add_section(document, key, *section);
+    if (node.is_table() || node.is_array_of_tables()) {
+      add_sections(document, key, node);
     } else {
       add_entry(document, std::string(key.str()), key, node);
     }

@@ -23,20 +23,21 @@ struct Value {
 
 /// A value and the place it came from.
 struct Entry {
-  std::string key;    ///< section.key, or key at the top
+  std::string key;    ///< section.key, section[2].key of the second [[section]], or key at the top
   std::string where;  ///< file:line, or --set section.key=value: the start of every message about it
   int line = 0;       ///< 0: from the command line
   Value value;
 };
 
 struct Section {
-  std::string name;
+  std::string name;      ///< section, or section[2]
+  bool several = false;  ///< [[section]]
   std::string where;
   int line = 0;
 };
 
-/// A TOML file of two levels (keys at the top, keys in sections) with values from the command line laid over
-/// it.
+/// A TOML file of two levels (keys at the top, keys in sections, of which there may be several of one name) with values
+/// from the command line laid over it.
 struct TomlDocument {
   std::string name;               ///< of the file
   std::vector<Section> sections;  ///< in the order of the file

@@ -59,12 +59,14 @@ const char* version() {
 }
 
 std::string version_text() {
-  const std::string_view arch(kArch);
   const std::string_view type(kBuildType);
   return fmt::format("hardbody {}\nlicence: {}\nbuilt with {}, build type {}, {}\nlibraries: {}\n", version(),
-                     licence(), compiler(), type.empty() ? "none" : type,
-                     arch.empty() ? "no -march (the compiler's baseline)" : fmt::format("-march={}", arch),
-                     libraries());
+                     licence(), compiler(), type.empty() ? "none" : type, build_arch(), libraries());
+}
+
+std::string build_arch() {
+  const std::string_view arch(kArch);
+  return arch.empty() ? "no -march (the compiler's baseline)" : fmt::format("-march={}", arch);
 }
 
 std::vector<std::string> cpu_features() {
@@ -76,6 +78,10 @@ std::vector<std::string> cpu_features() {
   if (__builtin_cpu_supports("avx512f")) features.emplace_back("avx512f");
 #endif
   return features;
+}
+
+std::string cpu_feature_text() {
+  return fmt::format("{}", fmt::join(cpu_features(), " "));
 }
 
 }  // namespace hardbody

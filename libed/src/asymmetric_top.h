@@ -64,8 +64,16 @@ struct ThetaSeries {
   double start_half_turns;  ///< 0 or 1
 };
 
+template <class Archive, Is<ThetaSeries> T>
+void fields(Archive& archive, T& s) {
+  archive(s.hyperbolic, s.lead_is_3, s.rate, s.secular, s.m1, s.m2, s.m3, s.re, s.im, s.start, s.q, s.half_period,
+          s.edge, s.jump, s.start_exp, s.start_half_turns);
+}
+
 class AsymmetricTop {
  public:
+  AsymmetricTop() = default;  ///< to be read into
+
   /// Nothing if omega is along a principal axis (or zero), which it then keeps. The three moments must differ.
   static std::optional<AsymmetricTop> make(const Eigen::Vector3d& inertia, const Eigen::Matrix3d& rotation,
                                            const Eigen::Vector3d& omega);
@@ -78,9 +86,14 @@ class AsymmetricTop {
   Eigen::Vector3d turned_world(double tau) const;
   Eigen::Vector3d turned_body(double tau) const;
 
- private:
-  AsymmetricTop() = default;
+  template <class Archive, class Self>
+  static void fields(Archive& archive, Self& self) {
+    archive(self.series_, self.axes_, self.rates_, self.euler_, self.orientation_, self.mean_turning_, self.world_,
+            self.bounds_);
+    expect(archive, are_axes(self.axes_), "the axes of a top");
+  }
 
+ private:
   ThetaSeries series_;
   std::array<int, 3> axes_;      ///< body axes lead, next and last: 3, 1, 2 or 1, 2, 3
   std::array<double, 3> rates_;  ///< |L| / I of these

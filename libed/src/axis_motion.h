@@ -10,8 +10,12 @@
 
 #include "sincos.h"
 
+#include <ed/internal/archive.h>
+
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+
+#include <cmath>
 
 namespace ed::internal {
 
@@ -31,6 +35,8 @@ struct AxisMotion {
     return e0 + sc.cos * e1 + sc.sin * e2;
   }
   Eigen::Vector3d position_at(double t) const { return position + (t - time) * velocity; }
+  /// A bound of |du/dt|, 0 if the axis stands still.
+  double axis_rate() const { return e2.isZero(0) ? 0 : rate; }
 };
 
 /// Principal moments of a body of revolution, and whether it may spin about its axis.
@@ -51,6 +57,20 @@ struct BodyFrame {
   /// The same accumulated in the body's own frame, components along body x and y.
   Eigen::Vector2d phi_body = Eigen::Vector2d::Zero();
 };
+
+template <class Archive, Is<AxisMotion> T>
+void fields(Archive& archive, T& m) {
+  archive(m.position, m.velocity, m.e0, m.e1, m.e2, m.rate, m.time);
+  expect(archive, (m.position + m.velocity + m.e0 + m.e1 + m.e2).allFinite() && std::isfinite(m.rate + m.time),
+         "a motion is not finite");
+}
+
+template <class Archive, Is<BodyFrame> T>
+void fields(Archive& archive, T& frame) {
+  archive(frame.x_axis, frame.momentum_dir, frame.spin, frame.phi_lab, frame.phi_body);
+  expect(archive, (frame.x_axis + frame.momentum_dir + frame.phi_lab).allFinite() && frame.phi_body.allFinite(),
+         "an orientation is not finite");
+}
 
 /// The part of omega across the axis; its length is constant during flight.
 inline Eigen::Vector3d omega_across(const AxisMotion& m) {

@@ -1,5 +1,7 @@
 #include "bracketing_contact.h"
 
+#include "body_shapes.h"
+
 #include "sphere_window.h"
 #include "uniaxial_gauge.h"
 
@@ -15,6 +17,9 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <type_traits>
+#include <utility>
+#include <variant>
 
 namespace ed::internal {
 namespace {
@@ -31,16 +36,30 @@ constexpr int kMaxNewtonSteps = 30;
 /// quadratic, so that what is left is rounding.
 constexpr double kNewtonStep = 1e-11;
 
+/// Calls f with a shape, or with the one inside.
+template <class F>
+decltype(auto) with(const geom::Ellipsoid& shape, F&& f) {
+  return f(shape);
+}
+template <class F>
+decltype(auto) with(const geom::Shape& shape, F&& f) {
+  return std::visit(std::forward<F>(f), shape);
+}
+template <class Shape, class F>
+decltype(auto) with_both(const Shape& a, const Shape& b, F&& f) {
+  return with(a, [&](const auto& A) { return with(b, [&](const auto& B) { return f(A, B); }); });
+}
+
 /// One body at one time. Frame: the world's axes, the origin at A's centre.
 struct MovingBody {
   geom::Pose pose;
   Vector3d velocity;
-  Vector3d omega;  ///< without the spin about the axis of revolution, which moves no surface
+  Vector3d omega;  ///< of bodies of revolution without the spin about their axis, which moves no surface
 
   Vector3d velocity_at(const Vector3d& x) const { return velocity + omega.cross(x - pose.position()); }
 };
 
-MovingBody moving_body(const AxisMotion& m, double t, const Vector3d& position) {
+MovingBody moving_body(const AxisMotion& m, double t, const Vector3d& position, const Vector3d& velocity) {
   Vector3d u, du;
   turn<true>(m, t, u, du);
   u.normalize();
@@ -48,7 +67,12 @@ MovingBody moving_body(const AxisMotion& m, double t, const Vector3d& position) 
   R.col(0) = u.unitOrthogonal();
   R.col(1) = u.cross(R.col(0));
   R.col(2) = u;
-  return {geom::internal::unchecked_pose(R, position), m.velocity, u.cross(du)};
+  return {geom::internal::unchecked_pose(R, position), velocity, u.cross(du)};
+}
+
+MovingBody moving_body(const RigidMotion& m, double t, const Vector3d& position, const Vector3d& velocity) {
+  const TopState top = m.top.at(t - m.time);
+  return {geom::internal::unchecked_pose(top.R, position), velocity, top.omega};
 }
 
 /// f, f_x, f_xx of a body's surface at a point, and the time derivatives of f and f_x there: the surface moves with the
@@ -60,10 +84,14 @@ struct MovingSurface {
   Vector3d f_xt;
   Eigen::Matrix3d f_xx;
 
-  MovingSurface(const geom::Ellipsoid& shape, const MovingBody& body, const Vector3d& x) {
-    constexpr double kUnitLength = 1;
-    const geom::internal::WorldSurface<geom::Ellipsoid> surface{shape, body.pose.rotation(), kUnitLength};
-    const geom::internal::LocalSurface local = surface(x - body.pose.position());
+  template <class Shape>
+  MovingSurface(const Shape& shape, const MovingBody& body, const Vector3d& x) {
+    const geom::internal::LocalSurface local = with(shape, [&](const auto& inside) {
+      constexpr double kUnitLength = 1;
+      const geom::internal::WorldSurface<std::decay_t<decltype(inside)>> surface{inside, body.pose.rotation(),
+                                                                                 kUnitLength};
+      return surface(x - body.pose.position());
+    });
     const Vector3d w = body.velocity_at(x);
     f = local.value;
     f_x = local.gradient;
@@ -77,16 +105,28 @@ struct MovingSurface {
 /// radius; the speed of the axis times |a - b|, the largest slope of the support function, is an overestimate too, and
 /// makes longer steps.
 double turning_speed(const geom::Ellipsoid& shape, const AxisMotion& motion) {
-  return (shape.bounding_radius() - shape.inscribed_radius()) * motion.rate * motion.e2.norm();
+  return turning_lever(shape) * motion.rate * motion.e2.norm();
+}
+
+double turning_speed(const geom::Shape& shape, const RigidMotion& motion) {
+  return turning_lever(shape) * motion.top.max_omega();
+}
+
+double bounding_radius_of(const geom::Ellipsoid& shape) {
+  return shape.bounding_radius();
+}
+double bounding_radius_of(const geom::Shape& shape) {
+  return geom::bounding_radius(shape);
 }
 
 bool is_answer(const geom::DistanceResult& result) {
   return result.status == geom::DistanceStatus::separated || result.status == geom::DistanceStatus::overlapping;
 }
 
+template <class Pair>
 class Search {
  public:
-  Search(const PairInFlight& pair, const ContactOptions& options, Vector3d& n, FinderCounters& count,
+  Search(const Pair& pair, const ContactOptions& options, Vector3d& n, FinderCounters& count,
          std::optional<Unsolved>& unsolved)
       : pair_(pair),
         options_(options),
@@ -94,7 +134,7 @@ class Search {
         count_(count),
         unsolved_(unsolved),
         v_(pair.b.velocity - pair.a.velocity),
-        size_(pair.shape_a.bounding_radius() + pair.shape_b.bounding_radius()),
+        size_(bounding_radius_of(pair.shape_a) + bounding_radius_of(pair.shape_b)),
         fastest_(v_.norm() + turning_speed(pair.shape_a, pair.a) + turning_speed(pair.shape_b, pair.b)) {}
 
   Finding run(double t_begin, double t_end);
@@ -114,8 +154,9 @@ class Search {
   geom::DistanceResult distance(double t, const MovingBody& a, const MovingBody& b);
   geom::DistanceResult dual_distance(const MovingBody& a, const MovingBody& b) const;
   geom::WitnessPair seed(const MovingBody& a, const MovingBody& b);
-  MovingBody body_a(double t) const { return moving_body(pair_.a, t, Vector3d::Zero()); }
-  MovingBody body_b(double t) const { return moving_body(pair_.b, t, pair_.r_now + (t - pair_.now) * v_); }
+  // In axes that move with A's centre.
+  MovingBody body_a(double t) const { return moving_body(pair_.a, t, Vector3d::Zero(), Vector3d::Zero()); }
+  MovingBody body_b(double t) const { return moving_body(pair_.b, t, pair_.r_now + (t - pair_.now) * v_, v_); }
 
   bool grazes(const Look& from, const Look& to, Finding& finding);
   bool refine(const Look& outside, const Look& inside, double guess, Finding& finding);
@@ -124,7 +165,7 @@ class Search {
   bool touches(const Look& at) const { return at.d <= kTouching * size_; }
   bool approaches(const Look& at) const { return at.rate < -kResting * fastest_; }
 
-  const PairInFlight& pair_;
+  const Pair& pair_;
   const ContactOptions& options_;
   Vector3d& n_;
   FinderCounters& count_;
@@ -135,17 +176,22 @@ class Search {
   bool first_ = true;  ///< no distance has been asked for yet
 };
 
-geom::DistanceResult Search::dual_distance(const MovingBody& a, const MovingBody& b) const {
+template <class Pair>
+geom::DistanceResult Search<Pair>::dual_distance(const MovingBody& a, const MovingBody& b) const {
   return geom::distance(pair_.shape_a, a.pose, pair_.shape_b, b.pose,
                         {.start = n_, .penetration = geom::Penetration::local});
 }
 
 /// Where Newton's method starts. The normal that a search begins with may be crude, or old: the first distance starts
 /// from the user's points or the dual's, later ones from the support points along the normal before.
-geom::WitnessPair Search::seed(const MovingBody& a, const MovingBody& b) {
+template <class Pair>
+geom::WitnessPair Search<Pair>::seed(const MovingBody& a, const MovingBody& b) {
   const bool first = first_;
   first_ = false;
-  if (!first) return geom::normal_seed(pair_.shape_a, a.pose, pair_.shape_b, b.pose, n_);
+  if (!first) {
+    return with_both(pair_.shape_a, pair_.shape_b,
+                     [&](const auto& A, const auto& B) { return geom::normal_seed(A, a.pose, B, b.pose, n_); });
+  }
   if (options_.seed) {
     geom::WitnessPair users = options_.seed(pair_.shape_a, a.pose, pair_.shape_b, b.pose);
     if (users.status == geom::SeedStatus::usable) return users;
@@ -156,7 +202,8 @@ geom::WitnessPair Search::seed(const MovingBody& a, const MovingBody& b) {
   return {dual.point_a, dual.point_b, geom::SeedStatus::usable};
 }
 
-geom::DistanceResult Search::distance(double t, const MovingBody& a, const MovingBody& b) {
+template <class Pair>
+geom::DistanceResult Search<Pair>::distance(double t, const MovingBody& a, const MovingBody& b) {
   const auto counted = [&](const geom::DistanceResult& result) {
     count_.kernel_calls += static_cast<std::uint64_t>(result.iterations);
     return result;
@@ -165,15 +212,17 @@ geom::DistanceResult Search::distance(double t, const MovingBody& a, const Movin
   const geom::WitnessPair start = seed(a, b);
   const auto system =
       options_.distance == DistanceMethod::newton8 ? geom::NewtonSystem::eight : geom::NewtonSystem::five;
-  geom::DistanceResult result =
-      counted(geom::internal::newton_distance_unchecked(pair_.shape_a, a.pose, pair_.shape_b, b.pose, system, start));
+  geom::DistanceResult result = counted(with_both(pair_.shape_a, pair_.shape_b, [&](const auto& A, const auto& B) {
+    return geom::internal::newton_distance_unchecked(A, a.pose, B, b.pose, system, start);
+  }));
   if (is_answer(result)) return result;
   ++count_.rescues;
   unsolved_ = Unsolved{t, {options_.distance, result.status, pair_.shape_a, pair_.shape_b, a.pose, b.pose, start}};
   return counted(dual_distance(a, b));
 }
 
-Search::Look Search::look(double t) {
+template <class Pair>
+typename Search<Pair>::Look Search<Pair>::look(double t) {
   ++count_.evaluations;
   Look at;
   at.time = t;
@@ -200,7 +249,8 @@ Search::Look Search::look(double t) {
 }
 
 /// The paper's steps; step 1 is the window.
-Finding Search::run(double t_begin, double t_end) {
+template <class Pair>
+Finding Search<Pair>::run(double t_begin, double t_end) {
   ++count_.predictions;
   const Window window = sphere_window(pair_.r_now, v_, size_, pair_.now, t_begin, t_end);
   Finding finding{Outcome::clear, t_end};
@@ -227,7 +277,8 @@ Finding Search::run(double t_begin, double t_end) {
 }
 
 /// Step 6: both distances are in (0, eps_d); the parabola through them and the distance half way may have zeros.
-bool Search::grazes(const Look& from, const Look& to, Finding& finding) {
+template <class Pair>
+bool Search<Pair>::grazes(const Look& from, const Look& to, Finding& finding) {
   // Distances that fall at the end, or rise at the start, have no minimum between: nothing to look for.
   if (from.rate >= 0 || to.rate <= 0) return false;
   const double span = to.time - from.time;
@@ -246,13 +297,15 @@ bool Search::grazes(const Look& from, const Look& to, Finding& finding) {
   return refine_by_newton(from, to.time, from.time + smallest_zero * span, finding);
 }
 
-bool Search::refine(const Look& outside, const Look& inside, double guess, Finding& finding) {
+template <class Pair>
+bool Search<Pair>::refine(const Look& outside, const Look& inside, double guess, Finding& finding) {
   if (options_.root == ContactRoot::newton && refine_by_newton(outside, inside.time, guess, finding)) return true;
   return refine_in_one_dimension(outside, inside, finding);
 }
 
 /// Newton's method on eqs. (contime), f_x + alpha^2 g_x = 0, f = 0, g = 0, in the contact point, alpha and time.
-bool Search::refine_by_newton(const Look& outside, double t_last, double guess, Finding& finding) {
+template <class Pair>
+bool Search<Pair>::refine_by_newton(const Look& outside, double t_last, double guess, Finding& finding) {
   Vector3d x = 0.5 * (outside.point_a + outside.point_b);
   double t = guess;
   double alpha = 0;
@@ -293,7 +346,8 @@ bool Search::refine_by_newton(const Look& outside, double t_last, double guess, 
 }
 
 /// Newton's method on d(t), kept between a time outside and one inside by bisection.
-bool Search::refine_in_one_dimension(Look outside, Look inside, Finding& finding) {
+template <class Pair>
+bool Search<Pair>::refine_in_one_dimension(Look outside, Look inside, Finding& finding) {
   Look best = outside;
   for (int step = 0; step < kMaxRootSteps; ++step) {
     double t = best.time - best.d / best.rate;
@@ -311,7 +365,12 @@ bool Search::refine_in_one_dimension(Look outside, Look inside, Finding& finding
 
 }  // namespace
 
-Finding bracketing_contact(const PairInFlight& pair, double t_begin, double t_end, const ContactOptions& options,
+Finding bracketing_contact(const UniaxialPair& pair, double t_begin, double t_end, const ContactOptions& options,
+                           Vector3d& n, FinderCounters& count, std::optional<Unsolved>& unsolved) {
+  return Search(pair, options, n, count, unsolved).run(t_begin, t_end);
+}
+
+Finding bracketing_contact(const GeneralPair& pair, double t_begin, double t_end, const ContactOptions& options,
                            Vector3d& n, FinderCounters& count, std::optional<Unsolved>& unsolved) {
   return Search(pair, options, n, count, unsolved).run(t_begin, t_end);
 }

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <ed/internal/archive.h>
+
+#include <algorithm>
 #include <cstddef>
 #include <limits>
 #include <vector>
@@ -12,8 +15,8 @@ namespace ed::internal {
 /// children's. Ties go to the body with the lower number.
 class Calendar {
  public:
-  explicit Calendar(int number) : leaves_(1) {
-    while (leaves_ < static_cast<std::size_t>(number)) leaves_ *= 2;
+  explicit Calendar(int number) : leaves_(1), number_(static_cast<std::size_t>(number)) {
+    while (leaves_ < number_) leaves_ *= 2;
     tree_.assign(2 * leaves_, std::numeric_limits<double>::infinity());
   }
 
@@ -40,8 +43,26 @@ class Calendar {
     return static_cast<int>(node - leaves_);
   }
 
+  /// The tree as it is; read into a calendar of the same number of bodies.
+  template <class Archive, class Self>
+  static void fields(Archive& archive, Self& self) {
+    const std::size_t size = self.tree_.size();
+    archive(self.tree_);
+    expect(archive, self.tree_.size() == size && self.is_tournament(), "the calendar is not in order");
+  }
+
  private:
+  bool is_tournament() const {
+    for (std::size_t node = 1; node < leaves_; ++node) {
+      if (tree_[node] != std::min(tree_[2 * node], tree_[2 * node + 1])) return false;
+    }
+    // No event belongs to a leaf without a body.
+    return std::all_of(tree_.begin() + static_cast<std::ptrdiff_t>(leaves_ + number_), tree_.end(),
+                       [](double time) { return time == std::numeric_limits<double>::infinity(); });
+  }
+
   std::size_t leaves_;
+  std::size_t number_;  ///< of bodies
   std::vector<double> tree_;
 };
 

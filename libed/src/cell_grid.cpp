@@ -33,10 +33,8 @@ CellGrid::CellGrid(int number, double box, double reach)
       // No more cells than bodies (to within a factor): finer cells would be empty.
       cells_(std::clamp(static_cast<int>(2 * box / reach), 1,
                         std::max(1, static_cast<int>(1.3 * std::cbrt(static_cast<double>(number)))))),
-      cell_of_body_(static_cast<std::size_t>(number), -1) {
-  bodies_.resize(static_cast<std::size_t>(cells_) * cells_ * cells_);
-  // Room for what a cell holds at times, so that moving bodies about does not allocate.
-  for (std::vector<Entry>& cell : bodies_) cell.reserve(8 + 2 * static_cast<std::size_t>(number) / bodies_.size());
+      first_(static_cast<std::size_t>(cells_) * cells_ * cells_, kNone),
+      bodies_(static_cast<std::size_t>(number)) {
   const double width = box / cells_;
   const std::vector<int> along = offsets(cells_, width, reach);
   for (const int x : along) {
@@ -60,23 +58,42 @@ int CellGrid::cell_of(const Eigen::Vector3d& p) const {
 }
 
 void CellGrid::place(int i, const Eigen::Vector3d& position) {
+  Entry& body = bodies_[static_cast<std::size_t>(i)];
+  body.position = position;
   const int cell = cell_of(position);
-  int& current = cell_of_body_[static_cast<std::size_t>(i)];
-  if (current >= 0) {
-    std::vector<Entry>& old = bodies_[static_cast<std::size_t>(current)];
-    const auto entry = std::find_if(old.begin(), old.end(), [i](const Entry& e) { return e.body == i; });
-    *entry = old.back();
-    old.pop_back();
+  if (cell == body.cell) return;
+  if (body.cell != kNone) {
+    int* link = &first_[static_cast<std::size_t>(body.cell)];
+    while (*link != i) link = &bodies_[static_cast<std::size_t>(*link)].next;
+    *link = body.next;
   }
-  bodies_[static_cast<std::size_t>(cell)].push_back({position, i});
-  current = cell;
+  int& first = first_[static_cast<std::size_t>(cell)];
+  body.cell = cell;
+  body.next = first;
+  first = i;
+}
+
+/// Every body is in its cell and nowhere else.
+bool CellGrid::filled() const {
+  if (!(box_ > 0) || !std::isfinite(box_) || cells_ < 1 || cells_ > 1000) return false;
+  if (first_.size() != static_cast<std::size_t>(cells_) * cells_ * cells_) return false;
+  std::vector<bool> found(bodies_.size(), false);
+  for (std::size_t cell = 0; cell < first_.size(); ++cell) {
+    for (int i = first_[cell]; i != kNone; i = bodies_[static_cast<std::size_t>(i)].next) {
+      const auto body = static_cast<std::size_t>(i);
+      if (i < 0 || body >= bodies_.size() || found[body]) return false;
+      if (bodies_[body].cell != static_cast<int>(cell) || !bodies_[body].position.allFinite()) return false;
+      found[body] = true;
+    }
+  }
+  return std::all_of(found.begin(), found.end(), [](bool is) { return is; }) &&
+         std::all_of(stencil_.begin(), stencil_.end(),
+                     [this](const auto& offset) { return offset.cwiseAbs().maxCoeff() <= cells_; });
 }
 
 void CellGrid::scale(double factor) {
   box_ *= factor;
-  for (std::vector<Entry>& cell : bodies_) {
-    for (Entry& entry : cell) entry.position *= factor;
-  }
+  for (Entry& body : bodies_) body.position *= factor;
 }
 
 std::span<const NearBody> CellGrid::collect(const Eigen::Vector3d& position, double reach,
@@ -89,14 +106,15 @@ std::span<const NearBody> CellGrid::collect(const Eigen::Vector3d& position, dou
   std::size_t found = 0;
   for (const Eigen::Vector3i& offset : stencil_) {
     const int cell = (wrap(cx + offset.x()) * cells_ + wrap(cy + offset.y())) * cells_ + wrap(cz + offset.z());
-    const std::vector<Entry>& entries = bodies_[static_cast<std::size_t>(cell)];
-    if (buffer.size() < found + entries.size()) buffer.resize(2 * (found + entries.size()));
-    for (const Entry& entry : entries) {
+    for (int i = first_[static_cast<std::size_t>(cell)]; i != kNone;) {
+      const Entry& body = bodies_[static_cast<std::size_t>(i)];
+      if (found == buffer.size()) buffer.resize(2 * found + 64);
       // Written always and kept if it counts: whether it does is not predictable, and a branch would cost more.
       NearBody& near = buffer[found];
-      near.body = entry.body;
-      near.r = nearest_image(entry.position - position, box_);
+      near.body = i;
+      near.r = nearest_image(body.position - position, box_);
       found += near.r.squaredNorm() <= reach2 ? 1 : 0;
+      i = body.next;
     }
   }
   return {buffer.data(), found};

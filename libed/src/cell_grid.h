@@ -1,17 +1,15 @@
 #pragma once
 
+#include "near_body.h"
+
+#include <ed/internal/archive.h>
+
 #include <Eigen/Core>
 
 #include <span>
 #include <vector>
 
 namespace ed::internal {
-
-/// A body found near a point, with the vector to its nearest image.
-struct NearBody {
-  int body;
-  Eigen::Vector3d r;
-};
 
 /// Linked cells of a periodic cubic box: which points are within a given reach of another.
 class CellGrid {
@@ -29,20 +27,39 @@ class CellGrid {
   /// which grows as needed and is never shrunk.
   std::span<const NearBody> collect(const Eigen::Vector3d& position, double reach, std::vector<NearBody>& buffer) const;
 
+  /// The cells, and the order of the bodies in each, as they are; read into a grid of the same number of bodies.
+  template <class Archive, class Self>
+  static void fields(Archive& archive, Self& self) {
+    const std::size_t number = self.bodies_.size();
+    archive(self.box_, self.cells_, self.first_, self.bodies_, self.stencil_);
+    expect(archive, self.bodies_.size() == number && self.filled(), "the cells do not hold the bodies");
+  }
+
  private:
+  static constexpr int kNone = -1;
+
+  /// A body, and the list of its cell from it on.
   struct Entry {
     Eigen::Vector3d position;
-    int body;
+    int cell = kNone;  ///< none: not placed
+    int next = kNone;
+
+    template <class Archive, class Self>
+    static void fields(Archive& archive, Self& self) {
+      archive(self.position, self.cell, self.next);
+    }
   };
+
+  bool filled() const;
 
   int coordinate(double x) const;
   int cell_of(const Eigen::Vector3d& position) const;
 
   double box_;
-  int cells_;                               ///< along an edge
-  std::vector<std::vector<Entry>> bodies_;  ///< of each cell
-  std::vector<int> cell_of_body_;           ///< -1: not placed
-  std::vector<Eigen::Vector3i> stencil_;    ///< offsets of the cells to look into, each once
+  int cells_;               ///< along an edge
+  std::vector<int> first_;  ///< body of each cell
+  std::vector<Entry> bodies_;
+  std::vector<Eigen::Vector3i> stencil_;  ///< offsets of the cells to look into, each once
 };
 
 }  // namespace ed::internal

@@ -14,10 +14,11 @@
 /// The end. When the root of q and that of its tangent are close, Newton's method on d(t) takes over; its contact is
 /// accepted only with a proof that there is none between the certified bound and it (see refine_contact).
 ///
-/// Rounding. When the bodies touch (g within kTouching * size) and approach, that is the contact. When they touch and
-/// part, or rest (|g'| within kResting * speed, where its sign is rounding), g and g' are set to 0 if below, and the
-/// step is at least sqrt(2 kTouching size / K), K the crude bound that holds for every n and t: the deepest overlap
-/// that q allows on the way is then kTouching * size, below what g itself resolves.
+/// Rounding. The step is made of g, g' and K less (K: and) all that rounding may hide of them, rounding.h, so that what
+/// is said above is true of the exact bodies. Bodies whose g is no larger than that touch. If they approach, that is
+/// the contact, its time improved by Newton's method where that succeeds. If they part, or rest (|g'| within kResting *
+/// speed, where its sign is rounding), g and g' are set to 0 if below, and the step is at least the least_step of the
+/// gauge. docs/time-of-contact.md says what is promised then.
 
 #include "curvature_steps.h"
 #include "neighbour_lists.h"
@@ -46,6 +47,11 @@ struct FinderCounters {
   std::uint64_t cold_restarts = 0;       ///< a warm normal had led to a spurious maximum
   std::uint64_t rescues = 0;             ///< the fallback that cannot fail was needed
 };
+
+template <class Archive, Is<FinderCounters> T>
+void fields(Archive& archive, T& c) {
+  archive(c.predictions, c.evaluations, c.newton_evaluations, c.kernel_calls, c.cold_restarts, c.rescues);
+}
 
 enum class Outcome {
   contact,      ///< at `time`: the bodies touch and approach along the normal
@@ -90,8 +96,9 @@ Quality improve_normal(const Gauge& gauge, const typename Gauge::State& state, d
     const Ascent ascent = ascend(gauge, state, done, budget, n, e);
     count.kernel_calls += static_cast<std::uint64_t>(geom::kMaxIterations - budget);
     if (clear) return Quality::clear;
-    // Any normal with g >= 0 is a valid certificate, converged or not.
-    if (e.g >= -kOverlap * size) return Quality::usable;
+    // Any normal with g > 0 is a valid certificate, converged or not; that bodies touch takes the best one.
+    const bool best = ascent == Ascent::converged || settled(gauge, e);
+    if (e.g > state.rounding.gap || (best && e.g >= -kOverlap * size)) return Quality::usable;
     // A stationary point no deeper than this is the global maximum (see geom/distance.h).
     if (ascent == Ascent::converged && -e.g <= gauge.certified_depth()) return Quality::overlap;
     if (attempt == 0) {
@@ -117,7 +124,7 @@ bool refine_contact(const Gauge& gauge, const Window& near, double& t, Eigen::Ve
   const double size = gauge.size();
   double time = t;
   Eigen::Vector3d normal = n;
-  const auto done = [](const auto& trial) { return trial.step2 <= geom::kNormalTolerance2; };
+  const auto done = [&](const auto& trial) { return settled(gauge, trial); };
   for (int iteration = 0; iteration < 6 && time >= near.begin && time <= near.end; ++iteration) {
     const auto state = gauge.at(time);
     typename Gauge::Evaluation e = gauge.evaluate(state, normal);
@@ -139,6 +146,24 @@ bool refine_contact(const Gauge& gauge, const Window& near, double& t, Eigen::Ve
     time -= d / rate;
   }
   return false;
+}
+
+/// Newton's method for the contact that the tangent of g promises, where the motion goes on nearly straight: between
+/// the certified bound t + tau and a little beyond the tangent's root. True if it was worth trying and succeeded; then
+/// `contact_time` and n are those of the contact.
+template <class Gauge>
+bool refine_tangent(const Gauge& gauge, const typename Gauge::Evaluation& e, double t, double tau, double g, double gp,
+                    double& contact_time, Eigen::Vector3d& n, FinderCounters& count) {
+  const double spread = -g / gp - tau;
+  if (!(gp < 0) || !worth_refining(gauge, gp, spread)) return false;
+  const double resolved = kTouching * gauge.size();
+  const Window near{larger(t, t + tau - resolved / gauge.speed()), t + tau + 3 * spread + resolved / -gp};
+  double time = t - g / gp;
+  Eigen::Vector3d normal = geom::internal::step_on_sphere(n, e.step);
+  if (!refine_contact(gauge, near, time, normal, count)) return false;
+  contact_time = time;
+  n = normal;
+  return true;
 }
 
 /// Finds the first contact in [t_begin, t_end], or proves that there is none, or, after `max_evaluations` points in
@@ -164,13 +189,18 @@ Finding certified_contact(const Gauge& gauge, double t_begin, double t_end, int 
     if (quality == Quality::clear) return {Outcome::clear, t_end};
     double g = e.g;
     double gp = gauge.rate(state, e, n);
-    if (quality == Quality::overlap || g <= kTouching * size) {
+    const bool touching = g <= state.rounding.gap;
+    if (quality == Quality::overlap || touching) {
       const bool approaching = contact_rate(gauge, state, e, n) < -kResting * gauge.speed();
       if (quality == Quality::overlap) return {Outcome::overlapping, t, approaching};
       if (approaching) {
+        // What rounding may hide is the worst case: Newton's method usually knows the time better.
+        double contact_time = t;
+        const bool refined = g > kTouching * size && refine_tangent(gauge, e, t, 0, g, gp, contact_time, n, count);
         // A decrement at the level of rounding leaves an error of its square root in the normal: one more step.
-        n = geom::internal::step_on_sphere(n, e.step);
-        return {Outcome::contact, t};
+        if (!refined) n = geom::internal::step_on_sphere(n, e.step);
+        if (contact_time > t_end) return {Outcome::clear, t_end};
+        return {Outcome::contact, contact_time};
       }
       g = larger(g, 0.0);
       gp = larger(gp, 0.0);
@@ -178,21 +208,13 @@ Finding certified_contact(const Gauge& gauge, double t_begin, double t_end, int 
     double tau = certified_step(gauge, state, e, n, g, gp, horizon);
     if (tau >= horizon) return {Outcome::clear, t_end};
     if (gp < 0) {
-      // The contact, if the motion goes on nearly straight, is between the certified bound and a little beyond the
-      // tangent's root. Newton is worth trying if it is close, and likely to be certified there.
-      const double spread = -g / gp - tau;
-      if (worth_refining(gauge, gp, spread)) {
-        const Window near{t + tau - kTouching * size / gauge.speed(), t + tau + 3 * spread + kTouching * size / -gp};
-        double contact_time = t - g / gp;
-        Eigen::Vector3d normal = geom::internal::step_on_sphere(n, e.step);
-        if (refine_contact(gauge, near, contact_time, normal, count)) {
-          n = normal;
-          if (contact_time > t_end) return {Outcome::clear, t_end};
-          return {Outcome::contact, contact_time};
-        }
+      double contact_time = t;
+      if (refine_tangent(gauge, e, t, tau, g, gp, contact_time, n, count)) {
+        if (contact_time > t_end) return {Outcome::clear, t_end};
+        return {Outcome::contact, contact_time};
       }
     } else {
-      tau = larger(tau, least_step(gauge, state, n, tau));
+      tau = larger(tau, least_step(gauge, state, n, touching, tau));
     }
     if (t + tau > t) {
       t += tau;

@@ -4,7 +4,8 @@
 /// (curvature_limit) and, better, over an interval ahead (certificate). Gauges without such a bound, of bodies with
 /// flat faces, answer these questions by members of the same names: see support_gauge.h.
 
-#include "neighbour_lists.h"
+#include "parabola_steps.h"
+#include "rounding.h"
 #include "select.h"
 
 #include <ed/tolerances.h>
@@ -18,27 +19,17 @@
 
 namespace ed::internal {
 
-/// First root tau > 0 of g + gp tau - K tau^2 / 2 for g >= 0; infinite if there is none, 0 if a number is not one.
-inline double first_root(double g, double gp, double K) {
-  const double discriminant = gp * gp + 2 * K * g;
-  if (!(discriminant >= 0)) return discriminant < 0 ? kNever : 0;
-  const double root = std::sqrt(discriminant);
-  if (gp < 0) return 2 * g / (root - gp);
-  return K > 0 ? (gp + root) / K : kNever;
-}
-
 template <class Gauge>
 concept CurvatureBounded = requires(const Gauge& gauge) {
   gauge.curvature_limit();
 };
 
-/// Whether n certifies by itself that there is no contact within the horizon: a concave parabola that is positive at
-/// both ends has no root between.
+/// Whether n certifies by itself that there is no contact within the horizon. Here and below with what rounding may
+/// hide taken off (rounding.h).
 template <CurvatureBounded Gauge, class GapOrEvaluation>
 bool clears(const Gauge& gauge, const typename Gauge::State& state, const GapOrEvaluation& e, const Eigen::Vector3d& n,
             double horizon) {
-  const double worst_turn = 0.5 * gauge.curvature_limit() * horizon;
-  return e.g > kTouching * gauge.size() && e.g + horizon * (gauge.rate(state, e, n) - worst_turn) > 0;
+  return clear_by_parabola(e.g, gauge.rate(state, e, n), gauge.curvature_limit(), state.rounding, horizon);
 }
 
 /// Improves n until done(e), as geom::internal::ascend.
@@ -49,6 +40,12 @@ geom::internal::Ascent ascend(const Gauge& gauge, const typename Gauge::State& s
   return geom::internal::ascend(evaluate, geom::kRoundingFactor * gauge.size(), done, budget, n, e);
 }
 
+/// Whether g and half the decrement are the distance to rounding: what is left is of third order in the step.
+template <CurvatureBounded Gauge>
+bool settled(const Gauge& /*gauge*/, const typename Gauge::Evaluation& e) {
+  return e.step2 <= geom::kNormalTolerance2;
+}
+
 /// The rate of g that says whether bodies that touch approach.
 template <CurvatureBounded Gauge>
 double contact_rate(const Gauge& gauge, const typename Gauge::State& state, const typename Gauge::Evaluation& e,
@@ -56,42 +53,44 @@ double contact_rate(const Gauge& gauge, const typename Gauge::State& state, cons
   return gauge.rate(state, e, n);
 }
 
-/// A time, at most `horizon`, up to which there is certainly no contact, for a gap g >= 0 that changes at rate gp.
+/// A time, at most `horizon`, up to which there is certainly no contact, for a gap g >= 0 that changes at rate gp, both
+/// as computed.
 template <CurvatureBounded Gauge>
 double certified_step(const Gauge& gauge, const typename Gauge::State& state, const typename Gauge::Evaluation& e,
                       const Eigen::Vector3d& n, double g, double gp, double horizon) {
   const auto certificate = gauge.certificate(state, e, n);
-  double tau = smaller(horizon, first_root(g, gp, certificate.curvature(horizon)));
-  for (int attempt = 0; attempt < 2 && tau < horizon; ++attempt) {
-    const double reach = smaller(horizon, 2 * tau);
-    tau = larger(tau, smaller(reach, first_root(g, gp, certificate.curvature(reach))));
-  }
-  return tau;
+  return step_by_parabola(g, gp, state.rounding, horizon, [&](double reach) { return certificate.curvature(reach); });
 }
 
-/// How far bodies that touch and do not approach may be moved, certified up to tau: the overlap on the way stays below
-/// what g resolves. By the bound that holds over any reach: certificates may be those of a short one.
+/// How far bodies that do not approach may be moved, certified up to tau: if they touch, as far as the overlap on the
+/// way stays below what g resolves, kTouching * size for the turning and as much for a rate whose sign is rounding. By
+/// the bound that holds over any reach: certificates may be those of a short one.
 template <CurvatureBounded Gauge>
-double least_step(const Gauge& gauge, const typename Gauge::State& /*state*/, const Eigen::Vector3d& /*n*/,
-                  double /*tau*/) {
-  return std::sqrt(2 * kTouching * gauge.size() / gauge.curvature_limit());
+double least_step(const Gauge& gauge, const typename Gauge::State& state, const Eigen::Vector3d& /*n*/, bool touching,
+                  double tau) {
+  if (!touching) return tau;
+  const double allowed = kTouching * gauge.size();
+  return smaller(std::sqrt(2 * allowed / gauge.curvature_limit()),
+                 allowed / (kResting * gauge.speed() + state.rounding.rate));
 }
 
-/// Whether Newton's method on d(t) is likely to be certified at a contact `spread` or so behind a certified bound.
 template <CurvatureBounded Gauge>
 bool worth_refining(const Gauge& gauge, double gp, double spread) {
-  return spread <= kTangentAgreement * gauge.size() / gauge.speed() && 8 * spread * gauge.curvature_limit() < -gp;
+  return nearly_straight(gp, spread, gauge.size(), gauge.speed(), gauge.curvature_limit());
 }
 
 /// Whether the distance, 0 now and changing at `rate` < 0 with the best normal, certainly was positive all the time
 /// `span` before.
 ///
 /// d, a maximum of functions with second derivatives >= -K, has d'(s) <= d'(t) + K (t - s) for s < t. So if d'(t) < -K
-/// span, the distance falls all the way to t.
+/// span, the distance falls all the way to t. d'(t) is the rate at the best normal, a Newton step from n (two allow for
+/// its error).
 template <CurvatureBounded Gauge>
-bool falls_since(const Gauge& gauge, const typename Gauge::State& /*state*/, const typename Gauge::Evaluation& /*e*/,
+bool falls_since(const Gauge& gauge, const typename Gauge::State& state, const typename Gauge::Evaluation& e,
                  const Eigen::Vector3d& /*n*/, double rate, double span) {
-  return rate < -kResting * gauge.speed() - gauge.curvature_limit() * span;
+  const Rounding& hidden = state.rounding;
+  const double best_rate = rate + 2 * std::sqrt(e.step2) * gauge.rate_slope() + hidden.rate;
+  return best_rate < -kResting * gauge.speed() - (gauge.curvature_limit() + hidden.curvature) * span;
 }
 
 // Gauges that answer themselves.
@@ -104,6 +103,10 @@ template <class Gauge, class Done>
 geom::internal::Ascent ascend(const Gauge& gauge, const typename Gauge::State& state, const Done& done, int& budget,
                               Eigen::Vector3d& n, typename Gauge::Evaluation& e) {
   return gauge.ascend(state, done, budget, n, e);
+}
+template <class Gauge>
+bool settled(const Gauge& gauge, const typename Gauge::Evaluation& e) {
+  return gauge.settled(e);
 }
 template <class Gauge, class... Arguments>
 double contact_rate(const Gauge& gauge, const typename Gauge::State& state, const Arguments&... arguments) {

@@ -6,51 +6,49 @@
 /// between u and u0, because the support function changes by at most |a - b| a radian. Two bodies whose envelopes do
 /// not meet, gap of the bodies at (r0, u0) > 2 delta, cannot touch.
 
-#include "axis_motion.h"
+#include "dilated_gap.h"
+#include "envelope_limits.h"
 #include "envelopes.h"
+#include "find_kernels.h"
 #include "neighbour_lists.h"
 #include "periodic.h"
+#include "uniaxial_bodies.h"
 
 #include <geom/internal/uniaxial.h>
 
 #include <Eigen/Core>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
+#include <span>
 #include <vector>
 
 namespace ed::internal {
 
-/// The thinnest envelope in use, in units of the bounding radius.
-inline constexpr double kThinnestEnvelope = 0.02;
-
-/// The smallest box in which the nearest image of a neighbour is the only one that can touch. Neighbours' envelope
-/// centres are within 2 R + 2 delta of each other, their centres then within 2 R + 4 delta, which must be below half
-/// the box.
-inline double smallest_box(double bounding_radius) {
-  return 2 * (2 + 4 * kThinnestEnvelope) * bounding_radius;
-}
-
-/// The thickest envelope for which the nearest image is safe in this box.
-inline double thickest_envelope(double box, double bounding_radius) {
-  return (0.5 * box - 2 * bounding_radius) / 4;
-}
-
-/// An upper bound of the angle between unit vectors a chord apart: 2 asin(c/2) = c + c^3/24 + 3 c^5/640 + ..., whose
-/// tail after the second term is below c^5/120 for c <= 1.
-inline double angle_bound(double chord) {
-  if (!(chord <= 1)) return 3.1416;
-  const double c2 = chord * chord;
-  return chord * (1 + c2 * (1.0 / 24 + c2 / 120));
-}
-
-class DilatedEnvelopes final : public Envelopes {
+class DilatedEnvelopes final : public Envelopes<UniaxialBodies> {
  public:
   /// `thickness`: delta. Bodies leave at `exit_thickness` <= delta already, which is what a shrinking box eats up.
+  /// `kernel`: for find_meetings; null: one pair at a time.
+  DilatedEnvelopes(const UniaxialBodies& bodies, double thickness, double exit_thickness,
+                   MeetingKernel* kernel = nullptr)
+      : kernel_(kernel),
+        bounding_radius_(bodies.bounding_radius()),
+        thickness_(thickness),
+        exit_thickness_(exit_thickness) {
+    for (const UniaxialKind& kind : bodies.kinds()) {
+      kinds_.push_back({kind.shape, kind.bounding_radius - kind.inscribed_radius});
+    }
+    for (int i = 0; i < bodies.number(); ++i) kind_.push_back(bodies.kind_index(i));
+    centre_.resize(kind_.size());
+    axis_.resize(kind_.size());
+  }
+  /// Bodies of one kind.
   DilatedEnvelopes(int number, const geom::internal::Spheroid& shape, double axis_difference, double bounding_radius,
                    double thickness, double exit_thickness)
-      : shape_(shape),
-        axis_difference_(axis_difference),
+      : kinds_{{shape, axis_difference}},
+        kind_(static_cast<std::size_t>(number), 0),
         bounding_radius_(bounding_radius),
         thickness_(thickness),
         exit_thickness_(exit_thickness),
@@ -68,8 +66,10 @@ class DilatedEnvelopes final : public Envelopes {
   double least_scale() const override { return 1 - 2 * (thickness_ - exit_thickness_) / reach(); }
   const Eigen::Vector3d& centre(int i) const { return centre_[static_cast<std::size_t>(i)]; }
 
-  void place(int i, const Eigen::Vector3d& position, const Eigen::Vector3d& axis,
-             const Eigen::Vector3d& /*x_axis*/) override {
+  void place(int i, const UniaxialBodies& bodies, double now) override {
+    place(i, bodies.position_at(i, now), bodies.axis_motion(i).axis_at(now));
+  }
+  void place(int i, const Eigen::Vector3d& position, const Eigen::Vector3d& axis) {
     centre_[static_cast<std::size_t>(i)] = position;
     axis_[static_cast<std::size_t>(i)] = axis;
   }
@@ -78,15 +78,20 @@ class DilatedEnvelopes final : public Envelopes {
     for (Eigen::Vector3d& c : centre_) c *= factor;
   }
 
+  double exit_time(int i, const UniaxialBodies& bodies, double now, double box) const override {
+    const AxisMotion& motion = bodies.axis_motion(i);
+    return exit_time(i, motion, motion.position_at(now), motion.axis_at(now), now, box);
+  }
   double exit_time(int i, const AxisMotion& motion, const Eigen::Vector3d& position, const Eigen::Vector3d& axis,
-                   double now, double box) const override {
+                   double now, double box) const {
     const std::size_t k = static_cast<std::size_t>(i);
+    const double axis_difference = kind_of(i).axis_difference;
     const Eigen::Vector3d d = nearest_image(position - centre_[k], box);
-    const double left = exit_thickness_ - axis_difference_ * angle_bound((axis - axis_[k]).norm());
+    const double left = exit_thickness_ - axis_difference * angle_bound((axis - axis_[k]).norm());
     const double d2 = d.squaredNorm();
     if (!(left > 0) || d2 >= left * left) return now;
     // First root of |d + v s| + w s = left, w the fastest that turning can move the surface.
-    const double w = surface_speed(motion);
+    const double w = surface_speed(i, motion);
     const double A = motion.velocity.squaredNorm() - w * w;
     const double B = d.dot(motion.velocity) + left * w;
     const double C = d2 - left * left;
@@ -94,41 +99,97 @@ class DilatedEnvelopes final : public Envelopes {
     return denominator > 0 ? now - C / denominator : kNever;
   }
 
-  double worthwhile(const AxisMotion& motion) const override {
-    return 0.15 * exit_thickness_ / (motion.velocity.norm() + surface_speed(motion) + 1e-300);
+  double worthwhile(int i, const UniaxialBodies& bodies) const override { return worthwhile(i, bodies.axis_motion(i)); }
+  double worthwhile(int i, const AxisMotion& motion) const {
+    return 0.15 * exit_thickness_ / (motion.velocity.norm() + surface_speed(i, motion) + 1e-300);
   }
 
   bool may_meet(int i, int k, const Eigen::Vector3d& r, Eigen::Vector3d& normal) const override {
+    const geom::internal::Spheroid& shape_i = kind_of(i).shape;
+    const geom::internal::Spheroid& shape_k = kind_of(k).shape;
     const Eigen::Vector3d& u_i = axis_[static_cast<std::size_t>(i)];
     const Eigen::Vector3d& u_k = axis_[static_cast<std::size_t>(k)];
     const double limit = 2 * thickness_;
     // Most pairs are told apart by the gap along the line of centres already.
-    const double r2 = r.squaredNorm();
-    const double distance = std::sqrt(r2);
-    const double r_i = u_i.dot(r);
-    const double r_k = u_k.dot(r);
-    const double h_i = std::sqrt(shape_.b2 * r2 + shape_.c * (r_i * r_i));
-    const double h_k = std::sqrt(shape_.b2 * r2 + shape_.c * (r_k * r_k));
-    // Both sides times the distance; the share of 1e-9 covers the cancellation in h for discs.
-    if (r2 - h_i - h_k > limit * distance + 1e-9 * r2) return false;
-    normal = geom::internal::cold_normal(shape_, shape_, r, u_i, u_k);
-    auto e = geom::internal::evaluate_uniaxial(shape_, shape_, r, u_i, u_k, normal);
+    if (apart_along_centres(shape_i, shape_k, u_i, u_k, r, limit)) return false;
+    normal = geom::internal::cold_normal(shape_i, shape_k, r, u_i, u_k);
+    auto e = geom::internal::evaluate_uniaxial(shape_i, shape_k, r, u_i, u_k, normal);
     if (e.g > limit) return false;
-    // Two more Newton steps at the most; a pair that is still undecided is taken, which is always safe.
-    for (int step = 0; step < 2 && e.g + e.decrement > limit; ++step) {
+    for (int step = 0; step < kMeetingSteps && e.g + e.decrement > limit; ++step) {
       normal = geom::internal::step_on_sphere(normal, e.step);
-      e = geom::internal::evaluate_uniaxial(shape_, shape_, r, u_i, u_k, normal);
+      e = geom::internal::evaluate_uniaxial(shape_i, shape_k, r, u_i, u_k, normal);
       if (e.g > limit) return false;
     }
     normal = geom::internal::step_on_sphere(normal, e.step);
     return true;
   }
 
- private:
-  double surface_speed(const AxisMotion& motion) const { return axis_difference_ * motion.rate * motion.e2.norm(); }
+  void find_meetings(int i, std::span<const NearBody> near, int first, std::vector<Meeting>& found) const override {
+    if (kernel_ == nullptr) return Envelopes::find_meetings(i, near, first, found);
+    found.clear();
+    MeetingInput in;
+    std::array<const NearBody*, kBlockMeetings> near_of;
+    put_one(i, in);
+    for (std::size_t next = 0; next < near.size();) {
+      int lanes = 0;
+      for (; next < near.size() && lanes < kBlockMeetings; ++next) {
+        const int k = near[next].body;
+        if (k < first || k == i) continue;
+        put_other(k, near[next].r, in, lanes);
+        near_of[static_cast<std::size_t>(lanes++)] = &near[next];
+      }
+      if (lanes == 0) return;
+      const NearBody& last = *near_of[static_cast<std::size_t>(lanes - 1)];
+      for (int lane = lanes; lane % kLongestVector != 0; ++lane) put_other(last.body, last.r, in, lane);
+      MeetingOutput out;
+      kernel_(in, lanes, out);
+      for (int lane = 0; lane < lanes; ++lane) {
+        const auto& [k, r] = *near_of[static_cast<std::size_t>(lane)];
+        const double verdict = out.rows[MeetingOutput::verdict][lane];
+        if (verdict == MeetingOutput::apart) continue;
+        const auto normal = [&](int axis) { return out.rows[MeetingOutput::normal + axis][lane]; };
+        Meeting meeting{k, {normal(0), normal(1), normal(2)}};
+        if (verdict == MeetingOutput::open && !may_meet(i, k, r, meeting.normal)) continue;
+        found.push_back(meeting);
+      }
+    }
+  }
 
-  geom::internal::Spheroid shape_;
-  double axis_difference_;  ///< |a - b|
+  void save(Writer& writer) const override { fields(writer, *this); }
+  void load(Reader& reader) override { fields(reader, *this); }
+
+ private:
+  void put_one(int i, MeetingInput& in) const {
+    put_shape(kind_of(i).shape, in.one_shape, 0);
+    put_vector(axis_[static_cast<std::size_t>(i)], in.one_axis, 0);
+    in.limit = 2 * thickness_;
+  }
+  void put_other(int k, const Eigen::Vector3d& r, MeetingInput& in, int lane) const {
+    put_shape(kind_of(k).shape, in.rows + MeetingInput::shape, lane);
+    put_vector(axis_[static_cast<std::size_t>(k)], in.rows + MeetingInput::axis, lane);
+    put_vector(r, in.rows + MeetingInput::r, lane);
+  }
+
+  struct Kind {
+    geom::internal::Spheroid shape;
+    double axis_difference;  ///< |a - b|
+  };
+
+  template <class Archive, class Self>
+  static void fields(Archive& archive, Self& self) {
+    archive(self.thickness_, self.exit_thickness_, self.centre_, self.axis_);
+    expect(archive, self.centre_.size() == self.kind_.size() && self.axis_.size() == self.kind_.size(),
+           "the envelopes of the bodies");
+  }
+
+  const Kind& kind_of(int i) const { return kinds_[static_cast<std::size_t>(kind_[static_cast<std::size_t>(i)])]; }
+  double surface_speed(int i, const AxisMotion& motion) const {
+    return kind_of(i).axis_difference * motion.rate * motion.e2.norm();
+  }
+
+  MeetingKernel* kernel_ = nullptr;
+  std::vector<Kind> kinds_;
+  std::vector<int> kind_;
   double bounding_radius_;
   double thickness_;
   double exit_thickness_;

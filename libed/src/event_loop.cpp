@@ -1,12 +1,11 @@
 #include "event_loop.h"
 
+#include "body_shapes.h"
+#include "cell_envelopes.h"
 #include "contact_checks.h"
-#include "dilated_envelopes.h"
-#include "motion_checks.h"
-#include "oriented_envelopes.h"
-#include "uniaxial_gauge.h"
-
-#include <geom/distance.h>
+#include "envelope_limits.h"
+#include "general_bodies.h"
+#include "uniaxial_bodies.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,7 +16,6 @@ namespace ed::internal {
 namespace {
 
 using Eigen::Vector3d;
-using geom::internal::support_point;
 
 /// Points in time that a pair is looked at when it is predicted, and when it comes up again. One gives a bound that
 /// lasts for most pairs; what is left is close, and gets a second look at once.
@@ -30,122 +28,70 @@ constexpr double kShrinkingExit = 0.8;
 /// Bodies that overlap and part are looked at again after this share of the time in which they could cross each other.
 constexpr double kPartingLook = 1e-3;
 
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
+void check_box(const System& system, double bounding_radius) {
+  if (system.box >= smallest_image_box(bounding_radius) * (1 - 1e-12)) return;
+  std::ostringstream message;
+  message << "box: an edge of " << system.box << " is too short for bodies of bounding radius " << bounding_radius
+          << ": a body could meet two images of another; accepted: at least " << smallest_image_box(bounding_radius);
+  if (system.species.size() == 1) {
+    message << " (number: at least " << smallest_number(system.species[0].shape, packing_fraction(system))
+            << " at this packing fraction)";
+  }
+  throw std::invalid_argument(message.str());
 }
 
-int symmetry_axis(const Species& species) {
-  const auto axis = species.shape.symmetry_axis();
-  if (!axis) {
-    throw std::invalid_argument("semi_axes: three different semi-axes are not available yet; accepted: two equal ones");
-  }
-  return *axis;
-}
-
-geom::Ellipsoid upright(const Species& species) {
-  const int axis = symmetry_axis(species);
-  const Vector3d& a = species.shape.semi_axes();
-  return geom::Ellipsoid({a[(axis + 1) % 3], a[(axis + 2) % 3], a[axis]});
-}
-
-UniaxialInertia uniaxial_inertia(const Species& species, int axis) {
-  if (!(species.mass > 0) || !std::isfinite(species.mass)) {
-    throw std::invalid_argument("mass is not positive; accepted: a positive number");
-  }
-  const double perpendicular = species.inertia[(axis + 1) % 3];
-  if (perpendicular != species.inertia[(axis + 2) % 3]) {
-    throw std::invalid_argument(
-        "inertia: the two moments across the axis of revolution differ, which is not available yet; accepted: equal "
-        "ones");
-  }
-  if (species.spins) check_inertia(species.inertia);
-  if (!(perpendicular > 0) || !std::isfinite(perpendicular)) {
-    throw std::invalid_argument("inertia is not positive; accepted: positive moments");
-  }
-  return {species.mass, perpendicular, species.inertia[axis], species.spins};
+void check_cells(double box, double bounding_radius) {
+  const int cells = CellLayout::cells_along(box, bounding_radius);
+  if (cells >= CellLayout::kLeastCells) return;
+  std::ostringstream message;
+  message << "neighbours = \"cells\": only " << cells << " cells of twice the bounding radius " << bounding_radius
+          << " fit along the box's edge of " << box << "; accepted: at least " << CellLayout::kLeastCells;
+  throw std::invalid_argument(message.str());
 }
 
 }  // namespace
 
-EventLoop::EventLoop(const System& system, const SimulationOptions& options)
+std::unique_ptr<AnyEventLoop> make_event_loop(const System& system, const SimulationOptions& options) {
+  for (const Species& species : system.species) check_finder(options.contact, species.shape);
+  if (UniaxialBodies::can_hold(system)) return std::make_unique<EventLoop<UniaxialBodies>>(system, options);
+  return std::make_unique<EventLoop<GeneralBodies>>(system, options);
+}
+
+template <class Bodies>
+EventLoop<Bodies>::EventLoop(const System& system, const SimulationOptions& options)
+    : EventLoop(system, options, Unbuilt()) {
+  set_envelope(options.envelope);
+}
+
+template <class Bodies>
+EventLoop<Bodies>::EventLoop(const System& system, const SimulationOptions& options, Unbuilt /*unbuilt*/)
     : options_(options),
       species_(system.species),
-      upright_(upright(system.species)),
-      shape_axis_(symmetry_axis(system.species)),
-      shape_(species_.shape.semi_axes()[shape_axis_], species_.shape.semi_axes()[(shape_axis_ + 1) % 3]),
-      inertia_(uniaxial_inertia(species_, shape_axis_)),
-      bounding_radius_(species_.shape.bounding_radius()),
       box_(system.box),
+      bodies_(system),
       images_(at(system.size()), Eigen::Vector3i::Zero()),
       lists_(system.size()),
       calendar_(system.size()),
       exits_(at(system.size()), 0.0),
-      first_(at(system.size()), kExit) {
-  if (!(box_ >= smallest_box(bounding_radius_) * (1 - 1e-12))) {
-    std::ostringstream message;
-    message << "box: an edge of " << box_ << " is too short for bodies of bounding radius " << bounding_radius_
-            << ": a body could meet two images of another; accepted: at least " << smallest_box(bounding_radius_)
-            << " (number: at least " << smallest_number(species_.shape, packing_fraction(system))
-            << " at this packing fraction)";
-    throw std::invalid_argument(message.str());
-  }
-  check_contact_options(options.contact, species_.shape.inscribed_radius());
-  if (options.neighbours == Neighbours::cells) check_cells();
-  motions_.resize(at(system.size()));
-  frames_.resize(at(system.size()));
-  for (int i = 0; i < system.size(); ++i) {
-    const Body& body = system.bodies[at(i)];
-    AxisMotion& motion = motions_[at(i)];
-    BodyFrame& frame = frames_[at(i)];
-    const Vector3d u = body.rotation.col(shape_axis_);
-    motion.position = body.position;
-    motion.velocity = body.velocity;
-    motion.time = 0;
-    frame.x_axis = body.rotation.col((shape_axis_ + 1) % 3);
-    const double spin = body.angular_velocity.dot(u);
-    frame.spin = inertia_.spins ? spin : 0;
-    set_rotation(inertia_, u, body.angular_velocity - spin * u, motion, frame);
-  }
+      first_(at(system.size()), kExit),
+      first_looks_(bodies_.make_first_looks(options)) {
+  check_box(system, bodies_.bounding_radius());
+  check_contact_options(options.contact, bodies_.inscribed_radius());
+  if (options.neighbours == Neighbours::cells) check_cells(box_, bodies_.bounding_radius());
+  for (const Body& body : system.bodies) species_of_.push_back(body.species);
   failures_.reserve(kReasons * kMaxFailuresRecorded);
-  set_envelope(options.envelope);
 }
 
-void EventLoop::check_cells() const {
-  const int cells = CellEnvelopes::cells_along(box_, bounding_radius_);
-  if (cells >= CellEnvelopes::kLeastCells) return;
-  std::ostringstream message;
-  message << "neighbours = \"cells\": only " << cells << " cells of twice the bounding radius " << bounding_radius_
-          << " fit along the box's edge of " << box_ << "; accepted: at least " << CellEnvelopes::kLeastCells;
-  throw std::invalid_argument(message.str());
-}
-
-void EventLoop::set_envelope(double thickness, bool shrinking) {
+template <class Bodies>
+void EventLoop<Bodies>::set_envelope(double thickness, bool shrinking) {
   // A share of the mean distance of neighbours: a first guess that is within a factor of two of the best.
   if (!(thickness > 0)) thickness = 0.22 * box_ / std::cbrt(static_cast<double>(number()));
-  const double thinnest = kThinnestEnvelope * bounding_radius_;
-  const double exit_share = shrinking ? kShrinkingExit : 1.0;
-  switch (options_.neighbours) {
-    case Neighbours::dilated:
-      thickness = std::clamp(thickness, thinnest, std::max(thinnest, thickest_envelope(box_, bounding_radius_)));
-      envelopes_ =
-          std::make_unique<DilatedEnvelopes>(number(), shape_, bounding_radius_ - species_.shape.inscribed_radius(),
-                                             bounding_radius_, thickness, exit_share * thickness);
-      break;
-    case Neighbours::obp:
-      thickness = std::min(thickness, thickest_oriented_envelope(shape_, bounding_radius_, box_));
-      envelopes_ = std::make_unique<OrientedEnvelopes>(number(), shape_, bounding_radius_, thickness, inertia_.spins);
-      break;
-    case Neighbours::cells: {
-      auto cells = std::make_unique<CellEnvelopes>(number(), box_, bounding_radius_);
-      body_cells_ = cells.get();
-      envelopes_ = std::move(cells);
-      break;
-    }
-  }
+  envelopes_ = bodies_.make_envelopes(options_, thickness, shrinking ? kShrinkingExit : 1.0, box_);
   rebuild_all();
 }
 
-Counters EventLoop::counters() const {
+template <class Bodies>
+Counters EventLoop<Bodies>::counters() const {
   Counters c = counters_;
   c.predictions = finder_.predictions;
   c.evaluations = finder_.evaluations;
@@ -155,120 +101,91 @@ Counters EventLoop::counters() const {
   return c;
 }
 
-void EventLoop::record_collisions(std::size_t number) {
+template <class Bodies>
+void EventLoop<Bodies>::record_collisions(std::size_t number) {
   collisions_.clear();
-  collisions_.reserve(std::min<std::size_t>(number, std::size_t{1} << 20));  // more grow as they come
+  collisions_.reserve(std::min(number, kCollisionsReserved));
   collisions_wanted_ = number;
 }
 
 // ---- State of the bodies -------------------------------------------------------------------------------------------
 
-void EventLoop::move(int i) {
-  advance(inertia_, now_, motions_[at(i)], frames_[at(i)]);
-}
-
-Vector3d EventLoop::position_now(int i) const {
-  return motions_[at(i)].position_at(now_);
-}
-
-void EventLoop::wrap(int i) {
-  Vector3d& r = motions_[at(i)].position;
+template <class Bodies>
+void EventLoop<Bodies>::wrap(int i) {
+  const Vector3d r = bodies_.position_at(i, now_);
+  Vector3d by = Vector3d::Zero();
   for (int k = 0; k < 3; ++k) {
     const double boxes = nearest_integer(r[k] / box_);
     if (boxes == 0) continue;
-    r[k] -= boxes * box_;
+    by[k] = -boxes * box_;
     images_[at(i)][k] += static_cast<int>(boxes);
   }
+  bodies_.shift(i, by);
 }
 
-KineticState EventLoop::kinetic() const {
-  KineticState state;
-  for (int i = 0; i < number(); ++i) {
-    const AxisMotion& m = motions_[at(i)];
-    const double spin = frames_[at(i)].spin;
-    state.translational_energy += 0.5 * inertia_.mass * m.velocity.squaredNorm();
-    state.rotational_energy += 0.5 * inertia_.perpendicular * omega_across(m).squaredNorm();
-    state.spin_energy += 0.5 * inertia_.axial * spin * spin;
-    state.momentum += inertia_.mass * m.velocity;
-  }
-  state.translational_kT = 2 * state.translational_energy / std::max(1, 3 * number() - 3);
-  state.rotational_kT = 2 * state.rotational_energy / (2 * number());
-  return state;
-}
-
-System EventLoop::system() const {
+template <class Bodies>
+System EventLoop<Bodies>::system() const {
   System result;
   result.box = box_;
   result.species = species_;
-  result.bodies.resize(motions_.size());
+  result.bodies.resize(at(number()));
   for (int i = 0; i < number(); ++i) {
     const Motion motion = motion_of(i, now_);
     result.bodies[at(i)] = {nearest_image(motion.pose.position(), box_), motion.pose.rotation(), motion.velocity,
-                            motion.angular_velocity};
+                            motion.angular_velocity, species_of_[at(i)]};
   }
   return result;
 }
 
-Motion EventLoop::motion_of(int i, double t) const {
-  AxisMotion m = motions_[at(i)];
-  BodyFrame f = frames_[at(i)];
-  advance(inertia_, t, m, f);
-  const Vector3d u = m.axis();
-  Eigen::Matrix3d R;
-  R.col(shape_axis_) = u;
-  R.col((shape_axis_ + 1) % 3) = f.x_axis;
-  R.col((shape_axis_ + 2) % 3) = u.cross(f.x_axis);
-  return {geom::Pose(R, m.position), m.velocity, omega_across(m) + f.spin * u, species_.inertia, epochs_ * kEpoch + t};
+template <class Bodies>
+Motion EventLoop<Bodies>::motion_of(int i, double t) const {
+  Motion motion = bodies_.motion(i, t);
+  motion.time = epochs_ * kEpoch + t;
+  return motion;
 }
 
-void EventLoop::sample(Snapshot& snapshot) const {
+template <class Bodies>
+void EventLoop<Bodies>::sample(Snapshot& snapshot) const {
   snapshot.time = time();
-  snapshot.position.resize(motions_.size());
-  snapshot.axis.resize(motions_.size());
-  snapshot.phi_lab.resize(motions_.size());
-  snapshot.phi_body.resize(motions_.size());
+  snapshot.position.resize(at(number()));
+  snapshot.axis.resize(at(number()));
+  snapshot.phi_lab.resize(at(number()));
+  snapshot.phi_body.resize(at(number()));
+  snapshot.velocity.resize(at(number()));
+  snapshot.angular_velocity.resize(at(number()));
   for (int i = 0; i < number(); ++i) {
-    AxisMotion m = motions_[at(i)];
-    BodyFrame f = frames_[at(i)];
-    advance(inertia_, now_, m, f);
-    snapshot.position[at(i)] = m.position + box_ * images_[at(i)].cast<double>();
-    snapshot.axis[at(i)] = m.axis();
-    snapshot.phi_lab[at(i)] = f.phi_lab;
-    snapshot.phi_body[at(i)] = f.phi_body;
+    snapshot.position[at(i)] = bodies_.position_at(i, now_) + box_ * images_[at(i)].template cast<double>();
+    bodies_.sample(i, now_, snapshot);
   }
 }
 
 // ---- Prediction ----------------------------------------------------------------------------------------------------
 
 /// From the centre of i to that of j now, in the image in which they can touch.
-Vector3d EventLoop::between(const Pair& pair) const {
-  const Vector3d d = position_now(pair.j) - position_now(pair.i);
-  return body_cells_ != nullptr ? body_cells_->image_of_cells(pair.i, pair.j, d) : nearest_image(d, box_);
+template <class Bodies>
+Vector3d EventLoop<Bodies>::between(const Pair& pair) const {
+  const Vector3d d = bodies_.position_at(pair.j, now_) - bodies_.position_at(pair.i, now_);
+  return envelopes_->image(pair.i, pair.j, d, box_);
 }
 
-Finding EventLoop::find_contact(Pair& pair, double end, int max_evaluations) {
-  const AxisMotion& a = motions_[at(pair.i)];
-  const AxisMotion& b = motions_[at(pair.j)];
-  const Vector3d r = between(pair);
-  if (options_.contact.finder == Finder::bracketing) {
-    return bracketing_contact({upright_, upright_, a, b, r, now_}, now_, end, options_.contact, pair.normal, finder_,
-                              unsolved_);
-  }
-  if (inertia_.spins) {
-    const UniaxialGauge<true> gauge(shape_, a, shape_, b, r, now_, 2 * bounding_radius_);
-    return certified_contact(gauge, now_, end, max_evaluations, pair.normal, finder_);
-  }
-  const UniaxialGauge<false> gauge(shape_, a, shape_, b, r, now_, 2 * bounding_radius_);
-  return certified_contact(gauge, now_, end, max_evaluations, pair.normal, finder_);
-}
-
-void EventLoop::search(Pair& pair, int max_evaluations) {
-  const double end = std::max(now_, std::min(exits_[at(pair.i)], exits_[at(pair.j)]));
-  const Finding finding = find_contact(pair, end, max_evaluations);
+template <class Bodies>
+void EventLoop<Bodies>::search(Pair& pair, int max_evaluations) {
+  const Finding finding = bodies_.find_contact(pair.i, pair.j, between(pair), now_, search_end(pair), max_evaluations,
+                                               options_.contact, pair.normal, finder_, unsolved_);
   if (unsolved_) {
     report(pair, unsolved_->time, FailureReason::distance);
     unsolved_.reset();
   }
+  keep(pair, finding);
+}
+
+template <class Bodies>
+double EventLoop<Bodies>::search_end(const Pair& pair) const {
+  return std::max(now_, std::min(exits_[at(pair.i)], exits_[at(pair.j)]));
+}
+
+template <class Bodies>
+void EventLoop<Bodies>::keep(Pair& pair, const Finding& finding) {
   switch (finding.outcome) {
     case Outcome::clear:
       pair.event = PairEvent::clear;
@@ -293,28 +210,69 @@ void EventLoop::search(Pair& pair, int max_evaluations) {
 }
 
 /// The least time in which the bodies of a pair can move by the sum of their bounding radii.
-double EventLoop::parting_time(const Pair& pair) const {
-  const AxisMotion& a = motions_[at(pair.i)];
-  const AxisMotion& b = motions_[at(pair.j)];
-  const double reach = 2 * bounding_radius_;
-  return reach / ((b.velocity - a.velocity).norm() + reach * (a.rate + b.rate));
+template <class Bodies>
+double EventLoop<Bodies>::parting_time(const Pair& pair) const {
+  const double reach = bodies_.bounding_radius(pair.i) + bodies_.bounding_radius(pair.j);
+  const double speed = (bodies_.velocity(pair.j) - bodies_.velocity(pair.i)).norm();
+  return reach / (speed + reach * (bodies_.turning(pair.i) + bodies_.turning(pair.j)));
 }
 
-void EventLoop::predict(std::int32_t index, int owner, int max_evaluations) {
+/// The pair, which counts in the calendar entry of `owner` from now on.
+template <class Bodies>
+Pair& EventLoop<Bodies>::claim(std::int32_t index, int owner) {
   Pair& pair = lists_.pair(index);
   const std::int32_t partner = pair.partner(owner);
   if (pair.owner == partner && first_[at(partner)] == index) orphans_.push_back(partner);
   pair.owner = owner;
-  search(pair, max_evaluations);
+  return pair;
 }
 
-void EventLoop::predict_all_of(int body, std::int32_t skip) {
+template <class Bodies>
+void EventLoop<Bodies>::predict(std::int32_t index, int owner, int max_evaluations) {
+  search(claim(index, owner), max_evaluations);
+}
+
+template <class Bodies>
+void EventLoop<Bodies>::queue(std::int32_t index, int owner) {
+  Pair& pair = claim(index, owner);
+  queue_.push_back({&pair, search_end(pair)});
+}
+
+template <class Bodies>
+void EventLoop<Bodies>::queue_all_of(int body, std::int32_t skip) {
   for (const std::int32_t index : lists_.of(body)) {
-    if (index != skip) predict(index, body, kFirstLook);
+    if (index != skip) queue(index, body);
   }
 }
 
-void EventLoop::reschedule(int body) {
+/// No pair may be added to the lists, or removed, and no body change, since they were queued.
+template <class Bodies>
+void EventLoop<Bodies>::predict_queued() {
+  if (first_looks_) first_looks_->take(bodies_, now_, box_, queue_, finder_);
+  for (const Look& look : queue_) {
+    if (look.answered) {
+      keep(*look.pair, look.finding);
+    } else {
+      search(*look.pair, kFirstLook);
+    }
+  }
+  queue_.clear();
+}
+
+/// Every pair, for its body i. The calendar is to be made anew.
+template <class Bodies>
+void EventLoop<Bodies>::predict_all() {
+  for (int i = 0; i < number(); ++i) {
+    for (const std::int32_t index : lists_.of(i)) {
+      if (lists_.pair(index).i == i) queue(index, i);
+    }
+    predict_queued();
+  }
+  orphans_.clear();
+}
+
+template <class Bodies>
+void EventLoop<Bodies>::reschedule(int body) {
   double earliest = exits_[at(body)];
   std::int32_t first = kExit;
   for (const std::int32_t index : lists_.of(body)) {
@@ -328,12 +286,14 @@ void EventLoop::reschedule(int body) {
   calendar_.set(body, earliest);
 }
 
-void EventLoop::reschedule_orphans() {
+template <class Bodies>
+void EventLoop<Bodies>::reschedule_orphans() {
   for (const int body : orphans_) reschedule(body);
   orphans_.clear();
 }
 
-void EventLoop::report(const Pair& pair, double time, FailureReason reason) {
+template <class Bodies>
+void EventLoop<Bodies>::report(const Pair& pair, double time, FailureReason reason) {
   std::size_t& recorded = failures_of_[static_cast<std::size_t>(reason)];
   if (recorded == kMaxFailuresRecorded) {
     ++counters_.unrecorded_failures;
@@ -342,7 +302,8 @@ void EventLoop::report(const Pair& pair, double time, FailureReason reason) {
   ++recorded;
   FailedPair& failed = failures_.emplace_back();  // reserved: no allocation
   failed.reason = reason;
-  failed.shape_i = failed.shape_j = species_.shape;
+  failed.shape_i = species_[at(species_of_[at(pair.i)])].shape;
+  failed.shape_j = species_[at(species_of_[at(pair.j)])].shape;
   failed.motion_i = motion_of(pair.i, time);
   failed.motion_j = motion_of(pair.j, time);
   const Vector3d r = between(pair) + (time - now_) * (failed.motion_j.velocity - failed.motion_i.velocity);
@@ -357,18 +318,20 @@ void EventLoop::report(const Pair& pair, double time, FailureReason reason) {
 
 // ---- Envelopes and lists -------------------------------------------------------------------------------------------
 
-void EventLoop::renew_exit(int i) {
+template <class Bodies>
+void EventLoop<Bodies>::renew_exit(int i) {
   ++counters_.envelope_checks;
-  exits_[at(i)] = envelopes_->exit_time(i, motions_[at(i)], position_now(i), motions_[at(i)].axis_at(now_), now_, box_);
+  exits_[at(i)] = envelopes_->exit_time(i, bodies_, now_, box_);
 }
 
-void EventLoop::rebuild(int i) {
+template <class Bodies>
+void EventLoop<Bodies>::rebuild(int i) {
   ++counters_.neighbour_rebuilds;
-  move(i);
+  bodies_.move(i, now_);
   wrap(i);
-  const AxisMotion& motion = motions_[at(i)];
-  envelopes_->place(i, motion.position, motion.axis(), frames_[at(i)].x_axis);
-  cells_->place(i, motion.position);
+  envelopes_->place(i, bodies_, now_);
+  const Vector3d position = bodies_.position_at(i, now_);
+  cells_->place(i, position);
   old_pairs_.assign(lists_.of(i).begin(), lists_.of(i).end());
   for (const std::int32_t index : old_pairs_) {
     const Pair& pair = lists_.pair(index);
@@ -377,45 +340,55 @@ void EventLoop::rebuild(int i) {
     lists_.remove(index);
   }
   renew_exit(i);
-  const auto candidates = cells_->collect(motion.position, envelopes_->reach(), near_);
+  const auto candidates = cells_->collect(position, envelopes_->reach(), near_);
   counters_.candidate_tests += candidates.size();
-  for (const auto& [k, r] : candidates) {
-    Vector3d normal;
-    if (k != i && envelopes_->may_meet(i, k, r, normal)) predict(lists_.add(i, k, normal), i, kFirstLook);
-  }
+  envelopes_->find_meetings(i, candidates, 0, meetings_);
+  for (const auto& [k, normal] : meetings_) lists_.add(i, k, normal);
+  queue_all_of(i, kNoPair);
+  predict_queued();
   reschedule_orphans();
   reschedule(i);
 }
 
-void EventLoop::rebuild_all() {
+/// Nothing allocates from here on, but for records that a long run breaks.
+template <class Bodies>
+void EventLoop<Bodies>::reserve_for_events() {
+  const std::size_t longest = lists_.reserve();
+  old_pairs_.reserve(longest);
+  meetings_.reserve(longest);
+  queue_.reserve(2 * longest);
+}
+
+template <class Bodies>
+void EventLoop<Bodies>::rebuild_all() {
   lists_ = NeighbourLists(number());
   // The cells shrink with the box between two calls of this, but what they must cover does not.
   cells_.emplace(number(), box_, envelopes_->reach() / envelopes_->least_scale());
   list_scale_ = 1;
   for (int i = 0; i < number(); ++i) {
-    move(i);
+    bodies_.move(i, now_);
     wrap(i);
-    envelopes_->place(i, motions_[at(i)].position, motions_[at(i)].axis(), frames_[at(i)].x_axis);
-    cells_->place(i, motions_[at(i)].position);
+    envelopes_->place(i, bodies_, now_);
+    cells_->place(i, bodies_.position_at(i, now_));
     renew_exit(i);
   }
   for (int i = 0; i < number(); ++i) {
-    for (const auto& [k, r] : cells_->collect(motions_[at(i)].position, envelopes_->reach(), near_)) {
-      Vector3d normal;
-      if (k > i && envelopes_->may_meet(i, k, r, normal)) predict(lists_.add(i, k, normal), i, kFirstLook);
-    }
+    const auto candidates = cells_->collect(bodies_.position_at(i, now_), envelopes_->reach(), near_);
+    envelopes_->find_meetings(i, candidates, i + 1, meetings_);
+    for (const auto& [k, normal] : meetings_) lists_.add(i, k, normal);
   }
-  // Nothing allocates from here on, but for records that a long run breaks.
-  old_pairs_.reserve(lists_.reserve());
-  orphans_.clear();
+  predict_all();
+  reserve_for_events();
   for (int i = 0; i < number(); ++i) reschedule(i);
 }
 
 // ---- Events --------------------------------------------------------------------------------------------------------
 
-bool EventLoop::run_until(double time, std::uint64_t max_collisions) {
+template <class Bodies>
+bool EventLoop<Bodies>::run_until(double time, std::uint64_t max_collisions) {
   const std::uint64_t last = counters_.collisions + std::min(max_collisions, ~std::uint64_t{0} - counters_.collisions);
-  while (counters_.collisions < last) {
+  const std::uint64_t events_between_looks = kStallEvents * static_cast<std::uint64_t>(number());
+  while (counters_.collisions < last && !stall_) {
     const double local_end = time - epochs_ * kEpoch;
     const double next = calendar_.earliest_time();
     if (next > std::min(local_end, kEpoch)) {
@@ -427,15 +400,18 @@ bool EventLoop::run_until(double time, std::uint64_t max_collisions) {
       continue;
     }
     process_next();
+    if (++events_ >= events_between_looks) [[unlikely]]
+      look_for_stall(std::min(local_end, kEpoch));
   }
   return false;
 }
 
-void EventLoop::start_epoch() {
+template <class Bodies>
+void EventLoop<Bodies>::start_epoch() {
   now_ = kEpoch;
   for (int i = 0; i < number(); ++i) {
-    move(i);
-    motions_[at(i)].time = 0;
+    bodies_.move(i, now_);
+    bodies_.restart_clock(i, now_);
     exits_[at(i)] -= kEpoch;
   }
   for (int i = 0; i < number(); ++i) {
@@ -449,7 +425,8 @@ void EventLoop::start_epoch() {
   for (int i = 0; i < number(); ++i) reschedule(i);
 }
 
-void EventLoop::process_next() {
+template <class Bodies>
+void EventLoop<Bodies>::process_next() {
   const int body = calendar_.earliest();
   now_ = std::max(now_, calendar_.earliest_time());
   const std::int32_t index = first_[at(body)];
@@ -462,21 +439,24 @@ void EventLoop::process_next() {
   }
 }
 
-void EventLoop::process_exit(int i) {
+template <class Bodies>
+void EventLoop<Bodies>::process_exit(int i) {
   renew_exit(i);
-  if (exits_[at(i)] - now_ < envelopes_->worthwhile(motions_[at(i)])) {
+  if (exits_[at(i)] - now_ < envelopes_->worthwhile(i, bodies_)) {
     rebuild(i);
     return;
   }
   // Still inside: pairs that were clear up to the earlier bound are looked at again.
   for (const std::int32_t index : lists_.of(i)) {
-    if (lists_.pair(index).event == PairEvent::clear) predict(index, i, kFirstLook);
+    if (lists_.pair(index).event == PairEvent::clear) queue(index, i);
   }
+  predict_queued();
   reschedule_orphans();
   reschedule(i);
 }
 
-void EventLoop::refine(std::int32_t index) {
+template <class Bodies>
+void EventLoop<Bodies>::refine(std::int32_t index) {
   const auto search_evaluations = [this] { return finder_.evaluations - finder_.newton_evaluations; };
   const std::uint64_t before = search_evaluations();
   const int owner = lists_.pair(index).owner;
@@ -485,23 +465,15 @@ void EventLoop::refine(std::int32_t index) {
   reschedule(owner);
 }
 
-ContactBody EventLoop::contact_body(int i, const Vector3d& normal) const {
-  const AxisMotion& m = motions_[at(i)];
-  // The impulse of a body of revolution has no moment along the axis: any multiple of the identity with 1/I_perp does.
-  return {1 / inertia_.mass, Eigen::Matrix3d::Identity() / inertia_.perpendicular,
-          support_point(shape_, m.axis(), normal), m.velocity, omega_across(m)};
-}
-
-void EventLoop::process_contact(std::int32_t index) {
+template <class Bodies>
+void EventLoop<Bodies>::process_contact(std::int32_t index) {
   Pair& pair = lists_.pair(index);
   const int i = pair.i;
   const int j = pair.j;
-  move(i);
-  move(j);
-  const Vector3d n = pair.normal;
-  ContactBody a = contact_body(i, n);
-  ContactBody b = contact_body(j, -n);
-  const double J = collide(a, b, n);
+  bodies_.move(i, now_);
+  bodies_.move(j, now_);
+  const Vector3d r = between(pair);
+  const double J = bodies_.collide(i, j, r, pair.normal, now_);
   if (!(J > 0)) {
     // Nothing has changed, so that the same contact would be found again: look when the bodies have moved a little.
     ++counters_.parting_contacts;
@@ -511,19 +483,14 @@ void EventLoop::process_contact(std::int32_t index) {
     return;
   }
   ++counters_.collisions;
-  const Vector3d r = nearest_image(motions_[at(j)].position - motions_[at(i)].position, box_);
-  virial_ += J * r.dot(n);
+  virial_ += J * r.dot(pair.normal);
+  virial_tensor_ += r * (J * pair.normal).transpose();
   if (collisions_.size() < collisions_wanted_) collisions_.push_back({time(), std::min(i, j), std::max(i, j)});
-  for (const auto& [body, state] : {std::pair<int, const ContactBody&>{i, a}, {j, b}}) {
-    AxisMotion& m = motions_[at(body)];
-    m.velocity = state.velocity;
-    const Vector3d u = m.axis();
-    const Vector3d omega = state.angular_velocity - state.angular_velocity.dot(u) * u;
-    set_rotation(inertia_, u, omega, m, frames_[at(body)]);
-    renew_exit(body);
-  }
-  predict_all_of(i, -1);
-  predict_all_of(j, index);
+  renew_exit(i);
+  renew_exit(j);
+  queue_all_of(i, kNoPair);
+  queue_all_of(j, index);
+  predict_queued();
   reschedule_orphans();
   reschedule(i);
   reschedule(j);
@@ -531,34 +498,12 @@ void EventLoop::process_contact(std::int32_t index) {
 
 // ---- Compression ---------------------------------------------------------------------------------------------------
 
-/// The factor by which r would have to shrink for the pair to touch, from above and no better than `enough`.
-///
-/// For every n with n.r > 0 the pair is apart for scales above (hA + hB) / n.r = 1 - g / n.r; the best n is near the
-/// one that maximises g, which is improved until the pair is out of the question or converged.
-double EventLoop::contact_scale(const Pair& pair, double enough) const {
-  const AxisMotion& a = motions_[at(pair.i)];
-  const AxisMotion& b = motions_[at(pair.j)];
-  const Vector3d r = nearest_image(b.position - a.position, box_);
-  const Vector3d u_a = a.axis();
-  const Vector3d u_b = b.axis();
-  Vector3d n = pair.normal.isZero(0) ? geom::internal::cold_normal(shape_, shape_, r, u_a, u_b) : pair.normal;
-  double best = 1;
-  const auto evaluate = [&](const Vector3d& m) { return evaluate_uniaxial(shape_, shape_, r, u_a, u_b, m); };
-  const auto done = [&](const UniaxialEvaluation& e) {
-    if (n.dot(r) > 0) best = std::min(best, 1 - e.g / n.dot(r));
-    return best <= enough || e.step2 < geom::kNormalTolerance2;
-  };
-  UniaxialEvaluation e = evaluate(n);
-  int budget = geom::kMaxIterations;
-  (void)geom::internal::ascend(evaluate, geom::kRoundingFactor * 2 * bounding_radius_, done, budget, n, e);
-  return best;
-}
-
-double EventLoop::shrink_box(double target_box, double least_gain) {
+template <class Bodies>
+double EventLoop<Bodies>::shrink_box(double target_box, double least_gain) {
   if (list_scale_ <= 0.9 * envelopes_->least_scale() + 0.1) set_envelope(0, true);
-  for (int i = 0; i < number(); ++i) move(i);
-  double factor =
-      std::max({target_box / box_, envelopes_->least_scale() / list_scale_, smallest_box(bounding_radius_) / box_});
+  for (int i = 0; i < number(); ++i) bodies_.move(i, now_);
+  double factor = std::max({target_box / box_, envelopes_->least_scale() / list_scale_,
+                            smallest_image_box(bodies_.bounding_radius()) / box_});
   factor = std::min(factor, 1.0);
   if (1 - factor < least_gain) return box_;
   // The last step may be small, however large the usual one is.
@@ -566,7 +511,10 @@ double EventLoop::shrink_box(double target_box, double least_gain) {
   for (int i = 0; i < number(); ++i) {
     for (const std::int32_t index : lists_.of(i)) {
       const Pair& pair = lists_.pair(index);
-      if (pair.i == i) factor = std::max(factor, contact_scale(pair, factor));
+      if (pair.i == i) {
+        const double scale = bodies_.contact_scale(i, pair.j, between(pair), pair.normal, now_, factor);
+        factor = std::max(factor, scale);
+      }
       if (1 - factor < least_gain) return box_;
     }
   }
@@ -576,18 +524,16 @@ double EventLoop::shrink_box(double target_box, double least_gain) {
   if (!(factor < 1)) return box_;
   box_ *= factor;
   list_scale_ *= factor;
-  for (AxisMotion& m : motions_) m.position *= factor;
+  bodies_.scale_positions(factor, now_);
   envelopes_->scale(factor);
   cells_->scale(factor);
   for (int i = 0; i < number(); ++i) renew_exit(i);
-  for (int i = 0; i < number(); ++i) {
-    for (const std::int32_t index : lists_.of(i)) {
-      if (lists_.pair(index).i == i) predict(index, i, kFirstLook);
-    }
-  }
-  orphans_.clear();
+  predict_all();
   for (int i = 0; i < number(); ++i) reschedule(i);
   return box_;
 }
+
+template class EventLoop<UniaxialBodies>;
+template class EventLoop<GeneralBodies>;
 
 }  // namespace ed::internal

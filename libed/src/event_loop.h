@@ -1,18 +1,15 @@
 #pragma once
 
-#include "axis_motion.h"
 #include "bracketing_contact.h"
 #include "calendar.h"
-#include "cell_envelopes.h"
 #include "cell_grid.h"
 #include "certified_contact.h"
 #include "envelopes.h"
+#include "first_looks.h"
 #include "neighbour_lists.h"
 
-#include <ed/impulse.h>
+#include <ed/internal/archive.h>
 #include <ed/simulation.h>
-
-#include <geom/internal/uniaxial.h>
 
 #include <array>
 #include <memory>
@@ -21,7 +18,45 @@
 
 namespace ed::internal {
 
-/// The event loop behind Simulation.
+/// What Simulation needs of an event loop, whatever its bodies.
+class AnyEventLoop {
+ public:
+  virtual ~AnyEventLoop() = default;
+
+  virtual double time() const = 0;
+  virtual bool run_until(double time, std::uint64_t max_collisions) = 0;
+  virtual double shrink_box(double target_box, double least_gain) = 0;
+  /// New envelopes of this thickness (clamped to what the box allows), and lists, for all bodies. With `shrinking`,
+  /// bodies leave theirs early, so that the lists stay valid while the box shrinks a little.
+  virtual void set_envelope(double thickness, bool shrinking = false) = 0;
+
+  virtual double box() const = 0;
+  virtual double envelope() const = 0;
+  virtual Neighbours neighbours() const = 0;
+  virtual int number() const = 0;
+  virtual Counters counters() const = 0;
+  virtual double virial() const = 0;
+  virtual Eigen::Matrix3d virial_tensor() const = 0;
+  virtual System system() const = 0;
+  virtual void sample(Snapshot& snapshot) const = 0;
+  virtual void record_collisions(std::size_t number) = 0;
+  virtual const std::vector<Collision>& collisions() const = 0;
+  virtual const std::vector<FailedPair>& failures() const = 0;
+  virtual const std::optional<Stall>& stall() const = 0;
+
+  /// The whole state between two events; what the constructor makes of species and options is left out.
+  virtual void save(Writer& writer) const = 0;
+};
+
+/// The loop for these bodies: the fast one if they are all ellipsoids of revolution. Throws as Simulation does, but for
+/// species (check_species) and overlaps.
+std::unique_ptr<AnyEventLoop> make_event_loop(const System& system, const SimulationOptions& options);
+
+/// The loop that was saved. `system`: its box and species, and bodies that have only these. Throws
+/// std::invalid_argument for bytes that are no state of such bodies.
+std::unique_ptr<AnyEventLoop> load_event_loop(const System& system, const SimulationOptions& options, Reader& reader);
+
+/// The event loop behind Simulation. `Bodies`: UniaxialBodies or GeneralBodies.
 ///
 /// Times inside are measured from the start of the current epoch (kEpoch long); at its end all bodies are moved there
 /// and every time is shifted, so that no digits are lost however long a run lasts.
@@ -29,96 +64,114 @@ namespace ed::internal {
 /// Each pair of neighbours carries a certified lower bound of its contact time, made after the last collision of either
 /// body, and is refined only when the calendar comes to it. A pair counts in the calendar entry of one of its bodies,
 /// its owner: the one that was predicted last.
-class EventLoop {
+template <class Bodies>
+class EventLoop final : public AnyEventLoop {
  public:
   EventLoop(const System& system, const SimulationOptions& options);
+  /// See load_event_loop.
+  EventLoop(const System& system, const SimulationOptions& options, Reader& reader);
 
-  double time() const { return epochs_ * kEpoch + now_; }
-  bool run_until(double time, std::uint64_t max_collisions);
-  double shrink_box(double target_box, double least_gain);
-  /// New envelopes of this thickness (clamped to what the box allows), and lists, for all bodies. With `shrinking`,
-  /// bodies leave theirs early, so that the lists stay valid while the box shrinks a little.
-  void set_envelope(double thickness, bool shrinking = false);
+  double time() const override { return epochs_ * kEpoch + now_; }
+  bool run_until(double time, std::uint64_t max_collisions) override;
+  double shrink_box(double target_box, double least_gain) override;
+  void set_envelope(double thickness, bool shrinking = false) override;
 
-  double box() const { return box_; }
-  double envelope() const { return envelopes_->thickness(); }
-  Neighbours neighbours() const { return options_.neighbours; }
-  int number() const { return static_cast<int>(motions_.size()); }
-  Counters counters() const;
-  double virial() const { return virial_; }
-  KineticState kinetic() const;
-  System system() const;
-  void sample(Snapshot& snapshot) const;
-  void record_collisions(std::size_t number);
-  const std::vector<Collision>& collisions() const { return collisions_; }
-  const std::vector<FailedPair>& failures() const { return failures_; }
-  double bounding_radius() const { return bounding_radius_; }
+  double box() const override { return box_; }
+  double envelope() const override { return envelopes_->thickness(); }
+  Neighbours neighbours() const override { return options_.neighbours; }
+  int number() const override { return bodies_.number(); }
+  Counters counters() const override;
+  double virial() const override { return virial_; }
+  Eigen::Matrix3d virial_tensor() const override { return virial_tensor_; }
+  System system() const override;
+  void sample(Snapshot& snapshot) const override;
+  void record_collisions(std::size_t number) override;
+  const std::vector<Collision>& collisions() const override { return collisions_; }
+  const std::vector<FailedPair>& failures() const override { return failures_; }
+  const std::optional<Stall>& stall() const override { return stall_; }
+  void save(Writer& writer) const override;
 
  private:
+  struct Unbuilt {};  ///< without envelopes, lists and events
+  EventLoop(const System& system, const SimulationOptions& options, Unbuilt unbuilt);
+  template <class Archive, class Self>
+  static void fields(Archive& archive, Self& self);
+  void load_failures(Reader& reader);
+  bool events_fit() const;
+
   static constexpr std::int32_t kExit = -1;
+  static constexpr std::int32_t kNoPair = -1;
   static constexpr std::size_t kReasons = 2;               ///< of FailureReason
   static constexpr std::size_t kMaxFailuresRecorded = 16;  ///< for each reason
+  /// Room for collisions that are recorded; more grow as they come.
+  static constexpr std::size_t kCollisionsReserved = std::size_t{1} << 20;
+  /// Events a body after which it is asked whether the run still makes progress, and how many events are then looked at
+  /// to say what it is stuck in.
+  static constexpr std::uint64_t kStallEvents = 2000;
+  static constexpr int kStallSample = 1000;
+
+  static std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
   void process_next();
+  bool progresses() const;
+  void look_for_stall(double end);
+  Stall most_frequent_event(double end);
   void process_exit(int body);
   void process_contact(std::int32_t index);
   void refine(std::int32_t index);
   void start_epoch();
 
   void rebuild(int body);
+  void reserve_for_events();
   void rebuild_all();
   void renew_exit(int body);
 
   void predict(std::int32_t index, int owner, int max_evaluations);
-  Finding find_contact(Pair& pair, double end, int max_evaluations);
+  Pair& claim(std::int32_t index, int owner);
+  double search_end(const Pair& pair) const;
   void search(Pair& pair, int max_evaluations);
+  void keep(Pair& pair, const Finding& finding);
   Eigen::Vector3d between(const Pair& pair) const;
   double parting_time(const Pair& pair) const;
-  void check_cells() const;
-  void predict_all_of(int body, std::int32_t skip);
+  void queue(std::int32_t index, int owner);
+  void queue_all_of(int body, std::int32_t skip);
+  void predict_queued();
+  void predict_all();
   void reschedule(int body);
   void reschedule_orphans();
-  double contact_scale(const Pair& pair, double enough) const;
+  Motion motion_of(int body, double t) const;
   void report(const Pair& pair, double time, FailureReason reason);
 
-  void move(int body);
-  Eigen::Vector3d position_now(int body) const;
   void wrap(int body);
-  Motion motion_of(int body, double t) const;
-  ContactBody contact_body(int body, const Eigen::Vector3d& normal) const;
 
   SimulationOptions options_;
-
-  // What all bodies share.
-  Species species_;
-  geom::Ellipsoid upright_;  ///< the shape with its axis of revolution along body z
-  int shape_axis_;
-  geom::internal::Spheroid shape_;
-  UniaxialInertia inertia_;
-  double bounding_radius_;
+  std::vector<Species> species_;
+  std::vector<int> species_of_;  ///< number of each body's
   double box_;
 
   // State of the bodies.
-  std::vector<AxisMotion> motions_;
-  std::vector<BodyFrame> frames_;
+  Bodies bodies_;
   std::vector<Eigen::Vector3i> images_;
 
   // Neighbours and events.
-  std::unique_ptr<Envelopes> envelopes_;
-  const CellEnvelopes* body_cells_ = nullptr;  ///< envelopes_, if they are cells
+  std::unique_ptr<Envelopes<Bodies>> envelopes_;
   std::optional<CellGrid> cells_;
   NeighbourLists lists_;
   Calendar calendar_;
-  std::vector<double> exits_;        ///< lower bound of when a body leaves its envelope
-  std::vector<std::int32_t> first_;  ///< what a body's calendar entry is: a pair, or kExit
-  std::vector<int> orphans_;         ///< bodies whose first event has gone to another owner
+  std::vector<double> exits_;                        ///< lower bound of when a body leaves its envelope
+  std::vector<std::int32_t> first_;                  ///< what a body's calendar entry is: a pair, or kExit
+  std::vector<int> orphans_;                         ///< bodies whose first event has gone to another owner
+  std::unique_ptr<FirstLooks<Bodies>> first_looks_;  ///< null: pairs are looked at one by one
+  std::vector<Look> queue_;                          ///< pairs to be predicted
   std::vector<NearBody> near_;
+  std::vector<Meeting> meetings_;
   std::vector<std::int32_t> old_pairs_;
 
   double list_scale_ = 1;  ///< by what the box has shrunk since all lists were made
   double now_ = 0;
   double epochs_ = 0;
   double virial_ = 0;
+  Eigen::Matrix3d virial_tensor_ = Eigen::Matrix3d::Zero();
   Counters counters_;
   FinderCounters finder_;
   std::vector<Collision> collisions_;
@@ -126,6 +179,9 @@ class EventLoop {
   std::vector<FailedPair> failures_;
   std::array<std::size_t, kReasons> failures_of_{};  ///< recorded, by reason
   std::optional<Unsolved> unsolved_;                 ///< by the last search
+  std::uint64_t events_ = 0;                         ///< since stall_watch_
+  double stall_watch_ = 0;                           ///< time when it was last asked whether the run has stalled
+  std::optional<Stall> stall_;
 };
 
 }  // namespace ed::internal

@@ -38,19 +38,21 @@ std::variant<UniformTurn, SymmetricTop, AsymmetricTop> make_top(const Vector3d& 
 
 // ---- Constant angular velocity -------------------------------------------------------------------------------------
 
-UniformTurn::UniformTurn(const Matrix3d& rotation, const Vector3d& omega)
-    : start_(polished(rotation.col(0), rotation.col(1), 1)),
-      omega_(omega),
-      direction_(omega.isZero(0) ? Vector3d::UnitZ() : Vector3d(omega / length(omega))),
-      rate_(length(omega)) {}
-
-Matrix3d UniformTurn::rotation(double tau) const {
-  const SinCos sc = turn(rate_ * tau);
-  return matrix(polished(rotated(start_.first, direction_, sc), rotated(start_.second, direction_, sc), 1), {0, 1, 2});
+TurningAxis TurningAxis::of(const Vector3d& v, const Vector3d& l) {
+  const Vector3d along = inner(l, v) * l;
+  return {along, v - along, l.cross(v)};
 }
 
-TopState UniformTurn::at(double tau) const {
-  return {rotation(tau), omega_, Vector3d::Zero()};
+UniformTurn::UniformTurn(const Matrix3d& rotation, const Vector3d& omega) : omega_(omega), rate_(length(omega)) {
+  const TopAxes start = polished(rotation.col(0), rotation.col(1), 1);
+  const Vector3d direction = rate_ > 0 ? Vector3d(omega / rate_) : Vector3d::UnitZ();
+  x_ = TurningAxis::of(start.first, direction);
+  y_ = TurningAxis::of(start.second, direction);
+}
+
+Matrix3d UniformTurn::rotation(double tau) const {
+  const SinCos sc = tau == 0 ? SinCos{0, 1} : turn(rate_ * tau);
+  return matrix(polished(x_.at(sc), y_.at(sc), 1), {0, 1, 2});
 }
 
 TopBounds UniformTurn::bounds() const {
@@ -62,7 +64,7 @@ Vector3d UniformTurn::turned_world(double tau) const {
 }
 
 Vector3d UniformTurn::turned_body(double tau) const {
-  return tau * Vector3d(inner(start_.first, omega_), inner(start_.second, omega_), inner(start_.third, omega_));
+  return tau * transposed_product(rotation(0), omega_);
 }
 
 // ---- Symmetric top -------------------------------------------------------------------------------------------------

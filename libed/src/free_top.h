@@ -26,32 +26,58 @@
 
 namespace ed::internal {
 
+/// A unit vector that turns about another one: along + cos part + sin part of the angle.
+struct TurningAxis {
+  Eigen::Vector3d along, cosine, sine;
+
+  /// `v` about the unit vector l.
+  static TurningAxis of(const Eigen::Vector3d& v, const Eigen::Vector3d& l);
+  Eigen::Vector3d at(const SinCos& sc) const { return along + sc.cos * cosine + sc.sin * sine; }
+};
+
+template <class Archive, Is<TurningAxis> T>
+void fields(Archive& archive, T& axis) {
+  archive(axis.along, axis.cosine, axis.sine);
+}
+
 /// Constant angular velocity.
 class UniformTurn {
  public:
+  UniformTurn() = default;  ///< to be read into
   UniformTurn(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& omega);
-  TopState at(double tau) const;
+  TopState at(double tau) const { return {rotation(tau), omega_, Eigen::Vector3d::Zero()}; }
   Eigen::Matrix3d rotation(double tau) const;
   TopBounds bounds() const;
   Eigen::Vector3d turned_world(double tau) const;
   Eigen::Vector3d turned_body(double tau) const;
 
+  template <class Archive, class Self>
+  static void fields(Archive& archive, Self& self) {
+    archive(self.x_, self.y_, self.omega_, self.rate_);
+  }
+
  private:
-  TopAxes start_;  ///< body x, y, z at tau = 0
+  TurningAxis x_, y_;  ///< body axes
   Eigen::Vector3d omega_;
-  Eigen::Vector3d direction_;  ///< of omega; any unit vector without rotation
-  double rate_;                ///< |omega|
+  double rate_;  ///< |omega|
 };
 
 /// Two equal moments, about the body axis number `axis`.
 class SymmetricTop {
  public:
+  SymmetricTop() = default;  ///< to be read into
   SymmetricTop(int axis, const Eigen::Vector3d& inertia, const Eigen::Matrix3d& rotation, const Eigen::Vector3d& omega);
   TopState at(double tau) const;
   Eigen::Matrix3d rotation(double tau) const;
   TopBounds bounds() const;
   Eigen::Vector3d turned_world(double tau) const;
   Eigen::Vector3d turned_body(double tau) const;
+
+  template <class Archive, class Self>
+  static void fields(Archive& archive, Self& self) {
+    archive(self.axes_, self.start_, self.l_, self.precession_, self.own_, self.spin_, self.across_);
+    expect(archive, are_axes(self.axes_), "the axes of a top");
+  }
 
  private:
   TopAxes axes_at(double tau) const;
@@ -93,6 +119,12 @@ class FreeTop {
   /// Integral of the components of omega along the body's axes over [0, tau], as accurate: what rotational diffusion in
   /// the body frame is made of.
   Eigen::Vector3d turned_body(double tau) const;
+
+  /// The constants as they are: computed again from a state they would have other last bits.
+  template <class Archive, class Self>
+  static void fields(Archive& archive, Self& self) {
+    archive(self.top_, self.bounds_);
+  }
 
  private:
   std::variant<UniformTurn, SymmetricTop, AsymmetricTop> top_;

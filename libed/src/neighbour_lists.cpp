@@ -1,6 +1,7 @@
 #include "neighbour_lists.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace ed::internal {
 
@@ -43,6 +44,37 @@ std::size_t NeighbourLists::reserve() {
   pairs_.reserve(2 * pairs_.size());
   free_.reserve(pairs_.capacity());
   return 2 * longest;
+}
+
+bool NeighbourLists::lists(std::int32_t body, std::int32_t index) const {
+  if (body < 0 || body >= number() || index < 0 || static_cast<std::size_t>(index) >= pairs_.size()) return false;
+  const Pair& p = pair(index);
+  if (p.i != body && p.j != body) return false;
+  const std::int32_t slot = p.i == body ? p.slot_i : p.slot_j;
+  const std::vector<std::int32_t>& list = of(body);
+  return slot >= 0 && static_cast<std::size_t>(slot) < list.size() && list[static_cast<std::size_t>(slot)] == index;
+}
+
+/// Every pair is in the lists of its two bodies and nowhere else, or free.
+bool NeighbourLists::linked() const {
+  std::vector<bool> free(pairs_.size(), false);
+  for (const std::int32_t index : free_) {
+    if (index < 0 || static_cast<std::size_t>(index) >= free.size() || free[static_cast<std::size_t>(index)]) {
+      return false;
+    }
+    free[static_cast<std::size_t>(index)] = true;
+  }
+  for (std::size_t k = 0; k < pairs_.size(); ++k) {
+    const Pair& p = pairs_[k];
+    const auto index = static_cast<std::int32_t>(k);
+    if (free[k]) continue;
+    const bool sound = p.i != p.j && (p.owner == p.i || p.owner == p.j) && p.event >= PairEvent::clear &&
+                       p.event <= PairEvent::contact && p.normal.allFinite() && !std::isnan(p.time);
+    if (!sound || !lists(p.i, index) || !lists(p.j, index)) return false;
+  }
+  std::size_t places = 0;
+  for (const std::vector<std::int32_t>& list : of_body_) places += list.size();
+  return places == 2 * (pairs_.size() - free_.size());
 }
 
 void NeighbourLists::unlink(std::int32_t body, std::int32_t slot) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <ed/internal/archive.h>
+
 #include <Eigen/Core>
 
 #include <cstddef>
@@ -31,6 +33,11 @@ struct Pair {
   std::int32_t partner(std::int32_t body) const { return i == body ? j : i; }
 };
 
+template <class Archive, Is<Pair> T>
+void fields(Archive& archive, T& pair) {
+  archive(pair.time, pair.normal, pair.i, pair.j, pair.slot_i, pair.slot_j, pair.owner, pair.event);
+}
+
 /// Neighbour lists: a pool of pairs, and for each body the pairs that it is in.
 class NeighbourLists {
  public:
@@ -49,7 +56,19 @@ class NeighbourLists {
   /// on. Returns that length.
   std::size_t reserve();
 
+  /// Indices, slots and the order of everything as they are; read into lists of the same number of bodies.
+  template <class Archive, class Self>
+  static void fields(Archive& archive, Self& self) {
+    const std::size_t number = self.of_body_.size();
+    archive(self.pairs_, self.free_, self.of_body_);
+    expect(archive, self.of_body_.size() == number && self.linked(), "the neighbour lists do not fit together");
+  }
+
+  /// Whether the pair is one of this body's.
+  bool lists(std::int32_t body, std::int32_t index) const;
+
  private:
+  bool linked() const;
   void unlink(std::int32_t body, std::int32_t slot);
 
   std::vector<Pair> pairs_;

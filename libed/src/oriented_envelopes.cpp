@@ -59,15 +59,36 @@ double thickest_oriented_envelope(const Spheroid& shape, double bounding_radius,
   return low;
 }
 
+double thickest_oriented_envelope(const UniaxialBodies& bodies, double box) {
+  double thickest = box;
+  for (const UniaxialKind& kind : bodies.kinds()) {
+    thickest = std::min(thickest, thickest_oriented_envelope(kind.shape, bodies.bounding_radius(), box));
+  }
+  return thickest;
+}
+
+OrientedEnvelopes::OrientedEnvelopes(const UniaxialBodies& bodies, double thickness)
+    : thickness_(thickness), boxes_(static_cast<std::size_t>(bodies.number())) {
+  for (const UniaxialKind& kind : bodies.kinds()) add_kind(kind.shape, kind.bounding_radius, kind.inertia.spins);
+  for (int i = 0; i < bodies.number(); ++i) kind_.push_back(bodies.kind_index(i));
+}
+
 OrientedEnvelopes::OrientedEnvelopes(int number, const Spheroid& shape, double bounding_radius, double thickness,
                                      bool spins)
-    : shape_(shape),
-      bounding_radius_(bounding_radius),
-      thickness_(thickness),
-      spins_(spins),
-      reach_(2 * std::min(half_extents(shape, thickness).norm(), bounding_radius + slack(shape, thickness).norm())),
-      half_extents_(half_extents(shape, thickness)),
-      boxes_(static_cast<std::size_t>(number)) {}
+    : thickness_(thickness), kind_(static_cast<std::size_t>(number), 0), boxes_(static_cast<std::size_t>(number)) {
+  add_kind(shape, bounding_radius, spins);
+}
+
+void OrientedEnvelopes::add_kind(const Spheroid& shape, double bounding_radius, bool spins) {
+  kinds_.push_back({shape, bounding_radius, spins, half_extents(shape, thickness_)});
+  reach_ = std::max(
+      reach_, 2 * std::min(half_extents(shape, thickness_).norm(), bounding_radius + slack(shape, thickness_).norm()));
+}
+
+void OrientedEnvelopes::place(int i, const UniaxialBodies& bodies, double now) {
+  const AxisMotion& motion = bodies.axis_motion(i);
+  place(i, motion.position_at(now), motion.axis_at(now), bodies.frame(i).x_axis);
+}
 
 void OrientedEnvelopes::place(int i, const Vector3d& position, const Vector3d& axis, const Vector3d& x_axis) {
   geom::OrientedBox& box = boxes_[static_cast<std::size_t>(i)];
@@ -75,7 +96,7 @@ void OrientedEnvelopes::place(int i, const Vector3d& position, const Vector3d& a
   box.axes.col(0) = x_axis;
   box.axes.col(1) = axis.cross(x_axis);
   box.axes.col(2) = axis;
-  box.half_extents = half_extents_;
+  box.half_extents = kind_of(i).half_extents;
 }
 
 void OrientedEnvelopes::scale(double factor) {
@@ -83,15 +104,16 @@ void OrientedEnvelopes::scale(double factor) {
 }
 
 template <bool kSpin>
-double OrientedEnvelopes::exit(const geom::OrientedBox& box, const AxisMotion& motion, const Vector3d& position,
-                               double now) const {
+double OrientedEnvelopes::exit(int i, const AxisMotion& motion, const Vector3d& position, double now) const {
+  const geom::OrientedBox& box = boxes_[static_cast<std::size_t>(i)];
+  const Kind& kind = kind_of(i);
   FinderCounters count;
-  double earliest = now + kHorizon * crossing_time(motion);
+  double earliest = now + kHorizon * crossing_time(kind, motion);
   for (int k = 0; k < 3; ++k) {
     for (const double side : {1.0, -1.0}) {
       Vector3d n = side * box.axes.col(k);
       const double offset = n.dot(box.centre) + box.half_extents[k];
-      const PlaneGauge<kSpin> gauge(shape_, motion, position, now, offset, bounding_radius_);
+      const PlaneGauge<kSpin> gauge(kind.shape, motion, position, now, offset, kind.bounding_radius);
       const Finding finding = certified_contact(gauge, now, earliest, kLooks, n, count);
       if (finding.outcome == Outcome::overlapping) return now;
       earliest = std::min(earliest, finding.time);
@@ -100,21 +122,26 @@ double OrientedEnvelopes::exit(const geom::OrientedBox& box, const AxisMotion& m
   return earliest;
 }
 
-double OrientedEnvelopes::exit_time(int i, const AxisMotion& motion, const Vector3d& position, const Vector3d& /*axis*/,
-                                    double now, double box) const {
-  const geom::OrientedBox& envelope = boxes_[static_cast<std::size_t>(i)];
-  const Vector3d here = envelope.centre + nearest_image(position - envelope.centre, box);
-  return spins_ ? exit<true>(envelope, motion, here, now) : exit<false>(envelope, motion, here, now);
+double OrientedEnvelopes::exit_time(int i, const UniaxialBodies& bodies, double now, double box) const {
+  const AxisMotion& motion = bodies.axis_motion(i);
+  return exit_time(i, motion, motion.position_at(now), now, box);
 }
 
-double OrientedEnvelopes::crossing_time(const AxisMotion& motion) const {
-  const double surface_speed = std::abs(std::sqrt(shape_.a2) - std::sqrt(shape_.b2)) * motion.rate;
+double OrientedEnvelopes::exit_time(int i, const AxisMotion& motion, const Vector3d& position, double now,
+                                    double box) const {
+  const geom::OrientedBox& envelope = boxes_[static_cast<std::size_t>(i)];
+  const Vector3d here = envelope.centre + nearest_image(position - envelope.centre, box);
+  return kind_of(i).spins ? exit<true>(i, motion, here, now) : exit<false>(i, motion, here, now);
+}
+
+double OrientedEnvelopes::crossing_time(const Kind& kind, const AxisMotion& motion) const {
+  const double surface_speed = std::abs(std::sqrt(kind.shape.a2) - std::sqrt(kind.shape.b2)) * motion.rate;
   constexpr double kLeastRate = 1e-9;  // thicknesses a time unit: below it a body is as good as at rest
   return thickness_ / (motion.velocity.norm() + surface_speed + kLeastRate * thickness_);
 }
 
-double OrientedEnvelopes::worthwhile(const AxisMotion& motion) const {
-  return kWorthwhile * crossing_time(motion);
+double OrientedEnvelopes::worthwhile(int i, const AxisMotion& motion) const {
+  return kWorthwhile * crossing_time(kind_of(i), motion);
 }
 
 bool OrientedEnvelopes::may_meet(int i, int k, const Vector3d& r, Vector3d& normal) const {
@@ -122,7 +149,7 @@ bool OrientedEnvelopes::may_meet(int i, int k, const Vector3d& r, Vector3d& norm
   geom::OrientedBox b = boxes_[static_cast<std::size_t>(k)];
   b.centre = a.centre + r;
   if (!geom::boxes_meet(a, b)) return false;
-  normal = geom::internal::cold_normal(shape_, shape_, r, a.axes.col(2), b.axes.col(2));
+  normal = geom::internal::cold_normal(kind_of(i).shape, kind_of(k).shape, r, a.axes.col(2), b.axes.col(2));
   return true;
 }
 

@@ -19,6 +19,7 @@ class PlaneGauge {
  public:
   struct State {
     Eigen::Vector3d r, u, du;
+    Rounding rounding;
   };
   struct Gap {
     double g;
@@ -38,12 +39,13 @@ class PlaneGauge {
   /// The half-space is {x : n.x <= offset}, with positions in the image of `r_now`, the body's centre at `now`.
   PlaneGauge(const Spheroid& shape, const AxisMotion& motion, const Eigen::Vector3d& r_now, double now, double offset,
              double reach)
-      : shape_(shape), motion_(motion), r_now_(r_now), now_(now), offset_(offset), reach_(reach) {}
+      : shape_(shape), motion_(motion), r_now_(r_now), now_(now), offset_(offset), reach_(reach), scales_(scales()) {}
 
   State at(double t) const {
     State s;
     s.r = r_now_ + (t - now_) * motion_.velocity;
     turn<kSpin>(motion_, t, s.u, s.du);
+    s.rounding = scales_.rounding(t);
     return s;
   }
 
@@ -80,17 +82,30 @@ class PlaneGauge {
   bool separating_normal(const State& /*s*/, Eigen::Vector3d& /*n*/) const { return false; }
   Window window(double t_begin, double t_end) const { return {t_begin, t_end}; }
   double curvature_limit() const { return shape_.turning_limit * (motion_.rate * motion_.rate); }
+  double rate_slope() const { return 0; }  // n never changes
   double size() const { return reach_; }
   double certified_depth() const { return std::numeric_limits<double>::infinity(); }
   double speed() const { return motion_.velocity.norm() + reach_ * motion_.rate; }
 
  private:
+  /// As of a pair; the plane is as far away as the body, and the offset twice rounded.
+  PairScalesOf<double> scales() const {
+    return {.size = reach_,
+            .places = 2 * (sum_of_magnitudes(r_now_) + std::abs(offset_)),
+            .speed = sum_of_magnitudes(motion_.velocity),
+            .turning = reach_ * motion_.axis_rate(),
+            .bending = shape_.turning_limit * motion_.axis_rate(),
+            .limit = curvature_limit(),
+            .origin = larger(std::abs(now_), std::abs(motion_.time))};
+  }
+
   const Spheroid& shape_;
   const AxisMotion& motion_;
   Eigen::Vector3d r_now_;
   double now_;
   double offset_;
   double reach_;
+  PairScalesOf<double> scales_;
 };
 
 }  // namespace ed::internal

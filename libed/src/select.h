@@ -13,4 +13,15 @@ inline double larger(double a, double b) {
   return a < b ? b : a;
 }
 
+// What formulas ask of a condition that are written once for one pair and for one pair in each lane of a vector.
+inline bool any(bool condition) {
+  return condition;
+}
+inline bool all(bool condition) {
+  return condition;
+}
+inline double select(bool condition, double yes, double no) {
+  return condition ? yes : no;
+}
+
 }  // namespace ed::internal

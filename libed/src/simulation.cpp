@@ -1,6 +1,7 @@
 #include "cell_envelopes.h"
 #include "event_loop.h"
 
+#include <ed/internal/archive_types.h>
 #include <ed/simulation.h>
 
 #include <algorithm>
@@ -8,15 +9,24 @@
 #include <limits>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 namespace ed {
 
-class Simulation::Impl : public internal::EventLoop {
+class Simulation::Impl {
  public:
-  using EventLoop::EventLoop;
+  explicit Impl(std::unique_ptr<internal::AnyEventLoop> loop) : loop_(std::move(loop)) {}
+  internal::AnyEventLoop* operator->() { return loop_.get(); }
+  const internal::AnyEventLoop* operator->() const { return loop_.get(); }
+
+ private:
+  std::unique_ptr<internal::AnyEventLoop> loop_;
 };
 
 namespace {
+
+/// Raised by every change of what save() writes.
+constexpr std::uint32_t kStateFormat = 2;
 
 /// Work of a stretch of the run in units of one evaluation of the gap function, from counters alone so that it is the
 /// same on every machine. The weights are relative times, measured with a profiler at X0 = 3, phi = 0.40.
@@ -35,6 +45,7 @@ void check_start(const System& system) {
   if (!(system.box > 0) || !std::isfinite(system.box)) {
     throw std::invalid_argument("box is not positive; accepted: a positive number");
   }
+  check_species(system);
   const Audit state = audit(system);
   if (!state.finite) throw std::invalid_argument("a position, orientation or velocity is not finite");
   if (state.overlaps == 0 && state.unanswered == 0) return;
@@ -67,11 +78,28 @@ const char* to_string(FailureReason reason) {
   return "unknown";
 }
 
-Neighbours fastest_neighbours(const geom::Ellipsoid& shape, int number, double packing_fraction, Finder finder) {
-  const int cells =
-      internal::CellEnvelopes::cells_along(box_for(shape, number, packing_fraction), shape.bounding_radius());
-  if (cells < internal::CellEnvelopes::kLeastCells) return Neighbours::dilated;
-  if (shape.bounding_radius() == shape.inscribed_radius()) return Neighbours::dilated;
+std::string describe(const Stall& stall) {
+  std::ostringstream text;
+  text << "stalled at time " << stall.time << ": " << stall.events << " events in " << stall.span << " time units, "
+       << static_cast<int>(100 * stall.share) << " % of the latest ";
+  switch (stall.kind) {
+    case EventKind::exit:
+      text << "body " << stall.i << " leaving its envelope";
+      break;
+    case EventKind::look:
+      text << "looks at bodies " << stall.i << " and " << stall.j;
+      break;
+    case EventKind::contact:
+      text << "contacts of bodies " << stall.i << " and " << stall.j;
+      break;
+  }
+  return text.str();
+}
+
+Neighbours fastest_neighbours(const BodyShape& shape, int number, double packing_fraction, Finder finder) {
+  const double R = bounding_radius(shape);
+  const int cells = internal::CellLayout::cells_along(box_for(shape, number, packing_fraction), R);
+  if (cells < internal::CellLayout::kLeastCells || R == inscribed_radius(shape)) return Neighbours::dilated;
   const double in_cells = 27.0 * number / (static_cast<double>(cells) * cells * cells);
   const double few = finder == Finder::certified ? kFewInCells : kFewInCellsBracketing;
   return in_cells < few ? Neighbours::cells : Neighbours::dilated;
@@ -79,7 +107,40 @@ Neighbours fastest_neighbours(const geom::Ellipsoid& shape, int number, double p
 
 Simulation::Simulation(const System& system, const SimulationOptions& options) {
   check_start(system);
-  impl_ = std::make_unique<Impl>(system, options);
+  impl_ = std::make_unique<Impl>(internal::make_event_loop(system, options));
+}
+
+Simulation::Simulation(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+
+std::string Simulation::save() const {
+  const System now = system();
+  internal::Writer writer;
+  writer(kStateFormat, internal::bytes_of(now.species), now.box, std::uint64_t{now.bodies.size()});
+  for (const Body& body : now.bodies) writer(body.species);
+  (*impl_)->save(writer);
+  return writer.take();
+}
+
+Simulation Simulation::restore(std::string_view state, const std::vector<Species>& species,
+                               const SimulationOptions& options) {
+  internal::Reader reader(state);
+  internal::check_format(reader, kStateFormat);
+  System system;
+  system.species = species;
+  if (reader.value<std::string>() != internal::bytes_of(species)) {
+    throw std::invalid_argument("state: is one of other species");
+  }
+  reader(system.box);
+  internal::expect(reader, system.box > 0 && std::isfinite(system.box), "the box");
+  const auto number = reader.value<std::uint64_t>();
+  internal::expect(reader, number >= 2 && number <= reader.left() / sizeof(int), "the number of bodies");
+  system.bodies.resize(number);
+  for (Body& body : system.bodies) reader(body.species);
+  check_species(system);
+  internal::expect(reader, packing_fraction(system) < 1, "more bodies than the box has room for");
+  auto loop = internal::load_event_loop(system, options, reader);
+  reader.finish();
+  return Simulation(std::make_unique<Impl>(std::move(loop)));
 }
 
 Simulation::~Simulation() = default;
@@ -87,91 +148,97 @@ Simulation::Simulation(Simulation&&) noexcept = default;
 Simulation& Simulation::operator=(Simulation&&) noexcept = default;
 
 double Simulation::time() const {
-  return impl_->time();
+  return (*impl_)->time();
 }
 double Simulation::box() const {
-  return impl_->box();
+  return (*impl_)->box();
 }
 double Simulation::envelope() const {
-  return impl_->envelope();
+  return (*impl_)->envelope();
 }
 double Simulation::virial() const {
-  return impl_->virial();
+  return (*impl_)->virial();
+}
+Eigen::Matrix3d Simulation::virial_tensor() const {
+  return (*impl_)->virial_tensor();
 }
 KineticState Simulation::kinetic() const {
-  return impl_->kinetic();
+  return kinetic_state(system());
 }
 System Simulation::system() const {
-  return impl_->system();
+  return (*impl_)->system();
 }
 void Simulation::sample(Snapshot& snapshot) const {
-  impl_->sample(snapshot);
+  (*impl_)->sample(snapshot);
 }
 void Simulation::record_collisions(std::size_t number) {
-  impl_->record_collisions(number);
+  (*impl_)->record_collisions(number);
 }
 const std::vector<Collision>& Simulation::collisions() const {
-  return impl_->collisions();
+  return (*impl_)->collisions();
 }
 const std::vector<FailedPair>& Simulation::failures() const {
-  return impl_->failures();
+  return (*impl_)->failures();
+}
+const std::optional<Stall>& Simulation::stall() const {
+  return (*impl_)->stall();
 }
 
 Counters Simulation::counters() const {
-  return impl_->counters();
+  return (*impl_)->counters();
 }
 
 bool Simulation::run_until(double time, std::uint64_t max_collisions) {
   if (std::isnan(time)) throw std::invalid_argument("run_until: time is not a number");
-  return impl_->run_until(time, max_collisions);
+  return (*impl_)->run_until(time, max_collisions);
 }
 
 void Simulation::run_collisions(std::uint64_t number) {
-  impl_->run_until(std::numeric_limits<double>::infinity(), number);
+  (*impl_)->run_until(std::numeric_limits<double>::infinity(), number);
 }
 
 double Simulation::shrink_box(double target_box, double least_gain) {
-  if (impl_->neighbours() != Neighbours::dilated) {
+  if ((*impl_)->neighbours() != Neighbours::dilated) {
     throw std::logic_error("shrink_box: needs the neighbour lists of dilated bodies");
   }
-  return impl_->shrink_box(target_box, least_gain);
+  return (*impl_)->shrink_box(target_box, least_gain);
 }
 
 void Simulation::tune_envelopes(const std::function<bool()>& keep_going) {
-  if (impl_->neighbours() == Neighbours::cells) return;
+  if ((*impl_)->neighbours() == Neighbours::cells) return;
   constexpr std::uint64_t kSlice = 100;
   bool stopped = false;
   const auto run = [&](std::uint64_t number) {
     for (std::uint64_t done = 0; done < number && !stopped; done += kSlice) {
       run_collisions(std::min(kSlice, number - done));
-      stopped = keep_going && !keep_going();
+      stopped = stall() || (keep_going && !keep_going());
     }
   };
-  const auto stretch = 2 * static_cast<std::uint64_t>(impl_->number());
+  const auto stretch = 2 * static_cast<std::uint64_t>((*impl_)->number());
   const auto cost = [&](double thickness) {
-    impl_->set_envelope(thickness);
+    (*impl_)->set_envelope(thickness);
     run(stretch / 2);
-    const Counters before = impl_->counters();
+    const Counters before = (*impl_)->counters();
     run(stretch);
-    return stopped ? std::numeric_limits<double>::infinity() : work(before, impl_->counters());
+    return stopped ? std::numeric_limits<double>::infinity() : work(before, (*impl_)->counters());
   };
   // Walk in steps of 25 % from the current thickness, in the direction that gets cheaper.
   constexpr double kStep = 1.25;
-  double best = impl_->envelope();
+  double best = (*impl_)->envelope();
   double best_cost = cost(best);
   for (const double factor : {kStep, 1 / kStep}) {
     bool improved = false;
     for (int step = 0; step < 6 && !stopped; ++step) {
       const double trial = best * factor;
       const double trial_cost = cost(trial);
-      if (!(trial_cost < best_cost) || impl_->envelope() != trial) break;
+      if (!(trial_cost < best_cost) || (*impl_)->envelope() != trial) break;
       best = trial;
       best_cost = trial_cost;
       improved = true;
     }
     if (improved) break;
   }
-  impl_->set_envelope(best);
+  (*impl_)->set_envelope(best);
 }
 
 }  // namespace ed

@@ -45,13 +45,6 @@ SupportGauge::Evaluation SupportGauge::evaluation(const State& s, const DualSamp
   return e;
 }
 
-double SupportGauge::surface_speed() const {
-  const auto lever = [](const NormBodyShape& s) {
-    return std::sqrt(std::max(0.0, s.bounding_radius * s.bounding_radius - s.inscribed_radius * s.inscribed_radius));
-  };
-  return lever(A_) * a_.top.max_omega() + lever(B_) * b_.top.max_omega();
-}
-
 double SupportGauge::Certificate::curvature(double tau) const {
   const Lanes omega{gauge.a_.top.max_omega(), gauge.b_.top.max_omega()};
   const Lanes alpha{gauge.a_.top.max_alpha(), gauge.b_.top.max_alpha()};
@@ -62,7 +55,10 @@ double SupportGauge::Certificate::curvature(double tau) const {
   const Lanes change = d1 + tau * (d2 + (tau / 6) * d_max * M3);
   const Lanes bodies = reach * M3 * (tau / 3) + change * change / height;
   const double centres = turning * turning_across * (turning * (distance + speed * tau) / 3 + speed) * tau;
-  return gauge.curvature_share_ * (bend + centres + sum(bodies));
+  const Lanes radii{gauge.A_.bounding_radius, gauge.B_.bounding_radius};
+  const double hidden = direction * (sum(radii * (both_turn * both_turn + alpha) + bodies) +
+                                     turning * (turning * distance + 2 * speed) + centres);
+  return gauge.curvature_share_ * (bend + centres + sum(bodies) + hidden);
 }
 
 SupportGauge::Certificate SupportGauge::certificate(const State& s, const DualSample& at,
@@ -75,33 +71,41 @@ SupportGauge::Certificate SupportGauge::certificate(const State& s, const DualSa
   const LaneVector mu1 = slip.cross(n);
   const LaneVector mu2 = slip.cross(W.cross(n)) - s.omega.cross(mu1) - s.alpha.cross(n);
   const NormBodies& bodies = s.pair.bodies();
-  Certificate c{.gauge = *this,
-                .rate = turned.dot(r) + at.n.dot(v_) - sum(majorant.gradient.dot(mu1)),
-                .turning = Omega.norm(),
-                .turning_across = turned.norm(),
-                .distance = r.norm(),
-                .speed = v_.norm(),
-                .bend = -Omega.cross(turned).dot(r) - 2 * turned.dot(v_) + sum(majorant.gradient.dot(mu2)),
-                .slip = norm(slip),
-                .reach = norm(majorant.gradient),
-                .height = majorant.height,
-                .d1 = sqrt(weighted(majorant.D2, bodies.to_body(mu1))),
-                .d2 = 0.5 * sqrt(weighted(majorant.D2, bodies.to_body(mu2))),
-                .d_max = sqrt(larger_of(majorant.D2.x, larger_of(majorant.D2.y, majorant.D2.z)))};
+  const double turning = Omega.norm();
+  const double distance = r.norm();
+  const double speed = v_.norm();
+  Certificate c{
+      .gauge = *this,
+      .rate = turned.dot(r) + at.n.dot(v_) - sum(majorant.gradient.dot(mu1)),
+      .turning = turning,
+      .turning_across = turned.norm(),
+      .distance = distance,
+      .speed = speed,
+      .bend = -Omega.cross(turned).dot(r) - 2 * turned.dot(v_) + sum(majorant.gradient.dot(mu2)),
+      .slip = norm(slip),
+      .reach = norm(majorant.gradient),
+      .height = majorant.height,
+      .d1 = sqrt(weighted(majorant.D2, bodies.to_body(mu1))),
+      .d2 = 0.5 * sqrt(weighted(majorant.D2, bodies.to_body(mu2))),
+      .d_max = sqrt(larger_of(majorant.D2.x, larger_of(majorant.D2.y, majorant.D2.z))),
+      .direction = s.rounding.direction,
+      .hidden_rate = s.rounding.direction * (turning * distance + speed + turning * size() + scales_.turning)};
   return c;
 }
 
-/// The longest step of one choice, or less than `best` if it is certainly no longer than that.
+/// The longest step of one choice for a gap that is certainly g, or less than `best` if it is certainly no longer than
+/// that.
 double SupportGauge::longest_step(const State& s, const DualSample& at, const NormBodies::Majorant& majorant, double g,
                                   const Vector3d& Omega, double horizon, double best) const {
   const Certificate c = certificate(s, at, majorant, Omega);
   const double gap = g - sum(majorant.offset);
   if (!(gap >= 0)) return 0;
-  double tau = smaller(horizon, first_root(gap, c.rate, c.curvature(horizon)));
+  const double rate = c.rate - c.hidden_rate;
+  double tau = smaller(horizon, first_root(gap, rate, c.curvature(horizon)));
   for (int attempt = 0; attempt < 4 && tau < horizon; ++attempt) {
     const double reach = smaller(horizon, attempt < 2 ? larger(3 * tau, 1.2 * best) : 2 * tau);
     if (!(reach > tau)) break;
-    tau = larger(tau, smaller(reach, first_root(gap, c.rate, c.curvature(reach))));
+    tau = larger(tau, smaller(reach, first_root(gap, rate, c.curvature(reach))));
   }
   return tau;
 }
@@ -124,35 +128,47 @@ double SupportGauge::certified_step(const State& s, const Evaluation& e, const V
   const NormBodies& bodies = s.pair.bodies();
   const Vector3d fixed = Vector3d::Zero();
   const Vector3d best_turning = turning_of_best_normal(s, e.sample);
+  const double least_g = larger(0.0, g - s.rounding.gap);
   double tau = 0;
   const auto try_all = [&](const NormBodies::Majorant& majorant) {
     for (const Vector3d* Omega : {&fixed, &best_turning}) {
       if (tau >= horizon) return;
-      tau = larger(tau, longest_step(s, e.sample, majorant, g, *Omega, horizon, tau));
+      tau = larger(tau, longest_step(s, e.sample, majorant, least_g, *Omega, horizon, tau));
     }
   };
-  const NormBodies::Majorant raised = bodies.majorant(e.sample.support, kAllowance * g);
+  const NormBodies::Majorant raised = bodies.majorant(e.sample.support, kAllowance * least_g);
   try_all(raised);
   if (raised.raised && tau < horizon) try_all(bodies.majorant(e.sample.support, 0));
   return tau;
 }
 
-bool SupportGauge::tilted_end_clears(const State& s, const Vector3d& n, double tau) const {
+/// Whether the tilted end leaves more than `least`.
+bool SupportGauge::tilted_end_clears(const State& s, const Vector3d& n, double least, double tau) const {
   const LaneVector n2 = LaneVector::of(n, -n);
   const LaneVector tilted = n2 + both(tau) * n2.cross(s.omega);
   const double end = n.dot(s.pair.between() + tau * v_) - sum(s.pair.bodies().heights(tilted));
   const auto bend = [](const NormBodyShape& shape, const FreeTop& top) {
     return shape.bounding_radius * (top.max_omega() * top.max_omega() + top.max_alpha());
   };
-  return end - 0.5 * tau * tau * (bend(A_, a_.top) + bend(B_, b_.top)) > 0;
+  return end - 0.5 * tau * tau * (bend(A_, a_.top) + bend(B_, b_.top)) > least;
 }
 
-double SupportGauge::least_step(const State& s, const Vector3d& n, double tau) const {
+double SupportGauge::least_step(const State& s, const Vector3d& n, bool touching, double tau) const {
   const double unit = size() / speed();
   if (tau > kShortStep * unit) return tau;
-  double longest = kTouching * unit;
-  for (double trial = kShortest * unit; trial < 0.1 * unit && tilted_end_clears(s, n, trial); trial *= 8)
-    longest = trial;
+  // Of bodies that touch g is not known: it may fall by what rounding hides.
+  const double least = touching ? 0 : s.rounding.gap;
+  const double shortest = touching ? kTouching * unit : tau;
+  double longest = shortest;
+  double trial = kShortest * unit;
+  while (trial < 0.1 * unit) {
+    if (tilted_end_clears(s, n, least, trial)) {
+      longest = larger(longest, trial);
+    } else if (longest > shortest) {
+      break;
+    }
+    trial *= 8;
+  }
   return longest;
 }
 
@@ -164,7 +180,7 @@ bool SupportGauge::falls_since(const State& s, const Evaluation& e, const Vector
   const NormBodies::Majorant majorant = s.pair.bodies().majorant(e.sample.support, 0);
   for (const Vector3d& Omega : {Vector3d(Vector3d::Zero()), turning_of_best_normal(s, e.sample)}) {
     const Certificate c = certificate(s, e.sample, majorant, Omega);
-    if (-c.rate > 0.5 * span * c.curvature(span)) return true;
+    if (-c.rate - c.hidden_rate > 0.5 * span * c.curvature(span)) return true;
   }
   return false;
 }

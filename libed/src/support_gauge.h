@@ -38,6 +38,7 @@
 
 #include "curvature_steps.h"
 #include "rigid_motion.h"
+#include "rounding.h"
 #include "select.h"
 #include "sphere_window.h"
 
@@ -45,6 +46,7 @@
 
 #include <geom/internal/dual_newton.h>
 #include <geom/internal/norm_body_pair.h>
+#include <geom/tolerances.h>
 
 #include <Eigen/Core>
 
@@ -58,6 +60,7 @@ struct NormBodyShape {
   geom::internal::NormShape norm;
   double bounding_radius;
   double inscribed_radius;
+  double lever;  ///< turning_lever (body_shapes.h)
 };
 
 class SupportGauge {
@@ -71,6 +74,7 @@ class SupportGauge {
   struct State {
     NormBodyPair pair;
     LaneVector omega, alpha;
+    GeneralRounding rounding;
   };
   struct Gap {
     double g;
@@ -84,14 +88,21 @@ class SupportGauge {
   /// `r_now`: the vector from A's centre to B's at `now`, in the image that is meant.
   SupportGauge(const NormBodyShape& A, const RigidMotion& a, const NormBodyShape& B, const RigidMotion& b,
                const Eigen::Vector3d& r_now, double now)
-      : A_(A), B_(B), a_(a), b_(b), r_now_(r_now), v_(b.velocity - a.velocity), now_(now) {}
+      : A_(A),
+        B_(B),
+        a_(a),
+        b_(b),
+        r_now_(r_now),
+        v_(b.velocity - a.velocity),
+        now_(now),
+        scales_(GeneralScales::of(A.bounding_radius, a, B.bounding_radius, b, now)) {}
 
   State at(double t) const {
     const TopState top_a = a_.top.at(t - a_.time);
     const TopState top_b = b_.top.at(t - b_.time);
     return {NormBodyPair(NormBodies(A_.norm, top_a.R, B_.norm, top_b.R), r_now_ + (t - now_) * v_, size(),
                          A_.inscribed_radius + B_.inscribed_radius),
-            LaneVector::of(top_a.omega, top_b.omega), LaneVector::of(top_a.alpha, top_b.alpha)};
+            LaneVector::of(top_a.omega, top_b.omega), LaneVector::of(top_a.alpha, top_b.alpha), scales_.rounding(t)};
   }
 
   Gap gap(const State& s, const Eigen::Vector3d& n) const {
@@ -124,17 +135,28 @@ class SupportGauge {
   }
 
   template <class GapOrEvaluation>
-  bool clears(const State& /*s*/, const GapOrEvaluation& e, const Eigen::Vector3d& n, double horizon) const {
-    return e.g > kTouching * size() && e.g + horizon * (n.dot(v_) - surface_speed()) > 0;
+  bool clears(const State& s, const GapOrEvaluation& e, const Eigen::Vector3d& n, double horizon) const {
+    const double least_g = e.g - s.rounding.gap;
+    return least_g > 0 && least_g + horizon * (n.dot(v_) - surface_speed() - s.rounding.rate) > 0;
+  }
+
+  static ContactPoints contact_points(const State& s, const Eigen::Vector3d& n) {
+    const LaneVector points = contact_points(s.pair.sample(n), s.pair.between());
+    return {points.a(), points.b()};
   }
 
   /// Newton's method of n, with retractions on flat faces; where that finds no way up, from the closest points.
   template <class Done>
   geom::internal::Ascent ascend(const State& s, const Done& done, int& budget, Eigen::Vector3d& n, Evaluation& e) const;
 
+  /// On a face the quadratic model holds for no step at all: nothing may be left to gain.
+  bool settled(const Evaluation& e) const {
+    return e.step2 <= geom::kNormalTolerance2 && e.decrement <= kTouching * size();
+  }
+
   double certified_step(const State& s, const Evaluation& e, const Eigen::Vector3d& n, double g, double gp,
                         double horizon) const;
-  double least_step(const State& s, const Eigen::Vector3d& n, double tau) const;
+  double least_step(const State& s, const Eigen::Vector3d& n, bool touching, double tau) const;
   bool worth_refining(double /*gp*/, double spread) const { return spread <= kTangentAgreement * size() / speed(); }
   /// Backwards in time from a contact the same certificate holds: g >= -rate sigma - K sigma^2/2.
   bool falls_since(const State& s, const Evaluation& e, const Eigen::Vector3d& n, double rate, double span) const;
@@ -169,22 +191,24 @@ class SupportGauge {
     Lanes height;
     Lanes d1, d2;  ///< |D mu1|, |D mu2| / 2
     Lanes d_max;
+    double direction;    ///< as in GeneralRounding
+    double hidden_rate;  ///< what rounding may hide of g'
 
-    double curvature(double tau) const;
+    double curvature(double tau) const;  ///< with what rounding may hide
   };
 
   Evaluation evaluation(const State& s, const DualSample& sample) const;
   double point_rate(const State& s, const LaneVector& points, const Eigen::Vector3d& n) const {
     return geom::internal::sum(s.omega.cross(points).dot(LaneVector::of(n, -n)));
   }
-  /// A bound of the rate at which turning moves the surfaces along any n: |h(m) - h(n)| <= sqrt(R^2 - r^2) |m - n|.
-  double surface_speed() const;
+  /// A bound of the rate at which turning moves the surfaces along any n.
+  double surface_speed() const { return A_.lever * a_.top.max_omega() + B_.lever * b_.top.max_omega(); }
   Certificate certificate(const State& s, const DualSample& at, const NormBodies::Majorant& majorant,
                           const Eigen::Vector3d& Omega) const;
   double longest_step(const State& s, const DualSample& at, const NormBodies::Majorant& majorant, double g,
                       const Eigen::Vector3d& Omega, double horizon, double best) const;
   Eigen::Vector3d turning_of_best_normal(const State& s, const DualSample& at) const;
-  bool tilted_end_clears(const State& s, const Eigen::Vector3d& n, double tau) const;
+  bool tilted_end_clears(const State& s, const Eigen::Vector3d& n, double least, double tau) const;
 
   const NormBodyShape& A_;
   const NormBodyShape& B_;
@@ -193,25 +217,31 @@ class SupportGauge {
   Eigen::Vector3d r_now_;
   Eigen::Vector3d v_;
   double now_;
+  GeneralScales scales_;
 };
 
 template <class Done>
 geom::internal::Ascent SupportGauge::ascend(const State& s, const Done& done, int& budget, Eigen::Vector3d& n,
                                             Evaluation& e) const {
   using geom::internal::Ascent;
-  constexpr int kPrimalSteps = 40;
+  constexpr int kPatience = 20;  // where edges nearly touch, steps may go on helping next to nothing
+  constexpr int kPrimalSteps = 30;
   bool by_points = false;
-  while (!done(e)) {
+  for (int step = 0; !done(e); ++step) {
     if (budget-- <= 0) return Ascent::exhausted;
     DualSample next = e.sample;
-    if (!s.pair.advance(next, e.newton)) {
+    const bool moved = step != kPatience && s.pair.advance(next, e.newton);
+    if (!moved) {
       if (by_points) return Ascent::stalled;
       by_points = true;
       int iterations = 0;
       const NormBodyPair::Answer answer = s.pair.primal(e.sample, kPrimalSteps, iterations);
       budget -= iterations;
-      if (!(answer.at.g > e.g)) return Ascent::stalled;
-      next = answer.at;
+      if (answer.at.g > e.g) {
+        next = answer.at;
+      } else if (step != kPatience) {
+        return Ascent::stalled;
+      }
     }
     n = next.n;
     e = evaluation(s, next);

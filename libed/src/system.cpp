@@ -1,8 +1,11 @@
+#include "body_shapes.h"
 #include "cell_envelopes.h"
 #include "cell_grid.h"
-#include "dilated_envelopes.h"
+#include "envelope_limits.h"
+#include "motion_checks.h"
 
 #include <ed/system.h>
+#include <ed/tolerances.h>
 
 #include <geom/distance.h>
 
@@ -10,68 +13,154 @@
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
+#include <string>
+#include <variant>
+#include <vector>
 
 namespace ed {
 namespace {
 
 using Eigen::Vector3d;
 
-int axis_of(const geom::Ellipsoid& shape) {
-  const auto axis = shape.symmetry_axis();
-  if (!axis) {
-    std::ostringstream message;
-    message << "semi_axes [" << shape.semi_axes().transpose()
-            << "]: three different semi-axes are not available yet; accepted: two equal ones";
-    throw std::invalid_argument(message.str());
-  }
-  return *axis;
+/// Whether the shape is one of revolution about this body axis.
+bool is_of_revolution(const BodyShape& shape, int axis) {
+  const auto symmetric = symmetry_axis(shape);
+  if (!symmetric) return false;
+  const bool round = bounding_radius(shape) == inscribed_radius(shape);  // a sphere: about every axis
+  return *symmetric == axis || round;
+}
+
+/// Whether the moments are such as mass within the shape can have, and not next to nothing.
+void check_moments(const Species& species, double smallest, double largest) {
+  constexpr double kRounding = 1e-9;
+  const double R = bounding_radius(species.shape);
+  const double r = inscribed_radius(species.shape);
+  const double least = kLeastMoment * species.mass * r * r;
+  const double most = species.mass * R * R;
+  if (smallest >= least && largest <= most * (1 + kRounding)) return;
+  std::ostringstream message;
+  message << "inertia has a moment of " << (smallest < least ? smallest : largest) << "; accepted: " << least << " to "
+          << most << ", that of all mass at the bounding radius";
+  throw std::invalid_argument(message.str());
 }
 
 }  // namespace
 
+std::optional<int> symmetry_axis(const Species& species) {
+  for (const int axis : {2, 0, 1}) {
+    const bool equal_moments = species.inertia[(axis + 1) % 3] == species.inertia[(axis + 2) % 3];
+    if (equal_moments && is_of_revolution(species.shape, axis)) return axis;
+  }
+  return std::nullopt;
+}
+
+void check_species(const Species& species) {
+  internal::check_exponents(species.shape);
+  if (!(species.mass > 0) || !std::isfinite(species.mass)) {
+    throw std::invalid_argument("mass is not positive; accepted: a positive number");
+  }
+  const auto axis = symmetry_axis(species);
+  if (species.spins) {
+    internal::check_inertia(species.inertia);
+    check_moments(species, species.inertia.minCoeff(), species.inertia.maxCoeff());
+    return;
+  }
+  if (!axis) {
+    throw std::invalid_argument(
+        "spins is false, but the body has no axis that shape and inertia are both symmetric about; accepted: true");
+  }
+  const double perpendicular = species.inertia[(*axis + 1) % 3];
+  if (!(perpendicular > 0) || !std::isfinite(perpendicular)) {
+    throw std::invalid_argument("inertia is not positive; accepted: positive moments");
+  }
+  check_moments(species, perpendicular, perpendicular);
+}
+
+void check_species(const System& system) {
+  if (system.species.empty()) throw std::invalid_argument("species: none; accepted: one or more");
+  for (const Species& species : system.species) check_species(species);
+  for (const Body& body : system.bodies) {
+    if (body.species >= 0 && body.species < static_cast<int>(system.species.size())) continue;
+    throw std::invalid_argument("species of a body is " + std::to_string(body.species) + "; accepted: 0 to " +
+                                std::to_string(system.species.size() - 1));
+  }
+}
+
 Species paper_species(const geom::Ellipsoid& shape, double mass) {
-  axis_of(shape);
+  if (!shape.symmetry_axis()) {
+    std::ostringstream message;
+    message << "inertia \"paper\" is that of ellipsoids of revolution, the semi-axes are "
+            << shape.semi_axes().transpose() << "; accepted: two equal ones, or another inertia";
+    throw std::invalid_argument(message.str());
+  }
   const double r = shape.inscribed_radius();
   return {shape, mass, Vector3d::Constant(0.4 * mass * r * r), false};
 }
 
-Species uniform_species(const geom::Ellipsoid& shape, double mass) {
-  axis_of(shape);
-  return {shape, mass, shape.inertia(mass), true};
+Species uniform_species(const BodyShape& shape, double mass) {
+  if (const auto* ellipsoid = std::get_if<geom::Ellipsoid>(&shape))
+    return {shape, mass, ellipsoid->inertia(mass), true};
+  if (const auto* s = std::get_if<geom::Superellipsoid>(&shape)) return {shape, mass, s->inertia(mass), true};
+  throw std::invalid_argument("uniform_species: the moments of inertia of shape " + describe(shape) +
+                              " are not known; accepted: a Species with its own");
 }
 
 double packing_fraction(const System& system) {
-  return system.size() * system.species.shape.volume() / (system.box * system.box * system.box);
+  std::vector<int> number(system.species.size(), 0);
+  for (const Body& body : system.bodies) ++number[static_cast<std::size_t>(body.species)];
+  double all = 0;
+  for (std::size_t k = 0; k < number.size(); ++k) all += number[k] * volume(system.species[k].shape);
+  return all / (system.box * system.box * system.box);
 }
 
-double box_for(const geom::Ellipsoid& shape, int number, double packing_fraction) {
-  return std::cbrt(number * shape.volume() / packing_fraction);
+double box_for(const BodyShape& shape, int number, double packing_fraction) {
+  return std::cbrt(number * volume(shape) / packing_fraction);
 }
 
-int smallest_number(const geom::Ellipsoid& shape, double packing_fraction, Neighbours neighbours) {
-  const double R = shape.bounding_radius();
-  const double box = neighbours == Neighbours::cells
-                         ? std::max(internal::smallest_box(R), internal::CellEnvelopes::smallest_box(R))
-                         : internal::smallest_box(R);
-  return std::max(2, static_cast<int>(std::ceil(packing_fraction * box * box * box / shape.volume())));
+double box_for(const std::vector<Component>& components, double packing_fraction) {
+  double all = 0;
+  for (const Component& component : components) all += component.number * volume(component.species.shape);
+  return std::cbrt(all / packing_fraction);
+}
+
+double smallest_box(double bounding_radius, Neighbours neighbours) {
+  const double by_images = internal::smallest_image_box(bounding_radius);
+  if (neighbours != Neighbours::cells) return by_images;
+  return std::max(by_images, internal::CellLayout::smallest_box(bounding_radius));
+}
+
+int smallest_number(const BodyShape& shape, double packing_fraction, Neighbours neighbours) {
+  const double box = smallest_box(bounding_radius(shape), neighbours);
+  return std::max(2, static_cast<int>(std::ceil(packing_fraction * box * box * box / volume(shape))));
 }
 
 KineticState kinetic_state(const System& system) {
   KineticState state;
-  const Species& species = system.species;
-  const int axis = axis_of(species.shape);
-  const double perpendicular = species.inertia[(axis + 1) % 3];
+  std::vector<int> axes;
+  for (const Species& species : system.species) axes.push_back(symmetry_axis(species).value_or(-1));
   for (const Body& body : system.bodies) {
+    const Species& species = system.species[static_cast<std::size_t>(body.species)];
+    const int axis = axes[static_cast<std::size_t>(body.species)];
+    state.translational_energy += 0.5 * species.mass * body.velocity.squaredNorm();
+    state.momentum += species.mass * body.velocity;
+    const Vector3d w = body.rotation.transpose() * body.angular_velocity;
+    const Vector3d energy = 0.5 * species.inertia.cwiseProduct(w.cwiseProduct(w));
+    state.axis_energy += energy;
+    if (axis < 0) {
+      state.rotational_energy += energy.sum();
+      state.rotational_freedoms += 3;
+      continue;
+    }
     const Vector3d u = body.rotation.col(axis);
     const double spin = body.angular_velocity.dot(u);
-    state.translational_energy += 0.5 * species.mass * body.velocity.squaredNorm();
+    const double perpendicular = species.inertia[(axis + 1) % 3];
     state.rotational_energy += 0.5 * perpendicular * (body.angular_velocity - spin * u).squaredNorm();
     state.spin_energy += 0.5 * species.inertia[axis] * spin * spin;
-    state.momentum += species.mass * body.velocity;
+    state.rotational_freedoms += 2;
+    state.spin_freedoms += species.spins ? 1 : 0;
   }
-  const int n = system.size();
-  state.translational_kT = 2 * state.translational_energy / std::max(1, 3 * n - 3);
-  state.rotational_kT = 2 * state.rotational_energy / (2 * n);
+  state.translational_kT = 2 * state.translational_energy / std::max(1, 3 * system.size() - 3);
+  state.rotational_kT = 2 * state.rotational_energy / std::max(1, state.rotational_freedoms);
   return state;
 }
 
@@ -83,8 +172,9 @@ Audit audit(const System& system) {
   std::vector<geom::Pose> poses(static_cast<std::size_t>(n));
   // Bounding spheres that meet, and a mean distance more, so that there is a closest pair to name in a dilute system
   // too.
-  const double reach =
-      std::min(2 * system.species.shape.bounding_radius() + system.box / std::cbrt(n), 0.5 * system.box);
+  double largest = 0;
+  for (const Species& species : system.species) largest = std::max(largest, bounding_radius(species.shape));
+  const double reach = std::min(2 * largest + system.box / std::cbrt(n), 0.5 * system.box);
   internal::CellGrid cells(n, system.box, reach);
   for (int i = 0; i < n; ++i) {
     const Body& body = system.bodies[static_cast<std::size_t>(i)];
@@ -102,7 +192,7 @@ Audit audit(const System& system) {
     for (const auto& [j, r] : cells.collect(X_i.position(), reach, near)) {
       if (j <= i) continue;
       const geom::Pose X_image(poses[static_cast<std::size_t>(j)].rotation(), X_i.position() + r);
-      const geom::DistanceResult d = geom::distance(system.species.shape, X_i, system.species.shape, X_image);
+      const geom::DistanceResult d = distance(system.species_of(i).shape, X_i, system.species_of(j).shape, X_image);
       if (!(d.status == geom::DistanceStatus::separated || d.status == geom::DistanceStatus::overlapping)) {
         ++result.unanswered;
         continue;

@@ -1,6 +1,8 @@
+#include "body_shapes.h"
 #include "bracketing_contact.h"
 #include "certified_contact.h"
 #include "contact_checks.h"
+#include "convex_gauge.h"
 #include "motion_checks.h"
 #include "support_gauge.h"
 #include "uniaxial_gauge.h"
@@ -61,7 +63,7 @@ UniaxialBody uniaxial_body(const Ellipsoid& shape, const Motion& motion) {
 
 /// Any other.
 struct GeneralBody {
-  internal::NormBodyShape shape;
+  BodyShape shape;
   internal::RigidMotion motion;
   Eigen::Vector3d inertia;
 
@@ -76,20 +78,9 @@ struct GeneralBody {
   }
 };
 
-void check_exponents(const geom::Superellipsoid& shape) {
-  for (const double e : {shape.e1(), shape.e2()}) {
-    if (e >= kMinExponentInMotion && e <= kMaxExponentInMotion) continue;
-    std::ostringstream message;
-    message << "exponent is " << e << "; accepted of bodies in motion: " << kMinExponentInMotion << " to "
-            << kMaxExponentInMotion;
-    throw std::invalid_argument(message.str());
-  }
-}
-
-GeneralBody general_body(const geom::Shape& shape, const Motion& motion) {
-  if (const auto* s = std::get_if<geom::Superellipsoid>(&shape)) check_exponents(*s);
-  const auto norm = std::visit([](const auto& s) { return geom::internal::NormShape(s); }, shape);
-  return {{norm, geom::bounding_radius(shape), geom::inscribed_radius(shape)},
+GeneralBody general_body(const BodyShape& shape, const Motion& motion) {
+  internal::check_exponents(shape);
+  return {shape,
           {motion.pose.position(), motion.velocity,
            internal::FreeTop(motion.inertia, motion.pose.rotation(), motion.angular_velocity), motion.time},
           motion.inertia};
@@ -119,7 +110,7 @@ template <class Body>
 double skip_the_way(Body& a, Body& b, double reach, double duration) {
   const Eigen::Vector3d r = b.position_at(0) - a.position_at(0);
   const Eigen::Vector3d v = b.velocity() - a.velocity();
-  const internal::Window window = internal::sphere_window(r, v, reach, 0, 0, duration);
+  const internal::Window window = internal::sphere_window(r, v, reach, 0.0, 0.0, duration);
   const double speed = v.norm();
   if (!(window.begin < window.end) || !(window.begin * speed > kFar * reach)) return 0;
   const double way = window.begin - reach / speed;
@@ -169,25 +160,43 @@ ContactResult search(const UniaxialBody& a, const UniaxialBody& b, double reach,
   return result;
 }
 
-ContactResult search(const GeneralBody& a, const GeneralBody& b, double /*reach*/, double duration,
-                     const ContactOptions& options) {
-  if (options.finder == Finder::bracketing) {
-    throw std::invalid_argument(
-        "finder is bracketing, which is not available yet for bodies that are not ellipsoids of revolution; accepted "
-        "now: certified");
-  }
-  const Eigen::Vector3d r = b.position_at(0) - a.position_at(0);
-  const internal::SupportGauge gauge(a.shape, a.motion, b.shape, b.motion, r, 0);
+/// With a certified search, or the paper's: `find(n, count)`.
+template <class Gauge, class Find>
+ContactResult general_search(const Gauge& gauge, const GeneralBody& a, const Find& find) {
   Eigen::Vector3d n = Eigen::Vector3d::Zero();
   internal::FinderCounters count;
-  const internal::Finding finding = internal::certified_contact(gauge, 0, duration, kMaxEvaluations, n, count);
+  const internal::Finding finding = find(n, count);
   ContactResult result = result_of(finding, count);
-  if (result.status == ContactStatus::hit) {
-    const auto state = gauge.at(finding.time);
-    const auto points = internal::SupportGauge::contact_points(state.pair.sample(n), state.pair.between());
-    result.point = a.position_at(finding.time) + points.a();
-    result.normal = n;
-  }
+  if (result.status != ContactStatus::hit) return result;
+  result.point = a.position_at(finding.time) + gauge.contact_points(gauge.at(finding.time), n).a;
+  result.normal = n;
+  return result;
+}
+
+ContactResult search(const GeneralBody& a, const GeneralBody& b, double /*reach*/, double duration,
+                     const ContactOptions& options) {
+  const Eigen::Vector3d r = b.position_at(0) - a.position_at(0);
+  const auto certified = [&](const auto& gauge) {
+    return general_search(gauge, a, [&](Eigen::Vector3d& n, internal::FinderCounters& count) {
+      return internal::certified_contact(gauge, 0, duration, kMaxEvaluations, n, count);
+    });
+  };
+  const auto implicit_a = internal::geom_shape(a.shape);
+  const auto implicit_b = internal::geom_shape(b.shape);
+  if (!implicit_a || !implicit_b) return certified(internal::ConvexGauge(a.shape, a.motion, b.shape, b.motion, r, 0));
+  const internal::NormBodyShape norm_a = internal::norm_body(a.shape);
+  const internal::NormBodyShape norm_b = internal::norm_body(b.shape);
+  const internal::SupportGauge gauge(norm_a, a.motion, norm_b, b.motion, r, 0);
+  if (options.finder == Finder::certified) return certified(gauge);
+  std::uint64_t rescues = 0;
+  ContactResult result = general_search(gauge, a, [&](Eigen::Vector3d& n, internal::FinderCounters& count) {
+    std::optional<internal::Unsolved> unsolved;
+    const internal::Finding finding = internal::bracketing_contact({*implicit_a, *implicit_b, a.motion, b.motion, r, 0},
+                                                                   0, duration, options, n, count, unsolved);
+    rescues = count.rescues;
+    return finding;
+  });
+  result.rescues = static_cast<int>(rescues);
   return result;
 }
 
@@ -240,17 +249,18 @@ ContactResult time_of_contact(const Ellipsoid& a, const Motion& motion_a, const 
   return search_from(now, general_body(a, motion_a), general_body(b, motion_b), reach, t_max, options);
 }
 
-ContactResult time_of_contact(const geom::Shape& a, const Motion& motion_a, const geom::Shape& b,
-                              const Motion& motion_b, double t_max, const ContactOptions& options) {
+ContactResult time_of_contact(const BodyShape& a, const Motion& motion_a, const BodyShape& b, const Motion& motion_b,
+                              double t_max, const ContactOptions& options) {
   const auto* ellipsoid_a = std::get_if<Ellipsoid>(&a);
   const auto* ellipsoid_b = std::get_if<Ellipsoid>(&b);
   if (ellipsoid_a != nullptr && ellipsoid_b != nullptr) {
     return time_of_contact(*ellipsoid_a, motion_a, *ellipsoid_b, motion_b, t_max, options);
   }
-  internal::check_contact_options(options, std::min(geom::inscribed_radius(a), geom::inscribed_radius(b)));
+  internal::check_contact_options(options, std::min(inscribed_radius(a), inscribed_radius(b)));
+  for (const BodyShape* shape : {&a, &b}) internal::check_finder(options, *shape);
   const double now = checked_begin(motion_a, motion_b, t_max);
-  return search_from(now, general_body(a, motion_a), general_body(b, motion_b),
-                     geom::bounding_radius(a) + geom::bounding_radius(b), t_max, options);
+  return search_from(now, general_body(a, motion_a), general_body(b, motion_b), bounding_radius(a) + bounding_radius(b),
+                     t_max, options);
 }
 
 }  // namespace ed

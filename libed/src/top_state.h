@@ -4,9 +4,12 @@
 
 #include "sincos.h"
 
+#include <ed/internal/archive.h>
+
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -25,6 +28,11 @@ struct TopBounds {
   double alpha = 0;  ///< of |d omega/dt|
   double jerk = 0;   ///< of |d2 omega/dt2|, world frame
 };
+
+template <class Archive, Is<TopBounds> T>
+void fields(Archive& archive, T& bounds) {
+  archive(bounds.omega, bounds.alpha, bounds.jerk);
+}
 
 /// The bounds are exact maxima; states carry rounding errors of some units in the last place.
 inline constexpr double kBoundMargin = 1 + 1e-14;
@@ -65,6 +73,18 @@ inline double length(const Eigen::Vector3d& v) {
 struct TopAxes {
   Eigen::Vector3d first, second, third;
 };
+
+template <class Archive, Is<TopAxes> T>
+void fields(Archive& archive, T& axes) {
+  archive(axes.first, axes.second, axes.third);
+}
+
+/// Whether these are 0, 1 and 2 in some order.
+inline bool are_axes(const std::array<int, 3>& numbers) {
+  std::array<int, 3> sorted = numbers;
+  std::sort(sorted.begin(), sorted.end());
+  return sorted == std::array<int, 3>{0, 1, 2};
+}
 
 /// u and x, unit and orthogonal to 1e-8 already, made so to rounding (Gram and Schmidt; one step of Newton's method for
 /// the lengths), and u x x, or its opposite if orientation is -1.

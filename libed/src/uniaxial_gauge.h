@@ -3,7 +3,7 @@
 /// The gauge of two bodies of revolution: g_n(t), its rate, and a bound of how fast that rate can fall.
 ///
 /// A gauge, as `certified_contact` wants it, has
-///   State at(t)                           the pair at time t
+///   State at(t)                           the pair at time t, with what rounding may hide in `rounding` (rounding.h)
 ///   Gap gap(state, n)                     g, and what its rate needs
 ///   Evaluation complete(state, gap, n)    g and the Newton step of n; evaluate(state, n) is both at once
 ///   double rate(state, gap or e, n)       dg/dt at fixed n
@@ -11,11 +11,14 @@
 ///   Vector3d cold_normal(state)
 ///   bool separating_normal(state, n)      the fallback: a normal with g > 0 (to rounding), or false: an overlap
 ///   double curvature_limit()              >= -d2g/dt2 for every n and t
+///   double rate_slope()                   >= |d2g/dt dn| for every n and t
 ///   double size(), certified_depth(), speed(), and window(t_begin, t_end)
 
 #include "axis_motion.h"
+#include "rounding.h"
 #include "select.h"
 #include "sphere_window.h"
+#include "support_curvature.h"
 
 #include <ed/tolerances.h>
 
@@ -30,86 +33,6 @@ namespace ed::internal {
 
 using geom::internal::Spheroid;
 using geom::internal::UniaxialEvaluation;
-
-/// An upper bound over tau' in [0, tau] of d2h/dt2, h = h(n, u(t + tau')) the support function of one body at fixed n.
-///
-/// With x = n.u, C = n.e0 and c = a^2 - b^2 the axis moves so that xdd = -Omega^2 (x - C), and
-///
-///     h'' = (c Omega^2 / h) [b^2 (r^2 - (x-C)^2) / h^2 - x (x-C)],   r^2 = (x-C)^2 + xd^2 / Omega^2,
-///
-/// h^2 = b^2 + c x^2. |xdd| <= Omega^2 r bounds the reach of x over tau; the bracket is then taken at its worst end.
-template <bool kSpin>
-struct SupportCurvature {
-  double x;       ///< n.u
-  double xd;      ///< n.du/dt
-  double rate;    ///< Omega
-  double centre;  ///< C = n.e0; used with spin only
-
-  double bound(const Spheroid& S, double tau) const {
-    if constexpr (kSpin) {
-      return bound_spinning(S, tau);
-    } else {
-      return bound_across(S, tau);
-    }
-  }
-
- private:
-  /// Without spin C = 0 and h'' depends on s = x^2 alone: falling in s for a rod (c > 0), rising for a disc.
-  double bound_across(const Spheroid& S, double tau) const {
-    const double rate2 = rate * rate;
-    const double r2 = smaller(1.0, x * x + xd * xd / (rate2 + 1e-300));
-    const double r = std::sqrt(r2);
-    const double magnitude = std::abs(x);
-    const double outward = std::copysign(1.0, x) * xd;  // d|x|/dt; at x = 0 either sign is covered below
-    // |x| after tau under the strongest pull towards (and beyond) zero; negative: it may have passed zero.
-    const double end = magnitude + tau * (outward - 0.5 * rate2 * r * tau);
-    const double low = larger(0.0, smaller(magnitude, end));
-    const double s_low = low * low;
-    if (S.c > 0) {
-      const double h2 = S.b2 + S.c * s_low;
-      return S.c * rate2 * (S.b2 * (r2 - s_low) - s_low * h2) / (h2 * std::sqrt(h2));
-    }
-    const double high = smaller(r, larger(magnitude + larger(0.0, outward) * tau, -end));
-    const double s_high = high * high;
-    const double h2_low = S.b2 + S.c * s_low;
-    const double h_high = std::sqrt(larger(S.a2, S.b2 + S.c * s_high));
-    return -S.c * rate2 * (s_high / h_high - S.b2 * (r2 - s_high) / (h2_low * std::sqrt(h2_low)));
-  }
-
-  /// With spin each factor is taken at its own worst end over the reach [low, high] of x.
-  double bound_spinning(const Spheroid& S, double tau) const {
-    const double rate2 = rate * rate;
-    const double offset = x - centre;
-    const double r2 = offset * offset + xd * xd / (rate2 + 1e-300);
-    const double r = std::sqrt(r2);
-    const double swing = 0.5 * rate2 * r * tau * tau;
-    const double low = larger(centre - r, x + smaller(0.0, xd) * tau - swing);
-    const double high = smaller(centre + r, x + larger(0.0, xd) * tau + swing);
-    const double x2_max = smaller(1.0, larger(low * low, high * high));
-    const double x2_min = low * high <= 0 ? 0 : smaller(low * low, high * high);
-    const double at_low = low * (low - centre);
-    const double at_high = high * (high - centre);
-    const double off2_max = larger((low - centre) * (low - centre), (high - centre) * (high - centre));
-    const double off2_min = (low - centre) * (high - centre) <= 0
-                                ? 0
-                                : smaller((low - centre) * (low - centre), (high - centre) * (high - centre));
-    if (S.c > 0) {
-      const double h2_min = S.b2 + S.c * x2_min;
-      const double h_min = std::sqrt(h2_min);
-      const double middle = 0.5 * centre;  // where x (x - C) is least
-      const double product = low <= middle && middle <= high ? -middle * middle : smaller(at_low, at_high);
-      const double pull = -product;
-      const double h_pull = pull > 0 ? h_min : std::sqrt(S.b2 + S.c * x2_max);
-      return S.c * rate2 * (S.b2 * larger(0.0, r2 - off2_min) / (h2_min * h_min) + pull / h_pull);
-    }
-    const double h_min = std::sqrt(larger(S.a2, S.b2 + S.c * x2_max));
-    const double h2_max = S.b2 + S.c * x2_min;
-    const double h_max = std::sqrt(h2_max);
-    const double product = larger(at_low, at_high);
-    return -S.c * rate2 *
-           (product / (product > 0 ? h_min : h_max) - S.b2 * larger(0.0, r2 - off2_max) / (h2_max * h_max));
-  }
-};
 
 /// Axis and its rate of change at time t.
 template <bool kSpin>
@@ -132,11 +55,26 @@ SupportCurvature<kSpin> support_curvature(const AxisMotion& m, const Eigen::Vect
   return {x, du.dot(n), m.rate, kSpin ? m.e0.dot(n) : 0.0};
 }
 
+/// `reach`: sum of the bounding radii.
+inline PairScalesOf<double> pair_scales(const Spheroid& A, const AxisMotion& a, const Spheroid& B, const AxisMotion& b,
+                                        double now, double reach) {
+  const double rate_a = a.axis_rate();
+  const double rate_b = b.axis_rate();
+  return {.size = reach,
+          .places = sum_of_magnitudes(a.position) + sum_of_magnitudes(b.position),
+          .speed = sum_of_magnitudes(a.velocity) + sum_of_magnitudes(b.velocity),
+          .turning = reach * (rate_a + rate_b),
+          .bending = A.turning_limit * rate_a + B.turning_limit * rate_b,
+          .limit = A.turning_limit * (rate_a * rate_a) + B.turning_limit * (rate_b * rate_b),
+          .origin = larger(std::abs(now), larger(std::abs(a.time), std::abs(b.time)))};
+}
+
 template <bool kSpin>
 class UniaxialGauge {
  public:
   struct State {
     Eigen::Vector3d r, u_a, u_b, du_a, du_b;
+    Rounding rounding;
   };
   using Gap = geom::internal::UniaxialGap;
   using Evaluation = UniaxialEvaluation;
@@ -151,13 +89,21 @@ class UniaxialGauge {
   /// radii.
   UniaxialGauge(const Spheroid& A, const AxisMotion& a, const Spheroid& B, const AxisMotion& b,
                 const Eigen::Vector3d& r_now, double now, double reach)
-      : A_(A), B_(B), a_(a), b_(b), r_now_(r_now), v_(b.velocity - a.velocity), now_(now), reach_(reach) {}
+      : A_(A),
+        B_(B),
+        a_(a),
+        b_(b),
+        r_now_(r_now),
+        v_(b.velocity - a.velocity),
+        now_(now),
+        scales_(pair_scales(A, a, B, b, now, reach)) {}
 
   State at(double t) const {
     State s;
     s.r = r_now_ + (t - now_) * v_;
     turn<kSpin>(a_, t, s.u_a, s.du_a);
     turn<kSpin>(b_, t, s.u_b, s.du_b);
+    s.rounding = scales_.rounding(t);
     return s;
   }
 
@@ -173,7 +119,7 @@ class UniaxialGauge {
 
   template <class GapOrEvaluation>
   double rate(const State& s, const GapOrEvaluation& e, const Eigen::Vector3d& n) const {
-    return v_.dot(n) - e.lever[0] * s.du_a.dot(n) - e.lever[1] * s.du_b.dot(n);
+    return gap_rate(v_, s.du_a, s.du_b, e.lever, n);
   }
 
   Certificate certificate(const State& s, const UniaxialEvaluation& e, const Eigen::Vector3d& n) const {
@@ -191,18 +137,19 @@ class UniaxialGauge {
     return true;
   }
 
-  Window window(double t_begin, double t_end) const { return sphere_window(r_now_, v_, reach_, now_, t_begin, t_end); }
+  Window window(double t_begin, double t_end) const { return sphere_window(r_now_, v_, size(), now_, t_begin, t_end); }
 
   /// A bound of -d2g/dt2 for every n and t, cheap and crude. From the formula of SupportCurvature, with y = x - C: for
   /// a rod h >= b, and the bracket is at most r^2 - 2 y^2 - C y <= r^2 + C^2 / 8 <= 1; for a disc h >= a, and x y <= 1.
-  double curvature_limit() const {
-    return A_.turning_limit * (a_.rate * a_.rate) + B_.turning_limit * (b_.rate * b_.rate);
-  }
+  double curvature_limit() const { return scales_.limit; }
 
-  double size() const { return reach_; }
+  /// g' = n.v - sum of lever (n.du), and |d lever / dn| |n.du| and |lever| |du| are at most L Omega.
+  double rate_slope() const { return v_.norm() + 2 * scales_.bending; }
+
+  double size() const { return scales_.size; }
   double certified_depth() const { return A_.rho + B_.rho; }
   /// An upper bound of |dd/dt|.
-  double speed() const { return v_.norm() + reach_ * (a_.rate + b_.rate); }
+  double speed() const { return v_.norm() + scales_.turning; }
 
  private:
   static Eigen::Matrix3d quadric(const Spheroid& S, const Eigen::Vector3d& u) {
@@ -216,7 +163,7 @@ class UniaxialGauge {
   Eigen::Vector3d r_now_;
   Eigen::Vector3d v_;
   double now_;
-  double reach_;
+  PairScalesOf<double> scales_;
 };
 
 }  // namespace ed::internal

@@ -68,7 +68,9 @@ DistanceResult uniaxial_distance(const Ellipsoid& a, const Pose& X_WA, int axis_
   const Eigen::Vector3d u_a = X_WA.rotation().col(axis_a);
   const Eigen::Vector3d u_b = X_WB.rotation().col(axis_b);
   const auto cold = [&] { return internal::cold_normal(s_a, s_b, r, u_a, u_b); };
-  const auto shares = [&](const Eigen::Vector3d& p_W) { return internal::both_contain(a, X_WA, b, X_WB, p_W); };
+  const auto shares = [&](const Eigen::Vector3d& point_a, const Eigen::Vector3d& point_b) {
+    return internal::share_a_point(a, X_WA, b, X_WB, point_a, point_b);
+  };
   return internal::solve_dual(UniaxialPair{s_a, s_b, r, u_a, u_b}, cold, scale, X_WA.position(), options, shares);
 }
 
@@ -80,7 +82,9 @@ DistanceResult general_distance(const Ellipsoid& a, const Pose& X_WA, const Elli
     const Eigen::Vector3d n = (w_a.Q + w_b.Q).inverse() * r;
     return n.squaredNorm() > 0 ? n.normalized() : Eigen::Vector3d::UnitX();
   };
-  const auto shares = [&](const Eigen::Vector3d& p_W) { return internal::both_contain(a, X_WA, b, X_WB, p_W); };
+  const auto shares = [&](const Eigen::Vector3d& point_a, const Eigen::Vector3d& point_b) {
+    return internal::share_a_point(a, X_WA, b, X_WB, point_a, point_b);
+  };
   return internal::solve_dual(EllipsoidPair(w_a, w_b, r, kLeastEigenvalue * scale.certified_depth), cold, scale,
                               X_WA.position(), options, shares);
 }
@@ -93,7 +97,7 @@ DistanceResult armijo_ascent(const EllipsoidPair& pair, Eigen::Vector3d n, const
   const double rounding = kRoundingFactor * scale.size;
   Evaluation e = pair(n);
   ++declined.iterations;
-  for (int newton = 0; newton < 200; ++newton) {
+  for (int newton = 0; newton < kMaxArmijoSteps; ++newton) {
     if (e.step2 <= kNormalTolerance2) {
       if (e.g < -scale.certified_depth - rounding) return declined;
       DistanceResult result =
@@ -106,13 +110,13 @@ DistanceResult armijo_ascent(const EllipsoidPair& pair, Eigen::Vector3d n, const
       const Eigen::Vector3d trial = (n + t * e.step).normalized();
       const Evaluation e_trial = pair(trial);
       ++declined.iterations;
-      if (e_trial.g >= e.g + 1e-4 * t * e.decrement - rounding) {
+      if (e_trial.g >= e.g + kArmijo * t * e.decrement - rounding) {
         n = trial;
         e = e_trial;
         break;
       }
       t *= 0.5;
-      if (t < 1e-12) return declined;
+      if (t < kLeastArmijoStep) return declined;
     }
   }
   return declined;

@@ -12,19 +12,47 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kTightGap = 1e-14;       ///< in units of the scale: as good as it gets
-constexpr double kTightResidual = 1e-14;  ///< the same, of the mismatch of the support points
-constexpr double kSmallResidual = 1e-8;   ///< what rounding of the support points can come to
-constexpr double kSharp = 1e-12;          ///< mismatch of support points that Newton's method leaves at most
-constexpr double kSharpDepthGap = 1e-12;
+// Lengths are in units of the scale, the sum of both bounding radii, unless something else is said.
+
+/// Bounds this close are as good as it gets: a method ends.
+constexpr double kTightGap = 1e-14;
+/// The same, of the mismatch of the support points.
+constexpr double kTightResidual = 1e-14;
+/// What rounding of the support points, where edges nearly touch, can leave of their mismatch.
+constexpr double kSmallResidual = 1e-8;
+/// Mismatch of the support points above which an overlap's normal is no maximum to rounding but stuck beside one ...
+constexpr double kStuck = 1e-12;
+/// ... and is searched for until no other is better by this.
+constexpr double kStuckDepthGap = 1e-12;
+
+/// An ascent: g grows by more than kGrowth, or falls by no more while the mismatch of the support points shrinks to
+/// below kShrink of what it was.
+constexpr double kGrowth = 1e-15;
+constexpr double kShrink = 0.9;
+/// A Newton step of the normal (radian) and what it promises: below both there is nothing to gain but rounding.
+constexpr double kRoundingStep = 1e-9;
+constexpr double kRoundingDecrement = 1e-16;
+
+/// Levenberg's term of the primal method, dimensionless (the Hessian's identity part is 1): where it starts, its range,
+/// and how it changes after a step that moves the points and after one that does not.
+constexpr double kFirstMu = 1e-9;
+constexpr double kLeastMu = 1e-12;
+constexpr double kMostMu = 1e-3;
+constexpr double kMuAfterMove = 0.1;
+constexpr double kMuAfterFailure = 1e3;
+/// Longest step of a point in the primal method.
+constexpr double kLongestMove = 0.5;
+/// By what steps along a surface are shortened. Dimensionless.
+constexpr double kShorterMove = 0.4;
 
 /// Steps of the dual method before the primal one is asked, which is faster where edges or vertices meet.
 constexpr int kPatience = 9;
-/// Steps of the dual method behind a primal answer that leaves something to gain.
-constexpr int kPolish = 4;
+/// Steps of the dual method on bodies that overlap, for which it is the only fast one; and on each softened pair.
+constexpr int kMorePatience = 25;
 
 /// An orthonormal basis across n.
 void tangent_basis(const Vector3d& n, Vector3d& e, Vector3d& f) {
+  // e is across x, or across z where n is near x.
   e = (std::abs(n.x()) < 0.6 ? Vector3d(0, n.z(), -n.y()) : Vector3d(n.z(), 0, -n.x())).normalized();
   f = n.cross(e);
 }
@@ -87,13 +115,14 @@ NormBodyPair::Step NormBodyPair::newton_step(const DualSample& s) const {
 
 /// g grows, or stays while the mismatch of the support points falls: near the maximum g's growth is below rounding.
 bool NormBodyPair::improves(const DualSample& from, const DualSample& to) const {
-  const double rounding = 1e-15 * scale_;
-  return to.g >= from.g - rounding && (to.g > from.g + rounding || to.residual < 0.9 * from.residual);
+  const double rounding = kGrowth * scale_;
+  return to.g >= from.g - rounding && (to.g > from.g + rounding || to.residual < kShrink * from.residual);
 }
 
 /// Newton's step made with a support point on the surface, and the normal read there.
 bool NormBodyPair::retract(DualSample& s, const Step& step, double cap) const {
   constexpr double kTurned = 0.3;  // least cosine between the normals before and after
+  constexpr int kMoves = 3;
   const auto take = [&](const Vector3d& n) {
     const DualSample trial = sample(n);
     if (!improves(s, trial)) return false;
@@ -107,7 +136,7 @@ bool NormBodyPair::retract(DualSample& s, const Step& step, double cap) const {
   const Lanes traces = s.traces();
   const bool flatter_is_a = traces[0] >= traces[1];
   double fraction = 1;
-  for (int k = 0; k < 3; ++k, fraction *= 0.4) {
+  for (int k = 0; k < kMoves; ++k, fraction *= kShorterMove) {
     const LaneVector normals = bodies_.normals(from + both(fraction) * move);
     for (const bool by_a : {flatter_is_a, !flatter_is_a}) {
       const Vector3d n = by_a ? normals.a() : Vector3d(-normals.b());
@@ -127,10 +156,10 @@ bool NormBodyPair::advance(DualSample& s, const Step& step) const {
   if (std::max(traces[0], traces[1]) > kFlat * scale_ && retract(s, step, cap)) return true;
   double fraction = cap;
   // A step whose promise is rounding is tried once.
-  const int tries = length < 1e-9 && step.decrement < 1e-16 * scale_ ? 2 : kShortenings;
+  const int tries = length < kRoundingStep && step.decrement < kRoundingDecrement * scale_ ? 2 : kShortenings;
   for (int k = 0; k < tries; ++k, fraction *= kBacktrack) {
     const DualSample trial = sample((s.n + fraction * step.delta).normalized());
-    const bool grows = trial.g >= s.g + (s.g > 0 ? 1e-4 * fraction * step.decrement : 0.0);
+    const bool grows = trial.g >= s.g + (s.g > 0 ? kArmijo * fraction * step.decrement : 0.0);
     if (!(grows && trial.g > s.g) && !improves(s, trial)) continue;
     s = trial;
     return true;
@@ -204,8 +233,7 @@ LaneVector NormBodyPair::primal_step(const Points& points, double mu) const {
 
 /// Newton's method for the closest points themselves, with Levenberg's term mu; keeps the best bounds.
 NormBodyPair::Answer NormBodyPair::primal(const DualSample& start, int max_iterations, int& iterations) const {
-  constexpr double kLeastMu = 1e-12;
-  constexpr double kMostMu = 1e-3;
+  constexpr int kShortenings = 30;
   const auto points = [this](const LaneVector& x) {
     const LaneVector on = bodies_.on_surface(x);
     return Points{on, r_ + on.b() - on.a()};
@@ -213,21 +241,21 @@ NormBodyPair::Answer NormBodyPair::primal(const DualSample& start, int max_itera
   Answer best;
   best.at.n = start.n;
   Points here = points(start.support.point);
-  double mu = 1e-9;
+  double mu = kFirstMu;
   for (int k = 0; k < max_iterations; ++k) {
     ++iterations;
     bound(here, best);
     if (best.gap < kTightGap * scale_) break;
     const LaneVector step = primal_step(here, mu);
-    double fraction = std::min(1.0, 0.5 * scale_ / std::max(step.a().norm(), step.b().norm()));
+    double fraction = std::min(1.0, kLongestMove * scale_ / std::max(step.a().norm(), step.b().norm()));
     bool moved = false;
-    for (int t = 0; t < 30 && !moved; ++t, fraction *= 0.4) {
+    for (int t = 0; t < kShortenings && !moved; ++t, fraction *= kShorterMove) {
       const Points trial = points(here.on + both(fraction) * step);
       moved = trial.gap.norm() < here.gap.norm();
       if (moved) here = trial;
     }
     if (!moved && mu > kMostMu) break;
-    mu = moved ? std::max(0.1 * mu, kLeastMu) : 1e3 * mu;
+    mu = moved ? std::max(kMuAfterMove * mu, kLeastMu) : kMuAfterFailure * mu;
   }
   best.at = sample(best.at.n);
   best.gap = std::min(best.gap, best.at.gap());
@@ -236,9 +264,10 @@ NormBodyPair::Answer NormBodyPair::primal(const DualSample& start, int max_itera
 }
 
 Vector3d NormBodyPair::continued(Vector3d n, int& iterations) const {
+  // Of the way from an ellipsoid's exponents to the bodies': shorter steps where the faces become flat.
   for (const double share : {0.3, 0.6, 0.8, 0.9, 0.96}) {
-    const NormBodyPair soft(bodies_.softened(share), r_, scale_, floor_ / 5e-4);
-    n = soft.dual(n, 25, iterations).at.n;
+    const NormBodyPair soft(bodies_.softened(share), r_, scale_, floor_ / kFloor);
+    n = soft.dual(n, kMorePatience, iterations).at.n;
   }
   return n;
 }
@@ -257,9 +286,16 @@ bool NormBodyPair::ends(const Answer& answer, Penetration penetration) const {
 }
 
 bool NormBodyPair::shares_a_point(const DualSample& s) const {
-  const Vector3d middle = 0.5 * (s.support.point.a() + r_ + s.support.point.b());
-  const Lanes norms = bodies_.norms(LaneVector::of(middle, middle - r_));
-  return norms[0] <= 1 && norms[1] <= 1;
+  const auto holds = [this](const Vector3d& p) {
+    const Lanes norms = bodies_.norms(LaneVector::of(p, p - r_));
+    return norms[0] <= 1 && norms[1] <= 1;
+  };
+  const Vector3d point_a = s.support.point.a() + 0.5 * s.y;
+  if (holds_between(point_a, point_a + s.g * s.n, holds)) return true;
+  // Of the points t r between the centres the one with N_A(t r) = N_B((1 - t) r). No norm is beyond kMaxCoordinate /
+  // kMinSemiAxis, 1e150, by more than a small factor.
+  const Lanes norms = bodies_.norms(LaneVector::of(r_, r_));
+  return norms[0] * norms[1] <= norms[0] + norms[1];
 }
 
 /// Branch and bound from the best normal so far, which it raises to a local maximum first.
@@ -272,9 +308,9 @@ NormBodyPair::Answer NormBodyPair::search(const DualSample& best, int& iteration
   if (apart) {
     // Concave there: what is left is to come close to the one maximum.
     sphere.run_to(kBoundGap * scale_, kMostDepthSamples);
-  } else if (sample(sphere.best().n).residual > kSharp * scale_) {
+  } else if (sample(sphere.best().n).residual > kStuck * scale_) {
     // Edges on faces: the ascent stops short of the maximum, but triangles do not.
-    sphere.run_to(kSharpDepthGap * scale_, kMostDepthSamples);
+    sphere.run_to(kStuckDepthGap * scale_, kMostDepthSamples);
   }
   iterations += sphere.samples();
   Answer answer;
@@ -285,24 +321,37 @@ NormBodyPair::Answer NormBodyPair::search(const DualSample& best, int& iteration
   return answer;
 }
 
-/// The primal method ends when its bounds are close; where that leaves more than rounding, some dual steps may find a
-/// better normal.
+/// The other methods end when their bounds are close, a distance to kBoundGap; dual steps take g to rounding.
 NormBodyPair::Answer NormBodyPair::polished(const Answer& answer, int& iterations) const {
   if (!(answer.gap > kTightGap * scale_)) return answer;
-  Answer better = dual(answer.at.n, kPolish, iterations);
-  if (!(better.at.g > answer.at.g)) return answer;
-  better.gap = std::min(better.gap, answer.gap);  // the upper bound has not moved
+  Answer better = dual(answer.at.n, kMaxIterations, iterations);
+  const double gained = better.at.g - answer.at.g;
+  if (!(gained > 0)) return answer;
+  better.gap = std::min(better.gap, std::max(0.0, answer.gap - gained));  // the upper bound has not moved
   better.converged = true;
   return better;
+}
+
+NormBodyPair::Answer NormBodyPair::patient_dual(const Vector3d& start, int limit, int& iterations) const {
+  Answer answer = dual(start, std::min(kPatience, limit), iterations);
+  // Of bodies that overlap it is the only fast method.
+  if (!answer.converged && !(answer.at.g > 0)) {
+    answer = dual(answer.at.n, std::min(kMorePatience, limit), iterations);
+  }
+  return answer;
 }
 
 NormBodyPair::Answer NormBodyPair::solve(const Vector3d& start, const Vector3d& cold, Penetration penetration,
                                          int max_iterations, int& iterations) const {
   const int limit = std::max(1, max_iterations);
-  Answer first = dual(start, std::min(kPatience, limit), iterations);
-  // Of bodies that overlap it is the only fast method.
-  if (!first.converged && !(first.at.g > 0)) first = dual(first.at.n, std::min(25, limit), iterations);
+  Answer first = patient_dual(start, limit, iterations);
   if (ends(first, penetration)) return first;
+  // From a normal that is far off, bodies that are apart may end where g < 0 too.
+  if (first.converged && first.at.g < 0 && start != cold) {
+    Answer from_cold = patient_dual(cold, limit, iterations);
+    if (ends(from_cold, penetration)) return from_cold;
+    if (from_cold.at.g > first.at.g) first = from_cold;
+  }
   DualSample best = first.at;
   if (!(first.converged && first.at.g < 0)) {
     Answer by_points = primal(first.at, limit, iterations);
@@ -315,7 +364,8 @@ NormBodyPair::Answer NormBodyPair::solve(const Vector3d& start, const Vector3d& 
       if (answer->at.g > best.g) best = answer->at;
     }
   }
-  return search(best, iterations);
+  const Answer found = search(best, iterations);
+  return found.converged ? polished(found, iterations) : found;
 }
 
 }  // namespace geom::internal

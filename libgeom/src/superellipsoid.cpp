@@ -99,8 +99,9 @@ double Superellipsoid::volume() const {
 Vector3d Superellipsoid::inertia(double mass) const {
   // Integrals of x^2, y^2, z^2 over the body.
   const Vector3d a2 = semi_axes_.cwiseAbs2();
-  const double across = 0.5 * std::beta(1.5 * e2_, 0.5 * e2_) * std::beta(0.5 * e1_, 2 * e1_ + 1);
   const double along = std::beta(0.5 * e2_, 0.5 * e2_) * std::beta(1.5 * e1_, e1_ + 1);
+  // For one exponent all axes are alike, to the last bit: a superball is a spherical top.
+  const double across = e1_ == e2_ ? along : 0.5 * std::beta(1.5 * e2_, 0.5 * e2_) * std::beta(0.5 * e1_, 2 * e1_ + 1);
   const Vector3d second = semi_axes_.prod() * e1_ * e2_ * Vector3d(across * a2.x(), across * a2.y(), along * a2.z());
   return mass / volume() * (Vector3d::Constant(second.sum()) - second);
 }

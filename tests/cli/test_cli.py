@@ -46,7 +46,19 @@ OBSERVABLE_FILES = {
         "rot_msd_body [rad^2]",
         "rot_msd_body_error [rad^2]",
     ],
+    "alpha2.csv": ["t [l sqrt(m/kT)]", "alpha2 [1]", "alpha2_error [1]"],
+    "velocity.csv": [
+        "t [l sqrt(m/kT)]",
+        "vacf [kT/m]",
+        "vacf_error [kT/m]",
+        "wacf [kT/(m l^2)]",
+        "wacf_error [kT/(m l^2)]",
+    ],
+    "c1.csv": ["t [l sqrt(m/kT)]", "c1 [1]", "c1_error [1]"],
     "c2.csv": ["t [l sqrt(m/kT)]", "c2 [1]", "c2_error [1]"],
+    "f_self.csv": ["t [l sqrt(m/kT)]"] + [f"f_self_q{k}{e} [1]" for k in range(1, 5) for e in ["", "_error"]],
+    "g_r.csv": ["r [l]", "g [1]", "g_error [1]", "g2 [1]", "g2_error [1]"],
+    "s_q.csv": ["q [1/l]", "S [1]", "S_error [1]"],
     "blocks.csv": [
         "begin [l sqrt(m/kT)]",
         "end [l sqrt(m/kT)]",
@@ -55,6 +67,15 @@ OBSERVABLE_FILES = {
         "kT_trans [kT]",
         "kT_rot [kT]",
         "S [1]",
+        "director_x [1]",
+        "director_y [1]",
+        "director_z [1]",
+        "Z_xx [1]",
+        "Z_yy [1]",
+        "Z_zz [1]",
+        "Z_yz [1]",
+        "Z_xz [1]",
+        "Z_xy [1]",
     ],
 }
 
@@ -65,9 +86,16 @@ OBSERVABLES = [
     "D_rot",
     "D_rot_body",
     "S",
+    "director",
+    "pressure_tensor",
     "tau_C2",
     "beta_C2",
     "t_C2_1overe",
+    "tau_F",
+    "beta_F",
+    "t_F_1overe",
+    "q_peak",
+    "S_peak",
     "kT_trans",
     "kT_rot",
 ]
@@ -99,6 +127,10 @@ class Case(unittest.TestCase):
         return subprocess.run(
             [HARDBODY, *arguments], cwd=self.here, capture_output=True, text=True, timeout=timeout, stdin=subprocess.DEVNULL
         )
+
+    def state_of(self, out):
+        """checkpoint.bin without its end: what the run has taken, and the checksum."""
+        return self.bytes_of(f"{out}/checkpoint.bin")[:-48]
 
     def run_small(self, out, *arguments, config=SMALL):
         self.write("small.toml", config)
@@ -199,6 +231,18 @@ class Run(Case):
         # Far too short for the diffusion: null, not a number made up.
         self.assertIsNone(summary["observables"]["D_trans"]["value"])
         self.assertFalse(summary["interrupted"])
+        tensor = summary["observables"]["pressure_tensor"]
+        self.assertEqual([len(row) for row in tensor["value"] + tensor["error"]], [3] * 6)
+        trace = sum(tensor["value"][k][k] for k in range(3))
+        self.assertAlmostEqual(trace / 3, summary["observables"]["Z"]["value"], 12)
+        self.assertAlmostEqual(sum(x * x for x in summary["observables"]["director"]["value"]), 1, 12)
+        # F_self is measured at the first peak of S(q), and about it.
+        q = summary["wave_numbers"]
+        self.assertEqual(q, [q[0], q[0] / 4, q[0] / 2, 2 * q[0]])
+        self.assertTrue(1.5 < q[0] < 7.5)
+        # From 0.4 of the longest lag on, a sixteenth of the run; no C2 has decayed.
+        self.assertEqual(summary["fit_windows"]["D"], [0.4 * 5 / 16, 5 / 16])
+        self.assertIsNone(summary["fit_windows"]["C2"])
         # 2 N_coll / (N t)
         self.assertAlmostEqual(
             summary["observables"]["collision_rate"]["value"], 2 * counters["collisions"] / (64 * 5), 9
@@ -245,6 +289,39 @@ class Run(Case):
         self.assertEqual(equilibration, round(equilibration))
         self.assertEqual(summary["time"]["production"], max(30, 30 * equilibration))
         self.assertTrue(summary["equilibrated"])
+        how = summary["equilibration"]
+        self.assertGreaterEqual(how["relaxations"], 2)
+        self.assertGreaterEqual(equilibration, 4 * how["relaxations"])
+        self.assertTrue(how["C2"] < 0.05 and how["F_self"] < 0.05)
+        self.assertEqual(how["q"], summary["wave_numbers"][0])
+        self.assertTrue(abs(how["S_change"]) < 0.3 and abs(how["Z_change"]) < 0.3)
+
+    def test_not_equilibrated_at_the_cap(self):
+        config = SMALL.replace("time = 1\n", 'time = "auto"\ncap = 3\n')
+        result = self.run_small("out", config=config)
+        summary = self.summary("out")
+        self.assertFalse(summary["equilibrated"])
+        self.assertEqual(summary["time"]["equilibration"], 3)
+        self.assertEqual(summary["equilibration"]["relaxations"], 0)
+        self.assertIsNone(summary["equilibration"]["relaxation_time"])
+        self.assertIn("not equilibrated after 3 time units", result.stderr)
+        self.assertIn("not equilibrated", result.stdout)
+
+    def test_production_until_the_error_asked_for(self):
+        times = {}
+        for target in [0.1, 0.02]:
+            config = SMALL.replace("time = 1\n", 'time = "auto"\n').replace("time = 5", f'time = "auto"\ntarget_error = {target}')
+            self.run_small(str(target), config=config)
+            summary = self.summary(str(target))
+            self.assertEqual(summary["target_error"], {"asked": target, "reached": True})
+            for key in ["D_trans", "D_rot"]:
+                estimate = summary["observables"][key]
+                self.assertLessEqual(estimate["error"], target * estimate["value"])
+            times[target] = summary["time"]["production"]
+        self.assertLess(times[0.02], 5000)
+        self.assertLess(times[0.1], times[0.02])
+        # The first look is when it would have ended without a target, at the earliest.
+        self.assertGreaterEqual(times[0.1], 30)
 
     def test_spheres(self):
         self.run_small("out", "--set", "shape.aspect_ratio=1", "--set", "equilibration.time=auto")
@@ -292,7 +369,8 @@ class SameRun(Case):
         self.run_small("one")
         self.run_small("two")
         self.run_small("three", "--set", "seed=4")
-        for name in ["events.csv", "checkpoint.bin", "config.toml"] + [f"observables/{f}" for f in OBSERVABLE_FILES]:
+        self.assertEqual(self.state_of("one"), self.state_of("two"))
+        for name in ["events.csv", "config.toml"] + [f"observables/{f}" for f in OBSERVABLE_FILES]:
             self.assertEqual(self.bytes_of(f"one/{name}"), self.bytes_of(f"two/{name}"), name)
             self.assertNotEqual(self.bytes_of(f"one/{name}"), self.bytes_of(f"three/{name}"), name)
         one, two = self.summary("one"), self.summary("two")
@@ -331,6 +409,20 @@ class Init(Case):
             "run", "new.toml", "--set", "equilibration.time=0.1", "production.time=0.1", "system.packing_fraction=0.3"
         )
         self.assertEqual(result.returncode, 0, result.stderr)
+
+    def test_templates(self):
+        for name, kind in [("ellipsoid", "ellipsoid"), ("superball", "superellipsoid"), ("mixture", "mixture")]:
+            with self.subTest(name):
+                self.assertEqual(self.hardbody("init", f"{name}.toml", "--template", name).returncode, 0)
+                result = self.hardbody(
+                    "run", f"{name}.toml", "--set", "equilibration.time=0.1", "production.time=0.1", "system.number=200"
+                )
+                self.assertEqual(result.returncode, 0, result.stderr)
+                self.assertEqual(self.summary(f"out/{name}")["state"]["kind"], kind)
+        self.assertEqual(self.read("ellipsoid.toml"), self.hardbody("init").stdout)
+        result = self.hardbody("init", "x.toml", "--template", "cube")
+        self.assert_refused(result, "--template cube", "accepted: ellipsoid, superball, mixture")
+        self.assertFalse(os.path.exists(self.path("x.toml")))
 
     def test_never_overwrites(self):
         self.write("mine.toml", "precious")
@@ -374,6 +466,11 @@ class BadConfig(Case):
             ("packing_fraction = 0.2", "packing_fraction = nan", "system.packing_fraction"),
             ("packing_fraction = 0.2", "packing_fraction = inf", "system.packing_fraction"),
             ("packing_fraction = 0.2", 'packing_fraction = "0.2"', "system.packing_fraction"),
+            ("packing_fraction = 0.2", 'start = "bcc"', "system.start", '"random", "cubic", "fcc"'),
+            ("packing_fraction = 0.2", "start = 1", "system.start"),
+            ("packing_fraction = 0.2", "nematic_order = 1.0", "system.nematic_order", "below 1"),
+            ("packing_fraction = 0.2", "nematic_order = -0.1", "system.nematic_order"),
+            ("packing_fraction = 0.2", "nematic_order = nan", "system.nematic_order"),
             ("aspect_ratio = 2", "aspect_ratio = 0", "shape.aspect_ratio"),
             ("aspect_ratio = 2", "aspect_ratio = -2", "shape.aspect_ratio"),
             ("aspect_ratio = 2", "aspect_ratio = nan", "shape.aspect_ratio"),
@@ -388,6 +485,10 @@ class BadConfig(Case):
             ("aspect_ratio = 2", "semi_axes = 2", "shape.semi_axes"),
             ("time = 1\n", "time = -1\n", "equilibration.time"),
             ("time = 1\n", 'time = "long"\n', "equilibration.time"),
+            ("time = 1\n", "cap = 0\n", "equilibration.cap"),
+            ("time = 5\n", 'target_error = 0.1\ntime = 5\n', "production.target_error"),
+            ("time = 5\n", 'target_error = 0\n', "production.target_error"),
+            ("time = 5\n", 'target_error = "small"\n', "production.target_error"),
             ("time = 5", "time = 0", "production.time"),
             ("time = 5", "time = -1", "production.time"),
             ("time = 5", "time = inf", "production.time"),
@@ -410,10 +511,11 @@ class BadConfig(Case):
             ('inertia = "papers"', "dynamics.inertia", "papers"),
             ("inertia = [1, 1, 3]", "dynamics.inertia", "sum"),
             ("inertia = [1, 1, 0]", "dynamics.inertia"),
+            ("inertia = [1e-9, 1e-9, 1e-9]", "dynamics.inertia", "moment"),
+            ("inertia = [1e9, 1e9, 1e9]", "dynamics.inertia", "moment"),
             ("inertia = [1, 1, -1]", "dynamics.inertia"),
             ("inertia = [1, 1]", "dynamics.inertia"),
             ("inertia = 3", "dynamics.inertia"),
-            ("inertia = [1, 1.5, 1]", "dynamics.inertia", "not available yet"),
             ('finder = "best"', "dynamics.finder", "certified"),
             ('distance = "newton8"', "dynamics.distance", "bracketing"),
             ('distance = "newton6"', "dynamics.distance", "newton5", "dual"),
@@ -430,17 +532,48 @@ class BadConfig(Case):
 
     def test_not_available_yet(self):
         cases = [
-            ("aspect_ratio = 2", 'kind = "superellipsoid"\naspect_ratio = 2', "shape.kind"),
-            ("aspect_ratio = 2", "semi_axes = [1, 2, 3]", "shape.semi_axes"),
-            ("aspect_ratio = 2", "exponents = [1, 1]\naspect_ratio = 2", "shape.exponents"),
             ("events = 500", 'trajectory = ["gsd"]', "output.trajectory"),
             ("events = 500", 'trajectory = ["lammps", "vtk"]', "output.trajectory"),
             ("events = 500", "frames = 10", "output.frames"),
-            ("[shape]", "[[species]]\naspect_ratio = 1\n[shape]", "species"),
         ]
         for old, new, key in cases:
             with self.subTest(new):
                 self.refuse_line(old, new, key, "not available yet")
+
+    def test_shape(self):
+        superball = 'kind = "superellipsoid"\nsemi_axes = [1, 1, 1]\n'
+        cases = [
+            ("kind = 3\naspect_ratio = 2", 6, "shape.kind", '"ellipsoid", "superellipsoid"'),
+            ('kind = "cube"\naspect_ratio = 2', 6, "shape.kind", '"cube"'),
+            ("exponents = [1, 1]\naspect_ratio = 2", 6, "shape.exponents", 'kind = "superellipsoid"'),
+            (superball, 5, "shape.exponents", "missing", "0.25 to 1.6"),
+            (superball + "exponents = 0.5", 8, "shape.exponents", "two numbers"),
+            (superball + "exponents = [0.5]", 8, "shape.exponents", "two numbers"),
+            (superball + "exponents = [0.2, 0.5]", 8, "shape.exponents", "[0.2, 0.5]", "0.25 to 1.6"),
+            (superball + "exponents = [0.5, 1.7]", 8, "shape.exponents", "0.25 to 1.6"),
+            (superball + "exponents = [0.5, nan]", 8, "shape.exponents"),
+            (superball + "exponents = [0.5, -1]", 8, "shape.exponents"),
+            ("semi_axes = [1, 5, 101]", 6, "shape.semi_axes", "none is more than 100 times another"),
+            ("semi_axes = [1, 2, 3]\naspect_ratio = 2", 7, "shape.aspect_ratio", "shape.semi_axes", "only one"),
+            ("aspect_ratio = 2\nmass = 2", 7, "unknown key shape.mass", "species.mass"),
+        ]
+        for shape, line, *parts in cases:
+            with self.subTest(shape):
+                message = self.refuse(SMALL.replace("aspect_ratio = 2", shape), *parts)
+                self.assertTrue(message.startswith(f"bad.toml:{line}: "), message)
+
+    def test_inertia_of_other_shapes(self):
+        superball = 'kind = "superellipsoid"\nsemi_axes = [1, 1, 1]\nexponents = [0.5, 0.5]'
+        for shape in ["semi_axes = [1, 2, 3]", superball]:
+            for inertia, *parts in [
+                ('"paper"', "ellipsoids of revolution", '"uniform"'),
+                ('"round"', '"round"', '"uniform"'),
+                ("[1, 2, 3.1]", "sum"),
+                ("[1, 2, 0]", "positive"),
+            ]:
+                with self.subTest(shape=shape, inertia=inertia):
+                    config = SMALL.replace("aspect_ratio = 2", shape) + f"[dynamics]\ninertia = {inertia}\n"
+                    self.refuse(config, "dynamics.inertia", *parts)
 
     def test_unknown_names(self):
         cases = [
@@ -511,6 +644,330 @@ class BadConfig(Case):
             with self.subTest(override):
                 message = self.refuse(SMALL, *parts, arguments=["--set", override])
                 self.assertTrue(message.startswith("--set " + override.replace("\n", " ")), message)
+
+
+# Rods and superballs, with the lines of SMALL but for [shape].
+MIXTURE = """seed = 3
+[system]
+number = 100
+packing_fraction = 0.2
+[[species]]
+semi_axes = [0.5, 0.5, 1.0]
+fraction = 0.6
+[[species]]
+kind = "superellipsoid"
+semi_axes = [0.6, 0.6, 0.6]
+exponents = [0.5, 0.5]
+fraction = 0.4
+mass = 2
+[equilibration]
+time = 1
+[production]
+time = 5
+[output]
+events = 500
+"""
+
+
+class BadSpecies(Case):
+    """Of [[species]]: as BadConfig."""
+
+    def refuse(self, config, where, *parts, arguments=()):
+        self.write("bad.toml", config)
+        result = self.hardbody("run", "bad.toml", *arguments)
+        self.assert_refused(result, "accepted", *parts)
+        self.assertTrue(result.stderr.startswith(where), result.stderr)
+        self.assertEqual(os.listdir(self.here), ["bad.toml"])
+
+    def refuse_line(self, old, new, *parts):
+        config = MIXTURE.replace(old, new)
+        self.assertNotEqual(config, MIXTURE)
+        self.refuse(config, f"bad.toml:{MIXTURE[: MIXTURE.index(old)].count(chr(10)) + 1}: ", *parts)
+
+    def test_values(self):
+        cases = [
+            ("fraction = 0.4", "fraction = 0", "species[2].fraction", "above 0"),
+            ("fraction = 0.4", "fraction = -0.4", "species[2].fraction"),
+            ("fraction = 0.4", "fraction = nan", "species[2].fraction"),
+            ("fraction = 0.4", 'fraction = "half"', "species[2].fraction"),
+            ("fraction = 0.4", "fraction = 0.3", "species[2].fraction", "add up to 0.9", "add up to 1"),
+            ("fraction = 0.4", "fraction = 0.5", "add up to 1.1"),
+            ("mass = 2", "mass = 0", "species[2].mass"),
+            ("mass = 2", "mass = -1", "species[2].mass"),
+            ("mass = 2", "mass = 1e9", "species[2].mass", "1e-06 to 1e+06"),
+            ("mass = 2", 'inertia = "paper"', "species[2].inertia", "ellipsoids of revolution", "species[2] is none"),
+            ("mass = 2", "inertia = [1, 1, 2.1]", "species[2].inertia", "sum"),
+            ("mass = 2", 'sizes = "gauss"', "species[2].sizes", '"gaussian"'),
+            ("mass = 2", 'sizes = "gaussian"', "species[2].width", "missing", "0.3"),
+            ("mass = 2", "width = 0.1", "species[2].width", "sizes"),
+            ("mass = 2", "size_seed = 1", "species[2].size_seed", "sizes"),
+            ("mass = 2", "exponent = 1", "unknown key species[2].exponent", "did you mean species[2].exponents?"),
+            ("exponents = [0.5, 0.5]", "exponents = [0.5, 1.61]", "species[2].exponents", "0.25 to 1.6"),
+            ("semi_axes = [0.6, 0.6, 0.6]", "semi_axes = [0.6, 0.6]", "species[2].semi_axes", "three"),
+            ("semi_axes = [0.6, 0.6, 0.6]", "semi_axes = [6000, 6000, 6000]", "species[2].semi_axes", "0.001 to 1000"),
+        ]
+        for old, new, *parts in cases:
+            with self.subTest(new):
+                self.refuse_line(old, new, *parts)
+
+    def test_sizes(self):
+        for sizes, width, *parts in [
+            ("gaussian", "0.31", "at most 0.3"), ("uniform", "0.51", "at most 0.5"), ("lognormal", "0.6", "at most 0.5"),
+            ("uniform", "0", "above 0"), ("uniform", "-0.1", "above 0"), ("uniform", '"wide"', "above 0"),
+        ]:
+            with self.subTest(sizes=sizes, width=width):
+                config = MIXTURE.replace("mass = 2", f'sizes = "{sizes}"\nwidth = {width}')
+                self.refuse(config, "bad.toml:14: ", "species[2].width", *parts)
+        config = MIXTURE.replace("mass = 2", 'sizes = "uniform"\nwidth = 0.1\nsize_seed = -1')
+        self.refuse(config, "bad.toml:15: ", "species[2].size_seed")
+
+    def test_numbers(self):
+        self.refuse(MIXTURE.replace("fraction = 0.4\n", ""), "bad.toml:8: ", "species[2]", "fraction of each")
+        both = MIXTURE.replace("fraction = 0.6", "number = 60")
+        self.refuse(both, "bad.toml:12: ", "species[2].fraction is 0.4", "species have a number")
+        self.refuse(both.replace("fraction = 0.4\n", ""), "bad.toml:8: ", "species[2].number is missing")
+        numbers = both.replace("fraction = 0.4", "number = 41")
+        self.refuse(numbers, "bad.toml:3: ", "system.number is 100", "101")
+        self.refuse(numbers.replace("= 41", "= 0"), "bad.toml:12: ", "species[2].number is 0", "1 to")
+        self.refuse(numbers.replace("= 41", "= 40.0"), "bad.toml:12: ", "integer")
+        few = MIXTURE.replace("0.6\n[[", "0.999\n[[").replace("fraction = 0.4", "fraction = 0.001")
+        self.refuse(few, "bad.toml:12: ", "species[2].fraction", "none of 100 bodies")
+
+    def test_sections(self):
+        self.refuse(MIXTURE + "[shape]\naspect_ratio = 2\n", "bad.toml:21: ", "shape.aspect_ratio", "[[species]] are both")
+        self.refuse(MIXTURE, "--set shape", "both given", arguments=["--set", "shape.aspect_ratio=2"])
+        self.refuse(SMALL.replace("[shape]", "[species]"), "bad.toml:5: ", "[species] is one section", "[[species]]")
+        self.refuse(SMALL.replace("[output]", "[[output]]"), "bad.toml:11: ", "[output]", "once")
+        self.refuse('["species[1]"]\naspect_ratio = 2\n', "bad.toml:1: ", "unknown section")
+        self.refuse("species = 3\n", "bad.toml:1: ", "species is 3", "[[species]]")
+        self.refuse("species = []\n", "bad.toml:1: ", "species is []", "[[species]]")
+        self.refuse(MIXTURE, "--set ", "species[3]", "species[1] to species[2]", arguments=["--set", "species[3].mass=2"])
+        self.refuse(MIXTURE, "--set ", "species", arguments=["--set", "species.mass=2"])
+        self.refuse(SMALL, "--set ", "needs sections [[species]]", arguments=["--set", "species[1].mass=2"])
+
+    def test_dynamics(self):
+        self.refuse(MIXTURE + '[dynamics]\ninertia = "paper"\n', "bad.toml:21: ", "dynamics.inertia", "species[2] is none")
+        self.refuse(MIXTURE + "[dynamics]\ninertia = [1, 1, 1]\n", "bad.toml:21: ", "moments in each [[species]]")
+
+    def test_unequal_sizes(self):
+        # So few large bodies do not fit into the box, and the message says what would.
+        large = MIXTURE.replace("semi_axes = [0.6, 0.6, 0.6]", "semi_axes = [6, 6, 6]").replace("0.6\n[[", "0.98\n[[")
+        large = large.replace("fraction = 0.4", "fraction = 0.02")
+        self.refuse(large, "bad.toml:3: ", "box", "the largest", "less unequal sizes")
+
+
+class Shapes(Case):
+    """Superellipsoids, bodies with three different axes, mixtures, sizes: whole runs."""
+
+    AXES = ["kT_axes", "D_rot_axes", "t_C2_1overe_axes"]
+
+    def run_shape(self, out, config, *arguments):
+        self.run_small(out, *arguments, config=config)
+        check = self.hardbody("check", out)
+        self.assertEqual(check.returncode, 0, check.stdout)
+        summary = self.summary(out)
+        self.assertEqual(summary["counters"]["overlaps"], 0)
+        self.assertGreater(summary["counters"]["collisions"], 300)
+        self.assertLess(summary["audit"]["energy_relative_drift"], 1e-11)
+        self.assertTrue(summary["sound"])
+        again = self.hardbody("run", f"{out}/config.toml", "--out", f"{out}_again")
+        self.assertEqual(again.returncode, 0, again.stderr)
+        self.assertEqual(self.state_of(out), self.state_of(f"{out}_again"))
+        for name in ["config.toml", "events.csv", "observables/rotational_msd.csv"]:
+            self.assertEqual(self.bytes_of(f"{out}/{name}"), self.bytes_of(f"{out}_again/{name}"), name)
+        return summary
+
+    def columns(self, name):
+        return self.read(name).splitlines()[0].split(",")
+
+    def test_superball(self):
+        shape = 'kind = "superellipsoid"\nsemi_axes = [2, 2, 2]\nexponents = [0.5, 0.5]'
+        summary = self.run_shape("out", SMALL.replace("aspect_ratio = 2", shape))
+        state = summary["state"]
+        self.assertEqual((state["kind"], state["exponents"]), ("superellipsoid", [0.5, 0.5]))
+        self.assertEqual((state["semi_axes"], state["aspect_ratio"]), ([1, 1, 1], 1))
+        self.assertNotIn("species", summary)
+        for key in self.AXES:
+            self.assertEqual([sorted(e) for e in summary["observables"][key]], [["error", "value"]] * 3)
+        # Every axis has N degrees of freedom, and what is on all of them is their mean.
+        kT = [e["value"] for e in summary["observables"]["kT_axes"]]
+        self.assertAlmostEqual(sum(kT) / 3, summary["observables"]["kT_rot"]["value"], 12)
+        self.assertIn("/ 6, three components", summary["units"]["D_rot"])
+        self.assertIn("c2_y [1]", self.columns("out/observables/c2.csv"))
+        self.assertIn("rot_msd_body_z_error [rad^2]", self.columns("out/observables/rotational_msd.csv"))
+
+    def test_body_axes_add_up(self):
+        self.run_shape("out", SMALL.replace("aspect_ratio = 2", "semi_axes = [1, 1.5, 0.7]"))
+        with open(self.path("out/observables/rotational_msd.csv"), newline="") as file:
+            for row in csv.DictReader(file):
+                parts = sum(float(row[f"rot_msd_body_{axis} [rad^2]"]) for axis in "xyz")
+                self.assertAlmostEqual(parts / float(row["rot_msd_body [rad^2]"]), 1, 12)
+        with open(self.path("out/observables/c2.csv"), newline="") as file:
+            for row in csv.DictReader(file):
+                self.assertEqual(row["c2 [1]"], row["c2_z [1]"])
+
+    def test_biaxial(self):
+        summary = self.run_shape("out", SMALL.replace("aspect_ratio = 2", "semi_axes = [1, 1.5, 0.7]"))
+        self.assertIsNone(summary["state"]["aspect_ratio"])
+        self.assertAlmostEqual(math.prod(summary["state"]["semi_axes"]), 1, 12)
+        self.assertAlmostEqual(summary["state"]["semi_axes"][1] / summary["state"]["semi_axes"][0], 1.5, 12)
+        self.assertRegex(self.hardbody("check", "out").stdout, r"rotational temperature +\S+ on 3N\n")
+
+    def test_moments_across_the_axis_may_differ(self):
+        config = SMALL + "[dynamics]\ninertia = [0.3, 0.4, 0.2]\n"
+        summary = self.run_shape("out", config)
+        self.assertEqual(summary["state"]["aspect_ratio"], 2)
+        self.assertIn("kT_axes", summary["observables"])
+
+    def test_of_revolution_about_z(self):
+        # A superellipsoid, but with two rotation axes and a spin that stays.
+        shape = 'kind = "superellipsoid"\naspect_ratio = 1.5\nexponents = [0.6, 1]'
+        summary = self.run_shape("out", SMALL.replace("aspect_ratio = 2", shape))
+        self.assertNotIn("kT_axes", summary["observables"])
+        self.assertIn("two components", summary["units"]["D_rot"])
+
+    def test_binary_mixture(self):
+        summary = self.run_shape("out", MIXTURE)
+        self.assertEqual(summary["state"]["kind"], "mixture")
+        self.assertEqual([summary["state"][k] for k in ["semi_axes", "exponents", "aspect_ratio"]], [None] * 3)
+        rods, balls = summary["species"]
+        self.assertEqual((rods["number"], balls["number"]), (60, 40))
+        self.assertEqual((rods["semi_axes"], rods["exponents"], rods["aspect_ratio"]), ([0.5, 0.5, 1.0], None, 2))
+        self.assertEqual((balls["semi_axes"], balls["exponents"], balls["mass"]), ([0.6] * 3, [0.5, 0.5], 2))
+        self.assertEqual((rods["spins"], balls["spins"], rods["sizes"]), (False, True, None))
+        self.assertNotIn("kT_axes", rods["observables"])
+        for key in self.AXES:
+            self.assertEqual(len(balls["observables"][key]), 3)
+        # The mean of the species, by their shares of the degrees of freedom.
+        kT = [s["observables"]["kT_trans"]["value"] for s in summary["species"]]
+        share = [3 * (60 - 60 / 140), 3 * (40 - 80 / 140)]
+        mean = sum(a * b for a, b in zip(share, kT)) / sum(share)
+        self.assertAlmostEqual(mean, summary["observables"]["kT_trans"]["value"], 12)
+        for name, key in [("msd", "msd"), ("c1", "c1"), ("c2", "c2"), ("velocity", "vacf")]:
+            with open(self.path(f"out/observables/{name}.csv"), newline="") as file:
+                for row in csv.DictReader(file):
+                    value = lambda suffix: next(float(row[c]) for c in row if c.startswith(f"{key}{suffix} ["))
+                    self.assertAlmostEqual(value(""), 0.6 * value("_1") + 0.4 * value("_2"), 12)
+        self.assertIn("c2_2_x [1]", self.columns("out/observables/c2.csv"))
+        self.assertIn("c1_2_x [1]", self.columns("out/observables/c1.csv"))
+        self.assertIn("f_self_2_q4 [1]", self.columns("out/observables/f_self.csv"))
+        self.assertIn("g2_1_error [1]", self.columns("out/observables/g_r.csv"))
+        self.assertIn("S_2 [1]", self.columns("out/observables/s_q.csv"))
+        self.assertNotIn("c2_1_x [1]", self.columns("out/observables/c2.csv"))
+
+    def test_polydisperse(self):
+        ellipsoid = "[[species]]\nsemi_axes = [1, 1, 1.5]\nsizes = {}\nwidth = 0.1\n"
+        base = SMALL[: SMALL.index("[shape]")] + "{}" + SMALL[SMALL.index("[equilibration]") :]
+        for sizes in ["uniform", "gaussian", "lognormal"]:
+            with self.subTest(sizes):
+                config = base.format(ellipsoid.format(f'"{sizes}"'))
+                summary = self.run_shape(sizes, config)
+                drawn = summary["species"][0]["sizes"]
+                self.assertEqual((drawn["distribution"], drawn["width"]), (sizes, 0.1))
+                self.assertLess(abs(drawn["mean"] - 1), 4 * 0.1 / math.sqrt(64))
+                self.assertTrue(0.06 < drawn["standard_deviation"] < 0.14)
+                self.assertTrue(0.6 < drawn["smallest"] < 0.95 and 1.05 < drawn["largest"] < 1.4)
+        # A seed of its own: the same bodies in another start.
+        config = base.format(ellipsoid.format('"uniform"\nsize_seed = 7'))
+        one = self.run_shape("one", config)
+        two = self.run_shape("two", config, "--set", "seed=4")
+        self.assertEqual(one["species"][0]["sizes"], two["species"][0]["sizes"])
+        self.assertNotEqual(self.read("one/events.csv"), self.read("two/events.csv"))
+        self.assertNotEqual(one["species"][0]["sizes"], self.summary("uniform")["species"][0]["sizes"])
+
+    def test_one_species_is_the_shape(self):
+        # semi_axes of product 1 are the same bodies either way.
+        config = SMALL.replace("aspect_ratio = 2", "semi_axes = [0.5, 2, 1]")
+        self.run_small("shape", config=config)
+        self.run_small("species", config=config.replace("[shape]", "[[species]]"))
+        self.assertEqual(self.read("shape/events.csv"), self.read("species/events.csv"))
+        self.assertEqual(self.read("shape/observables/c2.csv"), self.read("species/observables/c2.csv"))
+        table = self.read("species/summary.json")
+        self.assertIn("semi-axes are taken as they are given", table)
+
+    def test_numbers_and_fractions_are_the_same(self):
+        self.run_small("fractions", config=MIXTURE)
+        numbers = MIXTURE.replace("fraction = 0.6", "number = 60").replace("fraction = 0.4", "number = 40")
+        self.run_small("numbers", config=numbers.replace("number = 100\n", ""))
+        self.assertEqual(self.read("fractions/events.csv"), self.read("numbers/events.csv"))
+
+    def test_equilibration_waits_for_the_slowest_species(self):
+        config = MIXTURE.replace("time = 1\n", 'time = "auto"\n')
+        self.run_small("out", config=config)
+        self.assertTrue(self.summary("out")["equilibrated"])
+        self.assertIn("of the slowest species", self.read("out/log.txt"))
+
+    def test_unequal_sizes_run(self):
+        # One to eight in length: slow per body, and right.
+        config = MIXTURE.replace("number = 100", "number = 300").replace("[0.5, 0.5, 1.0]", "[0.2, 0.2, 0.3]")
+        config = config.replace("fraction = 0.6", "fraction = 0.98").replace("fraction = 0.4", "fraction = 0.02")
+        config = config.replace("[0.6, 0.6, 0.6]", "[1.6, 1.6, 1.6]").replace("time = 5", "time = 2")
+        self.run_shape("out", config.replace("time = 1\n", "time = 0.1\n"))
+
+    def test_neighbour_lists_give_the_same_collisions(self):
+        config = MIXTURE.replace("time = 1\n", "time = 0\n").replace("time = 5", "time = 1")
+        for neighbours in ["dilated", "obp", "cells"]:
+            self.run_small(neighbours, "--set", f"dynamics.neighbours={neighbours}", config=config)
+        rows = {n: [line.split(",") for line in self.read(f"{n}/events.csv").splitlines()[1:]] for n in ["dilated", "obp", "cells"]}
+        self.assertGreater(len(rows["dilated"]), 100)
+        for name in ["obp", "cells"]:
+            self.assertEqual([r[1:] for r in rows[name]], [r[1:] for r in rows["dilated"]])
+            self.assertLess(max(abs(float(a[0]) - float(b[0])) for a, b in zip(rows[name], rows["dilated"])), 1e-9)
+
+
+class Starts(Case):
+    """On lattices, and with a nematic order."""
+
+    ROD = SMALL.replace("aspect_ratio = 2", "aspect_ratio = 3").replace("number = 64", "number = 288")
+
+    def run_start(self, out, config, *lines):
+        config = config.replace("[system]\n", "[system]\n" + "".join(line + "\n" for line in lines))
+        self.run_small(out, "--set", "equilibration.time=0.2", "production.time=0.5", config=config)
+        self.assertEqual(self.hardbody("check", out).returncode, 0)
+        text = self.read(f"{out}/config.toml")
+        for line in lines:
+            self.assertIn(line + " ", text)
+        again = self.hardbody("run", f"{out}/config.toml", "--out", f"{out}_again")
+        self.assertEqual(again.returncode, 0, again.stderr)
+        self.assertEqual(self.state_of(out), self.state_of(f"{out}_again"))
+        summary = self.summary(out)
+        self.assertTrue(summary["sound"])
+        return summary
+
+    def test_ellipsoids_on_fcc(self):
+        summary = self.run_start("out", self.ROD.replace("0.2", "0.6"), 'start = "fcc"')
+        # Each has a share of less than 1/0.6 of its volume to turn in: it stays aligned.
+        self.assertGreater(summary["observables"]["S"]["value"], 0.9)
+
+    def test_superballs_on_cubic(self):
+        shape = 'kind = "superellipsoid"\nsemi_axes = [1, 1, 1]\nexponents = [0.5, 0.5]'
+        self.run_start("out", SMALL.replace("aspect_ratio = 2", shape).replace("0.2", "0.6"), 'start = "cubic"')
+
+    def test_nematic(self):
+        self.run_start("compressed", self.ROD, "nematic_order = 0.8")
+        dense = self.ROD.replace("0.2", "0.4")
+        summary = self.run_start("lattice", dense, 'start = "fcc"', "nematic_order = 0.8")
+        # Seven tenths of a time unit are too short to lose much of it.
+        self.assertGreater(summary["observables"]["S"]["value"], 0.6)
+        config = self.ROD.replace("0.2", "0.6").replace("[system]", '[system]\nstart = "fcc"\nnematic_order = 0.5')
+        self.write("tight.toml", config)
+        self.assert_refused(self.hardbody("run", "tight.toml"), "tight.toml:4: system.nematic_order is 0.5", "accepted: at least")
+
+    def test_mixture(self):
+        self.run_start("out", MIXTURE.replace("number = 100", "number = 192"), 'start = "fcc"')
+
+    def test_too_dense(self):
+        config = self.ROD.replace("number = 288", 'number = 512\nstart = "fcc"').replace("0.2", "0.6")
+        self.write("bad.toml", config)
+        result = self.hardbody("run", "bad.toml")
+        self.assert_refused(result, "bad.toml:5: system.packing_fraction is 0.6", "fcc lattice", "accepted: at most")
+        number = re.search(r"or a number of (\d+)", result.stderr)[1]
+        self.run_small("out", "--set", f"system.number={number}", "production.time=0.1", config=config)
+        self.write("odd.toml", config.replace("512", "511"))
+        self.assert_refused(self.hardbody("run", "odd.toml"), "odd.toml:3: system.number is 511", "accepted: ")
+        most = re.search(r"at most ([0-9.]+)", result.stderr)[1]
+        self.run_small("most", "--set", f"system.packing_fraction={most}", "production.time=0.1", config=config)
+        self.assertEqual(sorted(n for n in os.listdir(self.here) if n.startswith("out")), ["out"])
 
 
 class BadPaths(Case):
@@ -600,7 +1057,7 @@ class CommandLine(Case):
         # A binary with CGAL in it says so where it names its licence.
         licence = re.search("^licence: (.*)$", result.stdout, re.M)[1]
         self.assertEqual("GPL-3.0-or-later" in licence, "CGAL is not built in" not in result.stdout, result.stdout)
-        for command in [[], ["init"], ["run"], ["check"], ["replay"], ["distance"]]:
+        for command in [[], ["init"], ["run"], ["resume"], ["check"], ["replay"], ["distance"]]:
             result = self.hardbody(*command, "--help")
             self.assertEqual(result.returncode, 0)
             self.assertIn("Usage", result.stdout)
@@ -612,7 +1069,7 @@ class CommandLine(Case):
                 self.assert_refused(self.hardbody(*arguments), "hardbody --help")
 
     def test_later_commands(self):
-        for arguments in [["resume", "out"], ["analyze", "out"], ["report", "out", "-o", "x.html"], ["sweep", "--help"]]:
+        for arguments in [["analyze", "out"], ["report", "out", "-o", "x.html"], ["sweep", "--help"]]:
             with self.subTest(arguments):
                 self.assert_refused(self.hardbody(*arguments), arguments[0], "not available yet")
 
@@ -811,6 +1268,26 @@ class Replay(Case):
         inside = self.replay(self.pair(b=body([1.9, 0, 0], [-1, 0, 0], [0, 1, 0])))
         self.assertEqual(inside.returncode, 0)
         self.assertIn("overlapping", inside.stdout)
+
+    def test_superellipsoids(self):
+        brick = {"kind": "superellipsoid", "semi_axes": [1, 2, 1], "exponents": [0.25, 0.25]}
+        ball = {"kind": "ellipsoid", "semi_axes": [1, 1.5, 1]}
+        pair = self.pair(a={**body([0, 0, 0]), "shape": brick}, b={**body([3, 0, 0], [-1, 0, 0]), "shape": ball})
+        result = self.replay(pair)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("superellipsoid, semi-axes (1, 2, 1), exponents (0.25, 0.25)", result.stdout)
+        self.assertRegex(result.stdout, r"distance at that time: (1|0\.9{14}\d*|1\.0{14}\d*) \(separated")
+        self.assertRegex(result.stdout, r"they touch after (1|0\.99999999\d+|1\.00000000\d+)\n")
+        self.assertEqual(result.stdout.count("newton8 from the"), 2)
+        # Without its own: the inertia of uniform density.
+        del pair["a"]["inertia"]
+        self.assertEqual(self.replay(pair).returncode, 0)
+        for exponents, *parts in [([0.25], "a.shape.exponents"), ([0.1, 1], "a.shape.exponents", "0.2 to 1.6")]:
+            wrong = {**pair, "a": {**pair["a"], "shape": {**brick, "exponents": exponents}}}
+            self.assert_refused(self.replay(wrong), "pair.json: ", *parts)
+        # Distances have a wider range than motion.
+        wrong = {**pair, "a": {**pair["a"], "shape": {**brick, "exponents": [0.2, 1]}}}
+        self.assert_refused(self.replay(wrong), "pair.json: ", "0.25 to 1.6")
 
     # Bodies with a face point inside as seed: a call that fails.
     NEWTON = {

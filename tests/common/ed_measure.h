@@ -23,8 +23,8 @@ struct Measured {
   std::uint64_t overlaps = 0;
 };
 
-inline Measured measure(const State& state, const Protocol& protocol) {
-  ed::System system = equilibrated(state, protocol.equilibration);
+/// From an equilibrated state.
+inline Measured measure(ed::System system, const Protocol& protocol) {
   double envelope = 0;
   {
     ed::Simulation simulation(system);
@@ -33,7 +33,7 @@ inline Measured measure(const State& state, const Protocol& protocol) {
     envelope = simulation.envelope();
   }
   ed::Simulation simulation(system, {envelope});
-  ed::Observables observables({state.number, protocol.duration, protocol.longest_lag});
+  ed::Observables observables({system.size(), protocol.duration, protocol.longest_lag});
   while (observables.next_time() <= protocol.duration) {
     simulation.run_until(observables.next_time());
     observables.measure(simulation);
@@ -41,6 +41,10 @@ inline Measured measure(const State& state, const Protocol& protocol) {
   simulation.run_until(protocol.duration);
   return {observables.results(simulation), ed::audit(simulation.system()), simulation.counters().collisions,
           simulation.counters().overlaps};
+}
+
+inline Measured measure(const State& state, const Protocol& protocol) {
+  return measure(equilibrated(state, protocol.equilibration), protocol);
 }
 
 }  // namespace ed_test

@@ -70,10 +70,15 @@ inline bool full_length() {
   return value != nullptr && std::string(value) == "1";
 }
 
+/// The shape of all bodies of a system of one species.
+inline const geom::Ellipsoid& ellipsoid_of(const ed::System& system) {
+  return std::get<geom::Ellipsoid>(system.species.at(0).shape);
+}
+
 /// Bodies of an ideal gas: one in each cell of a cubic grid whose spacing is `spacing`, at rest.
 inline ed::System grid(const ed::Species& kind, int along, double spacing) {
   ed::System system;
-  system.species = kind;
+  system.species = {kind};
   system.box = along * spacing;
   for (int x = 0; x < along; ++x) {
     for (int y = 0; y < along; ++y) {

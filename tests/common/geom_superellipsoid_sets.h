@@ -1,6 +1,6 @@
 #pragma once
 
-/// Pairs of equal superellipsoids in five kinds of relative orientation, three of them where flat faces, edges and
+/// Pairs of superellipsoids in five kinds of relative orientation, three of them where flat faces, edges and
 /// vertices make a distance hard.
 
 #include "common/geom_random.h"
@@ -34,15 +34,17 @@ inline Eigen::Vector3d edge_point(const geom::Superellipsoid& shape, Random& ran
   return surface_point(shape, small_turn(v.normalized(), random));
 }
 
-/// Orientations of two equal bodies, and the normal between them.
+/// Orientations of two bodies, and the normal between them.
 struct Orientation {
   Eigen::Matrix3d R_a, R_b;
   Eigen::Vector3d n;
 };
 
-inline Orientation choose(PairSet set, const geom::Superellipsoid& shape, Random& random) {
+inline Orientation choose(PairSet set, const geom::Superellipsoid& a, const geom::Superellipsoid& b, Random& random) {
   Orientation o{random.pose(0).rotation(), random.pose(0).rotation(), random.direction()};
-  const auto normal_at = [&](const Eigen::Vector3d& x) { return Eigen::Vector3d(shape.gradient(x).normalized()); };
+  const auto normal_at = [](const geom::Superellipsoid& shape, const Eigen::Vector3d& x) {
+    return Eigen::Vector3d(shape.gradient(x).normalized());
+  };
   // Turns B so that its normal m (body frame) faces n.
   const auto face = [&](const Eigen::Vector3d& m) {
     o.R_b = Eigen::Quaterniond::FromTwoVectors(o.R_b * m, -o.n).toRotationMatrix() * o.R_b;
@@ -51,15 +53,15 @@ inline Orientation choose(PairSet set, const geom::Superellipsoid& shape, Random
     case PairSet::random_normal:
       break;
     case PairSet::random_point:
-      o.n = o.R_a * normal_at(surface_point(shape, random.direction()));
+      o.n = o.R_a * normal_at(a, surface_point(a, random.direction()));
       break;
     case PairSet::aligned:
-      o.n = o.R_a * normal_at(surface_point(shape, random.direction()));
+      o.n = o.R_a * normal_at(a, surface_point(a, random.direction()));
       o.R_b = Eigen::AngleAxisd(random.log_uniform(1e-6, 0.1), random.direction()).toRotationMatrix() * o.R_a;
       break;
     case PairSet::edges:
-      o.n = o.R_a * normal_at(edge_point(shape, random));
-      face(normal_at(edge_point(shape, random)));
+      o.n = o.R_a * normal_at(a, edge_point(a, random));
+      face(normal_at(b, edge_point(b, random)));
       break;
     case PairSet::faces: {
       const int k = static_cast<int>(3 * random.uniform());
@@ -72,12 +74,23 @@ inline Orientation choose(PairSet set, const geom::Superellipsoid& shape, Random
 }
 
 /// B placed so that the support points of `n` are `gap` apart along it: the distance, to rounding, for gap >= 0.
-inline void place(const Orientation& o, const geom::Superellipsoid& shape, double gap, geom::Pose& X_WA,
-                  geom::Pose& X_WB) {
-  const Eigen::Vector3d s_a = o.R_a * shape.support(o.R_a.transpose() * o.n).point;
-  const Eigen::Vector3d s_b = o.R_b * shape.support(o.R_b.transpose() * -o.n).point;
+inline void place(const Orientation& o, const geom::Superellipsoid& a, const geom::Superellipsoid& b, double gap,
+                  geom::Pose& X_WA, geom::Pose& X_WB) {
+  const Eigen::Vector3d s_a = o.R_a * a.support(o.R_a.transpose() * o.n).point;
+  const Eigen::Vector3d s_b = o.R_b * b.support(o.R_b.transpose() * -o.n).point;
   X_WA = geom::Pose(o.R_a, Eigen::Vector3d::Zero());
   X_WB = geom::Pose(o.R_b, s_a - s_b + gap * o.n);
 }
+
+/// The same of two equal bodies.
+/// @{
+inline Orientation choose(PairSet set, const geom::Superellipsoid& shape, Random& random) {
+  return choose(set, shape, shape, random);
+}
+inline void place(const Orientation& o, const geom::Superellipsoid& shape, double gap, geom::Pose& X_WA,
+                  geom::Pose& X_WB) {
+  place(o, shape, shape, gap, X_WA, X_WB);
+}
+/// @}
 
 }  // namespace geom_test

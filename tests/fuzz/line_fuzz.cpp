@@ -50,7 +50,7 @@ bool is_slow(const std::string& line) {
   try {
     std::string id;
     const hardbody::DistanceQuery query = hardbody::parse_query(line, id);
-    return !fuzz::are_shallow(query.a, query.X_WA, query.b, query.X_WB) && std::hash<std::string>()(line) % 64 != 0;
+    return !fuzz::are_quick(query.a, query.X_WA, query.b, query.X_WB) && std::hash<std::string>()(line) % 64 != 0;
   } catch (const hardbody::InputError&) {
     return false;
   }

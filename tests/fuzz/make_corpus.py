@@ -1,4 +1,4 @@
-"""Writes the inputs that the fuzzers start from: `make_corpus.py DIR` fills DIR/line and DIR/geom.
+"""Writes the inputs that the fuzzers start from: `make_corpus.py DIR` fills DIR/line, DIR/geom and DIR/checkpoint.
 
 The same files every time: the draws are seeded.
 """
@@ -36,7 +36,10 @@ def lines():
 def main(directory):
     draws = random.Random(1)
     geom = [bytes(draws.randrange(256) for _ in range(160)) for _ in range(64)]
-    for name, inputs in [("line", [line.encode() for line in lines()]), ("geom", geom)]:
+    # A byte that says of what, then changes of three bytes each, or a payload.
+    checkpoint = [bytes([k % 3]) + bytes(draws.randrange(256) for _ in range(3 * (k % 40))) for k in range(120)]
+    line = [line.encode() for line in lines()]
+    for name, inputs in [("line", line), ("geom", geom), ("checkpoint", checkpoint)]:
         os.makedirs(os.path.join(directory, name), exist_ok=True)
         for k, data in enumerate(inputs):
             with open(os.path.join(directory, name, f"seed{k:03}"), "wb") as file:

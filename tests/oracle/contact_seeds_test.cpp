@@ -21,6 +21,7 @@ using ed_test::Inertia;
 using geom::Ellipsoid;
 using geom::Pose;
 using geom::SeedStatus;
+using geom::Shape;
 using geom::WitnessPair;
 
 struct Source {
@@ -34,10 +35,14 @@ struct Source {
 std::vector<Source> sources() {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   std::vector<Source> all{
-      {"fcl", [](auto&&... pair) { return geom::fcl_seed(pair...); }, 300, 300, true},
+      {"fcl",
+       [](const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB) {
+         return geom::fcl_seed(std::get<Ellipsoid>(a), X_WA, std::get<Ellipsoid>(b), X_WB);
+       },
+       300, 300, true},
       {"declining", [](auto&&...) { return WitnessPair{}; }, 300, 300, true},
       {"inside",
-       [](const Ellipsoid&, const Pose& X_WA, const Ellipsoid&, const Pose& X_WB) {
+       [](const Shape&, const Pose& X_WA, const Shape&, const Pose& X_WB) {
          return WitnessPair{X_WA.position(), X_WB.position(), SeedStatus::usable};
        },
        300, 300, false},
@@ -49,7 +54,11 @@ std::vector<Source> sources() {
        300, 300, false},
   };
 #if HARDBODY_WITH_CGAL
-  all.push_back({"cgal", [](auto&&... pair) { return geom::cgal_seed(pair...); }, 100, 20, true});
+  all.push_back({"cgal",
+                 [](const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB) {
+                   return geom::cgal_seed(std::get<Ellipsoid>(a), X_WA, std::get<Ellipsoid>(b), X_WB);
+                 },
+                 100, 20, true});
 #endif
   return all;
 }
@@ -58,7 +67,7 @@ ed::ContactOptions options_with(const Source& source, ed::DistanceMethod method,
   ed::ContactOptions options;
   options.finder = ed::Finder::bracketing;
   options.distance = method;
-  options.seed = [&source, &calls](const Ellipsoid& a, const Pose& X_WA, const Ellipsoid& b, const Pose& X_WB) {
+  options.seed = [&source, &calls](const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB) {
     ++calls;
     return source.function(a, X_WA, b, X_WB);
   };

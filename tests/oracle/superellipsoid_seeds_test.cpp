@@ -196,6 +196,128 @@ TEST(SuperellipsoidOracle, FclAgreesToTheTessellationOrIsWrong) {
 
 // ---------------------------------------------------------------------------------------------------------------------
 
+/// A body as FCL's GJK sees it.
+struct Fed {
+  const Shape* shape;
+  const Pose* X_W;
+};
+
+Vector3d fed_support(const void* body, const Vector3d& direction) {
+  const auto& fed = *static_cast<const Fed*>(body);
+  const Eigen::Matrix3d& R = fed.X_W->rotation();
+  return fed.X_W->position() + R * support(*fed.shape, R.transpose() * direction).point;
+}
+
+/// FCL's GJK on the bodies as they are: disagreements of more than its tolerance, an absolute length, are its own where
+/// our bounds say so.
+TEST(SuperellipsoidOracle, FclsGjkOnOurSupportFunctionsAgreesOrIsWrong) {
+  Comparison comparison;
+  const int pairs = finder_test::full_run() ? 50'000 : 3'000;
+  const int aborts = geom_test::run_forked(pairs, comparison, [&](int i, Comparison& record) {
+    Random random(static_cast<std::uint64_t>(i) + 1);
+    const auto shape = [&] {
+      return Superellipsoid(random.biaxial(3).semi_axes(), any_exponent(random), any_exponent(random));
+    };
+    const Shape a = shape();
+    const Shape b = shape();
+    const auto& barr_a = std::get<Superellipsoid>(a);
+    const auto& barr_b = std::get<Superellipsoid>(b);
+    const ManufacturedPair pair = geom_test::manufacture(barr_a, barr_b, random.log_uniform(1e-3, 10), random);
+    const DistanceResult ours = distance(a, pair.X_WA, b, pair.X_WB);
+    ++record.pairs;
+    const double rounding = 1e-12 * (pair.size + pair.X_WA.position().norm());
+    const double g = distance_lower_bound(a, pair.X_WA, b, pair.X_WB, ours.normal) - rounding;
+    const double upper = (ours.point_b - ours.point_a).norm() + offset(barr_a, pair.X_WA, ours.point_a) +
+                         offset(barr_b, pair.X_WB, ours.point_b) + rounding;
+    if (ours.status != DistanceStatus::separated || !(upper - g <= 0.1 * kFclTolerance)) {
+      ++record.undecided;
+      return;
+    }
+    const Fed fed_a{&a, &pair.X_WA};
+    const Fed fed_b{&b, &pair.X_WB};
+    const double fcl = geom_test::fcl_gjk_distance(&fed_a, &fed_b, fed_support);
+    record.worst = std::max({record.worst, g - fcl, fcl - upper});
+    ++(g - fcl > kFclTolerance ? record.fcl_near : fcl - upper > kFclTolerance ? record.fcl_far : record.agree);
+  });
+  std::printf(
+      "%d pairs, %d agree within %g; FCL wrong, certified: %d too far, %d too near or overlapping (by up to %.1e); %d "
+      "aborts, %d undecided\n",
+      comparison.pairs, comparison.agree, kFclTolerance, comparison.fcl_far, comparison.fcl_near, comparison.worst,
+      aborts, comparison.undecided);
+  EXPECT_EQ(comparison.undecided, 0);
+  EXPECT_GE(comparison.agree, 1'000);
+  EXPECT_LE(aborts, pairs / 100);
+}
+
+constexpr std::array kMethods{"`distance`", "FCL: ellipsoids its own, others polytopes of 500 vertices",
+                              "FCL's GJK, fed with our support functions", "libccd: MPR of inflated bodies",
+                              "CGAL: polytopes of 200 vertices"};
+constexpr int kMostErrors = 2'000;
+
+/// Of the distance over the size of the pair; infinite: none, or the bodies are said to overlap.
+struct Errors {
+  std::array<std::array<double, kMostErrors>, kMethods.size()> of{};
+};
+
+double length_of(const WitnessPair& seed) {
+  return seed.status == SeedStatus::usable ? (seed.point_b - seed.point_a).norm() : HUGE_VAL;
+}
+
+/// What each library says of the same pair, apart by 1e-3 to 10.
+void try_libraries(bool ellipsoids, std::size_t i, Errors& errors) {
+  Random random(i + 1);
+  const auto shape = [&]() -> Shape {
+    const Ellipsoid body = random.biaxial(3);
+    if (ellipsoids) return body;
+    return Superellipsoid(body.semi_axes(), any_exponent(random), any_exponent(random));
+  };
+  const Shape a = shape();
+  const Shape b = shape();
+  const ManufacturedPair pair = std::visit(
+      [&](const auto& s, const auto& t) { return geom_test::manufacture(s, t, random.log_uniform(1e-3, 10), random); },
+      a, b);
+  const double wanted = distance_lower_bound(a, pair.X_WA, b, pair.X_WB, pair.normal);
+  const auto error = [&](double distance) { return std::abs(distance - wanted) / pair.size; };
+  for (auto& method : errors.of) method[i] = HUGE_VAL;  // what remains of the pair if the process ends
+  errors.of[0][i] = error(distance(a, pair.X_WA, b, pair.X_WB).distance);
+  errors.of[1][i] = error(length_of(fcl_seed(a, pair.X_WA, b, pair.X_WB)));
+  errors.of[3][i] = error(length_of(ccd_seed(a, pair.X_WA, b, pair.X_WB)));
+#if HARDBODY_WITH_CGAL
+  errors.of[4][i] = error(length_of(cgal_seed(a, pair.X_WA, b, pair.X_WB)));
+#endif
+  const Fed fed_a{&a, &pair.X_WA};
+  const Fed fed_b{&b, &pair.X_WB};
+  const double gjk = geom_test::fcl_gjk_distance(&fed_a, &fed_b, fed_support);
+  errors.of[2][i] = gjk >= 0 ? error(gjk) : HUGE_VAL;
+}
+
+/// The table of docs/accuracy.md.
+TEST(SuperellipsoidOracle, ErrorsOfEachLibraryOnTheSamePairs) {
+  const int pairs = scaled(200, kMostErrors);
+  for (const bool ellipsoids : {true, false}) {
+    static Errors errors;  // too large for the stack
+    const int aborts = geom_test::run_forked(
+        pairs, errors, [&](int i, Errors& record) { try_libraries(ellipsoids, static_cast<std::size_t>(i), record); });
+    std::printf("%s, %d pairs, %d aborts of FCL's GJK\n| method | median error | largest error | none |\n",
+                ellipsoids ? "ellipsoids" : "superellipsoids", pairs, aborts);
+    for (std::size_t k = 0; k < kMethods.size(); ++k) {
+      auto* const begin = errors.of[k].begin();
+      auto* const end = begin + pairs;
+      std::sort(begin, end);
+      const auto answers = std::lower_bound(begin, end, HUGE_VAL) - begin;
+      if (answers == 0) continue;  // not built in
+      std::printf("| %s | %.0e | %.0e | %ld |\n", kMethods[k], begin[answers / 2], begin[answers - 1],
+                  static_cast<long>(pairs - answers));
+      // Ours is exact; of the others it is enough that they mean the same question.
+      EXPECT_LE(begin[answers - 1], k == 0 ? 1e-12 : 0.1) << kMethods[k];
+      EXPECT_LE(begin[answers / 2], k == 0 ? 1e-15 : 1e-2) << kMethods[k];
+      EXPECT_GE(static_cast<double>(answers), (k == 0 ? 1.0 : 0.95) * pairs) << kMethods[k];
+    }
+  }
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+
 struct Pair {
   Shape a, b;
   Pose X_WA, X_WB;
@@ -294,6 +416,30 @@ TEST(SuperellipsoidOracle, SeedsNeverEndTheProcess) {
   expect_no_abort("ccd", scaled(2'000, 100'000), [](const auto&... pair) { return ccd_seed(pair...); });
 #if HARDBODY_WITH_CGAL
   expect_no_abort("cgal", scaled(200, 10'000), [](const auto&... pair) { return cgal_seed(pair...); });
+#endif
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+
+template <class Seed>
+void expect_alike(const Seed& seed_of) {
+  for (int i = 0; i < 40; ++i) {
+    const Pair p = hostile_pair(i);
+    const WitnessPair seed = seed_of(p.a, p.X_WA, p.b, p.X_WB);
+    const WitnessPair inside =
+        std::visit([&](const auto& a, const auto& b) { return seed_of(a, p.X_WA, b, p.X_WB); }, p.a, p.b);
+    ASSERT_EQ(seed.status, inside.status) << i;
+    if (seed.status != SeedStatus::usable) continue;
+    EXPECT_EQ(seed.point_a, inside.point_a) << i;
+    EXPECT_EQ(seed.point_b, inside.point_b) << i;
+  }
+}
+
+TEST(SuperellipsoidOracle, SeedsOfShapesChosenAtRunTimeAreThoseOfTheShapesInside) {
+  expect_alike([](const auto&... pair) { return fcl_seed(pair...); });
+  expect_alike([](const auto&... pair) { return ccd_seed(pair...); });
+#if HARDBODY_WITH_CGAL
+  expect_alike([](const auto&... pair) { return cgal_seed(pair...); });
 #endif
 }
 

@@ -92,7 +92,7 @@ def exported(library, nm):
     signatures = collections.defaultdict(set)
     for line in output.splitlines():
         _, kind, signature = line.split(maxsplit=2)
-        name = without_nested(signature.split("(")[0], "<>")
+        name = re.sub(r"\[abi:\w+\]", "", without_nested(signature.split("(")[0], "<>"))
         # Weak: type information of the standard library's classes, which everybody may have.
         if kind in "TDBR":
             signatures[name].add(signature)

@@ -1,5 +1,6 @@
 // Nothing allocates in the event loop in steady state: every form of operator new of this program counts its calls.
 
+#include <common/ed_families.h>
 #include <common/ed_states.h>
 
 #include <ed/ed.h>
@@ -11,6 +12,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <new>
+#include <string>
 
 namespace {
 
@@ -87,17 +89,28 @@ struct Length {
   std::uint64_t collisions = 10000;
 };
 
-void expect_no_allocation(const State& state, const ed::SimulationOptions& options = {}, const Length& length = {}) {
-  ed::Simulation simulation(ed_test::start(state), options);
+void expect_no_allocation(const std::string& what, const ed::System& start, const ed::SimulationOptions& options,
+                          const Length& length) {
+  ed::Simulation simulation(start, options);
   simulation.run_collisions(length.warm_up);
   const std::uint64_t before = allocations;
   const std::uint64_t rebuilds = simulation.counters().neighbour_rebuilds;
   simulation.run_collisions(length.collisions);
   const std::uint64_t count = allocations - before;
-  std::printf("%s: %llu allocations in %llu collisions\n", ed_test::describe(state).c_str(),
-              static_cast<unsigned long long>(count), static_cast<unsigned long long>(length.collisions));
+  std::printf("%s: %llu allocations in %llu collisions\n", what.c_str(), static_cast<unsigned long long>(count),
+              static_cast<unsigned long long>(length.collisions));
   EXPECT_EQ(count, 0U);
   EXPECT_GT(simulation.counters().neighbour_rebuilds, rebuilds + length.collisions / 100);
+}
+
+void expect_no_allocation(const State& state, const ed::SimulationOptions& options = {}, const Length& length = {}) {
+  expect_no_allocation(ed_test::describe(state), ed_test::start(state), options, length);
+}
+
+TEST(Allocations, NoneInSteadyStateOfGeneralBodies) {
+  for (const ed_test::Family& family : ed_test::families(216)) {
+    expect_no_allocation(family.name, ed_test::start(family, 0.40), {}, {5000, 3000});
+  }
 }
 
 TEST(Allocations, NoneInSteadyStateOfRods) {
@@ -129,8 +142,7 @@ TEST(Allocations, NoneByDistancesThatNewtonsMethodDeclines) {
   ed::SimulationOptions options;
   options.contact.finder = ed::Finder::bracketing;
   options.contact.distance = ed::DistanceMethod::newton5;
-  options.contact.seed = [](const geom::Ellipsoid&, const geom::Pose& X_WA, const geom::Ellipsoid&,
-                            const geom::Pose& X_WB) {
+  options.contact.seed = [](const geom::Shape&, const geom::Pose& X_WA, const geom::Shape&, const geom::Pose& X_WB) {
     return geom::WitnessPair{X_WA.position(), X_WB.position(), geom::SeedStatus::usable};
   };
   expect_no_allocation({3, 0.40, 256, Inertia::paper, 56}, options, {4000, 1000});

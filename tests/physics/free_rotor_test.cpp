@@ -26,12 +26,12 @@ constexpr int kAlong = 40;
 ed::System free_gas(double aspect_ratio, Inertia inertia, std::uint64_t seed) {
   ed::System system = ed_test::grid(ed_test::species(aspect_ratio, inertia), kAlong, 100);
   ed::Random random(seed);
-  const Eigen::Vector3d thermal = system.species.inertia.cwiseSqrt().cwiseInverse();
+  const Eigen::Vector3d thermal = system.species[0].inertia.cwiseSqrt().cwiseInverse();
   for (ed::Body& body : system.bodies) {
     body.rotation = random.rotation();
     body.velocity = random.normal3();
     Eigen::Vector3d omega = random.normal3().cwiseProduct(thermal);
-    if (!system.species.spins) omega.z() = 0;
+    if (!system.species[0].spins) omega.z() = 0;
     body.angular_velocity = body.rotation * omega;
   }
   return system;
@@ -40,7 +40,7 @@ ed::System free_gas(double aspect_ratio, Inertia inertia, std::uint64_t seed) {
 void expect_c2(double aspect_ratio, Inertia inertia, const std::string& column, std::uint64_t seed) {
   const ed_test::ReferenceTable table("free_rotor_c2.csv");
   const ed::System system = free_gas(aspect_ratio, inertia, seed);
-  const double unit = std::sqrt(system.species.inertia.x());  // of time: sqrt(I / kT)
+  const double unit = std::sqrt(system.species[0].inertia.x());  // of time: sqrt(I / kT)
   ed::Simulation simulation(system);
   ed::Snapshot origin;
   ed::Snapshot now;

@@ -2,74 +2,33 @@
 // of their envelopes, where runs are cut into pieces, and when they are looked at.
 
 #include <common/ed_hash.h>
+#include <common/ed_same_collisions.h>
 #include <common/ed_states.h>
+#include <common/geom_batch.h>
 
 #include <ed/ed.h>
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
-#include <cstdio>
-#include <limits>
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
-#include <vector>
 
 namespace {
 
+using ed_test::expect_same;
+using ed_test::first_collisions;
 using ed_test::Inertia;
+using ed_test::Mode;
 using ed_test::State;
-
-/// Neighbours are looked at from other times and with other normals, so contacts are found with other rounding errors
-/// (about 1e-15 of the time), which the dynamics multiplies; in the first 1000 collisions, some four a body, by less
-/// than 1e3. A wrong or missing collision changes times by a good part of the mean time between collisions, 1e-4.
-constexpr double kSameTime = 1e-9;
-
-constexpr std::size_t kNumber = 1000;
-
-std::vector<ed::Collision> first_collisions(const ed::System& system, const ed::SimulationOptions& options,
-                                            std::size_t number = kNumber) {
-  ed::Simulation simulation(system, options);
-  simulation.record_collisions(number);
-  simulation.run_collisions(number);
-  EXPECT_EQ(simulation.counters().overlaps, 0U);
-  return simulation.collisions();
-}
-
-/// The largest difference of times.
-double compare(const std::vector<ed::Collision>& a, const std::vector<ed::Collision>& b, const std::string& what) {
-  EXPECT_EQ(a.size(), kNumber);
-  EXPECT_EQ(b.size(), kNumber);
-  double worst = 0;
-  for (std::size_t k = 0; k < std::min(a.size(), b.size()); ++k) {
-    if (a[k].i != b[k].i || a[k].j != b[k].j) {
-      ADD_FAILURE() << what << ": collision " << k << " is of " << b[k].i << " and " << b[k].j << " instead of "
-                    << a[k].i << " and " << a[k].j;
-      return std::numeric_limits<double>::infinity();
-    }
-    worst = std::max(worst, std::abs(a[k].time - b[k].time));
-    EXPECT_GE(b[k].time, b[k > 0 ? k - 1 : 0].time) << what;
-  }
-  return worst;
-}
 
 void expect_same_collisions(const State& state, double thin, double thick) {
   const ed::System system = ed_test::equilibrated(state, 0.5);
   ASSERT_NE(ed::Simulation(system, {thin}).envelope(), ed::Simulation(system, {thick}).envelope());
-  const double worst =
-      compare(first_collisions(system, {thin}), first_collisions(system, {thick}), ed_test::describe(state));
-  std::printf("%s: times differ by %.1e at most\n", ed_test::describe(state).c_str(), worst);
-  EXPECT_LE(worst, kSameTime);
+  expect_same(first_collisions(system, {thin}), first_collisions(system, {thick}), ed_test::describe(state));
 }
-
-struct Mode {
-  const char* name;
-  ed::Finder finder;
-  ed::Neighbours neighbours;
-  ed::DistanceMethod distance = ed::DistanceMethod::dual;
-  ed::ContactRoot root = ed::ContactRoot::newton;
-};
 
 /// The paper's finder, lists and distances, in every combination that differs, against the default path.
 void expect_same_collisions_in_every_mode(const State& state) {
@@ -88,15 +47,7 @@ void expect_same_collisions_in_every_mode(const State& state) {
              ed::ContactRoot::one_dimensional},
         Mode{"bracketing, obp, newton5", Finder::bracketing, Neighbours::obp, DistanceMethod::newton5},
         Mode{"bracketing, obp, newton8", Finder::bracketing, Neighbours::obp, DistanceMethod::newton8}}) {
-    ed::SimulationOptions options;
-    options.neighbours = mode.neighbours;
-    options.contact.finder = mode.finder;
-    options.contact.distance = mode.distance;
-    options.contact.root = mode.root;
-    options.contact.eps_d = 1e-6;
-    const double worst = compare(reference, first_collisions(system, options), mode.name);
-    std::printf("%s, %s: times differ by %.1e at most\n", ed_test::describe(state).c_str(), mode.name, worst);
-    EXPECT_LE(worst, kSameTime) << mode.name;
+    expect_same(reference, first_collisions(system, mode.options(1e-6)), ed_test::describe(state) + ", " + mode.name);
   }
 }
 
@@ -126,6 +77,43 @@ TEST(SameCollisions, WhateverTheEnvelopeOfSpinningDiscs) {
 
 TEST(SameCollisions, WhateverTheEnvelopeOfSpheres) {
   expect_same_collisions({1, 0.45, 256, Inertia::paper, 43}, 0.1, 0.8);
+}
+
+/// Pairs looked at one by one, and in vectors of every instruction set: the same bits, not only the same collisions.
+void expect_same_bits_in_vectors(const State& state) {
+  const ed::System system = ed_test::equilibrated(state, 0.5);
+  const auto run = [&](std::optional<geom::InstructionSet> batches) {
+    ed::SimulationOptions options;
+    options.batches = batches;
+    ed::Simulation simulation(system, options);
+    simulation.record_collisions(1000);
+    simulation.run_collisions(2000);
+    return simulation;
+  };
+  const ed::Simulation one_by_one = run(std::nullopt);
+  for (const geom::InstructionSet set : geom_test::instruction_sets()) {
+    const ed::Simulation in_vectors = run(set);
+    const std::string what = ed_test::describe(state) + ", " + geom::to_string(set);
+    expect_same(one_by_one.collisions(), in_vectors.collisions(), what);
+    EXPECT_EQ(ed_test::hash_of(one_by_one), ed_test::hash_of(in_vectors)) << what;
+    EXPECT_EQ(one_by_one.counters().predictions, in_vectors.counters().predictions) << what;
+    EXPECT_EQ(one_by_one.counters().evaluations, in_vectors.counters().evaluations) << what;
+    EXPECT_EQ(one_by_one.counters().kernel_calls, in_vectors.counters().kernel_calls) << what;
+    EXPECT_EQ(one_by_one.counters().refinements, in_vectors.counters().refinements) << what;
+    EXPECT_EQ(one_by_one.counters().candidate_tests, in_vectors.counters().candidate_tests) << what;
+  }
+}
+
+TEST(SameBits, OfRodsOneByOneAndInVectors) {
+  expect_same_bits_in_vectors({3, 0.40, 512, Inertia::paper, 61});
+}
+
+TEST(SameBits, OfSpinningDiscsOneByOneAndInVectors) {
+  expect_same_bits_in_vectors({0.3, 0.40, 256, Inertia::uniform, 62});
+}
+
+TEST(SameBits, OfSpheresOneByOneAndInVectors) {
+  expect_same_bits_in_vectors({1, 0.45, 256, Inertia::paper, 63});
 }
 
 /// Runs to `time` in slices of irregular length, most of them without an event in them, and looks at the state in

@@ -34,13 +34,13 @@ struct MovingPair {
 
 ed::Motion motion_of(const ed::System& system, int i, const Vector3d& position) {
   const ed::Body& body = system.bodies[static_cast<std::size_t>(i)];
-  return {geom::Pose(body.rotation, position), body.velocity, body.angular_velocity, system.species.inertia, 0};
+  return {geom::Pose(body.rotation, position), body.velocity, body.angular_velocity, system.species[0].inertia, 0};
 }
 
 /// All pairs whose bounding spheres are at most 0.3 apart.
 std::vector<MovingPair> neighbours(const ed::System& system) {
   std::vector<MovingPair> pairs;
-  const double reach = 2 * system.species.shape.bounding_radius() + 0.3;
+  const double reach = 2 * ed_test::ellipsoid_of(system).bounding_radius() + 0.3;
   for (int i = 0; i < system.size(); ++i) {
     for (int j = i + 1; j < system.size(); ++j) {
       const Vector3d r_i = system.bodies[static_cast<std::size_t>(i)].position;
@@ -92,8 +92,8 @@ void run(std::array<Method, 5>& methods, double aspect_ratio, long contacts, std
     const ed::System system = simulation.system();
     for (const MovingPair& pair : neighbours(system)) {
       const ed::ContactResult certified =
-          ed::time_of_contact(system.species.shape, pair.a, system.species.shape, pair.b, kHorizon);
-      for (Method& method : methods) compare(system.species.shape, pair, method, certified);
+          ed::time_of_contact(ed_test::ellipsoid_of(system), pair.a, ed_test::ellipsoid_of(system), pair.b, kHorizon);
+      for (Method& method : methods) compare(ed_test::ellipsoid_of(system), pair, method, certified);
     }
   }
 }

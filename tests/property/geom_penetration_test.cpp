@@ -123,5 +123,58 @@ TEST(Penetration, OfSuperellipsoidsIsTheLeastOverAllDirections) {
   }
 }
 
+struct LocalTally {
+  long pairs = 0;
+  long deep = 0;      ///< deeper than what is certified: the shortest way out needs the search over all normals
+  long searched = 0;  ///< the local answer needed it too
+  long longer = 0;    ///< than the shortest way out
+  long wrong = 0;
+};
+
+/// Of two bodies that overlap.
+template <class A, class B>
+void try_local(const A& a, const B& b, Random& random, LocalTally& tally) {
+  const double depth = random.log_uniform(1e-3, 1) * (a.inscribed_radius() + b.inscribed_radius());
+  const auto pair = geom_test::manufacture(a, b, -depth, random);
+  const DistanceResult shortest = distance(a, pair.X_WA, b, pair.X_WB);
+  const DistanceResult local = distance(a, pair.X_WA, b, pair.X_WB, {.penetration = Penetration::local});
+  ++tally.pairs;
+  const double slack = 1e-12 * pair.size;
+  const bool deep = shortest.iterations > 2 * kMaxIterations;
+  tally.deep += deep;
+  tally.searched += deep && local.iterations >= shortest.iterations;
+  tally.longer += local.distance < shortest.distance - slack;
+  // Pushed out past an edge or a face that is turned the other way, the bodies may be apart.
+  const double g = geom_test::lower_bound(a, pair.X_WA, b, pair.X_WB, local.normal);
+  const bool right = local.status == shortest.status && std::abs(g - local.distance) <= slack &&
+                     local.distance <= shortest.distance + shortest.error_bound + slack;
+  if (!right) ++tally.wrong;
+}
+
+/// A local answer is one of the ways out, and hardly ever needs the search: some point is found that both bodies hold.
+TEST(Penetration, LocalIsAWayOutThatNeedsNoSearch) {
+  const int pairs = full() ? 4000 : 100;
+  for (const double ratio : {1.0, 3.0, 10.0}) {
+    for (const double smallest : {1.0, 0.05}) {
+      Random random(3);
+      LocalTally tally;
+      const auto axes = [&](double size) { return Vector3d(size * random.biaxial(1.001 * ratio).semi_axes()); };
+      for (int k = 0; k < pairs; ++k) {
+        const Vector3d a = axes(1);
+        const Vector3d b = axes(random.log_uniform(smallest, 1));
+        const auto exponent = [&] { return random.uniform(0.2, 1.6); };
+        const Superellipsoid barr(a, exponent(), exponent());
+        try_local(Ellipsoid(a), Ellipsoid(b), random, tally);
+        try_local(barr, Superellipsoid(b, exponent(), exponent()), random, tally);
+        try_local(barr, Ellipsoid(b), random, tally);
+      }
+      std::printf("ratios to %-3g sizes to %-5g %ld pairs, %ld deep, of these %ld searched; %ld longer, %ld wrong\n",
+                  ratio, smallest, tally.pairs, tally.deep, tally.searched, tally.longer, tally.wrong);
+      EXPECT_EQ(tally.wrong, 0);
+      EXPECT_LE(static_cast<double>(tally.searched), 0.01 * static_cast<double>(tally.deep));
+    }
+  }
+}
+
 }  // namespace
 }  // namespace geom

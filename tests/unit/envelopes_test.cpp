@@ -26,7 +26,7 @@ namespace {
 
 using ed::internal::AxisMotion;
 using ed::internal::BodyFrame;
-using ed::internal::CellEnvelopes;
+using CellEnvelopes = ed::internal::CellEnvelopes<ed::internal::UniaxialBodies>;
 using ed::internal::DilatedEnvelopes;
 using ed::internal::OrientedEnvelopes;
 using ed::internal::UniaxialInertia;
@@ -128,7 +128,7 @@ Exits sample_exits(const Shape& shape, bool spins, std::uint64_t seed) {
     const Vector3d r0 = motion.position - ago * motion.velocity;
     const Vector3d u0 = axis_at(motion, -ago);
     const bool wrapped = random.uniform() < 0.3;
-    envelope.place(0, r0 + Vector3d(wrapped ? kBox : 0, 0, 0), u0, Vector3d::Zero());
+    envelope.place(0, r0 + Vector3d(wrapped ? kBox : 0, 0, 0), u0);
     const double exit = envelope.exit_time(0, motion, motion.position, motion.axis(), 0, kBox);
     EXPECT_GE(exit, 0);
     ++exits.trials;
@@ -166,21 +166,21 @@ TEST(ExitTime, OfSpheresIsExact) {
   const Shape sphere{1, 1};
   DilatedEnvelopes envelope = envelopes(sphere, 0.5, 0.5);
   const AxisMotion motion = simple_motion({0, 2, 0}, 7);
-  envelope.place(0, Vector3d(0, -0.25, 0), motion.axis(), Vector3d::Zero());
+  envelope.place(0, Vector3d(0, -0.25, 0), motion.axis());
   EXPECT_NEAR(envelope.exit_time(0, motion, Vector3d::Zero(), motion.axis(), 3, 100), 3 + 0.125, 1e-15);
 }
 
 TEST(ExitTime, OfABodyThatRestsIsNever) {
   const AxisMotion motion = simple_motion(Vector3d::Zero(), 0);
   DilatedEnvelopes envelope = envelopes({3, 1}, 0.5, 0.5);
-  envelope.place(0, Vector3d::Zero(), motion.axis(), Vector3d::Zero());
+  envelope.place(0, Vector3d::Zero(), motion.axis());
   EXPECT_EQ(envelope.exit_time(0, motion, Vector3d::Zero(), motion.axis(), 3, 100), ed::internal::kNever);
 }
 
 TEST(ExitTime, IsNowForABodyThatIsOutside) {
   const AxisMotion motion = simple_motion({0, 0, -1}, 0);
   DilatedEnvelopes envelope = envelopes({3, 1}, 0.5, 0.4);
-  envelope.place(0, Vector3d::Zero(), motion.axis(), Vector3d::Zero());
+  envelope.place(0, Vector3d::Zero(), motion.axis());
   EXPECT_EQ(envelope.exit_time(0, motion, Vector3d(0, 0, 0.45), motion.axis(), 3, 100), 3);
   EXPECT_EQ(envelope.exit_time(0, motion, Vector3d::Zero(), Vector3d::UnitY(), 3, 100), 3);
 }
@@ -225,8 +225,8 @@ TEST(MayMeet, NeverRejectsAPairCloserThanTwiceTheThickness) {
       const double share = trial % 2 == 0 ? random.uniform() : 1 - log_uniform(random, 1e-12, 1e-2);
       const PlacedPair pair = place_pair(shape, 2 * delta * share, random);
       DilatedEnvelopes envelope = envelopes(shape, delta, delta);
-      envelope.place(0, Vector3d::Zero(), pair.u_i, Vector3d::Zero());
-      envelope.place(1, pair.r, pair.u_k, Vector3d::Zero());
+      envelope.place(0, Vector3d::Zero(), pair.u_i);
+      envelope.place(1, pair.r, pair.u_k);
       Vector3d normal = Vector3d::Zero();
       ASSERT_TRUE(envelope.may_meet(0, 1, pair.r, normal))
           << "a = " << shape.a << ", b = " << shape.b << ", delta = " << delta << ", share = " << share;
@@ -243,8 +243,8 @@ TEST(MayMeet, TakesOverlappingPairs) {
     for (int trial = 0; trial < 2000; ++trial) {
       const PlacedPair pair = place_pair(shape, -0.5 * random.uniform() * std::min(shape.a, shape.b), random);
       DilatedEnvelopes envelope = envelopes(shape, 0.1, 0.1);
-      envelope.place(0, Vector3d::Zero(), pair.u_i, Vector3d::Zero());
-      envelope.place(1, pair.r, pair.u_k, Vector3d::Zero());
+      envelope.place(0, Vector3d::Zero(), pair.u_i);
+      envelope.place(1, pair.r, pair.u_k);
       Vector3d normal = Vector3d::Zero();
       ASSERT_TRUE(envelope.may_meet(0, 1, pair.r, normal));
     }
@@ -260,8 +260,8 @@ TEST(MayMeet, RejectsNearlyAllPairsThatCannot) {
       const double delta = 0.2;
       const PlacedPair pair = place_pair(shape, 2 * delta * 1.02, random);
       DilatedEnvelopes envelope = envelopes(shape, delta, delta);
-      envelope.place(0, Vector3d::Zero(), pair.u_i, Vector3d::Zero());
-      envelope.place(1, pair.r, pair.u_k, Vector3d::Zero());
+      envelope.place(0, Vector3d::Zero(), pair.u_i);
+      envelope.place(1, pair.r, pair.u_k);
       Vector3d normal = Vector3d::Zero();
       rejected += envelope.may_meet(0, 1, pair.r, normal) ? 0 : 1;
     }
@@ -273,7 +273,7 @@ TEST(MayMeet, RejectsNearlyAllPairsThatCannot) {
 
 TEST(Envelopes, ThickestAndThinnestFitTheBox) {
   const double R = 1.7;
-  const double box = ed::internal::smallest_box(R);
+  const double box = ed::internal::smallest_image_box(R);
   // In the smallest box the thickest envelope allowed is the thinnest in use.
   EXPECT_NEAR(ed::internal::thickest_envelope(box, R), ed::internal::kThinnestEnvelope * R, 1e-15);
   // Centres of neighbours are within 2 R + 4 delta, which is half the box.
@@ -307,12 +307,12 @@ double follow_to_the_exit(const OrientedEnvelopes& envelopes, const AxisMotion& 
                           const Shape& shape) {
   double now = 0;
   for (int look = 0; look < 5000; ++look) {
-    const double exit = envelopes.exit_time(0, motion, motion.position_at(now), axis_at(motion, now), now, 1000);
+    const double exit = envelopes.exit_time(0, motion, motion.position_at(now), now, 1000);
     for (int k = 0; k <= 10; ++k) {
       const double t = now + (exit - now) * k / 10;
       worst = std::max(worst, beyond_box(shape, envelopes.box(0), motion.position_at(t), axis_at(motion, t)));
     }
-    if (exit - now < envelopes.worthwhile(motion)) return exit;
+    if (exit - now < envelopes.worthwhile(0, motion)) return exit;
     now = exit;
   }
   ADD_FAILURE() << "the exit is never reached";
@@ -335,7 +335,7 @@ TEST(OrientedEnvelopes, ExitIsNeverLateAndHardlyEarly) {
         // A body may brush a face and turn away again; most are outside some time later.
         bool out = false;
         for (int k = 1; k <= 200; ++k) {
-          const double t = exit + envelopes.worthwhile(motion) * 5 * k / 200;
+          const double t = exit + envelopes.worthwhile(0, motion) * 5 * k / 200;
           out = out || beyond_box(shape, envelopes.box(0), motion.position_at(t), axis_at(motion, t)) > 0;
         }
         outside_soon += out ? 1 : 0;
@@ -352,9 +352,9 @@ TEST(OrientedEnvelopes, ABodyOutsideHasLeft) {
   OrientedEnvelopes envelopes(1, Shape{3, 1}.spheroid(), 3, 0.5, false);
   envelopes.place(0, Vector3d::Zero(), Vector3d::UnitX(), Vector3d::UnitY());
   AxisMotion motion = simple_motion(Vector3d::Zero(), 0);
-  EXPECT_EQ(envelopes.exit_time(0, motion, Vector3d(0.6, 0, 0), Vector3d::UnitX(), 2, 100), 2);
-  EXPECT_EQ(envelopes.exit_time(0, motion, Vector3d(100.6, 0, 0), Vector3d::UnitX(), 2, 100), 2);
-  EXPECT_GT(envelopes.exit_time(0, motion, Vector3d(0.4, 0, 0), Vector3d::UnitX(), 2, 100), 2.5);
+  EXPECT_EQ(envelopes.exit_time(0, motion, Vector3d(0.6, 0, 0), 2, 100), 2);
+  EXPECT_EQ(envelopes.exit_time(0, motion, Vector3d(100.6, 0, 0), 2, 100), 2);
+  EXPECT_GT(envelopes.exit_time(0, motion, Vector3d(0.4, 0, 0), 2, 100), 2.5);
 }
 
 /// Bodies that touch while each is in its box must be neighbours, also in a periodic box that is as small as allowed.
@@ -392,7 +392,7 @@ TEST(OrientedEnvelopes, ThickestLeavesNearestImagesSafe) {
   ed::Random random(53);
   for (const Shape& shape : {Shape{1, 1}, Shape{3, 1}, Shape{1, 3}, Shape{5, 0.8}, Shape{0.2, 2}}) {
     const double R = shape.bounding_radius();
-    for (const double box : {ed::internal::smallest_box(R), 6 * R}) {
+    for (const double box : {ed::internal::smallest_image_box(R), 6 * R}) {
       const double delta = ed::internal::thickest_oriented_envelope(shape.spheroid(), R, box);
       ASSERT_GT(delta, 0);
       // No place inside its box takes a body's centre further than an eighth of what the periodic box leaves.
@@ -418,17 +418,17 @@ TEST(CellEnvelopes, ExitIsTheCrossingOfTheFirstFace) {
   for (int trial = 0; trial < 20000; ++trial) {
     motion.position = kBox * Vector3d(random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5);
     motion.velocity = random.normal3();
-    cells.place(0, motion.position, Vector3d::UnitX(), Vector3d::UnitY());
-    const double exit = cells.exit_time(0, motion, motion.position, Vector3d::UnitX(), 0, kBox);
+    cells.place(0, motion.position);
+    const double exit = cells.exit_time(0, motion.position, motion.velocity, 0, kBox);
     ASSERT_GE(exit, 0);
     const auto cell = [&](double t) { return Vector3d((motion.position_at(t) / 2.5).array().floor().matrix()); };
     // The face itself is met 2.5e-10 earlier, in length.
     EXPECT_EQ(cell(std::max(0.0, exit - 1e-7)), cell(0));
     // Just beyond the face: a new envelope is that of the next cell, which is not left at once.
     EXPECT_NE(cell(exit), cell(0));
-    cells.place(0, motion.position_at(exit), Vector3d::UnitX(), Vector3d::UnitY());
-    const double next = cells.exit_time(0, motion, motion.position_at(exit), Vector3d::UnitX(), exit, kBox);
-    EXPECT_GT(next - exit, cells.worthwhile(motion));
+    cells.place(0, motion.position_at(exit));
+    const double next = cells.exit_time(0, motion.position_at(exit), motion.velocity, exit, kBox);
+    EXPECT_GT(next - exit, cells.worthwhile(motion.velocity));
   }
 }
 
@@ -441,11 +441,11 @@ TEST(CellEnvelopes, BodiesThatTouchAreNeighboursInTheImageThatTouches) {
       const Vector3d r_i = box * Vector3d(random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5);
       const Vector3d d = 2 * random.uniform() * random.direction();
       const Vector3d r_k = ed::internal::nearest_image(r_i + d, box);
-      cells.place(0, r_i, Vector3d::UnitX(), Vector3d::UnitY());
-      cells.place(1, r_k, Vector3d::UnitX(), Vector3d::UnitY());
+      cells.place(0, r_i);
+      cells.place(1, r_k);
       Vector3d normal;
       ASSERT_TRUE(cells.may_meet(0, 1, ed::internal::nearest_image(r_k - r_i, box), normal));
-      ASSERT_LT((cells.image_of_cells(0, 1, r_k - r_i) - d).norm(), 1e-12) << box;
+      ASSERT_LT((cells.image(0, 1, r_k - r_i, box) - d).norm(), 1e-12) << box;
       ASSERT_LE(d.norm(), cells.reach());
     }
   }

@@ -3,6 +3,7 @@
 #include <common/ed_states.h>
 
 #include "event_loop.h"
+#include "uniaxial_bodies.h"
 
 #include <geom/newton.h>
 
@@ -15,7 +16,7 @@ namespace {
 using ed::DistanceMethod;
 using ed::FailureReason;
 using ed::Finder;
-using ed::internal::EventLoop;
+using EventLoop = ed::internal::EventLoop<ed::internal::UniaxialBodies>;
 using ed_test::Inertia;
 using Eigen::Vector3d;
 
@@ -27,7 +28,7 @@ ed::SimulationOptions bracketing(DistanceMethod distance) {
 }
 
 /// In the middle of each body: Newton's method declines.
-geom::WitnessPair centres(const geom::Ellipsoid& /*a*/, const geom::Pose& X_WA, const geom::Ellipsoid& /*b*/,
+geom::WitnessPair centres(const geom::Shape& /*a*/, const geom::Pose& X_WA, const geom::Shape& /*b*/,
                           const geom::Pose& X_WB) {
   return {X_WA.position(), X_WB.position(), geom::SeedStatus::usable};
 }
@@ -39,7 +40,7 @@ ed::System overlapping(double depth) {
   ed::Body& b = system.bodies[79];
   b = a;
   b.velocity = -a.velocity;
-  b.position += (2 - depth) * system.species.shape.semi_axes().x() * a.rotation.col(0);
+  b.position += (2 - depth) * ed_test::ellipsoid_of(system).semi_axes().x() * a.rotation.col(0);
   return system;
 }
 
@@ -49,7 +50,7 @@ TEST(EventLoop, ContactsWithoutAnImpulseDoNotHoldUpTheTime) {
   ed::Random random(62);
   for (int round = 0; round < 10; ++round) {
     ed::System system;
-    system.species = ed_test::species(3, Inertia::paper);
+    system.species = {ed_test::species(3, Inertia::paper)};
     system.box = 20;
     system.bodies.resize(2);
     for (ed::Body& body : system.bodies) {
@@ -67,7 +68,7 @@ TEST(EventLoop, ContactsWithoutAnImpulseDoNotHoldUpTheTime) {
 
 TEST(EventLoop, BodiesInOnePlaceAreNoReasonToStop) {
   ed::System system;
-  system.species = ed_test::species(3, Inertia::paper);
+  system.species = {ed_test::species(3, Inertia::paper)};
   system.box = 20;
   system.bodies.resize(2);
   system.bodies[1].velocity = {1, 0, 0};
@@ -108,7 +109,7 @@ TEST(EventLoop, CallsThatFailedCanBeRepeated) {
       const ed::FailedDistance& call = *failed.distance;
       EXPECT_EQ(call.method, method);
       const geom::DistanceResult again = geom::internal::newton_distance_unchecked(
-          call.shape_a, call.X_WA, call.shape_b, call.X_WB,
+          std::get<geom::Ellipsoid>(call.shape_a), call.X_WA, std::get<geom::Ellipsoid>(call.shape_b), call.X_WB,
           method == DistanceMethod::newton8 ? geom::NewtonSystem::eight : geom::NewtonSystem::five, call.seed);
       EXPECT_EQ(again.status, call.status);
       // The same pair as that of the motions.

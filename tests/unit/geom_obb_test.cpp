@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <utility>
 
 namespace {
 
@@ -125,6 +126,27 @@ TEST(OrientedBoxOf, AnEllipsoidTouchesAllSixFaces) {
   EXPECT_TRUE(box.half_extents.isApprox(shape.semi_axes(), 1e-15));
   EXPECT_TRUE(box.centre.isApprox(pose.position(), 1e-15));
   EXPECT_EQ(box.axes, pose.rotation());
+}
+
+TEST(OrientedBoxOf, ASuperellipsoidHoldsItsSurfaceAndTouchesAllSixFaces) {
+  Random random(5);
+  for (const auto& [e1, e2] : {std::pair{0.2, 0.2}, {0.5, 1.3}, {1.6, 0.7}, {1.0, 1.0}}) {
+    const geom::Superellipsoid shape({0.5, 1.25, 3}, e1, e2);
+    const geom::Pose pose(random.rotation(), random.vector());
+    const OrientedBox box = geom::oriented_box(shape, pose);
+    const auto within = [&](const Vector3d& n) {
+      const Vector3d point = pose.position() + pose.rotation() * shape.support(pose.rotation().transpose() * n).point;
+      const Vector3d local = box.axes.transpose() * (point - box.centre);
+      return Vector3d(box.half_extents - local.cwiseAbs());
+    };
+    for (int k = 0; k < 1000; ++k) {
+      ASSERT_GE(within(random.vector().normalized()).minCoeff(), -1e-14) << e1 << " " << e2;
+    }
+    for (int k = 0; k < 6; ++k) {
+      const Vector3d face = (k < 3 ? 1 : -1) * box.axes.col(k % 3);
+      EXPECT_NEAR(within(face)[k % 3], 0, 1e-14) << e1 << " " << e2;
+    }
+  }
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include "common/ed_reference.h"
 #include "common/geom_random.h"
+#include "common/message_of.h"
 
 #include <geom/geom.h>
 
@@ -21,6 +22,7 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using geom_test::Random;
+using test_common::message_of;
 using testing::HasSubstr;
 
 static_assert(SupportShape<Superellipsoid>);
@@ -182,16 +184,6 @@ TEST(Superellipsoid, RadiiAreTight) {
     EXPECT_NEAR(furthest, shape.bounding_radius(), 1e-3 * shape.bounding_radius()) << shape.e1() << ' ' << shape.e2();
     EXPECT_NEAR(nearest, shape.inscribed_radius(), 2e-3 * shape.inscribed_radius()) << shape.e1() << ' ' << shape.e2();
   }
-}
-
-template <class F>
-std::string message_of(const F& f) {
-  try {
-    f();
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "nothing was refused";
 }
 
 TEST(Superellipsoid, RefusesBadInputByName) {

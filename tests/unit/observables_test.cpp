@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 #include <vector>
 
 namespace {
@@ -28,7 +29,7 @@ ed::System free_bodies(double aspect_ratio, Inertia inertia, std::uint64_t seed)
     body.rotation = random.rotation();
     body.velocity = random.normal3();
     Vector3d omega = random.normal3();
-    if (!system.species.spins) omega.z() = 0;
+    if (!system.species[0].spins) omega.z() = 0;
     body.angular_velocity = body.rotation * omega;
   }
   ed::rescale_velocities(system);
@@ -106,6 +107,21 @@ TEST(Observables, SpinIsNoRotationalDisplacement) {
   EXPECT_NEAR(results.rotational_kT.value, 0, kRounding);
 }
 
+TEST(Observables, SpinIsNoRotationalDisplacementOfOtherShapesEither) {
+  // The same ellipsoids as superellipsoids, which another event loop takes: the same displacements.
+  ed::System system = free_bodies(3, Inertia::uniform, 3);
+  const ed::Results ellipsoids = measured(system, {system.size(), 4, 1}, 4);
+  const Vector3d axes = ed::half_extents(system.species[0].shape);
+  system.species[0].shape = geom::Superellipsoid(axes, 1, 1);
+  const ed::Results others = measured(system, {system.size(), 4, 1}, 4);
+  ASSERT_EQ(others.lags.size(), ellipsoids.lags.size());
+  for (std::size_t k = 0; k < others.lags.size(); ++k) {
+    EXPECT_NEAR(others.lags[k].rot_msd.value, ellipsoids.lags[k].rot_msd.value, kRounding);
+    EXPECT_NEAR(others.lags[k].rot_msd_body.value, ellipsoids.lags[k].rot_msd_body.value, kRounding);
+    EXPECT_NEAR(others.lags[k].c2.value, ellipsoids.lags[k].c2.value, kRounding);
+  }
+}
+
 TEST(Observables, BodyComponentsOfTheRotationTurnWithTheBody) {
   // A symmetric top: in the body's frame the angular velocity across the axis turns at (1 - I3 / I) times the spin, so
   // that its integral goes round a circle: |Delta Phi|^2 = (2 w / k)^2 sin^2(k t / 2).
@@ -113,7 +129,7 @@ TEST(Observables, BodyComponentsOfTheRotationTurnWithTheBody) {
   const double across = 0.8;
   const double spin = 2.5;
   for (ed::Body& body : system.bodies) body.angular_velocity = body.rotation * Vector3d(across, 0, spin);
-  const double k = (1 - system.species.inertia.z() / system.species.inertia.x()) * spin;
+  const double k = (1 - system.species[0].inertia.z() / system.species[0].inertia.x()) * spin;
   const ed::Results results = measured(system, {system.size(), 8, 2}, 8);
   for (const ed::LagRow& row : results.lags) {
     EXPECT_NEAR(row.rot_msd_body.value, std::pow(2 * across / k * std::sin(0.5 * k * row.lag), 2), kRounding);
@@ -161,7 +177,9 @@ TEST(Observables, OfARunThatWasStoppedAreThoseSoFar) {
   const ed::System system = free_bodies(3, Inertia::paper, 7);
   const ed::Results results = measured(system, {system.size(), 1000, 10}, 15.3);
   EXPECT_DOUBLE_EQ(results.duration, 15.3);
-  ASSERT_EQ(results.lags.size(), 61U);
+  // 20 lags a decade from 0.01 on, 10 below down to 0.002.
+  ASSERT_EQ(results.lags.size(), 67U);
+  EXPECT_NEAR(results.lags.front().lag, 0.01 * std::pow(10, -0.6), 1e-15);
   EXPECT_TRUE(std::isfinite(results.translational_kT.value));
   // A run that has not even seen the longest lag.
   const ed::Results shorter = measured(system, {system.size(), 1000, 10}, 2);
@@ -201,6 +219,164 @@ TEST(Observables, WantNothingMoreWhenTheDurationIsCovered) {
   // 16 origins a longest lag (a sixteenth of the duration), 61 lags each, some at the same times.
   EXPECT_GT(samples, 1000);
   EXPECT_LE(samples, 257 * 62);
+}
+
+// ---- Groups --------------------------------------------------------------------------------------------------------
+
+/// 12 rods of mass 1 and 15 bodies with three different axes of mass 4, whose moments are all equal, so that they turn
+/// uniformly; far apart.
+ed::System two_species(std::uint64_t seed) {
+  ed::System system = ed_test::grid(ed_test::species(3, Inertia::paper), 3, 200);
+  ed::Species other = ed::uniform_species(geom::Ellipsoid({0.7, 1, 1.4}), 4);
+  other.inertia = Vector3d::Constant(2.5);
+  system.species.push_back(other);
+  ed::Random random(seed);
+  for (int i = 0; i < system.size(); ++i) {
+    ed::Body& body = system.bodies[static_cast<std::size_t>(i)];
+    body.species = i < 12 ? 0 : 1;
+    body.rotation = random.rotation();
+    body.velocity = random.normal3();
+    Vector3d omega = random.normal3();
+    if (body.species == 0) omega.z() = 0;
+    body.angular_velocity = body.rotation * omega;
+  }
+  return system;
+}
+
+const std::vector<ed::BodyGroup> kTwoGroups = {{12, 2}, {15, 3}};
+
+/// The mean of f(body) over bodies first .. end - 1.
+template <class F>
+double mean_over(const ed::System& system, int first, int end, const F& f) {
+  double sum = 0;
+  for (int i = first; i < end; ++i) sum += f(system.bodies[static_cast<std::size_t>(i)]);
+  return sum / (end - first);
+}
+
+TEST(ObservablesOfGroups, FreeFlightGivesEachGroupItsDisplacements) {
+  const ed::System system = two_species(21);
+  const ed::Results results = measured(system, {system.size(), 20, 1, kTwoGroups}, 20);
+  ASSERT_EQ(results.groups.size(), 2U);
+  const auto v2 = [](const ed::Body& body) { return body.velocity.squaredNorm(); };
+  const auto w2 = [](const ed::Body& body) { return body.angular_velocity.squaredNorm(); };
+  const double v2_of[] = {mean_over(system, 0, 12, v2), mean_over(system, 12, 27, v2)};
+  const double w2_of[] = {mean_over(system, 0, 12, w2), mean_over(system, 12, 27, w2)};
+  for (std::size_t k = 0; k < results.lags.size(); ++k) {
+    const double t2 = results.lags[k].lag * results.lags[k].lag;
+    for (std::size_t g = 0; g < 2; ++g) {
+      const ed::LagRow& row = results.groups[g].lags[k];
+      EXPECT_EQ(row.lag, results.lags[k].lag);
+      EXPECT_NEAR(row.msd.value / t2, v2_of[g], 1e-9 * v2_of[g]) << row.lag;
+      EXPECT_NEAR(row.rot_msd.value / t2, w2_of[g], 1e-9 * w2_of[g]) << row.lag;
+    }
+    const double v2_all = (12 * v2_of[0] + 15 * v2_of[1]) / 27;
+    EXPECT_NEAR(results.lags[k].msd.value / t2, v2_all, 1e-9 * v2_all);
+  }
+}
+
+TEST(ObservablesOfGroups, BodyAxesTurnAsTheyMust) {
+  const ed::System system = two_species(22);
+  const ed::Results results = measured(system, {system.size(), 20, 1, kTwoGroups}, 20);
+  for (const ed::LagRow& row : results.groups[1].lags) {
+    for (int k = 0; k < 3; ++k) {
+      const auto at = static_cast<std::size_t>(k);
+      const double turned = mean_over(system, 12, 27, [&](const ed::Body& body) {
+        return std::pow(body.angular_velocity.dot(body.rotation.col(k)) * row.lag, 2);
+      });
+      EXPECT_NEAR(row.rot_msd_axis[at].value, turned, kRounding);
+      // An axis that makes the angle a with omega: u.u(0) = cos^2 a + sin^2 a cos(w t).
+      const double c2 = mean_over(system, 12, 27, [&](const ed::Body& body) {
+        const double w = body.angular_velocity.norm();
+        const double cosine = body.angular_velocity.dot(body.rotation.col(k)) / w;
+        const double x = cosine * cosine + (1 - cosine * cosine) * std::cos(w * row.lag);
+        return 1.5 * x * x - 0.5;
+      });
+      EXPECT_NEAR(row.c2_axis[at].value, c2, kRounding);
+    }
+    EXPECT_NEAR(row.c2.value, row.c2_axis[2].value, kRounding);
+  }
+  // Bodies of revolution have one axis, and there is none for all bodies.
+  EXPECT_TRUE(std::isnan(results.groups[0].lags.back().c2_axis[0].value));
+  EXPECT_TRUE(std::isnan(results.lags.back().rot_msd_axis[0].value));
+}
+
+TEST(ObservablesOfGroups, TemperaturesAreThoseOfTheGroup) {
+  ed::System system = two_species(23);
+  ed::rescale_velocities(system);  // momentum zero, kT = 1 for all together
+  const ed::Results results = measured(system, {system.size(), 20, 1, kTwoGroups}, 20);
+  const double total_mass = 12 * 1 + 15 * 4;
+  const auto v2 = [](const ed::Body& body) { return body.velocity.squaredNorm(); };
+  const double freedoms[] = {3 * (12 - 12 / total_mass), 3 * (15 - 60 / total_mass)};
+  const double energies[] = {12 * mean_over(system, 0, 12, v2), 15 * 4 * mean_over(system, 12, 27, v2)};
+  for (std::size_t g = 0; g < 2; ++g) {
+    EXPECT_NEAR(results.groups[g].translational_kT.value, energies[g] / freedoms[g], kRounding);
+  }
+  EXPECT_NEAR((freedoms[0] * results.groups[0].translational_kT.value +
+               freedoms[1] * results.groups[1].translational_kT.value) /
+                  (3 * 27 - 3),
+              1, kRounding);
+  const ed::GroupResults& rods = results.groups[0];
+  const ed::GroupResults& others = results.groups[1];
+  EXPECT_NEAR((24 * rods.rotational_kT.value + 45 * others.rotational_kT.value) / 69, 1, kRounding);
+  // Each axis has as many degrees of freedom as bodies; rods without spin have none about z.
+  EXPECT_NEAR((rods.axis_kT[0].value + rods.axis_kT[1].value) / 2, rods.rotational_kT.value, kRounding);
+  EXPECT_TRUE(std::isnan(rods.axis_kT[2].value));
+  for (int k = 0; k < 3; ++k) {
+    const double energy = mean_over(system, 12, 27, [&](const ed::Body& body) {
+      return 2.5 * std::pow(body.angular_velocity.dot(body.rotation.col(k)), 2);
+    });
+    EXPECT_NEAR(others.axis_kT[static_cast<std::size_t>(k)].value, energy, kRounding);
+  }
+}
+
+TEST(ObservablesOfGroups, OneGroupIsAllBodies) {
+  const ed::System system = ed_test::start({2, 0.45, 40, Inertia::paper, 10});
+  ed::Simulation simulation(system);
+  ed::Observables observables({system.size(), 32, 2});
+  while (observables.next_time() <= 32) {
+    simulation.run_until(observables.next_time());
+    observables.measure(simulation);
+  }
+  const ed::Results results = observables.results(simulation);
+  ASSERT_EQ(results.groups.size(), 1U);
+  ASSERT_GT(results.D_trans.value, 0);
+  EXPECT_EQ(results.groups[0].D_trans.value, results.D_trans.value);
+  EXPECT_EQ(results.groups[0].D_rot_body.error, results.D_rot_body.error);
+  EXPECT_EQ(results.groups[0].lags.back().c2.value, results.lags.back().c2.value);
+  EXPECT_EQ(results.groups[0].S.value, results.S.value);
+  // From the state instead of the event loop's own sums.
+  EXPECT_NEAR(results.groups[0].translational_kT.value, results.translational_kT.value, kRounding);
+  EXPECT_NEAR(results.groups[0].rotational_kT.value, results.rotational_kT.value, kRounding);
+}
+
+TEST(ObservablesOfGroups, RotationIsDividedByTheNumberOfItsComponents) {
+  // The same bodies, said to rotate about two axes and about three.
+  const ed::System system = ed_test::start({2, 0.45, 40, Inertia::paper, 10});
+  const auto measure = [&](const std::vector<ed::BodyGroup>& groups) {
+    ed::Simulation simulation(system);
+    ed::Observables observables({system.size(), 32, 2, groups});
+    while (observables.next_time() <= 32) {
+      simulation.run_until(observables.next_time());
+      observables.measure(simulation);
+    }
+    return observables.results(simulation);
+  };
+  const ed::Results two = measure({{40, 2}});
+  const ed::Results three = measure({{40, 3}});
+  const ed::Results mixed = measure({{10, 2}, {30, 3}});
+  ASSERT_GT(two.D_rot.value, 0);
+  EXPECT_NEAR(three.D_rot.value, two.D_rot.value * 4 / 6, kRounding);
+  EXPECT_NEAR(mixed.D_rot_body.value, two.D_rot_body.value * 4 / 5.5, kRounding);
+  EXPECT_NEAR(mixed.D_trans.value, two.D_trans.value, kRounding);
+}
+
+TEST(ObservablesOfGroups, HaveToBeGroupsOfTheBodies) {
+  using Groups = std::vector<ed::BodyGroup>;
+  for (const Groups& groups :
+       {Groups{{26, 2}}, Groups{{28, 2}}, Groups{{27, 2}, {1, 2}}, Groups{{27, 1}}, Groups{{0, 2}, {27, 2}},
+        Groups{{-1, 2}, {28, 2}}, Groups{{2147483647, 2}, {2147483647, 2}}}) {
+    EXPECT_THROW(ed::Observables({27, 20, 1, groups}), std::invalid_argument);
+  }
 }
 
 /// A fluid whose diffusion is certain to have set in, against a direct evaluation of the same run.
@@ -284,7 +460,7 @@ TEST(SnapshotCorrelations, OfKnownDisplacements) {
   origin.position = {Vector3d::Zero(), Vector3d(1, 1, 1)};
   origin.axis = {Vector3d::UnitZ(), Vector3d::UnitX()};
   origin.phi_lab.assign(2, Vector3d::Zero());
-  origin.phi_body.assign(2, Eigen::Vector2d::Zero());
+  origin.phi_body.assign(2, Eigen::Vector3d::Zero());
   ed::Snapshot now = origin;
   now.position[0] += Vector3d(3, 0, 4);
   now.axis[1] = Vector3d::UnitY();

@@ -2,6 +2,7 @@
 
 #include <common/ed_hash.h>
 #include <common/ed_states.h>
+#include <common/message_of.h>
 
 #include <ed/ed.h>
 
@@ -33,19 +34,14 @@ ed::Species sphere() {
 ed::System two_bodies(const ed::Species& species, double box, const Vector3d& r) {
   ed::System system;
   system.box = box;
-  system.species = species;
+  system.species = {species};
   system.bodies.resize(2);
   system.bodies[1].position = r;
   return system;
 }
 
 std::string message_of(const ed::System& system) {
-  try {
-    const ed::Simulation simulation(system);
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "no std::invalid_argument";
+  return test_common::message_of([&system] { const ed::Simulation simulation(system); });
 }
 
 TEST(Simulation, SpheresThatMeetHeadOnExchangeVelocities) {
@@ -104,7 +100,7 @@ TEST(Simulation, AgreesWithTimeOfContactOnOnePair) {
   for (const double X0 : {0.3, 3.0}) {
     const ed::Species species = ed_test::species(X0, Inertia::uniform);
     for (int round = 0; round < 50; ++round) {
-      const double R = species.shape.bounding_radius();
+      const double R = ed::bounding_radius(species.shape);
       ed::System system = two_bodies(species, 20 * R, 3 * R * random.direction());
       for (ed::Body& body : system.bodies) {
         body.rotation = random.rotation();
@@ -361,13 +357,32 @@ TEST(SimulationRefuses, BoxesAndNumbersThatAreNone) {
   EXPECT_THAT(message_of(lonely), HasSubstr("number"));
 }
 
-TEST(SimulationRefuses, ThreeDifferentSemiAxesAndMoments) {
-  ed::Species biaxial = sphere();
-  biaxial.shape = geom::Ellipsoid({1, 2, 3});
-  EXPECT_THAT(message_of(two_bodies(biaxial, 40, {8, 0, 0})), HasSubstr("semi_axes"));
+TEST(SimulationRefuses, BodiesThatHaveNoAxisToSpinAboutWithoutSpin) {
+  ed::Species biaxial = ed::uniform_species(geom::Ellipsoid({1, 2, 3}));
+  biaxial.spins = false;
+  EXPECT_THAT(message_of(two_bodies(biaxial, 40, {8, 0, 0})), HasSubstr("spins"));
   ed::Species asymmetric = ed::uniform_species(geom::Ellipsoid({1, 1, 3}));
   asymmetric.inertia.x() *= 1.1;
-  EXPECT_THAT(message_of(two_bodies(asymmetric, 40, {8, 0, 0})), HasSubstr("inertia"));
+  asymmetric.spins = false;
+  EXPECT_THAT(message_of(two_bodies(asymmetric, 40, {8, 0, 0})), HasSubstr("spins"));
+}
+
+TEST(SimulationRefuses, ExponentsBeyondThoseInMotion) {
+  for (const double e : {0.24, 1.0, 1.6}) {
+    const ed::Species species = ed::uniform_species(geom::Superellipsoid({1, 1, 1}, e, 1));
+    const std::string message = message_of(two_bodies(species, 40, {8, 0, 0}));
+    EXPECT_EQ(message.find("accepted of bodies in motion: 0.25 to 1.6") != std::string::npos, e < 0.25) << message;
+  }
+}
+
+TEST(SimulationRefuses, SpeciesThatAreNotThere) {
+  ed::System system = two_bodies(sphere(), 20, {3, 0, 0});
+  system.bodies[1].species = 1;
+  EXPECT_THAT(message_of(system), HasSubstr("species of a body is 1; accepted: 0 to 0"));
+  system.bodies[1].species = -1;
+  EXPECT_THAT(message_of(system), HasSubstr("species of a body is -1"));
+  system.species.clear();
+  EXPECT_THAT(message_of(system), HasSubstr("species: none"));
 }
 
 TEST(SimulationRefuses, MassesAndMomentsThatNoBodyHas) {

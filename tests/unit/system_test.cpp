@@ -21,7 +21,7 @@ constexpr double kRounding = 1e-14;
 ed::System two_bodies(const ed::Species& species, double box, const Vector3d& r, const Eigen::Matrix3d& rotation) {
   ed::System system;
   system.box = box;
-  system.species = species;
+  system.species = {species};
   system.bodies.resize(2);
   system.bodies[0].position = Vector3d(0.4 * box, -0.3 * box, 0.1 * box);
   system.bodies[1].position = system.bodies[0].position + r;

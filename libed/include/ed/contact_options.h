@@ -2,6 +2,7 @@
 
 #include <ed/export.h>
 
+#include <geom/any_shape.h>
 #include <geom/newton.h>
 
 #include <Eigen/Core>
@@ -32,19 +33,20 @@ enum class ContactRoot {
 /// A guess of the closest points of two bodies to start Newton's method from.
 ///
 /// It is called in the event loop with bodies in any relation, overlapping ones too; the frame has the world's axes and
-/// its origin at A's centre, the bodies' axes of revolution are along body z. It may decline and it may be wrong: its
-/// points are not checked, and the worst that bad ones do is a distance that Newton's method declines and the dual
-/// answers (`rescues`). It must not throw, and must give the same points for the same bodies, or a run is not
-/// reproducible. Whether it allocates is its own affair.
-using SeedFunction = std::function<geom::WitnessPair(const geom::Ellipsoid& a, const geom::Pose& X_WA,
-                                                     const geom::Ellipsoid& b, const geom::Pose& X_WB)>;
+/// its origin at A's centre; in systems of ellipsoids of revolution alone their axes are along body z. It may decline
+/// and it may be wrong: its points are not checked, and the worst that bad ones do is a distance that Newton's method
+/// declines and the dual answers (`rescues`). It must not throw, and must give the same points for the same bodies, or
+/// a run is not reproducible. Whether it allocates is its own affair.
+using SeedFunction = std::function<geom::WitnessPair(const geom::Shape& a, const geom::Pose& X_WA, const geom::Shape& b,
+                                                     const geom::Pose& X_WB)>;
 
-/// A call of geom::newton_distance that gave no answer, to be repeated bit for bit. Axes of revolution along body z.
+/// A call of geom::newton_distance that gave no answer, to be repeated bit for bit. Axes of revolution as for
+/// SeedFunction.
 struct FailedDistance {
   DistanceMethod method = DistanceMethod::newton8;
   geom::DistanceStatus status = geom::DistanceStatus::not_converged;
-  geom::Ellipsoid shape_a{Eigen::Vector3d::Ones()};
-  geom::Ellipsoid shape_b{Eigen::Vector3d::Ones()};
+  geom::Shape shape_a = geom::Ellipsoid(Eigen::Vector3d::Ones());
+  geom::Shape shape_b = geom::Ellipsoid(Eigen::Vector3d::Ones());
   geom::Pose X_WA;
   geom::Pose X_WB;
   geom::WitnessPair seed;

@@ -8,10 +8,13 @@
 
 #include <ed/analysis.h>
 #include <ed/contact_options.h>
+#include <ed/equilibration.h>
 #include <ed/impulse.h>
 #include <ed/motion.h>
 #include <ed/observables.h>
+#include <ed/polydispersity.h>
 #include <ed/random.h>
+#include <ed/shape.h>
 #include <ed/simulation.h>
 #include <ed/start.h>
 #include <ed/system.h>

@@ -5,12 +5,16 @@
 #include <ed/motion.h>
 #include <ed/system.h>
 
+#include <geom/batch.h>
+
 #include <Eigen/Core>
 
 #include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string>
+#include <string_view>
 #include <vector>
 
 namespace ed {
@@ -60,8 +64,8 @@ ED_EXPORT const char* to_string(FailureReason reason);
 /// it again.
 struct FailedPair {
   FailureReason reason = FailureReason::overlap;
-  geom::Ellipsoid shape_i{Eigen::Vector3d::Ones()};
-  geom::Ellipsoid shape_j{Eigen::Vector3d::Ones()};
+  BodyShape shape_i = geom::Ellipsoid(Eigen::Vector3d::Ones());
+  BodyShape shape_j = geom::Ellipsoid(Eigen::Vector3d::Ones());
   Motion motion_i;
   Motion motion_j;  ///< in the image nearest to i
   double time = 0;  ///< simulated time
@@ -72,13 +76,36 @@ struct FailedPair {
   std::optional<FailedDistance> distance;  ///< what gave no answer, if that is the reason
 };
 
+/// What an event of the run loop is.
+enum class EventKind {
+  exit,     ///< of a body from its envelope
+  look,     ///< at a pair again, whose certified bound has come
+  contact,  ///< of a pair
+};
+
+/// Many events in next to no time: a run that would never end. Always a defect, of the state or of the program.
+struct Stall {
+  double time = 0;                   ///< simulated
+  std::uint64_t events = 0;          ///< so many of them
+  double span = 0;                   ///< have taken so much simulated time
+  EventKind kind = EventKind::exit;  ///< of the most frequent event since
+  int i = 0;                         ///< its body, or the first
+  int j = -1;                        ///< the second, of a pair
+  double share = 0;                  ///< of that event among those since
+};
+
+/// In words, one line.
+ED_EXPORT std::string describe(const Stall& stall);
+
 /// All bodies at one time, as the observables want them.
 struct Snapshot {
   double time = 0;
   std::vector<Eigen::Vector3d> position;  ///< unwrapped: continuous across the box's faces
-  std::vector<Eigen::Vector3d> axis;      ///< of revolution, unit
+  std::vector<Eigen::Vector3d> axis;      ///< of revolution (of bodies that have none: body z), unit
   std::vector<Eigen::Vector3d> phi_lab;   ///< integral of omega (spin excluded), world frame, since the start
-  std::vector<Eigen::Vector2d> phi_body;  ///< the same, components along body x and y
+  std::vector<Eigen::Vector3d> phi_body;  ///< the same, components along the body's own axes
+  std::vector<Eigen::Vector3d> velocity;
+  std::vector<Eigen::Vector3d> angular_velocity;  ///< spin excluded, world frame
 };
 
 /// How a simulation finds neighbours and contacts.
@@ -87,14 +114,22 @@ struct SimulationOptions {
   double envelope = 0;
   Neighbours neighbours = Neighbours::dilated;
   ContactOptions contact{};
+  /// Instruction set of the vectors in which ellipsoids of revolution are looked at, all neighbours of a body at once
+  /// (Finder::certified, not in cells); none: one pair at a time, and so is `best` where that is faster: near spheres,
+  /// no vectors. The results are the same, bit for bit.
+  std::optional<geom::InstructionSet> batches = geom::InstructionSet::best;
+  /// A run has stalled when 2000 events a body take less than this share of the time in which the fastest of them moves
+  /// by the smallest inscribed radius. Sound runs take some 10 such times.
+  double least_progress = 1e-6;
 };
 
 /// The kind of neighbour list that bench_engine shows to be the fastest: cells for dilute bodies that are not spheres,
 /// where a body would leave a dilated envelope ever again between two collisions, else dilated.
-ED_EXPORT Neighbours fastest_neighbours(const geom::Ellipsoid& shape, int number, double packing_fraction,
+ED_EXPORT Neighbours fastest_neighbours(const BodyShape& shape, int number, double packing_fraction,
                                         Finder finder = Finder::certified);
 
-/// Event-driven dynamics of hard ellipsoids of revolution in a periodic cubic box.
+/// Event-driven dynamics of hard convex bodies in a periodic cubic box: ellipsoids, superellipsoids, a user's own
+/// shapes, and mixtures of them. Systems of ellipsoids of revolution alone (of any sizes) are the fast case.
 ///
 /// Asynchronous: each body carries its own time. Neighbour lists with dilated envelopes; one calendar entry a body; a
 /// pair is looked at once after a collision and its certified lower bound put into the calendar, to be refined only
@@ -104,9 +139,9 @@ ED_EXPORT Neighbours fastest_neighbours(const geom::Ellipsoid& shape, int number
 /// found to give them too.
 class ED_EXPORT Simulation {
  public:
-  /// Throws std::invalid_argument if the bodies are not of revolution, two of them overlap, a number is not finite, the
-  /// box is too small for nearest images (see smallest_number; with cells, for three along an edge), or the contact
-  /// options are not usable.
+  /// Throws std::invalid_argument if a species is not sound (check_species), two bodies overlap, a number is not
+  /// finite, the box is too small for nearest images (see smallest_number; with cells, for three along an edge), or the
+  /// contact options are not usable.
   explicit Simulation(const System& system, const SimulationOptions& options = {});
   ~Simulation();
   Simulation(Simulation&&) noexcept;             ///< the one moved from can only be assigned to or destroyed
@@ -114,11 +149,15 @@ class ED_EXPORT Simulation {
 
   double time() const;  ///< since the start
 
-  /// Processes all events up to `time`, but at most `max_collisions` collisions. True if `time` was reached.
+  /// Processes all events up to `time`, but at most `max_collisions` collisions. True if `time` was reached. Once the
+  /// run has stalled: false at once.
   bool run_until(double time, std::uint64_t max_collisions = ~std::uint64_t{0});
 
-  /// Processes events until `number` more collisions have happened.
+  /// Processes events until `number` more collisions have happened, or the run has stalled.
   void run_collisions(std::uint64_t number);
+
+  /// Set once the run has stalled. The state is sound as a state and can be saved; restored, it is given another try.
+  const std::optional<Stall>& stall() const;
 
   /// Scales all positions and the box by a factor s, down to target_box / box if that leaves no overlap, else so that a
   /// tenth of the closest pair's gap is left; not below what the neighbour lists allow in one step, and not at all if
@@ -136,6 +175,9 @@ class ED_EXPORT Simulation {
 
   /// Sum over collisions of r_AB . dp, the momentum that B gains along the vector between the centres.
   double virial() const;
+  /// The tensor of which that is the trace: sum over collisions of r_AB dp^T. Symmetric on average only: bodies that
+  /// are not spheres exchange angular momentum too.
+  Eigen::Matrix3d virial_tensor() const;
 
   /// Kinetic energies now; free flight does not change them.
   KineticState kinetic() const;
@@ -153,8 +195,20 @@ class ED_EXPORT Simulation {
   /// The first pairs that failed, at most 16 for each reason.
   const std::vector<FailedPair>& failures() const;
 
+  /// The whole state as bytes: a simulation restored from them goes on as this one does, bit for bit, counters and
+  /// recorded collisions included. Changes nothing. The bytes carry no checksum, and are meant for the binary and the
+  /// instruction set that wrote them.
+  std::string save() const;
+
+  /// The simulation that was saved. A shape of the user's, and ContactOptions::seed, are code: they are not in the
+  /// state and must be the same again. Throws std::invalid_argument, `state: ..`, if the bytes are no state of bodies
+  /// of these species with this finder and these neighbours; damaged ones are never trusted with an index or a length.
+  static Simulation restore(std::string_view state, const std::vector<Species>& species,
+                            const SimulationOptions& options = {});
+
  private:
   class Impl;
+  explicit Simulation(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };
 

@@ -5,34 +5,98 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
+#include <vector>
 
 namespace ed {
 
 /// Which start is wanted.
 struct StartOptions {
-  int number = 512;
+  int number = 512;  ///< of bodies of one species; mixtures: each Component's own
   double packing_fraction = 0.4;
   std::uint64_t seed = 1;
   /// Called now and then with the packing fraction reached; returns false to stop (the start then throws).
   std::function<bool(double packing_fraction)> progress;
+  /// Order parameter S of the orientations as the bodies are placed, 0 <= S < 1; nothing: uniform. They are drawn from
+  /// Maier and Saupe's distribution about z, density ~ exp(m u_z^2), of u the axis of revolution or, without one, body
+  /// z; the sample's S differs by at most about 0.5 / sqrt(number), one standard error. The compression is dynamics, in
+  /// which orientations relax: S at its end is another (at an aspect ratio of 3 nothing is left of 0.8 at a packing
+  /// fraction of 0.2). It is that of the start only where nothing is compressed, up to a packing fraction of 0.04, less
+  /// for aspect ratios above 10; else see lattice_start.
+  std::optional<double> nematic_order = std::nullopt;
+  /// The compression takes a time that grows with the square of the number of bodies. Larger systems than this are made
+  /// of smaller ones: a periodic box of at most as many bodies, in the same proportions, is compressed and then
+  /// repeated along all edges, and every body gets a velocity of its own. The copies lose the memory of each other
+  /// within some collisions; at distances of a box they are correlated until bodies have diffused by their length, so
+  /// that large starts, too, need their equilibration. Mixtures of many species with few bodies each, and boxes that
+  /// would be too small for nearest images, are not repeated as often.
+  int most_compressed = 4000;
+};
+
+/// Which lattice the bodies are placed on. Its cubic cell is stretched along the edges of the box to the proportions of
+/// the bodies.
+enum class Lattice {
+  simple_cubic,  ///< 1 body a cell; superballs are densest so up to their exponent of 4 and more
+  fcc,           ///< 4 bodies a cell; stretched, aligned ellipsoids fill 0.7405 of space, as spheres do
+};
+
+/// The enumerator's name, of one word: "cubic", "fcc".
+ED_EXPORT const char* to_string(Lattice lattice);
+
+/// Which start on a lattice is wanted.
+struct LatticeOptions {
+  Lattice lattice = Lattice::fcc;
+  double packing_fraction = 0.6;
+  std::uint64_t seed = 1;
+  /// Body axis (0, 1, 2) along the box's z; the two after it, cyclically, are along x and y. Nothing: the axis of
+  /// revolution or, without one, body z.
+  std::optional<int> axis = std::nullopt;
+  /// Order parameter S = <P2(u_z)> of that axis in the start, 0 <= S < 1; nothing: all bodies are aligned.
+  std::optional<double> nematic_order = std::nullopt;
 };
 
 /// The largest packing fraction that a start from a random dilute configuration is asked to reach: 0.02 below random
 /// close packing, which is 0.64 for spheres and 0.70 for ellipsoids of revolution (Donev et al., Science 303 (2004)
-/// 990) and where the compression takes for ever.
-ED_EXPORT double densest_start(const geom::Ellipsoid& shape);
+/// 990) and where the compression takes for ever. Other bodies pack no worse than ellipsoids of their aspect ratio.
+ED_EXPORT double densest_start(const BodyShape& shape);
+/// That of a mixture: the least of its components'.
+ED_EXPORT double densest_start(const std::vector<Component>& components);
 
 /// Random positions and orientations at a low packing fraction, random velocities, then the paper's compression:
 /// dynamics alternates with shrinking the box by the largest factor that leaves no overlap. No two bodies overlap at
-/// any moment.
+/// any moment. More than most_compressed bodies: a smaller box, repeated.
 ///
-/// Velocities: total momentum zero; translational kT = 1 on 3N - 3 degrees of freedom, rotational kT = 1 on 2N and, if
-/// the species spins, spin kT = 1 on N, each rescaled separately (at the end too, so that nearly spherical bodies,
-/// which hardly exchange energy, have the right temperatures).
+/// Velocities: total momentum zero; translational kT = 1 on 3N - 3 degrees of freedom, rotational kT = 1 on 2 a body of
+/// revolution and 3 of another and, for bodies of revolution that spin, spin kT = 1 on 1, each rescaled separately (at
+/// the end too, so that nearly spherical bodies, which hardly exchange energy, have the right temperatures). In a
+/// mixture the rotation of its spheres is too: it never exchanges energy with anything.
 ///
 /// Throws std::invalid_argument for a packing fraction that is not positive or above densest_start, or a number below
 /// smallest_number; std::runtime_error if the compression gets stuck.
 ED_EXPORT System random_start(const Species& species, const StartOptions& options);
+
+/// The same for a mixture; the bodies stand in the order of their components. Throws also for a component without
+/// bodies.
+ED_EXPORT System random_start(const std::vector<Component>& components, const StartOptions& options);
+
+/// Bodies on a lattice that fills the box, at exactly this packing fraction: dense and ordered states that no
+/// compression reaches. Velocities as those of random_start; densest_start does not apply.
+///
+/// A cubic box holds nx x ny x nz stretched cells, and every site has its body: among all ways to write the number of
+/// bodies (a quarter of it, of fcc) as such a product, the one in whose cells the aligned bodies could be packed
+/// densest. Bodies of several species stand on sites drawn at random, in cells for their r.m.s. extents.
+///
+/// With nematic_order the bodies then turn where they stand, from no overlap to no overlap, until the order has fallen
+/// to S, and on without falling below: the orientations are uniform among all those without overlap and of this order,
+/// which is S up to the turn of one body (where S is next to 0, up to the error of a sample). Where bodies have room
+/// that is Maier and Saupe's distribution.
+///
+/// All pairs within reach, in all images, are asked for overlap. Throws std::invalid_argument: naming packing_fraction
+/// where aligned bodies overlap, with the largest one of this number of bodies on this lattice and the nearest numbers
+/// that have the one asked for; naming number where it is not a multiple of 4 (fcc) or the box is too small for nearest
+/// images (as random_start); naming nematic_order where the bodies have no room to turn as far; for an axis that is
+/// none.
+ED_EXPORT System lattice_start(const std::vector<Component>& components, const LatticeOptions& options);
 
 /// Sets momentum zero and the temperatures as above.
 ED_EXPORT void rescale_velocities(System& system);

@@ -3,8 +3,8 @@
 #include <ed/contact_options.h>
 #include <ed/export.h>
 #include <ed/motion.h>
+#include <ed/shape.h>
 
-#include <geom/any_shape.h>
 #include <geom/ellipsoid.h>
 
 #include <Eigen/Core>
@@ -53,14 +53,13 @@ struct [[nodiscard]] ContactResult {
 /// fast case: some 0.3 microseconds a point in time instead of one. Values that are not finite, exponents out of range
 /// and inertia that no body can have throw std::invalid_argument.
 ///
-/// `options.finder = Finder::bracketing` searches as the paper does instead, which is no proof; for two ellipsoids of
-/// revolution only, others throw std::invalid_argument (not available yet). `failed`, with either
+/// `options.finder = Finder::bracketing` searches as the paper does instead, which is no proof. `failed`, with either
 /// finder, if the budget of evaluations was spent.
 ED_EXPORT ContactResult time_of_contact(const geom::Ellipsoid& a, const Motion& motion_a, const geom::Ellipsoid& b,
                                         const Motion& motion_b, double t_max, const ContactOptions& options = {});
 
 /// The same for shapes chosen at run time, and for pairs of unlike kinds.
-ED_EXPORT ContactResult time_of_contact(const geom::Shape& a, const Motion& motion_a, const geom::Shape& b,
+ED_EXPORT ContactResult time_of_contact(const BodyShape& a, const Motion& motion_a, const BodyShape& b,
                                         const Motion& motion_b, double t_max, const ContactOptions& options = {});
 
 }  // namespace ed

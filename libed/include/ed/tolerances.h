@@ -12,7 +12,9 @@ inline constexpr double kLooseDecrement = 0.05;
 /// Contact search: the normal is converged when decrement <= kTightDecrement * size. Dimensionless.
 inline constexpr double kTightDecrement = 2e-17;
 
-/// Contact search: bodies touch when g <= kTouching * size. Dimensionless; a few times the rounding error of g.
+/// Contact search: Newton's method on d(t) ends at |d| <= kTouching * size; bodies that touch and do not approach are
+/// moved on as long as g falls by no more. Dimensionless; a few times the usual rounding error of g. (Which bodies
+/// touch is decided by its proved bound, libed/src/rounding.h; by the paper's search, with kTouching * size.)
 inline constexpr double kTouching = 2e-15;
 
 /// Contact search: bodies that touch approach when g' < -kResting * speed, speed a bound of |g'|. Dimensionless; some
@@ -31,6 +33,11 @@ inline constexpr double kTangentAgreement = 3e-4;
 /// Length of an epoch: local times are measured from its start, so that they never grow and lose digits. Time unit; a
 /// power of two.
 inline constexpr double kEpoch = 1;
+
+/// Species: principal moments of inertia >= kLeastMoment * mass * (inscribed radius)^2. Dimensionless. Below, thermal
+/// bodies turn a hundred times while they move by their own size, and nothing is tested. (Above mass * (bounding
+/// radius)^2 no body has any.)
+inline constexpr double kLeastMoment = 1e-4;
 
 /// Superellipsoids in motion: kMinExponentInMotion <= e1, e2 <= kMaxExponentInMotion. Dimensionless. The range in which
 /// contact searches are tested; flatter faces lose support points and their curvature to rounding.

@@ -29,7 +29,8 @@ GEOM_EXPORT const char* to_string(DistanceStatus status);
 enum class Penetration {
   global,  ///< the shortest of all translations that part them
   /// The nearest stationary one (the paper's beta < 0), at any depth: cheap. That the bodies overlap is certain (by a
-  /// point that both hold), that no translation is shorter is not. Where no such point shows, as `global`.
+  /// point that both hold), that no translation is shorter is not. Where no such point shows, in one of 2,000 deep
+  /// overlaps (tests/property/geom_penetration_test.cpp), as `global`.
   local,
 };
 
@@ -76,8 +77,9 @@ struct [[nodiscard]] DistanceResult {
 /// concentric bodies included: no translation is shorter than the one returned by more than `error_bound`, mostly 1e-9
 /// of the size, 1e-3 at most, or the pair is declined. (The answer is exact to rounding as a local maximum; the bound
 /// says how much better another one could be.) That takes 0.1 to 0.3 milliseconds for ellipsoids, and for
-/// superellipsoids 0.04 at a depth of 1e-6 of the size, 0.15 at 0.1 and 1 beyond, 30 at worst; Penetration::local
-/// avoids it.
+/// superellipsoids 0.05 at a depth of 1e-6 of the size, 0.3 at 0.1 and 1 beyond or where edges and faces meet, 100 at
+/// worst, where a body sits in the centre of a round one (docs/accuracy.md, bench_superellipsoid); Penetration::local
+/// mostly avoids it.
 ///
 /// Accuracy: |error of d| <= 1e-13 times the size of the pair (|p_AB| + both bounding radii); normals 1e-7 worst, 1e-12
 /// typically. Both are asserted by tests/accuracy. Never throws, never allocates.

@@ -66,6 +66,31 @@ inline constexpr double kWidestDepthGap = 1e-3;
 inline constexpr int kMostDepthSamples = 100000;
 /// @}
 
+/// ray_cast: a ray has met the body where the distance is no larger than kRayGap times the bounding radius plus that of
+/// the origin from the body's centre. Dimensionless.
+inline constexpr double kRayGap = 1e-14;
+
+/// ray_cast: a ray misses the body where it does not come closer to the tangent plane of the closest point, by more
+/// than rounding: -normal.direction <= kRayApproach, both of unit length.
+inline constexpr double kRayApproach = 1e-16;
+
+/// ray_cast: at most this many closest points.
+inline constexpr int kMaxRaySteps = 200;
+
+/// distance, fallback of ellipsoids: Armijo's rule, g grows by at least kArmijo * t * (what the Newton model promises)
+/// over a step of length t. Dimensionless.
+inline constexpr double kArmijo = 1e-4;
+
+/// The same: at most this many Newton steps, none halved to less than kLeastArmijoStep of its length.
+/// @{
+inline constexpr int kMaxArmijoSteps = 200;
+inline constexpr double kLeastArmijoStep = 1e-12;
+/// @}
+
+/// Newton's matrix of shapes without a `min_curvature_radius`: as kLeastEigenvalue, with this share of the sum of both
+/// inscribed radii in its place. Dimensionless.
+inline constexpr double kLeastCurvature = 2e-3;
+
 /// By what a step that lowers g is shortened. Dimensionless.
 inline constexpr double kBacktrack = 0.35;
 

@@ -6,8 +6,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <variant>
 
-namespace geom::internal {
+namespace geom {
+namespace internal {
 namespace {
 
 /// Inflation stops when the bodies, inflated, overlap by less than this, relative to the smaller inscribed radius.
@@ -112,4 +114,10 @@ WitnessPair ccd_seed(const SupportBody& a, const SupportBody& b) {
   return seed;
 }
 
-}  // namespace geom::internal
+}  // namespace internal
+
+WitnessPair ccd_seed(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB) {
+  return std::visit([&](const auto& s, const auto& t) { return ccd_seed(s, X_WA, t, X_WB); }, a, b);
+}
+
+}  // namespace geom

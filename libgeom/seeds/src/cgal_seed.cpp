@@ -10,9 +10,11 @@
 #include <Eigen/Core>
 
 #include <algorithm>
+#include <variant>
 #include <vector>
 
-namespace geom::internal {
+namespace geom {
+namespace internal {
 namespace {
 
 /// Doubles in, exact integers with exponents inside: with plain doubles the simplex method returns garbage.
@@ -61,4 +63,10 @@ WitnessPair cgal_seed(const SupportBody& a, const SupportBody& b) {
   return seed;
 }
 
-}  // namespace geom::internal
+}  // namespace internal
+
+WitnessPair cgal_seed(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB) {
+  return std::visit([&](const auto& s, const auto& t) { return cgal_seed(s, X_WA, t, X_WB); }, a, b);
+}
+
+}  // namespace geom

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <exception>
 #include <memory>
+#include <variant>
 #include <vector>
 
 namespace geom {
@@ -91,6 +92,10 @@ WitnessPair fcl_seed(const SupportBody& a, const SupportBody& b, const DistanceR
 
 WitnessPair fcl_seed(const Ellipsoid& a, const Pose& X_WA, const Ellipsoid& b, const Pose& X_WB) {
   return fcl_seed<Ellipsoid, Ellipsoid>(a, X_WA, b, X_WB);
+}
+
+WitnessPair fcl_seed(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB) {
+  return std::visit([&](const auto& s, const auto& t) { return fcl_seed(s, X_WA, t, X_WB); }, a, b);
 }
 
 }  // namespace geom

@@ -10,21 +10,61 @@
 
 namespace {
 
-int known_answers() {
+bool near(double value, double wanted) {
+  return std::abs(value - wanted) < 1e-14;
+}
+
+/// Distances of one pair, tip to ball along the axis: 4 - 3 - 0.5, to rounding.
+int wrong_distances() {
   const geom::Ellipsoid needle({1.0, 1.0, 3.0});
   const geom::Ellipsoid ball({0.5, 0.5, 0.5});
   const geom::Pose X_WA, X_WB = geom::Pose::translation({0.0, 0.0, 4.0});
   const geom::DistanceResult r = geom::distance(needle, X_WA, ball, X_WB);
   std::printf("%s %g\n", to_string(r.status), r.distance);
-  // Tip to ball along the axis: 4 - 3 - 0.5, to rounding.
-  if (!(r.status == geom::DistanceStatus::separated && std::abs(r.distance - 0.5) < 1e-14)) return 1;
+  int wrong = r.status != geom::DistanceStatus::separated || !near(r.distance, 0.5);
 
   // The kernels of every instruction set are in the library: nothing else has to be found.
   geom::DistanceResult batched;
   const geom::BatchSummary summary =
       geom::distance_batch({&needle, 1}, {&X_WA, 1}, {&ball, 1}, {&X_WB, 1}, {&batched, 1});
   std::printf("%s %g\n", to_string(summary.instruction_set), batched.distance);
-  return std::abs(batched.distance - r.distance) < 1e-14 ? 0 : 1;
+  wrong += !near(batched.distance, r.distance);
+
+  const geom::WitnessPair seed = geom::dual_seed(needle, X_WA, ball, X_WB);
+  wrong += !near(geom::newton_distance(needle, X_WA, ball, X_WB, geom::NewtonSystem::five, seed).distance, 0.5);
+  wrong += geom::distance(needle, X_WA, ball, geom::Pose::translation({0.0, 0.0, 3.4})).status !=
+           geom::DistanceStatus::overlapping;
+  return wrong;
+}
+
+/// The other questions of geom/queries.h, of a shape whose surface meets its axes at 1, 2 and 1.5.
+template <class Shape>
+int wrong_queries(const Shape& shape) {
+  const geom::Pose X_WA, X_WB = geom::Pose::translation({5.0, 0.0, 0.0});
+  const Eigen::Vector3d e(1.0, 0.0, 0.0);
+  int wrong = !near(geom::distance_lower_bound(shape, X_WA, shape, X_WB, e), 3.0);
+  wrong += geom::overlap(shape, X_WA, shape, X_WB) != geom::Answer::no;
+  wrong += geom::overlap(shape, X_WA, shape, geom::Pose::translation(1.5 * e)) != geom::Answer::yes;
+  const geom::ClosestPoint closest = geom::closest_point(shape, X_WA, 3.0 * e);
+  wrong += !near(closest.distance, 2.0) || !near(closest.point.x(), 1.0) || !near(closest.normal.x(), 1.0);
+  wrong += !geom::contains(shape, X_WA, 0.99 * e) || geom::contains(shape, X_WA, 1.01 * e);
+  const geom::RayHit hit = geom::ray_cast(shape, X_WA, 3.0 * e, -2.0 * e);
+  wrong += hit.status != geom::RayStatus::hit || !near(hit.t, 1.0);
+  wrong += geom::ray_cast(shape, X_WA, 3.0 * e, {0.0, 1.0, 0.0}).status != geom::RayStatus::missed;
+  wrong += !near(geom::oriented_box(shape, X_WB).half_extents.y(), 2.0);
+  return wrong;
+}
+
+int known_answers() {
+  const geom::Superellipsoid brick({1.0, 2.0, 1.5}, 0.5, 0.75);
+  const geom::Ellipsoid egg({1.0, 2.0, 1.5});
+  const geom::Shape any = brick;
+  int wrong = wrong_distances() + wrong_queries(egg) + wrong_queries(brick) + wrong_queries(any);
+  for (const double height : {brick.support({0.0, 3.0, 0.0}).height, geom::support(any, {0.0, 3.0, 0.0}).height}) {
+    wrong += !near(height, 6.0);
+  }
+  std::printf("%d wrong\n", wrong);
+  return wrong == 0 ? 0 : 1;
 }
 
 template <class T>

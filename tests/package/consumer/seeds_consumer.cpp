@@ -15,9 +15,12 @@ int main() {
   const geom::Pose X_WA, X_WB = geom::Pose::translation({0.0, 1.0, 4.0});
   const geom::DistanceResult wanted = geom::distance(needle, X_WA, ball, X_WB);
   std::vector<geom::WitnessPair> seeds = {geom::fcl_seed(needle, X_WA, ball, X_WB),
-                                          geom::ccd_seed(needle, X_WA, ball, X_WB)};
+                                          geom::ccd_seed(needle, X_WA, ball, X_WB),
+                                          geom::fcl_seed(geom::Shape(needle), X_WA, geom::Shape(ball), X_WB),
+                                          geom::ccd_seed(geom::Shape(needle), X_WA, geom::Shape(ball), X_WB)};
 #ifdef WITH_CGAL
   seeds.push_back(geom::cgal_seed(needle, X_WA, ball, X_WB));
+  seeds.push_back(geom::cgal_seed(geom::Shape(needle), X_WA, geom::Shape(ball), X_WB));
 #endif
   int failures = 0;
   for (const geom::WitnessPair& seed : seeds) {

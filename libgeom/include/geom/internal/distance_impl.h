@@ -157,8 +157,8 @@ template <class Pair>
 /// Ascends from `start`, then from cold() if that led to a stationary point without a certificate.
 ///
 /// A stationary point with g < 0 is no proof of overlap: flat bodies that are apart have some. Where a local answer is
-/// asked for, one beyond the certified depth counts only if shares(point) says that both bodies hold the point in the
-/// middle of its witness points. `cold` is called only when it is needed. Returns a result whose status declines when
+/// asked for, one beyond the certified depth counts only if shares(point_a, point_b), of its witness points, says that
+/// both bodies hold a point. `cold` is called only when it is needed. Returns a result whose status declines when
 /// neither start gives a certified answer; `iterations` is then the number of evaluations spent.
 template <class Pair, class Cold, class Shares>
 DistanceResult solve_dual(const Pair& pair, const Cold& cold, const PairScale& scale, const Eigen::Vector3d& p_WA,
@@ -180,7 +180,7 @@ DistanceResult solve_dual(const Pair& pair, const Cold& cold, const PairScale& s
     if (!certified && options.penetration == Penetration::global) continue;
     DistanceResult result = witness_result(pair, p_WA, step_on_sphere(n, e.step), spent);
     if (!certified) {
-      if (!shares(Eigen::Vector3d(0.5 * (result.point_a + result.point_b)))) continue;
+      if (!shares(result.point_a, result.point_b)) continue;
       result.error_bound = std::numeric_limits<double>::infinity();
       return result;
     }
@@ -210,6 +210,19 @@ struct CorePair {
 template <class Pair>
 CorePair(const Pair&, double, double) -> CorePair<Pair>;
 
+/// Whether holds(p) for a point p between the witness points of bodies that overlap.
+///
+/// Each body holds a part of the segment, which begins at its own witness point: mostly either holds half of it, but of
+/// a small or thin body inside a larger one the larger holds nearly all.
+template <class Holds>
+bool holds_between(const Eigen::Vector3d& point_a, const Eigen::Vector3d& point_b, const Holds& holds) {
+  // Not the ends, of which rounding decides on which side of the surface they are.
+  for (const double share : {0.5, 0.02, 0.98, 0.25, 0.75}) {
+    if (holds(Eigen::Vector3d(point_a + share * (point_b - point_a)))) return true;
+  }
+  return false;
+}
+
 /// Whether a point of the world is in both bodies; of shapes without an equation that is not known: false.
 template <class ShapeA, class ShapeB>
 bool both_contain(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const Pose& X_WB, const Eigen::Vector3d& p_W) {
@@ -218,6 +231,23 @@ bool both_contain(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const Pose
   } else {
     return false;
   }
+}
+
+/// Whether both bodies hold the point between their centres that bodies which overlap deeply are likely to share.
+template <class ShapeA, class ShapeB>
+bool share_the_middle(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const Pose& X_WB) {
+  const double r_a = a.inscribed_radius();
+  const double r_b = b.inscribed_radius();
+  return both_contain(a, X_WA, b, X_WB, Eigen::Vector3d((r_b * X_WA.position() + r_a * X_WB.position()) / (r_a + r_b)));
+}
+
+/// Whether a point of the world that both bodies hold is found: between the witness points of an answer, or between the
+/// centres. True is certain, false is not.
+template <class ShapeA, class ShapeB>
+bool share_a_point(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const Pose& X_WB, const Eigen::Vector3d& point_a,
+                   const Eigen::Vector3d& point_b) {
+  const auto holds = [&](const Eigen::Vector3d& p_W) { return both_contain(a, X_WA, b, X_WB, p_W); };
+  return holds_between(point_a, point_b, holds) || share_the_middle(a, X_WA, b, X_WB);
 }
 
 /// Where Newton's method does not converge, because support points jump: the closest points of the cores.
@@ -287,18 +317,22 @@ DistanceResult distance(const ShapeA& a, const Pose& X_WA, const ShapeB& b, cons
   const Eigen::Vector3d r = X_WB.position() - X_WA.position();
   const double rho = internal::min_curvature_radius_or_zero(a) + internal::min_curvature_radius_or_zero(b);
   // Shapes with flat faces or edges have rho = 0; a small share of the inscribed spheres keeps the step bounded.
-  const double least = kLeastEigenvalue * std::max(rho, 2e-3 * (a.inscribed_radius() + b.inscribed_radius()));
+  const double least =
+      kLeastEigenvalue * std::max(rho, kLeastCurvature * (a.inscribed_radius() + b.inscribed_radius()));
   const internal::GeneralPair pair(WorldSupport<ShapeA>{a, X_WA.rotation()}, WorldSupport<ShapeB>{b, X_WB.rotation()},
                                    r, least);
   const auto cold = [&r] { return r.squaredNorm() > 0 ? r.normalized() : Eigen::Vector3d::UnitX(); };
   const internal::PairScale scale{r.norm() + a.bounding_radius() + b.bounding_radius(), rho};
-  const auto shares = [&](const Eigen::Vector3d& p_W) { return internal::both_contain(a, X_WA, b, X_WB, p_W); };
+  const auto shares = [&](const Eigen::Vector3d& point_a, const Eigen::Vector3d& point_b) {
+    return internal::share_a_point(a, X_WA, b, X_WB, point_a, point_b);
+  };
   DistanceResult result = internal::solve_dual(pair, cold, scale, X_WA.position(), options, shares);
   if (result.status != DistanceStatus::not_converged) return result;
   const internal::CorePair cores{pair, internal::min_curvature_radius_or_zero(a),
                                  internal::min_curvature_radius_or_zero(b)};
   result = internal::descend_cores(cores, scale.size, cold(), X_WA.position(), result.iterations);
   if (result.status != DistanceStatus::not_converged) {
+    if (!internal::needs_polish(scale, result)) return result;
     // From there Newton's method has a second chance: where it converges it is the more exact.
     DistanceResult polished =
         internal::solve_dual(pair, cold, scale, X_WA.position(), {.start = result.normal}, shares);

@@ -12,6 +12,7 @@
 /// direction. Others are left alone: a lifted matrix converges linearly only, and |delta|^2 <= kNormalTolerance2 would
 /// not bound the error. The step length is capped, and shortened (kBacktrack) when g falls.
 
+#include <geom/internal/uniaxial_pair.h>
 #include <geom/tolerances.h>
 
 #include <Eigen/Core>
@@ -40,13 +41,9 @@ inline void set_step(Evaluation& e, const Eigen::Vector3d& delta, double delta2)
   }
 }
 
-/// 1 / sqrt(1 + s). For small s by its series, whose first omitted term, 231/1024 s^6 < 2e-17 where it is used, is
-/// below rounding: a few multiplications instead of a square root and a division in the longest dependency chain.
+/// 1 / sqrt(1 + s).
 inline double inverse_sqrt_1p(double s) {
-  if (std::abs(s) < 2e-3) {
-    const double s2 = s * s;  // Estrin's scheme: half the length of Horner's chain
-    return (1 - 0.5 * s) + (s2 * (0.375 - 0.3125 * s) + (s2 * s2) * (0.2734375 - 0.24609375 * s));
-  }
+  if (std::abs(s) < kInverseSqrtSeries) return inverse_sqrt_series(s);
   return 1 / std::sqrt(1 + s);
 }
 

@@ -23,11 +23,13 @@ class LanePlaneNorm {
 
   struct Value {
     Lanes norm;
-    Lanes du, dv;    ///< (u / N)^(q-1)
+    Lanes du, dv;  ///< (u / N)^(q-1)
+  };
+  struct Logged : Value {
     Lanes log_norm;  ///< ln N
   };
 
-  Value operator()(Lanes u, Lanes v, Lanes log_u, Lanes log_v) const {
+  Logged operator()(Lanes u, Lanes v, Lanes log_u, Lanes log_v) const {
     const LaneBits swapped = below(u, v);
     const Lanes larger = select(swapped, v, u);
     const Lanes smaller = select(swapped, u, v);
@@ -41,12 +43,17 @@ class LanePlaneNorm {
     const Lanes root = exp(log_root);
     const Lanes d_larger = root / s;  // s^(1/q - 1)
     const Lanes d_smaller = p * d_larger;
-    return {larger * root, select(swapped, d_smaller, d_larger), select(swapped, d_larger, d_smaller),
+    return {{larger * root, select(swapped, d_smaller, d_larger), select(swapped, d_larger, d_smaller)},
             log_larger + log_root};
   }
 
+  /// t^(q-1) of ln t; next to nothing, below e^-70, for log(0).
+  Lanes slope(Lanes log_t) const { return exp(minus_one_ * log_t); }
+  /// s^(1/q).
+  Lanes root(Lanes s) const { return exp(log(s) * inverse_); }
+
   /// l of the Hessian l (v, -u)(v, -u)^T; u, v > 0.
-  Lanes curvature(const Value& at, Lanes u, Lanes v) const { return minus_one_ * (at.du / u) * (at.dv / v) / at.norm; }
+  Lanes curvature(const Value& at, Lanes u, Lanes v) const { return minus_one_ * (at.du * at.dv) / (u * v * at.norm); }
 
  private:
   Lanes minus_one_;
@@ -55,7 +62,11 @@ class LanePlaneNorm {
 
 class LaneNorm {
  public:
-  LaneNorm(Lanes q1, Lanes q2) : outer_(q1), inner_(q2) {}
+  struct Levels {
+    LanePlaneNorm::Value inner, outer;
+  };
+
+  LaneNorm(Lanes q1, Lanes q2) : outer_(q1), inner_(q2), kind_(kind_of(q1, q2)) {}
 
   struct Value {
     Lanes norm;
@@ -65,16 +76,21 @@ class LaneNorm {
   struct Curved : Value {
     LaneVector across;  ///< in the plane of w0 and w1
     LaneVector along;
-    LanePlaneNorm::Value inner, outer;
+    Levels levels;
   };
 
   const LanePlaneNorm& outer() const { return outer_; }
   const LanePlaneNorm& inner() const { return inner_; }
 
   Value operator()(const LaneVector& w) const {
-    LanePlaneNorm::Value inner, outer;
-    evaluate(w, inner, outer);
-    return value(inner, outer);
+    if (kind_ == Kind::nested) return value(nested(w));
+    if (kind_ == Kind::quadratic) {
+      const Lanes norm = sqrt(w.dot(w));
+      return {norm, (1 / norm) * w};
+    }
+    const Powers t = powers(w);
+    const Lanes root = outer_.root(t.s);
+    return {t.larger * root, (root / t.s) * t.p};
   }
 
   /// Both vectors are orthogonal to w to rounding. Where a w vanishes and q < 2 (a flat face) the Hessian is infinite;
@@ -86,35 +102,86 @@ class LaneNorm {
     if (any(vanishing)) [[unlikely]] {
       const auto lifted = [&least](Lanes v) { return select(below(v, least), 2 * least, v); };
       Curved at = curved({lifted(w.x), lifted(w.y), lifted(w.z)});
-      evaluate(w, at.inner, at.outer);
-      static_cast<Value&>(at) = value(at.inner, at.outer);
+      at.levels = nested(w);
+      static_cast<Value&>(at) = value(at.levels);
       return at;
     }
-    LanePlaneNorm::Value inner, outer;
-    evaluate(w, inner, outer);
+    const Levels levels = kind_ == Kind::equal ? equal(w) : kind_ == Kind::quadratic ? quadratic(w) : nested(w);
+    const auto& [inner, outer] = levels;
     const Lanes k_inner = sqrt(outer.du * inner_.curvature(inner, w.x, w.y));
     const Lanes k_outer = sqrt(outer_.curvature(outer, inner.norm, w.z));
-    return {value(inner, outer),
+    return {value(levels),
             {k_inner * w.y, -k_inner * w.x, both(0)},
             {k_outer * w.z * inner.du, k_outer * w.z * inner.dv, -k_outer * inner.norm},
-            inner,
-            outer};
+            levels};
   }
 
  private:
+  /// Of both lanes: q1 = q2 = 2, q1 = q2, or anything.
+  enum class Kind { quadratic, equal, nested };
+  static Kind kind_of(Lanes q1, Lanes q2) {
+    if (q1[0] != q2[0] || q1[1] != q2[1]) return Kind::nested;
+    return q1[0] == 2 && q1[1] == 2 ? Kind::quadratic : Kind::equal;
+  }
+
   static constexpr double kLeast = 1e-20;
 
-  void evaluate(const LaneVector& w, LanePlaneNorm::Value& inner, LanePlaneNorm::Value& outer) const {
+  Levels nested(const LaneVector& w) const {
     const Lanes log_z = log(w.z);
-    inner = inner_(w.x, w.y, log(w.x), log(w.y));
-    outer = outer_(inner.norm, w.z, inner.log_norm, log_z);
+    const LanePlaneNorm::Logged inner = inner_(w.x, w.y, log(w.x), log(w.y));
+    return {inner, outer_(inner.norm, w.z, inner.log_norm, log_z)};
   }
-  static Value value(const LanePlaneNorm::Value& inner, const LanePlaneNorm::Value& outer) {
+
+  /// For w > 0: the square root of a sum of squares.
+  static Levels quadratic(const LaneVector& w) {
+    const Lanes xy = w.x * w.x + w.y * w.y;
+    const Lanes rho = sqrt(xy);
+    const Lanes norm = sqrt(xy + w.z * w.z);
+    const Lanes by_rho = 1 / rho;
+    const Lanes by_norm = 1 / norm;
+    return {{rho, w.x * by_rho, w.y * by_rho}, {norm, rho * by_norm, w.z * by_norm}};
+  }
+
+  /// Of q1 = q2 = q, where no power waits for that of another level: N = larger s^(1/q).
+  struct Powers {
+    Lanes larger;   ///< of all three
+    LaneVector p;   ///< t^(q-1), t = w / larger
+    Lanes s_xy, s;  ///< sums of t^q
+  };
+  Powers powers(const LaneVector& w) const {
+    const LaneVector logs{log(w.x), log(w.y), log(w.z)};
+    const LaneBits y_leads = below(w.x, w.y);
+    const Lanes larger_xy = select(y_leads, w.y, w.x);
+    const Lanes log_xy = select(y_leads, logs.y, logs.x);
+    const LaneBits z_leads = below(larger_xy, w.z);
+    const Lanes larger = select(z_leads, w.z, larger_xy);
+    const Lanes log_larger = select(z_leads, logs.z, log_xy);
+    const LaneVector p{outer_.slope(logs.x - log_larger), outer_.slope(logs.y - log_larger),
+                       outer_.slope(logs.z - log_larger)};
+    const Lanes zero = both(0);
+    const LaneVector t = (1 / select(below(zero, larger), larger, both(1))) * w;
+    const Lanes s_xy = t.x * p.x + t.y * p.y;
+    return {larger, p, s_xy, s_xy + t.z * p.z};
+  }
+
+  /// For w > 0.
+  Levels equal(const LaneVector& w) const {
+    const Powers t = powers(w);
+    const Lanes root_xy = outer_.root(t.s_xy);
+    const Lanes root = outer_.root(t.s);
+    const Lanes d_xy = root_xy / t.s_xy;
+    const Lanes d = root / t.s;
+    return {{t.larger * root_xy, t.p.x * d_xy, t.p.y * d_xy}, {t.larger * root, d / d_xy, t.p.z * d}};
+  }
+
+  static Value value(const Levels& levels) {
+    const auto& [inner, outer] = levels;
     return {outer.norm, {outer.du * inner.du, outer.du * inner.dv, outer.dv}};
   }
 
   LanePlaneNorm outer_;
   LanePlaneNorm inner_;
+  Kind kind_;
 };
 
 /// A shape's semi-axes and exponents.
@@ -169,8 +236,8 @@ class NormBodies {
             R_ * product(at.along, scale),
             w,
             scale,
-            at.inner,
-            at.outer};
+            at.levels.inner,
+            at.levels.outer};
   }
   Lanes heights(const LaneVector& n) const { return dual_(magnitudes(product(axes_, R_.transposed_times(n)))).norm; }
 
@@ -250,6 +317,25 @@ class NormBodies {
   static Weights raised_weights(Lanes q, Lanes x, Lanes y, Lanes floor);
   static Lanes floor_for(Lanes q, Lanes allowance);
 
+  /// What a majorant takes from either norm; see there.
+  struct InnerTangent {
+    Weights Q;
+    Lanes R2;
+    Lanes x, y;
+    LaneBits raised;
+  };
+  struct OuterTangent {
+    Weights A;
+    LaneBits raised;
+  };
+  InnerTangent inner_tangent(const Support& s, Lanes rho, Lanes relative) const;
+  OuterTangent outer_tangent(const Support& s, Lanes rho, Lanes relative) const;
+
+  /// rho is kept above this share of h: n along body z has none.
+  static constexpr double kLeastRho = 1e-30;
+  /// An exponent below 2 for lanes whose result is not used.
+  static constexpr double kAnyFlat = 1.5;
+
   LaneVector axes_;
   LaneVector inverse_axes_;
   LaneRotation R_;
@@ -280,68 +366,81 @@ inline NormBodies::Weights NormBodies::raised_weights(Lanes q, Lanes x, Lanes y,
   return {Z * px, Z * py};
 }
 
+/// Of rho' = N2 (see Majorant): Q_i, R2 = sum of Q_i w_i^2 for q2 < 2, which is rho^2 or a little more, and half the
+/// derivative of rho'^2.
+inline NormBodies::InnerTangent NormBodies::inner_tangent(const Support& s, Lanes rho, Lanes relative) const {
+  const Lanes q2 = dual_.inner().exponent();
+  const LaneBits flat = below(q2, both(2));
+  const Lanes x0 = s.w.x / rho;
+  const Lanes x1 = s.w.y / rho;
+  const Lanes least = floor_for(select(flat, q2, both(kAnyFlat)), relative);
+  InnerTangent t;
+  t.raised = flat & (below(x0, least) | below(x1, least));
+  t.Q = {s.inner.du / x0, s.inner.dv / x1};
+  t.R2 = rho * rho;
+  t.x = rho * s.inner.du;
+  t.y = rho * s.inner.dv;
+  if (any(t.raised)) {
+    const Weights raised = raised_weights(select(flat, q2, both(kAnyFlat)), x0, x1, least);
+    t.Q = {select(t.raised, raised.a, t.Q.a), select(t.raised, raised.b, t.Q.b)};
+    const Lanes larger = t.Q.a * s.w.x * s.w.x + t.Q.b * s.w.y * s.w.y;
+    t.R2 = select(t.raised & below(t.R2, larger), larger, t.R2);
+    t.x = select(t.raised, t.Q.a * s.w.x, t.x);
+    t.y = select(t.raised, t.Q.b * s.w.y, t.y);
+  }
+  const Lanes curved = q2 - 1;
+  t.Q = {select(flat, t.Q.a, curved), select(flat, t.Q.b, curved)};
+  return t;
+}
+
+/// Of h' = N1 for q1 <= 2: h'^2 <= A rho'^2 + B w2'^2.
+inline NormBodies::OuterTangent NormBodies::outer_tangent(const Support& s, Lanes rho, Lanes relative) const {
+  const Lanes q1 = dual_.outer().exponent();
+  const LaneBits flat = below(q1, both(2));
+  const Lanes h = s.outer.norm;
+  const Lanes rh = rho / h;
+  const Lanes zh = s.w.z / h;
+  const Lanes least = floor_for(select(flat, q1, both(kAnyFlat)), relative);
+  OuterTangent t{{s.outer.du / rh, s.outer.dv / zh}, flat & (below(rh, least) | below(zh, least))};
+  if (any(t.raised)) {
+    const Weights raised = raised_weights(select(flat, q1, both(kAnyFlat)), rh, zh, least);
+    t.A = {select(t.raised, raised.a, t.A.a), select(t.raised, raised.b, t.A.b)};
+  }
+  return t;
+}
+
+/// Each quantity for q1 <= 2 and for q1 > 2, a lane takes its own.
 inline NormBodies::Majorant NormBodies::majorant(const Support& s, double allowance) const {
   const Lanes two = both(2);
   const Lanes q1 = dual_.outer().exponent();
   const Lanes q2 = dual_.inner().exponent();
-  const LaneBits inner_flat = below(q2, two);
-  const LaneBits outer_flat = below(q1, two);
+  const LaneBits flat = below(q1, two);
   const Lanes h = s.outer.norm;
-  const Lanes least = 1e-30 * h;  // n along body z: rho = 0
+  const Lanes least = kLeastRho * h;
   const Lanes rho = select(below(s.inner.norm, least), least, s.inner.norm);
-  const Lanes x0 = s.w.x / rho;
-  const Lanes x1 = s.w.y / rho;
-  const Lanes rh = rho / h;
-  const Lanes zh = s.w.z / h;
   const Lanes relative = allowance / h;
-  Majorant m;
+  const InnerTangent in = inner_tangent(s, rho, relative);
+  const OuterTangent out = outer_tangent(s, rho, relative);
 
-  // Q_i, and R2 = sum Q_i w_i^2 for q2 < 2: rho^2 or a little more.
-  const Lanes T2 = floor_for(select(inner_flat, q2, both(1.5)), relative);
-  const LaneBits raise_inner = inner_flat & (below(x0, T2) | below(x1, T2));
-  Weights Q{s.inner.du / x0, s.inner.dv / x1};
-  Lanes R2 = rho * rho;
-  Lanes inner_x = rho * s.inner.du;  // half the derivative of rho'^2
-  Lanes inner_y = rho * s.inner.dv;
-  if (any(raise_inner)) {
-    const Weights raised = raised_weights(select(inner_flat, q2, both(1.5)), x0, x1, T2);
-    Q = {select(raise_inner, raised.a, Q.a), select(raise_inner, raised.b, Q.b)};
-    const Lanes larger = Q.a * s.w.x * s.w.x + Q.b * s.w.y * s.w.y;
-    R2 = select(raise_inner & below(R2, larger), larger, R2);
-    inner_x = select(raise_inner, Q.a * s.w.x, inner_x);
-    inner_y = select(raise_inner, Q.b * s.w.y, inner_y);
-  }
-  const Lanes curved = q2 - 1;
-  Q = {select(inner_flat, Q.a, curved), select(inner_flat, Q.b, curved)};
-
-  // q1 <= 2: h'^2 <= A rho'^2 + B w2'^2.
-  const Lanes T1 = floor_for(select(outer_flat, q1, both(1.5)), relative);
-  const LaneBits raise_outer = outer_flat & (below(rh, T1) | below(zh, T1));
-  Weights A{s.outer.du / rh, s.outer.dv / zh};
-  if (any(raise_outer)) {
-    const Weights raised = raised_weights(select(outer_flat, q1, both(1.5)), rh, zh, T1);
-    A = {select(raise_outer, raised.a, A.a), select(raise_outer, raised.b, A.b)};
-  }
-  const Lanes outer2 = A.a * R2 + A.b * s.w.z * s.w.z;
+  const Lanes outer2 = out.A.a * in.R2 + out.A.b * s.w.z * s.w.z;
   const Lanes E = sqrt(select(below(h * h, outer2), outer2, h * h));
-
-  // q1 > 2.
-  const Lanes rt = sqrt(R2);
-  const Lanes f = select(inner_flat, power(two, 2 / q2 - 1), both(1));
+  const Lanes rt = sqrt(in.R2);
+  const Lanes f = select(below(q2, two), power(two, 2 / q2 - 1), both(1));
   const Lanes k = q1 - 1;
   const Lanes u = h * s.outer.du / rt;
 
+  Majorant m;
   const LaneVector axes2 = product(axes_, axes_);
-  m.D2.x = axes2.x * select(outer_flat, A.a * Q.a, u * Q.a + k * f);
-  m.D2.y = axes2.y * select(outer_flat, A.a * Q.b, u * Q.b + k * f);
-  m.D2.z = axes2.z * select(outer_flat, A.b, k);
-  m.height = select(outer_flat, E, h);
-  m.offset = select(outer_flat, E - h, s.outer.du * (rt - rho));
-  const LaneVector gradient{select(outer_flat, A.a * inner_x / E, s.outer.du * inner_x / rt),
-                            select(outer_flat, A.a * inner_y / E, s.outer.du * inner_y / rt),
-                            select(outer_flat, A.b * s.w.z / E, s.outer.dv)};
+  m.D2.x = axes2.x * select(flat, out.A.a * in.Q.a, u * in.Q.a + k * f);
+  m.D2.y = axes2.y * select(flat, out.A.a * in.Q.b, u * in.Q.b + k * f);
+  m.D2.z = axes2.z * select(flat, out.A.b, k);
+  m.height = select(flat, E, h);
+  m.offset = select(flat, E - h, s.outer.du * (rt - rho));
+  const LaneVector gradient{select(flat, out.A.a * in.x / E, s.outer.du * in.x / rt),
+                            select(flat, out.A.a * in.y / E, s.outer.du * in.y / rt),
+                            select(flat, out.A.b * s.w.z / E, s.outer.dv)};
   m.gradient = R_ * product(gradient, s.scale);
-  m.raised = any(raise_inner | raise_outer);
+  m.raised = any(in.raised | out.raised);
   return m;
 }
 

@@ -49,7 +49,7 @@ class GEOM_EXPORT NormBodyPair {
  public:
   /// B's centre at r from A's. `scale`: the sum of both bounding radii; `least`: that of both inscribed ones.
   NormBodyPair(const NormBodies& bodies, const Eigen::Vector3d& r, double scale, double least)
-      : bodies_(bodies), r_(r), scale_(scale), floor_(5e-4 * least) {}
+      : bodies_(bodies), r_(r), scale_(scale), floor_(kFloor * least) {}
 
   /// The answer of one method: a normal, and by how much g there can be below the distance.
   struct Answer {
@@ -85,6 +85,10 @@ class GEOM_EXPORT NormBodyPair {
   const Eigen::Vector3d& between() const { return r_; }
 
  private:
+  /// Least eigenvalue that is kept in Newton's matrix, over the sum of both inscribed radii. Faces and edges leave
+  /// none; with more than this steps towards them are too short, with less they run away.
+  static constexpr double kFloor = 5e-4;
+
   /// Points on both surfaces, from their centres, and the vector between them.
   struct Points {
     LaneVector on;
@@ -101,8 +105,10 @@ class GEOM_EXPORT NormBodyPair {
   };
 
   TangentMatrix tangent_matrix(const DualSample& s) const;
+  /// The dual method, with more steps where the bodies seem to overlap.
+  Answer patient_dual(const Eigen::Vector3d& start, int limit, int& iterations) const;
   bool ends(const Answer& answer, Penetration penetration) const;
-  /// Whether the point in the middle of the witness points is in both bodies.
+  /// Whether a point that both bodies hold is found, between the witness points or the centres.
   bool shares_a_point(const DualSample& s) const;
   Tangent tangent(const Eigen::Vector3d& n) const;
   /// A normal for bodies that grow from nearly ellipsoids to these.

@@ -17,7 +17,8 @@ struct Point {
 /// v / |v|, also where |v|^2 under- or overflows; NaN if v is zero or not finite.
 inline Eigen::Vector3d unit_vector(const Eigen::Vector3d& v) {
   const double v2 = v.squaredNorm();
-  if (v2 > kLeastStart2 && v2 < 1e300) [[likely]]
+  constexpr double kMost2 = 1e300;  // below overflow
+  if (v2 > kLeastStart2 && v2 < kMost2) [[likely]]
     return v / std::sqrt(v2);
   const Eigen::Vector3d scaled = v / v.cwiseAbs().maxCoeff();
   return scaled / scaled.norm();
@@ -41,15 +42,6 @@ inline ClosestPoint closest_point_from(const Eigen::Vector3d& p_W, const Distanc
   return closest;
 }
 
-/// Whether a point that both bodies are likely to share, if they share any, is in both.
-template <class ShapeA, class ShapeB>
-bool share_a_point(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const Pose& X_WB) {
-  const double r_a = a.inscribed_radius();
-  const double r_b = b.inscribed_radius();
-  const Eigen::Vector3d between = (r_b * X_WA.position() + r_a * X_WB.position()) / (r_a + r_b);
-  return both_contain(a, X_WA, b, X_WB, between);
-}
-
 /// What an answer of `distance` says for certain: apart, by a positive lower bound; overlapping, by a negative upper
 /// bound or a point that both bodies hold, or touching to rounding.
 template <class ShapeA, class ShapeB>
@@ -57,7 +49,7 @@ Answer certain_answer(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const 
   if (d.status == DistanceStatus::separated) return d.distance > 0 ? Answer::no : Answer::yes;
   if (d.status != DistanceStatus::overlapping) return Answer::unknown;
   if (d.distance + d.error_bound < 0) return Answer::yes;
-  if (both_contain(a, X_WA, b, X_WB, Eigen::Vector3d(0.5 * (d.point_a + d.point_b)))) return Answer::yes;
+  if (share_a_point(a, X_WA, b, X_WB, d.point_a, d.point_b)) return Answer::yes;
   const double size = (X_WB.position() - X_WA.position()).norm() + a.bounding_radius() + b.bounding_radius();
   return -d.distance <= kRoundingFactor * size ? Answer::yes : Answer::unknown;
 }
@@ -85,7 +77,7 @@ Answer overlap(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const Pose& X
   const double start2 = start.squaredNorm();
   const bool warm = start2 > kLeastStart2 && std::isfinite(start2);
   if (distance_lower_bound(a, X_WA, b, X_WB, warm ? start : r) > 0) return Answer::no;
-  if (internal::share_a_point(a, X_WA, b, X_WB)) return Answer::yes;
+  if (internal::share_the_middle(a, X_WA, b, X_WB)) return Answer::yes;
   const DistanceResult local = distance(a, X_WA, b, X_WB, {.start = start, .penetration = Penetration::local});
   const Answer answer = internal::certain_answer(a, X_WA, b, X_WB, local);
   if (answer != Answer::unknown) return answer;
@@ -100,14 +92,13 @@ ClosestPoint closest_point(const Shape& shape, const Pose& X_WB, const Eigen::Ve
 
 template <SupportShape Shape>
 RayHit ray_cast(const Shape& shape, const Pose& X_WB, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) {
-  constexpr int kMostSteps = 200;
   RayHit hit;
   const Eigen::Vector3d u = internal::unit_vector(direction);
   const double speed = direction.dot(u);
   if (!internal::is_within_reach(origin) || !std::isfinite(speed)) return hit;
-  const double touching = 1e-14 * (shape.bounding_radius() + (origin - X_WB.position()).norm());
+  const double touching = kRayGap * (shape.bounding_radius() + (origin - X_WB.position()).norm());
   double way = 0;
-  for (int step = 0; step < kMostSteps; ++step) {
+  for (int step = 0; step < kMaxRaySteps; ++step) {
     const ClosestPoint closest = closest_point(shape, X_WB, origin + way * u);
     if (closest.status != DistanceStatus::separated && closest.status != DistanceStatus::overlapping) return hit;
     if (closest.distance <= touching) {
@@ -119,7 +110,7 @@ RayHit ray_cast(const Shape& shape, const Pose& X_WB, const Eigen::Vector3d& ori
     }
     const double approach = -closest.normal.dot(u);
     // Above its tangent plane the body has no point.
-    if (!(approach > 1e-16)) {
+    if (!(approach > kRayApproach)) {
       hit.status = RayStatus::missed;
       return hit;
     }

@@ -14,6 +14,7 @@
 /// Its eigenvalues are sigma + t1/2 +- sqrt(t1^2/4 - D).
 
 #include <geom/internal/dual_newton.h>
+#include <geom/internal/uniaxial_pair.h>
 
 #include <Eigen/Core>
 
@@ -43,16 +44,7 @@ struct Spheroid {
 /// One number of A and one of B: both bodies go through the same operations, two to an SSE2 register.
 using Both = Eigen::Array2d;
 
-/// The first half of an evaluation: g, what its time derivative needs, and what the second half goes on with.
-struct UniaxialGap {
-  double g;     ///< n.r - hA(n) - hB(-n)
-  double z;     ///< n.r
-  Both lever;   ///< c x / h: dh/dt = lever * (n.du/dt) at fixed n
-  Both x;       ///< n.u
-  Both w2;      ///< |w|^2, w = u - x n
-  Both inv_h;   ///< 1 / h
-  Both inv_h2;  ///< 1 / h^2
-};
+using UniaxialGap = UniaxialGapOf<Both>;
 
 /// An evaluation that also carries what the time derivative of g needs.
 struct UniaxialEvaluation : Evaluation {
@@ -64,22 +56,7 @@ struct UniaxialEvaluation : Evaluation {
 [[gnu::always_inline]] inline UniaxialGap uniaxial_gap(const Spheroid& A, const Spheroid& B, const Eigen::Vector3d& r,
                                                        const Eigen::Vector3d& u_a, const Eigen::Vector3d& u_b,
                                                        const Eigen::Vector3d& n) {
-  // Here and below the order of the operations keeps the dependency chain short: it is what the time goes into.
-  const Both ux(u_a.x(), u_b.x()), uy(u_a.y(), u_b.y()), uz(u_a.z(), u_b.z());
-  UniaxialGap out;
-  out.x = ux * n.x() + uy * n.y() + uz * n.z();
-  const Both wx = ux - out.x * n.x();
-  const Both wy = uy - out.x * n.y();
-  const Both wz = uz - out.x * n.z();
-  out.w2 = wx * wx + wy * wy + wz * wz;
-  const Both h2 = Both(A.b2, B.b2) * out.w2 + Both(A.a2, B.a2) * (out.x * out.x);
-  const Both h = h2.sqrt();
-  out.inv_h2 = 1 / h2;  // beside the square root, not behind it
-  out.inv_h = h * out.inv_h2;
-  out.z = r.dot(n);
-  out.g = (out.z - h[0]) - h[1];
-  out.lever = (Both(A.c, B.c) * out.x) * out.inv_h;
-  return out;
+  return uniaxial_gap_of<Both>(A, B, r, u_a, u_b, n);
 }
 
 /// The second half: the Newton step of n.
@@ -87,38 +64,22 @@ struct UniaxialEvaluation : Evaluation {
                                                                const Eigen::Vector3d& r, const Eigen::Vector3d& u_a,
                                                                const Eigen::Vector3d& u_b, const Eigen::Vector3d& n,
                                                                const UniaxialGap& gap) {
-  const Both wx = Both(u_a.x(), u_b.x()) - gap.x * n.x();
-  const Both wy = Both(u_a.y(), u_b.y()) - gap.x * n.y();
-  const Both wz = Both(u_a.z(), u_b.z()) - gap.x * n.z();
-  const double yx = (r.x() - gap.z * n.x()) - (gap.lever * wx).sum();
-  const double yy = (r.y() - gap.z * n.y()) - (gap.lever * wy).sum();
-  const double yz = (r.z() - gap.z * n.z()) - (gap.lever * wz).sum();
-  const Both f = Both(A.b2, B.b2) * gap.inv_h;
-  const Both e = (Both(A.c, B.c) * gap.inv_h2) * f;
-  const Both e_w2 = e * gap.w2;
-  const double ww = wx[0] * wx[1] + wy[0] * wy[1] + wz[0] * wz[1];
-  const double t1 = e_w2.sum();
-  const double D = e_w2.prod() - e.prod() * (ww * ww);
-  double sigma = f.sum() + gap.g;
-  // Both eigenvalues are at least `floor` if and only if the quadratic q^2 + q t1 + D and q + t1/2 are non-negative at
-  // q = sigma - floor; the square root is needed only when they are not.
   // By theory M >= rho = rhoA + rhoB, so that M + g I is definite while g > -rho; deeper it must be made so.
   const double rho = A.rho + B.rho;
   const double floor = kLeastEigenvalue * rho;
-  const double q = sigma - floor;
-  if (!(q * (q + t1) + D >= 0 && q + 0.5 * t1 >= 0)) [[unlikely]] {
-    const double smallest = sigma + 0.5 * t1 - std::sqrt(std::max(0.0, 0.25 * t1 * t1 - D));
-    // Only a matrix that is not definite is lifted: a lifted one converges linearly.
-    if (smallest < floor) sigma += (gap.g > -rho ? floor : std::max(0.5 * rho, -smallest)) - smallest;
-  }
-  const double inv_det = 1 / (sigma * (sigma + t1) + D);
-  const Both pull = e * (wx * yx + wy * yy + wz * yz);
-  const double s = sigma + t1;
-  const Eigen::Vector3d adjugate_y(s * yx - (pull * wx).sum(), s * yy - (pull * wy).sum(), s * yz - (pull * wz).sum());
+  const auto lift = [&](double sigma, double t1, double D) {
+    if (!definite_above(floor, sigma, t1, D)) [[unlikely]] {
+      const double smallest = sigma + 0.5 * t1 - std::sqrt(std::max(0.0, 0.25 * t1 * t1 - D));
+      // Only a matrix that is not definite is lifted: a lifted one converges linearly.
+      if (smallest < floor) sigma += (gap.g > -rho ? floor : std::max(0.5 * rho, -smallest)) - smallest;
+    }
+    return sigma;
+  };
+  const auto newton = uniaxial_step_of(A, B, r, u_a, u_b, n, gap, lift);
   UniaxialEvaluation out;
   out.g = gap.g;
-  out.decrement = inv_det * (yx * adjugate_y.x() + yy * adjugate_y.y() + yz * adjugate_y.z());
-  set_step(out, inv_det * adjugate_y, (inv_det * inv_det) * adjugate_y.squaredNorm());
+  out.decrement = newton.decrement;
+  set_step(out, newton.delta, newton.delta2);
   out.x = gap.x;
   out.lever = gap.lever;
   return out;
@@ -157,20 +118,10 @@ inline Eigen::Vector3d support_point(const Spheroid& S, const Eigen::Vector3d& u
   return (S.b2 * n + (S.c * x) * u) / h;
 }
 
-/// Cold start: n along (QA + QB)^-1 r, by Woodbury's formula. Exact for spheres and for parallel coaxial bodies.
-/// Centres that coincide give u_a (n is then any direction).
+/// The unit vector of cold_direction; for centres that coincide u_a (n is then any direction).
 inline Eigen::Vector3d cold_normal(const Spheroid& A, const Spheroid& B, const Eigen::Vector3d& r,
                                    const Eigen::Vector3d& u_a, const Eigen::Vector3d& u_b) {
-  const double inv = 1 / (A.b2 + B.b2);
-  const double p = A.c * inv;
-  const double q = B.c * inv;
-  const double k = u_a.dot(u_b);
-  const double r_a = r.dot(u_a);
-  const double r_b = r.dot(u_b);
-  const double det = (1 + p) * (1 + q) - p * q * (k * k);  // > 0
-  const double x_a = (1 + q) * r_a - q * k * r_b;
-  const double x_b = (1 + p) * r_b - p * k * r_a;
-  const Eigen::Vector3d n = det * r - (p * x_a) * u_a - (q * x_b) * u_b;
+  const Eigen::Vector3d n = cold_direction(A, B, r, u_a, u_b);
   const double length2 = n.squaredNorm();
   return length2 > 0 ? Eigen::Vector3d((1 / std::sqrt(length2)) * n) : u_a;
 }

@@ -5,6 +5,7 @@
 ///
 /// CGAL's Polytope_distance_d is under the GPL, version 3 or later: so is a program that links hardbody::geom_cgal.
 
+#include <geom/any_shape.h>
 #include <geom/export.h>
 #include <geom/internal/support_body.h>
 #include <geom/newton.h>
@@ -31,5 +32,8 @@ WitnessPair cgal_seed(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const 
   const WitnessPair seed = internal::cgal_seed(internal::SupportBody(a, X_WA), internal::SupportBody(b, X_WB));
   return internal::checked(a, X_WA, b, X_WB, seed);
 }
+
+/// The same for shapes chosen at run time.
+GEOM_EXPORT WitnessPair cgal_seed(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB);
 
 }  // namespace geom

@@ -6,6 +6,7 @@
 /// World frame, in and out. Nothing here throws on numerical grounds: a seed that has no points says so by its status,
 /// and check_seed accepts every `usable` one.
 
+#include <geom/any_shape.h>
 #include <geom/ellipsoid.h>
 #include <geom/export.h>
 #include <geom/internal/support_body.h>
@@ -52,7 +53,10 @@ WitnessPair fcl_seed(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const P
 }
 
 /// The same, compiled into the library.
+/// @{
 GEOM_EXPORT WitnessPair fcl_seed(const Ellipsoid& a, const Pose& X_WA, const Ellipsoid& b, const Pose& X_WB);
+GEOM_EXPORT WitnessPair fcl_seed(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB);
+/// @}
 
 namespace internal {
 GEOM_EXPORT WitnessPair ccd_seed(const SupportBody& a, const SupportBody& b);
@@ -72,5 +76,8 @@ WitnessPair ccd_seed(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const P
   const WitnessPair seed = internal::ccd_seed(internal::SupportBody(a, X_WA), internal::SupportBody(b, X_WB));
   return internal::checked(a, X_WA, b, X_WB, seed);
 }
+
+/// The same for shapes chosen at run time.
+GEOM_EXPORT WitnessPair ccd_seed(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB);
 
 }  // namespace geom

@@ -1,0 +1,77 @@
+/// Collisions a second of the event loop for bodies beyond ellipsoids of revolution, one core, N = 512, packing
+/// fraction 0.40, with the counters that explain them. Beside each its share of the rate of ellipsoids of revolution
+/// with X0 = 3 in the same run, which no machine changes much.
+
+#include "engine_rates.h"
+
+#include <ed/simulation.h>
+#include <ed/start.h>
+
+#include <geom/ellipsoid.h>
+#include <geom/superellipsoid.h>
+
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+namespace {
+
+constexpr int kNumber = 512;
+constexpr double kPacking = 0.40;
+constexpr std::uint64_t kCollisions = 20000;
+constexpr int kStretches = 5;
+const char* const kReference = "ellipsoids 1:1:3";
+
+struct Bodies {
+  std::string name;
+  ed::BodyShape shape;
+};
+
+std::vector<Bodies> all_bodies() {
+  const auto superellipsoid = [](const Eigen::Vector3d& axes, double e) { return geom::Superellipsoid(axes, e, e); };
+  return {{kReference, geom::Ellipsoid({1, 1, 3})},
+          {"ellipsoids 1:0.8:0.5", geom::Ellipsoid({1, 0.8, 0.5})},
+          {"superballs p=2.5", superellipsoid({1, 1, 1}, 0.8)},
+          {"superballs p=4", superellipsoid({1, 1, 1}, 0.5)},
+          {"superellipsoids 1:1:2 e=0.5", superellipsoid({1, 1, 2}, 0.5)},
+          {"superellipsoids 1:1:3 e=1", superellipsoid({1, 1, 3}, 1)}};
+}
+
+void engine(benchmark::State& timing, const ed::BodyShape& shape) {
+  ed::StartOptions options;
+  options.number = kNumber;
+  options.packing_fraction = kPacking;
+  ed::Simulation simulation(ed::random_start(ed::uniform_species(shape), options));
+  simulation.run_collisions(20 * kNumber);
+  simulation.tune_envelopes();
+  const ed::Counters before = simulation.counters();
+  for (auto _ : timing) simulation.run_collisions(kCollisions);
+  hardbody_bench::report_rates(timing, before, simulation.counters());
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  benchmark::AddCustomContext("march", HARDBODY_ARCH_NAME);
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
+  for (const Bodies& bodies : all_bodies()) {
+    benchmark::RegisterBenchmark(bodies.name.c_str(),
+                                 [shape = bodies.shape](benchmark::State& timing) { engine(timing, shape); })
+        ->Unit(benchmark::kMillisecond)
+        ->Iterations(kStretches);
+  }
+  hardbody_bench::KeepRates rates;
+  benchmark::RunSpecifiedBenchmarks(&rates);
+  benchmark::Shutdown();
+  const double reference = rates.rate(kReference);
+  if (std::isnan(reference)) return 0;
+  std::printf("\nshare of the rate of %s\n", kReference);
+  for (const Bodies& bodies : all_bodies()) {
+    std::printf("%-30s %.2f\n", bodies.name.c_str(), rates.rate(bodies.name) / reference);
+  }
+}

@@ -1,0 +1,113 @@
+#pragma once
+
+/// @file
+/// The shapes of bodies in motion: libgeom's, and a user's own.
+
+#include <ed/export.h>
+
+#include <geom/distance.h>
+#include <geom/ellipsoid.h>
+#include <geom/pose.h>
+#include <geom/shape.h>
+#include <geom/superellipsoid.h>
+
+#include <Eigen/Core>
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+
+namespace ed {
+
+/// A user's own convex body: any type that models geom::SupportShape, and what dynamics needs beside its surface. It is
+/// itself a SupportShape. Copies share the shape.
+class ED_EXPORT CustomShape {
+ public:
+  /// What a support function does not tell.
+  struct Properties {
+    std::string name = "custom";       ///< in messages
+    double volume = 0;                 ///< > 0
+    std::optional<int> symmetry_axis;  ///< body axis (0, 1, 2) about which the body is one of revolution, if any
+    bool centrally_symmetric = false;  ///< -x is in the body for every x in it: the paper's boxes are tighter then
+  };
+
+  /// Throws std::invalid_argument unless the radii are positive, finite and in order, the volume is between those of
+  /// the inscribed and the bounding sphere, and the support function agrees with both radii along the axes.
+  template <geom::SupportShape T>
+  CustomShape(T shape, Properties properties)
+      : shape_(std::make_shared<const Model<T>>(std::move(shape))), properties_(std::move(properties)) {
+    check();
+  }
+
+  /// Those of the user's shape.
+  /// @{
+  geom::Support support(const Eigen::Vector3d& n) const { return shape_->support(n); }
+  Eigen::Matrix3d support_hessian(const Eigen::Vector3d& n) const { return shape_->support_hessian(n); }
+  double bounding_radius() const { return bounding_radius_; }
+  double inscribed_radius() const { return inscribed_radius_; }
+  double min_curvature_radius() const { return min_curvature_radius_; }  ///< 0 if the user's type does not tell
+  double volume() const { return properties_.volume; }
+  const std::string& name() const { return properties_.name; }
+  std::optional<int> symmetry_axis() const { return properties_.symmetry_axis; }
+  bool centrally_symmetric() const { return properties_.centrally_symmetric; }
+  /// @}
+
+ private:
+  struct Concept {
+    virtual ~Concept() = default;
+    virtual geom::Support support(const Eigen::Vector3d& n) const = 0;
+    virtual Eigen::Matrix3d support_hessian(const Eigen::Vector3d& n) const = 0;
+    virtual double bounding_radius() const = 0;
+    virtual double inscribed_radius() const = 0;
+    virtual double min_curvature_radius() const = 0;
+  };
+  template <class T>
+  struct Model final : Concept {
+    explicit Model(T s) : shape(std::move(s)) {}
+    geom::Support support(const Eigen::Vector3d& n) const override { return shape.support(n); }
+    Eigen::Matrix3d support_hessian(const Eigen::Vector3d& n) const override { return shape.support_hessian(n); }
+    double bounding_radius() const override { return shape.bounding_radius(); }
+    double inscribed_radius() const override { return shape.inscribed_radius(); }
+    double min_curvature_radius() const override {
+      if constexpr (requires { shape.min_curvature_radius(); }) return shape.min_curvature_radius();
+      return 0;
+    }
+    T shape;
+  };
+
+  void check();
+
+  std::shared_ptr<const Concept> shape_;
+  Properties properties_;
+  double bounding_radius_ = 0;
+  double inscribed_radius_ = 0;
+  double min_curvature_radius_ = 0;
+};
+
+/// The shape of a body in a simulation.
+using BodyShape = std::variant<geom::Ellipsoid, geom::Superellipsoid, CustomShape>;
+
+/// The member functions of the shape inside; see there.
+/// @{
+ED_EXPORT double bounding_radius(const BodyShape& shape);
+ED_EXPORT double inscribed_radius(const BodyShape& shape);
+ED_EXPORT double volume(const BodyShape& shape);
+ED_EXPORT geom::Support support(const BodyShape& shape, const Eigen::Vector3d& n);
+/// @}
+
+/// The body axis (0, 1, 2) about which the shape is one of revolution: 2 if it is so about all; nothing if about none.
+ED_EXPORT std::optional<int> symmetry_axis(const BodyShape& shape);
+
+/// Half the edges of the smallest box around the body along its own axes.
+ED_EXPORT Eigen::Vector3d half_extents(const BodyShape& shape);
+
+/// geom::distance of the shapes inside.
+ED_EXPORT geom::DistanceResult distance(const BodyShape& a, const geom::Pose& X_WA, const BodyShape& b,
+                                        const geom::Pose& X_WB);
+
+/// What the shape is, for messages: "ellipsoid 1 x 1 x 3".
+ED_EXPORT std::string describe(const BodyShape& shape);
+
+}  // namespace ed

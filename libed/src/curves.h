@@ -1,0 +1,41 @@
+#pragma once
+
+/// What is read off a time correlation: slopes and decays.
+
+#include <ed/analysis.h>
+
+#include <limits>
+#include <optional>
+#include <vector>
+
+namespace ed::internal {
+
+constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
+
+/// A correlation against lag, for one block or for all.
+struct Curve {
+  std::vector<double> t;
+  std::vector<double> y;
+};
+
+/// Diffusion is fitted from this share of the longest lag.
+constexpr double kFitFrom = 0.4;
+
+/// D = slope / divisor over [kFitFrom, 1] of the longest lag; NaN unless the curve is straight there.
+double diffusion(const Curve& curve, double divisor);
+
+/// Where the curve falls to 1/e; NaN if it does not.
+double decay_time(const Curve& curve);
+
+/// A fit and the lags that went into it.
+struct DecayFit {
+  StretchedExponential fit;
+  double from;
+  double to;
+};
+
+/// The stretched exponential of a correlation that starts at 1, ballistic part and the noise at the end left out.
+/// Nothing where the decay is ballistic all the way.
+std::optional<DecayFit> fit_decay(const Curve& curve, double collision_rate);
+
+}  // namespace ed::internal

@@ -1,0 +1,30 @@
+#pragma once
+
+/// What thicknesses of envelopes and boxes are possible.
+
+namespace ed::internal {
+
+/// The thinnest envelope in use, in units of the bounding radius.
+inline constexpr double kThinnestEnvelope = 0.02;
+
+/// The smallest box in which the nearest image of a neighbour is the only one that can touch. Neighbours' envelope
+/// centres are within 2 R + 2 delta of each other, their centres then within 2 R + 4 delta, which must be below half
+/// the box.
+inline double smallest_image_box(double bounding_radius) {
+  return 2 * (2 + 4 * kThinnestEnvelope) * bounding_radius;
+}
+
+/// The thickest envelope for which the nearest image is safe in this box.
+inline double thickest_envelope(double box, double bounding_radius) {
+  return (0.5 * box - 2 * bounding_radius) / 4;
+}
+
+/// An upper bound of the angle between unit vectors a chord apart: 2 asin(c/2) = c + c^3/24 + 3 c^5/640 + ..., whose
+/// tail after the second term is below c^5/120 for c <= 1.
+inline double angle_bound(double chord) {
+  if (!(chord <= 1)) return 3.1416;
+  const double c2 = chord * chord;
+  return chord * (1 + c2 * (1.0 / 24 + c2 / 120));
+}
+
+}  // namespace ed::internal

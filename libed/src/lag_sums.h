@@ -1,0 +1,78 @@
+#pragma once
+
+/// What a time correlation is made of: two frames of a run, compared body by body.
+
+#include <ed/internal/archive_types.h>
+#include <ed/simulation.h>
+
+#include <Eigen/Core>
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace ed::internal {
+
+/// Bodies begin, begin + 1, .., end - 1.
+struct BodyRange {
+  std::size_t begin;
+  std::size_t end;
+  bool three_axes;  ///< each body axis is correlated by itself
+
+  double size() const { return static_cast<double>(end - begin); }
+};
+
+/// A snapshot, and the bodies' orientations where some range has three axes.
+struct Frame {
+  Snapshot snapshot;
+  std::vector<Eigen::Matrix3d> rotation;
+};
+
+template <class Archive, Is<Frame> T>
+void fields(Archive& archive, T& frame) {
+  archive(frame.snapshot, frame.rotation);
+}
+
+/// Wave numbers that F_self is measured at, at most.
+constexpr std::size_t kMostWaveNumbers = 8;
+
+/// Sums, over the origins of a block, of what is measured at one lag: averages over the bodies of a range.
+struct LagSums {
+  double count = 0;
+  double msd = 0;
+  double r4 = 0;  ///< <|r(t) - r(0)|^4>
+  double rot_msd = 0;
+  double rot_msd_body = 0;
+  double c1 = 0;
+  double c2 = 0;
+  double vacf = 0;                                         ///< <v(t).v(0)>
+  double wacf = 0;                                         ///< <w(t).w(0)>, spin excluded
+  Eigen::Vector3d rot_msd_axis = Eigen::Vector3d::Zero();  ///< the body axes' shares of rot_msd_body
+  Eigen::Vector3d c1_axis = Eigen::Vector3d::Zero();       ///< of each body axis
+  Eigen::Vector3d c2_axis = Eigen::Vector3d::Zero();
+  std::array<double, kMostWaveNumbers> f_self{};  ///< at as many wave numbers as are asked for
+
+  /// The weight: the range's share of what is averaged.
+  void add(const LagSums& other, double weight);
+};
+
+template <class Archive, Is<LagSums> T>
+void fields(Archive& archive, T& s) {
+  archive(s.count, s.msd, s.r4, s.rot_msd, s.rot_msd_body, s.c1, s.c2, s.vacf, s.wacf, s.rot_msd_axis, s.c1_axis,
+          s.c2_axis, s.f_self);
+}
+
+/// Averages over the bodies of a range, with c1_axis and c2_axis if it has three axes.
+///
+/// F_self is averaged over all directions of q: sin(q r) / (q r), r the displacement, which a box does not confine.
+LagSums correlate(const Frame& a, const Frame& b, BodyRange range, std::span<const double> wave_numbers);
+
+/// Single ones of them.
+/// @{
+double mean_square_displacement(const Snapshot& a, const Snapshot& b, BodyRange range);
+double mean_p2(const Snapshot& a, const Snapshot& b, BodyRange range);
+double self_scattering(const Snapshot& a, const Snapshot& b, BodyRange range, double wave_number);
+/// @}
+
+}  // namespace ed::internal

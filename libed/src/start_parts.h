@@ -1,0 +1,33 @@
+#pragma once
+
+/// What the starts share.
+
+#include <ed/random.h>
+#include <ed/shape.h>
+#include <ed/start.h>
+#include <ed/system.h>
+
+#include <geom/pose.h>
+
+#include <vector>
+
+namespace ed::internal {
+
+/// Anything but a certain no counts as overlap.
+bool overlaps(const BodyShape& a, const geom::Pose& X_a, const BodyShape& b, const geom::Pose& X_b);
+
+double largest_radius(const std::vector<Component>& components);
+
+/// Throws std::invalid_argument for no components, one without bodies, or a species that is not sound.
+void check_components(const std::vector<Component>& components);
+
+/// Throws std::invalid_argument, naming the number, if a body could meet two images of another in this box.
+void check_target(const std::vector<Component>& components, double box);
+
+/// The bodies of the components, in their order, without places.
+System bodies_of(const std::vector<Component>& components);
+
+/// From the Maxwell distribution, then rescaled.
+void draw_velocities(System& system, Random& random);
+
+}  // namespace ed::internal

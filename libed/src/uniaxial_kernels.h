@@ -1,0 +1,119 @@
+#pragma once
+
+/// The kernels of ellipsoids of revolution, compiled once for each instruction set (uniaxial_kernels-inl.h).
+///
+/// Plain arrays only, neither Eigen nor containers: what a translation unit compiled for AVX-512 instantiates of them
+/// could be linked into code for processors without it.
+///
+/// Kernels answer the first pairs of a block, as many as they are told; up to the next multiple of kLongestVector the
+/// input must hold valid pairs too.
+
+namespace ed::internal {
+
+constexpr int kLongestVector = 8;
+
+/// What rows of a body begin with: its shape, as in Spheroid.
+struct ShapeRows {
+  enum Row { a2 = 0, b2 = 1, c = 2, rho = 3, count = 4 };
+};
+
+// ---- First looks: what certified_contact finds with one evaluation --------------------------------------------------
+
+/// Pairs in one call, at most, and a multiple of every vector's length.
+constexpr int kBlockLooks = 48;
+
+/// One number of each pair of a block.
+using LookRow = double[kBlockLooks];
+
+/// Rows of one of the two bodies, from LookInput::body_a or body_b on.
+struct LookBody {
+  enum Row {
+    shape = 0,
+    turning_limit = ShapeRows::count,  ///< as in Spheroid
+    position = 5,                      ///< of the motion, as in AxisMotion
+    velocity = 8,
+    e1 = 11,
+    e2 = 14,
+    rate = 17,
+    time = 18,
+    e0 = 19,  ///< with spin only
+    count = 22,
+  };
+};
+
+struct LookInput {
+  enum Row {
+    body_a = 0,
+    body_b = LookBody::count,
+    reach = 2 * LookBody::count,  ///< the sum of both bounding radii
+    end = reach + 1,              ///< of the search
+    normal = end + 1,             ///< from A to B, unit
+    count = normal + 3,
+  };
+  alignas(64) LookRow rows[count];
+  double now;
+  double box;
+};
+
+struct LookOutput {
+  enum Row {
+    verdict = 0,
+    time = 1,          ///< of a bound
+    kernel_calls = 2,  ///< 0: the bounding spheres do not meet; 1: the normal is as it was
+    normal = 3,
+    count = 6,
+  };
+  /// What `verdict` may be.
+  static constexpr double open = 0;  ///< not known: the other rows mean nothing
+  static constexpr double clear = 1;
+  static constexpr double bound = 2;
+  alignas(64) LookRow rows[count];
+};
+
+using LookKernel = void(const LookInput& in, int pairs, LookOutput& out);
+
+// ---- Meetings: whether dilated envelopes may meet -------------------------------------------------------------------
+
+constexpr int kBlockMeetings = 64;
+
+/// Of the pairs of one envelope and others.
+using MeetingRow = double[kBlockMeetings];
+
+struct MeetingInput {
+  enum Row {
+    shape = 0,                ///< of the other
+    axis = ShapeRows::count,  ///< of the other
+    r = axis + 3,             ///< from the one to the other
+    count = r + 3,
+  };
+  alignas(64) MeetingRow rows[count];
+  double one_shape[ShapeRows::count][1];  ///< a row of one number
+  double one_axis[3][1];
+  double limit;  ///< gaps above are none
+};
+
+struct MeetingOutput {
+  enum Row { verdict = 0, normal = 1, count = 4 };
+  static constexpr double open = 0;  ///< not known
+  static constexpr double apart = 1;
+  static constexpr double meet = 2;
+  alignas(64) MeetingRow rows[count];
+};
+
+using MeetingKernel = void(const MeetingInput& in, int pairs, MeetingOutput& out);
+
+// ---------------------------------------------------------------------------------------------------------------------
+
+/// Null if pairs are to be answered one by one.
+struct UniaxialKernels {
+  LookKernel* look_across = nullptr;    ///< at bodies that turn about axes across their own (e0 = 0)
+  LookKernel* look_spinning = nullptr;  ///< and at those that spin
+  MeetingKernel* meet = nullptr;
+};
+
+/// Of one instruction set each.
+UniaxialKernels uniaxial_kernels_portable();
+UniaxialKernels uniaxial_kernels_avx2();
+UniaxialKernels uniaxial_kernels_avx512();
+
+}  // namespace ed::internal

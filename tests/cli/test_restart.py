@@ -1,0 +1,431 @@
+"""Runs that are stopped, killed, short of disk or not alone: what `hardbody resume` makes of them.
+
+    HARDBODY=build/release/apps/hardbody/hardbody /usr/bin/python3 tests/cli/test_restart.py [TestClass[.test]]
+
+HARDBODY_FULL=1 kills a hundred runs instead of nine.
+"""
+
+import json
+import os
+import random
+import resource
+import shutil
+import signal
+import subprocess
+import time
+import unittest
+
+from test_cli import HARDBODY, MIXTURE, SMALL, Case
+
+FULL = os.environ.get("HARDBODY_FULL") == "1"
+
+# Of about a second each, with some tens of checkpoints.
+OFTEN = 'events = 2000\ncheckpoint_every = "0.02s"'
+SUPERBALL = 'kind = "superellipsoid"\nsemi_axes = [1, 1, 1]\nexponents = [0.5, 0.5]'
+
+
+def config(shape="aspect_ratio = 2", dynamics="", base=SMALL, equilibration=20, production=60):
+    text = base.replace("aspect_ratio = 2", shape).replace("events = 500", OFTEN)
+    text = text.replace("time = 5\n", f"time = {production}\n").replace("time = 1\n", f"time = {equilibration}\n")
+    return text + (f"[dynamics]\n{dynamics}\n" if dynamics else "")
+
+
+# Every family of bodies, and every finder and kind of neighbour list with one of them.
+RUNS = {
+    "rods": config(equilibration=150, production=100),
+    "superballs": config(SUPERBALL, 'neighbours = "obp"', equilibration=60, production=8),
+    "mixture": config(base=MIXTURE, equilibration=15, production=3),
+    "rods by the paper": config(dynamics='finder = "bracketing"\nneighbours = "obp"', equilibration=15, production=5),
+    "spinning discs": config("aspect_ratio = 0.5", 'inertia = "uniform"\nneighbours = "cells"', equilibration=150, production=30),
+    "three axes": config("semi_axes = [1, 0.8, 0.6]", equilibration=80, production=2),
+    "superellipsoids": config(
+        'kind = "superellipsoid"\nsemi_axes = [1, 0.8, 0.6]\nexponents = [0.7, 1.3]',
+        'finder = "bracketing"\nneighbours = "cells"', equilibration=10, production=0.6,
+    ),
+    "auto": config(dynamics='neighbours = "cells"').replace("time = 20\n", 'time = "auto"\n').replace("60\n", '"auto"\n'),
+    "until precise": config().replace("time = 20\n", 'time = "auto"\n').replace("60\n", '"auto"\ntarget_error = 0.08\n'),
+}
+
+
+class Restart(Case):
+    def start(self, *arguments, **options):
+        process = subprocess.Popen(
+            [HARDBODY, *arguments], cwd=self.here, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, **options
+        )
+        self.addCleanup(process.stderr.close)
+        self.addCleanup(process.kill)
+        return process
+
+    def stop(self, process, number=signal.SIGKILL):
+        """The exit status; that of the process itself if it was faster."""
+        process.send_signal(number)
+        return process.wait(timeout=60)
+
+    def wait_for(self, holds, what):
+        deadline = time.monotonic() + 60
+        while not holds():
+            self.assertLess(time.monotonic(), deadline, f"{what} never came")
+            time.sleep(0.002)
+
+    def log_has(self, out, text):
+        return os.path.exists(self.path(f"{out}/log.txt")) and text in self.read(f"{out}/log.txt")
+
+    def undisturbed(self, out, text):
+        """Runs it to its end; returns the seconds that took."""
+        begin = time.monotonic()
+        self.run_small(out, config=text)
+        return time.monotonic() - begin
+
+    def results(self, out):
+        """All that a run says of itself and its bodies, timing apart."""
+        files = {name: self.bytes_of(f"{out}/observables/{name}") for name in sorted(os.listdir(self.path(f"{out}/observables")))}
+        summary = self.summary(out)
+        del summary["performance"]
+        files["summary.json"] = json.dumps(summary)
+        files["events.csv"] = self.bytes_of(f"{out}/events.csv")
+        files["config.toml"] = self.bytes_of(f"{out}/config.toml")
+        files["checkpoint.bin"] = self.state_of(out)
+        return files
+
+    def assert_same_run(self, out, expected):
+        results = self.results(out)
+        self.assertEqual(sorted(results), sorted(expected))
+        for name, content in expected.items():
+            self.assertTrue(results[name] == content, f"{out}/{name} differs")
+        self.assertEqual([f for f in os.listdir(self.path(out)) if f.endswith(".part")], [])
+
+    def resume(self, out):
+        result = self.hardbody("resume", out)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        return result
+
+    def everything(self, out):
+        """All names, contents and times of change."""
+        found = {}
+        for directory, _, names in os.walk(self.path(out)):
+            for name in names:
+                path = os.path.join(directory, name)
+                with open(path, "rb") as file:
+                    found[path] = (file.read(), os.stat(path).st_mtime_ns)
+        return found
+
+    def assert_refused_untouched(self, out, *parts):
+        before = self.everything(out)
+        self.assert_refused(self.hardbody("resume", out), "accepted: ", *parts)
+        self.assertEqual(self.everything(out), before)
+
+
+class Kills(Restart):
+    def test_at_any_moment(self):
+        """kill -9, resumed (and killed again now and then): the same bytes as without."""
+        draws = random.Random(1)
+        kills = 100 if FULL else 9
+        expected = {}
+        seconds = {}
+        where = {}
+        for k in range(kills):
+            name = list(RUNS)[k % len(RUNS)]
+            if name not in expected:
+                seconds[name] = self.undisturbed("reference", RUNS[name])
+                expected[name] = self.results("reference")
+                shutil.rmtree(self.path("reference"))
+            with self.subTest(name, kill=k):
+                self.write("run.toml", RUNS[name])
+                command = ["run", "run.toml", "--out", "out"]
+                while True:
+                    process = self.start(*command)
+                    time.sleep(draws.uniform(0, seconds[name]))
+                    status = self.stop(process)
+                    self.assertIn(status, [0, -signal.SIGKILL], process.stderr.read())
+                    phase = self.phase("out")
+                    where[phase] = where.get(phase, 0) + 1
+                    # Before there is a config there is no run to go on with.
+                    command = ["resume", "out"] if os.path.exists(self.path("out/config.toml")) else command
+                    if draws.random() < 0.7:
+                        break
+                self.assertEqual(self.hardbody(*command).returncode, 0)
+                self.assert_same_run("out", expected[name])
+                shutil.rmtree(self.path("out"))
+        print(f"killed {sum(where.values())} times: {where}")
+
+    def phase(self, out):
+        if not os.path.exists(self.path(f"{out}/log.txt")):
+            return "nothing yet"
+        log = self.read(f"{out}/log.txt")
+        for phase, text in [("finished", " end\n"), ("writing", "production: done"), ("production", "production: "),
+                            ("equilibration", "finder: "), ("start", "start: ")]:
+            if text in log:
+                return phase
+        return "nothing yet"
+
+    def test_while_a_checkpoint_is_written(self):
+        self.undisturbed("reference", RUNS["rods"])
+        expected = self.results("reference")
+        caught = 0
+        for k in range(4):
+            self.write("run.toml", RUNS["rods"])
+            process = self.start("run", "run.toml", "--out", "out")
+            part = self.path("out/checkpoint.bin.part")
+            self.wait_for(lambda: os.path.exists(part) or process.poll() is not None, "a checkpoint")
+            self.stop(process)
+            caught += os.path.exists(part)
+            self.resume("out")
+            self.assert_same_run("out", expected)
+            shutil.rmtree(self.path("out"))
+        print(f"killed in the middle of writing {caught} times of 4")
+
+
+class Stops(Restart):
+    def test_signals_in_every_phase(self):
+        text = RUNS["rods"]
+        self.undisturbed("reference", text)
+        expected = self.results("reference")
+        for number, status in [(signal.SIGTERM, 143), (signal.SIGINT, 130)]:
+            for phase in ["start: ", "finder: ", "envelope thickness", "production: "]:
+                with self.subTest(number=number, phase=phase):
+                    self.write("run.toml", text)
+                    process = self.start("run", "run.toml", "--out", "out")
+                    self.wait_for(lambda: self.log_has("out", phase), phase)
+                    self.assertEqual(self.stop(process, number), status)
+                    self.assertEqual(self.hardbody("check", "out").returncode if self.has("out/checkpoint.bin") else 0, 0)
+                    self.resume("out")
+                    self.assert_same_run("out", expected)
+                    shutil.rmtree(self.path("out"))
+
+    def has(self, name):
+        return os.path.exists(self.path(name))
+
+    def test_many_times(self):
+        text = config(SUPERBALL, 'neighbours = "obp"', equilibration=60, production=20)
+        self.undisturbed("reference", text)
+        self.write("run.toml", text)
+        command = ["run", "run.toml", "--out", "out"]
+        stops = 0
+        wait = 0.1
+        while True:
+            process = self.start(*command)
+            # Longer each time: a slow machine may need more than 0.1 s to read the checkpoint.
+            time.sleep(wait)
+            wait *= 1.1
+            status = self.stop(process, signal.SIGTERM)
+            command = ["resume", "out"]
+            if status == 0:
+                break
+            # Before the program has its own handlers the signal just ends it.
+            self.assertIn(status, [143, -signal.SIGTERM], process.stderr.read())
+            stops += 1
+            self.assertLess(stops, 80)
+        self.assertGreater(stops, 2)
+        self.assert_same_run("out", self.results("reference"))
+        self.assertGreaterEqual(self.summary("out")["performance"]["resumed"], 1)
+
+    def test_without_a_checkpoint_it_starts_over(self):
+        text = config().replace(OFTEN, "events = 2000")
+        self.undisturbed("reference", text)
+        self.write("run.toml", text)
+        process = self.start("run", "run.toml", "--out", "out")
+        self.wait_for(lambda: self.log_has("out", "envelope thickness"), "equilibration")
+        self.stop(process)
+        self.assertFalse(self.has("out/checkpoint.bin"))
+        self.resume("out")
+        self.assertIn("starts over", self.read("out/log.txt"))
+        self.assert_same_run("out", self.results("reference"))
+
+    def test_a_finished_run_is_left_alone(self):
+        self.run_small("out")
+        before = self.everything("out")
+        result = self.resume("out")
+        self.assertIn("out: the run is finished", result.stdout)
+        self.assertEqual(self.everything("out"), before)
+
+    def test_killed_before_the_summary(self):
+        self.run_small("out")
+        expected = self.results("out")
+        os.remove(self.path("out/summary.json"))
+        os.remove(self.path("out/observables/msd.csv"))
+        self.resume("out")
+        self.assert_same_run("out", expected)
+
+    def test_results_of_a_stopped_run_do_not_outlive_it(self):
+        self.write("run.toml", config(production=100000))
+        process = self.start("run", "run.toml", "--out", "out")
+        self.wait_for(lambda: self.log_has("out", "production: "), "production")
+        self.stop(process, signal.SIGTERM)
+        self.assertTrue(self.summary("out")["interrupted"])
+        process = self.start("resume", "out")
+        self.wait_for(lambda: self.log_has("out", "resumed from production"), "production")
+        self.stop(process)
+        self.assertFalse(self.has("out/summary.json"))
+
+    def test_checkpoints_change_nothing(self):
+        often = config(production=30)
+        self.run_small("often", config=often)
+        self.run_small("never", config=often.replace(OFTEN, 'events = 2000\ncheckpoint_every = "9h"'))
+        self.assertGreater(self.summary("often")["performance"]["checkpoints"], 3)
+        self.assertEqual(self.summary("never")["performance"]["checkpoints"], 1)  # the last state
+        often, never = self.results("often"), self.results("never")
+        for name in set(often) - {"config.toml", "checkpoint.bin"}:
+            self.assertTrue(often[name] == never[name], name)
+
+
+class Refusals(Restart):
+    """One line, exit status 2, nothing touched."""
+
+    def stopped(self):
+        self.write("run.toml", config(production=100000))
+        process = self.start("run", "run.toml", "--out", "out")
+        self.wait_for(lambda: self.log_has("out", "production: "), "production")
+        time.sleep(0.2)
+        self.stop(process, signal.SIGTERM)
+
+    def change(self, name, content):
+        with open(self.path(name), "wb") as file:
+            file.write(content)
+
+    def test_no_run(self):
+        self.assert_refused(self.hardbody("resume", "none"), "none: is not there", "accepted: the directory of a run")
+        self.write("file", "x")
+        self.assert_refused(self.hardbody("resume", "file"), "file: is not a directory")
+        os.makedirs(self.path("empty"))
+        self.assert_refused(self.hardbody("resume", "empty"), "empty: holds no run: config.toml is not there")
+        self.assert_refused(self.hardbody("resume"), "hardbody --help")
+
+    def test_results_without_a_checkpoint(self):
+        self.run_small("out")
+        os.remove(self.path("out/checkpoint.bin"))
+        self.assert_refused_untouched("out", "holds results but no checkpoint.bin")
+
+    def test_changed_config(self):
+        self.stopped()
+        good = self.read("out/config.toml")
+        for old, new, key in [
+            ("time = 100000.0", "time = 99.0", "production.time is 99.0, the checkpoint was made with 100000.0"),
+            ("seed = 3", "seed = 4", "seed is 4"),
+            ("events = 2000", "events = 2001", "output.events is 2001"),
+            ("aspect_ratio = 2.0", "semi_axes = [1.0, 1.0, 3.0]", "shape.semi_axes is [1.0, 1.0, 3.0], the checkpoint was made with nothing"),
+        ]:
+            with self.subTest(new):
+                self.assertIn(old, good)
+                self.change("out/config.toml", good.replace(old, new).encode())
+                self.assert_refused_untouched("out", "out/config.toml: " + key)
+        # Written otherwise, the same config is the same.
+        self.change("out/config.toml", b"# a remark\n" + good.replace("seed = 3", "seed   =   3").encode())
+        process = self.start("resume", "out")
+        self.wait_for(lambda: self.log_has("out", "resumed from production"), "production")
+        self.assertEqual(self.stop(process, signal.SIGTERM), 143)
+
+    def test_damaged_checkpoint(self):
+        self.stopped()
+        good = self.bytes_of("out/checkpoint.bin")
+        draws = random.Random(2)
+        for length in [0, 7, 30, len(good) // 2, len(good) - 1]:
+            with self.subTest(length=length):
+                self.change("out/checkpoint.bin", good[:length])
+                self.assert_refused_untouched("out", "out/checkpoint.bin")
+        for position in [0, 9, 13, 17] + [draws.randrange(len(good)) for _ in range(10)]:
+            with self.subTest(position=position):
+                flipped = bytearray(good)
+                flipped[position] ^= 0x10
+                self.change("out/checkpoint.bin", bytes(flipped))
+                self.assert_refused_untouched("out", "out/checkpoint.bin")
+
+    def test_events_file(self):
+        self.stopped()
+        good = self.bytes_of("out/events.csv")
+        self.change("out/events.csv", good[:-1])
+        self.assert_refused_untouched("out", f"out/events.csv: has {len(good) - 1} bytes, {len(good)} when")
+        os.remove(self.path("out/events.csv"))
+        self.assert_refused_untouched("out", "out/events.csv: has 0 bytes")
+
+    def test_two_processes(self):
+        self.write("run.toml", config(production=100000))
+        process = self.start("run", "run.toml", "--out", "out")
+        self.wait_for(lambda: self.log_has("out", "production: "), "production")
+        for command in [["resume", "out"], ["run", "run.toml", "--out", "out", "--force"]]:
+            self.assert_refused(self.hardbody(*command), "out: another hardbody process", "accepted: ")
+        self.assertEqual(self.stop(process, signal.SIGTERM), 143)
+        self.assertEqual(self.hardbody("check", "out").returncode, 0)
+
+
+class Faults(Restart):
+    def limited(self, size):
+        """For Popen: files cannot grow beyond so many bytes, as on a full disk."""
+        return lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
+
+    def test_checkpoint_that_does_not_fit(self):
+        text = RUNS["rods"]
+        self.undisturbed("reference", text)
+        expected = self.results("reference")
+        # None fits; those of equilibration do.
+        for size in [6000, int(0.7 * len(expected["checkpoint.bin"]))]:
+            with self.subTest(size=size):
+                self.write("run.toml", text)
+                process = self.start("run", "run.toml", "--out", "out", preexec_fn=self.limited(size))
+                process.wait(timeout=120)
+                self.assertEqual(process.returncode, 1)
+                self.assertIn("cannot be written: File too large", process.stderr.read())
+                self.assertIn("no checkpoint: ", self.read("out/log.txt"))
+                self.assertFalse(os.path.exists(self.path("out/summary.json")))
+                self.assertFalse(os.path.exists(self.path("out/checkpoint.bin.part")))
+                self.assertEqual(os.path.exists(self.path("out/checkpoint.bin")), size > 6000)
+                self.resume("out")
+                self.assert_same_run("out", expected)
+                shutil.rmtree(self.path("out"))
+
+    def test_events_that_do_not_fit(self):
+        text = config(production=300).replace("events = 2000", "events = 1000000")
+        self.undisturbed("reference", text)
+        expected = self.results("reference")
+        size = len(expected["events.csv"])
+        self.assertGreater(size, 1.5 * len(expected["checkpoint.bin"]))
+        self.write("run.toml", text)
+        process = self.start("run", "run.toml", "--out", "out", preexec_fn=self.limited(int(0.9 * size)))
+        process.wait(timeout=120)
+        self.assertEqual(process.returncode, 1)
+        self.assertIn("events.csv: cannot be written: File too large", process.stderr.read())
+        check = self.hardbody("check", "out")
+        self.assertEqual(check.returncode, 0, check.stdout)
+        self.resume("out")
+        self.assertIn("resumed from production", self.read("out/log.txt"))
+        self.assert_same_run("out", expected)
+
+    def test_read_only_directory(self):
+        self.write("run.toml", config(production=100000))
+        process = self.start("run", "run.toml", "--out", "out")
+        self.wait_for(lambda: self.log_has("out", "production: "), "production")
+        self.stop(process, signal.SIGTERM)
+        self.addCleanup(os.chmod, self.path("out"), 0o755)
+        os.chmod(self.path("out"), 0o555)
+        os.chmod(self.here, 0o755)
+        before = self.everything("out")
+        # Root may write anywhere.
+        user = {"user": 65534} if os.geteuid() == 0 else {}
+        result = subprocess.run(
+            [HARDBODY, "resume", "out"], cwd=self.here, capture_output=True, text=True, timeout=60, **user
+        )
+        self.assert_refused(result, "out: cannot be used as run directory: Permission denied", "accepted: ")
+        self.assertEqual(self.everything("out"), before)
+
+    @unittest.skipUnless("HARDBODY_CLOCK" in os.environ, "HARDBODY_CLOCK is the library that sets the wall clock back")
+    def test_wall_clock_set_back(self):
+        clock = os.environ["HARDBODY_CLOCK"]
+        text = config(production=100000).replace("0.02s", "0.2s")
+        self.write("run.toml", text)
+        process = self.start("run", "run.toml", "--out", "out", env={**os.environ, "LD_PRELOAD": clock})
+        checkpoint = self.path("out/checkpoint.bin")
+        self.wait_for(lambda: os.path.exists(checkpoint), "a checkpoint")
+        versions = set()
+
+        def renewed():
+            versions.add((os.stat(checkpoint).st_ino, os.stat(checkpoint).st_mtime_ns))
+            return len(versions) > 5
+
+        self.wait_for(renewed, "the fifth checkpoint")
+        self.assertEqual(self.stop(process, signal.SIGTERM), 143)
+        # It has been set back: the years of the log fall.
+        years = [int(line[:4]) for line in self.read("out/log.txt").splitlines()]
+        self.assertGreater(years[0], years[-1])
+
+
+if __name__ == "__main__":
+    unittest.main()

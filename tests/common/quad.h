@@ -1,0 +1,101 @@
+#pragma once
+
+/// Numbers of 113 bits: what double precision is judged by. Arithmetic is the compiler's; no library is needed.
+
+#include <Eigen/Core>
+
+#include <cmath>
+
+namespace quad {
+
+#if defined(__SIZEOF_FLOAT128__)
+__extension__ typedef __float128 Quad;
+#else
+using Quad = long double;  // 113 bits too, where there is no __float128
+#endif
+
+inline Quad abs(Quad x) {
+  return x < 0 ? -x : x;
+}
+
+/// Newton's method doubles the digits of the double.
+inline Quad sqrt(Quad x) {
+  if (!(x > 0)) return 0;
+  Quad root = std::sqrt(static_cast<double>(x));
+  for (int k = 0; k < 2; ++k) root = (root + x / root) / 2;
+  return root;
+}
+inline Quad cbrt(Quad x) {
+  if (!(x > 0)) return 0;
+  Quad root = std::cbrt(static_cast<double>(x));
+  for (int k = 0; k < 2; ++k) root = (2 * root + x / (root * root)) / 3;
+  return root;
+}
+
+struct SinCos {
+  Quad sin, cos;
+};
+
+/// By their series, of an angle halved to below 1/8 radian. Error about 1e-32 for angles of some hundred radian.
+inline SinCos sincos(Quad x) {
+  // pi / 2 as the sum of a double and two corrections.
+  const Quad half_pi = static_cast<Quad>(1.57079632679489655800) + static_cast<Quad>(6.12323399573676603587e-17) +
+                       static_cast<Quad>(-1.49738490485916983e-33);
+  const auto turns = static_cast<Quad>(std::nearbyint(static_cast<double>(x / half_pi)));
+  const Quad z = (x - turns * half_pi) / 8;
+  const Quad z2 = z * z;
+  Quad s = 1;
+  Quad c = 1;
+  for (int k = 11; k >= 1; --k) {
+    s = 1 - s * z2 / (2 * k * (2 * k + 1));
+    c = 1 - c * z2 / ((2 * k - 1) * 2 * k);
+  }
+  s *= z;
+  for (int k = 0; k < 3; ++k) {
+    const Quad twice = 2 * s * c;
+    c = 1 - 2 * s * s;
+    s = twice;
+  }
+  switch (static_cast<long>(static_cast<double>(turns)) & 3) {
+    case 0:
+      return {s, c};
+    case 1:
+      return {c, -s};
+    case 2:
+      return {-s, -c};
+    default:
+      return {-c, s};
+  }
+}
+
+struct Quad3 {
+  Quad x = 0, y = 0, z = 0;
+
+  Quad3() = default;
+  Quad3(Quad x_, Quad y_, Quad z_) : x(x_), y(y_), z(z_) {}
+  explicit Quad3(const Eigen::Vector3d& v) : x(v.x()), y(v.y()), z(v.z()) {}
+
+  Quad dot(const Quad3& b) const { return x * b.x + y * b.y + z * b.z; }
+  Quad3 cross(const Quad3& b) const { return {y * b.z - z * b.y, z * b.x - x * b.z, x * b.y - y * b.x}; }
+  Quad norm() const { return quad::sqrt(dot(*this)); }
+};
+inline Quad3 operator+(const Quad3& a, const Quad3& b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+inline Quad3 operator-(const Quad3& a, const Quad3& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+inline Quad3 operator*(Quad s, const Quad3& a) {
+  return {s * a.x, s * a.y, s * a.z};
+}
+inline Quad3 unit(const Quad3& a) {
+  return (1 / a.norm()) * a;
+}
+
+/// v turned about the unit vector l.
+inline Quad3 turned(const Quad3& v, const Quad3& l, Quad angle) {
+  const SinCos sc = sincos(angle);
+  return sc.cos * v + sc.sin * l.cross(v) + ((1 - sc.cos) * l.dot(v)) * l;
+}
+
+}  // namespace quad

@@ -1,0 +1,86 @@
+/// libFuzzer: the bytes of checkpoints and simulations, without the checksum that keeps accidents out.
+///
+/// Whatever they are, they are refused with one line, or read and written again as the same bytes.
+
+#include "checkpoint.h"
+#include "errors.h"
+
+#include <ed/simulation.h>
+#include <ed/system.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace {
+
+void require(bool holds, const char* what) {
+  if (holds) return;
+  std::fprintf(stderr, "does not hold: %s\n", what);
+  std::abort();
+}
+
+std::vector<ed::Species> species() {
+  return {ed::paper_species(geom::Ellipsoid({1, 1, 2})),
+          ed::uniform_species(geom::Superellipsoid({1, 1, 1}, 0.5, 0.5))};
+}
+
+/// Two bodies of each kind of state that can be read: of revolution, and any.
+std::string state(bool any) {
+  ed::System system;
+  system.box = 20;
+  system.species = species();
+  if (!any) system.species.pop_back();
+  system.bodies.resize(2);
+  system.bodies[1].position.x() = 5;
+  system.bodies[1].species = any ? 1 : 0;
+  system.bodies[1].velocity.x() = -1;
+  ed::Simulation simulation(system);
+  simulation.run_until(0.5);
+  return simulation.save();
+}
+
+/// A state with some bytes replaced: (2 bytes of place, 1 of value) each. Bytes at random would never get past the
+/// species.
+void check_simulation(std::string_view changes, bool any) {
+  static const std::string good[] = {state(false), state(true)};
+  std::string bytes = good[any ? 1 : 0];
+  for (; changes.size() >= 3; changes.remove_prefix(3)) {
+    const auto place = static_cast<unsigned char>(changes[0]) * 256U + static_cast<unsigned char>(changes[1]);
+    bytes[place % bytes.size()] = changes[2];
+  }
+  std::vector<ed::Species> kinds = species();
+  if (!any) kinds.pop_back();
+  try {
+    const ed::Simulation read = ed::Simulation::restore(bytes, kinds);
+    require(read.save() == bytes, "what is read is written again");
+  } catch (const std::invalid_argument& error) {
+    require(std::string_view(error.what()).find('\n') == std::string_view::npos, "a refusal is one line");
+  }
+}
+
+void check_checkpoint(std::string_view bytes) {
+  try {
+    const hardbody::Checkpoint read = hardbody::decode_checkpoint(hardbody::seal_checkpoint(bytes), "fuzz");
+    require(!read.system.bodies.empty(), "a checkpoint has bodies");
+  } catch (const hardbody::InputError&) {
+  }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  if (size < 1) return 0;
+  const std::string_view rest(reinterpret_cast<const char*>(data) + 1, size - 1);
+  if (data[0] % 3 == 2) {
+    check_checkpoint(rest);
+  } else {
+    check_simulation(rest, data[0] % 3 == 1);
+  }
+  return 0;
+}

@@ -1,0 +1,451 @@
+// What rounding may hide, and that certified steps pay for it: pairs 1e-14 to 1e-12 of their size apart, about to
+// touch, to graze or to part, judged in quadruple precision. No step may pass a contact of the exact bodies; made
+// without the rounding terms the same steps do. HARDBODY_FULL=1: a million pairs.
+
+#include <common/exact_bodies.h>
+#include <common/finder_ensemble.h>
+#include <common/finder_scale.h>
+#include <common/geom_shapes.h>
+
+#include <body_shapes.h>
+#include <certified_contact.h>
+#include <convex_gauge.h>
+#include <periodic.h>
+#include <support_gauge.h>
+#include <uniaxial_gauge.h>
+
+#include <ed/random.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <numbers>
+#include <utility>
+
+namespace ed::internal {
+namespace {
+
+using Eigen::Vector3d;
+using finder_test::log_uniform;
+using quad::ExactPair;
+using quad::ExactPath;
+using quad::Quad;
+
+constexpr double kHorizon = 0.1;
+
+struct Tally {
+  long states = 0;
+  long touching = 0;       ///< g is below what rounding may hide: no step, as there is nothing to certify
+  long stepped_over = 0;   ///< contacts of the exact bodies within the step
+  long without_terms = 0;  ///< the same for steps made without the terms
+  long not_apart = 0;      ///< g was above what rounding may hide, but the exact gap was not positive
+  long sunk = 0;           ///< the search passed an overlap deeper than what it promises
+  long contacts = 0, clear = 0;
+  double gap = 0, rate = 0, curvature = 0;  ///< the largest errors, in units of their bounds
+};
+
+double signed_log_uniform(Random& random, double low, double high) {
+  return random.uniform() < 0.5 ? -log_uniform(random, low, high) : log_uniform(random, low, high);
+}
+
+/// The best normal at time t, from a good one.
+template <class Gauge>
+Vector3d best_normal(const Gauge& gauge, double t, Vector3d n) {
+  const auto state = gauge.at(t);
+  auto e = gauge.evaluate(state, n);
+  int budget = geom::kMaxIterations;
+  (void)ascend(
+      gauge, state, [&](const auto& trial) { return settled(gauge, trial); }, budget, n, e);
+  return geom::internal::step_on_sphere(n, e.step);
+}
+
+/// The distance of the exact bodies, or if that is positive any lower bound that is.
+template <class Gauge, class Exact>
+Quad distance(const Gauge& gauge, const Exact& exact, Quad t, const Vector3d& n) {
+  const Quad along_n = exact.gap(t, n);
+  if (along_n > 0) return along_n;
+  // The error of a normal counts in second order.
+  const Quad along_best = exact.gap(t, best_normal(gauge, static_cast<double>(t), n));
+  return std::max(along_n, along_best);
+}
+
+/// The least distance at some times of [t, end]: at the end, at shares of the way, and where the gap along n is least.
+template <class Gauge, class Exact>
+Quad least_distance(const Gauge& gauge, const Exact& exact, double t, double end, const Vector3d& n) {
+  const Quad span = static_cast<Quad>(end) - t;
+  Quad least = distance(gauge, exact, end, n);
+  const auto look = [&](Quad time) { least = std::min(least, distance(gauge, exact, time, n)); };
+  for (const double share : {1e-6, 1e-3, 0.1, 0.5, 0.9}) look(t + share * span);
+  const Quad g0 = exact.gap(t, n);
+  const Quad g1 = exact.gap(t + span / 2, n);
+  const Quad g2 = exact.gap(end, n);
+  const Quad bend = g0 - 2 * g1 + g2;
+  const Quad vertex = bend > 0 ? (3 * g0 - 4 * g1 + g2) / (4 * bend) : Quad(0);
+  if (vertex > 0 && vertex < 1) look(t + vertex * span);
+  return least;
+}
+
+/// Errors of g and g', and of K if the gauge has one, in units of their bounds.
+template <class Gauge, class Exact>
+void measure_errors(const Gauge& gauge, const typename Gauge::State& state, const typename Gauge::Evaluation& e,
+                    const Exact& exact, double t, const Vector3d& n, Tally& tally) {
+  const auto worst = [](double& sofar, Quad error, double bound) {
+    sofar = std::max(sofar, static_cast<double>(error) / bound);
+  };
+  const Quad g = exact.gap(t, n);
+  worst(tally.gap, quad::abs(e.g - g), state.rounding.gap);
+  if constexpr (CurvatureBounded<Gauge>) {
+    // Central differences: truncation 1e-20 and 1e-16, rounding 1e-24 and 1e-18, of g in units of its fastest motion.
+    const Quad unit = gauge.size() / gauge.speed();
+    const Quad step = static_cast<Quad>(1e-10) * unit;
+    const Quad wide = static_cast<Quad>(1e-8) * unit;
+    const Quad rate = (exact.gap(t + step, n) - exact.gap(t - step, n)) / (2 * step);
+    const Quad bend = (exact.gap(t + wide, n) - 2 * g + exact.gap(t - wide, n)) / (wide * wide);
+    worst(tally.rate, quad::abs(gauge.rate(state, e, n) - rate), state.rounding.rate);
+    const double K = gauge.certificate(state, e, n).curvature(0);
+    worst(tally.curvature, -bend - K, state.rounding.curvature);
+  }
+}
+
+template <class State>
+State without_terms(State state) {
+  state.rounding = {};
+  return state;
+}
+
+/// One pair at t, with the normal that it was made with.
+template <class Gauge, class Exact>
+void judge(const Gauge& gauge, const Exact& exact, double t, const Vector3d& start, Tally& tally) {
+  ++tally.states;
+  const auto state = gauge.at(t);
+  Vector3d n = start;
+  auto e = gauge.evaluate(state, n);
+  int budget = geom::kMaxIterations;
+  (void)ascend(
+      gauge, state, [&](const auto& trial) { return settled(gauge, trial); }, budget, n, e);
+  measure_errors(gauge, state, e, exact, t, n, tally);
+  const double gp = gauge.rate(state, e, n);
+  const auto passes = [&](const typename Gauge::State& s) {
+    if (!(e.g > kTouching * gauge.size())) return false;  // a contact, with or without the terms
+    const double tau = clears(gauge, s, e, n, kHorizon) ? kHorizon : certified_step(gauge, s, e, n, e.g, gp, kHorizon);
+    return t + tau > t && least_distance(gauge, exact, t, t + tau, n) < 0;
+  };
+  if (e.g > state.rounding.gap) {
+    if (!(exact.gap(t, n) > 0)) ++tally.not_apart;
+    if (passes(state)) ++tally.stepped_over;
+  } else {
+    ++tally.touching;
+  }
+  if (passes(without_terms(state))) ++tally.without_terms;
+}
+
+/// The whole search: how deep the exact bodies overlap before the time it reports.
+template <class Gauge, class Exact>
+void judge_search(const Gauge& gauge, const Exact& exact, double t, const Vector3d& start, Tally& tally) {
+  Vector3d n = start;
+  FinderCounters count;
+  const Finding finding = certified_contact(gauge, t, t + kHorizon, 1000, n, count);
+  if (finding.outcome == Outcome::contact) ++tally.contacts;
+  if (finding.outcome == Outcome::clear) ++tally.clear;
+  // At the start the bodies may overlap by what rounding hides.
+  const Quad begun = std::min(Quad(0), distance(gauge, exact, t, start));
+  const Quad deepest = least_distance(gauge, exact, t, finding.time, n) - begun;
+  const double promised = gauge.at(finding.time).rounding.gap + 2 * kTouching * gauge.size();
+  if (deepest < -promised) ++tally.sunk;
+}
+
+// ---- States --------------------------------------------------------------------------------------------------------
+
+/// When and where: bodies whose clocks, places and images have nothing to do with each other.
+struct Scene {
+  double now, t, box;
+
+  Scene(Random& random, double size) : now(random.uniform()), t(now), box(3 * size * (1 + 3 * random.uniform())) {}
+};
+
+/// The exact bodies' images.
+struct Image {
+  Vector3d r_now;
+  quad::Quad3 shift;
+
+  template <class Motion>
+  Image(const Motion& a, const Motion& b, const Scene& scene) {
+    const Vector3d d = b.position_at(scene.now) - a.position_at(scene.now);
+    r_now = nearest_image(d, scene.box);
+    const Vector3d boxes = ((r_now - d) / scene.box).array().round();
+    shift = static_cast<Quad>(scene.box) * quad::Quad3(boxes);
+  }
+};
+
+/// Moves B so that it is `gap` from A at scene.t along n, and parts from it at `rate`. `gauge_of(image)` makes the
+/// gauge, `points(gauge, state)` are the support points of both, each from its own centre.
+template <class Motion, class GaugeOf, class Points>
+void arrange(Random& random, const Scene& scene, const Vector3d& n, double gap, Motion& a, Motion& b,
+             const GaugeOf& gauge_of, const Points& points) {
+  const auto place = [&] {
+    const auto gauge = gauge_of(Image(a, b, scene));
+    const auto [p_a, p_b] = points(gauge, gauge.at(scene.t));
+    const Vector3d r = p_a - p_b + gap * n;
+    b.position = a.position_at(scene.t) + r - (scene.t - b.time) * b.velocity;
+    for (double& x : b.position) x -= scene.box * std::floor(x / scene.box);
+  };
+  place();
+  const auto gauge = gauge_of(Image(a, b, scene));
+  const auto state = gauge.at(scene.t);
+  const auto e = gauge.evaluate(state, n);
+  double K = std::pow(gauge.speed(), 2) / gauge.size();
+  if constexpr (requires { gauge.certificate(state, e, n).curvature(0); })
+    K = gauge.certificate(state, e, n).curvature(0);
+  const double natural = std::sqrt(2 * gap * std::abs(K));  // the rate with which the gap just closes, or just does not
+  double wanted = 0;
+  const double kind = random.uniform();
+  if (kind < 0.4) {
+    wanted = -log_uniform(random, 1e-3, 1) * gauge.speed();
+  } else if (kind < 0.6) {
+    wanted = -log_uniform(random, 1e-9, 1e-3) * gauge.speed();
+  } else if (kind < 0.9) {
+    wanted = -natural * (1 + signed_log_uniform(random, 1e-5, 1));
+  } else {
+    wanted = natural * log_uniform(random, 1e-3, 10);
+  }
+  b.velocity += (wanted - gauge.rate(state, e, n)) * n;
+  place();
+}
+
+void set_path(Random& random, const Scene& scene, double speed, AxisMotion& m) {
+  m.time = scene.now * random.uniform();
+  m.velocity = speed * random.normal3();
+  m.position = scene.box * Vector3d(random.uniform(), random.uniform(), random.uniform());
+}
+void set_path(Random& random, const Scene& scene, double speed, RigidMotion& m) {
+  m.time = scene.now * random.uniform();
+  m.velocity = speed * random.normal3();
+  m.position = scene.box * Vector3d(random.uniform(), random.uniform(), random.uniform());
+}
+
+/// How fast a pair is. Fast ones do not get far between now and t.
+double draw_speed(Random& random, double size, Scene& scene) {
+  const double speed = log_uniform(random, 1e-2, 1e2);
+  scene.t += random.uniform() * std::min(0.2, 0.05 * size / speed);
+  return speed;
+}
+
+struct SpheroidKind {
+  double a, b;
+
+  static SpheroidKind draw(Random& random) {
+    const double ratio = std::exp(signed_log_uniform(random, 1e-2, std::log(100)));
+    const double b = log_uniform(random, 0.3, 3) / std::cbrt(ratio);
+    return {ratio * b, b};
+  }
+  double bounding_radius() const { return std::max(a, b); }
+};
+
+/// Along any direction, or the flat or the long side of the body with axis u.
+Vector3d draw_normal(Random& random, const Vector3d& u) {
+  const double kind = random.uniform();
+  const Vector3d any = random.direction();
+  if (kind < 0.4) return any;
+  const double tilt = log_uniform(random, 1e-9, 1e-1);
+  if (kind < 0.7) return (u + tilt * any).normalized();
+  const Vector3d across = random.direction().cross(u).normalized();
+  return (across + tilt * any).normalized();
+}
+
+template <bool kSpin>
+void try_spheroids(Random& random, bool search, Tally& tally) {
+  const SpheroidKind kind_a = SpheroidKind::draw(random);
+  const SpheroidKind kind_b = random.uniform() < 0.5 ? kind_a : SpheroidKind::draw(random);
+  const Spheroid A(kind_a.a, kind_a.b);
+  const Spheroid B(kind_b.a, kind_b.b);
+  const double reach = kind_a.bounding_radius() + kind_b.bounding_radius();
+  Scene scene(random, reach);
+  const double speed = draw_speed(random, reach, scene);
+  const auto motion = [&] {
+    AxisMotion m;
+    BodyFrame frame;
+    set_path(random, scene, speed, m);
+    const Vector3d u = random.direction();
+    const Vector3d w = (log_uniform(random, 1e-3, 3) * speed / reach) * random.normal3();
+    frame.spin = random.normal() * w.norm();
+    set_rotation({.mass = 1, .perpendicular = 1, .axial = log_uniform(random, 0.05, 2), .spins = kSpin}, u,
+                 w - w.dot(u) * u, m, frame);
+    return m;
+  };
+  AxisMotion a = motion();
+  AxisMotion b = motion();
+  const auto gauge_of = [&](const Image& image) {
+    return UniaxialGauge<kSpin>(A, a, B, b, image.r_now, scene.now, reach);
+  };
+  const Vector3d n = draw_normal(random, a.axis_at(scene.t));
+  const auto points = [&](const auto& /*gauge*/, const auto& state) {
+    return std::pair<Vector3d, Vector3d>(support_point(A, state.u_a, n), -support_point(B, state.u_b, n));
+  };
+  arrange(random, scene, n, reach * log_uniform(random, 1e-14, 1e-12), a, b, gauge_of, points);
+  const Image image(a, b, scene);
+  const ExactPair<quad::ExactSpheroid> exact{
+      {kind_a.a, kind_a.b, a}, {kind_b.a, kind_b.b, b}, ExactPath::of(a), ExactPath::of(b), image.shift};
+  judge(gauge_of(image), exact, scene.t, n, tally);
+  if (search) judge_search(gauge_of(image), exact, scene.t, n, tally);
+}
+
+/// A body with two equal moments of inertia, about z.
+struct Top {
+  Vector3d inertia, omega;
+  Eigen::Matrix3d R;
+
+  static Top draw(Random& random, double rate) {
+    const double perpendicular = log_uniform(random, 0.3, 3);
+    const double axial = random.uniform() < 0.2 ? perpendicular : perpendicular * (0.2 + 1.6 * random.uniform());
+    return {{perpendicular, perpendicular, axial}, rate * random.normal3(), random.rotation()};
+  }
+  FreeTop free() const { return {inertia, R, omega}; }
+  quad::ExactTop exact(double time) const { return {inertia, R, omega, time}; }
+};
+
+RigidMotion draw_motion(Random& random, const Scene& scene, double speed, const Top& top) {
+  RigidMotion m;
+  set_path(random, scene, speed, m);
+  m.top = top.free();
+  return m;
+}
+
+/// Two tops that fly past each other.
+struct Flights {
+  Scene scene;
+  Top top_a, top_b;
+  RigidMotion a, b;
+
+  Flights(Random& random, double reach) : scene(random, reach) {
+    const double speed = draw_speed(random, reach, scene);
+    const double rate = log_uniform(random, 1e-3, 3) * speed / reach;
+    top_a = Top::draw(random, rate);
+    top_b = Top::draw(random, rate);
+    a = draw_motion(random, scene, speed, top_a);
+    b = draw_motion(random, scene, speed, top_b);
+  }
+};
+
+void try_superellipsoids(Random& random, bool search, Tally& tally) {
+  const auto exponent = [&] { return 0.5 * (1 + std::floor(3 * random.uniform())); };
+  const auto shape = [&] {
+    const Vector3d axes(log_uniform(random, 0.5, 2), log_uniform(random, 0.5, 2), log_uniform(random, 0.5, 2));
+    return geom::Superellipsoid(axes, exponent(), exponent());
+  };
+  const geom::Superellipsoid A = shape();
+  const geom::Superellipsoid B = shape();
+  const NormBodyShape norm_a = norm_body(A);
+  const NormBodyShape norm_b = norm_body(B);
+  const double reach = norm_a.bounding_radius + norm_b.bounding_radius;
+  Flights flights(random, reach);
+  Scene& scene = flights.scene;
+  RigidMotion& a = flights.a;
+  RigidMotion& b = flights.b;
+  const auto gauge_of = [&](const Image& image) { return SupportGauge(norm_a, a, norm_b, b, image.r_now, scene.now); };
+  const Vector3d n = random.direction();
+  const auto points = [&](const auto& /*gauge*/, const auto& state) {
+    const auto support = state.pair.bodies().support(n);
+    return std::pair<Vector3d, Vector3d>(support.point.a(), support.point.b());
+  };
+  arrange(random, scene, n, reach * log_uniform(random, 1e-14, 1e-12), a, b, gauge_of, points);
+  const Image image(a, b, scene);
+  const ExactPair<quad::ExactSuperellipsoid> exact{{A.semi_axes(), A.e1(), A.e2(), flights.top_a.exact(a.time)},
+                                                   {B.semi_axes(), B.e1(), B.e2(), flights.top_b.exact(b.time)},
+                                                   ExactPath::of(a),
+                                                   ExactPath::of(b),
+                                                   image.shift};
+  judge(gauge_of(image), exact, scene.t, n, tally);
+  if (search) judge_search(gauge_of(image), exact, scene.t, n, tally);
+}
+
+void try_spherocylinders(Random& random, bool search, Tally& tally) {
+  const geom_test::Spherocylinder rod{log_uniform(random, 0.1, 3), log_uniform(random, 0.1, 1)};
+  const double volume = std::numbers::pi * rod.radius * rod.radius * (2 * rod.half_length + 4 * rod.radius / 3);
+  const BodyShape shape = CustomShape(rod, {"spherocylinder", volume, 2, true});
+  const double reach = 2 * rod.bounding_radius();
+  Flights flights(random, reach);
+  Scene& scene = flights.scene;
+  RigidMotion& a = flights.a;
+  RigidMotion& b = flights.b;
+  const auto gauge_of = [&](const Image& image) { return ConvexGauge(shape, a, shape, b, image.r_now, scene.now); };
+  const Vector3d n = random.direction();
+  const auto points = [&](const auto& gauge, const auto& state) {
+    const auto gap = gauge.gap(state, n);
+    return std::pair<Vector3d, Vector3d>(gap.point_a, gap.point_b);
+  };
+  arrange(random, scene, n, reach * log_uniform(random, 1e-14, 1e-12), a, b, gauge_of, points);
+  const Image image(a, b, scene);
+  const ExactPair<quad::ExactSpherocylinder> exact{{rod.half_length, rod.radius, flights.top_a.exact(a.time)},
+                                                   {rod.half_length, rod.radius, flights.top_b.exact(b.time)},
+                                                   ExactPath::of(a),
+                                                   ExactPath::of(b),
+                                                   image.shift};
+  judge(gauge_of(image), exact, scene.t, n, tally);
+  if (search) judge_search(gauge_of(image), exact, scene.t, n, tally);
+}
+
+template <class Try>
+Tally run(const char* what, std::uint64_t seed, int states, const Try& try_one) {
+  Random random(seed);
+  Tally tally;
+  for (int k = 0; k < states; ++k) try_one(random, k % 10 == 0, tally);
+  std::printf(
+      "%s: %ld states, %ld touching; stepped over %ld, without the terms %ld; largest errors of g, g', K in "
+      "units of their bounds %.3f %.3f %.1e; %ld searches ended on contacts, %ld clear, %ld too deep\n",
+      what, tally.states, tally.touching, tally.stepped_over, tally.without_terms, tally.gap, tally.rate,
+      tally.curvature, tally.contacts, tally.clear, tally.sunk);
+  return tally;
+}
+
+void expect_certified(const Tally& tally) {
+  EXPECT_EQ(tally.stepped_over, 0);
+  EXPECT_EQ(tally.not_apart, 0);
+  EXPECT_EQ(tally.sunk, 0);
+  EXPECT_LE(tally.gap, 1);
+  EXPECT_LE(tally.rate, 1);
+  EXPECT_LE(tally.curvature, 1);
+  // The states are such that rounding decides.
+  EXPECT_GT(tally.without_terms, tally.states / 100);
+  EXPECT_LT(2 * tally.touching, tally.states);
+  EXPECT_GT(tally.contacts, 0);
+  EXPECT_GT(tally.clear, 0);
+}
+
+TEST(Rounding, BodiesOfRevolutionWithoutSpin) {
+  expect_certified(run("without spin", 1, finder_test::scaled(8000, 400'000), try_spheroids<false>));
+}
+
+TEST(Rounding, BodiesOfRevolutionWithSpin) {
+  expect_certified(run("with spin", 2, finder_test::scaled(8000, 400'000), try_spheroids<true>));
+}
+
+TEST(Rounding, SuperellipsoidsAndTriaxialEllipsoids) {
+  expect_certified(run("superellipsoids", 3, finder_test::scaled(3000, 150'000), try_superellipsoids));
+}
+
+TEST(Rounding, UsersShapes) {
+  expect_certified(run("spherocylinders", 4, finder_test::scaled(1000, 50'000), try_spherocylinders));
+}
+
+/// The judge itself: quadruple against double precision, and against what is known exactly.
+TEST(Rounding, QuadruplePrecisionIsThat) {
+  const auto tiny = [](Quad x) { return static_cast<double>(quad::abs(x)); };
+  EXPECT_LE(tiny(quad::sqrt(Quad(2)) * quad::sqrt(Quad(2)) - 2), 1e-32);
+  EXPECT_LE(tiny(quad::cbrt(Quad(2)) * quad::cbrt(Quad(2)) * quad::cbrt(Quad(2)) - 2), 1e-32);
+  Random random(5);
+  for (int k = 0; k < 1000; ++k) {
+    const Quad x = signed_log_uniform(random, 1e-6, 300);
+    const quad::SinCos one = quad::sincos(x);
+    const quad::SinCos two = quad::sincos(2 * x);
+    EXPECT_LE(tiny(one.sin - std::sin(static_cast<double>(x))), 2e-16);
+    EXPECT_LE(tiny(one.cos - std::cos(static_cast<double>(x))), 2e-16);
+    EXPECT_LE(tiny(2 * one.sin * one.cos - two.sin), 1e-30);
+    EXPECT_LE(tiny(one.cos * one.cos - one.sin * one.sin - two.cos), 1e-30);
+  }
+}
+
+}  // namespace
+}  // namespace ed::internal

@@ -1,0 +1,212 @@
+// A user's own shapes in motion: spherocylinders, whose distance is known exactly from their segments, and ellipsoids
+// of which the finder is told nothing but the support function.
+
+#include <common/ed_states.h>
+#include <common/geom_shapes.h>
+#include <common/message_of.h>
+
+#include <ed/ed.h>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace {
+
+using ed::CustomShape;
+using Eigen::Vector3d;
+using geom_test::Spherocylinder;
+using test_common::message_of;
+using testing::HasSubstr;
+
+constexpr double kRodLength = 1.0;  // half of the segment
+constexpr double kRodRadius = 0.5;
+
+double rod_volume() {
+  return std::numbers::pi * kRodRadius * kRodRadius * (2 * kRodLength + 4 * kRodRadius / 3);
+}
+
+CustomShape rod() {
+  return {Spherocylinder{kRodLength, kRodRadius}, {"spherocylinder", rod_volume(), 2, true}};
+}
+
+ed::Species rods() {
+  return {rod(), 1, {0.7, 0.7, 0.12}, true};
+}
+
+/// The least distance of two segments p +- L u (Lumelsky, Inf. Process. Lett. 21 (1985) 55): the best of the interior
+/// point and the four ends.
+double segment_distance(const Vector3d& p, const Vector3d& u, const Vector3d& q, const Vector3d& w, double L) {
+  const auto clamp = [L](double x) { return std::clamp(x, -L, L); };
+  const Vector3d r = q - p;
+  double best = std::numeric_limits<double>::infinity();
+  const auto look = [&](double s, double t) { best = std::min(best, (r + t * w - s * u).norm()); };
+  const double b = u.dot(w);
+  const double D = 1 - b * b;
+  if (D > 1e-14) {
+    const double s = (r.dot(u) - b * r.dot(w)) / D;
+    const double t = (b * r.dot(u) - r.dot(w)) / D;
+    if (std::abs(s) <= L && std::abs(t) <= L) look(s, t);
+  }
+  for (const double end : {-L, L}) {
+    look(end, clamp(b * end - r.dot(w)));
+    look(clamp(r.dot(u) + b * end), end);
+  }
+  return best;
+}
+
+double rod_distance(const ed::Motion& a, const ed::Motion& b) {
+  return segment_distance(a.pose.position(), a.pose.rotation().col(2), b.pose.position(), b.pose.rotation().col(2),
+                          kRodLength) -
+         2 * kRodRadius;
+}
+
+ed::Motion random_motion(ed::Random& random, const Vector3d& position, double speed) {
+  ed::Motion motion;
+  motion.pose = geom::Pose(random.rotation(), position);
+  motion.velocity = speed * random.direction();
+  motion.angular_velocity = random.normal3();
+  motion.inertia = rods().inertia;
+  return motion;
+}
+
+/// The first time at which the rods overlap by more than `depth`, by steps of the distance over its largest rate, no
+/// shorter than 1e-6.
+double first_overlap(const ed::Motion& a, const ed::Motion& b, double end, double depth) {
+  const auto fastest = [](const ed::Motion& m) { return m.angular_velocity.norm() * 6 * (kRodLength + kRodRadius); };
+  const double rate = (a.velocity - b.velocity).norm() + fastest(a) + fastest(b);
+  double t = 0;
+  while (t < end) {
+    const double d = rod_distance(propagate(a, t), propagate(b, t));
+    if (d < -depth) return t;
+    t += std::max(std::abs(d) / rate, 1e-6);
+  }
+  return end;
+}
+
+TEST(CustomShape, RodsMeetWhenTheirSegmentsSaySo) {
+  ed::Random random(1);
+  int hits = 0;
+  double worst = 0;
+  for (int k = 0; k < 200; ++k) {
+    const ed::Motion a = random_motion(random, Vector3d::Zero(), 0.3);
+    ed::Motion b = random_motion(random, 3.5 * random.direction(), 0.3);
+    b.velocity -= 0.5 * b.pose.position();
+    const double end = 4;
+    const ed::ContactResult found = time_of_contact(rod(), a, rod(), b, end);
+    const double overlap = first_overlap(a, b, end, 1e-9);
+    if (found.status == ed::ContactStatus::hit) {
+      ++hits;
+      const double d = rod_distance(propagate(a, found.time), propagate(b, found.time));
+      worst = std::max(worst, std::abs(d));
+      ASSERT_LE(std::abs(d), 1e-13) << k;
+      ASSERT_GE(overlap, found.time) << k;
+      // Both segments are a radius from the point.
+      const Vector3d u = propagate(a, found.time).pose.rotation().col(2);
+      const Vector3d x = found.point - propagate(a, found.time).pose.position();
+      ASSERT_NEAR((x - std::clamp(x.dot(u), -kRodLength, kRodLength) * u).norm(), kRodRadius, 1e-12) << k;
+    } else {
+      ASSERT_EQ(found.status, ed::ContactStatus::separated) << k;
+      ASSERT_EQ(overlap, end) << k;
+    }
+  }
+  std::printf("%d of 200 pairs touch, |distance| <= %.1e there\n", hits, worst);
+  EXPECT_GT(hits, 50);
+}
+
+/// The least distance of all pairs, by their segments.
+double least_distance(const ed::System& system) {
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < system.size(); ++i) {
+    for (int j = i + 1; j < system.size(); ++j) {
+      const ed::Body& a = system.bodies[static_cast<std::size_t>(i)];
+      const ed::Body& b = system.bodies[static_cast<std::size_t>(j)];
+      Vector3d r = b.position - a.position;
+      for (int k = 0; k < 3; ++k) r[k] -= system.box * std::round(r[k] / system.box);
+      const double d =
+          segment_distance(Vector3d::Zero(), a.rotation.col(2), r, b.rotation.col(2), kRodLength) - 2 * kRodRadius;
+      least = std::min(least, d);
+    }
+  }
+  return least;
+}
+
+TEST(CustomShape, RodsRunInASimulation) {
+  ed::StartOptions options;
+  options.number = 64;
+  options.packing_fraction = 0.25;
+  const ed::System start = ed::random_start(rods(), options);
+  for (const auto neighbours : {ed::Neighbours::dilated, ed::Neighbours::obp}) {
+    ed::SimulationOptions how;
+    how.neighbours = neighbours;
+    ed::Simulation simulation(start, how);
+    const double energy = simulation.kinetic().energy();
+    for (int k = 0; k < 10; ++k) {
+      simulation.run_collisions(100);
+      ASSERT_GE(least_distance(simulation.system()), -1e-12) << k;
+    }
+    EXPECT_EQ(simulation.counters().overlaps, 0U);
+    EXPECT_NEAR(simulation.kinetic().energy() / energy, 1, 1e-12);
+  }
+}
+
+/// An ellipsoid that tells its support function and radii only.
+struct Unknown {
+  geom::Ellipsoid shape;
+
+  geom::Support support(const Vector3d& n) const { return shape.support(n); }
+  Eigen::Matrix3d support_hessian(const Vector3d& n) const { return shape.support_hessian(n); }
+  double bounding_radius() const { return shape.bounding_radius(); }
+  double inscribed_radius() const { return shape.inscribed_radius(); }
+  double min_curvature_radius() const { return shape.min_curvature_radius(); }
+};
+
+TEST(CustomShape, AnUnknownEllipsoidCollidesAsTheKnownOne) {
+  ed::System system = ed_test::start({2, 0.35, 100, ed_test::Inertia::uniform, 5});
+  const geom::Ellipsoid shape = ed_test::ellipsoid_of(system);
+  const auto collisions = [](const ed::System& of) {
+    ed::Simulation simulation(of);
+    simulation.record_collisions(300);
+    simulation.run_collisions(300);
+    return simulation.collisions();
+  };
+  const auto known = collisions(system);
+  system.species[0].shape = CustomShape(Unknown{shape}, {"an ellipsoid", shape.volume(), shape.symmetry_axis(), true});
+  const auto unknown = collisions(system);
+  ASSERT_EQ(known.size(), unknown.size());
+  for (std::size_t k = 0; k < known.size(); ++k) {
+    ASSERT_EQ(known[k].i, unknown[k].i) << k;
+    ASSERT_EQ(known[k].j, unknown[k].j) << k;
+    ASSERT_NEAR(known[k].time, unknown[k].time, 1e-9) << k;
+  }
+}
+
+TEST(CustomShape, RefusesShapesThatAreNone) {
+  const auto made = [](double half_length, double radius, double volume, std::optional<int> axis) {
+    return message_of([&] { (void)CustomShape(Spherocylinder{half_length, radius}, {"rod", volume, axis, true}); });
+  };
+  EXPECT_EQ(made(kRodLength, kRodRadius, rod_volume(), 2), "no std::invalid_argument");
+  EXPECT_THAT(made(1, 0, 1, 2), HasSubstr("shape rod: inscribed_radius() is 0"));
+  EXPECT_THAT(made(std::numeric_limits<double>::infinity(), 1, 1, 2), HasSubstr("bounding_radius() is inf"));
+  EXPECT_THAT(made(1, 0.5, 0, 2), HasSubstr("volume is 0"));
+  EXPECT_THAT(made(1, 0.5, 1e3, 2), HasSubstr("volume is 1000"));
+  EXPECT_THAT(made(1, 0.5, 2, 3), HasSubstr("symmetry_axis is 3; accepted: 0, 1 or 2"));
+}
+
+TEST(CustomShape, HasNoEquationsForThePapersSearch) {
+  ed::ContactOptions options;
+  options.finder = ed::Finder::bracketing;
+  const ed::Motion at;
+  EXPECT_THAT(message_of([&] { (void)time_of_contact(rod(), at, rod(), at, 1, options); }),
+              HasSubstr("shape spherocylinder is a support function; accepted: \"certified\""));
+}
+
+}  // namespace

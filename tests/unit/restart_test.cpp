@@ -1,0 +1,302 @@
+// A simulation that is saved, and restored from the bytes, goes on as if nothing had happened: every bit of what it
+// would save later is the same, which is all there is of it.
+
+#include <common/ed_families.h>
+#include <common/ed_states.h>
+#include <common/message_of.h>
+
+#include <ed/ed.h>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace {
+
+using ed::Finder;
+using ed::Neighbours;
+using ed_test::Inertia;
+
+struct Case {
+  std::string name;
+  ed::System system;
+};
+
+ed::System mixture_of_revolution() {
+  const std::vector<ed::Component> components = {{ed::paper_species(ed_test::spheroid(3)), 60},
+                                                 {ed::uniform_species(ed_test::spheroid(0.6), 2), 68}};
+  ed::StartOptions options;
+  options.packing_fraction = 0.25;
+  return ed::random_start(components, options);
+}
+
+std::vector<Case> make_cases() {
+  std::vector<Case> all = {{"rods", ed_test::start({2, 0.3, 128, Inertia::paper, 7})},
+                           {"spinning discs", ed_test::start({0.5, 0.3, 128, Inertia::uniform, 7})},
+                           {"a mixture of revolution", mixture_of_revolution()}};
+  for (const ed_test::Family& family : ed_test::families(128)) {
+    all.push_back({family.name, ed_test::start(family, 0.25)});
+  }
+  return all;
+}
+
+const std::vector<Case>& cases() {
+  static const std::vector<Case> all = make_cases();
+  return all;
+}
+
+std::vector<ed::SimulationOptions> all_options() {
+  std::vector<ed::SimulationOptions> all;
+  for (const Neighbours neighbours : {Neighbours::dilated, Neighbours::obp, Neighbours::cells}) {
+    for (const Finder finder : {Finder::certified, Finder::bracketing}) {
+      ed::SimulationOptions options;
+      options.neighbours = neighbours;
+      options.contact.finder = finder;
+      all.push_back(options);
+    }
+  }
+  return all;
+}
+
+std::string describe(const Case& c, const ed::SimulationOptions& options) {
+  return c.name + ", neighbours " + std::to_string(static_cast<int>(options.neighbours)) + ", finder " +
+         std::to_string(static_cast<int>(options.contact.finder));
+}
+
+/// Runs on for some epochs, restored from its own bytes again and again or not at all.
+std::string goes_on(ed::Simulation simulation, const Case& c, const ed::SimulationOptions& options, bool restarted) {
+  for (int stretch = 0; stretch < 12; ++stretch) {
+    simulation.run_collisions(17);
+    simulation.run_until(simulation.time() + 0.1);
+    if (!restarted) continue;
+    const std::string state = simulation.save();
+    EXPECT_EQ(simulation.save(), state);
+    simulation = ed::Simulation::restore(state, c.system.species, options);
+    EXPECT_EQ(simulation.save(), state);
+  }
+  EXPECT_GT(simulation.time(), ed::kEpoch);
+  return simulation.save();
+}
+
+TEST(Restart, EveryBitIsThere) {
+  for (const Case& c : cases()) {
+    for (const ed::SimulationOptions& options : all_options()) {
+      ed::Simulation undisturbed(c.system, options);
+      undisturbed.record_collisions(300);
+      ed::Simulation other(c.system, options);
+      other.record_collisions(300);
+      const std::string expected = goes_on(std::move(undisturbed), c, options, false);
+      EXPECT_TRUE(goes_on(std::move(other), c, options, true) == expected) << describe(c, options);
+    }
+  }
+}
+
+TEST(Restart, CountersCollisionsAndTimesGoOn) {
+  const Case& c = cases()[0];
+  ed::Simulation simulation(c.system);
+  simulation.record_collisions(200);
+  simulation.run_collisions(150);
+  ed::Simulation restored = ed::Simulation::restore(simulation.save(), c.system.species);
+  EXPECT_EQ(restored.counters().collisions, 150U);
+  EXPECT_EQ(restored.counters().evaluations, simulation.counters().evaluations);
+  EXPECT_EQ(restored.time(), simulation.time());
+  EXPECT_EQ(restored.box(), simulation.box());
+  EXPECT_EQ(restored.envelope(), simulation.envelope());
+  ASSERT_EQ(restored.collisions().size(), 150U);
+  EXPECT_EQ(restored.collisions()[149].time, simulation.collisions()[149].time);
+  restored.run_collisions(100);
+  EXPECT_EQ(restored.collisions().size(), 200U);
+}
+
+TEST(Restart, CompressionGoesOn) {
+  const Case& c = cases()[0];
+  ed::Simulation simulation(c.system);
+  const auto compress = [](ed::Simulation& s) {
+    for (int round = 0; round < 40; ++round) {
+      s.run_until(s.time() + 0.02);
+      s.shrink_box(0.97 * s.box());
+    }
+  };
+  compress(simulation);
+  ed::Simulation restored = ed::Simulation::restore(simulation.save(), c.system.species);
+  compress(simulation);
+  compress(restored);
+  EXPECT_LT(restored.box(), 0.999 * c.system.box);
+  EXPECT_TRUE(restored.save() == simulation.save());
+}
+
+TEST(Restart, EnvelopesThatWereTunedAreKept) {
+  const Case& c = cases()[1];
+  ed::Simulation simulation(c.system);
+  simulation.tune_envelopes();
+  ed::Simulation restored = ed::Simulation::restore(simulation.save(), c.system.species);
+  simulation.run_collisions(500);
+  restored.run_collisions(500);
+  EXPECT_TRUE(restored.save() == simulation.save());
+}
+
+/// In the middle of each body: Newton's method declines, the failure is kept, the dual answers.
+geom::WitnessPair centres(const geom::Shape& /*a*/, const geom::Pose& X_WA, const geom::Shape& /*b*/,
+                          const geom::Pose& X_WB) {
+  return {X_WA.position(), X_WB.position(), geom::SeedStatus::usable};
+}
+
+TEST(Restart, FailuresAreKept) {
+  const Case& c = cases()[0];
+  ed::SimulationOptions options;
+  options.contact.finder = Finder::bracketing;
+  options.contact.distance = ed::DistanceMethod::newton5;
+  options.contact.seed = centres;
+  ed::Simulation simulation(c.system, options);
+  ASSERT_EQ(simulation.failures().size(), 16U);
+  const ed::Simulation restored = ed::Simulation::restore(simulation.save(), c.system.species, options);
+  ASSERT_EQ(restored.failures().size(), 16U);
+  const ed::FailedPair& kept = restored.failures()[7];
+  const ed::FailedPair& failed = simulation.failures()[7];
+  EXPECT_EQ(kept.motion_j.pose.rotation(), failed.motion_j.pose.rotation());
+  EXPECT_EQ(ed::describe(kept.shape_j), ed::describe(failed.shape_j));
+  EXPECT_EQ(kept.distance->seed.point_b, failed.distance->seed.point_b);
+  EXPECT_EQ(restored.counters().unrecorded_failures, simulation.counters().unrecorded_failures);
+}
+
+std::string refusal(const std::string& state, const std::vector<ed::Species>& species,
+                    const ed::SimulationOptions& options = {}) {
+  return test_common::message_of([&] { ed::Simulation::restore(state, species, options); });
+}
+
+TEST(Restart, OtherSpeciesAndOptionsAreRefused) {
+  const Case& c = cases()[0];
+  const std::string state = ed::Simulation(c.system).save();
+  std::vector<ed::Species> species = c.system.species;
+  species[0].mass = 2;
+  EXPECT_EQ(refusal(state, species), "state: is one of other species");
+  for (const ed::SimulationOptions& options : all_options()) {
+    const bool same = options.neighbours == Neighbours::dilated && options.contact.finder == Finder::certified;
+    EXPECT_EQ(refusal(state, c.system.species, options),
+              same ? "no std::invalid_argument" : "state: was made with another finder or other neighbours");
+  }
+  std::string later = state;
+  later[0] = 3;
+  EXPECT_EQ(refusal(later, c.system.species), "state: has format 3, known is 2");
+  EXPECT_EQ(refusal(state + "x", c.system.species), "state: is longer than it should be");
+}
+
+// ---- Stalls
+
+TEST(Stall, EndsTheRunAndSaysInWhat) {
+  const Case& c = cases()[0];
+  ed::SimulationOptions options;
+  options.least_progress = 1e9;  // no run makes so much
+  ed::Simulation simulation(c.system, options);
+  EXPECT_FALSE(simulation.run_until(1e6));
+  ASSERT_TRUE(simulation.stall().has_value());
+  const ed::Stall stall = *simulation.stall();
+  EXPECT_GE(stall.events, 2000U * 128U);
+  EXPECT_LE(stall.events, 2000U * 128U + 1000U);
+  EXPECT_EQ(stall.time, simulation.time());
+  EXPECT_GT(stall.share, 0);
+  EXPECT_TRUE(stall.i >= 0 && stall.i < 128 && stall.j < 128);
+  EXPECT_THAT(ed::describe(stall), testing::HasSubstr("events in"));
+  // It stays where it is: nothing is processed any more. Restored, it tries again.
+  const std::string state = simulation.save();
+  EXPECT_FALSE(simulation.run_until(1e6));
+  EXPECT_TRUE(simulation.save() == state);
+  ed::Simulation again = ed::Simulation::restore(state, c.system.species, options);
+  EXPECT_FALSE(again.stall().has_value());
+  EXPECT_FALSE(again.run_until(1e6));
+  EXPECT_TRUE(again.stall().has_value());
+}
+
+TEST(Stall, SoundRunsAreNone) {
+  // The densest of spheres, which collide some hundred times a time unit, and a dilute gas.
+  for (const double phi : {0.73, 0.01}) {
+    ed::LatticeOptions lattice;
+    lattice.packing_fraction = phi;
+    const ed::System system = ed::lattice_start({{ed::uniform_species(ed_test::spheroid(1)), 108}}, lattice);
+    ed::SimulationOptions options;
+    options.least_progress = 1e-2;  // far more than is asked for
+    ed::Simulation simulation(system, options);
+    EXPECT_TRUE(simulation.run_until(50)) << phi;
+  }
+}
+
+// ---- Observables
+
+struct Measured {
+  ed::Simulation simulation;
+  ed::Observables observables;
+};
+
+ed::ObservablesOptions options_for(const Case& c, double duration) {
+  ed::ObservablesOptions options{};
+  options.number = c.system.size();
+  options.duration = duration;
+  options.longest_lag = 0.03;  // so that there are more blocks than are kept
+  const int half = options.number / 2;
+  const int axes = ed::symmetry_axis(c.system.species_of(options.number - 1)) ? 2 : 3;
+  options.groups = {{half, 2}, {options.number - half, axes}};
+  return options;
+}
+
+/// Blocks are merged on the way. Restored before every 61st measurement, or never.
+std::string measure(Measured run, const Case& c, bool restarted) {
+  const ed::ObservablesOptions options = options_for(c, 1);
+  for (int k = 0; run.observables.next_time() <= options.duration; ++k) {
+    run.simulation.run_until(run.observables.next_time());
+    if (restarted && k % 61 == 0) {
+      const std::string state = run.observables.save();
+      run.observables = ed::Observables::restore(state, options);
+      EXPECT_TRUE(run.observables.save() == state);
+    }
+    run.observables.measure(run.simulation);
+  }
+  return run.observables.save();
+}
+
+TEST(Restart, ObservablesGoOn) {
+  for (const Case* one : {&cases().front(), &cases().back()}) {
+    const Case& c = *one;
+    const auto begin = [&] { return Measured{ed::Simulation(c.system), ed::Observables(options_for(c, 1))}; };
+    const std::string expected = measure(begin(), c, false);
+    EXPECT_TRUE(measure(begin(), c, true) == expected) << c.name;
+    const auto refused = [&](const std::string& state, const ed::ObservablesOptions& options) {
+      return test_common::message_of([&] { ed::Observables::restore(state, options); });
+    };
+    EXPECT_EQ(refused(expected, options_for(c, 2)), "state: the observables are those of another run");
+    for (std::size_t length = 0; length < expected.size(); length += 1 + length / 50) {
+      EXPECT_THAT(refused(expected.substr(0, length), options_for(c, 1)), testing::StartsWith("state: ")) << length;
+    }
+  }
+}
+
+/// Of the bytes without a checksum: whatever they say, they are refused or give a state that can be asked.
+TEST(Restart, DamagedBytesAreNeverTrusted) {
+  for (const Case* one : {&cases().front(), &cases().back()}) {
+    const Case& c = *one;
+    ed::Simulation simulation(c.system);
+    simulation.record_collisions(3);
+    simulation.run_collisions(100);
+    const std::string state = simulation.save();
+    for (std::size_t length = 0; length < state.size(); length += 1 + length / 50) {
+      EXPECT_THAT(refusal(state.substr(0, length), c.system.species), testing::StartsWith("state: ")) << length;
+    }
+    ed::Random random(1);
+    int refused = 0;
+    for (int k = 0; k < 3000; ++k) {
+      std::string bad = state;
+      bad[random.bits() % bad.size()] ^= static_cast<char>(1 + random.bits() % 255);
+      try {
+        const ed::Simulation restored = ed::Simulation::restore(bad, c.system.species);
+        EXPECT_EQ(restored.system().size(), c.system.size());
+      } catch (const std::invalid_argument&) {
+        ++refused;
+      }
+    }
+    EXPECT_GT(refused, 100);
+  }
+}
+
+}  // namespace

@@ -1,0 +1,124 @@
+"""A long run, killed and resumed many times; see tools/soak."""
+
+import argparse
+import json
+import pathlib
+import random
+import shutil
+import subprocess
+import sys
+import time
+
+RATE = 35.6  # collisions a body and time unit
+NUMBER = 512
+
+CONFIG = """seed = 1
+[system]
+number = {number}
+packing_fraction = 0.40
+[shape]
+kind = "ellipsoid"
+aspect_ratio = 3
+[equilibration]
+time = 20
+[production]
+time = {time:.1f}
+[output]
+checkpoint_every = "5s"
+"""
+
+
+def resident_kilobytes(pid):
+    """Of a process; 0 if it has ended."""
+    try:
+        for line in pathlib.Path(f"/proc/{pid}/status").read_text().splitlines():
+            if line.startswith("VmRSS:"):
+                return int(line.split()[1])
+    except (FileNotFoundError, ProcessLookupError):
+        pass
+    return 0
+
+
+class Soak:
+    def __init__(self, program, out, collisions):
+        self.program = program
+        self.out = out
+        self.collisions = collisions
+        self.memory = []  # kB, one list a process
+
+    def wait(self, process, seconds):
+        """True if the process has ended by then."""
+        end = time.monotonic() + seconds
+        while time.monotonic() < end and process.poll() is None:
+            self.memory[-1].append(resident_kilobytes(process.pid))
+            time.sleep(0.5)
+        return process.poll() is not None
+
+    def begin(self, command):
+        self.memory.append([])
+        return subprocess.Popen([self.program, *command], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+
+    def run(self, kills):
+        """Kills at moments drawn so that the whole run is about over after the last; then lets it end."""
+        shutil.rmtree(self.out, ignore_errors=True)
+        self.out.parent.mkdir(parents=True, exist_ok=True)
+        config = self.out.with_suffix(".toml")
+        config.write_text(CONFIG.format(number=NUMBER, time=2 * self.collisions / (RATE * NUMBER)))
+        command = ["run", str(config), "--out", str(self.out)]
+        draw = random.Random(1)
+        killed = 0
+        while True:
+            process = self.begin(command)
+            mean = self.collisions / 1.5e5 / (kills + 1)
+            if killed < kills and not self.wait(process, draw.uniform(0.5, 1.5) * mean):
+                process.kill()
+                killed += 1
+                print(f"killed {killed} of {kills}, {resident_kilobytes(process.pid)} kB", flush=True)
+                process.communicate()
+                command = ["resume", str(self.out)]
+                continue
+            self.wait(process, 1e9)
+            _, error = process.communicate()
+            if process.returncode != 0:
+                sys.exit(f"status {process.returncode}: {error}")
+            return killed
+
+
+def growth(memory):
+    """Of the resident memory over the last two thirds of each process's time, when everything has its size."""
+    grown = [series[-1] / series[len(series) // 3] - 1 for kilobytes in memory
+             if len(series := [k for k in kilobytes if k > 0]) > 20]
+    return max(grown, default=0)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--hardbody", required=True)
+    parser.add_argument("--out", required=True, type=pathlib.Path)
+    parser.add_argument("--collisions", type=float, default=1e8)
+    parser.add_argument("--kills", type=int, default=20)
+    arguments = parser.parse_args()
+    soak = Soak(str(pathlib.Path(arguments.hardbody).resolve()), arguments.out.resolve(), arguments.collisions)
+    killed = soak.run(arguments.kills)
+    summary = json.loads((arguments.out / "summary.json").read_text())
+    counters = summary["counters"]
+    audit = summary["audit"]
+    checks = [
+        ("collisions of production", counters["collisions"], counters["collisions"] > 0.98 * arguments.collisions),
+        ("kills", killed, killed == arguments.kills),
+        ("overlaps", counters["overlaps"], counters["overlaps"] == 0),
+        ("rescues", counters["rescues"], counters["rescues"] == 0),
+        ("failures", summary["failures"]["recorded"], summary["failures"]["recorded"] == 0),
+        ("stalled", summary["stalled"], summary["stalled"] is None),
+        ("minimum distance at the end", audit["minimum_distance"], audit["minimum_distance"] >= -1e-12),
+        ("relative energy drift", audit["energy_relative_drift"], abs(audit["energy_relative_drift"]) <= 1e-9),
+        ("growth of the memory of a process", round(growth(soak.memory), 3), growth(soak.memory) < 0.05),
+        ("collisions a second", round(summary["performance"]["collisions_per_second"]), True),
+    ]
+    for name, value, sound in checks:
+        print(f"{'ok  ' if sound else 'OFF '} {name}: {value}")
+    sys.exit(0 if all(sound for _, _, sound in checks) else 1)
+
+
+if __name__ == "__main__":
+    main()
