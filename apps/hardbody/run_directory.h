@@ -13,6 +13,7 @@ inline constexpr const char* kSummaryFile = "summary.json";
 inline constexpr const char* kCheckpointFile = "checkpoint.bin";
 inline constexpr const char* kEventsFile = "events.csv";
 inline constexpr const char* kLogFile = "log.txt";
+inline constexpr const char* kReportFile = "report.html";
 inline constexpr const char* kMsdFile = "observables/msd.csv";
 inline constexpr const char* kRotationalMsdFile = "observables/rotational_msd.csv";
 inline constexpr const char* kAlpha2File = "observables/alpha2.csv";

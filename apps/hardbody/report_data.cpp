@@ -1,0 +1,151 @@
+#include "report_page.h"
+
+#include "run_directory.h"
+#include "version.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <utility>
+
+namespace hardbody {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Digits of a point of a curve: more than any plot or error bar shows. Averages of blocks keep all, in which the drift
+/// of the energy stands.
+constexpr int kCurveDigits = 9;
+
+Json number(double x) {
+  return std::isfinite(x) ? Json(x) : Json(nullptr);
+}
+
+Json rounded(double x) {
+  if (!std::isfinite(x)) return nullptr;
+  return std::strtod(fmt::format("{:.{}g}", x, kCurveDigits).c_str(), nullptr);
+}
+
+Json curves_json(const Curves& curves) {
+  Json columns = Json::array();
+  Json data = Json::array();
+  const bool exact = curves.name == "blocks";
+  for (std::size_t k = 0; k < curves.columns.size(); ++k) {
+    columns.push_back({{"name", Curves::bare_name(curves.columns[k])}, {"unit", Curves::unit(curves.columns[k])}});
+    Json values = Json::array();
+    for (const double x : curves.values[k]) values.push_back(exact ? number(x) : rounded(x));
+    data.push_back(std::move(values));
+  }
+  return {{"columns", std::move(columns)}, {"data", std::move(data)}};
+}
+
+/// Little-endian, as every machine that this program runs on is.
+template <class T>
+std::string packed(const std::vector<T>& values) {
+  std::string bytes(values.size() * sizeof(T), '\0');
+  if (!values.empty()) std::memcpy(bytes.data(), values.data(), bytes.size());
+  return base64(bytes);
+}
+
+Json view_json(const View& view) {
+  Json shapes = Json::array();
+  for (const ViewShape& s : view.shapes) {
+    shapes.push_back({{"semi_axes", {rounded(s.semi_axes.x()), rounded(s.semi_axes.y()), rounded(s.semi_axes.z())}},
+                      {"exponents", {s.exponents.x(), s.exponents.y()}}});
+  }
+  Json frames = Json::array();
+  for (const ViewFrame& frame : view.frames) {
+    frames.push_back({{"time", rounded(frame.time)},
+                      {"positions", packed(frame.positions)},
+                      {"orientations", packed(frame.orientations)}});
+  }
+  return {{"box", view.box},
+          {"number", view.number},
+          {"shown", view.shape_of.size()},
+          {"shapes", std::move(shapes)},
+          {"shape_of", packed(view.shape_of)},
+          {"species_of", packed(view.species_of)},
+          {"frames", std::move(frames)},
+          {"source", view.source},
+          {"note", view.note}};
+}
+
+Json headlines_json(const std::vector<Headline>& headlines) {
+  Json list = Json::array();
+  for (const Headline& h : headlines) {
+    list.push_back({{"key", h.key},
+                    {"symbol", h.symbol},
+                    {"name", h.name},
+                    {"unit", h.unit},
+                    {"meaning", h.meaning},
+                    {"value", number(h.value)},
+                    {"error", number(h.error)}});
+  }
+  return list;
+}
+
+const char* kind_text(Remark::Kind kind) {
+  switch (kind) {
+    case Remark::Kind::good:
+      return "good";
+    case Remark::Kind::warning:
+      return "warning";
+    case Remark::Kind::bad:
+      return "bad";
+  }
+  return "bad";
+}
+
+Json run_json(const RunReport& run) {
+  Json remarks = Json::array();
+  for (const Remark& r : run.remarks) {
+    remarks.push_back({{"kind", kind_text(r.kind)}, {"label", r.label}, {"text", r.text}});
+  }
+  Json species = Json::array();
+  for (const SpeciesReport& s : run.species) {
+    species.push_back({{"title", s.title}, {"headlines", headlines_json(s.headlines)}});
+  }
+  Json curves = Json::object();
+  for (const Curves& c : run.curves) curves[c.name] = curves_json(c);
+  return {{"name", run.name},
+          {"path", run.path.string()},
+          {"title", run.title},
+          {"remarks", std::move(remarks)},
+          {"headlines", headlines_json(run.headlines)},
+          {"species", std::move(species)},
+          {"rotational_freedoms", run.rotational_freedoms},
+          {"number", run.config.number},
+          {"summary", run.summary},
+          {"config", run.config_text},
+          {"log", run.log},
+          {"curves", std::move(curves)},
+          {"view", run.view ? view_json(*run.view) : Json(nullptr)}};
+}
+
+/// Within <script> neither "</script" nor "<!--" may stand; in JSON every < is within a string.
+std::string for_script(std::string json) {
+  std::string text;
+  text.reserve(json.size());
+  for (const char c : json) {
+    if (c == '<') {
+      text += "\\u003c";
+    } else {
+      text += c;
+    }
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string report_data(const Report& report) {
+  Json runs = Json::array();
+  for (const RunReport& run : report.runs) runs.push_back(run_json(run));
+  const Json data = {{"program", version()}, {"title", report.title}, {"runs", std::move(runs)}};
+  // What is no UTF-8 in a path or a log is shown as such, not refused.
+  return for_script(data.dump(-1, ' ', false, Json::error_handler_t::replace));
+}
+
+}  // namespace hardbody

@@ -1,0 +1,30 @@
+#pragma once
+
+#include "report_run.h"
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace hardbody {
+
+/// What a page is made of.
+struct Report {
+  std::string title;
+  std::vector<RunReport> runs;  ///< one, or several side by side
+};
+
+/// The page: one HTML file that opens without a network. With the front end that was built in it is interactive;
+/// without one its plots are drawn here.
+std::string report_page(const Report& report);
+
+/// Text in HTML, also within quotes.
+std::string html_text(std::string_view text);
+
+/// Plots and tables that need no script.
+std::string static_body(const Report& report);
+
+/// The data that the front end draws, as JSON that can stand in a <script>.
+std::string report_data(const Report& report);
+
+}  // namespace hardbody
