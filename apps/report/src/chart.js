@@ -1,6 +1,6 @@
 // A plot on a card: uPlot for the axes, a legend that is also the readout, buttons for the axes and for what is saved.
 import uPlot from 'uplot';
-import { cssColour, download, downloadText, fileName, h, seriesColour, tool } from './dom.js';
+import { cssColour, download, downloadText, fileName, h, rich, seriesColour, tool } from './dom.js';
 import { short, superscript } from './format.js';
 import { onThemeChange } from './theme.js';
 
@@ -21,6 +21,12 @@ function logValues(u, splits) {
     if (!whole || (x >= 0.01 && x <= 1000 && span < 5)) return String(Number(x.toPrecision(3)));
     return `10${superscript(Math.round(decade(x)))}`;
   });
+}
+
+/** Of many decades only their ends. */
+function logGrid(u, splits) {
+  const many = Math.log10(splits[splits.length - 1] / splits[0]) > 2.5;
+  return splits.map((x) => (many && Math.abs(Math.log10(x) - Math.round(Math.log10(x))) > 1e-6 ? null : x));
 }
 
 function linearValues(u, splits) {
@@ -58,7 +64,7 @@ export class Chart {
     this.legend = h('ul', { class: 'legend' });
     this.readout = h('span', { class: 'readout', 'aria-live': 'off' });
     this.element = h('article', { class: 'card chart', id: `plot-${plot.id}`, 'aria-label': plot.title },
-      h('header', {}, h('div', {}, h('h3', {}, plot.title), h('p', {}, plot.about)), this.tools()),
+      h('header', {}, h('div', {}, h('h3', {}, plot.title), h('p', {}, rich(plot.about))), this.tools()),
       this.chooser(), this.area, h('footer', {}, this.legend, this.readout));
     charts.push(this);
     new ResizeObserver(() => this.resize()).observe(this.area);
@@ -125,14 +131,14 @@ export class Chart {
 
   options(data) {
     const axis = (log, label, side) => ({
-      stroke: () => cssColour('--muted'), font: kFont, labelFont: kFont, label, labelSize: 20, labelGap: 2,
-      size: side === 'y' ? 58 : 34, gap: 4,
-      grid: { stroke: () => cssColour('--grid'), width: 1 }, ticks: { show: false },
+      stroke: () => cssColour('--muted'), font: kFont, labelFont: kFont, label, labelSize: 18, labelGap: 2,
+      size: side === 'y' ? 56 : 28, gap: 5,
+      grid: { stroke: () => cssColour('--grid'), width: 1, filter: log ? logGrid : (u, splits) => splits }, ticks: { show: false },
       values: log ? logValues : linearValues, space: side === 'y' ? 34 : 56,
       ...(log ? { filter: (u, splits) => splits } : {}),
     });
     return {
-      width: Math.max(200, this.area.clientWidth), height: kHeight, legend: { show: false }, padding: [10, 14, 0, 0],
+      width: Math.max(200, this.area.clientWidth), height: kHeight, legend: { show: false }, pxAlign: 0, padding: [10, 14, 0, 0],
       cursor: { points: { size: 7 }, drag: { x: true, y: false }, focus: { prox: 24 } },
       scales: {
         x: { time: false, distr: this.logX ? 3 : 1 },
@@ -156,9 +162,9 @@ export class Chart {
   style(s, number) {
     const hidden = this.hidden.has(s.label);
     const colour = () => seriesColour(s.colour);
-    if (s.fit) return { label: s.label, stroke: colour, width: 2, dash: [7, 5], points: { show: false }, spanGaps: true, show: !hidden };
+    if (s.fit) return { label: s.label, stroke: () => cssColour('--ink'), width: 1.6, dash: [6, 5], points: { show: false }, spanGaps: true, show: !hidden };
     const size = number > 120 ? 0 : 5;
-    return { label: s.label, stroke: colour, width: 1.6, spanGaps: true, show: !hidden,
+    return { label: s.label, stroke: colour, width: 1.4, spanGaps: true, show: !hidden,
       points: { show: size > 0, size, stroke: colour, fill: colour, width: 0 } };
   }
 
@@ -212,8 +218,8 @@ export class Chart {
         if (!show) this.hidden.add(s.label);
         button.setAttribute('aria-pressed', show);
         this.u.setSeries(k + 1, { show });
-      } }, h('i', {}), s.label, h('span', { class: 'value' }));
-    button.querySelector('i').style.setProperty('--colour', `var(--c${s.colour % 8})`);
+      } }, h('i', {}), h('span', {}, rich(s.label)), h('span', { class: 'value' }));
+    button.querySelector('i').style.setProperty('--colour', s.fit ? 'var(--ink)' : `var(--c${s.colour % 8})`);
     return h('li', {}, button);
   }
 
@@ -274,7 +280,7 @@ export class Chart {
     ctx.font = kFont;
     let x = 62;
     for (const s of this.plot.series.filter((one) => !this.hidden.has(one.label))) {
-      ctx.fillStyle = seriesColour(s.colour);
+      ctx.fillStyle = s.fit ? cssColour('--ink') : seriesColour(s.colour);
       ctx.fillRect(x, kHeight + 46, 14, s.fit ? 2 : 4);
       ctx.fillStyle = cssColour('--ink');
       ctx.fillText(s.label, x + 20, kHeight + 52);

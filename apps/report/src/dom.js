@@ -19,6 +19,14 @@ export function symbol(text) {
   return h('span', { class: 'symbol' }, text.slice(0, cut), h('sub', {}, text.slice(cut + 1)));
 }
 
+/** Text in which D_trans and the like have their index below the line. */
+export function rich(text) {
+  return text.split(/([A-Za-zΓτβ]+_[A-Za-z0-9,]+)/).map((part, k) => {
+    const cut = part.indexOf('_');
+    return k % 2 ? h('span', { class: 'inline' }, part.slice(0, cut), h('sub', {}, part.slice(cut + 1))) : part;
+  });
+}
+
 export function cssColour(name) {
   return getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 }

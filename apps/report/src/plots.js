@@ -114,7 +114,7 @@ function c2(run) {
   return {
     id: 'c2', title: 'Orientation, second order', about: 'C₂ decides what is relaxed: the fit leaves the ballistic part out.',
     x: time, y: { label: 'C₂ = ⟨P₂(u(t)·u(0))⟩' },
-    series: [...all.slice(0, 1), ...stretched(run, all[0], 'tau_C2', 'beta_C2', 'C2', 'A exp[−(t/τ)^β]'), ...all.slice(1)],
+    series: [...all.slice(0, 1), ...stretched(run, all[0], 'tau_C2', 'beta_C2', 'C2', 'A exp[−(t/τ)ᵝ]'), ...all.slice(1)],
   };
 }
 
@@ -128,9 +128,9 @@ function fSelf(run) {
   }
   return {
     id: 'f_self', title: 'Self-intermediate scattering',
-    about: 'The first wave number is that of the first peak of S(q); the dashed line is its fit.',
-    x: time, y: { label: 'F_self(q, t)' },
-    series: [...all.slice(0, 1), ...stretched(run, all[0], 'tau_F', 'beta_F', 'F', 'A exp[−(t/τ)^β]'), ...all.slice(1)],
+    about: 'F_self at four wave numbers. The first wave number is that of the first peak of S(q); the dashed line is its fit.',
+    x: time, y: { label: 'Fₛ(q, t)' },
+    series: [...all.slice(0, 1), ...stretched(run, all[0], 'tau_F', 'beta_F', 'F', 'A exp[−(t/τ)ᵝ]'), ...all.slice(1)],
   };
 }
 

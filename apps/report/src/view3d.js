@@ -301,7 +301,7 @@ export class View3d {
 
   reset() {
     if (!this.renderer) return;
-    const distance = 2.75 * this.data.box;
+    const distance = 3.05 * this.data.box;
     this.camera.position.set(0.62, -0.68, 0.4).normalize().multiplyScalar(distance);
     this.controls.target.set(0, 0, 0);
     this.controls.update();
