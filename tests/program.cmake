@@ -35,6 +35,9 @@ if(TARGET hardbody)
   target_compile_definitions(program_test PRIVATE HARDBODY_PROGRAM="$<TARGET_FILE:hardbody>"
     HARDBODY_OLD_CHECKPOINT="${CMAKE_CURRENT_SOURCE_DIR}/cli/checkpoint_v1.bin")
   add_dependencies(program_test hardbody)
+
+  hardbody_test(trajectory_test cli cli/trajectory_test.cpp)
+  target_link_libraries(trajectory_test PRIVATE hardbody_program)
 else()
-  list(APPEND unbuilt_tests cli/program_test.cpp)
+  list(APPEND unbuilt_tests cli/program_test.cpp cli/trajectory_test.cpp)
 endif()

@@ -18,6 +18,9 @@ void write_file(const std::filesystem::path& path, std::string_view content);
 /// begun at position 0. Throws std::runtime_error; the first `position` bytes are then as they were, and the last.
 void write_at(const std::filesystem::path& path, std::uint64_t position, std::string_view content);
 
+/// Replaces bytes within a file, on the disk; what is beyond its end makes it longer. Throws std::runtime_error.
+void overwrite_at(const std::filesystem::path& path, std::uint64_t position, std::string_view content);
+
 /// Text for a one-line message: line breaks and control characters become blanks, long text is cut.
 std::string one_line(std::string_view text, std::size_t longest = 400);
 
