@@ -44,16 +44,29 @@ std::string several_title(const std::vector<RunReport>& runs) {
   return fmt::format("{} runs: {}", runs.size(), title);
 }
 
+Report read_report(const std::vector<std::string>& directories) {
+  Report report;
+  if (directories.size() == 1 && is_sweep(directories[0])) {
+    report.sweep = read_sweep_report(directories[0]);
+    report.title = report.sweep->title;
+    return report;
+  }
+  for (const std::string& directory : directories) {
+    if (is_sweep(directory)) {
+      throw InputError(fmt::format("{}: holds a sweep; accepted: a sweep by itself, or several runs", directory));
+    }
+    report.runs.push_back(read_run_report(directory, WithView::yes));
+  }
+  report.title = report.runs.size() == 1 ? report.runs[0].title : several_title(report.runs);
+  return report;
+}
+
 }  // namespace
 
 int report(const ReportArguments& arguments) {
   const fs::path path = output_path(arguments);
-  Report report;
-  for (const std::string& directory : arguments.directories) {
-    report.runs.push_back(read_run_report(directory, WithView::yes));
-  }
+  const Report report = read_report(arguments.directories);
   check_output(path);
-  report.title = report.runs.size() == 1 ? report.runs[0].title : several_title(report.runs);
   const std::string page = report_page(report);
   write_file(path, page);
   fmt::print("{}: {}{}\n", path.string(), size_text(page.size()),

@@ -15,27 +15,31 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Digits of a point of a curve: more than any plot or error bar shows. Averages of blocks keep all, in which the drift
-/// of the energy stands.
+/// Digits of a point of a curve: more than any plot or error bar shows; of one of hundreds of runs what a plot shows.
+/// Averages of blocks keep all, in which the drift of the energy stands.
 constexpr int kCurveDigits = 9;
+constexpr int kSweepDigits = 6;
+
+/// All of a sweep's points together may take so much; what is beyond is left to reports of their own.
+constexpr std::size_t kMostOfPoints = 40'000'000;
 
 Json number(double x) {
   return std::isfinite(x) ? Json(x) : Json(nullptr);
 }
 
-Json rounded(double x) {
+Json rounded(double x, int digits = kCurveDigits) {
   if (!std::isfinite(x)) return nullptr;
-  return std::strtod(fmt::format("{:.{}g}", x, kCurveDigits).c_str(), nullptr);
+  return std::strtod(fmt::format("{:.{}g}", x, digits).c_str(), nullptr);
 }
 
-Json curves_json(const Curves& curves) {
+Json curves_json(const Curves& curves, int digits) {
   Json columns = Json::array();
   Json data = Json::array();
   const bool exact = curves.name == "blocks";
   for (std::size_t k = 0; k < curves.columns.size(); ++k) {
     columns.push_back({{"name", Curves::bare_name(curves.columns[k])}, {"unit", Curves::unit(curves.columns[k])}});
     Json values = Json::array();
-    for (const double x : curves.values[k]) values.push_back(exact ? number(x) : rounded(x));
+    for (const double x : curves.values[k]) values.push_back(exact ? number(x) : rounded(x, digits));
     data.push_back(std::move(values));
   }
   return {{"columns", std::move(columns)}, {"data", std::move(data)}};
@@ -98,7 +102,7 @@ const char* kind_text(Remark::Kind kind) {
   return "bad";
 }
 
-Json run_json(const RunReport& run) {
+Json run_json(const RunReport& run, int digits) {
   Json remarks = Json::array();
   for (const Remark& r : run.remarks) {
     remarks.push_back({{"kind", kind_text(r.kind)}, {"label", r.label}, {"text", r.text}});
@@ -108,7 +112,7 @@ Json run_json(const RunReport& run) {
     species.push_back({{"title", s.title}, {"headlines", headlines_json(s.headlines)}});
   }
   Json curves = Json::object();
-  for (const Curves& c : run.curves) curves[c.name] = curves_json(c);
+  for (const Curves& c : run.curves) curves[c.name] = curves_json(c, digits);
   return {{"name", run.name},
           {"path", run.path.string()},
           {"title", run.title},
@@ -138,14 +142,61 @@ std::string for_script(std::string json) {
   return text;
 }
 
+/// What is no UTF-8 in a path or a log is shown as such, not refused.
+std::string script_text(const Json& json) {
+  return for_script(json.dump(-1, ' ', false, Json::error_handler_t::replace));
+}
+
+/// A field of the table: a number if it is one.
+Json field_json(const std::string& field) {
+  if (field.empty()) return nullptr;
+  char* end = nullptr;
+  const double value = std::strtod(field.c_str(), &end);
+  return end == field.c_str() + field.size() && std::isfinite(value) ? Json(value) : Json(field);
+}
+
+Json point_json(const SweepPointReport& point, bool embedded) {
+  Json keys = Json::array();
+  for (const std::string& key : point.keys) keys.push_back(field_json(key));
+  Json values = Json::array();
+  for (const Measured& m : point.values) values.push_back({number(m.value), number(m.error)});
+  return {{"keys", std::move(keys)},   {"values", std::move(values)},
+          {"status", point.status},    {"message", point.message},
+          {"equilibrated", point.equilibrated}, {"directory", point.directory},
+          {"embedded", embedded}};
+}
+
+Json sweep_json(const SweepReport& sweep, const std::vector<bool>& embedded) {
+  Json points = Json::array();
+  for (std::size_t k = 0; k < sweep.points.size(); ++k) points.push_back(point_json(sweep.points[k], embedded[k]));
+  return {{"name", sweep.name},
+          {"path", sweep.path.string()},
+          {"keys", sweep.keys},
+          {"observables", headlines_json(sweep.observables)},
+          {"points", std::move(points)}};
+}
+
 }  // namespace
 
 std::string report_data(const Report& report) {
-  Json runs = Json::array();
-  for (const RunReport& run : report.runs) runs.push_back(run_json(run));
-  const Json data = {{"program", version()}, {"title", report.title}, {"runs", std::move(runs)}};
-  // What is no UTF-8 in a path or a log is shown as such, not refused.
-  return for_script(data.dump(-1, ' ', false, Json::error_handler_t::replace));
+  std::string scripts;
+  Json data = {{"program", version()}, {"title", report.title}};
+  if (report.sweep) {
+    std::vector<bool> embedded;
+    for (const SweepPointReport& point : report.sweep->points) {
+      const bool shown = point.run && scripts.size() < kMostOfPoints;
+      embedded.push_back(shown);
+      if (!shown) continue;
+      scripts += fmt::format("<script type=\"application/json\" id=\"point-{}\">{}</script>\n", embedded.size() - 1,
+                             script_text(run_json(*point.run, kSweepDigits)));
+    }
+    data["sweep"] = sweep_json(*report.sweep, embedded);
+  } else {
+    Json runs = Json::array();
+    for (const RunReport& run : report.runs) runs.push_back(run_json(run, kCurveDigits));
+    data["runs"] = std::move(runs);
+  }
+  return "<script type=\"application/json\" id=\"data\">" + script_text(data) + "</script>\n" + scripts;
 }
 
 }  // namespace hardbody

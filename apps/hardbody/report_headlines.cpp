@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -94,6 +95,12 @@ std::vector<Headline> headlines_of(const Json& observables) {
   }
   add_axes(list, observables);
   return list;
+}
+
+Headline headline_named(const std::string& key) {
+  const auto known = std::find_if(kNamings.begin(), kNamings.end(), [&](const Naming& n) { return key == n.key; });
+  if (known != kNamings.end()) return headline(*known, nullptr);
+  return headline({key.c_str(), key.c_str(), key.c_str(), "", ""}, nullptr);
 }
 
 std::string headline_text(const Headline& headline) {

@@ -58,7 +58,7 @@ std::string report_page(const Report& report) {
   std::string page = head(report, report_style());
   page += "<body>\n<div id=\"report\"><noscript><p class=\"notice\">This report draws itself with JavaScript, which is "
           "switched off; the numbers are in summary.json.</p></noscript></div>\n";
-  page += "<script type=\"application/json\" id=\"data\">" + report_data(report) + "</script>\n<script>\n";
+  page += report_data(report) + "<script>\n";
   page += script;
   return page + "</script>\n</body>\n</html>\n";
 }

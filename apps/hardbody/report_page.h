@@ -1,7 +1,9 @@
 #pragma once
 
 #include "report_run.h"
+#include "report_sweep.h"
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,6 +14,7 @@ namespace hardbody {
 struct Report {
   std::string title;
   std::vector<RunReport> runs;  ///< one, or several side by side
+  std::optional<SweepReport> sweep;  ///< instead of runs
 };
 
 /// The page: one HTML file that opens without a network. With the front end that was built in it is interactive;
@@ -24,7 +27,7 @@ std::string html_text(std::string_view text);
 /// Plots and tables that need no script.
 std::string static_body(const Report& report);
 
-/// The data that the front end draws, as JSON that can stand in a <script>.
+/// The data that the front end draws, as <script> elements of JSON; those of a sweep's points are read one by one.
 std::string report_data(const Report& report);
 
 }  // namespace hardbody

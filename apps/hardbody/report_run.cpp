@@ -2,6 +2,7 @@
 
 #include "checkpoint.h"
 #include "errors.h"
+#include "gsd_frames.h"
 #include "json_member.h"
 #include "run_directory.h"
 #include "text_file.h"
@@ -10,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 #include <variant>
 
@@ -55,14 +57,6 @@ bool says(const Json& json, bool wanted) {
 
 double number_of(const Json& json) {
   return json.is_number() ? json.get<double>() : 0;
-}
-
-Remark unfinished(const std::optional<View>& view, const std::string& phase) {
-  using Kind = Remark::Kind;
-  if (!view) return {Kind::warning, "unfinished", "The run has no results yet, nor a checkpoint."};
-  return {Kind::warning, "unfinished",
-          fmt::format("The run has no results yet; its last checkpoint is of {} at time {:g}.", phase,
-                      view->frames.back().time)};
 }
 
 /// How far it came.
@@ -126,10 +120,52 @@ std::vector<Remark> remarks_of(const Json& summary) {
   return list;
 }
 
-std::vector<int> numbers_of(const Config& config) {
+/// A state that can be looked at, and when it was.
+struct Seen {
+  View view;
+  std::string phase = "production";
+};
+
+/// The stored frames; nothing if there is only one, or none.
+std::optional<Seen> read_trajectory(const fs::path& path) {
+  if (!fs::exists(path)) return std::nullopt;
+  const GsdReader reader(path);
+  if (reader.frame_count() < 2) return std::nullopt;
+  const std::size_t number = reader.read(0).bodies.size();
+  const auto read = [&](std::size_t k) {
+    Frame frame = reader.read(k);
+    if (frame.bodies.size() == number) return frame;
+    throw InputError(fmt::format("{}: frame {} has {} bodies; accepted: {}, as in the first", path.string(), k,
+                                 frame.bodies.size(), number));
+  };
+  Seen seen{view_of({reader.frame_count(), read})};
+  seen.view.source = kGsdFile;
+  return seen;
+}
+
+/// The last state.
+std::optional<Seen> read_last_state(const fs::path& path, const Config& config) {
+  if (!fs::exists(path)) return std::nullopt;
+  const Checkpoint checkpoint = read_checkpoint(path);
   std::vector<int> numbers;
   for (const SpeciesConfig& species : config.species) numbers.push_back(species.number);
-  return numbers;
+  if (std::accumulate(numbers.begin(), numbers.end(), 0) != checkpoint.system.size()) {
+    throw InputError(fmt::format("{}: holds {} bodies, the config {}; accepted: the checkpoint of its config",
+                                 path.string(), checkpoint.system.size(), config.number));
+  }
+  Frame frame = frame_of(checkpoint.system, numbers);
+  frame.time = checkpoint.time;
+  Seen seen{view_of({1, [&](std::size_t /*k*/) { return frame; }}), checkpoint.phase};
+  seen.view.source = kCheckpointFile;
+  return seen;
+}
+
+Remark unfinished(const std::optional<Seen>& seen) {
+  using Kind = Remark::Kind;
+  if (!seen) return {Kind::warning, "unfinished", "The run has no results yet, nor a checkpoint."};
+  return {Kind::warning, "unfinished",
+          fmt::format("The run has no results yet; the last state that was stored is of {} at time {:g}.", seen->phase,
+                      seen->view.frames.back().time)};
 }
 
 /// "superballs, p = 4"
@@ -212,15 +248,13 @@ RunReport read_run_report(const fs::path& directory, WithView with_view) {
   run.curves = read_curves(directory);
   run.headlines = headlines_of(member(run.summary, "observables"));
   run.species = species_of(run.config, run.summary);
-  std::string phase;
-  if (with_view == WithView::yes && fs::exists(directory / kCheckpointFile)) {
-    const Checkpoint checkpoint = read_checkpoint(directory / kCheckpointFile);
-    run.view = view_of(checkpoint.system, numbers_of(run.config), checkpoint.time);
-    run.view->source = kCheckpointFile;
-    phase = checkpoint.phase;
-    thin_out(*run.view);
+  std::optional<Seen> seen;
+  if (with_view == WithView::yes) {
+    seen = read_trajectory(directory / kGsdFile);
+    if (!seen) seen = read_last_state(directory / kCheckpointFile, run.config);
   }
-  run.remarks = run.summary.is_null() ? std::vector{unfinished(run.view, phase)} : remarks_of(run.summary);
+  run.remarks = run.summary.is_null() ? std::vector{unfinished(seen)} : remarks_of(run.summary);
+  if (seen) run.view = std::move(seen->view);
   return run;
 }
 

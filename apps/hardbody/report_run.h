@@ -65,6 +65,9 @@ RunReport read_run_report(const std::filesystem::path& directory, WithView with_
 /// "512 hard ellipsoids, X0 = 3, packing fraction 0.4"
 std::string title_of(const Config& config);
 
+/// What a key of `observables` is called; of an unknown one the key itself.
+Headline headline_named(const std::string& key);
+
 /// Those of `observables` in a summary that it has, in the order of interest.
 std::vector<Headline> headlines_of(const nlohmann::json& observables);
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <tuple>
 #include <utility>
@@ -30,89 +31,82 @@ float centred(double x, double box) {
   return static_cast<float>(x - box * std::round(x / box));
 }
 
-/// A rotation matrix's rounding, which a quaternion does not have, does not show.
-ViewFrame frame_of(const ed::System& system, double time) {
-  ViewFrame frame;
-  frame.time = time;
-  for (const ed::Body& body : system.bodies) {
-    const Eigen::Quaterniond q(body.rotation);
-    for (int k = 0; k < 3; ++k) frame.positions.push_back(centred(body.position[k], system.box));
-    for (const double x : {q.w(), q.x(), q.y(), q.z()}) frame.orientations.push_back(static_cast<float>(x));
-  }
-  return frame;
-}
-
-template <class T>
-std::vector<T> picked(const std::vector<T>& all, const std::vector<std::size_t>& bodies, std::size_t width) {
-  std::vector<T> some;
-  for (const std::size_t body : bodies) {
-    for (std::size_t k = 0; k < width; ++k) some.push_back(all[body * width + k]);
-  }
-  return some;
-}
-
-/// Those that the last frame has in a corner of the box which holds about as many as may be shown.
-std::vector<std::size_t> bodies_in_corner(const View& view) {
-  const double share = static_cast<double>(kMostBodiesShown) / view.number;
-  const auto limit = static_cast<float>(view.box * (std::cbrt(share) - 0.5));
-  const std::vector<float>& r = view.frames.back().positions;
+/// Those in a corner of the box which holds about as many as may be shown; all, if they may.
+std::vector<std::size_t> bodies_shown(const Frame& frame) {
+  const std::size_t all = frame.bodies.size();
+  const double share = static_cast<double>(kMostBodiesShown) / static_cast<double>(all);
+  const double limit = share >= 1 ? std::numeric_limits<double>::infinity() : std::cbrt(share) - 0.5;
   std::vector<std::size_t> bodies;
-  for (std::size_t i = 0; i < view.shape_of.size() && bodies.size() < kMostBodiesShown; ++i) {
-    if (std::max({r[3 * i], r[3 * i + 1], r[3 * i + 2]}) < limit) bodies.push_back(i);
+  for (std::size_t i = 0; i < all && bodies.size() < kMostBodiesShown; ++i) {
+    const Eigen::Array3d place = frame.bodies[i].position.array() / frame.box.array();
+    if ((place - place.round()).maxCoeff() < limit) bodies.push_back(i);
   }
   return bodies;
 }
 
-void thin_out_bodies(View& view) {
-  if (view.shape_of.size() <= kMostBodiesShown) return;
-  const std::vector<std::size_t> bodies = bodies_in_corner(view);
-  view.shape_of = picked(view.shape_of, bodies, 1);
-  view.species_of = picked(view.species_of, bodies, 1);
-  for (ViewFrame& frame : view.frames) {
-    frame.positions = picked(frame.positions, bodies, 3);
-    frame.orientations = picked(frame.orientations, bodies, 4);
+/// `most` of 0 .. all - 1, the last one among them.
+std::vector<std::size_t> frames_shown(std::size_t all, std::size_t most) {
+  std::vector<std::size_t> list;
+  for (std::size_t k = 0; k < std::min(all, most); ++k) {
+    if (all <= most) {
+      list.push_back(k);
+    } else {
+      list.push_back(most == 1 ? all - 1 : (2 * k * (all - 1) + (most - 1)) / (2 * (most - 1)));
+    }
   }
-  view.note += fmt::format("{} of {} bodies are shown, those in a corner of the box. ", bodies.size(), view.number);
+  return list;
 }
 
-void thin_out_frames(View& view) {
-  const std::size_t most = std::max<std::size_t>(1, kMostBodyFrames / std::max<std::size_t>(1, view.shape_of.size()));
-  const std::size_t all = view.frames.size();
-  if (all <= most) return;
-  std::vector<ViewFrame> some;
-  for (std::size_t k = 0; k < most; ++k) {
-    const std::size_t index = most == 1 ? all - 1 : (k * (all - 1) + (most - 1) / 2) / (most - 1);
-    some.push_back(std::move(view.frames[index]));
+/// A type that nobody says the shape of is shown as a sphere.
+ViewShape shape_of(const Frame& frame, std::size_t body) {
+  const FrameType& type = frame.types.at(frame.bodies[body].type);
+  return type.shape ? view_shape(*type.shape) : ViewShape{{1, 1, 1}, {1, 1}};
+}
+
+void set_bodies(View& view, const Frame& frame, const std::vector<std::size_t>& bodies) {
+  std::map<ShapeKey, std::uint32_t> known;
+  for (const std::size_t body : bodies) {
+    const ViewShape shape = shape_of(frame, body);
+    const auto [place, is_new] = known.emplace(key_of(shape), static_cast<std::uint32_t>(view.shapes.size()));
+    if (is_new) view.shapes.push_back(shape);
+    view.shape_of.push_back(place->second);
+    view.species_of.push_back(frame.bodies[body].group);
   }
-  view.frames = std::move(some);
-  view.note += fmt::format("{} of {} stored frames are shown. ", most, all);
+}
+
+ViewFrame view_frame(const Frame& frame, const std::vector<std::size_t>& bodies) {
+  ViewFrame result;
+  result.time = frame.time;
+  for (const std::size_t i : bodies) {
+    const FrameBody& body = frame.bodies.at(i);
+    const Eigen::Quaterniond q(body.rotation);
+    for (int k = 0; k < 3; ++k) result.positions.push_back(centred(body.position[k], frame.box[k]));
+    for (const double x : {q.w(), q.x(), q.y(), q.z()}) result.orientations.push_back(static_cast<float>(x));
+  }
+  return result;
 }
 
 }  // namespace
 
-View view_of(const ed::System& system, const std::vector<int>& numbers, double time) {
+View view_of(const FrameSource& source) {
+  const Frame last = source.read(source.count - 1);
+  const std::vector<std::size_t> bodies = bodies_shown(last);
   View view;
-  view.box = system.box;
-  view.number = system.size();
-  std::map<ShapeKey, std::uint32_t> known;
-  std::size_t species = 0;
-  int left = numbers.empty() ? view.number : numbers[0];
-  for (int i = 0; i < view.number; ++i, --left) {
-    while (left == 0 && species + 1 < numbers.size()) left = numbers[++species];
-    const ViewShape shape = view_shape(system.species_of(i).shape);
-    const auto [place, is_new] = known.emplace(key_of(shape), static_cast<std::uint32_t>(view.shapes.size()));
-    if (is_new) view.shapes.push_back(shape);
-    view.shape_of.push_back(place->second);
-    view.species_of.push_back(static_cast<std::uint32_t>(species));
+  view.box = last.box.x();
+  view.number = last.bodies.size();
+  set_bodies(view, last, bodies);
+  const std::size_t most = std::max<std::size_t>(1, kMostBodyFrames / std::max<std::size_t>(1, bodies.size()));
+  const std::vector<std::size_t> frames = frames_shown(source.count, most);
+  for (const std::size_t k : frames) {
+    view.frames.push_back(view_frame(k + 1 == source.count ? last : source.read(k), bodies));
   }
-  view.frames.push_back(frame_of(system, time));
+  if (bodies.size() < view.number) {
+    view.note += fmt::format("{} of {} bodies are shown, those in a corner of the box. ", bodies.size(), view.number);
+  }
+  if (frames.size() < source.count) {
+    view.note += fmt::format("{} of {} stored frames are shown. ", frames.size(), source.count);
+  }
   return view;
-}
-
-void thin_out(View& view) {
-  if (view.frames.empty()) return;
-  thin_out_bodies(view);
-  thin_out_frames(view);
 }
 
 std::string base64(std::string_view bytes) {

@@ -1,10 +1,12 @@
 #pragma once
 
-#include <ed/system.h>
+#include "frame.h"
 
 #include <Eigen/Core>
 
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,7 +29,7 @@ struct ViewFrame {
 /// States of a run to be looked at.
 struct View {
   double box = 0;
-  int number = 0;  ///< of bodies in the system; fewer may be shown
+  std::size_t number = 0;  ///< of bodies in the system; fewer may be shown
   std::vector<ViewShape> shapes;
   std::vector<std::uint32_t> shape_of;    ///< of each body shown
   std::vector<std::uint32_t> species_of;  ///< of each body shown, from 0
@@ -37,15 +39,18 @@ struct View {
 };
 
 /// No more bodies than that are shown, and no more bodies times frames: a page has to open on a telephone.
-inline constexpr int kMostBodiesShown = 20'000;
-inline constexpr int kMostBodyFrames = 200'000;
+inline constexpr std::size_t kMostBodiesShown = 20'000;
+inline constexpr std::size_t kMostBodyFrames = 200'000;
 
-/// Of one state. `numbers`: of the bodies of each species, which stand one after the other.
-View view_of(const ed::System& system, const std::vector<int>& numbers, double time);
+/// Frames that can be read one at a time.
+struct FrameSource {
+  std::size_t count = 0;  ///< at least 1
+  std::function<Frame(std::size_t)> read;
+};
 
-/// Leaves out bodies, all but those in a corner of the box, and frames, all but some as far apart as one another, that
-/// are too many; says so in the note.
-void thin_out(View& view);
+/// Of too many bodies those in a corner of the box, of too many frames some as far apart as one another, the last one
+/// among them; the note says so.
+View view_of(const FrameSource& source);
 
 /// RFC 4648, with padding.
 std::string base64(std::string_view bytes);
