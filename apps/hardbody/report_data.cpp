@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
@@ -19,6 +20,7 @@ using Json = nlohmann::ordered_json;
 /// Averages of blocks keep all, in which the drift of the energy stands.
 constexpr int kCurveDigits = 9;
 constexpr int kSweepDigits = 6;
+constexpr int kErrorDigits = 4;
 
 /// All of a sweep's points together may take so much; what is beyond is left to reports of their own.
 constexpr std::size_t kMostOfPoints = 40'000'000;
@@ -39,7 +41,9 @@ Json curves_json(const Curves& curves, int digits) {
   for (std::size_t k = 0; k < curves.columns.size(); ++k) {
     columns.push_back({{"name", Curves::bare_name(curves.columns[k])}, {"unit", Curves::unit(curves.columns[k])}});
     Json values = Json::array();
-    for (const double x : curves.values[k]) values.push_back(exact ? number(x) : rounded(x, digits));
+    const bool error = Curves::bare_name(curves.columns[k]).ends_with("_error");
+    const int kept = error ? std::min(digits, kErrorDigits) : digits;
+    for (const double x : curves.values[k]) values.push_back(exact ? number(x) : rounded(x, kept));
     data.push_back(std::move(values));
   }
   return {{"columns", std::move(columns)}, {"data", std::move(data)}};

@@ -145,7 +145,7 @@ export class Chart {
         y: { distr: this.logY ? 3 : 1, range: this.logY ? undefined : this.linearRange(data) },
       },
       axes: [axis(this.logX, this.plot.x.label, 'x'), axis(this.logY, this.plot.y.label, 'y')],
-      series: [{}, ...this.plot.series.map((s) => this.style(s, data[0].length))],
+      series: [{}, ...this.plot.series.map((s) => this.style(s, s.x.length))],
       hooks: { draw: [(u) => this.drawErrors(u)], setCursor: [(u) => this.showLegend(u.cursor.idx)] },
     };
   }

@@ -1,6 +1,6 @@
 // Which curves a plot shows. A plot: {id, title, about, x, y, series}; x, y: {label, log}; a series: {label, x, y, error,
 // fit, group}. Fits are drawn dashed and belong to the series before them.
-import { unitText, short } from './format.js';
+import { short } from './format.js';
 
 /** Column of a file of observables/, with its error and unit; null: there is none. */
 function curve(run, file, column) {
@@ -256,5 +256,3 @@ export function comparisonsOf(runs) {
     return { ...plot, choices, series: choices[0]?.series ?? [] };
   });
 }
-
-export { unitText };

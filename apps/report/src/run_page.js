@@ -1,6 +1,6 @@
 // The page of one run, or of several side by side.
 import { Chart } from './chart.js';
-import { downloadText, fileName, h, seriesColour, symbol, tool } from './dom.js';
+import { downloadText, fileName, h, rich, symbol, tool } from './dom.js';
 import { bytes, duration, estimate, grouped, short } from './format.js';
 import { comparisonsOf, plotsOf } from './plots.js';
 import { View3d } from './view3d.js';
@@ -10,10 +10,10 @@ export const page = { views: [] };
 
 // ---- Head ------------------------------------------------------------------------------------------------------------
 
-/** What is well is said shortly, what is not in full. */
-export function remarks(run) {
+/** What is well is said shortly, what is not in full, unless only what is bad shall be. */
+export function remarks(run, brief = false) {
   return h('ul', { class: 'remarks' }, run.remarks.map((r) => h('li', { class: r.kind, title: r.text },
-    h('b', {}, r.label), r.kind === 'good' ? null : r.text)));
+    h('b', {}, r.label), r.kind === 'good' || (brief && r.kind !== 'bad') ? null : rich(r.text))));
 }
 
 export function number(line, missing = 'too short') {
@@ -25,7 +25,7 @@ export function number(line, missing = 'too short') {
 /** Numbers one below the other, as on a data sheet. */
 export function sheet(headlines, missing) {
   return h('dl', { class: 'sheet' }, headlines.map((line) => h('div', { 'data-key': line.key, title: line.meaning },
-    h('dt', {}, symbol(line.symbol), h('span', { class: 'name' }, line.name)),
+    h('dt', {}, symbol(line.symbol), h('span', { class: 'name' }, rich(line.name))),
     h('dd', {}, number(line, missing), h('span', { class: 'unit' }, line.unit)))));
 }
 
@@ -74,7 +74,7 @@ function configRows(text) {
   return list;
 }
 
-function settingsCard(run) {
+export function settingsCard(run) {
   const sections = new Map();
   for (const { section, key, value } of configRows(run.config)) {
     if (!sections.has(section)) sections.set(section, []);
@@ -92,7 +92,7 @@ const kCounters = {
   candidate_tests: 'candidate tests', parting_contacts: 'contacts without impulse', overlaps: 'overlaps',
 };
 
-function countersCard(run) {
+export function countersCard(run) {
   const { counters, performance, audit } = run.summary ?? {};
   if (!counters) return null;
   const parts = [h('h4', {}, 'Events of production'),
@@ -159,7 +159,7 @@ function comparison(runs) {
   return h('div', { class: 'card scroll' }, h('table', { class: 'comparison' },
     h('thead', {}, h('tr', {}, h('th', { scope: 'col' }, 'Quantity'), runs.map((run, k) => h('th', { scope: 'col' }, swatch(k), run.name)), h('th', { scope: 'col' }, 'Unit'))),
     h('tbody', {}, keys.map((line) => h('tr', { 'data-key': line.key, title: line.meaning },
-      h('th', { scope: 'row' }, symbol(line.symbol), h('span', { class: 'name' }, line.name)),
+      h('th', { scope: 'row' }, symbol(line.symbol), h('span', { class: 'name' }, rich(line.name))),
       runs.map((run) => h('td', {}, number(run.headlines.find((own) => own.key === line.key), run.headlines.length ? 'too short' : 'none yet'))),
       h('td', { class: 'unit' }, line.unit))))));
 }
@@ -196,7 +196,7 @@ function viewChooser(runs) {
 export function severalPage(runs, title) {
   return [
     h('section', { class: 'hero', id: 'results' }, h('p', { class: 'over' }, runs.map((run) => run.path).join('  ·  ')), h('h1', {}, title),
-      h('ul', { class: 'runs' }, runs.map((run, k) => h('li', {}, h('p', {}, swatch(k), h('b', {}, run.name), ` ${run.title}`), remarks(run))))),
+      h('ul', { class: 'runs' }, runs.map((run, k) => h('li', {}, h('p', {}, swatch(k), h('b', {}, run.name), ` ${run.title}`), remarks(run, true))))),
     h('div', { class: 'headed' }, h('h2', {}, 'Results'), tool('Save the results as CSV', 'CSV', () => saveResults(runs))),
     comparison(runs),
     h('h2', { id: 'plots' }, 'Plots'),
@@ -208,5 +208,3 @@ export function severalPage(runs, title) {
     unitsNote(runs[0]),
   ];
 }
-
-export { seriesColour };

@@ -16,7 +16,7 @@ const kLegendSize = 84;
 
 /** Divisions of a cube face: fewer, the more bodies there are. */
 function divisionsFor(bodies) {
-  if (bodies <= 150) return 24;
+  if (bodies <= 150) return 18;
   if (bodies <= 600) return 14;
   if (bodies <= 2500) return 9;
   if (bodies <= 6000) return 6;
@@ -130,6 +130,11 @@ export class View3d {
     this.controls.addEventListener('change', () => this.draw());
     this.canvas.addEventListener('keydown', (event) => this.key(event));
     new ResizeObserver(() => this.resize()).observe(this.stage);
+    // Nobody waits for what is not seen.
+    new IntersectionObserver(([entry]) => {
+      this.seen = entry.isIntersecting;
+      if (this.seen && this.stale) this.draw();
+    }).observe(this.stage);
     onThemeChange(() => this.retheme());
     this.reset();
     this.retheme();
@@ -290,6 +295,8 @@ export class View3d {
   /** At the next frame of the browser, once. */
   draw() {
     if (this.waiting || !this.renderer) return;
+    this.stale = !this.seen;
+    if (this.stale) return;
     this.waiting = true;
     requestAnimationFrame(() => {
       this.waiting = false;
