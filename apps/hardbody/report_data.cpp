@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
@@ -16,11 +17,14 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Digits of a point of a curve: more than any plot or error bar shows; of one of hundreds of runs what a plot shows.
-/// Averages of blocks keep all, in which the drift of the energy stands.
+/// Digits of a point of a curve: more than any plot or error bar shows. Averages of blocks keep all, in which the drift
+/// of the energy stands.
 constexpr int kCurveDigits = 9;
-constexpr int kSweepDigits = 6;
 constexpr int kErrorDigits = 4;
+constexpr int kAllDigits = 17;
+
+/// How much of a run is kept: of one of hundreds what its plots show.
+enum class Detail { full, slim };
 
 /// All of a sweep's points together may take so much; what is beyond is left to reports of their own.
 constexpr std::size_t kMostOfPoints = 40'000'000;
@@ -34,27 +38,50 @@ Json rounded(double x, int digits = kCurveDigits) {
   return std::strtod(fmt::format("{:.{}g}", x, digits).c_str(), nullptr);
 }
 
-Json curves_json(const Curves& curves, int digits) {
-  Json columns = Json::array();
-  Json data = Json::array();
-  const bool exact = curves.name == "blocks";
-  for (std::size_t k = 0; k < curves.columns.size(); ++k) {
-    columns.push_back({{"name", Curves::bare_name(curves.columns[k])}, {"unit", Curves::unit(curves.columns[k])}});
-    Json values = Json::array();
-    const bool error = Curves::bare_name(curves.columns[k]).ends_with("_error");
-    const int kept = error ? std::min(digits, kErrorDigits) : digits;
-    for (const double x : curves.values[k]) values.push_back(exact ? number(x) : rounded(x, kept));
-    data.push_back(std::move(values));
-  }
-  return {{"columns", std::move(columns)}, {"data", std::move(data)}};
-}
-
 /// Little-endian, as every machine that this program runs on is.
 template <class T>
 std::string packed(const std::vector<T>& values) {
   std::string bytes(values.size() * sizeof(T), '\0');
   if (!values.empty()) std::memcpy(bytes.data(), values.data(), bytes.size());
   return base64(bytes);
+}
+
+/// In single precision, as base64; a gap is a NaN.
+Json packed_column(const std::vector<double>& values) {
+  std::vector<float> singles(values.size());
+  std::transform(values.begin(), values.end(), singles.begin(), [](double x) { return static_cast<float>(x); });
+  return packed(singles);
+}
+
+Json full_column(const std::vector<double>& values, int digits) {
+  Json list = Json::array();
+  for (const double x : values) list.push_back(rounded(x, digits));
+  return list;
+}
+
+/// Columns of blocks.csv that are drawn.
+bool is_drawn(const std::string& name) {
+  constexpr std::array kDrawn = {"begin", "end", "Z", "kT_trans", "kT_rot", "S"};
+  return std::find(kDrawn.begin(), kDrawn.end(), name) != kDrawn.end();
+}
+
+Json curves_json(const Curves& curves, Detail detail) {
+  Json columns = Json::array();
+  Json data = Json::array();
+  const bool blocks = curves.name == "blocks";
+  for (std::size_t k = 0; k < curves.columns.size(); ++k) {
+    const std::string name = Curves::bare_name(curves.columns[k]);
+    if (blocks && !is_drawn(name)) continue;
+    columns.push_back({{"name", name}, {"unit", Curves::unit(curves.columns[k])}});
+    if (blocks) {
+      data.push_back(full_column(curves.values[k], kAllDigits));
+    } else if (detail == Detail::slim) {
+      data.push_back(packed_column(curves.values[k]));
+    } else {
+      data.push_back(full_column(curves.values[k], name.ends_with("_error") ? kErrorDigits : kCurveDigits));
+    }
+  }
+  return {{"columns", std::move(columns)}, {"data", std::move(data)}};
 }
 
 Json view_json(const View& view) {
@@ -80,9 +107,13 @@ Json view_json(const View& view) {
           {"note", view.note}};
 }
 
-Json headlines_json(const std::vector<Headline>& headlines) {
+Json headlines_json(const std::vector<Headline>& headlines, Detail detail) {
   Json list = Json::array();
   for (const Headline& h : headlines) {
+    if (detail == Detail::slim) {
+      list.push_back({{"key", h.key}, {"value", number(h.value)}});
+      continue;
+    }
     list.push_back({{"key", h.key},
                     {"symbol", h.symbol},
                     {"name", h.name},
@@ -106,28 +137,51 @@ const char* kind_text(Remark::Kind kind) {
   return "bad";
 }
 
-Json run_json(const RunReport& run, int digits) {
+/// What the page shows of a summary; all of it, or what it draws.
+Json summary_json(const nlohmann::json& summary, Detail detail) {
+  if (detail == Detail::full || !summary.is_object()) return summary;
+  Json some = Json::object();
+  for (const char* key : {"version", "seed", "fit_windows", "wave_numbers", "counters", "performance", "audit"}) {
+    if (summary.contains(key)) some[key] = summary[key];
+  }
+  return some;
+}
+
+/// Without lines that are comments.
+std::string config_text(const std::string& config, Detail detail) {
+  if (detail == Detail::full) return config;
+  std::string text;
+  for (std::size_t begin = 0; begin < config.size();) {
+    const std::size_t end = std::min(config.find('\n', begin), config.size() - 1) + 1;
+    const std::string line = config.substr(begin, end - begin);
+    if (!line.starts_with('#')) text += line;
+    begin = end;
+  }
+  return text;
+}
+
+Json run_json(const RunReport& run, Detail detail) {
   Json remarks = Json::array();
   for (const Remark& r : run.remarks) {
     remarks.push_back({{"kind", kind_text(r.kind)}, {"label", r.label}, {"text", r.text}});
   }
   Json species = Json::array();
   for (const SpeciesReport& s : run.species) {
-    species.push_back({{"title", s.title}, {"headlines", headlines_json(s.headlines)}});
+    species.push_back({{"title", s.title}, {"headlines", headlines_json(s.headlines, detail)}});
   }
   Json curves = Json::object();
-  for (const Curves& c : run.curves) curves[c.name] = curves_json(c, digits);
+  for (const Curves& c : run.curves) curves[c.name] = curves_json(c, detail);
   return {{"name", run.name},
           {"path", run.path.string()},
           {"title", run.title},
           {"remarks", std::move(remarks)},
-          {"headlines", headlines_json(run.headlines)},
+          {"headlines", headlines_json(run.headlines, detail)},
           {"species", std::move(species)},
           {"rotational_freedoms", run.rotational_freedoms},
           {"number", run.config.number},
-          {"summary", run.summary},
-          {"config", run.config_text},
-          {"log", run.log},
+          {"summary", summary_json(run.summary, detail)},
+          {"config", config_text(run.config_text, detail)},
+          {"log", detail == Detail::full ? run.log : std::string()},
           {"curves", std::move(curves)},
           {"view", run.view ? view_json(*run.view) : Json(nullptr)}};
 }
@@ -176,7 +230,7 @@ Json sweep_json(const SweepReport& sweep, const std::vector<bool>& embedded) {
   return {{"name", sweep.name},
           {"path", sweep.path.string()},
           {"keys", sweep.keys},
-          {"observables", headlines_json(sweep.observables)},
+          {"observables", headlines_json(sweep.observables, Detail::full)},
           {"points", std::move(points)}};
 }
 
@@ -192,12 +246,12 @@ std::string report_data(const Report& report) {
       embedded.push_back(shown);
       if (!shown) continue;
       scripts += fmt::format("<script type=\"application/json\" id=\"point-{}\">{}</script>\n", embedded.size() - 1,
-                             script_text(run_json(*point.run, kSweepDigits)));
+                             script_text(run_json(*point.run, Detail::slim)));
     }
     data["sweep"] = sweep_json(*report.sweep, embedded);
   } else {
     Json runs = Json::array();
-    for (const RunReport& run : report.runs) runs.push_back(run_json(run, kCurveDigits));
+    for (const RunReport& run : report.runs) runs.push_back(run_json(run, Detail::full));
     data["runs"] = std::move(runs);
   }
   return "<script type=\"application/json\" id=\"data\">" + script_text(data) + "</script>\n" + scripts;

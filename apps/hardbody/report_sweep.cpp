@@ -179,8 +179,6 @@ void read_run(SweepPointReport& point, const fs::path& sweep, std::size_t& bodie
   if (point.directory.empty() || !fs::exists(directory / kConfigFile)) return;
   try {
     point.run = read_run_report(directory, bodies < kMostBodiesOfPoints ? WithView::yes : WithView::no);
-    // Of hundreds of points logs and configs would be most of the page.
-    point.run->log.clear();
     if (point.run->view) bodies += point.run->view->shape_of.size() * point.run->view->frames.size();
   } catch (const InputError& error) {
     point.message += (point.message.empty() ? "" : "; ") + one_line(error.what());

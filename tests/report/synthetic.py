@@ -78,9 +78,9 @@ def write_sweep(run, sweep, ratios=25, densities=20, failed=((3, 4),)):
         table = csv.writer(file, lineterminator="\n")
         table.writerow(header)
         for i in range(ratios):
-            ratio = round(0.2 * 25 ** (i / max(1, ratios - 1)), 6)
+            ratio = round(3 ** (2 * i / max(1, ratios - 1) - 1), 6)
             for j in range(densities):
-                density = round(0.05 + 0.5 * j / max(1, densities - 1), 6)
+                density = round(0.05 + 0.45 * j / max(1, densities - 1), 6)
                 table.writerow(row_of(ratio, density, 1, (i, j) in failed))
                 if (i, j) not in failed:
                     write_point(run, sweep / f"aspect_ratio={ratio},packing_fraction={density}", ratio, density, 1)

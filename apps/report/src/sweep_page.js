@@ -1,4 +1,5 @@
 // The page of a sweep: a map, cuts through it, the point that is chosen, the table of all.
+import { floats } from './bytes.js';
 import { Chart, forgetCharts } from './chart.js';
 import { downloadText, fileName, h, symbol, tool } from './dom.js';
 import { makeAxis, SweepMap } from './map.js';
@@ -20,7 +21,12 @@ function keyName(key) {
 /** The run of a point, which waits as text in the page until somebody looks at it. */
 function pointRun(index) {
   const element = document.getElementById(`point-${index}`);
-  return element ? JSON.parse(element.textContent) : null;
+  if (!element) return null;
+  const run = JSON.parse(element.textContent);
+  for (const table of Object.values(run.curves)) {
+    table.data = table.data.map((column) => (typeof column === 'string' ? Array.from(floats(column), (x) => (Number.isNaN(x) ? null : x)) : column));
+  }
+  return run;
 }
 
 class SweepPage {
