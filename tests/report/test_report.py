@@ -23,17 +23,17 @@ HARDBODY = os.path.abspath(os.environ.get("HARDBODY", "build/release/apps/hardbo
 STATIC = os.path.abspath(os.environ.get("HARDBODY_STATIC", "build/release/tests/hardbody_static_report"))
 INTERACTIVE = os.environ.get("HARDBODY_INTERACTIVE", "1") == "1"
 
-# A run of a second, long enough for every number.
+# A run of some seconds, long enough for every number.
 RUN = """seed = 3
 [system]
 number = 128
-packing_fraction = 0.3
+packing_fraction = 0.4
 [shape]
 aspect_ratio = 2
 [equilibration]
-time = 5
+time = 10
 [production]
-time = 60
+time = 150
 """
 
 SUPERBALLS = """[system]
@@ -398,7 +398,7 @@ class OtherRuns(Case):
                 self.assertIn("semi_axes", browser.run("return document.querySelector('#settings ~ .card').textContent"))
                 browser.run("""const select = document.querySelector('label.chooser select');
                   select.selectedIndex = 1; select.dispatchEvent(new Event('change'));""")
-                self.assertIn("2 : 2 : 3", browser.run("return window.hardbodyReport.page.views[0].run.title"))
+                self.assertIn("1 : 1 : 1.5", browser.run("return window.hardbodyReport.page.views[0].run.title"))
                 self.assert_fits(browser, width)
                 self.assert_silent(browser)
 
