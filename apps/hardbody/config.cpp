@@ -108,7 +108,7 @@ void check_sections(const TomlDocument& document) {
   }
 }
 
-/// "system.number, system.packing_fraction": the keys of the unknown key's section, or all.
+/// "system.number, system.packing_fraction": the keys of the key's section; all keys for a key without a section.
 std::string keys_near(std::string_view key) {
   const std::string section(key.substr(0, key.find('.') == std::string_view::npos ? 0 : key.find('.') + 1));
   std::string list;
@@ -150,9 +150,10 @@ void check_names(const TomlDocument& document) {
     if (known_section(entry.key)) throw bad(entry, fmt::format("a section [{}] with keys", entry.key));
     const auto nearest = nearest_name(key, kKeys);
     const std::string name = one_line(entry.key, 60);
-    throw InputError(nearest ? fmt::format("{}: unknown key {}, did you mean {}?; accepted: {}", entry.where, name,
-                                           with_index(*nearest, index), keys_near(*nearest))
-                             : fmt::format("{}: unknown key {}; accepted: {}", entry.where, name, keys_near("")));
+    const bool in_section = known_section(key.substr(0, key.find('.')));
+    throw InputError(fmt::format("{}: unknown key {}{}; accepted: {}", entry.where, name,
+                                 nearest ? fmt::format(", did you mean {}?", with_index(*nearest, index)) : "",
+                                 keys_near(in_section ? key : nearest.value_or(""))));
   }
 }
 

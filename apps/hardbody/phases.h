@@ -47,11 +47,12 @@ struct ProductionRun {
   ed::Simulation simulation;
   ed::Observables observables;
   EventsFile events;
-  Equilibration before;
+  Equilibration before;  ///< without its system
   Production result;
 };
 
-ProductionRun begin_production(const Config& config, const Equilibration& equilibration, const RunDirectory& directory,
+/// Goes on from the equilibration's system, which it takes.
+ProductionRun begin_production(const Config& config, Equilibration equilibration, const RunDirectory& directory,
                                Log& log);
 /// Throws InputError if the state does not fit. Changes nothing.
 ProductionRun resumed_production(const Config& config, const Checkpoint& checkpoint, const RunDirectory& directory,

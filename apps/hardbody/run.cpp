@@ -139,6 +139,7 @@ bool prepare(const Config& config, Continuation& at, Progress& progress, Saver& 
   if (!at.start) return false;
   if (saver.due()) saver.save([&at] { return checkpoint_of(*at.start); });
   at.equilibration = begin_equilibration(config, *at.start, progress, log);
+  if (at.equilibration) at.start.reset();
   return true;
 }
 
@@ -149,8 +150,8 @@ void run_equilibration(const Config& config, const RunDirectory& directory, Cont
   // A state with an overlap is no start for a production run.
   const bool sound = defects(ed::audit(record.equilibration.system)).empty();
   if (record.equilibration.stopped || !sound) return;
-  at.production = begin_production(config, record.equilibration, directory, log);
   at.equilibration.reset();
+  at.production = begin_production(config, std::move(record.equilibration), directory, log);
 }
 
 void run_production(const Config& config, Continuation& at, RunRecord& record, Progress& progress, Saver& saver,
@@ -158,6 +159,7 @@ void run_production(const Config& config, Continuation& at, RunRecord& record, P
   produce(config, *at.production, at.events, progress, saver, log);
   record.equilibration = at.production->before;
   record.production = at.production->result;
+  record.production.system = at.production->simulation.system();
   record.stall = at.production->simulation.stall();
 }
 

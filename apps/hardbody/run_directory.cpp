@@ -118,9 +118,13 @@ RunDirectory RunDirectory::open(const fs::path& path) {
 }
 
 void RunDirectory::write(const std::string& name, std::string_view content) const {
+  write(name, [content](const Sink& sink) { sink(content); });
+}
+
+void RunDirectory::write(const std::string& name, const std::function<void(const Sink&)>& make) const {
   const fs::path path = file(name);
   fs::create_directories(path.parent_path());
-  write_file(path, content);
+  write_file(path, make);
 }
 
 }  // namespace hardbody

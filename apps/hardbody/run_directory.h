@@ -1,6 +1,9 @@
 #pragma once
 
+#include "text_file.h"
+
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -60,6 +63,8 @@ class RunDirectory {
 
   /// Writes one file as write_file does; `name` may have a directory in it, which is created.
   void write(const std::string& name, std::string_view content) const;
+  /// The same of a content in pieces.
+  void write(const std::string& name, const std::function<void(const Sink&)>& make) const;
 
   /// Whether there is such a file.
   bool has(const std::string& name) const { return std::filesystem::exists(file(name)); }

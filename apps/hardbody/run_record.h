@@ -30,7 +30,7 @@ struct Equilibration {
 
 /// What production measured.
 struct Production {
-  ed::System system;
+  ed::System system;  ///< at its end
   ed::KineticState kinetic_at_start;
   double time = 0;
   double planned = 0;  ///< or, with a target error, at the most
