@@ -38,6 +38,10 @@ bool write_all(int file, ::off_t place, std::string_view content) {
   return true;
 }
 
+bool flushed(int file, Flush flush) {
+  return flush == Flush::later || ::fsync(file) == 0;
+}
+
 }  // namespace
 
 std::string read_file(const fs::path& path, std::size_t limit) {
@@ -83,11 +87,11 @@ void write_file(const fs::path& path, std::string_view content) {
   }
 }
 
-void write_at(const fs::path& path, std::uint64_t position, std::string_view content) {
+void write_at(const fs::path& path, std::uint64_t position, std::string_view content, Flush flush) {
   const auto place = static_cast<::off_t>(position);
   const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
   if (file < 0) fail_to_write(path, errno);
-  const bool good = ::ftruncate(file, place) == 0 && write_all(file, place, content) && ::fsync(file) == 0;
+  const bool good = ::ftruncate(file, place) == 0 && write_all(file, place, content) && flushed(file, flush);
   const int error = errno;
   // Shorter needs no room: this does what it can, and what is left over is cut off by the next call.
   if (!good) (void)!::ftruncate(file, place);
@@ -95,13 +99,17 @@ void write_at(const fs::path& path, std::uint64_t position, std::string_view con
   if (!good) fail_to_write(path, error);
 }
 
-void overwrite_at(const fs::path& path, std::uint64_t position, std::string_view content) {
+void overwrite_at(const fs::path& path, std::uint64_t position, std::string_view content, Flush flush) {
   const int file = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
   if (file < 0) fail_to_write(path, errno);
-  const bool good = write_all(file, static_cast<::off_t>(position), content) && ::fsync(file) == 0;
+  const bool good = write_all(file, static_cast<::off_t>(position), content) && flushed(file, flush);
   const int error = errno;
   ::close(file);
   if (!good) fail_to_write(path, error);
+}
+
+void flush_file(const fs::path& path) {
+  overwrite_at(path, 0, "");
 }
 
 std::string one_line(std::string_view text, std::size_t longest) {
