@@ -54,17 +54,23 @@ inline void fields(Reader& archive, StoredState& state) {
   archive(state.bytes());
 }
 
+template <class Archive, Is<TrajectoryMark> T>
+void fields(Archive& archive, T& mark) {
+  archive(mark.frames, mark.last_time, mark.bytes);
+}
+
 template <class Archive, Is<RunState> T>
 void fields(Archive& archive, T& run) {
-  archive(run.finished, run.equilibration, run.monitor, run.production, run.events, run.simulation, run.observables);
+  archive(run.finished, run.equilibration, run.monitor, run.production, run.events, run.trajectory, run.simulation,
+          run.observables);
 }
 
 namespace {
 
 constexpr std::string_view kMagic = "HARDBODY";
 constexpr std::uint32_t kByteOrder = 0x01020304;
-constexpr std::uint32_t kFormat = 4;
-constexpr std::uint32_t kOtherRun = 3;  ///< whose run only an older program can go on with
+constexpr std::uint32_t kFormat = 5;
+constexpr std::uint32_t kOtherRun = 3;  ///< and 4: whose run only an older program can go on with
 constexpr std::uint32_t kOneEllipsoid =
     1;  ///< of one ellipsoid of revolution; like 2 without what a run needs to go on
 constexpr std::size_t kHead = 8 + 4 + 4 + 8;  ///< magic, byte order, format, length of the payload
@@ -97,7 +103,7 @@ Checkpoint take_checkpoint(std::uint32_t format, std::string_view payload) {
     reader(checkpoint.system);
   }
   if (format == kFormat) reader(checkpoint.run, checkpoint.upkeep);
-  if (format == kOtherRun) (void)reader.raw(reader.left());
+  if (format >= kOtherRun && format < kFormat) (void)reader.raw(reader.left());
   reader.finish();
   const ed::System& system = checkpoint.system;
   ed::internal::expect(reader, system.box > 0 && std::isfinite(system.box), "the box");

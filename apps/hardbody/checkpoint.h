@@ -47,6 +47,7 @@ struct RunState {
   std::string monitor;    ///< ed::EquilibrationMonitor::save; not in production
   Production production;  ///< what it began with
   EventsMark events;
+  TrajectoryMark trajectory;
   StoredState simulation;   ///< ed::Simulation::save
   StoredState observables;  ///< ed::Observables::save; of production
 };
@@ -55,7 +56,7 @@ struct RunState {
 ///
 /// Layout: "HARDBODY", a mark of the byte order, the format's version, the length of the payload; the
 /// payload; the XXH3 checksum of everything before it. Versions 1 (one ellipsoid of revolution for all bodies) and 2
-/// hold no RunState, version 3 another one: they can be checked, not resumed.
+/// hold no RunState, versions 3 and 4 another one: they can be checked, not resumed.
 struct Checkpoint {
   std::string program_version;
   std::string config;        ///< the run's resolved config.toml

@@ -336,6 +336,16 @@ Equilibration equilibrate(const Config& config, EquilibrationRun& run, Progress&
 
 namespace {
 
+/// Runs to `time`, taking the frames that are due until then; false if the run was stopped before.
+bool run_to(double time, ProductionRun& run, Runner& runner, Log& log) {
+  const double planned = run.result.planned;
+  while (run.trajectory.next_time() <= time) {
+    if (!runner.run_to(run.trajectory.next_time(), planned)) return false;
+    run.trajectory.take(run.simulation, log);
+  }
+  return runner.run_to(time, planned);
+}
+
 /// With a target error, once in a while, at times that do not depend on a clock.
 void look_at_errors(const Config& config, ProductionRun& run) {
   run.result.precise = is_precise(config, run.observables.results(run.simulation));
@@ -355,8 +365,12 @@ ProductionRun begin_production(const Config& config, Equilibration equilibration
   // A new simulation: its time starts at 0 and its counters count production only.
   ed::Simulation simulation(equilibration.system, config.simulation_options(equilibration.envelope));
   equilibration.system = {};
-  ProductionRun run{std::move(simulation), ed::Observables(observables_options(config, production)),
-                    EventsFile(directory, config.events), std::move(equilibration), std::move(production)};
+  ProductionRun run{std::move(simulation),
+                    ed::Observables(observables_options(config, production)),
+                    EventsFile(directory, config.events),
+                    Trajectory(directory, config, production.planned),
+                    std::move(equilibration),
+                    std::move(production)};
   run.result.kinetic_at_start = run.simulation.kinetic();
   return run;
 }
@@ -370,14 +384,19 @@ ProductionRun resumed_production(const Config& config, const Checkpoint& checkpo
                                return ed::Observables::restore(state.observables.bytes(),
                                                                observables_options(config, state.production));
                              }),
-                    EventsFile(directory, config.events), state.equilibration, state.production};
+                    EventsFile(directory, config.events),
+                    Trajectory(directory, config, state.production.planned),
+                    state.equilibration,
+                    state.production};
   run.result.wall_seconds = checkpoint.upkeep.production_seconds;
   run.events.check(state.events);
+  run.trajectory.check(state.trajectory);
   return run;
 }
 
 Checkpoint checkpoint_of(ProductionRun& run) {
   run.events.take(run.simulation);
+  run.trajectory.flush();
   Checkpoint checkpoint;
   checkpoint.phase = "production";
   checkpoint.time = run.simulation.time();
@@ -387,17 +406,20 @@ Checkpoint checkpoint_of(ProductionRun& run) {
   state.equilibration = run.before;
   state.production = run.result;
   state.events = run.events.mark();
+  state.trajectory = run.trajectory.mark();
   state.simulation = StoredState([&run](const Sink& sink) { run.simulation.save(sink); });
   state.observables = StoredState([&run](const Sink& sink) { run.observables.save(sink); });
   return checkpoint;
 }
 
-void produce(const Config& config, ProductionRun& run, EventsMark events, Progress& progress, Saver& saver, Log& log) {
+void produce(const Config& config, ProductionRun& run, const FilesMark& files, Progress& progress, Saver& saver,
+             Log& log) {
   Production& result = run.result;
   const double earlier = result.wall_seconds;
   const double clock = log.seconds();
   const auto seconds = [&] { return earlier + log.seconds() - clock; };
-  run.events.open(events, run.simulation);
+  run.events.open(files.events, run.simulation);
+  run.trajectory.open(files.trajectory);
   progress.begin();
   Runner runner(run.simulation, "production", progress, saver, [&] {
     result.wall_seconds = seconds();
@@ -406,13 +428,14 @@ void produce(const Config& config, ProductionRun& run, EventsMark events, Progre
   for (bool end = result.precise; !end && !result.stopped;) {
     const double next = run.observables.next_time();
     const double target = std::min(next, result.planned);
-    result.stopped = !runner.run_to(target, result.planned);
+    result.stopped = !run_to(target, run, runner, log);
     if (result.stopped) break;
     if (next <= result.planned) run.observables.measure(run.simulation);
     if (config.target_error && target >= result.next_look) look_at_errors(config, run);
     end = result.precise || (target == result.planned && run.observables.next_time() > result.planned);
     result.time = target;
   }
+  if (!result.stopped) run.trajectory.take_last(run.simulation, result.time, log);
   result.results = run.observables.results(run.simulation);
   result.wall_seconds = seconds();
   if (result.stopped) result.time = run.simulation.time();

@@ -59,7 +59,7 @@ struct Continuation {
   std::optional<ed::System> start;
   std::optional<EquilibrationRun> equilibration;
   std::optional<ProductionRun> production;
-  EventsMark events;
+  FilesMark files;
   Upkeep upkeep;
 };
 
@@ -156,7 +156,7 @@ void run_equilibration(const Config& config, const RunDirectory& directory, Cont
 
 void run_production(const Config& config, Continuation& at, RunRecord& record, Progress& progress, Saver& saver,
                     Log& log) {
-  produce(config, *at.production, at.events, progress, saver, log);
+  produce(config, *at.production, at.files, progress, saver, log);
   record.equilibration = at.production->before;
   record.production = at.production->result;
   record.production.system = at.production->simulation.system();
@@ -206,7 +206,7 @@ Continuation continuation(const Config& config, const Checkpoint& checkpoint, co
                                  name, one_line(checkpoint.phase, 40)));
   } else {
     at.production = resumed_production(config, checkpoint, directory, name);
-    at.events = checkpoint.run->events;
+    at.files = {checkpoint.run->events, checkpoint.run->trajectory};
   }
   return at;
 }

@@ -61,6 +61,13 @@ struct EventsMark {
   std::uint64_t bytes = 0;  ///< header included; 0: there is no file
 };
 
+/// How far the trajectories go, each of the files that the config asks for.
+struct TrajectoryMark {
+  std::uint64_t frames = 0;
+  double last_time = -1;             ///< of the last frame
+  std::vector<std::uint64_t> bytes;  ///< of each file; without a frame: 0
+};
+
 /// Everything that a run's files and its table say.
 struct RunRecord {
   Config config;

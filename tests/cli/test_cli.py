@@ -511,6 +511,10 @@ class BadConfig(Case):
             ("events = 500", 'checkpoint_every = "0s"', "output.checkpoint_every"),
             ("events = 500", "trajectory = 1", "output.trajectory"),
             ("events = 500", 'trajectory = ["pdf"]', "output.trajectory"),
+            ("events = 500", 'trajectory = ["gsd", 3]', "output.trajectory"),
+            ("events = 500", 'trajectory = ["gsd", "vtk", "gsd"]', "output.trajectory", "at most once"),
+            ("events = 500", "frames = 1", "output.frames", "2 to"),
+            ("events = 500", "frames = 1000000", "output.frames"),
         ]
         for old, new, *parts in cases:
             with self.subTest(new):
@@ -539,16 +543,6 @@ class BadConfig(Case):
             with self.subTest(text):
                 message = self.refuse(SMALL + "[dynamics]\n" + text + "\n", *parts)
                 self.assertTrue(message.startswith("bad.toml:14: "), message)
-
-    def test_not_available_yet(self):
-        cases = [
-            ("events = 500", 'trajectory = ["gsd"]', "output.trajectory"),
-            ("events = 500", 'trajectory = ["lammps", "vtk"]', "output.trajectory"),
-            ("events = 500", "frames = 10", "output.frames"),
-        ]
-        for old, new, key in cases:
-            with self.subTest(new):
-                self.refuse_line(old, new, key, "not available yet")
 
     def test_shape(self):
         superball = 'kind = "superellipsoid"\nsemi_axes = [1, 1, 1]\n'
