@@ -15,10 +15,17 @@ struct RunArguments {
   bool force = false;                  ///< overwrite an existing run
 };
 
+struct SweepArguments {
+  std::string sweep;               ///< path of the TOML file
+  std::optional<std::string> out;  ///< directory of the sweep; by default out/<stem of the file>
+  std::optional<int> jobs;         ///< runs at a time; by default one for each processor
+};
+
 /// An empty path: standard output.
 int init(const std::string& path, const std::string& template_name);
 int run(const RunArguments& arguments);
 int resume(const std::string& path);
+int sweep(const SweepArguments& arguments);
 int check(const std::string& path);
 int replay(const std::string& path);
 /// "-": standard input.
