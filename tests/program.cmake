@@ -30,11 +30,14 @@ if(TARGET hardbody)
   add_test(NAME manual_test COMMAND ${HARDBODY_PYTHON} ${CMAKE_CURRENT_SOURCE_DIR}/cli/test_manual.py)
   set_tests_properties(manual_test PROPERTIES LABELS cli TIMEOUT 60 ENVIRONMENT "HARDBODY=$<TARGET_FILE:hardbody>")
 
+  hardbody_test(sweep_test unit unit/sweep_test.cpp)
+  target_link_libraries(sweep_test PRIVATE hardbody_program)
+
   hardbody_test(program_test cli cli/program_test.cpp)
   target_link_libraries(program_test PRIVATE hardbody_program)
   target_compile_definitions(program_test PRIVATE HARDBODY_PROGRAM="$<TARGET_FILE:hardbody>"
     HARDBODY_OLD_CHECKPOINT="${CMAKE_CURRENT_SOURCE_DIR}/cli/checkpoint_v1.bin")
   add_dependencies(program_test hardbody)
 else()
-  list(APPEND unbuilt_tests cli/program_test.cpp)
+  list(APPEND unbuilt_tests cli/program_test.cpp unit/sweep_test.cpp)
 endif()

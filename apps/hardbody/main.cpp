@@ -23,6 +23,7 @@ constexpr int kFailed = 1;
 struct Request {
   RunArguments run;
   SweepArguments sweep;
+  MapArguments map;
   std::string init_file;
   std::string init_template = "ellipsoid";
   std::string resume_path;
@@ -60,6 +61,24 @@ void add_sweep(CLI::App& app, Request& request) {
   sweep->add_option("--jobs", request.sweep.jobs, "Points that run at a time; without it one for each processor");
 }
 
+void add_map(CLI::App& app, Request& request) {
+  CLI::App* map = app.add_subcommand("map", "Draw lines of constant value over two keys of a sweep");
+  MapArguments& wanted = request.map;
+  map->add_option("TABLE", wanted.table, "Directory of a sweep, or a table like its sweep.csv")->required();
+  map->add_option("--x", wanted.x, "Column along x")->required();
+  map->add_option("--y", wanted.y, "Column along y")->required();
+  map->add_option("--value", wanted.values, "Column whose lines are wanted; may be repeated")
+      ->required()
+      ->allow_extra_args(false);
+  map->add_option("--levels", wanted.levels, "Its levels, 0.5,0.2,0.1; one for each value, or none: six are chosen")
+      ->allow_extra_args(false);
+  map->add_option("--where", wanted.where, "column=value: only these rows; may be repeated")->allow_extra_args(false);
+  map->add_flag("--log-x", wanted.log_x, "Logarithmic along x");
+  map->add_flag("--log-y", wanted.log_y, "Logarithmic along y");
+  map->add_option("--out", wanted.out, "The drawing, SVG; without it map_VALUE.svg beside the table");
+  map->add_option("--csv", wanted.csv, "The lines as numbers; without it map_VALUE.csv beside the table");
+}
+
 void add_check(CLI::App& app, Request& request) {
   CLI::App* check = app.add_subcommand("check", "Audit a run's last state: overlaps, conservation, finite values");
   check->add_option("DIR", request.check_path, "Run directory")->required();
@@ -84,7 +103,8 @@ void add_later_commands(CLI::App& app) {
     later->allow_extras();
     later->callback([name] {
       throw InputError(fmt::format(
-          "hardbody {}: is not available yet; accepted now: init, run, resume, sweep, check, replay, distance", name));
+          "hardbody {}: is not available yet; accepted now: init, run, resume, sweep, map, check, replay, distance",
+          name));
     });
   }
 }
@@ -94,6 +114,7 @@ int dispatch(const CLI::App& app, const Request& request) {
   if (app.got_subcommand("run")) return run(request.run);
   if (app.got_subcommand("resume")) return resume(request.resume_path);
   if (app.got_subcommand("sweep")) return sweep(request.sweep);
+  if (app.got_subcommand("map")) return map(request.map);
   if (app.got_subcommand("check")) return check(request.check_path);
   if (app.got_subcommand("distance")) return distance(request.distance_file);
   return replay(request.replay_file);
@@ -125,6 +146,7 @@ int run_command_line(int argc, char** argv) {
   add_run(app, request);
   add_resume(app, request);
   add_sweep(app, request);
+  add_map(app, request);
   add_check(app, request);
   add_replay(app, request);
   add_distance(app, request);

@@ -1057,7 +1057,7 @@ class CommandLine(Case):
         # A binary with CGAL in it says so where it names its licence.
         licence = re.search("^licence: (.*)$", result.stdout, re.M)[1]
         self.assertEqual("GPL-3.0-or-later" in licence, "CGAL is not built in" not in result.stdout, result.stdout)
-        for command in [[], ["init"], ["run"], ["resume"], ["sweep"], ["check"], ["replay"], ["distance"]]:
+        for command in [[], ["init"], ["run"], ["resume"], ["sweep"], ["map"], ["check"], ["replay"], ["distance"]]:
             result = self.hardbody(*command, "--help")
             self.assertEqual(result.returncode, 0)
             self.assertIn("Usage", result.stdout)

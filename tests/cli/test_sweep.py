@@ -14,6 +14,7 @@ import signal
 import subprocess
 import time
 import unittest
+import xml.dom.minidom
 
 from test_cli import HARDBODY, SMALL, Case
 
@@ -387,6 +388,71 @@ class Shown(SweepCase):
     def test_quiet_elsewhere(self):
         result = self.sweep(SMALL + GRID)
         self.assertEqual(result.stderr, "")
+
+
+class Maps(SweepCase):
+    """Lines of x^2 + y over a made-up table."""
+
+    def setUp(self):
+        super().setUp()
+        rows = [(x / 10, y / 10) for x in range(11) for y in range(11) if x + y < 16]
+        lines = [f"{x},{y},{seed},{x * x + y + 0.1},{'' if x == 0 else x},true" for x, y in rows for seed in [1, 2]]
+        self.write("table.csv", "\n".join(["shape.aspect_ratio,phi,seed,D,E,equilibrated", *lines]) + "\n")
+
+    def map(self, *arguments):
+        return self.hardbody("map", "table.csv", "--x", "aspect_ratio", "--y", "phi", *arguments)
+
+    def lines(self, name):
+        with open(self.path(name), newline="") as file:
+            return list(csv.DictReader(file))
+
+    def test_lines(self):
+        result = self.map("--value", "D", "--levels", "0.5,0.8", "--value", "E", "--levels", "0.55", "--out", "a.svg", "--csv", "a.csv")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("D = 0.5: 1 lines", result.stdout)
+        lines = self.lines("a.csv")
+        self.assertEqual({(row["value"], row["level"]) for row in lines}, {("D", "0.5"), ("D", "0.8"), ("E", "0.55")})
+        for row in lines:
+            x, y, level = float(row["shape.aspect_ratio"]), float(row["phi"]), float(row["level"])
+            self.assertAlmostEqual(x * x + y + 0.1 if row["value"] == "D" else x, level, delta=0.006)
+        drawing = self.read("a.svg")
+        self.assertTrue(drawing.startswith("<svg ") and drawing.endswith("</svg>\n"))
+        self.assertEqual(drawing.count("<path fill="), 3)
+        xml.dom.minidom.parseString(drawing)
+
+    def test_defaults(self):
+        result = self.map("--value", "D", "--where", "seed=2", "--log-y")
+        self.assertEqual(result.returncode, 2)  # phi = 0 has no logarithm
+        result = self.map("--value", "D", "--where", "seed=2")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("map_D.svg, map_D.csv written from 106 points", result.stdout)
+        self.assertEqual(len({row["level"] for row in self.lines("map_D.csv")}), 6)
+
+    def test_of_a_sweep(self):
+        self.assertEqual(self.sweep(SMALL + GRID).returncode, 0)
+        result = self.hardbody("map", "out", "--x", "shape.aspect_ratio", "--y", "packing_fraction", "--value", "Z", "--log-x")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertTrue(os.path.exists(self.path("out/map_Z.svg")) and os.path.exists(self.path("out/map_Z.csv")))
+
+    def test_refused(self):
+        for arguments, parts in [
+            (["--value", "F"], ["table.csv: has no column F", "accepted: shape.aspect_ratio, phi"]),
+            (["--value", "D", "--levels", "0.1,x"], ["--levels: x is not a number"]),
+            (["--value", "D", "--levels", "0.1,"], ["--levels: is not a number"]),
+            (["--value", "D", "--value", "E", "--levels", "0.1"], ["--levels is there 1 times and --value 2 times"]),
+            (["--value", "D", "--where", "seed"], ["--where seed"]),
+            (["--value", "D", "--where", "seed=5"], ["--where seed=5: no row"]),
+            (["--value", "D", "--where", "sed=5"], ["did you mean seed?"]),
+            (["--value", "equilibrated"], ["equilibrated of row 1 is true"]),
+            (["--value", "D", "--out", "no/such/file.svg"], ["no/such/file.svg: cannot be written"]),
+        ]:
+            with self.subTest(arguments):
+                result = self.map(*arguments)
+                self.assertEqual(result.returncode, 1 if "--out" in arguments else 2)
+                self.assertEqual(result.stderr.count("\n"), 1, result.stderr)
+                for part in parts:
+                    self.assertIn(part, result.stderr)
+        self.assert_refused(self.hardbody("map", "none.csv", "--x", "a", "--y", "b", "--value", "c"), "none.csv: cannot be read")
 
 
 if __name__ == "__main__":
