@@ -20,7 +20,7 @@ POINT_COLUMNS = (["X0", "phi", "seed", "number", "equilibration_time", "producti
                     "collisions", "wall_seconds", "version"])
 CURVE_COLUMNS = ["X0", "phi", "t", "C2", "C2_error", "F_self", "F_self_error"]
 
-LAGS_A_DECADE = 8
+LAGS_A_DECADE = 10
 SHORTEST_LAG = 0.02
 DECAYED = 0.01  # of both; the curves go on for a few lags beyond
 

@@ -31,15 +31,20 @@ cap = {cap:g}
 """
 
 CAP = 500
-LATE_CAP = 100  # where C2 is not expected to decay
+# Where C2 is not expected to decay, at the price of hours for what is no fluid.
+LATE_CAP = 60
+LATE_PRODUCTION = 400
 QUICK_PRODUCTION = 60
 QUICK_CAP = 60
 
 
 def _fixed_time(point):
     """Where velocities, or angular velocities, are correlated for so long that the lags of an "auto" production, 15 time
-    units where equilibration is quick, are too short for diffusion: a production with lags up to 40. Else nothing."""
+    units where equilibration is quick, are too short for diffusion: a production with lags up to 40. The same where
+    precision would take hours. Else nothing."""
     turns_freely = point.X0 != 1 and (0.85 < point.X0 < 1.18 or (0.75 < point.X0 < 1.3 and point.phi < 0.35))
+    if grid.is_late(point):
+        return LATE_PRODUCTION
     if point.phi > 0.1 and not turns_freely:
         return None
     return 800 if point.phi < 0.42 else 1200 if point.phi <= 0.5 else 3000
