@@ -408,8 +408,7 @@ double Config::checkpoint_seconds() const {
   return parse_duration(checkpoint_every).value_or(std::numeric_limits<double>::infinity());
 }
 
-Config parse_config(std::string_view text, const std::string& name, const std::vector<std::string>& overrides) {
-  const TomlDocument document = read_toml(text, name, overrides);
+Config read_config(const TomlDocument& document) {
   check_names(document);
   Config config;
   read_integer(document, "seed", 0, std::numeric_limits<std::int64_t>::max(), config.seed);
@@ -423,6 +422,10 @@ Config parse_config(std::string_view text, const std::string& name, const std::v
   check_lattice(document, config);
   if (config.neighbours_chosen) choose_neighbours(config);
   return config;
+}
+
+Config parse_config(std::string_view text, const std::string& name, const std::vector<std::string>& overrides) {
+  return read_config(read_toml(text, name, overrides));
 }
 
 Config load_config(const std::string& path, const std::vector<std::string>& overrides) {

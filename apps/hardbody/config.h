@@ -110,6 +110,11 @@ struct Config {
 /// Reads and checks a config. `overrides`: section.key=value. Throws InputError.
 Config load_config(const std::string& path, const std::vector<std::string>& overrides);
 
+struct TomlDocument;
+
+/// The same from a document that has been read.
+Config read_config(const TomlDocument& document);
+
 /// The same from a text; `name` is what messages call it.
 Config parse_config(std::string_view text, const std::string& name, const std::vector<std::string>& overrides = {});
 

@@ -431,7 +431,7 @@ class Init(Case):
                 self.assertEqual(self.summary(f"out/{name}")["state"]["kind"], kind)
         self.assertEqual(self.read("ellipsoid.toml"), self.hardbody("init").stdout)
         result = self.hardbody("init", "x.toml", "--template", "cube")
-        self.assert_refused(result, "--template cube", "accepted: ellipsoid, superball, mixture")
+        self.assert_refused(result, "--template cube", "accepted: ellipsoid, superball, mixture, sweep")
         self.assertFalse(os.path.exists(self.path("x.toml")))
 
     def test_never_overwrites(self):
@@ -1064,11 +1064,11 @@ class CommandLine(Case):
         # A binary with CGAL in it says so where it names its licence.
         licence = re.search("^licence: (.*)$", result.stdout, re.M)[1]
         self.assertEqual("GPL-3.0-or-later" in licence, "CGAL is not built in" not in result.stdout, result.stdout)
-        for command in [[], ["init"], ["run"], ["resume"], ["check"], ["replay"], ["distance"]]:
+        for command in [[], ["init"], ["run"], ["resume"], ["sweep"], ["map"], ["check"], ["replay"], ["distance"]]:
             result = self.hardbody(*command, "--help")
             self.assertEqual(result.returncode, 0)
             self.assertIn("Usage", result.stdout)
-            self.assertNotIn("sweep", result.stdout)
+            self.assertNotIn("analyze", result.stdout)
 
     def test_bad_command_lines(self):
         for arguments in [[], ["runn"], ["run"], ["run", "a.toml", "--frce"], ["run", "a", "b"], ["check"], ["replay"]]:
@@ -1076,7 +1076,7 @@ class CommandLine(Case):
                 self.assert_refused(self.hardbody(*arguments), "hardbody --help")
 
     def test_later_commands(self):
-        for arguments in [["analyze", "out"], ["report", "out", "-o", "x.html"], ["sweep", "--help"]]:
+        for arguments in [["analyze", "out"], ["report", "out", "-o", "x.html"]]:
             with self.subTest(arguments):
                 self.assert_refused(self.hardbody(*arguments), arguments[0], "not available yet")
 
