@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 constexpr std::array kFiles = {kConfigFile, kSummaryFile,   kCheckpointFile, kEventsFile, kGsdFile,
                                kLammpsFile, kVtkFile,       kLogFile,        kMsdFile,    kRotationalMsdFile,
                                kAlpha2File, kVelocityFile,  kC1File,         kC2File,     kFSelfFile,
-                               kPairsFile,  kStructureFile, kBlocksFile};
+                               kPairsFile,  kStructureFile, kBlocksFile,     kReportFile};
 
 /// The first file of an earlier run; empty if there is none.
 std::string trace_of_a_run(const fs::path& directory) {
