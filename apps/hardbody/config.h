@@ -87,6 +87,8 @@ struct Config {
 
   // [output]
   std::int64_t events = 0;
+  std::vector<std::string> trajectory;   ///< of "gsd", "lammps", "vtk"; each once
+  std::int64_t frames = 100;             ///< of each trajectory
   std::string checkpoint_every = "60s";  ///< a number and s, m or h
 
   /// The bodies in the order of their species; of a species with sizes one component a body.
@@ -107,6 +109,11 @@ struct Config {
 
 /// Reads and checks a config. `overrides`: section.key=value. Throws InputError.
 Config load_config(const std::string& path, const std::vector<std::string>& overrides);
+
+struct TomlDocument;
+
+/// The same from a document that has been read.
+Config read_config(const TomlDocument& document);
 
 /// The same from a text; `name` is what messages call it.
 Config parse_config(std::string_view text, const std::string& name, const std::vector<std::string>& overrides = {});

@@ -27,6 +27,12 @@ std::string quoted(const std::string& text) {
   return fmt::format("\"{}\"", text);
 }
 
+std::string names(const std::vector<std::string>& list) {
+  std::string text;
+  for (const std::string& name : list) text += (text.empty() ? "" : ", ") + quoted(name);
+  return "[" + text + "]";
+}
+
 std::string time(const std::optional<double>& t) {
   return t ? toml_real(*t) : quoted("auto");
 }
@@ -161,7 +167,8 @@ std::string times_text(const Config& config) {
 std::string output_text(const Config& config) {
   return "\n[output]\n" +
          line("events", fmt::format("{}", config.events), "so many collisions of production go to events.csv") +
-         line("trajectory", "[]", "none yet") +
+         line("trajectory", names(config.trajectory), "of production: any of \"gsd\", \"lammps\" and \"vtk\"") +
+         line("frames", fmt::format("{}", config.frames), "of each, evenly from the begin to the end") +
          line("checkpoint_every", quoted(config.checkpoint_every),
               "of checkpoint.bin: a number and s, m or h; it is also written at") +
          more("the end, and when the run is stopped");
@@ -172,6 +179,8 @@ struct Template {
   const char* bodies;
   std::string_view config;
 };
+
+constexpr std::string_view kSweepTemplate = "sweep";
 
 constexpr Template kTemplates[] = {
     {"ellipsoid", "hard ellipsoids", "[system]\npacking_fraction = 0.4\n[shape]\naspect_ratio = 3\n"},
@@ -194,7 +203,33 @@ std::string config_text(const Config& config, const std::string& header) {
          start_text(config) + bodies_text(config) + dynamics_text(config) + times_text(config) + output_text(config);
 }
 
+namespace {
+
+/// A run's config with a grid at its end.
+std::string sweep_template() {
+  Config config = parse_config(kTemplates[0].config, "template");
+  config.neighbours = "auto";
+  return config_text(
+             config,
+             "# hardbody: a sweep, a run at every point of a grid. Start it, or go on with it, with: hardbody sweep "
+             "THIS_FILE\n"
+             "# The config is that of hardbody run; the keys in [grid], at the end, take each of their values "
+             "instead.\n"
+             "# base = \"run.toml\", instead of all that is not in [grid], takes it from that file.\n") +
+         "\n# Every combination of the values; those of the last key change fastest.\n"
+         "[grid]\n" +
+         "shape.aspect_ratio = [0.5, 1.0, 2.0, 3.0]                        # a list of values, or a single one\n"
+         "system.packing_fraction = {from = 0.2, to = 0.4, step = 0.05}    # a range, both ends included; or {from, "
+         "to,\n"
+         "# count}: so many values, evenly spaced, or by equal factors with spacing = \"log\".\n"
+         "# zip = [\"key\", \"other key\"] walks their lists together, instead of combining each with each.\n"
+         "# [[grid]], several times: one grid after the other, of the same keys.\n";
+}
+
+}  // namespace
+
 std::optional<std::string> template_text(std::string_view name) {
+  if (name == kSweepTemplate) return sweep_template();
   const auto found =
       std::find_if(std::begin(kTemplates), std::end(kTemplates), [&](const Template& t) { return t.name == name; });
   if (found == std::end(kTemplates)) return std::nullopt;
@@ -208,8 +243,8 @@ std::optional<std::string> template_text(std::string_view name) {
 
 std::string template_names() {
   std::string names;
-  for (const Template& t : kTemplates) names += (names.empty() ? "" : ", ") + std::string(t.name);
-  return names;
+  for (const Template& t : kTemplates) names += std::string(t.name) + ", ";
+  return names + std::string(kSweepTemplate);
 }
 
 std::string resolved_text(const Config& config) {

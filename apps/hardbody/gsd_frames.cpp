@@ -278,8 +278,12 @@ void GsdWriter::append(const Frame& frame) {
   for (GsdArray& array : moving_arrays(frame)) arrays.push_back(std::move(array));
   const std::uint64_t location = first ? head.size() : mark_.bytes;
   const GsdFrameBytes bytes = gsd_frame_bytes(mark_.frames, arrays, location);
-  write_at(path_, mark_.bytes, first ? head.bytes() + bytes.data : bytes.data);
-  overwrite_at(path_, GsdHead::entry_location(entries_of(mark_.frames)), bytes.index);
+  if (first) {
+    write_file(path_, head.bytes() + bytes.data);  // renamed: never a head that is not whole
+  } else {
+    write_at(path_, mark_.bytes, bytes.data, Flush::later);
+  }
+  overwrite_at(path_, GsdHead::entry_location(entries_of(mark_.frames)), bytes.index, Flush::later);
   mark_.bytes = location + bytes.data.size();
   ++mark_.frames;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "frame.h"
+#include "frame_file.h"
 #include "gsd_file.h"
 
 #include <cstdint>
@@ -46,25 +47,15 @@ class GsdReader {
   bool exact_;
 };
 
-/// How far a file of a trajectory goes.
-struct FileMark {
-  std::uint64_t frames = 0;
-  std::uint64_t bytes = 0;  ///< 0: there is no file
-};
-
-/// Writes one frame after the other; a frame shows only once it is whole and on the disk.
-class GsdWriter {
+/// A frame shows only once it is whole.
+class GsdWriter final : public FrameFile {
  public:
   /// Of `capacity` frames at most. Nothing is written yet.
   GsdWriter(std::filesystem::path path, std::uint64_t capacity);
 
-  /// Goes on from `mark`: cuts off what follows. Throws std::runtime_error.
-  void open(FileMark mark);
-
-  /// Throws std::runtime_error if it cannot be written; the file is then as it was.
-  void append(const Frame& frame);
-
-  FileMark mark() const { return mark_; }
+  void open(FileMark mark) override;
+  void append(const Frame& frame) override;
+  FileMark mark() const override { return mark_; }
 
  private:
   std::filesystem::path path_;

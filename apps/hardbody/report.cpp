@@ -24,9 +24,10 @@ fs::path output_path(const ReportArguments& arguments) {
 void check_output(const fs::path& path) {
   const fs::path directory = path.has_parent_path() ? path.parent_path() : fs::path(".");
   if (!fs::is_directory(directory)) {
-    throw InputError(fmt::format("{}: cannot be written: {} is not a directory; accepted: a file in a directory that "
-                                 "is there",
-                                 path.string(), directory.string()));
+    throw InputError(
+        fmt::format("{}: cannot be written: {} is not a directory; accepted: a file in a directory that "
+                    "is there",
+                    path.string(), directory.string()));
   }
   if (fs::is_directory(path)) {
     throw InputError(fmt::format("{}: is a directory; accepted: a file", path.string()));

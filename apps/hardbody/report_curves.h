@@ -9,9 +9,10 @@ namespace hardbody {
 
 /// A file of observables/: numbers in columns.
 struct Curves {
-  std::string name;                        ///< of the file, without its ending: "msd"
-  std::vector<std::string> columns;        ///< of the header line, with units: "msd [l^2]"
-  std::vector<std::vector<double>> values;  ///< of each column; NaN: an empty field, a value that the run is too short for
+  std::string name;                  ///< of the file, without its ending: "msd"
+  std::vector<std::string> columns;  ///< of the header line, with units: "msd [l^2]"
+  std::vector<std::vector<double>>
+      values;  ///< of each column; NaN: an empty field, a value that the run is too short for
 
   std::size_t rows() const { return values.empty() ? 0 : values[0].size(); }
   /// The column of that name, without its unit; nullptr: there is none.

@@ -218,9 +218,8 @@ Json point_json(const SweepPointReport& point, bool embedded) {
   for (const std::string& key : point.keys) keys.push_back(field_json(key));
   Json values = Json::array();
   for (const Measured& m : point.values) values.push_back({number(m.value), number(m.error)});
-  return {{"keys", std::move(keys)},   {"values", std::move(values)},
-          {"status", point.status},    {"message", point.message},
-          {"equilibrated", point.equilibrated}, {"directory", point.directory},
+  return {{"keys", std::move(keys)},  {"values", std::move(values)},        {"status", point.status},
+          {"message", point.message}, {"equilibrated", point.equilibrated}, {"directory", point.directory},
           {"embedded", embedded}};
 }
 

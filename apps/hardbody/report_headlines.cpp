@@ -43,7 +43,8 @@ constexpr std::array kNamings = {
     Naming{"S", "S", "Nematic order", "", "largest eigenvalue of Q of each frame, averaged; above 0.3 nematic"},
     Naming{"q_peak", "q_peak", "First peak of S(q)", "1/l", "its wave number"},
     Naming{"S_peak", "S(q_peak)", "Height of that peak", "", "S(q) there"},
-    Naming{"kT_trans", "kT_trans", "Translational temperature", "kT", "on 3N − 3 degrees of freedom; exactly 1 on average"},
+    Naming{"kT_trans", "kT_trans", "Translational temperature", "kT",
+           "on 3N − 3 degrees of freedom; exactly 1 on average"},
     Naming{"kT_rot", "kT_rot", "Rotational temperature", "kT", "the same of rotation"},
 };
 
@@ -63,9 +64,12 @@ double number_in(const Json& estimate, const char* key) {
 }
 
 Headline headline(const Naming& naming, const Json& estimate) {
-  return {naming.key,     naming.symbol,
-          naming.name,    naming.unit,
-          naming.meaning, number_in(estimate, "value"),
+  return {naming.key,
+          naming.symbol,
+          naming.name,
+          naming.unit,
+          naming.meaning,
+          number_in(estimate, "value"),
           number_in(estimate, "error")};
 }
 

@@ -56,8 +56,9 @@ std::string report_page(const Report& report) {
     return head(report, "") + "<body>\n" + static_body(report) + "</body>\n</html>\n";
   }
   std::string page = head(report, report_style());
-  page += "<body>\n<div id=\"report\"><noscript><p class=\"notice\">This report draws itself with JavaScript, which is "
-          "switched off; the numbers are in summary.json.</p></noscript></div>\n";
+  page +=
+      "<body>\n<div id=\"report\"><noscript><p class=\"notice\">This report draws itself with JavaScript, which is "
+      "switched off; the numbers are in summary.json.</p></noscript></div>\n";
   page += report_data(report) + "<script>\n";
   page += script;
   return page + "</script>\n</body>\n</html>\n";

@@ -13,7 +13,7 @@ namespace hardbody {
 /// What a page is made of.
 struct Report {
   std::string title;
-  std::vector<RunReport> runs;  ///< one, or several side by side
+  std::vector<RunReport> runs;       ///< one, or several side by side
   std::optional<SweepReport> sweep;  ///< instead of runs
 };
 

@@ -70,14 +70,15 @@ Remark completion(const Json& summary) {
   if (!says(member(summary, "interrupted"), true)) {
     return {Kind::good, "complete", fmt::format("The run is complete: {:g} time units of production.", production)};
   }
-  return {Kind::warning, "stopped early",
-          production > 0
-              ? fmt::format("The run was stopped {:g} time units into production: all numbers are of that part. "
-                            "hardbody resume goes on with it.",
-                            production)
-              : fmt::format("The run was stopped {:g} time units into its equilibration: there is nothing measured yet. "
-                            "hardbody resume goes on with it.",
-                            number_of(member(time, "equilibration")))};
+  return {
+      Kind::warning, "stopped early",
+      production > 0
+          ? fmt::format("The run was stopped {:g} time units into production: all numbers are of that part. "
+                        "hardbody resume goes on with it.",
+                        production)
+          : fmt::format("The run was stopped {:g} time units into its equilibration: there is nothing measured yet. "
+                        "hardbody resume goes on with it.",
+                        number_of(member(time, "equilibration")))};
 }
 
 Remark soundness(const Json& summary) {
@@ -225,9 +226,8 @@ const Curves* RunReport::find(std::string_view file) const {
 }
 
 std::string title_of(const Config& config) {
-  const std::string bodies = config.mixture
-                                 ? fmt::format("bodies of {} species", config.species.size())
-                                 : bodies_text(config.species[0]);
+  const std::string bodies =
+      config.mixture ? fmt::format("bodies of {} species", config.species.size()) : bodies_text(config.species[0]);
   return fmt::format("{} hard {}, packing fraction {:.4g}", config.number, bodies, config.packing_fraction);
 }
 

@@ -131,7 +131,8 @@ std::string details(const RunReport& run) {
   }
   const auto block = [&](const char* name, const std::string& text) {
     if (text.empty()) return;
-    html += fmt::format("<details><summary>{}</summary><pre class=\"card\">{}</pre></details>\n", name, html_text(text));
+    html +=
+        fmt::format("<details><summary>{}</summary><pre class=\"card\">{}</pre></details>\n", name, html_text(text));
   };
   block("config.toml", run.config_text);
   if (!run.summary.is_null()) {
@@ -168,7 +169,8 @@ std::string static_body(const Report& report) {
   std::string html = fmt::format("<main class=\"static\">\n<p class=\"over\">hardbody {}</p>\n<h1>{}</h1>\n", version(),
                                  html_text(report.title));
   constexpr const char* kWhy =
-      "<p class=\"notice\">This report is static: the program was built without the interactive front end, for which it "
+      "<p class=\"notice\">This report is static: the program was built without the interactive front end, for which "
+      "it "
       "needs npm.</p>\n</main>\n";
   if (report.sweep) return html + sweep_table(*report.sweep) + kWhy;
   for (const RunReport& run : report.runs) {

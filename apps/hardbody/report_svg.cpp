@@ -80,13 +80,15 @@ std::string grid(const Axis& x, const Axis& y) {
   std::string svg;
   for (const double value : x.ticks()) {
     const double place = x.place(value);
-    svg += fmt::format("<path class=\"grid\" d=\"M{0:.1f} {1}V{2}\"/><text x=\"{0:.1f}\" y=\"{3}\" class=\"mid\">{4}</text>",
-                       place, kTop, kHeight - kBottom, kHeight - kBottom + 17, tick_text(value));
+    svg += fmt::format(
+        "<path class=\"grid\" d=\"M{0:.1f} {1}V{2}\"/><text x=\"{0:.1f}\" y=\"{3}\" class=\"mid\">{4}</text>", place,
+        kTop, kHeight - kBottom, kHeight - kBottom + 17, tick_text(value));
   }
   for (const double value : y.ticks()) {
     const double place = y.place(value);
-    svg += fmt::format("<path class=\"grid\" d=\"M{1} {0:.1f}H{2}\"/><text x=\"{3}\" y=\"{4:.1f}\" class=\"end\">{5}</text>",
-                       place, kLeft, kWidth - kRight, kLeft - 7, place + 4, tick_text(value));
+    svg += fmt::format(
+        "<path class=\"grid\" d=\"M{1} {0:.1f}H{2}\"/><text x=\"{3}\" y=\"{4:.1f}\" class=\"end\">{5}</text>", place,
+        kLeft, kWidth - kRight, kLeft - 7, place + 4, tick_text(value));
   }
   return svg;
 }
@@ -134,8 +136,8 @@ std::string svg_plot(const Plot& plot) {
   if (x.empty() || y.empty()) return "";
   x.widen();
   y.widen();
-  std::string svg = fmt::format("<svg viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{}\">", kWidth, kHeight,
-                                html_text(plot.title));
+  std::string svg =
+      fmt::format("<svg viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{}\">", kWidth, kHeight, html_text(plot.title));
   svg += grid(x, y);
   svg += fmt::format("<text x=\"{}\" y=\"{}\" class=\"mid\">{}</text>", (kLeft + kWidth - kRight) / 2, kHeight - 8,
                      html_text(plot.x_label));

@@ -20,9 +20,9 @@ struct SweepPointReport {
   std::vector<Measured> values;   ///< of the observables
   std::string status;             ///< "done", "failed", ..
   std::string message;
-  std::string equilibrated;       ///< "true", "false" or nothing
-  std::string directory;          ///< name; empty: none was found
-  std::optional<RunReport> run;   ///< of a point that has results
+  std::string equilibrated;      ///< "true", "false" or nothing
+  std::string directory;         ///< name; empty: none was found
+  std::optional<RunReport> run;  ///< of a point that has results
 };
 
 struct SweepReport {
