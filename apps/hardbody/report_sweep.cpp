@@ -1,5 +1,6 @@
 #include "report_sweep.h"
 
+#include "csv_table.h"
 #include "errors.h"
 #include "json_member.h"
 #include "run_directory.h"
@@ -21,7 +22,6 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-constexpr std::size_t kLongestTable = std::size_t{1} << 28;
 constexpr std::size_t kLongestState = std::size_t{1} << 20;
 
 /// So many bodies of all points together are shown.
@@ -33,65 +33,16 @@ constexpr const char* kErrorSuffix = "_error";
 
 using Row = std::vector<std::string>;
 
-/// A line of CSV, where fields with commas or quotes are quoted.
-Row fields_of(std::string_view line, const std::string& where) {
-  Row fields(1);
-  bool quoted = false;
-  for (std::size_t k = 0; k < line.size(); ++k) {
-    const char c = line[k];
-    if (c == '"' && quoted && k + 1 < line.size() && line[k + 1] == '"') {
-      fields.back() += line[++k];
-    } else if (c == '"') {
-      quoted = !quoted;
-    } else if (c == ',' && !quoted) {
-      fields.emplace_back();
-    } else {
-      fields.back() += c;
-    }
-  }
-  if (quoted) throw InputError(fmt::format("{}: a quote is not closed; accepted: the table of a sweep", where));
-  return fields;
+CsvTable read_table(const fs::path& path) {
+  CsvTable table = read_csv(path);
+  if (table.find(kFirstResult) && !table.rows.empty()) return table;
+  throw InputError(fmt::format("{}: has no points; accepted: the table of a sweep", path.string()));
 }
 
-struct Table {
-  Row header;
-  std::vector<Row> rows;
-
-  std::optional<std::size_t> find(std::string_view column) const {
-    const auto place = std::find(header.begin(), header.end(), column);
-    if (place == header.end()) return std::nullopt;
-    return static_cast<std::size_t>(place - header.begin());
-  }
-  std::string at(const Row& row, std::string_view column) const {
-    const std::optional<std::size_t> place = find(column);
-    return place ? row[*place] : std::string();
-  }
-};
-
-Table read_table(const fs::path& path) {
-  Table table;
-  const std::string text = read_file(path, kLongestTable);
-  int number = 0;
-  for (std::size_t begin = 0; begin < text.size();) {
-    const std::size_t end = std::min(text.find('\n', begin), text.size());
-    const std::string where = fmt::format("{}:{}", path.string(), ++number);
-    const std::string_view line(text.data() + begin, end - begin);
-    begin = end + 1;
-    if (line.empty()) continue;
-    Row row = fields_of(line, where);
-    if (table.header.empty()) {
-      table.header = std::move(row);
-    } else if (row.size() != table.header.size()) {
-      throw InputError(fmt::format("{}: has {} fields; accepted: {}, as in the header line", where, row.size(),
-                                   table.header.size()));
-    } else {
-      table.rows.push_back(std::move(row));
-    }
-  }
-  if (!table.find(kFirstResult) || table.rows.empty()) {
-    throw InputError(fmt::format("{}: has no points; accepted: the table of a sweep", path.string()));
-  }
-  return table;
+/// A field of a row; empty if there is no such column.
+std::string field_of(const CsvTable& table, const Row& row, std::string_view column) {
+  const std::optional<std::size_t> place = table.find(column);
+  return place ? row[*place] : std::string();
 }
 
 double number_of(const std::string& field) {
@@ -102,7 +53,7 @@ double number_of(const std::string& field) {
 }
 
 /// Columns of swept keys: those that come first; the seed only if it is not the same everywhere.
-std::vector<std::size_t> key_columns(const Table& table) {
+std::vector<std::size_t> key_columns(const CsvTable& table) {
   std::vector<std::size_t> columns;
   const std::size_t end = *table.find(kFirstResult);
   for (std::size_t k = 0; k < end; ++k) {
@@ -114,7 +65,7 @@ std::vector<std::size_t> key_columns(const Table& table) {
 }
 
 /// Columns that have one of errors.
-std::vector<std::size_t> observable_columns(const Table& table) {
+std::vector<std::size_t> observable_columns(const CsvTable& table) {
   std::vector<std::size_t> columns;
   for (std::size_t k = *table.find(kFirstResult); k < table.header.size(); ++k) {
     if (table.find(table.header[k] + kErrorSuffix)) columns.push_back(k);
@@ -159,7 +110,7 @@ std::map<std::string, std::string> directories_of(const fs::path& sweep) {
 }
 
 /// That of a row, in which every column before the results may be a key.
-std::string directory_of(const Table& table, const Row& row, const std::map<std::string, std::string>& directories) {
+std::string directory_of(const CsvTable& table, const Row& row, const std::map<std::string, std::string>& directories) {
   for (const bool with_seed : {true, false}) {
     std::map<std::string, std::string> sorted;
     for (std::size_t k = 0; k < *table.find(kFirstResult); ++k) {
@@ -203,7 +154,7 @@ bool is_sweep(const fs::path& directory) {
 }
 
 SweepReport read_sweep_report(const fs::path& directory) {
-  const Table table = read_table(directory / kSweepTableFile);
+  const CsvTable table = read_table(directory / kSweepTableFile);
   const std::map<std::string, std::string> directories = directories_of(directory);
   const std::vector<std::size_t> keys = key_columns(table);
   const std::vector<std::size_t> observables = observable_columns(table);
@@ -219,11 +170,11 @@ SweepReport read_sweep_report(const fs::path& directory) {
     SweepPointReport point;
     for (const std::size_t k : keys) point.keys.push_back(row[k]);
     for (const std::size_t k : observables) {
-      point.values.push_back({number_of(row[k]), number_of(table.at(row, table.header[k] + kErrorSuffix))});
+      point.values.push_back({number_of(row[k]), number_of(field_of(table, row, table.header[k] + kErrorSuffix))});
     }
-    point.status = table.at(row, "status");
-    point.message = table.at(row, "message");
-    point.equilibrated = table.at(row, "equilibrated");
+    point.status = field_of(table, row, "status");
+    point.message = field_of(table, row, "message");
+    point.equilibrated = field_of(table, row, "equilibrated");
     point.directory = directory_of(table, row, directories);
     read_run(point, directory, bodies);
     sweep.points.push_back(std::move(point));
