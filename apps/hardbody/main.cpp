@@ -98,7 +98,8 @@ void add_distance(CLI::App& app, Request& request) {
 
 void add_report(CLI::App& app, Request& request) {
   CLI::App* report = app.add_subcommand("report", "Write what runs have found as one HTML file that needs no network");
-  report->add_option("DIR", request.report.directories, "Run directories, several side by side; or that of a sweep")->required();
+  report->add_option("DIR", request.report.directories, "Run directories, several side by side; or that of a sweep")
+      ->required();
   report->add_option("-o", request.report.out, "HTML file; without it DIR/report.html")->type_name("FILE");
 }
 

@@ -21,7 +21,8 @@ using testing::HasSubstr;
 using testing::Not;
 
 TEST(ReportCurves, ReadsWhatARunWrites) {
-  const Curves curves = parse_curves("t [l sqrt(m/kT)],msd [l^2],msd_error [l^2]\n0.5,1e-3,\n1,2.5,0.25\n", "msd", "msd.csv");
+  const Curves curves =
+      parse_curves("t [l sqrt(m/kT)],msd [l^2],msd_error [l^2]\n0.5,1e-3,\n1,2.5,0.25\n", "msd", "msd.csv");
   EXPECT_EQ(curves.rows(), 2U);
   EXPECT_EQ(Curves::bare_name(curves.columns[1]), "msd");
   EXPECT_EQ(Curves::unit(curves.columns[0]), "l sqrt(m/kT)");
