@@ -29,12 +29,13 @@ constexpr double kLeastPacking = 1e-9;
 
 constexpr std::array<std::string_view, 7> kSections = {"system",        "shape",      "species", "dynamics",
                                                        "equilibration", "production", "output"};
-constexpr std::array<std::string_view, 33> kKeys = {
+constexpr std::array<std::string_view, 34> kKeys = {
     "seed",
     "system.number",
     "system.packing_fraction",
     "system.start",
     "system.nematic_order",
+    "system.start_from",
     "shape.kind",
     "shape.aspect_ratio",
     "shape.semi_axes",
@@ -196,7 +197,21 @@ void read_times(const TomlDocument& document, Config& config) {
   config.target_error = error->value.real;
 }
 
+/// A run to go on from, instead of a start of one's own.
+void read_origin(const TomlDocument& document, Config& config) {
+  const Entry* from = document.find("system.start_from");
+  if (from == nullptr) return;
+  if (from->value.kind != Value::Kind::text || from->value.text.empty()) throw bad(*from, "the directory of a run");
+  for (const char* key : {"system.start", "system.nematic_order"}) {
+    const Entry* other = document.find(key);
+    const bool is_default = other != nullptr && other->key == "system.start" && other->value.text == "random";
+    if (other != nullptr && !is_default) throw bad(*other, fmt::format("no key {} beside start_from", key));
+  }
+  config.start_from = from->value.text;
+}
+
 void read_start(const TomlDocument& document, Config& config) {
+  read_origin(document, config);
   read_choice(document, "system.start", {"random", "cubic", "fcc"}, config.start);
   const Entry* order = document.find("system.nematic_order");
   if (order == nullptr) return;

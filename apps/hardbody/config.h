@@ -66,8 +66,9 @@ struct Config {
   // [system]
   int number = 512;
   double packing_fraction = 0;
-  std::string start = "random";         ///< or "cubic", "fcc": on a lattice
-  std::optional<double> nematic_order;  ///< of the start; nothing: uniform orientations, or on a lattice aligned ones
+  std::string start = "random";           ///< or "cubic", "fcc": on a lattice
+  std::optional<std::string> start_from;  ///< directory of a run whose last state is compressed; instead of `start`
+  std::optional<double> nematic_order;    ///< of the start; nothing: uniform orientations, or on a lattice aligned ones
 
   // [shape], or one or more [[species]]
   bool mixture = false;  ///< [[species]]: lengths are taken as they are given

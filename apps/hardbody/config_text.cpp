@@ -126,11 +126,17 @@ std::string start_text(const Config& config) {
   std::string text =
       line("start", quoted(config.start), "at random and compressed; or on a lattice, \"cubic\" or \"fcc\",") +
       more("stretched to the bodies' proportions, the bodies aligned");
-  if (config.nematic_order) {
+  if (config.start_from) {
+    Value from;
+    from.kind = Value::Kind::text;
+    from.text = *config.start_from;
+    text += line("start_from", toml_text(from), "instead: the last state of that run, compressed");
+  } else if (config.nematic_order) {
     text += line("nematic_order", toml_real(*config.nematic_order),
                  config.start == "random" ? "S about z, before the compression, which lets it relax" : "S about z");
   } else {
-    text += more("nematic_order = S: orientations of that order parameter");
+    text += more("nematic_order = S: orientations of that order parameter;") +
+            more("start_from = \"DIR\" instead: the last state of that run, compressed");
   }
   return text;
 }
@@ -215,7 +221,8 @@ std::string sweep_template() {
              "THIS_FILE\n"
              "# The config is that of hardbody run; the keys in [grid], at the end, take each of their values "
              "instead.\n"
-             "# base = \"run.toml\", instead of all that is not in [grid], takes it from that file.\n") +
+             "# base = \"run.toml\", instead of all that is not in [grid], takes it from that file.\n"
+             "# chain = \"system.packing_fraction\": denser points start from the last state of the one before.\n") +
          "\n# Every combination of the values; those of the last key change fastest.\n"
          "[grid]\n" +
          "shape.aspect_ratio = [0.5, 1.0, 2.0, 3.0]                        # a list of values, or a single one\n"

@@ -1,6 +1,7 @@
 #include "phases.h"
 
 #include "errors.h"
+#include "origin.h"
 #include "signals.h"
 
 #include <ed/internal/archive_types.h>
@@ -223,6 +224,15 @@ std::string order_text(const Config& config) {
   return config.nematic_order ? fmt::format(", S = {:g} about z", *config.nematic_order) : "";
 }
 
+ed::StartOptions start_options(const Config& config, const std::function<bool(double)>& progress) {
+  ed::StartOptions options;
+  options.packing_fraction = config.packing_fraction;
+  options.seed = static_cast<std::uint64_t>(config.seed);
+  options.nematic_order = config.nematic_order;
+  options.progress = progress;
+  return options;
+}
+
 }  // namespace
 
 std::optional<ed::System> make_start(const Config& config, Progress& progress, Log& log) {
@@ -233,21 +243,20 @@ std::optional<ed::System> make_start(const Config& config, Progress& progress, L
     log.line("start: done");
     return start;
   }
-  log.line(fmt::format("start: {} bodies placed at random{}, compressed to packing fraction {:g}", config.number,
-                       order_text(config), config.packing_fraction));
+  log.line(config.start_from ? fmt::format("start: the last state of {}, compressed to packing fraction {:g}",
+                                           *config.start_from, config.packing_fraction)
+                             : fmt::format("start: {} bodies placed at random{}, compressed to packing fraction {:g}",
+                                           config.number, order_text(config), config.packing_fraction));
   progress.begin();
-  ed::StartOptions options;
-  options.packing_fraction = config.packing_fraction;
-  options.seed = static_cast<std::uint64_t>(config.seed);
-  options.nematic_order = config.nematic_order;
-  options.progress = [&](double reached) {
+  const auto show = [&](double reached) {
     if (progress.due()) {
       progress.show(fmt::format("compression: packing fraction {:.4f} of {:g}", reached, config.packing_fraction));
     }
     return pending_signal() == 0;
   };
   try {
-    ed::System start = ed::random_start(config.components(), options);
+    ed::System start = config.start_from ? ed::compressed(read_origin_state(config), config.packing_fraction, show)
+                                         : ed::random_start(config.components(), start_options(config, show));
     if (pending_signal() != 0) return std::nullopt;
     log.line("start: done");
     return start;

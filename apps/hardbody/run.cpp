@@ -6,6 +6,7 @@
 #include "failure_file.h"
 #include "log.h"
 #include "observable_files.h"
+#include "origin.h"
 #include "phases.h"
 #include "progress.h"
 #include "run_directory.h"
@@ -24,6 +25,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -34,6 +36,17 @@ std::filesystem::path directory_for(const RunArguments& arguments) {
   if (arguments.out && arguments.out->empty()) throw InputError("--out is empty; accepted: the name of a directory");
   if (arguments.out) return *arguments.out;
   return std::filesystem::path("out") / std::filesystem::path(arguments.config).stem();
+}
+
+/// Before anything is changed. The name of the run becomes one that is good from everywhere.
+void check_origin(const RunArguments& arguments, Config& config) {
+  (void)read_origin_state(config);
+  std::error_code ignored;
+  if (std::filesystem::equivalent(*config.start_from, directory_for(arguments), ignored)) {
+    throw InputError(fmt::format("system.start_from: {} is the directory of this run; accepted: that of another one",
+                                 *config.start_from));
+  }
+  config.start_from = std::filesystem::absolute(*config.start_from).lexically_normal().string();
 }
 
 RunDirectory create_directory(const RunArguments& arguments, const Config& config) {
@@ -137,7 +150,8 @@ bool prepare(const Config& config, Continuation& at, Progress& progress, Saver& 
   if (at.equilibration || at.production) return true;
   if (!at.start) at.start = make_start(config, progress, log);
   if (!at.start) return false;
-  if (saver.due()) saver.save([&at] { return checkpoint_of(*at.start); });
+  // The run that it came from may be gone when this one is resumed.
+  if (saver.due() || config.start_from) saver.save([&at] { return checkpoint_of(*at.start); });
   at.equilibration = begin_equilibration(config, *at.start, progress, log);
   if (at.equilibration) at.start.reset();
   return true;
@@ -226,7 +240,8 @@ int start_over(const Config& config, const RunDirectory& directory) {
 
 int run(const RunArguments& arguments) {
   install_signal_handlers();
-  const Config config = load_config(arguments.config, arguments.overrides);
+  Config config = load_config(arguments.config, arguments.overrides);
+  if (config.start_from) check_origin(arguments, config);
   const RunDirectory directory = create_directory(arguments, config);
   Log log(directory.file(kLogFile), Log::Begin::afresh);
   log.line(fmt::format("hardbody {}: {} with {}", version(), kConfigFile, arguments.config));

@@ -113,8 +113,13 @@ DirectoryLock take_directory(const fs::path& directory, const SweepFile& sweep) 
 std::vector<PointRecord> planned(const SweepFile& sweep) {
   std::vector<PointRecord> records;
   std::string first_refusal;
-  for (SweepPoint& point : expand(sweep.grids)) {
+  std::vector<SweepPoint> points = expand(sweep.grids);
+  std::vector<std::optional<std::size_t>> before(points.size());
+  if (sweep.chain) before = predecessors(points, *sweep.chain);
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    SweepPoint& point = points[k];
     PointRecord record;
+    record.starts_from = before[k];
     const TomlDocument document = document_of(sweep, point);
     record.point = std::move(point);
     if (const Entry* seed = document.find("seed")) record.seed = seed->value.integer;
@@ -253,6 +258,10 @@ void Sweep::launch(std::size_t k) {
       arguments.emplace_back("--set");
       arguments.push_back(s.assignment());
     }
+    if (record.starts_from) {
+      arguments.emplace_back("--set");
+      arguments.push_back("system.start_from=" + records_[*record.starts_from].point.name);
+    }
   }
   record.status = PointStatus::running;
   record.message.clear();
@@ -260,9 +269,18 @@ void Sweep::launch(std::size_t k) {
   workers_.start(static_cast<int>(k), directory_, arguments);
 }
 
-/// False: another process has its directory, and may leave it.
+/// False: it has to wait, for the point that it starts from, or for another process to leave its directory.
 bool Sweep::try_to_start(std::size_t k) {
   PointRecord& record = records_[k];
+  if (record.starts_from) {
+    const PointRecord& origin = records_[*record.starts_from];
+    if (origin.status == PointStatus::failed) {
+      settle(record, PointStatus::failed, fmt::format("starts from {}, which failed", origin.point.name));
+      write_table();
+      return true;
+    }
+    if (origin.status != PointStatus::done) return false;
+  }
   if (fs::is_directory(path_of(record))) {
     try {
       const DirectoryLock free(path_of(record));
@@ -289,7 +307,7 @@ void Sweep::start_points() {
     waiting_.pop_front();
     if (!try_to_start(k)) later.push_back(k);
   }
-  waiting_.insert(waiting_.end(), later.begin(), later.end());
+  waiting_.insert(waiting_.begin(), later.begin(), later.end());
 }
 
 void Sweep::end_point(const WorkerEnd& end) {

@@ -253,7 +253,6 @@ std::vector<Grid> read_grids(const TomlDocument& document) {
 std::optional<std::string> read_chain(const TomlDocument& document, const std::vector<Grid>& grids) {
   const Entry* chain = document.find("chain");
   if (chain == nullptr) return std::nullopt;
-  throw not_yet(*chain, "no chain");
   if (chain->value.kind != Value::Kind::text || chain->value.text != kChainKey) {
     throw bad(*chain, fmt::format("\"{}\", or no chain", kChainKey));
   }

@@ -91,9 +91,12 @@ std::string identity(const Value& value) {
   for (const Value& item : value.items) text += identity(item) + ",";
   return text + "]";
 }
-std::string identity(const SweepPoint& point) {
+/// But for one key, if that is named.
+std::string identity(const SweepPoint& point, std::string_view without = {}) {
   std::map<std::string, std::string> of_key;
-  for (const Setting& s : point.settings) of_key[s.key] = identity(s.value);
+  for (const Setting& s : point.settings) {
+    if (s.key != without) of_key[s.key] = identity(s.value);
+  }
   std::string text;
   for (const auto& [key, value] : of_key) text += key + "=" + value + "\n";
   return text;
@@ -207,6 +210,27 @@ std::vector<SweepPoint> expand(const std::vector<Grid>& grids) {
   }
   name_points(points);
   return points;
+}
+
+std::vector<std::optional<std::size_t>> predecessors(const std::vector<SweepPoint>& points, std::string_view key) {
+  std::map<std::string, std::map<double, std::size_t>> chains;
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const Setting* setting = points[k].find(key);
+    if (!is_numeric(setting->value)) {
+      throw InputError(fmt::format("{}: {} is {}; accepted: numbers, of the key that is chained", setting->where, key,
+                                   setting->value.shown));
+    }
+    chains[identity(points[k], key)][setting->value.real] = k;
+  }
+  std::vector<std::optional<std::size_t>> before(points.size());
+  for (const auto& [others, chain] : chains) {
+    std::optional<std::size_t> last;
+    for (const auto& [value, k] : chain) {
+      before[k] = last;
+      last = k;
+    }
+  }
+  return before;
 }
 
 std::vector<double> stepped(double from, double to, double step) {

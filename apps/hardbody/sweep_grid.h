@@ -5,6 +5,7 @@
 #include "toml_document.h"
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -48,6 +49,10 @@ struct SweepPoint {
 /// All points, grid after grid. Throws InputError for lists of unequal lengths walked together, grids with different
 /// keys, a point that is there twice, and more points than kMostPoints.
 std::vector<SweepPoint> expand(const std::vector<Grid>& grids);
+
+/// For each point the one that comes before it along that key: the next smaller value, all other keys being the same.
+/// Throws InputError for a value that is no number.
+std::vector<std::optional<std::size_t>> predecessors(const std::vector<SweepPoint>& points, std::string_view key);
 
 inline constexpr std::size_t kMostPoints = 100'000;
 

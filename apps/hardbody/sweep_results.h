@@ -40,6 +40,7 @@ struct PointResults {
 struct PointRecord {
   SweepPoint point;
   std::int64_t seed = 1;
+  std::optional<std::size_t> starts_from;  ///< another point, whose last state it compresses
   PointStatus status = PointStatus::pending;
   std::string message;  ///< why it failed
   std::optional<PointResults> results;

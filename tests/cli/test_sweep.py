@@ -212,6 +212,126 @@ class Resumed(SweepCase):
         self.wait_for(lambda: os.path.exists(summary), "the end of the run")
 
 
+class Chains(SweepCase):
+    CHAIN = 'chain = "system.packing_fraction"\n' + SMALL.replace("time = 1\n", "time = 10\n").replace("time = 5\n", "time = 60\n").replace(
+        "events = 500", 'events = 500\ncheckpoint_every = "0.02s"'
+    ) + "[grid]\nsystem.packing_fraction = [0.3, 0.1, 0.2]\nshape.aspect_ratio = [2, 0.5]\n"
+
+    def names(self):
+        return [f"packing_fraction={phi}_aspect_ratio={x}" for phi in ["0.1", "0.2", "0.3"] for x in ["2", "0.5"]]
+
+    def test_denser_points_start_from_the_others(self):
+        result = self.sweep(self.CHAIN, "--jobs", "3")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual([row["system.packing_fraction"] for row in self.table()], ["0.3", "0.3", "0.1", "0.1", "0.2", "0.2"])
+        for name in self.names():
+            log = self.read(f"out/{name}/log.txt")
+            before = {"0.1": None, "0.2": "0.1", "0.3": "0.2"}[name[17:20]]
+            if before is None:
+                self.assertIn("bodies placed at random", log)
+            else:
+                self.assertIn(f"start: the last state of {self.here}/out/packing_fraction={before}{name[20:]}, compressed", log)
+            self.assertEqual(self.hardbody("check", f"out/{name}").returncode, 0)
+        # The first of a chain is the run that it is without one; a run by hand from its end is the second.
+        first, second = "packing_fraction=0.1_aspect_ratio=2", "packing_fraction=0.2_aspect_ratio=2"
+        self.write("base.toml", self.read("out/base.toml"))
+        for out, settings in [("one", ["system.packing_fraction=0.1"]),
+                              ("two", ["system.packing_fraction=0.2", f"system.start_from=out/{first}"])]:
+            result = self.hardbody("run", "base.toml", "--out", out, "--set", "shape.aspect_ratio=2", *settings)
+            self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(self.bytes_of("one/events.csv"), self.bytes_of(f"out/{first}/events.csv"))
+        self.assertEqual(self.bytes_of("two/events.csv"), self.bytes_of(f"out/{second}/events.csv"))
+
+    def test_kills(self):
+        self.assertEqual(self.sweep(self.CHAIN, "--jobs", "2", out="reference").returncode, 0)
+        moments = random.Random(7)
+        for _ in range(4):
+            process = self.start(self.CHAIN, "--jobs", "2")
+            time.sleep(moments.uniform(0.1, 0.8))
+            process.kill()
+            process.wait()
+        self.assertEqual(self.sweep(self.CHAIN, "--jobs", "2").returncode, 0)
+        self.assertEqual(self.without_timing(), self.without_timing("reference"))
+        for name in self.names():
+            self.assertEqual(self.bytes_of(f"out/{name}/events.csv"), self.bytes_of(f"reference/{name}/events.csv"))
+
+    def test_resumed_without_its_origin(self):
+        self.assertEqual(self.sweep(self.CHAIN).returncode, 0)
+        # Once it has begun, a run does not need what it started from.
+        text = self.read("out/base.toml") + "[output]\ncheckpoint_every = '1h'\n"
+        self.write("long.toml", text.replace("time = 60", "time = 100000").replace('[output]\nevents = 500\ncheckpoint_every = "0.02s"\n', ""))
+        shutil.copytree(self.path("out/packing_fraction=0.3_aspect_ratio=2"), self.path("origin"))
+        process = subprocess.Popen([HARDBODY, "run", "long.toml", "--out", "long", "--set", "system.packing_fraction=0.35",
+                                    "system.start_from=origin"], cwd=self.here, stderr=subprocess.DEVNULL)
+        self.addCleanup(process.kill)
+        self.wait_for(lambda: os.path.exists(self.path("long/checkpoint.bin")), "the checkpoint of the start")
+        process.kill()
+        process.wait()
+        shutil.rmtree(self.path("origin"))
+        process = subprocess.Popen([HARDBODY, "resume", "long"], cwd=self.here, stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
+        self.addCleanup(process.kill)
+        self.wait_for(lambda: "production: 100000" in self.read("long/log.txt"), "production")
+        process.send_signal(signal.SIGTERM)
+        self.assertEqual(process.wait(timeout=60), 143)
+
+    def test_failed_link(self):
+        text = self.CHAIN.replace("[0.3, 0.1, 0.2]", "[0.1, 0.75, 0.2]").replace("[2, 0.5]", "2")
+        result = self.sweep(text)
+        self.assertEqual(result.returncode, 1)
+        self.assertEqual(self.statuses(), ["done", "failed", "done"])
+        os.remove(self.path("out/packing_fraction=0.2_aspect_ratio=2/summary.json"))
+        with open(self.path("out/packing_fraction=0.2_aspect_ratio=2/checkpoint.bin"), "r+b") as file:
+            file.truncate(1000)
+        text = text.replace("0.75", "0.3")
+        shutil.move(self.path("out/packing_fraction=0.2_aspect_ratio=2"), self.path("damaged"))
+        self.assert_refused(self.sweep(text), "grid.system.packing_fraction")
+        self.assertEqual(self.sweep(text, out="new").returncode, 0)
+        shutil.rmtree(self.path("new/packing_fraction=0.2_aspect_ratio=2"))
+        shutil.rmtree(self.path("new/packing_fraction=0.3_aspect_ratio=2"))
+        shutil.move(self.path("damaged"), self.path("new/packing_fraction=0.2_aspect_ratio=2"))
+        self.assertEqual(self.sweep(text, out="new").returncode, 1)
+        self.assertEqual(self.statuses("new"), ["done", "failed", "failed"])
+        self.assertIn("checkpoint.bin", self.table("new")[2]["message"])
+        self.assertEqual(self.table("new")[1]["message"], "starts from packing_fraction=0.2_aspect_ratio=2, which failed")
+
+    def test_refused(self):
+        for old, new, part in [
+            ('"system.packing_fraction"\n', '"shape.aspect_ratio"\n', 'chain is "shape.aspect_ratio"'),
+            ('"system.packing_fraction"\n', "3\n", "chain is 3"),
+            ("system.packing_fraction = [0.3, 0.1, 0.2]\n", "", "a key of the grid"),
+            ("[0.3, 0.1, 0.2]", '[0.3, 0.1, "dense"]', 'system.packing_fraction is "dense"'),
+            ("[2, 0.5]\n", '[2, 0.5, 3]\nzip = ["shape.aspect_ratio", "system.packing_fraction"]\n', "no chain along a key that zip"),
+        ]:
+            with self.subTest(new):
+                self.assertIn(old, self.CHAIN)
+                self.assert_refused(self.sweep(self.CHAIN.replace(old, new)), part, "accepted")
+                self.assertFalse(os.path.exists(self.path("out")))
+
+    def test_origins_of_single_runs(self):
+        self.run_small("small")
+        self.write("small.toml", SMALL)
+        for settings, parts in [
+            (["system.start_from=none"], ["none/checkpoint.bin: cannot be read"]),
+            (["system.start_from=small", "system.number=65"], ["holds 64 bodies, system.number is 65"]),
+            (["system.start_from=small", "shape.aspect_ratio=3"], ["holds bodies of another shape"]),
+            (["system.start_from=small", "dynamics.inertia=uniform"], ["holds bodies of other mass or inertia"]),
+            (["system.start_from=small", "system.packing_fraction=0.1"], ["has packing fraction 0.2, system.packing_fraction is 0.1"]),
+            (["system.start_from=small", "system.start=fcc"], ["no key system.start beside start_from"]),
+            (["system.start_from=small", "system.nematic_order=0.3"], ["no key system.nematic_order beside start_from"]),
+            (["system.start_from=3"], ["the directory of a run"]),
+        ]:
+            with self.subTest(settings):
+                self.assert_refused(self.hardbody("run", "small.toml", "--out", "out", "--set", *settings), "accepted", *parts)
+                self.assertFalse(os.path.exists(self.path("out")))
+        self.assert_refused(self.hardbody("run", "small.toml", "--out", "small", "--force", "--set", "system.start_from=small"),
+                            "small is the directory of this run")
+        self.assertEqual(self.hardbody("check", "small").returncode, 0)
+        # At the same packing fraction the state goes on as it is.
+        result = self.hardbody("run", "small.toml", "--out", "on", "--set", "system.start_from=small")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(self.hardbody("check", "on").returncode, 0)
+
+
 class Failures(SweepCase):
     TOO_DENSE = SMALL + "[grid]\nsystem.packing_fraction = [0.1, 0.75, 0.2]\n"
 

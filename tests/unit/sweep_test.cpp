@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -150,6 +151,12 @@ TEST(SweepGrids, PointsThatAreThereTwice) {
   EXPECT_EQ(
       names_of("[[grid]]\nseed = [1, 2]\nsystem.number = 64\n[[grid]]\nsystem.number = [65, 70]\nseed = 2\n").size(),
       4u);
+}
+
+TEST(SweepGrids, ChainsGoFromTheSmallestValue) {
+  const std::vector<SweepPoint> points = hardbody::expand(
+      sweep_of("[grid]\nsystem.packing_fraction = [0.3, 0.1, 0.2]\nshape.aspect_ratio = [2, 5]\n").grids);
+  EXPECT_THAT(predecessors(points, "system.packing_fraction"), ElementsAre(4u, 5u, std::nullopt, std::nullopt, 2u, 3u));
 }
 
 TEST(SweepGrids, AreNotLargerThanAnybodyWants) {

@@ -41,7 +41,7 @@ class Lines:
 
     def __init__(self, program, directory):
         rows = read_rows(directory / "points.csv")
-        isotropic = [row for row in rows if float(row["S"]) <= NEMATIC]
+        isotropic = [row for row in rows if float(row["S"]) <= NEMATIC and row["equilibrated"] == "true"]
         self.D_trans = self._one(program, isotropic, "D_trans", D_TRANS_LEVELS)
         self.D_rot = self._one(program, isotropic, "D_rot", D_ROT_LEVELS)
         self.C2 = self._one(program, isotropic, "t_C2_1overe", ISOCHRONES)

@@ -2,6 +2,7 @@
 
 from . import grid
 from .results import TARGET_ERROR, write_whole
+from .table import NEMATIC
 
 TEXT = """# The paper's study, again
 
@@ -38,7 +39,7 @@ Computed by `tools/paper/verdicts.py` from the two files, with the criteria that
 {details}
 ## Figures
 
-Isodiffusivity lines at the paper's levels; isotropic points only; dots are the state points, open ones not equilibrated.
+Isodiffusivity lines at the paper's levels, of equilibrated isotropic points; dots are the state points, open ones not equilibrated.
 
 ![Lines of constant D_trans and D_rot](isodiffusivity.svg)
 
@@ -67,14 +68,14 @@ def state_text(study):
     text = f"{len(study.rows)} of {len(planned) + other} points."
     if not study.rows:
         return text
-    text += (f" {len([r for r in study.rows if not r.isotropic])} of them are nematic (S > 0.3), {len(flagged)} were not equilibrated by the "
-             f"criterion, {len([r for r in study.rows if r.isotropic and not r.precise])} isotropic ones are less precise than "
+    nematic = [r for r in study.rows if r["S"] > NEMATIC]
+    text += (f" {len(nematic)} of them are nematic (S > {NEMATIC}), {len(flagged)} were not equilibrated by the criterion, {len([r for r in study.rows if r.isotropic and not r.precise])} isotropic ones are less precise than "
              f"{100 * TARGET_ERROR:g} % or have no D_rot (too close to X0 = 1).")
     if len(done) < len(planned):
         text += " **The study is not complete: the verdicts below are those of the points that are there.**"
-    flagged_isotropic = [r for r in flagged if r.isotropic]
-    if flagged_isotropic:
-        text += " Not equilibrated though isotropic: " + ", ".join(f"{r.X0:g} at {r.phi:g}" for r in flagged_isotropic[:30]) + "."
+    slow = [r for r in flagged if r["S"] <= NEMATIC]
+    if slow:
+        text += " Not equilibrated though S <= 0.3, and left out of lines and verdicts: " + ", ".join(f"{r.X0:g} at {r.phi:g}" for r in slow[:40]) + "."
     return text
 
 

@@ -32,7 +32,8 @@ class Row:
 
     @property
     def isotropic(self):
-        return self.values["S"] <= NEMATIC
+        """A fluid: neither nematic nor, as crystals and glasses, unable to forget where it was."""
+        return self.values["S"] <= NEMATIC and self.equilibrated
 
 
 class Study:
@@ -45,7 +46,6 @@ class Study:
 
     @property
     def isotropic(self):
-        """Fluids: neither nematic nor, as far as is known, anything that did not equilibrate."""
         return [row for row in self.rows if row.isotropic]
 
     def X0s(self):
