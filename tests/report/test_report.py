@@ -29,11 +29,14 @@ RUN = """seed = 3
 number = 128
 packing_fraction = 0.4
 [shape]
-aspect_ratio = 2
+aspect_ratio = 3
 [equilibration]
 time = 10
 [production]
 time = 150
+[output]
+trajectory = ["gsd"]
+frames = 6
 """
 
 SUPERBALLS = """[system]
@@ -178,7 +181,7 @@ class OneRun(Case):
                 browser.run("document.querySelector('.stage').scrollIntoView({behavior: 'instant'})")
                 self.wait_for(browser, "return window.hardbodyReport.views[0].drawn > 0")
                 view = browser.run("return window.hardbodyReport.views[0]")
-                self.assertEqual((view["bodies"], view["frames"]), (128, 1))
+                self.assertEqual((view["bodies"], view["frames"]), (128, 6))
                 # Every body's mesh reaches the graphics card.
                 self.assertGreater(view["triangles"], 128 * 100)
                 self.assertGreater(self.colours(browser, ".stage canvas"), 40)
@@ -280,6 +283,18 @@ class OneRun(Case):
                 self.assertEqual(max(browser.run(shade)) < 60, dark)
                 browser.run("document.querySelector('.theme').click()")
                 self.assertEqual(max(browser.run(shade)) < 60, not dark)
+
+    def test_frames_play(self):
+        browser = self.open(self.file)
+        matrices = "return Array.from(window.hardbodyReport.page.views[0].meshes[0].mesh.instanceMatrix.array.slice(0, 64))"
+        last = browser.run(matrices)
+        browser.run("const s = document.querySelector('.player input'); s.value = 0; s.dispatchEvent(new Event('input'))")
+        self.assertIn("t = 0 · frame 1 of 6", browser.run("return document.querySelector('.view .caption').textContent"))
+        self.assertNotEqual(browser.run(matrices), last)
+        browser.run("document.querySelector('.play').click()")
+        self.wait_for(browser, "return window.hardbodyReport.views[0].frame >= 2")
+        browser.run("document.querySelector('.play').click()")
+        self.assertEqual(browser.run("return window.hardbodyReport.page.views[0].timer"), None)
 
     def test_cut_hides_bodies(self):
         browser = self.open(self.file)
