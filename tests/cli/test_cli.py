@@ -489,7 +489,6 @@ class BadConfig(Case):
             ("time = 5\n", 'target_error = 0.1\ntime = 5\n', "production.target_error"),
             ("time = 5\n", 'target_error = 0\n', "production.target_error"),
             ("time = 5\n", 'target_error = "small"\n', "production.target_error"),
-            ("time = 5", "time = 0", "production.time"),
             ("time = 5", "time = -1", "production.time"),
             ("time = 5", "time = inf", "production.time"),
             ("events = 500", "events = -1", "output.events"),
