@@ -1186,7 +1186,7 @@ class Check(Case):
         self.assert_refused(self.hardbody("check", "empty"), "empty/checkpoint.bin", "No such file")
         self.write("file", "x")
         self.assert_refused(self.hardbody("check", "file"), "file")
-        self.assert_refused(self.hardbody("check", "run.gsd"), "not available yet")
+        self.assert_refused(self.hardbody("check", "run.gsd"), "run.gsd: cannot be read: No such file", "accepted: ")
 
     def check_bytes(self, content):
         with open(self.path("out/checkpoint.bin"), "wb") as file:

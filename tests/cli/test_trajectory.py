@@ -336,7 +336,7 @@ EXACT = ["particles/hardbody/" + name for name in ["position", "rotation", "velo
 ]
 
 
-class Starts(Trajectories):
+class StartsFromFiles(Trajectories):
     """[start] file: runs that begin with a frame."""
 
     def same(self, first, k, second):
@@ -489,6 +489,71 @@ class Starts(Trajectories):
                 self.assertFalse(os.path.exists(self.path("out")))
         self.write("frame.toml", SMALL + "[start]\nframe = 1\n")
         self.assert_refused(self.hardbody("run", "frame.toml"), "frame.toml:14: start.frame", "start.file beside it")
+
+
+class CheckOfFiles(Trajectories):
+    """hardbody check FILE.gsd."""
+
+    def changed(self, name, array, place, value, dtype, frame=2):
+        """A copy of the run's file with a number replaced, through python3-gsd."""
+        shutil.copy(self.path("out/trajectory.gsd"), self.path(name))
+        with gsd.fl.open(self.path(name), "rb") as file:
+            data = file.read_chunk(frame=frame, name=array).astype(dtype)
+        content = self.bytes_of(name)
+        at = content.index(data.tobytes())
+        flat = data.reshape(-1)
+        flat[place] = value
+        with open(self.path(name), "wb") as file:
+            file.write(content[:at] + data.tobytes() + content[at + data.nbytes:])
+
+    def test_sound(self):
+        for name, config in FAMILIES.items():
+            with self.subTest(name):
+                self.run_with("out", config)
+                result = self.hardbody("check", "out/trajectory.gsd")
+                self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+                for text in ["frames                     6", "overlaps                   0", "state to every bit         yes"]:
+                    self.assertIn(text, result.stdout)
+                self.assertTrue(result.stdout.endswith("sound\n"))
+                self.assertNotIn("NOT", result.stdout)
+                shutil.rmtree(self.path("out"))
+
+    def test_not_sound(self):
+        self.run_with("out", SMALL)
+        self.changed("energy.gsd", "log/particles/hardbody/velocity", 5, 2.5, "f8")
+        self.changed("nan.gsd", "particles/position", 5, numpy.nan, "f4")
+        result = self.hardbody("check", "energy.gsd")
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("frame 2: the energy is ", result.stdout)
+        self.assertTrue(result.stdout.endswith("NOT SOUND\n"))
+        self.assert_refused(self.hardbody("check", "nan.gsd"), "nan.gsd: frame 2: particles/position of body 1 is nan")
+
+    def test_overlap(self):
+        self.run_with("out", SMALL)
+        exact = Frames(self.path("out/trajectory.gsd"))
+        target = exact.position[2][1].copy()
+        content = self.bytes_of("out/trajectory.gsd")
+        at = content.index(exact.position[2].tobytes())
+        moved = exact.position[2].copy()
+        moved[0] = target + [0, 0, 1e-3]
+        with open(self.path("overlap.gsd"), "wb") as file:
+            file.write(content[:at] + moved.tobytes() + content[at + moved.nbytes:])
+        result = self.hardbody("check", "overlap.gsd")
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("frame 2: ", result.stdout)
+        self.assertIn("NOT SOUND", result.stdout)
+
+    def test_of_another_program(self):
+        """Without the doubles: overlaps beyond the rounding of 32-bit numbers; shapes may be missing."""
+        self.run_with("out", SMALL)
+        content = self.bytes_of("out/trajectory.gsd").replace(b"log/hardbody/time", b"xog/hardbody/time")
+        for name, bytes_ in [("shapes.gsd", content), ("none.gsd", content.replace(b'"Ellipsoid"', b'"Ellipsoix"'))]:
+            with open(self.path(name), "wb") as file:
+                file.write(bytes_)
+            result = self.hardbody("check", name)
+            self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+            self.assertIn("state to every bit         no", result.stdout)
+            self.assertIn("overlaps                   " + ("0" if name == "shapes.gsd" else "not looked for"), result.stdout)
 
 
 if __name__ == "__main__":
