@@ -380,7 +380,6 @@ ProductionRun begin_production(const Config& config, Equilibration equilibration
           : fmt::format("production: {:g} time units", production.planned));
   // A new simulation: its time starts at 0 and its counters count production only.
   ed::Simulation simulation(equilibration.system, config.simulation_options(equilibration.envelope));
-  equilibration.system = {};
   ProductionRun run{std::move(simulation),
                     ed::Observables(observables_options(config, production)),
                     EventsFile(directory, config.events),
@@ -438,6 +437,7 @@ void produce(const Config& config, ProductionRun& run, const FilesMark& files, P
   run.trajectory.open(files.trajectory);
   // Before a checkpoint can be made: none is without it.
   run.trajectory.take_first(run.before.system, log);
+  run.before.system = {};
   progress.begin();
   Runner runner(run.simulation, "production", progress, saver, [&] {
     result.wall_seconds = seconds();
