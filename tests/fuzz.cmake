@@ -6,6 +6,7 @@
 #     build/fuzz/tests/line_fuzz -entropic=0 -dict=tests/fuzz/line.dict -max_len=1024 -runs=10000000 corpus/line
 #     build/fuzz/tests/geom_fuzz -entropic=0 -max_len=192 -runs=10000000 corpus/geom
 #     build/fuzz/tests/checkpoint_fuzz -max_len=512 -runs=1000000 corpus/checkpoint
+#     build/fuzz/tests/gsd_fuzz -max_len=2048 -runs=1000000 corpus/gsd
 #
 # (libFuzzer's entropic scheduling would take a quarter of the time.)
 function(hardbody_fuzzer name)
@@ -40,4 +41,5 @@ hardbody_fuzzer(geom)
 if(TARGET hardbody_program)
   hardbody_fuzzer(line hardbody_program nlohmann_json::nlohmann_json)
   hardbody_fuzzer(checkpoint hardbody_program)
+  hardbody_fuzzer(gsd hardbody_program)
 endif()

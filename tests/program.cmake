@@ -1,6 +1,6 @@
 # The program as a user meets it: its files, messages and exit statuses.
 if(TARGET hardbody)
-  # Debian's python3, no modules beyond its own; there may be another one first on the PATH.
+  # Debian's python3 and its packages; there may be another one first on the PATH.
   find_program(HARDBODY_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH)
   find_program(HARDBODY_PYTHON python3 REQUIRED)
   # One entry a class, so that they run side by side; every class of the files but the bases has one.
@@ -12,14 +12,14 @@ if(TARGET hardbody)
     list(APPEND cli_environment "HARDBODY_CLOCK=$<TARGET_FILE:cli_clock>")
     hardbody_needed_by(cli cli_clock)
   endif()
-  foreach(file test_cli test_restart test_sweep test_paper)
+  foreach(file test_cli test_restart test_trajectory test_sweep test_paper)
     set(cli_tests ${CMAKE_CURRENT_SOURCE_DIR}/cli/${file}.py)
     set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${cli_tests})
     file(STRINGS ${cli_tests} class_lines REGEX "^class ")
     foreach(line IN LISTS class_lines)
       string(REGEX MATCH "^class ([A-Za-z0-9_]+)" name "${line}")
       set(name ${CMAKE_MATCH_1})
-      if(name MATCHES "^(Case|Restart|SweepCase|Here)$")
+      if(name MATCHES "^(Case|Restart|Frames|Trajectories|SweepCase|Here)$")
         continue()
       endif()
       add_test(NAME cli_${name} COMMAND ${HARDBODY_PYTHON} ${cli_tests} ${name})
@@ -38,6 +38,9 @@ if(TARGET hardbody)
   target_compile_definitions(program_test PRIVATE HARDBODY_PROGRAM="$<TARGET_FILE:hardbody>"
     HARDBODY_OLD_CHECKPOINT="${CMAKE_CURRENT_SOURCE_DIR}/cli/checkpoint_v1.bin")
   add_dependencies(program_test hardbody)
+
+  hardbody_test(trajectory_test cli cli/trajectory_test.cpp)
+  target_link_libraries(trajectory_test PRIVATE hardbody_program)
 else()
-  list(APPEND unbuilt_tests cli/program_test.cpp unit/sweep_test.cpp)
+  list(APPEND unbuilt_tests cli/program_test.cpp cli/trajectory_test.cpp unit/sweep_test.cpp)
 endif()

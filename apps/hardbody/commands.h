@@ -34,6 +34,11 @@ struct MapArguments {
   std::optional<std::string> csv;  ///< the lines as numbers; the same
 };
 
+struct ReportArguments {
+  std::vector<std::string> directories;  ///< of runs
+  std::optional<std::string> out;        ///< HTML file; by default report.html in the directory, if it is one
+};
+
 /// An empty path: standard output.
 int init(const std::string& path, const std::string& template_name);
 int run(const RunArguments& arguments);
@@ -42,6 +47,7 @@ int sweep(const SweepArguments& arguments);
 int map(const MapArguments& arguments);
 int check(const std::string& path);
 int replay(const std::string& path);
+int report(const ReportArguments& arguments);
 /// "-": standard input.
 int distance(const std::string& path);
 /// The formats of its lines, for --help.

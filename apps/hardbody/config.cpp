@@ -23,6 +23,7 @@ namespace {
 
 constexpr std::size_t kLongestConfig = 1 << 20;    ///< bytes
 constexpr std::int64_t kMostEvents = 100'000'000;  ///< they are kept in memory: 16 bytes each
+constexpr std::int64_t kMostFrames = 100'000;      ///< there is room for all of them in the files' heads
 constexpr double kLongestTime = 1e9;
 constexpr double kLeastPacking = 1e-9;
 
@@ -109,7 +110,7 @@ void check_sections(const TomlDocument& document) {
   }
 }
 
-/// "system.number, system.packing_fraction": the keys of the unknown key's section, or all.
+/// "system.number, system.packing_fraction": the keys of the key's section; all keys for a key without a section.
 std::string keys_near(std::string_view key) {
   const std::string section(key.substr(0, key.find('.') == std::string_view::npos ? 0 : key.find('.') + 1));
   std::string list;
@@ -151,9 +152,10 @@ void check_names(const TomlDocument& document) {
     if (known_section(entry.key)) throw bad(entry, fmt::format("a section [{}] with keys", entry.key));
     const auto nearest = nearest_name(key, kKeys);
     const std::string name = one_line(entry.key, 60);
-    throw InputError(nearest ? fmt::format("{}: unknown key {}, did you mean {}?; accepted: {}", entry.where, name,
-                                           with_index(*nearest, index), keys_near(*nearest))
-                             : fmt::format("{}: unknown key {}; accepted: {}", entry.where, name, keys_near("")));
+    const bool in_section = known_section(key.substr(0, key.find('.')));
+    throw InputError(fmt::format("{}: unknown key {}{}; accepted: {}", entry.where, name,
+                                 nearest ? fmt::format(", did you mean {}?", with_index(*nearest, index)) : "",
+                                 keys_near(in_section ? key : nearest.value_or(""))));
   }
 }
 
@@ -347,17 +349,25 @@ std::optional<double> parse_duration(const std::string& text) {
   }
 }
 
+void read_trajectory(const TomlDocument& document, Config& config) {
+  read_integer(document, "output.frames", 2, kMostFrames, config.frames);
+  const Entry* trajectory = document.find("output.trajectory");
+  if (trajectory == nullptr) return;
+  constexpr std::string_view kAccepted = "an array of \"gsd\", \"lammps\" and \"vtk\", each at most once";
+  if (trajectory->value.kind != Value::Kind::array) throw bad(*trajectory, kAccepted);
+  for (const Value& item : trajectory->value.items) {
+    const bool known =
+        item.kind == Value::Kind::text && (item.text == "gsd" || item.text == "lammps" || item.text == "vtk");
+    const bool twice =
+        std::find(config.trajectory.begin(), config.trajectory.end(), item.text) != config.trajectory.end();
+    if (!known || twice) throw bad(*trajectory, kAccepted);
+    config.trajectory.push_back(item.text);
+  }
+}
+
 void read_output(const TomlDocument& document, Config& config) {
   read_integer(document, "output.events", 0, kMostEvents, config.events);
-  if (const Entry* trajectory = document.find("output.trajectory")) {
-    constexpr std::string_view kAccepted = "[], no trajectory";
-    if (trajectory->value.kind != Value::Kind::array) throw bad(*trajectory, kAccepted);
-    for (const Value& item : trajectory->value.items) {
-      const bool planned = item.text == "gsd" || item.text == "lammps" || item.text == "vtk";
-      throw planned ? not_yet(*trajectory, kAccepted) : bad(*trajectory, kAccepted);
-    }
-  }
-  if (const Entry* frames = document.find("output.frames")) throw not_yet(*frames, "no key frames");
+  read_trajectory(document, config);
   if (const Entry* every = document.find("output.checkpoint_every")) {
     if (every->value.kind != Value::Kind::text || !parse_duration(every->value.text)) {
       throw bad(*every, "a string of a positive number and a unit, as in \"60s\", \"5m\", \"1h\"");

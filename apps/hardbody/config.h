@@ -88,6 +88,8 @@ struct Config {
 
   // [output]
   std::int64_t events = 0;
+  std::vector<std::string> trajectory;   ///< of "gsd", "lammps", "vtk"; each once
+  std::int64_t frames = 100;             ///< of each trajectory
   std::string checkpoint_every = "60s";  ///< a number and s, m or h
 
   /// The bodies in the order of their species; of a species with sizes one component a body.

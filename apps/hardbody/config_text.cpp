@@ -27,6 +27,12 @@ std::string quoted(const std::string& text) {
   return fmt::format("\"{}\"", text);
 }
 
+std::string names(const std::vector<std::string>& list) {
+  std::string text;
+  for (const std::string& name : list) text += (text.empty() ? "" : ", ") + quoted(name);
+  return "[" + text + "]";
+}
+
 std::string time(const std::optional<double>& t) {
   return t ? toml_real(*t) : quoted("auto");
 }
@@ -167,7 +173,8 @@ std::string times_text(const Config& config) {
 std::string output_text(const Config& config) {
   return "\n[output]\n" +
          line("events", fmt::format("{}", config.events), "so many collisions of production go to events.csv") +
-         line("trajectory", "[]", "none yet") +
+         line("trajectory", names(config.trajectory), "of production: any of \"gsd\", \"lammps\" and \"vtk\"") +
+         line("frames", fmt::format("{}", config.frames), "of each, evenly from the begin to the end") +
          line("checkpoint_every", quoted(config.checkpoint_every),
               "of checkpoint.bin: a number and s, m or h; it is also written at") +
          more("the end, and when the run is stopped");

@@ -11,11 +11,6 @@ InputError bad(const Entry& entry, std::string_view accepted) {
   return InputError(fmt::format("{}: {} is {}; accepted: {}", entry.where, entry.key, entry.value.shown, accepted));
 }
 
-InputError not_yet(const Entry& entry, std::string_view accepted) {
-  return InputError(fmt::format("{}: {} = {} is not available yet; accepted now: {}", entry.where, entry.key,
-                                entry.value.shown, accepted));
-}
-
 bool is_number(const Value& value) {
   return (value.kind == Value::Kind::integer || value.kind == Value::Kind::real) && std::isfinite(value.real);
 }

@@ -19,9 +19,6 @@ namespace hardbody {
 /// "file:line: key is what was got; accepted: .."
 InputError bad(const Entry& entry, std::string_view accepted);
 
-/// The same for what a later version will accept.
-InputError not_yet(const Entry& entry, std::string_view accepted);
-
 /// An integer or a real, finite.
 bool is_number(const Value& value);
 

@@ -30,6 +30,7 @@ struct Request {
   std::string check_path;
   std::string replay_file;
   std::string distance_file = "-";
+  ReportArguments report;
 };
 
 void add_init(CLI::App& app, Request& request) {
@@ -95,16 +96,24 @@ void add_distance(CLI::App& app, Request& request) {
   distance->footer(distance_help());
 }
 
+void add_report(CLI::App& app, Request& request) {
+  CLI::App* report = app.add_subcommand("report", "Write what runs have found as one HTML file that needs no network");
+  report->add_option("DIR", request.report.directories, "Run directories, several side by side; or that of a sweep")
+      ->required();
+  report->add_option("-o", request.report.out, "HTML file; without it DIR/report.html")->type_name("FILE");
+}
+
 /// Commands of later versions: not in the help, with an honest answer.
 void add_later_commands(CLI::App& app) {
-  for (const char* name : {"analyze", "report"}) {
+  for (const char* name : {"analyze"}) {
     CLI::App* later = app.add_subcommand(name, "")->group("");
     later->set_help_flag();
     later->allow_extras();
     later->callback([name] {
-      throw InputError(fmt::format(
-          "hardbody {}: is not available yet; accepted now: init, run, resume, sweep, map, check, replay, distance",
-          name));
+      throw InputError(
+          fmt::format("hardbody {}: is not available yet; accepted now: init, run, resume, sweep, map, check, replay, "
+                      "report, distance",
+                      name));
     });
   }
 }
@@ -117,6 +126,7 @@ int dispatch(const CLI::App& app, const Request& request) {
   if (app.got_subcommand("map")) return map(request.map);
   if (app.got_subcommand("check")) return check(request.check_path);
   if (app.got_subcommand("distance")) return distance(request.distance_file);
+  if (app.got_subcommand("report")) return report(request.report);
   return replay(request.replay_file);
 }
 
@@ -149,6 +159,7 @@ int run_command_line(int argc, char** argv) {
   add_map(app, request);
   add_check(app, request);
   add_replay(app, request);
+  add_report(app, request);
   add_distance(app, request);
   add_later_commands(app);
   std::vector<std::string> arguments = expand_overrides(argc, argv);
@@ -164,7 +175,7 @@ int run_command_line(int argc, char** argv) {
   return dispatch(app, request);
 }
 
-int report(const std::exception& error, int status) {
+int fail(const std::exception& error, int status) {
   (void)std::fputs((one_line(error.what(), 2000) + '\n').c_str(), stderr);
   return status;
 }
@@ -176,8 +187,8 @@ int main(int argc, char** argv) {
   try {
     return hardbody::run_command_line(argc, argv);
   } catch (const hardbody::InputError& error) {
-    return hardbody::report(error, hardbody::kBadInput);
+    return hardbody::fail(error, hardbody::kBadInput);
   } catch (const std::exception& error) {
-    return hardbody::report(error, hardbody::kFailed);
+    return hardbody::fail(error, hardbody::kFailed);
   }
 }

@@ -35,9 +35,12 @@ constexpr double kProductionFactor = 30;
 constexpr double kLeastProduction = 30;
 constexpr double kMostProduction = 5000;
 constexpr double kLongestLag = 40;  ///< or the equilibration, if that took longer
-/// With a target error: it is asked for when so many longest lags have passed, and then each time that the run has
-/// grown by a factor.
-constexpr double kFirstLook = 16;
+/// At least, in collisions of a body: diffusion coefficients are fitted from 0.4 of it on, and a velocity is forgotten
+/// in about 1.5 of them, so that what is left of it there is exp(-7).
+constexpr double kLagCollisions = 25;
+/// Longest lags that production lasts, at least. With a target error it is asked for then, and again each time that the
+/// run has grown by a factor.
+constexpr double kLags = 16;
 constexpr double kNextLook = 1.25;
 
 /// Below this packing fraction the envelopes keep their first guess. Tuning runs for tens of collisions a
@@ -101,15 +104,26 @@ class Runner {
   double energy_;
 };
 
+/// kLagCollisions mean collision intervals; 0 if nothing is known of them.
+double dilute_lag(const Config& config, const Equilibration& equilibration) {
+  const auto collisions = static_cast<double>(equilibration.counters.collisions);
+  return collisions > 0 ? kLagCollisions * equilibration.time * config.number / (2 * collisions) : 0;
+}
+
 /// How long production is to be, and what is measured in it.
 Production planned_production(const Config& config, const Equilibration& equilibration) {
   Production plan;
   const double length = std::clamp(kProductionFactor * equilibration.time, kLeastProduction, kMostProduction);
-  plan.planned = config.production_time.value_or(config.target_error ? kMostProduction : length);
-  // A state that was slow to equilibrate decays as slowly.
-  plan.longest_lag = config.production_time ? std::min(*config.production_time / 16, kLongestLag)
-                                            : std::min(length / 16, std::max(kLongestLag, equilibration.time));
-  plan.next_look = kFirstLook * plan.longest_lag;
+  if (config.production_time) {
+    plan.planned = *config.production_time;
+    plan.longest_lag = std::min(plan.planned / kLags, kLongestLag);
+  } else {
+    // A state that was slow to equilibrate decays as slowly.
+    plan.longest_lag = std::min(length / kLags, std::max(kLongestLag, equilibration.time));
+    plan.longest_lag = std::max(plan.longest_lag, std::min(dilute_lag(config, equilibration), kMostProduction / kLags));
+    plan.planned = config.target_error ? kMostProduction : std::max(length, kLags * plan.longest_lag);
+  }
+  plan.next_look = kLags * plan.longest_lag;
   const double q = equilibration.relaxation.q;
   plan.wave_numbers = {q, q / 4, q / 2, 2 * q};  // at the first peak of S(q), and about it
   return plan;
@@ -189,8 +203,8 @@ auto restored(const std::string& name, const F& restore) {
 
 ed::Simulation restored_simulation(const Config& config, const Checkpoint& checkpoint, const std::string& name) {
   return restored(name, [&] {
-    ed::Simulation simulation =
-        ed::Simulation::restore(checkpoint.run->simulation, checkpoint.system.species, config.simulation_options());
+    ed::Simulation simulation = ed::Simulation::restore(checkpoint.run->simulation.bytes(), checkpoint.system.species,
+                                                        config.simulation_options());
     if (ed::internal::bytes_of(simulation.system()) == ed::internal::bytes_of(checkpoint.system)) return simulation;
     throw std::invalid_argument("state: two that should be the same differ");
   });
@@ -297,7 +311,7 @@ Checkpoint checkpoint_of(const EquilibrationRun& run) {
   RunState& state = checkpoint.run.emplace();
   state.equilibration = run.result;
   state.monitor = run.monitor.save();
-  state.simulation = run.simulation.save();
+  state.simulation = StoredState([&run](const Sink& sink) { run.simulation.save(sink); });
   return checkpoint;
 }
 
@@ -331,6 +345,16 @@ Equilibration equilibrate(const Config& config, EquilibrationRun& run, Progress&
 
 namespace {
 
+/// Runs to `time`, taking the frames that are due until then; false if the run was stopped before.
+bool run_to(double time, ProductionRun& run, Runner& runner, Log& log) {
+  const double planned = run.result.planned;
+  while (run.trajectory.next_time() <= time) {
+    if (!runner.run_to(run.trajectory.next_time(), planned)) return false;
+    run.trajectory.take(run.simulation, log);
+  }
+  return runner.run_to(time, planned);
+}
+
 /// With a target error, once in a while, at times that do not depend on a clock.
 void look_at_errors(const Config& config, ProductionRun& run) {
   run.result.precise = is_precise(config, run.observables.results(run.simulation));
@@ -339,7 +363,7 @@ void look_at_errors(const Config& config, ProductionRun& run) {
 
 }  // namespace
 
-ProductionRun begin_production(const Config& config, const Equilibration& equilibration, const RunDirectory& directory,
+ProductionRun begin_production(const Config& config, Equilibration equilibration, const RunDirectory& directory,
                                Log& log) {
   Production production = planned_production(config, equilibration);
   log.line(
@@ -348,9 +372,14 @@ ProductionRun begin_production(const Config& config, const Equilibration& equili
                         *config.target_error, production.planned)
           : fmt::format("production: {:g} time units", production.planned));
   // A new simulation: its time starts at 0 and its counters count production only.
-  ProductionRun run{ed::Simulation(equilibration.system, config.simulation_options(equilibration.envelope)),
-                    ed::Observables(observables_options(config, production)), EventsFile(directory, config.events),
-                    equilibration, std::move(production)};
+  ed::Simulation simulation(equilibration.system, config.simulation_options(equilibration.envelope));
+  equilibration.system = {};
+  ProductionRun run{std::move(simulation),
+                    ed::Observables(observables_options(config, production)),
+                    EventsFile(directory, config.events),
+                    Trajectory(directory, config, production.planned),
+                    std::move(equilibration),
+                    std::move(production)};
   run.result.kinetic_at_start = run.simulation.kinetic();
   return run;
 }
@@ -358,19 +387,25 @@ ProductionRun begin_production(const Config& config, const Equilibration& equili
 ProductionRun resumed_production(const Config& config, const Checkpoint& checkpoint, const RunDirectory& directory,
                                  const std::string& name) {
   const RunState& state = *checkpoint.run;
-  ProductionRun run{
-      restored_simulation(config, checkpoint, name),
-      restored(
-          name,
-          [&] { return ed::Observables::restore(state.observables, observables_options(config, state.production)); }),
-      EventsFile(directory, config.events), state.equilibration, state.production};
+  ProductionRun run{restored_simulation(config, checkpoint, name),
+                    restored(name,
+                             [&] {
+                               return ed::Observables::restore(state.observables.bytes(),
+                                                               observables_options(config, state.production));
+                             }),
+                    EventsFile(directory, config.events),
+                    Trajectory(directory, config, state.production.planned),
+                    state.equilibration,
+                    state.production};
   run.result.wall_seconds = checkpoint.upkeep.production_seconds;
   run.events.check(state.events);
+  run.trajectory.check(state.trajectory);
   return run;
 }
 
 Checkpoint checkpoint_of(ProductionRun& run) {
   run.events.take(run.simulation);
+  run.trajectory.flush();
   Checkpoint checkpoint;
   checkpoint.phase = "production";
   checkpoint.time = run.simulation.time();
@@ -380,17 +415,20 @@ Checkpoint checkpoint_of(ProductionRun& run) {
   state.equilibration = run.before;
   state.production = run.result;
   state.events = run.events.mark();
-  state.simulation = run.simulation.save();
-  state.observables = run.observables.save();
+  state.trajectory = run.trajectory.mark();
+  state.simulation = StoredState([&run](const Sink& sink) { run.simulation.save(sink); });
+  state.observables = StoredState([&run](const Sink& sink) { run.observables.save(sink); });
   return checkpoint;
 }
 
-void produce(const Config& config, ProductionRun& run, EventsMark events, Progress& progress, Saver& saver, Log& log) {
+void produce(const Config& config, ProductionRun& run, const FilesMark& files, Progress& progress, Saver& saver,
+             Log& log) {
   Production& result = run.result;
   const double earlier = result.wall_seconds;
   const double clock = log.seconds();
   const auto seconds = [&] { return earlier + log.seconds() - clock; };
-  run.events.open(events, run.simulation);
+  run.events.open(files.events, run.simulation);
+  run.trajectory.open(files.trajectory);
   progress.begin();
   Runner runner(run.simulation, "production", progress, saver, [&] {
     result.wall_seconds = seconds();
@@ -399,17 +437,17 @@ void produce(const Config& config, ProductionRun& run, EventsMark events, Progre
   for (bool end = result.precise; !end && !result.stopped;) {
     const double next = run.observables.next_time();
     const double target = std::min(next, result.planned);
-    result.stopped = !runner.run_to(target, result.planned);
+    result.stopped = !run_to(target, run, runner, log);
     if (result.stopped) break;
     if (next <= result.planned) run.observables.measure(run.simulation);
     if (config.target_error && target >= result.next_look) look_at_errors(config, run);
     end = result.precise || (target == result.planned && run.observables.next_time() > result.planned);
     result.time = target;
   }
+  if (!result.stopped) run.trajectory.take_last(run.simulation, result.time, log);
   result.results = run.observables.results(run.simulation);
   result.wall_seconds = seconds();
   if (result.stopped) result.time = run.simulation.time();
-  result.system = run.simulation.system();
   result.envelope = run.simulation.envelope();
   result.counters = run.simulation.counters();
   result.failures = run.simulation.failures();

@@ -7,6 +7,7 @@
 #include "progress.h"
 #include "run_record.h"
 #include "saver.h"
+#include "trajectory.h"
 
 #include <ed/equilibration.h>
 #include <ed/observables.h>
@@ -47,18 +48,27 @@ struct ProductionRun {
   ed::Simulation simulation;
   ed::Observables observables;
   EventsFile events;
-  Equilibration before;
+  Trajectory trajectory;
+  Equilibration before;  ///< without its system
   Production result;
 };
 
-ProductionRun begin_production(const Config& config, const Equilibration& equilibration, const RunDirectory& directory,
+/// Goes on from the equilibration's system, which it takes.
+ProductionRun begin_production(const Config& config, Equilibration equilibration, const RunDirectory& directory,
                                Log& log);
 /// Throws InputError if the state does not fit. Changes nothing.
 ProductionRun resumed_production(const Config& config, const Checkpoint& checkpoint, const RunDirectory& directory,
                                  const std::string& name);
-/// Appends the collisions so far to events.csv, which throws if it cannot be written.
+/// How far the files go that grow with production.
+struct FilesMark {
+  EventsMark events;
+  TrajectoryMark trajectory;
+};
+
+/// Appends the collisions so far to events.csv and what is waiting to the trajectories, which throws if they cannot be
+/// written.
 Checkpoint checkpoint_of(ProductionRun& run);
-/// `events`: how far events.csv goes.
-void produce(const Config& config, ProductionRun& run, EventsMark events, Progress& progress, Saver& saver, Log& log);
+void produce(const Config& config, ProductionRun& run, const FilesMark& files, Progress& progress, Saver& saver,
+             Log& log);
 
 }  // namespace hardbody

@@ -72,7 +72,7 @@ struct Continuation {
   std::optional<ed::System> start;
   std::optional<EquilibrationRun> equilibration;
   std::optional<ProductionRun> production;
-  EventsMark events;
+  FilesMark files;
   Upkeep upkeep;
 };
 
@@ -153,6 +153,7 @@ bool prepare(const Config& config, Continuation& at, Progress& progress, Saver& 
   // The run that it came from may be gone when this one is resumed.
   if (saver.due() || config.start_from) saver.save([&at] { return checkpoint_of(*at.start); });
   at.equilibration = begin_equilibration(config, *at.start, progress, log);
+  if (at.equilibration) at.start.reset();
   return true;
 }
 
@@ -163,15 +164,16 @@ void run_equilibration(const Config& config, const RunDirectory& directory, Cont
   // A state with an overlap is no start for a production run.
   const bool sound = defects(ed::audit(record.equilibration.system)).empty();
   if (record.equilibration.stopped || !sound) return;
-  at.production = begin_production(config, record.equilibration, directory, log);
   at.equilibration.reset();
+  at.production = begin_production(config, std::move(record.equilibration), directory, log);
 }
 
 void run_production(const Config& config, Continuation& at, RunRecord& record, Progress& progress, Saver& saver,
                     Log& log) {
-  produce(config, *at.production, at.events, progress, saver, log);
+  produce(config, *at.production, at.files, progress, saver, log);
   record.equilibration = at.production->before;
   record.production = at.production->result;
+  record.production.system = at.production->simulation.system();
   record.stall = at.production->simulation.stall();
 }
 
@@ -218,7 +220,7 @@ Continuation continuation(const Config& config, const Checkpoint& checkpoint, co
                                  name, one_line(checkpoint.phase, 40)));
   } else {
     at.production = resumed_production(config, checkpoint, directory, name);
-    at.events = checkpoint.run->events;
+    at.files = {checkpoint.run->events, checkpoint.run->trajectory};
   }
   return at;
 }

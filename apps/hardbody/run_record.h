@@ -30,7 +30,7 @@ struct Equilibration {
 
 /// What production measured.
 struct Production {
-  ed::System system;
+  ed::System system;  ///< at its end
   ed::KineticState kinetic_at_start;
   double time = 0;
   double planned = 0;  ///< or, with a target error, at the most
@@ -59,6 +59,13 @@ struct Upkeep {
 struct EventsMark {
   std::uint64_t rows = 0;   ///< collisions
   std::uint64_t bytes = 0;  ///< header included; 0: there is no file
+};
+
+/// How far the trajectories go, each of the files that the config asks for.
+struct TrajectoryMark {
+  std::uint64_t frames = 0;
+  double last_time = -1;             ///< of the last frame
+  std::vector<std::uint64_t> bytes;  ///< of each file; without a frame: 0
 };
 
 /// Everything that a run's files and its table say.

@@ -201,8 +201,9 @@ std::string format_estimate(const ed::Estimate& estimate) {
 std::string results_table(const RunRecord& record, const std::string& directory) {
   std::string text = head(record) + "\n" + numbers(record) + "\n" + audit_lines(record);
   for (const std::string& defect : defects(record)) text += fmt::format("  *** NOT SOUND: {} ***\n", defect);
-  text += fmt::format("\nfiles: {0}/{1}, {0}/observables/*.csv, {0}/{2}{3}\n", directory, kSummaryFile, kCheckpointFile,
-                      record.config.events > 0 ? fmt::format(", {}/{}", directory, kEventsFile) : "");
+  text += fmt::format("\nfiles: {0}/{1}, {0}/observables/*.csv, {0}/{2}{3}{4}\n", directory, kSummaryFile,
+                      kCheckpointFile, record.config.events > 0 ? fmt::format(", {}/{}", directory, kEventsFile) : "",
+                      record.config.trajectory.empty() ? "" : fmt::format(", {}/trajectory.*", directory));
   return text;
 }
 

@@ -27,6 +27,32 @@ using File = std::unique_ptr<std::FILE, Close>;
   throw std::runtime_error(fmt::format("{}: cannot be written: {}", path.string(), std::strerror(error)));
 }
 
+/// Everything into `temporary`, down to the disk; messages name `path`.
+void write_pieces(const fs::path& temporary, const fs::path& path, const std::function<void(const Sink&)>& make) {
+  File file(std::fopen(temporary.c_str(), "wb"));
+  if (!file) fail_to_write(path, errno);
+  make([&](std::string_view piece) {
+    if (std::fwrite(piece.data(), 1, piece.size(), file.get()) != piece.size()) fail_to_write(path, errno);
+  });
+  if (std::fflush(file.get()) != 0 || ::fsync(::fileno(file.get())) != 0) fail_to_write(path, errno);
+  if (std::fclose(file.release()) != 0) fail_to_write(path, errno);
+}
+
+/// Whether all of it could be written; errno says why not.
+bool write_all(int file, ::off_t place, std::string_view content) {
+  for (std::size_t done = 0; done < content.size();) {
+    const ::ssize_t written =
+        ::pwrite(file, content.data() + done, content.size() - done, place + static_cast<::off_t>(done));
+    if (written <= 0 && !(written < 0 && errno == EINTR)) return false;
+    if (written > 0) done += static_cast<std::size_t>(written);
+  }
+  return true;
+}
+
+bool flushed(int file, Flush flush) {
+  return flush == Flush::later || ::fsync(file) == 0;
+}
+
 }  // namespace
 
 std::string read_file(const fs::path& path, std::size_t limit) {
@@ -50,46 +76,44 @@ std::string read_file(const fs::path& path, std::size_t limit) {
 }
 
 void write_file(const fs::path& path, std::string_view content) {
+  write_file(path, [content](const Sink& sink) { sink(content); });
+}
+
+void write_file(const fs::path& path, const std::function<void(const Sink&)>& make) {
   fs::path temporary = path;
   temporary += ".part";
-  {
-    File file(std::fopen(temporary.c_str(), "wb"));
-    if (!file) fail_to_write(path, errno);
-    const bool written = std::fwrite(content.data(), 1, content.size(), file.get()) == content.size() &&
-                         std::fflush(file.get()) == 0 && ::fsync(::fileno(file.get())) == 0;
-    const int error = errno;
-    const bool closed = std::fclose(file.release()) == 0;
-    if (!written || !closed) {
-      const int why = written ? errno : error;
-      std::remove(temporary.c_str());
-      fail_to_write(path, why);
-    }
-  }
-  if (std::rename(temporary.c_str(), path.c_str()) != 0) {
-    const int error = errno;
+  try {
+    write_pieces(temporary, path, make);
+    if (std::rename(temporary.c_str(), path.c_str()) != 0) fail_to_write(path, errno);
+  } catch (...) {
     std::remove(temporary.c_str());
-    fail_to_write(path, error);
+    throw;
   }
 }
 
-void write_at(const fs::path& path, std::uint64_t position, std::string_view content) {
+void write_at(const fs::path& path, std::uint64_t position, std::string_view content, Flush flush) {
   const auto place = static_cast<::off_t>(position);
   const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
   if (file < 0) fail_to_write(path, errno);
-  std::size_t done = 0;
-  bool good = ::ftruncate(file, place) == 0;
-  while (good && done < content.size()) {
-    const ::ssize_t written =
-        ::pwrite(file, content.data() + done, content.size() - done, place + static_cast<::off_t>(done));
-    good = written > 0 || (written < 0 && errno == EINTR);
-    if (written > 0) done += static_cast<std::size_t>(written);
-  }
-  good = good && ::fsync(file) == 0;
+  const bool good = ::ftruncate(file, place) == 0 && write_all(file, place, content) && flushed(file, flush);
   const int error = errno;
   // Shorter needs no room: this does what it can, and what is left over is cut off by the next call.
   if (!good) (void)!::ftruncate(file, place);
   ::close(file);
   if (!good) fail_to_write(path, error);
+}
+
+void overwrite_at(const fs::path& path, std::uint64_t position, std::string_view content, Flush flush) {
+  const int file = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
+  if (file < 0) fail_to_write(path, errno);
+  const bool good = write_all(file, static_cast<::off_t>(position), content) && flushed(file, flush);
+  const int error = errno;
+  ::close(file);
+  if (!good) fail_to_write(path, error);
+}
+
+void flush_file(const fs::path& path) {
+  overwrite_at(path, 0, "");
 }
 
 std::string one_line(std::string_view text, std::size_t longest) {

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 
@@ -14,9 +15,26 @@ std::string read_file(const std::filesystem::path& path, std::size_t limit);
 /// half a file. Throws std::runtime_error.
 void write_file(const std::filesystem::path& path, std::string_view content);
 
-/// Makes the file end with `content` after its first `position` bytes (at most its length), on the disk; a new file is
-/// begun at position 0. Throws std::runtime_error; the first `position` bytes are then as they were, and the last.
-void write_at(const std::filesystem::path& path, std::uint64_t position, std::string_view content);
+/// Takes a file's bytes piece by piece.
+using Sink = std::function<void(std::string_view)>;
+
+/// The same of a content that `make` hands over in pieces. What that throws is passed on; no file is left then.
+void write_file(const std::filesystem::path& path, const std::function<void(const Sink&)>& make);
+
+/// Whether bytes are on the disk when they are written, or with the system, which outlives the process only.
+enum class Flush { now, later };
+
+/// Makes the file end with `content` after its first `position` bytes (at most its length); a new file is begun at
+/// position 0. Throws std::runtime_error; the first `position` bytes are then as they were, and the last.
+void write_at(const std::filesystem::path& path, std::uint64_t position, std::string_view content,
+              Flush flush = Flush::now);
+
+/// Replaces bytes within a file; what is beyond its end makes it longer. Throws std::runtime_error.
+void overwrite_at(const std::filesystem::path& path, std::uint64_t position, std::string_view content,
+                  Flush flush = Flush::now);
+
+/// Brings to the disk what was written for later. Throws std::runtime_error.
+void flush_file(const std::filesystem::path& path);
 
 /// Text for a one-line message: line breaks and control characters become blanks, long text is cut.
 std::string one_line(std::string_view text, std::size_t longest = 400);

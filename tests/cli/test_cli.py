@@ -323,6 +323,16 @@ class Run(Case):
         # The first look is when it would have ended without a target, at the earliest.
         self.assertGreaterEqual(times[0.1], 30)
 
+    def test_a_gas_is_measured_until_its_velocities_are_forgotten(self):
+        config = SMALL.replace("time = 1\n", 'time = "auto"\n').replace("time = 5", 'time = "auto"\ntarget_error = 0.03')
+        self.run_small("out", "--set", "shape.aspect_ratio=1", "--set", "system.packing_fraction=0.03", config=config)
+        summary = self.summary("out")
+        self.assertTrue(summary["target_error"]["reached"])
+        # Enskog's D of spheres of radius 1 in the first approximation, with Carnahan and Starling's value at contact.
+        phi = 0.03
+        enskog = math.sqrt(math.pi) / (8 * phi * (1 - phi / 2) / (1 - phi) ** 3)
+        self.assertLess(abs(summary["observables"]["D_trans"]["value"] / enskog - 1), 0.12)
+
     def test_spheres(self):
         self.run_small("out", "--set", "shape.aspect_ratio=1", "--set", "equilibration.time=auto")
         self.assertTrue(self.summary("out")["equilibrated"])
@@ -501,6 +511,10 @@ class BadConfig(Case):
             ("events = 500", 'checkpoint_every = "0s"', "output.checkpoint_every"),
             ("events = 500", "trajectory = 1", "output.trajectory"),
             ("events = 500", 'trajectory = ["pdf"]', "output.trajectory"),
+            ("events = 500", 'trajectory = ["gsd", 3]', "output.trajectory"),
+            ("events = 500", 'trajectory = ["gsd", "vtk", "gsd"]', "output.trajectory", "at most once"),
+            ("events = 500", "frames = 1", "output.frames", "2 to"),
+            ("events = 500", "frames = 1000000", "output.frames"),
         ]
         for old, new, *parts in cases:
             with self.subTest(new):
@@ -529,16 +543,6 @@ class BadConfig(Case):
             with self.subTest(text):
                 message = self.refuse(SMALL + "[dynamics]\n" + text + "\n", *parts)
                 self.assertTrue(message.startswith("bad.toml:14: "), message)
-
-    def test_not_available_yet(self):
-        cases = [
-            ("events = 500", 'trajectory = ["gsd"]', "output.trajectory"),
-            ("events = 500", 'trajectory = ["lammps", "vtk"]', "output.trajectory"),
-            ("events = 500", "frames = 10", "output.frames"),
-        ]
-        for old, new, key in cases:
-            with self.subTest(new):
-                self.refuse_line(old, new, key, "not available yet")
 
     def test_shape(self):
         superball = 'kind = "superellipsoid"\nsemi_axes = [1, 1, 1]\n'
@@ -593,6 +597,9 @@ class BadConfig(Case):
             with self.subTest(new):
                 self.refuse_line(old, new, *parts)
         self.refuse("system = 3\n[shape]\naspect_ratio = 2\n", "bad.toml:1: ", "system is 3", "a section [system]")
+        # A key of another section: what this one takes.
+        self.refuse(SMALL.replace("aspect_ratio = 2", "aspect_ratio = 2\nsizes = 'gaussian'"),
+                    "did you mean species.sizes?; accepted: shape.kind,")
         # A section is also unknown when it is empty.
         self.refuse(SMALL + "[prodcution]\n", "bad.toml:13: ", "did you mean [production]?")
 

@@ -2,7 +2,7 @@
 
     HARDBODY=build/release/apps/hardbody/hardbody /usr/bin/python3 tests/cli/test_restart.py [TestClass[.test]]
 
-HARDBODY_FULL=1 kills a hundred runs instead of nine.
+HARDBODY_FULL=1 kills a hundred runs instead of twelve.
 """
 
 import json
@@ -46,6 +46,17 @@ RUNS = {
     "until precise": config().replace("time = 20\n", 'time = "auto"\n').replace("60\n", '"auto"\ntarget_error = 0.08\n'),
 }
 
+TRAJECTORIES = ["trajectory.gsd", "trajectory.lammpstrj", "trajectory.vtp"]
+
+
+def with_trajectories(text, frames):
+    return text.replace("[output]\n", f'[output]\ntrajectory = ["gsd", "lammps", "vtk"]\nframes = {frames}\n')
+
+
+RUNS["rods with trajectories"] = with_trajectories(RUNS["rods"], 60)
+RUNS["mixture with trajectories"] = with_trajectories(RUNS["mixture"], 15)
+RUNS["trajectories until precise"] = with_trajectories(RUNS["until precise"], 1000)
+
 
 class Restart(Case):
     def start(self, *arguments, **options):
@@ -85,6 +96,9 @@ class Restart(Case):
         files["events.csv"] = self.bytes_of(f"{out}/events.csv")
         files["config.toml"] = self.bytes_of(f"{out}/config.toml")
         files["checkpoint.bin"] = self.state_of(out)
+        for name in TRAJECTORIES:
+            if os.path.exists(self.path(f"{out}/{name}")):
+                files[name] = self.bytes_of(f"{out}/{name}")
         return files
 
     def assert_same_run(self, out, expected):
@@ -119,7 +133,7 @@ class Kills(Restart):
     def test_at_any_moment(self):
         """kill -9, resumed (and killed again now and then): the same bytes as without."""
         draws = random.Random(1)
-        kills = 100 if FULL else 9
+        kills = 100 if FULL else 12
         expected = {}
         seconds = {}
         where = {}
@@ -302,6 +316,8 @@ class Refusals(Restart):
             ("time = 100000.0", "time = 99.0", "production.time is 99.0, the checkpoint was made with 100000.0"),
             ("seed = 3", "seed = 4", "seed is 4"),
             ("events = 2000", "events = 2001", "output.events is 2001"),
+            ("trajectory = []", 'trajectory = ["gsd"]', 'output.trajectory is ["gsd"], the checkpoint was made with []'),
+            ("frames = 100", "frames = 99", "output.frames is 99"),
             ("aspect_ratio = 2.0", "semi_axes = [1.0, 1.0, 3.0]", "shape.semi_axes is [1.0, 1.0, 3.0], the checkpoint was made with nothing"),
         ]:
             with self.subTest(new):
@@ -336,6 +352,22 @@ class Refusals(Restart):
         self.assert_refused_untouched("out", f"out/events.csv: has {len(good) - 1} bytes, {len(good)} when")
         os.remove(self.path("out/events.csv"))
         self.assert_refused_untouched("out", "out/events.csv: has 0 bytes")
+
+    def test_trajectory_file(self):
+        self.write("run.toml", with_trajectories(config(production=10000), 10000))
+        process = self.start("run", "run.toml", "--out", "out")
+        self.wait_for(lambda: self.log_has("out", "production: "), "production")
+        time.sleep(0.3)
+        self.assertEqual(self.stop(process, signal.SIGTERM), 143)
+        for name in TRAJECTORIES:
+            with self.subTest(name):
+                good = self.bytes_of(f"out/{name}")
+                # Of the last frame, not of what only ends the file.
+                self.change(f"out/{name}", good[:-100])
+                self.assert_refused_untouched("out", f"out/{name}: has {len(good) - 100} bytes")
+                os.remove(self.path(f"out/{name}"))
+                self.assert_refused_untouched("out", f"out/{name}: has 0 bytes")
+                self.change(f"out/{name}", good)
 
     def test_two_processes(self):
         self.write("run.toml", config(production=100000))
@@ -388,6 +420,31 @@ class Faults(Restart):
         self.resume("out")
         self.assertIn("resumed from production", self.read("out/log.txt"))
         self.assert_same_run("out", expected)
+
+    def test_trajectory_that_does_not_fit(self):
+        """Frames wait in memory, checkpoints cannot be made without them; what was there stays whole."""
+        text = with_trajectories(config(production=300), 2000)
+        self.undisturbed("reference", text)
+        expected = self.results("reference")
+        self.write("run.toml", text)
+        for name in TRAJECTORIES:
+            with self.subTest(name):
+                size = int(0.5 * len(expected[name]))
+                others = [len(content) for other, content in expected.items() if other not in TRAJECTORIES]
+                self.assertGreater(size, max(others))
+                process = self.start("run", "run.toml", "--out", "out", preexec_fn=self.limited(size))
+                process.wait(timeout=120)
+                self.assertEqual(process.returncode, 1)
+                self.assertIn("cannot be written: File too large", process.stderr.read())
+                log = self.read("out/log.txt")
+                self.assertIn("File too large; frames wait in memory", log)
+                self.assertEqual(log.count("frames wait in memory"), 1)
+                self.assertIn("no checkpoint: ", log)
+                self.assertEqual(self.hardbody("check", "out").returncode, 0)
+                self.resume("out")
+                self.assertIn("resumed from production", self.read("out/log.txt"))
+                self.assert_same_run("out", expected)
+                shutil.rmtree(self.path("out"))
 
     def test_read_only_directory(self):
         self.write("run.toml", config(production=100000))

@@ -1,4 +1,5 @@
-"""Writes the inputs that the fuzzers start from: `make_corpus.py DIR` fills DIR/line, DIR/geom and DIR/checkpoint.
+"""Writes the inputs that the fuzzers start from: `make_corpus.py DIR` fills DIR/line, DIR/geom, DIR/checkpoint and
+DIR/gsd.
 
 The same files every time: the draws are seeded.
 """
@@ -6,6 +7,7 @@ The same files every time: the draws are seeded.
 import json
 import os
 import random
+import struct
 import sys
 
 
@@ -33,13 +35,47 @@ def lines():
     yield from ["", "{", "null", "[" * 200, '{"a":1,"a":2}', '{"id":1e999}', '{"id":"\\ud800"}']
 
 
+def gsd_files():
+    """A byte 0 and a file, or another byte and changes of a file that the target makes, most of them of its head."""
+    draws = random.Random(2)
+    magic = 0x65DF65DF65DF65DF
+
+    def file(index=256, entries=1, names=288, blocks=1, version=0x20000, entry=(0, 1, 352, 1, 0, 3, 0)):
+        head = struct.pack("<QQQQQII", magic, index, entries, names, blocks, 0x10004, version)
+        head += b"fuzz".ljust(64, b"\0") + b"hoomd".ljust(64, b"\0") + bytes(80)
+        return head + struct.pack("<QQqIHBB", *entry) + b"particles/N".ljust(64, b"\0") + struct.pack("<I", 1)
+
+    yield b"\0" + file()
+    yield b"\0" + file()[:100]
+    for change in [
+        {"index": 2**63},
+        {"entries": 2**59},
+        {"names": 2**64 - 1},
+        {"blocks": 2**58},
+        {"version": 0x30000},
+        {"entry": (0, 2**63, 352, 2**31, 0, 10, 0)},
+        {"entry": (2**63, 1, 352, 1, 0, 3, 0)},
+        {"entry": (0, 1, -1, 1, 0, 3, 0)},
+        {"entry": (0, 1, 352, 1, 9, 3, 0)},
+        {"entry": (0, 1, 352, 1, 0, 99, 0)},
+        {"entry": (0, 1, 352, 0, 0, 3, 0)},
+        {"entry": (0, 1, 352, 1, 0, 3, 1)},
+    ]:
+        yield b"\0" + file(**change)
+    for k in range(120):
+        limit = 2000 if k % 2 else 2**16
+        places = [draws.randrange(limit) for _ in range(k % 8 + 1)]
+        changes = b"".join(struct.pack(">HB", place, draws.choice([0, 1, 127, 128, 255])) for place in places)
+        yield b"\1" + changes
+
+
 def main(directory):
     draws = random.Random(1)
     geom = [bytes(draws.randrange(256) for _ in range(160)) for _ in range(64)]
     # A byte that says of what, then changes of three bytes each, or a payload.
     checkpoint = [bytes([k % 3]) + bytes(draws.randrange(256) for _ in range(3 * (k % 40))) for k in range(120)]
     line = [line.encode() for line in lines()]
-    for name, inputs in [("line", line), ("geom", geom), ("checkpoint", checkpoint)]:
+    for name, inputs in [("line", line), ("geom", geom), ("checkpoint", checkpoint), ("gsd", list(gsd_files()))]:
         os.makedirs(os.path.join(directory, name), exist_ok=True)
         for k, data in enumerate(inputs):
             with open(os.path.join(directory, name, f"seed{k:03}"), "wb") as file:

@@ -30,7 +30,7 @@ struct StartOptions {
   /// within some collisions; at distances of a box they are correlated until bodies have diffused by their length, so
   /// that large starts, too, need their equilibration. Mixtures of many species with few bodies each, and boxes that
   /// would be too small for nearest images, are not repeated as often.
-  int most_compressed = 4000;
+  int most_compressed = 2000;
 };
 
 /// Which lattice the bodies are placed on. Its cubic cell is stretched along the edges of the box to the proportions of

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <ed/simulation.h>
+#include <ed/system.h>
+
+#include <Eigen/Core>
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace hardbody {
+
+/// What the bodies of one type are, as a trajectory says it.
+struct FrameType {
+  std::string name;
+  std::optional<ed::BodyShape> shape;  ///< nothing: not said, or none that can move here
+};
+
+/// One body of a frame. World frame.
+struct FrameBody {
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();   ///< wrapped into the box, whose middle is the origin
+  Eigen::Vector3d unwrapped = Eigen::Vector3d::Zero();  ///< continuous across the box's faces, if images were stored
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
+  Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();
+  double mass = 1;
+  Eigen::Vector3d inertia = Eigen::Vector3d::Zero();  ///< principal moments about body x, y, z; 0: not known
+  std::uint32_t type = 0;                             ///< number in Frame::types
+  std::uint32_t group = 0;                            ///< species of the config; that of another program: the type
+};
+
+/// All bodies at one time: what a trajectory holds of it.
+struct Frame {
+  std::uint64_t step = 0;  ///< of ours: the frame's number
+  /// Since production began; NaN: not stored.
+  double time = std::numeric_limits<double>::quiet_NaN();
+  Eigen::Vector3d box = Eigen::Vector3d::Zero();  ///< edge lengths
+  std::vector<FrameType> types;
+  std::vector<FrameBody> bodies;
+  bool images = false;  ///< unwrapped positions are known
+  // NaN where they are not known.
+  double energy = std::numeric_limits<double>::quiet_NaN();  ///< kinetic, kT
+  double Z = std::numeric_limits<double>::quiet_NaN();       ///< since production began; of its first moment: NaN
+  double S = std::numeric_limits<double>::quiet_NaN();       ///< nematic order of this frame
+  /// Of our own trajectories: the state itself, to every bit, with the species that belong to it.
+  std::optional<ed::System> exact;
+};
+
+/// The simulation now. `groups`: how many bodies each species of the config has, one after the other.
+Frame frame_of(const ed::Simulation& simulation, const std::vector<int>& groups, std::uint64_t number);
+
+/// The frame of a state by itself.
+Frame frame_of(const ed::System& system, const std::vector<int>& groups);
+
+}  // namespace hardbody

@@ -1,0 +1,611 @@
+#include "gsd_frames.h"
+
+#include "errors.h"
+#include "json_member.h"
+#include "text_file.h"
+#include "type_shapes.h"
+#include "version.h"
+
+#include <ed/internal/archive.h>
+
+#include <Eigen/Geometry>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+
+namespace hardbody {
+namespace {
+
+using ed::internal::Reader;
+using ed::internal::Writer;
+using Eigen::Matrix3d;
+using Eigen::Quaterniond;
+using Eigen::Vector3d;
+
+constexpr std::uint32_t kSchemaVersion = 0x00010004;
+constexpr std::uint32_t kMostTypes = 1'000'000;
+/// A stored quaternion's length may be off 1 by this: 32-bit numbers, integrated by another program.
+constexpr double kQuaternionTolerance = 1e-4;
+/// A coordinate within a box and so many edges of it is a position; beyond, an image's number would overflow.
+constexpr double kMostImages = 1e9;
+
+/// Every array that is written, in the order of its number: first what is in frame 0 only.
+enum Name : std::uint16_t {
+  kDimensions,
+  kBox,
+  kNumber,
+  kTypes,
+  kTypeShapes,
+  kTypeId,
+  kMass,
+  kInertia,
+  kExactBox,
+  kExactSpecies,
+  kGroup,
+  kStep,  // from here on in every frame
+  kPosition,
+  kOrientation,
+  kVelocity,
+  kAngularMomentum,
+  kImage,
+  kEnergy,
+  kZ,
+  kS,
+  kExactPosition,
+  kExactRotation,
+  kExactVelocity,
+  kExactAngularVelocity,
+  kTime,  // the last: a frame with it is whole
+  kNames,
+};
+
+constexpr std::array<const char*, kNames> kNameTexts = {
+    "configuration/dimensions",
+    "configuration/box",
+    "particles/N",
+    "particles/types",
+    "particles/type_shapes",
+    "particles/typeid",
+    "particles/mass",
+    "particles/moment_inertia",
+    "log/hardbody/box",
+    "log/hardbody/species",
+    "log/particles/hardbody/group",
+    "configuration/step",
+    "particles/position",
+    "particles/orientation",
+    "particles/velocity",
+    "particles/angmom",
+    "particles/image",
+    "log/hardbody/energy",
+    "log/hardbody/Z",
+    "log/hardbody/S",
+    "log/particles/hardbody/position",
+    "log/particles/hardbody/rotation",
+    "log/particles/hardbody/velocity",
+    "log/particles/hardbody/angular_velocity",
+    "log/hardbody/time",
+};
+
+/// A row of log/hardbody/species.
+constexpr std::uint32_t kSpeciesColumns = 11;
+
+template <class T>
+constexpr GsdType kTypeOf = GsdType::uint8;
+template <>
+constexpr GsdType kTypeOf<std::uint32_t> = GsdType::uint32;
+template <>
+constexpr GsdType kTypeOf<std::uint64_t> = GsdType::uint64;
+template <>
+constexpr GsdType kTypeOf<std::int32_t> = GsdType::int32;
+template <>
+constexpr GsdType kTypeOf<float> = GsdType::float32;
+template <>
+constexpr GsdType kTypeOf<double> = GsdType::float64;
+
+// ---- Writing
+
+template <class T>
+GsdArray array_of(Name name, const std::vector<T>& numbers, std::uint32_t columns = 1) {
+  Writer writer;
+  for (const T& x : numbers) writer(x);
+  return {name, kTypeOf<T>, numbers.size() / columns, columns, writer.take()};
+}
+
+/// A number a body for every number that `get` gives.
+template <class T, class Get>
+GsdArray body_array(Name name, const Frame& frame, std::uint32_t columns, const Get& get) {
+  std::vector<T> numbers;
+  numbers.reserve(frame.bodies.size() * columns);
+  for (const FrameBody& body : frame.bodies) {
+    const auto values = get(body);
+    for (std::uint32_t k = 0; k < columns; ++k) numbers.push_back(static_cast<T>(values[k]));
+  }
+  return array_of(name, numbers, columns);
+}
+
+/// Texts as rows of equal length, each with a 0 at its end.
+GsdArray text_array(Name name, const std::vector<std::string>& texts) {
+  std::size_t longest = 0;
+  for (const std::string& text : texts) longest = std::max(longest, text.size());
+  std::string bytes;
+  for (const std::string& text : texts) bytes += text + std::string(longest + 1 - text.size(), '\0');
+  return {name, GsdType::int8, texts.size(), static_cast<std::uint32_t>(longest + 1), std::move(bytes)};
+}
+
+/// A position as the schema wants it, -L/2 <= x < L/2 as a 32-bit number, and the image it is in.
+struct Wrapped {
+  std::array<float, 3> position;
+  std::array<std::int32_t, 3> image;
+};
+
+Wrapped wrapped(const FrameBody& body, const Vector3d& box) {
+  Wrapped result{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto i = static_cast<Eigen::Index>(k);
+    const auto half = static_cast<float>(box[i]) / 2;
+    double images = std::round((body.unwrapped[i] - body.position[i]) / box[i]);
+    auto x = static_cast<float>(body.position[i]);
+    if (x >= half) {  // by rounding, or on the face itself
+      x = -half;
+      ++images;
+    }
+    result.position[k] = std::max(x, -half);
+    result.image[k] = static_cast<std::int32_t>(images);
+  }
+  return result;
+}
+
+std::array<double, 4> quaternion(const Matrix3d& rotation) {
+  const Quaterniond q = Quaterniond(rotation).normalized();
+  return {q.w(), q.x(), q.y(), q.z()};
+}
+
+/// HOOMD's: 2 q (0, L), L along the body's axes.
+std::array<double, 4> angular_momentum(const FrameBody& body) {
+  const Vector3d L = body.inertia.cwiseProduct(body.rotation.transpose() * body.angular_velocity);
+  const Quaterniond q = Quaterniond(body.rotation).normalized() * Quaterniond(0, L.x(), L.y(), L.z());
+  return {2 * q.w(), 2 * q.x(), 2 * q.y(), 2 * q.z()};
+}
+
+GsdArray species_array(const ed::System& system) {
+  std::vector<double> rows;
+  for (const ed::Species& s : system.species) {
+    const auto* barr = std::get_if<geom::Superellipsoid>(&s.shape);
+    const auto* ellipsoid = std::get_if<geom::Ellipsoid>(&s.shape);
+    if (barr == nullptr && ellipsoid == nullptr) throw std::logic_error("a user's own shape in a trajectory");
+    const Vector3d a = barr != nullptr ? barr->semi_axes() : ellipsoid->semi_axes();
+    const double e1 = barr != nullptr ? barr->e1() : 1;
+    const double e2 = barr != nullptr ? barr->e2() : 1;
+    rows.insert(rows.end(), {barr != nullptr ? 1.0 : 0.0, a.x(), a.y(), a.z(), e1, e2, s.mass, s.inertia.x(),
+                             s.inertia.y(), s.inertia.z(), s.spins ? 1.0 : 0.0});
+  }
+  return array_of(kExactSpecies, rows, kSpeciesColumns);
+}
+
+std::vector<GsdArray> constant_arrays(const Frame& frame) {
+  const auto edge = [&](int k) { return static_cast<float>(frame.box[k]); };
+  std::vector<std::string> names;
+  std::vector<std::string> shapes;
+  for (const FrameType& type : frame.types) {
+    names.push_back(type.name);
+    shapes.push_back(type_shape_json(type.shape, frame.types.size()));
+  }
+  const auto one = [](auto x) { return std::array{x}; };
+  return {
+      {kDimensions, GsdType::uint8, 1, 1, std::string(1, '\3')},
+      array_of(kBox, std::vector<float>{edge(0), edge(1), edge(2), 0, 0, 0}),
+      array_of(kNumber, std::vector{static_cast<std::uint32_t>(frame.bodies.size())}),
+      text_array(kTypes, names),
+      text_array(kTypeShapes, shapes),
+      body_array<std::uint32_t>(kTypeId, frame, 1, [&](const FrameBody& b) { return one(b.type); }),
+      body_array<float>(kMass, frame, 1, [&](const FrameBody& b) { return one(b.mass); }),
+      body_array<float>(kInertia, frame, 3, [](const FrameBody& b) { return b.inertia; }),
+      array_of(kExactBox, std::vector{frame.exact->box}),
+      species_array(*frame.exact),
+      body_array<std::uint32_t>(kGroup, frame, 1, [&](const FrameBody& b) { return one(b.group); }),
+  };
+}
+
+/// The doubles of the state.
+template <class Get>
+GsdArray exact_array(Name name, const ed::System& system, std::uint32_t columns, const Get& get) {
+  Writer writer;
+  for (const ed::Body& body : system.bodies) writer(get(body));
+  return {name, GsdType::float64, system.bodies.size(), columns, writer.take()};
+}
+
+std::vector<GsdArray> moving_arrays(const Frame& frame) {
+  const ed::System& system = *frame.exact;
+  return {
+      array_of(kStep, std::vector{frame.step}),
+      body_array<float>(kPosition, frame, 3, [&](const FrameBody& b) { return wrapped(b, frame.box).position; }),
+      body_array<float>(kOrientation, frame, 4, [](const FrameBody& b) { return quaternion(b.rotation); }),
+      body_array<float>(kVelocity, frame, 3, [](const FrameBody& b) { return b.velocity; }),
+      body_array<float>(kAngularMomentum, frame, 4, angular_momentum),
+      body_array<std::int32_t>(kImage, frame, 3, [&](const FrameBody& b) { return wrapped(b, frame.box).image; }),
+      array_of(kEnergy, std::vector{frame.energy}),
+      array_of(kZ, std::vector{frame.Z}),
+      array_of(kS, std::vector{frame.S}),
+      exact_array(kExactPosition, system, 3, [](const ed::Body& b) { return b.position; }),
+      exact_array(kExactRotation, system, 9, [](const ed::Body& b) -> Matrix3d { return b.rotation.transpose(); }),
+      exact_array(kExactVelocity, system, 3, [](const ed::Body& b) { return b.velocity; }),
+      exact_array(kExactAngularVelocity, system, 3, [](const ed::Body& b) { return b.angular_velocity; }),
+      array_of(kTime, std::vector{frame.time}),
+  };
+}
+
+GsdHead head_for(std::uint64_t capacity) {
+  GsdHead head;
+  head.application = fmt::format("hardbody {}", version());
+  head.schema = "hoomd";
+  head.schema_version = kSchemaVersion;
+  head.names.assign(kNameTexts.begin(), kNameTexts.end());
+  head.entries = kStep + capacity * (kNames - kStep);
+  return head;
+}
+
+/// Entries in the index of so many frames.
+std::uint64_t entries_of(std::uint64_t frames) {
+  return frames == 0 ? 0 : kStep + frames * (kNames - kStep);
+}
+
+}  // namespace
+
+GsdWriter::GsdWriter(std::filesystem::path path, std::uint64_t capacity)
+    : path_(std::move(path)), capacity_(capacity) {}
+
+void GsdWriter::open(FileMark mark) {
+  mark_ = mark;
+  if (mark.frames == 0) return;
+  // First the entries: they must not point to what is no longer there.
+  const std::uint64_t from = entries_of(mark.frames);
+  overwrite_at(path_, GsdHead::entry_location(from),
+               std::string(GsdHead::entry_location(entries_of(capacity_)) - GsdHead::entry_location(from), '\0'));
+  write_at(path_, mark.bytes, "");
+}
+
+void GsdWriter::append(const Frame& frame) {
+  const bool first = mark_.frames == 0;
+  const GsdHead head = head_for(capacity_);
+  std::vector<GsdArray> arrays = first ? constant_arrays(frame) : std::vector<GsdArray>();
+  for (GsdArray& array : moving_arrays(frame)) arrays.push_back(std::move(array));
+  const std::uint64_t location = first ? head.size() : mark_.bytes;
+  const GsdFrameBytes bytes = gsd_frame_bytes(mark_.frames, arrays, location);
+  if (first) {
+    write_file(path_, head.bytes() + bytes.data);  // renamed: never a head that is not whole
+  } else {
+    write_at(path_, mark_.bytes, bytes.data, Flush::later);
+  }
+  overwrite_at(path_, GsdHead::entry_location(entries_of(mark_.frames)), bytes.index, Flush::later);
+  mark_.bytes = location + bytes.data.size();
+  ++mark_.frames;
+}
+
+// ---- Reading
+
+namespace {
+
+/// What reads one frame of a file.
+class FrameReader {
+ public:
+  FrameReader(const GsdFile& file, std::uint64_t k) : file_(file), k_(k) {}
+
+  /// A frame without its exact state.
+  Frame read();
+  /// The state that belongs to it.
+  ed::System read_exact();
+
+ private:
+  InputError bad(const std::string& what, const std::string& accepted) const {
+    return InputError(fmt::format("{}: frame {}: {}; accepted: {}", file_.name(), k_, what, accepted));
+  }
+
+  /// Absent from this frame an array is that of frame 0, if there are as many rows in it; null: the default.
+  const GsdChunk* find(const std::string& name, std::uint64_t rows, std::uint32_t columns, GsdType type) const;
+  /// Its numbers; empty: the default.
+  template <class T>
+  std::vector<T> numbers(const std::string& name, std::uint64_t rows, std::uint32_t columns) const;
+  /// The same; finite numbers.
+  template <class T>
+  std::vector<T> finite(const std::string& name, std::uint64_t rows, std::uint32_t columns) const;
+  template <class T>
+  T scalar(const std::string& name, T missing) const;
+  std::vector<std::string> texts(const std::string& name) const;
+  std::vector<double> exact(Name name, std::uint64_t rows, std::uint32_t columns) const;
+
+  void read_box(Frame& frame) const;
+  void read_types(Frame& frame) const;
+  void read_bodies(Frame& frame) const;
+  void read_motion(Frame& frame) const;
+  Matrix3d rotation(const Eigen::Vector4d& q, std::size_t body) const;
+  std::vector<ed::Species> read_species() const;
+
+  const GsdFile& file_;
+  std::uint64_t k_;
+};
+
+const GsdChunk* FrameReader::find(const std::string& name, std::uint64_t rows, std::uint32_t columns,
+                                  GsdType type) const {
+  const auto fits = [&](const GsdChunk& chunk) { return chunk.rows == rows && chunk.columns == columns; };
+  const GsdChunk* chunk = file_.find(k_, name);
+  if (chunk == nullptr) {
+    chunk = file_.find(0, name);
+    if (chunk == nullptr || !fits(*chunk)) return nullptr;
+  }
+  if (!fits(*chunk) || chunk->type != type) {
+    throw bad(fmt::format("{} is {} x {} numbers of type {}", name, chunk->rows, chunk->columns,
+                          static_cast<int>(chunk->type)),
+              fmt::format("{} x {} of type {}", rows, columns, static_cast<int>(type)));
+  }
+  return chunk;
+}
+
+template <class T>
+std::vector<T> FrameReader::numbers(const std::string& name, std::uint64_t rows, std::uint32_t columns) const {
+  const GsdChunk* chunk = find(name, rows, columns, kTypeOf<T>);
+  if (chunk == nullptr) return {};
+  const std::string bytes = file_.read(*chunk);
+  Reader reader(bytes);
+  std::vector<T> result(bytes.size() / sizeof(T));
+  for (T& x : result) reader(x);
+  return result;
+}
+
+template <class T>
+std::vector<T> FrameReader::finite(const std::string& name, std::uint64_t rows, std::uint32_t columns) const {
+  std::vector<T> result = numbers<T>(name, rows, columns);
+  for (std::size_t k = 0; k < result.size(); ++k) {
+    if (std::isfinite(result[k])) continue;
+    throw bad(fmt::format("{} of body {} is {}", name, k / columns, result[k]), "finite numbers");
+  }
+  return result;
+}
+
+template <class T>
+T FrameReader::scalar(const std::string& name, T missing) const {
+  const std::vector<T> result = numbers<T>(name, 1, 1);
+  return result.empty() ? missing : result[0];
+}
+
+/// The rows of an array of texts.
+std::vector<std::string> FrameReader::texts(const std::string& name) const {
+  const GsdChunk* chunk = file_.find(k_, name);
+  if (chunk == nullptr) chunk = file_.find(0, name);
+  if (chunk == nullptr) return {};
+  if (size_of(chunk->type) != 1) throw bad(name + " is not text", "bytes");
+  if (chunk->rows > kMostTypes) throw bad(fmt::format("{} has {} rows", name, chunk->rows), "at most 10^6");
+  const std::string bytes = file_.read(*chunk);
+  std::vector<std::string> result;
+  for (std::size_t at = 0; at < bytes.size(); at += chunk->columns) {
+    const std::string row = bytes.substr(at, chunk->columns);
+    result.push_back(row.substr(0, std::min(row.find('\0'), row.size())));
+  }
+  return result;
+}
+
+void FrameReader::read_box(Frame& frame) const {
+  const GsdChunk* dimensions = find("configuration/dimensions", 1, 1, GsdType::uint8);
+  if (dimensions != nullptr && file_.read(*dimensions)[0] != '\3') throw bad("is not of three dimensions", "three");
+  std::vector<float> box = finite<float>("configuration/box", 6, 1);
+  if (box.empty()) box = {1, 1, 1, 0, 0, 0};
+  if (box[3] != 0 || box[4] != 0 || box[5] != 0) throw bad("its box is tilted", "a box with right angles");
+  for (int i = 0; i < 3; ++i) {
+    frame.box[i] = box[static_cast<std::size_t>(i)];
+    if (!(frame.box[i] > 0)) throw bad(fmt::format("its box has an edge of {}", frame.box[i]), "edges above 0");
+  }
+}
+
+void FrameReader::read_types(Frame& frame) const {
+  std::vector<std::string> names = texts("particles/types");
+  if (names.empty()) names = {"A"};
+  const std::vector<std::string> shapes = texts("particles/type_shapes");
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    frame.types.push_back({names[k], std::nullopt});
+    if (k >= shapes.size()) continue;
+    try {
+      frame.types.back().shape = read_type_shape(shapes[k]);
+    } catch (const InputError& error) {
+      throw InputError(fmt::format("{}: frame {}: the shape of type {}: {}", file_.name(), k_, k, error.what()));
+    }
+  }
+}
+
+Matrix3d FrameReader::rotation(const Eigen::Vector4d& q, std::size_t body) const {
+  const double length = q.norm();
+  if (!(std::abs(length - 1) <= kQuaternionTolerance)) {
+    throw bad(fmt::format("the orientation of body {} is a quaternion of length {:g}", body, length),
+              fmt::format("1 within {:g}", kQuaternionTolerance));
+  }
+  return geom::Pose::from_quaternion(q[0] / length, q[1] / length, q[2] / length, q[3] / length).rotation();
+}
+
+void FrameReader::read_bodies(Frame& frame) const {
+  const auto number = std::uint64_t{scalar<std::uint32_t>("particles/N", 0)};
+  if (number == 0) throw bad("has no bodies", "at least 1");
+  const std::vector<float> position = finite<float>("particles/position", number, 3);
+  if (position.empty()) throw bad(fmt::format("has no positions of its {} bodies", number), "particles/position");
+  const std::vector<float> orientation = finite<float>("particles/orientation", number, 4);
+  const std::vector<std::int32_t> image = numbers<std::int32_t>("particles/image", number, 3);
+  frame.images = !image.empty();
+  frame.bodies.resize(number);
+  for (std::size_t i = 0; i < number; ++i) {
+    FrameBody& body = frame.bodies[i];
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto e = static_cast<Eigen::Index>(k);
+      const double x = position[3 * i + k];
+      const double away = std::round(x / frame.box[e]);
+      if (!(std::abs(away) < kMostImages)) throw bad(fmt::format("body {} is at {:g}", i, x), "positions in the box");
+      body.position[e] = x - away * frame.box[e];
+      body.unwrapped[e] = image.empty() ? x : x + image[3 * i + k] * frame.box[e];
+    }
+    if (orientation.empty()) continue;
+    const float* q = orientation.data() + 4 * i;
+    body.rotation = rotation({q[0], q[1], q[2], q[3]}, i);
+  }
+}
+
+void FrameReader::read_motion(Frame& frame) const {
+  const std::uint64_t number = frame.bodies.size();
+  const std::vector<std::uint32_t> type = numbers<std::uint32_t>("particles/typeid", number, 1);
+  const std::vector<std::uint32_t> group = numbers<std::uint32_t>(kNameTexts[kGroup], number, 1);
+  const std::vector<float> mass = finite<float>("particles/mass", number, 1);
+  const std::vector<float> inertia = finite<float>("particles/moment_inertia", number, 3);
+  const std::vector<float> velocity = finite<float>("particles/velocity", number, 3);
+  const std::vector<float> angmom = finite<float>("particles/angmom", number, 4);
+  for (std::size_t i = 0; i < number; ++i) {
+    FrameBody& body = frame.bodies[i];
+    if (!type.empty()) body.type = type[i];
+    if (body.type >= frame.types.size()) {
+      throw bad(fmt::format("body {} is of type {}", i, body.type), fmt::format("below {}", frame.types.size()));
+    }
+    body.group = group.empty() ? body.type : group[i];
+    if (!mass.empty()) body.mass = mass[i];
+    if (!inertia.empty()) body.inertia = {inertia[3 * i], inertia[3 * i + 1], inertia[3 * i + 2]};
+    if (!velocity.empty()) body.velocity = {velocity[3 * i], velocity[3 * i + 1], velocity[3 * i + 2]};
+    if (angmom.empty()) continue;
+    const float* p = angmom.data() + 4 * i;
+    const Quaterniond q(body.rotation);
+    const Vector3d L = 0.5 * (q.conjugate() * Quaterniond(p[0], p[1], p[2], p[3])).vec();
+    Vector3d omega = Vector3d::Zero();
+    for (int k = 0; k < 3; ++k) omega[k] = body.inertia[k] > 0 ? L[k] / body.inertia[k] : 0;
+    body.angular_velocity = body.rotation * omega;
+  }
+}
+
+Frame FrameReader::read() {
+  Frame frame;
+  constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+  frame.step = scalar<std::uint64_t>("configuration/step", 0);
+  frame.time = scalar(kNameTexts[kTime], kMissing);
+  frame.energy = scalar(kNameTexts[kEnergy], kMissing);
+  frame.Z = scalar(kNameTexts[kZ], kMissing);
+  frame.S = scalar(kNameTexts[kS], kMissing);
+  read_box(frame);
+  read_types(frame);
+  read_bodies(frame);
+  read_motion(frame);
+  return frame;
+}
+
+std::vector<double> FrameReader::exact(Name name, std::uint64_t rows, std::uint32_t columns) const {
+  std::vector<double> result = finite<double>(kNameTexts[name], rows, columns);
+  if (result.empty()) throw bad(fmt::format("{} is missing", kNameTexts[name]), "a whole frame of hardbody");
+  return result;
+}
+
+std::vector<ed::Species> FrameReader::read_species() const {
+  const GsdChunk* chunk = file_.find(k_, kNameTexts[kExactSpecies]);
+  if (chunk == nullptr) chunk = file_.find(0, kNameTexts[kExactSpecies]);
+  const std::uint64_t rows = chunk == nullptr ? 0 : chunk->rows;
+  if (rows == 0 || rows > kMostTypes) throw bad(fmt::format("has {} species", rows), "1 to 10^6");
+  const std::vector<double> numbers = exact(kExactSpecies, rows, kSpeciesColumns);
+  std::vector<ed::Species> list;
+  for (std::size_t k = 0; k < rows; ++k) {
+    const double* row = numbers.data() + k * kSpeciesColumns;
+    ed::Species& species = list.emplace_back();
+    try {
+      const Vector3d a(row[1], row[2], row[3]);
+      if (row[0] == 0) species.shape = geom::Ellipsoid(a);
+      if (row[0] == 1) species.shape = geom::Superellipsoid(a, row[4], row[5]);
+      if (row[0] != 0 && row[0] != 1) throw std::invalid_argument("a kind of shape that there is not");
+      species.mass = row[6];
+      species.inertia = {row[7], row[8], row[9]};
+      species.spins = row[10] != 0;
+      ed::check_species(species);
+    } catch (const std::invalid_argument& error) {
+      throw bad(fmt::format("species {}: {}", k, one_line(error.what())), "a species of hardbody");
+    }
+  }
+  return list;
+}
+
+ed::System FrameReader::read_exact() {
+  ed::System system;
+  system.box = exact(kExactBox, 1, 1)[0];
+  if (!(system.box > 0)) throw bad(fmt::format("its box has edges of {:g}", system.box), "a positive number");
+  system.species = read_species();
+  const auto number = std::uint64_t{scalar<std::uint32_t>("particles/N", 0)};
+  const std::vector<std::uint32_t> type = numbers<std::uint32_t>("particles/typeid", number, 1);
+  const std::vector<double> position = exact(kExactPosition, number, 3);
+  const std::vector<double> rotation = exact(kExactRotation, number, 9);
+  const std::vector<double> velocity = exact(kExactVelocity, number, 3);
+  const std::vector<double> omega = exact(kExactAngularVelocity, number, 3);
+  if (type.empty()) throw bad("particles/typeid is missing", "a whole frame of hardbody");
+  for (std::size_t i = 0; i < number; ++i) {
+    ed::Body& body = system.bodies.emplace_back();
+    body.position = Eigen::Map<const Vector3d>(position.data() + 3 * i);
+    body.rotation = Eigen::Map<const Matrix3d>(rotation.data() + 9 * i).transpose();
+    body.velocity = Eigen::Map<const Vector3d>(velocity.data() + 3 * i);
+    body.angular_velocity = Eigen::Map<const Vector3d>(omega.data() + 3 * i);
+    body.species = static_cast<int>(type[i]);
+    if (type[i] >= system.species.size()) {
+      throw bad(fmt::format("body {} is of type {}", i, type[i]), fmt::format("below {}", system.species.size()));
+    }
+    // Beyond its box by no more than rounding.
+    if (!(body.position.cwiseAbs().maxCoeff() <= 0.5 * system.box * (1 + 1e-12))) {
+      throw bad(fmt::format("body {} is outside the box", i), "a whole frame of hardbody");
+    }
+    try {
+      (void)geom::Pose(body.rotation, body.position);
+    } catch (const std::invalid_argument& error) {
+      throw bad(fmt::format("body {}: {}", i, one_line(error.what())), "positions and rotations");
+    }
+  }
+  return system;
+}
+
+/// The numbers of the state in place of the rounded ones.
+void sharpen(Frame& frame, const ed::System& system) {
+  frame.box = Vector3d::Constant(system.box);
+  for (std::size_t k = 0; k < system.species.size() && k < frame.types.size(); ++k) {
+    frame.types[k].shape = system.species[k].shape;
+  }
+  for (std::size_t i = 0; i < frame.bodies.size(); ++i) {
+    FrameBody& body = frame.bodies[i];
+    const ed::Body& exact = system.bodies[i];
+    const ed::Species& species = system.species_of(static_cast<int>(i));
+    for (int k = 0; k < 3; ++k) {
+      const double images = std::round((body.unwrapped[k] - exact.position[k]) / system.box);
+      body.unwrapped[k] = exact.position[k] + images * system.box;
+    }
+    body.position = exact.position;
+    body.rotation = exact.rotation;
+    body.velocity = exact.velocity;
+    body.angular_velocity = exact.angular_velocity;
+    body.mass = species.mass;
+    body.inertia = species.inertia;
+  }
+}
+
+}  // namespace
+
+GsdReader::GsdReader(const std::filesystem::path& path) : GsdReader(open_gsd_bytes(path), path.string()) {}
+
+GsdReader::GsdReader(std::unique_ptr<GsdBytes> bytes, std::string name)
+    : file_(std::move(bytes), std::move(name)), exact_(file_.has_name(kNameTexts[kTime])) {
+  if (file_.schema() != "hoomd") {
+    throw InputError(
+        fmt::format("{}: is of schema \"{}\"; accepted: \"hoomd\"", file_.name(), one_line(file_.schema(), 64)));
+  }
+  std::uint64_t whole = file_.frame_count();
+  while (exact_ && whole > 0 && file_.find(whole - 1, kNameTexts[kTime]) == nullptr) --whole;
+  file_.keep_frames(whole);
+}
+
+Frame GsdReader::read(std::uint64_t k) const {
+  FrameReader reader(file_, k);
+  Frame frame = reader.read();
+  if (!exact_) return frame;
+  frame.exact = reader.read_exact();
+  sharpen(frame, *frame.exact);
+  return frame;
+}
+
+}  // namespace hardbody

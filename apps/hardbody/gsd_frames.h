@@ -1,0 +1,66 @@
+#pragma once
+
+#include "frame.h"
+#include "frame_file.h"
+#include "gsd_file.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+namespace hardbody {
+
+/// Trajectories as GSD files of schema `hoomd` 1.4, which HOOMD-blue, OVITO, freud and MDAnalysis read.
+///
+/// Positions, orientations (w, x, y, z), velocities, angular momenta and images are 32-bit numbers there. Beside them,
+/// under log/, ours hold the state in the program's own doubles, from which `Frame::exact` comes back to every bit:
+///
+///     log/hardbody/time (last array of every frame: one without it is not whole), energy, Z, S
+///     log/hardbody/box
+///     log/hardbody/species             a row a type: kind (0 ellipsoid, 1 superellipsoid), semi-axes, e1, e2, mass,
+///                                      moments, spins (0 or 1)
+///     log/particles/hardbody/group     the species of the config
+///     log/particles/hardbody/position, rotation (a row after the other), velocity, angular_velocity
+///
+/// What does not change is in frame 0 only, as the schema has it.
+
+/// Reads any file of that schema, ours or not. Throws InputError, `name: what; accepted: ..`.
+class GsdReader {
+ public:
+  explicit GsdReader(const std::filesystem::path& path);
+  GsdReader(std::unique_ptr<GsdBytes> bytes, std::string name);
+
+  const std::string& name() const { return file_.name(); }
+  const std::string& application() const { return file_.application(); }
+  /// Whether the frames have their state to every bit.
+  bool exact() const { return exact_; }
+
+  /// Whole ones.
+  std::uint64_t frame_count() const { return file_.frame_count(); }
+
+  /// Frame k < frame_count(). Numbers that are not finite, orientations that are none, types that there are not: all
+  /// are refused.
+  Frame read(std::uint64_t k) const;
+
+ private:
+  GsdFile file_;
+  bool exact_;
+};
+
+/// A frame shows only once it is whole.
+class GsdWriter final : public FrameFile {
+ public:
+  /// Of `capacity` frames at most. Nothing is written yet.
+  GsdWriter(std::filesystem::path path, std::uint64_t capacity);
+
+  void open(FileMark mark) override;
+  void append(const Frame& frame) override;
+  FileMark mark() const override { return mark_; }
+
+ private:
+  std::filesystem::path path_;
+  std::uint64_t capacity_;
+  FileMark mark_;
+};
+
+}  // namespace hardbody
