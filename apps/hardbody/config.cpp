@@ -3,6 +3,7 @@
 #include "config_species.h"
 #include "config_values.h"
 #include "errors.h"
+#include "start_file.h"
 #include "suggest.h"
 #include "text_file.h"
 #include "toml_document.h"
@@ -27,15 +28,18 @@ constexpr std::int64_t kMostFrames = 100'000;      ///< there is room for all of
 constexpr double kLongestTime = 1e9;
 constexpr double kLeastPacking = 1e-9;
 
-constexpr std::array<std::string_view, 7> kSections = {"system",        "shape",      "species", "dynamics",
-                                                       "equilibration", "production", "output"};
-constexpr std::array<std::string_view, 34> kKeys = {
+constexpr std::array<std::string_view, 8> kSections = {"system",   "start",         "shape",      "species",
+                                                       "dynamics", "equilibration", "production", "output"};
+constexpr std::array<std::string_view, 37> kKeys = {
     "seed",
     "system.number",
     "system.packing_fraction",
     "system.start",
     "system.nematic_order",
     "system.start_from",
+    "start.file",
+    "start.frame",
+    "start.mend",
     "shape.kind",
     "shape.aspect_ratio",
     "shape.semi_axes",
@@ -104,7 +108,7 @@ void check_sections(const TomlDocument& document) {
     }
     const auto nearest = nearest_name(name, kSections);
     throw InputError(
-        fmt::format("{}: unknown section [{}]{}; accepted: [system], [shape] or [[species]], [dynamics], "
+        fmt::format("{}: unknown section [{}]{}; accepted: [system], [start], [shape] or [[species]], [dynamics], "
                     "[equilibration], [production], [output]",
                     section.where, one_line(name, 40), nearest ? fmt::format(", did you mean [{}]?", *nearest) : ""));
   }
@@ -181,7 +185,7 @@ void read_time(const TomlDocument& document, std::string_view key, bool zero, st
 
 void read_times(const TomlDocument& document, Config& config) {
   read_time(document, "equilibration.time", true, config.equilibration_time);
-  read_time(document, "production.time", false, config.production_time);
+  read_time(document, "production.time", true, config.production_time);
   if (const Entry* cap = document.find("equilibration.cap")) {
     if (!is_number(cap->value) || !(cap->value.real >= 1 && cap->value.real <= kLongestTime)) {
       throw bad(*cap, fmt::format("a number from 1 to {:g} (time unit l sqrt(m/kT))", kLongestTime));
@@ -202,7 +206,7 @@ void read_origin(const TomlDocument& document, Config& config) {
   const Entry* from = document.find("system.start_from");
   if (from == nullptr) return;
   if (from->value.kind != Value::Kind::text || from->value.text.empty()) throw bad(*from, "the directory of a run");
-  for (const char* key : {"system.start", "system.nematic_order"}) {
+  for (const char* key : {"system.start", "system.nematic_order", "start.file"}) {
     const Entry* other = document.find(key);
     const bool is_default = other != nullptr && other->key == "system.start" && other->value.text == "random";
     if (other != nullptr && !is_default) throw bad(*other, fmt::format("no key {} beside start_from", key));
@@ -229,13 +233,15 @@ void read_start(const TomlDocument& document, Config& config) {
 constexpr double kDensestLattice = 0.9999;
 
 void read_packing(const TomlDocument& document, Config& config) {
-  const double densest = config.lattice() ? kDensestLattice : ed::densest_start(config.components());
+  const bool ordered = config.lattice() || config.start_file;
+  const double densest = ordered ? kDensestLattice : ed::densest_start(config.components());
   // Rounded down: the value that the message names is accepted.
   const std::string accepted =
       fmt::format("a number from {:g} to {:.4f} for {}", kLeastPacking, std::floor(densest * 1e4) / 1e4,
-                  config.lattice() ? "a lattice"
-                  : config.mixture ? "these shapes"
-                                   : "this shape");
+                  config.start_file  ? "a start from a file"
+                  : config.lattice() ? "a lattice"
+                  : config.mixture   ? "these shapes"
+                                     : "this shape");
   const Entry* packing = document.find("system.packing_fraction");
   if (packing == nullptr) {
     throw InputError(
@@ -376,6 +382,21 @@ void read_output(const TomlDocument& document, Config& config) {
   }
 }
 
+/// The document with what it leaves to the file that it starts from.
+TomlDocument completed(const TomlDocument& document, const StartFile& start, const StartAdditions& more) {
+  TomlDocument whole = document;
+  TomlDocument added = read_toml(more.text, start.file, more.overrides);
+  for (Section& section : added.sections) {
+    section.where = start.file;
+    whole.sections.push_back(std::move(section));
+  }
+  for (Entry& entry : added.entries) {
+    entry.where = start.file;
+    whole.set(std::move(entry));
+  }
+  return whole;
+}
+
 }  // namespace
 
 std::vector<ed::Component> Config::components() const {
@@ -426,6 +447,11 @@ double Config::checkpoint_seconds() const {
 Config read_config(const TomlDocument& document) {
   check_names(document);
   Config config;
+  config.start_file = read_start_file(document);
+  if (config.start_file) {
+    const StartAdditions more = additions_from(*config.start_file, document);
+    if (!more.empty()) return read_config(completed(document, *config.start_file, more));
+  }
   read_integer(document, "seed", 0, std::numeric_limits<std::int64_t>::max(), config.seed);
   read_times(document, config);
   read_output(document, config);

@@ -59,6 +59,13 @@ struct SizeStatistics {
 };
 SizeStatistics statistics_of(const std::vector<double>& sizes);
 
+/// [start]: a state in a file.
+struct StartFile {
+  std::string file;                   ///< absolute
+  std::optional<std::int64_t> frame;  ///< nothing: the last
+  bool mend = false;                  ///< bodies that overlap are moved apart
+};
+
 /// A run's configuration, checked: every value is one that the run can use.
 struct Config {
   std::int64_t seed = 1;
@@ -69,6 +76,8 @@ struct Config {
   std::string start = "random";           ///< or "cubic", "fcc": on a lattice
   std::optional<std::string> start_from;  ///< directory of a run whose last state is compressed; instead of `start`
   std::optional<double> nematic_order;    ///< of the start; nothing: uniform orientations, or on a lattice aligned ones
+
+  std::optional<StartFile> start_file;  ///< instead of a start of the run's own
 
   // [shape], or one or more [[species]]
   bool mixture = false;  ///< [[species]]: lengths are taken as they are given

@@ -39,7 +39,7 @@ std::string time(const std::optional<double>& t) {
 
 /// A key with its comment, or a further line of the comment.
 std::string line(const char* key, const std::string& value, const char* comment) {
-  return fmt::format("{:<32}# {}\n", fmt::format("{} = {}", key, value), comment);
+  return fmt::format("{:<31} # {}\n", fmt::format("{} = {}", key, value), comment);
 }
 std::string more(std::string_view comment) {
   return fmt::format("{:<32}# {}\n", "", comment);
@@ -123,6 +123,7 @@ std::string species_text(const SpeciesConfig& species) {
 }
 
 std::string start_text(const Config& config) {
+  if (config.start_file) return "";
   std::string text =
       line("start", quoted(config.start), "at random and compressed; or on a lattice, \"cubic\" or \"fcc\",") +
       more("stretched to the bodies' proportions, the bodies aligned");
@@ -139,6 +140,14 @@ std::string start_text(const Config& config) {
             more("start_from = \"DIR\" instead: the last state of that run, compressed");
   }
   return text;
+}
+
+std::string start_file_text(const Config& config) {
+  if (!config.start_file) return "";
+  std::string text = "\n[start]\n" + line("file", quoted(config.start_file->file), "GSD, or LAMMPS text dump");
+  if (config.start_file->frame) text += line("frame", fmt::format("{}", *config.start_file->frame), "from 0");
+  return text + line("mend", config.start_file->mend ? "true" : "false",
+                     "overlaps, by scaling box and positions; else they are refused");
 }
 
 std::string bodies_text(const Config& config) {
@@ -206,7 +215,8 @@ std::string config_text(const Config& config, const std::string& header) {
          line("seed", fmt::format("{}", config.seed), "of the start: an integer, at least 0") + "\n[system]\n" +
          line("number", fmt::format("{}", config.number), "of bodies, in a periodic cubic box") +
          line("packing_fraction", toml_real(config.packing_fraction), "volume of the bodies / volume of the box") +
-         start_text(config) + bodies_text(config) + dynamics_text(config) + times_text(config) + output_text(config);
+         start_text(config) + start_file_text(config) + bodies_text(config) + dynamics_text(config) +
+         times_text(config) + output_text(config);
 }
 
 namespace {

@@ -2,7 +2,12 @@
 
 #include "frame_file.h"
 
+#include <cstdint>
 #include <filesystem>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 namespace hardbody {
 
@@ -24,6 +29,29 @@ class LammpsWriter final : public FrameFile {
  private:
   std::filesystem::path path_;
   FileMark mark_;
+};
+
+/// Reads dumps of our own and of LAMMPS: columns id, type, x y z (or xu yu zu, xs ys zs), quatw quati quatj quatk,
+/// shapex shapey shapez, SuperquadricRoundness.Phi .Theta, mass, vx vy vz, in any order; all but the positions may be
+/// missing, others are skipped. Throws InputError, `name: what; accepted: ..`.
+class LammpsReader {
+ public:
+  explicit LammpsReader(const std::filesystem::path& path);
+  LammpsReader(std::string text, std::string name);
+  LammpsReader(const LammpsReader&) = delete;
+  LammpsReader& operator=(const LammpsReader&) = delete;
+
+  /// Whole ones: the last may be cut off.
+  std::uint64_t frame_count() const { return frames_.size(); }
+
+  /// Frame k < frame_count(), the bodies in the order of their ids. Types are what type and shape make different,
+  /// groups what type alone does.
+  Frame read(std::uint64_t k) const;
+
+ private:
+  std::string name_;
+  std::string text_;
+  std::vector<std::string_view> frames_;  ///< of text_
 };
 
 }  // namespace hardbody

@@ -81,8 +81,9 @@ void add_map(CLI::App& app, Request& request) {
 }
 
 void add_check(CLI::App& app, Request& request) {
-  CLI::App* check = app.add_subcommand("check", "Audit a run's last state: overlaps, conservation, finite values");
-  check->add_option("DIR", request.check_path, "Run directory")->required();
+  CLI::App* check =
+      app.add_subcommand("check", "Audit a run's last state, or a trajectory: overlaps, conservation, finite values");
+  check->add_option("PATH", request.check_path, "Run directory, or trajectory FILE.gsd")->required();
 }
 
 void add_replay(CLI::App& app, Request& request) {

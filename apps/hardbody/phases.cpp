@@ -3,6 +3,7 @@
 #include "errors.h"
 #include "origin.h"
 #include "signals.h"
+#include "start_file.h"
 
 #include <ed/internal/archive_types.h>
 #include <ed/observables.h>
@@ -213,7 +214,7 @@ ed::Simulation restored_simulation(const Config& config, const Checkpoint& check
 ed::ObservablesOptions observables_options(const Config& config, const Production& production) {
   ed::ObservablesOptions options{};
   options.number = config.number;
-  options.duration = production.planned;
+  options.duration = production.planned > 0 ? production.planned : kLeastProduction;  // of none nothing is measured
   options.longest_lag = production.longest_lag;
   options.wave_numbers = production.wave_numbers;
   options.groups = config.groups();
@@ -236,6 +237,12 @@ ed::StartOptions start_options(const Config& config, const std::function<bool(do
 }  // namespace
 
 std::optional<ed::System> make_start(const Config& config, Progress& progress, Log& log) {
+  if (config.start_file) {
+    FileStart start = start_from_file(config);
+    log.line(start.report);
+    progress.say(start.report);
+    return std::move(start.system);
+  }
   if (const std::optional<ed::LatticeOptions> lattice = config.lattice()) {
     log.line(fmt::format("start: {} bodies on a lattice ({}) at packing fraction {:g}{}", config.number, config.start,
                          config.packing_fraction, order_text(config)));
@@ -373,7 +380,6 @@ ProductionRun begin_production(const Config& config, Equilibration equilibration
           : fmt::format("production: {:g} time units", production.planned));
   // A new simulation: its time starts at 0 and its counters count production only.
   ed::Simulation simulation(equilibration.system, config.simulation_options(equilibration.envelope));
-  equilibration.system = {};
   ProductionRun run{std::move(simulation),
                     ed::Observables(observables_options(config, production)),
                     EventsFile(directory, config.events),
@@ -429,6 +435,9 @@ void produce(const Config& config, ProductionRun& run, const FilesMark& files, P
   const auto seconds = [&] { return earlier + log.seconds() - clock; };
   run.events.open(files.events, run.simulation);
   run.trajectory.open(files.trajectory);
+  // Before a checkpoint can be made: none is without it.
+  run.trajectory.take_first(run.before.system, log);
+  run.before.system = {};
   progress.begin();
   Runner runner(run.simulation, "production", progress, saver, [&] {
     result.wall_seconds = seconds();

@@ -49,7 +49,7 @@ struct ProductionRun {
   ed::Observables observables;
   EventsFile events;
   Trajectory trajectory;
-  Equilibration before;  ///< without its system
+  Equilibration before;  ///< once production is under way, without its system
   Production result;
 };
 

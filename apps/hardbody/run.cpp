@@ -13,6 +13,7 @@
 #include "run_record.h"
 #include "saver.h"
 #include "signals.h"
+#include "start_file.h"
 #include "summary.h"
 #include "table.h"
 #include "text_file.h"
@@ -160,6 +161,8 @@ bool prepare(const Config& config, Continuation& at, Progress& progress, Saver& 
 void run_equilibration(const Config& config, const RunDirectory& directory, Continuation& at, RunRecord& record,
                        Progress& progress, Saver& saver, Log& log) {
   record.equilibration = equilibrate(config, *at.equilibration, progress, saver, log);
+  // Where nothing was to run the start itself, to the last bit.
+  if (config.equilibration_time == 0.0 && at.start) record.equilibration.system = *at.start;
   record.stall = at.equilibration->simulation.stall();
   // A state with an overlap is no start for a production run.
   const bool sound = defects(ed::audit(record.equilibration.system)).empty();
@@ -242,6 +245,8 @@ int run(const RunArguments& arguments) {
   install_signal_handlers();
   Config config = load_config(arguments.config, arguments.overrides);
   if (config.start_from) check_origin(arguments, config);
+  // What is wrong with the file is said before anything is written.
+  if (config.start_file) config.packing_fraction = ed::packing_fraction(start_from_file(config).system);
   const RunDirectory directory = create_directory(arguments, config);
   Log log(directory.file(kLogFile), Log::Begin::afresh);
   log.line(fmt::format("hardbody {}: {} with {}", version(), kConfigFile, arguments.config));

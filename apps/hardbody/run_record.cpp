@@ -24,7 +24,8 @@ double thermal_momentum(const ed::System& system) {
 }  // namespace
 
 const ed::System& RunRecord::last_state() const {
-  return production.planned > 0 ? production.system : equilibration.system;
+  // Production takes the system over, also one of length 0.
+  return production.system.bodies.empty() ? equilibration.system : production.system;
 }
 
 void audit_record(RunRecord& record) {

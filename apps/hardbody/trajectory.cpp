@@ -75,16 +75,20 @@ void Trajectory::open(const TrajectoryMark& mark) {
   }
 }
 
+void Trajectory::take_first(const ed::System& start, Log& log) {
+  if (taken_ == 0 && wanted_ > 0) add(frame_of(start, groups_), 0, log);
+}
+
 void Trajectory::take(const ed::Simulation& simulation, Log& log) {
-  add(simulation, next_time(), log);
+  add(frame_of(simulation, groups_, taken_), next_time(), log);
 }
 
 void Trajectory::take_last(const ed::Simulation& simulation, double time, Log& log) {
-  if (taken_ < wanted_ && last_time_ < time) add(simulation, time, log);
+  if (taken_ < wanted_ && last_time_ < time) add(frame_of(simulation, groups_, taken_), time, log);
 }
 
-void Trajectory::add(const ed::Simulation& simulation, double time, Log& log) {
-  waiting_.push_back(frame_of(simulation, groups_, taken_));
+void Trajectory::add(Frame frame, double time, Log& log) {
+  waiting_.push_back(std::move(frame));
   waiting_.back().time = time;  // as asked for; the simulation's own is rounded
   last_time_ = time;
   ++taken_;

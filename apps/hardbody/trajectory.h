@@ -32,6 +32,10 @@ class Trajectory {
   /// Begins, or goes on from a checkpoint: cuts off what follows. Throws std::runtime_error.
   void open(const TrajectoryMark& mark);
 
+  /// The first frame, unless there is one: the state that production begins with, to the bit, of which a simulation may
+  /// change the last one.
+  void take_first(const ed::System& start, Log& log);
+
   /// The frame that is due: run `simulation` to next_time() first. A file that cannot be written gets it later, which
   /// is logged; throws std::runtime_error when too much is waiting for that.
   void take(const ed::Simulation& simulation, Log& log);
@@ -52,7 +56,7 @@ class Trajectory {
   };
 
   void write_waiting();
-  void add(const ed::Simulation& simulation, double time, Log& log);
+  void add(Frame frame, double time, Log& log);
 
   std::vector<int> groups_;
   double planned_;

@@ -499,7 +499,6 @@ class BadConfig(Case):
             ("time = 5\n", 'target_error = 0.1\ntime = 5\n', "production.target_error"),
             ("time = 5\n", 'target_error = 0\n', "production.target_error"),
             ("time = 5\n", 'target_error = "small"\n', "production.target_error"),
-            ("time = 5", "time = 0", "production.time"),
             ("time = 5", "time = -1", "production.time"),
             ("time = 5", "time = inf", "production.time"),
             ("events = 500", "events = -1", "output.events"),
@@ -1076,7 +1075,7 @@ class CommandLine(Case):
                 self.assert_refused(self.hardbody(*arguments), "hardbody --help")
 
     def test_later_commands(self):
-        for arguments in [["analyze", "out"], ["report", "out", "-o", "x.html"]]:
+        for arguments in [["analyze", "out"]]:
             with self.subTest(arguments):
                 self.assert_refused(self.hardbody(*arguments), arguments[0], "not available yet")
 
@@ -1200,7 +1199,7 @@ class Check(Case):
         self.assert_refused(self.hardbody("check", "empty"), "empty/checkpoint.bin", "No such file")
         self.write("file", "x")
         self.assert_refused(self.hardbody("check", "file"), "file")
-        self.assert_refused(self.hardbody("check", "run.gsd"), "not available yet")
+        self.assert_refused(self.hardbody("check", "run.gsd"), "run.gsd: cannot be read: No such file", "accepted: ")
 
     def check_bytes(self, content):
         with open(self.path("out/checkpoint.bin"), "wb") as file:

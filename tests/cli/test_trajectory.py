@@ -7,6 +7,7 @@ Needs Debian's python3-gsd, python3-mdanalysis and python3-vtk9. HARDBODY_FULL=1
 
 import os
 import random
+import shutil
 import signal
 import subprocess
 import time
@@ -318,6 +319,241 @@ class Killed(Trajectories):
                     self.assertLess(abs(norms - 1).max(), 1e-6)
         print(f"killed after {sorted(frames)} frames")
         self.assertGreater(max(frames), 10)
+
+
+AGAIN = """[start]
+file = "first/trajectory.gsd"
+[equilibration]
+time = 0
+[production]
+time = 0
+[output]
+trajectory = ["gsd", "lammps"]
+"""
+
+EXACT = ["particles/hardbody/" + name for name in ["position", "rotation", "velocity", "angular_velocity", "group"]] + [
+    "hardbody/box", "hardbody/species"
+]
+
+
+class StartsFromFiles(Trajectories):
+    """[start] file: runs that begin with a frame."""
+
+    def same(self, first, k, second):
+        with gsd.hoomd.open(self.path(first), "rb") as a, gsd.hoomd.open(self.path(second), "rb") as b:
+            self.assertEqual(len(b), 1)
+            for name in EXACT:
+                numpy.testing.assert_array_equal(a[k].log[name], b[0].log[name], name)
+
+    def test_the_same_doubles(self):
+        for name in ["rods", "discs that spin", "three axes", "superellipsoids"]:
+            with self.subTest(name):
+                self.run_with("first", FAMILIES[name])
+                self.run_small("last", config=AGAIN)
+                self.same("first/trajectory.gsd", 5, "last/trajectory.gsd")
+                self.run_small("second", "--set", "start.frame=2", config=AGAIN)
+                self.same("first/trajectory.gsd", 2, "second/trajectory.gsd")
+                # Its own config makes the same again, and so does that of the first run.
+                self.run_small("its_own", config=self.read("second/config.toml"))
+                self.same("first/trajectory.gsd", 2, "its_own/trajectory.gsd")
+                shape = FAMILIES[name].replace("time = 5", "time = 0").replace("time = 1\n", "time = 0\n")
+                shape = shape.replace("[output]\n", '[output]\ntrajectory = ["gsd"]\n')
+                self.run_small("by_shape", config=shape + '[start]\nfile = "first/trajectory.gsd"\nframe = 0\n')
+                self.same("first/trajectory.gsd", 0, "by_shape/trajectory.gsd")
+                self.assertEqual(self.hardbody("check", "by_shape").returncode, 0)
+                for out in ["first", "last", "second", "its_own", "by_shape"]:
+                    shutil.rmtree(self.path(out))
+
+    def test_sizes_need_the_config(self):
+        self.run_with("first", MIXTURE)
+        self.write("again.toml", AGAIN)
+        self.assert_refused(self.hardbody("run", "again.toml"), "different sizes", "accepted: [[species]] with sizes")
+        again = MIXTURE.replace("time = 1\n", "time = 0\n").replace("time = 2\n", "time = 0\n")
+        self.run_small("second", config=again + 'trajectory = ["gsd"]\n[start]\nfile = "first/trajectory.gsd"\n')
+        self.same("first/trajectory.gsd", 5, "second/trajectory.gsd")
+
+    def test_goes_on(self):
+        """A run from a frame is a run: equilibrates, produces, is sound, can be stopped and resumed."""
+        self.run_with("first", SMALL)
+        self.run_small("second", config=AGAIN.replace("time = 0\n[out", "time = 3\nX[out").replace("X", ""))
+        self.assertEqual(self.hardbody("check", "second").returncode, 0)
+        self.assertGreater(self.summary("second")["counters"]["collisions"], 100)
+        self.assertIn("start: 64 bodies of frame 5 of ", self.read("second/log.txt"))
+
+    def test_of_another_program(self):
+        """Written by gsd.hoomd, with what HOOMD has: 32-bit numbers, shapes, types in any order, no velocities."""
+        self.run_with("first", SMALL)
+        exact = Frames(self.path("first/trajectory.gsd"))
+        frame = gsd.hoomd.Snapshot()
+        frame.configuration.box = [exact.box, exact.box, exact.box, 0, 0, 0]
+        frame.particles.N = 64
+        frame.particles.types = ["rods", "others"]
+        frame.particles.typeid = [1, 0] * 32
+        a, b, c = exact.species[0, 1:4]
+        # Slightly smaller, so that rounding cannot make them overlap.
+        shape = {"type": "Ellipsoid", "a": 0.99 * a, "b": 0.99 * b, "c": 0.99 * c}
+        frame.particles.type_shapes = [shape, shape]
+        frame.particles.position = exact.position[3]
+        frame.particles.orientation = exact.frames[3].particles.orientation
+        with gsd.hoomd.open(self.path("other.gsd"), "wb") as file:
+            file.append(frame)
+        result = self.run_small("out", "--set", "start.file=other.gsd", config=AGAIN)
+        self.assertIn("velocities drawn", result.stderr)
+        again = Frames(self.path("out/trajectory.gsd"))
+        order = list(range(1, 64, 2)) + list(range(0, 64, 2))  # type 0 first
+        numpy.testing.assert_allclose(again.position[0], exact.position[3][order], atol=1e-6)
+        numpy.testing.assert_allclose(again.rotation[0], exact.rotation[3][order], atol=1e-6)
+        self.assertEqual(self.hardbody("check", "out").returncode, 0)
+        # The axis of revolution may be any of the file's.
+        frame.particles.type_shapes = [{"type": "Ellipsoid", "a": 0.99 * c, "b": 0.99 * a, "c": 0.99 * b}] * 2
+        turned = product(exact.frames[3].particles.orientation, numpy.tile([0.5, -0.5, -0.5, -0.5], (64, 1)))
+        frame.particles.orientation = turned
+        with gsd.hoomd.open(self.path("turned.gsd"), "wb") as file:
+            file.append(frame)
+        self.run_small("turned", "--set", "start.file=turned.gsd", config=AGAIN)
+        axes = Frames(self.path("turned/trajectory.gsd")).rotation[0][:, :, 2]
+        numpy.testing.assert_allclose(numpy.abs((axes * again.rotation[0][:, :, 2]).sum(axis=1)), 1, atol=1e-6)
+
+    def test_lammps_dump(self):
+        for name in ["three axes", "superellipsoids", "rods"]:
+            with self.subTest(name):
+                self.run_with("first", FAMILIES[name])
+                result = self.run_small("out", "--set", "start.file=first/trajectory.lammpstrj", config=AGAIN)
+                self.assertIn("velocities drawn", result.stderr)
+                exact = Frames(self.path("first/trajectory.gsd"))
+                again = Frames(self.path("out/trajectory.gsd"))
+                numpy.testing.assert_allclose(again.position[0], exact.position[5], rtol=0, atol=1e-14)
+                numpy.testing.assert_allclose(again.rotation[0], exact.rotation[5], rtol=0, atol=1e-14)
+                numpy.testing.assert_array_equal(again.species[:, :7], exact.species[:, :7])
+                shutil.rmtree(self.path("first"))
+                shutil.rmtree(self.path("out"))
+
+    def test_cut_off_dump(self):
+        self.run_with("first", SMALL)
+        text = self.read("first/trajectory.lammpstrj")
+        whole = text.rindex("ITEM: TIMESTEP")
+        for cut, frame in [(len(text), 5), (len(text) - 1, 4), (whole + 30, 4), (whole, 4)]:
+            self.write("cut.lammpstrj", text[:cut])
+            result = self.run_small("out", "--force", "--set", "start.file=cut.lammpstrj", config=AGAIN)
+            self.assertIn(f"of frame {frame} of ", result.stderr)
+
+    def overlapping(self):
+        """The first frame with bodies that are 2 % larger."""
+        self.run_with("first", SMALL)
+        lines = self.read("first/trajectory.lammpstrj").splitlines(keepends=True)[:73]
+        for k in range(9, 73):
+            words = lines[k].split()
+            words[9:12] = [repr(1.02 * float(x)) for x in words[9:12]]
+            lines[k] = " ".join(words) + "\n"
+        self.write("overlap.lammpstrj", "".join(lines))
+
+    def test_overlaps(self):
+        self.overlapping()
+        self.write("again.toml", AGAIN.replace("first/trajectory.gsd", "overlap.lammpstrj"))
+        refusal = self.hardbody("run", "again.toml", "--out", "out")
+        self.assert_refused(refusal, "overlap.lammpstrj: ", "pairs of bodies overlap, the worst by ", "start.mend = true")
+        self.assertFalse(os.path.exists(self.path("out")))
+        result = self.hardbody("run", "again.toml", "--out", "out", "--set", "start.mend=true")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        factor = float(result.stderr.split("box and positions scaled by 1 + ")[1].split()[0])
+        self.assertGreater(factor, 0)
+        box = float(self.read("first/trajectory.lammpstrj").splitlines()[5].split()[1]) * 2
+        self.assertAlmostEqual(Frames(self.path("out/trajectory.gsd")).box / box, 1 + factor, delta=1e-5)
+        self.assertEqual(self.hardbody("check", "out").returncode, 0)
+        self.run_small("again", config=self.read("out/config.toml"))
+        self.same("out/trajectory.gsd", 0, "again/trajectory.gsd")
+
+    def test_refusals(self):
+        self.run_with("first", SMALL)
+        self.write("again.toml", AGAIN)
+        self.write("text.gsd", "no trajectory")
+        self.write("empty.gsd", "")
+        good = self.bytes_of("first/trajectory.gsd")
+        with open(self.path("cut.gsd"), "wb") as file:
+            file.write(good[:1000])
+        for change, *parts in [
+            (["start.file=none.gsd"], "none.gsd: cannot be read: No such file"),
+            (["start.file=text.gsd"], "text.gsd: is neither a GSD file nor a LAMMPS text dump"),
+            (["start.file=empty.gsd"], "empty.gsd: is neither"),
+            (["start.file=cut.gsd"], "cut.gsd: is cut off after 1000 bytes"),
+            (["start.frame=6"], "start.frame is 6", "0 to 5"),
+            (["start.frame=-1"], "start.frame", "at least 0"),
+            (["start.mend=1"], "start.mend", "true or false"),
+            (["system.start=fcc"], "system.start", "start.file"),
+            (["system.packing_fraction=0.3"], "its packing fraction is 0.2", "in the config 0.3"),
+            (["shape.aspect_ratio=3"], "first/trajectory.gsd: body 0 is ellipsoid ", "in the config ellipsoid"),
+            (["shape.aspect_ratio=2", "system.number=65"], "has 64 bodies of its types, the config 65"),
+        ]:
+            with self.subTest(change):
+                self.assert_refused(self.hardbody("run", "again.toml", "--out", "out", "--set", *change), "accepted: ", *parts)
+                self.assertFalse(os.path.exists(self.path("out")))
+        self.write("frame.toml", SMALL + "[start]\nframe = 1\n")
+        self.assert_refused(self.hardbody("run", "frame.toml"), "frame.toml:14: start.frame", "start.file beside it")
+
+
+class CheckOfFiles(Trajectories):
+    """hardbody check FILE.gsd."""
+
+    def changed(self, name, array, place, value, dtype, frame=2):
+        """A copy of the run's file with a number replaced, through python3-gsd."""
+        shutil.copy(self.path("out/trajectory.gsd"), self.path(name))
+        with gsd.fl.open(self.path(name), "rb") as file:
+            data = file.read_chunk(frame=frame, name=array).astype(dtype)
+        content = self.bytes_of(name)
+        at = content.index(data.tobytes())
+        flat = data.reshape(-1)
+        flat[place] = value
+        with open(self.path(name), "wb") as file:
+            file.write(content[:at] + data.tobytes() + content[at + data.nbytes:])
+
+    def test_sound(self):
+        for name, config in FAMILIES.items():
+            with self.subTest(name):
+                self.run_with("out", config)
+                result = self.hardbody("check", "out/trajectory.gsd")
+                self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+                for text in ["frames                     6", "overlaps                   0", "state to every bit         yes"]:
+                    self.assertIn(text, result.stdout)
+                self.assertTrue(result.stdout.endswith("sound\n"))
+                self.assertNotIn("NOT", result.stdout)
+                shutil.rmtree(self.path("out"))
+
+    def test_not_sound(self):
+        self.run_with("out", SMALL)
+        self.changed("energy.gsd", "log/particles/hardbody/velocity", 5, 2.5, "f8")
+        self.changed("nan.gsd", "particles/position", 5, numpy.nan, "f4")
+        result = self.hardbody("check", "energy.gsd")
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("frame 2: the energy is ", result.stdout)
+        self.assertTrue(result.stdout.endswith("NOT SOUND\n"))
+        self.assert_refused(self.hardbody("check", "nan.gsd"), "nan.gsd: frame 2: particles/position of body 1 is nan")
+
+    def test_overlap(self):
+        self.run_with("out", SMALL)
+        exact = Frames(self.path("out/trajectory.gsd"))
+        target = exact.position[2][1].copy()
+        content = self.bytes_of("out/trajectory.gsd")
+        at = content.index(exact.position[2].tobytes())
+        moved = exact.position[2].copy()
+        moved[0] = target + [0, 0, 1e-3]
+        with open(self.path("overlap.gsd"), "wb") as file:
+            file.write(content[:at] + moved.tobytes() + content[at + moved.nbytes:])
+        result = self.hardbody("check", "overlap.gsd")
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("frame 2: ", result.stdout)
+        self.assertIn("NOT SOUND", result.stdout)
+
+    def test_of_another_program(self):
+        """Without the doubles: overlaps beyond the rounding of 32-bit numbers; shapes may be missing."""
+        self.run_with("out", SMALL)
+        content = self.bytes_of("out/trajectory.gsd").replace(b"log/hardbody/time", b"xog/hardbody/time")
+        for name, bytes_ in [("shapes.gsd", content), ("none.gsd", content.replace(b'"Ellipsoid"', b'"Ellipsoix"'))]:
+            with open(self.path(name), "wb") as file:
+                file.write(bytes_)
+            result = self.hardbody("check", name)
+            self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+            self.assertIn("state to every bit         no", result.stdout)
+            self.assertIn("overlaps                   " + ("0" if name == "shapes.gsd" else "not looked for"), result.stdout)
 
 
 if __name__ == "__main__":
