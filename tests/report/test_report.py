@@ -71,6 +71,17 @@ time = 1
 time = 4
 """
 
+SWEEP = """[system]
+number = 64
+[equilibration]
+time = 1
+[production]
+time = 2
+[grid]
+shape.aspect_ratio = [2.0, 3.0]
+system.packing_fraction = [0.1, 0.2]
+"""
+
 PLOTS = ["msd", "rotational_msd", "c2", "c1", "f_self", "velocity", "alpha2", "g_r", "s_q", "pressure", "order", "energy"]
 
 HOSTILE = '<img src=x onerror="window.hacked=1"><b>&amp;'
@@ -494,6 +505,19 @@ class Sweep(Case):
         )
         self.assertEqual(worst[0], 1)
         self.assertLess(worst[1], 1e-12)
+
+    def test_real_sweep(self):
+        (self.here / "real.toml").write_text(SWEEP)
+        subprocess.run([HARDBODY, "sweep", self.here / "real.toml", "--out", self.here / "real"], check=True, capture_output=True)
+        self.report(self.here / "real")
+        browser = self.open(self.here / "real" / "report.html")
+        # D_trans is what the runs are too short for: something else is shown.
+        self.assertEqual(browser.run("return [window.hardbodyReport.map.points, window.hardbodyReport.map.known]"), [4, 4])
+        embedded = "return window.hardbodyReport.page.sweep.sweep.points.map((p) => p.embedded)"
+        self.assertEqual(browser.run(embedded), [True] * 4)
+        browser.run("window.hardbodyReport.page.sweep.showPoint(1)")
+        self.assertIn("packing fraction 0.2", browser.run("return document.querySelector('#plots h2').textContent"))
+        self.assert_silent(browser)
 
     def test_one_key(self):
         sweep = self.here / "line"
