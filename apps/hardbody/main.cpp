@@ -27,6 +27,7 @@ struct Request {
   std::string resume_path;
   std::string check_path;
   std::string replay_file;
+  AnalyzeArguments analyze;
   std::string distance_file = "-";
 };
 
@@ -53,13 +54,25 @@ void add_resume(CLI::App& app, Request& request) {
 }
 
 void add_check(CLI::App& app, Request& request) {
-  CLI::App* check = app.add_subcommand("check", "Audit a run's last state, or a trajectory: overlaps, conservation, finite values");
+  CLI::App* check =
+      app.add_subcommand("check", "Audit a run's last state, or a trajectory: overlaps, conservation, finite values");
   check->add_option("PATH", request.check_path, "Run directory, or trajectory FILE.gsd")->required();
 }
 
 void add_replay(CLI::App& app, Request& request) {
   CLI::App* replay = app.add_subcommand("replay", "Show a pair from failures/ step by step");
   replay->add_option("FILE", request.replay_file, "failures/*.json")->required();
+}
+
+void add_analyze(CLI::App& app, Request& request) {
+  CLI::App* analyze = app.add_subcommand("analyze", "Observables of a stored trajectory, ours or another program's");
+  analyze->add_option("PATH", request.analyze.path, "Run directory with a trajectory.gsd, or FILE.gsd")->required();
+  analyze->add_option("--out", request.analyze.out, "Where the files go; without it analysis/ beside the trajectory");
+  analyze->add_option("--time-step", request.analyze.time_step, "Time between two steps, instead of the times stored")
+      ->check(CLI::PositiveNumber);
+  analyze->add_option("--longest-lag", request.analyze.longest_lag, "Of correlations; without it a quarter of the time")
+      ->check(CLI::PositiveNumber);
+  analyze->add_option("--every", request.analyze.every, "Takes only each N-th frame")->check(CLI::Range(1, 1000000));
 }
 
 void add_distance(CLI::App& app, Request& request) {
@@ -70,13 +83,14 @@ void add_distance(CLI::App& app, Request& request) {
 
 /// Commands of later versions: not in the help, with an honest answer.
 void add_later_commands(CLI::App& app) {
-  for (const char* name : {"analyze", "report", "sweep"}) {
+  for (const char* name : {"report", "sweep"}) {
     CLI::App* later = app.add_subcommand(name, "")->group("");
     later->set_help_flag();
     later->allow_extras();
     later->callback([name] {
       throw InputError(fmt::format(
-          "hardbody {}: is not available yet; accepted now: init, run, resume, check, replay, distance", name));
+          "hardbody {}: is not available yet; accepted now: init, run, resume, check, analyze, replay, distance",
+          name));
     });
   }
 }
@@ -86,6 +100,7 @@ int dispatch(const CLI::App& app, const Request& request) {
   if (app.got_subcommand("run")) return run(request.run);
   if (app.got_subcommand("resume")) return resume(request.resume_path);
   if (app.got_subcommand("check")) return check(request.check_path);
+  if (app.got_subcommand("analyze")) return analyze(request.analyze);
   if (app.got_subcommand("distance")) return distance(request.distance_file);
   return replay(request.replay_file);
 }
@@ -116,6 +131,7 @@ int run_command_line(int argc, char** argv) {
   add_run(app, request);
   add_resume(app, request);
   add_check(app, request);
+  add_analyze(app, request);
   add_replay(app, request);
   add_distance(app, request);
   add_later_commands(app);

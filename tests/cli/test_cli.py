@@ -1062,7 +1062,7 @@ class CommandLine(Case):
                 self.assert_refused(self.hardbody(*arguments), "hardbody --help")
 
     def test_later_commands(self):
-        for arguments in [["analyze", "out"], ["report", "out", "-o", "x.html"], ["sweep", "--help"]]:
+        for arguments in [["report", "out", "-o", "x.html"], ["sweep", "--help"]]:
             with self.subTest(arguments):
                 self.assert_refused(self.hardbody(*arguments), arguments[0], "not available yet")
 
