@@ -1,3 +1,4 @@
+#include "agreement.h"
 #include "checkpoint.h"
 #include "commands.h"
 #include "config.h"
@@ -26,9 +27,6 @@ namespace hardbody {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Relative difference between state and config that is rounding (of another machine's cube root, say).
-constexpr double kRounding = 1e-12;
 
 void row(const char* name, const std::string& value) {
   fmt::print("  {:<26} {}\n", name, value);
@@ -65,48 +63,11 @@ void print_state(const Checkpoint& checkpoint, const ed::Audit& audit) {
   row("momentum", fmt::format("{:.2e} sqrt(m kT) a body", kinetic.momentum.norm() / checkpoint.system.size()));
 }
 
-bool near(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  return (a - b).norm() <= kRounding * b.norm();
-}
-
-bool same_shape(const ed::BodyShape& a, const ed::BodyShape& b) {
-  if (a.index() != b.index()) return false;
-  const auto* s = std::get_if<geom::Superellipsoid>(&a);
-  const auto* t = std::get_if<geom::Superellipsoid>(&b);
-  const bool exponents = s == nullptr || (s->e1() == t->e1() && s->e2() == t->e2());
-  return exponents && near(ed::half_extents(a), ed::half_extents(b));
-}
-
-bool same_dynamics(const ed::Species& a, const ed::Species& b) {
-  return std::abs(a.mass / b.mass - 1) <= kRounding && near(a.inertia, b.inertia) && a.spins == b.spins;
-}
-
-/// What of the state is as its config says.
-struct Agreement {
-  bool number = true;
-  bool shape = true;
-  bool dynamics = true;
-};
-
-Agreement compare(const ed::System& system, const Config& config) {
-  Agreement result;
-  result.number = system.size() == config.number;
-  int body = 0;
-  for (const ed::Component& component : config.components()) {
-    for (int k = 0; k < component.number && body < system.size(); ++k, ++body) {
-      const ed::Species& species = system.species_of(body);
-      result.shape = result.shape && same_shape(species.shape, component.species.shape);
-      result.dynamics = result.dynamics && same_dynamics(species, component.species);
-    }
-  }
-  return result;
-}
-
 /// Whether the state is that of the config it was made with.
 bool print_config(const Checkpoint& checkpoint, const std::string& name) {
   const Config config = parse_config(checkpoint.config, name + " (its config)");
   const double phi = ed::packing_fraction(checkpoint.system);
-  const bool same_phi = std::abs(phi / config.packing_fraction - 1) < kRounding;
+  const bool same_phi = std::abs(phi / config.packing_fraction - 1) < kStateRounding;
   const Agreement same = compare(checkpoint.system, config);
   row("packing fraction", fmt::format("{:.15g}, as configured: {}", phi, yes_or_no(same_phi)));
   row("number as configured", yes_or_no(same.number));

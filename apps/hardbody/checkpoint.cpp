@@ -12,6 +12,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <stdexcept>
 
 #define XXH_INLINE_ALL
@@ -43,6 +44,14 @@ void fields(Archive& archive, T& p) {
 template <class Archive, Is<EventsMark> T>
 void fields(Archive& archive, T& mark) {
   archive(mark.rows, mark.bytes);
+}
+
+inline void fields(Writer& archive, const StoredState& state) {
+  archive(state.size());
+  state.write([&archive](std::string_view piece) { archive.raw(piece); });
+}
+inline void fields(Reader& archive, StoredState& state) {
+  archive(state.bytes());
 }
 
 template <class Archive, Is<TrajectoryMark> T>
@@ -156,23 +165,70 @@ std::string or_none(const std::string& features) {
   return features.empty() ? "none" : features;
 }
 
+void put_payload(const Checkpoint& checkpoint, const Sink& sink) {
+  Writer payload(sink);
+  payload(checkpoint.program_version, checkpoint.config, checkpoint.cpu_features, checkpoint.arch, checkpoint.phase,
+          checkpoint.time, checkpoint.system, checkpoint.run, checkpoint.upkeep);
+  payload.flush();
+}
+
+/// How many bytes `make` hands over.
+std::uint64_t count_bytes(const std::function<void(const Sink&)>& make) {
+  std::uint64_t count = 0;
+  make([&count](std::string_view piece) { count += piece.size(); });
+  return count;
+}
+
+struct FreeHash {
+  void operator()(XXH3_state_t* state) const { XXH3_freeState(state); }
+};
+
+/// The payload with head and checksum.
+void seal(std::uint64_t length, const std::function<void(const Sink&)>& payload, const Sink& sink) {
+  const std::unique_ptr<XXH3_state_t, FreeHash> hash(XXH3_createState());
+  if (!hash || XXH3_64bits_reset(hash.get()) != XXH_OK)
+    throw std::runtime_error("checkpoint: no room for its checksum");
+  const auto hashed = [&](std::string_view piece) {
+    if (XXH3_64bits_update(hash.get(), piece.data(), piece.size()) != XXH_OK) {
+      throw std::runtime_error("checkpoint: its checksum cannot be made");
+    }
+    sink(piece);
+  };
+  hashed(std::string(kMagic) + ed::internal::bytes_of(kByteOrder) + ed::internal::bytes_of(kFormat) +
+         ed::internal::bytes_of(length));
+  payload(hashed);
+  sink(ed::internal::bytes_of(std::uint64_t{XXH3_64bits_digest(hash.get())}));
+}
+
 }  // namespace
 
+StoredState::StoredState(Make make) : make_(std::move(make)), size_(count_bytes(make_)) {}
+
+void StoredState::write(const Sink& sink) const {
+  if (make_) {
+    make_(sink);
+  } else {
+    sink(bytes_);
+  }
+}
+
 std::string seal_checkpoint(std::string_view payload) {
-  std::string bytes(kMagic);
-  bytes += ed::internal::bytes_of(kByteOrder);
-  bytes += ed::internal::bytes_of(kFormat);
-  bytes += ed::internal::bytes_of(std::uint64_t{payload.size()});
-  bytes += payload;
-  bytes += ed::internal::bytes_of(std::uint64_t{XXH3_64bits(bytes.data(), bytes.size())});
+  std::string bytes;
+  seal(
+      payload.size(), [payload](const Sink& sink) { sink(payload); },
+      [&bytes](std::string_view piece) { bytes += piece; });
   return bytes;
 }
 
+void encode_checkpoint(const Checkpoint& checkpoint, const Sink& sink) {
+  const auto payload = [&checkpoint](const Sink& to) { put_payload(checkpoint, to); };
+  seal(count_bytes(payload), payload, sink);
+}
+
 std::string encode_checkpoint(const Checkpoint& checkpoint) {
-  Writer payload;
-  payload(checkpoint.program_version, checkpoint.config, checkpoint.cpu_features, checkpoint.arch, checkpoint.phase,
-          checkpoint.time, checkpoint.system, checkpoint.run, checkpoint.upkeep);
-  return seal_checkpoint(payload.bytes());
+  std::string bytes;
+  encode_checkpoint(checkpoint, [&bytes](std::string_view piece) { bytes += piece; });
+  return bytes;
 }
 
 Checkpoint decode_checkpoint(std::string_view bytes, const std::string& name) {

@@ -1,17 +1,43 @@
 #pragma once
 
 #include "run_record.h"
+#include "text_file.h"
 
 #include <ed/simulation.h>
 #include <ed/system.h>
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace hardbody {
+
+/// A state as bytes: those that were read, or what hands them over while they are written, so that a large run needs
+/// no room for a second self.
+class StoredState {
+ public:
+  using Make = std::function<void(const Sink&)>;
+
+  StoredState() = default;
+  StoredState(std::string bytes) : bytes_(std::move(bytes)) {}  // NOLINT(google-explicit-constructor): it is one
+  /// `make` hands over the same bytes whenever it is called.
+  explicit StoredState(Make make);
+
+  std::uint64_t size() const { return make_ ? size_ : bytes_.size(); }
+  void write(const Sink& sink) const;
+
+  const std::string& bytes() const { return bytes_; }  ///< of one that was read
+  std::string& bytes() { return bytes_; }
+
+ private:
+  std::string bytes_;
+  Make make_;
+  std::uint64_t size_ = 0;
+};
 
 /// What a run needs, beside its config, to go on bit for bit.
 struct RunState {
@@ -22,8 +48,8 @@ struct RunState {
   Production production;  ///< what it began with
   EventsMark events;
   TrajectoryMark trajectory;
-  std::string simulation;   ///< ed::Simulation::save
-  std::string observables;  ///< ed::Observables::save; of production
+  StoredState simulation;   ///< ed::Simulation::save
+  StoredState observables;  ///< ed::Observables::save; of production
 };
 
 /// checkpoint.bin: a state and what it belongs to.
@@ -43,6 +69,8 @@ struct Checkpoint {
   Upkeep upkeep;                ///< last, so that the checkpoints of two like runs differ in their last 48 bytes only
 };
 
+/// The file's bytes, piece by piece.
+void encode_checkpoint(const Checkpoint& checkpoint, const Sink& sink);
 std::string encode_checkpoint(const Checkpoint& checkpoint);
 
 /// A payload with head and checksum: what decode_checkpoint takes for whole.

@@ -30,12 +30,13 @@ constexpr double kLeastPacking = 1e-9;
 
 constexpr std::array<std::string_view, 8> kSections = {"system",   "start",         "shape",      "species",
                                                        "dynamics", "equilibration", "production", "output"};
-constexpr std::array<std::string_view, 36> kKeys = {
+constexpr std::array<std::string_view, 37> kKeys = {
     "seed",
     "system.number",
     "system.packing_fraction",
     "system.start",
     "system.nematic_order",
+    "system.start_from",
     "start.file",
     "start.frame",
     "start.mend",
@@ -113,7 +114,7 @@ void check_sections(const TomlDocument& document) {
   }
 }
 
-/// "system.number, system.packing_fraction": the keys of the unknown key's section, or all.
+/// "system.number, system.packing_fraction": the keys of the key's section; all keys for a key without a section.
 std::string keys_near(std::string_view key) {
   const std::string section(key.substr(0, key.find('.') == std::string_view::npos ? 0 : key.find('.') + 1));
   std::string list;
@@ -155,9 +156,10 @@ void check_names(const TomlDocument& document) {
     if (known_section(entry.key)) throw bad(entry, fmt::format("a section [{}] with keys", entry.key));
     const auto nearest = nearest_name(key, kKeys);
     const std::string name = one_line(entry.key, 60);
-    throw InputError(nearest ? fmt::format("{}: unknown key {}, did you mean {}?; accepted: {}", entry.where, name,
-                                           with_index(*nearest, index), keys_near(*nearest))
-                             : fmt::format("{}: unknown key {}; accepted: {}", entry.where, name, keys_near("")));
+    const bool in_section = known_section(key.substr(0, key.find('.')));
+    throw InputError(fmt::format("{}: unknown key {}{}; accepted: {}", entry.where, name,
+                                 nearest ? fmt::format(", did you mean {}?", with_index(*nearest, index)) : "",
+                                 keys_near(in_section ? key : nearest.value_or(""))));
   }
 }
 
@@ -199,7 +201,21 @@ void read_times(const TomlDocument& document, Config& config) {
   config.target_error = error->value.real;
 }
 
+/// A run to go on from, instead of a start of one's own.
+void read_origin(const TomlDocument& document, Config& config) {
+  const Entry* from = document.find("system.start_from");
+  if (from == nullptr) return;
+  if (from->value.kind != Value::Kind::text || from->value.text.empty()) throw bad(*from, "the directory of a run");
+  for (const char* key : {"system.start", "system.nematic_order", "start.file"}) {
+    const Entry* other = document.find(key);
+    const bool is_default = other != nullptr && other->key == "system.start" && other->value.text == "random";
+    if (other != nullptr && !is_default) throw bad(*other, fmt::format("no key {} beside start_from", key));
+  }
+  config.start_from = from->value.text;
+}
+
 void read_start(const TomlDocument& document, Config& config) {
+  read_origin(document, config);
   read_choice(document, "system.start", {"random", "cubic", "fcc"}, config.start);
   const Entry* order = document.find("system.nematic_order");
   if (order == nullptr) return;
@@ -366,9 +382,19 @@ void read_output(const TomlDocument& document, Config& config) {
   }
 }
 
-std::vector<std::string> joined(std::vector<std::string> a, const std::vector<std::string>& b) {
-  a.insert(a.end(), b.begin(), b.end());
-  return a;
+/// The document with what it leaves to the file that it starts from.
+TomlDocument completed(const TomlDocument& document, const StartFile& start, const StartAdditions& more) {
+  TomlDocument whole = document;
+  TomlDocument added = read_toml(more.text, start.file, more.overrides);
+  for (Section& section : added.sections) {
+    section.where = start.file;
+    whole.sections.push_back(std::move(section));
+  }
+  for (Entry& entry : added.entries) {
+    entry.where = start.file;
+    whole.set(std::move(entry));
+  }
+  return whole;
 }
 
 }  // namespace
@@ -418,14 +444,13 @@ double Config::checkpoint_seconds() const {
   return parse_duration(checkpoint_every).value_or(std::numeric_limits<double>::infinity());
 }
 
-Config parse_config(std::string_view text, const std::string& name, const std::vector<std::string>& overrides) {
-  const TomlDocument document = read_toml(text, name, overrides);
+Config read_config(const TomlDocument& document) {
   check_names(document);
   Config config;
   config.start_file = read_start_file(document);
   if (config.start_file) {
     const StartAdditions more = additions_from(*config.start_file, document);
-    if (!more.empty()) return parse_config(std::string(text) + more.text, name, joined(overrides, more.overrides));
+    if (!more.empty()) return read_config(completed(document, *config.start_file, more));
   }
   read_integer(document, "seed", 0, std::numeric_limits<std::int64_t>::max(), config.seed);
   read_times(document, config);
@@ -438,6 +463,10 @@ Config parse_config(std::string_view text, const std::string& name, const std::v
   check_lattice(document, config);
   if (config.neighbours_chosen) choose_neighbours(config);
   return config;
+}
+
+Config parse_config(std::string_view text, const std::string& name, const std::vector<std::string>& overrides) {
+  return read_config(read_toml(text, name, overrides));
 }
 
 Config load_config(const std::string& path, const std::vector<std::string>& overrides) {

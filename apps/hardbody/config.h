@@ -73,8 +73,9 @@ struct Config {
   // [system]
   int number = 512;
   double packing_fraction = 0;
-  std::string start = "random";         ///< or "cubic", "fcc": on a lattice
-  std::optional<double> nematic_order;  ///< of the start; nothing: uniform orientations, or on a lattice aligned ones
+  std::string start = "random";           ///< or "cubic", "fcc": on a lattice
+  std::optional<std::string> start_from;  ///< directory of a run whose last state is compressed; instead of `start`
+  std::optional<double> nematic_order;    ///< of the start; nothing: uniform orientations, or on a lattice aligned ones
 
   std::optional<StartFile> start_file;  ///< instead of a start of the run's own
 
@@ -118,6 +119,11 @@ struct Config {
 
 /// Reads and checks a config. `overrides`: section.key=value. Throws InputError.
 Config load_config(const std::string& path, const std::vector<std::string>& overrides);
+
+struct TomlDocument;
+
+/// The same from a document that has been read.
+Config read_config(const TomlDocument& document);
 
 /// The same from a text; `name` is what messages call it.
 Config parse_config(std::string_view text, const std::string& name, const std::vector<std::string>& overrides = {});

@@ -127,11 +127,17 @@ std::string start_text(const Config& config) {
   std::string text =
       line("start", quoted(config.start), "at random and compressed; or on a lattice, \"cubic\" or \"fcc\",") +
       more("stretched to the bodies' proportions, the bodies aligned");
-  if (config.nematic_order) {
+  if (config.start_from) {
+    Value from;
+    from.kind = Value::Kind::text;
+    from.text = *config.start_from;
+    text += line("start_from", toml_text(from), "instead: the last state of that run, compressed");
+  } else if (config.nematic_order) {
     text += line("nematic_order", toml_real(*config.nematic_order),
                  config.start == "random" ? "S about z, before the compression, which lets it relax" : "S about z");
   } else {
-    text += more("nematic_order = S: orientations of that order parameter");
+    text += more("nematic_order = S: orientations of that order parameter;") +
+            more("start_from = \"DIR\" instead: the last state of that run, compressed");
   }
   return text;
 }
@@ -189,6 +195,8 @@ struct Template {
   std::string_view config;
 };
 
+constexpr std::string_view kSweepTemplate = "sweep";
+
 constexpr Template kTemplates[] = {
     {"ellipsoid", "hard ellipsoids", "[system]\npacking_fraction = 0.4\n[shape]\naspect_ratio = 3\n"},
     {"superball", "hard superballs, |x|^4 + |y|^4 + |z|^4 = a^4",
@@ -211,7 +219,34 @@ std::string config_text(const Config& config, const std::string& header) {
          times_text(config) + output_text(config);
 }
 
+namespace {
+
+/// A run's config with a grid at its end.
+std::string sweep_template() {
+  Config config = parse_config(kTemplates[0].config, "template");
+  config.neighbours = "auto";
+  return config_text(
+             config,
+             "# hardbody: a sweep, a run at every point of a grid. Start it, or go on with it, with: hardbody sweep "
+             "THIS_FILE\n"
+             "# The config is that of hardbody run; the keys in [grid], at the end, take each of their values "
+             "instead.\n"
+             "# base = \"run.toml\", instead of all that is not in [grid], takes it from that file.\n"
+             "# chain = \"system.packing_fraction\": denser points start from the last state of the one before.\n") +
+         "\n# Every combination of the values; those of the last key change fastest.\n"
+         "[grid]\n" +
+         "shape.aspect_ratio = [0.5, 1.0, 2.0, 3.0]                        # a list of values, or a single one\n"
+         "system.packing_fraction = {from = 0.2, to = 0.4, step = 0.05}    # a range, both ends included; or {from, "
+         "to,\n"
+         "# count}: so many values, evenly spaced, or by equal factors with spacing = \"log\".\n"
+         "# zip = [\"key\", \"other key\"] walks their lists together, instead of combining each with each.\n"
+         "# [[grid]], several times: one grid after the other, of the same keys.\n";
+}
+
+}  // namespace
+
 std::optional<std::string> template_text(std::string_view name) {
+  if (name == kSweepTemplate) return sweep_template();
   const auto found =
       std::find_if(std::begin(kTemplates), std::end(kTemplates), [&](const Template& t) { return t.name == name; });
   if (found == std::end(kTemplates)) return std::nullopt;
@@ -225,8 +260,8 @@ std::optional<std::string> template_text(std::string_view name) {
 
 std::string template_names() {
   std::string names;
-  for (const Template& t : kTemplates) names += (names.empty() ? "" : ", ") + std::string(t.name);
-  return names;
+  for (const Template& t : kTemplates) names += std::string(t.name) + ", ";
+  return names + std::string(kSweepTemplate);
 }
 
 std::string resolved_text(const Config& config) {

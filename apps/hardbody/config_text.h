@@ -14,7 +14,7 @@ std::string config_text(const Config& config, const std::string& header);
 
 /// What `hardbody init --template NAME` writes; nothing if there is no such template.
 std::optional<std::string> template_text(std::string_view name);
-/// "ellipsoid, superball, mixture": the first is the default.
+/// "ellipsoid, superball, mixture, sweep": the first is the default.
 std::string template_names();
 
 /// What a run directory holds: the defaults filled in.

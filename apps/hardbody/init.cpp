@@ -32,7 +32,7 @@ int init(const std::string& path, const std::string& name) {
   if (std::fclose(file) != 0 || !written) {
     throw InputError(fmt::format("{}: cannot be written completely; accepted: a new file on a disk with room", path));
   }
-  fmt::print("{} written; next: hardbody run {}\n", path, path);
+  fmt::print("{} written; next: hardbody {} {}\n", path, name == "sweep" ? "sweep" : "run", path);
   return 0;
 }
 

@@ -22,6 +22,8 @@ constexpr int kFailed = 1;
 /// What the user asked for.
 struct Request {
   RunArguments run;
+  SweepArguments sweep;
+  MapArguments map;
   std::string init_file;
   std::string init_template = "ellipsoid";
   std::string resume_path;
@@ -29,13 +31,14 @@ struct Request {
   std::string replay_file;
   AnalyzeArguments analyze;
   std::string distance_file = "-";
+  ReportArguments report;
 };
 
 void add_init(CLI::App& app, Request& request) {
   CLI::App* init = app.add_subcommand("init", "Write a commented config to start from");
   init->add_option("FILE", request.init_file, "New file; without it the config goes to standard output");
   init->add_option("--template", request.init_template,
-                   "What to start from: ellipsoid (the default), superball, mixture");
+                   "What to start from: ellipsoid (the default), superball, mixture, sweep");
 }
 
 void add_run(CLI::App& app, Request& request) {
@@ -51,6 +54,31 @@ void add_run(CLI::App& app, Request& request) {
 void add_resume(CLI::App& app, Request& request) {
   CLI::App* resume = app.add_subcommand("resume", "Go on with a run that was stopped or killed, bit for bit");
   resume->add_option("DIR", request.resume_path, "Run directory")->required();
+}
+
+void add_sweep(CLI::App& app, Request& request) {
+  CLI::App* sweep = app.add_subcommand("sweep", "Run a grid of state points, several at a time");
+  sweep->add_option("SWEEP", request.sweep.sweep, "Sweep, as `hardbody init --template sweep` writes it")->required();
+  sweep->add_option("--out", request.sweep.out, "Directory of the sweep; without it out/<name of the file>");
+  sweep->add_option("--jobs", request.sweep.jobs, "Points that run at a time; without it one for each processor");
+}
+
+void add_map(CLI::App& app, Request& request) {
+  CLI::App* map = app.add_subcommand("map", "Draw lines of constant value over two keys of a sweep");
+  MapArguments& wanted = request.map;
+  map->add_option("TABLE", wanted.table, "Directory of a sweep, or a table like its sweep.csv")->required();
+  map->add_option("--x", wanted.x, "Column along x")->required();
+  map->add_option("--y", wanted.y, "Column along y")->required();
+  map->add_option("--value", wanted.values, "Column whose lines are wanted; may be repeated")
+      ->required()
+      ->allow_extra_args(false);
+  map->add_option("--levels", wanted.levels, "Its levels, 0.5,0.2,0.1; one for each value, or none: six are chosen")
+      ->allow_extra_args(false);
+  map->add_option("--where", wanted.where, "column=value: only these rows; may be repeated")->allow_extra_args(false);
+  map->add_flag("--log-x", wanted.log_x, "Logarithmic along x");
+  map->add_flag("--log-y", wanted.log_y, "Logarithmic along y");
+  map->add_option("--out", wanted.out, "The drawing, SVG; without it map_VALUE.svg beside the table");
+  map->add_option("--csv", wanted.csv, "The lines as numbers; without it map_VALUE.csv beside the table");
 }
 
 void add_check(CLI::App& app, Request& request) {
@@ -81,27 +109,23 @@ void add_distance(CLI::App& app, Request& request) {
   distance->footer(distance_help());
 }
 
-/// Commands of later versions: not in the help, with an honest answer.
-void add_later_commands(CLI::App& app) {
-  for (const char* name : {"report", "sweep"}) {
-    CLI::App* later = app.add_subcommand(name, "")->group("");
-    later->set_help_flag();
-    later->allow_extras();
-    later->callback([name] {
-      throw InputError(fmt::format(
-          "hardbody {}: is not available yet; accepted now: init, run, resume, check, analyze, replay, distance",
-          name));
-    });
-  }
+void add_report(CLI::App& app, Request& request) {
+  CLI::App* report = app.add_subcommand("report", "Write what runs have found as one HTML file that needs no network");
+  report->add_option("DIR", request.report.directories, "Run directories, several side by side; or that of a sweep")
+      ->required();
+  report->add_option("-o", request.report.out, "HTML file; without it DIR/report.html")->type_name("FILE");
 }
 
 int dispatch(const CLI::App& app, const Request& request) {
   if (app.got_subcommand("init")) return init(request.init_file, request.init_template);
   if (app.got_subcommand("run")) return run(request.run);
   if (app.got_subcommand("resume")) return resume(request.resume_path);
+  if (app.got_subcommand("sweep")) return sweep(request.sweep);
+  if (app.got_subcommand("map")) return map(request.map);
   if (app.got_subcommand("check")) return check(request.check_path);
   if (app.got_subcommand("analyze")) return analyze(request.analyze);
   if (app.got_subcommand("distance")) return distance(request.distance_file);
+  if (app.got_subcommand("report")) return report(request.report);
   return replay(request.replay_file);
 }
 
@@ -130,11 +154,13 @@ int run_command_line(int argc, char** argv) {
   add_init(app, request);
   add_run(app, request);
   add_resume(app, request);
+  add_sweep(app, request);
+  add_map(app, request);
   add_check(app, request);
   add_analyze(app, request);
   add_replay(app, request);
+  add_report(app, request);
   add_distance(app, request);
-  add_later_commands(app);
   std::vector<std::string> arguments = expand_overrides(argc, argv);
   // CLI11 takes them from the back.
   std::reverse(arguments.begin(), arguments.end());
@@ -148,7 +174,7 @@ int run_command_line(int argc, char** argv) {
   return dispatch(app, request);
 }
 
-int report(const std::exception& error, int status) {
+int fail(const std::exception& error, int status) {
   (void)std::fputs((one_line(error.what(), 2000) + '\n').c_str(), stderr);
   return status;
 }
@@ -160,8 +186,8 @@ int main(int argc, char** argv) {
   try {
     return hardbody::run_command_line(argc, argv);
   } catch (const hardbody::InputError& error) {
-    return hardbody::report(error, hardbody::kBadInput);
+    return hardbody::fail(error, hardbody::kBadInput);
   } catch (const std::exception& error) {
-    return hardbody::report(error, hardbody::kFailed);
+    return hardbody::fail(error, hardbody::kFailed);
   }
 }

@@ -1,6 +1,7 @@
 #include "phases.h"
 
 #include "errors.h"
+#include "origin.h"
 #include "signals.h"
 #include "start_file.h"
 
@@ -35,9 +36,12 @@ constexpr double kProductionFactor = 30;
 constexpr double kLeastProduction = 30;
 constexpr double kMostProduction = 5000;
 constexpr double kLongestLag = 40;  ///< or the equilibration, if that took longer
-/// With a target error: it is asked for when so many longest lags have passed, and then each time that the run has
-/// grown by a factor.
-constexpr double kFirstLook = 16;
+/// At least, in collisions of a body: diffusion coefficients are fitted from 0.4 of it on, and a velocity is forgotten
+/// in about 1.5 of them, so that what is left of it there is exp(-7).
+constexpr double kLagCollisions = 25;
+/// Longest lags that production lasts, at least. With a target error it is asked for then, and again each time that the
+/// run has grown by a factor.
+constexpr double kLags = 16;
 constexpr double kNextLook = 1.25;
 
 /// Below this packing fraction the envelopes keep their first guess. Tuning runs for tens of collisions a
@@ -101,15 +105,26 @@ class Runner {
   double energy_;
 };
 
+/// kLagCollisions mean collision intervals; 0 if nothing is known of them.
+double dilute_lag(const Config& config, const Equilibration& equilibration) {
+  const auto collisions = static_cast<double>(equilibration.counters.collisions);
+  return collisions > 0 ? kLagCollisions * equilibration.time * config.number / (2 * collisions) : 0;
+}
+
 /// How long production is to be, and what is measured in it.
 Production planned_production(const Config& config, const Equilibration& equilibration) {
   Production plan;
   const double length = std::clamp(kProductionFactor * equilibration.time, kLeastProduction, kMostProduction);
-  plan.planned = config.production_time.value_or(config.target_error ? kMostProduction : length);
-  // A state that was slow to equilibrate decays as slowly.
-  plan.longest_lag = config.production_time ? std::min(*config.production_time / 16, kLongestLag)
-                                            : std::min(length / 16, std::max(kLongestLag, equilibration.time));
-  plan.next_look = kFirstLook * plan.longest_lag;
+  if (config.production_time) {
+    plan.planned = *config.production_time;
+    plan.longest_lag = std::min(plan.planned / kLags, kLongestLag);
+  } else {
+    // A state that was slow to equilibrate decays as slowly.
+    plan.longest_lag = std::min(length / kLags, std::max(kLongestLag, equilibration.time));
+    plan.longest_lag = std::max(plan.longest_lag, std::min(dilute_lag(config, equilibration), kMostProduction / kLags));
+    plan.planned = config.target_error ? kMostProduction : std::max(length, kLags * plan.longest_lag);
+  }
+  plan.next_look = kLags * plan.longest_lag;
   const double q = equilibration.relaxation.q;
   plan.wave_numbers = {q, q / 4, q / 2, 2 * q};  // at the first peak of S(q), and about it
   return plan;
@@ -189,8 +204,8 @@ auto restored(const std::string& name, const F& restore) {
 
 ed::Simulation restored_simulation(const Config& config, const Checkpoint& checkpoint, const std::string& name) {
   return restored(name, [&] {
-    ed::Simulation simulation =
-        ed::Simulation::restore(checkpoint.run->simulation, checkpoint.system.species, config.simulation_options());
+    ed::Simulation simulation = ed::Simulation::restore(checkpoint.run->simulation.bytes(), checkpoint.system.species,
+                                                        config.simulation_options());
     if (ed::internal::bytes_of(simulation.system()) == ed::internal::bytes_of(checkpoint.system)) return simulation;
     throw std::invalid_argument("state: two that should be the same differ");
   });
@@ -210,6 +225,15 @@ std::string order_text(const Config& config) {
   return config.nematic_order ? fmt::format(", S = {:g} about z", *config.nematic_order) : "";
 }
 
+ed::StartOptions start_options(const Config& config, const std::function<bool(double)>& progress) {
+  ed::StartOptions options;
+  options.packing_fraction = config.packing_fraction;
+  options.seed = static_cast<std::uint64_t>(config.seed);
+  options.nematic_order = config.nematic_order;
+  options.progress = progress;
+  return options;
+}
+
 }  // namespace
 
 std::optional<ed::System> make_start(const Config& config, Progress& progress, Log& log) {
@@ -226,21 +250,20 @@ std::optional<ed::System> make_start(const Config& config, Progress& progress, L
     log.line("start: done");
     return start;
   }
-  log.line(fmt::format("start: {} bodies placed at random{}, compressed to packing fraction {:g}", config.number,
-                       order_text(config), config.packing_fraction));
+  log.line(config.start_from ? fmt::format("start: the last state of {}, compressed to packing fraction {:g}",
+                                           *config.start_from, config.packing_fraction)
+                             : fmt::format("start: {} bodies placed at random{}, compressed to packing fraction {:g}",
+                                           config.number, order_text(config), config.packing_fraction));
   progress.begin();
-  ed::StartOptions options;
-  options.packing_fraction = config.packing_fraction;
-  options.seed = static_cast<std::uint64_t>(config.seed);
-  options.nematic_order = config.nematic_order;
-  options.progress = [&](double reached) {
+  const auto show = [&](double reached) {
     if (progress.due()) {
       progress.show(fmt::format("compression: packing fraction {:.4f} of {:g}", reached, config.packing_fraction));
     }
     return pending_signal() == 0;
   };
   try {
-    ed::System start = ed::random_start(config.components(), options);
+    ed::System start = config.start_from ? ed::compressed(read_origin_state(config), config.packing_fraction, show)
+                                         : ed::random_start(config.components(), start_options(config, show));
     if (pending_signal() != 0) return std::nullopt;
     log.line("start: done");
     return start;
@@ -295,7 +318,7 @@ Checkpoint checkpoint_of(const EquilibrationRun& run) {
   RunState& state = checkpoint.run.emplace();
   state.equilibration = run.result;
   state.monitor = run.monitor.save();
-  state.simulation = run.simulation.save();
+  state.simulation = StoredState([&run](const Sink& sink) { run.simulation.save(sink); });
   return checkpoint;
 }
 
@@ -347,7 +370,7 @@ void look_at_errors(const Config& config, ProductionRun& run) {
 
 }  // namespace
 
-ProductionRun begin_production(const Config& config, const Equilibration& equilibration, const RunDirectory& directory,
+ProductionRun begin_production(const Config& config, Equilibration equilibration, const RunDirectory& directory,
                                Log& log) {
   Production production = planned_production(config, equilibration);
   log.line(
@@ -356,12 +379,17 @@ ProductionRun begin_production(const Config& config, const Equilibration& equili
                         *config.target_error, production.planned)
           : fmt::format("production: {:g} time units", production.planned));
   // A new simulation: its time starts at 0 and its counters count production only.
-  ProductionRun run{ed::Simulation(equilibration.system, config.simulation_options(equilibration.envelope)),
+  ed::Simulation simulation(equilibration.system, config.simulation_options(equilibration.envelope));
+  std::optional<ed::System> begin;
+  if (!config.trajectory.empty()) begin = std::move(equilibration.system);
+  equilibration.system = {};
+  ProductionRun run{std::move(simulation),
                     ed::Observables(observables_options(config, production)),
                     EventsFile(directory, config.events),
                     Trajectory(directory, config, production.planned),
-                    equilibration,
-                    std::move(production)};
+                    std::move(equilibration),
+                    std::move(production),
+                    std::move(begin)};
   run.result.kinetic_at_start = run.simulation.kinetic();
   return run;
 }
@@ -369,15 +397,16 @@ ProductionRun begin_production(const Config& config, const Equilibration& equili
 ProductionRun resumed_production(const Config& config, const Checkpoint& checkpoint, const RunDirectory& directory,
                                  const std::string& name) {
   const RunState& state = *checkpoint.run;
-  ProductionRun run{
-      restored_simulation(config, checkpoint, name),
-      restored(
-          name,
-          [&] { return ed::Observables::restore(state.observables, observables_options(config, state.production)); }),
-      EventsFile(directory, config.events),
-      Trajectory(directory, config, state.production.planned),
-      state.equilibration,
-      state.production};
+  ProductionRun run{restored_simulation(config, checkpoint, name),
+                    restored(name,
+                             [&] {
+                               return ed::Observables::restore(state.observables.bytes(),
+                                                               observables_options(config, state.production));
+                             }),
+                    EventsFile(directory, config.events),
+                    Trajectory(directory, config, state.production.planned),
+                    state.equilibration,
+                    state.production};
   run.result.wall_seconds = checkpoint.upkeep.production_seconds;
   run.events.check(state.events);
   run.trajectory.check(state.trajectory);
@@ -397,8 +426,8 @@ Checkpoint checkpoint_of(ProductionRun& run) {
   state.production = run.result;
   state.events = run.events.mark();
   state.trajectory = run.trajectory.mark();
-  state.simulation = run.simulation.save();
-  state.observables = run.observables.save();
+  state.simulation = StoredState([&run](const Sink& sink) { run.simulation.save(sink); });
+  state.observables = StoredState([&run](const Sink& sink) { run.observables.save(sink); });
   return checkpoint;
 }
 
@@ -411,7 +440,8 @@ void produce(const Config& config, ProductionRun& run, const FilesMark& files, P
   run.events.open(files.events, run.simulation);
   run.trajectory.open(files.trajectory);
   // Before a checkpoint can be made: none is without it.
-  run.trajectory.take_first(run.before.system, log);
+  if (run.begin) run.trajectory.take_first(*run.begin, log);
+  run.begin.reset();
   progress.begin();
   Runner runner(run.simulation, "production", progress, saver, [&] {
     result.wall_seconds = seconds();
@@ -431,7 +461,6 @@ void produce(const Config& config, ProductionRun& run, const FilesMark& files, P
   result.results = run.observables.results(run.simulation);
   result.wall_seconds = seconds();
   if (result.stopped) result.time = run.simulation.time();
-  result.system = run.simulation.system();
   result.envelope = run.simulation.envelope();
   result.counters = run.simulation.counters();
   result.failures = run.simulation.failures();

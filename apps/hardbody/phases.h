@@ -49,11 +49,13 @@ struct ProductionRun {
   ed::Observables observables;
   EventsFile events;
   Trajectory trajectory;
-  Equilibration before;
+  Equilibration before;  ///< without its system
   Production result;
+  std::optional<ed::System> begin{};  ///< for the first frame of trajectories, until it is taken
 };
 
-ProductionRun begin_production(const Config& config, const Equilibration& equilibration, const RunDirectory& directory,
+/// Goes on from the equilibration's system, which it takes.
+ProductionRun begin_production(const Config& config, Equilibration equilibration, const RunDirectory& directory,
                                Log& log);
 /// Throws InputError if the state does not fit. Changes nothing.
 ProductionRun resumed_production(const Config& config, const Checkpoint& checkpoint, const RunDirectory& directory,

@@ -6,6 +6,7 @@
 #include "failure_file.h"
 #include "log.h"
 #include "observable_files.h"
+#include "origin.h"
 #include "phases.h"
 #include "progress.h"
 #include "run_directory.h"
@@ -25,6 +26,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -35,6 +37,17 @@ std::filesystem::path directory_for(const RunArguments& arguments) {
   if (arguments.out && arguments.out->empty()) throw InputError("--out is empty; accepted: the name of a directory");
   if (arguments.out) return *arguments.out;
   return std::filesystem::path("out") / std::filesystem::path(arguments.config).stem();
+}
+
+/// Before anything is changed. The name of the run becomes one that is good from everywhere.
+void check_origin(const RunArguments& arguments, Config& config) {
+  (void)read_origin_state(config);
+  std::error_code ignored;
+  if (std::filesystem::equivalent(*config.start_from, directory_for(arguments), ignored)) {
+    throw InputError(fmt::format("system.start_from: {} is the directory of this run; accepted: that of another one",
+                                 *config.start_from));
+  }
+  config.start_from = std::filesystem::absolute(*config.start_from).lexically_normal().string();
 }
 
 RunDirectory create_directory(const RunArguments& arguments, const Config& config) {
@@ -138,8 +151,10 @@ bool prepare(const Config& config, Continuation& at, Progress& progress, Saver& 
   if (at.equilibration || at.production) return true;
   if (!at.start) at.start = make_start(config, progress, log);
   if (!at.start) return false;
-  if (saver.due()) saver.save([&at] { return checkpoint_of(*at.start); });
+  // The run that it came from may be gone when this one is resumed.
+  if (saver.due() || config.start_from) saver.save([&at] { return checkpoint_of(*at.start); });
   at.equilibration = begin_equilibration(config, *at.start, progress, log);
+  if (at.equilibration && config.equilibration_time != 0.0) at.start.reset();
   return true;
 }
 
@@ -147,13 +162,13 @@ void run_equilibration(const Config& config, const RunDirectory& directory, Cont
                        Progress& progress, Saver& saver, Log& log) {
   record.equilibration = equilibrate(config, *at.equilibration, progress, saver, log);
   // Where nothing was to run the start itself, to the last bit.
-  if (config.equilibration_time == 0.0 && at.start) record.equilibration.system = *at.start;
+  if (at.start) record.equilibration.system = *std::exchange(at.start, std::nullopt);
   record.stall = at.equilibration->simulation.stall();
   // A state with an overlap is no start for a production run.
   const bool sound = defects(ed::audit(record.equilibration.system)).empty();
   if (record.equilibration.stopped || !sound) return;
-  at.production = begin_production(config, record.equilibration, directory, log);
   at.equilibration.reset();
+  at.production = begin_production(config, std::move(record.equilibration), directory, log);
 }
 
 void run_production(const Config& config, Continuation& at, RunRecord& record, Progress& progress, Saver& saver,
@@ -161,6 +176,7 @@ void run_production(const Config& config, Continuation& at, RunRecord& record, P
   produce(config, *at.production, at.files, progress, saver, log);
   record.equilibration = at.production->before;
   record.production = at.production->result;
+  record.production.system = at.production->simulation.system();
   record.stall = at.production->simulation.stall();
 }
 
@@ -228,6 +244,7 @@ int start_over(const Config& config, const RunDirectory& directory) {
 int run(const RunArguments& arguments) {
   install_signal_handlers();
   Config config = load_config(arguments.config, arguments.overrides);
+  if (config.start_from) check_origin(arguments, config);
   // What is wrong with the file is said before anything is written.
   if (config.start_file) config.packing_fraction = ed::packing_fraction(start_from_file(config).system);
   const RunDirectory directory = create_directory(arguments, config);

@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 constexpr std::array kFiles = {kConfigFile, kSummaryFile,   kCheckpointFile, kEventsFile, kGsdFile,
                                kLammpsFile, kVtkFile,       kLogFile,        kMsdFile,    kRotationalMsdFile,
                                kAlpha2File, kVelocityFile,  kC1File,         kC2File,     kFSelfFile,
-                               kPairsFile,  kStructureFile, kBlocksFile};
+                               kPairsFile,  kStructureFile, kBlocksFile,     kReportFile};
 
 /// The first file of an earlier run; empty if there is none.
 std::string trace_of_a_run(const fs::path& directory) {
@@ -119,9 +119,13 @@ RunDirectory RunDirectory::open(const fs::path& path) {
 }
 
 void RunDirectory::write(const std::string& name, std::string_view content) const {
+  write(name, [content](const Sink& sink) { sink(content); });
+}
+
+void RunDirectory::write(const std::string& name, const std::function<void(const Sink&)>& make) const {
   const fs::path path = file(name);
   fs::create_directories(path.parent_path());
-  write_file(path, content);
+  write_file(path, make);
 }
 
 }  // namespace hardbody

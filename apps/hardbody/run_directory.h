@@ -1,6 +1,9 @@
 #pragma once
 
+#include "text_file.h"
+
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -16,6 +19,9 @@ inline constexpr const char* kGsdFile = "trajectory.gsd";
 inline constexpr const char* kLammpsFile = "trajectory.lammpstrj";
 inline constexpr const char* kVtkFile = "trajectory.vtp";
 inline constexpr const char* kLogFile = "log.txt";
+inline constexpr const char* kSweepTableFile = "sweep.csv";
+inline constexpr const char* kPointStateFile = "state.json";
+inline constexpr const char* kReportFile = "report.html";
 inline constexpr const char* kMsdFile = "observables/msd.csv";
 inline constexpr const char* kRotationalMsdFile = "observables/rotational_msd.csv";
 inline constexpr const char* kAlpha2File = "observables/alpha2.csv";
@@ -63,6 +69,8 @@ class RunDirectory {
 
   /// Writes one file as write_file does; `name` may have a directory in it, which is created.
   void write(const std::string& name, std::string_view content) const;
+  /// The same of a content in pieces.
+  void write(const std::string& name, const std::function<void(const Sink&)>& make) const;
 
   /// Whether there is such a file.
   bool has(const std::string& name) const { return std::filesystem::exists(file(name)); }

@@ -46,7 +46,7 @@ void Saver::write(Checkpoint checkpoint) {
   checkpoint.upkeep.production_seconds = production_seconds;
   // Itself included: if it is not written nobody reads that it was.
   ++checkpoint.upkeep.checkpoints;
-  directory_.write(kCheckpointFile, encode_checkpoint(checkpoint));
+  directory_.write(kCheckpointFile, [&checkpoint](const Sink& sink) { encode_checkpoint(checkpoint, sink); });
   ++upkeep_.checkpoints;
 }
 

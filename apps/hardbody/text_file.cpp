@@ -27,6 +27,17 @@ using File = std::unique_ptr<std::FILE, Close>;
   throw std::runtime_error(fmt::format("{}: cannot be written: {}", path.string(), std::strerror(error)));
 }
 
+/// Everything into `temporary`, down to the disk; messages name `path`.
+void write_pieces(const fs::path& temporary, const fs::path& path, const std::function<void(const Sink&)>& make) {
+  File file(std::fopen(temporary.c_str(), "wb"));
+  if (!file) fail_to_write(path, errno);
+  make([&](std::string_view piece) {
+    if (std::fwrite(piece.data(), 1, piece.size(), file.get()) != piece.size()) fail_to_write(path, errno);
+  });
+  if (std::fflush(file.get()) != 0 || ::fsync(::fileno(file.get())) != 0) fail_to_write(path, errno);
+  if (std::fclose(file.release()) != 0) fail_to_write(path, errno);
+}
+
 /// Whether all of it could be written; errno says why not.
 bool write_all(int file, ::off_t place, std::string_view content) {
   for (std::size_t done = 0; done < content.size();) {
@@ -65,25 +76,18 @@ std::string read_file(const fs::path& path, std::size_t limit) {
 }
 
 void write_file(const fs::path& path, std::string_view content) {
+  write_file(path, [content](const Sink& sink) { sink(content); });
+}
+
+void write_file(const fs::path& path, const std::function<void(const Sink&)>& make) {
   fs::path temporary = path;
   temporary += ".part";
-  {
-    File file(std::fopen(temporary.c_str(), "wb"));
-    if (!file) fail_to_write(path, errno);
-    const bool written = std::fwrite(content.data(), 1, content.size(), file.get()) == content.size() &&
-                         std::fflush(file.get()) == 0 && ::fsync(::fileno(file.get())) == 0;
-    const int error = errno;
-    const bool closed = std::fclose(file.release()) == 0;
-    if (!written || !closed) {
-      const int why = written ? errno : error;
-      std::remove(temporary.c_str());
-      fail_to_write(path, why);
-    }
-  }
-  if (std::rename(temporary.c_str(), path.c_str()) != 0) {
-    const int error = errno;
+  try {
+    write_pieces(temporary, path, make);
+    if (std::rename(temporary.c_str(), path.c_str()) != 0) fail_to_write(path, errno);
+  } catch (...) {
     std::remove(temporary.c_str());
-    fail_to_write(path, error);
+    throw;
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 
@@ -13,6 +14,12 @@ std::string read_file(const std::filesystem::path& path, std::size_t limit);
 /// Writes under a temporary name, flushes to the disk and renames, so that a reader (or a crash) never sees
 /// half a file. Throws std::runtime_error.
 void write_file(const std::filesystem::path& path, std::string_view content);
+
+/// Takes a file's bytes piece by piece.
+using Sink = std::function<void(std::string_view)>;
+
+/// The same of a content that `make` hands over in pieces. What that throws is passed on; no file is left then.
+void write_file(const std::filesystem::path& path, const std::function<void(const Sink&)>& make);
 
 /// Whether bytes are on the disk when they are written, or with the system, which outlives the process only.
 enum class Flush { now, later };

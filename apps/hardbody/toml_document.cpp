@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <sstream>
+#include <utility>
 
 namespace hardbody {
 namespace {
@@ -18,6 +19,7 @@ constexpr std::size_t kShownLength = 60;
 std::string shown(const Value& value, const toml::node& node) {
   if (value.kind == Value::Kind::real) return toml_real(value.real);
   if (value.kind == Value::Kind::text) return one_line(fmt::format("\"{}\"", value.text), kShownLength);
+  if (value.kind == Value::Kind::table) return one_line(toml_text(value), kShownLength);
   std::ostringstream text;
   if (value.kind == Value::Kind::array) {
     const char* separator = "[";
@@ -30,6 +32,24 @@ std::string shown(const Value& value, const toml::node& node) {
     node.visit([&](const auto& n) { text << n; });
   }
   return one_line(text.str(), kShownLength);
+}
+
+int line_of(const toml::source_region& source) {
+  return static_cast<int>(source.begin.line);
+}
+
+Value value_of(const toml::node& node);
+
+/// In the order of the file; toml++ keeps the alphabet's.
+std::vector<Member> members_of(const toml::table& table) {
+  std::vector<std::pair<toml::source_position, Member>> found;
+  for (const auto& [key, node] : table) {
+    found.push_back({key.source().begin, {std::string(key.str()), line_of(key.source()), value_of(node)}});
+  }
+  std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<Member> members;
+  for (auto& [position, member] : found) members.push_back(std::move(member));
+  return members;
 }
 
 Value value_of(const toml::node& node) {
@@ -50,15 +70,12 @@ Value value_of(const toml::node& node) {
   } else if (const toml::array* array = node.as_array()) {
     value.kind = Value::Kind::array;
     for (const toml::node& item : *array) value.items.push_back(value_of(item));
-  } else if (node.is_table()) {
+  } else if (const toml::table* table = node.as_table()) {
     value.kind = Value::Kind::table;
+    value.members = members_of(*table);
   }
   value.shown = shown(value, node);
   return value;
-}
-
-int line_of(const toml::source_region& source) {
-  return static_cast<int>(source.begin.line);
 }
 
 void add_entry(TomlDocument& document, std::string key, const toml::key& name, const toml::node& node) {
@@ -118,11 +135,116 @@ void lay_over(TomlDocument& document, const std::string& override_text) {
   std::string key = one_line(override_text.substr(0, equals));
   const std::string text = one_line(override_text.substr(equals + 1));
   if (text.empty()) throw InputError(fmt::format("{}: has no value; accepted: section.key=value", where));
-  std::erase_if(document.entries, [&](const Entry& e) { return e.key == key; });
-  document.entries.push_back({std::move(key), where, 0, parse_value(text)});
+  document.set({std::move(key), where, 0, parse_value(text)});
+}
+
+// ---- Writing
+
+std::string string_text(std::string_view text) {
+  std::string result = "\"";
+  for (const char c : text) {
+    const auto code = static_cast<unsigned char>(c);
+    if (code < 0x20 || code == 0x7f) {
+      result += fmt::format("\\u{:04X}", code);
+      continue;
+    }
+    if (c == '"' || c == '\\') result += '\\';
+    result += c;
+  }
+  return result + '"';
+}
+
+std::string key_text(std::string_view key) {
+  const bool bare = !key.empty() && std::all_of(key.begin(), key.end(), [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+  });
+  return bare ? std::string(key) : string_text(key);
+}
+
+std::string array_text(const std::vector<Value>& items) {
+  std::string text = "[";
+  for (const Value& item : items) text += (text.size() > 1 ? ", " : "") + toml_text(item);
+  return text + "]";
+}
+
+std::string table_text(const std::vector<Member>& members) {
+  std::string text = "{";
+  for (const Member& m : members) {
+    text += fmt::format("{}{} = {}", text.size() > 1 ? ", " : "", key_text(m.key), toml_text(m.value));
+  }
+  return text + "}";
+}
+
+/// The lines of a section ("": of none).
+std::string entries_text(const TomlDocument& document, const std::string& section) {
+  std::string text;
+  for (const Entry& entry : document.entries) {
+    const bool of_any = std::any_of(document.sections.begin(), document.sections.end(),
+                                    [&](const Section& s) { return entry.key.starts_with(s.name + "."); });
+    const bool here = section.empty() ? !of_any : entry.key.starts_with(section + ".");
+    if (!here) continue;
+    const std::string key = section.empty() ? entry.key : entry.key.substr(section.size() + 1);
+    text += fmt::format("{} = {}\n", key_text(key), toml_text(entry.value));
+  }
+  return text;
 }
 
 }  // namespace
+
+const Member* Value::find(std::string_view key) const {
+  const auto found = std::find_if(members.begin(), members.end(), [&](const Member& m) { return m.key == key; });
+  return found == members.end() ? nullptr : &*found;
+}
+
+std::string toml_text(const Value& value) {
+  switch (value.kind) {
+    case Value::Kind::boolean:
+      return value.integer != 0 ? "true" : "false";
+    case Value::Kind::integer:
+      return fmt::format("{}", value.integer);
+    case Value::Kind::real:
+      return toml_real(value.real);
+    case Value::Kind::text:
+      return string_text(value.text);
+    case Value::Kind::array:
+      return array_text(value.items);
+    case Value::Kind::table:
+      return table_text(value.members);
+    case Value::Kind::other:  // dates and times
+      break;
+  }
+  return value.shown;
+}
+
+bool same_value(const Value& a, const Value& b) {
+  const auto numeric = [](const Value& v) { return v.kind == Value::Kind::integer || v.kind == Value::Kind::real; };
+  if (numeric(a) && numeric(b)) return a.real == b.real;
+  if (a.kind != b.kind || a.items.size() != b.items.size() || a.members.size() != b.members.size()) return false;
+  if (a.kind == Value::Kind::table) {
+    return std::all_of(a.members.begin(), a.members.end(), [&](const Member& m) {
+      const Member* other = b.find(m.key);
+      return other != nullptr && same_value(m.value, other->value);
+    });
+  }
+  if (a.kind != Value::Kind::array) return toml_text(a) == toml_text(b);
+  return std::equal(a.items.begin(), a.items.end(), b.items.begin(), same_value);
+}
+
+std::string document_text(const TomlDocument& document) {
+  std::string text = entries_text(document, "");
+  for (const Section& section : document.sections) {
+    const std::string name = section.several ? section.name.substr(0, section.name.find('[')) : section.name;
+    const int brackets = section.several ? 2 : 1;
+    text += fmt::format("\n{:[<{}}{}{:]<{}}\n", "", brackets, key_text(name), "", brackets);
+    text += entries_text(document, section.name);
+  }
+  return text;
+}
+
+void TomlDocument::set(Entry entry) {
+  std::erase_if(entries, [&](const Entry& e) { return e.key == entry.key; });
+  entries.push_back(std::move(entry));
+}
 
 std::string toml_real(double x) {
   std::string text = fmt::format("{}", x);

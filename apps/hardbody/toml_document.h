@@ -10,6 +10,8 @@ namespace hardbody {
 /// A real as TOML writes it: the shortest digits that read back as the same number, and never an integer.
 std::string toml_real(double x);
 
+struct Member;
+
 /// A value of a TOML file, as much of it as a config needs.
 struct Value {
   enum class Kind { boolean, integer, real, text, array, table, other };
@@ -17,9 +19,24 @@ struct Value {
   std::int64_t integer = 0;
   double real = 0;  ///< also set for integers
   std::string text;
-  std::vector<Value> items;
-  std::string shown;  ///< as TOML on one line, shortened, for messages
+  std::vector<Value> items;     ///< of an array
+  std::vector<Member> members;  ///< of a table, in the order of the file
+  std::string shown;            ///< as TOML on one line, shortened, for messages
+
+  const Member* find(std::string_view key) const;
 };
+
+struct Member {
+  std::string key;
+  int line = 0;
+  Value value;
+};
+
+/// A value as TOML on one line, reals to the last bit.
+std::string toml_text(const Value& value);
+
+/// Whether they are the same to a config: 2 and 2.0 are.
+bool same_value(const Value& a, const Value& b);
 
 /// A value and the place it came from.
 struct Entry {
@@ -44,6 +61,8 @@ struct TomlDocument {
   std::vector<Entry> entries;     ///< in the order of the file, then of the command line; each key once
 
   const Entry* find(std::string_view key) const;
+  /// In place of what the key has, if anything.
+  void set(Entry entry);
   /// file:line of the section's head, or file:1.
   std::string where_of(std::string_view section) const;
 };
@@ -54,5 +73,8 @@ struct TomlDocument {
 /// The value of an override is read as TOML; what is none is taken as a string, so that a shell needs no
 /// second quotes.
 TomlDocument read_toml(std::string_view text, const std::string& name, const std::vector<std::string>& overrides);
+
+/// A document as TOML, without comments: reading it gives the same values.
+std::string document_text(const TomlDocument& document);
 
 }  // namespace hardbody

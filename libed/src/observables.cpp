@@ -185,10 +185,16 @@ Results Observables::results(const Simulation& simulation) const {
 }
 
 std::string Observables::save() const {
-  internal::Writer writer;
+  std::string bytes;
+  save([&bytes](std::string_view piece) { bytes += piece; });
+  return bytes;
+}
+
+void Observables::save(const std::function<void(std::string_view)>& sink) const {
+  internal::Writer writer(sink);
   writer(kStateFormat, internal::bytes_of(impl_->options()));
   Impl::fields(writer, *impl_);
-  return writer.take();
+  writer.flush();
 }
 
 Observables Observables::restore(std::string_view state, const ObservablesOptions& options) {

@@ -113,12 +113,18 @@ Simulation::Simulation(const System& system, const SimulationOptions& options) {
 Simulation::Simulation(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 
 std::string Simulation::save() const {
+  std::string bytes;
+  save([&bytes](std::string_view piece) { bytes += piece; });
+  return bytes;
+}
+
+void Simulation::save(const std::function<void(std::string_view)>& sink) const {
   const System now = system();
-  internal::Writer writer;
+  internal::Writer writer(sink);
   writer(kStateFormat, internal::bytes_of(now.species), now.box, std::uint64_t{now.bodies.size()});
   for (const Body& body : now.bodies) writer(body.species);
   (*impl_)->save(writer);
-  return writer.take();
+  writer.flush();
 }
 
 Simulation Simulation::restore(std::string_view state, const std::vector<Species>& species,

@@ -144,6 +144,25 @@ System compressed_start(const std::vector<Component>& components, const StartOpt
   return system.box > target ? compress(system, target, options) : system;
 }
 
+/// A box that shrinks by less than this, relative, is the one that was asked for.
+constexpr double kSameBox = 1e-12;
+
+/// Each body as a component of its own.
+std::vector<Component> components_of(const System& system) {
+  std::vector<Component> components;
+  for (int i = 0; i < system.size(); ++i) components.push_back({system.species_of(i), 1});
+  return components;
+}
+
+void check_packing(const std::vector<Component>& components, double packing_fraction) {
+  const double densest = densest_start(components);
+  if (packing_fraction > 0 && packing_fraction <= densest) return;
+  std::ostringstream message;
+  message << "packing_fraction is " << packing_fraction << "; accepted: above 0, at most " << densest << " for "
+          << (components.size() == 1 ? "this shape" : "these shapes");
+  throw std::invalid_argument(message.str());
+}
+
 }  // namespace
 
 double densest_start(const BodyShape& shape) {
@@ -173,13 +192,7 @@ System random_start(const Species& species, const StartOptions& options) {
 
 System random_start(const std::vector<Component>& components, const StartOptions& options) {
   internal::check_components(components);
-  const double densest = densest_start(components);
-  if (!(options.packing_fraction > 0 && options.packing_fraction <= densest)) {
-    std::ostringstream message;
-    message << "packing_fraction is " << options.packing_fraction << "; accepted: above 0, at most " << densest
-            << " for " << (components.size() == 1 ? "this shape" : "these shapes");
-    throw std::invalid_argument(message.str());
-  }
+  check_packing(components, options.packing_fraction);
   internal::check_target(components, box_for(components, options.packing_fraction));
   Random random(options.seed);
   const internal::Tiling tiling = internal::tiling_of(components, options.packing_fraction, options.most_compressed);
@@ -192,6 +205,26 @@ System random_start(const std::vector<Component>& components, const StartOptions
   }
   rescale_velocities(system);
   return system;
+}
+
+System compressed(const System& system, double packing_fraction, const std::function<bool(double)>& progress) {
+  const std::vector<Component> components = components_of(system);
+  internal::check_components(components);
+  check_packing(components, packing_fraction);
+  const double target = system.box * std::cbrt(ed::packing_fraction(system) / packing_fraction);
+  if (target > system.box * (1 + kSameBox)) {
+    std::ostringstream message;
+    message << "packing_fraction is " << packing_fraction << ", below that of the state; accepted: at least "
+            << ed::packing_fraction(system);
+    throw std::invalid_argument(message.str());
+  }
+  internal::check_target(components, target);
+  StartOptions options;
+  options.packing_fraction = packing_fraction;
+  options.progress = progress;
+  System result = target < system.box * (1 - kSameBox) ? compress(system, target, options) : system;
+  rescale_velocities(result);
+  return result;
 }
 
 }  // namespace ed

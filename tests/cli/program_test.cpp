@@ -100,7 +100,7 @@ Checkpoint with_a_run(Checkpoint checkpoint) {
   checkpoint.system = simulation.system();
   hardbody::RunState& run = checkpoint.run.emplace();
   run.simulation = simulation.save();
-  run.observables = "not read here";
+  run.observables = std::string("not read here");
   run.production.planned = 10;
   run.events = {3, 77};
   run.equilibration.kinetic_at_start = ed::kinetic_state(checkpoint.system);
@@ -117,7 +117,7 @@ TEST(Checkpoint, ARunReadsBackTheSameBits) {
   const Checkpoint read = hardbody::decode_checkpoint(bytes, "memory");
   EXPECT_EQ(hardbody::encode_checkpoint(read), bytes);
   ASSERT_TRUE(read.run.has_value());
-  EXPECT_EQ(read.run->simulation, written.run->simulation);
+  EXPECT_EQ(read.run->simulation.bytes(), written.run->simulation.bytes());
   EXPECT_EQ(read.run->events.bytes, 77U);
   EXPECT_EQ(read.upkeep.resumed, 5U);
 }
@@ -165,7 +165,7 @@ TEST(Checkpoint, EveryTruncationAndEveryFlippedBitIsRefused) {
   small.bodies[1].species = 1;
   Checkpoint checkpoint = with_a_run(checkpoint_of(small));
   checkpoint.system = small;
-  checkpoint.run->simulation.resize(100);
+  checkpoint.run->simulation.bytes().resize(100);
   const std::string good = hardbody::encode_checkpoint(checkpoint);
   for (std::size_t length = 0; length < good.size(); ++length) {
     EXPECT_THROW(hardbody::decode_checkpoint(good.substr(0, length), "memory"), hardbody::InputError) << length;
@@ -250,7 +250,7 @@ TEST(Resume, StatesThatDoNotFitAreRefused) {
   other.phase = "somewhere";
   expect_refused(other, "holds an impossible state");
   other = good;
-  other.run->simulation.resize(other.run->simulation.size() - 1);
+  other.run->simulation.bytes().resize(other.run->simulation.size() - 1);
   expect_refused(other, "holds an impossible state (state: is cut off)");
 }
 

@@ -44,8 +44,8 @@ class Manual(unittest.TestCase):
 
     def options_in(self, section):
         text = re.sub(r"^\.(It|Op) ", "", section, flags=re.MULTILINE)
-        long = {f"--{name}" for name in re.findall(r"\bFl Fl (\w[\w-]*)", text)}
-        return long | {f"-{name}" for name in re.findall(r"\bFl (\w)\b", text)}
+        long = {f"--{name}" for name in re.findall(r"\bFl Fl ([\w-]+)", text)}
+        return long | {f"-{name}" for name in re.findall(r"(?<!Fl )\bFl (\w)\b", text)}
 
     def test_commands(self):
         self.assertIn("run", self.commands)

@@ -239,6 +239,47 @@ TEST(RandomStart, TellsItsProgressAndStopsWhenAsked) {
   EXPECT_THROW((void)ed::random_start(species, options), std::runtime_error);
 }
 
+TEST(Compressed, GoesOnFromAStateToADenserOne) {
+  const ed::System dilute = ed_test::start({3, 0.20, 100, Inertia::uniform, 17});
+  double last = 0;
+  const ed::System dense = ed::compressed(dilute, 0.35, [&](double phi) {
+    EXPECT_GE(phi, last);
+    last = phi;
+    return true;
+  });
+  EXPECT_NEAR(last, 0.35, 1e-12);
+  EXPECT_NEAR(ed::packing_fraction(dense) / 0.35, 1, 1e-14);
+  const ed::Audit audit = ed::audit(dense);
+  EXPECT_EQ(audit.overlaps, 0);
+  EXPECT_EQ(audit.unanswered, 0);
+  const ed::KineticState kinetic = ed::kinetic_state(dense);
+  EXPECT_NEAR(kinetic.translational_kT, 1, kRounding);
+  EXPECT_NEAR(kinetic.rotational_kT, 1, kRounding);
+  EXPECT_NEAR(kinetic.momentum.norm(), 0, kRounding);
+  EXPECT_NEAR(spin_kT(dense), 1, kRounding);
+  EXPECT_EQ(ed_test::hash_of(ed::compressed(dilute, 0.35)), ed_test::hash_of(dense));
+}
+
+TEST(Compressed, LeavesAStateOfTheSamePackingFractionWhereItIs) {
+  const ed::System state = ed_test::start({2, 0.20, 64, Inertia::paper, 18});
+  const ed::System same = ed::compressed(state, 0.20);
+  EXPECT_EQ(same.box, state.box);
+  for (std::size_t k = 0; k < state.bodies.size(); ++k) {
+    EXPECT_EQ(same.bodies[k].position, state.bodies[k].position);
+    EXPECT_EQ(same.bodies[k].rotation, state.bodies[k].rotation);
+  }
+}
+
+TEST(Compressed, RefusesWhatCannotBeReached) {
+  const ed::System state = ed_test::start({2, 0.20, 64, Inertia::paper, 19});
+  for (const double phi : {0.0, 0.19, 0.7, std::numeric_limits<double>::quiet_NaN()}) {
+    EXPECT_THAT(message_of([&] { (void)ed::compressed(state, phi); }), HasSubstr("packing_fraction is ")) << phi;
+  }
+  const ed::System few = ed_test::start({5, 0.10, 64, Inertia::paper, 7});
+  EXPECT_THAT(message_of([&] { (void)ed::compressed(few, 0.5); }), HasSubstr("number: a box"));
+  EXPECT_THROW((void)ed::compressed(state, 0.3, [](double) { return false; }), std::runtime_error);
+}
+
 /// <P2> of the body axis about z.
 double order_about_z(const ed::System& system, int axis) {
   double sum = 0;

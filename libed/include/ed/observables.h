@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <string>
@@ -182,6 +183,7 @@ class ED_EXPORT Observables {
 
   /// All that was measured as bytes, see Simulation::save.
   std::string save() const;
+  void save(const std::function<void(std::string_view)>& sink) const;  ///< the same piece by piece
 
   /// The observables that were saved. Throws std::invalid_argument, `state: ..`, if the bytes are none of a run with
   /// these options.

@@ -199,6 +199,8 @@ class ED_EXPORT Simulation {
   /// recorded collisions included. Changes nothing. The bytes carry no checksum, and are meant for the binary and the
   /// instruction set that wrote them.
   std::string save() const;
+  /// The same piece by piece: of a million bodies they are a gigabyte.
+  void save(const std::function<void(std::string_view)>& sink) const;
 
   /// The simulation that was saved. A shape of the user's, and ContactOptions::seed, are code: they are not in the
   /// state and must be the same again. Throws std::invalid_argument, `state: ..`, if the bytes are no state of bodies

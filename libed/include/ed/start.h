@@ -30,7 +30,7 @@ struct StartOptions {
   /// within some collisions; at distances of a box they are correlated until bodies have diffused by their length, so
   /// that large starts, too, need their equilibration. Mixtures of many species with few bodies each, and boxes that
   /// would be too small for nearest images, are not repeated as often.
-  int most_compressed = 4000;
+  int most_compressed = 2000;
 };
 
 /// Which lattice the bodies are placed on. Its cubic cell is stretched along the edges of the box to the proportions of
@@ -78,6 +78,15 @@ ED_EXPORT System random_start(const Species& species, const StartOptions& option
 /// The same for a mixture; the bodies stand in the order of their components. Throws also for a component without
 /// bodies.
 ED_EXPORT System random_start(const std::vector<Component>& components, const StartOptions& options);
+
+/// The paper's compression of a state that is there already, to a higher packing fraction: from one state point to the
+/// next. Velocities are rescaled at the end as those of random_start; `progress` is as in StartOptions.
+///
+/// Throws std::invalid_argument for a packing fraction below that of the state or above densest_start, and for a box
+/// that would be too small (as random_start); std::runtime_error if the compression gets stuck. At the state's own
+/// packing fraction only velocities change.
+ED_EXPORT System compressed(const System& system, double packing_fraction,
+                            const std::function<bool(double packing_fraction)>& progress = nullptr);
 
 /// Bodies on a lattice that fills the box, at exactly this packing fraction: dense and ordered states that no
 /// compression reaches. Velocities as those of random_start; densest_start does not apply.

@@ -20,6 +20,7 @@
 #include <cstdint>
 #include <cstring>
 #include <deque>
+#include <functional>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -59,21 +60,41 @@ struct Blank {
   static T make() { return T{}; }
 };
 
-/// Appends values to bytes.
+/// Takes bytes piece by piece.
+using Sink = std::function<void(std::string_view)>;
+
+/// Appends values to bytes, which it keeps, or hands on to a sink: large states need no room of their own then.
 class Writer {
  public:
   static constexpr bool kReads = false;
+
+  Writer() = default;
+  /// flush() hands on the last piece.
+  explicit Writer(Sink sink) : sink_(std::move(sink)) {}
 
   template <class... T>
   void operator()(const T&... values) {
     (put(values), ...);
   }
 
-  const std::string& bytes() const { return bytes_; }
+  /// Bytes as they are.
+  void raw(std::string_view bytes) { raw(bytes.data(), bytes.size()); }
+
+  void flush() {
+    sink_(bytes_);
+    bytes_.clear();
+  }
+
+  /// Without a sink: all of it.
   std::string take() { return std::move(bytes_); }
 
  private:
-  void raw(const void* data, std::size_t size) { bytes_.append(static_cast<const char*>(data), size); }
+  static constexpr std::size_t kPiece = std::size_t{1} << 20;
+
+  void raw(const void* data, std::size_t size) {
+    bytes_.append(static_cast<const char*>(data), size);
+    if (sink_ && bytes_.size() >= kPiece) flush();
+  }
 
   template <class T>
   void put(const T& value) {
@@ -109,6 +130,7 @@ class Writer {
   }
 
   std::string bytes_;
+  Sink sink_;
 };
 
 /// Takes values off the front of bytes, which must outlive it. Throws std::invalid_argument where they end too early or

@@ -1,0 +1,231 @@
+#include "commands.h"
+#include "contours.h"
+#include "csv_table.h"
+#include "errors.h"
+#include "map_svg.h"
+#include "text_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <iterator>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace hardbody {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kTable = "sweep.csv";
+constexpr int kLevels = 6;  ///< that are chosen where none are given
+
+fs::path table_path(const MapArguments& arguments) {
+  const fs::path path = arguments.table;
+  return fs::is_directory(path) ? path / kTable : path;
+}
+
+double parse_number(std::string_view text, std::string_view option) {
+  double x = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), x);
+  if (error == std::errc() && end == text.data() + text.size() && std::isfinite(x)) return x;
+  throw InputError(
+      fmt::format("{}: {} is not a number; accepted: numbers with commas between", option, one_line(text, 40)));
+}
+
+std::vector<double> parse_levels(std::string_view text) {
+  std::vector<double> levels;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t comma = std::min(text.find(',', begin), text.size());
+    levels.push_back(parse_number(text.substr(begin, comma - begin), "--levels"));
+    begin = comma + 1;
+  }
+  return levels;
+}
+
+/// Rows for which every --where column=value holds: the same text, or the same number.
+std::vector<std::size_t> chosen_rows(const CsvTable& table, const std::vector<std::string>& conditions) {
+  std::vector<std::size_t> rows(table.rows.size());
+  for (std::size_t k = 0; k < rows.size(); ++k) rows[k] = k;
+  for (const std::string& condition : conditions) {
+    const std::size_t equals = condition.find('=');
+    if (equals == std::string::npos) {
+      throw InputError(fmt::format("--where {}: is no condition; accepted: column=value", one_line(condition, 60)));
+    }
+    const std::size_t column = table.column(std::string_view(condition).substr(0, equals));
+    const std::string wanted = condition.substr(equals + 1);
+    std::erase_if(rows, [&](std::size_t k) { return table.rows[k][column] != wanted; });
+    if (rows.empty()) throw InputError(fmt::format("--where {}: no row of {} is so", condition, table.name));
+  }
+  return rows;
+}
+
+/// A coordinate as it is interpolated and drawn.
+double coordinate(double x, bool log, const std::string& name) {
+  if (log && !(x > 0)) {
+    throw InputError(fmt::format("{}: has {:g}, which has no logarithm; accepted: values above 0", name, x));
+  }
+  return log ? std::log10(x) : x;
+}
+
+/// What the map is made of.
+struct Columns {
+  std::size_t x;
+  std::size_t y;
+  std::vector<std::size_t> values;
+};
+
+std::vector<Sample> samples_of(const CsvTable& table, const std::vector<std::size_t>& rows, const Columns& columns,
+                               std::size_t value, const MapArguments& arguments) {
+  std::vector<Sample> samples;
+  for (const std::size_t k : rows) {
+    const auto x = table.number(k, columns.x);
+    const auto y = table.number(k, columns.y);
+    const auto v = table.number(k, value);
+    if (!x || !y || !v) continue;
+    samples.push_back({coordinate(*x, arguments.log_x, arguments.x), coordinate(*y, arguments.log_y, arguments.y), *v});
+  }
+  return samples;
+}
+
+/// Between the extremes, by equal factors where all values are positive; two digits.
+std::vector<double> chosen_levels(const std::vector<Sample>& samples) {
+  const auto [low, high] = std::minmax_element(samples.begin(), samples.end(),
+                                               [](const Sample& a, const Sample& b) { return a.value < b.value; });
+  std::vector<double> levels;
+  for (int k = 1; k <= kLevels; ++k) {
+    const double share = k / (kLevels + 1.0);
+    const double level = low->value > 0 ? low->value * std::pow(high->value / low->value, share)
+                                        : low->value + share * (high->value - low->value);
+    levels.push_back(std::stod(fmt::format("{:.2g}", level)));
+  }
+  levels.erase(std::unique(levels.begin(), levels.end()), levels.end());
+  return levels;
+}
+
+/// Values between positive ones are interpolated by their logarithms: diffusivities span decades.
+std::vector<MapLevel> levels_of(std::vector<Sample> samples, const std::vector<double>& levels) {
+  const bool log = std::all_of(samples.begin(), samples.end(), [](const Sample& s) { return s.value > 0; });
+  if (log) {
+    for (Sample& s : samples) s.value = std::log(s.value);
+  }
+  const Lattice lattice = lattice_of(samples);
+  std::vector<MapLevel> result;
+  for (const double level : levels) {
+    MapLevel one;
+    one.level = level;
+    if (!log || level > 0) one.lines = contour_lines(lattice, log ? std::log(level) : level);
+    result.push_back(std::move(one));
+  }
+  return result;
+}
+
+void to_data(ContourLine& line, const MapArguments& arguments) {
+  for (PlanePoint& p : line) {
+    if (arguments.log_x) p.x = std::pow(10.0, p.x);
+    if (arguments.log_y) p.y = std::pow(10.0, p.y);
+  }
+}
+
+std::vector<MapLevel> all_levels(const CsvTable& table, const std::vector<std::size_t>& rows, const Columns& columns,
+                                 const MapArguments& arguments) {
+  std::vector<MapLevel> all;
+  for (std::size_t v = 0; v < columns.values.size(); ++v) {
+    const std::vector<Sample> samples = samples_of(table, rows, columns, columns.values[v], arguments);
+    if (samples.empty()) {
+      throw InputError(
+          fmt::format("{}: {} has no values; accepted: a column with some", table.name, arguments.values[v]));
+    }
+    const std::vector<double> levels =
+        arguments.levels.empty() ? chosen_levels(samples) : parse_levels(arguments.levels[v]);
+    for (MapLevel& level : levels_of(samples, levels)) {
+      level.value = table.header[columns.values[v]];
+      level.of = v;
+      for (ContourLine& line : level.lines) to_data(line, arguments);
+      all.push_back(std::move(level));
+    }
+  }
+  return all;
+}
+
+/// Open where the row says that it was not equilibrated.
+std::vector<MapMark> marks_of(const CsvTable& table, const std::vector<std::size_t>& rows, const Columns& columns) {
+  std::vector<MapMark> marks;
+  const std::optional<std::size_t> equilibrated = table.find("equilibrated");
+  for (const std::size_t k : rows) {
+    const auto x = table.number(k, columns.x);
+    const auto y = table.number(k, columns.y);
+    const bool measured = std::any_of(columns.values.begin(), columns.values.end(),
+                                      [&](std::size_t value) { return table.number(k, value).has_value(); });
+    if (!x || !y || !measured) continue;
+    marks.push_back({*x, *y, equilibrated && table.rows[k][*equilibrated] == "false"});
+  }
+  return marks;
+}
+
+std::string lines_csv(const Map& map) {
+  std::string text = fmt::format("value,level,line,{},{}\n", map.x_name, map.y_name);
+  for (const MapLevel& level : map.levels) {
+    for (std::size_t k = 0; k < level.lines.size(); ++k) {
+      for (const PlanePoint& p : level.lines[k]) {
+        fmt::format_to(std::back_inserter(text), "{},{:g},{},{:.6g},{:.6g}\n", level.value, level.level, k + 1, p.x,
+                       p.y);
+      }
+    }
+  }
+  return text;
+}
+
+void check(const MapArguments& arguments) {
+  if (!arguments.levels.empty() && arguments.levels.size() != arguments.values.size()) {
+    throw InputError(
+        fmt::format("--levels is there {} times and --value {} times; accepted: levels for each value, or "
+                    "for none",
+                    arguments.levels.size(), arguments.values.size()));
+  }
+}
+
+fs::path output(const std::optional<std::string>& wanted, const MapArguments& arguments, const char* extension) {
+  if (wanted) return *wanted;
+  fs::path path = table_path(arguments);
+  return path.parent_path() / fmt::format("map_{}{}", fmt::join(arguments.values, "_"), extension);
+}
+
+void print_levels(const Map& map) {
+  for (const MapLevel& level : map.levels) {
+    std::size_t points = 0;
+    for (const ContourLine& line : level.lines) points += line.size();
+    fmt::print("  {} = {:g}: {} lines, {} points\n", level.value, level.level, level.lines.size(), points);
+  }
+}
+
+}  // namespace
+
+int map(const MapArguments& arguments) {
+  check(arguments);
+  const CsvTable table = read_csv(table_path(arguments));
+  Columns columns{table.column(arguments.x), table.column(arguments.y), {}};
+  for (const std::string& value : arguments.values) columns.values.push_back(table.column(value));
+  const std::vector<std::size_t> rows = chosen_rows(table, arguments.where);
+  Map map;
+  map.x_name = table.header[columns.x];
+  map.y_name = table.header[columns.y];
+  map.log_x = arguments.log_x;
+  map.log_y = arguments.log_y;
+  map.levels = all_levels(table, rows, columns, arguments);
+  map.marks = marks_of(table, rows, columns);
+  const fs::path svg = output(arguments.out, arguments, ".svg");
+  const fs::path csv = output(arguments.csv, arguments, ".csv");
+  write_file(svg, map_svg(map));
+  write_file(csv, lines_csv(map));
+  fmt::print("{}, {} written from {} points\n", svg.string(), csv.string(), map.marks.size());
+  print_levels(map);
+  return 0;
+}
+
+}  // namespace hardbody

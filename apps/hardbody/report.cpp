@@ -1,0 +1,78 @@
+#include "commands.h"
+#include "errors.h"
+#include "report_assets.h"
+#include "report_page.h"
+#include "run_directory.h"
+#include "text_file.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <utility>
+
+namespace hardbody {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path output_path(const ReportArguments& arguments) {
+  if (arguments.out) return *arguments.out;
+  if (arguments.directories.size() == 1) return fs::path(arguments.directories[0]) / kReportFile;
+  throw InputError("hardbody report: several directories, and no file to write to; accepted: -o FILE.html");
+}
+
+void check_output(const fs::path& path) {
+  const fs::path directory = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  if (!fs::is_directory(directory)) {
+    throw InputError(
+        fmt::format("{}: cannot be written: {} is not a directory; accepted: a file in a directory that "
+                    "is there",
+                    path.string(), directory.string()));
+  }
+  if (fs::is_directory(path)) {
+    throw InputError(fmt::format("{}: is a directory; accepted: a file", path.string()));
+  }
+}
+
+std::string size_text(std::size_t bytes) {
+  const auto size = static_cast<double>(bytes);
+  return size < 1e6 ? fmt::format("{:.0f} kB", size / 1e3) : fmt::format("{:.1f} MB", size / 1e6);
+}
+
+std::string several_title(const std::vector<RunReport>& runs) {
+  std::string title;
+  for (const RunReport& run : runs) title += (title.empty() ? "" : ", ") + run.name;
+  return fmt::format("{} runs: {}", runs.size(), title);
+}
+
+Report read_report(const std::vector<std::string>& directories) {
+  Report report;
+  if (directories.size() == 1 && is_sweep(directories[0])) {
+    report.sweep = read_sweep_report(directories[0]);
+    report.title = report.sweep->title;
+    return report;
+  }
+  for (const std::string& directory : directories) {
+    if (is_sweep(directory)) {
+      throw InputError(fmt::format("{}: holds a sweep; accepted: a sweep by itself, or several runs", directory));
+    }
+    report.runs.push_back(read_run_report(directory, WithView::yes));
+  }
+  report.title = report.runs.size() == 1 ? report.runs[0].title : several_title(report.runs);
+  return report;
+}
+
+}  // namespace
+
+int report(const ReportArguments& arguments) {
+  const fs::path path = output_path(arguments);
+  const Report report = read_report(arguments.directories);
+  check_output(path);
+  const std::string page = report_page(report);
+  write_file(path, page);
+  fmt::print("{}: {}{}\n", path.string(), size_text(page.size()),
+             report_script().empty() ? ", static: this program was built without the interactive front end" : "");
+  return 0;
+}
+
+}  // namespace hardbody

@@ -1,0 +1,33 @@
+#pragma once
+
+#include "report_run.h"
+#include "report_sweep.h"
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace hardbody {
+
+/// What a page is made of.
+struct Report {
+  std::string title;
+  std::vector<RunReport> runs;       ///< one, or several side by side
+  std::optional<SweepReport> sweep;  ///< instead of runs
+};
+
+/// The page: one HTML file that opens without a network. With the front end that was built in it is interactive;
+/// without one its plots are drawn here.
+std::string report_page(const Report& report);
+
+/// Text in HTML, also within quotes.
+std::string html_text(std::string_view text);
+
+/// Plots and tables that need no script.
+std::string static_body(const Report& report);
+
+/// The data that the front end draws, as <script> elements of JSON; those of a sweep's points are read one by one.
+std::string report_data(const Report& report);
+
+}  // namespace hardbody

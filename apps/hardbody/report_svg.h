@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace hardbody {
+
+struct PlotSeries {
+  std::string name;
+  std::vector<double> x;
+  std::vector<double> y;
+};
+
+/// A plot of a static report. Points that are not finite, or not positive on a logarithmic axis, are left out.
+struct Plot {
+  std::string title;
+  std::string x_label;
+  std::string y_label;
+  bool log_x = false;
+  bool log_y = false;
+  std::vector<PlotSeries> series;
+};
+
+/// As inline SVG, with classes for its colours; empty if there is no point to draw.
+std::string svg_plot(const Plot& plot);
+
+}  // namespace hardbody

@@ -1,0 +1,315 @@
+// The page of a sweep: a map, cuts through it, the point that is chosen, the table of all.
+import { floats } from './bytes.js';
+import { Chart, forgetCharts } from './chart.js';
+import { downloadText, fileName, h, symbol, tool } from './dom.js';
+import { makeAxis, SweepMap } from './map.js';
+import { plotsOf } from './plots.js';
+import { page, remarks, settingsCard, countersCard, sheet, number, viewCard } from './run_page.js';
+
+const kNames = {
+  'shape.aspect_ratio': 'aspect ratio X₀', 'system.packing_fraction': 'packing fraction φ', 'system.number': 'number of bodies',
+};
+const kSymbols = { 'shape.aspect_ratio': 'X₀', 'system.packing_fraction': 'φ', 'system.number': 'N' };
+const kMostCuts = 8;
+/** What is looked at first, if it was measured. */
+const kFirst = ['D_trans', 'Z', 'D_rot'];
+
+function keyName(key) {
+  return kNames[key] ?? key.slice(key.lastIndexOf('.') + 1).replaceAll('_', ' ');
+}
+
+/** The run of a point, which waits as text in the page until somebody looks at it. */
+function pointRun(index) {
+  const element = document.getElementById(`point-${index}`);
+  if (!element) return null;
+  const run = JSON.parse(element.textContent);
+  for (const table of Object.values(run.curves)) {
+    table.data = table.data.map((column) => (typeof column === 'string' ? Array.from(floats(column), (x) => (Number.isNaN(x) ? null : x)) : column));
+  }
+  return run;
+}
+
+class SweepPage {
+  constructor(sweep) {
+    this.sweep = sweep;
+    this.axes = sweep.keys.map((key, k) => makeAxis(sweep.points.map((p) => p.keys[k])));
+    // Keys that do not vary are no axes.
+    this.varied = this.axes.map((axis, k) => k).filter((k) => this.axes[k].values.length > 1);
+    const places = this.varied.filter((k) => sweep.keys[k] !== 'seed');
+    this.xKey = places[0] ?? this.varied[0] ?? 0;
+    this.yKey = places[1] ?? null;
+    this.fixed = new Map();
+    this.observable = Math.max(0, ...kFirst.map((key) => sweep.observables.findIndex((o) => o.key === key)).slice(0, 1));
+    this.lines = true;
+    this.logarithmic = this.spansDecades();
+    this.pointPlace = h('section', { id: 'point', 'aria-live': 'polite' });
+    this.cutPlace = h('div', { class: 'cuts' });
+    this.map = new SweepMap((i, j) => this.chooseCell(i, j));
+  }
+
+  // ---- Data ----------------------------------------------------------------------------------------------------------
+
+  values() {
+    return this.sweep.points.map((p) => p.values[this.observable]?.[0]).filter((v) => Number.isFinite(v));
+  }
+
+  spansDecades() {
+    const all = this.values();
+    const low = Math.min(...all);
+    return low > 0 && Math.max(...all) / low > 20;
+  }
+
+  others() {
+    return this.varied.filter((k) => k !== this.xKey && k !== this.yKey);
+  }
+
+  /** Points that have those values of the keys which are not axes; of seeds all, unless one was chosen. */
+  matching(x, y) {
+    return this.sweep.points.map((point, index) => ({ point, index })).filter(({ point }) => point.keys[this.xKey] === x
+      && (this.yKey === null || point.keys[this.yKey] === y)
+      && this.others().every((k) => !this.fixed.has(k) || point.keys[k] === this.fixed.get(k)));
+  }
+
+  /** The mean of several points, of seeds say. */
+  cell(x, y) {
+    const key = `${x}|${y}`;
+    if (!this.cells.has(key)) {
+      const found = this.matching(x, y);
+      if (!found.length) {
+        this.cells.set(key, null);
+        return null;
+      }
+      const known = found.map(({ point }) => point.values[this.observable] ?? []).filter(([v]) => Number.isFinite(v));
+      const n = known.length;
+      const mean = n ? known.reduce((sum, [v]) => sum + v, 0) / n : null;
+      const errors = known.map(([, e]) => e);
+      const error = n && errors.every((e) => Number.isFinite(e)) ? Math.sqrt(errors.reduce((sum, e) => sum + e * e, 0)) / n : null;
+      const worst = found.find(({ point }) => point.status !== 'done') ?? found[0];
+      this.cells.set(key, { value: mean, error, status: worst.point.status, message: worst.point.message, index: found[0].index });
+    }
+    return this.cells.get(key);
+  }
+
+  get observableTitle() {
+    const { name, unit } = this.sweep.observables[this.observable];
+    return unit ? `${name} [${unit}]` : name;
+  }
+
+  // ---- Elements ------------------------------------------------------------------------------------------------------
+
+  content() {
+    const { sweep } = this;
+    const counts = new Map();
+    sweep.points.forEach((p) => counts.set(p.status, (counts.get(p.status) ?? 0) + 1));
+    const kinds = { done: 'good', failed: 'bad' };
+    const hero = h('section', { class: 'hero', id: 'results' }, h('p', { class: 'over' }, sweep.path), h('h1', {}, page.title),
+      h('ul', { class: 'remarks' }, [...counts].map(([status, n]) => h('li', { class: kinds[status] ?? 'warning' }, h('b', {}, `${n} ${status}`)))));
+    const parts = [hero, h('div', { class: 'sweep' }, this.mapCard(), this.pointPlace), this.cutPlace, h('div', { id: 'plots' }),
+      h('h2', { id: 'settings' }, 'All points'), this.table()];
+    this.detail = parts[3];
+    this.refresh();
+    this.showPoint(this.firstPoint());
+    return parts;
+  }
+
+  /** In the middle of those that have something to show. */
+  firstPoint() {
+    const all = this.sweep.points.map((p, k) => k).filter((k) => this.sweep.points[k].embedded);
+    return all[Math.floor(all.length / 2)] ?? 0;
+  }
+
+  mapCard() {
+    const select = (label, options, chosen, onchange) => {
+      const element = h('select', { onchange: () => onchange(element.selectedIndex) }, options.map((o, k) => h('option', { selected: k === chosen }, o)));
+      return h('label', {}, h('span', {}, label), element);
+    };
+    this.logButton = tool('Logarithmic colours', 'log', () => { this.logarithmic = !this.logarithmic; this.refresh(); });
+    this.lineButton = tool('Isolines', 'isolines', () => { this.lines = !this.lines; this.refresh(); });
+    const observables = select('Show', this.sweep.observables.map((o) => o.name), this.observable, (k) => {
+      this.observable = k;
+      this.logarithmic = this.spansDecades();
+      this.refresh();
+    });
+    this.keyPlace = h('div', { class: 'keys' });
+    this.mapPlace = h('div', { class: 'map-place' });
+    return h('article', { class: 'card map-card', id: 'bodies', 'aria-label': 'Map of the sweep' },
+      h('header', {}, h('div', {}, h('h3', {}, 'Map'), h('p', {}, 'A cell a state point; click one to open it.')),
+        h('div', { class: 'tools' }, this.lineButton, this.logButton, tool('Save the table as CSV', 'CSV', () => this.saveTable()),
+          tool('Save the map as PNG', 'PNG', () => this.map.savePicture(`${fileName(this.sweep.name)}-map.png`)))),
+      h('div', { class: 'controls top-controls' }, observables, this.keyPlace), this.mapPlace);
+  }
+
+  /** Which keys are axes, and what the others are. */
+  keyControls() {
+    const names = this.varied.map((k) => keyName(this.sweep.keys[k]));
+    if (this.varied.length < 2) return [];
+    const chooser = (label, current, set) => {
+      const element = h('select', { onchange: () => { set(this.varied[element.selectedIndex]); this.fixed.clear(); this.refresh(); } },
+        names.map((name, k) => h('option', { selected: this.varied[k] === current }, name)));
+      return h('label', {}, h('span', {}, label), element);
+    };
+    const parts = this.varied.length > 2 ? [
+      chooser('x', this.xKey, (k) => { if (k === this.yKey) this.yKey = this.xKey; this.xKey = k; }),
+      chooser('y', this.yKey ?? this.varied[1], (k) => { if (k === this.xKey) this.xKey = this.yKey; this.yKey = k; }),
+    ] : [];
+    for (const k of this.others()) {
+      const axis = this.axes[k];
+      const seeds = this.sweep.keys[k] === 'seed';
+      if (!seeds && !this.fixed.has(k)) this.fixed.set(k, axis.values[0]);
+      const element = h('select', { onchange: () => {
+        const at = element.selectedIndex - (seeds ? 1 : 0);
+        if (at < 0) this.fixed.delete(k);
+        else this.fixed.set(k, axis.values[at]);
+        this.refresh();
+      } }, [...(seeds ? ['mean of all'] : []), ...axis.values.map(axis.text)].map((text, at) => h('option',
+        { selected: this.fixed.has(k) ? axis.values[at - (seeds ? 1 : 0)] === this.fixed.get(k) : at === 0 }, text)));
+      parts.push(h('label', {}, h('span', {}, keyName(this.sweep.keys[k])), element));
+    }
+    return parts;
+  }
+
+  refresh() {
+    this.keyPlace.replaceChildren(...this.keyControls());
+    this.cells = new Map();
+    this.logButton.setAttribute('aria-pressed', this.logarithmic);
+    this.lineButton.setAttribute('aria-pressed', this.lines);
+    if (this.yKey !== null) this.showMap();
+    this.showCuts();
+  }
+
+  showMap() {
+    const [x, y] = [this.axes[this.xKey], this.axes[this.yKey]];
+    if (!this.map.element.isConnected) this.mapPlace.replaceChildren(this.map.element);
+    this.map.show({ x, y, xLabel: keyName(this.sweep.keys[this.xKey]), yLabel: keyName(this.sweep.keys[this.yKey]),
+      cell: (i, j) => this.cell(x.values[i], y.values[j]), title: this.observableTitle, logarithmic: this.logarithmic, lines: this.lines });
+  }
+
+  /** The observable along one key, a curve for each value of the other; without another one that is all there is. */
+  showCuts() {
+    if (this.cut) forgetCharts([this.cut]);
+    const along = this.yKey ?? this.xKey;
+    const axis = this.axes[along];
+    if (!axis.numeric) {
+      this.cutPlace.replaceChildren();
+      return;
+    }
+    const across = this.yKey === null ? null : this.axes[this.xKey];
+    const all = across ? across.values : [null];
+    const step = Math.max(1, (all.length - 1) / (kMostCuts - 1));
+    const some = all.length <= kMostCuts ? all : Array.from({ length: kMostCuts }, (_, k) => all[Math.round(k * step)]);
+    const series = some.map((value, k) => {
+      const cells = axis.values.map((v) => (across ? this.cell(value, v) : this.cell(v, null)));
+      return { label: across ? `${kSymbols[this.sweep.keys[this.xKey]] ?? keyName(this.sweep.keys[this.xKey])} = ${across.text(value)}` : this.sweep.observables[this.observable].name,
+        x: axis.values, y: cells.map((c) => c?.value ?? null), error: cells.map((c) => c?.error ?? null), colour: k };
+    }).filter((s) => s.y.some((y) => y !== null));
+    this.cut = new Chart({ id: 'cuts', title: across ? 'Cuts through the map' : 'Along the sweep', about: this.observableTitle,
+      x: { label: keyName(this.sweep.keys[along]), log: axis.logarithmic }, y: { label: this.observableTitle, log: this.logarithmic }, series }, this.sweep.name);
+    (this.yKey === null ? this.mapPlace : this.cutPlace).replaceChildren(this.cut.element);
+  }
+
+  chooseCell(i, j) {
+    const cell = this.cell(this.axes[this.xKey].values[i], this.axes[this.yKey].values[j]);
+    if (cell) this.showPoint(cell.index);
+  }
+
+  // ---- The point -----------------------------------------------------------------------------------------------------
+
+  showPoint(index) {
+    const point = this.sweep.points[index];
+    const run = point.embedded ? pointRun(index) : null;
+    const headlines = this.sweep.observables.map((o, k) => ({ ...o, value: point.values[k]?.[0] ?? null, error: point.values[k]?.[1] ?? null }));
+    const title = this.varied.map((k) => `${keyName(this.sweep.keys[k])} ${this.axes[k].text(point.keys[k])}`).join(', ');
+    const notes = [];
+    if (point.status !== 'done' || point.message) notes.push(h('p', { class: 'notice' }, `${point.status}${point.message ? `: ${point.message}` : ''}`));
+    if (point.equilibrated === 'false') notes.push(h('p', { class: 'notice' }, 'Not shown to be equilibrated.'));
+    this.pointPlace.replaceChildren(h('article', { class: 'card results' },
+      h('header', {}, h('div', {}, h('h3', {}, title || 'The point'), h('p', { class: 'caption' }, point.directory))), ...notes,
+      sheet(headlines.slice(0, 12), point.status === 'done' ? 'too short' : 'none')));
+    this.showDetail(point, run);
+    this.shown = index;
+    this.markChosen(point);
+  }
+
+  markChosen(point) {
+    if (this.yKey === null) return;
+    const at = [this.axes[this.xKey].values.indexOf(point.keys[this.xKey]), this.axes[this.yKey].values.indexOf(point.keys[this.yKey])];
+    this.map.chosen = at;
+    this.map.cursor = at;
+    this.map.draw();
+  }
+
+  showDetail(point, run) {
+    forgetCharts(this.charts ?? []);
+    page.views.splice(0).forEach((view) => view.dispose());
+    this.charts = [];
+    if (!run) {
+      const why = point.directory && point.status === 'done' ? `Its plots are not in this file; hardbody report ${this.sweep.path}/${point.directory} shows them.` : 'There is nothing stored of it.';
+      this.detail.replaceChildren(h('h2', {}, 'The chosen point'), h('p', { class: 'notice' }, why));
+      return;
+    }
+    this.charts = plotsOf(run).map((plot) => new Chart(plot, run.name));
+    const first = this.charts.slice(0, 1).map((c) => c.element);
+    this.detail.replaceChildren(h('h2', {}, run.title), remarks(run),
+      h('div', { class: 'split' }, run.view ? viewCard(run) : first, settingsCard(run)),
+      h('div', { class: 'grid charts' }, this.charts.filter((c, k) => run.view || k > 0).map((c) => c.element)),
+      h('details', { class: 'card log' }, h('summary', {}, 'Counters'), h('div', { class: 'grid' }, countersCard(run))));
+  }
+
+  // ---- The table -----------------------------------------------------------------------------------------------------
+
+  table() {
+    const { sweep } = this;
+    this.body = h('tbody', {});
+    this.sorted = { column: null, up: true };
+    const head = (content, column) => {
+      const cell = h('th', { scope: 'col', 'aria-sort': 'none' }, h('button', { type: 'button', onclick: () => this.sort(column, cell) }, content));
+      return cell;
+    };
+    const columns = [...this.varied.map((k) => head(keyName(sweep.keys[k]), (p) => p.keys[k])),
+      ...sweep.observables.map((o, k) => head(symbol(o.symbol), (p) => p.values[k]?.[0])), head('status', (p) => p.status)];
+    this.order = sweep.points.map((p, k) => k);
+    const element = h('div', { class: 'card scroll tall', tabindex: 0, role: 'region', 'aria-label': 'All points' },
+      h('table', { class: 'comparison points' }, h('thead', {}, h('tr', {}, columns)), this.body));
+    this.fillTable();
+    return element;
+  }
+
+  sort(column, cell) {
+    this.sorted = { column, up: this.sorted.column === column ? !this.sorted.up : true };
+    cell.parentNode.querySelectorAll('th').forEach((other) => other.setAttribute('aria-sort', 'none'));
+    cell.setAttribute('aria-sort', this.sorted.up ? 'ascending' : 'descending');
+    const sign = this.sorted.up ? 1 : -1;
+    const value = (k) => column(this.sweep.points[k]) ?? null;
+    this.order.sort((a, b) => {
+      const [x, y] = [value(a), value(b)];
+      if (x === null || y === null) return (x === null) - (y === null);
+      return sign * (typeof x === 'number' && typeof y === 'number' ? x - y : String(x).localeCompare(String(y)));
+    });
+    this.fillTable();
+  }
+
+  fillTable() {
+    const { sweep } = this;
+    this.body.replaceChildren(...this.order.map((k) => {
+      const point = sweep.points[k];
+      const open = () => { this.showPoint(k); document.getElementById('results').scrollIntoView(); };
+      const cells = this.varied.map((axis, at) => h(at ? 'td' : 'th', at ? {} : { scope: 'row' },
+        at ? this.axes[axis].text(point.keys[axis]) : h('button', { type: 'button', class: 'link', onclick: open }, this.axes[axis].text(point.keys[axis]))));
+      return h('tr', {}, cells, point.values.map(([value, error]) => h('td', {}, number({ value, error }, point.status === 'done' ? 'too short' : ''))),
+        h('td', { title: point.message }, point.status));
+    }));
+  }
+
+  saveTable() {
+    const { sweep } = this;
+    const quoted = (text) => `"${String(text ?? '').replaceAll('"', '""')}"`;
+    const header = [...sweep.keys, ...sweep.observables.flatMap((o) => [o.key, `${o.key}_error`]), 'status'];
+    const rows = sweep.points.map((p) => [...p.keys.map((k) => (typeof k === 'number' ? k : quoted(k))), ...p.values.flatMap(([v, e]) => [v ?? '', e ?? '']), quoted(p.status)]);
+    downloadText(`${fileName(sweep.name)}.csv`, `${[header, ...rows].map((row) => row.join(',')).join('\n')}\n`);
+  }
+}
+
+export function sweepPage(sweep) {
+  page.sweep = new SweepPage(sweep);
+  return page.sweep.content();
+}

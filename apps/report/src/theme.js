@@ -1,0 +1,34 @@
+// Light or dark: as the system says, until the reader chooses.
+import { h } from './dom.js';
+
+const listeners = [];
+
+/** Called after each change of colours. */
+export function onThemeChange(listener) {
+  listeners.push(listener);
+}
+
+const system = window.matchMedia('(prefers-color-scheme: dark)');
+
+function isDark() {
+  const chosen = document.documentElement.dataset.theme;
+  return chosen ? chosen === 'dark' : system.matches;
+}
+
+export function themeSwitch() {
+  const button = h('button', { type: 'button', class: 'tool theme', onclick: toggle });
+  function show() {
+    const other = isDark() ? 'light' : 'dark';
+    button.textContent = isDark() ? '☀' : '☾';
+    button.setAttribute('aria-label', `Switch to ${other} colours`);
+    button.title = `Switch to ${other} colours`;
+    for (const listener of listeners) listener();
+  }
+  function toggle() {
+    document.documentElement.dataset.theme = isDark() ? 'light' : 'dark';
+    show();
+  }
+  system.addEventListener('change', show);
+  show();
+  return button;
+}

@@ -1,0 +1,160 @@
+"""The paper's study: the committed results, what is made of them, and the tool that runs it.
+
+    HARDBODY=build/release/apps/hardbody/hardbody /usr/bin/python3 tests/cli/test_paper.py [TestClass[.test]]
+"""
+
+import csv
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+import xml.dom.minidom
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+HARDBODY = os.path.abspath(os.environ.get("HARDBODY", "build/release/apps/hardbody/hardbody"))
+DOCS = ROOT / "docs" / "paper"
+FIGURES = ["isodiffusivity", "isochrones", "c2_fits", "correlators"]
+
+sys.path.insert(0, str(ROOT / "tools"))
+
+
+def read(path):
+    with open(path, newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def tool(*arguments, **options):
+    return subprocess.run([sys.executable, ROOT / "tools" / "reproduce_paper.py", "--hardbody", HARDBODY, *map(str, arguments)],
+                          capture_output=True, text=True, timeout=300, **options)
+
+
+class Here(unittest.TestCase):
+    def setUp(self):
+        self.directory = tempfile.TemporaryDirectory()
+        self.addCleanup(self.directory.cleanup)
+        self.here = pathlib.Path(self.directory.name)
+
+
+class Results(Here):
+    def test_points(self):
+        rows = read(DOCS / "points.csv")
+        points = [(float(row["X0"]), float(row["phi"])) for row in rows]
+        self.assertEqual(points, sorted(set(points)), "distinct, and in order")
+        for row, (X0, phi) in zip(rows, points):
+            with self.subTest(X0=X0, phi=phi):
+                self.assertTrue(0.2 <= X0 <= 5 and 0.1 <= phi <= 0.55)
+                self.assertEqual(row["number"], "512")
+                self.assertEqual(row["sound"], "true")
+                self.assertGreater(float(row["production_time"]), 0)
+                for name in ["Z", "collision_rate", "S", "q"]:
+                    self.assertGreater(float(row[name]), 0)
+                if row["precise"] == "true":
+                    self.assertLessEqual(float(row["D_trans_error"]), 0.03 * float(row["D_trans"]) * (1 + 1e-5))
+
+    def test_every_point_has_its_curves(self):
+        curves = read(DOCS / "curves.csv")
+        with_curves = {(row["X0"], row["phi"]) for row in curves}
+        self.assertEqual(with_curves, {(row["X0"], row["phi"]) for row in read(DOCS / "points.csv")})
+        for row in curves:
+            self.assertLess(abs(float(row["C2"])), 1.01)
+            self.assertLess(abs(float(row["F_self"])), 1.01)
+
+    def test_figures_and_verdicts_are_those_of_the_results(self):
+        for name in ["points.csv", "curves.csv"]:
+            shutil.copy(DOCS / name, self.here)
+        result = tool("--figures", "--results", self.here)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        names = sorted(path.name for path in self.here.iterdir())
+        self.assertEqual(names, sorted(path.name for path in DOCS.iterdir()))
+        for name in names:
+            self.assertEqual((self.here / name).read_text(), (DOCS / name).read_text(),
+                             f"{name}: tools/reproduce-paper --figures makes another one")
+        for name in FIGURES:
+            xml.dom.minidom.parse(str(DOCS / f"{name}.svg"))
+        text = (DOCS / "README.md").read_text()
+        for number in range(1, 17):
+            self.assertIn(f"\n{number}. **", text)
+
+
+class Tool(Here):
+    POINTS = ["2,0.05", "0.5,0.05", "3,0.06"]
+
+    def arguments(self):
+        return ["--quick", "--out", self.here / "out", "--results", self.here / "results", "--points", *self.POINTS]
+
+    def test_points_are_merged_and_not_run_again(self):
+        result = tool(*self.arguments(), "--jobs", 2)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        rows = read(self.here / "results" / "points.csv")
+        self.assertEqual([(row["X0"], row["phi"]) for row in rows], [("0.5", "0.05"), ("2", "0.05"), ("3", "0.06")])
+        self.assertEqual({row["production_time"] for row in rows}, {"60"})
+        before = (self.here / "results" / "points.csv").read_bytes()
+        again = tool(*self.arguments())
+        self.assertEqual(again.returncode, 0, again.stderr)
+        self.assertIn("0 of 3 points to run", again.stdout)
+        self.assertEqual((self.here / "results" / "points.csv").read_bytes(), before)
+
+    def test_slices(self):
+        """Stopped after two seconds, again and again: in the end the same results as in one go."""
+        self.assertEqual(tool(*self.arguments()).returncode, 0)
+        reference = [{k: v for k, v in row.items() if k != "wall_seconds"} for row in read(self.here / "results" / "points.csv")]
+        shutil.rmtree(self.here / "results")
+        for _ in range(100):
+            result = tool(*self.arguments(), "--minutes", 0.04)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            if "0 of 3 points are left" in result.stdout:
+                break
+            self.assertIn("the same command goes on", result.stdout)
+        rows = [{k: v for k, v in row.items() if k != "wall_seconds"} for row in read(self.here / "results" / "points.csv")]
+        self.assertEqual(rows, reference)
+
+    def test_one_at_a_time_and_signals(self):
+        command = [sys.executable, ROOT / "tools" / "reproduce_paper.py", "--hardbody", HARDBODY, *self.arguments()[:5],
+                   "--points", "5,0.3"]
+        process = subprocess.Popen(list(map(str, command)), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        self.addCleanup(process.kill)
+        directory = self.here / "out-quick" / "X0_5_phi_0.3"
+        deadline = time.monotonic() + 60
+        while not (directory / "log.txt").exists():
+            self.assertLess(time.monotonic(), deadline)
+            time.sleep(0.02)
+        second = tool(*self.arguments())
+        self.assertEqual(second.returncode, 1)
+        self.assertIn("another study is at work in it", second.stderr)
+        process.send_signal(signal.SIGTERM)
+        self.assertEqual(process.wait(timeout=60), 143)
+        self.assertIn("stopped by SIGTERM", (directory / "log.txt").read_text())
+
+
+class Grid(unittest.TestCase):
+    def test_points(self):
+        from paper import grid
+
+        points = grid.ordered_points()
+        self.assertGreaterEqual(len(points), 500)
+        self.assertEqual(len(set(points)), len(points))
+        self.assertEqual(len({p.seed for p in points}), len(points))
+        self.assertEqual(sorted(points), sorted(grid.all_points()))
+        coarse = [p for p in points if p.X0 in grid.COARSE_X0 and p.phi in grid.COARSE_PHI]
+        self.assertEqual(points[:len(coarse)], coarse)
+        self.assertEqual({p.X0 for p in points}, set(grid.X0))
+
+    def test_free_rotor(self):
+        """The reference is in units of sqrt(I/kT)."""
+        from paper.table import free_rotor_c2
+
+        with open(ROOT / "tests" / "reference" / "free_rotor_c2.csv", newline="") as file:
+            rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
+        for row in rows[::10]:
+            t = float(row["tau=t*sqrt(kT/I)"])
+            if t < 6:
+                self.assertAlmostEqual(free_rotor_c2(t * 0.4 ** 0.5, 0.4), float(row["C2_linear_rotor"]), delta=2e-3)
+
+
+if __name__ == "__main__":
+    unittest.main()

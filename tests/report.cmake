@@ -1,0 +1,35 @@
+# The HTML report, as a browser shows it. Debian's chromium, chromium-driver and python3-selenium (tools/setup).
+if(TARGET hardbody)
+  # The program as it is where there was no npm: its own objects, with a front end that is empty.
+  set(empty ${CMAKE_CURRENT_BINARY_DIR}/empty.txt)
+  set(no_front_end ${CMAKE_CURRENT_BINARY_DIR}/no_front_end.cpp)
+  file(WRITE ${empty} "")
+  set(report_source ${PROJECT_SOURCE_DIR}/apps/report)
+  add_custom_command(OUTPUT ${no_front_end}
+    COMMAND ${CMAKE_COMMAND} -DOUTPUT=${no_front_end} -Dreport_script=${empty} -Dreport_style=${empty}
+      -Dreport_static_style=${report_source}/src/base.css -P ${report_source}/embed.cmake
+    DEPENDS ${report_source}/src/base.css ${report_source}/embed.cmake VERBATIM)
+  add_executable(hardbody_static_report EXCLUDE_FROM_ALL $<TARGET_OBJECTS:hardbody> ${no_front_end})
+  hardbody_target(hardbody_static_report)
+  target_link_libraries(hardbody_static_report PRIVATE hardbody_program)
+  hardbody_needed_by(report hardbody hardbody_static_report)
+
+  hardbody_test(report_test report report/report_test.cpp)
+  target_link_libraries(report_test PRIVATE hardbody_program nlohmann_json::nlohmann_json)
+
+  set(report_tests ${CMAKE_CURRENT_SOURCE_DIR}/report/test_report.py)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${report_tests})
+  file(STRINGS ${report_tests} class_lines REGEX "^class ")
+  foreach(line IN LISTS class_lines)
+    string(REGEX MATCH "^class ([A-Za-z0-9_]+)" name "${line}")
+    set(name ${CMAKE_MATCH_1})
+    if(name MATCHES "^(Case)$")
+      continue()
+    endif()
+    add_test(NAME report_${name} COMMAND ${HARDBODY_PYTHON} ${report_tests} ${name})
+    set_tests_properties(report_${name} PROPERTIES LABELS report TIMEOUT 600 RESOURCE_LOCK browser
+      ENVIRONMENT "HARDBODY=$<TARGET_FILE:hardbody>;HARDBODY_STATIC=$<TARGET_FILE:hardbody_static_report>;HARDBODY_INTERACTIVE=$<BOOL:${HARDBODY_REPORT_IS_INTERACTIVE}>")
+  endforeach()
+else()
+  list(APPEND unbuilt_tests report/report_test.cpp)
+endif()

@@ -1,0 +1,575 @@
+"""hardbody report in a headless Chromium that reaches no network.
+
+    HARDBODY=build/release/apps/hardbody/hardbody HARDBODY_STATIC=build/release/tests/hardbody_static_report
+    /usr/bin/python3 tests/report/test_report.py [TestClass[.test]]
+"""
+
+import json
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import synthetic  # noqa: E402  (beside this file)
+from browser import Browser  # noqa: E402
+
+HARDBODY = os.path.abspath(os.environ.get("HARDBODY", "build/release/apps/hardbody/hardbody"))
+STATIC = os.path.abspath(os.environ.get("HARDBODY_STATIC", "build/release/tests/hardbody_static_report"))
+INTERACTIVE = os.environ.get("HARDBODY_INTERACTIVE", "1") == "1"
+
+# A run of some seconds, long enough for every number.
+RUN = """seed = 3
+[system]
+number = 128
+packing_fraction = 0.4
+[shape]
+aspect_ratio = 2
+[equilibration]
+time = 10
+[production]
+time = 150
+"""
+
+SUPERBALLS = """[system]
+number = 64
+packing_fraction = 0.3
+[shape]
+kind = "superellipsoid"
+semi_axes = [1, 1, 1.5]
+exponents = [0.5, 0.5]
+[equilibration]
+time = 1
+[production]
+time = 4
+"""
+
+MIXTURE = """[system]
+number = 80
+packing_fraction = 0.2
+[[species]]
+semi_axes = [0.5, 0.5, 1.5]
+fraction = 0.5
+[[species]]
+kind = "superellipsoid"
+semi_axes = [0.7, 0.7, 0.7]
+exponents = [0.5, 0.5]
+fraction = 0.5
+sizes = "gaussian"
+width = 0.1
+[equilibration]
+time = 1
+[production]
+time = 4
+"""
+
+PLOTS = ["msd", "rotational_msd", "c2", "c1", "f_self", "velocity", "alpha2", "g_r", "s_q", "pressure", "order", "energy"]
+
+HOSTILE = '<img src=x onerror="window.hacked=1"><b>&amp;'
+HOSTILE_LINE = "# </script><script>window.hacked=1</script><!-- <script>\n"
+
+# Widths of a desktop and of a telephone.
+SIZES = [(1280, 900), (390, 844)]
+
+
+def rows_of(path):
+    return path.read_text(encoding="utf-8").splitlines()
+
+
+class Case(unittest.TestCase):
+    """Runs are made once and shared: none of the tests changes them."""
+
+    runs = {}
+
+    @classmethod
+    def setUpClass(cls):
+        cls.root = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(cls.root.cleanup)
+        cls.here = pathlib.Path(cls.root.name)
+        cls.runs = {}
+        cls.one_browser = None
+
+    @classmethod
+    def browser(cls):
+        """One for all tests of a class: it takes longest to start."""
+        if cls.one_browser is None:
+            cls.one_browser = Browser()
+            cls.addClassCleanup(cls.one_browser.close)
+        return cls.one_browser
+
+    def run_of(self, name, config):
+        if name not in self.runs:
+            file = self.here / f"{len(self.runs)}.toml"
+            file.write_text(config)
+            directory = self.here / name
+            subprocess.run([HARDBODY, "run", file, "--out", directory], check=True, capture_output=True)
+            self.runs[name] = directory
+        return self.runs[name]
+
+    def report(self, *arguments, program=HARDBODY, status=0):
+        result = subprocess.run([program, "report", *map(str, arguments)], capture_output=True, text=True, check=False)
+        self.assertEqual(result.returncode, status, result.stderr)
+        return result
+
+    def open(self, path, width=1280, height=900, **options):
+        browser = self.browser()
+        browser.open(path, width, height, **options)
+        return browser
+
+    def wait_for(self, browser, script, seconds=30):
+        """Until the script returns something true, which is returned."""
+        end = time.monotonic() + seconds
+        while True:
+            value = browser.run(script)
+            if value or time.monotonic() > end:
+                self.assertTrue(value, script)
+                return value
+            time.sleep(0.1)
+
+    def assert_silent(self, browser):
+        """No request but the file and what is in it, nothing to complain about."""
+        self.assertEqual(browser.requests(), [])
+        self.assertEqual([c for c in browser.complaints() if "GPU stall" not in c and "swiftshader" not in c.lower()], [])
+
+    def assert_fits(self, browser, width):
+        """Nothing stands out to the side."""
+        self.assertLessEqual(browser.run("return document.documentElement.scrollWidth"), width)
+
+    def colours(self, browser, selector):
+        """How many different colours a canvas shows, on a grid of 40 x 40 places."""
+        return browser.run(
+            """const canvas = document.querySelector(arguments[0]);
+            const view = window.hardbodyReport.page.views[0];
+            if (view && canvas === view.canvas) view.renderer.render(view.scene, view.camera);
+            const copy = document.createElement('canvas');
+            copy.width = copy.height = 40;
+            const context = copy.getContext('2d');
+            context.imageSmoothingEnabled = false;
+            context.drawImage(canvas, 0, 0, 40, 40);
+            const data = context.getImageData(0, 0, 40, 40).data;
+            const seen = new Set();
+            for (let k = 0; k < data.length; k += 4) seen.add(data.slice(k, k + 3).join());
+            return seen.size;""",
+            selector,
+        )
+
+
+@unittest.skipUnless(INTERACTIVE, "this program was built without the interactive front end")
+class OneRun(Case):
+    def setUp(self):
+        self.run_directory = self.run_of("run", RUN)
+        self.file = self.run_directory / "report.html"
+        self.report(self.run_directory)
+
+    def expected_points(self, name, columns):
+        """Points of the first `columns` quantities of a CSV file that are there, at positive lags."""
+        table = [line.split(",") for line in rows_of(self.run_directory / "observables" / name)[1:]]
+        return sum(1 for row in table for k in range(columns) if row[1 + 2 * k] and float(row[0]) > 0)
+
+    def test_desktop_and_telephone(self):
+        for width, height in SIZES:
+            with self.subTest(width=width):
+                browser = self.open(self.file, width, height)
+                browser.run("document.querySelector('.stage').scrollIntoView({behavior: 'instant'})")
+                self.wait_for(browser, "return window.hardbodyReport.views[0].drawn > 0")
+                view = browser.run("return window.hardbodyReport.views[0]")
+                self.assertEqual((view["bodies"], view["frames"]), (128, 1))
+                # Every body's mesh reaches the graphics card.
+                self.assertGreater(view["triangles"], 128 * 100)
+                self.assertGreater(self.colours(browser, ".stage canvas"), 40)
+                charts = {chart["id"]: chart for chart in browser.run("return window.hardbodyReport.charts")}
+                self.assertEqual(list(charts), PLOTS)
+                for name, chart in charts.items():
+                    self.assertGreater(chart["points"], 10, name)
+                self.assertEqual(charts["alpha2"]["points"], self.expected_points("alpha2.csv", 1))
+                self.assertEqual(charts["velocity"]["points"], self.expected_points("velocity.csv", 2))
+                self.assertEqual(charts["s_q"]["points"], self.expected_points("s_q.csv", 1))
+                self.assert_fits(browser, width)
+                self.assert_silent(browser)
+
+    def test_numbers_are_those_of_the_summary(self):
+        browser = self.open(self.file)
+        observables = json.loads((self.run_directory / "summary.json").read_text())["observables"]
+        for key in ("Z", "D_trans", "D_rot", "S", "t_C2_1overe"):
+            value, error = observables[key]["value"], observables[key]["error"]
+            text = browser.run("return document.querySelector(arguments[0]).textContent", f'.sheet [data-key="{key}"] dd')
+            shown = re.match(r"([−0-9.]+) ± ([0-9.]+)", text)
+            self.assertIsNotNone(shown, text)
+            self.assertLess(abs(float(shown[1].replace("−", "-")) - value), 0.06 * error)
+            self.assertLess(abs(float(shown[2]) - error), 0.06 * error)
+
+    def test_fits_are_drawn(self):
+        browser = self.open(self.file)
+        series = {chart["id"]: chart["series"] for chart in browser.run("return window.hardbodyReport.charts")}
+        self.assertIn("6 D_trans t", series["msd"])
+        self.assertIn("4 D_rot t", series["rotational_msd"])
+        self.assertIn("A exp[−(t/τ)ᵝ]", series["c2"])
+
+    def test_buttons_save(self):
+        browser = self.open(self.file)
+        names = browser.run(
+            """const saved = [];
+            HTMLAnchorElement.prototype.click = function click() { saved.push(this.download); };
+            document.querySelectorAll('.tool').forEach((b) => { if (/^Save/.test(b.title)) b.click(); });
+            return new Promise((done) => setTimeout(() => done(saved), 3000));"""
+        )
+        for name in PLOTS:
+            self.assertIn(f"run-{name}.csv", names)
+            self.assertIn(f"run-{name}.png", names)
+        self.assertIn("run-bodies.png", names)
+        self.assertIn("run-results.csv", names)
+
+    def test_saved_csv_is_the_data(self):
+        browser = self.open(self.file)
+        text = browser.run(
+            """return new Promise((done) => {
+              const make = URL.createObjectURL;
+              URL.createObjectURL = (blob) => { blob.text().then(done); return make(blob); };
+              document.querySelector('#plot-alpha2 [title$="as CSV"]').click();
+            });"""
+        )
+        saved = [line.split(",") for line in text.splitlines()]
+        self.assertEqual(saved[0][1:], ['"α₂"', '"α₂ error"'])
+        table = [line.split(",") for line in rows_of(self.run_directory / "observables" / "alpha2.csv")[1:]]
+        self.assertEqual(len(saved) - 1, len(table))
+        for row, kept in zip(table, saved[1:]):
+            for own, other in zip(row, kept):
+                self.assertEqual(own == "", other == "")
+                if own:
+                    self.assertLessEqual(abs(float(own) - float(other)), 1e-3 * abs(float(own)))
+
+    def test_keys(self):
+        browser = self.open(self.file)
+        place = "const view = window.hardbodyReport.page.views[0]; return view.camera.position.toArray()"
+        before = browser.run(place)
+        press = """const canvas = document.querySelector('.stage canvas'); canvas.focus();
+            canvas.dispatchEvent(new KeyboardEvent('keydown', {key: arguments[0], bubbles: true}));"""
+        browser.run(press, "ArrowLeft")
+        self.assertNotEqual(browser.run(place), before)
+        browser.run(press, "r")
+        for now, then in zip(browser.run(place), before):
+            self.assertAlmostEqual(now, then)
+        # The chart's cursor reads values.
+        text = browser.run(
+            """const chart = document.querySelector('#plot-msd .uplot'); chart.focus();
+            chart.dispatchEvent(new KeyboardEvent('keydown', {key: 'ArrowRight'}));
+            return new Promise((done) => setTimeout(() => done(document.querySelector('#plot-msd .readout').textContent), 300));"""
+        )
+        self.assertRegex(text, r"^t = ")
+
+    def test_everything_has_a_name(self):
+        browser = self.open(self.file)
+        nameless = browser.run(
+            """return [...document.querySelectorAll('button, select, input, canvas[tabindex], [role=img]')].filter((e) =>
+              !e.getAttribute('aria-label') && !e.textContent.trim() && !(e.labels && e.labels.length)).map((e) => e.outerHTML);"""
+        )
+        self.assertEqual(nameless, [])
+        self.assertEqual(browser.run("return document.querySelectorAll('h1').length"), 1)
+        self.assertEqual(browser.run("return document.documentElement.lang"), "en")
+
+    def test_light_and_dark(self):
+        shade = "return getComputedStyle(document.body).backgroundColor.match(/[0-9]+/g).map(Number)"
+        for dark in (False, True):
+            with self.subTest(dark=dark):
+                browser = self.open(self.file, dark=dark)
+                self.assertEqual(max(browser.run(shade)) < 60, dark)
+                browser.run("document.querySelector('.theme').click()")
+                self.assertEqual(max(browser.run(shade)) < 60, not dark)
+
+    def test_cut_hides_bodies(self):
+        browser = self.open(self.file)
+        self.wait_for(browser, "return window.hardbodyReport.views[0].drawn > 0")
+        picture = """const view = window.hardbodyReport.page.views[0];
+            view.clip.share = arguments[0]; view.cut(); view.renderer.render(view.scene, view.camera);
+            const gl = view.renderer.getContext();
+            const pixels = new Uint8Array(4 * gl.drawingBufferWidth * gl.drawingBufferHeight);
+            gl.readPixels(0, 0, gl.drawingBufferWidth, gl.drawingBufferHeight, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+            const ground = pixels.slice(0, 3).join(); let covered = 0;
+            for (let k = 0; k < pixels.length; k += 4) covered += pixels.slice(k, k + 3).join() !== ground;
+            return covered;"""
+        whole, half = browser.run(picture, 1), browser.run(picture, 0.4)
+        self.assertLess(half, 0.9 * whole)
+        self.assertGreater(half, 0.1 * whole)
+
+    def test_size(self):
+        self.assertLess(self.file.stat().st_size, 2_000_000)
+
+
+@unittest.skipUnless(INTERACTIVE, "this program was built without the interactive front end")
+class OtherRuns(Case):
+    def test_superellipsoids(self):
+        directory = self.run_of("superballs", SUPERBALLS)
+        self.report(directory)
+        browser = self.open(directory / "report.html")
+        self.wait_for(browser, "return window.hardbodyReport.views[0].drawn > 0")
+        self.assertEqual(browser.run("return window.hardbodyReport.views[0].bodies"), 64)
+        self.assertGreater(self.colours(browser, ".stage canvas"), 40)
+        # Points of the mesh lie on the surface, and normals are those of it.
+        worst = browser.run(
+            """const {geometry} = window.hardbodyReport.page.views[0].meshes[0].mesh; const {position, normal} = geometry.attributes;
+            let worst = 0;
+            for (let k = 0; k < position.count; k += 1) {
+              const [x, y, z] = [position.getX(k), position.getY(k), position.getZ(k)];
+              worst = Math.max(worst, Math.abs(x ** 4 + y ** 4 + z ** 4 - 1));
+              const g = [x ** 3, y ** 3, z ** 3]; const l = Math.hypot(...g);
+              worst = Math.max(worst, 1 - (g[0] * normal.getX(k) + g[1] * normal.getY(k) + g[2] * normal.getZ(k)) / l);
+            }
+            return worst;"""
+        )
+        self.assertLess(worst, 1e-5)
+        self.assert_silent(browser)
+
+    def test_mixture(self):
+        directory = self.run_of("mixture", MIXTURE)
+        self.report(directory)
+        browser = self.open(directory / "report.html")
+        self.wait_for(browser, "return window.hardbodyReport.views[0].drawn > 0")
+        view = browser.run("const v = window.hardbodyReport.page.views[0]; return [v.bodies, v.meshes.length, v.modes().map((m) => m.key)]")
+        self.assertEqual(view, [80, 2, ["direction", "angle", "species", "plain"]])
+        msd = browser.run("return window.hardbodyReport.charts[0].series")
+        self.assertEqual(len([name for name in msd if "MSD" in name]), 3)
+        self.assert_silent(browser)
+
+    def test_too_short_is_said(self):
+        directory = self.run_of("superballs", SUPERBALLS)
+        self.assertIsNone(json.loads((directory / "summary.json").read_text())["observables"]["D_trans"]["value"])
+        self.report(directory)
+        browser = self.open(directory / "report.html")
+        self.assertEqual(browser.run("""return document.querySelector('[data-key="D_trans"] dd .none').textContent"""), "too short")
+        self.assertNotIn("NaN", browser.run("return document.body.textContent.split('window.')[0]"))
+
+    def test_unfinished(self):
+        directory = self.here / "unfinished"
+        shutil.copytree(self.run_of("superballs", SUPERBALLS), directory)
+        for name in ["summary.json", "observables"]:
+            target = directory / name
+            shutil.rmtree(target) if target.is_dir() else target.unlink()
+        self.report(directory)
+        browser = self.open(directory / "report.html")
+        self.assertIn("unfinished", browser.run("return document.querySelector('.remarks').textContent"))
+        self.assertEqual(browser.run("return window.hardbodyReport.views.length"), 1)
+        self.assert_silent(browser)
+
+    def test_stopped(self):
+        directory = self.here / "stopped"
+        shutil.copytree(self.run_of("superballs", SUPERBALLS), directory)
+        summary = json.loads((directory / "summary.json").read_text())
+        summary["interrupted"] = True
+        (directory / "summary.json").write_text(json.dumps(summary))
+        self.report(directory)
+        browser = self.open(directory / "report.html")
+        self.assertIn("stopped early", browser.run("return document.querySelector('.remarks').textContent"))
+
+    def test_hostile_names(self):
+        directory = self.here / HOSTILE
+        shutil.copytree(self.run_of("superballs", SUPERBALLS), directory)
+        for name in ("config.toml", "log.txt"):
+            with open(directory / name, "a", encoding="utf-8") as file:
+                file.write(HOSTILE_LINE)
+        other = self.run_of("superballs", SUPERBALLS)
+        for arguments in ([directory], [directory, other, "-o", self.here / "both.html"]):
+            with self.subTest(number=len(arguments)):
+                self.report(*arguments)
+                file = directory / "report.html" if len(arguments) == 1 else self.here / "both.html"
+                browser = self.open(file)
+                self.assertIsNone(browser.run("return window.hacked ?? null"))
+                self.assertIn(HOSTILE, browser.run("return document.querySelector('.hero').textContent"))
+                self.assertIn(HOSTILE_LINE.strip(), browser.run("return [...document.querySelectorAll('pre')].map((e) => e.textContent).join()"))
+                self.assertEqual(browser.run("return document.querySelectorAll('#report img').length"), 0)
+                self.assert_silent(browser)
+        self.assertIn(HOSTILE, browser.run("return document.title"))
+
+    def test_several(self):
+        runs = [self.run_of("run", RUN), self.run_of("superballs", SUPERBALLS)]
+        file = self.here / "several.html"
+        self.report(*runs, "-o", file)
+        for width, height in SIZES:
+            with self.subTest(width=width):
+                browser = self.open(file, width, height)
+                charts = {chart["id"]: chart for chart in browser.run("return window.hardbodyReport.charts")}
+                self.assertEqual(list(charts), PLOTS)
+                self.assertEqual(charts["msd"]["series"], ["run", "superballs"])
+                self.assertEqual(browser.run("""return document.querySelectorAll('.comparison [data-key="Z"] td .number').length"""), 2)
+                self.assertIn("semi_axes", browser.run("return document.querySelector('#settings ~ .card').textContent"))
+                browser.run("""const select = document.querySelector('label.chooser select');
+                  select.selectedIndex = 1; select.dispatchEvent(new Event('change'));""")
+                self.assertIn("1 : 1 : 1.5", browser.run("return window.hardbodyReport.page.views[0].run.title"))
+                self.assert_fits(browser, width)
+                self.assert_silent(browser)
+
+
+@unittest.skipUnless(INTERACTIVE, "this program was built without the interactive front end")
+class Sweep(Case):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.sweep = cls.here / "sweep"
+        run = cls().run_of("run", RUN)
+        synthetic.write_sweep(run, cls.sweep)
+        subprocess.run([HARDBODY, "report", cls.sweep], check=True, capture_output=True)
+        cls.file = cls.sweep / "report.html"
+
+    def runTest(self):
+        """Only to make runs with."""
+
+    def test_500_points_open_within_3_seconds(self):
+        browser = self.open(self.file)
+        # By the page's own time, not the clock's: the machine has other things to do.
+        self.assertGreater(browser.computed, 0.05)
+        self.assertLess(browser.computed, 3)
+
+    def test_map_and_points(self):
+        for width, height in SIZES:
+            with self.subTest(width=width):
+                browser = self.open(self.file, width, height)
+                seen = browser.run("return window.hardbodyReport.map")
+                self.assertEqual((seen["points"], seen["known"]), (500, 499))
+                self.assertGreater(seen["segments"], 50)
+                self.assertGreater(self.colours(browser, ".map canvas"), 50)
+                self.assertEqual(len(browser.run("return [...document.querySelectorAll('.points tbody tr')].map((e) => 0)")), 500)
+                # A click opens the point there.
+                browser.run(
+                    """const {map} = window.hardbodyReport.page.sweep; const [x, y, w, h] = map.rectangle(map.g, [20, 15]);
+                    const canvas = map.canvas; canvas.scrollIntoView({behavior: 'instant', block: 'center'});
+                    const at = canvas.getBoundingClientRect();
+                    const options = {clientX: at.left + x + w / 2, clientY: at.top + y + h / 2, bubbles: true};
+                    canvas.dispatchEvent(new MouseEvent('click', options));"""
+                )
+                self.assertEqual(browser.run("return window.hardbodyReport.map.shown"), 20 * 20 + 15)
+                charts = [c["id"] for c in browser.run("return window.hardbodyReport.charts")]
+                self.assertEqual(sorted(charts), sorted([*PLOTS, "cuts"]))
+                self.assertEqual(browser.run("return window.hardbodyReport.views[0].bodies"), 128)
+                self.assert_fits(browser, width)
+                self.assert_silent(browser)
+
+    def test_keys_move_and_open(self):
+        browser = self.open(self.file)
+        shown = browser.run(
+            """const {map} = window.hardbodyReport.page.sweep; const [i, j] = map.cursor; map.canvas.focus();
+            for (const key of ['ArrowRight', 'ArrowUp', 'Enter']) map.canvas.dispatchEvent(new KeyboardEvent('keydown', {key}));
+            return [20 * (i + 1) + j + 1, window.hardbodyReport.map.shown];"""
+        )
+        self.assertEqual(shown[0], shown[1])
+
+    def test_values_are_those_of_the_table(self):
+        browser = self.open(self.file)
+        index = 7 * 20 + 11
+        browser.run("window.hardbodyReport.page.sweep.showPoint(arguments[0])", index)
+        row = rows_of(self.sweep / "sweep.csv")[1 + index].split(",")
+        text = browser.run("""return document.querySelector('#point [data-key="Z"] dd').textContent""")
+        self.assertAlmostEqual(float(text.split(" ±")[0]), float(row[7]), delta=0.06 * float(row[8]))
+
+    def test_failed_point_says_why(self):
+        browser = self.open(self.file)
+        browser.run("window.hardbodyReport.page.sweep.showPoint(arguments[0])", 3 * 20 + 4)
+        self.assertIn("<b>no</b>", browser.run("return document.querySelector('#point').textContent"))
+        self.assertEqual(browser.run("return document.querySelectorAll('#point .notice b').length"), 0)
+
+    def test_isolines_of_a_plane(self):
+        browser = self.open(self.file)
+        worst = browser.run(
+            """const {map} = window.hardbodyReport.page.sweep;
+            const lines = map.constructor.isolines([0, 1, 2.5, 4], [0, 2, 3], (i, j) => [0, 1, 2.5, 4][i] + 2 * [0, 2, 3][j], 4.2);
+            return [lines.length, Math.max(...lines.flat().map(([x, y]) => Math.abs(x + 2 * y - 4.2)))];"""
+        )
+        self.assertEqual(worst[0], 1)
+        self.assertLess(worst[1], 1e-12)
+
+    def test_one_key(self):
+        sweep = self.here / "line"
+        synthetic.write_sweep(self.run_of("run", RUN), sweep, ratios=1, densities=6, failed=())
+        self.report(sweep)
+        browser = self.open(sweep / "report.html")
+        charts = {c["id"]: c for c in browser.run("return window.hardbodyReport.charts")}
+        self.assertEqual(charts["cuts"]["points"], 6)
+        self.assert_silent(browser)
+
+
+class Static(Case):
+    """Of a program that was built without the bundle."""
+
+    def test_plots_without_script(self):
+        directory = self.run_of("run", RUN)
+        result = self.report(directory, "-o", self.here / "static.html", program=STATIC)
+        self.assertIn("static", result.stdout)
+        text = (self.here / "static.html").read_text(encoding="utf-8")
+        self.assertNotIn("<script", text)
+        for width, height in SIZES:
+            with self.subTest(width=width):
+                browser = self.open(self.here / "static.html", width, height)
+                self.assertEqual(browser.run("return document.querySelectorAll('svg').length"), 11)
+                points = browser.run("return document.querySelectorAll('figure')[0].querySelectorAll('circle').length")
+                self.assertEqual(points, len(rows_of(directory / "observables" / "msd.csv")) - 1)
+                self.assertIn("npm", browser.run("return document.querySelector('.notice').textContent"))
+                self.assert_fits(browser, width)
+                self.assert_silent(browser)
+
+    def test_hostile_names(self):
+        directory = self.here / HOSTILE
+        shutil.copytree(self.run_of("superballs", SUPERBALLS), directory)
+        with open(directory / "log.txt", "a", encoding="utf-8") as file:
+            file.write(HOSTILE_LINE)
+        self.report(directory, program=STATIC)
+        browser = self.open(directory / "report.html")
+        self.assertIsNone(browser.run("return window.hacked ?? null"))
+        self.assertIn(HOSTILE, browser.run("return document.querySelector('.path').textContent"))
+        self.assertEqual(browser.run("return document.querySelectorAll('img').length"), 0)
+
+
+class CommandLine(Case):
+    def line(self, *arguments):
+        result = self.report(*arguments, status=2)
+        self.assertEqual(result.stderr.count("\n"), 1)
+        return result.stderr
+
+    def test_message_has_path_and_size(self):
+        directory = self.run_of("superballs", SUPERBALLS)
+        self.assertRegex(self.report(directory).stdout, re.escape(f"{directory}/report.html: ") + r"[0-9.]+ [kM]B")
+        self.assertEqual([p for p in directory.iterdir() if p.suffix == ".part"], [])
+
+    def test_what_is_no_run(self):
+        (self.here / "empty").mkdir(exist_ok=True)
+        self.assertIn("is not there; accepted", self.line(self.here / "nothing"))
+        self.assertIn("config.toml is not there", self.line(self.here / "empty"))
+
+    def test_damaged_files(self):
+        source = self.run_of("superballs", SUPERBALLS)
+        for name, text, message in [
+            ("summary.json", "{", "summary.json: is not valid JSON"),
+            ("summary.json", "[]", "summary.json: is not an object"),
+            ("observables/msd.csv", "t [l],msd [l^2]\n1,x\n", 'msd.csv:2: "x" is not a number'),
+            ("observables/msd.csv", "t [l],msd [l^2]\n1\n", "msd.csv:2: has 1 fields; accepted: 2"),
+            ("checkpoint.bin", "HARDBODY", "checkpoint.bin: is cut off"),
+            ("config.toml", "[system\n", "config.toml:1"),
+        ]:
+            with self.subTest(name=name, text=text):
+                directory = self.here / "damaged"
+                shutil.copytree(source, directory)
+                (directory / name).write_text(text)
+                (directory / "report.html").unlink(missing_ok=True)
+                self.assertIn(message, self.line(directory))
+                self.assertFalse((directory / "report.html").exists())
+                shutil.rmtree(directory)
+
+    def test_where_it_cannot_be_written(self):
+        directory = self.run_of("superballs", SUPERBALLS)
+        self.assertIn("accepted: -o FILE.html", self.line(directory, directory))
+        self.assertIn("is a directory; accepted: a file", self.line(directory, "-o", self.here))
+        self.assertIn("is not a directory", self.line(directory, "-o", self.here / "no" / "file.html"))
+
+    def test_force_removes_an_old_report(self):
+        directory = self.run_of("superballs", SUPERBALLS)
+        self.report(directory)
+        copy = self.here / "again"
+        shutil.copytree(directory, copy)
+        subprocess.run([HARDBODY, "run", copy.parent / "0.toml", "--out", copy, "--force"], check=True, capture_output=True)
+        self.assertFalse((copy / "report.html").exists())
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,181 @@
+"""Runs state points, a process each, and merges each into the results as soon as it is finished."""
+
+import contextlib
+import fcntl
+import json
+import pathlib
+import shutil
+import signal
+import subprocess
+import sys
+import time
+
+from . import grid
+from .results import TARGET_ERROR
+
+CONFIG = """# {name}: written by tools/reproduce-paper
+seed = {seed}
+[system]
+number = 512
+packing_fraction = {phi:g}
+[shape]
+kind = "ellipsoid"
+aspect_ratio = {X0:g}
+[dynamics]
+inertia = "paper"
+[equilibration]
+time = "auto"
+cap = {cap:g}
+[production]
+{production}
+"""
+
+CAP = 500
+# Where C2 is not expected to decay, at the price of hours for what is no fluid.
+LATE_CAP = 60
+LATE_PRODUCTION = 400
+QUICK_PRODUCTION = 60
+QUICK_CAP = 60
+
+
+def _fixed_time(point):
+    """Where velocities, or angular velocities, are correlated for so long that the lags of an "auto" production, 15 time
+    units where equilibration is quick, are too short for diffusion: a production with lags up to 40. The same where
+    precision would take hours. Else nothing."""
+    turns_freely = point.X0 != 1 and (0.85 < point.X0 < 1.18 or (0.75 < point.X0 < 1.3 and point.phi < 0.35))
+    if grid.is_late(point):
+        return LATE_PRODUCTION
+    if point.phi > 0.1 and not turns_freely:
+        return None
+    return 800 if point.phi < 0.42 else 1200 if point.phi <= 0.5 else 3000
+
+
+def production_text(point, quick):
+    time_units = QUICK_PRODUCTION if quick else _fixed_time(point)
+    return f"time = {time_units}" if time_units else f'time = "auto"\ntarget_error = {TARGET_ERROR:g}'
+
+
+def config_text(point, quick):
+    cap = QUICK_CAP if quick else LATE_CAP if grid.is_late(point) else CAP
+    return CONFIG.format(name=point.name, seed=point.seed, phi=point.phi, X0=point.X0, cap=cap,
+                         production=production_text(point, quick))
+
+
+@contextlib.contextmanager
+def alone_in(directory):
+    """Keeps a second study out of the directory."""
+    directory.mkdir(parents=True, exist_ok=True)
+    with open(directory / "lock", "w", encoding="utf-8") as lock:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            raise SystemExit(f"{directory}: another study is at work in it; accepted: another --out, or wait") from None
+        yield
+
+
+class Stop:
+    """A deadline, or a signal; the runs then save what they have."""
+
+    def __init__(self, minutes):
+        self.deadline = time.monotonic() + 60 * minutes if minutes else None
+        self.signal = 0
+        for number in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(number, self._come)
+
+    def _come(self, number, _frame):
+        self.signal = number
+
+    def __bool__(self):
+        return bool(self.signal) or (self.deadline is not None and time.monotonic() >= self.deadline)
+
+
+class Study:
+    def __init__(self, program, out, results, jobs, quick=False):
+        self.program = str(pathlib.Path(program).resolve())
+        self.out = pathlib.Path(out).resolve()
+        self.results = results
+        self.jobs = jobs
+        self.quick = quick
+        self.running = {}  # process -> point
+        self.failed = []
+        self.begun = time.monotonic()
+        self.done_here = 0
+
+    def directory(self, point):
+        return self.out / point.name
+
+    def start(self, point):
+        """Goes on with a run that was begun, else begins it."""
+        directory = self.directory(point)
+        config = self.out / f"{point.name}.toml"
+        config.write_text(config_text(point, self.quick), encoding="utf-8")
+        begun = (directory / "config.toml").exists()
+        command = ["resume", str(directory)] if begun else ["run", str(config), "--out", str(directory)]
+        with open(self.out / f"{point.name}.log", "w", encoding="utf-8") as log:
+            process = subprocess.Popen([self.program, *command], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+                                       stderr=log, start_new_session=True)
+        self.running[process] = point
+
+    def is_finished(self, point):
+        summary = self.directory(point) / "summary.json"
+        if not summary.exists():
+            return False
+        interrupted = json.loads(summary.read_text(encoding="utf-8"))["interrupted"]
+        return not interrupted
+
+    def finish(self, process, point):
+        """Merges a run that is over; one that failed is left as it is and listed."""
+        status = process.returncode
+        if status == 0 and self.is_finished(point):
+            summary = self.results.take(self.directory(point), point)
+            shutil.rmtree(self.directory(point))
+            self.done_here += 1
+            self.say(f"{point.name}: D_trans {_shown(summary, 'D_trans')}, D_rot {_shown(summary, 'D_rot')}, "
+                     f"S {_shown(summary, 'S')}{'' if summary['equilibrated'] else ', not equilibrated'}, "
+                     f"{summary['performance']['total_wall_seconds']:.0f} s")
+        elif status not in (130, 143):
+            text = (self.out / f"{point.name}.log").read_text(encoding="utf-8", errors="replace").strip().splitlines()
+            self.failed.append(point)
+            self.say(f"{point.name}: FAILED with exit status {status}: {text[-1] if text else 'no message'}")
+
+    def say(self, text):
+        seconds = time.monotonic() - self.begun
+        print(f"[{seconds / 60:7.1f} min, {len(self.results.points)} points] {text}", flush=True)
+
+    def reap(self):
+        for process in [p for p in self.running if p.poll() is not None]:
+            self.finish(process, self.running.pop(process))
+
+    def stop_all(self):
+        for process in self.running:
+            process.send_signal(signal.SIGTERM)
+        for process in list(self.running):
+            process.wait()
+        self.reap()
+
+    def run(self, points, stop):
+        """Whether all points are done."""
+        pending = [p for p in points if p not in self.results.points]
+        self.say(f"{len(pending)} of {len(points)} points to run, {self.jobs} at a time")
+        with alone_in(self.out):
+            try:
+                while (pending or self.running) and not stop:
+                    while pending and len(self.running) < self.jobs:
+                        self.start(pending.pop(0))
+                    time.sleep(0.1)
+                    self.reap()
+            finally:
+                self.stop_all()
+        left = [p for p in points if p not in self.results.points]
+        for point in self.failed:
+            print(f"failed: {point.name}, see {self.directory(point)} and {self.out / (point.name + '.log')}", file=sys.stderr)
+        self.say(f"{len(left)} of {len(points)} points are left")
+        return not left
+
+
+def _shown(summary, name):
+    estimate = summary["observables"][name]
+    if estimate["value"] is None:
+        return "null"
+    error = "?" if estimate["error"] is None else f"{estimate['error']:.2g}"
+    return f"{estimate['value']:.4g} +- {error}"
