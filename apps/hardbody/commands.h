@@ -15,6 +15,14 @@ struct RunArguments {
   bool force = false;                  ///< overwrite an existing run
 };
 
+struct AnalyzeArguments {
+  std::string path;                   ///< of a run directory, or of a .gsd file
+  std::optional<std::string> out;     ///< by default analysis/ beside the file
+  std::optional<double> time_step;    ///< time between two steps; nothing: the times that are stored
+  std::optional<double> longest_lag;  ///< nothing: a quarter of the trajectory
+  int every = 1;                      ///< frames taken
+};
+
 struct SweepArguments {
   std::string sweep;               ///< path of the TOML file
   std::optional<std::string> out;  ///< directory of the sweep; by default out/<stem of the file>
@@ -47,6 +55,7 @@ int sweep(const SweepArguments& arguments);
 int map(const MapArguments& arguments);
 int check(const std::string& path);
 int replay(const std::string& path);
+int analyze(const AnalyzeArguments& arguments);
 int report(const ReportArguments& arguments);
 /// "-": standard input.
 int distance(const std::string& path);

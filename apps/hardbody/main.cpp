@@ -29,6 +29,7 @@ struct Request {
   std::string resume_path;
   std::string check_path;
   std::string replay_file;
+  AnalyzeArguments analyze;
   std::string distance_file = "-";
   ReportArguments report;
 };
@@ -91,6 +92,17 @@ void add_replay(CLI::App& app, Request& request) {
   replay->add_option("FILE", request.replay_file, "failures/*.json")->required();
 }
 
+void add_analyze(CLI::App& app, Request& request) {
+  CLI::App* analyze = app.add_subcommand("analyze", "Observables of a stored trajectory, ours or another program's");
+  analyze->add_option("PATH", request.analyze.path, "Run directory with a trajectory.gsd, or FILE.gsd")->required();
+  analyze->add_option("--out", request.analyze.out, "Where the files go; without it analysis/ beside the trajectory");
+  analyze->add_option("--time-step", request.analyze.time_step, "Time between two steps, instead of the times stored")
+      ->check(CLI::PositiveNumber);
+  analyze->add_option("--longest-lag", request.analyze.longest_lag, "Of correlations; without it a quarter of the time")
+      ->check(CLI::PositiveNumber);
+  analyze->add_option("--every", request.analyze.every, "Takes only each N-th frame")->check(CLI::Range(1, 1000000));
+}
+
 void add_distance(CLI::App& app, Request& request) {
   CLI::App* distance = app.add_subcommand("distance", "Distances of pairs of bodies: JSON lines in, JSON lines out");
   distance->add_option("FILE", request.distance_file, "One pair a line; without it, or with -: standard input");
@@ -104,21 +116,6 @@ void add_report(CLI::App& app, Request& request) {
   report->add_option("-o", request.report.out, "HTML file; without it DIR/report.html")->type_name("FILE");
 }
 
-/// Commands of later versions: not in the help, with an honest answer.
-void add_later_commands(CLI::App& app) {
-  for (const char* name : {"analyze"}) {
-    CLI::App* later = app.add_subcommand(name, "")->group("");
-    later->set_help_flag();
-    later->allow_extras();
-    later->callback([name] {
-      throw InputError(
-          fmt::format("hardbody {}: is not available yet; accepted now: init, run, resume, sweep, map, check, replay, "
-                      "report, distance",
-                      name));
-    });
-  }
-}
-
 int dispatch(const CLI::App& app, const Request& request) {
   if (app.got_subcommand("init")) return init(request.init_file, request.init_template);
   if (app.got_subcommand("run")) return run(request.run);
@@ -126,6 +123,7 @@ int dispatch(const CLI::App& app, const Request& request) {
   if (app.got_subcommand("sweep")) return sweep(request.sweep);
   if (app.got_subcommand("map")) return map(request.map);
   if (app.got_subcommand("check")) return check(request.check_path);
+  if (app.got_subcommand("analyze")) return analyze(request.analyze);
   if (app.got_subcommand("distance")) return distance(request.distance_file);
   if (app.got_subcommand("report")) return report(request.report);
   return replay(request.replay_file);
@@ -159,10 +157,10 @@ int run_command_line(int argc, char** argv) {
   add_sweep(app, request);
   add_map(app, request);
   add_check(app, request);
+  add_analyze(app, request);
   add_replay(app, request);
   add_report(app, request);
   add_distance(app, request);
-  add_later_commands(app);
   std::vector<std::string> arguments = expand_overrides(argc, argv);
   // CLI11 takes them from the back.
   std::reverse(arguments.begin(), arguments.end());

@@ -380,12 +380,16 @@ ProductionRun begin_production(const Config& config, Equilibration equilibration
           : fmt::format("production: {:g} time units", production.planned));
   // A new simulation: its time starts at 0 and its counters count production only.
   ed::Simulation simulation(equilibration.system, config.simulation_options(equilibration.envelope));
+  std::optional<ed::System> begin;
+  if (!config.trajectory.empty()) begin = std::move(equilibration.system);
+  equilibration.system = {};
   ProductionRun run{std::move(simulation),
                     ed::Observables(observables_options(config, production)),
                     EventsFile(directory, config.events),
                     Trajectory(directory, config, production.planned),
                     std::move(equilibration),
-                    std::move(production)};
+                    std::move(production),
+                    std::move(begin)};
   run.result.kinetic_at_start = run.simulation.kinetic();
   return run;
 }
@@ -436,8 +440,8 @@ void produce(const Config& config, ProductionRun& run, const FilesMark& files, P
   run.events.open(files.events, run.simulation);
   run.trajectory.open(files.trajectory);
   // Before a checkpoint can be made: none is without it.
-  run.trajectory.take_first(run.before.system, log);
-  run.before.system = {};
+  if (run.begin) run.trajectory.take_first(*run.begin, log);
+  run.begin.reset();
   progress.begin();
   Runner runner(run.simulation, "production", progress, saver, [&] {
     result.wall_seconds = seconds();

@@ -51,6 +51,7 @@ struct ProductionRun {
   Trajectory trajectory;
   Equilibration before;  ///< once production is under way, without its system
   Production result;
+  std::optional<ed::System> begin{};  ///< for the first frame of trajectories, until it is taken
 };
 
 /// Goes on from the equilibration's system, which it takes.

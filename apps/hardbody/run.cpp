@@ -154,7 +154,7 @@ bool prepare(const Config& config, Continuation& at, Progress& progress, Saver& 
   // The run that it came from may be gone when this one is resumed.
   if (saver.due() || config.start_from) saver.save([&at] { return checkpoint_of(*at.start); });
   at.equilibration = begin_equilibration(config, *at.start, progress, log);
-  if (at.equilibration) at.start.reset();
+  if (at.equilibration && config.equilibration_time != 0.0) at.start.reset();
   return true;
 }
 
@@ -162,7 +162,7 @@ void run_equilibration(const Config& config, const RunDirectory& directory, Cont
                        Progress& progress, Saver& saver, Log& log) {
   record.equilibration = equilibrate(config, *at.equilibration, progress, saver, log);
   // Where nothing was to run the start itself, to the last bit.
-  if (config.equilibration_time == 0.0 && at.start) record.equilibration.system = *at.start;
+  if (at.start) record.equilibration.system = *std::exchange(at.start, std::nullopt);
   record.stall = at.equilibration->simulation.stall();
   // A state with an overlap is no start for a production run.
   const bool sound = defects(ed::audit(record.equilibration.system)).empty();

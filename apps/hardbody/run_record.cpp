@@ -24,15 +24,14 @@ double thermal_momentum(const ed::System& system) {
 }  // namespace
 
 const ed::System& RunRecord::last_state() const {
-  // Production takes the system over, also one of length 0.
-  return production.system.bodies.empty() ? equilibration.system : production.system;
+  return produced() ? production.system : equilibration.system;
 }
 
 void audit_record(RunRecord& record) {
   const ed::System& state = record.last_state();
   record.audit = ed::audit(state);
   const ed::KineticState& begin =
-      record.production.planned > 0 ? record.production.kinetic_at_start : record.equilibration.kinetic_at_start;
+      record.produced() ? record.production.kinetic_at_start : record.equilibration.kinetic_at_start;
   const ed::KineticState& end = record.audit.kinetic;
   record.energy_relative_drift = std::abs(end.energy() - begin.energy()) / begin.energy();
   record.momentum_drift = (end.momentum - begin.momentum).norm() / (state.size() * thermal_momentum(state));

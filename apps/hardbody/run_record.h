@@ -81,12 +81,14 @@ struct RunRecord {
   std::int64_t peak_memory_bytes = 0;
 
   bool stopped() const { return equilibration.stopped || production.stopped; }
+  /// Whether production has begun, which may be of no length.
+  bool produced() const { return !production.system.bodies.empty(); }
   const ed::System& last_state() const;
   std::uint64_t failures_left_out() const {
     return equilibration.counters.unrecorded_failures + production.counters.unrecorded_failures;
   }
-  double last_time() const { return production.planned > 0 ? production.time : equilibration.time; }
-  const char* last_phase() const { return production.planned > 0 ? "production" : "equilibration"; }
+  double last_time() const { return produced() ? production.time : equilibration.time; }
+  const char* last_phase() const { return produced() ? "production" : "equilibration"; }
 };
 
 /// Fills in the audit of the last state, the drifts and the memory.

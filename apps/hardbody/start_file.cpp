@@ -305,7 +305,7 @@ std::optional<StartFile> read_start_file(const TomlDocument& document) {
   }
   if (file == nullptr) return std::nullopt;
   if (file->value.kind != Value::Kind::text || file->value.text.empty()) throw bad(*file, "the name of a file");
-  for (const char* key : {"system.start", "system.nematic_order"}) {
+  for (const char* key : {"system.start", "system.start_from", "system.nematic_order"}) {
     if (const Entry* entry = document.find(key)) throw bad(*entry, "no such key beside start.file");
   }
   StartFile start;

@@ -5,6 +5,8 @@
 Needs Debian's python3-gsd, python3-mdanalysis and python3-vtk9. HARDBODY_FULL=1: more kills.
 """
 
+import csv
+import json
 import os
 import random
 import shutil
@@ -554,6 +556,146 @@ class CheckOfFiles(Trajectories):
             self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
             self.assertIn("state to every bit         no", result.stdout)
             self.assertIn("overlaps                   " + ("0" if name == "shapes.gsd" else "not looked for"), result.stdout)
+
+
+class Analyze(Trajectories):
+    """hardbody analyze."""
+
+    def rows(self, name):
+        with open(self.path(name)) as file:
+            lines = list(csv.reader(file))
+        names = [column.split(" [")[0] for column in lines[0]]
+        return {n: numpy.array([float(x[k] or "nan") for x in lines[1:]]) for k, n in enumerate(names)}
+
+    def analysis(self, directory):
+        return json.loads(self.read(f"{directory}/analysis.json"))
+
+    def test_against_numpy(self):
+        for name in ["rods", "three axes", "mixture"]:
+            with self.subTest(name):
+                self.run_with("out", FAMILIES[name], ALL.replace("6", "31"))
+                result = self.hardbody("analyze", "out")
+                self.assertEqual(result.returncode, 0, result.stderr)
+                self.compare(Frames(self.path("out/trajectory.gsd")), 2 if name == "three axes" else None)
+                shutil.rmtree(self.path("out"))
+
+    def compare(self, exact, three):
+        images = numpy.array([f.particles.image for f in exact.frames])
+        schema = numpy.array([f.particles.position for f in exact.frames], dtype=float) + images * exact.box
+        unwrapped = exact.position + exact.box * numpy.round((schema - exact.position) / exact.box)
+        u = exact.rotation[:, :, :, 2]
+        wave = self.analysis("out/analysis")["wave_numbers"]
+        msd, c1, c2, f_self, alpha2, velocity = [
+            self.rows(f"out/analysis/{n}.csv") for n in ["msd", "c1", "c2", "f_self", "alpha2", "velocity"]
+        ]
+        step = exact.time[1]
+        self.assertAlmostEqual(msd["t"][-1], 7 * step)  # a quarter of 30, rounded down
+        close = lambda a, b: self.assertAlmostEqual(a, b, delta=1e-9 * max(1, abs(b)))
+        for k, t in enumerate(msd["t"]):
+            lag = round(t / step)
+            r2 = ((unwrapped[lag:] - unwrapped[:-lag]) ** 2).sum(axis=2)
+            close(msd["msd"][k], r2.mean())
+            close(alpha2["alpha2"][k], 3 * (r2**2).mean() / (5 * r2.mean() ** 2) - 1)
+            cosine = (u[lag:] * u[:-lag]).sum(axis=2)
+            close(c1["c1"][k], cosine.mean())
+            close(c2["c2"][k], (1.5 * cosine**2 - 0.5).mean())
+            close(velocity["vacf"][k + 1], (exact.velocity[lag:] * exact.velocity[:-lag]).sum(axis=2).mean())
+            for j, q in enumerate(wave):
+                close(f_self[f"f_self_q{j + 1}"][k], numpy.sinc(q * numpy.sqrt(r2) / numpy.pi).mean())
+            if three:
+                for axis, letter in enumerate("xyz"):
+                    turned = (exact.rotation[lag:, :, :, axis] * exact.rotation[:-lag, :, :, axis]).sum(axis=2)
+                    close(c2[f"c2_{letter}"][k], (1.5 * turned**2 - 0.5).mean())
+        order = self.rows("out/analysis/order.csv")
+        S = [numpy.linalg.eigvalsh(1.5 * v.T @ v / len(v) - 0.5 * numpy.eye(3))[-1] for v in u]
+        numpy.testing.assert_allclose(order["S"], S, atol=1e-12)
+        self.assertEqual(list(order["t"]), list(exact.time))
+        self.pairs(exact, u)
+        self.structure(exact)
+
+    def pairs(self, exact, u):
+        rows = self.rows("out/analysis/g_r.csv")
+        n = len(exact.group)
+        width = rows["r"][1] - rows["r"][0]
+        edges = width * numpy.arange(len(rows["r"]) + 1)
+        upper = numpy.triu_indices(n, 1)
+        count = numpy.zeros(len(rows["r"]))
+        p2 = numpy.zeros(len(rows["r"]))
+        for x, v in zip(exact.position, u):
+            d = x[:, None] - x[None]
+            d -= exact.box * numpy.round(d / exact.box)
+            r = numpy.sqrt((d**2).sum(axis=2))[upper]
+            cosine = (v @ v.T)[upper]
+            count += numpy.histogram(r, edges)[0]
+            p2 += numpy.histogram(r, edges, weights=1.5 * cosine**2 - 0.5)[0]
+        volume = 4 * numpy.pi / 3 * (edges[1:] ** 3 - edges[:-1] ** 3)
+        ideal = len(u) * n * (n - 1) / 2 / exact.box**3 * volume
+        # A pair on the edge of a bin may be counted in the next one.
+        self.assertLess(numpy.abs(rows["g"] - count / ideal).max() * ideal.min(), 2)
+        self.assertLess(numpy.mean(numpy.abs(rows["g"] - count / ideal) > 1e-9), 0.05)
+        some = (count > 0) & (numpy.abs(rows["g"] - count / ideal) < 1e-9)
+        numpy.testing.assert_allclose(rows["g2"][some], (p2 / numpy.maximum(count, 1))[some], atol=1e-9)
+
+    def structure(self, exact):
+        """The first shell of wave vectors has few enough to have all."""
+        rows = self.rows("out/analysis/s_q.csv")
+        vectors = [n for n in numpy.ndindex(3, 3, 3) for n in [numpy.array(n) - 1]]
+        half = [n for n in vectors if 0.5 <= numpy.linalg.norm(n) < 1.5 and tuple(n) > (0, 0, 0)]
+        unit = 2 * numpy.pi / exact.box
+        self.assertAlmostEqual(rows["q"][0], unit * numpy.mean([numpy.linalg.norm(n) for n in half]), places=9)
+        S = [numpy.abs(numpy.exp(1j * unit * x @ n).sum()) ** 2 / len(x) for x in exact.position for n in half]
+        self.assertAlmostEqual(rows["S"][0], numpy.mean(S), places=9)
+
+    def test_the_same_frames_as_a_run(self):
+        """Structure is measured in this run at times 0, 1, .. 256, where the frames are: the same numbers."""
+        self.run_with("out", SMALL.replace("time = 5\n", "time = 256\n"), ALL.replace("6", "257"))
+        self.assertEqual(self.hardbody("analyze", "out").returncode, 0)
+        for file, columns in [("g_r.csv", ["r", "g", "g2"]), ("s_q.csv", ["q", "S"])]:
+            own, again = self.rows(f"out/observables/{file}"), self.rows(f"out/analysis/{file}")
+            for column in columns:
+                numpy.testing.assert_allclose(again[column], own[column], rtol=1e-9, err_msg=f"{file} {column}")
+        own, again = self.summary("out")["observables"], self.analysis("out/analysis")["observables"]
+        self.assertAlmostEqual(again["q_peak"]["value"], own["q_peak"]["value"], places=9)
+        self.assertEqual(self.rows("out/analysis/order.csv")["t"][-1], 256)
+        for name in ["D_trans", "S"]:
+            a, b = own[name], again[name]
+            self.assertLess(abs(a["value"] - b["value"]), 5 * (a["error"] ** 2 + b["error"] ** 2) ** 0.5, name)
+
+    def test_of_another_program(self):
+        """No doubles, no times, no images: the same, to the rounding of 32-bit numbers."""
+        self.run_with("out", SMALL, ALL.replace("6", "31"))
+        content = self.bytes_of("out/trajectory.gsd")
+        for name in [b"log/hardbody/time", b"particles/image"]:
+            content = content.replace(name, b"X" + name[1:])
+        with open(self.path("other.gsd"), "wb") as file:
+            file.write(content)
+        self.assert_refused(self.hardbody("analyze", "other.gsd"), "other.gsd: frame 0 has no time", "--time-step")
+        step = 5 / 30
+        result = self.hardbody("analyze", "other.gsd", "--time-step", repr(step), "--out", "other")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(self.hardbody("analyze", "out/trajectory.gsd", "--out", "ours").returncode, 0)
+        for file, column in [("msd", "msd"), ("c1", "c1"), ("c2", "c2"), ("f_self", "f_self_q1"), ("velocity", "vacf")]:
+            ours, other = self.rows(f"ours/{file}.csv"), self.rows(f"other/{file}.csv")
+            numpy.testing.assert_allclose(other["t"], ours["t"], rtol=1e-12)
+            numpy.testing.assert_allclose(other[column], ours[column], atol=2e-5, err_msg=column)
+
+    def test_options(self):
+        self.run_with("out", SMALL, ALL.replace("6", "41"))
+        arguments = ["analyze", "out", "--out", "other", "--every", "2", "--longest-lag", "1"]
+        self.assertEqual(self.hardbody(*arguments).returncode, 0)
+        self.assertEqual(self.analysis("other")["frames"], {"read": 21, "used": 21})
+        self.assertAlmostEqual(self.rows("other/msd.csv")["t"][-1], 1)
+        self.assert_refused(self.hardbody("analyze", "none"), "none: cannot be read: No such file")
+        os.makedirs(self.path("empty"))
+        self.assert_refused(self.hardbody("analyze", "empty"), "empty/trajectory.gsd: cannot be read")
+        self.assert_refused(self.hardbody("analyze", "out", "--time-step", "0"), "--time-step")
+
+    def test_one_frame(self):
+        self.run_with("out", SMALL.replace("time = 5\n", "time = 0\n"))
+        result = self.hardbody("analyze", "out")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(self.analysis("out/analysis")["frames"], {"read": 1, "used": 1})
+        self.assertGreater(self.rows("out/analysis/g_r.csv")["g"].max(), 0)
 
 
 if __name__ == "__main__":

@@ -17,6 +17,7 @@
 #include <ed/shape.h>
 #include <ed/simulation.h>
 #include <ed/start.h>
+#include <ed/stored_frames.h>
 #include <ed/system.h>
 #include <ed/time_of_contact.h>
 #include <ed/tolerances.h>

@@ -1,0 +1,240 @@
+#include "commands.h"
+#include "errors.h"
+#include "frame.h"
+#include "gsd_frames.h"
+#include "observable_files.h"
+#include "run_directory.h"
+#include "text_file.h"
+#include "version.h"
+
+#include <ed/stored_frames.h>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace hardbody {
+namespace {
+
+namespace fs = std::filesystem;
+using Eigen::Vector3d;
+using Json = nlohmann::ordered_json;
+
+/// Bytes of all frames in memory.
+constexpr double kMostMemory = 8e9;
+constexpr double kMemoryOfABody = 600;
+
+/// What the frames are, and what they are of.
+struct Stored {
+  std::vector<ed::StoredFrame> frames;
+  ed::StoredFramesOptions options;
+  std::vector<double> energy;  ///< of each frame; NaN: not known
+  std::vector<std::size_t> order;
+};
+
+/// The time of a frame.
+double time_of(const Frame& frame, std::uint64_t k, const AnalyzeArguments& arguments, const std::string& name) {
+  if (arguments.time_step) return static_cast<double>(frame.step) * *arguments.time_step;
+  if (std::isfinite(frame.time)) return frame.time;
+  throw InputError(fmt::format("{}: frame {} has no time; accepted: --time-step, the time between two steps", name, k));
+}
+
+/// The bodies in the order of their groups, and what each group is.
+void read_groups(const Frame& first, Stored& stored) {
+  stored.order.resize(first.bodies.size());
+  for (std::size_t i = 0; i < stored.order.size(); ++i) stored.order[i] = i;
+  std::stable_sort(stored.order.begin(), stored.order.end(),
+                   [&](std::size_t a, std::size_t b) { return first.bodies[a].group < first.bodies[b].group; });
+  double volume = 0;
+  for (std::size_t k = 0; k < stored.order.size(); ++k) {
+    const FrameBody& body = first.bodies[stored.order[k]];
+    const std::optional<ed::BodyShape>& shape = first.types[body.type].shape;
+    if (shape) volume += ed::volume(*shape);
+    // As in a run: of revolution if shape and moments are, u the axis of revolution or body z.
+    std::optional<int> axis = shape ? ed::symmetry_axis(*shape) : std::nullopt;
+    if (axis && first.exact) axis = ed::symmetry_axis(first.exact->species[body.type]);
+    stored.options.axis.push_back(axis.value_or(2));
+    if (k == 0 || first.bodies[stored.order[k - 1]].group != body.group)
+      stored.options.groups.push_back({0, axis ? 2 : 3});
+    ++stored.options.groups.back().number;
+    if (!axis) stored.options.groups.back().rotation_axes = 3;
+  }
+  if (volume > 0) {
+    stored.options.length = std::cbrt(volume / static_cast<double>(first.bodies.size()) / (4 * std::numbers::pi / 3));
+  }
+}
+
+ed::StoredFrame stored_frame(const Frame& frame, const Stored& stored, double time) {
+  ed::StoredFrame out;
+  out.time = time;
+  const bool moving =
+      std::any_of(frame.bodies.begin(), frame.bodies.end(), [](const FrameBody& b) { return !b.velocity.isZero(0); });
+  for (const std::size_t i : stored.order) {
+    const FrameBody& body = frame.bodies[i];
+    Vector3d position = body.unwrapped;
+    // Without images the nearest one to the frame before.
+    if (!frame.images && !stored.frames.empty()) {
+      const Vector3d before = stored.frames.back().position[out.position.size()];
+      const Vector3d d = body.position - before;
+      for (int k = 0; k < 3; ++k) position[k] = body.position[k] - frame.box[k] * std::round(d[k] / frame.box[k]);
+    }
+    out.position.push_back(position);
+    out.rotation.push_back(body.rotation);
+    if (moving) out.velocity.push_back(body.velocity);
+  }
+  return out;
+}
+
+void check_frame(const Frame& frame, const Frame& first, std::uint64_t k, const std::string& name) {
+  const auto refuse = [&](const char* what, const char* accepted) {
+    throw InputError(fmt::format("{}: frame {}: {}; accepted: {}", name, k, what, accepted));
+  };
+  if ((frame.box - Vector3d::Constant(first.box.x())).cwiseAbs().maxCoeff() > 1e-6 * first.box.x()) {
+    refuse("its box is no cube, or another one than that of the first frame", "one cubic box");
+  }
+  if (frame.bodies.size() != first.bodies.size()) refuse("has another number of bodies than the first", "the same");
+}
+
+Stored read_trajectory(const GsdReader& reader, const AnalyzeArguments& arguments) {
+  const std::uint64_t count = reader.frame_count();
+  if (count == 0) throw InputError(fmt::format("{}: has no whole frame; accepted: a file with frames", reader.name()));
+  const Frame first = reader.read(0);
+  const auto every = static_cast<std::uint64_t>(arguments.every);
+  const double bytes = static_cast<double>(first.bodies.size()) * static_cast<double>(count / every) * kMemoryOfABody;
+  if (bytes > kMostMemory) {
+    throw InputError(
+        fmt::format("{}: {} frames of {} bodies take {:.0f} GB of memory; accepted: at most {:.0f} GB, with "
+                    "--every N only each N-th of them",
+                    reader.name(), count, first.bodies.size(), bytes / 1e9, kMostMemory / 1e9));
+  }
+  Stored stored;
+  stored.options.box = first.box.x();
+  stored.options.longest_lag = arguments.longest_lag.value_or(0);
+  read_groups(first, stored);
+  for (std::uint64_t k = 0; k < count; k += every) {
+    const Frame frame = reader.read(k);
+    check_frame(frame, first, k, reader.name());
+    const double time = count == 1 ? 0 : time_of(frame, k, arguments, reader.name());
+    stored.frames.push_back(stored_frame(frame, stored, time));
+    stored.energy.push_back(frame.energy);
+  }
+  // Frames with and without velocities have them not.
+  const auto without = [](const ed::StoredFrame& f) { return f.velocity.empty(); };
+  if (std::any_of(stored.frames.begin(), stored.frames.end(), without)) {
+    for (ed::StoredFrame& frame : stored.frames) frame.velocity.clear();
+  }
+  return stored;
+}
+
+// ---- Files
+
+std::string order_csv(const Stored& stored) {
+  std::string text = "t [l sqrt(m/kT)],S [1],energy [kT]\n";
+  for (std::size_t k = 0; k < stored.frames.size(); ++k) {
+    std::vector<Vector3d> axes;
+    for (std::size_t i = 0; i < stored.order.size(); ++i) {
+      axes.emplace_back(stored.frames[k].rotation[i].col(stored.options.axis[i]));
+    }
+    const double energy = stored.energy[k];
+    text += fmt::format("{},{},{}\n", stored.frames[k].time, ed::nematic_order(axes),
+                        std::isfinite(energy) ? fmt::format("{}", energy) : "");
+  }
+  return text;
+}
+
+Json number(double x) {
+  return std::isfinite(x) ? Json(x) : Json(nullptr);
+}
+
+Json estimate(const ed::Estimate& e) {
+  return {{"value", number(e.value)}, {"error", number(e.error)}};
+}
+
+/// As in summary.json.
+Json observables(const ed::Correlations& c, const ed::Estimate& S, const ed::Director& director) {
+  Json json;
+  json["D_trans"] = estimate(c.D_trans);
+  json["S"] = estimate(S);
+  json["director"] = {{"value", {number(director.axis.x()), number(director.axis.y()), number(director.axis.z())}},
+                      {"error", number(director.error)}};
+  json["t_C2_1overe"] = estimate(c.t_C2_1overe);
+  json["t_F_1overe"] = estimate(c.t_F_1overe);
+  json["q_peak"] = estimate(c.q_peak);
+  json["S_peak"] = estimate(c.S_peak);
+  return json;
+}
+
+std::string analysis_json(const std::string& name, const Stored& stored, const ed::StoredResults& results) {
+  Json json;
+  json["version"] = version();
+  json["source"] = name;
+  json["units"] = "those of the file; of ours kT = m = 1, lengths l, times l sqrt(m/kT)";
+  json["frames"] = {{"read", stored.frames.size()}, {"used", results.frames}};
+  json["time"] = {{"first", stored.frames.front().time}, {"last", stored.frames[results.frames - 1].time}};
+  json["state"] = {{"number", stored.order.size()}, {"box", stored.options.box}, {"length", stored.options.length}};
+  json["wave_numbers"] = results.wave_numbers;
+  json["observables"] = observables(results, results.S, results.director);
+  if (results.groups.size() > 1) {
+    for (const ed::GroupResults& group : results.groups)
+      json["species"].push_back(observables(group, group.S, group.director));
+  }
+  return json.dump(2) + "\n";
+}
+
+void write_files(const fs::path& out, const std::string& name, const Stored& stored, const ed::StoredResults& results) {
+  try {
+    fs::create_directories(out);
+  } catch (const fs::filesystem_error& error) {
+    throw InputError(
+        fmt::format("{}: cannot be written to: {}; accepted: a directory", out.string(), error.code().message()));
+  }
+  const std::pair<const char*, std::string> files[] = {
+      {"msd.csv", msd_csv(results)},       {"alpha2.csv", alpha2_csv(results)},
+      {"c1.csv", c1_csv(results)},         {"c2.csv", c2_csv(results)},
+      {"f_self.csv", f_self_csv(results)}, {"velocity.csv", velocity_csv(results)},
+      {"g_r.csv", pairs_csv(results)},     {"s_q.csv", structure_csv(results)},
+      {"order.csv", order_csv(stored)},    {"analysis.json", analysis_json(name, stored, results)}};
+  for (const auto& [file, content] : files) write_file(out / file, content);
+}
+
+std::string shown(const ed::Estimate& e) {
+  return std::isfinite(e.value) ? fmt::format("{:.5g} +- {:.2g}", e.value, e.error) : "-";
+}
+
+}  // namespace
+
+int analyze(const AnalyzeArguments& arguments) {
+  const fs::path given(arguments.path);
+  const fs::path file = fs::is_directory(given) ? given / kGsdFile : given;
+  const fs::path out = arguments.out ? fs::path(*arguments.out) : file.parent_path() / "analysis";
+  const GsdReader reader(file);
+  const Stored stored = read_trajectory(reader, arguments);
+  ed::StoredResults results;
+  try {
+    results = ed::analyze_frames(stored.frames, stored.options);
+  } catch (const std::invalid_argument& error) {
+    throw InputError(fmt::format("{}: {}", reader.name(), one_line(error.what())));
+  }
+  write_files(out, reader.name(), stored, results);
+  fmt::print("{}: {} frames of {} bodies, {} of them equally far apart in time and used\n", reader.name(),
+             stored.frames.size(), stored.order.size(), results.frames);
+  for (const auto& [name, value] : {std::pair{"D_trans", results.D_trans},
+                                    {"S", results.S},
+                                    {"t_C2(1/e)", results.t_C2_1overe},
+                                    {"t_F(1/e)", results.t_F_1overe},
+                                    {"q_peak", results.q_peak}}) {
+    fmt::print("  {:<12} {}\n", name, shown(value));
+  }
+  fmt::print("\nfiles: {0}/analysis.json, {0}/*.csv\n", out.string());
+  return 0;
+}
+
+}  // namespace hardbody

@@ -1,0 +1,51 @@
+#pragma once
+
+/// @file
+/// Observables of a trajectory that has been stored, ours or another program's: what `Observables` measures while a run
+/// goes on, as far as positions and orientations tell.
+
+#include <ed/export.h>
+#include <ed/observables.h>
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <vector>
+
+namespace ed {
+
+/// All bodies at one time, as they were stored.
+struct StoredFrame {
+  double time = 0;
+  std::vector<Eigen::Vector3d> position;  ///< unwrapped: continuous across the box's faces
+  std::vector<Eigen::Matrix3d> rotation;  ///< body to world
+  std::vector<Eigen::Vector3d> velocity;  ///< empty: not known
+};
+
+/// What `analyze_frames` has to know beside the frames.
+struct StoredFramesOptions {
+  double box = 0;  ///< edge length, of all frames
+  /// Unit of distances and wave numbers: the radius of the sphere whose volume is the bodies' mean one.
+  double length = 1;
+  std::vector<BodyGroup> groups{};  ///< their numbers add up to that of the bodies
+  std::vector<int> axis{};          ///< of each body: which body axis (0, 1, 2) u is
+  /// Of F_self, at most 8; empty: the first peak of S(q), a quarter, half and twice of it.
+  std::vector<double> wave_numbers{};
+  double longest_lag = 0;  ///< 0: a quarter of the trajectory
+};
+
+/// What was found.
+struct StoredResults : Results {
+  std::vector<double> wave_numbers;
+  std::size_t frames = 0;  ///< that were used: the first ones, as far as they are equally far apart in time
+};
+
+/// Averages over frames, and correlations over all pairs of frames that are a lag apart, at about 20 lags a decade.
+/// Errors are standard errors over blocks as long as the longest lag (2 to 16 of them). What frames do not tell is NaN:
+/// collisions, pressure, temperatures, rotational displacements, and with velocities missing their correlations.
+///
+/// Memory: some 200 bytes a body and frame beside the frames. Throws std::invalid_argument for no frames, numbers of
+/// bodies that differ, a box that is not positive, times that do not rise.
+ED_EXPORT StoredResults analyze_frames(const std::vector<StoredFrame>& frames, const StoredFramesOptions& options);
+
+}  // namespace ed

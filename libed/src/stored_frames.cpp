@@ -1,0 +1,226 @@
+#include "measured.h"
+
+#include <ed/stored_frames.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+namespace ed {
+namespace {
+
+using Eigen::Vector3d;
+using internal::Block;
+using internal::BodyRange;
+using internal::Frame;
+using internal::Measured;
+
+constexpr double kLagsPerDecade = 20;
+constexpr double kBlocks = 16;          ///< at most
+constexpr double kEquallyFar = 1e-6;    ///< relative to the distance of frames in time
+constexpr double kDefaultShare = 0.25;  ///< of the trajectory: the longest lag
+constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
+
+void check(const std::vector<StoredFrame>& frames, const StoredFramesOptions& options) {
+  const auto require = [](bool holds, const std::string& what) {
+    if (!holds) throw std::invalid_argument("analyze_frames: " + what);
+  };
+  require(!frames.empty(), "no frames; accepted: one at least");
+  require(options.box > 0 && std::isfinite(options.box), "box; accepted: a positive number");
+  require(options.length > 0 && options.length > 1e-6 * options.box, "length; accepted: a positive number");
+  const std::size_t n = frames[0].position.size();
+  require(options.axis.size() == n, "axis; accepted: one of each body");
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    const StoredFrame& f = frames[k];
+    const bool velocities = f.velocity.size() == frames[0].velocity.size();
+    require(f.position.size() == n && f.rotation.size() == n && velocities &&
+                (f.velocity.empty() || f.velocity.size() == n),
+            "frame " + std::to_string(k) + "; accepted: as many bodies as in the first one");
+    require(std::isfinite(f.time) && (k == 0 || f.time > frames[k - 1].time),
+            "time of frame " + std::to_string(k) + "; accepted: times that rise");
+  }
+}
+
+/// The first frames, as far as they are equally far apart.
+std::size_t equally_far(const std::vector<StoredFrame>& frames) {
+  if (frames.size() < 3) return frames.size();
+  const double step = frames[1].time - frames[0].time;
+  std::size_t count = 2;
+  const auto fits = [&](std::size_t k) {
+    return std::abs(frames[k].time - frames[0].time - static_cast<double>(k) * step) <= kEquallyFar * step;
+  };
+  while (count < frames.size() && fits(count)) ++count;
+  return count;
+}
+
+/// Numbers of frames, evenly on a logarithmic scale.
+std::vector<std::size_t> lag_steps(std::size_t longest) {
+  std::vector<std::size_t> steps = {1};
+  for (int k = 1; steps.back() < longest; ++k) {
+    const auto next = static_cast<std::size_t>(std::lround(std::pow(10.0, k / kLagsPerDecade)));
+    if (next > steps.back()) steps.push_back(std::min(next, longest));
+  }
+  return steps;
+}
+
+Frame frame_of(const StoredFrame& stored, const StoredFramesOptions& options, bool rotations) {
+  Frame frame;
+  Snapshot& s = frame.snapshot;
+  const std::size_t n = stored.position.size();
+  s.time = stored.time;
+  s.position = stored.position;
+  for (std::size_t i = 0; i < n; ++i) s.axis.emplace_back(stored.rotation[i].col(options.axis[i]));
+  s.phi_lab.assign(n, Vector3d::Zero());
+  s.phi_body = s.angular_velocity = s.phi_lab;
+  s.velocity = stored.velocity.empty() ? s.phi_lab : stored.velocity;
+  if (rotations) frame.rotation = stored.rotation;
+  return frame;
+}
+
+/// Blocks of frames in the place of those that a run measures.
+class Analysis {
+ public:
+  Analysis(const std::vector<StoredFrame>& frames, const StoredFramesOptions& options)
+      : options_(options),
+        count_(equally_far(frames)),
+        step_(count_ > 1 ? frames[1].time - frames[0].time : 1),
+        measured_(plan()) {
+    const auto three = [](const BodyRange& r) { return r.three_axes; };
+    const bool rotations = std::any_of(measured_.ranges.begin(), measured_.ranges.end(), three);
+    for (std::size_t k = 0; k < count_; ++k) frames_.push_back(frame_of(frames[k], options, rotations));
+  }
+
+  StoredResults results();
+
+ private:
+  Measured plan();
+  void add_structure();
+  void add_lags();
+  /// The block that frame k is an origin of.
+  Block& block_of(std::size_t k) { return measured_.blocks[k / static_cast<std::size_t>(measured_.origins_per_block)]; }
+
+  const StoredFramesOptions& options_;
+  std::size_t count_;
+  double step_;
+  std::vector<std::size_t> steps_;
+  Measured measured_;
+  std::vector<Frame> frames_;
+};
+
+Measured Analysis::plan() {
+  ObservablesOptions wanted{};
+  wanted.number = static_cast<int>(options_.axis.size());
+  wanted.duration = step_ * static_cast<double>(count_);
+  wanted.groups = options_.groups;
+  wanted.wave_numbers = options_.wave_numbers;
+  Measured plan(wanted);
+  const double last = static_cast<double>(count_) - 1;
+  const double longest =
+      options_.longest_lag > 0 ? options_.longest_lag / step_ * (1 + kEquallyFar) : kDefaultShare * last;
+  const auto steps = static_cast<std::size_t>(std::clamp(std::floor(longest), 1.0, std::max(1.0, last)));
+  steps_ = lag_steps(steps);
+  plan.lags.clear();
+  for (const std::size_t step : steps_) plan.lags.push_back(static_cast<double>(step) * step_);
+  const double blocks = std::clamp(std::floor(static_cast<double>(count_) / static_cast<double>(steps)), 2.0, kBlocks);
+  plan.spacing = step_;
+  plan.origins_per_block = static_cast<int>(std::max(1.0, std::ceil(static_cast<double>(count_) / blocks)));
+  plan.grid = {options_.box, options_.length};
+  const auto per_block = static_cast<std::size_t>(plan.origins_per_block);
+  plan.blocks.resize((count_ + per_block - 1) / per_block);
+  for (std::size_t b = 0; b < plan.blocks.size(); ++b) {
+    Block& block = plan.blocks[b];
+    block.lags.resize(plan.lags.size() * plan.ranges.size());
+    block.groups.resize(plan.ranges.size());
+    block.structure.resize(plan.structure_parts());
+    block.origins = static_cast<int>(std::min(per_block, count_ - b * per_block));
+    block.begin.time = static_cast<double>(b * per_block) * step_;
+    block.end.time = block.begin.time + block.origins * step_;
+  }
+  return plan;
+}
+
+void Analysis::add_structure() {
+  const internal::WaveVectors vectors = internal::wave_vectors_of(measured_.grid);
+  for (std::size_t k = 0; k < count_; ++k) {
+    const Snapshot& now = frames_[k].snapshot;
+    Block& block = block_of(k);
+    const BodyRange all{0, now.position.size(), false};
+    const std::vector<internal::StructureSums> pairs = internal::count_pairs(measured_.grid, now, measured_.ranges);
+    for (std::size_t p = 0; p < block.structure.size(); ++p) {
+      internal::StructureSums sums = pairs[p];
+      sums.S = vectors.structure_factor(now.position, p == 0 ? all : measured_.ranges[p - 1]);
+      if (block.structure[p].pairs.empty()) {
+        block.structure[p] = std::move(sums);
+      } else {
+        block.structure[p].add(sums);
+      }
+    }
+    block.structure_frames += 1;
+    block.frames += 1;
+    block.all += internal::order_and_speeds(now, all);
+    for (std::size_t g = 0; g < measured_.ranges.size(); ++g) {
+      block.groups[g] += internal::order_and_speeds(now, measured_.ranges[g]);
+    }
+  }
+}
+
+void Analysis::add_lags() {
+  for (std::size_t n = 0; n < steps_.size(); ++n) {
+    for (std::size_t k = 0; k + steps_[n] < count_; ++k) {
+      for (std::size_t g = 0; g < measured_.ranges.size(); ++g) {
+        block_of(k).lags[n * measured_.ranges.size() + g].add(
+            internal::correlate(frames_[k], frames_[k + steps_[n]], measured_.ranges[g],
+                                measured_.options.wave_numbers),
+            1);
+      }
+    }
+  }
+}
+
+/// What frames do not tell.
+void forget(Correlations& results, bool velocities) {
+  results.D_rot = results.D_rot_body = results.w2 = {};
+  results.D_rot_axis = {};
+  if (!velocities) results.v2 = {};
+  for (LagRow& row : results.lags) {
+    row.rot_msd = row.rot_msd_body = row.wacf = {};
+    row.rot_msd_axis = {};
+    if (!velocities) row.vacf = {};
+  }
+}
+
+StoredResults Analysis::results() {
+  add_structure();
+  internal::Totals totals;
+  totals.time = step_ * static_cast<double>(count_ - 1);
+  if (measured_.options.wave_numbers.empty()) {
+    const double q = internal::results_of(measured_, totals).q_peak.value;
+    if (std::isfinite(q)) measured_.options.wave_numbers = {q, q / 4, q / 2, 2 * q};
+  }
+  add_lags();
+  StoredResults results;
+  static_cast<Results&>(results) = internal::results_of(measured_, totals);
+  const bool velocities = !frames_.empty() && options_.axis.size() == frames_[0].snapshot.velocity.size() &&
+                          !frames_[0].snapshot.velocity.empty() && !frames_[0].snapshot.velocity[0].isZero(0);
+  results.translational_kT = results.rotational_kT = {kNothing, kNothing};
+  forget(results, velocities);
+  for (GroupResults& group : results.groups) {
+    forget(group, velocities);
+    group.translational_kT = group.rotational_kT = {};
+    group.axis_kT = {};
+  }
+  results.wave_numbers = measured_.options.wave_numbers;
+  results.frames = count_;
+  return results;
+}
+
+}  // namespace
+
+StoredResults analyze_frames(const std::vector<StoredFrame>& frames, const StoredFramesOptions& options) {
+  check(frames, options);
+  return Analysis(frames, options).results();
+}
+
+}  // namespace ed
