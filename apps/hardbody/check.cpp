@@ -108,7 +108,7 @@ std::optional<ed::System> rounded_system(const Frame& frame) {
 /// Where positions are 32-bit numbers bodies in contact overlap by that much: half a unit in the last place of a
 /// coordinate of each body, and as much of the points on their surfaces.
 double rounding_overlap(const Frame& frame) {
-  constexpr double kEpsilon = std::numeric_limits<float>::epsilon();
+  constexpr auto kEpsilon = static_cast<double>(std::numeric_limits<float>::epsilon());
   return frame.exact ? ed::kAuditOverlap : 4 * kEpsilon * frame.box.maxCoeff();
 }
 

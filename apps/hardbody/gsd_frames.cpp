@@ -314,7 +314,7 @@ class FrameReader {
   std::vector<T> numbers(const std::string& name, std::uint64_t rows, std::uint32_t columns) const;
   /// The same; finite numbers.
   template <class T>
-  std::vector<T> finite(const std::string& name, std::uint64_t rows, std::uint32_t columns) const;
+  std::vector<double> finite(const std::string& name, std::uint64_t rows, std::uint32_t columns) const;
   template <class T>
   T scalar(const std::string& name, T missing) const;
   std::vector<std::string> texts(const std::string& name) const;
@@ -359,8 +359,9 @@ std::vector<T> FrameReader::numbers(const std::string& name, std::uint64_t rows,
 }
 
 template <class T>
-std::vector<T> FrameReader::finite(const std::string& name, std::uint64_t rows, std::uint32_t columns) const {
-  std::vector<T> result = numbers<T>(name, rows, columns);
+std::vector<double> FrameReader::finite(const std::string& name, std::uint64_t rows, std::uint32_t columns) const {
+  std::vector<double> result;
+  for (const T x : numbers<T>(name, rows, columns)) result.push_back(static_cast<double>(x));
   for (std::size_t k = 0; k < result.size(); ++k) {
     if (std::isfinite(result[k])) continue;
     throw bad(fmt::format("{} of body {} is {}", name, k / columns, result[k]), "finite numbers");
@@ -393,7 +394,7 @@ std::vector<std::string> FrameReader::texts(const std::string& name) const {
 void FrameReader::read_box(Frame& frame) const {
   const GsdChunk* dimensions = find("configuration/dimensions", 1, 1, GsdType::uint8);
   if (dimensions != nullptr && file_.read(*dimensions)[0] != '\3') throw bad("is not of three dimensions", "three");
-  std::vector<float> box = finite<float>("configuration/box", 6, 1);
+  std::vector<double> box = finite<float>("configuration/box", 6, 1);
   if (box.empty()) box = {1, 1, 1, 0, 0, 0};
   if (box[3] != 0 || box[4] != 0 || box[5] != 0) throw bad("its box is tilted", "a box with right angles");
   for (int i = 0; i < 3; ++i) {
@@ -429,9 +430,9 @@ Matrix3d FrameReader::rotation(const Eigen::Vector4d& q, std::size_t body) const
 void FrameReader::read_bodies(Frame& frame) const {
   const auto number = std::uint64_t{scalar<std::uint32_t>("particles/N", 0)};
   if (number == 0) throw bad("has no bodies", "at least 1");
-  const std::vector<float> position = finite<float>("particles/position", number, 3);
+  const std::vector<double> position = finite<float>("particles/position", number, 3);
   if (position.empty()) throw bad(fmt::format("has no positions of its {} bodies", number), "particles/position");
-  const std::vector<float> orientation = finite<float>("particles/orientation", number, 4);
+  const std::vector<double> orientation = finite<float>("particles/orientation", number, 4);
   const std::vector<std::int32_t> image = numbers<std::int32_t>("particles/image", number, 3);
   frame.images = !image.empty();
   frame.bodies.resize(number);
@@ -446,7 +447,7 @@ void FrameReader::read_bodies(Frame& frame) const {
       body.unwrapped[e] = image.empty() ? x : x + image[3 * i + k] * frame.box[e];
     }
     if (orientation.empty()) continue;
-    const float* q = orientation.data() + 4 * i;
+    const double* q = orientation.data() + 4 * i;
     body.rotation = rotation({q[0], q[1], q[2], q[3]}, i);
   }
 }
@@ -455,10 +456,10 @@ void FrameReader::read_motion(Frame& frame) const {
   const std::uint64_t number = frame.bodies.size();
   const std::vector<std::uint32_t> type = numbers<std::uint32_t>("particles/typeid", number, 1);
   const std::vector<std::uint32_t> group = numbers<std::uint32_t>(kNameTexts[kGroup], number, 1);
-  const std::vector<float> mass = finite<float>("particles/mass", number, 1);
-  const std::vector<float> inertia = finite<float>("particles/moment_inertia", number, 3);
-  const std::vector<float> velocity = finite<float>("particles/velocity", number, 3);
-  const std::vector<float> angmom = finite<float>("particles/angmom", number, 4);
+  const std::vector<double> mass = finite<float>("particles/mass", number, 1);
+  const std::vector<double> inertia = finite<float>("particles/moment_inertia", number, 3);
+  const std::vector<double> velocity = finite<float>("particles/velocity", number, 3);
+  const std::vector<double> angmom = finite<float>("particles/angmom", number, 4);
   for (std::size_t i = 0; i < number; ++i) {
     FrameBody& body = frame.bodies[i];
     if (!type.empty()) body.type = type[i];
@@ -470,7 +471,7 @@ void FrameReader::read_motion(Frame& frame) const {
     if (!inertia.empty()) body.inertia = {inertia[3 * i], inertia[3 * i + 1], inertia[3 * i + 2]};
     if (!velocity.empty()) body.velocity = {velocity[3 * i], velocity[3 * i + 1], velocity[3 * i + 2]};
     if (angmom.empty()) continue;
-    const float* p = angmom.data() + 4 * i;
+    const double* p = angmom.data() + 4 * i;
     const Quaterniond q(body.rotation);
     const Vector3d L = 0.5 * (q.conjugate() * Quaterniond(p[0], p[1], p[2], p[3])).vec();
     Vector3d omega = Vector3d::Zero();
