@@ -49,7 +49,7 @@ struct ProductionRun {
   ed::Observables observables;
   EventsFile events;
   Trajectory trajectory;
-  Equilibration before;  ///< without its system
+  Equilibration before;  ///< once production is under way, without its system
   Production result;
   std::optional<ed::System> begin{};  ///< for the first frame of trajectories, until it is taken
 };

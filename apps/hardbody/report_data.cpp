@@ -187,7 +187,7 @@ Json run_json(const RunReport& run, Detail detail) {
 }
 
 /// Within <script> neither "</script" nor "<!--" may stand; in JSON every < is within a string.
-std::string for_script(std::string json) {
+std::string for_script(const std::string& json) {
   std::string text;
   text.reserve(json.size());
   for (const char c : json) {

@@ -146,6 +146,7 @@ std::vector<Value> range_values(const Entry& entry) {
               : std::all_of(numbers.begin(), numbers.end(), [](double x) { return x == std::round(x); }) &&
                     is_integer(entry.value, "from");
   std::vector<Value> values;
+  values.reserve(numbers.size());
   for (const double x : numbers) values.push_back(number_value(x, integers));
   return values;
 }

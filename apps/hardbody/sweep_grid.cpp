@@ -61,6 +61,7 @@ std::vector<std::string> short_keys(const std::vector<Setting>& settings) {
   std::map<std::string_view, int> times;
   for (const Setting& s : settings) ++times[last_part(s.key)];
   std::vector<std::string> names;
+  names.reserve(settings.size());
   for (const Setting& s : settings) names.emplace_back(times[last_part(s.key)] == 1 ? last_part(s.key) : s.key);
   return names;
 }
@@ -98,7 +99,7 @@ std::string identity(const SweepPoint& point, std::string_view without = {}) {
     if (s.key != without) of_key[s.key] = identity(s.value);
   }
   std::string text;
-  for (const auto& [key, value] : of_key) text += key + "=" + value + "\n";
+  for (const auto& [key, value] : of_key) text += fmt::format("{}={}\n", key, value);
   return text;
 }
 

@@ -67,6 +67,7 @@ void Workers::start(int id, const std::filesystem::path& directory, const std::v
   std::vector<std::string> words = arguments;
   words.insert(words.begin(), "hardbody");
   std::vector<char*> pointers;
+  pointers.reserve(words.size() + 1);
   for (std::string& word : words) pointers.push_back(word.data());
   pointers.push_back(nullptr);
   int ends[2];

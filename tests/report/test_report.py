@@ -29,11 +29,14 @@ RUN = """seed = 3
 number = 128
 packing_fraction = 0.4
 [shape]
-aspect_ratio = 2
+aspect_ratio = 3
 [equilibration]
 time = 10
 [production]
 time = 150
+[output]
+trajectory = ["gsd"]
+frames = 6
 """
 
 SUPERBALLS = """[system]
@@ -66,6 +69,17 @@ width = 0.1
 time = 1
 [production]
 time = 4
+"""
+
+SWEEP = """[system]
+number = 64
+[equilibration]
+time = 1
+[production]
+time = 2
+[grid]
+shape.aspect_ratio = [2.0, 3.0]
+system.packing_fraction = [0.1, 0.2]
 """
 
 PLOTS = ["msd", "rotational_msd", "c2", "c1", "f_self", "velocity", "alpha2", "g_r", "s_q", "pressure", "order", "energy"]
@@ -178,7 +192,7 @@ class OneRun(Case):
                 browser.run("document.querySelector('.stage').scrollIntoView({behavior: 'instant'})")
                 self.wait_for(browser, "return window.hardbodyReport.views[0].drawn > 0")
                 view = browser.run("return window.hardbodyReport.views[0]")
-                self.assertEqual((view["bodies"], view["frames"]), (128, 1))
+                self.assertEqual((view["bodies"], view["frames"]), (128, 6))
                 # Every body's mesh reaches the graphics card.
                 self.assertGreater(view["triangles"], 128 * 100)
                 self.assertGreater(self.colours(browser, ".stage canvas"), 40)
@@ -280,6 +294,18 @@ class OneRun(Case):
                 self.assertEqual(max(browser.run(shade)) < 60, dark)
                 browser.run("document.querySelector('.theme').click()")
                 self.assertEqual(max(browser.run(shade)) < 60, not dark)
+
+    def test_frames_play(self):
+        browser = self.open(self.file)
+        matrices = "return Array.from(window.hardbodyReport.page.views[0].meshes[0].mesh.instanceMatrix.array.slice(0, 64))"
+        last = browser.run(matrices)
+        browser.run("const s = document.querySelector('.player input'); s.value = 0; s.dispatchEvent(new Event('input'))")
+        self.assertIn("t = 0 · frame 1 of 6", browser.run("return document.querySelector('.view .caption').textContent"))
+        self.assertNotEqual(browser.run(matrices), last)
+        browser.run("document.querySelector('.play').click()")
+        self.wait_for(browser, "return window.hardbodyReport.views[0].frame >= 2")
+        browser.run("document.querySelector('.play').click()")
+        self.assertEqual(browser.run("return window.hardbodyReport.page.views[0].timer"), None)
 
     def test_cut_hides_bodies(self):
         browser = self.open(self.file)
@@ -479,6 +505,19 @@ class Sweep(Case):
         )
         self.assertEqual(worst[0], 1)
         self.assertLess(worst[1], 1e-12)
+
+    def test_real_sweep(self):
+        (self.here / "real.toml").write_text(SWEEP)
+        subprocess.run([HARDBODY, "sweep", self.here / "real.toml", "--out", self.here / "real"], check=True, capture_output=True)
+        self.report(self.here / "real")
+        browser = self.open(self.here / "real" / "report.html")
+        # D_trans is what the runs are too short for: something else is shown.
+        self.assertEqual(browser.run("return [window.hardbodyReport.map.points, window.hardbodyReport.map.known]"), [4, 4])
+        embedded = "return window.hardbodyReport.page.sweep.sweep.points.map((p) => p.embedded)"
+        self.assertEqual(browser.run(embedded), [True] * 4)
+        browser.run("window.hardbodyReport.page.sweep.showPoint(1)")
+        self.assertIn("packing fraction 0.2", browser.run("return document.querySelector('#plots h2').textContent"))
+        self.assert_silent(browser)
 
     def test_one_key(self):
         sweep = self.here / "line"

@@ -99,3 +99,12 @@ def free_rotor_c2(t, moment):
         total += weight * (0.25 + 0.75 * math.cos(2 * math.sqrt(2 * e / moment) * t))
         weights += weight
     return total / weights
+
+
+def free_rotor_1overe(moment):
+    """When the free rotor's C2 has fallen to 1/e."""
+    low, high = 0.0, math.sqrt(moment)
+    for _ in range(40):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if free_rotor_c2(middle, moment) > math.exp(-1) else (low, middle)
+    return 0.5 * (low + high)

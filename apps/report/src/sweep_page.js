@@ -39,7 +39,7 @@ class SweepPage {
     this.xKey = places[0] ?? this.varied[0] ?? 0;
     this.yKey = places[1] ?? null;
     this.fixed = new Map();
-    this.observable = Math.max(0, ...kFirst.map((key) => sweep.observables.findIndex((o) => o.key === key)).slice(0, 1));
+    this.observable = this.firstObservable();
     this.lines = true;
     this.logarithmic = this.spansDecades();
     this.pointPlace = h('section', { id: 'point', 'aria-live': 'polite' });
@@ -51,6 +51,14 @@ class SweepPage {
 
   values() {
     return this.sweep.points.map((p) => p.values[this.observable]?.[0]).filter((v) => Number.isFinite(v));
+  }
+
+  /** One that has values. */
+  firstObservable() {
+    const { observables, points } = this.sweep;
+    const known = (k) => points.some((p) => Number.isFinite(p.values[k]?.[0]));
+    const wanted = kFirst.map((key) => observables.findIndex((o) => o.key === key)).filter((k) => k >= 0);
+    return [...wanted, ...observables.keys()].find(known) ?? 0;
   }
 
   spansDecades() {
