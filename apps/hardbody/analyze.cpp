@@ -108,7 +108,8 @@ Stored read_trajectory(const GsdReader& reader, const AnalyzeArguments& argument
   if (count == 0) throw InputError(fmt::format("{}: has no whole frame; accepted: a file with frames", reader.name()));
   const Frame first = reader.read(0);
   const auto every = static_cast<std::uint64_t>(arguments.every);
-  const double bytes = static_cast<double>(first.bodies.size()) * static_cast<double>(count / every) * kMemoryOfABody;
+  const double bytes =
+      static_cast<double>(first.bodies.size()) * static_cast<double>(count) / arguments.every * kMemoryOfABody;
   if (bytes > kMostMemory) {
     throw InputError(
         fmt::format("{}: {} frames of {} bodies take {:.0f} GB of memory; accepted: at most {:.0f} GB, with "

@@ -77,6 +77,7 @@ std::vector<std::vector<std::size_t>> groups_of(const Frame& frame) {
   std::map<std::uint32_t, std::vector<std::size_t>> groups;
   for (std::size_t i = 0; i < frame.bodies.size(); ++i) groups[frame.bodies[i].group].push_back(i);
   std::vector<std::vector<std::size_t>> list;
+  list.reserve(groups.size());
   for (auto& [number, bodies] : groups) list.push_back(std::move(bodies));
   return list;
 }
