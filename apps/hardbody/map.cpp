@@ -3,6 +3,7 @@
 #include "csv_table.h"
 #include "errors.h"
 #include "map_svg.h"
+#include "run_directory.h"
 #include "text_file.h"
 
 #include <fmt/format.h>
@@ -22,12 +23,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kTable = "sweep.csv";
 constexpr int kLevels = 6;  ///< that are chosen where none are given
 
 fs::path table_path(const MapArguments& arguments) {
   const fs::path path = arguments.table;
-  return fs::is_directory(path) ? path / kTable : path;
+  return fs::is_directory(path) ? path / kSweepTableFile : path;
 }
 
 double parse_number(std::string_view text, std::string_view option) {

@@ -32,8 +32,6 @@ namespace fs = std::filesystem;
 
 constexpr const char* kSweepFile = "sweep.toml";
 constexpr const char* kBaseFile = "base.toml";
-constexpr const char* kTableFile = "sweep.csv";
-constexpr const char* kStateFile = "state.json";
 constexpr std::size_t kLongestSweep = 1 << 24;  ///< bytes
 
 constexpr int kMostJobs = 1024;
@@ -195,7 +193,7 @@ std::string Sweep::text() const {
 /// next.
 void Sweep::write_table() {
   try {
-    write_file(directory_ / kTableFile, sweep_csv(records_));
+    write_file(directory_ / kSweepTableFile, sweep_csv(records_));
     table_failed_ = false;
   } catch (const std::exception& error) {
     if (!table_failed_) progress_.say(error.what());
@@ -205,7 +203,7 @@ void Sweep::write_table() {
 
 void Sweep::write_state(const PointRecord& record) {
   fs::create_directories(path_of(record));
-  write_file(path_of(record) / kStateFile, state_json(record));
+  write_file(path_of(record) / kPointStateFile, state_json(record));
 }
 
 void Sweep::settle(PointRecord& record, PointStatus status, const std::string& message) {
