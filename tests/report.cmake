@@ -9,7 +9,7 @@ if(TARGET hardbody)
     COMMAND ${CMAKE_COMMAND} -DOUTPUT=${no_front_end} -Dreport_script=${empty} -Dreport_style=${empty}
       -Dreport_static_style=${report_source}/src/base.css -P ${report_source}/embed.cmake
     DEPENDS ${report_source}/src/base.css ${report_source}/embed.cmake VERBATIM)
-  add_executable(hardbody_static_report EXCLUDE_FROM_ALL $<TARGET_OBJECTS:hardbody> ${no_front_end})
+  add_executable(hardbody_static_report $<TARGET_OBJECTS:hardbody> ${no_front_end})
   hardbody_target(hardbody_static_report)
   target_link_libraries(hardbody_static_report PRIVATE hardbody_program)
   hardbody_needed_by(report hardbody hardbody_static_report)
