@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <numbers>
 #include <stdexcept>
 #include <string>
@@ -103,6 +104,33 @@ void check_frame(const Frame& frame, const Frame& first, std::uint64_t k, const 
   if (frame.bodies.size() != first.bodies.size()) refuse("has another number of bodies than the first", "the same");
 }
 
+/// What a run has chosen for its own observables.
+struct RunChoices {
+  std::optional<double> fit_from;    ///< nothing: it has fitted nothing
+  std::vector<double> wave_numbers;  ///< of F_self
+};
+
+/// Those of the run in that directory, if there is one.
+RunChoices choices_of_run(const fs::path& directory) {
+  const fs::path file = directory / kSummaryFile;
+  RunChoices choices;
+  if (!fs::exists(file)) return choices;
+  try {
+    const Json summary = Json::parse(read_file(file, kLongestSummary));
+    for (const char* decay : {"F", "C2"}) {
+      const Json& window = summary.at("fit_windows").at(decay);
+      if (!window.is_null()) choices.fit_from = window.at(0).get<double>();
+    }
+    choices.wave_numbers = summary.at("wave_numbers").get<std::vector<double>>();
+  } catch (const Json::exception&) {
+    throw InputError(
+        fmt::format("{}: is not one that a run has written; accepted: a trajectory without such a file "
+                    "beside it",
+                    file.string()));
+  }
+  return choices;
+}
+
 Stored read_trajectory(const GsdReader& reader, const AnalyzeArguments& arguments) {
   const std::uint64_t count = reader.frame_count();
   if (count == 0) throw InputError(fmt::format("{}: has no whole frame; accepted: a file with frames", reader.name()));
@@ -166,7 +194,11 @@ Json observables(const ed::Correlations& c, const ed::Estimate& S, const ed::Dir
   json["S"] = estimate(S);
   json["director"] = {{"value", {number(director.axis.x()), number(director.axis.y()), number(director.axis.z())}},
                       {"error", number(director.error)}};
+  json["tau_C2"] = estimate(c.tau_C2);
+  json["beta_C2"] = estimate(c.beta_C2);
   json["t_C2_1overe"] = estimate(c.t_C2_1overe);
+  json["tau_F"] = estimate(c.tau_F);
+  json["beta_F"] = estimate(c.beta_F);
   json["t_F_1overe"] = estimate(c.t_F_1overe);
   json["q_peak"] = estimate(c.q_peak);
   json["S_peak"] = estimate(c.S_peak);
@@ -182,6 +214,8 @@ std::string analysis_json(const std::string& name, const Stored& stored, const e
   json["time"] = {{"first", stored.frames.front().time}, {"last", stored.frames[results.frames - 1].time}};
   json["state"] = {{"number", stored.order.size()}, {"box", stored.options.box}, {"length", stored.options.length}};
   json["wave_numbers"] = results.wave_numbers;
+  json["fit_from"] =
+      number(stored.options.fit_from > 0 ? stored.options.fit_from : std::numeric_limits<double>::quiet_NaN());
   json["observables"] = observables(results, results.S, results.director);
   if (results.groups.size() > 1) {
     for (const ed::GroupResults& group : results.groups)
@@ -217,7 +251,11 @@ int analyze(const AnalyzeArguments& arguments) {
   const fs::path file = fs::is_directory(given) ? given / kGsdFile : given;
   const fs::path out = arguments.out ? fs::path(*arguments.out) : file.parent_path() / "analysis";
   const GsdReader reader(file);
-  const Stored stored = read_trajectory(reader, arguments);
+  Stored stored = read_trajectory(reader, arguments);
+  const RunChoices run = choices_of_run(file.parent_path());
+  const std::optional<double> fit_from = arguments.fit_from ? arguments.fit_from : run.fit_from;
+  stored.options.fit_from = fit_from.value_or(0);
+  stored.options.wave_numbers = run.wave_numbers;
   ed::StoredResults results;
   try {
     results = ed::analyze_frames(stored.frames, stored.options);
@@ -230,10 +268,15 @@ int analyze(const AnalyzeArguments& arguments) {
   for (const auto& [name, value] : {std::pair{"D_trans", results.D_trans},
                                     {"S", results.S},
                                     {"t_C2(1/e)", results.t_C2_1overe},
+                                    {"tau_C2", results.tau_C2},
+                                    {"beta_C2", results.beta_C2},
                                     {"t_F(1/e)", results.t_F_1overe},
+                                    {"tau_F", results.tau_F},
+                                    {"beta_F", results.beta_F},
                                     {"q_peak", results.q_peak}}) {
     fmt::print("  {:<12} {}\n", name, shown(value));
   }
+  if (!fit_from) fmt::print("no fits of decays: --fit-from T says from which lag, where ballistic motion has ended\n");
   fmt::print("\nfiles: {0}/analysis.json, {0}/*.csv\n", out.string());
   return 0;
 }

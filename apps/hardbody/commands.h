@@ -20,6 +20,7 @@ struct AnalyzeArguments {
   std::optional<std::string> out;     ///< by default analysis/ beside the file
   std::optional<double> time_step;    ///< time between two steps; nothing: the times that are stored
   std::optional<double> longest_lag;  ///< nothing: a quarter of the trajectory
+  std::optional<double> fit_from;     ///< lag from which decays are fitted; nothing: as the run itself has done
   int every = 1;                      ///< frames taken
 };
 

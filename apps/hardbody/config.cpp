@@ -26,11 +26,13 @@ constexpr std::size_t kLongestConfig = 1 << 20;    ///< bytes
 constexpr std::int64_t kMostEvents = 100'000'000;  ///< they are kept in memory: 16 bytes each
 constexpr std::int64_t kMostFrames = 100'000;      ///< there is room for all of them in the files' heads
 constexpr double kLongestTime = 1e9;
+constexpr std::size_t kMostWaveNumbers = 8;  ///< as ed::ObservablesOptions has them
+constexpr double kLargestWaveNumber = 1e6;
 constexpr double kLeastPacking = 1e-9;
 
 constexpr std::array<std::string_view, 8> kSections = {"system",   "start",         "shape",      "species",
                                                        "dynamics", "equilibration", "production", "output"};
-constexpr std::array<std::string_view, 37> kKeys = {
+constexpr std::array<std::string_view, 38> kKeys = {
     "seed",
     "system.number",
     "system.packing_fraction",
@@ -64,6 +66,7 @@ constexpr std::array<std::string_view, 37> kKeys = {
     "equilibration.cap",
     "production.time",
     "production.target_error",
+    "production.wave_numbers",
     "output.events",
     "output.trajectory",
     "output.frames",
@@ -199,6 +202,19 @@ void read_times(const TomlDocument& document, Config& config) {
     throw bad(*error, "a number from 0.0001 to 1 (standard error over value, of D_trans and D_rot)");
   }
   config.target_error = error->value.real;
+}
+
+void read_wave_numbers(const TomlDocument& document, Config& config) {
+  const Entry* entry = document.find("production.wave_numbers");
+  if (entry == nullptr) return;
+  const auto usable = [](const Value& v) { return is_number(v) && v.real > 0 && v.real <= kLargestWaveNumber; };
+  const std::vector<Value>& items = entry->value.items;
+  if (entry->value.kind != Value::Kind::array || items.size() > kMostWaveNumbers ||
+      !std::all_of(items.begin(), items.end(), usable)) {
+    throw bad(*entry, fmt::format("a list of at most {} numbers above 0, at most {:g} (1/l)", kMostWaveNumbers,
+                                  kLargestWaveNumber));
+  }
+  for (const Value& item : items) config.wave_numbers.push_back(item.real);
 }
 
 /// A run to go on from, instead of a start of one's own.
@@ -454,6 +470,7 @@ Config read_config(const TomlDocument& document) {
   }
   read_integer(document, "seed", 0, std::numeric_limits<std::int64_t>::max(), config.seed);
   read_times(document, config);
+  read_wave_numbers(document, config);
   read_output(document, config);
   read_species(document, config);
   read_dynamics(document, config);

@@ -94,6 +94,7 @@ struct Config {
   double equilibration_cap = 500;            ///< of "auto"
   std::optional<double> production_time;
   std::optional<double> target_error;  ///< of "auto": relative, of D_trans and D_rot
+  std::vector<double> wave_numbers;    ///< of F_self, 1/l; none: the first peak of S(q), and about it
 
   // [output]
   std::int64_t events = 0;

@@ -33,6 +33,12 @@ std::string names(const std::vector<std::string>& list) {
   return "[" + text + "]";
 }
 
+std::string numbers(const std::vector<double>& list) {
+  std::string text;
+  for (const double x : list) text += (text.empty() ? "" : ", ") + toml_real(x);
+  return "[" + text + "]";
+}
+
 std::string time(const std::optional<double>& t) {
   return t ? toml_real(*t) : quoted("auto");
 }
@@ -176,7 +182,10 @@ std::string times_text(const Config& config) {
          line("time", time(config.production_time), "in l sqrt(m/kT); \"auto\": 30 times the equilibration, from 30") +
          more("to 5000; or until the relative errors of D_trans and D_rot are") +
          (config.target_error ? line("target_error", toml_real(*config.target_error), "at most this")
-                              : more("target_error = 0.02, if that is given"));
+                              : more("target_error = 0.02, if that is given")) +
+         line("wave_numbers", numbers(config.wave_numbers),
+              "of F_self, in 1/l, at most 8, the first is fitted; none: at") +
+         more("the first peak of S(q), a quarter, half and twice of it");
 }
 
 std::string output_text(const Config& config) {

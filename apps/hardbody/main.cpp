@@ -100,6 +100,11 @@ void add_analyze(CLI::App& app, Request& request) {
       ->check(CLI::PositiveNumber);
   analyze->add_option("--longest-lag", request.analyze.longest_lag, "Of correlations; without it a quarter of the time")
       ->check(CLI::PositiveNumber);
+  analyze
+      ->add_option(
+          "--fit-from", request.analyze.fit_from,
+          "Lag from which C2 and F_self are fitted; without it as the run in the directory did, if there is one")
+      ->check(CLI::PositiveNumber);
   analyze->add_option("--every", request.analyze.every, "Takes only each N-th frame")->check(CLI::Range(1, 1000000));
 }
 

@@ -2,6 +2,7 @@
 #include "contours.h"
 #include "csv_table.h"
 #include "errors.h"
+#include "map_levels.h"
 #include "map_svg.h"
 #include "run_directory.h"
 #include "text_file.h"
@@ -22,8 +23,6 @@ namespace hardbody {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr int kLevels = 6;  ///< that are chosen where none are given
 
 fs::path table_path(const MapArguments& arguments) {
   const fs::path path = arguments.table;
@@ -65,12 +64,10 @@ std::vector<std::size_t> chosen_rows(const CsvTable& table, const std::vector<st
   return rows;
 }
 
-/// A coordinate as it is interpolated and drawn.
+/// A coordinate that can be drawn.
 double coordinate(double x, bool log, const std::string& name) {
-  if (log && !(x > 0)) {
-    throw InputError(fmt::format("{}: has {:g}, which has no logarithm; accepted: values above 0", name, x));
-  }
-  return log ? std::log10(x) : x;
+  if (!log || x > 0) return x;
+  throw InputError(fmt::format("{}: has {:g}, which has no logarithm; accepted: values above 0", name, x));
 }
 
 /// What the map is made of.
@@ -93,45 +90,6 @@ std::vector<Sample> samples_of(const CsvTable& table, const std::vector<std::siz
   return samples;
 }
 
-/// Between the extremes, by equal factors where all values are positive; two digits.
-std::vector<double> chosen_levels(const std::vector<Sample>& samples) {
-  const auto [low, high] = std::minmax_element(samples.begin(), samples.end(),
-                                               [](const Sample& a, const Sample& b) { return a.value < b.value; });
-  std::vector<double> levels;
-  for (int k = 1; k <= kLevels; ++k) {
-    const double share = k / (kLevels + 1.0);
-    const double level = low->value > 0 ? low->value * std::pow(high->value / low->value, share)
-                                        : low->value + share * (high->value - low->value);
-    levels.push_back(std::stod(fmt::format("{:.2g}", level)));
-  }
-  levels.erase(std::unique(levels.begin(), levels.end()), levels.end());
-  return levels;
-}
-
-/// Values between positive ones are interpolated by their logarithms: diffusivities span decades.
-std::vector<MapLevel> levels_of(std::vector<Sample> samples, const std::vector<double>& levels) {
-  const bool log = std::all_of(samples.begin(), samples.end(), [](const Sample& s) { return s.value > 0; });
-  if (log) {
-    for (Sample& s : samples) s.value = std::log(s.value);
-  }
-  const Lattice lattice = lattice_of(samples);
-  std::vector<MapLevel> result;
-  for (const double level : levels) {
-    MapLevel one;
-    one.level = level;
-    if (!log || level > 0) one.lines = contour_lines(lattice, log ? std::log(level) : level);
-    result.push_back(std::move(one));
-  }
-  return result;
-}
-
-void to_data(ContourLine& line, const MapArguments& arguments) {
-  for (PlanePoint& p : line) {
-    if (arguments.log_x) p.x = std::pow(10.0, p.x);
-    if (arguments.log_y) p.y = std::pow(10.0, p.y);
-  }
-}
-
 std::vector<MapLevel> all_levels(const CsvTable& table, const std::vector<std::size_t>& rows, const Columns& columns,
                                  const MapArguments& arguments) {
   std::vector<MapLevel> all;
@@ -143,10 +101,10 @@ std::vector<MapLevel> all_levels(const CsvTable& table, const std::vector<std::s
     }
     const std::vector<double> levels =
         arguments.levels.empty() ? chosen_levels(samples) : parse_levels(arguments.levels[v]);
-    for (MapLevel& level : levels_of(samples, levels)) {
+    const MapScales scales{arguments.log_x, arguments.log_y};
+    for (MapLevel& level : map_levels(samples, levels, scales)) {
       level.value = table.header[columns.values[v]];
       level.of = v;
-      for (ContourLine& line : level.lines) to_data(line, arguments);
       all.push_back(std::move(level));
     }
   }
@@ -215,8 +173,7 @@ int map(const MapArguments& arguments) {
   Map map;
   map.x_name = table.header[columns.x];
   map.y_name = table.header[columns.y];
-  map.log_x = arguments.log_x;
-  map.log_y = arguments.log_y;
+  map.scales = {arguments.log_x, arguments.log_y};
   map.levels = all_levels(table, rows, columns, arguments);
   map.marks = marks_of(table, rows, columns);
   const fs::path svg = output(arguments.out, arguments, ".svg");

@@ -93,8 +93,8 @@ class Drawing {
  public:
   explicit Drawing(const Map& map)
       : map_(map),
-        x_(scale_of(map, &MapMark::x, kLeft, kWidth - kRight, map.log_x)),
-        y_(scale_of(map, &MapMark::y, kHeight - kBottom, kTop, map.log_y)) {}
+        x_(scale_of(map, &MapMark::x, kLeft, kWidth - kRight, map.scales.log_x)),
+        y_(scale_of(map, &MapMark::y, kHeight - kBottom, kTop, map.scales.log_y)) {}
 
   std::string text() {
     add("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} {1}\" "

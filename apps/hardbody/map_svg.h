@@ -7,6 +7,12 @@
 
 namespace hardbody {
 
+/// Which axes are logarithmic.
+struct MapScales {
+  bool log_x = false;
+  bool log_y = false;
+};
+
 /// The lines of one level of one observable.
 struct MapLevel {
   std::string value;   ///< name of the observable
@@ -26,8 +32,7 @@ struct MapMark {
 struct Map {
   std::string x_name;
   std::string y_name;
-  bool log_x = false;
-  bool log_y = false;
+  MapScales scales;
   std::vector<MapMark> marks;
   std::vector<MapLevel> levels;
 };

@@ -111,10 +111,15 @@ double dilute_lag(const Config& config, const Equilibration& equilibration) {
   return collisions > 0 ? kLagCollisions * equilibration.time * config.number / (2 * collisions) : 0;
 }
 
+/// Of a production without a target error.
+double usual_length(const Equilibration& equilibration) {
+  return std::clamp(kProductionFactor * equilibration.time, kLeastProduction, kMostProduction);
+}
+
 /// How long production is to be, and what is measured in it.
 Production planned_production(const Config& config, const Equilibration& equilibration) {
   Production plan;
-  const double length = std::clamp(kProductionFactor * equilibration.time, kLeastProduction, kMostProduction);
+  const double length = usual_length(equilibration);
   if (config.production_time) {
     plan.planned = *config.production_time;
     plan.longest_lag = std::min(plan.planned / kLags, kLongestLag);
@@ -126,7 +131,8 @@ Production planned_production(const Config& config, const Equilibration& equilib
   }
   plan.next_look = kLags * plan.longest_lag;
   const double q = equilibration.relaxation.q;
-  plan.wave_numbers = {q, q / 4, q / 2, 2 * q};  // at the first peak of S(q), and about it
+  plan.wave_numbers = config.wave_numbers;
+  if (plan.wave_numbers.empty()) plan.wave_numbers = {q, q / 4, q / 2, 2 * q};  // the first peak of S(q), and about it
   return plan;
 }
 
@@ -144,11 +150,11 @@ bool precise_enough(const ed::Estimate& D, double target) {
   return D.error <= target * std::abs(D.value);
 }
 
-/// Whether the diffusion coefficients have the error asked for. Spheres turn freely and have no D_rot.
-bool is_precise(const Config& config, const ed::Results& results) {
-  const bool turn = !std::all_of(config.species.begin(), config.species.end(), is_sphere);
-  return precise_enough(results.D_trans, *config.target_error) &&
-         (!turn || precise_enough(results.D_rot, *config.target_error));
+/// The diffusion coefficients that are to have the error asked for. Spheres turn freely and have no D_rot.
+std::vector<ed::Estimate> wanted_coefficients(const Config& config, const ed::Results& results) {
+  std::vector<ed::Estimate> wanted = {results.D_trans};
+  if (!std::all_of(config.species.begin(), config.species.end(), is_sphere)) wanted.push_back(results.D_rot);
+  return wanted;
 }
 
 double equilibration_length(const Config& config) {
@@ -362,10 +368,23 @@ bool run_to(double time, ProductionRun& run, Runner& runner, Log& log) {
   return runner.run_to(time, planned);
 }
 
-/// With a target error, once in a while, at times that do not depend on a clock.
-void look_at_errors(const Config& config, ProductionRun& run) {
-  run.result.precise = is_precise(config, run.observables.results(run.simulation));
+/// With a target error, once in a while, at times that do not depend on a clock: whether nothing is to be gained by
+/// going on. A coefficient that has no value after a production of the usual length will not get one: motion is
+/// ballistic up to the longest lag, as the rotation of what is nearly a sphere, or arrested.
+bool look_at_errors(const Config& config, ProductionRun& run, Log& log) {
   run.result.next_look *= kNextLook;
+  const std::vector<ed::Estimate> wanted = wanted_coefficients(config, run.observables.results(run.simulation));
+  const auto precise = [&](const ed::Estimate& D) { return precise_enough(D, *config.target_error); };
+  run.result.precise = std::all_of(wanted.begin(), wanted.end(), precise);
+  if (run.result.precise) return true;
+  const auto hopeless = [&](const ed::Estimate& D) { return !std::isfinite(D.value); };
+  if (run.simulation.time() < usual_length(run.before)) return false;
+  if (!std::all_of(wanted.begin(), wanted.end(), [&](const auto& D) { return precise(D) || hopeless(D); }))
+    return false;
+  log.line(
+      fmt::format("production: no {} at lags up to {:g}, motion is not diffusive there: target_error is not reached",
+                  hopeless(wanted[0]) ? "D_trans" : "D_rot", run.result.longest_lag));
+  return true;
 }
 
 }  // namespace
@@ -453,8 +472,8 @@ void produce(const Config& config, ProductionRun& run, const FilesMark& files, P
     result.stopped = !run_to(target, run, runner, log);
     if (result.stopped) break;
     if (next <= result.planned) run.observables.measure(run.simulation);
-    if (config.target_error && target >= result.next_look) look_at_errors(config, run);
-    end = result.precise || (target == result.planned && run.observables.next_time() > result.planned);
+    end = target == result.planned && run.observables.next_time() > result.planned;
+    if (config.target_error && target >= result.next_look) end = look_at_errors(config, run, log) || end;
     result.time = target;
   }
   if (!result.stopped) run.trajectory.take_last(run.simulation, result.time, log);

@@ -27,6 +27,9 @@ std::string html_text(std::string_view text);
 /// Plots and tables that need no script.
 std::string static_body(const Report& report);
 
+/// What of it is of a sweep: maps over two swept numbers, or plots against one, and the table of all points.
+std::string static_sweep(const SweepReport& sweep);
+
 /// The data that the front end draws, as <script> elements of JSON; those of a sweep's points are read one by one.
 std::string report_data(const Report& report);
 

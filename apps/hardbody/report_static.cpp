@@ -143,26 +143,6 @@ std::string details(const RunReport& run) {
   return html;
 }
 
-/// All points, one row each.
-std::string sweep_table(const SweepReport& sweep) {
-  std::string html = "<table class=\"card\"><thead><tr>";
-  for (const std::string& key : sweep.keys) html += fmt::format("<th scope=\"col\">{}</th>", html_text(key));
-  for (const Headline& o : sweep.observables) {
-    const std::string unit = o.unit.empty() ? "" : fmt::format(" [{}]", o.unit);
-    html += fmt::format("<th scope=\"col\">{}{}</th>", html_text(o.symbol), html_text(unit));
-  }
-  html += "<th scope=\"col\">status</th></tr></thead><tbody>\n";
-  for (const SweepPointReport& point : sweep.points) {
-    html += "<tr>";
-    for (const std::string& key : point.keys) html += fmt::format("<th scope=\"row\">{}</th>", html_text(key));
-    for (const Measured& m : point.values) {
-      html += fmt::format("<td>{}</td>", html_text(format_estimate({m.value, m.error})));
-    }
-    html += fmt::format("<td>{} {}</td></tr>\n", html_text(point.status), html_text(point.message));
-  }
-  return html + "</tbody></table>\n";
-}
-
 }  // namespace
 
 std::string static_body(const Report& report) {
@@ -170,9 +150,8 @@ std::string static_body(const Report& report) {
                                  html_text(report.title));
   constexpr const char* kWhy =
       "<p class=\"notice\">This report is static: the program was built without the interactive front end, for which "
-      "it "
-      "needs npm.</p>\n</main>\n";
-  if (report.sweep) return html + sweep_table(*report.sweep) + kWhy;
+      "it needs npm.</p>\n</main>\n";
+  if (report.sweep) return html + static_sweep(*report.sweep) + kWhy;
   for (const RunReport& run : report.runs) {
     html += fmt::format("<p class=\"path\">{}</p>\n", html_text(run.path.string())) + remarks(run);
   }

@@ -2,6 +2,7 @@
 
 #include "text_file.h"
 
+#include <cstddef>
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -13,6 +14,7 @@ namespace hardbody {
 /// Names in a run directory.
 inline constexpr const char* kConfigFile = "config.toml";
 inline constexpr const char* kSummaryFile = "summary.json";
+inline constexpr std::size_t kLongestSummary = 16 << 20;  ///< bytes
 inline constexpr const char* kCheckpointFile = "checkpoint.bin";
 inline constexpr const char* kEventsFile = "events.csv";
 inline constexpr const char* kGsdFile = "trajectory.gsd";

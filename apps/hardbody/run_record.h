@@ -37,7 +37,7 @@ struct Production {
   double longest_lag = 0;
   double next_look = 0;              ///< with a target error: when it is asked next whether that is reached
   bool precise = false;              ///< it is, which has ended production
-  std::vector<double> wave_numbers;  ///< of F_self; the first is that of the first peak of S(q)
+  std::vector<double> wave_numbers;  ///< of F_self; the first one's decay is fitted
   bool stopped = false;
   double wall_seconds = 0;
   double envelope = 0;

@@ -15,8 +15,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kLongestSummary = 16 << 20;  ///< bytes
-
 /// A number as it stands there; empty for null.
 std::string printed(const Json& json) {
   return json.is_null() ? "" : json.dump();

@@ -35,15 +35,20 @@ std::string rotation_text(double rotation_axes) {
                      rotation_axes);
 }
 
-/// What all bodies have, and each species.
-std::string diffusion_lines(const ed::Correlations& r, double rotation_axes) {
+/// What all bodies have, and each species; F_self is measured at `wave_numbers`.
+std::string diffusion_lines(const ed::Correlations& r, double rotation_axes, const std::vector<double>& wave_numbers) {
+  const std::string f_self =
+      wave_numbers.empty() ? "F_self" : fmt::format("F_self(q, t) at q = {:.4g} / l", wave_numbers[0]);
   return number_line("D_trans", r.D_trans, "l sqrt(kT/m)", "MSD / 6t") +
          number_line("D_rot", r.D_rot, "sqrt(kT/m)/l", rotation_text(rotation_axes)) +
          number_line("D_rot_body", r.D_rot_body, "sqrt(kT/m)/l", "the same, components along the body's axes") +
          number_line("t_C2(1/e)", r.t_C2_1overe, "l sqrt(m/kT)",
                      rotation_axes == 2 ? "<P2(u(t).u(0))> = 1/e" : "<P2(u(t).u(0))> = 1/e, u body z") +
          number_line("tau_C2", r.tau_C2, "l sqrt(m/kT)", "of A exp[-(t/tau)^beta]") +
-         number_line("beta_C2", r.beta_C2, "1", "of the same");
+         number_line("beta_C2", r.beta_C2, "1", "of the same") +
+         number_line("t_F(1/e)", r.t_F_1overe, "l sqrt(m/kT)", f_self + " = 1/e") +
+         number_line("tau_F", r.tau_F, "l sqrt(m/kT)", "of A exp[-(t/tau)^beta]") +
+         number_line("beta_F", r.beta_F, "1", "of the same");
 }
 
 /// About each body axis, of bodies without an axis of revolution.
@@ -125,7 +130,7 @@ std::string species_numbers(const RunRecord& record) {
     const SpeciesConfig& species = record.config.species[k];
     const int axes = species.rotation_axes();
     text += '\n';
-    text += species_text(species, k) + diffusion_lines(groups[k], axes) +
+    text += species_text(species, k) + diffusion_lines(groups[k], axes, record.production.wave_numbers) +
             number_line("S", groups[k].S, "1", "nematic order of this species") +
             temperature_lines(groups[k].translational_kT, groups[k].rotational_kT,
                               "on its share of 3N - 3 degrees of freedom", axes == 2 ? "on 2 a body" : "on 3 a body");
@@ -141,7 +146,8 @@ std::string numbers(const RunRecord& record) {
   for (const SpeciesConfig& s : config.species) rotation_axes += s.rotation_axes() * s.number;
   std::string text =
       number_line("collision rate", r.collision_rate, "sqrt(kT/m)/l", "collisions of a body in a time unit") +
-      number_line("Z", r.Z, "1", "P V / (N kT)") + diffusion_lines(r, rotation_axes / config.number) +
+      number_line("Z", r.Z, "1", "P V / (N kT)") +
+      diffusion_lines(r, rotation_axes / config.number, record.production.wave_numbers) +
       number_line("S", r.S, "1", "nematic order: largest eigenvalue of Q, by frame") +
       temperature_lines(r.translational_kT, r.rotational_kT, "on 3N - 3 degrees of freedom",
                         fmt::format("on {}", freedoms_text(std::lround(rotation_axes), config.number)));

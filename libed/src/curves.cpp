@@ -6,9 +6,7 @@ namespace ed::internal {
 namespace {
 
 constexpr double kLinearity = 0.2;  ///< of the logarithmic slope of a displacement that counts as diffusion
-/// Decays are fitted from this many mean collision intervals: before, motion is ballistic.
-constexpr double kBallisticCollisions = 5;
-constexpr double kNoise = 0.03;  ///< of a decay: what follows is left out
+constexpr double kNoise = 0.03;     ///< of a decay: what follows is left out
 
 }  // namespace
 
@@ -33,9 +31,8 @@ double decay_time(const Curve& curve) {
   return first_crossing(curve.t, curve.y, 1 / std::exp(1.0)).value_or(kNothing);
 }
 
-std::optional<DecayFit> fit_decay(const Curve& curve, double collision_rate) {
-  const double from = kBallisticCollisions / collision_rate;
-  // Without collisions `from` is no number.
+std::optional<DecayFit> fit_decay(const Curve& curve, double from) {
+  // A comparison that fails if `from` is no number.
   if (!(decay_time(curve) >= 3 * from)) return std::nullopt;
   Curve window;
   for (std::size_t k = 0; k < curve.t.size() && curve.y[k] > kNoise; ++k) {

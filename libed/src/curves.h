@@ -20,6 +20,8 @@ struct Curve {
 
 /// Diffusion is fitted from this share of the longest lag.
 constexpr double kFitFrom = 0.4;
+/// Decays are fitted from this many mean collision intervals: before, motion is ballistic.
+constexpr double kBallisticCollisions = 5;
 
 /// D = slope / divisor over [kFitFrom, 1] of the longest lag; NaN unless the curve is straight there.
 double diffusion(const Curve& curve, double divisor);
@@ -34,8 +36,8 @@ struct DecayFit {
   double to;
 };
 
-/// The stretched exponential of a correlation that starts at 1, ballistic part and the noise at the end left out.
-/// Nothing where the decay is ballistic all the way.
-std::optional<DecayFit> fit_decay(const Curve& curve, double collision_rate);
+/// The stretched exponential of a correlation that starts at 1, from the lag `from` on (before, motion is ballistic),
+/// the noise at the end left out. Nothing where the decay is ballistic most of the way, or `from` is not finite.
+std::optional<DecayFit> fit_decay(const Curve& curve, double from);
 
 }  // namespace ed::internal

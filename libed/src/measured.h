@@ -104,7 +104,8 @@ struct Measured {
 /// The wave vectors of S(q).
 WaveVectors wave_vectors_of(const StructureGrid& grid);
 
-/// All results, of a run whose totals are these now.
-Results results_of(const Measured& measured, const Totals& totals);
+/// All results, of a run whose totals are these now. Decays are fitted from the lag `fit_from`; without it, from
+/// kBallisticCollisions mean collision intervals.
+Results results_of(const Measured& measured, const Totals& totals, std::optional<double> fit_from = std::nullopt);
 
 }  // namespace ed::internal

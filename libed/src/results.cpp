@@ -34,10 +34,13 @@ double alpha2(const LagSums& s) {
 /// What is made of the blocks.
 class Evaluation {
  public:
-  Evaluation(const Measured& measured, const Totals& totals) : measured_(measured), totals_(totals) {
+  Evaluation(const Measured& measured, const Totals& totals, std::optional<double> fit_from)
+      : measured_(measured), totals_(totals) {
     for (const Block& block : measured.blocks) {
       if (2 * block.origins > measured.origins_per_block && block.end.time > block.begin.time) full_.push_back(&block);
     }
+    const double rate = 2 * totals.collisions / (measured.options.number * totals.time);
+    fit_from_ = fit_from.value_or(kBallisticCollisions / rate);
   }
 
   Results results() const;
@@ -96,9 +99,8 @@ class Evaluation {
 
   /// tau, beta and the window of a stretched exponential.
   template <class Value>
-  void fit(std::size_t group, double collision_rate, const Value& value, Estimate& tau, Estimate& beta,
-           FitWindow& window) const {
-    const auto fitted = [&](const Block* block) { return fit_decay(curve(group, block, value), collision_rate); };
+  void fit(std::size_t group, const Value& value, Estimate& tau, Estimate& beta, FitWindow& window) const {
+    const auto fitted = [&](const Block* block) { return fit_decay(curve(group, block, value), fit_from_); };
     const auto estimate = [&](double StretchedExponential::*member) {
       return with_block_error(measured_.lags.back(), [&](const Block* block) {
         const auto found = fitted(block);
@@ -129,13 +131,14 @@ class Evaluation {
 
   LagRow lag_row(std::size_t lag, std::size_t group) const;
   void add_axes(std::size_t group, Correlations& results) const;
-  Correlations correlations(std::size_t group, double collision_rate) const;
-  GroupResults group_results(std::size_t group, double collision_rate) const;
+  Correlations correlations(std::size_t group) const;
+  GroupResults group_results(std::size_t group) const;
   void add_blocks(Results& results) const;
   void add_pressure(Results& results) const;
 
   const Measured& measured_;
   const Totals& totals_;
+  double fit_from_ = kNothing;      ///< the lag from which decays are fitted
   std::vector<const Block*> full_;  ///< that are complete, or at least half so: what errors are made of
 };
 
@@ -339,7 +342,7 @@ void Evaluation::add_axes(std::size_t group, Correlations& results) const {
   }
 }
 
-Correlations Evaluation::correlations(std::size_t group, double collision_rate) const {
+Correlations Evaluation::correlations(std::size_t group) const {
   Correlations results;
   const auto c2 = [](const LagSums& s) { return s.c2; };
   const auto f_self = [](const LagSums& s) { return s.f_self[0]; };
@@ -353,10 +356,10 @@ Correlations Evaluation::correlations(std::size_t group, double collision_rate) 
   results.D_rot_body = diffusion_estimate(group, rotation, [](const LagSums& s) { return s.rot_msd_body; });
   results.window_D = {kFitFrom * measured_.lags.back(), measured_.lags.back()};
   results.t_C2_1overe = decay_time_estimate(group, c2);
-  fit(group, collision_rate, c2, results.tau_C2, results.beta_C2, results.window_C2);
+  fit(group, c2, results.tau_C2, results.beta_C2, results.window_C2);
   if (!measured_.options.wave_numbers.empty()) {
     results.t_F_1overe = decay_time_estimate(group, f_self);
-    fit(group, collision_rate, f_self, results.tau_F, results.beta_F, results.window_F);
+    fit(group, f_self, results.tau_F, results.beta_F, results.window_F);
   }
   if (three_axes(group)) add_axes(group, results);
   const auto sums = [group](const Block& b) -> const FrameSums& { return group == kAll ? b.all : b.groups[group]; };
@@ -369,9 +372,9 @@ Correlations Evaluation::correlations(std::size_t group, double collision_rate) 
   return results;
 }
 
-GroupResults Evaluation::group_results(std::size_t group, double collision_rate) const {
+GroupResults Evaluation::group_results(std::size_t group) const {
   GroupResults results;
-  static_cast<Correlations&>(results) = correlations(group, collision_rate);
+  static_cast<Correlations&>(results) = correlations(group);
   results.S = frame_mean([group](const Block& b) { return b.groups[group].S; });
   results.director = director([group](const Block& b) -> const FrameSums& { return b.groups[group]; });
   results.translational_kT = frame_mean([group](const Block& b) { return b.groups[group].translational_kT; });
@@ -387,16 +390,15 @@ Results Evaluation::results() const {
   Results results;
   results.duration = totals_.time;
   add_blocks(results);
-  const double rate = results.collision_rate.value;
-  static_cast<Correlations&>(results) = correlations(kAll, rate);
-  for (std::size_t g = 0; g < measured_.ranges.size(); ++g) results.groups.push_back(group_results(g, rate));
+  static_cast<Correlations&>(results) = correlations(kAll);
+  for (std::size_t g = 0; g < measured_.ranges.size(); ++g) results.groups.push_back(group_results(g));
   return results;
 }
 
 }  // namespace
 
-Results results_of(const Measured& measured, const Totals& totals) {
-  return Evaluation(measured, totals).results();
+Results results_of(const Measured& measured, const Totals& totals, std::optional<double> fit_from) {
+  return Evaluation(measured, totals, fit_from).results();
 }
 
 }  // namespace ed::internal

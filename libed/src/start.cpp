@@ -195,7 +195,10 @@ System random_start(const std::vector<Component>& components, const StartOptions
   check_packing(components, options.packing_fraction);
   internal::check_target(components, box_for(components, options.packing_fraction));
   Random random(options.seed);
-  const internal::Tiling tiling = internal::tiling_of(components, options.packing_fraction, options.most_compressed);
+  const bool dilute = options.packing_fraction <= dilute_packing(components);
+  const internal::Tiling tiling =
+      dilute ? internal::Tiling{1, components, options.packing_fraction}
+             : internal::tiling_of(components, options.packing_fraction, options.most_compressed);
   StartOptions of_tile = options;
   of_tile.packing_fraction = tiling.packing_fraction;
   System system = compressed_start(tiling.tile, of_tile, random);

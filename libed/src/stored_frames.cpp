@@ -201,7 +201,8 @@ StoredResults Analysis::results() {
   }
   add_lags();
   StoredResults results;
-  static_cast<Results&>(results) = internal::results_of(measured_, totals);
+  const double fit_from = options_.fit_from > 0 ? options_.fit_from : kNothing;
+  static_cast<Results&>(results) = internal::results_of(measured_, totals, fit_from);
   const bool velocities = !frames_.empty() && options_.axis.size() == frames_[0].snapshot.velocity.size() &&
                           !frames_[0].snapshot.velocity.empty() && !frames_[0].snapshot.velocity[0].isZero(0);
   results.translational_kT = results.rotational_kT = {kNothing, kNothing};

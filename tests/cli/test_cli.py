@@ -323,6 +323,26 @@ class Run(Case):
         # The first look is when it would have ended without a target, at the earliest.
         self.assertGreaterEqual(times[0.1], 30)
 
+    def test_what_has_no_diffusion_coefficient_is_not_waited_for(self):
+        """Nearly a sphere: collisions hardly turn it, and rotation is ballistic up to the longest lag."""
+        config = SMALL.replace("time = 1\n", 'time = "auto"\n').replace("time = 5", 'time = "auto"\ntarget_error = 0.1')
+        self.run_small("out", "--set", "shape.aspect_ratio=1.05", "--set", "system.packing_fraction=0.4", config=config)
+        summary = self.summary("out")
+        self.assertTrue(summary["equilibrated"])
+        self.assertEqual(summary["target_error"], {"asked": 0.1, "reached": False})
+        self.assertIsNone(summary["observables"]["D_rot"]["value"])
+        D_trans = summary["observables"]["D_trans"]
+        self.assertLessEqual(D_trans["error"], 0.1 * D_trans["value"])
+        self.assertLess(summary["time"]["production"], 1000)
+        self.assertIn("no D_rot at lags up to", self.read("out/log.txt"))
+
+    def test_wave_numbers(self):
+        self.run_small("out", "--set", "production.wave_numbers=[1.5, 3]")
+        self.assertEqual(self.summary("out")["wave_numbers"], [1.5, 3])
+        header = self.read("out/observables/f_self.csv").splitlines()[0]
+        self.assertIn("f_self_q2", header)
+        self.assertNotIn("f_self_q3", header)
+
     def test_a_gas_is_measured_until_its_velocities_are_forgotten(self):
         config = SMALL.replace("time = 1\n", 'time = "auto"\n').replace("time = 5", 'time = "auto"\ntarget_error = 0.03')
         self.run_small("out", "--set", "shape.aspect_ratio=1", "--set", "system.packing_fraction=0.03", config=config)
@@ -499,6 +519,11 @@ class BadConfig(Case):
             ("time = 5\n", 'target_error = 0.1\ntime = 5\n', "production.target_error"),
             ("time = 5\n", 'target_error = 0\n', "production.target_error"),
             ("time = 5\n", 'target_error = "small"\n', "production.target_error"),
+            ("time = 5\n", "wave_numbers = 3\n", "production.wave_numbers", "a list of at most 8"),
+            ("time = 5\n", "wave_numbers = [1, 0]\n", "production.wave_numbers", "above 0"),
+            ("time = 5\n", "wave_numbers = [nan]\n", "production.wave_numbers"),
+            ("time = 5\n", 'wave_numbers = ["1"]\n', "production.wave_numbers"),
+            ("time = 5\n", f"wave_numbers = {[1.0] * 9}\n", "production.wave_numbers"),
             ("time = 5", "time = -1", "production.time"),
             ("time = 5", "time = inf", "production.time"),
             ("events = 500", "events = -1", "output.events"),

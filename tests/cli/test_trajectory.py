@@ -673,7 +673,8 @@ class Analyze(Trajectories):
         step = 5 / 30
         result = self.hardbody("analyze", "other.gsd", "--time-step", repr(step), "--out", "other")
         self.assertEqual(result.returncode, 0, result.stderr)
-        self.assertEqual(self.hardbody("analyze", "out/trajectory.gsd", "--out", "ours").returncode, 0)
+        shutil.copy(self.path("out/trajectory.gsd"), self.path("ours.gsd"))
+        self.assertEqual(self.hardbody("analyze", "ours.gsd", "--out", "ours").returncode, 0)
         for file, column in [("msd", "msd"), ("c1", "c1"), ("c2", "c2"), ("f_self", "f_self_q1"), ("velocity", "vacf")]:
             ours, other = self.rows(f"ours/{file}.csv"), self.rows(f"other/{file}.csv")
             numpy.testing.assert_allclose(other["t"], ours["t"], rtol=1e-12)
@@ -689,6 +690,29 @@ class Analyze(Trajectories):
         os.makedirs(self.path("empty"))
         self.assert_refused(self.hardbody("analyze", "empty"), "empty/trajectory.gsd: cannot be read")
         self.assert_refused(self.hardbody("analyze", "out", "--time-step", "0"), "--time-step")
+
+    def test_fits(self):
+        """As the run has done it, from the same lag and at the same q; of a file alone from the lag that is asked for."""
+        dense = SMALL.replace("fraction = 0.2", "fraction = 0.4").replace("ratio = 2", "ratio = 3")
+        dense = dense.replace("time = 5\n", "time = 60\n")
+        self.run_with("out", dense, ALL.replace("6", "1201"))
+        self.assertEqual(self.hardbody("analyze", "out").returncode, 0)
+        own, again = self.summary("out"), self.analysis("out/analysis")
+        self.assertEqual(again["fit_from"], own["fit_windows"]["C2"][0])
+        self.assertEqual(again["wave_numbers"], own["wave_numbers"])
+        for name in ["tau_C2", "beta_C2", "tau_F", "beta_F"]:
+            a, b = own["observables"][name], again["observables"][name]
+            self.assertLess(abs(a["value"] - b["value"]), 5 * (a["error"] ** 2 + b["error"] ** 2) ** 0.5, name)
+        shutil.copy(self.path("out/trajectory.gsd"), self.path("alone.gsd"))
+        result = self.hardbody("analyze", "alone.gsd", "--out", "alone")
+        self.assertIn("no fits of decays: --fit-from", result.stdout)
+        self.assertIsNone(self.analysis("alone")["observables"]["tau_C2"]["value"])
+        result = self.hardbody("analyze", "alone.gsd", "--out", "alone", "--fit-from", repr(again["fit_from"]))
+        self.assertNotIn("no fits", result.stdout)
+        alone = self.analysis("alone")["observables"]
+        for name in ["tau_C2", "beta_C2"]:
+            self.assertEqual(alone[name], again["observables"][name])
+        self.assertGreater(alone["tau_F"]["value"], 0)
 
     def test_one_frame(self):
         self.run_with("out", SMALL.replace("time = 5\n", "time = 0\n"))

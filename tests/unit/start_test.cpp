@@ -167,19 +167,10 @@ void expect_sound(const ed::System& system, double packing_fraction) {
   EXPECT_EQ(ed::audit(simulation.system()).overlaps, 0);
 }
 
-TEST(RandomStart, LargeOnesAreRepeated) {
-  ed::StartOptions options;
-  options.number = 1001;
-  options.packing_fraction = 0.3;
-  options.most_compressed = 130;
-  const ed::System system = ed::random_start(ed::paper_species(ed_test::spheroid(0.6)), options);
-  ASSERT_EQ(system.size(), 1001);
-  expect_sound(system, 0.3);
-  // 126 bodies to each of 8 boxes, 7 of the 1008 taken out: nearly all have a copy half a box away in x, as old as they
-  // are, but of another velocity.
+/// How many have a copy half a box away in x, as old as they are, but of another velocity.
+int copies_half_a_box_away(const ed::System& system) {
   int copies = 0;
-  for (int i = 0; i < system.size(); ++i) {
-    const ed::Body& a = system.bodies[static_cast<std::size_t>(i)];
+  for (const ed::Body& a : system.bodies) {
     for (const ed::Body& b : system.bodies) {
       Eigen::Vector3d d = b.position - a.position - Eigen::Vector3d(0.5 * system.box, 0, 0);
       d -= system.box * (d / system.box).array().round().matrix();
@@ -190,8 +181,32 @@ TEST(RandomStart, LargeOnesAreRepeated) {
       EXPECT_FALSE(a.angular_velocity == b.angular_velocity);
     }
   }
+  return copies;
+}
+
+TEST(RandomStart, LargeOnesAreRepeated) {
+  ed::StartOptions options;
+  options.number = 1001;
+  options.packing_fraction = 0.3;
+  options.most_compressed = 130;
+  const ed::System system = ed::random_start(ed::paper_species(ed_test::spheroid(0.6)), options);
+  ASSERT_EQ(system.size(), 1001);
+  expect_sound(system, 0.3);
+  // 126 bodies to each of 8 boxes, 7 of the 1008 taken out: nearly all have a copy.
+  const int copies = copies_half_a_box_away(system);
   EXPECT_GE(copies, 1001 - 7);
   EXPECT_LE(copies, 1001);
+}
+
+TEST(RandomStart, DiluteOnesAreNotRepeated) {
+  ed::StartOptions options;
+  options.number = 1001;
+  options.packing_fraction = 0.03;
+  options.most_compressed = 130;
+  const ed::System system = ed::random_start(ed::paper_species(ed_test::spheroid(0.6)), options);
+  ASSERT_EQ(system.size(), 1001);
+  expect_sound(system, 0.03);
+  EXPECT_EQ(copies_half_a_box_away(system), 0);
 }
 
 TEST(RandomStart, LargeMixturesAreRepeated) {
