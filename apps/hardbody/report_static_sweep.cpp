@@ -57,8 +57,9 @@ std::string label_of(const Headline& observable) {
   return observable.unit.empty() ? observable.symbol : fmt::format("{} [{}]", observable.symbol, observable.unit);
 }
 
-std::string figure(const std::string& title, const std::string& drawing) {
-  return fmt::format("<figure class=\"card map\"><figcaption>{}</figcaption>{}</figure>\n", html_text(title), drawing);
+std::string figure(const char* classes, const std::string& title, const std::string& drawing) {
+  return fmt::format("<figure class=\"{}\"><figcaption>{}</figcaption>{}</figure>\n", classes, html_text(title),
+                     drawing);
 }
 
 std::string map_figure(const SweepReport& sweep, const std::vector<Axis>& axes, std::size_t observable) {
@@ -77,7 +78,7 @@ std::string map_figure(const SweepReport& sweep, const std::vector<Axis>& axes, 
   const Headline& name = sweep.observables[observable];
   map.levels = map_levels(samples, chosen_levels(samples), map.scales);
   for (MapLevel& level : map.levels) level.value = name.symbol;
-  return figure(label_of(name), map_svg(map));
+  return figure("card map", label_of(name), map_svg(map));
 }
 
 std::string plot_figure(const SweepReport& sweep, const Axis& axis, std::size_t observable) {
@@ -94,7 +95,7 @@ std::string plot_figure(const SweepReport& sweep, const Axis& axis, std::size_t 
   }
   const std::string label = label_of(name);
   const std::string svg = svg_plot({label, axis.name, label, axis.log, false, {series}});
-  return svg.empty() ? "" : figure(label, svg);
+  return svg.empty() ? "" : figure("card", label, svg);
 }
 
 std::string figures(const SweepReport& sweep) {

@@ -551,7 +551,7 @@ class Static(Case):
     def test_sweep(self):
         """Maps over two keys, plots against one, and the table."""
         run = self.run_of("run", RUN)
-        for name, ratios, figures in [("plane", 6, ".map svg[xmlns] circle"), ("line", 1, ".map svg circle")]:
+        for name, ratios, figures in [("plane", 6, ".map svg circle"), ("line", 1, ".card svg circle")]:
             with self.subTest(name):
                 sweep = self.here / f"static_{name}"
                 synthetic.write_sweep(run, sweep, ratios=ratios, densities=5, failed=())
@@ -562,7 +562,7 @@ class Static(Case):
                     self.assertEqual([t.split(" [")[0] for t in titles], ["D_trans", "D_rot", "t_C2", "Z", "S", "Γ"])
                     points = browser.run(f"return document.querySelectorAll('{figures}').length")
                     self.assertEqual(points, 6 * ratios * 5)
-                    lines = browser.run("return document.querySelectorAll('.map svg[xmlns] path[fill=none]').length")
+                    lines = browser.run("return document.querySelectorAll('.map svg path[fill=none]').length")
                     self.assertEqual(lines > 0, name == "plane")
                     rows = browser.run("return document.querySelectorAll('tbody tr').length")
                     self.assertEqual(rows, ratios * 5)

@@ -25,6 +25,8 @@ QUICK_PHI = [0.20, 0.30, 0.40, 0.45]
 # About where the nematic begins: packing fractions by elongation (a/b, or b/a of discs). Only decides which points are
 # left out and which of them get a lower cap; what is nematic is told by S.
 NEMATIC = [(2.75, 0.55), (3.0, 0.51), (3.5, 0.47), (4.0, 0.435), (4.5, 0.40), (5.0, 0.37)]
+# Where discs are nematic, which is earlier: these get the lower cap, too.
+NEMATIC_DISCS = [(2.75, 0.55), (3.2, 0.505), (3.47, 0.468), (3.55, 0.455), (4.0, 0.411), (4.5, 0.385), (5.0, 0.361)]
 BEYOND = 0.035  # so far into the nematic points are run: the line S = 0.3 lies between them
 
 
@@ -42,21 +44,21 @@ class Point(NamedTuple):
         return round(self.X0 * 10000) * 1000 + round(self.phi * 1000)
 
 
-def nematic_packing(X0):
-    """By NEMATIC, straight between its rows; nothing where there is none below phi = 0.55."""
+def nematic_packing(X0, table=NEMATIC):
+    """By the table, straight between its rows; 1 where there is no nematic below phi = 0.55."""
     elongation = max(X0, 1 / X0)
-    at = bisect.bisect_left([x for x, _ in NEMATIC], elongation)
+    at = bisect.bisect_left([x for x, _ in table], elongation)
     if at == 0:
         return 1.0
-    if at == len(NEMATIC):
-        return NEMATIC[-1][1]
-    (x0, phi0), (x1, phi1) = NEMATIC[at - 1], NEMATIC[at]
+    if at == len(table):
+        return table[-1][1]
+    (x0, phi0), (x1, phi1) = table[at - 1], table[at]
     return phi0 + (phi1 - phi0) * (elongation - x0) / (x1 - x0)
 
 
 def is_late(point):
     """Expected to be nematic: C2 does not decay to zero there."""
-    return point.phi >= nematic_packing(point.X0)
+    return point.phi >= nematic_packing(point.X0, NEMATIC_DISCS if point.X0 < 1 else NEMATIC)
 
 
 def all_points():
