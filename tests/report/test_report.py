@@ -71,6 +71,19 @@ time = 1
 time = 4
 """
 
+# 4 x 14^3 bodies: as they are placed.
+MANY = """[system]
+number = 10976
+packing_fraction = 0.4
+start = "fcc"
+[shape]
+aspect_ratio = 2
+[equilibration]
+time = 0
+[production]
+time = 0
+"""
+
 SWEEP = """[system]
 number = 64
 [equilibration]
@@ -328,6 +341,23 @@ class OneRun(Case):
 
 @unittest.skipUnless(INTERACTIVE, "this program was built without the interactive front end")
 class OtherRuns(Case):
+    def test_ten_thousand_bodies(self):
+        """One mesh of instances: so many triangles, drawn in one call."""
+        directory = self.run_of("many", MANY)
+        self.report(directory)
+        self.assertLess((directory / "report.html").stat().st_size, 3e6)
+        browser = self.open(directory / "report.html")
+        self.wait_for(browser, "return window.hardbodyReport.views[0].drawn > 0")
+        view = browser.run(
+            """const v = window.hardbodyReport.page.views[0]; v.renderer.render(v.scene, v.camera);
+            return [v.bodies, v.meshes.map((m) => m.mesh.count), v.renderer.info.render.triangles, v.renderer.info.render.calls];"""
+        )
+        self.assertEqual(view[:2], [10976, [10976]])
+        self.assertGreater(view[2], 10976 * 50)
+        self.assertLess(view[3], 20)
+        self.assertGreater(self.colours(browser, ".stage canvas"), 40)
+        self.assert_silent(browser)
+
     def test_superellipsoids(self):
         directory = self.run_of("superballs", SUPERBALLS)
         self.report(directory)
