@@ -1,18 +1,19 @@
 # Tests of this part; see hardbody_test in CMakeLists.txt. HARDBODY_FULL=1 in the environment raises the lengths.
 hardbody_test(ed_unit_test unit
-  unit/analysis_test.cpp
-  unit/correlations_test.cpp
   unit/custom_shape_test.cpp
   unit/envelopes_test.cpp
-  unit/equilibration_test.cpp
   unit/event_loop_test.cpp
-  unit/observables_test.cpp
   unit/polydispersity_test.cpp
   unit/restart_test.cpp
   unit/simulation_test.cpp
   unit/start_test.cpp
-  unit/structure_test.cpp
   unit/system_test.cpp)
+hardbody_test(ed_observables_test unit
+  unit/analysis_test.cpp
+  unit/correlations_test.cpp
+  unit/equilibration_test.cpp
+  unit/observables_test.cpp
+  unit/structure_test.cpp)
 foreach(name conservation correlations counters equation_of_state free_rotor general_bodies same_collisions state_points time_reversal)
   hardbody_test(physics_${name}_test physics physics/${name}_test.cpp)
 endforeach()
