@@ -223,7 +223,7 @@ TEST(Stall, SoundRunsAreNone) {
     ed::SimulationOptions options;
     options.least_progress = 1e-2;  // far more than is asked for
     ed::Simulation simulation(system, options);
-    EXPECT_TRUE(simulation.run_until(50)) << phi;
+    EXPECT_TRUE(simulation.run_until(finder_test::scaled(50, 50))) << phi;
   }
 }
 
