@@ -24,12 +24,12 @@ struct StartOptions {
   /// fraction of 0.2). It is that of the start only where nothing is compressed, up to a packing fraction of 0.04, less
   /// for aspect ratios above 10; else see lattice_start.
   std::optional<double> nematic_order = std::nullopt;
-  /// The compression takes a time that grows with the square of the number of bodies. Larger systems than this that need it
-  /// are made of smaller ones: a periodic box of at most as many bodies, in the same proportions, is compressed and then
-  /// repeated along all edges, and every body gets a velocity of its own. The copies lose the memory of each other
-  /// within some collisions; at distances of a box they are correlated until bodies have diffused by their length, so
-  /// that large starts, too, need their equilibration. Mixtures of many species with few bodies each, and boxes that
-  /// would be too small for nearest images, are not repeated as often.
+  /// The compression takes a time that grows with the square of the number of bodies. Larger systems than this that
+  /// need it are made of smaller ones: a periodic box of at most as many bodies, in the same proportions, is compressed
+  /// and then repeated along all edges, and every body gets a velocity of its own. The copies lose the memory of each
+  /// other within some collisions; at distances of a box they are correlated until bodies have diffused by their
+  /// length, so that large starts, too, need their equilibration. Mixtures of many species with few bodies each, and
+  /// boxes that would be too small for nearest images, are not repeated as often.
   int most_compressed = 1000;
 };
 

@@ -32,8 +32,8 @@ struct StoredFramesOptions {
   /// Of F_self, at most 8; empty: the first peak of S(q), a quarter, half and twice of it.
   std::vector<double> wave_numbers{};
   double longest_lag = 0;  ///< 0: a quarter of the trajectory
-  /// Decays are fitted from this lag, where ballistic motion has ended: a run takes five mean collision intervals. 0: no
-  /// fits.
+  /// Decays are fitted from this lag, where ballistic motion has ended: a run takes five mean collision intervals. 0:
+  /// no fits.
   double fit_from = 0;
 };
 
