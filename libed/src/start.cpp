@@ -150,6 +150,7 @@ constexpr double kSameBox = 1e-12;
 /// Each body as a component of its own.
 std::vector<Component> components_of(const System& system) {
   std::vector<Component> components;
+  components.reserve(system.bodies.size());
   for (int i = 0; i < system.size(); ++i) components.push_back({system.species_of(i), 1});
   return components;
 }
