@@ -48,6 +48,7 @@ std::vector<Member> members_of(const toml::table& table) {
   }
   std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<Member> members;
+  members.reserve(found.size());
   for (auto& [position, member] : found) members.push_back(std::move(member));
   return members;
 }
