@@ -15,8 +15,8 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <limits>
 #include <numbers>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -214,8 +214,7 @@ std::string analysis_json(const std::string& name, const Stored& stored, const e
   json["time"] = {{"first", stored.frames.front().time}, {"last", stored.frames[results.frames - 1].time}};
   json["state"] = {{"number", stored.order.size()}, {"box", stored.options.box}, {"length", stored.options.length}};
   json["wave_numbers"] = results.wave_numbers;
-  json["fit_from"] =
-      number(stored.options.fit_from > 0 ? stored.options.fit_from : std::numeric_limits<double>::quiet_NaN());
+  json["fit_from"] = stored.options.fit_from ? Json(*stored.options.fit_from) : Json(nullptr);
   json["observables"] = observables(results, results.S, results.director);
   if (results.groups.size() > 1) {
     for (const ed::GroupResults& group : results.groups)
@@ -253,8 +252,7 @@ int analyze(const AnalyzeArguments& arguments) {
   const GsdReader reader(file);
   Stored stored = read_trajectory(reader, arguments);
   const RunChoices run = choices_of_run(file.parent_path());
-  const std::optional<double> fit_from = arguments.fit_from ? arguments.fit_from : run.fit_from;
-  stored.options.fit_from = fit_from.value_or(0);
+  stored.options.fit_from = arguments.fit_from ? arguments.fit_from : run.fit_from;
   stored.options.wave_numbers = run.wave_numbers;
   ed::StoredResults results;
   try {
@@ -276,7 +274,8 @@ int analyze(const AnalyzeArguments& arguments) {
                                     {"q_peak", results.q_peak}}) {
     fmt::print("  {:<12} {}\n", name, shown(value));
   }
-  if (!fit_from) fmt::print("no fits of decays: --fit-from T says from which lag, where ballistic motion has ended\n");
+  if (!stored.options.fit_from)
+    fmt::print("no fits of decays: --fit-from T says from which lag, where ballistic motion has ended\n");
   fmt::print("\nfiles: {0}/analysis.json, {0}/*.csv\n", out.string());
   return 0;
 }

@@ -8,6 +8,7 @@
 #include "text_file.h"
 #include "toml_document.h"
 
+#include <ed/observables.h>
 #include <ed/polydispersity.h>
 
 #include <fmt/format.h>
@@ -26,7 +27,6 @@ constexpr std::size_t kLongestConfig = 1 << 20;    ///< bytes
 constexpr std::int64_t kMostEvents = 100'000'000;  ///< they are kept in memory: 16 bytes each
 constexpr std::int64_t kMostFrames = 100'000;      ///< there is room for all of them in the files' heads
 constexpr double kLongestTime = 1e9;
-constexpr std::size_t kMostWaveNumbers = 8;  ///< as ed::ObservablesOptions has them
 constexpr double kLargestWaveNumber = 1e6;
 constexpr double kLeastPacking = 1e-9;
 
@@ -209,9 +209,9 @@ void read_wave_numbers(const TomlDocument& document, Config& config) {
   if (entry == nullptr) return;
   const auto usable = [](const Value& v) { return is_number(v) && v.real > 0 && v.real <= kLargestWaveNumber; };
   const std::vector<Value>& items = entry->value.items;
-  if (entry->value.kind != Value::Kind::array || items.size() > kMostWaveNumbers ||
+  if (entry->value.kind != Value::Kind::array || items.size() > ed::kMostWaveNumbers ||
       !std::all_of(items.begin(), items.end(), usable)) {
-    throw bad(*entry, fmt::format("a list of at most {} numbers above 0, at most {:g} (1/l)", kMostWaveNumbers,
+    throw bad(*entry, fmt::format("a list of at most {} numbers above 0, at most {:g} (1/l)", ed::kMostWaveNumbers,
                                   kLargestWaveNumber));
   }
   for (const Value& item : items) config.wave_numbers.push_back(item.real);

@@ -1,14 +1,13 @@
 #include "csv_table.h"
 
 #include "errors.h"
+#include "number_text.h"
 #include "suggest.h"
 #include "text_file.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <utility>
 
 namespace hardbody {
@@ -91,9 +90,7 @@ std::size_t CsvTable::column(std::string_view wanted) const {
 std::optional<double> CsvTable::number(std::size_t row, std::size_t column) const {
   const std::string& field = rows[row][column];
   if (field.empty()) return std::nullopt;
-  double value = 0;
-  const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
-  if (error == std::errc() && end == field.data() + field.size() && std::isfinite(value)) return value;
+  if (const std::optional<double> value = finite_number(field)) return value;
   throw InputError(fmt::format("{}: {} of row {} is {}; accepted: numbers, and nothing", name, header[column], row + 1,
                                one_line(field, 40)));
 }

@@ -1,6 +1,7 @@
 #include "lammps_dump.h"
 
 #include "errors.h"
+#include "number_text.h"
 #include "text_file.h"
 
 #include <Eigen/Geometry>
@@ -8,14 +9,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <initializer_list>
 #include <iterator>
 #include <map>
 #include <optional>
 #include <stdexcept>
-#include <system_error>
 #include <variant>
 
 namespace hardbody {
@@ -108,13 +107,6 @@ std::vector<std::string_view> words_of(std::string_view line) {
   }
 }
 
-std::optional<double> number_of(std::string_view word) {
-  double value = 0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value)) return std::nullopt;
-  return value;
-}
-
 /// One frame of a dump, read line by line.
 class DumpFrame {
  public:
@@ -131,7 +123,7 @@ class DumpFrame {
     return *found;
   }
   double number(std::string_view word, const char* what) const {
-    const std::optional<double> value = number_of(word);
+    const std::optional<double> value = finite_number(word);
     if (!value) throw bad(fmt::format("{} is \"{}\"", what, word), "a finite number");
     return *value;
   }
@@ -313,7 +305,7 @@ LammpsReader::LammpsReader(std::string text, std::string name) : name_(std::move
   std::optional<double> count;
   for (int k = 0; k < 4; ++k) {
     const std::optional<std::string_view> line = lines.next();
-    if (line && k == 3) count = number_of(*line);
+    if (line && k == 3) count = finite_number(*line);
   }
   const std::string_view rest = lines.rest();
   if (!count || static_cast<double>(std::count(rest.begin(), rest.end(), '\n')) < *count + 5) frames_.pop_back();

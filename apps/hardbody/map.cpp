@@ -4,14 +4,13 @@
 #include "errors.h"
 #include "map_levels.h"
 #include "map_svg.h"
+#include "number_text.h"
 #include "run_directory.h"
 #include "text_file.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <filesystem>
 #include <iterator>
 #include <string>
@@ -30,9 +29,7 @@ fs::path table_path(const MapArguments& arguments) {
 }
 
 double parse_number(std::string_view text, std::string_view option) {
-  double x = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), x);
-  if (error == std::errc() && end == text.data() + text.size() && std::isfinite(x)) return x;
+  if (const std::optional<double> x = finite_number(text)) return *x;
   throw InputError(
       fmt::format("{}: {} is not a number; accepted: numbers with commas between", option, one_line(text, 40)));
 }

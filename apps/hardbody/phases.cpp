@@ -132,7 +132,7 @@ Production planned_production(const Config& config, const Equilibration& equilib
   plan.next_look = kLags * plan.longest_lag;
   const double q = equilibration.relaxation.q;
   plan.wave_numbers = config.wave_numbers;
-  if (plan.wave_numbers.empty()) plan.wave_numbers = {q, q / 4, q / 2, 2 * q};  // the first peak of S(q), and about it
+  if (plan.wave_numbers.empty()) plan.wave_numbers = ed::wave_numbers_about(q);
   return plan;
 }
 

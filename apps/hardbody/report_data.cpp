@@ -1,5 +1,6 @@
 #include "report_page.h"
 
+#include "number_text.h"
 #include "run_directory.h"
 #include "version.h"
 
@@ -10,6 +11,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <optional>
 #include <utility>
 
 namespace hardbody {
@@ -208,9 +210,8 @@ std::string script_text(const Json& json) {
 /// A field of the table: a number if it is one.
 Json field_json(const std::string& field) {
   if (field.empty()) return nullptr;
-  char* end = nullptr;
-  const double value = std::strtod(field.c_str(), &end);
-  return end == field.c_str() + field.size() && std::isfinite(value) ? Json(value) : Json(field);
+  const std::optional<double> value = finite_number(field);
+  return value ? Json(*value) : Json(field);
 }
 
 Json point_json(const SweepPointReport& point, bool embedded) {

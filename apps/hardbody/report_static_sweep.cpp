@@ -1,4 +1,5 @@
 #include "map_levels.h"
+#include "number_text.h"
 #include "report_page.h"
 #include "report_svg.h"
 #include "table.h"
@@ -8,7 +9,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
 #include <string_view>
 
@@ -24,11 +24,7 @@ constexpr std::size_t kLeastOfMap = 3;
 std::vector<double> numbers_of(const SweepReport& sweep, std::size_t key) {
   std::vector<double> numbers;
   for (const SweepPointReport& point : sweep.points) {
-    const std::string& text = point.keys[key];
-    char* end = nullptr;
-    const double x = std::strtod(text.c_str(), &end);
-    const bool whole = !text.empty() && end == text.c_str() + text.size();
-    numbers.push_back(whole ? x : std::numeric_limits<double>::quiet_NaN());
+    numbers.push_back(finite_number(point.keys[key]).value_or(std::numeric_limits<double>::quiet_NaN()));
   }
   return numbers;
 }

@@ -3,15 +3,16 @@
 #include "csv_table.h"
 #include "errors.h"
 #include "json_member.h"
+#include "number_text.h"
 #include "run_directory.h"
 #include "text_file.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <limits>
 #include <map>
+#include <optional>
 #include <set>
 #include <string_view>
 #include <utility>
@@ -46,10 +47,7 @@ std::string field_of(const CsvTable& table, const Row& row, std::string_view col
 }
 
 double number_of(const std::string& field) {
-  char* end = nullptr;
-  const double value = std::strtod(field.c_str(), &end);
-  const bool whole = !field.empty() && end == field.c_str() + field.size();
-  return whole ? value : std::numeric_limits<double>::quiet_NaN();
+  return finite_number(field).value_or(std::numeric_limits<double>::quiet_NaN());
 }
 
 /// Columns of swept keys: those that come first; the seed only if it is not the same everywhere.
@@ -75,8 +73,7 @@ std::vector<std::size_t> observable_columns(const CsvTable& table) {
 
 /// A value of a key, the same text for the table's field and for state.json's member.
 std::string comparable(std::string text) {
-  const double value = number_of(text);
-  if (value == value) return fmt::format("{:.15g}", value);
+  if (const std::optional<double> value = finite_number(text)) return fmt::format("{:.15g}", *value);
   std::erase(text, ' ');
   return text;
 }

@@ -3,6 +3,7 @@
 /// What a time correlation is made of: two frames of a run, compared body by body.
 
 #include <ed/internal/archive_types.h>
+#include <ed/observables.h>
 #include <ed/simulation.h>
 
 #include <Eigen/Core>
@@ -33,9 +34,6 @@ template <class Archive, Is<Frame> T>
 void fields(Archive& archive, T& frame) {
   archive(frame.snapshot, frame.rotation);
 }
-
-/// Wave numbers that F_self is measured at, at most.
-constexpr std::size_t kMostWaveNumbers = 8;
 
 /// Sums, over the origins of a block, of what is measured at one lag: averages over the bodies of a range.
 struct LagSums {

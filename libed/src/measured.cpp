@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <string>
 #include <utility>
 
 namespace ed::internal {
@@ -39,7 +40,8 @@ void check(const ObservablesOptions& options) {
   const auto usable = [](double q) { return q > 0 && std::isfinite(q); };
   const bool all = std::all_of(options.wave_numbers.begin(), options.wave_numbers.end(), usable);
   if (all && options.wave_numbers.size() <= kMostWaveNumbers) return;
-  throw std::invalid_argument("Observables: wave_numbers; accepted: up to 8 positive finite numbers");
+  throw std::invalid_argument("Observables: wave_numbers; accepted: up to " + std::to_string(kMostWaveNumbers) +
+                              " positive finite numbers");
 }
 
 }  // namespace

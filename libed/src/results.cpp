@@ -39,13 +39,17 @@ class Evaluation {
     for (const Block& block : measured.blocks) {
       if (2 * block.origins > measured.origins_per_block && block.end.time > block.begin.time) full_.push_back(&block);
     }
-    const double rate = 2 * totals.collisions / (measured.options.number * totals.time);
-    fit_from_ = fit_from.value_or(kBallisticCollisions / rate);
+    fit_from_ = fit_from.value_or(kBallisticCollisions / collision_rate({}, totals));
   }
 
   Results results() const;
 
  private:
+  /// Collisions of a body and unit of time.
+  double collision_rate(const Totals& begin, const Totals& end) const {
+    return 2 * (end.collisions - begin.collisions) / (measured_.options.number * (end.time - begin.time));
+  }
+
   BlockRow block_row(const Block& block) const;
   Matrix3d pressure(const Totals& begin, const Totals& end, double kT, const Matrix3d& kinetic) const;
   LagSums sums_at(std::size_t lag, std::size_t group, const Block* one) const;
@@ -150,7 +154,7 @@ BlockRow Evaluation::block_row(const Block& block) const {
   BlockRow row{};
   row.begin = block.begin.time;
   row.end = block.end.time;
-  row.collision_rate = 2 * (block.end.collisions - block.begin.collisions) / (number * time);
+  row.collision_rate = collision_rate(block.begin, block.end);
   row.translational_kT = block.all.translational_kT / block.frames;
   row.rotational_kT = block.all.rotational_kT / block.frames;
   row.S = block.all.S / block.frames;
@@ -180,7 +184,7 @@ void Evaluation::add_blocks(Results& results) const {
   results.director = director([](const Block& b) -> const FrameSums& { return b.all; });
   if (!(totals_.collisions > 0 && totals_.time > 0)) return;
   const int number = measured_.options.number;
-  results.collision_rate = {2 * totals_.collisions / (number * totals_.time), mean_of_blocks(rate).error};
+  results.collision_rate = {collision_rate({}, totals_), mean_of_blocks(rate).error};
   if (results.blocks.empty()) return;
   results.Z = {1 + totals_.virial / (3 * number * results.translational_kT.value * totals_.time),
                mean_of_blocks(Z).error};

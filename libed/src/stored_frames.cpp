@@ -32,6 +32,8 @@ void check(const std::vector<StoredFrame>& frames, const StoredFramesOptions& op
   require(options.length > 0 && options.length > 1e-6 * options.box, "length; accepted: a positive number");
   const std::size_t n = frames[0].position.size();
   require(options.axis.size() == n, "axis; accepted: one of each body");
+  require(!options.fit_from || (*options.fit_from >= 0 && std::isfinite(*options.fit_from)),
+          "fit_from; accepted: a finite lag that is not negative");
   for (std::size_t k = 0; k < frames.size(); ++k) {
     const StoredFrame& f = frames[k];
     const bool velocities = f.velocity.size() == frames[0].velocity.size();
@@ -197,12 +199,11 @@ StoredResults Analysis::results() {
   totals.time = step_ * static_cast<double>(count_ - 1);
   if (measured_.options.wave_numbers.empty()) {
     const double q = internal::results_of(measured_, totals).q_peak.value;
-    if (std::isfinite(q)) measured_.options.wave_numbers = {q, q / 4, q / 2, 2 * q};
+    if (std::isfinite(q)) measured_.options.wave_numbers = wave_numbers_about(q);
   }
   add_lags();
   StoredResults results;
-  const double fit_from = options_.fit_from > 0 ? options_.fit_from : kNothing;
-  static_cast<Results&>(results) = internal::results_of(measured_, totals, fit_from);
+  static_cast<Results&>(results) = internal::results_of(measured_, totals, options_.fit_from.value_or(kNothing));
   const bool velocities = !frames_.empty() && options_.axis.size() == frames_[0].snapshot.velocity.size() &&
                           !frames_[0].snapshot.velocity.empty() && !frames_[0].snapshot.velocity[0].isZero(0);
   results.translational_kT = results.rotational_kT = {kNothing, kNothing};

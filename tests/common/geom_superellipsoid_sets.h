@@ -11,10 +11,15 @@
 
 #include <array>
 #include <cmath>
+#include <cstddef>
 
 namespace geom_test {
 
 inline constexpr std::array kExponents{0.2, 0.3, 0.5, 0.7, 1.0, 1.3, 1.6};
+
+inline double any_exponent(Random& random) {
+  return kExponents[static_cast<std::size_t>(random.uniform() * kExponents.size())];
+}
 
 enum class PairSet { random_normal, random_point, aligned, edges, faces };
 

@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <limits>
@@ -145,6 +146,15 @@ struct Results : Correlations {
   std::vector<GroupResults> groups;  ///< of one group too
 };
 
+/// Wave numbers that F_self is measured at, at most.
+inline constexpr std::size_t kMostWaveNumbers = 8;
+
+/// Where F_self is measured unless other wave numbers are asked for: at the first peak of S(q), whose decay is fitted,
+/// and at a quarter, half and twice of it.
+inline std::vector<double> wave_numbers_about(double first_peak) {
+  return {first_peak, first_peak / 4, first_peak / 2, 2 * first_peak};
+}
+
 /// What `Observables` has to know beforehand.
 struct ObservablesOptions {
   int number;              ///< of bodies
@@ -152,7 +162,7 @@ struct ObservablesOptions {
   double longest_lag = 0;  ///< 0: a sixteenth of the duration, at most 40
   /// Their numbers add up to `number`; empty: one group of bodies of revolution.
   std::vector<BodyGroup> groups{};
-  /// Wave numbers q at which F_self is measured, at most 8; the decay of the first one is fitted.
+  /// Wave numbers q at which F_self is measured, at most kMostWaveNumbers; the decay of the first one is fitted.
   std::vector<double> wave_numbers{};
 };
 

@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 namespace ed {
@@ -29,12 +30,12 @@ struct StoredFramesOptions {
   double length = 1;
   std::vector<BodyGroup> groups{};  ///< their numbers add up to that of the bodies
   std::vector<int> axis{};          ///< of each body: which body axis (0, 1, 2) u is
-  /// Of F_self, at most 8; empty: the first peak of S(q), a quarter, half and twice of it.
+  /// Of F_self, at most kMostWaveNumbers; empty: wave_numbers_about the first peak of S(q).
   std::vector<double> wave_numbers{};
   double longest_lag = 0;  ///< 0: a quarter of the trajectory
-  /// Decays are fitted from this lag, where ballistic motion has ended: a run takes five mean collision intervals. 0:
-  /// no fits.
-  double fit_from = 0;
+  /// Decays are fitted from this lag, where ballistic motion has ended: a run takes five mean collision intervals.
+  /// Nothing: no fits.
+  std::optional<double> fit_from{};
 };
 
 /// What was found.
@@ -48,7 +49,7 @@ struct StoredResults : Results {
 /// collisions, pressure, temperatures, rotational displacements, and with velocities missing their correlations.
 ///
 /// Memory: some 200 bytes a body and frame beside the frames. Throws std::invalid_argument for no frames, numbers of
-/// bodies that differ, a box that is not positive, times that do not rise.
+/// bodies that differ, a box that is not positive, times that do not rise, a negative lag to fit from.
 ED_EXPORT StoredResults analyze_frames(const std::vector<StoredFrame>& frames, const StoredFramesOptions& options);
 
 }  // namespace ed

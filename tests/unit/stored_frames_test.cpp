@@ -1,0 +1,221 @@
+// Observables of stored frames where they are known exactly: free flights, walks of independent steps, perfect order.
+
+#include <common/message_of.h>
+
+#include <ed/ed.h>
+#include <ed/random.h>
+#include <ed/stored_frames.h>
+
+#include <Eigen/Geometry>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+namespace {
+
+using ed::StoredFrame;
+using Eigen::Vector3d;
+
+constexpr int kBodies = 60;
+constexpr double kBox = 10;
+constexpr double kStep = 0.05;
+/// Of sums of a thousand terms of order 1, of positions of order 10.
+constexpr double kRounding = 1e-11;
+
+ed::StoredFramesOptions options_of(int bodies) {
+  ed::StoredFramesOptions options;
+  options.box = kBox;
+  options.groups = {{bodies, 2}};
+  options.axis.assign(static_cast<std::size_t>(bodies), 2);
+  return options;
+}
+
+/// Each body with a velocity of its own and a turn about an axis across u.
+struct Flight {
+  explicit Flight(std::size_t frames) {
+    ed::Random random(3);
+    StoredFrame first;
+    std::vector<Vector3d> turn;
+    for (int i = 0; i < kBodies; ++i) {
+      first.position.push_back(kBox * Vector3d(random.uniform(), random.uniform(), random.uniform()));
+      first.rotation.push_back(random.rotation());
+      first.velocity.push_back(random.normal3());
+      turn.emplace_back(first.rotation.back().col(0));
+      rate.push_back(random.uniform());
+    }
+    for (std::size_t k = 0; k < frames; ++k) {
+      StoredFrame frame = first;
+      frame.time = 7 + kStep * static_cast<double>(k);
+      for (std::size_t i = 0; i < kBodies; ++i) {
+        const double t = kStep * static_cast<double>(k);
+        frame.position[i] += first.velocity[i] * t;
+        frame.rotation[i] = Eigen::AngleAxisd(rate[i] * t, turn[i]) * first.rotation[i];
+      }
+      stored.push_back(frame);
+    }
+  }
+
+  /// The mean of f(body).
+  template <class F>
+  double mean(const F& f) const {
+    double sum = 0;
+    for (std::size_t i = 0; i < kBodies; ++i) sum += f(i);
+    return sum / kBodies;
+  }
+
+  double speed(std::size_t i) const { return stored[0].velocity[i].norm(); }
+
+  std::vector<StoredFrame> stored;
+  std::vector<double> rate;
+};
+
+TEST(StoredFrames, FreeFlightsAreExact) {
+  const Flight flight(81);
+  ed::StoredFramesOptions options = options_of(kBodies);
+  options.wave_numbers = {1.5, 4};
+  const ed::StoredResults results = ed::analyze_frames(flight.stored, options);
+  EXPECT_EQ(results.frames, 81U);
+  EXPECT_EQ(results.wave_numbers, options.wave_numbers);
+  ASSERT_GE(results.lags.size(), 10U);
+  EXPECT_NEAR(results.lags.back().lag, 20 * kStep, kRounding);  // a quarter of the trajectory
+  for (const ed::LagRow& row : results.lags) {
+    const double t = row.lag;
+    EXPECT_NEAR(row.msd.value, flight.mean([&](auto i) { return std::pow(flight.speed(i) * t, 2); }), kRounding);
+    EXPECT_NEAR(row.c1.value, flight.mean([&](auto i) { return std::cos(flight.rate[i] * t); }), kRounding);
+    EXPECT_NEAR(row.c2.value,
+                flight.mean([&](auto i) { return 1.5 * std::pow(std::cos(flight.rate[i] * t), 2) - 0.5; }), kRounding);
+    EXPECT_NEAR(row.vacf.value, flight.mean([&](auto i) { return std::pow(flight.speed(i), 2); }), kRounding);
+    for (std::size_t k = 0; k < 2; ++k) {
+      const double q = options.wave_numbers[k];
+      const double wanted = flight.mean([&](auto i) {
+        const double x = q * flight.speed(i) * t;
+        return std::sin(x) / x;
+      });
+      EXPECT_NEAR(row.f_self.at(k).value, wanted, kRounding) << "q = " << q << ", t = " << t;
+    }
+  }
+  EXPECT_TRUE(std::isnan(results.D_trans.value)) << "ballistic";
+  EXPECT_TRUE(std::isnan(results.Z.value)) << "frames do not tell";
+}
+
+TEST(StoredFrames, WithoutVelocitiesTheirCorrelationsHaveNoValue) {
+  Flight flight(9);
+  for (StoredFrame& frame : flight.stored) frame.velocity.clear();
+  const ed::StoredResults results = ed::analyze_frames(flight.stored, options_of(kBodies));
+  for (const ed::LagRow& row : results.lags) {
+    EXPECT_TRUE(std::isnan(row.vacf.value));
+    EXPECT_TRUE(std::isfinite(row.msd.value));
+  }
+}
+
+TEST(StoredFrames, OnlyFramesThatAreEquallyFarApartAreUsed) {
+  Flight flight(12);
+  for (std::size_t k = 9; k < 12; ++k) flight.stored[k].time += 0.01;
+  EXPECT_EQ(ed::analyze_frames(flight.stored, options_of(kBodies)).frames, 9U);
+}
+
+/// Bodies whose steps and turns from frame to frame are independent.
+std::vector<StoredFrame> walk(double D_trans, double D_rot, int bodies, int frames) {
+  ed::Random random(8);
+  StoredFrame frame;
+  for (int i = 0; i < bodies; ++i) {
+    frame.position.push_back(kBox * Vector3d(random.uniform(), random.uniform(), random.uniform()));
+    frame.rotation.push_back(random.rotation());
+  }
+  std::vector<StoredFrame> stored;
+  for (int k = 0; k < frames; ++k) {
+    frame.time = kStep * k;
+    stored.push_back(frame);
+    for (std::size_t i = 0; i < frame.position.size(); ++i) {
+      frame.position[i] += std::sqrt(2 * D_trans * kStep) * random.normal3();
+      const Vector3d turn = std::sqrt(2 * D_rot * kStep) * random.normal3();
+      frame.rotation[i] = Eigen::AngleAxisd(turn.norm(), turn.normalized()) * frame.rotation[i];
+    }
+  }
+  return stored;
+}
+
+/// The mean of P2(u.Ru) over one step R. Of a turn by an angle a about a direction that knows nothing of u it is
+/// (1 + 2 cos a + 2 cos 2a) / 5, the character of R over its dimension; a = sigma |x| with three normal numbers x, and
+/// the mean of cos(k sigma |x|) is (1 - k^2 sigma^2) exp(-k^2 sigma^2 / 2).
+double mean_p2_of_a_step(double D_rot) {
+  const double variance = 2 * D_rot * kStep;
+  const auto mean_cos = [&](double k) { return (1 - k * k * variance) * std::exp(-0.5 * k * k * variance); };
+  return (1 + 2 * mean_cos(1) + 2 * mean_cos(2)) / 5;
+}
+
+TEST(StoredFrames, WalksOfIndependentStepsHaveTheirCoefficients) {
+  constexpr double kTrans = 0.3;
+  constexpr double kRot = 0.4;
+  constexpr int kWalkers = 200;
+  const std::vector<StoredFrame> stored = walk(kTrans, kRot, kWalkers, 1200);
+  ed::StoredFramesOptions options = options_of(kWalkers);
+  options.longest_lag = 2.5;
+  options.fit_from = 0;
+  const ed::StoredResults results = ed::analyze_frames(stored, options);
+  EXPECT_EQ(results.frames, stored.size());
+  // Four standard errors, which are themselves known to a fifth, and few per cent at most.
+  EXPECT_NEAR(results.D_trans.value, kTrans, 4 * results.D_trans.error);
+  EXPECT_LT(results.D_trans.error, 0.03 * kTrans);
+  const double tau = -kStep / std::log(mean_p2_of_a_step(kRot));
+  EXPECT_NEAR(results.tau_C2.value, tau, 4 * results.tau_C2.error);
+  EXPECT_LT(results.tau_C2.error, 0.04 * tau);
+  EXPECT_NEAR(results.beta_C2.value, 1, 4 * results.beta_C2.error);
+  EXPECT_NEAR(results.t_C2_1overe.value, tau, 4 * results.t_C2_1overe.error);
+
+  options.fit_from.reset();
+  const ed::StoredResults without = ed::analyze_frames(stored, options);
+  EXPECT_TRUE(std::isnan(without.tau_C2.value));
+  EXPECT_TRUE(std::isnan(without.tau_F.value));
+  EXPECT_EQ(without.t_C2_1overe.value, results.t_C2_1overe.value);
+}
+
+TEST(StoredFrames, PerfectOrderIsFound) {
+  StoredFrame frame;
+  for (int i = 0; i < 8; ++i) {
+    frame.position.emplace_back(i, 0.3 * i, 1);
+    frame.rotation.push_back(Eigen::Matrix3d::Identity());
+  }
+  const ed::StoredResults results = ed::analyze_frames({frame}, options_of(8));
+  EXPECT_EQ(results.frames, 1U);
+  EXPECT_NEAR(results.S.value, 1, 1e-14);
+}
+
+TEST(StoredFrames, BadInputIsRefused) {
+  const std::vector<StoredFrame> good = Flight(5).stored;
+  const auto message = [](const std::vector<StoredFrame>& frames, const ed::StoredFramesOptions& options) {
+    return test_common::message_of([&] { return ed::analyze_frames(frames, options); });
+  };
+  const auto refused = [&](const ed::StoredFramesOptions& options, const char* why) {
+    EXPECT_THAT(message(good, options), testing::StartsWith(why));
+  };
+  EXPECT_THAT(message({}, options_of(kBodies)), testing::StartsWith("analyze_frames: no frames; accepted: "));
+  refused(options_of(kBodies - 1), "analyze_frames: axis; accepted: ");
+  ed::StoredFramesOptions options = options_of(kBodies);
+  options.box = -1;
+  refused(options, "analyze_frames: box; accepted: ");
+  options = options_of(kBodies);
+  options.length = std::numeric_limits<double>::quiet_NaN();
+  refused(options, "analyze_frames: length; accepted: ");
+  for (const double lag : {-1.0, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
+    options = options_of(kBodies);
+    options.fit_from = lag;
+    refused(options, "analyze_frames: fit_from; accepted: ");
+  }
+  options = options_of(kBodies);
+  options.wave_numbers.assign(ed::kMostWaveNumbers + 1, 1.0);
+  refused(options, "Observables: wave_numbers; accepted: up to 8 ");
+  std::vector<StoredFrame> frames = good;
+  frames[3].time = frames[2].time;
+  EXPECT_THAT(message(frames, options_of(kBodies)), testing::StartsWith("analyze_frames: time of frame 3; accepted: "));
+  frames = good;
+  frames[4].rotation.pop_back();
+  EXPECT_THAT(message(frames, options_of(kBodies)), testing::StartsWith("analyze_frames: frame 4; accepted: "));
+}
+
+}  // namespace
