@@ -1,7 +1,8 @@
 # Compile options that every target of this project shares.
 #
-# hardbody_target(<target> [BASELINE]) applies them; BASELINE leaves HARDBODY_ARCH out. None of them is exported: a consumer compiles with its own flags, which is
-# safe because public types hold only Vector3d and Matrix3d, whose layout does not depend on -march.
+# hardbody_target(<target> [BASELINE]) applies them; BASELINE leaves HARDBODY_ARCH out. None of them is exported: a
+# consumer compiles with its own flags, which is safe because no object that inline functions share depends on -march
+# (docs/decisions/017).
 
 if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES AND PROJECT_IS_TOP_LEVEL)
   set(CMAKE_BUILD_TYPE Release CACHE STRING "Build type" FORCE)

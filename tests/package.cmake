@@ -32,8 +32,10 @@ function(hardbody_package_tests linkage)
       -DHIDDEN=CGAL)
     # ... which proves that they are hidden above.
     hardbody_package_script(package_${linkage}_hidden run.cmake -DPREFIX=${prefix} -DCOMPONENTS=geom,geom_seeds
-      ${hidden} -DREFUSED=ccd)
-    list(APPEND names geom_seeds hidden)
+      ${hidden} "-DREFUSED=geom_seeds needs ccd, which was not found")
+    hardbody_package_script(package_${linkage}_optional run.cmake -DPREFIX=${prefix} -DCOMPONENTS=geom
+      -DOPTIONAL=geom_seeds ${hidden})
+    list(APPEND names geom_seeds hidden optional)
     if(HARDBODY_WITH_CGAL)
       hardbody_package_script(package_${linkage}_geom_cgal run.cmake -DPREFIX=${prefix}
         -DCOMPONENTS=geom,geom_seeds,geom_cgal)

@@ -207,7 +207,7 @@ HWY_INLINE Step newton_step(const Shape& A, const Shape& B, const Real3& r, cons
 
 HWY_INLINE Real inverse_sqrt_1p(Real s) {
   const Real series = geom::internal::inverse_sqrt_series(s);
-  const Lanes near = abs(s) < geom::internal::kInverseSqrtSeries;
+  const Lanes near = abs(s) < geom::kInverseSqrtSeries;
   if (all(near)) return series;
   return select(near, series, 1 / sqrt(1 + s));
 }

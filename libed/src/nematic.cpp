@@ -17,6 +17,8 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
+/// Not aligned: the same for every -march (geom/internal/small_solve.h says why).
+using Quaternion = Eigen::Quaternion<double, Eigen::DontAlign>;
 
 /// u = 1 - |cos(theta)| is proposed with density ~ 1 / (1 + m u)^2 on [0, 1], of which this is the inverse of the
 /// distribution function.
@@ -119,9 +121,9 @@ class Turning {
 
   bool try_turn(int i, Random& random) {
     Body& body = system_.bodies[static_cast<std::size_t>(i)];
-    Eigen::Quaterniond& turn = turns_[static_cast<std::size_t>(i)];
+    Quaternion& turn = turns_[static_cast<std::size_t>(i)];
     const Vector3d small = step_ * random.normal3();
-    const Eigen::Quaterniond next = (Eigen::Quaterniond(1, small.x(), small.y(), small.z()) * turn).normalized();
+    const Quaternion next = (Quaternion(1, small.x(), small.y(), small.z()) * turn).normalized();
     const Matrix3d rotation = next.toRotationMatrix();
     const double change = (p2(rotation, axis_of(body)) - p2(body.rotation, axis_of(body))) / system_.size();
     if (order_ + change < least_) {
@@ -159,7 +161,7 @@ class Turning {
   double step_ = 0.1;
   double reach_ = 0;
   CellGrid cells_;
-  std::vector<Eigen::Quaterniond> turns_;  ///< unit: products of rotation matrices would drift
+  std::vector<Quaternion> turns_;  ///< unit: products of rotation matrices would drift
   std::vector<NearBody> near_;
 };
 

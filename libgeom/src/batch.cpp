@@ -1,11 +1,15 @@
 #include "batch_kernel.h"
 
+#include <geom/any_shape.h>
 #include <geom/batch.h>
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
+#include <variant>
 
 namespace geom {
 namespace {
@@ -222,6 +226,72 @@ class Block {
   throw std::invalid_argument(message.str());
 }
 
+InstructionSet chosen(InstructionSet wanted) {
+  const InstructionSet set = wanted == InstructionSet::best ? batch_instruction_set() : wanted;
+  if (find_kernels(set).general == nullptr) refuse_instruction_set(set);
+  return set;
+}
+
+void check_starts(const BatchOptions& options, std::size_t pairs) {
+  if (!options.starts.empty() && options.starts.size() != pairs) {
+    refuse_size("starts", options.starts.size(), "0", pairs);
+  }
+}
+
+std::optional<Ellipsoid> as_ellipsoid(const Shape& shape) {
+  if (const auto* ellipsoid = std::get_if<Ellipsoid>(&shape)) return *ellipsoid;
+  const auto& s = std::get<Superellipsoid>(shape);
+  if (s.e1() == 1 && s.e2() == 1) return Ellipsoid(s.semi_axes());
+  return std::nullopt;
+}
+
+/// Pairs of ellipsoids among other shapes, copied side by side for the kernels.
+class EllipsoidPairs {
+ public:
+  EllipsoidPairs(std::span<DistanceResult> results, InstructionSet set) : results_(results), set_(set) {}
+
+  void add(std::size_t pair, const Ellipsoid& a, const Pose& X_WA, const Ellipsoid& b, const Pose& X_WB,
+           const Eigen::Vector3d& start) {
+    pairs_[count_] = pair;
+    a_[count_] = a;
+    b_[count_] = b;
+    X_WA_[count_] = X_WA;
+    X_WB_[count_] = X_WB;
+    starts_[count_] = start;
+    if (++count_ == kMost) flush();
+  }
+
+  void flush() {
+    const auto first = [this](const auto& all) { return std::span(all).first(count_); };
+    redone_ += distance_batch(first(a_), first(X_WA_), first(b_), first(X_WB_), std::span(found_).first(count_),
+                              {.starts = first(starts_), .instruction_set = set_})
+                   .redone;
+    for (std::size_t k = 0; k < count_; ++k) results_[pairs_[k]] = found_[k];
+    count_ = 0;
+  }
+
+  std::size_t redone() const { return redone_; }
+
+ private:
+  static constexpr std::size_t kMost = 64;
+  template <std::size_t... k>
+  static std::array<Ellipsoid, kMost> balls(std::index_sequence<k...>) {
+    return {((void)k, Ellipsoid(Eigen::Vector3d::Ones()))...};
+  }
+
+  std::span<DistanceResult> results_;
+  InstructionSet set_;
+  std::size_t count_ = 0;
+  std::size_t redone_ = 0;
+  std::array<std::size_t, kMost> pairs_{};
+  std::array<Ellipsoid, kMost> a_ = balls(std::make_index_sequence<kMost>());
+  std::array<Ellipsoid, kMost> b_ = a_;
+  std::array<Pose, kMost> X_WA_;
+  std::array<Pose, kMost> X_WB_;
+  std::array<Eigen::Vector3d, kMost> starts_;
+  std::array<DistanceResult, kMost> found_;
+};
+
 }  // namespace
 
 const char* to_string(InstructionSet set) {
@@ -256,13 +326,9 @@ BatchSummary distance_batch(std::span<const Ellipsoid> a, std::span<const Pose> 
   const Query query{checked("a", a, pairs), checked("X_WA", X_WA, pairs),
                     checked("b", b, pairs), checked("X_WB", X_WB, pairs),
                     options.starts,         results};
-  if (!options.starts.empty() && options.starts.size() != pairs) {
-    refuse_size("starts", options.starts.size(), "0", pairs);
-  }
-  const InstructionSet set =
-      options.instruction_set == InstructionSet::best ? batch_instruction_set() : options.instruction_set;
+  check_starts(options, pairs);
+  const InstructionSet set = chosen(options.instruction_set);
   const BatchKernels kernels = find_kernels(set);
-  if (kernels.general == nullptr) refuse_instruction_set(set);
 
   Block<UniaxialInput> uniaxial(query, kernels.uniaxial);
   Block<GeneralInput> general(query, kernels.general);
@@ -276,6 +342,31 @@ BatchSummary distance_batch(std::span<const Ellipsoid> a, std::span<const Pose> 
   uniaxial.flush();
   general.flush();
   return {set, uniaxial.redone() + general.redone()};
+}
+
+BatchSummary distance_batch(std::span<const Shape> a, std::span<const Pose> X_WA, std::span<const Shape> b,
+                            std::span<const Pose> X_WB, std::span<DistanceResult> results,
+                            const BatchOptions& options) {
+  const std::size_t pairs = results.size();
+  const Input<Shape> in_a = checked("a", a, pairs), in_b = checked("b", b, pairs);
+  const Input<Pose> in_X_WA = checked("X_WA", X_WA, pairs), in_X_WB = checked("X_WB", X_WB, pairs);
+  check_starts(options, pairs);
+  const InstructionSet set = chosen(options.instruction_set);
+  EllipsoidPairs ellipsoids(results, set);
+  std::size_t redone = 0;
+  for (std::size_t k = 0; k < pairs; ++k) {
+    const Eigen::Vector3d start = options.starts.empty() ? Eigen::Vector3d::Zero().eval() : options.starts[k];
+    const std::optional<Ellipsoid> s = as_ellipsoid(in_a[k]);
+    const std::optional<Ellipsoid> t = s ? as_ellipsoid(in_b[k]) : std::nullopt;
+    if (t) {
+      ellipsoids.add(k, *s, in_X_WA[k], *t, in_X_WB[k], start);
+    } else {
+      results[k] = distance(in_a[k], in_X_WA[k], in_b[k], in_X_WB[k], {.start = start});
+      ++redone;
+    }
+  }
+  ellipsoids.flush();
+  return {set, redone + ellipsoids.redone()};
 }
 
 }  // namespace geom

@@ -134,7 +134,7 @@ HWY_INLINE Real inverse_norm(const Real3& m) {
   const Real middle = hn::NegMulAdd(constant(0.3125), s, constant(0.375));
   const Real high = hn::NegMulAdd(constant(0.24609375), s, constant(0.2734375));
   const Real series = hn::MulAdd(s2, hn::MulAdd(s2, high, middle), low);
-  const Lanes far = hn::Abs(s) >= constant(2e-3);
+  const Lanes far = hn::Abs(s) >= constant(kInverseSqrtSeries);
   if (any(far)) return hn::IfThenElse(far, one / hn::Sqrt(m2), series);
   return series;
 }
@@ -181,7 +181,7 @@ HWY_INLINE Real lift(Real g, Real rho, Real shift, Real t, Real D) {
 
 /// The first normal: `start` where it is good for something (as in solve_dual), else `cold`; any lengths.
 HWY_INLINE void start_from(StateRow* rows, int lane, const Real3& start, Real3 cold, Real rho, Real size) {
-  const Real least2 = constant(1e-290), most2 = constant(1e300);
+  const Real least2 = constant(kLeastStart2), most2 = constant(1e300);
   const Real start2 = dot(start, start);
   const Lanes warm = hn::And(start2 > least2, start2 < most2);
   if (any(warm)) cold = select(warm, start, cold);

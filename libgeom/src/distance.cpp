@@ -78,10 +78,7 @@ DistanceResult general_distance(const Ellipsoid& a, const Pose& X_WA, const Elli
                                 const Eigen::Vector3d& r, const PairScale& scale, const DistanceOptions& options) {
   const WorldEllipsoid w_a(a, X_WA);
   const WorldEllipsoid w_b(b, X_WB);
-  const auto cold = [&] {
-    const Eigen::Vector3d n = (w_a.Q + w_b.Q).inverse() * r;
-    return n.squaredNorm() > 0 ? n.normalized() : Eigen::Vector3d::UnitX();
-  };
+  const auto cold = [&] { return internal::unit_or_x((w_a.Q + w_b.Q).inverse() * r); };
   const auto shares = [&](const Eigen::Vector3d& point_a, const Eigen::Vector3d& point_b) {
     return internal::share_a_point(a, X_WA, b, X_WB, point_a, point_b);
   };
@@ -126,8 +123,7 @@ DistanceResult deep_distance(const Ellipsoid& a, const Pose& X_WA, const Ellipso
                              const Eigen::Vector3d& r, const PairScale& scale, const DistanceResult& declined) {
   const EllipsoidPair pair(WorldEllipsoid(a, X_WA), WorldEllipsoid(b, X_WB), r,
                            kLeastEigenvalue * scale.certified_depth);
-  const Eigen::Vector3d start = r.squaredNorm() > 0 ? r.normalized() : Eigen::Vector3d::UnitX();
-  return internal::search_sphere(pair, scale, start, X_WA.position(), declined.iterations);
+  return internal::search_sphere(pair, scale, internal::unit_or_x(r), X_WA.position(), declined.iterations);
 }
 
 }  // namespace

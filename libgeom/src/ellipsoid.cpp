@@ -1,9 +1,10 @@
+#include "shown.h"
+
 #include <geom/ellipsoid.h>
 #include <geom/tolerances.h>
 
 #include <cmath>
 #include <numbers>
-#include <sstream>
 #include <stdexcept>
 
 namespace geom {
@@ -26,17 +27,14 @@ Ellipsoid::Ellipsoid(const Eigen::Vector3d& semi_axes)
       symmetry_axis_(find_symmetry_axis(semi_axes)) {
   for (const double a : {semi_axes.x(), semi_axes.y(), semi_axes.z()}) {
     if (!(a >= kMinSemiAxis && a <= kMaxSemiAxis)) {
-      std::ostringstream message;
-      message << "Ellipsoid: semi-axis is " << a << "; accepted: " << kMinSemiAxis << " to " << kMaxSemiAxis;
-      throw std::invalid_argument(message.str());
+      throw std::invalid_argument("Ellipsoid: semi-axis is " + internal::shown(a) + "; accepted: " +
+                                  internal::shown(kMinSemiAxis) + " to " + internal::shown(kMaxSemiAxis));
     }
   }
   const double ratio = bounding_radius() / inscribed_radius();
   if (!(ratio <= kMaxAspectRatio)) {
-    std::ostringstream message;
-    message << "Ellipsoid: ratio of the largest to the smallest semi-axis is " << ratio << "; accepted: at most "
-            << kMaxAspectRatio;
-    throw std::invalid_argument(message.str());
+    throw std::invalid_argument("Ellipsoid: ratio of the largest to the smallest semi-axis is " +
+                                internal::shown(ratio) + "; accepted: at most " + internal::shown(kMaxAspectRatio));
   }
 }
 

@@ -1,5 +1,7 @@
 #include <geom/internal/norm_body_pair.h>
 
+#include <geom/internal/dual_newton.h>
+#include <geom/internal/small_solve.h>
 #include <geom/tolerances.h>
 
 #include <Eigen/Geometry>
@@ -50,13 +52,6 @@ constexpr int kPatience = 9;
 /// Steps of the dual method on bodies that overlap, for which it is the only fast one; and on each softened pair.
 constexpr int kMorePatience = 25;
 
-/// An orthonormal basis across n.
-void tangent_basis(const Vector3d& n, Vector3d& e, Vector3d& f) {
-  // e is across x, or across z where n is near x.
-  e = (std::abs(n.x()) < 0.6 ? Vector3d(0, n.z(), -n.y()) : Vector3d(n.z(), 0, -n.x())).normalized();
-  f = n.cross(e);
-}
-
 }  // namespace
 
 DualSample NormBodyPair::sample(const Vector3d& n) const {
@@ -105,6 +100,20 @@ Vector3d NormBodyPair::TangentMatrix::solve(const Vector3d& y) const {
 
 Vector3d NormBodyPair::tangent_solve(const DualSample& s, const Vector3d& y) const {
   return tangent_matrix(s).solve(y);
+}
+
+/// By the eigenvalues of S + g I.
+Vector3d NormBodyPair::upward(const DualSample& s, double rounding) const {
+  const TangentBasis basis(s.n);
+  TangentForm form{s.g, 0, s.g};
+  for (const LaneVector* t : {&s.support.t1, &s.support.t2}) {
+    const Lanes e = t->dot(basis.e);
+    const Lanes f = t->dot(basis.f);
+    form.ee += sum(e * e);
+    form.ef += sum(e * f);
+    form.ff += sum(f * f);
+  }
+  return form.direction_below(-rounding, basis);
 }
 
 NormBodyPair::Step NormBodyPair::newton_step(const DualSample& s) const {
@@ -211,23 +220,21 @@ LaneVector NormBodyPair::primal_step(const Points& points, double mu) const {
   bodies_.derivatives(points.on, gradient, s, t);
   const Lanes gap_along = LaneVector::of(points.gap, -points.gap).dot(gradient) / gradient.dot(gradient);
   const Lanes weight = select(below(gap_along, both(0)), both(0), gap_along);
-  Vector3d e_a, f_a, e_b, f_b;
-  tangent_basis(gradient.a().normalized(), e_a, f_a);
-  tangent_basis(gradient.b().normalized(), e_b, f_b);
+  const auto [e_a, f_a] = TangentBasis(gradient.a().normalized());
+  const auto [e_b, f_b] = TangentBasis(gradient.b().normalized());
   const LaneVector e = LaneVector::of(e_a, e_b);
   const LaneVector f = LaneVector::of(f_a, f_b);
   const Lanes s_e = s.dot(e), s_f = s.dot(f), t_e = t.dot(e), t_f = t.dot(f);
   const Lanes m_ee = 1 + mu + weight * (s_e * s_e + t_e * t_e);
   const Lanes m_ef = weight * (s_e * s_f + t_e * t_f);
   const Lanes m_ff = 1 + mu + weight * (s_f * s_f + t_f * t_f);
-  Eigen::Matrix4d M;
+  SmallMatrix<4> M;
   M.topLeftCorner<2, 2>() << m_ee[0], m_ef[0], m_ef[0], m_ff[0];
   M.bottomRightCorner<2, 2>() << m_ee[1], m_ef[1], m_ef[1], m_ff[1];
   M.topRightCorner<2, 2>() << -e_a.dot(e_b), -e_a.dot(f_b), -f_a.dot(e_b), -f_a.dot(f_b);
   M.bottomLeftCorner<2, 2>() = M.topRightCorner<2, 2>().transpose();
   const Vector3d& D = points.gap;
-  const Eigen::Vector4d step =
-      M.partialPivLu().solve(Eigen::Vector4d(e_a.dot(D), f_a.dot(D), -e_b.dot(D), -f_b.dot(D)));
+  const SmallVector<4> step = solve_small<4>(M, SmallVector<4>(e_a.dot(D), f_a.dot(D), -e_b.dot(D), -f_b.dot(D)));
   return Lanes{step[0], step[2]} * e + Lanes{step[1], step[3]} * f;
 }
 
@@ -274,8 +281,7 @@ Vector3d NormBodyPair::continued(Vector3d n, int& iterations) const {
 
 Vector3d NormBodyPair::cold_normal() const {
   const Eigen::Matrix3d Q = bodies_.quadrics();
-  const Vector3d n = Q.inverse() * r_;
-  return n.squaredNorm() > 0 ? n.normalized() : Vector3d::UnitX();
+  return unit_or_x(Q.inverse() * r_);
 }
 
 /// Whether an answer of one of the methods ends the query.
@@ -300,9 +306,15 @@ bool NormBodyPair::shares_a_point(const DualSample& s) const {
 
 /// Branch and bound from the best normal so far, which it raises to a local maximum first.
 NormBodyPair::Answer NormBodyPair::search(const DualSample& best, int& iterations) const {
-  const auto at = [this](const Vector3d& n) { return tangent(n); };
-  const auto polish = [&](const Vector3d& n) { return tangent(dual(n, kMaxIterations, iterations).at.n); };
-  SphereSearch<decltype(at), decltype(polish)> sphere(at, polish, 0, tangent(best.n));
+  const auto at = [&](const Vector3d& n) {
+    ++iterations;
+    return tangent(n);
+  };
+  const double rounding = kRoundingFactor * scale_;
+  const auto climb = [&](const Vector3d& n) { return tangent(dual(n, kMaxIterations, iterations).at.n); };
+  const auto up = [&](const Vector3d& n) { return upward(sample(n), rounding); };
+  const auto polish = [&](const Vector3d& n) { return climb_over_saddles(at, climb, up, n, rounding); };
+  SphereSearch<decltype(at), decltype(polish)> sphere(at, polish, 0, polish(best.n), rounding);
   sphere.run_to(kDepthGap * scale_, kMostDepthSamples);
   const bool apart = sphere.best().g > 0;
   if (apart) {
@@ -312,7 +324,6 @@ NormBodyPair::Answer NormBodyPair::search(const DualSample& best, int& iteration
     // Edges on faces: the ascent stops short of the maximum, but triangles do not.
     sphere.run_to(kStuckDepthGap * scale_, kMostDepthSamples);
   }
-  iterations += sphere.samples();
   Answer answer;
   answer.at = sample(sphere.best().n);
   answer.gap = std::max(0.0, sphere.upper() - sphere.best().g);

@@ -1,19 +1,20 @@
+#include "shown.h"
+
 #include <geom/pose.h>
 #include <geom/tolerances.h>
 
 #include <Eigen/LU>
 
 #include <cmath>
-#include <sstream>
 #include <stdexcept>
+#include <string>
 
 namespace geom {
 namespace {
 
 [[noreturn]] void refuse(const char* what, double value, const char* accepted) {
-  std::ostringstream message;
-  message << "Pose: " << what << " (" << value << "); accepted: " << accepted;
-  throw std::invalid_argument(message.str());
+  throw std::invalid_argument(std::string("Pose: ") + what + " (" + internal::shown(value) +
+                              "); accepted: " + accepted);
 }
 
 void check_position(const Eigen::Vector3d& position) {

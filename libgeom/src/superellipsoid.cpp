@@ -1,11 +1,13 @@
+#include "shown.h"
+
 #include <geom/superellipsoid.h>
 #include <geom/tolerances.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <sstream>
 #include <stdexcept>
+#include <string>
 
 namespace geom {
 namespace {
@@ -13,9 +15,8 @@ namespace {
 using Eigen::Vector3d;
 
 [[noreturn]] void refuse(const char* what, double value, double least, double most) {
-  std::ostringstream message;
-  message << "Superellipsoid: " << what << " is " << value << "; accepted: " << least << " to " << most;
-  throw std::invalid_argument(message.str());
+  throw std::invalid_argument(std::string("Superellipsoid: ") + what + " is " + internal::shown(value) +
+                              "; accepted: " + internal::shown(least) + " to " + internal::shown(most));
 }
 
 void check(const Vector3d& axes, double e1, double e2) {

@@ -21,12 +21,11 @@ DistanceResult norm_body_distance(const A& a, const Pose& X_WA, const B& b, cons
   const Vector3d r = X_WB.position() - X_WA.position();
   const NormBodyPair pair(NormBodies(internal::NormShape(a), X_WA.rotation(), internal::NormShape(b), X_WB.rotation()),
                           r, a.bounding_radius() + b.bounding_radius(), a.inscribed_radius() + b.inscribed_radius());
-  const double start2 = options.start.squaredNorm();
-  const bool warm = start2 > kLeastStart2 && std::isfinite(start2);
   DistanceResult result;
   const Vector3d cold = pair.cold_normal();
-  const Answer answer = pair.solve(warm ? Vector3d(options.start / std::sqrt(start2)) : cold, cold, options.penetration,
-                                   options.max_iterations, result.iterations);
+  const Answer answer =
+      pair.solve(internal::is_warm(options.start) ? Vector3d(options.start / options.start.norm()) : cold, cold,
+                 options.penetration, options.max_iterations, result.iterations);
   if (!answer.converged) return result;
   const DualSample& at = answer.at;
   result.distance = at.g;

@@ -217,14 +217,14 @@ Solved solve_cell(double e1, double e2, int pairs, const Seed& seed_of) {
 template <class Seed>
 void expect_solved(const char* name, int pairs_a_cell, std::array<double, 2> least_share, const Seed& seed_of) {
   std::printf("\n%s: %d pairs a cell; solved in %%, eight equations / five\n e1\\e2", name, pairs_a_cell);
-  for (const double e2 : kExponents) std::printf("  %9g", e2);
+  for (const double e2 : kExponents) std::printf("  %13g", e2);
   std::printf("\n");
   Solved all;
   for (const double e1 : kExponents) {
     std::printf("%6g", e1);
     for (const double e2 : kExponents) {
       const Solved cell = solve_cell(e1, e2, pairs_a_cell, seed_of);
-      std::printf("  %4.0f/%4.0f", 100.0 * cell.right[0] / cell.pairs, 100.0 * cell.right[1] / cell.pairs);
+      std::printf("  %6.2f/%6.2f", 100.0 * cell.right[0] / cell.pairs, 100.0 * cell.right[1] / cell.pairs);
       all += cell;
     }
     std::printf("\n");

@@ -20,7 +20,7 @@ endfunction()
 # configure_consumer(<result> <directory> <flags>): the outside project in consumer/, against PREFIX.
 function(configure_consumer variable directory flags)
   execute_process(COMMAND ${CMAKE_COMMAND} -S ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/consumer -B ${directory}
-      "-DCOMPONENTS=${COMPONENTS}" "-DHIDDEN=${HIDDEN}" -DCMAKE_PREFIX_PATH=${PREFIX} -DCMAKE_BUILD_TYPE=Release
+      "-DCOMPONENTS=${COMPONENTS}" "-DOPTIONAL=${OPTIONAL}" "-DHIDDEN=${HIDDEN}" -DCMAKE_PREFIX_PATH=${PREFIX} -DCMAKE_BUILD_TYPE=Release
       -DCMAKE_CXX_COMPILER=${COMPILER} -DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER} "-DCMAKE_CXX_FLAGS=${flags}"
     RESULT_VARIABLE status ERROR_VARIABLE errors)
   if(errors)

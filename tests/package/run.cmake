@@ -5,7 +5,7 @@ include(${CMAKE_CURRENT_LIST_DIR}/common.cmake)
 #
 #   cmake -DPREFIX=... -DWORK_DIR=... -DCOMPONENTS=geom,ed -DFLAGS=... -DCOMPILER=... -P run.cmake
 #
-# HIDDEN=fcl,ccd: packages that cannot be found. REFUSED=text: find_package must fail, with that in its message.
+# OPTIONAL=geom_seeds: components that may be missing. HIDDEN=fcl,ccd: packages that cannot be found. REFUSED=text: find_package must fail, with that in its message.
 # OTHER_FLAGS: the project is built a second time, with these flags, and must give the same answers, bit for bit.
 # UNNEEDED=regex: what the dynamic linker must not load with the project's programs.
 file(REMOVE_RECURSE ${WORK_DIR})

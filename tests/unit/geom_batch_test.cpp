@@ -15,8 +15,10 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <span>
 #include <stdexcept>
 #include <string>
+#include <variant>
 #include <vector>
 
 namespace geom {
@@ -31,6 +33,7 @@ using geom_test::Random;
 using geom_test::same_answer;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr std::span<const Ellipsoid> kNoBodies;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Bodies of revolution and general ones, apart and overlapping, in no order.
@@ -81,7 +84,7 @@ TEST(DistanceBatch, AnswersAsDistanceWhateverTheNumberOfPairs) {
 }
 
 TEST(DistanceBatch, OfNoPairsIsNothing) {
-  const BatchSummary none = distance_batch({}, {}, {}, {}, {});
+  const BatchSummary none = distance_batch(kNoBodies, {}, kNoBodies, {}, {});
   EXPECT_EQ(none.redone, 0u);
   const Pairs one = mixed_pairs(1, 1);
   EXPECT_NO_THROW(distance_batch(one.a, one.X_WA, one.b, one.X_WB, {}));
@@ -265,18 +268,66 @@ TEST(DistanceBatch, UsesTheInstructionSetThatItSays) {
   EXPECT_TRUE(is_available(batch_instruction_set()));
   EXPECT_NE(batch_instruction_set(), InstructionSet::best);
   EXPECT_EQ(instruction_sets().back(), batch_instruction_set());
-  EXPECT_EQ(distance_batch({}, {}, {}, {}, {}).instruction_set, batch_instruction_set());
+  EXPECT_EQ(distance_batch(kNoBodies, {}, kNoBodies, {}, {}).instruction_set, batch_instruction_set());
   for (const InstructionSet set : instruction_sets()) {
-    EXPECT_EQ(distance_batch({}, {}, {}, {}, {}, {.instruction_set = set}).instruction_set, set);
+    EXPECT_EQ(distance_batch(kNoBodies, {}, kNoBodies, {}, {}, {.instruction_set = set}).instruction_set, set);
   }
 }
 
 TEST(DistanceBatch, RefusesInstructionSetsThatAreNotThere) {
   for (const InstructionSet set : {InstructionSet::avx2, InstructionSet::avx512, static_cast<InstructionSet>(99)}) {
     if (is_available(set)) continue;
-    EXPECT_THAT(refusal([&] { distance_batch({}, {}, {}, {}, {}, {.instruction_set = set}); }),
+    EXPECT_THAT(refusal([&] { distance_batch(kNoBodies, {}, kNoBodies, {}, {}, {.instruction_set = set}); }),
                 testing::AllOf(testing::HasSubstr(to_string(set)), testing::HasSubstr("accepted: best, portable")));
   }
+}
+
+TEST(DistanceBatch, OfShapesAnswersAsDistance) {
+  Random random(31);
+  std::vector<Shape> a, b;
+  std::vector<Pose> X_WA, X_WB;
+  std::vector<Vector3d> starts;
+  std::size_t superellipsoids = 0;
+  for (int k = 0; k < 500; ++k) {
+    const auto shape = [&](bool round) -> Shape {
+      const Vector3d axes = random.biaxial(3).semi_axes();
+      if (round) return random.coin() ? Shape(Ellipsoid(axes)) : Shape(Superellipsoid(axes, 1, 1));
+      return Superellipsoid(axes, 0.5, 1.2);
+    };
+    const bool round = k % 3 != 0;
+    superellipsoids += round ? 0 : 1;
+    a.push_back(shape(true));
+    b.push_back(shape(round));
+    const ManufacturedPair pair = std::visit(
+        [&](const auto& s, const auto& t) { return geom_test::manufacture(s, t, random.log_uniform(1e-3, 1), random); },
+        a.back(), b.back());
+    X_WA.push_back(pair.X_WA);
+    X_WB.push_back(pair.X_WB);
+    starts.emplace_back(pair.normal + 0.1 * random.direction());
+  }
+  for (const bool warm : {false, true}) {
+    std::vector<DistanceResult> results(a.size());
+    BatchOptions options;
+    if (warm) options.starts = starts;
+    const BatchSummary summary = distance_batch(a, X_WA, b, X_WB, results, options);
+    EXPECT_GE(summary.redone, superellipsoids);
+    EXPECT_LE(summary.redone, superellipsoids + 20);
+    for (std::size_t k = 0; k < a.size(); ++k) {
+      const DistanceResult one = distance(a[k], X_WA[k], b[k], X_WB[k], {.start = warm ? starts[k] : Vector3d::Zero()});
+      const double size = 20;
+      EXPECT_EQ(results[k].status, one.status) << k;
+      EXPECT_NEAR(results[k].distance, one.distance, 1e-14 * size) << k;
+      EXPECT_NEAR((results[k].point_a - one.point_a).norm(), 0, 1e-7) << k;
+    }
+  }
+}
+
+TEST(DistanceBatch, OfShapesRefusesSpansOfOtherSizes) {
+  const std::vector<Shape> shapes(3, Shape(Ellipsoid({1, 1, 2})));
+  const std::vector<Pose> poses(2);
+  std::vector<DistanceResult> results(3);
+  EXPECT_THAT(refusal([&] { distance_batch(shapes, poses, shapes, poses, results); }),
+              testing::StartsWith("distance_batch: X_WA has 2 elements; accepted: "));
 }
 
 }  // namespace

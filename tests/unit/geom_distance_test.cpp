@@ -73,6 +73,12 @@ TEST(Distance, OfConcentricSpheresIsMinusTheSumOfTheRadii) {
   const Pose X = Pose::translation({3, -1, 2});
   EXPECT_TRUE(answers(distance(a, X, b, X), -1.5, 1e-14, 5));
   EXPECT_TRUE(answers(distance(a, X, b, X, {.start = {1, 1, 1}}), -1.5, 1e-14, 5));
+  EXPECT_LE(distance(a, X, b, X).error_bound, 1e-14);
+  // To second order, and whichever way the sum of depth and radii rounds.
+  const Ellipsoid thirds({1.0 / 3, 1.0 / 3, 1.0 / 3});
+  for (const Ellipsoid& ball : {a, b, thirds, Ellipsoid({0.1, 0.1, 0.1})}) {
+    EXPECT_LE(distance(ball, Pose(), thirds, Pose()).error_bound, 1e-14);
+  }
 }
 
 TEST(Distance, OfCoaxialBodiesIsTheGapOfTheirPoles) {

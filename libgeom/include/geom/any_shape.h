@@ -3,6 +3,7 @@
 /// @file
 /// Shapes that are chosen at run time: a closed variant of those that libgeom brings.
 
+#include <geom/batch.h>
 #include <geom/distance.h>
 #include <geom/ellipsoid.h>
 #include <geom/export.h>
@@ -13,6 +14,7 @@
 
 #include <Eigen/Core>
 
+#include <span>
 #include <variant>
 
 namespace geom {
@@ -23,6 +25,13 @@ using Shape = std::variant<Ellipsoid, Superellipsoid>;
 /// `distance` of the shapes inside: one dispatch a query.
 GEOM_EXPORT DistanceResult distance(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB,
                                     const DistanceOptions& options = {});
+
+/// `distance_batch` of the shapes inside (batch.h). Pairs of ellipsoids, superellipsoids with both exponents 1 among
+/// them, go to the vector kernels; pairs with any other superellipsoid go to `distance` one by one and count as
+/// `redone`: their kernel fills the vectors with both bodies of one pair.
+GEOM_EXPORT BatchSummary distance_batch(std::span<const Shape> a, std::span<const Pose> X_WA, std::span<const Shape> b,
+                                        std::span<const Pose> X_WB, std::span<DistanceResult> results,
+                                        const BatchOptions& options = {});
 
 /// The member functions of the shape inside; see there.
 /// @{

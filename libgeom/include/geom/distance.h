@@ -16,8 +16,11 @@ namespace geom {
 
 /// Whether a query has an answer, and which.
 enum class DistanceStatus {
-  separated,      ///< the bodies are apart (or touch): the answer is right to tolerance, certified
-  overlapping,    ///< they overlap: the penetration depth is right to tolerance, certified
+  /// The bodies are apart (or touch). Certain where `distance` > 0: it is a lower bound.
+  separated,
+  /// They overlap. Certain where `distance + error_bound` < 0; for ellipsoids, to rounding, always. Flat and long
+  /// superellipsoids and users' shapes that touch within the error bound may be either.
+  overlapping,
   not_converged,  ///< no answer: neither the iteration nor the search over all normals ended with one
   singular,       ///< no answer: a linear system of the method was singular
 };
@@ -75,14 +78,17 @@ struct [[nodiscard]] DistanceResult {
 /// the origin lies inside the ball of radius rho that touches the boundary at the same point. Deeper overlaps can have
 /// several local maxima; branch and bound over all normals (internal/sphere_search.h) finds the largest, at any depth,
 /// concentric bodies included: no translation is shorter than the one returned by more than `error_bound`, mostly 1e-9
-/// of the size, 1e-3 at most, or the pair is declined. (The answer is exact to rounding as a local maximum; the bound
-/// says how much better another one could be.) That takes 0.1 to 0.3 milliseconds for ellipsoids, and for
-/// superellipsoids 0.05 at a depth of 1e-6 of the size, 0.3 at 0.1 and 1 beyond or where edges and faces meet, 100 at
-/// worst, where a body sits in the centre of a round one (docs/accuracy.md, bench_superellipsoid); Penetration::local
-/// mostly avoids it.
+/// of the size, 1e-3 at most, or the pair is declined. (The normal returned is a local maximum to second order, no
+/// saddle, where g has second derivatives; at edges and vertices it is the best one found. The bound says how much
+/// better another one could be.) That takes 0.1 to 0.3 milliseconds for ellipsoids, and for superellipsoids 0.05 at a
+/// depth of 1e-6 of the size, 0.3 at 0.1 and 1 beyond or where edges and faces meet, 100 at worst, where a body sits in
+/// the centre of a round one (docs/accuracy.md, bench_superellipsoid); Penetration::local mostly avoids it.
 ///
-/// Accuracy: |error of d| <= 1e-13 times the size of the pair (|p_AB| + both bounding radii); normals 1e-7 worst, 1e-12
-/// typically. Both are asserted by tests/accuracy. Never throws, never allocates.
+/// Accuracy of ellipsoids: |error of d| <= 1e-13 times the size of the pair (|p_AB| + both bounding radii) apart and
+/// down to a depth of rho, `error_bound` deeper; normals 1e-7 worst, 1e-12 typically. Both are asserted by
+/// tests/accuracy. Other shapes: the same where Newton's method converges; where support points jump (flat faces,
+/// edges), the answer of the closest points of two polytopes that grow inside the bodies, certified to 1e-9 of the size
+/// (kWidestGap), or declined. Never throws, never allocates.
 template <SupportShape ShapeA, SupportShape ShapeB>
 DistanceResult distance(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const Pose& X_WB,
                         const DistanceOptions& options = {});
@@ -101,10 +107,10 @@ GEOM_EXPORT DistanceResult distance(const Ellipsoid& a, const Pose& X_WA, const 
 /// the bodies are apart the normal is within sqrt(2 error_bound / distance) of the true one (radian): g(n) <= distance
 /// times the cosine of that angle.
 ///
-/// Aspect ratios to 10 are within 1e-12 of the size of the pair. Of flatter and longer bodies, to kMaxAspectRatio
-/// (1e4), some take the slow last resort, up to a tenth of a second: apart, or slightly overlapping, their distance is
-/// certified to kWidestGap (1e-9), or declined, and whether they overlap is certain only where |distance| is larger
-/// than `error_bound` (docs/accuracy.md counts such pairs).
+/// Apart, aspect ratios to 10 are within 1e-12 of the size of the pair; overlaps are within `error_bound`, 1e-9 of it. Of
+/// flatter and longer bodies, to kMaxAspectRatio (1e4), some take the slow last resort, up to a tenth of a second: apart,
+/// or slightly overlapping, their distance is certified to kWidestGap (1e-9), or declined, and whether they overlap is
+/// certain only where |distance| is larger than `error_bound` (docs/accuracy.md counts such pairs).
 /// @{
 GEOM_EXPORT DistanceResult distance(const Superellipsoid& a, const Pose& X_WA, const Superellipsoid& b,
                                     const Pose& X_WB, const DistanceOptions& options = {});

@@ -16,8 +16,10 @@ struct Support {
 ///
 /// `support(n)` and `support_hessian(n)` = hess h(n) take any n != 0; `bounding_radius()` and `inscribed_radius()` are
 /// the radii of spheres about the origin that contain the body and are contained in it. This is all that `distance`
-/// needs. A shape may also have `min_curvature_radius()`, a lower bound of its smallest principal radius of curvature:
-/// with it, overlaps down to the sum of both bodies' values are answered too (see distance.h); without it, none.
+/// needs. A shape may also have `min_curvature_radius()`, a lower bound of its smallest principal radius of curvature
+/// (0 without it): overlaps down to the sum of both bodies' values are answered by Newton's method alone, exact to
+/// rounding and within microseconds; deeper ones take the search over all normals and have its `error_bound` (see
+/// distance.h).
 template <class T>
 concept SupportShape = requires(const T& shape, const Eigen::Vector3d& n) {
   { shape.support(n) } -> std::convertible_to<Support>;

@@ -1,7 +1,8 @@
 #pragma once
 
 /// @file
-/// Every tolerance of libgeom, with the inequality it enters and its unit.
+/// The tolerances of libgeom that a user meets, with the inequality each enters and its unit. Constants of one
+/// algorithm alone stand beside it.
 
 namespace geom {
 
@@ -46,6 +47,10 @@ inline constexpr double kRoundingFactor = 16 * 2.3e-16;
 /// Longest Newton step of the unit normal (radian, nearly); longer ones are scaled to it.
 inline constexpr double kMaxNormalStep = 0.6;
 
+/// Normalising a vector that is nearly a unit one: |v|^2 - 1 below which 1 / |v| is taken from its series.
+/// Dimensionless.
+inline constexpr double kInverseSqrtSeries = 2e-3;
+
 /// Newton's matrix: smallest eigenvalue kept >= kLeastEigenvalue * (rhoA + rhoB), against a division by zero where it
 /// is definite by theory (g > -(rhoA + rhoB)). Dimensionless.
 inline constexpr double kLeastEigenvalue = 1e-6;
@@ -59,7 +64,7 @@ inline constexpr double kWidestGap = 1e-9;
 
 /// Penetration::global: no translation is shorter than the one returned by more than kDepthGap times the sum of both
 /// bounding radii, proved by branch and bound; overlaps for which kMostDepthSamples evaluations do not prove
-/// kWidestDepthGap are declined. Dimensionless.
+/// kWidestDepthGap are declined. (As many more are spent where the answer has to be found more exactly.) Dimensionless.
 /// @{
 inline constexpr double kDepthGap = 1e-9;
 inline constexpr double kWidestDepthGap = 1e-3;

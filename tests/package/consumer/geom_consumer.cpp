@@ -2,6 +2,8 @@
 // layout of the public types and the bits of many answers, to be compared with those of consumers compiled otherwise.
 #include <geom/geom.h>
 
+#include <Eigen/LU>
+
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -86,6 +88,55 @@ geom::Pose pose(int k) {
                                      {(k * 7 % 11) / 8.0, (k * 5 % 13) / 4.0, 3.0 + (k * 3 % 17) / 16.0});
 }
 
+/// A shape of the consumer's own.
+struct Ball {
+  double radius;
+
+  double value(const Eigen::Vector3d& x) const { return x.squaredNorm() - radius * radius; }
+  Eigen::Vector3d gradient(const Eigen::Vector3d& x) const { return 2 * x; }
+  Eigen::Matrix3d hessian(const Eigen::Vector3d& /*x*/) const { return 2 * Eigen::Matrix3d::Identity(); }
+};
+
+/// Of templates, which are compiled here too, with other roundings: nine digits.
+void print_digits(const char* name, double x) {
+  std::printf("%s %.9e\n", name, x);
+}
+
+/// Functions that both this program and the library contain, some of them on objects whose alignment depends on the
+/// flags: the linker keeps one copy of each.
+void answers_of_templates() {
+  Eigen::Matrix4d four = 3 * Eigen::Matrix4d::Identity();
+  four(0, 3) = four(2, 1) = 1;
+  print_digits("4 x 4", four.partialPivLu().solve(Eigen::Vector4d(1, 2, 3, 4)).norm());
+  Eigen::Matrix<double, 8, 8> eight = 3 * Eigen::Matrix<double, 8, 8>::Identity();
+  eight(0, 7) = eight(5, 1) = 1;
+  print_digits("8 x 8", eight.partialPivLu().solve(Eigen::Matrix<double, 8, 1>::Ones()).norm());
+
+  const geom::Pose origin;
+  const geom::Superellipsoid brick({1.0, 2.0, 1.5}, 0.5, 0.75);
+  const geom::Superellipsoid sharp({1.0, 0.7, 1.2}, 1.5, 1.3);
+  const Ball ball{0.7};
+  for (int k = 0; k < 100; ++k) {
+    const geom::Pose far(pose(k).rotation(), pose(k).position() + Eigen::Vector3d(0.0, 0.0, 2.0));
+    print_digits("distance", geom::distance(brick, origin, sharp, far).distance);
+    const geom::Ellipsoid egg({2.0, 1.0, 0.5});
+    print_digits("Newton, ellipsoids", geom::newton_distance(egg, origin, egg, far, geom::NewtonSystem::eight,
+                                                             geom::dual_seed(egg, origin, egg, far))
+                                           .distance);
+    print_digits("closest", geom::closest_point(brick, origin, far.position()).distance);
+    for (const geom::NewtonSystem system : {geom::NewtonSystem::eight, geom::NewtonSystem::five}) {
+      const geom::WitnessPair seed = geom::dual_seed(brick, origin, sharp, far);
+      print_digits("Newton", geom::newton_distance(brick, origin, sharp, far, system, seed).distance);
+      print_digits("Newton, Shape", geom::newton_distance(geom::Shape(brick), origin, geom::Shape(sharp), far, system,
+                                                          geom::dual_seed(brick, origin, sharp, far))
+                                        .distance);
+      const geom::Pose X_ball = geom::Pose::translation(far.position());
+      const geom::WitnessPair centres = geom::centre_seed(brick, origin, ball, X_ball);
+      print_digits("Newton, ball", geom::newton_distance(brick, origin, ball, X_ball, system, centres).distance);
+    }
+  }
+}
+
 void answers() {
   layout<geom::Support>("Support");
   layout<geom::Ellipsoid>("Ellipsoid");
@@ -120,11 +171,10 @@ void answers() {
     print(geom::distance(ellipsoids[0], origin, shapes[k], poses[k], {.start = r.normal}));
     print(geom::distance(brick, origin, shapes[k], poses[k]));
     print(geom::distance(geom::Shape(shapes[k]), poses[k], geom::Shape(brick), origin));
-    const geom::WitnessPair seed{r.point_a, r.point_b, geom::SeedStatus::usable};
-    print(geom::newton_distance(ellipsoids[0], origin, shapes[k], poses[k], geom::NewtonSystem::eight, seed));
     const Eigen::Vector3d inertia = brick.inertia(2.0);
     std::printf("%a %a %a %a\n", brick.volume(), inertia.x(), inertia.y(), inertia.z());
   }
+  answers_of_templates();
 }
 
 }  // namespace

@@ -53,28 +53,21 @@ class GeneralPair {
     Evaluation out;
     out.g = r_.dot(n) - s_a.height - s_b.height;
     const Eigen::Vector3d y = r_ - s_a.point + s_b.point - out.g * n;
-    // The Newton system in an orthonormal basis (e, f) across n.
-    const Eigen::Vector3d e =
-        (std::abs(n.x()) < 0.6 ? Eigen::Vector3d(0, n.z(), -n.y()) : Eigen::Vector3d(n.z(), 0, -n.x())).normalized();
-    const Eigen::Vector3d f = n.cross(e);
-    const Eigen::Matrix3d H = s_a.hessian + s_b.hessian;
-    const Eigen::Vector3d He = H * e;
-    double m_ee = e.dot(He) + out.g;
-    double m_ff = f.dot(H * f) + out.g;
-    const double m_ef = f.dot(He);
-    const double half_difference = 0.5 * (m_ee - m_ff);
-    const double smallest = 0.5 * (m_ee + m_ff) - std::sqrt(half_difference * half_difference + m_ef * m_ef);
+    const TangentBasis basis(n);
+    const auto& [e, f] = basis;
+    TangentForm m = curvature(basis, s_a.hessian + s_b.hessian, out.g);
+    const double smallest = m.smallest_eigenvalue();
     // Only a matrix that is not definite is lifted, by no more than it needs: a lifted one converges linearly.
     if (smallest < least_) [[unlikely]] {
       const double lift = std::max(least_, -smallest) - smallest;
-      m_ee += lift;
-      m_ff += lift;
+      m.ee += lift;
+      m.ff += lift;
     }
     const double y_e = y.dot(e);
     const double y_f = y.dot(f);
-    const double inv_det = 1 / (m_ee * m_ff - m_ef * m_ef);
-    const double d_e = (m_ff * y_e - m_ef * y_f) * inv_det;
-    const double d_f = (m_ee * y_f - m_ef * y_e) * inv_det;
+    const double inv_det = 1 / (m.ee * m.ff - m.ef * m.ef);
+    const double d_e = (m.ff * y_e - m.ef * y_f) * inv_det;
+    const double d_f = (m.ee * y_f - m.ef * y_e) * inv_det;
     out.decrement = d_e * y_e + d_f * y_f;
     set_step(out, d_e * e + d_f * f, d_e * d_e + d_f * d_f);
     return out;
@@ -87,7 +80,22 @@ class GeneralPair {
   }
   const Eigen::Vector3d& r() const { return r_; }
 
+  /// A unit vector across n along which g bends upwards by more than `rounding` / rad^2; zero if there is none.
+  Eigen::Vector3d upward(const Eigen::Vector3d& n, double rounding) const {
+    const CurvedSupport s_a = a_(n);
+    const CurvedSupport s_b = b_(-n);
+    const TangentBasis basis(n);
+    const double g = r_.dot(n) - s_a.height - s_b.height;
+    return curvature(basis, s_a.hessian + s_b.hessian, g).direction_below(-rounding, basis);
+  }
+
  private:
+  /// M + g I in the basis: minus the second derivatives of g along the sphere.
+  static TangentForm curvature(const TangentBasis& basis, const Eigen::Matrix3d& H, double g) {
+    const Eigen::Vector3d He = H * basis.e;
+    return {basis.e.dot(He) + g, basis.f.dot(He), basis.f.dot(H * basis.f) + g};
+  }
+
   SupportA a_;
   SupportB b_;
   Eigen::Vector3d r_;
@@ -126,11 +134,14 @@ DistanceResult witness_result(const Pair& pair, const Eigen::Vector3d& p_WA, con
   return result;
 }
 
-/// By how much the distance of an answer can be below the true one: along every great circle from n, g'' <= -lambda
-/// with lambda = g(n) + rho, so that g grows by |y|^2 / (2 lambda) at most.
+/// By how much the distance of an answer can be below the true one: with the ball of radius rho that rolls in the
+/// Minkowski difference (sphere_search.h), g(m) <= |p + rho n| - rho everywhere, p = g n + y the point of that
+/// difference at n.
 inline double newton_error_bound(const PairScale& scale, const DistanceResult& r) {
   const double lambda = r.distance + scale.certified_depth;
-  return lambda > 0 ? 0.5 * r.residual * r.residual / lambda : std::hypot(r.distance, r.residual) - r.distance;
+  if (lambda > r.residual) [[likely]]
+    return 0.5 * r.residual * r.residual / lambda;  // a little more than the difference below
+  return std::hypot(lambda, r.residual) - lambda;
 }
 
 inline bool needs_polish(const PairScale& scale, const DistanceResult& r) {
@@ -165,12 +176,11 @@ DistanceResult solve_dual(const Pair& pair, const Cold& cold, const PairScale& s
                           const DistanceOptions& options, const Shares& shares) {
   const double rounding = kRoundingFactor * scale.size;
   const auto done = [](const Evaluation& e) { return e.step2 <= kNormalTolerance2; };
-  const double start2 = options.start.squaredNorm();
-  const bool warm = start2 > kLeastStart2 && std::isfinite(start2);
+  const bool warm = is_warm(options.start);
   const int limit = std::max(1, options.max_iterations);
   int spent = 0;
   for (int attempt = warm ? 0 : 1; attempt < 2; ++attempt) {
-    Eigen::Vector3d n = attempt == 0 ? Eigen::Vector3d(options.start / std::sqrt(start2)) : cold();
+    Eigen::Vector3d n = attempt == 0 ? Eigen::Vector3d(options.start / options.start.norm()) : cold();
     Evaluation e = pair(n);
     int budget = limit - 1;
     const Ascent ascent = ascend(pair, rounding, done, budget, n, e);
@@ -277,29 +287,32 @@ template <class Pair>
 [[gnu::noinline, gnu::cold]] DistanceResult search_sphere(const Pair& pair, const PairScale& scale,
                                                           const Eigen::Vector3d& start, const Eigen::Vector3d& p_WA,
                                                           int iterations) {
-  const auto sample = [&pair](const Eigen::Vector3d& n) {
+  const auto sample = [&](const Eigen::Vector3d& n) {
+    ++iterations;
     const SupportPair s = pair.support_pair(n);
     return Tangent{n, (pair.r() + s.s_b) - s.s_a, (n.dot(pair.r()) - s.h_a) - s.h_b};
   };
   const auto done = [](const Evaluation& e) { return e.step2 <= kNormalTolerance2; };
-  const auto polish = [&](const Eigen::Vector3d& start_n) {
+  const double rounding = kRoundingFactor * scale.size;
+  const auto climb = [&](const Eigen::Vector3d& start_n) {
     Eigen::Vector3d n = start_n;
     Evaluation e = pair(n);
     int budget = kMaxIterations;
-    (void)ascend(pair, kRoundingFactor * scale.size, done, budget, n, e);
+    (void)ascend(pair, rounding, done, budget, n, e);
     iterations += kMaxIterations - budget + 1;
     const Tangent before = sample(n);
     const Tangent after = sample(step_on_sphere(n, e.step));
     return after.g >= before.g ? after : before;
   };
-  SphereSearch<decltype(sample), decltype(polish)> sphere(sample, polish, scale.certified_depth, polish(start));
+  const auto upward = [&](const Eigen::Vector3d& n) { return pair.upward(n, rounding); };
+  const auto polish = [&](const Eigen::Vector3d& n) { return climb_over_saddles(sample, climb, upward, n, rounding); };
+  SphereSearch<decltype(sample), decltype(polish)> sphere(sample, polish, scale.certified_depth, polish(start),
+                                                          rounding);
   sphere.run_to(kDepthGap * scale.size, kMostDepthSamples);
   // Concave there: what is left is to come close to the one maximum.
   if (sphere.best().g > 0) sphere.run_to(kBoundGap * scale.size, kMostDepthSamples);
-  DistanceResult result = witness_result(pair, p_WA, sphere.best().n, iterations + sphere.samples());
-  const double least = newton_error_bound(scale, result);
-  result.error_bound = std::max(0.0, sphere.upper() - sphere.best().g);
-  if (result.distance + scale.certified_depth > 0) result.error_bound = std::min(result.error_bound, least);
+  DistanceResult result = witness_result(pair, p_WA, sphere.best().n, iterations);
+  result.error_bound = std::min(newton_error_bound(scale, result), std::max(0.0, sphere.upper() - sphere.best().g));
   if (result.error_bound < (result.distance > 0 ? kWidestGap : kWidestDepthGap) * scale.size) return result;
   DistanceResult declined;
   declined.iterations = result.iterations;
@@ -321,7 +334,7 @@ DistanceResult distance(const ShapeA& a, const Pose& X_WA, const ShapeB& b, cons
       kLeastEigenvalue * std::max(rho, kLeastCurvature * (a.inscribed_radius() + b.inscribed_radius()));
   const internal::GeneralPair pair(WorldSupport<ShapeA>{a, X_WA.rotation()}, WorldSupport<ShapeB>{b, X_WB.rotation()},
                                    r, least);
-  const auto cold = [&r] { return r.squaredNorm() > 0 ? r.normalized() : Eigen::Vector3d::UnitX(); };
+  const auto cold = [&r] { return internal::unit_or_x(r); };
   const internal::PairScale scale{r.norm() + a.bounding_radius() + b.bounding_radius(), rho};
   const auto shares = [&](const Eigen::Vector3d& point_a, const Eigen::Vector3d& point_b) {
     return internal::share_a_point(a, X_WA, b, X_WB, point_a, point_b);

@@ -56,6 +56,47 @@ inline Eigen::Vector3d step_on_sphere(const Eigen::Vector3d& n, const Eigen::Vec
   return inverse_sqrt_1p(m.squaredNorm() - 1) * m;
 }
 
+/// Whether a DistanceOptions::start is one.
+inline bool is_warm(const Eigen::Vector3d& start) {
+  const double start2 = start.squaredNorm();
+  return start2 > kLeastStart2 && std::isfinite(start2);
+}
+
+/// v / |v|, or the x axis if v is zero.
+inline Eigen::Vector3d unit_or_x(const Eigen::Vector3d& v) {
+  return v.squaredNorm() > 0 ? v.normalized() : Eigen::Vector3d::UnitX();
+}
+
+/// An orthonormal basis across a unit vector.
+struct TangentBasis {
+  Eigen::Vector3d e, f;
+
+  /// e is across x, or across z where n is near x.
+  explicit TangentBasis(const Eigen::Vector3d& n)
+      : e((std::abs(n.x()) < 0.6 ? Eigen::Vector3d(0, n.z(), -n.y()) : Eigen::Vector3d(n.z(), 0, -n.x())).normalized()),
+        f(n.cross(e)) {}
+};
+
+/// A symmetric 2 x 2 matrix in a TangentBasis.
+struct TangentForm {
+  double ee, ef, ff;
+
+  double smallest_eigenvalue() const {
+    const double half_difference = 0.5 * (ee - ff);
+    return 0.5 * (ee + ff) - std::sqrt(half_difference * half_difference + ef * ef);
+  }
+  /// The unit eigenvector of the smallest eigenvalue, if that is below `least`; else (or if it is NaN) zero.
+  Eigen::Vector3d direction_below(double least, const TangentBasis& basis) const {
+    const double lambda = smallest_eigenvalue();
+    if (!(lambda < least)) return Eigen::Vector3d::Zero();
+    // Either row of (form - lambda) is across it; the longer one has more digits.
+    const bool by_e = std::abs(ee - lambda) > std::abs(ff - lambda);
+    const Eigen::Vector3d v = by_e ? Eigen::Vector3d(-ef * basis.e + (ee - lambda) * basis.f)
+                                   : Eigen::Vector3d((ff - lambda) * basis.e - ef * basis.f);
+    return v.squaredNorm() > 0 ? v.normalized() : basis.e;
+  }
+};
+
 /// Support heights and points of A at n and of B at -n, each from its own centre. The heights are not n.s: for a thin
 /// disc that product loses digits by cancellation.
 struct SupportPair {

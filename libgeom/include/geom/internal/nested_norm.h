@@ -10,7 +10,9 @@
 
 namespace geom::internal {
 
-/// x^e for x >= 0 and one e > 0: by products and roots where e allows it.
+/// x^e for x >= 0 and one e > 0: by products, square and cube roots where e allows it, else by std::pow. Exponents of
+/// fifths, as q = 5 (e = 1.6) has for its root, gain nothing: a fifth root is a pow. Distances do not come here but for
+/// values and gradients: the kernels have both bodies' powers in one vector (lanes.h).
 class Power {
  public:
   explicit Power(double exponent) : exponent_(exponent), kind_(kind_of(exponent)) {}

@@ -8,9 +8,10 @@
 /// something and nothing overflows. xA and xB are counted from their own centres (here sA, sB): far pairs lose no
 /// digits.
 
+#include <geom/internal/small_solve.h>
 #include <geom/newton.h>
 
-#include <Eigen/LU>
+#include <Eigen/Core>
 
 #include <algorithm>
 #include <cmath>
@@ -54,8 +55,8 @@ struct NewtonState {
 /// Eqs. (dist8): F and its Jacobian in (sA, sB, alpha, beta).
 struct EightEquations {
   static constexpr int kSize = 8;
-  using Vector = Eigen::Matrix<double, kSize, 1>;
-  using Matrix = Eigen::Matrix<double, kSize, kSize>;
+  using Vector = SmallVector<kSize>;
+  using Matrix = SmallMatrix<kSize>;
 
   static void eliminate(const LocalSurface& /*f*/, const Eigen::Vector3d& /*r*/, NewtonState& /*y*/) {}
 
@@ -89,8 +90,8 @@ struct EightEquations {
 /// The same with sB = sA + beta f_x - r, eq. (dist8d), put into the others: F and its Jacobian in (sA, alpha, beta).
 struct FiveEquations {
   static constexpr int kSize = 5;
-  using Vector = Eigen::Matrix<double, kSize, 1>;
-  using Matrix = Eigen::Matrix<double, kSize, kSize>;
+  using Vector = SmallVector<kSize>;
+  using Matrix = SmallMatrix<kSize>;
 
   static void eliminate(const LocalSurface& f, const Eigen::Vector3d& r, NewtonState& y) {
     y.s_b = y.s_a + y.beta * f.gradient - r;
@@ -246,8 +247,8 @@ DistanceResult attempt_newton(const WorldSurface<ShapeA>& a, const WorldSurface<
   auto point = newton_point<Equations>(a, b, frame.r, start);
   int iterations = 1;
   while (iterations < max_iterations) {
-    const Eigen::PartialPivLU<typename Equations::Matrix> lu(Equations::jacobian(point.f, point.g, point.y));
-    typename Equations::Vector step = -lu.solve(point.F);
+    typename Equations::Vector step =
+        -solve_small<Equations::kSize>(Equations::jacobian(point.f, point.g, point.y), point.F);
     double length = Equations::length(step);
     if (!std::isfinite(length)) {
       declined.status = DistanceStatus::singular;

@@ -105,6 +105,8 @@ class GEOM_EXPORT NormBodyPair {
   };
 
   TangentMatrix tangent_matrix(const DualSample& s) const;
+  /// A unit vector across s.n along which g bends upwards by more than `rounding` / rad^2; zero if there is none.
+  Eigen::Vector3d upward(const DualSample& s, double rounding) const;
   /// The dual method, with more steps where the bodies seem to overlap.
   Answer patient_dual(const Eigen::Vector3d& start, int limit, int& iterations) const;
   bool ends(const Answer& answer, Penetration penetration) const;

@@ -74,9 +74,7 @@ Answer overlap(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const Pose& X
   const Eigen::Vector3d r = X_WB.position() - X_WA.position();
   const double inscribed = a.inscribed_radius() + b.inscribed_radius();
   if (r.squaredNorm() <= inscribed * inscribed) return Answer::yes;
-  const double start2 = start.squaredNorm();
-  const bool warm = start2 > kLeastStart2 && std::isfinite(start2);
-  if (distance_lower_bound(a, X_WA, b, X_WB, warm ? start : r) > 0) return Answer::no;
+  if (distance_lower_bound(a, X_WA, b, X_WB, internal::is_warm(start) ? start : r) > 0) return Answer::no;
   if (internal::share_the_middle(a, X_WA, b, X_WB)) return Answer::yes;
   const DistanceResult local = distance(a, X_WA, b, X_WB, {.start = start, .penetration = Penetration::local});
   const Answer answer = internal::certain_answer(a, X_WA, b, X_WB, local);

@@ -34,20 +34,58 @@ struct Tangent {
   double g;
 };
 
+/// The highest of some normals beside n along v, a unit vector across n; n itself if g is higher at none of them by
+/// more than `rounding`.
+template <class Sample>
+Eigen::Vector3d highest_beside(const Sample& sample, const Tangent& at, const Eigen::Vector3d& v, double rounding) {
+  Eigen::Vector3d best = at.n;
+  double highest = at.g + rounding;
+  for (const double angle : {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6}) {
+    for (const double way : {angle, -angle}) {
+      const Eigen::Vector3d n = (at.n + way * v).normalized();
+      const double g = sample(n).g;
+      if (!(g > highest)) continue;
+      best = n;
+      highest = g;
+    }
+  }
+  return best;
+}
+
+/// The Tangent that climb(n) ends at, a stationary point; where that is a saddle, as between symmetric bodies, it goes
+/// on from beside it. `upward(n)` is a unit vector across n along which g bends upwards, or zero.
+template <class Sample, class Climb, class Upward>
+Tangent climb_over_saddles(const Sample& sample, const Climb& climb, const Upward& upward, const Eigen::Vector3d& n,
+                           double rounding) {
+  constexpr int kMostSaddles = 5;
+  Tangent top = climb(n);
+  for (int k = 0; k < kMostSaddles; ++k) {
+    const Eigen::Vector3d v = upward(top.n);
+    if (v.isZero(0)) break;
+    const Eigen::Vector3d aside = highest_beside(sample, top, v, rounding);
+    if (aside == top.n) break;
+    const Tangent next = climb(aside);
+    if (!(next.g > top.g)) break;
+    top = next;
+  }
+  return top;
+}
+
 /// `sample(n)` returns the Tangent at n; `polish(n)` one at a local maximum uphill of n, or at n.
 template <class Sample, class Polish>
 class SphereSearch {
  public:
-  SphereSearch(const Sample& sample, const Polish& polish, double rho, const Tangent& start)
-      : sample_(sample), polish_(polish), rho_(rho), best_(start) {}
+  /// `start`: a local maximum; `rounding`: by how much g must grow to be called higher.
+  SphereSearch(const Sample& sample, const Polish& polish, double rho, const Tangent& start, double rounding)
+      : sample_(sample), polish_(polish), rho_(rho), rounding_(rounding), best_(start) {}
 
   /// Looks for a normal with g > best().g + tolerance until none is left or `budget` samples are spent; for larger
-  /// tolerances first, so that what is spent is not spent on one corner of the sphere. After it, max g <= upper().
+  /// tolerances first, so that what is spent is not spent on one corner of the sphere. After it, max g <= upper(), and
+  /// best() is a local maximum, as high as any normal that was looked at.
   void run_to(double tolerance, int budget);
 
   const Tangent& best() const { return best_; }
   double upper() const { return upper_; }
-  int samples() const { return samples_; }
 
  private:
   using Cell = std::array<Tangent, 3>;
@@ -55,6 +93,7 @@ class SphereSearch {
   void run(double tolerance, int last_sample);
   double bound(const Cell& cell) const;
   void consider(const Tangent& t, double tolerance);
+  void polish_best();
   void push(const Cell& cell, double tolerance);
   void halve(const Cell& cell, double tolerance);
 
@@ -64,7 +103,9 @@ class SphereSearch {
   const Sample& sample_;
   const Polish& polish_;
   double rho_;
+  double rounding_;
   Tangent best_;
+  bool polished_ = true;  ///< best_ is a local maximum
   double upper_ = std::numeric_limits<double>::infinity();
   double pruned_ = 0;  ///< the largest bound among the triangles that are done
   int samples_ = 0;
@@ -96,9 +137,18 @@ double SphereSearch<Sample, Polish>::bound(const Cell& cell) const {
 
 template <class Sample, class Polish>
 void SphereSearch<Sample, Polish>::consider(const Tangent& t, double tolerance) {
-  if (!(t.g > best_.g + tolerance)) return;
-  const Tangent polished = polish_(t.n);
-  best_ = polished.g > t.g ? polished : t;
+  if (!(t.g > best_.g + rounding_)) return;
+  // What is higher by less than the tolerance is kept as it is: one ascent at the end is enough.
+  polished_ = t.g > best_.g + tolerance;
+  best_ = t;
+  if (polished_) polish_best();
+}
+
+template <class Sample, class Polish>
+void SphereSearch<Sample, Polish>::polish_best() {
+  const Tangent polished = polish_(best_.n);
+  if (polished.g > best_.g) best_ = polished;
+  polished_ = true;
 }
 
 template <class Sample, class Polish>
@@ -138,11 +188,12 @@ template <class Sample, class Polish>
 void SphereSearch<Sample, Polish>::run_to(double tolerance, int budget) {
   const int last_sample = samples_ + budget;
   for (const double coarser : {1e6, 1e4, 1e2, 1.0}) {
-    if (samples_ >= last_sample) return;
+    if (samples_ >= last_sample) break;
     if (upper_ <= best_.g + coarser * tolerance) continue;
     run(coarser * tolerance, last_sample);
     upper_ = std::min(upper_, pruned_);
   }
+  if (!polished_) polish_best();
 }
 
 template <class Sample, class Polish>

@@ -105,13 +105,12 @@ template <class Shape, class Vector>
   return det * r - (p * x_a) * u_a - (q * x_b) * u_b;
 }
 
-/// 1 / sqrt(1 + s) for |s| < 2e-3 by its series, whose first omitted term, 231/1024 s^6 < 2e-17, is below rounding: a
-/// few multiplications instead of a square root and a division in the longest dependency chain.
+/// 1 / sqrt(1 + s) for |s| < kInverseSqrtSeries by its series, whose first omitted term, 231/1024 s^6 < 2e-17, is below
+/// rounding: a few multiplications instead of a square root and a division in the longest dependency chain.
 template <class Real>
 [[gnu::always_inline]] inline Real inverse_sqrt_series(Real s) {
   const Real s2 = s * s;  // Estrin's scheme: half the length of Horner's chain
   return (1 - 0.5 * s) + (s2 * (0.375 - 0.3125 * s) + (s2 * s2) * (0.2734375 - 0.24609375 * s));
 }
-inline constexpr double kInverseSqrtSeries = 2e-3;
 
 }  // namespace geom::internal
