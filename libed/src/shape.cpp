@@ -25,7 +25,7 @@ std::optional<int> axis_of(const geom::Ellipsoid& shape) {
 
 std::optional<int> axis_of(const geom::Superellipsoid& shape) {
   const Vector3d& a = shape.semi_axes();
-  if (shape.e1() == 1 && shape.e2() == 1) return geom::Ellipsoid(a).symmetry_axis();
+  if (shape.is_ellipsoid()) return geom::Ellipsoid(a).symmetry_axis();
   if (shape.e2() == 1 && a.x() == a.y()) return 2;
   return std::nullopt;
 }

@@ -119,19 +119,19 @@ class SupportGauge {
   double rate(const State& s, const GapOrEvaluation& e, const Eigen::Vector3d& n) const {
     return n.dot(v_) - point_rate(s, e.sample.support.point, n);
   }
-  /// The same with both contact arms read from the body that is more curved at n: on a flat face the support point is
-  /// lost to rounding, and the sign must be that of the impulse (contact_points).
+  /// The same at the contact: on a flat face the support point is lost to rounding, and the sign must be that of the
+  /// impulse (contact_points).
   double contact_rate(const State& s, const Evaluation& e, const Eigen::Vector3d& n) const {
-    return n.dot(v_) - point_rate(s, contact_points(e.sample, s.pair.between()), n);
+    return n.dot(v_) - point_rate(s, contact_points(s, e.sample, e.newton), n);
   }
 
-  /// The points of both bodies, from their centres, at which they touch.
-  static LaneVector contact_points(const DualSample& s, const Eigen::Vector3d& r) {
-    const Lanes flatness = s.traces();
-    const Eigen::Vector3d p_a = s.support.point.a();
-    const Eigen::Vector3d p_b = s.support.point.b();
-    const Eigen::Vector3d gap = s.g * s.n;  // r + pB - pA
-    return flatness[0] > flatness[1] ? LaneVector::of(r + p_b - gap, p_b) : LaneVector::of(p_a, p_a + gap - r);
+  /// The points of both bodies, from their centres, at which they touch; apart by g n exactly.
+  static LaneVector contact_points(const State& s, const DualSample& sample, const NormBodyPair::Step& step) {
+    const LaneVector points = NormBodyPair::moved_points(sample, step);
+    const Eigen::Vector3d gap = sample.g * sample.n;
+    const Eigen::Vector3d mismatch = s.pair.between() + points.b() - points.a() - gap;
+    const Eigen::Vector3d point_a = points.a() + 0.5 * mismatch;
+    return LaneVector::of(point_a, point_a + gap - s.pair.between());
   }
 
   template <class GapOrEvaluation>
@@ -141,7 +141,8 @@ class SupportGauge {
   }
 
   static ContactPoints contact_points(const State& s, const Eigen::Vector3d& n) {
-    const LaneVector points = contact_points(s.pair.sample(n), s.pair.between());
+    const DualSample sample = s.pair.sample(n);
+    const LaneVector points = contact_points(s, sample, s.pair.newton_step(sample));
     return {points.a(), points.b()};
   }
 

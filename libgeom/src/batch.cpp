@@ -241,7 +241,7 @@ void check_starts(const BatchOptions& options, std::size_t pairs) {
 std::optional<Ellipsoid> as_ellipsoid(const Shape& shape) {
   if (const auto* ellipsoid = std::get_if<Ellipsoid>(&shape)) return *ellipsoid;
   const auto& s = std::get<Superellipsoid>(shape);
-  if (s.e1() == 1 && s.e2() == 1) return Ellipsoid(s.semi_axes());
+  if (s.is_ellipsoid()) return Ellipsoid(s.semi_axes());
   return std::nullopt;
 }
 

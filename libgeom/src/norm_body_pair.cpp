@@ -8,6 +8,7 @@
 #include <Eigen/LU>
 
 #include <algorithm>
+#include <cmath>
 
 namespace geom::internal {
 namespace {
@@ -20,7 +21,7 @@ using Eigen::Vector3d;
 constexpr double kTightGap = 1e-14;
 /// The same, of the mismatch of the support points.
 constexpr double kTightResidual = 1e-14;
-/// What rounding of the support points, where edges nearly touch, can leave of their mismatch.
+/// What rounding of the support points can leave of their mismatch at the stationary normal of an overlap.
 constexpr double kSmallResidual = 1e-8;
 /// Mismatch of the support points above which an overlap's normal is no maximum to rounding but stuck beside one ...
 constexpr double kStuck = 1e-12;
@@ -34,6 +35,8 @@ constexpr double kShrink = 0.9;
 /// A Newton step of the normal (radian) and what it promises: below both there is nothing to gain but rounding.
 constexpr double kRoundingStep = 1e-9;
 constexpr double kRoundingDecrement = 1e-16;
+/// A polished normal promises less than this share of what it promised before.
+constexpr double kPromiseShrink = 0.1;
 
 /// Levenberg's term of the primal method, dimensionless (the Hessian's identity part is 1): where it starts, its range,
 /// and how it changes after a step that moves the points and after one that does not.
@@ -122,6 +125,13 @@ NormBodyPair::Step NormBodyPair::newton_step(const DualSample& s) const {
   return {delta, delta.dot(s.y), M.lifted};
 }
 
+LaneVector NormBodyPair::moved_points(const DualSample& s, const Step& step) {
+  if (!std::isfinite(step.decrement)) return s.support.point;  // lengths beyond 1e100 of each other
+  // B's support point is that of -n, whose step is -delta.
+  const LaneVector delta = LaneVector::of(step.delta, -step.delta);
+  return s.support.point + s.support.t1.dot(delta) * s.support.t1 + s.support.t2.dot(delta) * s.support.t2;
+}
+
 /// g grows, or stays while the mismatch of the support points falls: near the maximum g's growth is below rounding.
 bool NormBodyPair::improves(const DualSample& from, const DualSample& to) const {
   const double rounding = kGrowth * scale_;
@@ -138,10 +148,8 @@ bool NormBodyPair::retract(DualSample& s, const Step& step, double cap) const {
     s = trial;
     return true;
   };
-  // B's support point is that of -n, whose step is -delta.
-  const LaneVector delta = LaneVector::of(step.delta, -step.delta);
-  const LaneVector move = s.support.t1.dot(delta) * s.support.t1 + s.support.t2.dot(delta) * s.support.t2;
   const LaneVector from = s.support.point;
+  const LaneVector move = moved_points(s, step) - from;
   const Lanes traces = s.traces();
   const bool flatter_is_a = traces[0] >= traces[1];
   double fraction = 1;
@@ -173,7 +181,34 @@ bool NormBodyPair::advance(DualSample& s, const Step& step) const {
     s = trial;
     return true;
   }
-  return false;
+  return polish(s, step);
+}
+
+/// Where one body is flat its support point is lost to rounding, and with it the mismatch: neither g nor that can show
+/// that the normal is off by 1e-7 along the direction in which both are round. The next promise can, in which flat
+/// directions weigh nothing.
+bool NormBodyPair::polish(DualSample& s, const Step& step) const {
+  if (step.lifted || !(step.decrement < kTightGap * scale_) || !(step.delta.squaredNorm() < kNormalTolerance2)) {
+    return false;
+  }
+  const DualSample trial = sample((s.n + step.delta).normalized());
+  if (!(trial.g >= s.g - kGrowth * scale_)) return false;
+  const Step next = newton_step(trial);
+  if (next.lifted || !(next.decrement < kPromiseShrink * step.decrement)) return false;
+  s = trial;
+  return true;
+}
+
+/// Moves the points, and takes the upper bound that they are where rounding keeps the support points apart.
+void NormBodyPair::place_points(const Step& step, Answer& answer) const {
+  answer.points = moved_points(answer.at, step);
+  answer.gap = answer.at.gap();
+  if (answer.gap < kTightGap * scale_) return;
+  const LaneVector on = bodies_.on_surface(answer.points);
+  const double gap = (r_ + on.b() - on.a()).norm() - answer.at.g;
+  if (!(gap < answer.gap)) return;
+  answer.points = on;
+  answer.gap = std::max(0.0, gap);
 }
 
 NormBodyPair::Answer NormBodyPair::dual(const Vector3d& start, int max_iterations, int& iterations) const {
@@ -188,15 +223,13 @@ NormBodyPair::Answer NormBodyPair::dual(const Vector3d& start, int max_iteration
     settled = !advance(answer.at, step);
     if (!settled) step = newton_step(answer.at);
   }
-  answer.gap = answer.at.gap();
-  // Where edges nearly touch, rounding of the support points alone can leave a mismatch too large for the bounds: there
-  // the decrement, twice what the distance can be above g by the quadratic model of a concave function, decides.
-  // A decrement alone says nothing on a flat face, where the model holds for no step at all, nor while steps still
-  // help.
-  const bool stationary = settled && answer.at.residual < kSmallResidual * scale_ &&
-                          step.decrement < kTightGap * scale_ && !step.lifted &&
-                          (!(answer.at.g > 0) || answer.gap < kWidestGap * scale_);
-  answer.converged = answer.gap < kBoundGap * scale_ || stationary;
+  place_points(step, answer);
+  // Of bodies that overlap there is no upper bound: the decrement, twice what g can gain by its quadratic model,
+  // decides. It says nothing on a flat face, where the model holds for no step at all, nor while steps still help.
+  const bool stationary = settled && !(answer.at.g > 0) && answer.at.residual < kSmallResidual * scale_ &&
+                          step.decrement < kTightGap * scale_ && !step.lifted;
+  // Before it has settled, steps still help.
+  answer.converged = answer.gap < (settled ? kBoundGap : kTightGap) * scale_ || stationary;
   return answer;
 }
 
@@ -210,6 +243,7 @@ void NormBodyPair::bound(const Points& points, Answer& best) const {
     if (!(upper - lower < best.gap)) continue;
     best.gap = upper - lower;
     best.at.n = n;
+    best.points = points.on;
   }
 }
 
@@ -247,6 +281,7 @@ NormBodyPair::Answer NormBodyPair::primal(const DualSample& start, int max_itera
   };
   Answer best;
   best.at.n = start.n;
+  best.points = start.support.point;
   Points here = points(start.support.point);
   double mu = kFirstMu;
   for (int k = 0; k < max_iterations; ++k) {
@@ -265,7 +300,10 @@ NormBodyPair::Answer NormBodyPair::primal(const DualSample& start, int max_itera
     mu = moved ? std::max(kMuAfterMove * mu, kLeastMu) : kMuAfterFailure * mu;
   }
   best.at = sample(best.at.n);
-  best.gap = std::min(best.gap, best.at.gap());
+  if (best.at.gap() < best.gap) {
+    best.gap = best.at.gap();
+    best.points = best.at.support.point;
+  }
   best.converged = best.gap < kBoundGap * scale_;
   return best;
 }
@@ -326,8 +364,9 @@ NormBodyPair::Answer NormBodyPair::search(const DualSample& best, int& iteration
   }
   Answer answer;
   answer.at = sample(sphere.best().n);
-  answer.gap = std::max(0.0, sphere.upper() - sphere.best().g);
-  if (apart) answer.gap = std::min(answer.gap, answer.at.gap());
+  place_points(newton_step(answer.at), answer);
+  const double searched = std::max(0.0, sphere.upper() - sphere.best().g);
+  answer.gap = apart ? std::min(answer.gap, searched) : searched;
   answer.converged = answer.gap < (apart ? kWidestGap : kWidestDepthGap) * scale_;
   return answer;
 }

@@ -30,9 +30,10 @@ DistanceResult norm_body_distance(const A& a, const Pose& X_WA, const B& b, cons
   const DualSample& at = answer.at;
   result.distance = at.g;
   result.normal = at.n;
-  result.point_a = X_WA.position() + at.support.point.a() + 0.5 * at.y;
+  const Vector3d mismatch = r - answer.points.a() + answer.points.b() - at.g * at.n;
+  result.point_a = X_WA.position() + answer.points.a() + 0.5 * mismatch;
   result.point_b = result.point_a + at.g * at.n;
-  result.residual = at.residual;
+  result.residual = mismatch.norm();
   const bool bounded = at.g > 0 || answer.gap < kWidestDepthGap * pair.scale();
   // The upper bound can be below g by rounding.
   result.error_bound = bounded ? std::max(0.0, answer.gap) : std::numeric_limits<double>::infinity();
@@ -40,28 +41,24 @@ DistanceResult norm_body_distance(const A& a, const Pose& X_WA, const B& b, cons
   return result;
 }
 
-bool is_ellipsoid(const Superellipsoid& s) {
-  return s.e1() == 1 && s.e2() == 1;
-}
-
 }  // namespace
 
 DistanceResult distance(const Superellipsoid& a, const Pose& X_WA, const Superellipsoid& b, const Pose& X_WB,
                         const DistanceOptions& options) {
-  if (is_ellipsoid(a)) return distance(Ellipsoid(a.semi_axes()), X_WA, b, X_WB, options);
-  if (is_ellipsoid(b)) return distance(a, X_WA, Ellipsoid(b.semi_axes()), X_WB, options);
+  if (a.is_ellipsoid()) return distance(Ellipsoid(a.semi_axes()), X_WA, b, X_WB, options);
+  if (b.is_ellipsoid()) return distance(a, X_WA, Ellipsoid(b.semi_axes()), X_WB, options);
   return norm_body_distance(a, X_WA, b, X_WB, options);
 }
 
 DistanceResult distance(const Superellipsoid& a, const Pose& X_WA, const Ellipsoid& b, const Pose& X_WB,
                         const DistanceOptions& options) {
-  if (is_ellipsoid(a)) return distance(Ellipsoid(a.semi_axes()), X_WA, b, X_WB, options);
+  if (a.is_ellipsoid()) return distance(Ellipsoid(a.semi_axes()), X_WA, b, X_WB, options);
   return norm_body_distance(a, X_WA, b, X_WB, options);
 }
 
 DistanceResult distance(const Ellipsoid& a, const Pose& X_WA, const Superellipsoid& b, const Pose& X_WB,
                         const DistanceOptions& options) {
-  if (is_ellipsoid(b)) return distance(a, X_WA, Ellipsoid(b.semi_axes()), X_WB, options);
+  if (b.is_ellipsoid()) return distance(a, X_WA, Ellipsoid(b.semi_axes()), X_WB, options);
   return norm_body_distance(a, X_WA, b, X_WB, options);
 }
 

@@ -17,15 +17,9 @@ namespace ed_test {
 
 /// Contacts are found with other rounding errors (about 1e-15 of the time) from other neighbours, times and normals,
 /// and the dynamics multiplies them: in the first 1000 collisions, some four a body, to 1e-12 for ellipsoids of
-/// revolution, 1e-11 for other round bodies, some 1e-10 where faces meet. A wrong or missing collision changes times by
-/// a good part of the mean time between collisions, 1e-4 or more.
+/// revolution, 2e-11 for other bodies. A wrong or missing collision changes times by a good part of the mean time between
+/// collisions, 1e-4 or more.
 inline constexpr double kSameTime = 1e-9;
-
-/// The same where the 1-D root finds contacts of faces and edges. It takes the normal from `distance`, whose support
-/// points rounding can keep up to 1e-8 of the size apart there (kSmallResidual, norm_body_pair.cpp): a normal that is
-/// off by 1e-9 changes the next contact's time by as much, and flat bodies that rattle multiply that a hundredfold
-/// within a few collisions. Other roots take it from the equations at the contact point.
-inline constexpr double kSameTimeOfEdges = 1e-6;
 
 inline std::vector<ed::Collision> first_collisions(const ed::System& system, const ed::SimulationOptions& options,
                                                    std::size_t number = 1000) {
@@ -40,7 +34,7 @@ inline std::vector<ed::Collision> first_collisions(const ed::System& system, con
 
 /// Expects the pairs to be the same, times to agree, and to be in order.
 inline void expect_same(const std::vector<ed::Collision>& a, const std::vector<ed::Collision>& b,
-                        const std::string& what, double same_time = kSameTime) {
+                        const std::string& what) {
   ASSERT_EQ(a.size(), b.size()) << what;
   double worst = 0;
   for (std::size_t k = 0; k < a.size(); ++k) {
@@ -50,7 +44,7 @@ inline void expect_same(const std::vector<ed::Collision>& a, const std::vector<e
     EXPECT_GE(b[k].time, b[k > 0 ? k - 1 : 0].time) << what;
   }
   std::printf("%s: times differ by %.1e at most\n", what.c_str(), worst);
-  EXPECT_LE(worst, same_time) << what;
+  EXPECT_LE(worst, kSameTime) << what;
 }
 
 /// A way to run the event loop.

@@ -158,6 +158,33 @@ TEST(SuperellipsoidDistance, OfParallelFaces) {
   }
 }
 
+/// Almost touching where a disk's side, on which the support point is lost to rounding of the normal, meets the rim of
+/// another: the normal about the disk's axis and the points are as exact as where both are round.
+TEST(SuperellipsoidDistance, OfAFlatSideAndARimHasTheNormalAndThePoints) {
+  const Superellipsoid disk({1, 1, 0.5}, 0.4, 1);
+  Random random(13);
+  double worst_normal = 0, worst_point = 0;
+  for (int k = 0; k < 2000; ++k) {
+    const double z = random.log_uniform(1e-6, 1e-2);  // of the half thickness: the normal is z^4 off the plane
+    const double rho = std::pow(1 - std::pow(z, 5), 0.2);
+    const double phi = random.uniform(0, 6.28);
+    const Vector3d at(rho * std::cos(phi), rho * std::sin(phi), 0.5 * z);
+    const Vector3d n = Vector3d(std::cos(phi), std::sin(phi), 2 * std::pow(z / rho, 4)).normalized();
+    const Eigen::Matrix3d R = random.pose(Vector3d(Vector3d::Zero())).rotation();
+    const double gap = k % 2 == 0 ? 0 : random.log_uniform(1e-12, 1e-9);
+    const Pose X_WB(R, at + gap * n - R * disk.support(R.transpose() * -n).point);
+    const DistanceResult r = distance(disk, Pose(), disk, X_WB, {.start = n + 1e-3 * random.direction()});
+    ASSERT_NE(r.status, DistanceStatus::not_converged);
+    ASSERT_NEAR(r.distance, gap, 1e-14) << "pair " << k;
+    ASSERT_LE(r.iterations, 15) << "pair " << k;
+    worst_normal = std::max(worst_normal, (r.normal - n).norm());
+    worst_point = std::max(worst_point, (r.point_a - at).norm());
+  }
+  std::printf("normals within %.1e, points within %.1e\n", worst_normal, worst_point);
+  EXPECT_LE(worst_normal, 1e-11);
+  EXPECT_LE(worst_point, 1e-14);
+}
+
 /// Depths of one row of the table below, in units of the first semi-axis.
 struct DepthRange {
   double most;

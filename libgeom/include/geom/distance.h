@@ -102,8 +102,7 @@ GEOM_EXPORT DistanceResult distance(const Ellipsoid& a, const Pose& X_WA, const 
 /// closest points, then continued from rounder bodies (internal/norm_body_pair.h).
 ///
 /// Answers are certified by two bounds, g(n) from below and the distance of two points from above, that differ by less
-/// than kBoundGap (1e-12) of the sum of both bounding radii; where edges nearly touch and rounding keeps the bounds
-/// apart, by a positive g that is stationary to 1e-14 of it. `error_bound` tells. Overlaps are searched as above. Where
+/// than kBoundGap (1e-12) of the sum of both bounding radii. `error_bound` tells. Overlaps are searched as above. Where
 /// the bodies are apart the normal is within sqrt(2 error_bound / distance) of the true one (radian): g(n) <= distance
 /// times the cosine of that angle.
 ///

@@ -39,11 +39,12 @@ class GEOM_EXPORT Superellipsoid {
   /// Its dual N*, of a n.
   const internal::NestedNorm& dual_norm() const { return dual_; }
 
+  bool is_ellipsoid() const { return e1_ == 1 && e2_ == 1; }
   double bounding_radius() const { return bounding_radius_; }    ///< largest distance of the surface from the centre
   double inscribed_radius() const { return inscribed_radius_; }  ///< the least
   /// A lower bound of the smallest radius of curvature: an ellipsoid's if both exponents are 1, else 0.
   double min_curvature_radius() const {
-    return e1_ == 1 && e2_ == 1 ? inscribed_radius_ * (inscribed_radius_ / bounding_radius_) : 0;
+    return is_ellipsoid() ? inscribed_radius_ * (inscribed_radius_ / bounding_radius_) : 0;
   }
   /// By Beta functions (Jaklic, Leonardis and Solina, Segmentation and Recovery of Superquadrics (2000), sec. 2.5).
   double volume() const;

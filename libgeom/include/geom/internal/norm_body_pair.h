@@ -54,8 +54,9 @@ class GEOM_EXPORT NormBodyPair {
   /// The answer of one method: a normal, and by how much g there can be below the distance.
   struct Answer {
     DualSample at;
+    LaneVector points;  ///< nearly on both surfaces and as close as they come there, from the centres
     double gap = std::numeric_limits<double>::infinity();  ///< certified: at.g <= distance <= at.g + gap
-    bool converged = false;                                ///< the gap is rounding, or at.n is stationary to rounding
+    bool converged = false;  ///< the gap is rounding; of an overlap: at.n is stationary to rounding
   };
 
   /// One Newton step of the normal; not taken yet.
@@ -69,6 +70,9 @@ class GEOM_EXPORT NormBodyPair {
   Step newton_step(const DualSample& s) const;
   /// One step uphill: retractions first where a face is flat, then Newton's step, shortened; false: none was found.
   bool advance(DualSample& s, const Step& step) const;
+  /// The support points moved by what the step turns the normal: the closest points to first order. On a flat face the
+  /// support point itself is lost to rounding, which this takes back.
+  static LaneVector moved_points(const DualSample& s, const Step& step);
   /// x across s.n with (M + g I) x = y, M the sum of the Hessians, made definite as in a Newton step.
   Eigen::Vector3d tangent_solve(const DualSample& s, const Eigen::Vector3d& y) const;
 
@@ -109,6 +113,7 @@ class GEOM_EXPORT NormBodyPair {
   Eigen::Vector3d upward(const DualSample& s, double rounding) const;
   /// The dual method, with more steps where the bodies seem to overlap.
   Answer patient_dual(const Eigen::Vector3d& start, int limit, int& iterations) const;
+  void place_points(const Step& step, Answer& answer) const;
   bool ends(const Answer& answer, Penetration penetration) const;
   /// Whether a point that both bodies hold is found, between the witness points or the centres.
   bool shares_a_point(const DualSample& s) const;
@@ -118,6 +123,7 @@ class GEOM_EXPORT NormBodyPair {
   Answer search(const DualSample& best, int& iterations) const;
   Answer polished(const Answer& answer, int& iterations) const;
   bool retract(DualSample& s, const Step& step, double cap) const;
+  bool polish(DualSample& s, const Step& step) const;
   bool improves(const DualSample& from, const DualSample& to) const;
   void bound(const Points& points, Answer& best) const;
   LaneVector primal_step(const Points& points, double mu) const;
