@@ -127,11 +127,7 @@ class SupportGauge {
 
   /// The points of both bodies, from their centres, at which they touch; apart by g n exactly.
   static LaneVector contact_points(const State& s, const DualSample& sample, const NormBodyPair::Step& step) {
-    const LaneVector points = NormBodyPair::moved_points(sample, step);
-    const Eigen::Vector3d gap = sample.g * sample.n;
-    const Eigen::Vector3d mismatch = s.pair.between() + points.b() - points.a() - gap;
-    const Eigen::Vector3d point_a = points.a() + 0.5 * mismatch;
-    return LaneVector::of(point_a, point_a + gap - s.pair.between());
+    return s.pair.joined(NormBodyPair::moved_points(sample, step), sample);
   }
 
   template <class GapOrEvaluation>

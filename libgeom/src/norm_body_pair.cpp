@@ -35,7 +35,8 @@ constexpr double kShrink = 0.9;
 /// A Newton step of the normal (radian) and what it promises: below both there is nothing to gain but rounding.
 constexpr double kRoundingStep = 1e-9;
 constexpr double kRoundingDecrement = 1e-16;
-/// A polished normal promises less than this share of what it promised before.
+/// A promise that g may not show; it is kept if what is promised next is less than this share of it.
+constexpr double kHiddenDecrement = 1e-14;
 constexpr double kPromiseShrink = 0.1;
 
 /// Levenberg's term of the primal method, dimensionless (the Hessian's identity part is 1): where it starts, its range,
@@ -88,9 +89,9 @@ NormBodyPair::TangentMatrix NormBodyPair::tangent_matrix(const DualSample& s) co
   const double det = sum(within * within + across12 * across12) + across11[0] * across11[0] + across22[0] * across22[0];
   const double trace = sum(s.traces());
   const double largest = 0.5 * trace + std::sqrt(std::max(0.0, 0.25 * trace * trace - det));
-  const double smallest = s.g + (largest > 0 ? det / largest : 0);
-  M.lifted = smallest < floor_;
-  M.identity = M.lifted ? s.g + floor_ - smallest : s.g;
+  const double smallest = largest > 0 ? det / largest : 0;
+  M.lifted = s.g + smallest < floor_;
+  M.identity = M.lifted ? floor_ - smallest : s.g;
   M.determinant = M.identity * (M.identity + trace) + det;
   return M;
 }
@@ -126,10 +127,21 @@ NormBodyPair::Step NormBodyPair::newton_step(const DualSample& s) const {
 }
 
 LaneVector NormBodyPair::moved_points(const DualSample& s, const Step& step) {
-  if (!std::isfinite(step.decrement)) return s.support.point;  // lengths beyond 1e100 of each other
+  // Deep in an overlap a step that had to be made definite may lead anywhere.
+  if ((step.lifted && s.g < 0) || !std::isfinite(step.decrement)) return s.support.point;
+  return s.support.point + moves(s, step);
+}
+
+LaneVector NormBodyPair::moves(const DualSample& s, const Step& step) {
   // B's support point is that of -n, whose step is -delta.
   const LaneVector delta = LaneVector::of(step.delta, -step.delta);
-  return s.support.point + s.support.t1.dot(delta) * s.support.t1 + s.support.t2.dot(delta) * s.support.t2;
+  return s.support.t1.dot(delta) * s.support.t1 + s.support.t2.dot(delta) * s.support.t2;
+}
+
+LaneVector NormBodyPair::joined(const LaneVector& points, const DualSample& at) const {
+  const Vector3d gap = at.g * at.n;
+  const Vector3d point_a = points.a() + 0.5 * (r_ + points.b() - points.a() - gap);
+  return LaneVector::of(point_a, point_a + gap - r_);
 }
 
 /// g grows, or stays while the mismatch of the support points falls: near the maximum g's growth is below rounding.
@@ -149,7 +161,7 @@ bool NormBodyPair::retract(DualSample& s, const Step& step, double cap) const {
     return true;
   };
   const LaneVector from = s.support.point;
-  const LaneVector move = moved_points(s, step) - from;
+  const LaneVector move = moves(s, step);
   const Lanes traces = s.traces();
   const bool flatter_is_a = traces[0] >= traces[1];
   double fraction = 1;
@@ -177,32 +189,32 @@ bool NormBodyPair::advance(DualSample& s, const Step& step) const {
   for (int k = 0; k < tries; ++k, fraction *= kBacktrack) {
     const DualSample trial = sample((s.n + fraction * step.delta).normalized());
     const bool grows = trial.g >= s.g + (s.g > 0 ? kArmijo * fraction * step.decrement : 0.0);
-    if (!(grows && trial.g > s.g) && !improves(s, trial)) continue;
+    if (!(grows && trial.g > s.g) && !improves(s, trial) && !(k == 0 && keeps_promise(s, step, trial))) continue;
     s = trial;
     return true;
   }
-  return polish(s, step);
+  return false;
 }
 
 /// Where one body is flat its support point is lost to rounding, and with it the mismatch: neither g nor that can show
 /// that the normal is off by 1e-7 along the direction in which both are round. The next promise can, in which flat
 /// directions weigh nothing.
-bool NormBodyPair::polish(DualSample& s, const Step& step) const {
-  if (step.lifted || !(step.decrement < kTightGap * scale_) || !(step.delta.squaredNorm() < kNormalTolerance2)) {
-    return false;
-  }
-  const DualSample trial = sample((s.n + step.delta).normalized());
-  if (!(trial.g >= s.g - kGrowth * scale_)) return false;
-  const Step next = newton_step(trial);
-  if (next.lifted || !(next.decrement < kPromiseShrink * step.decrement)) return false;
-  s = trial;
-  return true;
+bool NormBodyPair::keeps_promise(const DualSample& from, const Step& step, const DualSample& to) const {
+  if (step.lifted || !(step.decrement < kHiddenDecrement * scale_)) return false;
+  if (!(step.delta.squaredNorm() < kNormalTolerance2) || !(to.g >= from.g - kGrowth * scale_)) return false;
+  const Step next = newton_step(to);
+  return !next.lifted && next.decrement < kPromiseShrink * step.decrement;
 }
 
-/// Moves the points, and takes the upper bound that they are where rounding keeps the support points apart.
+/// Moves the points and the normal by the step, and takes the upper bound that the points are where rounding keeps the
+/// support points apart.
 void NormBodyPair::place_points(const Step& step, Answer& answer) const {
   answer.points = moved_points(answer.at, step);
   answer.gap = answer.at.gap();
+  if (answer.at.g < -kBoundGap * scale_) return;  // no two points bound the depth of an overlap
+  if (!step.lifted && step.delta.squaredNorm() < kNormalTolerance2) {
+    answer.at.n = (answer.at.n + step.delta).normalized();
+  }
   if (answer.gap < kTightGap * scale_) return;
   const LaneVector on = bodies_.on_surface(answer.points);
   const double gap = (r_ + on.b() - on.a()).norm() - answer.at.g;
@@ -228,7 +240,7 @@ NormBodyPair::Answer NormBodyPair::dual(const Vector3d& start, int max_iteration
   // decides. It says nothing on a flat face, where the model holds for no step at all, nor while steps still help.
   const bool stationary = settled && !(answer.at.g > 0) && answer.at.residual < kSmallResidual * scale_ &&
                           step.decrement < kTightGap * scale_ && !step.lifted;
-  // Before it has settled, steps still help.
+  // Steps that still help would take a wide gap to rounding, which is what the next method does.
   answer.converged = answer.gap < (settled ? kBoundGap : kTightGap) * scale_ || stationary;
   return answer;
 }
@@ -326,16 +338,16 @@ Vector3d NormBodyPair::cold_normal() const {
 bool NormBodyPair::ends(const Answer& answer, Penetration penetration) const {
   if (!answer.converged) return false;
   if (answer.at.g > 0 || answer.gap < kBoundGap * scale_) return true;
-  return penetration == Penetration::local && shares_a_point(answer.at);
+  return penetration == Penetration::local && shares_a_point(answer);
 }
 
-bool NormBodyPair::shares_a_point(const DualSample& s) const {
+bool NormBodyPair::shares_a_point(const Answer& answer) const {
   const auto holds = [this](const Vector3d& p) {
     const Lanes norms = bodies_.norms(LaneVector::of(p, p - r_));
     return norms[0] <= 1 && norms[1] <= 1;
   };
-  const Vector3d point_a = s.support.point.a() + 0.5 * s.y;
-  if (holds_between(point_a, point_a + s.g * s.n, holds)) return true;
+  const LaneVector points = joined(answer.points, answer.at);
+  if (holds_between(points.a(), r_ + points.b(), holds)) return true;
   // Of the points t r between the centres the one with N_A(t r) = N_B((1 - t) r). No norm is beyond kMaxCoordinate /
   // kMinSemiAxis, 1e150, by more than a small factor.
   const Lanes norms = bodies_.norms(LaneVector::of(r_, r_));
@@ -377,7 +389,11 @@ NormBodyPair::Answer NormBodyPair::polished(const Answer& answer, int& iteration
   Answer better = dual(answer.at.n, kMaxIterations, iterations);
   const double gained = better.at.g - answer.at.g;
   if (!(gained > 0)) return answer;
-  better.gap = std::min(better.gap, std::max(0.0, answer.gap - gained));  // the upper bound has not moved
+  const double kept = std::max(0.0, answer.gap - gained);  // the upper bound has not moved
+  if (kept < better.gap) {
+    better.gap = kept;
+    better.points = answer.points;
+  }
   better.converged = true;
   return better;
 }

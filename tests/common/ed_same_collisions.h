@@ -17,8 +17,8 @@ namespace ed_test {
 
 /// Contacts are found with other rounding errors (about 1e-15 of the time) from other neighbours, times and normals,
 /// and the dynamics multiplies them: in the first 1000 collisions, some four a body, to 1e-12 for ellipsoids of
-/// revolution, 2e-11 for other bodies. A wrong or missing collision changes times by a good part of the mean time between
-/// collisions, 1e-4 or more.
+/// revolution, 2e-11 for other round bodies, 3e-10 where faces meet. A wrong or missing collision changes times by a
+/// good part of the mean time between collisions, 1e-4 or more.
 inline constexpr double kSameTime = 1e-9;
 
 inline std::vector<ed::Collision> first_collisions(const ed::System& system, const ed::SimulationOptions& options,

@@ -303,5 +303,32 @@ TEST(SupportContact, NoOverlapWithinACertifiedStep) {
   EXPECT_GT(long_steps, pairs / 100);
 }
 
+/// Both contact arms of an impulse lead to one point, or to two that are g n apart: else angular momentum is lost. And
+/// these are on the surfaces, on flat faces too; vertices (exponents above 1) are the worst.
+TEST(SupportContact, PointsAreOnTheSurfacesAndOneGapApart) {
+  Random random(3);
+  double worst = 0;
+  for (int k = 0; k < 2000; ++k) {
+    const MovingPair pair = random_pair(random, random_shape(random));
+    const NormBodyShape a = norm_body(pair.shape_a);
+    const NormBodyShape b = norm_body(pair.shape_b);
+    Vector3d r = pair.b.position - pair.a.position;
+    const geom::DistanceResult apart = pair.distance(0);
+    ASSERT_EQ(apart.status, geom::DistanceStatus::separated);
+    if (random.coin()) r -= apart.distance * apart.normal;
+    const SupportGauge gauge(a, pair.a, b, pair.b, r, 0);
+    const SupportGauge::State state = gauge.at(0);
+    const ContactPoints points = SupportGauge::contact_points(state, apart.normal);
+    const double g = gauge.gap(state, apart.normal).g;
+    ASSERT_LE((r + points.b - points.a - g * apart.normal).norm(), 1e-15 * (r.norm() + pair.size())) << "pair " << k;
+    const geom::Pose X_WA(pair.a.top.at(0).R, Vector3d(Vector3d::Zero()));
+    const geom::Pose X_WB(pair.b.top.at(0).R, r);
+    worst = std::max({worst, geom_test::off_surface(pair.shape_a, X_WA, points.a) / pair.size(),
+                      geom_test::off_surface(pair.shape_b, X_WB, r + points.b) / pair.size()});
+  }
+  std::printf("off the surfaces by %.1e of the size at most\n", worst);
+  EXPECT_LE(worst, 1e-9);
+}
+
 }  // namespace
 }  // namespace ed::internal

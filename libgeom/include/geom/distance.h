@@ -48,8 +48,8 @@ struct DistanceOptions {
 
 /// The answer of a distance query; every number is NaN when `status` declines it. World frame.
 ///
-/// `point_b - point_a = distance * normal` to rounding. Either point lies on its surface to within about
-/// residual^2 / (2 * radius of curvature); at an edge, of deep overlaps of superellipsoids, to within the residual.
+/// `point_b - point_a = distance * normal` to rounding. Either point is off its surface by about `error_bound` and
+/// residual^2 / (2 * radius of curvature) at most; at an edge, of deep overlaps of superellipsoids, by the residual.
 struct [[nodiscard]] DistanceResult {
   double distance = std::numeric_limits<double>::quiet_NaN();  ///< < 0: minus the penetration depth
   Eigen::Vector3d point_a = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
@@ -57,7 +57,7 @@ struct [[nodiscard]] DistanceResult {
   Eigen::Vector3d normal = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());  ///< unit, A to B
   DistanceStatus status = DistanceStatus::not_converged;
   int iterations = 0;  ///< evaluations of the pair, those of a restart included
-  /// Length: the part of the vector between the support points that is not along the normal.
+  /// Length: how far the points found, those on the surfaces, are from being `distance * normal` apart.
   double residual = std::numeric_limits<double>::quiet_NaN();
   /// Certified: distance <= true distance <= distance + error_bound, rounding (1e-15 of the size of the pair) apart.
   /// Infinite where nothing is certified: the local penetration of deep overlaps.
@@ -103,8 +103,8 @@ GEOM_EXPORT DistanceResult distance(const Ellipsoid& a, const Pose& X_WA, const 
 ///
 /// Answers are certified by two bounds, g(n) from below and the distance of two points from above, that differ by less
 /// than kBoundGap (1e-12) of the sum of both bounding radii. `error_bound` tells. Overlaps are searched as above. Where
-/// the bodies are apart the normal is within sqrt(2 error_bound / distance) of the true one (radian): g(n) <= distance
-/// times the cosine of that angle.
+/// the bodies are apart the normal is within sqrt(2 (error_bound + rounding, 1e-15 of the size) / distance) of the true
+/// one (radian): g(n) <= distance times the cosine of that angle.
 ///
 /// Apart, aspect ratios to 10 are within 1e-12 of the size of the pair; overlaps are within `error_bound`, 1e-9 of it.
 /// Of flatter and longer bodies, to kMaxAspectRatio (1e4), some take the slow last resort, up to a tenth of a second:

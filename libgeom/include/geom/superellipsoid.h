@@ -39,7 +39,7 @@ class GEOM_EXPORT Superellipsoid {
   /// Its dual N*, of a n.
   const internal::NestedNorm& dual_norm() const { return dual_; }
 
-  bool is_ellipsoid() const { return e1_ == 1 && e2_ == 1; }
+  bool is_ellipsoid() const { return e1_ == 1 && e2_ == 1; }     ///< both exponents are 1
   double bounding_radius() const { return bounding_radius_; }    ///< largest distance of the surface from the centre
   double inscribed_radius() const { return inscribed_radius_; }  ///< the least
   /// A lower bound of the smallest radius of curvature: an ellipsoid's if both exponents are 1, else 0.

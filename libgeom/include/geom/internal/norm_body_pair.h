@@ -36,7 +36,7 @@ struct DualSample {
   Eigen::Vector3d y;  ///< the gradient of g along the sphere: the mismatch of the support points
   double residual = std::numeric_limits<double>::infinity();  ///< |y|
 
-  /// How far g can be below the distance: the support points are hypot(g, |y|) apart.
+  /// How far g can be below the distance by the support points, which are hypot(g, |y|) apart.
   double gap() const {
     const double upper = std::hypot(g, residual);
     return g > 0 ? residual * (residual / (upper + g)) : upper - g;
@@ -53,7 +53,7 @@ class GEOM_EXPORT NormBodyPair {
 
   /// The answer of one method: a normal, and by how much g there can be below the distance.
   struct Answer {
-    DualSample at;
+    DualSample at;      ///< the normal may be nearer to the best one than that of the sample, by Newton's last step
     LaneVector points;  ///< nearly on both surfaces and as close as they come there, from the centres
     double gap = std::numeric_limits<double>::infinity();  ///< certified: at.g <= distance <= at.g + gap
     bool converged = false;  ///< the gap is rounding; of an overlap: at.n is stationary to rounding
@@ -68,11 +68,15 @@ class GEOM_EXPORT NormBodyPair {
 
   DualSample sample(const Eigen::Vector3d& n) const;
   Step newton_step(const DualSample& s) const;
-  /// One step uphill: retractions first where a face is flat, then Newton's step, shortened; false: none was found.
+  /// One step uphill: retractions first where a face is flat, then Newton's step, shortened; near the maximum one that
+  /// neither raises g nor lowers it by more than rounding, but keeps what it promises. False: none was found.
   bool advance(DualSample& s, const Step& step) const;
   /// The support points moved by what the step turns the normal: the closest points to first order. On a flat face the
-  /// support point itself is lost to rounding, which this takes back.
+  /// support point itself is lost to rounding, which this takes back. The support points where the step is of no use:
+  /// lifted, deep in an overlap.
   static LaneVector moved_points(const DualSample& s, const Step& step);
+  /// Points of both bodies, from their centres, each moved by half of what keeps them from being g n apart.
+  LaneVector joined(const LaneVector& points, const DualSample& at) const;
   /// x across s.n with (M + g I) x = y, M the sum of the Hessians, made definite as in a Newton step.
   Eigen::Vector3d tangent_solve(const DualSample& s, const Eigen::Vector3d& y) const;
 
@@ -116,14 +120,15 @@ class GEOM_EXPORT NormBodyPair {
   void place_points(const Step& step, Answer& answer) const;
   bool ends(const Answer& answer, Penetration penetration) const;
   /// Whether a point that both bodies hold is found, between the witness points or the centres.
-  bool shares_a_point(const DualSample& s) const;
+  bool shares_a_point(const Answer& answer) const;
   Tangent tangent(const Eigen::Vector3d& n) const;
   /// A normal for bodies that grow from nearly ellipsoids to these.
   Eigen::Vector3d continued(Eigen::Vector3d n, int& iterations) const;
   Answer search(const DualSample& best, int& iterations) const;
   Answer polished(const Answer& answer, int& iterations) const;
   bool retract(DualSample& s, const Step& step, double cap) const;
-  bool polish(DualSample& s, const Step& step) const;
+  static LaneVector moves(const DualSample& s, const Step& step);
+  bool keeps_promise(const DualSample& from, const Step& step, const DualSample& to) const;
   bool improves(const DualSample& from, const DualSample& to) const;
   void bound(const Points& points, Answer& best) const;
   LaneVector primal_step(const Points& points, double mu) const;
