@@ -44,6 +44,7 @@ class Results(Here):
     def test_points(self):
         rows = read(DOCS / "points.csv")
         points = [(float(row["X0"]), float(row["phi"])) for row in rows]
+        self.assertGreaterEqual(len(rows), 500)
         self.assertEqual(points, sorted(set(points)), "distinct, and in order")
         for row, (X0, phi) in zip(rows, points):
             with self.subTest(X0=X0, phi=phi):
