@@ -15,6 +15,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -22,34 +23,57 @@ namespace {
 
 constexpr int kNumber = 512;
 constexpr double kPacking = 0.40;
-constexpr std::uint64_t kCollisions = 20000;
 constexpr int kStretches = 5;
 const char* const kReference = "ellipsoids 1:1:3";
 
 struct Bodies {
   std::string name;
-  ed::BodyShape shape;
+  ed::Species species;
+  std::uint64_t collisions = 20000;  ///< of a stretch
+};
+
+/// A user's shape, as that of docs/user-shapes.md.
+struct Spherocylinder {
+  double half_length, radius;
+
+  geom::Support support(const Eigen::Vector3d& n) const {
+    const Eigen::Vector3d end(0, 0, std::copysign(half_length, n.z()));
+    return {half_length * std::abs(n.z()) + radius * n.norm(), end + radius * n.normalized()};
+  }
+  Eigen::Matrix3d support_hessian(const Eigen::Vector3d& n) const {
+    const Eigen::Vector3d m = n.normalized();
+    return radius / n.norm() * (Eigen::Matrix3d::Identity() - m * m.transpose());
+  }
+  double bounding_radius() const { return half_length + radius; }
+  double inscribed_radius() const { return radius; }
+  double min_curvature_radius() const { return radius; }
 };
 
 std::vector<Bodies> all_bodies() {
-  const auto superellipsoid = [](const Eigen::Vector3d& axes, double e) { return geom::Superellipsoid(axes, e, e); };
-  return {{kReference, geom::Ellipsoid({1, 1, 3})},
-          {"ellipsoids 1:0.8:0.5", geom::Ellipsoid({1, 0.8, 0.5})},
+  const auto uniform = [](const auto& shape) { return ed::uniform_species(shape); };
+  const auto superellipsoid = [&](const Eigen::Vector3d& axes, double e) {
+    return uniform(geom::Superellipsoid(axes, e, e));
+  };
+  const double volume = std::numbers::pi * 0.25 * (2 + 2.0 / 3);
+  const ed::CustomShape rod(Spherocylinder{1, 0.5}, {"rod", volume, 2, true});
+  return {{kReference, uniform(geom::Ellipsoid({1, 1, 3}))},
+          {"ellipsoids 1:0.8:0.5", uniform(geom::Ellipsoid({1, 0.8, 0.5}))},
           {"superballs p=2.5", superellipsoid({1, 1, 1}, 0.8)},
           {"superballs p=4", superellipsoid({1, 1, 1}, 0.5)},
           {"superellipsoids 1:1:2 e=0.5", superellipsoid({1, 1, 2}, 0.5)},
-          {"superellipsoids 1:1:3 e=1", superellipsoid({1, 1, 3}, 1)}};
+          {"superellipsoids 1:1:3 e=1", superellipsoid({1, 1, 3}, 1)},
+          {"a user's spherocylinders", {rod, 1, {0.7, 0.7, 0.12}, true}, 1000}};
 }
 
-void engine(benchmark::State& timing, const ed::BodyShape& shape) {
+void engine(benchmark::State& timing, const Bodies& bodies) {
   ed::StartOptions options;
   options.number = kNumber;
   options.packing_fraction = kPacking;
-  ed::Simulation simulation(ed::random_start(ed::uniform_species(shape), options));
-  simulation.run_collisions(20 * kNumber);
+  ed::Simulation simulation(ed::random_start(bodies.species, options));
+  simulation.run_collisions(bodies.collisions);
   simulation.tune_envelopes();
   const ed::Counters before = simulation.counters();
-  for (auto _ : timing) simulation.run_collisions(kCollisions);
+  for (auto _ : timing) simulation.run_collisions(bodies.collisions);
   hardbody_bench::report_rates(timing, before, simulation.counters());
 }
 
@@ -60,8 +84,7 @@ int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
   for (const Bodies& bodies : all_bodies()) {
-    benchmark::RegisterBenchmark(bodies.name.c_str(),
-                                 [shape = bodies.shape](benchmark::State& timing) { engine(timing, shape); })
+    benchmark::RegisterBenchmark(bodies.name.c_str(), [bodies](benchmark::State& timing) { engine(timing, bodies); })
         ->Unit(benchmark::kMillisecond)
         ->Iterations(kStretches);
   }

@@ -69,8 +69,8 @@ namespace {
 
 constexpr std::string_view kMagic = "HARDBODY";
 constexpr std::uint32_t kByteOrder = 0x01020304;
-constexpr std::uint32_t kFormat = 5;
-constexpr std::uint32_t kOtherRun = 3;  ///< and 4: whose run only an older program can go on with
+constexpr std::uint32_t kFormat = 6;
+constexpr std::uint32_t kOtherRun = 3;  ///< to 5: whose run only an older program can go on with
 constexpr std::uint32_t kOneEllipsoid =
     1;  ///< of one ellipsoid of revolution; like 2 without what a run needs to go on
 constexpr std::size_t kHead = 8 + 4 + 4 + 8;  ///< magic, byte order, format, length of the payload
@@ -95,7 +95,7 @@ Checkpoint take_checkpoint(std::uint32_t format, std::string_view payload) {
   Reader reader(payload);
   Checkpoint checkpoint;
   reader(checkpoint.program_version, checkpoint.config, checkpoint.cpu_features);
-  if (format >= kOtherRun) reader(checkpoint.arch);
+  if (format >= kOtherRun) reader(checkpoint.arithmetic);
   reader(checkpoint.phase, checkpoint.time);
   if (format == kOneEllipsoid) {
     checkpoint.system = take_one_ellipsoid(reader);
@@ -130,8 +130,10 @@ Payload checked_payload(std::string_view bytes, const std::string& name) {
   const auto format = head.value<std::uint32_t>();
   const auto length = head.value<std::uint64_t>();
   if (format < kOneEllipsoid || format > kFormat) {
-    throw refuse(
-        fmt::format("has format version {}, this program reads versions {} to {}", format, kOneEllipsoid, kFormat));
+    throw InputError(fmt::format(
+        "{}: has format version {}, this program reads versions {} to {}; accepted: the program that wrote it, or a "
+        "new run of its config.toml",
+        name, format, kOneEllipsoid, kFormat));
   }
   if (length > bytes.size() - kHead - kTail) throw refuse(cut);
   if (length < bytes.size() - kHead - kTail) throw refuse("is longer than it says, so it is damaged");
@@ -167,8 +169,8 @@ std::string or_none(const std::string& features) {
 
 void put_payload(const Checkpoint& checkpoint, const Sink& sink) {
   Writer payload(sink);
-  payload(checkpoint.program_version, checkpoint.config, checkpoint.cpu_features, checkpoint.arch, checkpoint.phase,
-          checkpoint.time, checkpoint.system, checkpoint.run, checkpoint.upkeep);
+  payload(checkpoint.program_version, checkpoint.config, checkpoint.cpu_features, checkpoint.arithmetic,
+          checkpoint.phase, checkpoint.time, checkpoint.system, checkpoint.run, checkpoint.upkeep);
   payload.flush();
 }
 
@@ -267,7 +269,7 @@ void check_resumable(const Checkpoint& checkpoint, const std::string& name) {
         "{}: is of an older format that holds no running state; accepted: a new run of its config.toml", name));
   }
   if (checkpoint.program_version != version()) refuse("by hardbody", checkpoint.program_version, version());
-  if (checkpoint.arch != build_arch()) refuse("by a program built with", checkpoint.arch, build_arch());
+  if (checkpoint.arithmetic != arithmetic()) refuse("by a program with", checkpoint.arithmetic, arithmetic());
   if (checkpoint.cpu_features != cpu_feature_text()) {
     refuse("on a processor with", or_none(checkpoint.cpu_features), or_none(cpu_feature_text()));
   }

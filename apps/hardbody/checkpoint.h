@@ -61,7 +61,7 @@ struct Checkpoint {
   std::string program_version;
   std::string config;        ///< the run's resolved config.toml
   std::string cpu_features;  ///< of the processor that made it, blank-separated
-  std::string arch;          ///< what the program was compiled for
+  std::string arithmetic;    ///< of the program that made it
   std::string phase;         ///< "start", "equilibration" or "production"
   double time = 0;           ///< since the phase began
   ed::System system;

@@ -268,33 +268,31 @@ void read_packing(const TomlDocument& document, Config& config) {
   config.packing_fraction = phi;
 }
 
-/// The smallest number of bodies, in the same proportions, whose box is large enough.
-int least_number(const Config& config, ed::Neighbours neighbours, double box, double largest_radius) {
-  if (!config.mixture) {
-    return ed::smallest_number(config.species[0].body.shape, config.packing_fraction, neighbours);
-  }
-  const double ratio = ed::smallest_box(largest_radius, neighbours) / box;
-  return static_cast<int>(std::ceil(config.number * (ratio * ratio * ratio)));
+/// What keeps a box that is large enough for "dilated" from being so for the others.
+const char* need_of(const std::string& neighbours) {
+  if (neighbours == "cells") return "three cells as wide as two of them must fit along an edge";
+  if (neighbours == "obp") return "\"obp\" needs room for boxes that a body can turn in";
+  return "a body would meet two images of another";
 }
 
 void check_box(const TomlDocument& document, const Config& config) {
   const std::vector<ed::Component> components = config.components();
   double largest = 0;
   for (const ed::Component& c : components) largest = std::max(largest, ed::bounding_radius(c.species.shape));
-  const bool cells = config.neighbours == "cells";
   const double box = ed::box_for(components, config.packing_fraction);
-  const int least = least_number(config, cells ? ed::Neighbours::cells : ed::Neighbours::dilated, box, largest);
-  if (config.number >= least) return;
+  const double ratio = ed::smallest_box(components, config.neighbour_search()) / box;
+  if (ratio <= 1) return;
+  // In the same proportions.
+  const int least = std::max(2, static_cast<int>(std::ceil(config.number * (ratio * ratio * ratio))));
   const Entry* number = document.find("system.number");
   const Entry* entry = number != nullptr ? number : document.find("system.packing_fraction");
   const bool by_species = config.mixture && number == nullptr;
-  throw InputError(fmt::format(
-      "{}: {} is {}: the box, {:.4g} long at this packing fraction, is then too small for bodies of "
-      "bounding radius {:.4g}{} ({}); accepted: a number of at least {}{}",
-      entry->where, by_species ? "the number of bodies" : "system.number", config.number, box, largest,
-      config.mixture ? ", the largest" : "",
-      cells ? "three cells as wide as two of them must fit along an edge" : "a body would meet two images of another",
-      least, config.mixture ? " in these proportions, or bodies of less unequal sizes" : ""));
+  throw InputError(
+      fmt::format("{}: {} is {}: the box, {:.4g} long at this packing fraction, is then too small for bodies of "
+                  "bounding radius {:.4g}{} ({}); accepted: a number of at least {}{}",
+                  entry->where, by_species ? "the number of bodies" : "system.number", config.number, box, largest,
+                  config.mixture ? ", the largest" : "", need_of(config.neighbours), least,
+                  config.mixture ? " in these proportions, or bodies of less unequal sizes" : ""));
 }
 
 /// Makes the start, which is all that tells whether it can be made.
@@ -434,11 +432,16 @@ bool Config::all_of_revolution() const {
   return std::all_of(species.begin(), species.end(), [](const SpeciesConfig& s) { return s.rotation_axes() == 2; });
 }
 
+ed::Neighbours Config::neighbour_search() const {
+  if (neighbours == "obp") return ed::Neighbours::obp;
+  if (neighbours == "cells") return ed::Neighbours::cells;
+  return ed::Neighbours::dilated;
+}
+
 ed::SimulationOptions Config::simulation_options(double envelope) const {
   ed::SimulationOptions options;
   options.envelope = envelope;
-  if (neighbours == "obp") options.neighbours = ed::Neighbours::obp;
-  if (neighbours == "cells") options.neighbours = ed::Neighbours::cells;
+  options.neighbours = neighbour_search();
   if (finder == "bracketing") options.contact.finder = ed::Finder::bracketing;
   if (distance == "newton8") options.contact.distance = ed::DistanceMethod::newton8;
   if (distance == "newton5") options.contact.distance = ed::DistanceMethod::newton5;

@@ -114,6 +114,8 @@ struct Config {
   /// The start on a lattice; nothing: a random one.
   std::optional<ed::LatticeOptions> lattice() const;
 
+  /// `neighbours`; "dilated" as long as "auto" has not chosen.
+  ed::Neighbours neighbour_search() const;
   /// [dynamics], as the simulation takes it; `envelope`: the thickness of the neighbour-list envelopes, 0 for a guess.
   ed::SimulationOptions simulation_options(double envelope = 0) const;
 };

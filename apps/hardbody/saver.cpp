@@ -40,7 +40,7 @@ void Saver::write(Checkpoint checkpoint) {
   checkpoint.program_version = version();
   checkpoint.config = resolved_text(config_);
   checkpoint.cpu_features = cpu_feature_text();
-  checkpoint.arch = build_arch();
+  checkpoint.arithmetic = arithmetic();
   const double production_seconds = checkpoint.upkeep.production_seconds;
   checkpoint.upkeep = upkeep();
   checkpoint.upkeep.production_seconds = production_seconds;

@@ -133,13 +133,21 @@ Json observables(const ed::Results& r, const Config& config) {
 
 /// Of one species of a mixture.
 Json observables(const ed::GroupResults& r, const SpeciesConfig& species) {
-  Json json = {{"D_trans", estimate(r.D_trans)},       {"D_rot", estimate(r.D_rot)},
-               {"D_rot_body", estimate(r.D_rot_body)}, {"S", estimate(r.S)},
-               {"director", director(r.director)},     {"tau_C2", estimate(r.tau_C2)},
-               {"beta_C2", estimate(r.beta_C2)},       {"t_C2_1overe", estimate(r.t_C2_1overe)},
-               {"tau_F", estimate(r.tau_F)},           {"beta_F", estimate(r.beta_F)},
-               {"t_F_1overe", estimate(r.t_F_1overe)}, {"q_peak", estimate(r.q_peak)},
-               {"S_peak", estimate(r.S_peak)},         {"kT_trans", estimate(r.translational_kT)},
+  Json json = {{"collision_rate", estimate(r.collision_rate)},
+               {"D_trans", estimate(r.D_trans)},
+               {"D_rot", estimate(r.D_rot)},
+               {"D_rot_body", estimate(r.D_rot_body)},
+               {"S", estimate(r.S)},
+               {"director", director(r.director)},
+               {"tau_C2", estimate(r.tau_C2)},
+               {"beta_C2", estimate(r.beta_C2)},
+               {"t_C2_1overe", estimate(r.t_C2_1overe)},
+               {"tau_F", estimate(r.tau_F)},
+               {"beta_F", estimate(r.beta_F)},
+               {"t_F_1overe", estimate(r.t_F_1overe)},
+               {"q_peak", estimate(r.q_peak)},
+               {"S_peak", estimate(r.S_peak)},
+               {"kT_trans", estimate(r.translational_kT)},
                {"kT_rot", estimate(r.rotational_kT)}};
   if (species.rotation_axes() == 3) add_axes(json, r);
   return json;

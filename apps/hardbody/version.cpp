@@ -1,5 +1,7 @@
 #include "version.h"
 
+#include <ed/internal/arithmetic.h>
+
 #include <fmt/format.h>
 #include <Eigen/Core>
 #include <nlohmann/json.hpp>
@@ -67,6 +69,15 @@ std::string version_text() {
 std::string build_arch() {
   const std::string_view arch(kArch);
   return arch.empty() ? "no -march (the compiler's baseline)" : fmt::format("-march={}", arch);
+}
+
+std::string arithmetic() {
+#if defined(__FMA__)
+  constexpr bool fused = true;
+#else
+  constexpr bool fused = false;
+#endif
+  return fmt::format("{}{}, arithmetic {}", build_arch(), fused ? ", FMA" : "", ed::internal::kArithmetic);
 }
 
 std::vector<std::string> cpu_features() {

@@ -214,7 +214,7 @@ Finding certified_contact(const Gauge& gauge, double t_begin, double t_end, int 
         return {Outcome::contact, contact_time};
       }
     } else {
-      tau = larger(tau, least_step(gauge, state, n, touching, tau));
+      tau = larger(tau, least_step(gauge, state, e, n, touching, tau));
     }
     if (t + tau > t) {
       t += tau;

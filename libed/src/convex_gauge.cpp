@@ -106,6 +106,8 @@ bool ConvexGauge::solve(const State& s, Vector3d& n, Evaluation& e) const {
   if (!is_answer(d)) return false;
   n = d.normal;
   e.g = gap(s, n).g;
+  // The distance is between g and g + error_bound: bodies that may only touch do not overlap.
+  if (e.g < 0) e.g = std::min(0.0, e.g + d.error_bound);
   e.decrement = 0;
   e.step2 = 0;
   e.step.setZero();
@@ -170,16 +172,23 @@ double ConvexGauge::certified_step(const State& s, const Evaluation& /*e*/, cons
   return std::min(horizon, g / speed_);  // nothing moves faster
 }
 
-double ConvexGauge::least_step(const State& s, const Vector3d& n, bool touching, double tau) const {
+double ConvexGauge::least_step(const State& s, const Evaluation& /*e*/, const Vector3d& n, bool touching,
+                               double tau) const {
   const double unit = size() / speed_;
   constexpr double kShort = 1e-7;
   constexpr double kShortest = 1e-12;
   if (!touching || tau > kShort * unit) return tau;
-  // Of bodies that touch g is not known: it may fall by what rounding hides.
-  double longest = kTouching * unit;
+  // Of bodies that touch g is not known: it may fall by what rounding hides. Short trials drown in that, longer ones
+  // see the bodies part.
+  const double shortest = kTouching * unit;
+  double longest = shortest;
   double end = 0;
-  for (double trial = kShortest * unit; trial < 0.1 * unit && chord_clears(s, n, 0, 0, trial, end); trial *= 8) {
-    longest = trial;
+  for (double trial = kShortest * unit; trial < 0.1 * unit; trial *= 8) {
+    if (chord_clears(s, n, 0, 0, trial, end)) {
+      longest = trial;
+    } else if (longest > shortest) {
+      break;
+    }
   }
   return longest;
 }

@@ -84,7 +84,7 @@ class ConvexGauge {
 
   double certified_step(const State& s, const Evaluation& e, const Eigen::Vector3d& n, double g, double gp,
                         double horizon) const;
-  double least_step(const State& s, const Eigen::Vector3d& n, bool touching, double tau) const;
+  double least_step(const State& s, const Evaluation& e, const Eigen::Vector3d& n, bool touching, double tau) const;
   bool worth_refining(double /*gp*/, double spread) const { return spread <= kTangentAgreement * size() / speed_; }
   bool falls_since(const State& s, const Evaluation& e, const Eigen::Vector3d& n, double rate, double span) const;
 

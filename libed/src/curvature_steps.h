@@ -66,8 +66,8 @@ double certified_step(const Gauge& gauge, const typename Gauge::State& state, co
 /// way stays below what g resolves, kTouching * size for the turning and as much for a rate whose sign is rounding. By
 /// the bound that holds over any reach: certificates may be those of a short one.
 template <CurvatureBounded Gauge>
-double least_step(const Gauge& gauge, const typename Gauge::State& state, const Eigen::Vector3d& /*n*/, bool touching,
-                  double tau) {
+double least_step(const Gauge& gauge, const typename Gauge::State& state, const typename Gauge::Evaluation& /*e*/,
+                  const Eigen::Vector3d& /*n*/, bool touching, double tau) {
   if (!touching) return tau;
   const double allowed = kTouching * gauge.size();
   return smaller(std::sqrt(2 * allowed / gauge.curvature_limit()),

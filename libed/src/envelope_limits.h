@@ -6,6 +6,8 @@ namespace ed::internal {
 
 /// The thinnest envelope in use, in units of the bounding radius.
 inline constexpr double kThinnestEnvelope = 0.02;
+/// The thinnest box around a body of any shape, in units of the smallest inscribed radius.
+inline constexpr double kThinnestOriented = 0.02;
 
 /// The smallest box in which the nearest image of a neighbour is the only one that can touch. Neighbours' envelope
 /// centres are within 2 R + 2 delta of each other, their centres then within 2 R + 4 delta, which must be below half

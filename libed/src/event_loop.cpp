@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <sstream>
 #include <stdexcept>
 
@@ -79,6 +80,7 @@ EventLoop<Bodies>::EventLoop(const System& system, const SimulationOptions& opti
   check_contact_options(options.contact, bodies_.inscribed_radius());
   if (options.neighbours == Neighbours::cells) check_cells(box_, bodies_.bounding_radius());
   for (const Body& body : system.bodies) species_of_.push_back(body.species);
+  collisions_of_.resize(at(system.size()), 0);
   failures_.reserve(kReasons * kMaxFailuresRecorded);
 }
 
@@ -99,6 +101,11 @@ Counters EventLoop<Bodies>::counters() const {
   c.cold_restarts = finder_.cold_restarts;
   c.rescues = finder_.rescues;
   return c;
+}
+
+template <class Bodies>
+std::uint64_t EventLoop<Bodies>::collisions_of(int first, int end) const {
+  return std::accumulate(collisions_of_.begin() + first, collisions_of_.begin() + end, std::uint64_t{0});
 }
 
 template <class Bodies>
@@ -483,6 +490,8 @@ void EventLoop<Bodies>::process_contact(std::int32_t index) {
     return;
   }
   ++counters_.collisions;
+  ++collisions_of_[at(i)];
+  ++collisions_of_[at(j)];
   virial_ += J * r.dot(pair.normal);
   virial_tensor_ += r * (J * pair.normal).transpose();
   if (collisions_.size() < collisions_wanted_) collisions_.push_back({time(), std::min(i, j), std::max(i, j)});

@@ -35,6 +35,7 @@ class AnyEventLoop {
   virtual Neighbours neighbours() const = 0;
   virtual int number() const = 0;
   virtual Counters counters() const = 0;
+  virtual std::uint64_t collisions_of(int first, int end) const = 0;
   virtual double virial() const = 0;
   virtual Eigen::Matrix3d virial_tensor() const = 0;
   virtual System system() const = 0;
@@ -81,6 +82,7 @@ class EventLoop final : public AnyEventLoop {
   Neighbours neighbours() const override { return options_.neighbours; }
   int number() const override { return bodies_.number(); }
   Counters counters() const override;
+  std::uint64_t collisions_of(int first, int end) const override;
   double virial() const override { return virial_; }
   Eigen::Matrix3d virial_tensor() const override { return virial_tensor_; }
   System system() const override;
@@ -173,6 +175,7 @@ class EventLoop final : public AnyEventLoop {
   double virial_ = 0;
   Eigen::Matrix3d virial_tensor_ = Eigen::Matrix3d::Zero();
   Counters counters_;
+  std::vector<std::uint64_t> collisions_of_;  ///< each body
   FinderCounters finder_;
   std::vector<Collision> collisions_;
   std::size_t collisions_wanted_ = 0;

@@ -142,7 +142,14 @@ double GeneralBodies::collide(int i, int j, const Vector3d& r, const Vector3d& n
   const auto top = [&](int body) { return motions_[at(body)].top.at(now - motions_[at(body)].time); };
   const TopState top_i = top(i);
   const TopState top_j = top(j);
-  const auto contact_body = [this](int body, const TopState& at_contact, const Vector3d& arm) -> ContactBody {
+  // The spin of a body of revolution has no part in it, so that energy is kept however well its contact point is known.
+  const auto spin = [this](int body, const TopState& at_contact) -> Vector3d {
+    const int axis = kind_of(body).symmetry_axis;
+    if (axis < 0) return Vector3d::Zero();
+    const Vector3d u = at_contact.R.col(axis);
+    return at_contact.omega.dot(u) * u;
+  };
+  const auto contact_body = [&](int body, const TopState& at_contact, const Vector3d& arm) -> ContactBody {
     const GeneralKind& kind = kind_of(body);
     Vector3d inverse = kind.inertia.cwiseInverse();
     if (kind.symmetry_axis >= 0) inverse[kind.symmetry_axis] = 0;
@@ -150,14 +157,15 @@ double GeneralBodies::collide(int i, int j, const Vector3d& r, const Vector3d& n
     for (int k = 0; k < 3; ++k) {
       inverse_inertia += inverse[k] * at_contact.R.col(k) * at_contact.R.col(k).transpose();
     }
-    return {1 / kind.mass, inverse_inertia, arm, motions_[at(body)].velocity, at_contact.omega};
+    return {1 / kind.mass, inverse_inertia, arm, motions_[at(body)].velocity,
+            at_contact.omega - spin(body, at_contact)};
   };
   ContactBody a = contact_body(i, top_i, points.a);
   ContactBody b = contact_body(j, top_j, points.b);
   const double J = ed::collide(a, b, n);
   if (!(J > 0)) return 0;
-  start_flight(i, now, top_i, a.velocity, a.angular_velocity);
-  start_flight(j, now, top_j, b.velocity, b.angular_velocity);
+  start_flight(i, now, top_i, a.velocity, a.angular_velocity + spin(i, top_i));
+  start_flight(j, now, top_j, b.velocity, b.angular_velocity + spin(j, top_j));
   return J;
 }
 

@@ -49,6 +49,7 @@ class GeneralBodies {
   double bounding_radius() const { return bounding_radius_; }    ///< the largest
   double inscribed_radius() const { return inscribed_radius_; }  ///< the smallest
   double bounding_radius(int i) const { return kind_of(i).bounding_radius; }
+  const std::vector<GeneralKind>& kinds() const { return kinds_; }
 
   Eigen::Vector3d position_at(int i, double t) const { return motions_[at(i)].position_at(t); }
   const Eigen::Vector3d& velocity(int i) const { return motions_[at(i)].velocity; }

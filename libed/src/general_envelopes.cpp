@@ -1,6 +1,7 @@
 #include "general_envelopes.h"
 
 #include "envelope_limits.h"
+#include "oriented_slack.h"
 #include "periodic.h"
 
 #include <geom/internal/norm_body_pair.h>
@@ -9,7 +10,7 @@
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
-#include <variant>
+#include <vector>
 
 namespace ed::internal {
 namespace {
@@ -40,28 +41,6 @@ double worthwhile_time(const GeneralBodies& bodies, int i, double thickness) {
 /// An upper bound of the angle of R R0^T: |R - R0| = sqrt(8) sin(angle / 2) in the Frobenius norm.
 double angle_between(const Matrix3d& R, const Matrix3d& R0) {
   return angle_bound(std::sqrt(0.5 * (R - R0).squaredNorm()));
-}
-
-bool is_symmetric(const BodyShape& shape) {
-  const auto* custom = std::get_if<CustomShape>(&shape);
-  return custom == nullptr || custom->centrally_symmetric();
-}
-
-/// How far a body's centre can be from that of its box while it stays inside, at the most.
-///
-/// Its height h along an axis of the box is no less than the inscribed radius. A centrally symmetric body has a point
-/// at the bounding radius R from its centre which is within the extents of the box along the other two axes, and so
-/// leaves h^2 >= R^2 - their squares.
-double slack(const GeneralKind& kind, double thickness) {
-  const Vector3d extents = kind.half_extents.array() + thickness;
-  Vector3d room = extents.array() - kind.inscribed_radius;
-  if (!is_symmetric(kind.shape)) return room.norm();
-  for (int k = 0; k < 3; ++k) {
-    const double others = extents.squaredNorm() - extents[k] * extents[k];
-    const double h2 = kind.bounding_radius * kind.bounding_radius - others;
-    if (h2 > 0) room[k] = std::min(room[k], extents[k] - std::sqrt(h2));
-  }
-  return room.norm();
 }
 
 /// Whether two bodies may be within `limit` of each other; false is certain. `normal`: along r, then a better one.
@@ -144,32 +123,30 @@ bool GeneralDilatedEnvelopes::may_meet(int i, int k, const Vector3d& r, Vector3d
 }
 
 double thickest_oriented(const GeneralBodies& bodies, double box) {
-  // As for ellipsoids of revolution: centres within 2 R + 4 slack must be below half the periodic box.
-  const double room = 0.25 * (0.5 * box - 2 * bodies.bounding_radius());
-  const auto widest = [&bodies](double thickness) {
-    double most = 0;
-    for (int i = 0; i < bodies.number(); ++i) most = std::max(most, slack(bodies.kind_of(i), thickness));
-    return most;
-  };
-  double low = 0;
+  std::vector<BodyShape> shapes;
+  for (const GeneralKind& kind : bodies.kinds()) shapes.push_back(kind.shape);
+  double low = kThinnestOriented * bodies.inscribed_radius();
+  const double least = smallest_oriented_box(shapes, low);
+  if (box < least * (1 - 1e-12)) {
+    std::ostringstream message;
+    message << "neighbours = \"obp\": a periodic box of edge " << box
+            << " is too short for boxes around bodies that can turn inside them; accepted: at least " << least
+            << ", or \"dilated\"";
+    throw std::invalid_argument(message.str());
+  }
   double high = box;
   for (int step = 0; step < 60; ++step) {
     const double middle = 0.5 * (low + high);
-    (widest(middle) < room ? low : high) = middle;
+    (smallest_oriented_box(shapes, middle) < box ? low : high) = middle;
   }
-  if (low >= kThinnestEnvelope * bodies.inscribed_radius()) return low;
-  std::ostringstream message;
-  message << "neighbours = \"obp\": a periodic box of edge " << box
-          << " is too short for boxes around bodies that can turn inside them; accepted: \"dilated\", or more bodies";
-  throw std::invalid_argument(message.str());
+  return low;
 }
 
 GeneralOrientedEnvelopes::GeneralOrientedEnvelopes(const GeneralBodies& bodies, double thickness)
     : thickness_(thickness), reach_(0), boxes_(at(bodies.number())) {
-  for (int i = 0; i < bodies.number(); ++i) {
-    const GeneralKind& kind = bodies.kind_of(i);
+  for (const GeneralKind& kind : bodies.kinds()) {
     const double diagonal = (kind.half_extents.array() + thickness).matrix().norm();
-    reach_ = std::max(reach_, 2 * std::min(diagonal, kind.bounding_radius + slack(kind, thickness)));
+    reach_ = std::max(reach_, 2 * std::min(diagonal, kind.bounding_radius + oriented_slack(kind.shape, thickness)));
   }
 }
 

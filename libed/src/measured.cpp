@@ -46,9 +46,17 @@ void check(const ObservablesOptions& options) {
 
 }  // namespace
 
-Totals totals_of(const Simulation& simulation) {
-  return {simulation.time(), static_cast<double>(simulation.counters().collisions), simulation.virial(),
-          simulation.virial_tensor()};
+Totals totals_of(const Simulation& simulation, const std::vector<BodyRange>& groups) {
+  Totals totals{simulation.time(),
+                static_cast<double>(simulation.counters().collisions),
+                simulation.virial(),
+                simulation.virial_tensor(),
+                {}};
+  for (const BodyRange& group : groups) {
+    const auto collisions = simulation.collisions_of(static_cast<int>(group.begin), static_cast<int>(group.end));
+    totals.collisions_of.push_back(static_cast<double>(collisions));
+  }
+  return totals;
 }
 
 void Block::append(const Block& next) {
@@ -101,7 +109,7 @@ bool Measured::add_origin(const Simulation& simulation, const Snapshot& now) {
   }
   block.origins += 1;
   add_frame(simulation, now, block);
-  block.end = totals_of(simulation);
+  block.end = totals_of(simulation, ranges);
   return blocks.size() < before;
 }
 
@@ -109,7 +117,7 @@ bool Measured::add_origin(const Simulation& simulation, const Snapshot& now) {
 Block& Measured::open_block(const Simulation& simulation) {
   const auto full = [this] { return blocks.empty() || blocks.back().origins == origins_per_block; };
   if (!full()) return blocks.back();
-  const Totals totals = totals_of(simulation);
+  const Totals totals = totals_of(simulation, ranges);
   if (!blocks.empty()) blocks.back().end = totals;
   if (blocks.size() == kMaxBlocks) merge_blocks();
   if (!full()) return blocks.back();
@@ -175,7 +183,9 @@ WaveVectors wave_vectors_of(const StructureGrid& grid) {
 
 bool Measured::fits(std::size_t number_of_lags) const {
   const auto block_fits = [this](const Block& b) {
-    return b.lags.size() == lags.size() * ranges.size() && b.groups.size() == ranges.size() && structure_fits(b);
+    const std::size_t n = ranges.size();
+    return b.lags.size() == lags.size() * n && b.groups.size() == n && b.begin.collisions_of.size() == n &&
+           b.end.collisions_of.size() == n && structure_fits(b);
   };
   // Cells of pairs and shells are as many as the bodies' sizes make them: a few hundred.
   const bool grid_fits = blocks.empty() || (grid.box > 0 && grid.length > 0 && grid.box < 1e6 * grid.length);

@@ -25,14 +25,15 @@ struct Totals {
   double collisions = 0;
   double virial = 0;
   Eigen::Matrix3d virial_tensor = Eigen::Matrix3d::Zero();
+  std::vector<double> collisions_of;  ///< the bodies of each group, each its own; empty if nothing is known of them
 
   template <class Archive, class Self>
   static void fields(Archive& archive, Self& self) {
-    archive(self.time, self.collisions, self.virial, self.virial_tensor);
+    archive(self.time, self.collisions, self.virial, self.virial_tensor, self.collisions_of);
   }
 };
 
-Totals totals_of(const Simulation& simulation);
+Totals totals_of(const Simulation& simulation, const std::vector<BodyRange>& groups);
 
 /// All that was measured from origins in one stretch of time.
 struct Block {

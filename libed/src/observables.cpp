@@ -21,7 +21,7 @@ using internal::LagSums;
 using internal::Measured;
 
 /// Raised by every change of what save() writes.
-constexpr std::uint32_t kStateFormat = 2;
+constexpr std::uint32_t kStateFormat = 3;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -181,7 +181,7 @@ void Observables::measure(const Simulation& simulation) {
   impl_->measure(simulation);
 }
 Results Observables::results(const Simulation& simulation) const {
-  return internal::results_of(impl_->measured(), internal::totals_of(simulation));
+  return internal::results_of(impl_->measured(), internal::totals_of(simulation, impl_->measured().ranges));
 }
 
 std::string Observables::save() const {

@@ -50,6 +50,7 @@ class Evaluation {
     return 2 * (end.collisions - begin.collisions) / (measured_.options.number * (end.time - begin.time));
   }
 
+  Estimate collision_rate(std::size_t group) const;
   BlockRow block_row(const Block& block) const;
   Matrix3d pressure(const Totals& begin, const Totals& end, double kT, const Matrix3d& kinetic) const;
   LagSums sums_at(std::size_t lag, std::size_t group, const Block* one) const;
@@ -162,6 +163,18 @@ BlockRow Evaluation::block_row(const Block& block) const {
   row.director = director_of(block.all.order);
   row.pressure = pressure(block.begin, block.end, row.translational_kT, block.kinetic / block.frames);
   return row;
+}
+
+/// Of the bodies of one group.
+Estimate Evaluation::collision_rate(std::size_t group) const {
+  if (totals_.collisions_of.empty() || !(totals_.time > 0)) return {};
+  const auto bodies = static_cast<double>(measured_.ranges[group].size());
+  std::vector<double> values;
+  for (const Block* block : full_) {
+    const double met = block->end.collisions_of[group] - block->begin.collisions_of[group];
+    values.push_back(met / (bodies * (block->end.time - block->begin.time)));
+  }
+  return {totals_.collisions_of[group] / (bodies * totals_.time), mean_of_blocks(values).error};
 }
 
 Matrix3d Evaluation::pressure(const Totals& begin, const Totals& end, double kT, const Matrix3d& kinetic) const {
@@ -379,6 +392,7 @@ Correlations Evaluation::correlations(std::size_t group) const {
 GroupResults Evaluation::group_results(std::size_t group) const {
   GroupResults results;
   static_cast<Correlations&>(results) = correlations(group);
+  results.collision_rate = collision_rate(group);
   results.S = frame_mean([group](const Block& b) { return b.groups[group].S; });
   results.director = director([group](const Block& b) -> const FrameSums& { return b.groups[group]; });
   results.translational_kT = frame_mean([group](const Block& b) { return b.groups[group].translational_kT; });

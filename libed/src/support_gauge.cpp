@@ -1,5 +1,8 @@
 #include "support_gauge.h"
 
+#include <algorithm>
+#include <array>
+
 namespace ed::internal {
 
 using Eigen::Vector3d;
@@ -143,26 +146,34 @@ double SupportGauge::certified_step(const State& s, const Evaluation& e, const V
 }
 
 /// Whether the tilted end leaves more than `least`.
-bool SupportGauge::tilted_end_clears(const State& s, const Vector3d& n, double least, double tau) const {
+bool SupportGauge::tilted_end_clears(const State& s, const Vector3d& n, const Vector3d& Omega, double least,
+                                     double tau) const {
+  const Vector3d& r = s.pair.between();
   const LaneVector n2 = LaneVector::of(n, -n);
-  const LaneVector tilted = n2 + both(tau) * n2.cross(s.omega);
-  const double end = n.dot(s.pair.between() + tau * v_) - sum(s.pair.bodies().heights(tilted));
-  const auto bend = [](const NormBodyShape& shape, const FreeTop& top) {
-    return shape.bounding_radius * (top.max_omega() * top.max_omega() + top.max_alpha());
+  const LaneVector tilted = n2 + both(tau) * (LaneVector::same(Omega) - s.omega).cross(n2);
+  const double end = n.dot(r + tau * v_) + tau * Omega.cross(n).dot(r) - sum(s.pair.bodies().heights(tilted));
+  const double turning = Omega.norm();
+  const auto bend = [turning](const NormBodyShape& shape, const FreeTop& top) {
+    const double both_turn = turning + top.max_omega();
+    return shape.bounding_radius * (both_turn * both_turn + top.max_alpha());
   };
-  return end - 0.5 * tau * tau * (bend(A_, a_.top) + bend(B_, b_.top)) > least;
+  const double centres = turning * (turning * (r.norm() + tau * v_.norm()) + 2 * v_.norm());
+  return end - 0.5 * tau * tau * (bend(A_, a_.top) + bend(B_, b_.top) + centres) > least;
 }
 
-double SupportGauge::least_step(const State& s, const Vector3d& n, bool touching, double tau) const {
+double SupportGauge::least_step(const State& s, const Evaluation& e, const Vector3d& n, bool touching,
+                                double tau) const {
   const double unit = size() / speed();
   if (tau > kShortStep * unit) return tau;
   // Of bodies that touch g is not known: it may fall by what rounding hides.
   const double least = touching ? 0 : s.rounding.gap;
   const double shortest = touching ? kTouching * unit : tau;
   double longest = shortest;
+  const std::array<Vector3d, 4> turns{Vector3d::Zero(), turning_of_best_normal(s, e.sample), s.omega.a(), s.omega.b()};
   double trial = kShortest * unit;
   while (trial < 0.1 * unit) {
-    if (tilted_end_clears(s, n, least, trial)) {
+    const auto clears = [&](const Vector3d& Omega) { return tilted_end_clears(s, n, Omega, least, trial); };
+    if (std::any_of(turns.begin(), turns.end(), clears)) {
       longest = larger(longest, trial);
     } else if (longest > shortest) {
       break;

@@ -28,13 +28,15 @@
 /// normal, which follows a flat face; where the bodies are flat at n, c > 0 (a share of g) and c = 0. The longest step
 /// is taken.
 ///
-/// Tilted ends. A support function is convex, so that with m = n + tau n x omega, the direction at the end to first
-/// order, and theta = tau'/tau,
+/// Tilted ends. A support function is convex, so that with m = n + tau mu1, the direction at the end to first order,
+/// and theta = tau'/tau,
 ///
-///     h(tau') <= (1 - theta) h(n) + theta h(m) + (|omega|^2 + |alpha|) R tau'^2/2,   R the bounding radius,
+///     h(tau') <= (1 - theta) h(n) + theta h(m) + ((|Omega| + |omega|)^2 + |alpha|) R tau'^2/2,
 ///
-/// all at fixed n. If g >= 0 now and at the tilted end, the last terms included, there is no contact before tau: first
-/// order on faces, but it does not need g > 0 to see two faces part.
+/// R the bounding radius, and f >= f(0) + f' tau' - |Omega| (|Omega| |r + v tau| + 2 |v|) tau'^2/2. If g >= 0 now and
+/// at the tilted end, the last terms included, there is no contact before tau: first order on faces, but it does not
+/// need g > 0 to see two faces part. Tried are Omega = 0, that of the best normal, and those of the bodies, whose flat
+/// faces then do not tilt at all.
 
 #include "curvature_steps.h"
 #include "rigid_motion.h"
@@ -153,7 +155,7 @@ class SupportGauge {
 
   double certified_step(const State& s, const Evaluation& e, const Eigen::Vector3d& n, double g, double gp,
                         double horizon) const;
-  double least_step(const State& s, const Eigen::Vector3d& n, bool touching, double tau) const;
+  double least_step(const State& s, const Evaluation& e, const Eigen::Vector3d& n, bool touching, double tau) const;
   bool worth_refining(double /*gp*/, double spread) const { return spread <= kTangentAgreement * size() / speed(); }
   /// Backwards in time from a contact the same certificate holds: g >= -rate sigma - K sigma^2/2.
   bool falls_since(const State& s, const Evaluation& e, const Eigen::Vector3d& n, double rate, double span) const;
@@ -205,7 +207,8 @@ class SupportGauge {
   double longest_step(const State& s, const DualSample& at, const NormBodies::Majorant& majorant, double g,
                       const Eigen::Vector3d& Omega, double horizon, double best) const;
   Eigen::Vector3d turning_of_best_normal(const State& s, const DualSample& at) const;
-  bool tilted_end_clears(const State& s, const Eigen::Vector3d& n, double least, double tau) const;
+  bool tilted_end_clears(const State& s, const Eigen::Vector3d& n, const Eigen::Vector3d& Omega, double least,
+                         double tau) const;
 
   const NormBodyShape& A_;
   const NormBodyShape& B_;

@@ -3,6 +3,8 @@
 #include "cell_grid.h"
 #include "envelope_limits.h"
 #include "motion_checks.h"
+#include "oriented_slack.h"
+#include "uniaxial_bodies.h"
 
 #include <ed/system.h>
 #include <ed/tolerances.h>
@@ -11,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -28,6 +31,19 @@ bool is_of_revolution(const BodyShape& shape, int axis) {
   if (!symmetric) return false;
   const bool round = bounding_radius(shape) == inscribed_radius(shape);  // a sphere: about every axis
   return *symmetric == axis || round;
+}
+
+double smallest_box_of(const std::vector<BodyShape>& shapes, bool of_revolution, Neighbours neighbours) {
+  double radius = 0;
+  double inscribed = std::numeric_limits<double>::infinity();
+  for (const BodyShape& shape : shapes) {
+    radius = std::max(radius, bounding_radius(shape));
+    inscribed = std::min(inscribed, inscribed_radius(shape));
+  }
+  const double by_images = internal::smallest_image_box(radius);
+  if (neighbours == Neighbours::cells) return std::max(by_images, internal::CellLayout::smallest_box(radius));
+  if (neighbours == Neighbours::dilated || of_revolution) return by_images;
+  return std::max(by_images, internal::smallest_oriented_box(shapes, internal::kThinnestOriented * inscribed));
 }
 
 /// Whether the moments are such as mass within the shape can have, and not next to nothing.
@@ -123,14 +139,19 @@ double box_for(const std::vector<Component>& components, double packing_fraction
   return std::cbrt(all / packing_fraction);
 }
 
-double smallest_box(double bounding_radius, Neighbours neighbours) {
-  const double by_images = internal::smallest_image_box(bounding_radius);
-  if (neighbours != Neighbours::cells) return by_images;
-  return std::max(by_images, internal::CellLayout::smallest_box(bounding_radius));
+double smallest_box(const std::vector<Component>& components, Neighbours neighbours) {
+  std::vector<BodyShape> shapes;
+  bool of_revolution = true;
+  for (const Component& component : components) {
+    shapes.push_back(component.species.shape);
+    of_revolution = of_revolution && internal::UniaxialBodies::can_hold(component.species);
+  }
+  return smallest_box_of(shapes, of_revolution, neighbours);
 }
 
 int smallest_number(const BodyShape& shape, double packing_fraction, Neighbours neighbours) {
-  const double box = smallest_box(bounding_radius(shape), neighbours);
+  const bool of_revolution = std::holds_alternative<geom::Ellipsoid>(shape) && symmetry_axis(shape);
+  const double box = smallest_box_of({shape}, of_revolution, neighbours);
   return std::max(2, static_cast<int>(std::ceil(packing_fraction * box * box * box / volume(shape))));
 }
 

@@ -128,7 +128,7 @@ NormBodyPair::Step NormBodyPair::newton_step(const DualSample& s) const {
 
 LaneVector NormBodyPair::moved_points(const DualSample& s, const Step& step) {
   // Deep in an overlap a step that had to be made definite may lead anywhere.
-  if ((step.lifted && s.g < 0) || !std::isfinite(step.decrement)) return s.support.point;
+  if (step.lifted && s.g < 0) return s.support.point;
   return s.support.point + moves(s, step);
 }
 

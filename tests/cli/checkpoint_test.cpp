@@ -164,7 +164,7 @@ void expect_refused(const Checkpoint& checkpoint, const std::string& why) {
 /// Of this program on this processor.
 Checkpoint own(Checkpoint checkpoint) {
   checkpoint.program_version = hardbody::version();
-  checkpoint.arch = hardbody::build_arch();
+  checkpoint.arithmetic = hardbody::arithmetic();
   checkpoint.cpu_features = hardbody::cpu_feature_text();
   return checkpoint;
 }
@@ -178,8 +178,8 @@ TEST(Resume, ForeignCheckpointsAreRefused) {
   other.cpu_features = "neon";
   expect_refused(other, "was made on a processor with neon, here ");
   other = good;
-  other.arch = "-march=z80";
-  expect_refused(other, "was made by a program built with -march=z80, here ");
+  other.arithmetic = "-march=z80, arithmetic 1";
+  expect_refused(other, "was made by a program with -march=z80, arithmetic 1, here ");
   other = good;
   other.run.reset();
   expect_refused(other, "is of an older format that holds no running state");

@@ -49,6 +49,8 @@ inline std::vector<Family> families(int number) {
   all.push_back(pure("superellipsoids 1 : 0.8 : 0.6, e = 0.7, 1.3", superellipsoid({1, 0.8, 0.6}, 0.7, 1.3), number));
   all.push_back(pure("round superellipsoids 1 : 1 : 0.5, e = 0.4, 1", superellipsoid({1, 1, 0.5}, 0.4, 1), number));
   all.push_back(pure("biaxial ellipsoids 1 : 0.8 : 0.5", ellipsoid({1, 0.8, 0.5}), number));
+  all.push_back(pure("cubes, e = 0.25", superball(8), number));
+  all.push_back(pure("octahedra, e = 1.6", superball(1.25), number));
   Family mixture{"a mixture", {}};
   mixture.components.push_back({ed::uniform_species(ellipsoid({1, 1, 2}), 1.5), number / 2});
   mixture.components.push_back({ed::uniform_species(superball(3)), number / 4});

@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 
+#include <algorithm>
 #include <cmath>
 
 namespace geom_test {
@@ -65,6 +66,29 @@ struct Spherocylinder {
   double bounding_radius() const { return half_length + radius; }
   double inscribed_radius() const { return radius; }
   double min_curvature_radius() const { return radius; }
+};
+
+/// The convex hull of two balls: not centrally symmetric. large - small <= 2 half_length.
+struct Pear {
+  double half_length;  ///< of their centres from the origin, the large one's at +z
+  double large;
+  double small;
+
+  geom::Support support(const Eigen::Vector3d& n) const {
+    const double up = half_length * n.z() + large * n.norm();
+    const double down = -half_length * n.z() + small * n.norm();
+    const double sign = up >= down ? 1 : -1;
+    return {std::max(up, down),
+            Eigen::Vector3d(0, 0, sign * half_length) + (sign > 0 ? large : small) * n.normalized()};
+  }
+  Eigen::Matrix3d support_hessian(const Eigen::Vector3d& n) const {
+    const double up = 2 * half_length * n.z() + (large - small) * n.norm();
+    return PlainBall{up >= 0 ? large : small}.support_hessian(n);
+  }
+  double bounding_radius() const { return half_length + large; }
+  /// Where both balls reach equally far.
+  double inscribed_radius() const { return 0.5 * (large + small); }
+  double min_curvature_radius() const { return small; }
 };
 
 /// |x/a|^n + |y/b|^m + |z/c|^p <= 1, all powers > 1: no closed support function, but one unknown leads to it, mu with

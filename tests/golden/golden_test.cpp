@@ -6,13 +6,14 @@
 // build with a fingerprint that is not in the table prints its hashes and must at least agree with itself.
 //
 // After a change that is meant to alter the arithmetic (another order of operations, another first guess), take the new
-// hashes from the failure messages.
+// hashes from the failure messages and raise kArithmetic, by which checkpoints of the old arithmetic are refused.
 
 #include <common/ed_hash.h>
 #include <common/ed_states.h>
 #include <common/geom_batch.h>
 
 #include <ed/ed.h>
+#include <ed/internal/arithmetic.h>
 
 #include <gtest/gtest.h>
 
@@ -29,6 +30,9 @@ using ed_test::Inertia;
 using ed_test::State;
 
 constexpr std::uint64_t kCollisions = 10000;
+
+/// Of which the hashes below are.
+static_assert(ed::internal::kArithmetic == 2);
 
 std::string fingerprint() {
 #if !defined(__x86_64__)

@@ -37,6 +37,35 @@ TEST(Counters, EvaluationsAndRefinementsPerCollisionStayWithinTheirBounds) {
   EXPECT_GT(rebuilds, 0);
 }
 
+/// As bench_bodies measures them.
+TEST(Counters, OfOtherBodiesPerCollisionStayWithinTheirBounds) {
+  struct Bound {
+    const char* name;
+    ed::BodyShape shape;
+    double evaluations, kernel_calls;
+  };
+  for (const Bound& bound :
+       {Bound{"superballs, p = 4", geom::Superellipsoid({1, 1, 1}, 0.5, 0.5), 20.5, 35},
+        Bound{"superellipsoids 1 : 1 : 2, e = 0.5", geom::Superellipsoid({1, 1, 2}, 0.5, 0.5), 33.5, 52},
+        Bound{"ellipsoids 1 : 0.8 : 0.5", geom::Ellipsoid({1, 0.8, 0.5}), 30, 38.5}}) {
+    constexpr std::uint64_t kCollisions = 20000;
+    ed::StartOptions options;
+    options.number = 512;
+    options.packing_fraction = 0.40;
+    ed::Simulation simulation(ed::random_start(ed::uniform_species(bound.shape), options));
+    simulation.run_collisions(10000);
+    simulation.tune_envelopes();
+    const ed::Counters before = simulation.counters();
+    simulation.run_collisions(kCollisions);
+    const ed::Counters after = simulation.counters();
+    const double evaluations = static_cast<double>(after.evaluations - before.evaluations) / kCollisions;
+    const double kernel_calls = static_cast<double>(after.kernel_calls - before.kernel_calls) / kCollisions;
+    std::printf("%s, a collision: %.2f evaluations, %.2f kernel calls\n", bound.name, evaluations, kernel_calls);
+    EXPECT_LE(evaluations, bound.evaluations) << bound.name;
+    EXPECT_LE(kernel_calls, bound.kernel_calls) << bound.name;
+  }
+}
+
 TEST(Counters, OfThePapersFinderAndListsAreWhatTheDocumentationSays) {
   const ed::System system = ed_test::equilibrated({3, 0.40, 512}, 1);
   // A simulation looks at each pair of neighbours once before it starts.

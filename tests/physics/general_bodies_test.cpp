@@ -44,11 +44,13 @@ TEST(GeneralBodies, CollideTheSameInEveryMode) {
          {Mode{"certified, obp", Finder::certified, Neighbours::obp},
           Mode{"certified, cells", Finder::certified, Neighbours::cells},
           Mode{"bracketing, dilated", Finder::bracketing, Neighbours::dilated},
+          Mode{"bracketing, cells", Finder::bracketing, Neighbours::cells},
+          Mode{"bracketing, obp", Finder::bracketing, Neighbours::obp},
           Mode{"bracketing, obp, 1-D root", Finder::bracketing, Neighbours::obp, ed::DistanceMethod::dual,
                ed::ContactRoot::one_dimensional},
           Mode{"bracketing, dilated, newton8", Finder::bracketing, Neighbours::dilated, ed::DistanceMethod::newton8},
           Mode{"bracketing, dilated, newton5", Finder::bracketing, Neighbours::dilated, ed::DistanceMethod::newton5}}) {
-      expect_same(reference, first_collisions(system, mode.options(1e-5)), family.name + ", " + mode.name);
+      expect_same(reference, first_collisions(system, mode.options(1e-6)), family.name + ", " + mode.name);
     }
   }
 }

@@ -193,8 +193,8 @@ TEST(SuperellipsoidDistance, OfAFlatSideAndARimHasTheNormalAndThePoints) {
   std::printf("normals within %.1e, points within %.1e, %d evaluations at most\n", worst_normal, worst_point,
               most_iterations);
   EXPECT_LE(most_iterations, 15);
-  EXPECT_LE(worst_normal, 1e-11);
-  EXPECT_LE(worst_point, 1e-11);
+  EXPECT_LE(worst_normal, 1e-12);
+  EXPECT_LE(worst_point, 1e-12);
 }
 
 /// Depths of one row of the table below, in units of the first semi-axis.

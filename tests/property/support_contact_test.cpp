@@ -1,6 +1,7 @@
 // Contact times of superellipsoids against a search that shares nothing with the finder but the distance and the free
 // motion: conservative advancement, whose steps are the distance over a bound of its rate. Pairs of five kinds of
-// orientation (faces, edges and vertices included), of which many graze. HARDBODY_FULL=1: 100,000 contacts.
+// orientation (faces, edges and vertices included), of which many graze, and one in five starts as a collision leaves
+// it: in touch, parting. HARDBODY_FULL=1: 100,000 contacts.
 
 #include "common/geom_random.h"
 #include "common/geom_superellipsoid_sets.h"
@@ -37,6 +38,7 @@ constexpr double kHorizon = 3;
 struct MovingPair {
   Superellipsoid shape_a, shape_b;
   RigidMotion a, b;
+  bool touching = false;  ///< at the start, and parting
 
   double size() const { return shape_a.bounding_radius() + shape_b.bounding_radius(); }
   geom::DistanceResult distance(double t, const Vector3d& start = Vector3d::Zero()) const {
@@ -77,15 +79,22 @@ Kind of_uniform_density(const Superellipsoid& shape) {
   return {shape, shape.inertia(1)};
 }
 
+/// A gap to start with: of bodies in touch a rounding error.
+double first_gap(Random& random, bool touching, bool grazes, double size) {
+  if (touching) return std::floor(random.uniform(-1, 2)) * 1e-15 * size;
+  return grazes ? random.log_uniform(1e-9, 1e-2) : random.log_uniform(1e-6, 1);
+}
+
 /// Bodies near each other. Grazing: the normal part of the relative velocity is next to nothing.
 MovingPair random_pair(Random& random, const Kind& A, const Kind& B) {
   const auto set = static_cast<PairSet>(static_cast<int>(5 * random.uniform()));
   const geom_test::Orientation o = geom_test::choose(set, A.shape, B.shape, random);
   geom::Pose X_WA, X_WB;
+  const bool touching = random.uniform() < 0.2;
   const bool grazes = random.uniform() < 0.7;
-  geom_test::place(o, A.shape, B.shape, grazes ? random.log_uniform(1e-9, 1e-2) : random.log_uniform(1e-6, 1), X_WA,
-                   X_WB);
-  MovingPair pair{A.shape, B.shape, {}, {}};
+  const double size = A.shape.bounding_radius() + B.shape.bounding_radius();
+  geom_test::place(o, A.shape, B.shape, first_gap(random, touching, grazes, size), X_WA, X_WB);
+  MovingPair pair{A.shape, B.shape, {}, {}, touching};
   Vector3d v = thermal(random);
   const double turning = random.coin() ? 1.0 : random.log_uniform(1e-3, 1);
   pair.a.position = X_WA.position();
@@ -96,12 +105,15 @@ MovingPair random_pair(Random& random, const Kind& A, const Kind& B) {
   };
   pair.a.top = FreeTop(A.inertia, X_WA.rotation(), spin(X_WA.rotation(), A.inertia));
   pair.b.top = FreeTop(B.inertia, X_WB.rotation(), spin(X_WB.rotation(), B.inertia));
-  if (grazes) {
+  if (grazes || touching) {
     // The contact points approach each other slowly, or part.
     const Vector3d p_a = o.R_a * A.shape.support(o.R_a.transpose() * o.n).point;
     const Vector3d p_b = o.R_b * B.shape.support(o.R_b.transpose() * -o.n).point;
     const Vector3d relative = v + pair.b.top.at(0).omega.cross(p_b) - pair.a.top.at(0).omega.cross(p_a);
-    v -= (relative.dot(o.n) + random.log_uniform(1e-6, 1e-1) * (random.coin() ? 1 : -1)) * o.n;
+    const double parting = touching        ? random.log_uniform(1e-5, 1) * relative.norm()
+                           : random.coin() ? random.log_uniform(1e-6, 1e-1)
+                                           : -random.log_uniform(1e-6, 1e-1);
+    v += (parting - relative.dot(o.n)) * o.n;
   }
   pair.b.velocity = v;
   return pair;
@@ -113,6 +125,12 @@ MovingPair random_pair(Random& random, const Superellipsoid& shape) {
 
 MovingPair random_equal_pair(Random& random) {
   return random_pair(random, random_shape(random));
+}
+
+MovingPair random_pair_apart(Random& random) {
+  MovingPair pair = random_equal_pair(random);
+  while (pair.touching) pair = random_equal_pair(random);
+  return pair;
 }
 
 /// An ellipsoid or a superellipsoid of any size, with the moments of some distribution of mass.
@@ -190,15 +208,19 @@ class HalvedGauge : public SupportGauge {
 };
 
 struct Tally {
-  long pairs = 0, contacts = 0, grazing = 0, missed = 0, late = 0, wrong = 0, unanswered = 0, shallow = 0;
+  long pairs = 0, contacts = 0, grazing = 0, restarts = 0, missed = 0, late = 0, inexact = 0, wrong = 0, unanswered = 0,
+       shallow = 0;
 };
 
 void judge(const MovingPair& pair, const Finding& finding, double wanted, Tally& tally) {
   ++tally.pairs;
+  if (pair.touching) ++tally.restarts;
   if (finding.outcome == Outcome::contact) {
     ++tally.contacts;
     const geom::DistanceResult at = pair.distance(finding.time);
-    if (!(std::abs(at.distance) <= 1e-13 * pair.size())) ++tally.wrong;
+    // Distances where vertices and edges meet (exponents above 1) are known to no better than some 1e-13.
+    if (!(std::abs(at.distance) <= 1e-13 * pair.size())) ++tally.inexact;
+    if (!(std::abs(at.distance) <= 1e-12 * pair.size())) ++tally.wrong;
     if (wanted < finding.time - 1e-12) ++tally.late;
     if (!(wanted < kHorizon) && finding.time < 0.9 * kHorizon) ++tally.shallow;
     const double h = 1e-5;
@@ -206,11 +228,10 @@ void judge(const MovingPair& pair, const Finding& finding, double wanted, Tally&
     if (std::abs(rate) < kGrazing * (pair.b.velocity - pair.a.velocity).norm()) ++tally.grazing;
     return;
   }
-  if (finding.outcome != Outcome::clear) {
-    ++tally.unanswered;
-    return;
-  }
-  if (wanted < kHorizon) ++tally.missed;
+  // An overlap that is found is a contact that was not.
+  if (finding.outcome == Outcome::bound) ++tally.unanswered;
+  if (finding.outcome == Outcome::overlapping || (finding.outcome == Outcome::clear && wanted < kHorizon))
+    ++tally.missed;
 }
 
 const long kContacts = std::getenv("HARDBODY_FULL") != nullptr ? 100000 : 2000;
@@ -228,10 +249,12 @@ Tally search_pairs(const char* name, const Draw& draw) {
     judge(pair, find(gauge, count), reference(pair, kHorizon), tally);
   }
   std::printf(
-      "%s: %ld pairs, %ld contacts, %ld grazing: %ld missed, %ld late, %ld wrong, %ld unanswered; %ld shallower than "
-      "the reference sees; %.2f points in time and %.2f kernel calls a search, %llu rescues\n",
-      name, tally.pairs, tally.contacts, tally.grazing, tally.missed, tally.late, tally.wrong, tally.unanswered,
-      tally.shallow, static_cast<double>(count.evaluations) / static_cast<double>(count.predictions),
+      "%s: %ld pairs, %ld in touch at first, %ld contacts, %ld grazing: %ld missed, %ld late, %ld wrong, %ld "
+      "unanswered; %ld at 1e-13 of the size or more, %ld shallower than the reference sees; %.2f points in time and "
+      "%.2f kernel calls a search, %llu rescues\n",
+      name, tally.pairs, tally.restarts, tally.contacts, tally.grazing, tally.missed, tally.late, tally.wrong,
+      tally.unanswered, tally.inexact, tally.shallow,
+      static_cast<double>(count.evaluations) / static_cast<double>(count.predictions),
       static_cast<double>(count.kernel_calls) / static_cast<double>(count.predictions),
       static_cast<unsigned long long>(count.rescues));
   return tally;
@@ -242,7 +265,9 @@ void expect_none_missed(const Tally& tally) {
   EXPECT_EQ(tally.late, 0);
   EXPECT_EQ(tally.wrong, 0);
   EXPECT_EQ(tally.unanswered, 0);
+  EXPECT_LE(tally.inexact * 5000, tally.contacts);
   EXPECT_GE(tally.grazing * 10, tally.contacts);
+  EXPECT_GE(tally.restarts * 10, tally.contacts);
   EXPECT_LE(tally.shallow * 100, tally.contacts);
 }
 
@@ -274,7 +299,7 @@ TEST(SupportContact, MissesNoneOfUnlikePairs) {
 
 TEST(SupportContact, IsMissedWithHalfTheCurvature) {
   const Tally tally = search_pairs<HalvedGauge>("half the curvature", random_equal_pair);
-  EXPECT_GT(tally.missed + tally.late, 0);
+  EXPECT_GT(tally.missed + tally.late, tally.contacts / 100);
 }
 
 /// What a single normal promises: no contact within the step, however good or bad the normal is.
@@ -283,7 +308,7 @@ TEST(SupportContact, NoOverlapWithinACertifiedStep) {
   const int pairs = std::getenv("HARDBODY_FULL") != nullptr ? 100000 : 2000;
   int long_steps = 0;
   for (int k = 0; k < pairs; ++k) {
-    const MovingPair pair = random_pair(random, random_shape(random));
+    const MovingPair pair = random_pair_apart(random);
     const NormBodyShape a = norm_body(pair.shape_a);
     const NormBodyShape b = norm_body(pair.shape_b);
     const SupportGauge gauge(a, pair.a, b, pair.b, pair.b.position - pair.a.position, 0);
@@ -309,7 +334,7 @@ TEST(SupportContact, PointsAreOnTheSurfacesAndOneGapApart) {
   Random random(3);
   double worst = 0;
   for (int k = 0; k < 2000; ++k) {
-    const MovingPair pair = random_pair(random, random_shape(random));
+    const MovingPair pair = random_pair_apart(random);
     const NormBodyShape a = norm_body(pair.shape_a);
     const NormBodyShape b = norm_body(pair.shape_b);
     Vector3d r = pair.b.position - pair.a.position;

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -329,6 +330,33 @@ TEST(ObservablesOfGroups, TemperaturesAreThoseOfTheGroup) {
   }
 }
 
+TEST(ObservablesOfGroups, CollisionsAreThoseOfTheirBodies) {
+  const std::vector<ed::Component> components = {{ed::paper_species(geom::Ellipsoid({1, 1, 1}), 8), 30},
+                                                 {ed::paper_species(geom::Ellipsoid({0.5, 0.5, 0.5})), 50}};
+  ed::StartOptions start;
+  start.packing_fraction = 0.3;
+  ed::Simulation simulation(ed::random_start(components, start));
+  simulation.record_collisions(100000);
+  ed::Observables observables({80, 8, 1, {{30, 2}, {50, 2}}});
+  while (observables.next_time() <= 8) {
+    simulation.run_until(observables.next_time());
+    observables.measure(simulation);
+  }
+  std::array<double, 2> met{};
+  for (const ed::Collision& collision : simulation.collisions()) {
+    for (const int body : {collision.i, collision.j}) met[body < 30 ? 0 : 1] += 1;
+  }
+  EXPECT_EQ(simulation.collisions_of(0, 30), met[0]);
+  EXPECT_EQ(simulation.collisions_of(30, 80), met[1]);
+  EXPECT_THROW((void)simulation.collisions_of(30, 81), std::invalid_argument);
+  const ed::Results results = observables.results(simulation);
+  const double time = simulation.time();
+  EXPECT_NEAR(results.groups[0].collision_rate.value, met[0] / (30 * time), kRounding * met[0]);
+  EXPECT_NEAR(results.groups[1].collision_rate.value, met[1] / (50 * time), kRounding * met[1]);
+  EXPECT_GT(std::abs(results.groups[0].collision_rate.value - results.groups[1].collision_rate.value), 1);
+  EXPECT_GT(results.groups[0].collision_rate.error, 0);
+}
+
 TEST(ObservablesOfGroups, OneGroupIsAllBodies) {
   const ed::System system = ed_test::start({2, 0.45, 40, Inertia::paper, 10});
   ed::Simulation simulation(system);
@@ -340,6 +368,8 @@ TEST(ObservablesOfGroups, OneGroupIsAllBodies) {
   const ed::Results results = observables.results(simulation);
   ASSERT_EQ(results.groups.size(), 1U);
   ASSERT_GT(results.D_trans.value, 0);
+  EXPECT_GT(results.collision_rate.value, 0);
+  EXPECT_EQ(results.groups[0].collision_rate.value, results.collision_rate.value);
   EXPECT_EQ(results.groups[0].D_trans.value, results.D_trans.value);
   EXPECT_EQ(results.groups[0].D_rot_body.error, results.D_rot_body.error);
   EXPECT_EQ(results.groups[0].lags.back().c2.value, results.lags.back().c2.value);

@@ -183,8 +183,8 @@ TEST(Restart, OtherSpeciesAndOptionsAreRefused) {
               same ? "no std::invalid_argument" : "state: was made with another finder or other neighbours");
   }
   std::string later = state;
-  later[0] = 3;
-  EXPECT_EQ(refusal(later, c.system.species), "state: has format 3, known is 2");
+  later[0] = 4;
+  EXPECT_EQ(refusal(later, c.system.species), "state: has format 4, known is 3");
   EXPECT_EQ(refusal(state + "x", c.system.species), "state: is longer than it should be");
 }
 

@@ -2,7 +2,7 @@
 #include <ed/random.h>
 #include <ed/time_of_contact.h>
 
-#include <common/finder_gauge.h>
+#include <common/finder_ensemble.h>
 #include <common/finder_reference.h>
 
 #include <geom/distance.h>
@@ -14,7 +14,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <functional>
@@ -22,7 +21,6 @@
 #include <numbers>
 #include <stdexcept>
 #include <string>
-#include <vector>
 
 namespace {
 
@@ -509,73 +507,6 @@ TEST(TimeOfContact, UnlikeBodiesMeetWhenBruteForceSaysSo) {
   compare_with_brute_force(sphere(1.2), {1, 1, 1}, Ellipsoid({2.5, 2.5, 0.4}), {1, 1, 1.8}, 61);
   compare_with_brute_force(Ellipsoid({0.5, 0.5, 3}), {1, 1, 0.1}, Ellipsoid({2.5, 2.5, 0.4}), {1, 1, 1.8}, 62);
   compare_with_brute_force(Ellipsoid({0.5, 0.5, 3}), {1, 1, 0.1}, sphere(0.3), {1, 1, 1}, 63);
-}
-
-// ---- The search itself ---------------------------------------------------------------------------------------------
-
-/// Passes everything on, and keeps the largest deviation of a normal from unit length.
-class WatchedGauge : public ed::internal::UniaxialGauge<true> {
- public:
-  using Base = ed::internal::UniaxialGauge<true>;
-  WatchedGauge(const Base& gauge, double& deviation) : Base(gauge), deviation_(deviation) {}
-
-  Gap gap(const State& s, const Vector3d& n) const {
-    deviation_ = std::max(deviation_, std::abs(n.norm() - 1));
-    return Base::gap(s, n);
-  }
-  Evaluation evaluate(const State& s, const Vector3d& n) const { return complete(s, gap(s, n), n); }
-
- private:
-  double& deviation_;
-};
-
-TEST(CertifiedContact, NormalStaysUnitThroughLongSearches) {
-  // h and g are computed for unit normals; a normal that is not one by e shifts g by about e times the size, which a
-  // refined contact keeps as an overlap. Fast discs take a hundred Newton steps on the way to their contact.
-  const std::vector<finder_test::MovingPair> neighbours = finder_test::near_neighbours(0.2, 0.3, 60, 1);
-  finder_test::Fluid fluid(0.2, true, neighbours, 2);
-  double deviation = 0;
-  long longest = 0;
-  for (int k = 0; k < 2000; ++k) {
-    const finder_test::MovingPair pair = fluid.thermal_pair(20);
-    const finder_test::PairGauge<true> owner(fluid, pair);
-    ed::internal::FinderCounters count;
-    (void)finder_test::search(WatchedGauge(owner.gauge(), deviation), 4, count);
-    longest = std::max(longest, static_cast<long>(count.evaluations));
-  }
-  EXPECT_GT(longest, 50) << "the searches were too easy for this test";
-  // Of the last step alone (libed/src/rounding.h), and three for the norm taken here.
-  EXPECT_LE(deviation, 8 * 0x1p-53);
-}
-
-TEST(CertifiedContact, StopsAtItsBudgetWithABoundBelowTheContact) {
-  const std::vector<finder_test::MovingPair> neighbours = finder_test::near_neighbours(3, 0.3, 60, 1);
-  finder_test::Fluid fluid(3, false, neighbours, 3);
-  int bounds = 0;
-  for (int k = 0; k < 2000; ++k) {
-    const finder_test::MovingPair pair = fluid.thermal_pair();
-    const finder_test::PairGauge<false> owner(fluid, pair);
-    ed::internal::FinderCounters count;
-    const ed::internal::Finding whole = finder_test::search(owner.gauge(), 4, count);
-    const double contact = whole.outcome == ed::internal::Outcome::contact ? whole.time : kForever;
-    // Going on from the bound with the normal it left leads to the same contact.
-    Vector3d n = Vector3d::Zero();
-    double t = 0;
-    ed::internal::Finding part{};
-    do {
-      part = ed::internal::certified_contact(owner.gauge(), t, 4, 1, n, count);
-      if (part.outcome != ed::internal::Outcome::bound) break;
-      ++bounds;
-      ASSERT_GT(part.time, t);
-      ASSERT_LE(part.time, contact * (1 + 1e-13));
-      t = part.time;
-    } while (true);
-    ASSERT_EQ(part.outcome, whole.outcome);
-    if (contact < kForever) {
-      EXPECT_NEAR(part.time, contact, 1e-10);
-    }
-  }
-  EXPECT_GT(bounds, 1000);
 }
 
 // ---- Refusals ------------------------------------------------------------------------------------------------------

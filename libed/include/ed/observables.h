@@ -122,6 +122,7 @@ struct Correlations {
 
 /// What was measured of the bodies of one group.
 struct GroupResults : Correlations {
+  Estimate collision_rate;  ///< collisions a body of the group takes part in, with bodies of any, a time unit
   /// On 3 (N_k - M_k / M) degrees of freedom, M_k the group's share of all mass M: what momentum zero leaves it.
   Estimate translational_kT;
   Estimate rotational_kT;

@@ -173,6 +173,10 @@ class ED_EXPORT Simulation {
   double box() const;         ///< edge length
   Counters counters() const;  ///< since the construction
 
+  /// In how many collisions bodies number first to end - 1 took part, since the construction; a collision of two of
+  /// them counts twice. 0 <= first <= end <= number of bodies, or std::invalid_argument is thrown.
+  std::uint64_t collisions_of(int first, int end) const;
+
   /// Sum over collisions of r_AB . dp, the momentum that B gains along the vector between the centres.
   double virial() const;
   /// The tensor of which that is the trace: sum over collisions of r_AB dp^T. Symmetric on average only: bodies that

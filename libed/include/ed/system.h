@@ -83,14 +83,15 @@ enum class Neighbours {
   cells,    ///< the paper's plain algorithm: bodies in the same or an adjacent cell; no thickness
 };
 
-/// The smallest number of bodies whose box at this packing fraction is large enough for one image of every pair to be
-/// the only one that matters: box / 2 > 2 R + 4 delta_min, with R the bounding radius and delta_min the thinnest
-/// neighbour-list envelope in use; for cells, box > 6 R, three cells.
+/// The smallest box in which one image of every pair of these bodies is the only one that matters: box / 2 > 2 R + 4
+/// delta_min, with R the largest bounding radius and delta_min the thinnest neighbour-list envelope in use; for cells,
+/// box > 6 R, three cells; for obp of other bodies than ellipsoids of revolution, box / 2 > 2 R + 4 s, with s how far a
+/// centre can move while its body stays in the thinnest box around it, which octahedra and cubes can turn in.
+ED_EXPORT double smallest_box(const std::vector<Component>& components, Neighbours neighbours = Neighbours::dilated);
+
+/// The smallest number of bodies of this shape and of uniform density whose box at this packing fraction is that large.
 ED_EXPORT int smallest_number(const BodyShape& shape, double packing_fraction,
                               Neighbours neighbours = Neighbours::dilated);
-
-/// The smallest box in which that holds for bodies up to this bounding radius.
-ED_EXPORT double smallest_box(double bounding_radius, Neighbours neighbours = Neighbours::dilated);
 
 /// Kinetic energies and what they give for kT.
 struct KineticState {
