@@ -2,7 +2,7 @@
 
 from . import grid
 from .results import TARGET_ERROR, write_whole
-from .table import NEMATIC
+from .table import DECAYED, NEMATIC
 
 TEXT = """# The paper's study, again
 
@@ -19,10 +19,10 @@ windows of the fits, whether it was `equilibrated` (docs/configuration.md#auto),
 and `sound`, collisions, seconds. `curves.csv` has C2(t) and F_self(t) at about ten lags a decade. Everything else here is made
 from these two.
 
-Runs equilibrate by themselves and then produce at least 30 times as long, until D_trans and D_rot are known to {target:g} %. At
-packing fraction 0.1, and close to X0 = 1, where bodies fly or turn freely for long, productions have a fixed length with lags
-up to 40 instead. Points that are expected to be nematic equilibrate for at most 60 time units
-and produce for 400, and are flagged.
+Runs equilibrate by themselves (docs/configuration.md#auto) and then produce until D_trans and D_rot are known to {target:g} %,
+for 16 longest lags at least, or 30 times as long. At packing fraction 0.1, and close to X0 = 1, where bodies fly or turn
+freely for long, productions have a fixed length with lags up to 40 instead. Points that are expected to be nematic
+equilibrate for at most 60 time units and produce for 400, and are flagged.
 
 ## How far it is
 
@@ -69,13 +69,51 @@ def state_text(study):
     if not study.rows:
         return text
     nematic = [r for r in study.rows if r["S"] > NEMATIC]
-    text += (f" {len(nematic)} of them are nematic (S > {NEMATIC}), {len(flagged)} were not equilibrated by the criterion, {len([r for r in study.rows if r.isotropic and not r.precise])} isotropic ones are less precise than "
-             f"{100 * TARGET_ERROR:g} % or have no D_rot (too close to X0 = 1).")
+    isotropic = [r for r in study.rows if r["S"] <= NEMATIC]
+    equilibrated = [r for r in isotropic if r.equilibrated]
+    hours = sum(r.seconds for r in study.rows) / 3600
+    collisions = sum(r.collisions for r in study.rows)
+    text += (f" {len(nematic)} of them are nematic (S > {NEMATIC}); {len(equilibrated)} of the {len(isotropic)} others were equilibrated by the "
+             f"criterion. All together took {hours:.1f} hours of one core of a shared server: {collisions:.2g} collisions in production, "
+             f"{collisions / (3600 * hours):,.0f} a second, equilibration included.\n\n")
+    text += _imprecise_text(equilibrated)
     if len(done) < len(planned):
-        text += " **The study is not complete: the verdicts below are those of the points that are there.**"
+        text += "\n\n**The study is not complete: the verdicts below are those of the points that are there.**"
     slow = [r for r in flagged if r["S"] <= NEMATIC]
     if slow:
-        text += " Not equilibrated though S <= 0.3, and left out of lines and verdicts: " + ", ".join(f"{r.X0:g} at {r.phi:g}" for r in slow[:40]) + "."
+        text += "\n\nNot equilibrated though S <= 0.3, and left out of lines and verdicts: " + _names(slow) + "."
+    if study.undecayed:
+        text += (f"\n\nEquilibrated, but with so much order left that C2 does not come down to {DECAYED:g} within the longest lag: their fits of "
+                 f"C2 are left out. {_names(study.undecayed)}.")
+    return text
+
+
+def _names(rows):
+    """"X0 at phi, phi; ..."."""
+    of = {}
+    for r in rows:
+        of.setdefault(r.X0, []).append(f"{r.phi:g}")
+    return "; ".join(f"{X0:g} at {', '.join(phis)}" for X0, phis in sorted(of.items()))
+
+
+def _imprecise_text(rows):
+    """Which of the equilibrated isotropic rows are not as precise as was asked for, and in what."""
+    spheres = [r for r in rows if r.X0 == 1]
+    without = [r for r in rows if r.X0 != 1 and not r.has("D_rot")]
+    text = f"D_trans and D_rot of the equilibrated isotropic ones are known to {100 * TARGET_ERROR:g} % but for these:"
+    if without:
+        text += (f" {len(without)} points have no D_rot, their rotation is not diffusive within the longest lag (X0 = X at phi = ...): "
+                 f"{_names(without)}.")
+    for name in ("D_trans", "D_rot"):
+        rough = [r for r in rows if r.has(name) and r.errors[name] > TARGET_ERROR * r[name]]
+        if rough:
+            worst = max(r.errors[name] / r[name] for r in rough)
+            text += f" {name} is known to {100 * worst:.1f} % or better at {_names(rough)}."
+    frozen = [r for r in rows if not r.has("D_trans")]
+    if frozen:
+        text += f" {_names(frozen)} has no D_trans: the fluid froze during production (spheres do above 0.494)."
+    if spheres:
+        text += f" The {len(spheres)} points of spheres have no D_rot: nothing turns them."
     return text
 
 

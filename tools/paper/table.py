@@ -6,6 +6,7 @@ from collections import defaultdict
 from .results import OBSERVABLES, point_of, read_rows
 
 NEMATIC = 0.3  # S above it, the paper's criterion
+DECAYED = 0.03  # C2 must have come down to it for a fit: with little order left it ends at S^2
 
 
 def _number(text):
@@ -22,6 +23,9 @@ class Row:
         self.errors = {name: _number(row[name + "_error"]) for name in OBSERVABLES}
         self.equilibrated = row["equilibrated"] == "true"
         self.precise = row["precise"] == "true"
+        self.times = (_number(row["equilibration_time"]), _number(row["production_time"]))
+        self.collisions = _number(row["collisions"])
+        self.seconds = _number(row["wall_seconds"])
         self.rate = self.values["collision_rate"]
 
     def __getitem__(self, name):
@@ -43,6 +47,10 @@ class Study:
         self.curves = defaultdict(list)
         for row in read_rows(directory / "curves.csv"):
             self.curves[point_of(row)].append({key: _number(row[key]) for key in ("t", "C2", "C2_error", "F_self", "F_self_error")})
+        self.undecayed = [r for r in self.isotropic
+                          if r.has("tau_C2") and not any(c["C2"] <= DECAYED for c in self.curves[r.point])]
+        for row in self.undecayed:
+            row.values.update(tau_C2=math.nan, beta_C2=math.nan)
 
     @property
     def isotropic(self):
