@@ -7,6 +7,7 @@
 #     build/fuzz/tests/geom_fuzz -entropic=0 -max_len=192 -runs=10000000 corpus/geom
 #     build/fuzz/tests/checkpoint_fuzz -max_len=512 -runs=1000000 corpus/checkpoint
 #     build/fuzz/tests/gsd_fuzz -max_len=2048 -runs=1000000 corpus/gsd
+#     build/fuzz/tests/lammps_fuzz -max_len=2048 -runs=1000000 corpus/lammps
 #
 # (libFuzzer's entropic scheduling would take a quarter of the time.)
 function(hardbody_fuzzer name)
@@ -42,4 +43,5 @@ if(TARGET hardbody_program)
   hardbody_fuzzer(line hardbody_program nlohmann_json::nlohmann_json)
   hardbody_fuzzer(checkpoint hardbody_program)
   hardbody_fuzzer(gsd hardbody_program)
+  hardbody_fuzzer(lammps hardbody_program)
 endif()

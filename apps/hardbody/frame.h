@@ -30,7 +30,11 @@ struct FrameBody {
   Eigen::Vector3d inertia = Eigen::Vector3d::Zero();  ///< principal moments about body x, y, z; 0: not known
   std::uint32_t type = 0;                             ///< number in Frame::types
   std::uint32_t group = 0;                            ///< species of the config; that of another program: the type
+  double id = 0;                                      ///< as the file numbers it; GSD: from 0
 };
+
+/// A coordinate within a box and so many edges of it is a position; beyond, an image's number would overflow.
+inline constexpr double kMostImages = 1e9;
 
 /// All bodies at one time: what a trajectory holds of it.
 struct Frame {

@@ -30,9 +30,6 @@ using Eigen::Vector3d;
 constexpr std::uint32_t kMostTypes = 1'000'000;
 /// A stored quaternion's length may be off 1 by this: 32-bit numbers, integrated by another program.
 constexpr double kQuaternionTolerance = 1e-4;
-/// A coordinate within a box and so many edges of it is a position; beyond, an image's number would overflow.
-constexpr double kMostImages = 1e9;
-
 /// What reads one frame of a file.
 class FrameReader {
  public:
@@ -179,6 +176,7 @@ void FrameReader::read_bodies(Frame& frame) const {
   frame.bodies.resize(number);
   for (std::size_t i = 0; i < number; ++i) {
     FrameBody& body = frame.bodies[i];
+    body.id = static_cast<double>(i);
     for (std::size_t k = 0; k < 3; ++k) {
       const auto e = static_cast<Eigen::Index>(k);
       const double x = position[3 * i + k];

@@ -10,6 +10,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <initializer_list>
 #include <iterator>
 #include <map>
@@ -153,7 +155,9 @@ void DumpFrame::read_bounds(Frame& frame) {
     if (words.size() != 2) throw bad("a line of its box has not two numbers", "lower and upper bound");
     low_[axis] = number(words[0], "a bound of the box");
     frame.box[axis] = number(words[1], "a bound of the box") - low_[axis];
-    if (!(frame.box[axis] > 0)) throw bad(fmt::format("its box has an edge of {:g}", frame.box[axis]), "edges above 0");
+    if (!(frame.box[axis] > 0 && std::isfinite(frame.box[axis]))) {
+      throw bad(fmt::format("its box has an edge of {:g}", frame.box[axis]), "finite edges above 0");
+    }
   }
 }
 
@@ -183,8 +187,10 @@ void DumpFrame::read_position(const std::vector<std::string_view>& words, const 
     const double x = number(words[(*where)[static_cast<std::size_t>(axis)]], "a position");
     const double L = frame.box[axis];
     const double from_middle = where == scaled ? (x - 0.5) * L : x - (low_[axis] + 0.5 * L);
+    const double away = std::round(from_middle / L);
+    if (!(std::abs(away) < kMostImages)) throw bad(fmt::format("a body is at {:g}", x), "positions in the box");
     body.unwrapped[axis] = from_middle;
-    body.position[axis] = from_middle - L * std::round(from_middle / L);
+    body.position[axis] = from_middle - L * away;
   }
 }
 
@@ -225,7 +231,8 @@ void DumpFrame::read_body(const std::vector<std::string_view>& words, Frame& fra
     const auto column = columns({name});
     return column ? number(words[column->front()], "a column") : missing;
   };
-  order_.emplace_back(get("id", static_cast<double>(frame.bodies.size())), frame.bodies.size() - 1);
+  body.id = get("id", static_cast<double>(frame.bodies.size()));
+  order_.emplace_back(body.id, frame.bodies.size() - 1);
   read_position(words, frame, body);
   if (const auto q = columns({"quatw", "quati", "quatj", "quatk"})) {
     Eigen::Vector4d x;
@@ -258,7 +265,7 @@ Frame DumpFrame::read() {
   (void)line("its number of bodies");
   const double count = number(line("its number of bodies"), "the number of bodies");
   if (!(count >= 1 && count <= kMostBodies && count == std::floor(count))) {
-    throw bad(fmt::format("has {:g} bodies", count), "at least 1");
+    throw bad(fmt::format("has {:g} bodies", count), fmt::format("1 to {}", kMostBodies));
   }
   read_bounds(frame);
   read_columns(line("its bodies"));
@@ -281,17 +288,29 @@ Frame DumpFrame::read() {
   return frame;
 }
 
+constexpr std::string_view kBegin = "ITEM: TIMESTEP";
+
+InputError foreign(const std::string& name) {
+  return InputError(fmt::format("{}: is neither a GSD file nor a LAMMPS text dump; accepted: one of these", name));
+}
+
+/// All of a file that begins as a dump; of others, however long, only the beginning is read.
+std::string read_dump(const std::filesystem::path& path) {
+  char begin[kBegin.size()] = {};
+  std::ifstream file(path, std::ios::binary);
+  file.read(begin, sizeof begin);
+  const bool is_dump = std::string_view(begin, static_cast<std::size_t>(file.gcount())) == kBegin;
+  if (file.is_open() && !std::filesystem::is_directory(path) && !is_dump) throw foreign(path.string());
+  return read_file(path, kLongest);
+}
+
 }  // namespace
 
-LammpsReader::LammpsReader(const std::filesystem::path& path)
-    : LammpsReader(read_file(path, kLongest), path.string()) {}
+LammpsReader::LammpsReader(const std::filesystem::path& path) : LammpsReader(read_dump(path), path.string()) {}
 
 LammpsReader::LammpsReader(std::string text, std::string name) : name_(std::move(name)), text_(std::move(text)) {
-  constexpr std::string_view kBegin = "ITEM: TIMESTEP";
   const std::string_view all = text_;
-  if (!all.starts_with(kBegin)) {
-    throw InputError(fmt::format("{}: is neither a GSD file nor a LAMMPS text dump; accepted: one of these", name_));
-  }
+  if (!all.starts_with(kBegin)) throw foreign(name_);
   std::vector<std::size_t> begins;
   for (std::size_t at = 0; at != std::string_view::npos; at = all.find(kBegin, at + 1)) {
     if (at == 0 || all[at - 1] == '\n') begins.push_back(at);

@@ -187,10 +187,11 @@ Equilibration run_equilibration(const Config& config, EquilibrationRun& run, Run
 }
 
 /// Chosen on a copy of the state: every finder and every kind of neighbour list then goes on from the same start.
-double tuned_envelope(const Config& config, const ed::System& start, Progress& progress, Log& log) {
+double tuned_envelope(const Config& config, const ed::System& start, Progress& progress, Saver& saver, Log& log) {
   ed::Simulation trial(start, config.simulation_options());
   trial.tune_envelopes([&] {
     if (progress.due()) progress.show("equilibration: choosing the thickness of the neighbour lists");
+    if (saver.due()) saver.save([&start] { return checkpoint_of(start); });
     return pending_signal() == 0;
   });
   if (trial.stall()) log.line("while the thickness of the neighbour lists was chosen: " + ed::describe(*trial.stall()));
@@ -289,7 +290,7 @@ Checkpoint checkpoint_of(const ed::System& start) {
 // ---- Equilibration
 
 std::optional<EquilibrationRun> begin_equilibration(const Config& config, const ed::System& start, Progress& progress,
-                                                    Log& log) {
+                                                    Saver& saver, Log& log) {
   log.line(config.equilibration_time
                ? fmt::format("equilibration: {:g} time units", *config.equilibration_time)
                : fmt::format("equilibration: auto, at most {:g} time units", config.equilibration_cap));
@@ -297,7 +298,7 @@ std::optional<EquilibrationRun> begin_equilibration(const Config& config, const 
                        config.neighbours_chosen ? " (chosen by \"auto\")" : ""));
   Equilibration result;
   if (config.packing_fraction >= kTunedPacking && config.neighbours != "cells") {
-    result.envelope = tuned_envelope(config, start, progress, log);
+    result.envelope = tuned_envelope(config, start, progress, saver, log);
     // The best of those that were tried would not be that of an undisturbed run.
     if (pending_signal() != 0) return std::nullopt;
     log.line(fmt::format("equilibration: envelope thickness {:.4g} l", result.envelope));

@@ -37,7 +37,7 @@ struct EquilibrationRun {
 
 /// Chooses the thickness of the envelopes first; nothing if a signal came before it was chosen.
 std::optional<EquilibrationRun> begin_equilibration(const Config& config, const ed::System& start, Progress& progress,
-                                                    Log& log);
+                                                    Saver& saver, Log& log);
 /// Throws InputError if the state does not fit. Changes nothing.
 EquilibrationRun resumed_equilibration(const Config& config, const Checkpoint& checkpoint, const std::string& name);
 Checkpoint checkpoint_of(const EquilibrationRun& run);

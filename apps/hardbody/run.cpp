@@ -153,7 +153,7 @@ bool prepare(const Config& config, Continuation& at, Progress& progress, Saver& 
   if (!at.start) return false;
   // The run that it came from may be gone when this one is resumed.
   if (saver.due() || config.start_from) saver.save([&at] { return checkpoint_of(*at.start); });
-  at.equilibration = begin_equilibration(config, *at.start, progress, log);
+  at.equilibration = begin_equilibration(config, *at.start, progress, saver, log);
   if (at.equilibration && config.equilibration_time != 0.0) at.start.reset();
   return true;
 }

@@ -213,11 +213,15 @@ void draw_velocities(ed::System& system, std::uint64_t seed) {
   }
 }
 
-/// Whether every degree of freedom that should have energy has some.
+/// Whether every degree of freedom that should have energy has some, that of the bodies as a whole left out.
 bool moves(const ed::System& system) {
+  constexpr double kRounding = 1e-12;
   const ed::KineticState now = ed::kinetic_state(system);
-  return now.translational_energy > 0 && (now.rotational_freedoms == 0 || now.rotational_energy > 0) &&
-         (now.spin_freedoms == 0 || now.spin_energy > 0);
+  double mass = 0;
+  for (int i = 0; i < system.size(); ++i) mass += system.species_of(i).mass;
+  const double of_the_whole = 0.5 * now.momentum.squaredNorm() / mass;
+  return now.translational_energy - of_the_whole > kRounding * now.translational_energy &&
+         (now.rotational_freedoms == 0 || now.rotational_energy > 0) && (now.spin_freedoms == 0 || now.spin_energy > 0);
 }
 
 /// Where they come from, for the report.
@@ -230,6 +234,10 @@ std::string set_velocities(ed::System& system, const Config& config, const Frame
     system.bodies[k].angular_velocity = from.angular_velocity;
     same = same && ed::internal::bytes_of(frame.exact->species[from.type]) ==
                        ed::internal::bytes_of(system.species_of(static_cast<int>(k)));
+  }
+  if (!std::isfinite(ed::kinetic_state(system).energy())) {
+    throw InputError(fmt::format("{}: its velocities are too large for kinetic energies; accepted: finite ones",
+                                 config.start_file->file));
   }
   if (same) return "velocities as they are";
   const bool drawn = !moves(system);
@@ -266,30 +274,31 @@ std::optional<double> mending_factor(const ed::System& system) {
   return 1 + high;
 }
 
-/// Which bodies overlap, worst first.
-std::string overlap_text(const ed::Audit& audit) {
+/// Which bodies overlap, the worst pair by the numbers of the file. `ids`: of the bodies of the state.
+std::string overlap_text(const ed::Audit& audit, const std::vector<double>& ids) {
   if (audit.overlaps == 0)
     return fmt::format("{} pairs of bodies are too deep in each other for a distance", audit.unanswered);
-  return fmt::format("{} pairs of bodies overlap, the worst by {:.3g} (bodies {} and {})",
-                     audit.overlaps + audit.unanswered, -audit.minimum_distance, audit.closest_i, audit.closest_j);
+  return fmt::format("{} pairs of bodies overlap, the worst by {:.3g} (bodies {} and {} of the file)",
+                     audit.overlaps + audit.unanswered, -audit.minimum_distance,
+                     ids[static_cast<std::size_t>(audit.closest_i)], ids[static_cast<std::size_t>(audit.closest_j)]);
 }
 
 /// Parts bodies that overlap, if the config says so; what was done.
-std::string mend(ed::System& system, const StartFile& start) {
+std::string mend(ed::System& system, const StartFile& start, const std::vector<double>& ids) {
   const ed::Audit audit = ed::audit(system);
   if (!overlaps(audit)) return "";
   if (!start.mend) {
     throw InputError(fmt::format("{}: {}; accepted: none deeper than {:g}, or start.mend = true", start.file,
-                                 overlap_text(audit), ed::kAuditOverlap));
+                                 overlap_text(audit, ids), ed::kAuditOverlap));
   }
   const std::optional<double> factor = mending_factor(system);
   if (!factor) {
     throw InputError(
         fmt::format("{}: {}: a box {} times as large does not part them; accepted: a state of these bodies", start.file,
-                    overlap_text(audit), kMostMending));
+                    overlap_text(audit, ids), kMostMending));
   }
   system = scaled(system, *factor);
-  return fmt::format(", mended: {}: box and positions scaled by 1 + {:.6g}", overlap_text(audit), *factor - 1);
+  return fmt::format(", mended: {}: box and positions scaled by 1 + {:.6g}", overlap_text(audit, ids), *factor - 1);
 }
 
 bool same_packing(double a, double b) {
@@ -370,7 +379,9 @@ FileStart start_from_file(const Config& config) {
   result.system = placed(config, frame, order);
   const double before = ed::packing_fraction(result.system);
   const std::string velocities = set_velocities(result.system, config, frame, order);
-  const std::string mended = mend(result.system, start);
+  std::vector<double> ids;
+  for (const std::size_t i : order) ids.push_back(frame.bodies[i].id);
+  const std::string mended = mend(result.system, start, ids);
   const double after = ed::packing_fraction(result.system);
   if (!same_packing(before, config.packing_fraction) && !same_packing(after, config.packing_fraction)) {
     throw InputError(

@@ -53,6 +53,14 @@ bool flushed(int file, Flush flush) {
   return flush == Flush::later || ::fsync(file) == 0;
 }
 
+/// That the names in a directory survive a loss of power, where the file system can say so.
+void flush_names(const fs::path& directory) {
+  const int file = ::open(directory.empty() ? "." : directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (file < 0) return;
+  (void)::fsync(file);
+  ::close(file);
+}
+
 }  // namespace
 
 std::string read_file(const fs::path& path, std::size_t limit) {
@@ -85,6 +93,7 @@ void write_file(const fs::path& path, const std::function<void(const Sink&)>& ma
   try {
     write_pieces(temporary, path, make);
     if (std::rename(temporary.c_str(), path.c_str()) != 0) fail_to_write(path, errno);
+    flush_names(path.parent_path());
   } catch (...) {
     std::remove(temporary.c_str());
     throw;

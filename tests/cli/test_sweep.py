@@ -161,13 +161,19 @@ class Resumed(SweepCase):
             time.sleep(moments.uniform(0.1, 0.4) * duration)
             if process.poll() is not None:
                 shutil.rmtree(self.path("out"))
+                kills = 0
                 continue
-            process.kill()
+            if kills == 0:
+                process.kill()  # its runs are told, and save their state
+            else:
+                os.killpg(process.pid, signal.SIGKILL)  # its runs too, at once
             process.wait()
             kills += 1
         result = self.sweep(TWELVE, "--jobs", "2")
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertEqual(self.without_timing(), self.without_timing("reference"))
+        points = [n for n in os.listdir(self.path("out")) if os.path.exists(self.path(f"out/{n}/log.txt"))]
+        self.assertTrue(any(": resumed" in self.read(f"out/{n}/log.txt") for n in points), "no run was cut")
         for row in os.listdir(self.path("reference")):
             if not os.path.isdir(self.path(f"reference/{row}")):
                 continue

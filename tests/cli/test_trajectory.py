@@ -9,6 +9,7 @@ import csv
 import json
 import os
 import random
+import re
 import shutil
 import signal
 import subprocess
@@ -298,7 +299,7 @@ class Killed(Trajectories):
         self.write("run.toml", config.replace("[output]\n", '[output]\ntrajectory = ["gsd"]\nframes = 5001\n'))
         draws = random.Random(1)
         frames = []
-        for k in range(50 if FULL else 12):
+        for k in range(50):
             out = f"out{k}"
             process = subprocess.Popen([HARDBODY, "run", "run.toml", "--out", out], cwd=self.here,
                                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
@@ -319,6 +320,12 @@ class Killed(Trajectories):
                     self.assertTrue(numpy.all(numpy.isfinite(file[index].particles.position)))
                     norms = numpy.linalg.norm(file[index].particles.orientation, axis=1)
                     self.assertLess(abs(norms - 1).max(), 1e-6)
+                # Ours too, up to the same frame.
+                if len(file) > 0:
+                    result = self.hardbody("check", f"{out}/trajectory.gsd")
+                    self.assertEqual(result.returncode, 0, result.stderr)
+                    self.assertRegex(result.stdout, rf"frames +{len(file)}\n")
+            shutil.rmtree(self.path(out))
         print(f"killed after {sorted(frames)} frames")
         self.assertGreater(max(frames), 10)
 
@@ -454,6 +461,17 @@ class StartsFromFiles(Trajectories):
         self.write("again.toml", AGAIN.replace("first/trajectory.gsd", "overlap.lammpstrj"))
         refusal = self.hardbody("run", "again.toml", "--out", "out")
         self.assert_refused(refusal, "overlap.lammpstrj: ", "pairs of bodies overlap, the worst by ", "start.mend = true")
+        # The pair by the file's own numbers: that which is so close there.
+        first, second = map(int, re.search(r"\(bodies (\d+) and (\d+) of the file\)", refusal.stderr).groups())
+        lines = self.read("overlap.lammpstrj").splitlines()
+        begin = max(k for k, line in enumerate(lines) if line.startswith("ITEM: ATOMS"))
+        columns = lines[begin].split()[2:]
+        rows = [dict(zip(columns, line.split())) for line in lines[begin + 1:]]
+        where = {int(row["id"]): numpy.array([float(row[c]) for c in "xyz"]) for row in rows}
+        edges = [list(map(float, line.split())) for line in lines[5:8]]
+        box = edges[0][1] - edges[0][0]
+        apart = where[first] - where[second]
+        self.assertLess(numpy.linalg.norm(apart - box * numpy.round(apart / box)), 3.2)  # touching discs and rods are this near
         self.assertFalse(os.path.exists(self.path("out")))
         result = self.hardbody("run", "again.toml", "--out", "out", "--set", "start.mend=true")
         self.assertEqual(result.returncode, 0, result.stderr)
@@ -464,6 +482,39 @@ class StartsFromFiles(Trajectories):
         self.assertEqual(self.hardbody("check", "out").returncode, 0)
         self.run_small("again", config=self.read("out/config.toml"))
         self.same("out/trajectory.gsd", 0, "again/trajectory.gsd")
+
+    def test_hostile_dumps(self):
+        self.run_with("first", SMALL)
+        good = self.read("first/trajectory.lammpstrj")
+        begin = good.rindex("ITEM: TIMESTEP")
+        head, rest = good[begin:].split("ITEM: ATOMS")
+        names, *bodies = ("ITEM: ATOMS" + rest).splitlines()
+        lines = head.splitlines()
+        column = names.split()[2:].index("x")
+
+        def dump(count=None, bounds=None, x=None, bodies=bodies):
+            top = list(lines)
+            top[3] = count or top[3]
+            top[5] = bounds or top[5]
+            first = bodies[0].split()
+            first[column] = x or first[column]
+            return "\n".join(top + [names, " ".join(first)] + bodies[1:]) + "\n"
+
+        for what, text, *parts in [
+            ("infinite box", dump(bounds="-1e308 1e308"), "its box has an edge of inf"),
+            ("far away", dump(x="1e17"), "a body is at 1e+17", "positions in the box"),
+            ("no number", dump(x="nan"), "a position is"),
+            ("many bodies", dump(count="2147483648"), "has no whole frame"),
+            ("a column less", dump(bodies=[bodies[0].rsplit(None, 1)[0]] + bodies[1:]), "a body has"),
+        ]:
+            with self.subTest(what):
+                self.write("bad.lammpstrj", text)
+                self.write("again.toml", AGAIN.replace("first/trajectory.gsd", "bad.lammpstrj"))
+                self.assert_refused(self.hardbody("run", "again.toml", "--out", "out"), "bad.lammpstrj: ", "accepted: ", *parts)
+                self.assertFalse(os.path.exists(self.path("out")))
+        # No end, and not a word of it a dump's: refused by its beginning.
+        self.write("again.toml", AGAIN.replace("first/trajectory.gsd", "/dev/zero"))
+        self.assert_refused(self.hardbody("run", "again.toml", "--out", "out"), "/dev/zero: is neither", "accepted: ")
 
     def test_refusals(self):
         self.run_with("first", SMALL)

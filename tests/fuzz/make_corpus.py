@@ -1,5 +1,5 @@
-"""Writes the inputs that the fuzzers start from: `make_corpus.py DIR` fills DIR/line, DIR/geom, DIR/checkpoint and
-DIR/gsd.
+"""Writes the inputs that the fuzzers start from: `make_corpus.py DIR` fills DIR/line, DIR/geom, DIR/checkpoint,
+DIR/gsd and DIR/lammps.
 
 The same files every time: the draws are seeded.
 """
@@ -69,13 +69,41 @@ def gsd_files():
         yield b"\1" + changes
 
 
+def dumps():
+    """LAMMPS dumps, most of them with something that is not as it should be."""
+    columns = "id type x y z quatw quati quatj quatk shapex shapey shapez SuperquadricRoundness.Phi SuperquadricRoundness.Theta vx vy vz"
+    body = "{id} {type} {x} 0 0 {q} 0 0 0 1 1 2 0.5 0.5 1 0 0"
+
+    def dump(count=2, bounds=("-5 5",) * 3, names=columns, frames=1, **other):
+        values = {"type": 1, "x": 1, "q": 1, **other}
+        bodies = [body.format(**{"id": k + 1, **values}) for k in range(2)]
+        frame = ["ITEM: TIMESTEP", "0", "ITEM: NUMBER OF ATOMS", str(count), "ITEM: BOX BOUNDS pp pp pp", *bounds,
+                 "ITEM: ATOMS " + names, *bodies]
+        return ("\n".join(frame) + "\n") * frames
+
+    yield dump()
+    yield dump(frames=3)
+    yield dump(names=columns.replace(" x y z ", " xs ys zs "))
+    yield dump(names=columns.replace(" x y z ", " xu yu zu "))
+    yield dump()[:200]
+    for count in ["2147483648", "-1", "0", "nan", "1e300", "2.5", ""]:
+        yield dump(count=count)
+    for bound in ["-1e308 1e308", "5 -5", "0 0", "nan 1", "-5 5 1", "0 1e-320"]:
+        yield dump(bounds=(bound, "-5 5", "-5 5"))
+    for change in [{"x": "1e17"}, {"x": "-1e308"}, {"x": "nan"}, {"q": 0}, {"q": 2}, {"type": 0}, {"type": 10**9}, {"id": "x"}]:
+        yield dump(**change)
+    yield dump(names="id type")
+    yield dump(names=columns + " more")
+
+
 def main(directory):
     draws = random.Random(1)
     geom = [bytes(draws.randrange(256) for _ in range(160)) for _ in range(64)]
     # A byte that says of what, then changes of three bytes each, or a payload.
     checkpoint = [bytes([k % 3]) + bytes(draws.randrange(256) for _ in range(3 * (k % 40))) for k in range(120)]
     line = [line.encode() for line in lines()]
-    for name, inputs in [("line", line), ("geom", geom), ("checkpoint", checkpoint), ("gsd", list(gsd_files()))]:
+    for name, inputs in [("line", line), ("geom", geom), ("checkpoint", checkpoint), ("gsd", list(gsd_files())),
+                         ("lammps", [text.encode() for text in dumps()])]:
         os.makedirs(os.path.join(directory, name), exist_ok=True)
         for k, data in enumerate(inputs):
             with open(os.path.join(directory, name, f"seed{k:03}"), "wb") as file:

@@ -208,6 +208,7 @@ class OneRun(Case):
                 self.assertEqual((view["bodies"], view["frames"]), (128, 6))
                 # Every body's mesh reaches the graphics card.
                 self.assertGreater(view["triangles"], 128 * 100)
+                self.assertEqual(view["triangles"] % 128, 0)  # equal shapes: as many of each
                 self.assertGreater(self.colours(browser, ".stage canvas"), 40)
                 charts = {chart["id"]: chart for chart in browser.run("return window.hardbodyReport.charts")}
                 self.assertEqual(list(charts), PLOTS)
@@ -502,6 +503,21 @@ class Sweep(Case):
                 self.assertEqual(browser.run("return window.hardbodyReport.views[0].bodies"), 128)
                 self.assert_fits(browser, width)
                 self.assert_silent(browser)
+
+    def test_many_points_one_after_the_other(self):
+        """A page may have some sixteen WebGL contexts: a view gives its own back."""
+        browser = self.open(self.file)
+        for k in range(30):
+            browser.run(
+                """const {map} = window.hardbodyReport.page.sweep; const [x, y, w, h] = map.rectangle(map.g, [arguments[0], 10]);
+                const at = map.canvas.getBoundingClientRect();
+                map.canvas.dispatchEvent(new MouseEvent('click', {clientX: at.left + x + w / 2, clientY: at.top + y + h / 2, bubbles: true}));
+                document.querySelector('.stage').scrollIntoView({behavior: 'instant'});""",
+                k % 24,
+            )
+            self.wait_for(browser, "return window.hardbodyReport.views[0].drawn > 0")
+        self.assertGreater(self.colours(browser, ".stage canvas"), 40)
+        self.assert_silent(browser)
 
     def test_keys_move_and_open(self):
         browser = self.open(self.file)

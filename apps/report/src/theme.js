@@ -1,11 +1,12 @@
 // Light or dark: as the system says, until the reader chooses.
 import { h } from './dom.js';
 
-const listeners = [];
+const listeners = new Set();
 
-/** Called after each change of colours. */
+/** Called after each change of colours, until what is returned is called. */
 export function onThemeChange(listener) {
-  listeners.push(listener);
+  listeners.add(listener);
+  return () => listeners.delete(listener);
 }
 
 const system = window.matchMedia('(prefers-color-scheme: dark)');

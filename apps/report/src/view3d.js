@@ -129,13 +129,15 @@ export class View3d {
     this.controls.maxDistance = 8 * box;
     this.controls.addEventListener('change', () => this.draw());
     this.canvas.addEventListener('keydown', (event) => this.key(event));
-    new ResizeObserver(() => this.resize()).observe(this.stage);
+    this.sizes = new ResizeObserver(() => this.resize());
+    this.sizes.observe(this.stage);
     // Nobody waits for what is not seen.
-    new IntersectionObserver(([entry]) => {
+    this.sights = new IntersectionObserver(([entry]) => {
       this.seen = entry.isIntersecting;
       if (this.seen && this.stale) this.draw();
-    }).observe(this.stage);
-    onThemeChange(() => this.retheme());
+    });
+    this.sights.observe(this.stage);
+    this.forgetTheme = onThemeChange(() => this.retheme());
     this.reset();
     this.retheme();
     this.show(this.frame);
@@ -205,23 +207,23 @@ export class View3d {
     this.caption.textContent = `${parts.join(' · ')}${this.data.note ? ` · ${this.data.note.trim()}` : ''}`;
   }
 
-  colourOf(i, { axes, order }) {
+  colourOf(i, { axes, order }, palette) {
     const [x, y, z] = [axes[3 * i], axes[3 * i + 1], axes[3 * i + 2]];
     if (this.mode === 'direction') return directionColour(x, y, z);
     if (this.mode === 'angle') {
       const [a, b, c] = order.director;
       return srgbToLinear(rampColour(1 - Math.acos(Math.min(1, Math.abs(a * x + b * y + c * z))) / (Math.PI / 2)));
     }
-    const colour = new Color(cssColour(this.mode === 'species' ? `--c${this.speciesOf[i] % 8}` : '--c0'));
-    return [colour.r, colour.g, colour.b];
+    return palette[this.mode === 'species' ? this.speciesOf[i] % palette.length : 0];
   }
 
   paint() {
     if (!this.meshes) return;
     const frame = this.frameData(this.frame);
     const colour = new Color();
+    const palette = Array.from({ length: 8 }, (_, k) => new Color(cssColour(`--c${k}`)).toArray());
     for (const { mesh, members } of this.meshes) {
-      members.forEach((i, k) => mesh.setColorAt(k, colour.setRGB(...this.colourOf(i, frame))));
+      members.forEach((i, k) => mesh.setColorAt(k, colour.setRGB(...this.colourOf(i, frame, palette))));
       mesh.instanceColor.needsUpdate = true;
     }
     this.showLegend();
@@ -387,9 +389,23 @@ export class View3d {
     this.canvas.toBlob((blob) => download(`${fileName(this.run.name)}-bodies.png`, blob));
   }
 
+  /** Gives back what a page has few of: browsers allow some sixteen WebGL contexts. */
   dispose() {
     this.stop();
-    this.renderer?.dispose();
+    if (!this.renderer) return;
+    this.forgetTheme();
+    this.sizes.disconnect();
+    this.sights.disconnect();
+    this.controls.dispose();
+    for (const { mesh } of this.meshes) {
+      mesh.geometry.dispose();
+      mesh.dispose();
+    }
+    this.material.dispose();
+    this.renderer.dispose();
+    this.renderer.forceContextLoss();
+    this.renderer = null;
+    this.meshes = null;
   }
 }
 
