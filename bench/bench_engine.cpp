@@ -3,8 +3,9 @@
 /// engine/...: the default path. First line: the state point that everything else is compared with, N = 512, X0 = 3,
 /// packing fraction 0.40. methods/...: every finder, kind of neighbour list and distance method. dilute/...: dilated
 /// envelopes against cells, the choice of neighbours = "auto". rescues/...: the share of the distances that Newton's
-/// method declines. vectors/...: pairs looked at one by one, and in the vectors of each instruction set. The tables at
-/// the end give ratios within the run.
+/// method declines. vectors/...: pairs looked at one by one, and in the vectors of each instruction set. scale/...:
+/// from 10^3 to 10^6 bodies, with the seconds that the start takes and the memory. The tables at the end give ratios
+/// within the run.
 
 #include "engine_rates.h"
 
@@ -17,6 +18,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -129,7 +131,9 @@ std::string scale_name(int number) {
 }
 
 void scale(benchmark::State& timing, int number) {
+  const auto begin = std::chrono::steady_clock::now();
   const ed::System& system = start(scale_state(number));
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
   malloc_trim(0);
   const double before = memory();
   // The one that has been tuned: tens of collisions a body make its lists as old as they are in a long run.
@@ -140,6 +144,7 @@ void scale(benchmark::State& timing, int number) {
   for (auto _ : timing) simulation.run_collisions(stretch);
   hardbody_bench::report_rates(timing, counters, simulation.counters());
   malloc_trim(0);
+  timing.counters["start s"] = seconds.count();
   timing.counters["kB a body"] = (memory() - before) / 1000 / system.size();
 }
 
@@ -319,6 +324,9 @@ int main(int argc, char** argv) {
       if (X0 != 3 || packing_fraction != 0.40) add_engine({X0, packing_fraction});
     }
   }
+  // Long rods and flat discs.
+  add_engine({10, 0.25});
+  add_engine({0.1, 0.25});
   // State points that other codes were measured at, and what spin costs.
   add_engine({2, 0.45});
   add_engine({1.25, 0.50});

@@ -248,6 +248,11 @@ std::string shown(const ed::Estimate& e) {
 int analyze(const AnalyzeArguments& arguments) {
   const fs::path given(arguments.path);
   const fs::path file = fs::is_directory(given) ? given / kGsdFile : given;
+  if (fs::is_directory(given) && !fs::exists(file)) {
+    throw InputError(fmt::format(
+        "{}: has no {}; accepted: the directory of a run with [output] trajectory = [\"gsd\"], or a GSD file",
+        given.string(), kGsdFile));
+  }
   const fs::path out = arguments.out ? fs::path(*arguments.out) : file.parent_path() / "analysis";
   const GsdReader reader(file);
   Stored stored = read_trajectory(reader, arguments);

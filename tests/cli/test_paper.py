@@ -150,6 +150,25 @@ class Tool(Here):
         self.assertEqual(process.wait(timeout=60), 143)
         self.assertIn("stopped by SIGTERM", (directory / "log.txt").read_text())
 
+    def test_kill(self):
+        """kill -9 of the tool: its runs save their state and end, and the next call goes on with them."""
+        self.assertEqual(tool(*self.arguments()).returncode, 0)
+        reference = [{k: v for k, v in row.items() if k != "wall_seconds"} for row in read(self.here / "results" / "points.csv")]
+        shutil.rmtree(self.here / "results")
+        command = [sys.executable, ROOT / "tools" / "reproduce_paper.py", "--hardbody", HARDBODY, *self.arguments()]
+        process = subprocess.Popen(list(map(str, command)), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        log = self.here / "out-quick" / "X0_0.5_phi_0.05" / "log.txt"
+        deadline = time.monotonic() + 60
+        while not (log.exists() and "production: " in log.read_text()):
+            self.assertLess(time.monotonic(), deadline)
+            time.sleep(0.01)
+        process.kill()
+        process.wait()
+        result = tool(*self.arguments())
+        self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+        rows = [{k: v for k, v in row.items() if k != "wall_seconds"} for row in read(self.here / "results" / "points.csv")]
+        self.assertEqual(rows, reference)
+
 
 class Grid(unittest.TestCase):
     def test_points(self):

@@ -739,7 +739,7 @@ class Analyze(Trajectories):
         self.assertAlmostEqual(self.rows("other/msd.csv")["t"][-1], 1)
         self.assert_refused(self.hardbody("analyze", "none"), "none: cannot be read: No such file")
         os.makedirs(self.path("empty"))
-        self.assert_refused(self.hardbody("analyze", "empty"), "empty/trajectory.gsd: cannot be read")
+        self.assert_refused(self.hardbody("analyze", "empty"), "empty: has no trajectory.gsd", "trajectory = [\"gsd\"]")
         self.assert_refused(self.hardbody("analyze", "out", "--time-step", "0"), "--time-step")
 
     def test_fits(self):

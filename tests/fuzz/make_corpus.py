@@ -100,7 +100,7 @@ def main(directory):
     draws = random.Random(1)
     geom = [bytes(draws.randrange(256) for _ in range(160)) for _ in range(64)]
     # A byte that says of what, then changes of three bytes each, or a payload.
-    checkpoint = [bytes([k % 3]) + bytes(draws.randrange(256) for _ in range(3 * (k % 40))) for k in range(120)]
+    checkpoint = [bytes([k % 5]) + bytes(draws.randrange(256) for _ in range(3 * (k % 40))) for k in range(120)]
     line = [line.encode() for line in lines()]
     for name, inputs in [("line", line), ("geom", geom), ("checkpoint", checkpoint), ("gsd", list(gsd_files())),
                          ("lammps", [text.encode() for text in dumps()])]:

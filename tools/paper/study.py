@@ -1,6 +1,7 @@
 """Runs state points, a process each, and merges each into the results as soon as it is finished."""
 
 import contextlib
+import ctypes
 import fcntl
 import json
 import pathlib
@@ -73,6 +74,12 @@ def alone_in(directory):
         yield
 
 
+def _save_when_the_study_is_killed():
+    """In the child: SIGTERM when its parent ends, however that does."""
+    PR_SET_PDEATHSIG = 1
+    ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGTERM)
+
+
 class Stop:
     """A deadline, or a signal; the runs then save what they have."""
 
@@ -105,15 +112,19 @@ class Study:
         return self.out / point.name
 
     def start(self, point):
-        """Goes on with a run that was begun, else begins it."""
+        """Goes on with a run that was begun with the same config, else begins it."""
         directory = self.directory(point)
         config = self.out / f"{point.name}.toml"
-        config.write_text(config_text(point, self.quick), encoding="utf-8")
+        text = config_text(point, self.quick)
+        if not config.exists() or config.read_text(encoding="utf-8") != text:
+            shutil.rmtree(directory, ignore_errors=True)
+            config.write_text(text, encoding="utf-8")
         begun = (directory / "config.toml").exists()
         command = ["resume", str(directory)] if begun else ["run", str(config), "--out", str(directory)]
-        with open(self.out / f"{point.name}.log", "w", encoding="utf-8") as log:
+        # Appended to: a run of a study that was killed may still write its last line.
+        with open(self.out / f"{point.name}.log", "a", encoding="utf-8") as log:
             process = subprocess.Popen([self.program, *command], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
-                                       stderr=log, start_new_session=True)
+                                       stderr=log, start_new_session=True, preexec_fn=_save_when_the_study_is_killed)
         self.running[process] = point
 
     def is_finished(self, point):
@@ -133,8 +144,12 @@ class Study:
             self.say(f"{point.name}: D_trans {_shown(summary, 'D_trans')}, D_rot {_shown(summary, 'D_rot')}, "
                      f"S {_shown(summary, 'S')}{'' if summary['equilibrated'] else ', not equilibrated'}, "
                      f"{summary['performance']['total_wall_seconds']:.0f} s")
+            return
+        text = (self.out / f"{point.name}.log").read_text(encoding="utf-8", errors="replace").strip().splitlines()
+        if status == 2 and any("another hardbody process" in line for line in text[-3:]):
+            time.sleep(0.5)  # it saves its state
+            self.start(point)
         elif status not in (130, 143):
-            text = (self.out / f"{point.name}.log").read_text(encoding="utf-8", errors="replace").strip().splitlines()
             self.failed.append(point)
             self.say(f"{point.name}: FAILED with exit status {status}: {text[-1] if text else 'no message'}")
 
