@@ -380,6 +380,7 @@ FileStart start_from_file(const Config& config) {
   const double before = ed::packing_fraction(result.system);
   const std::string velocities = set_velocities(result.system, config, frame, order);
   std::vector<double> ids;
+  ids.reserve(order.size());
   for (const std::size_t i : order) ids.push_back(frame.bodies[i].id);
   const std::string mended = mend(result.system, start, ids);
   const double after = ed::packing_fraction(result.system);

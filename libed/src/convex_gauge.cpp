@@ -183,12 +183,14 @@ double ConvexGauge::least_step(const State& s, const Evaluation& /*e*/, const Ve
   const double shortest = kTouching * unit;
   double longest = shortest;
   double end = 0;
-  for (double trial = kShortest * unit; trial < 0.1 * unit; trial *= 8) {
+  double trial = kShortest * unit;
+  while (trial < 0.1 * unit) {
     if (chord_clears(s, n, 0, 0, trial, end)) {
       longest = trial;
     } else if (longest > shortest) {
       break;
     }
+    trial *= 8;
   }
   return longest;
 }

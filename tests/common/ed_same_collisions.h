@@ -34,7 +34,7 @@ inline std::vector<ed::Collision> first_collisions(const ed::System& system, con
 
 /// Expects the pairs to be the same, times to agree, and to be in order.
 inline void expect_same(const std::vector<ed::Collision>& a, const std::vector<ed::Collision>& b,
-                        const std::string& what) {
+                        const std::string& what, double same_time = kSameTime) {
   ASSERT_EQ(a.size(), b.size()) << what;
   double worst = 0;
   for (std::size_t k = 0; k < a.size(); ++k) {
@@ -44,7 +44,7 @@ inline void expect_same(const std::vector<ed::Collision>& a, const std::vector<e
     EXPECT_GE(b[k].time, b[k > 0 ? k - 1 : 0].time) << what;
   }
   std::printf("%s: times differ by %.1e at most\n", what.c_str(), worst);
-  EXPECT_LE(worst, kSameTime) << what;
+  EXPECT_LE(worst, same_time) << what;
 }
 
 /// A way to run the event loop.
