@@ -28,6 +28,7 @@
 #include <optional>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace {
@@ -73,8 +74,8 @@ struct Method {
 constexpr Method kPaper{ed::Finder::bracketing, ed::Neighbours::obp, ed::DistanceMethod::newton5};
 
 const ed::System& start(const StatePoint& state) {
-  static std::map<std::string, ed::System> starts;
-  ed::System& system = starts[state.name()];
+  static std::map<std::pair<std::string, int>, ed::System> starts;
+  ed::System& system = starts[{state.name(), state.number}];
   if (system.bodies.empty()) {
     const geom::Ellipsoid shape(
         {std::pow(state.X0, -1.0 / 3), std::pow(state.X0, -1.0 / 3), std::pow(state.X0, 2.0 / 3)});

@@ -244,15 +244,16 @@ TEST(AsymmetricTop, IsTheTextbooksWithBoostsEllipticFunctions) {
     const FreeTop top = start.top();
     sides[start.inertia[wanted.axis()] == start.inertia.maxCoeff() ? 1 : 0] += 1;
     for (const double t : {1.0, 100.0}) {
+      const auto exact_t = static_cast<TextbookTop::Real>(t);
       const TopState now = top.at(t);
       const double rate = rate_scale(start);
       // FreeTop promises half of the first term. Boost's functions lose digits of a long double at some moduli, which
       // IntegratedTop, above, does not.
       const double tolerance = 4e-15 * condition(start) * (1 + rate * t) + 2e-14;
       const Vector3d w = now.R.transpose() * now.omega;
-      const Vector3d omega_error = w - wanted.omega(t).cast<double>();
+      const Vector3d omega_error = w - wanted.omega(exact_t).cast<double>();
       EXPECT_LE(omega_error.norm(), tolerance * rate) << n << ", t = " << t;
-      const Vector3d axis_error = now.R.col(wanted.axis()) - wanted.direction(t).cast<double>();
+      const Vector3d axis_error = now.R.col(wanted.axis()) - wanted.direction(exact_t).cast<double>();
       EXPECT_LE(axis_error.norm(), tolerance) << n << ", t = " << t;
     }
   }

@@ -100,8 +100,10 @@ double reach_beyond(const BodyShape& shape, const ed::Motion& now, const ed::Mot
     best = n;
   };
   for (int k = 0; k < 60; ++k) look(random.direction());
-  for (double step = 0.3; step > 1e-5; step *= 0.7) {
+  double step = 0.3;
+  while (step > 1e-5) {
     for (int k = 0; k < 4; ++k) look((best + step * random.direction()).normalized());
+    step *= 0.7;
   }
   return worst;
 }
