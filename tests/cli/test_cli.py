@@ -650,6 +650,14 @@ class BadConfig(Case):
         self.refuse(SMALL.replace("number = 64", f"number = {least - 1}"), "box")
         self.run_small("least", "--set", f"system.number={least}", "--set", "production.time=1")
 
+    def test_boxes_that_bodies_turn_in_need_room(self):
+        octahedra = SMALL.replace("aspect_ratio = 2", 'kind = "superellipsoid"\nsemi_axes = [1, 1, 1]\nexponents = [1.6, 1.6]')
+        octahedra = octahedra.replace("= 0.2", "= 0.3") + '[dynamics]\nneighbours = "obp"\n'
+        message = self.refuse(octahedra, "bad.toml:3: ", "system.number", '"obp" needs room for boxes that a body can turn in')
+        least = int(re.search(r"at least (\d+)", message)[1])
+        self.assertGreater(least, 64)
+        self.run_small("least", "--set", f"system.number={least}", "production.time=1", "equilibration.time=0", config=octahedra)
+
     def test_densest_packing_named_is_accepted(self):
         config = SMALL.replace("aspect_ratio = 2", "aspect_ratio = 1.05")
         message = self.refuse(config.replace("= 0.2", "= 0.9"), "system.packing_fraction")
