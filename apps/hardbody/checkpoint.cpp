@@ -69,8 +69,8 @@ namespace {
 
 constexpr std::string_view kMagic = "HARDBODY";
 constexpr std::uint32_t kByteOrder = 0x01020304;
-constexpr std::uint32_t kFormat = 6;
-constexpr std::uint32_t kOtherRun = 3;  ///< to 5: whose run only an older program can go on with
+constexpr std::uint32_t kFormat = 7;
+constexpr std::uint32_t kOtherRun = 3;  ///< to 6: whose run only an older program can go on with
 constexpr std::uint32_t kOneEllipsoid =
     1;  ///< of one ellipsoid of revolution; like 2 without what a run needs to go on
 constexpr std::size_t kHead = 8 + 4 + 4 + 8;  ///< magic, byte order, format, length of the payload

@@ -32,7 +32,7 @@ constexpr double kLeastPacking = 1e-9;
 
 constexpr std::array<std::string_view, 8> kSections = {"system",   "start",         "shape",      "species",
                                                        "dynamics", "equilibration", "production", "output"};
-constexpr std::array<std::string_view, 38> kKeys = {
+constexpr std::array<std::string_view, 39> kKeys = {
     "seed",
     "system.number",
     "system.packing_fraction",
@@ -42,6 +42,7 @@ constexpr std::array<std::string_view, 38> kKeys = {
     "start.file",
     "start.frame",
     "start.mend",
+    "start.reverse",
     "shape.kind",
     "shape.aspect_ratio",
     "shape.semi_axes",

@@ -64,6 +64,7 @@ struct StartFile {
   std::string file;                   ///< absolute
   std::optional<std::int64_t> frame;  ///< nothing: the last
   bool mend = false;                  ///< bodies that overlap are moved apart
+  bool reverse = false;               ///< all velocities are negated: time runs backwards
 };
 
 /// A run's configuration, checked: every value is one that the run can use.

@@ -152,8 +152,9 @@ std::string start_file_text(const Config& config) {
   if (!config.start_file) return "";
   std::string text = "\n[start]\n" + line("file", quoted(config.start_file->file), "GSD, or LAMMPS text dump");
   if (config.start_file->frame) text += line("frame", fmt::format("{}", *config.start_file->frame), "from 0");
-  return text + line("mend", config.start_file->mend ? "true" : "false",
-                     "overlaps, by scaling box and positions; else they are refused");
+  text += line("mend", config.start_file->mend ? "true" : "false",
+               "overlaps, by scaling box and positions; else they are refused");
+  return text + line("reverse", config.start_file->reverse ? "true" : "false", "all velocities negated");
 }
 
 std::string bodies_text(const Config& config) {

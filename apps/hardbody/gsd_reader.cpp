@@ -30,6 +30,7 @@ using Eigen::Vector3d;
 constexpr std::uint32_t kMostTypes = 1'000'000;
 /// A stored quaternion's length may be off 1 by this: 32-bit numbers, integrated by another program.
 constexpr double kQuaternionTolerance = 1e-4;
+
 /// What reads one frame of a file.
 class FrameReader {
  public:

@@ -1,14 +1,17 @@
 #include "phases.h"
 
 #include "errors.h"
+#include "frame.h"
 #include "origin.h"
 #include "signals.h"
 #include "start_file.h"
 
 #include <ed/internal/archive_types.h>
 #include <ed/observables.h>
+#include <ed/shape.h>
 #include <ed/simulation.h>
 #include <ed/start.h>
+#include <ed/system.h>
 
 #include <fmt/format.h>
 
@@ -19,6 +22,7 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace hardbody {
 namespace {
@@ -241,6 +245,33 @@ ed::StartOptions start_options(const Config& config, const std::function<bool(do
   return options;
 }
 
+/// Bodies in a cell as wide as the largest one, from which on a run is said to be slow: neighbours are sought in cells.
+constexpr double kCrowdedCell = 100;
+
+/// What sizes that differ by much cost; nothing where they do not.
+std::optional<std::string> unequal_sizes(const Config& config) {
+  const std::vector<ed::Component> components = config.components();
+  double largest = 0;
+  double smallest = std::numeric_limits<double>::infinity();
+  for (const ed::Component& component : components) {
+    const double radius = ed::bounding_radius(component.species.shape);
+    largest = std::max(largest, radius);
+    smallest = std::min(smallest, radius);
+  }
+  const double box = ed::box_for(components, config.packing_fraction);
+  const double in_a_cell = config.number * std::pow(2 * largest / box, 3);
+  if (in_a_cell < kCrowdedCell || largest < 2 * smallest) return std::nullopt;
+  return fmt::format(
+      "start: the largest bodies have {:.3g} times the bounding radius of the smallest: a cell as wide as they are "
+      "holds "
+      "{:.0f} bodies, all of them each other's neighbours; expect a slow start and run",
+      largest / smallest, in_a_cell);
+}
+
+std::string reached_order(const Config& config, const ed::System& start) {
+  return config.nematic_order ? fmt::format(", S = {:.3g}", frame_of(start, {start.size()}).S) : "";
+}
+
 }  // namespace
 
 std::optional<ed::System> make_start(const Config& config, Progress& progress, Log& log) {
@@ -249,6 +280,10 @@ std::optional<ed::System> make_start(const Config& config, Progress& progress, L
     log.line(start.report);
     progress.say(start.report);
     return std::move(start.system);
+  }
+  if (const std::optional<std::string> warning = unequal_sizes(config)) {
+    log.line(*warning);
+    progress.say(*warning);
   }
   if (const std::optional<ed::LatticeOptions> lattice = config.lattice()) {
     log.line(fmt::format("start: {} bodies on a lattice ({}) at packing fraction {:g}{}", config.number, config.start,
@@ -272,7 +307,7 @@ std::optional<ed::System> make_start(const Config& config, Progress& progress, L
     ed::System start = config.start_from ? ed::compressed(read_origin_state(config), config.packing_fraction, show)
                                          : ed::random_start(config.components(), start_options(config, show));
     if (pending_signal() != 0) return std::nullopt;
-    log.line("start: done");
+    log.line("start: done" + reached_order(config, start));
     return start;
   } catch (const std::runtime_error&) {
     if (pending_signal() != 0) return std::nullopt;

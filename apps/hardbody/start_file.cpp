@@ -301,6 +301,21 @@ std::string mend(ed::System& system, const StartFile& start, const std::vector<d
   return fmt::format(", mended: {}: box and positions scaled by 1 + {:.6g}", overlap_text(audit, ids), *factor - 1);
 }
 
+/// As it was the other way round: with no more than rounding errors the bodies go back where they came from.
+void reverse(ed::System& system) {
+  for (ed::Body& body : system.bodies) {
+    body.velocity = -body.velocity;
+    body.angular_velocity = -body.angular_velocity;
+  }
+}
+
+bool flag(const TomlDocument& document, const char* key) {
+  const Entry* entry = document.find(key);
+  if (entry == nullptr) return false;
+  if (entry->value.kind != Value::Kind::boolean) throw bad(*entry, "true or false");
+  return entry->value.integer == 1;
+}
+
 bool same_packing(double a, double b) {
   return std::abs(a / b - 1) <= kSamePacking;
 }
@@ -309,7 +324,7 @@ bool same_packing(double a, double b) {
 
 std::optional<StartFile> read_start_file(const TomlDocument& document) {
   const Entry* file = document.find("start.file");
-  for (const char* key : {"start.frame", "start.mend"}) {
+  for (const char* key : {"start.frame", "start.mend", "start.reverse"}) {
     const Entry* entry = document.find(key);
     if (entry != nullptr && file == nullptr) throw bad(*entry, "start.file beside it");
   }
@@ -325,10 +340,8 @@ std::optional<StartFile> read_start_file(const TomlDocument& document) {
       throw bad(*frame, "an integer, at least 0");
     start.frame = frame->value.integer;
   }
-  if (const Entry* entry = document.find("start.mend")) {
-    if (entry->value.kind != Value::Kind::boolean) throw bad(*entry, "true or false");
-    start.mend = entry->value.integer == 1;
-  }
+  start.mend = flag(document, "start.mend");
+  start.reverse = flag(document, "start.reverse");
   return start;
 }
 
@@ -378,7 +391,11 @@ FileStart start_from_file(const Config& config) {
   FileStart result;
   result.system = placed(config, frame, order);
   const double before = ed::packing_fraction(result.system);
-  const std::string velocities = set_velocities(result.system, config, frame, order);
+  std::string velocities = set_velocities(result.system, config, frame, order);
+  if (start.reverse) {
+    reverse(result.system);
+    velocities += ", reversed";
+  }
   std::vector<double> ids;
   ids.reserve(order.size());
   for (const std::size_t i : order) ids.push_back(frame.bodies[i].id);

@@ -107,25 +107,30 @@ void add_axes(Json& json, const ed::GroupResults& r) {
   json["t_C2_1overe_axes"] = axes(r.t_C2_1overe_axis);
 }
 
+/// What is measured of all bodies and of those of a species alike.
+template <class Measured>
+void add_measured(Json& json, const Measured& r) {
+  json["D_trans"] = estimate(r.D_trans);
+  json["D_rot"] = estimate(r.D_rot);
+  json["D_rot_body"] = estimate(r.D_rot_body);
+  json["S"] = estimate(r.S);
+  json["director"] = director(r.director);
+  json["tau_C2"] = estimate(r.tau_C2);
+  json["beta_C2"] = estimate(r.beta_C2);
+  json["t_C2_1overe"] = estimate(r.t_C2_1overe);
+  json["tau_F"] = estimate(r.tau_F);
+  json["beta_F"] = estimate(r.beta_F);
+  json["t_F_1overe"] = estimate(r.t_F_1overe);
+  json["q_peak"] = estimate(r.q_peak);
+  json["S_peak"] = estimate(r.S_peak);
+  json["kT_trans"] = estimate(r.translational_kT);
+  json["kT_rot"] = estimate(r.rotational_kT);
+}
+
 Json observables(const ed::Results& r, const Config& config) {
-  Json json = {{"collision_rate", estimate(r.collision_rate)},
-               {"Z", estimate(r.Z)},
-               {"D_trans", estimate(r.D_trans)},
-               {"D_rot", estimate(r.D_rot)},
-               {"D_rot_body", estimate(r.D_rot_body)},
-               {"S", estimate(r.S)},
-               {"director", director(r.director)},
-               {"pressure_tensor", pressure(r.pressure)},
-               {"tau_C2", estimate(r.tau_C2)},
-               {"beta_C2", estimate(r.beta_C2)},
-               {"t_C2_1overe", estimate(r.t_C2_1overe)},
-               {"tau_F", estimate(r.tau_F)},
-               {"beta_F", estimate(r.beta_F)},
-               {"t_F_1overe", estimate(r.t_F_1overe)},
-               {"q_peak", estimate(r.q_peak)},
-               {"S_peak", estimate(r.S_peak)},
-               {"kT_trans", estimate(r.translational_kT)},
-               {"kT_rot", estimate(r.rotational_kT)}};
+  Json json = {
+      {"collision_rate", estimate(r.collision_rate)}, {"Z", estimate(r.Z)}, {"pressure_tensor", pressure(r.pressure)}};
+  add_measured(json, r);
   if (!config.mixture && !config.all_of_revolution())
     add_axes(json, r.groups.empty() ? ed::GroupResults{} : r.groups[0]);
   return json;
@@ -133,22 +138,8 @@ Json observables(const ed::Results& r, const Config& config) {
 
 /// Of one species of a mixture.
 Json observables(const ed::GroupResults& r, const SpeciesConfig& species) {
-  Json json = {{"collision_rate", estimate(r.collision_rate)},
-               {"D_trans", estimate(r.D_trans)},
-               {"D_rot", estimate(r.D_rot)},
-               {"D_rot_body", estimate(r.D_rot_body)},
-               {"S", estimate(r.S)},
-               {"director", director(r.director)},
-               {"tau_C2", estimate(r.tau_C2)},
-               {"beta_C2", estimate(r.beta_C2)},
-               {"t_C2_1overe", estimate(r.t_C2_1overe)},
-               {"tau_F", estimate(r.tau_F)},
-               {"beta_F", estimate(r.beta_F)},
-               {"t_F_1overe", estimate(r.t_F_1overe)},
-               {"q_peak", estimate(r.q_peak)},
-               {"S_peak", estimate(r.S_peak)},
-               {"kT_trans", estimate(r.translational_kT)},
-               {"kT_rot", estimate(r.rotational_kT)}};
+  Json json = {{"collision_rate", estimate(r.collision_rate)}};
+  add_measured(json, r);
   if (species.rotation_axes() == 3) add_axes(json, r);
   return json;
 }

@@ -21,8 +21,10 @@
 /// gauge. docs/time-of-contact.md says what is promised then.
 
 #include "curvature_steps.h"
+#include "least_step.h"
 #include "neighbour_lists.h"
 #include "select.h"
+#include "separation.h"
 #include "sphere_window.h"
 
 #include <ed/tolerances.h>
@@ -57,7 +59,8 @@ enum class Outcome {
   contact,      ///< at `time`: the bodies touch and approach along the normal
   clear,        ///< certified: no contact up to t_end
   bound,        ///< certified: no contact before `time`; the budget of evaluations is spent
-  overlapping,  ///< at `time` the bodies overlap by more than kOverlap * size; proved
+  overlapping,  ///< at `time` the bodies overlap by more than kOverlap * size; proved, as far as distances are
+  declined,     ///< certified: no contact before `time`, at which no method tells whether the bodies overlap
 };
 
 struct Finding {
@@ -67,9 +70,10 @@ struct Finding {
 };
 
 enum class Quality {
-  usable,   ///< g >= -kOverlap * size: the normal certifies a step
-  clear,    ///< it certifies that there is no contact within the horizon
-  overlap,  ///< the bodies overlap by more than kOverlap * size; proved
+  usable,    ///< g >= -kOverlap * size: the normal certifies a step
+  clear,     ///< it certifies that there is no contact within the horizon
+  overlap,   ///< the bodies overlap by more than kOverlap * size
+  declined,  ///< no method tells
 };
 
 /// Improves n at one point in time until it certifies the whole horizon (by the gauge's crude bound), or is good enough
@@ -89,7 +93,9 @@ Quality improve_normal(const Gauge& gauge, const typename Gauge::State& state, d
   bool clear = false;
   const auto done = [&](const typename Gauge::Evaluation& trial) {
     clear = clears(gauge, state, trial, n, horizon);
-    return clear || trial.decrement <= kLooseDecrement * trial.g || trial.decrement <= kTightDecrement * size;
+    if (clear) return true;
+    if (!(trial.g > state.rounding.gap)) return tells_touching(gauge, trial);
+    return trial.decrement <= kLooseDecrement * trial.g || trial.decrement <= kTightDecrement * size;
   };
   for (int attempt = 0; attempt < 2; ++attempt) {
     int budget = geom::kMaxIterations;
@@ -109,9 +115,22 @@ Quality improve_normal(const Gauge& gauge, const typename Gauge::State& state, d
     }
   }
   ++count.rescues;
-  if (!gauge.separating_normal(state, n)) return Quality::overlap;
+  switch (gauge.separating_normal(state, n)) {
+    case Separation::overlapping:
+      return Quality::overlap;
+    case Separation::declined:
+      return Quality::declined;
+    case Separation::apart:
+      break;
+  }
   e = gauge.evaluate(state, n);
-  return e.g >= -kOverlap * size ? Quality::usable : Quality::overlap;
+  // Bodies that may touch: the answer is one to within its own error, which may be more than rounding.
+  if (!(e.g > state.rounding.gap)) {
+    int budget = geom::kMaxIterations;
+    ascend(gauge, state, done, budget, n, e);
+    if (clear) return Quality::clear;
+  }
+  return Quality::usable;
 }
 
 /// Evaluations for one converged normal near a contact, where the normal is nearly right to begin with.
@@ -187,6 +206,7 @@ Finding certified_contact(const Gauge& gauge, double t_begin, double t_end, int 
     const double horizon = window.end - t;
     const Quality quality = improve_normal(gauge, state, horizon, n, e, count);
     if (quality == Quality::clear) return {Outcome::clear, t_end};
+    if (quality == Quality::declined) return {Outcome::declined, t};
     double g = e.g;
     double gp = gauge.rate(state, e, n);
     const bool touching = g <= state.rounding.gap;
@@ -207,15 +227,17 @@ Finding certified_contact(const Gauge& gauge, double t_begin, double t_end, int 
     }
     double tau = certified_step(gauge, state, e, n, g, gp, horizon);
     if (tau >= horizon) return {Outcome::clear, t_end};
-    if (gp < 0) {
+    // Along edges that are flat the support point, and with it g', is lost to rounding; that of the contact is not.
+    const bool doubtful = !(gp < 0) && !touching && tau <= kShortStep * size / gauge.speed();
+    const double rate = doubtful ? contact_rate(gauge, state, e, n) : gp;
+    if (rate < 0) {
       double contact_time = t;
-      if (refine_tangent(gauge, e, t, tau, g, gp, contact_time, n, count)) {
+      if (refine_tangent(gauge, e, t, tau, g, rate, contact_time, n, count)) {
         if (contact_time > t_end) return {Outcome::clear, t_end};
         return {Outcome::contact, contact_time};
       }
-    } else {
-      tau = larger(tau, least_step(gauge, state, e, n, touching, tau));
     }
+    if (!(gp < 0)) tau = larger(tau, least_step(gauge, state, e, n, touching, tau));
     if (t + tau > t) {
       t += tau;
     } else {

@@ -1,6 +1,7 @@
 #include "convex_gauge.h"
 
 #include "body_shapes.h"
+#include "least_step.h"
 
 #include <geom/pose.h>
 
@@ -119,7 +120,11 @@ bool ConvexGauge::solve(const State& s, Vector3d& n, Evaluation& e) const {
 ContactPoints ConvexGauge::contact_points(const State& s, const Vector3d& n) const {
   Vector3d normal = n;
   Evaluation e = evaluate(s, n);
-  (void)solve(s, normal, e);
+  // What the search has just answered: from elsewhere, should its normal lead nowhere this time.
+  if (!solve(s, normal, e)) {
+    normal = cold_normal(s);
+    solve(s, normal, e);
+  }
   return {e.point_a, e.point_b};
 }
 
@@ -135,10 +140,11 @@ double ConvexGauge::chord_curvature(double T, const Vector3d& n0, const Vector3d
 }
 
 /// Whether there is no contact up to s.t + T, for a gap that is certainly g >= 0 along n now; `end`: the distance
-/// there, less `hidden`.
-bool ConvexGauge::chord_clears(const State& s, const Vector3d& n, double g, double hidden, double T,
+/// there. Less what rounding may hide, but of bodies that are taken to touch.
+bool ConvexGauge::chord_clears(const State& s, const Vector3d& n, double g, bool touching, double T,
                                double& end) const {
   const State later = at(s.t + T);
+  const double hidden = touching ? 0 : later.rounding.gap;
   Vector3d n1 = n;
   Evaluation e = evaluate(later, n);
   const double fixed = e.g - hidden;
@@ -157,14 +163,13 @@ bool ConvexGauge::chord_clears(const State& s, const Vector3d& n, double g, doub
 
 double ConvexGauge::certified_step(const State& s, const Evaluation& /*e*/, const Vector3d& n, double computed_g,
                                    double gp, double horizon) const {
-  const double hidden = s.rounding.gap;
-  const double g = std::max(0.0, computed_g - hidden);
+  const double g = std::max(0.0, computed_g - s.rounding.gap);
   // Where the tangent ends or, for bodies that part or hardly approach, as far as the sag of a chord allows.
   const double K = chord_curvature(1, n, n, 0);
   double T = std::min(horizon, std::max(gp < 0 ? -g / gp : 0.0, std::sqrt(2 * g / K)));
   for (int trial = 0; trial < kTrials && T * speed_ > g; ++trial) {
     double end = 0;
-    if (chord_clears(s, n, g, hidden, T, end)) return T;
+    if (chord_clears(s, n, g, false, T, end)) return T;
     // The secant's root if the bodies overlap there, a little short of it.
     const double share = end < 0 ? 0.999 * g / (g - end) : kShorter;
     T *= std::min(share, trial % 2 == 0 ? 0.9999 : kShorter);
@@ -175,24 +180,11 @@ double ConvexGauge::certified_step(const State& s, const Evaluation& /*e*/, cons
 double ConvexGauge::least_step(const State& s, const Evaluation& /*e*/, const Vector3d& n, bool touching,
                                double tau) const {
   const double unit = size() / speed_;
-  constexpr double kShort = 1e-7;
-  constexpr double kShortest = 1e-12;
-  if (!touching || tau > kShort * unit) return tau;
-  // Of bodies that touch g is not known: it may fall by what rounding hides. Short trials drown in that, longer ones
-  // see the bodies part.
-  const double shortest = kTouching * unit;
-  double longest = shortest;
+  if (!touching || tau > kShortStep * unit) return tau;
+  // Of bodies that touch g is not known: it may fall by what rounding hides.
   double end = 0;
-  double trial = kShortest * unit;
-  while (trial < 0.1 * unit) {
-    if (chord_clears(s, n, 0, 0, trial, end)) {
-      longest = trial;
-    } else if (longest > shortest) {
-      break;
-    }
-    trial *= 8;
-  }
-  return longest;
+  return longest_clear_step(kTouching * unit, unit,
+                            [&](double trial) { return chord_clears(s, n, 0, true, trial, end); });
 }
 
 bool ConvexGauge::falls_since(const State& s, const Evaluation& /*e*/, const Vector3d& n, double rate,
@@ -211,11 +203,11 @@ Vector3d ConvexGauge::cold_normal(const State& s) const {
   return r.squaredNorm() > 0 ? Vector3d(r.stableNormalized()) : Vector3d::UnitX();
 }
 
-bool ConvexGauge::separating_normal(const State& s, Vector3d& n) const {
+Separation ConvexGauge::separating_normal(const State& s, Vector3d& n) const {
   const geom::DistanceResult d = query(A_, s.a, B_, s.b, {.start = cold_normal(s)});
-  if (!is_answer(d)) return false;
+  if (!is_answer(d)) return Separation::declined;
   n = d.normal;
-  return gap(s, n).g >= -kOverlap * size();
+  return gap(s, n).g + d.error_bound >= -kOverlap * size() ? Separation::apart : Separation::overlapping;
 }
 
 }  // namespace ed::internal

@@ -22,6 +22,7 @@
 #include "curvature_steps.h"
 #include "rigid_motion.h"
 #include "rounding.h"
+#include "separation.h"
 #include "sphere_window.h"
 
 #include <ed/shape.h>
@@ -81,6 +82,7 @@ class ConvexGauge {
   }
 
   bool settled(const Evaluation& e) const { return e.step2 == 0; }
+  bool tells_touching(const Evaluation& e) const { return settled(e); }
 
   double certified_step(const State& s, const Evaluation& e, const Eigen::Vector3d& n, double g, double gp,
                         double horizon) const;
@@ -89,7 +91,7 @@ class ConvexGauge {
   bool falls_since(const State& s, const Evaluation& e, const Eigen::Vector3d& n, double rate, double span) const;
 
   Eigen::Vector3d cold_normal(const State& s) const;
-  bool separating_normal(const State& s, Eigen::Vector3d& n) const;
+  Separation separating_normal(const State& s, Eigen::Vector3d& n) const;
   Window window(double t_begin, double t_end) const { return sphere_window(r_now_, v_, size(), now_, t_begin, t_end); }
   double size() const { return reach_a_ + reach_b_; }
   double certified_depth() const { return depth_; }
@@ -102,7 +104,7 @@ class ConvexGauge {
   /// K of a chord over T along which the normal turns from n0 to n1.
   double chord_curvature(double T, const Eigen::Vector3d& n0, const Eigen::Vector3d& n1, double distance) const;
   bool solve(const State& s, Eigen::Vector3d& n, Evaluation& e) const;
-  bool chord_clears(const State& s, const Eigen::Vector3d& n, double g, double hidden, double T, double& end) const;
+  bool chord_clears(const State& s, const Eigen::Vector3d& n, double g, bool touching, double T, double& end) const;
 
   const BodyShape& A_;
   const BodyShape& B_;

@@ -206,6 +206,11 @@ void EventLoop<Bodies>::keep(Pair& pair, const Finding& finding) {
       pair.event = PairEvent::contact;
       pair.time = finding.time;
       break;
+    case Outcome::declined:
+      report(pair, finding.time, FailureReason::declined);
+      pair.event = PairEvent::bound;
+      pair.time = finding.time + kPartingLook * parting_time(pair);
+      break;
     case Outcome::overlapping:
       ++counters_.overlaps;
       report(pair, finding.time, FailureReason::overlap);

@@ -103,7 +103,7 @@ class EventLoop final : public AnyEventLoop {
 
   static constexpr std::int32_t kExit = -1;
   static constexpr std::int32_t kNoPair = -1;
-  static constexpr std::size_t kReasons = 2;               ///< of FailureReason
+  static constexpr std::size_t kReasons = 3;               ///< of FailureReason
   static constexpr std::size_t kMaxFailuresRecorded = 16;  ///< for each reason
   /// Room for collisions that are recorded; more grow as they come.
   static constexpr std::size_t kCollisionsReserved = std::size_t{1} << 20;

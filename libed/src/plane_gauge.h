@@ -79,7 +79,7 @@ class PlaneGauge {
   }
 
   Eigen::Vector3d cold_normal(const State& /*s*/) const { return Eigen::Vector3d::Zero(); }
-  bool separating_normal(const State& /*s*/, Eigen::Vector3d& /*n*/) const { return false; }
+  Separation separating_normal(const State& /*s*/, Eigen::Vector3d& /*n*/) const { return Separation::overlapping; }
   Window window(double t_begin, double t_end) const { return {t_begin, t_end}; }
   double curvature_limit() const { return shape_.turning_limit * (motion_.rate * motion_.rate); }
   double rate_slope() const { return 0; }  // n never changes

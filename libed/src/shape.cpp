@@ -3,10 +3,14 @@
 #include <ed/shape.h>
 #include <ed/tolerances.h>
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 namespace ed {
 namespace {
@@ -60,6 +64,26 @@ std::string name_of(const CustomShape& shape) {
   throw std::invalid_argument(message.str());
 }
 
+/// The body's axes to both sides, and others spread evenly, on a spiral.
+std::vector<Vector3d> directions_to_check() {
+  constexpr int kSpread = 64;
+  constexpr double kGoldenAngle = 2.39996322972865332;
+  std::vector<Vector3d> result;
+  for (int k = 0; k < 6; ++k) result.emplace_back((k < 3 ? 1.0 : -1.0) * Vector3d::Unit(k % 3));
+  for (int k = 0; k < kSpread; ++k) {
+    const double z = 1 - (2 * k + 1.0) / kSpread;
+    const double across = std::sqrt(1 - z * z);
+    result.emplace_back(across * std::cos(kGoldenAngle * k), across * std::sin(kGoldenAngle * k), z);
+  }
+  return result;
+}
+
+std::string along(const Vector3d& n) {
+  std::ostringstream text;
+  text << " along (" << n.x() << ", " << n.y() << ", " << n.z() << ")";
+  return text.str();
+}
+
 }  // namespace
 
 void CustomShape::check() {
@@ -68,6 +92,7 @@ void CustomShape::check() {
   min_curvature_radius_ = shape_->min_curvature_radius();
   constexpr double kBall = 4.18879020478639098;  // 4 pi / 3
   constexpr double kRounding = 1e-9;
+  constexpr double kAnyAngle = 1;  // none by which polygons turn into themselves
   const double R = bounding_radius_;
   const double r = inscribed_radius_;
   if (!(R > 0) || !std::isfinite(R)) refuse(name(), "bounding_radius()", R, "a positive number");
@@ -83,15 +108,19 @@ void CustomShape::check() {
   if (symmetry_axis() && (*symmetry_axis() < 0 || *symmetry_axis() > 2)) {
     refuse(name(), "symmetry_axis", *symmetry_axis(), "0, 1 or 2");
   }
-  for (int k = 0; k < 3 && centrally_symmetric(); ++k) {
-    const double difference = support(Vector3d::Unit(k)).height - support(-Vector3d::Unit(k)).height;
-    if (std::abs(difference) <= kRounding * R) continue;
-    refuse(name(), "centrally_symmetric", 1, "false: the support heights to both sides of a body axis differ");
-  }
-  for (int k = 0; k < 6; ++k) {
-    const double height = support((k < 3 ? 1.0 : -1.0) * Vector3d::Unit(k % 3)).height;
+  for (const Vector3d& n : directions_to_check()) {
+    const double height = support(n).height;
     if (!(height >= r * (1 - kRounding) && height <= R * (1 + kRounding))) {
-      refuse(name(), "the support height along a body axis", height, "between the inscribed and the bounding radius");
+      refuse(name(), "the support height" + along(n), height, "between the inscribed and the bounding radius");
+    }
+    const auto differs = [&](const Vector3d& m) { return std::abs(support(m).height - height) > kRounding * R; };
+    if (centrally_symmetric() && differs(-n)) {
+      refuse(name(), "centrally_symmetric", 1, "false: the support heights to both sides differ" + along(n));
+    }
+    if (!symmetry_axis()) continue;
+    const Vector3d axis = Vector3d::Unit(*symmetry_axis());
+    if (differs(Eigen::AngleAxisd(kAnyAngle, axis) * n)) {
+      refuse(name(), "symmetry_axis", *symmetry_axis(), "none: a turn about it changes the support height" + along(n));
     }
   }
 }
@@ -188,11 +217,12 @@ void check_finder(const ContactOptions& options, const BodyShape& shape) {
 }
 
 NormBodyShape norm_body(const BodyShape& shape) {
-  const auto make = [](const auto& s) -> NormBodyShape {
-    return {geom::internal::NormShape(s), s.bounding_radius(), s.inscribed_radius(), lever(s)};
+  const auto make = [](const auto& s, bool has_vertices) -> NormBodyShape {
+    return {geom::internal::NormShape(s), s.bounding_radius(), s.inscribed_radius(), lever(s), has_vertices};
   };
-  if (const auto* ellipsoid = std::get_if<geom::Ellipsoid>(&shape)) return make(*ellipsoid);
-  return make(std::get<geom::Superellipsoid>(shape));
+  if (const auto* ellipsoid = std::get_if<geom::Ellipsoid>(&shape)) return make(*ellipsoid, false);
+  const auto& body = std::get<geom::Superellipsoid>(shape);
+  return make(body, body.e1() > 1 || body.e2() > 1);
 }
 
 }  // namespace internal

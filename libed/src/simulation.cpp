@@ -75,6 +75,8 @@ const char* to_string(FailureReason reason) {
       return "the bodies overlap by more than rounding";
     case FailureReason::distance:
       return "Newton's method for the distance gave no answer";
+    case FailureReason::declined:
+      return "no method tells whether the bodies overlap";
   }
   return "unknown";
 }

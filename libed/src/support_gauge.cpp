@@ -1,5 +1,7 @@
 #include "support_gauge.h"
 
+#include "least_step.h"
+
 #include <algorithm>
 #include <array>
 
@@ -14,10 +16,6 @@ namespace {
 
 /// Share of g that each body may be made larger by to keep its majorant flat.
 constexpr double kAllowance = 0.0125;
-
-/// Steps shorter than this, in units of size / speed, are tried to be made longer by their tilted ends.
-constexpr double kShortStep = 1e-7;
-constexpr double kShortest = 1e-12;
 
 geom::internal::Lanes norm(const geom::internal::LaneVector& v) {
   return sqrt(v.dot(v));
@@ -166,21 +164,12 @@ double SupportGauge::least_step(const State& s, const Evaluation& e, const Vecto
   const double unit = size() / speed();
   if (tau > kShortStep * unit) return tau;
   // Of bodies that touch g is not known: it may fall by what rounding hides.
-  const double least = touching ? 0 : s.rounding.gap;
-  const double shortest = touching ? kTouching * unit : tau;
-  double longest = shortest;
+  const auto least = [&](double end) { return touching ? 0 : s.rounding.gap + scales_.later(end); };
   const std::array<Vector3d, 4> turns{Vector3d::Zero(), turning_of_best_normal(s, e.sample), s.omega.a(), s.omega.b()};
-  double trial = kShortest * unit;
-  while (trial < 0.1 * unit) {
-    const auto clears = [&](const Vector3d& Omega) { return tilted_end_clears(s, n, Omega, least, trial); };
-    if (std::any_of(turns.begin(), turns.end(), clears)) {
-      longest = larger(longest, trial);
-    } else if (longest > shortest) {
-      break;
-    }
-    trial *= 8;
-  }
-  return longest;
+  return longest_clear_step(touching ? kTouching * unit : tau, unit, [&](double trial) {
+    return std::any_of(turns.begin(), turns.end(),
+                       [&](const Vector3d& Omega) { return tilted_end_clears(s, n, Omega, least(trial), trial); });
+  });
 }
 
 bool SupportGauge::falls_since(const State& s, const Evaluation& e, const Vector3d& /*n*/, double rate,
@@ -196,12 +185,13 @@ bool SupportGauge::falls_since(const State& s, const Evaluation& e, const Vector
   return false;
 }
 
-bool SupportGauge::separating_normal(const State& s, Vector3d& n) const {
+Separation SupportGauge::separating_normal(const State& s, Vector3d& n) const {
   int iterations = 0;
   const NormBodyPair::Answer answer = s.pair.solve(s.pair.cold_normal(), s.pair.cold_normal(),
                                                    geom::Penetration::global, geom::kMaxIterations, iterations);
   n = answer.at.n;
-  return answer.at.g >= -kOverlap * size();
+  if (answer.at.g >= -kOverlap * size()) return Separation::apart;
+  return answer.converged ? Separation::overlapping : Separation::declined;
 }
 
 }  // namespace ed::internal

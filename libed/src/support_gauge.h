@@ -42,6 +42,7 @@
 #include "rigid_motion.h"
 #include "rounding.h"
 #include "select.h"
+#include "separation.h"
 #include "sphere_window.h"
 
 #include <ed/tolerances.h>
@@ -62,8 +63,13 @@ struct NormBodyShape {
   geom::internal::NormShape norm;
   double bounding_radius;
   double inscribed_radius;
-  double lever;  ///< turning_lever (body_shapes.h)
+  double lever;       ///< turning_lever (body_shapes.h)
+  bool has_vertices;  ///< some exponent is above 1
 };
+
+/// At vertices g is so flat that decrement and |delta|^2, which a quadratic model tells, are small long before the
+/// normal is right: with geom::kNormalTolerance2, 1e-12, a gap of 1e-12 was seen to be taken for a contact.
+inline constexpr double kVertexStep2 = 1e-18;
 
 class SupportGauge {
  public:
@@ -97,7 +103,8 @@ class SupportGauge {
         r_now_(r_now),
         v_(b.velocity - a.velocity),
         now_(now),
-        scales_(GeneralScales::of(A.bounding_radius, a, B.bounding_radius, b, now)) {}
+        scales_(GeneralScales::of(A.bounding_radius, a, B.bounding_radius, b, now)),
+        settled_step2_(A.has_vertices || B.has_vertices ? kVertexStep2 : geom::kNormalTolerance2) {}
 
   State at(double t) const {
     const TopState top_a = a_.top.at(t - a_.time);
@@ -149,8 +156,10 @@ class SupportGauge {
   geom::internal::Ascent ascend(const State& s, const Done& done, int& budget, Eigen::Vector3d& n, Evaluation& e) const;
 
   /// On a face the quadratic model holds for no step at all: nothing may be left to gain.
-  bool settled(const Evaluation& e) const {
-    return e.step2 <= geom::kNormalTolerance2 && e.decrement <= kTouching * size();
+  bool settled(const Evaluation& e) const { return e.step2 <= settled_step2_ && e.decrement <= kTouching * size(); }
+  /// Whether n is good enough to say that bodies touch.
+  bool tells_touching(const Evaluation& e) const {
+    return e.step2 <= settled_step2_ && e.decrement <= kTightDecrement * size();
   }
 
   double certified_step(const State& s, const Evaluation& e, const Eigen::Vector3d& n, double g, double gp,
@@ -161,8 +170,8 @@ class SupportGauge {
   bool falls_since(const State& s, const Evaluation& e, const Eigen::Vector3d& n, double rate, double span) const;
 
   Eigen::Vector3d cold_normal(const State& s) const { return s.pair.cold_normal(); }
-  /// By every method of geom::distance; false if the bodies overlap by more than kOverlap, which is then proved.
-  bool separating_normal(const State& s, Eigen::Vector3d& n) const;
+  /// By every method of geom::distance.
+  Separation separating_normal(const State& s, Eigen::Vector3d& n) const;
 
   Window window(double t_begin, double t_end) const { return sphere_window(r_now_, v_, size(), now_, t_begin, t_end); }
   double size() const { return A_.bounding_radius + B_.bounding_radius; }
@@ -218,6 +227,7 @@ class SupportGauge {
   Eigen::Vector3d v_;
   double now_;
   GeneralScales scales_;
+  double settled_step2_;  ///< |delta|^2 of a normal that is right
 };
 
 template <class Done>

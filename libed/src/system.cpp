@@ -4,7 +4,6 @@
 #include "envelope_limits.h"
 #include "motion_checks.h"
 #include "oriented_slack.h"
-#include "uniaxial_bodies.h"
 
 #include <ed/system.h>
 #include <ed/tolerances.h>
@@ -144,9 +143,13 @@ double smallest_box(const std::vector<Component>& components, Neighbours neighbo
   bool of_revolution = true;
   for (const Component& component : components) {
     shapes.push_back(component.species.shape);
-    of_revolution = of_revolution && internal::UniaxialBodies::can_hold(component.species);
+    of_revolution = of_revolution && internal::is_uniaxial(component.species);
   }
   return smallest_box_of(shapes, of_revolution, neighbours);
+}
+
+bool internal::is_uniaxial(const Species& species) {
+  return std::holds_alternative<geom::Ellipsoid>(species.shape) && symmetry_axis(species);
 }
 
 int smallest_number(const BodyShape& shape, double packing_fraction, Neighbours neighbours) {

@@ -95,6 +95,7 @@ ContactStatus status_of(Outcome outcome) {
     case Outcome::overlapping:
       return ContactStatus::overlapping;
     case Outcome::bound:
+    case Outcome::declined:
       break;
   }
   return ContactStatus::failed;

@@ -40,12 +40,8 @@ UniaxialKind kind_of_species(const Species& species) {
 
 }  // namespace
 
-bool UniaxialBodies::can_hold(const Species& species) {
-  return std::holds_alternative<geom::Ellipsoid>(species.shape) && symmetry_axis(species);
-}
-
 bool UniaxialBodies::can_hold(const System& system) {
-  return std::all_of(system.species.begin(), system.species.end(), [](const Species& s) { return can_hold(s); });
+  return std::all_of(system.species.begin(), system.species.end(), is_uniaxial);
 }
 
 UniaxialBodies::UniaxialBodies(const System& system) : motions_(at(system.size())), frames_(at(system.size())) {

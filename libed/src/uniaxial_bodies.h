@@ -38,7 +38,6 @@ struct UniaxialKind {
 class UniaxialBodies {
  public:
   /// Whether all species are ellipsoids of revolution about an axis that their inertia shares.
-  static bool can_hold(const Species& species);
   static bool can_hold(const System& system);
 
   explicit UniaxialBodies(const System& system);

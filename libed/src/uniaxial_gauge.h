@@ -9,7 +9,7 @@
 ///   double rate(state, gap or e, n)       dg/dt at fixed n
 ///   Certificate certificate(state, e, n)  with curvature(tau) >= -d2g/dt2 at fixed n over [t, t + tau]
 ///   Vector3d cold_normal(state)
-///   bool separating_normal(state, n)      the fallback: a normal with g > 0 (to rounding), or false: an overlap
+///   separating_normal(state, n)           the fallback: see separation.h
 ///   double curvature_limit()              >= -d2g/dt2 for every n and t
 ///   double rate_slope()                   >= |d2g/dt dn| for every n and t
 ///   double size(), certified_depth(), speed(), and window(t_begin, t_end)
@@ -17,6 +17,7 @@
 #include "axis_motion.h"
 #include "rounding.h"
 #include "select.h"
+#include "separation.h"
 #include "sphere_window.h"
 #include "support_curvature.h"
 
@@ -130,11 +131,11 @@ class UniaxialGauge {
 
   /// The normal of the Perram-Wertheim contact function, or false if the bodies overlap, by more than the rounding
   /// error of that function: g(normal) = (sqrt(F) - 1)(hA + hB).
-  bool separating_normal(const State& s, Eigen::Vector3d& n) const {
+  Separation separating_normal(const State& s, Eigen::Vector3d& n) const {
     const auto contact = geom::internal::perram_wertheim(quadric(A_, s.u_a), quadric(B_, s.u_b), s.r);
-    if (!(contact.F > 1 - 2 * kOverlap)) return false;
+    if (!(contact.F > 1 - 2 * kOverlap)) return Separation::overlapping;
     n = contact.normal;
-    return true;
+    return Separation::apart;
   }
 
   Window window(double t_begin, double t_end) const { return sphere_window(r_now_, v_, size(), now_, t_begin, t_end); }

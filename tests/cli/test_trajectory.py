@@ -389,6 +389,22 @@ class StartsFromFiles(Trajectories):
         self.assertGreater(self.summary("second")["counters"]["collisions"], 100)
         self.assertIn("start: 64 bodies of frame 5 of ", self.read("second/log.txt"))
 
+    def test_reversed(self):
+        """The bodies go back where they came from: rounding errors have grown by far less than 1e9."""
+        self.run_with("first", SMALL)
+        result = self.run_small("back", "--set", "start.reverse=true", "production.time=1", "output.frames=2", config=AGAIN)
+        self.assertIn("velocities as they are, reversed", result.stderr)
+        there = Frames(self.path("first/trajectory.gsd"))
+        back = Frames(self.path("back/trajectory.gsd"))
+        numpy.testing.assert_array_equal(back.velocity[0], -there.velocity[5])
+        numpy.testing.assert_array_equal(back.omega[0], -there.omega[5])
+        apart = back.position[1] - there.position[4]
+        apart -= there.box * numpy.round(apart / there.box)
+        self.assertLess(numpy.abs(apart).max(), 1e-7)
+        self.assertGreater(numpy.abs(there.position[5] - there.position[4]).max(), 0.1)
+        numpy.testing.assert_allclose(back.rotation[1], there.rotation[4], atol=1e-7)
+        numpy.testing.assert_allclose(back.velocity[1], -there.velocity[4], atol=1e-6)
+
     def test_of_another_program(self):
         """Written by gsd.hoomd, with what HOOMD has: 32-bit numbers, shapes, types in any order, no velocities."""
         self.run_with("first", SMALL)
@@ -532,6 +548,7 @@ class StartsFromFiles(Trajectories):
             (["start.frame=6"], "start.frame is 6", "0 to 5"),
             (["start.frame=-1"], "start.frame", "at least 0"),
             (["start.mend=1"], "start.mend", "true or false"),
+            (["start.reverse=1"], "start.reverse", "true or false"),
             (["system.start=fcc"], "system.start", "start.file"),
             (["system.packing_fraction=0.3"], "its packing fraction is 0.2", "in the config 0.3"),
             (["shape.aspect_ratio=3"], "first/trajectory.gsd: body 0 is ellipsoid ", "in the config ellipsoid"),

@@ -117,24 +117,24 @@ TEST(GeneralBodies, ShareTheirEnergyAlike) {
   }
 }
 
-/// Rate (0: not known) and Z of short runs, within three standard errors of both and the share that the theory is off.
-void expect_fluid(const std::string& what, const ed_test::Measured& run, double rate, double Z, double share) {
+/// Rate (0: not known) and Z, within these shares of what is wanted, which are three standard errors or more.
+void expect_fluid(const std::string& what, const ed_test::Measured& run, double rate, double rate_share, double Z,
+                  double Z_share) {
   const ed::Estimate& r = run.results.collision_rate;
   const ed::Estimate& z = run.results.Z;
   std::printf("%s: %llu collisions, rate %.4f +- %.4f for %.4f, Z %.4f +- %.4f for %.4f\n", what.c_str(),
               static_cast<unsigned long long>(run.collisions), r.value, r.error, rate, z.value, z.error, Z);
   EXPECT_EQ(run.overlaps, 0U) << what;
   if (rate > 0) {
-    EXPECT_LE(std::abs(r.value - rate), 3 * r.error + share * rate) << what;
+    EXPECT_LE(std::abs(r.value - rate), rate_share * rate) << what;
+    EXPECT_LE(r.error, rate_share / 3 * rate) << what;
   }
-  EXPECT_LE(std::abs(z.value - Z), 3 * z.error + share * Z) << what;
-  EXPECT_LE(r.error, 0.004 * r.value) << what;
-  EXPECT_LE(z.error, 0.005 * z.value) << what;
+  EXPECT_LE(std::abs(z.value - Z), Z_share * Z) << what;
+  EXPECT_LE(z.error, Z_share / 3 * Z) << what;
 }
 
 TEST(GeneralBodies, CollideAtTheRateOfTheReference) {
-  constexpr double kReference = 0.001;  // its standard error
-  constexpr double kDuration = 120;     // for errors of the rate of 0.2 to 0.3 %, below what expect_fluid asks for
+  constexpr double kDuration = 300;  // for errors of the rate of 0.1 %, and of the reference as much
   const ed_test::ReferenceTable table("superellipsoid_dynamics.csv");
   for (std::size_t row = 0; row < table.size(); ++row) {
     const double length = table.value(row, "az_over_ax");
@@ -144,8 +144,8 @@ TEST(GeneralBodies, CollideAtTheRateOfTheReference) {
         ed_test::pure("1 : 1 : " + table.text(row, "az_over_ax"), shape, static_cast<int>(table.value(row, "N")));
     ed::Simulation simulation(ed_test::start(family, table.value(row, "phi")));
     simulation.run_until(10);
-    expect_fluid(family.name, ed_test::measure(simulation.system(), {0, kDuration}), table.value(row, "rate"),
-                 table.value(row, "Z"), 2 * kReference);
+    expect_fluid(family.name, ed_test::measure(simulation.system(), {0, kDuration}), table.value(row, "rate"), 0.005,
+                 table.value(row, "Z"), 0.007);
   }
 }
 
@@ -153,7 +153,6 @@ TEST(GeneralBodies, CollideAtTheRateOfTheReference) {
 /// here.
 TEST(GeneralBodies, MixedSpheresHaveTheirPressure) {
   constexpr double kPacking = 0.4;
-  constexpr double kTheory = 0.005;
   const Family family{"spheres, 1 and 0.5",
                       {{ed::paper_species(geom::Ellipsoid({1, 1, 1}), 8), 500},
                        {ed::paper_species(geom::Ellipsoid({0.5, 0.5, 0.5}), 1), 500}}};
@@ -164,7 +163,7 @@ TEST(GeneralBodies, MixedSpheresHaveTheirPressure) {
       1 / free + 3 * z(1) * z(2) / (z(0) * free * free) + std::pow(z(2), 3) * (3 - z(3)) / (z(0) * std::pow(free, 3));
   ed::Simulation simulation(ed_test::start(family, kPacking));
   simulation.run_until(10);
-  expect_fluid(family.name, ed_test::measure(simulation.system(), {0, 60}), 0, wanted, kTheory);
+  expect_fluid(family.name, ed_test::measure(simulation.system(), {0, 60}), 0, 0, wanted, 0.01);
 }
 
 TEST(GeneralBodies, KeepEnergyAndMomentumAndApart) {
@@ -176,7 +175,9 @@ TEST(GeneralBodies, KeepEnergyAndMomentumAndApart) {
     double least = 1;
     for (int k = 0; k < slices; ++k) {
       simulation.run_collisions(1000);
-      least = std::min(least, ed::audit(simulation.system()).minimum_distance);
+      const ed::Audit audit = ed::audit(simulation.system());
+      least = std::min(least, audit.minimum_distance);
+      EXPECT_EQ(audit.unanswered, 0) << family.name;
     }
     const ed::KineticState end = simulation.kinetic();
     const double drift = end.energy() / energy - 1;
@@ -187,8 +188,10 @@ TEST(GeneralBodies, KeepEnergyAndMomentumAndApart) {
     EXPECT_GE(least, -1e-11) << family.name;
     EXPECT_EQ(simulation.counters().overlaps, 0U) << family.name;
     EXPECT_EQ(simulation.counters().parting_contacts, 0U) << family.name;
+    EXPECT_EQ(simulation.failures().size(), 0U) << family.name;
     // Of the sharpest cubes some searches need the fallback over all normals, which is as certain.
-    EXPECT_LE(simulation.counters().rescues * 5000, simulation.counters().collisions) << family.name;
+    const std::uint64_t rescues = family.name == "cubes, e = 0.25" ? simulation.counters().collisions / 5000 : 0;
+    EXPECT_LE(simulation.counters().rescues, rescues) << family.name;
     // Nothing is lost where bodies are read and put back.
     EXPECT_NEAR(ed::kinetic_state(simulation.system()).energy() / energy, 1, 1e-10) << family.name;
   }

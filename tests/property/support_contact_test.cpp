@@ -85,10 +85,21 @@ double first_gap(Random& random, bool touching, bool grazes, double size) {
   return grazes ? random.log_uniform(1e-9, 1e-2) : random.log_uniform(1e-6, 1);
 }
 
+/// A face of B on one of A, parallel to the last bit but one, as in lattices; turned about the normal or not.
+geom_test::Orientation parallel_faces(Random& random) {
+  geom_test::Orientation o{random.pose(0).rotation(), Matrix3d::Identity(), Vector3d::Zero()};
+  const int k = static_cast<int>(3 * random.uniform());
+  o.n = o.R_a.col(k);
+  const double angle = random.coin() ? 0 : random.uniform(0, 3);
+  o.R_b = Eigen::AngleAxisd(angle, o.n).toRotationMatrix() * o.R_a;
+  return o;
+}
+
 /// Bodies near each other. Grazing: the normal part of the relative velocity is next to nothing.
 MovingPair random_pair(Random& random, const Kind& A, const Kind& B) {
   const auto set = static_cast<PairSet>(static_cast<int>(5 * random.uniform()));
-  const geom_test::Orientation o = geom_test::choose(set, A.shape, B.shape, random);
+  const bool parallel = set == PairSet::faces && random.uniform() < 0.3;
+  const geom_test::Orientation o = parallel ? parallel_faces(random) : geom_test::choose(set, A.shape, B.shape, random);
   geom::Pose X_WA, X_WB;
   const bool touching = random.uniform() < 0.2;
   const bool grazes = random.uniform() < 0.7;
@@ -193,9 +204,15 @@ double reference(const MovingPair& pair, double t_end) {
   return std::numeric_limits<double>::infinity();
 }
 
-Finding find(const SupportGauge& gauge, FinderCounters& count) {
+/// What the search says, and its last normal.
+struct Found : Finding {
+  Vector3d normal;
+};
+
+Found find(const SupportGauge& gauge, FinderCounters& count) {
   Vector3d n = Vector3d::Zero();
-  return certified_contact(gauge, 0, kHorizon, 100000, n, count);
+  const Finding finding = certified_contact(gauge, 0, kHorizon, 100000, n, count);
+  return {finding, n};
 }
 
 /// A gauge whose bounds of the curvature are half the right ones.
@@ -208,24 +225,39 @@ class HalvedGauge : public SupportGauge {
 };
 
 struct Tally {
-  long pairs = 0, contacts = 0, grazing = 0, restarts = 0, missed = 0, late = 0, inexact = 0, wrong = 0, unanswered = 0,
-       shallow = 0;
+  long pairs = 0, contacts = 0, grazing = 0, restarts = 0, missed = 0, late = 0, inexact = 0, wrong = 0, again = 0,
+       unanswered = 0, shallow = 0;
 };
 
-void judge(const MovingPair& pair, const Finding& finding, double wanted, Tally& tally) {
+/// The signed distance is the largest gap along any normal, so that of several answers the largest is right.
+double distance_at(const MovingPair& pair, const Found& found) {
+  const Vector3d& n = found.normal;
+  const Matrix3d R_a = pair.a.top.at(found.time).R;
+  const Matrix3d R_b = pair.b.top.at(found.time).R;
+  const double gap = n.dot(pair.b.position_at(found.time) - pair.a.position_at(found.time)) -
+                     pair.shape_a.support(R_a.transpose() * n).height -
+                     pair.shape_b.support(-(R_b.transpose() * n)).height;
+  return std::max({gap, pair.distance(found.time).distance, pair.distance(found.time, n).distance});
+}
+
+void judge(const MovingPair& pair, const Found& finding, double wanted, Tally& tally) {
   ++tally.pairs;
   if (pair.touching) ++tally.restarts;
   if (finding.outcome == Outcome::contact) {
     ++tally.contacts;
-    const geom::DistanceResult at = pair.distance(finding.time);
-    // Distances where vertices and edges meet (exponents above 1) are known to no better than some 1e-13.
-    if (!(std::abs(at.distance) <= 1e-13 * pair.size())) ++tally.inexact;
-    if (!(std::abs(at.distance) <= 1e-12 * pair.size())) ++tally.wrong;
+    const double distance = std::abs(distance_at(pair, finding));
+    if (!(distance <= 1e-13 * pair.size())) ++tally.inexact;
+    if (!(distance <= 1e-12 * pair.size())) ++tally.wrong;
     if (wanted < finding.time - 1e-12) ++tally.late;
     if (!(wanted < kHorizon) && finding.time < 0.9 * kHorizon) ++tally.shallow;
-    const double h = 1e-5;
-    const double rate = (pair.distance(finding.time + h).distance - pair.distance(finding.time - h).distance) / (2 * h);
-    if (std::abs(rate) < kGrazing * (pair.b.velocity - pair.a.velocity).norm()) ++tally.grazing;
+    constexpr double h = 1e-5;
+    const double after = pair.distance(finding.time + h).distance;
+    const double rate = (after - pair.distance(finding.time - h).distance) / (2 * h);
+    const double slow = kGrazing * (pair.b.velocity - pair.a.velocity).norm();
+    if (std::abs(rate) < slow) ++tally.grazing;
+    // Bodies that go on from a contact overlap. At sharp tips normals differ in g by less than rounding over 1e-3
+    // radian, and of those along which they part and approach the search may take the wrong one.
+    if (pair.touching && finding.time < 1e-9 && after > slow * h) ++tally.again;
     return;
   }
   // An overlap that is found is a contact that was not.
@@ -249,11 +281,11 @@ Tally search_pairs(const char* name, const Draw& draw) {
     judge(pair, find(gauge, count), reference(pair, kHorizon), tally);
   }
   std::printf(
-      "%s: %ld pairs, %ld in touch at first, %ld contacts, %ld grazing: %ld missed, %ld late, %ld wrong, %ld "
-      "unanswered; %ld at 1e-13 of the size or more, %ld shallower than the reference sees; %.2f points in time and "
-      "%.2f kernel calls a search, %llu rescues\n",
-      name, tally.pairs, tally.restarts, tally.contacts, tally.grazing, tally.missed, tally.late, tally.wrong,
-      tally.unanswered, tally.inexact, tally.shallow,
+      "%s: %ld pairs, %ld in touch at first, %ld contacts, %ld grazing: %ld missed, %ld late, %ld unanswered; %ld off "
+      "by more than 1e-13 of the size, %ld by more than 1e-12; %ld once more though they part; %ld shallower than the "
+      "reference sees; %.2f points in time and %.2f kernel calls a search, %llu rescues\n",
+      name, tally.pairs, tally.restarts, tally.contacts, tally.grazing, tally.missed, tally.late, tally.unanswered,
+      tally.inexact, tally.wrong, tally.again, tally.shallow,
       static_cast<double>(count.evaluations) / static_cast<double>(count.predictions),
       static_cast<double>(count.kernel_calls) / static_cast<double>(count.predictions),
       static_cast<unsigned long long>(count.rescues));
@@ -264,8 +296,9 @@ void expect_none_missed(const Tally& tally) {
   EXPECT_EQ(tally.missed, 0);
   EXPECT_EQ(tally.late, 0);
   EXPECT_EQ(tally.wrong, 0);
+  EXPECT_LE(tally.inexact * 100000, tally.contacts);
+  EXPECT_LE(tally.again * 1000, tally.contacts);
   EXPECT_EQ(tally.unanswered, 0);
-  EXPECT_LE(tally.inexact * 5000, tally.contacts);
   EXPECT_GE(tally.grazing * 10, tally.contacts);
   EXPECT_GE(tally.restarts * 10, tally.contacts);
   EXPECT_LE(tally.shallow * 100, tally.contacts);

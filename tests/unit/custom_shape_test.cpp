@@ -171,7 +171,9 @@ void expect_sound_runs(const std::vector<ed::Component>& components, const std::
     for (int k = 0; k < 4; ++k) {
       simulation.run_collisions(25);
       // At kinks and flat faces distances are known to some 1e-12.
-      ASSERT_GE(ed::audit(simulation.system()).minimum_distance, -1e-11) << what;
+      const ed::Audit audit = ed::audit(simulation.system());
+      ASSERT_GE(audit.minimum_distance, -1e-11) << what;
+      ASSERT_EQ(audit.unanswered, 0) << what;
     }
     EXPECT_EQ(simulation.counters().overlaps, 0U) << what;
     EXPECT_NEAR(simulation.kinetic().energy() / energy, 1, 1e-12) << what;
@@ -221,6 +223,21 @@ TEST(CustomShape, AnUnknownEllipsoidCollidesAsTheKnownOne) {
   }
 }
 
+/// A ball but for a share of x y z where that is positive: along the body's axes nothing shows.
+struct Dented : Unknown {
+  double height;
+
+  double bounding_radius() const { return 1.2; }
+  double inscribed_radius() const { return 0.8; }
+  double min_curvature_radius() const { return 0; }
+
+  geom::Support support(const Vector3d& n) const {
+    geom::Support s = shape.support(n);
+    s.height += height * std::max(0.0, n.x() * n.y() * n.z());
+    return s;
+  }
+};
+
 TEST(CustomShape, RefusesShapesThatAreNone) {
   const auto made = [](double half_length, double radius, double volume, std::optional<int> axis) {
     return message_of([&] { (void)CustomShape(Spherocylinder{half_length, radius}, {"rod", volume, axis, true}); });
@@ -231,6 +248,17 @@ TEST(CustomShape, RefusesShapesThatAreNone) {
   EXPECT_THAT(made(1, 0.5, 0, 2), HasSubstr("volume is 0"));
   EXPECT_THAT(made(1, 0.5, 1e3, 2), HasSubstr("volume is 1000"));
   EXPECT_THAT(made(1, 0.5, 2, 3), HasSubstr("symmetry_axis is 3; accepted: 0, 1 or 2"));
+  EXPECT_THAT(made(1, 0.5, 2, 0), HasSubstr("symmetry_axis is 0; accepted: none: a turn about it changes"));
+  constexpr double kBall = 4.18879020478639098;
+  // What only directions between the axes show.
+  const auto shape = [](const auto& body, std::optional<int> axis, bool symmetric) {
+    return message_of([&] { (void)CustomShape(body, {"body", kBall, axis, symmetric}); });
+  };
+  const Unknown ball{geom::Ellipsoid({1, 1, 1})};
+  EXPECT_EQ(shape(ball, 2, true), "no std::invalid_argument");
+  EXPECT_THAT(shape(Dented{ball, 2}, std::nullopt, false), HasSubstr("the support height along ("));
+  EXPECT_THAT(shape(Dented{ball, -1e-3}, std::nullopt, true), HasSubstr("centrally_symmetric is 1; accepted: false"));
+  EXPECT_THAT(shape(Dented{ball, -1e-3}, 2, false), HasSubstr("symmetry_axis is 2; accepted: none"));
 }
 
 TEST(CustomShape, HasNoEquationsForThePapersSearch) {

@@ -7,6 +7,7 @@
 #include "oriented_slack.h"
 
 #include <common/ed_families.h>
+#include <common/finder_ensemble.h>
 #include <common/geom_shapes.h>
 #include <common/message_of.h>
 
@@ -33,16 +34,9 @@ using ed::internal::GeneralDilatedEnvelopes;
 using ed::internal::GeneralOrientedEnvelopes;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
+using finder_test::log_uniform;
 
 constexpr double kBox = 100;
-
-double log_uniform(ed::Random& random, double low, double high) {
-  return low * std::exp(random.uniform() * std::log(high / low));
-}
-
-Matrix3d random_rotation(ed::Random& random) {
-  return Eigen::AngleAxisd(6.2831853 * random.uniform(), random.direction()).toRotationMatrix();
-}
 
 ed::CustomShape rod() {
   return {geom_test::Spherocylinder{1, 0.5}, {"rod", 2.0944, 2, true}};
@@ -65,13 +59,13 @@ ed::Body random_body(ed::Random& random, int species) {
   ed::Body body;
   body.species = species;
   body.position = random.normal3();
-  body.rotation = random_rotation(random);
+  body.rotation = random.rotation();
   body.velocity = log_uniform(random, 1e-3, 3) * random.direction();
   body.angular_velocity = log_uniform(random, 1e-2, 10) * random.direction();
   return body;
 }
 
-/// Of the shapes themselves and of smaller copies of libgeom's, one body each.
+/// One body of each shape, of a species of its own.
 ed::System pair_of(const BodyShape& a, const BodyShape& b, ed::Random& random) {
   ed::System system;
   system.box = kBox;

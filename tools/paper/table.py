@@ -23,7 +23,6 @@ class Row:
         self.errors = {name: _number(row[name + "_error"]) for name in OBSERVABLES}
         self.equilibrated = row["equilibrated"] == "true"
         self.precise = row["precise"] == "true"
-        self.times = (_number(row["equilibration_time"]), _number(row["production_time"]))
         self.collisions = _number(row["collisions"])
         self.seconds = _number(row["wall_seconds"])
         self.rate = self.values["collision_rate"]

@@ -55,6 +55,7 @@ struct Collision {
 enum class FailureReason {
   overlap,   ///< the bodies overlap by more than rounding
   distance,  ///< Newton's method for a distance gave no answer
+  declined,  ///< no method tells whether the bodies overlap; they are looked at again a little later
 };
 
 /// The enumerator's name.

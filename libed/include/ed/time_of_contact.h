@@ -38,20 +38,23 @@ struct [[nodiscard]] ContactResult {
 
 /// The first time in [max of the motions' times, t_max] at which two freely moving bodies touch and approach.
 ///
-/// Certified: for a fixed direction n the gap g_n(t) = n.r(t) - hA(n, t) - hB(-n, t) is a lower bound of the distance,
-/// and its second derivative is bounded below by -K over any interval ahead, K from the motion alone. The search
-/// advances to the first root of the bounding parabola and improves n there; it never steps over a contact, however
-/// grazing, and converges quadratically (docs/time-of-contact.md has the proof). t_max may be infinite.
+/// Certified: for a direction n the gap g_n(t) = n.r(t) - hA(n, t) - hB(-n, t) is a lower bound of the distance, and
+/// over any interval ahead it is bounded below by what the motion and the shapes at n tell: a parabola for smooth
+/// bodies, chords where faces or edges leave it no second derivative. The search advances to the first root of that
+/// bound and improves n there; it never steps over a contact, however grazing, and converges quadratically on smooth
+/// bodies (docs/time-of-contact.md has the proof). t_max may be infinite.
 ///
 /// Accuracy: at the returned time the distance is below 2e-15 times the size of the pair or the rounding error of the
-/// time itself; the time of a contact met head-on is right to about that over the normal velocity, that of a grazing
-/// one to the square root. `failed` means that the budget of evaluations was spent; the motions that were passed are
-/// all that is needed to look at the pair again. Never allocates in the search.
+/// time itself, for bodies of revolution; up to 1e-13 for superellipsoids. The time of a contact met head-on is right
+/// to about that over the normal velocity, that of a grazing one to the square root. `failed` means that the budget of
+/// evaluations was spent, or that no method tells whether the bodies overlap; the motions that were passed are all that
+/// is needed to look at the pair again. Never allocates in the search.
 ///
-/// Bodies: ellipsoids and superellipsoids whose exponents are within [kMinExponentInMotion, kMaxExponentInMotion], with
-/// any moments of inertia that a body can have. Ellipsoids of revolution about an axis that their moments share are the
-/// fast case: some 0.3 microseconds a point in time instead of one. Values that are not finite, exponents out of range
-/// and inertia that no body can have throw std::invalid_argument.
+/// Bodies: ellipsoids and superellipsoids whose exponents are within [kMinExponentInMotion, kMaxExponentInMotion], and
+/// a user's own (CustomShape), with any moments of inertia that a body can have. Ellipsoids of revolution about an axis
+/// that their moments share are the fast case: some 0.3 microseconds a point in time instead of one. What rounding may
+/// hide is bounded for superellipsoids with semi-axes from 1e-3 to 1e3 units of length. Values that are not finite,
+/// exponents out of range and inertia that no body can have throw std::invalid_argument.
 ///
 /// `options.finder = Finder::bracketing` searches as the paper does instead, which is no proof. `failed`, with either
 /// finder, if the budget of evaluations was spent.

@@ -135,7 +135,7 @@ void fields(Archive& archive, T& call) {
 template <class Archive, Is<FailedPair> T>
 void fields_but_shapes(Archive& archive, T& pair) {
   archive(pair.reason, pair.motion_i, pair.motion_j, pair.time, pair.i, pair.j, pair.finder, pair.eps_d, pair.distance);
-  expect(archive, pair.reason <= FailureReason::distance, "a failure's reason");
+  expect(archive, pair.reason <= FailureReason::declined, "a failure's reason");
   expect(archive, pair.finder <= Finder::bracketing, "a failure's finder");
 }
 

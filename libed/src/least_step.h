@@ -1,0 +1,30 @@
+#pragma once
+
+/// Steps of bodies that touch, or nearly, and do not approach, where the certified step is next to nothing.
+
+#include "select.h"
+
+namespace ed::internal {
+
+/// Steps shorter than this, in units of size / speed, are tried to be made longer.
+inline constexpr double kShortStep = 1e-7;
+
+/// The longest of some steps up to a tenth of `unit` = size / speed that `clears`, tried from the shortest on, or
+/// `shortest`. The first ones may drown in rounding where longer ones see the bodies part.
+template <class Clears>
+double longest_clear_step(double shortest, double unit, const Clears& clears) {
+  constexpr double kFirst = 1e-12;
+  constexpr double kLast = 0.1;
+  constexpr double kLonger = 8;
+  double longest = shortest;
+  for (double trial = kFirst * unit; trial < kLast * unit; trial *= kLonger) {
+    if (clears(trial)) {
+      longest = larger(longest, trial);
+    } else if (longest > shortest) {
+      break;
+    }
+  }
+  return longest;
+}
+
+}  // namespace ed::internal
