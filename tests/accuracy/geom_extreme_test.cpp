@@ -100,6 +100,14 @@ Row run(const char* name, double aspect_ratio, double tolerance, double deepest,
   return row;
 }
 
+/// Of superellipsoids, beyond an aspect ratio of 10 too: none is wrong, none is declined, and no more than 1 % have a
+/// last resort's answer, of kWidestGap, instead of the contract's (docs/accuracy.md: 31 of 12,000 at most).
+void expect_certified(const Row& row, const char* name, double aspect_ratio) {
+  EXPECT_EQ(row.wrong + row.declined, 0) << name << ' ' << aspect_ratio;
+  EXPECT_LE(row.certified, aspect_ratio <= 10 ? 0 : row.pairs / 100) << name << ' ' << aspect_ratio;
+  EXPECT_LE(row.largest, aspect_ratio <= 10 ? 1e-12 : kWidestGap) << name << ' ' << aspect_ratio;
+}
+
 TEST(ExtremeShapes, AreWithinTheContractCertifiedOrDeclined) {
   std::printf("| pair | aspect ratio | pairs | wrong | declined | certified | largest error |\n");
   std::printf("|---|---|---|---|---|---|---|\n");
@@ -113,26 +121,19 @@ TEST(ExtremeShapes, AreWithinTheContractCertifiedOrDeclined) {
   for (const double aspect_ratio : {1.0, 10.0, 1e2, 1e3, 1e4}) {
     const Row row = run("ellipsoids", aspect_ratio, 1e-13, 1 / aspect_ratio, ellipsoid, ellipsoid);
     EXPECT_EQ(row.wrong + row.declined + row.certified, 0) << aspect_ratio;
+    EXPECT_LE(row.largest, 1e-13) << aspect_ratio;
   }
   const auto superellipsoids = [&](const char* name, double least, double most) {
     for (const double aspect_ratio : {1.0, 10.0, 1e2, 1e3, 1e4}) {
-      const Row row = run(name, aspect_ratio, 1e-12, 1, uniform(least, most), uniform(least, most));
-      EXPECT_EQ(row.wrong, 0) << name << ' ' << aspect_ratio;
-      if (aspect_ratio <= 10) {
-        EXPECT_EQ(row.declined + row.certified, 0) << name << ' ' << aspect_ratio;
-      }
-      EXPECT_LE(row.largest, 1e-9) << name << ' ' << aspect_ratio;
+      expect_certified(run(name, aspect_ratio, 1e-12, 1, uniform(least, most), uniform(least, most)), name,
+                       aspect_ratio);
     }
   };
   superellipsoids("superellipsoids, e = 0.2 to 1", 0.2, 1);
   superellipsoids("superellipsoids, e = 1 to 1.6", 1, 1.6);
   for (const double aspect_ratio : {1.0, 10.0, 1e2, 1e3, 1e4}) {
-    const Row row =
-        run("ellipsoid and superellipsoid, e = 0.2 to 1.6", aspect_ratio, 1e-12, 1, ellipsoid, uniform(0.2, 1.6));
-    EXPECT_EQ(row.wrong, 0) << aspect_ratio;
-    if (aspect_ratio <= 10) {
-      EXPECT_EQ(row.declined + row.certified, 0) << aspect_ratio;
-    }
+    const char* name = "ellipsoid and superellipsoid, e = 0.2 to 1.6";
+    expect_certified(run(name, aspect_ratio, 1e-12, 1, ellipsoid, uniform(0.2, 1.6)), name, aspect_ratio);
   }
 }
 
