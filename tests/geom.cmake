@@ -15,6 +15,7 @@ hardbody_test(geom_unit_test unit
   unit/geom_queries_test.cpp
   unit/geom_superellipsoid_test.cpp
   unit/geom_user_shape_test.cpp)
+hardbody_test(geom_allocation_test unit unit/geom_allocation_test.cpp)
 hardbody_test(geom_batch_test property property/geom_batch_test.cpp)
 hardbody_test(geom_property_test property property/geom_distance_test.cpp
   property/geom_penetration_test.cpp

@@ -58,6 +58,14 @@ Input<T> checked(const char* name, std::span<const T> span, std::size_t pairs) {
   return {span.data(), span.size() == 1 ? std::size_t{0} : std::size_t{1}};
 }
 
+/// Of the pairs that go to `distance`, without the start.
+DistanceOptions scalar_options(const BatchOptions& options) {
+  DistanceOptions scalar;
+  scalar.max_iterations = options.max_iterations;
+  scalar.penetration = options.penetration;
+  return scalar;
+}
+
 /// What a batch is asked, and where its answers go.
 struct Query {
   Input<Ellipsoid> a;
@@ -66,10 +74,11 @@ struct Query {
   Input<Pose> X_WB;
   std::span<const Eigen::Vector3d> starts;
   std::span<DistanceResult> results;
+  DistanceOptions scalar;
 
   bool shapes_shared() const { return a.stride == 0 && b.stride == 0; }
   DistanceResult by_distance(std::size_t pair) const {
-    DistanceOptions options;
+    DistanceOptions options = scalar;
     if (!starts.empty()) options.start = starts[pair];
     return distance(a[pair], X_WA[pair], b[pair], X_WB[pair], options);
   }
@@ -131,6 +140,10 @@ void put_rotations(const Query& query, const TwoPairs& two, UniaxialInput& in) {
          in.rows + UniaxialInput::axis_b, two.lane);
 }
 
+int iterations_of(const BatchOutput& out, int lane) {
+  return static_cast<int>(out.rows[BatchOutput::iterations][lane]);
+}
+
 /// In place: a result built elsewhere would be copied in other pieces than it was written, which stalls.
 void read_answer(const BatchOutput& out, int lane, DistanceResult& result) {
   result.distance = out.rows[BatchOutput::distance][lane];
@@ -138,7 +151,7 @@ void read_answer(const BatchOutput& out, int lane, DistanceResult& result) {
   result.point_b = get(out.rows + BatchOutput::point_b, lane);
   result.normal = get(out.rows + BatchOutput::normal, lane);
   result.status = result.distance >= 0 ? DistanceStatus::separated : DistanceStatus::overlapping;
-  result.iterations = static_cast<int>(out.rows[BatchOutput::iterations][lane]);
+  result.iterations = iterations_of(out, lane);
   result.residual = out.rows[BatchOutput::residual][lane];
   result.error_bound = out.rows[BatchOutput::error_bound][lane];
 }
@@ -169,7 +182,7 @@ class Block {
     kernel_(in_, count_, out_);
     for (int lane = 0; lane < count_; ++lane) {
       DistanceResult& result = query_.results[pairs_[lane]];
-      if (out_.rows[BatchOutput::answered][lane] > 0) [[likely]] {
+      if (is_answered(lane)) [[likely]] {
         read_answer(out_, lane, result);
       } else {
         result = query_.by_distance(pairs_[lane]);
@@ -182,6 +195,12 @@ class Block {
   std::size_t redone() const { return redone_; }
 
  private:
+  /// A start always has its first evaluation.
+  bool is_answered(int lane) const {
+    return out_.rows[BatchOutput::answered][lane] > 0 &&
+           iterations_of(out_, lane) <= std::max(1, query_.scalar.max_iterations);
+  }
+
   void put_pairs(const TwoPairs& two) {
     const int lane = two.lane;
     if (lane >= shapes_put_ || !query_.shapes_shared()) {
@@ -248,7 +267,9 @@ std::optional<Ellipsoid> as_ellipsoid(const Shape& shape) {
 /// Pairs of ellipsoids among other shapes, copied side by side for the kernels.
 class EllipsoidPairs {
  public:
-  EllipsoidPairs(std::span<DistanceResult> results, InstructionSet set) : results_(results), set_(set) {}
+  /// `options` without starts.
+  EllipsoidPairs(std::span<DistanceResult> results, const BatchOptions& options)
+      : results_(results), options_(options) {}
 
   void add(std::size_t pair, const Ellipsoid& a, const Pose& X_WA, const Ellipsoid& b, const Pose& X_WB,
            const Eigen::Vector3d& start) {
@@ -263,9 +284,10 @@ class EllipsoidPairs {
 
   void flush() {
     const auto first = [this](const auto& all) { return std::span(all).first(count_); };
-    redone_ += distance_batch(first(a_), first(X_WA_), first(b_), first(X_WB_), std::span(found_).first(count_),
-                              {.starts = first(starts_), .instruction_set = set_})
-                   .redone;
+    options_.starts = first(starts_);
+    redone_ +=
+        distance_batch(first(a_), first(X_WA_), first(b_), first(X_WB_), std::span(found_).first(count_), options_)
+            .redone;
     for (std::size_t k = 0; k < count_; ++k) results_[pairs_[k]] = found_[k];
     count_ = 0;
   }
@@ -280,7 +302,7 @@ class EllipsoidPairs {
   }
 
   std::span<DistanceResult> results_;
-  InstructionSet set_;
+  BatchOptions options_;
   std::size_t count_ = 0;
   std::size_t redone_ = 0;
   std::array<std::size_t, kMost> pairs_{};
@@ -325,7 +347,8 @@ BatchSummary distance_batch(std::span<const Ellipsoid> a, std::span<const Pose> 
   const std::size_t pairs = results.size();
   const Query query{checked("a", a, pairs), checked("X_WA", X_WA, pairs),
                     checked("b", b, pairs), checked("X_WB", X_WB, pairs),
-                    options.starts,         results};
+                    options.starts,         results,
+                    scalar_options(options)};
   check_starts(options, pairs);
   const InstructionSet set = chosen(options.instruction_set);
   const BatchKernels kernels = find_kernels(set);
@@ -352,16 +375,19 @@ BatchSummary distance_batch(std::span<const Shape> a, std::span<const Pose> X_WA
   const Input<Pose> in_X_WA = checked("X_WA", X_WA, pairs), in_X_WB = checked("X_WB", X_WB, pairs);
   check_starts(options, pairs);
   const InstructionSet set = chosen(options.instruction_set);
-  EllipsoidPairs ellipsoids(results, set);
+  BatchOptions of_ellipsoids = options;
+  of_ellipsoids.instruction_set = set;
+  EllipsoidPairs ellipsoids(results, of_ellipsoids);
+  DistanceOptions scalar = scalar_options(options);
   std::size_t redone = 0;
   for (std::size_t k = 0; k < pairs; ++k) {
-    const Eigen::Vector3d start = options.starts.empty() ? Eigen::Vector3d::Zero().eval() : options.starts[k];
+    if (!options.starts.empty()) scalar.start = options.starts[k];
     const std::optional<Ellipsoid> s = as_ellipsoid(in_a[k]);
     const std::optional<Ellipsoid> t = s ? as_ellipsoid(in_b[k]) : std::nullopt;
     if (t) {
-      ellipsoids.add(k, *s, in_X_WA[k], *t, in_X_WB[k], start);
+      ellipsoids.add(k, *s, in_X_WA[k], *t, in_X_WB[k], scalar.start);
     } else {
-      results[k] = distance(in_a[k], in_X_WA[k], in_b[k], in_X_WB[k], {.start = start});
+      results[k] = distance(in_a[k], in_X_WA[k], in_b[k], in_X_WB[k], scalar);
       ++redone;
     }
   }

@@ -33,12 +33,23 @@ RayHit ray_cast(const Ellipsoid& shape, const Pose& X_WB, const Vector3d& origin
     at(RayStatus::inside, 0);
     return hit;
   }
+  // f(p) = |p|^2 - 1 is convex in the world's lengths too, where its gradient is 2 p / a: the distance of a point
+  // outside is at least f / |2 p / a|, and no more than that to first order where the surface is near.
+  const double touching = kRayGap * (shape.bounding_radius() + (origin - X_WB.position()).norm());
+  const auto touches = [&](const Vector3d& p) {
+    return p.squaredNorm() - 1 <= 2 * touching * p.cwiseQuotient(shape.semi_axes()).stableNorm();
+  };
+  if (touches(o)) {
+    at(RayStatus::hit, 0);
+    return hit;
+  }
   // From the point of the ray closest to the centre: b^2 - 4 a c would cancel.
   const double t_closest = -o.dot(d) / d.squaredNorm();
-  const double rest = 1 - (o + t_closest * d).squaredNorm();
-  if (!(t_closest >= 0) || !(rest >= 0)) {
+  const Vector3d closest = o + t_closest * d;
+  if (!(t_closest >= 0) || !touches(closest)) {
     hit.status = RayStatus::missed;
   } else {
+    const double rest = std::max(0.0, 1 - closest.squaredNorm());
     at(RayStatus::hit, std::max(0.0, t_closest - std::sqrt(rest) / d.norm()));
   }
   return hit;

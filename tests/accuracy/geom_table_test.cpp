@@ -60,7 +60,7 @@ void row(const char* name, double gap, double tolerance, const MakeA& make_a, co
               errors[errors.size() / 2], errors.back(), bound,
               static_cast<double>(iterations) / static_cast<double>(pairs));
   EXPECT_EQ(failures, 0) << name << ", gap " << gap;
-  EXPECT_LE(bound, gap > 0 ? kWidestGap : kWidestDepthGap) << name << ", gap " << gap;
+  EXPECT_LE(bound, gap > 0 ? kBoundGap : kDepthGap) << name << ", gap " << gap;
 }
 
 template <class MakeA, class MakeB>

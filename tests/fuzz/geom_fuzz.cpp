@@ -81,11 +81,11 @@ void check(const Pair& pair, const DistanceResult& r) {
   require((r.distance >= 0) == (r.status == DistanceStatus::separated), "its sign is what the status says");
   const double size = size_of(pair);
   require(r.error_bound >= 0, "its error bound is a number, none below 0");
-  require(std::isinf(r.error_bound) || !(r.error_bound > 1.01 * geom::kWidestDepthGap * size), "and not a wide one");
+  require(std::isinf(r.error_bound) || r.error_bound <= 1.01 * geom::kWidestDepthGap * size, "and not a wide one");
   const double gap = (r.point_b - r.point_a - r.distance * r.normal).norm();
-  require(!(gap > 1e-14 * (size + r.point_a.norm())), "its points are its distance apart, along its normal");
+  require(gap <= 1e-14 * (size + r.point_a.norm()), "its points are its distance apart, along its normal");
   const double g = geom::distance_lower_bound(pair.a, pair.X_WA, pair.b, pair.X_WB, r.normal);
-  require(!(std::abs(g - r.distance) > 1e-8 * size), "its distance is the gap across its normal");
+  require(std::abs(g - r.distance) <= geom::kBoundGap * size, "its distance is the gap across its normal");
 }
 
 /// The search over all normals, of deep overlaps, is a thousand times slower than all the rest: now and then.

@@ -53,6 +53,18 @@ void fed_support(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* ou
 
 }  // namespace
 
+struct FclPair::Objects {
+  fcl::CollisionObjectd a;
+  fcl::CollisionObjectd b;
+};
+
+FclPair::FclPair(const geom::Ellipsoid& a, const geom::Pose& X_WA, const geom::Ellipsoid& b, const geom::Pose& X_WB)
+    : objects_(std::make_shared<const Objects>(Objects{to_fcl(a, X_WA), to_fcl(b, X_WB)})) {}
+
+FclDistance FclPair::distance(bool signed_distance) const {
+  return ask(objects_->a, objects_->b, signed_distance);
+}
+
 FclDistance fcl_distance(const geom::Ellipsoid& a, const geom::Pose& X_WA, const geom::Ellipsoid& b,
                          const geom::Pose& X_WB, bool signed_distance) {
   return ask(to_fcl(a, X_WA), to_fcl(b, X_WB), signed_distance);

@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 
+#include <memory>
 #include <vector>
 
 namespace geom_test {
@@ -21,6 +22,19 @@ struct FclDistance {
 /// FCL's distance of two ellipsoids with GST_LIBCCD at its default tolerance of 1e-6 (an absolute length).
 FclDistance fcl_distance(const geom::Ellipsoid& a, const geom::Pose& X_WA, const geom::Ellipsoid& b,
                          const geom::Pose& X_WB, bool signed_distance);
+
+/// A pair of ellipsoids as FCL keeps it, made once and asked often.
+class FclPair {
+ public:
+  FclPair(const geom::Ellipsoid& a, const geom::Pose& X_WA, const geom::Ellipsoid& b, const geom::Pose& X_WB);
+
+  /// As fcl_distance.
+  FclDistance distance(bool signed_distance) const;
+
+ private:
+  struct Objects;
+  std::shared_ptr<const Objects> objects_;
+};
 
 /// The same, unsigned, for the convex hulls of two sets of points.
 FclDistance fcl_distance(const std::vector<Eigen::Vector3d>& a, const geom::Pose& X_WA,

@@ -93,7 +93,7 @@ bool is_wrong(const A& a, const Pose& X_WA, const B& b, const Pose& X_WB, const 
   const double size = (X_WB.position() - X_WA.position()).norm() + a.bounding_radius() + b.bounding_radius();
   const DistanceResult ours = distance(a, X_WA, b, X_WB);
   return std::abs(lower_bound(a, X_WA, b, X_WB, r.normal) - r.distance) > 1e-12 * size ||
-         (is_answer(ours) && std::abs(ours.distance - r.distance) > 1e-9 * size + ours.error_bound);
+         (is_answer(ours) && !(std::abs(ours.distance - r.distance) <= 1e-12 * size + ours.error_bound));
 }
 
 template <class Seed>
@@ -214,37 +214,65 @@ Solved solve_cell(double e1, double e2, int pairs, const Seed& seed_of) {
   return cell;
 }
 
+/// By the eight equations, by the five.
+using Shares = std::array<double, 2>;
+
+Shares shares_of(const Solved& solved) {
+  return {1.0 * solved.right[0] / solved.pairs, 1.0 * solved.right[1] / solved.pairs};
+}
+
+/// The share that a cell of few pairs must have solved where `share` is that of many: three standard deviations less.
+double least_of_few(double share, int pairs) {
+  return share - 3 * std::sqrt(share * (1 - share) / pairs);
+}
+
+/// `least`: shares of all pairs, `worst`: of any cell, if it had infinitely many.
 template <class Seed>
-void expect_solved(const char* name, int pairs_a_cell, std::array<double, 2> least_share, const Seed& seed_of) {
+void expect_solved(const char* name, int pairs_a_cell, const Shares& least, const Shares& worst, const Seed& seed_of) {
   std::printf("\n%s: %d pairs a cell; solved in %%, eight equations / five\n e1\\e2", name, pairs_a_cell);
   for (const double e2 : kExponents) std::printf("  %13g", e2);
   std::printf("\n");
   Solved all;
+  Shares worst_found{1, 1};
   for (const double e1 : kExponents) {
     std::printf("%6g", e1);
     for (const double e2 : kExponents) {
       const Solved cell = solve_cell(e1, e2, pairs_a_cell, seed_of);
-      std::printf("  %6.2f/%6.2f", 100.0 * cell.right[0] / cell.pairs, 100.0 * cell.right[1] / cell.pairs);
+      const Shares found = shares_of(cell);
+      std::printf("  %6.2f/%6.2f", 100 * found[0], 100 * found[1]);
+      for (std::size_t k = 0; k < 2; ++k) {
+        worst_found[k] = std::min(worst_found[k], found[k]);
+        EXPECT_EQ(cell.wrong[k], 0) << name << ", e1 = " << e1 << ", e2 = " << e2;
+        EXPECT_GE(found[k], least_of_few(worst[k], cell.pairs)) << name << ", e1 = " << e1 << ", e2 = " << e2;
+      }
       all += cell;
     }
     std::printf("\n");
   }
-  std::printf("all: %.2f %% of the seeds usable, solved %.2f / %.2f %%, wrong %d / %d\n", 100.0 * all.seeds / all.pairs,
-              100.0 * all.right[0] / all.pairs, 100.0 * all.right[1] / all.pairs, all.wrong[0], all.wrong[1]);
+  const Shares found = shares_of(all);
+  std::printf(
+      "all: %.2f %% of the seeds usable, solved %.3f / %.3f %%, in the worst cell %.2f / %.2f %%, wrong %d / %d\n",
+      100.0 * all.seeds / all.pairs, 100 * found[0], 100 * found[1], 100 * worst_found[0], 100 * worst_found[1],
+      all.wrong[0], all.wrong[1]);
   for (std::size_t k = 0; k < 2; ++k) {
     EXPECT_EQ(all.wrong[k], 0) << name;
-    EXPECT_GE(all.right[k], least_share[k] * all.pairs) << name;
+    EXPECT_GE(found[k], least[k]) << name;
   }
 }
 
 TEST(SuperellipsoidOracle, NewtonSolvesSeparatedPairsFromEverySeed) {
-  expect_solved("fcl", scaled(60, 2'000), {0.999, 0.99}, [](const auto&... pair) { return fcl_seed(pair...); });
-  expect_solved("ccd", scaled(60, 2'000), {0.999, 0.99}, [](const auto&... pair) { return ccd_seed(pair...); });
+  expect_solved("fcl", scaled(60, 2'000), {0.999, 0.99}, {0.99, 0.97},
+                [](const auto&... pair) { return fcl_seed(pair...); });
+  expect_solved("ccd", scaled(60, 2'000), {0.999, 0.99}, {0.99, 0.97},
+                [](const auto&... pair) { return ccd_seed(pair...); });
 #if HARDBODY_WITH_CGAL
-  expect_solved("cgal", scaled(12, 500), {0.99, 0.98}, [](const auto&... pair) { return cgal_seed(pair...); });
+  expect_solved("cgal", scaled(12, 500), {0.99, 0.98}, {0.98, 0.95},
+                [](const auto&... pair) { return cgal_seed(pair...); });
 #endif
-  expect_solved("centres", scaled(60, 2'000), {0.98, 0.96}, [](const auto&... pair) { return centre_seed(pair...); });
-  expect_solved("dual", scaled(60, 2'000), {0.999, 0.999}, [](const auto&... pair) { return dual_seed(pair...); });
+  expect_solved("centres", scaled(60, 2'000), {0.98, 0.96}, {0.9, 0.84},
+                [](const auto&... pair) { return centre_seed(pair...); });
+  expect_solved("dual", scaled(60, 2'000), {0.999, 0.999}, {0.99, 0.99},
+                [](const auto&... pair) { return dual_seed(pair...); });
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // Distances of superellipsoids whose answer is known before it is computed: B is placed so that the support points of a
 // chosen normal are the witness points. Five ways to choose it, three of them where flat faces, edges and vertices make
-// it hard. HARDBODY_FULL=1: 100,000 pairs a cell and class instead of 500, 5,000 overlaps instead of 30.
+// it hard. HARDBODY_FULL=1: 100,000 pairs of copies a cell and set instead of 500 (20,000 of unlike bodies), 5,000
+// overlaps instead of 30 (2,000).
 
 #include "common/geom_manufactured.h"
 #include "common/geom_random.h"
@@ -10,8 +11,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdio>
 #include <cstdlib>
 
@@ -19,6 +22,7 @@ namespace geom {
 namespace {
 
 using Eigen::Vector3d;
+using geom_test::any_exponent;
 using geom_test::choose;
 using geom_test::kExponents;
 using geom_test::Orientation;
@@ -30,52 +34,109 @@ struct SetTraits {
   PairSet set;
   const char* name;
   double depth_tolerance;  ///< of the depths of overlaps, relative to the size of the pair
+  double depth_bound;      ///< of the error bounds of overlaps, relative to it: kDepthGap, but for parallel faces
   double off_surface;      ///< of the witness points of bodies apart; normals of faces are those of vertices for e > 1
 };
 
-constexpr std::array<SetTraits, 5> kSets{{{PairSet::random_normal, "random normal", 1e-12, 1e-10},
-                                          {PairSet::random_point, "random point", 1e-12, 1e-10},
-                                          {PairSet::aligned, "aligned copies", 1e-12, 1e-10},
-                                          {PairSet::edges, "edges and vertices", 5e-10, 1e-10},
-                                          {PairSet::faces, "faces", 5e-10, 1e-9}}};
+constexpr std::array<SetTraits, 5> kSets{{{PairSet::random_normal, "random normal", 1e-12, kDepthGap, 1e-10},
+                                          {PairSet::random_point, "random point", 1e-12, kDepthGap, 1e-10},
+                                          {PairSet::aligned, "aligned copies", 1e-12, kDepthGap, 1e-10},
+                                          {PairSet::edges, "edges and vertices", 5e-10, kDepthGap, 1e-10},
+                                          {PairSet::faces, "faces", 5e-10, 1e-7, 1e-9}}};
 
 /// Of the distance of bodies that are apart, relative to the size of the pair: distance.h promises it.
 constexpr double kTolerance = 1e-12;
+
+struct Bodies {
+  Superellipsoid a, b;
+
+  double radii() const { return a.bounding_radius() + b.bounding_radius(); }
+};
+
+Vector3d random_axes(long k, Random& random) {
+  if (k % 3 == 0) return {1, 1, 1};
+  if (k % 3 == 1) return {1, 1, 2};
+  return {1, random.uniform(0.6, 1.6), random.uniform(0.4, 2.4)};
+}
+
+/// B is A's copy.
+Bodies copies(long k, double e1, double e2, Random& random) {
+  const Superellipsoid shape(random_axes(k, random), e1, e2);
+  return {shape, shape};
+}
+
+/// B has other exponents and proportions, a third of the time those of an ellipsoid, and is up to 20 times smaller or
+/// larger.
+Bodies unlike(long k, double e1, double e2, Random& random) {
+  const Superellipsoid a(random_axes(k, random), e1, e2);
+  const Vector3d axes = random.log_uniform(0.05, 20) * random_axes(k / 3, random);
+  if (random.uniform() < 1.0 / 3) return {a, Superellipsoid(axes, 1, 1)};
+  const double e = any_exponent(random);
+  return {a, Superellipsoid(axes, e, any_exponent(random))};
+}
 
 struct Tally {
   long pairs = 0;
   long wrong = 0;
   long declined = 0;
   double worst = 0;
-  double off_surface = 0;
+  double bound = 0;        ///< largest `error_bound`, over the sum of both bounding radii
+  double off_g = 0;        ///< largest |g(normal) - distance| over the size of the pair
+  double above = 0;        ///< by how much a distance is above the true one, over the size
+  double off_normal = 0;   ///< largest angle to the known normal, over what distance.h promises
+  double off_surface = 0;  ///< over the size
+
+  Tally& operator+=(const Tally& t) {
+    pairs += t.pairs;
+    wrong += t.wrong;
+    declined += t.declined;
+    worst = std::max(worst, t.worst);
+    bound = std::max(bound, t.bound);
+    off_g = std::max(off_g, t.off_g);
+    above = std::max(above, t.above);
+    off_normal = std::max(off_normal, t.off_normal);
+    off_surface = std::max(off_surface, t.off_surface);
+    return *this;
+  }
 };
 
-void try_pair(const Superellipsoid& shape, const SetTraits& traits, Random& random, Tally& tally) {
-  const Orientation o = choose(traits.set, shape, random);
+/// Where the bodies are apart: the angle that error_bound leaves (distance.h).
+double promised_angle(const DistanceResult& r, double size) {
+  return std::sqrt(2 * (r.error_bound + 1e-15 * size) / r.distance);
+}
+
+void try_pair(const Bodies& bodies, const SetTraits& traits, Random& random, Tally& tally) {
+  const auto& [a, b] = bodies;
+  const Orientation o = choose(traits.set, a, b, random);
   const double gap = random.log_uniform(1e-8, 1);
   Pose X_WA, X_WB;
-  place(o, shape, gap, X_WA, X_WB);
+  place(o, a, b, gap, X_WA, X_WB);
   // What rounding has left of the gap: g at the chosen normal.
-  const double wanted = geom_test::lower_bound(shape, X_WA, shape, X_WB, o.n);
-  const DistanceResult r = distance(shape, X_WA, shape, X_WB);
+  const double wanted = geom_test::lower_bound(a, X_WA, b, X_WB, o.n);
+  const DistanceResult r = distance(a, X_WA, b, X_WB);
   ++tally.pairs;
   if (r.status == DistanceStatus::not_converged) {
     ++tally.declined;
     return;
   }
-  const double size = X_WB.position().norm() + 2 * shape.bounding_radius();
+  const double size = X_WB.position().norm() + bodies.radii();
   const double error = std::abs(r.distance - wanted) / size;
   tally.worst = std::max(tally.worst, error);
-  if (!(error <= kTolerance)) ++tally.wrong;
-  ASSERT_NEAR((r.point_b - r.point_a - r.distance * r.normal).norm(), 0, 1e-14);
+  if (!(error <= kTolerance) || r.status != DistanceStatus::separated) ++tally.wrong;
+  ASSERT_NEAR((r.point_b - r.point_a - r.distance * r.normal).norm(), 0, 4e-15 * size);
   ASSERT_GE(r.distance + r.error_bound, wanted - 1e-15 * size) << "pair " << tally.pairs;
-  tally.off_surface = std::max({tally.off_surface, geom_test::off_surface(shape, X_WA, r.point_a) / size,
-                                geom_test::off_surface(shape, X_WB, r.point_b) / size});
+  const double g = geom_test::lower_bound(a, X_WA, b, X_WB, r.normal);
+  tally.off_g = std::max(tally.off_g, std::abs(g - r.distance) / size);
+  tally.above = std::max(tally.above, (r.distance - wanted) / size);
+  tally.bound = std::max(tally.bound, r.error_bound / bodies.radii());
+  tally.off_normal = std::max(tally.off_normal, (r.normal - o.n).norm() / promised_angle(r, size));
+  tally.off_surface = std::max({tally.off_surface, geom_test::off_surface(a, X_WA, r.point_a) / size,
+                                geom_test::off_surface(b, X_WB, r.point_b) / size});
   // The same from near the normal, from far off and from opposite to it.
   if (tally.pairs % 5 != 0) return;
   for (const Vector3d& start : {Vector3d(o.n + 1e-3 * random.direction()), Vector3d(random.direction()),
                                 Vector3d(0.3 * random.direction() - o.n)}) {
-    const DistanceResult warm = distance(shape, X_WA, shape, X_WB, {.start = start});
+    const DistanceResult warm = distance(a, X_WA, b, X_WB, {.start = start});
     if (warm.status == DistanceStatus::not_converged) {
       ++tally.declined;
       continue;
@@ -84,33 +145,61 @@ void try_pair(const Superellipsoid& shape, const SetTraits& traits, Random& rand
   }
 }
 
-TEST(SuperellipsoidDistance, OfKnownAnswers) {
-  const long pairs = std::getenv("HARDBODY_FULL") != nullptr ? 100000 : 500;
+/// Another one for each cell of exponents and each set.
+unsigned seed_of(std::size_t cell, PairSet set) {
+  return static_cast<unsigned>(cell * kSets.size()) + static_cast<unsigned>(set) + 1;
+}
+
+/// check(e1, e2, random), once for each e1 and e2.
+template <class Check>
+void for_each_cell(PairSet set, const Check& check) {
+  std::size_t cell = 0;
+  for (const double e1 : kExponents) {
+    for (const double e2 : kExponents) {
+      Random random(seed_of(cell++, set));
+      check(e1, e2, random);
+    }
+  }
+}
+
+template <class Make>
+void expect_known_answers(const char* which, long pairs, const Make& make) {
+  std::printf(
+      "| set, %s | pairs | wrong | declined | largest error | largest error bound | points off the surfaces |\n",
+      which);
+  double off_normal = 0, off_g = 0, above = 0;
   for (const SetTraits& traits : kSets) {
     Tally all;
-    for (const double e1 : kExponents) {
-      for (const double e2 : kExponents) {
-        Random random(static_cast<unsigned>(1000 * e1 + 10 * e2) + static_cast<unsigned>(traits.set));
-        Tally cell;
-        for (long k = 0; k < pairs; ++k) {
-          const Vector3d axes =
-              k % 3 == 0
-                  ? Vector3d(1, 1, 1)
-                  : (k % 3 == 1 ? Vector3d(1, 1, 2) : Vector3d(1, random.uniform(0.6, 1.6), random.uniform(0.4, 2.4)));
-          try_pair(Superellipsoid(axes, e1, e2), traits, random, cell);
-        }
-        EXPECT_EQ(cell.wrong, 0) << traits.name << ", e1 = " << e1 << ", e2 = " << e2;
-        EXPECT_EQ(cell.declined, 0) << traits.name << ", e1 = " << e1 << ", e2 = " << e2;
-        EXPECT_LE(cell.off_surface, traits.off_surface) << traits.name << ", e1 = " << e1 << ", e2 = " << e2;
-        all.pairs += cell.pairs;
-        all.declined += cell.declined;
-        all.worst = std::max(all.worst, cell.worst);
-        all.off_surface = std::max(all.off_surface, cell.off_surface);
-      }
-    }
-    std::printf("%-20s %ld pairs, %ld declined, largest error %.1e, points off the surfaces by %.1e of the size\n",
-                traits.name, all.pairs, all.declined, all.worst, all.off_surface);
+    for_each_cell(traits.set, [&](double e1, double e2, Random& random) {
+      Tally cell;
+      for (long k = 0; k < pairs; ++k) try_pair(make(k, e1, e2, random), traits, random, cell);
+      const auto where = [&] { return testing::Message() << traits.name << ", e1 = " << e1 << ", e2 = " << e2; };
+      EXPECT_EQ(cell.wrong, 0) << where();
+      EXPECT_EQ(cell.declined, 0) << where();
+      EXPECT_LE(cell.bound, kBoundGap) << where();
+      EXPECT_LE(cell.above, 1e-15) << where() << ": more than rounding above";
+      EXPECT_LE(cell.off_g, kTolerance) << where();
+      EXPECT_LE(cell.off_normal, 1) << where();
+      EXPECT_LE(cell.off_surface, traits.off_surface) << where();
+      all += cell;
+    });
+    std::printf("| %s | %ld | %ld | %ld | %.1e | %.1e | %.1e |\n", traits.name, all.pairs, all.wrong, all.declined,
+                all.worst, all.bound, all.off_surface);
+    off_normal = std::max(off_normal, all.off_normal);
+    off_g = std::max(off_g, all.off_g);
+    above = std::max(above, all.above);
   }
+  std::printf("normals off by %.2f of what their error bounds allow, gaps across them within %.1e of the size\n",
+              off_normal, off_g);
+  std::printf("distances above the true ones by %.1e of the size\n", above);
+}
+
+TEST(SuperellipsoidDistance, OfKnownAnswers) {
+  expect_known_answers("copies", std::getenv("HARDBODY_FULL") != nullptr ? 100000 : 500, copies);
+}
+
+TEST(SuperellipsoidDistance, OfKnownAnswersOfUnlikeBodies) {
+  expect_known_answers("unlike bodies", std::getenv("HARDBODY_FULL") != nullptr ? 20000 : 500, unlike);
 }
 
 /// Mixed pairs, and a superellipsoid that is an ellipsoid.
@@ -216,56 +305,65 @@ struct OverlapTally {
   double bound = 0;  ///< widest `error_bound`
 };
 
-void try_overlap(const Superellipsoid& shape, const SetTraits& traits, double depth, Random& random,
-                 OverlapTally& tally) {
-  const Orientation o = choose(traits.set, shape, random);
+/// `depth` in units of the smaller body's first semi-axis.
+void try_overlap(const Bodies& bodies, const SetTraits& traits, double depth, Random& random, OverlapTally& tally) {
+  const auto& [a, b] = bodies;
+  const Orientation o = choose(traits.set, a, b, random);
   Pose X_WA, X_WB;
-  place(o, shape, -depth, X_WA, X_WB);
-  const double wanted = geom_test::lower_bound(shape, X_WA, shape, X_WB, o.n);
-  const DistanceResult r = distance(shape, X_WA, shape, X_WB);
-  const double size = X_WB.position().norm() + 2 * shape.bounding_radius();
+  place(o, a, b, -depth * std::min(a.semi_axes().x(), b.semi_axes().x()), X_WA, X_WB);
+  const double wanted = geom_test::lower_bound(a, X_WA, b, X_WB, o.n);
+  const DistanceResult r = distance(a, X_WA, b, X_WB);
+  const double size = X_WB.position().norm() + bodies.radii();
   ++tally.pairs;
   const double better = (r.distance - wanted) / size;
   const bool declined = r.status == DistanceStatus::not_converged;
-  if (declined || better < -traits.depth_tolerance) {
-    std::printf("miss: %s, e1 = %g, e2 = %g, depth %.17g: %s, %.1e of the size too deep\n", traits.name, shape.e1(),
-                shape.e2(), depth, to_string(r.status), -better);
+  if (declined || !(better >= -traits.depth_tolerance)) {
+    std::printf("miss: %s, e1 = %g, %g, e2 = %g, %g, depth %.17g: %s, %.1e of the size too deep\n", traits.name, a.e1(),
+                b.e1(), a.e2(), b.e2(), depth, to_string(r.status), -better);
     ++(declined ? tally.declined : tally.misses);
   }
   if (declined) return;
   tally.worst = std::max(tally.worst, -better);
   tally.bound = std::max(tally.bound, r.error_bound / size);
   tally.shorter += better > 1e-12;
+  ASSERT_LE(wanted, r.distance + r.error_bound + 1e-15 * size);
   // Whichever way out is taken parts the bodies: the depth is that across its normal.
-  ASSERT_NEAR(geom_test::lower_bound(shape, X_WA, shape, X_WB, r.normal), r.distance, 1e-14 * size);
+  ASSERT_NEAR(geom_test::lower_bound(a, X_WA, b, X_WB, r.normal), r.distance, 1e-14 * size);
 }
 
-/// Bodies pushed into each other along a known normal: the depth is that of the push, or less where a shorter way out
-/// exists, past an edge or a face that is turned the other way.
-TEST(SuperellipsoidDistance, OfOverlaps) {
-  const long pairs = std::getenv("HARDBODY_FULL") != nullptr ? 5000 : 30;
-  std::printf("| set | depth | pairs | misses | declined | largest error | widest bound | shorter ways out |\n");
+template <class Make>
+void expect_depths(const char* which, long pairs, const Make& make) {
+  std::printf("| set, %s | depth | pairs | misses | declined | largest error | widest bound | shorter ways out |\n",
+              which);
   for (const SetTraits& traits : kSets) {
     std::array<OverlapTally, kDepths.size()> tallies;
-    for (const double e1 : kExponents) {
-      for (const double e2 : kExponents) {
-        Random random(static_cast<unsigned>(1000 * e1 + 10 * e2) + static_cast<unsigned>(traits.set));
-        for (long k = 0; k < pairs; ++k) {
-          const Superellipsoid shape({1, random.uniform(0.6, 1.6), random.uniform(0.4, 2.4)}, e1, e2);
-          const double depth = random.log_uniform(kLeastDepth, kDepths.back().most);
-          std::size_t row = 0;
-          while (row + 1 < kDepths.size() && depth > kDepths[row].most) ++row;
-          try_overlap(shape, traits, depth, random, tallies[row]);
-        }
+    for_each_cell(traits.set, [&](double e1, double e2, Random& random) {
+      for (long k = 0; k < pairs; ++k) {
+        const Bodies bodies = make(3 * k + 2, e1, e2, random);
+        const double depth = random.log_uniform(kLeastDepth, kDepths.back().most);
+        std::size_t row = 0;
+        while (row + 1 < kDepths.size() && depth > kDepths[row].most) ++row;
+        try_overlap(bodies, traits, depth, random, tallies[row]);
       }
-    }
+    });
     for (std::size_t row = 0; row < kDepths.size(); ++row) {
       const OverlapTally& t = tallies[row];
       std::printf("| %s | %s | %ld | %ld | %ld | %.1e | %.1e | %ld |\n", traits.name, kDepths[row].name, t.pairs,
                   t.misses, t.declined, t.worst, t.bound, t.shorter);
       EXPECT_EQ(t.misses + t.declined, 0) << traits.name << ", depth " << kDepths[row].name;
+      EXPECT_LE(t.bound, traits.depth_bound) << traits.name << ", depth " << kDepths[row].name;
     }
   }
+}
+
+/// Bodies pushed into each other along a known normal: the depth is that of the push, or less where a shorter way out
+/// exists, past an edge or a face that is turned the other way.
+TEST(SuperellipsoidDistance, OfOverlaps) {
+  expect_depths("copies", std::getenv("HARDBODY_FULL") != nullptr ? 5000 : 30, copies);
+}
+
+TEST(SuperellipsoidDistance, OfOverlapsOfUnlikeBodies) {
+  expect_depths("unlike bodies", std::getenv("HARDBODY_FULL") != nullptr ? 2000 : 30, unlike);
 }
 
 TEST(SuperellipsoidDistance, OfConcentricBoxes) {

@@ -262,6 +262,76 @@ TEST(DistanceBatch, CountsThePairsGivenToDistance) {
   EXPECT_GE(distance_batch({&needle, 1}, {&X_WA, 1}, {&needle, 1}, pairs.X_WB, results).redone, 95u);
 }
 
+/// Needles through each other: deeper than the kernels certify.
+Pairs deep_pairs(std::size_t count) {
+  Random random(15);
+  const Ellipsoid needle({1, 1, 10});
+  Pairs pairs;
+  while (pairs.size() < count)
+    pairs.add(needle, Pose(), needle, Pose(random.pose(0.0).rotation(), Vector3d(0.5, 0, 0)));
+  return pairs;
+}
+
+TEST(DistanceBatch, AsksForTheLocalPenetrationWhereTheOptionsDo) {
+  const Pairs pairs = deep_pairs(100);
+  const DistanceOptions local{.penetration = Penetration::local};
+  for (const InstructionSet set : instruction_sets()) {
+    const auto results = pairs.distance_batch({.instruction_set = set, .penetration = Penetration::local});
+    int uncertified = 0;
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      const DistanceResult one = pairs.distance(i, local);
+      EXPECT_TRUE(same_bits(results[i], one)) << to_string(set) << ", pair " << i;
+      uncertified += std::isinf(one.error_bound) ? 1 : 0;
+    }
+    EXPECT_GE(uncertified, 90) << "of 100 that no search over all normals was spent on";
+  }
+}
+
+TEST(DistanceBatch, LeavesToDistanceWhatTakesMoreIterationsThanTheOptionsAllow) {
+  const Pairs pairs = mixed_pairs(100, 16);
+  for (const InstructionSet set : instruction_sets()) {
+    for (const int limit : {0, 1, 3, kMaxIterations}) {
+      const auto results = pairs.distance_batch({.instruction_set = set, .max_iterations = limit});
+      int limited = 0;
+      for (std::size_t i = 0; i < pairs.size(); ++i) {
+        const DistanceResult one = pairs.distance(i, {.max_iterations = limit});
+        EXPECT_TRUE(same_answer(results[i], one, pairs.scale(i), pairs.extent(i))) << to_string(set) << ", pair " << i;
+        // Given up there and answered by the fallback, which counts on.
+        if (one.iterations > std::max(1, limit)) {
+          EXPECT_EQ(results[i].iterations, one.iterations) << to_string(set) << ", pair " << i;
+          ++limited;
+        }
+      }
+      EXPECT_EQ(limited > 50, limit <= 3) << limited << " of 100 within " << limit;
+    }
+  }
+}
+
+TEST(DistanceBatch, OfShapesPassesItsOptionsOn) {
+  const Pairs pairs = deep_pairs(20);
+  std::vector<Shape> a, b;
+  std::vector<Pose> X_WB;
+  const Superellipsoid bar({1, 1, 10}, 0.7, 0.8);
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    for (const Shape& shape : {Shape(pairs.a[i]), Shape(bar)}) {
+      a.push_back(shape);
+      b.push_back(shape);
+      X_WB.push_back(pairs.X_WB[i]);
+    }
+  }
+  std::vector<DistanceResult> results(a.size());
+  const Pose X_WA;
+  distance_batch(a, {&X_WA, 1}, b, X_WB, results, {.max_iterations = 20, .penetration = Penetration::local});
+  int uncertified = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const DistanceResult one =
+        distance(a[i], X_WA, b[i], X_WB[i], {.max_iterations = 20, .penetration = Penetration::local});
+    EXPECT_TRUE(same_bits(results[i], one)) << i;
+    uncertified += std::isinf(one.error_bound) ? 1 : 0;
+  }
+  EXPECT_GE(uncertified, 36) << "of 40";
+}
+
 TEST(DistanceBatch, UsesTheInstructionSetThatItSays) {
   EXPECT_TRUE(is_available(InstructionSet::best));
   EXPECT_TRUE(is_available(InstructionSet::portable));

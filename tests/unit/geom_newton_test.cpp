@@ -46,6 +46,26 @@ Ellipsoid random_ellipsoid(Random& random) {
   return random.coin() ? random.spheroid(random.log_uniform(0.1, 10)) : random.biaxial(10);
 }
 
+template <class Equations>
+void expect_length_shows_nan() {
+  using Step = typename Equations::Vector;
+  // alpha, the unknown before the last, is no length.
+  for (int k = 0; k < Equations::kSize - 2; ++k) {
+    Step step = Step::Ones();
+    step[k] = kNaN;
+    EXPECT_TRUE(std::isnan(Equations::length(step))) << k;
+  }
+  EXPECT_EQ(Equations::length(Step::Constant(-2)), 2);
+}
+
+TEST(Newton, TheLengthOfAStepThatIsNoNumberIsNone) {
+  expect_length_shows_nan<internal::EightEquations>();
+  expect_length_shows_nan<internal::FiveEquations>();
+  internal::FiveEquations::Vector step = internal::FiveEquations::Vector::Ones();
+  step[4] = kNaN;
+  EXPECT_TRUE(std::isnan(internal::FiveEquations::length(step)));
+}
+
 /// The Jacobian against central differences of F, at a state that is no solution.
 template <class Equations, class Shape>
 void expect_jacobian(const Shape& shape, Random& random) {

@@ -240,20 +240,54 @@ TEST(RayCast, ThroughTheCentre) {
   });
 }
 
+/// Where rounding decides on which side of the surface the origin is.
+template <class AnyShape>
+void expect_in_the_body_at_once(const AnyShape& shape, const Pose& X, const Vector3d& on_surface, const Vector3d& n,
+                                Random& random) {
+  for (const Vector3d& u : {n, Vector3d(-n), tangent(n, random)}) {
+    const RayHit hit = ray_cast(shape, X, X.to_world(on_surface), X.rotation() * u);
+    ASSERT_TRUE(hit.status == RayStatus::hit || hit.status == RayStatus::inside);
+    ASSERT_EQ(hit.t, 0);
+    ASSERT_NEAR(hit.normal.norm(), 1, 1e-12);
+    ASSERT_LE((X.to_body(hit.point) - on_surface).norm(), 4e-14 * (1 + on_surface.norm()));
+  }
+}
+
+template <class Concrete>
+void expect_rays_from_the_surface_at_once(const Concrete& shape, Random& random) {
+  for (int k = 0; k < 300; ++k) {
+    const Vector3d n = k < 3 ? Vector3d(Vector3d::Unit(k)) : random.direction();
+    const Vector3d on_surface = shape.support(n).point;
+    const Pose X = k % 2 == 0 ? Pose() : random.pose(1.0);
+    expect_in_the_body_at_once(shape, X, on_surface, n, random);
+    expect_in_the_body_at_once(Shape(shape), X, on_surface, n, random);
+  }
+}
+
 TEST(RayCast, FromTheSurfaceIsInTheBodyAtOnce) {
   Random random(10);
-  for_each_exponent([&](const Superellipsoid& shape) {
+  for (const Vector3d& axes : {Vector3d(1, 1, 1), Vector3d(2, 1, 3), Vector3d(1e-3, 1, 0.1), Vector3d(1, 30, 1)}) {
+    expect_rays_from_the_surface_at_once(Ellipsoid(axes), random);
+  }
+  for_each_exponent([&](const Superellipsoid& shape) { expect_rays_from_the_surface_at_once(shape, random); });
+  expect_rays_from_the_surface_at_once(Superellipsoid({2, 1, 3}, 1, 1), random);
+}
+
+/// Tangents of the surface meet it to rounding, one length before and behind the point: the closed form says so as the
+/// walk along the closest points does.
+TEST(RayCast, TangentsOfEllipsoidsMeetThemToRounding) {
+  Random random(11);
+  for (const Vector3d& axes : {Vector3d(1, 1, 1), Vector3d(2, 1, 3), Vector3d(0.1, 1, 0.3)}) {
+    const Ellipsoid shape(axes);
     for (int k = 0; k < 300; ++k) {
-      const Vector3d n = k < 3 ? Vector3d(Vector3d::Unit(k)) : random.direction();
-      for (const Vector3d& u : {n, Vector3d(-n), tangent(n, random)}) {
-        const RayHit hit = ray_cast(shape, Pose(), shape.support(n).point, u);
-        // Rounding decides on which side of the surface the point is.
-        ASSERT_TRUE(hit.status == RayStatus::hit || hit.status == RayStatus::inside) << shape.e1();
-        ASSERT_EQ(hit.t, 0);
-        ASSERT_NEAR(hit.normal.norm(), 1, 1e-12);
-      }
+      const Vector3d n = random.direction();
+      const Vector3d u = tangent(n, random);
+      const Vector3d on_surface = shape.support(n).point;
+      ASSERT_EQ(ray_cast(shape, Pose(), on_surface - u, u).status, RayStatus::hit);
+      ASSERT_EQ(ray_cast(shape, Pose(), on_surface + 1e-12 * n - u, u).status, RayStatus::missed);
+      ASSERT_EQ(ray_cast(shape, Pose(), on_surface + u, u).status, RayStatus::missed);
     }
-  });
+  }
 }
 
 TEST(AnyShape, AnswersAsTheShapeInside) {

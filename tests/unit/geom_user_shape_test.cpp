@@ -222,21 +222,42 @@ TEST(UserShape, SpherocylindersHaveTheDistanceOfTheirSegmentsLessTheRadii) {
   EXPECT_GT(beside, 100) << "contacts of the cylinders' sides, where the support function has its kink";
 }
 
+geom_test::Superquadric any_superquadric(Random& random) {
+  const Vector3d axes(1, random.uniform(0.5, 2), random.uniform(0.5, 2));
+  return geom_test::Superquadric(axes, {random.uniform(1.3, 6), random.uniform(1.3, 6), random.uniform(1.3, 6)});
+}
+
 TEST(UserShape, SuperquadricsOfThreePowersHaveTheirDistance) {
   Random random(7);
   for (int i = 0; i < 300; ++i) {
-    const auto body = [&] {
-      return geom_test::Superquadric({1, random.uniform(0.5, 2), random.uniform(0.5, 2)},
-                                     {random.uniform(1.3, 6), random.uniform(1.3, 6), random.uniform(1.3, 6)});
-    };
-    const auto a = body();
-    const auto b = body();
+    const auto a = any_superquadric(random);
+    const auto b = any_superquadric(random);
     const double gap = random.log_uniform(1e-6, 1);
     const auto pair = geom_test::manufacture(a, b, gap, random);
     const DistanceResult d = distance(a, pair.X_WA, b, pair.X_WB);
     ASSERT_EQ(d.status, DistanceStatus::separated) << i;
-    ASSERT_NEAR(d.distance, gap, 1e-11 * extent_of(pair)) << i;
+    ASSERT_NEAR(d.distance, gap, distance_tolerance(pair.size)) << i;
+    ASSERT_LE(d.error_bound, kBoundGap * pair.size) << i;
   }
+}
+
+/// The push is a way out, across which the answer may be no deeper; a shorter one is one only if it parts the bodies.
+TEST(UserShape, OverlappingSuperquadricsHaveTheirDepth) {
+  Random random(8);
+  double widest = 0;
+  for (int i = 0; i < 150; ++i) {
+    const auto a = any_superquadric(random);
+    const auto b = any_superquadric(random);
+    const double depth = random.log_uniform(1e-8, 0.3);
+    const auto pair = geom_test::manufacture(a, b, -depth, random);
+    const DistanceResult d = distance(a, pair.X_WA, b, pair.X_WB);
+    ASSERT_EQ(d.status, DistanceStatus::overlapping) << i;
+    ASSERT_GE(d.distance, -depth - distance_tolerance(pair.size)) << i;
+    ASSERT_LE(-depth, d.distance + d.error_bound + 1e-15 * pair.size) << i;
+    ASSERT_NEAR(geom_test::lower_bound(a, pair.X_WA, b, pair.X_WB, d.normal), d.distance, 1e-15 * extent_of(pair)) << i;
+    widest = std::max(widest, d.error_bound / pair.size);
+  }
+  EXPECT_LE(widest, kDepthGap);
 }
 
 }  // namespace

@@ -30,11 +30,17 @@ GEOM_EXPORT bool is_available(InstructionSet set);
 /// What InstructionSet::best stands for on this processor. Results depend on it in their last bits.
 GEOM_EXPORT InstructionSet batch_instruction_set();
 
-/// How `distance_batch` starts and with what.
+/// How `distance_batch` starts, with what, and how far it goes.
 struct BatchOptions {
   /// Warm starts, DistanceOptions::start of each pair: guesses of the normals from A to B. Empty: cold starts.
   std::span<const Eigen::Vector3d> starts = {};
   InstructionSet instruction_set = InstructionSet::best;
+  /// As DistanceOptions::max_iterations. The kernels leave pairs that need more evaluations to `distance`, which then
+  /// spends as many again before its fallback.
+  int max_iterations = kMaxIterations;
+  /// As DistanceOptions::penetration. `local` spares deep overlaps the search over all normals, which takes thousands
+  /// of times as long as a pair of the kernels.
+  Penetration penetration = Penetration::global;
 };
 
 /// What a batch did beside answering.
@@ -43,7 +49,8 @@ struct BatchSummary {
   std::size_t redone;              ///< pairs that went to `distance`, see there
 };
 
-/// results[i] = distance(a[i], X_WA[i], b[i], X_WB[i], {.start = options.starts[i]}), many pairs at a time.
+/// results[i] = distance(a[i], X_WA[i], b[i], X_WB[i], {.start = options.starts[i], .max_iterations =
+/// options.max_iterations, .penetration = options.penetration}), many pairs at a time.
 ///
 /// Each of the four input spans holds one element a pair, or a single one that serves all pairs: equal bodies, or one
 /// body against many. Throws std::invalid_argument, before anything is computed, if the size of a span is neither 1 nor

@@ -50,8 +50,10 @@ struct [[nodiscard]] ClosestPoint {
   double error_bound = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// World frame; accuracy and certificates as those of `distance`, and its cost: points inside a superellipsoid take
-/// half a millisecond on average, tens of them at worst. Declined (`not_converged`) for points that are not finite or
+/// World frame; accuracy and certificates as those of `distance`, and its cost: points deeper than the smallest radius
+/// of curvature take a search over all normals. On average over the points inside that is 0.1 milliseconds in an
+/// ellipsoid of X0 = 0.1 to 3, 4 in the centre, 0.4 for X0 = 10, 3 for 100, 20 for 1000; half a millisecond in a
+/// superellipsoid, tens of them at worst. Declined (`not_converged`) for points that are not finite or
 /// beyond kMaxCoordinate.
 template <SupportShape Shape>
 ClosestPoint closest_point(const Shape& shape, const Pose& X_WB, const Eigen::Vector3d& p_W);
@@ -65,7 +67,7 @@ bool contains(const Shape& shape, const Pose& X_WB, const Eigen::Vector3d& p_W);
 /// What became of a ray.
 enum class RayStatus {
   hit,            ///< at `t`
-  missed,         ///< certified: no point of the ray is in the body
+  missed,         ///< certified: no point of the ray is in the body, or touches it to rounding
   inside,         ///< the ray starts inside: t = 0
   not_converged,  ///< no answer
 };
@@ -81,14 +83,15 @@ struct [[nodiscard]] RayHit {
 
 /// The first point of origin + t direction, t >= 0, in the body; direction != 0, of any length. World frame. Declined
 /// (`not_converged`) if a number is not finite, the direction's length and t included, or the origin beyond
-/// kMaxCoordinate.
+/// kMaxCoordinate. A ray meets the body where their distance is no larger than kRayGap times the lengths involved: one
+/// that starts on the surface does at t = 0, whatever its direction.
 ///
 /// Advances from tangent plane to tangent plane of the closest points: a step never passes the body, and the last ones
 /// converge quadratically, to 1e-14 of the lengths involved; rays that graze take more steps, and meet the body where
 /// its surface is to 1e-14 of them, the ray to the square root of that.
 template <SupportShape Shape>
 RayHit ray_cast(const Shape& shape, const Pose& X_WB, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction);
-/// In closed form.
+/// In closed form, with the same tolerance.
 GEOM_EXPORT RayHit ray_cast(const Ellipsoid& shape, const Pose& X_WB, const Eigen::Vector3d& origin,
                             const Eigen::Vector3d& direction);
 

@@ -64,7 +64,8 @@ inline constexpr double kWidestGap = 1e-9;
 
 /// Penetration::global: no translation is shorter than the one returned by more than kDepthGap times the sum of both
 /// bounding radii, proved by branch and bound; overlaps for which kMostDepthSamples evaluations do not prove
-/// kWidestDepthGap are declined. (As many more are spent where the answer has to be found more exactly.) Dimensionless.
+/// kWidestDepthGap are declined. (As many more are spent where the answer has to be found more exactly.) Dimensionless;
+/// not relative to the thickness: of parallel needles 1000 times as long as thick kWidestDepthGap is as much as that.
 /// @{
 inline constexpr double kDepthGap = 1e-9;
 inline constexpr double kWidestDepthGap = 1e-3;

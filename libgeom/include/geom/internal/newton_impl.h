@@ -123,7 +123,9 @@ struct FiveEquations {
 
   static double length(const Vector& step) {
     const double beta = std::abs(step[4]);
-    return std::max(beta, step.head<3>().cwiseAbs().maxCoeff<Eigen::PropagateNaN>());
+    const double points = step.head<3>().cwiseAbs().maxCoeff<Eigen::PropagateNaN>();
+    // NaN if either is: std::max is its first argument then.
+    return std::isnan(beta) ? beta : std::max(points, beta);
   }
 };
 
