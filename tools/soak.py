@@ -107,6 +107,7 @@ def main():
         ("collisions of production", counters["collisions"], counters["collisions"] > 0.98 * arguments.collisions),
         ("kills", killed, killed == arguments.kills),
         ("overlaps", counters["overlaps"], counters["overlaps"] == 0),
+        ("pairs without an answer", counters["declined"], counters["declined"] == 0),
         ("rescues", counters["rescues"], counters["rescues"] == 0),
         ("failures", summary["failures"]["recorded"], summary["failures"]["recorded"] == 0),
         ("stalled", summary["stalled"], summary["stalled"] is None),

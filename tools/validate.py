@@ -310,8 +310,8 @@ def conservation(runner, table, _):
         table.limit(state, "energy drift", drift, f"{most_drift:g}", drift <= most_drift)
         table.limit(state, "momentum drift", momentum, f"{most_drift:g}", momentum <= most_drift)
         table.limit(state, "minimum distance", distance, f">= {least_distance:g}", distance >= least_distance)
-        overlaps = result["counters"]["overlaps"]
-        table.limit(state, "overlaps", overlaps, "0", overlaps == 0 and result["sound"])
+        overlaps = result["counters"]["overlaps"] + result["counters"]["declined"]
+        table.limit(state, "overlaps, and pairs without an answer", overlaps, "0", overlaps == 0 and result["sound"])
         # Searches that only the fallback over all normals answered, as certain as the others: the sharpest cubes have some.
         rescues = result["counters"]["rescues"] / result["counters"]["collisions"]
         table.limit(state, "rescues / collisions", rescues, f"{most_rescues:g}", rescues <= most_rescues)

@@ -262,10 +262,9 @@ std::optional<std::string> unequal_sizes(const Config& config) {
   const double in_a_cell = config.number * std::pow(2 * largest / box, 3);
   if (in_a_cell < kCrowdedCell || largest < 2 * smallest) return std::nullopt;
   return fmt::format(
-      "start: the largest bodies have {:.3g} times the bounding radius of the smallest: a cell as wide as they are "
-      "holds "
-      "{:.0f} bodies, all of them each other's neighbours; expect a slow start and run",
-      largest / smallest, in_a_cell);
+      "start: the largest bodies have {:.3g} times the bounding radius of the smallest, and a cell as wide as they are "
+      "holds {:.0f} bodies, among which neighbours are sought; expect a slow start and run",
+      largest / smallest, std::min(in_a_cell, static_cast<double>(config.number)));
 }
 
 std::string reached_order(const Config& config, const ed::System& start) {

@@ -83,14 +83,15 @@ Remark completion(const Json& summary) {
 
 Remark soundness(const Json& summary) {
   using Kind = Remark::Kind;
-  const double overlaps = number_of(member(member(summary, "counters"), "overlaps"));
+  const Json& counters = member(summary, "counters");
   if (says(member(summary, "sound"), true)) {
     return {Kind::good, "sound", "No overlap, nothing missed, energy and momentum conserved to rounding."};
   }
-  return {Kind::bad, "not sound",
-          fmt::format("Do not use these results: the audit failed ({:g} overlaps during the run); log.txt and hardbody "
-                      "check say what is wrong.",
-                      overlaps)};
+  return {
+      Kind::bad, "not sound",
+      fmt::format("Do not use these results: the audit failed ({:g} overlaps during the run, {:g} pairs that no method "
+                  "answered); log.txt and hardbody check say what is wrong.",
+                  number_of(member(counters, "overlaps")), number_of(member(counters, "declined")))};
 }
 
 std::vector<Remark> remarks_of(const Json& summary) {

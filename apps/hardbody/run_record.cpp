@@ -75,12 +75,15 @@ std::vector<std::string> defects(const RunRecord& record) {
     list.push_back(std::move(defect));
   }
   if (record.stall) list.push_back(fmt::format("{} {}", record.last_phase(), ed::describe(*record.stall)));
-  if (record.equilibration.counters.overlaps > 0) {
-    list.push_back(fmt::format("{} overlaps were met during equilibration", record.equilibration.counters.overlaps));
-  }
-  if (record.production.counters.overlaps > 0) {
-    list.push_back(fmt::format("{} overlaps were met during production", record.production.counters.overlaps));
-  }
+  const auto add = [&list](const ed::Counters& counters, const char* phase) {
+    if (counters.overlaps > 0) list.push_back(fmt::format("{} overlaps were met during {}", counters.overlaps, phase));
+    if (counters.declined > 0) {
+      list.push_back(
+          fmt::format("{} times during {} no method told whether a pair overlaps", counters.declined, phase));
+    }
+  };
+  add(record.equilibration.counters, "equilibration");
+  add(record.production.counters, "production");
   return list;
 }
 

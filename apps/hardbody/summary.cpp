@@ -65,6 +65,7 @@ Json counters(const ed::Counters& c) {
           {"rescues", c.rescues},
           {"neighbour_rebuilds", c.neighbour_rebuilds},
           {"overlaps", c.overlaps},
+          {"declined", c.declined},
           {"cold_restarts", c.cold_restarts},
           {"envelope_checks", c.envelope_checks},
           {"kernel_calls", c.kernel_calls},

@@ -47,7 +47,7 @@ struct FinderCounters {
   std::uint64_t newton_evaluations = 0;  ///< those of the final Newton on d(t) alone
   std::uint64_t kernel_calls = 0;        ///< evaluations of g at a normal
   std::uint64_t cold_restarts = 0;       ///< a warm normal had led to a spurious maximum
-  std::uint64_t rescues = 0;             ///< the fallback that cannot fail was needed
+  std::uint64_t rescues = 0;             ///< the gauge's last resort was needed
 };
 
 template <class Archive, Is<FinderCounters> T>
@@ -59,7 +59,7 @@ enum class Outcome {
   contact,      ///< at `time`: the bodies touch and approach along the normal
   clear,        ///< certified: no contact up to t_end
   bound,        ///< certified: no contact before `time`; the budget of evaluations is spent
-  overlapping,  ///< at `time` the bodies overlap by more than kOverlap * size; proved, as far as distances are
+  overlapping,  ///< at `time` the bodies overlap by more than kOverlap * size; proved
   declined,     ///< certified: no contact before `time`, at which no method tells whether the bodies overlap
 };
 
@@ -70,14 +70,14 @@ struct Finding {
 };
 
 enum class Quality {
-  usable,    ///< g >= -kOverlap * size: the normal certifies a step
+  usable,    ///< the normal certifies a step, or says that the bodies touch
   clear,     ///< it certifies that there is no contact within the horizon
   overlap,   ///< the bodies overlap by more than kOverlap * size
   declined,  ///< no method tells
 };
 
 /// Improves n at one point in time until it certifies the whole horizon (by the gauge's crude bound), or is good enough
-/// for a step, or proves that the bodies overlap.
+/// for a step, or it is proved that the bodies overlap, or nothing more can be done.
 template <class Gauge>
 Quality improve_normal(const Gauge& gauge, const typename Gauge::State& state, double horizon, Eigen::Vector3d& n,
                        typename Gauge::Evaluation& e, FinderCounters& count) {
@@ -124,10 +124,12 @@ Quality improve_normal(const Gauge& gauge, const typename Gauge::State& state, d
       break;
   }
   e = gauge.evaluate(state, n);
-  // Bodies that may touch: the answer is one to within its own error, which may be more than rounding.
+  ++count.kernel_calls;
+  // Bodies that may touch: that answer is right to within its own error, which may be more than rounding.
   if (!(e.g > state.rounding.gap)) {
     int budget = geom::kMaxIterations;
     ascend(gauge, state, done, budget, n, e);
+    count.kernel_calls += static_cast<std::uint64_t>(geom::kMaxIterations - budget);
     if (clear) return Quality::clear;
   }
   return Quality::usable;

@@ -4,6 +4,7 @@
 #include "least_step.h"
 
 #include <geom/pose.h>
+#include <geom/tolerances.h>
 
 #include <algorithm>
 #include <cmath>
@@ -120,7 +121,7 @@ bool ConvexGauge::solve(const State& s, Vector3d& n, Evaluation& e) const {
 ContactPoints ConvexGauge::contact_points(const State& s, const Vector3d& n) const {
   Vector3d normal = n;
   Evaluation e = evaluate(s, n);
-  // What the search has just answered: from elsewhere, should its normal lead nowhere this time.
+  // The search has just had an answer: from elsewhere, should its normal lead nowhere this time.
   if (!solve(s, normal, e)) {
     normal = cold_normal(s);
     solve(s, normal, e);
@@ -144,7 +145,7 @@ double ConvexGauge::chord_curvature(double T, const Vector3d& n0, const Vector3d
 bool ConvexGauge::chord_clears(const State& s, const Vector3d& n, double g, bool touching, double T,
                                double& end) const {
   const State later = at(s.t + T);
-  const double hidden = touching ? 0 : later.rounding.gap;
+  const double hidden = touching ? 0 : s.rounding.gap + scales_.later(T);
   Vector3d n1 = n;
   Evaluation e = evaluate(later, n);
   const double fixed = e.g - hidden;
@@ -207,7 +208,10 @@ Separation ConvexGauge::separating_normal(const State& s, Vector3d& n) const {
   const geom::DistanceResult d = query(A_, s.a, B_, s.b, {.start = cold_normal(s)});
   if (!is_answer(d)) return Separation::declined;
   n = d.normal;
-  return gap(s, n).g + d.error_bound >= -kOverlap * size() ? Separation::apart : Separation::overlapping;
+  const double g = gap(s, n).g;
+  if (g + d.error_bound < -kOverlap * size()) return Separation::overlapping;
+  return g >= -kOverlap * size() || d.error_bound <= geom::kWidestGap * size() ? Separation::apart
+                                                                               : Separation::declined;
 }
 
 }  // namespace ed::internal

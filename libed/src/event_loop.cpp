@@ -207,6 +207,7 @@ void EventLoop<Bodies>::keep(Pair& pair, const Finding& finding) {
       pair.time = finding.time;
       break;
     case Outcome::declined:
+      ++counters_.declined;
       report(pair, finding.time, FailureReason::declined);
       pair.event = PairEvent::bound;
       pair.time = finding.time + kPartingLook * parting_time(pair);

@@ -103,8 +103,8 @@ class EventLoop final : public AnyEventLoop {
 
   static constexpr std::int32_t kExit = -1;
   static constexpr std::int32_t kNoPair = -1;
-  static constexpr std::size_t kReasons = 3;               ///< of FailureReason
-  static constexpr std::size_t kMaxFailuresRecorded = 16;  ///< for each reason
+  static constexpr std::size_t kReasons = 1 + static_cast<std::size_t>(FailureReason::declined);  ///< of FailureReason
+  static constexpr std::size_t kMaxFailuresRecorded = 16;                                         ///< for each reason
   /// Room for collisions that are recorded; more grow as they come.
   static constexpr std::size_t kCollisionsReserved = std::size_t{1} << 20;
   /// Events a body after which it is asked whether the run still makes progress, and how many events are then looked at

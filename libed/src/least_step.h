@@ -17,7 +17,7 @@ double longest_clear_step(double shortest, double unit, const Clears& clears) {
   constexpr double kLast = 0.1;
   constexpr double kLonger = 8;
   double longest = shortest;
-  for (double trial = kFirst * unit; trial < kLast * unit; trial *= kLonger) {
+  for (double trial = larger(kFirst * unit, shortest); trial < kLast * unit; trial *= kLonger) {
     if (clears(trial)) {
       longest = larger(longest, trial);
     } else if (longest > shortest) {

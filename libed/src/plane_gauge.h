@@ -4,6 +4,7 @@
 /// a gauge is.) The normal n is that of the plane, outward, and never changes: g(t) = offset - n.r(t) - h(n, u(t)).
 
 #include "axis_motion.h"
+#include "separation.h"
 #include "sphere_window.h"
 #include "uniaxial_gauge.h"
 

@@ -2,10 +2,10 @@
 
 namespace ed::internal {
 
-/// What a gauge's last resort says of two bodies at one time.
+/// What a gauge's last resort says of two bodies at one time, by bounds of their signed distance.
 enum class Separation {
-  apart,        ///< a normal with g > 0, to rounding
-  overlapping,  ///< by more than kOverlap * size, as certain as geom::distance is of its answer
+  apart,        ///< certainly not deeper than kOverlap * size, or not known to be
+  overlapping,  ///< certainly deeper than kOverlap * size
   declined,     ///< no method tells
 };
 

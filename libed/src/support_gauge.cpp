@@ -164,7 +164,7 @@ double SupportGauge::least_step(const State& s, const Evaluation& e, const Vecto
   const double unit = size() / speed();
   if (tau > kShortStep * unit) return tau;
   // Of bodies that touch g is not known: it may fall by what rounding hides.
-  const auto least = [&](double end) { return touching ? 0 : s.rounding.gap + scales_.later(end); };
+  const auto least = [&](double trial) { return touching ? 0 : s.rounding.gap + scales_.later(trial); };
   const std::array<Vector3d, 4> turns{Vector3d::Zero(), turning_of_best_normal(s, e.sample), s.omega.a(), s.omega.b()};
   return longest_clear_step(touching ? kTouching * unit : tau, unit, [&](double trial) {
     return std::any_of(turns.begin(), turns.end(),
@@ -191,7 +191,7 @@ Separation SupportGauge::separating_normal(const State& s, Vector3d& n) const {
                                                    geom::Penetration::global, geom::kMaxIterations, iterations);
   n = answer.at.n;
   if (answer.at.g >= -kOverlap * size()) return Separation::apart;
-  return answer.converged ? Separation::overlapping : Separation::declined;
+  return answer.at.g + answer.gap < -kOverlap * size() ? Separation::overlapping : Separation::declined;
 }
 
 }  // namespace ed::internal

@@ -68,7 +68,7 @@ struct NormBodyShape {
 };
 
 /// At vertices g is so flat that decrement and |delta|^2, which a quadratic model tells, are small long before the
-/// normal is right: with geom::kNormalTolerance2, 1e-12, a gap of 1e-12 was seen to be taken for a contact.
+/// normal is right: with geom::kNormalTolerance2, 1e-12, gaps of 1e-12 were taken for contacts (decision 020).
 inline constexpr double kVertexStep2 = 1e-18;
 
 class SupportGauge {

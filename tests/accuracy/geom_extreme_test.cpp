@@ -177,7 +177,7 @@ Pose deep_pose(const Pose& X_WA, double aspect_ratio, bool parallel, Random& ran
 }
 
 template <class Make>
-void expect_deep(const char* name, double aspect_ratio, bool parallel, const Make& make) {
+void expect_deep(const char* name, double aspect_ratio, bool parallel, double largest_error, const Make& make) {
   const int pairs = std::getenv("HARDBODY_FULL") != nullptr ? 200 : geom_test::repetitions(10);
   DeepRow row;
   Random random(3);
@@ -210,7 +210,7 @@ void expect_deep(const char* name, double aspect_ratio, bool parallel, const Mak
               median(row.milliseconds), row.milliseconds.back());
   (void)std::fflush(stdout);
   // Parallel needles 10,000 times as long as thick can have a way out that is shorter by 1 % of the thickness.
-  EXPECT_LE(row.error, aspect_ratio <= 1e3 ? 1e-13 : 1e-5) << name << ' ' << aspect_ratio;
+  EXPECT_LE(row.error, aspect_ratio <= 1e3 ? 1e-13 : largest_error) << name << ' ' << aspect_ratio;
   EXPECT_EQ(row.declined, 0) << name << ' ' << aspect_ratio;
 }
 
@@ -229,15 +229,15 @@ TEST(ExtremeShapes, DeepInEachOther) {
       return Superellipsoid(axes, e1, random.uniform(least, most));
     };
   };
-  const auto rows = [](const char* name, bool parallel, const auto& make) {
-    for (const double ratio : {1.0, 10.0, 100.0, 1e3, 1e4}) expect_deep(name, ratio, parallel, make);
+  const auto rows = [](const char* name, bool parallel, double largest_error, const auto& make) {
+    for (const double ratio : {1.0, 10.0, 100.0, 1e3, 1e4}) expect_deep(name, ratio, parallel, largest_error, make);
   };
-  rows("needles, ellipsoids", false, needle);
-  rows("the same, nearly parallel", true, needle);
-  rows("discs, ellipsoids", false, disc);
-  rows("the same, nearly parallel", true, disc);
-  rows("superellipsoids, long or flat", false, any(0.3, 1.5));
-  rows("the same, nearly parallel", true, any(0.3, 1.5));
+  rows("needles, ellipsoids", false, 1e-12, needle);
+  rows("the same, nearly parallel", true, 1e-12, needle);
+  rows("discs, ellipsoids", false, 1e-12, disc);
+  rows("the same, nearly parallel", true, 1e-12, disc);
+  rows("superellipsoids, long or flat", false, 1e-12, any(0.3, 1.5));
+  rows("the same, nearly parallel", true, 2e-6, any(0.3, 1.5));
 }
 
 }  // namespace

@@ -148,6 +148,7 @@ void judge_search(const Gauge& gauge, const Exact& exact, double t, const Vector
   Vector3d n = start;
   FinderCounters count;
   const Finding finding = certified_contact(gauge, t, t + kHorizon, 1000, n, count);
+  EXPECT_NE(finding.outcome, Outcome::declined);
   if (finding.outcome == Outcome::contact) ++tally.contacts;
   if (finding.outcome == Outcome::clear) ++tally.clear;
   // At the start the bodies may overlap by what rounding hides.

@@ -261,6 +261,44 @@ TEST(CustomShape, RefusesShapesThatAreNone) {
   EXPECT_THAT(shape(Dented{ball, -1e-3}, 2, false), HasSubstr("symmetry_axis is 2; accepted: none"));
 }
 
+/// A ball that has no answer where another one comes from.
+struct Silent : Unknown {
+  geom::Support support(const Vector3d& n) const {
+    const Vector3d way = Vector3d(1, 2, 3).normalized();
+    geom::Support s = shape.support(n);
+    if (std::abs(n.dot(way)) > 0.999 * n.norm()) s.height = std::numeric_limits<double>::quiet_NaN();
+    return s;
+  }
+  double min_curvature_radius() const { return 0; }
+};
+
+TEST(CustomShape, PairsWithoutAnAnswerAreCountedAndDumped) {
+  const CustomShape silent(Silent{{geom::Ellipsoid({1, 1, 1})}}, {"silent", 4.18879020478639098, std::nullopt, false});
+  ed::System system;
+  system.species = {ed::Species{silent, 1, {0.4, 0.4, 0.4}, true}};
+  system.box = 20;
+  system.bodies.resize(2);
+  // They meet along that direction, coming from another one.
+  const Vector3d way = Vector3d(1, 2, 3).normalized();
+  const Vector3d velocity = -std::cos(0.5) * way + std::sin(0.5) * way.unitOrthogonal();
+  system.bodies[1].position = 2 * way - 3 * velocity;
+  system.bodies[1].velocity = velocity;
+  ed::SimulationOptions options;
+  options.neighbours = ed::Neighbours::cells;
+  ed::Simulation simulation(system, options);
+  simulation.run_until(3.01);
+  EXPECT_GT(simulation.counters().declined, 0U);
+  EXPECT_EQ(simulation.counters().overlaps, 0U);
+  ASSERT_FALSE(simulation.failures().empty());
+  const ed::FailedPair& failed = simulation.failures().front();
+  EXPECT_EQ(failed.reason, ed::FailureReason::declined);
+  EXPECT_STREQ(ed::to_string(failed.reason), "no method tells whether the bodies overlap");
+  const ed::ContactResult again =
+      ed::time_of_contact(failed.shape_i, failed.motion_i, failed.shape_j, failed.motion_j, failed.time + 1);
+  EXPECT_EQ(again.status, ed::ContactStatus::failed);
+  EXPECT_NEAR(again.time, failed.time, 1e-12);
+}
+
 TEST(CustomShape, HasNoEquationsForThePapersSearch) {
   ed::ContactOptions options;
   options.finder = ed::Finder::bracketing;

@@ -29,7 +29,7 @@ struct Counters {
   /// Newton on a contact (2 evaluations a collision) is not counted here.
   std::uint64_t refinements = 0;
   std::uint64_t cold_restarts = 0;  ///< warm normals that led to a spurious maximum
-  /// Certified: searches that needed the fallback which cannot fail. Bracketing: distances that Newton's method
+  /// Certified: searches that needed the fallback over all normals. Bracketing: distances that Newton's method
   /// declined and the dual answered.
   std::uint64_t rescues = 0;
   std::uint64_t neighbour_rebuilds = 0;  ///< envelopes renewed
@@ -39,6 +39,9 @@ struct Counters {
   /// number of contacts missed: one shows only if the bodies are still that deep when they are looked at again, and
   /// then at each look.
   std::uint64_t overlaps = 0;
+  /// Times that no method told whether a pair overlaps, so that it was moved on without a certificate: always 0 in a
+  /// sound run.
+  std::uint64_t declined = 0;
   /// Contacts at which the bodies did not approach: no impulse, not a collision. Always 0 in a sound run.
   std::uint64_t parting_contacts = 0;
   std::uint64_t unrecorded_failures = 0;  ///< failed pairs beyond those that failures() has room for

@@ -45,15 +45,16 @@ struct [[nodiscard]] ContactResult {
 /// bodies (docs/time-of-contact.md has the proof). t_max may be infinite.
 ///
 /// Accuracy: at the returned time the distance is below 2e-15 times the size of the pair or the rounding error of the
-/// time itself, for bodies of revolution; up to 1e-13 for superellipsoids. The time of a contact met head-on is right
-/// to about that over the normal velocity, that of a grazing one to the square root. `failed` means that the budget of
-/// evaluations was spent, or that no method tells whether the bodies overlap; the motions that were passed are all that
-/// is needed to look at the pair again. Never allocates in the search.
+/// time itself, for bodies of revolution; for others mostly too, and in one of 400,000 trials it was above 1e-13, at
+/// the tips of bodies with exponents of 1.6. The time of a contact met head-on is right to about that over the normal
+/// velocity, that of a grazing one to the square root. `failed` means that the budget of evaluations was spent, or that
+/// no method tells whether the bodies overlap; the motions that were passed are all that is needed to look at the pair
+/// again. Never allocates in the search.
 ///
 /// Bodies: ellipsoids and superellipsoids whose exponents are within [kMinExponentInMotion, kMaxExponentInMotion], and
 /// a user's own (CustomShape), with any moments of inertia that a body can have. Ellipsoids of revolution about an axis
 /// that their moments share are the fast case: some 0.3 microseconds a point in time instead of one. What rounding may
-/// hide is bounded for superellipsoids with semi-axes from 1e-3 to 1e3 units of length. Values that are not finite,
+/// hide is bounded for superellipsoids with semi-axes from 1/20 to 20 units of length. Values that are not finite,
 /// exponents out of range and inertia that no body can have throw std::invalid_argument.
 ///
 /// `options.finder = Finder::bracketing` searches as the paper does instead, which is no proof. `failed`, with either

@@ -85,10 +85,11 @@ struct [[nodiscard]] DistanceResult {
 /// the centre of a round one (docs/accuracy.md, bench_superellipsoid); Penetration::local mostly avoids it.
 ///
 /// Long bodies that lie in each other nearly parallel are the exception: all normals across them are nearly as good,
-/// and the bounds are relative to the length, not to the thickness. At an aspect ratio of 10 the search takes 0.5 to 1
-/// milliseconds, at 100 4 to 30; from 1000 on it mostly ends at kMostDepthSamples, 15 to 60 milliseconds, and proves
-/// little: `error_bound` can be as large as the depth there, and is at 10,000. The depth found is that of a brute-force
-/// search all the same, of superellipsoids at 10,000 to 1 % of the thickness (docs/accuracy.md, "Deep in each other").
+/// and the bounds are relative to the length, not to the thickness. Parallel needles take 0.5 milliseconds
+/// at an aspect ratio of 10, 7 at 100 and 30 from 1000 on (medians; superellipsoids 0.5 to 3, up to 70), where the
+/// search mostly ends at kMostDepthSamples and `error_bound` can be as large as the depth. The depth found is that of a
+/// brute-force search all the same, but for superellipsoids at 10,000, where it was 1e-6 of the size too long
+/// (docs/accuracy.md, "Deep in each other").
 ///
 /// Accuracy of ellipsoids: |error of d| <= 1e-13 times the size of the pair (|p_AB| + both bounding radii) apart and
 /// down to a depth of rho, `error_bound` deeper; normals 1e-7 worst, 1e-12 typically. Both are asserted by

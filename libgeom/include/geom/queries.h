@@ -51,10 +51,8 @@ struct [[nodiscard]] ClosestPoint {
 };
 
 /// World frame; accuracy and certificates as those of `distance`, and its cost: points deeper than the smallest radius
-/// of curvature take a search over all normals. On average over the points inside that is 0.1 milliseconds in an
-/// ellipsoid of X0 = 0.1 to 3, 4 in the centre, 0.4 for X0 = 10, 3 for 100, 20 for 1000; half a millisecond in a
-/// superellipsoid, tens of them at worst. Declined (`not_converged`) for points that are not finite or
-/// beyond kMaxCoordinate.
+/// of curvature take a search over all normals, as deep overlaps do: a tenth of a millisecond to some tens of them, most
+/// in the middle of long bodies. Declined (`not_converged`) for points that are not finite or beyond kMaxCoordinate.
 template <SupportShape Shape>
 ClosestPoint closest_point(const Shape& shape, const Pose& X_WB, const Eigen::Vector3d& p_W);
 /// The same, compiled into the library.

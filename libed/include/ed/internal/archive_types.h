@@ -103,7 +103,7 @@ void fields(Archive& archive, T& motion) {
 template <class Archive, Is<Counters> T>
 void fields(Archive& archive, T& c) {
   archive(c.collisions, c.predictions, c.evaluations, c.kernel_calls, c.refinements, c.cold_restarts, c.rescues,
-          c.neighbour_rebuilds, c.envelope_checks, c.candidate_tests, c.overlaps, c.parting_contacts,
+          c.neighbour_rebuilds, c.envelope_checks, c.candidate_tests, c.overlaps, c.declined, c.parting_contacts,
           c.unrecorded_failures);
 }
 
