@@ -51,8 +51,9 @@ struct [[nodiscard]] ClosestPoint {
 };
 
 /// World frame; accuracy and certificates as those of `distance`, and its cost: points deeper than the smallest radius
-/// of curvature take a search over all normals, as deep overlaps do: a tenth of a millisecond to some tens of them, most
-/// in the middle of long bodies. Declined (`not_converged`) for points that are not finite or beyond kMaxCoordinate.
+/// of curvature take a search over all normals, as deep overlaps do: a tenth of a millisecond to some tens of them,
+/// most in the middle of long bodies. Declined (`not_converged`) for points that are not finite or beyond
+/// kMaxCoordinate.
 template <SupportShape Shape>
 ClosestPoint closest_point(const Shape& shape, const Pose& X_WB, const Eigen::Vector3d& p_W);
 /// The same, compiled into the library.
