@@ -49,7 +49,8 @@ class Runner:
     def _start(cls, settings):
         """The last frame of another run's trajectory, backwards, or a random start."""
         if "reversed" in settings:
-            return f'[start]\nfile = "{settings["reversed"].resolve() / "trajectory.gsd"}"\nreverse = true\n'
+            return (f'[start]\nfile = "{settings["reversed"].resolve() / "trajectory.gsd"}"\nreverse = true\n'
+                    + settings.get("bodies", ""))
         return (f'[system]\nnumber = {settings.get("number", 512)}\npacking_fraction = {settings["phi"]}\n'
                 + cls._bodies(settings))
 
@@ -326,8 +327,10 @@ def reversal(runner, table, _):
     families |= {name: (state, bodies) for name, (state, bodies, _) in general_families().items()}
     there = {name: runner.submit(f"reversal-{name}", phi=0.4, number=256, equilibration=5, bodies=bodies,
                                  production=time, output=output) for name, (_, bodies) in families.items()}
+    # The file says what bodies these are, but for distributed sizes.
+    of = lambda name: {"bodies": families[name][1]} if "sizes" in families[name][1] else {}
     back = {name: runner.submit(f"reversal-{name}-back", reversed=run.result()["directory"], equilibration=0,
-                                production=time, output=output) for name, run in there.items()}
+                                production=time, output=output, **of(name)) for name, run in there.items()}
     table.heading("Time reversal: 256 bodies at phi = 0.4 go forward by t = 0.3, and back")
     for name, (state, _) in families.items():
         out, home = there[name].result(), back[name].result()
@@ -429,7 +432,7 @@ def spheroid_virial(runner, table, collisions):
     shares = (0.04, 0.08, 0.12)  # of pairs: phi B2, as of spheres at phi = 0.01 to 0.03
     exact = lambda row: float(row["B2_over_V"])
     runs = [[(s / exact(row), runner.submit(f"virial-spheroids-{row['X0']}-{s}", X0=row["X0"], phi=s / exact(row),
-                                            equilibration=10, production=production_for(1.7 * s, collisions)))
+                                            equilibration=10, production=production_for(1.7 * s, collisions / 7)))
              for s in shares] for row in rows]
     table.heading("Spheroids at phi B2 = 0.04, 0.08, 0.12: (Z - 1) / phi extrapolated to 0 (spheroid_virials.csv: exact B2)")
     for row, points in zip(rows, runs):

@@ -17,12 +17,14 @@ double longest_clear_step(double shortest, double unit, const Clears& clears) {
   constexpr double kLast = 0.1;
   constexpr double kLonger = 8;
   double longest = shortest;
-  for (double trial = larger(kFirst * unit, shortest); trial < kLast * unit; trial *= kLonger) {
+  double trial = larger(kFirst * unit, shortest);
+  while (trial < kLast * unit) {
     if (clears(trial)) {
       longest = larger(longest, trial);
     } else if (longest > shortest) {
       break;
     }
+    trial *= kLonger;
   }
   return longest;
 }

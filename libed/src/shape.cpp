@@ -69,6 +69,7 @@ std::vector<Vector3d> directions_to_check() {
   constexpr int kSpread = 64;
   constexpr double kGoldenAngle = 2.39996322972865332;
   std::vector<Vector3d> result;
+  result.reserve(6 + kSpread);
   for (int k = 0; k < 6; ++k) result.emplace_back((k < 3 ? 1.0 : -1.0) * Vector3d::Unit(k % 3));
   for (int k = 0; k < kSpread; ++k) {
     const double z = 1 - (2 * k + 1.0) / kSpread;
