@@ -336,32 +336,27 @@ def reversal(runner, table, _):
         out, home = there[name].result(), back[name].result()
         collisions = [run["counters"]["collisions"] for run in (out, home)]
         state = f"{state}, {collisions[0]} collisions"
-        (begin, turn), (_, end) = (positions(run["directory"]) for run in (out, home))
-        went = farthest(begin, turn)
+        begin, turn, box = ends(out["directory"])
+        _, end, _ = ends(home["directory"])
+        went = farthest(begin, turn, box)
         table.limit(state, "the farthest way that a body went", went, ">= 0.1", went >= 0.1)
-        off = farthest(begin, end)
+        off = farthest(begin, end, box)
         table.limit(state, "distance from where it began", off, "1e-6", off <= 1e-6)
         more = abs(collisions[1] - collisions[0])
         table.limit(state, "collisions more or fewer", more, "0", more == 0)
 
 
-def positions(directory):
-    """(positions of the bodies, edge of the box) of the first and of the last frame, in doubles."""
+def ends(directory):
+    """The positions of the bodies in the first and in the last frame, in doubles, and the edge of the box."""
     import gsd.hoomd  # Debian's python3-gsd, which no other group needs
     with gsd.hoomd.open(str(directory / "trajectory.gsd"), "rb") as file:
-        frames = [file[0], file[len(file) - 1]]
-    box = float(frames[0].log["hardbody/box"][0])
-    return [(frame.log["particles/hardbody/position"], box) for frame in frames]
+        first, last = (file[i].log["particles/hardbody/position"] for i in (0, len(file) - 1))
+        return first, last, float(file[0].log["hardbody/box"][0])
 
 
-def farthest(first, second):
+def farthest(first, second, box):
     """The largest distance of a body from itself, by the nearest image."""
-    (a, box), (b, _) = first, second
-    largest = 0.0
-    for x, y in zip(a, b):
-        apart = [q - p - box * round((q - p) / box) for p, q in zip(x, y)]
-        largest = max(largest, math.sqrt(sum(d * d for d in apart)))
-    return largest
+    return max(math.hypot(*(q - p - box * round((q - p) / box) for p, q in zip(x, y))) for x, y in zip(first, second))
 
 
 def general_families():

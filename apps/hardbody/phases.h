@@ -22,9 +22,6 @@ namespace hardbody {
 /// when a signal has come or the simulation has stalled. What they do to the state depends on the config alone, never
 /// on a clock, on how often they look up or on whether they were resumed.
 
-/// Random dilute state, compressed, or a lattice; nothing if a signal came first.
-std::optional<ed::System> make_start(const Config& config, Progress& progress, Log& log);
-
 /// The start by itself.
 Checkpoint checkpoint_of(const ed::System& start);
 

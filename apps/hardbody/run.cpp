@@ -5,6 +5,7 @@
 #include "errors.h"
 #include "failure_file.h"
 #include "log.h"
+#include "make_start.h"
 #include "observable_files.h"
 #include "origin.h"
 #include "phases.h"

@@ -94,8 +94,10 @@ Quality improve_normal(const Gauge& gauge, const typename Gauge::State& state, d
   const auto done = [&](const typename Gauge::Evaluation& trial) {
     clear = clears(gauge, state, trial, n, horizon);
     if (clear) return true;
-    if (!(trial.g > state.rounding.gap)) return tells_touching(gauge, trial);
-    return trial.decrement <= kLooseDecrement * trial.g || trial.decrement <= kTightDecrement * size;
+    const bool converged = trial.decrement <= kTightDecrement * size;
+    // That bodies touch is for a normal to say that is right.
+    if (!(trial.g > state.rounding.gap)) return converged && settled(gauge, trial);
+    return converged || trial.decrement <= kLooseDecrement * trial.g;
   };
   for (int attempt = 0; attempt < 2; ++attempt) {
     int budget = geom::kMaxIterations;
@@ -125,13 +127,6 @@ Quality improve_normal(const Gauge& gauge, const typename Gauge::State& state, d
   }
   e = gauge.evaluate(state, n);
   ++count.kernel_calls;
-  // Bodies that may touch: that answer is right to within its own error, which may be more than rounding.
-  if (!(e.g > state.rounding.gap)) {
-    int budget = geom::kMaxIterations;
-    ascend(gauge, state, done, budget, n, e);
-    count.kernel_calls += static_cast<std::uint64_t>(geom::kMaxIterations - budget);
-    if (clear) return Quality::clear;
-  }
   return Quality::usable;
 }
 

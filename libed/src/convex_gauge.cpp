@@ -101,10 +101,8 @@ ConvexGauge::Evaluation ConvexGauge::complete(const State& /*s*/, const Gap& gap
   return e;
 }
 
-/// n and e of the distance itself; false if the query declines.
-bool ConvexGauge::solve(const State& s, Vector3d& n, Evaluation& e) const {
-  const geom::DistanceResult d =
-      query(A_, s.a, B_, s.b, {.start = n, .max_iterations = kNewtonSteps, .penetration = geom::Penetration::local});
+/// n and e of an answer; false if it is none.
+bool ConvexGauge::take(const State& s, const geom::DistanceResult& d, Vector3d& n, Evaluation& e) const {
   if (!is_answer(d)) return false;
   n = d.normal;
   e.g = gap(s, n).g;
@@ -118,14 +116,22 @@ bool ConvexGauge::solve(const State& s, Vector3d& n, Evaluation& e) const {
   return true;
 }
 
+/// n and e of the distance itself, from n on; false if the query declines.
+bool ConvexGauge::solve(const State& s, Vector3d& n, Evaluation& e) const {
+  return take(
+      s, query(A_, s.a, B_, s.b, {.start = n, .max_iterations = kNewtonSteps, .penetration = geom::Penetration::local}),
+      n, e);
+}
+
+geom::DistanceResult ConvexGauge::last_resort(const State& s) const {
+  return query(A_, s.a, B_, s.b, {.start = cold_normal(s)});
+}
+
 ContactPoints ConvexGauge::contact_points(const State& s, const Vector3d& n) const {
   Vector3d normal = n;
   Evaluation e = evaluate(s, n);
-  // The search has just had an answer: from elsewhere, should its normal lead nowhere this time.
-  if (!solve(s, normal, e)) {
-    normal = cold_normal(s);
-    solve(s, normal, e);
-  }
+  // By one of the two the search has had its answer.
+  if (!solve(s, normal, e)) take(s, last_resort(s), normal, e);
   return {e.point_a, e.point_b};
 }
 
@@ -205,7 +211,7 @@ Vector3d ConvexGauge::cold_normal(const State& s) const {
 }
 
 Separation ConvexGauge::separating_normal(const State& s, Vector3d& n) const {
-  const geom::DistanceResult d = query(A_, s.a, B_, s.b, {.start = cold_normal(s)});
+  const geom::DistanceResult d = last_resort(s);
   if (!is_answer(d)) return Separation::declined;
   n = d.normal;
   const double g = gap(s, n).g;

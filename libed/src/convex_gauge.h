@@ -82,7 +82,6 @@ class ConvexGauge {
   }
 
   bool settled(const Evaluation& e) const { return e.step2 == 0; }
-  bool tells_touching(const Evaluation& e) const { return settled(e); }
 
   double certified_step(const State& s, const Evaluation& e, const Eigen::Vector3d& n, double g, double gp,
                         double horizon) const;
@@ -104,6 +103,8 @@ class ConvexGauge {
   /// K of a chord over T along which the normal turns from n0 to n1.
   double chord_curvature(double T, const Eigen::Vector3d& n0, const Eigen::Vector3d& n1, double distance) const;
   bool solve(const State& s, Eigen::Vector3d& n, Evaluation& e) const;
+  geom::DistanceResult last_resort(const State& s) const;
+  bool take(const State& s, const geom::DistanceResult& d, Eigen::Vector3d& n, Evaluation& e) const;
   bool chord_clears(const State& s, const Eigen::Vector3d& n, double g, bool touching, double T, double& end) const;
 
   const BodyShape& A_;

@@ -46,12 +46,6 @@ bool settled(const Gauge& /*gauge*/, const typename Gauge::Evaluation& e) {
   return e.step2 <= geom::kNormalTolerance2;
 }
 
-/// Whether n is good enough to say that bodies touch.
-template <CurvatureBounded Gauge>
-bool tells_touching(const Gauge& gauge, const typename Gauge::Evaluation& e) {
-  return e.decrement <= kTightDecrement * gauge.size();
-}
-
 /// The rate of g that says whether bodies that touch approach.
 template <CurvatureBounded Gauge>
 double contact_rate(const Gauge& gauge, const typename Gauge::State& state, const typename Gauge::Evaluation& e,
@@ -113,10 +107,6 @@ geom::internal::Ascent ascend(const Gauge& gauge, const typename Gauge::State& s
 template <class Gauge>
 bool settled(const Gauge& gauge, const typename Gauge::Evaluation& e) {
   return gauge.settled(e);
-}
-template <class Gauge>
-bool tells_touching(const Gauge& gauge, const typename Gauge::Evaluation& e) {
-  return gauge.tells_touching(e);
 }
 template <class Gauge, class... Arguments>
 double contact_rate(const Gauge& gauge, const typename Gauge::State& state, const Arguments&... arguments) {

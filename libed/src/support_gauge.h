@@ -157,10 +157,6 @@ class SupportGauge {
 
   /// On a face the quadratic model holds for no step at all: nothing may be left to gain.
   bool settled(const Evaluation& e) const { return e.step2 <= settled_step2_ && e.decrement <= kTouching * size(); }
-  /// Whether n is good enough to say that bodies touch.
-  bool tells_touching(const Evaluation& e) const {
-    return e.step2 <= settled_step2_ && e.decrement <= kTightDecrement * size();
-  }
 
   double certified_step(const State& s, const Evaluation& e, const Eigen::Vector3d& n, double g, double gp,
                         double horizon) const;

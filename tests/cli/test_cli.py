@@ -984,6 +984,12 @@ class Starts(Case):
 
     def test_nematic(self):
         self.run_start("compressed", self.ROD, "nematic_order = 0.8")
+        # In a fluid that would rather be isotropic, compression loses what it began with; on the way to a gas it does not.
+        self.run_start("gas", self.ROD.replace("0.2", "0.002"), "nematic_order = 0.8")
+        reached = [re.search(r"start: done, S = ([-0-9.]+)$", self.read(f"{out}/log.txt"), re.MULTILINE)[1]
+                   for out in ("compressed", "gas")]
+        self.assertLess(float(reached[0]), 0.4)
+        self.assertAlmostEqual(float(reached[1]), 0.8, delta=0.1)
         dense = self.ROD.replace("0.2", "0.4")
         summary = self.run_start("lattice", dense, 'start = "fcc"', "nematic_order = 0.8")
         # Seven tenths of a time unit are too short to lose much of it.
@@ -994,6 +1000,16 @@ class Starts(Case):
 
     def test_mixture(self):
         self.run_start("out", MIXTURE.replace("number = 100", "number = 192"), 'start = "fcc"')
+
+    def test_very_unequal_sizes_are_said_to_be_slow(self):
+        species = "".join(f"[[species]]\nsemi_axes = [{a}, {a}, {a}]\nfraction = {x}\n" for a, x in [(1, 0.003), (0.1, 0.997)])
+        config = SMALL.replace("[shape]\naspect_ratio = 2\n", species).replace("64", "1200").replace("0.2", "0.25")
+        result = self.run_small("out", "--set", "equilibration.time=0.01", "production.time=0.01", config=config)
+        words = r"the largest bodies have 10 times the bounding radius of the smallest, and a cell .* holds \d+ bodies"
+        self.assertRegex(self.read("out/log.txt"), words)
+        self.assertRegex(result.stderr, words)
+        self.run_small("equal", "--set", "equilibration.time=0.1", "production.time=0.1")
+        self.assertNotIn("bounding radius", self.read("equal/log.txt"))
 
     def test_too_dense(self):
         config = self.ROD.replace("number = 288", 'number = 512\nstart = "fcc"').replace("0.2", "0.6")

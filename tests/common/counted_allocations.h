@@ -1,6 +1,8 @@
 #pragma once
 
-/// Every form of operator new of the program that includes this, once, counts its calls.
+/// Every form of operator new of the test that includes this, once, counts its calls; the test says that it does.
+
+#include <gtest/gtest.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -64,4 +66,10 @@ void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
 }
 void operator delete[](void* memory, std::size_t, std::align_val_t) noexcept {
   std::free(memory);
+}
+
+TEST(Allocations, AreCounted) {
+  const std::uint64_t before = allocations;
+  ::operator delete(::operator new(16));
+  EXPECT_EQ(allocations, before + 1);
 }

@@ -17,12 +17,6 @@ namespace {
 using ed_test::Inertia;
 using ed_test::State;
 
-TEST(Allocations, AreCounted) {
-  const std::uint64_t before = allocations;
-  ::operator delete(::operator new(16));
-  EXPECT_EQ(allocations, before + 1);
-}
-
 struct Length {
   std::uint64_t warm_up = 100000;  ///< lists, cells and buffers grow until each has met its largest size
   std::uint64_t collisions = 10000;

@@ -17,12 +17,6 @@ namespace {
 using Eigen::Vector3d;
 using geom_test::Random;
 
-TEST(Allocations, AreCounted) {
-  const std::uint64_t before = allocations;
-  ::operator delete(::operator new(16));
-  EXPECT_EQ(allocations, before + 1);
-}
-
 /// Round, flat, long, with faces, edges and vertices.
 std::vector<Shape> shapes() {
   return {Ellipsoid({1, 1, 1}),
