@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <optional>
 #include <sstream>
 #include <stdexcept>
@@ -96,8 +97,35 @@ System insert_bodies(const std::vector<Component>& components, const StartOption
   return system;
 }
 
+/// Each body with a mass of 1 and sqrt(m) times as fast: as hot as before. Where bodies may be does not depend on their
+/// masses, and among equal ones none waits for the others.
+System with_unit_masses(System system) {
+  for (Body& body : system.bodies) {
+    const double faster = std::sqrt(system.species[static_cast<std::size_t>(body.species)].mass);
+    body.velocity *= faster;
+    body.angular_velocity *= faster;
+  }
+  for (Species& species : system.species) {
+    species.inertia /= species.mass;
+    species.mass = 1;
+  }
+  return system;
+}
+
+/// Undoes with_unit_masses.
+System with_masses(System system, const std::vector<Species>& species) {
+  system.species = species;
+  for (int i = 0; i < system.size(); ++i) {
+    Body& body = system.bodies[static_cast<std::size_t>(i)];
+    const double faster = std::sqrt(system.species_of(i).mass);
+    body.velocity /= faster;
+    body.angular_velocity /= faster;
+  }
+  return system;
+}
+
 System compress(const System& system, double target_box, const StartOptions& options) {
-  Simulation simulation(system);
+  Simulation simulation(with_unit_masses(system));
   // The box shrinks at fixed times, not after a given number of collisions: right after a collision two bodies touch. A
   // pause of a few collisions moves the closest pair apart, which is all that the next step needs; its length follows
   // the collision rate.
@@ -132,7 +160,7 @@ System compress(const System& system, double target_box, const StartOptions& opt
       checkpoint = simulation.box();
     }
   }
-  System result = simulation.system();
+  System result = with_masses(simulation.system(), system.species);
   result.box = target_box;
   return result;
 }

@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <ostream>
@@ -199,6 +200,29 @@ TEST(RandomStart, LargeMixturesAreRepeated) {
     EXPECT_EQ(system.bodies[static_cast<std::size_t>(i)].species, i < 700 ? 0 : 1) << i;
   }
   expect_sound(system, 0.3);
+}
+
+/// Compressed with their own masses the heavy ones hardly move while the light ones collide.
+TEST(RandomStart, MassesThatDifferByMuchCostNothing) {
+  ed::StartOptions options;
+  options.packing_fraction = 0.4;
+  std::vector<ed::Component> components(2, {ed::uniform_species(ed_test::spheroid(2)), 50});
+  const double masses[] = {1e6, 1e-6};
+  for (std::size_t k = 0; k < 2; ++k) {
+    components[k].species.mass *= masses[k];
+    components[k].species.inertia *= masses[k];
+  }
+  const ed::System system = ed::random_start(components, options);
+  expect_sound(system, 0.4);
+  double twice_energy[2] = {0, 0};
+  for (const ed::Body& body : system.bodies) {
+    const auto k = static_cast<std::size_t>(body.species);
+    EXPECT_EQ(system.species[k].mass, components[k].species.mass);
+    EXPECT_EQ(system.species[k].inertia, components[k].species.inertia);
+    twice_energy[k] += masses[k] * body.velocity.squaredNorm();
+  }
+  // 50 bodies: four standard errors of the temperature.
+  for (const double energy : twice_energy) EXPECT_NEAR(energy / 150, 1, 4 * std::sqrt(2.0 / 150));
 }
 
 TEST(RandomStart, ManySpeciesAreNotRepeated) {

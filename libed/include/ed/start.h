@@ -64,7 +64,8 @@ ED_EXPORT double densest_start(const std::vector<Component>& components);
 
 /// Random positions and orientations at a low packing fraction, random velocities, then the paper's compression:
 /// dynamics alternates with shrinking the box by the largest factor that leaves no overlap. No two bodies overlap at
-/// any moment. More than most_compressed bodies: a smaller box, repeated.
+/// any moment. All masses are 1 meanwhile, moments of inertia in proportion: where bodies may be does not depend on them.
+/// More than most_compressed bodies: a smaller box, repeated.
 ///
 /// Velocities: total momentum zero; translational kT = 1 on 3N - 3 degrees of freedom, rotational kT = 1 on 2 a body of
 /// revolution and 3 of another and, for bodies of revolution that spin, spin kT = 1 on 1, each rescaled separately (at
