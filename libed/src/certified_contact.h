@@ -127,6 +127,14 @@ Quality improve_normal(const Gauge& gauge, const typename Gauge::State& state, d
   }
   e = gauge.evaluate(state, n);
   ++count.kernel_calls;
+  // Of bodies that touch the resort's normal is right to within its own error. From there the ascent often succeeds:
+  // without it a third more that part are taken to approach (finder_support_contact_test, "once more").
+  if (!(e.g > state.rounding.gap)) {
+    int budget = geom::kMaxIterations;
+    ascend(gauge, state, done, budget, n, e);
+    count.kernel_calls += static_cast<std::uint64_t>(geom::kMaxIterations - budget);
+    if (clear) return Quality::clear;
+  }
   return Quality::usable;
 }
 

@@ -4,7 +4,9 @@
     /usr/bin/python3 tests/report/test_report.py [TestClass[.test]]
 """
 
+import csv
 import json
+import math
 import os
 import pathlib
 import re
@@ -95,6 +97,18 @@ shape.aspect_ratio = [2.0, 3.0]
 system.packing_fraction = [0.1, 0.2]
 """
 
+# Of each plot over lags, distances or wave numbers: the file and what is shown of it, in this order.
+FILES = {
+    "msd": ("msd.csv", ["msd"]),
+    "rotational_msd": ("rotational_msd.csv", ["rot_msd", "rot_msd_body"]),
+    "c2": ("c2.csv", ["c2"]),
+    "c1": ("c1.csv", ["c1"]),
+    "f_self": ("f_self.csv", ["f_self_q1", "f_self_q2", "f_self_q3", "f_self_q4"]),
+    "velocity": ("velocity.csv", ["vacf", "wacf"]),  # over their values at t = 0
+    "alpha2": ("alpha2.csv", ["alpha2"]),
+    "g_r": ("g_r.csv", ["g", "g2"]),
+    "s_q": ("s_q.csv", ["S"]),
+}
 PLOTS = ["msd", "rotational_msd", "c2", "c1", "f_self", "velocity", "alpha2", "g_r", "s_q", "pressure", "order", "energy"]
 
 HOSTILE = '<img src=x onerror="window.hacked=1"><b>&amp;'
@@ -252,24 +266,88 @@ class OneRun(Case):
         self.assertIn("run-bodies.png", names)
         self.assertIn("run-results.csv", names)
 
-    def test_saved_csv_is_the_data(self):
-        browser = self.open(self.file)
+    def saved(self, browser, plot):
+        """What the CSV button of a plot saves: a list of a heading and numbers a column, None where there is none."""
         text = browser.run(
             """return new Promise((done) => {
               const make = URL.createObjectURL;
               URL.createObjectURL = (blob) => { blob.text().then(done); return make(blob); };
-              document.querySelector('#plot-alpha2 [title$="as CSV"]').click();
-            });"""
+              document.querySelector(`#plot-${arguments[0]} [title$="as CSV"]`).click();
+            });""",
+            plot,
         )
-        saved = [line.split(",") for line in text.splitlines()]
-        self.assertEqual(saved[0][1:], ['"α₂"', '"α₂ error"'])
-        table = [line.split(",") for line in rows_of(self.run_directory / "observables" / "alpha2.csv")[1:]]
-        self.assertEqual(len(saved) - 1, len(table))
-        for row, kept in zip(table, saved[1:]):
-            for own, other in zip(row, kept):
-                self.assertEqual(own == "", other == "")
-                if own:
-                    self.assertLessEqual(abs(float(own) - float(other)), 1e-3 * abs(float(own)))
+        head, *rows = csv.reader(text.splitlines())
+        return list(zip(head, [[float(x) if x else None for x in column] for column in zip(*rows)]))
+
+    def columns(self, name):
+        """Of a file that the run wrote: as saved()."""
+        head, *rows = csv.reader(rows_of(self.run_directory / "observables" / name))
+        return dict(zip(head, [[float(x) if x else None for x in column] for column in zip(*rows)]))
+
+    def assert_same(self, own, other, what):
+        self.assertEqual(len(own), len(other), what)
+        for x, y in zip(own, other):
+            self.assertEqual(x is None, y is None, what)
+            if x is not None:
+                self.assertLessEqual(abs(x - y), 1e-3 * abs(x), what)
+
+    def test_saved_csv_is_the_data(self):
+        browser = self.open(self.file)
+        for plot, (file, shown) in FILES.items():
+            with self.subTest(plot=plot):
+                saved, table = self.saved(browser, plot), self.columns(file)
+                data = [column for column in saved if not re.match(r"6 D|4 D|A exp", column[0])]
+                if plot in ("g_r", "s_q"):
+                    self.assert_same(data[0][1], next(iter(table.values())), "abscissa")
+                else:  # logarithmic: from the first positive lag on
+                    lags = next(iter(table.values()))
+                    first = next(k for k, t in enumerate(lags) if t > 0)
+                    table = {name: values[first:] for name, values in table.items()}
+                    self.assert_same(data[0][1], lags[first:], "abscissa")
+                self.assertEqual(len(data), 1 + 2 * len(shown))
+                for k, name in enumerate(shown):
+                    column = next(c for c in table if c.startswith(name + " "))
+                    error = next(c for c in table if c.startswith(name + "_error "))
+                    unit = self.columns(file)[column][0] if plot == "velocity" else 1
+                    for key, (_, values) in ((column, data[1 + 2 * k]), (error, data[2 + 2 * k])):
+                        self.assert_same(table[key], [v if v is None else v * unit for v in values], key)
+
+    def test_saved_blocks_are_the_data(self):
+        browser = self.open(self.file)
+        blocks = self.columns("blocks.csv")
+        middle = [(a + b) / 2 for a, b in zip(*list(blocks.values())[:2])]
+        observables = json.loads((self.run_directory / "summary.json").read_text())["observables"]
+        for plot, column, key in (("pressure", "Z [1]", "Z"), ("order", "S [1]", "S")):
+            saved = dict(self.saved(browser, plot)[1:])
+            self.assert_same(self.saved(browser, plot)[0][1], middle, "middle of a block")
+            self.assert_same(blocks[column], saved[key], key)
+            self.assert_same([observables[key]["value"]] * len(middle), saved["mean"], "mean of " + key)
+        drift = [column for column in self.saved(browser, "energy") if not column[0].endswith("error")][1][1]
+        energy = [1.5 * (128 - 1) * a + 128 * b for a, b in zip(blocks["kT_trans [kT]"], blocks["kT_rot [kT]"])]
+        self.assertEqual(len(drift), len(energy))
+        for shown, own in zip(drift, energy):
+            self.assertAlmostEqual(shown, own / energy[0] - 1, delta=1e-12)
+
+    def test_fits_are_those_of_the_summary(self):
+        browser = self.open(self.file)
+        observables = json.loads((self.run_directory / "summary.json").read_text())["observables"]
+        for plot, line, factor, key in (("msd", "6 D_trans t", 6, "D_trans"), ("rotational_msd", "4 D_rot t", 4, "D_rot")):
+            (_, t), *series = self.saved(browser, plot)
+            drawn = [(x, y) for x, y in zip(t, dict(series)[line]) if y is not None]
+            self.assertGreater(len(drawn), 5)
+            for (x1, y1), (x2, y2) in zip(drawn, drawn[1:]):
+                self.assertAlmostEqual((y2 - y1) / (x2 - x1) / (factor * observables[key]["value"]), 1, delta=1e-6)
+        for plot, name in (("c2", "C2"), ("f_self", "F")):
+            (_, t), *series = self.saved(browser, plot)
+            tau, beta = (observables[f"{key}_{name}"]["value"] for key in ("tau", "beta"))
+            drawn = [(x, y) for x, y in zip(t, dict(series)["A exp[−(t/τ)ᵝ]"]) if y is not None]
+            self.assertGreater(len(drawn), 5)
+            amplitude = [y * math.exp((x / tau) ** beta) for x, y in drawn]
+            self.assertAlmostEqual(min(amplitude) / max(amplitude), 1, delta=1e-6)
+            # It lies on the points that it is a fit to.
+            near = [(y, c) for x, y, c in zip(t, dict(series)["A exp[−(t/τ)ᵝ]"], series[0][1]) if y is not None and c > 0.1]
+            for y, c in near:
+                self.assertAlmostEqual(y, c, delta=0.05)
 
     def test_keys(self):
         browser = self.open(self.file)
