@@ -33,7 +33,7 @@ void fields(Archive& archive, T& upkeep) {
 
 template <class Archive, Is<Equilibration> T>
 void fields(Archive& archive, T& e) {
-  archive(e.kinetic_at_start, e.time, e.envelope, e.relaxation, e.counters, e.failures);
+  archive(e.kinetic_at_start, e.time, e.envelope, e.relaxation, e.counters_of_start, e.counters, e.failures);
 }
 
 template <class Archive, Is<Production> T>
@@ -102,7 +102,7 @@ Checkpoint take_checkpoint(std::uint32_t format, std::string_view payload) {
   } else {
     reader(checkpoint.system);
   }
-  if (format == kFormat) reader(checkpoint.run, checkpoint.upkeep);
+  if (format == kFormat) reader(checkpoint.counters_of_start, checkpoint.run, checkpoint.upkeep);
   if (format >= kOtherRun && format < kFormat) (void)reader.raw(reader.left());
   reader.finish();
   const ed::System& system = checkpoint.system;
@@ -170,7 +170,8 @@ std::string or_none(const std::string& features) {
 void put_payload(const Checkpoint& checkpoint, const Sink& sink) {
   Writer payload(sink);
   payload(checkpoint.program_version, checkpoint.config, checkpoint.cpu_features, checkpoint.arithmetic,
-          checkpoint.phase, checkpoint.time, checkpoint.system, checkpoint.run, checkpoint.upkeep);
+          checkpoint.phase, checkpoint.time, checkpoint.system, checkpoint.counters_of_start, checkpoint.run,
+          checkpoint.upkeep);
   payload.flush();
 }
 

@@ -65,8 +65,9 @@ struct Checkpoint {
   std::string phase;         ///< "start", "equilibration" or "production"
   double time = 0;           ///< since the phase began
   ed::System system;
-  std::optional<RunState> run;  ///< nothing in a "start", which goes on from the system
-  Upkeep upkeep;                ///< last, so that the checkpoints of two like runs differ in their last 48 bytes only
+  ed::Counters counters_of_start;  ///< in a "start"; later RunState's
+  std::optional<RunState> run;     ///< nothing in a "start", which goes on from the system
+  Upkeep upkeep;  ///< last, so that the checkpoints of two like runs differ in their last 48 bytes only
 };
 
 /// The file's bytes, piece by piece.

@@ -62,26 +62,8 @@ std::string reached_order(const Config& config, const ed::System& start) {
   return config.nematic_order ? fmt::format(", S = {:.3g}", frame_of(start, {start.size()}).S) : "";
 }
 
-}  // namespace
-
-std::optional<ed::System> make_start(const Config& config, Progress& progress, Log& log) {
-  if (config.start_file) {
-    FileStart start = start_from_file(config);
-    log.line(start.report);
-    progress.say(start.report);
-    return std::move(start.system);
-  }
-  if (const std::optional<std::string> warning = unequal_sizes(config)) {
-    log.line(*warning);
-    progress.say(*warning);
-  }
-  if (const std::optional<ed::LatticeOptions> lattice = config.lattice()) {
-    log.line(fmt::format("start: {} bodies on a lattice ({}) at packing fraction {:g}{}", config.number, config.start,
-                         config.packing_fraction, order_text(config)));
-    ed::System start = ed::lattice_start(config.components(), *lattice);
-    log.line("start: done");
-    return start;
-  }
+/// Random, or the last state of another run; nothing if a signal came first.
+std::optional<Start> compressed_start(const Config& config, Progress& progress, Log& log) {
   log.line(config.start_from ? fmt::format("start: the last state of {}, compressed to packing fraction {:g}",
                                            *config.start_from, config.packing_fraction)
                              : fmt::format("start: {} bodies placed at random{}, compressed to packing fraction {:g}",
@@ -94,15 +76,44 @@ std::optional<ed::System> make_start(const Config& config, Progress& progress, L
     return pending_signal() == 0;
   };
   try {
-    ed::System start = config.start_from ? ed::compressed(read_origin_state(config), config.packing_fraction, show)
-                                         : ed::random_start(config.components(), start_options(config, show));
+    Start start;
+    if (config.start_from) {
+      start.system = ed::compressed(read_origin_state(config), config.packing_fraction, show, &start.counters);
+    } else {
+      ed::StartOptions options = start_options(config, show);
+      options.counters = &start.counters;
+      start.system = ed::random_start(config.components(), options);
+    }
     if (pending_signal() != 0) return std::nullopt;
-    log.line("start: done" + reached_order(config, start));
+    log.line(
+        fmt::format("start: done, {} collisions{}", start.counters.collisions, reached_order(config, start.system)));
     return start;
   } catch (const std::runtime_error&) {
     if (pending_signal() != 0) return std::nullopt;
     throw;
   }
+}
+
+}  // namespace
+
+std::optional<Start> make_start(const Config& config, Progress& progress, Log& log) {
+  if (config.start_file) {
+    FileStart start = start_from_file(config);
+    log.line(start.report);
+    progress.say(start.report);
+    return Start{std::move(start.system), {}};
+  }
+  if (const std::optional<std::string> warning = unequal_sizes(config)) {
+    log.line(*warning);
+    progress.say(*warning);
+  }
+  const std::optional<ed::LatticeOptions> lattice = config.lattice();
+  if (!lattice) return compressed_start(config, progress, log);
+  log.line(fmt::format("start: {} bodies on a lattice ({}) at packing fraction {:g}{}", config.number, config.start,
+                       config.packing_fraction, order_text(config)));
+  Start start{ed::lattice_start(config.components(), *lattice), {}};
+  log.line("start: done");
+  return start;
 }
 
 }  // namespace hardbody

@@ -186,8 +186,8 @@ Equilibration run_equilibration(const Config& config, EquilibrationRun& run, Run
 }
 
 /// Chosen on a copy of the state: every finder and every kind of neighbour list then goes on from the same start.
-double tuned_envelope(const Config& config, const ed::System& start, Progress& progress, Saver& saver, Log& log) {
-  ed::Simulation trial(start, config.simulation_options());
+double tuned_envelope(const Config& config, const Start& start, Progress& progress, Saver& saver, Log& log) {
+  ed::Simulation trial(start.system, config.simulation_options());
   trial.tune_envelopes([&] {
     if (progress.due()) progress.show("equilibration: choosing the thickness of the neighbour lists");
     if (saver.due()) saver.save([&start] { return checkpoint_of(start); });
@@ -229,16 +229,17 @@ ed::ObservablesOptions observables_options(const Config& config, const Productio
 
 }  // namespace
 
-Checkpoint checkpoint_of(const ed::System& start) {
+Checkpoint checkpoint_of(const Start& start) {
   Checkpoint checkpoint;
   checkpoint.phase = "start";
-  checkpoint.system = start;
+  checkpoint.system = start.system;
+  checkpoint.counters_of_start = start.counters;
   return checkpoint;
 }
 
 // ---- Equilibration
 
-std::optional<EquilibrationRun> begin_equilibration(const Config& config, const ed::System& start, Progress& progress,
+std::optional<EquilibrationRun> begin_equilibration(const Config& config, const Start& start, Progress& progress,
                                                     Saver& saver, Log& log) {
   log.line(config.equilibration_time
                ? fmt::format("equilibration: {:g} time units", *config.equilibration_time)
@@ -246,13 +247,14 @@ std::optional<EquilibrationRun> begin_equilibration(const Config& config, const 
   log.line(fmt::format("finder: {}; neighbours: {}{}", config.finder, config.neighbours,
                        config.neighbours_chosen ? " (chosen by \"auto\")" : ""));
   Equilibration result;
+  result.counters_of_start = start.counters;
   if (config.packing_fraction >= kTunedPacking && config.neighbours != "cells") {
     result.envelope = tuned_envelope(config, start, progress, saver, log);
     // The best of those that were tried would not be that of an undisturbed run.
     if (pending_signal() != 0) return std::nullopt;
     log.line(fmt::format("equilibration: envelope thickness {:.4g} l", result.envelope));
   }
-  ed::Simulation simulation(start, config.simulation_options(result.envelope));
+  ed::Simulation simulation(start.system, config.simulation_options(result.envelope));
   ed::EquilibrationMonitor monitor(simulation, relaxing_groups(config));
   result.kinetic_at_start = simulation.kinetic();
   result.relaxation = monitor.state();

@@ -4,6 +4,7 @@
 #include "config.h"
 #include "events_file.h"
 #include "log.h"
+#include "make_start.h"
 #include "progress.h"
 #include "run_record.h"
 #include "saver.h"
@@ -23,7 +24,7 @@ namespace hardbody {
 /// on a clock, on how often they look up or on whether they were resumed.
 
 /// The start by itself.
-Checkpoint checkpoint_of(const ed::System& start);
+Checkpoint checkpoint_of(const Start& start);
 
 /// Equilibration on its way.
 struct EquilibrationRun {
@@ -33,7 +34,7 @@ struct EquilibrationRun {
 };
 
 /// Chooses the thickness of the envelopes first; nothing if a signal came before it was chosen.
-std::optional<EquilibrationRun> begin_equilibration(const Config& config, const ed::System& start, Progress& progress,
+std::optional<EquilibrationRun> begin_equilibration(const Config& config, const Start& start, Progress& progress,
                                                     Saver& saver, Log& log);
 /// Throws InputError if the state does not fit. Changes nothing.
 EquilibrationRun resumed_equilibration(const Config& config, const Checkpoint& checkpoint, const std::string& name);

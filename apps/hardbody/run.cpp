@@ -71,7 +71,7 @@ void write_failures(const RunDirectory& directory, const RunRecord& record, Log&
 
 /// Where a run begins, or goes on.
 struct Continuation {
-  std::optional<ed::System> start;
+  std::optional<Start> start;
   std::optional<EquilibrationRun> equilibration;
   std::optional<ProductionRun> production;
   FilesMark files;
@@ -163,7 +163,7 @@ void run_equilibration(const Config& config, const RunDirectory& directory, Cont
                        Progress& progress, Saver& saver, Log& log) {
   record.equilibration = equilibrate(config, *at.equilibration, progress, saver, log);
   // Where nothing was to run the start itself, to the last bit.
-  if (at.start) record.equilibration.system = *std::exchange(at.start, std::nullopt);
+  if (at.start) record.equilibration.system = std::exchange(at.start, std::nullopt)->system;
   record.stall = at.equilibration->simulation.stall();
   // A state with an overlap is no start for a production run.
   const bool sound = defects(ed::audit(record.equilibration.system)).empty();
@@ -190,8 +190,9 @@ int run_phases(const Config& config, const RunDirectory& directory, Continuation
   if (at.equilibration) run_equilibration(config, directory, at, record, progress, saver, log);
   if (at.production) run_production(config, at, record, progress, saver, log);
   if (!at.equilibration && !at.production) {  // a signal came while the lists were tuned
-    record.equilibration.system = *at.start;
-    record.equilibration.kinetic_at_start = ed::kinetic_state(*at.start);
+    record.equilibration.system = at.start->system;
+    record.equilibration.counters_of_start = at.start->counters;
+    record.equilibration.kinetic_at_start = ed::kinetic_state(at.start->system);
     record.equilibration.stopped = true;
   }
   audit_record(record);
@@ -216,7 +217,7 @@ Continuation continuation(const Config& config, const Checkpoint& checkpoint, co
   at.upkeep = checkpoint.upkeep;
   ++at.upkeep.resumed;
   if (checkpoint.phase == "start") {
-    at.start = checkpoint.system;
+    at.start = Start{checkpoint.system, checkpoint.counters_of_start};
   } else if (checkpoint.phase == "equilibration") {
     at.equilibration = resumed_equilibration(config, checkpoint, name);
   } else if (checkpoint.phase != "production") {

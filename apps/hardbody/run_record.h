@@ -19,9 +19,10 @@ struct Equilibration {
   ed::System system;
   ed::KineticState kinetic_at_start;
   double time = 0;
-  double envelope = 0;        ///< tuned thickness; 0: the simulation's own guess
-  ed::Relaxation relaxation;  ///< as of its last full unit of time
-  bool stopped = false;       ///< by a signal
+  double envelope = 0;             ///< tuned thickness; 0: the simulation's own guess
+  ed::Relaxation relaxation;       ///< as of its last full unit of time
+  bool stopped = false;            ///< by a signal
+  ed::Counters counters_of_start;  ///< of the compression before
   ed::Counters counters;
   std::vector<ed::FailedPair> failures;
 

@@ -226,6 +226,7 @@ std::string summary_json(const RunRecord& record) {
   json["state"] = state(config);
   json["time"] = {{"equilibration", record.equilibration.time}, {"production", production.time}};
   json["counters"] = counters(production.counters);
+  json["counters_of_start"] = counters(record.equilibration.counters_of_start);
   json["counters_of_equilibration"] = counters(record.equilibration.counters);
   json["performance"] = performance(record);
   json["audit"] = {{"minimum_distance", number(record.audit.minimum_distance)},

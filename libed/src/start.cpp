@@ -160,6 +160,7 @@ System compress(const System& system, double target_box, const StartOptions& opt
       checkpoint = simulation.box();
     }
   }
+  if (options.counters != nullptr) *options.counters = simulation.counters();
   System result = with_masses(simulation.system(), system.species);
   result.box = target_box;
   return result;
@@ -223,6 +224,7 @@ System random_start(const std::vector<Component>& components, const StartOptions
   internal::check_components(components);
   check_packing(components, options.packing_fraction);
   internal::check_target(components, box_for(components, options.packing_fraction));
+  if (options.counters != nullptr) *options.counters = {};
   Random random(options.seed);
   const bool dilute = options.packing_fraction <= dilute_packing(components);
   const internal::Tiling tiling =
@@ -239,7 +241,8 @@ System random_start(const std::vector<Component>& components, const StartOptions
   return system;
 }
 
-System compressed(const System& system, double packing_fraction, const std::function<bool(double)>& progress) {
+System compressed(const System& system, double packing_fraction, const std::function<bool(double)>& progress,
+                  Counters* counters) {
   const std::vector<Component> components = components_of(system);
   internal::check_components(components);
   check_packing(components, packing_fraction);
@@ -254,6 +257,8 @@ System compressed(const System& system, double packing_fraction, const std::func
   StartOptions options;
   options.packing_fraction = packing_fraction;
   options.progress = progress;
+  options.counters = counters;
+  if (counters != nullptr) *counters = {};
   System result = target < system.box * (1 - kSameBox) ? compress(system, target, options) : system;
   rescale_velocities(result);
   return result;

@@ -973,6 +973,14 @@ class Starts(Case):
         self.assertTrue(summary["sound"])
         return summary
 
+    def test_compressions_are_counted(self):
+        counters = self.run_start("compressed", self.ROD)["counters_of_start"]
+        self.assertGreater(counters["collisions"], 288)
+        self.assertGreater(counters["predictions"], counters["collisions"])
+        self.assertEqual([counters[key] for key in ("overlaps", "declined", "parting_contacts")], [0, 0, 0])
+        lattice = self.run_start("lattice", self.ROD, 'start = "fcc"')["counters_of_start"]
+        self.assertEqual(set(lattice.values()), {0})
+
     def test_ellipsoids_on_fcc(self):
         summary = self.run_start("out", self.ROD.replace("0.2", "0.6"), 'start = "fcc"')
         # Each has a share of less than 1/0.6 of its volume to turn in: it stays aligned.
@@ -986,7 +994,7 @@ class Starts(Case):
         self.run_start("compressed", self.ROD, "nematic_order = 0.8")
         # In a fluid that would rather be isotropic, compression loses what it began with; on the way to a gas it does not.
         self.run_start("gas", self.ROD.replace("0.2", "0.002"), "nematic_order = 0.8")
-        reached = [re.search(r"start: done, S = ([-0-9.]+)$", self.read(f"{out}/log.txt"), re.MULTILINE)[1]
+        reached = [re.search(r"start: done, \d+ collisions, S = ([-0-9.]+)$", self.read(f"{out}/log.txt"), re.MULTILINE)[1]
                    for out in ("compressed", "gas")]
         self.assertLess(float(reached[0]), 0.4)
         self.assertAlmostEqual(float(reached[1]), 0.8, delta=0.1)

@@ -10,6 +10,8 @@
 
 namespace ed {
 
+struct Counters;  // <ed/simulation.h>
+
 /// Which start is wanted.
 struct StartOptions {
   int number = 512;  ///< of bodies of one species; mixtures: each Component's own
@@ -31,6 +33,8 @@ struct StartOptions {
   /// length, so that large starts, too, need their equilibration. Mixtures of many species with few bodies each, and
   /// boxes that would be too small for nearest images, are not repeated as often.
   int most_compressed = 1000;
+  /// If not null: what the compression has counted, all 0 where nothing was compressed.
+  Counters* counters = nullptr;
 };
 
 /// Which lattice the bodies are placed on. Its cubic cell is stretched along the edges of the box to the proportions of
@@ -64,8 +68,8 @@ ED_EXPORT double densest_start(const std::vector<Component>& components);
 
 /// Random positions and orientations at a low packing fraction, random velocities, then the paper's compression:
 /// dynamics alternates with shrinking the box by the largest factor that leaves no overlap. No two bodies overlap at
-/// any moment. All masses are 1 meanwhile, moments of inertia in proportion: where bodies may be does not depend on them.
-/// More than most_compressed bodies: a smaller box, repeated.
+/// any moment. All masses are 1 meanwhile, moments of inertia in proportion: where bodies may be does not depend on
+/// them. More than most_compressed bodies: a smaller box, repeated.
 ///
 /// Velocities: total momentum zero; translational kT = 1 on 3N - 3 degrees of freedom, rotational kT = 1 on 2 a body of
 /// revolution and 3 of another and, for bodies of revolution that spin, spin kT = 1 on 1, each rescaled separately (at
@@ -81,13 +85,14 @@ ED_EXPORT System random_start(const Species& species, const StartOptions& option
 ED_EXPORT System random_start(const std::vector<Component>& components, const StartOptions& options);
 
 /// The paper's compression of a state that is there already, to a higher packing fraction: from one state point to the
-/// next. Velocities are rescaled at the end as those of random_start; `progress` is as in StartOptions.
+/// next. Velocities are rescaled at the end as those of random_start; `progress` and `counters` are as in StartOptions.
 ///
 /// Throws std::invalid_argument for a packing fraction below that of the state or above densest_start, and for a box
 /// that would be too small (as random_start); std::runtime_error if the compression gets stuck. At the state's own
 /// packing fraction only velocities change.
 ED_EXPORT System compressed(const System& system, double packing_fraction,
-                            const std::function<bool(double packing_fraction)>& progress = nullptr);
+                            const std::function<bool(double packing_fraction)>& progress = nullptr,
+                            Counters* counters = nullptr);
 
 /// Bodies on a lattice that fills the box, at exactly this packing fraction: dense and ordered states that no
 /// compression reaches. Velocities as those of random_start; densest_start does not apply.
