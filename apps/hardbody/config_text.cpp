@@ -24,7 +24,10 @@ std::string list(const Eigen::Vector3d& v) {
 }
 
 std::string quoted(const std::string& text) {
-  return fmt::format("\"{}\"", text);
+  Value value;
+  value.kind = Value::Kind::text;
+  value.text = text;
+  return toml_text(value);
 }
 
 std::string names(const std::vector<std::string>& list) {
@@ -134,10 +137,7 @@ std::string start_text(const Config& config) {
       line("start", quoted(config.start), "at random and compressed; or on a lattice, \"cubic\" or \"fcc\",") +
       more("stretched to the bodies' proportions, the bodies aligned");
   if (config.start_from) {
-    Value from;
-    from.kind = Value::Kind::text;
-    from.text = *config.start_from;
-    text += line("start_from", toml_text(from), "instead: the last state of that run, compressed");
+    text += line("start_from", quoted(*config.start_from), "instead: the last state of that run, compressed");
   } else if (config.nematic_order) {
     text += line("nematic_order", toml_real(*config.nematic_order),
                  config.start == "random" ? "S about z, before the compression, which lets it relax" : "S about z");

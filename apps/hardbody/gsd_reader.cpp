@@ -273,12 +273,12 @@ ed::System FrameReader::read_exact() {
   if (!(system.box > 0)) throw bad(fmt::format("its box has edges of {:g}", system.box), "a positive number");
   system.species = read_species();
   const auto number = std::uint64_t{scalar<std::uint32_t>("particles/N", 0)};
-  const std::vector<std::uint32_t> type = numbers<std::uint32_t>("particles/typeid", number, 1);
+  std::vector<std::uint32_t> type = numbers<std::uint32_t>("particles/typeid", number, 1);
   const std::vector<double> position = exact(kExactPosition, number, 3);
   const std::vector<double> rotation = exact(kExactRotation, number, 9);
   const std::vector<double> velocity = exact(kExactVelocity, number, 3);
   const std::vector<double> omega = exact(kExactAngularVelocity, number, 3);
-  if (type.empty()) throw bad("particles/typeid is missing", "a whole frame of hardbody");
+  type.resize(number, 0);  // the schema's default, which other writers leave out
   for (std::size_t i = 0; i < number; ++i) {
     ed::Body& body = system.bodies.emplace_back();
     body.position = Eigen::Map<const Vector3d>(position.data() + 3 * i);

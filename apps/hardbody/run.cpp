@@ -53,7 +53,9 @@ void check_origin(const RunArguments& arguments, Config& config) {
 
 RunDirectory create_directory(const RunArguments& arguments, const Config& config) {
   const Overwrite overwrite = arguments.force ? Overwrite::allowed : Overwrite::refused;
-  return RunDirectory::create(directory_for(arguments), overwrite, arguments.config, resolved_text(config));
+  std::vector<std::filesystem::path> inputs = {arguments.config};
+  if (config.start_file) inputs.emplace_back(config.start_file->file);
+  return RunDirectory::create(directory_for(arguments), overwrite, inputs, resolved_text(config));
 }
 
 void write_failures(const RunDirectory& directory, const RunRecord& record, Log& log) {

@@ -44,12 +44,15 @@ InputError unusable(const fs::path& directory, const std::string& why) {
       fmt::format("{}: cannot be used as run directory: {}; accepted: a writable directory", directory.string(), why));
 }
 
-void keep_user_config(const fs::path& directory, const fs::path& user_config) {
+void keep_inputs(const fs::path& directory, const std::vector<fs::path>& inputs) {
   for (const char* name : kFiles) {
-    std::error_code ignored;
-    if (!fs::equivalent(directory / name, user_config, ignored)) continue;
-    throw InputError(fmt::format("{}: --force would delete {}, the config of this run; accepted: another directory",
-                                 directory.string(), user_config.string()));
+    for (const fs::path& input : inputs) {
+      std::error_code ignored;
+      if (!fs::equivalent(directory / name, input, ignored)) continue;
+      throw InputError(
+          fmt::format("{}: --force would delete {}, which this run is made from; accepted: another directory",
+                      directory.string(), input.string()));
+    }
   }
 }
 
@@ -79,7 +82,7 @@ DirectoryLock::~DirectoryLock() {
   if (descriptor_ >= 0) ::close(descriptor_);
 }
 
-RunDirectory RunDirectory::create(const fs::path& path, Overwrite overwrite, const fs::path& user_config,
+RunDirectory RunDirectory::create(const fs::path& path, Overwrite overwrite, const std::vector<fs::path>& inputs,
                                   std::string_view config) {
   try {
     if (fs::exists(path) && !fs::is_directory(path)) {
@@ -87,7 +90,7 @@ RunDirectory RunDirectory::create(const fs::path& path, Overwrite overwrite, con
     }
     std::string trace = trace_of_a_run(path);
     if (!trace.empty() && overwrite == Overwrite::refused) throw holds_a_run(path, trace);
-    keep_user_config(path, user_config);
+    keep_inputs(path, inputs);
     fs::create_directories(path);
     RunDirectory directory(path);
     // Again, now that nobody else can begin one.

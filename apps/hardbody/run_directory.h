@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 namespace hardbody {
 
@@ -57,10 +58,10 @@ class RunDirectory {
  public:
   /// Creates the directory (and its parents) and writes `config` into it, before anything else. Where overwriting
   /// is allowed the files of an earlier run are removed, nothing else. Throws InputError if the path cannot be
-  /// used, holds a run that may not be overwritten, or has `user_config`, the file that the config was read from,
-  /// among the files to be removed; then nothing has been changed.
+  /// used, holds a run that may not be overwritten, or has one of `inputs`, the files that the run is made from,
+  /// among those to be removed; then nothing has been changed.
   static RunDirectory create(const std::filesystem::path& path, Overwrite overwrite,
-                             const std::filesystem::path& user_config, std::string_view config);
+                             const std::vector<std::filesystem::path>& inputs, std::string_view config);
 
   /// The directory of a run that has been begun. Changes nothing. Throws InputError if it is none, cannot be written
   /// to or is in use.

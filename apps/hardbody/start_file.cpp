@@ -408,7 +408,7 @@ FileStart start_from_file(const Config& config) {
                     start.file, before, config.packing_fraction));
   }
   result.report = fmt::format("start: {} bodies of frame {} of {} at packing fraction {:.8g}, {}{}", order.size(), k,
-                              start.file, after, velocities, mended);
+                              one_line(start.file), after, velocities, mended);
   return result;
 }
 

@@ -373,6 +373,33 @@ class StartsFromFiles(Trajectories):
                 for out in ["first", "last", "second", "its_own", "by_shape"]:
                     shutil.rmtree(self.path(out))
 
+    def test_frames_that_gsd_has_rewritten(self):
+        """It leaves out what has its default: that all bodies are of the first type."""
+        self.run_with("first", FAMILIES["rods"])
+        with gsd.hoomd.open(self.path("first/trajectory.gsd"), "rb") as old:
+            with gsd.hoomd.open(self.path("copy.gsd"), "wb") as new:
+                for frame in old:
+                    new.append(frame)
+        self.run_small("again", config='[start]\nfile = "copy.gsd"\n[equilibration]\ntime = 0\n[production]\ntime = 0\n'
+                       '[output]\ntrajectory = ["gsd"]\n')
+        self.same("first/trajectory.gsd", 5, "again/trajectory.gsd")
+        self.assertEqual(self.hardbody("check", "copy.gsd").returncode, 0)
+
+    def test_the_file_is_not_overwritten(self):
+        self.run_with("first", FAMILIES["rods"])
+        self.write("again.toml", AGAIN)
+        result = self.hardbody("run", "again.toml", "--out", "first", "--force")
+        self.assert_refused(result, "first: --force would delete ", "first/trajectory.gsd", "accepted: another directory")
+        self.assertEqual(self.hardbody("check", "first").returncode, 0)
+
+    def test_names_that_toml_escapes(self):
+        self.run_with("first", FAMILIES["rods"])
+        shutil.copy(self.path("first/trajectory.gsd"), self.path('a "name"\\.gsd'))
+        self.run_small("again", config=AGAIN.replace('"first/trajectory.gsd"', "'a \"name\"\\.gsd'"))
+        self.assertEqual(self.hardbody("check", "again").returncode, 0)
+        result = self.hardbody("run", "again/config.toml", "--out", "and_again")
+        self.assertEqual(result.returncode, 0, result.stderr)
+
     def test_sizes_need_the_config(self):
         self.run_with("first", MIXTURE)
         self.write("again.toml", AGAIN)

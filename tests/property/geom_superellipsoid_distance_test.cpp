@@ -34,8 +34,9 @@ struct SetTraits {
   PairSet set;
   const char* name;
   double depth_tolerance;  ///< of the depths of overlaps, relative to the size of the pair
-  double depth_bound;      ///< of the error bounds of overlaps, relative to it: kDepthGap, but for parallel faces
-  double off_surface;      ///< of the witness points of bodies apart; normals of faces are those of vertices for e > 1
+  double depth_bound;  ///< of the error bounds of overlaps, relative to it, all but one in kWideOneIn: kDepthGap, but
+                       ///< for parallel faces
+  double off_surface;  ///< of the witness points of bodies apart; normals of faces are those of vertices for e > 1
 };
 
 constexpr std::array<SetTraits, 5> kSets{{{PairSet::random_normal, "random normal", 1e-12, kDepthGap, 1e-10},
@@ -304,7 +305,11 @@ struct OverlapTally {
   long shorter = 0;  ///< a way out that is shorter than the push
   double worst = 0;  ///< by how much an answer is deeper than the push
   double bound = 0;  ///< widest `error_bound`
+  long wide = 0;     ///< wider than SetTraits::depth_bound: the search over all normals has reached its limit
 };
+
+/// How many overlaps may have such bounds: one in so many. (None in the short form.)
+constexpr long kWideOneIn = 20000;
 
 /// `depth` in units of the smaller body's first semi-axis.
 void try_overlap(const Bodies& bodies, const SetTraits& traits, double depth, Random& random, OverlapTally& tally) {
@@ -326,6 +331,11 @@ void try_overlap(const Bodies& bodies, const SetTraits& traits, double depth, Ra
   if (declined) return;
   tally.worst = std::max(tally.worst, -better);
   tally.bound = std::max(tally.bound, r.error_bound / size);
+  if (r.error_bound > traits.depth_bound * size) {
+    std::printf("wide bound: %s, e1 = %g, %g, e2 = %g, %g, depth %.17g: %.1e of the size\n", traits.name, a.e1(),
+                b.e1(), a.e2(), b.e2(), depth, r.error_bound / size);
+    ++tally.wide;
+  }
   tally.shorter += better > 1e-12;
   ASSERT_LE(wanted, r.distance + r.error_bound + 1e-15 * size);
   // Whichever way out is taken parts the bodies: the depth is that across its normal.
@@ -352,7 +362,8 @@ void expect_depths(const char* which, long pairs, const Make& make) {
       std::printf("| %s | %s | %ld | %ld | %ld | %.1e | %.1e | %ld |\n", traits.name, kDepths[row].name, t.pairs,
                   t.misses, t.declined, t.worst, t.bound, t.shorter);
       EXPECT_EQ(t.misses + t.declined, 0) << traits.name << ", depth " << kDepths[row].name;
-      EXPECT_LE(t.bound, traits.depth_bound) << traits.name << ", depth " << kDepths[row].name;
+      EXPECT_LE(t.wide, t.pairs / kWideOneIn) << traits.name << ", depth " << kDepths[row].name;
+      EXPECT_LE(t.bound, kWidestDepthGap) << traits.name << ", depth " << kDepths[row].name;
     }
   }
 }

@@ -224,6 +224,31 @@ TEST(Newton, PairsFarFromTheOriginKeepTheirDigits) {
   }
 }
 
+/// An answer from a seed with points far from the bodies is as exact as another one, or there is none.
+TEST(Newton, FarSeedsAreJudgedOnTheScaleOfTheBodies) {
+  Random random(12);
+  const Ellipsoid small({0.03, 0.03, 0.03});
+  const Ellipsoid large({100, 100, 100});
+  const Pose X_WA = Pose::translation({12.5, -0.125, 4});
+  const Pose X_WB = Pose::translation({412.5, -284.5, 404});
+  const double size = (X_WB.position() - X_WA.position()).norm() + 100.03;
+  const double wanted = size - 2 * 100.03;
+  int answered = 0;
+  for (int k = 0; k < repetitions(4000); ++k) {
+    const Vector3d u = random.log_uniform(1, 1e15) * random.direction();
+    const Vector3d v = random.log_uniform(1, 1e15) * random.direction();
+    for (const NewtonSystem system : kSystems) {
+      const auto seed = checked_seed(small, X_WA, large, X_WB, {u, v, SeedStatus::usable});
+      const DistanceResult r = newton_distance(small, X_WA, large, X_WB, system, seed);
+      if (r.status != DistanceStatus::separated) continue;
+      ++answered;
+      ASSERT_NEAR(r.distance, wanted, 1e-12 * size) << u.norm() << " " << v.norm();
+      ASSERT_LE(r.error_bound, 1e-12 * size) << u.norm() << " " << v.norm();
+    }
+  }
+  EXPECT_GT(answered, 100);
+}
+
 TEST(Newton, StatusesAreHonest) {
   const Ellipsoid a({1, 1, 3});
   const Pose X_WA;

@@ -13,7 +13,7 @@ export const page = { views: [] };
 /** What is well is said shortly, what is not in full, unless only what is bad shall be. */
 export function remarks(run, brief = false) {
   return h('ul', { class: 'remarks' }, run.remarks.map((r) => h('li', { class: r.kind, title: r.text },
-    h('b', {}, r.label), r.kind === 'good' || (brief && r.kind !== 'bad') ? null : rich(r.text))));
+    h('b', {}, r.label), ' ', r.kind === 'good' || (brief && r.kind !== 'bad') ? null : rich(r.text))));
 }
 
 export function number(line, missing = 'too short') {
@@ -90,13 +90,16 @@ const kCounters = {
   refinements: 'refinements', rescues: 'rescues by a fallback', cold_restarts: 'cold restarts of a normal',
   neighbour_rebuilds: 'neighbour lists renewed', envelope_checks: 'envelope checks', kernel_calls: 'gap kernel calls',
   candidate_tests: 'candidate tests', parting_contacts: 'contacts without impulse', overlaps: 'overlaps',
+  declined: 'pairs without an answer',
 };
 
 export function countersCard(run) {
   const { counters, performance, audit } = run.summary ?? {};
   if (!counters) return null;
-  const parts = [h('h4', {}, 'Events of production'),
-    rows(Object.entries(kCounters).filter(([key]) => key in counters).map(([key, name]) => [name, grouped(counters[key])]))];
+  const parts = [['production', counters], ['equilibration', run.summary.counters_of_equilibration],
+    ['the start’s compression', run.summary.counters_of_start]].filter(([, counted]) => counted?.predictions > 0)
+    .flatMap(([phase, counted]) => [h('h4', {}, `Events of ${phase}`),
+      rows(Object.entries(kCounters).filter(([key]) => key in counted).map(([key, name]) => [name, grouped(counted[key])]))]);
   if (audit) {
     parts.push(h('h4', {}, 'Audit'), rows([
       ['minimum distance at the end', short(audit.minimum_distance, 4), 'l'],

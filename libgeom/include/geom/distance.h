@@ -115,7 +115,7 @@ GEOM_EXPORT DistanceResult distance(const Ellipsoid& a, const Pose& X_WA, const 
 /// one (radian): g(n) <= distance times the cosine of that angle.
 ///
 /// Apart, aspect ratios to 10 are within 1e-12 of the size of the pair; overlaps are within `error_bound`, 1e-9 of it,
-/// 1e-7 where faces meet.
+/// 1e-7 where faces meet, and 1e-5 in a few of a million pairs there (docs/accuracy.md).
 /// Of flatter and longer bodies, to kMaxAspectRatio (1e4), some take the slow last resort, up to a tenth of a second:
 /// apart, or slightly overlapping, their distance is certified to kWidestGap (1e-9), or declined, and whether they
 /// overlap is certain only where |distance| is larger than `error_bound` (docs/accuracy.md counts such pairs).

@@ -200,7 +200,10 @@ JudgedResult judge_solution(const WorldSurface<ShapeA>& a, const WorldSurface<Sh
   const Eigen::Vector3d m = g.gradient / norm_g;
   const double offset_a = f.value / norm_f;
   const double offset_b = g.value / norm_g;
-  if (!(std::abs(offset_a) <= kNewtonResidual && std::abs(offset_b) <= kNewtonResidual)) return judged;
+  // Of the solution: `length` is that of the seed, whose points may lie anywhere.
+  const double size = std::min(1.0, frame.r.norm() + solution.s_a.norm() + solution.s_b.norm());
+  const double tolerance = kNewtonResidual * size;
+  if (!(std::abs(offset_a) <= tolerance && std::abs(offset_b) <= tolerance)) return judged;
   const Eigen::Vector3d s_a = solution.s_a - offset_a * n;
   const Eigen::Vector3d gap = frame.r + (solution.s_b - offset_b * m) - s_a;
   const bool antiparallel = (n + m).norm() <= kNewtonAngle;
@@ -219,9 +222,9 @@ JudgedResult judge_solution(const WorldSurface<ShapeA>& a, const WorldSurface<Sh
     error += std::max(0.0, d - lowest);
     d = lowest;
   }
-  if (!(error <= kNewtonResidual)) return judged;
+  if (!(error <= tolerance)) return judged;
   judged.verdict = Verdict::too_deep;
-  if (!(d * frame.length >= -frame.certified_depth - kRoundingFactor * frame.length)) return judged;
+  if (!(d * frame.length >= -frame.certified_depth - kRoundingFactor * size * frame.length)) return judged;
   judged.verdict = Verdict::answer;
   DistanceResult& result = judged.result;
   result.distance = d * frame.length;
