@@ -65,7 +65,7 @@ struct Checkpoint {
   std::string phase;         ///< "start", "equilibration" or "production"
   double time = 0;           ///< since the phase began
   ed::System system;
-  ed::Counters counters_of_start;  ///< in a "start"; later RunState's
+  ed::Counters counters_of_start;  ///< in a "start"; later in RunState's equilibration
   std::optional<RunState> run;     ///< nothing in a "start", which goes on from the system
   Upkeep upkeep;  ///< last, so that the checkpoints of two like runs differ in their last 48 bytes only
 };

@@ -27,12 +27,14 @@ std::string order_text(const Config& config) {
   return config.nematic_order ? fmt::format(", S = {:g} about z", *config.nematic_order) : "";
 }
 
-ed::StartOptions start_options(const Config& config, const std::function<bool(double)>& progress) {
+ed::StartOptions start_options(const Config& config, const std::function<bool(double)>& progress,
+                               ed::Counters& counters) {
   ed::StartOptions options;
   options.packing_fraction = config.packing_fraction;
   options.seed = static_cast<std::uint64_t>(config.seed);
   options.nematic_order = config.nematic_order;
   options.progress = progress;
+  options.counters = &counters;
   return options;
 }
 
@@ -80,9 +82,7 @@ std::optional<Start> compressed_start(const Config& config, Progress& progress, 
     if (config.start_from) {
       start.system = ed::compressed(read_origin_state(config), config.packing_fraction, show, &start.counters);
     } else {
-      ed::StartOptions options = start_options(config, show);
-      options.counters = &start.counters;
-      start.system = ed::random_start(config.components(), options);
+      start.system = ed::random_start(config.components(), start_options(config, show, start.counters));
     }
     if (pending_signal() != 0) return std::nullopt;
     log.line(

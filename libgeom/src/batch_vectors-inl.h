@@ -1,0 +1,131 @@
+#pragma once
+
+/// Vectors of three components, each of which holds one number of every lane, for batch_kernel-inl.h: what else there
+/// is about the instruction set, the linkage and what may be included is said there.
+
+// What the kernels do not need should not be asked of the processor.
+#define HWY_DISABLE_PCLMUL_AES
+#define HWY_DISABLE_F16C
+// Highway's checks would call its library.
+#undef HWY_IS_DEBUG_BUILD
+#define HWY_IS_DEBUG_BUILD 0
+
+#include <geom/tolerances.h>
+
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace geom::internal {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using Tag = hn::ScalableTag<double>;
+using Real = hn::Vec<Tag>;
+using Lanes = hn::Mask<Tag>;
+
+constexpr int kLanes = static_cast<int>(HWY_LANES(double));
+
+struct Real3 {
+  Real x, y, z;
+};
+
+/// A symmetric matrix.
+struct Real6 {
+  Real xx, yy, zz, yz, xz, xy;
+};
+
+/// A matrix by its columns.
+struct Real33 {
+  Real3 x, y, z;
+};
+
+HWY_INLINE Real constant(double x) {
+  return hn::Set(Tag(), x);
+}
+HWY_INLINE Real3 operator+(const Real3& a, const Real3& b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+HWY_INLINE Real3 operator-(const Real3& a, const Real3& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+HWY_INLINE Real3 operator*(Real s, const Real3& a) {
+  return {s * a.x, s * a.y, s * a.z};
+}
+/// a + s b.
+HWY_INLINE Real3 add(const Real3& a, Real s, const Real3& b) {
+  return {hn::MulAdd(s, b.x, a.x), hn::MulAdd(s, b.y, a.y), hn::MulAdd(s, b.z, a.z)};
+}
+/// a - s b.
+HWY_INLINE Real3 subtract(const Real3& a, Real s, const Real3& b) {
+  return {hn::NegMulAdd(s, b.x, a.x), hn::NegMulAdd(s, b.y, a.y), hn::NegMulAdd(s, b.z, a.z)};
+}
+/// Component by component.
+HWY_INLINE Real3 product(const Real3& a, const Real3& b) {
+  return {a.x * b.x, a.y * b.y, a.z * b.z};
+}
+HWY_INLINE Real dot(const Real3& a, const Real3& b) {
+  return hn::MulAdd(a.z, b.z, hn::MulAdd(a.y, b.y, a.x * b.x));
+}
+HWY_INLINE Real3 times(const Real6& S, const Real3& v) {
+  return {hn::MulAdd(S.xz, v.z, hn::MulAdd(S.xy, v.y, S.xx * v.x)),
+          hn::MulAdd(S.yz, v.z, hn::MulAdd(S.yy, v.y, S.xy * v.x)),
+          hn::MulAdd(S.zz, v.z, hn::MulAdd(S.yz, v.y, S.xz * v.x))};
+}
+HWY_INLINE Real3 times(const Real33& M, const Real3& v) {
+  return add(add(v.x * M.x, v.y, M.y), v.z, M.z);
+}
+HWY_INLINE Real3 transposed_times(const Real33& M, const Real3& v) {
+  return {dot(M.x, v), dot(M.y, v), dot(M.z, v)};
+}
+HWY_INLINE Real3 select(Lanes lanes, const Real3& yes, const Real3& no) {
+  return {hn::IfThenElse(lanes, yes.x, no.x), hn::IfThenElse(lanes, yes.y, no.y), hn::IfThenElse(lanes, yes.z, no.z)};
+}
+HWY_INLINE Real flag(Lanes lanes) {
+  return hn::IfThenElse(lanes, constant(1), constant(0));
+}
+HWY_INLINE bool any(Lanes lanes) {
+  return !hn::AllFalse(Tag(), lanes);
+}
+
+// Rows may be those of a block's input or output, or of its state.
+template <class Row>
+HWY_INLINE Real load(const Row& row, int lane) {
+  return hn::Load(Tag(), row + lane);
+}
+template <class Row>
+HWY_INLINE Real3 load3(const Row* rows, int lane) {
+  return {load(rows[0], lane), load(rows[1], lane), load(rows[2], lane)};
+}
+template <class Row>
+HWY_INLINE Real33 load33(const Row* rows, int lane) {
+  return {load3(rows, lane), load3(rows + 3, lane), load3(rows + 6, lane)};
+}
+template <class Row>
+HWY_INLINE void store(Real x, Row& row, int lane) {
+  hn::Store(x, Tag(), row + lane);
+}
+template <class Row>
+HWY_INLINE void store3(const Real3& v, Row* rows, int lane) {
+  store(v.x, rows[0], lane);
+  store(v.y, rows[1], lane);
+  store(v.z, rows[2], lane);
+}
+
+/// 1 / |m|, for m that is nearly a unit vector as inverse_sqrt_1p in geom/internal/dual_newton.h.
+HWY_INLINE Real inverse_norm(const Real3& m) {
+  const Real one = constant(1);
+  const Real m2 = dot(m, m);
+  const Real s = m2 - one;
+  const Real s2 = s * s;
+  const Real low = hn::NegMulAdd(constant(0.5), s, one);
+  const Real middle = hn::NegMulAdd(constant(0.3125), s, constant(0.375));
+  const Real high = hn::NegMulAdd(constant(0.24609375), s, constant(0.2734375));
+  const Real series = hn::MulAdd(s2, hn::MulAdd(s2, high, middle), low);
+  const Lanes far = hn::Abs(s) >= constant(kInverseSqrtSeries);
+  if (any(far)) return hn::IfThenElse(far, one / hn::Sqrt(m2), series);
+  return series;
+}
+
+}  // namespace
+}  // namespace geom::internal
+HWY_AFTER_NAMESPACE();
