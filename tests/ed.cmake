@@ -17,7 +17,7 @@ hardbody_test(ed_observables_test unit
   unit/observables_test.cpp
   unit/stored_frames_test.cpp
   unit/structure_test.cpp)
-foreach(name conservation correlations counters equation_of_state free_rotor general_bodies same_collisions state_points time_reversal)
+foreach(name conservation correlations counters equation_of_state free_rotor general_bodies same_collisions scale state_points time_reversal)
   hardbody_test(physics_${name}_test physics physics/${name}_test.cpp)
 endforeach()
 # Its own program: it replaces operator new.

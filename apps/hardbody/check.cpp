@@ -105,11 +105,12 @@ std::optional<ed::System> rounded_system(const Frame& frame) {
   return system;
 }
 
-/// Where positions are 32-bit numbers bodies in contact overlap by that much: half a unit in the last place of a
+/// Where positions are 32-bit numbers bodies in contact overlap by so much: half a unit in the last place of a
 /// coordinate of each body, and as much of the points on their surfaces.
-double rounding_overlap(const Frame& frame) {
+bool overlaps(const Frame& frame, const ed::Audit& audit) {
   constexpr auto kEpsilon = static_cast<double>(std::numeric_limits<float>::epsilon());
-  return frame.exact ? ed::kAuditOverlap : 4 * kEpsilon * frame.box.maxCoeff();
+  if (audit.unanswered > 0) return true;
+  return frame.exact ? audit.overlaps > 0 : audit.minimum_distance < -4 * kEpsilon * frame.box.maxCoeff();
 }
 
 /// What is wrong with a frame, one line each.
@@ -124,7 +125,7 @@ std::vector<std::string> audit_frame(const Frame& frame, std::uint64_t k, const 
     all.minimum_distance = result.minimum_distance;
     all.closest_frame = k;
   }
-  if (result.minimum_distance < -rounding_overlap(frame) || result.unanswered > 0) {
+  if (overlaps(frame, result)) {
     all.overlaps += static_cast<std::uint64_t>(result.overlaps);
     all.unanswered += static_cast<std::uint64_t>(result.unanswered);
     list = defects(result);

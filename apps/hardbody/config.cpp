@@ -26,7 +26,10 @@ namespace {
 constexpr std::size_t kLongestConfig = 1 << 20;    ///< bytes
 constexpr std::int64_t kMostEvents = 100'000'000;  ///< they are kept in memory: 16 bytes each
 constexpr std::int64_t kMostFrames = 100'000;      ///< there is room for all of them in the files' heads
+// In time units of the bodies.
 constexpr double kLongestTime = 1e9;
+constexpr double kUsualCap = 500;
+constexpr double kLeastCap = 1;
 constexpr double kLargestWaveNumber = 1e6;
 constexpr double kLeastPacking = 1e-9;
 
@@ -169,8 +172,9 @@ void check_names(const TomlDocument& document) {
 
 // ---- Values
 
-/// A time: a number in [least, kLongestTime], 0 excluded if least is, or "auto".
-void read_time(const TomlDocument& document, std::string_view key, bool zero, std::optional<double>& result) {
+/// A time: a number up to `longest`, 0 only with `zero`, or "auto".
+void read_time(const TomlDocument& document, std::string_view key, bool zero, double longest,
+               std::optional<double>& result) {
   const Entry* entry = document.find(key);
   if (entry == nullptr) return;
   const Value& value = entry->value;
@@ -178,9 +182,9 @@ void read_time(const TomlDocument& document, std::string_view key, bool zero, st
     result = std::nullopt;
     return;
   }
-  if (!is_number(value) || value.real < 0 || (value.real == 0 && !zero) || value.real > kLongestTime) {
+  if (!is_number(value) || value.real < 0 || (value.real == 0 && !zero) || value.real > longest) {
     throw bad(*entry, fmt::format("\"auto\" or a number {}, at most {:g} (time unit l sqrt(m/kT))",
-                                  zero ? "at least 0" : "above 0", kLongestTime));
+                                  zero ? "at least 0" : "above 0", longest));
   }
   result = value.real;
 }
@@ -188,11 +192,15 @@ void read_time(const TomlDocument& document, std::string_view key, bool zero, st
 // ---- Sections
 
 void read_times(const TomlDocument& document, Config& config) {
-  read_time(document, "equilibration.time", true, config.equilibration_time);
-  read_time(document, "production.time", true, config.production_time);
+  config.time_unit = ed::time_unit(config.components());
+  const double least = kLeastCap * config.time_unit;
+  const double longest = kLongestTime * config.time_unit;
+  read_time(document, "equilibration.time", true, longest, config.equilibration_time);
+  read_time(document, "production.time", true, longest, config.production_time);
+  config.equilibration_cap = kUsualCap * config.time_unit;
   if (const Entry* cap = document.find("equilibration.cap")) {
-    if (!is_number(cap->value) || !(cap->value.real >= 1 && cap->value.real <= kLongestTime)) {
-      throw bad(*cap, fmt::format("a number from 1 to {:g} (time unit l sqrt(m/kT))", kLongestTime));
+    if (!is_number(cap->value) || !(cap->value.real >= least && cap->value.real <= longest)) {
+      throw bad(*cap, fmt::format("a number from {:g} to {:g} (time unit l sqrt(m/kT))", least, longest));
     }
     config.equilibration_cap = cap->value.real;
   }
@@ -473,10 +481,10 @@ Config read_config(const TomlDocument& document) {
     if (!more.empty()) return read_config(completed(document, *config.start_file, more));
   }
   read_integer(document, "seed", 0, std::numeric_limits<std::int64_t>::max(), config.seed);
+  read_species(document, config);
   read_times(document, config);
   read_wave_numbers(document, config);
   read_output(document, config);
-  read_species(document, config);
   read_dynamics(document, config);
   read_start(document, config);
   read_packing(document, config);

@@ -83,6 +83,7 @@ struct Config {
   // [shape], or one or more [[species]]
   bool mixture = false;  ///< [[species]]: lengths are taken as they are given
   std::vector<SpeciesConfig> species;
+  double time_unit = 1;  ///< ed::time_unit of the bodies: of all times that the user does not give
 
   // [dynamics]
   std::string finder = "certified";
@@ -92,7 +93,7 @@ struct Config {
   bool neighbours_chosen = true;       ///< by "auto"
 
   std::optional<double> equilibration_time;  ///< nothing: "auto"
-  double equilibration_cap = 500;            ///< of "auto"
+  double equilibration_cap = 0;              ///< of "auto"
   std::optional<double> production_time;
   std::optional<double> target_error;  ///< of "auto": relative, of D_trans and D_rot
   std::vector<double> wave_numbers;    ///< of F_self, 1/l; none: the first peak of S(q), and about it

@@ -47,7 +47,7 @@ std::string time(const std::optional<double>& t) {
 }
 
 /// A key with its comment, or a further line of the comment.
-std::string line(const char* key, const std::string& value, const char* comment) {
+std::string line(const char* key, const std::string& value, const std::string& comment) {
   return fmt::format("{:<31} # {}\n", fmt::format("{} = {}", key, value), comment);
 }
 std::string more(std::string_view comment) {
@@ -180,8 +180,9 @@ std::string times_text(const Config& config) {
          more("0.05 twice in a row, and Z and S do not drift") +
          line("cap", toml_real(config.equilibration_cap), "of \"auto\": the state counts as not equilibrated then") +
          "\n[production]\n" +
-         line("time", time(config.production_time), "in l sqrt(m/kT); \"auto\": 30 times the equilibration, from 30") +
-         more("to 5000; or until the relative errors of D_trans and D_rot are") +
+         line("time", time(config.production_time),
+              fmt::format("in l sqrt(m/kT); \"auto\": 30 times the equilibration, from {:g}", 30 * config.time_unit)) +
+         more(fmt::format("to {:g}; or until the relative errors of D_trans and D_rot are", 5000 * config.time_unit)) +
          (config.target_error ? line("target_error", toml_real(*config.target_error), "at most this")
                               : more("target_error = 0.02, if that is given")) +
          line("wave_numbers", numbers(config.wave_numbers),

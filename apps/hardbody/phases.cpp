@@ -30,7 +30,7 @@ constexpr double kFirstSlice = 10;
 constexpr double kGrowth = 4;
 constexpr double kLongestSlice = 1e6;
 
-/// "auto": production in units of the equilibration time, and its limits.
+/// "auto": production in units of the equilibration time, and its limits. Times are in units of Config::time_unit.
 constexpr double kProductionFactor = 30;
 constexpr double kLeastProduction = 30;
 constexpr double kMostProduction = 5000;
@@ -88,7 +88,7 @@ class Runner {
     const double done = simulation_.time();
     const double seconds = progress_.seconds();
     const auto collisions = static_cast<double>(simulation_.counters().collisions - collisions_);
-    return fmt::format("{} {:.2f} of {:g}  {:.0f} collisions/s  {}  energy drift {:.1e}", phase_, done, planned_end,
+    return fmt::format("{} {:.4g} of {:g}  {:.0f} collisions/s  {}  energy drift {:.1e}", phase_, done, planned_end,
                        collisions / std::max(seconds, 1e-9), eta(seconds, done - begin_, planned_end - begin_),
                        std::abs(simulation_.kinetic().energy() / energy_ - 1));
   }
@@ -111,22 +111,25 @@ double dilute_lag(const Config& config, const Equilibration& equilibration) {
 }
 
 /// Of a production without a target error.
-double usual_length(const Equilibration& equilibration) {
-  return std::clamp(kProductionFactor * equilibration.time, kLeastProduction, kMostProduction);
+double usual_length(const Config& config, const Equilibration& equilibration) {
+  const double unit = config.time_unit;
+  return std::clamp(kProductionFactor * equilibration.time, kLeastProduction * unit, kMostProduction * unit);
 }
 
 /// How long production is to be, and what is measured in it.
 Production planned_production(const Config& config, const Equilibration& equilibration) {
   Production plan;
-  const double length = usual_length(equilibration);
+  const double length = usual_length(config, equilibration);
+  const double longest_lag = kLongestLag * config.time_unit;
+  const double most = kMostProduction * config.time_unit;
   if (config.production_time) {
     plan.planned = *config.production_time;
-    plan.longest_lag = std::min(plan.planned / kLags, kLongestLag);
+    plan.longest_lag = std::min(plan.planned / kLags, longest_lag);
   } else {
     // A state that was slow to equilibrate decays as slowly.
-    plan.longest_lag = std::min(length / kLags, std::max(kLongestLag, equilibration.time));
-    plan.longest_lag = std::max(plan.longest_lag, std::min(dilute_lag(config, equilibration), kMostProduction / kLags));
-    plan.planned = config.target_error ? kMostProduction : std::max(length, kLags * plan.longest_lag);
+    plan.longest_lag = std::min(length / kLags, std::max(longest_lag, equilibration.time));
+    plan.longest_lag = std::max(plan.longest_lag, std::min(dilute_lag(config, equilibration), most / kLags));
+    plan.planned = config.target_error ? most : std::max(length, kLags * plan.longest_lag);
   }
   plan.next_look = kLags * plan.longest_lag;
   const double q = equilibration.relaxation.q;
@@ -164,13 +167,13 @@ bool is_over(const Config& config, const Equilibration& result) {
   return result.time >= equilibration_length(config) || (!config.equilibration_time && result.reached());
 }
 
-/// Runs until the criterion holds or the config's time is over; what was reached. `run.result` keeps to full units of
-/// time, at which the criterion is asked, wherever it is stopped: going on from there must not depend on that.
+/// Runs until the criterion holds or the config's time is over; what was reached. `run.result` keeps to full time
+/// units, at which the criterion is asked, wherever it is stopped: going on from there must not depend on that.
 Equilibration run_equilibration(const Config& config, EquilibrationRun& run, Runner& runner) {
   const double length = equilibration_length(config);
   while (!is_over(config, run.result)) {
     // The time asked for, not the clock's, which is rounded.
-    const double next = std::min(run.result.time + 1, length);
+    const double next = std::min(run.result.time + config.time_unit, length);
     const bool arrived = runner.run_to(next, length);
     if (!arrived) {
       Equilibration now = run.result;
@@ -178,11 +181,24 @@ Equilibration run_equilibration(const Config& config, EquilibrationRun& run, Run
       now.stopped = true;
       return now;
     }
-    if (next - run.result.time == 1) run.monitor.measure(run.simulation);
+    if (next - run.result.time == config.time_unit) run.monitor.measure(run.simulation);
     run.result.time = next;
     run.result.relaxation = run.monitor.state();
   }
   return run.result;
+}
+
+/// How far positions and orientations are forgotten. Where no body turns there is no C2.
+std::string decays_text(const ed::Relaxation& relaxation) {
+  const std::string f_self = fmt::format("F_self {:.3f}", relaxation.f_self);
+  return std::isnan(relaxation.c2) ? f_self : fmt::format("C2 {:.3f} and ", relaxation.c2) + f_self;
+}
+
+std::string drift_text(const ed::Relaxation& relaxation) {
+  if (relaxation.relaxations == 0) return "no relaxation";
+  if (relaxation.relaxations == 1) return "one relaxation";
+  return fmt::format("{} relaxations, Z changed by {:.2g} and S by {:.2g} between the last two", relaxation.relaxations,
+                     relaxation.Z_change, relaxation.S_change);
 }
 
 /// Chosen on a copy of the state: every finder and every kind of neighbour list then goes on from the same start.
@@ -220,7 +236,8 @@ ed::Simulation restored_simulation(const Config& config, const Checkpoint& check
 ed::ObservablesOptions observables_options(const Config& config, const Production& production) {
   ed::ObservablesOptions options{};
   options.number = config.number;
-  options.duration = production.planned > 0 ? production.planned : kLeastProduction;  // of none nothing is measured
+  options.duration = production.planned > 0 ? production.planned : config.time_unit;  // of none nothing is measured
+  options.time_unit = config.time_unit;
   options.longest_lag = production.longest_lag;
   options.wave_numbers = production.wave_numbers;
   options.groups = config.groups();
@@ -289,17 +306,15 @@ Equilibration equilibrate(const Config& config, EquilibrationRun& run, Progress&
   result.counters = run.simulation.counters();
   result.failures = run.simulation.failures();
   const ed::Relaxation& relaxation = result.relaxation;
-  log.line(fmt::format(
-      "equilibration: {} after {:g} time units and {} relaxations, C2 {:.4f}, F_self {:.4f} at q = {:.4g}{}",
-      result.stopped ? "stopped" : "done", result.time, relaxation.relaxations, relaxation.c2, relaxation.f_self,
-      relaxation.q, config.species.size() > 1 ? " (of the slowest species)" : ""));
+  log.line(fmt::format("equilibration: {} after {:g} time units and {} relaxations, {} at q = {:.4g}{}",
+                       result.stopped ? "stopped" : "done", result.time, relaxation.relaxations,
+                       decays_text(relaxation), relaxation.q,
+                       config.species.size() > 1 ? " (of the slowest species)" : ""));
   if (!config.equilibration_time && !result.stopped && !result.reached()) {
     const std::string warning = fmt::format(
-        "warning: not equilibrated after {:g} time units: C2 is {:.3f} and F_self {:.3f} (wanted below 0.05, twice in "
-        "a "
-        "row), {} relaxations, Z changed by {:.2g} and S by {:.2g} between the last two; production goes on",
-        result.time, relaxation.c2, relaxation.f_self, relaxation.relaxations, relaxation.Z_change,
-        relaxation.S_change);
+        "warning: not equilibrated after {:g} time units: {} (wanted below 0.05, twice in a row), {}; production goes "
+        "on",
+        result.time, decays_text(relaxation), drift_text(relaxation));
     log.line(warning);
     progress.say(warning);
   }
@@ -330,7 +345,7 @@ bool look_at_errors(const Config& config, ProductionRun& run, Log& log) {
   run.result.precise = std::all_of(wanted.begin(), wanted.end(), precise);
   if (run.result.precise) return true;
   const auto hopeless = [&](const ed::Estimate& D) { return !std::isfinite(D.value); };
-  if (run.simulation.time() < usual_length(run.before)) return false;
+  if (run.simulation.time() < usual_length(config, run.before)) return false;
   if (!std::all_of(wanted.begin(), wanted.end(), [&](const auto& D) { return precise(D) || hopeless(D); }))
     return false;
   log.line(

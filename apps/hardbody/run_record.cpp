@@ -42,7 +42,7 @@ void audit_record(RunRecord& record) {
 std::vector<std::string> defects(const ed::Audit& audit) {
   std::vector<std::string> list;
   if (!audit.finite) list.emplace_back("the state holds numbers that are not finite");
-  if (audit.minimum_distance < -ed::kAuditOverlap) {
+  if (audit.overlaps > 0) {
     list.push_back(fmt::format("{} pairs overlap, the deepest by {:.3g} (bodies {} and {})", audit.overlaps,
                                -audit.minimum_distance, audit.closest_i, audit.closest_j));
   }

@@ -288,8 +288,8 @@ std::string mend(ed::System& system, const StartFile& start, const std::vector<d
   const ed::Audit audit = ed::audit(system);
   if (!overlaps(audit)) return "";
   if (!start.mend) {
-    throw InputError(fmt::format("{}: {}; accepted: none deeper than {:g}, or start.mend = true", start.file,
-                                 overlap_text(audit, ids), ed::kAuditOverlap));
+    throw InputError(fmt::format("{}: {}; accepted: none deeper than {:g} of their size, or start.mend = true",
+                                 start.file, overlap_text(audit, ids), ed::kAuditOverlap));
   }
   const std::optional<double> factor = mending_factor(system);
   if (!factor) {

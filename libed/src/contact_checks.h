@@ -12,6 +12,7 @@ inline void check_contact_options(const ContactOptions& options, double smallest
   if (options.finder != Finder::bracketing && options.distance != DistanceMethod::dual) {
     throw std::invalid_argument("distance: only the finder \"bracketing\" has a choice; accepted: \"dual\"");
   }
+  if (options.finder != Finder::bracketing) return;
   if (options.eps_d > 0 && options.eps_d < smallest_semi_axis) return;
   std::ostringstream message;
   message << "eps_d is " << options.eps_d << "; accepted: above 0 and below the smallest semi-axis, "

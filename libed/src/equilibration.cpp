@@ -23,7 +23,7 @@ using internal::WaveVectors;
 constexpr std::uint32_t kStateFormat = 1;
 
 constexpr double kDecayed = 0.05;
-constexpr std::size_t kLeastSamples = 4;  ///< of a relaxation: time units
+constexpr std::size_t kLeastSamples = 4;  ///< of a relaxation, one a time_unit
 constexpr int kInARow = 2;
 constexpr double kZDrift = 0.01;  ///< relative
 constexpr double kSDrift = 0.05;

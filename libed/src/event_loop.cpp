@@ -5,10 +5,12 @@
 #include "contact_checks.h"
 #include "envelope_limits.h"
 #include "general_bodies.h"
+#include "nearest_integer.h"
 #include "uniaxial_bodies.h"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <sstream>
 #include <stdexcept>
@@ -50,6 +52,18 @@ void check_cells(double box, double bounding_radius) {
   throw std::invalid_argument(message.str());
 }
 
+/// How long an epoch lasts: a power of two about the time in which bodies of the fastest species move by their size, so
+/// that times within it are as exact as the way that bodies go in them.
+double epoch_of(const System& system) {
+  const KineticState kinetic = kinetic_state(system);
+  const int freedoms = 3 * system.size() + kinetic.rotational_freedoms + kinetic.spin_freedoms;
+  const double kT = 2 * kinetic.energy() / freedoms;
+  if (!(kT > 0)) return 1;  // nothing moves
+  double shortest = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < system.size(); ++i) shortest = std::min(shortest, thermal_time(system.species_of(i)));
+  return nearest_power_of_two(shortest / std::sqrt(kT));
+}
+
 }  // namespace
 
 std::unique_ptr<AnyEventLoop> make_event_loop(const System& system, const SimulationOptions& options) {
@@ -61,6 +75,7 @@ std::unique_ptr<AnyEventLoop> make_event_loop(const System& system, const Simula
 template <class Bodies>
 EventLoop<Bodies>::EventLoop(const System& system, const SimulationOptions& options)
     : EventLoop(system, options, Unbuilt()) {
+  epoch_ = epoch_of(system);
   set_envelope(options.envelope);
 }
 
@@ -147,7 +162,7 @@ System EventLoop<Bodies>::system() const {
 template <class Bodies>
 Motion EventLoop<Bodies>::motion_of(int i, double t) const {
   Motion motion = bodies_.motion(i, t);
-  motion.time = epochs_ * kEpoch + t;
+  motion.time = epochs_ * epoch_ + t;
   return motion;
 }
 
@@ -402,10 +417,10 @@ bool EventLoop<Bodies>::run_until(double time, std::uint64_t max_collisions) {
   const std::uint64_t last = counters_.collisions + std::min(max_collisions, ~std::uint64_t{0} - counters_.collisions);
   const std::uint64_t events_between_looks = kStallEvents * static_cast<std::uint64_t>(number());
   while (counters_.collisions < last && !stall_) {
-    const double local_end = time - epochs_ * kEpoch;
+    const double local_end = time - epochs_ * epoch_;
     const double next = calendar_.earliest_time();
-    if (next > std::min(local_end, kEpoch)) {
-      if (local_end <= kEpoch) {
+    if (next > std::min(local_end, epoch_)) {
+      if (local_end <= epoch_) {
         now_ = std::max(now_, local_end);
         return true;
       }
@@ -414,23 +429,23 @@ bool EventLoop<Bodies>::run_until(double time, std::uint64_t max_collisions) {
     }
     process_next();
     if (++events_ >= events_between_looks) [[unlikely]]
-      look_for_stall(std::min(local_end, kEpoch));
+      look_for_stall(std::min(local_end, epoch_));
   }
   return false;
 }
 
 template <class Bodies>
 void EventLoop<Bodies>::start_epoch() {
-  now_ = kEpoch;
+  now_ = epoch_;
   for (int i = 0; i < number(); ++i) {
     bodies_.move(i, now_);
     bodies_.restart_clock(i, now_);
-    exits_[at(i)] -= kEpoch;
+    exits_[at(i)] -= epoch_;
   }
   for (int i = 0; i < number(); ++i) {
     for (const std::int32_t index : lists_.of(i)) {
       Pair& pair = lists_.pair(index);
-      if (pair.i == i) pair.time -= kEpoch;
+      if (pair.i == i) pair.time -= epoch_;
     }
   }
   now_ = 0;

@@ -59,7 +59,7 @@ std::unique_ptr<AnyEventLoop> load_event_loop(const System& system, const Simula
 
 /// The event loop behind Simulation. `Bodies`: UniaxialBodies or GeneralBodies.
 ///
-/// Times inside are measured from the start of the current epoch (kEpoch long); at its end all bodies are moved there
+/// Times inside are measured from the start of the current epoch (epoch_ long); at its end all bodies are moved there
 /// and every time is shifted, so that no digits are lost however long a run lasts.
 ///
 /// Each pair of neighbours carries a certified lower bound of its contact time, made after the last collision of either
@@ -72,7 +72,7 @@ class EventLoop final : public AnyEventLoop {
   /// See load_event_loop.
   EventLoop(const System& system, const SimulationOptions& options, Reader& reader);
 
-  double time() const override { return epochs_ * kEpoch + now_; }
+  double time() const override { return epochs_ * epoch_ + now_; }
   bool run_until(double time, std::uint64_t max_collisions) override;
   double shrink_box(double target_box, double least_gain) override;
   void set_envelope(double thickness, bool shrinking = false) override;
@@ -170,6 +170,7 @@ class EventLoop final : public AnyEventLoop {
   std::vector<std::int32_t> old_pairs_;
 
   double list_scale_ = 1;  ///< by what the box has shrunk since all lists were made
+  double epoch_ = 1;
   double now_ = 0;
   double epochs_ = 0;
   double virial_ = 0;

@@ -23,6 +23,9 @@ using Eigen::Vector3d;
 
 GeneralKind kind_of_species(const Species& species) {
   const int axis = symmetry_axis(species).value_or(-1);
+  Vector3d inertia = species.inertia;
+  // Irrelevant, and maybe no number; spherical tops turn uniformly.
+  if (axis >= 0 && !species.spins) inertia[axis] = inertia[(axis + 1) % 3];
   const bool custom = std::holds_alternative<CustomShape>(species.shape);
   return {.shape = species.shape,
           .norm = custom ? std::nullopt : std::optional(norm_body(species.shape)),
@@ -32,7 +35,7 @@ GeneralKind kind_of_species(const Species& species) {
           .half_extents = half_extents(species.shape),
           .lever = turning_lever(species.shape),
           .mass = species.mass,
-          .inertia = species.inertia,
+          .inertia = inertia,
           .symmetry_axis = axis,
           .spins = species.spins,
           .axis = axis < 0 ? 2 : axis};

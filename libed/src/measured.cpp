@@ -10,6 +10,7 @@
 namespace ed::internal {
 namespace {
 
+// Times are in the options' time unit.
 constexpr double kLongestLag = 40;     ///< default cap: MSD slopes have settled well before, errors grow beyond
 constexpr double kShortestLag = 1e-3;  ///< in units of the longest lag
 constexpr double kLagsPerDecade = 20;
@@ -22,20 +23,22 @@ constexpr int kOriginsPerLongestLag = 16;
 constexpr double kStructureTime = 1;
 constexpr int kVectorsPerShell = 24;
 
-std::vector<double> log_lags(double longest) {
+std::vector<double> log_lags(double longest, double shortest) {
   std::vector<double> lags;
   const int number = static_cast<int>(std::ceil(-std::log10(kShortestLag) * kLagsPerDecade));
   for (int k = -number; k <= 0; ++k) lags.push_back(longest * std::pow(10.0, k / kLagsPerDecade));
   const double first = lags.front();
-  for (int k = 1; first * std::pow(10.0, -k / kShortLagsPerDecade) >= kShortest; ++k) {
+  for (int k = 1; first * std::pow(10.0, -k / kShortLagsPerDecade) >= shortest; ++k) {
     lags.insert(lags.begin(), first * std::pow(10.0, -k / kShortLagsPerDecade));
   }
   return lags;
 }
 
 void check(const ObservablesOptions& options) {
-  if (!(options.duration > 0) || !std::isfinite(options.duration) || options.number < 1) {
-    throw std::invalid_argument("Observables: duration and number; accepted: a positive finite time, at least 1 body");
+  const auto is_time = [](double t) { return t > 0 && std::isfinite(t); };
+  if (!is_time(options.duration) || !is_time(options.time_unit) || options.number < 1) {
+    throw std::invalid_argument(
+        "Observables: duration, time_unit and number; accepted: positive finite times, at least 1 body");
   }
   const auto usable = [](double q) { return q > 0 && std::isfinite(q); };
   const bool all = std::all_of(options.wave_numbers.begin(), options.wave_numbers.end(), usable);
@@ -75,11 +78,12 @@ Measured::Measured(const ObservablesOptions& wanted) : options(wanted) {
   check(options);
   make_groups();
   double longest = options.longest_lag;
-  if (!(longest > 0)) longest = std::min(kLongestLag, options.duration / 16);
-  lags = log_lags(longest);
+  if (!(longest > 0)) longest = std::min(kLongestLag * options.time_unit, options.duration / 16);
+  lags = log_lags(longest, kShortest * options.time_unit);
   origins_per_block = std::clamp(160000 / std::max(1, options.number), 1, kOriginsPerLongestLag);
   spacing = longest / origins_per_block;
-  structure_every = static_cast<int>(std::clamp(std::ceil(kStructureTime / spacing), 1.0, 1.0 * origins_per_block));
+  structure_every = static_cast<int>(
+      std::clamp(std::ceil(kStructureTime * options.time_unit / spacing), 1.0, 1.0 * origins_per_block));
 }
 
 void Measured::make_groups() {

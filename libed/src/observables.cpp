@@ -21,7 +21,7 @@ using internal::LagSums;
 using internal::Measured;
 
 /// Raised by every change of what save() writes.
-constexpr std::uint32_t kStateFormat = 3;
+constexpr std::uint32_t kStateFormat = 4;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 

@@ -136,8 +136,7 @@ double OrientedEnvelopes::exit_time(int i, const AxisMotion& motion, const Vecto
 
 double OrientedEnvelopes::crossing_time(const Kind& kind, const AxisMotion& motion) const {
   const double surface_speed = std::abs(std::sqrt(kind.shape.a2) - std::sqrt(kind.shape.b2)) * motion.rate;
-  constexpr double kLeastRate = 1e-9;  // thicknesses a time unit: below it a body is as good as at rest
-  return thickness_ / (motion.velocity.norm() + surface_speed + kLeastRate * thickness_);
+  return thickness_ / (motion.velocity.norm() + surface_speed + 1e-300);
 }
 
 double OrientedEnvelopes::worthwhile(int i, const AxisMotion& motion) const {

@@ -125,12 +125,14 @@ System with_masses(System system, const std::vector<Species>& species) {
 }
 
 System compress(const System& system, double target_box, const StartOptions& options) {
-  Simulation simulation(with_unit_masses(system));
+  const System light = with_unit_masses(system);
+  const double longest_pause = time_unit(light);
+  Simulation simulation(light);
   // The box shrinks at fixed times, not after a given number of collisions: right after a collision two bodies touch. A
   // pause of a few collisions moves the closest pair apart, which is all that the next step needs; its length follows
   // the collision rate.
   const double wanted = system.size() * kPauseCollisions;
-  double pause = 0.1;
+  double pause = 0.1 * longest_pause;
   // Bodies that roll on each other in small hops leave next to no room for a while: a gain far below the usual one is
   // not worth the work, and would squeeze them into smaller hops. The threshold falls only if nothing better comes for
   // long.
@@ -141,7 +143,7 @@ System compress(const System& system, double target_box, const StartOptions& opt
     simulation.run_until(simulation.time() + pause);
     if (simulation.stall()) throw std::runtime_error("the compression " + describe(*simulation.stall()));
     pause *= static_cast<double>(simulation.counters().collisions - before) > wanted ? 0.8 : 1.25;
-    pause = std::min(pause, 1.0);
+    pause = std::min(pause, longest_pause);
     const double old_box = simulation.box();
     const double gain = 1 - simulation.shrink_box(target_box, 0.3 * usual_gain) / old_box;
     usual_gain += 0.1 * (gain > 0 ? gain - usual_gain : -0.02 * usual_gain);

@@ -3,6 +3,7 @@
 #include "cell_grid.h"
 #include "envelope_limits.h"
 #include "motion_checks.h"
+#include "nearest_integer.h"
 #include "oriented_slack.h"
 
 #include <ed/system.h>
@@ -120,6 +121,27 @@ Species uniform_species(const BodyShape& shape, double mass) {
                               " are not known; accepted: a Species with its own");
 }
 
+double thermal_time(const Species& species) {
+  constexpr double kUnitBall = 4.18879020478639098;  // 4 pi / 3
+  return std::cbrt(volume(species.shape) / kUnitBall) * std::sqrt(species.mass);
+}
+
+double time_unit(const std::vector<Component>& components) {
+  double sum = 0;
+  double number = 0;
+  for (const Component& component : components) {
+    sum += component.number * thermal_time(component.species);
+    number += component.number;
+  }
+  return number > 0 ? internal::nearest_power_of_two(sum / number) : 1;
+}
+
+double time_unit(const System& system) {
+  double sum = 0;
+  for (int i = 0; i < system.size(); ++i) sum += thermal_time(system.species_of(i));
+  return system.size() > 0 ? internal::nearest_power_of_two(sum / system.size()) : 1;
+}
+
 double packing_fraction(const System& system) {
   std::vector<int> number(system.species.size(), 0);
   for (const Body& body : system.bodies) ++number[static_cast<std::size_t>(body.species)];
@@ -168,7 +190,8 @@ KineticState kinetic_state(const System& system) {
     state.translational_energy += 0.5 * species.mass * body.velocity.squaredNorm();
     state.momentum += species.mass * body.velocity;
     const Vector3d w = body.rotation.transpose() * body.angular_velocity;
-    const Vector3d energy = 0.5 * species.inertia.cwiseProduct(w.cwiseProduct(w));
+    Vector3d energy = 0.5 * species.inertia.cwiseProduct(w.cwiseProduct(w));
+    if (axis >= 0 && !species.spins) energy[axis] = 0;  // whatever the moment about it is
     state.axis_energy += energy;
     if (axis < 0) {
       state.rotational_energy += energy.sum();
@@ -179,7 +202,7 @@ KineticState kinetic_state(const System& system) {
     const double spin = body.angular_velocity.dot(u);
     const double perpendicular = species.inertia[(axis + 1) % 3];
     state.rotational_energy += 0.5 * perpendicular * (body.angular_velocity - spin * u).squaredNorm();
-    state.spin_energy += 0.5 * species.inertia[axis] * spin * spin;
+    if (species.spins) state.spin_energy += 0.5 * species.inertia[axis] * spin * spin;
     state.rotational_freedoms += 2;
     state.spin_freedoms += species.spins ? 1 : 0;
   }
@@ -221,7 +244,8 @@ Audit audit(const System& system) {
         ++result.unanswered;
         continue;
       }
-      if (d.distance < -kAuditOverlap) ++result.overlaps;
+      const double size = bounding_radius(system.species_of(i).shape) + bounding_radius(system.species_of(j).shape);
+      if (d.distance < -kAuditOverlap * size) ++result.overlaps;
       if (d.distance < result.minimum_distance) {
         result.minimum_distance = d.distance;
         result.closest_i = i;

@@ -943,6 +943,29 @@ class Shapes(Case):
         config = config.replace("[0.6, 0.6, 0.6]", "[1.6, 1.6, 1.6]").replace("time = 5", "time = 2")
         self.run_shape("out", config.replace("time = 1\n", "time = 0.1\n"))
 
+    def test_any_unit_of_length_and_mass_gives_the_same_physics(self):
+        """"auto" in both phases, and the coefficients that come out, in the units of the bodies."""
+        bodies = "[[species]]\nsemi_axes = [{0}, {0}, {1}]\nmass = {2}\n"
+        auto = '[equilibration]\ntime = "auto"\n[production]\ntime = "auto"\n'
+        base = SMALL[: SMALL.index("[shape]")] + bodies + auto
+        results = {}
+        for length, mass in [(1, 1), (0.005, 1), (300, 1), (1, 1e-5), (1, 1e5), (0.01, 1e5)]:
+            unit = length * math.sqrt(mass)
+            name = f"{length}_{mass}"
+            run = self.run_small(name, config=base.format(length, 1.7 * length, mass))
+            summary = self.summary(name)
+            self.assertTrue(summary["equilibrated"], name)
+            self.assertNotIn("nan", run.stdout + run.stderr + self.read(f"{name}/log.txt"))
+            self.assertLess(0.5, summary["time"]["equilibration"] / unit / 8)
+            self.assertGreater(30, summary["time"]["equilibration"] / unit / 8)
+            scales = {"D_trans": length**2 / unit, "D_rot": 1 / unit, "collision_rate": 1 / unit, "t_C2_1overe": unit, "Z": 1}
+            for key, scale in scales.items():
+                estimate = summary["observables"][key]
+                value, error = estimate["value"] / scale, estimate["error"] / scale
+                one, its_error = results.setdefault(key, (value, error))
+                self.assertLess(abs(value - one), 5 * math.hypot(error, its_error), (name, key))
+                self.assertLess(error, 0.15 * value, (name, key))
+
     def test_neighbour_lists_give_the_same_collisions(self):
         config = MIXTURE.replace("time = 1\n", "time = 0\n").replace("time = 5", "time = 1")
         for neighbours in ["dilated", "obp", "cells"]:

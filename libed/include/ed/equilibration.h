@@ -35,7 +35,7 @@ struct Relaxation {
 /// row, from one origin and then from another one, and Z and S do not drift: their means over the two relaxations
 /// differ by no more than 1 % of Z and 0.05, or three standard errors. As long as they do, relaxations follow.
 ///
-/// It looks at the run once a time unit; a relaxation lasts at least four of them, for the means.
+/// It looks at the run once in an ed::time_unit; a relaxation lasts at least four of them, for the means.
 class ED_EXPORT EquilibrationMonitor {
  public:
   /// Begins now. Throws std::invalid_argument unless the groups are groups of all bodies.
@@ -44,7 +44,7 @@ class ED_EXPORT EquilibrationMonitor {
   EquilibrationMonitor(EquilibrationMonitor&&) noexcept;  ///< the one moved from can only be assigned to or destroyed
   EquilibrationMonitor& operator=(EquilibrationMonitor&&) noexcept;  ///< the same
 
-  /// Looks at the run, a time unit after it looked last.
+  /// Looks at the run, a time_unit of its bodies after it looked last.
   void measure(const Simulation& simulation);
 
   /// As of the last look.

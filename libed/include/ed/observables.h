@@ -160,7 +160,8 @@ inline std::vector<double> wave_numbers_about(double first_peak) {
 struct ObservablesOptions {
   int number;              ///< of bodies
   double duration;         ///< planned; the run may be stopped earlier
-  double longest_lag = 0;  ///< 0: a sixteenth of the duration, at most 40
+  double longest_lag = 0;  ///< 0: a sixteenth of the duration, at most 40 time units
+  double time_unit = 1;    ///< ed::time_unit of the bodies
   /// Their numbers add up to `number`; empty: one group of bodies of revolution.
   std::vector<BodyGroup> groups{};
   /// Wave numbers q at which F_self is measured, at most kMostWaveNumbers; the decay of the first one is fitted.
@@ -171,8 +172,8 @@ struct ObservablesOptions {
 ///
 /// Time origins follow each other at a sixteenth of the longest lag (more for very large systems); each is correlated
 /// with the states at 20 lags a decade after it (from a thousandth of the longest on; 10 a decade below, down to
-/// 0.002). Origins are gathered in blocks of one longest lag; when there are more than 32 blocks, neighbours are
-/// merged. Diffusion coefficients are null until the mean square displacement grows linearly (its logarithmic slope
+/// 0.002 time units). Origins are gathered in blocks of one longest lag; when there are more than 32 blocks, neighbours
+/// are merged. Diffusion coefficients are null until the mean square displacement grows linearly (its logarithmic slope
 /// over the fit window within 0.2 of 1).
 class ED_EXPORT Observables {
  public:

@@ -68,6 +68,16 @@ ED_EXPORT void check_species(const Species& species);
 /// The same for all species, and that there is one for every body.
 ED_EXPORT void check_species(const System& system);
 
+/// The time in which a body moves by its size at kT = 1: l sqrt(m), with l the radius of the sphere of its volume.
+ED_EXPORT double thermal_time(const Species& species);
+
+/// The mean thermal time of the bodies, rounded to a power of two, so that its multiples are exact. What lasts so long
+/// in one system lasts k times as long in one that is k times as large: times that nobody states are in this unit. 1
+/// where mass and (abc)^(1/3) are 1.
+ED_EXPORT double time_unit(const std::vector<Component>& components);
+/// The same for a state.
+ED_EXPORT double time_unit(const System& system);
+
 /// Volume of the bodies over volume of the box.
 ED_EXPORT double packing_fraction(const System& system);
 
@@ -115,13 +125,14 @@ struct Audit {
   double minimum_distance;  ///< over all pairs (nearest image), < 0: overlap; box if none are near
   int closest_i = -1;
   int closest_j = -1;
-  int overlaps = 0;    ///< pairs closer than -kAuditOverlap
+  int overlaps = 0;    ///< pairs that overlap by more than kAuditOverlap allows
   int unanswered = 0;  ///< pairs whose distance query declined
   bool finite = true;  ///< all numbers of the state are finite
   KineticState kinetic;
 };
 
-/// A pair counts as overlapping in an audit when its distance is below -kAuditOverlap (length).
+/// A pair counts as overlapping in an audit when its distance is below -kAuditOverlap times the sum of its bounding
+/// radii.
 inline constexpr double kAuditOverlap = 1e-12;
 
 /// Sums over all bodies, in units of kT where m and kT are 1.

@@ -30,10 +30,6 @@ inline constexpr double kOverlap = 1e-12;
 /// keeps it from being tried in vain.
 inline constexpr double kTangentAgreement = 3e-4;
 
-/// Length of an epoch: local times are measured from its start, so that they never grow and lose digits. Time unit; a
-/// power of two.
-inline constexpr double kEpoch = 1;
-
 /// Species: principal moments of inertia >= kLeastMoment * mass * (inscribed radius)^2. Dimensionless. Below, thermal
 /// bodies turn a hundred times while they move by their own size, and nothing is tested. (Above mass * (bounding
 /// radius)^2 no body has any.)
