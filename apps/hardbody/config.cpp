@@ -284,24 +284,48 @@ const char* need_of(const std::string& neighbours) {
   return "a body would meet two images of another";
 }
 
-void check_box(const TomlDocument& document, const Config& config) {
+/// The box that the bodies need over the one that they have.
+double box_ratio(const Config& config) {
   const std::vector<ed::Component> components = config.components();
+  return ed::smallest_box(components, config.neighbour_search()) / ed::box_for(components, config.packing_fraction);
+}
+
+/// The least number of bodies in the same proportions whose box is large enough; nothing if so many are too many. Sizes
+/// drawn anew may need more; a cell of an fcc lattice holds four.
+std::optional<int> least_number(const Config& config) {
+  const double ratio = box_ratio(config);
+  const int in_a_cell = config.start == "fcc" ? 4 : 1;
+  double least = std::max(2.0, std::ceil(config.number * (ratio * ratio * ratio)));
+  for (;;) {
+    least = std::ceil(least / in_a_cell) * in_a_cell;
+    if (least > kMostBodies) return std::nullopt;
+    const Config larger = with_number(config, static_cast<int>(least));
+    if (larger.number > kMostBodies) return std::nullopt;
+    if (box_ratio(larger) <= 1 && larger.number % in_a_cell == 0) return larger.number;
+    least += 1;
+  }
+}
+
+std::string larger_box(const Config& config) {
+  const std::optional<int> least = least_number(config);
+  return (least ? fmt::format("a number of at least {}{}", *least, config.mixture ? " in these proportions" : "")
+                : std::string("a lower packing fraction")) +
+         (config.mixture ? ", or bodies of less unequal sizes" : "");
+}
+
+void check_box(const TomlDocument& document, const Config& config) {
+  if (box_ratio(config) <= 1) return;
   double largest = 0;
-  for (const ed::Component& c : components) largest = std::max(largest, ed::bounding_radius(c.species.shape));
-  const double box = ed::box_for(components, config.packing_fraction);
-  const double ratio = ed::smallest_box(components, config.neighbour_search()) / box;
-  if (ratio <= 1) return;
-  // In the same proportions.
-  const int least = std::max(2, static_cast<int>(std::ceil(config.number * (ratio * ratio * ratio))));
+  for (const ed::Component& c : config.components()) largest = std::max(largest, ed::bounding_radius(c.species.shape));
   const Entry* number = document.find("system.number");
   const Entry* entry = number != nullptr ? number : document.find("system.packing_fraction");
   const bool by_species = config.mixture && number == nullptr;
   throw InputError(
       fmt::format("{}: {} is {}: the box, {:.4g} long at this packing fraction, is then too small for bodies of "
-                  "bounding radius {:.4g}{} ({}); accepted: a number of at least {}{}",
-                  entry->where, by_species ? "the number of bodies" : "system.number", config.number, box, largest,
-                  config.mixture ? ", the largest" : "", need_of(config.neighbours), least,
-                  config.mixture ? " in these proportions, or bodies of less unequal sizes" : ""));
+                  "bounding radius {:.4g}{} ({}); accepted: {}",
+                  entry->where, by_species ? "the number of bodies" : "system.number", config.number,
+                  ed::box_for(config.components(), config.packing_fraction), largest,
+                  config.mixture ? ", the largest" : "", need_of(config.neighbours), larger_box(config)));
 }
 
 /// Makes the start, which is all that tells whether it can be made.
@@ -311,13 +335,15 @@ void check_lattice(const TomlDocument& document, const Config& config) {
   try {
     (void)ed::lattice_start(config.components(), *lattice);
   } catch (const std::invalid_argument& error) {
-    const std::string_view message = error.what();
+    const std::string message = error.what();
     const Entry* entry = nullptr;
     for (const char* key : {"system.number", "system.packing_fraction", "system.nematic_order"}) {
       if (message.starts_with(std::string_view(key).substr(sizeof("system")))) entry = document.find(key);
     }
+    // Said by the species.
+    const bool by_species = entry == nullptr && message.starts_with("number is");
     if (entry == nullptr) entry = document.find("system.start");
-    throw InputError(fmt::format("{}: system.{}", entry->where, message));
+    throw InputError(fmt::format("{}: {}{}", entry->where, by_species ? "the sum of all " : "system.", message));
   }
 }
 

@@ -205,10 +205,10 @@ void take_numbers(const TomlDocument& document, Config& config) {
   for (std::size_t k = 0; k < config.species.size(); ++k) {
     const std::string section = species_name(k);
     if (const Entry* fraction = document.find(section + ".fraction")) {
-      throw InputError(
-          fmt::format("{}: {} is {}, while other species have a number; accepted: a number of each, or a "
-                      "fraction of each",
-                      fraction->where, fraction->key, fraction->value.shown));
+      const bool both = document.find(section + ".number") != nullptr;
+      throw InputError(fmt::format("{}: {} is {}, while {} number; accepted: a number of each, or a fraction of each",
+                                   fraction->where, fraction->key, fraction->value.shown,
+                                   both ? "it also has a" : "other species have a"));
     }
     std::int64_t number = 0;
     read_integer(document, section + ".number", 1, kMostBodies, number);
@@ -413,6 +413,20 @@ std::optional<double> ShapeConfig::true_aspect_ratio() const {
 
 int SpeciesConfig::rotation_axes() const {
   return ed::symmetry_axis(body) ? 2 : 3;
+}
+
+Config with_number(Config config, int number) {
+  const double factor = static_cast<double>(number) / config.number;
+  if (config.species[0].fraction || !config.mixture) {
+    config.number = number;
+    if (config.mixture) apportion(number, config.species);
+    if (!config.mixture) config.species[0].number = number;
+  } else {
+    for (SpeciesConfig& s : config.species) s.number = static_cast<int>(std::ceil(s.number * factor));
+    config.number = static_cast<int>(sum_of_numbers(config.species));
+  }
+  draw_all_sizes(config);
+  return config;
 }
 
 void read_species(const TomlDocument& document, Config& config) {

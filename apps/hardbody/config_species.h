@@ -18,4 +18,7 @@ std::string species_name(std::size_t index);
 /// InputError.
 void read_species(const TomlDocument& document, Config& config);
 
+/// The same bodies in the same proportions, `number` of them or as few more as that takes: sizes are drawn anew.
+Config with_number(Config config, int number);
+
 }  // namespace hardbody

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
 #include <sstream>
 #include <stdexcept>
 #include <vector>
@@ -71,8 +72,8 @@ void check_order(double order) {
 /// Sweeps over all bodies in one round, after each of which is seen whether the order still falls; and as many after it
 /// has arrived, in which the orientations forget where they come from.
 constexpr int kRound = 50;
-/// Less than this a round is no progress.
-constexpr double kLeastFall = 2e-3;
+/// Less than this a round, relative to 1 - S, is no progress.
+constexpr double kLeastFall = 4e-3;
 
 /// All bodies turning together would lower the order about z too: elements xz and yz of the order tensor stay below
 /// kMostTilt / sqrt(number of bodies), their standard deviation for independent bodies being at most 0.39 of that each.
@@ -165,11 +166,15 @@ class Turning {
   std::vector<NearBody> near_;
 };
 
+/// The value named is accepted: the same turns come to it on their way to `reached`.
 [[noreturn]] void refuse_order(const System& system, double order, double reached) {
+  const double from_one = 0.9 * (1 - reached);
+  const double unit = std::pow(10, std::floor(std::log10(from_one)) - 1);
   std::ostringstream message;
   message << "nematic_order is " << order << ": at packing fraction " << packing_fraction(system)
           << " bodies on these sites do not turn further than to an order of " << reached << "; accepted: at least "
-          << std::min(0.99, std::ceil(100 * reached + 1) / 100) << ", or a lower packing fraction";
+          << std::setprecision(12) << 1 - std::floor(from_one / unit) * unit
+          << ", no nematic_order (all aligned), or a lower packing fraction";
   throw std::invalid_argument(message.str());
 }
 
@@ -184,7 +189,7 @@ void turn_to_order(System& system, const std::vector<int>& axes, double order, R
       turning.sweep(random);
       mean += turning.order() / kRound;
     }
-    if (!turning.arrived() && mean > before - kLeastFall) refuse_order(system, order, mean);
+    if (!turning.arrived() && mean > before - kLeastFall * (1 - mean)) refuse_order(system, order, mean);
     before = mean;
   }
   for (int k = 0; k < kRound; ++k) turning.sweep(random);

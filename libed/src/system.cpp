@@ -12,8 +12,10 @@
 #include <geom/distance.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -46,18 +48,48 @@ double smallest_box_of(const std::vector<BodyShape>& shapes, bool of_revolution,
   return std::max(by_images, internal::smallest_oriented_box(shapes, internal::kThinnestOriented * inscribed));
 }
 
-/// Whether the moments are such as mass within the shape can have, and not next to nothing.
-void check_moments(const Species& species, double smallest, double largest) {
-  constexpr double kRounding = 1e-9;
+[[noreturn]] void refuse_moments(const Vector3d& inertia, const std::string& why) {
+  std::ostringstream message;
+  message << "inertia is [" << inertia.x() << ", " << inertia.y() << ", " << inertia.z() << "]; accepted: " << why;
+  throw std::invalid_argument(message.str());
+}
+
+/// "I2 + I3 - I1 at most 0.5".
+std::string bound_of_sum(int axis, double most) {
+  constexpr std::array<const char*, 3> kSums = {"I2 + I3 - I1", "I3 + I1 - I2", "I1 + I2 - I3"};
+  std::ostringstream text;
+  text << kSums[static_cast<std::size_t>(axis)] << " at most " << most
+       << ", twice the mass times the square of the body's half extent along body "
+       << "xyz"[axis];
+  return text.str();
+}
+
+/// Throws unless the moments are such as mass within the shape can have, and not next to nothing: the second moments
+/// S_x = <x^2> m = (I_y + I_z - I_x) / 2, ... are those of mass within the half extents, and their sum that of mass
+/// within the bounding radius. Without spin the moment about the symmetry axis is not looked at: of a body of
+/// revolution I = S_x + S_z there, 2 S_x <= m (half extent)^2.
+void check_moments(const Species& species, std::optional<int> symmetry_axis) {
+  constexpr double kRounding = 1 + 1e-9;
+  const Vector3d& I = species.inertia;
+  const double m = species.mass;
   const double R = bounding_radius(species.shape);
   const double r = inscribed_radius(species.shape);
-  const double least = kLeastMoment * species.mass * r * r;
-  const double most = species.mass * R * R;
-  if (smallest >= least && largest <= most * (1 + kRounding)) return;
-  std::ostringstream message;
-  message << "inertia has a moment of " << (smallest < least ? smallest : largest) << "; accepted: " << least << " to "
-          << most << ", that of all mass at the bounding radius";
-  throw std::invalid_argument(message.str());
+  const Vector3d h2 = half_extents(species.shape).cwiseAbs2();
+  const double least = kLeastMoment * m * r * r;
+  std::ostringstream range;
+  if (!species.spins) {
+    const int across = (*symmetry_axis + 1) % 3;
+    const double most = m * std::min(R * R, 0.5 * h2[across] + h2[*symmetry_axis]);
+    range << "moments from " << least << " to " << most << " across the axis, those of mass within the body";
+    if (!(I[across] >= least && I[across] <= most * kRounding)) refuse_moments(I, range.str());
+    return;
+  }
+  range << "moments from " << least << ", and a sum of at most " << 2 * m * R * R
+        << ", that of all mass at the bounding radius";
+  if (!(I.minCoeff() >= least && I.sum() <= 2 * m * R * R * kRounding)) refuse_moments(I, range.str());
+  for (int k = 0; k < 3; ++k) {
+    if (I.sum() - 2 * I[k] > 2 * m * h2[k] * kRounding) refuse_moments(I, bound_of_sum(k, 2 * m * h2[k]));
+  }
 }
 
 }  // namespace
@@ -78,7 +110,7 @@ void check_species(const Species& species) {
   const auto axis = symmetry_axis(species);
   if (species.spins) {
     internal::check_inertia(species.inertia);
-    check_moments(species, species.inertia.minCoeff(), species.inertia.maxCoeff());
+    check_moments(species, axis);
     return;
   }
   if (!axis) {
@@ -89,7 +121,7 @@ void check_species(const Species& species) {
   if (!(perpendicular > 0) || !std::isfinite(perpendicular)) {
     throw std::invalid_argument("inertia is not positive; accepted: positive moments");
   }
-  check_moments(species, perpendicular, perpendicular);
+  check_moments(species, axis);
 }
 
 void check_species(const System& system) {

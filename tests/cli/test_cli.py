@@ -598,6 +598,8 @@ class BadConfig(Case):
                 ('"round"', '"round"', '"uniform"'),
                 ("[1, 2, 3.1]", "sum"),
                 ("[1, 2, 0]", "positive"),
+                ("[0.001, 1.2, 1.2]", "I2 + I3 - I1 at most"),
+                ("[9, 9, 9]", "mass at the bounding radius"),
             ]:
                 with self.subTest(shape=shape, inertia=inertia):
                     config = SMALL.replace("aspect_ratio = 2", shape) + f"[dynamics]\ninertia = {inertia}\n"
@@ -649,6 +651,38 @@ class BadConfig(Case):
         least = int(re.search(r"at least (\d+)", message)[1])
         self.refuse(SMALL.replace("number = 64", f"number = {least - 1}"), "box")
         self.run_small("least", "--set", f"system.number={least}", "--set", "production.time=1")
+
+    def test_the_number_named_is_accepted(self):
+        sizes = '[[species]]\nsemi_axes = [1, 1, 2]\nsizes = "lognormal"\nwidth = 0.2\n'
+        base = SMALL.replace("number = 64", "number = 8")
+        drawn = base[: base.index("[shape]")] + sizes + base[base.index("[equilibration]") :]
+        mixture = MIXTURE.replace("number = 100", "number = 10").replace("[0.5, 0.5, 1.0]", "[1, 1, 2]")
+        several = mixture.replace("number = 10\n", "").replace("fraction = 0.6", "number = 5").replace("fraction = 0.4", "number = 5")
+        def least_number(config, pattern):
+            self.write("few.toml", config)
+            result = self.hardbody("run", "few.toml", "--out", "few")
+            self.assert_refused(result, "few.toml:", "box")
+            return int(re.search(pattern, result.stderr)[1])
+
+        for name, config in [("sizes", drawn), ("fractions", mixture), ("numbers", several)]:
+            for phi in [0.1, 0.2, 0.3]:
+                with self.subTest(name=name, phi=phi):
+                    dense = re.sub("packing_fraction = .*", f"packing_fraction = {phi}", config)
+                    least = least_number(dense, r"at least (\d+) in these proportions, or bodies")
+                    if name == "numbers":
+                        more = dense.replace("number = 5", f"number = {math.ceil(least / 2)}")
+                    else:
+                        more = re.sub("number = .*", f"number = {least}", dense)
+                    self.write("more.toml", more)
+                    result = self.hardbody("run", "more.toml", "--out", f"{name}{phi}", "--set", "production.time=0", "equilibration.time=0")
+                    self.assertEqual(result.returncode, 0, result.stderr)
+        fcc = SMALL.replace("number = 64", 'number = 8\nstart = "fcc"')
+        self.assertEqual(least_number(fcc, r"at least (\d+)\n") % 4, 0)
+        one_among_many = several.replace("number = 5", "number = 1", 1).replace("number = 5", "number = 900000")
+        self.write("few.toml", one_among_many.replace("[1, 1, 2]", "[300, 300, 300]"))
+        many = self.hardbody("run", "few.toml", "--out", "few")
+        self.assert_refused(many, "bounding radius 300", "a lower packing fraction, or bodies of less unequal sizes")
+        self.assertNotIn("at least", many.stderr)
 
     def test_boxes_that_bodies_turn_in_need_room(self):
         octahedra = SMALL.replace("aspect_ratio = 2", 'kind = "superellipsoid"\nsemi_axes = [1, 1, 1]\nexponents = [1.6, 1.6]')
@@ -765,6 +799,7 @@ class BadSpecies(Case):
         both = MIXTURE.replace("fraction = 0.6", "number = 60")
         self.refuse(both, "bad.toml:12: ", "species[2].fraction is 0.4", "species have a number")
         self.refuse(both.replace("fraction = 0.4\n", ""), "bad.toml:8: ", "species[2].number is missing")
+        self.refuse(both.replace("fraction = 0.4", "fraction = 0.4\nnumber = 40"), "bad.toml:12: ", "it also has a number")
         numbers = both.replace("fraction = 0.4", "number = 41")
         self.refuse(numbers, "bad.toml:3: ", "system.number is 100", "101")
         self.refuse(numbers.replace("= 41", "= 0"), "bad.toml:12: ", "species[2].number is 0", "1 to")

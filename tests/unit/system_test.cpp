@@ -1,20 +1,24 @@
 // Species, boxes, kinetic energies, and the audit that every claim of "no overlap" rests on.
 
 #include <common/ed_states.h>
+#include <common/message_of.h>
 
 #include <ed/ed.h>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <vector>
 
 namespace {
 
 using ed_test::Inertia;
 using Eigen::Vector3d;
+using ::testing::HasSubstr;
 
 constexpr double kRounding = 1e-14;
 
@@ -47,6 +51,70 @@ TEST(Species, OfUniformDensityHasTheInertiaOfAnEllipsoidAndSpins) {
   EXPECT_NEAR(species.inertia.y(), 2 * (1.0 + 9.0) / 5, kRounding);
   EXPECT_NEAR(species.inertia.z(), 2 * 2.0 / 5, kRounding);
   EXPECT_TRUE(species.spins);
+}
+
+/// Of equal masses at +- points: a centre at the origin.
+Vector3d moments_of(const std::vector<Vector3d>& points, double mass) {
+  Vector3d second = Vector3d::Zero();
+  for (const Vector3d& x : points) second += x.cwiseAbs2() * (mass / static_cast<double>(points.size()));
+  return Vector3d::Constant(second.sum()) - second;
+}
+
+/// Few masses, most of them on the surface: whatever a body can have is accepted.
+TEST(Species, MayHaveTheMomentsOfAnyMassWithinTheBody) {
+  ed::Random random(7);
+  for (const ed::BodyShape& shape :
+       {ed::BodyShape(geom::Ellipsoid({1, 2, 3})), ed::BodyShape(geom::Superellipsoid({1, 1, 2}, 0.3, 0.5)),
+        ed::BodyShape(geom::Superellipsoid({1, 0.8, 0.6}, 1.6, 1.2))}) {
+    for (int trial = 0; trial < 2000; ++trial) {
+      std::vector<Vector3d> points;
+      for (int k = 0; k < 3; ++k) points.push_back(ed::support(shape, random.direction()).point);
+      ed::Species species{shape, 2.5, moments_of(points, 2.5)};
+      if (species.inertia.minCoeff() < ed::kLeastMoment * 2.5) continue;
+      EXPECT_NO_THROW(ed::check_species(species)) << species.inertia.transpose();
+    }
+  }
+}
+
+TEST(Species, MayNotHaveMomentsOfMassOutsideTheBody) {
+  const geom::Ellipsoid flat({1, 2, 0.1});
+  const auto message = [&](const Vector3d& inertia, bool spins = true,
+                           const ed::BodyShape& shape = geom::Ellipsoid({1, 2, 0.1})) {
+    return test_common::message_of([&] { ed::check_species({shape, 1, inertia, spins}); });
+  };
+  EXPECT_THAT(message({4, 1, 5}), HasSubstr("sum of at most 8"));
+  // A sum that would do, but mass a distance of 1 above the plane that the body does not leave.
+  EXPECT_THAT(message({2, 2, 2}), HasSubstr("I1 + I2 - I3 at most 0.02"));
+  EXPECT_THAT(message({0.5, 1.6, 2}), HasSubstr("I2 + I3 - I1 at most 2,"));
+  EXPECT_EQ(message({1, 0.5, 1.5}), "no std::invalid_argument");
+  // Across the axis of revolution, all that counts without spin.
+  const ed::BodyShape rod = geom::Ellipsoid({1, 1, 3});
+  EXPECT_EQ(message({9, 9, 0}, false, rod), "no std::invalid_argument");
+  EXPECT_THAT(message({9.1, 9.1, 0}, false, rod), HasSubstr("across the axis"));
+  const ed::BodyShape disc = geom::Ellipsoid({3, 3, 0.1});
+  EXPECT_THAT(message({5, 5, 0}, false, disc), HasSubstr("across the axis"));
+}
+
+/// A body without spin may have any moment about its axis, also none.
+TEST(Species, WithoutSpinHasNoMomentAboutItsAxis) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const ed::BodyShape& shape :
+       {ed::BodyShape(geom::Ellipsoid({1, 1, 2})), ed::BodyShape(geom::Superellipsoid({1, 1, 2}, 0.7, 1))}) {
+    double time = 0;
+    for (const double axial : {0.4, nan, 0.0, std::numeric_limits<double>::infinity()}) {
+      ed::StartOptions options;
+      options.packing_fraction = 0.3;
+      ed::Simulation simulation(
+          ed::random_start(std::vector<ed::Component>{{{shape, 1, {0.8, 0.8, axial}, false}, 64}}, options));
+      simulation.run_collisions(500);
+      const ed::KineticState kinetic = simulation.kinetic();
+      EXPECT_NEAR(kinetic.energy(), 0.5 * (3 * 64 - 3 + 2 * 64), 1e-9);
+      EXPECT_EQ(kinetic.spin_energy, 0);
+      EXPECT_EQ(kinetic.axis_energy.z(), 0);
+      if (time == 0) time = simulation.time();
+      EXPECT_EQ(simulation.time(), time) << axial;
+    }
+  }
 }
 
 TEST(Box, HoldsItsPackingFraction) {
@@ -117,6 +185,17 @@ TEST(Audit, SeesOverlapsBeyondRoundingWhereverTheyAre) {
         EXPECT_NEAR(audit.minimum_distance, gap, 2e-14);
         EXPECT_EQ(audit.overlaps, gap < -ed::kAuditOverlap ? 1 : 0) << gap;
       }
+    }
+  }
+}
+
+TEST(Audit, CountsOverlapsInTheSizeOfTheBodies) {
+  for (const double length : {1e-3, 1.0, 1e3}) {
+    const ed::Species species = ed::paper_species(geom::Ellipsoid(length * Vector3d(1, 1, 3)));
+    for (const double gap : {-1e-13, -1e-11}) {
+      const Vector3d r(length * (2 + gap), 0, 0);
+      const ed::Audit audit = ed::audit(two_bodies(species, 15 * length, r, Eigen::Matrix3d::Identity()));
+      EXPECT_EQ(audit.overlaps, gap < -1e-12 ? 1 : 0) << length << " " << gap;
     }
   }
 }
