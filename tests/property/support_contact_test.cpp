@@ -31,6 +31,7 @@ using geom_test::PairSet;
 using geom_test::Random;
 
 constexpr double kShortest = 2e-5;   ///< the least step of the reference, in units of size over the largest rate
+constexpr int kHalvings = 4;        ///< of such a step
 constexpr double kGrazing = 1e-2;    ///< normal velocity below this share of the relative one
 constexpr double kResolved = 1e-12;  ///< overlaps below this, in units of the size, are rounding
 constexpr double kHorizon = 3;
@@ -183,8 +184,24 @@ double least_distance(const MovingPair& pair, double begin, double end, double& 
   return std::min(d_m, d_p);
 }
 
+/// The first time in (begin, end) that bisection finds at which the bodies overlap, or infinity: intervals are halved
+/// kHalvings times as long as the distances at their ends, which change by no more than `rate`, leave room for it.
+double dip(const MovingPair& pair, double rate, double begin, double d_begin, double end, double d_end,
+           int halvings = kHalvings) {
+  const double overlap = -kResolved * pair.size();
+  if (halvings == 0 || 0.5 * (d_begin + d_end - rate * (end - begin)) >= overlap) {
+    return std::numeric_limits<double>::infinity();
+  }
+  const double middle = 0.5 * (begin + end);
+  const double d = pair.distance(middle).distance;
+  const double before = dip(pair, rate, begin, d_begin, middle, d, halvings - 1);
+  if (before < end) return before;
+  return d < overlap ? middle : dip(pair, rate, middle, d, end, d_end, halvings - 1);
+}
+
 /// A time at which the bodies overlap by more than kResolved, or infinity: the first that steps of the distance over
-/// its largest rate find, which are never shorter than kShortest, or a minimum between three of them.
+/// its largest rate find, which are never shorter than kShortest; where one was that long, bisection of it; or a
+/// minimum between three of them.
 double reference(const MovingPair& pair, double t_end) {
   const double rate = pair.rate();
   const double overlap = -kResolved * pair.size();
@@ -192,9 +209,14 @@ double reference(const MovingPair& pair, double t_end) {
   double t = 0, t1 = 0, t2 = 0, d1 = 0, d2 = 0;
   while (t < t_end) {
     const double d = pair.distance(t).distance;
+    if (t > 0) {
+      const double between = dip(pair, rate, t1, d1, t, d);
+      if (between < t) return between;
+    }
     if (d < overlap) return t;
     double at;
-    if (d1 < d2 && d1 <= d && d1 < 1e-6 * pair.size() && least_distance(pair, t2, t, at) < overlap) return at;
+    const bool near = d1 < 2 * rate * shortest;
+    if (d1 < d2 && d1 <= d && near && least_distance(pair, t2, t, at) < overlap) return at;
     t2 = t1;
     d2 = d1;
     t1 = t;
