@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 
 #include <array>
+#include <cmath>
 
 namespace quad {
 
@@ -37,9 +38,9 @@ class ExactSpheroid {
 };
 
 /// Free rotation of a body whose first two moments agree (Landau and Lifshitz, Mechanics, sec. 33).
-class ExactTop {
+class ExactSymmetricTop {
  public:
-  ExactTop(const Eigen::Vector3d& inertia, const Eigen::Matrix3d& R, const Eigen::Vector3d& omega, double time)
+  ExactSymmetricTop(const Eigen::Vector3d& inertia, const Eigen::Matrix3d& R, const Eigen::Vector3d& omega, double time)
       : time_(time) {
     z_ = unit(Quad3(Eigen::Vector3d(R.col(2))));
     const Quad3 x(Eigen::Vector3d(R.col(0)));
@@ -66,11 +67,95 @@ class ExactTop {
   Quad3 x_, z_, l_;
 };
 
-/// A superellipsoid with exponents e1, e2 of 0.5, 1 or 1.5, whose dual exponents 2 / (2 - e), 4/3, 2 and 4, need only
-/// roots.
+/// Free rotation of a body with any moments: Euler's equations and those of its axes by their Taylor series, a quarter
+/// of a radian a step, with what is left out below 1e-30.
+class ExactAsymmetricTop {
+ public:
+  ExactAsymmetricTop(const Eigen::Vector3d& inertia, const Eigen::Matrix3d& R, const Eigen::Vector3d& omega,
+                     double time)
+      : time_(time) {
+    const Quad3 z = unit(Quad3(Eigen::Vector3d(R.col(2))));
+    const Quad3 x(Eigen::Vector3d(R.col(0)));
+    axes_[2] = z;
+    axes_[0] = unit(x - x.dot(z) * z);
+    axes_[1] = z.cross(axes_[0]);
+    const Quad3 w(omega);
+    for (int k = 0; k < 3; ++k) {
+      rates_[k] = w.dot(axes_[k]);
+      const Quad next = inertia[(k + 1) % 3];
+      coupling_[k] = (next - inertia[(k + 2) % 3]) / inertia[k];
+    }
+    const double fastest = omega.norm() * std::sqrt(inertia.maxCoeff() / inertia.minCoeff());
+    longest_ = fastest > 0 ? 0.25 / fastest : 1e300;
+  }
+
+  /// n in the body's axes.
+  std::array<Quad, 3> seen(Quad t, const Quad3& n) const {
+    go_to(t);
+    return {n.dot(axes_[0]), n.dot(axes_[1]), n.dot(axes_[2])};
+  }
+
+ private:
+  static constexpr int kOrder = 44;
+
+  /// From where it was asked last.
+  void go_to(Quad t) const {
+    while (time_ != t) {
+      const Quad left = t - time_;
+      if (abs(left) <= longest_) {
+        step(left);
+        time_ = t;
+      } else {
+        const Quad one = left > 0 ? Quad(longest_) : Quad(-longest_);
+        step(one);
+        time_ = time_ + one;
+      }
+    }
+  }
+
+  void step(Quad h) const {
+    std::array<std::array<Quad, 3>, kOrder + 1> w{};
+    std::array<std::array<Quad3, 3>, kOrder + 1> e{};
+    w[0] = rates_;
+    e[0] = axes_;
+    for (int n = 0; n < kOrder; ++n) {
+      for (int k = 0; k < 3; ++k) {
+        const int l = (k + 1) % 3;
+        const int m = (k + 2) % 3;
+        Quad product = 0;
+        Quad3 turn;  // omega x e_k = omega_m e_l - omega_l e_m
+        for (int j = 0; j <= n; ++j) {
+          product += w[j][l] * w[n - j][m];
+          turn = turn + (w[j][m] * e[n - j][l] - w[j][l] * e[n - j][m]);
+        }
+        w[n + 1][k] = coupling_[k] * product / (n + 1);
+        e[n + 1][k] = (Quad(1) / (n + 1)) * turn;
+      }
+    }
+    for (int k = 0; k < 3; ++k) {
+      Quad rate = 0;
+      Quad3 axis;
+      for (int n = kOrder; n >= 0; --n) {
+        rate = rate * h + w[n][k];
+        axis = h * axis + e[n][k];
+      }
+      rates_[k] = rate;
+      axes_[k] = axis;
+    }
+  }
+
+  mutable Quad time_;
+  mutable std::array<Quad, 3> rates_;  ///< about the body's axes
+  mutable std::array<Quad3, 3> axes_;
+  std::array<Quad, 3> coupling_;
+  double longest_;  ///< step
+};
+
+/// A superellipsoid with any exponents; roots alone where the dual ones, 2 / (2 - e), need no more.
+template <class Top>
 class ExactSuperellipsoid {
  public:
-  ExactSuperellipsoid(const Eigen::Vector3d& semi_axes, double e1, double e2, const ExactTop& top)
+  ExactSuperellipsoid(const Eigen::Vector3d& semi_axes, double e1, double e2, const Top& top)
       : axes_(semi_axes), e1_(e1), e2_(e2), top_(top) {}
 
   Quad height(Quad t, const Quad3& n) const {
@@ -81,25 +166,29 @@ class ExactSuperellipsoid {
  private:
   static Quad norm(double e, Quad x, Quad y) {
     if (e == 1) return sqrt(x * x + y * y);
-    if (e > 1) return sqrt(sqrt(x * x * x * x + y * y * y * y));
-    const Quad s = sqrt(x * cbrt(x) + y * cbrt(y));
-    return s * sqrt(s);
+    if (e == 1.5) return sqrt(sqrt(x * x * x * x + y * y * y * y));
+    if (e == 0.5) {
+      const Quad s = sqrt(x * cbrt(x) + y * cbrt(y));
+      return s * sqrt(s);
+    }
+    const Quad dual = 2 / (2 - static_cast<Quad>(e));
+    return pow(pow(x, dual) + pow(y, dual), 1 / dual);
   }
 
   Quad3 axes_;
   double e1_, e2_;
-  ExactTop top_;
+  Top top_;
 };
 
 class ExactSpherocylinder {
  public:
-  ExactSpherocylinder(double half_length, double radius, const ExactTop& top)
+  ExactSpherocylinder(double half_length, double radius, const ExactSymmetricTop& top)
       : half_length_(half_length), radius_(radius), top_(top) {}
   Quad height(Quad t, const Quad3& n) const { return radius_ + half_length_ * abs(top_.seen(t, n)[2]); }
 
  private:
   Quad half_length_, radius_;
-  ExactTop top_;
+  ExactSymmetricTop top_;
 };
 
 /// Uniform motion of a centre.

@@ -32,6 +32,29 @@ inline Quad cbrt(Quad x) {
   return root;
 }
 
+/// By the series, of the argument less whole ln 2 and over 256; squared again. Error about 1e-31 of the value.
+inline Quad exp(Quad x) {
+  // ln 2 as the sum of a double and two corrections.
+  const Quad ln2 = static_cast<Quad>(0x1.62e42fefa39efp-1) + static_cast<Quad>(0x1.abc9e3b39803fp-56) +
+                   static_cast<Quad>(0x1.7b57a079a1934p-111);
+  const auto twos = static_cast<int>(std::lround(static_cast<double>(x / ln2)));
+  const Quad z = (x - twos * ln2) / 256;
+  // exp(z) - 1, so that squaring loses nothing.
+  Quad e = 0;
+  for (int k = 13; k >= 1; --k) e = z / k * (1 + e);
+  for (int k = 0; k < 8; ++k) e = e * (2 + e);
+  return (1 + e) * static_cast<Quad>(std::ldexp(1.0, twos));
+}
+/// Newton's method (Halley's form) from the double: its error is cubed.
+inline Quad log(Quad x) {
+  const Quad y = std::log(static_cast<double>(x));
+  const Quad e = exp(y);
+  return y + 2 * (x - e) / (x + e);
+}
+inline Quad pow(Quad x, Quad p) {
+  return x > 0 ? exp(p * log(x)) : Quad(0);
+}
+
 struct SinCos {
   Quad sin, cos;
 };

@@ -19,7 +19,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <numbers>
@@ -293,18 +295,25 @@ void try_spheroids(Random& random, bool search, Tally& tally) {
   if (search) judge_search(gauge_of(image), exact, scene.t, n, tally);
 }
 
-/// A body with two equal moments of inertia, about z.
+/// A body with two equal moments of inertia, about z; or with three different ones.
 struct Top {
   Vector3d inertia, omega;
   Eigen::Matrix3d R;
 
-  static Top draw(Random& random, double rate) {
+  static Top symmetric(Random& random, double rate) {
     const double perpendicular = log_uniform(random, 0.3, 3);
     const double axial = random.uniform() < 0.2 ? perpendicular : perpendicular * (0.2 + 1.6 * random.uniform());
     return {{perpendicular, perpendicular, axial}, rate * random.normal3(), random.rotation()};
   }
+  static Top asymmetric(Random& random, double rate) {
+    const Vector3d squares(log_uniform(random, 0.1, 1), log_uniform(random, 0.1, 1), log_uniform(random, 0.1, 1));
+    return {Vector3d::Constant(squares.sum()) - squares, rate * random.normal3(), random.rotation()};
+  }
   FreeTop free() const { return {inertia, R, omega}; }
-  quad::ExactTop exact(double time) const { return {inertia, R, omega, time}; }
+  template <class ExactTop>
+  ExactTop exact(double time) const {
+    return {inertia, R, omega, time};
+  }
 };
 
 RigidMotion draw_motion(Random& random, const Scene& scene, double speed, const Top& top) {
@@ -320,28 +329,35 @@ struct Flights {
   Top top_a, top_b;
   RigidMotion a, b;
 
-  Flights(Random& random, double reach) : scene(random, reach) {
+  template <class DrawTop>
+  Flights(Random& random, double reach, const DrawTop& draw_top) : scene(random, reach) {
     const double speed = draw_speed(random, reach, scene);
     const double rate = log_uniform(random, 1e-3, 3) * speed / reach;
-    top_a = Top::draw(random, rate);
-    top_b = Top::draw(random, rate);
+    top_a = draw_top(random, rate);
+    top_b = draw_top(random, rate);
     a = draw_motion(random, scene, speed, top_a);
     b = draw_motion(random, scene, speed, top_b);
   }
 };
 
-void try_superellipsoids(Random& random, bool search, Tally& tally) {
-  const auto exponent = [&] { return 0.5 * (1 + std::floor(3 * random.uniform())); };
-  const auto shape = [&] {
-    const Vector3d axes(log_uniform(random, 0.5, 2), log_uniform(random, 0.5, 2), log_uniform(random, 0.5, 2));
-    return geom::Superellipsoid(axes, exponent(), exponent());
+geom::Superellipsoid draw_superellipsoid(Random& random) {
+  constexpr std::array kExponents{0.25, 0.3, 0.5, 0.7, 1.0, 1.3, 1.5, 1.6};
+  const auto exponent = [&] {
+    return kExponents[static_cast<std::size_t>(random.uniform() * static_cast<double>(kExponents.size()))];
   };
-  const geom::Superellipsoid A = shape();
-  const geom::Superellipsoid B = shape();
+  const Vector3d axes(log_uniform(random, 0.5, 2), log_uniform(random, 0.5, 2), log_uniform(random, 0.5, 2));
+  return {axes, exponent(), exponent()};
+}
+
+template <class ExactTop, class DrawTop>
+void try_superellipsoids(Random& random, const DrawTop& draw_top, bool search, Tally& tally) {
+  using Exact = quad::ExactSuperellipsoid<ExactTop>;
+  const geom::Superellipsoid A = draw_superellipsoid(random);
+  const geom::Superellipsoid B = draw_superellipsoid(random);
   const NormBodyShape norm_a = norm_body(A);
   const NormBodyShape norm_b = norm_body(B);
   const double reach = norm_a.bounding_radius + norm_b.bounding_radius;
-  Flights flights(random, reach);
+  Flights flights(random, reach, draw_top);
   Scene& scene = flights.scene;
   RigidMotion& a = flights.a;
   RigidMotion& b = flights.b;
@@ -353,11 +369,9 @@ void try_superellipsoids(Random& random, bool search, Tally& tally) {
   };
   arrange(random, scene, n, reach * log_uniform(random, 1e-14, 1e-12), a, b, gauge_of, points);
   const Image image(a, b, scene);
-  const ExactPair<quad::ExactSuperellipsoid> exact{{A.semi_axes(), A.e1(), A.e2(), flights.top_a.exact(a.time)},
-                                                   {B.semi_axes(), B.e1(), B.e2(), flights.top_b.exact(b.time)},
-                                                   ExactPath::of(a),
-                                                   ExactPath::of(b),
-                                                   image.shift};
+  const ExactPair<Exact> exact{Exact(A.semi_axes(), A.e1(), A.e2(), flights.top_a.exact<ExactTop>(a.time)),
+                               Exact(B.semi_axes(), B.e1(), B.e2(), flights.top_b.exact<ExactTop>(b.time)),
+                               ExactPath::of(a), ExactPath::of(b), image.shift};
   judge(gauge_of(image), exact, scene.t, n, tally);
   if (search) judge_search(gauge_of(image), exact, scene.t, n, tally);
 }
@@ -367,7 +381,7 @@ void try_spherocylinders(Random& random, bool search, Tally& tally) {
   const double volume = std::numbers::pi * rod.radius * rod.radius * (2 * rod.half_length + 4 * rod.radius / 3);
   const BodyShape shape = CustomShape(rod, {"spherocylinder", volume, 2, true});
   const double reach = 2 * rod.bounding_radius();
-  Flights flights(random, reach);
+  Flights flights(random, reach, Top::symmetric);
   Scene& scene = flights.scene;
   RigidMotion& a = flights.a;
   RigidMotion& b = flights.b;
@@ -379,11 +393,12 @@ void try_spherocylinders(Random& random, bool search, Tally& tally) {
   };
   arrange(random, scene, n, reach * log_uniform(random, 1e-14, 1e-12), a, b, gauge_of, points);
   const Image image(a, b, scene);
-  const ExactPair<quad::ExactSpherocylinder> exact{{rod.half_length, rod.radius, flights.top_a.exact(a.time)},
-                                                   {rod.half_length, rod.radius, flights.top_b.exact(b.time)},
-                                                   ExactPath::of(a),
-                                                   ExactPath::of(b),
-                                                   image.shift};
+  const ExactPair<quad::ExactSpherocylinder> exact{
+      {rod.half_length, rod.radius, flights.top_a.exact<quad::ExactSymmetricTop>(a.time)},
+      {rod.half_length, rod.radius, flights.top_b.exact<quad::ExactSymmetricTop>(b.time)},
+      ExactPath::of(a),
+      ExactPath::of(b),
+      image.shift};
   judge(gauge_of(image), exact, scene.t, n, tally);
   if (search) judge_search(gauge_of(image), exact, scene.t, n, tally);
 }
@@ -424,7 +439,17 @@ TEST(Rounding, BodiesOfRevolutionWithSpin) {
 }
 
 TEST(Rounding, SuperellipsoidsAndTriaxialEllipsoids) {
-  expect_certified(run("superellipsoids", 3, finder_test::scaled(3000, 150'000), try_superellipsoids));
+  expect_certified(
+      run("superellipsoids", 3, finder_test::scaled(3000, 150'000), [](Random& random, bool search, Tally& tally) {
+        try_superellipsoids<quad::ExactSymmetricTop>(random, Top::symmetric, search, tally);
+      }));
+}
+
+TEST(Rounding, BodiesWithThreeDifferentMoments) {
+  expect_certified(
+      run("asymmetric tops", 6, finder_test::scaled(500, 20'000), [](Random& random, bool search, Tally& tally) {
+        try_superellipsoids<quad::ExactAsymmetricTop>(random, Top::asymmetric, search, tally);
+      }));
 }
 
 TEST(Rounding, UsersShapes) {
@@ -443,8 +468,27 @@ TEST(Rounding, QuadruplePrecisionIsThat) {
     const quad::SinCos two = quad::sincos(2 * x);
     EXPECT_LE(tiny(one.sin - std::sin(static_cast<double>(x))), 2e-16);
     EXPECT_LE(tiny(one.cos - std::cos(static_cast<double>(x))), 2e-16);
+    EXPECT_LE(tiny(quad::exp(x / 10) * quad::exp(-x / 10) - 1), 1e-30);
+    EXPECT_LE(tiny(quad::log(quad::exp(x / 10)) - x / 10), 1e-30);
+    EXPECT_LE(tiny(quad::exp(x / 10) / std::exp(static_cast<double>(x / 10)) - 1), 1e-14);
     EXPECT_LE(tiny(2 * one.sin * one.cos - two.sin), 1e-30);
     EXPECT_LE(tiny(one.cos * one.cos - one.sin * one.sin - two.cos), 1e-30);
+  }
+}
+
+TEST(Rounding, ExactTopsAgree) {
+  Random random(8);
+  for (int k = 0; k < 100; ++k) {
+    const Top top = Top::symmetric(random, 2);
+    const auto one = top.exact<quad::ExactSymmetricTop>(0.1);
+    const auto other = top.exact<quad::ExactAsymmetricTop>(0.1);
+    const quad::Quad3 n(random.direction());
+    for (const double t : {0.1, 0.3, 4.0, 1.0}) {  // back again too
+      for (int axis = 0; axis < 3; ++axis) {
+        const auto i = static_cast<std::size_t>(axis);
+        EXPECT_LE(static_cast<double>(quad::abs(one.seen(t, n)[i] - other.seen(t, n)[i])), 1e-28);
+      }
+    }
   }
 }
 
