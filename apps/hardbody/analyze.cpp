@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <numbers>
@@ -230,13 +231,13 @@ void write_files(const fs::path& out, const std::string& name, const Stored& sto
     throw InputError(
         fmt::format("{}: cannot be written to: {}; accepted: a directory", out.string(), error.code().message()));
   }
-  const std::pair<const char*, std::string> files[] = {
-      {"msd.csv", msd_csv(results)},       {"alpha2.csv", alpha2_csv(results)},
-      {"c1.csv", c1_csv(results)},         {"c2.csv", c2_csv(results)},
-      {"f_self.csv", f_self_csv(results)}, {"velocity.csv", velocity_csv(results)},
-      {"g_r.csv", pairs_csv(results)},     {"s_q.csv", structure_csv(results)},
-      {"order.csv", order_csv(stored)},    {"analysis.json", analysis_json(name, stored, results)}};
-  for (const auto& [file, content] : files) write_file(out / file, content);
+  const std::array<std::string, kAnalysisFiles.size()> contents = {
+      msd_csv(results),    alpha2_csv(results),
+      c1_csv(results),     c2_csv(results),
+      f_self_csv(results), velocity_csv(results),
+      pairs_csv(results),  structure_csv(results),
+      order_csv(stored),   analysis_json(name, stored, results)};
+  for (std::size_t k = 0; k < contents.size(); ++k) write_file(out / kAnalysisFiles[k], contents[k]);
 }
 
 std::string shown(const ed::Estimate& e) {
@@ -253,7 +254,7 @@ int analyze(const AnalyzeArguments& arguments) {
         "{}: has no {}; accepted: the directory of a run with [output] trajectory = [\"gsd\"], or a GSD file",
         given.string(), kGsdFile));
   }
-  const fs::path out = arguments.out ? fs::path(*arguments.out) : file.parent_path() / "analysis";
+  const fs::path out = arguments.out ? fs::path(*arguments.out) : file.parent_path() / kAnalysisDirectory;
   const GsdReader reader(file);
   Stored stored = read_trajectory(reader, arguments);
   const RunChoices run = choices_of_run(file.parent_path());
@@ -266,8 +267,8 @@ int analyze(const AnalyzeArguments& arguments) {
     throw InputError(fmt::format("{}: {}", reader.name(), one_line(error.what())));
   }
   write_files(out, reader.name(), stored, results);
-  fmt::print("{}: {} frames of {} bodies, {} of them equally far apart in time and used\n", reader.name(),
-             stored.frames.size(), stored.order.size(), results.frames);
+  fmt::print("{}: {} frames of {} bodies, {} of them equally far apart in time and used{}\n", reader.name(),
+             stored.frames.size(), stored.order.size(), results.frames, reader.cut_off() ? kCutOff : "");
   for (const auto& [name, value] : {std::pair{"D_trans", results.D_trans},
                                     {"S", results.S},
                                     {"t_C2(1/e)", results.t_C2_1overe},

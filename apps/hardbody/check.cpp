@@ -140,7 +140,7 @@ std::vector<std::string> audit_frame(const Frame& frame, std::uint64_t k, const 
 
 void print_frames(const GsdReader& reader, const Frame& first, const Frame& last, const FramesAudit& all) {
   row("written by", fmt::format("{}", one_line(reader.application(), 60)));
-  row("frames", fmt::format("{}", reader.frame_count()));
+  row("frames", fmt::format("{}{}", reader.frame_count(), reader.cut_off() ? kCutOff : ""));
   row("bodies", fmt::format("{}", first.bodies.size()));
   row("state to every bit", reader.exact() ? "yes" : "no, 32-bit numbers");
   if (reader.exact()) row("times", fmt::format("{:g} to {:g}", first.time, last.time));

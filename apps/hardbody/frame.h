@@ -44,7 +44,8 @@ struct Frame {
   Eigen::Vector3d box = Eigen::Vector3d::Zero();  ///< edge lengths
   std::vector<FrameType> types;
   std::vector<FrameBody> bodies;
-  bool images = false;  ///< unwrapped positions are known
+  bool images = false;       ///< unwrapped positions are known
+  bool orientations = true;  ///< are known; of GSD files always: without them bodies are aligned
   // NaN where they are not known.
   double energy = std::numeric_limits<double>::quiet_NaN();  ///< kinetic, kT
   double Z = std::numeric_limits<double>::quiet_NaN();       ///< since production began; of its first moment: NaN

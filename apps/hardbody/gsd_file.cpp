@@ -35,10 +35,13 @@ constexpr std::size_t kHeader = 256;
 constexpr std::size_t kEntry = 32;
 constexpr std::size_t kName = 64;  ///< bytes of a name of version 1, and unit of the names' block
 constexpr std::size_t kTextInHeader = 64;
+constexpr std::uint64_t kMostNames = std::uint64_t{1} << 24;  ///< bytes of all names
+constexpr std::uint64_t kEntriesAtOnce = std::uint64_t{1}
+                                         << 16;  ///< read: a file may have holes where an index should be
 constexpr std::size_t kReserved = 80;
 
 /// "is cut off ..": a file that is shorter than what its header says.
-InputError cut_off(const std::string& name, std::uint64_t size, const char* before) {
+InputError ends_early(const std::string& name, std::uint64_t size, const char* before) {
   return InputError(
       fmt::format("{}: is cut off after {} bytes, before {}; accepted: a whole GSD file", name, size, before));
 }
@@ -177,7 +180,7 @@ GsdFile::GsdFile(std::unique_ptr<GsdBytes> bytes, std::string name) : bytes_(std
   if (start.size() < sizeof kMagic || std::memcmp(start.data(), &kMagic, sizeof kMagic) != 0) {
     throw InputError(fmt::format("{}: is not a GSD file; accepted: a GSD file", name_));
   }
-  if (start.size() < kHeader) throw cut_off(name_, size, "the end of its header");
+  if (start.size() < kHeader) throw ends_early(name_, size, "the end of its header");
   Reader reader(start);
   const Header header = take_header(reader);
   if (header.version != kVersion03 && (header.version < kVersion1 || header.version >= kVersion3)) {
@@ -188,15 +191,16 @@ GsdFile::GsdFile(std::unique_ptr<GsdBytes> bytes, std::string name) : bytes_(std
   schema_ = text_of(reader.raw(kTextInHeader));
   schema_version_ = header.schema_version;
   if (!fits(header.names_location, header.names_blocks, kName, size))
-    throw cut_off(name_, size, "the end of its names");
+    throw ends_early(name_, size, "the end of its names");
   if (!fits(header.index_location, header.index_entries, kEntry, size)) {
-    throw cut_off(name_, size, "the end of its index");
+    throw ends_early(name_, size, "the end of its index");
   }
   read_names(header.names_location, header.names_blocks, header.version < kVersion2);
   read_index(header.index_location, header.index_entries);
 }
 
 void GsdFile::read_names(std::uint64_t location, std::uint64_t blocks, bool fixed_length) {
+  if (blocks > kMostNames / kName) throw damaged(name_, "more than 16 MiB of names");
   const std::string bytes = bytes_->read(location, blocks * kName);
   for (std::size_t at = 0; at < bytes.size() && bytes[at] != '\0';) {
     if (names_.size() > std::numeric_limits<std::uint16_t>::max()) throw damaged(name_, "more than 65536 names");
@@ -208,29 +212,38 @@ void GsdFile::read_names(std::uint64_t location, std::uint64_t blocks, bool fixe
 }
 
 void GsdFile::read_index(std::uint64_t location, std::uint64_t entries) {
-  const std::string bytes = bytes_->read(location, entries * kEntry);
-  Reader reader(bytes);
-  bool sorted = true;
-  for (std::uint64_t k = 0; k < entries; ++k) {
-    std::uint8_t flags = 0;
-    const GsdChunk chunk = take_entry(reader, flags);
-    if (chunk.location == 0) break;
-    if (const char* why = fault(chunk, flags, names_.size(), entries)) throw damaged(name_, why);
-    if (!chunks_.empty() && chunk.frame < chunks_.back().frame) throw damaged(name_, "frames that run backwards");
-    frame_count_ = chunk.frame + 1;
-    if (!fits(chunk.location, chunk.rows, std::uint64_t{chunk.columns} * size_of(chunk.type), bytes_->size())) {
-      keep_frames(chunk.frame);  // written in this order, so that nothing whole can follow
-      break;
-    }
-    sorted = sorted && (chunks_.empty() || before(chunks_.back(), chunk));
-    chunks_.push_back(chunk);
+  bool more = true;
+  for (std::uint64_t first = 0; more && first < entries; first += kEntriesAtOnce) {
+    const std::uint64_t number = std::min(kEntriesAtOnce, entries - first);
+    const std::string bytes = bytes_->read(location + first * kEntry, number * kEntry);
+    Reader reader(bytes);
+    for (std::uint64_t k = 0; more && k < number; ++k) more = take_chunk(reader, entries);
   }
-  if (!sorted) std::stable_sort(chunks_.begin(), chunks_.end(), before);
+  if (!std::is_sorted(chunks_.begin(), chunks_.end(), before)) {
+    std::stable_sort(chunks_.begin(), chunks_.end(), before);
+  }
+}
+
+/// An entry of the index; false: there are no more of whole frames.
+bool GsdFile::take_chunk(Reader& reader, std::uint64_t entries) {
+  std::uint8_t flags = 0;
+  const GsdChunk chunk = take_entry(reader, flags);
+  if (chunk.location == 0) return false;
+  if (const char* why = fault(chunk, flags, names_.size(), entries)) throw damaged(name_, why);
+  if (!chunks_.empty() && chunk.frame < chunks_.back().frame) throw damaged(name_, "frames that run backwards");
+  frame_count_ = chunk.frame + 1;
+  if (!fits(chunk.location, chunk.rows, std::uint64_t{chunk.columns} * size_of(chunk.type), bytes_->size())) {
+    keep_frames(chunk.frame);  // written in this order, so that nothing whole can follow
+    return false;
+  }
+  chunks_.push_back(chunk);
+  return true;
 }
 
 void GsdFile::keep_frames(std::uint64_t count) {
   if (count >= frame_count_) return;
   frame_count_ = count;
+  cut_off_ = true;
   std::erase_if(chunks_, [count](const GsdChunk& chunk) { return chunk.frame >= count; });
 }
 

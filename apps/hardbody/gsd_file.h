@@ -6,6 +6,8 @@
 /// A file is a header of 256 bytes, an index of 32 bytes an array, a list of names, and the arrays themselves, in any
 /// order but the header first; little-endian.
 
+#include <ed/internal/archive.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -61,6 +63,9 @@ std::unique_ptr<GsdBytes> open_gsd_bytes(const std::filesystem::path& path);
 /// Bytes in memory.
 std::unique_ptr<GsdBytes> gsd_bytes_in_memory(std::string bytes);
 
+/// What is said of a file that ends before its last frame does.
+inline constexpr const char* kCutOff = "; the file was cut off, what follows them is left out";
+
 /// A GSD file that is read. Whatever the bytes are, no more memory is taken than a small multiple of what they are, and
 /// what is wrong with them is thrown as InputError, `name: what; accepted: ..`.
 class GsdFile {
@@ -75,8 +80,10 @@ class GsdFile {
   std::uint32_t schema_version() const { return schema_version_; }  ///< 0x00010004: 1.4
 
   std::uint64_t frame_count() const { return frame_count_; }
-  /// Leaves out the frames from `count` on.
+  /// Leaves out the frames from `count` on, which are not whole.
   void keep_frames(std::uint64_t count);
+  /// Whether frames were left out.
+  bool cut_off() const { return cut_off_; }
 
   /// Whether there can be an array of that name.
   bool has_name(std::string_view name) const { return number_of(name).has_value(); }
@@ -89,6 +96,7 @@ class GsdFile {
   std::optional<std::uint16_t> number_of(std::string_view name) const;
   void read_names(std::uint64_t location, std::uint64_t blocks, bool fixed_length);
   void read_index(std::uint64_t location, std::uint64_t entries);
+  bool take_chunk(ed::internal::Reader& reader, std::uint64_t entries);
 
   std::unique_ptr<GsdBytes> bytes_;
   std::string name_;
@@ -96,6 +104,7 @@ class GsdFile {
   std::string schema_;
   std::uint32_t schema_version_ = 0;
   std::uint64_t frame_count_ = 0;
+  bool cut_off_ = false;
   std::vector<std::string> names_;
   std::vector<GsdChunk> chunks_;  ///< sorted by frame, then name
 };

@@ -37,9 +37,11 @@ class GsdReader {
 
   /// Whole ones.
   std::uint64_t frame_count() const { return file_.frame_count(); }
+  /// Whether frames behind these are left out, as the file ends before they do.
+  bool cut_off() const { return file_.cut_off(); }
 
   /// Frame k < frame_count(). Numbers that are not finite, orientations that are none, types that there are not: all
-  /// are refused.
+  /// are refused; and frames of ours of which another program has changed the 32-bit numbers, but not the doubles.
   Frame read(std::uint64_t k) const;
 
  private:

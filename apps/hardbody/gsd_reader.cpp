@@ -28,6 +28,8 @@ using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
 constexpr std::uint32_t kMostTypes = 1'000'000;
+constexpr std::uint64_t kMostInFrame = 10'000'000;
+constexpr std::uint64_t kLongestTexts = std::uint64_t{1} << 26;  ///< bytes
 /// A stored quaternion's length may be off 1 by this: 32-bit numbers, integrated by another program.
 constexpr double kQuaternionTolerance = 1e-4;
 
@@ -121,6 +123,7 @@ std::vector<std::string> FrameReader::texts(const std::string& name) const {
   if (chunk == nullptr) return {};
   if (size_of(chunk->type) != 1) throw bad(name + " is not text", "bytes");
   if (chunk->rows > kMostTypes) throw bad(fmt::format("{} has {} rows", name, chunk->rows), "at most 10^6");
+  if (chunk->bytes() > kLongestTexts) throw bad(fmt::format("{} has {} bytes", name, chunk->bytes()), "at most 2^26");
   const std::string bytes = file_.read(*chunk);
   std::vector<std::string> result;
   for (std::size_t at = 0; at < bytes.size(); at += chunk->columns) {
@@ -169,6 +172,7 @@ Matrix3d FrameReader::rotation(const Eigen::Vector4d& q, std::size_t body) const
 void FrameReader::read_bodies(Frame& frame) const {
   const auto number = std::uint64_t{scalar<std::uint32_t>("particles/N", 0)};
   if (number == 0) throw bad("has no bodies", "at least 1");
+  if (number > kMostInFrame) throw bad(fmt::format("has {} bodies", number), "at most 10^7");
   const std::vector<double> position = finite<float>("particles/position", number, 3);
   if (position.empty()) throw bad(fmt::format("has no positions of its {} bodies", number), "particles/position");
   const std::vector<double> orientation = finite<float>("particles/orientation", number, 4);
@@ -302,6 +306,51 @@ ed::System FrameReader::read_exact() {
   return system;
 }
 
+/// Of a 32-bit number, relative.
+constexpr double kSingle = 1e-6;
+
+/// Which of the 32-bit numbers of a body are not those of the state; null: none.
+const char* edited(const FrameBody& body, const ed::Body& exact, const ed::Species& species, double box) {
+  Vector3d away = body.position - exact.position;
+  away -= box * (away / box).array().round().matrix();
+  if (!(away.norm() <= kSingle * box)) return "particles/position";
+  if (!((body.rotation - exact.rotation).norm() <= 10 * kSingle)) return "particles/orientation";
+  if (!(std::abs(body.mass - species.mass) <= kSingle * species.mass)) return "particles/mass";
+  if (!((body.inertia - species.inertia).norm() <= kSingle * species.inertia.norm()))
+    return "particles/moment_inertia";
+  if (!((body.velocity - exact.velocity).norm() <= kSingle * exact.velocity.norm())) return "particles/velocity";
+  const auto angular_momentum = [&](const Vector3d& omega) {
+    return Vector3d(species.inertia.cwiseProduct(exact.rotation.transpose() * omega));
+  };
+  const Vector3d L = angular_momentum(exact.angular_velocity);
+  const Vector3d change = angular_momentum(body.angular_velocity) - L;
+  return change.norm() <= 10 * kSingle * L.norm() ? nullptr : "particles/angmom";
+}
+
+bool same_shape(const ed::BodyShape& a, const ed::BodyShape& b) {
+  const Vector3d h = ed::half_extents(b);
+  return a.index() == b.index() && (ed::half_extents(a) - h).norm() <= kSingle * h.norm();
+}
+
+/// Throws if another program has changed what it knows of, the schema's own arrays, and kept the doubles of before.
+void check_unedited(const Frame& frame, const ed::System& system, const std::string& name, std::uint64_t k) {
+  const auto refuse = [&](const std::string& what) {
+    throw InputError(fmt::format(
+        "{}: frame {}: {} is not what log/ holds in double precision, so the frame was edited; accepted: an "
+        "unedited frame, or a file without the arrays of log/hardbody and log/particles/hardbody",
+        name, k, what));
+  };
+  if (!((frame.box - Vector3d::Constant(system.box)).norm() <= 2 * kSingle * system.box)) refuse("configuration/box");
+  for (std::size_t t = 0; t < system.species.size() && t < frame.types.size(); ++t) {
+    const auto& shape = frame.types[t].shape;
+    if (shape && !same_shape(*shape, system.species[t].shape)) refuse(fmt::format("the shape of type {}", t));
+  }
+  for (std::size_t i = 0; i < frame.bodies.size(); ++i) {
+    const char* what = edited(frame.bodies[i], system.bodies[i], system.species_of(static_cast<int>(i)), system.box);
+    if (what != nullptr) refuse(fmt::format("{} of body {}", what, i));
+  }
+}
+
 /// The numbers of the state in place of the rounded ones.
 void sharpen(Frame& frame, const ed::System& system) {
   frame.box = Vector3d::Constant(system.box);
@@ -345,6 +394,7 @@ Frame GsdReader::read(std::uint64_t k) const {
   Frame frame = reader.read();
   if (!exact_) return frame;
   frame.exact = reader.read_exact();
+  check_unedited(frame, *frame.exact, file_.name(), k);
   sharpen(frame, *frame.exact);
   return frame;
 }

@@ -130,6 +130,7 @@ class DumpFrame {
     return *value;
   }
 
+  void read_head(Frame& frame);
   void read_bounds(Frame& frame);
   void read_columns(std::string_view head);
   /// Columns of these names; nothing if one of them is missing.
@@ -148,8 +149,26 @@ class DumpFrame {
   std::map<std::string, std::uint32_t> types_;         ///< by type and shape, as text
 };
 
+/// What may stand before the time step: dump_modify has options for it.
+constexpr std::string_view kTime = "ITEM: TIME";
+constexpr std::string_view kUnits = "ITEM: UNITS";
+
+void DumpFrame::read_head(Frame& frame) {
+  std::string_view item = line("its time step");
+  for (; item == kTime || item == kUnits; item = line("its time step")) {
+    const std::string_view value = line("its time step");
+    if (item == kTime) frame.time = number(value, "the time");
+  }
+  const double step = number(line("its time step"), "the time step");
+  frame.step = step >= 0 && step < 1e18 ? static_cast<std::uint64_t>(step) : 0;
+}
+
 void DumpFrame::read_bounds(Frame& frame) {
-  if (words_of(line("its box")).size() > 6) throw bad("its box is tilted", "a box with right angles");
+  const std::vector<std::string_view> head = words_of(line("its box"));
+  if (head.size() > 6) throw bad("its box is tilted", "a box with right angles");
+  for (std::size_t k = 3; k < head.size(); ++k) {
+    if (head[k] != "pp") throw bad(fmt::format("its box has boundaries {}", head[k]), "a periodic box, pp pp pp");
+  }
   for (int axis = 0; axis < 3; ++axis) {
     const std::vector<std::string_view> words = words_of(line("the end of its box"));
     if (words.size() != 2) throw bad("a line of its box has not two numbers", "lower and upper bound");
@@ -259,9 +278,7 @@ void DumpFrame::read_body(const std::vector<std::string_view>& words, Frame& fra
 
 Frame DumpFrame::read() {
   Frame frame;
-  (void)line("its time step");
-  const double step = number(line("its time step"), "the time step");
-  frame.step = step >= 0 && step < 1e18 ? static_cast<std::uint64_t>(step) : 0;
+  read_head(frame);
   (void)line("its number of bodies");
   const double count = number(line("its number of bodies"), "the number of bodies");
   if (!(count >= 1 && count <= kMostBodies && count == std::floor(count))) {
@@ -269,6 +286,7 @@ Frame DumpFrame::read() {
   }
   read_bounds(frame);
   read_columns(line("its bodies"));
+  frame.orientations = columns({"quatw", "quati", "quatj", "quatk"}).has_value();
   for (auto k = static_cast<std::uint64_t>(count); k > 0; --k) {
     const std::vector<std::string_view> words = words_of(line("its last body"));
     if (words.size() != names_.size()) {
@@ -279,6 +297,11 @@ Frame DumpFrame::read() {
   std::uint32_t next = 0;
   for (auto& [type, group] : groups_) group = next++;
   std::stable_sort(order_.begin(), order_.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  for (std::size_t k = 1; k < order_.size(); ++k) {
+    if (order_[k].first == order_[k - 1].first) {
+      throw bad(fmt::format("two bodies have the id {:g}", order_[k].first), "an id of its own for each");
+    }
+  }
   std::vector<FrameBody> sorted;
   for (const auto& [id, body] : order_) {
     sorted.push_back(frame.bodies[body]);
@@ -294,14 +317,47 @@ InputError foreign(const std::string& name) {
   return InputError(fmt::format("{}: is neither a GSD file nor a LAMMPS text dump; accepted: one of these", name));
 }
 
+/// Whether it is how a dump may begin.
+bool begins_dump(std::string_view text) {
+  return text.starts_with(kBegin) || text.starts_with(kTime) || text.starts_with(kUnits);
+}
+
 /// All of a file that begins as a dump; of others, however long, only the beginning is read.
 std::string read_dump(const std::filesystem::path& path) {
   char begin[kBegin.size()] = {};
   std::ifstream file(path, std::ios::binary);
   file.read(begin, sizeof begin);
-  const bool is_dump = std::string_view(begin, static_cast<std::size_t>(file.gcount())) == kBegin;
+  const bool is_dump = begins_dump({begin, static_cast<std::size_t>(file.gcount())});
   if (file.is_open() && !std::filesystem::is_directory(path) && !is_dump) throw foreign(path.string());
   return read_file(path, kLongest);
+}
+
+/// Where the line before the one at `at` > 0 begins.
+std::size_t line_before(std::string_view text, std::size_t at) {
+  const std::size_t end = at < 2 ? std::string_view::npos : text.rfind('\n', at - 2);
+  return end == std::string_view::npos ? 0 : end + 1;
+}
+
+/// Where the frame begins whose time step is at `at`: what is said before it is a line and its value each.
+std::size_t begin_of(std::string_view text, std::size_t at) {
+  while (at > 0) {
+    const std::size_t item = line_before(text, line_before(text, at));
+    if (!text.substr(item).starts_with(kTime) && !text.substr(item).starts_with(kUnits)) break;
+    if (text.substr(item).starts_with(kBegin)) break;
+    at = item;
+  }
+  return at;
+}
+
+/// Whether a frame has a line for each of its bodies.
+bool is_whole(std::string_view frame) {
+  Lines lines(frame);
+  std::optional<std::string_view> line = lines.next();
+  while (line && !line->starts_with("ITEM: NUMBER OF ATOMS")) line = lines.next();
+  line = lines.next();
+  const std::optional<double> count = line ? finite_number(*line) : std::nullopt;
+  const std::string_view rest = lines.rest();
+  return count && static_cast<double>(std::count(rest.begin(), rest.end(), '\n')) >= *count + 5;
 }
 
 }  // namespace
@@ -310,24 +366,19 @@ LammpsReader::LammpsReader(const std::filesystem::path& path) : LammpsReader(rea
 
 LammpsReader::LammpsReader(std::string text, std::string name) : name_(std::move(name)), text_(std::move(text)) {
   const std::string_view all = text_;
-  if (!all.starts_with(kBegin)) throw foreign(name_);
+  if (!begins_dump(all)) throw foreign(name_);
   std::vector<std::size_t> begins;
-  for (std::size_t at = 0; at != std::string_view::npos; at = all.find(kBegin, at + 1)) {
-    if (at == 0 || all[at - 1] == '\n') begins.push_back(at);
+  for (std::size_t at = all.find(kBegin); at != std::string_view::npos; at = all.find(kBegin, at + 1)) {
+    if (at == 0 || all[at - 1] == '\n') begins.push_back(begin_of(all, at));
   }
+  if (begins.empty() || begins[0] != 0) throw foreign(name_);
   for (std::size_t k = 0; k < begins.size(); ++k) {
     const std::size_t end = k + 1 < begins.size() ? begins[k + 1] : all.size();
     frames_.push_back(all.substr(begins[k], end - begins[k]));
   }
-  // Only the last one can have been cut off: it has a line for each of its bodies, or is left out.
-  Lines lines(frames_.back());
-  std::optional<double> count;
-  for (int k = 0; k < 4; ++k) {
-    const std::optional<std::string_view> line = lines.next();
-    if (line && k == 3) count = finite_number(*line);
-  }
-  const std::string_view rest = lines.rest();
-  if (!count || static_cast<double>(std::count(rest.begin(), rest.end(), '\n')) < *count + 5) frames_.pop_back();
+  // Only the last one can have been cut off.
+  cut_off_ = !is_whole(frames_.back());
+  if (cut_off_) frames_.pop_back();
 }
 
 Frame LammpsReader::read(std::uint64_t k) const {

@@ -41,8 +41,10 @@ class LammpsReader {
   LammpsReader(const LammpsReader&) = delete;
   LammpsReader& operator=(const LammpsReader&) = delete;
 
-  /// Whole ones: the last may be cut off.
+  /// Whole ones.
   std::uint64_t frame_count() const { return frames_.size(); }
+  /// Whether a last one was cut off and is left out.
+  bool cut_off() const { return cut_off_; }
 
   /// Frame k < frame_count(), the bodies in the order of their ids. Types are what type and shape make different,
   /// groups what type alone does.
@@ -52,6 +54,7 @@ class LammpsReader {
   std::string name_;
   std::string text_;
   std::vector<std::string_view> frames_;  ///< of text_
+  bool cut_off_ = false;
 };
 
 }  // namespace hardbody

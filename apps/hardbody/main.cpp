@@ -1,5 +1,6 @@
 #include "commands.h"
 #include "errors.h"
+#include "number_text.h"
 #include "text_file.h"
 #include "version.h"
 
@@ -9,6 +10,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -92,19 +94,28 @@ void add_replay(CLI::App& app, Request& request) {
   replay->add_option("FILE", request.replay_file, "failures/*.json")->required();
 }
 
+/// CLI11's own check names the largest double, digit by digit.
+CLI::Validator positive_number() {
+  return {[](const std::string& text) -> std::string {
+            const std::optional<double> value = finite_number(text);
+            return value && *value > 0 ? "" : fmt::format("{} is no positive finite number", text);
+          },
+          "POSITIVE"};
+}
+
 void add_analyze(CLI::App& app, Request& request) {
   CLI::App* analyze = app.add_subcommand("analyze", "Observables of a stored trajectory, ours or another program's");
   analyze->add_option("PATH", request.analyze.path, "Run directory with a trajectory.gsd, or FILE.gsd")->required();
   analyze->add_option("--out", request.analyze.out, "Where the files go; without it analysis/ beside the trajectory");
   analyze->add_option("--time-step", request.analyze.time_step, "Time between two steps, instead of the times stored")
-      ->check(CLI::PositiveNumber);
+      ->check(positive_number());
   analyze->add_option("--longest-lag", request.analyze.longest_lag, "Of correlations; without it a quarter of the time")
-      ->check(CLI::PositiveNumber);
+      ->check(positive_number());
   analyze
       ->add_option(
           "--fit-from", request.analyze.fit_from,
           "Lag from which C2 and F_self are fitted; without it as the run in the directory did, if there is one")
-      ->check(CLI::PositiveNumber);
+      ->check(positive_number());
   analyze->add_option("--every", request.analyze.every, "Takes only each N-th frame")->check(CLI::Range(1, 1000000));
 }
 

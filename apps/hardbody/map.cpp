@@ -124,8 +124,10 @@ std::vector<MapMark> marks_of(const CsvTable& table, const std::vector<std::size
   return marks;
 }
 
+constexpr std::string_view kCsvBeginning = "value,level,line,";
+
 std::string lines_csv(const Map& map) {
-  std::string text = fmt::format("value,level,line,{},{}\n", map.x_name, map.y_name);
+  std::string text = fmt::format("{}{},{}\n", kCsvBeginning, map.x_name, map.y_name);
   for (const MapLevel& level : map.levels) {
     for (std::size_t k = 0; k < level.lines.size(); ++k) {
       for (const PlanePoint& p : level.lines[k]) {
@@ -176,6 +178,8 @@ int map(const MapArguments& arguments) {
   map.marks = marks_of(table, rows, columns);
   const fs::path svg = output(arguments.out, arguments, ".svg");
   const fs::path csv = output(arguments.csv, arguments, ".csv");
+  check_replaceable(svg, "<svg ");
+  check_replaceable(csv, kCsvBeginning);
   write_file(svg, map_svg(map));
   write_file(csv, lines_csv(map));
   fmt::print("{}, {} written from {} points\n", svg.string(), csv.string(), map.marks.size());

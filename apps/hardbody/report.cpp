@@ -29,9 +29,7 @@ void check_output(const fs::path& path) {
                     "is there",
                     path.string(), directory.string()));
   }
-  if (fs::is_directory(path)) {
-    throw InputError(fmt::format("{}: is a directory; accepted: a file", path.string()));
-  }
+  check_replaceable(path, kReportBeginning);
 }
 
 std::string size_text(std::size_t bytes) {

@@ -14,12 +14,11 @@ constexpr const char* kPolicy =
 
 std::string head(const Report& report, std::string_view style) {
   return fmt::format(
-      "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-      "<meta http-equiv=\"Content-Security-Policy\" content=\"{}\">\n"
+      "{} content=\"{}\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
       "<meta name=\"color-scheme\" content=\"light dark\">\n<title>{} - hardbody</title>\n"
       "<link rel=\"icon\" href=\"data:,\">\n<style>\n{}\n{}</style>\n</head>\n",
-      kPolicy, html_text(report.title), report_static_style(), style);
+      kReportBeginning, kPolicy, html_text(report.title), report_static_style(), style);
 }
 
 }  // namespace

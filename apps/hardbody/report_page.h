@@ -21,6 +21,11 @@ struct Report {
 /// without one its plots are drawn here.
 std::string report_page(const Report& report);
 
+/// How every report begins.
+inline constexpr std::string_view kReportBeginning =
+    "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+    "<meta http-equiv=\"Content-Security-Policy\"";
+
 /// Text in HTML, also within quotes.
 std::string html_text(std::string_view text);
 

@@ -141,8 +141,19 @@ std::optional<Seen> read_trajectory(const fs::path& path) {
                                  frame.bodies.size(), number));
   };
   Seen seen{view_of({reader.frame_count(), read})};
-  seen.view.source = kGsdFile;
+  seen.view.source = fmt::format("{}{}", kGsdFile, reader.cut_off() ? " (what follows them is not whole)" : "");
   return seen;
+}
+
+/// What cannot be shown does not keep the rest of the report from being made: a remark says why.
+template <class Read>
+std::optional<Seen> if_readable(const Read& read, const char* what, std::vector<Remark>& remarks) {
+  try {
+    return read();
+  } catch (const InputError& error) {
+    remarks.push_back({Remark::Kind::warning, fmt::format("{} not shown", what), one_line(error.what())});
+    return std::nullopt;
+  }
 }
 
 /// The last state.
@@ -250,11 +261,16 @@ RunReport read_run_report(const fs::path& directory, WithView with_view) {
   run.headlines = headlines_of(member(run.summary, "observables"));
   run.species = species_of(run.config, run.summary);
   std::optional<Seen> seen;
+  std::vector<Remark> unseen;
   if (with_view == WithView::yes) {
-    seen = read_trajectory(directory / kGsdFile);
-    if (!seen) seen = read_last_state(directory / kCheckpointFile, run.config);
+    seen = if_readable([&] { return read_trajectory(directory / kGsdFile); }, "frames", unseen);
+    if (!seen) {
+      seen =
+          if_readable([&] { return read_last_state(directory / kCheckpointFile, run.config); }, "last state", unseen);
+    }
   }
   run.remarks = run.summary.is_null() ? std::vector{unfinished(seen)} : remarks_of(run.summary);
+  run.remarks.insert(run.remarks.end(), unseen.begin(), unseen.end());
   if (seen) run.view = std::move(seen->view);
   return run;
 }

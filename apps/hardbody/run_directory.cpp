@@ -59,6 +59,10 @@ void keep_inputs(const fs::path& directory, const std::vector<fs::path>& inputs)
 /// Removes what a run writes and nothing else, so that a new run never stands beside results of an old one.
 void remove_run(const fs::path& directory) {
   for (const char* name : kFiles) fs::remove(directory / name);
+  const fs::path analysis = directory / kAnalysisDirectory;
+  if (fs::exists(analysis / kAnalysisFiles.back())) {
+    for (const char* name : kAnalysisFiles) fs::remove(analysis / name);
+  }
   const fs::path failures = directory / kFailuresDirectory;
   if (!fs::is_directory(failures)) return;
   for (const fs::directory_entry& entry : fs::directory_iterator(failures)) {

@@ -2,6 +2,7 @@
 
 #include "text_file.h"
 
+#include <array>
 #include <cstddef>
 #include <filesystem>
 #include <functional>
@@ -25,6 +26,10 @@ inline constexpr const char* kLogFile = "log.txt";
 inline constexpr const char* kSweepTableFile = "sweep.csv";
 inline constexpr const char* kPointStateFile = "state.json";
 inline constexpr const char* kReportFile = "report.html";
+// What hardbody analyze makes of its trajectory, unless it is told another directory.
+inline constexpr const char* kAnalysisDirectory = "analysis";
+inline constexpr std::array kAnalysisFiles = {"msd.csv",      "alpha2.csv", "c1.csv",  "c2.csv",    "f_self.csv",
+                                              "velocity.csv", "g_r.csv",    "s_q.csv", "order.csv", "analysis.json"};
 inline constexpr const char* kMsdFile = "observables/msd.csv";
 inline constexpr const char* kRotationalMsdFile = "observables/rotational_msd.csv";
 inline constexpr const char* kAlpha2File = "observables/alpha2.csv";

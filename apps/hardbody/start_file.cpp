@@ -44,8 +44,15 @@ bool is_gsd(const std::string& path) {
                                                      [](auto a, char b) { return a == static_cast<unsigned char>(b); });
 }
 
+/// The frame that a start wants.
+struct FoundFrame {
+  Frame frame;
+  std::uint64_t number;
+  bool cut_off;  ///< the file ends before its last frame does
+};
+
 template <class FileReader>
-std::pair<Frame, std::uint64_t> read_one(const FileReader& reader, const StartFile& start) {
+FoundFrame read_one(const FileReader& reader, const StartFile& start) {
   const std::uint64_t count = reader.frame_count();
   if (count == 0) throw InputError(fmt::format("{}: has no whole frame; accepted: a file with frames", start.file));
   const std::uint64_t k = start.frame ? static_cast<std::uint64_t>(*start.frame) : count - 1;
@@ -53,11 +60,10 @@ std::pair<Frame, std::uint64_t> read_one(const FileReader& reader, const StartFi
     throw InputError(
         fmt::format("start.frame is {}, {} has {} whole frames; accepted: 0 to {}", k, start.file, count, count - 1));
   }
-  return {reader.read(k), k};
+  return {reader.read(k), k, reader.cut_off()};
 }
 
-/// The frame and its number.
-std::pair<Frame, std::uint64_t> read_frame(const StartFile& start) {
+FoundFrame read_frame(const StartFile& start) {
   if (is_gsd(start.file)) return read_one(GsdReader(start.file), start);
   return read_one(LammpsReader(std::filesystem::path(start.file)), start);
 }
@@ -174,6 +180,10 @@ std::optional<Matrix3d> axes_in_file(const ed::BodyShape& file, const ed::BodySh
   return std::nullopt;
 }
 
+bool is_sphere(const ed::BodyShape& shape) {
+  return ed::bounding_radius(shape) == ed::inscribed_radius(shape);
+}
+
 /// The bodies of the config where those of the file are, without velocities.
 ed::System placed(const Config& config, const Frame& frame, const std::vector<std::size_t>& order) {
   const std::string& file = config.start_file->file;
@@ -187,6 +197,10 @@ ed::System placed(const Config& config, const Frame& frame, const std::vector<st
       body.species = static_cast<int>(system.species.size());
       body.position = from.position;
       body.rotation = from.rotation;
+      if (!frame.orientations && !is_sphere(component.species.shape)) {
+        throw InputError(fmt::format("{}: has no orientations, and body {} is {}; accepted: columns {}, or spheres",
+                                     file, i, ed::describe(component.species.shape), "quatw quati quatj quatk"));
+      }
       const std::optional<ed::BodyShape>& shape = frame.types[from.type].shape;
       if (!shape) continue;
       const std::optional<Matrix3d> axes = axes_in_file(*shape, component.species.shape);
@@ -350,7 +364,7 @@ StartAdditions additions_from(const StartFile& start, const TomlDocument& docume
   const bool packing = document.find("system.packing_fraction") != nullptr;
   StartAdditions additions;
   if (shapes && packing && has_numbers(document) && start.frame) return additions;
-  const auto [frame, k] = read_frame(start);
+  const auto [frame, k, cut_off] = read_frame(start);
   if (!start.frame) additions.overrides.push_back(fmt::format("start.frame={}", k));
   if (!shapes) additions.text = species_text(frame, start.file);
   if (shapes && !has_numbers(document)) {
@@ -374,7 +388,7 @@ StartAdditions additions_from(const StartFile& start, const TomlDocument& docume
 
 FileStart start_from_file(const Config& config) {
   const StartFile& start = *config.start_file;
-  const auto [frame, k] = read_frame(start);
+  const auto [frame, k, cut_off] = read_frame(start);
   const std::vector<std::vector<std::size_t>> groups = groups_of(frame);
   std::vector<int> found;
   std::vector<int> wanted;
@@ -407,8 +421,8 @@ FileStart start_from_file(const Config& config) {
                     "system.packing_fraction",
                     start.file, before, config.packing_fraction));
   }
-  result.report = fmt::format("start: {} bodies of frame {} of {} at packing fraction {:.8g}, {}{}", order.size(), k,
-                              one_line(start.file), after, velocities, mended);
+  result.report = fmt::format("start: {} bodies of frame {} of {} at packing fraction {:.8g}, {}{}{}", order.size(), k,
+                              one_line(start.file), after, velocities, mended, cut_off ? kCutOff : "");
   return result;
 }
 

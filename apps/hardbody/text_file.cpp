@@ -7,8 +7,10 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <fstream>
 #include <memory>
 #include <stdexcept>
+#include <system_error>
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -53,6 +55,17 @@ bool flushed(int file, Flush flush) {
   return flush == Flush::later || ::fsync(file) == 0;
 }
 
+/// What a path stands for: a link's target, or itself.
+fs::path behind_links(const fs::path& path) {
+  std::error_code ignored;
+  const fs::file_status status = fs::status(path, ignored);
+  if (!fs::exists(status)) return path;
+  if (!fs::is_regular_file(status) && !fs::is_directory(status)) {
+    throw std::runtime_error(fmt::format("{}: cannot be written: it is not a file", path.string()));
+  }
+  return fs::is_symlink(fs::symlink_status(path, ignored)) ? fs::canonical(path, ignored) : path;
+}
+
 /// That the names in a directory survive a loss of power, where the file system can say so.
 void flush_names(const fs::path& directory) {
   const int file = ::open(directory.empty() ? "." : directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -87,13 +100,30 @@ void write_file(const fs::path& path, std::string_view content) {
   write_file(path, [content](const Sink& sink) { sink(content); });
 }
 
+void check_replaceable(const fs::path& path, std::string_view beginning) {
+  const auto refuse = [&](const char* why) {
+    throw InputError(
+        fmt::format("{}: {}; accepted: a new file, or one that this command has written", path.string(), why));
+  };
+  std::error_code ignored;
+  const fs::file_status status = fs::status(path, ignored);
+  if (fs::is_directory(status)) refuse("is a directory");
+  if (fs::exists(status) && !fs::is_regular_file(status)) refuse("is not a file");
+  if (!fs::exists(status) || fs::file_size(path, ignored) == 0) return;
+  std::ifstream file(path, std::ios::binary);
+  std::string found(beginning.size(), '\0');
+  file.read(found.data(), static_cast<std::streamsize>(found.size()));
+  if (!file || found != beginning) refuse("is there and something else");
+}
+
 void write_file(const fs::path& path, const std::function<void(const Sink&)>& make) {
-  fs::path temporary = path;
+  const fs::path target = behind_links(path);
+  fs::path temporary = target;
   temporary += ".part";
   try {
     write_pieces(temporary, path, make);
-    if (std::rename(temporary.c_str(), path.c_str()) != 0) fail_to_write(path, errno);
-    flush_names(path.parent_path());
+    if (std::rename(temporary.c_str(), target.c_str()) != 0) fail_to_write(path, errno);
+    flush_names(target.parent_path());
   } catch (...) {
     std::remove(temporary.c_str());
     throw;

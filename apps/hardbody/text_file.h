@@ -11,8 +11,12 @@ namespace hardbody {
 /// The whole file. Throws InputError if it cannot be read or is longer than `limit` bytes.
 std::string read_file(const std::filesystem::path& path, std::size_t limit);
 
+/// Throws InputError unless there is nothing at `path`, or a file that begins with `beginning`: one of the same kind,
+/// which may be replaced. A link counts as what it points to.
+void check_replaceable(const std::filesystem::path& path, std::string_view beginning);
+
 /// Writes under a temporary name, flushes to the disk and renames, so that a reader (or a crash) never sees
-/// half a file. Throws std::runtime_error.
+/// half a file. A link stays one; what is neither a file nor a link to one is left alone. Throws std::runtime_error.
 void write_file(const std::filesystem::path& path, std::string_view content);
 
 /// Takes a file's bytes piece by piece.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 
@@ -22,6 +23,12 @@ constexpr double kBlocks = 16;          ///< at most
 constexpr double kEquallyFar = 1e-6;    ///< relative to the distance of frames in time
 constexpr double kDefaultShare = 0.25;  ///< of the trajectory: the longest lag
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
+
+std::string text_of(double x) {
+  std::ostringstream text;
+  text << x;
+  return text.str();
+}
 
 void check(const std::vector<StoredFrame>& frames, const StoredFramesOptions& options) {
   const auto require = [](bool holds, const std::string& what) {
@@ -41,7 +48,9 @@ void check(const std::vector<StoredFrame>& frames, const StoredFramesOptions& op
                 (f.velocity.empty() || f.velocity.size() == n),
             "frame " + std::to_string(k) + "; accepted: as many bodies as in the first one");
     require(std::isfinite(f.time) && (k == 0 || f.time > frames[k - 1].time),
-            "time of frame " + std::to_string(k) + "; accepted: times that rise");
+            "time of frame " + std::to_string(k) + " is " + text_of(f.time) +
+                (k > 0 ? ", that of the one before " + text_of(frames[k - 1].time) : "") +
+                "; accepted: finite times that rise");
   }
 }
 

@@ -1187,6 +1187,10 @@ class CommandLine(Case):
         for arguments in [[], ["runn"], ["run"], ["run", "a.toml", "--frce"], ["run", "a", "b"], ["check"], ["replay"]]:
             with self.subTest(arguments):
                 self.assert_refused(self.hardbody(*arguments), "hardbody --help")
+        for option in ["--fit-from", "--longest-lag", "--time-step"]:
+            for value in ["inf", "nan", "0", "-1", "1e999", "x"]:
+                refusal = self.hardbody("analyze", "out", f"{option}={value}")
+                self.assert_refused(refusal, f"{option}: {value} is no positive finite number")
 
 
 class Signals(Case):

@@ -282,9 +282,13 @@ class InARun(Trajectories):
         self.assertLessEqual(end - times[-2], 5)
 
     def test_of_an_earlier_run_are_removed(self):
+        """And what hardbody analyze made of them; nothing else."""
         self.run_with("out", SMALL)
+        self.assertEqual(self.hardbody("analyze", "out").returncode, 0)
+        self.write("out/analysis/notes.txt", "mine")
         self.run_small("out", "--force")
         self.assertEqual([f for f in os.listdir(self.path("out")) if "trajectory" in f], [])
+        self.assertEqual(os.listdir(self.path("out/analysis")), ["notes.txt"])
 
     def test_any_subset(self):
         for formats, file in [("gsd", "gsd"), ("lammps", "lammpstrj"), ("vtk", "vtp")]:
@@ -324,7 +328,7 @@ class Killed(Trajectories):
                 if len(file) > 0:
                     result = self.hardbody("check", f"{out}/trajectory.gsd")
                     self.assertEqual(result.returncode, 0, result.stderr)
-                    self.assertRegex(result.stdout, rf"frames +{len(file)}\n")
+                    self.assertRegex(result.stdout, rf"frames +{len(file)}(;.*left out)?\n")
             shutil.rmtree(self.path(out))
         print(f"killed after {sorted(frames)} frames")
         self.assertGreater(max(frames), 10)
@@ -489,6 +493,23 @@ class StartsFromFiles(Trajectories):
             result = self.run_small("out", "--force", "--set", "start.file=cut.lammpstrj", config=AGAIN)
             self.assertIn(f"of frame {frame} of ", result.stderr)
 
+    def test_dumps_that_say_time_and_units(self):
+        """As dump_modify time yes units yes writes them."""
+        self.run_with("first", SMALL)
+        text = self.read("first/trajectory.lammpstrj")
+        parts = text.split("ITEM: TIMESTEP\n")[1:]
+        timed = [f"ITEM: TIME\n{0.25 * k}\nITEM: TIMESTEP\n{part}" for k, part in enumerate(parts)]
+        units = "ITEM: UNITS\nlj\n" + "".join(timed)
+        for name, dump in [("plain", text), ("time", "".join(timed)), ("units", units), ("cut", units + "ITEM: TIME\n")]:
+            for frame in [0, 3, 5]:
+                self.write("timed.lammpstrj", dump)
+                start = ["start.file=timed.lammpstrj", f"start.frame={frame}"]
+                self.run_small("out", "--force", "--set", *start, config=AGAIN)
+                bodies = self.bytes_of("out/trajectory.lammpstrj").split(b"ITEM: TIMESTEP")[1]
+                if name == "plain":
+                    self.write(f"plain{frame}", bodies.decode())
+                self.assertEqual(bodies.decode(), self.read(f"plain{frame}"))
+
     def overlapping(self):
         """The first frame with bodies that are 2 % larger."""
         self.run_with("first", SMALL)
@@ -548,6 +569,9 @@ class StartsFromFiles(Trajectories):
             ("far away", dump(x="1e17"), "a body is at 1e+17", "positions in the box"),
             ("no number", dump(x="nan"), "a position is"),
             ("many bodies", dump(count="2147483648"), "has no whole frame"),
+            ("not periodic", dump().replace("BOUNDS pp pp pp", "BOUNDS pp ff pp"), "boundaries ff", "pp pp pp"),
+            ("one id twice", dump(bodies=[bodies[1]] + bodies[1:]), "two bodies have the id 2"),
+            ("no orientations", dump().replace("quatw", "spare"), "has no orientations", "columns quatw quati quatj quatk"),
             ("a column less", dump(bodies=[bodies[0].rsplit(None, 1)[0]] + bodies[1:]), "a body has"),
         ]:
             with self.subTest(what):
@@ -591,9 +615,10 @@ class StartsFromFiles(Trajectories):
 class CheckOfFiles(Trajectories):
     """hardbody check FILE.gsd."""
 
-    def changed(self, name, array, place, value, dtype, frame=2):
-        """A copy of the run's file with a number replaced, through python3-gsd."""
-        shutil.copy(self.path("out/trajectory.gsd"), self.path(name))
+    def changed(self, name, array, place, value, dtype, frame=2, of="out/trajectory.gsd"):
+        """A copy of a file with a number replaced, through python3-gsd."""
+        if of != name:
+            shutil.copy(self.path(of), self.path(name))
         with gsd.fl.open(self.path(name), "rb") as file:
             data = file.read_chunk(frame=frame, name=array).astype(dtype)
         content = self.bytes_of(name)
@@ -618,6 +643,7 @@ class CheckOfFiles(Trajectories):
     def test_not_sound(self):
         self.run_with("out", SMALL)
         self.changed("energy.gsd", "log/particles/hardbody/velocity", 5, 2.5, "f8")
+        self.changed("energy.gsd", "particles/velocity", 5, 2.5, "f4", of="energy.gsd")
         self.changed("nan.gsd", "particles/position", 5, numpy.nan, "f4")
         result = self.hardbody("check", "energy.gsd")
         self.assertEqual(result.returncode, 1)
@@ -635,10 +661,66 @@ class CheckOfFiles(Trajectories):
         moved[0] = target + [0, 0, 1e-3]
         with open(self.path("overlap.gsd"), "wb") as file:
             file.write(content[:at] + moved.tobytes() + content[at + moved.nbytes:])
+        for k in range(3):
+            self.changed("overlap.gsd", "particles/position", k, moved[0][k], "f4", of="overlap.gsd")
         result = self.hardbody("check", "overlap.gsd")
         self.assertEqual(result.returncode, 1)
         self.assertIn("frame 2: ", result.stdout)
         self.assertIn("NOT SOUND", result.stdout)
+
+    def test_edited(self):
+        """What another program has changed is not passed over in favour of the doubles beside it."""
+        self.run_with("out", FAMILIES["three axes"])
+        self.write("again.toml", AGAIN.replace("first/", ""))
+        for array, value in [("position", 0.5), ("velocity", 3), ("orientation", 0.5), ("angmom", 1), ("mass", 2), ("moment_inertia", 3)]:
+            with self.subTest(array):
+                with gsd.hoomd.open(self.path("out/trajectory.gsd"), "rb") as file:
+                    frame = file[2]
+                changed = numpy.array(getattr(frame.particles, array))
+                changed[7] = value
+                setattr(frame.particles, array, changed)
+                with gsd.hoomd.open(self.path("trajectory.gsd"), "wb") as file:
+                    file.append(frame)
+                for command in [("check", "trajectory.gsd"), ("run", "again.toml", "--out", "again")]:
+                    what = f"trajectory.gsd: frame 0: particles/{array} of body 7 is not what log/ holds in double precision"
+                    self.assert_refused(self.hardbody(*command), what, "accepted: an unedited frame")
+        # Without the doubles it is a file as any other.
+        frame.log = {}
+        with gsd.hoomd.open(self.path("trajectory.gsd"), "wb") as file:
+            file.append(frame)
+        self.assertIn("no, 32-bit numbers", self.hardbody("check", "trajectory.gsd").stdout)
+
+    def test_cut_off_frames_are_said(self):
+        self.run_with("out", SMALL)
+        content = self.bytes_of("out/trajectory.gsd")
+        with open(self.path("cut.gsd"), "wb") as file:
+            file.write(content[:-1000])
+        said = "5; the file was cut off, what follows them is left out"
+        self.assertIn(said, self.hardbody("check", "cut.gsd").stdout)
+        self.assertIn("the file was cut off", self.hardbody("analyze", "cut.gsd", "--out", "analysis").stdout)
+        result = self.run_small("again", config=AGAIN.replace("first/trajectory", "cut"))
+        self.assertIn("of frame 4 of ", result.stderr)
+        self.assertIn("the file was cut off", result.stderr)
+
+    def test_files_with_holes(self):
+        """A terabyte of which the disk holds next to nothing: refused, or read, without the memory it claims."""
+        self.run_with("out", SMALL)
+        content = bytearray(self.bytes_of("out/trajectory.gsd"))
+
+        def sparse(name, **fields):
+            head = bytearray(content)
+            for place, value in fields.values():
+                head[place:place + 8] = value.to_bytes(8, "little")
+            with open(self.path(name), "wb") as file:
+                file.write(head)
+                file.truncate(1 << 40)
+            return self.hardbody("check", name, timeout=60)
+
+        index, entries, names = 8, 16, 32
+        end = len(content)
+        self.assertIn("has no whole frame", sparse("index.gsd", at=(index, end), of=(entries, (1 << 40) // 32 - end)).stderr)
+        self.assertIn("more than 16 MiB of names", sparse("names.gsd", of=(names, (1 << 39) // 64)).stderr)
+        self.assertIn("sound", sparse("sound.gsd").stdout)
 
     def test_of_another_program(self):
         """Without the doubles: overlaps beyond the rounding of 32-bit numbers; shapes may be missing."""

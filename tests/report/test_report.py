@@ -728,7 +728,6 @@ class CommandLine(Case):
             ("summary.json", "[]", "summary.json: is not an object"),
             ("observables/msd.csv", "t [l],msd [l^2]\n1,x\n", 'msd.csv:2: "x" is not a number'),
             ("observables/msd.csv", "t [l],msd [l^2]\n1\n", "msd.csv:2: has 1 fields; accepted: 2"),
-            ("checkpoint.bin", "HARDBODY", "checkpoint.bin: is cut off"),
             ("config.toml", "[system\n", "config.toml:1"),
         ]:
             with self.subTest(name=name, text=text):
@@ -740,11 +739,48 @@ class CommandLine(Case):
                 self.assertFalse((directory / "report.html").exists())
                 shutil.rmtree(directory)
 
+    def test_what_cannot_be_shown_is_said(self):
+        """A damaged trajectory or checkpoint costs the view, not the report."""
+        source = self.run_of("superballs", SUPERBALLS)
+        for name, others in [("trajectory.gsd", []), ("checkpoint.bin", ["trajectory.gsd"])]:
+            with self.subTest(name):
+                directory = self.here / "damaged"
+                shutil.copytree(source, directory)
+                for other in others:
+                    (directory / other).unlink(missing_ok=True)
+                (directory / name).write_text("HARDBODY")
+                self.report(directory)
+                page = (directory / "report.html").read_text()
+                self.assertRegex(page, "not shown.*" + re.escape(name) + ": is ")
+                shutil.rmtree(directory)
+
     def test_where_it_cannot_be_written(self):
         directory = self.run_of("superballs", SUPERBALLS)
         self.assertIn("accepted: -o FILE.html", self.line(directory, directory))
-        self.assertIn("is a directory; accepted: a file", self.line(directory, "-o", self.here))
+        self.assertIn("is a directory; accepted: a new file", self.line(directory, "-o", self.here))
         self.assertIn("is not a directory", self.line(directory, "-o", self.here / "no" / "file.html"))
+
+    def test_replaces_nothing_but_reports(self):
+        directory = self.run_of("superballs", SUPERBALLS)
+        letter = self.here / "letter.html"
+        letter.write_text("<!doctype html>\n<p>Dear reader,")
+        pipe = self.here / "pipe"
+        os.mkfifo(pipe)
+        self.assertIn("letter.html: is there and something else; accepted: a new file", self.line(directory, "-o", letter))
+        self.assertEqual(letter.read_text(), "<!doctype html>\n<p>Dear reader,")
+        for place in [pipe, directory / "config.toml"]:
+            before = os.stat(place)
+            self.line(directory, "-o", place)
+            self.assertEqual(os.stat(place), before)
+        # A report is replaced, behind a link too.
+        old = self.here / "old.html"
+        self.report(directory, "-o", old)
+        old.write_text(old.read_text() + "<!-- old -->")
+        link = self.here / "link.html"
+        link.symlink_to("old.html")
+        self.report(directory, "-o", link)
+        self.assertTrue(link.is_symlink())
+        self.assertNotIn("<!-- old -->", old.read_text())
 
     def test_force_removes_an_old_report(self):
         directory = self.run_of("superballs", SUPERBALLS)
