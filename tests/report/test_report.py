@@ -394,8 +394,13 @@ class OneRun(Case):
         browser.run("const s = document.querySelector('.player input'); s.value = 0; s.dispatchEvent(new Event('input'))")
         self.assertIn("t = 0 · frame 1 of 6", browser.run("return document.querySelector('.view .caption').textContent"))
         self.assertNotEqual(browser.run(matrices), last)
+        self.wait_for(browser, "return window.hardbodyReport.views[0].drawn > 0")
+        balls = browser.run("return window.hardbodyReport.page.views[0].balls")
+        self.assertEqual(balls, 1)
         browser.run("document.querySelector('.play').click()")
         self.wait_for(browser, "return window.hardbodyReport.views[0].frame >= 2")
+        # Playing does not draw the ball of colours again, turning does.
+        self.assertEqual(browser.run("return window.hardbodyReport.page.views[0].balls"), balls)
         browser.run("document.querySelector('.play').click()")
         self.assertEqual(browser.run("return window.hardbodyReport.page.views[0].timer"), None)
 
@@ -436,6 +441,27 @@ class OtherRuns(Case):
         self.assertLess(view[3], 20)
         self.assertGreater(self.colours(browser, ".stage canvas"), 40)
         self.assert_silent(browser)
+
+    def test_frame_times_are_printed(self):
+        """What the page itself takes for a frame, and all of it where the processor draws too, as here."""
+        for number in [500, 10976]:
+            directory = self.run_of(f"{number} bodies", MANY.replace("10976", str(number)))
+            self.report(directory)
+            browser = self.open(directory / "report.html")
+            self.wait_for(browser, "return window.hardbodyReport.views[0].drawn > 0")
+            prepare, draw, balls = browser.run(
+                """const v = window.hardbodyReport.page.views[0]; const gl = v.renderer.getContext();
+                const pixel = new Uint8Array(4); const before = v.balls; let prepare = 0; let draw = 0;
+                for (let k = 0; k < 10; k += 1) {
+                  const begin = performance.now(); v.show(0); const shown = performance.now();
+                  v.renderer.render(v.scene, v.camera); v.drawBall();
+                  gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
+                  prepare += (shown - begin) / 10; draw += (performance.now() - shown) / 10;
+                }
+                return [prepare, draw, v.balls - before];"""
+            )
+            print(f"{number} bodies: {prepare:.1f} ms to prepare a frame, {draw:.1f} ms to draw it without a graphics card")
+            self.assertEqual(balls, 0)
 
     def test_superellipsoids(self):
         directory = self.run_of("superballs", SUPERBALLS)

@@ -45,3 +45,27 @@ export function srgbToLinear(colour) {
 }
 
 export const rampGradient = `linear-gradient(90deg, ${kRamp.join(', ')})`;
+
+/** Shades of sRGB for linear ones in even steps: a power for every spot of a picture takes long. */
+const kShades = Uint8ClampedArray.from({ length: 1025 }, (_, k) => 255 * toSrgb(k / 1024));
+
+/** A ball whose spots have the colours of the directions that they point in. `turn`: the matrix, column by column, that
+    takes directions of the picture (x right, y up, z to the reader) to those of the box. */
+export function directionBall(image, turn) {
+  const { data, width } = image;
+  for (let row = 0; row < width; row += 1) {
+    for (let column = 0; column < width; column += 1) {
+      const x = (2 * column + 1) / width - 1;
+      const y = 1 - (2 * row + 1) / width;
+      const r2 = x * x + y * y;
+      if (r2 > 1) continue;
+      const z = Math.sqrt(1 - r2);
+      const [a, b, c] = [0, 1, 2].map((k) => turn[k] * x + turn[4 + k] * y + turn[8 + k] * z);
+      const colour = directionColour(a, b, c);
+      const shade = 0.78 + 0.3 * z;
+      const at = 4 * (row * width + column);
+      for (let k = 0; k < 3; k += 1) data[at + k] = kShades[Math.min(1024, Math.round(1024 * shade * colour[k]))];
+      data[at + 3] = 255 * Math.min(1, (1 - Math.sqrt(r2)) * width * 0.5);
+    }
+  }
+}

@@ -5,7 +5,7 @@ import {
 } from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 import { floats, integers } from './bytes.js';
-import { cssRgb, directionColour, linearToSrgb, rampColour, rampGradient, srgbToLinear } from './colours.js';
+import { cssRgb, directionBall, directionColour, linearToSrgb, rampColour, rampGradient, srgbToLinear } from './colours.js';
 import { cssColour, download, fileName, h, tool } from './dom.js';
 import { grouped, short } from './format.js';
 import { nematicOrder } from './nematic.js';
@@ -76,7 +76,7 @@ export class View3d {
     this.caption = h('p', { class: 'caption', 'aria-live': 'polite' });
     this.legend = h('div', { class: 'colour-legend' });
     this.stage.append(this.legend);
-    const colour = h('select', { onchange: () => { this.mode = colour.value; this.paint(); } },
+    const colour = h('select', { onchange: () => { this.mode = colour.value; this.paint(); this.showLegend(); } },
       this.modes().map((m) => h('option', { value: m.key }, m.label)));
     const header = h('header', {}, h('div', {}, h('h3', {}, 'The bodies'), this.caption),
       h('div', { class: 'tools' },
@@ -221,12 +221,10 @@ export class View3d {
     if (!this.meshes) return;
     const frame = this.frameData(this.frame);
     const colour = new Color();
-    const palette = Array.from({ length: 8 }, (_, k) => new Color(cssColour(`--c${k}`)).toArray());
     for (const { mesh, members } of this.meshes) {
-      members.forEach((i, k) => mesh.setColorAt(k, colour.setRGB(...this.colourOf(i, frame, palette))));
+      members.forEach((i, k) => mesh.setColorAt(k, colour.setRGB(...this.colourOf(i, frame, this.palette))));
       mesh.instanceColor.needsUpdate = true;
     }
-    this.showLegend();
     this.draw();
   }
 
@@ -251,6 +249,7 @@ export class View3d {
     if (mode === 'direction') {
       this.ball = h('canvas', { width: 2 * kLegendSize, height: 2 * kLegendSize, role: 'img',
         'aria-label': 'Colours of directions: red along x, green along y, blue along z' });
+      this.ballTurn = null;
       this.legend.replaceChildren(this.ball, h('p', {}, h('b', { class: 'x' }, 'x'), h('b', { class: 'y' }, 'y'), h('b', { class: 'z' }, 'z')));
       ['x', 'y', 'z'].forEach((name, k) => {
         this.legend.querySelector(`.${name}`).style.color = cssRgb(linearToSrgb(directionColour(...[0, 1, 2].map((j) => Number(j === k)))));
@@ -269,27 +268,16 @@ export class View3d {
     }
   }
 
-  /** The ball turns with the box: a body that points where a spot of the ball does has its colour. */
+  /** The ball turns with the box: a body that points where a spot of the ball does has its colour. Nothing is done
+      while the camera does not turn, as when frames are played. */
   drawBall() {
-    if (!this.ball) return;
-    const size = this.ball.width;
-    const ctx = this.ball.getContext('2d');
-    const image = ctx.createImageData(size, size);
-    const n = new Vector3();
-    for (let row = 0; row < size; row += 1) {
-      for (let column = 0; column < size; column += 1) {
-        const x = (2 * column + 1) / size - 1;
-        const y = 1 - (2 * row + 1) / size;
-        const r2 = x * x + y * y;
-        if (r2 > 1) continue;
-        n.set(x, y, Math.sqrt(1 - r2)).applyQuaternion(this.camera.quaternion);
-        const shade = 0.78 + 0.3 * Math.sqrt(1 - r2);
-        const rgb = linearToSrgb(directionColour(n.x, n.y, n.z).map((c) => c * shade));
-        const edge = Math.min(1, (1 - Math.sqrt(r2)) * size * 0.5);
-        image.data.set([...rgb.map((c) => 255 * c), 255 * edge], 4 * (row * size + column));
-      }
-    }
-    ctx.putImageData(image, 0, 0);
+    if (!this.ball || this.ballTurn?.equals(this.camera.quaternion)) return;
+    this.ballTurn = this.camera.quaternion.clone();
+    const context = this.ball.getContext('2d');
+    const image = context.createImageData(this.ball.width, this.ball.height);
+    directionBall(image, new Matrix4().makeRotationFromQuaternion(this.ballTurn).elements);
+    context.putImageData(image, 0, 0);
+    this.balls = (this.balls ?? 0) + 1;
   }
 
   // ---- Drawing -------------------------------------------------------------------------------------------------------
@@ -332,7 +320,9 @@ export class View3d {
   retheme() {
     this.scene.background = new Color(cssColour('--stage'));
     this.edges.material.color.set(cssColour('--muted'));
+    this.palette = Array.from({ length: 8 }, (_, k) => new Color(cssColour(`--c${k}`)).toArray());
     this.paint();
+    this.showLegend();
   }
 
   // ---- Play, keys, files ---------------------------------------------------------------------------------------------
