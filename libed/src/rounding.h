@@ -60,12 +60,12 @@
 ///                                                                direction = u (64 + 20 Omega T), of a unit vector
 ///   h              a support function changes by at most R |dn|, however edged the body: 27 R + 18 R Omega T. Its own
 ///                  operations: logarithm and exponential err by 2 (1 ulp), so that t^(q-1) t contributes (q - 1) t^q
-///                  (2 |ln t| + 4 |ln a|) / q <= 10 to N_q for semi-axes a between 1/20 and 20 units of length, and
-///                  roots and sums 10: 40 R of both norms and 8 for products. A user's support function is taken at its
+///                  (2 |ln t| + 4 |ln a|) / q <= 22 to N_q for semi-axes a between 1/1000 and 1000 units of length, and
+///                  roots and sums 10: 64 R of both norms and 8 for products. A user's support function is taken at its
 ///                  word: right to 80 R
 ///   majorants      made of the same powers: an ellipsoid larger by a relative 40 is one without doubt
 ///   g              11 S + 3 P + 17 V T of the centres, 2 S of subtractions, (V + W) T of the clock, 10 S of the root:
-///                                                    gap = u (160 S + 3 P + T (18 V + 20 W)) at least
+///                                                    gap = u (185 S + 3 P + T (18 V + 20 W)) at least
 ///   g'             n.v as above, levers and largest rates by a relative 12: rate = u 21 (V + W).
 ///
 /// Of a certificate with moving normals (support_gauge.h) the direction seen from a body is known to `direction`, and
@@ -158,7 +158,7 @@ struct GeneralScales {
 
   GeneralRounding rounding(double t) const {
     const double T = std::abs(t) + origin;
-    return {kRoundoff * ((160 * size + 3 * places) + T * (18 * speed + 20 * turning)),
+    return {kRoundoff * ((185 * size + 3 * places) + T * (18 * speed + 20 * turning)),
             kRoundoff * (21 * (speed + turning)), kRoundoff * (64 + 20 * (omega * T))};
   }
 };

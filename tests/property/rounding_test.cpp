@@ -340,20 +340,21 @@ struct Flights {
   }
 };
 
-geom::Superellipsoid draw_superellipsoid(Random& random) {
+geom::Superellipsoid draw_superellipsoid(Random& random, double length) {
   constexpr std::array kExponents{0.25, 0.3, 0.5, 0.7, 1.0, 1.3, 1.5, 1.6};
   const auto exponent = [&] {
     return kExponents[static_cast<std::size_t>(random.uniform() * static_cast<double>(kExponents.size()))];
   };
   const Vector3d axes(log_uniform(random, 0.5, 2), log_uniform(random, 0.5, 2), log_uniform(random, 0.5, 2));
-  return {axes, exponent(), exponent()};
+  return {length * axes, exponent(), exponent()};
 }
 
 template <class ExactTop, class DrawTop>
 void try_superellipsoids(Random& random, const DrawTop& draw_top, bool search, Tally& tally) {
   using Exact = quad::ExactSuperellipsoid<ExactTop>;
-  const geom::Superellipsoid A = draw_superellipsoid(random);
-  const geom::Superellipsoid B = draw_superellipsoid(random);
+  const double length = log_uniform(random, 2e-3, 500);  // the powers are made of logarithms
+  const geom::Superellipsoid A = draw_superellipsoid(random, length);
+  const geom::Superellipsoid B = draw_superellipsoid(random, length);
   const NormBodyShape norm_a = norm_body(A);
   const NormBodyShape norm_b = norm_body(B);
   const double reach = norm_a.bounding_radius + norm_b.bounding_radius;

@@ -161,11 +161,11 @@ struct ObservablesOptions {
   int number;              ///< of bodies
   double duration;         ///< planned; the run may be stopped earlier
   double longest_lag = 0;  ///< 0: a sixteenth of the duration, at most 40 time units
-  double time_unit = 1;    ///< ed::time_unit of the bodies
   /// Their numbers add up to `number`; empty: one group of bodies of revolution.
   std::vector<BodyGroup> groups{};
   /// Wave numbers q at which F_self is measured, at most kMostWaveNumbers; the decay of the first one is fitted.
   std::vector<double> wave_numbers{};
+  double time_unit = 1;  ///< ed::time_unit of the bodies
 };
 
 /// Observables of a run, measured while it goes on, in memory that does not grow with its length.

@@ -54,7 +54,7 @@ struct [[nodiscard]] ContactResult {
 /// Bodies: ellipsoids and superellipsoids whose exponents are within [kMinExponentInMotion, kMaxExponentInMotion], and
 /// a user's own (CustomShape), with any moments of inertia that a body can have. Ellipsoids of revolution about an axis
 /// that their moments share are the fast case: some 0.3 microseconds a point in time instead of one. What rounding may
-/// hide is bounded for superellipsoids with semi-axes from 1/20 to 20 units of length. Values that are not finite,
+/// hide is bounded for superellipsoids with semi-axes from 1/1000 to 1000 units of length. Values that are not finite,
 /// exponents out of range and inertia that no body can have throw std::invalid_argument.
 ///
 /// `options.finder = Finder::bracketing` searches as the paper does instead, which is no proof. `failed`, with either
