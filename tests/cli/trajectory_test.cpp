@@ -8,6 +8,7 @@
 #include "gsd_frames.h"
 
 #include <ed/internal/archive_types.h>
+#include <ed/random.h>
 #include <ed/simulation.h>
 #include <ed/start.h>
 
@@ -166,7 +167,13 @@ TEST_F(Trajectory, IsReadWithoutTheDoubles) {
 /// Cut off at any byte, the frames that are whole are still there, and no other.
 TEST_F(Trajectory, EndsAnywhere) {
   const std::uint64_t head = chunk("configuration/dimensions").location;
-  for (std::uint64_t size = 0; size < bytes.size(); size += size < 400 ? 1 : 397) {
+  std::vector<std::uint64_t> sizes;
+  for (std::uint64_t size = 0; size < bytes.size(); size += size < 400 ? 1 : 397) sizes.push_back(size);
+  ed::Random random(1);
+  for (int k = 0; k < 200; ++k) {
+    sizes.push_back(static_cast<std::uint64_t>(random.uniform() * static_cast<double>(bytes.size())));
+  }
+  for (const std::uint64_t size : sizes) {
     const std::string cut = bytes.substr(0, size);
     if (size < head) {
       const std::string message = refusal(cut);
@@ -178,6 +185,7 @@ TEST_F(Trajectory, EndsAnywhere) {
     while (whole < kFrames && marks[whole + 1].bytes <= size) ++whole;
     const GsdReader gsd = reader(cut);
     ASSERT_EQ(gsd.frame_count(), whole) << "of " << size << " bytes";
+    EXPECT_EQ(gsd.cut_off(), whole < kFrames);
     if (whole > 0) {
       EXPECT_EQ(ed::internal::bytes_of(*gsd.read(whole - 1).exact), ed::internal::bytes_of(*frames[whole - 1].exact));
     }
