@@ -156,12 +156,8 @@ class LaneNorm {
     const LaneBits z_leads = below(larger_xy, w.z);
     const Lanes larger = select(z_leads, w.z, larger_xy);
     const Lanes log_larger = select(z_leads, logs.z, log_xy);
-    // That of the largest is 1.
-    const LaneBits x_follows = y_leads | z_leads;
-    const Lanes first = outer_.slope(select(x_follows, logs.x, logs.y) - log_larger);
-    const Lanes second = outer_.slope(select(z_leads, logs.y, logs.z) - log_larger);
-    const LaneVector p{select(x_follows, first, both(1)), select(z_leads, second, select(y_leads, both(1), first)),
-                       select(z_leads, both(1), second)};
+    const LaneVector p{outer_.slope(logs.x - log_larger), outer_.slope(logs.y - log_larger),
+                       outer_.slope(logs.z - log_larger)};
     const Lanes zero = both(0);
     const LaneVector t = (1 / select(below(zero, larger), larger, both(1))) * w;
     const Lanes s_xy = t.x * p.x + t.y * p.y;
