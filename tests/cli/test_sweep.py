@@ -357,6 +357,16 @@ class Failures(SweepCase):
         self.assertEqual((again.returncode, again.stdout), (1, result.stdout))
         self.assertEqual(self.read("out/sweep.csv"), table)
 
+    def test_point_whose_start_jams(self):
+        """Found out only by compressing: the point fails and says where, the sweep goes on."""
+        jamming = "[system]\nnumber = 40\npacking_fraction = 0.62\n[shape]\naspect_ratio = 1\n[equilibration]\ntime = 0\n"
+        result = self.sweep(jamming + "[production]\ntime = 0\n[grid]\nseed = [1, 2, 3]\n")
+        self.assertEqual(result.returncode, 1)
+        self.assertEqual(sorted(self.statuses()), ["done", "done", "failed"])
+        message = [row["message"] for row in self.table() if row["message"]]
+        self.assertRegex(message[0], "the compression got stuck at 0.61[0-9]* of 0.62; a lower value is needed")
+        self.assertIn("failed: seed=", result.stdout)
+
     def test_full_disk(self):
         """Points whose checkpoint does not fit fail; those that were done stay; with room again all is as it should be."""
         text = SMALL + "[grid]\nsystem.number = [64, 256, 65]\n"

@@ -225,6 +225,25 @@ TEST(RandomStart, MassesThatDifferByMuchCostNothing) {
   for (const double energy : twice_energy) EXPECT_NEAR(energy / 150, 1, 4 * std::sqrt(2.0 / 150));
 }
 
+/// So few spheres jam now and then below the densest start.
+TEST(RandomStart, SaysWhereItGotStuck) {
+  const ed::Species sphere = ed::paper_species(geom::Ellipsoid({1, 1, 1}));
+  ed::StartOptions options;
+  options.packing_fraction = ed::densest_start(sphere.shape);
+  int stuck = 0;
+  for (options.seed = 1; options.seed <= 6; ++options.seed) {
+    try {
+      expect_sound(ed::random_start(std::vector<ed::Component>{{sphere, 40}}, options), options.packing_fraction);
+    } catch (const std::runtime_error& error) {
+      ++stuck;
+      EXPECT_THAT(error.what(), HasSubstr("packing_fraction: the compression got stuck at 0.61"));
+      EXPECT_THAT(error.what(), HasSubstr(" of 0.62; a lower value is needed for this shape"));
+    }
+  }
+  EXPECT_GT(stuck, 0);
+  EXPECT_LT(stuck, 6);
+}
+
 TEST(RandomStart, ManySpeciesAreNotRepeated) {
   ed::StartOptions options;
   options.packing_fraction = 0.1;
