@@ -111,7 +111,7 @@ TEST(Config, ResolvedTextReadsBackAsTheSameConfig) {
       "time = 1e6\n[output]\nevents = 3\ncheckpoint_every = \"1.5h\"\n",
       "[system]\npacking_fraction = 0.123456789012345678\n[shape]\naspect_ratio = 0.333333333333333333\n"
       "[dynamics]\ninertia = \"uniform\"\n",
-      "[system]\npacking_fraction = 0.1\n[shape]\nsemi_axes = [1, 0.7, 2.1]\n[dynamics]\ninertia = [1, 2, 2.5]\n",
+      "[system]\npacking_fraction = 0.1\n[shape]\nsemi_axes = [1, 0.7, 2.1]\n[dynamics]\ninertia = [0.7, 0.8, 0.25]\n",
       "[system]\npacking_fraction = 0.1\n[shape]\nkind = \"superellipsoid\"\nsemi_axes = [1, 1.1, 0.3]\n"
       "exponents = [0.25, 1.6]\n",
       "[system]\npacking_fraction = 0.1\n[shape]\nkind = \"superellipsoid\"\naspect_ratio = 1.7\n"

@@ -26,6 +26,8 @@ struct Scale {
 };
 
 constexpr std::uint64_t kCollisions = 1000;
+/// Of runs that differ by rounding, which the dynamics multiplies: some six a body.
+constexpr std::uint64_t kFewCollisions = 300;
 constexpr double kPacking = 0.35;
 
 ed::BodyShape scaled(const ed::BodyShape& shape, double length) {
@@ -50,18 +52,18 @@ ed::System scaled(ed::System system, const Scale& scale) {
   return system;
 }
 
-ed::Simulation run(const ed::System& system, const ed::SimulationOptions& options) {
+ed::Simulation run(const ed::System& system, const ed::SimulationOptions& options, std::uint64_t collisions) {
   ed::Simulation simulation(system, options);
-  simulation.record_collisions(kCollisions);
-  simulation.run_collisions(kCollisions);
+  simulation.record_collisions(collisions);
+  simulation.run_collisions(collisions);
   return simulation;
 }
 
 /// `allowed`: of times, relative to the largest; 0: the same bits in everything.
 void expect_scaled(const ed::Simulation& one, const ed::Simulation& other, const Scale& scale, double allowed) {
-  ASSERT_EQ(one.collisions().size(), kCollisions);
-  ASSERT_EQ(other.collisions().size(), kCollisions);
-  for (std::size_t k = 0; k < kCollisions; ++k) {
+  ASSERT_EQ(one.collisions().size(), allowed > 0 ? kFewCollisions : kCollisions);
+  ASSERT_EQ(other.collisions().size(), one.collisions().size());
+  for (std::size_t k = 0; k < one.collisions().size(); ++k) {
     const ed::Collision& a = one.collisions()[k];
     const ed::Collision& b = other.collisions()[k];
     ASSERT_TRUE(a.i == b.i && a.j == b.j) << "collision " << k;
@@ -86,14 +88,15 @@ void expect_scaled(const ed::Simulation& one, const ed::Simulation& other, const
 
 void expect_the_same_run(const ed_test::Family& family, double allowed, const ed::SimulationOptions& options = {}) {
   const ed::System system = ed_test::start(family, kPacking);
-  const ed::Simulation one = run(system, options);
+  const std::uint64_t collisions = allowed > 0 ? kFewCollisions : kCollisions;
+  const ed::Simulation one = run(system, options, collisions);
   for (const Scale& scale : {Scale{0x1p-9, 1}, Scale{0x1p9, 1}, Scale{1, 0x1p-18}, Scale{1, 0x1p18},
                              Scale{0x1p-30, 0x1p-60}, Scale{0x1p40, 0x1p20}}) {
     SCOPED_TRACE(family.name + ", lengths times " + std::to_string(scale.length) + ", masses times " +
                  std::to_string(scale.mass));
     const ed::System other = scaled(system, scale);
     EXPECT_EQ(ed::time_unit(other), ed::time_unit(system) * scale.time());
-    expect_scaled(one, run(other, options), scale, allowed);
+    expect_scaled(one, run(other, options, collisions), scale, allowed);
   }
 }
 

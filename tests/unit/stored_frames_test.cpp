@@ -212,7 +212,8 @@ TEST(StoredFrames, BadInputIsRefused) {
   refused(options, "Observables: wave_numbers; accepted: up to 8 ");
   std::vector<StoredFrame> frames = good;
   frames[3].time = frames[2].time;
-  EXPECT_THAT(message(frames, options_of(kBodies)), testing::StartsWith("analyze_frames: time of frame 3; accepted: "));
+  EXPECT_THAT(message(frames, options_of(kBodies)),
+              testing::StartsWith("analyze_frames: time of frame 3 is 7.1, that of the one before 7.1; accepted: "));
   frames = good;
   frames[4].rotation.pop_back();
   EXPECT_THAT(message(frames, options_of(kBodies)), testing::StartsWith("analyze_frames: frame 4; accepted: "));
