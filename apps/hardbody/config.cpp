@@ -26,10 +26,10 @@ namespace {
 constexpr std::size_t kLongestConfig = 1 << 20;    ///< bytes
 constexpr std::int64_t kMostEvents = 100'000'000;  ///< they are kept in memory: 16 bytes each
 constexpr std::int64_t kMostFrames = 100'000;      ///< there is room for all of them in the files' heads
-// In time units of the bodies.
-constexpr double kLongestTime = 1e9;
+constexpr double kLongestTime = 1e9;               ///< this and the next two: in ed::time_unit of the bodies
 constexpr double kUsualCap = 500;
 constexpr double kLeastCap = 1;
+constexpr double kUsualEpsD = 1e-6;  ///< of the bodies' length
 constexpr double kLargestWaveNumber = 1e6;
 constexpr double kLeastPacking = 1e-9;
 
@@ -290,26 +290,33 @@ double box_ratio(const Config& config) {
   return ed::smallest_box(components, config.neighbour_search()) / ed::box_for(components, config.packing_fraction);
 }
 
-/// The least number of bodies in the same proportions whose box is large enough; nothing if so many are too many. Sizes
-/// drawn anew may need more; a cell of an fcc lattice holds four.
-std::optional<int> least_number(const Config& config) {
-  const double ratio = box_ratio(config);
-  const int in_a_cell = config.start == "fcc" ? 4 : 1;
-  double least = std::max(2.0, std::ceil(config.number * (ratio * ratio * ratio)));
-  for (;;) {
-    least = std::ceil(least / in_a_cell) * in_a_cell;
-    if (least > kMostBodies) return std::nullopt;
-    const Config larger = with_number(config, static_cast<int>(least));
-    if (larger.number > kMostBodies) return std::nullopt;
-    if (box_ratio(larger) <= 1 && larger.number % in_a_cell == 0) return larger.number;
-    least += 1;
+/// A number of bodies in the same proportions whose box is large enough, the least one where sizes are not drawn;
+/// nothing if so many are too many. A cell of an fcc lattice holds four.
+std::optional<int> larger_number(const Config& config, bool drawn) {
+  constexpr int kTrials = 20;
+  const double in_a_cell = config.start == "fcc" ? 4 : 1;
+  const auto enough = [&](int number, double ratio) {
+    return std::ceil(std::max(2.0, std::ceil(number * (ratio * ratio * ratio))) / in_a_cell) * in_a_cell;
+  };
+  double number = enough(config.number, box_ratio(config));
+  for (int trial = 0; drawn && trial < kTrials && number <= kMostBodies; ++trial) {
+    // Drawn anew, the largest may be larger.
+    const Config larger = with_number(config, static_cast<int>(number));
+    const double ratio = box_ratio(larger);
+    if (ratio <= 1) break;
+    number = enough(larger.number, 1.02 * ratio);
   }
+  if (number > kMostBodies) return std::nullopt;
+  return static_cast<int>(number);
 }
 
 std::string larger_box(const Config& config) {
-  const std::optional<int> least = least_number(config);
-  return (least ? fmt::format("a number of at least {}{}", *least, config.mixture ? " in these proportions" : "")
-                : std::string("a lower packing fraction")) +
+  const bool drawn =
+      std::any_of(config.species.begin(), config.species.end(), [](const auto& s) { return s.sizes != "equal"; });
+  const std::optional<int> number = larger_number(config, drawn);
+  return (number ? fmt::format("a {} {}{}", drawn ? "larger number, for instance" : "number of at least", *number,
+                               config.mixture ? " in these proportions" : "")
+                 : std::string("a lower packing fraction")) +
          (config.mixture ? ", or bodies of less unequal sizes" : "");
 }
 
@@ -368,11 +375,19 @@ void read_finder(const TomlDocument& document, Config& config) {
   }
 }
 
+/// Radius of the sphere of the bodies' volume: the mean, as a power of two.
+double mean_length(const std::vector<ed::Component>& components) {
+  std::vector<ed::Component> light = components;
+  for (ed::Component& component : light) component.species.mass = 1;
+  return ed::time_unit(light);
+}
+
 void read_dynamics(const TomlDocument& document, Config& config) {
   read_finder(document, config);
   config.neighbours = "auto";
   read_choice(document, "dynamics.neighbours", {"auto", "dilated", "obp", "cells"}, config.neighbours);
   config.neighbours_chosen = config.neighbours == "auto";
+  config.eps_d = kUsualEpsD * mean_length(config.components());
   const Entry* eps_d = document.find("dynamics.eps_d");
   if (eps_d == nullptr) return;
   double limit = std::numeric_limits<double>::infinity();

@@ -63,8 +63,8 @@ std::unique_ptr<GsdBytes> open_gsd_bytes(const std::filesystem::path& path);
 /// Bytes in memory.
 std::unique_ptr<GsdBytes> gsd_bytes_in_memory(std::string bytes);
 
-/// What is said of a file that ends before its last frame does.
-inline constexpr const char* kCutOff = "; the file was cut off, what follows them is left out";
+/// What is said of a file that ends before its last frame does, or has others than ours behind ours.
+inline constexpr const char* kCutOff = "; what follows them is not whole and left out";
 
 /// A GSD file that is read. Whatever the bytes are, no more memory is taken than a small multiple of what they are, and
 /// what is wrong with them is thrown as InputError, `name: what; accepted: ..`.

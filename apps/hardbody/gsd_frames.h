@@ -37,7 +37,8 @@ class GsdReader {
 
   /// Whole ones.
   std::uint64_t frame_count() const { return file_.frame_count(); }
-  /// Whether frames behind these are left out, as the file ends before they do.
+  /// Whether frames behind these are left out: the file ends before they do, or behind frames of ours there are some
+  /// without the doubles.
   bool cut_off() const { return file_.cut_off(); }
 
   /// Frame k < frame_count(). Numbers that are not finite, orientations that are none, types that there are not: all

@@ -167,6 +167,7 @@ void DumpFrame::read_bounds(Frame& frame) {
   const std::vector<std::string_view> head = words_of(line("its box"));
   if (head.size() > 6) throw bad("its box is tilted", "a box with right angles");
   for (std::size_t k = 3; k < head.size(); ++k) {
+    if (head[k] == "xy") throw bad("its box is tilted", "a box with right angles");
     if (head[k] != "pp") throw bad(fmt::format("its box has boundaries {}", head[k]), "a periodic box, pp pp pp");
   }
   for (int axis = 0; axis < 3; ++axis) {
@@ -299,7 +300,7 @@ Frame DumpFrame::read() {
   std::stable_sort(order_.begin(), order_.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   for (std::size_t k = 1; k < order_.size(); ++k) {
     if (order_[k].first == order_[k - 1].first) {
-      throw bad(fmt::format("two bodies have the id {:g}", order_[k].first), "an id of its own for each");
+      throw bad(fmt::format("two bodies have the id {:.17g}", order_[k].first), "an id of its own for each");
     }
   }
   std::vector<FrameBody> sorted;

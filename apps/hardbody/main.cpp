@@ -97,7 +97,8 @@ void add_replay(CLI::App& app, Request& request) {
 /// CLI11's own check names the largest double, digit by digit.
 CLI::Validator positive_number() {
   return {[](const std::string& text) -> std::string {
-            const std::optional<double> value = finite_number(text);
+            const std::optional<double> value =
+                finite_number(std::string_view(text).substr(text.starts_with('+') ? 1 : 0));
             return value && *value > 0 ? "" : fmt::format("{} is no positive finite number", text);
           },
           "POSITIVE"};

@@ -60,9 +60,8 @@ void keep_inputs(const fs::path& directory, const std::vector<fs::path>& inputs)
 void remove_run(const fs::path& directory) {
   for (const char* name : kFiles) fs::remove(directory / name);
   const fs::path analysis = directory / kAnalysisDirectory;
-  if (fs::exists(analysis / kAnalysisFiles.back())) {
-    for (const char* name : kAnalysisFiles) fs::remove(analysis / name);
-  }
+  for (const char* name : kAnalysisFiles) fs::remove(analysis / name);
+  if (fs::is_directory(analysis) && fs::is_empty(analysis)) fs::remove(analysis);
   const fs::path failures = directory / kFailuresDirectory;
   if (!fs::is_directory(failures)) return;
   for (const fs::directory_entry& entry : fs::directory_iterator(failures)) {

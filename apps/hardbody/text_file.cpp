@@ -59,7 +59,11 @@ bool flushed(int file, Flush flush) {
 fs::path behind_links(const fs::path& path) {
   std::error_code ignored;
   const fs::file_status status = fs::status(path, ignored);
-  if (!fs::exists(status)) return path;
+  // A link to what is not there yet: it will be there.
+  if (!fs::exists(status))
+    return fs::is_symlink(fs::symlink_status(path, ignored))
+               ? fs::weakly_canonical(path.parent_path() / fs::read_symlink(path))
+               : path;
   if (!fs::is_regular_file(status) && !fs::is_directory(status)) {
     throw std::runtime_error(fmt::format("{}: cannot be written: it is not a file", path.string()));
   }

@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <sstream>
 #include <stdexcept>
@@ -52,16 +51,17 @@ void check_cells(double box, double bounding_radius) {
   throw std::invalid_argument(message.str());
 }
 
-/// How long an epoch lasts: a power of two about the time in which bodies of the fastest species move by their size, so
-/// that times within it are as exact as the way that bodies go in them.
+/// How long an epoch lasts: a power of two about the time in which bodies move by their size, so that times within it
+/// are as exact as the way that bodies go in them. The harmonic mean of these times: at its end all bodies are moved,
+/// which is then about as often as they move by their sizes, be a few of them as fast as they may.
 double epoch_of(const System& system) {
   const KineticState kinetic = kinetic_state(system);
   const int freedoms = 3 * system.size() + kinetic.rotational_freedoms + kinetic.spin_freedoms;
   const double kT = 2 * kinetic.energy() / freedoms;
   if (!(kT > 0)) return 1;  // nothing moves
-  double shortest = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < system.size(); ++i) shortest = std::min(shortest, thermal_time(system.species_of(i)));
-  return nearest_power_of_two(shortest / std::sqrt(kT));
+  double rates = 0;
+  for (int i = 0; i < system.size(); ++i) rates += 1 / thermal_time(system.species_of(i));
+  return nearest_power_of_two(system.size() / (rates * std::sqrt(kT)));
 }
 
 }  // namespace

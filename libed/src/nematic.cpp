@@ -169,12 +169,14 @@ class Turning {
 /// The value named is accepted: the same turns come to it on their way to `reached`.
 [[noreturn]] void refuse_order(const System& system, double order, double reached) {
   const double from_one = 0.9 * (1 - reached);
-  const double unit = std::pow(10, std::floor(std::log10(from_one)) - 1);
   std::ostringstream message;
   message << "nematic_order is " << order << ": at packing fraction " << packing_fraction(system)
-          << " bodies on these sites do not turn further than to an order of " << reached << "; accepted: at least "
-          << std::setprecision(12) << 1 - std::floor(from_one / unit) * unit
-          << ", no nematic_order (all aligned), or a lower packing fraction";
+          << " bodies on these sites do not turn further than to an order of 1 - " << 1 - reached << "; accepted: ";
+  if (from_one > 1e-9) {
+    const double unit = std::pow(10, std::floor(std::log10(from_one)) - 1);
+    message << "at least " << std::setprecision(12) << 1 - std::floor(from_one / unit) * unit << ", ";
+  }
+  message << "no nematic_order (all aligned), or a lower packing fraction";
   throw std::invalid_argument(message.str());
 }
 

@@ -60,8 +60,8 @@
 ///                                                                direction = u (64 + 20 Omega T), of a unit vector
 ///   h              a support function changes by at most R |dn|, however edged the body: 27 R + 18 R Omega T. Its own
 ///                  operations: logarithm and exponential err by 2 (1 ulp), so that t^(q-1) t contributes (q - 1) t^q
-///                  (2 |ln t| + 4 |ln a|) / q <= 22 to N_q for semi-axes a between 1/1000 and 1000 units of length, and
-///                  roots and sums 10: 64 R of both norms and 8 for products. A user's support function is taken at its
+///                  (2 |ln t| + 4 |ln a|) / q <= 23 to N_q for semi-axes a between 1/1000 and 1000 units of length, and
+///                  roots and sums 10: 66 R of both norms and 8 for products. A user's support function is taken at its
 ///                  word: right to 80 R
 ///   majorants      made of the same powers: an ellipsoid larger by a relative 40 is one without doubt
 ///   g              11 S + 3 P + 17 V T of the centres, 2 S of subtractions, (V + W) T of the clock, 10 S of the root:

@@ -668,7 +668,7 @@ class BadConfig(Case):
             for phi in [0.1, 0.2, 0.3]:
                 with self.subTest(name=name, phi=phi):
                     dense = re.sub("packing_fraction = .*", f"packing_fraction = {phi}", config)
-                    least = least_number(dense, r"at least (\d+) in these proportions, or bodies")
+                    least = least_number(dense, r"(?:at least|for instance) (\d+) in these proportions, or bodies")
                     if name == "numbers":
                         more = dense.replace("number = 5", f"number = {math.ceil(least / 2)}")
                     else:

@@ -690,17 +690,25 @@ class CheckOfFiles(Trajectories):
             file.append(frame)
         self.assertIn("no, 32-bit numbers", self.hardbody("check", "trajectory.gsd").stdout)
 
+    def test_thin_bodies_that_spin_are_not_taken_for_edited(self):
+        """Rounding of their long axis is much of the angular velocity about it."""
+        for shape in ["[shape]\naspect_ratio = 30\n", "[shape]\naspect_ratio = 0.03\n"]:
+            config = "[system]\nnumber = 600\npacking_fraction = 0.01\n" + shape + '[dynamics]\ninertia = "uniform"\n'
+            self.run_small("out", "--force", config=config + "[equilibration]\ntime = 0\n[production]\ntime = 0.5\n" + ALL)
+            result = self.hardbody("check", "out/trajectory.gsd")
+            self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+
     def test_cut_off_frames_are_said(self):
         self.run_with("out", SMALL)
         content = self.bytes_of("out/trajectory.gsd")
         with open(self.path("cut.gsd"), "wb") as file:
             file.write(content[:-1000])
-        said = "5; the file was cut off, what follows them is left out"
+        said = "5; what follows them is not whole and left out"
         self.assertIn(said, self.hardbody("check", "cut.gsd").stdout)
-        self.assertIn("the file was cut off", self.hardbody("analyze", "cut.gsd", "--out", "analysis").stdout)
+        self.assertIn("what follows them is not whole", self.hardbody("analyze", "cut.gsd", "--out", "analysis").stdout)
         result = self.run_small("again", config=AGAIN.replace("first/trajectory", "cut"))
         self.assertIn("of frame 4 of ", result.stderr)
-        self.assertIn("the file was cut off", result.stderr)
+        self.assertIn("what follows them is not whole", result.stderr)
 
     def test_files_with_holes(self):
         """A terabyte of which the disk holds next to nothing: refused, or read, without the memory it claims."""

@@ -31,7 +31,7 @@ using geom_test::PairSet;
 using geom_test::Random;
 
 constexpr double kShortest = 2e-5;   ///< the least step of the reference, in units of size over the largest rate
-constexpr int kHalvings = 4;        ///< of such a step
+constexpr int kHalvings = 4;         ///< of such a step
 constexpr double kGrazing = 1e-2;    ///< normal velocity below this share of the relative one
 constexpr double kResolved = 1e-12;  ///< overlaps below this, in units of the size, are rounding
 constexpr double kHorizon = 3;

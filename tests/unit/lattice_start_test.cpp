@@ -146,6 +146,10 @@ TEST(LatticeStart, RefusesOrdersThatBodiesDoNotTurnTo) {
     const std::string named = message.substr(message.find("at least ") + 9);
     EXPECT_EQ(refused(std::stod(named)), "no std::invalid_argument") << phi << ": " << named;
   }
+  // Hardly any room: nothing but an aligned start.
+  const std::string message =
+      message_of([&] { (void)lattice(species, 288, {.packing_fraction = 0.74048, .nematic_order = 0.5}); });
+  EXPECT_THAT(message, HasSubstr("accepted: no nematic_order (all aligned), or a lower packing fraction"));
 }
 
 TEST(LatticeStart, MixturesStandAnywhere) {
