@@ -121,7 +121,7 @@ std::string species_text(const SpeciesConfig& species) {
   const std::string number =
       species.fraction
           ? line("fraction", toml_real(*species.fraction),
-                 fmt::format("of the bodies, {} of them; or number", species.number).c_str())
+                 fmt::format("of the bodies, {} of them; or number", species.number))
           : line("number", fmt::format("{}", species.number), "of bodies; or a fraction of [system] number");
   const ShapeConfig& shape = species.shape;
   return "\n[[species]]\n" + kind_text(shape) +
