@@ -1,5 +1,6 @@
 #include "config.h"
 
+#include "config_box.h"
 #include "config_species.h"
 #include "config_values.h"
 #include "errors.h"
@@ -247,10 +248,8 @@ void read_start(const TomlDocument& document, Config& config) {
   if (!is_number(order->value) || !(order->value.real >= 0 && order->value.real < 1)) {
     throw bad(*order, "a number at least 0, below 1 (the order parameter S of the start)");
   }
-  const bool spheres = std::all_of(config.species.begin(), config.species.end(), [](const SpeciesConfig& s) {
-    return ed::bounding_radius(s.body.shape) == ed::inscribed_radius(s.body.shape);
-  });
-  if (spheres) throw bad(*order, "no key nematic_order: spheres have no orientation");
+  if (std::all_of(config.species.begin(), config.species.end(), is_sphere))
+    throw bad(*order, "no key nematic_order: spheres have no orientation");
   config.nematic_order = order->value.real;
 }
 
@@ -277,83 +276,6 @@ void read_packing(const TomlDocument& document, Config& config) {
   config.packing_fraction = phi;
 }
 
-/// What keeps a box that is large enough for "dilated" from being so for the others.
-const char* need_of(const std::string& neighbours) {
-  if (neighbours == "cells") return "three cells as wide as two of them must fit along an edge";
-  if (neighbours == "obp") return "\"obp\" needs room for boxes that a body can turn in";
-  return "a body would meet two images of another";
-}
-
-/// The box that the bodies need over the one that they have.
-double box_ratio(const Config& config) {
-  const std::vector<ed::Component> components = config.components();
-  return ed::smallest_box(components, config.neighbour_search()) / ed::box_for(components, config.packing_fraction);
-}
-
-/// A number of bodies in the same proportions whose box is large enough, the least one where sizes are not drawn;
-/// nothing if so many are too many. A cell of an fcc lattice holds four.
-std::optional<int> larger_number(const Config& config, bool drawn) {
-  constexpr int kTrials = 20;
-  const double in_a_cell = config.start == "fcc" ? 4 : 1;
-  const auto enough = [&](int number, double ratio) {
-    return std::ceil(std::max(2.0, std::ceil(number * (ratio * ratio * ratio))) / in_a_cell) * in_a_cell;
-  };
-  double number = enough(config.number, box_ratio(config));
-  for (int trial = 0; drawn && trial < kTrials && number <= kMostBodies; ++trial) {
-    // Drawn anew, the largest may be larger.
-    const Config larger = with_number(config, static_cast<int>(number));
-    const double ratio = box_ratio(larger);
-    if (ratio <= 1) break;
-    number = enough(larger.number, 1.02 * ratio);
-  }
-  if (number > kMostBodies) return std::nullopt;
-  return static_cast<int>(number);
-}
-
-std::string larger_box(const Config& config) {
-  const bool drawn =
-      std::any_of(config.species.begin(), config.species.end(), [](const auto& s) { return s.sizes != "equal"; });
-  const std::optional<int> number = larger_number(config, drawn);
-  return (number ? fmt::format("a {} {}{}", drawn ? "larger number, for instance" : "number of at least", *number,
-                               config.mixture ? " in these proportions" : "")
-                 : std::string("a lower packing fraction")) +
-         (config.mixture ? ", or bodies of less unequal sizes" : "");
-}
-
-void check_box(const TomlDocument& document, const Config& config) {
-  if (box_ratio(config) <= 1) return;
-  double largest = 0;
-  for (const ed::Component& c : config.components()) largest = std::max(largest, ed::bounding_radius(c.species.shape));
-  const Entry* number = document.find("system.number");
-  const Entry* entry = number != nullptr ? number : document.find("system.packing_fraction");
-  const bool by_species = config.mixture && number == nullptr;
-  throw InputError(
-      fmt::format("{}: {} is {}: the box, {:.4g} long at this packing fraction, is then too small for bodies of "
-                  "bounding radius {:.4g}{} ({}); accepted: {}",
-                  entry->where, by_species ? "the number of bodies" : "system.number", config.number,
-                  ed::box_for(config.components(), config.packing_fraction), largest,
-                  config.mixture ? ", the largest" : "", need_of(config.neighbours), larger_box(config)));
-}
-
-/// Makes the start, which is all that tells whether it can be made.
-void check_lattice(const TomlDocument& document, const Config& config) {
-  const std::optional<ed::LatticeOptions> lattice = config.lattice();
-  if (!lattice) return;
-  try {
-    (void)ed::lattice_start(config.components(), *lattice);
-  } catch (const std::invalid_argument& error) {
-    const std::string message = error.what();
-    const Entry* entry = nullptr;
-    for (const char* key : {"system.number", "system.packing_fraction", "system.nematic_order"}) {
-      if (message.starts_with(std::string_view(key).substr(sizeof("system")))) entry = document.find(key);
-    }
-    // Said by the species.
-    const bool by_species = entry == nullptr && message.starts_with("number is");
-    if (entry == nullptr) entry = document.find("system.start");
-    throw InputError(fmt::format("{}: {}{}", entry->where, by_species ? "the sum of all " : "system.", message));
-  }
-}
-
 /// What neighbours = "auto" takes. Only ellipsoids of revolution have been measured; for others, and for bodies of
 /// several sizes, dilated bodies are what costs little at any density.
 void choose_neighbours(Config& config) {
@@ -376,10 +298,9 @@ void read_finder(const TomlDocument& document, Config& config) {
 }
 
 /// Radius of the sphere of the bodies' volume: the mean, as a power of two.
-double mean_length(const std::vector<ed::Component>& components) {
-  std::vector<ed::Component> light = components;
-  for (ed::Component& component : light) component.species.mass = 1;
-  return ed::time_unit(light);
+double mean_length(std::vector<ed::Component> components) {
+  for (ed::Component& component : components) component.species.mass = 1;
+  return ed::time_unit(components);
 }
 
 void read_dynamics(const TomlDocument& document, Config& config) {
@@ -486,6 +407,10 @@ ed::Neighbours Config::neighbour_search() const {
   if (neighbours == "obp") return ed::Neighbours::obp;
   if (neighbours == "cells") return ed::Neighbours::cells;
   return ed::Neighbours::dilated;
+}
+
+bool is_sphere(const SpeciesConfig& species) {
+  return ed::bounding_radius(species.body.shape) == ed::inscribed_radius(species.body.shape);
 }
 
 ed::SimulationOptions Config::simulation_options(double envelope) const {

@@ -59,6 +59,12 @@ struct SizeStatistics {
 };
 SizeStatistics statistics_of(const std::vector<double>& sizes);
 
+bool is_sphere(const SpeciesConfig& species);
+
+/// Production "auto", in ed::time_unit of the bodies.
+inline constexpr double kLeastProduction = 30;
+inline constexpr double kMostProduction = 5000;
+
 /// [start]: a state in a file.
 struct StartFile {
   std::string file;                   ///< absolute

@@ -181,8 +181,10 @@ std::string times_text(const Config& config) {
          line("cap", toml_real(config.equilibration_cap), "of \"auto\": the state counts as not equilibrated then") +
          "\n[production]\n" +
          line("time", time(config.production_time),
-              fmt::format("in l sqrt(m/kT); \"auto\": 30 times the equilibration, from {:g}", 30 * config.time_unit)) +
-         more(fmt::format("to {:g}; or until the relative errors of D_trans and D_rot are", 5000 * config.time_unit)) +
+              fmt::format("in l sqrt(m/kT); \"auto\": 30 times the equilibration, from {:g}",
+                          kLeastProduction * config.time_unit)) +
+         more(fmt::format("to {:g}; or until the relative errors of D_trans and D_rot are",
+                          kMostProduction * config.time_unit)) +
          (config.target_error ? line("target_error", toml_real(*config.target_error), "at most this")
                               : more("target_error = 0.02, if that is given")) +
          line("wave_numbers", numbers(config.wave_numbers),

@@ -36,8 +36,8 @@ constexpr std::size_t kEntry = 32;
 constexpr std::size_t kName = 64;  ///< bytes of a name of version 1, and unit of the names' block
 constexpr std::size_t kTextInHeader = 64;
 constexpr std::uint64_t kMostNames = std::uint64_t{1} << 24;  ///< bytes of all names
-constexpr std::uint64_t kEntriesAtOnce = std::uint64_t{1}
-                                         << 16;  ///< read: a file may have holes where an index should be
+/// Entries of the index that are read: a file may have holes where it should be.
+constexpr std::uint64_t kEntriesAtOnce = 65536;
 constexpr std::size_t kReserved = 80;
 
 /// "is cut off ..": a file that is shorter than what its header says.

@@ -32,8 +32,6 @@ constexpr double kLongestSlice = 1e6;
 
 /// "auto": production in units of the equilibration time, and its limits. Times are in units of Config::time_unit.
 constexpr double kProductionFactor = 30;
-constexpr double kLeastProduction = 30;
-constexpr double kMostProduction = 5000;
 constexpr double kLongestLag = 40;  ///< or the equilibration, if that took longer
 /// At least, in collisions of a body: diffusion coefficients are fitted from 0.4 of it on, and a velocity is forgotten
 /// in about 1.5 of them, so that what is left of it there is exp(-7).
@@ -136,10 +134,6 @@ Production planned_production(const Config& config, const Equilibration& equilib
   plan.wave_numbers = config.wave_numbers;
   if (plan.wave_numbers.empty()) plan.wave_numbers = ed::wave_numbers_about(q);
   return plan;
-}
-
-bool is_sphere(const SpeciesConfig& species) {
-  return ed::bounding_radius(species.body.shape) == ed::inscribed_radius(species.body.shape);
 }
 
 std::vector<ed::RelaxingGroup> relaxing_groups(const Config& config) {

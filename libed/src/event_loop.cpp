@@ -5,7 +5,7 @@
 #include "contact_checks.h"
 #include "envelope_limits.h"
 #include "general_bodies.h"
-#include "nearest_integer.h"
+#include "power_of_two.h"
 #include "uniaxial_bodies.h"
 
 #include <algorithm>

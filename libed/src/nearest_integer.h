@@ -1,7 +1,5 @@
 #pragma once
 
-#include <cmath>
-
 namespace ed::internal {
 
 /// Rounds to the nearest integer, |x| < 2^51, without the function call that baseline x86-64 needs for it. Of one
@@ -10,11 +8,6 @@ template <class Real>
 [[gnu::always_inline]] inline Real nearest_integer(Real x) {
   constexpr double kShift = 6755399441055744.0;  // 1.5 * 2^52
   return (x + kShift) - kShift;
-}
-
-/// Of a positive number: the power of two whose logarithm is nearest.
-inline double nearest_power_of_two(double x) {
-  return std::ldexp(1.0, static_cast<int>(std::lround(std::log2(x))));
 }
 
 }  // namespace ed::internal

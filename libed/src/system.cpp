@@ -3,8 +3,8 @@
 #include "cell_grid.h"
 #include "envelope_limits.h"
 #include "motion_checks.h"
-#include "nearest_integer.h"
 #include "oriented_slack.h"
+#include "power_of_two.h"
 
 #include <ed/system.h>
 #include <ed/tolerances.h>
