@@ -23,11 +23,11 @@ namespace ed::internal {
 struct AxisMotion {
   Eigen::Vector3d position;  ///< at `time`
   Eigen::Vector3d velocity;
-  Eigen::Vector3d e0;  ///< zero for bodies without spin
   Eigen::Vector3d e1;
   Eigen::Vector3d e2;
   double rate;  ///< Omega
   double time;
+  Eigen::Vector3d e0;  ///< zero for bodies without spin
 
   Eigen::Vector3d axis() const { return e0 + e1; }
   Eigen::Vector3d axis_at(double t) const {

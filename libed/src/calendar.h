@@ -1,8 +1,14 @@
 #pragma once
 
+#include "large_vector.h"
+#include "prefetch.h"
+
 #include <ed/internal/archive.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <vector>
@@ -11,59 +17,88 @@ namespace ed::internal {
 
 /// The event calendar: the body with the earliest event, in O(log N) an update.
 ///
-/// A tournament tree: leaf i holds the time of body i's earliest event, an inner node the smaller of its two
-/// children's. Ties go to the body with the lower number.
+/// A tournament of eights: the times of eight bodies' earliest events stand in one cache line, the earliest of each
+/// eight in a line of the next level, and so on up to a single line. Ties go to the body with the lower number.
 class Calendar {
  public:
-  explicit Calendar(int number) : leaves_(1), number_(static_cast<std::size_t>(number)) {
-    while (leaves_ < number_) leaves_ *= 2;
-    tree_.assign(2 * leaves_, std::numeric_limits<double>::infinity());
+  explicit Calendar(int number) : number_(static_cast<std::size_t>(number)) {
+    std::size_t groups = number_;
+    do {
+      first_of_level_.push_back(groups_.size());
+      groups = (groups + kGroup - 1) / kGroup;
+      groups_.resize(groups_.size() + groups);
+    } while (groups > 1);
   }
 
-  double time(int i) const { return tree_[leaves_ + static_cast<std::size_t>(i)]; }
+  double time(int i) const { return groups_[at(i) / kGroup].times[at(i) % kGroup]; }
 
   void set(int i, double time) {
-    std::size_t node = leaves_ + static_cast<std::size_t>(i);
-    tree_[node] = time;
-    for (node /= 2; node >= 1; node /= 2) {
-      const double left = tree_[2 * node];
-      const double right = tree_[2 * node + 1];
-      const double earliest = right < left ? right : left;
-      // Nothing changes above a node that keeps its value.
-      if (tree_[node] == earliest) break;
-      tree_[node] = earliest;
+    std::size_t k = at(i);
+    for (const std::size_t first : first_of_level_) {
+      Group& group = groups_[first + k / kGroup];
+      double& old = group.times[k % kGroup];
+      // Nothing changes above a group whose earliest time stays.
+      if (old == time) return;
+      old = time;
+      time = group.earliest();
+      k /= kGroup;
     }
   }
 
-  double earliest_time() const { return tree_[1]; }
+  /// The time of body i is set soon.
+  void fetch(int i) const { prefetch(groups_[at(i) / kGroup]); }
+
+  double earliest_time() const { return groups_.back().earliest(); }
 
   int earliest() const {
-    std::size_t node = 1;
-    while (node < leaves_) node = tree_[2 * node + 1] < tree_[2 * node] ? 2 * node + 1 : 2 * node;
-    return static_cast<int>(node - leaves_);
+    const double time = earliest_time();
+    std::size_t k = 0;
+    for (std::size_t level = first_of_level_.size(); level-- > 0;) {
+      k = kGroup * k + groups_[first_of_level_[level] + k].place_of(time);
+    }
+    return static_cast<int>(k);
   }
 
-  /// The tree as it is; read into a calendar of the same number of bodies.
+  /// The times; read into a calendar of the same number of bodies.
   template <class Archive, class Self>
   static void fields(Archive& archive, Self& self) {
-    const std::size_t size = self.tree_.size();
-    archive(self.tree_);
-    expect(archive, self.tree_.size() == size && self.is_tournament(), "the calendar is not in order");
+    std::vector<double> times;
+    if constexpr (!Archive::kReads) {
+      for (int i = 0; i < static_cast<int>(self.number_); ++i) times.push_back(self.time(i));
+    }
+    archive(times);
+    if constexpr (Archive::kReads) {
+      const bool fits = std::none_of(times.begin(), times.end(), [](double time) { return std::isnan(time); });
+      expect(archive, times.size() == self.number_ && fits, "the times of the events");
+      for (int i = 0; i < static_cast<int>(self.number_); ++i) self.set(i, times[at(i)]);
+    }
   }
 
  private:
-  bool is_tournament() const {
-    for (std::size_t node = 1; node < leaves_; ++node) {
-      if (tree_[node] != std::min(tree_[2 * node], tree_[2 * node + 1])) return false;
-    }
-    // No event belongs to a leaf without a body.
-    return std::all_of(tree_.begin() + static_cast<std::ptrdiff_t>(leaves_ + number_), tree_.end(),
-                       [](double time) { return time == std::numeric_limits<double>::infinity(); });
-  }
+  static constexpr std::size_t kGroup = 8;
 
-  std::size_t leaves_;
-  std::size_t number_;  ///< of bodies
-  std::vector<double> tree_;
+  struct alignas(64) Group {
+    std::array<double, kGroup> times;
+
+    Group() { times.fill(std::numeric_limits<double>::infinity()); }
+    double earliest() const {
+      const auto& t = times;
+      const auto least = [](double a, double b) { return b < a ? b : a; };
+      return least(least(least(t[0], t[1]), least(t[2], t[3])), least(least(t[4], t[5]), least(t[6], t[7])));
+    }
+    /// The first place at which this time stands.
+    std::size_t place_of(double time) const {
+      unsigned places = 0;
+      for (unsigned k = 0; k < kGroup; ++k) places |= static_cast<unsigned>(times[k] == time) << k;
+      return static_cast<std::size_t>(std::countr_zero(places));
+    }
+  };
+
+  static std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+  std::size_t number_;                       ///< of bodies
+  std::vector<std::size_t> first_of_level_;  ///< its first group; the bodies' own level first
+  LargeVector<Group> groups_;
 };
 
 }  // namespace ed::internal

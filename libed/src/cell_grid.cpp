@@ -3,6 +3,7 @@
 #include "periodic.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace ed::internal {
@@ -86,7 +87,7 @@ bool CellGrid::filled() const {
       found[body] = true;
     }
   }
-  return std::all_of(found.begin(), found.end(), [](bool is) { return is; }) &&
+  return stencil_.size() <= kMostOffsets && std::all_of(found.begin(), found.end(), [](bool is) { return is; }) &&
          std::all_of(stencil_.begin(), stencil_.end(),
                      [this](const auto& offset) { return offset.cwiseAbs().maxCoeff() <= cells_; });
 }
@@ -103,19 +104,32 @@ std::span<const NearBody> CellGrid::collect(const Eigen::Vector3d& position, dou
   const int cz = coordinate(position.z());
   const auto wrap = [this](int k) { return k < 0 ? k + cells_ : (k >= cells_ ? k - cells_ : k); };
   const double reach2 = reach * reach;
-  std::size_t found = 0;
+  // One body of each cell, then the next of each that has more: what is read in a round does not wait for what was read
+  // before it in the round, and how full cells are is not predictable.
+  std::array<int, kMostOffsets> round;
+  std::size_t open = 0;
   for (const Eigen::Vector3i& offset : stencil_) {
     const int cell = (wrap(cx + offset.x()) * cells_ + wrap(cy + offset.y())) * cells_ + wrap(cz + offset.z());
-    for (int i = first_[static_cast<std::size_t>(cell)]; i != kNone;) {
+    const int body = first_[static_cast<std::size_t>(cell)];
+    round[open] = body;
+    open += body != kNone ? 1 : 0;
+  }
+  std::size_t found = 0;
+  while (open > 0) {
+    if (buffer.size() < found + open) buffer.resize(2 * found + open + 64);
+    std::size_t left = 0;
+    for (std::size_t k = 0; k < open; ++k) {
+      const int i = round[k];
       const Entry& body = bodies_[static_cast<std::size_t>(i)];
-      if (found == buffer.size()) buffer.resize(2 * found + 64);
-      // Written always and kept if it counts: whether it does is not predictable, and a branch would cost more.
+      // Written always and kept if it counts: whether it does is not predictable either.
       NearBody& near = buffer[found];
       near.body = i;
       near.r = nearest_image(body.position - position, box_);
       found += near.r.squaredNorm() <= reach2 ? 1 : 0;
-      i = body.next;
+      round[left] = body.next;
+      left += body.next != kNone ? 1 : 0;
     }
+    open = left;
   }
   return {buffer.data(), found};
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "large_vector.h"
 #include "near_body.h"
 
 #include <ed/internal/archive.h>
@@ -37,6 +38,8 @@ class CellGrid {
 
  private:
   static constexpr int kNone = -1;
+  /// Cells are no narrower than reach / 2 but for rounding: up to three on either side count.
+  static constexpr std::size_t kMostOffsets = std::size_t{7} * 7 * 7;
 
   /// A body, and the list of its cell from it on.
   struct Entry {
@@ -57,8 +60,8 @@ class CellGrid {
 
   double box_;
   int cells_;               ///< along an edge
-  std::vector<int> first_;  ///< body of each cell
-  std::vector<Entry> bodies_;
+  LargeVector<int> first_;  ///< body of each cell
+  LargeVector<Entry> bodies_;
   std::vector<Eigen::Vector3i> stencil_;  ///< offsets of the cells to look into, each once
 };
 

@@ -10,6 +10,7 @@
 #include "envelope_limits.h"
 #include "envelopes.h"
 #include "find_kernels.h"
+#include "large_vector.h"
 #include "neighbour_lists.h"
 #include "periodic.h"
 #include "uniaxial_bodies.h"
@@ -193,8 +194,8 @@ class DilatedEnvelopes final : public Envelopes<UniaxialBodies> {
   double bounding_radius_;
   double thickness_;
   double exit_thickness_;
-  std::vector<Eigen::Vector3d> centre_;
-  std::vector<Eigen::Vector3d> axis_;
+  LargeVector<Eigen::Vector3d> centre_;
+  LargeVector<Eigen::Vector3d> axis_;
 };
 
 }  // namespace ed::internal

@@ -6,6 +6,7 @@
 #include "envelope_limits.h"
 #include "general_bodies.h"
 #include "power_of_two.h"
+#include "prefetch.h"
 #include "uniaxial_bodies.h"
 
 #include <algorithm>
@@ -84,12 +85,11 @@ EventLoop<Bodies>::EventLoop(const System& system, const SimulationOptions& opti
     : options_(options),
       species_(system.species),
       box_(system.box),
+      far_(system.size() >= kFarFrom),
       bodies_(system),
       images_(at(system.size()), Eigen::Vector3i::Zero()),
       lists_(system.size()),
       calendar_(system.size()),
-      exits_(at(system.size()), 0.0),
-      first_(at(system.size()), kExit),
       first_looks_(bodies_.make_first_looks(options)) {
   check_box(system, bodies_.bounding_radius());
   check_contact_options(options.contact, bodies_.inscribed_radius());
@@ -203,7 +203,7 @@ void EventLoop<Bodies>::search(Pair& pair, int max_evaluations) {
 
 template <class Bodies>
 double EventLoop<Bodies>::search_end(const Pair& pair) const {
-  return std::max(now_, std::min(exits_[at(pair.i)], exits_[at(pair.j)]));
+  return std::max(now_, std::min(bodies_.events(pair.i).exit, bodies_.events(pair.j).exit));
 }
 
 template <class Bodies>
@@ -250,7 +250,7 @@ template <class Bodies>
 Pair& EventLoop<Bodies>::claim(std::int32_t index, int owner) {
   Pair& pair = lists_.pair(index);
   const std::int32_t partner = pair.partner(owner);
-  if (pair.owner == partner && first_[at(partner)] == index) orphans_.push_back(partner);
+  if (pair.owner == partner && bodies_.events(partner).first == index) orphans_.push_back(partner);
   pair.owner = owner;
   return pair;
 }
@@ -264,6 +264,22 @@ template <class Bodies>
 void EventLoop<Bodies>::queue(std::int32_t index, int owner) {
   Pair& pair = claim(index, owner);
   queue_.push_back({&pair, search_end(pair)});
+}
+
+template <class Bodies>
+void EventLoop<Bodies>::fetch_pairs(int body) const {
+  if (!far_) return;
+  for (const std::int32_t index : lists_.of(body)) prefetch(lists_.pair(index));
+  calendar_.fetch(body);
+}
+
+template <class Bodies>
+void EventLoop<Bodies>::fetch_partners(int body) const {
+  if (!far_) return;
+  for (const std::int32_t index : lists_.of(body)) {
+    const std::int32_t partner = lists_.pair(index).partner(body);
+    bodies_.fetch(partner);
+  }
 }
 
 template <class Bodies>
@@ -301,7 +317,7 @@ void EventLoop<Bodies>::predict_all() {
 
 template <class Bodies>
 void EventLoop<Bodies>::reschedule(int body) {
-  double earliest = exits_[at(body)];
+  double earliest = bodies_.events(body).exit;
   std::int32_t first = kExit;
   for (const std::int32_t index : lists_.of(body)) {
     const Pair& pair = lists_.pair(index);
@@ -310,12 +326,13 @@ void EventLoop<Bodies>::reschedule(int body) {
       first = index;
     }
   }
-  first_[at(body)] = first;
+  bodies_.events(body).first = first;
   calendar_.set(body, earliest);
 }
 
 template <class Bodies>
 void EventLoop<Bodies>::reschedule_orphans() {
+  for (const int body : orphans_) fetch_pairs(body);
   for (const int body : orphans_) reschedule(body);
   orphans_.clear();
 }
@@ -349,22 +366,26 @@ void EventLoop<Bodies>::report(const Pair& pair, double time, FailureReason reas
 template <class Bodies>
 void EventLoop<Bodies>::renew_exit(int i) {
   ++counters_.envelope_checks;
-  exits_[at(i)] = envelopes_->exit_time(i, bodies_, now_, box_);
+  bodies_.events(i).exit = envelopes_->exit_time(i, bodies_, now_, box_);
 }
 
 template <class Bodies>
 void EventLoop<Bodies>::rebuild(int i) {
   ++counters_.neighbour_rebuilds;
+  fetch_pairs(i);
   bodies_.move(i, now_);
   wrap(i);
   envelopes_->place(i, bodies_, now_);
   const Vector3d position = bodies_.position_at(i, now_);
   cells_->place(i, position);
   old_pairs_.assign(lists_.of(i).begin(), lists_.of(i).end());
+  if (far_) {
+    for (const std::int32_t index : old_pairs_) lists_.fetch(lists_.pair(index).partner(i));
+  }
   for (const std::int32_t index : old_pairs_) {
     const Pair& pair = lists_.pair(index);
     const std::int32_t partner = pair.partner(i);
-    if (pair.owner == partner && first_[at(partner)] == index) orphans_.push_back(partner);
+    if (pair.owner == partner && bodies_.events(partner).first == index) orphans_.push_back(partner);
     lists_.remove(index);
   }
   renew_exit(i);
@@ -372,6 +393,7 @@ void EventLoop<Bodies>::rebuild(int i) {
   counters_.candidate_tests += candidates.size();
   envelopes_->find_meetings(i, candidates, 0, meetings_);
   for (const auto& [k, normal] : meetings_) lists_.add(i, k, normal);
+  fetch_partners(i);
   queue_all_of(i, kNoPair);
   predict_queued();
   reschedule_orphans();
@@ -440,7 +462,7 @@ void EventLoop<Bodies>::start_epoch() {
   for (int i = 0; i < number(); ++i) {
     bodies_.move(i, now_);
     bodies_.restart_clock(i, now_);
-    exits_[at(i)] -= epoch_;
+    bodies_.events(i).exit -= epoch_;
   }
   for (int i = 0; i < number(); ++i) {
     for (const std::int32_t index : lists_.of(i)) {
@@ -457,7 +479,7 @@ template <class Bodies>
 void EventLoop<Bodies>::process_next() {
   const int body = calendar_.earliest();
   now_ = std::max(now_, calendar_.earliest_time());
-  const std::int32_t index = first_[at(body)];
+  const std::int32_t index = bodies_.events(body).first;
   if (index == kExit) {
     process_exit(body);
   } else if (lists_.pair(index).event == PairEvent::bound) {
@@ -469,8 +491,9 @@ void EventLoop<Bodies>::process_next() {
 
 template <class Bodies>
 void EventLoop<Bodies>::process_exit(int i) {
+  fetch_pairs(i);
   renew_exit(i);
-  if (exits_[at(i)] - now_ < envelopes_->worthwhile(i, bodies_)) {
+  if (bodies_.events(i).exit - now_ < envelopes_->worthwhile(i, bodies_)) {
     rebuild(i);
     return;
   }
@@ -488,6 +511,7 @@ void EventLoop<Bodies>::refine(std::int32_t index) {
   const auto search_evaluations = [this] { return finder_.evaluations - finder_.newton_evaluations; };
   const std::uint64_t before = search_evaluations();
   const int owner = lists_.pair(index).owner;
+  fetch_pairs(owner);
   predict(index, owner, kSecondLook);
   counters_.refinements += search_evaluations() - before;
   reschedule(owner);
@@ -498,6 +522,8 @@ void EventLoop<Bodies>::process_contact(std::int32_t index) {
   Pair& pair = lists_.pair(index);
   const int i = pair.i;
   const int j = pair.j;
+  fetch_pairs(i);
+  fetch_pairs(j);
   bodies_.move(i, now_);
   bodies_.move(j, now_);
   const Vector3d r = between(pair);
@@ -516,6 +542,8 @@ void EventLoop<Bodies>::process_contact(std::int32_t index) {
   virial_ += J * r.dot(pair.normal);
   virial_tensor_ += r * (J * pair.normal).transpose();
   if (collisions_.size() < collisions_wanted_) collisions_.push_back({time(), std::min(i, j), std::max(i, j)});
+  fetch_partners(i);
+  fetch_partners(j);
   renew_exit(i);
   renew_exit(j);
   queue_all_of(i, kNoPair);

@@ -1,11 +1,13 @@
 #pragma once
 
+#include "body_events.h"
 #include "bracketing_contact.h"
 #include "calendar.h"
 #include "cell_grid.h"
 #include "certified_contact.h"
 #include "envelopes.h"
 #include "first_looks.h"
+#include "large_vector.h"
 #include "neighbour_lists.h"
 
 #include <ed/internal/archive.h>
@@ -101,12 +103,14 @@ class EventLoop final : public AnyEventLoop {
   void load_failures(Reader& reader);
   bool events_fit() const;
 
-  static constexpr std::int32_t kExit = -1;
+  static constexpr std::int32_t kExit = BodyEvents::kExit;
   static constexpr std::int32_t kNoPair = -1;
   static constexpr std::size_t kReasons = 1 + static_cast<std::size_t>(FailureReason::declined);  ///< of FailureReason
   static constexpr std::size_t kMaxFailuresRecorded = 16;                                         ///< for each reason
   /// Room for collisions that are recorded; more grow as they come.
   static constexpr std::size_t kCollisionsReserved = std::size_t{1} << 20;
+  /// Bodies whose states, lists and pairs, a kilobyte each, do not fit the caches.
+  static constexpr int kFarFrom = 30000;
   /// Events a body after which it is asked whether the run still makes progress, and how many events are then looked at
   /// to say what it is stuck in.
   static constexpr std::uint64_t kStallEvents = 2000;
@@ -136,6 +140,8 @@ class EventLoop final : public AnyEventLoop {
   Eigen::Vector3d between(const Pair& pair) const;
   double parting_time(const Pair& pair) const;
   void queue(std::int32_t index, int owner);
+  void fetch_pairs(int body) const;
+  void fetch_partners(int body) const;
   void queue_all_of(int body, std::int32_t skip);
   void predict_queued();
   void predict_all();
@@ -150,18 +156,17 @@ class EventLoop final : public AnyEventLoop {
   std::vector<Species> species_;
   std::vector<int> species_of_;  ///< number of each body's
   double box_;
+  bool far_;  ///< most of what an event reads is not in the caches and worth asking for ahead
 
   // State of the bodies.
   Bodies bodies_;
-  std::vector<Eigen::Vector3i> images_;
+  LargeVector<Eigen::Vector3i> images_;
 
   // Neighbours and events.
   std::unique_ptr<Envelopes<Bodies>> envelopes_;
   std::optional<CellGrid> cells_;
   NeighbourLists lists_;
   Calendar calendar_;
-  std::vector<double> exits_;                        ///< lower bound of when a body leaves its envelope
-  std::vector<std::int32_t> first_;                  ///< what a body's calendar entry is: a pair, or kExit
   std::vector<int> orphans_;                         ///< bodies whose first event has gone to another owner
   std::unique_ptr<FirstLooks<Bodies>> first_looks_;  ///< null: pairs are looked at one by one
   std::vector<Look> queue_;                          ///< pairs to be predicted
@@ -176,7 +181,7 @@ class EventLoop final : public AnyEventLoop {
   double virial_ = 0;
   Eigen::Matrix3d virial_tensor_ = Eigen::Matrix3d::Zero();
   Counters counters_;
-  std::vector<std::uint64_t> collisions_of_;  ///< each body
+  LargeVector<std::uint64_t> collisions_of_;  ///< each body
   FinderCounters finder_;
   std::vector<Collision> collisions_;
   std::size_t collisions_wanted_ = 0;

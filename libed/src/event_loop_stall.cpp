@@ -40,7 +40,7 @@ Stall EventLoop<Bodies>::most_frequent_event(double end) {
   int sample = 0;
   for (; sample < kStallSample && calendar_.earliest_time() <= end; ++sample) {
     const int body = calendar_.earliest();
-    const std::int32_t index = first_[at(body)];
+    const std::int32_t index = bodies_.events(body).first;
     if (index == kExit) {
       ++seen[{EventKind::exit, body, -1}];
     } else {

@@ -56,7 +56,7 @@ EventLoop<Bodies>::EventLoop(const System& system, const SimulationOptions& opti
 template <class Bodies>
 template <class Archive, class Self>
 void EventLoop<Bodies>::fields(Archive& archive, Self& self) {
-  archive(self.bodies_, self.images_, *self.cells_, self.lists_, self.calendar_, self.exits_, self.first_);
+  archive(self.bodies_, self.images_, *self.cells_, self.lists_, self.calendar_);
   archive(self.list_scale_, self.epoch_, self.now_, self.epochs_, self.virial_, self.virial_tensor_, self.counters_,
           self.collisions_of_, self.finder_);
   archive(self.collisions_, self.collisions_wanted_, self.failures_of_, self.events_, self.stall_watch_);
@@ -88,10 +88,11 @@ void EventLoop<Bodies>::load_failures(Reader& reader) {
 template <class Bodies>
 bool EventLoop<Bodies>::events_fit() const {
   const std::size_t n = at(number());
-  if (images_.size() != n || exits_.size() != n || first_.size() != n || collisions_of_.size() != n) return false;
+  if (images_.size() != n || collisions_of_.size() != n) return false;
   if (!std::isfinite(now_ + epochs_) || !(epoch_ > 0) || !std::isfinite(epoch_)) return false;
   for (int i = 0; i < number(); ++i) {
-    const std::int32_t first = first_[at(i)];
+    const std::int32_t first = bodies_.events(i).first;
+    if (std::isnan(bodies_.events(i).exit)) return false;
     if (first != kExit && !(lists_.lists(i, first) && lists_.pair(first).owner == i)) return false;
   }
   return true;

@@ -50,7 +50,8 @@ Vector3d allowed_omega(const GeneralKind& kind, const Matrix3d& R, const Vector3
 
 }  // namespace
 
-GeneralBodies::GeneralBodies(const System& system) : motions_(at(system.size())), turned_(at(system.size())) {
+GeneralBodies::GeneralBodies(const System& system)
+    : motions_(at(system.size())), turned_(at(system.size())), events_(at(system.size())) {
   for (const Species& species : system.species) {
     kinds_.push_back(kind_of_species(species));
     bounding_radius_ = std::max(bounding_radius_, kinds_.back().bounding_radius);

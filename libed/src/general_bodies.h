@@ -5,10 +5,13 @@
 ///
 /// A body's flight is kept as it began, after its last collision: nothing is computed again where only time has passed.
 
+#include "body_events.h"
 #include "bracketing_contact.h"
 #include "certified_contact.h"
 #include "envelopes.h"
 #include "first_looks.h"
+#include "large_vector.h"
+#include "prefetch.h"
 #include "rigid_motion.h"
 #include "support_gauge.h"
 
@@ -52,6 +55,10 @@ class GeneralBodies {
   const std::vector<GeneralKind>& kinds() const { return kinds_; }
 
   Eigen::Vector3d position_at(int i, double t) const { return motions_[at(i)].position_at(t); }
+  /// The state of the body is read soon.
+  void fetch(int i) const { prefetch(motions_[at(i)]); }
+  BodyEvents& events(int i) { return events_[at(i)]; }
+  const BodyEvents& events(int i) const { return events_[at(i)]; }
   const Eigen::Vector3d& velocity(int i) const { return motions_[at(i)].velocity; }
   /// How fast the body turns at the most.
   double turning(int i) const { return motions_[at(i)].top.max_omega(); }
@@ -89,8 +96,9 @@ class GeneralBodies {
   /// The states; read into bodies of the same kinds.
   template <class Archive, class Self>
   static void fields(Archive& archive, Self& self) {
-    archive(self.motions_, self.turned_);
-    expect(archive, self.motions_.size() == self.kind_.size() && self.turned_.size() == self.kind_.size(),
+    archive(self.motions_, self.turned_, self.events_);
+    const std::size_t number = self.kind_.size();
+    expect(archive, self.motions_.size() == number && self.turned_.size() == number && self.events_.size() == number,
            "the number of bodies");
   }
 
@@ -124,8 +132,9 @@ class GeneralBodies {
 
   std::vector<GeneralKind> kinds_;
   std::vector<int> kind_;
-  std::vector<RigidMotion> motions_;
-  std::vector<Turned> turned_;
+  LargeVector<RigidMotion> motions_;
+  LargeVector<Turned> turned_;
+  LargeVector<BodyEvents> events_;
   double bounding_radius_ = 0;
   double inscribed_radius_ = kNever;
 };

@@ -352,6 +352,7 @@ System lattice_start(const std::vector<Component>& components, const LatticeOpti
   const double box = free_box(system, options.lattice, cells, sites);
   if (box > request.box) refuse_packing(request, cells, box);
   if (options.nematic_order) internal::turn_to_order(system, axes, *options.nematic_order, random);
+  internal::number_along_curve(system);
   internal::draw_velocities(system, random);
   return system;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace ed::internal {
 
@@ -14,8 +15,6 @@ std::int32_t NeighbourLists::add(std::int32_t i, std::int32_t j, const Eigen::Ve
     index = free_.back();
     free_.pop_back();
   }
-  std::vector<std::int32_t>& list_i = of_body_[static_cast<std::size_t>(i)];
-  std::vector<std::int32_t>& list_j = of_body_[static_cast<std::size_t>(j)];
   Pair& p = pair(index);
   p.time = kNever;
   p.event = PairEvent::clear;
@@ -23,10 +22,8 @@ std::int32_t NeighbourLists::add(std::int32_t i, std::int32_t j, const Eigen::Ve
   p.i = i;
   p.j = j;
   p.owner = i;
-  p.slot_i = static_cast<std::int32_t>(list_i.size());
-  p.slot_j = static_cast<std::int32_t>(list_j.size());
-  list_i.push_back(index);
-  list_j.push_back(index);
+  p.slot_i = append(i, index);
+  p.slot_j = append(j, index);
   return index;
 }
 
@@ -39,8 +36,8 @@ void NeighbourLists::remove(std::int32_t index) {
 
 std::size_t NeighbourLists::reserve() {
   std::size_t longest = 0;
-  for (const std::vector<std::int32_t>& list : of_body_) longest = std::max(longest, list.size());
-  for (std::vector<std::int32_t>& list : of_body_) list.reserve(2 * longest);
+  for (const std::uint32_t length : lengths_) longest = std::max(longest, std::size_t{length});
+  if (2 * longest > room_) make_room(2 * longest);
   pairs_.reserve(2 * pairs_.size());
   free_.reserve(pairs_.capacity());
   return 2 * longest;
@@ -51,7 +48,7 @@ bool NeighbourLists::lists(std::int32_t body, std::int32_t index) const {
   const Pair& p = pair(index);
   if (p.i != body && p.j != body) return false;
   const std::int32_t slot = p.i == body ? p.slot_i : p.slot_j;
-  const std::vector<std::int32_t>& list = of(body);
+  const auto list = of(body);
   return slot >= 0 && static_cast<std::size_t>(slot) < list.size() && list[static_cast<std::size_t>(slot)] == index;
 }
 
@@ -73,18 +70,48 @@ bool NeighbourLists::linked() const {
     if (!sound || !lists(p.i, index) || !lists(p.j, index)) return false;
   }
   std::size_t places = 0;
-  for (const std::vector<std::int32_t>& list : of_body_) places += list.size();
+  for (const std::uint32_t length : lengths_) places += length;
   return places == 2 * (pairs_.size() - free_.size());
 }
 
+/// Returns the slot.
+std::int32_t NeighbourLists::append(std::int32_t body, std::int32_t index) {
+  const auto at = static_cast<std::size_t>(body);
+  if (lengths_[at] == room_) make_room(2 * room_ + 8);
+  list_of(at)[lengths_[at]] = index;
+  return static_cast<std::int32_t>(lengths_[at]++);
+}
+
 void NeighbourLists::unlink(std::int32_t body, std::int32_t slot) {
-  std::vector<std::int32_t>& list = of_body_[static_cast<std::size_t>(body)];
-  const std::int32_t moved = list.back();
-  list[static_cast<std::size_t>(slot)] = moved;
-  list.pop_back();
-  if (static_cast<std::size_t>(slot) == list.size()) return;
-  Pair& p = pair(moved);
+  const auto at = static_cast<std::size_t>(body);
+  std::int32_t* const list = list_of(at);
+  const std::uint32_t last = --lengths_[at];
+  if (static_cast<std::uint32_t>(slot) == last) return;
+  list[slot] = list[last];
+  Pair& p = pair(list[slot]);
   (p.i == body ? p.slot_i : p.slot_j) = slot;
+}
+
+/// As many lists as there are bodies.
+void NeighbourLists::assign(const std::vector<std::vector<std::int32_t>>& lists) {
+  std::size_t longest = 0;
+  for (const std::vector<std::int32_t>& list : lists) longest = std::max(longest, list.size());
+  std::fill(lengths_.begin(), lengths_.end(), 0);
+  make_room(longest);
+  for (std::size_t body = 0; body < lists.size(); ++body) {
+    std::copy(lists[body].begin(), lists[body].end(), list_of(body));
+    lengths_[body] = static_cast<std::uint32_t>(lists[body].size());
+  }
+}
+
+/// `room`: at least what every list takes.
+void NeighbourLists::make_room(std::size_t room) {
+  LargeVector<std::int32_t> slots(room * lengths_.size());
+  for (std::size_t body = 0; body < lengths_.size(); ++body) {
+    std::copy_n(list_of(body), lengths_[body], slots.data() + body * room);
+  }
+  slots_ = std::move(slots);
+  room_ = room;
 }
 
 }  // namespace ed::internal

@@ -1,12 +1,17 @@
 #pragma once
 
+#include "large_vector.h"
+#include "prefetch.h"
+
 #include <ed/internal/archive.h>
 
 #include <Eigen/Core>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <vector>
 
 namespace ed::internal {
@@ -20,7 +25,8 @@ enum class PairEvent : std::int32_t {
   contact,  ///< they touch at `time`
 };
 
-struct Pair {
+/// One cache line: a collision looks at some hundred pairs, each somewhere else in memory.
+struct alignas(64) Pair {
   double time = kNever;
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< from i to j: the last one found, or zero
   std::int32_t i = -1;
@@ -41,12 +47,20 @@ void fields(Archive& archive, T& pair) {
 /// Neighbour lists: a pool of pairs, and for each body the pairs that it is in.
 class NeighbourLists {
  public:
-  explicit NeighbourLists(int number) : of_body_(static_cast<std::size_t>(number)) {}
+  explicit NeighbourLists(int number) : lengths_(static_cast<std::size_t>(number), 0) {}
 
-  const std::vector<std::int32_t>& of(int body) const { return of_body_[static_cast<std::size_t>(body)]; }
+  std::span<const std::int32_t> of(int body) const {
+    return {slots_.data() + static_cast<std::size_t>(body) * room_, lengths_[static_cast<std::size_t>(body)]};
+  }
   Pair& pair(std::int32_t index) { return pairs_[static_cast<std::size_t>(index)]; }
   const Pair& pair(std::int32_t index) const { return pairs_[static_cast<std::size_t>(index)]; }
-  int number() const { return static_cast<int>(of_body_.size()); }
+  int number() const { return static_cast<int>(lengths_.size()); }
+
+  /// The list of the body is read soon.
+  void fetch(int body) const {
+    prefetch(lengths_[static_cast<std::size_t>(body)]);
+    __builtin_prefetch(slots_.data() + static_cast<std::size_t>(body) * room_);
+  }
 
   /// A new pair of neighbours, owned by i; returns its index.
   std::int32_t add(std::int32_t i, std::int32_t j, const Eigen::Vector3d& normal);
@@ -59,9 +73,21 @@ class NeighbourLists {
   /// Indices, slots and the order of everything as they are; read into lists of the same number of bodies.
   template <class Archive, class Self>
   static void fields(Archive& archive, Self& self) {
-    const std::size_t number = self.of_body_.size();
-    archive(self.pairs_, self.free_, self.of_body_);
-    expect(archive, self.of_body_.size() == number && self.linked(), "the neighbour lists do not fit together");
+    archive(self.pairs_, self.free_);
+    if constexpr (Archive::kReads) {
+      std::vector<std::vector<std::int32_t>> lists;
+      archive(lists);
+      const bool fits = std::all_of(lists.begin(), lists.end(), [&](const auto& l) { return l.size() < lists.size(); });
+      expect(archive, fits && lists.size() == self.lengths_.size(), "the neighbour lists of the bodies");
+      self.assign(lists);
+      expect(archive, self.linked(), "the neighbour lists do not fit together");
+    } else {
+      archive(std::uint64_t{self.lengths_.size()});
+      for (int body = 0; body < self.number(); ++body) {
+        const auto list = self.of(body);
+        archive(std::vector<std::int32_t>(list.begin(), list.end()));
+      }
+    }
   }
 
   /// Whether the pair is one of this body's.
@@ -69,11 +95,18 @@ class NeighbourLists {
 
  private:
   bool linked() const;
+  std::int32_t append(std::int32_t body, std::int32_t index);
   void unlink(std::int32_t body, std::int32_t slot);
+  void assign(const std::vector<std::vector<std::int32_t>>& lists);
+  void make_room(std::size_t room);
+  std::int32_t* list_of(std::size_t body) { return slots_.data() + body * room_; }
 
-  std::vector<Pair> pairs_;
-  std::vector<std::int32_t> free_;
-  std::vector<std::vector<std::int32_t>> of_body_;
+  LargeVector<Pair> pairs_;
+  LargeVector<std::int32_t> free_;
+  // A list stands where its body's number says: no pointer has to be read first.
+  std::size_t room_ = 0;                ///< for each list
+  LargeVector<std::int32_t> slots_;     ///< room_ for each body
+  std::vector<std::uint32_t> lengths_;  ///< of the lists
 };
 
 }  // namespace ed::internal

@@ -27,7 +27,7 @@ class Simulation::Impl {
 namespace {
 
 /// Raised by every change of what save() writes.
-constexpr std::uint32_t kStateFormat = 4;
+constexpr std::uint32_t kStateFormat = 5;
 
 /// Work of a stretch of the run in units of one evaluation of the gap function, from counters alone so that it is the
 /// same on every machine. The weights are relative times, measured with a profiler at X0 = 3, phi = 0.40.

@@ -239,6 +239,7 @@ System random_start(const std::vector<Component>& components, const StartOptions
     system = internal::repeat(system, tiling, components, random);
     internal::draw_velocities(system, random);
   }
+  internal::number_along_curve(system);
   rescale_velocities(system);
   return system;
 }

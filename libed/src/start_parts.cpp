@@ -6,9 +6,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <variant>
 
 namespace ed {
@@ -35,6 +37,21 @@ System spheres_of(const System& system) {
     if (is_sphere(system.species[static_cast<std::size_t>(body.species)])) spheres.bodies.push_back(body);
   }
   return spheres;
+}
+
+/// Of this many bodies on, the caches do not hold what belongs to them.
+constexpr int kManyBodies = 4000;
+
+/// Where a point of the box stands on a Z-order curve (Morton): the bits of its coordinates in turn.
+std::uint64_t place_on_curve(const Vector3d& position, double box) {
+  constexpr int kBits = 21;
+  std::uint64_t place = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double share = position[axis] / box - std::floor(position[axis] / box);
+    const auto coordinate = static_cast<std::uint64_t>(share * ((1 << kBits) - 1));
+    for (int bit = 0; bit < kBits; ++bit) place |= ((coordinate >> bit) & 1) << (3 * bit + axis);
+  }
+  return place;
 }
 
 }  // namespace
@@ -82,6 +99,17 @@ System bodies_of(const std::vector<Component>& components) {
     system.bodies.insert(system.bodies.end(), static_cast<std::size_t>(components[k].number), body);
   }
   return system;
+}
+
+void number_along_curve(System& system) {
+  if (system.size() < kManyBodies) return;
+  std::vector<std::pair<std::uint64_t, Body>> placed;
+  placed.reserve(system.bodies.size());
+  for (const Body& body : system.bodies) placed.emplace_back(place_on_curve(body.position, system.box), body);
+  std::stable_sort(placed.begin(), placed.end(), [](const auto& a, const auto& b) {
+    return std::pair(a.second.species, a.first) < std::pair(b.second.species, b.first);
+  });
+  for (std::size_t i = 0; i < placed.size(); ++i) system.bodies[i] = placed[i].second;
 }
 
 void draw_velocities(System& system, Random& random) {

@@ -27,6 +27,10 @@ void check_target(const std::vector<Component>& components, double box);
 /// The bodies of the components, in their order, without places.
 System bodies_of(const std::vector<Component>& components);
 
+/// Numbers many bodies of a species along a curve that fills the box: bodies that are near each other stand near each
+/// other in memory, too. Few are left as they are.
+void number_along_curve(System& system);
+
 /// From the Maxwell distribution, then rescaled.
 void draw_velocities(System& system, Random& random);
 

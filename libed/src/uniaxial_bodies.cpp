@@ -44,7 +44,7 @@ bool UniaxialBodies::can_hold(const System& system) {
   return std::all_of(system.species.begin(), system.species.end(), is_uniaxial);
 }
 
-UniaxialBodies::UniaxialBodies(const System& system) : motions_(at(system.size())), frames_(at(system.size())) {
+UniaxialBodies::UniaxialBodies(const System& system) : entries_(at(system.size())), frames_(at(system.size())) {
   for (const Species& species : system.species) {
     kinds_.push_back(kind_of_species(species));
     bounding_radius_ = std::max(bounding_radius_, kinds_.back().bounding_radius);
@@ -55,7 +55,7 @@ UniaxialBodies::UniaxialBodies(const System& system) : motions_(at(system.size()
     const Body& body = system.bodies[at(i)];
     kind_.push_back(body.species);
     const UniaxialKind& kind = kind_of(i);
-    AxisMotion& motion = motions_[at(i)];
+    AxisMotion& motion = entries_[at(i)].motion;
     BodyFrame& frame = frames_[at(i)];
     const Vector3d u = body.rotation.col(kind.axis);
     motion.position = body.position;
@@ -70,7 +70,7 @@ UniaxialBodies::UniaxialBodies(const System& system) : motions_(at(system.size()
 
 Motion UniaxialBodies::motion(int i, double t) const {
   const UniaxialKind& kind = kind_of(i);
-  AxisMotion m = motions_[at(i)];
+  AxisMotion m = entries_[at(i)].motion;
   BodyFrame f = frames_[at(i)];
   advance(kind.inertia, t, m, f);
   const Vector3d u = m.axis();
@@ -85,7 +85,7 @@ Motion UniaxialBodies::motion(int i, double t) const {
 
 void UniaxialBodies::sample(int i, double t, Snapshot& snapshot) const {
   const UniaxialKind& kind = kind_of(i);
-  AxisMotion m = motions_[at(i)];
+  AxisMotion m = entries_[at(i)].motion;
   BodyFrame f = frames_[at(i)];
   advance(kind.inertia, t, m, f);
   snapshot.axis[at(i)] = m.axis();
@@ -100,8 +100,8 @@ Finding UniaxialBodies::find_contact(int i, int j, const Vector3d& r, double now
                                      std::optional<Unsolved>& unsolved) const {
   const UniaxialKind& A = kind_of(i);
   const UniaxialKind& B = kind_of(j);
-  const AxisMotion& a = motions_[at(i)];
-  const AxisMotion& b = motions_[at(j)];
+  const AxisMotion& a = entries_[at(i)].motion;
+  const AxisMotion& b = entries_[at(j)].motion;
   if (options.finder == Finder::bracketing) {
     return bracketing_contact({A.upright, B.upright, a, b, r, now}, now, end, options, n, count, unsolved);
   }
@@ -116,7 +116,7 @@ Finding UniaxialBodies::find_contact(int i, int j, const Vector3d& r, double now
 
 double UniaxialBodies::collide(int i, int j, const Vector3d& /*r*/, const Vector3d& n, double /*now*/) {
   const auto contact_body = [this](int body, const Vector3d& outward) -> ContactBody {
-    const AxisMotion& m = motions_[at(body)];
+    const AxisMotion& m = entries_[at(body)].motion;
     const UniaxialKind& kind = kind_of(body);
     // The impulse of a body of revolution has no moment along the axis: any multiple of the identity with 1/I_perp
     // does.
@@ -128,7 +128,7 @@ double UniaxialBodies::collide(int i, int j, const Vector3d& /*r*/, const Vector
   const double J = ed::collide(a, b, n);
   if (!(J > 0)) return 0;
   for (const auto& [body, state] : {std::pair<int, const ContactBody&>{i, a}, {j, b}}) {
-    AxisMotion& m = motions_[at(body)];
+    AxisMotion& m = entries_[at(body)].motion;
     m.velocity = state.velocity;
     const Vector3d u = m.axis();
     const Vector3d omega = state.angular_velocity - state.angular_velocity.dot(u) * u;
@@ -143,8 +143,8 @@ double UniaxialBodies::contact_scale(int i, int j, const Vector3d& r, const Vect
                                      double enough) const {
   const UniaxialKind& A = kind_of(i);
   const UniaxialKind& B = kind_of(j);
-  const Vector3d u_a = motions_[at(i)].axis_at(now);
-  const Vector3d u_b = motions_[at(j)].axis_at(now);
+  const Vector3d u_a = entries_[at(i)].motion.axis_at(now);
+  const Vector3d u_b = entries_[at(j)].motion.axis_at(now);
   Vector3d n = start.isZero(0) ? geom::internal::cold_normal(A.shape, B.shape, r, u_a, u_b) : start;
   double best = 1;
   const auto evaluate = [&](const Vector3d& m) { return evaluate_uniaxial(A.shape, B.shape, r, u_a, u_b, m); };

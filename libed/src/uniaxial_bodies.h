@@ -5,10 +5,13 @@
 /// What an event loop asks of its bodies is the public interface below; GeneralBodies has the same.
 
 #include "axis_motion.h"
+#include "body_events.h"
 #include "bracketing_contact.h"
 #include "certified_contact.h"
 #include "envelopes.h"
 #include "first_looks.h"
+#include "large_vector.h"
+#include "prefetch.h"
 #include "uniaxial_kernels.h"
 
 #include <ed/motion.h>
@@ -42,30 +45,37 @@ class UniaxialBodies {
 
   explicit UniaxialBodies(const System& system);
 
-  int number() const { return static_cast<int>(motions_.size()); }
+  int number() const { return static_cast<int>(entries_.size()); }
   double bounding_radius() const { return bounding_radius_; }    ///< the largest
   double inscribed_radius() const { return inscribed_radius_; }  ///< the smallest
   double bounding_radius(int i) const { return kind_of(i).bounding_radius; }
 
   /// Position of the centre, at any time of the flight.
-  Eigen::Vector3d position_at(int i, double t) const { return motions_[at(i)].position_at(t); }
-  const Eigen::Vector3d& velocity(int i) const { return motions_[at(i)].velocity; }
+  Eigen::Vector3d position_at(int i, double t) const { return entries_[at(i)].motion.position_at(t); }
+  /// The state of the body is read soon.
+  void fetch(int i) const {
+    __builtin_prefetch(&entries_[at(i)]);
+    __builtin_prefetch(&entries_[at(i)].motion.time);
+  }
+  BodyEvents& events(int i) { return entries_[at(i)].events; }
+  const BodyEvents& events(int i) const { return entries_[at(i)].events; }
+  const Eigen::Vector3d& velocity(int i) const { return entries_[at(i)].motion.velocity; }
   /// How fast the body turns at the most.
-  double turning(int i) const { return motions_[at(i)].rate; }
+  double turning(int i) const { return entries_[at(i)].motion.rate; }
   Motion motion(int i, double t) const;
   /// Orientation and the integrals of the angular velocity; not the position.
   void sample(int i, double t, Snapshot& snapshot) const;
 
   /// Keeps the state at t instead of that of an earlier time.
   void move(int i, double t) {
-    AxisMotion& m = motions_[at(i)];
+    AxisMotion& m = entries_[at(i)].motion;
     advance(kind_of(i).inertia, t, m, frames_[at(i)]);
   }
-  void shift(int i, const Eigen::Vector3d& by) { motions_[at(i)].position += by; }
+  void shift(int i, const Eigen::Vector3d& by) { entries_[at(i)].motion.position += by; }
   /// Its clock, at `t` now, shows 0; after move(i, t).
-  void restart_clock(int i, double /*t*/) { motions_[at(i)].time = 0; }
+  void restart_clock(int i, double /*t*/) { entries_[at(i)].motion.time = 0; }
   void scale_positions(double factor, double /*now*/) {
-    for (AxisMotion& m : motions_) m.position *= factor;
+    for (Entry& entry : entries_) entry.motion.position *= factor;
   }
 
   /// Searches [now, end] for a contact of i and j, whose centres are r apart now.
@@ -94,15 +104,27 @@ class UniaxialBodies {
   /// The states; read into bodies of the same kinds.
   template <class Archive, class Self>
   static void fields(Archive& archive, Self& self) {
-    archive(self.motions_, self.frames_);
-    expect(archive, self.motions_.size() == self.kind_.size() && self.frames_.size() == self.kind_.size(),
+    archive(self.entries_, self.frames_);
+    expect(archive, self.entries_.size() == self.kind_.size() && self.frames_.size() == self.kind_.size(),
            "the number of bodies");
   }
 
-  const AxisMotion& axis_motion(int i) const { return motions_[at(i)]; }
+  const AxisMotion& axis_motion(int i) const { return entries_[at(i)].motion; }
   const BodyFrame& frame(int i) const { return frames_[at(i)]; }
 
  private:
+  /// Of a neighbour without spin two cache lines are read, all but AxisMotion::e0: of large systems, what a collision
+  /// costs is the number of lines that it reads.
+  struct alignas(64) Entry {
+    BodyEvents events;
+    AxisMotion motion;
+
+    template <class Archive, class Self>
+    static void fields(Archive& archive, Self& self) {
+      archive(self.events, self.motion);
+    }
+  };
+
   /// None if pairs are better answered one by one.
   UniaxialKernels kernels(const SimulationOptions& options) const;
 
@@ -110,8 +132,8 @@ class UniaxialBodies {
 
   std::vector<UniaxialKind> kinds_;
   std::vector<int> kind_;
-  std::vector<AxisMotion> motions_;
-  std::vector<BodyFrame> frames_;
+  LargeVector<Entry> entries_;
+  LargeVector<BodyFrame> frames_;
   double bounding_radius_ = 0;
   double inscribed_radius_ = kNever;
   bool spins_ = false;

@@ -29,7 +29,7 @@ void expect_consistent(const NeighbourLists& lists, const std::map<std::int32_t,
     for (const auto& [index, bodies] : model) {
       if (bodies.first == body || bodies.second == body) wanted.insert(index);
     }
-    const std::vector<std::int32_t>& list = lists.of(body);
+    const auto list = lists.of(body);
     ASSERT_EQ(std::set<std::int32_t>(list.begin(), list.end()), wanted) << "body " << body;
     ASSERT_EQ(list.size(), wanted.size()) << "body " << body << " lists a pair twice";
     for (std::size_t slot = 0; slot < list.size(); ++slot) {

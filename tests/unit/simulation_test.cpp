@@ -421,4 +421,40 @@ TEST(SimulationRefuses, RotationsThatAreNotOrthonormal) {
   EXPECT_NE(message_of(system), "no std::invalid_argument");
 }
 
+/// The system, repeated along each edge; copies of a body stand one after the other.
+ed::System repeated(const ed::System& system, int along) {
+  ed::System large = system;
+  large.box = along * system.box;
+  large.bodies.clear();
+  for (const ed::Body& body : system.bodies) {
+    for (int copy = 0; copy < along * along * along; ++copy) {
+      large.bodies.push_back(body);
+      large.bodies.back().position += system.box * Vector3d(copy % along, copy / along % along, copy / along / along);
+    }
+  }
+  return large;
+}
+
+/// Memory is laid out, and asked for ahead, with tens of thousands of bodies; what they do is what they do in a small
+/// box, each copy, until rounding has grown.
+TEST(Simulation, ManyBodiesDoAsTheirCopiesInASmallBox) {
+  const ed::System system = ed_test::start({2, 0.3, 512, Inertia::uniform});
+  constexpr int kAlong = 4;
+  ed::Simulation small(system);
+  ed::Simulation large(repeated(system, kAlong));
+  ASSERT_GE(large.system().size(), 30000);
+  small.run_collisions(512);
+  large.run_until(small.time());
+  EXPECT_NEAR(static_cast<double>(large.counters().collisions), 512.0 * kAlong * kAlong * kAlong, 64);
+  const ed::System end = small.system();
+  const ed::System ends = large.system();
+  for (int i = 0; i < ends.size(); ++i) {
+    const ed::Body& copy = ends.bodies[static_cast<std::size_t>(i)];
+    const ed::Body& body = end.bodies[static_cast<std::size_t>(i / (kAlong * kAlong * kAlong))];
+    const Vector3d r = (copy.position - body.position) / system.box;
+    ASSERT_NEAR((r - r.array().round().matrix()).norm(), 0, 1e-9) << "body " << i;
+    ASSERT_NEAR((copy.rotation - body.rotation).norm(), 0, 1e-8) << "body " << i;
+  }
+}
+
 }  // namespace

@@ -202,6 +202,35 @@ TEST(RandomStart, LargeMixturesAreRepeated) {
   expect_sound(system, 0.3);
 }
 
+/// Mean distance of bodies of one species whose numbers follow each other, in mean distances of neighbours.
+double mean_distance_of_successors(const ed::System& system) {
+  double sum = 0;
+  for (int i = 1; i < system.size(); ++i) {
+    const ed::Body& before = system.bodies[static_cast<std::size_t>(i - 1)];
+    const ed::Body& body = system.bodies[static_cast<std::size_t>(i)];
+    EXPECT_GE(body.species, before.species);
+    const Eigen::Vector3d r = body.position - before.position;
+    sum += (r - system.box * (r / system.box).array().round().matrix()).norm();
+  }
+  return sum / system.size() / (system.box / std::cbrt(static_cast<double>(system.size())));
+}
+
+/// In any order it would be half a box: 8 of these.
+TEST(LargeStarts, NumberNeighboursOneAfterTheOther) {
+  const ed::Species species = ed::paper_species(ed_test::spheroid(0.9));
+  ed::StartOptions dilute;
+  dilute.number = 5000;
+  dilute.packing_fraction = 0.02;
+  const std::vector<ed::Component> components = {{species, 2500}, {ed::uniform_species(ed_test::spheroid(2)), 2500}};
+  const ed::System mixture = ed::random_start(components, dilute);
+  expect_sound(mixture, 0.02);
+  // Each species has half the bodies, 2^(1/3) times as far apart.
+  EXPECT_LT(mean_distance_of_successors(mixture), 2.5);
+  ed::LatticeOptions lattice;
+  lattice.packing_fraction = 0.3;
+  EXPECT_LT(mean_distance_of_successors(ed::lattice_start({{species, 4 * 11 * 11 * 11}}, lattice)), 2);
+}
+
 /// Compressed with their own masses the heavy ones hardly move while the light ones collide.
 TEST(RandomStart, MassesThatDifferByMuchCostNothing) {
   ed::StartOptions options;

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <ed/internal/archive.h>
+
+#include <cstdint>
+
+namespace ed::internal {
+
+/// When the next events of a body come. It stands with the body's motion, in the cache lines that are read anyway.
+struct BodyEvents {
+  static constexpr std::int32_t kExit = -1;
+
+  double exit = 0;             ///< lower bound of when the body leaves its envelope
+  std::int32_t first = kExit;  ///< what its calendar entry is: a pair, or kExit
+
+  template <class Archive, class Self>
+  static void fields(Archive& archive, Self& self) {
+    archive(self.exit, self.first);
+  }
+};
+
+}  // namespace ed::internal
