@@ -69,10 +69,10 @@ namespace {
 
 constexpr std::string_view kMagic = "HARDBODY";
 constexpr std::uint32_t kByteOrder = 0x01020304;
-constexpr std::uint32_t kFormat = 7;
-constexpr std::uint32_t kOtherRun = 3;  ///< to 6: whose run only an older program can go on with
-constexpr std::uint32_t kOneEllipsoid =
-    1;  ///< of one ellipsoid of revolution; like 2 without what a run needs to go on
+constexpr std::uint32_t kFormat = 8;
+constexpr std::uint32_t kOtherRun = 3;  ///< to 7: whose run only an older program can go on with
+/// Of one ellipsoid of revolution; like 2 without what a run needs to go on.
+constexpr std::uint32_t kOneEllipsoid = 1;
 constexpr std::size_t kHead = 8 + 4 + 4 + 8;  ///< magic, byte order, format, length of the payload
 constexpr std::size_t kTail = 8;              ///< checksum
 constexpr std::size_t kLongest = std::size_t{1} << 35;

@@ -27,7 +27,7 @@ struct AxisMotion {
   Eigen::Vector3d e2;
   double rate;  ///< Omega
   double time;
-  Eigen::Vector3d e0;  ///< zero for bodies without spin
+  Eigen::Vector3d e0;  ///< zero for bodies without spin; the last, so that nothing of theirs stands after it
 
   Eigen::Vector3d axis() const { return e0 + e1; }
   Eigen::Vector3d axis_at(double t) const {

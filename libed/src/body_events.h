@@ -6,7 +6,7 @@
 
 namespace ed::internal {
 
-/// When the next events of a body come. It stands with the body's motion, in the cache lines that are read anyway.
+/// When the next events of a body come. Bodies keep it for the event loop: next to the motion, where that is small.
 struct BodyEvents {
   static constexpr std::int32_t kExit = -1;
 

@@ -86,13 +86,14 @@ class Calendar {
       const auto least = [](double a, double b) { return b < a ? b : a; };
       return least(least(least(t[0], t[1]), least(t[2], t[3])), least(least(t[4], t[5]), least(t[6], t[7])));
     }
-    /// The first place at which this time stands.
+    /// The first place at which this time stands; the last, if it stands nowhere.
     std::size_t place_of(double time) const {
-      unsigned places = 0;
-      for (unsigned k = 0; k < kGroup; ++k) places |= static_cast<unsigned>(times[k] == time) << k;
+      unsigned places = 1U << (kGroup - 1);
+      for (unsigned k = 0; k < kGroup - 1; ++k) places |= static_cast<unsigned>(times[k] == time) << k;
       return static_cast<std::size_t>(std::countr_zero(places));
     }
   };
+  static_assert(sizeof(Group) == 64);
 
   static std::size_t at(int i) { return static_cast<std::size_t>(i); }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 
 namespace ed::internal {
@@ -47,6 +48,7 @@ CellGrid::CellGrid(int number, double box, double reach)
       }
     }
   }
+  assert(stencil_.size() <= kMostOffsets);
 }
 
 int CellGrid::coordinate(double x) const {
@@ -88,8 +90,9 @@ bool CellGrid::filled() const {
     }
   }
   return stencil_.size() <= kMostOffsets && std::all_of(found.begin(), found.end(), [](bool is) { return is; }) &&
-         std::all_of(stencil_.begin(), stencil_.end(),
-                     [this](const auto& offset) { return offset.cwiseAbs().maxCoeff() <= cells_; });
+         std::all_of(stencil_.begin(), stencil_.end(), [this](const auto& offset) {
+           return offset.minCoeff() >= -cells_ && offset.maxCoeff() <= cells_;
+         });
 }
 
 void CellGrid::scale(double factor) {

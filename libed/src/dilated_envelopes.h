@@ -181,6 +181,12 @@ class DilatedEnvelopes final : public Envelopes<UniaxialBodies> {
     archive(self.thickness_, self.exit_thickness_, self.centre_, self.axis_);
     expect(archive, self.centre_.size() == self.kind_.size() && self.axis_.size() == self.kind_.size(),
            "the envelopes of the bodies");
+    expect(archive, self.exit_thickness_ >= 0 && self.exit_thickness_ <= self.thickness_, "the room to an exit");
+    const auto finite = [](const Eigen::Vector3d& v) { return v.allFinite(); };
+    expect(archive,
+           std::all_of(self.centre_.begin(), self.centre_.end(), finite) &&
+               std::all_of(self.axis_.begin(), self.axis_.end(), finite),
+           "an envelope is not finite");
   }
 
   const Kind& kind_of(int i) const { return kinds_[static_cast<std::size_t>(kind_[static_cast<std::size_t>(i)])]; }

@@ -109,8 +109,9 @@ class EventLoop final : public AnyEventLoop {
   static constexpr std::size_t kMaxFailuresRecorded = 16;                                         ///< for each reason
   /// Room for collisions that are recorded; more grow as they come.
   static constexpr std::size_t kCollisionsReserved = std::size_t{1} << 20;
-  /// Bodies whose states, lists and pairs, a kilobyte each, do not fit the caches.
+  /// So many bodies, a kilobyte each with lists and pairs, are more than the caches of a processor hold.
   static constexpr int kFarFrom = 30000;
+  static constexpr std::size_t kCandidatesToo = 500;
   /// Events a body after which it is asked whether the run still makes progress, and how many events are then looked at
   /// to say what it is stuck in.
   static constexpr std::uint64_t kStallEvents = 2000;
@@ -140,8 +141,8 @@ class EventLoop final : public AnyEventLoop {
   Eigen::Vector3d between(const Pair& pair) const;
   double parting_time(const Pair& pair) const;
   void queue(std::int32_t index, int owner);
-  void fetch_pairs(int body) const;
-  void fetch_partners(int body) const;
+  void fetch_pairs(int body) const;     ///< read soon
+  void fetch_partners(int body) const;  ///< after fetch_pairs and something else to do: it reads the pairs
   void queue_all_of(int body, std::int32_t skip);
   void predict_queued();
   void predict_all();

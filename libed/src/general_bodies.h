@@ -56,7 +56,10 @@ class GeneralBodies {
 
   Eigen::Vector3d position_at(int i, double t) const { return motions_[at(i)].position_at(t); }
   /// The state of the body is read soon.
-  void fetch(int i) const { prefetch(motions_[at(i)]); }
+  void fetch(int i) const {
+    prefetch(motions_[at(i)]);
+    prefetch(events_[at(i)]);
+  }
   BodyEvents& events(int i) { return events_[at(i)]; }
   const BodyEvents& events(int i) const { return events_[at(i)]; }
   const Eigen::Vector3d& velocity(int i) const { return motions_[at(i)].velocity; }

@@ -16,6 +16,7 @@
 
 #include <Eigen/Core>
 
+#include <algorithm>
 #include <vector>
 
 namespace ed::internal {
@@ -52,6 +53,9 @@ class GeneralDilatedEnvelopes final : public Envelopes<GeneralBodies> {
     const std::size_t number = self.places_.size();
     archive(self.thickness_, self.exit_thickness_, self.places_);
     expect(archive, self.places_.size() == number, "the envelopes of the bodies");
+    expect(archive, self.exit_thickness_ >= 0 && self.exit_thickness_ <= self.thickness_, "the room to an exit");
+    const auto finite = [](const Place& place) { return place.centre.allFinite() && place.rotation.allFinite(); };
+    expect(archive, std::all_of(self.places_.begin(), self.places_.end(), finite), "an envelope is not finite");
   }
 
   const GeneralBodies* bodies_;

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdlib>
 #include <new>
 #include <vector>
 
@@ -20,29 +19,24 @@ class LargePages {
 
   LargePages() = default;
   template <class U>
-  explicit LargePages(const LargePages<U>& /*other*/) {}
+  LargePages(const LargePages<U>& /*other*/) noexcept {}  // NOLINT(google-explicit-constructor): as allocators must
 
   T* allocate(std::size_t number) {
     if (number > static_cast<std::size_t>(-1) / 2 / sizeof(T)) throw std::bad_array_new_length();
-    if (!large(number)) return static_cast<T*>(::operator new (number * sizeof(T), std::align_val_t{alignof(T)}));
-    const std::size_t bytes = (number * sizeof(T) + kPage - 1) / kPage * kPage;
-    void* const memory = std::aligned_alloc(kPage, bytes);
-    if (memory == nullptr) throw std::bad_alloc();
-#if defined(__linux__)
+    const std::size_t bytes = number * sizeof(T);
+    void* const memory = ::operator new(bytes, alignment(number));
+#if defined(MADV_HUGEPAGE)
     // A wish: where it is refused, small pages do.
-    (void)::madvise(memory, bytes, MADV_HUGEPAGE);
+    if (large(number)) (void)::madvise(memory, bytes, MADV_HUGEPAGE);
 #endif
     return static_cast<T*>(memory);
   }
   void deallocate(T* memory, std::size_t number) {
-    if (large(number)) {
-      std::free(memory);
-    } else {
-      ::operator delete (memory, std::align_val_t{alignof(T)});
-    }
+    ::operator delete(memory, alignment(number));
   }
 
-  friend bool operator==(const LargePages& /*a*/, const LargePages& /*b*/) {
+  template <class U>
+  bool operator==(const LargePages<U>& /*other*/) const {
     return true;
   }
 
@@ -52,9 +46,12 @@ class LargePages {
   static bool large(std::size_t number) {
     return number * sizeof(T) >= 2 * kPage;
   }
+  static std::align_val_t alignment(std::size_t number) {
+    return std::align_val_t{large(number) ? kPage : alignof(T)};
+  }
 };
 
-/// Of what large systems have one for each body or pair.
+/// For what an event reads of bodies and pairs.
 template <class T>
 using LargeVector = std::vector<T, LargePages<T>>;
 

@@ -37,7 +37,9 @@ void NeighbourLists::remove(std::int32_t index) {
 std::size_t NeighbourLists::reserve() {
   std::size_t longest = 0;
   for (const std::uint32_t length : lengths_) longest = std::max(longest, std::size_t{length});
-  if (2 * longest > room_) make_room(2 * longest);
+  const std::size_t room = std::min(2 * longest, most_room());
+  if (room > room_) make_room(room);
+  for (auto& [body, list] : long_) list.reserve(2 * longest);
   pairs_.reserve(2 * pairs_.size());
   free_.reserve(pairs_.capacity());
   return 2 * longest;
@@ -77,38 +79,66 @@ bool NeighbourLists::linked() const {
 /// Returns the slot.
 std::int32_t NeighbourLists::append(std::int32_t body, std::int32_t index) {
   const auto at = static_cast<std::size_t>(body);
-  if (lengths_[at] == room_) make_room(2 * room_ + 8);
-  list_of(at)[lengths_[at]] = index;
+  const std::size_t length = lengths_[at];
+  if (length == room_ && room_ < most_room()) make_room(std::min(2 * room_ + 8, most_room()));
+  if (length < room_) {
+    list_of(at)[length] = index;
+  } else {
+    std::vector<std::int32_t>& list = long_[body];
+    if (length == room_) list.assign(list_of(at), list_of(at) + room_);
+    list.push_back(index);
+  }
   return static_cast<std::int32_t>(lengths_[at]++);
 }
 
 void NeighbourLists::unlink(std::int32_t body, std::int32_t slot) {
   const auto at = static_cast<std::size_t>(body);
-  std::int32_t* const list = list_of(at);
+  const bool is_long = lengths_[at] > room_;
+  std::int32_t* list = is_long ? long_.at(body).data() : list_of(at);
   const std::uint32_t last = --lengths_[at];
+  const std::int32_t moved = list[last];
+  list[slot] = moved;
+  if (is_long) {
+    long_.at(body).pop_back();
+    if (last == room_) std::copy_n(list, room_, list_of(at));
+  }
   if (static_cast<std::uint32_t>(slot) == last) return;
-  list[slot] = list[last];
-  Pair& p = pair(list[slot]);
+  Pair& p = pair(moved);
   (p.i == body ? p.slot_i : p.slot_j) = slot;
 }
 
-/// As many lists as there are bodies.
+/// The most that each body is given: several times the mean.
+std::size_t NeighbourLists::most_room() const {
+  constexpr std::size_t kAlways = 64;
+  return std::max(kAlways, 8 * (pairs_.size() - std::min(free_.size(), pairs_.size())) / lengths_.size());
+}
+
+/// As many lists as there are bodies; the pairs are there already.
 void NeighbourLists::assign(const std::vector<std::vector<std::int32_t>>& lists) {
   std::size_t longest = 0;
   for (const std::vector<std::int32_t>& list : lists) longest = std::max(longest, list.size());
+  long_.clear();
   std::fill(lengths_.begin(), lengths_.end(), 0);
-  make_room(longest);
+  make_room(std::min(longest, most_room()));
   for (std::size_t body = 0; body < lists.size(); ++body) {
-    std::copy(lists[body].begin(), lists[body].end(), list_of(body));
-    lengths_[body] = static_cast<std::uint32_t>(lists[body].size());
+    const std::vector<std::int32_t>& list = lists[body];
+    if (list.size() > room_) {
+      long_[static_cast<std::int32_t>(body)] = list;
+    } else {
+      std::copy(list.begin(), list.end(), list_of(body));
+    }
+    lengths_[body] = static_cast<std::uint32_t>(list.size());
   }
 }
 
-/// `room`: at least what every list takes.
+/// `room`: no less than now.
 void NeighbourLists::make_room(std::size_t room) {
   LargeVector<std::int32_t> slots(room * lengths_.size());
   for (std::size_t body = 0; body < lengths_.size(); ++body) {
-    std::copy_n(list_of(body), lengths_[body], slots.data() + body * room);
+    const std::size_t length = lengths_[body];
+    if (length > room) continue;
+    const std::int32_t* const list = length > room_ ? long_.at(static_cast<std::int32_t>(body)).data() : list_of(body);
+    std::copy_n(list, length, slots.data() + body * room);
   }
   slots_ = std::move(slots);
   room_ = room;

@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <unordered_map>
 #include <vector>
 
 namespace ed::internal {
@@ -25,7 +26,7 @@ enum class PairEvent : std::int32_t {
   contact,  ///< they touch at `time`
 };
 
-/// One cache line: a collision looks at some hundred pairs, each somewhere else in memory.
+/// One cache line: a collision looks at tens of pairs, each somewhere else in memory.
 struct alignas(64) Pair {
   double time = kNever;
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< from i to j: the last one found, or zero
@@ -44,13 +45,18 @@ void fields(Archive& archive, T& pair) {
   archive(pair.time, pair.normal, pair.i, pair.j, pair.slot_i, pair.slot_j, pair.owner, pair.event);
 }
 
+static_assert(sizeof(Pair) == 64);
+
 /// Neighbour lists: a pool of pairs, and for each body the pairs that it is in.
 class NeighbourLists {
  public:
   explicit NeighbourLists(int number) : lengths_(static_cast<std::size_t>(number), 0) {}
 
   std::span<const std::int32_t> of(int body) const {
-    return {slots_.data() + static_cast<std::size_t>(body) * room_, lengths_[static_cast<std::size_t>(body)]};
+    const std::size_t length = lengths_[static_cast<std::size_t>(body)];
+    if (length > room_) [[unlikely]]
+      return long_.at(body);
+    return {slots_.data() + static_cast<std::size_t>(body) * room_, length};
   }
   Pair& pair(std::int32_t index) { return pairs_[static_cast<std::size_t>(index)]; }
   const Pair& pair(std::int32_t index) const { return pairs_[static_cast<std::size_t>(index)]; }
@@ -59,15 +65,15 @@ class NeighbourLists {
   /// The list of the body is read soon.
   void fetch(int body) const {
     prefetch(lengths_[static_cast<std::size_t>(body)]);
-    __builtin_prefetch(slots_.data() + static_cast<std::size_t>(body) * room_);
+    prefetch_line(slots_.data() + static_cast<std::size_t>(body) * room_);
   }
 
   /// A new pair of neighbours, owned by i; returns its index.
   std::int32_t add(std::int32_t i, std::int32_t j, const Eigen::Vector3d& normal);
   void remove(std::int32_t index);
 
-  /// Makes room for every list to become twice as long as the longest is now, so that none has to grow while a run goes
-  /// on. Returns that length.
+  /// Makes room for lists to become twice as long as the longest is now, so that none has to grow while a run goes on.
+  /// Returns that length.
   std::size_t reserve();
 
   /// Indices, slots and the order of everything as they are; read into lists of the same number of bodies.
@@ -99,14 +105,17 @@ class NeighbourLists {
   void unlink(std::int32_t body, std::int32_t slot);
   void assign(const std::vector<std::vector<std::int32_t>>& lists);
   void make_room(std::size_t room);
-  std::int32_t* list_of(std::size_t body) { return slots_.data() + body * room_; }
+  std::size_t most_room() const;
+  std::int32_t* list_of(std::size_t body) { return slots_.data() + body * room_; }  ///< of one that fits
 
   LargeVector<Pair> pairs_;
   LargeVector<std::int32_t> free_;
-  // A list stands where its body's number says: no pointer has to be read first.
-  std::size_t room_ = 0;                ///< for each list
-  LargeVector<std::int32_t> slots_;     ///< room_ for each body
-  std::vector<std::uint32_t> lengths_;  ///< of the lists
+  // A list stands where its body's number says: no pointer has to be read first. Lists that are longer than most, those
+  // of the largest bodies of a mixture, stand elsewhere: with room for them at every body memory would be theirs.
+  std::size_t room_ = 0;                                              ///< for each list
+  LargeVector<std::int32_t> slots_;                                   ///< room_ for each body
+  LargeVector<std::uint32_t> lengths_;                                ///< of the lists
+  std::unordered_map<std::int32_t, std::vector<std::int32_t>> long_;  ///< whole lists; those of shorter ones are stale
 };
 
 }  // namespace ed::internal

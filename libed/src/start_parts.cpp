@@ -39,8 +39,8 @@ System spheres_of(const System& system) {
   return spheres;
 }
 
-/// Of this many bodies on, the caches do not hold what belongs to them.
-constexpr int kManyBodies = 4000;
+/// From so many bodies on, which the nearest caches do not hold, their order counts.
+constexpr int kOrderedFrom = 4000;
 
 /// Where a point of the box stands on a Z-order curve (Morton): the bits of its coordinates in turn.
 std::uint64_t place_on_curve(const Vector3d& position, double box) {
@@ -102,7 +102,7 @@ System bodies_of(const std::vector<Component>& components) {
 }
 
 void number_along_curve(System& system) {
-  if (system.size() < kManyBodies) return;
+  if (system.size() < kOrderedFrom) return;
   std::vector<std::pair<std::uint64_t, Body>> placed;
   placed.reserve(system.bodies.size());
   for (const Body& body : system.bodies) placed.emplace_back(place_on_curve(body.position, system.box), body);

@@ -22,6 +22,7 @@
 
 #include <Eigen/Core>
 
+#include <cstddef>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -54,8 +55,8 @@ class UniaxialBodies {
   Eigen::Vector3d position_at(int i, double t) const { return entries_[at(i)].motion.position_at(t); }
   /// The state of the body is read soon.
   void fetch(int i) const {
-    __builtin_prefetch(&entries_[at(i)]);
-    __builtin_prefetch(&entries_[at(i)].motion.time);
+    prefetch_line(&entries_[at(i)]);
+    prefetch_line(&entries_[at(i)].motion.time);
   }
   BodyEvents& events(int i) { return entries_[at(i)].events; }
   const BodyEvents& events(int i) const { return entries_[at(i)].events; }
@@ -124,6 +125,7 @@ class UniaxialBodies {
       archive(self.events, self.motion);
     }
   };
+  static_assert(sizeof(BodyEvents) + offsetof(AxisMotion, e0) == 128);
 
   /// None if pairs are better answered one by one.
   UniaxialKernels kernels(const SimulationOptions& options) const;

@@ -1,11 +1,14 @@
 #include <calendar.h>
 
+#include <ed/internal/archive.h>
 #include <ed/random.h>
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <limits>
+#include <stdexcept>
+#include <string>
 #include <vector>
 
 namespace {
@@ -34,6 +37,27 @@ TEST_P(CalendarOfSize, AgreesWithTheSmallestOfAList) {
     ASSERT_EQ(calendar.time(static_cast<int>(i)), t);
   }
   for (int i = 0; i < number; ++i) EXPECT_EQ(calendar.time(i), times[static_cast<std::size_t>(i)]);
+}
+
+TEST_P(CalendarOfSize, IsTheSameAfterItWasReadBack) {
+  const int number = GetParam();
+  Calendar calendar(number);
+  ed::Random random(9);
+  for (int i = 0; i < number; ++i) calendar.set(i, random.uniform() < 0.2 ? kNever : random.uniform());
+  ed::internal::Writer writer;
+  writer(calendar);
+  const std::string bytes = writer.take();
+  ed::internal::Reader reader(bytes);
+  Calendar read(number);
+  reader(read);
+  for (int event = 0; event < 2 * number; ++event) {
+    ASSERT_EQ(read.earliest(), calendar.earliest());
+    const double next = read.earliest_time() + random.uniform();
+    for (Calendar* c : {&calendar, &read}) c->set(c->earliest(), next);
+  }
+  ed::internal::Reader again(bytes);
+  Calendar other(number + 1);
+  EXPECT_THROW(again(other), std::invalid_argument);
 }
 
 INSTANTIATE_TEST_SUITE_P(Sizes, CalendarOfSize, testing::Values(1, 2, 7, 8, 9, 63, 64, 65, 512, 513, 4097));

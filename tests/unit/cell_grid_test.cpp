@@ -1,5 +1,6 @@
 #include <cell_grid.h>
 
+#include <ed/internal/archive.h>
 #include <ed/random.h>
 
 #include <Eigen/Core>
@@ -7,7 +8,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstring>
+#include <limits>
 #include <ostream>
+#include <stdexcept>
+#include <string>
 #include <vector>
 
 namespace {
@@ -134,6 +139,24 @@ TEST(CellGrid, ABodyPlacedTwiceIsOneAndStandsWhereItWasPutLast) {
   ASSERT_EQ(found.size(), 1u);
   EXPECT_EQ(found[0].body, 0);
   EXPECT_NEAR(found[0].r.x(), 0.01, 1e-15);
+}
+
+TEST(CellGrid, RefusesOffsetsBeyondTheBox) {
+  CellGrid grid(20, 10, 4);
+  ed::Random random(12);
+  for (int i = 0; i < 20; ++i) grid.place(i, draw(random, 10));
+  ed::internal::Writer writer;
+  writer(grid);
+  const std::string bytes = writer.take();
+  ed::internal::Reader sound(bytes);
+  EXPECT_NO_THROW(sound(grid));
+  for (const int offset : {std::numeric_limits<int>::min(), std::numeric_limits<int>::max(), -1000}) {
+    std::string bad = bytes;
+    std::memcpy(bad.data() + bad.size() - sizeof offset, &offset, sizeof offset);
+    ed::internal::Reader reader(bad);
+    CellGrid read(20, 10, 4);
+    EXPECT_THROW(reader(read), std::invalid_argument) << offset;
+  }
 }
 
 }  // namespace

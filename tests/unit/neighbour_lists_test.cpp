@@ -1,5 +1,6 @@
 #include <neighbour_lists.h>
 
+#include <ed/internal/archive.h>
 #include <ed/random.h>
 
 #include <Eigen/Core>
@@ -10,6 +11,8 @@
 #include <cstdint>
 #include <map>
 #include <set>
+#include <stdexcept>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -91,6 +94,56 @@ TEST(NeighbourLists, ANewPairKnowsNothingEvenWhereAnOldOneStood) {
   EXPECT_EQ(lists.pair(second).time, kNever);
   EXPECT_EQ(lists.pair(second).event, PairEvent::clear);
   EXPECT_EQ(lists.pair(second).owner, 2);
+}
+
+/// A large body among small ones: hundreds of pairs, the others a few.
+TEST(NeighbourLists, HoldOneThatIsMuchLongerThanTheOthers) {
+  constexpr int kNumber = 400;
+  ed::Random random(22);
+  NeighbourLists lists(kNumber);
+  std::map<std::int32_t, std::pair<int, int>> model;
+  const auto add = [&](int i, int j) { model[lists.add(i, j, Vector3d::UnitX())] = {i, j}; };
+  for (int j = 2; j < kNumber; ++j) add(j - 1, j);
+  for (int j = 1; j < kNumber; ++j) add(0, j);
+  ASSERT_NO_FATAL_FAILURE(expect_consistent(lists, model));
+  EXPECT_EQ(lists.reserve(), 2U * (kNumber - 1));
+  ASSERT_NO_FATAL_FAILURE(expect_consistent(lists, model));
+  ed::internal::Writer writer;
+  writer(lists);
+  const std::string bytes = writer.take();
+  ed::internal::Reader reader(bytes);
+  NeighbourLists read(kNumber);
+  reader(read);
+  ASSERT_NO_FATAL_FAILURE(expect_consistent(read, model));
+  // Down to few, and up again.
+  for (const int few : {300, 70, 20, 350}) {
+    while (static_cast<int>(read.of(0).size()) > few) {
+      const auto list = read.of(0);
+      const std::int32_t index = list[random.bits() % list.size()];
+      read.remove(index);
+      model.erase(index);
+      if (read.of(0).size() % 16 == 0) ASSERT_NO_FATAL_FAILURE(expect_consistent(read, model));
+    }
+    for (int j = 1; static_cast<int>(read.of(0).size()) < few; ++j) {
+      const auto list = read.of(0);
+      const bool is_there = std::any_of(list.begin(), list.end(), [&](auto k) { return read.pair(k).partner(0) == j; });
+      if (!is_there) model[read.add(0, j, Vector3d::UnitX())] = {0, j};
+    }
+    ASSERT_NO_FATAL_FAILURE(expect_consistent(read, model));
+  }
+}
+
+/// A list that claims more than there are pairs costs no memory before it is refused.
+TEST(NeighbourLists, RefuseListsThatDoNotFitThePairs) {
+  ed::internal::Writer writer;
+  constexpr int kNumber = 20000;
+  std::vector<std::vector<std::int32_t>> lists(kNumber);
+  lists[3].assign(kNumber - 1, 0);
+  writer(std::vector<Pair>(), std::vector<std::int32_t>{0, 1, 2}, lists);
+  const std::string bytes = writer.take();
+  ed::internal::Reader reader(bytes);
+  NeighbourLists read(kNumber);
+  EXPECT_THROW(reader(read), std::invalid_argument);
 }
 
 }  // namespace

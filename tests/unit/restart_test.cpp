@@ -7,10 +7,12 @@
 #include <common/message_of.h>
 
 #include <ed/ed.h>
+#include <ed/internal/archive.h>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -304,6 +306,22 @@ TEST(Restart, DamagedBytesAreNeverTrusted) {
       }
     }
     EXPECT_GT(refused, 100);
+  }
+}
+
+/// How thick envelopes are stands three times in a row in a state: of the loop, of the envelopes, and up to an exit.
+TEST(Restart, EnvelopesWithoutAnExitAreRefused) {
+  for (const Case* one : {&cases().front(), &cases().back()}) {
+    const ed::Simulation simulation(one->system);
+    const std::string state = simulation.save();
+    const std::string thickness = ed::internal::bytes_of(simulation.envelope());
+    const std::size_t at = state.find(thickness + thickness + thickness);
+    ASSERT_NE(at, std::string::npos);
+    for (const double bad : {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN(), -1.0}) {
+      std::string changed = state;
+      changed.replace(at + 2 * sizeof bad, sizeof bad, ed::internal::bytes_of(bad));
+      EXPECT_THAT(refusal(changed, one->system.species), testing::HasSubstr("exit")) << bad;
+    }
   }
 }
 

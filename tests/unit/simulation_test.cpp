@@ -448,6 +448,12 @@ TEST(Simulation, ManyBodiesDoAsTheirCopiesInASmallBox) {
   EXPECT_NEAR(static_cast<double>(large.counters().collisions), 512.0 * kAlong * kAlong * kAlong, 64);
   const ed::System end = small.system();
   const ed::System ends = large.system();
+  const std::string state = large.save();
+  ed::Simulation restored = ed::Simulation::restore(state, system.species);
+  EXPECT_TRUE(restored.save() == state);
+  large.run_collisions(2000);
+  restored.run_collisions(2000);
+  EXPECT_TRUE(restored.save() == large.save());
   for (int i = 0; i < ends.size(); ++i) {
     const ed::Body& copy = ends.bodies[static_cast<std::size_t>(i)];
     const ed::Body& body = end.bodies[static_cast<std::size_t>(i / (kAlong * kAlong * kAlong))];

@@ -72,7 +72,7 @@ ED_EXPORT double densest_start(const std::vector<Component>& components);
 /// them. More than most_compressed bodies: a smaller box, repeated.
 ///
 /// From 4,000 bodies on, those of a species are numbered along a curve that fills the box, here and on lattices:
-/// neighbours stand near each other in memory, which is worth a quarter of the collisions a second.
+/// neighbours stand near each other in memory, until they have diffused (docs/decisions/022-large-systems.md).
 ///
 /// Velocities: total momentum zero; translational kT = 1 on 3N - 3 degrees of freedom, rotational kT = 1 on 2 a body of
 /// revolution and 3 of another and, for bodies of revolution that spin, spin kT = 1 on 1, each rescaled separately (at
