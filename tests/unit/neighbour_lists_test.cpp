@@ -122,7 +122,9 @@ TEST(NeighbourLists, HoldOneThatIsMuchLongerThanTheOthers) {
       const std::int32_t index = list[random.bits() % list.size()];
       read.remove(index);
       model.erase(index);
-      if (read.of(0).size() % 16 == 0) ASSERT_NO_FATAL_FAILURE(expect_consistent(read, model));
+      if (read.of(0).size() % 16 == 0) {
+        ASSERT_NO_FATAL_FAILURE(expect_consistent(read, model));
+      }
     }
     for (int j = 1; static_cast<int>(read.of(0).size()) < few; ++j) {
       const auto list = read.of(0);
