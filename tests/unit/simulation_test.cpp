@@ -428,8 +428,9 @@ ed::System repeated(const ed::System& system, int along) {
   large.bodies.clear();
   for (const ed::Body& body : system.bodies) {
     for (int copy = 0; copy < along * along * along; ++copy) {
+      const Eigen::Vector3i place(copy % along, copy / along % along, copy / (along * along));
       large.bodies.push_back(body);
-      large.bodies.back().position += system.box * Vector3d(copy % along, copy / along % along, copy / along / along);
+      large.bodies.back().position += system.box * place.cast<double>();
     }
   }
   return large;

@@ -278,6 +278,7 @@ TEST(RandomStart, ManySpeciesAreNotRepeated) {
   options.packing_fraction = 0.1;
   options.most_compressed = 20;
   std::vector<ed::Component> components;
+  components.reserve(300);
   for (int k = 0; k < 300; ++k) components.push_back({ed::paper_species(ed_test::spheroid(1 + 0.001 * k)), 1});
   const ed::System system = ed::random_start(components, options);
   ASSERT_EQ(system.size(), 300);
