@@ -406,8 +406,8 @@ void EventLoop<Bodies>::reserve_for_events() {
   const std::size_t longest = lists_.reserve();
   old_pairs_.reserve(longest);
   meetings_.reserve(longest);
-  // Also of a state that was read. Candidates are two to three times as many as neighbours; cells write one more each.
-  near_.resize(std::max(near_.size(), 2 * longest + kCandidatesToo));
+  // Candidates are two to three times as many as neighbours.
+  near_.resize(std::max(near_.size(), 2 * longest + kCandidatesReserved));
   queue_.reserve(2 * longest);
 }
 

@@ -44,9 +44,7 @@ TEST_P(CalendarOfSize, IsTheSameAfterItWasReadBack) {
   Calendar calendar(number);
   ed::Random random(9);
   for (int i = 0; i < number; ++i) calendar.set(i, random.uniform() < 0.2 ? kNever : random.uniform());
-  ed::internal::Writer writer;
-  writer(calendar);
-  const std::string bytes = writer.take();
+  const std::string bytes = ed::internal::bytes_of(calendar);
   ed::internal::Reader reader(bytes);
   Calendar read(number);
   reader(read);

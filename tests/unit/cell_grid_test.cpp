@@ -145,9 +145,7 @@ TEST(CellGrid, RefusesOffsetsBeyondTheBox) {
   CellGrid grid(20, 10, 4);
   ed::Random random(12);
   for (int i = 0; i < 20; ++i) grid.place(i, draw(random, 10));
-  ed::internal::Writer writer;
-  writer(grid);
-  const std::string bytes = writer.take();
+  const std::string bytes = ed::internal::bytes_of(grid);
   ed::internal::Reader sound(bytes);
   EXPECT_NO_THROW(sound(grid));
   for (const int offset : {std::numeric_limits<int>::min(), std::numeric_limits<int>::max(), -1000}) {

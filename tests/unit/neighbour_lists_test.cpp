@@ -108,9 +108,7 @@ TEST(NeighbourLists, HoldOneThatIsMuchLongerThanTheOthers) {
   ASSERT_NO_FATAL_FAILURE(expect_consistent(lists, model));
   EXPECT_EQ(lists.reserve(), 2U * (kNumber - 1));
   ASSERT_NO_FATAL_FAILURE(expect_consistent(lists, model));
-  ed::internal::Writer writer;
-  writer(lists);
-  const std::string bytes = writer.take();
+  const std::string bytes = ed::internal::bytes_of(lists);
   ed::internal::Reader reader(bytes);
   NeighbourLists read(kNumber);
   reader(read);
