@@ -44,11 +44,19 @@ double angle_between(const Matrix3d& R, const Matrix3d& R0) {
 }
 
 /// Whether two bodies may be within `limit` of each other; false is certain. `normal`: along r, then a better one.
-bool within(const NormBodyPair& pair, double limit, Vector3d& normal) {
-  const auto both_ways = geom::internal::LaneVector::of(normal, -normal);
-  if (normal.dot(pair.between()) - geom::internal::sum(pair.bodies().heights(both_ways)) > limit) return false;
+/// `inscribed`: the sum of both inscribed radii. `elongated`: some body is; of others the cold normal is that along r.
+bool within(const NormBodyPair& pair, double inscribed, bool elongated, double limit, Vector3d& normal) {
+  const Vector3d along = normal;
+  const double apart = along.dot(pair.between());
+  normal = pair.cold_normal();
+  // They are: so are the spheres within them. Half of the pairs of superballs are told by that.
+  if (apart - inscribed <= limit) return true;
+  if (elongated) {
+    const auto both_ways = geom::internal::LaneVector::of(along, -along);
+    if (apart - geom::internal::sum(pair.bodies().heights(both_ways)) > limit) return false;
+  }
   // A few Newton steps at the most; a pair that is still undecided is taken, which is always safe.
-  DualSample sample = pair.sample(pair.cold_normal());
+  DualSample sample = pair.sample(normal);
   for (int step = 0; step < 3; ++step) {
     if (sample.g > limit) return false;
     const NormBodyPair::Step newton = pair.newton_step(sample);
@@ -119,7 +127,11 @@ bool GeneralDilatedEnvelopes::may_meet(int i, int k, const Vector3d& r, Vector3d
   if (!a.norm || !b.norm) return any_within(a.shape, R_a, b.shape, R_b, r, limit, normal);
   const NormBodyPair pair(NormBodies(a.norm->norm, R_a, b.norm->norm, R_b), r, size,
                           a.inscribed_radius + b.inscribed_radius);
-  return within(pair, limit, normal);
+  const auto elongated = [](const NormBodyShape& shape) {
+    const Vector3d& axes = shape.norm.semi_axes;
+    return axes.x() != axes.y() || axes.y() != axes.z();
+  };
+  return within(pair, a.inscribed_radius + b.inscribed_radius, elongated(*a.norm) || elongated(*b.norm), limit, normal);
 }
 
 double thickest_oriented(const GeneralBodies& bodies, double box) {
