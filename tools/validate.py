@@ -89,17 +89,20 @@ class Table:
         print("| state | quantity | measured | reference | deviation | sigma | allowed | |")
         print("|---|---|---|---|---|---|---|---|", flush=True)
 
-    def relative(self, state, quantity, measured, error, reference, allowed, reference_error=0.0):
-        """|measured / reference - 1| <= allowed; the distance in combined standard errors is shown beside."""
+    def relative(self, state, quantity, measured, error, reference, allowed, reference_error=0.0, sigmas=math.inf):
+        """|measured / reference - 1| <= allowed, and no more than so many combined standard errors, which are shown
+        beside."""
         if measured is None:
             self._row(state, quantity, "null", f"{reference:.5g}", "", "", f"{100 * allowed:g} %", False)
             return
         deviation = measured / reference - 1
         combined = math.hypot(error or 0.0, reference_error or 0.0)
-        sigma = f"{(measured - reference) / combined:+.1f}" if combined > 0 else ""
+        distance = (measured - reference) / combined if combined > 0 else 0.0
+        sigma = f"{distance:+.1f}" if combined > 0 else ""
         uncertainty = f" +- {error:.2g}" if error else ""
-        self._row(state, quantity, f"{measured:.5g}{uncertainty}", f"{reference:.5g}",
-                  f"{100 * deviation:+.2f} %", sigma, f"{100 * allowed:g} %", abs(deviation) <= allowed)
+        both = f"{100 * allowed:g} %" + (f", {sigmas:g} sigma" if sigmas < math.inf else "")
+        self._row(state, quantity, f"{measured:.5g}{uncertainty}", f"{reference:.5g}", f"{100 * deviation:+.2f} %", sigma,
+                  both, abs(deviation) <= allowed and abs(distance) <= sigmas)
 
     def sigmas(self, state, quantity, measured, error, reference, allowed):
         """|measured - reference| <= allowed standard errors."""
@@ -166,7 +169,7 @@ def pressure(runner, table, collisions):
     for row, run in zip(rows, runs):
         value, error = observable(run.result(), "Z")
         table.relative(f"X0 {row['X0']}, phi {row['phi']}", "Z", value, error, float(row["Z"]), 0.01,
-                       float(row["Z_err"]))
+                       float(row["Z_err"]), sigmas=3)
 
 
 def spheres(runner, table, collisions):
@@ -193,10 +196,11 @@ def spheres(runner, table, collisions):
     table.heading("500 hard spheres, three runs each (simulations.csv: independent simulation, in units of the radius)")
     for row, runs in zip(simulated, longer):
         results = [run.result() for run in runs]
-        for name, column, scale, allowed in (("Z", "Z", 1, 0.01), ("collision_rate", "rate", 0.5, 0.002),
-                                             ("D_trans", "D", 2, 0.02)):
+        for name, column, scale, allowed, sigmas in (("Z", "Z", 1, 0.01, 3),
+                                                     ("collision_rate", "rate", 0.5, 0.002, math.inf),
+                                                     ("D_trans", "D", 2, 0.02, math.inf)):
             table.relative(f"phi {row['phi']}, N {row['N']}", name, *mean_over(results, name), scale * float(row[column]),
-                           allowed, scale * float(row[f"{column}_err"]))
+                           allowed, scale * float(row[f"{column}_err"]), sigmas)
 
 
 def dilute(runner, table, collisions):
