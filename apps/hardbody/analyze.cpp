@@ -1,10 +1,10 @@
 #include "commands.h"
 #include "errors.h"
 #include "frame.h"
-#include "gsd_frames.h"
 #include "observable_files.h"
 #include "run_directory.h"
 #include "text_file.h"
+#include "trajectory_reader.h"
 #include "version.h"
 
 #include <ed/stored_frames.h>
@@ -16,6 +16,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <memory>
 #include <numbers>
 #include <optional>
 #include <stdexcept>
@@ -132,7 +133,7 @@ RunChoices choices_of_run(const fs::path& directory) {
   return choices;
 }
 
-Stored read_trajectory(const GsdReader& reader, const AnalyzeArguments& arguments) {
+Stored read_trajectory(const TrajectoryReader& reader, const AnalyzeArguments& arguments) {
   const std::uint64_t count = reader.frame_count();
   if (count == 0) throw InputError(fmt::format("{}: has no whole frame; accepted: a file with frames", reader.name()));
   const Frame first = reader.read(0);
@@ -244,18 +245,24 @@ std::string shown(const ed::Estimate& e) {
   return std::isfinite(e.value) ? fmt::format("{:.5g} +- {:.2g}", e.value, e.error) : "-";
 }
 
+fs::path trajectory_in(const fs::path& directory) {
+  for (const char* name : {kGsdFile, kLammpsFile}) {
+    if (fs::exists(directory / name)) return directory / name;
+  }
+  throw InputError(
+      fmt::format("{}: has neither {} nor {}; accepted: the directory of a run with [output] trajectory = [\"gsd\"] or "
+                  "[\"lammps\"], or such a file",
+                  directory.string(), kGsdFile, kLammpsFile));
+}
+
 }  // namespace
 
 int analyze(const AnalyzeArguments& arguments) {
   const fs::path given(arguments.path);
-  const fs::path file = fs::is_directory(given) ? given / kGsdFile : given;
-  if (fs::is_directory(given) && !fs::exists(file)) {
-    throw InputError(fmt::format(
-        "{}: has no {}; accepted: the directory of a run with [output] trajectory = [\"gsd\"], or a GSD file",
-        given.string(), kGsdFile));
-  }
+  const fs::path file = fs::is_directory(given) ? trajectory_in(given) : given;
   const fs::path out = arguments.out ? fs::path(*arguments.out) : file.parent_path() / kAnalysisDirectory;
-  const GsdReader reader(file);
+  const std::unique_ptr<TrajectoryReader> source = open_frames(file);
+  const TrajectoryReader& reader = *source;
   Stored stored = read_trajectory(reader, arguments);
   const RunChoices run = choices_of_run(file.parent_path());
   stored.options.fit_from = arguments.fit_from ? arguments.fit_from : run.fit_from;

@@ -9,15 +9,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <cstring>
 #include <limits>
 #include <tuple>
 #include <utility>
-
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 namespace hardbody {
 
@@ -101,61 +96,6 @@ bool before(const GsdChunk& a, const GsdChunk& b) {
   return std::tie(a.frame, a.name) < std::tie(b.frame, b.name);
 }
 
-class DiskBytes final : public GsdBytes {
- public:
-  explicit DiskBytes(const std::filesystem::path& path)
-      : name_(path.string()), descriptor_(::open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
-    struct stat status = {};
-    if (descriptor_ < 0 || ::fstat(descriptor_, &status) != 0) {
-      const int error = errno;
-      if (descriptor_ >= 0) ::close(descriptor_);
-      throw unreadable(std::strerror(error));
-    }
-    if (!S_ISREG(status.st_mode)) {
-      ::close(descriptor_);
-      throw unreadable(S_ISDIR(status.st_mode) ? "it is a directory" : "it is not a file");
-    }
-    size_ = static_cast<std::uint64_t>(status.st_size);
-  }
-  ~DiskBytes() override { ::close(descriptor_); }
-  DiskBytes(const DiskBytes&) = delete;
-  DiskBytes& operator=(const DiskBytes&) = delete;
-
-  std::uint64_t size() const override { return size_; }
-
-  std::string read(std::uint64_t position, std::uint64_t size) const override {
-    std::string bytes(size, '\0');
-    for (std::uint64_t done = 0; done < size;) {
-      const ::ssize_t got =
-          ::pread(descriptor_, bytes.data() + done, size - done, static_cast<::off_t>(position + done));
-      if (got < 0 && errno == EINTR) continue;
-      if (got < 0) throw unreadable(std::strerror(errno));
-      if (got == 0) throw unreadable("it was made shorter meanwhile");
-      done += static_cast<std::uint64_t>(got);
-    }
-    return bytes;
-  }
-
- private:
-  InputError unreadable(const char* why) const {
-    return InputError(fmt::format("{}: cannot be read: {}; accepted: a readable GSD file", name_, why));
-  }
-
-  std::string name_;
-  int descriptor_;
-  std::uint64_t size_ = 0;
-};
-
-class MemoryBytes final : public GsdBytes {
- public:
-  explicit MemoryBytes(std::string bytes) : bytes_(std::move(bytes)) {}
-  std::uint64_t size() const override { return bytes_.size(); }
-  std::string read(std::uint64_t position, std::uint64_t size) const override { return bytes_.substr(position, size); }
-
- private:
-  std::string bytes_;
-};
-
 }  // namespace
 
 std::size_t size_of(GsdType type) {
@@ -164,17 +104,10 @@ std::size_t size_of(GsdType type) {
   return k < kSizes.size() ? kSizes[k] : 0;
 }
 
-std::unique_ptr<GsdBytes> open_gsd_bytes(const std::filesystem::path& path) {
-  return std::make_unique<DiskBytes>(path);
-}
-
-std::unique_ptr<GsdBytes> gsd_bytes_in_memory(std::string bytes) {
-  return std::make_unique<MemoryBytes>(std::move(bytes));
-}
-
 // ---- Reading
 
-GsdFile::GsdFile(std::unique_ptr<GsdBytes> bytes, std::string name) : bytes_(std::move(bytes)), name_(std::move(name)) {
+GsdFile::GsdFile(std::unique_ptr<StoredBytes> bytes, std::string name)
+    : bytes_(std::move(bytes)), name_(std::move(name)) {
   const std::uint64_t size = bytes_->size();
   const std::string start = bytes_->read(0, std::min<std::uint64_t>(size, kHeader));
   if (start.size() < sizeof kMagic || std::memcmp(start.data(), &kMagic, sizeof kMagic) != 0) {

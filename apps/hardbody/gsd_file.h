@@ -6,11 +6,12 @@
 /// A file is a header of 256 bytes, an index of 32 bytes an array, a list of names, and the arrays themselves, in any
 /// order but the header first; little-endian.
 
+#include "stored_bytes.h"
+
 #include <ed/internal/archive.h>
 
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -49,30 +50,13 @@ struct GsdChunk {
   std::uint64_t bytes() const { return rows * columns * size_of(type); }
 };
 
-/// The bytes that a GsdFile reads.
-class GsdBytes {
- public:
-  virtual ~GsdBytes() = default;
-  virtual std::uint64_t size() const = 0;
-  /// `size` bytes from `position` on, all of which there are. Throws InputError if they cannot be read.
-  virtual std::string read(std::uint64_t position, std::uint64_t size) const = 0;
-};
-
-/// A file on the disk, read as it is asked for; one that was longer when it was opened is reported, not trusted.
-std::unique_ptr<GsdBytes> open_gsd_bytes(const std::filesystem::path& path);
-/// Bytes in memory.
-std::unique_ptr<GsdBytes> gsd_bytes_in_memory(std::string bytes);
-
-/// What is said of a file that ends before its last frame does, or has others than ours behind ours.
-inline constexpr const char* kCutOff = "; what follows them is not whole and left out";
-
 /// A GSD file that is read. Whatever the bytes are, no more memory is taken than a small multiple of what they are, and
 /// what is wrong with them is thrown as InputError, `name: what; accepted: ..`.
 class GsdFile {
  public:
   /// `name`: what messages call the file. Reads header, names and index. A file that ends before the arrays that its
   /// index lists is one that was cut off: its last frames are left out, from the first one that is not whole on.
-  GsdFile(std::unique_ptr<GsdBytes> bytes, std::string name);
+  GsdFile(std::unique_ptr<StoredBytes> bytes, std::string name);
 
   const std::string& name() const { return name_; }
   const std::string& application() const { return application_; }
@@ -98,7 +82,7 @@ class GsdFile {
   void read_index(std::uint64_t location, std::uint64_t entries);
   bool take_chunk(ed::internal::Reader& reader, std::uint64_t entries);
 
-  std::unique_ptr<GsdBytes> bytes_;
+  std::unique_ptr<StoredBytes> bytes_;
   std::string name_;
   std::string application_;
   std::string schema_;

@@ -3,6 +3,7 @@
 #include "frame.h"
 #include "frame_file.h"
 #include "gsd_file.h"
+#include "trajectory_reader.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -25,25 +26,23 @@ namespace hardbody {
 /// What does not change is in frame 0 only, as the schema has it.
 
 /// Reads any file of that schema, ours or not. Throws InputError, `name: what; accepted: ..`.
-class GsdReader {
+class GsdReader final : public TrajectoryReader {
  public:
   explicit GsdReader(const std::filesystem::path& path);
-  GsdReader(std::unique_ptr<GsdBytes> bytes, std::string name);
+  GsdReader(std::unique_ptr<StoredBytes> bytes, std::string name);
 
-  const std::string& name() const { return file_.name(); }
+  const std::string& name() const override { return file_.name(); }
   const std::string& application() const { return file_.application(); }
   /// Whether the frames have their state to every bit.
   bool exact() const { return exact_; }
 
-  /// Whole ones.
-  std::uint64_t frame_count() const { return file_.frame_count(); }
-  /// Whether frames behind these are left out: the file ends before they do, or behind frames of ours there are some
-  /// without the doubles.
-  bool cut_off() const { return file_.cut_off(); }
+  std::uint64_t frame_count() const override { return file_.frame_count(); }
+  /// The file ends before they do, or behind frames of ours there are some without the doubles.
+  bool cut_off() const override { return file_.cut_off(); }
 
   /// Frame k < frame_count(). Numbers that are not finite, orientations that are none, types that there are not: all
   /// are refused; and frames of ours of which another program has changed the 32-bit numbers, but not the doubles.
-  Frame read(std::uint64_t k) const;
+  Frame read(std::uint64_t k) const override;
 
  private:
   GsdFile file_;

@@ -373,9 +373,9 @@ void sharpen(Frame& frame, const ed::System& system) {
 
 }  // namespace
 
-GsdReader::GsdReader(const std::filesystem::path& path) : GsdReader(open_gsd_bytes(path), path.string()) {}
+GsdReader::GsdReader(const std::filesystem::path& path) : GsdReader(open_stored_bytes(path), path.string()) {}
 
-GsdReader::GsdReader(std::unique_ptr<GsdBytes> bytes, std::string name)
+GsdReader::GsdReader(std::unique_ptr<StoredBytes> bytes, std::string name)
     : file_(std::move(bytes), std::move(name)), exact_(file_.has_name(kNameTexts[kTime])) {
   if (file_.schema() != "hoomd") {
     throw InputError(

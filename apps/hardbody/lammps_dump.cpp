@@ -10,8 +10,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <initializer_list>
 #include <iterator>
 #include <map>
@@ -73,7 +71,6 @@ void LammpsWriter::append(const Frame& frame) {
 
 namespace {
 
-constexpr std::size_t kLongest = std::size_t{1} << 33;
 constexpr std::uint64_t kMostBodies = 100'000'000;
 /// A stored quaternion's length may be off 1 by this: six digits.
 constexpr double kQuaternionTolerance = 1e-4;
@@ -323,16 +320,6 @@ bool begins_dump(std::string_view text) {
   return text.starts_with(kBegin) || text.starts_with(kTime) || text.starts_with(kUnits);
 }
 
-/// All of a file that begins as a dump; of others, however long, only the beginning is read.
-std::string read_dump(const std::filesystem::path& path) {
-  char begin[kBegin.size()] = {};
-  std::ifstream file(path, std::ios::binary);
-  file.read(begin, sizeof begin);
-  const bool is_dump = begins_dump({begin, static_cast<std::size_t>(file.gcount())});
-  if (file.is_open() && !std::filesystem::is_directory(path) && !is_dump) throw foreign(path.string());
-  return read_file(path, kLongest);
-}
-
 /// Where the line before the one at `at` > 0 begins.
 std::size_t line_before(std::string_view text, std::size_t at) {
   const std::size_t end = at < 2 ? std::string_view::npos : text.rfind('\n', at - 2);
@@ -350,40 +337,79 @@ std::size_t begin_of(std::string_view text, std::size_t at) {
   return at;
 }
 
-/// Whether a frame has a line for each of its bodies.
-bool is_whole(std::string_view frame) {
-  Lines lines(frame);
-  std::optional<std::string_view> line = lines.next();
-  while (line && !line->starts_with("ITEM: NUMBER OF ATOMS")) line = lines.next();
-  line = lines.next();
-  const std::optional<double> count = line ? finite_number(*line) : std::nullopt;
-  const std::string_view rest = lines.rest();
-  return count && static_cast<double>(std::count(rest.begin(), rest.end(), '\n')) >= *count + 5;
+/// Calls f with the text of [begin, end) in pieces that each begin where the one before ended, and are longer by `more`
+/// as far as there is more.
+template <class F>
+void in_pieces(const StoredBytes& bytes, std::uint64_t begin, std::uint64_t end, std::uint64_t more, F&& f) {
+  constexpr std::uint64_t kPiece = std::uint64_t{1} << 20;
+  for (std::uint64_t at = begin; at < end; at += kPiece) {
+    const std::uint64_t size = std::min(kPiece, end - at);
+    f(at, size, bytes.read(at, std::min(size + more, bytes.size() - at)));
+  }
 }
+
+/// The longest text of what may stand before a frame's time step.
+constexpr std::uint64_t kLongestPrelude = 1024;
 
 }  // namespace
 
-LammpsReader::LammpsReader(const std::filesystem::path& path) : LammpsReader(read_dump(path), path.string()) {}
-
-LammpsReader::LammpsReader(std::string text, std::string name) : name_(std::move(name)), text_(std::move(text)) {
-  const std::string_view all = text_;
-  if (!begins_dump(all)) throw foreign(name_);
-  std::vector<std::size_t> begins;
-  for (std::size_t at = all.find(kBegin); at != std::string_view::npos; at = all.find(kBegin, at + 1)) {
-    if (at == 0 || all[at - 1] == '\n') begins.push_back(begin_of(all, at));
-  }
-  if (begins.empty() || begins[0] != 0) throw foreign(name_);
-  for (std::size_t k = 0; k < begins.size(); ++k) {
-    const std::size_t end = k + 1 < begins.size() ? begins[k + 1] : all.size();
-    frames_.push_back(all.substr(begins[k], end - begins[k]));
-  }
+LammpsReader::LammpsReader(std::unique_ptr<StoredBytes> bytes, std::string name)
+    : bytes_(std::move(bytes)), name_(std::move(name)), frames_(find_frames()) {
   // Only the last one can have been cut off.
   cut_off_ = !is_whole(frames_.back());
   if (cut_off_) frames_.pop_back();
 }
 
+std::vector<LammpsReader::Place> LammpsReader::find_frames() const {
+  const std::uint64_t size = bytes_->size();
+  if (!begins_dump(bytes_->read(0, std::min<std::uint64_t>(size, kBegin.size())))) throw foreign(name_);
+  std::vector<std::uint64_t> steps;
+  char before = '\n';  // the byte before a piece
+  in_pieces(*bytes_, 0, size, kBegin.size() - 1, [&](std::uint64_t at, std::uint64_t length, std::string_view text) {
+    const std::size_t zero = text.find('\0');
+    if (zero != std::string_view::npos) {
+      throw InputError(fmt::format("{}: byte {} is 0; accepted: a whole LAMMPS text dump", name_,
+                                   at + static_cast<std::uint64_t>(zero)));
+    }
+    for (std::size_t k = text.find(kBegin); k < length; k = text.find(kBegin, k + 1)) {
+      if ((k == 0 ? before : text[k - 1]) == '\n') steps.push_back(at + k);
+    }
+    before = text[length - 1];
+  });
+  std::vector<Place> frames;
+  for (const std::uint64_t step : steps) {
+    const std::uint64_t from = step - std::min(step, kLongestPrelude);
+    const std::string text = bytes_->read(from, std::min(size, step + kBegin.size()) - from);
+    const std::uint64_t begin = from + begin_of(text, static_cast<std::size_t>(step - from));
+    if (!frames.empty()) frames.back().end = begin;
+    frames.push_back({begin, size});
+  }
+  if (frames.empty() || frames[0].begin != 0) throw foreign(name_);
+  return frames;
+}
+
+/// Whether it has a line for each of its bodies.
+bool LammpsReader::is_whole(Place frame) const {
+  constexpr std::uint64_t kLongestHead = 4096;
+  const std::string head = bytes_->read(frame.begin, std::min(frame.end - frame.begin, kLongestHead));
+  Lines lines(head);
+  std::optional<std::string_view> line = lines.next();
+  while (line && !line->starts_with("ITEM: NUMBER OF ATOMS")) line = lines.next();
+  line = lines.next();
+  const std::optional<double> count = line ? finite_number(*line) : std::nullopt;
+  if (!count) return false;
+  double ends = 0;
+  in_pieces(*bytes_, frame.begin + head.size() - lines.rest().size(), frame.end, 0,
+            [&](std::uint64_t /*at*/, std::uint64_t /*length*/, std::string_view text) {
+              ends += static_cast<double>(std::count(text.begin(), text.end(), '\n'));
+            });
+  return ends >= *count + 5;
+}
+
 Frame LammpsReader::read(std::uint64_t k) const {
-  return DumpFrame(frames_.at(k), name_, k).read();
+  const Place place = frames_.at(k);
+  const std::string text = bytes_->read(place.begin, place.end - place.begin);
+  return DumpFrame(text, name_, k).read();
 }
 
 }  // namespace hardbody

@@ -1,11 +1,13 @@
 #pragma once
 
 #include "frame_file.h"
+#include "stored_bytes.h"
+#include "trajectory_reader.h"
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -33,27 +35,30 @@ class LammpsWriter final : public FrameFile {
 
 /// Reads dumps of our own and of LAMMPS: columns id, type, x y z (or xu yu zu, xs ys zs), quatw quati quatj quatk,
 /// shapex shapey shapez, SuperquadricRoundness.Phi .Theta, mass, vx vy vz, in any order; all but the positions may be
-/// missing, others are skipped. Throws InputError, `name: what; accepted: ..`.
-class LammpsReader {
+/// missing, others are skipped. Of the file no more than a frame is in memory at a time. Throws InputError, `name:
+/// what; accepted: ..`.
+class LammpsReader final : public TrajectoryReader {
  public:
-  explicit LammpsReader(const std::filesystem::path& path);
-  LammpsReader(std::string text, std::string name);
-  LammpsReader(const LammpsReader&) = delete;
-  LammpsReader& operator=(const LammpsReader&) = delete;
+  LammpsReader(std::unique_ptr<StoredBytes> bytes, std::string name);
 
-  /// Whole ones.
-  std::uint64_t frame_count() const { return frames_.size(); }
-  /// Whether a last one was cut off and is left out.
-  bool cut_off() const { return cut_off_; }
+  const std::string& name() const override { return name_; }
+  std::uint64_t frame_count() const override { return frames_.size(); }
+  bool cut_off() const override { return cut_off_; }
 
-  /// Frame k < frame_count(), the bodies in the order of their ids. Types are what type and shape make different,
-  /// groups what type alone does.
-  Frame read(std::uint64_t k) const;
+  /// The bodies in the order of their ids. Types are what type and shape make different, groups what type alone does.
+  Frame read(std::uint64_t k) const override;
 
  private:
+  /// Where a frame's text stands.
+  struct Place {
+    std::uint64_t begin, end;
+  };
+  std::vector<Place> find_frames() const;
+  bool is_whole(Place frame) const;
+
+  std::unique_ptr<StoredBytes> bytes_;
   std::string name_;
-  std::string text_;
-  std::vector<std::string_view> frames_;  ///< of text_
+  std::vector<Place> frames_;
   bool cut_off_ = false;
 };
 

@@ -8,7 +8,10 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <map>
+#include <string>
 #include <utility>
+#include <vector>
 
 namespace hardbody {
 namespace {
@@ -37,6 +40,28 @@ std::string size_text(std::size_t bytes) {
   return size < 1e6 ? fmt::format("{:.0f} kB", size / 1e3) : fmt::format("{:.1f} MB", size / 1e6);
 }
 
+/// The last `parts` parts of a directory's path.
+std::string last_parts(const fs::path& directory, int parts) {
+  const fs::path whole = fs::weakly_canonical(directory);
+  fs::path name = whole.filename();
+  for (fs::path rest = whole.parent_path(); --parts > 0 && rest.has_filename(); rest = rest.parent_path()) {
+    name = rest.filename() / name;
+  }
+  return name.string();
+}
+
+/// Runs of the same name are called by as much of their paths as tells them apart.
+void name_apart(std::vector<RunReport>& runs) {
+  constexpr int kMostParts = 64;
+  for (int parts = 2; parts <= kMostParts; ++parts) {
+    std::map<std::string, int> counts;
+    for (const RunReport& run : runs) ++counts[run.name];
+    for (RunReport& run : runs) {
+      if (counts[run.name] > 1) run.name = last_parts(run.path, parts);
+    }
+  }
+}
+
 std::string several_title(const std::vector<RunReport>& runs) {
   std::string title;
   for (const RunReport& run : runs) title += (title.empty() ? "" : ", ") + run.name;
@@ -56,6 +81,7 @@ Report read_report(const std::vector<std::string>& directories) {
     }
     report.runs.push_back(read_run_report(directory, WithView::yes));
   }
+  name_apart(report.runs);
   report.title = report.runs.size() == 1 ? report.runs[0].title : several_title(report.runs);
   return report;
 }

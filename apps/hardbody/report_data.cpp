@@ -105,7 +105,6 @@ Json view_json(const View& view) {
           {"shape_of", packed(view.shape_of)},
           {"species_of", packed(view.species_of)},
           {"frames", std::move(frames)},
-          {"source", view.source},
           {"note", view.note}};
 }
 

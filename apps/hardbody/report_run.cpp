@@ -126,6 +126,7 @@ std::vector<Remark> remarks_of(const Json& summary) {
 struct Seen {
   View view;
   std::string phase = "production";
+  bool cut_off = false;  ///< a last frame that is not whole is left out
 };
 
 /// The stored frames; nothing if there is only one, or none.
@@ -141,7 +142,7 @@ std::optional<Seen> read_trajectory(const fs::path& path) {
                                  frame.bodies.size(), number));
   };
   Seen seen{view_of({reader.frame_count(), read})};
-  seen.view.source = fmt::format("{}{}", kGsdFile, reader.cut_off() ? " (what follows them is not whole)" : "");
+  seen.cut_off = reader.cut_off();
   return seen;
 }
 
@@ -169,7 +170,6 @@ std::optional<Seen> read_last_state(const fs::path& path, const Config& config) 
   Frame frame = frame_of(checkpoint.system, numbers);
   frame.time = checkpoint.time;
   Seen seen{view_of({1, [&](std::size_t /*k*/) { return frame; }}), checkpoint.phase};
-  seen.view.source = kCheckpointFile;
   return seen;
 }
 
@@ -271,6 +271,10 @@ RunReport read_run_report(const fs::path& directory, WithView with_view) {
   }
   run.remarks = run.summary.is_null() ? std::vector{unfinished(seen)} : remarks_of(run.summary);
   run.remarks.insert(run.remarks.end(), unseen.begin(), unseen.end());
+  if (seen && seen->cut_off) {
+    run.remarks.push_back({Remark::Kind::warning, "frames cut off",
+                           fmt::format("{} ends within a frame, which is left out.", kGsdFile)});
+  }
   if (seen) run.view = std::move(seen->view);
   return run;
 }

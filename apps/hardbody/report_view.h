@@ -34,7 +34,6 @@ struct View {
   std::vector<std::uint32_t> shape_of;    ///< of each body shown
   std::vector<std::uint32_t> species_of;  ///< of each body shown, from 0
   std::vector<ViewFrame> frames;
-  std::string source;  ///< file that it was read from
   std::string note;    ///< what is left out, in words
 };
 

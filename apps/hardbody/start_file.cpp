@@ -2,9 +2,8 @@
 
 #include "config_values.h"
 #include "errors.h"
-#include "gsd_frames.h"
-#include "lammps_dump.h"
 #include "text_file.h"
+#include "trajectory_reader.h"
 
 #include <ed/internal/archive_types.h>
 #include <ed/random.h>
@@ -15,8 +14,8 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <map>
+#include <memory>
 #include <numeric>
 #include <utility>
 
@@ -35,15 +34,6 @@ constexpr std::size_t kMostSpecies = 64;
 /// Bodies that overlap are not moved apart by more than this factor.
 constexpr double kMostMending = 1.1;
 
-bool is_gsd(const std::string& path) {
-  constexpr unsigned char kMagic[] = {0xDF, 0x65, 0xDF, 0x65};
-  std::ifstream file(path, std::ios::binary);
-  char bytes[sizeof kMagic] = {};
-  file.read(bytes, sizeof bytes);
-  return file.gcount() == sizeof bytes && std::equal(std::begin(kMagic), std::end(kMagic), bytes,
-                                                     [](auto a, char b) { return a == static_cast<unsigned char>(b); });
-}
-
 /// The frame that a start wants.
 struct FoundFrame {
   Frame frame;
@@ -51,8 +41,9 @@ struct FoundFrame {
   bool cut_off;  ///< the file ends before its last frame does
 };
 
-template <class FileReader>
-FoundFrame read_one(const FileReader& reader, const StartFile& start) {
+FoundFrame read_frame(const StartFile& start) {
+  const std::unique_ptr<TrajectoryReader> source = open_frames(start.file);
+  const TrajectoryReader& reader = *source;
   const std::uint64_t count = reader.frame_count();
   if (count == 0) throw InputError(fmt::format("{}: has no whole frame; accepted: a file with frames", start.file));
   const std::uint64_t k = start.frame ? static_cast<std::uint64_t>(*start.frame) : count - 1;
@@ -61,11 +52,6 @@ FoundFrame read_one(const FileReader& reader, const StartFile& start) {
         fmt::format("start.frame is {}, {} has {} whole frames; accepted: 0 to {}", k, start.file, count, count - 1));
   }
   return {reader.read(k), k, reader.cut_off()};
-}
-
-FoundFrame read_frame(const StartFile& start) {
-  if (is_gsd(start.file)) return read_one(GsdReader(start.file), start);
-  return read_one(LammpsReader(std::filesystem::path(start.file)), start);
 }
 
 double box_of(const Frame& frame, const std::string& file) {

@@ -579,9 +579,33 @@ class StartsFromFiles(Trajectories):
                 self.write("again.toml", AGAIN.replace("first/trajectory.gsd", "bad.lammpstrj"))
                 self.assert_refused(self.hardbody("run", "again.toml", "--out", "out"), "bad.lammpstrj: ", "accepted: ", *parts)
                 self.assertFalse(os.path.exists(self.path("out")))
-        # No end, and not a word of it a dump's: refused by its beginning.
-        self.write("again.toml", AGAIN.replace("first/trajectory.gsd", "/dev/zero"))
-        self.assert_refused(self.hardbody("run", "again.toml", "--out", "out"), "/dev/zero: is neither", "accepted: ")
+        # What has no end, or may never have a beginning.
+        os.mkfifo(self.path("pipe"))
+        for name in ("/dev/zero", "pipe"):
+            self.write("again.toml", AGAIN.replace("first/trajectory.gsd", name))
+            self.assert_refused(self.hardbody("run", "again.toml", "--out", "out", timeout=60),
+                                f"{name}: cannot be read: it is not a file", "accepted: ")
+
+    def test_long_dumps(self):
+        """A frame at a time is in memory; a file that is mostly a hole is no text."""
+        self.run_with("first", SMALL, ALL)
+        content = self.bytes_of("first/trajectory.lammpstrj")
+        with open(self.path("hole.lammpstrj"), "wb") as file:
+            file.write(content)
+            file.truncate(1 << 40)
+        self.write("again.toml", AGAIN.replace("first/trajectory.gsd", "hole.lammpstrj"))
+        self.assert_refused(self.hardbody("run", "again.toml", "--out", "out", timeout=60),
+                            f"hole.lammpstrj: byte {len(content)} is 0", "accepted: ")
+        # Longer than a piece that is read at once, the last frame cut off.
+        repeats = (1 << 21) // len(content) + 2
+        with open(self.path("long.lammpstrj"), "wb") as file:
+            file.write(repeats * content + content[:-10])
+        frames = repeats * content.count(b"ITEM: TIMESTEP") + content.count(b"ITEM: TIMESTEP") - 1
+        self.write("again.toml", AGAIN.replace("first/trajectory.gsd", "long.lammpstrj"))
+        result = self.hardbody("run", "again.toml", "--out", "out")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn(f"frame {frames - 1} of ", result.stderr)
+        self.assertIn("what follows them is not whole", result.stderr)
 
     def test_refusals(self):
         self.run_with("first", SMALL)
@@ -873,8 +897,21 @@ class Analyze(Trajectories):
         self.assertAlmostEqual(self.rows("other/msd.csv")["t"][-1], 1)
         self.assert_refused(self.hardbody("analyze", "none"), "none: cannot be read: No such file")
         os.makedirs(self.path("empty"))
-        self.assert_refused(self.hardbody("analyze", "empty"), "empty: has no trajectory.gsd", "trajectory = [\"gsd\"]")
+        self.assert_refused(self.hardbody("analyze", "empty"), "empty: has neither trajectory.gsd nor trajectory.lammpstrj", "trajectory = [\"gsd\"]")
         self.assert_refused(self.hardbody("analyze", "out", "--time-step", "0"), "--time-step")
+
+    def test_lammps(self):
+        """A run that has stored nothing else; times by the step, for dumps have none."""
+        self.run_with("out", SMALL, ALL)
+        self.assertEqual(self.hardbody("analyze", "out", "--out", "gsd").returncode, 0)
+        os.remove(self.path("out/trajectory.gsd"))
+        self.assert_refused(self.hardbody("analyze", "out"), "frame 0 has no time", "--time-step")
+        step = self.rows("gsd/order.csv")["t"][1]
+        arguments = ["--time-step", repr(float(step)), "--out", "lammps"]
+        self.assertEqual(self.hardbody("analyze", "out", *arguments).returncode, 0)
+        for file, column in [("msd", "msd"), ("c2", "c2"), ("f_self", "f_self_q1"), ("g_r", "g")]:
+            gsd, lammps = self.rows(f"gsd/{file}.csv"), self.rows(f"lammps/{file}.csv")
+            numpy.testing.assert_allclose(lammps[column], gsd[column], rtol=1e-9, atol=1e-12, err_msg=column)
 
     def test_fits(self):
         """As the run has done it, from the same lag and at the same q; of a file alone from the lag that is asked for."""

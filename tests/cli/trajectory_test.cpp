@@ -74,7 +74,7 @@ class Trajectory : public testing::Test {
   }
   static void TearDownTestSuite() { fs::remove(path); }
 
-  static GsdReader reader(std::string of) { return {hardbody::gsd_bytes_in_memory(std::move(of)), "t.gsd"}; }
+  static GsdReader reader(std::string of) { return {hardbody::stored_bytes_in_memory(std::move(of)), "t.gsd"}; }
 
   /// The file with an 8-byte number replaced.
   static std::string with(std::size_t place, std::uint64_t value) {
@@ -94,7 +94,7 @@ class Trajectory : public testing::Test {
   }
   /// Where an array of frame 0 stands.
   static hardbody::GsdChunk chunk(const char* name) {
-    const hardbody::GsdFile file(hardbody::gsd_bytes_in_memory(bytes), "t.gsd");
+    const hardbody::GsdFile file(hardbody::stored_bytes_in_memory(bytes), "t.gsd");
     return *file.find(0, name);
   }
   /// The file with the k-th number of an array of frame 0 replaced.

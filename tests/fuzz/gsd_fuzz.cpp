@@ -56,7 +56,7 @@ std::string changed_file(std::string_view changes) {
 }
 
 void read_all(std::string bytes) {
-  fuzz::read_all([&] { return hardbody::GsdReader(hardbody::gsd_bytes_in_memory(std::move(bytes)), "fuzz"); });
+  fuzz::read_all([&] { return hardbody::GsdReader(hardbody::stored_bytes_in_memory(std::move(bytes)), "fuzz"); });
 }
 
 }  // namespace

@@ -8,7 +8,9 @@
 #include <string>
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  fuzz::read_all(
-      [&] { return hardbody::LammpsReader(std::string(reinterpret_cast<const char*>(data), size), "fuzz"); });
+  fuzz::read_all([&] {
+    return hardbody::LammpsReader(hardbody::stored_bytes_in_memory({reinterpret_cast<const char*>(data), size}),
+                                  "fuzz");
+  });
   return 0;
 }

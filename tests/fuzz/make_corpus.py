@@ -111,4 +111,6 @@ def main(directory):
 
 
 if __name__ == "__main__":
+    if len(sys.argv) != 2 or sys.argv[1].startswith("-"):
+        sys.exit("usage: make_corpus.py DIRECTORY")
     main(sys.argv[1])

@@ -118,6 +118,10 @@ HOSTILE_LINE = "# </script><script>window.hacked=1</script><!-- <script>\n"
 SIZES = [(1280, 900), (390, 844)]
 
 
+def summary_of(directory):
+    return json.loads((directory / "summary.json").read_text(encoding="utf-8"))
+
+
 def rows_of(path):
     return path.read_text(encoding="utf-8").splitlines()
 
@@ -553,12 +557,60 @@ class OtherRuns(Case):
                 browser = self.open(file, width, height)
                 charts = {chart["id"]: chart for chart in browser.run("return window.hardbodyReport.charts")}
                 self.assertEqual(list(charts), PLOTS)
-                self.assertEqual(charts["msd"]["series"], ["run", "superballs"])
+                # The other is too short for D_trans.
+                self.assertEqual(charts["msd"]["series"], ["run", "run, 6 D_trans t", "superballs"])
+                wave_numbers = [summary_of(run)["wave_numbers"][0] for run in runs]
+                for name, chart in charts.items():
+                    for run, wave_number in zip(("run", "superballs"), wave_numbers):
+                        label = f"{run}, q l = {wave_number:.3g}" if name == "f_self" else run
+                        self.assertIn(label, chart["series"], name)
                 self.assertEqual(browser.run("""return document.querySelectorAll('.comparison [data-key="Z"] td .number').length"""), 2)
                 self.assertIn("semi_axes", browser.run("return document.querySelector('#settings ~ .card').textContent"))
                 browser.run("""const select = document.querySelector('label.chooser select');
                   select.selectedIndex = 1; select.dispatchEvent(new Event('change'));""")
                 self.assertIn("1 : 1 : 1.5", browser.run("return window.hardbodyReport.page.views[0].run.title"))
+                self.assert_fits(browser, width)
+                self.assert_silent(browser)
+
+
+    def test_several_mixtures_of_one_name(self):
+        """Settings of each of the species, and directories that only their parents tell apart."""
+        one = self.run_of("x/run", MIXTURE)
+        other = self.run_of("y/run", MIXTURE.replace("semi_axes = [0.5, 0.5, 1.5]", "semi_axes = [0.5, 0.5, 1.2]"))
+        file = self.here / "mixtures.html"
+        self.report(one, other, "-o", file)
+        browser = self.open(file)
+        names = browser.run("return [...document.querySelectorAll('.runs b:first-of-type')].map((e) => e.textContent)")
+        self.assertEqual(names[0], "x/run")
+        self.assertIn("y/run", names)
+        different = browser.run("return document.querySelector('#settings ~ .card').textContent")
+        self.assertIn("species 1.semi_axes", different)
+        self.assertNotIn("species 2", different)
+
+    def test_frames_cut_off_are_said(self):
+        directory = self.here / "cut_off"
+        shutil.copytree(self.run_of("run", RUN), directory)
+        with open(directory / "trajectory.gsd", "r+b") as file:
+            file.truncate(file.seek(0, os.SEEK_END) * 3 // 4)
+        self.report(directory)
+        browser = self.open(directory / "report.html")
+        self.assertIn("frames cut off", browser.run("return document.querySelector('.hero').textContent"))
+
+    def test_the_demo(self):
+        """A short form of what tools/demo shows."""
+        config = (pathlib.Path(__file__).parents[2] / "apps" / "demo.toml").read_text(encoding="utf-8")
+        directory = self.run_of("demo", config.replace("time = 400", "time = 20"))
+        self.report(directory)
+        for width, height in SIZES:
+            with self.subTest(width=width):
+                browser = self.open(directory / "report.html", width, height)
+                browser.run("document.querySelector('.stage').scrollIntoView({behavior: 'instant'})")
+                self.wait_for(browser, "return window.hardbodyReport.views[0].drawn > 0")
+                view = browser.run("return window.hardbodyReport.views[0]")
+                self.assertEqual((view["bodies"], view["frames"]), (512, 60))
+                self.assertGreater(self.colours(browser, ".stage canvas"), 40)
+                for chart in browser.run("return window.hardbodyReport.charts"):
+                    self.assertGreater(chart["points"], 10, chart["id"])
                 self.assert_fits(browser, width)
                 self.assert_silent(browser)
 

@@ -33,7 +33,9 @@ function linearValues(u, splits) {
   const largest = Math.max(...splits.map(Math.abs));
   if (largest > 0 && (largest < 1e-3 || largest >= 1e6)) return splits.map((x) => (x === 0 ? '0' : short(x, 4)));
   const step = splits.length > 1 ? splits[1] - splits[0] : 1;
-  const decimals = Math.max(0, Math.min(10, -Math.floor(Math.log10(Math.abs(step)) + 1e-9)));
+  // As many as the step itself has: 0.025 has three.
+  let decimals = Math.max(0, Math.min(10, -Math.floor(Math.log10(Math.abs(step)) + 1e-9)));
+  while (decimals < 10 && Math.abs(step - Number(step.toFixed(decimals))) > 1e-6 * Math.abs(step)) decimals += 1;
   return splits.map((x) => x.toFixed(decimals).replace('-', '−'));
 }
 

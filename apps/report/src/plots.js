@@ -1,5 +1,6 @@
 // Which curves a plot shows. A plot: {id, title, about, x, y, series}; x, y: {label, log}; a series: {label, x, y, error,
-// fit, group}. Fits are drawn dashed and belong to the series before them.
+// fit, key}. Fits are drawn dashed and belong to the series before them. `key` is the same for what is the same curve of
+// another run, whatever the label says of this one.
 import { short } from './format.js';
 
 /** Column of a file of observables/, with its error and unit; null: there is none. */
@@ -82,7 +83,7 @@ const time = { label: 't  [l √(m/kT)]', log: true };
 function msd(run) {
   const all = family(run, 'msd', 'msd', 'MSD');
   return {
-    id: 'msd', title: 'Mean square displacement', about: 'Of the centres. The dashed line has the slope 6 D_trans.',
+    id: 'msd', title: 'Mean square displacement', about: 'Of the centres. A dashed line has the slope 6 D_trans.',
     x: time, y: { label: '⟨Δr²⟩  [l²]', log: true },
     series: [...all.slice(0, 1), ...slope(run, all[0], 'D_trans', 6, '6 D_trans t'), ...all.slice(1)],
   };
@@ -123,12 +124,13 @@ function fSelf(run) {
   const all = [];
   for (let k = 1; k <= 16; k += 1) {
     const q = Number.isFinite(numbers[k - 1]) ? `q l = ${short(numbers[k - 1], 3)}` : `q${k}`;
-    all.push(...series(run, 'f_self', `f_self_q${k}`, q));
-    for (let s = 1; s <= run.species.length; s += 1) all.push(...series(run, 'f_self', `f_self_${s}_q${k}`, `${q}, species ${s}`));
+    const add = (column, rest) => all.push(...series(run, 'f_self', column, q + rest).map((s) => ({ ...s, key: `wave number ${k}${rest}` })));
+    add(`f_self_q${k}`, '');
+    for (let s = 1; s <= run.species.length; s += 1) add(`f_self_${s}_q${k}`, `, species ${s}`);
   }
   return {
     id: 'f_self', title: 'Self-intermediate scattering',
-    about: 'F_self at four wave numbers. The first wave number is that of the first peak of S(q); the dashed line is its fit.',
+    about: 'F_self at four wave numbers. The first wave number is that of the first peak of S(q); a dashed line is its fit.',
     x: time, y: { label: 'Fₛ(q, t)' },
     series: [...all.slice(0, 1), ...stretched(run, all[0], 'tau_F', 'beta_F', 'F', 'A exp[−(t/τ)ᵝ]'), ...all.slice(1)],
   };
@@ -234,24 +236,27 @@ function hasPoints(s) {
 export function plotsOf(run) {
   return makers.map((make) => {
     const plot = make(run);
-    plot.series.forEach((s, k) => { s.colour = k; });
     plot.series = plot.series.filter(hasPoints);
-    // A fit takes the colour of its curve.
-    plot.series.forEach((s, k) => { s.colour = s.fit ? plot.series[Math.max(0, k - 1)].colour : k; });
+    // A fit takes the colour of its curve, and its key.
+    plot.series.forEach((s, k) => {
+      const base = s.fit ? plot.series[k - 1] : null;
+      s.colour = base ? base.colour : k;
+      s.key = base ? base.key : s.key ?? s.label;
+    });
     return plot;
   });
 }
 
-/** The same plots of several runs: for each the curves that any of them has, one of which is shown at a time. */
+/** The same plots of several runs: for each the curves that any of them has, one of which is shown at a time, with its
+ * fits. */
 export function comparisonsOf(runs) {
   const all = runs.map(plotsOf);
   return all[0].map((plot, at) => {
-    const labels = [];
-    all.forEach((plots) => plots[at].series.forEach((s) => { if (!s.fit && !labels.includes(s.label)) labels.push(s.label); }));
-    const choices = labels.map((label) => ({
-      label,
-      series: all.flatMap((plots, r) => plots[at].series.filter((s) => !s.fit && s.label === label)
-        .map((s) => ({ ...s, label: runs[r].name, colour: r }))),
+    const keys = [...new Set(all.flatMap((plots) => plots[at].series.map((s) => s.key)))];
+    const choices = keys.map((key) => ({
+      label: key,
+      series: all.flatMap((plots, r) => plots[at].series.filter((s) => s.key === key).map((s) => ({
+        ...s, label: s.label === key ? runs[r].name : `${runs[r].name}, ${s.label}`, colour: r }))),
     }));
     return { ...plot, choices, series: choices[0]?.series ?? [] };
   });

@@ -61,15 +61,22 @@ function rows(pairs) {
     h('th', { scope: 'row' }, name), h('td', {}, text, unit ? h('span', { class: 'unit' }, ` ${unit}`) : null)))));
 }
 
-/** [section], key and value of each line; comments are left to the file. */
+/** [section], key and value of each line, the [[sections]] numbered; comments are left to the file. */
 function configRows(text) {
   const list = [];
+  const counts = new Map();
   let section = '';
   for (const line of text.split('\n')) {
     const head = /^\s*\[+([^\]]+)\]+/.exec(line);
+    const repeated = /^\s*\[\[/.test(line);
     const entry = /^\s*([A-Za-z0-9_]+)\s*=\s*("[^"]*"|\[[^#]*\]|[^#]*)/.exec(line);
-    if (head) [, section] = head;
-    else if (entry) list.push({ section, key: entry[1], value: entry[2].trim() });
+    if (head) {
+      [, section] = head;
+      if (repeated) {
+        counts.set(section, (counts.get(section) ?? 0) + 1);
+        section += ` ${counts.get(section)}`;
+      }
+    } else if (entry) list.push({ section, key: entry[1], value: entry[2].trim() });
   }
   return list;
 }
