@@ -272,8 +272,8 @@ RunReport read_run_report(const fs::path& directory, WithView with_view) {
   run.remarks = run.summary.is_null() ? std::vector{unfinished(seen)} : remarks_of(run.summary);
   run.remarks.insert(run.remarks.end(), unseen.begin(), unseen.end());
   if (seen && seen->cut_off) {
-    run.remarks.push_back({Remark::Kind::warning, "frames cut off",
-                           fmt::format("{} ends within a frame, which is left out.", kGsdFile)});
+    run.remarks.push_back(
+        {Remark::Kind::warning, "frames cut off", fmt::format("{} ends within a frame, which is left out.", kGsdFile)});
   }
   if (seen) run.view = std::move(seen->view);
   return run;
