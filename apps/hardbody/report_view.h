@@ -34,7 +34,7 @@ struct View {
   std::vector<std::uint32_t> shape_of;    ///< of each body shown
   std::vector<std::uint32_t> species_of;  ///< of each body shown, from 0
   std::vector<ViewFrame> frames;
-  std::string note;    ///< what is left out, in words
+  std::string note;  ///< what is left out, in words
 };
 
 /// No more bodies than that are shown, and no more bodies times frames: a page has to open on a telephone.
