@@ -92,6 +92,10 @@ Curves parse_curves(std::string_view text, const std::string& name, const std::s
       add_row(curves, line, fmt::format("{}:{}", where, number));
     }
   }
+  if (curves.columns.empty() || text.find('\0') != std::string_view::npos) {
+    throw InputError(
+        fmt::format("{}: has no header line of columns; accepted: a CSV file that a run has written", where));
+  }
   return curves;
 }
 

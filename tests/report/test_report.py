@@ -804,6 +804,8 @@ class CommandLine(Case):
             ("summary.json", "{", "summary.json: is not valid JSON"),
             ("summary.json", "[]", "summary.json: is not an object"),
             ("observables/msd.csv", "t [l],msd [l^2]\n1,x\n", 'msd.csv:2: "x" is not a number'),
+            ("observables/msd.csv", "", "msd.csv: has no header line of columns"),
+            ("observables/msd.csv", "\0" * 512, "msd.csv: has no header line of columns"),
             ("observables/msd.csv", "t [l],msd [l^2]\n1\n", "msd.csv:2: has 1 fields; accepted: 2"),
             ("config.toml", "[system\n", "config.toml:1"),
         ]:
