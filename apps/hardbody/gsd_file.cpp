@@ -1,7 +1,6 @@
 #include "gsd_file.h"
 
 #include "errors.h"
-#include "text_file.h"
 
 #include <ed/internal/archive.h>
 

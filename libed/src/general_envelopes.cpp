@@ -49,7 +49,7 @@ bool within(const NormBodyPair& pair, double inscribed, bool elongated, double l
   const Vector3d along = normal;
   const double apart = along.dot(pair.between());
   normal = pair.cold_normal();
-  // They are: so are the spheres within them. Half of the pairs of superballs are told by that.
+  // They are: so are the spheres within them. That spares them a query.
   if (apart - inscribed <= limit) return true;
   if (elongated) {
     const auto both_ways = geom::internal::LaneVector::of(along, -along);
