@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <numbers>
+#include <span>
 #include <utility>
 
 namespace ed::internal {
@@ -23,26 +24,54 @@ constexpr double kBelowRounding = 0x1p-56;
 
 // ---- Quadrature ----------------------------------------------------------------------------------------------------
 
-/// Integral of f over [0, tau] by the Gauss-Legendre rule with ten nodes on pieces of at most 1 / rate. The poles of a
-/// top's motion lie (pi/2) / rate or farther from the real axis: at u = i K', K' >= pi/2, and p <= max |omega| because
-/// p^2 / w3^2 = (|I3 - I2| / I1) (|I3 - I1| / I2) at dn = 1, both below 1 for a body. So f is analytic in an ellipse
-/// whose semi-axes sum to 6.4 times a piece's half-length, and the error is some 6.4^-20 = 7e-17 of it.
+/// A Gauss-Legendre rule: half of its nodes on [-1, 1], the others are opposite, and their weights.
+struct GaussRule {
+  double longest;  ///< piece, times the rate
+  std::span<const std::array<double, 2>> nodes;
+};
+
+constexpr std::array<std::array<double, 2>, 2> kFourNodes{
+    {{0.33998104358485626480, 0.65214515486254614263}, {0.86113631159405257522, 0.34785484513745385737}}};
+constexpr std::array<std::array<double, 2>, 3> kSixNodes{{{0.23861918608319690863, 0.46791393457269104739},
+                                                          {0.66120938646626451366, 0.36076157304813860757},
+                                                          {0.93246951420315202781, 0.17132449237917034504}}};
+constexpr std::array<std::array<double, 2>, 4> kEightNodes{{{0.18343464249564980494, 0.36268378337836198297},
+                                                            {0.52553240991632898582, 0.31370664587788728734},
+                                                            {0.79666647741362673959, 0.22238103445337447054},
+                                                            {0.96028985649753623168, 0.10122853629037625915}}};
+constexpr std::array<std::array<double, 2>, 5> kTenNodes{{{0.14887433898163121088, 0.29552422471475287017},
+                                                          {0.43339539412924719080, 0.26926671930999635509},
+                                                          {0.67940956829902440623, 0.21908636251598204400},
+                                                          {0.86506336668898451073, 0.14945134915058059315},
+                                                          {0.97390652851717172008, 0.06667134430868813759}}};
+constexpr std::array<GaussRule, 4> kGaussRules{
+    {{1.0 / 16, kFourNodes}, {0.28, kSixNodes}, {0.6, kEightNodes}, {1, kTenNodes}}};
+
+/// Integral of f over [0, tau] by Gauss-Legendre rules on pieces of at most 1 / rate, which is that of the motion. The
+/// poles of a top's motion lie (pi/2) / rate or farther from the real axis: at u = i K', K' >= pi/2, and
+/// p <= max |omega| because p^2 / w3^2 = (|I3 - I2| / I1) (|I3 - I1| / I2) at dn = 1, both below 1 for a body. So f is
+/// analytic in an ellipse about a piece of x / rate whose semi-axes sum to rho = pi / x + sqrt((pi / x)^2 + 1) times
+/// its half-length, and the error with n nodes is some rho^(-2n) of it (Trefethen, Approximation Theory and
+/// Approximation Practice, theorem 19.3): at the longest pieces of each rule 1e-16.
 template <class F>
-Vector3d integral(double tau, double rate, const F& f) {
-  constexpr std::array<double, 5> kNodes{0.14887433898163121088, 0.43339539412924719080, 0.67940956829902440623,
-                                         0.86506336668898451073, 0.97390652851717172008};
-  constexpr std::array<double, 5> kWeights{0.29552422471475287017, 0.26926671930999635509, 0.21908636251598204400,
-                                           0.14945134915058059315, 0.06667134430868813759};
-  const auto pieces = static_cast<std::int64_t>(std::clamp(std::ceil(std::abs(tau) * rate), 1.0, 1e15));
+TurnedAngles integral(double tau, double rate, const F& f) {
+  const double turns = std::abs(tau) * rate;
+  const auto pieces = static_cast<std::int64_t>(std::clamp(std::ceil(turns), 1.0, 1e15));
+  const auto fits = [&](const GaussRule& rule) { return turns <= rule.longest; };
+  const auto* rule = std::find_if(kGaussRules.begin(), kGaussRules.end() - 1, fits);
   const double half = 0.5 * tau / static_cast<double>(pieces);
-  Vector3d sum = Vector3d::Zero();
+  TurnedAngles sum;
   for (std::int64_t k = 0; k < pieces; ++k) {
     const double middle = static_cast<double>(2 * k + 1) * half;
-    for (std::size_t n = 0; n < kNodes.size(); ++n) {
-      sum += kWeights[n] * (f(middle - half * kNodes[n]) + f(middle + half * kNodes[n]));
+    for (const auto& [node, weight] : rule->nodes) {
+      for (const double t : {middle - half * node, middle + half * node}) {
+        const TurnedAngles at = f(t);
+        sum.world += weight * at.world;
+        sum.body += weight * at.body;
+      }
     }
   }
-  return half * sum;
+  return {half * sum.world, half * sum.body};
 }
 
 // ---- Bounds --------------------------------------------------------------------------------------------------------
@@ -460,24 +489,16 @@ TopState AsymmetricTop::at(double tau) const {
           (euler_[0] * v * w) * a.first + (euler_[1] * w * u) * a.second + (euler_[2] * u * v) * a.third};
 }
 
-Vector3d AsymmetricTop::turned_world(double tau) const {
-  const Vector3d across = integral(tau, std::max(bounds_.omega, series_.rate), [this](double t) {
+TurnedAngles AsymmetricTop::turned(double tau) const {
+  const TurnedAngles sum = integral(tau, std::max(bounds_.omega, series_.rate), [this](double t) {
     const Columns b = columns(series_, orientation_, t);
     const Vector3d last = orientation_ * b.lead.cross(b.next);
-    return Vector3d(rates_[0] * b.lead.z() * b.lead + rates_[1] * b.next.z() * b.next + rates_[2] * last.z() * last);
+    const Vector3d omega(rates_[0] * b.lead.z(), rates_[1] * b.next.z(), rates_[2] * b.last_z);
+    return TurnedAngles{omega.x() * b.lead + omega.y() * b.next + omega.z() * last, omega};
   });
-  return product(world_, {across.x(), across.y(), mean_turning_ * tau});
-}
-
-Vector3d AsymmetricTop::turned_body(double tau) const {
-  const Vector3d turned = integral(tau, std::max(bounds_.omega, series_.rate), [this](double t) {
-    const auto [a, b, c] = momentum(series_, phase(series_, t));
-    const double inverse = 1 / std::sqrt(a * a + b * b + c * c);
-    return Vector3d(rates_[0] * a * inverse, rates_[1] * b * inverse, rates_[2] * c * inverse);
-  });
-  Vector3d in_body;
-  for (int i = 0; i < 3; ++i) in_body[axes_[i]] = turned[i];
-  return in_body;
+  TurnedAngles turned{product(world_, {sum.world.x(), sum.world.y(), mean_turning_ * tau}), {}};
+  for (int i = 0; i < 3; ++i) turned.body[axes_[i]] = sum.body[i];
+  return turned;
 }
 
 }  // namespace ed::internal

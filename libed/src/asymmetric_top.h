@@ -81,10 +81,9 @@ class AsymmetricTop {
   Eigen::Matrix3d rotation(double tau) const;
   TopBounds bounds() const { return bounds_; }
 
-  /// Gauss-Legendre quadrature, ten nodes on pieces of at most 1 / max |omega|: right to 1e-14 max |omega| tau, in a
-  /// time proportional to tau. Along l the world's integral is 2 E / L tau exactly.
-  Eigen::Vector3d turned_world(double tau) const;
-  Eigen::Vector3d turned_body(double tau) const;
+  /// Gauss-Legendre quadrature, up to ten nodes on pieces of at most 1 / max |omega|: right to 1e-14 max |omega| tau,
+  /// in a time proportional to tau. Along l the world's integral is 2 E / L tau exactly.
+  TurnedAngles turned(double tau) const;
 
   template <class Archive, class Self>
   static void fields(Archive& archive, Self& self) {

@@ -20,7 +20,7 @@ using internal::StructureGrid;
 using internal::WaveVectors;
 
 /// Raised by every change of what save() writes.
-constexpr std::uint32_t kStateFormat = 1;
+constexpr std::uint32_t kStateFormat = 2;
 
 constexpr double kDecayed = 0.05;
 constexpr std::size_t kLeastSamples = 4;  ///< of a relaxation, one a time_unit

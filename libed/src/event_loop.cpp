@@ -171,6 +171,7 @@ void EventLoop<Bodies>::sample(Snapshot& snapshot) const {
   snapshot.time = time();
   snapshot.position.resize(at(number()));
   snapshot.axis.resize(at(number()));
+  snapshot.rotation.resize(Bodies::kSamplesRotations ? at(number()) : 0);
   snapshot.phi_lab.resize(at(number()));
   snapshot.phi_body.resize(at(number()));
   snapshot.velocity.resize(at(number()));

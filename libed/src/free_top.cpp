@@ -59,12 +59,10 @@ TopBounds UniformTurn::bounds() const {
   return {kBoundMargin * rate_, 0, 0};
 }
 
-Vector3d UniformTurn::turned_world(double tau) const {
-  return tau * omega_;
-}
-
-Vector3d UniformTurn::turned_body(double tau) const {
-  return tau * transposed_product(rotation(0), omega_);
+TurnedAngles UniformTurn::turned(double tau) const {
+  const Vector3d x = x_.at({0, 1});
+  const Vector3d y = y_.at({0, 1});
+  return {tau * omega_, tau * Vector3d(inner(x, omega_), inner(y, omega_), inner(x.cross(y), omega_))};
 }
 
 // ---- Symmetric top -------------------------------------------------------------------------------------------------
@@ -105,20 +103,17 @@ TopBounds SymmetricTop::bounds() const {
   return {kBoundMargin * length(precession_ * l_ + own_ * start_.first), alpha, kBoundMargin * precession_ * alpha};
 }
 
-Vector3d SymmetricTop::turned_world(double tau) const {
+TurnedAngles SymmetricTop::turned(double tau) const {
   // omega = Omega l + k u,  u = e0 + cos(Omega tau) (u(0) - e0) + sin(Omega tau) l x u(0),  e0 = (l.u) l.
-  const SinCos mean = mean_turn(precession_ * tau);
+  const SinCos about_l = mean_turn(precession_ * tau);
   const Vector3d e0 = inner(l_, start_.first) * l_;
-  return tau * (precession_ * l_ + own_ * (e0 + mean.cos * (start_.first - e0) + mean.sin * l_.cross(start_.first)));
-}
-
-Vector3d SymmetricTop::turned_body(double tau) const {
+  const Vector3d u = e0 + about_l.cos * (start_.first - e0) + about_l.sin * l_.cross(start_.first);
+  TurnedAngles turned{tau * (precession_ * l_ + own_ * u), {}};
   // Across the axis, omega turns at -k in the body's frame.
-  const SinCos mean = mean_turn(own_ * tau);
-  Vector3d turned;
-  turned[axes_[0]] = tau * spin_;
-  turned[axes_[1]] = tau * (mean.cos * across_.x() + mean.sin * across_.y());
-  turned[axes_[2]] = tau * (mean.cos * across_.y() - mean.sin * across_.x());
+  const SinCos about_u = mean_turn(own_ * tau);
+  turned.body[axes_[0]] = tau * spin_;
+  turned.body[axes_[1]] = tau * (about_u.cos * across_.x() + about_u.sin * across_.y());
+  turned.body[axes_[2]] = tau * (about_u.cos * across_.y() - about_u.sin * across_.x());
   return turned;
 }
 
@@ -138,12 +133,8 @@ Matrix3d FreeTop::rotation(double tau) const {
   return std::visit([tau](const auto& top) { return top.rotation(tau); }, top_);
 }
 
-Vector3d FreeTop::turned_world(double tau) const {
-  return std::visit([tau](const auto& top) { return top.turned_world(tau); }, top_);
-}
-
-Vector3d FreeTop::turned_body(double tau) const {
-  return std::visit([tau](const auto& top) { return top.turned_body(tau); }, top_);
+TurnedAngles FreeTop::turned(double tau) const {
+  return std::visit([tau](const auto& top) { return top.turned(tau); }, top_);
 }
 
 }  // namespace ed::internal

@@ -48,8 +48,7 @@ class UniformTurn {
   TopState at(double tau) const { return {rotation(tau), omega_, Eigen::Vector3d::Zero()}; }
   Eigen::Matrix3d rotation(double tau) const;
   TopBounds bounds() const;
-  Eigen::Vector3d turned_world(double tau) const;
-  Eigen::Vector3d turned_body(double tau) const;
+  TurnedAngles turned(double tau) const;
 
   template <class Archive, class Self>
   static void fields(Archive& archive, Self& self) {
@@ -70,8 +69,7 @@ class SymmetricTop {
   TopState at(double tau) const;
   Eigen::Matrix3d rotation(double tau) const;
   TopBounds bounds() const;
-  Eigen::Vector3d turned_world(double tau) const;
-  Eigen::Vector3d turned_body(double tau) const;
+  TurnedAngles turned(double tau) const;
 
   template <class Archive, class Self>
   static void fields(Archive& archive, Self& self) {
@@ -112,13 +110,9 @@ class FreeTop {
   double max_alpha() const { return bounds_.alpha; }
   double max_jerk() const { return bounds_.jerk; }
 
-  /// Integral of omega over [0, tau], world frame: in closed form for spherical and symmetric tops. For asymmetric ones
-  /// by quadrature to rounding, 1e-15 (1 + |omega| |tau|)^2, in a time proportional to |omega| |tau|.
-  Eigen::Vector3d turned_world(double tau) const;
-
-  /// Integral of the components of omega along the body's axes over [0, tau], as accurate: what rotational diffusion in
-  /// the body frame is made of.
-  Eigen::Vector3d turned_body(double tau) const;
+  /// In closed form for spherical and symmetric tops. For asymmetric ones by quadrature to rounding,
+  /// 1e-15 (1 + |omega| |tau|)^2, in a time proportional to |omega| |tau|.
+  TurnedAngles turned(double tau) const;
 
   /// The constants as they are: computed again from a state they would have other last bits.
   template <class Archive, class Self>

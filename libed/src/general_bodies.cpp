@@ -72,13 +72,14 @@ Motion GeneralBodies::motion(int i, double t) const {
   return {geom::Pose(top.R, m.position_at(t)), m.velocity, top.omega, kind_of(i).inertia, t};
 }
 
-GeneralBodies::Turned GeneralBodies::turned_at(int i, double t) const {
+TurnedAngles GeneralBodies::turned_at(int i, double t) const {
   const RigidMotion& m = motions_[at(i)];
   const GeneralKind& kind = kind_of(i);
-  Turned turned = turned_[at(i)];
+  TurnedAngles turned = turned_[at(i)];
   if (kind.symmetry_axis < 0) {
-    turned.world += m.top.turned_world(t - m.time);
-    turned.body += m.top.turned_body(t - m.time);
+    const TurnedAngles flight = m.top.turned(t - m.time);
+    turned.world += flight.world;
+    turned.body += flight.body;
     return turned;
   }
   // Spin excluded: what a body of revolution makes of it.
@@ -91,11 +92,12 @@ GeneralBodies::Turned GeneralBodies::turned_at(int i, double t) const {
 }
 
 void GeneralBodies::sample(int i, double t, Snapshot& snapshot) const {
-  const Turned turned = turned_at(i, t);
+  const TurnedAngles turned = turned_at(i, t);
   const GeneralKind& kind = kind_of(i);
   const RigidMotion& m = motions_[at(i)];
   const TopState top = m.top.at(t - m.time);
   snapshot.axis[at(i)] = top.R.col(kind.axis);
+  snapshot.rotation[at(i)] = top.R;
   snapshot.phi_lab[at(i)] = turned.world;
   snapshot.phi_body[at(i)] = turned.body;
   snapshot.velocity[at(i)] = m.velocity;

@@ -66,7 +66,8 @@ class GeneralBodies {
   /// How fast the body turns at the most.
   double turning(int i) const { return motions_[at(i)].top.max_omega(); }
   Motion motion(int i, double t) const;
-  /// Orientation and the integrals of the angular velocity; not the position.
+  static constexpr bool kSamplesRotations = true;  ///< of a Snapshot
+  /// All of a Snapshot but the position.
   void sample(int i, double t, Snapshot& snapshot) const;
 
   void move(int /*i*/, double /*t*/) {}
@@ -113,17 +114,6 @@ class GeneralBodies {
   }
 
  private:
-  /// Integrals of the angular velocity up to the start of the flight.
-  struct Turned {
-    Eigen::Vector3d world = Eigen::Vector3d::Zero();
-    Eigen::Vector3d body = Eigen::Vector3d::Zero();
-
-    template <class Archive, class Self>
-    static void fields(Archive& archive, Self& self) {
-      archive(self.world, self.body);
-    }
-  };
-
   /// Calls f with the gauge of i and j: the one for libgeom's shapes, or the one for any.
   template <class F>
   decltype(auto) with_gauge(int i, int j, const Eigen::Vector3d& r, double now, F&& f) const;
@@ -131,12 +121,12 @@ class GeneralBodies {
   static std::size_t at(int i) { return static_cast<std::size_t>(i); }
   void start_flight(int i, double now, const TopState& state, const Eigen::Vector3d& velocity,
                     const Eigen::Vector3d& omega);
-  Turned turned_at(int i, double t) const;
+  TurnedAngles turned_at(int i, double t) const;
 
   std::vector<GeneralKind> kinds_;
   std::vector<int> kind_;
   LargeVector<RigidMotion> motions_;
-  LargeVector<Turned> turned_;
+  LargeVector<TurnedAngles> turned_;  ///< up to the start of the flight
   LargeVector<BodyEvents> events_;
   double bounding_radius_ = 0;
   double inscribed_radius_ = kNever;

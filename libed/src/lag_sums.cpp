@@ -48,7 +48,7 @@ void add_velocities(const Snapshot& a, const Snapshot& b, BodyRange range, LagSu
   }
 }
 
-void add_axes(const Frame& a, const Frame& b, BodyRange range, LagSums& sums) {
+void add_axes(const Snapshot& a, const Snapshot& b, BodyRange range, LagSums& sums) {
   for (std::size_t i = range.begin; i < range.end; ++i) {
     for (int k = 0; k < 3; ++k) {
       const double cosine = a.rotation[i].col(k).dot(b.rotation[i].col(k));
@@ -76,11 +76,11 @@ void LagSums::add(const LagSums& other, double weight) {
   for (std::size_t k = 0; k < f_self.size(); ++k) f_self[k] += weight * other.f_self[k];
 }
 
-LagSums correlate(const Frame& a, const Frame& b, BodyRange range, std::span<const double> wave_numbers) {
+LagSums correlate(const Snapshot& a, const Snapshot& b, BodyRange range, std::span<const double> wave_numbers) {
   LagSums sums;
-  add_displacements(a.snapshot, b.snapshot, range, wave_numbers, sums);
-  add_rotations(a.snapshot, b.snapshot, range, sums);
-  add_velocities(a.snapshot, b.snapshot, range, sums);
+  add_displacements(a, b, range, wave_numbers, sums);
+  add_rotations(a, b, range, sums);
+  add_velocities(a, b, range, sums);
   if (range.three_axes) add_axes(a, b, range, sums);
   LagSums means;
   means.add(sums, 1 / range.size());

@@ -24,17 +24,6 @@ struct BodyRange {
   double size() const { return static_cast<double>(end - begin); }
 };
 
-/// A snapshot, and the bodies' orientations where some range has three axes.
-struct Frame {
-  Snapshot snapshot;
-  std::vector<Eigen::Matrix3d> rotation;
-};
-
-template <class Archive, Is<Frame> T>
-void fields(Archive& archive, T& frame) {
-  archive(frame.snapshot, frame.rotation);
-}
-
 /// Sums, over the origins of a block, of what is measured at one lag: averages over the bodies of a range.
 struct LagSums {
   double count = 0;
@@ -61,10 +50,11 @@ void fields(Archive& archive, T& s) {
           s.c2_axis, s.f_self);
 }
 
-/// Averages over the bodies of a range, with c1_axis and c2_axis if it has three axes.
+/// Averages over the bodies of a range, with c1_axis and c2_axis if it has three axes: rotations are looked at only
+/// then.
 ///
 /// F_self is averaged over all directions of q: sin(q r) / (q r), r the displacement, which a box does not confine.
-LagSums correlate(const Frame& a, const Frame& b, BodyRange range, std::span<const double> wave_numbers);
+LagSums correlate(const Snapshot& a, const Snapshot& b, BodyRange range, std::span<const double> wave_numbers);
 
 /// Single ones of them.
 /// @{

@@ -16,18 +16,17 @@ namespace {
 using Eigen::Vector3d;
 using internal::Block;
 using internal::BodyRange;
-using internal::Frame;
 using internal::LagSums;
 using internal::Measured;
 
 /// Raised by every change of what save() writes.
-constexpr std::uint32_t kStateFormat = 4;
+constexpr std::uint32_t kStateFormat = 5;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// A frame that later ones are correlated with.
 struct Origin {
-  Frame frame;
+  Snapshot frame;
   std::size_t next_lag = 0;
   std::size_t block = 0;
 
@@ -92,7 +91,7 @@ class Observables::Impl {
   double next_time() const {
     double next = next_origin_;
     for (const Origin& origin : origins_) {
-      next = std::min(next, origin.frame.snapshot.time + measured_.lags[origin.next_lag]);
+      next = std::min(next, origin.frame.time + measured_.lags[origin.next_lag]);
     }
     // A sample at the very end is wanted despite the rounding of the sums above.
     const double duration = options().duration;
@@ -101,10 +100,9 @@ class Observables::Impl {
 
   void measure(const Simulation& simulation) {
     take_frame(simulation);
-    const double due = now_.snapshot.time * (1 + 1e-12);
+    const double due = now_.time * (1 + 1e-12);
     for (Origin& origin : origins_) {
-      while (origin.next_lag < measured_.lags.size() &&
-             origin.frame.snapshot.time + measured_.lags[origin.next_lag] <= due) {
+      while (origin.next_lag < measured_.lags.size() && origin.frame.time + measured_.lags[origin.next_lag] <= due) {
         correlate_with(origin);
         ++origin.next_lag;
       }
@@ -128,7 +126,7 @@ class Observables::Impl {
   }
 
   bool fits(const Origin& origin) const {
-    const Snapshot& s = origin.frame.snapshot;
+    const Snapshot& s = origin.frame;
     const auto n = static_cast<std::size_t>(options().number);
     for (const auto* vectors : {&s.position, &s.axis, &s.phi_lab, &s.phi_body, &s.velocity, &s.angular_velocity}) {
       if (vectors->size() != n) return false;
@@ -138,11 +136,12 @@ class Observables::Impl {
   }
 
   void take_frame(const Simulation& simulation) {
-    simulation.sample(now_.snapshot);
-    if (!three_axes()) return;
-    const System system = simulation.system();
-    now_.rotation.clear();
-    for (const Body& body : system.bodies) now_.rotation.push_back(body.rotation);
+    simulation.sample(now_);
+    if (!three_axes()) {
+      now_.rotation.clear();
+    } else if (now_.rotation.empty()) {
+      for (const Body& body : simulation.system().bodies) now_.rotation.push_back(body.rotation);
+    }
   }
 
   void correlate_with(const Origin& origin) {
@@ -155,7 +154,7 @@ class Observables::Impl {
   }
 
   void start_origin(const Simulation& simulation) {
-    if (measured_.add_origin(simulation, now_.snapshot)) {
+    if (measured_.add_origin(simulation, now_)) {
       for (Origin& origin : origins_) origin.block /= 2;
     }
     origins_.push_back({now_, 0, measured_.blocks.size() - 1});
@@ -167,7 +166,7 @@ class Observables::Impl {
   std::int64_t origin_count_ = 0;
   double next_origin_ = 0;
   std::deque<Origin> origins_;
-  Frame now_;
+  Snapshot now_;
 };
 
 Observables::Observables(const ObservablesOptions& options) : impl_(std::make_unique<Impl>(options)) {}

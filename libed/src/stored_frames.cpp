@@ -15,7 +15,6 @@ namespace {
 using Eigen::Vector3d;
 using internal::Block;
 using internal::BodyRange;
-using internal::Frame;
 using internal::Measured;
 
 constexpr double kLagsPerDecade = 20;
@@ -76,9 +75,8 @@ std::vector<std::size_t> lag_steps(std::size_t longest) {
   return steps;
 }
 
-Frame frame_of(const StoredFrame& stored, const StoredFramesOptions& options, bool rotations) {
-  Frame frame;
-  Snapshot& s = frame.snapshot;
+Snapshot snapshot_of(const StoredFrame& stored, const StoredFramesOptions& options, bool rotations) {
+  Snapshot s;
   const std::size_t n = stored.position.size();
   s.time = stored.time;
   s.position = stored.position;
@@ -86,8 +84,8 @@ Frame frame_of(const StoredFrame& stored, const StoredFramesOptions& options, bo
   s.phi_lab.assign(n, Vector3d::Zero());
   s.phi_body = s.angular_velocity = s.phi_lab;
   s.velocity = stored.velocity.empty() ? s.phi_lab : stored.velocity;
-  if (rotations) frame.rotation = stored.rotation;
-  return frame;
+  if (rotations) s.rotation = stored.rotation;
+  return s;
 }
 
 /// Blocks of frames in the place of those that a run measures.
@@ -100,7 +98,7 @@ class Analysis {
         measured_(plan()) {
     const auto three = [](const BodyRange& r) { return r.three_axes; };
     const bool rotations = std::any_of(measured_.ranges.begin(), measured_.ranges.end(), three);
-    for (std::size_t k = 0; k < count_; ++k) frames_.push_back(frame_of(frames[k], options, rotations));
+    for (std::size_t k = 0; k < count_; ++k) frames_.push_back(snapshot_of(frames[k], options, rotations));
   }
 
   StoredResults results();
@@ -117,7 +115,7 @@ class Analysis {
   double step_;
   std::vector<std::size_t> steps_;
   Measured measured_;
-  std::vector<Frame> frames_;
+  std::vector<Snapshot> frames_;
 };
 
 Measured Analysis::plan() {
@@ -155,7 +153,7 @@ Measured Analysis::plan() {
 void Analysis::add_structure() {
   const internal::WaveVectors vectors = internal::wave_vectors_of(measured_.grid);
   for (std::size_t k = 0; k < count_; ++k) {
-    const Snapshot& now = frames_[k].snapshot;
+    const Snapshot& now = frames_[k];
     Block& block = block_of(k);
     const BodyRange all{0, now.position.size(), false};
     const std::vector<internal::StructureSums> pairs = internal::count_pairs(measured_.grid, now, measured_.ranges);
@@ -213,8 +211,8 @@ StoredResults Analysis::results() {
   add_lags();
   StoredResults results;
   static_cast<Results&>(results) = internal::results_of(measured_, totals, options_.fit_from.value_or(kNothing));
-  const bool velocities = !frames_.empty() && options_.axis.size() == frames_[0].snapshot.velocity.size() &&
-                          !frames_[0].snapshot.velocity.empty() && !frames_[0].snapshot.velocity[0].isZero(0);
+  const bool velocities = !frames_.empty() && options_.axis.size() == frames_[0].velocity.size() &&
+                          !frames_[0].velocity.empty() && !frames_[0].velocity[0].isZero(0);
   results.translational_kT = results.rotational_kT = {kNothing, kNothing};
   forget(results, velocities);
   for (GroupResults& group : results.groups) {

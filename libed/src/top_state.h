@@ -22,6 +22,17 @@ struct TopState {
   Eigen::Vector3d alpha;  ///< d omega / dt, world frame
 };
 
+/// Integrals of omega over [0, tau]: what rotational diffusion is made of.
+struct TurnedAngles {
+  Eigen::Vector3d world = Eigen::Vector3d::Zero();  ///< world frame
+  Eigen::Vector3d body = Eigen::Vector3d::Zero();   ///< of the components along the body's axes
+};
+
+template <class Archive, Is<TurnedAngles> T>
+void fields(Archive& archive, T& angles) {
+  archive(angles.world, angles.body);
+}
+
 /// Upper bounds over all times.
 struct TopBounds {
   double omega = 0;  ///< of |omega|

@@ -64,6 +64,7 @@ class UniaxialBodies {
   /// How fast the body turns at the most.
   double turning(int i) const { return entries_[at(i)].motion.rate; }
   Motion motion(int i, double t) const;
+  static constexpr bool kSamplesRotations = false;  ///< of a Snapshot
   /// Orientation and the integrals of the angular velocity; not the position.
   void sample(int i, double t, Snapshot& snapshot) const;
 

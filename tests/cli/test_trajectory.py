@@ -436,6 +436,15 @@ class StartsFromFiles(Trajectories):
         numpy.testing.assert_allclose(back.rotation[1], there.rotation[4], atol=1e-7)
         numpy.testing.assert_allclose(back.velocity[1], -there.velocity[4], atol=1e-6)
 
+    def test_the_same_body_by_another_formula(self):
+        """A superellipsoid with exponents of 1 is the ellipsoid: the same moments but for rounding, so the same speeds."""
+        shape = '[shape]\nkind = "ellipsoid"\nsemi_axes = [1.0, 0.8, 0.5]\n'
+        self.run_with("first", SMALL.replace("[shape]\naspect_ratio = 2\n", shape))
+        shape = shape.replace('"ellipsoid"', '"superellipsoid"\nexponents = [1.0, 1.0]')
+        self.assertIn("velocities as they are", self.run_small("second", config=shape + AGAIN).stderr)
+        heavier = shape + "[dynamics]\ninertia = [0.3, 0.3, 0.4]\n" + AGAIN
+        self.assertIn("velocities rescaled", self.run_small("third", config=heavier).stderr)
+
     def test_of_another_program(self):
         """Written by gsd.hoomd, with what HOOMD has: 32-bit numbers, shapes, types in any order, no velocities."""
         self.run_with("first", SMALL)

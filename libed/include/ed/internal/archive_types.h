@@ -114,8 +114,8 @@ void fields(Archive& archive, T& collision) {
 
 template <class Archive, Is<Snapshot> T>
 void fields(Archive& archive, T& snapshot) {
-  archive(snapshot.time, snapshot.position, snapshot.axis, snapshot.phi_lab, snapshot.phi_body, snapshot.velocity,
-          snapshot.angular_velocity);
+  archive(snapshot.time, snapshot.position, snapshot.axis, snapshot.rotation, snapshot.phi_lab, snapshot.phi_body,
+          snapshot.velocity, snapshot.angular_velocity);
 }
 
 template <class Archive, Is<geom::WitnessPair> T>
