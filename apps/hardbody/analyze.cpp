@@ -16,6 +16,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <numbers>
 #include <optional>
@@ -48,6 +49,15 @@ double time_of(const Frame& frame, std::uint64_t k, const AnalyzeArguments& argu
   if (arguments.time_step) return static_cast<double>(frame.step) * *arguments.time_step;
   if (std::isfinite(frame.time)) return frame.time;
   throw InputError(fmt::format("{}: frame {} has no time; accepted: --time-step, the time between two steps", name, k));
+}
+
+/// Whether a frame's orientations say anything. GSD files hold none where all bodies are aligned: an answer for bodies
+/// whose shape is known to have an orientation, for others nobody has looked.
+bool says_orientations(const Frame& frame) {
+  const auto turned = [](const FrameBody& b) { return b.rotation != Eigen::Matrix3d::Identity(); };
+  const auto turnable = [](const FrameType& t) { return t.shape && !ed::is_sphere(*t.shape); };
+  return frame.orientations && (std::any_of(frame.bodies.begin(), frame.bodies.end(), turned) ||
+                                std::any_of(frame.types.begin(), frame.types.end(), turnable));
 }
 
 /// The bodies in the order of their groups, and what each group is.
@@ -150,12 +160,17 @@ Stored read_trajectory(const TrajectoryReader& reader, const AnalyzeArguments& a
   stored.options.box = first.box.x();
   stored.options.longest_lag = arguments.longest_lag.value_or(0);
   read_groups(first, stored);
+  bool orientations = false;
   for (std::uint64_t k = 0; k < count; k += every) {
     const Frame frame = reader.read(k);
     check_frame(frame, first, k, reader.name());
     const double time = count == 1 ? 0 : time_of(frame, k, arguments, reader.name());
     stored.frames.push_back(stored_frame(frame, stored, time));
     stored.energy.push_back(frame.energy);
+    orientations = orientations || says_orientations(frame);
+  }
+  if (!orientations) {
+    for (ed::StoredFrame& frame : stored.frames) frame.rotation.clear();
   }
   // Frames with and without velocities have them not.
   const auto without = [](const ed::StoredFrame& f) { return f.velocity.empty(); };
@@ -167,16 +182,20 @@ Stored read_trajectory(const TrajectoryReader& reader, const AnalyzeArguments& a
 
 // ---- Files
 
+std::string cell(double x) {
+  return std::isfinite(x) ? fmt::format("{}", x) : "";
+}
+
 std::string order_csv(const Stored& stored) {
   std::string text = "t [l sqrt(m/kT)],S [1],energy [kT]\n";
   for (std::size_t k = 0; k < stored.frames.size(); ++k) {
+    const ed::StoredFrame& frame = stored.frames[k];
     std::vector<Vector3d> axes;
-    for (std::size_t i = 0; i < stored.order.size(); ++i) {
-      axes.emplace_back(stored.frames[k].rotation[i].col(stored.options.axis[i]));
+    for (std::size_t i = 0; i < frame.rotation.size(); ++i) {
+      axes.emplace_back(frame.rotation[i].col(stored.options.axis[i]));
     }
-    const double energy = stored.energy[k];
-    text += fmt::format("{},{},{}\n", stored.frames[k].time, ed::nematic_order(axes),
-                        std::isfinite(energy) ? fmt::format("{}", energy) : "");
+    const double S = axes.empty() ? std::numeric_limits<double>::quiet_NaN() : ed::nematic_order(axes);
+    text += fmt::format("{},{},{}\n", frame.time, cell(S), cell(stored.energy[k]));
   }
   return text;
 }

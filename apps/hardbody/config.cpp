@@ -410,7 +410,7 @@ ed::Neighbours Config::neighbour_search() const {
 }
 
 bool is_sphere(const SpeciesConfig& species) {
-  return ed::bounding_radius(species.body.shape) == ed::inscribed_radius(species.body.shape);
+  return ed::is_sphere(species.body.shape);
 }
 
 ed::SimulationOptions Config::simulation_options(double envelope) const {

@@ -165,10 +165,6 @@ std::optional<Matrix3d> axes_in_file(const ed::BodyShape& file, const ed::BodySh
   return std::nullopt;
 }
 
-bool is_sphere(const ed::BodyShape& shape) {
-  return ed::bounding_radius(shape) == ed::inscribed_radius(shape);
-}
-
 /// The bodies of the config where those of the file are, without velocities.
 ed::System placed(const Config& config, const Frame& frame, const std::vector<std::size_t>& order) {
   const std::string& file = config.start_file->file;
@@ -182,7 +178,7 @@ ed::System placed(const Config& config, const Frame& frame, const std::vector<st
       body.species = static_cast<int>(system.species.size());
       body.position = from.position;
       body.rotation = from.rotation;
-      if (!frame.orientations && !is_sphere(component.species.shape)) {
+      if (!frame.orientations && !ed::is_sphere(component.species.shape)) {
         throw InputError(fmt::format("{}: has no orientations, and body {} is {}; accepted: columns {}, or spheres",
                                      file, i, ed::describe(component.species.shape), "quatw quati quatj quatk"));
       }

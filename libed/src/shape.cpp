@@ -134,6 +134,10 @@ double inscribed_radius(const BodyShape& shape) {
   return with(shape, [](const auto& s) { return s.inscribed_radius(); });
 }
 
+bool is_sphere(const BodyShape& shape) {
+  return bounding_radius(shape) == inscribed_radius(shape);
+}
+
 double volume(const BodyShape& shape) {
   return with(shape, [](const auto& s) { return s.volume(); });
 }

@@ -25,16 +25,12 @@ std::vector<int> symmetry_axes(const System& system) {
   return axes;
 }
 
-bool is_sphere(const Species& species) {
-  return bounding_radius(species.shape) == inscribed_radius(species.shape);
-}
-
 /// The spheres among the bodies.
 System spheres_of(const System& system) {
   System spheres;
   spheres.species = system.species;
   for (const Body& body : system.bodies) {
-    if (is_sphere(system.species[static_cast<std::size_t>(body.species)])) spheres.bodies.push_back(body);
+    if (is_sphere(system.species[static_cast<std::size_t>(body.species)].shape)) spheres.bodies.push_back(body);
   }
   return spheres;
 }
@@ -154,7 +150,7 @@ void rescale_velocities(System& system) {
   for (Body& body : system.bodies) {
     body.velocity *= translation;
     const auto kind = static_cast<std::size_t>(body.species);
-    const double factor_here = is_sphere(system.species[kind]) ? sphere_rotation : rotation;
+    const double factor_here = is_sphere(system.species[kind].shape) ? sphere_rotation : rotation;
     if (axes[kind] < 0) {
       body.angular_velocity *= factor_here;
       continue;

@@ -42,9 +42,11 @@ void check(const std::vector<StoredFrame>& frames, const StoredFramesOptions& op
           "fit_from; accepted: a finite lag that is not negative");
   for (std::size_t k = 0; k < frames.size(); ++k) {
     const StoredFrame& f = frames[k];
-    const bool velocities = f.velocity.size() == frames[0].velocity.size();
-    require(f.position.size() == n && f.rotation.size() == n && velocities &&
-                (f.velocity.empty() || f.velocity.size() == n),
+    const auto all_or_none = [n](const auto& of, const auto& first) {
+      return of.size() == first.size() && (of.empty() || of.size() == n);
+    };
+    require(f.position.size() == n && all_or_none(f.rotation, frames[0].rotation) &&
+                all_or_none(f.velocity, frames[0].velocity),
             "frame " + std::to_string(k) + "; accepted: as many bodies as in the first one");
     require(std::isfinite(f.time) && (k == 0 || f.time > frames[k - 1].time),
             "time of frame " + std::to_string(k) + " is " + text_of(f.time) +
@@ -80,11 +82,14 @@ Snapshot snapshot_of(const StoredFrame& stored, const StoredFramesOptions& optio
   const std::size_t n = stored.position.size();
   s.time = stored.time;
   s.position = stored.position;
-  for (std::size_t i = 0; i < n; ++i) s.axis.emplace_back(stored.rotation[i].col(options.axis[i]));
+  const bool turned = !stored.rotation.empty();
+  for (std::size_t i = 0; i < n; ++i) {
+    s.axis.emplace_back(turned ? Vector3d(stored.rotation[i].col(options.axis[i])) : Vector3d::UnitZ());
+  }
   s.phi_lab.assign(n, Vector3d::Zero());
   s.phi_body = s.angular_velocity = s.phi_lab;
   s.velocity = stored.velocity.empty() ? s.phi_lab : stored.velocity;
-  if (rotations) s.rotation = stored.rotation;
+  if (rotations) s.rotation = turned ? stored.rotation : std::vector<Eigen::Matrix3d>(n, Eigen::Matrix3d::Identity());
   return s;
 }
 
@@ -95,6 +100,7 @@ class Analysis {
       : options_(options),
         count_(equally_far(frames)),
         step_(count_ > 1 ? frames[1].time - frames[0].time : 1),
+        orientations_(!frames[0].rotation.empty()),
         measured_(plan()) {
     const auto three = [](const BodyRange& r) { return r.three_axes; };
     const bool rotations = std::any_of(measured_.ranges.begin(), measured_.ranges.end(), three);
@@ -113,6 +119,7 @@ class Analysis {
   const StoredFramesOptions& options_;
   std::size_t count_;
   double step_;
+  bool orientations_;
   std::vector<std::size_t> steps_;
   Measured measured_;
   std::vector<Snapshot> frames_;
@@ -189,7 +196,31 @@ void Analysis::add_lags() {
 }
 
 /// What frames do not tell.
-void forget(Correlations& results, bool velocities) {
+void forget_orientations(Correlations& results) {
+  results.t_C2_1overe = results.tau_C2 = results.beta_C2 = {};
+  results.window_C2 = {};
+  results.t_C2_1overe_axis = {};
+  for (LagRow& row : results.lags) {
+    row.c1 = row.c2 = {};
+    row.c1_axis = row.c2_axis = {};
+  }
+  for (PairRow& row : results.pairs) row.g2 = {};
+}
+
+void forget_order(Results& results) {
+  results.S = {};
+  results.director = {};
+  for (GroupResults& group : results.groups) {
+    group.S = {};
+    group.director = {};
+  }
+  for (BlockRow& row : results.blocks) {
+    row.S = kNothing;
+    row.director.setConstant(kNothing);
+  }
+}
+
+void forget(Correlations& results, bool velocities, bool orientations) {
   results.D_rot = results.D_rot_body = results.w2 = {};
   results.D_rot_axis = {};
   if (!velocities) results.v2 = {};
@@ -198,6 +229,7 @@ void forget(Correlations& results, bool velocities) {
     row.rot_msd_axis = {};
     if (!velocities) row.vacf = {};
   }
+  if (!orientations) forget_orientations(results);
 }
 
 StoredResults Analysis::results() {
@@ -213,13 +245,14 @@ StoredResults Analysis::results() {
   static_cast<Results&>(results) = internal::results_of(measured_, totals, options_.fit_from.value_or(kNothing));
   const bool velocities = !frames_.empty() && options_.axis.size() == frames_[0].velocity.size() &&
                           !frames_[0].velocity.empty() && !frames_[0].velocity[0].isZero(0);
-  results.translational_kT = results.rotational_kT = {kNothing, kNothing};
-  forget(results, velocities);
+  results.translational_kT = results.rotational_kT = {};
+  forget(results, velocities, orientations_);
   for (GroupResults& group : results.groups) {
-    forget(group, velocities);
+    forget(group, velocities, orientations_);
     group.translational_kT = group.rotational_kT = {};
     group.axis_kT = {};
   }
+  if (!orientations_) forget_order(results);
   results.wave_numbers = measured_.options.wave_numbers;
   results.frames = count_;
   return results;

@@ -922,6 +922,42 @@ class Analyze(Trajectories):
             gsd, lammps = self.rows(f"gsd/{file}.csv"), self.rows(f"lammps/{file}.csv")
             numpy.testing.assert_allclose(lammps[column], gsd[column], rtol=1e-9, atol=1e-12, err_msg=column)
 
+    def test_without_orientations(self):
+        """A dump without their columns, a GSD file without orientations of bodies of unknown shape: C2 and S have no
+        value; of spheroids such a file says that they are aligned."""
+        def nothing(name):
+            observables = self.analysis(name)["observables"]
+            for key in ["S", "tau_C2", "t_C2_1overe"]:
+                self.assertEqual(observables[key], {"value": None, "error": None}, key)
+            self.assertEqual(observables["director"]["value"], [None] * 3)
+            for file, column in [("c1", "c1"), ("c2", "c2"), ("order", "S"), ("g_r", "g2")]:
+                self.assertTrue(numpy.isnan(self.rows(f"{name}/{file}.csv")[column]).all(), file)
+            self.assertTrue(numpy.isfinite(self.rows(f"{name}/msd.csv")["msd"]).all())
+
+        self.run_with("out", SMALL, ALL.replace("6", "31"))
+        self.assertEqual(self.hardbody("analyze", "out", "--out", "all").returncode, 0)
+        content = self.bytes_of("out/trajectory.lammpstrj").replace(b"quatw quati quatj quatk", b"c_1 c_2 c_3 c_4")
+        with open(self.path("other.lammpstrj"), "wb") as file:
+            file.write(content)
+        step = repr(float(self.rows("all/order.csv")["t"][1]))
+        result = self.hardbody("analyze", "other.lammpstrj", "--time-step", step, "--out", "lammps")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertRegex(result.stdout, r"S +-\n")
+        nothing("lammps")
+        content = self.bytes_of("out/trajectory.gsd")
+        for name in [b"particles/orientation", b"log/hardbody/time"]:
+            content = content.replace(name, b"X" + name[1:])
+        with open(self.path("aligned.gsd"), "wb") as file:
+            file.write(content)
+        result = self.hardbody("analyze", "aligned.gsd", "--time-step", step, "--out", "aligned")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        numpy.testing.assert_allclose(self.rows("aligned/order.csv")["S"], 1)
+        with open(self.path("points.gsd"), "wb") as file:
+            file.write(content.replace(b"particles/type_shapes", b"Xarticles/type_shapes"))
+        result = self.hardbody("analyze", "points.gsd", "--time-step", step, "--out", "points")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        nothing("points")
+
     def test_fits(self):
         """As the run has done it, from the same lag and at the same q; of a file alone from the lag that is asked for."""
         dense = SMALL.replace("fraction = 0.2", "fraction = 0.4").replace("ratio = 2", "ratio = 3")

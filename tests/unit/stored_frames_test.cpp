@@ -113,6 +113,35 @@ TEST(StoredFrames, WithoutVelocitiesTheirCorrelationsHaveNoValue) {
   }
 }
 
+TEST(StoredFrames, WithoutRotationsWhatIsMadeOfThemHasNoValue) {
+  Flight flight(81);
+  const ed::StoredFramesOptions options = options_of(kBodies);
+  const ed::StoredResults with = ed::analyze_frames(flight.stored, options);
+  for (StoredFrame& frame : flight.stored) frame.rotation.clear();
+  const ed::StoredResults without = ed::analyze_frames(flight.stored, options);
+  for (const ed::Correlations* of :
+       {static_cast<const ed::Correlations*>(&without), static_cast<const ed::Correlations*>(&without.groups[0])}) {
+    for (const ed::LagRow& row : of->lags) {
+      EXPECT_TRUE(std::isnan(row.c1.value));
+      EXPECT_TRUE(std::isnan(row.c2.value));
+    }
+    for (const ed::PairRow& row : of->pairs) EXPECT_TRUE(std::isnan(row.g2.value));
+    EXPECT_TRUE(std::isnan(of->t_C2_1overe.value));
+    EXPECT_TRUE(std::isnan(of->tau_C2.value));
+  }
+  EXPECT_TRUE(std::isnan(without.S.value));
+  EXPECT_TRUE(std::isnan(without.director.axis.x()));
+  EXPECT_TRUE(std::isnan(without.groups[0].S.value));
+  for (const ed::BlockRow& row : without.blocks) EXPECT_TRUE(std::isnan(row.S));
+  ASSERT_EQ(without.lags.size(), with.lags.size());
+  for (std::size_t k = 0; k < with.lags.size(); ++k) {
+    EXPECT_EQ(without.lags[k].msd.value, with.lags[k].msd.value);
+    EXPECT_EQ(without.lags[k].vacf.value, with.lags[k].vacf.value);
+  }
+  ASSERT_EQ(without.pairs.size(), with.pairs.size());
+  for (std::size_t k = 0; k < with.pairs.size(); ++k) EXPECT_EQ(without.pairs[k].g.value, with.pairs[k].g.value);
+}
+
 TEST(StoredFrames, OnlyFramesThatAreEquallyFarApartAreUsed) {
   Flight flight(12);
   for (std::size_t k = 9; k < 12; ++k) flight.stored[k].time += 0.01;

@@ -93,6 +93,8 @@ using BodyShape = std::variant<geom::Ellipsoid, geom::Superellipsoid, CustomShap
 /// @{
 ED_EXPORT double bounding_radius(const BodyShape& shape);
 ED_EXPORT double inscribed_radius(const BodyShape& shape);
+/// Bit for bit: no turn changes where it is.
+ED_EXPORT bool is_sphere(const BodyShape& shape);
 ED_EXPORT double volume(const BodyShape& shape);
 ED_EXPORT geom::Support support(const BodyShape& shape, const Eigen::Vector3d& n);
 /// @}

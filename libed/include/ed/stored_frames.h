@@ -19,7 +19,7 @@ namespace ed {
 struct StoredFrame {
   double time = 0;
   std::vector<Eigen::Vector3d> position;  ///< unwrapped: continuous across the box's faces
-  std::vector<Eigen::Matrix3d> rotation;  ///< body to world
+  std::vector<Eigen::Matrix3d> rotation;  ///< body to world; empty: not known
   std::vector<Eigen::Vector3d> velocity;  ///< empty: not known
 };
 
@@ -46,7 +46,8 @@ struct StoredResults : Results {
 
 /// Averages over frames, and correlations over all pairs of frames that are a lag apart, at about 20 lags a decade.
 /// Errors are standard errors over blocks as long as the longest lag (2 to 16 of them). What frames do not tell is NaN:
-/// collisions, pressure, temperatures, rotational displacements, and with velocities missing their correlations.
+/// collisions, pressure, temperatures, rotational displacements, and with velocities or rotations missing what is made
+/// of them.
 ///
 /// Memory: some 200 bytes a body and frame beside the frames. Throws std::invalid_argument for no frames, numbers of
 /// bodies that differ, a box that is not positive, times that do not rise, a negative lag to fit from.
