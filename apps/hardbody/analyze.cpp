@@ -290,7 +290,7 @@ int analyze(const AnalyzeArguments& arguments) {
   try {
     results = ed::analyze_frames(stored.frames, stored.options);
   } catch (const std::invalid_argument& error) {
-    throw InputError(fmt::format("{}: {}", reader.name(), one_line(error.what())));
+    throw InputError(fmt::format("{}: {}{}", reader.name(), one_line(error.what()), reader.cut_off() ? kCutOff : ""));
   }
   write_files(out, reader.name(), stored, results);
   fmt::print("{}: {} frames of {} bodies, {} of them equally far apart in time and used{}\n", reader.name(),

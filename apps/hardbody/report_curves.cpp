@@ -19,8 +19,24 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kLongestFile = std::size_t{1} << 26;
 
-constexpr std::array kCurveFiles = {kMsdFile, kRotationalMsdFile, kAlpha2File, kVelocityFile,  kC1File,
-                                    kC2File,  kFSelfFile,         kPairsFile,  kStructureFile, kBlocksFile};
+/// A file of observables/ and what the report takes from it.
+struct CurveFile {
+  const char* name;
+  std::array<const char*, 3> columns;  ///< that are in all such files, the abscissa first; nullptr: no more
+};
+
+constexpr CurveFile kCurveFiles[] = {
+    {kMsdFile, {"t", "msd"}},
+    {kRotationalMsdFile, {"t", "rot_msd", "rot_msd_body"}},
+    {kAlpha2File, {"t", "alpha2"}},
+    {kVelocityFile, {"t", "vacf", "wacf"}},
+    {kC1File, {"t", "c1"}},
+    {kC2File, {"t", "c2"}},
+    {kFSelfFile, {"t"}},
+    {kPairsFile, {"r", "g", "g2"}},
+    {kStructureFile, {"q", "S"}},
+    {kBlocksFile, {"end", "Z", "S"}},
+};
 
 std::vector<std::string_view> split(std::string_view line, char separator) {
   std::vector<std::string_view> parts;
@@ -101,10 +117,16 @@ Curves parse_curves(std::string_view text, const std::string& name, const std::s
 
 std::vector<Curves> read_curves(const fs::path& directory) {
   std::vector<Curves> all;
-  for (const char* name : kCurveFiles) {
-    const fs::path path = directory / name;
+  for (const CurveFile& file : kCurveFiles) {
+    const fs::path path = directory / file.name;
     if (!fs::exists(path)) continue;
     all.push_back(parse_curves(read_file(path, kLongestFile), path.stem().string(), path.string()));
+    for (const char* column : file.columns) {
+      if (column != nullptr && all.back().find(column) == nullptr) {
+        throw InputError(
+            fmt::format("{}:1: has no column {}; accepted: a CSV file that a run has written", path.string(), column));
+      }
+    }
   }
   return all;
 }

@@ -22,7 +22,7 @@ struct Headline {
   std::string name;     ///< in words
   std::string unit;     ///< empty: a pure number
   std::string meaning;  ///< its definition
-  double value;         ///< NaN: the run was too short for it
+  double value;         ///< NaN: the run was too short for it, or a decay too fast to be fitted
   double error;         ///< standard
 };
 

@@ -93,7 +93,9 @@ std::string remarks(const RunReport& run) {
 }
 
 std::string cell(const Headline& headline) {
-  return std::isfinite(headline.value) ? html_text(headline_text(headline)) : "too short";
+  if (std::isfinite(headline.value)) return html_text(headline_text(headline));
+  const bool fit = headline.key.starts_with("tau_") || headline.key.starts_with("beta_");
+  return fit ? "no fit" : "too short";
 }
 
 const Headline* find(const std::vector<Headline>& list, const std::string& key) {

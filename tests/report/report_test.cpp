@@ -10,12 +10,15 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <limits>
 #include <string>
 
 namespace hardbody {
 namespace {
 
+namespace fs = std::filesystem;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
@@ -49,6 +52,24 @@ TEST(ReportCurves, NamesTheLineThatIsWrong) {
   EXPECT_THAT(message("a,b\n1,2\n1\n"), HasSubstr("x.csv:3: has 1 fields; accepted: 2"));
   EXPECT_THAT(message("a\n1 \n"), HasSubstr("x.csv:2"));
   EXPECT_THAT(message(""), HasSubstr("x.csv: has no header line of columns"));
+}
+
+TEST(ReportCurves, NamesTheColumnThatIsMissing) {
+  const fs::path directory = fs::path(testing::TempDir()) / "report_curves_test";
+  fs::create_directories(directory / "observables");
+  const auto message = [&](const char* text) -> std::string {
+    std::ofstream(directory / "observables/g_r.csv") << text;
+    try {
+      (void)read_curves(directory);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(message("r [l],g [1],g_error [1],g2 [1],g2_error [1]\n1,1,,1,\n"), "");
+  EXPECT_THAT(message("r [l],pairs [1],g_error [1],g2 [1],g2_error [1]\n1,1,,1,\n"),
+              HasSubstr("g_r.csv:1: has no column g; accepted: "));
+  fs::remove_all(directory);
 }
 
 /// RFC 4648, section 10.

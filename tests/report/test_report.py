@@ -505,6 +505,8 @@ class OtherRuns(Case):
         self.report(directory)
         browser = self.open(directory / "report.html")
         self.assertEqual(browser.run("""return document.querySelector('[data-key="D_trans"] dd .none').textContent"""), "too short")
+        self.assertIsNone(json.loads((directory / "summary.json").read_text())["observables"]["tau_C2"]["value"])
+        self.assertEqual(browser.run("""return document.querySelector('[data-key="tau_C2"] dd .none').textContent"""), "no fit")
         self.assertNotIn("NaN", browser.run("return document.body.textContent.split('window.')[0]"))
 
     def test_unfinished(self):

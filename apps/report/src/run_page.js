@@ -16,9 +16,16 @@ export function remarks(run, brief = false) {
     h('b', {}, r.label), ' ', r.kind === 'good' || (brief && r.kind !== 'bad') ? null : rich(r.text))));
 }
 
-export function number(line, missing = 'too short') {
+const kTooShort = { text: 'too short', why: 'The run is too short for this value' };
+const kNoFit = { text: 'no fit', why: 'Too little of the decay is left to fit once motion is no longer ballistic, or the run is too short' };
+
+/** `missing`: what stands for a value of a run that has not been finished. */
+export function number(line, missing) {
   const text = line ? estimate(line.value, line.error) : null;
-  if (!text) return h('span', { class: 'none', title: 'The run is too short for this value' }, missing);
+  if (!text) {
+    const absent = /^(tau|beta)_/.test(line?.key) ? kNoFit : kTooShort;
+    return h('span', { class: 'none', title: absent.why }, missing ?? absent.text);
+  }
   return h('span', { class: 'number' }, h('b', {}, text.value), text.error ? h('span', { class: 'error' }, ` ± ${text.error}`) : null);
 }
 
@@ -32,7 +39,7 @@ export function sheet(headlines, missing) {
 const kFirst = ['Z', 'D_trans', 'D_rot', 'D_rot_body', 't_C2_1overe', 't_F_1overe', 'S', 'collision_rate', 'kT_trans', 'kT_rot'];
 
 function resultsCard(run) {
-  const missing = run.headlines.some((line) => line.value !== null) ? 'too short' : 'none yet';
+  const missing = run.headlines.some((line) => line.value !== null) ? undefined : 'none yet';
   const first = kFirst.map((key) => run.headlines.find((line) => line.key === key)).filter(Boolean);
   const rest = run.headlines.filter((line) => !kFirst.includes(line.key));
   if (!run.headlines.length) {
@@ -170,7 +177,7 @@ function comparison(runs) {
     h('thead', {}, h('tr', {}, h('th', { scope: 'col' }, 'Quantity'), runs.map((run, k) => h('th', { scope: 'col' }, swatch(k), run.name)), h('th', { scope: 'col' }, 'Unit'))),
     h('tbody', {}, keys.map((line) => h('tr', { 'data-key': line.key, title: line.meaning },
       h('th', { scope: 'row' }, symbol(line.symbol), h('span', { class: 'name' }, rich(line.name))),
-      runs.map((run) => h('td', {}, number(run.headlines.find((own) => own.key === line.key), run.headlines.length ? 'too short' : 'none yet'))),
+      runs.map((run) => h('td', {}, number(run.headlines.find((own) => own.key === line.key), run.headlines.length ? undefined : 'none yet'))),
       h('td', { class: 'unit' }, line.unit))))));
 }
 

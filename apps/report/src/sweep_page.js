@@ -232,7 +232,7 @@ class SweepPage {
     if (point.equilibrated === 'false') notes.push(h('p', { class: 'notice' }, 'Not shown to be equilibrated.'));
     this.pointPlace.replaceChildren(h('article', { class: 'card results' },
       h('header', {}, h('div', {}, h('h3', {}, title || 'The point'), h('p', { class: 'caption' }, point.directory))), ...notes,
-      sheet(headlines.slice(0, 12), point.status === 'done' ? 'too short' : 'none')));
+      sheet(headlines.slice(0, 12), point.status === 'done' ? undefined : 'none')));
     this.showDetail(point, run);
     this.shown = index;
     this.markChosen(point);
@@ -303,7 +303,7 @@ class SweepPage {
       const open = () => { this.showPoint(k); document.getElementById('results').scrollIntoView(); };
       const cells = this.varied.map((axis, at) => h(at ? 'td' : 'th', at ? {} : { scope: 'row' },
         at ? this.axes[axis].text(point.keys[axis]) : h('button', { type: 'button', class: 'link', onclick: open }, this.axes[axis].text(point.keys[axis]))));
-      return h('tr', {}, cells, point.values.map(([value, error]) => h('td', {}, number({ value, error }, point.status === 'done' ? 'too short' : ''))),
+      return h('tr', {}, cells, point.values.map(([value, error], at) => h('td', {}, number({ key: sweep.observables[at].key, value, error }, point.status === 'done' ? undefined : ''))),
         h('td', { title: point.message }, point.status));
     }));
   }
