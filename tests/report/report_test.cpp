@@ -107,8 +107,8 @@ TEST(ReportView, HasEveryBodyOfEveryFrame) {
   EXPECT_THAT(view.shape_of, ElementsAre(0, 1, 0, 1, 0, 1, 0, 1, 0, 1));
   EXPECT_EQ(view.frames[2].time, 2);
   ASSERT_EQ(view.frames[0].positions.size(), 30U);
-  // The image in the box about the origin.
-  EXPECT_FLOAT_EQ(view.frames[0].positions[3 * 7], -3);
+  // The image of body 7 in the box about the origin.
+  EXPECT_FLOAT_EQ(view.frames[0].positions[21], -3);
   EXPECT_FLOAT_EQ(view.frames[0].positions[1], 2);
   EXPECT_FLOAT_EQ(view.frames[0].orientations[0], 1);
 }
