@@ -1,43 +1,18 @@
-#include <geom/internal/perram_wertheim.h>
+#include "ellipsoid_pair.h"
 
 #include <geom/distance.h>
+#include <geom/internal/perram_wertheim.h>
 #include <geom/internal/uniaxial.h>
-
-#include <Eigen/LU>
 
 #include <cmath>
 
 namespace geom {
 namespace {
 
-using internal::CurvedSupport;
+using internal::EllipsoidPair;
 using internal::Evaluation;
-using internal::GeneralPair;
 using internal::PairScale;
 using internal::Spheroid;
-
-/// An ellipsoid turned into the world frame: h = |L n| = sqrt(n.Q n), L = diag(a) R^T, Q = L^T L.
-struct WorldEllipsoid {
-  Eigen::Matrix3d L;
-  Eigen::Matrix3d Q;
-
-  WorldEllipsoid(const Ellipsoid& shape, const Pose& X)
-      : L(shape.semi_axes().asDiagonal() * X.rotation().transpose()), Q(L.transpose() * L) {}
-
-  /// By L, which loses no digits for flat bodies, as n.Q n does.
-  Support support(const Eigen::Vector3d& n) const {
-    const Eigen::Vector3d m = L * n;
-    const double h = m.norm();
-    return {h, L.transpose() * m / h};
-  }
-  CurvedSupport operator()(const Eigen::Vector3d& n) const {
-    const Eigen::Vector3d q = Q * n;
-    const double h = std::sqrt(n.dot(q));
-    const double inv_h = 1 / h;
-    const Eigen::Vector3d s = inv_h * q;
-    return {h, s, inv_h * (Q - s * s.transpose())};
-  }
-};
 
 /// Two bodies of revolution, in the form that solve_dual wants.
 struct UniaxialPair {
@@ -58,8 +33,6 @@ Spheroid spheroid(const Ellipsoid& shape, int axis) {
   return {shape.semi_axes()[axis], shape.semi_axes()[axis == 0 ? 1 : 0], shape.min_curvature_radius()};
 }
 
-using EllipsoidPair = GeneralPair<WorldEllipsoid, WorldEllipsoid>;
-
 DistanceResult uniaxial_distance(const Ellipsoid& a, const Pose& X_WA, int axis_a, const Ellipsoid& b, const Pose& X_WB,
                                  int axis_b, const Eigen::Vector3d& r, const PairScale& scale,
                                  const DistanceOptions& options) {
@@ -67,7 +40,7 @@ DistanceResult uniaxial_distance(const Ellipsoid& a, const Pose& X_WA, int axis_
   const Spheroid s_b = spheroid(b, axis_b);
   const Eigen::Vector3d u_a = X_WA.rotation().col(axis_a);
   const Eigen::Vector3d u_b = X_WB.rotation().col(axis_b);
-  const auto cold = [&] { return internal::cold_normal(s_a, s_b, r, u_a, u_b); };
+  const auto cold = [&] { return internal::start_normal(s_a, s_b, r, u_a, u_b); };
   const auto shares = [&](const Eigen::Vector3d& point_a, const Eigen::Vector3d& point_b) {
     return internal::share_a_point(a, X_WA, b, X_WB, point_a, point_b);
   };
@@ -76,14 +49,12 @@ DistanceResult uniaxial_distance(const Ellipsoid& a, const Pose& X_WA, int axis_
 
 DistanceResult general_distance(const Ellipsoid& a, const Pose& X_WA, const Ellipsoid& b, const Pose& X_WB,
                                 const Eigen::Vector3d& r, const PairScale& scale, const DistanceOptions& options) {
-  const WorldEllipsoid w_a(a, X_WA);
-  const WorldEllipsoid w_b(b, X_WB);
-  const auto cold = [&] { return internal::unit_or_x((w_a.Q + w_b.Q).inverse() * r); };
+  const EllipsoidPair pair(a, X_WA, b, X_WB, r);
+  const auto cold = [&] { return pair.start_normal(); };
   const auto shares = [&](const Eigen::Vector3d& point_a, const Eigen::Vector3d& point_b) {
     return internal::share_a_point(a, X_WA, b, X_WB, point_a, point_b);
   };
-  return internal::solve_dual(EllipsoidPair(w_a, w_b, r, kLeastEigenvalue * scale.certified_depth), cold, scale,
-                              X_WA.position(), options, shares);
+  return internal::solve_dual(pair, cold, scale, X_WA.position(), options, shares);
 }
 
 /// Newton with Armijo's rule. g never falls: from a normal with g > 0 the ascent stays where M + g I is positive
@@ -121,9 +92,7 @@ DistanceResult armijo_ascent(const EllipsoidPair& pair, Eigen::Vector3d n, const
 
 DistanceResult deep_distance(const Ellipsoid& a, const Pose& X_WA, const Ellipsoid& b, const Pose& X_WB,
                              const Eigen::Vector3d& r, const PairScale& scale, const DistanceResult& declined) {
-  const EllipsoidPair pair(WorldEllipsoid(a, X_WA), WorldEllipsoid(b, X_WB), r,
-                           kLeastEigenvalue * scale.certified_depth);
-  return internal::search_sphere(pair, scale, internal::unit_or_x(r), X_WA.position(), declined.iterations);
+  return internal::search_sphere(EllipsoidPair(a, X_WA, b, X_WB, r), scale, internal::unit_or_x(r), X_WA.position(), declined.iterations);
 }
 
 }  // namespace
@@ -134,18 +103,16 @@ DistanceResult perram_wertheim_distance(const Ellipsoid& a, const Pose& X_WA, co
                                         int iterations_before) {
   DistanceResult declined;
   declined.iterations = iterations_before;
-  const WorldEllipsoid w_a(a, X_WA);
-  const WorldEllipsoid w_b(b, X_WB);
   const Eigen::Vector3d r = X_WB.position() - X_WA.position();
-  const ContactFunction contact = perram_wertheim(w_a.Q, w_b.Q, r);
+  const EllipsoidPair pair(a, X_WA, b, X_WB, r);
+  const ContactFunction contact = perram_wertheim(pair.quadric(0), pair.quadric(1), r);
   const double rho = a.min_curvature_radius() + b.min_curvature_radius();
   // Shrunk by sqrt F the bodies touch, so that the depth is at least this. F itself is no test: its rounding error is
   // that of a matrix inverse, and F <= 1 is computed for bodies that are apart by less.
   const double least_depth = (1 - std::sqrt(contact.F)) * (a.inscribed_radius() + b.inscribed_radius());
   if (!(least_depth <= rho)) return declined;
   const PairScale scale{r.norm() + a.bounding_radius() + b.bounding_radius(), rho};
-  return armijo_ascent(EllipsoidPair(w_a, w_b, r, kLeastEigenvalue * rho), contact.normal, scale, X_WA.position(),
-                       declined);
+  return armijo_ascent(pair, contact.normal, scale, X_WA.position(), declined);
 }
 
 }  // namespace internal

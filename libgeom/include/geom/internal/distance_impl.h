@@ -55,7 +55,7 @@ class GeneralPair {
     const Eigen::Vector3d y = r_ - s_a.point + s_b.point - out.g * n;
     const TangentBasis basis(n);
     const auto& [e, f] = basis;
-    TangentForm m = curvature(basis, s_a.hessian + s_b.hessian, out.g);
+    TangentForm m = TangentForm::of(s_a.hessian + s_b.hessian, out.g, basis);
     const double smallest = m.smallest_eigenvalue();
     // Only a matrix that is not definite is lifted, by no more than it needs: a lifted one converges linearly.
     if (smallest < least_) [[unlikely]] {
@@ -86,16 +86,10 @@ class GeneralPair {
     const CurvedSupport s_b = b_(-n);
     const TangentBasis basis(n);
     const double g = r_.dot(n) - s_a.height - s_b.height;
-    return curvature(basis, s_a.hessian + s_b.hessian, g).direction_below(-rounding, basis);
+    return TangentForm::of(s_a.hessian + s_b.hessian, g, basis).direction_below(-rounding, basis);
   }
 
  private:
-  /// M + g I in the basis: minus the second derivatives of g along the sphere.
-  static TangentForm curvature(const TangentBasis& basis, const Eigen::Matrix3d& H, double g) {
-    const Eigen::Vector3d He = H * basis.e;
-    return {basis.e.dot(He) + g, basis.f.dot(He), basis.f.dot(H * basis.f) + g};
-  }
-
   SupportA a_;
   SupportB b_;
   Eigen::Vector3d r_;

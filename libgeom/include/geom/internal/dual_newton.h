@@ -41,6 +41,20 @@ inline void set_step(Evaluation& e, const Eigen::Vector3d& delta, double delta2)
   }
 }
 
+/// The shift `sigma` of Newton's matrix of two ellipsoids, whose eigenvalues sigma + t1/2 +- sqrt(t1^2/4 - D) should be
+/// positive, raised where they are not.
+///
+/// By theory M >= rho = rhoA + rhoB, so that M + g I is definite while g > -rho; deeper it must be made so. Only a
+/// matrix that is not definite is lifted: a lifted one converges linearly.
+inline double lifted(double g, double rho, double sigma, double t1, double D) {
+  const double floor = kLeastEigenvalue * rho;
+  if (!definite_above(floor, sigma, t1, D)) [[unlikely]] {
+    const double smallest = sigma + 0.5 * t1 - std::sqrt(std::max(0.0, 0.25 * t1 * t1 - D));
+    if (smallest < floor) sigma += (g > -rho ? floor : std::max(0.5 * rho, -smallest)) - smallest;
+  }
+  return sigma;
+}
+
 /// 1 / sqrt(1 + s).
 inline double inverse_sqrt_1p(double s) {
   if (std::abs(s) < kInverseSqrtSeries) return inverse_sqrt_series(s);
@@ -80,6 +94,12 @@ struct TangentBasis {
 /// A symmetric 2 x 2 matrix in a TangentBasis.
 struct TangentForm {
   double ee, ef, ff;
+
+  /// That of H + shift I.
+  static TangentForm of(const Eigen::Matrix3d& H, double shift, const TangentBasis& basis) {
+    const Eigen::Vector3d He = H * basis.e;
+    return {basis.e.dot(He) + shift, basis.f.dot(He), basis.f.dot(H * basis.f) + shift};
+  }
 
   double smallest_eigenvalue() const {
     const double half_difference = 0.5 * (ee - ff);

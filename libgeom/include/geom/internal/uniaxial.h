@@ -64,17 +64,7 @@ struct UniaxialEvaluation : Evaluation {
                                                                const Eigen::Vector3d& r, const Eigen::Vector3d& u_a,
                                                                const Eigen::Vector3d& u_b, const Eigen::Vector3d& n,
                                                                const UniaxialGap& gap) {
-  // By theory M >= rho = rhoA + rhoB, so that M + g I is definite while g > -rho; deeper it must be made so.
-  const double rho = A.rho + B.rho;
-  const double floor = kLeastEigenvalue * rho;
-  const auto lift = [&](double sigma, double t1, double D) {
-    if (!definite_above(floor, sigma, t1, D)) [[unlikely]] {
-      const double smallest = sigma + 0.5 * t1 - std::sqrt(std::max(0.0, 0.25 * t1 * t1 - D));
-      // Only a matrix that is not definite is lifted: a lifted one converges linearly.
-      if (smallest < floor) sigma += (gap.g > -rho ? floor : std::max(0.5 * rho, -smallest)) - smallest;
-    }
-    return sigma;
-  };
+  const auto lift = [&](double sigma, double t1, double D) { return lifted(gap.g, A.rho + B.rho, sigma, t1, D); };
   const auto newton = uniaxial_step_of(A, B, r, u_a, u_b, n, gap, lift);
   UniaxialEvaluation out;
   out.g = gap.g;
@@ -122,6 +112,34 @@ inline Eigen::Vector3d support_point(const Spheroid& S, const Eigen::Vector3d& u
 inline Eigen::Vector3d cold_normal(const Spheroid& A, const Spheroid& B, const Eigen::Vector3d& r,
                                    const Eigen::Vector3d& u_a, const Eigen::Vector3d& u_b) {
   const Eigen::Vector3d n = cold_direction(A, B, r, u_a, u_b);
+  const double length2 = n.squaredNorm();
+  return length2 > 0 ? Eigen::Vector3d((1 / std::sqrt(length2)) * n) : u_a;
+}
+
+/// Where a query without a start begins: (QA / hA + QB / hB + g I)^-1 r on the unit sphere, with hA, hB and g, if that is
+/// positive, those of the line of centres; r is g n + QA n / hA + QB n / hB at the answer. For centres that coincide u_a.
+///
+/// Between bodies apart by their size that is one evaluation nearer to the answer than cold_normal, which is made for
+/// bodies that touch, and between those never further from it.
+inline Eigen::Vector3d start_normal(const Spheroid& A, const Spheroid& B, const Eigen::Vector3d& r,
+                                    const Eigen::Vector3d& u_a, const Eigen::Vector3d& u_b) {
+  // All for n = r, of any length: numbers of the line of centres are divided by |r|.
+  const double r2 = r.squaredNorm();
+  const Both along(r.dot(u_a), r.dot(u_b));
+  const Both c(A.c, B.c), b2(A.b2, B.b2);
+  const Both h2 = b2 * r2 + c * (along * along);
+  const Both h = h2.sqrt();
+  const Both inv_h = h * (1 / h2);  // beside the square root, not behind it
+  const double g = std::max(0.0, (r2 - h[0]) - h[1]) / r2;
+  const Both p = c * inv_h;
+  // sigma I + pA uA uA^T + pB uB uB^T, inverted by Woodbury's formula as in cold_direction.
+  const double sigma = (b2 * inv_h).sum() + g;
+  const double k = u_a.dot(u_b);
+  const double of_a = sigma + p[0], of_b = sigma + p[1];
+  const double det = of_a * of_b - (p[0] * p[1]) * (k * k);
+  const double x_a = of_b * along[0] - (p[1] * k) * along[1];
+  const double x_b = of_a * along[1] - (p[0] * k) * along[0];
+  const Eigen::Vector3d n = det * r - (p[0] * x_a) * u_a - (p[1] * x_b) * u_b;
   const double length2 = n.squaredNorm();
   return length2 > 0 ? Eigen::Vector3d((1 / std::sqrt(length2)) * n) : u_a;
 }
