@@ -74,17 +74,17 @@ void advance(const UniaxialInertia& inertia, double t, AxisMotion& motion, BodyF
   }
   x = sc.cos * x + sc.sin * l.cross(x) + ((1 - sc.cos) * l.dot(x)) * l;
 
-  const Vector3d u_new = (motion.e0 + sc.cos * motion.e1 + sc.sin * motion.e2).normalized();
+  const Vector3d u_new = renormalized(motion.e0 + sc.cos * motion.e1 + sc.sin * motion.e2);
   const Vector3d e2_new = sc.cos * motion.e2 - sc.sin * motion.e1;
   if (inertia.spins) {
     // omega = u x du/dt; taken across u again so that rounding does not feed the spin.
     set_rotation(inertia, u_new, motion.rate * u_new.cross(e2_new), motion, frame);
   } else {
     motion.e1 = u_new;
-    motion.e2 = (e2_new - u_new.dot(e2_new) * u_new).normalized();
+    motion.e2 = renormalized(e2_new - u_new.dot(e2_new) * u_new);
     frame.momentum_dir = u_new.cross(motion.e2);
   }
-  frame.x_axis = (x - u_new.dot(x) * u_new).normalized();
+  frame.x_axis = renormalized(x - u_new.dot(x) * u_new);
   motion.position += dt * motion.velocity;
   motion.time = t;
 }

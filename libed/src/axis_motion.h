@@ -72,6 +72,14 @@ void fields(Archive& archive, T& frame) {
          "an orientation is not finite");
 }
 
+/// v, which is a unit vector but for rounding, and squares of what it is off, with its length corrected.
+///
+/// Not v / sqrt(|v|^2): 1 + 2^-52 has the root 1, so that vectors would stay too long, but not too short, and what they
+/// turn would gain energy with every collision.
+inline Eigen::Vector3d renormalized(const Eigen::Vector3d& v) {
+  return v + (0.5 * (1 - v.squaredNorm())) * v;
+}
+
 /// The part of omega across the axis; its length is constant during flight.
 inline Eigen::Vector3d omega_across(const AxisMotion& m) {
   return m.rate * (m.e0 + m.e1).cross(m.e2);

@@ -100,9 +100,9 @@ inline bool are_axes(const std::array<int, 3>& numbers) {
 /// u and x, unit and orthogonal to 1e-8 already, made so to rounding (Gram and Schmidt; one step of Newton's method for
 /// the lengths), and u x x, or its opposite if orientation is -1.
 [[gnu::always_inline]] inline TopAxes polished(Eigen::Vector3d u, Eigen::Vector3d x, double orientation) {
-  u *= 1.5 - 0.5 * inner(u, u);
+  u += (0.5 * (1 - inner(u, u))) * u;
   x -= inner(u, x) * u;
-  x *= 1.5 - 0.5 * inner(x, x);
+  x += (0.5 * (1 - inner(x, x))) * x;
   return {u, x, orientation * u.cross(x)};
 }
 

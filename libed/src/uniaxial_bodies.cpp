@@ -114,6 +114,9 @@ Finding UniaxialBodies::find_contact(int i, int j, const Vector3d& r, double now
   return certified_contact(gauge, now, end, max_evaluations, n, count);
 }
 
+/// Of the square of a rate that a collision may take without what rounding has left of it being scaled up.
+constexpr double kMostLost = 1e-4;
+
 double UniaxialBodies::collide(int i, int j, const Vector3d& /*r*/, const Vector3d& n, double /*now*/) {
   const auto contact_body = [this](int body, const Vector3d& outward) -> ContactBody {
     const AxisMotion& m = entries_[at(body)].motion;
@@ -131,8 +134,15 @@ double UniaxialBodies::collide(int i, int j, const Vector3d& /*r*/, const Vector
     AxisMotion& m = entries_[at(body)].motion;
     m.velocity = state.velocity;
     const Vector3d u = m.axis();
+    const Vector3d before = omega_across(m);
+    const double rate2 = m.rate * m.rate;
     const Vector3d omega = state.angular_velocity - state.angular_velocity.dot(u) * u;
-    set_rotation(kind_of(body).inertia, u, omega, m, frames_[at(body)]);
+    const UniaxialInertia& inertia = kind_of(body).inertia;
+    set_rotation(inertia, u, omega, m, frames_[at(body)]);
+    // e2 and u are unit vectors but for rounding that has a sign, and omega is made of them: |omega| instead of the
+    // rate would gain energy with every collision. What they lack is given back, where it is small against the rest.
+    const double omega2 = omega.squaredNorm();
+    if (!inertia.spins && omega2 > kMostLost * rate2) m.rate = std::sqrt(omega2 + (rate2 - before.squaredNorm()));
   }
   return J;
 }

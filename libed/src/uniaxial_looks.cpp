@@ -2,8 +2,12 @@
 
 #include "find_kernels.h"
 
+#include <geom/internal/lanes.h>
+
+#include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstring>
 
 namespace ed::internal {
 namespace {
@@ -16,14 +20,33 @@ void put(const geom::internal::Spheroid& shape, LookRow* rows, int lane) {
   rows[LookBody::turning_limit][lane] = shape.turning_limit;
 }
 
-void put(const AxisMotion& motion, bool spins, LookRow* rows, int lane) {
-  put_vector(motion.position, rows + LookBody::position, lane);
-  put_vector(motion.velocity, rows + LookBody::velocity, lane);
-  put_vector(motion.e1, rows + LookBody::e1, lane);
-  put_vector(motion.e2, rows + LookBody::e2, lane);
-  rows[LookBody::rate][lane] = motion.rate;
-  rows[LookBody::time][lane] = motion.time;
-  if (spins) put_vector(motion.e0, rows + LookBody::e0, lane);
+/// The rows of a body from `position` on are the members of AxisMotion, number by number.
+constexpr int kFirstRow = LookBody::position;
+constexpr int kNumbers = LookBody::e0 - kFirstRow;  ///< of bodies without spin
+static_assert(offsetof(AxisMotion, velocity) == sizeof(double) * (LookBody::velocity - kFirstRow) &&
+              offsetof(AxisMotion, e1) == sizeof(double) * (LookBody::e1 - kFirstRow) &&
+              offsetof(AxisMotion, e2) == sizeof(double) * (LookBody::e2 - kFirstRow) &&
+              offsetof(AxisMotion, rate) == sizeof(double) * (LookBody::rate - kFirstRow) &&
+              offsetof(AxisMotion, time) == sizeof(double) * (LookBody::time - kFirstRow) &&
+              offsetof(AxisMotion, e0) == sizeof(double) * kNumbers && kNumbers % 2 == 0);
+
+/// Two bodies of lanes beside each other, two numbers of each at a time: half as many loads and stores.
+void put(const AxisMotion& first, const AxisMotion& second, bool spins, LookRow* rows, int lane) {
+  using Two = geom::internal::Lanes;
+  const auto* const of_first = reinterpret_cast<const char*>(&first);
+  const auto* const of_second = reinterpret_cast<const char*>(&second);
+  for (int k = 0; k < kNumbers; k += 2) {
+    Two x, y;
+    std::memcpy(&x, of_first + sizeof(double) * k, sizeof x);
+    std::memcpy(&y, of_second + sizeof(double) * k, sizeof y);
+    const Two here{x[0], y[0]};
+    const Two next{x[1], y[1]};
+    std::memcpy(rows[kFirstRow + k] + lane, &here, sizeof here);
+    std::memcpy(rows[kFirstRow + k + 1] + lane, &next, sizeof next);
+  }
+  if (!spins) return;
+  put_vector(first.e0, rows + LookBody::e0, lane);
+  put_vector(second.e0, rows + LookBody::e0, lane + 1);
 }
 
 void put(const UniaxialKind& a, const UniaxialKind& b, LookInput& in, int lane) {
@@ -42,13 +65,19 @@ UniaxialLooks::UniaxialLooks(const UniaxialBodies& bodies, const UniaxialKernels
   for (int lane = 0; lane < kBlockLooks; ++lane) internal::put(bodies.kinds()[0], bodies.kinds()[0], in_, lane);
 }
 
-void UniaxialLooks::put(const UniaxialBodies& bodies, const Look& look, int lane) {
-  const Pair& pair = *look.pair;
-  if (!one_kind_) internal::put(bodies.kind_of(pair.i), bodies.kind_of(pair.j), in_, lane);
-  internal::put(bodies.axis_motion(pair.i), spins_, in_.rows + LookInput::body_a, lane);
-  internal::put(bodies.axis_motion(pair.j), spins_, in_.rows + LookInput::body_b, lane);
-  in_.rows[LookInput::end][lane] = look.end;
-  put_vector(pair.normal, in_.rows + LookInput::normal, lane);
+void UniaxialLooks::put(const UniaxialBodies& bodies, const Look& first, const Look& second, int lane) {
+  const Pair& one = *first.pair;
+  const Pair& other = *second.pair;
+  if (!one_kind_) {
+    internal::put(bodies.kind_of(one.i), bodies.kind_of(one.j), in_, lane);
+    internal::put(bodies.kind_of(other.i), bodies.kind_of(other.j), in_, lane + 1);
+  }
+  internal::put(bodies.axis_motion(one.i), bodies.axis_motion(other.i), spins_, in_.rows + LookInput::body_a, lane);
+  internal::put(bodies.axis_motion(one.j), bodies.axis_motion(other.j), spins_, in_.rows + LookInput::body_b, lane);
+  in_.rows[LookInput::end][lane] = first.end;
+  in_.rows[LookInput::end][lane + 1] = second.end;
+  put_vector(one.normal, in_.rows + LookInput::normal, lane);
+  put_vector(other.normal, in_.rows + LookInput::normal, lane + 1);
 }
 
 void UniaxialLooks::read(int lane, Look& look, FinderCounters& count) const {
@@ -71,18 +100,21 @@ void UniaxialLooks::take(const UniaxialBodies& bodies, double now, double box, s
   in_.now = now;
   in_.box = box;
   std::array<Look*, kBlockLooks> look_of;
+  const auto look_in = [&](int lane) -> Look& { return *look_of[static_cast<std::size_t>(lane)]; };
   for (std::size_t next = 0; next < looks.size();) {
     int lanes = 0;
     for (; next < looks.size() && lanes < kBlockLooks; ++next) {
       if (looks[next].pair->normal.isZero(0)) continue;
-      put(bodies, looks[next], lanes);
       look_of[static_cast<std::size_t>(lanes++)] = &looks[next];
     }
     if (lanes < kFewestLooks) return;
-    const Look& last = *look_of[static_cast<std::size_t>(lanes - 1)];
-    for (int lane = lanes; lane % kLongestVector != 0; ++lane) put(bodies, last, lane);
+    const int last = lanes - 1;
+    const int filled = (lanes + kLongestVector - 1) / kLongestVector * kLongestVector;
+    for (int lane = 0; lane < filled; lane += 2) {
+      put(bodies, look_in(std::min(lane, last)), look_in(std::min(lane + 1, last)), lane);
+    }
     kernel_(in_, lanes, out_);
-    for (int lane = 0; lane < lanes; ++lane) read(lane, *look_of[static_cast<std::size_t>(lane)], count);
+    for (int lane = 0; lane < lanes; ++lane) read(lane, look_in(lane), count);
   }
 }
 

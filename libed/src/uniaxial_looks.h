@@ -19,7 +19,8 @@ class UniaxialLooks final : public FirstLooks<UniaxialBodies> {
             FinderCounters& count) override;
 
  private:
-  void put(const UniaxialBodies& bodies, const Look& look, int lane);
+  /// Into `lane` and the next one.
+  void put(const UniaxialBodies& bodies, const Look& first, const Look& second, int lane);
   void read(int lane, Look& look, FinderCounters& count) const;
 
   LookKernel* kernel_;
