@@ -15,8 +15,7 @@ double collide(ContactBody& a, ContactBody& b, const Eigen::Vector3d& normal) {
   const Eigen::Vector3d torque_b = b.arm.cross(normal);
   const Eigen::Vector3d turn_a = a.inverse_inertia * torque_a;
   const Eigen::Vector3d turn_b = b.inverse_inertia * torque_b;
-  const double inverse_effective_mass =
-      a.inverse_mass + b.inverse_mass + torque_a.dot(turn_a) + torque_b.dot(turn_b);
+  const double inverse_effective_mass = a.inverse_mass + b.inverse_mass + torque_a.dot(turn_a) + torque_b.dot(turn_b);
   const auto push = [&](double J) {
     a.velocity -= (J * a.inverse_mass) * normal;
     b.velocity += (J * b.inverse_mass) * normal;

@@ -30,8 +30,8 @@ namespace {
 constexpr std::uint32_t kStateFormat = 5;
 
 /// Work of a stretch of the run in units of 50 ns, from counters alone so that it is the same on every machine. The
-/// weights are fitted to the times of runs of three states, X0 = 1/3, 2 and 3, with envelopes from 0.6 to 2 times as thick
-/// as the best: they explain them to 2 %, one by one and in vectors alike.
+/// weights are fitted to the times of runs of three states, X0 = 1/3, 2 and 3, with envelopes from 0.6 to 2 times as
+/// thick as the best: they explain them to 2 %, one by one and in vectors alike.
 double work(const Counters& from, const Counters& to) {
   const auto difference = [](std::uint64_t a, std::uint64_t b) { return static_cast<double>(b - a); };
   return 0.2 * difference(from.kernel_calls, to.kernel_calls) + 1.2 * difference(from.predictions, to.predictions) +

@@ -1,7 +1,7 @@
 #pragma once
 
-/// Two ellipsoids with any semi-axes for the dual Newton (geom/internal/dual_newton.h): both bodies at once, A in lane 0
-/// and B in lane 1, in the world frame.
+/// Two ellipsoids with any semi-axes for the dual Newton (geom/internal/dual_newton.h): both bodies at once, A in lane
+/// 0 and B in lane 1, in the world frame.
 ///
 /// With U = diag(a) R^T and Q = U^T U = R diag(a^2) R^T,
 ///
@@ -109,7 +109,8 @@ class EllipsoidPair {
     Real xx, yy, zz, yz, xz, xy;
 
     Real times(const Eigen::Vector3d& n, const Eigen::Vector3d& m) const {
-      return (xx * n.x() + (xy * n.y() + xz * n.z())) * m.x() + ((xy * n.x() + (yy * n.y() + yz * n.z())) * m.y() + (xz * n.x() + (yz * n.y() + zz * n.z())) * m.z());
+      return (xx * n.x() + (xy * n.y() + xz * n.z())) * m.x() +
+             ((xy * n.x() + (yy * n.y() + yz * n.z())) * m.y() + (xz * n.x() + (yz * n.y() + zz * n.z())) * m.z());
     }
     Symmetric<double> lane(int k) const { return {xx[k], yy[k], zz[k], yz[k], xz[k], xy[k]}; }
     Eigen::Matrix3d matrix() const {

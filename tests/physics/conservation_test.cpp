@@ -101,15 +101,15 @@ TEST_P(EnergyDrift, IsFarBelowAUnitInTheLastPlaceForEachCollision) {
 
 INSTANTIATE_TEST_SUITE_P(
     , EnergyDrift,
-    testing::Values(
-        Drift{"Spheres", ed::paper_species(geom::Ellipsoid({1, 1, 1})), 5e-18},
-        Drift{"Rods", ed::paper_species(geom::Ellipsoid({0.7, 0.7, 2})), 5e-18},
-        Drift{"Discs", ed::paper_species(geom::Ellipsoid({1.4, 1.4, 0.5})), 5e-18},
-        Drift{"SpinningRods", ed::uniform_species(geom::Ellipsoid({0.7, 0.7, 2})), 6e-17},
-        Drift{"SpinningDiscs", ed::uniform_species(geom::Ellipsoid({1.4, 1.4, 0.5})), 6e-17},
-        Drift{"ThreeAxes", ed::uniform_species(geom::Ellipsoid({1.2, 1, 0.7})), 4e-17},
-        Drift{"Superballs", ed::uniform_species(geom::Superellipsoid({1, 1, 1}, 0.5, 0.5)), 1e-17},
-        Drift{"Superellipsoids", ed::uniform_species(geom::Superellipsoid({0.8, 0.8, 1.6}, 0.5, 0.5)), 4e-17}),
+    testing::Values(Drift{"Spheres", ed::paper_species(geom::Ellipsoid({1, 1, 1})), 5e-18},
+                    Drift{"Rods", ed::paper_species(geom::Ellipsoid({0.7, 0.7, 2})), 5e-18},
+                    Drift{"Discs", ed::paper_species(geom::Ellipsoid({1.4, 1.4, 0.5})), 5e-18},
+                    Drift{"SpinningRods", ed::uniform_species(geom::Ellipsoid({0.7, 0.7, 2})), 6e-17},
+                    Drift{"SpinningDiscs", ed::uniform_species(geom::Ellipsoid({1.4, 1.4, 0.5})), 6e-17},
+                    Drift{"ThreeAxes", ed::uniform_species(geom::Ellipsoid({1.2, 1, 0.7})), 4e-17},
+                    Drift{"Superballs", ed::uniform_species(geom::Superellipsoid({1, 1, 1}, 0.5, 0.5)), 1e-17},
+                    Drift{"Superellipsoids", ed::uniform_species(geom::Superellipsoid({0.8, 0.8, 1.6}, 0.5, 0.5)),
+                          4e-17}),
     [](const auto& tested) { return tested.param.name; });
 
 /// Spheres cannot turn by collisions: their rotational energy is conserved body by body.

@@ -116,8 +116,9 @@ inline Eigen::Vector3d cold_normal(const Spheroid& A, const Spheroid& B, const E
   return length2 > 0 ? Eigen::Vector3d((1 / std::sqrt(length2)) * n) : u_a;
 }
 
-/// Where a query without a start begins: (QA / hA + QB / hB + g I)^-1 r on the unit sphere, with hA, hB and g, if that is
-/// positive, those of the line of centres; r is g n + QA n / hA + QB n / hB at the answer. For centres that coincide u_a.
+/// Where a query without a start begins: (QA / hA + QB / hB + g I)^-1 r on the unit sphere, with hA, hB and g, if that
+/// is positive, those of the line of centres; r is g n + QA n / hA + QB n / hB at the answer. For centres that coincide
+/// u_a.
 ///
 /// Between bodies apart by their size that is one evaluation nearer to the answer than cold_normal, which is made for
 /// bodies that touch, and between those never further from it.
