@@ -338,6 +338,92 @@ class Chains(SweepCase):
         self.assertEqual(self.hardbody("check", "on").returncode, 0)
 
 
+class Files(SweepCase):
+    """What points start from is named relative to the file of the sweep, wherever that is called and its points run."""
+
+    BASE = 'seed = 3\n[equilibration]\ntime = 0\n[production]\ntime = 1\n'
+
+    def setUp(self):
+        super().setUp()
+        os.makedirs(self.path("project/states"))
+        os.makedirs(self.path("elsewhere"))
+        for name, seed in [("first", 3), ("second", 4)]:
+            self.run_small(f"project/{name}", "--set", f"seed={seed}", "--set", 'output.trajectory=["gsd"]')
+            shutil.copy(self.path(f"project/{name}/trajectory.gsd"), self.path(f"project/states/{name}.gsd"))
+
+    def call(self, cwd, sweep, *arguments):
+        return subprocess.run([HARDBODY, "sweep", sweep, *arguments], cwd=self.path(cwd), capture_output=True, text=True,
+                              timeout=120, stdin=subprocess.DEVNULL)
+
+    def assert_all_done(self, result, out="project/out"):
+        self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+        self.assertEqual(set(self.statuses(out)), {"done"})
+
+    def assert_goes_on(self, out="project/out"):
+        """Called from another directory, and with the whole project at another place: the same sweep, the same points."""
+        before = self.without_timing(out)
+        victim = next(n for n in sorted(os.listdir(self.path(out))) if "=" in n)
+        for cwd, place in [("elsewhere", "project"), ("elsewhere", "moved")]:
+            if not os.path.exists(self.path(place)):
+                os.rename(self.path("project"), self.path(place))
+            shutil.rmtree(self.path(f"{place}/out/{victim}"))
+            self.assert_all_done(self.call(cwd, f"../{place}/sweep.toml", "--out", f"../{place}/out"), f"{place}/out")
+            self.assertEqual(self.without_timing(f"{place}/out"), before)
+        # The sweep as it is kept in its directory is one, too.
+        self.assert_all_done(self.call(".", "moved/out/sweep.toml", "--out", "moved/out"), "moved/out")
+
+    def log_of(self, name):
+        return self.read(f"project/out/{name}/log.txt")
+
+    def test_of_the_base(self):
+        self.write("project/sweep.toml", self.BASE + '[start]\nfile = "states/first.gsd"\n[grid]\nstart.frame = [0, 1]\n')
+        self.assert_all_done(self.call("project", "sweep.toml", "--out", "out"))
+        self.assertIn(self.path("project/states/first.gsd"), self.read("project/out/frame=0/config.toml"))
+        self.assert_goes_on()
+
+    def test_of_a_base_in_another_file(self):
+        self.write("project/states/run.toml", self.BASE + '[start]\nfile = "first.gsd"\n')
+        self.write("project/sweep.toml", 'base = "states/run.toml"\n[grid]\nstart.frame = [0, 1]\n')
+        self.assert_all_done(self.call(".", "project/sweep.toml", "--out", "project/out"))
+        self.assert_goes_on()
+
+    def test_of_the_grid(self):
+        for grid in ['[grid]\nstart.file = ["states/first.gsd", "states/second.gsd"]\n',
+                     '[grid.start]\nfile = ["states/first.gsd", "states/second.gsd"]\n']:
+            with self.subTest(grid):
+                self.write("project/sweep.toml", self.BASE + grid)
+                self.assert_all_done(self.call("project", "sweep.toml", "--out", "out"))
+                self.assertEqual([row["start.file"] for row in self.table("project/out")], ["states/first.gsd", "states/second.gsd"])
+                self.assertIn(self.path("project/states/second.gsd"), self.read("project/out/file=states-second.gsd/config.toml"))
+                self.assert_goes_on()
+                os.rename(self.path("moved"), self.path("project"))
+                shutil.rmtree(self.path("project/out"))
+
+    def test_of_the_first_of_a_chain(self):
+        base = SMALL.replace("packing_fraction = 0.2\n", 'start_from = "first"\n')
+        chain = 'chain = "system.packing_fraction"\n' + base + "[grid]\nsystem.packing_fraction = [0.2, 0.21]\n"
+        self.write("project/sweep.toml", chain)
+        self.assert_all_done(self.call("project", "sweep.toml", "--out", "out"))
+        self.assertIn(f"start: the last state of {self.path('project/first')}", self.log_of("packing_fraction=0.2"))
+        self.assertIn(f"start: the last state of {self.path('project/out/packing_fraction=0.2')}", self.log_of("packing_fraction=0.21"))
+        self.assert_goes_on()
+        self.write("moved/sweep.toml", 'seed = 3\n' + SMALL.replace("seed = 3\n", "").replace("packing_fraction = 0.2\n", "")
+                   + '[grid]\nsystem.packing_fraction = [0.2]\nsystem.start_from = ["first", "second"]\n')
+        self.assert_all_done(self.call("moved", "sweep.toml", "--out", "of_the_grid"), "moved/of_the_grid")
+
+    def test_one_file_by_two_names(self):
+        self.write("project/sweep.toml", self.BASE + '[grid]\nstart.file = ["states/first.gsd", "./states/first.gsd"]\n')
+        self.assert_refused(self.call(".", "project/sweep.toml"), "is there twice")
+
+    def test_another_file_of_the_same_name(self):
+        text = self.BASE + '[start]\nfile = "states/first.gsd"\n[grid]\nstart.frame = [0]\n'
+        self.write("project/sweep.toml", text)
+        self.assert_all_done(self.call("project", "sweep.toml", "--out", "out"))
+        shutil.copytree(self.path("project/states"), self.path("elsewhere/states"))
+        self.write("elsewhere/sweep.toml", text)
+        self.assert_refused(self.call("elsewhere", "sweep.toml", "--out", "../project/out"), "start.file is", "elsewhere/states/first.gsd")
+
+
 class Failures(SweepCase):
     TOO_DENSE = SMALL + "[grid]\nsystem.packing_fraction = [0.1, 0.75, 0.2]\n"
 
