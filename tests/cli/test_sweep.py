@@ -650,6 +650,31 @@ class Maps(SweepCase):
         self.assertIn("map_D.svg, map_D.csv written from 106 points", result.stdout)
         self.assertEqual(len({row["level"] for row in self.lines("map_D.csv")}), 6)
 
+    def test_points_that_are_not_done(self):
+        """An unsound point has values in the table, which are no results; a failed one of no value is not counted."""
+        rows = [(x, y, f"{x + y}", "done") for x in range(4) for y in range(4)]
+        rows[5] = (1, 1, "1000", "failed")
+        rows[6] = (1, 2, "", "failed")
+        rows[15] = (3, 3, "-1000", "stopped")
+        self.write("states.csv", "\n".join(["x,y,D,status", *(",".join(map(str, row)) for row in rows)]) + "\n")
+        result = self.hardbody("map", "states.csv", "--x", "x", "--y", "y", "--value", "D", "--levels", "0.5,3.5", "--csv", "a.csv")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("written from 13 points; 2 left out, whose status is not done\n", result.stdout)
+        for row in self.lines("a.csv"):
+            self.assertAlmostEqual(float(row["x"]) + float(row["y"]), float(row["level"]), delta=1e-5)
+        # A table of something else.
+        self.write("states.csv", self.read("states.csv").replace("done", "fine").replace("failed", "bad").replace("stopped", "bad"))
+        result = self.hardbody("map", "states.csv", "--x", "x", "--y", "y", "--value", "D", "--levels", "0.5")
+        self.assertIn("written from 15 points\n", result.stdout)
+
+    def test_conditions_are_numbers(self):
+        for condition, number in [("aspect_ratio=0.5", 11), ("aspect_ratio=0.50", 11), ("aspect_ratio=5e-1", 11), ("seed=2.0", 106),
+                                  ("equilibrated=true", 106)]:
+            with self.subTest(condition):
+                result = self.map("--value", "D", "--where", "seed=2", "--where", condition)
+                self.assertEqual(result.returncode, 0, result.stderr)
+                self.assertIn(f"written from {number} points", result.stdout)
+
     def test_of_a_sweep(self):
         self.assertEqual(self.sweep(SMALL + GRID).returncode, 0)
         result = self.hardbody("map", "out", "--x", "shape.aspect_ratio", "--y", "packing_fraction", "--value", "Z", "--log-x")
