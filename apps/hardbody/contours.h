@@ -37,8 +37,8 @@ struct PlanePoint {
 using ContourLine = std::vector<PlanePoint>;
 
 /// The lines on which the interpolated values are `level`, by marching squares: linear along the edges of the lattice,
-/// through cells with four known corners (saddles by the mean of the corners) and, by triangles, with three. The
-/// longest line comes first.
+/// through cells with four known corners (saddles by the mean of the corners) and, by triangles, with three. Where a
+/// column ends up to four rows before the one beside it, triangles fan out from its end. The longest line comes first.
 std::vector<ContourLine> contour_lines(const Lattice& lattice, double level);
 
 }  // namespace hardbody
