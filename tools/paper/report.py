@@ -2,7 +2,7 @@
 
 from . import grid
 from .results import TARGET_ERROR, write_whole
-from .table import DECAYED, NEMATIC
+from .table import DECAYED, FROZEN, NEMATIC
 
 TEXT = """# The paper's study, again
 
@@ -39,7 +39,8 @@ Computed by `tools/paper/verdicts.py` from the two files, with the criteria that
 {details}
 ## Figures
 
-Isodiffusivity lines at the paper's levels, of equilibrated isotropic points; dots are the state points, open ones not equilibrated.
+Isodiffusivity lines at the paper's levels, of equilibrated isotropic points; dots are the state points, open ones not equilibrated
+or frozen.
 
 ![Lines of constant D_trans and D_rot](isodiffusivity.svg)
 
@@ -47,11 +48,12 @@ When C2 has fallen to 1/e, with the lines of constant D_rot.
 
 ![Isochrones of C2](isochrones.svg)
 
-Fits of A exp[-(t/tau)^beta] to C2, from five mean collision intervals on.
+Fits of A exp[-(t/tau)^beta] to C2, from five mean collision intervals on (filled). Where C2 falls too early for that, in the middle,
+open symbols: the time at which it is 1/e, and the exponent of the whole decay from 0.9 to 0.03, A being 1. Above 1: compressed, inertial.
 
 ![tau_C2 and beta_C2 against X0](c2_fits.svg)
 
-C2 and F_self (at the first peak of S(q)) of the densest isotropic points.
+C2 and F_self (at the first peak of S(q)) of the densest isotropic points up to 0.5.
 
 ![Correlation functions](correlators.svg)
 
@@ -70,11 +72,12 @@ def state_text(study):
         return text
     nematic = [r for r in study.rows if r["S"] > NEMATIC]
     isotropic = [r for r in study.rows if r["S"] <= NEMATIC]
-    equilibrated = [r for r in isotropic if r.equilibrated]
+    equilibrated = [r for r in isotropic if r.isotropic]
+    frozen = [r for r in isotropic if r.equilibrated and r.frozen]
     hours = sum(r.seconds for r in study.rows) / 3600
     collisions = sum(r.collisions for r in study.rows)
     text += (f" {len(nematic)} of them are nematic (S > {NEMATIC}); {len(equilibrated)} of the {len(isotropic)} others were equilibrated by the "
-             f"criterion. All together took {hours:.1f} hours of one core of a shared server: {collisions:.2g} collisions in production, "
+             f"criterion and stayed fluid. {_frozen_text(frozen)}All together took {hours:.1f} hours of one core of a shared server: {collisions:.2g} collisions in production, "
              f"{collisions / (3600 * hours):,.0f} a second, equilibration included.\n\n")
     text += _imprecise_text(equilibrated)
     if len(done) < len(planned):
@@ -96,6 +99,14 @@ def _names(rows):
     return "; ".join(f"{X0:g} at {', '.join(phis)}" for X0, phis in sorted(of.items()))
 
 
+def _frozen_text(rows):
+    if not rows:
+        return ""
+    return (f"{len(rows)} froze during production, though the criterion, met before, counts it as equilibrated (X0 = X at phi = ...): "
+            f"{_names(rows)}. Frozen is what has S_peak, the height of S(q)'s first peak, above {FROZEN:g}; in the fluids it is below 3.3, and "
+            "spheres freeze at 2.85. It is left out of lines and verdicts, and an open dot in the first figure. ")
+
+
 def _imprecise_text(rows):
     """Which of the equilibrated isotropic rows are not as precise as was asked for, and in what."""
     spheres = [r for r in rows if r.X0 == 1]
@@ -109,9 +120,6 @@ def _imprecise_text(rows):
         if rough:
             worst = max(r.errors[name] / r[name] for r in rough)
             text += f" {name} is known to {100 * worst:.1f} % or better at {_names(rough)}."
-    frozen = [r for r in rows if not r.has("D_trans")]
-    if frozen:
-        text += f" {_names(frozen)} has no D_trans: the fluid froze during production (spheres do above 0.494)."
     if spheres:
         text += f" The {len(spheres)} points of spheres have no D_rot: nothing turns them."
     return text

@@ -43,7 +43,8 @@ def _fixed_time(point):
     """Where velocities, or angular velocities, are correlated for so long that the lags of an "auto" production, 15 time
     units where equilibration is quick, are too short for diffusion: a production with lags up to 40. The same where
     precision would take hours. Else nothing."""
-    turns_freely = point.X0 != 1 and (0.85 < point.X0 < 1.18 or (0.75 < point.X0 < 1.3 and point.phi < 0.35))
+    turns_freely = point.X0 != 1 and (0.85 < point.X0 < 1.18 or (0.75 < point.X0 < 1.3 and point.phi < 0.35)
+                                      or (0.62 < point.X0 < 1.45 and point.phi <= 0.2))
     if grid.is_late(point):
         return LATE_PRODUCTION
     if point.phi > 0.1 and not turns_freely:
