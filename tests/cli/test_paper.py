@@ -191,6 +191,30 @@ class Tool(Here):
         self.assertIn("0 of 3 points to run", again.stdout)
         self.assertEqual((self.here / "results" / "points.csv").read_bytes(), before)
 
+    def test_refused(self):
+        for arguments, part in [(["--points", "x"], "'x' is no point; accepted: X0,PHI"), (["--points", "2"], "'2' is no point"),
+                                (["--points", "2,0.3", "2,nan"], "'2,nan' is no point"), (["--points", "0,0.3"], "both above 0"),
+                                (["--jobs", "0"], "'0' is no number of processes"), (["--minutes", "-1"], "accepted: a number from 0"),
+                                (["--figures", "--results", self.here / "none"], "has no points.csv")]:
+            with self.subTest(arguments):
+                result = tool(*arguments)
+                self.assertEqual(result.returncode, 2)
+                self.assertEqual(result.stderr.count("\n"), 1, result.stderr)
+                self.assertIn(part, result.stderr)
+
+    def test_what_it_will_cost(self):
+        result = tool("--out", self.here / "out", "--results", self.here / "new", "--minutes", "0.0001")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("607 of 607 points to run, 1 at a time", result.stdout)
+        self.assertRegex(result.stdout, r"they cost about [78]\.\d h of one core, here about [78]\.\d h")
+        result = tool(*self.arguments())
+        self.assertRegex(result.stdout, r"X0_2_phi_0.05: D_trans .* s; 2 points left, ETA \d+ s")
+
+    def test_help_says_how_to_begin_afresh(self):
+        help_text = " ".join(tool("--help").stdout.split())
+        self.assertIn("to begin afresh name another directory", help_text)
+        self.assertIn("--results out/my-paper", help_text)
+
     def test_slices(self):
         """Stopped after two seconds, again and again: in the end the same results as in one go."""
         self.assertEqual(tool(*self.arguments()).returncode, 0)
