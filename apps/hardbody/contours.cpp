@@ -48,13 +48,22 @@ class Marcher {
   Marcher(const Lattice& lattice, double level) : lattice_(lattice), level_(level) {}
 
   std::vector<ContourLine> lines() {
-    for (std::size_t i = 0; i + 1 < lattice_.x.size(); ++i) {
-      for (std::size_t j = 0; j + 1 < lattice_.y.size(); ++j) cross_cell(i, j);
-    }
+    march();
     return joined();
   }
 
+  bool has_cells() {
+    march();
+    return cells_ > 0;
+  }
+
  private:
+  void march() {
+    for (std::size_t i = 0; i + 1 < lattice_.x.size(); ++i) {
+      for (std::size_t j = 0; j + 1 < lattice_.y.size(); ++j) cross_cell(i, j);
+    }
+  }
+
   bool known(Node n) const { return lattice_.values[n].has_value(); }
   double value(Node n) const { return *lattice_.values[n]; }
   bool above(Node n) const { return value(n) >= level_; }
@@ -108,11 +117,13 @@ class Marcher {
   }
 
   void cross_triangle(const std::array<Node, 3>& three) {
+    ++cells_;
     const std::vector<Edge> edges = crossed(three);
     if (edges.size() == 2) segments_.emplace_back(edges[0], edges[1]);
   }
 
   void cross_square(const std::array<Node, 4>& corners) {
+    ++cells_;
     const std::vector<Edge> edges = crossed(corners);
     if (edges.size() == 2) segments_.emplace_back(edges[0], edges[1]);
     if (edges.size() != 4) return;
@@ -179,6 +190,7 @@ class Marcher {
   const Lattice& lattice_;
   double level_;
   std::vector<Segment> segments_;
+  std::size_t cells_ = 0;
 };
 
 }  // namespace
@@ -205,6 +217,10 @@ Lattice lattice_of(const std::vector<Sample>& samples) {
   }
   for (std::size_t i = 0; i < lattice.x.size(); ++i) fill_column(lattice, i);
   return lattice;
+}
+
+bool has_cells(const Lattice& lattice) {
+  return Marcher(lattice, 0).has_cells();
 }
 
 std::vector<ContourLine> contour_lines(const Lattice& lattice, double level) {

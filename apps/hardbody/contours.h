@@ -28,6 +28,9 @@ struct Lattice {
 /// interpolated along y, linearly, so that every x may have its own y.
 Lattice lattice_of(const std::vector<Sample>& samples);
 
+/// Whether there is any cell, or triangle, for lines to go through: not where each x has a single y.
+bool has_cells(const Lattice& lattice);
+
 struct PlanePoint {
   double x;
   double y;

@@ -16,6 +16,7 @@
 #include <filesystem>
 #include <iterator>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -123,6 +124,23 @@ std::vector<Sample> samples_of(const CsvTable& table, const std::vector<std::siz
   return samples;
 }
 
+/// Lines need a plane to be drawn in.
+void check_spread(const CsvTable& table, const std::vector<Sample>& samples, const std::string& x, const std::string& y,
+                  const std::string& value) {
+  if (has_cells(lattice_of(samples))) return;
+  std::set<std::pair<double, double>> points;
+  std::set<double> columns;
+  for (const Sample& s : samples) {
+    points.emplace(s.x, s.y);
+    columns.insert(s.x);
+  }
+  throw InputError(
+      fmt::format("{}: {} is known at {} points with {} values of {}, between which no line can be drawn (as of "
+                  "keys that a sweep zips); accepted: two values of {} at least, side by side, one of them with two "
+                  "values of {}",
+                  table.name, value, points.size(), columns.size(), x, x, y));
+}
+
 std::vector<MapLevel> all_levels(const CsvTable& table, const std::vector<std::size_t>& rows, const Columns& columns,
                                  const MapArguments& arguments) {
   std::vector<MapLevel> all;
@@ -132,6 +150,7 @@ std::vector<MapLevel> all_levels(const CsvTable& table, const std::vector<std::s
       throw InputError(
           fmt::format("{}: {} has no values; accepted: a column with some", table.name, arguments.values[v]));
     }
+    check_spread(table, samples, arguments.x, arguments.y, arguments.values[v]);
     const std::vector<double> levels =
         arguments.levels.empty() ? chosen_levels(samples) : parse_levels(arguments.levels[v]);
     const MapScales scales{arguments.log_x, arguments.log_y};

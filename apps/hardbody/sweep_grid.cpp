@@ -23,7 +23,7 @@ constexpr std::size_t kLongestName = 120;
 /// Of a value with names of files, in messages.
 constexpr std::size_t kLongestShown = 300;
 
-/// Steps from here to there are rounded to this many digits: 0.1 + 2 * 0.1 is 0.3.
+/// Steps from here to there are rounded to this many digits: 0.1 + 2 * 0.1 is 0.3. Numbers that agree in them are one.
 constexpr int kDigits = 12;
 
 /// The last step may miss `to` by this share of a step.
@@ -89,9 +89,11 @@ std::string description(const SweepPoint& point) {
   return text;
 }
 
-/// What tells points apart.
+/// What tells points apart: not the last digits of a number, which are rounding. Integers (seeds) have none.
 std::string identity(const Value& value) {
-  if (is_numeric(value)) return toml_real(value.real);
+  const std::string number = fmt::format("{:.{}g}", value.real, kDigits);
+  if (value.kind == Value::Kind::real || (is_numeric(value) && number == fmt::format("{}", value.integer)))
+    return number;
   if (value.kind != Value::Kind::array) return toml_text(value);
   std::string text = "[";
   for (const Value& item : value.items) text += identity(item) + ",";

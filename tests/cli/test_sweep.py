@@ -453,6 +453,20 @@ class Failures(SweepCase):
         self.assertRegex(message[0], "the compression got stuck at 0.61[0-9]* of 0.62; a lower value is needed")
         self.assertIn("failed: seed=", result.stdout)
 
+    def test_summary_that_is_none(self):
+        """What is to be done about it works."""
+        text = SMALL + "[grid]\nseed = [1, 2]\n"
+        self.assertEqual(self.sweep(text).returncode, 0)
+        before = self.without_timing()
+        self.write("out/seed=2/summary.json", "garbage")
+        result = self.sweep(text)
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("seed=2/summary.json is not one that a run has written; accepted: delete the directory seed=2, and the same "
+                      "command runs the point again", self.table()[1]["message"])
+        shutil.rmtree(self.path("out/seed=2"))
+        self.assertEqual(self.sweep(text).returncode, 0)
+        self.assertEqual(self.without_timing(), before)
+
     def test_full_disk(self):
         """Points whose checkpoint does not fit fail; those that were done stay; with room again all is as it should be."""
         text = SMALL + "[grid]\nsystem.number = [64, 256, 65]\n"
@@ -501,6 +515,8 @@ class Refused(SweepCase):
         self.refuse(SMALL, "sweep.toml: has no [grid]")
         self.refuse(SMALL + "[grid]\n", "sweep.toml:13: the grid has no keys")
         self.refuse(SMALL + axis + "[0.1, 0.2, 0.1]\n", "packing_fraction = 0.1 is there twice")
+        self.refuse(SMALL + axis + "[0.1, 0.1000000000000001]\n", "packing_fraction = 0.1000000000000001 is there twice")
+        self.refuse(SMALL + "[grid]\nshape.semi_axes = [[1, 1, 0.3], [1, 1.0, 0.30000000000000004]]\n", "is there twice")
         self.refuse(SMALL + axis + "[]\n", "system.packing_fraction is []", "sweep.toml:14")
         self.refuse(SMALL + axis + "{from = 0.1, to = 0.2}\n", "sweep.toml:14", "{from, to, step}")
         self.refuse(SMALL + axis + "{from = 0.1, to = 0.2, step = -0.1}\n", "sweep.toml:14", "a step that leads")
@@ -667,13 +683,24 @@ class Maps(SweepCase):
         result = self.hardbody("map", "states.csv", "--x", "x", "--y", "y", "--value", "D", "--levels", "0.5")
         self.assertIn("written from 15 points\n", result.stdout)
 
+    def test_points_on_a_line_are_refused(self):
+        """As of a sweep of zipped keys: there is no plane."""
+        for rows in [[(x, 2 * x, x) for x in range(5)], [(1, y, y) for y in range(5)], [(x, 1, x) for x in range(5)]]:
+            self.write("line.csv", "\n".join(["x,y,D", *(",".join(map(str, row)) for row in rows)]) + "\n")
+            result = self.hardbody("map", "line.csv", "--x", "x", "--y", "y", "--value", "D", "--out", "a.svg", "--csv", "a.csv")
+            self.assert_refused(result, "line.csv: D is known at 5 points with", "no line can be drawn", "accepted: two values of x")
+            self.assertFalse(os.path.exists(self.path("a.svg")))
+
     def test_conditions_are_numbers(self):
-        for condition, number in [("aspect_ratio=0.5", 11), ("aspect_ratio=0.50", 11), ("aspect_ratio=5e-1", 11), ("seed=2.0", 106),
-                                  ("equilibrated=true", 106)]:
+        text = self.read("table.csv").replace(",seed,", ",mass,")
+        self.write("table.csv", "\n".join(line.replace(",2,", ",0.5,", 1) for line in text.splitlines()) + "\n")
+        for condition in ["mass=0.5", "mass=0.50", "mass=5e-1", "mass=0.5,equilibrated=true"]:
             with self.subTest(condition):
-                result = self.map("--value", "D", "--where", "seed=2", "--where", condition)
+                options = [option for one in condition.split(",") for option in ("--where", one)]
+                result = self.map("--value", "D", *options)
                 self.assertEqual(result.returncode, 0, result.stderr)
-                self.assertIn(f"written from {number} points", result.stdout)
+                self.assertIn("written from 106 points", result.stdout)
+        self.assert_refused(self.map("--value", "D", "--where", "mass=half"), "--where mass=half: no row")
 
     def test_of_a_sweep(self):
         self.assertEqual(self.sweep(SMALL + GRID).returncode, 0)

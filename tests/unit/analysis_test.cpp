@@ -107,8 +107,8 @@ TEST(FirstCrossing, OfAnExponentialIsGoodToThirdOrder) {
 
 TEST(FirstCrossing, OfAnInertialDecayIsGoodToAThousandth) {
   // C2 of bodies that turn nearly freely, compressed (exponents from 1.2 to 2), at the program's 20 lags a decade,
-  // wherever these fall. A parabola is off by up to 3e-4 (see above, with neighbours 0.12 apart), a straight line by up to
-  // 2e-3.
+  // wherever these fall. A parabola is off by up to 3e-4 (see above, with neighbours 0.12 apart), a straight line by up
+  // to 2e-3.
   for (const double exponent : {1.2, 1.5, 2.0}) {
     for (int shift = 0; shift < 40; ++shift) {
       std::vector<double> x;
