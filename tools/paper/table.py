@@ -26,6 +26,7 @@ class Row:
         self.precise = row["precise"] == "true"
         self.collisions = _number(row["collisions"])
         self.seconds = _number(row["wall_seconds"])
+        self.q = _number(row["q"])
         self.rate = self.values["collision_rate"]
 
     def __getitem__(self, name):
