@@ -28,7 +28,11 @@ def lines_by_map(program, rows, values):
                    "--csv", f"{directory}/map.csv"]
         for value, levels in values.items():
             command += ["--value", value, "--levels", ",".join(f"{level:g}" for level in levels)]
-        subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
+        result = subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        if result.returncode == 2 and "no line can be drawn" in result.stderr:
+            return {}  # too few points as yet
+        if result.returncode:
+            raise RuntimeError(f"{command}: {result.stderr}")
         lines = {}
         for row in read_rows(f"{directory}/map.csv"):
             of_level = lines.setdefault((row["value"], float(row["level"])), {})
