@@ -1,36 +1,84 @@
 """The paper's study: isodiffusivity lines and correlators of hard ellipsoids of revolution. See tools/reproduce-paper."""
 
 import argparse
+import math
 import pathlib
 import sys
 
 from paper import grid, table
 from paper.figures import Lines, write_figures
 from paper.report import write_readme
-from paper.results import Results
+from paper.results import Results, point_of, read_rows
 from paper.study import Stop, Study
 from paper.verdicts import verdicts
 
 DOCS = pathlib.Path(__file__).resolve().parent.parent / "docs" / "paper"
 
 
+EPILOG = """Finished points are merged into points.csv and curves.csv at once and not run again: stop it whenever you like, and
+the same command goes on. docs/paper has all of them; to begin afresh name another directory, which is made if it is
+not there: tools/reproduce-paper --results out/my-paper --out out/my-runs. What is left to run and how long that will take
+is printed at the beginning and with every point."""
+
+
+def point(text):
+    """Of X0,PHI."""
+    try:
+        X0, phi = map(float, text.split(","))
+    except ValueError:
+        X0 = phi = math.nan
+    if not (0 < X0 < math.inf and 0 < phi < 1):
+        raise argparse.ArgumentTypeError(f"{text!r} is no point; accepted: X0,PHI, both above 0, as 2,0.3")
+    return grid.Point(X0, phi)
+
+
+def count(text):
+    if not (text.isdigit() and int(text) > 0):
+        raise argparse.ArgumentTypeError(f"{text!r} is no number of processes; accepted: an integer from 1 on")
+    return int(text)
+
+
+def duration(text):
+    try:
+        minutes = float(text)
+    except ValueError:
+        minutes = math.nan
+    if not 0 <= minutes < math.inf:
+        raise argparse.ArgumentTypeError(f"{text!r} is no number of minutes; accepted: a number from 0 (no end) on")
+    return minutes
+
+
+class Parser(argparse.ArgumentParser):
+    """One line for what it refuses."""
+
+    def error(self, message):
+        print(f"{self.prog}: {message}", file=sys.stderr)
+        sys.exit(2)
+
+
 def parse(arguments):
-    parser = argparse.ArgumentParser(prog="tools/reproduce-paper", description=__doc__)
+    parser = Parser(prog="tools/reproduce-paper", description=__doc__, epilog=EPILOG)
     parser.add_argument("--hardbody", required=True, help="the program (tools/reproduce-paper builds it)")
     parser.add_argument("--out", default="out/paper", help="run directories, one a point that is not finished")
-    parser.add_argument("--results", help="directory of points.csv and curves.csv; without it docs/paper, of --quick OUT/results")
-    parser.add_argument("--jobs", type=int, default=1, help="points that run at the same time")
-    parser.add_argument("--minutes", type=float, default=0, help="stop after so many; call it again to go on")
+    parser.add_argument("--results", metavar="DIR", help="directory of points.csv, curves.csv and what is made of them, by default docs/paper "
+                                                         "(of --quick OUT-quick/results); a new one begins afresh")
+    parser.add_argument("--jobs", type=count, default=1, help="points that run at the same time")
+    parser.add_argument("--minutes", type=duration, default=0, help="stop after so many; call it again to go on")
     parser.add_argument("--quick", action="store_true", help="a coarse grid with short runs, about ten minutes")
     parser.add_argument("--figures", action="store_true", help="run nothing: figures and README.md from what is there")
-    parser.add_argument("--points", nargs="+", metavar="X0,PHI", help="these points alone")
+    parser.add_argument("--points", nargs="+", type=point, metavar="X0,PHI", help="these points alone")
     return parser.parse_args(arguments)
 
 
 def chosen(options):
     if options.points:
-        return [grid.Point(*map(float, text.split(","))) for text in options.points]
+        return list(dict.fromkeys(options.points))
     return grid.quick_points() if options.quick else grid.ordered_points()
+
+
+def known_costs(options):
+    """Seconds that points took when docs/paper was made; nothing of --quick, whose points are shorter."""
+    return {} if options.quick else {point_of(row): float(row["wall_seconds"]) for row in read_rows(DOCS / "points.csv")}
 
 
 def draw(program, directory):
@@ -56,7 +104,7 @@ def main(arguments):
         draw(options.hardbody, directory)
         return 0
     stop = Stop(options.minutes)
-    study = Study(options.hardbody, out, Results(directory), options.jobs, options.quick)
+    study = Study(options.hardbody, out, Results(directory), options.jobs, options.quick, known_costs(options))
     done = study.run(chosen(options), stop)
     if stop.signal:
         return 128 + stop.signal

@@ -9,6 +9,9 @@
 namespace hardbody {
 namespace {
 
+/// Rows by which the end of one column may stand away from the end of the next for the gap between them to be filled.
+constexpr std::size_t kHighestStep = 4;
+
 using Node = std::size_t;               // of the lattice
 using Edge = std::pair<Node, Node>;     // between two nodes, the smaller first
 using Segment = std::pair<Edge, Edge>;  // of a line through a cell: from one edge to another
@@ -45,13 +48,22 @@ class Marcher {
   Marcher(const Lattice& lattice, double level) : lattice_(lattice), level_(level) {}
 
   std::vector<ContourLine> lines() {
-    for (std::size_t i = 0; i + 1 < lattice_.x.size(); ++i) {
-      for (std::size_t j = 0; j + 1 < lattice_.y.size(); ++j) cross_cell(i, j);
-    }
+    march();
     return joined();
   }
 
+  bool has_cells() {
+    march();
+    return cells_ > 0;
+  }
+
  private:
+  void march() {
+    for (std::size_t i = 0; i + 1 < lattice_.x.size(); ++i) {
+      for (std::size_t j = 0; j + 1 < lattice_.y.size(); ++j) cross_cell(i, j);
+    }
+  }
+
   bool known(Node n) const { return lattice_.values[n].has_value(); }
   double value(Node n) const { return *lattice_.values[n]; }
   bool above(Node n) const { return value(n) >= level_; }
@@ -77,17 +89,41 @@ class Marcher {
     const std::array<Node, 4> corners = {node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)};
     const auto missing = std::count_if(corners.begin(), corners.end(), [&](Node n) { return !known(n); });
     if (missing == 0) cross_square(corners);
-    if (missing == 1) cross_triangle(corners);
+    if (missing == 1) cross_corner(corners);
+    if (missing != 2) return;
+    // One of the columns ends below, or begins above.
+    if (known(corners[1]) && known(corners[2])) cross_fan(i, j, corners[1], corners[2]);
+    if (known(corners[0]) && known(corners[3])) cross_fan(i + 1, j, corners[0], corners[3]);
   }
 
-  void cross_triangle(const std::array<Node, 4>& corners) {
+  /// The last known node of column i below row j, or the first one above row j + 1; nothing if that is far.
+  std::optional<Node> end_near(std::size_t i, std::size_t j) const {
+    for (std::size_t step = 1; step < kHighestStep; ++step) {
+      if (step <= j && known(node(i, j - step))) return node(i, j - step);
+      if (j + 1 + step < lattice_.y.size() && known(node(i, j + 1 + step))) return node(i, j + 1 + step);
+    }
+    return std::nullopt;
+  }
+
+  /// Between the end of column i and an edge of the column beside it, at row j.
+  void cross_fan(std::size_t i, std::size_t j, Node low, Node high) {
+    if (const std::optional<Node> end = end_near(i, j)) cross_triangle({*end, low, high});
+  }
+
+  void cross_corner(const std::array<Node, 4>& corners) {
     std::array<Node, 3> three{};
     std::copy_if(corners.begin(), corners.end(), three.begin(), [&](Node n) { return known(n); });
+    cross_triangle(three);
+  }
+
+  void cross_triangle(const std::array<Node, 3>& three) {
+    ++cells_;
     const std::vector<Edge> edges = crossed(three);
     if (edges.size() == 2) segments_.emplace_back(edges[0], edges[1]);
   }
 
   void cross_square(const std::array<Node, 4>& corners) {
+    ++cells_;
     const std::vector<Edge> edges = crossed(corners);
     if (edges.size() == 2) segments_.emplace_back(edges[0], edges[1]);
     if (edges.size() != 4) return;
@@ -154,6 +190,7 @@ class Marcher {
   const Lattice& lattice_;
   double level_;
   std::vector<Segment> segments_;
+  std::size_t cells_ = 0;
 };
 
 }  // namespace
@@ -180,6 +217,10 @@ Lattice lattice_of(const std::vector<Sample>& samples) {
   }
   for (std::size_t i = 0; i < lattice.x.size(); ++i) fill_column(lattice, i);
   return lattice;
+}
+
+bool has_cells(const Lattice& lattice) {
+  return Marcher(lattice, 0).has_cells();
 }
 
 std::vector<ContourLine> contour_lines(const Lattice& lattice, double level) {

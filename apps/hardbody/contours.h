@@ -28,6 +28,9 @@ struct Lattice {
 /// interpolated along y, linearly, so that every x may have its own y.
 Lattice lattice_of(const std::vector<Sample>& samples);
 
+/// Whether there is any cell, or triangle, for lines to go through: not where each x has a single y.
+bool has_cells(const Lattice& lattice);
+
 struct PlanePoint {
   double x;
   double y;
@@ -37,8 +40,8 @@ struct PlanePoint {
 using ContourLine = std::vector<PlanePoint>;
 
 /// The lines on which the interpolated values are `level`, by marching squares: linear along the edges of the lattice,
-/// through cells with four known corners (saddles by the mean of the corners) and, by triangles, with three. The
-/// longest line comes first.
+/// through cells with four known corners (saddles by the mean of the corners) and, by triangles, with three. Where a
+/// column ends up to four rows before the one beside it, triangles fan out from its end. The longest line comes first.
 std::vector<ContourLine> contour_lines(const Lattice& lattice, double level);
 
 }  // namespace hardbody

@@ -6,14 +6,17 @@
 #include "map_svg.h"
 #include "number_text.h"
 #include "run_directory.h"
+#include "sweep_results.h"
 #include "text_file.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <iterator>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -45,7 +48,13 @@ std::vector<double> parse_levels(std::string_view text) {
   return levels;
 }
 
-/// Rows for which every --where column=value holds: the same text, or the same number.
+/// Of a field and what --where asks for: the same text, or the same number (2 and 2.0).
+bool is_same(const std::string& field, const std::string& wanted) {
+  const std::optional<double> number = finite_number(wanted);
+  return field == wanted || (number && finite_number(field) == number);
+}
+
+/// Rows for which every --where column=value holds.
 std::vector<std::size_t> chosen_rows(const CsvTable& table, const std::vector<std::string>& conditions) {
   std::vector<std::size_t> rows(table.rows.size());
   for (std::size_t k = 0; k < rows.size(); ++k) rows[k] = k;
@@ -56,10 +65,37 @@ std::vector<std::size_t> chosen_rows(const CsvTable& table, const std::vector<st
     }
     const std::size_t column = table.column(std::string_view(condition).substr(0, equals));
     const std::string wanted = condition.substr(equals + 1);
-    std::erase_if(rows, [&](std::size_t k) { return table.rows[k][column] != wanted; });
+    std::erase_if(rows, [&](std::size_t k) { return !is_same(table.rows[k][column], wanted); });
     if (rows.empty()) throw InputError(fmt::format("--where {}: no row of {} is so", condition, table.name));
   }
   return rows;
+}
+
+constexpr const char* kStatusColumn = "status";
+
+/// As a sweep's table has it; other tables may mean something else by `status`.
+bool is_unfinished(const std::string& status) {
+  constexpr std::array kOthers = {PointStatus::pending, PointStatus::running, PointStatus::stopped,
+                                  PointStatus::failed};
+  return std::any_of(kOthers.begin(), kOthers.end(), [&](PointStatus s) { return status == to_string(s); });
+}
+
+/// Of a sweep's table: points that failed, unsound ones above all, have values that are no results. How many had some.
+std::size_t leave_out_failures(const CsvTable& table, std::vector<std::size_t>& rows,
+                               const std::vector<std::size_t>& values) {
+  const auto status = std::find(table.header.begin(), table.header.end(), kStatusColumn);
+  if (status == table.header.end()) return 0;
+  const auto column = static_cast<std::size_t>(status - table.header.begin());
+  const auto measured = [&](std::size_t k) {
+    return std::any_of(values.begin(), values.end(), [&](std::size_t v) { return !table.rows[k][v].empty(); });
+  };
+  std::size_t left_out = 0;
+  std::erase_if(rows, [&](std::size_t k) {
+    if (!is_unfinished(table.rows[k][column])) return false;
+    if (measured(k)) ++left_out;
+    return true;
+  });
+  return left_out;
 }
 
 /// A coordinate that can be drawn.
@@ -88,6 +124,23 @@ std::vector<Sample> samples_of(const CsvTable& table, const std::vector<std::siz
   return samples;
 }
 
+/// Lines need a plane to be drawn in.
+void check_spread(const CsvTable& table, const std::vector<Sample>& samples, const std::string& x, const std::string& y,
+                  const std::string& value) {
+  if (has_cells(lattice_of(samples))) return;
+  std::set<std::pair<double, double>> points;
+  std::set<double> columns;
+  for (const Sample& s : samples) {
+    points.emplace(s.x, s.y);
+    columns.insert(s.x);
+  }
+  throw InputError(
+      fmt::format("{}: {} is known at {} points with {} values of {}, between which no line can be drawn (as of "
+                  "keys that a sweep zips); accepted: two values of {} at least, side by side, one of them with two "
+                  "values of {}",
+                  table.name, value, points.size(), columns.size(), x, x, y));
+}
+
 std::vector<MapLevel> all_levels(const CsvTable& table, const std::vector<std::size_t>& rows, const Columns& columns,
                                  const MapArguments& arguments) {
   std::vector<MapLevel> all;
@@ -97,6 +150,7 @@ std::vector<MapLevel> all_levels(const CsvTable& table, const std::vector<std::s
       throw InputError(
           fmt::format("{}: {} has no values; accepted: a column with some", table.name, arguments.values[v]));
     }
+    check_spread(table, samples, arguments.x, arguments.y, arguments.values[v]);
     const std::vector<double> levels =
         arguments.levels.empty() ? chosen_levels(samples) : parse_levels(arguments.levels[v]);
     const MapScales scales{arguments.log_x, arguments.log_y};
@@ -169,7 +223,8 @@ int map(const MapArguments& arguments) {
   const CsvTable table = read_csv(table_path(arguments));
   Columns columns{table.column(arguments.x), table.column(arguments.y), {}};
   for (const std::string& value : arguments.values) columns.values.push_back(table.column(value));
-  const std::vector<std::size_t> rows = chosen_rows(table, arguments.where);
+  std::vector<std::size_t> rows = chosen_rows(table, arguments.where);
+  const std::size_t left_out = leave_out_failures(table, rows, columns.values);
   Map map;
   map.x_name = table.header[columns.x];
   map.y_name = table.header[columns.y];
@@ -182,7 +237,8 @@ int map(const MapArguments& arguments) {
   check_replaceable(csv, kCsvBeginning);
   write_file(svg, map_svg(map));
   write_file(csv, lines_csv(map));
-  fmt::print("{}, {} written from {} points\n", svg.string(), csv.string(), map.marks.size());
+  fmt::print("{}, {} written from {} points{}\n", svg.string(), csv.string(), map.marks.size(),
+             left_out > 0 ? fmt::format("; {} left out, whose status is not done", left_out) : "");
   print_levels(map);
   return 0;
 }

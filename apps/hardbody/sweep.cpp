@@ -64,7 +64,8 @@ bool holds_other_files(const fs::path& directory) {
 void check_same_sweep(const fs::path& directory, const SweepFile& sweep) {
   const std::string name = (directory / kSweepFile).string();
   const TomlDocument before = read_toml(read_file(name, kLongestSweep), name, {});
-  const std::optional<ChangedKey> changed = changed_key(before, sweep.whole);
+  const std::optional<ChangedKey> changed =
+      changed_key(absolute_files(before, directory), absolute_files(sweep.whole, sweep.directory));
   if (!changed) return;
   throw InputError(
       fmt::format("{}: {} is {}, but {} in the sweep that {} holds; accepted: the sweep as it was begun, or another "
@@ -89,8 +90,8 @@ DirectoryLock take_directory(const fs::path& directory, const SweepFile& sweep) 
     if (fs::exists(directory / kSweepFile)) {
       check_same_sweep(directory, sweep);
     } else {
-      write_file(directory / kSweepFile,
-                 "# The sweep in this directory, as it was begun.\n" + document_text(sweep.whole));
+      write_file(directory / kSweepFile, "# The sweep in this directory, as it was begun.\n" +
+                                             document_text(moved(sweep.whole, sweep.directory, directory)));
     }
     write_file(directory / kBaseFile, "# What all points of the sweep have in common; written by hardbody sweep.\n" +
                                           document_text(sweep.base));

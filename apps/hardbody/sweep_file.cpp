@@ -10,11 +10,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <iterator>
 #include <utility>
 
 namespace hardbody {
 namespace {
+
+namespace fs = std::filesystem;
 
 constexpr std::size_t kLongestSweep = 1 << 20;  ///< bytes
 constexpr const char* kChainKey = "system.packing_fraction";
@@ -57,6 +60,32 @@ void check_own_names(const TomlDocument& document) {
   }
 }
 
+// ---- Names of files
+
+using Renaming = std::function<fs::path(const fs::path&)>;
+
+/// A key of the config, which may be one of a grid: grid[2].start.file is start.file.
+std::string_view config_key(std::string_view key) {
+  const std::size_t dot = key.find('.');
+  return dot != std::string_view::npos && is_grid(key.substr(0, dot)) ? key.substr(dot + 1) : key;
+}
+
+/// Of all keys that name files, those of [grid.start] too.
+TomlDocument with_files(TomlDocument document, const Renaming& renamed) {
+  for (Entry& entry : document.entries) {
+    const std::string key(config_key(entry.key));
+    if (names_file(key)) entry.value = hardbody::with_files(std::move(entry.value), renamed);
+    bool changed = false;
+    for (Member& member : entry.value.members) {
+      if (!names_file(key + "." + member.key)) continue;
+      member.value = hardbody::with_files(std::move(member.value), renamed);
+      changed = true;
+    }
+    if (changed) entry.value.shown = toml_text(entry.value);
+  }
+  return document;
+}
+
 // ---- The base config
 
 bool is_of_config(const Entry& entry) {
@@ -72,8 +101,8 @@ TomlDocument config_part(const TomlDocument& document) {
   return base;
 }
 
-/// The config in the file itself, or the one that `base` names.
-TomlDocument read_base(const TomlDocument& document, const std::filesystem::path& directory) {
+/// The config in the file itself, or the one that `base` names; relative names of files are relative to `directory`.
+TomlDocument read_base(const TomlDocument& document, const fs::path& directory) {
   TomlDocument own = config_part(document);
   const Entry* base = document.find("base");
   if (base == nullptr) return own;
@@ -83,8 +112,10 @@ TomlDocument read_base(const TomlDocument& document, const std::filesystem::path
     throw InputError(fmt::format("{}: stands beside base = {}; accepted: the config's keys either here or in that file",
                                  where, base->value.shown));
   }
-  const std::filesystem::path path = directory / base->value.text;
-  return read_toml(read_file(path, kLongestSweep), path.string(), {});
+  const fs::path named = base->value.text;
+  const fs::path path = directory / named;
+  return with_files(read_toml(read_file(path, kLongestSweep), path.string(), {}),
+                    [&](const fs::path& file) { return named.parent_path() / file; });
 }
 
 // ---- The grids
@@ -292,24 +323,37 @@ std::vector<Entry> all_keys(const TomlDocument& document) {
 
 }  // namespace
 
-SweepFile parse_sweep(std::string_view text, const std::string& name, const std::filesystem::path& directory) {
+SweepFile parse_sweep(std::string_view text, const std::string& name, const fs::path& directory) {
   const TomlDocument document = read_toml(text, name, {});
   check_own_names(document);
   SweepFile sweep;
+  sweep.directory = directory;
   sweep.grids = read_grids(document);
-  sweep.base = read_base(document, directory);
-  sweep.whole = merged(sweep.base, document);
+  for (Grid& grid : sweep.grids) grid.directory = directory;
+  const TomlDocument base = read_base(document, directory);
+  sweep.whole = merged(base, document);
+  sweep.base = absolute_files(base, directory);
   sweep.chain = read_chain(document, sweep.grids);
   return sweep;
 }
 
-SweepFile read_sweep(const std::filesystem::path& path) {
+SweepFile read_sweep(const fs::path& path) {
   return parse_sweep(read_file(path, kLongestSweep), path.string(), path.parent_path());
+}
+
+TomlDocument moved(TomlDocument whole, const fs::path& from, const fs::path& to) {
+  const fs::path target = fs::absolute(to).lexically_normal();
+  return with_files(std::move(whole),
+                    [&](const fs::path& name) { return absolute_from(from, name).lexically_relative(target); });
+}
+
+TomlDocument absolute_files(TomlDocument whole, const fs::path& directory) {
+  return with_files(std::move(whole), [&](const fs::path& name) { return absolute_from(directory, name); });
 }
 
 TomlDocument document_of(const SweepFile& sweep, const SweepPoint& point) {
   TomlDocument document = sweep.base;
-  for (const Setting& s : point.settings) document.set({s.key, s.where, 0, s.value});
+  for (const Setting& s : point.settings) document.set({s.key, s.where, 0, s.told});
   return document;
 }
 

@@ -15,8 +15,9 @@
 namespace hardbody {
 
 struct SweepFile {
-  TomlDocument whole;  ///< the base config with the grids: what the sweep directory keeps
-  TomlDocument base;   ///< the config of all points but for what the grids change
+  std::filesystem::path directory;  ///< of the sweep's file: what names of files in `whole` are relative to
+  TomlDocument whole;               ///< the base config with the grids: what the sweep directory keeps
+  TomlDocument base;  ///< the config of all points but for what the grids change; names of files are absolute
   std::vector<Grid> grids;
   std::optional<std::string> chain;  ///< the key along which points start from their neighbours
 };
@@ -27,6 +28,12 @@ SweepFile read_sweep(const std::filesystem::path& path);
 
 /// The same from a text; `name` is what messages call it, `directory` where a base is looked for.
 SweepFile parse_sweep(std::string_view text, const std::string& name, const std::filesystem::path& directory);
+
+/// The document of a sweep in `from` for a file in `to`: what names files relatively names the same files.
+TomlDocument moved(TomlDocument whole, const std::filesystem::path& from, const std::filesystem::path& to);
+
+/// The document of a sweep in that directory with absolute names of files, by which it is compared.
+TomlDocument absolute_files(TomlDocument whole, const std::filesystem::path& directory);
 
 /// The config of a point, as far as it is known without running it.
 TomlDocument document_of(const SweepFile& sweep, const SweepPoint& point);

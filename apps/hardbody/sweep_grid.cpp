@@ -15,10 +15,15 @@
 namespace hardbody {
 namespace {
 
+namespace fs = std::filesystem;
+
 /// Longer names of directories are replaced by numbers.
 constexpr std::size_t kLongestName = 120;
 
-/// Steps from here to there are rounded to this many digits: 0.1 + 2 * 0.1 is 0.3.
+/// Of a value with names of files, in messages.
+constexpr std::size_t kLongestShown = 300;
+
+/// Steps from here to there are rounded to this many digits: 0.1 + 2 * 0.1 is 0.3. Numbers that agree in them are one.
 constexpr int kDigits = 12;
 
 /// The last step may miss `to` by this share of a step.
@@ -84,9 +89,11 @@ std::string description(const SweepPoint& point) {
   return text;
 }
 
-/// What tells points apart.
+/// What tells points apart: not the last digits of a number, which are rounding. Integers (seeds) have none.
 std::string identity(const Value& value) {
-  if (is_numeric(value)) return toml_real(value.real);
+  const std::string number = fmt::format("{:.{}g}", value.real, kDigits);
+  if (value.kind == Value::Kind::real || (is_numeric(value) && number == fmt::format("{}", value.integer)))
+    return number;
   if (value.kind != Value::Kind::array) return toml_text(value);
   std::string text = "[";
   for (const Value& item : value.items) text += identity(item) + ",";
@@ -96,7 +103,7 @@ std::string identity(const Value& value) {
 std::string identity(const SweepPoint& point, std::string_view without = {}) {
   std::map<std::string, std::string> of_key;
   for (const Setting& s : point.settings) {
-    if (s.key != without) of_key[s.key] = identity(s.value);
+    if (s.key != without) of_key[s.key] = identity(s.told);
   }
   std::string text;
   for (const auto& [key, value] : of_key) text += fmt::format("{}={}\n", key, value);
@@ -158,7 +165,13 @@ SweepPoint point_of(const Grid& grid, std::size_t index) {
     const std::size_t at = index % group[0].values.size();
     index /= group[0].values.size();
     for (std::size_t k = group.size(); k-- > 0;) {
-      point.settings.push_back({group[k].key, group[k].where, group[k].values[at]});
+      const Axis& axis = group[k];
+      Setting setting{axis.key, axis.where, axis.values[at], axis.values[at]};
+      if (names_file(axis.key)) {
+        setting.told =
+            with_files(setting.value, [&](const fs::path& name) { return absolute_from(grid.directory, name); });
+      }
+      point.settings.push_back(std::move(setting));
     }
   }
   std::reverse(point.settings.begin(), point.settings.end());
@@ -181,7 +194,24 @@ void name_points(std::vector<SweepPoint>& points) {
 }  // namespace
 
 std::string Setting::assignment() const {
-  return fmt::format("{}={}", key, toml_text(value));
+  return fmt::format("{}={}", key, toml_text(told));
+}
+
+bool names_file(std::string_view key) {
+  return key == "start.file" || key == "system.start_from";
+}
+
+Value with_files(Value value, const std::function<fs::path(const fs::path&)>& renamed) {
+  const fs::path file = value.text;
+  // An empty name is the run's to refuse.
+  if (value.kind == Value::Kind::text && !file.empty() && file.is_relative()) value.text = renamed(file).string();
+  for (Value& item : value.items) item = with_files(std::move(item), renamed);
+  value.shown = one_line(toml_text(value), kLongestShown);
+  return value;
+}
+
+fs::path absolute_from(const fs::path& directory, const fs::path& name) {
+  return fs::absolute(directory / name).lexically_normal();
 }
 
 const Setting* SweepPoint::find(std::string_view key) const {

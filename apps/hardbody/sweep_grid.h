@@ -5,6 +5,8 @@
 #include "toml_document.h"
 
 #include <cstddef>
+#include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -26,15 +28,17 @@ using ZippedAxes = std::vector<Axis>;
 struct Grid {
   std::string where;  ///< file:line of its head
   std::vector<ZippedAxes> groups;
+  std::filesystem::path directory;  ///< what names of files are relative to
 };
 
 /// A key and the value that it has at a state point.
 struct Setting {
   std::string key;
   std::string where;  ///< of the axis
-  Value value;
+  Value value;        ///< as the grid has it
+  Value told;         ///< as a run takes it, wherever that is started: names of files are absolute
 
-  /// key=value, as --set takes it.
+  /// key=told, as --set takes it.
   std::string assignment() const;
 };
 
@@ -45,6 +49,15 @@ struct SweepPoint {
 
   const Setting* find(std::string_view key) const;
 };
+
+/// Whether the key (of a config, not [grid]) names a file or directory that a run reads.
+bool names_file(std::string_view key);
+
+/// The same value with another name for every relative name of a file in it.
+Value with_files(Value value, const std::function<std::filesystem::path(const std::filesystem::path&)>& renamed);
+
+/// Such a name as seen from everywhere.
+std::filesystem::path absolute_from(const std::filesystem::path& directory, const std::filesystem::path& name);
 
 /// All points, grid after grid. Throws InputError for lists of unequal lengths walked together, grids with different
 /// keys, a point that is there twice, and more points than kMostPoints.

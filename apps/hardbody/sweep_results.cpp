@@ -152,7 +152,11 @@ std::optional<PointResults> finished_results(const std::filesystem::path& direct
     if (summary.at("interrupted").get<bool>() || !summary.at("stalled").is_null()) return std::nullopt;
     return results_of(summary);
   } catch (const Json::exception&) {
-    throw std::runtime_error(fmt::format("{} is not one that a run has written", kSummaryFile));
+    const std::string name = directory.filename().string();
+    throw std::runtime_error(
+        fmt::format("{}/{} is not one that a run has written; accepted: delete the directory {}, and the same command "
+                    "runs the point again",
+                    name, kSummaryFile, name));
   }
 }
 

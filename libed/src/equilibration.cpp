@@ -20,7 +20,7 @@ using internal::StructureGrid;
 using internal::WaveVectors;
 
 /// Raised by every change of what save() writes.
-constexpr std::uint32_t kStateFormat = 2;
+constexpr std::uint32_t kStateFormat = 3;
 
 constexpr double kDecayed = 0.05;
 constexpr std::size_t kLeastSamples = 4;  ///< of a relaxation, one a time_unit
@@ -59,6 +59,9 @@ class EquilibrationMonitor::Impl {
       throw std::invalid_argument("EquilibrationMonitor: groups; accepted: numbers that add up to that of the bodies");
     }
     grid_ = internal::structure_grid(simulation.system());
+    packing_fraction_ = packing_fraction(simulation.system());
+    structure_.assign(grid_.shells(), 0);
+    structure_before_ = structure_;
     virial_ = simulation.virial();
     time_ = simulation.time();
     add_structure(origin_);
@@ -79,9 +82,9 @@ class EquilibrationMonitor::Impl {
 
   template <class Archive, class Self>
   static void fields(Archive& archive, Self& self) {
-    archive(self.state_, self.origin_, self.q_, self.grid_, self.structure_, self.frames_, self.Z_, self.S_,
-            self.Z_before_.value, self.Z_before_.error, self.S_before_.value, self.S_before_.error, self.virial_,
-            self.time_);
+    archive(self.state_, self.origin_, self.q_, self.grid_, self.packing_fraction_, self.structure_, self.frames_,
+            self.structure_before_, self.frames_before_, self.Z_, self.S_, self.Z_before_.value, self.Z_before_.error,
+            self.S_before_.value, self.S_before_.error, self.virial_, self.time_);
     expect(archive, self.fits(), "the equilibration does not fit together");
   }
 
@@ -92,17 +95,22 @@ class EquilibrationMonitor::Impl {
       if (vectors->size() != n) return false;
     }
     const bool grid = grid_.box > 0 && grid_.length > 0 && grid_.box < 1e6 * grid_.length;
-    return grid && structure_.size() == grid_.shells() && frames_ > 0 && Z_.size() == S_.size();
+    const bool sums = structure_.size() == grid_.shells() && structure_before_.size() == grid_.shells();
+    const bool frames = frames_ >= 0 && frames_before_ >= 0 && frames_ + frames_before_ > 0 && packing_fraction_ > 0 &&
+                        packing_fraction_ < 1;
+    return grid && sums && frames && Z_.size() == S_.size();
   }
 
-  /// Adds S(q) of a frame to that of the relaxation.
+  /// Adds S(q) of a frame to that of the relaxation, and looks for the peak in that and in the one before.
   void add_structure(const Snapshot& now) {
     if (!vectors_) vectors_.emplace(grid_, kFrom / grid_.length, kTo / grid_.length, kVectorsPerShell);
     const std::vector<double> S = vectors_->structure_factor(now.position, {0, now.position.size(), false});
-    structure_.resize(S.size());
     for (std::size_t k = 0; k < S.size(); ++k) structure_[k] += S[k];
     frames_ += 1;
-    state_.q = internal::first_peak(vectors_->wave_numbers(), structure_, grid_.length).q;
+    const double frames = frames_ + frames_before_;
+    std::vector<double> mean(S.size());
+    for (std::size_t k = 0; k < S.size(); ++k) mean[k] = (structure_[k] + structure_before_[k]) / frames;
+    state_.q = internal::likely_peak(*vectors_, mean, frames, grid_, packing_fraction_);
   }
 
   /// Z and S of the last time unit.
@@ -143,10 +151,11 @@ class EquilibrationMonitor::Impl {
     S_.clear();
     origin_ = now;
     q_ = state_.q;
+    // The frame at which one ends and the next begins has been counted.
+    structure_before_ = structure_;
+    frames_before_ = frames_;
     std::fill(structure_.begin(), structure_.end(), 0.0);
     frames_ = 0;
-    add_structure(now);
-    state_.q = q_;
   }
 
   std::vector<BodyRange> ranges_;  ///< of the groups
@@ -156,8 +165,11 @@ class EquilibrationMonitor::Impl {
   double q_ = 0;     ///< at which it is looked at
   StructureGrid grid_;
   std::optional<WaveVectors> vectors_;  ///< of the grid, once they have been used
-  std::vector<double> structure_;       ///< S(q), summed over the frames of the relaxation
+  double packing_fraction_ = 0;
+  std::vector<double> structure_;  ///< S(q), summed over the frames of the relaxation
   double frames_ = 0;
+  std::vector<double> structure_before_;  ///< of the one before
+  double frames_before_ = 0;
   std::vector<double> Z_, S_;  ///< of each time unit of the relaxation
   Estimate Z_before_, S_before_;
   double virial_ = 0;

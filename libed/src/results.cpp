@@ -27,6 +27,10 @@ double shared_data_factor(double lag, double length) {
   return std::sqrt(1 + 2 * f / (8 - 2 * f));
 }
 
+/// Blocks whose C2 at the longest lag differ by no more are of bodies that nothing turns: rounding leaves 1e-15 to
+/// 1e-12, one body in a million that a collision has turned 1e-7.
+constexpr double kUnturned = 1e-11;
+
 double alpha2(const LagSums& s) {
   return 3 * s.r4 * s.count / (5 * s.msd * s.msd) - 1;
 }
@@ -55,6 +59,7 @@ class Evaluation {
   Matrix3d pressure(const Totals& begin, const Totals& end, double kT, const Matrix3d& kinetic) const;
   LagSums sums_at(std::size_t lag, std::size_t group, const Block* one) const;
   bool three_axes(std::size_t group) const;
+  bool unturned(std::size_t group) const;
   double mean_rotation_axes(std::size_t group) const;
 
   /// A sum over origins as a mean, against lag; of one block, or (nullptr) of all.
@@ -313,6 +318,35 @@ bool Evaluation::three_axes(std::size_t group) const {
   return group == kAll ? ranges.size() == 1 && ranges[0].three_axes : ranges[group].three_axes;
 }
 
+/// Whether nothing turns the bodies, as with spheres, and in a gas in which nothing has met: all blocks then hold one
+/// and the same motion, and their scatter, which is rounding, is no error.
+bool Evaluation::unturned(std::size_t group) const {
+  std::vector<double> c2;
+  for (const Block* block : full_) {
+    const Curve all = curve(group, block, [](const LagSums& s) { return s.c2; });
+    if (!all.t.empty() && all.t.back() == measured_.lags.back()) c2.push_back(all.y.back());
+  }
+  if (c2.size() < 2) return false;
+  const auto [least, most] = std::minmax_element(c2.begin(), c2.end());
+  return *most - *least < kUnturned;
+}
+
+/// What depends on rotation alone has no known error then.
+void drop_rotational_errors(Correlations& results) {
+  const auto drop = [](Estimate& e) { e.error = kNothing; };
+  for (LagRow& row : results.lags) {
+    for (Estimate* e : {&row.rot_msd, &row.rot_msd_body, &row.c1, &row.c2, &row.wacf}) drop(*e);
+    for (auto* axes : {&row.rot_msd_axis, &row.c1_axis, &row.c2_axis}) {
+      std::for_each(axes->begin(), axes->end(), drop);
+    }
+  }
+  for (Estimate* e :
+       {&results.D_rot, &results.D_rot_body, &results.t_C2_1overe, &results.tau_C2, &results.beta_C2, &results.w2}) {
+    drop(*e);
+  }
+  for (auto* axes : {&results.D_rot_axis, &results.t_C2_1overe_axis}) std::for_each(axes->begin(), axes->end(), drop);
+}
+
 double Evaluation::mean_rotation_axes(std::size_t group) const {
   const std::vector<BodyGroup>& groups = measured_.options.groups;
   if (group != kAll) return groups[group].rotation_axes;
@@ -382,6 +416,7 @@ Correlations Evaluation::correlations(std::size_t group) const {
   const auto sums = [group](const Block& b) -> const FrameSums& { return group == kAll ? b.all : b.groups[group]; };
   results.v2 = frame_mean([&](const Block& b) { return sums(b).v2; });
   results.w2 = frame_mean([&](const Block& b) { return sums(b).w2; });
+  if (unturned(group)) drop_rotational_errors(results);
   if (!measured_.grid.known()) return results;
   const std::size_t part = group == kAll || measured_.ranges.size() == 1 ? 0 : group + 1;
   add_pairs(part, group == kAll ? measured_.options.number : measured_.ranges[group].size(), results);

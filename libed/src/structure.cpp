@@ -24,8 +24,15 @@ constexpr double kLargestQ = 12;    ///< in inverse lengths
 constexpr double kMostShells = 64;  ///< about as many
 constexpr double kPeakFrom = 1.5;   ///< in inverse lengths
 constexpr double kPeakTo = 7;
-constexpr int kTries = 12;        ///< to find a wave vector that is new
-constexpr int kFewBodies = 1000;  ///< whose pairs are all looked at: quicker than cells
+// Of the fit to Percus and Yevick's S(q).
+constexpr double kFittedFrom = 1;          ///< in inverse lengths
+constexpr double kScaleStep = 1.01;        ///< between two scales that are tried
+constexpr int kScaleSteps = 40;            ///< on either side of 1
+constexpr double kLogScaleStep = 0.00995;  ///< ln kScaleStep
+constexpr double kScaleSpread = 0.08;      ///< of ln s, from one shape of bodies to the next
+constexpr double kClearPeak = 5;           ///< standard errors by which that has to stand out
+constexpr int kTries = 12;                 ///< to find a wave vector that is new
+constexpr int kFewBodies = 1000;           ///< whose pairs are all looked at: quicker than cells
 
 constexpr std::size_t kAtATime = 512;  ///< bodies whose phases are tabulated at once
 constexpr int kLargestPower = 500;     ///< of a phase
@@ -266,6 +273,94 @@ Peak first_peak(const std::vector<double>& q, const std::vector<double>& S, doub
   const double x = -slope / (2 * curvature);
   if (!(curvature < 0) || x < left || x > right) return peak;
   return {q[top] + x, S[top] + 0.5 * slope * x};
+}
+
+// ---- The first peak of noisy data
+
+double percus_yevick(double q, double packing_fraction) {
+  const double eta = packing_fraction;
+  const double x = 2 * q;
+  const auto [sin, cos] = sincos(x);
+  const double x2 = x * x;
+  const double close = (1 - eta) * (1 - eta);
+  const double a = (1 + 2 * eta) * (1 + 2 * eta) / (close * close);
+  const double b = -(1 + eta / 2) * (1 + eta / 2) / (close * close);
+  const double first = a * (sin - x * cos) / (x2 * x);
+  const double second = -6 * eta * b * (x2 * cos - 2 * x * sin - 2 * cos + 2) / (x2 * x2);
+  const double third =
+      -0.5 * eta * a * ((x2 * x2 - 12 * x2 + 24) * cos + (24 * x - 4 * x2 * x) * sin - 24) / (x2 * x2 * x2);
+  return 1 / (1 + 24 * eta * (first + second + third));
+}
+
+namespace {
+
+/// The top of Percus and Yevick's first peak.
+double percus_yevick_peak(double packing_fraction) {
+  std::vector<double> q, S;
+  // From 2.88 in a gas to 4 beyond all fluids.
+  for (double x = 2.5; x < 4.5; x += 0.05) {
+    q.push_back(x);
+    S.push_back(percus_yevick(x, packing_fraction));
+  }
+  return first_peak(q, S, 1).q;
+}
+
+/// The sum of squares that the best height leaves, in units of the scatter, and what is expected of the scale.
+double misfit(const WaveVectors& vectors, const std::vector<double>& S, double frames, double length,
+              double packing_fraction, double scale, int step) {
+  double tt = 0, ty = 0, yy = 0;
+  for (std::size_t k = 0; k < S.size(); ++k) {
+    const double q = vectors.wave_numbers()[k] * length;
+    if (q < kFittedFrom || q > kPeakTo) continue;
+    const double weight = frames * static_cast<double>(vectors.number(k));
+    const double t = percus_yevick(q / scale, packing_fraction) - 1;
+    tt += weight * t * t;
+    ty += weight * t * (S[k] - 1);
+    yy += weight * (S[k] - 1) * (S[k] - 1);
+  }
+  const double off = step * kLogScaleStep / kScaleSpread;
+  return yy - (ty > 0 ? ty * ty / tt : 0) + off * off;
+}
+
+/// By how much the peak is stretched: the least misfit, with a parabola through its neighbours.
+double best_scale(const WaveVectors& vectors, const std::vector<double>& S, double frames, double length,
+                  double packing_fraction) {
+  std::vector<double> scales = {1};
+  for (int k = 0; k < kScaleSteps; ++k) {
+    scales.insert(scales.begin(), scales.front() / kScaleStep);
+    scales.push_back(scales.back() * kScaleStep);
+  }
+  std::vector<double> misfits;
+  for (int k = 0; k < static_cast<int>(scales.size()); ++k) {
+    misfits.push_back(
+        misfit(vectors, S, frames, length, packing_fraction, scales[static_cast<std::size_t>(k)], k - kScaleSteps));
+  }
+  const auto best = static_cast<std::size_t>(std::min_element(misfits.begin(), misfits.end()) - misfits.begin());
+  if (best == 0 || best + 1 == misfits.size()) return scales[best];
+  const double bend = misfits[best - 1] - 2 * misfits[best] + misfits[best + 1];
+  const double shift = bend > 0 ? 0.5 * (misfits[best - 1] - misfits[best + 1]) / bend : 0;
+  return scales[best] * (1 + shift * (kScaleStep - 1));
+}
+
+/// Whether a peak of S(q) stands out of its scatter.
+bool is_clear(const WaveVectors& vectors, double frames, const Peak& peak) {
+  const std::vector<double>& q = vectors.wave_numbers();
+  std::size_t nearest = 0;
+  for (std::size_t k = 0; k < q.size(); ++k) {
+    if (std::abs(q[k] - peak.q) < std::abs(q[nearest] - peak.q)) nearest = k;
+  }
+  const double error = peak.S / std::sqrt(frames * static_cast<double>(vectors.number(nearest)));
+  return peak.S - 1 > kClearPeak * error;
+}
+
+}  // namespace
+
+double likely_peak(const WaveVectors& vectors, const std::vector<double>& S, double frames, const StructureGrid& grid,
+                   double packing_fraction) {
+  const Peak peak = first_peak(vectors.wave_numbers(), S, grid.length);
+  if (is_clear(vectors, frames, peak)) return peak.q;
+  return best_scale(vectors, S, frames, grid.length, packing_fraction) * percus_yevick_peak(packing_fraction) /
+         grid.length;
 }
 
 // ---- Pairs

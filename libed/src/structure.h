@@ -57,6 +57,9 @@ class WaveVectors {
   /// The mean of each shell; 0 of an empty one.
   const std::vector<double>& wave_numbers() const { return wave_numbers_; }
 
+  /// How many vectors a shell has.
+  std::size_t number(std::size_t shell) const { return vectors_[shell].size(); }
+
   /// S(q) = <|sum of exp(i q.r)|^2> / n over the vectors of each shell, n the bodies of the range.
   std::vector<double> structure_factor(const std::vector<Eigen::Vector3d>& positions, BodyRange range) const;
 
@@ -80,5 +83,17 @@ struct Peak {
 /// The first peak: the highest value between 1.5 and 7 inverse lengths, where fluids have it, refined by the parabola
 /// through it and its neighbours. NaN without values.
 Peak first_peak(const std::vector<double>& q, const std::vector<double>& S, double length);
+
+/// S(q) of hard spheres of radius 1 at a packing fraction below 1, in Percus and Yevick's approximation: Wertheim,
+/// Phys. Rev. Lett. 10 (1963) 321. For q not much below 1, where its terms cancel.
+double percus_yevick(double q, double packing_fraction);
+
+/// Where S(q) has its first peak as well as can be said after few frames: of S(q), the mean over so many frames at
+/// those vectors. It is first_peak if that is higher than 1 by five standard errors (that of n vectors in m frames is
+/// S / sqrt(n m)). Otherwise, where the highest value is chance, Percus and Yevick's S(q) of spheres with the bodies'
+/// mean volume, at their packing fraction, is stretched along q and scaled in height, 1 + a (S_PY(q / s) - 1), until it
+/// fits best between 1 and 7 inverse lengths; ln s is 0 +- 0.08 if S(q) says nothing. It is the top of that.
+double likely_peak(const WaveVectors& vectors, const std::vector<double>& S, double frames, const StructureGrid& grid,
+                   double packing_fraction);
 
 }  // namespace ed::internal

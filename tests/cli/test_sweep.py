@@ -338,6 +338,92 @@ class Chains(SweepCase):
         self.assertEqual(self.hardbody("check", "on").returncode, 0)
 
 
+class Files(SweepCase):
+    """What points start from is named relative to the file of the sweep, wherever that is called and its points run."""
+
+    BASE = 'seed = 3\n[equilibration]\ntime = 0\n[production]\ntime = 1\n'
+
+    def setUp(self):
+        super().setUp()
+        os.makedirs(self.path("project/states"))
+        os.makedirs(self.path("elsewhere"))
+        for name, seed in [("first", 3), ("second", 4)]:
+            self.run_small(f"project/{name}", "--set", f"seed={seed}", "--set", 'output.trajectory=["gsd"]')
+            shutil.copy(self.path(f"project/{name}/trajectory.gsd"), self.path(f"project/states/{name}.gsd"))
+
+    def call(self, cwd, sweep, *arguments):
+        return subprocess.run([HARDBODY, "sweep", sweep, *arguments], cwd=self.path(cwd), capture_output=True, text=True,
+                              timeout=120, stdin=subprocess.DEVNULL)
+
+    def assert_all_done(self, result, out="project/out"):
+        self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+        self.assertEqual(set(self.statuses(out)), {"done"})
+
+    def assert_goes_on(self, out="project/out"):
+        """Called from another directory, and with the whole project at another place: the same sweep, the same points."""
+        before = self.without_timing(out)
+        victim = next(n for n in sorted(os.listdir(self.path(out))) if "=" in n)
+        for cwd, place in [("elsewhere", "project"), ("elsewhere", "moved")]:
+            if not os.path.exists(self.path(place)):
+                os.rename(self.path("project"), self.path(place))
+            shutil.rmtree(self.path(f"{place}/out/{victim}"))
+            self.assert_all_done(self.call(cwd, f"../{place}/sweep.toml", "--out", f"../{place}/out"), f"{place}/out")
+            self.assertEqual(self.without_timing(f"{place}/out"), before)
+        # The sweep as it is kept in its directory is one, too.
+        self.assert_all_done(self.call(".", "moved/out/sweep.toml", "--out", "moved/out"), "moved/out")
+
+    def log_of(self, name):
+        return self.read(f"project/out/{name}/log.txt")
+
+    def test_of_the_base(self):
+        self.write("project/sweep.toml", self.BASE + '[start]\nfile = "states/first.gsd"\n[grid]\nstart.frame = [0, 1]\n')
+        self.assert_all_done(self.call("project", "sweep.toml", "--out", "out"))
+        self.assertIn(self.path("project/states/first.gsd"), self.read("project/out/frame=0/config.toml"))
+        self.assert_goes_on()
+
+    def test_of_a_base_in_another_file(self):
+        self.write("project/states/run.toml", self.BASE + '[start]\nfile = "first.gsd"\n')
+        self.write("project/sweep.toml", 'base = "states/run.toml"\n[grid]\nstart.frame = [0, 1]\n')
+        self.assert_all_done(self.call(".", "project/sweep.toml", "--out", "project/out"))
+        self.assert_goes_on()
+
+    def test_of_the_grid(self):
+        for grid in ['[grid]\nstart.file = ["states/first.gsd", "states/second.gsd"]\n',
+                     '[grid.start]\nfile = ["states/first.gsd", "states/second.gsd"]\n']:
+            with self.subTest(grid):
+                self.write("project/sweep.toml", self.BASE + grid)
+                self.assert_all_done(self.call("project", "sweep.toml", "--out", "out"))
+                self.assertEqual([row["start.file"] for row in self.table("project/out")], ["states/first.gsd", "states/second.gsd"])
+                self.assertIn(self.path("project/states/second.gsd"), self.read("project/out/file=states-second.gsd/config.toml"))
+                self.assert_goes_on()
+                os.rename(self.path("moved"), self.path("project"))
+                shutil.rmtree(self.path("project/out"))
+
+    def test_of_the_first_of_a_chain(self):
+        base = SMALL.replace("packing_fraction = 0.2\n", 'start_from = "first"\n')
+        chain = 'chain = "system.packing_fraction"\n' + base + "[grid]\nsystem.packing_fraction = [0.2, 0.21]\n"
+        self.write("project/sweep.toml", chain)
+        self.assert_all_done(self.call("project", "sweep.toml", "--out", "out"))
+        self.assertIn(f"start: the last state of {self.path('project/first')}", self.log_of("packing_fraction=0.2"))
+        self.assertIn(f"start: the last state of {self.path('project/out/packing_fraction=0.2')}", self.log_of("packing_fraction=0.21"))
+        self.assert_goes_on()
+        self.write("moved/sweep.toml", 'seed = 3\n' + SMALL.replace("seed = 3\n", "").replace("packing_fraction = 0.2\n", "")
+                   + '[grid]\nsystem.packing_fraction = [0.2]\nsystem.start_from = ["first", "second"]\n')
+        self.assert_all_done(self.call("moved", "sweep.toml", "--out", "of_the_grid"), "moved/of_the_grid")
+
+    def test_one_file_by_two_names(self):
+        self.write("project/sweep.toml", self.BASE + '[grid]\nstart.file = ["states/first.gsd", "./states/first.gsd"]\n')
+        self.assert_refused(self.call(".", "project/sweep.toml"), "is there twice")
+
+    def test_another_file_of_the_same_name(self):
+        text = self.BASE + '[start]\nfile = "states/first.gsd"\n[grid]\nstart.frame = [0]\n'
+        self.write("project/sweep.toml", text)
+        self.assert_all_done(self.call("project", "sweep.toml", "--out", "out"))
+        shutil.copytree(self.path("project/states"), self.path("elsewhere/states"))
+        self.write("elsewhere/sweep.toml", text)
+        self.assert_refused(self.call("elsewhere", "sweep.toml", "--out", "../project/out"), "start.file is", "elsewhere/states/first.gsd")
+
+
 class Failures(SweepCase):
     TOO_DENSE = SMALL + "[grid]\nsystem.packing_fraction = [0.1, 0.75, 0.2]\n"
 
@@ -366,6 +452,20 @@ class Failures(SweepCase):
         message = [row["message"] for row in self.table() if row["message"]]
         self.assertRegex(message[0], "the compression got stuck at 0.61[0-9]* of 0.62; a lower value is needed")
         self.assertIn("failed: seed=", result.stdout)
+
+    def test_summary_that_is_none(self):
+        """What is to be done about it works."""
+        text = SMALL + "[grid]\nseed = [1, 2]\n"
+        self.assertEqual(self.sweep(text).returncode, 0)
+        before = self.without_timing()
+        self.write("out/seed=2/summary.json", "garbage")
+        result = self.sweep(text)
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("seed=2/summary.json is not one that a run has written; accepted: delete the directory seed=2, and the same "
+                      "command runs the point again", self.table()[1]["message"])
+        shutil.rmtree(self.path("out/seed=2"))
+        self.assertEqual(self.sweep(text).returncode, 0)
+        self.assertEqual(self.without_timing(), before)
 
     def test_full_disk(self):
         """Points whose checkpoint does not fit fail; those that were done stay; with room again all is as it should be."""
@@ -415,6 +515,8 @@ class Refused(SweepCase):
         self.refuse(SMALL, "sweep.toml: has no [grid]")
         self.refuse(SMALL + "[grid]\n", "sweep.toml:13: the grid has no keys")
         self.refuse(SMALL + axis + "[0.1, 0.2, 0.1]\n", "packing_fraction = 0.1 is there twice")
+        self.refuse(SMALL + axis + "[0.1, 0.1000000000000001]\n", "packing_fraction = 0.1000000000000001 is there twice")
+        self.refuse(SMALL + "[grid]\nshape.semi_axes = [[1, 1, 0.3], [1, 1.0, 0.30000000000000004]]\n", "is there twice")
         self.refuse(SMALL + axis + "[]\n", "system.packing_fraction is []", "sweep.toml:14")
         self.refuse(SMALL + axis + "{from = 0.1, to = 0.2}\n", "sweep.toml:14", "{from, to, step}")
         self.refuse(SMALL + axis + "{from = 0.1, to = 0.2, step = -0.1}\n", "sweep.toml:14", "a step that leads")
@@ -563,6 +665,42 @@ class Maps(SweepCase):
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertIn("map_D.svg, map_D.csv written from 106 points", result.stdout)
         self.assertEqual(len({row["level"] for row in self.lines("map_D.csv")}), 6)
+
+    def test_points_that_are_not_done(self):
+        """An unsound point has values in the table, which are no results; a failed one of no value is not counted."""
+        rows = [(x, y, f"{x + y}", "done") for x in range(4) for y in range(4)]
+        rows[5] = (1, 1, "1000", "failed")
+        rows[6] = (1, 2, "", "failed")
+        rows[15] = (3, 3, "-1000", "stopped")
+        self.write("states.csv", "\n".join(["x,y,D,status", *(",".join(map(str, row)) for row in rows)]) + "\n")
+        result = self.hardbody("map", "states.csv", "--x", "x", "--y", "y", "--value", "D", "--levels", "0.5,3.5", "--csv", "a.csv")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("written from 13 points; 2 left out, whose status is not done\n", result.stdout)
+        for row in self.lines("a.csv"):
+            self.assertAlmostEqual(float(row["x"]) + float(row["y"]), float(row["level"]), delta=1e-5)
+        # A table of something else.
+        self.write("states.csv", self.read("states.csv").replace("done", "fine").replace("failed", "bad").replace("stopped", "bad"))
+        result = self.hardbody("map", "states.csv", "--x", "x", "--y", "y", "--value", "D", "--levels", "0.5")
+        self.assertIn("written from 15 points\n", result.stdout)
+
+    def test_points_on_a_line_are_refused(self):
+        """As of a sweep of zipped keys: there is no plane."""
+        for rows in [[(x, 2 * x, x) for x in range(5)], [(1, y, y) for y in range(5)], [(x, 1, x) for x in range(5)]]:
+            self.write("line.csv", "\n".join(["x,y,D", *(",".join(map(str, row)) for row in rows)]) + "\n")
+            result = self.hardbody("map", "line.csv", "--x", "x", "--y", "y", "--value", "D", "--out", "a.svg", "--csv", "a.csv")
+            self.assert_refused(result, "line.csv: D is known at 5 points with", "no line can be drawn", "accepted: two values of x")
+            self.assertFalse(os.path.exists(self.path("a.svg")))
+
+    def test_conditions_are_numbers(self):
+        text = self.read("table.csv").replace(",seed,", ",mass,")
+        self.write("table.csv", "\n".join(line.replace(",2,", ",0.5,", 1) for line in text.splitlines()) + "\n")
+        for condition in ["mass=0.5", "mass=0.50", "mass=5e-1", "mass=0.5,equilibrated=true"]:
+            with self.subTest(condition):
+                options = [option for one in condition.split(",") for option in ("--where", one)]
+                result = self.map("--value", "D", *options)
+                self.assertEqual(result.returncode, 0, result.stderr)
+                self.assertIn("written from 106 points", result.stdout)
+        self.assert_refused(self.map("--value", "D", "--where", "mass=half"), "--where mass=half: no row")
 
     def test_of_a_sweep(self):
         self.assertEqual(self.sweep(SMALL + GRID).returncode, 0)

@@ -22,9 +22,9 @@ using Eigen::Vector3d;
 /// Sums over some thousand terms of order 1, and positions of order 100 that differ by 1.
 constexpr double kRounding = 1e-11;
 
-/// 27 bodies on a grid, 200 apart, with random orientations, velocities and temperatures of exactly 1.
-ed::System free_bodies(double aspect_ratio, Inertia inertia, std::uint64_t seed) {
-  ed::System system = ed_test::grid(ed_test::species(aspect_ratio, inertia), 3, 200);
+/// 27 bodies on a grid, with random orientations, velocities and temperatures of exactly 1; 200 apart they do not meet.
+ed::System free_bodies(double aspect_ratio, Inertia inertia, std::uint64_t seed, double spacing = 200) {
+  ed::System system = ed_test::grid(ed_test::species(aspect_ratio, inertia), 3, spacing);
   ed::Random random(seed);
   for (ed::Body& body : system.bodies) {
     body.rotation = random.rotation();
@@ -93,6 +93,42 @@ TEST(Observables, FreeFlightIsNotDiffusion) {
   EXPECT_TRUE(std::isnan(results.Z.value));
   EXPECT_TRUE(std::isnan(results.tau_C2.value));
   EXPECT_TRUE(std::isnan(results.beta_C2.value));
+}
+
+TEST(Observables, OfBodiesThatNothingTurnsHaveNoRotationalErrors) {
+  // Blocks hold the same motion again and again; their scatter of 1e-15 would pass for an error.
+  const ed::System system = free_bodies(1, Inertia::uniform, 5);
+  const ed::Results results = measured(system, {system.size(), 20, 1}, 20);
+  ASSERT_GT(results.lags.size(), 10U);
+  for (const ed::LagRow& row : results.lags) {
+    for (const ed::Estimate& e : {row.c1, row.c2, row.rot_msd, row.rot_msd_body, row.wacf}) {
+      EXPECT_TRUE(std::isfinite(e.value));
+      EXPECT_TRUE(std::isnan(e.error)) << e.error;
+    }
+    EXPECT_TRUE(std::isfinite(row.msd.error));
+  }
+  EXPECT_TRUE(std::isfinite(results.t_C2_1overe.value));
+  EXPECT_TRUE(std::isnan(results.t_C2_1overe.error));
+}
+
+TEST(Observables, OfSpheresThatMeetHaveNoRotationalErrorsEither) {
+  const auto results_of = [](double aspect_ratio) {
+    ed::Simulation simulation(free_bodies(aspect_ratio, Inertia::uniform, 6, 4));
+    ed::Observables observables({27, 40, 1});
+    while (observables.next_time() <= 40) {
+      simulation.run_until(observables.next_time());
+      observables.measure(simulation);
+    }
+    simulation.run_until(40);
+    EXPECT_GT(simulation.counters().collisions, 20U);
+    return observables.results(simulation);
+  };
+  const ed::Results spheres = results_of(1);
+  EXPECT_TRUE(std::isnan(spheres.lags.back().c2.error)) << spheres.lags.back().c2.error;
+  EXPECT_GT(spheres.lags.back().msd.error, 1e-6);
+  // Bodies that collisions turn, rarely though, have theirs.
+  const ed::Results spheroids = results_of(1.2);
+  EXPECT_GT(spheroids.lags.back().c2.error, 1e-6);
 }
 
 TEST(Observables, SpinIsNoRotationalDisplacement) {

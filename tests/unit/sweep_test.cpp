@@ -264,6 +264,34 @@ TEST(Contours, RaggedEdgesEndTheLine) {
   for (const hardbody::PlanePoint& p : lines[0]) EXPECT_LT(p.x + p.y, 0.86);
 }
 
+TEST(Contours, StepsOfARaggedEdgeDoNotCutTheLine) {
+  // Columns end three rows higher, each: between their ends triangles fan out. The line runs along the edge.
+  std::vector<Sample> samples;
+  const auto top = [](int i) { return 3 * i + 1; };
+  for (int i = 0; i < 6; ++i) {
+    for (int j = 0; j <= top(i); ++j) samples.push_back({i * 1.0, j * 1.0, j - 3.0 * i});
+  }
+  for (const double level : {0.5, -0.5}) {
+    const auto lines = contour_lines(lattice_of(samples), level);
+    ASSERT_EQ(lines.size(), 1u) << level;
+    EXPECT_NEAR(std::abs(lines[0].front().x - lines[0].back().x), 5, 0.2);
+    for (const hardbody::PlanePoint& p : lines[0]) EXPECT_NEAR(p.y - 3 * p.x, level, 1e-12);
+  }
+  // So at the lower edge.
+  for (Sample& s : samples) s.y = -s.y;
+  EXPECT_EQ(contour_lines(lattice_of(samples), 0.5).size(), 1u);
+}
+
+TEST(Contours, HighStepsDo) {
+  // A column that ends after its first two rows says nothing of what is far above.
+  std::vector<Sample> samples = {{1, 0, 0}, {1, 1, 1}};
+  for (const double x : {0.0, 2.0}) {
+    for (int j = 0; j <= 20; ++j) samples.push_back({x, j * 1.0, j * 1.0});
+  }
+  EXPECT_EQ(contour_lines(lattice_of(samples), 0.5).size(), 1u);
+  EXPECT_TRUE(contour_lines(lattice_of(samples), 15.5).empty());
+}
+
 TEST(Contours, HolesAreFilledAlongY) {
   const auto hole = [](double x, double y) { return std::abs(x - 0.5) < 0.01 && std::abs(y) < 0.55; };
   const auto plane = [](double x, double y) { return x + 2 * y; };

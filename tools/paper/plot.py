@@ -42,6 +42,7 @@ class Panel:
         self.x, self.y = x, y
         self.box = box
         self.parts = []
+        self.taken = []  # rectangles of labels: left, top, right, bottom
         self._frame(x_name, y_name)
 
     def _at(self, x, y):
@@ -94,19 +95,60 @@ class Panel:
                 low, high = self._at(x, ends[0]), self._at(x, ends[1])
                 self._add(f'<path d="M{low[0]:.1f} {low[1]:.1f}V{high[1]:.1f}" stroke="{colour}"/>')
 
-    def label(self, x, y, text, colour="black", size=11, anchor="middle", shift=(0, -3)):
-        at = self._at(x, y)
-        self._add(f'<text x="{at[0] + shift[0]:.1f}" y="{at[1] + shift[1]:.1f}" text-anchor="{anchor}" font-size="{size}" '
-                  f'fill="{colour}" stroke="white" stroke-width="3" paint-order="stroke">{escape(text)}</text>')
+    def on_drawing(self, points, step=3.0):
+        """The line in pixels, a point every few of them; points outside of the panel are left out."""
+        path = [self._at(x, y) for x, y in points if self.x.contains(x) and self.y.contains(y)]
+        fine = path[:1]
+        for a, b in zip(path, path[1:]):
+            pieces = max(1, math.ceil(math.dist(a, b) / step))
+            fine += [(a[0] + (b[0] - a[0]) * k / pieces, a[1] + (b[1] - a[1]) * k / pieces) for k in range(1, pieces + 1)]
+        return fine
+
+    def label(self, places, text, colour, avoided=(), size=11):
+        """At the first of the places (in pixels, the middle of the text) that has room inside the panel, beside all other labels and
+        all points to be avoided; whether there is one."""
+        left, top, right, bottom = self.box
+        half, high = 3.2 * size / 11 * len(text) + 2, 0.5 * size + 1
+        for x, y in places:
+            x = min(max(x, left + half + 1), right - half - 1)  # lines end at the frame
+            box = (x - half, y - high, x + half, y + high)
+            if box[1] < top or box[3] > bottom or any(_overlap(box, other) for other in self.taken):
+                continue
+            if any(box[0] < px < box[2] and box[1] < py < box[3] for px, py in avoided):
+                continue
+            self.taken.append(box)
+            self._add(f'<rect x="{box[0] + 1:.1f}" y="{box[1] + 1:.1f}" width="{2 * half - 2:.1f}" height="{2 * high - 2:.1f}" fill="white"/>')
+            self._add(f'<text x="{x:.1f}" y="{y + 0.36 * size:.1f}" text-anchor="middle" font-size="{size}" fill="{colour}">{escape(text)}</text>')
+            return True
+        return False
+
+    def _sample(self, x, y, colour, dashes):
+        """Of a line, or of marks ("open", "filled"), 26 pixels wide."""
+        if dashes in ("open", "filled"):
+            self._add(f'<circle cx="{x + 13:.1f}" cy="{y:.1f}" r="3" stroke="{colour}" fill="{colour if dashes == "filled" else "white"}"/>')
+        else:
+            self._add(f'<path d="M{x:.1f} {y:.1f}h26" stroke="{colour}" stroke-width="1.8" stroke-dasharray="{dashes}"/>')
 
     def legend(self, entries, corner=(0.03, 0.05)):
-        """(text, colour, dashes) below each other, from a corner given in shares of the panel."""
+        """(text, colour, dashes) below each other, from a corner given in shares of the panel; where nothing is drawn."""
         left, top, right, bottom = self.box
         x, y = left + corner[0] * (right - left), top + corner[1] * (bottom - top)
         for text, colour, dashes in entries:
-            self._add(f'<path d="M{x:.1f} {y:.1f}h26" stroke="{colour}" stroke-width="1.8" stroke-dasharray="{dashes}"/>')
+            self._sample(x, y, colour, dashes)
             self._add(f'<text x="{x + 32:.1f}" y="{y + 4.5:.1f}">{escape(text)}</text>')
             y += 18
+
+    def legend_above(self, entries, width=190):
+        """Beside each other above the panel."""
+        x, y = self.box[0] + 20, self.box[1] - 16
+        for text, colour, dashes in entries:
+            self._sample(x, y, colour, dashes)
+            self._add(f'<text x="{x + 32:.1f}" y="{y + 4.5:.1f}">{escape(text)}</text>')
+            x += width
+
+
+def _overlap(a, b):
+    return a[0] < b[2] and b[0] < a[2] and a[1] < b[3] and b[1] < a[3]
 
 
 def drawing(*panels, height=HEIGHT):

@@ -25,7 +25,7 @@ SHORTEST_LAG = 0.02
 DECAYED = 0.01  # of both; the curves go on for a few lags beyond
 
 
-def _short(value, digits=6):
+def short(value, digits=6):
     """A number in few characters; empty for null."""
     return "" if value is None or not math.isfinite(value) else f"{value:.{digits}g}"
 
@@ -41,21 +41,21 @@ def point_row(summary, point):
     """A row of points.csv from a run's summary.json."""
     row = {"X0": f"{point.X0:g}", "phi": f"{point.phi:g}", "seed": str(summary["seed"]),
            "number": str(summary["state"]["number"]),
-           "equilibration_time": _short(summary["time"]["equilibration"]),
-           "production_time": _short(summary["time"]["production"])}
+           "equilibration_time": short(summary["time"]["equilibration"]),
+           "production_time": short(summary["time"]["production"])}
     for name in OBSERVABLES:
         estimate = summary["observables"][name]
-        row[name] = _short(estimate["value"])
-        row[name + "_error"] = _short(estimate["error"], 3)
-    row["q"] = _short(summary["wave_numbers"][0])
+        row[name] = short(estimate["value"])
+        row[name + "_error"] = short(estimate["error"], 3)
+    row["q"] = short(summary["wave_numbers"][0])
     for fit in ("C2", "F"):
         window = summary["fit_windows"][fit] or [None, None]
-        row[fit + "_fit_from"], row[fit + "_fit_to"] = _short(window[0], 4), _short(window[1], 4)
+        row[fit + "_fit_from"], row[fit + "_fit_to"] = short(window[0], 4), short(window[1], 4)
     row["equilibrated"] = str(summary["equilibrated"]).lower()
     row["precise"] = str(_is_precise(summary["observables"], point)).lower()
     row["sound"] = str(summary["sound"]).lower()
     row["collisions"] = str(summary["counters"]["collisions"])
-    row["wall_seconds"] = _short(summary["performance"]["total_wall_seconds"], 4)
+    row["wall_seconds"] = short(summary["performance"]["total_wall_seconds"], 4)
     row["version"] = summary["version"]
     return row
 
@@ -80,8 +80,8 @@ def curve_rows(directory, point):
         last = t
         values = [float(c["c2"]), float(c["c2_error"] or "nan"), float(f["f_self_q1"]), float(f["f_self_q1_error"] or "nan")]
         decayed += abs(values[0]) < DECAYED and abs(values[2]) < DECAYED
-        rows.append({"X0": f"{point.X0:g}", "phi": f"{point.phi:g}", "t": _short(t, 4), "C2": _short(values[0], 4),
-                     "C2_error": _short(values[1], 2), "F_self": _short(values[2], 4), "F_self_error": _short(values[3], 2)})
+        rows.append({"X0": f"{point.X0:g}", "phi": f"{point.phi:g}", "t": short(t, 4), "C2": short(values[0], 4),
+                     "C2_error": short(values[1], 2), "F_self": short(values[2], 4), "F_self_error": short(values[3], 2)})
     return rows
 
 

@@ -43,7 +43,8 @@ def _fixed_time(point):
     """Where velocities, or angular velocities, are correlated for so long that the lags of an "auto" production, 15 time
     units where equilibration is quick, are too short for diffusion: a production with lags up to 40. The same where
     precision would take hours. Else nothing."""
-    turns_freely = point.X0 != 1 and (0.85 < point.X0 < 1.18 or (0.75 < point.X0 < 1.3 and point.phi < 0.35))
+    turns_freely = point.X0 != 1 and (0.85 < point.X0 < 1.18 or (0.75 < point.X0 < 1.3 and point.phi < 0.35)
+                                      or (0.62 < point.X0 < 1.45 and point.phi <= 0.2))
     if grid.is_late(point):
         return LATE_PRODUCTION
     if point.phi > 0.1 and not turns_freely:
@@ -97,7 +98,7 @@ class Stop:
 
 
 class Study:
-    def __init__(self, program, out, results, jobs, quick=False):
+    def __init__(self, program, out, results, jobs, quick=False, costs=None):
         self.program = str(pathlib.Path(program).resolve())
         self.out = pathlib.Path(out).resolve()
         self.results = results
@@ -106,7 +107,9 @@ class Study:
         self.running = {}  # process -> point
         self.failed = []
         self.begun = time.monotonic()
-        self.done_here = 0
+        self.pending = []
+        self.costs = dict(costs or {})  # seconds of a core that points took elsewhere
+        self.spent = {}  # here
 
     def directory(self, point):
         return self.out / point.name
@@ -140,10 +143,10 @@ class Study:
         if status == 0 and self.is_finished(point):
             summary = self.results.take(self.directory(point), point)
             shutil.rmtree(self.directory(point))
-            self.done_here += 1
+            self.spent[point] = summary["performance"]["total_wall_seconds"]
             self.say(f"{point.name}: D_trans {_shown(summary, 'D_trans')}, D_rot {_shown(summary, 'D_rot')}, "
                      f"S {_shown(summary, 'S')}{'' if summary['equilibrated'] else ', not equilibrated'}, "
-                     f"{summary['performance']['total_wall_seconds']:.0f} s")
+                     f"{self.spent[point]:.0f} s{self.eta()}")
             return
         text = (self.out / f"{point.name}.log").read_text(encoding="utf-8", errors="replace").strip().splitlines()
         if status == 2 and any("another hardbody process" in line for line in text[-3:]):
@@ -156,6 +159,31 @@ class Study:
     def say(self, text):
         seconds = time.monotonic() - self.begun
         print(f"[{seconds / 60:7.1f} min, {len(self.results.points)} points] {text}", flush=True)
+
+    def seconds_left(self):
+        """Of a core, for what is pending or running: by what points took elsewhere, times how much longer they take here, or else by the
+        mean of those done here; nothing where nothing is known. What running ones have done already is not taken off."""
+        left = [*self.pending, *self.running.values()]
+        both = [p for p in self.spent if p in self.costs]
+        slower = sum(self.spent[p] for p in both) / sum(self.costs[p] for p in both) if both else 1.0
+        known = {p: slower * self.costs[p] for p in left if p in self.costs} if self.costs else {}
+        samples = [*self.spent.values()] or [slower * c for c in self.costs.values()]
+        if not samples:
+            return None
+        return sum(known.get(p, sum(samples) / len(samples)) for p in left)
+
+    def eta(self):
+        seconds = self.seconds_left()
+        if not seconds:
+            return ""
+        return f"; {len(self.pending) + len(self.running)} points left, ETA {_duration(seconds / self.jobs)}"
+
+    def say_cost(self, points):
+        self.say(f"{len(self.pending)} of {len(points)} points to run, {self.jobs} at a time")
+        seconds = self.seconds_left()
+        if seconds:
+            self.say(f"by the times of those in docs/paper they cost about {_duration(seconds)} of one core, here about "
+                     f"{_duration(seconds / self.jobs)}")
 
     def reap(self):
         for process in [p for p in self.running if p.poll() is not None]:
@@ -170,13 +198,13 @@ class Study:
 
     def run(self, points, stop):
         """Whether all points are done."""
-        pending = [p for p in points if p not in self.results.points]
-        self.say(f"{len(pending)} of {len(points)} points to run, {self.jobs} at a time")
+        self.pending = [p for p in points if p not in self.results.points]
+        self.say_cost(points)
         with alone_in(self.out):
             try:
-                while (pending or self.running) and not stop:
-                    while pending and len(self.running) < self.jobs:
-                        self.start(pending.pop(0))
+                while (self.pending or self.running) and not stop:
+                    while self.pending and len(self.running) < self.jobs:
+                        self.start(self.pending.pop(0))
                     time.sleep(0.1)
                     self.reap()
             finally:
@@ -186,6 +214,10 @@ class Study:
             print(f"failed: {point.name}, see {self.directory(point)} and {self.out / (point.name + '.log')}", file=sys.stderr)
         self.say(f"{len(left)} of {len(points)} points are left")
         return not left
+
+
+def _duration(seconds):
+    return f"{seconds:.0f} s" if seconds < 100 else f"{seconds / 60:.0f} min" if seconds < 6000 else f"{seconds / 3600:.1f} h"
 
 
 def _shown(summary, name):

@@ -6,6 +6,7 @@ from collections import defaultdict
 from .results import OBSERVABLES, point_of, read_rows
 
 NEMATIC = 0.3  # S above it, the paper's criterion
+FROZEN = 4  # S_peak, the mean over production, above it: a crystal; of these fluids it is below 3.3
 DECAYED = 0.03  # C2 must have come down to it for a fit: with little order left it ends at S^2
 
 
@@ -25,6 +26,7 @@ class Row:
         self.precise = row["precise"] == "true"
         self.collisions = _number(row["collisions"])
         self.seconds = _number(row["wall_seconds"])
+        self.q = _number(row["q"])
         self.rate = self.values["collision_rate"]
 
     def __getitem__(self, name):
@@ -34,9 +36,14 @@ class Row:
         return all(math.isfinite(self.values[name]) for name in names)
 
     @property
+    def frozen(self):
+        """Crystalline, if not at the end of equilibration, which sees nothing of that, then during production."""
+        return self.values["S_peak"] > FROZEN
+
+    @property
     def isotropic(self):
         """A fluid: neither nematic nor, as crystals and glasses, unable to forget where it was."""
-        return self.values["S"] <= NEMATIC and self.equilibrated
+        return self.values["S"] <= NEMATIC and self.equilibrated and not self.frozen
 
 
 class Study:
@@ -68,6 +75,22 @@ class Study:
     def along_X0(self, phi, *names):
         return sorted((r for r in self.isotropic if r.phi == phi and r.has(*names)), key=lambda r: r.X0)
 
+    def overall_exponent(self, row):
+        """Of the whole decay, as if C2 were exp[-(t/tau)^beta] from 1 on: the slope of ln(-ln C2) against ln t by least squares, for C2
+        from 0.9 down to DECAYED or, of bodies that turn back, to where it rises. NaN for fewer than four lags."""
+        x, y, before = [], [], 1.0
+        for c in self.curves[row.point]:
+            if c["C2"] < DECAYED or c["C2"] > before:
+                break
+            before = c["C2"]
+            if c["C2"] <= 0.9:
+                x.append(math.log(c["t"]))
+                y.append(math.log(-math.log(c["C2"])))
+        if len(x) < 4:
+            return math.nan
+        mean_x, mean_y = sum(x) / len(x), sum(y) / len(y)
+        return (sum((a - mean_x) * (b - mean_y) for a, b in zip(x, y)) / sum((a - mean_x) ** 2 for a in x))
+
     def interpolate(self, name, X0, phi):
         """ln of an observable, linear in phi and in ln X0 between the nearest columns; NaN outside of them."""
         columns = [x for x in self.X0s() if len(self.along_phi(x, name)) > 1]
@@ -95,17 +118,24 @@ def moment_of_inertia(X0):
     return 0.4 * min(X0 ** (2 / 3), X0 ** (-1 / 3)) ** 2
 
 
+def dawson(x):
+    """Dawson's integral exp(-x^2) int_0^x exp(y^2) dy for x >= 0: Rybicki's sum of Gaussians, a step of 0.4 apart; from 15 on the asymptotic
+    series; relatively to 4e-7."""
+    if x > 15:
+        s = 1 / (2 * x * x)
+        return (1 + s * (1 + s * (3 + s * 15))) / (2 * x)
+    step = 0.4
+    nearest = 2 * round(x / (2 * step))  # even, so that the odd terms about it are symmetric
+    rest = x - nearest * step
+    total = sum(math.exp(-(rest - n * step) ** 2) / (n + nearest) for n in range(-13, 14, 2))
+    return total / math.sqrt(math.pi)
+
+
 def free_rotor_c2(t, moment):
     """<P2(u(t).u(0))> of a linear rotor at kT = 1 that nothing turns: u turns by w t, and e = I w^2 / 2 is distributed as
-    exp(-e), so that it is 1/4 + 3/4 <cos 2 w t>, here by quadrature over e."""
-    steps, longest = 4000, 40.0
-    total = weights = 0.0
-    for k in range(steps):
-        e = (k + 0.5) * longest / steps
-        weight = math.exp(-e)
-        total += weight * (0.25 + 0.75 * math.cos(2 * math.sqrt(2 * e / moment) * t))
-        weights += weight
-    return total / weights
+    exp(-e), so that it is 1/4 + 3/4 <cos 2 w t> = 1 - 3/2 z F(z) with z = sqrt(2/I) t and Dawson's F."""
+    z = math.sqrt(2 / moment) * t
+    return 1 - 1.5 * z * dawson(z)
 
 
 def free_rotor_1overe(moment):

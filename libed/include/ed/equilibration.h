@@ -19,7 +19,7 @@ struct RelaxingGroup {
 
 /// How far an equilibration has come. Values that are not known yet are NaN.
 struct Relaxation {
-  double q = std::numeric_limits<double>::quiet_NaN();  ///< first peak of S(q), latest
+  double q = std::numeric_limits<double>::quiet_NaN();  ///< first peak of S(q), latest; see below
   // Of the slowest group, between the current relaxation's begin and now, or of the last one, when it was over.
   double c2 = 1;      ///< <P2(u(t).u(0))>; NaN where no body turns
   double f_self = 1;  ///< F_self(q, t), at the q that the relaxation began with
@@ -35,7 +35,9 @@ struct Relaxation {
 /// row, from one origin and then from another one, and Z and S do not drift: their means over the two relaxations
 /// differ by no more than 1 % of Z and 0.05, or three standard errors. As long as they do, relaxations follow.
 ///
-/// It looks at the run once in an ed::time_unit; a relaxation lasts at least four of them, for the means.
+/// It looks at the run once in an ed::time_unit; a relaxation lasts at least four of them, for the means. The peak is
+/// that of S(q) averaged over all looks of the current relaxation and of the one before; where it does not stand out of
+/// these few, that of spheres' S(q) fitted to it (docs/output.md).
 class ED_EXPORT EquilibrationMonitor {
  public:
   /// Begins now. Throws std::invalid_argument unless the groups are groups of all bodies.

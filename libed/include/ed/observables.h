@@ -95,7 +95,8 @@ struct BlockRow {
   Eigen::Matrix3d pressure;  ///< as in Results
 };
 
-/// What follows from the correlations of some of the bodies.
+/// What follows from the correlations of some of the bodies. What is of rotation alone has no error (NaN) where nothing
+/// turns them, as with spheres: blocks then hold the same motion.
 struct Correlations {
   Estimate D_trans;      ///< slope of the MSD / 6 over [0.4, 1] of the longest lag
   Estimate D_rot;        ///< slope of rot_msd / (2 rotation_axes) there: the paper's 4t for two components
