@@ -823,6 +823,33 @@ class BadSpecies(Case):
         self.refuse(MIXTURE + '[dynamics]\ninertia = "paper"\n', "bad.toml:21: ", "dynamics.inertia", "species[2] is none")
         self.refuse(MIXTURE + "[dynamics]\ninertia = [1, 1, 1]\n", "bad.toml:21: ", "moments in each [[species]]")
 
+    def test_inertia_that_no_species_takes(self):
+        own = MIXTURE.replace("\nfraction", '\ninertia = "uniform"\nfraction')
+        for value in ["uniform", "paper", "foo"]:
+            with self.subTest(value):
+                parts = [f'dynamics.inertia is "{value}"', "none where every [[species]] has its own inertia"]
+                self.refuse(own + f'[dynamics]\ninertia = "{value}"\n', "bad.toml:23: ", *parts)
+        self.refuse(own, "--set dynamics.inertia", arguments=["--set", "dynamics.inertia=uniform"])
+        one = MIXTURE.replace("\nfraction", '\ninertia = "uniform"\nfraction', 1)
+        self.refuse(one + '[dynamics]\ninertia = "foo"\n', "bad.toml:22: ", 'dynamics.inertia is "foo"')
+        os.remove(self.path("bad.toml"))
+        self.hardbody("init", "bad.toml", "--template", "mixture")
+        self.refuse(self.read("bad.toml"), "--set dynamics.inertia", arguments=["--set", "dynamics.inertia=uniform"])
+
+    def test_moments_are_named_as_they_are_given(self):
+        """Though the axis of revolution becomes body z."""
+        for axes, moments, what, axis in [
+            ("[3, 1, 1]", "[2.5, 1, 2]", "I3 + I1 - I2", "y"),
+            ("[1, 3, 1]", "[2, 2.5, 1]", "I2 + I3 - I1", "x"),
+            ("[1, 3, 1]", "[1, 2.5, 2]", "I2 + I3 - I1", "x"),
+            ("[1, 1, 3]", "[2, 1, 2.5]", "I2 + I3 - I1", "x"),
+        ]:
+            with self.subTest(axes=axes, moments=moments):
+                bodies = MIXTURE.replace("semi_axes = [0.6, 0.6, 0.6]\nexponents = [0.5, 0.5]", f"semi_axes = {axes}")
+                bodies = bodies.replace('kind = "superellipsoid"\n', "").replace("mass = 2", f"mass = 0.5\ninertia = {moments}")
+                words = f"bad.toml:12: species[2].inertia is {moments}; accepted: {what} at most 1, twice the mass"
+                self.refuse(bodies, words, f"along body {axis}")
+
     def test_unequal_sizes(self):
         # So few large bodies do not fit into the box, and the message says what would.
         large = MIXTURE.replace("semi_axes = [0.6, 0.6, 0.6]", "semi_axes = [6, 6, 6]").replace("0.6\n[[", "0.98\n[[")
