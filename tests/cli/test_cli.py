@@ -1110,6 +1110,20 @@ class Starts(Case):
         result = self.hardbody("run", "bad.toml")
         self.assert_refused(result, "bad.toml:5: system.packing_fraction is 0.6", "fcc lattice", "accepted: at most")
         number = re.search(r"or a number of (\d+)", result.stderr)[1]
+    def test_numbers_of_species_on_fcc(self):
+        bodies = MIXTURE.replace("number = 100\n", 'start = "fcc"\n').replace("fraction = 0.6", "number = 101")
+        self.write("bad.toml", bodies.replace("fraction = 0.4", "number = 100"))
+        words = "bad.toml:7: the numbers of all [[species]] add up to 201: the fcc lattice has 4 bodies in a cell; accepted: a multiple of 4"
+        self.assert_refused(self.hardbody("run", "bad.toml"), words)
+
+    def test_awkward_large_numbers_on_a_lattice(self):
+        """A prime number has but one way to fill a cube, in slices: it is refused at once."""
+        shape = 'kind = "superellipsoid"\nsemi_axes = [1, 1, 1]\nexponents = [0.5, 0.5]'
+        config = SMALL.replace("aspect_ratio = 2", shape).replace("number = 64", 'number = 999983\nstart = "cubic"')
+        self.write("bad.toml", config)
+        result = self.hardbody("run", "bad.toml", timeout=60)
+        self.assert_refused(result, "system.packing_fraction is 0.2: 999983 bodies in ", "accepted: at most", "or a number of 9999")
+
         self.run_small("out", "--set", f"system.number={number}", "production.time=0.1", config=config)
         self.write("odd.toml", config.replace("512", "511"))
         self.assert_refused(self.hardbody("run", "odd.toml"), "odd.toml:3: system.number is 511", "accepted: ")

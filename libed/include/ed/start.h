@@ -111,9 +111,10 @@ ED_EXPORT System compressed(const System& system, double packing_fraction,
 ///
 /// All pairs within reach, in all images, are asked for overlap. Throws std::invalid_argument: naming packing_fraction
 /// where aligned bodies overlap, with the largest one of this number of bodies on this lattice and the nearest numbers
-/// that have the one asked for; naming number where it is not a multiple of 4 (fcc) or the box is too small for nearest
-/// images (as random_start); naming nematic_order where the bodies have no room to turn as far; for an axis that is
-/// none.
+/// that have the one asked for (of several species, in whose cells ellipsoids of their mean extents would have room);
+/// naming number where it is not a multiple of 4 (fcc) or the box is too small for nearest images (as random_start);
+/// naming nematic_order where the bodies have no room to turn as far, and numbers whose cells fit them better; for an
+/// axis that is none.
 ED_EXPORT System lattice_start(const std::vector<Component>& components, const LatticeOptions& options);
 
 /// Sets momentum zero and the temperatures as above.
