@@ -156,7 +156,8 @@ System compress(const System& system, double target_box, const StartOptions& opt
         std::ostringstream message;
         message << "packing_fraction: the compression got stuck at "
                 << options.packing_fraction * std::pow(target_box / simulation.box(), 3) << " of "
-                << options.packing_fraction << "; a lower value is needed for this shape";
+                << options.packing_fraction
+                << "; a lower value is needed for this shape, or another seed, or more bodies";
         throw std::runtime_error(message.str());
       }
       checkpoint = simulation.box();
