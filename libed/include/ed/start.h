@@ -30,8 +30,11 @@ struct StartOptions {
   /// need it are made of smaller ones: a periodic box of at most as many bodies, in the same proportions, is compressed
   /// and then repeated along all edges, and every body gets a velocity of its own. The copies lose the memory of each
   /// other within some collisions; at distances of a box they are correlated until bodies have diffused by their
-  /// length, so that large starts, too, need their equilibration. Mixtures of many species with few bodies each, and
-  /// boxes that would be too small for nearest images, are not repeated as often.
+  /// length, so that large starts, too, need their equilibration. Bodies that have sizes of their own (components of
+  /// one shape but for its size) are sorted by size: the largest of as many as there are copies is compressed, and each
+  /// copy becomes one of them. Where that or rounding would add 2 % to the number or the volume of the bodies (many
+  /// species with few bodies each; few large among many small), or boxes would be too small for nearest images, starts
+  /// are repeated less often or not at all: compressed_together says how many bodies are compressed.
   int most_compressed = 1000;
   /// If not null: what the compression has counted, all 0 where nothing was compressed.
   Counters* counters = nullptr;
@@ -86,6 +89,10 @@ ED_EXPORT System random_start(const Species& species, const StartOptions& option
 /// The same for a mixture; the bodies stand in the order of their components. Throws also for a component without
 /// bodies.
 ED_EXPORT System random_start(const std::vector<Component>& components, const StartOptions& options);
+
+/// How many bodies random_start would compress together: at most most_compressed where the start is repeated, and 0
+/// where nothing needs to be compressed.
+ED_EXPORT int compressed_together(const std::vector<Component>& components, const StartOptions& options);
 
 /// The paper's compression of a state that is there already, to a higher packing fraction: from one state point to the
 /// next. Velocities are rescaled at the end as those of random_start; `progress` and `counters` are as in StartOptions.
