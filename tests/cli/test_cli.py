@@ -1044,9 +1044,10 @@ class Starts(Case):
 
     ROD = SMALL.replace("aspect_ratio = 2", "aspect_ratio = 3").replace("number = 64", "number = 288")
 
-    def run_start(self, out, config, *lines):
+    def run_start(self, out, config, *lines, said=False):
+        """The summary, or what was said on the console."""
         config = config.replace("[system]\n", "[system]\n" + "".join(line + "\n" for line in lines))
-        self.run_small(out, "--set", "equilibration.time=0.2", "production.time=0.5", config=config)
+        result = self.run_small(out, "--set", "equilibration.time=0.2", "production.time=0.5", config=config)
         self.assertEqual(self.hardbody("check", out).returncode, 0)
         text = self.read(f"{out}/config.toml")
         for line in lines:
@@ -1056,7 +1057,7 @@ class Starts(Case):
         self.assertEqual(self.state_of(out), self.state_of(f"{out}_again"))
         summary = self.summary(out)
         self.assertTrue(summary["sound"])
-        return summary
+        return result.stderr if said else summary
 
     def test_compressions_are_counted(self):
         counters = self.run_start("compressed", self.ROD)["counters_of_start"]
@@ -1076,11 +1077,15 @@ class Starts(Case):
         self.run_start("out", SMALL.replace("aspect_ratio = 2", shape).replace("0.2", "0.6"), 'start = "cubic"')
 
     def test_nematic(self):
-        self.run_start("compressed", self.ROD, "nematic_order = 0.8")
+        said = self.run_start("compressed", self.ROD, "nematic_order = 0.8", said=True)
         # In a fluid that would rather be isotropic, compression loses what it began with; on the way to a gas it does not.
-        self.run_start("gas", self.ROD.replace("0.2", "0.002"), "nematic_order = 0.8")
-        reached = [re.search(r"start: done, \d+ collisions, S = ([-0-9.]+)$", self.read(f"{out}/log.txt"), re.MULTILINE)[1]
+        gas = self.run_start("gas", self.ROD.replace("0.2", "0.002"), "nematic_order = 0.8", said=True)
+        reached = [re.search(r"start: S = ([-0-9.]+)$", self.read(f"{out}/log.txt"), re.MULTILINE)[1]
                    for out in ("compressed", "gas")]
+        lost = f'start: S = {float(reached[0]):.2f} about z after the compression, not nematic_order = 0.8, which start = "fcc"'
+        self.assertIn(lost, said)
+        self.assertIn(lost, self.read("compressed/log.txt"))
+        self.assertNotIn("nematic_order", gas)
         self.assertLess(float(reached[0]), 0.4)
         self.assertAlmostEqual(float(reached[1]), 0.8, delta=0.1)
         dense = self.ROD.replace("0.2", "0.4")
@@ -1101,15 +1106,10 @@ class Starts(Case):
         words = r"the largest bodies have 10 times the bounding radius of the smallest, and a cell .* holds \d+ bodies"
         self.assertRegex(self.read("out/log.txt"), words)
         self.assertRegex(result.stderr, words)
+        self.assertIn("1200 of 1200 bodies are compressed together", result.stderr)
         self.run_small("equal", "--set", "equilibration.time=0.1", "production.time=0.1")
         self.assertNotIn("bounding radius", self.read("equal/log.txt"))
 
-    def test_too_dense(self):
-        config = self.ROD.replace("number = 288", 'number = 512\nstart = "fcc"').replace("0.2", "0.6")
-        self.write("bad.toml", config)
-        result = self.hardbody("run", "bad.toml")
-        self.assert_refused(result, "bad.toml:5: system.packing_fraction is 0.6", "fcc lattice", "accepted: at most")
-        number = re.search(r"or a number of (\d+)", result.stderr)[1]
     def test_numbers_of_species_on_fcc(self):
         bodies = MIXTURE.replace("number = 100\n", 'start = "fcc"\n').replace("fraction = 0.6", "number = 101")
         self.write("bad.toml", bodies.replace("fraction = 0.4", "number = 100"))
@@ -1124,6 +1124,12 @@ class Starts(Case):
         result = self.hardbody("run", "bad.toml", timeout=60)
         self.assert_refused(result, "system.packing_fraction is 0.2: 999983 bodies in ", "accepted: at most", "or a number of 9999")
 
+    def test_too_dense(self):
+        config = self.ROD.replace("number = 288", 'number = 512\nstart = "fcc"').replace("0.2", "0.6")
+        self.write("bad.toml", config)
+        result = self.hardbody("run", "bad.toml")
+        self.assert_refused(result, "bad.toml:5: system.packing_fraction is 0.6", "fcc lattice", "accepted: at most")
+        number = re.search(r"or a number of (\d+)", result.stderr)[1]
         self.run_small("out", "--set", f"system.number={number}", "production.time=0.1", config=config)
         self.write("odd.toml", config.replace("512", "511"))
         self.assert_refused(self.hardbody("run", "odd.toml"), "odd.toml:3: system.number is 511", "accepted: ")
