@@ -1,5 +1,5 @@
 # Tests of this part; see hardbody_test in CMakeLists.txt. HARDBODY_FULL=1 in the environment raises the counts of the
-# property tests tenfold.
+# property tests tenfold, of support_contact fiftyfold.
 hardbody_test(finder_unit_test unit
   unit/calendar_test.cpp
   unit/cell_grid_test.cpp

@@ -410,7 +410,7 @@ def superellipsoids(runner, table, collisions):
         table.relative(state, "collision_rate", *observable(result, "collision_rate"), float(row["rate"]), 0.005)
         table.relative(state, "Z", *observable(result, "Z"), float(row["Z"]), 0.007, float(row["Z_err"]))
         temperatures(table, state, result["observables"])
-    biaxial = runner.submit("biaxial", phi=0.4, number=256, equilibration=20, production=100,
+    biaxial = runner.submit("biaxial", phi=0.4, number=256, equilibration=20, production=1000,
                             bodies="[shape]\nsemi_axes = [1, 1.5, 2.25]\n")
     temperatures(table, "ellipsoids 1:1.5:2.25, phi 0.4", biaxial.result()["observables"])
 
@@ -498,7 +498,7 @@ def mixtures(runner, table, collisions):
     pairs = ((1, 1), (1, 0.5), (1, 0.3))
     runs = [runner.submit(f"mixtures-{a}-{b}", phi=0.4, number=1000, equilibration=30, bodies=spheres_of(a, b),
                           production=production_for(7, collisions, 1000)) for a, b in pairs]
-    unlike = runner.submit("mixtures-unlike", phi=0.35, number=256, equilibration=20, production=200, bodies=(
+    unlike = runner.submit("mixtures-unlike", phi=0.35, number=256, equilibration=20, production=4000, bodies=(
         "[[species]]\nsemi_axes = [0.6, 1, 1.5]\nfraction = 0.5\nmass = 3\n"
         '[[species]]\nkind = "superellipsoid"\nsemi_axes = [0.5, 0.6, 0.4]\nexponents = [0.5, 1.3]\nfraction = 0.5\n'))
     table.heading("Mixtures of spheres, phi = 0.4, masses 8 and 1 (Boublik-Mansoori-Carnahan-Starling-Leland), and of "

@@ -91,10 +91,14 @@ void check_lattice(const TomlDocument& document, const Config& config) {
     for (const char* key : {"system.number", "system.packing_fraction", "system.nematic_order"}) {
       if (message.starts_with(std::string_view(key).substr(sizeof("system")))) entry = document.find(key);
     }
-    // Said by the species.
-    const bool by_species = entry == nullptr && message.starts_with("number is");
+    if (const Entry* first = document.find("species[1].number"); entry == nullptr && first != nullptr) {
+      if (const std::string number = fmt::format("number is {}", config.number); message.starts_with(number)) {
+        throw InputError(fmt::format("{}: the numbers of all [[species]] add up to {}{}", first->where, config.number,
+                                     message.substr(number.size())));
+      }
+    }
     if (entry == nullptr) entry = document.find("system.start");
-    throw InputError(fmt::format("{}: {}{}", entry->where, by_species ? "the sum of all " : "system.", message));
+    throw InputError(fmt::format("{}: system.{}", entry->where, message));
   }
 }
 

@@ -112,6 +112,11 @@ void read_shape(const TomlDocument& document, const Place& place, ShapeConfig& s
   if (axes != nullptr) read_semi_axes(*axes, place, shape);
 }
 
+/// Which axis of `semi_axes` becomes body z; -1: all stay as they are given.
+int axis_moved_last(const ShapeConfig& shape) {
+  return shape.kind == "ellipsoid" ? axis_of_revolution(shape) : -1;
+}
+
 /// The semi-axes in the program's units, an ellipsoid's axis of revolution last.
 Vector3d semi_axes_in_use(const ShapeConfig& shape, bool literal) {
   const std::optional<double> ratio = shape.true_aspect_ratio();
@@ -119,7 +124,7 @@ Vector3d semi_axes_in_use(const ShapeConfig& shape, bool literal) {
     const double b = 1 / std::cbrt(*ratio);
     return {b, b, *ratio * b};
   }
-  const Vector3d axes = axis_last(*shape.semi_axes, shape.kind == "ellipsoid" ? axis_of_revolution(shape) : -1);
+  const Vector3d axes = axis_last(*shape.semi_axes, axis_moved_last(shape));
   return literal ? axes : Vector3d(axes / std::cbrt(axes.prod()));
 }
 
@@ -187,9 +192,21 @@ ed::Species body_of(const SpeciesConfig& species) {
   if (species.inertia == "paper") return ed::paper_species(std::get<geom::Ellipsoid>(shape), species.mass);
   ed::Species body = ed::uniform_species(shape, species.mass);
   if (species.inertia == "moments") {
-    const bool permuted = species.shape.kind == "ellipsoid";
-    body.inertia = axis_last(species.inertia_moments, permuted ? axis_of_revolution(species.shape) : -1);
+    body.inertia = axis_last(species.inertia_moments, axis_moved_last(species.shape));
   }
+  return body;
+}
+
+/// The body with the axes in the order in which the config names them, as messages have to.
+ed::Species as_named(const SpeciesConfig& species) {
+  ed::Species body = species.body;
+  const auto* ellipsoid = std::get_if<geom::Ellipsoid>(&body.shape);
+  const int axis = axis_moved_last(species.shape);
+  if (ellipsoid == nullptr || axis < 0) return body;
+  const int back = (4 - axis) % 3;
+  const Vector3d axes = axis_last(ellipsoid->semi_axes(), back);
+  body.inertia = axis_last(body.inertia, back);
+  body.shape = geom::Ellipsoid(axes);
   return body;
 }
 
@@ -358,12 +375,12 @@ SpeciesConfig read_one(const TomlDocument& document, const Place& place) {
   }
   species.body = body_of(species);
   try {
-    ed::check_species(species.body);
+    ed::check_species(as_named(species));
   } catch (const std::invalid_argument& error) {
     const std::string why = error.what();
     const Entry* entry = inertia_entry(document, place);
-    if (entry != nullptr && why.starts_with("inertia")) {
-      throw InputError(fmt::format("{}: {}: {}", entry->where, entry->key, why));
+    if (constexpr std::string_view kKey = "inertia"; entry != nullptr && why.starts_with(kKey)) {
+      throw InputError(fmt::format("{}: {}{}", entry->where, entry->key, why.substr(kKey.size())));
     }
     throw InputError(fmt::format("{}: {}: {}", document.where_of(place.section), place.section, why));
   }
@@ -381,6 +398,16 @@ void refuse_both(const TomlDocument& document, const Entry& shape) {
       fmt::format("{}: {} and [[species]] are both given; accepted: one [shape], or one or more "
                   "[[species]]",
                   shape_later ? shape.where : species->where, shape_later ? shape.key : "[shape]"));
+}
+
+/// What every species says itself would not count.
+void refuse_unused_inertia(const TomlDocument& document, std::size_t number) {
+  const Entry* entry = document.find("dynamics.inertia");
+  if (entry == nullptr) return;
+  for (std::size_t k = 0; k < number; ++k) {
+    if (document.find(species_name(k) + ".inertia") == nullptr) return;
+  }
+  throw bad(*entry, "none where every [[species]] has its own inertia, or a [[species]] without one");
 }
 
 std::size_t number_of_species(const TomlDocument& document) {
@@ -436,6 +463,7 @@ void read_species(const TomlDocument& document, Config& config) {
     const auto shape = std::find_if(document.entries.begin(), document.entries.end(),
                                     [](const Entry& e) { return e.key.starts_with("shape."); });
     if (shape != document.entries.end()) refuse_both(document, *shape);
+    refuse_unused_inertia(document, number);
     for (std::size_t k = 0; k < number; ++k) {
       config.species.push_back(read_one(document, {species_name(k), species_name(k) + ".inertia", true}));
     }

@@ -142,7 +142,8 @@ std::string start_text(const Config& config) {
     text += line("nematic_order", toml_real(*config.nematic_order),
                  config.start == "random" ? "S about z, before the compression, which lets it relax" : "S about z");
   } else {
-    text += more("nematic_order = S: orientations of that order parameter;") +
+    text += more("nematic_order = S: orientations of that order parameter, which a lattice") +
+            more("keeps and compression from \"random\" loses;") +
             more("start_from = \"DIR\" instead: the last state of that run, compressed");
   }
   return text;

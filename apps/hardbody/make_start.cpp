@@ -1,6 +1,5 @@
 #include "make_start.h"
 
-#include "frame.h"
 #include "origin.h"
 #include "signals.h"
 #include "start_file.h"
@@ -60,8 +59,45 @@ std::optional<std::string> unequal_sizes(const Config& config) {
       largest / smallest, std::min(in_a_cell, static_cast<double>(config.number)));
 }
 
-std::string reached_order(const Config& config, const ed::System& start) {
-  return config.nematic_order ? fmt::format(", S = {:.3g}", frame_of(start, {start.size()}).S) : "";
+/// What a start costs that cannot be repeated; nothing where it costs little.
+std::optional<std::string> compressed_as_one(const Config& config) {
+  if (config.start_from || config.lattice()) return std::nullopt;
+  ed::StartOptions options;
+  options.packing_fraction = config.packing_fraction;
+  const int together = ed::compressed_together(config.components(), options);
+  if (together <= options.most_compressed) return std::nullopt;
+  return fmt::format(
+      "start: {} of {} bodies are compressed together, as too few are alike for a smaller box that is repeated; that "
+      "takes a time that grows with the square of their number",
+      together, config.number);
+}
+
+/// <P2(u_z)> of the bodies that are no spheres.
+double order_about_z(const ed::System& system) {
+  double sum = 0;
+  int number = 0;
+  for (int i = 0; i < system.size(); ++i) {
+    const ed::Species& species = system.species_of(i);
+    if (ed::is_sphere(species.shape)) continue;
+    const double z = system.bodies[static_cast<std::size_t>(i)].rotation(2, ed::symmetry_axis(species).value_or(2));
+    sum += 1.5 * z * z - 0.5;
+    ++number;
+  }
+  return number > 0 ? sum / number : 0;
+}
+
+/// What the compression has left of the order that was asked for goes to the log; a loss is said aloud.
+void report_order(double asked, const ed::System& start, Progress& progress, Log& log) {
+  const double reached = order_about_z(start);
+  log.line(fmt::format("start: S = {:.3g}", reached));
+  // As far off as samples of so many bodies hardly ever are.
+  const double usual = std::max(0.05, 1.5 / std::sqrt(start.size()));
+  if (std::abs(reached - asked) <= usual) return;
+  const std::string text = fmt::format(
+      "start: S = {:.2f} about z after the compression, not nematic_order = {:g}, which start = \"fcc\" would keep",
+      reached, asked);
+  log.line(text);
+  progress.say(text);
 }
 
 /// Random, or the last state of another run; nothing if a signal came first.
@@ -85,8 +121,8 @@ std::optional<Start> compressed_start(const Config& config, Progress& progress, 
       start.system = ed::random_start(config.components(), start_options(config, show, start.counters));
     }
     if (pending_signal() != 0) return std::nullopt;
-    log.line(
-        fmt::format("start: done, {} collisions{}", start.counters.collisions, reached_order(config, start.system)));
+    log.line(fmt::format("start: done, {} collisions", start.counters.collisions));
+    if (config.nematic_order) report_order(*config.nematic_order, start.system, progress, log);
     return start;
   } catch (const std::runtime_error&) {
     if (pending_signal() != 0) return std::nullopt;
@@ -103,7 +139,8 @@ std::optional<Start> make_start(const Config& config, Progress& progress, Log& l
     progress.say(start.report);
     return Start{std::move(start.system), {}};
   }
-  if (const std::optional<std::string> warning = unequal_sizes(config)) {
+  for (const std::optional<std::string>& warning : {unequal_sizes(config), compressed_as_one(config)}) {
+    if (!warning) continue;
     log.line(*warning);
     progress.say(*warning);
   }

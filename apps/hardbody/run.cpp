@@ -246,8 +246,8 @@ int start_over(const Config& config, const RunDirectory& directory) {
 }  // namespace
 
 int run(const RunArguments& arguments) {
-  install_signal_handlers();
   Config config = load_config(arguments.config, arguments.overrides);
+  install_signal_handlers();
   if (config.start_from) check_origin(arguments, config);
   // What is wrong with the file is said before anything is written.
   if (config.start_file) config.packing_fraction = ed::packing_fraction(start_from_file(config).system);

@@ -86,8 +86,9 @@ std::string inertia_line(const Frame& frame, const FrameBody& body) {
   return fmt::format("inertia = {}\n", three(body.inertia));
 }
 
-/// A section for bodies that are all alike.
-std::string species_section(const Frame& frame, const std::vector<std::size_t>& bodies, const std::string& file) {
+/// A section for bodies that are all alike, without an inertia where the config has one for all.
+std::string species_section(const Frame& frame, const std::vector<std::size_t>& bodies, const std::string& file,
+                            bool with_inertia) {
   const FrameBody& first = frame.bodies[bodies.front()];
   const std::string& type = frame.types[first.type].name;
   const std::optional<ed::BodyShape>& shape = frame.types[first.type].shape;
@@ -114,17 +115,17 @@ std::string species_section(const Frame& frame, const std::vector<std::size_t>& 
     text +=
         fmt::format("kind = \"superellipsoid\"\nexponents = [{}, {}]\n", toml_real(barr->e1()), toml_real(barr->e2()));
   }
-  return text + inertia_line(frame, first);
+  return with_inertia ? text + inertia_line(frame, first) : text;
 }
 
-std::string species_text(const Frame& frame, const std::string& file) {
+std::string species_text(const Frame& frame, const std::string& file, bool with_inertia) {
   const std::vector<std::vector<std::size_t>> groups = groups_of(frame);
   if (groups.size() > kMostSpecies) {
     throw InputError(fmt::format("{}: has {} types of bodies; accepted: at most {}, or [[species]] in the config", file,
                                  groups.size(), kMostSpecies));
   }
   std::string text;
-  for (const std::vector<std::size_t>& group : groups) text += species_section(frame, group, file);
+  for (const std::vector<std::size_t>& group : groups) text += species_section(frame, group, file, with_inertia);
   return text;
 }
 
@@ -353,7 +354,9 @@ StartAdditions additions_from(const StartFile& start, const TomlDocument& docume
   if (shapes && packing && has_numbers(document) && start.frame) return additions;
   const auto [frame, k, cut_off] = read_frame(start);
   if (!start.frame) additions.overrides.push_back(fmt::format("start.frame={}", k));
-  if (!shapes) additions.text = species_text(frame, start.file);
+  if (!shapes) {
+    additions.text = species_text(frame, start.file, document.find("dynamics.inertia") == nullptr);
+  }
   if (shapes && !has_numbers(document)) {
     additions.overrides.push_back(fmt::format("system.number={}", frame.bodies.size()));
   }

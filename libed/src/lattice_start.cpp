@@ -8,6 +8,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
+#include <limits>
 #include <numeric>
 #include <optional>
 #include <sstream>
@@ -40,7 +42,8 @@ Vector3d in_box(const Vector3i& p, const Vector3i& cells) {
   return 0.5 * p.cast<double>().cwiseQuotient(cells.cast<double>());
 }
 
-/// One of each pair of opposite vectors between sites whose components are below `reach` (in units of the box).
+/// One of each pair of opposite vectors between sites whose components are below `reach` (in units of the box), the
+/// shortest first: what overlaps does so along these.
 std::vector<Vector3i> near_vectors(Lattice lattice, const Vector3i& cells, const Vector3d& reach) {
   const Vector3i most = (2 * reach.cwiseProduct(cells.cast<double>())).array().ceil().cast<int>();
   std::vector<Vector3i> result;
@@ -53,6 +56,9 @@ std::vector<Vector3i> near_vectors(Lattice lattice, const Vector3i& cells, const
       }
     }
   }
+  std::stable_sort(result.begin(), result.end(), [&](const Vector3i& a, const Vector3i& b) {
+    return in_box(a, cells).squaredNorm() < in_box(b, cells).squaredNorm();
+  });
   return result;
 }
 
@@ -81,13 +87,15 @@ Vector3d reach_of(const std::vector<Turned>& bodies) {
   return up + down;
 }
 
+bool overlap(const Turned& a, const Turned& b, const Vector3d& apart) {
+  return internal::overlaps(*a.shape, geom::Pose(a.rotation, Vector3d::Zero()), *b.shape,
+                            geom::Pose(b.rotation, apart));
+}
+
 /// The smallest box, `box` or larger, in which the two do not overlap with their centres v boxes apart. A larger box
 /// only moves them apart along v: each holds its centre.
 double free_box(double box, const Turned& a, const Turned& b, const Vector3d& v) {
-  const auto blocked = [&](double edge) {
-    return internal::overlaps(*a.shape, geom::Pose(a.rotation, Vector3d::Zero()), *b.shape,
-                              geom::Pose(b.rotation, edge * v));
-  };
+  const auto blocked = [&](double edge) { return overlap(a, b, edge * v); };
   if (!blocked(box)) return box;
   double large = (bounding_radius(*a.shape) + bounding_radius(*b.shape)) / v.norm() * (1 + 1e-9);
   double small = box;
@@ -115,6 +123,20 @@ double shortest_vector(Lattice lattice, const Vector3i& cells, const Vector3d& e
   if (lattice == Lattice::simple_cubic) return edge.minCoeff();
   const double diagonal = std::sqrt(edge.squaredNorm() - edge.maxCoeff() * edge.maxCoeff());
   return std::min(edge.minCoeff(), 0.5 * diagonal);
+}
+
+/// In a smaller box the spheres inscribed in the bodies on two sites overlap, beyond rounding.
+double least_box(Lattice lattice, const Vector3i& cells, const Turned& body) {
+  constexpr double kRounding = 1e-9;
+  return (1 - kRounding) * 2 * inscribed_radius(*body.shape) / shortest_vector(lattice, cells, Vector3d::Ones());
+}
+
+/// Whether the bodies on all sites of the box are without overlap.
+bool fits(double box, Lattice lattice, const Vector3i& cells, const Turned& body) {
+  if (box < least_box(lattice, cells, body)) return false;
+  const std::vector<Vector3i> vectors = near_vectors(lattice, cells, reach_of({body}) / box);
+  return std::none_of(vectors.begin(), vectors.end(),
+                      [&](const Vector3i& p) { return overlap(body, body, box * in_box(p, cells)); });
 }
 
 std::vector<int> divisors(int number) {
@@ -208,39 +230,86 @@ Request request_of(const std::vector<Component>& components, const LatticeOption
 
 // ---- Numbers
 
-/// Whether so many bodies of the species, aligned, have the packing fraction on this lattice; of others, whether that
-/// many fill it.
-bool holds(const Request& request, int number) {
-  const Lattice lattice = request.options.lattice;
-  if (number < 1 || number % sites_in_cell(lattice) != 0) return false;
+/// Whether there are cells for so many bodies, in a box that is large enough for nearest images.
+bool possible(const Request& request, int number) {
+  if (number < 1 || number % sites_in_cell(request.options.lattice) != 0) return false;
   const double box = request.box * std::cbrt(static_cast<double>(number) / request.number);
-  if (box < internal::smallest_image_box(internal::largest_radius(request.components))) return false;
-  if (!request.body) return true;
-  const auto ways = ways_to_fill(lattice, number / sites_in_cell(lattice), request.extents, kTriedWaysOfOthers);
-  return std::any_of(ways.begin(), ways.end(),
-                     [&](const Vector3i& way) { return free_box(box, lattice, way, *request.body) == box; });
+  return box >= internal::smallest_image_box(internal::largest_radius(request.components));
 }
 
-/// "500 or 576": the nearest to either side that hold; empty if there are none near.
-std::string nearest_numbers(const Request& request) {
+/// Whether so many bodies, of one species and aligned, have the packing fraction on this lattice.
+bool holds(const Request& request, int number) {
+  if (!possible(request, number)) return false;
+  const Lattice lattice = request.options.lattice;
+  const double box = request.box * std::cbrt(static_cast<double>(number) / request.number);
+  const auto ways = ways_to_fill(lattice, number / sites_in_cell(lattice), request.extents, kTriedWaysOfOthers);
+  return std::any_of(ways.begin(), ways.end(),
+                     [&](const Vector3i& way) { return fits(box, lattice, way, *request.body); });
+}
+
+/// The largest packing fraction of ellipsoids of these extents in the best cells for so many, over that in cells of
+/// just their proportions.
+double filling(const Request& request, int number) {
+  const Lattice lattice = request.options.lattice;
+  const Vector3i way = ways_to_fill(lattice, number / sites_in_cell(lattice), request.extents, 1).front();
+  const double shortest = shortest_vector(lattice, way, request.extents);
+  // Edges of 1, relative to the extents: so many cells to a box.
+  const double perfect = shortest_vector(lattice, Vector3i::Ones(), Vector3d::Ones());
+  const double sites = sites_in_cell(lattice) / request.extents.prod();
+  return number * shortest * shortest * shortest / (sites * perfect * perfect * perfect);
+}
+
+/// Cells fit the bodies: filling() is this or more.
+constexpr double kFits = 0.95;
+
+/// "500 or 576": the nearest to either side; empty if there are none near.
+template <typename Wanted>
+std::string nearest_numbers(const Request& request, const Wanted& wanted) {
   std::string text;
   for (const int sign : {-1, 1}) {
     for (int step = 1; step <= std::min(kTriedNumbers, request.number); ++step) {
-      if (!holds(request, request.number + sign * step)) continue;
-      text += (text.empty() ? "" : " or ") + std::to_string(request.number + sign * step);
+      const int number = request.number + sign * step;
+      if (!possible(request, number) || !wanted(number)) continue;
+      text += (text.empty() ? "" : " or ") + std::to_string(number);
       break;
     }
   }
   return text;
 }
 
+std::string numbers_that_hold(const Request& request) {
+  return nearest_numbers(request, [&](int number) { return holds(request, number); });
+}
+
+std::string numbers_that_fit(const Request& request) {
+  return nearest_numbers(request, [&](int number) { return filling(request, number) >= kFits; });
+}
+
 void check_number(const Request& request) {
   if (request.number % sites_in_cell(request.options.lattice) == 0) return;
-  const std::string nearest = nearest_numbers(request);
+  std::string accepted = request.body ? numbers_that_hold(request) : "";
+  if (accepted.empty()) accepted = "a multiple of 4";
+  const std::string fitting = request.body ? "" : numbers_that_fit(request);
+  if (!fitting.empty()) accepted += ", best " + fitting + ", whose cells fit the bodies";
   std::ostringstream message;
-  message << "number is " << request.number
-          << ": the fcc lattice has 4 bodies in a cell; accepted: " << (nearest.empty() ? "a multiple of 4" : nearest);
+  message << "number is " << request.number << ": the fcc lattice has 4 bodies in a cell; accepted: " << accepted;
   throw std::invalid_argument(message.str());
+}
+
+/// Of a mixture, whose bodies stand on sites drawn at random, numbers in whose cells ellipsoids of its mean extents
+/// would have room for what is asked; or else how much the nearest that fit would hold.
+std::string numbers_of_mixture(const Request& request, double most) {
+  constexpr double kMargin = 1.02;  // others may be neighbours then
+  const double now = filling(request, request.number);
+  const double wanted = kMargin * request.options.packing_fraction / most * now;
+  const std::string enough = nearest_numbers(request, [&](int number) { return filling(request, number) >= wanted; });
+  constexpr const char* kWhy = " in these proportions, whose cells fit the bodies better";
+  if (!enough.empty()) return ", or a number of " + enough + kWhy;
+  const std::string better = now < kFits / kMargin ? numbers_that_fit(request) : "";
+  if (better.empty()) return "";
+  std::ostringstream text;
+  text << "; about " << std::setprecision(2) << most / now * kFits << " with a number of " << better << kWhy;
+  return text.str();
 }
 
 /// The bodies overlap: the box would have to be `box`.
@@ -250,34 +319,40 @@ void check_number(const Request& request) {
   const double exact = request.options.packing_fraction * (ratio * ratio * ratio);
   const double unit = std::pow(10, std::floor(std::log10(exact)) - 3);
   const double most = std::floor(exact / unit) * unit;
-  const std::string nearest = request.body ? nearest_numbers(request) : "";
   std::ostringstream message;
   message << "packing_fraction is " << request.options.packing_fraction << ": " << request.number << " bodies in "
           << cells.x() << " x " << cells.y() << " x " << cells.z() << " cells of the "
           << to_string(request.options.lattice) << " lattice overlap; accepted: at most " << most;
-  if (!nearest.empty()) message << ", or a number of " << nearest;
+  if (!request.body) {
+    message << numbers_of_mixture(request, most);
+  } else if (const std::string nearest = numbers_that_hold(request); !nearest.empty()) {
+    message << ", or a number of " << nearest;
+  }
   throw std::invalid_argument(message.str());
 }
 
 // ---- Placing
 
-/// How many cells along each edge.
-Vector3i choose_cells(const Request& request) {
+/// How many cells along each edge, and the smallest box of them that the bodies have room in; 0 if they are of several
+/// species, which may stand anywhere.
+std::pair<Vector3i, double> choose_cells(const Request& request) {
   const Lattice lattice = request.options.lattice;
   const auto ways = ways_to_fill(lattice, request.number / sites_in_cell(lattice), request.extents, kTriedWays);
-  if (!request.body) return ways.front();
+  if (!request.body) return {ways.front(), 0};
   // A box in which the bodies would fill all space.
   const double smallest = request.box * std::cbrt(request.options.packing_fraction);
   Vector3i best = ways.front();
-  double best_box = free_box(smallest, lattice, best, *request.body);
+  double best_box = std::numeric_limits<double>::infinity();
+  // Ways that differ by rounding are the same, turned.
+  const auto better = [&](double box) { return box < best_box * (1 - 1e-9); };
   for (const Vector3i& way : ways) {
+    if (!better(least_box(lattice, way, *request.body))) continue;
     const double box = free_box(smallest, lattice, way, *request.body);
-    // Ways that differ by rounding are the same, turned.
-    if (box >= best_box * (1 - 1e-9)) continue;
+    if (!better(box)) continue;
     best = way;
     best_box = box;
   }
-  return best;
+  return {best, best_box};
 }
 
 std::vector<Vector3i> sites_of(Lattice lattice, const Vector3i& cells) {
@@ -333,7 +408,11 @@ System lattice_start(const std::vector<Component>& components, const LatticeOpti
   const Request request = request_of(components, options);
   internal::check_target(components, request.box);
   check_number(request);
-  const Vector3i cells = choose_cells(request);
+  const auto [cells, smallest] = choose_cells(request);
+  // Bodies that are all alike have the same neighbours each.
+  if (request.body && !fits(request.box, options.lattice, cells, *request.body)) {
+    refuse_packing(request, cells, smallest);
+  }
   Random random(options.seed);
   std::vector<Vector3i> sites = sites_of(options.lattice, cells);
   if (components.size() > 1) shuffle(sites, random);
@@ -349,9 +428,14 @@ System lattice_start(const std::vector<Component>& components, const LatticeOpti
     body.position = system.box * (in_box(sites[i], cells) + quarter - Vector3d::Constant(0.5));
     body.rotation = internal::aligned(axes[static_cast<std::size_t>(body.species)]);
   }
-  const double box = free_box(system, options.lattice, cells, sites);
-  if (box > request.box) refuse_packing(request, cells, box);
-  if (options.nematic_order) internal::turn_to_order(system, axes, *options.nematic_order, random);
+  if (!request.body) {
+    const double box = free_box(system, options.lattice, cells, sites);
+    if (box > request.box) refuse_packing(request, cells, box);
+  }
+  if (options.nematic_order) {
+    const auto numbers = [&] { return filling(request, request.number) < kFits ? numbers_that_fit(request) : ""; };
+    internal::turn_to_order(system, axes, *options.nematic_order, random, numbers);
+  }
   internal::number_along_curve(system);
   internal::draw_velocities(system, random);
   return system;

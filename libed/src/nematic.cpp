@@ -7,9 +7,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iomanip>
 #include <sstream>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 namespace ed::internal {
@@ -166,23 +168,33 @@ class Turning {
   std::vector<NearBody> near_;
 };
 
+/// An order next to 1, with two digits of what it lacks; three at least.
+std::string shown(double order) {
+  const double digits = std::clamp(1 - std::floor(std::log10(1 - order)), 3.0, 15.0);
+  std::ostringstream text;
+  text << std::fixed << std::setprecision(static_cast<int>(digits)) << order;
+  return text.str();
+}
+
 /// The value named is accepted: the same turns come to it on their way to `reached`.
-[[noreturn]] void refuse_order(const System& system, double order, double reached) {
+[[noreturn]] void refuse_order(const System& system, double order, double reached, const std::string& numbers) {
   const double from_one = 0.9 * (1 - reached);
   std::ostringstream message;
   message << "nematic_order is " << order << ": at packing fraction " << packing_fraction(system)
-          << " bodies on these sites do not turn further than to an order of 1 - " << 1 - reached << "; accepted: ";
+          << " bodies on these sites do not turn further than to an order of " << shown(reached) << "; accepted: ";
   if (from_one > 1e-9) {
     const double unit = std::pow(10, std::floor(std::log10(from_one)) - 1);
     message << "at least " << std::setprecision(12) << 1 - std::floor(from_one / unit) * unit << ", ";
   }
+  if (!numbers.empty()) message << "a number of " << numbers << ", whose cells fit the bodies, ";
   message << "no nematic_order (all aligned), or a lower packing fraction";
   throw std::invalid_argument(message.str());
 }
 
 }  // namespace
 
-void turn_to_order(System& system, const std::vector<int>& axes, double order, Random& random) {
+void turn_to_order(System& system, const std::vector<int>& axes, double order, Random& random,
+                   const std::function<std::string()>& other_numbers) {
   check_order(order);
   Turning turning(system, axes, order);
   for (double before = 2; !turning.arrived();) {
@@ -191,7 +203,9 @@ void turn_to_order(System& system, const std::vector<int>& axes, double order, R
       turning.sweep(random);
       mean += turning.order() / kRound;
     }
-    if (!turning.arrived() && mean > before - kLeastFall * (1 - mean)) refuse_order(system, order, mean);
+    if (!turning.arrived() && mean > before - kLeastFall * (1 - mean)) {
+      refuse_order(system, order, mean, other_numbers());
+    }
     before = mean;
   }
   for (int k = 0; k < kRound; ++k) turning.sweep(random);

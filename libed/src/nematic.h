@@ -7,6 +7,8 @@
 
 #include <Eigen/Core>
 
+#include <functional>
+#include <string>
 #include <vector>
 
 namespace ed::internal {
@@ -31,8 +33,10 @@ class NematicOrientations {
 /// the director leaves z by more than the error of a sample. What they sample is
 /// uniform over all orientations without overlap and of that order; without the bodies in each other's way, Maier and
 /// Saupe's distribution for large numbers. `axes`: the ordered axis of each species. Throws std::invalid_argument,
-/// naming nematic_order, where rotations do not lead that far.
-void turn_to_order(System& system, const std::vector<int>& axes, double order, Random& random);
+/// naming nematic_order and `other_numbers` of bodies, if any, that have more room, where rotations do not lead that
+/// far.
+void turn_to_order(System& system, const std::vector<int>& axes, double order, Random& random,
+                   const std::function<std::string()>& other_numbers);
 
 /// The body axis that has the order: that of revolution, or body z.
 int ordered_axis(const Species& species);

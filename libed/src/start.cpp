@@ -156,7 +156,8 @@ System compress(const System& system, double target_box, const StartOptions& opt
         std::ostringstream message;
         message << "packing_fraction: the compression got stuck at "
                 << options.packing_fraction * std::pow(target_box / simulation.box(), 3) << " of "
-                << options.packing_fraction << "; a lower value is needed for this shape";
+                << options.packing_fraction
+                << "; a lower value is needed for this shape, or another seed, or more bodies";
         throw std::runtime_error(message.str());
       }
       checkpoint = simulation.box();
@@ -222,6 +223,16 @@ System random_start(const Species& species, const StartOptions& options) {
   return random_start(std::vector<Component>{{species, options.number}}, options);
 }
 
+int compressed_together(const std::vector<Component>& components, const StartOptions& options) {
+  if (options.packing_fraction <= dilute_packing(components)) return 0;
+  int number = 0;
+  for (const Component& component :
+       internal::tiling_of(components, options.packing_fraction, options.most_compressed).tile) {
+    number += component.number;
+  }
+  return number;
+}
+
 System random_start(const std::vector<Component>& components, const StartOptions& options) {
   internal::check_components(components);
   check_packing(components, options.packing_fraction);
@@ -230,7 +241,7 @@ System random_start(const std::vector<Component>& components, const StartOptions
   Random random(options.seed);
   const bool dilute = options.packing_fraction <= dilute_packing(components);
   const internal::Tiling tiling =
-      dilute ? internal::Tiling{1, components, options.packing_fraction}
+      dilute ? internal::Tiling{1, components, {}, options.packing_fraction}
              : internal::tiling_of(components, options.packing_fraction, options.most_compressed);
   StartOptions of_tile = options;
   of_tile.packing_fraction = tiling.packing_fraction;

@@ -823,6 +823,33 @@ class BadSpecies(Case):
         self.refuse(MIXTURE + '[dynamics]\ninertia = "paper"\n', "bad.toml:21: ", "dynamics.inertia", "species[2] is none")
         self.refuse(MIXTURE + "[dynamics]\ninertia = [1, 1, 1]\n", "bad.toml:21: ", "moments in each [[species]]")
 
+    def test_inertia_that_no_species_takes(self):
+        own = MIXTURE.replace("\nfraction", '\ninertia = "uniform"\nfraction')
+        for value in ["uniform", "paper", "foo"]:
+            with self.subTest(value):
+                parts = [f'dynamics.inertia is "{value}"', "none where every [[species]] has its own inertia"]
+                self.refuse(own + f'[dynamics]\ninertia = "{value}"\n', "bad.toml:23: ", *parts)
+        self.refuse(own, "--set dynamics.inertia", arguments=["--set", "dynamics.inertia=uniform"])
+        one = MIXTURE.replace("\nfraction", '\ninertia = "uniform"\nfraction', 1)
+        self.refuse(one + '[dynamics]\ninertia = "foo"\n', "bad.toml:22: ", 'dynamics.inertia is "foo"')
+        os.remove(self.path("bad.toml"))
+        self.hardbody("init", "bad.toml", "--template", "mixture")
+        self.refuse(self.read("bad.toml"), "--set dynamics.inertia", arguments=["--set", "dynamics.inertia=uniform"])
+
+    def test_moments_are_named_as_they_are_given(self):
+        """Though the axis of revolution becomes body z."""
+        for axes, moments, what, axis in [
+            ("[3, 1, 1]", "[2.5, 1, 2]", "I3 + I1 - I2", "y"),
+            ("[1, 3, 1]", "[2, 2.5, 1]", "I2 + I3 - I1", "x"),
+            ("[1, 3, 1]", "[1, 2.5, 2]", "I2 + I3 - I1", "x"),
+            ("[1, 1, 3]", "[2, 1, 2.5]", "I2 + I3 - I1", "x"),
+        ]:
+            with self.subTest(axes=axes, moments=moments):
+                bodies = MIXTURE.replace("semi_axes = [0.6, 0.6, 0.6]\nexponents = [0.5, 0.5]", f"semi_axes = {axes}")
+                bodies = bodies.replace('kind = "superellipsoid"\n', "").replace("mass = 2", f"mass = 0.5\ninertia = {moments}")
+                words = f"bad.toml:12: species[2].inertia is {moments}; accepted: {what} at most 1, twice the mass"
+                self.refuse(bodies, words, f"along body {axis}")
+
     def test_unequal_sizes(self):
         # So few large bodies do not fit into the box, and the message says what would.
         large = MIXTURE.replace("semi_axes = [0.6, 0.6, 0.6]", "semi_axes = [6, 6, 6]").replace("0.6\n[[", "0.98\n[[")
@@ -1017,9 +1044,10 @@ class Starts(Case):
 
     ROD = SMALL.replace("aspect_ratio = 2", "aspect_ratio = 3").replace("number = 64", "number = 288")
 
-    def run_start(self, out, config, *lines):
+    def run_start(self, out, config, *lines, said=False):
+        """The summary, or what was said on the console."""
         config = config.replace("[system]\n", "[system]\n" + "".join(line + "\n" for line in lines))
-        self.run_small(out, "--set", "equilibration.time=0.2", "production.time=0.5", config=config)
+        result = self.run_small(out, "--set", "equilibration.time=0.2", "production.time=0.5", config=config)
         self.assertEqual(self.hardbody("check", out).returncode, 0)
         text = self.read(f"{out}/config.toml")
         for line in lines:
@@ -1029,7 +1057,7 @@ class Starts(Case):
         self.assertEqual(self.state_of(out), self.state_of(f"{out}_again"))
         summary = self.summary(out)
         self.assertTrue(summary["sound"])
-        return summary
+        return result.stderr if said else summary
 
     def test_compressions_are_counted(self):
         counters = self.run_start("compressed", self.ROD)["counters_of_start"]
@@ -1049,11 +1077,15 @@ class Starts(Case):
         self.run_start("out", SMALL.replace("aspect_ratio = 2", shape).replace("0.2", "0.6"), 'start = "cubic"')
 
     def test_nematic(self):
-        self.run_start("compressed", self.ROD, "nematic_order = 0.8")
+        said = self.run_start("compressed", self.ROD, "nematic_order = 0.8", said=True)
         # In a fluid that would rather be isotropic, compression loses what it began with; on the way to a gas it does not.
-        self.run_start("gas", self.ROD.replace("0.2", "0.002"), "nematic_order = 0.8")
-        reached = [re.search(r"start: done, \d+ collisions, S = ([-0-9.]+)$", self.read(f"{out}/log.txt"), re.MULTILINE)[1]
+        gas = self.run_start("gas", self.ROD.replace("0.2", "0.002"), "nematic_order = 0.8", said=True)
+        reached = [re.search(r"start: S = ([-0-9.]+)$", self.read(f"{out}/log.txt"), re.MULTILINE)[1]
                    for out in ("compressed", "gas")]
+        lost = f'start: S = {float(reached[0]):.2f} about z after the compression, not nematic_order = 0.8, which start = "fcc"'
+        self.assertIn(lost, said)
+        self.assertIn(lost, self.read("compressed/log.txt"))
+        self.assertNotIn("nematic_order", gas)
         self.assertLess(float(reached[0]), 0.4)
         self.assertAlmostEqual(float(reached[1]), 0.8, delta=0.1)
         dense = self.ROD.replace("0.2", "0.4")
@@ -1074,8 +1106,23 @@ class Starts(Case):
         words = r"the largest bodies have 10 times the bounding radius of the smallest, and a cell .* holds \d+ bodies"
         self.assertRegex(self.read("out/log.txt"), words)
         self.assertRegex(result.stderr, words)
+        self.assertIn("1200 of 1200 bodies are compressed together", result.stderr)
         self.run_small("equal", "--set", "equilibration.time=0.1", "production.time=0.1")
         self.assertNotIn("bounding radius", self.read("equal/log.txt"))
+
+    def test_numbers_of_species_on_fcc(self):
+        bodies = MIXTURE.replace("number = 100\n", 'start = "fcc"\n').replace("fraction = 0.6", "number = 101")
+        self.write("bad.toml", bodies.replace("fraction = 0.4", "number = 100"))
+        words = "bad.toml:7: the numbers of all [[species]] add up to 201: the fcc lattice has 4 bodies in a cell; accepted: a multiple of 4"
+        self.assert_refused(self.hardbody("run", "bad.toml"), words)
+
+    def test_awkward_large_numbers_on_a_lattice(self):
+        """A prime number has but one way to fill a cube, in slices: it is refused at once."""
+        shape = 'kind = "superellipsoid"\nsemi_axes = [1, 1, 1]\nexponents = [0.5, 0.5]'
+        config = SMALL.replace("aspect_ratio = 2", shape).replace("number = 64", 'number = 999983\nstart = "cubic"')
+        self.write("bad.toml", config)
+        result = self.hardbody("run", "bad.toml", timeout=60)
+        self.assert_refused(result, "system.packing_fraction is 0.2: 999983 bodies in ", "accepted: at most", "or a number of 9999")
 
     def test_too_dense(self):
         config = self.ROD.replace("number = 288", 'number = 512\nstart = "fcc"').replace("0.2", "0.6")

@@ -445,6 +445,19 @@ class StartsFromFiles(Trajectories):
         heavier = shape + "[dynamics]\ninertia = [0.3, 0.3, 0.4]\n" + AGAIN
         self.assertIn("velocities rescaled", self.run_small("third", config=heavier).stderr)
 
+    def test_another_inertia_than_the_file_has(self):
+        """That of [dynamics] counts for the species of the file; moments need sections of their own."""
+        self.run_with("first", SMALL)
+        result = self.run_small("second", config='[dynamics]\ninertia = "uniform"\n' + AGAIN)
+        self.assertIn("velocities rescaled", result.stderr)
+        self.assertIn('inertia = "uniform"', self.read("second/config.toml"))
+        self.assertEqual(self.run_small("third", config='[dynamics]\ninertia = "paper"\n' + AGAIN).returncode, 0)
+        self.same("first/trajectory.gsd", 5, "third/trajectory.gsd")
+        self.write("bad.toml", "[dynamics]\ninertia = [0.3, 0.3, 0.4]\n" + AGAIN)
+        self.assert_refused(self.hardbody("run", "bad.toml", "--out", "bad"), "bad.toml:2: ", "moments in each [[species]]")
+        self.write("bad.toml", '[dynamics]\ninertia = "foo"\n' + AGAIN)
+        self.assert_refused(self.hardbody("run", "bad.toml", "--out", "bad"), "bad.toml:2: ", '"paper", "uniform"')
+
     def test_of_another_program(self):
         """Written by gsd.hoomd, with what HOOMD has: 32-bit numbers, shapes, types in any order, no velocities."""
         self.run_with("first", SMALL)

@@ -99,6 +99,65 @@ TEST(LatticeStart, NamesTheNumbersThatHold) {
   EXPECT_THAT(message_of([&] { (void)lattice(species, 4, {.packing_fraction = 0.3}); }), HasSubstr("number"));
 }
 
+/// The numbers that a message names after `words`.
+std::vector<int> numbers_after(const std::string& message, const std::string& words) {
+  const std::size_t at = message.find(words);
+  if (at == std::string::npos) return {};
+  std::istringstream text(message.substr(at + words.size()));
+  std::vector<int> numbers(1);
+  std::string word;
+  text >> numbers[0] >> word;
+  if (word == "or") text >> numbers.emplace_back();
+  return numbers;
+}
+
+/// Rods of sizes from 0.8 to 1.2, evenly.
+std::vector<ed::Component> rods_of_many_sizes(int number) {
+  std::vector<ed::Component> components;
+  for (int k = 0; k < number; ++k)
+    components.push_back({ed::scaled(ed_test::species(3, Inertia::paper), 0.8 + 0.4 * k / number), 1});
+  return components;
+}
+
+TEST(LatticeStart, NamesTheNumbersThatFillWellForMixtures) {
+  const auto two_sizes = [](int number) {
+    const ed::Species rod = ed_test::species(3, Inertia::paper);
+    return std::vector<ed::Component>{{rod, number / 2}, {ed::scaled(rod, 0.9), number - number / 2}};
+  };
+  for (const auto& components : {+[](int n) { return rods_of_many_sizes(n); }, +two_sizes}) {
+    const auto refusal = [&](int number, double phi) {
+      return message_of([&] { (void)ed::lattice_start(components(number), {.packing_fraction = phi}); });
+    };
+    const double most = std::stod(refusal(512, 0.7).substr(refusal(512, 0.7).find("at most ") + 8));
+    const std::string message = refusal(512, 1.1 * most);
+    const std::vector<int> enough = numbers_after(message, ", or a number of ");
+    ASSERT_EQ(enough.size(), 2U) << message;
+    for (const int number : enough)
+      expect_sound(ed::lattice_start(components(number), {.packing_fraction = 1.1 * most}), 1.1 * most);
+    // Where none holds so much, how much one that fits holds.
+    EXPECT_EQ(numbers_after(refusal(512, 0.7), " with a number of ").size(), 2U) << refusal(512, 0.7);
+    EXPECT_EQ(numbers_after(refusal(501, 0.3), "a multiple of 4, best ").size(), 2U) << refusal(501, 0.3);
+  }
+}
+
+TEST(LatticeStart, RefusesLargeAwkwardNumbersAtOnce) {
+  const ed::Species superball = ed::uniform_species(geom::Superellipsoid({1, 1, 1}, 0.5, 0.5));
+  const ed::LatticeOptions cubic{.lattice = ed::Lattice::simple_cubic, .packing_fraction = 0.3};
+  const std::string message = message_of([&] { (void)lattice(superball, 999983, cubic); });
+  EXPECT_THAT(message, HasSubstr("999983 bodies in "));
+  EXPECT_EQ(numbers_after(message, ", or a number of ").size(), 2U) << message;
+}
+
+TEST(LatticeStart, NamesTheNumbersThatBodiesCanTurnIn) {
+  const ed::Species species = ed_test::species(3, Inertia::paper);
+  const ed::LatticeOptions options{.packing_fraction = 0.4, .nematic_order = 0.8};
+  const std::string message = message_of([&] { (void)lattice(species, 512, options); });
+  EXPECT_THAT(message, HasSubstr("do not turn further than to an order of 0.86"));
+  const std::vector<int> numbers = numbers_after(message, "a number of ");
+  ASSERT_EQ(numbers.size(), 2U) << message;
+  for (const int number : numbers) EXPECT_EQ(ed::audit(lattice(species, number, options)).overlaps, 0) << number;
+}
+
 TEST(LatticeStart, RefusesImpossiblePackingFractions) {
   for (const double phi : {0.0, -0.1, 1.0, std::numeric_limits<double>::quiet_NaN()}) {
     EXPECT_THAT(message_of([&] { (void)lattice(ed_test::species(3, Inertia::paper), 288, {.packing_fraction = phi}); }),

@@ -202,6 +202,55 @@ TEST(RandomStart, LargeMixturesAreRepeated) {
   expect_sound(system, 0.3);
 }
 
+TEST(RandomStart, LargeOnesOfManySizesAreRepeated) {
+  // Sizes of a Gaussian distribution, and another shape with sizes of its own, and 203 of one size.
+  std::vector<ed::Component> components;
+  const ed::Species rod = ed::paper_species(ed_test::spheroid(2));
+  const ed::Species cube = ed::uniform_species(geom::Superellipsoid({0.9, 0.9, 0.9}, 0.5, 0.5));
+  for (const double size : ed::draw_sizes(ed::SizeDistribution::gaussian, 0.1, 800, 3)) {
+    components.push_back({ed::scaled(rod, size), 1});
+  }
+  components.push_back({ed::scaled(rod, 0.7), 203});
+  for (const double size : ed::draw_sizes(ed::SizeDistribution::uniform, 0.1, 801, 4)) {
+    components.push_back({ed::scaled(cube, size), 1});
+  }
+  ed::StartOptions options;
+  options.packing_fraction = 0.3;
+  options.most_compressed = 230;
+  EXPECT_LE(ed::compressed_together(components, options), 230);
+  const ed::System system = ed::random_start(components, options);
+  ASSERT_EQ(system.size(), 1804);
+  int body = 0;
+  for (std::size_t k = 0; k < components.size(); ++k) {
+    for (int i = 0; i < components[k].number; ++i) {
+      EXPECT_EQ(system.bodies[static_cast<std::size_t>(body++)].species, static_cast<int>(k));
+    }
+    EXPECT_EQ(ed::volume(system.species[k].shape), ed::volume(components[k].species.shape));
+  }
+  expect_sound(system, 0.3);
+  // Which size stands in which copy of the box is drawn: half of the larger ones in either half of the box.
+  int left = 0;
+  for (int i = 0; i < 800; ++i) {
+    const bool large = ed::volume(system.species_of(i).shape) > ed::volume(rod.shape);
+    left += large == (system.bodies[static_cast<std::size_t>(i)].position.x() < 0) ? 1 : 0;
+  }
+  EXPECT_NEAR(left, 400, 4 * 0.5 * std::sqrt(800.0));
+}
+
+/// Two large bodies would be eight in tiles: a tile of three times the wanted volume.
+TEST(RandomStart, FewLargeAmongManySmallAreNotRepeated) {
+  const ed::Species small = ed::paper_species(ed_test::spheroid(0.9));
+  const std::vector<ed::Component> components = {{ed::scaled(small, 5), 2}, {small, 1000}};
+  ed::StartOptions options;
+  options.packing_fraction = 0.1;
+  options.most_compressed = 200;
+  EXPECT_EQ(ed::compressed_together(components, options), 1002);
+  const std::vector<ed::Component> equal = {{small, 1002}};
+  EXPECT_EQ(ed::compressed_together(equal, options), 126);
+  options.packing_fraction = 0.01;
+  EXPECT_EQ(ed::compressed_together(equal, options), 0);
+}
+
 /// Mean distance of bodies of one species whose numbers follow each other, in mean distances of neighbours.
 double mean_distance_of_successors(const ed::System& system) {
   double sum = 0;
@@ -266,7 +315,8 @@ TEST(RandomStart, SaysWhereItGotStuck) {
     } catch (const std::runtime_error& error) {
       ++stuck;
       EXPECT_THAT(error.what(), HasSubstr("packing_fraction: the compression got stuck at 0.61"));
-      EXPECT_THAT(error.what(), HasSubstr(" of 0.62; a lower value is needed for this shape"));
+      EXPECT_THAT(error.what(),
+                  HasSubstr(" of 0.62; a lower value is needed for this shape, or another seed, or more bodies"));
     }
   }
   EXPECT_GT(stuck, 0);

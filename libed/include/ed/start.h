@@ -30,8 +30,11 @@ struct StartOptions {
   /// need it are made of smaller ones: a periodic box of at most as many bodies, in the same proportions, is compressed
   /// and then repeated along all edges, and every body gets a velocity of its own. The copies lose the memory of each
   /// other within some collisions; at distances of a box they are correlated until bodies have diffused by their
-  /// length, so that large starts, too, need their equilibration. Mixtures of many species with few bodies each, and
-  /// boxes that would be too small for nearest images, are not repeated as often.
+  /// length, so that large starts, too, need their equilibration. Bodies that have sizes of their own (components of
+  /// one shape but for its size) are sorted by size: the largest of as many as there are copies is compressed, and each
+  /// copy becomes one of them. Where that or rounding would add 2 % to the number or the volume of the bodies (many
+  /// species with few bodies each; few large among many small), or boxes would be too small for nearest images, starts
+  /// are repeated less often or not at all: compressed_together says how many bodies are compressed.
   int most_compressed = 1000;
   /// If not null: what the compression has counted, all 0 where nothing was compressed.
   Counters* counters = nullptr;
@@ -87,6 +90,10 @@ ED_EXPORT System random_start(const Species& species, const StartOptions& option
 /// bodies.
 ED_EXPORT System random_start(const std::vector<Component>& components, const StartOptions& options);
 
+/// How many bodies random_start would compress together: at most most_compressed where the start is repeated, and 0
+/// where nothing needs to be compressed.
+ED_EXPORT int compressed_together(const std::vector<Component>& components, const StartOptions& options);
+
 /// The paper's compression of a state that is there already, to a higher packing fraction: from one state point to the
 /// next. Velocities are rescaled at the end as those of random_start; `progress` and `counters` are as in StartOptions.
 ///
@@ -111,9 +118,10 @@ ED_EXPORT System compressed(const System& system, double packing_fraction,
 ///
 /// All pairs within reach, in all images, are asked for overlap. Throws std::invalid_argument: naming packing_fraction
 /// where aligned bodies overlap, with the largest one of this number of bodies on this lattice and the nearest numbers
-/// that have the one asked for; naming number where it is not a multiple of 4 (fcc) or the box is too small for nearest
-/// images (as random_start); naming nematic_order where the bodies have no room to turn as far; for an axis that is
-/// none.
+/// that have the one asked for (of several species, in whose cells ellipsoids of their mean extents would have room);
+/// naming number where it is not a multiple of 4 (fcc) or the box is too small for nearest images (as random_start);
+/// naming nematic_order where the bodies have no room to turn as far, and numbers whose cells fit them better; for an
+/// axis that is none.
 ED_EXPORT System lattice_start(const std::vector<Component>& components, const LatticeOptions& options);
 
 /// Sets momentum zero and the temperatures as above.
