@@ -33,7 +33,8 @@ if(TARGET hardbody)
   hardbody_test(sweep_test unit unit/sweep_test.cpp)
   target_link_libraries(sweep_test PRIVATE hardbody_program)
 
-  hardbody_test(program_test cli cli/program_test.cpp cli/checkpoint_test.cpp cli/check_test.cpp)
+  hardbody_test(program_test cli cli/program_test.cpp cli/checkpoint_test.cpp cli/check_test.cpp
+    cli/events_file_test.cpp)
   target_link_libraries(program_test PRIVATE hardbody_program)
   target_compile_definitions(program_test PRIVATE HARDBODY_PROGRAM="$<TARGET_FILE:hardbody>"
     HARDBODY_OLD_CHECKPOINT="${CMAKE_CURRENT_SOURCE_DIR}/cli/checkpoint_v1.bin")
@@ -42,5 +43,6 @@ if(TARGET hardbody)
   hardbody_test(trajectory_test cli cli/trajectory_test.cpp)
   target_link_libraries(trajectory_test PRIVATE hardbody_program)
 else()
-  list(APPEND unbuilt_tests cli/program_test.cpp cli/checkpoint_test.cpp cli/check_test.cpp cli/trajectory_test.cpp unit/sweep_test.cpp)
+  list(APPEND unbuilt_tests cli/program_test.cpp cli/checkpoint_test.cpp cli/check_test.cpp cli/events_file_test.cpp
+    cli/trajectory_test.cpp unit/sweep_test.cpp)
 endif()

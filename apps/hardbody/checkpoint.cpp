@@ -33,7 +33,8 @@ void fields(Archive& archive, T& upkeep) {
 
 template <class Archive, Is<Equilibration> T>
 void fields(Archive& archive, T& e) {
-  archive(e.kinetic_at_start, e.time, e.envelope, e.relaxation, e.counters_of_start, e.counters, e.failures);
+  archive(e.kinetic_at_start, e.time, e.envelope, e.relaxation, e.counters_of_start, e.counters_of_tuning,
+          e.failures_of_start, e.counters, e.failures);
 }
 
 template <class Archive, Is<Production> T>
@@ -69,8 +70,8 @@ namespace {
 
 constexpr std::string_view kMagic = "HARDBODY";
 constexpr std::uint32_t kByteOrder = 0x01020304;
-constexpr std::uint32_t kFormat = 8;
-constexpr std::uint32_t kOtherRun = 3;  ///< to 7: whose run only an older program can go on with
+constexpr std::uint32_t kFormat = kCheckpointFormat;
+constexpr std::uint32_t kOtherRun = 3;  ///< to kFormat - 1: whose run only an older program can go on with
 /// Of one ellipsoid of revolution; like 2 without what a run needs to go on.
 constexpr std::uint32_t kOneEllipsoid = 1;
 constexpr std::size_t kHead = 8 + 4 + 4 + 8;  ///< magic, byte order, format, length of the payload
@@ -94,6 +95,7 @@ ed::System take_one_ellipsoid(Reader& reader) {
 Checkpoint take_checkpoint(std::uint32_t format, std::string_view payload) {
   Reader reader(payload);
   Checkpoint checkpoint;
+  checkpoint.format = format;
   reader(checkpoint.program_version, checkpoint.config, checkpoint.cpu_features);
   if (format >= kOtherRun) reader(checkpoint.arithmetic);
   reader(checkpoint.phase, checkpoint.time);
@@ -102,7 +104,9 @@ Checkpoint take_checkpoint(std::uint32_t format, std::string_view payload) {
   } else {
     reader(checkpoint.system);
   }
-  if (format == kFormat) reader(checkpoint.counters_of_start, checkpoint.run, checkpoint.upkeep);
+  if (format == kFormat) {
+    reader(checkpoint.counters_of_start, checkpoint.failures_of_start, checkpoint.run, checkpoint.upkeep);
+  }
   if (format >= kOtherRun && format < kFormat) (void)reader.raw(reader.left());
   reader.finish();
   const ed::System& system = checkpoint.system;
@@ -130,7 +134,7 @@ Payload checked_payload(std::string_view bytes, const std::string& name) {
   const auto format = head.value<std::uint32_t>();
   const auto length = head.value<std::uint64_t>();
   if (format < kOneEllipsoid || format > kFormat) {
-    throw InputError(fmt::format(
+    throw OtherVersion(fmt::format(
         "{}: has format version {}, this program reads versions {} to {}; accepted: the program that wrote it, or a "
         "new run of its config.toml",
         name, format, kOneEllipsoid, kFormat));
@@ -167,11 +171,17 @@ std::string or_none(const std::string& features) {
   return features.empty() ? "none" : features;
 }
 
+std::string different(const std::string& name, const char* what, const std::string& made, const std::string& here) {
+  return fmt::format(
+      "{}: was made {} {}, here {}, which would change bits; accepted: the same, or a new run of its config.toml", name,
+      what, made, here);
+}
+
 void put_payload(const Checkpoint& checkpoint, const Sink& sink) {
   Writer payload(sink);
   payload(checkpoint.program_version, checkpoint.config, checkpoint.cpu_features, checkpoint.arithmetic,
-          checkpoint.phase, checkpoint.time, checkpoint.system, checkpoint.counters_of_start, checkpoint.run,
-          checkpoint.upkeep);
+          checkpoint.phase, checkpoint.time, checkpoint.system, checkpoint.counters_of_start,
+          checkpoint.failures_of_start, checkpoint.run, checkpoint.upkeep);
   payload.flush();
 }
 
@@ -187,7 +197,8 @@ struct FreeHash {
 };
 
 /// The payload with head and checksum.
-void seal(std::uint64_t length, const std::function<void(const Sink&)>& payload, const Sink& sink) {
+void seal(std::uint32_t format, std::uint64_t length, const std::function<void(const Sink&)>& payload,
+          const Sink& sink) {
   const std::unique_ptr<XXH3_state_t, FreeHash> hash(XXH3_createState());
   if (!hash || XXH3_64bits_reset(hash.get()) != XXH_OK)
     throw std::runtime_error("checkpoint: no room for its checksum");
@@ -197,7 +208,7 @@ void seal(std::uint64_t length, const std::function<void(const Sink&)>& payload,
     }
     sink(piece);
   };
-  hashed(std::string(kMagic) + ed::internal::bytes_of(kByteOrder) + ed::internal::bytes_of(kFormat) +
+  hashed(std::string(kMagic) + ed::internal::bytes_of(kByteOrder) + ed::internal::bytes_of(format) +
          ed::internal::bytes_of(length));
   payload(hashed);
   sink(ed::internal::bytes_of(std::uint64_t{XXH3_64bits_digest(hash.get())}));
@@ -215,17 +226,17 @@ void StoredState::write(const Sink& sink) const {
   }
 }
 
-std::string seal_checkpoint(std::string_view payload) {
+std::string seal_checkpoint(std::string_view payload, std::uint32_t format) {
   std::string bytes;
   seal(
-      payload.size(), [payload](const Sink& sink) { sink(payload); },
+      format, payload.size(), [payload](const Sink& sink) { sink(payload); },
       [&bytes](std::string_view piece) { bytes += piece; });
   return bytes;
 }
 
 void encode_checkpoint(const Checkpoint& checkpoint, const Sink& sink) {
   const auto payload = [&checkpoint](const Sink& to) { put_payload(checkpoint, to); };
-  seal(count_bytes(payload), payload, sink);
+  seal(kFormat, count_bytes(payload), payload, sink);
 }
 
 std::string encode_checkpoint(const Checkpoint& checkpoint) {
@@ -259,20 +270,29 @@ void check_same_config(const Checkpoint& checkpoint, const Config& config, const
                                config_name, found->key, found->here, found->there));
 }
 
-void check_resumable(const Checkpoint& checkpoint, const std::string& name) {
-  const auto refuse = [&](const std::string& what, const std::string& made, const std::string& here) {
-    throw InputError(fmt::format(
-        "{}: was made {} {}, here {}, which would change bits; accepted: the same, or a new run of its config.toml",
-        name, what, made, here));
-  };
-  if (checkpoint.phase != "start" && !checkpoint.run) {
-    throw InputError(fmt::format(
+void check_version(const Checkpoint& checkpoint, const std::string& name) {
+  if (checkpoint.format >= kOtherRun && checkpoint.format < kFormat) {
+    throw OtherVersion(
+        fmt::format("{}: was made by hardbody {} in format {}, from which only that program goes on, here {} in format "
+                    "{}; accepted: that program, or a new run of its config.toml",
+                    name, checkpoint.program_version, checkpoint.format, version(), kFormat));
+  }
+  if (checkpoint.format < kOtherRun || (checkpoint.phase != "start" && !checkpoint.run)) {
+    throw OtherVersion(fmt::format(
         "{}: is of an older format that holds no running state; accepted: a new run of its config.toml", name));
   }
-  if (checkpoint.program_version != version()) refuse("by hardbody", checkpoint.program_version, version());
-  if (checkpoint.arithmetic != arithmetic()) refuse("by a program with", checkpoint.arithmetic, arithmetic());
+  if (checkpoint.program_version != version()) {
+    throw OtherVersion(different(name, "by hardbody", checkpoint.program_version, version()));
+  }
+}
+
+void check_resumable(const Checkpoint& checkpoint, const std::string& name) {
+  if (checkpoint.arithmetic != arithmetic()) {
+    throw InputError(different(name, "by a program with", checkpoint.arithmetic, arithmetic()));
+  }
   if (checkpoint.cpu_features != cpu_feature_text()) {
-    refuse("on a processor with", or_none(checkpoint.cpu_features), or_none(cpu_feature_text()));
+    throw InputError(
+        different(name, "on a processor with", or_none(checkpoint.cpu_features), or_none(cpu_feature_text())));
   }
 }
 

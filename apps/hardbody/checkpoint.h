@@ -1,5 +1,6 @@
 #pragma once
 
+#include "errors.h"
 #include "run_record.h"
 #include "text_file.h"
 
@@ -13,6 +14,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 namespace hardbody {
 
@@ -52,12 +54,15 @@ struct RunState {
   StoredState observables;  ///< ed::Observables::save; of production
 };
 
+inline constexpr std::uint32_t kCheckpointFormat = 9;
+
 /// checkpoint.bin: a state and what it belongs to.
 ///
 /// Layout: "HARDBODY", a mark of the byte order, the format's version, the length of the payload; the
 /// payload; the XXH3 checksum of everything before it. Versions 1 (one ellipsoid of revolution for all bodies) and 2
-/// hold no RunState, versions 3 and 4 another one: they can be checked, not resumed.
+/// hold no RunState, versions 3 to 8 another one, which is left unread: they can be checked, not resumed.
 struct Checkpoint {
+  std::uint32_t format = kCheckpointFormat;  ///< of the file that it was read from
   std::string program_version;
   std::string config;        ///< the run's resolved config.toml
   std::string cpu_features;  ///< of the processor that made it, blank-separated
@@ -65,9 +70,11 @@ struct Checkpoint {
   std::string phase;         ///< "start", "equilibration" or "production"
   double time = 0;           ///< since the phase began
   ed::System system;
-  ed::Counters counters_of_start;  ///< in a "start"; later in RunState's equilibration
-  std::optional<RunState> run;     ///< nothing in a "start", which goes on from the system
-  Upkeep upkeep;  ///< last, so that the checkpoints of two like runs differ in their last 48 bytes only
+  // In a "start"; later in RunState's equilibration.
+  ed::Counters counters_of_start;
+  std::vector<ed::FailedPair> failures_of_start;
+  std::optional<RunState> run;  ///< nothing in a "start", which goes on from the system
+  Upkeep upkeep;                ///< last, so that the checkpoints of two like runs differ in their last 48 bytes only
 };
 
 /// The file's bytes, piece by piece.
@@ -75,18 +82,29 @@ void encode_checkpoint(const Checkpoint& checkpoint, const Sink& sink);
 std::string encode_checkpoint(const Checkpoint& checkpoint);
 
 /// A payload with head and checksum: what decode_checkpoint takes for whole.
-std::string seal_checkpoint(std::string_view payload);
+std::string seal_checkpoint(std::string_view payload, std::uint32_t format = kCheckpointFormat);
+
+/// A checkpoint of another version of the program or of the format.
+class OtherVersion : public InputError {
+ public:
+  using InputError::InputError;
+};
 
 /// Throws InputError, `name: why`, for anything but an undamaged checkpoint of a version that is known, in this byte
-/// order.
+/// order; OtherVersion for one of a later format.
 Checkpoint decode_checkpoint(std::string_view bytes, const std::string& name);
 
 Checkpoint read_checkpoint(const std::filesystem::path& path);
 
+/// Whether it has a run of this program's version and format. Throws OtherVersion, naming what differs. To be asked
+/// before the config is read, which may be another version's too.
+void check_version(const Checkpoint& checkpoint, const std::string& name);
+
 /// Whether the config is still that of the run. Throws InputError, naming the key that differs.
 void check_same_config(const Checkpoint& checkpoint, const Config& config, const std::string& config_name);
 
-/// Whether this program, on this processor, goes on with the same bits. Throws InputError, naming what differs.
+/// Whether this program, of the same version, and this processor go on with the same bits. Throws InputError, naming
+/// what differs.
 void check_resumable(const Checkpoint& checkpoint, const std::string& name);
 
 }  // namespace hardbody

@@ -166,8 +166,8 @@ int run_command_line(int argc, char** argv) {
   app.set_version_flag("--version", version_text());
   app.require_subcommand(1);
   app.footer(
-      "Exit status: 0 fine, 2 bad input, 1 failed; 130 and 143: stopped by SIGINT and SIGTERM, results "
-      "saved.");
+      "Exit status: 0 fine, 2 bad input, 1 failed; 130, 143, 129 and 152: stopped by SIGINT, SIGTERM, SIGHUP and "
+      "SIGXCPU, results saved.");
   add_init(app, request);
   add_run(app, request);
   add_resume(app, request);

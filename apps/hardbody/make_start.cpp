@@ -26,14 +26,14 @@ std::string order_text(const Config& config) {
   return config.nematic_order ? fmt::format(", S = {:g} about z", *config.nematic_order) : "";
 }
 
-ed::StartOptions start_options(const Config& config, const std::function<bool(double)>& progress,
-                               ed::Counters& counters) {
+ed::StartOptions start_options(const Config& config, const std::function<bool(double)>& progress, Start& start) {
   ed::StartOptions options;
   options.packing_fraction = config.packing_fraction;
   options.seed = static_cast<std::uint64_t>(config.seed);
   options.nematic_order = config.nematic_order;
   options.progress = progress;
-  options.counters = &counters;
+  options.counters = &start.counters;
+  options.failures = &start.failures;
   return options;
 }
 
@@ -116,9 +116,10 @@ std::optional<Start> compressed_start(const Config& config, Progress& progress, 
   try {
     Start start;
     if (config.start_from) {
-      start.system = ed::compressed(read_origin_state(config), config.packing_fraction, show, &start.counters);
+      start.system =
+          ed::compressed(read_origin_state(config), config.packing_fraction, show, &start.counters, &start.failures);
     } else {
-      start.system = ed::random_start(config.components(), start_options(config, show, start.counters));
+      start.system = ed::random_start(config.components(), start_options(config, show, start));
     }
     if (pending_signal() != 0) return std::nullopt;
     log.line(fmt::format("start: done, {} collisions", start.counters.collisions));
@@ -137,7 +138,7 @@ std::optional<Start> make_start(const Config& config, Progress& progress, Log& l
     FileStart start = start_from_file(config);
     log.line(start.report);
     progress.say(start.report);
-    return Start{std::move(start.system), {}};
+    return Start{std::move(start.system), {}, {}};
   }
   for (const std::optional<std::string>& warning : {unequal_sizes(config), compressed_as_one(config)}) {
     if (!warning) continue;
@@ -148,7 +149,7 @@ std::optional<Start> make_start(const Config& config, Progress& progress, Log& l
   if (!lattice) return compressed_start(config, progress, log);
   log.line(fmt::format("start: {} bodies on a lattice ({}) at packing fraction {:g}{}", config.number, config.start,
                        config.packing_fraction, order_text(config)));
-  Start start{ed::lattice_start(config.components(), *lattice), {}};
+  Start start{ed::lattice_start(config.components(), *lattice), {}, {}};
   log.line("start: done");
   return start;
 }

@@ -8,13 +8,15 @@
 #include <ed/system.h>
 
 #include <optional>
+#include <vector>
 
 namespace hardbody {
 
-/// The state, and what its compression has counted.
+/// The state, what its compression has counted, and the pairs that failed in it.
 struct Start {
   ed::System system;
   ed::Counters counters;
+  std::vector<ed::FailedPair> failures;
 };
 
 /// What a run begins with: bodies from a file, the last state of another run, a random dilute state, or a lattice; the

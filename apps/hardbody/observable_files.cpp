@@ -221,7 +221,7 @@ std::string events_header() {
   return "time,i,j\n";
 }
 
-std::string events_rows(const std::vector<ed::Collision>& collisions) {
+std::string events_rows(std::span<const ed::Collision> collisions) {
   std::string text;
   for (const ed::Collision& c : collisions) {
     fmt::format_to(std::back_inserter(text), "{:.17g},{},{}\n", c.time, c.i, c.j);

@@ -3,6 +3,7 @@
 #include <ed/observables.h>
 #include <ed/simulation.h>
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -29,7 +30,7 @@ std::string blocks_csv(const ed::Results& results);
 /// time,i,j with 17 significant digits, which give the same double back; the header and rows of events.csv.
 /// @{
 std::string events_header();
-std::string events_rows(const std::vector<ed::Collision>& collisions);
+std::string events_rows(std::span<const ed::Collision> collisions);
 /// @}
 
 }  // namespace hardbody

@@ -29,6 +29,9 @@ constexpr double kLook = 0.1;
 constexpr double kFirstSlice = 10;
 constexpr double kGrowth = 4;
 constexpr double kLongestSlice = 1e6;
+/// Events in a slice for each of its collisions, at the most: some times what sound runs need. A run that stalls has
+/// any number of them without a collision.
+constexpr double kEventsOfACollision = 100;
 
 /// "auto": production in units of the equilibration time, and its limits. Times are in units of Config::time_unit.
 constexpr double kProductionFactor = 30;
@@ -49,11 +52,12 @@ constexpr double kTunedPacking = 0.005;
 class Runner {
  public:
   Runner(ed::Simulation& simulation, std::string phase, Progress& progress, Saver& saver,
-         std::function<Checkpoint()> checkpoint)
+         std::function<Checkpoint()> checkpoint, std::function<void()> keep_up = {})
       : simulation_(simulation),
         progress_(progress),
         saver_(saver),
         checkpoint_(std::move(checkpoint)),
+        keep_up_(std::move(keep_up)),
         phase_(std::move(phase)),
         begin_(simulation.time()),
         collisions_(simulation.counters().collisions),
@@ -62,6 +66,7 @@ class Runner {
   bool run_to(double time, double planned_end) {
     while (pending_signal() == 0 && !simulation_.stall()) {
       const bool arrived = run_slice(time);
+      if (keep_up_) keep_up_();
       if (progress_.due()) progress_.show(text(planned_end));
       if (saver_.due()) saver_.save(checkpoint_);
       if (arrived) return true;
@@ -73,7 +78,8 @@ class Runner {
   /// Where a slice ends changes no bit of the run, so that its length may follow the clock.
   bool run_slice(double time) {
     const double begin = progress_.seconds();
-    const bool arrived = simulation_.run_until(time, static_cast<std::uint64_t>(slice_));
+    const bool arrived = simulation_.run_until(time, static_cast<std::uint64_t>(slice_),
+                                               static_cast<std::uint64_t>(kEventsOfACollision * slice_));
     const double seconds = progress_.seconds() - begin;
     // A slice that was cut short by `time` says nothing of longer ones.
     if (!arrived || seconds > kLook) {
@@ -95,6 +101,7 @@ class Runner {
   Progress& progress_;
   Saver& saver_;
   std::function<Checkpoint()> checkpoint_;
+  std::function<void()> keep_up_;  ///< after each slice
   std::string phase_;
   double begin_;  ///< of what this process does
   double slice_ = kFirstSlice;
@@ -196,7 +203,8 @@ std::string drift_text(const ed::Relaxation& relaxation) {
 }
 
 /// Chosen on a copy of the state: every finder and every kind of neighbour list then goes on from the same start.
-double tuned_envelope(const Config& config, const Start& start, Progress& progress, Saver& saver, Log& log) {
+void tune_envelope(const Config& config, const Start& start, Equilibration& result, Progress& progress, Saver& saver,
+                   Log& log) {
   ed::Simulation trial(start.system, config.simulation_options());
   trial.tune_envelopes([&] {
     if (progress.due()) progress.show("equilibration: choosing the thickness of the neighbour lists");
@@ -204,7 +212,10 @@ double tuned_envelope(const Config& config, const Start& start, Progress& progre
     return pending_signal() == 0;
   });
   if (trial.stall()) log.line("while the thickness of the neighbour lists was chosen: " + ed::describe(*trial.stall()));
-  return trial.envelope();
+  result.envelope = trial.envelope();
+  result.counters_of_tuning = trial.counters();
+  const std::vector<ed::FailedPair>& failed = trial.failures();
+  result.failures_of_start.insert(result.failures_of_start.end(), failed.begin(), failed.end());
 }
 
 /// What `restore` gives; as InputError if it does not fit.
@@ -218,10 +229,12 @@ auto restored(const std::string& name, const F& restore) {
   }
 }
 
-ed::Simulation restored_simulation(const Config& config, const Checkpoint& checkpoint, const std::string& name) {
+/// The bytes are let go.
+ed::Simulation restored_simulation(const Config& config, Checkpoint& checkpoint, const std::string& name) {
   return restored(name, [&] {
     ed::Simulation simulation = ed::Simulation::restore(checkpoint.run->simulation.bytes(), checkpoint.system.species,
                                                         config.simulation_options());
+    checkpoint.run->simulation = {};
     if (ed::internal::bytes_of(simulation.system()) == ed::internal::bytes_of(checkpoint.system)) return simulation;
     throw std::invalid_argument("state: two that should be the same differ");
   });
@@ -245,6 +258,7 @@ Checkpoint checkpoint_of(const Start& start) {
   checkpoint.phase = "start";
   checkpoint.system = start.system;
   checkpoint.counters_of_start = start.counters;
+  checkpoint.failures_of_start = start.failures;
   return checkpoint;
 }
 
@@ -259,8 +273,9 @@ std::optional<EquilibrationRun> begin_equilibration(const Config& config, const 
                        config.neighbours_chosen ? " (chosen by \"auto\")" : ""));
   Equilibration result;
   result.counters_of_start = start.counters;
+  result.failures_of_start = start.failures;
   if (config.packing_fraction >= kTunedPacking && config.neighbours != "cells") {
-    result.envelope = tuned_envelope(config, start, progress, saver, log);
+    tune_envelope(config, start, result, progress, saver, log);
     // The best of those that were tried would not be that of an undisturbed run.
     if (pending_signal() != 0) return std::nullopt;
     log.line(fmt::format("equilibration: envelope thickness {:.4g} l", result.envelope));
@@ -272,7 +287,7 @@ std::optional<EquilibrationRun> begin_equilibration(const Config& config, const 
   return EquilibrationRun{std::move(simulation), std::move(monitor), std::move(result)};
 }
 
-EquilibrationRun resumed_equilibration(const Config& config, const Checkpoint& checkpoint, const std::string& name) {
+EquilibrationRun resumed_equilibration(const Config& config, Checkpoint& checkpoint, const std::string& name) {
   ed::Simulation simulation = restored_simulation(config, checkpoint, name);
   ed::EquilibrationMonitor monitor = restored(
       name, [&] { return ed::EquilibrationMonitor::restore(checkpoint.run->monitor, relaxing_groups(config)); });
@@ -374,9 +389,9 @@ ProductionRun begin_production(const Config& config, Equilibration equilibration
   return run;
 }
 
-ProductionRun resumed_production(const Config& config, const Checkpoint& checkpoint, const RunDirectory& directory,
+ProductionRun resumed_production(const Config& config, Checkpoint& checkpoint, const RunDirectory& directory,
                                  const std::string& name) {
-  const RunState& state = *checkpoint.run;
+  RunState& state = *checkpoint.run;
   ProductionRun run{restored_simulation(config, checkpoint, name),
                     restored(name,
                              [&] {
@@ -387,6 +402,7 @@ ProductionRun resumed_production(const Config& config, const Checkpoint& checkpo
                     Trajectory(directory, config, state.production.planned),
                     state.equilibration,
                     state.production};
+  state.observables = {};
   run.result.wall_seconds = checkpoint.upkeep.production_seconds;
   run.events.check(state.events);
   run.trajectory.check(state.trajectory);
@@ -423,10 +439,12 @@ void produce(const Config& config, ProductionRun& run, const FilesMark& files, P
   if (run.begin) run.trajectory.take_first(*run.begin, log);
   run.begin.reset();
   progress.begin();
-  Runner runner(run.simulation, "production", progress, saver, [&] {
+  const auto checkpoint = [&] {
     result.wall_seconds = seconds();
     return checkpoint_of(run);
-  });
+  };
+  Runner runner(run.simulation, "production", progress, saver, checkpoint,
+                [&] { run.events.keep_up(run.simulation, log); });
   for (bool end = result.precise; !end && !result.stopped;) {
     const double next = run.observables.next_time();
     const double target = std::min(next, result.planned);

@@ -36,8 +36,9 @@ struct EquilibrationRun {
 /// Chooses the thickness of the envelopes first; nothing if a signal came before it was chosen.
 std::optional<EquilibrationRun> begin_equilibration(const Config& config, const Start& start, Progress& progress,
                                                     Saver& saver, Log& log);
-/// Throws InputError if the state does not fit. Changes nothing.
-EquilibrationRun resumed_equilibration(const Config& config, const Checkpoint& checkpoint, const std::string& name);
+/// Throws InputError if the state does not fit. Changes nothing on the disk; the checkpoint's bytes are let go as soon
+/// as they are read.
+EquilibrationRun resumed_equilibration(const Config& config, Checkpoint& checkpoint, const std::string& name);
 Checkpoint checkpoint_of(const EquilibrationRun& run);
 Equilibration equilibrate(const Config& config, EquilibrationRun& run, Progress& progress, Saver& saver, Log& log);
 
@@ -55,8 +56,8 @@ struct ProductionRun {
 /// Goes on from the equilibration's system, which it takes.
 ProductionRun begin_production(const Config& config, Equilibration equilibration, const RunDirectory& directory,
                                Log& log);
-/// Throws InputError if the state does not fit. Changes nothing.
-ProductionRun resumed_production(const Config& config, const Checkpoint& checkpoint, const RunDirectory& directory,
+/// As resumed_equilibration.
+ProductionRun resumed_production(const Config& config, Checkpoint& checkpoint, const RunDirectory& directory,
                                  const std::string& name);
 /// How far the files go that grow with production.
 struct FilesMark {

@@ -21,11 +21,13 @@
 #include "version.h"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <cstdio>
 #include <exception>
 #include <filesystem>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -60,7 +62,8 @@ RunDirectory create_directory(const RunArguments& arguments, const Config& confi
 
 void write_failures(const RunDirectory& directory, const RunRecord& record, Log& log) {
   int count = 0;
-  for (const auto* failures : {&record.equilibration.failures, &record.production.failures}) {
+  const Equilibration& before = record.equilibration;
+  for (const auto* failures : {&before.failures_of_start, &before.failures, &record.production.failures}) {
     for (const ed::FailedPair& pair : *failures) {
       directory.write(fmt::format("{}/pair_{:02}.json", kFailuresDirectory, ++count),
                       failure_json({ed::to_string(pair.reason), pair}));
@@ -89,10 +92,32 @@ Checkpoint last_checkpoint(Continuation& at, const RunRecord& record) {
   return checkpoint;
 }
 
+/// The files of a run's end that have been written, in the order in which its table names them.
+struct WrittenFiles {
+  bool summary = false;
+  bool observables = false;
+  bool checkpoint = false;  ///< and with it what grows with the run
+
+  std::vector<std::string> list(const RunDirectory& directory, const Config& config) const {
+    std::vector<std::string> names;
+    const auto add = [&](bool written, const char* name) {
+      if (written) names.push_back(directory.file(name).string());
+    };
+    add(summary, kSummaryFile);
+    add(observables, "observables/*.csv");
+    add(checkpoint, kCheckpointFile);
+    add(checkpoint && config.events > 0, kEventsFile);
+    add(checkpoint && !config.trajectory.empty(), "trajectory.*");
+    return names;
+  }
+};
+
 /// The summary comes last: where it is, the other files are complete.
-void write_results(const RunDirectory& directory, RunRecord& record, Continuation& at, Saver& saver, Log& log) {
+void write_results(const RunDirectory& directory, RunRecord& record, Continuation& at, Saver& saver, Log& log,
+                   WrittenFiles& written) {
   const ed::Results& results = record.production.results;
   saver.write(last_checkpoint(at, record));
+  written.checkpoint = true;
   directory.write(kMsdFile, msd_csv(results));
   directory.write(kRotationalMsdFile, rotational_msd_csv(results));
   directory.write(kAlpha2File, alpha2_csv(results));
@@ -103,15 +128,18 @@ void write_results(const RunDirectory& directory, RunRecord& record, Continuatio
   directory.write(kPairsFile, pairs_csv(results));
   directory.write(kStructureFile, structure_csv(results));
   directory.write(kBlocksFile, blocks_csv(results));
+  written.observables = true;
   write_failures(directory, record, log);
   record.upkeep = saver.upkeep();
   directory.write(kSummaryFile, summary_json(record));
+  written.summary = true;
 }
 
-/// Nothing was measured: only the config and the log stay.
+/// Nothing was measured, and half a start is not kept: only the config and the log stay.
 int stopped_at_the_start(const RunDirectory& directory, Progress& progress, Log& log) {
   const int signal = pending_signal();
-  const std::string text = fmt::format("stopped by {} during the start: nothing was measured", signal_name(signal));
+  const std::string text = fmt::format(
+      "stopped by {} during the start, which is not saved: hardbody resume begins it again", signal_name(signal));
   log.line(text);
   progress.say(fmt::format("{}: {}", directory.path().string(), text));
   return exit_status_of(signal);
@@ -121,15 +149,16 @@ int conclude(const RunDirectory& directory, RunRecord& record, Continuation& at,
              Log& log) {
   const int signal = pending_signal();
   std::exception_ptr failure;
+  WrittenFiles written;
   try {
-    write_results(directory, record, at, saver, log);
+    write_results(directory, record, at, saver, log, written);
     log.line("files written");
   } catch (const std::exception&) {
     failure = std::current_exception();
   }
   progress.clear();
   // The table also when a full disk has kept the files from being written: hours of work may stand in it.
-  (void)std::fputs(results_table(record, directory.path().string()).c_str(), stdout);
+  (void)std::fputs(results_table(record, written.list(directory, record.config)).c_str(), stdout);
   (void)std::fflush(stdout);
   if (failure) std::rethrow_exception(failure);
   const std::vector<std::string> list = defects(record);
@@ -154,8 +183,8 @@ bool prepare(const Config& config, Continuation& at, Progress& progress, Saver& 
   if (at.equilibration || at.production) return true;
   if (!at.start) at.start = make_start(config, progress, log);
   if (!at.start) return false;
-  // The run that it came from may be gone when this one is resumed.
-  if (saver.due() || config.start_from) saver.save([&at] { return checkpoint_of(*at.start); });
+  // The run or the file that it came from may be gone, or another one, when this one is resumed.
+  if (saver.due() || config.start_from || config.start_file) saver.save([&at] { return checkpoint_of(*at.start); });
   at.equilibration = begin_equilibration(config, *at.start, progress, saver, log);
   if (at.equilibration && config.equilibration_time != 0.0) at.start.reset();
   return true;
@@ -194,6 +223,7 @@ int run_phases(const Config& config, const RunDirectory& directory, Continuation
   if (!at.equilibration && !at.production) {  // a signal came while the lists were tuned
     record.equilibration.system = at.start->system;
     record.equilibration.counters_of_start = at.start->counters;
+    record.equilibration.failures_of_start = at.start->failures;
     record.equilibration.kinetic_at_start = ed::kinetic_state(at.start->system);
     record.equilibration.stopped = true;
   }
@@ -201,9 +231,21 @@ int run_phases(const Config& config, const RunDirectory& directory, Continuation
   return conclude(directory, record, at, saver, progress, log);
 }
 
+/// What to do when a file could not be written.
+std::string advice(const RunDirectory& directory, const WriteError& error) {
+  return fmt::format("{}: {}, then hardbody resume {}{}",
+                     directory.has(kCheckpointFile) ? "the last checkpoint stands" : "there is no checkpoint yet",
+                     error.no_room() ? "free some room" : "mend that", directory.path().string(),
+                     directory.has(kCheckpointFile) ? "" : " starts over");
+}
+
 int run_logged(const Config& config, const RunDirectory& directory, Continuation at, Log& log) {
   try {
     return run_phases(config, directory, std::move(at), log);
+  } catch (const WriteError& error) {
+    const std::string text = fmt::format("{}; {}", error.what(), advice(directory, error));
+    log.line("failed: " + text);
+    throw std::runtime_error(text);
   } catch (const std::exception& error) {
     log.line(fmt::format("failed: {}", error.what()));
     throw;
@@ -213,13 +255,13 @@ int run_logged(const Config& config, const RunDirectory& directory, Continuation
 // ---- Resuming
 
 /// Everything that can be refused is refused here, before anything is changed.
-Continuation continuation(const Config& config, const Checkpoint& checkpoint, const RunDirectory& directory,
+Continuation continuation(const Config& config, Checkpoint checkpoint, const RunDirectory& directory,
                           const std::string& name) {
   Continuation at;
   at.upkeep = checkpoint.upkeep;
   ++at.upkeep.resumed;
   if (checkpoint.phase == "start") {
-    at.start = Start{checkpoint.system, checkpoint.counters_of_start};
+    at.start = Start{std::move(checkpoint.system), checkpoint.counters_of_start, checkpoint.failures_of_start};
   } else if (checkpoint.phase == "equilibration") {
     at.equilibration = resumed_equilibration(config, checkpoint, name);
   } else if (checkpoint.phase != "production") {
@@ -232,12 +274,25 @@ Continuation continuation(const Config& config, const Checkpoint& checkpoint, co
   return at;
 }
 
+/// Whether the directory has the results of a run that nothing has interrupted.
+bool has_final_results(const RunDirectory& directory) {
+  if (!directory.has(kSummaryFile)) return false;
+  const std::string text = read_file(directory.file(kSummaryFile), kLongestSummary);
+  const nlohmann::json summary = nlohmann::json::parse(text, nullptr, /*allow_exceptions=*/false);
+  return summary.is_object() && summary.value("interrupted", nlohmann::json()) == false;
+}
+
+/// Nothing is changed.
+int leave_alone(const RunDirectory& directory) {
+  fmt::print("{}: the run is finished: nothing to do\n", directory.path().string());
+  return 0;
+}
+
 /// Without a checkpoint: the same run again, which is the same to every bit.
-int start_over(const Config& config, const RunDirectory& directory) {
-  if (directory.has(kSummaryFile)) {
-    throw InputError(fmt::format("{}: holds results but no {}; accepted: a run that was stopped or killed",
-                                 directory.path().string(), kCheckpointFile));
-  }
+int start_over(const RunDirectory& directory) {
+  const Config config = load_config(directory.file(kConfigFile).string(), {});
+  directory.check_writable();
+  directory.reopen();
   Log log(directory.file(kLogFile), Log::Begin::at_the_end);
   log.line(fmt::format("hardbody {}: resumed without a checkpoint: starts over", version()));
   return run_logged(config, directory, {}, log);
@@ -260,21 +315,32 @@ int run(const RunArguments& arguments) {
 int resume(const std::string& path) {
   install_signal_handlers();
   const RunDirectory directory = RunDirectory::open(path);
+  const bool final = has_final_results(directory);
+  if (!directory.has(kCheckpointFile)) return final ? leave_alone(directory) : start_over(directory);
+  const std::string name = directory.file(kCheckpointFile).string();
+  std::optional<Checkpoint> checkpoint;
+  // Of a finished run it does not matter which program could go on with it. Else that comes before the config is
+  // judged, which may have another version's keys.
+  try {
+    checkpoint = read_checkpoint(name);
+    check_version(*checkpoint, name);
+  } catch (const OtherVersion&) {
+    if (final) return leave_alone(directory);
+    throw;
+  }
   const std::string config_name = directory.file(kConfigFile).string();
   const Config config = load_config(config_name, {});
-  if (!directory.has(kCheckpointFile)) return start_over(config, directory);
-  const std::string name = directory.file(kCheckpointFile).string();
-  const Checkpoint checkpoint = read_checkpoint(name);
-  check_same_config(checkpoint, config, config_name);
-  if (checkpoint.run && checkpoint.run->finished && directory.has(kSummaryFile)) {
-    fmt::print("{}: the run is finished: nothing to do\n", path);
-    return 0;
-  }
-  check_resumable(checkpoint, name);
-  Continuation at = continuation(config, checkpoint, directory, name);
+  check_same_config(*checkpoint, config, config_name);
+  if (final || (checkpoint->run && checkpoint->run->finished && directory.has(kSummaryFile)))
+    return leave_alone(directory);
+  check_resumable(*checkpoint, name);
+  directory.check_writable();
+  const std::string from = fmt::format("{} at time {:g}", checkpoint->phase, checkpoint->time);
+  Continuation at = continuation(config, std::move(*checkpoint), directory, name);
+  checkpoint.reset();
   directory.reopen();
   Log log(directory.file(kLogFile), Log::Begin::at_the_end);
-  log.line(fmt::format("hardbody {}: resumed from {} at time {:g}", version(), checkpoint.phase, checkpoint.time));
+  log.line(fmt::format("hardbody {}: resumed from {}", version(), from));
   return run_logged(config, directory, std::move(at), log);
 }
 

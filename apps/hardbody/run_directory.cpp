@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <cstring>
 #include <stdexcept>
+#include <system_error>
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -120,8 +121,11 @@ RunDirectory RunDirectory::open(const fs::path& path) {
     throw InputError(
         fmt::format("{}: holds no run: {} is not there; accepted: the directory of a run", path.string(), kConfigFile));
   }
-  if (::access(path.c_str(), W_OK | X_OK) != 0) throw unusable(path, std::strerror(errno));
   return RunDirectory(path);
+}
+
+void RunDirectory::check_writable() const {
+  if (::access(path_.c_str(), W_OK | X_OK) != 0) throw unusable(path_, std::strerror(errno));
 }
 
 void RunDirectory::write(const std::string& name, std::string_view content) const {
@@ -130,7 +134,9 @@ void RunDirectory::write(const std::string& name, std::string_view content) cons
 
 void RunDirectory::write(const std::string& name, const std::function<void(const Sink&)>& make) const {
   const fs::path path = file(name);
-  fs::create_directories(path.parent_path());
+  std::error_code error;
+  fs::create_directories(path.parent_path(), error);
+  if (error) throw WriteError(path.parent_path(), error.value());
   write_file(path, make);
 }
 

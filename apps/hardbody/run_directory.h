@@ -68,14 +68,16 @@ class RunDirectory {
   static RunDirectory create(const std::filesystem::path& path, Overwrite overwrite,
                              const std::vector<std::filesystem::path>& inputs, std::string_view config);
 
-  /// The directory of a run that has been begun. Changes nothing. Throws InputError if it is none, cannot be written
-  /// to or is in use.
+  /// The directory of a run that has been begun. Changes nothing. Throws InputError if it is none or is in use.
   static RunDirectory open(const std::filesystem::path& path);
+
+  /// Throws InputError if the directory cannot be written to.
+  void check_writable() const;
 
   const std::filesystem::path& path() const { return path_; }
   std::filesystem::path file(const std::string& name) const { return path_ / name; }
 
-  /// Writes one file as write_file does; `name` may have a directory in it, which is created.
+  /// Writes one file as write_file does; `name` may have a directory in it, which is created. Throws WriteError.
   void write(const std::string& name, std::string_view content) const;
   /// The same of a content in pieces.
   void write(const std::string& name, const std::function<void(const Sink&)>& make) const;

@@ -28,6 +28,11 @@ const ed::System& RunRecord::last_state() const {
   return produced() ? production.system : equilibration.system;
 }
 
+std::uint64_t RunRecord::failures_left_out() const {
+  return equilibration.counters_of_start.unrecorded_failures + equilibration.counters_of_tuning.unrecorded_failures +
+         equilibration.counters.unrecorded_failures + production.counters.unrecorded_failures;
+}
+
 void audit_record(RunRecord& record) {
   const ed::System& state = record.last_state();
   record.audit = ed::audit(state);
@@ -83,6 +88,8 @@ std::vector<std::string> defects(const RunRecord& record) {
           fmt::format("{} times during {} no method told whether a pair overlaps", counters.declined, phase));
     }
   };
+  add(record.equilibration.counters_of_start, "the start");
+  add(record.equilibration.counters_of_tuning, "the choice of the neighbour lists");
   add(record.equilibration.counters, "equilibration");
   add(record.production.counters, "production");
   return list;

@@ -19,10 +19,12 @@ struct Equilibration {
   ed::System system;
   ed::KineticState kinetic_at_start;
   double time = 0;
-  double envelope = 0;             ///< tuned thickness; 0: the simulation's own guess
-  ed::Relaxation relaxation;       ///< as of its last full unit of time
-  bool stopped = false;            ///< by a signal
-  ed::Counters counters_of_start;  ///< of the compression before
+  double envelope = 0;                            ///< tuned thickness; 0: the simulation's own guess
+  ed::Relaxation relaxation;                      ///< as of its last full unit of time
+  bool stopped = false;                           ///< by a signal
+  ed::Counters counters_of_start;                 ///< of the compression before
+  ed::Counters counters_of_tuning;                ///< of the trial runs that have chosen the envelope
+  std::vector<ed::FailedPair> failures_of_start;  ///< of both
   ed::Counters counters;
   std::vector<ed::FailedPair> failures;
 
@@ -85,9 +87,8 @@ struct RunRecord {
   /// Whether production has begun, which may be of no length.
   bool produced() const { return !production.system.bodies.empty(); }
   const ed::System& last_state() const;
-  std::uint64_t failures_left_out() const {
-    return equilibration.counters.unrecorded_failures + production.counters.unrecorded_failures;
-  }
+  /// Pairs that failed and are not among the failures, which have room for so many.
+  std::uint64_t failures_left_out() const;
   double last_time() const { return produced() ? production.time : equilibration.time; }
   const char* last_phase() const { return produced() ? "production" : "equilibration"; }
 };

@@ -1,5 +1,7 @@
 #include "signals.h"
 
+#include <algorithm>
+#include <array>
 #include <csignal>
 
 namespace hardbody {
@@ -7,8 +9,11 @@ namespace {
 
 volatile std::sig_atomic_t g_pending = 0;
 
+constexpr std::array kStopping = {SIGINT, SIGTERM, SIGHUP, SIGXCPU};
+
 void on_signal(int signal) {
   if (g_pending != 0) {
+    if (signal == SIGHUP || signal == SIGXCPU) return;
     std::signal(signal, SIG_DFL);
     (void)std::raise(signal);  // delivered when this handler returns
     return;
@@ -24,8 +29,11 @@ void install_signal_handlers() {
   // Writing files goes on where it was.
   action.sa_flags = SA_RESTART;
   sigemptyset(&action.sa_mask);
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
+  struct sigaction before = {};
+  sigaction(SIGHUP, nullptr, &before);
+  for (const int signal : kStopping) {
+    if (signal != SIGHUP || before.sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);
+  }
   std::signal(SIGPIPE, SIG_IGN);
   // A file beyond the limit is an error of its write, like a full disk.
   std::signal(SIGXFSZ, SIG_IGN);
@@ -39,8 +47,22 @@ int exit_status_of(int signal) {
   return 128 + signal;
 }
 
+bool stopped_by_signal(int exit_status) {
+  return std::any_of(kStopping.begin(), kStopping.end(),
+                     [&](int signal) { return exit_status == exit_status_of(signal); });
+}
+
 const char* signal_name(int signal) {
-  return signal == SIGINT ? "SIGINT" : "SIGTERM";
+  switch (signal) {
+    case SIGINT:
+      return "SIGINT";
+    case SIGHUP:
+      return "SIGHUP";
+    case SIGXCPU:
+      return "SIGXCPU";
+    default:
+      return "SIGTERM";
+  }
 }
 
 }  // namespace hardbody

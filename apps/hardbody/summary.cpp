@@ -227,6 +227,7 @@ std::string summary_json(const RunRecord& record) {
   json["time"] = {{"equilibration", record.equilibration.time}, {"production", production.time}};
   json["counters"] = counters(production.counters);
   json["counters_of_start"] = counters(record.equilibration.counters_of_start);
+  json["counters_of_tuning"] = counters(record.equilibration.counters_of_tuning);
   json["counters_of_equilibration"] = counters(record.equilibration.counters);
   json["performance"] = performance(record);
   json["audit"] = {{"minimum_distance", number(record.audit.minimum_distance)},
@@ -243,7 +244,8 @@ std::string summary_json(const RunRecord& record) {
   }
   json["interrupted"] = record.stopped();
   json["stalled"] = record.stall ? Json(ed::describe(*record.stall)) : Json(nullptr);
-  json["failures"] = {{"recorded", record.equilibration.failures.size() + record.production.failures.size()},
+  json["failures"] = {{"recorded", record.equilibration.failures_of_start.size() +
+                                       record.equilibration.failures.size() + record.production.failures.size()},
                       {"left_out", record.failures_left_out()}};
   json["sound"] = defects(record).empty();
   json["finder"] = {{"kind", config.finder}, {"distance", config.distance}, {"eps_d", config.eps_d}};

@@ -311,8 +311,7 @@ void Sweep::start_points() {
 
 void Sweep::end_point(const WorkerEnd& end) {
   PointRecord& record = records_[static_cast<std::size_t>(end.id)];
-  const bool by_signal = end.status == exit_status_of(SIGINT) || end.status == exit_status_of(SIGTERM);
-  if (by_signal) {
+  if (stopped_by_signal(end.status)) {
     settle(record, PointStatus::stopped, "");
     return;
   }

@@ -4,6 +4,7 @@
 #include "version.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -176,8 +177,10 @@ std::string audit_lines(const RunRecord& record) {
       static_cast<double>(p.counters.refinements) / std::max(1.0, static_cast<double>(p.counters.collisions)));
   text += fmt::format("  energy drift {:.1e} (relative), momentum drift {:.1e} sqrt(m kT) a body\n",
                       record.energy_relative_drift, record.momentum_drift);
-  const std::uint64_t overlaps =
-      record.equilibration.counters.overlaps + p.counters.overlaps + static_cast<std::uint64_t>(record.audit.overlaps);
+  const Equilibration& before = record.equilibration;
+  const std::uint64_t overlaps = before.counters_of_start.overlaps + before.counters_of_tuning.overlaps +
+                                 before.counters.overlaps + p.counters.overlaps +
+                                 static_cast<std::uint64_t>(record.audit.overlaps);
   // The audit looks at pairs whose bounding spheres meet; without one its distance is not that of a pair.
   text += fmt::format("  minimum distance at the end {}, overlaps {}\n",
                       record.audit.closest_i < 0 ? std::string("not known: no two bounding spheres meet")
@@ -204,12 +207,10 @@ std::string format_estimate(const ed::Estimate& estimate) {
   return fmt::format("{:.{}f} +- {:.{}f}", estimate.value, decimals, estimate.error, decimals);
 }
 
-std::string results_table(const RunRecord& record, const std::string& directory) {
+std::string results_table(const RunRecord& record, const std::vector<std::string>& files) {
   std::string text = head(record) + "\n" + numbers(record) + "\n" + audit_lines(record);
   for (const std::string& defect : defects(record)) text += fmt::format("  *** NOT SOUND: {} ***\n", defect);
-  text += fmt::format("\nfiles: {0}/{1}, {0}/observables/*.csv, {0}/{2}{3}{4}\n", directory, kSummaryFile,
-                      kCheckpointFile, record.config.events > 0 ? fmt::format(", {}/{}", directory, kEventsFile) : "",
-                      record.config.trajectory.empty() ? "" : fmt::format(", {}/trajectory.*", directory));
+  if (!files.empty()) text += fmt::format("\nfiles: {}\n", fmt::join(files, ", "));
   return text;
 }
 

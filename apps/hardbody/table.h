@@ -5,6 +5,7 @@
 #include <ed/analysis.h>
 
 #include <string>
+#include <vector>
 
 namespace hardbody {
 
@@ -15,7 +16,7 @@ std::string format_estimate(const ed::Estimate& estimate);
 /// "2N", "3N", or the number itself.
 std::string freedoms_text(long freedoms, int number);
 
-/// A run's headline numbers, with units and conventions, as shown on the terminal.
-std::string results_table(const RunRecord& record, const std::string& directory);
+/// A run's headline numbers, with units and conventions, as shown on the terminal; `files`: where the rest was written.
+std::string results_table(const RunRecord& record, const std::vector<std::string>& files);
 
 }  // namespace hardbody

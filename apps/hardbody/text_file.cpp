@@ -13,6 +13,7 @@
 #include <system_error>
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 namespace hardbody {
@@ -26,8 +27,23 @@ struct Close {
 using File = std::unique_ptr<std::FILE, Close>;
 
 [[noreturn]] void fail_to_write(const fs::path& path, int error) {
-  throw std::runtime_error(fmt::format("{}: cannot be written: {}", path.string(), std::strerror(error)));
+  throw WriteError(path, error);
 }
+
+/// A descriptor, closed at the end.
+class Descriptor {
+ public:
+  explicit Descriptor(int number) : number_(number) {}
+  ~Descriptor() {
+    if (number_ >= 0) ::close(number_);
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  int operator*() const { return number_; }
+
+ private:
+  int number_;
+};
 
 /// Everything into `temporary`, down to the disk; messages name `path`.
 void write_pieces(const fs::path& temporary, const fs::path& path, const std::function<void(const Sink&)>& make) {
@@ -80,23 +96,37 @@ void flush_names(const fs::path& directory) {
 
 }  // namespace
 
+WriteError::WriteError(const fs::path& path, int error)
+    : std::runtime_error(fmt::format("{}: cannot be written: {}", path.string(), std::strerror(error))),
+      no_room_(error == ENOSPC || error == EDQUOT || error == EFBIG) {}
+
 std::string read_file(const fs::path& path, std::size_t limit) {
   const auto fail = [&](const char* why) {
     return InputError(fmt::format("{}: cannot be read: {}; accepted: a readable file", path.string(), why));
   };
-  std::error_code ignored;
-  if (fs::is_directory(path, ignored)) throw fail("it is a directory");
-  const File file(std::fopen(path.c_str(), "rb"));
-  if (!file) throw fail(std::strerror(errno));
-  std::string content;
-  char buffer[1 << 16];
-  while (const std::size_t read = std::fread(buffer, 1, sizeof buffer, file.get())) {
-    content.append(buffer, read);
-    if (content.size() > limit) {
-      throw InputError(fmt::format("{}: is longer than {} bytes; accepted: shorter files", path.string(), limit));
-    }
+  const auto too_long = [&] {
+    return InputError(fmt::format("{}: is longer than {} bytes; accepted: shorter files", path.string(), limit));
+  };
+  // O_NONBLOCK: opening a pipe would wait for whoever writes it.
+  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+  struct stat status = {};
+  if (*file < 0 || ::fstat(*file, &status) != 0) throw fail(std::strerror(errno));
+  if (S_ISDIR(status.st_mode)) throw fail("it is a directory");
+  if (!S_ISREG(status.st_mode)) throw fail("it is not a file");
+  if (static_cast<std::uint64_t>(status.st_size) > limit) throw too_long();
+  // As it was when it was opened, and one byte more to see the end: a large one needs no more room than it has bytes.
+  std::string content(static_cast<std::size_t>(status.st_size) + 1, '\0');
+  std::size_t done = 0;
+  for (;;) {
+    const ::ssize_t read = ::read(*file, content.data() + done, content.size() - done);
+    if (read < 0 && errno == EINTR) continue;
+    if (read < 0) throw fail(std::strerror(errno));
+    if (read == 0) break;
+    done += static_cast<std::size_t>(read);
+    if (done > limit) throw too_long();
+    if (done == content.size()) content.resize(2 * content.size());
   }
-  if (std::ferror(file.get()) != 0) throw fail(std::strerror(errno));
+  content.resize(done);
   return content;
 }
 
@@ -144,6 +174,10 @@ void write_at(const fs::path& path, std::uint64_t position, std::string_view con
   if (!good) (void)!::ftruncate(file, place);
   ::close(file);
   if (!good) fail_to_write(path, error);
+}
+
+void cut_off(const fs::path& path, std::uint64_t position) {
+  (void)!::truncate(path.c_str(), static_cast<::off_t>(position));
 }
 
 void overwrite_at(const fs::path& path, std::uint64_t position, std::string_view content, Flush flush) {

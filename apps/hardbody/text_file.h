@@ -3,12 +3,26 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 
 namespace hardbody {
 
-/// The whole file. Throws InputError if it cannot be read or is longer than `limit` bytes.
+/// A file that could not be written: the disk's or the system's doing, which the user can mend.
+class WriteError : public std::runtime_error {
+ public:
+  WriteError(const std::filesystem::path& path, int error);
+
+  /// Whether room was lacking: on the disk, of a quota, or below the limit of a file's size.
+  bool no_room() const { return no_room_; }
+
+ private:
+  bool no_room_;
+};
+
+/// The whole file, which must be a regular one: of a pipe nobody knows how long it makes one wait. Throws InputError if
+/// it cannot be read or is longer than `limit` bytes.
 std::string read_file(const std::filesystem::path& path, std::size_t limit);
 
 /// Throws InputError unless there is nothing at `path`, or a file that begins with `beginning`: one of the same kind,
@@ -16,7 +30,7 @@ std::string read_file(const std::filesystem::path& path, std::size_t limit);
 void check_replaceable(const std::filesystem::path& path, std::string_view beginning);
 
 /// Writes under a temporary name, flushes to the disk and renames, so that a reader (or a crash) never sees
-/// half a file. A link stays one; what is neither a file nor a link to one is left alone. Throws std::runtime_error.
+/// half a file. A link stays one; what is neither a file nor a link to one is left alone. Throws WriteError.
 void write_file(const std::filesystem::path& path, std::string_view content);
 
 /// Takes a file's bytes piece by piece.
@@ -29,15 +43,18 @@ void write_file(const std::filesystem::path& path, const std::function<void(cons
 enum class Flush { now, later };
 
 /// Makes the file end with `content` after its first `position` bytes (at most its length); a new file is begun at
-/// position 0. Throws std::runtime_error; the first `position` bytes are then as they were, and the last.
+/// position 0. Throws WriteError; the first `position` bytes are then as they were, and the last.
 void write_at(const std::filesystem::path& path, std::uint64_t position, std::string_view content,
               Flush flush = Flush::now);
 
-/// Replaces bytes within a file; what is beyond its end makes it longer. Throws std::runtime_error.
+/// Makes the file end after its first `position` bytes, as far as that can be done: shorter needs no room.
+void cut_off(const std::filesystem::path& path, std::uint64_t position);
+
+/// Replaces bytes within a file; what is beyond its end makes it longer. Throws WriteError.
 void overwrite_at(const std::filesystem::path& path, std::uint64_t position, std::string_view content,
                   Flush flush = Flush::now);
 
-/// Brings to the disk what was written for later. Throws std::runtime_error.
+/// Brings to the disk what was written for later. Throws WriteError.
 void flush_file(const std::filesystem::path& path);
 
 /// Text for a one-line message: line breaks and control characters become blanks, long text is cut.

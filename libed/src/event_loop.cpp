@@ -438,9 +438,10 @@ void EventLoop<Bodies>::rebuild_all() {
 // ---- Events --------------------------------------------------------------------------------------------------------
 
 template <class Bodies>
-bool EventLoop<Bodies>::run_until(double time, std::uint64_t max_collisions) {
+bool EventLoop<Bodies>::run_until(double time, std::uint64_t max_collisions, std::uint64_t max_events) {
   const std::uint64_t last = counters_.collisions + std::min(max_collisions, ~std::uint64_t{0} - counters_.collisions);
   const std::uint64_t events_between_looks = kStallEvents * static_cast<std::uint64_t>(number());
+  std::uint64_t events_left = max_events;
   while (counters_.collisions < last && !stall_) {
     const double local_end = time - epochs_ * epoch_;
     const double next = calendar_.earliest_time();
@@ -452,6 +453,8 @@ bool EventLoop<Bodies>::run_until(double time, std::uint64_t max_collisions) {
       start_epoch();
       continue;
     }
+    // Not before: without events left, too, the end is reached.
+    if (events_left-- == 0) return false;
     process_next();
     if (++events_ >= events_between_looks) [[unlikely]]
       look_for_stall(std::min(local_end, epoch_));

@@ -26,7 +26,7 @@ class AnyEventLoop {
   virtual ~AnyEventLoop() = default;
 
   virtual double time() const = 0;
-  virtual bool run_until(double time, std::uint64_t max_collisions) = 0;
+  virtual bool run_until(double time, std::uint64_t max_collisions, std::uint64_t max_events) = 0;
   virtual double shrink_box(double target_box, double least_gain) = 0;
   /// New envelopes of this thickness (clamped to what the box allows), and lists, for all bodies. With `shrinking`,
   /// bodies leave theirs early, so that the lists stay valid while the box shrinks a little.
@@ -75,7 +75,7 @@ class EventLoop final : public AnyEventLoop {
   EventLoop(const System& system, const SimulationOptions& options, Reader& reader);
 
   double time() const override { return epochs_ * epoch_ + now_; }
-  bool run_until(double time, std::uint64_t max_collisions) override;
+  bool run_until(double time, std::uint64_t max_collisions, std::uint64_t max_events) override;
   double shrink_box(double target_box, double least_gain) override;
   void set_envelope(double thickness, bool shrinking = false) override;
 

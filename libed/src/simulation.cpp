@@ -203,13 +203,13 @@ Counters Simulation::counters() const {
   return (*impl_)->counters();
 }
 
-bool Simulation::run_until(double time, std::uint64_t max_collisions) {
+bool Simulation::run_until(double time, std::uint64_t max_collisions, std::uint64_t max_events) {
   if (std::isnan(time)) throw std::invalid_argument("run_until: time is not a number");
-  return (*impl_)->run_until(time, max_collisions);
+  return (*impl_)->run_until(time, max_collisions, max_events);
 }
 
 void Simulation::run_collisions(std::uint64_t number) {
-  (*impl_)->run_until(std::numeric_limits<double>::infinity(), number);
+  (void)run_until(std::numeric_limits<double>::infinity(), number);
 }
 
 double Simulation::shrink_box(double target_box, double least_gain) {
@@ -223,10 +223,12 @@ void Simulation::tune_envelopes(const std::function<bool()>& keep_going) {
   if ((*impl_)->neighbours() == Neighbours::cells) return;
   constexpr std::uint64_t kSlice = 100;
   constexpr std::uint64_t kLeastStretch = 4096;  // collisions; of fewer, chance would decide between neighbouring steps
+  constexpr std::uint64_t kSliceEvents = 100000;
   bool stopped = false;
+  const auto collisions = [&] { return (*impl_)->counters().collisions; };
   const auto run = [&](std::uint64_t number) {
-    for (std::uint64_t done = 0; done < number && !stopped; done += kSlice) {
-      run_collisions(std::min(kSlice, number - done));
+    for (const std::uint64_t last = collisions() + number; collisions() < last && !stopped;) {
+      (void)run_until(std::numeric_limits<double>::infinity(), std::min(kSlice, last - collisions()), kSliceEvents);
       stopped = stall() || (keep_going && !keep_going());
     }
   };

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <sstream>
 #include <stdexcept>
@@ -46,6 +47,9 @@ constexpr double kPauseCollisions = 0.03;
 /// The compression is stuck when the packing fraction grows by less than this over kStuckRounds rounds.
 constexpr double kStuckGrowth = 1e-5;
 constexpr int kStuckRounds = 2000;
+
+/// Events between two calls of StartOptions::progress, at the most.
+constexpr std::uint64_t kLookEvents = 1000000;
 
 /// A dilute box with its bodies still to be placed.
 System empty_box(const std::vector<Component>& components, double packing_fraction) {
@@ -124,6 +128,11 @@ System with_masses(System system, const std::vector<Species>& species) {
   return system;
 }
 
+void clear(const StartOptions& options) {
+  if (options.counters != nullptr) *options.counters = {};
+  if (options.failures != nullptr) options.failures->clear();
+}
+
 System compress(const System& system, double target_box, const StartOptions& options) {
   const System light = with_unit_masses(system);
   const double longest_pause = time_unit(light);
@@ -138,25 +147,27 @@ System compress(const System& system, double target_box, const StartOptions& opt
   // long.
   double usual_gain = 0;
   double checkpoint = simulation.box();
+  const auto reached = [&] { return options.packing_fraction * std::pow(target_box / simulation.box(), 3); };
+  const auto look_up = [&] {
+    if (options.progress && !options.progress(reached())) {
+      throw std::runtime_error("interrupted during the compression");
+    }
+  };
   for (int round = 1; simulation.box() > target_box; ++round) {
     const std::uint64_t before = simulation.counters().collisions;
-    simulation.run_until(simulation.time() + pause);
+    const double end = simulation.time() + pause;
+    while (!simulation.run_until(end, ~std::uint64_t{0}, kLookEvents) && !simulation.stall()) look_up();
     if (simulation.stall()) throw std::runtime_error("the compression " + describe(*simulation.stall()));
     pause *= static_cast<double>(simulation.counters().collisions - before) > wanted ? 0.8 : 1.25;
     pause = std::min(pause, longest_pause);
     const double old_box = simulation.box();
     const double gain = 1 - simulation.shrink_box(target_box, 0.3 * usual_gain) / old_box;
     usual_gain += 0.1 * (gain > 0 ? gain - usual_gain : -0.02 * usual_gain);
-    if (options.progress) {
-      const double phi = options.packing_fraction * std::pow(target_box / simulation.box(), 3);
-      if (!options.progress(phi)) throw std::runtime_error("interrupted during the compression");
-    }
+    look_up();
     if (round % kStuckRounds == 0) {
       if (simulation.box() > checkpoint * (1 - kStuckGrowth)) {
         std::ostringstream message;
-        message << "packing_fraction: the compression got stuck at "
-                << options.packing_fraction * std::pow(target_box / simulation.box(), 3) << " of "
-                << options.packing_fraction
+        message << "packing_fraction: the compression got stuck at " << reached() << " of " << options.packing_fraction
                 << "; a lower value is needed for this shape, or another seed, or more bodies";
         throw std::runtime_error(message.str());
       }
@@ -164,6 +175,7 @@ System compress(const System& system, double target_box, const StartOptions& opt
     }
   }
   if (options.counters != nullptr) *options.counters = simulation.counters();
+  if (options.failures != nullptr) *options.failures = simulation.failures();
   System result = with_masses(simulation.system(), system.species);
   result.box = target_box;
   return result;
@@ -237,7 +249,7 @@ System random_start(const std::vector<Component>& components, const StartOptions
   internal::check_components(components);
   check_packing(components, options.packing_fraction);
   internal::check_target(components, box_for(components, options.packing_fraction));
-  if (options.counters != nullptr) *options.counters = {};
+  clear(options);
   Random random(options.seed);
   const bool dilute = options.packing_fraction <= dilute_packing(components);
   const internal::Tiling tiling =
@@ -256,7 +268,7 @@ System random_start(const std::vector<Component>& components, const StartOptions
 }
 
 System compressed(const System& system, double packing_fraction, const std::function<bool(double)>& progress,
-                  Counters* counters) {
+                  Counters* counters, std::vector<FailedPair>* failures) {
   const std::vector<Component> components = components_of(system);
   internal::check_components(components);
   check_packing(components, packing_fraction);
@@ -272,7 +284,8 @@ System compressed(const System& system, double packing_fraction, const std::func
   options.packing_fraction = packing_fraction;
   options.progress = progress;
   options.counters = counters;
-  if (counters != nullptr) *counters = {};
+  options.failures = failures;
+  clear(options);
   System result = target < system.box * (1 - kSameBox) ? compress(system, target, options) : system;
   rescale_velocities(result);
   return result;

@@ -14,6 +14,7 @@
 #include <filesystem>
 #include <iterator>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <sys/wait.h>
@@ -134,11 +135,12 @@ struct Refusal {
   bool untouched;
 };
 
-Refusal resume(const std::string& checkpoint) {
+Refusal resume(const std::string& checkpoint, const std::string& config = kConfig, const std::string& summary = "") {
   const fs::path directory = fs::path(testing::TempDir()) / ("hardbody_resume_" + std::to_string(::getpid()));
   fs::create_directories(directory);
-  hardbody::write_file(directory / "config.toml", kConfig);
+  hardbody::write_file(directory / "config.toml", config);
   hardbody::write_file(directory / "checkpoint.bin", checkpoint);
+  if (!summary.empty()) hardbody::write_file(directory / "summary.json", summary);
   const fs::path output = directory.string() + ".txt";
   const std::string command =
       std::string(HARDBODY_PROGRAM) + " resume " + directory.string() + " 2> " + output.string();
@@ -151,14 +153,25 @@ Refusal resume(const std::string& checkpoint) {
   return refusal;
 }
 
-void expect_refused(const Checkpoint& checkpoint, const std::string& why) {
-  const Refusal refusal = resume(hardbody::encode_checkpoint(checkpoint));
+void expect_refused(const std::string& checkpoint, const std::string& why, const std::string& config = kConfig) {
+  const Refusal refusal = resume(checkpoint, config);
   EXPECT_EQ(refusal.status, 2) << refusal.message;
   EXPECT_THAT(refusal.message, testing::HasSubstr(why));
   EXPECT_THAT(refusal.message, testing::HasSubstr("checkpoint.bin: "));
   EXPECT_THAT(refusal.message, testing::HasSubstr("; accepted: "));
   EXPECT_EQ(std::count(refusal.message.begin(), refusal.message.end(), '\n'), 1) << refusal.message;
   EXPECT_TRUE(refusal.untouched) << why;
+}
+
+void expect_refused(const Checkpoint& checkpoint, const std::string& why) {
+  expect_refused(hardbody::encode_checkpoint(checkpoint), why);
+}
+
+/// The same in an older format; what such a one holds of the run is not read.
+std::string in_format(const Checkpoint& checkpoint, std::uint32_t format) {
+  const std::string bytes = hardbody::encode_checkpoint(checkpoint);
+  constexpr std::size_t kHead = 24;
+  return hardbody::seal_checkpoint(std::string_view(bytes).substr(kHead, bytes.size() - kHead - 8), format);
 }
 
 /// Of this program on this processor.
@@ -209,6 +222,41 @@ TEST(Resume, TheOldFormatIsRefused) {
   EXPECT_FALSE(old.run.has_value());
   old.config = kConfig;
   expect_refused(own(old), "is of an older format that holds no running state");
+}
+
+TEST(Resume, AnotherFormatsRunIsOfTheProgramThatWroteIt) {
+  const Checkpoint good = own(with_a_run(checkpoint_of(dilute_state())));
+  for (std::uint32_t format = 3; format < hardbody::kCheckpointFormat; ++format) {
+    expect_refused(in_format(good, format), "was made by hardbody " + std::string(hardbody::version()) + " in format " +
+                                                std::to_string(format) +
+                                                ", from which only that program goes on, here ");
+  }
+  Checkpoint start = good;  // whose system alone would do, but not what its compression has counted
+  start.phase = "start";
+  start.run.reset();
+  expect_refused(in_format(start, 7), "from which only that program goes on");
+}
+
+/// The config of another version may have keys that this one does not know: that is not what is wrong.
+TEST(Resume, AnotherVersionIsNamedBeforeItsConfigIsJudged) {
+  Checkpoint other = own(with_a_run(checkpoint_of(dilute_state())));
+  other.program_version = "99.0.0";
+  other.config += "[gravity]\ng = 9.81\n";
+  expect_refused(hardbody::encode_checkpoint(other), "was made by hardbody 99.0.0, here ", other.config);
+  expect_refused(in_format(other, 7), "was made by hardbody 99.0.0 in format 7", other.config);
+  expect_refused(in_format(other, hardbody::kCheckpointFormat + 1), "has format version ", other.config);
+}
+
+/// Whichever program could go on with it.
+TEST(Resume, AFinishedRunOfAnotherVersionIsFinished) {
+  Checkpoint other = own(with_a_run(checkpoint_of(dilute_state())));
+  other.program_version = "99.0.0";
+  other.config += "[gravity]\ng = 9.81\n";
+  for (const std::string& checkpoint :
+       {hardbody::encode_checkpoint(other), in_format(other, 5), in_format(other, hardbody::kCheckpointFormat + 1)}) {
+    EXPECT_EQ(resume(checkpoint, other.config, R"({"interrupted": false})").status, 0);
+    EXPECT_EQ(resume(checkpoint, other.config, R"({"interrupted": true})").status, 2);
+  }
 }
 
 }  // namespace

@@ -1064,6 +1064,9 @@ class Starts(Case):
         self.assertGreater(counters["collisions"], 288)
         self.assertGreater(counters["predictions"], counters["collisions"])
         self.assertEqual([counters[key] for key in ("overlaps", "declined", "parting_contacts")], [0, 0, 0])
+        tuning = self.run_start("tuned", self.ROD)["counters_of_tuning"]
+        self.assertGreater(tuning["predictions"], 0)
+        self.assertEqual(tuning["overlaps"] + tuning["declined"], 0)
         lattice = self.run_start("lattice", self.ROD, 'start = "fcc"')["counters_of_start"]
         self.assertEqual(set(lattice.values()), {0})
 

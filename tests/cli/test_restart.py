@@ -7,6 +7,7 @@ HARDBODY_FULL=1 kills a hundred runs instead of twelve.
 
 import json
 import os
+import re
 import random
 import resource
 import shutil
@@ -61,9 +62,12 @@ RUNS["trajectories until precise"] = with_trajectories(RUNS["until precise"], 10
 class Restart(Case):
     def start(self, *arguments, **options):
         process = subprocess.Popen(
-            [HARDBODY, *arguments], cwd=self.here, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, **options
+            [HARDBODY, *arguments],
+            **{"cwd": self.here, "stdout": subprocess.DEVNULL, "stderr": subprocess.PIPE, "text": True, **options},
         )
         self.addCleanup(process.stderr.close)
+        if process.stdout:
+            self.addCleanup(process.stdout.close)
         self.addCleanup(process.kill)
         return process
 
@@ -257,12 +261,96 @@ class Stops(Restart):
         self.assertIn("starts over", self.read("out/log.txt"))
         self.assert_same_run("out", self.results("reference"))
 
+    def assert_left_alone(self, out, **options):
+        before = self.everything(out)
+        result = subprocess.run(
+            [HARDBODY, "resume", out], cwd=self.here, capture_output=True, text=True, timeout=60, **options
+        )
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn(f"{out}: the run is finished", result.stdout)
+        self.assertEqual(self.everything(out), before)
+
     def test_a_finished_run_is_left_alone(self):
         self.run_small("out")
-        before = self.everything("out")
-        result = self.resume("out")
-        self.assertIn("out: the run is finished", result.stdout)
-        self.assertEqual(self.everything("out"), before)
+        self.assert_left_alone("out")
+        # Where nothing may be written, too. Root may write anywhere.
+        self.addCleanup(os.chmod, self.path("out"), 0o755)
+        os.chmod(self.path("out"), 0o555)
+        os.chmod(self.here, 0o755)
+        self.assert_left_alone("out", **({"user": 65534} if os.geteuid() == 0 else {}))
+        os.chmod(self.path("out"), 0o755)
+        os.remove(self.path("out/checkpoint.bin"))
+        self.assert_left_alone("out")
+
+    def test_a_stopped_run_without_its_checkpoint_starts_over(self):
+        text = RUNS["rods"]
+        self.undisturbed("reference", text)
+        self.write("run.toml", text)
+        process = self.start("run", "run.toml", "--out", "out")
+        self.wait_for(lambda: self.log_has("out", "production: "), "production")
+        self.assertEqual(self.stop(process, signal.SIGTERM), 143)
+        self.assertTrue(self.summary("out")["interrupted"])
+        os.remove(self.path("out/checkpoint.bin"))
+        self.resume("out")
+        self.assertIn("starts over", self.read("out/log.txt"))
+        self.assert_same_run("out", self.results("reference"))
+
+    def test_a_start_from_a_file_that_is_gone(self):
+        """The run has it in its first checkpoint, however short it has been at work."""
+        origin = config(equilibration=1, production=1).replace(OFTEN, 'trajectory = ["gsd"]\nframes = 2')
+        self.run_small("origin", config=origin)
+        shutil.copy(self.path("origin/trajectory.gsd"), self.path("state.gsd"))
+        text = (
+            f'seed = 3\n[start]\nfile = "{self.path("state.gsd")}"\n[shape]\naspect_ratio = 2\n'
+            '[equilibration]\ntime = 20\n[production]\ntime = 60\n[output]\nevents = 2000\ncheckpoint_every = "9h"\n'
+        )
+        self.undisturbed("reference", text)
+        expected = self.results("reference")
+        for gone in [True, False]:
+            with self.subTest(gone=gone):
+                shutil.copy(self.path("origin/trajectory.gsd"), self.path("state.gsd"))
+                self.write("run.toml", text)
+                process = self.start("run", "run.toml", "--out", "out")
+                self.wait_for(lambda: self.log_has("out", "equilibration: "), "equilibration")
+                self.assertEqual(self.stop(process), -signal.SIGKILL)
+                os.remove(self.path("state.gsd"))
+                if not gone:
+                    self.run_small("other", config=origin.replace("seed = 3", "seed = 4"))
+                    shutil.copy(self.path("other/trajectory.gsd"), self.path("state.gsd"))
+                self.resume("out")
+                self.assert_same_run("out", expected)
+                shutil.rmtree(self.path("out"))
+
+    def test_a_lost_terminal_and_the_end_of_the_processor_time(self):
+        text = RUNS["rods"]
+        self.undisturbed("reference", text)
+        expected = self.results("reference")
+        self.write("run.toml", text)
+        for number in [signal.SIGHUP, signal.SIGXCPU]:
+            with self.subTest(number=number):
+                process = self.start("run", "run.toml", "--out", "out")
+                self.wait_for(lambda: self.log_has("out", "production: "), "production")
+                # Such signals come again while the run saves its state.
+                process.send_signal(number)
+                self.assertEqual(self.stop(process, number), 128 + number)
+                self.assertIn(f"stopped by {number.name}", self.read("out/log.txt"))
+                self.resume("out")
+                self.assert_same_run("out", expected)
+                shutil.rmtree(self.path("out"))
+        # Under nohup the terminal does not matter.
+        ignoring = {"preexec_fn": lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN)}
+        process = self.start("run", "run.toml", "--out", "out", **ignoring)
+        self.wait_for(lambda: self.log_has("out", "production: "), "production")
+        process.send_signal(signal.SIGHUP)
+        self.assertEqual(process.wait(timeout=60), 0)
+        self.assert_same_run("out", expected)
+
+    def test_during_the_start(self):
+        self.write("run.toml", config().replace("number = 64", "number = 900").replace("packing_fraction = 0.2", "packing_fraction = 0.6"))
+        process = self.start("run", "run.toml", "--out", "out")
+        self.wait_for(lambda: self.log_has("out", "start: "), "the start")
+        self.assertEqual(self.stop(process, signal.SIGTERM), 143)
+        self.assertIn("stopped by SIGTERM during the start, which is not saved: hardbody resume begins it again", process.stderr.read())
 
     def test_killed_before_the_summary(self):
         self.run_small("out")
@@ -316,10 +404,18 @@ class Refusals(Restart):
         self.assert_refused(self.hardbody("resume", "empty"), "empty: holds no run: config.toml is not there")
         self.assert_refused(self.hardbody("resume"), "hardbody --help")
 
-    def test_results_without_a_checkpoint(self):
-        self.run_small("out")
-        os.remove(self.path("out/checkpoint.bin"))
-        self.assert_refused_untouched("out", "holds results but no checkpoint.bin")
+    def test_pipes(self):
+        """Nobody writes them: a program that opens one waits for ever."""
+        self.stopped()
+        for name in ["checkpoint.bin", "config.toml", "summary.json"]:
+            with self.subTest(name):
+                good = self.bytes_of(f"out/{name}")
+                os.remove(self.path(f"out/{name}"))
+                os.mkfifo(self.path(f"out/{name}"))
+                result = self.hardbody("resume", "out", timeout=20)
+                self.assert_refused(result, f"out/{name}: cannot be read: it is not a file", "accepted: ")
+                os.remove(self.path(f"out/{name}"))
+                self.change(f"out/{name}", good)
 
     def test_changed_config(self):
         self.stopped()
@@ -392,6 +488,13 @@ class Refusals(Restart):
 
 
 class Faults(Restart):
+    def ended(self, process):
+        """Its exit status is 1; what it has said, and the files that it says it has written."""
+        output, error = process.communicate(timeout=120)
+        self.assertEqual(process.returncode, 1)
+        files = re.findall(r"^files: (.*)$", output, re.MULTILINE)
+        return error, files[0].split(", ") if files else []
+
     def limited(self, size):
         """For Popen: files cannot grow beyond so many bytes, as on a full disk."""
         return lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
@@ -404,10 +507,17 @@ class Faults(Restart):
         for size in [6000, int(0.7 * len(expected["checkpoint.bin"]))]:
             with self.subTest(size=size):
                 self.write("run.toml", text)
-                process = self.start("run", "run.toml", "--out", "out", preexec_fn=self.limited(size))
-                process.wait(timeout=120)
-                self.assertEqual(process.returncode, 1)
-                self.assertIn("cannot be written: File too large", process.stderr.read())
+                process = self.start(
+                    "run", "run.toml", "--out", "out", preexec_fn=self.limited(size), stdout=subprocess.PIPE
+                )
+                error, files = self.ended(process)
+                self.assertIn(
+                    "cannot be written: File too large; "
+                    + ("the last checkpoint stands: free some room, then hardbody resume out\n" if size > 6000 else
+                       "there is no checkpoint yet: free some room, then hardbody resume out starts over\n"),
+                    error,
+                )
+                self.assertEqual(files, [])
                 self.assertIn("no checkpoint: ", self.read("out/log.txt"))
                 self.assertFalse(os.path.exists(self.path("out/summary.json")))
                 self.assertFalse(os.path.exists(self.path("out/checkpoint.bin.part")))
@@ -423,15 +533,65 @@ class Faults(Restart):
         size = len(expected["events.csv"])
         self.assertGreater(size, 1.5 * len(expected["checkpoint.bin"]))
         self.write("run.toml", text)
-        process = self.start("run", "run.toml", "--out", "out", preexec_fn=self.limited(int(0.9 * size)))
-        process.wait(timeout=120)
-        self.assertEqual(process.returncode, 1)
-        self.assertIn("events.csv: cannot be written: File too large", process.stderr.read())
+        process = self.start(
+            "run", "run.toml", "--out", "out", preexec_fn=self.limited(int(0.9 * size)), stdout=subprocess.PIPE
+        )
+        error, files = self.ended(process)
+        self.assertIn("events.csv: cannot be written: File too large; the last checkpoint stands: free some room", error)
+        self.assertEqual(files, [])
         check = self.hardbody("check", "out")
         self.assertEqual(check.returncode, 0, check.stdout)
         self.resume("out")
         self.assertIn("resumed from production", self.read("out/log.txt"))
         self.assert_same_run("out", expected)
+
+    def test_results_that_do_not_fit(self):
+        """The table names what was written before the disk was full, and no more."""
+        self.undisturbed("reference", RUNS["rods"])
+        expected = self.results("reference")
+        self.write("run.toml", RUNS["rods"])
+        for name, written in [("msd.csv", ["out/checkpoint.bin", "out/events.csv"]),
+                              ("summary.json", ["out/observables/*.csv", "out/checkpoint.bin", "out/events.csv"])]:
+            with self.subTest(name):
+                path = name if name == "summary.json" else f"observables/{name}"
+                process = self.start("run", "run.toml", "--out", "out", stdout=subprocess.PIPE)
+                self.wait_for(lambda: self.log_has("out", "production: "), "production")
+                # Written under another name first, at which there is something that is no file.
+                os.makedirs(self.path(f"out/{path}.part"))
+                error, files = self.ended(process)
+                self.assertIn(f"out/{path}: cannot be written: ", error)
+                self.assertIn("; the last checkpoint stands: mend that, then hardbody resume out\n", error)
+                self.assertEqual(files, written)
+                shutil.rmtree(self.path(f"out/{path}.part"), ignore_errors=True)
+                self.resume("out")
+                self.assert_same_run("out", expected)
+                shutil.rmtree(self.path("out"))
+
+    def test_events_between_checkpoints_and_on_a_full_disk(self):
+        """What happens when too many wait in memory is tested by events_file_test.cpp."""
+        text = config(production=1000000).replace("events = 2000", "events = 100000000").replace("0.02s", "9h")
+        self.write("run.toml", text)
+        process = self.start("run", "run.toml", "--out", "out")
+        self.wait_for(lambda: os.path.exists(self.path("out/events.csv")), "events.csv")
+        # Of no checkpoint.
+        self.wait_for(lambda: os.path.getsize(self.path("out/events.csv")) > 1e6, "events")
+        self.assertFalse(os.path.exists(self.path("out/checkpoint.bin")))
+        self.assertEqual(self.stop(process, signal.SIGTERM), 143)
+        rows = self.summary("out")["counters"]["collisions"]
+        self.assertEqual(self.read("out/events.csv").count("\n"), rows + 1)
+        shutil.rmtree(self.path("out"))
+        self.write("run.toml", text.replace("9h", "0.5s"))
+        process = self.start("run", "run.toml", "--out", "out", preexec_fn=self.limited(5_000_000))
+        self.wait_for(lambda: self.log_has("out", "collisions wait in memory"), "a full disk")
+        self.assertEqual(self.stop(process, signal.SIGTERM), 1)
+        error = process.stderr.read()
+        self.assertIn("events.csv: cannot be written: File too large; the last checkpoint stands: free some room", error)
+        self.assertEqual(self.hardbody("check", "out").returncode, 0)
+        process = self.start("resume", "out")
+        self.wait_for(lambda: self.log_has("out", "resumed from production"), "production")
+        self.assertEqual(self.stop(process, signal.SIGTERM), 143)
+        rows = self.summary("out")["counters"]["collisions"]
+        self.assertEqual(self.read("out/events.csv").count("\n"), rows + 1)
 
     def test_trajectory_that_does_not_fit(self):
         """Frames wait in memory, checkpoints cannot be made without them; what was there stays whole."""
@@ -457,6 +617,28 @@ class Faults(Restart):
                 self.assertIn("resumed from production", self.read("out/log.txt"))
                 self.assert_same_run("out", expected)
                 shutil.rmtree(self.path("out"))
+
+    def test_stall(self):
+        """Spheres that are packed so closely that 2000 events a body take next to no time."""
+        self.write(
+            "run.toml",
+            'seed = 3\n[system]\nnumber = 108\npacking_fraction = 0.7404804896\nstart = "fcc"\n[shape]\naspect_ratio = 1\n'
+            "[equilibration]\ntime = 1\n[production]\ntime = 1\n",
+        )
+        for command in [["run", "run.toml", "--out", "out"], ["resume", "out"]]:
+            with self.subTest(command):
+                result = self.hardbody(*command)
+                self.assertEqual(result.returncode, 1)
+                why = r"equilibration stalled at time \S+: 217000 events in \S+ time units, \d+ % of the latest \w+ of bod"
+                self.assertRegex(result.stderr, "^out: NOT SOUND: " + why)
+                self.assertRegex(self.read("out/log.txt"), "NOT SOUND: " + why)
+                self.assertIn("out/checkpoint.bin", result.stdout)
+                summary = self.summary("out")
+                self.assertIn("stalled at time", summary["stalled"])
+                self.assertTrue(summary["interrupted"])
+                self.assertEqual(self.hardbody("check", "out").returncode, 0)
+        # The second process has gone on where the first one was stuck.
+        self.assertIn("resumed from equilibration", self.read("out/log.txt"))
 
     def test_read_only_directory(self):
         self.write("run.toml", config(production=100000))

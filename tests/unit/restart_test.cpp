@@ -216,6 +216,29 @@ TEST(Stall, EndsTheRunAndSaysInWhat) {
   EXPECT_TRUE(again.stall().has_value());
 }
 
+/// A caller gets its turn however many events there are without a collision, and takes it without a trace.
+TEST(Stall, IsWaitedForInSlices) {
+  const Case& c = cases()[0];
+  ed::SimulationOptions options;
+  options.least_progress = 1e9;
+  ed::Simulation whole(c.system, options);
+  EXPECT_FALSE(whole.run_until(1e6));
+  ASSERT_TRUE(whole.stall().has_value());
+  ed::Simulation sliced(c.system, options);
+  std::uint64_t slices = 0;
+  while (!sliced.stall()) {
+    EXPECT_FALSE(sliced.run_until(1e6, ~std::uint64_t{0}, 777));
+    ++slices;
+  }
+  EXPECT_EQ(slices, 1 + (2000 * 128 - 1) / 777);
+  EXPECT_EQ(ed::describe(*sliced.stall()), ed::describe(*whole.stall()));
+  EXPECT_TRUE(sliced.save() == whole.save());
+  // Without events left the end can be reached.
+  ed::Simulation still(c.system);
+  EXPECT_TRUE(still.run_until(0, 1, 0));
+  EXPECT_FALSE(still.run_until(1e6, 1, 0));
+}
+
 TEST(Stall, SoundRunsAreNone) {
   // The densest of spheres, which collide some hundred times a time unit, and a dilute gas.
   for (const double phi : {0.73, 0.01}) {

@@ -155,9 +155,11 @@ class ED_EXPORT Simulation {
 
   double time() const;  ///< since the start
 
-  /// Processes all events up to `time`, but at most `max_collisions` collisions. True if `time` was reached. Once the
-  /// run has stalled: false at once.
-  bool run_until(double time, std::uint64_t max_collisions = ~std::uint64_t{0});
+  /// Processes all events up to `time`, but at most `max_collisions` collisions and `max_events` events, of which a run
+  /// that stalls has any number without a collision. True if `time` was reached. Once the run has stalled: false at
+  /// once. In how many calls a time is reached changes no bit.
+  bool run_until(double time, std::uint64_t max_collisions = ~std::uint64_t{0},
+                 std::uint64_t max_events = ~std::uint64_t{0});
 
   /// Processes events until `number` more collisions have happened, or the run has stalled.
   void run_collisions(std::uint64_t number);
@@ -172,7 +174,8 @@ class ED_EXPORT Simulation {
   double shrink_box(double target_box, double least_gain = 0);
 
   /// Chooses the envelope's thickness by the work that the counters show, never by a clock. Runs up to about 20
-  /// collisions a body. `keep_going` is asked after every hundred collisions; false: stops with the best so far.
+  /// collisions a body. `keep_going` is asked after every hundred collisions, sooner where these take many
+  /// events; false: stops with the best so far.
   void tune_envelopes(const std::function<bool()>& keep_going = {});
   double envelope() const;  ///< thickness now, a length
 

@@ -10,7 +10,8 @@
 
 namespace ed {
 
-struct Counters;  // <ed/simulation.h>
+struct Counters;    // <ed/simulation.h>
+struct FailedPair;  // <ed/simulation.h>
 
 /// Which start is wanted.
 struct StartOptions {
@@ -38,6 +39,9 @@ struct StartOptions {
   int most_compressed = 1000;
   /// If not null: what the compression has counted, all 0 where nothing was compressed.
   Counters* counters = nullptr;
+  /// If not null: the pairs that failed in it, as Simulation::failures, of the bodies that were compressed (masses 1;
+  /// those of the box that is repeated).
+  std::vector<FailedPair>* failures = nullptr;
 };
 
 /// Which lattice the bodies are placed on. Its cubic cell is stretched along the edges of the box to the proportions of
@@ -95,14 +99,15 @@ ED_EXPORT System random_start(const std::vector<Component>& components, const St
 ED_EXPORT int compressed_together(const std::vector<Component>& components, const StartOptions& options);
 
 /// The paper's compression of a state that is there already, to a higher packing fraction: from one state point to the
-/// next. Velocities are rescaled at the end as those of random_start; `progress` and `counters` are as in StartOptions.
+/// next. Velocities are rescaled at the end as those of random_start; `progress`, `counters` and `failures` are as in
+/// StartOptions.
 ///
 /// Throws std::invalid_argument for a packing fraction below that of the state or above densest_start, and for a box
 /// that would be too small (as random_start); std::runtime_error if the compression gets stuck. At the state's own
 /// packing fraction only velocities change.
 ED_EXPORT System compressed(const System& system, double packing_fraction,
                             const std::function<bool(double packing_fraction)>& progress = nullptr,
-                            Counters* counters = nullptr);
+                            Counters* counters = nullptr, std::vector<FailedPair>* failures = nullptr);
 
 /// Bodies on a lattice that fills the box, at exactly this packing fraction: dense and ordered states that no
 /// compression reaches. Velocities as those of random_start; densest_start does not apply.
