@@ -139,7 +139,9 @@ void write_results(const RunDirectory& directory, RunRecord& record, Continuatio
 int stopped_at_the_start(const RunDirectory& directory, Progress& progress, Log& log) {
   const int signal = pending_signal();
   const std::string text = fmt::format(
-      "stopped by {} during the start, which is not saved: hardbody resume begins it again", signal_name(signal));
+      "stopped by {} during the start: nothing was measured, and the start is not saved: hardbody resume begins it "
+      "again",
+      signal_name(signal));
   log.line(text);
   progress.say(fmt::format("{}: {}", directory.path().string(), text));
   return exit_status_of(signal);

@@ -1145,7 +1145,7 @@ class BadPaths(Case):
     def test_config(self):
         self.assert_refused(self.hardbody("run", "none.toml"), "none.toml", "No such file", "accepted: a readable file")
         self.assert_refused(self.hardbody("run", self.here), "directory")
-        self.assert_refused(self.hardbody("run", "/dev/zero"), "/dev/zero", "longer")
+        self.assert_refused(self.hardbody("run", "/dev/zero"), "/dev/zero: cannot be read: it is not a file")
         self.assertEqual(os.listdir(self.here), [])
 
     def test_existing_run_is_kept(self):

@@ -350,7 +350,10 @@ class Stops(Restart):
         process = self.start("run", "run.toml", "--out", "out")
         self.wait_for(lambda: self.log_has("out", "start: "), "the start")
         self.assertEqual(self.stop(process, signal.SIGTERM), 143)
-        self.assertIn("stopped by SIGTERM during the start, which is not saved: hardbody resume begins it again", process.stderr.read())
+        self.assertIn(
+            "stopped by SIGTERM during the start: nothing was measured, and the start is not saved: hardbody resume begins it again",
+            process.stderr.read(),
+        )
 
     def test_killed_before_the_summary(self):
         self.run_small("out")
