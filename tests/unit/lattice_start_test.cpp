@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <numbers>
@@ -114,6 +115,7 @@ std::vector<int> numbers_after(const std::string& message, const std::string& wo
 /// Rods of sizes from 0.8 to 1.2, evenly.
 std::vector<ed::Component> rods_of_many_sizes(int number) {
   std::vector<ed::Component> components;
+  components.reserve(static_cast<std::size_t>(number));
   for (int k = 0; k < number; ++k)
     components.push_back({ed::scaled(ed_test::species(3, Inertia::paper), 0.8 + 0.4 * k / number), 1});
   return components;
