@@ -25,7 +25,7 @@ namespace hardbody {
 namespace {
 
 constexpr std::size_t kLongestConfig = 1 << 20;    ///< bytes
-constexpr std::int64_t kMostEvents = 100'000'000;  ///< they are kept in memory: 16 bytes each
+constexpr std::int64_t kMostEvents = 100'000'000;  ///< of events.csv, 50 bytes each
 constexpr std::int64_t kMostFrames = 100'000;      ///< there is room for all of them in the files' heads
 constexpr double kLongestTime = 1e9;               ///< this and the next two: in ed::time_unit of the bodies
 constexpr double kUsualCap = 500;

@@ -65,7 +65,7 @@ class Page(unittest.TestCase):
         self.assertEqual(len((self.here / "out/sweep/sweep.csv").read_text().splitlines()), 1 + 15)
 
     def test_readme(self):
-        self.assertEqual(len(self.follow("README.md")), 8)
+        self.assertEqual(len(self.follow("README.md")), 9)
         for name in ["out/run/report.html", "out/superball/summary.json", "out/sweep/sweep.csv"]:
             self.assertGreater((self.here / name).stat().st_size, 100, name)
 

@@ -446,7 +446,7 @@ class Failures(SweepCase):
     def test_point_whose_start_jams(self):
         """Found out only by compressing: the point fails and says where, the sweep goes on."""
         jamming = "[system]\nnumber = 40\npacking_fraction = 0.62\n[shape]\naspect_ratio = 1\n[equilibration]\ntime = 0\n"
-        result = self.sweep(jamming + "[production]\ntime = 0\n[grid]\nseed = [1, 2, 3]\n")
+        result = self.sweep(jamming + "[production]\ntime = 0\n[grid]\nseed = [4, 5, 6]\n")
         self.assertEqual(result.returncode, 1)
         self.assertEqual(sorted(self.statuses()), ["done", "done", "failed"])
         message = [row["message"] for row in self.table() if row["message"]]

@@ -58,7 +58,8 @@ inline ed::System start(const State& state) {
 inline ed::System equilibrated(const State& state, double time) {
   ed::Simulation simulation(start(state));
   simulation.tune_envelopes();
-  simulation.run_until(std::max(time, simulation.time()));
+  // Tuning ends with a collision, while two bodies touch: a moment later.
+  simulation.run_until(std::max(time, simulation.time() + 0.01));
   ed::System system = simulation.system();
   ed::rescale_velocities(system);
   return system;

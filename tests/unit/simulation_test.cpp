@@ -237,8 +237,8 @@ TEST(Simulation, TuningIsTheSameEachTime) {
   EXPECT_EQ(a.envelope(), b.envelope());
   EXPECT_GT(a.envelope(), 0);
   EXPECT_EQ(ed_test::hash_of(a), ed_test::hash_of(b));
-  // About 60 collisions a body at most.
-  EXPECT_LE(a.counters().collisions, 64U * 60U);
+  // Eight thicknesses at most, each for one and a half stretches of 4096 collisions.
+  EXPECT_LE(a.counters().collisions, 8U * 6144U);
 }
 
 TEST(Simulation, TuningAsksOftenWhetherToGoOn) {

@@ -111,7 +111,8 @@ export function countersCard(run) {
   const { counters, performance, audit } = run.summary ?? {};
   if (!counters) return null;
   const parts = [['production', counters], ['equilibration', run.summary.counters_of_equilibration],
-    ['the start’s compression', run.summary.counters_of_start]].filter(([, counted]) => counted?.predictions > 0)
+    ['the start’s compression', run.summary.counters_of_start],
+    ['the choice of neighbour lists', run.summary.counters_of_tuning]].filter(([, counted]) => counted?.predictions > 0)
     .flatMap(([phase, counted]) => [h('h4', {}, `Events of ${phase}`),
       rows(Object.entries(kCounters).filter(([key]) => key in counted).map(([key, name]) => [name, grouped(counted[key])]))]);
   if (audit) {
