@@ -91,7 +91,7 @@ std::string description(const SweepPoint& point) {
 
 /// What tells points apart: not the last digits of a number, which are rounding. Integers (seeds) have none.
 std::string identity(const Value& value) {
-  const std::string number = fmt::format("{:.{}g}", value.real, kDigits);
+  std::string number = fmt::format("{:.{}g}", value.real, kDigits);
   if (value.kind == Value::Kind::real || (is_numeric(value) && number == fmt::format("{}", value.integer)))
     return number;
   if (value.kind != Value::Kind::array) return toml_text(value);

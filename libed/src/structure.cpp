@@ -296,11 +296,14 @@ namespace {
 
 /// The top of Percus and Yevick's first peak.
 double percus_yevick_peak(double packing_fraction) {
-  std::vector<double> q, S;
   // From 2.88 in a gas to 4 beyond all fluids.
-  for (double x = 2.5; x < 4.5; x += 0.05) {
-    q.push_back(x);
-    S.push_back(percus_yevick(x, packing_fraction));
+  constexpr int kNumber = 40;
+  std::vector<double> q, S;
+  q.reserve(kNumber);
+  S.reserve(kNumber);
+  for (int k = 0; k < kNumber; ++k) {
+    q.push_back(2.5 + 0.05 * k);
+    S.push_back(percus_yevick(q.back(), packing_fraction));
   }
   return first_peak(q, S, 1).q;
 }
@@ -331,6 +334,7 @@ double best_scale(const WaveVectors& vectors, const std::vector<double>& S, doub
     scales.push_back(scales.back() * kScaleStep);
   }
   std::vector<double> misfits;
+  misfits.reserve(scales.size());
   for (int k = 0; k < static_cast<int>(scales.size()); ++k) {
     misfits.push_back(
         misfit(vectors, S, frames, length, packing_fraction, scales[static_cast<std::size_t>(k)], k - kScaleSteps));
