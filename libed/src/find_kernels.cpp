@@ -9,8 +9,9 @@ using geom::InstructionSet;
 
 namespace {
 
-/// On Intel's processors the loop around the kernels is slower after instructions of 512 bits: AVX2 makes 5 % more
-/// collisions a second there (`bench_engine --benchmark_filter=vectors/`), and a few percent fewer on AMD's.
+/// On one of Intel's processors AVX2 made 6 % more collisions a second than AVX-512 in nine runs of ten, and 3 % fewer in
+/// another (`bench_engine --benchmark_filter=vectors/`): the loop around the kernels is slower after instructions of 512
+/// bits. On one of AMD's AVX2 makes 3 % fewer.
 InstructionSet best_in_the_loop() {
   const InstructionSet set = geom::batch_instruction_set();
 #ifdef HARDBODY_X86_KERNELS
