@@ -44,7 +44,7 @@ TEST(HardSpheres, PressureAndCollisionRateAtModerateDensity) {
 }
 
 TEST(HardSpheres, PressureAndCollisionRateAtHighDensity) {
-  expect_hard_spheres(0.45, 160, 82);
+  expect_hard_spheres(0.45, 320, 82);
 }
 
 /// Kinetic theory, corrected for density by Enskog's factor with the virial coefficients of Vega (1997): at phi = 0.05
