@@ -27,6 +27,10 @@ QUICK_PHI = [0.20, 0.30, 0.40, 0.45]
 NEMATIC = [(2.75, 0.55), (3.0, 0.51), (3.5, 0.47), (4.0, 0.435), (4.5, 0.40), (5.0, 0.37)]
 # Where discs are nematic, which is earlier: these get the lower cap, too.
 NEMATIC_DISCS = [(2.75, 0.55), (3.2, 0.505), (3.47, 0.468), (3.55, 0.455), (4.0, 0.411), (4.5, 0.385), (5.0, 0.361)]
+# Isotropic, but so close to the nematic that S of 512 bodies comes to 0.12 or more, and relaxes over tens of time units:
+# diffusion coefficients follow it, and blocks have to be longer than that for honest errors.
+SLOW_ORDER = {(0.2, 0.325), (0.225, 0.35), (0.25, 0.4), (0.28, 0.435), (0.3125, 0.465), (0.3448, 0.5), (3.2, 0.5), (3.5, 0.465),
+              (3.5, 0.48), (4.0, 0.435), (4.5, 0.4)}
 BEYOND = 0.035  # so far into the nematic points are run: the line S = 0.3 lies between them
 
 

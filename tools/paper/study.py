@@ -35,6 +35,7 @@ CAP = 500
 # Where C2 is not expected to decay, at the price of hours for what is no fluid.
 LATE_CAP = 60
 LATE_PRODUCTION = 400
+SLOW_ORDER_PRODUCTION = 2400
 QUICK_PRODUCTION = 60
 QUICK_CAP = 60
 
@@ -42,7 +43,9 @@ QUICK_CAP = 60
 def _fixed_time(point):
     """Where velocities, or angular velocities, are correlated for so long that the lags of an "auto" production, 15 time
     units where equilibration is quick, are too short for diffusion: a production with lags up to 40. The same where
-    precision would take hours. Else nothing."""
+    precision would take hours, and where order is slow. Else nothing."""
+    if point in grid.SLOW_ORDER:
+        return SLOW_ORDER_PRODUCTION
     turns_freely = point.X0 != 1 and (0.85 < point.X0 < 1.18 or (0.75 < point.X0 < 1.3 and point.phi < 0.35)
                                       or (0.62 < point.X0 < 1.45 and point.phi <= 0.2))
     if grid.is_late(point):
