@@ -54,7 +54,7 @@ struct RunState {
   StoredState observables;  ///< ed::Observables::save; of production
 };
 
-inline constexpr std::uint32_t kCheckpointFormat = 9;
+inline constexpr std::uint32_t kCheckpointFormat = 10;
 
 /// checkpoint.bin: a state and what it belongs to.
 ///

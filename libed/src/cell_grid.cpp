@@ -1,140 +1,286 @@
 #include "cell_grid.h"
 
-#include "periodic.h"
+#include "find_kernels.h"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <cmath>
+#include <limits>
+#include <numbers>
 
 namespace ed::internal {
 namespace {
 
-/// Offsets along one axis at which a cell can hold a body within `reach`, each cell of the period once.
-std::vector<int> offsets(int cells, double width, double reach) {
-  const int most = static_cast<int>(std::ceil(reach / width));
-  std::vector<int> result;
-  if (2 * most + 1 >= cells) {
-    for (int k = 0; k < cells; ++k) result.push_back(k);
-  } else {
-    for (int k = -most; k <= most; ++k) result.push_back(k);
-  }
-  return result;
+std::size_t at(int i) {
+  return static_cast<std::size_t>(i);
 }
 
-/// The least distance, along one axis, between points of two cells `offset` apart.
-double least_gap(int offset, int cells, double width) {
-  const int around = std::min(std::abs(offset), cells - std::abs(offset));
-  return std::max(0, around - 1) * width;
+/// By which cells count as nearer than they are, in widths of a cell: more than the rounding of a place up to 10^8
+/// boxes away.
+constexpr double kMargin = 1e-6;
+
+/// Along an edge. No more cells than bodies (to within a factor): finer ones would be empty.
+double most_cells(std::size_t number) {
+  return 1.3 * std::cbrt(static_cast<double>(number));
 }
 
 }  // namespace
 
-CellGrid::CellGrid(int number, double box, double reach)
+CellGrid::CellGrid(int number, double box, double reach, const std::optional<geom::InstructionSet>& vectors)
     : box_(box),
-      // No more cells than bodies (to within a factor): finer cells would be empty.
-      cells_(std::clamp(static_cast<int>(2 * box / reach), 1,
-                        std::max(1, static_cast<int>(1.3 * std::cbrt(static_cast<double>(number)))))),
-      first_(static_cast<std::size_t>(cells_) * cells_ * cells_, kNone),
-      bodies_(static_cast<std::size_t>(number)) {
-  const double width = box / cells_;
-  const std::vector<int> along = offsets(cells_, width, reach);
-  for (const int x : along) {
-    for (const int y : along) {
-      for (const int z : along) {
-        const Eigen::Vector3d gap(least_gap(x, cells_, width), least_gap(y, cells_, width),
-                                  least_gap(z, cells_, width));
-        if (gap.squaredNorm() < reach * reach) stencil_.emplace_back(x, y, z);
-      }
-    }
-  }
-  assert(stencil_.size() <= kMostOffsets);
+      reach_(reach),
+      cells_(choose_cells(number, box, reach)),
+      kernel_(find_cell_kernel(vectors)),
+      cell_of_body_(at(number), kNone) {
+  clear();
 }
 
-int CellGrid::coordinate(double x) const {
-  const double fraction = x / box_ - std::floor(x / box_);
-  return std::min(cells_ - 1, static_cast<int>(fraction * cells_));
+/// The number along an edge with which least blocks are looked at.
+int CellGrid::choose_cells(int number, double box, double reach) {
+  const double most = std::min(most_cells(at(number)), kNarrowest * box / reach);
+  int best = 1;
+  double least = std::numeric_limits<double>::infinity();
+  for (int cells = 1; cells <= std::max(1, static_cast<int>(most)); ++cells) {
+    const double all = static_cast<double>(cells) * cells * cells;
+    // A sphere of this radius, and half a cell and a little more around it.
+    const double radius = reach * cells / box + 0.55;
+    const double touched = std::min(all, 4 * std::numbers::pi / 3 * radius * radius * radius);
+    // What comes behind a cell's own block has to be waited for.
+    const double blocks = 1 + 1.5 * std::max(0.0, number / all - 2) / kCellBlock;
+    if (touched * blocks < least) {
+      least = touched * blocks;
+      best = cells;
+    }
+  }
+  return best;
+}
+
+/// No bodies, and memory for all of them wherever they are.
+void CellGrid::clear() {
+  const std::size_t own = at(cells_) * at(cells_) * at(cells_);
+  const std::size_t full = cell_of_body_.size() / kCellBlock;
+  blocks_.clear();
+  next_.clear();
+  free_.clear();
+  blocks_.reserve(own + full);
+  next_.reserve(own + full);
+  free_.reserve(full);
+  blocks_.resize(own);
+  next_.resize(own, kNone);
+  count_.assign(own, 0);
+  std::fill(cell_of_body_.begin(), cell_of_body_.end(), kNone);
+}
+
+/// In widths of a cell, from 0 to cells_.
+double CellGrid::coordinate(double x) const {
+  const double boxes = x / box_;
+  return (boxes - std::floor(boxes)) * cells_;
+}
+
+int CellGrid::cell_at(double coordinate) const {
+  return std::min(cells_ - 1, static_cast<int>(coordinate));
 }
 
 int CellGrid::cell_of(const Eigen::Vector3d& p) const {
-  return (coordinate(p.x()) * cells_ + coordinate(p.y())) * cells_ + coordinate(p.z());
+  const auto cell = [this](double x) { return cell_at(coordinate(x)); };
+  return (cell(p.x()) * cells_ + cell(p.y())) * cells_ + cell(p.z());
+}
+
+// ---- Bodies --------------------------------------------------------------------------------------------------------
+
+CellGrid::Place CellGrid::find(int i) const {
+  for (int block = cell_of_body_[at(i)];; block = next_[at(block)]) {
+    for (int lane = 0; lane < kCellBlock; ++lane) {
+      if (blocks_[at(block)].name[lane].body == i) return {block, lane};
+    }
+    assert(next_[at(block)] != kNone);
+  }
+}
+
+void CellGrid::put(Place where, int i, const Eigen::Vector3d& position) {
+  CellBlock& block = blocks_[at(where.block)];
+  block.x[where.lane] = position.x();
+  block.y[where.lane] = position.y();
+  block.z[where.lane] = position.z();
+  block.name[where.lane].body = i;
+}
+
+void CellGrid::insert(int i, int cell, const Eigen::Vector3d& position) {
+  int& count = count_[at(cell)];
+  const int lane = count % kCellBlock;
+  if (lane == 0 && count > 0) {
+    int full = 0;
+    if (free_.empty()) {
+      full = static_cast<int>(blocks_.size());
+      blocks_.emplace_back();
+      next_.push_back(kNone);
+    } else {
+      full = free_.back();
+      free_.pop_back();
+    }
+    blocks_[at(full)] = blocks_[at(cell)];
+    next_[at(full)] = next_[at(cell)];
+    blocks_[at(cell)] = CellBlock();
+    next_[at(cell)] = full;
+  }
+  put({cell, lane}, i, position);
+  ++count;
+  cell_of_body_[at(i)] = cell;
+}
+
+void CellGrid::remove(int i) {
+  const int cell = cell_of_body_[at(i)];
+  int& count = count_[at(cell)];
+  const Place hole = find(i);
+  CellBlock& own = blocks_[at(cell)];
+  const int last = (count - 1) % kCellBlock;
+  put(hole, own.name[last].body, {own.x[last], own.y[last], own.z[last]});
+  own.clear(last);
+  --count;
+  cell_of_body_[at(i)] = kNone;
+  const int full = next_[at(cell)];
+  if (last > 0 || full == kNone) return;
+  own = blocks_[at(full)];
+  next_[at(cell)] = next_[at(full)];
+  free_.push_back(full);
 }
 
 void CellGrid::place(int i, const Eigen::Vector3d& position) {
-  Entry& body = bodies_[static_cast<std::size_t>(i)];
-  body.position = position;
   const int cell = cell_of(position);
-  if (cell == body.cell) return;
-  if (body.cell != kNone) {
-    int* link = &first_[static_cast<std::size_t>(body.cell)];
-    while (*link != i) link = &bodies_[static_cast<std::size_t>(*link)].next;
-    *link = body.next;
+  const int old = cell_of_body_[at(i)];
+  if (cell == old) {
+    put(find(i), i, position);
+    return;
   }
-  int& first = first_[static_cast<std::size_t>(cell)];
-  body.cell = cell;
-  body.next = first;
-  first = i;
-}
-
-/// Every body is in its cell and nowhere else.
-bool CellGrid::filled() const {
-  if (!(box_ > 0) || !std::isfinite(box_) || cells_ < 1 || cells_ > 1000) return false;
-  if (first_.size() != static_cast<std::size_t>(cells_) * cells_ * cells_) return false;
-  std::vector<bool> found(bodies_.size(), false);
-  for (std::size_t cell = 0; cell < first_.size(); ++cell) {
-    for (int i = first_[cell]; i != kNone; i = bodies_[static_cast<std::size_t>(i)].next) {
-      const auto body = static_cast<std::size_t>(i);
-      if (i < 0 || body >= bodies_.size() || found[body]) return false;
-      if (bodies_[body].cell != static_cast<int>(cell) || !bodies_[body].position.allFinite()) return false;
-      found[body] = true;
-    }
-  }
-  return stencil_.size() <= kMostOffsets && std::all_of(found.begin(), found.end(), [](bool is) { return is; }) &&
-         std::all_of(stencil_.begin(), stencil_.end(), [this](const auto& offset) {
-           return offset.minCoeff() >= -cells_ && offset.maxCoeff() <= cells_;
-         });
+  if (old != kNone) remove(i);
+  insert(i, cell, position);
 }
 
 void CellGrid::scale(double factor) {
   box_ *= factor;
-  for (Entry& body : bodies_) body.position *= factor;
+  reach_ *= factor;
+  for (CellBlock& block : blocks_) {
+    for (int lane = 0; lane < kCellBlock; ++lane) {
+      block.x[lane] *= factor;
+      block.y[lane] *= factor;
+      block.z[lane] *= factor;
+    }
+  }
+}
+
+// ---- Looking -------------------------------------------------------------------------------------------------------
+
+CellGrid::Along CellGrid::along(double coordinate, double reach) const {
+  assert(reach <= kNarrowest + 2 * kMargin || reach * 2 >= cells_);
+  Along result;
+  // From 2 reach on every cell counts, once, and whether from this side or from the other is not asked.
+  const int first = static_cast<int>(coordinate - reach + cells_) - cells_;
+  const int last = static_cast<int>(coordinate + reach);
+  if (2 * reach >= cells_ || last - first + 1 >= cells_) {
+    result.count = cells_;
+    for (int k = 0; k < cells_; ++k) {
+      result.cell[at(k)] = k;
+      result.distance2[at(k)] = 0;
+    }
+    return result;
+  }
+  for (int k = first; k <= last; ++k) {
+    const double distance = std::max({0.0, k - coordinate, coordinate - (k + 1)});
+    result.cell[at(result.count)] = wrapped(k);
+    result.distance2[at(result.count)] = distance * distance;
+    ++result.count;
+  }
+  return result;
+}
+
+template <class Found>
+void CellGrid::for_each_cell_near(const Eigen::Vector3d& position, double reach, Found&& found) const {
+  const double widths = reach * cells_ / box_ + kMargin;
+  const Along x = along(coordinate(position.x()), widths);
+  const Along y = along(coordinate(position.y()), widths);
+  const Along z = along(coordinate(position.z()), widths);
+  const double most = widths * widths;
+  for (int i = 0; i < x.count; ++i) {
+    for (int j = 0; j < y.count; ++j) {
+      const double left = most - x.distance2[at(i)] - y.distance2[at(j)];
+      if (left < 0) continue;
+      const int row = (x.cell[at(i)] * cells_ + y.cell[at(j)]) * cells_;
+      for (int k = 0; k < z.count; ++k) found(row + z.cell[at(k)], z.distance2[at(k)] <= left);
+    }
+  }
 }
 
 std::span<const NearBody> CellGrid::collect(const Eigen::Vector3d& position, double reach,
                                             std::vector<NearBody>& buffer) const {
-  const int cx = coordinate(position.x());
-  const int cy = coordinate(position.y());
-  const int cz = coordinate(position.z());
-  const auto wrap = [this](int k) { return k < 0 ? k + cells_ : (k >= cells_ ? k - cells_ : k); };
-  const double reach2 = reach * reach;
-  // One body of each cell, then the next of each that has more: what is read in a round does not wait for what was read
-  // before it in the round, and how full cells are is not predictable.
-  std::array<int, kMostOffsets> round;
+  // The cells' own blocks, then one behind each of those that have more, and so on: what is read in a round does not
+  // wait for what was read before it in the round.
+  std::array<int, kMostAlong * kMostAlong * kMostAlong> round;
   std::size_t open = 0;
-  for (const Eigen::Vector3i& offset : stencil_) {
-    const int cell = (wrap(cx + offset.x()) * cells_ + wrap(cy + offset.y())) * cells_ + wrap(cz + offset.z());
-    const int body = first_[static_cast<std::size_t>(cell)];
-    round[open] = body;
-    open += body != kNone ? 1 : 0;
-  }
+  for_each_cell_near(position, reach, [&](int cell, bool counts) {
+    // Written always and kept if it counts: whether it does is not predictable.
+    round[open] = cell;
+    open += counts ? 1 : 0;
+  });
+  const CellQuery query{position.x(), position.y(), position.z(), box_, reach * reach};
   std::size_t found = 0;
   while (open > 0) {
-    if (buffer.size() < found + open) buffer.resize(2 * found + open + 64);
+    const std::size_t room = found + kCellBlock * open;
+    if (buffer.size() < room) buffer.resize(2 * room);
+    auto* const near = reinterpret_cast<double*>(buffer.data() + found);
+    found += static_cast<std::size_t>(kernel_(query, blocks_.data(), round.data(), static_cast<int>(open), near));
     std::size_t left = 0;
     for (std::size_t k = 0; k < open; ++k) {
-      const int i = round[k];
-      const Entry& body = bodies_[static_cast<std::size_t>(i)];
-      // Written always and kept if it counts: whether it does is not predictable either.
-      NearBody& near = buffer[found];
-      near.body = i;
-      near.r = nearest_image(body.position - position, box_);
-      found += near.r.squaredNorm() <= reach2 ? 1 : 0;
-      round[left] = body.next;
-      left += body.next != kNone ? 1 : 0;
+      const int next = next_[at(round[k])];
+      round[left] = next;
+      left += next != kNone ? 1 : 0;
     }
     open = left;
   }
   return {buffer.data(), found};
+}
+
+// ---- State ---------------------------------------------------------------------------------------------------------
+
+CellGrid::Content CellGrid::content() const {
+  Content result{box_, cells_, {count_.begin(), count_.end()}, {}, {}};
+  std::vector<int> chain;
+  for (std::size_t cell = 0; cell < count_.size(); ++cell) {
+    chain.clear();
+    for (int block = static_cast<int>(cell); block != kNone; block = next_[at(block)]) chain.push_back(block);
+    for (auto block = chain.rbegin(); block != chain.rend(); ++block) {
+      const CellBlock& b = blocks_[at(*block)];
+      for (int lane = 0; lane < kCellBlock && b.name[lane].body != kNone; ++lane) {
+        result.bodies.push_back(b.name[lane].body);
+        result.positions.emplace_back(b.x[lane], b.y[lane], b.z[lane]);
+      }
+    }
+  }
+  return result;
+}
+
+/// False if there is no such grid of this number of bodies.
+bool CellGrid::assign(const Content& content) {
+  const std::size_t number = cell_of_body_.size();
+  if (!(content.box > 0) || !std::isfinite(content.box)) return false;
+  // Rounding of the box, should it have been scaled.
+  const double most = std::min(kNarrowest * content.box / reach_ * (1 + 1e-9), most_cells(number));
+  if (content.cells < 1 || (content.cells > 1 && content.cells > most)) return false;
+  if (content.bodies.size() != number || content.positions.size() != number) return false;
+  box_ = content.box;
+  cells_ = content.cells;
+  clear();
+  if (content.count.size() != count_.size()) return false;
+  std::size_t next = 0;
+  for (std::size_t cell = 0; cell < content.count.size(); ++cell) {
+    for (int k = 0; k < content.count[cell]; ++k, ++next) {
+      if (next == number) return false;
+      const int body = content.bodies[next];
+      const bool fits = body >= 0 && at(body) < number && cell_of_body_[at(body)] == kNone;
+      if (!fits || !content.positions[next].allFinite()) return false;
+      insert(body, static_cast<int>(cell), content.positions[next]);
+    }
+  }
+  return next == number;
 }
 
 }  // namespace ed::internal

@@ -1,22 +1,32 @@
 #pragma once
 
+#include "cell_kernels.h"
 #include "large_vector.h"
 #include "near_body.h"
 
 #include <ed/internal/archive.h>
 
+#include <geom/batch.h>
+
 #include <Eigen/Core>
 
+#include <array>
+#include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
 namespace ed::internal {
 
 /// Linked cells of a periodic cubic box: which points are within a given reach of another.
+///
+/// Bodies of a cell stand in blocks (cell_kernels.h). Its own block comes at the number of the cell, those of a row of
+/// cells one after another, and holds what does not fill a block; behind it follow full ones, the newest first.
 class CellGrid {
  public:
-  /// Cells are about reach / 2 wide: fewer bodies to look at than with cells of width `reach`, few more cells.
-  CellGrid(int number, double box, double reach);
+  /// `vectors`: as SimulationOptions::batches; which makes no difference but of speed.
+  CellGrid(int number, double box, double reach,
+           const std::optional<geom::InstructionSet>& vectors = geom::InstructionSet::best);
 
   /// Puts body i (already placed or not) at `position`; any image.
   void place(int i, const Eigen::Vector3d& position);
@@ -31,38 +41,68 @@ class CellGrid {
   /// The cells, and the order of the bodies in each, as they are; read into a grid of the same number of bodies.
   template <class Archive, class Self>
   static void fields(Archive& archive, Self& self) {
-    const std::size_t number = self.bodies_.size();
-    archive(self.box_, self.cells_, self.first_, self.bodies_, self.stencil_);
-    expect(archive, self.bodies_.size() == number && self.filled(), "the cells do not hold the bodies");
+    if constexpr (Archive::kReads) {
+      Content content;
+      archive(content.box, content.cells, content.count, content.bodies, content.positions);
+      expect(archive, self.assign(content), "the cells do not hold the bodies");
+    } else {
+      const Content content = self.content();
+      archive(content.box, content.cells, content.count, content.bodies, content.positions);
+    }
   }
 
  private:
   static constexpr int kNone = -1;
-  /// Cells are no narrower than reach / 2 but for rounding: up to three on either side count.
-  static constexpr std::size_t kMostOffsets = std::size_t{7} * 7 * 7;
+  /// Cells are no narrower than reach / kNarrowest, so that along an axis at most this many count.
+  static constexpr int kNarrowest = 3;
+  static constexpr std::size_t kMostAlong = 2 * kNarrowest + 2;
 
-  /// A body, and the list of its cell from it on.
-  struct Entry {
-    Eigen::Vector3d position;
-    int cell = kNone;  ///< none: not placed
-    int next = kNone;
-
-    template <class Archive, class Self>
-    static void fields(Archive& archive, Self& self) {
-      archive(self.position, self.cell, self.next);
-    }
+  /// What a grid holds, but for which block is where.
+  struct Content {
+    double box = 0;
+    int cells = 0;
+    std::vector<int> count;                  ///< of bodies in each cell
+    std::vector<int> bodies;                 ///< cell by cell, those of its own block last
+    std::vector<Eigen::Vector3d> positions;  ///< of each of them
+  };
+  /// Cells along one axis, and how far each is from a point at least, squared, in widths of a cell.
+  struct Along {
+    std::array<int, kMostAlong> cell;
+    std::array<double, kMostAlong> distance2;
+    int count = 0;
+  };
+  struct Place {
+    int block;
+    int lane;
   };
 
-  bool filled() const;
+  static int choose_cells(int number, double box, double reach);
+  void clear();
+  Content content() const;
+  bool assign(const Content& content);
 
-  int coordinate(double x) const;
+  double coordinate(double x) const;
+  int cell_at(double coordinate) const;
   int cell_of(const Eigen::Vector3d& position) const;
+  Along along(double coordinate, double reach) const;
+  int wrapped(int k) const { return k < 0 ? k + cells_ : (k >= cells_ ? k - cells_ : k); }
+  template <class Found>
+  void for_each_cell_near(const Eigen::Vector3d& position, double reach, Found&& found) const;
+
+  Place find(int i) const;
+  void insert(int i, int cell, const Eigen::Vector3d& position);
+  void remove(int i);
+  void put(Place at, int i, const Eigen::Vector3d& position);
 
   double box_;
-  int cells_;               ///< along an edge
-  LargeVector<int> first_;  ///< body of each cell
-  LargeVector<Entry> bodies_;
-  std::vector<Eigen::Vector3i> stencil_;  ///< offsets of the cells to look into, each once
+  double reach_;  ///< the most that is asked for
+  int cells_;     ///< along an edge
+  CellKernel* kernel_;
+  LargeVector<CellBlock> blocks_;  ///< one of each cell, and the full ones
+  LargeVector<int> next_;          ///< of each block
+  std::vector<int> free_;          ///< blocks that are in no cell
+  LargeVector<int> count_;         ///< bodies of each cell
+  LargeVector<int> cell_of_body_;
 };
 
 }  // namespace ed::internal

@@ -20,7 +20,6 @@
 #include <Eigen/Core>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <span>
@@ -39,22 +38,19 @@ class DilatedEnvelopes final : public Envelopes<UniaxialBodies> {
         thickness_(thickness),
         exit_thickness_(exit_thickness) {
     for (const UniaxialKind& kind : bodies.kinds()) {
-      kinds_.push_back({kind.shape, kind.bounding_radius - kind.inscribed_radius});
+      add_kind(kind.shape, kind.bounding_radius - kind.inscribed_radius);
     }
-    for (int i = 0; i < bodies.number(); ++i) kind_.push_back(bodies.kind_index(i));
-    centre_.resize(kind_.size());
-    axis_.resize(kind_.size());
+    for (int i = 0; i < bodies.number(); ++i) envelopes_.push_back({{}, bodies.kind_index(i), 0, {}});
   }
   /// Bodies of one kind.
   DilatedEnvelopes(int number, const geom::internal::Spheroid& shape, double axis_difference, double bounding_radius,
                    double thickness, double exit_thickness)
-      : kinds_{{shape, axis_difference}},
-        kind_(static_cast<std::size_t>(number), 0),
-        bounding_radius_(bounding_radius),
+      : bounding_radius_(bounding_radius),
         thickness_(thickness),
         exit_thickness_(exit_thickness),
-        centre_(static_cast<std::size_t>(number)),
-        axis_(static_cast<std::size_t>(number)) {}
+        envelopes_(static_cast<std::size_t>(number), DilatedEnvelope{}) {
+    add_kind(shape, axis_difference);
+  }
 
   double thickness() const override { return thickness_; }
   double exit_thickness() const { return exit_thickness_; }
@@ -65,18 +61,19 @@ class DilatedEnvelopes final : public Envelopes<UniaxialBodies> {
   /// and hA + hB = h down to s (G + h) - h, which stays above 2 delta_exit while 1 - s <= 2 (delta - delta_exit) / (2
   /// delta + h).
   double least_scale() const override { return 1 - 2 * (thickness_ - exit_thickness_) / reach(); }
-  const Eigen::Vector3d& centre(int i) const { return centre_[static_cast<std::size_t>(i)]; }
+  Eigen::Vector3d centre(int i) const { return Eigen::Vector3d(envelope(i).centre); }
 
   void place(int i, const UniaxialBodies& bodies, double now) override {
     place(i, bodies.position_at(i, now), bodies.axis_motion(i).axis_at(now));
   }
   void place(int i, const Eigen::Vector3d& position, const Eigen::Vector3d& axis) {
-    centre_[static_cast<std::size_t>(i)] = position;
-    axis_[static_cast<std::size_t>(i)] = axis;
+    DilatedEnvelope& envelope = envelopes_[static_cast<std::size_t>(i)];
+    Eigen::Vector3d::Map(envelope.centre) = position;
+    Eigen::Vector3d::Map(envelope.axis) = axis;
   }
 
   void scale(double factor) override {
-    for (Eigen::Vector3d& c : centre_) c *= factor;
+    for (DilatedEnvelope& envelope : envelopes_) Eigen::Vector3d::Map(envelope.centre) *= factor;
   }
 
   double exit_time(int i, const UniaxialBodies& bodies, double now, double box) const override {
@@ -85,10 +82,9 @@ class DilatedEnvelopes final : public Envelopes<UniaxialBodies> {
   }
   double exit_time(int i, const AxisMotion& motion, const Eigen::Vector3d& position, const Eigen::Vector3d& axis,
                    double now, double box) const {
-    const std::size_t k = static_cast<std::size_t>(i);
     const double axis_difference = kind_of(i).axis_difference;
-    const Eigen::Vector3d d = nearest_image(position - centre_[k], box);
-    const double left = exit_thickness_ - axis_difference * angle_bound((axis - axis_[k]).norm());
+    const Eigen::Vector3d d = nearest_image(position - centre(i), box);
+    const double left = exit_thickness_ - axis_difference * angle_bound((axis - axis_of(i)).norm());
     const double d2 = d.squaredNorm();
     if (!(left > 0) || d2 >= left * left) return now;
     // First root of |d + v s| + w s = left, w the fastest that turning can move the surface.
@@ -108,8 +104,8 @@ class DilatedEnvelopes final : public Envelopes<UniaxialBodies> {
   bool may_meet(int i, int k, const Eigen::Vector3d& r, Eigen::Vector3d& normal) const override {
     const geom::internal::Spheroid& shape_i = kind_of(i).shape;
     const geom::internal::Spheroid& shape_k = kind_of(k).shape;
-    const Eigen::Vector3d& u_i = axis_[static_cast<std::size_t>(i)];
-    const Eigen::Vector3d& u_k = axis_[static_cast<std::size_t>(k)];
+    const Eigen::Vector3d u_i = axis_of(i);
+    const Eigen::Vector3d u_k = axis_of(k);
     const double limit = 2 * thickness_;
     // Most pairs are told apart by the gap along the line of centres already.
     if (apart_along_centres(shape_i, shape_k, u_i, u_k, r, limit)) return false;
@@ -128,29 +124,20 @@ class DilatedEnvelopes final : public Envelopes<UniaxialBodies> {
   void find_meetings(int i, std::span<const NearBody> near, int first, std::vector<Meeting>& found) const override {
     if (kernel_ == nullptr) return Envelopes::find_meetings(i, near, first, found);
     found.clear();
-    MeetingInput in;
-    std::array<const NearBody*, kBlockMeetings> near_of;
-    put_one(i, in);
-    for (std::size_t next = 0; next < near.size();) {
-      int lanes = 0;
-      for (; next < near.size() && lanes < kBlockMeetings; ++next) {
-        const int k = near[next].body;
-        if (k < first || k == i) continue;
-        put_other(k, near[next].r, in, lanes);
-        near_of[static_cast<std::size_t>(lanes++)] = &near[next];
-      }
-      if (lanes == 0) return;
-      const NearBody& last = *near_of[static_cast<std::size_t>(lanes - 1)];
-      for (int lane = lanes; lane % kLongestVector != 0; ++lane) put_other(last.body, last.r, in, lane);
+    MeetingInput in{nullptr, 0, envelopes_.data(), shapes_.data(), kinds_.size() == 1, i, first, 2 * thickness_};
+    for (std::size_t next = 0; next < near.size(); next += kBlockMeetings) {
+      const auto block = near.subspan(next, std::min(near.size() - next, std::size_t{kBlockMeetings}));
+      in.near = block.data();
+      in.count = static_cast<int>(block.size());
       MeetingOutput out;
-      kernel_(in, lanes, out);
-      for (int lane = 0; lane < lanes; ++lane) {
-        const auto& [k, r] = *near_of[static_cast<std::size_t>(lane)];
+      kernel_(in, out);
+      for (int lane = 0; lane < out.count; ++lane) {
         const double verdict = out.rows[MeetingOutput::verdict][lane];
         if (verdict == MeetingOutput::apart) continue;
+        const NearBody& other = block[static_cast<std::size_t>(out.place[lane])];
         const auto normal = [&](int axis) { return out.rows[MeetingOutput::normal + axis][lane]; };
-        Meeting meeting{k, {normal(0), normal(1), normal(2)}};
-        if (verdict == MeetingOutput::open && !may_meet(i, k, r, meeting.normal)) continue;
+        Meeting meeting{other.body, {normal(0), normal(1), normal(2)}};
+        if (verdict == MeetingOutput::open && !may_meet(i, other.body, other.r, meeting.normal)) continue;
         found.push_back(meeting);
       }
     }
@@ -160,17 +147,6 @@ class DilatedEnvelopes final : public Envelopes<UniaxialBodies> {
   void load(Reader& reader) override { fields(reader, *this); }
 
  private:
-  void put_one(int i, MeetingInput& in) const {
-    put_shape(kind_of(i).shape, in.one_shape, 0);
-    put_vector(axis_[static_cast<std::size_t>(i)], in.one_axis, 0);
-    in.limit = 2 * thickness_;
-  }
-  void put_other(int k, const Eigen::Vector3d& r, MeetingInput& in, int lane) const {
-    put_shape(kind_of(k).shape, in.rows + MeetingInput::shape, lane);
-    put_vector(axis_[static_cast<std::size_t>(k)], in.rows + MeetingInput::axis, lane);
-    put_vector(r, in.rows + MeetingInput::r, lane);
-  }
-
   struct Kind {
     geom::internal::Spheroid shape;
     double axis_difference;  ///< |a - b|
@@ -178,30 +154,36 @@ class DilatedEnvelopes final : public Envelopes<UniaxialBodies> {
 
   template <class Archive, class Self>
   static void fields(Archive& archive, Self& self) {
-    archive(self.thickness_, self.exit_thickness_, self.centre_, self.axis_);
-    expect(archive, self.centre_.size() == self.kind_.size() && self.axis_.size() == self.kind_.size(),
-           "the envelopes of the bodies");
+    archive(self.thickness_, self.exit_thickness_);
     expect(archive, self.exit_thickness_ >= 0 && self.exit_thickness_ <= self.thickness_, "the room to an exit");
-    const auto finite = [](const Eigen::Vector3d& v) { return v.allFinite(); };
-    expect(archive,
-           std::all_of(self.centre_.begin(), self.centre_.end(), finite) &&
-               std::all_of(self.axis_.begin(), self.axis_.end(), finite),
-           "an envelope is not finite");
+    for (auto& envelope : self.envelopes_) {
+      for (auto& x : envelope.centre) archive(x);
+      for (auto& u : envelope.axis) archive(u);
+    }
+    const auto finite = [](const double(&v)[3]) { return Eigen::Vector3d(v).allFinite(); };
+    const bool fits = std::all_of(self.envelopes_.begin(), self.envelopes_.end(),
+                                  [&](const DilatedEnvelope& e) { return finite(e.centre) && finite(e.axis); });
+    expect(archive, fits, "an envelope is not finite");
   }
 
-  const Kind& kind_of(int i) const { return kinds_[static_cast<std::size_t>(kind_[static_cast<std::size_t>(i)])]; }
+  void add_kind(const geom::internal::Spheroid& shape, double axis_difference) {
+    kinds_.push_back({shape, axis_difference});
+    shapes_.push_back({{shape.a2, shape.b2, shape.c, shape.rho}});
+  }
+  const DilatedEnvelope& envelope(int i) const { return envelopes_[static_cast<std::size_t>(i)]; }
+  Eigen::Vector3d axis_of(int i) const { return Eigen::Vector3d(envelope(i).axis); }
+  const Kind& kind_of(int i) const { return kinds_[static_cast<std::size_t>(envelope(i).kind)]; }
   double surface_speed(int i, const AxisMotion& motion) const {
     return kind_of(i).axis_difference * motion.rate * motion.e2.norm();
   }
 
   MeetingKernel* kernel_ = nullptr;
   std::vector<Kind> kinds_;
-  std::vector<int> kind_;
+  std::vector<ShapeNumbers> shapes_;  ///< of the kinds, for the kernel
   double bounding_radius_;
   double thickness_;
   double exit_thickness_;
-  LargeVector<Eigen::Vector3d> centre_;
-  LargeVector<Eigen::Vector3d> axis_;
+  LargeVector<DilatedEnvelope> envelopes_;
 };
 
 }  // namespace ed::internal

@@ -416,7 +416,7 @@ template <class Bodies>
 void EventLoop<Bodies>::rebuild_all() {
   lists_ = NeighbourLists(number());
   // The cells shrink with the box between two calls of this, but what they must cover does not.
-  cells_.emplace(number(), box_, envelopes_->reach() / envelopes_->least_scale());
+  cells_.emplace(number(), box_, envelopes_->reach() / envelopes_->least_scale(), options_.batches);
   list_scale_ = 1;
   for (int i = 0; i < number(); ++i) {
     bodies_.move(i, now_);

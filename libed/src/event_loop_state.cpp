@@ -43,7 +43,7 @@ EventLoop<Bodies>::EventLoop(const System& system, const SimulationOptions& opti
   envelopes_->load(reader);
   const bool fits = envelopes_->reach() >= R && envelopes_->reach() <= 2 * box_;
   expect(reader, envelopes_->thickness() == thickness && fits, "the size of the envelopes");
-  cells_.emplace(number(), box_, envelopes_->reach());
+  cells_.emplace(number(), box_, envelopes_->reach(), options_.batches);
   fields(reader, *this);
   load_failures(reader);
   expect(reader, events_fit(), "the events do not fit the lists");

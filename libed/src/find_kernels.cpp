@@ -20,25 +20,43 @@ InstructionSet best_in_the_loop() {
   return set;
 }
 
+void check_available(InstructionSet set) {
+  if (geom::is_available(set)) return;
+  std::ostringstream message;
+  message << "batches: " << geom::to_string(set)
+          << ", which this processor or this build does not have; accepted: none, best";
+  for (const InstructionSet other : {InstructionSet::portable, InstructionSet::avx2, InstructionSet::avx512}) {
+    if (geom::is_available(other)) message << ", " << geom::to_string(other);
+  }
+  throw std::invalid_argument(message.str());
+}
+
+InstructionSet chosen(InstructionSet set) {
+  check_available(set);
+  return set == InstructionSet::best ? best_in_the_loop() : set;
+}
+
 }  // namespace
 
 UniaxialKernels find_uniaxial_kernels(const std::optional<InstructionSet>& batches) {
   if (!batches) return {};
-  if (!geom::is_available(*batches)) {
-    std::ostringstream message;
-    message << "batches: " << geom::to_string(*batches)
-            << ", which this processor or this build does not have; accepted: none, best";
-    for (const InstructionSet other : {InstructionSet::portable, InstructionSet::avx2, InstructionSet::avx512}) {
-      if (geom::is_available(other)) message << ", " << geom::to_string(other);
-    }
-    throw std::invalid_argument(message.str());
-  }
-  const InstructionSet set = *batches == InstructionSet::best ? best_in_the_loop() : *batches;
 #ifdef HARDBODY_X86_KERNELS
+  const InstructionSet set = chosen(*batches);
   if (set == InstructionSet::avx2) return uniaxial_kernels_avx2();
   if (set == InstructionSet::avx512) return uniaxial_kernels_avx512();
+#else
+  check_available(*batches);
 #endif
   return *batches == InstructionSet::best ? UniaxialKernels{} : uniaxial_kernels_portable();
+}
+
+CellKernel* find_cell_kernel([[maybe_unused]] const std::optional<InstructionSet>& batches) {
+#ifdef HARDBODY_X86_KERNELS
+  const InstructionSet set = batches ? chosen(*batches) : InstructionSet::portable;
+  if (set == InstructionSet::avx2) return cell_kernel_avx2();
+  if (set == InstructionSet::avx512) return cell_kernel_avx512();
+#endif
+  return cell_kernel_portable();
 }
 
 }  // namespace ed::internal

@@ -2,6 +2,7 @@
 
 /// Which kernels to use, and how numbers get into their rows.
 
+#include "cell_kernels.h"
 #include "uniaxial_kernels.h"
 
 #include <geom/batch.h>
@@ -17,6 +18,9 @@ namespace ed::internal {
 /// than one pair at a time. Throws std::invalid_argument if the processor or the build does not have the instruction
 /// set.
 UniaxialKernels find_uniaxial_kernels(const std::optional<geom::InstructionSet>& batches);
+
+/// Of the same instruction set; that of the whole library for none.
+CellKernel* find_cell_kernel(const std::optional<geom::InstructionSet>& batches);
 
 template <class Row>
 void put_vector(const Eigen::Vector3d& v, Row* rows, int lane) {

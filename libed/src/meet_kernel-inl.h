@@ -9,6 +9,7 @@
 #include <geom/tolerances.h>
 
 #include <cstddef>
+#include <cstdint>
 
 HWY_BEFORE_NAMESPACE();
 namespace ed::internal {
@@ -19,11 +20,58 @@ struct Envelope {
   Real3 axis;
 };
 
-HWY_INLINE Envelope the_one(const MeetingInput& in) {
-  const auto shape = [&](int row) { return in.one_shape[row][0]; };
-  const auto axis = [&](int k) { return in.one_axis[k][0]; };
-  return {{shape(ShapeRows::a2), shape(ShapeRows::b2), shape(ShapeRows::c), shape(ShapeRows::rho)},
-          {axis(0), axis(1), axis(2)}};
+/// A NearBody, or what a DilatedEnvelope begins with: axis and kind.
+using Quad = double[4];
+using QuadTag = hn::CappedTag<double, 4>;
+constexpr int kQuadLanes = static_cast<int>(HWY_MIN(HWY_LANES(double), 4));
+
+HWY_INLINE void copy(const void* from, Quad& to) {
+  const auto* const numbers = static_cast<const double*>(from);
+  for (int k = 0; k < 4; k += kQuadLanes) hn::Store(hn::LoadU(QuadTag(), numbers + k), QuadTag(), to + k);
+}
+
+/// What is near, and the envelopes of these bodies. Room for a vector beyond the last.
+struct Candidates {
+  alignas(64) Quad near[kBlockMeetings + kLanes];
+  alignas(64) Quad envelope[kBlockMeetings + kLanes];
+
+  HWY_INLINE void move(int from, int to) {
+    copy(near[from], near[to]);
+    copy(envelope[from], envelope[to]);
+  }
+  /// Repeats the first until vectors are full.
+  HWY_INLINE void fill_up(int count) {
+    for (int k = count; k % kLanes != 0; ++k) move(0, k);
+  }
+};
+
+/// The vector to the bodies of some lanes, and their envelopes.
+struct Other {
+  hn::Vec<Tag> name;  ///< the body's number in the lower half
+  Real3 r;
+  Envelope envelope;
+};
+
+template <bool kOneKind>
+HWY_INLINE Other load_other(const MeetingInput& in, const Envelope& one, const Candidates& candidates, int lane) {
+  Other other;
+  hn::Vec<Tag> x, y, z, kind;
+  hn::LoadInterleaved4(Tag(), candidates.near[lane], other.name, x, y, z);
+  other.r = {Real(x), Real(y), Real(z)};
+  hn::LoadInterleaved4(Tag(), candidates.envelope[lane], x, y, z, kind);
+  other.envelope.axis = {Real(x), Real(y), Real(z)};
+  if constexpr (kOneKind) {
+    other.envelope.shape = one.shape;
+  } else {
+    alignas(64) std::int64_t kinds[kLanes];
+    hn::Store(hn::BitCast(hn::RebindToSigned<Tag>(), kind), hn::RebindToSigned<Tag>(), kinds);
+    alignas(64) double rows[ShapeRows::count][kLanes];
+    for (int k = 0; k < kLanes; ++k) {
+      for (int row = 0; row < ShapeRows::count; ++row) rows[row][k] = in.shapes[kinds[k]].numbers[row];
+    }
+    other.envelope.shape = load_shape(rows, 0);
+  }
+  return other;
 }
 
 /// The Newton step with its length capped, as set_step in geom/internal/dual_newton.h. `definite`: where it is one.
@@ -37,65 +85,83 @@ HWY_INLINE Step capped_step(const Envelope& a, const Envelope& b, const Real3& r
   return step;
 }
 
-/// Pairs whose gap along the line of centres does not tell them apart.
-HWY_INLINE void meet_closely(const MeetingInput& in, int pairs, const MeetingRow* rows, MeetingOutput& out) {
-  const Envelope a = the_one(in);
-  const Real limit = in.limit;
-  for (int lane = 0; lane < pairs; lane += kLanes) {
-    const Envelope b{load_shape(rows + MeetingInput::shape, lane), load3(rows + MeetingInput::axis, lane)};
-    const Real3 r = load3(rows + MeetingInput::r, lane);
-    const Real3 cold = geom::internal::cold_direction(a.shape, b.shape, r, a.axis, b.axis);
-    const Real length2 = cold.squaredNorm();
-    Real3 n = select(length2 > 0, (1 / sqrt(length2)) * cold, a.axis);
-    Gap gap = geom::internal::uniaxial_gap_of<Both>(a.shape, b.shape, r, a.axis, b.axis, n);
-    Lanes apart = gap.g > limit;
-    Lanes definite;
-    Step step = capped_step(a, b, r, n, gap, definite);
-    Lanes known = definite;
-    for (int steps = 0; steps < kMeetingSteps; ++steps) {
-      const Lanes going_on = known & (gap.g + step.decrement > limit) & !apart;
-      if (!any(going_on)) break;
-      // The others stay where they are: their numbers come out the same again.
-      n = select(going_on, step_on_sphere(n, step.delta), n);
-      gap = geom::internal::uniaxial_gap_of<Both>(a.shape, b.shape, r, a.axis, b.axis, n);
-      apart = apart | (going_on & (gap.g > limit));
-      step = capped_step(a, b, r, n, gap, definite);
-      known = known & definite;
+/// Bodies whose gap along the line of centres does not tell them apart.
+HWY_INLINE void meet_closely(const Envelope& a, const Other& other, Real limit, MeetingOutput& out, int lane) {
+  const Envelope& b = other.envelope;
+  const Real3& r = other.r;
+  const Real3 cold = geom::internal::cold_direction(a.shape, b.shape, r, a.axis, b.axis);
+  const Real length2 = cold.squaredNorm();
+  Real3 n = select(length2 > 0, (1 / sqrt(length2)) * cold, a.axis);
+  Gap gap = geom::internal::uniaxial_gap_of<Both>(a.shape, b.shape, r, a.axis, b.axis, n);
+  Lanes apart = gap.g > limit;
+  Lanes definite;
+  Step step = capped_step(a, b, r, n, gap, definite);
+  Lanes known = definite;
+  for (int steps = 0; steps < kMeetingSteps; ++steps) {
+    const Lanes going_on = known & (gap.g + step.decrement > limit) & !apart;
+    if (!any(going_on)) break;
+    // The others stay where they are: their numbers come out the same again.
+    n = select(going_on, step_on_sphere(n, step.delta), n);
+    gap = geom::internal::uniaxial_gap_of<Both>(a.shape, b.shape, r, a.axis, b.axis, n);
+    apart = apart | (going_on & (gap.g > limit));
+    step = capped_step(a, b, r, n, gap, definite);
+    known = known & definite;
+  }
+  store3(step_on_sphere(n, step.delta), out.rows + MeetingOutput::normal, lane);
+  store(select(apart, MeetingOutput::apart, select(known, MeetingOutput::meet, MeetingOutput::open)),
+        out.rows[MeetingOutput::verdict], lane);
+}
+
+/// Lanes of bodies that count and are not told apart by the gap along the line of centres, a bit each.
+HWY_INLINE unsigned close_lanes(const MeetingInput& in, const Envelope& a, const Other& other) {
+  const hn::RebindToSigned<Tag> places;
+  const auto body = hn::And(hn::BitCast(places, other.name), hn::Set(places, std::int64_t{0xFFFFFFFF}));
+  const auto none = hn::Or(hn::Eq(body, hn::Set(places, std::int64_t{in.one})),
+                           hn::Lt(body, hn::Set(places, std::int64_t{in.first})));
+  const Envelope& b = other.envelope;
+  const Lanes apart = apart_along_centres(a.shape, b.shape, a.axis, b.axis, other.r, Real(in.limit));
+  alignas(8) std::uint8_t bits[8] = {};
+  hn::StoreMaskBits(Tag(), hn::Not(hn::Or(apart.mask, hn::RebindMask(Tag(), none))), bits);
+  return bits[0];
+}
+
+template <bool kOneKind>
+HWY_INLINE void meet_all(const MeetingInput& in, MeetingOutput& out) {
+  const DilatedEnvelope& one = in.envelopes[in.one];
+  const double* const shape = in.shapes[one.kind].numbers;
+  const Envelope a{{shape[ShapeRows::a2], shape[ShapeRows::b2], shape[ShapeRows::c], shape[ShapeRows::rho]},
+                   {one.axis[0], one.axis[1], one.axis[2]}};
+  // Read in an order that nothing waits in; vectors take four numbers of each body from it then.
+  Candidates candidates;
+  const auto* const near = static_cast<const unsigned char*>(in.near);
+  for (int k = 0; k < in.count; ++k) {
+    std::int32_t body;
+    __builtin_memcpy(&body, near + k * sizeof(Quad), sizeof body);
+    copy(near + k * sizeof(Quad), candidates.near[k]);
+    copy(in.envelopes + body, candidates.envelope[k]);
+  }
+  candidates.fill_up(in.count);
+  int count = 0;
+  for (int lane = 0; lane < in.count; lane += kLanes) {
+    const unsigned close = close_lanes(in, a, load_other<kOneKind>(in, a, candidates, lane));
+    // Few are left: they are moved together. Moved always and kept if it counts: no branch on what cannot be predicted.
+    const int end = HWY_MIN(in.count, lane + kLanes);
+    for (int k = lane; k < end; ++k) {
+      candidates.move(k, count);
+      out.place[count] = k;
+      count += static_cast<int>((close >> static_cast<unsigned>(k - lane)) & 1U);
     }
-    store3(step_on_sphere(n, step.delta), out.rows + MeetingOutput::normal, lane);
-    store(select(apart, MeetingOutput::apart, select(known, MeetingOutput::meet, MeetingOutput::open)),
-          out.rows[MeetingOutput::verdict], lane);
+  }
+  out.count = count;
+  if (count == 0) return;
+  candidates.fill_up(count);
+  for (int lane = 0; lane < count; lane += kLanes) {
+    meet_closely(a, load_other<kOneKind>(in, a, candidates, lane), in.limit, out, lane);
   }
 }
 
-void meet(const MeetingInput& in, int pairs, MeetingOutput& out) {
-  const Envelope a = the_one(in);
-  // Few pairs are left: they are moved together.
-  alignas(64) MeetingRow close[MeetingInput::count];
-  int home[kBlockMeetings];
-  int count = 0;
-  for (int lane = 0; lane < pairs; lane += kLanes) {
-    const Shape shape = load_shape(in.rows + MeetingInput::shape, lane);
-    const Real3 axis = load3(in.rows + MeetingInput::axis, lane);
-    const Lanes apart =
-        apart_along_centres(a.shape, shape, a.axis, axis, load3(in.rows + MeetingInput::r, lane), Real(in.limit));
-    store(select(apart, MeetingOutput::apart, MeetingOutput::open), out.rows[MeetingOutput::verdict], lane);
-  }
-  for (int k = 0; k < pairs; ++k) {
-    // Written always and kept if it counts: no branch on what cannot be predicted.
-    for (int row = 0; row < MeetingInput::count; ++row) close[row][count] = in.rows[row][k];
-    home[count] = k;
-    count += out.rows[MeetingOutput::verdict][k] == MeetingOutput::open ? 1 : 0;
-  }
-  if (count == 0) return;
-  for (int k = count; k % kLanes != 0; ++k) {
-    for (int row = 0; row < MeetingInput::count; ++row) close[row][k] = close[row][0];
-  }
-  MeetingOutput closely;
-  meet_closely(in, count, close, closely);
-  for (int k = 0; k < count; ++k) {
-    for (int row = 0; row < MeetingOutput::count; ++row) out.rows[row][home[k]] = closely.rows[row][k];
-  }
+void meet(const MeetingInput& in, MeetingOutput& out) {
+  in.one_kind ? meet_all<true>(in, out) : meet_all<false>(in, out);
 }
 
 }  // namespace

@@ -4,9 +4,8 @@
 ///
 /// Plain arrays only, neither Eigen nor containers: what a translation unit compiled for AVX-512 instantiates of them
 /// could be linked into code for processors without it.
-///
-/// Kernels answer the first pairs of a block, as many as they are told; up to the next multiple of kLongestVector the
-/// input must hold valid pairs too.
+
+#include <cstdint>
 
 namespace ed::internal {
 
@@ -15,6 +14,11 @@ constexpr int kLongestVector = 8;
 /// What rows of a body begin with: its shape, as in Spheroid.
 struct ShapeRows {
   enum Row { a2 = 0, b2 = 1, c = 2, rho = 3, count = 4 };
+};
+
+/// A shape, in the order of its rows.
+struct ShapeNumbers {
+  double numbers[ShapeRows::count];
 };
 
 // ---- First looks: what certified_contact finds with one evaluation --------------------------------------------------
@@ -70,37 +74,45 @@ struct LookOutput {
   alignas(64) LookRow rows[count];
 };
 
+/// Answers the first pairs of a block; up to the next multiple of kLongestVector the input must hold valid pairs too.
 using LookKernel = void(const LookInput& in, int pairs, LookOutput& out);
 
 // ---- Meetings: whether dilated envelopes may meet -------------------------------------------------------------------
 
+/// Bodies in one call, at most.
 constexpr int kBlockMeetings = 64;
 
-/// Of the pairs of one envelope and others.
-using MeetingRow = double[kBlockMeetings];
-
-struct MeetingInput {
-  enum Row {
-    shape = 0,                ///< of the other
-    axis = ShapeRows::count,  ///< of the other
-    r = axis + 3,             ///< from the one to the other
-    count = r + 3,
-  };
-  alignas(64) MeetingRow rows[count];
-  double one_shape[ShapeRows::count][1];  ///< a row of one number
-  double one_axis[3][1];
-  double limit;  ///< gaps above are none
+/// A dilated envelope: half a cache line of what says where it is, half of what only exit_time wants.
+struct alignas(64) DilatedEnvelope {
+  double axis[3];
+  std::int32_t kind;
+  std::int32_t none;
+  double centre[3];
 };
 
+struct MeetingInput {
+  const void* near;                  ///< NearBodys
+  int count;                         ///< of them
+  const DilatedEnvelope* envelopes;  ///< of all bodies
+  const ShapeNumbers* shapes;        ///< of all kinds
+  bool one_kind;
+  std::int32_t one;    ///< the body whose envelope the others may meet; itself it does not meet
+  std::int32_t first;  ///< and none of the bodies before this one
+  double limit;        ///< gaps above are none
+};
+
+/// In the order of the bodies, but for those that were told apart at once.
 struct MeetingOutput {
-  enum Row { verdict = 0, normal = 1, count = 4 };
+  enum Row { verdict = 0, normal = 1, rows_count = 4 };
   static constexpr double open = 0;  ///< not known
   static constexpr double apart = 1;
   static constexpr double meet = 2;
-  alignas(64) MeetingRow rows[count];
+  int count;
+  int place[kBlockMeetings];  ///< among the NearBodys
+  alignas(64) double rows[rows_count][kBlockMeetings];
 };
 
-using MeetingKernel = void(const MeetingInput& in, int pairs, MeetingOutput& out);
+using MeetingKernel = void(const MeetingInput& in, MeetingOutput& out);
 
 // ---------------------------------------------------------------------------------------------------------------------
 

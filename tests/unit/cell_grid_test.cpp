@@ -1,5 +1,7 @@
 #include <cell_grid.h>
 
+#include <common/geom_batch.h>
+
 #include <ed/internal/archive.h>
 #include <ed/random.h>
 
@@ -8,8 +10,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <limits>
+#include <optional>
 #include <ostream>
 #include <stdexcept>
 #include <string>
@@ -141,20 +145,127 @@ TEST(CellGrid, ABodyPlacedTwiceIsOneAndStandsWhereItWasPutLast) {
   EXPECT_NEAR(found[0].r.x(), 0.01, 1e-15);
 }
 
-TEST(CellGrid, RefusesOffsetsBeyondTheBox) {
-  CellGrid grid(20, 10, 4);
-  ed::Random random(12);
-  for (int i = 0; i < 20; ++i) grid.place(i, draw(random, 10));
+/// What a grid finds, in its order and bit by bit.
+struct Found {
+  std::vector<int> bodies;
+  std::vector<Vector3d> r;
+
+  bool operator==(const Found&) const = default;
+};
+
+Found found_by(const CellGrid& grid, const Vector3d& centre, double reach) {
+  std::vector<NearBody> buffer;
+  Found result;
+  for (const NearBody& near : grid.collect(centre, reach, buffer)) {
+    result.bodies.push_back(near.body);
+    result.r.push_back(near.r);
+  }
+  return result;
+}
+
+/// Half of them in a corner, so that some cells hold many.
+Vector3d draw_crowded(ed::Random& random, double box) {
+  const double edge = random.uniform() < 0.5 ? 0.2 * box : box;
+  return edge * Vector3d(random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5);
+}
+
+void place_all(int number, double box, ed::Random& random, CellGrid& grid) {
+  for (int i = 0; i < number; ++i) grid.place(i, draw_crowded(random, box));
+}
+
+TEST(CellGrid, EveryInstructionSetFindsTheSameBits) {
+  constexpr int kNumber = 700;
+  constexpr double kBox = 9;
+  constexpr double kReach = 2.3;
+  ed::Random scalar_places(14);
+  CellGrid scalar(kNumber, kBox, kReach, std::nullopt);
+  place_all(kNumber, kBox, scalar_places, scalar);
+  for (const geom::InstructionSet set : geom_test::instruction_sets()) {
+    ed::Random places(14);
+    CellGrid grid(kNumber, kBox, kReach, set);
+    place_all(kNumber, kBox, places, grid);
+    ed::Random random(15);
+    std::size_t found = 0;
+    for (int k = 0; k < 300; ++k) {
+      const Vector3d centre = draw_crowded(random, kBox);
+      const Found near = found_by(grid, centre, kReach);
+      EXPECT_EQ(near, found_by(scalar, centre, kReach)) << geom::to_string(set);
+      found += near.bodies.size();
+    }
+    EXPECT_GT(found, 10000U);
+  }
+}
+
+TEST(CellGrid, GoesOnAsItWasAfterReading) {
+  constexpr int kNumber = 500;
+  constexpr double kBox = 8;
+  constexpr double kReach = 1.9;
+  ed::Random random(16);
+  CellGrid grid(kNumber, kBox, kReach);
+  place_all(kNumber, kBox, random, grid);
+  grid.scale(0.9);
   const std::string bytes = ed::internal::bytes_of(grid);
+  CellGrid read(kNumber, 0.9 * kBox, 0.9 * kReach);
+  ed::internal::Reader reader(bytes);
+  reader(read);
+  EXPECT_EQ(ed::internal::bytes_of(read), bytes);
+  // In the same order, too, after bodies have left their cells and come to others.
+  for (int k = 0; k < 5000; ++k) {
+    const int body = static_cast<int>(kNumber * random.uniform());
+    const Vector3d place = draw_crowded(random, 0.9 * kBox);
+    grid.place(body, place);
+    read.place(body, place);
+    if (k % 10 == 0) {
+      const Vector3d centre = draw_crowded(random, 0.9 * kBox);
+      ASSERT_EQ(found_by(grid, centre, 0.9 * kReach), found_by(read, centre, 0.9 * kReach)) << k;
+    }
+  }
+  EXPECT_EQ(ed::internal::bytes_of(read), ed::internal::bytes_of(grid));
+}
+
+/// Bodies stand last but for their places: `back` of them from the end.
+std::string with_body(std::string bytes, int number, int back, int body) {
+  const std::size_t places = sizeof(std::uint64_t) + sizeof(Vector3d) * static_cast<std::size_t>(number);
+  std::memcpy(bytes.data() + bytes.size() - places - sizeof body * static_cast<std::size_t>(back), &body, sizeof body);
+  return bytes;
+}
+
+TEST(CellGrid, RefusesWhatHoldsNotEachBodyOnce) {
+  constexpr int kNumber = 20;
+  CellGrid grid(kNumber, 10, 2.5);
+  ed::Random random(12);
+  for (int i = 0; i < kNumber; ++i) grid.place(i, draw(random, 10));
+  const std::string bytes = ed::internal::bytes_of(grid);
+  const auto expect_refused = [](const std::string& bad, const std::string& what) {
+    ed::internal::Reader reader(bad);
+    CellGrid read(kNumber, 10, 2.5);
+    EXPECT_THROW(reader(read), std::invalid_argument) << what;
+  };
   ed::internal::Reader sound(bytes);
   EXPECT_NO_THROW(sound(grid));
-  for (const int offset : {std::numeric_limits<int>::min(), std::numeric_limits<int>::max(), -1000}) {
-    std::string bad = bytes;
-    std::memcpy(bad.data() + bad.size() - sizeof offset, &offset, sizeof offset);
-    ed::internal::Reader reader(bad);
-    CellGrid read(20, 10, 4);
-    EXPECT_THROW(reader(read), std::invalid_argument) << offset;
+  int last = 0;
+  std::memcpy(&last, bytes.data() + bytes.size() - sizeof(std::uint64_t) - sizeof(Vector3d) * kNumber - sizeof last,
+              sizeof last);
+  ASSERT_EQ(with_body(bytes, kNumber, 1, last), bytes);
+  for (const int body : {-1, kNumber, std::numeric_limits<int>::min(), std::numeric_limits<int>::max()}) {
+    expect_refused(with_body(bytes, kNumber, 1, body), "body " + std::to_string(body));
   }
+  expect_refused(with_body(bytes, kNumber, 2, last), "a body twice");
+  // The first numbers are the box, the cells along an edge, how many cells there are, and the bodies in each.
+  for (const int cells : {0, -1, 1, 1000, std::numeric_limits<int>::max()}) {
+    std::string bad = bytes;
+    std::memcpy(bad.data() + sizeof(double), &cells, sizeof cells);
+    expect_refused(bad, std::to_string(cells) + " cells");
+  }
+  for (const int count : {-1, kNumber + 1, std::numeric_limits<int>::max()}) {
+    std::string bad = bytes;
+    std::memcpy(bad.data() + sizeof(double) + sizeof(int) + sizeof(std::uint64_t), &count, sizeof count);
+    expect_refused(bad, std::to_string(count) + " bodies in a cell");
+  }
+  std::string bad = bytes;
+  const double infinite = std::numeric_limits<double>::infinity();
+  std::memcpy(bad.data() + bad.size() - sizeof infinite, &infinite, sizeof infinite);
+  expect_refused(bad, "a body nowhere");
 }
 
 }  // namespace
