@@ -36,10 +36,11 @@ point how long the rest will take.
 - **D_trans is about 1 % low at packing fractions near 0.3.** It is the slope of the mean square displacement between lags of 6
   and 15, where velocities are still correlated a little. From one run at X0 = 2, 0.3: 0.4749 from lags 6 to 15, 0.4776 from 10 to 25,
   0.4787 from 16 to 40.
-- **Near the nematic, 0.12 < S <= 0.3, errors are about three times too small**: blocks are shorter than S takes to relax. Four runs at
-  X0 = 4, 0.435 have D_rot 0.02928 +- 0.00099, 0.03486 +- 0.00066, 0.03139 +- 0.00092 and 0.03266 +- 0.00039, which scatter by 0.0023.
-- **F_self is at q, not at q_peak**: these programs took the highest S(q) of the last relaxation of the equilibration, at low density
-  by chance, and {far_q} rows are more than 10 % from the run's own `q_peak`. Today's program fits a curve where the peak does not stand out.
+- **Near the nematic, where S is 0.12 to 0.3, order relaxes over tens of time units**, and D_rot follows it: four productions of 400 time
+  units at X0 = 4, 0.435 had D_rot 0.02928, 0.03486, 0.03139 and 0.03266, three times as far apart as blocks of 40 made believe. These 11
+  points (`SLOW_ORDER` in `tools/paper/grid.py`) therefore produce for 2400, in blocks of 80.
+- **F_self is at q, not at q_peak**: q is the first peak of S(q) in the last relaxation of the equilibration, q_peak that of the whole
+  production. They are more than 10 % apart in {far_q} rows, where the peak is broad and low.
 - **C2 of spheres has no error**: nothing turns them, so that all blocks of a run hold the same rotation. From one packing fraction to
   the next t_C2_1overe scatters by 0.004, as 512 random angular velocities do.
 

@@ -61,7 +61,8 @@ def production_text(point, quick):
 
 
 def config_text(point, quick):
-    cap = QUICK_CAP if quick else LATE_CAP if grid.is_late(point) else CAP
+    late = grid.is_late(point) and point not in grid.SLOW_ORDER
+    cap = QUICK_CAP if quick else LATE_CAP if late else CAP
     return CONFIG.format(name=point.name, seed=point.seed, phi=point.phi, X0=point.X0, cap=cap,
                          production=production_text(point, quick))
 
