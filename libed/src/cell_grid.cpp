@@ -15,7 +15,7 @@ std::size_t at(int i) {
   return static_cast<std::size_t>(i);
 }
 
-/// By which cells count as nearer than they are, in widths of a cell: more than the rounding of a place up to 10^8
+/// By which cells count as nearer than they are, in widths of a cell: more than the rounding of a place up to 10^7
 /// boxes away.
 constexpr double kMargin = 1e-6;
 
@@ -26,11 +26,11 @@ double most_cells(std::size_t number) {
 
 }  // namespace
 
-CellGrid::CellGrid(int number, double box, double reach, const std::optional<geom::InstructionSet>& vectors)
+CellGrid::CellGrid(int number, double box, double reach, const std::optional<geom::InstructionSet>& batches)
     : box_(box),
       reach_(reach),
       cells_(choose_cells(number, box, reach)),
-      kernel_(find_cell_kernel(vectors)),
+      kernel_(find_cell_kernel(batches)),
       cell_of_body_(at(number), kNone) {
   clear();
 }
@@ -156,6 +156,10 @@ void CellGrid::place(int i, const Eigen::Vector3d& position) {
   insert(i, cell, position);
 }
 
+bool CellGrid::cover(double reach) const {
+  return cells_ == 1 || cells_ <= kNarrowest * box_ / reach * (1 + 1e-9);
+}
+
 void CellGrid::scale(double factor) {
   box_ *= factor;
   reach_ *= factor;
@@ -170,13 +174,14 @@ void CellGrid::scale(double factor) {
 
 // ---- Looking -------------------------------------------------------------------------------------------------------
 
-CellGrid::Along CellGrid::along(double coordinate, double reach) const {
-  assert(reach <= kNarrowest + 2 * kMargin || reach * 2 >= cells_);
+CellGrid::Along CellGrid::along(double coordinate, double widths) const {
+  assert(widths <= kNarrowest + 2 * kMargin || 2 * widths >= cells_);
   Along result;
-  // From 2 reach on every cell counts, once, and whether from this side or from the other is not asked.
-  const int first = static_cast<int>(coordinate - reach + cells_) - cells_;
-  const int last = static_cast<int>(coordinate + reach);
-  if (2 * reach >= cells_ || last - first + 1 >= cells_) {
+  const bool all = 2 * widths >= cells_;
+  const int first = all ? 0 : static_cast<int>(coordinate - widths + cells_) - cells_;
+  const int last = all ? 0 : static_cast<int>(coordinate + widths);
+  // Every cell, once, and whether from this side or from the other is not asked.
+  if (all || last - first + 1 > cells_) {
     result.count = cells_;
     for (int k = 0; k < cells_; ++k) {
       result.cell[at(k)] = k;
@@ -243,6 +248,8 @@ std::span<const NearBody> CellGrid::collect(const Eigen::Vector3d& position, dou
 
 CellGrid::Content CellGrid::content() const {
   Content result{box_, cells_, {count_.begin(), count_.end()}, {}, {}};
+  result.bodies.reserve(cell_of_body_.size());
+  result.positions.reserve(cell_of_body_.size());
   std::vector<int> chain;
   for (std::size_t cell = 0; cell < count_.size(); ++cell) {
     chain.clear();
@@ -258,20 +265,19 @@ CellGrid::Content CellGrid::content() const {
   return result;
 }
 
-/// False if there is no such grid of this number of bodies.
+/// False if there is no such grid of these bodies in this box.
 bool CellGrid::assign(const Content& content) {
   const std::size_t number = cell_of_body_.size();
-  if (!(content.box > 0) || !std::isfinite(content.box)) return false;
-  // Rounding of the box, should it have been scaled.
-  const double most = std::min(kNarrowest * content.box / reach_ * (1 + 1e-9), most_cells(number));
-  if (content.cells < 1 || (content.cells > 1 && content.cells > most)) return false;
+  if (content.box != box_) return false;
+  if (content.cells < 1 || (content.cells > 1 && content.cells > most_cells(number))) return false;
   if (content.bodies.size() != number || content.positions.size() != number) return false;
-  box_ = content.box;
   cells_ = content.cells;
+  if (!cover(reach_)) return false;
   clear();
   if (content.count.size() != count_.size()) return false;
   std::size_t next = 0;
   for (std::size_t cell = 0; cell < content.count.size(); ++cell) {
+    if (content.count[cell] < 0) return false;
     for (int k = 0; k < content.count[cell]; ++k, ++next) {
       if (next == number) return false;
       const int body = content.bodies[next];

@@ -21,15 +21,20 @@ namespace ed::internal {
 /// Linked cells of a periodic cubic box: which points are within a given reach of another.
 ///
 /// Bodies of a cell stand in blocks (cell_kernels.h). Its own block comes at the number of the cell, those of a row of
-/// cells one after another, and holds what does not fill a block; behind it follow full ones, the newest first.
+/// cells one after another, and holds the newest bodies, up to a block of them; behind it follow full ones, the newest
+/// first.
 class CellGrid {
  public:
-  /// `vectors`: as SimulationOptions::batches; which makes no difference but of speed.
+  /// `batches`: as SimulationOptions has it, which makes no difference but of speed. Throws std::invalid_argument if
+  /// the processor or the build does not have the instruction set.
   CellGrid(int number, double box, double reach,
-           const std::optional<geom::InstructionSet>& vectors = geom::InstructionSet::best);
+           const std::optional<geom::InstructionSet>& batches = geom::InstructionSet::best);
 
   /// Puts body i (already placed or not) at `position`; any image.
   void place(int i, const Eigen::Vector3d& position);
+
+  /// Whether bodies within this reach are found.
+  bool cover(double reach) const;
 
   /// Scales the box with all that is in it. The reach is scaled too.
   void scale(double factor);
@@ -84,7 +89,7 @@ class CellGrid {
   double coordinate(double x) const;
   int cell_at(double coordinate) const;
   int cell_of(const Eigen::Vector3d& position) const;
-  Along along(double coordinate, double reach) const;
+  Along along(double coordinate, double widths) const;
   int wrapped(int k) const { return k < 0 ? k + cells_ : (k >= cells_ ? k - cells_ : k); }
   template <class Found>
   void for_each_cell_near(const Eigen::Vector3d& position, double reach, Found&& found) const;
@@ -92,7 +97,7 @@ class CellGrid {
   Place find(int i) const;
   void insert(int i, int cell, const Eigen::Vector3d& position);
   void remove(int i);
-  void put(Place at, int i, const Eigen::Vector3d& position);
+  void put(Place where, int i, const Eigen::Vector3d& position);
 
   double box_;
   double reach_;  ///< the most that is asked for

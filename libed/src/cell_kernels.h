@@ -1,7 +1,7 @@
 #pragma once
 
 /// The kernel of linked cells, compiled once for each instruction set (cell_kernels-inl.h). Plain arrays only, as in
-/// uniaxial_kernels.h, which says why.
+/// uniaxial_kernels.h, which says why: kernels make no CellBlock.
 
 #include <cstdint>
 #include <limits>

@@ -9,11 +9,11 @@
 #include "dilated_gap.h"
 #include "envelope_limits.h"
 #include "envelopes.h"
-#include "find_kernels.h"
 #include "large_vector.h"
 #include "neighbour_lists.h"
 #include "periodic.h"
 #include "uniaxial_bodies.h"
+#include "uniaxial_kernels.h"
 
 #include <geom/internal/uniaxial.h>
 

@@ -45,6 +45,10 @@ EventLoop<Bodies>::EventLoop(const System& system, const SimulationOptions& opti
   expect(reader, envelopes_->thickness() == thickness && fits, "the size of the envelopes");
   cells_.emplace(number(), box_, envelopes_->reach(), options_.batches);
   fields(reader, *this);
+  // Else cells would be too narrow for what is looked for in them, now or when the box has shrunk on.
+  const double least = envelopes_->least_scale();
+  const bool shrinks = list_scale_ > 0 && list_scale_ <= 1 && list_scale_ >= least * (1 - 1e-9);
+  expect(reader, least > 0 && shrinks && cells_->cover(envelopes_->reach() * (list_scale_ / least)), "the cells");
   load_failures(reader);
   expect(reader, events_fit(), "the events do not fit the lists");
   reserve_for_events();

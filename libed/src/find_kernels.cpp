@@ -50,11 +50,13 @@ UniaxialKernels find_uniaxial_kernels(const std::optional<InstructionSet>& batch
   return *batches == InstructionSet::best ? UniaxialKernels{} : uniaxial_kernels_portable();
 }
 
-CellKernel* find_cell_kernel([[maybe_unused]] const std::optional<InstructionSet>& batches) {
+CellKernel* find_cell_kernel(const std::optional<InstructionSet>& batches) {
 #ifdef HARDBODY_X86_KERNELS
   const InstructionSet set = batches ? chosen(*batches) : InstructionSet::portable;
   if (set == InstructionSet::avx2) return cell_kernel_avx2();
   if (set == InstructionSet::avx512) return cell_kernel_avx512();
+#else
+  if (batches) check_available(*batches);
 #endif
   return cell_kernel_portable();
 }

@@ -19,7 +19,7 @@ namespace ed::internal {
 /// set.
 UniaxialKernels find_uniaxial_kernels(const std::optional<geom::InstructionSet>& batches);
 
-/// Of the same instruction set; that of the whole library for none.
+/// Of the same instruction set; that of the whole library for none. Throws as find_uniaxial_kernels.
 CellKernel* find_cell_kernel(const std::optional<geom::InstructionSet>& batches);
 
 template <class Row>

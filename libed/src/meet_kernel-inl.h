@@ -30,10 +30,10 @@ HWY_INLINE void copy(const void* from, Quad& to) {
   for (int k = 0; k < 4; k += kQuadLanes) hn::Store(hn::LoadU(QuadTag(), numbers + k), QuadTag(), to + k);
 }
 
-/// What is near, and the envelopes of these bodies. Room for a vector beyond the last.
+/// What is near, and the envelopes of these bodies.
 struct Candidates {
-  alignas(64) Quad near[kBlockMeetings + kLanes];
-  alignas(64) Quad envelope[kBlockMeetings + kLanes];
+  alignas(64) Quad near[kBlockMeetings];
+  alignas(64) Quad envelope[kBlockMeetings];
 
   HWY_INLINE void move(int from, int to) {
     copy(near[from], near[to]);

@@ -1,4 +1,5 @@
 #include <cell_grid.h>
+#include <periodic.h>
 
 #include <common/geom_batch.h>
 
@@ -111,11 +112,11 @@ TEST_P(CellGridIn, CoversTheScaledReachAfterScaling) {
   for (const Vector3d& centre : positions) expect_exact(grid, positions, centre, factor * box, factor * reach, buffer);
 }
 
-// From reaches beyond the box, where the stencil wraps onto itself, to a grid of many cells.
+// From reaches beyond the box, where all cells count, to a grid of many cells, the narrowest among them.
 INSTANTIATE_TEST_SUITE_P(Boxes, CellGridIn,
                          testing::Values(Case{1, 1.0, 3.0}, Case{5, 1.0, 1.0}, Case{8, 1.0, 0.6}, Case{20, 1.0, 0.49},
                                          Case{40, 2.0, 0.7}, Case{150, 3.0, 0.8}, Case{200, 10.0, 2.0},
-                                         Case{300, 10.0, 0.5}));
+                                         Case{300, 10.0, 0.5}, Case{3000, 1.0, 0.3}, Case{4000, 1.0, 0.28}));
 
 TEST(CellGrid, BufferIsKeptAndNeverShrunk) {
   constexpr int kNumber = 200;
@@ -169,8 +170,13 @@ Vector3d draw_crowded(ed::Random& random, double box) {
   return edge * Vector3d(random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5);
 }
 
-void place_all(int number, double box, ed::Random& random, CellGrid& grid) {
-  for (int i = 0; i < number; ++i) grid.place(i, draw_crowded(random, box));
+std::vector<Vector3d> place_all(int number, double box, ed::Random& random, CellGrid& grid) {
+  std::vector<Vector3d> positions;
+  for (int i = 0; i < number; ++i) {
+    positions.push_back(draw_crowded(random, box));
+    grid.place(i, positions.back());
+  }
+  return positions;
 }
 
 TEST(CellGrid, EveryInstructionSetFindsTheSameBits) {
@@ -179,7 +185,7 @@ TEST(CellGrid, EveryInstructionSetFindsTheSameBits) {
   constexpr double kReach = 2.3;
   ed::Random scalar_places(14);
   CellGrid scalar(kNumber, kBox, kReach, std::nullopt);
-  place_all(kNumber, kBox, scalar_places, scalar);
+  const std::vector<Vector3d> positions = place_all(kNumber, kBox, scalar_places, scalar);
   for (const geom::InstructionSet set : geom_test::instruction_sets()) {
     ed::Random places(14);
     CellGrid grid(kNumber, kBox, kReach, set);
@@ -189,6 +195,10 @@ TEST(CellGrid, EveryInstructionSetFindsTheSameBits) {
     for (int k = 0; k < 300; ++k) {
       const Vector3d centre = draw_crowded(random, kBox);
       const Found near = found_by(grid, centre, kReach);
+      for (std::size_t n = 0; n < near.bodies.size(); ++n) {
+        const Vector3d d = positions[static_cast<std::size_t>(near.bodies[n])] - centre;
+        EXPECT_EQ(near.r[n], ed::internal::nearest_image(d, kBox)) << geom::to_string(set);
+      }
       EXPECT_EQ(near, found_by(scalar, centre, kReach)) << geom::to_string(set);
       found += near.bodies.size();
     }
@@ -266,6 +276,11 @@ TEST(CellGrid, RefusesWhatHoldsNotEachBodyOnce) {
   const double infinite = std::numeric_limits<double>::infinity();
   std::memcpy(bad.data() + bad.size() - sizeof infinite, &infinite, sizeof infinite);
   expect_refused(bad, "a body nowhere");
+  for (const double box : {0.0, 5e-324, 9.0, -10.0, infinite, std::nan("")}) {
+    std::string other = bytes;
+    std::memcpy(other.data(), &box, sizeof box);
+    expect_refused(other, "a box of " + std::to_string(box));
+  }
 }
 
 }  // namespace

@@ -122,7 +122,8 @@ struct SimulationOptions {
   ContactOptions contact{};
   /// Instruction set of the vectors in which ellipsoids of revolution are looked at, all neighbours of a body at once
   /// (Finder::certified, not in cells); none: one pair at a time, and so is `best` where that is faster: near spheres,
-  /// no vectors. The results are the same, bit for bit.
+  /// no vectors. And that in which bodies of any shape are found in the cells around another; none: that of the whole
+  /// library. The results are the same, bit for bit.
   std::optional<geom::InstructionSet> batches = geom::InstructionSet::best;
   /// A run has stalled when 2000 events a body take less than this share of the time in which the fastest of them moves
   /// by the smallest inscribed radius. Sound runs take some 10 such times.
