@@ -14,6 +14,7 @@
 
 #include <hwy/highway.h>
 
+#include <cstddef>
 #include <cstdint>
 
 HWY_BEFORE_NAMESPACE();
@@ -39,11 +40,11 @@ HWY_INLINE CellReal image(const double* row, CellReal from, const CellScales& sc
 }
 
 /// Writes every lane, a body after the other, and keeps those of `within`: which ones is not predictable.
-HWY_INLINE int keep(CellReal name, CellReal x, CellReal y, CellReal z, unsigned within, double* near) {
+HWY_INLINE std::ptrdiff_t keep(CellReal name, CellReal x, CellReal y, CellReal z, unsigned within, double* near) {
   const CellTag tag;
-  int found = 0;
+  std::ptrdiff_t found = 0;
 #if HWY_MAX_BYTES >= 16 && HWY_TARGET != HWY_SCALAR
-  const auto next = [&](unsigned lane) { found += static_cast<int>((within >> lane) & 1U); };
+  const auto next = [&](unsigned lane) { found += static_cast<std::ptrdiff_t>((within >> lane) & 1U); };
   const auto even_nx = hn::InterleaveLower(tag, name, x);
   const auto even_yz = hn::InterleaveLower(tag, y, z);
   const auto odd_nx = hn::InterleaveUpper(tag, name, x);
@@ -73,7 +74,7 @@ HWY_INLINE int keep(CellReal name, CellReal x, CellReal y, CellReal z, unsigned 
   hn::StoreU(x, tag, near + 1);
   hn::StoreU(y, tag, near + 2);
   hn::StoreU(z, tag, near + 3);
-  found += static_cast<int>(within & 1U);
+  found += static_cast<std::ptrdiff_t>(within & 1U);
 #endif
   return found;
 }
@@ -85,7 +86,7 @@ int find_near(const CellQuery& query, const CellBlock* blocks, const int* which,
   const CellReal pz = hn::Set(tag, query.z);
   const CellScales scales{hn::Set(tag, query.box), hn::Set(tag, 1 / query.box)};
   const CellReal reach2 = hn::Set(tag, query.reach2);
-  int found = 0;
+  std::ptrdiff_t found = 0;
   for (int k = 0; k < count; ++k) {
     const CellBlock& block = blocks[which[k]];
     for (int lane = 0; lane < kCellBlock; lane += kCellLanes) {
@@ -99,7 +100,7 @@ int find_near(const CellQuery& query, const CellBlock* blocks, const int* which,
       found += keep(name, x, y, z, within[0], near + 4 * found);
     }
   }
-  return found;
+  return static_cast<int>(found);
 }
 
 }  // namespace
