@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <optional>
 #include <sstream>
 #include <stdexcept>
@@ -16,7 +17,7 @@ namespace {
 
 using internal::BatchKernels;
 using internal::BatchOutput;
-using internal::BatchRow;
+using internal::BatchRecord;
 using internal::GeneralInput;
 using internal::kBlockPairs;
 using internal::kLongestVector;
@@ -76,7 +77,6 @@ struct Query {
   std::span<DistanceResult> results;
   DistanceOptions scalar;
 
-  bool shapes_shared() const { return a.stride == 0 && b.stride == 0; }
   DistanceResult by_distance(std::size_t pair) const {
     DistanceOptions options = scalar;
     if (!starts.empty()) options.start = starts[pair];
@@ -84,76 +84,74 @@ struct Query {
   }
 };
 
-/// Two pairs at a time: half as many stores.
-struct TwoPairs {
-  std::size_t first;
-  std::size_t second;
-  int lane;  ///< of the first; the second's is the next
+struct Pair {
+  const Ellipsoid& a;
+  const Pose& X_WA;
+  const Ellipsoid& b;
+  const Pose& X_WB;
 };
 
-template <int Size>
-void put(const double* first, const double* second, BatchRow* rows, int lane) {
-  for (int i = 0; i < Size; ++i) {
-    rows[i][lane] = first[i];
-    rows[i][lane + 1] = second[i];
-  }
+/// Copies four numbers of a pair to its place in a record.
+void put4(const double* v, double s, BatchRecord& record, int lane) {
+  double* const to = record + 4 * lane;
+  std::memcpy(to, v, 3 * sizeof *v);
+  to[3] = s;
 }
 
-template <class VectorA, class VectorB>
-void put(const VectorA& first, const VectorB& second, BatchRow* rows, int lane) {
-  put<3>(first.data(), second.data(), rows, lane);
+void put_shape(const Ellipsoid& shape, BatchRecord& record, int lane) {
+  put4(shape.semi_axes().data(), shape.min_curvature_radius(), record, lane);
 }
 
-Eigen::Vector3d get(const BatchRow* rows, int lane) {
-  return {rows[0][lane], rows[1][lane], rows[2][lane]};
+void put_shape_and_axis(const Ellipsoid& shape, const Pose& X, UniaxialInput& in, UniaxialInput::Record shape_record,
+                        UniaxialInput::Record axis_record, int lane) {
+  const int axis = *shape.symmetry_axis();
+  double* const to = in.records[shape_record] + 4 * lane;
+  to[0] = shape.semi_axes()[axis];
+  to[1] = shape.semi_axes()[axis == 0 ? 1 : 0];
+  to[2] = shape.min_curvature_radius();
+  put4(&X.rotation()(0, axis), 0, in.records[axis_record], lane);
 }
 
-void put_shapes(const Ellipsoid& a, const Ellipsoid& b, GeneralInput& in, int lane) {
-  for (int i = 0; i < 3; ++i) {
-    in.rows[GeneralInput::semi_axes_a + i][lane] = a.semi_axes()[i];
-    in.rows[GeneralInput::semi_axes_b + i][lane] = b.semi_axes()[i];
-  }
+void put_pose(const Pose& X, BatchRecord* records, int lane) {
+  const double* const rotation = X.rotation().data();
+  std::memcpy(records[0] + 4 * lane, rotation, 4 * sizeof *rotation);
+  std::memcpy(records[1] + 4 * lane, rotation + 4, 4 * sizeof *rotation);
+  double* const to = records[2] + 4 * lane;
+  to[0] = rotation[8];
+  std::memcpy(to + 1, X.position().data(), 3 * sizeof *to);
 }
 
-void put_shapes(const Ellipsoid& a, const Ellipsoid& b, UniaxialInput& in, int lane) {
-  const auto along = [](const Ellipsoid& shape) { return shape.semi_axes()[*shape.symmetry_axis()]; };
-  const auto across = [](const Ellipsoid& shape) { return shape.semi_axes()[*shape.symmetry_axis() == 0 ? 1 : 0]; };
-  in.rows[UniaxialInput::along_a][lane] = along(a);
-  in.rows[UniaxialInput::across_a][lane] = across(a);
-  in.rows[UniaxialInput::along_b][lane] = along(b);
-  in.rows[UniaxialInput::across_b][lane] = across(b);
+void put_pair(const Pair& pair, GeneralInput& in, int lane) {
+  put_shape(pair.a, in.records[GeneralInput::shape_a], lane);
+  put_shape(pair.b, in.records[GeneralInput::shape_b], lane);
+  put_pose(pair.X_WA, in.records + GeneralInput::pose_a, lane);
+  put_pose(pair.X_WB, in.records + GeneralInput::pose_b, lane);
 }
 
-void put_rotations(const Query& query, const TwoPairs& two, GeneralInput& in) {
-  const auto rotation = [](const Pose& X) { return X.rotation().data(); };
-  put<9>(rotation(query.X_WA[two.first]), rotation(query.X_WA[two.second]), in.rows + GeneralInput::rotation_a,
-         two.lane);
-  put<9>(rotation(query.X_WB[two.first]), rotation(query.X_WB[two.second]), in.rows + GeneralInput::rotation_b,
-         two.lane);
-}
-
-void put_rotations(const Query& query, const TwoPairs& two, UniaxialInput& in) {
-  const auto axis = [](const Ellipsoid& shape, const Pose& X) { return &X.rotation()(0, *shape.symmetry_axis()); };
-  put<3>(axis(query.a[two.first], query.X_WA[two.first]), axis(query.a[two.second], query.X_WA[two.second]),
-         in.rows + UniaxialInput::axis_a, two.lane);
-  put<3>(axis(query.b[two.first], query.X_WB[two.first]), axis(query.b[two.second], query.X_WB[two.second]),
-         in.rows + UniaxialInput::axis_b, two.lane);
+void put_pair(const Pair& pair, UniaxialInput& in, int lane) {
+  put_shape_and_axis(pair.a, pair.X_WA, in, UniaxialInput::shape_a, UniaxialInput::axis_a, lane);
+  put_shape_and_axis(pair.b, pair.X_WB, in, UniaxialInput::shape_b, UniaxialInput::axis_b, lane);
+  put4(pair.X_WA.position().data(), 0, in.records[UniaxialInput::position_a], lane);
+  put4(pair.X_WB.position().data(), 0, in.records[UniaxialInput::position_b], lane);
 }
 
 int iterations_of(const BatchOutput& out, int lane) {
-  return static_cast<int>(out.rows[BatchOutput::iterations][lane]);
+  return static_cast<int>(out.iterations[lane]);
 }
 
 /// In place: a result built elsewhere would be copied in other pieces than it was written, which stalls.
 void read_answer(const BatchOutput& out, int lane, DistanceResult& result) {
-  result.distance = out.rows[BatchOutput::distance][lane];
-  result.point_a = get(out.rows + BatchOutput::point_a, lane);
-  result.point_b = get(out.rows + BatchOutput::point_b, lane);
-  result.normal = get(out.rows + BatchOutput::normal, lane);
-  result.status = result.distance >= 0 ? DistanceStatus::separated : DistanceStatus::overlapping;
+  const double* const first = out.records[BatchOutput::distance_and_point_a] + 4 * lane;
+  const double* const second = out.records[BatchOutput::point_b_and_residual] + 4 * lane;
+  const double* const third = out.records[BatchOutput::normal_and_error_bound] + 4 * lane;
+  result.distance = first[0];
+  result.point_a = Eigen::Vector3d::Map(first + 1);
+  result.point_b = Eigen::Vector3d::Map(second);
+  result.normal = Eigen::Vector3d::Map(third);
+  result.status = first[0] >= 0 ? DistanceStatus::separated : DistanceStatus::overlapping;
   result.iterations = iterations_of(out, lane);
-  result.residual = out.rows[BatchOutput::residual][lane];
-  result.error_bound = out.rows[BatchOutput::error_bound][lane];
+  result.residual = second[3];
+  result.error_bound = third[3];
 }
 
 /// Collects pairs of one kind until there are enough for a call of their kernel.
@@ -163,22 +161,20 @@ class Block {
   using Kernel = void(const KernelInput& in, int pairs, BatchOutput& out);
 
   Block(const Query& query, Kernel* kernel) : query_(query), kernel_(kernel) {
-    if (query.starts.empty()) {
-      for (int i = 0; i < 3; ++i) std::fill_n(in_.rows[KernelInput::start + i], kBlockPairs, 0.0);
-    }
+    if (query.starts.empty()) std::fill_n(in_.records[KernelInput::start], 4 * kBlockPairs, 0.0);
   }
 
-  void add(std::size_t pair) {
-    pairs_[count_++] = pair;
+  void add(std::size_t index, const Pair& pair) {
+    put_pair(pair, in_, count_);
+    if (!query_.starts.empty()) put4(query_.starts[index].data(), 0, in_.records[KernelInput::start], count_);
+    pairs_[count_++] = index;
     if (count_ == kBlockPairs) flush();
   }
 
   /// Answers what has been collected.
   void flush() {
     if (count_ == 0) return;
-    const int filled = (count_ + kLongestVector - 1) / kLongestVector * kLongestVector;
-    for (int lane = count_; lane < filled; ++lane) pairs_[lane] = pairs_[count_ - 1];
-    for (int lane = 0; lane < filled; lane += 2) put_pairs({pairs_[lane], pairs_[lane + 1], lane});
+    fill_up();
     kernel_(in_, count_, out_);
     for (int lane = 0; lane < count_; ++lane) {
       DistanceResult& result = query_.results[pairs_[lane]];
@@ -197,38 +193,19 @@ class Block {
  private:
   /// A start always has its first evaluation.
   bool is_answered(int lane) const {
-    return out_.rows[BatchOutput::answered][lane] > 0 &&
-           iterations_of(out_, lane) <= std::max(1, query_.scalar.max_iterations);
+    return out_.iterations[lane] > 0 && iterations_of(out_, lane) <= std::max(1, query_.scalar.max_iterations);
   }
 
-  void put_pairs(const TwoPairs& two) {
-    const int lane = two.lane;
-    if (lane >= shapes_put_ || !query_.shapes_shared()) {
-      put_both_shapes(two.first, lane);
-      put_both_shapes(two.second, lane + 1);
-      shapes_put_ = lane + 2;
+  /// The last vector, with copies of the last pair.
+  void fill_up() {
+    for (int lane = count_; lane % kLongestVector != 0; ++lane) {
+      for (BatchRecord& record : in_.records) std::copy_n(record + 4 * (count_ - 1), 4, record + 4 * lane);
     }
-    put_rotations(query_, two, in_);
-    put(query_.X_WA[two.first].position(), query_.X_WA[two.second].position(), in_.rows + KernelInput::position_a,
-        lane);
-    put(query_.X_WB[two.first].position(), query_.X_WB[two.second].position(), in_.rows + KernelInput::position_b,
-        lane);
-    if (query_.starts.empty()) return;
-    put(query_.starts[two.first], query_.starts[two.second], in_.rows + KernelInput::start, lane);
-  }
-
-  void put_both_shapes(std::size_t pair, int lane) {
-    const Ellipsoid& a = query_.a[pair];
-    const Ellipsoid& b = query_.b[pair];
-    put_shapes(a, b, in_, lane);
-    in_.rows[KernelInput::depth][lane] = a.min_curvature_radius() + b.min_curvature_radius();
-    in_.rows[KernelInput::radii][lane] = a.bounding_radius() + b.bounding_radius();
   }
 
   const Query& query_;
   Kernel* kernel_;
   int count_ = 0;
-  int shapes_put_ = 0;  ///< lanes that hold the shapes already
   std::size_t redone_ = 0;
   std::array<std::size_t, kBlockPairs> pairs_;
   KernelInput in_;
@@ -355,12 +332,18 @@ BatchSummary distance_batch(std::span<const Ellipsoid> a, std::span<const Pose> 
 
   Block<UniaxialInput> uniaxial(query, kernels.uniaxial);
   Block<GeneralInput> general(query, kernels.general);
+  const Ellipsoid *shape_a = query.a.data, *shape_b = query.b.data;
+  const Pose *pose_a = query.X_WA.data, *pose_b = query.X_WB.data;
   for (std::size_t pair = 0; pair < pairs; ++pair) {
-    if (query.a[pair].symmetry_axis() && query.b[pair].symmetry_axis()) {
-      uniaxial.add(pair);
+    if (shape_a->symmetry_axis() && shape_b->symmetry_axis()) {
+      uniaxial.add(pair, {*shape_a, *pose_a, *shape_b, *pose_b});
     } else {
-      general.add(pair);
+      general.add(pair, {*shape_a, *pose_a, *shape_b, *pose_b});
     }
+    shape_a += query.a.stride;
+    shape_b += query.b.stride;
+    pose_a += query.X_WA.stride;
+    pose_b += query.X_WB.stride;
   }
   uniaxial.flush();
   general.flush();

@@ -26,9 +26,8 @@ static_assert(kMostRounds % 2 == 0, "the last normals are then in the first of t
 // ---------------------------------------------------------------------------------------------------------------------
 // The iteration, the same for every kind of pair
 
-/// One number of each pair while it is worked on. Behind a block's lanes there is room for those that go on when most
-/// are done.
-using StateRow = double[kBlockPairs + kLongestVector];
+/// One number of each pair while it is worked on.
+using StateRow = double[kBlockPairs];
 
 /// Rows that every kind of pair has.
 struct State {
@@ -70,7 +69,7 @@ HWY_INLINE void start_from(StateRow* rows, int lane, const Real3& start, Real3 c
   const Lanes warm = hn::And(start2 > least2, start2 < most2);
   if (any(warm)) cold = select(warm, start, cold);
   const Real n2 = dot(cold, cold);
-  const Real3 n = (constant(1) / hn::Sqrt(n2)) * cold;
+  const Real3 n = inverse_root(n2) * cold;
   store(rho, rows[State::rho], lane);
   store(constant(kRoundingFactor) * size, rows[State::rounding], lane);
   store(constant(-1e308), rows[State::g], lane);
@@ -87,9 +86,9 @@ HWY_INLINE Real length_at_least(const Real3& r) {
 }
 
 /// Evaluates the pairs from `lane` on and moves their normals: by a Newton step, or where g fell, back (`ascend` and
-/// `backtrack` of geom/internal/dual_newton.h). Returns how many of them go on.
+/// `backtrack` of geom/internal/dual_newton.h). Returns whether some of them go on.
 template <class Pairs>
-HWY_INLINE int advance(StateRow* rows, int lane, int round) {
+HWY_INLINE bool advance(StateRow* rows, int lane, int round) {
   const Real one = constant(1), zero = constant(0);
   StateRow* const row_n = rows + (round % 2 == 0 ? State::normal : State::older_normal);
   StateRow* const row_previous = rows + (round % 2 == 0 ? State::older_normal : State::normal);
@@ -99,7 +98,7 @@ HWY_INLINE int advance(StateRow* rows, int lane, int round) {
   Real3 step = e.step;
   const Lanes too_long = step2 > constant(kMaxNormalStep * kMaxNormalStep);
   if (any(too_long)) {
-    step = hn::IfThenElse(too_long, constant(kMaxNormalStep) / hn::Sqrt(step2), one) * step;
+    step = hn::IfThenElse(too_long, constant(kMaxNormalStep) * inverse_root(step2), one) * step;
   }
   Real3 from = n;
   Real g = e.g;
@@ -128,9 +127,9 @@ HWY_INLINE int advance(StateRow* rows, int lane, int round) {
   store(flag(goes_on), rows[State::active], lane);
   store(load(rows[State::converged], lane) + flag(converged), rows[State::converged], lane);
   store(load(rows[State::iterations], lane) + flag(active), rows[State::iterations], lane);
-  const int going_on = static_cast<int>(hn::CountTrue(Tag(), goes_on));
-  if (going_on == 0) store3(kept, row_n, lane);  // done: it is in either row
-  return going_on;
+  const bool some_go_on = any(goes_on);
+  if (!some_go_on) store3(kept, row_n, lane);  // done: it is in either row
+  return some_go_on;
 }
 
 /// The answer at a normal, as witness_result. `s_b` is minus the support point of B at -n.
@@ -142,6 +141,8 @@ struct Witness {
 struct Answer {
   Real distance;
   Real3 from_centre;  ///< of A to the witness point on A
+  Real residual;
+  Real error_bound;
 };
 
 HWY_INLINE Answer finish(const StateRow* rows, int lane, const Witness& w, BatchOutput& out) {
@@ -154,18 +155,21 @@ HWY_INLINE Answer finish(const StateRow* rows, int lane, const Witness& w, Batch
   const Lanes certified = depth_left > constant(0);
   const Lanes polished = y2 <= constant(kResidualTolerance / kRoundingFactor) * rounding * depth_left;
   const Lanes converged = load(rows[State::converged], lane) > constant(0);
-  store(distance, out.rows[BatchOutput::distance], lane);
-  store(hn::Sqrt(y2), out.rows[BatchOutput::residual], lane);
-  store(constant(0.5) * y2 / depth_left, out.rows[BatchOutput::error_bound], lane);  // as newton_error_bound
-  store(load(rows[State::iterations], lane), out.rows[BatchOutput::iterations], lane);
-  store(flag(hn::And(converged, hn::And(certified, polished))), out.rows[BatchOutput::answered], lane);
-  return {distance, add(w.s_a, constant(0.5), y)};
+  const Lanes answered = hn::And(converged, hn::And(certified, polished));
+  store(hn::IfThenElseZero(answered, load(rows[State::iterations], lane)), out.iterations, lane);
+  const Real residual = y2 * inverse_root(hn::Max(y2, constant(kLeastStart2)));  // 0 for 0
+  const Real error_bound = constant(0.5) * y2 * near_inverse(depth_left);        // as newton_error_bound
+  return {distance, add(w.s_a, constant(0.5), y), residual, error_bound};
 }
 
-HWY_INLINE void store_points(const Real3& point_a, Real distance, const Real3& n, int lane, BatchOutput& out) {
-  store3(n, out.rows + BatchOutput::normal, lane);
-  store3(point_a, out.rows + BatchOutput::point_a, lane);
-  store3(add(point_a, distance, n), out.rows + BatchOutput::point_b, lane);
+HWY_INLINE void store_answer(const Answer& answer, const Real3& p_WA, const Real3& from_centre, const Real3& n,
+                             int lane, BatchOutput& out) {
+  const Real3 point_a = p_WA + from_centre;
+  const Real3 point_b = add(point_a, answer.distance, n);
+  hn::StoreInterleaved4(answer.distance, point_a.x, point_a.y, point_a.z, Tag(),
+                        out.records[BatchOutput::distance_and_point_a] + 4 * lane);
+  store_record(point_b, answer.residual, out.records[BatchOutput::point_b_and_residual], lane);
+  store_record(n, answer.error_bound, out.records[BatchOutput::normal_and_error_bound], lane);
 }
 
 /// A block of pairs while it is worked on.
@@ -182,19 +186,12 @@ class Block {
   /// Vectors take turns, so that the processor has several independent chains of operations at a time.
   HWY_INLINE void solve() {
     for (int round = 0; round < kMostRounds && vectors_ > 0; ++round) {
-      int going_on = 0;
       int kept = 0;
       for (int i = 0; i < vectors_; ++i) {
-        const int lanes = advance<Pairs>(rows_, active_[i], round);
-        if (lanes > 0) active_[kept++] = active_[i];
-        going_on += lanes;
+        if (advance<Pairs>(rows_, active_[i], round)) active_[kept++] = active_[i];
       }
       vectors_ = kept;
-      if (moved_ == 0 && going_on <= kLongestVector && vectors_ * kLanes > kLongestVector) {
-        move_together(round % 2 == 0 ? State::older_normal : State::normal);
-      }
     }
-    for (int i = 0; i < moved_; ++i) copy_lane(kBlockPairs + i, home_[i]);
   }
 
   HWY_INLINE void finish(const typename Pairs::Input& in, int pairs, BatchOutput& out) const {
@@ -202,34 +199,9 @@ class Block {
   }
 
  private:
-  void copy_lane(int from, int to) {
-    for (int row = 0; row < Pairs::iteration_rows; ++row) rows_[row][to] = rows_[row][from];
-  }
-
-  /// Moves the pairs that go on, few enough for one of the longest vectors, behind the block's end. The others of
-  /// their vectors are done, their normals in the rows from `newest` on.
-  HWY_NOINLINE void move_together(int newest) {
-    for (int i = 0; i < vectors_; ++i) {
-      for (int lane = active_[i]; lane < active_[i] + kLanes; ++lane) {
-        if (!(rows_[State::active][lane] > 0)) {
-          for (int k = 0; k < 3; ++k) rows_[State::normal + k][lane] = rows_[newest + k][lane];
-          continue;
-        }
-        copy_lane(lane, kBlockPairs + moved_);
-        home_[moved_++] = lane;
-      }
-    }
-    vectors_ = 0;
-    for (int lane = kBlockPairs; lane < kBlockPairs + moved_; lane += kLanes) active_[vectors_++] = lane;
-    // The last vector is filled up with copies of a pair that is worked on anyway.
-    for (int i = moved_; i < vectors_ * kLanes; ++i) copy_lane(home_[0], kBlockPairs + i);
-  }
-
   alignas(64) StateRow rows_[Pairs::rows];
   int active_[kBlockPairs / kLanes];  ///< first lanes of the vectors that go on
   int vectors_ = 0;                   ///< how many these are
-  int home_[kLongestVector];          ///< where the pairs moved behind the block's end belong
-  int moved_ = 0;
 };
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -247,11 +219,20 @@ struct GeneralPairs {
     r = State::common_rows,
     semi_axes_a = r + 3,
     Q_b = semi_axes_a + 3,  ///< as Real6
-    iteration_rows = Q_b + 6,
-    semi_axes_b = iteration_rows,
+    semi_axes_b = Q_b + 6,
     R = semi_axes_b + 3,  ///< column by column
     rows = R + 9,
   };
+
+  struct Pose {
+    Real33 rotation;
+    Real3 position;
+  };
+
+  static HWY_INLINE Pose load_pose(const BatchRecord* records, int lane) {
+    const Real31 p = load_record(records[0], lane), q = load_record(records[1], lane), s = load_record(records[2], lane);
+    return {{p.v, {p.s, q.v.x, q.v.y}, {q.v.z, q.s, s.v.x}}, {s.v.y, s.v.z, s.s}};
+  }
 
   /// (QA + QB)^-1 r, up to a positive factor.
   static HWY_INLINE Real3 cold_normal(const Real3& a, const Real6& Q, const Real3& r_AB) {
@@ -263,14 +244,14 @@ struct GeneralPairs {
   }
 
   static HWY_INLINE void prepare(const Input& in, StateRow* state, int lane) {
-    const Real33 R_WA = load33(in.rows + Input::rotation_a, lane);
-    const Real33 R_WB = load33(in.rows + Input::rotation_b, lane);
-    const Real3 p_AB = load3(in.rows + Input::position_b, lane) - load3(in.rows + Input::position_a, lane);
+    const auto [R_WA, p_WA] = load_pose(in.records + Input::pose_a, lane);
+    const auto [R_WB, p_WB] = load_pose(in.records + Input::pose_b, lane);
+    const Real3 p_AB = p_WB - p_WA;
     const Real3 r_AB = transposed_times(R_WA, p_AB);
     const Real33 R_AB = {transposed_times(R_WA, R_WB.x), transposed_times(R_WA, R_WB.y),
                          transposed_times(R_WA, R_WB.z)};
-    const Real3 a = load3(in.rows + Input::semi_axes_a, lane);
-    const Real3 b = load3(in.rows + Input::semi_axes_b, lane);
+    const auto [a, curvature_radius_a] = load_record(in.records[Input::shape_a], lane);
+    const auto [b, curvature_radius_b] = load_record(in.records[Input::shape_b], lane);
     const Real3 u = b.x * R_AB.x, v = b.y * R_AB.y, w = b.z * R_AB.z;
     const Real6 Q = {
         hn::MulAdd(u.x, u.x, hn::MulAdd(v.x, v.x, w.x * w.x)), hn::MulAdd(u.y, u.y, hn::MulAdd(v.y, v.y, w.y * w.y)),
@@ -284,8 +265,9 @@ struct GeneralPairs {
     store3(R_AB.x, state + R, lane);
     store3(R_AB.y, state + R + 3, lane);
     store3(R_AB.z, state + R + 6, lane);
-    start_from(state, lane, transposed_times(R_WA, load3(in.rows + Input::start, lane)), cold_normal(a, Q, r_AB),
-               load(in.rows[Input::depth], lane), length_at_least(p_AB) + load(in.rows[Input::radii], lane));
+    start_from(state, lane, transposed_times(R_WA, load_record(in.records[Input::start], lane).v),
+               cold_normal(a, Q, r_AB), curvature_radius_a + curvature_radius_b,
+               length_at_least(p_AB) + length_at_least(a) + length_at_least(b));
   }
 
   static HWY_INLINE Evaluation evaluate(const StateRow* state, int lane, const Real3& n) {
@@ -298,9 +280,7 @@ struct GeneralPairs {
     const Real3 q_a = product(a2, n);
     const Real3 q_b = times(Q, n);
     const Real h2_a = dot(n, q_a), h2_b = dot(n, q_b);
-    const Real h_a = hn::Sqrt(h2_a), h_b = hn::Sqrt(h2_b);
-    const Real inv_h2h2 = constant(1) / (h2_a * h2_b);  // beside the square roots, not behind them
-    const Real inv_a = (inv_h2h2 * h2_b) * h_a, inv_b = (inv_h2h2 * h2_a) * h_b;
+    const auto [h_a, h_b, inv_a, inv_b] = roots(h2_a, h2_b);
     const Real3 s_a = inv_a * q_a;
     const Real3 s_b = inv_b * q_b;
     const Real g = (dot(n, r_AB) - h_a) - h_b;
@@ -319,7 +299,7 @@ struct GeneralPairs {
     const Real D = hn::NegMulAdd(H.yz, H.yz, H.yy * H.zz) + hn::NegMulAdd(H.xz, H.xz, H.xx * H.zz) +
                    hn::NegMulAdd(H.xy, H.xy, H.xx * H.yy);
     const Real shift = lift(g, load(state[State::rho], lane), g, T, D);
-    const Real inv_det = constant(1) / hn::MulAdd(shift, shift + T, D);
+    const Real inv_det = near_inverse(hn::MulAdd(shift, shift + T, D));
     return {g, inv_det * subtract((T + shift) * y, constant(1), times(H, y))};
   }
 
@@ -332,17 +312,14 @@ struct GeneralPairs {
     // Heights by |diag(a) R^T n|, which loses no digits for flat bodies as n.Q n does.
     const Real3 m_a = product(a, n);
     const Real3 m_b = product(b, transposed_times(R_AB, n));
-    const Real h_a = hn::Sqrt(dot(m_a, m_a));
-    const Real h_b = hn::Sqrt(dot(m_b, m_b));
-    const Real inv_hh = one / (h_a * h_b);
-    const Real3 s_a = (inv_hh * h_b) * product(a, m_a);
-    const Real3 s_b = (inv_hh * h_a) * times(R_AB, product(b, m_b));
+    const auto [h_a, h_b, inv_a, inv_b] = roots(dot(m_a, m_a), dot(m_b, m_b));
+    const Real3 s_a = inv_a * product(a, m_a);
+    const Real3 s_b = inv_b * times(R_AB, product(b, m_b));
     const Answer answer = internal::finish(state, lane, {n, load3(state + r, lane), s_a, s_b, h_a, h_b}, out);
-    const Real33 R_WA = load33(in.rows + Input::rotation_a, lane);
+    const auto [R_WA, p_WA] = load_pose(in.records + Input::pose_a, lane);
     Real3 n_W = times(R_WA, n);
     n_W = hn::NegMulAdd(constant(0.5), dot(n_W, n_W) - one, one) * n_W;  // R_WA is orthonormal to 1e-15 only
-    store_points(load3(in.rows + Input::position_a, lane) + times(R_WA, answer.from_centre), answer.distance, n_W, lane,
-                 out);
+    store_answer(answer, p_WA, times(R_WA, answer.from_centre), n_W, lane, out);
   }
 };
 
@@ -362,15 +339,16 @@ struct UniaxialPairs {
     along2_b = c_a + 1,
     across2_b = along2_b + 1,
     c_b = across2_b + 1,
-    iteration_rows = c_b + 1,
-    rows = iteration_rows,
+    rows = c_b + 1,
   };
 
   static HWY_INLINE void prepare(const Input& in, StateRow* state, int lane) {
-    const Real along_a = load(in.rows[Input::along_a], lane), across_a = load(in.rows[Input::across_a], lane);
-    const Real along_b = load(in.rows[Input::along_b], lane), across_b = load(in.rows[Input::across_b], lane);
-    const Real3 u = load3(in.rows + Input::axis_a, lane), v = load3(in.rows + Input::axis_b, lane);
-    const Real3 p_AB = load3(in.rows + Input::position_b, lane) - load3(in.rows + Input::position_a, lane);
+    const Real3 shape_a = load_record(in.records[Input::shape_a], lane).v;
+    const Real3 shape_b = load_record(in.records[Input::shape_b], lane).v;
+    const Real along_a = shape_a.x, across_a = shape_a.y, along_b = shape_b.x, across_b = shape_b.y;
+    const Real3 u = load_record(in.records[Input::axis_a], lane).v, v = load_record(in.records[Input::axis_b], lane).v;
+    const Real3 p_AB =
+        load_record(in.records[Input::position_b], lane).v - load_record(in.records[Input::position_a], lane).v;
     const Real a2 = along_a * along_a, b2_a = across_a * across_a, c = (along_a - across_a) * (along_a + across_a);
     const Real d2 = along_b * along_b, b2_b = across_b * across_b, f = (along_b - across_b) * (along_b + across_b);
     store3(p_AB, state + r, lane);
@@ -391,8 +369,8 @@ struct UniaxialPairs {
     const Real x_a = hn::NegMulAdd(f * k, r_b, sum_b * r_a);
     const Real x_b = hn::NegMulAdd(c * k, r_a, sum_a * r_b);
     const Real3 cold = subtract(subtract(det * p_AB, c * x_a, u), f * x_b, v);
-    start_from(state, lane, load3(in.rows + Input::start, lane), cold, load(in.rows[Input::depth], lane),
-               length_at_least(p_AB) + load(in.rows[Input::radii], lane));
+    start_from(state, lane, load_record(in.records[Input::start], lane).v, cold, shape_a.z + shape_b.z,
+               length_at_least(p_AB) + hn::Max(along_a, across_a) + hn::Max(along_b, across_b));
   }
 
   static HWY_INLINE Evaluation evaluate(const StateRow* state, int lane, const Real3& n) {
@@ -404,9 +382,7 @@ struct UniaxialPairs {
     const Real b2_a = load(state[across2_a], lane), b2_b = load(state[across2_b], lane);
     const Real h2_a = hn::MulAdd(b2_a, w2_a, load(state[along2_a], lane) * (x_a * x_a));
     const Real h2_b = hn::MulAdd(b2_b, w2_b, load(state[along2_b], lane) * (x_b * x_b));
-    const Real h_a = hn::Sqrt(h2_a), h_b = hn::Sqrt(h2_b);
-    const Real inv_h2h2 = constant(1) / (h2_a * h2_b);  // beside the square roots, not behind them
-    const Real inv_a = (inv_h2h2 * h2_b) * h_a, inv_b = (inv_h2h2 * h2_a) * h_b;
+    const auto [h_a, h_b, inv_a, inv_b] = roots(h2_a, h2_b);
     const Real g = (z - h_a) - h_b;
     const Real c_inv_a = load(state[c_a], lane) * inv_a, c_inv_b = load(state[c_b], lane) * inv_b;
     const Real3 y = subtract(subtract(subtract(r_AB, z, n), c_inv_a * x_a, w_a), c_inv_b * x_b, w_b);
@@ -417,7 +393,7 @@ struct UniaxialPairs {
     const Real t = ew_a + ew_b;
     const Real D = hn::NegMulAdd(e_a * e_b, ww * ww, ew_a * ew_b);
     const Real sigma = lift(g, load(state[State::rho], lane), f_a + f_b + g, t, D);
-    const Real inv_det = constant(1) / hn::MulAdd(sigma, sigma + t, D);
+    const Real inv_det = near_inverse(hn::MulAdd(sigma, sigma + t, D));
     const Real pull_a = e_a * dot(w_a, y), pull_b = e_b * dot(w_b, y);
     return {g, inv_det * subtract(subtract((sigma + t) * y, pull_a, w_a), pull_b, w_b)};
   }
@@ -429,13 +405,12 @@ struct UniaxialPairs {
     const Real3 w_a = subtract(n, x_a, u), w_b = subtract(n, x_b, v);
     const Real b2_a = load(state[across2_a], lane), b2_b = load(state[across2_b], lane);
     const Real a2_x_a = load(state[along2_a], lane) * x_a, a2_x_b = load(state[along2_b], lane) * x_b;
-    const Real h_a = hn::Sqrt(hn::MulAdd(b2_a, dot(w_a, w_a), a2_x_a * x_a));
-    const Real h_b = hn::Sqrt(hn::MulAdd(b2_b, dot(w_b, w_b), a2_x_b * x_b));
-    const Real inv_hh = constant(1) / (h_a * h_b);
-    const Real3 s_a = (inv_hh * h_b) * add(b2_a * w_a, a2_x_a, u);
-    const Real3 s_b = (inv_hh * h_a) * add(b2_b * w_b, a2_x_b, v);
+    const auto [h_a, h_b, inv_a, inv_b] = roots(hn::MulAdd(b2_a, dot(w_a, w_a), a2_x_a * x_a),
+                                                hn::MulAdd(b2_b, dot(w_b, w_b), a2_x_b * x_b));
+    const Real3 s_a = inv_a * add(b2_a * w_a, a2_x_a, u);
+    const Real3 s_b = inv_b * add(b2_b * w_b, a2_x_b, v);
     const Answer answer = internal::finish(state, lane, {n, load3(state + r, lane), s_a, s_b, h_a, h_b}, out);
-    store_points(load3(in.rows + Input::position_a, lane) + answer.from_centre, answer.distance, n, lane, out);
+    store_answer(answer, load_record(in.records[Input::position_a], lane).v, answer.from_centre, n, lane, out);
   }
 };
 

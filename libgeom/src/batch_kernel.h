@@ -11,58 +11,48 @@ namespace geom::internal {
 constexpr int kBlockPairs = 32;
 constexpr int kLongestVector = 8;
 
-/// One number of each pair of a block.
-using BatchRow = double[kBlockPairs];
+/// Four numbers of each pair of a block, pair after pair: they are copied as they lie, and only the kernels turn them
+/// into vectors of one number each.
+using BatchRecord = double[4 * kBlockPairs];
 
-/// Two ellipsoids. What comes before `position_a` is of the shapes alone.
+/// Two ellipsoids. What comes before `pose_a` is of the shapes alone.
 struct GeneralInput {
-  enum Row {
-    semi_axes_a = 0,
-    semi_axes_b = 3,
-    depth = 6,  ///< the sum of both min_curvature_radius()
-    radii = 7,  ///< the sum of both bounding radii
-    position_a = 8,
-    position_b = 11,
-    rotation_a = 14,  ///< body to world, column by column
-    rotation_b = 23,
-    start = 32,  ///< as DistanceOptions::start: 0 for a cold start
-    count = 35,
+  enum Record {
+    shape_a = 0,  ///< semi-axes, min_curvature_radius()
+    shape_b = 1,
+    pose_a = 2,  ///< body to world: the rotation, column by column, and the position; three records
+    pose_b = 5,
+    start = 8,  ///< as DistanceOptions::start: 0 for a cold start
+    count = 9,
   };
-  alignas(64) BatchRow rows[count];
+  alignas(64) BatchRecord records[count];
 };
 
 /// Two ellipsoids of revolution, by their axes of revolution in world coordinates.
 struct UniaxialInput {
-  enum Row {
-    along_a = 0,   ///< semi-axis along the axis of revolution
-    across_a = 1,  ///< the two equal ones
-    along_b = 2,
-    across_b = 3,
-    depth = 4,
-    radii = 5,
-    position_a = 6,
-    position_b = 9,
-    axis_a = 12,  ///< unit vector
-    axis_b = 15,
-    start = 18,
-    count = 21,
+  enum Record {
+    shape_a = 0,  ///< semi-axis along the axis of revolution, the two equal ones, min_curvature_radius()
+    shape_b = 1,
+    axis_a = 2,  ///< unit vector
+    axis_b = 3,
+    position_a = 4,
+    position_b = 5,
+    start = 6,
+    count = 7,
   };
-  alignas(64) BatchRow rows[count];
+  alignas(64) BatchRecord records[count];
 };
 
 struct BatchOutput {
-  enum Row {
-    distance = 0,
-    point_a = 1,
-    point_b = 4,
-    normal = 7,
-    residual = 10,
-    error_bound = 11,
-    iterations = 12,
-    answered = 13,  ///< 1: the numbers of this pair are an answer; 0: they mean nothing
-    count = 14,
+  enum Record {
+    distance_and_point_a = 0,
+    point_b_and_residual = 1,
+    normal_and_error_bound = 2,
+    count = 3,
   };
-  alignas(64) BatchRow rows[count];
+  alignas(64) BatchRecord records[count];
+  /// Evaluations; 0 where the pair was not answered: its numbers mean nothing.
+  alignas(64) double iterations[kBlockPairs];
 };
 
 /// Answer the first `pairs` pairs; up to the next multiple of kLongestVector the input must hold valid pairs too.

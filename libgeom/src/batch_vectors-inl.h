@@ -100,6 +100,24 @@ template <class Row>
 HWY_INLINE Real33 load33(const Row* rows, int lane) {
   return {load3(rows, lane), load3(rows + 3, lane), load3(rows + 6, lane)};
 }
+
+/// What a record holds of each pair.
+struct Real31 {
+  Real3 v;
+  Real s;
+};
+
+/// Of the pairs from `lane` on.
+template <class Record>
+HWY_INLINE Real31 load_record(const Record& record, int lane) {
+  Real31 all;
+  hn::LoadInterleaved4(Tag(), record + 4 * lane, all.v.x, all.v.y, all.v.z, all.s);
+  return all;
+}
+template <class Record>
+HWY_INLINE void store_record(const Real3& v, Real s, Record& record, int lane) {
+  hn::StoreInterleaved4(v.x, v.y, v.z, s, Tag(), record + 4 * lane);
+}
 template <class Row>
 HWY_INLINE void store(Real x, Row& row, int lane) {
   hn::Store(x, Tag(), row + lane);
@@ -109,6 +127,67 @@ HWY_INLINE void store3(const Real3& v, Row* rows, int lane) {
   store(v.x, rows[0], lane);
   store(v.y, rows[1], lane);
   store(v.z, rows[2], lane);
+}
+
+/// Square roots and their inverses.
+struct Roots {
+  Real a, b, inverse_a, inverse_b;
+};
+
+#if HWY_TARGET <= HWY_AVX3
+
+/// An estimate of 1 / sqrt(x) to 14 bits, t = x times it, and p by which 1 / sqrt(x) = estimate + p estimate and
+/// sqrt(x) = t + p t, to 1 unit in the last place: with e = 1 - x estimate^2, at most 2^-13, p = (1 - e)^(-1/2) - 1, whose
+/// next term, 35/128 e^4, is below 2^-53. Shorter than the processor's own roots and quotients, which wait for each other.
+struct RootSeries {
+  Real estimate, t, p;
+};
+
+HWY_INLINE RootSeries root_series(Real x) {
+  const Real estimate{_mm512_rsqrt14_pd(x.raw)};
+  const Real t = x * estimate;
+  const Real e = hn::NegMulAdd(t, estimate, constant(1));
+  const Real p = e * hn::MulAdd(e, hn::MulAdd(e, constant(0.3125), constant(0.375)), constant(0.5));
+  return {estimate, t, p};
+}
+
+HWY_INLINE Real inverse_root(Real x) {
+  const RootSeries s = root_series(x);
+  return hn::MulAdd(s.estimate, s.p, s.estimate);
+}
+
+HWY_INLINE Roots roots(Real a, Real b) {
+  const RootSeries s = root_series(a), t = root_series(b);
+  return {hn::MulAdd(s.t, s.p, s.t), hn::MulAdd(t.t, t.p, t.t), hn::MulAdd(s.estimate, s.p, s.estimate),
+          hn::MulAdd(t.estimate, t.p, t.estimate)};
+}
+
+/// 1 / x to 40 bits: for what an error of 1e-12 of it does not matter to.
+HWY_INLINE Real near_inverse(Real x) {
+  const Real estimate{_mm512_rcp14_pd(x.raw)};
+  const Real e = hn::NegMulAdd(x, estimate, constant(1));
+  return hn::MulAdd(estimate, hn::MulAdd(e, e, e), estimate);
+}
+
+/// 1 / |m|.
+HWY_INLINE Real inverse_norm(const Real3& m) {
+  return inverse_root(dot(m, m));
+}
+
+#else
+
+HWY_INLINE Real inverse_root(Real x) {
+  return constant(1) / hn::Sqrt(x);
+}
+
+HWY_INLINE Roots roots(Real a, Real b) {
+  const Real root_a = hn::Sqrt(a), root_b = hn::Sqrt(b);
+  const Real inverse_ab = constant(1) / (a * b);  // beside the square roots, not behind them
+  return {root_a, root_b, (inverse_ab * b) * root_a, (inverse_ab * a) * root_b};
+}
+
+HWY_INLINE Real near_inverse(Real x) {
+  return constant(1) / x;
 }
 
 /// 1 / |m|, for m that is nearly a unit vector as inverse_sqrt_1p in geom/internal/dual_newton.h.
@@ -122,9 +201,11 @@ HWY_INLINE Real inverse_norm(const Real3& m) {
   const Real high = hn::NegMulAdd(constant(0.24609375), s, constant(0.2734375));
   const Real series = hn::MulAdd(s2, hn::MulAdd(s2, high, middle), low);
   const Lanes far = hn::Abs(s) >= constant(kInverseSqrtSeries);
-  if (any(far)) return hn::IfThenElse(far, one / hn::Sqrt(m2), series);
+  if (any(far)) return hn::IfThenElse(far, inverse_root(m2), series);
   return series;
 }
+
+#endif
 
 }  // namespace
 }  // namespace geom::internal
