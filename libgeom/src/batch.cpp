@@ -17,7 +17,7 @@ namespace {
 
 using internal::BatchKernels;
 using internal::BatchOutput;
-using internal::BatchRecord;
+using internal::BatchRow;
 using internal::GeneralInput;
 using internal::kBlockPairs;
 using internal::kLongestVector;
@@ -91,48 +91,28 @@ struct Pair {
   const Pose& X_WB;
 };
 
-/// Copies four numbers of a pair to its place in a record.
-void put4(const double* v, double s, BatchRecord& record, int lane) {
-  double* const to = record + 4 * lane;
-  std::memcpy(to, v, 3 * sizeof *v);
-  to[3] = s;
-}
-
-void put_shape(const Ellipsoid& shape, BatchRecord& record, int lane) {
-  put4(shape.semi_axes().data(), shape.min_curvature_radius(), record, lane);
-}
-
-void put_shape_and_axis(const Ellipsoid& shape, const Pose& X, UniaxialInput& in, UniaxialInput::Record shape_record,
-                        UniaxialInput::Record axis_record, int lane) {
-  const int axis = *shape.symmetry_axis();
-  double* const to = in.records[shape_record] + 4 * lane;
-  to[0] = shape.semi_axes()[axis];
-  to[1] = shape.semi_axes()[axis == 0 ? 1 : 0];
-  to[2] = shape.min_curvature_radius();
-  put4(&X.rotation()(0, axis), 0, in.records[axis_record], lane);
-}
-
-void put_pose(const Pose& X, BatchRecord* records, int lane) {
-  const double* const rotation = X.rotation().data();
-  std::memcpy(records[0] + 4 * lane, rotation, 4 * sizeof *rotation);
-  std::memcpy(records[1] + 4 * lane, rotation + 4, 4 * sizeof *rotation);
-  double* const to = records[2] + 4 * lane;
-  to[0] = rotation[8];
-  std::memcpy(to + 1, X.position().data(), 3 * sizeof *to);
+template <int Size>
+void put(const double* numbers, BatchRow* rows, int lane) {
+  for (int i = 0; i < Size; ++i) rows[i][lane] = numbers[i];
 }
 
 void put_pair(const Pair& pair, GeneralInput& in, int lane) {
-  put_shape(pair.a, in.records[GeneralInput::shape_a], lane);
-  put_shape(pair.b, in.records[GeneralInput::shape_b], lane);
-  put_pose(pair.X_WA, in.records + GeneralInput::pose_a, lane);
-  put_pose(pair.X_WB, in.records + GeneralInput::pose_b, lane);
+  put<3>(pair.a.semi_axes().data(), in.rows + GeneralInput::semi_axes_a, lane);
+  put<3>(pair.b.semi_axes().data(), in.rows + GeneralInput::semi_axes_b, lane);
+  put<9>(pair.X_WA.rotation().data(), in.rows + GeneralInput::rotation_a, lane);
+  put<9>(pair.X_WB.rotation().data(), in.rows + GeneralInput::rotation_b, lane);
+}
+
+void put_revolution(const Ellipsoid& shape, const Pose& X, BatchRow* shape_rows, BatchRow* axis_rows, int lane) {
+  const int axis = *shape.symmetry_axis();
+  shape_rows[0][lane] = shape.semi_axes()[axis];
+  shape_rows[1][lane] = shape.semi_axes()[axis == 0 ? 1 : 0];
+  put<3>(&X.rotation()(0, axis), axis_rows, lane);
 }
 
 void put_pair(const Pair& pair, UniaxialInput& in, int lane) {
-  put_shape_and_axis(pair.a, pair.X_WA, in, UniaxialInput::shape_a, UniaxialInput::axis_a, lane);
-  put_shape_and_axis(pair.b, pair.X_WB, in, UniaxialInput::shape_b, UniaxialInput::axis_b, lane);
-  put4(pair.X_WA.position().data(), 0, in.records[UniaxialInput::position_a], lane);
-  put4(pair.X_WB.position().data(), 0, in.records[UniaxialInput::position_b], lane);
+  put_revolution(pair.a, pair.X_WA, in.rows + UniaxialInput::along_a, in.rows + UniaxialInput::axis_a, lane);
+  put_revolution(pair.b, pair.X_WB, in.rows + UniaxialInput::along_b, in.rows + UniaxialInput::axis_b, lane);
 }
 
 int iterations_of(const BatchOutput& out, int lane) {
@@ -161,12 +141,15 @@ class Block {
   using Kernel = void(const KernelInput& in, int pairs, BatchOutput& out);
 
   Block(const Query& query, Kernel* kernel) : query_(query), kernel_(kernel) {
-    if (query.starts.empty()) std::fill_n(in_.records[KernelInput::start], 4 * kBlockPairs, 0.0);
+    in_.has_starts = !query.starts.empty();
   }
 
   void add(std::size_t index, const Pair& pair) {
     put_pair(pair, in_, count_);
-    if (!query_.starts.empty()) put4(query_.starts[index].data(), 0, in_.records[KernelInput::start], count_);
+    in_.rows[KernelInput::depth][count_] = pair.a.min_curvature_radius() + pair.b.min_curvature_radius();
+    put<3>(pair.X_WA.position().data(), in_.rows + KernelInput::position_a, count_);
+    put<3>(pair.X_WB.position().data(), in_.rows + KernelInput::position_b, count_);
+    if (in_.has_starts) put<3>(query_.starts[index].data(), in_.rows + KernelInput::start, count_);
     pairs_[count_++] = index;
     if (count_ == kBlockPairs) flush();
   }
@@ -199,7 +182,7 @@ class Block {
   /// The last vector, with copies of the last pair.
   void fill_up() {
     for (int lane = count_; lane % kLongestVector != 0; ++lane) {
-      for (BatchRecord& record : in_.records) std::copy_n(record + 4 * (count_ - 1), 4, record + 4 * lane);
+      for (BatchRow& row : in_.rows) row[lane] = row[count_ - 1];
     }
   }
 

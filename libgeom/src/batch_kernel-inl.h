@@ -80,6 +80,12 @@ HWY_INLINE void start_from(StateRow* rows, int lane, const Real3& start, Real3 c
   store3(n, rows + State::older_normal, lane);
 }
 
+template <class Input>
+HWY_INLINE Real3 load_start(const Input& in, int lane) {
+  if (in.has_starts) return load3(in.rows + Input::start, lane);
+  return {constant(0), constant(0), constant(0)};
+}
+
 /// |r| without a root, at most a factor of sqrt(3) too small: tolerances relative to it are then stricter.
 HWY_INLINE Real length_at_least(const Real3& r) {
   return hn::Max(hn::Max(hn::Abs(r.x), hn::Abs(r.y)), hn::Abs(r.z));
@@ -224,16 +230,6 @@ struct GeneralPairs {
     rows = R + 9,
   };
 
-  struct Pose {
-    Real33 rotation;
-    Real3 position;
-  };
-
-  static HWY_INLINE Pose load_pose(const BatchRecord* records, int lane) {
-    const Real31 p = load_record(records[0], lane), q = load_record(records[1], lane), s = load_record(records[2], lane);
-    return {{p.v, {p.s, q.v.x, q.v.y}, {q.v.z, q.s, s.v.x}}, {s.v.y, s.v.z, s.s}};
-  }
-
   /// (QA + QB)^-1 r, up to a positive factor.
   static HWY_INLINE Real3 cold_normal(const Real3& a, const Real6& Q, const Real3& r_AB) {
     const Real xx = hn::MulAdd(a.x, a.x, Q.xx), yy = hn::MulAdd(a.y, a.y, Q.yy), zz = hn::MulAdd(a.z, a.z, Q.zz);
@@ -244,14 +240,14 @@ struct GeneralPairs {
   }
 
   static HWY_INLINE void prepare(const Input& in, StateRow* state, int lane) {
-    const auto [R_WA, p_WA] = load_pose(in.records + Input::pose_a, lane);
-    const auto [R_WB, p_WB] = load_pose(in.records + Input::pose_b, lane);
-    const Real3 p_AB = p_WB - p_WA;
+    const Real33 R_WA = load33(in.rows + Input::rotation_a, lane);
+    const Real33 R_WB = load33(in.rows + Input::rotation_b, lane);
+    const Real3 p_AB = load3(in.rows + Input::position_b, lane) - load3(in.rows + Input::position_a, lane);
     const Real3 r_AB = transposed_times(R_WA, p_AB);
     const Real33 R_AB = {transposed_times(R_WA, R_WB.x), transposed_times(R_WA, R_WB.y),
                          transposed_times(R_WA, R_WB.z)};
-    const auto [a, curvature_radius_a] = load_record(in.records[Input::shape_a], lane);
-    const auto [b, curvature_radius_b] = load_record(in.records[Input::shape_b], lane);
+    const Real3 a = load3(in.rows + Input::semi_axes_a, lane);
+    const Real3 b = load3(in.rows + Input::semi_axes_b, lane);
     const Real3 u = b.x * R_AB.x, v = b.y * R_AB.y, w = b.z * R_AB.z;
     const Real6 Q = {
         hn::MulAdd(u.x, u.x, hn::MulAdd(v.x, v.x, w.x * w.x)), hn::MulAdd(u.y, u.y, hn::MulAdd(v.y, v.y, w.y * w.y)),
@@ -265,8 +261,8 @@ struct GeneralPairs {
     store3(R_AB.x, state + R, lane);
     store3(R_AB.y, state + R + 3, lane);
     store3(R_AB.z, state + R + 6, lane);
-    start_from(state, lane, transposed_times(R_WA, load_record(in.records[Input::start], lane).v),
-               cold_normal(a, Q, r_AB), curvature_radius_a + curvature_radius_b,
+    start_from(state, lane, transposed_times(R_WA, load_start(in, lane)),
+               cold_normal(a, Q, r_AB), load(in.rows[Input::depth], lane),
                length_at_least(p_AB) + length_at_least(a) + length_at_least(b));
   }
 
@@ -316,10 +312,10 @@ struct GeneralPairs {
     const Real3 s_a = inv_a * product(a, m_a);
     const Real3 s_b = inv_b * times(R_AB, product(b, m_b));
     const Answer answer = internal::finish(state, lane, {n, load3(state + r, lane), s_a, s_b, h_a, h_b}, out);
-    const auto [R_WA, p_WA] = load_pose(in.records + Input::pose_a, lane);
+    const Real33 R_WA = load33(in.rows + Input::rotation_a, lane);
     Real3 n_W = times(R_WA, n);
     n_W = hn::NegMulAdd(constant(0.5), dot(n_W, n_W) - one, one) * n_W;  // R_WA is orthonormal to 1e-15 only
-    store_answer(answer, p_WA, times(R_WA, answer.from_centre), n_W, lane, out);
+    store_answer(answer, load3(in.rows + Input::position_a, lane), times(R_WA, answer.from_centre), n_W, lane, out);
   }
 };
 
@@ -343,12 +339,10 @@ struct UniaxialPairs {
   };
 
   static HWY_INLINE void prepare(const Input& in, StateRow* state, int lane) {
-    const Real3 shape_a = load_record(in.records[Input::shape_a], lane).v;
-    const Real3 shape_b = load_record(in.records[Input::shape_b], lane).v;
-    const Real along_a = shape_a.x, across_a = shape_a.y, along_b = shape_b.x, across_b = shape_b.y;
-    const Real3 u = load_record(in.records[Input::axis_a], lane).v, v = load_record(in.records[Input::axis_b], lane).v;
-    const Real3 p_AB =
-        load_record(in.records[Input::position_b], lane).v - load_record(in.records[Input::position_a], lane).v;
+    const Real along_a = load(in.rows[Input::along_a], lane), across_a = load(in.rows[Input::across_a], lane);
+    const Real along_b = load(in.rows[Input::along_b], lane), across_b = load(in.rows[Input::across_b], lane);
+    const Real3 u = load3(in.rows + Input::axis_a, lane), v = load3(in.rows + Input::axis_b, lane);
+    const Real3 p_AB = load3(in.rows + Input::position_b, lane) - load3(in.rows + Input::position_a, lane);
     const Real a2 = along_a * along_a, b2_a = across_a * across_a, c = (along_a - across_a) * (along_a + across_a);
     const Real d2 = along_b * along_b, b2_b = across_b * across_b, f = (along_b - across_b) * (along_b + across_b);
     store3(p_AB, state + r, lane);
@@ -369,7 +363,7 @@ struct UniaxialPairs {
     const Real x_a = hn::NegMulAdd(f * k, r_b, sum_b * r_a);
     const Real x_b = hn::NegMulAdd(c * k, r_a, sum_a * r_b);
     const Real3 cold = subtract(subtract(det * p_AB, c * x_a, u), f * x_b, v);
-    start_from(state, lane, load_record(in.records[Input::start], lane).v, cold, shape_a.z + shape_b.z,
+    start_from(state, lane, load_start(in, lane), cold, load(in.rows[Input::depth], lane),
                length_at_least(p_AB) + hn::Max(along_a, across_a) + hn::Max(along_b, across_b));
   }
 
@@ -410,7 +404,7 @@ struct UniaxialPairs {
     const Real3 s_a = inv_a * add(b2_a * w_a, a2_x_a, u);
     const Real3 s_b = inv_b * add(b2_b * w_b, a2_x_b, v);
     const Answer answer = internal::finish(state, lane, {n, load3(state + r, lane), s_a, s_b, h_a, h_b}, out);
-    store_answer(answer, load_record(in.records[Input::position_a], lane).v, answer.from_centre, n, lane, out);
+    store_answer(answer, load3(in.rows + Input::position_a, lane), answer.from_centre, n, lane, out);
   }
 };
 

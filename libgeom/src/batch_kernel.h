@@ -11,37 +11,47 @@ namespace geom::internal {
 constexpr int kBlockPairs = 32;
 constexpr int kLongestVector = 8;
 
-/// Four numbers of each pair of a block, pair after pair: they are copied as they lie, and only the kernels turn them
-/// into vectors of one number each.
-using BatchRecord = double[4 * kBlockPairs];
+/// One number of each pair of a block.
+using BatchRow = double[kBlockPairs];
 
-/// Two ellipsoids. What comes before `pose_a` is of the shapes alone.
+/// Two ellipsoids. What comes before `position_a` is of the shapes alone.
 struct GeneralInput {
-  enum Record {
-    shape_a = 0,  ///< semi-axes, min_curvature_radius()
-    shape_b = 1,
-    pose_a = 2,  ///< body to world: the rotation, column by column, and the position; three records
-    pose_b = 5,
-    start = 8,  ///< as DistanceOptions::start: 0 for a cold start
-    count = 9,
+  enum Row {
+    semi_axes_a = 0,
+    semi_axes_b = 3,
+    depth = 6,  ///< the sum of both min_curvature_radius()
+    position_a = 7,
+    position_b = 10,
+    rotation_a = 13,  ///< body to world, column by column
+    rotation_b = 22,
+    start = 31,  ///< as DistanceOptions::start
+    count = 34,
   };
-  alignas(64) BatchRecord records[count];
+  alignas(64) BatchRow rows[count];
+  bool has_starts;  ///< else all are 0, cold
 };
 
 /// Two ellipsoids of revolution, by their axes of revolution in world coordinates.
 struct UniaxialInput {
-  enum Record {
-    shape_a = 0,  ///< semi-axis along the axis of revolution, the two equal ones, min_curvature_radius()
-    shape_b = 1,
-    axis_a = 2,  ///< unit vector
-    axis_b = 3,
-    position_a = 4,
-    position_b = 5,
-    start = 6,
-    count = 7,
+  enum Row {
+    along_a = 0,   ///< semi-axis along the axis of revolution
+    across_a = 1,  ///< the two equal ones
+    along_b = 2,
+    across_b = 3,
+    depth = 4,
+    position_a = 5,
+    position_b = 8,
+    axis_a = 11,  ///< unit vector
+    axis_b = 14,
+    start = 17,
+    count = 20,
   };
-  alignas(64) BatchRecord records[count];
+  alignas(64) BatchRow rows[count];
+  bool has_starts;
 };
+
+/// Four numbers of each pair, pair after pair.
+using BatchRecord = double[4 * kBlockPairs];
 
 struct BatchOutput {
   enum Record {
