@@ -85,34 +85,59 @@ struct Query {
 };
 
 struct Pair {
-  const Ellipsoid& a;
-  const Pose& X_WA;
-  const Ellipsoid& b;
-  const Pose& X_WB;
+  const Ellipsoid* a;
+  const Pose* X_WA;
+  const Ellipsoid* b;
+  const Pose* X_WB;
+  std::size_t index;
+
+  double depth() const { return a->min_curvature_radius() + b->min_curvature_radius(); }
 };
 
+/// Two pairs at a time, in neighbouring lanes: half as many stores.
 template <int Size>
-void put(const double* numbers, BatchRow* rows, int lane) {
-  for (int i = 0; i < Size; ++i) rows[i][lane] = numbers[i];
+void put(const double* first, const double* second, BatchRow* rows, int lane) {
+  for (int i = 0; i < Size; ++i) {
+    rows[i][lane] = first[i];
+    rows[i][lane + 1] = second[i];
+  }
 }
 
-void put_pair(const Pair& pair, GeneralInput& in, int lane) {
-  put<3>(pair.a.semi_axes().data(), in.rows + GeneralInput::semi_axes_a, lane);
-  put<3>(pair.b.semi_axes().data(), in.rows + GeneralInput::semi_axes_b, lane);
-  put<9>(pair.X_WA.rotation().data(), in.rows + GeneralInput::rotation_a, lane);
-  put<9>(pair.X_WB.rotation().data(), in.rows + GeneralInput::rotation_b, lane);
+void put(double first, double second, BatchRow& row, int lane) {
+  row[lane] = first;
+  row[lane + 1] = second;
 }
 
-void put_revolution(const Ellipsoid& shape, const Pose& X, BatchRow* shape_rows, BatchRow* axis_rows, int lane) {
-  const int axis = *shape.symmetry_axis();
-  shape_rows[0][lane] = shape.semi_axes()[axis];
-  shape_rows[1][lane] = shape.semi_axes()[axis == 0 ? 1 : 0];
-  put<3>(&X.rotation()(0, axis), axis_rows, lane);
+void put_pairs(const Pair& first, const Pair& second, GeneralInput& in, int lane) {
+  put<3>(first.a->semi_axes().data(), second.a->semi_axes().data(), in.rows + GeneralInput::semi_axes_a, lane);
+  put<3>(first.b->semi_axes().data(), second.b->semi_axes().data(), in.rows + GeneralInput::semi_axes_b, lane);
+  put<9>(first.X_WA->rotation().data(), second.X_WA->rotation().data(), in.rows + GeneralInput::rotation_a, lane);
+  put<9>(first.X_WB->rotation().data(), second.X_WB->rotation().data(), in.rows + GeneralInput::rotation_b, lane);
 }
 
-void put_pair(const Pair& pair, UniaxialInput& in, int lane) {
-  put_revolution(pair.a, pair.X_WA, in.rows + UniaxialInput::along_a, in.rows + UniaxialInput::axis_a, lane);
-  put_revolution(pair.b, pair.X_WB, in.rows + UniaxialInput::along_b, in.rows + UniaxialInput::axis_b, lane);
+/// Of a body of revolution.
+struct Revolution {
+  double along;
+  double across;
+  const double* axis;
+
+  Revolution(const Ellipsoid& shape, const Pose& X)
+      : along(shape.semi_axes()[*shape.symmetry_axis()]),
+        across(shape.semi_axes()[*shape.symmetry_axis() == 0 ? 1 : 0]),
+        axis(&X.rotation()(0, *shape.symmetry_axis())) {}
+};
+
+void put(const Revolution& first, const Revolution& second, BatchRow* shape_rows, BatchRow* axis_rows, int lane) {
+  put(first.along, second.along, shape_rows[0], lane);
+  put(first.across, second.across, shape_rows[1], lane);
+  put<3>(first.axis, second.axis, axis_rows, lane);
+}
+
+void put_pairs(const Pair& first, const Pair& second, UniaxialInput& in, int lane) {
+  put(Revolution(*first.a, *first.X_WA), Revolution(*second.a, *second.X_WA), in.rows + UniaxialInput::along_a,
+      in.rows + UniaxialInput::axis_a, lane);
+  put(Revolution(*first.b, *first.X_WB), Revolution(*second.b, *second.X_WB), in.rows + UniaxialInput::along_b,
+      in.rows + UniaxialInput::axis_b, lane);
 }
 
 int iterations_of(const BatchOutput& out, int lane) {
@@ -140,31 +165,26 @@ class Block {
  public:
   using Kernel = void(const KernelInput& in, int pairs, BatchOutput& out);
 
-  Block(const Query& query, Kernel* kernel) : query_(query), kernel_(kernel) {
-    in_.has_starts = !query.starts.empty();
-  }
+  Block(const Query& query, Kernel* kernel) : query_(query), kernel_(kernel) { in_.has_starts = !query.starts.empty(); }
 
-  void add(std::size_t index, const Pair& pair) {
-    put_pair(pair, in_, count_);
-    in_.rows[KernelInput::depth][count_] = pair.a.min_curvature_radius() + pair.b.min_curvature_radius();
-    put<3>(pair.X_WA.position().data(), in_.rows + KernelInput::position_a, count_);
-    put<3>(pair.X_WB.position().data(), in_.rows + KernelInput::position_b, count_);
-    if (in_.has_starts) put<3>(query_.starts[index].data(), in_.rows + KernelInput::start, count_);
-    pairs_[count_++] = index;
+  void add(const Pair& pair) {
+    pairs_[count_++] = pair;
     if (count_ == kBlockPairs) flush();
   }
 
   /// Answers what has been collected.
   void flush() {
     if (count_ == 0) return;
-    fill_up();
+    const int filled = (count_ + kLongestVector - 1) / kLongestVector * kLongestVector;
+    for (int lane = count_; lane < filled; ++lane) pairs_[lane] = pairs_[count_ - 1];
+    for (int lane = 0; lane < filled; lane += 2) put_pairs(pairs_[lane], pairs_[lane + 1], lane);
     kernel_(in_, count_, out_);
     for (int lane = 0; lane < count_; ++lane) {
-      DistanceResult& result = query_.results[pairs_[lane]];
+      DistanceResult& result = query_.results[pairs_[lane].index];
       if (is_answered(lane)) [[likely]] {
         read_answer(out_, lane, result);
       } else {
-        result = query_.by_distance(pairs_[lane]);
+        result = query_.by_distance(pairs_[lane].index);
         ++redone_;
       }
     }
@@ -179,18 +199,20 @@ class Block {
     return out_.iterations[lane] > 0 && iterations_of(out_, lane) <= std::max(1, query_.scalar.max_iterations);
   }
 
-  /// The last vector, with copies of the last pair.
-  void fill_up() {
-    for (int lane = count_; lane % kLongestVector != 0; ++lane) {
-      for (BatchRow& row : in_.rows) row[lane] = row[count_ - 1];
-    }
+  void put_pairs(const Pair& first, const Pair& second, int lane) {
+    geom::put_pairs(first, second, in_, lane);
+    put(first.depth(), second.depth(), in_.rows[KernelInput::depth], lane);
+    put<3>(first.X_WA->position().data(), second.X_WA->position().data(), in_.rows + KernelInput::position_a, lane);
+    put<3>(first.X_WB->position().data(), second.X_WB->position().data(), in_.rows + KernelInput::position_b, lane);
+    if (!in_.has_starts) return;
+    put<3>(query_.starts[first.index].data(), query_.starts[second.index].data(), in_.rows + KernelInput::start, lane);
   }
 
   const Query& query_;
   Kernel* kernel_;
   int count_ = 0;
   std::size_t redone_ = 0;
-  std::array<std::size_t, kBlockPairs> pairs_;
+  std::array<Pair, kBlockPairs> pairs_;
   KernelInput in_;
   BatchOutput out_;
 };
@@ -319,9 +341,9 @@ BatchSummary distance_batch(std::span<const Ellipsoid> a, std::span<const Pose> 
   const Pose *pose_a = query.X_WA.data, *pose_b = query.X_WB.data;
   for (std::size_t pair = 0; pair < pairs; ++pair) {
     if (shape_a->symmetry_axis() && shape_b->symmetry_axis()) {
-      uniaxial.add(pair, {*shape_a, *pose_a, *shape_b, *pose_b});
+      uniaxial.add({shape_a, pose_a, shape_b, pose_b, pair});
     } else {
-      general.add(pair, {*shape_a, *pose_a, *shape_b, *pose_b});
+      general.add({shape_a, pose_a, shape_b, pose_b, pair});
     }
     shape_a += query.a.stride;
     shape_b += query.b.stride;

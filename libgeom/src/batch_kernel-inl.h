@@ -261,9 +261,8 @@ struct GeneralPairs {
     store3(R_AB.x, state + R, lane);
     store3(R_AB.y, state + R + 3, lane);
     store3(R_AB.z, state + R + 6, lane);
-    start_from(state, lane, transposed_times(R_WA, load_start(in, lane)),
-               cold_normal(a, Q, r_AB), load(in.rows[Input::depth], lane),
-               length_at_least(p_AB) + length_at_least(a) + length_at_least(b));
+    start_from(state, lane, transposed_times(R_WA, load_start(in, lane)), cold_normal(a, Q, r_AB),
+               load(in.rows[Input::depth], lane), length_at_least(p_AB) + length_at_least(a) + length_at_least(b));
   }
 
   static HWY_INLINE Evaluation evaluate(const StateRow* state, int lane, const Real3& n) {
@@ -399,8 +398,8 @@ struct UniaxialPairs {
     const Real3 w_a = subtract(n, x_a, u), w_b = subtract(n, x_b, v);
     const Real b2_a = load(state[across2_a], lane), b2_b = load(state[across2_b], lane);
     const Real a2_x_a = load(state[along2_a], lane) * x_a, a2_x_b = load(state[along2_b], lane) * x_b;
-    const auto [h_a, h_b, inv_a, inv_b] = roots(hn::MulAdd(b2_a, dot(w_a, w_a), a2_x_a * x_a),
-                                                hn::MulAdd(b2_b, dot(w_b, w_b), a2_x_b * x_b));
+    const auto [h_a, h_b, inv_a, inv_b] =
+        roots(hn::MulAdd(b2_a, dot(w_a, w_a), a2_x_a * x_a), hn::MulAdd(b2_b, dot(w_b, w_b), a2_x_b * x_b));
     const Real3 s_a = inv_a * add(b2_a * w_a, a2_x_a, u);
     const Real3 s_b = inv_b * add(b2_b * w_b, a2_x_b, v);
     const Answer answer = internal::finish(state, lane, {n, load3(state + r, lane), s_a, s_b, h_a, h_b}, out);

@@ -101,19 +101,7 @@ HWY_INLINE Real33 load33(const Row* rows, int lane) {
   return {load3(rows, lane), load3(rows + 3, lane), load3(rows + 6, lane)};
 }
 
-/// What a record holds of each pair.
-struct Real31 {
-  Real3 v;
-  Real s;
-};
-
-/// Of the pairs from `lane` on.
-template <class Record>
-HWY_INLINE Real31 load_record(const Record& record, int lane) {
-  Real31 all;
-  hn::LoadInterleaved4(Tag(), record + 4 * lane, all.v.x, all.v.y, all.v.z, all.s);
-  return all;
-}
+/// Four numbers of each pair, those from `lane` on.
 template <class Record>
 HWY_INLINE void store_record(const Real3& v, Real s, Record& record, int lane) {
   hn::StoreInterleaved4(v.x, v.y, v.z, s, Tag(), record + 4 * lane);
@@ -137,8 +125,9 @@ struct Roots {
 #if HWY_TARGET <= HWY_AVX3
 
 /// An estimate of 1 / sqrt(x) to 14 bits, t = x times it, and p by which 1 / sqrt(x) = estimate + p estimate and
-/// sqrt(x) = t + p t, to 1 unit in the last place: with e = 1 - x estimate^2, at most 2^-13, p = (1 - e)^(-1/2) - 1, whose
-/// next term, 35/128 e^4, is below 2^-53. Shorter than the processor's own roots and quotients, which wait for each other.
+/// sqrt(x) = t + p t, to 1 unit in the last place: with e = 1 - x estimate^2, at most 2^-13, p = (1 - e)^(-1/2) - 1,
+/// whose next term, 35/128 e^4, is below 2^-53. Shorter than the processor's own roots and quotients, which wait for
+/// each other.
 struct RootSeries {
   Real estimate, t, p;
 };
