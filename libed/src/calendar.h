@@ -28,6 +28,9 @@ class Calendar {
       groups = (groups + kGroup - 1) / kGroup;
       groups_.resize(groups_.size() + groups);
     } while (groups > 1);
+    for (std::size_t entries = number_; entries >= kGroup * kGroup; entries = (entries + kGroup - 1) / kGroup) {
+      ++level_of_parts_;
+    }
   }
 
   double time(int i) const { return groups_[at(i) / kGroup].times[at(i) % kGroup]; }
@@ -47,6 +50,25 @@ class Calendar {
 
   /// The time of body i is set soon.
   void fetch(int i) const { prefetch(groups_[at(i) / kGroup]); }
+
+  /// The earliest time of some bodies that are numbered one after another; at level 0 of one.
+  struct Entry {
+    std::size_t level;
+    std::size_t index;
+  };
+  /// All bodies are divided into so many parts, fewer than 64, of which each is an entry.
+  std::size_t parts() const {
+    return level_of_parts_ == 0 ? number_ : first_of_level_[level_of_parts_] - first_of_level_[level_of_parts_ - 1];
+  }
+  Entry part(std::size_t k) const { return {level_of_parts_, k}; }
+  double time(Entry e) const { return groups_[first_of_level_[e.level] + e.index / kGroup].times[e.index % kGroup]; }
+  /// The entry of the level below from which this one's time is.
+  Entry earliest_below(Entry e) const {
+    const Group& group = group_below(e);
+    return {e.level - 1, kGroup * e.index + group.place_of(group.earliest())};
+  }
+  /// That is asked soon.
+  void fetch_below(Entry e) const { prefetch(group_below(e)); }
 
   double earliest_time() const { return groups_.back().earliest(); }
 
@@ -96,8 +118,10 @@ class Calendar {
   static_assert(sizeof(Group) == 64);
 
   static std::size_t at(int i) { return static_cast<std::size_t>(i); }
+  const Group& group_below(Entry e) const { return groups_[first_of_level_[e.level - 1] + e.index]; }
 
-  std::size_t number_;                       ///< of bodies
+  std::size_t number_;  ///< of bodies
+  std::size_t level_of_parts_ = 0;
   std::vector<std::size_t> first_of_level_;  ///< its first group; the bodies' own level first
   LargeVector<Group> groups_;
 };

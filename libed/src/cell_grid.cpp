@@ -1,6 +1,7 @@
 #include "cell_grid.h"
 
 #include "find_kernels.h"
+#include "prefetch.h"
 
 #include <algorithm>
 #include <cassert>
@@ -213,6 +214,12 @@ void CellGrid::for_each_cell_near(const Eigen::Vector3d& position, double reach,
       for (int k = 0; k < z.count; ++k) found(row + z.cell[at(k)], z.distance2[at(k)] <= left);
     }
   }
+}
+
+void CellGrid::fetch(const Eigen::Vector3d& position, double reach) const {
+  for_each_cell_near(position, reach, [this](int cell, bool counts) {
+    if (counts) prefetch(blocks_[at(cell)]);
+  });
 }
 
 std::span<const NearBody> CellGrid::collect(const Eigen::Vector3d& position, double reach,

@@ -43,6 +43,9 @@ class CellGrid {
   /// which grows as needed and is never shrunk.
   std::span<const NearBody> collect(const Eigen::Vector3d& position, double reach, std::vector<NearBody>& buffer) const;
 
+  /// These bodies are collected soon.
+  void fetch(const Eigen::Vector3d& position, double reach) const;
+
   /// The cells, and the order of the bodies in each, as they are; read into a grid of the same number of bodies.
   template <class Archive, class Self>
   static void fields(Archive& archive, Self& self) {

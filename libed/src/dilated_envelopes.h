@@ -12,6 +12,7 @@
 #include "large_vector.h"
 #include "neighbour_lists.h"
 #include "periodic.h"
+#include "prefetch.h"
 #include "uniaxial_bodies.h"
 #include "uniaxial_kernels.h"
 
@@ -71,6 +72,8 @@ class DilatedEnvelopes final : public Envelopes<UniaxialBodies> {
     Eigen::Vector3d::Map(envelope.centre) = position;
     Eigen::Vector3d::Map(envelope.axis) = axis;
   }
+
+  void fetch(int i) const override { prefetch(envelopes_[static_cast<std::size_t>(i)]); }
 
   void scale(double factor) override {
     for (DilatedEnvelope& envelope : envelopes_) Eigen::Vector3d::Map(envelope.centre) *= factor;

@@ -41,6 +41,9 @@ class Envelopes {
   /// A new envelope for body i at its state now.
   virtual void place(int i, const Bodies& bodies, double now) = 0;
 
+  /// The envelope of body i is read soon.
+  virtual void fetch(int /*i*/) const {}
+
   /// The box, and all that is in it, has been scaled.
   virtual void scale(double factor) = 0;
 

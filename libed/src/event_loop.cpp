@@ -6,7 +6,6 @@
 #include "envelope_limits.h"
 #include "general_bodies.h"
 #include "power_of_two.h"
-#include "prefetch.h"
 #include "uniaxial_bodies.h"
 
 #include <algorithm>
@@ -85,7 +84,6 @@ EventLoop<Bodies>::EventLoop(const System& system, const SimulationOptions& opti
     : options_(options),
       species_(system.species),
       box_(system.box),
-      far_(system.size() >= kFarFrom),
       bodies_(system),
       images_(at(system.size()), Eigen::Vector3i::Zero()),
       lists_(system.size()),
@@ -95,6 +93,7 @@ EventLoop<Bodies>::EventLoop(const System& system, const SimulationOptions& opti
   check_contact_options(options.contact, bodies_.inscribed_radius());
   if (options.neighbours == Neighbours::cells) check_cells(box_, bodies_.bounding_radius());
   for (const Body& body : system.bodies) species_of_.push_back(body.species);
+  if (number() >= kFarFrom) ahead_.emplace(calendar_);
   collisions_of_.resize(at(system.size()), 0);
   failures_.reserve(kReasons * kMaxFailuresRecorded);
 }
@@ -269,18 +268,12 @@ void EventLoop<Bodies>::queue(std::int32_t index, int owner) {
 
 template <class Bodies>
 void EventLoop<Bodies>::fetch_pairs(int body) const {
-  if (!far_) return;
-  for (const std::int32_t index : lists_.of(body)) prefetch(lists_.pair(index));
-  calendar_.fetch(body);
+  if (ahead_) sources().fetch_pairs(body);
 }
 
 template <class Bodies>
 void EventLoop<Bodies>::fetch_partners(int body) const {
-  if (!far_) return;
-  for (const std::int32_t index : lists_.of(body)) {
-    const std::int32_t partner = lists_.pair(index).partner(body);
-    bodies_.fetch(partner);
-  }
+  if (ahead_) sources().fetch_partners(body);
 }
 
 template <class Bodies>
@@ -380,7 +373,7 @@ void EventLoop<Bodies>::rebuild(int i) {
   const Vector3d position = bodies_.position_at(i, now_);
   cells_->place(i, position);
   old_pairs_.assign(lists_.of(i).begin(), lists_.of(i).end());
-  if (far_) {
+  if (ahead_) {
     for (const std::int32_t index : old_pairs_) lists_.fetch(lists_.pair(index).partner(i));
   }
   for (const std::int32_t index : old_pairs_) {
@@ -483,6 +476,7 @@ void EventLoop<Bodies>::start_epoch() {
 
 template <class Bodies>
 void EventLoop<Bodies>::process_next() {
+  if (ahead_) ahead_->step(sources(), now_);
   const int body = calendar_.earliest();
   now_ = std::max(now_, calendar_.earliest_time());
   const std::int32_t index = bodies_.events(body).first;

@@ -6,6 +6,7 @@
 #include "cell_grid.h"
 #include "certified_contact.h"
 #include "envelopes.h"
+#include "events_ahead.h"
 #include "first_looks.h"
 #include "large_vector.h"
 #include "neighbour_lists.h"
@@ -110,7 +111,7 @@ class EventLoop final : public AnyEventLoop {
   /// Room for collisions that are recorded; more grow as they come.
   static constexpr std::size_t kCollisionsReserved = std::size_t{1} << 20;
   /// So many bodies, a kilobyte each with lists and pairs, are more than the caches of a processor hold.
-  static constexpr int kFarFrom = 30000;
+  static constexpr int kFarFrom = 15000;
   /// Room for candidates beyond those that become neighbours: a block of each cell that is looked into, at most.
   static constexpr std::size_t kCandidatesReserved = 2048;
   /// Events a body after which it is asked whether the run still makes progress, and how many events are then looked at
@@ -142,6 +143,7 @@ class EventLoop final : public AnyEventLoop {
   Eigen::Vector3d between(const Pair& pair) const;
   double parting_time(const Pair& pair) const;
   void queue(std::int32_t index, int owner);
+  EventSources<Bodies> sources() const { return {calendar_, bodies_, lists_, *envelopes_, *cells_}; }
   void fetch_pairs(int body) const;     ///< read soon
   void fetch_partners(int body) const;  ///< after fetch_pairs and something else to do: it reads the pairs
   void queue_all_of(int body, std::int32_t skip);
@@ -158,7 +160,6 @@ class EventLoop final : public AnyEventLoop {
   std::vector<Species> species_;
   std::vector<int> species_of_;  ///< number of each body's
   double box_;
-  bool far_;  ///< most of what an event reads is not in the caches and worth asking for ahead
 
   // State of the bodies.
   Bodies bodies_;
@@ -169,6 +170,7 @@ class EventLoop final : public AnyEventLoop {
   std::optional<CellGrid> cells_;
   NeighbourLists lists_;
   Calendar calendar_;
+  std::optional<EventsAhead<Bodies>> ahead_;         ///< if most of what an event reads is not in the caches
   std::vector<int> orphans_;                         ///< bodies whose first event has gone to another owner
   std::unique_ptr<FirstLooks<Bodies>> first_looks_;  ///< null: pairs are looked at one by one
   std::vector<Look> queue_;                          ///< pairs to be predicted

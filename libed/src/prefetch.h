@@ -8,6 +8,8 @@ namespace ed::internal {
 inline void prefetch_line(const void* address) {
 #if defined(__GNUC__)
   __builtin_prefetch(address);
+  // GCC takes a function that does nothing else for one without effect, and drops its calls.
+  asm volatile("" : : "r"(address));
 #else
   (void)address;
 #endif

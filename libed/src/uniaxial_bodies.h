@@ -58,6 +58,11 @@ class UniaxialBodies {
     prefetch_line(&entries_[at(i)]);
     prefetch_line(&entries_[at(i)].motion.time);
   }
+  /// All that there is of it.
+  void fetch_all(int i) const {
+    prefetch(entries_[at(i)]);
+    prefetch(frames_[at(i)]);
+  }
   BodyEvents& events(int i) { return entries_[at(i)].events; }
   const BodyEvents& events(int i) const { return entries_[at(i)].events; }
   const Eigen::Vector3d& velocity(int i) const { return entries_[at(i)].motion.velocity; }

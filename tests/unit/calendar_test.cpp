@@ -58,6 +58,36 @@ TEST_P(CalendarOfSize, IsTheSameAfterItWasReadBack) {
   EXPECT_THROW(again(other), std::invalid_argument);
 }
 
+TEST_P(CalendarOfSize, LeadsFromItsPartsToTheirEarliestBodies) {
+  const int number = GetParam();
+  Calendar calendar(number);
+  ed::Random random(11);
+  for (int i = 0; i < number; ++i) calendar.set(i, random.uniform() < 0.2 ? kNever : random.uniform());
+  ASSERT_LT(calendar.parts(), 64U);
+  ASSERT_GE(calendar.parts(), std::min<std::size_t>(8, static_cast<std::size_t>(number)));
+  double earliest = kNever;
+  int end_of_last = 0;  // of the part before
+  for (std::size_t k = 0; k < calendar.parts(); ++k) {
+    Calendar::Entry entry = calendar.part(k);
+    const double time = calendar.time(entry);
+    int size = 1;
+    for (; entry.level > 0; size *= 8) entry = calendar.earliest_below(entry);
+    const int end = std::min(number, end_of_last + size);
+    double least = kNever;
+    for (int i = end_of_last; i < end; ++i) least = std::min(least, calendar.time(i));
+    EXPECT_EQ(time, least);
+    EXPECT_EQ(calendar.time(entry), least);
+    if (least < kNever) {
+      EXPECT_GE(static_cast<int>(entry.index), end_of_last);
+      EXPECT_LT(static_cast<int>(entry.index), end);
+    }
+    earliest = std::min(earliest, time);
+    end_of_last = end;
+  }
+  EXPECT_EQ(end_of_last, number);
+  EXPECT_EQ(earliest, calendar.earliest_time());
+}
+
 INSTANTIATE_TEST_SUITE_P(Sizes, CalendarOfSize, testing::Values(1, 2, 7, 8, 9, 63, 64, 65, 512, 513, 4097));
 
 TEST(Calendar, NothingIsDueInANewOne) {
