@@ -64,7 +64,7 @@ def parse(arguments):
                                                          "(of --quick OUT-quick/results); a new one begins afresh")
     parser.add_argument("--jobs", type=count, default=1, help="points that run at the same time")
     parser.add_argument("--minutes", type=duration, default=0, help="stop after so many; call it again to go on")
-    parser.add_argument("--quick", action="store_true", help="a coarse grid with short runs, about ten minutes")
+    parser.add_argument("--quick", action="store_true", help="a coarse grid with short runs, some three minutes")
     parser.add_argument("--figures", action="store_true", help="run nothing: figures and README.md from what is there")
     parser.add_argument("--points", nargs="+", type=point, metavar="X0,PHI", help="these points alone")
     return parser.parse_args(arguments)

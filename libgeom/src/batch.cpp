@@ -145,9 +145,9 @@ int iterations_of(const BatchOutput& out, int lane) {
 
 /// In place: a result built elsewhere would be copied in other pieces than it was written, which stalls.
 void read_answer(const BatchOutput& out, int lane, DistanceResult& result) {
-  const double* const first = out.records[BatchOutput::distance_and_point_a] + 4 * lane;
-  const double* const second = out.records[BatchOutput::point_b_and_residual] + 4 * lane;
-  const double* const third = out.records[BatchOutput::normal_and_error_bound] + 4 * lane;
+  const double* const first = out.records[BatchOutput::distance_and_point_a][lane];
+  const double* const second = out.records[BatchOutput::point_b_and_residual][lane];
+  const double* const third = out.records[BatchOutput::normal_and_error_bound][lane];
   result.distance = first[0];
   result.point_a = Eigen::Vector3d::Map(first + 1);
   result.point_b = Eigen::Vector3d::Map(second);

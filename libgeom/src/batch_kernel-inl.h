@@ -173,7 +173,7 @@ HWY_INLINE void store_answer(const Answer& answer, const Real3& p_WA, const Real
   const Real3 point_a = p_WA + from_centre;
   const Real3 point_b = add(point_a, answer.distance, n);
   hn::StoreInterleaved4(answer.distance, point_a.x, point_a.y, point_a.z, Tag(),
-                        out.records[BatchOutput::distance_and_point_a] + 4 * lane);
+                        out.records[BatchOutput::distance_and_point_a][lane]);
   store_record(point_b, answer.residual, out.records[BatchOutput::point_b_and_residual], lane);
   store_record(n, answer.error_bound, out.records[BatchOutput::normal_and_error_bound], lane);
 }

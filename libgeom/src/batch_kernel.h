@@ -51,7 +51,7 @@ struct UniaxialInput {
 };
 
 /// Four numbers of each pair, pair after pair.
-using BatchRecord = double[4 * kBlockPairs];
+using BatchRecord = double[kBlockPairs][4];
 
 struct BatchOutput {
   enum Record {

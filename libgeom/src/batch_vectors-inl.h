@@ -104,7 +104,7 @@ HWY_INLINE Real33 load33(const Row* rows, int lane) {
 /// Four numbers of each pair, those from `lane` on.
 template <class Record>
 HWY_INLINE void store_record(const Real3& v, Real s, Record& record, int lane) {
-  hn::StoreInterleaved4(v.x, v.y, v.z, s, Tag(), record + 4 * lane);
+  hn::StoreInterleaved4(v.x, v.y, v.z, s, Tag(), record[lane]);
 }
 template <class Row>
 HWY_INLINE void store(Real x, Row& row, int lane) {

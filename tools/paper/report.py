@@ -13,7 +13,7 @@ X0 = 0.4 and 2.5, where D_trans is slow enough), moments of inertia 2/5 m min(a,
     tools/reproduce-paper               # goes on where points.csv ends; --minutes M stops after so many, --jobs N
     tools/reproduce-paper --results DIR # afresh: all points, into DIR instead, with this page and the figures; goes on there, too
     tools/reproduce-paper --figures     # this page and all figures again, from points.csv and curves.csv
-    tools/reproduce-paper --quick       # a coarse grid with short runs, in about ten minutes, in out/paper-quick
+    tools/reproduce-paper --quick       # a coarse grid with short runs, in some three minutes, in out/paper-quick
 
 `points.csv` has one row a state point: seed, times, every observable with its standard error, the wave number q of F_self, the
 windows of the fits, whether it was `equilibrated` (docs/configuration.md#auto), `precise` ({target:g} % or better in D_trans and D_rot)
