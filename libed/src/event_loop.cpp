@@ -373,9 +373,7 @@ void EventLoop<Bodies>::rebuild(int i) {
   const Vector3d position = bodies_.position_at(i, now_);
   cells_->place(i, position);
   old_pairs_.assign(lists_.of(i).begin(), lists_.of(i).end());
-  if (ahead_) {
-    for (const std::int32_t index : old_pairs_) lists_.fetch(lists_.pair(index).partner(i));
-  }
+  if (ahead_) sources().fetch_lists_of_partners(i);
   for (const std::int32_t index : old_pairs_) {
     const Pair& pair = lists_.pair(index);
     const std::int32_t partner = pair.partner(i);

@@ -36,11 +36,11 @@ struct EventSources {
     lists.fetch(body);
     envelopes.fetch(body);
   }
-  /// What a body's new list needs beside its old pairs and partners.
-  void fetch_surroundings(int body, double now) const {
+  void fetch_lists_of_partners(int body) const {
     for (const std::int32_t index : lists.of(body)) lists.fetch(lists.pair(index).partner(body));
-    cells.fetch(bodies.position_at(body, now), envelopes.reach());
   }
+  /// The bodies around it, of which its new list is made.
+  void fetch_cells(int body, double now) const { cells.fetch(bodies.position_at(body, now), envelopes.reach()); }
   /// A pair that leaves the list of a partner gives its place to the last one there.
   void fetch_last_pairs_of_partners(int body) const {
     for (const std::int32_t index : lists.of(body)) {
@@ -136,7 +136,8 @@ class EventsAhead {
     const std::int32_t first = from.bodies.events(body).first;
     if (first == BodyEvents::kExit) {
       from.fetch_partners(body);
-      from.fetch_surroundings(body, now);
+      from.fetch_lists_of_partners(body);
+      from.fetch_cells(body, now);
       return Stage::last_pairs;
     }
     const Pair& pair = from.lists.pair(first);

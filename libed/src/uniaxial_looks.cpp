@@ -1,8 +1,11 @@
 #include "uniaxial_looks.h"
 
-#include "find_kernels.h"
+#include "uniaxial_kernels.h"
 
 #include <geom/internal/lanes.h>
+#include <geom/internal/uniaxial.h>
+
+#include <Eigen/Core>
 
 #include <algorithm>
 #include <array>
@@ -15,8 +18,16 @@ namespace {
 /// Fewer pairs are not worth a kernel's call.
 constexpr int kFewestLooks = 3;
 
+void put_vector(const Eigen::Vector3d& v, LookRow* rows, int lane) {
+  for (int k = 0; k < 3; ++k) rows[k][lane] = v[k];
+}
+
 void put(const geom::internal::Spheroid& shape, LookRow* rows, int lane) {
-  put_shape(shape, rows + LookBody::shape, lane);
+  LookRow* const of_shape = rows + LookBody::shape;
+  of_shape[ShapeRows::a2][lane] = shape.a2;
+  of_shape[ShapeRows::b2][lane] = shape.b2;
+  of_shape[ShapeRows::c][lane] = shape.c;
+  of_shape[ShapeRows::rho][lane] = shape.rho;
   rows[LookBody::turning_limit][lane] = shape.turning_limit;
 }
 

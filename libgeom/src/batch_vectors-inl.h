@@ -125,7 +125,7 @@ struct Roots {
 #if HWY_TARGET <= HWY_AVX3
 
 /// An estimate of 1 / sqrt(x) to 14 bits, t = x times it, and p by which 1 / sqrt(x) = estimate + p estimate and
-/// sqrt(x) = t + p t, to 1 unit in the last place: with e = 1 - x estimate^2, at most 2^-13, p = (1 - e)^(-1/2) - 1,
+/// sqrt(x) = t + p t, to 1.4 units in the last place: with e = 1 - x estimate^2, at most 2^-13, p = (1 - e)^(-1/2) - 1,
 /// whose next term, 35/128 e^4, is below 2^-53. Shorter than the processor's own roots and quotients, which wait for
 /// each other.
 struct RootSeries {
