@@ -1,5 +1,9 @@
 # Kernels for several instruction sets (docs/decisions/008-batches.md).
-#
+
+# Exactly what find_kernels in libgeom/src/batch.cpp asks the processor for. They come behind HARDBODY_ARCH.
+set(hardbody_avx2 -mavx2 -mfma -mbmi -mbmi2)
+set(hardbody_avx512 ${hardbody_avx2} -mavx512f -mavx512vl -mavx512dq -mavx512bw)
+
 # hardbody_kernels(<target> <kernel> <chooser>) adds src/<kernel>_portable.cpp and, on x86-64, src/<kernel>_avx2.cpp and
 # src/<kernel>_avx512.cpp, each compiled for its instruction set. src/<chooser>, which asks the processor, learns by
 # HARDBODY_X86_KERNELS that they are there.
@@ -13,11 +17,8 @@ function(hardbody_kernels target kernel chooser)
   if(NOT CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64)$")
     return()
   endif()
-  # Exactly what find_kernels in libgeom/src/batch.cpp asks the processor for. They come behind HARDBODY_ARCH.
-  set(avx2 -mavx2 -mfma -mbmi -mbmi2)
-  set(avx512 ${avx2} -mavx512f -mavx512vl -mavx512dq -mavx512bw)
   target_sources(${target} PRIVATE src/${kernel}_avx2.cpp src/${kernel}_avx512.cpp)
-  set_source_files_properties(src/${kernel}_avx2.cpp PROPERTIES COMPILE_OPTIONS "${avx2}")
-  set_source_files_properties(src/${kernel}_avx512.cpp PROPERTIES COMPILE_OPTIONS "${avx512}")
+  set_source_files_properties(src/${kernel}_avx2.cpp PROPERTIES COMPILE_OPTIONS "${hardbody_avx2}")
+  set_source_files_properties(src/${kernel}_avx512.cpp PROPERTIES COMPILE_OPTIONS "${hardbody_avx512}")
   set_source_files_properties(src/${chooser} PROPERTIES COMPILE_DEFINITIONS HARDBODY_X86_KERNELS)
 endfunction()

@@ -3,6 +3,7 @@ hardbody_test(ed_unit_test unit
   unit/custom_shape_test.cpp
   unit/envelopes_test.cpp
   unit/event_loop_test.cpp
+  unit/events_ahead_test.cpp
   unit/general_envelopes_test.cpp
   unit/lattice_start_test.cpp
   unit/polydispersity_test.cpp

@@ -15,6 +15,14 @@ hardbody_test(geom_unit_test unit
   unit/geom_queries_test.cpp
   unit/geom_superellipsoid_test.cpp
   unit/geom_user_shape_test.cpp)
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64)$")
+  find_package(hwy 1.0 REQUIRED CONFIG)
+  target_sources(geom_unit_test PRIVATE unit/geom_batch_roots.cpp unit/geom_batch_roots_test.cpp)
+  target_include_directories(geom_unit_test SYSTEM PRIVATE $<TARGET_PROPERTY:hwy::hwy,INTERFACE_INCLUDE_DIRECTORIES>)
+  set_source_files_properties(unit/geom_batch_roots.cpp PROPERTIES COMPILE_OPTIONS "${hardbody_avx512}")
+else()
+  list(APPEND unbuilt_tests unit/geom_batch_roots_test.cpp)
+endif()
 hardbody_test(geom_allocation_test unit unit/geom_allocation_test.cpp)
 hardbody_test(geom_batch_test property property/geom_batch_test.cpp)
 hardbody_test(geom_property_test property property/geom_distance_test.cpp

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -21,6 +22,8 @@ namespace ed::internal {
 /// eight in a line of the next level, and so on up to a single line. Ties go to the body with the lower number.
 class Calendar {
  public:
+  static constexpr int kFewestInParts = 64;
+
   explicit Calendar(int number) : number_(static_cast<std::size_t>(number)) {
     std::size_t groups = number_;
     do {
@@ -28,7 +31,7 @@ class Calendar {
       groups = (groups + kGroup - 1) / kGroup;
       groups_.resize(groups_.size() + groups);
     } while (groups > 1);
-    for (std::size_t entries = number_; entries >= kGroup * kGroup; entries = (entries + kGroup - 1) / kGroup) {
+    for (std::size_t entries = number_; entries >= kFewestInParts; entries = (entries + kGroup - 1) / kGroup) {
       ++level_of_parts_;
     }
   }
@@ -56,13 +59,14 @@ class Calendar {
     std::size_t level;
     std::size_t index;
   };
-  /// All bodies are divided into so many parts, fewer than 64, of which each is an entry.
+  /// All bodies are divided into so many parts, fewer than 64, of which each is an entry; the bodies themselves, if they
+  /// are fewer than kFewestInParts.
   std::size_t parts() const {
     return level_of_parts_ == 0 ? number_ : first_of_level_[level_of_parts_] - first_of_level_[level_of_parts_ - 1];
   }
   Entry part(std::size_t k) const { return {level_of_parts_, k}; }
   double time(Entry e) const { return groups_[first_of_level_[e.level] + e.index / kGroup].times[e.index % kGroup]; }
-  /// The entry of the level below from which this one's time is.
+  /// The entry of the level below from which this one's time is; of an entry above level 0.
   Entry earliest_below(Entry e) const {
     const Group& group = group_below(e);
     return {e.level - 1, kGroup * e.index + group.place_of(group.earliest())};
@@ -118,7 +122,10 @@ class Calendar {
   static_assert(sizeof(Group) == 64);
 
   static std::size_t at(int i) { return static_cast<std::size_t>(i); }
-  const Group& group_below(Entry e) const { return groups_[first_of_level_[e.level - 1] + e.index]; }
+  const Group& group_below(Entry e) const {
+    assert(e.level > 0);
+    return groups_[first_of_level_[e.level - 1] + e.index];
+  }
 
   std::size_t number_;  ///< of bodies
   std::size_t level_of_parts_ = 0;

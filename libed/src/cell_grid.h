@@ -43,7 +43,7 @@ class CellGrid {
   /// which grows as needed and is never shrunk.
   std::span<const NearBody> collect(const Eigen::Vector3d& position, double reach, std::vector<NearBody>& buffer) const;
 
-  /// These bodies are collected soon.
+  /// These bodies are collected soon: asks for the cells' own blocks, in which most of them stand.
   void fetch(const Eigen::Vector3d& position, double reach) const;
 
   /// The cells, and the order of the bodies in each, as they are; read into a grid of the same number of bodies.

@@ -41,7 +41,7 @@ class Envelopes {
   /// A new envelope for body i at its state now.
   virtual void place(int i, const Bodies& bodies, double now) = 0;
 
-  /// The envelope of body i is read soon.
+  /// The envelope of body i is read soon. Asks for nothing where envelopes are too slow for that to matter.
   virtual void fetch(int /*i*/) const {}
 
   /// The box, and all that is in it, has been scaled.

@@ -93,7 +93,7 @@ EventLoop<Bodies>::EventLoop(const System& system, const SimulationOptions& opti
   check_contact_options(options.contact, bodies_.inscribed_radius());
   if (options.neighbours == Neighbours::cells) check_cells(box_, bodies_.bounding_radius());
   for (const Body& body : system.bodies) species_of_.push_back(body.species);
-  if (number() >= kFarFrom) ahead_.emplace(calendar_);
+  if (number() >= std::max(options.prepare_from, EventsAhead<Bodies>::kFewest)) ahead_.emplace(calendar_);
   collisions_of_.resize(at(system.size()), 0);
   failures_.reserve(kReasons * kMaxFailuresRecorded);
 }
@@ -250,7 +250,7 @@ template <class Bodies>
 Pair& EventLoop<Bodies>::claim(std::int32_t index, int owner) {
   Pair& pair = lists_.pair(index);
   const std::int32_t partner = pair.partner(owner);
-  if (pair.owner == partner && bodies_.events(partner).first == index) orphans_.push_back(partner);
+  if (bodies_.events(partner).first == index) orphans_.push_back(partner);
   pair.owner = owner;
   return pair;
 }
@@ -377,7 +377,7 @@ void EventLoop<Bodies>::rebuild(int i) {
   for (const std::int32_t index : old_pairs_) {
     const Pair& pair = lists_.pair(index);
     const std::int32_t partner = pair.partner(i);
-    if (pair.owner == partner && bodies_.events(partner).first == index) orphans_.push_back(partner);
+    if (bodies_.events(partner).first == index) orphans_.push_back(partner);
     lists_.remove(index);
   }
   renew_exit(i);

@@ -110,8 +110,6 @@ class EventLoop final : public AnyEventLoop {
   static constexpr std::size_t kMaxFailuresRecorded = 16;                                         ///< for each reason
   /// Room for collisions that are recorded; more grow as they come.
   static constexpr std::size_t kCollisionsReserved = std::size_t{1} << 20;
-  /// So many bodies, a kilobyte each with lists and pairs, are more than the caches of a processor hold.
-  static constexpr int kFarFrom = 15000;
   /// Room for candidates beyond those that become neighbours: a block of each cell that is looked into, at most.
   static constexpr std::size_t kCandidatesReserved = 2048;
   /// Events a body after which it is asked whether the run still makes progress, and how many events are then looked at

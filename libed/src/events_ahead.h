@@ -22,7 +22,7 @@ struct EventSources {
   const Envelopes<Bodies>& envelopes;
   const CellGrid& cells;
 
-  /// The pairs of a body, whose list has been read or asked for before.
+  /// The pairs of a body, whose list has been read or asked for before, and where its time stands.
   void fetch_pairs(int body) const {
     for (const std::int32_t index : lists.of(body)) prefetch(lists.pair(index));
     calendar.fetch(body);
@@ -61,6 +61,9 @@ struct EventSources {
 template <class Bodies>
 class EventsAhead {
  public:
+  /// Bodies, so that the parts of the calendar are not the bodies themselves.
+  static constexpr int kFewest = Calendar::kFewestInParts;
+
   explicit EventsAhead(const Calendar& calendar) : coming_(calendar.parts()) {}
 
   /// Before each event.

@@ -61,7 +61,10 @@ class GeneralBodies {
     prefetch(events_[at(i)]);
   }
   /// All that there is of it.
-  void fetch_all(int i) const { fetch(i); }
+  void fetch_all(int i) const {
+    fetch(i);
+    prefetch(turned_[at(i)]);
+  }
   BodyEvents& events(int i) { return events_[at(i)]; }
   const BodyEvents& events(int i) const { return events_[at(i)]; }
   const Eigen::Vector3d& velocity(int i) const { return motions_[at(i)].velocity; }

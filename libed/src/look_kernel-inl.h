@@ -60,14 +60,40 @@ struct Body : SpinAxis<kSpin> {
   Real axis_rate;  ///< AxisMotion::axis_rate
 };
 
+/// An AxisMotion in each lane.
+template <bool kSpin>
+struct Course : SpinAxis<kSpin> {
+  Real3 position, velocity;
+  Real3 e1, e2;
+  Real rate, time;
+};
+
+template <bool kSpin>
+HWY_INLINE Course<kSpin> load_course(const double* const* bodies) {
+  using Number = LookBody::Number;
+  static_assert(Number::e0 == 14);
+  Real x[Number::e0];
+  for (int k = 0; k < Number::e0; k += 2) load_two(bodies, k, x[k], x[k + 1]);
+  const auto vector = [&](Number k) { return Real3(x[k], x[k + 1], x[k + 2]); };
+  Course<kSpin> course;
+  course.position = vector(Number::position);
+  course.velocity = vector(Number::velocity);
+  course.e1 = vector(Number::e1);
+  course.e2 = vector(Number::e2);
+  course.rate = x[Number::rate];
+  course.time = x[Number::time];
+  if constexpr (kSpin) course.e0 = load_three(bodies, Number::e0);
+  return course;
+}
+
 /// Axis and its rate of change, as `turn` in uniaxial_gauge.h. Returns the lanes whose angle is within the range of
 /// sincos.
 template <bool kSpin>
-HWY_INLINE Lanes turn(const LookRow* rows, int lane, Real t, Body<kSpin>& body) {
-  const Real3 e1 = load3(rows + LookBody::e1, lane);
-  const Real3 e2 = load3(rows + LookBody::e2, lane);
-  const Real dt = t - load(rows[LookBody::time], lane);
-  body.rate = load(rows[LookBody::rate], lane);
+HWY_INLINE Lanes turn(const Course<kSpin>& course, Real t, Body<kSpin>& body) {
+  const Real3& e1 = course.e1;
+  const Real3& e2 = course.e2;
+  const Real dt = t - course.time;
+  body.rate = course.rate;
   body.axis_rate = body.rate;
   if constexpr (kSpin) body.axis_rate = select(sum_of_magnitudes(e2) > 0, body.rate, 0.0);
   const Real3 du_now = body.rate * e2;
@@ -82,7 +108,7 @@ HWY_INLINE Lanes turn(const LookRow* rows, int lane, Real t, Body<kSpin>& body) 
     body.du = select(at_once, du_now, body.rate * (cos * e2 - sin * e1));
   }
   if constexpr (kSpin) {
-    body.e0 = load3(rows + LookBody::e0, lane);
+    body.e0 = course.e0;
     body.u = body.u + body.e0;
   }
   return abs(angle) <= kLargestAngle;
@@ -115,61 +141,52 @@ struct Pairs {
 
 /// As `pair_scales` in uniaxial_gauge.h.
 template <bool kSpin>
-HWY_INLINE PairScalesOf<Real> pair_scales(const LookInput& in, int lane, const Pairs<kSpin>& p, const Real3& velocity_a,
-                                          const Real3& velocity_b) {
-  const LookRow* const row_a = in.rows + LookInput::body_a;
-  const LookRow* const row_b = in.rows + LookInput::body_b;
-  const Real now = in.now;
+HWY_INLINE PairScalesOf<Real> pair_scales(const LookInput& in, int lane, const Pairs<kSpin>& p, const Course<kSpin>& a,
+                                          const Course<kSpin>& b) {
   return {.size = p.reach,
-          .places = sum_of_magnitudes(load3(row_a + LookBody::position, lane)) +
-                    sum_of_magnitudes(load3(row_b + LookBody::position, lane)),
-          .speed = sum_of_magnitudes(velocity_a) + sum_of_magnitudes(velocity_b),
+          .places = sum_of_magnitudes(a.position) + sum_of_magnitudes(b.position),
+          .speed = sum_of_magnitudes(a.velocity) + sum_of_magnitudes(b.velocity),
           .turning = p.turning,
-          .bending = load(row_a[LookBody::turning_limit], lane) * p.a.axis_rate +
-                     load(row_b[LookBody::turning_limit], lane) * p.b.axis_rate,
+          .bending = load(in.rows[LookInput::turning_limit_a], lane) * p.a.axis_rate +
+                     load(in.rows[LookInput::turning_limit_b], lane) * p.b.axis_rate,
           .limit = p.limit,
-          .origin =
-              larger(abs(now), larger(abs(load(row_a[LookBody::time], lane)), abs(load(row_b[LookBody::time], lane))))};
+          .origin = larger(abs(Real(in.now)), larger(abs(a.time), abs(b.time)))};
 }
 
-/// The gap at the normals that the pairs came with: settles most. `open`: those that count; then
-/// those among them that a second pass may settle.
+/// Makes the pairs, and evaluates the gap at the normals that they came with, which settles most. `open`: those that
+/// count; then those among them that a second pass may settle.
 template <bool kSpin>
-HWY_INLINE Pairs<kSpin> first_pass(const LookInput& in, int lane, LookOutput& out, Lanes& open) {
-  const LookRow* const row_a = in.rows + LookInput::body_a;
-  const LookRow* const row_b = in.rows + LookInput::body_b;
+HWY_INLINE void first_pass(const LookInput& in, int lane, LookOutput& out, Pairs<kSpin>& p, Lanes& open) {
   const Real now = in.now;
   const Real box = in.box;
   const Real inverse = 1 / in.box;
-  Pairs<kSpin> p;
-  const auto position = [&](const LookRow* rows, const Real3& velocity) {
-    return load3(rows + LookBody::position, lane) + (now - load(rows[LookBody::time], lane)) * velocity;
+  const Course<kSpin> course_a = load_course<kSpin>(in.body_a + lane);
+  const Course<kSpin> course_b = load_course<kSpin>(in.body_b + lane);
+  const auto position = [&](const Course<kSpin>& course) {
+    return course.position + (now - course.time) * course.velocity;
   };
-  const Real3 velocity_a = load3(row_a + LookBody::velocity, lane);
-  const Real3 velocity_b = load3(row_b + LookBody::velocity, lane);
-  const Real3 d = position(row_b, velocity_b) - position(row_a, velocity_a);
+  const Real3 d = position(course_b) - position(course_a);
   const Real3 r(nearest_image(d.x(), box, inverse), nearest_image(d.y(), box, inverse),
                 nearest_image(d.z(), box, inverse));
-  p.v = velocity_b - velocity_a;
+  p.v = course_b.velocity - course_a.velocity;
   p.reach = load(in.rows[LookInput::reach], lane);
-  p.n = load3(in.rows + LookInput::normal, lane);
+  p.n = load_three(in.normal + lane, 0);
   const WindowOf<Real> window = sphere_window(r, p.v, p.reach, now, now, load(in.rows[LookInput::end], lane));
   const Lanes meet = window.begin < window.end;
   p.t = window.begin;
   p.end = window.end;
   p.r = r + (p.t - now) * p.v;
-  p.a.shape = load_shape(row_a + LookBody::shape, lane);
-  p.b.shape = load_shape(row_b + LookBody::shape, lane);
-  const Lanes in_range = turn<kSpin>(row_a, lane, p.t, p.a) & turn<kSpin>(row_b, lane, p.t, p.b);
+  p.a.shape = load_shape(in.rows + LookInput::shape_a, lane);
+  p.b.shape = load_shape(in.rows + LookInput::shape_b, lane);
+  const Lanes in_range = turn(course_a, p.t, p.a) & turn(course_b, p.t, p.b);
   p.turning = p.reach * (p.a.axis_rate + p.b.axis_rate);
-  p.limit = load(row_a[LookBody::turning_limit], lane) * (p.a.axis_rate * p.a.axis_rate) +
-            load(row_b[LookBody::turning_limit], lane) * (p.b.axis_rate * p.b.axis_rate);
-  p.hidden = pair_scales(in, lane, p, velocity_a, velocity_b).rounding(p.t);
+  p.limit = load(in.rows[LookInput::turning_limit_a], lane) * (p.a.axis_rate * p.a.axis_rate) +
+            load(in.rows[LookInput::turning_limit_b], lane) * (p.b.axis_rate * p.b.axis_rate);
+  p.hidden = pair_scales(in, lane, p, course_a, course_b).rounding(p.t);
   const Lanes clear = meet & in_range & p.clear(p.gap());
   open = open & meet & in_range & !clear;
   store(select(clear | !meet, LookOutput::clear, LookOutput::open), out.rows[LookOutput::verdict], lane);
   store(select(meet, 1, 0), out.rows[LookOutput::kernel_calls], lane);
-  return p;
 }
 
 /// As certified_step in curvature_steps.h.
@@ -240,35 +257,59 @@ HWY_INLINE void second_pass(Pairs<kSpin>& p, int pairs, LookOutput& out, int lan
 /// Fewer pairs than this are not worth a vector's second pass.
 constexpr int kFewest = kLanes / 4 + 1;
 
-/// Pairs of several vectors moved together. They are vectors and nothing else.
+/// The pairs of a block, and which of them are open.
 template <bool kSpin>
-class OpenPairs {
+class Block {
  public:
-  HWY_INLINE int count() const { return count_; }
-  HWY_INLINE int home(int k) const { return home_[k]; }
-  HWY_INLINE Pairs<kSpin>& from(int k) { return pairs_[k / kLanes]; }
+  /// A vector of pairs, those from `lane` on.
+  HWY_INLINE Pairs<kSpin>& from(int lane) { return pairs_[lane / kLanes]; }
 
-  HWY_INLINE void add(const Pairs<kSpin>& p, Lanes open, int lane) {
-    alignas(64) double flags[kLanes];
-    hn::Store(hn::IfThenElseZero(open.mask, hn::Set(Tag(), 1.0)), Tag(), flags);
-    for (int k = 0; k < kLanes; ++k) {
-      if (flags[k] == 0) continue;
-      Pairs<kSpin>& target = pairs_[count_ / kLanes];
-      if (count_ % kLanes == 0) target = p;  // valid numbers in all lanes
-      copy_lane(p, k, target, count_ % kLanes);
-      home_[count_++] = lane + k;
+  HWY_INLINE void add_open(Lanes open, int lane) {
+    alignas(8) std::uint8_t bits[8] = {};
+    hn::StoreMaskBits(Tag(), open.mask, bits);
+    for (unsigned left = bits[0]; left != 0; left &= left - 1) home_[count_++] = lane + __builtin_ctz(left);
+  }
+  HWY_INLINE int open() const { return count_; }
+  HWY_INLINE int lane_of(int k) const { return home_[k]; }
+
+  /// Some open pairs, `together` of them from the k-th on, in one vector; its other lanes hold valid numbers.
+  HWY_INLINE Pairs<kSpin> gather(int k, int together) const {
+    alignas(64) Index lanes[kLanes] = {};
+    alignas(64) Index vectors[kLanes];
+    const int last = home_[k + together - 1] / kLanes;
+    for (int to = 0; to < kLanes; ++to) vectors[to] = last;
+    for (int to = 0; to < together; ++to) {
+      lanes[to] = home_[k + to] % kLanes;
+      vectors[to] = home_[k + to] / kLanes;
     }
+    const auto lane_in = hn::SetTableIndices(Tag(), lanes);
+    const auto vector_in = hn::Load(IndexTag(), vectors);
+    const auto in_lanes = [&](const double* numbers) {
+      return hn::TableLookupLanes(hn::Load(Tag(), numbers), lane_in);
+    };
+    Pairs<kSpin> gathered;
+    move(pairs_[last], gathered, [&](const double* from, const double* /*to*/) { return in_lanes(from); });
+    for (int vector = static_cast<int>(vectors[0]); vector < last; ++vector) {
+      const auto of_it = hn::RebindMask(Tag(), hn::Eq(vector_in, hn::Set(IndexTag(), Index{vector})));
+      move(pairs_[vector], gathered, [&](const double* from, const double* to) {
+        return hn::IfThenElse(of_it, in_lanes(from), hn::Load(Tag(), to));
+      });
+    }
+    return gathered;
   }
 
  private:
-  static HWY_INLINE void copy_lane(const Pairs<kSpin>& from, int lane, Pairs<kSpin>& to, int to_lane) {
-    constexpr unsigned kRows = sizeof(Pairs<kSpin>) / sizeof(Real);
-    static_assert(sizeof(Pairs<kSpin>) == kRows * sizeof(Real));
-    const char* source = reinterpret_cast<const char*>(&from) + sizeof(double) * lane;
-    char* target = reinterpret_cast<char*>(&to) + sizeof(double) * to_lane;
-    for (unsigned row = 0; row < kRows; ++row) {
-      __builtin_memcpy(target + row * sizeof(Real), source + row * sizeof(Real), sizeof(double));
-    }
+  using Index = std::int64_t;
+  using IndexTag = hn::RebindToSigned<Tag>;
+
+  /// Every number of `to`, from the same of `source`. Pairs are vectors and nothing else.
+  template <class Move>
+  static HWY_INLINE void move(const Pairs<kSpin>& source, Pairs<kSpin>& to, const Move& moved) {
+    constexpr unsigned kNumbers = sizeof(Pairs<kSpin>) / sizeof(double);
+    static_assert(sizeof(Pairs<kSpin>) % sizeof(Real) == 0);
+    const auto* const from = reinterpret_cast<const double*>(&source);
+    auto* const numbers = reinterpret_cast<double*>(&to);
+    for (unsigned k = 0; k < kNumbers; k += kLanes) hn::Store(moved(from + k, numbers + k), Tag(), numbers + k);
   }
 
   Pairs<kSpin> pairs_[kBlockLooks / kLanes];
@@ -279,18 +320,19 @@ class OpenPairs {
 template <bool kSpin>
 void look(const LookInput& in, int pairs, LookOutput& out) {
   // Few pairs need the second pass.
-  OpenPairs<kSpin> open_pairs;
+  Block<kSpin> block;
   for (int lane = 0; lane < pairs; lane += kLanes) {
     Lanes open{hn::FirstN(Tag(), static_cast<std::size_t>(pairs - lane))};
-    const Pairs<kSpin> p = first_pass<kSpin>(in, lane, out, open);
-    if (any(open)) open_pairs.add(p, open, lane);
+    first_pass<kSpin>(in, lane, out, block.from(lane), open);
+    block.add_open(open, lane);
   }
-  for (int k = 0; open_pairs.count() - k >= kFewest; k += kLanes) {
-    const int together = open_pairs.count() - k < kLanes ? open_pairs.count() - k : kLanes;
+  for (int k = 0; block.open() - k >= kFewest; k += kLanes) {
+    const int together = block.open() - k < kLanes ? block.open() - k : kLanes;
     LookOutput late;
-    second_pass<kSpin>(open_pairs.from(k), together, late, 0);
+    Pairs<kSpin> gathered = block.gather(k, together);
+    second_pass<kSpin>(gathered, together, late, 0);
     for (int lane = 0; lane < together; ++lane) {
-      for (int row = 0; row < LookOutput::count; ++row) out.rows[row][open_pairs.home(k + lane)] = late.rows[row][lane];
+      for (int row = 0; row < LookOutput::count; ++row) out.rows[row][block.lane_of(k + lane)] = late.rows[row][lane];
     }
   }
 }

@@ -20,24 +20,14 @@ struct Envelope {
   Real3 axis;
 };
 
-/// A NearBody, or what a DilatedEnvelope begins with: axis and kind.
-using Quad = double[4];
-using QuadTag = hn::CappedTag<double, 4>;
-constexpr int kQuadLanes = static_cast<int>(HWY_MIN(HWY_LANES(double), 4));
-
-HWY_INLINE void copy(const void* from, Quad& to) {
-  const auto* const numbers = static_cast<const double*>(from);
-  for (int k = 0; k < 4; k += kQuadLanes) hn::Store(hn::LoadU(QuadTag(), numbers + k), QuadTag(), to + k);
-}
-
-/// What is near, and the envelopes of these bodies.
+/// Where what is near stands, NearBodys, and the envelopes of these bodies: four numbers of each count.
 struct Candidates {
-  alignas(64) Quad near[kBlockMeetings];
-  alignas(64) Quad envelope[kBlockMeetings];
+  const double* near[kBlockMeetings];
+  const double* envelope[kBlockMeetings];
 
   HWY_INLINE void move(int from, int to) {
-    copy(near[from], near[to]);
-    copy(envelope[from], envelope[to]);
+    near[to] = near[from];
+    envelope[to] = envelope[from];
   }
   /// Repeats the first until vectors are full.
   HWY_INLINE void fill_up(int count) {
@@ -47,7 +37,7 @@ struct Candidates {
 
 /// The vector to the bodies of some lanes, and their envelopes.
 struct Other {
-  hn::Vec<Tag> name;  ///< the body's number in the lower half
+  Real name;  ///< the body's number in the lower half
   Real3 r;
   Envelope envelope;
 };
@@ -55,16 +45,18 @@ struct Other {
 template <bool kOneKind>
 HWY_INLINE Other load_other(const MeetingInput& in, const Envelope& one, const Candidates& candidates, int lane) {
   Other other;
-  hn::Vec<Tag> x, y, z, kind;
-  hn::LoadInterleaved4(Tag(), candidates.near[lane], other.name, x, y, z);
-  other.r = {Real(x), Real(y), Real(z)};
-  hn::LoadInterleaved4(Tag(), candidates.envelope[lane], x, y, z, kind);
-  other.envelope.axis = {Real(x), Real(y), Real(z)};
+  Real x, y, z, kind;
+  load_two(candidates.near + lane, 0, other.name, x);
+  load_two(candidates.near + lane, 2, y, z);
+  other.r = {x, y, z};
+  load_two(candidates.envelope + lane, 0, x, y);
+  load_two(candidates.envelope + lane, 2, z, kind);
+  other.envelope.axis = {x, y, z};
   if constexpr (kOneKind) {
     other.envelope.shape = one.shape;
   } else {
     alignas(64) std::int64_t kinds[kLanes];
-    hn::Store(hn::BitCast(hn::RebindToSigned<Tag>(), kind), hn::RebindToSigned<Tag>(), kinds);
+    hn::Store(hn::BitCast(hn::RebindToSigned<Tag>(), kind.v), hn::RebindToSigned<Tag>(), kinds);
     alignas(64) double rows[ShapeRows::count][kLanes];
     for (int k = 0; k < kLanes; ++k) {
       for (int row = 0; row < ShapeRows::count; ++row) rows[row][k] = in.shapes[kinds[k]].numbers[row];
@@ -115,7 +107,7 @@ HWY_INLINE void meet_closely(const Envelope& a, const Other& other, Real limit, 
 /// Lanes of bodies that count and are not told apart by the gap along the line of centres, a bit each.
 HWY_INLINE unsigned close_lanes(const MeetingInput& in, const Envelope& a, const Other& other) {
   const hn::RebindToSigned<Tag> places;
-  const auto body = hn::And(hn::BitCast(places, other.name), hn::Set(places, std::int64_t{0xFFFFFFFF}));
+  const auto body = hn::And(hn::BitCast(places, other.name.v), hn::Set(places, std::int64_t{0xFFFFFFFF}));
   const auto none = hn::Or(hn::Eq(body, hn::Set(places, std::int64_t{in.one})),
                            hn::Lt(body, hn::Set(places, std::int64_t{in.first})));
   const Envelope& b = other.envelope;
@@ -131,14 +123,13 @@ HWY_INLINE void meet_all(const MeetingInput& in, MeetingOutput& out) {
   const double* const shape = in.shapes[one.kind].numbers;
   const Envelope a{{shape[ShapeRows::a2], shape[ShapeRows::b2], shape[ShapeRows::c], shape[ShapeRows::rho]},
                    {one.axis[0], one.axis[1], one.axis[2]}};
-  // Read in an order that nothing waits in; vectors take four numbers of each body from it then.
   Candidates candidates;
-  const auto* const near = static_cast<const unsigned char*>(in.near);
+  const auto* const near = static_cast<const double*>(in.near);
   for (int k = 0; k < in.count; ++k) {
     std::int32_t body;
-    __builtin_memcpy(&body, near + k * sizeof(Quad), sizeof body);
-    copy(near + k * sizeof(Quad), candidates.near[k]);
-    copy(in.envelopes + body, candidates.envelope[k]);
+    __builtin_memcpy(&body, near + 4 * k, sizeof body);
+    candidates.near[k] = near + 4 * k;
+    candidates.envelope[k] = in.envelopes[body].axis;
   }
   candidates.fill_up(in.count);
   int count = 0;

@@ -29,32 +29,34 @@ constexpr int kBlockLooks = 48;
 /// One number of each pair of a block.
 using LookRow = double[kBlockLooks];
 
-/// Rows of one of the two bodies, from LookInput::body_a or body_b on.
+/// The numbers of an AxisMotion, one after the other.
 struct LookBody {
-  enum Row {
-    shape = 0,
-    turning_limit = ShapeRows::count,  ///< as in Spheroid
-    position = 5,                      ///< of the motion, as in AxisMotion
-    velocity = 8,
-    e1 = 11,
-    e2 = 14,
-    rate = 17,
-    time = 18,
-    e0 = 19,  ///< with spin only
-    count = 22,
+  enum Number {
+    position = 0,
+    velocity = 3,
+    e1 = 6,
+    e2 = 9,
+    rate = 12,
+    time = 13,
+    e0 = 14,  ///< read of bodies that spin only
   };
 };
 
 struct LookInput {
   enum Row {
-    body_a = 0,
-    body_b = LookBody::count,
-    reach = 2 * LookBody::count,  ///< the sum of both bounding radii
-    end = reach + 1,              ///< of the search
-    normal = end + 1,             ///< from A to B, unit
-    count = normal + 3,
+    shape_a = 0,
+    shape_b = ShapeRows::count,
+    turning_limit_a = 2 * ShapeRows::count,  ///< as in Spheroid
+    turning_limit_b,
+    reach,  ///< the sum of both bounding radii
+    end,    ///< of the search
+    count,
   };
   alignas(64) LookRow rows[count];
+  // Where each lane's numbers stand.
+  const double* body_a[kBlockLooks];
+  const double* body_b[kBlockLooks];
+  const double* normal[kBlockLooks];  ///< from A to B, unit; three numbers
   double now;
   double box;
 };

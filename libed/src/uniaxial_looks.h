@@ -19,12 +19,10 @@ class UniaxialLooks final : public FirstLooks<UniaxialBodies> {
             FinderCounters& count) override;
 
  private:
-  /// Into `lane` and the next one.
-  void put(const UniaxialBodies& bodies, const Look& first, const Look& second, int lane);
+  void put(const UniaxialBodies& bodies, const Look& look, int lane);
   void read(int lane, Look& look, FinderCounters& count) const;
 
   LookKernel* kernel_;
-  bool spins_;
   bool one_kind_;  ///< its rows are in all lanes
   LookInput in_;
   LookOutput out_;

@@ -83,6 +83,7 @@ struct Query {
   }
 };
 
+/// Two bodies, and where their answer goes.
 struct Pair {
   const Ellipsoid* a;
   const Pose* X_WA;
@@ -107,7 +108,7 @@ void put(double first, double second, BatchRow& row, int lane) {
   row[lane + 1] = second;
 }
 
-void put_pairs(const Pair& first, const Pair& second, GeneralInput& in, int lane) {
+void put_shapes(const Pair& first, const Pair& second, GeneralInput& in, int lane) {
   put<3>(first.a->semi_axes().data(), second.a->semi_axes().data(), in.rows + GeneralInput::semi_axes_a, lane);
   put<3>(first.b->semi_axes().data(), second.b->semi_axes().data(), in.rows + GeneralInput::semi_axes_b, lane);
   put<9>(first.X_WA->rotation().data(), second.X_WA->rotation().data(), in.rows + GeneralInput::rotation_a, lane);
@@ -126,17 +127,17 @@ struct Revolution {
         axis(&X.rotation()(0, *shape.symmetry_axis())) {}
 };
 
-void put(const Revolution& first, const Revolution& second, BatchRow* shape_rows, BatchRow* axis_rows, int lane) {
+void put_revolutions(const Revolution& first, const Revolution& second, BatchRow* shape_rows, BatchRow* axis_rows, int lane) {
   put(first.along, second.along, shape_rows[0], lane);
   put(first.across, second.across, shape_rows[1], lane);
   put<3>(first.axis, second.axis, axis_rows, lane);
 }
 
-void put_pairs(const Pair& first, const Pair& second, UniaxialInput& in, int lane) {
-  put(Revolution(*first.a, *first.X_WA), Revolution(*second.a, *second.X_WA), in.rows + UniaxialInput::along_a,
-      in.rows + UniaxialInput::axis_a, lane);
-  put(Revolution(*first.b, *first.X_WB), Revolution(*second.b, *second.X_WB), in.rows + UniaxialInput::along_b,
-      in.rows + UniaxialInput::axis_b, lane);
+void put_shapes(const Pair& first, const Pair& second, UniaxialInput& in, int lane) {
+  put_revolutions(Revolution(*first.a, *first.X_WA), Revolution(*second.a, *second.X_WA),
+                  in.rows + UniaxialInput::along_a, in.rows + UniaxialInput::axis_a, lane);
+  put_revolutions(Revolution(*first.b, *first.X_WB), Revolution(*second.b, *second.X_WB),
+                  in.rows + UniaxialInput::along_b, in.rows + UniaxialInput::axis_b, lane);
 }
 
 int iterations_of(const BatchOutput& out, int lane) {
@@ -199,7 +200,7 @@ class Block {
   }
 
   void put_pairs(const Pair& first, const Pair& second, int lane) {
-    geom::put_pairs(first, second, in_, lane);
+    put_shapes(first, second, in_, lane);
     put(first.depth(), second.depth(), in_.rows[KernelInput::depth], lane);
     put<3>(first.X_WA->position().data(), second.X_WA->position().data(), in_.rows + KernelInput::position_a, lane);
     put<3>(first.X_WB->position().data(), second.X_WB->position().data(), in_.rows + KernelInput::position_b, lane);
@@ -336,8 +337,10 @@ BatchSummary distance_batch(std::span<const Ellipsoid> a, std::span<const Pose> 
 
   Block<UniaxialInput> uniaxial(query, kernels.uniaxial);
   Block<GeneralInput> general(query, kernels.general);
-  const Ellipsoid *shape_a = query.a.data, *shape_b = query.b.data;
-  const Pose *pose_a = query.X_WA.data, *pose_b = query.X_WB.data;
+  const Ellipsoid* shape_a = query.a.data;
+  const Pose* pose_a = query.X_WA.data;
+  const Ellipsoid* shape_b = query.b.data;
+  const Pose* pose_b = query.X_WB.data;
   for (std::size_t pair = 0; pair < pairs; ++pair) {
     if (shape_a->symmetry_axis() && shape_b->symmetry_axis()) {
       uniaxial.add({shape_a, pose_a, shape_b, pose_b, pair});

@@ -163,7 +163,7 @@ HWY_INLINE Answer finish(const StateRow* rows, int lane, const Witness& w, Batch
   const Lanes converged = load(rows[State::converged], lane) > constant(0);
   const Lanes answered = hn::And(converged, hn::And(certified, polished));
   store(hn::IfThenElseZero(answered, load(rows[State::iterations], lane)), out.iterations, lane);
-  const Real residual = y2 * inverse_root(hn::Max(y2, constant(1e-300)));  // 0 for 0
+  const Real residual = y2 * inverse_root(hn::Max(y2, constant(1e-300)));  // 0 for 0; squares in between are out of reach
   const Real error_bound = constant(0.5) * y2 * near_inverse(depth_left);  // as newton_error_bound
   return {distance, add(w.s_a, constant(0.5), y), residual, error_bound};
 }

@@ -14,7 +14,7 @@ constexpr int kLongestVector = 8;
 /// One number of each pair of a block.
 using BatchRow = double[kBlockPairs];
 
-/// Two ellipsoids. What comes before `position_a` is of the shapes alone.
+/// Two ellipsoids.
 struct GeneralInput {
   enum Row {
     semi_axes_a = 0,

@@ -1,7 +1,8 @@
 #pragma once
 
-/// Vectors of three components, each of which holds one number of every lane, for batch_kernel-inl.h: what else there
-/// is about the instruction set, the linkage and what may be included is said there.
+/// Vectors of three components, each of which holds one number of every lane, and roots and inverses of such numbers,
+/// for batch_kernel-inl.h: what else there is about the instruction set, the linkage and what may be included is said
+/// there.
 
 // What the kernels do not need should not be asked of the processor.
 #define HWY_DISABLE_PCLMUL_AES
@@ -101,11 +102,6 @@ HWY_INLINE Real33 load33(const Row* rows, int lane) {
   return {load3(rows, lane), load3(rows + 3, lane), load3(rows + 6, lane)};
 }
 
-/// Four numbers of each pair, those from `lane` on.
-template <class Record>
-HWY_INLINE void store_record(const Real3& v, Real s, Record& record, int lane) {
-  hn::StoreInterleaved4(v.x, v.y, v.z, s, Tag(), record[lane]);
-}
 template <class Row>
 HWY_INLINE void store(Real x, Row& row, int lane) {
   hn::Store(x, Tag(), row + lane);
@@ -115,6 +111,11 @@ HWY_INLINE void store3(const Real3& v, Row* rows, int lane) {
   store(v.x, rows[0], lane);
   store(v.y, rows[1], lane);
   store(v.z, rows[2], lane);
+}
+/// Stores v and s as one record of each lane from `lane` on.
+template <class Record>
+HWY_INLINE void store_record(const Real3& v, Real s, Record& record, int lane) {
+  hn::StoreInterleaved4(v.x, v.y, v.z, s, Tag(), record[lane]);
 }
 
 /// Square roots and their inverses.
@@ -146,9 +147,10 @@ HWY_INLINE Real inverse_root(Real x) {
 }
 
 HWY_INLINE Roots roots(Real a, Real b) {
-  const RootSeries s = root_series(a), t = root_series(b);
-  return {hn::MulAdd(s.t, s.p, s.t), hn::MulAdd(t.t, t.p, t.t), hn::MulAdd(s.estimate, s.p, s.estimate),
-          hn::MulAdd(t.estimate, t.p, t.estimate)};
+  const RootSeries of_a = root_series(a);
+  const RootSeries of_b = root_series(b);
+  return {hn::MulAdd(of_a.t, of_a.p, of_a.t), hn::MulAdd(of_b.t, of_b.p, of_b.t),
+          hn::MulAdd(of_a.estimate, of_a.p, of_a.estimate), hn::MulAdd(of_b.estimate, of_b.p, of_b.estimate)};
 }
 
 /// 1 / x to 40 bits: for what an error of 1e-12 of it does not matter to.

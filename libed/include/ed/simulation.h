@@ -125,6 +125,10 @@ struct SimulationOptions {
   /// no vectors. And that in which bodies of any shape are found in the cells around another; none: that of the whole
   /// library. The results are the same, bit for bit.
   std::optional<geom::InstructionSet> batches = geom::InstructionSet::best;
+  /// With so many bodies and more, 64 at the least, what the next events read is asked for in good time: a kilobyte a
+  /// body, with lists and pairs, is more than the caches of a processor hold then. The results are the same, bit for
+  /// bit.
+  int prepare_from = 15000;
   /// A run has stalled when 2000 events a body take less than this share of the time in which the fastest of them moves
   /// by the smallest inscribed radius. Sound runs take some 10 such times.
   double least_progress = 1e-6;

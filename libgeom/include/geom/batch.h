@@ -27,7 +27,8 @@ GEOM_EXPORT const char* to_string(InstructionSet set);
 /// Whether this build has a kernel for `set` and this processor can run it.
 GEOM_EXPORT bool is_available(InstructionSet set);
 
-/// What InstructionSet::best stands for on this processor. Results depend on it in their last bits.
+/// What InstructionSet::best stands for on this processor. Results depend on it in their last bits; with avx512 also on
+/// the processor's estimates of roots and inverses, of which only the error is bounded.
 GEOM_EXPORT InstructionSet batch_instruction_set();
 
 /// How `distance_batch` starts, with what, and how far it goes.
