@@ -59,8 +59,8 @@ class Calendar {
     std::size_t level;
     std::size_t index;
   };
-  /// All bodies are divided into so many parts, fewer than 64, of which each is an entry; the bodies themselves, if they
-  /// are fewer than kFewestInParts.
+  /// All bodies are divided into so many parts, fewer than 64, of which each is an entry; the bodies themselves, if
+  /// they are fewer than kFewestInParts.
   std::size_t parts() const {
     return level_of_parts_ == 0 ? number_ : first_of_level_[level_of_parts_] - first_of_level_[level_of_parts_ - 1];
   }
