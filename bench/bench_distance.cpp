@@ -168,6 +168,8 @@ struct Times {
 };
 
 void print_row(const std::string& name, const Times& t) {
+  const double any = std::fmax(std::fmax(t.uniaxial_cold, t.uniaxial_warm), std::fmax(t.general_cold, t.general_warm));
+  if (std::isnan(any)) return;  // the filter has left all of it out
   std::printf("%-20s | %7.1f %7.1f %7.2f | %7.1f %7.1f %7.2f | %7.2f %7.2f\n", name.c_str(), t.uniaxial_cold,
               t.uniaxial_warm, t.uniaxial_cold / t.uniaxial_warm, t.general_cold, t.general_warm,
               t.general_cold / t.general_warm, t.general_cold / t.uniaxial_cold, t.general_warm / t.uniaxial_warm);

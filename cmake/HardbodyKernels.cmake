@@ -12,6 +12,7 @@ set(hardbody_avx512 ${hardbody_avx2} -mavx512f -mavx512vl -mavx512dq -mavx512bw)
 # for it.
 function(hardbody_kernels target kernel chooser)
   find_package(hwy 1.0 REQUIRED CONFIG)
+  target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/libgeom/src/kernels)  # what all kernels share
   target_include_directories(${target} SYSTEM PRIVATE $<TARGET_PROPERTY:hwy::hwy,INTERFACE_INCLUDE_DIRECTORIES>)
   target_sources(${target} PRIVATE src/${kernel}_portable.cpp)
   if(NOT CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64)$")

@@ -9,6 +9,7 @@
 #include <geom/tolerances.h>
 
 #include <hwy/highway.h>
+#include <records-inl.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace ed::internal {
@@ -178,35 +179,11 @@ HWY_INLINE void store3(const Real3& v, Row* rows, int lane) {
   store(v.z(), rows[2], lane);
 }
 
-// Of records of numbers that stand anywhere, one for each lane.
-
-#if HWY_TARGET == HWY_SCALAR
 /// A number of each record, and the one after it.
 HWY_INLINE void load_two(const double* const* records, int number, Real& first, Real& second) {
-  first = Real(hn::LoadU(Tag(), records[0] + number));
-  second = Real(hn::LoadU(Tag(), records[0] + number + 1));
+  geom::internal::load_two(Tag(), records, number, first.v, second.v);
 }
-#else
-/// The first of every two records: a number and the one after it, side by side.
-template <class D>
-HWY_INLINE hn::Vec<D> load_blocks(D d, const double* const* records, int number) {
-  if constexpr (hn::MaxLanes(D()) == 2) {
-    return hn::LoadU(d, records[0] + number);
-  } else {
-    const hn::Half<D> half;
-    const auto lower = load_blocks(half, records, number);
-    return hn::Combine(d, load_blocks(half, records + hn::MaxLanes(half), number), lower);
-  }
-}
-/// A number of each record, and the one after it: half as many loads, and no stores, as by way of rows.
-HWY_INLINE void load_two(const double* const* records, int number, Real& first, Real& second) {
-  const auto even = load_blocks(Tag(), records, number);
-  const auto odd = load_blocks(Tag(), records + 1, number);
-  first = Real(hn::InterleaveLower(Tag(), even, odd));
-  second = Real(hn::InterleaveUpper(Tag(), even, odd));
-}
-#endif
-
+/// And the one after that.
 HWY_INLINE Real3 load_three(const double* const* records, int number) {
   Real x, y, z;
   load_two(records, number, x, y);

@@ -94,50 +94,24 @@ struct Pair {
   double depth() const { return a->min_curvature_radius() + b->min_curvature_radius(); }
 };
 
-/// Two pairs at a time, in neighbouring lanes: half as many stores.
-template <int Size>
-void put(const double* first, const double* second, BatchRow* rows, int lane) {
-  for (int i = 0; i < Size; ++i) {
-    rows[i][lane] = first[i];
-    rows[i][lane + 1] = second[i];
-  }
+void put_shapes(const Pair& pair, GeneralInput& in, int lane) {
+  in.semi_axes_a[lane] = pair.a->semi_axes().data();
+  in.semi_axes_b[lane] = pair.b->semi_axes().data();
+  in.rotation_a[lane] = pair.X_WA->rotation().data();
+  in.rotation_b[lane] = pair.X_WB->rotation().data();
 }
 
-void put(double first, double second, BatchRow& row, int lane) {
-  row[lane] = first;
-  row[lane + 1] = second;
+/// Of a body of revolution. Returns where its axis stands.
+const double* put_revolution(const Ellipsoid& shape, const Pose& X, BatchRow* rows, int lane) {
+  const int axis = *shape.symmetry_axis();
+  rows[0][lane] = shape.semi_axes()[axis];
+  rows[1][lane] = shape.semi_axes()[axis == 0 ? 1 : 0];
+  return &X.rotation()(0, axis);
 }
 
-void put_shapes(const Pair& first, const Pair& second, GeneralInput& in, int lane) {
-  put<3>(first.a->semi_axes().data(), second.a->semi_axes().data(), in.rows + GeneralInput::semi_axes_a, lane);
-  put<3>(first.b->semi_axes().data(), second.b->semi_axes().data(), in.rows + GeneralInput::semi_axes_b, lane);
-  put<9>(first.X_WA->rotation().data(), second.X_WA->rotation().data(), in.rows + GeneralInput::rotation_a, lane);
-  put<9>(first.X_WB->rotation().data(), second.X_WB->rotation().data(), in.rows + GeneralInput::rotation_b, lane);
-}
-
-/// Of a body of revolution.
-struct Revolution {
-  double along;
-  double across;
-  const double* axis;
-
-  Revolution(const Ellipsoid& shape, const Pose& X)
-      : along(shape.semi_axes()[*shape.symmetry_axis()]),
-        across(shape.semi_axes()[*shape.symmetry_axis() == 0 ? 1 : 0]),
-        axis(&X.rotation()(0, *shape.symmetry_axis())) {}
-};
-
-void put_revolutions(const Revolution& first, const Revolution& second, BatchRow* shape_rows, BatchRow* axis_rows, int lane) {
-  put(first.along, second.along, shape_rows[0], lane);
-  put(first.across, second.across, shape_rows[1], lane);
-  put<3>(first.axis, second.axis, axis_rows, lane);
-}
-
-void put_shapes(const Pair& first, const Pair& second, UniaxialInput& in, int lane) {
-  put_revolutions(Revolution(*first.a, *first.X_WA), Revolution(*second.a, *second.X_WA),
-                  in.rows + UniaxialInput::along_a, in.rows + UniaxialInput::axis_a, lane);
-  put_revolutions(Revolution(*first.b, *first.X_WB), Revolution(*second.b, *second.X_WB),
-                  in.rows + UniaxialInput::along_b, in.rows + UniaxialInput::axis_b, lane);
+void put_shapes(const Pair& pair, UniaxialInput& in, int lane) {
+  in.axis_a[lane] = put_revolution(*pair.a, *pair.X_WA, in.rows + UniaxialInput::along_a, lane);
+  in.axis_b[lane] = put_revolution(*pair.b, *pair.X_WB, in.rows + UniaxialInput::along_b, lane);
 }
 
 int iterations_of(const BatchOutput& out, int lane) {
@@ -177,7 +151,7 @@ class Block {
     if (count_ == 0) return;
     const int filled = (count_ + kLongestVector - 1) / kLongestVector * kLongestVector;
     for (int lane = count_; lane < filled; ++lane) pairs_[lane] = pairs_[count_ - 1];
-    for (int lane = 0; lane < filled; lane += 2) put_pairs(pairs_[lane], pairs_[lane + 1], lane);
+    for (int lane = 0; lane < filled; ++lane) put(pairs_[lane], lane);
     kernel_(in_, count_, out_);
     for (int lane = 0; lane < count_; ++lane) {
       DistanceResult& result = query_.results[pairs_[lane].index];
@@ -199,13 +173,12 @@ class Block {
     return out_.iterations[lane] > 0 && iterations_of(out_, lane) <= std::max(1, query_.scalar.max_iterations);
   }
 
-  void put_pairs(const Pair& first, const Pair& second, int lane) {
-    put_shapes(first, second, in_, lane);
-    put(first.depth(), second.depth(), in_.rows[KernelInput::depth], lane);
-    put<3>(first.X_WA->position().data(), second.X_WA->position().data(), in_.rows + KernelInput::position_a, lane);
-    put<3>(first.X_WB->position().data(), second.X_WB->position().data(), in_.rows + KernelInput::position_b, lane);
-    if (!in_.has_starts) return;
-    put<3>(query_.starts[first.index].data(), query_.starts[second.index].data(), in_.rows + KernelInput::start, lane);
+  void put(const Pair& pair, int lane) {
+    put_shapes(pair, in_, lane);
+    in_.rows[KernelInput::depth][lane] = pair.depth();
+    in_.position_a[lane] = pair.X_WA->position().data();
+    in_.position_b[lane] = pair.X_WB->position().data();
+    if (in_.has_starts) in_.start[lane] = query_.starts[pair.index].data();
   }
 
   const Query& query_;

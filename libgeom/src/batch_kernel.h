@@ -14,21 +14,21 @@ constexpr int kLongestVector = 8;
 /// One number of each pair of a block.
 using BatchRow = double[kBlockPairs];
 
+/// Where some numbers of each pair stand, one after the other.
+using BatchRecords = const double* [kBlockPairs];
+
 /// Two ellipsoids.
 struct GeneralInput {
   enum Row {
-    semi_axes_a = 0,
-    semi_axes_b = 3,
-    depth = 6,  ///< the sum of both min_curvature_radius()
-    position_a = 7,
-    position_b = 10,
-    rotation_a = 13,  ///< body to world, column by column
-    rotation_b = 22,
-    start = 31,  ///< as DistanceOptions::start
-    count = 34,
+    depth = 0,  ///< the sum of both min_curvature_radius()
+    count = 1,
   };
   alignas(64) BatchRow rows[count];
-  bool has_starts;  ///< else all are 0, cold
+  BatchRecords semi_axes_a, semi_axes_b;
+  BatchRecords position_a, position_b;
+  BatchRecords rotation_a, rotation_b;  ///< body to world, column by column
+  BatchRecords start;                   ///< as DistanceOptions::start
+  bool has_starts;                      ///< else all are 0, cold
 };
 
 /// Two ellipsoids of revolution, by their axes of revolution in world coordinates.
@@ -39,14 +39,12 @@ struct UniaxialInput {
     along_b = 2,
     across_b = 3,
     depth = 4,
-    position_a = 5,
-    position_b = 8,
-    axis_a = 11,  ///< unit vector
-    axis_b = 14,
-    start = 17,
-    count = 20,
+    count = 5,
   };
   alignas(64) BatchRow rows[count];
+  BatchRecords position_a, position_b;
+  BatchRecords axis_a, axis_b;  ///< unit vectors
+  BatchRecords start;
   bool has_starts;
 };
 

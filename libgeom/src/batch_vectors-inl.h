@@ -11,6 +11,8 @@
 #undef HWY_IS_DEBUG_BUILD
 #define HWY_IS_DEBUG_BUILD 0
 
+#include "kernels/records-inl.h"
+
 #include <geom/tolerances.h>
 
 #include <hwy/highway.h>
@@ -19,7 +21,6 @@ HWY_BEFORE_NAMESPACE();
 namespace geom::internal {
 namespace {
 
-namespace hn = hwy::HWY_NAMESPACE;
 using Tag = hn::ScalableTag<double>;
 using Real = hn::Vec<Tag>;
 using Lanes = hn::Mask<Tag>;
@@ -97,6 +98,25 @@ template <class Row>
 HWY_INLINE Real3 load3(const Row* rows, int lane) {
   return {load(rows[0], lane), load(rows[1], lane), load(rows[2], lane)};
 }
+
+/// Records of three numbers.
+HWY_INLINE Real3 load_three(const double* const* records, int lane) {
+  Real3 v;
+  load_two(Tag(), records + lane, 0, v.x, v.y);
+  load_two(Tag(), records + lane, 1, v.y, v.z);
+  return v;
+}
+/// Of nine.
+HWY_INLINE Real33 load_nine(const double* const* records, int lane) {
+  Real33 m;
+  load_two(Tag(), records + lane, 0, m.x.x, m.x.y);
+  load_two(Tag(), records + lane, 2, m.x.z, m.y.x);
+  load_two(Tag(), records + lane, 4, m.y.y, m.y.z);
+  load_two(Tag(), records + lane, 6, m.z.x, m.z.y);
+  load_two(Tag(), records + lane, 7, m.z.y, m.z.z);
+  return m;
+}
+
 template <class Row>
 HWY_INLINE Real33 load33(const Row* rows, int lane) {
   return {load3(rows, lane), load3(rows + 3, lane), load3(rows + 6, lane)};
