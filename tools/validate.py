@@ -66,21 +66,23 @@ class Runner:
             + settings.get("output", "")
         )
         summary = directory / "summary.json"
-        known = config.exists() and config.read_text() == text and summary.exists()
+        known = config.exists() and config.read_text() == text and (directory / "checkpoint.bin").exists()
         if not known:
             self.out.mkdir(parents=True, exist_ok=True)
             config.write_text(text)
             self._call("run", str(config), "--out", str(directory), "--force")
-        elif json.loads(summary.read_text())["interrupted"]:
+        elif not summary.exists() or json.loads(summary.read_text())["interrupted"]:
             self._call("resume", str(directory))
         result = json.loads(summary.read_text())
-        if result["interrupted"]:
-            raise SystemExit(f"{directory}: the run was interrupted; the same command goes on with it")
         result["directory"] = directory
         return result
 
     def _call(self, *arguments):
-        subprocess.run([self.program, *arguments], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        done = subprocess.run([self.program, *arguments], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        if done.returncode != 0:
+            last = (done.stderr.strip().splitlines() or [""])[-1]
+            raise SystemExit(f"hardbody {' '.join(arguments)}: exit {done.returncode}: {last}\n"
+                             "The same command again keeps what is done and goes on with a run that was interrupted.")
 
 
 class Table:

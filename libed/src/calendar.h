@@ -22,7 +22,7 @@ namespace ed::internal {
 /// eight in a line of the next level, and so on up to a single line. Ties go to the body with the lower number.
 class Calendar {
  public:
-  static constexpr int kFewestInParts = 64;
+  static constexpr int kFewestInParts = 64;  ///< eight lines of eight
 
   explicit Calendar(int number) : number_(static_cast<std::size_t>(number)) {
     std::size_t groups = number_;
@@ -102,6 +102,7 @@ class Calendar {
 
  private:
   static constexpr std::size_t kGroup = 8;
+  static_assert(kFewestInParts == kGroup * kGroup);
 
   struct alignas(64) Group {
     std::array<double, kGroup> times;

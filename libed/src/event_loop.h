@@ -169,7 +169,7 @@ class EventLoop final : public AnyEventLoop {
   NeighbourLists lists_;
   Calendar calendar_;
   std::optional<EventsAhead<Bodies>> ahead_;         ///< if most of what an event reads is not in the caches
-  std::vector<int> orphans_;                         ///< bodies whose first event has gone to another owner
+  std::vector<int> orphans_;                         ///< whose first event, a pair, is no longer theirs; perhaps twice
   std::unique_ptr<FirstLooks<Bodies>> first_looks_;  ///< null: pairs are looked at one by one
   std::vector<Look> queue_;                          ///< pairs to be predicted
   std::vector<NearBody> near_;

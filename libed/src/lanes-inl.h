@@ -165,10 +165,6 @@ HWY_INLINE Real load(const Row& row, int lane) {
   return Real(hn::Load(Tag(), row + lane));
 }
 template <class Row>
-HWY_INLINE Real3 load3(const Row* rows, int lane) {
-  return {load(rows[0], lane), load(rows[1], lane), load(rows[2], lane)};
-}
-template <class Row>
 HWY_INLINE void store(Real x, Row& row, int lane) {
   hn::Store(x.v, Tag(), row + lane);
 }
@@ -183,7 +179,7 @@ HWY_INLINE void store3(const Real3& v, Row* rows, int lane) {
 HWY_INLINE void load_two(const double* const* records, int number, Real& first, Real& second) {
   geom::internal::load_two(Tag(), records, number, first.v, second.v);
 }
-/// And the one after that.
+/// Three numbers of each record, one after the other.
 HWY_INLINE Real3 load_three(const double* const* records, int number) {
   Real x, y, z;
   load_two(records, number, x, y);

@@ -319,13 +319,13 @@ class Block {
 
 template <bool kSpin>
 void look(const LookInput& in, int pairs, LookOutput& out) {
-  // Few pairs need the second pass.
   Block<kSpin> block;
   for (int lane = 0; lane < pairs; lane += kLanes) {
     Lanes open{hn::FirstN(Tag(), static_cast<std::size_t>(pairs - lane))};
     first_pass<kSpin>(in, lane, out, block.from(lane), open);
     block.add_open(open, lane);
   }
+  // Few pairs need the second pass.
   for (int k = 0; block.open() - k >= kFewest; k += kLanes) {
     const int together = block.open() - k < kLanes ? block.open() - k : kLanes;
     LookOutput late;

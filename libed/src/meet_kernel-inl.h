@@ -8,7 +8,6 @@
 
 #include <geom/tolerances.h>
 
-#include <cstddef>
 #include <cstdint>
 
 HWY_BEFORE_NAMESPACE();

@@ -5,13 +5,14 @@
 /// Plain arrays only, neither Eigen nor containers: what a translation unit compiled for AVX-512 instantiates of them
 /// could be linked into code for processors without it.
 
+#include <cstddef>
 #include <cstdint>
 
 namespace ed::internal {
 
 constexpr int kLongestVector = 8;
 
-/// What rows of a body begin with: its shape, as in Spheroid.
+/// Rows of a shape, as in Spheroid.
 struct ShapeRows {
   enum Row { a2 = 0, b2 = 1, c = 2, rho = 3, count = 4 };
 };
@@ -88,9 +89,11 @@ constexpr int kBlockMeetings = 64;
 struct alignas(64) DilatedEnvelope {
   double axis[3];
   std::int32_t kind;
-  std::int32_t none;
+  std::int32_t none;  ///< 0: kernels read it with the kind, as one number
   double centre[3];
 };
+
+static_assert(offsetof(DilatedEnvelope, kind) == 3 * sizeof(double));
 
 struct MeetingInput {
   const void* near;                  ///< NearBodys

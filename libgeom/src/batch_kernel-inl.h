@@ -82,7 +82,7 @@ HWY_INLINE void start_from(StateRow* rows, int lane, const Real3& start, Real3 c
 
 template <class Input>
 HWY_INLINE Real3 load_start(const Input& in, int lane) {
-  if (in.has_starts) return load_three(in.start, lane);
+  if (in.has_starts) return load_three(in.start + lane);
   return {constant(0), constant(0), constant(0)};
 }
 
@@ -163,7 +163,7 @@ HWY_INLINE Answer finish(const StateRow* rows, int lane, const Witness& w, Batch
   const Lanes converged = load(rows[State::converged], lane) > constant(0);
   const Lanes answered = hn::And(converged, hn::And(certified, polished));
   store(hn::IfThenElseZero(answered, load(rows[State::iterations], lane)), out.iterations, lane);
-  const Real residual = y2 * inverse_root(hn::Max(y2, constant(1e-300)));  // 0 for 0; no size that is allowed gives less
+  const Real residual = y2 * inverse_root(hn::Max(y2, constant(1e-300)));  // 0 for 0; no allowed size gives less
   const Real error_bound = constant(0.5) * y2 * near_inverse(depth_left);  // as newton_error_bound
   return {distance, add(w.s_a, constant(0.5), y), residual, error_bound};
 }
@@ -240,14 +240,14 @@ struct GeneralPairs {
   }
 
   static HWY_INLINE void prepare(const Input& in, StateRow* state, int lane) {
-    const Real33 R_WA = load_nine(in.rotation_a, lane);
-    const Real33 R_WB = load_nine(in.rotation_b, lane);
-    const Real3 p_AB = load_three(in.position_b, lane) - load_three(in.position_a, lane);
+    const Real33 R_WA = load_nine(in.rotation_a + lane);
+    const Real33 R_WB = load_nine(in.rotation_b + lane);
+    const Real3 p_AB = load_three(in.position_b + lane) - load_three(in.position_a + lane);
     const Real3 r_AB = transposed_times(R_WA, p_AB);
     const Real33 R_AB = {transposed_times(R_WA, R_WB.x), transposed_times(R_WA, R_WB.y),
                          transposed_times(R_WA, R_WB.z)};
-    const Real3 a = load_three(in.semi_axes_a, lane);
-    const Real3 b = load_three(in.semi_axes_b, lane);
+    const Real3 a = load_three(in.semi_axes_a + lane);
+    const Real3 b = load_three(in.semi_axes_b + lane);
     const Real3 u = b.x * R_AB.x, v = b.y * R_AB.y, w = b.z * R_AB.z;
     const Real6 Q = {
         hn::MulAdd(u.x, u.x, hn::MulAdd(v.x, v.x, w.x * w.x)), hn::MulAdd(u.y, u.y, hn::MulAdd(v.y, v.y, w.y * w.y)),
@@ -311,10 +311,10 @@ struct GeneralPairs {
     const Real3 s_a = inv_a * product(a, m_a);
     const Real3 s_b = inv_b * times(R_AB, product(b, m_b));
     const Answer answer = internal::finish(state, lane, {n, load3(state + r, lane), s_a, s_b, h_a, h_b}, out);
-    const Real33 R_WA = load_nine(in.rotation_a, lane);
+    const Real33 R_WA = load_nine(in.rotation_a + lane);
     Real3 n_W = times(R_WA, n);
     n_W = hn::NegMulAdd(constant(0.5), dot(n_W, n_W) - one, one) * n_W;  // R_WA is orthonormal to 1e-15 only
-    store_answer(answer, load_three(in.position_a, lane), times(R_WA, answer.from_centre), n_W, lane, out);
+    store_answer(answer, load_three(in.position_a + lane), times(R_WA, answer.from_centre), n_W, lane, out);
   }
 };
 
@@ -340,8 +340,8 @@ struct UniaxialPairs {
   static HWY_INLINE void prepare(const Input& in, StateRow* state, int lane) {
     const Real along_a = load(in.rows[Input::along_a], lane), across_a = load(in.rows[Input::across_a], lane);
     const Real along_b = load(in.rows[Input::along_b], lane), across_b = load(in.rows[Input::across_b], lane);
-    const Real3 u = load_three(in.axis_a, lane), v = load_three(in.axis_b, lane);
-    const Real3 p_AB = load_three(in.position_b, lane) - load_three(in.position_a, lane);
+    const Real3 u = load_three(in.axis_a + lane), v = load_three(in.axis_b + lane);
+    const Real3 p_AB = load_three(in.position_b + lane) - load_three(in.position_a + lane);
     const Real a2 = along_a * along_a, b2_a = across_a * across_a, c = (along_a - across_a) * (along_a + across_a);
     const Real d2 = along_b * along_b, b2_b = across_b * across_b, f = (along_b - across_b) * (along_b + across_b);
     store3(p_AB, state + r, lane);
@@ -403,7 +403,7 @@ struct UniaxialPairs {
     const Real3 s_a = inv_a * add(b2_a * w_a, a2_x_a, u);
     const Real3 s_b = inv_b * add(b2_b * w_b, a2_x_b, v);
     const Answer answer = internal::finish(state, lane, {n, load3(state + r, lane), s_a, s_b, h_a, h_b}, out);
-    store_answer(answer, load_three(in.position_a, lane), answer.from_centre, n, lane, out);
+    store_answer(answer, load_three(in.position_a + lane), answer.from_centre, n, lane, out);
   }
 };
 

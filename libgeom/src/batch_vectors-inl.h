@@ -99,21 +99,21 @@ HWY_INLINE Real3 load3(const Row* rows, int lane) {
   return {load(rows[0], lane), load(rows[1], lane), load(rows[2], lane)};
 }
 
-/// Records of three numbers.
-HWY_INLINE Real3 load_three(const double* const* records, int lane) {
+/// Three numbers of each record.
+HWY_INLINE Real3 load_three(const double* const* records) {
   Real3 v;
-  load_two(Tag(), records + lane, 0, v.x, v.y);
-  load_two(Tag(), records + lane, 1, v.y, v.z);
+  load_two(Tag(), records, 0, v.x, v.y);
+  load_two(Tag(), records, 1, v.y, v.z);
   return v;
 }
 /// Of nine.
-HWY_INLINE Real33 load_nine(const double* const* records, int lane) {
+HWY_INLINE Real33 load_nine(const double* const* records) {
   Real33 m;
-  load_two(Tag(), records + lane, 0, m.x.x, m.x.y);
-  load_two(Tag(), records + lane, 2, m.x.z, m.y.x);
-  load_two(Tag(), records + lane, 4, m.y.y, m.y.z);
-  load_two(Tag(), records + lane, 6, m.z.x, m.z.y);
-  load_two(Tag(), records + lane, 7, m.z.y, m.z.z);
+  load_two(Tag(), records, 0, m.x.x, m.x.y);
+  load_two(Tag(), records, 2, m.x.z, m.y.x);
+  load_two(Tag(), records, 4, m.y.y, m.y.z);
+  load_two(Tag(), records, 6, m.z.x, m.z.y);
+  load_two(Tag(), records, 7, m.z.y, m.z.z);
   return m;
 }
 

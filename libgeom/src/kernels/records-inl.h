@@ -1,8 +1,9 @@
 #pragma once
 
 /// Numbers of records that stand anywhere in memory, into vectors of one number for each lane: what the kernels of both
-/// libraries read bodies with. Half as many loads as numbers, and no stores; rows that scalar code fills first cost
-/// both. Included by files that are compiled for their instruction set each (batch_kernel.h says what follows).
+/// libraries read bodies with, without the stores that filling rows of numbers would cost. There must be as many
+/// records as lanes, and both numbers that are loaded in each. Included by files that are compiled for their
+/// instruction set each (batch_kernel.h says what follows).
 
 #include <hwy/highway.h>
 
