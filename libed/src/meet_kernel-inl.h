@@ -123,11 +123,11 @@ HWY_INLINE void meet_all(const MeetingInput& in, MeetingOutput& out) {
   const Envelope a{{shape[ShapeRows::a2], shape[ShapeRows::b2], shape[ShapeRows::c], shape[ShapeRows::rho]},
                    {one.axis[0], one.axis[1], one.axis[2]}};
   Candidates candidates;
-  const auto* const near = static_cast<const double*>(in.near);
-  for (int k = 0; k < in.count; ++k) {
+  const auto* near = static_cast<const double*>(in.near);
+  for (int k = 0; k < in.count; ++k, near += 4) {
     std::int32_t body;
-    __builtin_memcpy(&body, near + 4 * k, sizeof body);
-    candidates.near[k] = near + 4 * k;
+    __builtin_memcpy(&body, near, sizeof body);
+    candidates.near[k] = near;
     candidates.envelope[k] = in.envelopes[body].axis;
   }
   candidates.fill_up(in.count);

@@ -19,7 +19,7 @@ namespace {
 double ulps(double found, long double exact) {
   const double near = static_cast<double>(exact);
   const double unit = std::nextafter(near, 2 * near) - near;
-  return static_cast<double>(std::abs(found - exact)) / unit;
+  return static_cast<double>(std::abs(static_cast<long double>(found) - exact)) / unit;
 }
 
 TEST(BatchRoots, AreAsExactAsTheirCommentsSay) {
