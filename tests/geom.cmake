@@ -3,6 +3,7 @@ hardbody_test(geom_unit_test unit
   unit/geom_batch_test.cpp
   unit/geom_distance_test.cpp
   unit/geom_dual_newton_test.cpp
+  unit/geom_ellipsoid_pairs_test.cpp
   unit/geom_ellipsoid_test.cpp
   unit/geom_extreme_input_test.cpp
   unit/geom_lanes_test.cpp

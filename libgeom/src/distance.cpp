@@ -1,8 +1,8 @@
 #include "ellipsoid_pair.h"
+#include "spheroid_pair.h"
 
 #include <geom/distance.h>
 #include <geom/internal/perram_wertheim.h>
-#include <geom/internal/uniaxial.h>
 
 #include <cmath>
 
@@ -10,24 +10,9 @@ namespace geom {
 namespace {
 
 using internal::EllipsoidPair;
-using internal::Evaluation;
 using internal::PairScale;
 using internal::Spheroid;
-
-/// Two bodies of revolution, in the form that solve_dual wants.
-struct UniaxialPair {
-  const Spheroid& a;
-  const Spheroid& b;
-  const Eigen::Vector3d& r_ab;
-  const Eigen::Vector3d& u_a;
-  const Eigen::Vector3d& u_b;
-
-  Evaluation operator()(const Eigen::Vector3d& n) const { return evaluate_uniaxial(a, b, r_ab, u_a, u_b, n); }
-  internal::SupportPair support_pair(const Eigen::Vector3d& n) const {
-    return internal::support_pair(a, b, u_a, u_b, n);
-  }
-  const Eigen::Vector3d& r() const { return r_ab; }
-};
+using internal::SpheroidPair;
 
 Spheroid spheroid(const Ellipsoid& shape, int axis) {
   return {shape.semi_axes()[axis], shape.semi_axes()[axis == 0 ? 1 : 0], shape.min_curvature_radius()};
@@ -36,15 +21,13 @@ Spheroid spheroid(const Ellipsoid& shape, int axis) {
 DistanceResult uniaxial_distance(const Ellipsoid& a, const Pose& X_WA, int axis_a, const Ellipsoid& b, const Pose& X_WB,
                                  int axis_b, const Eigen::Vector3d& r, const PairScale& scale,
                                  const DistanceOptions& options) {
-  const Spheroid s_a = spheroid(a, axis_a);
-  const Spheroid s_b = spheroid(b, axis_b);
-  const Eigen::Vector3d u_a = X_WA.rotation().col(axis_a);
-  const Eigen::Vector3d u_b = X_WB.rotation().col(axis_b);
-  const auto cold = [&] { return internal::start_normal(s_a, s_b, r, u_a, u_b); };
+  const SpheroidPair pair(spheroid(a, axis_a), spheroid(b, axis_b), r, X_WA.rotation().col(axis_a),
+                          X_WB.rotation().col(axis_b));
+  const auto cold = [&] { return pair.start_normal(); };
   const auto shares = [&](const Eigen::Vector3d& point_a, const Eigen::Vector3d& point_b) {
     return internal::share_a_point(a, X_WA, b, X_WB, point_a, point_b);
   };
-  return internal::solve_dual(UniaxialPair{s_a, s_b, r, u_a, u_b}, cold, scale, X_WA.position(), options, shares);
+  return internal::solve_dual(pair, cold, scale, X_WA.position(), options, shares);
 }
 
 DistanceResult general_distance(const Ellipsoid& a, const Pose& X_WA, const Ellipsoid& b, const Pose& X_WB,
@@ -63,10 +46,10 @@ DistanceResult general_distance(const Ellipsoid& a, const Pose& X_WA, const Elli
 DistanceResult armijo_ascent(const EllipsoidPair& pair, Eigen::Vector3d n, const PairScale& scale,
                              const Eigen::Vector3d& p_WA, DistanceResult declined) {
   const double rounding = kRoundingFactor * scale.size;
-  Evaluation e = pair(n);
+  auto e = pair(n);
   ++declined.iterations;
   for (int newton = 0; newton < kMaxArmijoSteps; ++newton) {
-    if (e.step2 <= kNormalTolerance2) {
+    if (converged(e)) {
       if (e.g < -scale.certified_depth - rounding) return declined;
       DistanceResult result =
           internal::witness_result(pair, p_WA, internal::step_on_sphere(n, e.step), declined.iterations);
@@ -76,7 +59,7 @@ DistanceResult armijo_ascent(const EllipsoidPair& pair, Eigen::Vector3d n, const
     double t = 1;
     while (true) {
       const Eigen::Vector3d trial = (n + t * e.step).normalized();
-      const Evaluation e_trial = pair(trial);
+      const auto e_trial = pair(trial);
       ++declined.iterations;
       if (e_trial.g >= e.g + kArmijo * t * e.decrement - rounding) {
         n = trial;

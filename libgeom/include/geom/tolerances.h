@@ -37,6 +37,22 @@ inline constexpr double kMaxExponent = 1.6;
 /// The step is still applied, and convergence is quadratic: the normal is then right to 1e-12 or to rounding.
 inline constexpr double kNormalTolerance2 = 1e-12;
 
+/// distance of ellipsoids: the same where the step is Chebyshev's, which converges with the third power of |delta|, and
+/// the Newton step in it changes neither support height by more than the share kChebyshevSmallChange. Dimensionless:
+/// the error that is left, about |delta| times the square of that change, is at most 1e-11.
+/// @{
+inline constexpr double kChebyshevTolerance2 = 2.5e-9;
+inline constexpr double kChebyshevSmallChange = 5e-4;
+/// @}
+
+/// distance of ellipsoids: all of Chebyshev's correction is added to a Newton step that changes neither support height
+/// by more than this share, else less in proportion. Dimensionless; of 0.2 to 1 it needs the fewest evaluations.
+inline constexpr double kChebyshevChange = 1.0 / 3;
+
+/// distance of ellipsoids: none is added where it changes y.delta, twice the increase of g that Newton's model
+/// promises, by more than this share. Dimensionless.
+inline constexpr double kChebyshevTrust = 0.9;
+
 /// distance: another Newton step is taken while |y|^2 > kResidualTolerance * size * (g + rhoA + rhoB). Dimensionless:
 /// twice the relative error of the distance that it leaves.
 inline constexpr double kResidualTolerance = 2e-15;

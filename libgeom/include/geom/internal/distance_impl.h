@@ -113,7 +113,8 @@ double min_curvature_radius_or_zero(const Shape& shape) {
 
 /// The answer at a converged normal n: witness points, half of the tangential mismatch given to each.
 template <class Pair>
-DistanceResult witness_result(const Pair& pair, const Eigen::Vector3d& p_WA, const Eigen::Vector3d& n, int iterations) {
+[[gnu::always_inline]] inline DistanceResult witness_result(const Pair& pair, const Eigen::Vector3d& p_WA,
+                                                            const Eigen::Vector3d& n, int iterations) {
   DistanceResult result;
   const SupportPair s = pair.support_pair(n);
   const Eigen::Vector3d gap = (pair.r() + s.s_b) - s.s_a;
@@ -151,7 +152,7 @@ template <class Pair>
                                          DistanceResult& result) {
   constexpr int kMostSteps = 4;
   for (int step = 0; step < kMostSteps && needs_polish(scale, result); ++step) {
-    const Evaluation e = pair(result.normal);
+    const auto e = pair(result.normal);
     DistanceResult next = witness_result(pair, p_WA, step_on_sphere(result.normal, e.step), result.iterations + 1);
     if (!(next.residual < result.residual)) return;
     result = next;
@@ -169,15 +170,14 @@ template <class Pair, class Cold, class Shares>
 DistanceResult solve_dual(const Pair& pair, const Cold& cold, const PairScale& scale, const Eigen::Vector3d& p_WA,
                           const DistanceOptions& options, const Shares& shares) {
   const double rounding = kRoundingFactor * scale.size;
-  const auto done = [](const Evaluation& e) { return e.step2 <= kNormalTolerance2; };
   const bool warm = is_warm(options.start);
   const int limit = std::max(1, options.max_iterations);
   int spent = 0;
   for (int attempt = warm ? 0 : 1; attempt < 2; ++attempt) {
     Eigen::Vector3d n = attempt == 0 ? Eigen::Vector3d(options.start / options.start.norm()) : cold();
-    Evaluation e = pair(n);
-    int budget = limit - 1;
-    const Ascent ascent = ascend(pair, rounding, done, budget, n, e);
+    decltype(pair(n)) e;
+    int budget = limit;
+    const Ascent ascent = climb(pair, rounding, budget, n, e);
     spent += limit - budget;
     if (ascent != Ascent::converged) continue;
     const bool certified = e.g >= -scale.certified_depth - rounding;
@@ -286,11 +286,11 @@ template <class Pair>
     const SupportPair s = pair.support_pair(n);
     return Tangent{n, (pair.r() + s.s_b) - s.s_a, (n.dot(pair.r()) - s.h_a) - s.h_b};
   };
-  const auto done = [](const Evaluation& e) { return e.step2 <= kNormalTolerance2; };
+  const auto done = [](const auto& e) { return converged(e); };
   const double rounding = kRoundingFactor * scale.size;
   const auto climb = [&](const Eigen::Vector3d& start_n) {
     Eigen::Vector3d n = start_n;
-    Evaluation e = pair(n);
+    auto e = pair(n);
     int budget = kMaxIterations;
     (void)ascend(pair, rounding, done, budget, n, e);
     iterations += kMaxIterations - budget + 1;

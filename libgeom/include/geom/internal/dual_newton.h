@@ -31,6 +31,18 @@ struct Evaluation {
   Eigen::Vector3d step;  ///< delta, across n, capped to kMaxNormalStep
 };
 
+/// An evaluation with a step of third order.
+struct ChebyshevEvaluation : Evaluation {
+  double tolerance2 = kNormalTolerance2;  ///< converged, after the step, where step2 is no larger
+};
+
+inline bool converged(const Evaluation& e) {
+  return e.step2 <= kNormalTolerance2;
+}
+inline bool converged(const ChebyshevEvaluation& e) {
+  return e.step2 <= e.tolerance2;
+}
+
 /// Sets the Newton step `delta`, |delta|^2 = `delta2`, scaled to kMaxNormalStep if it is longer.
 inline void set_step(Evaluation& e, const Eigen::Vector3d& delta, double delta2) {
   e.step = delta;
@@ -39,6 +51,21 @@ inline void set_step(Evaluation& e, const Eigen::Vector3d& delta, double delta2)
     e.step *= kMaxNormalStep / std::sqrt(delta2);
     e.step2 = kMaxNormalStep * kMaxNormalStep;
   }
+}
+
+/// The share of Chebyshev's correction that is added to a Newton step which changes the logarithm of neither support
+/// height by more than `change`: where that is much the model of third order is not to be trusted.
+inline double chebyshev_share(double change) {
+  return std::min(1.0, kChebyshevChange / change);
+}
+
+/// Replaces the Newton step by `bent`, which has that share of the correction added. `cubic` is y.(bent - delta); where
+/// it leaves too little of y.delta for g to grow for certain, the step stays Newton's.
+inline void set_bent_step(ChebyshevEvaluation& e, const Eigen::Vector3d& bent, double cubic, double change) {
+  if (!(e.step2 < kMaxNormalStep * kMaxNormalStep && std::abs(cubic) <= kChebyshevTrust * e.decrement)) [[unlikely]]
+    return;
+  e.step = bent;
+  e.tolerance2 = change <= kChebyshevSmallChange ? kChebyshevTolerance2 : kNormalTolerance2;
 }
 
 /// The shift `sigma` of Newton's matrix of two ellipsoids, whose eigenvalues sigma + t1/2 +- sqrt(t1^2/4 - D) should be
@@ -79,6 +106,14 @@ inline bool is_warm(const Eigen::Vector3d& start) {
 /// v / |v|, or the x axis if v is zero.
 inline Eigen::Vector3d unit_or_x(const Eigen::Vector3d& v) {
   return v.squaredNorm() > 0 ? v.normalized() : Eigen::Vector3d::UnitX();
+}
+
+/// v / |v| to 2 ulp, the root beside the division and not behind it; `otherwise` if v is zero or not a number.
+inline Eigen::Vector3d unit_or(const Eigen::Vector3d& v, const Eigen::Vector3d& otherwise) {
+  const double length2 = v.squaredNorm();
+  if (!(length2 > 0)) [[unlikely]]
+    return otherwise;
+  return (std::sqrt(length2) * (1 / length2)) * v;
 }
 
 /// An orthonormal basis across a unit vector.
@@ -164,6 +199,39 @@ Ascent ascend(const Evaluate& evaluate, double rounding, const Done& done, int& 
     e = trial;
   }
   return Ascent::converged;
+}
+
+/// backtrack for climb, which has not kept the evaluation at `before`.
+template <class Evaluate, class E>
+[[gnu::noinline, gnu::cold]] Ascent back_from(const Evaluate& evaluate, double rounding, const Eigen::Vector3d& before,
+                                              int& budget, Eigen::Vector3d& n, E& e) {
+  if (budget <= 0) return Ascent::exhausted;
+  const E e_before = evaluate(before);
+  --budget;
+  return backtrack(evaluate, rounding, before, e_before, budget, n, e);
+}
+
+/// As ascend, until `e` has converged, from a unit vector that has not been evaluated. There is one place that
+/// evaluates, so that the kernel is inlined into the loop and its numbers stay in registers; the way back from a step
+/// that fell is elsewhere.
+template <class Evaluate, class E>
+[[gnu::always_inline]] inline Ascent climb(const Evaluate& evaluate, double rounding, int& budget, Eigen::Vector3d& n,
+                                           E& e) {
+  Eigen::Vector3d before = n;
+  double g_before = -std::numeric_limits<double>::infinity();
+  while (true) {
+    if (budget <= 0) return Ascent::exhausted;
+    e = evaluate(n);
+    --budget;
+    if (e.g < g_before - rounding) [[unlikely]] {
+      const Ascent outcome = back_from(evaluate, rounding, before, budget, n, e);
+      if (outcome != Ascent::converged) return outcome;
+    }
+    if (converged(e)) return Ascent::converged;
+    before = n;
+    g_before = e.g;
+    n = step_on_sphere(n, e.step);
+  }
 }
 
 }  // namespace geom::internal
