@@ -39,7 +39,7 @@ class EllipsoidPair {
     Q_ = {entry(0, 0), entry(1, 1), entry(2, 2), entry(1, 2), entry(0, 2), entry(0, 1)};
   }
 
-  /// The step is Chebyshev's (spheroid_pair.h): with half the second derivative of y along delta,
+  /// The step is Chebyshev's (spheroid_pair.h), with half the second derivative of the mismatch along delta
   ///
   ///     q = P sum of [(s.delta) H delta + 1/2 (delta.H delta) s] / h over both bodies.
   [[gnu::always_inline]] ChebyshevEvaluation operator()(const Eigen::Vector3d& n) const {
@@ -66,7 +66,8 @@ class EllipsoidPair {
     const Bend bend = bend_along(at_n, n, adjugate_y, inv_det);
     const double share = chebyshev_share(bend.change);
     const Eigen::Vector3d bent = delta + (share * inv_det) * adjugate_times(bend.q);
-    set_bent_step(out, bent, share * bend.q.dot(delta), bend.change);
+    if (sigma == g) [[likely]]
+      set_bent_step(out, bent, share * bend.q.dot(delta), bend.change);
     return out;
   }
 

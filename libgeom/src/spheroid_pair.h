@@ -4,8 +4,8 @@
 /// geom/internal/uniaxial.h: both bodies at once, A in lane 0 and B in lane 1.
 ///
 /// A query is one long chain of operations that wait for each other, so that its time is the length of that chain. Here
-/// products with w and with the step are sums of numbers that are known before the step is, |w|^2 is |u x n|^2, which
-/// does not wait for n.u, and roots are beside divisions.
+/// products of w and the step are sums of numbers that are known before the step is, |w|^2 is |u x n|^2, which does not
+/// wait for n.u, and roots are beside divisions.
 
 #include <geom/internal/dual_newton.h>
 #include <geom/internal/uniaxial.h>
@@ -30,7 +30,8 @@ class SpheroidPair {
         rho_(A.rho + B.rho) {}
 
   /// g, Newton's step delta and what Chebyshev's method adds to it, (M + g I)^-1 q, with q half the second derivative
-  /// of y along delta:
+  /// along delta of the mismatch in the plane that touches the sphere at n, P p - (n.p) delta with p the gradient of
+  /// n.r - hA - hB at n + delta (y at delta = 0):
   ///
   ///     q = sum of (c x / h^2) { f (w.delta) delta + [3/2 e (w.delta)^2 + 1/2 f |delta|^2] w } over both bodies.
   [[gnu::always_inline]] ChebyshevEvaluation operator()(const Eigen::Vector3d& n) const {
@@ -42,26 +43,29 @@ class SpheroidPair {
     const double z = r_.dot(n);
     const Eigen::Vector3d r_across = r_ - z * n;
     const Both wx = ux_ - x * n.x(), wy = uy_ - x * n.y(), wz = uz_ - x * n.z();
-    const Both w_r = wx * r_across.x() + wy * r_across.y() + wz * r_across.z();
     const double ww = wx[0] * wx[1] + wy[0] * wy[1] + wz[0] * wz[1];
 
-    // y = r_across - lA wA - lB wB;  M + g I = sigma I + eA wA wA^T + eB wB wB^T
+    // M + g I = sigma I + eA wA wA^T + eB wB wB^T
     const Both inv_h = h * inv_h2;
     const Both lever = (c_ * x) * inv_h;
-    const Both w_y = w_r - (lever * w2 + ww * other(lever));
+    // All that follows is made of this y: sums of r.w and of heights that are the same but for rounding would leave
+    // errors of the pair's size along w, which a needle's large eigenvalue there does not take away.
+    const Eigen::Vector3d y(r_across.x() - (lever * wx).sum(), r_across.y() - (lever * wy).sum(),
+                            r_across.z() - (lever * wz).sum());
+    const Both w_y = wx * y.x() + wy * y.y() + wz * y.z();
     const Both f = b2_ * inv_h;
     const Both e = (c_ * inv_h2) * f;
     const Both e_w2 = e * w2;
     const double g = (z - h[0]) - h[1];
     const double t = e_w2.sum();
     const double D = e_w2.prod() - e.prod() * (ww * ww);
-    const double sigma = lifted(g, rho_, f.sum() + g, t, D);
+    const double unlifted = f.sum() + g;
+    const double sigma = lifted(g, rho_, unlifted, t, D);
     const double s = sigma + t;
     const double inv_det = 1 / (sigma * s + D);
     const Both pull = e * w_y;
-    const Both of_w = s * lever + pull;
-    const Eigen::Vector3d adjugate_y(s * r_across.x() - (of_w * wx).sum(), s * r_across.y() - (of_w * wy).sum(),
-                                     s * r_across.z() - (of_w * wz).sum());
+    const Eigen::Vector3d adjugate_y(s * y.x() - (pull * wx).sum(), s * y.y() - (pull * wy).sum(),
+                                     s * y.z() - (pull * wz).sum());
     const Eigen::Vector3d delta = inv_det * adjugate_y;
     const double delta2 = (inv_det * inv_det) * adjugate_y.squaredNorm();
     const Both w_delta = inv_det * (s * w_y - (pull * w2 + ww * other(pull)));
@@ -81,12 +85,13 @@ class SpheroidPair {
 
     ChebyshevEvaluation out;
     out.g = g;
-    out.decrement = r_across.dot(delta) - (lever * w_delta).sum();
+    out.decrement = y.dot(delta);
     set_step(out, delta, delta2);
     const Eigen::Vector3d bent(bend_delta * delta.x() + (bend_w * wx).sum(),
                                bend_delta * delta.y() + (bend_w * wy).sum(),
                                bend_delta * delta.z() + (bend_w * wz).sum());
-    set_bent_step(out, bent, share * (q_delta * delta2 + (q_w * w_delta).sum()), change);
+    if (sigma == unlifted) [[likely]]
+      set_bent_step(out, bent, share * (q_delta * delta2 + (q_w * w_delta).sum()), change);
     return out;
   }
 

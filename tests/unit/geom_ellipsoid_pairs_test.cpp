@@ -91,7 +91,7 @@ TYPED_TEST(EllipsoidPairKernels, GapDecrementAndLengthAreNewtons) {
 
 TYPED_TEST(EllipsoidPairKernels, StepsLieAcrossTheNormalAndAscend) {
   Random random(32);
-  int clipped = 0;
+  int careful = 0;
   for (int i = 0; i < repetitions(5000); ++i) {
     const Case<TypeParam> c(random.log_uniform(0.1, 10), random.log_uniform(0.1, 10), random.uniform(-0.9, 10), random);
     const Vector3d n = random.direction();
@@ -99,13 +99,14 @@ TYPED_TEST(EllipsoidPairKernels, StepsLieAcrossTheNormalAndAscend) {
     // The system's solution errs by some epsilons times its condition, at most 2000 / 0.2.
     ASSERT_LE(std::abs(e.step.dot(n)), 1e-11) << "pair " << i;
     ASSERT_LE(e.step2, kMaxNormalStep * kMaxNormalStep * (1 + 1e-15)) << "pair " << i;
+    ASSERT_LE(e.step.squaredNorm(), kMaxNormalStep * kMaxNormalStep * (1 + 1e-15)) << "pair " << i;
     ASSERT_GE(e.decrement, 0) << "pair " << i;
-    clipped += e.tolerance2 == kNormalTolerance2;
+    careful += e.tolerance2 == kNormalTolerance2;
     // As in StepsLieAcrossTheNormalAreCappedAndAscend of the other kernels; at least a tenth of the slope is left.
     if (e.decrement < 1e-2) continue;
     ASSERT_GT(c.g(step_on_sphere(n, 1e-6 * e.step)), e.g) << "pair " << i;
   }
-  EXPECT_GT(clipped, 0);
+  EXPECT_GT(careful, 0);
 }
 
 TYPED_TEST(EllipsoidPairKernels, AStepCubesTheErrorOfTheNormal) {
@@ -116,6 +117,7 @@ TYPED_TEST(EllipsoidPairKernels, AStepCubesTheErrorOfTheNormal) {
     const Vector3d across = c.placed.normal.cross(random.direction());
     const auto at = [&](double off) -> Vector3d { return (c.placed.normal + off * across).normalized(); };
     const auto left = [&](double off) {
+      EXPECT_GE(c.pair(at(off)).decrement, 0) << "pair " << i;
       return (step_on_sphere(at(off), c.pair(at(off)).step) - c.placed.normal).norm();
     };
     ASSERT_EQ(c.pair(at(1e-5)).tolerance2, kChebyshevTolerance2) << "pair " << i;
@@ -129,6 +131,45 @@ TYPED_TEST(EllipsoidPairKernels, AStepCubesTheErrorOfTheNormal) {
   }
   EXPECT_GT(worst_ratio, 0);
   EXPECT_LE(worst_ratio, 4e-3);
+}
+
+TYPED_TEST(EllipsoidPairKernels, ConcentricBodiesHaveALocalAnswer) {
+  Random random(39);
+  for (int i = 0; i < repetitions(500); ++i) {
+    const Case<TypeParam> c(random.log_uniform(1.0 / 3, 3), random.log_uniform(1.0 / 3, 3), 1, random);
+    const Pose X_WB(c.placed.X_WB.rotation(), c.placed.X_WA.position());
+    const DistanceResult r = distance(c.a, c.placed.X_WA, c.b, X_WB, {.penetration = Penetration::local});
+    ASSERT_EQ(r.status, DistanceStatus::overlapping) << "pair " << i;
+    // The last step of a lifted matrix, 1e-6, leaves about as much.
+    ASSERT_LE(r.residual, 2e-6 * (c.a.bounding_radius() + c.b.bounding_radius())) << "pair " << i;
+  }
+}
+
+TYPED_TEST(EllipsoidPairKernels, LongBodiesInTouchKeepTheirBounds) {
+  // Across a needle the curvature is 1e8 times that along it: rounding must not enter there undamped.
+  Random random(40);
+  for (const double X0 : {1e3, 9.9e3}) {
+    for (const double gap : {-0.9, -1e-3, 1e-3, 1.0}) {
+      for (int i = 0; i < repetitions(300); ++i) {
+        const Case<TypeParam> c(random.coin() ? X0 : 1 / X0, X0, gap, random);
+        const DistanceResult r = distance(c.a, c.placed.X_WA, c.b, c.placed.X_WB);
+        ASSERT_NEAR(r.distance, c.placed.distance, geom_test::distance_tolerance(c.placed.size)) << X0 << ' ' << i;
+        ASSERT_LE(r.error_bound, 1e-15 * c.placed.size) << "X0 " << X0 << ", gap " << gap << ", pair " << i;
+      }
+    }
+  }
+}
+
+TYPED_TEST(EllipsoidPairKernels, FewEvaluationsGiveTheSameAnswers) {
+  Random random(41);
+  for (int i = 0; i < repetitions(500); ++i) {
+    const Case<TypeParam> c(random.log_uniform(0.1, 10), random.log_uniform(0.1, 10), random.uniform(-0.9, 10), random);
+    for (const int most : {1, 2, 3}) {
+      const DistanceResult r = distance(c.a, c.placed.X_WA, c.b, c.placed.X_WB, {.max_iterations = most});
+      ASSERT_NEAR(r.distance, c.placed.distance, geom_test::distance_tolerance(c.placed.size)) << "pair " << i;
+      ASSERT_GE(r.iterations, 1) << "pair " << i;
+    }
+  }
 }
 
 TYPED_TEST(EllipsoidPairKernels, TheNormalStaysUnitOverManySteps) {

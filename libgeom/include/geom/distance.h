@@ -69,7 +69,8 @@ struct [[nodiscard]] DistanceResult {
 ///     d = max over unit n of g(n),   g(n) = n.(p_WB - p_WA) - hA(n) - hB(-n),
 ///
 /// which is the distance of the closest points when the bodies are apart, and minus the length of the shortest
-/// translation that parts them when they overlap. Dual Newton on the unit sphere (see internal/dual_newton.h).
+/// translation that parts them when they overlap. Dual Newton on the unit sphere (see internal/dual_newton.h), for two
+/// ellipsoids with steps of third order.
 ///
 /// What is certified. g(n) is a lower bound of d for every n. Apart: g is concave where it is positive, so that a
 /// stationary point with g > 0 is the global maximum. Overlapping: let rho be the sum of both bodies' smallest radii of

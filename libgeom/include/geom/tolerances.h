@@ -39,7 +39,8 @@ inline constexpr double kNormalTolerance2 = 1e-12;
 
 /// distance of ellipsoids: the same where the step is Chebyshev's, which converges with the third power of |delta|, and
 /// the Newton step in it changes neither support height by more than the share kChebyshevSmallChange. Dimensionless:
-/// the error that is left, about |delta| times the square of that change, is at most 1e-11.
+/// the error that is left, about |delta| times the square of that change, was at most 9e-12 at aspect ratios to 10, and
+/// at larger ones mostly less than that of Newton's steps.
 /// @{
 inline constexpr double kChebyshevTolerance2 = 2.5e-9;
 inline constexpr double kChebyshevSmallChange = 5e-4;

@@ -288,7 +288,7 @@ template <class Pair>
   };
   const auto done = [](const auto& e) { return converged(e); };
   const double rounding = kRoundingFactor * scale.size;
-  const auto climb = [&](const Eigen::Vector3d& start_n) {
+  const auto ascend_from = [&](const Eigen::Vector3d& start_n) {
     Eigen::Vector3d n = start_n;
     auto e = pair(n);
     int budget = kMaxIterations;
@@ -299,7 +299,9 @@ template <class Pair>
     return after.g >= before.g ? after : before;
   };
   const auto upward = [&](const Eigen::Vector3d& n) { return pair.upward(n, rounding); };
-  const auto polish = [&](const Eigen::Vector3d& n) { return climb_over_saddles(sample, climb, upward, n, rounding); };
+  const auto polish = [&](const Eigen::Vector3d& n) {
+    return climb_over_saddles(sample, ascend_from, upward, n, rounding);
+  };
   SphereSearch<decltype(sample), decltype(polish)> sphere(sample, polish, scale.certified_depth, polish(start),
                                                           rounding);
   sphere.run_to(kDepthGap * scale.size, kMostDepthSamples);

@@ -31,7 +31,8 @@ struct Evaluation {
   Eigen::Vector3d step;  ///< delta, across n, capped to kMaxNormalStep
 };
 
-/// An evaluation with a step of third order.
+/// An evaluation whose step is of third order where that can be trusted. `decrement` and `step2` are those of the
+/// Newton step in it.
 struct ChebyshevEvaluation : Evaluation {
   double tolerance2 = kNormalTolerance2;  ///< converged, after the step, where step2 is no larger
 };
@@ -59,10 +60,17 @@ inline double chebyshev_share(double change) {
   return std::min(1.0, kChebyshevChange / change);
 }
 
-/// Replaces the Newton step by `bent`, which has that share of the correction added. `cubic` is y.(bent - delta); where
-/// it leaves too little of y.delta for g to grow for certain, the step stays Newton's.
+/// Replaces the Newton step of set_step by `bent`, which has that share of the correction added. `cubic` is
+/// y.(bent - delta); where it leaves too little of y.delta for g to grow for certain, or the step becomes too long, it
+/// stays Newton's.
+///
+/// Not for a matrix that has been lifted: such a step converges linearly, whatever is added.
 inline void set_bent_step(ChebyshevEvaluation& e, const Eigen::Vector3d& bent, double cubic, double change) {
-  if (!(e.step2 < kMaxNormalStep * kMaxNormalStep && std::abs(cubic) <= kChebyshevTrust * e.decrement)) [[unlikely]]
+  constexpr double kLongest2 = kMaxNormalStep * kMaxNormalStep;
+  // One branch, not three.
+  const bool sound = static_cast<int>(e.step2 < kLongest2) & static_cast<int>(bent.squaredNorm() < kLongest2) &
+                     static_cast<int>(std::abs(cubic) <= kChebyshevTrust * e.decrement);
+  if (!sound) [[unlikely]]
     return;
   e.step = bent;
   e.tolerance2 = change <= kChebyshevSmallChange ? kChebyshevTolerance2 : kNormalTolerance2;
@@ -108,7 +116,8 @@ inline Eigen::Vector3d unit_or_x(const Eigen::Vector3d& v) {
   return v.squaredNorm() > 0 ? v.normalized() : Eigen::Vector3d::UnitX();
 }
 
-/// v / |v| to 2 ulp, the root beside the division and not behind it; `otherwise` if v is zero or not a number.
+/// v / |v| to 2 ulp, the root beside the division and not behind it; `otherwise` if v is zero or not a number. |v|^2
+/// must not overflow.
 inline Eigen::Vector3d unit_or(const Eigen::Vector3d& v, const Eigen::Vector3d& otherwise) {
   const double length2 = v.squaredNorm();
   if (!(length2 > 0)) [[unlikely]]
