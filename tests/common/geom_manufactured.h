@@ -54,7 +54,8 @@ inline double distance_tolerance(double size) {
 /// Bound of the angle between the computed and the true normal, in radian.
 ///
 /// The last Newton step is at most 1e-6 long, and its quadratic remainder 1e-12 times the relative change of the
-/// curvature for a radian, at most about the aspect ratio; ten times that is allowed. The second part is rounding: some
+/// curvature for a radian, at most about the aspect ratio; ten times that is allowed. What steps of third order leave,
+/// kChebyshevTolerance2 and kChebyshevSmallChange, is no more. The second part is rounding: some
 /// epsilons of size in the tangential mismatch of the support points, over the smallest eigenvalue of M + g I.
 inline double normal_tolerance(const geom::Ellipsoid& a, const geom::Ellipsoid& b, double distance, double size) {
   const double aspect_ratio =

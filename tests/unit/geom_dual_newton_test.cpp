@@ -29,7 +29,7 @@ using geom_test::repetitions;
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 /// A manufactured pair of spheroids in the form that the uniaxial kernel takes.
-struct SpheroidPair {
+struct PlacedSpheroids {
   Ellipsoid a;
   Ellipsoid b;
   ManufacturedPair placed;
@@ -39,7 +39,7 @@ struct SpheroidPair {
   Vector3d u_a;
   Vector3d u_b;
 
-  SpheroidPair(double X0_a, double X0_b, double gap, Random& random)
+  PlacedSpheroids(double X0_a, double X0_b, double gap, Random& random)
       : a({1, 1, X0_a}),
         b({1, 1, X0_b}),
         placed(geom_test::manufacture(a, b, gap, random)),
@@ -59,9 +59,9 @@ struct SpheroidPair {
   }
 };
 
-SpheroidPair random_pair(Random& random, double ratio) {
-  return SpheroidPair(random.log_uniform(1 / ratio, ratio), random.log_uniform(1 / ratio, ratio),
-                      random.uniform(-0.5, 2), random);
+PlacedSpheroids random_pair(Random& random, double ratio) {
+  return PlacedSpheroids(random.log_uniform(1 / ratio, ratio), random.log_uniform(1 / ratio, ratio),
+                         random.uniform(-0.5, 2), random);
 }
 
 TEST(InverseSquareRoot, OfOnePlusSIsRightToRounding) {
@@ -90,7 +90,7 @@ TEST(StepOnSphere, IsUnitAndInTheDirectionOfNPlusStep) {
 TEST(UniaxialKernel, GapIsTheLowerBoundOfThePublicSupportFunctions) {
   Random random(2);
   for (int i = 0; i < repetitions(2000); ++i) {
-    const SpheroidPair pair = random_pair(random, 100);
+    const PlacedSpheroids pair = random_pair(random, 100);
     const Vector3d n = random.direction();
     const double wanted = lower_bound(pair.a, pair.placed.X_WA, pair.b, pair.placed.X_WB, n);
     ASSERT_NEAR(pair.uniaxial(n).g, wanted, 16 * kEpsilon * pair.placed.size) << "pair " << i;
@@ -100,7 +100,7 @@ TEST(UniaxialKernel, GapIsTheLowerBoundOfThePublicSupportFunctions) {
 TEST(UniaxialKernel, AgreesWithTheGeneralKernelAtEveryNormal) {
   Random random(3);
   for (int i = 0; i < repetitions(5000); ++i) {
-    const SpheroidPair pair = random_pair(random, 10);
+    const PlacedSpheroids pair = random_pair(random, 10);
     const Vector3d n =
         random.coin() ? random.direction() : (pair.placed.normal + 0.1 * random.direction()).normalized();
     const UniaxialEvaluation u = pair.uniaxial(n);
@@ -120,7 +120,7 @@ TEST(UniaxialKernel, LeversAreTheDerivativesOfTheSupportHeights) {
   // dh/dt = lever (n.du/dt): by finite differences, turning the axis. Their error is 1e-10 * h''' with h''' up to 10^3.
   Random random(4);
   for (int i = 0; i < 200; ++i) {
-    const SpheroidPair pair = random_pair(random, 5);
+    const PlacedSpheroids pair = random_pair(random, 5);
     const Vector3d n = random.direction();
     const UniaxialEvaluation e = pair.uniaxial(n);
     const Vector3d turn_a = pair.u_a.cross(random.direction());
@@ -141,7 +141,7 @@ TEST(UniaxialKernel, LeversAreTheDerivativesOfTheSupportHeights) {
 TEST(Kernels, StepsLieAcrossTheNormalAreCappedAndAscend) {
   Random random(5);
   for (int i = 0; i < repetitions(5000); ++i) {
-    const SpheroidPair pair = random_pair(random, 10);
+    const PlacedSpheroids pair = random_pair(random, 10);
     const Vector3d n = random.direction();
     for (const Evaluation& e : {Evaluation(pair.uniaxial(n)), pair.general(n)}) {
       // The system's solution errs by some epsilons times its condition, at most 2000 / 0.2.
@@ -166,7 +166,7 @@ TEST(Kernels, ANewtonStepSquaresTheErrorOfTheNormal) {
     const double X0_b = random.log_uniform(0.2, 5);
     const double rho = Spheroid(X0_a, 1).rho + Spheroid(X0_b, 1).rho;
     // Also between half of the certified depth and all of it, where a lifted matrix would make it linear.
-    const SpheroidPair pair(X0_a, X0_b, random.uniform(-0.8, 1) * rho, random);
+    const PlacedSpheroids pair(X0_a, X0_b, random.uniform(-0.8, 1) * rho, random);
     const double off = 1e-5;
     const Vector3d n = (pair.placed.normal + off * pair.placed.normal.cross(random.direction())).normalized();
     for (const Evaluation& e : {Evaluation(pair.uniaxial(n)), pair.general(n)}) {
@@ -184,7 +184,8 @@ TEST(Kernels, TheNormalStaysUnitOverManySteps) {
   Random random(7);
   constexpr int kSteps = 60;
   for (int i = 0; i < 500; ++i) {
-    const SpheroidPair pair(random.log_uniform(0.1, 1), random.log_uniform(1, 10), random.log_uniform(1e-6, 1), random);
+    const PlacedSpheroids pair(random.log_uniform(0.1, 1), random.log_uniform(1, 10), random.log_uniform(1e-6, 1),
+                               random);
     Vector3d n = pair.placed.normal;
     for (int step = 0; step < kSteps; ++step) {
       const UniaxialEvaluation e = pair.uniaxial(n);
@@ -200,7 +201,7 @@ TEST(Kernels, TheNormalStaysUnitOverManySteps) {
 TEST(ColdStart, IsTheSolutionOfTheSumOfBothSupportMatrices) {
   Random random(8);
   for (int i = 0; i < repetitions(1000); ++i) {
-    const SpheroidPair pair = random_pair(random, 10);
+    const PlacedSpheroids pair = random_pair(random, 10);
     const auto support_matrix = [](const Spheroid& s, const Vector3d& u) -> Matrix3d {
       return s.b2 * Matrix3d::Identity() + s.c * u * u.transpose();
     };
