@@ -151,7 +151,7 @@ class SupportGauge {
     return {points.a(), points.b()};
   }
 
-  /// Newton's method of n, with retractions on flat faces; where that finds no way up, from the closest points.
+  /// Newton's method of n, with retractions on flat faces; where that finds no way up, by contact elements.
   template <class Done>
   geom::internal::Ascent ascend(const State& s, const Done& done, int& budget, Eigen::Vector3d& n, Evaluation& e) const;
 
@@ -231,20 +231,21 @@ geom::internal::Ascent SupportGauge::ascend(const State& s, const Done& done, in
                                             Evaluation& e) const {
   using geom::internal::Ascent;
   constexpr int kPatience = 20;  // where edges nearly touch, steps may go on helping next to nothing
-  constexpr int kPrimalSteps = 30;
-  bool by_points = false;
+  constexpr int kElementSteps = 30;
+  bool by_elements = false;
   for (int step = 0; !done(e); ++step) {
     if (budget-- <= 0) return Ascent::exhausted;
     DualSample next = e.sample;
     const bool moved = step != kPatience && s.pair.advance(next, e.newton);
     if (!moved) {
-      if (by_points) return Ascent::stalled;
-      by_points = true;
+      if (by_elements) return Ascent::stalled;
+      by_elements = true;
       int iterations = 0;
-      const NormBodyPair::Answer answer = s.pair.primal(e.sample, kPrimalSteps, iterations);
+      const NormBodyPair::Answer answer =
+          s.pair.by_elements(e.sample.n, NormBodyPair::Pace::careful, kElementSteps, iterations);
       budget -= iterations;
       if (answer.at.g > e.g) {
-        next = answer.at;
+        next = s.pair.sample(answer.at.n);
       } else if (step != kPatience) {
         return Ascent::stalled;
       }

@@ -1,7 +1,6 @@
 #include <geom/internal/norm_body_pair.h>
 
 #include <geom/internal/dual_newton.h>
-#include <geom/internal/small_solve.h>
 #include <geom/tolerances.h>
 
 #include <Eigen/Geometry>
@@ -17,9 +16,7 @@ using Eigen::Vector3d;
 
 // Lengths are in units of the scale, the sum of both bounding radii, unless something else is said.
 
-/// Bounds this close are as good as it gets: a method ends.
-constexpr double kTightGap = 1e-14;
-/// The same, of the mismatch of the support points.
+/// As kTightGap, of the mismatch of the support points.
 constexpr double kTightResidual = 1e-14;
 /// What rounding of the support points can leave of their mismatch at the stationary normal of an overlap.
 constexpr double kSmallResidual = 1e-8;
@@ -39,22 +36,18 @@ constexpr double kRoundingDecrement = 1e-16;
 constexpr double kHiddenDecrement = 1e-14;
 constexpr double kPromiseShrink = 0.1;
 
-/// Levenberg's term of the primal method, dimensionless (the Hessian's identity part is 1): where it starts, its range,
-/// and how it changes after a step that moves the points and after one that does not.
-constexpr double kFirstMu = 1e-9;
-constexpr double kLeastMu = 1e-12;
-constexpr double kMostMu = 1e-3;
-constexpr double kMuAfterMove = 0.1;
-constexpr double kMuAfterFailure = 1e3;
-/// Longest step of a point in the primal method.
-constexpr double kLongestMove = 0.5;
 /// By what steps along a surface are shortened. Dimensionless.
 constexpr double kShorterMove = 0.4;
 
-/// Steps of the dual method before the primal one is asked, which is faster where edges or vertices meet.
+/// The dual method is fast while the mismatch of the support points after a step is no more than kFast of the least
+/// before; it has kTrials steps to become so, and kPatience to end.
+constexpr double kFast = 0.5;
+constexpr int kTrials = 2;
 constexpr int kPatience = 9;
-/// Steps of the dual method on bodies that overlap, for which it is the only fast one; and on each softened pair.
+/// Steps of the other methods, in the order in which they are tried.
+constexpr int kElementSteps = 24;
 constexpr int kMorePatience = 25;
+constexpr int kCarefulSteps = 100;
 
 }  // namespace
 
@@ -223,15 +216,19 @@ void NormBodyPair::place_points(const Step& step, Answer& answer) const {
   answer.gap = std::max(0.0, gap);
 }
 
-NormBodyPair::Answer NormBodyPair::dual(const Vector3d& start, int max_iterations, int& iterations) const {
+NormBodyPair::Answer NormBodyPair::dual(const Vector3d& start, Patience patience, int max_iterations,
+                                        int& iterations) const {
   Answer answer;
   answer.at = sample(start);
+  double least = answer.at.residual;
   Step step = newton_step(answer.at);
   bool settled = false;  // no step is needed, or none helps
   for (int k = 0; k < max_iterations && !settled; ++k) {
     ++iterations;
     settled = (answer.at.g > 0 && answer.at.gap() < kTightGap * scale_) || answer.at.residual < kTightResidual * scale_;
     if (settled) break;
+    if (patience == Patience::little && k >= kTrials && answer.at.residual > kFast * least) return answer;
+    least = std::min(least, answer.at.residual);
     settled = !advance(answer.at, step);
     if (!settled) step = newton_step(answer.at);
   }
@@ -240,93 +237,9 @@ NormBodyPair::Answer NormBodyPair::dual(const Vector3d& start, int max_iteration
   // decides. It says nothing on a flat face, where the model holds for no step at all, nor while steps still help.
   const bool stationary = settled && !(answer.at.g > 0) && answer.at.residual < kSmallResidual * scale_ &&
                           step.decrement < kTightGap * scale_ && !step.lifted;
-  // Steps that still help would take a wide gap to rounding, which is what the next method does.
+  // Steps that still help would take a wide gap to rounding.
   answer.converged = answer.gap < (settled ? kBoundGap : kTightGap) * scale_ || stationary;
   return answer;
-}
-
-/// Raises `best` to the best lower bound that the two points offer: the normals at them, and their direction.
-void NormBodyPair::bound(const Points& points, Answer& best) const {
-  const double upper = points.gap.norm();
-  const LaneVector normals = bodies_.normals(points.on);
-  const Vector3d n_a = normals.a();
-  for (const Vector3d& n : {n_a, Vector3d(-normals.b()), upper > 0 ? Vector3d(points.gap / upper) : n_a}) {
-    const double lower = r_.dot(n) - sum(bodies_.heights(LaneVector::of(n, -n)));
-    if (!(upper - lower < best.gap)) continue;
-    best.gap = upper - lower;
-    best.at.n = n;
-    best.points = points.on;
-  }
-}
-
-/// The step of both points, in their tangent planes, that minimises the model of |D|^2 / 2: its Hessian is [I + alpha
-/// FA, -I; -I, I + beta FB], F the Hessian of the body's norm, positive semidefinite for alpha, beta >= 0.
-LaneVector NormBodyPair::primal_step(const Points& points, double mu) const {
-  LaneVector gradient, s, t;
-  bodies_.derivatives(points.on, gradient, s, t);
-  const Lanes gap_along = LaneVector::of(points.gap, -points.gap).dot(gradient) / gradient.dot(gradient);
-  const Lanes weight = select(below(gap_along, both(0)), both(0), gap_along);
-  const auto [e_a, f_a] = TangentBasis(gradient.a().normalized());
-  const auto [e_b, f_b] = TangentBasis(gradient.b().normalized());
-  const LaneVector e = LaneVector::of(e_a, e_b);
-  const LaneVector f = LaneVector::of(f_a, f_b);
-  const Lanes s_e = s.dot(e), s_f = s.dot(f), t_e = t.dot(e), t_f = t.dot(f);
-  const Lanes m_ee = 1 + mu + weight * (s_e * s_e + t_e * t_e);
-  const Lanes m_ef = weight * (s_e * s_f + t_e * t_f);
-  const Lanes m_ff = 1 + mu + weight * (s_f * s_f + t_f * t_f);
-  SmallMatrix<4> M;
-  M.topLeftCorner<2, 2>() << m_ee[0], m_ef[0], m_ef[0], m_ff[0];
-  M.bottomRightCorner<2, 2>() << m_ee[1], m_ef[1], m_ef[1], m_ff[1];
-  M.topRightCorner<2, 2>() << -e_a.dot(e_b), -e_a.dot(f_b), -f_a.dot(e_b), -f_a.dot(f_b);
-  M.bottomLeftCorner<2, 2>() = M.topRightCorner<2, 2>().transpose();
-  const Vector3d& D = points.gap;
-  const SmallVector<4> step = solve_small<4>(M, SmallVector<4>(e_a.dot(D), f_a.dot(D), -e_b.dot(D), -f_b.dot(D)));
-  return Lanes{step[0], step[2]} * e + Lanes{step[1], step[3]} * f;
-}
-
-/// Newton's method for the closest points themselves, with Levenberg's term mu; keeps the best bounds.
-NormBodyPair::Answer NormBodyPair::primal(const DualSample& start, int max_iterations, int& iterations) const {
-  constexpr int kShortenings = 30;
-  const auto points = [this](const LaneVector& x) {
-    const LaneVector on = bodies_.on_surface(x);
-    return Points{on, r_ + on.b() - on.a()};
-  };
-  Answer best;
-  best.at.n = start.n;
-  best.points = start.support.point;
-  Points here = points(start.support.point);
-  double mu = kFirstMu;
-  for (int k = 0; k < max_iterations; ++k) {
-    ++iterations;
-    bound(here, best);
-    if (best.gap < kTightGap * scale_) break;
-    const LaneVector step = primal_step(here, mu);
-    double fraction = std::min(1.0, kLongestMove * scale_ / std::max(step.a().norm(), step.b().norm()));
-    bool moved = false;
-    for (int t = 0; t < kShortenings && !moved; ++t, fraction *= kShorterMove) {
-      const Points trial = points(here.on + both(fraction) * step);
-      moved = trial.gap.norm() < here.gap.norm();
-      if (moved) here = trial;
-    }
-    if (!moved && mu > kMostMu) break;
-    mu = moved ? std::max(kMuAfterMove * mu, kLeastMu) : kMuAfterFailure * mu;
-  }
-  best.at = sample(best.at.n);
-  if (best.at.gap() < best.gap) {
-    best.gap = best.at.gap();
-    best.points = best.at.support.point;
-  }
-  best.converged = best.gap < kBoundGap * scale_;
-  return best;
-}
-
-Vector3d NormBodyPair::continued(Vector3d n, int& iterations) const {
-  // Of the way from an ellipsoid's exponents to the bodies': shorter steps where the faces become flat.
-  for (const double share : {0.3, 0.6, 0.8, 0.9, 0.96}) {
-    const NormBodyPair soft(bodies_.softened(share), r_, scale_, floor_ / kFloor);
-    n = soft.dual(n, kMorePatience, iterations).at.n;
-  }
-  return n;
 }
 
 Vector3d NormBodyPair::cold_normal() const {
@@ -354,17 +267,19 @@ bool NormBodyPair::shares_a_point(const Answer& answer) const {
   return norms[0] * norms[1] <= norms[0] + norms[1];
 }
 
-/// Branch and bound from the best normal so far, which it raises to a local maximum first.
-NormBodyPair::Answer NormBodyPair::search(const DualSample& best, int& iterations) const {
+/// Branch and bound from a normal that it raises to a local maximum first.
+NormBodyPair::Answer NormBodyPair::search(const Vector3d& start, int& iterations) const {
   const auto at = [&](const Vector3d& n) {
     ++iterations;
     return tangent(n);
   };
   const double rounding = kRoundingFactor * scale_;
-  const auto climb = [&](const Vector3d& n) { return tangent(dual(n, kMaxIterations, iterations).at.n); };
+  const auto climb = [&](const Vector3d& n) {
+    return tangent(dual(n, Patience::all, kMaxIterations, iterations).at.n);
+  };
   const auto up = [&](const Vector3d& n) { return upward(sample(n), rounding); };
   const auto polish = [&](const Vector3d& n) { return climb_over_saddles(at, climb, up, n, rounding); };
-  SphereSearch<decltype(at), decltype(polish)> sphere(at, polish, 0, polish(best.n), rounding);
+  SphereSearch<decltype(at), decltype(polish)> sphere(at, polish, 0, polish(start), rounding);
   sphere.run_to(kDepthGap * scale_, kMostDepthSamples);
   const bool apart = sphere.best().g > 0;
   if (apart) {
@@ -383,10 +298,10 @@ NormBodyPair::Answer NormBodyPair::search(const DualSample& best, int& iteration
   return answer;
 }
 
-/// The other methods end when their bounds are close, a distance to kBoundGap; dual steps take g to rounding.
+/// The search ends when its bounds are close, a distance to kBoundGap; dual steps take g to rounding.
 NormBodyPair::Answer NormBodyPair::polished(const Answer& answer, int& iterations) const {
   if (!(answer.gap > kTightGap * scale_)) return answer;
-  Answer better = dual(answer.at.n, kMaxIterations, iterations);
+  Answer better = dual(answer.at.n, Patience::all, kMaxIterations, iterations);
   const double gained = better.at.g - answer.at.g;
   if (!(gained > 0)) return answer;
   const double kept = std::max(0.0, answer.gap - gained);  // the upper bound has not moved
@@ -398,39 +313,29 @@ NormBodyPair::Answer NormBodyPair::polished(const Answer& answer, int& iteration
   return better;
 }
 
-NormBodyPair::Answer NormBodyPair::patient_dual(const Vector3d& start, int limit, int& iterations) const {
-  Answer answer = dual(start, std::min(kPatience, limit), iterations);
-  // Of bodies that overlap it is the only fast method.
-  if (!answer.converged && !(answer.at.g > 0)) {
-    answer = dual(answer.at.n, std::min(kMorePatience, limit), iterations);
-  }
-  return answer;
+NormBodyPair::Answer NormBodyPair::newton(const Vector3d& start, int limit, int& iterations) const {
+  const Answer fast = dual(start, Patience::little, std::min(kPatience, limit), iterations);
+  if (fast.converged) return fast;
+  const Answer by_both = by_elements(fast.at.n, Pace::brisk, std::min(kElementSteps, limit), iterations);
+  if (by_both.converged) return by_both;
+  const Answer slow = dual(fast.at.n, Patience::all, std::min(kMorePatience, limit), iterations);
+  if (slow.converged) return slow;
+  const Answer careful = by_elements(slow.at.n, Pace::careful, std::min(kCarefulSteps, 2 * limit), iterations);
+  return careful.converged ? careful : slow;
 }
 
 NormBodyPair::Answer NormBodyPair::solve(const Vector3d& start, const Vector3d& cold, Penetration penetration,
                                          int max_iterations, int& iterations) const {
   const int limit = std::max(1, max_iterations);
-  Answer first = patient_dual(start, limit, iterations);
-  if (ends(first, penetration)) return first;
+  Answer best = newton(start, limit, iterations);
+  if (ends(best, penetration)) return best;
   // From a normal that is far off, bodies that are apart may end where g < 0 too.
-  if (first.converged && first.at.g < 0 && start != cold) {
-    Answer from_cold = patient_dual(cold, limit, iterations);
+  if (start != cold) {
+    const Answer from_cold = newton(cold, limit, iterations);
     if (ends(from_cold, penetration)) return from_cold;
-    if (from_cold.at.g > first.at.g) first = from_cold;
+    if (from_cold.at.g > best.at.g) best = from_cold;
   }
-  DualSample best = first.at;
-  if (!(first.converged && first.at.g < 0)) {
-    Answer by_points = primal(first.at, limit, iterations);
-    if (ends(by_points, penetration)) return polished(by_points, iterations);
-    Answer again = dual(continued(cold, iterations), 2 * limit, iterations);
-    if (ends(again, penetration)) return again;
-    Answer last = primal(again.at, 4 * limit, iterations);
-    if (ends(last, penetration)) return polished(last, iterations);
-    for (const Answer* answer : {&by_points, &again, &last}) {
-      if (answer->at.g > best.g) best = answer->at;
-    }
-  }
-  const Answer found = search(best, iterations);
+  const Answer found = search(best.at.n, iterations);
   return found.converged ? polished(found, iterations) : found;
 }
 

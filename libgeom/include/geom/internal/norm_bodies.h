@@ -200,8 +200,11 @@ class NormBodies {
       : NormBodies(LaneVector::of(a.semi_axes, b.semi_axes), LaneRotation::of(R_a, R_b), Lanes{a.e1, b.e1},
                    Lanes{a.e2, b.e2}) {}
 
-  /// The same with exponents e' = 1 + share (e - 1), drawn towards those of an ellipsoid.
-  NormBodies softened(double share) const { return {axes_, R_, 1 + share * (e1_ - 1), 1 + share * (e2_ - 1)}; }
+  const LaneVector& semi_axes() const { return axes_; }
+  const LaneVector& inverse_semi_axes() const { return inverse_axes_; }
+  const LaneRotation& rotation() const { return R_; }
+  Lanes e1() const { return e1_; }
+  Lanes e2() const { return e2_; }
 
   /// Sum of R diag(a^2) R^T of both.
   Eigen::Matrix3d quadrics() const {
@@ -280,15 +283,6 @@ class NormBodies {
     return norm_(magnitudes(product(inverse_axes_, R_.transposed_times(x)))).norm;
   }
   LaneVector on_surface(const LaneVector& x) const { return (1 / norms(x)) * x; }
-  /// grad N, and hess N = t1 t1^T + t2 t2^T, of points of the surfaces.
-  void derivatives(const LaneVector& x, LaneVector& gradient, LaneVector& t1, LaneVector& t2) const {
-    const LaneVector w = product(inverse_axes_, R_.transposed_times(x));
-    const LaneNorm::Curved at = norm_.curved(magnitudes(w));
-    const LaneVector scale = signed_like(inverse_axes_, w);
-    gradient = R_ * product(at.gradient, scale);
-    t1 = R_ * product(at.across, scale);
-    t2 = R_ * product(at.along, scale);
-  }
 
  private:
   NormBodies(const LaneVector& axes, const LaneRotation& R, Lanes e1, Lanes e2)

@@ -1,0 +1,150 @@
+#pragma once
+
+/// Points of the surfaces of two bodies {x : N(x/a) <= 1} (internal/norm_bodies.h) with their normals: contact
+/// elements, and how a Newton step moves them.
+///
+/// On a flat face the point says what the normal is, which hardly turns; on an edge the normal says where the point is.
+/// N is nested, N1(N2(w0, w1), w2), so that an element is two arcs: where (w0, w1) is on the unit curve of N2, and
+/// where (N2, w2) is on that of N1. On u^p + v^p = 1 the gradient is m = (u^(p-1), v^(p-1)), and the ratio of its
+/// components is the (p-1)th power of that of w. A step is linear in the ratio of w beside an axis, in that of m around
+/// the diagonal (for p < 2, where faces are between the axes and vertices on them, the other way round), and ends where
+/// it crosses from one to the other: so much of it is good.
+
+#include <geom/internal/lanes.h>
+#include <geom/internal/norm_bodies.h>
+
+#include <Eigen/Core>
+
+namespace geom::internal {
+
+/// Points (w0, w1) >= 0 of u^p + v^p = 1, p > 1, with the gradient (m0, m1) there, which is on the curve of the dual
+/// exponent: w0 m0 + w1 m1 = 1.
+struct Arc {
+  Lanes w0, w1;
+  Lanes m0, m1;
+  /// w0 / m0 and w1 / m1, of which the Hessian of the dual norm is made. Where they vanish for p > 2, on a flat face,
+  /// huge, not infinite.
+  Lanes flat0, flat1;
+};
+
+class ArcFamily {
+ public:
+  /// p = 2/e.
+  explicit ArcFamily(Lanes e)
+      : minus_one_(2 / e - 1),
+        by_minus_one_(1 / minus_one_),
+        inverse_(0.5 * e),
+        steep_(~below(minus_one_, both(1))),
+        knee_(exp(kLogKnee * select(steep_, by_minus_one_, minus_one_))) {}
+
+  /// 1/(p - 1).
+  Lanes by_minus_one() const { return by_minus_one_; }
+
+  /// Of the ratio of `first` and `second`: of w where `of_points`, else of m.
+  Arc arc(Lanes first, Lanes second, LaneBits of_points) const {
+    const LaneBits swapped = below(first, second);
+    const Lanes ratio = select(swapped, first, second) / positive(select(swapped, second, first));
+    const Lanes powered = exp(select(of_points, minus_one_, by_minus_one_) * log(ratio));
+    const Lanes w = select(of_points, ratio, powered);
+    const Lanes m = select(of_points, powered, ratio);
+    const Lanes s = 1 + w * m;
+    const Lanes root = exp(inverse_ * log(s));
+    const Lanes by_both = 1 / (s * root);
+    const Lanes w_larger = s * by_both;            // s^(-1/p)
+    const Lanes m_larger = root * root * by_both;  // s^(1/p - 1)
+    const Lanes flat_larger = w_larger * w_larger * s;
+    const Lanes flat_smaller = flat_larger * flatness(w, m);
+    const Lanes w_smaller = w * w_larger, m_smaller = m * m_larger;
+    return {select(swapped, w_smaller, w_larger),       select(swapped, w_larger, w_smaller),
+            select(swapped, m_smaller, m_larger),       select(swapped, m_larger, m_smaller),
+            select(swapped, flat_smaller, flat_larger), select(swapped, flat_larger, flat_smaller)};
+  }
+
+  struct Moved {
+    Arc arc;
+    Lanes sign0, sign1;  ///< 1, or -1 where the step has crossed an axis
+  };
+  /// What a step makes of an arc: to points along (w0, w1) and gradients along (m0, m1), which agree to first order.
+  Moved moved(const Arc& from, Lanes w0, Lanes w1, Lanes m0, Lanes m1) const {
+    // alpha: the variable beside an axis; beta = alpha^k, k >= 1: that around the diagonal. Each a1/a0, b1/b0.
+    const Lanes beta0 = select(steep_, from.m0, from.w0);
+    const Lanes beta1 = select(steep_, from.m1, from.w1);
+    const LaneBits swapped = below(beta0, beta1);
+    const auto ordered = [&swapped](Lanes u, Lanes v) { return select(swapped, v, u); };
+    const Lanes a0 = positive(ordered(select(steep_, w0, m0), select(steep_, w1, m1)));
+    const Lanes a1 = ordered(select(steep_, w1, m1), select(steep_, w0, m0));
+    const Lanes b0 = positive(ordered(select(steep_, m0, w0), select(steep_, m1, w1)));
+    const Lanes b1 = ordered(select(steep_, m1, w1), select(steep_, m0, w0));
+    const LaneBits by_axis = below(ordered(beta1, beta0), kKnee * ordered(beta0, beta1));
+    const LaneBits keeps_alpha = by_axis & below(abs(a1), knee_ * a0);
+    const LaneBits crosses = by_axis & below(a1, both(0));
+    // A little beyond the knee, so that the next step is of the other kind.
+    const Lanes least = select(by_axis, both(kKnee * (1 + kBeyond)), both(kKnee * (1 - kBeyond)));
+    const Lanes towards = select(crosses, -b1, b1);
+    const Lanes low = least * b0;
+    const Lanes beta = select(below(towards, low), low, towards);
+    const Lanes high = least * beta;  // of b0, where beta is above 1 / least
+    const Lanes numerator = select(keeps_alpha, abs(a1), beta);
+    const Lanes denominator = select(keeps_alpha, a0, select(below(b0, high), high, b0));
+    const Lanes one = both(1);
+    const Lanes sign = select(crosses, -one, one);
+    return {arc(ordered(denominator, numerator), ordered(numerator, denominator), ~(keeps_alpha ^ steep_)),
+            select(swapped, sign, one), select(swapped, one, sign)};
+  }
+
+ private:
+  /// Where the two variables change over, a ratio of beta. Of 0.1 to 0.3 queries take the fewest steps.
+  static constexpr double kKnee = 0.2;
+  static constexpr double kLogKnee = -1.6094379124341003;
+  static constexpr double kBeyond = 1e-3;
+  /// A w below this counts as this: where it vanishes the dual norm's Hessian is infinite.
+  static constexpr double kLeast = 1e-20;
+
+  Lanes flatness(Lanes w, Lanes m) const {
+    const Lanes least_w = select(steep_, both(kLeast), both(0));
+    const Lanes least_m = both(kLeast * kLeast);
+    return select(below(w, least_w), least_w, w) / select(below(m, least_m), least_m, m);
+  }
+  static Lanes positive(Lanes v) {
+    const Lanes least = both(1e-300);
+    return select(below(v, least), least, v);
+  }
+
+  Lanes minus_one_;     ///< p - 1
+  Lanes by_minus_one_;  ///< 1/(p - 1)
+  Lanes inverse_;       ///< 1/p
+  LaneBits steep_;      ///< p >= 2
+  Lanes knee_;          ///< alpha where beta = kKnee
+};
+
+/// Elements of both bodies, each about its own centre, in world axes.
+class ContactElements {
+ public:
+  /// `bodies` must outlive it.
+  explicit ContactElements(const NormBodies& bodies) : bodies_(bodies), outer_(bodies.e1()), inner_(bodies.e2()) {}
+
+  struct Element {
+    LaneVector point;
+    LaneVector normal;  ///< outward, unit
+    LaneVector t1, t2;  ///< the Hessian of the support function at the normal is t1 t1^T + t2 t2^T
+    LaneVector w, m;    ///< x/a and grad N there, body axes, without signs
+    LaneVector sign;    ///< of both
+    Lanes by_height;    ///< 1 / support height
+    Arc inner, outer;
+  };
+
+  /// The support points of A at n and of B at -n, n a unit vector.
+  Element at(const Eigen::Vector3d& n) const;
+  /// The element to which its point moves by `step` and its normal turns towards n (A) or -n (B).
+  Element moved(const Element& from, const LaneVector& step, const Eigen::Vector3d& n) const;
+
+ private:
+  Element element(const Arc& inner, const Arc& outer, const LaneVector& sign) const;
+  /// a n in body axes, n and -n.
+  LaneVector scaled(const Eigen::Vector3d& n) const;
+
+  const NormBodies& bodies_;
+  ArcFamily outer_, inner_;
+};
+
+}  // namespace geom::internal

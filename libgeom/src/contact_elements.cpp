@@ -1,0 +1,196 @@
+#include <geom/internal/contact_elements.h>
+#include <geom/internal/norm_body_pair.h>
+#include <geom/tolerances.h>
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <cmath>
+
+namespace geom::internal {
+namespace {
+
+using Eigen::Vector3d;
+
+LaneVector product(const LaneVector& u, const LaneVector& v) {
+  return {u.x * v.x, u.y * v.y, u.z * v.z};
+}
+LaneVector signs(const LaneVector& v) {
+  const Lanes one = both(1);
+  return {with_sign(one, v.x), with_sign(one, v.y), with_sign(one, v.z)};
+}
+
+}  // namespace
+
+LaneVector ContactElements::scaled(const Vector3d& n) const {
+  return product(bodies_.semi_axes(), bodies_.rotation().transposed_times(LaneVector::of(n, -n)));
+}
+
+ContactElements::Element ContactElements::element(const Arc& inner, const Arc& outer, const LaneVector& sign) const {
+  Element e;
+  e.inner = inner;
+  e.outer = outer;
+  e.sign = sign;
+  e.w = {outer.w0 * inner.w0, outer.w0 * inner.w1, outer.w1};
+  e.m = {outer.m0 * inner.m0, outer.m0 * inner.m1, outer.m1};
+  const LaneVector axes = product(bodies_.semi_axes(), sign);
+  const LaneVector along_n = product(product(bodies_.inverse_semi_axes(), sign), e.m);
+  e.by_height = sqrt(along_n.dot(along_n));
+  e.normal = bodies_.rotation() * ((1 / e.by_height) * along_n);
+  e.point = bodies_.rotation() * product(axes, e.w);
+  // Those of LaneNorm::curved for the dual norm, at m, where it is 1; its Hessian goes with 1/|m|.
+  const Lanes scale = e.by_height * outer.flat0;
+  const Lanes k_inner = sqrt(scale * inner_.by_minus_one() * inner.flat0 * inner.flat1);
+  const Lanes k_outer = sqrt(scale * outer_.by_minus_one() * outer.flat1);
+  e.t1 = bodies_.rotation() * product(axes, {k_inner * inner.m1, -k_inner * inner.m0, both(0)});
+  const Lanes k_z = k_outer * outer.m1;
+  e.t2 = bodies_.rotation() * product(axes, {k_z * inner.w0, k_z * inner.w1, -k_outer * outer.m0});
+  return e;
+}
+
+ContactElements::Element ContactElements::at(const Vector3d& n) const {
+  const LaneVector v = scaled(n);
+  const LaneVector m{abs(v.x), abs(v.y), abs(v.z)};
+  const LaneBits of_normals{0, 0};
+  const Arc inner = inner_.arc(m.x, m.y, of_normals);
+  return element(inner, outer_.arc(m.x * inner.w0 + m.y * inner.w1, m.z, of_normals), signs(v));
+}
+
+ContactElements::Element ContactElements::moved(const Element& from, const LaneVector& step, const Vector3d& n) const {
+  const LaneVector& sign = from.sign;
+  const LaneVector dw = product(bodies_.inverse_semi_axes(), bodies_.rotation().transposed_times(step));
+  const LaneVector w = from.w + product(dw, sign);
+  const LaneVector m = from.by_height * product(scaled(n), sign);
+  const ArcFamily::Moved inner = inner_.moved(from.inner, w.x, w.y, m.x, m.y);
+  const Lanes x = w.x * inner.sign0, y = w.y * inner.sign1;
+  const Lanes mx = m.x * inner.sign0, my = m.y * inner.sign1;
+  const ArcFamily::Moved outer =
+      outer_.moved(from.outer, x * inner.arc.m0 + y * inner.arc.m1, w.z, mx * inner.arc.w0 + my * inner.arc.w1, m.z);
+  return element(inner.arc, outer.arc,
+                 {sign.x * inner.sign0 * outer.sign0, sign.y * inner.sign1 * outer.sign0, sign.z * outer.sign1});
+}
+
+namespace {
+
+using Element = ContactElements::Element;
+
+/// Newton's step of two contact elements towards a common normal n + delta along which their points are apart: with y
+/// the mismatch of the points that both would have at n, (S + g I) delta = y across n, as of the dual method.
+struct ElementStep {
+  Vector3d delta;    ///< of n
+  LaneVector moves;  ///< of the points
+  double energy;     ///< length; about what bounds of the distance taken at the elements are apart
+  bool lifted;       ///< the matrix had to be made definite: the step promises nothing
+};
+
+/// Normals that differ by less are taken for equal: on a flat face the point that belongs to the difference would be
+/// noise.
+constexpr double kEqualNormals = 4e-15;
+
+/// t.difference, or 0 where that is rounding.
+Lanes clear_dot(const LaneVector& t, const LaneVector& difference) {
+  const Lanes dot = t.dot(difference);
+  const Lanes rounding2 = kEqualNormals * kEqualNormals * t.dot(t);
+  return select(below(dot * dot, rounding2), both(0), dot);
+}
+
+Lanes swapped(Lanes v) {
+  return Lanes{v[1], v[0]};
+}
+
+/// What the least eigenvalue of S + g I is lifted to where it is less and the bodies overlap, of |g|: on vertices that
+/// hardly touch S vanishes, and that eigenvalue is of the order of g at the best normals around theirs.
+constexpr double kFloorOfDepth = 0.1;
+
+/// `gap`: from A's point to B's. `floor`: the most that eigenvalue is lifted to.
+ElementStep element_step(const Element& at, const Vector3d& n, const Vector3d& gap, double floor) {
+  const double g = gap.dot(n);
+  const LaneVector difference = LaneVector::of(n, -n) - at.normal;
+  const Lanes d1 = clear_dot(at.t1, difference);
+  const Lanes d2 = clear_dot(at.t2, difference);
+  const LaneVector resynced = d1 * at.t1 + d2 * at.t2;
+  Vector3d y = gap - resynced.a() + resynced.b();
+  y -= y.dot(n) * n;
+  const LaneVector along = LaneVector::same(n);
+  const LaneVector p1 = along.cross(at.t1);
+  const LaneVector p2 = along.cross(at.t2);
+  const Lanes within = p1.dot(at.t2);
+  const Lanes across11 = p1.dot(swapped(at.t1));
+  const Lanes across12 = p1.dot(swapped(at.t2));
+  const Lanes across22 = p2.dot(swapped(at.t2));
+  const double det = sum(within * within + across12 * across12) + across11[0] * across11[0] + across22[0] * across22[0];
+  const double trace = sum(p1.dot(p1) + p2.dot(p2));
+  double identity = g;
+  ElementStep step;
+  step.lifted = false;
+  if (g < 0) {
+    floor = std::min(floor, kFloorOfDepth * -g);
+    const double largest = 0.5 * trace + std::sqrt(std::max(0.0, 0.25 * trace * trace - det));
+    const double smallest = largest > 0 ? det / largest : 0;
+    step.lifted = g + smallest < floor;
+    if (step.lifted) identity = floor - smallest;
+  }
+  const double by_determinant = 1 / (identity * (identity + trace) + det);
+  const Lanes py1 = p1.dot(y);
+  const Lanes py2 = p2.dot(y);
+  const LaneVector up = py1 * p1 + py2 * p2;
+  step.delta = by_determinant * (identity * y + up.a() + up.b());
+  // t_k.delta without the terms of t_k itself, which vanish: where t_k is huge they would be noise.
+  const Lanes oy1 = swapped(py1);
+  const Lanes oy2 = swapped(py2);
+  const Lanes turn1 = identity * at.t1.dot(y) - within * py2 - across11 * oy1 - across12 * oy2;
+  const Lanes turn2 = identity * at.t2.dot(y) + within * py1 + swapped(across12) * oy1 - across22 * oy2;
+  const Lanes share{by_determinant, -by_determinant};  // B's normal is -n
+  const Lanes c1 = d1 + share * turn1;
+  const Lanes c2 = d2 + share * turn2;
+  step.moves = c1 * at.t1 + c2 * at.t2;
+  step.energy = std::abs(step.delta.dot(y)) + sum(abs(c1 * d1) + abs(c2 * d2));
+  return step;
+}
+
+}  // namespace
+
+/// It has no line search: it converges or it does not, which the bounds tell.
+NormBodyPair::Answer NormBodyPair::by_elements(const Vector3d& start, Pace pace, int max_iterations,
+                                               int& iterations) const {
+  const double longest_turn = pace == Pace::brisk ? 0.35 : 0.1;  // radian
+  const double longest_move = scale_ * (pace == Pace::brisk ? 0.15 : 0.03);
+  constexpr double kSmallEnergy = 1e-7;    // after a step from there it is rounding
+  constexpr double kRoundingGain = 1e-16;  // what bounds that agree can hide
+  const ContactElements elements(bodies_);
+  Answer answer;
+  Vector3d n = start;
+  Element e = elements.at(n);
+  bool near = false;
+  for (int k = 0; k < max_iterations; ++k) {
+    ++iterations;
+    const Vector3d gap = r_ + e.point.b() - e.point.a();
+    const ElementStep step = element_step(e, n, gap, floor_);
+    const Lanes moves2 = step.moves.dot(step.moves);
+    const double largest_move2 = std::max(moves2[0], moves2[1]);
+    if (near) {
+      answer.at.g = r_.dot(n) - sum(bodies_.heights(LaneVector::of(n, -n)));
+      answer.gap = std::max(0.0, gap.norm() - answer.at.g);
+      // Of bodies that overlap there is no upper bound: what the step would gain decides, and whether the points are as
+      // far apart as the tangent planes.
+      const bool apart = answer.at.g > 0;
+      const double off = apart ? answer.gap : std::max(gap.norm() + answer.at.g, step.energy);
+      answer.converged = off < kTightGap * scale_ && (apart || !step.lifted);
+      if (answer.converged) {
+        // What is left of the step is of second order, unless it promises more than there can be to gain.
+        const bool linear = std::max(step.delta.squaredNorm(), largest_move2 / (scale_ * scale_)) < kNormalTolerance2 &&
+                            step.energy < off + kRoundingGain * scale_;
+        answer.points = linear ? e.point + step.moves : e.point;
+        answer.at.n = linear ? Vector3d((n + step.delta).normalized()) : n;
+        return answer;
+      }
+    }
+    near = step.energy < kSmallEnergy * scale_;
+    const double fraction = std::min({1.0, longest_turn / step.delta.norm(), longest_move / std::sqrt(largest_move2)});
+    n = (n + fraction * step.delta).normalized();
+    e = elements.moved(e, both(fraction) * step.moves, n);
+  }
+  return answer;
+}
+
+}  // namespace geom::internal

@@ -1,0 +1,286 @@
+// Contact elements: what they say of the surface, how a step moves them, and Newton's method by them.
+
+#include "common/geom_random.h"
+#include "common/geom_superellipsoid_sets.h"
+
+#include <geom/internal/contact_elements.h>
+#include <geom/internal/norm_body_pair.h>
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace geom::internal {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+using geom_test::any_exponent;
+using geom_test::PairSet;
+using geom_test::Random;
+
+constexpr LaneBits kNo{0, 0};
+constexpr LaneBits kYes = ~kNo;
+
+/// `arc` is a point of |w|^p = 1 with the gradient there, in lane k.
+void expect_on_curve(const Arc& arc, double e, int k) {
+  const double p = 2 / e;
+  ASSERT_NEAR(std::pow(arc.w0[k], p) + std::pow(arc.w1[k], p), 1, 4e-16 * (1 + p));
+  ASSERT_NEAR(arc.m0[k], std::pow(arc.w0[k], p - 1), 4e-16 * (1 + p));
+  ASSERT_NEAR(arc.m1[k], std::pow(arc.w1[k], p - 1), 4e-16 * (1 + p));
+  ASSERT_NEAR(arc.w0[k] * arc.m0[k] + arc.w1[k] * arc.m1[k], 1, 1e-15);
+}
+
+TEST(Arc, IsOnTheCurveOfPointsOrOfGradients) {
+  Random random(1);
+  for (int k = 0; k < 20000; ++k) {
+    const Lanes e{any_exponent(random), random.uniform(kMinExponent, kMaxExponent)};
+    const ArcFamily family(e);
+    const Lanes u{random.log_uniform(1e-3, 1e3), 1};
+    const Lanes v{1, random.log_uniform(1e-3, 1e3)};
+    const Arc of_points = family.arc(u, v, kYes);
+    const Arc of_gradients = family.arc(u, v, kNo);
+    for (const int lane : {0, 1}) {
+      expect_on_curve(of_points, e[lane], lane);
+      expect_on_curve(of_gradients, e[lane], lane);
+      const double ratio = u[lane] / v[lane];
+      ASSERT_NEAR(of_points.w0[lane] / of_points.w1[lane], ratio, 1e-14 * ratio);
+      ASSERT_NEAR(of_gradients.m0[lane] / of_gradients.m1[lane], ratio, 1e-14 * ratio);
+      if (of_points.w0[lane] > 1e-8) {
+        ASSERT_NEAR(of_points.flat0[lane] * of_points.m0[lane], of_points.w0[lane], 1e-13 * of_points.w0[lane]);
+      }
+    }
+  }
+}
+
+/// On an axis the gradient's other component vanishes for p > 2, the point's for any p; the quotient is huge or zero.
+TEST(Arc, EndsOnTheAxes) {
+  const ArcFamily family(Lanes{0.5, 1.5});
+  for (const LaneBits of_points : {kNo, kYes}) {
+    const Arc arc = family.arc(both(1), both(0), of_points);
+    for (const int lane : {0, 1}) {
+      EXPECT_EQ(arc.w0[lane], 1);
+      EXPECT_EQ(arc.m0[lane], 1);
+      EXPECT_LT(arc.w1[lane], 1e-100);
+      EXPECT_LT(arc.m1[lane], 1e-100);
+      EXPECT_TRUE(std::isfinite(arc.flat1[lane]));
+    }
+    EXPECT_GT(arc.flat1[0], 1e15);
+    EXPECT_LT(arc.flat1[1], 1e-15);
+  }
+}
+
+struct SomePair {
+  Superellipsoid a, b;
+  Matrix3d R_a, R_b;
+  NormBodies bodies;
+};
+
+SomePair some_pair(Random& random, double least_e, double most_e) {
+  const auto shape = [&] {
+    return Superellipsoid({1, random.uniform(0.5, 2), random.uniform(0.5, 2)}, random.uniform(least_e, most_e),
+                          random.uniform(least_e, most_e));
+  };
+  const Superellipsoid a = shape();
+  const Superellipsoid b = shape();
+  const Matrix3d R_a = random.pose(0).rotation();
+  const Matrix3d R_b = random.pose(0).rotation();
+  return {a, b, R_a, R_b, NormBodies(NormShape(a), R_a, NormShape(b), R_b)};
+}
+
+TEST(ContactElements, AreTheSupportPointsWithTheirHessians) {
+  Random random(2);
+  for (int k = 0; k < 5000; ++k) {
+    const SomePair pair = some_pair(random, kMinExponent, kMaxExponent);
+    const ContactElements elements(pair.bodies);
+    const Vector3d n = random.direction();
+    const double least =
+        std::min((pair.R_a.transpose() * n).cwiseAbs().minCoeff(), (pair.R_b.transpose() * n).cwiseAbs().minCoeff());
+    if (least < 1e-3) continue;  // there Hessians differ by rounding of the powers of that component
+    const ContactElements::Element e = elements.at(n);
+    const NormBodies::Support s = pair.bodies.support(n);
+    ASSERT_LT((e.normal.a() - n).norm(), 2e-15);
+    ASSERT_LT((e.normal.b() + n).norm(), 2e-15);
+    ASSERT_LT((e.point.a() - s.point.a()).norm(), 1e-14);
+    ASSERT_LT((e.point.b() - s.point.b()).norm(), 1e-14);
+    const auto hessian = [](const Vector3d& t1, const Vector3d& t2) {
+      return Matrix3d(t1 * t1.transpose() + t2 * t2.transpose());
+    };
+    const Matrix3d H_a = hessian(s.t1.a(), s.t2.a());
+    const Matrix3d H_b = hessian(s.t1.b(), s.t2.b());
+    ASSERT_LT((hessian(e.t1.a(), e.t2.a()) - H_a).norm(), 1e-12 * H_a.norm());
+    ASSERT_LT((hessian(e.t1.b(), e.t2.b()) - H_b).norm(), 1e-12 * H_b.norm());
+  }
+}
+
+/// x is on the surface with the outward normal n: as the gradient says, or, where that depends on bits of x that it
+/// does not have, on vertices and edges, as the support point does.
+void expect_on_surface(const Superellipsoid& shape, const Matrix3d& R, const Vector3d& x, const Vector3d& n) {
+  const Vector3d body = R.transpose() * x;
+  ASSERT_NEAR(shape.value(body), 0, 1e-13);
+  const Support support = shape.support(R.transpose() * n);
+  ASSERT_NEAR(body.dot(R.transpose() * n), support.height, 4e-15);
+  const double off_normal = (R * shape.gradient(body).normalized() - n).norm();
+  const double off_point = (support.point - body).norm();
+  ASSERT_LT(std::min(off_normal, off_point), 1e-13);
+}
+
+/// By a step that does not fit the turn, and across axes: wherever an element goes, it is one of the surface.
+TEST(ContactElements, StayOnTheSurfaces) {
+  Random random(3);
+  for (int k = 0; k < 20000; ++k) {
+    const SomePair pair = some_pair(random, kMinExponent, kMaxExponent);
+    const ContactElements elements(pair.bodies);
+    const ContactElements::Element from = elements.at(random.direction());
+    const LaneVector step = LaneVector::of(random.log_uniform(1e-9, 1) * random.direction(),
+                                           random.log_uniform(1e-9, 1) * random.direction());
+    const Vector3d n = (from.normal.a() + random.log_uniform(1e-9, 1) * random.direction()).normalized();
+    const ContactElements::Element to = elements.moved(from, step, n);
+    expect_on_surface(pair.a, pair.R_a, to.point.a(), to.normal.a());
+    expect_on_surface(pair.b, pair.R_b, to.point.b(), to.normal.b());
+  }
+}
+
+/// Where a step and a turn agree to first order, the new element is off to second order, by whichever variable.
+TEST(ContactElements, MoveToFirstOrder) {
+  Random random(4);
+  int tried = 0;
+  for (int k = 0; k < 5000; ++k) {
+    const SomePair pair = some_pair(random, 0.3, 1.5);
+    const ContactElements elements(pair.bodies);
+    const Vector3d n = random.direction();
+    const double least =
+        std::min((pair.R_a.transpose() * n).cwiseAbs().minCoeff(), (pair.R_b.transpose() * n).cwiseAbs().minCoeff());
+    if (least < 0.1) continue;  // the second derivatives' own are large there
+    const ContactElements::Element from = elements.at(n);
+    const Vector3d turn = n.cross(random.direction());
+    const auto off = [&](double angle) {
+      const Vector3d delta = angle * turn;
+      const LaneVector by_lane = LaneVector::of(delta, -delta);
+      const LaneVector step = from.t1.dot(by_lane) * from.t1 + from.t2.dot(by_lane) * from.t2;
+      const Vector3d turned = (n + delta).normalized();
+      const ContactElements::Element to = elements.moved(from, step, turned);
+      const NormBodies::Support s = pair.bodies.support(turned);
+      return std::max({(to.normal.a() - turned).norm(), (to.normal.b() + turned).norm(),
+                       (to.point.a() - s.point.a()).norm(), (to.point.b() - s.point.b()).norm()});
+    };
+    ++tried;
+    ASSERT_LT(off(1e-5), 0.02 * off(1e-4) + 1e-12) << "the error falls with the square of the step";
+  }
+  EXPECT_GT(tried, 1000);
+}
+
+/// A step across the plane x = 0 of a flat face goes where it leads: the component changes its sign.
+TEST(ContactElements, CrossTheAxes) {
+  const Superellipsoid box({1, 1, 1}, 0.4, 0.4);
+  const Superellipsoid ball({1, 1, 1}, 1, 1);
+  const NormBodies bodies(NormShape(box), Matrix3d::Identity(), NormShape(ball), Matrix3d::Identity());
+  const ContactElements elements(bodies);
+  // The face z = 1 at x = 0.1, y = 0.2: m = w^4.
+  const Vector3d n = Vector3d(1e-4, 16e-4, 1).normalized();
+  const ContactElements::Element from = elements.at(n);
+  ASSERT_NEAR(from.point.a().x(), 0.1, 1e-4);
+  const ContactElements::Element to =
+      elements.moved(from, LaneVector::of({-0.15, 0, 0}, Vector3d::Zero()), Vector3d(0, 16e-4, 1).normalized());
+  EXPECT_NEAR(to.point.a().x(), -0.05, 1e-4);
+  EXPECT_NEAR(to.point.a().y(), 0.2, 1e-4);
+  EXPECT_LT(to.normal.a().x(), 0);
+}
+
+/// One pair of a set, `gap` apart along o.n.
+struct Query {
+  geom_test::Orientation o;
+  NormBodyPair pair;
+  double g;  ///< at o.n: what rounding has left of the gap
+};
+
+Query query(PairSet set, double e1, double e2, double gap, Random& random) {
+  const Superellipsoid shape({1, random.uniform(0.6, 1.6), random.uniform(0.4, 2.4)}, e1, e2);
+  const geom_test::Orientation o = geom_test::choose(set, shape, random);
+  Pose X_WA, X_WB;
+  geom_test::place(o, shape, gap, X_WA, X_WB);
+  const NormBodyPair pair(NormBodies(NormShape(shape), X_WA.rotation(), NormShape(shape), X_WB.rotation()),
+                          X_WB.position(), 2 * shape.bounding_radius(), 2 * shape.inscribed_radius());
+  return {o, pair, pair.sample(o.n).g};
+}
+
+constexpr std::array kSets{PairSet::random_normal, PairSet::random_point, PairSet::aligned, PairSet::edges,
+                           PairSet::faces};
+
+/// From cold, in few steps: where edges or faces meet the dual method takes tens of them, or none helps.
+TEST(ContactElements, ConvergeToTheDistance) {
+  constexpr int kSteps = 24;
+  for (const PairSet set : kSets) {
+    Random random(5);
+    int declined = 0;
+    int iterations = 0;
+    constexpr int kPairs = 4000;
+    for (int k = 0; k < kPairs; ++k) {
+      const double e1 = any_exponent(random);
+      const Query q = query(set, e1, any_exponent(random), random.log_uniform(1e-6, 1), random);
+      const NormBodyPair::Answer answer =
+          q.pair.by_elements(q.pair.cold_normal(), NormBodyPair::Pace::brisk, kSteps, iterations);
+      if (!answer.converged) {
+        ++declined;
+        continue;
+      }
+      ASSERT_NEAR(answer.at.g, q.g, 4e-14 * q.pair.scale());
+      ASSERT_LT(answer.gap, 1e-14 * q.pair.scale());
+      const Vector3d apart = q.pair.between() + answer.points.b() - answer.points.a();
+      ASSERT_NEAR(apart.norm(), answer.at.g, 4e-14 * q.pair.scale());
+    }
+    const auto of_set = [&] { return testing::Message() << "set " << static_cast<int>(set); };
+    EXPECT_LE(declined, kPairs / 50) << of_set();
+    EXPECT_LE(iterations, 9 * kPairs) << of_set();
+  }
+}
+
+/// No normal nearby is better: the depth is a local minimum.
+TEST(ContactElements, ConvergeToALocalDepth) {
+  for (const PairSet set : kSets) {
+    Random random(6);
+    int declined = 0;
+    int iterations = 0;
+    constexpr int kPairs = 1000;
+    for (int k = 0; k < kPairs; ++k) {
+      const double e1 = any_exponent(random);
+      const Query q = query(set, e1, any_exponent(random), -random.log_uniform(1e-6, 0.1), random);
+      const NormBodyPair::Answer answer =
+          q.pair.by_elements(q.pair.cold_normal(), NormBodyPair::Pace::brisk, 24, iterations);
+      if (!answer.converged) {
+        ++declined;
+        continue;
+      }
+      ASSERT_LT(answer.at.g, 0);
+      for (int t = 0; t < 20; ++t) {
+        const Vector3d n = (answer.at.n + random.log_uniform(1e-6, 1e-3) * random.direction()).normalized();
+        ASSERT_LE(q.pair.sample(n).g, answer.at.g + 4e-14 * q.pair.scale());
+      }
+    }
+    EXPECT_LE(declined, kPairs / 50) << "set " << static_cast<int>(set);
+  }
+}
+
+/// Shorter steps end nearly always where the fast ones have not.
+TEST(ContactElements, ConvergeInShorterSteps) {
+  Random random(7);
+  int hard = 0;
+  int declined = 0;
+  int iterations = 0;
+  for (int k = 0; k < 20000; ++k) {
+    const Query q = query(PairSet::edges, 0.2, 0.2, random.log_uniform(1e-6, 1), random);
+    const Vector3d start = q.pair.cold_normal();
+    if (q.pair.by_elements(start, NormBodyPair::Pace::brisk, 24, iterations).converged) continue;
+    ++hard;
+    declined += !q.pair.by_elements(start, NormBodyPair::Pace::careful, 100, iterations).converged;
+  }
+  EXPECT_GT(hard, 50);
+  EXPECT_LE(declined, hard / 4);
+}
+
+}  // namespace
+}  // namespace geom::internal
