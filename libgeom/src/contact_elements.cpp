@@ -1,4 +1,5 @@
-#include <geom/internal/contact_elements.h>
+#include "contact_elements.h"
+
 #include <geom/internal/norm_body_pair.h>
 #include <geom/tolerances.h>
 
@@ -12,9 +13,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-LaneVector product(const LaneVector& u, const LaneVector& v) {
-  return {u.x * v.x, u.y * v.y, u.z * v.z};
-}
 LaneVector signs(const LaneVector& v) {
   const Lanes one = both(1);
   return {with_sign(one, v.x), with_sign(one, v.y), with_sign(one, v.z)};
@@ -56,11 +54,28 @@ ContactElements::Element ContactElements::at(const Vector3d& n) const {
   return element(inner, outer_.arc(m.x * inner.w0 + m.y * inner.w1, m.z, of_normals), signs(v));
 }
 
+namespace {
+
+/// Names the same element, of the bodies marked, as one beyond the pole of w2: a step through it then goes straight on.
+ContactElements::Element turned(ContactElements::Element e, LaneBits through) {
+  const Lanes flip = select(through, both(-1), both(1));
+  e.sign = {flip * e.sign.x, flip * e.sign.y, e.sign.z};
+  e.w = {flip * e.w.x, flip * e.w.y, e.w.z};
+  return e;
+}
+
+}  // namespace
+
 ContactElements::Element ContactElements::moved(const Element& from, const LaneVector& step, const Vector3d& n) const {
   const LaneVector& sign = from.sign;
   const LaneVector dw = product(bodies_.inverse_semi_axes(), bodies_.rotation().transposed_times(step));
   const LaneVector w = from.w + product(dw, sign);
   const LaneVector m = from.by_height * product(scaled(n), sign);
+  const LaneBits second = below(from.inner.w0, from.inner.w1);
+  const LaneBits through = below(select(second, w.y, w.x), both(0)) & below(select(second, m.y, m.x), both(0));
+  if (any(through)) [[unlikely]] {
+    return moved(turned(from, through), step, n);
+  }
   const ArcFamily::Moved inner = inner_.moved(from.inner, w.x, w.y, m.x, m.y);
   const Lanes x = w.x * inner.sign0, y = w.y * inner.sign1;
   const Lanes mx = m.x * inner.sign0, my = m.y * inner.sign1;
@@ -94,10 +109,6 @@ Lanes clear_dot(const LaneVector& t, const LaneVector& difference) {
   return select(below(dot * dot, rounding2), both(0), dot);
 }
 
-Lanes swapped(Lanes v) {
-  return Lanes{v[1], v[0]};
-}
-
 /// What the least eigenvalue of S + g I is lifted to where it is less and the bodies overlap, of |g|: on vertices that
 /// hardly touch S vanishes, and that eigenvalue is of the order of g at the best normals around theirs.
 constexpr double kFloorOfDepth = 0.1;
@@ -111,35 +122,25 @@ ElementStep element_step(const Element& at, const Vector3d& n, const Vector3d& g
   const LaneVector resynced = d1 * at.t1 + d2 * at.t2;
   Vector3d y = gap - resynced.a() + resynced.b();
   y -= y.dot(n) * n;
-  const LaneVector along = LaneVector::same(n);
-  const LaneVector p1 = along.cross(at.t1);
-  const LaneVector p2 = along.cross(at.t2);
-  const Lanes within = p1.dot(at.t2);
-  const Lanes across11 = p1.dot(swapped(at.t1));
-  const Lanes across12 = p1.dot(swapped(at.t2));
-  const Lanes across22 = p2.dot(swapped(at.t2));
-  const double det = sum(within * within + across12 * across12) + across11[0] * across11[0] + across22[0] * across22[0];
-  const double trace = sum(p1.dot(p1) + p2.dot(p2));
+  const HessianSum S(n, at.t1, at.t2);
   double identity = g;
   ElementStep step;
   step.lifted = false;
   if (g < 0) {
     floor = std::min(floor, kFloorOfDepth * -g);
-    const double largest = 0.5 * trace + std::sqrt(std::max(0.0, 0.25 * trace * trace - det));
-    const double smallest = largest > 0 ? det / largest : 0;
+    const double smallest = S.smallest();
     step.lifted = g + smallest < floor;
     if (step.lifted) identity = floor - smallest;
   }
-  const double by_determinant = 1 / (identity * (identity + trace) + det);
-  const Lanes py1 = p1.dot(y);
-  const Lanes py2 = p2.dot(y);
-  const LaneVector up = py1 * p1 + py2 * p2;
-  step.delta = by_determinant * (identity * y + up.a() + up.b());
+  const double by_determinant = S.by_determinant(identity);
+  step.delta = by_determinant * S.adjugate_times(y, identity);
   // t_k.delta without the terms of t_k itself, which vanish: where t_k is huge they would be noise.
+  const Lanes py1 = S.p1.dot(y);
+  const Lanes py2 = S.p2.dot(y);
   const Lanes oy1 = swapped(py1);
   const Lanes oy2 = swapped(py2);
-  const Lanes turn1 = identity * at.t1.dot(y) - within * py2 - across11 * oy1 - across12 * oy2;
-  const Lanes turn2 = identity * at.t2.dot(y) + within * py1 + swapped(across12) * oy1 - across22 * oy2;
+  const Lanes turn1 = identity * at.t1.dot(y) - S.within * py2 - S.across11 * oy1 - S.across12 * oy2;
+  const Lanes turn2 = identity * at.t2.dot(y) + S.within * py1 + swapped(S.across12) * oy1 - S.across22 * oy2;
   const Lanes share{by_determinant, -by_determinant};  // B's normal is -n
   const Lanes c1 = d1 + share * turn1;
   const Lanes c2 = d2 + share * turn2;
@@ -148,17 +149,27 @@ ElementStep element_step(const Element& at, const Vector3d& n, const Vector3d& g
   return step;
 }
 
+/// Longest steps: of the normal (radian), and of a point over the sum of both bounding radii.
+struct Caps {
+  double turn;
+  double move;
+};
+constexpr Caps kBrisk{0.35, 0.15};  // those of a half and of twice take as long
+constexpr Caps kCareful{0.1, 0.03};
+/// Of the sum of both bounding radii: after a step of so much energy what is left is rounding, mostly.
+constexpr double kSmallEnergy = 1e-7;
+/// The same, what bounds that agree can hide.
+constexpr double kRoundingGain = 1e-16;
+
 }  // namespace
 
 /// It has no line search: it converges or it does not, which the bounds tell.
 NormBodyPair::Answer NormBodyPair::by_elements(const Vector3d& start, Pace pace, int max_iterations,
                                                int& iterations) const {
-  const double longest_turn = pace == Pace::brisk ? 0.35 : 0.1;  // radian
-  const double longest_move = scale_ * (pace == Pace::brisk ? 0.15 : 0.03);
-  constexpr double kSmallEnergy = 1e-7;    // after a step from there it is rounding
-  constexpr double kRoundingGain = 1e-16;  // what bounds that agree can hide
+  const Caps caps = pace == Pace::brisk ? kBrisk : kCareful;
   const ContactElements elements(bodies_);
   Answer answer;
+  answer.at.n = start;
   Vector3d n = start;
   Element e = elements.at(n);
   bool near = false;
@@ -169,24 +180,26 @@ NormBodyPair::Answer NormBodyPair::by_elements(const Vector3d& start, Pace pace,
     const Lanes moves2 = step.moves.dot(step.moves);
     const double largest_move2 = std::max(moves2[0], moves2[1]);
     if (near) {
+      answer.at.n = n;
       answer.at.g = r_.dot(n) - sum(bodies_.heights(LaneVector::of(n, -n)));
-      answer.gap = std::max(0.0, gap.norm() - answer.at.g);
+      answer.gap = std::max(gap.norm() - answer.at.g, 0.0);
       // Of bodies that overlap there is no upper bound: what the step would gain decides, and whether the points are as
       // far apart as the tangent planes.
       const bool apart = answer.at.g > 0;
-      const double off = apart ? answer.gap : std::max(gap.norm() + answer.at.g, step.energy);
+      const double off = apart ? answer.gap : std::max(step.energy, std::abs(gap.norm() + answer.at.g));
       answer.converged = off < kTightGap * scale_ && (apart || !step.lifted);
       if (answer.converged) {
         // What is left of the step is of second order, unless it promises more than there can be to gain.
         const bool linear = std::max(step.delta.squaredNorm(), largest_move2 / (scale_ * scale_)) < kNormalTolerance2 &&
                             step.energy < off + kRoundingGain * scale_;
         answer.points = linear ? e.point + step.moves : e.point;
-        answer.at.n = linear ? Vector3d((n + step.delta).normalized()) : n;
+        if (linear) answer.at.n = (n + step.delta).normalized();
         return answer;
       }
     }
     near = step.energy < kSmallEnergy * scale_;
-    const double fraction = std::min({1.0, longest_turn / step.delta.norm(), longest_move / std::sqrt(largest_move2)});
+    const double fraction =
+        std::min({1.0, caps.turn / step.delta.norm(), caps.move * scale_ / std::sqrt(largest_move2)});
     n = (n + fraction * step.delta).normalized();
     e = elements.moved(e, both(fraction) * step.moves, n);
   }

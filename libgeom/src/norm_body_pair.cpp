@@ -3,7 +3,6 @@
 #include <geom/internal/dual_newton.h>
 #include <geom/tolerances.h>
 
-#include <Eigen/Geometry>
 #include <Eigen/LU>
 
 #include <algorithm>
@@ -67,32 +66,11 @@ Tangent NormBodyPair::tangent(const Vector3d& n) const {
   return {n, r_ - s.support.point.a() + s.support.point.b(), s.g};
 }
 
-/// With t_k the vectors of the rank-ones and p_k = n x t_k: det S = sum over k < l of (p_k.t_l)^2, all terms positive,
-/// so that nothing cancels where one body is flat and the other is not; the smallest eigenvalue is det S over the
-/// largest.
 NormBodyPair::TangentMatrix NormBodyPair::tangent_matrix(const DualSample& s) const {
-  const LaneVector n = LaneVector::same(s.n);
-  TangentMatrix M;
-  M.p1 = n.cross(s.support.t1);
-  M.p2 = n.cross(s.support.t2);
-  const Lanes within = M.p1.dot(s.support.t2);
-  const Lanes across11 = M.p1.dot(swapped(s.support.t1));
-  const Lanes across12 = M.p1.dot(swapped(s.support.t2));
-  const Lanes across22 = M.p2.dot(swapped(s.support.t2));
-  const double det = sum(within * within + across12 * across12) + across11[0] * across11[0] + across22[0] * across22[0];
-  const double trace = sum(s.traces());
-  const double largest = 0.5 * trace + std::sqrt(std::max(0.0, 0.25 * trace * trace - det));
-  const double smallest = largest > 0 ? det / largest : 0;
-  M.lifted = s.g + smallest < floor_;
-  M.identity = M.lifted ? floor_ - smallest : s.g;
-  M.determinant = M.identity * (M.identity + trace) + det;
-  return M;
-}
-
-/// By the adjugate, g I + sum p_k p_k^T.
-Vector3d NormBodyPair::TangentMatrix::solve(const Vector3d& y) const {
-  const LaneVector up = p1.dot(y) * p1 + p2.dot(y) * p2;
-  return (identity * y + up.a() + up.b()) / determinant;
+  const HessianSum S(s.n, s.support.t1, s.support.t2);
+  const double smallest = S.smallest();
+  const bool lifted = s.g + smallest < floor_;
+  return {S, lifted ? floor_ - smallest : s.g, lifted};
 }
 
 Vector3d NormBodyPair::tangent_solve(const DualSample& s, const Vector3d& y) const {
@@ -175,7 +153,7 @@ bool NormBodyPair::advance(DualSample& s, const Step& step) const {
   const double length = step.delta.norm();
   const double cap = std::min(1.0, kMaxNormalStep / length);
   const Lanes traces = s.traces();
-  if (std::max(traces[0], traces[1]) > kFlat * scale_ && retract(s, step, cap)) return true;
+  if (flat_ && std::max(traces[0], traces[1]) > kFlat * scale_ && retract(s, step, cap)) return true;
   double fraction = cap;
   // A step whose promise is rounding is tried once.
   const int tries = length < kRoundingStep && step.decrement < kRoundingDecrement * scale_ ? 2 : kShortenings;
@@ -320,7 +298,8 @@ NormBodyPair::Answer NormBodyPair::newton(const Vector3d& start, int limit, int&
   if (by_both.converged) return by_both;
   const Answer slow = dual(fast.at.n, Patience::all, std::min(kMorePatience, limit), iterations);
   if (slow.converged) return slow;
-  const Answer careful = by_elements(slow.at.n, Pace::careful, std::min(kCarefulSteps, 2 * limit), iterations);
+  const Answer careful =
+      by_elements(slow.at.n, Pace::careful, limit < kCarefulSteps / 2 ? 2 * limit : kCarefulSteps, iterations);
   return careful.converged ? careful : slow;
 }
 

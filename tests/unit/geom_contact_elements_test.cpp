@@ -2,8 +2,9 @@
 
 #include "common/geom_random.h"
 #include "common/geom_superellipsoid_sets.h"
+#include "contact_elements.h"
 
-#include <geom/internal/contact_elements.h>
+#include <geom/geom.h>
 #include <geom/internal/norm_body_pair.h>
 
 #include <gtest/gtest.h>
@@ -72,6 +73,24 @@ TEST(Arc, EndsOnTheAxes) {
     EXPECT_GT(arc.flat1[0], 1e15);
     EXPECT_LT(arc.flat1[1], 1e-15);
   }
+}
+
+/// For p = 2, and nearly so for p about 2, a face is no flatter than a ball, also where a component is lost.
+TEST(Arc, OfEllipsesIsRoundOnTheAxes) {
+  const ArcFamily family(Lanes{1, 0.98});
+  for (const double ratio : {0.0, 1e-40, 1e-30, 1e-21, 1e-19, 1e-5}) {
+    for (const LaneBits of_points : {kNo, kYes}) {
+      const Arc arc = family.arc(both(1), both(ratio), of_points);
+      EXPECT_NEAR(arc.flat1[0], 1, 1e-13) << ratio;
+      EXPECT_NEAR(arc.flat0[0], 1, 1e-13) << ratio;
+      EXPECT_GT(arc.flat1[1], 1) << ratio;
+      EXPECT_LT(arc.flat1[1], 10) << ratio;
+    }
+  }
+}
+
+TEST(Arc, ChangesOverWhereItSays) {
+  EXPECT_EQ(std::log(ArcFamily::kKnee), ArcFamily::kLogKnee);
 }
 
 struct SomePair {
@@ -189,6 +208,57 @@ TEST(ContactElements, CrossTheAxes) {
   EXPECT_NEAR(to.point.a().x(), -0.05, 1e-4);
   EXPECT_NEAR(to.point.a().y(), 0.2, 1e-4);
   EXPECT_LT(to.normal.a().x(), 0);
+  expect_on_surface(box, Matrix3d::Identity(), to.point.a(), to.normal.a());
+}
+
+/// The same on every face, across either axis and across both at once.
+TEST(ContactElements, CrossTheAxesOfEveryFace) {
+  const Superellipsoid box({1, 1, 1}, 0.4, 0.4);
+  const NormBodies bodies(NormShape(box), Matrix3d::Identity(), NormShape(box), Matrix3d::Identity());
+  const ContactElements elements(bodies);
+  const auto on_face = [](int face, double u, double v) {
+    Vector3d x;
+    x[face] = 1;
+    x[(face + 1) % 3] = u;
+    x[(face + 2) % 3] = v;
+    return x;
+  };
+  // The normal at x is along grad N, w^4, times what the norm of w is there: 1 to 1e-7.
+  const auto normal_at = [](const Vector3d& x) {
+    return Vector3d(x.array().abs().pow(4) * x.array().sign()).normalized();
+  };
+  struct Crossing {
+    double u, v, new_u, new_v;
+  };
+  for (int face = 0; face < 3; ++face) {
+    for (const auto& [u, v, new_u, new_v] :
+         {Crossing{0.02, 0.2, -0.01, 0.2}, Crossing{0.2, 0.02, 0.2, -0.01}, Crossing{0.02, 0.03, -0.01, -0.015}}) {
+      const Vector3d start = on_face(face, u, v);
+      const Vector3d target = on_face(face, new_u, new_v);
+      const ContactElements::Element from = elements.at(normal_at(start));
+      ASSERT_LT((from.point.a() - start).norm(), 1e-3);
+      const Vector3d step = target - start;
+      // B's element is that of -n, at -x.
+      const ContactElements::Element to = elements.moved(from, LaneVector::of(step, -step), normal_at(target));
+      const auto where = [&] { return testing::Message() << "face " << face << ", from " << start.transpose(); };
+      EXPECT_LT((to.point.a() - target).norm(), 1e-3) << where();
+      EXPECT_LT((to.point.b() + target).norm(), 1e-3) << where();
+      expect_on_surface(box, Matrix3d::Identity(), to.point.a(), to.normal.a());
+      expect_on_surface(box, Matrix3d::Identity(), to.point.b(), to.normal.b());
+    }
+  }
+}
+
+/// Normals exactly on an axis: the Hessians of ellipsoids are those of the dual method.
+TEST(ContactElements, OfEllipsoidsAreRoundAtTheirTips) {
+  const Superellipsoid shape({1, 2, 3}, 1, 1);
+  const NormBodies bodies(NormShape(shape), Matrix3d::Identity(), NormShape(shape), Matrix3d::Identity());
+  for (int k = 0; k < 3; ++k) {
+    const Vector3d n = Vector3d::Unit(k);
+    const ContactElements::Element e = ContactElements(bodies).at(n);
+    const Matrix3d H = e.t1.a() * e.t1.a().transpose() + e.t2.a() * e.t2.a().transpose();
+    EXPECT_LT((H - shape.support_hessian(n)).norm(), 1e-14) << k;
+  }
 }
 
 /// One pair of a set, `gap` apart along o.n.
@@ -218,10 +288,14 @@ TEST(ContactElements, ConvergeToTheDistance) {
     Random random(5);
     int declined = 0;
     int iterations = 0;
+    int rounds = 0;  // pairs whose normals are well determined
+    int sharp = 0;
     constexpr int kPairs = 4000;
     for (int k = 0; k < kPairs; ++k) {
       const double e1 = any_exponent(random);
-      const Query q = query(set, e1, any_exponent(random), random.log_uniform(1e-6, 1), random);
+      const double e2 = any_exponent(random);
+      const bool round = std::max(e1, e2) <= 1 && std::min(e1, e2) >= 0.7;
+      const Query q = query(set, e1, e2, random.log_uniform(1e-6, 1), random);
       const NormBodyPair::Answer answer =
           q.pair.by_elements(q.pair.cold_normal(), NormBodyPair::Pace::brisk, kSteps, iterations);
       if (!answer.converged) {
@@ -232,10 +306,14 @@ TEST(ContactElements, ConvergeToTheDistance) {
       ASSERT_LT(answer.gap, 1e-14 * q.pair.scale());
       const Vector3d apart = q.pair.between() + answer.points.b() - answer.points.a();
       ASSERT_NEAR(apart.norm(), answer.at.g, 4e-14 * q.pair.scale());
+      ASSERT_NEAR(q.pair.sample(answer.at.n).g, answer.at.g, 1e-14 * q.pair.scale());
+      rounds += round;
+      sharp += round && (answer.at.n - q.o.n).norm() < 1e-12;
     }
     const auto of_set = [&] { return testing::Message() << "set " << static_cast<int>(set); };
     EXPECT_LE(declined, kPairs / 50) << of_set();
     EXPECT_LE(iterations, 9 * kPairs) << of_set();
+    EXPECT_GE(sharp, 0.8 * rounds) << of_set() << ": the last step takes the normal from 1e-8 to rounding";
   }
 }
 
@@ -263,6 +341,40 @@ TEST(ContactElements, ConvergeToALocalDepth) {
     }
     EXPECT_LE(declined, kPairs / 50) << "set " << static_cast<int>(set);
   }
+}
+
+/// Whether it has converged or not, an answer's g is that of its normal.
+TEST(ContactElements, GiveANormalWithEveryBound) {
+  Random random(8);
+  int unconverged = 0;
+  int iterations = 0;
+  for (int k = 0; k < 4000; ++k) {
+    const Query q = query(PairSet::edges, 0.2, any_exponent(random), random.log_uniform(1e-6, 1), random);
+    const NormBodyPair::Answer answer =
+        q.pair.by_elements(q.pair.cold_normal(), NormBodyPair::Pace::brisk, 4 + k % 8, iterations);
+    ASSERT_NEAR(answer.at.n.norm(), 1, 1e-15);
+    if (answer.converged || std::isinf(answer.at.g)) continue;
+    ++unconverged;
+    ASSERT_NEAR(q.pair.sample(answer.at.n).g, answer.at.g, 1e-14 * q.pair.scale());
+  }
+  EXPECT_GT(unconverged, 20);
+}
+
+/// A ball in an octahedron, on its axis: the way out along that, over the vertex, is stationary by symmetry, and the
+/// longest.
+TEST(ContactElements, DoNotStopOnASaddle) {
+  const Ellipsoid ball({1, 1, 1});
+  const Superellipsoid octahedron({1, 1, 1}, 1.6, 1.6);
+  const Vector3d r(0, 0, 0.3);
+  const NormBodyPair pair(
+      NormBodies(NormShape(ball), Matrix3d::Identity(), NormShape(octahedron), Matrix3d::Identity()), r, 2,
+      1 + octahedron.inscribed_radius());
+  int iterations = 0;
+  EXPECT_FALSE(pair.by_elements(Vector3d::UnitZ(), NormBodyPair::Pace::brisk, 24, iterations).converged);
+  const DistanceResult result =
+      distance(ball, Pose(), octahedron, Pose::translation(r), {.penetration = Penetration::local});
+  EXPECT_EQ(result.status, DistanceStatus::overlapping);
+  EXPECT_GT(result.distance, -1.69);
 }
 
 /// Shorter steps end nearly always where the fast ones have not.

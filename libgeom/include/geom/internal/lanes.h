@@ -23,6 +23,10 @@ inline double sum(Lanes v) {
 inline Lanes select(LaneBits where, Lanes yes, Lanes no) {
   return reinterpret_cast<Lanes>((where & reinterpret_cast<LaneBits>(yes)) | (~where & reinterpret_cast<LaneBits>(no)));
 }
+/// A's where B's was and the other way round.
+inline Lanes swapped(Lanes v) {
+  return Lanes{v[1], v[0]};
+}
 inline LaneBits below(Lanes a, Lanes b) {
   return reinterpret_cast<LaneBits>(a < b);
 }
@@ -117,9 +121,12 @@ inline LaneVector operator-(const LaneVector& u, const LaneVector& v) {
 inline LaneVector operator*(Lanes s, const LaneVector& v) {
   return {s * v.x, s * v.y, s * v.z};
 }
-/// A's where B's was and the other way round.
 inline LaneVector swapped(const LaneVector& v) {
-  return {Lanes{v.x[1], v.x[0]}, Lanes{v.y[1], v.y[0]}, Lanes{v.z[1], v.z[0]}};
+  return {swapped(v.x), swapped(v.y), swapped(v.z)};
+}
+/// Component by component.
+inline LaneVector product(const LaneVector& u, const LaneVector& v) {
+  return {u.x * v.x, u.y * v.y, u.z * v.z};
 }
 inline LaneVector normalized(const LaneVector& v) {
   return (1 / sqrt(v.dot(v))) * v;

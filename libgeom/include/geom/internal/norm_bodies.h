@@ -294,7 +294,6 @@ class NormBodies {
         norm_(2 / e1, 2 / e2),
         dual_(2 / (2 - e1), 2 / (2 - e2)) {}
 
-  static LaneVector product(const LaneVector& u, const LaneVector& v) { return {u.x * v.x, u.y * v.y, u.z * v.z}; }
   static LaneVector magnitudes(const LaneVector& v) { return {abs(v.x), abs(v.y), abs(v.z)}; }
   static LaneVector signed_like(const LaneVector& size, const LaneVector& sign) {
     return {with_sign(size.x, sign.x), with_sign(size.y, sign.y), with_sign(size.z, sign.z)};

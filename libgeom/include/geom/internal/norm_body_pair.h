@@ -6,12 +6,13 @@
 /// Where a face is nearly flat its support point runs across it while n hardly turns, and Newton's step of n
 /// overshoots. The remedies, each tried only where the one before has not ended:
 ///
-/// 1. Dual Newton (see internal/dual_newton.h), each step of which may be a *retraction*: the step is made with the
-///    support point of the flatter body, s + H delta, where the problem is well scaled, and the normal is read there.
-/// 2. Newton's method of both bodies' contact elements (internal/contact_elements.h), points of the surfaces with their
+/// 1. Dual Newton (see internal/dual_newton.h), each step of which may, where a body has faces, be a *retraction*: the
+///    step is made with the support point of the flatter body, s + H delta, where the problem is well scaled, and the
+///    normal is read there.
+/// 2. Newton's method of both bodies' contact elements (src/contact_elements.h), points of the surfaces with their
 ///    normals, which need not be those of n before it has converged: on a face a step is made by the point, on an edge
-///    by the normal. One random pair in twenty needs it, and nearly all whose edges meet.
-/// 3. Dual Newton to its end, and contact elements in shorter steps: one pair in a hundred whose edges meet.
+///    by the normal. One random pair in twenty needs it, of those whose edges meet half, at e = 0.2 nearly all.
+/// 3. Dual Newton to its end, and contact elements in shorter steps: where edges of e = 0.2 meet, 1 in 100.
 /// 4. Branch and bound over all normals (internal/sphere_search.h), which cannot fail but is slow.
 ///
 /// What is certified: g(n) is a lower bound of the distance for every n, and |r + xB - xA| an upper one for every two
@@ -19,6 +20,7 @@
 
 #include <geom/distance.h>
 #include <geom/export.h>
+#include <geom/internal/hessian_sum.h>
 #include <geom/internal/norm_bodies.h>
 #include <geom/internal/sphere_search.h>
 
@@ -50,7 +52,11 @@ class GEOM_EXPORT NormBodyPair {
  public:
   /// B's centre at r from A's. `scale`: the sum of both bounding radii; `least`: that of both inscribed ones.
   NormBodyPair(const NormBodies& bodies, const Eigen::Vector3d& r, double scale, double least)
-      : bodies_(bodies), r_(r), scale_(scale), floor_(kFloor * least) {}
+      : bodies_(bodies),
+        r_(r),
+        scale_(scale),
+        floor_(kFloor * least),
+        flat_(any(below(bodies.e1(), both(kRound)) | below(bodies.e2(), both(kRound)))) {}
 
   /// The answer of one method: a normal, and by how much g there can be below the distance.
   struct Answer {
@@ -78,7 +84,7 @@ class GEOM_EXPORT NormBodyPair {
   static LaneVector moved_points(const DualSample& s, const Step& step);
   /// Points of both bodies, from their centres, each moved by half of what keeps them from being g n apart.
   LaneVector joined(const LaneVector& points, const DualSample& at) const;
-  /// x across s.n with (M + g I) x = y, M the sum of the Hessians, made definite as in a Newton step.
+  /// x across s.n with (S + g I) x = y, S the sum of the Hessians, made definite as in a Newton step.
   Eigen::Vector3d tangent_solve(const DualSample& s, const Eigen::Vector3d& y) const;
 
   enum class Patience {
@@ -108,15 +114,19 @@ class GEOM_EXPORT NormBodyPair {
   /// Least eigenvalue that is kept in Newton's matrix, over the sum of both inscribed radii. Faces and edges leave
   /// none; with more than this steps towards them are too short, with less they run away.
   static constexpr double kFloor = 5e-4;
+  /// Bodies whose exponents are all above have no faces, only vertices: Newton's own step is as good as a retraction,
+  /// and cheaper.
+  static constexpr double kRound = 1.01;
 
-  /// M + g I across n, M = S the sum of rank-ones t_k t_k^T, its smallest eigenvalue kept above a floor.
+  /// S + g I across n, its smallest eigenvalue kept above a floor.
   struct TangentMatrix {
-    LaneVector p1, p2;  ///< n x t_k
-    double identity;    ///< g, or more
-    double determinant;
+    HessianSum S;
+    double identity;  ///< g, or more
     bool lifted;
 
-    Eigen::Vector3d solve(const Eigen::Vector3d& y) const;
+    Eigen::Vector3d solve(const Eigen::Vector3d& y) const {
+      return S.by_determinant(identity) * S.adjugate_times(y, identity);
+    }
   };
 
   TangentMatrix tangent_matrix(const DualSample& s) const;
@@ -140,6 +150,7 @@ class GEOM_EXPORT NormBodyPair {
   Eigen::Vector3d r_;
   double scale_;
   double floor_;  ///< least eigenvalue of Newton's matrix
+  bool flat_;     ///< retractions save steps
 };
 
 }  // namespace geom::internal

@@ -22,13 +22,17 @@ namespace geom::internal {
 struct Arc {
   Lanes w0, w1;
   Lanes m0, m1;
-  /// w0 / m0 and w1 / m1, of which the Hessian of the dual norm is made. Where they vanish for p > 2, on a flat face,
-  /// huge, not infinite.
+  /// w0 / m0 and w1 / m1, of which the Hessian of the dual norm is made. Where they vanish: 1 for p = 2, for larger p,
+  /// on a flat face, huge, not infinite.
   Lanes flat0, flat1;
 };
 
 class ArcFamily {
  public:
+  /// Where the two variables change over, a ratio of beta. Of 0.1 to 0.3 queries take the fewest steps.
+  static constexpr double kKnee = 0.2;
+  static constexpr double kLogKnee = -1.6094379124341003;
+
   /// p = 2/e.
   explicit ArcFamily(Lanes e)
       : minus_one_(2 / e - 1),
@@ -93,21 +97,21 @@ class ArcFamily {
   }
 
  private:
-  /// Where the two variables change over, a ratio of beta. Of 0.1 to 0.3 queries take the fewest steps.
-  static constexpr double kKnee = 0.2;
-  static constexpr double kLogKnee = -1.6094379124341003;
   static constexpr double kBeyond = 1e-3;
-  /// A w below this counts as this: where it vanishes the dual norm's Hessian is infinite.
+  /// Where p >= 2 a w below this counts as this, and its m as that of it, but no less than the square of this: flat
+  /// faces are huge numbers then whose fourth powers are finite.
   static constexpr double kLeast = 1e-20;
+  /// What keeps quotients of two vanishing numbers finite.
+  static constexpr double kTiny = 1e-300;
 
+  static Lanes larger(Lanes a, Lanes b) { return select(below(a, b), b, a); }
+  static Lanes positive(Lanes v) { return larger(v, both(kTiny)); }
   Lanes flatness(Lanes w, Lanes m) const {
-    const Lanes least_w = select(steep_, both(kLeast), both(0));
-    const Lanes least_m = both(kLeast * kLeast);
-    return select(below(w, least_w), least_w, w) / select(below(m, least_m), least_m, m);
-  }
-  static Lanes positive(Lanes v) {
-    const Lanes least = both(1e-300);
-    return select(below(v, least), least, v);
+    const Lanes least = both(kLeast);
+    const Lanes quotient = w / larger(m, least * least);
+    const LaneBits lost = steep_ & below(w, least);
+    if (!any(lost)) return quotient;
+    return select(lost, least / larger(exp(minus_one_ * log(least)), least * least), quotient);
   }
 
   Lanes minus_one_;     ///< p - 1
