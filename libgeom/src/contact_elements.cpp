@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace geom::internal {
 namespace {
@@ -161,18 +162,27 @@ constexpr double kSmallEnergy = 1e-7;
 /// The same, what bounds that agree can hide.
 constexpr double kRoundingGain = 1e-16;
 
+/// Whether what is left after the step is of second order and rounding.
+bool last(const ElementStep& step, double largest_move2, double off, double scale) {
+  const double length2 = std::max(step.delta.squaredNorm(), largest_move2 / (scale * scale));
+  return length2 < kNormalTolerance2 && step.energy < off + kRoundingGain * scale;
+}
+
 }  // namespace
 
-/// It has no line search: it converges or it does not, which the bounds tell.
+/// It has no line search: it converges or it does not, which the bounds tell. Where bounds agree before the points do,
+/// one more step is made for these.
 NormBodyPair::Answer NormBodyPair::by_elements(const Vector3d& start, Pace pace, int max_iterations,
                                                int& iterations) const {
   const Caps caps = pace == Pace::brisk ? kBrisk : kCareful;
   const ContactElements elements(bodies_);
-  Answer answer;
-  answer.at.n = start;
+  Answer best;
+  best.at.n = start;
+  double best_off = std::numeric_limits<double>::infinity();  // what it may be wrong by
   Vector3d n = start;
   Element e = elements.at(n);
   bool near = false;
+  bool agreed = false;
   for (int k = 0; k < max_iterations; ++k) {
     ++iterations;
     const Vector3d gap = r_ + e.point.b() - e.point.a();
@@ -180,22 +190,23 @@ NormBodyPair::Answer NormBodyPair::by_elements(const Vector3d& start, Pace pace,
     const Lanes moves2 = step.moves.dot(step.moves);
     const double largest_move2 = std::max(moves2[0], moves2[1]);
     if (near) {
-      answer.at.n = n;
-      answer.at.g = r_.dot(n) - sum(bodies_.heights(LaneVector::of(n, -n)));
-      answer.gap = std::max(gap.norm() - answer.at.g, 0.0);
+      const double g = r_.dot(n) - sum(bodies_.heights(LaneVector::of(n, -n)));
+      const double upper = gap.norm();
       // Of bodies that overlap there is no upper bound: what the step would gain decides, and whether the points are as
       // far apart as the tangent planes.
-      const bool apart = answer.at.g > 0;
-      const double off = apart ? answer.gap : std::max(step.energy, std::abs(gap.norm() + answer.at.g));
-      answer.converged = off < kTightGap * scale_ && (apart || !step.lifted);
-      if (answer.converged) {
-        // What is left of the step is of second order, unless it promises more than there can be to gain.
-        const bool linear = std::max(step.delta.squaredNorm(), largest_move2 / (scale_ * scale_)) < kNormalTolerance2 &&
-                            step.energy < off + kRoundingGain * scale_;
-        answer.points = linear ? e.point + step.moves : e.point;
-        if (linear) answer.at.n = (n + step.delta).normalized();
-        return answer;
+      const double off = g > 0 ? std::max(upper - g, 0.0) : std::max(step.energy, std::abs(upper + g));
+      const bool valid = g > 0 || !step.lifted;
+      const bool agree = valid && off < kTightGap * scale_;
+      const bool is_last = agree && last(step, largest_move2, off, scale_);
+      if (valid && off < best_off) {
+        best_off = off;
+        best.at.g = g;
+        best.at.n = is_last ? Vector3d((n + step.delta).normalized()) : n;
+        best.points = is_last ? e.point + step.moves : e.point;
+        best.gap = std::max(upper - g, 0.0);
       }
+      if (is_last || (agree && agreed)) break;
+      agreed = agree;
     }
     near = step.energy < kSmallEnergy * scale_;
     const double fraction =
@@ -203,7 +214,10 @@ NormBodyPair::Answer NormBodyPair::by_elements(const Vector3d& start, Pace pace,
     n = (n + fraction * step.delta).normalized();
     e = elements.moved(e, both(fraction) * step.moves, n);
   }
-  return answer;
+  // Around tips that nearly touch Newton's method can go in circles, with bounds as close as are promised.
+  const bool to_promise = pace == Pace::careful && best.at.g > 0;
+  best.converged = best_off < (to_promise ? kBoundGap : kTightGap) * scale_;
+  return best;
 }
 
 }  // namespace geom::internal

@@ -292,11 +292,11 @@ NormBodyPair::Answer NormBodyPair::polished(const Answer& answer, int& iteration
 }
 
 NormBodyPair::Answer NormBodyPair::newton(const Vector3d& start, int limit, int& iterations) const {
-  const Answer fast = dual(start, Patience::little, std::min(kPatience, limit), iterations);
+  Answer fast = dual(start, Patience::little, std::min(kPatience, limit), iterations);
   if (fast.converged) return fast;
-  const Answer by_both = by_elements(fast.at.n, Pace::brisk, std::min(kElementSteps, limit), iterations);
+  Answer by_both = by_elements(fast.at.n, Pace::brisk, std::min(kElementSteps, limit), iterations);
   if (by_both.converged) return by_both;
-  const Answer slow = dual(fast.at.n, Patience::all, std::min(kMorePatience, limit), iterations);
+  Answer slow = dual(fast.at.n, Patience::all, std::min(kMorePatience, limit), iterations);
   if (slow.converged) return slow;
   const Answer careful =
       by_elements(slow.at.n, Pace::careful, limit < kCarefulSteps / 2 ? 2 * limit : kCarefulSteps, iterations);
@@ -310,7 +310,7 @@ NormBodyPair::Answer NormBodyPair::solve(const Vector3d& start, const Vector3d& 
   if (ends(best, penetration)) return best;
   // From a normal that is far off, bodies that are apart may end where g < 0 too.
   if (start != cold) {
-    const Answer from_cold = newton(cold, limit, iterations);
+    Answer from_cold = newton(cold, limit, iterations);
     if (ends(from_cold, penetration)) return from_cold;
     if (from_cold.at.g > best.at.g) best = from_cold;
   }
