@@ -171,7 +171,7 @@ bool last(const ElementStep& step, double largest_move2, double off, double scal
 }  // namespace
 
 /// It has no line search: it converges or it does not, which the bounds tell. Where bounds agree before the points do,
-/// one more step is made for these.
+/// one more step is made for these; what they may be off by along the tangent planes is of the order of sqrt(g off).
 NormBodyPair::Answer NormBodyPair::by_elements(const Vector3d& start, Pace pace, int max_iterations,
                                                int& iterations) const {
   const Caps caps = pace == Pace::brisk ? kBrisk : kCareful;
@@ -198,7 +198,7 @@ NormBodyPair::Answer NormBodyPair::by_elements(const Vector3d& start, Pace pace,
       const bool valid = g > 0 || !step.lifted;
       const bool agree = valid && off < kTightGap * scale_;
       const bool is_last = agree && last(step, largest_move2, off, scale_);
-      if (valid && off < best_off) {
+      if (is_last || (valid && off < best_off)) {
         best_off = off;
         best.at.g = g;
         best.at.n = is_last ? Vector3d((n + step.delta).normalized()) : n;

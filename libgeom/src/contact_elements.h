@@ -22,8 +22,8 @@ namespace geom::internal {
 struct Arc {
   Lanes w0, w1;
   Lanes m0, m1;
-  /// w0 / m0 and w1 / m1, of which the Hessian of the dual norm is made. Where they vanish: 1 for p = 2, for larger p,
-  /// on a flat face, huge, not infinite.
+  /// w0 / m0 and w1 / m1, of which the Hessian of the dual norm is made. Where they vanish: 1 for p = 2, huge for
+  /// larger p, on a flat face, next to nothing for smaller p, on a vertex.
   Lanes flat0, flat1;
 };
 
@@ -98,8 +98,8 @@ class ArcFamily {
 
  private:
   static constexpr double kBeyond = 1e-3;
-  /// Where p >= 2 a w below this counts as this, and its m as that of it, but no less than the square of this: flat
-  /// faces are huge numbers then whose fourth powers are finite.
+  /// The smaller of w (p >= 2) or m (p < 2), below this, counts as this: w / m is no 0/0 then. The square of it is the
+  /// least m: flat faces are huge numbers whose fourth powers are finite.
   static constexpr double kLeast = 1e-20;
   /// What keeps quotients of two vanishing numbers finite.
   static constexpr double kTiny = 1e-300;
@@ -109,9 +109,10 @@ class ArcFamily {
   Lanes flatness(Lanes w, Lanes m) const {
     const Lanes least = both(kLeast);
     const Lanes quotient = w / larger(m, least * least);
-    const LaneBits lost = steep_ & below(w, least);
+    const LaneBits lost = below(select(steep_, w, m), least);
     if (!any(lost)) return quotient;
-    return select(lost, least / larger(exp(minus_one_ * log(least)), least * least), quotient);
+    const Lanes other = exp(select(steep_, minus_one_, by_minus_one_) * log(least));
+    return select(lost, select(steep_, least / larger(other, least * least), other / least), quotient);
   }
 
   Lanes minus_one_;     ///< p - 1

@@ -276,9 +276,13 @@ NormBodyPair::Answer NormBodyPair::search(const Vector3d& start, int& iterations
   return answer;
 }
 
-/// The search ends when its bounds are close, a distance to kBoundGap; dual steps take g to rounding.
+/// The search ends when its bounds are close, a distance to kBoundGap where it can; from its normal other methods end.
 NormBodyPair::Answer NormBodyPair::polished(const Answer& answer, int& iterations) const {
   if (!(answer.gap > kTightGap * scale_)) return answer;
+  if (answer.at.g > 0) {
+    Answer by_both = by_elements(answer.at.n, Pace::careful, kCarefulSteps, iterations);
+    if (by_both.converged && by_both.gap < answer.gap) return by_both;
+  }
   Answer better = dual(answer.at.n, Patience::all, kMaxIterations, iterations);
   const double gained = better.at.g - answer.at.g;
   if (!(gained > 0)) return answer;
@@ -308,7 +312,7 @@ NormBodyPair::Answer NormBodyPair::solve(const Vector3d& start, const Vector3d& 
   const int limit = std::max(1, max_iterations);
   Answer best = newton(start, limit, iterations);
   if (ends(best, penetration)) return best;
-  // From a normal that is far off, bodies that are apart may end where g < 0 too.
+  // From a normal that is far off, bodies that are apart may end where g < 0 too, or nowhere.
   if (start != cold) {
     Answer from_cold = newton(cold, limit, iterations);
     if (ends(from_cold, penetration)) return from_cold;

@@ -51,7 +51,8 @@ struct DistanceOptions {
 /// The answer of a distance query; every number is NaN when `status` declines it. World frame.
 ///
 /// `point_b - point_a = distance * normal` to rounding. Either point is off its surface by about `error_bound` and
-/// residual^2 / (2 * radius of curvature) at most; at an edge, of deep overlaps of superellipsoids, by the residual.
+/// residual^2 / (2 * radius of curvature) at most; at a tip, and at an edge in deep overlaps of superellipsoids, by the
+/// residual.
 struct [[nodiscard]] DistanceResult {
   double distance = std::numeric_limits<double>::quiet_NaN();  ///< < 0: minus the penetration depth
   Eigen::Vector3d point_a = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
