@@ -400,7 +400,9 @@ void EventLoop<Bodies>::reserve_for_events() {
   meetings_.reserve(longest);
   // Candidates are two to three times as many as neighbours.
   near_.resize(std::max(near_.size(), 2 * longest + kCandidatesReserved));
+  // Of an event every pair of two bodies, or all that a body had and all that it gets.
   queue_.reserve(2 * longest);
+  orphans_.reserve(2 * longest);
 }
 
 template <class Bodies>

@@ -21,10 +21,6 @@ LaneVector signs(const LaneVector& v) {
 
 }  // namespace
 
-LaneVector ContactElements::scaled(const Vector3d& n) const {
-  return product(bodies_.semi_axes(), bodies_.rotation().transposed_times(LaneVector::of(n, -n)));
-}
-
 ContactElements::Element ContactElements::element(const Arc& inner, const Arc& outer, const LaneVector& sign) const {
   Element e;
   e.inner = inner;
@@ -48,7 +44,7 @@ ContactElements::Element ContactElements::element(const Arc& inner, const Arc& o
 }
 
 ContactElements::Element ContactElements::at(const Vector3d& n) const {
-  const LaneVector v = scaled(n);
+  const LaneVector v = bodies_.in_norm(n);
   const LaneVector m{abs(v.x), abs(v.y), abs(v.z)};
   const LaneBits of_normals{0, 0};
   const Arc inner = inner_.arc(m.x, m.y, of_normals);
@@ -71,7 +67,7 @@ ContactElements::Element ContactElements::moved(const Element& from, const LaneV
   const LaneVector& sign = from.sign;
   const LaneVector dw = product(bodies_.inverse_semi_axes(), bodies_.rotation().transposed_times(step));
   const LaneVector w = from.w + product(dw, sign);
-  const LaneVector m = from.by_height * product(scaled(n), sign);
+  const LaneVector m = from.by_height * product(bodies_.in_norm(n), sign);
   const LaneBits second = below(from.inner.w0, from.inner.w1);
   const LaneBits through = below(select(second, w.y, w.x), both(0)) & below(select(second, m.y, m.x), both(0));
   if (any(through)) [[unlikely]] {

@@ -145,8 +145,6 @@ class ContactElements {
 
  private:
   Element element(const Arc& inner, const Arc& outer, const LaneVector& sign) const;
-  /// a n in body axes, n and -n.
-  LaneVector scaled(const Eigen::Vector3d& n) const;
 
   const NormBodies& bodies_;
   ArcFamily outer_, inner_;

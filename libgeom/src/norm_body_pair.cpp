@@ -245,6 +245,21 @@ bool NormBodyPair::shares_a_point(const Answer& answer) const {
   return norms[0] * norms[1] <= norms[0] + norms[1];
 }
 
+/// A local maximum of g uphill of n. Where the support points still disagree there, on flat faces, by contact elements,
+/// whose points bound g around it as those cannot.
+Tangent NormBodyPair::climbed(const Vector3d& n, double rounding, int& iterations) const {
+  const Answer by_n = dual(n, Patience::all, kMaxIterations, iterations);
+  const Tangent top = tangent(by_n.at.n);
+  if (!(by_n.at.residual > kStuck * scale_)) return top;
+  const Answer by_both = by_elements(by_n.at.n, Pace::brisk, kElementSteps, iterations);
+  if (!by_both.converged) return top;
+  Tangent other = tangent(by_both.at.n);
+  if (!(other.g >= top.g - rounding)) return top;
+  const LaneVector on = bodies_.on_surface(by_both.points);
+  other.p = r_ + on.b() - on.a();
+  return other;
+}
+
 /// Branch and bound from a normal that it raises to a local maximum first.
 NormBodyPair::Answer NormBodyPair::search(const Vector3d& start, int& iterations) const {
   const auto at = [&](const Vector3d& n) {
@@ -252,9 +267,7 @@ NormBodyPair::Answer NormBodyPair::search(const Vector3d& start, int& iterations
     return tangent(n);
   };
   const double rounding = kRoundingFactor * scale_;
-  const auto climb = [&](const Vector3d& n) {
-    return tangent(dual(n, Patience::all, kMaxIterations, iterations).at.n);
-  };
+  const auto climb = [&](const Vector3d& n) { return climbed(n, rounding, iterations); };
   const auto up = [&](const Vector3d& n) { return upward(sample(n), rounding); };
   const auto polish = [&](const Vector3d& n) { return climb_over_saddles(at, climb, up, n, rounding); };
   SphereSearch<decltype(at), decltype(polish)> sphere(at, polish, 0, polish(start), rounding);

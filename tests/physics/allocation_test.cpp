@@ -42,7 +42,7 @@ void expect_no_allocation(const State& state, const ed::SimulationOptions& optio
 
 TEST(Allocations, NoneInSteadyStateOfGeneralBodies) {
   for (const ed_test::Family& family : ed_test::families(216)) {
-    expect_no_allocation(family.name, ed_test::start(family, 0.40), {}, {8000, 3000});
+    expect_no_allocation(family.name, ed_test::start(family, 0.40), {}, {5000, 3000});
   }
 }
 

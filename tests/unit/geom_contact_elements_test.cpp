@@ -228,7 +228,7 @@ TEST(ContactElements, CrossTheAxesOfEveryFace) {
     x[(face + 2) % 3] = v;
     return x;
   };
-  // The normal at x is along grad N, w^4, times what the norm of w is there: 1 to 1e-7.
+  // p = 5: grad N is along w^4.
   const auto normal_at = [](const Vector3d& x) {
     return Vector3d(x.array().abs().pow(4) * x.array().sign()).normalized();
   };

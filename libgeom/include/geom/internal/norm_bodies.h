@@ -216,6 +216,11 @@ class NormBodies {
     return Q;
   }
 
+  /// a n in body axes, n and -n: what the dual norm is taken of.
+  LaneVector in_norm(const Eigen::Vector3d& n) const {
+    return product(axes_, R_.transposed_times(LaneVector::of(n, -n)));
+  }
+
   /// Heights, points and the Hessians of the support functions, t1 t1^T + t2 t2^T.
   struct Support {
     Lanes height;
@@ -298,10 +303,6 @@ class NormBodies {
   static LaneVector signed_like(const LaneVector& size, const LaneVector& sign) {
     return {with_sign(size.x, sign.x), with_sign(size.y, sign.y), with_sign(size.z, sign.z)};
   }
-  LaneVector in_norm(const Eigen::Vector3d& n) const {
-    return product(axes_, R_.transposed_times(LaneVector::of(n, -n)));
-  }
-
   /// The tangent (A, B) of a plane norm, q < 2, at (x, y)/N or, where one of them is below `floor`, with that one
   /// raised.
   struct Weights {

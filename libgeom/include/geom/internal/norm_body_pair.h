@@ -139,6 +139,7 @@ class GEOM_EXPORT NormBodyPair {
   /// Whether a point that both bodies hold is found, between the witness points or the centres.
   bool shares_a_point(const Answer& answer) const;
   Tangent tangent(const Eigen::Vector3d& n) const;
+  Tangent climbed(const Eigen::Vector3d& n, double rounding, int& iterations) const;
   Answer search(const Eigen::Vector3d& start, int& iterations) const;
   Answer polished(const Answer& answer, int& iterations) const;
   bool retract(DualSample& s, const Step& step, double cap) const;
