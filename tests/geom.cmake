@@ -15,6 +15,7 @@ hardbody_test(geom_unit_test unit
   unit/geom_perram_wertheim_test.cpp
   unit/geom_pose_test.cpp
   unit/geom_queries_test.cpp
+  unit/geom_sphere_search_test.cpp
   unit/geom_superellipsoid_test.cpp
   unit/geom_user_shape_test.cpp)
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64)$")

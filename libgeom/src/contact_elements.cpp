@@ -13,10 +13,19 @@ namespace geom::internal {
 namespace {
 
 using Eigen::Vector3d;
+using Element = ContactElements::Element;
 
 LaneVector signs(const LaneVector& v) {
   const Lanes one = both(1);
   return {with_sign(one, v.x), with_sign(one, v.y), with_sign(one, v.z)};
+}
+
+/// Names the same element, of the bodies marked, as one beyond the pole of w2: a step through it then goes straight on.
+Element turned(Element e, LaneBits through) {
+  const Lanes flip = select(through, both(-1), both(1));
+  e.sign = {flip * e.sign.x, flip * e.sign.y, e.sign.z};
+  e.w = {flip * e.w.x, flip * e.w.y, e.w.z};
+  return e;
 }
 
 }  // namespace
@@ -27,13 +36,13 @@ ContactElements::Element ContactElements::element(const Arc& inner, const Arc& o
   e.outer = outer;
   e.sign = sign;
   e.w = {outer.w0 * inner.w0, outer.w0 * inner.w1, outer.w1};
-  e.m = {outer.m0 * inner.m0, outer.m0 * inner.m1, outer.m1};
+  const LaneVector m{outer.m0 * inner.m0, outer.m0 * inner.m1, outer.m1};  // grad N without signs
   const LaneVector axes = product(bodies_.semi_axes(), sign);
-  const LaneVector along_n = product(product(bodies_.inverse_semi_axes(), sign), e.m);
+  const LaneVector along_n = product(product(bodies_.inverse_semi_axes(), sign), m);
   e.by_height = sqrt(along_n.dot(along_n));
   e.normal = bodies_.rotation() * ((1 / e.by_height) * along_n);
   e.point = bodies_.rotation() * product(axes, e.w);
-  // Those of LaneNorm::curved for the dual norm, at m, where it is 1; its Hessian goes with 1/|m|.
+  // t1 and t2 as LaneNorm::curved has them of the dual norm, at m, where it is 1; its Hessian goes with 1/|m|.
   const Lanes scale = e.by_height * outer.flat0;
   const Lanes k_inner = sqrt(scale * inner_.by_minus_one() * inner.flat0 * inner.flat1);
   const Lanes k_outer = sqrt(scale * outer_.by_minus_one() * outer.flat1);
@@ -50,18 +59,6 @@ ContactElements::Element ContactElements::at(const Vector3d& n) const {
   const Arc inner = inner_.arc(m.x, m.y, of_normals);
   return element(inner, outer_.arc(m.x * inner.w0 + m.y * inner.w1, m.z, of_normals), signs(v));
 }
-
-namespace {
-
-/// Names the same element, of the bodies marked, as one beyond the pole of w2: a step through it then goes straight on.
-ContactElements::Element turned(ContactElements::Element e, LaneBits through) {
-  const Lanes flip = select(through, both(-1), both(1));
-  e.sign = {flip * e.sign.x, flip * e.sign.y, e.sign.z};
-  e.w = {flip * e.w.x, flip * e.w.y, e.w.z};
-  return e;
-}
-
-}  // namespace
 
 ContactElements::Element ContactElements::moved(const Element& from, const LaneVector& step, const Vector3d& n) const {
   const LaneVector& sign = from.sign;
@@ -83,8 +80,6 @@ ContactElements::Element ContactElements::moved(const Element& from, const LaneV
 }
 
 namespace {
-
-using Element = ContactElements::Element;
 
 /// Newton's step of two contact elements towards a common normal n + delta along which their points are apart: with y
 /// the mismatch of the points that both would have at n, (S + g I) delta = y across n, as of the dual method.
@@ -110,7 +105,7 @@ Lanes clear_dot(const LaneVector& t, const LaneVector& difference) {
 /// hardly touch S vanishes, and that eigenvalue is of the order of g at the best normals around theirs.
 constexpr double kFloorOfDepth = 0.1;
 
-/// `gap`: from A's point to B's. `floor`: the most that eigenvalue is lifted to.
+/// `gap`: from A's point to B's. `floor`: what that eigenvalue is lifted to where this is less than kFloorOfDepth |g|.
 ElementStep element_step(const Element& at, const Vector3d& n, const Vector3d& gap, double floor) {
   const double g = gap.dot(n);
   const LaneVector difference = LaneVector::of(n, -n) - at.normal;
@@ -172,8 +167,7 @@ NormBodyPair::Answer NormBodyPair::by_elements(const Vector3d& start, Pace pace,
                                                int& iterations) const {
   const Caps caps = pace == Pace::brisk ? kBrisk : kCareful;
   const ContactElements elements(bodies_);
-  Answer best;
-  best.at.n = start;
+  Answer best{.at = {.n = start, .support = {}, .y = Vector3d::Zero()}, .points = {}};
   double best_off = std::numeric_limits<double>::infinity();  // what it may be wrong by
   Vector3d n = start;
   Element e = elements.at(n);

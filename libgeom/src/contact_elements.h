@@ -132,8 +132,8 @@ class ContactElements {
     LaneVector point;
     LaneVector normal;  ///< outward, unit
     LaneVector t1, t2;  ///< the Hessian of the support function at the normal is t1 t1^T + t2 t2^T
-    LaneVector w, m;    ///< x/a and grad N there, body axes, without signs
-    LaneVector sign;    ///< of both
+    LaneVector w;       ///< x/a, body axes, without signs
+    LaneVector sign;    ///< of w, and of grad N there
     Lanes by_height;    ///< 1 / support height
     Arc inner, outer;
   };

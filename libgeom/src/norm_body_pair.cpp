@@ -98,7 +98,7 @@ NormBodyPair::Step NormBodyPair::newton_step(const DualSample& s) const {
 }
 
 LaneVector NormBodyPair::moved_points(const DualSample& s, const Step& step) {
-  // Deep in an overlap a step that had to be made definite may lead anywhere.
+  // In an overlap a step that had to be made definite may lead anywhere.
   if (step.lifted && s.g < 0) return s.support.point;
   return s.support.point + moves(s, step);
 }
@@ -246,10 +246,10 @@ bool NormBodyPair::shares_a_point(const Answer& answer) const {
 }
 
 /// A local maximum of g uphill of n. Where the support points still disagree there, on flat faces, by contact elements,
-/// whose points bound g around it as those cannot.
+/// whose points bound g around it as those cannot (internal/sphere_search.h; rho is 0 here).
 Tangent NormBodyPair::climbed(const Vector3d& n, double rounding, int& iterations) const {
   const Answer by_n = dual(n, Patience::all, kMaxIterations, iterations);
-  const Tangent top = tangent(by_n.at.n);
+  Tangent top = tangent(by_n.at.n);
   if (!(by_n.at.residual > kStuck * scale_)) return top;
   const Answer by_both = by_elements(by_n.at.n, Pace::brisk, kElementSteps, iterations);
   if (!by_both.converged) return top;
@@ -276,8 +276,8 @@ NormBodyPair::Answer NormBodyPair::search(const Vector3d& start, int& iterations
   if (apart) {
     // Concave there: what is left is to come close to the one maximum.
     sphere.run_to(kBoundGap * scale_, kMostDepthSamples);
-  } else if (sample(sphere.best().n).residual > kStuck * scale_) {
-    // Edges on faces: the ascent stops short of the maximum, but triangles do not.
+  } else if ((sphere.best().p - sphere.best().g * sphere.best().n).norm() > kStuck * scale_) {
+    // Neither method has come to the maximum, but triangles do.
     sphere.run_to(kStuckDepthGap * scale_, kMostDepthSamples);
   }
   Answer answer;
@@ -290,19 +290,22 @@ NormBodyPair::Answer NormBodyPair::search(const Vector3d& start, int& iterations
 }
 
 /// The search ends when its bounds are close, a distance to kBoundGap where it can; from its normal other methods end.
+/// Its upper bound stays where theirs is no better.
 NormBodyPair::Answer NormBodyPair::polished(const Answer& answer, int& iterations) const {
   if (!(answer.gap > kTightGap * scale_)) return answer;
-  if (answer.at.g > 0) {
-    Answer by_both = by_elements(answer.at.n, Pace::careful, kCarefulSteps, iterations);
-    if (by_both.converged && by_both.gap < answer.gap) return by_both;
+  const bool apart = answer.at.g > 0;
+  const double upper = answer.at.g + answer.gap;
+  Answer by_both = by_elements(answer.at.n, Pace::careful, kCarefulSteps, iterations);
+  if (by_both.converged && (apart ? by_both.gap < answer.gap : by_both.at.g >= answer.at.g - kGrowth * scale_)) {
+    if (!apart) by_both.gap = std::max(0.0, upper - by_both.at.g);
+    return by_both;
   }
   Answer better = dual(answer.at.n, Patience::all, kMaxIterations, iterations);
-  const double gained = better.at.g - answer.at.g;
-  if (!(gained > 0)) return answer;
-  const double kept = std::max(0.0, answer.gap - gained);  // the upper bound has not moved
+  if (!(better.at.g > answer.at.g)) return answer;
+  const double kept = std::max(0.0, upper - better.at.g);
   if (kept < better.gap) {
     better.gap = kept;
-    better.points = answer.points;
+    if (apart) better.points = answer.points;
   }
   better.converged = true;
   return better;

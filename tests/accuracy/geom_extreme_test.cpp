@@ -104,7 +104,7 @@ Row run(const char* name, double aspect_ratio, double tolerance, double deepest,
 }
 
 /// Of superellipsoids, beyond an aspect ratio of 10 too: none is wrong, none is declined, and no more than 1 % have a
-/// last resort's answer, of kWidestGap, instead of the contract's (docs/accuracy.md: 31 of 12,000 at most).
+/// last resort's answer, of kWidestGap, instead of the contract's (docs/accuracy.md: 33 of 12,000 at most).
 void expect_certified(const Row& row, const char* name, double aspect_ratio) {
   EXPECT_EQ(row.wrong + row.declined, 0) << name << ' ' << aspect_ratio;
   EXPECT_LE(row.certified, aspect_ratio <= 10 ? 0 : row.pairs / 100) << name << ' ' << aspect_ratio;

@@ -58,7 +58,7 @@ TEST(Arc, IsOnTheCurveOfPointsOrOfGradients) {
   }
 }
 
-/// On an axis the gradient's other component vanishes for p > 2, the point's for any p; the quotient is huge or zero.
+/// On an axis the other component of the point and that of the gradient vanish; their quotient is huge or zero.
 TEST(Arc, EndsOnTheAxes) {
   const ArcFamily family(Lanes{0.5, 1.5});
   for (const LaneBits of_points : {kNo, kYes}) {
@@ -290,7 +290,7 @@ struct PaceTraits {
   NormBodyPair::Pace pace;
   int steps;
   int mean_steps;    ///< at most
-  double tolerance;  ///< of g and of bounds, relative to the scale
+  double tolerance;  ///< of g and of bounds, relative to the scale; twice what is certified, and rounding
 };
 constexpr std::array kPaces{PaceTraits{NormBodyPair::Pace::brisk, 24, 9, 4e-14},
                             PaceTraits{NormBodyPair::Pace::careful, 100, 30, kBoundGap}};

@@ -32,7 +32,7 @@ GEOM_EXPORT const char* to_string(DistanceStatus status);
 enum class Penetration {
   global,  ///< the shortest of all translations that part them
   /// The nearest stationary one (the paper's beta < 0), at any depth: cheap. That the bodies overlap is certain (by a
-  /// point that both hold), that no translation is shorter is not. Where no such point shows, in one of 2,000 deep
+  /// point that both hold), that no translation is shorter is not. Where no such point shows, in one of 4,000 deep
   /// overlaps (tests/property/geom_penetration_test.cpp), as `global`.
   local,
 };
@@ -59,7 +59,7 @@ struct [[nodiscard]] DistanceResult {
   Eigen::Vector3d point_b = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
   Eigen::Vector3d normal = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());  ///< unit, A to B
   DistanceStatus status = DistanceStatus::not_converged;
-  int iterations = 0;  ///< evaluations of the pair, those of a restart included
+  int iterations = 0;  ///< evaluations of the pair, one a step however often it is shortened; a restart's included
   /// Length: how far the points found, those on the surfaces, are from being `distance * normal` apart.
   double residual = std::numeric_limits<double>::quiet_NaN();
   /// Certified: distance <= true distance <= distance + error_bound, rounding (1e-15 of the size of the pair) apart.
@@ -84,16 +84,15 @@ struct [[nodiscard]] DistanceResult {
 /// concentric bodies included: no translation is shorter than the one returned by more than `error_bound`, mostly 1e-9
 /// of the size, 1e-3 at most, or the pair is declined. (The normal returned is a local maximum to second order, no
 /// saddle, where g has second derivatives; at edges and vertices it is the best one found. The bound says how much
-/// better another one could be.) That takes 0.1 to 0.3 milliseconds for ellipsoids, and for superellipsoids 0.05 at a
-/// depth of 1e-6 of the size, 0.3 at 0.1 and 1 beyond or where edges and faces meet, 100 at worst, where a body sits in
-/// the centre of a round one (docs/accuracy.md, bench_superellipsoid); Penetration::local mostly avoids it.
+/// better another one could be.) That takes 0.05 to 0.2 milliseconds for ellipsoids, and for superellipsoids 0.03 to
+/// 0.12 at a depth of 1e-6 of the size and 0.2 to 0.25 at 0.1 (docs/accuracy.md, bench_superellipsoid), 100 at its
+/// limit of kMostDepthSamples, as where a body sits in the centre of a round one; Penetration::local mostly avoids it.
 ///
 /// Long bodies that lie in each other nearly parallel are the exception: all normals across them are nearly as good,
-/// and the bounds are relative to the length, not to the thickness. Parallel needles take 0.5 milliseconds
-/// at an aspect ratio of 10, 7 at 100 and 30 from 1000 on (medians; superellipsoids 0.5 to 3, up to 70), where the
-/// search mostly ends at kMostDepthSamples and `error_bound` can be as large as the depth. The depth found is that of a
-/// brute-force search all the same, but for superellipsoids at 10,000, where it was 1e-6 of the size too long
-/// (docs/accuracy.md, "Deep in each other").
+/// and the bounds are relative to the length, not to the thickness. Parallel needles take 0.4 milliseconds
+/// at an aspect ratio of 10, 3 at 100 and 18 from 1000 on (medians; superellipsoids 0.4 to 0.8, up to 44), where the
+/// search can end at kMostDepthSamples and `error_bound` can be as large as the depth. The depth found is that
+/// of a brute-force search all the same (docs/accuracy.md, "Deep in each other").
 ///
 /// Accuracy of ellipsoids: |error of d| <= 1e-13 times the size of the pair (|p_AB| + both bounding radii) apart and
 /// down to a depth of rho, `error_bound` deeper; normals 1e-7 worst, 1e-12 typically. Both are asserted by
@@ -119,7 +118,7 @@ GEOM_EXPORT DistanceResult distance(const Ellipsoid& a, const Pose& X_WA, const 
 /// one (radian): g(n) <= distance times the cosine of that angle.
 ///
 /// Apart, aspect ratios to 10 are within 1e-12 of the size of the pair; overlaps are within `error_bound`, 1e-9 of it,
-/// 1e-7 where faces meet, and 1e-5 in a few of a million pairs there (docs/accuracy.md).
+/// and 1e-7 where faces meet (docs/accuracy.md).
 /// Of flatter and longer bodies, to kMaxAspectRatio (1e4), some take the slow last resort, up to a tenth of a second:
 /// apart, or slightly overlapping, their distance is certified to kWidestGap (1e-9), or declined, and whether they
 /// overlap is certain only where |distance| is larger than `error_bound` (docs/accuracy.md counts such pairs).

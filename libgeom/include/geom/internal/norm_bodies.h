@@ -303,6 +303,7 @@ class NormBodies {
   static LaneVector signed_like(const LaneVector& size, const LaneVector& sign) {
     return {with_sign(size.x, sign.x), with_sign(size.y, sign.y), with_sign(size.z, sign.z)};
   }
+
   /// The tangent (A, B) of a plane norm, q < 2, at (x, y)/N or, where one of them is below `floor`, with that one
   /// raised.
   struct Weights {

@@ -13,7 +13,9 @@
 ///    normals, which need not be those of n before it has converged: on a face a step is made by the point, on an edge
 ///    by the normal. One random pair in twenty needs it, of those whose edges meet half, at e = 0.2 nearly all.
 /// 3. Dual Newton to its end, and contact elements in shorter steps: where edges of e = 0.2 meet, 1 in 100.
-/// 4. Branch and bound over all normals (internal/sphere_search.h), which cannot fail but is slow.
+/// 4. Branch and bound over all normals (internal/sphere_search.h): slow, and at its limit of evaluations it has
+/// bounds,
+///    whatever they are.
 ///
 /// What is certified: g(n) is a lower bound of the distance for every n, and |r + xB - xA| an upper one for every two
 /// points of the bodies.
@@ -63,7 +65,9 @@ class GEOM_EXPORT NormBodyPair {
     DualSample at;      ///< the normal may be nearer to the best one than that of the sample, by Newton's last step
     LaneVector points;  ///< nearly on both surfaces and as close as they come there, from the centres
     double gap = std::numeric_limits<double>::infinity();  ///< certified: at.g <= distance <= at.g + gap
-    bool converged = false;  ///< the gap is rounding; of an overlap: at.n is stationary to rounding
+    /// The gap is rounding or as promised (kBoundGap; of a search kWidestGap, kWidestDepthGap); of an overlap that was
+    /// not searched: at.n is stationary to rounding.
+    bool converged = false;
   };
 
   /// One Newton step of the normal; not taken yet.
@@ -80,7 +84,7 @@ class GEOM_EXPORT NormBodyPair {
   bool advance(DualSample& s, const Step& step) const;
   /// The support points moved by what the step turns the normal: the closest points to first order. On a flat face the
   /// support point itself is lost to rounding, which this takes back. The support points where the step is of no use:
-  /// lifted, deep in an overlap.
+  /// lifted, in an overlap.
   static LaneVector moved_points(const DualSample& s, const Step& step);
   /// Points of both bodies, from their centres, each moved by half of what keeps them from being g n apart.
   LaneVector joined(const LaneVector& points, const DualSample& at) const;
