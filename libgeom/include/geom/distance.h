@@ -85,7 +85,7 @@ struct [[nodiscard]] DistanceResult {
 /// of the size, 1e-3 at most, or the pair is declined. (The normal returned is a local maximum to second order, no
 /// saddle, where g has second derivatives; at edges and vertices it is the best one found. The bound says how much
 /// better another one could be.) That takes 0.05 to 0.2 milliseconds for ellipsoids, and for superellipsoids 0.03 to
-/// 0.12 at a depth of 1e-6 of the size and 0.2 to 0.25 at 0.1 (docs/accuracy.md, bench_superellipsoid), 100 at its
+/// 0.12 at a depth of 1e-6 of the size and 0.2 to 0.3 at 0.1 (docs/accuracy.md, bench_superellipsoid), 100 at its
 /// limit of kMostDepthSamples, as where a body sits in the centre of a round one; Penetration::local mostly avoids it.
 ///
 /// Long bodies that lie in each other nearly parallel are the exception: all normals across them are nearly as good,

@@ -13,9 +13,8 @@
 ///    normals, which need not be those of n before it has converged: on a face a step is made by the point, on an edge
 ///    by the normal. One random pair in twenty needs it, of those whose edges meet half, at e = 0.2 nearly all.
 /// 3. Dual Newton to its end, and contact elements in shorter steps: where edges of e = 0.2 meet, 1 in 100.
-/// 4. Branch and bound over all normals (internal/sphere_search.h): slow, and at its limit of evaluations it has
-/// bounds,
-///    whatever they are.
+/// 4. Branch and bound over all normals (internal/sphere_search.h): slow, and with whatever bounds it has at its limit
+///    of evaluations.
 ///
 /// What is certified: g(n) is a lower bound of the distance for every n, and |r + xB - xA| an upper one for every two
 /// points of the bodies.

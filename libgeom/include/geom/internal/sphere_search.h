@@ -191,8 +191,8 @@ void SphereSearch<Sample, Polish>::consider(const Tangent& t, double tolerance) 
   if (polished_) polish_best();
 }
 
-/// Of two maxima that differ by less than the tolerance the search may have found the lower one, and has seen samples
-/// beside the other that are nearly as high: it climbs from a few of those.
+/// Of two maxima that differ by less than the tolerance the search may have found the lower one. Where it has seen
+/// samples nearly as high beside the other it climbs from a few of those; beside a sharp one it need not have seen any.
 template <class Sample, class Polish>
 void SphereSearch<Sample, Polish>::consider_rival(const Tangent& t, double tolerance) {
   constexpr double kNearlyAsHigh = 10;  // tolerances
