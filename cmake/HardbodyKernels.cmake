@@ -15,6 +15,11 @@ function(hardbody_kernels target kernel chooser)
   target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/libgeom/src/kernels)  # what all kernels share
   target_include_directories(${target} SYSTEM PRIVATE $<TARGET_PROPERTY:hwy::hwy,INTERFACE_INCLUDE_DIRECTORIES>)
   target_sources(${target} PRIVATE src/${kernel}_portable.cpp)
+  set_source_files_properties(src/${kernel}_portable.cpp PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+  if(HARDBODY_SANITIZE AND CMAKE_CXX_COMPILER_ID MATCHES "Clang")
+    # It takes ten minutes to optimise vectors of loops with all that the sanitizers add.
+    set_source_files_properties(src/${kernel}_portable.cpp PROPERTIES COMPILE_OPTIONS -O0)
+  endif()
   if(NOT CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64)$")
     return()
   endif()

@@ -1,4 +1,5 @@
-# The installed package as an outside project meets it (package/consumer), static and shared, and the Debian packages.
+# The installed package as an outside project meets it (package/consumer): static, or where the build has shared
+# libraries, shared. And the Debian packages.
 set(consumer_flags "")
 if(HARDBODY_SANITIZE)
   set(consumer_flags "-fsanitize=${HARDBODY_SANITIZE}")
@@ -12,11 +13,10 @@ function(hardbody_package_script name script)
   set_tests_properties(${name} PROPERTIES LABELS package TIMEOUT 600)
 endfunction()
 
-# hardbody_package_tests(<linkage> <argument of install.cmake>...)
+# hardbody_package_tests(<linkage>)
 function(hardbody_package_tests linkage)
   set(prefix ${package_dir}/${linkage}_prefix)
-  hardbody_package_script(package_${linkage}_install install.cmake -DBUILD_DIR=${PROJECT_BINARY_DIR} -DPREFIX=${prefix}
-    ${ARGN})
+  hardbody_package_script(package_${linkage}_install install.cmake -DBUILD_DIR=${PROJECT_BINARY_DIR} -DPREFIX=${prefix})
   # All install from the same build tree.
   set_tests_properties(package_${linkage}_install PROPERTIES FIXTURES_SETUP package_${linkage} RESOURCE_LOCK install)
 
@@ -49,12 +49,18 @@ function(hardbody_package_tests linkage)
   set_tests_properties(${names} PROPERTIES FIXTURES_REQUIRED package_${linkage})
 endfunction()
 
+foreach(installed hardbody_geom hardbody_ed hardbody_geom_seeds hardbody_geom_cgal hardbody)
+  if(TARGET ${installed})
+    hardbody_needed_by(package ${installed})
+  endif()
+endforeach()
+find_program(HARDBODY_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH)
 if(NOT BUILD_SHARED_LIBS)
   hardbody_package_tests(static)
+else()
+  hardbody_package_tests(shared)
 endif()
-hardbody_package_tests(shared -DSHARED=ON -DSOURCE_DIR=${PROJECT_SOURCE_DIR})
-find_program(HARDBODY_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH)
-if(HARDBODY_PYTHON)
+if(BUILD_SHARED_LIBS AND HARDBODY_PYTHON)
   add_test(NAME package_exports COMMAND ${HARDBODY_PYTHON} ${CMAKE_CURRENT_SOURCE_DIR}/package/exports.py
     ${package_dir}/shared_prefix ${CMAKE_NM})
   set_tests_properties(package_exports PROPERTIES LABELS package TIMEOUT 60 FIXTURES_REQUIRED package_shared)

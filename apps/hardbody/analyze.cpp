@@ -1,6 +1,7 @@
 #include "commands.h"
 #include "errors.h"
 #include "frame.h"
+#include "json_values.h"
 #include "observable_files.h"
 #include "run_directory.h"
 #include "text_file.h"
@@ -200,29 +201,22 @@ std::string order_csv(const Stored& stored) {
   return text;
 }
 
-Json number(double x) {
-  return std::isfinite(x) ? Json(x) : Json(nullptr);
-}
-
-Json estimate(const ed::Estimate& e) {
-  return {{"value", number(e.value)}, {"error", number(e.error)}};
-}
-
 /// As in summary.json.
 Json observables(const ed::Correlations& c, const ed::Estimate& S, const ed::Director& director) {
   Json json;
-  json["D_trans"] = estimate(c.D_trans);
-  json["S"] = estimate(S);
-  json["director"] = {{"value", {number(director.axis.x()), number(director.axis.y()), number(director.axis.z())}},
-                      {"error", number(director.error)}};
-  json["tau_C2"] = estimate(c.tau_C2);
-  json["beta_C2"] = estimate(c.beta_C2);
-  json["t_C2_1overe"] = estimate(c.t_C2_1overe);
-  json["tau_F"] = estimate(c.tau_F);
-  json["beta_F"] = estimate(c.beta_F);
-  json["t_F_1overe"] = estimate(c.t_F_1overe);
-  json["q_peak"] = estimate(c.q_peak);
-  json["S_peak"] = estimate(c.S_peak);
+  json["D_trans"] = estimate_json(c.D_trans);
+  json["S"] = estimate_json(S);
+  json["director"] = {
+      {"value", {number_json(director.axis.x()), number_json(director.axis.y()), number_json(director.axis.z())}},
+      {"error", number_json(director.error)}};
+  json["tau_C2"] = estimate_json(c.tau_C2);
+  json["beta_C2"] = estimate_json(c.beta_C2);
+  json["t_C2_1overe"] = estimate_json(c.t_C2_1overe);
+  json["tau_F"] = estimate_json(c.tau_F);
+  json["beta_F"] = estimate_json(c.beta_F);
+  json["t_F_1overe"] = estimate_json(c.t_F_1overe);
+  json["q_peak"] = estimate_json(c.q_peak);
+  json["S_peak"] = estimate_json(c.S_peak);
   return json;
 }
 

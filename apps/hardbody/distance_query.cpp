@@ -18,7 +18,6 @@ namespace hardbody {
 namespace {
 
 using Eigen::Vector3d;
-using nlohmann::json;
 
 constexpr std::string_view kQueryKeys[] = {"a", "b", "method", "seed", "penetration", "id"};
 constexpr std::string_view kBodyKeys[] = {"shape", "position", "orientation"};
@@ -99,7 +98,7 @@ void check_options(Method method, const SeedSource& seed, bool has_penetration) 
   }
 }
 
-json parse_line(std::string_view line) {
+nlohmann::json parse_line(std::string_view line) {
   try {
     return parse_json(line);
   } catch (const JsonError& error) {
@@ -173,7 +172,7 @@ std::string id_json(const std::string& id) {
 
 DistanceQuery parse_query(std::string_view line, std::string& id) {
   if (std::optional<DistanceQuery> query = scanned_query(line, id)) return *std::move(query);
-  const json document = parse_line(line);
+  const nlohmann::json document = parse_line(line);
   const JsonMember root{&document, ""};
   if (root.has("id")) id = document.at("id").dump();
   root.allow(kQueryKeys);
@@ -224,7 +223,7 @@ std::string answer_json(const std::string& id, const DistanceAnswer& answer) {
 
 std::string error_json(const std::string& id, const std::string& message) {
   // A message quotes its line, cut at a byte that may be the middle of a character.
-  const std::string quoted = json(message).dump(-1, ' ', false, json::error_handler_t::replace);
+  const std::string quoted = nlohmann::json(message).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
   return fmt::format("{{{}\"error\":{}}}", id_json(id), quoted);
 }
 

@@ -20,32 +20,32 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kFormat = "hardbody pair";
-constexpr std::size_t kLongest = 1 << 20;
+constexpr const char* kPairFormat = "hardbody pair";
+constexpr std::size_t kLongestPair = 1 << 20;
 
-Json list(const Vector3d& v) {
+Json list_json(const Vector3d& v) {
   return {v.x(), v.y(), v.z()};
 }
 
 Json shape_json(const ed::BodyShape& shape) {
   if (const auto* s = std::get_if<geom::Superellipsoid>(&shape)) {
-    return {{"kind", "superellipsoid"}, {"semi_axes", list(s->semi_axes())}, {"exponents", {s->e1(), s->e2()}}};
+    return {{"kind", "superellipsoid"}, {"semi_axes", list_json(s->semi_axes())}, {"exponents", {s->e1(), s->e2()}}};
   }
-  return {{"kind", "ellipsoid"}, {"semi_axes", list(std::get<geom::Ellipsoid>(shape).semi_axes())}};
+  return {{"kind", "ellipsoid"}, {"semi_axes", list_json(std::get<geom::Ellipsoid>(shape).semi_axes())}};
 }
 
 Json placed_json(const ed::BodyShape& shape, const geom::Pose& pose) {
   const Matrix3d& R = pose.rotation();
   return {{"shape", shape_json(shape)},
-          {"position", list(pose.position())},
-          {"rotation", {list(R.row(0)), list(R.row(1)), list(R.row(2))}}};
+          {"position", list_json(pose.position())},
+          {"rotation", {list_json(R.row(0)), list_json(R.row(1)), list_json(R.row(2))}}};
 }
 
 Json body_json(const ed::BodyShape& shape, const ed::Motion& motion) {
   Json json = placed_json(shape, motion.pose);
-  json["velocity"] = list(motion.velocity);
-  json["angular_velocity"] = list(motion.angular_velocity);
-  json["inertia"] = list(motion.inertia);
+  json["velocity"] = list_json(motion.velocity);
+  json["angular_velocity"] = list_json(motion.angular_velocity);
+  json["inertia"] = list_json(motion.inertia);
   json["time"] = motion.time;
   return json;
 }
@@ -58,8 +58,8 @@ Json newton_json(const ed::FailedDistance& call) {
   const bool seeded = call.seed.status == geom::SeedStatus::usable;
   return {{"method", call.method == ed::DistanceMethod::newton8 ? "newton8" : "newton5"},
           {"status", geom::to_string(call.status)},
-          {"point_a", seeded ? list(call.seed.point_a) : Json(nullptr)},
-          {"point_b", seeded ? list(call.seed.point_b) : Json(nullptr)},
+          {"point_a", seeded ? list_json(call.seed.point_a) : Json(nullptr)},
+          {"point_b", seeded ? list_json(call.seed.point_b) : Json(nullptr)},
           {"a", placed_json(body_shape(call.shape_a), call.X_WA)},
           {"b", placed_json(body_shape(call.shape_b), call.X_WB)}};
 }
@@ -111,10 +111,10 @@ ed::Motion read_motion(const JsonMember& body, const ed::BodyShape& shape) {
   return motion;
 }
 
-ed::DistanceMethod read_method(const JsonMember& method) {
-  constexpr const char* kMethods = "\"newton8\" or \"newton5\"";
-  const std::string name = method.text(kMethods);
-  if (name != "newton8" && name != "newton5") throw method.bad(kMethods);
+ed::DistanceMethod read_newton_method(const JsonMember& method) {
+  constexpr const char* kNewtonMethods = "\"newton8\" or \"newton5\"";
+  const std::string name = method.text(kNewtonMethods);
+  if (name != "newton8" && name != "newton5") throw method.bad(kNewtonMethods);
   return name == "newton8" ? ed::DistanceMethod::newton8 : ed::DistanceMethod::newton5;
 }
 
@@ -131,7 +131,7 @@ ed::FailedDistance read_newton(const JsonMember& newton) {
   const JsonMember a = newton.at("a", "a body");
   const JsonMember b = newton.at("b", "a body");
   ed::FailedDistance call;
-  call.method = read_method(newton.at("method", "\"newton8\" or \"newton5\""));
+  call.method = read_newton_method(newton.at("method", "\"newton8\" or \"newton5\""));
   call.status = read_status(newton.at("status", "the status of a distance"));
   call.shape_a = read_geom_shape(a);
   call.shape_b = read_geom_shape(b);
@@ -146,7 +146,7 @@ ed::FailedDistance read_newton(const JsonMember& newton) {
 
 Failure read_pair(const JsonMember& root) {
   const JsonMember format = root.at("format", "\"hardbody pair\", in a file as written to failures/");
-  if (*format.json != kFormat) throw format.bad("\"hardbody pair\"");
+  if (*format.json != kPairFormat) throw format.bad("\"hardbody pair\"");
   const JsonMember a = root.at("a", "a body");
   const JsonMember b = root.at("b", "a body");
   Failure failure;
@@ -183,7 +183,7 @@ std::string where(const std::string& name, const std::string& text, const JsonEr
 
 std::string failure_json(const Failure& failure) {
   const ed::FailedPair& pair = failure.pair;
-  Json json = {{"format", kFormat},
+  Json json = {{"format", kPairFormat},
                {"reason", failure.reason},
                {"time", pair.time},
                {"i", pair.i},
@@ -197,7 +197,7 @@ std::string failure_json(const Failure& failure) {
 
 Failure read_failure(const std::filesystem::path& path) {
   const std::string name = path.string();
-  const std::string text = read_file(path, kLongest);
+  const std::string text = read_file(path, kLongestPair);
   try {
     const nlohmann::json json = parse_json(text);
     return read_pair({&json, ""});

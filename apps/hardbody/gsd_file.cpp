@@ -20,7 +20,7 @@ using ed::internal::Writer;
 
 namespace {
 
-constexpr std::uint64_t kMagic = 0x65DF65DF65DF65DF;
+constexpr std::uint64_t kGsdMagic = 0x65DF65DF65DF65DF;
 constexpr std::uint32_t kVersion2 = 0x00020000;
 constexpr std::uint32_t kVersion1 = 0x00010000;
 constexpr std::uint32_t kVersion03 = 0x00000003;  ///< a draft that its own library still reads
@@ -109,7 +109,7 @@ GsdFile::GsdFile(std::unique_ptr<StoredBytes> bytes, std::string name)
     : bytes_(std::move(bytes)), name_(std::move(name)) {
   const std::uint64_t size = bytes_->size();
   const std::string start = bytes_->read(0, std::min<std::uint64_t>(size, kHeader));
-  if (start.size() < sizeof kMagic || std::memcmp(start.data(), &kMagic, sizeof kMagic) != 0) {
+  if (start.size() < sizeof kGsdMagic || std::memcmp(start.data(), &kGsdMagic, sizeof kGsdMagic) != 0) {
     throw InputError(fmt::format("{}: is not a GSD file; accepted: a GSD file", name_));
   }
   if (start.size() < kHeader) throw ends_early(name_, size, "the end of its header");
@@ -230,7 +230,7 @@ std::uint64_t GsdHead::size() const {
 std::string GsdHead::bytes() const {
   const std::string block = names_block(names);
   Writer writer;
-  writer(kMagic, std::uint64_t{kHeader}, entries, entry_location(entries), std::uint64_t{block.size() / kName},
+  writer(kGsdMagic, std::uint64_t{kHeader}, entries, entry_location(entries), std::uint64_t{block.size() / kName},
          schema_version, kVersion2);
   std::string bytes = writer.take() + text_in_header(application) + text_in_header(schema);
   bytes.resize(bytes.size() + kReserved + entries * kEntry);

@@ -31,7 +31,7 @@ constexpr std::uint32_t kMostTypes = 1'000'000;
 constexpr std::uint64_t kMostInFrame = 10'000'000;
 constexpr std::uint64_t kLongestTexts = std::uint64_t{1} << 26;  ///< bytes
 /// A stored quaternion's length may be off 1 by this: 32-bit numbers, integrated by another program.
-constexpr double kQuaternionTolerance = 1e-4;
+constexpr double kGsdQuaternionTolerance = 1e-4;
 
 /// What reads one frame of a file.
 class FrameReader {
@@ -162,9 +162,9 @@ void FrameReader::read_types(Frame& frame) const {
 
 Matrix3d FrameReader::rotation(const Eigen::Vector4d& q, std::size_t body) const {
   const double length = q.norm();
-  if (!(std::abs(length - 1) <= kQuaternionTolerance)) {
+  if (!(std::abs(length - 1) <= kGsdQuaternionTolerance)) {
     throw bad(fmt::format("the orientation of body {} is a quaternion of length {:g}", body, length),
-              fmt::format("1 within {:g}", kQuaternionTolerance));
+              fmt::format("1 within {:g}", kGsdQuaternionTolerance));
   }
   return geom::Pose::from_quaternion(q[0] / length, q[1] / length, q[2] / length, q[3] / length).rotation();
 }
@@ -324,7 +324,7 @@ const char* edited(const FrameBody& body, const ed::Body& exact, const ed::Speci
   return (stored - L).norm() <= 10 * kSingle * L.norm() ? nullptr : "particles/angmom";
 }
 
-bool same_shape(const ed::BodyShape& a, const ed::BodyShape& b) {
+bool nearly_same_shape(const ed::BodyShape& a, const ed::BodyShape& b) {
   const Vector3d h = ed::half_extents(b);
   return a.index() == b.index() && (ed::half_extents(a) - h).norm() <= kSingle * h.norm();
 }
@@ -340,7 +340,7 @@ void check_unedited(const Frame& frame, const ed::System& system, const std::str
   if (!((frame.box - Vector3d::Constant(system.box)).norm() <= 2 * kSingle * system.box)) refuse("configuration/box");
   for (std::size_t t = 0; t < system.species.size() && t < frame.types.size(); ++t) {
     const auto& shape = frame.types[t].shape;
-    if (shape && !same_shape(*shape, system.species[t].shape)) refuse(fmt::format("the shape of type {}", t));
+    if (shape && !nearly_same_shape(*shape, system.species[t].shape)) refuse(fmt::format("the shape of type {}", t));
   }
   for (std::size_t i = 0; i < frame.bodies.size(); ++i) {
     const char* what = edited(frame.bodies[i], system.bodies[i], system.species_of(static_cast<int>(i)), system.box);

@@ -13,26 +13,23 @@
 namespace hardbody {
 namespace {
 
-using nlohmann::json;
-
 /// Deeper than anything that is meant; far less than the recursion of json::dump can take.
 constexpr int kDeepest = 100;
-constexpr std::size_t kShownLength = 60;
 constexpr int kNumberOverflow = 406;
 
 /// For messages: a value as JSON on one line, shortened.
-std::string shown(const json& value) {
+std::string shown(const nlohmann::json& value) {
   return one_line(value.dump(), kShownLength);
 }
 
 /// Parser callback that refuses what json::parse would take: the last of several members of one name, any depth.
 class StrictObjects {
  public:
-  bool operator()(int depth, json::parse_event_t event, const json& parsed) {
+  bool operator()(int depth, nlohmann::json::parse_event_t event, const nlohmann::json& parsed) {
     if (depth > kDeepest) throw JsonError(fmt::format("is nested more than {} deep", kDeepest));
-    if (event == json::parse_event_t::object_start) keys_.emplace_back();
-    if (event == json::parse_event_t::object_end) keys_.pop_back();
-    if (event == json::parse_event_t::key && !keys_.back().insert(parsed.get<std::string>()).second) {
+    if (event == nlohmann::json::parse_event_t::object_start) keys_.emplace_back();
+    if (event == nlohmann::json::parse_event_t::object_end) keys_.pop_back();
+    if (event == nlohmann::json::parse_event_t::key && !keys_.back().insert(parsed.get<std::string>()).second) {
       throw JsonError(fmt::format("has the key {} twice in one object", shown(parsed)));
     }
     return true;
@@ -57,15 +54,16 @@ geom::Superellipsoid read_superellipsoid(const JsonMember& shape) {
 
 }  // namespace
 
-json parse_json(std::string_view text) {
+nlohmann::json parse_json(std::string_view text) {
   StrictObjects strict;
   try {
-    return json::parse(
-        text, [&](int depth, json::parse_event_t event, json& parsed) { return strict(depth, event, parsed); });
-  } catch (const json::parse_error& error) {
+    return nlohmann::json::parse(text, [&](int depth, nlohmann::json::parse_event_t event, nlohmann::json& parsed) {
+      return strict(depth, event, parsed);
+    });
+  } catch (const nlohmann::json::parse_error& error) {
     // The parser counts bytes from 1, and one more if it ran into the end.
     throw JsonError("is not valid JSON", std::min(error.byte == 0 ? 0 : error.byte - 1, text.size()));
-  } catch (const json::out_of_range& error) {
+  } catch (const nlohmann::json::out_of_range& error) {
     throw JsonError(error.id == kNumberOverflow ? "has a number beyond the range of a double" : "is not valid JSON");
   }
 }

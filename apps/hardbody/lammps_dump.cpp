@@ -73,7 +73,7 @@ namespace {
 
 constexpr std::uint64_t kMostBodies = 100'000'000;
 /// A stored quaternion's length may be off 1 by this: six digits.
-constexpr double kQuaternionTolerance = 1e-4;
+constexpr double kDumpQuaternionTolerance = 1e-4;
 
 /// The lines of a text, one after the other.
 class Lines {
@@ -147,14 +147,14 @@ class DumpFrame {
 };
 
 /// What may stand before the time step: dump_modify has options for it.
-constexpr std::string_view kTime = "ITEM: TIME";
-constexpr std::string_view kUnits = "ITEM: UNITS";
+constexpr std::string_view kTimeItem = "ITEM: TIME";
+constexpr std::string_view kUnitsItem = "ITEM: UNITS";
 
 void DumpFrame::read_head(Frame& frame) {
   std::string_view item = line("its time step");
-  for (; item == kTime || item == kUnits; item = line("its time step")) {
+  for (; item == kTimeItem || item == kUnitsItem; item = line("its time step")) {
     const std::string_view value = line("its time step");
-    if (item == kTime) frame.time = number(value, "the time");
+    if (item == kTimeItem) frame.time = number(value, "the time");
   }
   const double step = number(line("its time step"), "the time step");
   frame.step = step >= 0 && step < 1e18 ? static_cast<std::uint64_t>(step) : 0;
@@ -255,9 +255,9 @@ void DumpFrame::read_body(const std::vector<std::string_view>& words, Frame& fra
     Eigen::Vector4d x;
     for (int k = 0; k < 4; ++k) x[k] = number(words[(*q)[static_cast<std::size_t>(k)]], "an orientation");
     const double length = x.norm();
-    if (!(std::abs(length - 1) <= kQuaternionTolerance)) {
+    if (!(std::abs(length - 1) <= kDumpQuaternionTolerance)) {
       throw bad(fmt::format("an orientation is a quaternion of length {:g}", length),
-                fmt::format("1 within {:g}", kQuaternionTolerance));
+                fmt::format("1 within {:g}", kDumpQuaternionTolerance));
     }
     x /= length;
     body.rotation = geom::Pose::from_quaternion(x[0], x[1], x[2], x[3]).rotation();
@@ -317,7 +317,7 @@ InputError foreign(const std::string& name) {
 
 /// Whether it is how a dump may begin.
 bool begins_dump(std::string_view text) {
-  return text.starts_with(kBegin) || text.starts_with(kTime) || text.starts_with(kUnits);
+  return text.starts_with(kBegin) || text.starts_with(kTimeItem) || text.starts_with(kUnitsItem);
 }
 
 /// Where the line before the one at `at` > 0 begins.
@@ -330,7 +330,7 @@ std::size_t line_before(std::string_view text, std::size_t at) {
 std::size_t begin_of(std::string_view text, std::size_t at) {
   while (at > 0) {
     const std::size_t item = line_before(text, line_before(text, at));
-    if (!text.substr(item).starts_with(kTime) && !text.substr(item).starts_with(kUnits)) break;
+    if (!text.substr(item).starts_with(kTimeItem) && !text.substr(item).starts_with(kUnitsItem)) break;
     if (text.substr(item).starts_with(kBegin)) break;
     at = item;
   }

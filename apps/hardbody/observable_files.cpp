@@ -31,7 +31,7 @@ bool has_axes(const ed::Correlations& correlations) {
   return !correlations.lags.empty() && std::isfinite(correlations.lags[0].c2_axis[0].value);
 }
 
-using Columns = std::function<std::vector<Column>(const std::string& suffix, bool axes)>;
+using ColumnsOf = std::function<std::vector<Column>(const std::string& suffix, bool axes)>;
 
 std::vector<Column> msd_columns(const std::string& suffix, bool /*axes*/) {
   return {{"msd" + suffix, "l^2", [](const ed::LagRow& row) { return row.msd; }}};
@@ -110,7 +110,7 @@ ed::LagRow row_at_zero(const ed::Correlations& correlations) {
 enum class FirstLag { shortest, zero };
 
 /// Against the lag.
-std::string lag_csv(const ed::Results& results, const Columns& columns, FirstLag first = FirstLag::shortest) {
+std::string lag_csv(const ed::Results& results, const ColumnsOf& columns, FirstLag first = FirstLag::shortest) {
   const std::vector<const ed::Correlations*> parts = parts_of(results);
   std::string text = "t [l sqrt(m/kT)]";
   std::vector<std::vector<Column>> of_part;

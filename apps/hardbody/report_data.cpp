@@ -1,5 +1,6 @@
 #include "report_page.h"
 
+#include "json_values.h"
 #include "number_text.h"
 #include "run_directory.h"
 #include "version.h"
@@ -30,10 +31,6 @@ enum class Detail { full, slim };
 
 /// All of a sweep's points together may take so much; what is beyond is left to reports of their own.
 constexpr std::size_t kMostOfPoints = 40'000'000;
-
-Json number(double x) {
-  return std::isfinite(x) ? Json(x) : Json(nullptr);
-}
 
 Json rounded(double x, int digits = kCurveDigits) {
   if (!std::isfinite(x)) return nullptr;
@@ -112,7 +109,7 @@ Json headlines_json(const std::vector<Headline>& headlines, Detail detail) {
   Json list = Json::array();
   for (const Headline& h : headlines) {
     if (detail == Detail::slim) {
-      list.push_back({{"key", h.key}, {"value", number(h.value)}});
+      list.push_back({{"key", h.key}, {"value", number_json(h.value)}});
       continue;
     }
     list.push_back({{"key", h.key},
@@ -120,8 +117,8 @@ Json headlines_json(const std::vector<Headline>& headlines, Detail detail) {
                     {"name", h.name},
                     {"unit", h.unit},
                     {"meaning", h.meaning},
-                    {"value", number(h.value)},
-                    {"error", number(h.error)}});
+                    {"value", number_json(h.value)},
+                    {"error", number_json(h.error)}});
   }
   return list;
 }
@@ -217,7 +214,7 @@ Json point_json(const SweepPointReport& point, bool embedded) {
   Json keys = Json::array();
   for (const std::string& key : point.keys) keys.push_back(field_json(key));
   Json values = Json::array();
-  for (const Measured& m : point.values) values.push_back({number(m.value), number(m.error)});
+  for (const Measured& m : point.values) values.push_back({number_json(m.value), number_json(m.error)});
   return {{"keys", std::move(keys)},  {"values", std::move(values)},        {"status", point.status},
           {"message", point.message}, {"equilibrated", point.equilibrated}, {"directory", point.directory},
           {"embedded", embedded}};

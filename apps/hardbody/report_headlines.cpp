@@ -12,8 +12,6 @@
 namespace hardbody {
 namespace {
 
-using Json = nlohmann::json;
-
 constexpr const char* kRate = "√(kT/m)/l";
 constexpr const char* kDiffusion = "l √(kT/m)";
 constexpr const char* kTime = "l √(m/kT)";
@@ -55,7 +53,7 @@ constexpr std::array kAxisNamings = {
     Naming{"kT_axes", "kT", "Rotational temperature about body", "kT", "equipartition: 1"},
 };
 
-double number_in(const Json& estimate, const char* key) {
+double number_in(const nlohmann::json& estimate, const char* key) {
   const auto place = estimate.is_object() ? estimate.find(key) : estimate.end();
   if (!estimate.is_object() || place == estimate.end() || !place->is_number()) {
     return std::numeric_limits<double>::quiet_NaN();
@@ -63,7 +61,7 @@ double number_in(const Json& estimate, const char* key) {
   return place->get<double>();
 }
 
-Headline headline(const Naming& naming, const Json& estimate) {
+Headline headline(const Naming& naming, const nlohmann::json& estimate) {
   return {naming.key,
           naming.symbol,
           naming.name,
@@ -73,7 +71,7 @@ Headline headline(const Naming& naming, const Json& estimate) {
           number_in(estimate, "error")};
 }
 
-void add_axes(std::vector<Headline>& list, const Json& observables) {
+void add_axes(std::vector<Headline>& list, const nlohmann::json& observables) {
   constexpr std::array kAxes = {"x", "y", "z"};
   for (const Naming& naming : kAxisNamings) {
     const auto values = observables.find(naming.key);
@@ -90,7 +88,7 @@ void add_axes(std::vector<Headline>& list, const Json& observables) {
 
 }  // namespace
 
-std::vector<Headline> headlines_of(const Json& observables) {
+std::vector<Headline> headlines_of(const nlohmann::json& observables) {
   std::vector<Headline> list;
   if (!observables.is_object()) return list;
   for (const Naming& naming : kNamings) {

@@ -19,16 +19,15 @@ namespace hardbody {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::json;
 
 constexpr std::size_t kLongestText = std::size_t{1} << 26;
 /// Of the log: its end tells most.
 constexpr std::size_t kLogShown = 30'000;
 
-Json read_summary(const fs::path& path) {
+nlohmann::json read_summary(const fs::path& path) {
   if (!fs::exists(path)) return nullptr;
   try {
-    Json summary = parse_json(read_file(path, kLongestText));
+    nlohmann::json summary = parse_json(read_file(path, kLongestText));
     if (!summary.is_object()) throw JsonError("is not an object");
     return summary;
   } catch (const JsonError& error) {
@@ -44,25 +43,25 @@ std::string read_log(const fs::path& path) {
   return "...\n" + log.substr(line == std::string::npos ? log.size() - kLogShown : line + 1);
 }
 
-const Json& member(const Json& json, const char* key) {
-  static const Json kNothing;
+const nlohmann::json& member(const nlohmann::json& json, const char* key) {
+  static const nlohmann::json kNothing;
   if (!json.is_object()) return kNothing;
   const auto place = json.find(key);
   return place == json.end() ? kNothing : *place;
 }
 
-bool says(const Json& json, bool wanted) {
+bool says(const nlohmann::json& json, bool wanted) {
   return json.is_boolean() && json.get<bool>() == wanted;
 }
 
-double number_of(const Json& json) {
+double number_of(const nlohmann::json& json) {
   return json.is_number() ? json.get<double>() : 0;
 }
 
 /// How far it came.
-Remark completion(const Json& summary) {
+Remark completion(const nlohmann::json& summary) {
   using Kind = Remark::Kind;
-  const Json& time = member(summary, "time");
+  const nlohmann::json& time = member(summary, "time");
   const double production = number_of(member(time, "production"));
   if (member(summary, "stalled").is_string()) {
     return {Kind::bad, "stalled", "The run made no progress and was ended: " + summary["stalled"].get<std::string>()};
@@ -81,9 +80,9 @@ Remark completion(const Json& summary) {
                         number_of(member(time, "equilibration")))};
 }
 
-Remark soundness(const Json& summary) {
+Remark soundness(const nlohmann::json& summary) {
   using Kind = Remark::Kind;
-  const Json& counters = member(summary, "counters");
+  const nlohmann::json& counters = member(summary, "counters");
   if (says(member(summary, "sound"), true)) {
     return {Kind::good, "sound", "No overlap, nothing missed, energy and momentum conserved to rounding."};
   }
@@ -94,7 +93,7 @@ Remark soundness(const Json& summary) {
                   number_of(member(counters, "overlaps")), number_of(member(counters, "declined")))};
 }
 
-std::vector<Remark> remarks_of(const Json& summary) {
+std::vector<Remark> remarks_of(const nlohmann::json& summary) {
   using Kind = Remark::Kind;
   std::vector<Remark> list = {completion(summary), soundness(summary)};
   const double equilibration = number_of(member(member(summary, "time"), "equilibration"));
@@ -107,13 +106,13 @@ std::vector<Remark> remarks_of(const Json& summary) {
                                 "was given and is short, a nematic, a crystal or a glass.",
                                 equilibration)});
   }
-  const Json& target = member(summary, "target_error");
+  const nlohmann::json& target = member(summary, "target_error");
   if (says(member(target, "reached"), false)) {
     list.push_back({Kind::warning, "errors larger than asked",
                     fmt::format("D_trans and D_rot have not reached a relative error of {:g}.",
                                 number_of(member(target, "asked")))});
   }
-  const Json& failures = member(summary, "failures");
+  const nlohmann::json& failures = member(summary, "failures");
   const double failed = number_of(member(failures, "recorded")) + number_of(member(failures, "left_out"));
   if (failed > 0) {
     list.push_back({Kind::warning, fmt::format("{:g} pairs in failures/", failed),
@@ -191,7 +190,7 @@ std::string superellipsoids_text(const geom::Superellipsoid& s) {
 }
 
 /// "ellipsoids, X0 = 3"
-std::string bodies_text(const SpeciesConfig& species) {
+std::string bodies_title(const SpeciesConfig& species) {
   if (const auto* s = std::get_if<geom::Superellipsoid>(&species.body.shape)) return superellipsoids_text(*s);
   const std::optional<double> ratio = species.shape.true_aspect_ratio();
   if (ratio) return *ratio == 1 ? std::string("spheres") : fmt::format("ellipsoids, X₀ = {:.4g}", *ratio);
@@ -200,12 +199,12 @@ std::string bodies_text(const SpeciesConfig& species) {
   return fmt::format("ellipsoids {:.4g} : {:.4g} : {:.4g}", a.x() / least, a.y() / least, a.z() / least);
 }
 
-std::vector<SpeciesReport> species_of(const Config& config, const Json& summary) {
+std::vector<SpeciesReport> species_of(const Config& config, const nlohmann::json& summary) {
   std::vector<SpeciesReport> list;
-  const Json& all = member(summary, "species");
+  const nlohmann::json& all = member(summary, "species");
   for (std::size_t k = 0; config.mixture && k < config.species.size(); ++k) {
     SpeciesReport species;
-    species.title = fmt::format("{} {}", config.species[k].number, bodies_text(config.species[k]));
+    species.title = fmt::format("{} {}", config.species[k].number, bodies_title(config.species[k]));
     if (all.is_array() && k < all.size()) species.headlines = headlines_of(member(all[k], "observables"));
     list.push_back(std::move(species));
   }
@@ -239,7 +238,7 @@ const Curves* RunReport::find(std::string_view file) const {
 
 std::string title_of(const Config& config) {
   const std::string bodies =
-      config.mixture ? fmt::format("bodies of {} species", config.species.size()) : bodies_text(config.species[0]);
+      config.mixture ? fmt::format("bodies of {} species", config.species.size()) : bodies_title(config.species[0]);
   return fmt::format("{} hard {}, packing fraction {:.4g}", config.number, bodies, config.packing_fraction);
 }
 

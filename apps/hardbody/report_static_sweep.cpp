@@ -30,16 +30,16 @@ std::vector<double> numbers_of(const SweepReport& sweep, std::size_t key) {
 }
 
 /// A swept key that is a number everywhere and takes several values.
-struct Axis {
+struct SweptAxis {
   std::string name;
   std::vector<double> x;  ///< of each point
   bool log;
 };
 
-std::vector<Axis> axes_of(const SweepReport& sweep) {
-  std::vector<Axis> axes;
+std::vector<SweptAxis> axes_of(const SweepReport& sweep) {
+  std::vector<SweptAxis> axes;
   for (std::size_t k = 0; k < sweep.keys.size(); ++k) {
-    Axis axis{sweep.keys[k], numbers_of(sweep, k), false};
+    SweptAxis axis{sweep.keys[k], numbers_of(sweep, k), false};
     if (!std::all_of(axis.x.begin(), axis.x.end(), [](double x) { return std::isfinite(x); })) continue;
     const auto [low, high] = std::minmax_element(axis.x.begin(), axis.x.end());
     if (!(*low < *high)) continue;
@@ -58,7 +58,7 @@ std::string figure(const char* classes, const std::string& title, const std::str
                      drawing);
 }
 
-std::string map_figure(const SweepReport& sweep, const std::vector<Axis>& axes, std::size_t observable) {
+std::string map_figure(const SweepReport& sweep, const std::vector<SweptAxis>& axes, std::size_t observable) {
   Map map;
   map.x_name = axes[0].name;
   map.y_name = axes[1].name;
@@ -77,7 +77,7 @@ std::string map_figure(const SweepReport& sweep, const std::vector<Axis>& axes, 
   return figure("card map", label_of(name), map_svg(map));
 }
 
-std::string plot_figure(const SweepReport& sweep, const Axis& axis, std::size_t observable) {
+std::string plot_figure(const SweepReport& sweep, const SweptAxis& axis, std::size_t observable) {
   const Headline& name = sweep.observables[observable];
   std::vector<std::pair<double, double>> points;
   for (std::size_t p = 0; p < sweep.points.size(); ++p) {
@@ -95,7 +95,7 @@ std::string plot_figure(const SweepReport& sweep, const Axis& axis, std::size_t 
 }
 
 std::string figures(const SweepReport& sweep) {
-  const std::vector<Axis> axes = axes_of(sweep);
+  const std::vector<SweptAxis> axes = axes_of(sweep);
   std::string html;
   for (const std::string_view wanted : kDrawn) {
     const auto named = [&](const Headline& h) { return h.key == wanted; };

@@ -11,18 +11,18 @@
 namespace hardbody {
 namespace {
 
-constexpr double kWidth = 560;
-constexpr double kHeight = 340;
-constexpr double kLeft = 66;
-constexpr double kRight = 14;
-constexpr double kTop = 14;
-constexpr double kBottom = 48;
-constexpr std::size_t kColours = 8;  ///< classes c0 to c7 of the style
+constexpr double kPlotWidth = 560;
+constexpr double kPlotHeight = 340;
+constexpr double kPlotLeft = 66;
+constexpr double kPlotRight = 14;
+constexpr double kPlotTop = 14;
+constexpr double kPlotBottom = 48;
+constexpr std::size_t kPlotColours = 8;  ///< classes c0 to c7 of the style
 
 /// One axis: from data to the page.
-class Axis {
+class PlotAxis {
  public:
-  Axis(bool logarithmic, double page_from, double page_to)
+  PlotAxis(bool logarithmic, double page_from, double page_to)
       : logarithmic_(logarithmic), page_from_(page_from), page_to_(page_to) {}
 
   bool takes(double x) const { return std::isfinite(x) && (!logarithmic_ || x > 0); }
@@ -76,25 +76,25 @@ std::string tick_text(double x) {
   return std::abs(x) < 1e-12 ? "0" : fmt::format("{:.4g}", x);
 }
 
-std::string grid(const Axis& x, const Axis& y) {
+std::string grid(const PlotAxis& x, const PlotAxis& y) {
   std::string svg;
   for (const double value : x.ticks()) {
     const double place = x.place(value);
     svg += fmt::format(
         "<path class=\"grid\" d=\"M{0:.1f} {1}V{2}\"/><text x=\"{0:.1f}\" y=\"{3}\" class=\"mid\">{4}</text>", place,
-        kTop, kHeight - kBottom, kHeight - kBottom + 17, tick_text(value));
+        kPlotTop, kPlotHeight - kPlotBottom, kPlotHeight - kPlotBottom + 17, tick_text(value));
   }
   for (const double value : y.ticks()) {
     const double place = y.place(value);
     svg += fmt::format(
         "<path class=\"grid\" d=\"M{1} {0:.1f}H{2}\"/><text x=\"{3}\" y=\"{4:.1f}\" class=\"end\">{5}</text>", place,
-        kLeft, kWidth - kRight, kLeft - 7, place + 4, tick_text(value));
+        kPlotLeft, kPlotWidth - kPlotRight, kPlotLeft - 7, place + 4, tick_text(value));
   }
   return svg;
 }
 
 /// A line through the points, broken where one is missing, and the points.
-std::string drawn(const PlotSeries& series, std::size_t index, const Axis& x, const Axis& y) {
+std::string drawn(const PlotSeries& series, std::size_t index, const PlotAxis& x, const PlotAxis& y) {
   std::string line;
   std::string points;
   bool on = false;
@@ -109,14 +109,14 @@ std::string drawn(const PlotSeries& series, std::size_t index, const Axis& x, co
     points += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"1.8\"/>", px, py);
     on = true;
   }
-  return fmt::format("<g class=\"series c{}\"><path d=\"{}\"/>{}</g>", index % kColours, line, points);
+  return fmt::format("<g class=\"series c{}\"><path d=\"{}\"/>{}</g>", index % kPlotColours, line, points);
 }
 
 std::string legend(const Plot& plot) {
   if (plot.series.size() < 2) return "";
   std::string html = "<p class=\"legend\">";
   for (std::size_t k = 0; k < plot.series.size(); ++k) {
-    html += fmt::format("<span class=\"key c{}\">{}</span> ", k % kColours, html_text(plot.series[k].name));
+    html += fmt::format("<span class=\"key c{}\">{}</span> ", k % kPlotColours, html_text(plot.series[k].name));
   }
   return html + "</p>";
 }
@@ -124,8 +124,8 @@ std::string legend(const Plot& plot) {
 }  // namespace
 
 std::string svg_plot(const Plot& plot) {
-  Axis x(plot.log_x, kLeft, kWidth - kRight);
-  Axis y(plot.log_y, kHeight - kBottom, kTop);
+  PlotAxis x(plot.log_x, kPlotLeft, kPlotWidth - kPlotRight);
+  PlotAxis y(plot.log_y, kPlotHeight - kPlotBottom, kPlotTop);
   for (const PlotSeries& s : plot.series) {
     for (std::size_t k = 0; k < s.x.size() && k < s.y.size(); ++k) {
       if (!x.takes(s.x[k]) || !y.takes(s.y[k])) continue;
@@ -136,13 +136,13 @@ std::string svg_plot(const Plot& plot) {
   if (x.empty() || y.empty()) return "";
   x.widen();
   y.widen();
-  std::string svg =
-      fmt::format("<svg viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{}\">", kWidth, kHeight, html_text(plot.title));
+  std::string svg = fmt::format("<svg viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{}\">", kPlotWidth, kPlotHeight,
+                                html_text(plot.title));
   svg += grid(x, y);
-  svg += fmt::format("<text x=\"{}\" y=\"{}\" class=\"mid\">{}</text>", (kLeft + kWidth - kRight) / 2, kHeight - 8,
-                     html_text(plot.x_label));
+  svg += fmt::format("<text x=\"{}\" y=\"{}\" class=\"mid\">{}</text>", (kPlotLeft + kPlotWidth - kPlotRight) / 2,
+                     kPlotHeight - 8, html_text(plot.x_label));
   svg += fmt::format("<text transform=\"translate(14 {}) rotate(-90)\" class=\"mid\">{}</text>",
-                     (kTop + kHeight - kBottom) / 2, html_text(plot.y_label));
+                     (kPlotTop + kPlotHeight - kPlotBottom) / 2, html_text(plot.y_label));
   for (std::size_t k = 0; k < plot.series.size(); ++k) svg += drawn(plot.series[k], k, x, y);
   return svg + "</svg>" + legend(plot);
 }

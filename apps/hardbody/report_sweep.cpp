@@ -21,7 +21,6 @@ namespace hardbody {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::json;
 
 constexpr std::size_t kLongestState = std::size_t{1} << 20;
 
@@ -78,7 +77,7 @@ std::string comparable(std::string text) {
   return text;
 }
 
-std::string comparable(const Json& json) {
+std::string comparable(const nlohmann::json& json) {
   if (json.is_number()) return fmt::format("{:.15g}", json.get<double>());
   return comparable(json.is_string() ? json.get<std::string>() : json.dump());
 }
@@ -94,7 +93,7 @@ std::map<std::string, std::string> directories_of(const fs::path& sweep) {
     const fs::path state = entry.path() / kPointStateFile;
     if (!fs::exists(state)) continue;
     try {
-      const Json json = parse_json(read_file(state, kLongestState));
+      const nlohmann::json json = parse_json(read_file(state, kLongestState));
       if (!json.is_object() || !json.contains("keys") || !json["keys"].is_object()) throw JsonError("has no keys");
       std::string signature;  // sorted, as the library keeps objects
       for (const auto& [key, value] : json["keys"].items()) signature += signature_part(key, comparable(value));

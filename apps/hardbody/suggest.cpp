@@ -4,14 +4,11 @@
 #include <vector>
 
 namespace hardbody {
-namespace {
 
 std::string_view last_part(std::string_view name) {
   const std::size_t dot = name.rfind('.');
   return dot == std::string_view::npos ? name : name.substr(dot + 1);
 }
-
-}  // namespace
 
 int edit_distance(std::string_view a, std::string_view b) {
   const std::size_t columns = b.size() + 1;

@@ -7,6 +7,9 @@
 
 namespace hardbody {
 
+/// What follows the last dot of a dotted name, or the whole name.
+std::string_view last_part(std::string_view name);
+
 /// The number of letters to insert, delete, replace or swap with their neighbour that turns one word into the
 /// other.
 int edit_distance(std::string_view a, std::string_view b);

@@ -1,5 +1,6 @@
 #include "summary.h"
 
+#include "json_values.h"
 #include "version.h"
 
 #include <nlohmann/json.hpp>
@@ -17,15 +18,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json number(double x) {
-  return std::isfinite(x) ? Json(x) : Json(nullptr);
-}
-
-Json estimate(const ed::Estimate& e) {
-  return {{"value", number(e.value)}, {"error", number(e.error)}};
-}
-
-Json list(const Eigen::Vector3d& v) {
+Json list_json(const Eigen::Vector3d& v) {
   return {v.x(), v.y(), v.z()};
 }
 
@@ -74,22 +67,22 @@ Json counters(const ed::Counters& c) {
 }
 
 Json axes(const std::array<ed::Estimate, 3>& estimates) {
-  return {estimate(estimates[0]), estimate(estimates[1]), estimate(estimates[2])};
+  return {estimate_json(estimates[0]), estimate_json(estimates[1]), estimate_json(estimates[2])};
 }
 
-Json list(const Eigen::Matrix3d& m) {
+Json list_json(const Eigen::Matrix3d& m) {
   Json rows = Json::array();
-  for (int i = 0; i < 3; ++i) rows.push_back({number(m(i, 0)), number(m(i, 1)), number(m(i, 2))});
+  for (int i = 0; i < 3; ++i) rows.push_back({number_json(m(i, 0)), number_json(m(i, 1)), number_json(m(i, 2))});
   return rows;
 }
 
 /// null where nothing is known.
 Json director(const ed::Director& d) {
-  return {{"value", d.axis.allFinite() ? list(d.axis) : Json(nullptr)}, {"error", number(d.error)}};
+  return {{"value", d.axis.allFinite() ? list_json(d.axis) : Json(nullptr)}, {"error", number_json(d.error)}};
 }
 Json pressure(const ed::TensorEstimate& P) {
   const bool known = P.value.allFinite();
-  return {{"value", known ? list(P.value) : Json(nullptr)}, {"error", known ? list(P.error) : Json(nullptr)}};
+  return {{"value", known ? list_json(P.value) : Json(nullptr)}, {"error", known ? list_json(P.error) : Json(nullptr)}};
 }
 
 Json window(const ed::FitWindow& w) {
@@ -111,26 +104,27 @@ void add_axes(Json& json, const ed::GroupResults& r) {
 /// What is measured of all bodies and of those of a species alike.
 template <class Measured>
 void add_measured(Json& json, const Measured& r) {
-  json["D_trans"] = estimate(r.D_trans);
-  json["D_rot"] = estimate(r.D_rot);
-  json["D_rot_body"] = estimate(r.D_rot_body);
-  json["S"] = estimate(r.S);
+  json["D_trans"] = estimate_json(r.D_trans);
+  json["D_rot"] = estimate_json(r.D_rot);
+  json["D_rot_body"] = estimate_json(r.D_rot_body);
+  json["S"] = estimate_json(r.S);
   json["director"] = director(r.director);
-  json["tau_C2"] = estimate(r.tau_C2);
-  json["beta_C2"] = estimate(r.beta_C2);
-  json["t_C2_1overe"] = estimate(r.t_C2_1overe);
-  json["tau_F"] = estimate(r.tau_F);
-  json["beta_F"] = estimate(r.beta_F);
-  json["t_F_1overe"] = estimate(r.t_F_1overe);
-  json["q_peak"] = estimate(r.q_peak);
-  json["S_peak"] = estimate(r.S_peak);
-  json["kT_trans"] = estimate(r.translational_kT);
-  json["kT_rot"] = estimate(r.rotational_kT);
+  json["tau_C2"] = estimate_json(r.tau_C2);
+  json["beta_C2"] = estimate_json(r.beta_C2);
+  json["t_C2_1overe"] = estimate_json(r.t_C2_1overe);
+  json["tau_F"] = estimate_json(r.tau_F);
+  json["beta_F"] = estimate_json(r.beta_F);
+  json["t_F_1overe"] = estimate_json(r.t_F_1overe);
+  json["q_peak"] = estimate_json(r.q_peak);
+  json["S_peak"] = estimate_json(r.S_peak);
+  json["kT_trans"] = estimate_json(r.translational_kT);
+  json["kT_rot"] = estimate_json(r.rotational_kT);
 }
 
 Json observables(const ed::Results& r, const Config& config) {
-  Json json = {
-      {"collision_rate", estimate(r.collision_rate)}, {"Z", estimate(r.Z)}, {"pressure_tensor", pressure(r.pressure)}};
+  Json json = {{"collision_rate", estimate_json(r.collision_rate)},
+               {"Z", estimate_json(r.Z)},
+               {"pressure_tensor", pressure(r.pressure)}};
   add_measured(json, r);
   if (!config.mixture && !config.all_of_revolution())
     add_axes(json, r.groups.empty() ? ed::GroupResults{} : r.groups[0]);
@@ -139,7 +133,7 @@ Json observables(const ed::Results& r, const Config& config) {
 
 /// Of one species of a mixture.
 Json observables(const ed::GroupResults& r, const SpeciesConfig& species) {
-  Json json = {{"collision_rate", estimate(r.collision_rate)}};
+  Json json = {{"collision_rate", estimate_json(r.collision_rate)}};
   add_measured(json, r);
   if (species.rotation_axes() == 3) add_axes(json, r);
   return json;
@@ -151,10 +145,10 @@ void add_shape(Json& json, const SpeciesConfig& species) {
   json["kind"] = species.shape.kind;
   json["aspect_ratio"] = ratio ? Json(*ratio) : Json(nullptr);
   if (const auto* s = std::get_if<geom::Superellipsoid>(&species.body.shape)) {
-    json["semi_axes"] = list(s->semi_axes());
+    json["semi_axes"] = list_json(s->semi_axes());
     json["exponents"] = {s->e1(), s->e2()};
   } else {
-    json["semi_axes"] = list(std::get<geom::Ellipsoid>(species.body.shape).semi_axes());
+    json["semi_axes"] = list_json(std::get<geom::Ellipsoid>(species.body.shape).semi_axes());
     json["exponents"] = nullptr;
   }
 }
@@ -185,7 +179,7 @@ Json species_list(const Config& config, const ed::Results& results) {
     Json json = {{"number", species.number}};
     add_shape(json, species);
     json["mass"] = species.body.mass;
-    json["inertia"] = list(species.body.inertia);
+    json["inertia"] = list_json(species.body.inertia);
     json["spins"] = species.body.spins;
     json["sizes"] = sizes(species);
     const ed::GroupResults group = k < results.groups.size() ? results.groups[k] : ed::GroupResults{};
@@ -198,18 +192,18 @@ Json species_list(const Config& config, const ed::Results& results) {
 
 Json equilibration(const ed::Relaxation& r) {
   return {{"relaxations", r.relaxations},
-          {"relaxation_time", number(r.relaxation_time)},
-          {"C2", number(r.c2)},
-          {"F_self", number(r.f_self)},
-          {"q", number(r.q)},
-          {"Z_change", number(r.Z_change)},
-          {"S_change", number(r.S_change)}};
+          {"relaxation_time", number_json(r.relaxation_time)},
+          {"C2", number_json(r.c2)},
+          {"F_self", number_json(r.f_self)},
+          {"q", number_json(r.q)},
+          {"Z_change", number_json(r.Z_change)},
+          {"S_change", number_json(r.S_change)}};
 }
 
 Json performance(const RunRecord& record) {
   const Production& p = record.production;
   const double rate = static_cast<double>(p.counters.collisions) / p.wall_seconds;
-  return {{"collisions_per_second", number(rate)},        {"wall_seconds", p.wall_seconds},
+  return {{"collisions_per_second", number_json(rate)},   {"wall_seconds", p.wall_seconds},
           {"total_wall_seconds", record.upkeep.seconds},  {"resumed", record.upkeep.resumed},
           {"checkpoints", record.upkeep.checkpoints},     {"checkpoints_failed", record.upkeep.checkpoints_failed},
           {"peak_memory_bytes", record.peak_memory_bytes}};
@@ -230,9 +224,9 @@ std::string summary_json(const RunRecord& record) {
   json["counters_of_tuning"] = counters(record.equilibration.counters_of_tuning);
   json["counters_of_equilibration"] = counters(record.equilibration.counters);
   json["performance"] = performance(record);
-  json["audit"] = {{"minimum_distance", number(record.audit.minimum_distance)},
-                   {"energy_relative_drift", number(record.energy_relative_drift)},
-                   {"momentum_drift", number(record.momentum_drift)}};
+  json["audit"] = {{"minimum_distance", number_json(record.audit.minimum_distance)},
+                   {"energy_relative_drift", number_json(record.energy_relative_drift)},
+                   {"momentum_drift", number_json(record.momentum_drift)}};
   json["observables"] = observables(production.results, config);
   json["fit_windows"] = fit_windows(production.results);
   json["wave_numbers"] = production.wave_numbers;

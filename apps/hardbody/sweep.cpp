@@ -32,10 +32,10 @@ namespace fs = std::filesystem;
 
 constexpr const char* kSweepFile = "sweep.toml";
 constexpr const char* kBaseFile = "base.toml";
-constexpr std::size_t kLongestSweep = 1 << 24;  ///< bytes
+constexpr std::size_t kLongestStoredSweep = 1 << 24;  ///< bytes
 
 constexpr int kMostJobs = 1024;
-constexpr int kLook = 100;  ///< milliseconds between two looks at signals
+constexpr int kSignalLook = 100;  ///< milliseconds between two looks at signals
 
 /// A worker of a sweep that was killed saves its state before it ends: its point has to wait for that.
 constexpr std::chrono::seconds kPatience{60};
@@ -63,7 +63,7 @@ bool holds_other_files(const fs::path& directory) {
 
 void check_same_sweep(const fs::path& directory, const SweepFile& sweep) {
   const std::string name = (directory / kSweepFile).string();
-  const TomlDocument before = read_toml(read_file(name, kLongestSweep), name, {});
+  const TomlDocument before = read_toml(read_file(name, kLongestStoredSweep), name, {});
   const std::optional<ChangedKey> changed =
       changed_key(absolute_files(before, directory), absolute_files(sweep.whole, sweep.directory));
   if (!changed) return;
@@ -334,7 +334,7 @@ void Sweep::end_point(const WorkerEnd& end) {
 void Sweep::stop() {
   workers_.signal_all(pending_signal());
   while (workers_.running() > 0) {
-    for (const WorkerEnd& end : workers_.ended(kLook)) end_point(end);
+    for (const WorkerEnd& end : workers_.ended(kSignalLook)) end_point(end);
   }
 }
 
@@ -367,7 +367,7 @@ int Sweep::run() {
   write_table();
   while (pending_signal() == 0 && (!waiting_.empty() || workers_.running() > 0)) {
     start_points();
-    for (const WorkerEnd& end : workers_.ended(kLook)) end_point(end);
+    for (const WorkerEnd& end : workers_.ended(kSignalLook)) end_point(end);
     if (progress_.due()) progress_.show(text());
   }
   const int signal = pending_signal();

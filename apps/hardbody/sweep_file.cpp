@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kLongestSweep = 1 << 20;  ///< bytes
+constexpr std::size_t kLongestSweepFile = 1 << 20;  ///< bytes
 constexpr const char* kChainKey = "system.packing_fraction";
 constexpr const char* kZipKey = "zip";
 constexpr const char* kValues =
@@ -114,7 +114,7 @@ TomlDocument read_base(const TomlDocument& document, const fs::path& directory) 
   }
   const fs::path named = base->value.text;
   const fs::path path = directory / named;
-  return with_files(read_toml(read_file(path, kLongestSweep), path.string(), {}),
+  return with_files(read_toml(read_file(path, kLongestSweepFile), path.string(), {}),
                     [&](const fs::path& file) { return named.parent_path() / file; });
 }
 
@@ -338,7 +338,7 @@ SweepFile parse_sweep(std::string_view text, const std::string& name, const fs::
 }
 
 SweepFile read_sweep(const fs::path& path) {
-  return parse_sweep(read_file(path, kLongestSweep), path.string(), path.parent_path());
+  return parse_sweep(read_file(path, kLongestSweepFile), path.string(), path.parent_path());
 }
 
 TomlDocument moved(TomlDocument whole, const fs::path& from, const fs::path& to) {

@@ -1,6 +1,7 @@
 #include "sweep_grid.h"
 
 #include "errors.h"
+#include "suggest.h"
 #include "text_file.h"
 
 #include <fmt/format.h>
@@ -54,11 +55,6 @@ std::string name_part(const Value& value) {
     if (!plain) c = '-';
   }
   return text;
-}
-
-std::string_view last_part(std::string_view key) {
-  const std::size_t dot = key.rfind('.');
-  return dot == std::string_view::npos ? key : key.substr(dot + 1);
 }
 
 /// The last parts of the keys, or all of them where two would look the same.

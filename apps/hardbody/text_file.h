@@ -57,6 +57,9 @@ void overwrite_at(const std::filesystem::path& path, std::uint64_t position, std
 /// Brings to the disk what was written for later. Throws WriteError.
 void flush_file(const std::filesystem::path& path);
 
+/// One value of many in a message is cut after so many bytes.
+inline constexpr std::size_t kShownLength = 60;
+
 /// Text for a one-line message: line breaks and control characters become blanks, long text is cut.
 std::string one_line(std::string_view text, std::size_t longest = 400);
 

@@ -13,8 +13,6 @@
 namespace hardbody {
 namespace {
 
-constexpr std::size_t kShownLength = 60;
-
 /// A value as the user would write it: toml++ prints reals with digits that nobody wrote.
 std::string shown(const Value& value, const toml::node& node) {
   if (value.kind == Value::Kind::real) return toml_real(value.real);

@@ -43,7 +43,7 @@ geom::DistanceResult query(const BodyShape& a, const geom::Pose& X_a, const Body
   return std::visit([&](const auto& A, const auto& B) { return geom::distance(A, X_a, B, X_b, options); }, a, b);
 }
 
-bool is_answer(const geom::DistanceResult& result) {
+bool is_known(const geom::DistanceResult& result) {
   return result.status == geom::DistanceStatus::separated || result.status == geom::DistanceStatus::overlapping;
 }
 
@@ -103,7 +103,7 @@ ConvexGauge::Evaluation ConvexGauge::complete(const State& /*s*/, const Gap& gap
 
 /// n and e of an answer; false if it is none.
 bool ConvexGauge::take(const State& s, const geom::DistanceResult& d, Vector3d& n, Evaluation& e) const {
-  if (!is_answer(d)) return false;
+  if (!is_known(d)) return false;
   n = d.normal;
   e.g = gap(s, n).g;
   // The distance is between g and g + error_bound: bodies that may only touch do not overlap.
@@ -212,7 +212,7 @@ Vector3d ConvexGauge::cold_normal(const State& s) const {
 
 Separation ConvexGauge::separating_normal(const State& s, Vector3d& n) const {
   const geom::DistanceResult d = last_resort(s);
-  if (!is_answer(d)) return Separation::declined;
+  if (!is_known(d)) return Separation::declined;
   n = d.normal;
   const double g = gap(s, n).g;
   if (g + d.error_bound < -kOverlap * size()) return Separation::overlapping;

@@ -20,7 +20,7 @@ using internal::StructureGrid;
 using internal::WaveVectors;
 
 /// Raised by every change of what save() writes.
-constexpr std::uint32_t kStateFormat = 3;
+constexpr std::uint32_t kEquilibrationFormat = 3;
 
 constexpr double kDecayed = 0.05;
 constexpr std::size_t kLeastSamples = 4;  ///< of a relaxation, one a time_unit
@@ -194,7 +194,7 @@ const Relaxation& EquilibrationMonitor::state() const {
 
 std::string EquilibrationMonitor::save() const {
   internal::Writer writer;
-  writer(kStateFormat);
+  writer(kEquilibrationFormat);
   Impl::fields(writer, *impl_);
   return writer.take();
 }
@@ -202,7 +202,7 @@ std::string EquilibrationMonitor::save() const {
 EquilibrationMonitor EquilibrationMonitor::restore(std::string_view state, const std::vector<RelaxingGroup>& groups) {
   auto impl = std::make_unique<Impl>(groups);
   internal::Reader reader(state);
-  internal::check_format(reader, kStateFormat);
+  internal::check_format(reader, kEquilibrationFormat);
   Impl::fields(reader, *impl);
   reader.finish();
   return EquilibrationMonitor(std::move(impl));

@@ -21,7 +21,7 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-GeneralKind kind_of_species(const Species& species) {
+GeneralKind general_kind(const Species& species) {
   const int axis = symmetry_axis(species).value_or(-1);
   Vector3d inertia = species.inertia;
   // Irrelevant, and maybe no number; spherical tops turn uniformly.
@@ -53,7 +53,7 @@ Vector3d allowed_omega(const GeneralKind& kind, const Matrix3d& R, const Vector3
 GeneralBodies::GeneralBodies(const System& system)
     : motions_(at(system.size())), turned_(at(system.size())), events_(at(system.size())) {
   for (const Species& species : system.species) {
-    kinds_.push_back(kind_of_species(species));
+    kinds_.push_back(general_kind(species));
     bounding_radius_ = std::max(bounding_radius_, kinds_.back().bounding_radius);
     inscribed_radius_ = std::min(inscribed_radius_, kinds_.back().inscribed_radius);
   }

@@ -23,9 +23,9 @@ using geom::internal::NormBodyPair;
 
 /// An envelope that lasts longer than this is not made anew early; in units of the time in which the surface can cross
 /// the thickness.
-constexpr double kWorthwhile = 0.15;
+constexpr double kWorthwhileGeneral = 0.15;
 
-std::size_t at(int i) {
+std::size_t slot(int i) {
   return static_cast<std::size_t>(i);
 }
 
@@ -35,7 +35,7 @@ double surface_speed(const GeneralBodies& bodies, int i) {
 }
 
 double worthwhile_time(const GeneralBodies& bodies, int i, double thickness) {
-  return kWorthwhile * thickness / (bodies.velocity(i).norm() + surface_speed(bodies, i) + 1e-300);
+  return kWorthwhileGeneral * thickness / (bodies.velocity(i).norm() + surface_speed(bodies, i) + 1e-300);
 }
 
 /// An upper bound of the angle of R R0^T: |R - R0| = sqrt(8) sin(angle / 2) in the Frobenius norm.
@@ -83,10 +83,10 @@ bool any_within(const BodyShape& a, const Matrix3d& R_a, const BodyShape& b, con
 }  // namespace
 
 GeneralDilatedEnvelopes::GeneralDilatedEnvelopes(const GeneralBodies& bodies, double thickness, double exit_thickness)
-    : bodies_(&bodies), thickness_(thickness), exit_thickness_(exit_thickness), places_(at(bodies.number())) {}
+    : bodies_(&bodies), thickness_(thickness), exit_thickness_(exit_thickness), places_(slot(bodies.number())) {}
 
 void GeneralDilatedEnvelopes::place(int i, const GeneralBodies& bodies, double now) {
-  places_[at(i)] = {bodies.position_at(i, now), bodies.rotation_at(i, now)};
+  places_[slot(i)] = {bodies.position_at(i, now), bodies.rotation_at(i, now)};
 }
 
 void GeneralDilatedEnvelopes::scale(double factor) {
@@ -94,7 +94,7 @@ void GeneralDilatedEnvelopes::scale(double factor) {
 }
 
 double GeneralDilatedEnvelopes::exit_time(int i, const GeneralBodies& bodies, double now, double box) const {
-  const Place& place = places_[at(i)];
+  const Place& place = places_[slot(i)];
   const Vector3d d = nearest_image(bodies.position_at(i, now) - place.centre, box);
   const double lever = bodies.kind_of(i).lever;
   const double left = exit_thickness_ - lever * angle_between(bodies.rotation_at(i, now), place.rotation);
@@ -122,8 +122,8 @@ bool GeneralDilatedEnvelopes::may_meet(int i, int k, const Vector3d& r, Vector3d
   const double size = a.bounding_radius + b.bounding_radius;
   if (r2 > (size + limit) * (size + limit)) return false;
   normal = r2 > 0 ? Vector3d(r / std::sqrt(r2)) : Vector3d::UnitX();
-  const Matrix3d& R_a = places_[at(i)].rotation;
-  const Matrix3d& R_b = places_[at(k)].rotation;
+  const Matrix3d& R_a = places_[slot(i)].rotation;
+  const Matrix3d& R_b = places_[slot(k)].rotation;
   if (!a.norm || !b.norm) return any_within(a.shape, R_a, b.shape, R_b, r, limit, normal);
   const NormBodyPair pair(NormBodies(a.norm->norm, R_a, b.norm->norm, R_b), r, size,
                           a.inscribed_radius + b.inscribed_radius);
@@ -155,7 +155,7 @@ double thickest_oriented(const GeneralBodies& bodies, double box) {
 }
 
 GeneralOrientedEnvelopes::GeneralOrientedEnvelopes(const GeneralBodies& bodies, double thickness)
-    : thickness_(thickness), reach_(0), boxes_(at(bodies.number())) {
+    : thickness_(thickness), reach_(0), boxes_(slot(bodies.number())) {
   for (const GeneralKind& kind : bodies.kinds()) {
     const double diagonal = (kind.half_extents.array() + thickness).matrix().norm();
     reach_ = std::max(reach_, 2 * std::min(diagonal, kind.bounding_radius + oriented_slack(kind.shape, thickness)));
@@ -163,8 +163,8 @@ GeneralOrientedEnvelopes::GeneralOrientedEnvelopes(const GeneralBodies& bodies, 
 }
 
 void GeneralOrientedEnvelopes::place(int i, const GeneralBodies& bodies, double now) {
-  boxes_[at(i)] = {bodies.position_at(i, now), bodies.rotation_at(i, now),
-                   Vector3d(bodies.kind_of(i).half_extents.array() + thickness_)};
+  boxes_[slot(i)] = {bodies.position_at(i, now), bodies.rotation_at(i, now),
+                     Vector3d(bodies.kind_of(i).half_extents.array() + thickness_)};
 }
 
 void GeneralOrientedEnvelopes::scale(double factor) {
@@ -173,7 +173,7 @@ void GeneralOrientedEnvelopes::scale(double factor) {
 
 /// When the surface, at its highest speed along each normal, would have crossed one of the six planes.
 double GeneralOrientedEnvelopes::exit_time(int i, const GeneralBodies& bodies, double now, double box) const {
-  const geom::OrientedBox& envelope = boxes_[at(i)];
+  const geom::OrientedBox& envelope = boxes_[slot(i)];
   const BodyShape& shape = bodies.kind_of(i).shape;
   const Vector3d d = nearest_image(bodies.position_at(i, now) - envelope.centre, box);
   const Matrix3d R = bodies.rotation_at(i, now);
@@ -197,8 +197,8 @@ double GeneralOrientedEnvelopes::worthwhile(int i, const GeneralBodies& bodies) 
 }
 
 bool GeneralOrientedEnvelopes::may_meet(int i, int k, const Vector3d& r, Vector3d& normal) const {
-  const geom::OrientedBox& a = boxes_[at(i)];
-  geom::OrientedBox b = boxes_[at(k)];
+  const geom::OrientedBox& a = boxes_[slot(i)];
+  geom::OrientedBox b = boxes_[slot(k)];
   b.centre = a.centre + r;
   if (!geom::boxes_meet(a, b)) return false;
   normal = r.squaredNorm() > 0 ? Vector3d(r.normalized()) : Vector3d::UnitX();

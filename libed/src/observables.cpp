@@ -20,7 +20,7 @@ using internal::LagSums;
 using internal::Measured;
 
 /// Raised by every change of what save() writes.
-constexpr std::uint32_t kStateFormat = 5;
+constexpr std::uint32_t kObservablesFormat = 5;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -191,7 +191,7 @@ std::string Observables::save() const {
 
 void Observables::save(const std::function<void(std::string_view)>& sink) const {
   internal::Writer writer(sink);
-  writer(kStateFormat, internal::bytes_of(impl_->options()));
+  writer(kObservablesFormat, internal::bytes_of(impl_->options()));
   Impl::fields(writer, *impl_);
   writer.flush();
 }
@@ -199,7 +199,7 @@ void Observables::save(const std::function<void(std::string_view)>& sink) const 
 Observables Observables::restore(std::string_view state, const ObservablesOptions& options) {
   Observables observables(options);
   internal::Reader reader(state);
-  internal::check_format(reader, kStateFormat);
+  internal::check_format(reader, kObservablesFormat);
   if (reader.value<std::string>() != internal::bytes_of(observables.impl_->options())) {
     throw std::invalid_argument("state: the observables are those of another run");
   }

@@ -27,7 +27,7 @@ class Simulation::Impl {
 namespace {
 
 /// Raised by every change of what save() writes.
-constexpr std::uint32_t kStateFormat = 6;
+constexpr std::uint32_t kSimulationFormat = 6;
 
 /// Work of a stretch of the run in units of 50 ns, from counters alone so that it is the same on every machine. The
 /// weights are fitted to the times of runs of three states, X0 = 1/3, 2 and 3, with envelopes from 0.6 to 2 times as
@@ -124,7 +124,7 @@ std::string Simulation::save() const {
 void Simulation::save(const std::function<void(std::string_view)>& sink) const {
   const System now = system();
   internal::Writer writer(sink);
-  writer(kStateFormat, internal::bytes_of(now.species), now.box, std::uint64_t{now.bodies.size()});
+  writer(kSimulationFormat, internal::bytes_of(now.species), now.box, std::uint64_t{now.bodies.size()});
   for (const Body& body : now.bodies) writer(body.species);
   (*impl_)->save(writer);
   writer.flush();
@@ -133,7 +133,7 @@ void Simulation::save(const std::function<void(std::string_view)>& sink) const {
 Simulation Simulation::restore(std::string_view state, const std::vector<Species>& species,
                                const SimulationOptions& options) {
   internal::Reader reader(state);
-  internal::check_format(reader, kStateFormat);
+  internal::check_format(reader, kSimulationFormat);
   System system;
   system.species = species;
   if (reader.value<std::string>() != internal::bytes_of(species)) {

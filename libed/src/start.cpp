@@ -223,9 +223,9 @@ double densest_start(const std::vector<Component>& components) {
 
 System random_start(const Species& species, const StartOptions& options) {
   check_species(species);
+  check_packing(std::vector<Component>{{species, options.number}}, options.packing_fraction);
   const int least = smallest_number(species.shape, options.packing_fraction);
-  if (options.packing_fraction > 0 && options.packing_fraction <= densest_start(species.shape) &&
-      options.number < least) {
+  if (options.number < least) {
     std::ostringstream message;
     message << "number is " << options.number << ": the box at this packing fraction is then too small for bodies of "
             << "bounding radius " << bounding_radius(species.shape) << " (a body could meet two images of another); "

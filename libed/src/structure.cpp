@@ -37,7 +37,7 @@ constexpr int kFewBodies = 1000;           ///< whose pairs are all looked at: q
 constexpr std::size_t kAtATime = 512;  ///< bodies whose phases are tabulated at once
 constexpr int kLargestPower = 500;     ///< of a phase
 
-double p2(double x) {
+double legendre_2(double x) {
   return 1.5 * x * x - 0.5;
 }
 
@@ -130,7 +130,7 @@ class PairCounter {
   void count(std::size_t i, std::size_t j, double squared_distance) {
     const auto bin = static_cast<std::size_t>(std::sqrt(squared_distance) * scale_);
     if (bin >= bins_) return;
-    const double value = p2(snapshot_.axis[i].dot(snapshot_.axis[j]));
+    const double value = legendre_2(snapshot_.axis[i].dot(snapshot_.axis[j]));
     add(sums_[0], bin, value);
     if (sums_.size() > 1 && group_[i] == group_[j]) add(sums_[group_[i] + 1], bin, value);
   }

@@ -207,9 +207,15 @@ bool internal::is_uniaxial(const Species& species) {
 }
 
 int smallest_number(const BodyShape& shape, double packing_fraction, Neighbours neighbours) {
+  if (!(packing_fraction > 0)) {
+    std::ostringstream message;
+    message << "packing_fraction is " << packing_fraction << "; accepted: above 0";
+    throw std::invalid_argument(message.str());
+  }
   const bool of_revolution = std::holds_alternative<geom::Ellipsoid>(shape) && symmetry_axis(shape);
   const double box = smallest_box_of({shape}, of_revolution, neighbours);
-  return std::max(2, static_cast<int>(std::ceil(packing_fraction * box * box * box / volume(shape))));
+  const double number = std::ceil(packing_fraction * box * box * box / volume(shape));
+  return static_cast<int>(std::clamp(number, 2.0, double{std::numeric_limits<int>::max()}));
 }
 
 KineticState kinetic_state(const System& system) {

@@ -25,7 +25,7 @@ using geom::internal::evaluate_uniaxial;
 using geom::internal::support_point;
 using geom::internal::UniaxialEvaluation;
 
-UniaxialKind kind_of_species(const Species& species) {
+UniaxialKind uniaxial_kind(const Species& species) {
   const auto& shape = std::get<geom::Ellipsoid>(species.shape);
   const int axis = *symmetry_axis(species);
   const Vector3d& a = shape.semi_axes();
@@ -46,7 +46,7 @@ bool UniaxialBodies::can_hold(const System& system) {
 
 UniaxialBodies::UniaxialBodies(const System& system) : entries_(at(system.size())), frames_(at(system.size())) {
   for (const Species& species : system.species) {
-    kinds_.push_back(kind_of_species(species));
+    kinds_.push_back(uniaxial_kind(species));
     bounding_radius_ = std::max(bounding_radius_, kinds_.back().bounding_radius);
     inscribed_radius_ = std::min(inscribed_radius_, kinds_.back().inscribed_radius);
     spins_ = spins_ || species.spins;

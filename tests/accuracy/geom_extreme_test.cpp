@@ -27,7 +27,7 @@ using Eigen::Vector3d;
 using geom_test::Random;
 
 /// What became of the pairs of one row.
-struct Row {
+struct ExtremeRow {
   long pairs = 0;
   long wrong = 0;  ///< off by more than the contract and more than the error bound, or of the wrong sign
   long declined = 0;
@@ -40,7 +40,7 @@ constexpr double kGaps[] = {1, 1e-3, 1e-6, -1e-6, -1e-3};  // of the smaller bod
 constexpr double kUnits[] = {1e-12, 1, 1e12};              // of the larger body's
 
 template <class A, class B>
-void measure(const A& a, const B& b, double gap, double tolerance, Random& random, Row& row) {
+void measure(const A& a, const B& b, double gap, double tolerance, Random& random, ExtremeRow& row) {
   const auto pair = geom_test::manufacture(a, b, gap, random);
   double wanted = geom_test::lower_bound(a, pair.X_WA, b, pair.X_WB, pair.normal);
   const DistanceResult r = distance(a, pair.X_WA, b, pair.X_WB);
@@ -75,10 +75,10 @@ Vector3d random_axes(double aspect_ratio, Random& random) {
 
 /// `deepest`: of overlaps, over the smaller body's smallest semi-axis.
 template <class MakeA, class MakeB>
-Row run(const char* name, double aspect_ratio, double tolerance, double deepest, const MakeA& make_a,
-        const MakeB& make_b) {
+ExtremeRow run(const char* name, double aspect_ratio, double tolerance, double deepest, const MakeA& make_a,
+               const MakeB& make_b) {
   const int pairs = std::getenv("HARDBODY_FULL") != nullptr ? 200 : geom_test::repetitions(10);  // a cell
-  Row row;
+  ExtremeRow row;
   Random random(1);
   for (const double unit : kUnits) {
     for (const double ratio : kRatios) {
@@ -105,7 +105,7 @@ Row run(const char* name, double aspect_ratio, double tolerance, double deepest,
 
 /// Of superellipsoids, beyond an aspect ratio of 10 too: none is wrong, none is declined, and no more than 1 % have a
 /// last resort's answer, of kWidestGap, instead of the contract's (docs/accuracy.md: 33 of 12,000 at most).
-void expect_certified(const Row& row, const char* name, double aspect_ratio) {
+void expect_certified(const ExtremeRow& row, const char* name, double aspect_ratio) {
   EXPECT_EQ(row.wrong + row.declined, 0) << name << ' ' << aspect_ratio;
   EXPECT_LE(row.certified, aspect_ratio <= 10 ? 0 : row.pairs / 100) << name << ' ' << aspect_ratio;
   EXPECT_LE(row.largest, aspect_ratio <= 10 ? 1e-12 : kWidestGap) << name << ' ' << aspect_ratio;
@@ -122,7 +122,7 @@ TEST(ExtremeShapes, AreWithinTheContractCertifiedOrDeclined) {
     };
   };
   for (const double aspect_ratio : {1.0, 10.0, 1e2, 1e3, 1e4}) {
-    const Row row = run("ellipsoids", aspect_ratio, 1e-13, 1 / aspect_ratio, ellipsoid, ellipsoid);
+    const ExtremeRow row = run("ellipsoids", aspect_ratio, 1e-13, 1 / aspect_ratio, ellipsoid, ellipsoid);
     EXPECT_EQ(row.wrong + row.declined + row.certified, 0) << aspect_ratio;
     EXPECT_LE(row.largest, 1e-13) << aspect_ratio;
   }

@@ -24,7 +24,7 @@ using hardbody::EventsFile;
 using testing::HasSubstr;
 namespace fs = std::filesystem;
 
-constexpr const char* kConfig =
+constexpr const char* kSpheresConfig =
     "[system]\nnumber = 64\npacking_fraction = 0.3\n[shape]\naspect_ratio = 1\n"
     "[equilibration]\ntime = 1\n[production]\ntime = 1\n";
 constexpr std::uint64_t kPiece = std::uint64_t{1} << 17;  ///< of collisions that are appended
@@ -35,7 +35,7 @@ class EventsFileTest : public testing::Test {
     fs::remove_all(path_);
     directory_.emplace(
         hardbody::RunDirectory::create(path_, hardbody::Overwrite::refused, {}, "# as good as any other\n"));
-    const hardbody::Config config = hardbody::parse_config(kConfig, "memory");
+    const hardbody::Config config = hardbody::parse_config(kSpheresConfig, "memory");
     ed::StartOptions options;
     options.packing_fraction = config.packing_fraction;
     simulation_.emplace(ed::random_start(config.components(), options), config.simulation_options());
@@ -75,7 +75,7 @@ TEST_F(EventsFileTest, GrowsInPieces) {
   const std::string pieces = events();
   ed::StartOptions options;
   options.packing_fraction = 0.3;
-  const hardbody::Config config = hardbody::parse_config(kConfig, "memory");
+  const hardbody::Config config = hardbody::parse_config(kSpheresConfig, "memory");
   ed::Simulation again(ed::random_start(config.components(), options), config.simulation_options());
   EventsFile whole(*directory_, 3 * kPiece);
   whole.open({}, again);

@@ -21,6 +21,11 @@ struct ManufacturedPair {
   double size;  ///< |p_AB| + both bounding radii: what errors are relative to
 };
 
+/// The size of the pair's coordinates: how far off the origin its points are.
+inline double extent_of(const ManufacturedPair& pair) {
+  return pair.X_WA.position().norm() + 2 * pair.size;
+}
+
 /// Puts B so that the support points of `normal` are the witness points: sA + distance * normal = p_AB + sB(-normal).
 ///
 /// Exact up to the rounding of p_WB for distance >= 0 (both bodies lie on their sides of two parallel planes), and for

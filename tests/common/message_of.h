@@ -5,15 +5,15 @@
 
 namespace test_common {
 
-/// The message of the std::invalid_argument that f() throws; that there is none, if it throws none.
+/// The message of the std::invalid_argument that f() throws; "accepted", if it throws none.
 template <class F>
 std::string message_of(const F& f) {
   try {
-    f();
+    static_cast<void>(f());
   } catch (const std::invalid_argument& error) {
     return error.what();
   }
-  return "no std::invalid_argument";
+  return "accepted";
 }
 
 }  // namespace test_common

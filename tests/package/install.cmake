@@ -1,22 +1,8 @@
 cmake_minimum_required(VERSION 3.25)
 include(${CMAKE_CURRENT_LIST_DIR}/common.cmake)
 
-# Installs the libraries to PREFIX for the tests of the package: those of BUILD_DIR, or with SHARED, those of a build of
-# their own in WORK_DIR, from the same sources with the same flags, so that ccache has the object files already.
+# Installs the libraries of BUILD_DIR to PREFIX for the tests of the package.
 #
-#   cmake -DBUILD_DIR=... -DPREFIX=... [-DSHARED=ON -DSOURCE_DIR=... -DWORK_DIR=...] -P install.cmake
+#   cmake -DBUILD_DIR=... -DPREFIX=... -P install.cmake
 file(REMOVE_RECURSE ${PREFIX})
-if(SHARED)
-  load_cache(${BUILD_DIR} READ_WITH_PREFIX "" CMAKE_BUILD_TYPE CMAKE_CXX_COMPILER CMAKE_CXX_COMPILER_LAUNCHER
-    CMAKE_CXX_FLAGS CMAKE_GENERATOR HARDBODY_ARCH HARDBODY_SANITIZE HARDBODY_WERROR HARDBODY_WITH_SEEDS
-    HARDBODY_WITH_CGAL)
-  must(${CMAKE_COMMAND} -S ${SOURCE_DIR} -B ${WORK_DIR} -G ${CMAKE_GENERATOR} -DBUILD_SHARED_LIBS=ON
-    -DHARDBODY_BUILD_APPS=OFF -DHARDBODY_BUILD_TESTS=OFF -DHARDBODY_BUILD_BENCH=OFF
-    -DCMAKE_BUILD_TYPE=${CMAKE_BUILD_TYPE} -DCMAKE_CXX_COMPILER=${CMAKE_CXX_COMPILER}
-    -DCMAKE_CXX_FLAGS=${CMAKE_CXX_FLAGS} -DHARDBODY_ARCH=${HARDBODY_ARCH} -DHARDBODY_SANITIZE=${HARDBODY_SANITIZE}
-    -DHARDBODY_WERROR=${HARDBODY_WERROR} -DHARDBODY_WITH_SEEDS=${HARDBODY_WITH_SEEDS}
-    -DHARDBODY_WITH_CGAL=${HARDBODY_WITH_CGAL})
-  must(${CMAKE_COMMAND} --build ${WORK_DIR})
-  set(BUILD_DIR ${WORK_DIR})
-endif()
 must(${CMAKE_COMMAND} --install ${BUILD_DIR} --prefix ${PREFIX})

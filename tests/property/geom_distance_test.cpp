@@ -24,6 +24,7 @@ using Eigen::Vector3d;
 using geom_test::answers;
 using geom_test::declined;
 using geom_test::distance_tolerance;
+using geom_test::extent_of;
 using geom_test::lower_bound;
 using geom_test::manufacture;
 using geom_test::ManufacturedPair;
@@ -50,10 +51,6 @@ ShapePair random_shapes(Kind kind, double ratio, Random& random) {
   const Ellipsoid a = random_shape(kind, ratio, random);
   const Ellipsoid b = random_shape(kind, ratio, random);
   return {a, b, a.min_curvature_radius() + b.min_curvature_radius()};
-}
-
-double extent_of(const ManufacturedPair& pair) {
-  return pair.X_WA.position().norm() + 2 * pair.size;
 }
 
 DistanceResult ask(const ShapePair& shapes, const ManufacturedPair& pair) {

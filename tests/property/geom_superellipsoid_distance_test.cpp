@@ -75,7 +75,7 @@ Bodies unlike(long k, double e1, double e2, Random& random) {
   return {a, Superellipsoid(axes, e, any_exponent(random))};
 }
 
-struct Tally {
+struct AnswerTally {
   long pairs = 0;
   long wrong = 0;
   long declined = 0;
@@ -86,7 +86,7 @@ struct Tally {
   double off_normal = 0;   ///< largest angle to the known normal, over what distance.h promises
   double off_surface = 0;  ///< over the size
 
-  Tally& operator+=(const Tally& t) {
+  AnswerTally& operator+=(const AnswerTally& t) {
     pairs += t.pairs;
     wrong += t.wrong;
     declined += t.declined;
@@ -105,7 +105,7 @@ double promised_angle(const DistanceResult& r, double size) {
   return std::sqrt(2 * (r.error_bound + 1e-15 * size) / r.distance);
 }
 
-void try_pair(const Bodies& bodies, const SetTraits& traits, Random& random, Tally& tally) {
+void try_pair(const Bodies& bodies, const SetTraits& traits, Random& random, AnswerTally& tally) {
   const auto& [a, b] = bodies;
   const Orientation o = choose(traits.set, a, b, random);
   const double gap = random.log_uniform(1e-8, 1);
@@ -170,9 +170,9 @@ void expect_known_answers(const char* which, long pairs, const Make& make) {
       which);
   double off_normal = 0, off_g = 0, above = 0;
   for (const SetTraits& traits : kSets) {
-    Tally all;
+    AnswerTally all;
     for_each_cell(traits.set, [&](double e1, double e2, Random& random) {
-      Tally cell;
+      AnswerTally cell;
       for (long k = 0; k < pairs; ++k) try_pair(make(k, e1, e2, random), traits, random, cell);
       const auto where = [&] { return testing::Message() << traits.name << ", e1 = " << e1 << ", e2 = " << e2; };
       EXPECT_EQ(cell.wrong, 0) << where();

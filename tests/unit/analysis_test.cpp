@@ -14,7 +14,7 @@
 namespace {
 
 /// Arithmetic on a handful of numbers of order 1.
-constexpr double kRounding = 1e-13;
+constexpr double kSumRounding = 1e-13;
 
 std::vector<double> values_at(const std::vector<double>& x, const std::function<double(double)>& f) {
   std::vector<double> y;
@@ -31,8 +31,8 @@ std::vector<double> grid(double begin, double step, int number) {
 TEST(MeanOfBlocks, IsTheMeanWithItsStandardError) {
   // Mean 3; squared deviations 4 + 1 + 0 + 1 + 4 = 10; error sqrt(10 / (5 * 4)).
   const ed::Estimate estimate = ed::mean_of_blocks(std::vector<double>{1, 2, 3, 4, 5});
-  EXPECT_NEAR(estimate.value, 3, kRounding);
-  EXPECT_NEAR(estimate.error, std::sqrt(0.5), kRounding);
+  EXPECT_NEAR(estimate.value, 3, kSumRounding);
+  EXPECT_NEAR(estimate.error, std::sqrt(0.5), kSumRounding);
 }
 
 TEST(MeanOfBlocks, HasNoErrorForOneValueAndNothingForNone) {
@@ -46,7 +46,7 @@ TEST(MeanOfBlocks, HasNoErrorForOneValueAndNothingForNone) {
 
 TEST(MeanOfBlocks, ErrorDoesNotCancelForLargeMeans) {
   const ed::Estimate estimate = ed::mean_of_blocks(std::vector<double>{1e9 + 1, 1e9 - 1, 1e9 + 1, 1e9 - 1});
-  EXPECT_NEAR(estimate.error, std::sqrt(4.0 / 12), kRounding);
+  EXPECT_NEAR(estimate.error, std::sqrt(4.0 / 12), kSumRounding);
 }
 
 TEST(MeanOfBlocks, ErrorIsThatOfTheMeanOfNormalDeviates) {
@@ -63,14 +63,14 @@ TEST(Slope, OfAnExactLineIsExact) {
   const std::vector<double> x = {0.1, 0.4, 0.9, 2.5, 7.0};
   const auto fitted = ed::slope(x, values_at(x, [](double v) { return 3 - 1.75 * v; }));
   ASSERT_TRUE(fitted);
-  EXPECT_NEAR(*fitted, -1.75, kRounding);
+  EXPECT_NEAR(*fitted, -1.75, kSumRounding);
 }
 
 TEST(Slope, IsTheLeastSquaresOne) {
   // By hand: mean x 1, mean y 2; sum (x - 1)(y - 2) = 1 + 0 + 2 = 3, sum (x - 1)^2 = 2.
   const auto fitted = ed::slope(std::vector<double>{0, 1, 2}, std::vector<double>{1, 1, 4});
   ASSERT_TRUE(fitted);
-  EXPECT_NEAR(*fitted, 1.5, kRounding);
+  EXPECT_NEAR(*fitted, 1.5, kSumRounding);
 }
 
 TEST(Slope, NeedsTwoDifferentAbscissae) {
@@ -83,7 +83,7 @@ TEST(FirstCrossing, OfAStraightLineIsExact) {
   const std::vector<double> x = grid(0, 1, 6);
   const auto t = ed::first_crossing(x, values_at(x, [](double v) { return 1 - 0.3 * v; }), 0.25);
   ASSERT_TRUE(t);
-  EXPECT_NEAR(*t, 2.5, kRounding);
+  EXPECT_NEAR(*t, 2.5, kSumRounding);
 }
 
 TEST(FirstCrossing, OfAParabolaIsExactWhereverItCrosses) {

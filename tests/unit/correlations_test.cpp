@@ -24,7 +24,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 /// Sums over some thousand terms of order 1, and positions of order 100 that differ by 1.
-constexpr double kRounding = 1e-11;
+constexpr double kCorrelationRounding = 1e-11;
 
 double sinc(double x) {
   return std::sin(x) / x;
@@ -45,15 +45,15 @@ TEST(Correlations, OfFreeFlightAreExact) {
   const double v2 = mean(system, [](const ed::Body& b) { return b.velocity.squaredNorm(); });
   const double v4 = mean(system, [](const ed::Body& b) { return std::pow(b.velocity.squaredNorm(), 2); });
   const double w2 = mean(system, [](const ed::Body& b) { return b.angular_velocity.squaredNorm(); });
-  EXPECT_NEAR(results.v2.value, v2, kRounding);
-  EXPECT_NEAR(results.w2.value, w2, kRounding * w2);
+  EXPECT_NEAR(results.v2.value, v2, kCorrelationRounding);
+  EXPECT_NEAR(results.w2.value, w2, kCorrelationRounding * w2);
   for (const ed::LagRow& row : results.lags) {
     const double t = row.lag;
-    EXPECT_NEAR(row.vacf.value, v2, kRounding) << t;
-    EXPECT_NEAR(row.wacf.value, w2, kRounding * w2) << t;
+    EXPECT_NEAR(row.vacf.value, v2, kCorrelationRounding) << t;
+    EXPECT_NEAR(row.wacf.value, w2, kCorrelationRounding * w2) << t;
     EXPECT_NEAR(row.alpha2.value, 3 * v4 / (5 * v2 * v2) - 1, 1e-8) << t;
     const double c1 = mean(system, [t](const ed::Body& b) { return std::cos(b.angular_velocity.norm() * t); });
-    EXPECT_NEAR(row.c1.value, c1, kRounding) << t;
+    EXPECT_NEAR(row.c1.value, c1, kCorrelationRounding) << t;
     ASSERT_EQ(row.f_self.size(), q.size());
     for (std::size_t k = 0; k < q.size(); ++k) {
       const double wanted = mean(system, [&](const ed::Body& b) { return sinc(q[k] * b.velocity.norm() * t); });
@@ -96,7 +96,7 @@ TEST(Correlations, SpinIsLeftOutOfTheAngularVelocity) {
     });
     const ed::Results results = observed(system, options_of(system, 4, 1));
     // Precession: what is left is turned, not shortened.
-    EXPECT_NEAR(results.w2.value, across, kRounding * across);
+    EXPECT_NEAR(results.w2.value, across, kCorrelationRounding * across);
     EXPECT_LT(results.lags.back().wacf.value, 0.95 * across);
   }
 }
@@ -116,9 +116,9 @@ TEST(Correlations, OfEachBodyAxis) {
         const double cosine = b.angular_velocity.dot(b.rotation.col(k)) / w;
         return cosine * cosine + (1 - cosine * cosine) * std::cos(w * row.lag);
       });
-      EXPECT_NEAR(row.c1_axis[static_cast<std::size_t>(k)].value, c1, kRounding);
+      EXPECT_NEAR(row.c1_axis[static_cast<std::size_t>(k)].value, c1, kCorrelationRounding);
     }
-    EXPECT_NEAR(row.c1.value, row.c1_axis[2].value, kRounding);
+    EXPECT_NEAR(row.c1.value, row.c1_axis[2].value, kCorrelationRounding);
   }
 }
 
@@ -144,7 +144,7 @@ TEST(Director, OfAlignedAxesIsTheirs) {
   // The largest component is positive: of -2 and 2, which only rounding and `off` tell apart, either may be it.
   EXPECT_LT(results.director.axis.cross(n).norm(), 1e-3);
   EXPECT_GT(results.director.axis.maxCoeff(), 0.5);
-  EXPECT_NEAR(results.director.axis.norm(), 1, kRounding);
+  EXPECT_NEAR(results.director.axis.norm(), 1, kCorrelationRounding);
   EXPECT_LT(results.director.error, 1e-6);
   for (const ed::BlockRow& row : results.blocks) EXPECT_LT(row.director.cross(n).norm(), 1e-3);
 }
@@ -163,7 +163,7 @@ TEST(Pressure, TensorHasTheTraceOfZAndIsSymmetric) {
   const ed::Results results = observables.results(simulation);
   const Matrix3d& P = results.pressure.value;
   EXPECT_NEAR(P.trace() / 3, results.Z.value, 1e-12 * results.Z.value);
-  EXPECT_NEAR((P - P.transpose()).norm(), 0, kRounding);
+  EXPECT_NEAR((P - P.transpose()).norm(), 0, kCorrelationRounding);
   ASSERT_EQ(results.blocks.size(), 16U);
   for (const ed::BlockRow& row : results.blocks) EXPECT_NEAR(row.pressure.trace() / 3, row.Z, 1e-12 * row.Z);
 }
@@ -245,10 +245,10 @@ TEST(Streaming, IsWhatStoredFramesGive) {
     EXPECT_NEAR(row.alpha2.value, 3 * d.r4 * d.pairs / (5 * d.r2 * d.r2) - 1, 1e-9);
     EXPECT_NEAR(row.c1.value, d.c1 / d.pairs, 1e-12);
     EXPECT_NEAR(row.c2.value, d.c2 / d.pairs, 1e-12);
-    EXPECT_NEAR(row.vacf.value, d.vacf / d.pairs, kRounding);
-    EXPECT_NEAR(row.wacf.value, d.wacf / d.pairs, kRounding * results.w2.value);
+    EXPECT_NEAR(row.vacf.value, d.vacf / d.pairs, kCorrelationRounding);
+    EXPECT_NEAR(row.wacf.value, d.wacf / d.pairs, kCorrelationRounding * results.w2.value);
     EXPECT_NEAR(row.f_self[0].value, d.f_self / d.pairs, 1e-12);
-    EXPECT_NEAR(row.rot_msd.value, d.phi2 / d.pairs, kRounding);
+    EXPECT_NEAR(row.rot_msd.value, d.phi2 / d.pairs, kCorrelationRounding);
   }
 }
 

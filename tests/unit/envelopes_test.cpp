@@ -8,6 +8,7 @@
 #include "periodic.h"
 
 #include <common/ed_states.h>
+#include <common/finder_ensemble.h>
 
 #include <ed/random.h>
 
@@ -31,6 +32,7 @@ using ed::internal::DilatedEnvelopes;
 using ed::internal::OrientedEnvelopes;
 using ed::internal::UniaxialInertia;
 using Eigen::Vector3d;
+using finder_test::log_uniform;
 
 struct Shape {
   double a;  // along the axis
@@ -46,10 +48,6 @@ struct Shape {
 
 DilatedEnvelopes envelopes(const Shape& shape, double thickness, double exit_thickness) {
   return {2, shape.spheroid(), shape.difference(), shape.bounding_radius(), thickness, exit_thickness};
-}
-
-double log_uniform(ed::Random& random, double low, double high) {
-  return low * std::exp(random.uniform() * std::log(high / low));
 }
 
 AxisMotion random_motion(ed::Random& random, const UniaxialInertia& inertia) {

@@ -25,7 +25,7 @@ struct Named {
   ed::System system;
 };
 
-ed::CustomShape rod() {
+ed::CustomShape spherocylinder() {
   const geom_test::Spherocylinder shape{1, 0.5};
   return {shape, {"spherocylinder", std::numbers::pi * 0.25 * (2 + 4 * 0.5 / 3), 2, true}};
 }
@@ -41,7 +41,7 @@ std::vector<Named> systems() {
   const ed_test::Family sizes{"spheroids of two sizes",
                               {{ed::uniform_species(geom::Ellipsoid({1, 1, 2})), 60},
                                {ed::uniform_species(geom::Ellipsoid({0.25, 0.25, 0.2})), 240}}};
-  const ed_test::Family rods{"a user's rods", {{ed::Species{rod(), 1, {0.7, 0.7, 0.12}, true}, 70}}};
+  const ed_test::Family rods{"a user's rods", {{ed::Species{spherocylinder(), 1, {0.7, 0.7, 0.12}, true}, 70}}};
   for (const ed_test::Family& family : {sizes, rods}) all.push_back({family.name, ed_test::start(family, 0.2)});
   for (const ed_test::Family& family : ed_test::families(130)) {
     all.push_back({family.name, ed_test::start(family, 0.3)});

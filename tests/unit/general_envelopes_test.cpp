@@ -38,7 +38,7 @@ using finder_test::log_uniform;
 
 constexpr double kBox = 100;
 
-ed::CustomShape rod() {
+ed::CustomShape short_rod() {
   return {geom_test::Spherocylinder{1, 0.5}, {"rod", 2.0944, 2, true}};
 }
 ed::CustomShape pear() {
@@ -51,7 +51,7 @@ std::vector<BodyShape> shapes() {
           ed_test::superellipsoid({1, 0.8, 0.6}, 0.7, 1.3),
           ed_test::superellipsoid({1, 1, 2}, 0.5, 0.5),
           ed_test::ellipsoid({1, 0.8, 0.5}),
-          rod(),
+          short_rod(),
           pear()};
 }
 
@@ -103,7 +103,7 @@ double reach_beyond(const BodyShape& shape, const ed::Motion& now, const ed::Mot
 }
 
 /// By how much the body in `now` reaches beyond the box, thicker by `thickness`, of the body in `before`.
-double beyond_box(const BodyShape& shape, double thickness, const ed::Motion& now, const ed::Motion& before) {
+double beyond_general_box(const BodyShape& shape, double thickness, const ed::Motion& now, const ed::Motion& before) {
   const Vector3d extents = ed::half_extents(shape).array() + thickness;
   double worst = -1e300;
   for (int k = 0; k < 3; ++k) {
@@ -116,7 +116,7 @@ double beyond_box(const BodyShape& shape, double thickness, const ed::Motion& no
   return worst;
 }
 
-struct Exits {
+struct GeneralExits {
   int trials = 0;
   double worst = -1e300;  ///< beyond the envelope, before the exit
   int late = 0;           ///< of which a part is outside before three times the bound
@@ -124,9 +124,9 @@ struct Exits {
 
 /// Bodies are followed by their exit bounds, renewed as the event loop does, and are outside soon after the last.
 template <class Make, class Beyond>
-Exits sample_exits(const BodyShape& shape, const Make& make, const Beyond& beyond) {
+GeneralExits sample_exits(const BodyShape& shape, const Make& make, const Beyond& beyond) {
   ed::Random random(5);
-  Exits exits;
+  GeneralExits exits;
   for (int trial = 0; trial < 100; ++trial) {
     const double thickness = log_uniform(random, 0.03, 1);
     const GeneralBodies bodies(pair_of(shape, shape, random));
@@ -157,7 +157,7 @@ Exits sample_exits(const BodyShape& shape, const Make& make, const Beyond& beyon
   return exits;
 }
 
-void expect_sound(const std::string& what, const Exits& exits) {
+void expect_sound(const std::string& what, const GeneralExits& exits) {
   std::printf("%s: outside by %.1e at most; %d of %d outside before three times the bound\n", what.c_str(), exits.worst,
               exits.late, exits.trials);
   // Rounding of positions of order 1.
@@ -182,7 +182,7 @@ TEST(GeneralEnvelopes, AreNeverLeftBeforeTheExit) {
                                                         return std::make_unique<GeneralOrientedEnvelopes>(bodies,
                                                                                                           thickness);
                                                       },
-                                                      beyond_box));
+                                                      beyond_general_box));
   }
 }
 

@@ -2,6 +2,8 @@
 
 #include "common/geom_batch.h"
 #include "common/geom_manufactured.h"
+#include "common/message_of.h"
+#include "common/special_values.h"
 
 #include <geom/geom.h>
 
@@ -14,10 +16,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <span>
-#include <stdexcept>
-#include <string>
 #include <variant>
 #include <vector>
 
@@ -31,10 +30,9 @@ using geom_test::ManufacturedPair;
 using geom_test::Pairs;
 using geom_test::Random;
 using geom_test::same_answer;
+using test_common::message_of;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr std::span<const Ellipsoid> kNoBodies;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Bodies of revolution and general ones, apart and overlapping, in no order.
 Pairs mixed_pairs(std::size_t count, std::uint64_t seed) {
@@ -66,15 +64,6 @@ bool same_bits(const DistanceResult& r, const DistanceResult& s) {
          r.error_bound == s.error_bound;
 }
 
-std::string refusal(const auto& call) {
-  try {
-    call();
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "accepted";
-}
-
 TEST(DistanceBatch, AnswersAsDistanceWhateverTheNumberOfPairs) {
   for (const InstructionSet set : instruction_sets()) {
     for (const std::size_t count : {1, 2, 3, 7, 8, 9, 31, 32, 33, 63, 65, 100, 257}) {
@@ -95,16 +84,17 @@ TEST(DistanceBatch, RefusesSpansOfOtherSizes) {
   const Pairs fewer = mixed_pairs(4, 3);
   std::vector<DistanceResult> results(5);
   const std::vector<Vector3d> starts(3, Vector3d::UnitX());
-  EXPECT_THAT(refusal([&] { distance_batch(fewer.a, pairs.X_WA, pairs.b, pairs.X_WB, results); }),
+  EXPECT_THAT(message_of([&] { distance_batch(fewer.a, pairs.X_WA, pairs.b, pairs.X_WB, results); }),
               testing::AllOf(testing::HasSubstr("a has 4"), testing::HasSubstr("which has 5")));
-  EXPECT_THAT(refusal([&] { distance_batch(pairs.a, fewer.X_WA, pairs.b, pairs.X_WB, results); }),
+  EXPECT_THAT(message_of([&] { distance_batch(pairs.a, fewer.X_WA, pairs.b, pairs.X_WB, results); }),
               testing::HasSubstr("X_WA has 4"));
-  EXPECT_THAT(refusal([&] { distance_batch(pairs.a, pairs.X_WA, {}, pairs.X_WB, results); }),
+  EXPECT_THAT(message_of([&] { distance_batch(pairs.a, pairs.X_WA, {}, pairs.X_WB, results); }),
               testing::HasSubstr("b has 0"));
-  EXPECT_THAT(refusal([&] { distance_batch(pairs.a, pairs.X_WA, pairs.b, fewer.X_WB, results); }),
+  EXPECT_THAT(message_of([&] { distance_batch(pairs.a, pairs.X_WA, pairs.b, fewer.X_WB, results); }),
               testing::HasSubstr("X_WB has 4"));
-  EXPECT_THAT(refusal([&] { distance_batch(pairs.a, pairs.X_WA, pairs.b, pairs.X_WB, results, {.starts = starts}); }),
-              testing::HasSubstr("starts has 3"));
+  EXPECT_THAT(
+      message_of([&] { distance_batch(pairs.a, pairs.X_WA, pairs.b, pairs.X_WB, results, {.starts = starts}); }),
+      testing::HasSubstr("starts has 3"));
   EXPECT_TRUE(declined(results.front())) << "nothing is written before the input is checked";
 }
 
@@ -351,7 +341,7 @@ TEST(DistanceBatch, UsesTheInstructionSetThatItSays) {
 TEST(DistanceBatch, RefusesInstructionSetsThatAreNotThere) {
   for (const InstructionSet set : {InstructionSet::avx2, InstructionSet::avx512, static_cast<InstructionSet>(99)}) {
     if (is_available(set)) continue;
-    EXPECT_THAT(refusal([&] { distance_batch(kNoBodies, {}, kNoBodies, {}, {}, {.instruction_set = set}); }),
+    EXPECT_THAT(message_of([&] { distance_batch(kNoBodies, {}, kNoBodies, {}, {}, {.instruction_set = set}); }),
                 testing::AllOf(testing::HasSubstr(to_string(set)), testing::HasSubstr("accepted: best, portable")));
   }
 }
@@ -400,7 +390,7 @@ TEST(DistanceBatch, OfShapesRefusesSpansOfOtherSizes) {
   const std::vector<Shape> shapes(3, Shape(Ellipsoid({1, 1, 2})));
   const std::vector<Pose> poses(2);
   std::vector<DistanceResult> results(3);
-  EXPECT_THAT(refusal([&] { distance_batch(shapes, poses, shapes, poses, results); }),
+  EXPECT_THAT(message_of([&] { distance_batch(shapes, poses, shapes, poses, results); }),
               testing::StartsWith("distance_batch: X_WA has 2 elements; accepted: "));
 }
 

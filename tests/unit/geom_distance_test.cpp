@@ -2,6 +2,7 @@
 
 #include "common/geom_expect.h"
 #include "common/geom_manufactured.h"
+#include "common/special_values.h"
 
 #include <geom/geom.h>
 
@@ -26,9 +27,6 @@ using geom_test::ManufacturedPair;
 using geom_test::normal_tolerance;
 using geom_test::Random;
 using geom_test::repetitions;
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 Pose turned_about_y(double angle, const Vector3d& position) {
   return Pose::from_quaternion(std::cos(angle / 2), 0, std::sin(angle / 2), 0, position);

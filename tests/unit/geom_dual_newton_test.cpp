@@ -1,6 +1,7 @@
 /// The two kernels of the dual Newton method: one evaluation and one step, against each other and against theory.
 
 #include "common/geom_manufactured.h"
+#include "common/special_values.h"
 
 #include <geom/geom.h>
 #include <geom/internal/dual_newton.h>
@@ -13,7 +14,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace geom::internal {
 namespace {
@@ -25,8 +25,6 @@ using geom_test::ManufacturedPair;
 using geom_test::normal_tolerance;
 using geom_test::Random;
 using geom_test::repetitions;
-
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 /// A manufactured pair of spheroids in the form that the uniaxial kernel takes.
 struct PlacedSpheroids {

@@ -2,6 +2,7 @@
 /// against the general kernel and against theory.
 
 #include "common/geom_manufactured.h"
+#include "common/special_values.h"
 
 #include <ellipsoid_pair.h>
 #include <geom/geom.h>
@@ -13,7 +14,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace geom::internal {
 namespace {
@@ -24,8 +24,6 @@ using geom_test::lower_bound;
 using geom_test::ManufacturedPair;
 using geom_test::Random;
 using geom_test::repetitions;
-
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 /// Two ellipsoids in the form that the kernel under test takes.
 struct OfRevolution {

@@ -3,6 +3,8 @@
 
 #include "common/geom_expect.h"
 #include "common/geom_manufactured.h"
+#include "common/message_of.h"
+#include "common/special_values.h"
 
 #include <geom/geom.h>
 
@@ -14,7 +16,6 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <stdexcept>
 #include <string>
 
 namespace geom {
@@ -24,23 +25,11 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using geom_test::answers;
 using geom_test::Random;
+using test_common::message_of;
 using testing::AllOf;
 using testing::HasSubstr;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kBadLengths[] = {0.0, -0.0, -1.0, kNaN, kInfinity, -kInfinity, 1e-51, 1e51};
-
-/// The message of the std::invalid_argument that `make` throws.
-template <class Make>
-std::string refusal(const Make& make) {
-  try {
-    static_cast<void>(make());
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "accepted";
-}
 
 /// The contract of distance.h, relative to the size of the pair.
 template <class A, class B>
@@ -70,13 +59,13 @@ TEST(BadInput, SemiAxesOfSuperellipsoidsAreRefusedByName) {
     for (int axis = 0; axis < 3; ++axis) {
       Vector3d semi_axes(1, 1, 1);
       semi_axes[axis] = bad;
-      ASSERT_THAT(refusal([&] { return Superellipsoid(semi_axes, 1, 1); }),
+      ASSERT_THAT(message_of([&] { return Superellipsoid(semi_axes, 1, 1); }),
                   AllOf(HasSubstr("semi-axis is "), HasSubstr("accepted: 1e-50 to 1e+50")))
           << bad << " as axis " << axis;
     }
   }
-  EXPECT_EQ(refusal([] { return Superellipsoid({1, 1e4, 1}, 1, 1); }), "accepted");
-  EXPECT_THAT(refusal([] {
+  EXPECT_EQ(message_of([] { return Superellipsoid({1, 1e4, 1}, 1, 1); }), "accepted");
+  EXPECT_THAT(message_of([] {
                 return Superellipsoid({1, 1.5e4, 1}, 1, 1);
               }),
               AllOf(HasSubstr("ratio"), HasSubstr("15000"), HasSubstr("1 to 10000")));
@@ -88,11 +77,11 @@ TEST(BadInput, ExponentsAreRefusedByNameWithTheRange) {
     const auto message_names = [](const char* which) {
       return AllOf(HasSubstr(std::string("exponent ") + which + " is "), HasSubstr("accepted: 0.2 to 1.6"));
     };
-    ASSERT_THAT(refusal([&] { return Superellipsoid({1, 1, 1}, bad, 1); }), message_names("e1")) << bad;
-    ASSERT_THAT(refusal([&] { return Superellipsoid({1, 1, 1}, 1, bad); }), message_names("e2")) << bad;
+    ASSERT_THAT(message_of([&] { return Superellipsoid({1, 1, 1}, bad, 1); }), message_names("e1")) << bad;
+    ASSERT_THAT(message_of([&] { return Superellipsoid({1, 1, 1}, 1, bad); }), message_names("e2")) << bad;
   }
   for (const double e : {0.2, 1.6}) {
-    EXPECT_EQ(refusal([&] { return Superellipsoid({1, 1, 1}, e, e); }), "accepted") << e;
+    EXPECT_EQ(message_of([&] { return Superellipsoid({1, 1, 1}, e, e); }), "accepted") << e;
   }
 }
 
@@ -103,24 +92,24 @@ TEST(BadInput, PositionsBeyondTheLimitAreRefusedWithIt) {
       Vector3d position(1, 2, 3);
       position[axis] = bad;
       const auto wanted = AllOf(HasSubstr("position is "), HasSubstr("none beyond +-1e100"));
-      ASSERT_THAT(refusal([&] { return Pose(Matrix3d::Identity(), position); }), wanted) << bad;
-      ASSERT_THAT(refusal([&] { return Pose::translation(position); }), wanted) << bad;
-      ASSERT_THAT(refusal([&] { return Pose::from_quaternion(1, 0, 0, 0, position); }), wanted) << bad;
+      ASSERT_THAT(message_of([&] { return Pose(Matrix3d::Identity(), position); }), wanted) << bad;
+      ASSERT_THAT(message_of([&] { return Pose::translation(position); }), wanted) << bad;
+      ASSERT_THAT(message_of([&] { return Pose::from_quaternion(1, 0, 0, 0, position); }), wanted) << bad;
     }
   }
-  EXPECT_EQ(refusal([] { return Pose::translation({kMaxCoordinate, -kMaxCoordinate, 5e-324}); }), "accepted");
+  EXPECT_EQ(message_of([] { return Pose::translation({kMaxCoordinate, -kMaxCoordinate, 5e-324}); }), "accepted");
 }
 
 TEST(BadInput, RotationsThatOverflowAreRefused) {
   const auto wanted = HasSubstr("not orthonormal");
   for (const double bad : {1e160, -1e200, 1e308}) {
-    EXPECT_THAT(refusal([&] { return Pose(bad * Matrix3d::Identity(), Vector3d::Zero()); }), wanted) << bad;
+    EXPECT_THAT(message_of([&] { return Pose(bad * Matrix3d::Identity(), Vector3d::Zero()); }), wanted) << bad;
     Matrix3d R = Matrix3d::Identity();
     R(0, 2) = bad;
-    EXPECT_THAT(refusal([&] { return Pose(R, Vector3d::Zero()); }), wanted) << bad;
-    EXPECT_THAT(refusal([&] { return Pose::from_quaternion(bad, bad, 0, 0); }), HasSubstr("not of length 1")) << bad;
+    EXPECT_THAT(message_of([&] { return Pose(R, Vector3d::Zero()); }), wanted) << bad;
+    EXPECT_THAT(message_of([&] { return Pose::from_quaternion(bad, bad, 0, 0); }), HasSubstr("not of length 1")) << bad;
   }
-  EXPECT_THAT(refusal([] { return Pose(1e-200 * Matrix3d::Identity(), Vector3d::Zero()); }), wanted);
+  EXPECT_THAT(message_of([] { return Pose(1e-200 * Matrix3d::Identity(), Vector3d::Zero()); }), wanted);
 }
 
 // ---------------------------------------------------------------------------------------------------------------------

@@ -3,6 +3,7 @@
 #include "common/geom_expect.h"
 #include "common/geom_implicit.h"
 #include "common/geom_manufactured.h"
+#include "common/special_values.h"
 
 #include <geom/geom.h>
 
@@ -23,6 +24,7 @@ using Eigen::Vector3d;
 using geom_test::answers;
 using geom_test::declined;
 using geom_test::distance_tolerance;
+using geom_test::extent_of;
 using geom_test::ManufacturedPair;
 using geom_test::PowerBody;
 using geom_test::Random;
@@ -30,12 +32,7 @@ using geom_test::repetitions;
 using testing::AllOf;
 using testing::HasSubstr;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr NewtonSystem kSystems[] = {NewtonSystem::eight, NewtonSystem::five};
-
-double extent_of(const ManufacturedPair& pair) {
-  return pair.X_WA.position().norm() + 2 * pair.size;
-}
 
 /// The normal of the pair, turned by about `angle` radian.
 Vector3d turned(const Vector3d& n, double angle, Random& random) {

@@ -1,6 +1,7 @@
 /// Pose: what is refused, what is corrected, and the conventions.
 
 #include "common/geom_random.h"
+#include "common/special_values.h"
 
 #include <geom/geom.h>
 
@@ -11,7 +12,6 @@
 #include <Eigen/Geometry>
 
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <stdexcept>
 #include <string>
@@ -24,9 +24,6 @@ using Eigen::Vector3d;
 using geom_test::Random;
 using testing::AllOf;
 using testing::HasSubstr;
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// The message of the std::invalid_argument that `make` throws.
 template <class Make>

@@ -4,6 +4,7 @@
 #include "common/ed_reference.h"
 #include "common/geom_random.h"
 #include "common/message_of.h"
+#include "common/special_values.h"
 
 #include <geom/geom.h>
 
@@ -27,8 +28,6 @@ using testing::HasSubstr;
 
 static_assert(SupportShape<Superellipsoid>);
 static_assert(ImplicitSurface<Superellipsoid>);
-
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 /// Every pair of exponents, with and without a fast path.
 std::vector<Superellipsoid> shapes() {

@@ -22,6 +22,7 @@ using Eigen::Vector3d;
 using geom_test::answers;
 using geom_test::declined;
 using geom_test::distance_tolerance;
+using geom_test::extent_of;
 using geom_test::ManufacturedPair;
 using geom_test::normal_tolerance;
 using geom_test::PlainBall;
@@ -52,10 +53,6 @@ struct HalfSpaceOfTheConcept {
   Eigen::Matrix3d hessian(const Vector3d&) const { return Eigen::Matrix3d::Zero(); }
 };
 static_assert(ImplicitSurface<HalfSpaceOfTheConcept>);
-
-double extent_of(const ManufacturedPair& pair) {
-  return pair.X_WA.position().norm() + 2 * pair.size;
-}
 
 TEST(UserShape, BallsWithoutACurvatureBoundHaveTheirDistance) {
   const PlainBall a{1};

@@ -24,7 +24,7 @@ using Eigen::Vector3d;
 using testing::HasSubstr;
 
 /// Positions of order 10, a few events.
-constexpr double kRounding = 1e-13;
+constexpr double kRunRounding = 1e-13;
 
 ed::Species sphere() {
   return ed::paper_species(geom::Ellipsoid({1, 1, 1}));
@@ -53,16 +53,16 @@ TEST(Simulation, SpheresThatMeetHeadOnExchangeVelocities) {
   simulation.run_until(2);
   // A gap of 3 at speed 3.
   ASSERT_EQ(simulation.collisions().size(), 1U);
-  EXPECT_NEAR(simulation.collisions()[0].time, 1, kRounding);
+  EXPECT_NEAR(simulation.collisions()[0].time, 1, kRunRounding);
   EXPECT_EQ(simulation.collisions()[0].i, 0);
   EXPECT_EQ(simulation.collisions()[0].j, 1);
   const ed::System end = simulation.system();
-  EXPECT_NEAR((end.bodies[0].velocity - Vector3d(-1, 0.5, 0)).norm(), 0, kRounding);
-  EXPECT_NEAR((end.bodies[1].velocity - Vector3d(2, 0.5, 0)).norm(), 0, kRounding);
-  EXPECT_NEAR((end.bodies[0].position - Vector3d(1, 1, 0)).norm(), 0, kRounding);
-  EXPECT_NEAR((end.bodies[1].position - Vector3d(6, 1, 0)).norm(), 0, kRounding);
+  EXPECT_NEAR((end.bodies[0].velocity - Vector3d(-1, 0.5, 0)).norm(), 0, kRunRounding);
+  EXPECT_NEAR((end.bodies[1].velocity - Vector3d(2, 0.5, 0)).norm(), 0, kRunRounding);
+  EXPECT_NEAR((end.bodies[0].position - Vector3d(1, 1, 0)).norm(), 0, kRunRounding);
+  EXPECT_NEAR((end.bodies[1].position - Vector3d(6, 1, 0)).norm(), 0, kRunRounding);
   // r_AB . dp = 2 x 3: B gains 3 along the line of centres.
-  EXPECT_NEAR(simulation.virial(), 6, kRounding);
+  EXPECT_NEAR(simulation.virial(), 6, kRunRounding);
   EXPECT_EQ(simulation.counters().collisions, 1U);
 }
 
@@ -75,7 +75,7 @@ TEST(Simulation, BodiesMeetThroughTheFacesOfTheBox) {
   simulation.record_collisions(1);
   simulation.run_collisions(1);
   ASSERT_EQ(simulation.collisions().size(), 1U);
-  EXPECT_NEAR(simulation.collisions()[0].time, 2 - 2 / std::sqrt(3.0), kRounding);
+  EXPECT_NEAR(simulation.collisions()[0].time, 2 - 2 / std::sqrt(3.0), kRunRounding);
 }
 
 TEST(Simulation, CollisionsComeAtTheirTimesHoweverLongTheRun) {
@@ -168,8 +168,8 @@ TEST(Simulation, StateGoesInAndOutUnchanged) {
   for (std::size_t i = 0; i < system.bodies.size(); ++i) {
     const ed::Body& a = system.bodies[i];
     const ed::Body& b = out.bodies[i];
-    EXPECT_LE((a.position - b.position).norm(), kRounding);
-    EXPECT_LE((a.rotation - b.rotation).norm(), kRounding);
+    EXPECT_LE((a.position - b.position).norm(), kRunRounding);
+    EXPECT_LE((a.rotation - b.rotation).norm(), kRunRounding);
     EXPECT_EQ(a.velocity, b.velocity);
     EXPECT_LE((a.angular_velocity - b.angular_velocity).norm(), 1e-14 * a.angular_velocity.norm());
   }
@@ -188,10 +188,10 @@ TEST(Simulation, SamplesAreUnwrapped) {
   simulation.run_until(12.5);
   simulation.sample(snapshot);
   EXPECT_EQ(snapshot.time, 12.5);
-  EXPECT_NEAR((snapshot.position[0] - Vector3d(37.5, 0, 0)).norm(), 0, kRounding);
-  EXPECT_NEAR((snapshot.position[1] - Vector3d(0, 5, 0)).norm(), 0, kRounding);
+  EXPECT_NEAR((snapshot.position[0] - Vector3d(37.5, 0, 0)).norm(), 0, kRunRounding);
+  EXPECT_NEAR((snapshot.position[1] - Vector3d(0, 5, 0)).norm(), 0, kRunRounding);
   // The system is wrapped: 37.5 - 4 x 10.
-  EXPECT_NEAR((simulation.system().bodies[0].position - Vector3d(-2.5, 0, 0)).norm(), 0, kRounding);
+  EXPECT_NEAR((simulation.system().bodies[0].position - Vector3d(-2.5, 0, 0)).norm(), 0, kRunRounding);
 }
 
 TEST(Simulation, ShrinkingTheBoxLeavesNoOverlapAndTheVelocities) {
@@ -307,7 +307,7 @@ TEST(Simulation, BodiesThatTouchFromTheStartAreNoOverlap) {
   approaching.record_collisions(1);
   approaching.run_until(1);
   ASSERT_EQ(approaching.collisions().size(), 1U);
-  EXPECT_NEAR(approaching.collisions()[0].time, 0, kRounding);
+  EXPECT_NEAR(approaching.collisions()[0].time, 0, kRunRounding);
   EXPECT_EQ(approaching.counters().overlaps, 0U);
   system.bodies[0].velocity = {-1, 0, 0};
   ed::Simulation parting(system);
@@ -318,7 +318,7 @@ TEST(Simulation, BodiesThatTouchFromTheStartAreNoOverlap) {
 
 TEST(SimulationRefuses, BodiesThatOverlapAtTheStart) {
   const ed::Species rod = ed::paper_species(geom::Ellipsoid({1, 1, 3}));
-  EXPECT_EQ(message_of(two_bodies(rod, 20, {2.1, 0, 0})), "no std::invalid_argument");
+  EXPECT_EQ(message_of(two_bodies(rod, 20, {2.1, 0, 0})), "accepted");
   for (const double depth : {1e-11, 1e-6, 0.5}) {
     const std::string message = message_of(two_bodies(rod, 20, {2 - depth, 0, 0}));
     EXPECT_THAT(message, HasSubstr("overlap")) << depth;
@@ -418,7 +418,7 @@ TEST(SimulationRefuses, NumbersThatAreNotFinite) {
 TEST(SimulationRefuses, RotationsThatAreNotOrthonormal) {
   ed::System system = two_bodies(sphere(), 20, {3, 0, 0});
   system.bodies[0].rotation *= 1.01;
-  EXPECT_NE(message_of(system), "no std::invalid_argument");
+  EXPECT_NE(message_of(system), "accepted");
 }
 
 /// The system, repeated along each edge; copies of a body stand one after the other.

@@ -20,14 +20,12 @@ constexpr double kRange = 1048576.0;
 /// The header promises two units in the last place of 1, 2^-52 each; one is what it keeps.
 constexpr double kBound = 0x1p-52;
 
-using Real = long double;
-
 /// The larger of both errors against the C library's long double functions, which are right to 1e-19.
 double error(double x) {
   const SinCos sc = sincos(x);
-  const auto exact = static_cast<Real>(x);
-  return static_cast<double>(std::max(std::abs(static_cast<Real>(sc.sin) - std::sin(exact)),
-                                      std::abs(static_cast<Real>(sc.cos) - std::cos(exact))));
+  const auto exact = static_cast<long double>(x);
+  return static_cast<double>(std::max(std::abs(static_cast<long double>(sc.sin) - std::sin(exact)),
+                                      std::abs(static_cast<long double>(sc.cos) - std::cos(exact))));
 }
 
 TEST(SinCosFunction, IsRightOverTheWholeRange) {
@@ -43,12 +41,12 @@ TEST(SinCosFunction, IsRightOverTheWholeRange) {
 TEST(SinCosFunction, IsRightNextToMultiplesOfAnEighthTurn) {
   // There the reduced argument cancels to nearly nothing, or the quadrant changes.
   ed::Random random(2);
-  const Real eighth = 0.78539816339744830961566084581988L;
+  const long double eighth = 0.78539816339744830961566084581988L;
   const double most = kRange / static_cast<double>(eighth) - 1;
   double worst = 0;
   for (int k = 0; k < 100'000; ++k) {
     const double multiple = std::floor(finder_test::log_uniform(random, 1, most));
-    double x = static_cast<double>(static_cast<Real>(multiple) * eighth);
+    double x = static_cast<double>(static_cast<long double>(multiple) * eighth);
     for (int step = 0; step < 3; ++step) x = std::nextafter(x, kRange);
     for (int step = 0; step < 7; ++step) {
       worst = std::max({worst, error(x), error(-x)});
@@ -77,7 +75,7 @@ TEST(SinCosFunction, IsExactAtZeroAndKeepsRelativeAccuracyNextToIt) {
   ed::Random random(4);
   for (int k = 0; k < 10'000; ++k) {
     const double x = finder_test::log_uniform(random, 1e-300, 0.7);
-    const Real relative = static_cast<Real>(sincos(x).sin) / std::sin(static_cast<Real>(x)) - 1;
+    const long double relative = static_cast<long double>(sincos(x).sin) / std::sin(static_cast<long double>(x)) - 1;
     EXPECT_LE(std::abs(static_cast<double>(relative)), 2 * 0x1p-52) << x;
   }
 }

@@ -25,7 +25,7 @@ constexpr int kBodies = 60;
 constexpr double kBox = 10;
 constexpr double kStep = 0.05;
 /// Of sums of a thousand terms of order 1, of positions of order 10.
-constexpr double kRounding = 1e-11;
+constexpr double kFrameRounding = 1e-11;
 
 ed::StoredFramesOptions options_of(int bodies) {
   ed::StoredFramesOptions options;
@@ -82,21 +82,22 @@ TEST(StoredFrames, FreeFlightsAreExact) {
   EXPECT_EQ(results.frames, 81U);
   EXPECT_EQ(results.wave_numbers, options.wave_numbers);
   ASSERT_GE(results.lags.size(), 10U);
-  EXPECT_NEAR(results.lags.back().lag, 20 * kStep, kRounding);  // a quarter of the trajectory
+  EXPECT_NEAR(results.lags.back().lag, 20 * kStep, kFrameRounding);  // a quarter of the trajectory
   for (const ed::LagRow& row : results.lags) {
     const double t = row.lag;
-    EXPECT_NEAR(row.msd.value, flight.mean([&](auto i) { return std::pow(flight.speed(i) * t, 2); }), kRounding);
-    EXPECT_NEAR(row.c1.value, flight.mean([&](auto i) { return std::cos(flight.rate[i] * t); }), kRounding);
+    EXPECT_NEAR(row.msd.value, flight.mean([&](auto i) { return std::pow(flight.speed(i) * t, 2); }), kFrameRounding);
+    EXPECT_NEAR(row.c1.value, flight.mean([&](auto i) { return std::cos(flight.rate[i] * t); }), kFrameRounding);
     EXPECT_NEAR(row.c2.value,
-                flight.mean([&](auto i) { return 1.5 * std::pow(std::cos(flight.rate[i] * t), 2) - 0.5; }), kRounding);
-    EXPECT_NEAR(row.vacf.value, flight.mean([&](auto i) { return std::pow(flight.speed(i), 2); }), kRounding);
+                flight.mean([&](auto i) { return 1.5 * std::pow(std::cos(flight.rate[i] * t), 2) - 0.5; }),
+                kFrameRounding);
+    EXPECT_NEAR(row.vacf.value, flight.mean([&](auto i) { return std::pow(flight.speed(i), 2); }), kFrameRounding);
     for (std::size_t k = 0; k < 2; ++k) {
       const double q = options.wave_numbers[k];
       const double wanted = flight.mean([&](auto i) {
         const double x = q * flight.speed(i) * t;
         return std::sin(x) / x;
       });
-      EXPECT_NEAR(row.f_self.at(k).value, wanted, kRounding) << "q = " << q << ", t = " << t;
+      EXPECT_NEAR(row.f_self.at(k).value, wanted, kFrameRounding) << "q = " << q << ", t = " << t;
     }
   }
   EXPECT_TRUE(std::isnan(results.D_trans.value)) << "ballistic";

@@ -32,7 +32,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using geom::Ellipsoid;
 
-constexpr double kForever = std::numeric_limits<double>::infinity();
+constexpr double kEndless = std::numeric_limits<double>::infinity();
 
 Ellipsoid sphere(double radius) {
   return Ellipsoid(Vector3d::Constant(radius));
@@ -139,12 +139,12 @@ TEST_P(BothFinders, SpheresMeetWhereTheQuadraticEquationSays) {
     const Real half_b = p.dot(v);
     const Real c = p.squaredNorm() - static_cast<Real>(reach) * static_cast<Real>(reach);
     const Real discriminant = half_b * half_b - v.squaredNorm() * c;
-    const ContactResult r = contact(a, m_a, b, m_b, kForever);
+    const ContactResult r = contact(a, m_a, b, m_b, kEndless);
     // Closer to tangential than rounding can tell.
     if (std::abs(static_cast<double>(discriminant)) < 1e-12 * static_cast<double>(half_b * half_b)) continue;
     if (half_b >= 0 || discriminant < 0) {
       ++misses;
-      expect_separated_until(r, kForever);
+      expect_separated_until(r, kEndless);
       continue;
     }
     ++hits;
@@ -191,13 +191,13 @@ TEST_P(BothFinders, NeedleTurningInPlaceSweepsIntoASphere) {
   }
   EXPECT_NEAR(r.time, apart, 1e-13);
   // A sphere beyond the tip's reach is never hit, however long.
-  expect_separated_until(contact(needle, turning, ball, at({4.001, 0, 0}, {0, 0, 0}), kForever), kForever);
+  expect_separated_until(contact(needle, turning, ball, at({4.001, 0, 0}, {0, 0, 0}), kEndless), kEndless);
 }
 
 TEST_P(BothFinders, DiscsThatSlideFaceToFaceNeverMeet) {
   const Ellipsoid disc({3, 3, 0.3});
-  expect_separated_until(contact(disc, at({0, 0, 0}, {1, 0, 0}), disc, at({-20, 0, 0.6 + 1e-9}, {3, 1, 0}), kForever),
-                         kForever);
+  expect_separated_until(contact(disc, at({0, 0, 0}, {1, 0, 0}), disc, at({-20, 0, 0.6 + 1e-9}, {3, 1, 0}), kEndless),
+                         kEndless);
 }
 
 // ---- Bodies that never meet, touch already, or overlap -------------------------------------------------------------
@@ -206,17 +206,17 @@ TEST_P(BothFinders, BodiesThatPartAreSeparatedForEver) {
   const Ellipsoid needle({1, 1, 4});
   Motion b = at({5, 0, 0}, {1, 0, 0});
   b.angular_velocity = {0, 1, 0};
-  expect_separated_until(contact(needle, at({0, 0, 0}, {-1, 0, 0}), needle, b, kForever), kForever);
+  expect_separated_until(contact(needle, at({0, 0, 0}, {-1, 0, 0}), needle, b, kEndless), kEndless);
 }
 
 TEST_P(BothFinders, BodiesAtRestAreSeparatedForEver) {
   const Ellipsoid needle({1, 1, 4});
-  expect_separated_until(contact(needle, Motion(), needle, at({2.1, 0, 0}, {0, 0, 0}), kForever), kForever);
+  expect_separated_until(contact(needle, Motion(), needle, at({2.1, 0, 0}, {0, 0, 0}), kEndless), kEndless);
   // Within each other's bounding spheres and spinning about their own axes only.
   Motion spinning;
   spinning.angular_velocity = {0, 0, 7};
   spinning.inertia = {1, 1, 0.3};
-  expect_separated_until(contact(needle, spinning, needle, at({2.1, 0, 0}, {0, 0, 0}), kForever), kForever);
+  expect_separated_until(contact(needle, spinning, needle, at({2.1, 0, 0}, {0, 0, 0}), kEndless), kEndless);
 }
 
 TEST_P(BothFinders, SearchEndsAtTMax) {
@@ -242,7 +242,7 @@ TEST_P(BothFinders, NeverAnswersForMoreThanItWasAsked) {
     m_a.angular_velocity = random.normal3();
     m_b.angular_velocity = random.normal3();
     m_b.velocity -= m_b.pose.position();
-    const ContactResult r = contact(a, m_a, b, m_b, kForever);
+    const ContactResult r = contact(a, m_a, b, m_b, kEndless);
     if (r.status != ContactStatus::hit) continue;
     for (int step = -20; step <= 20; ++step) {
       const double t_max = r.time * (1 + step * 0x1p-52);
@@ -272,8 +272,8 @@ TEST_P(BothFinders, TouchingBodiesThatApproachHitAtOnce) {
 }
 
 TEST_P(BothFinders, TouchingBodiesThatPartDoNotHit) {
-  expect_separated_until(contact(sphere(1), at({0, 0, 0}, {0, 0, 0}), sphere(1), at({2, 0, 0}, {1e-6, 1, 0}), kForever),
-                         kForever);
+  expect_separated_until(contact(sphere(1), at({0, 0, 0}, {0, 0, 0}), sphere(1), at({2, 0, 0}, {1e-6, 1, 0}), kEndless),
+                         kEndless);
   // A needle's tip swings away from the ball it touches, and comes back after half a turn.
   const Ellipsoid needle({1, 1, 3});
   Motion turning;
@@ -288,7 +288,7 @@ TEST_P(BothFinders, SpinningBodiesThatTouchAndRestDoNotHit) {
   a.angular_velocity = {0, 0, 5};
   a.inertia = {1, 1, 0.5};
   const Ellipsoid needle({1, 1, 3});
-  expect_separated_until(contact(needle, a, needle, at({2, 0, 0}, {0, 0, 0}), kForever), kForever);
+  expect_separated_until(contact(needle, a, needle, at({2, 0, 0}, {0, 0, 0}), kEndless), kEndless);
 }
 
 TEST_P(BothFinders, OverlappingBodiesAreSaidToOverlapAtTheStart) {
@@ -322,13 +322,13 @@ TEST(TimeOfContact, ClocksThatShowALongTimeDoNotMakeOverlaps) {
     Motion b = at({4.3, 0.2, 0}, {-0.3, 0, 0.1});
     a.time = start;
     b.time = start;
-    const ContactResult r = time_of_contact(sphere(1), a, sphere(1), b, kForever);
+    const ContactResult r = time_of_contact(sphere(1), a, sphere(1), b, kEndless);
     EXPECT_EQ(r.status, ContactStatus::hit) << start << ": " << to_string(r.status);
     Motion a0 = a;
     Motion b0 = b;
     a0.time = 0;
     b0.time = 0;
-    const ContactResult r0 = time_of_contact(sphere(1), a0, sphere(1), b0, kForever);
+    const ContactResult r0 = time_of_contact(sphere(1), a0, sphere(1), b0, kEndless);
     EXPECT_NEAR(r.time - start, r0.time, 4e-16 * std::abs(start));
   }
 }
@@ -339,7 +339,7 @@ TEST(TimeOfContact, BodiesThatComeFromFarAwayHit) {
     Motion b = at({far, 0.3, 0.4}, {-1, 1e-12, 0});
     b.angular_velocity = {0.1, 0.2, 0.3};
     b.inertia = {1, 1, 0.3};
-    const ContactResult r = time_of_contact(sphere(1), Motion(), Ellipsoid({1, 1, 3}), b, kForever);
+    const ContactResult r = time_of_contact(sphere(1), Motion(), Ellipsoid({1, 1, 3}), b, kEndless);
     EXPECT_EQ(r.status, ContactStatus::hit) << far << ": " << to_string(r.status);
     EXPECT_NEAR(r.time, far, 5);
   }
@@ -540,7 +540,7 @@ TEST(TimeOfContact, RefusesBadInputAndNamesIt) {
   EXPECT_PRED2(has, refusal([](Query& q) { q.t_max = -1; }), "t_max is -1");
   EXPECT_PRED2(has, refusal([](Query& q) { q.m_b.time = 11; }), "t_max is 10");
   EXPECT_PRED2(has, refusal([&](Query& q) { q.m_a.velocity.x() = nan; }), "velocity");
-  EXPECT_PRED2(has, refusal([](Query& q) { q.m_b.angular_velocity.z() = kForever; }), "angular velocity");
+  EXPECT_PRED2(has, refusal([](Query& q) { q.m_b.angular_velocity.z() = kEndless; }), "angular velocity");
   EXPECT_PRED2(has, refusal([&](Query& q) { q.m_b.time = nan; }), "time");
   EXPECT_PRED2(has, refusal([](Query& q) { q.m_a.inertia = {1, 1, 3}; }), "inertia is [1, 1, 3]");
   EXPECT_PRED2(has, refusal([](Query& q) { q.m_a.inertia = {1, 1, -1}; }), "inertia is [1, 1, -1]");
@@ -558,7 +558,7 @@ std::string refusal_of(const ed::ContactOptions& options) {
 
 TEST(TimeOfContact, RefusesBadOptions) {
   EXPECT_EQ(refusal_of(bracketing(ed::DistanceMethod::newton5)), "accepted");
-  for (const double eps_d : {0.0, -1e-6, 1.0, kForever, std::numeric_limits<double>::quiet_NaN()}) {
+  for (const double eps_d : {0.0, -1e-6, 1.0, kEndless, std::numeric_limits<double>::quiet_NaN()}) {
     ed::ContactOptions options = bracketing(ed::DistanceMethod::dual);
     options.eps_d = eps_d;
     const std::string message = refusal_of(options);

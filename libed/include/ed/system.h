@@ -99,7 +99,8 @@ enum class Neighbours {
 /// centre can move while its body stays in the thinnest box around it, which octahedra and cubes can turn in.
 ED_EXPORT double smallest_box(const std::vector<Component>& components, Neighbours neighbours = Neighbours::dilated);
 
-/// The smallest number of bodies of this shape and of uniform density whose box at this packing fraction is that large.
+/// The smallest number of bodies of this shape and of uniform density whose box at this packing fraction is that large;
+/// the largest int if it is larger. Throws std::invalid_argument if packing_fraction is not above 0.
 ED_EXPORT int smallest_number(const BodyShape& shape, double packing_fraction,
                               Neighbours neighbours = Neighbours::dilated);
 

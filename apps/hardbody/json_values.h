@@ -1,0 +1,23 @@
+#pragma once
+
+/// Numbers as the program writes them in JSON. Private to the sources that write JSON: it brings the library along.
+
+#include <ed/analysis.h>
+
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+
+namespace hardbody {
+
+/// JSON knows no NaN: null stands for a number that is not finite.
+inline nlohmann::ordered_json number_json(double x) {
+  return std::isfinite(x) ? nlohmann::ordered_json(x) : nlohmann::ordered_json(nullptr);
+}
+
+/// {"value": ..., "error": ...}
+inline nlohmann::ordered_json estimate_json(const ed::Estimate& e) {
+  return {{"value", number_json(e.value)}, {"error", number_json(e.error)}};
+}
+
+}  // namespace hardbody
