@@ -130,7 +130,7 @@ TEST(SmallestNumber, OfNoPackingFractionIsRefusedAndOfLongNeedlesIsTheLargestInt
     EXPECT_THAT(test_common::message_of([&] { return ed::smallest_number(ed_test::spheroid(3), bad); }),
                 HasSubstr("packing_fraction is "));
   }
-  EXPECT_EQ(ed::smallest_number(ed_test::spheroid(1e4), 0.5), std::numeric_limits<int>::max());
+  EXPECT_EQ(ed::smallest_number(ed_test::spheroid(1e4), 5), std::numeric_limits<int>::max());  // 8.6e9
 }
 
 TEST(SmallestNumber, IsTheFirstWhoseBoxIsLargeEnough) {
