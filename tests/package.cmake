@@ -55,10 +55,10 @@ foreach(installed hardbody_geom hardbody_ed hardbody_geom_seeds hardbody_geom_cg
   endif()
 endforeach()
 find_program(HARDBODY_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH)
-if(NOT BUILD_SHARED_LIBS)
-  hardbody_package_tests(static)
-else()
+if(BUILD_SHARED_LIBS)
   hardbody_package_tests(shared)
+else()
+  hardbody_package_tests(static)
 endif()
 if(BUILD_SHARED_LIBS AND HARDBODY_PYTHON)
   add_test(NAME package_exports COMMAND ${HARDBODY_PYTHON} ${CMAKE_CURRENT_SOURCE_DIR}/package/exports.py

@@ -2,6 +2,7 @@
 
 #include "errors.h"
 #include "json_member.h"
+#include "json_values.h"
 #include "text_file.h"
 
 #include <fmt/format.h>
@@ -22,10 +23,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kPairFormat = "hardbody pair";
 constexpr std::size_t kLongestPair = 1 << 20;
-
-Json list_json(const Vector3d& v) {
-  return {v.x(), v.y(), v.z()};
-}
+constexpr const char* kNewtonMethods = "\"newton8\" or \"newton5\"";
 
 Json shape_json(const ed::BodyShape& shape) {
   if (const auto* s = std::get_if<geom::Superellipsoid>(&shape)) {
@@ -112,7 +110,6 @@ ed::Motion read_motion(const JsonMember& body, const ed::BodyShape& shape) {
 }
 
 ed::DistanceMethod read_newton_method(const JsonMember& method) {
-  constexpr const char* kNewtonMethods = "\"newton8\" or \"newton5\"";
   const std::string name = method.text(kNewtonMethods);
   if (name != "newton8" && name != "newton5") throw method.bad(kNewtonMethods);
   return name == "newton8" ? ed::DistanceMethod::newton8 : ed::DistanceMethod::newton5;
@@ -131,7 +128,7 @@ ed::FailedDistance read_newton(const JsonMember& newton) {
   const JsonMember a = newton.at("a", "a body");
   const JsonMember b = newton.at("b", "a body");
   ed::FailedDistance call;
-  call.method = read_newton_method(newton.at("method", "\"newton8\" or \"newton5\""));
+  call.method = read_newton_method(newton.at("method", kNewtonMethods));
   call.status = read_status(newton.at("status", "the status of a distance"));
   call.shape_a = read_geom_shape(a);
   call.shape_b = read_geom_shape(b);

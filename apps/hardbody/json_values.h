@@ -4,6 +4,7 @@
 
 #include <ed/analysis.h>
 
+#include <Eigen/Core>
 #include <nlohmann/json.hpp>
 
 #include <cmath>
@@ -13,6 +14,10 @@ namespace hardbody {
 /// JSON knows no NaN: null stands for a number that is not finite.
 inline nlohmann::ordered_json number_json(double x) {
   return std::isfinite(x) ? nlohmann::ordered_json(x) : nlohmann::ordered_json(nullptr);
+}
+
+inline nlohmann::ordered_json list_json(const Eigen::Vector3d& v) {
+  return {v.x(), v.y(), v.z()};
 }
 
 /// {"value": ..., "error": ...}

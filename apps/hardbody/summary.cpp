@@ -18,10 +18,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json list_json(const Eigen::Vector3d& v) {
-  return {v.x(), v.y(), v.z()};
-}
-
 /// What D_rot is divided by.
 std::string rotation_divisor(const Config& config) {
   if (config.all_of_revolution()) return "/ 4, two components, spin excluded";
@@ -70,7 +66,7 @@ Json axes(const std::array<ed::Estimate, 3>& estimates) {
   return {estimate_json(estimates[0]), estimate_json(estimates[1]), estimate_json(estimates[2])};
 }
 
-Json list_json(const Eigen::Matrix3d& m) {
+Json matrix_json(const Eigen::Matrix3d& m) {
   Json rows = Json::array();
   for (int i = 0; i < 3; ++i) rows.push_back({number_json(m(i, 0)), number_json(m(i, 1)), number_json(m(i, 2))});
   return rows;
@@ -82,7 +78,8 @@ Json director(const ed::Director& d) {
 }
 Json pressure(const ed::TensorEstimate& P) {
   const bool known = P.value.allFinite();
-  return {{"value", known ? list_json(P.value) : Json(nullptr)}, {"error", known ? list_json(P.error) : Json(nullptr)}};
+  return {{"value", known ? matrix_json(P.value) : Json(nullptr)},
+          {"error", known ? matrix_json(P.error) : Json(nullptr)}};
 }
 
 Json window(const ed::FitWindow& w) {

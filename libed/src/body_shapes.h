@@ -8,6 +8,7 @@
 #include <ed/shape.h>
 
 #include <geom/any_shape.h>
+#include <geom/distance.h>
 
 #include <optional>
 
@@ -30,6 +31,11 @@ double turning_lever(const geom::Ellipsoid& shape);
 double turning_lever(const geom::Shape& shape);
 double turning_lever(const BodyShape& shape);
 /// @}
+
+/// Whether there is a distance: the bodies are apart or overlap.
+inline bool is_answer(const geom::DistanceResult& result) {
+  return result.status == geom::DistanceStatus::separated || result.status == geom::DistanceStatus::overlapping;
+}
 
 /// Of an ellipsoid or superellipsoid.
 NormBodyShape norm_body(const BodyShape& shape);

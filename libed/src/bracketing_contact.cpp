@@ -129,10 +129,6 @@ bool has_vertices(const geom::Shape& shape) {
   return s != nullptr && std::max(s->e1(), s->e2()) > 1;
 }
 
-bool is_answer(const geom::DistanceResult& result) {
-  return result.status == geom::DistanceStatus::separated || result.status == geom::DistanceStatus::overlapping;
-}
-
 template <class Pair>
 class Search {
  public:

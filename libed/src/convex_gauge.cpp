@@ -43,10 +43,6 @@ geom::DistanceResult query(const BodyShape& a, const geom::Pose& X_a, const Body
   return std::visit([&](const auto& A, const auto& B) { return geom::distance(A, X_a, B, X_b, options); }, a, b);
 }
 
-bool is_known(const geom::DistanceResult& result) {
-  return result.status == geom::DistanceStatus::separated || result.status == geom::DistanceStatus::overlapping;
-}
-
 /// The least of (1 - x) g0 + x g1 - K T^2 x (1 - x) / 2 over x in [0, 1].
 double lowest(double g0, double g1, double KT2) {
   const double slope = g1 - g0 - 0.5 * KT2;
@@ -103,7 +99,7 @@ ConvexGauge::Evaluation ConvexGauge::complete(const State& /*s*/, const Gap& gap
 
 /// n and e of an answer; false if it is none.
 bool ConvexGauge::take(const State& s, const geom::DistanceResult& d, Vector3d& n, Evaluation& e) const {
-  if (!is_known(d)) return false;
+  if (!is_answer(d)) return false;
   n = d.normal;
   e.g = gap(s, n).g;
   // The distance is between g and g + error_bound: bodies that may only touch do not overlap.
@@ -212,7 +208,7 @@ Vector3d ConvexGauge::cold_normal(const State& s) const {
 
 Separation ConvexGauge::separating_normal(const State& s, Vector3d& n) const {
   const geom::DistanceResult d = last_resort(s);
-  if (!is_known(d)) return Separation::declined;
+  if (!is_answer(d)) return Separation::declined;
   n = d.normal;
   const double g = gap(s, n).g;
   if (g + d.error_bound < -kOverlap * size()) return Separation::overlapping;

@@ -1,6 +1,6 @@
 #pragma once
 
-/// What thicknesses of envelopes and boxes are possible.
+/// What thicknesses of envelopes and boxes are possible, and which envelopes are kept.
 
 namespace ed::internal {
 
@@ -8,6 +8,10 @@ namespace ed::internal {
 inline constexpr double kThinnestEnvelope = 0.02;
 /// The thinnest box around a body of any shape, in units of the smallest inscribed radius.
 inline constexpr double kThinnestOriented = 0.02;
+
+/// An envelope that lasts longer than this is not made anew early; in units of the time in which the surface can cross
+/// the thickness.
+inline constexpr double kWorthwhile = 0.15;
 
 /// The smallest box in which the nearest image of a neighbour is the only one that can touch. Neighbours' envelope
 /// centres are within 2 R + 2 delta of each other, their centres then within 2 R + 4 delta, which must be below half

@@ -21,10 +21,6 @@ using geom::internal::DualSample;
 using geom::internal::NormBodies;
 using geom::internal::NormBodyPair;
 
-/// An envelope that lasts longer than this is not made anew early; in units of the time in which the surface can cross
-/// the thickness.
-constexpr double kWorthwhileGeneral = 0.15;
-
 std::size_t slot(int i) {
   return static_cast<std::size_t>(i);
 }
@@ -35,7 +31,7 @@ double surface_speed(const GeneralBodies& bodies, int i) {
 }
 
 double worthwhile_time(const GeneralBodies& bodies, int i, double thickness) {
-  return kWorthwhileGeneral * thickness / (bodies.velocity(i).norm() + surface_speed(bodies, i) + 1e-300);
+  return kWorthwhile * thickness / (bodies.velocity(i).norm() + surface_speed(bodies, i) + 1e-300);
 }
 
 /// An upper bound of the angle of R R0^T: |R - R0| = sqrt(8) sin(angle / 2) in the Frobenius norm.

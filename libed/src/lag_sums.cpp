@@ -1,5 +1,6 @@
 #include "lag_sums.h"
 
+#include "legendre.h"
 #include "sincos.h"
 
 #include <cmath>
@@ -8,10 +9,6 @@ namespace ed::internal {
 namespace {
 
 using Eigen::Vector3d;
-
-double p2(double x) {
-  return 1.5 * x * x - 0.5;
-}
 
 /// sin(x) / x; the rounding of a small x is that of its square root.
 double sinc(double x) {

@@ -1,6 +1,7 @@
 #include "oriented_envelopes.h"
 
 #include "certified_contact.h"
+#include "envelope_limits.h"
 #include "neighbour_lists.h"
 #include "periodic.h"
 #include "plane_gauge.h"
@@ -17,10 +18,9 @@ using geom::internal::Spheroid;
 /// Looks at each plane when a body's exit is predicted; a bound that is not final is renewed when it comes up.
 constexpr int kLooks = 2;
 
-/// No exit is predicted further ahead than this, looked at again then, and no envelope that lasts longer than that is
-/// made anew early. In units of the time in which the surface can cross the thickness.
+/// No exit is predicted further ahead than this; it is looked at again then. In units of the time in which the surface
+/// can cross the thickness.
 constexpr double kHorizon = 10;
-constexpr double kWorthwhile = 0.15;
 
 Vector3d half_extents(const Spheroid& shape, double thickness) {
   const double b = std::sqrt(shape.b2) + thickness;

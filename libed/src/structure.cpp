@@ -1,6 +1,7 @@
 #include "structure.h"
 
 #include "cell_grid.h"
+#include "legendre.h"
 #include "periodic.h"
 #include "sincos.h"
 
@@ -36,10 +37,6 @@ constexpr int kFewBodies = 1000;           ///< whose pairs are all looked at: q
 
 constexpr std::size_t kAtATime = 512;  ///< bodies whose phases are tabulated at once
 constexpr int kLargestPower = 500;     ///< of a phase
-
-double legendre_2(double x) {
-  return 1.5 * x * x - 0.5;
-}
 
 /// Of two that are opposite, the one that is taken.
 Vector3i one_of_two(const Vector3i& n) {
@@ -130,7 +127,7 @@ class PairCounter {
   void count(std::size_t i, std::size_t j, double squared_distance) {
     const auto bin = static_cast<std::size_t>(std::sqrt(squared_distance) * scale_);
     if (bin >= bins_) return;
-    const double value = legendre_2(snapshot_.axis[i].dot(snapshot_.axis[j]));
+    const double value = p2(snapshot_.axis[i].dot(snapshot_.axis[j]));
     add(sums_[0], bin, value);
     if (sums_.size() > 1 && group_[i] == group_[j]) add(sums_[group_[i] + 1], bin, value);
   }

@@ -5,7 +5,7 @@
 
 namespace test_common {
 
-/// The message of the std::invalid_argument that f() throws; "accepted", if it throws none.
+/// The message of the std::invalid_argument that f() throws; that there is none, if it throws none.
 template <class F>
 std::string message_of(const F& f) {
   try {
@@ -13,7 +13,7 @@ std::string message_of(const F& f) {
   } catch (const std::invalid_argument& error) {
     return error.what();
   }
-  return "accepted";
+  return "no std::invalid_argument";
 }
 
 }  // namespace test_common

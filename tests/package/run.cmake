@@ -6,7 +6,7 @@ include(${CMAKE_CURRENT_LIST_DIR}/common.cmake)
 #   cmake -DPREFIX=... -DWORK_DIR=... -DCOMPONENTS=geom,ed -DFLAGS=... -DCOMPILER=... -P run.cmake
 #
 # OPTIONAL=geom_seeds: components that may be missing. HIDDEN=fcl,ccd: packages that cannot be found. REFUSED=text: find_package must fail, with that in its message.
-# OTHER_FLAGS: two of the programs are built a second time, with these flags, and must give the same answers, bit for bit.
+# OTHER_FLAGS: the project is built a second time, with these flags, and must give the same answers, bit for bit.
 # UNNEEDED=regex: what the dynamic linker must not load with the project's programs.
 file(REMOVE_RECURSE ${WORK_DIR})
 if(REFUSED)
@@ -27,9 +27,8 @@ if(UNNEEDED)
   endif()
 endif()
 if(OTHER_FLAGS)
-  set(programs geom_consumer ed_consumer)
-  build_consumer(${WORK_DIR}/other "${FLAGS} ${OTHER_FLAGS}" ${programs})
-  foreach(program IN LISTS programs)
+  build_consumer(${WORK_DIR}/other "${FLAGS} ${OTHER_FLAGS}")
+  foreach(program geom_consumer ed_consumer)
     must_print(wanted ${WORK_DIR}/build/${program} answers)
     must_print(got ${WORK_DIR}/other/${program} answers)
     string(LENGTH "${wanted}" length)

@@ -83,8 +83,7 @@ struct Mean {
 
 TEST(GeneralBodies, ShareTheirEnergyAlike) {
   // The energy about the axis of the roundest section takes ten collisions a body to be forgotten: means over blocks.
-  // The errors below are for 100 blocks; the short form has twice as large ones.
-  const int blocks = ed_test::full_length() ? 100 : 25;
+  constexpr int kBlocks = 100;
   constexpr int kLooks = 4;  // in a block, five collisions a body apart
   for (const Family& family : ed_test::families(216)) {
     if (family.components.size() > 1) continue;  // of every species: tools/validate
@@ -94,7 +93,7 @@ TEST(GeneralBodies, ShareTheirEnergyAlike) {
     Mean translation;
     std::array<Mean, 3> axes;
     simulation.run_collisions(20 * static_cast<std::uint64_t>(number));
-    for (int block = 0; block < blocks; ++block) {
+    for (int block = 0; block < kBlocks; ++block) {
       double translational_kT = 0;
       Eigen::Vector3d axis_kT = Eigen::Vector3d::Zero();
       for (int k = 0; k < kLooks; ++k) {
@@ -113,7 +112,7 @@ TEST(GeneralBodies, ShareTheirEnergyAlike) {
       const Mean& mean = axes[static_cast<std::size_t>(axis)];
       std::printf(", of body axis %d %.4f +- %.4f", axis, mean.value(), mean.error());
       EXPECT_LE(std::abs(mean.value() - 1), 3 * mean.error()) << family.name << ", body axis " << axis;
-      EXPECT_LE(mean.error(), ed_test::full_length() ? 0.02 : 0.04) << family.name;
+      EXPECT_LE(mean.error(), 0.02) << family.name;
     }
     std::printf("\n");
   }
@@ -136,10 +135,7 @@ void expect_fluid(const std::string& what, const ed_test::Measured& run, double 
 }
 
 TEST(GeneralBodies, CollideAtTheRateOfTheReference) {
-  // For errors of the rate of up to 0.14 %, in the short form 0.28 %, and of the reference 0.1 %; the shares are three
-  // of them and more.
-  const double duration = ed_test::full_length() ? 700 : 175;
-  const double share = ed_test::full_length() ? 0.005 : 0.01;
+  constexpr double kDuration = 700;  // for errors of the rate of up to 0.14 %, and of the reference 0.1 %
   const ed_test::ReferenceTable table("superellipsoid_dynamics.csv");
   for (std::size_t row = 0; row < table.size(); ++row) {
     const double length = table.value(row, "az_over_ax");
@@ -149,8 +145,8 @@ TEST(GeneralBodies, CollideAtTheRateOfTheReference) {
         ed_test::pure("1 : 1 : " + table.text(row, "az_over_ax"), shape, static_cast<int>(table.value(row, "N")));
     ed::Simulation simulation(ed_test::start(family, table.value(row, "phi")));
     simulation.run_until(10);
-    expect_fluid(family.name, ed_test::measure(simulation.system(), {0, duration}), table.value(row, "rate"), share,
-                 table.value(row, "Z"), 1.4 * share);
+    expect_fluid(family.name, ed_test::measure(simulation.system(), {0, kDuration}), table.value(row, "rate"), 0.005,
+                 table.value(row, "Z"), 0.007);
   }
 }
 

@@ -64,7 +64,7 @@ TEST(BadInput, SemiAxesOfSuperellipsoidsAreRefusedByName) {
           << bad << " as axis " << axis;
     }
   }
-  EXPECT_EQ(message_of([] { return Superellipsoid({1, 1e4, 1}, 1, 1); }), "accepted");
+  EXPECT_EQ(message_of([] { return Superellipsoid({1, 1e4, 1}, 1, 1); }), "no std::invalid_argument");
   EXPECT_THAT(message_of([] {
                 return Superellipsoid({1, 1.5e4, 1}, 1, 1);
               }),
@@ -81,7 +81,7 @@ TEST(BadInput, ExponentsAreRefusedByNameWithTheRange) {
     ASSERT_THAT(message_of([&] { return Superellipsoid({1, 1, 1}, 1, bad); }), message_names("e2")) << bad;
   }
   for (const double e : {0.2, 1.6}) {
-    EXPECT_EQ(message_of([&] { return Superellipsoid({1, 1, 1}, e, e); }), "accepted") << e;
+    EXPECT_EQ(message_of([&] { return Superellipsoid({1, 1, 1}, e, e); }), "no std::invalid_argument") << e;
   }
 }
 
@@ -97,7 +97,10 @@ TEST(BadInput, PositionsBeyondTheLimitAreRefusedWithIt) {
       ASSERT_THAT(message_of([&] { return Pose::from_quaternion(1, 0, 0, 0, position); }), wanted) << bad;
     }
   }
-  EXPECT_EQ(message_of([] { return Pose::translation({kMaxCoordinate, -kMaxCoordinate, 5e-324}); }), "accepted");
+  EXPECT_EQ(message_of([] {
+              return Pose::translation({kMaxCoordinate, -kMaxCoordinate, 5e-324});
+            }),
+            "no std::invalid_argument");
 }
 
 TEST(BadInput, RotationsThatOverflowAreRefused) {

@@ -318,7 +318,7 @@ TEST(Simulation, BodiesThatTouchFromTheStartAreNoOverlap) {
 
 TEST(SimulationRefuses, BodiesThatOverlapAtTheStart) {
   const ed::Species rod = ed::paper_species(geom::Ellipsoid({1, 1, 3}));
-  EXPECT_EQ(message_of(two_bodies(rod, 20, {2.1, 0, 0})), "accepted");
+  EXPECT_EQ(message_of(two_bodies(rod, 20, {2.1, 0, 0})), "no std::invalid_argument");
   for (const double depth : {1e-11, 1e-6, 0.5}) {
     const std::string message = message_of(two_bodies(rod, 20, {2 - depth, 0, 0}));
     EXPECT_THAT(message, HasSubstr("overlap")) << depth;
@@ -418,7 +418,7 @@ TEST(SimulationRefuses, NumbersThatAreNotFinite) {
 TEST(SimulationRefuses, RotationsThatAreNotOrthonormal) {
   ed::System system = two_bodies(sphere(), 20, {3, 0, 0});
   system.bodies[0].rotation *= 1.01;
-  EXPECT_NE(message_of(system), "accepted");
+  EXPECT_NE(message_of(system), "no std::invalid_argument");
 }
 
 /// The system, repeated along each edge; copies of a body stand one after the other.

@@ -86,10 +86,10 @@ TEST(Species, MayNotHaveMomentsOfMassOutsideTheBody) {
   // A sum that would do, but mass a distance of 1 above the plane that the body does not leave.
   EXPECT_THAT(message({2, 2, 2}), HasSubstr("I1 + I2 - I3 at most 0.02"));
   EXPECT_THAT(message({0.5, 1.6, 2}), HasSubstr("I2 + I3 - I1 at most 2,"));
-  EXPECT_EQ(message({1, 0.5, 1.5}), "accepted");
+  EXPECT_EQ(message({1, 0.5, 1.5}), "no std::invalid_argument");
   // Across the axis of revolution, all that counts without spin.
   const ed::BodyShape rod = geom::Ellipsoid({1, 1, 3});
-  EXPECT_EQ(message({9, 9, 0}, false, rod), "accepted");
+  EXPECT_EQ(message({9, 9, 0}, false, rod), "no std::invalid_argument");
   EXPECT_THAT(message({9.1, 9.1, 0}, false, rod), HasSubstr("across the axis"));
   const ed::BodyShape disc = geom::Ellipsoid({3, 3, 0.1});
   EXPECT_THAT(message({5, 5, 0}, false, disc), HasSubstr("across the axis"));
