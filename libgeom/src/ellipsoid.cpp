@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
+#include <string>
 
 namespace geom {
 namespace {
@@ -25,10 +26,12 @@ Ellipsoid::Ellipsoid(const Eigen::Vector3d& semi_axes)
       inscribed_radius_(semi_axes.minCoeff()),
       min_curvature_radius_(inscribed_radius_ * (inscribed_radius_ / bounding_radius_)),
       symmetry_axis_(find_symmetry_axis(semi_axes)) {
-  for (const double a : {semi_axes.x(), semi_axes.y(), semi_axes.z()}) {
+  for (int k = 0; k < 3; ++k) {
+    const double a = semi_axes[k];
     if (!(a >= kMinSemiAxis && a <= kMaxSemiAxis)) {
-      throw std::invalid_argument("Ellipsoid: semi-axis is " + internal::shown(a) + "; accepted: " +
-                                  internal::shown(kMinSemiAxis) + " to " + internal::shown(kMaxSemiAxis));
+      throw std::invalid_argument(std::string("Ellipsoid: semi-axis ") + "xyz"[k] + " is " + internal::shown(a) +
+                                  "; accepted: " + internal::shown(kMinSemiAxis) + " to " +
+                                  internal::shown(kMaxSemiAxis));
     }
   }
   const double ratio = bounding_radius() / inscribed_radius();

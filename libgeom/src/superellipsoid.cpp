@@ -1,5 +1,6 @@
 #include "shown.h"
 
+#include <geom/ellipsoid.h>
 #include <geom/superellipsoid.h>
 #include <geom/tolerances.h>
 
@@ -14,14 +15,16 @@ namespace {
 
 using Eigen::Vector3d;
 
-[[noreturn]] void refuse(const char* what, double value, double least, double most) {
-  throw std::invalid_argument(std::string("Superellipsoid: ") + what + " is " + internal::shown(value) +
+[[noreturn]] void refuse(const std::string& what, double value, double least, double most) {
+  throw std::invalid_argument("Superellipsoid: " + what + " is " + internal::shown(value) +
                               "; accepted: " + internal::shown(least) + " to " + internal::shown(most));
 }
 
 void check(const Vector3d& axes, double e1, double e2) {
-  for (const double a : {axes.x(), axes.y(), axes.z()}) {
-    if (!(a >= kMinSemiAxis && a <= kMaxSemiAxis)) refuse("semi-axis", a, kMinSemiAxis, kMaxSemiAxis);
+  for (int k = 0; k < 3; ++k) {
+    if (!(axes[k] >= kMinSemiAxis && axes[k] <= kMaxSemiAxis)) {
+      refuse(std::string("semi-axis ") + "xyz"[k], axes[k], kMinSemiAxis, kMaxSemiAxis);
+    }
   }
   const double ratio = axes.maxCoeff() / axes.minCoeff();
   if (!(ratio <= kMaxAspectRatio)) refuse("ratio of the largest to the smallest semi-axis", ratio, 1, kMaxAspectRatio);
@@ -57,6 +60,11 @@ Superellipsoid::Superellipsoid(const Vector3d& semi_axes, double e1, double e2)
       e2_(e2),
       norm_(checked_norm(semi_axes, e1, e2)),
       dual_(2 / (2 - e1), 2 / (2 - e2)) {
+  if (is_ellipsoid()) {
+    bounding_radius_ = semi_axes.maxCoeff();
+    inscribed_radius_ = semi_axes.minCoeff();
+    return;
+  }
   // Scaled, so that squares neither underflow nor overflow. |n|^2 is largest, for given h(n), where h is least for unit
   // n.
   const double size = semi_axes.maxCoeff();
@@ -64,10 +72,14 @@ Superellipsoid::Superellipsoid(const Vector3d& semi_axes, double e1, double e2)
   inscribed_radius_ = size / largest((semi_axes / size).cwiseAbs2().cwiseInverse(), 2 / (2 - e1), 2 / (2 - e2));
 }
 
+double Superellipsoid::norm(const Vector3d& x) const {
+  return norm_(x.cwiseQuotient(semi_axes_).cwiseAbs()).norm;
+}
+
 double Superellipsoid::value(const Vector3d& x) const {
   // To the last bit an Ellipsoid's, here and below: the general norm rounds 5 ulps away.
   if (is_ellipsoid()) return x.cwiseQuotient(semi_axes_).squaredNorm() - 1;
-  const double N = norm_(x.cwiseQuotient(semi_axes_).cwiseAbs()).norm;
+  const double N = norm(x);
   return N * N - 1;
 }
 
@@ -78,6 +90,7 @@ Vector3d Superellipsoid::gradient(const Vector3d& x) const {
 }
 
 Eigen::Matrix3d Superellipsoid::hessian(const Vector3d& x) const {
+  if (is_ellipsoid()) return Ellipsoid(semi_axes_).hessian(x);
   const Vector3d w = x.cwiseQuotient(semi_axes_).cwiseAbs();
   const auto at = norm_(w);
   // A component that is zero has either sign.
@@ -96,15 +109,18 @@ Support Superellipsoid::support(const Vector3d& n) const {
 }
 
 Eigen::Matrix3d Superellipsoid::support_hessian(const Vector3d& n) const {
+  if (is_ellipsoid()) return Ellipsoid(semi_axes_).support_hessian(n);
   const Vector3d scale = (n.array() < 0).select(-semi_axes_, semi_axes_);
   return scale.asDiagonal() * dual_.hessian(semi_axes_.cwiseProduct(n).cwiseAbs()) * scale.asDiagonal();
 }
 
 double Superellipsoid::volume() const {
+  if (is_ellipsoid()) return Ellipsoid(semi_axes_).volume();
   return 2 * semi_axes_.prod() * e1_ * e2_ * std::beta(0.5 * e1_ + 1, e1_) * std::beta(0.5 * e2_, 0.5 * e2_);
 }
 
 Vector3d Superellipsoid::inertia(double mass) const {
+  if (is_ellipsoid()) return Ellipsoid(semi_axes_).inertia(mass);
   // Integrals of x^2, y^2, z^2 over the body.
   const Vector3d a2 = semi_axes_.cwiseAbs2();
   const double along = std::beta(0.5 * e2_, 0.5 * e2_) * std::beta(1.5 * e1_, e1_ + 1);

@@ -1,6 +1,7 @@
 /// Accuracy of distance() against long double, cold, in classes of aspect ratio: the table that the header's contract
 /// rests on. Every class is asserted, and the table is printed. HARDBODY_FULL=1: 10,000,000 pairs instead of 1,000,000.
 
+#include "common/full_form.h"
 #include "common/geom_long_double.h"
 #include "common/geom_manufactured.h"
 
@@ -36,7 +37,7 @@ constexpr double kNormalTolerance = 1e-7;          // radian
 constexpr double kTypicalNormalTolerance = 1e-12;  // radian; the median of each class, and 99 % of all pairs
 
 int random_pairs() {
-  return std::getenv("HARDBODY_FULL") != nullptr ? 10'000'000 : geom_test::repetitions(1'000'000);
+  return full_form() ? 10'000'000 : geom_test::repetitions(1'000'000);
 }
 
 /// One row of a table.

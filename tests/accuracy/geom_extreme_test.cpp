@@ -1,6 +1,7 @@
 /// Long and flat bodies, aspect ratios to 1e4, beside bodies up to 1e6 times smaller: how far distance() gets with
 /// them. A table of docs/accuracy.md. HARDBODY_FULL=1: 12,000 pairs a row instead of 600.
 
+#include "common/full_form.h"
 #include "common/geom_manufactured.h"
 #include "common/geom_random.h"
 
@@ -77,7 +78,7 @@ Vector3d random_axes(double aspect_ratio, Random& random) {
 template <class MakeA, class MakeB>
 ExtremeRow run(const char* name, double aspect_ratio, double tolerance, double deepest, const MakeA& make_a,
                const MakeB& make_b) {
-  const int pairs = std::getenv("HARDBODY_FULL") != nullptr ? 200 : geom_test::repetitions(10);  // a cell
+  const int pairs = full_form() ? 200 : geom_test::repetitions(10);  // a cell
   ExtremeRow row;
   Random random(1);
   for (const double unit : kUnits) {
@@ -178,7 +179,7 @@ Pose deep_pose(const Pose& X_WA, double aspect_ratio, bool parallel, Random& ran
 
 template <class Make>
 void expect_deep(const char* name, double aspect_ratio, bool parallel, double largest_error, const Make& make) {
-  const int pairs = std::getenv("HARDBODY_FULL") != nullptr ? 200 : geom_test::repetitions(10);
+  const int pairs = full_form() ? 200 : geom_test::repetitions(10);
   DeepRow row;
   Random random(3);
   for (int k = 0; k < pairs; ++k) {

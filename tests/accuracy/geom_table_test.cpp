@@ -4,6 +4,8 @@
 /// that normal, so that the rounding of B's position does not count. HARDBODY_FULL=1: 100,000 pairs a row instead of
 /// 1,000.
 
+#include "common/full_form.h"
+#include "common/geom_accuracy_rows.h"
 #include "common/geom_manufactured.h"
 #include "common/geom_random.h"
 
@@ -14,26 +16,16 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <vector>
 
 namespace geom {
 namespace {
 
-using Eigen::Vector3d;
 using geom_test::Random;
-
-/// What is asserted: the contract of distance.h, of the size of the pair.
-constexpr double kEllipsoids = 1e-13;
-constexpr double kSuperellipsoids = 1e-12;
-
-Vector3d random_axes(Random& random) {
-  return {random.uniform(0.4, 1), random.uniform(0.4, 1), 1};
-}
 
 template <class MakeA, class MakeB>
 void row(const char* name, double gap, double tolerance, const MakeA& make_a, const MakeB& make_b) {
-  const long pairs = std::getenv("HARDBODY_FULL") != nullptr ? 100000 : 1000;
+  const long pairs = full_form() ? 100000 : 1000;
   Random random(1);
   std::vector<double> errors;
   long failures = 0;
@@ -63,33 +55,13 @@ void row(const char* name, double gap, double tolerance, const MakeA& make_a, co
   EXPECT_LE(bound, gap > 0 ? kBoundGap : kDepthGap) << name << ", gap " << gap;
 }
 
-template <class MakeA, class MakeB>
-void rows(const char* name, double tolerance, const MakeA& make_a, const MakeB& make_b) {
-  for (const double gap : {1.0, 1e-3, 1e-6, 1e-9, -1e-6, -1e-4}) row(name, gap, tolerance, make_a, make_b);
-}
-
 TEST(AccuracyTable, IsWithinTheContract) {
   std::printf("| pair | gap | pairs | failures | median error | largest error | largest error bound | evaluations |\n");
   std::printf("|---|---|---|---|---|---|---|---|\n");
-  const auto spheroid = [](double X0) { return [X0](Random&) { return Ellipsoid({1, 1, X0}); }; };
-  rows("spheres", kEllipsoids, spheroid(1), spheroid(1));
-  rows("spheroids, X0 = 0.1", kEllipsoids, spheroid(0.1), spheroid(0.1));
-  rows("spheroids, X0 = 3", kEllipsoids, spheroid(3), spheroid(3));
-  rows("spheroids, X0 = 10", kEllipsoids, spheroid(10), spheroid(10));
-  rows("spheroids, X0 = 0.1 and 10", kEllipsoids, spheroid(0.1), spheroid(10));
-  const auto biaxial = [](Random& random) { return random.biaxial(10); };
-  rows("ellipsoids, ratios to 10", kEllipsoids, biaxial, biaxial);
-  for (const double e : {0.2, 0.3, 0.5, 0.7, 1.3, 1.6}) {
-    const auto body = [e](Random& random) { return Superellipsoid(random_axes(random), e, e); };
-    char name[64];
-    (void)std::snprintf(name, sizeof name, "superellipsoids, e = %g", e);
-    rows(name, kSuperellipsoids, body, body);
-  }
-  const auto any = [](Random& random) {
-    return Superellipsoid(random_axes(random), random.uniform(0.2, 1.6), random.uniform(0.2, 1.6));
-  };
-  rows("superellipsoids, e1, e2 = 0.2 to 1.6", kSuperellipsoids, any, any);
-  rows("ellipsoid and superellipsoid", kSuperellipsoids, biaxial, any);
+  geom_test::for_each_pair_of_shapes([](const char* name, double tolerance, const auto& make_a, const auto& make_b) {
+    for (const double gap : geom_test::kGapsApart) row(name, gap, tolerance, make_a, make_b);
+    for (const double gap : geom_test::kOverlaps) row(name, gap, tolerance, make_a, make_b);
+  });
 }
 
 }  // namespace

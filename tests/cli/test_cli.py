@@ -1828,7 +1828,7 @@ class Distance(Case):
             (json.dumps({"a": {"shape": {"semi_axes": [1, 1, 1]}, "position": [0, 0, 0]}}), "a.shape.kind is missing"),
             (json.dumps({"a": {"shape": {"kind": "ellipsoid"}, "position": [0, 0, 0]}}), "a.shape.semi_axes is missing"),
             (self.bad(shape={"semi_axes": [1, 1]}), "a.shape.semi_axes is [1,1]"),
-            (self.bad(shape={"semi_axes": [1, -1, 1]}), "a.shape.semi_axes is [1,-1,1]", "semi-axis is -1"),
+            (self.bad(shape={"semi_axes": [1, -1, 1]}), "a.shape.semi_axes is [1,-1,1]", "semi-axis y is -1"),
             (self.bad(shape={"semi_axes": [1, 0, 1]}), "a.shape.semi_axes is [1,0,1]"),
             (self.bad(shape={"semi_axes": [1, 1, 1e60]}), "a.shape.semi_axes is"),
             (self.bad(shape={"semi_axes": [1, 1, 20000]}), "a.shape.semi_axes is [1,1,20000]", "ratio", "10000"),

@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 #include <string>
 
 namespace ed_test {
@@ -63,12 +62,6 @@ inline ed::System equilibrated(const State& state, double time) {
   ed::System system = simulation.system();
   ed::rescale_velocities(system);
   return system;
-}
-
-/// HARDBODY_FULL=1 asks for the long form of the tests.
-inline bool full_length() {
-  const char* value = std::getenv("HARDBODY_FULL");
-  return value != nullptr && std::string(value) == "1";
 }
 
 /// The shape of all bodies of a system of one species.

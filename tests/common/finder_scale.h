@@ -1,15 +1,8 @@
 #pragma once
 
-#include <cstdlib>
-#include <string_view>
+#include <common/full_form.h>
 
 namespace finder_test {
-
-/// Whether the counts of docs/validation.md are wanted (HARDBODY_FULL=1) instead of the short ones.
-inline bool full_run() {
-  const char* value = std::getenv("HARDBODY_FULL");
-  return value != nullptr && std::string_view(value) == "1";
-}
 
 /// Builds without optimisation or with sanitizers are ten to thirty times slower.
 constexpr bool slow_build() {
@@ -28,7 +21,7 @@ constexpr bool slow_build() {
 
 /// `count`, or `full` in the full run, or a tenth of it in a slow build.
 inline int scaled(int count, int full) {
-  if (full_run()) return full;
+  if (full_form()) return full;
   return slow_build() ? count / 10 : count;
 }
 

@@ -100,9 +100,9 @@ inline void place(const Orientation& o, const geom::Superellipsoid& shape, doubl
 
 /// How far p_W is off the surface, to first order.
 inline double off_surface(const geom::Superellipsoid& shape, const geom::Pose& X_WB, const Eigen::Vector3d& p_W) {
-  const Eigen::Vector3d w = X_WB.to_body(p_W).cwiseAbs().cwiseQuotient(shape.semi_axes());
-  const auto at = shape.norm()(w);
-  return std::abs(at.norm - 1) / at.gradient.cwiseQuotient(shape.semi_axes()).norm();
+  const Eigen::Vector3d x = X_WB.to_body(p_W);
+  const double N = shape.norm(x);
+  return std::abs(N - 1) * 2 * N / shape.gradient(x).norm();
 }
 
 }  // namespace geom_test

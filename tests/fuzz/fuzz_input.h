@@ -5,6 +5,7 @@
 #include <geom/geom.h>
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <array>
@@ -107,11 +108,12 @@ class Input {
 
   geom::Pose pose(const Eigen::Vector3d& position) {
     std::array<double, 4> q{1, 0, 0, 0};
-    const int kind = byte() % 4;
+    const int kind = byte() % 8;
+    if (kind == 7) return {matrix(), position};
     if (kind == 1) {  // a turn of the cube
       q = {0.5, byte() % 2 == 0 ? 0.5 : -0.5, 0.5, 0.5};
     } else if (kind > 1) {
-      for (double& x : q) x = kind == 2 ? fraction() - 0.5 : coordinate();
+      for (double& x : q) x = kind % 2 == 0 ? fraction() - 0.5 : coordinate();
       const double norm = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
       if (byte() % 16 != 0) {
         for (double& x : q) x /= norm;
@@ -121,6 +123,16 @@ class Input {
   }
 
  private:
+  /// Mostly nearly orthonormal: the tolerance is 1e-6.
+  Eigen::Matrix3d matrix() {
+    Eigen::Matrix3d R;
+    for (int k = 0; k < 3; ++k) R.col(k) = vector();
+    if (byte() % 4 == 0) return R;
+    R = Eigen::Quaterniond{0.1 + fraction(), fraction(), fraction(), fraction()}.normalized().toRotationMatrix();
+    for (int k = 0; k < 3; ++k) R.col(k) *= 1 + std::ldexp(fraction() - 0.5, -18);
+    return R;
+  }
+
   template <class T>
   T read() {
     static_assert(std::is_trivially_copyable_v<T>);

@@ -8,6 +8,7 @@
 #include <geom/geom.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -106,6 +107,24 @@ void ask_distance(const Pair& pair, Input& input) {
   check(pair, r);
 }
 
+/// As pairs of one batch: what `distance` answers is within rounding the same.
+void ask_batch(const Pair& pair, Input& input) {
+  geom::BatchOptions options;
+  if (!may_be_slow(input)) options.penetration = geom::Penetration::local;
+  const std::array<Shape, 2> a{pair.a, pair.b};
+  const std::array<Shape, 2> b{pair.b, pair.a};
+  const std::array<Pose, 2> X_WA{pair.X_WA, pair.X_WB};
+  const std::array<Pose, 2> X_WB{pair.X_WB, pair.X_WA};
+  std::array<DistanceResult, 2> results;
+  (void)geom::distance_batch(a, X_WA, b, X_WB, results, options);
+  check(pair, results[0]);
+  const DistanceResult one = geom::distance(pair.a, pair.X_WA, pair.b, pair.X_WB, {.penetration = options.penetration});
+  if (!is_answer(one.status) || !(one.distance > 0)) return;
+  require(is_answer(results[0].status), "a batch answers where `distance` does");
+  require(std::abs(results[0].distance - one.distance) <= 1e-14 * size_of(pair) + one.error_bound,
+          "a batch answers what `distance` does");
+}
+
 void ask_newton(const Pair& pair, Input& input) {
   const auto system = input.byte() % 2 == 0 ? geom::NewtonSystem::eight : geom::NewtonSystem::five;
   const int kind = input.byte() % 3;
@@ -136,6 +155,7 @@ void ask_point(const Pair& pair, Input& input) {
   if (is_answer(closest.status)) {
     require(std::isfinite(closest.distance) && closest.point.allFinite() && closest.normal.allFinite(),
             "a closest point is finite");
+    require(closest.error_bound >= 0, "its error bound is a number, none below 0");
   }
 }
 
@@ -216,6 +236,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       break;
     case 3:
       ask_overlap(*pair, input);
+      break;
+    case 4:
+      ask_batch(*pair, input);
       break;
     default:
       ask_distance(*pair, input);

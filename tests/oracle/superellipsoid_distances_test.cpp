@@ -3,6 +3,7 @@
 
 #include "common/finder_scale.h"
 #include "common/forked.h"
+#include "common/full_form.h"
 #include "common/geom_manufactured.h"
 #include "common/geom_superellipsoid_sets.h"
 #include "oracle/fcl_raw.h"
@@ -206,7 +207,7 @@ Vector3d fed_support(const void* body, const Vector3d& direction) {
 /// our bounds say so.
 TEST(SuperellipsoidOracle, FclsGjkOnOurSupportFunctionsAgreesOrIsWrong) {
   Comparison comparison;
-  const int pairs = finder_test::full_run() ? 50'000 : 3'000;
+  const int pairs = full_form() ? 50'000 : 3'000;
   const int aborts = geom_test::run_forked(pairs, comparison, [&](int i, Comparison& record) {
     Random random(static_cast<std::uint64_t>(i) + 1);
     const auto shape = [&] {

@@ -2,6 +2,7 @@
 // during runs of hard ellipsoids from thin discs to needles.
 
 #include <common/ed_states.h>
+#include <common/full_form.h>
 
 #include <ed/ed.h>
 
@@ -28,7 +29,7 @@ constexpr double kEnergyDrift = 1e-11;
 constexpr double kMomentumDrift = 1e-13;
 
 std::uint64_t collisions_of_a_run() {
-  return ed_test::full_length() ? 1000000 : 100000;
+  return full_form() ? 1000000 : 100000;
 }
 
 class Conservation : public testing::TestWithParam<State> {};
@@ -91,7 +92,7 @@ TEST_P(EnergyDrift, IsFarBelowAUnitInTheLastPlaceForEachCollision) {
   options.packing_fraction = 0.40;
   ed::Simulation simulation(ed::random_start(drift.species, options));
   const double before = simulation.kinetic().energy();
-  const std::uint64_t collisions = ed_test::full_length() ? 2000000 : 200000;
+  const std::uint64_t collisions = full_form() ? 2000000 : 200000;
   simulation.run_collisions(collisions);
   const double of_a_body = 2.0 * static_cast<double>(collisions) / options.number;
   const double change = (simulation.kinetic().energy() / before - 1) / of_a_body;

@@ -3,6 +3,7 @@
 #include <common/ed_measure.h>
 #include <common/ed_reference.h>
 #include <common/ed_states.h>
+#include <common/full_form.h>
 
 #include <ed/ed.h>
 
@@ -55,14 +56,14 @@ void expect_enskog_rate(double aspect_ratio, std::uint64_t seed) {
   constexpr double kTheory = 0.01;
   const ed_test::ReferenceTable table("enskog_spheroids.csv");
   const double wanted = table.at({{"X0", aspect_ratio}, {"phi", kDilute}}, "coll_rate=nu0*chi");
-  const double duration = ed_test::full_length() ? 4000 : 800;
+  const double duration = full_form() ? 4000 : 800;
   const Measured run =
       ed_test::measure({aspect_ratio, kDilute, 512, Inertia::paper, seed}, {40, duration, duration / 20});
   const ed::Estimate rate = run.results.collision_rate;
   std::printf("X0 = %.4g, phi = 0.05, %llu collisions: rate %.5f +- %.5f for %.5f (%+.2f %%)\n", aspect_ratio,
               static_cast<unsigned long long>(run.collisions), rate.value, rate.error, wanted,
               100 * (rate.value / wanted - 1));
-  EXPECT_LE(std::abs(rate.value - wanted), kTheory * wanted + (ed_test::full_length() ? 0.0 : 3 * rate.error));
+  EXPECT_LE(std::abs(rate.value - wanted), kTheory * wanted + (full_form() ? 0.0 : 3 * rate.error));
   EXPECT_LT(rate.error, 0.006 * wanted);
 }
 

@@ -7,6 +7,7 @@
 #include <common/ed_reference.h>
 #include <common/ed_same_collisions.h>
 #include <common/ed_states.h>
+#include <common/full_form.h>
 
 #include <ed/ed.h>
 
@@ -168,7 +169,7 @@ TEST(GeneralBodies, MixedSpheresHaveTheirPressure) {
 }
 
 TEST(GeneralBodies, KeepEnergyAndMomentumAndApart) {
-  const int slices = ed_test::full_length() ? 1000 : 10;
+  const int slices = full_form() ? 1000 : 10;
   for (const Family& family : ed_test::families(216)) {
     ed::Simulation simulation(ed_test::start(family, 0.4));
     simulation.tune_envelopes();

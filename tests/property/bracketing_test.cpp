@@ -6,6 +6,7 @@
 
 #include <common/ed_states.h>
 #include <common/finder_ensemble.h>
+#include <common/full_form.h>
 
 #include <ed/ed.h>
 
@@ -108,7 +109,7 @@ TEST(Bracketing, ContactsMissedAtThreeResolutions) {
       bracketing(1e-5, DistanceMethod::dual, ContactRoot::one_dimensional, "eps_d 1e-5, dual, 1-D root"),
       bracketing(1e-5, DistanceMethod::newton5, ContactRoot::newton, "eps_d 1e-5, newton5"),
   };
-  const long contacts = ed_test::full_length() ? 34000 : 1500;
+  const long contacts = full_form() ? 34000 : 1500;
   std::uint64_t seed = 200;
   for (const double aspect_ratio : {1.0 / 3, 2.0, 3.0}) run(methods, aspect_ratio, contacts, ++seed);
   for (const Method& method : methods) {
@@ -149,7 +150,7 @@ TEST(Bracketing, GrazingContactsMissedAtFourResolutions) {
       bracketing(1e-5, DistanceMethod::dual, ContactRoot::newton, "eps_d 1e-5, dual"),
       bracketing(1e-5, DistanceMethod::newton5, ContactRoot::newton, "eps_d 1e-5, newton5"),
   };
-  const long contacts = ed_test::full_length() ? 17000 : 250;
+  const long contacts = full_form() ? 17000 : 250;
   std::uint64_t seed = 300;
   for (const double aspect_ratio : {1.0 / 3, 2.0, 3.0}) {
     const auto pairs = finder_test::near_neighbours(aspect_ratio, 0.40, 100, seed++);

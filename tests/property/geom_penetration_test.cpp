@@ -2,6 +2,7 @@
 // close to it as the directions are dense. HARDBODY_FULL=1: 100,000 directions instead of 20,000, and ten times the
 // pairs.
 
+#include "common/full_form.h"
 #include "common/geom_manufactured.h"
 #include "common/geom_random.h"
 
@@ -24,10 +25,6 @@ namespace {
 
 using Eigen::Vector3d;
 using geom_test::Random;
-
-bool full() {
-  return std::getenv("HARDBODY_FULL") != nullptr;
-}
 
 /// Evenly spread unit vectors (Fibonacci's spiral).
 std::vector<Vector3d> directions(int count) {
@@ -91,8 +88,8 @@ void report(const char* name, const Tally& tally) {
 }
 
 TEST(Penetration, OfEllipsoidsIsTheLeastOverAllDirections) {
-  const auto all = directions(full() ? 100000 : 20000);
-  const int pairs = full() ? 2000 : 100;
+  const auto all = directions(full_form() ? 100000 : 20000);
+  const int pairs = full_form() ? 2000 : 100;
   Random random(1);
   for (const double most : {1.2, 3.0, 10.0}) {
     Tally tally;
@@ -109,8 +106,8 @@ TEST(Penetration, OfEllipsoidsIsTheLeastOverAllDirections) {
 }
 
 TEST(Penetration, OfSuperellipsoidsIsTheLeastOverAllDirections) {
-  const auto all = directions(full() ? 100000 : 5000);
-  const int pairs = full() ? 1000 : 40;
+  const auto all = directions(full_form() ? 100000 : 5000);
+  const int pairs = full_form() ? 1000 : 40;
   Random random(2);
   for (const double e : {0.2, 0.5, 0.9, 1.3, 1.6}) {
     Tally tally;
@@ -173,7 +170,7 @@ void try_symmetric(const A& a, const B& b, const Pose& X_WB, SymmetricTally& tal
 /// the other's middle, with parallel axes or turned by an eighth of a circle; and nearly spheres, of which every normal
 /// is nearly stationary.
 TEST(Penetration, OfSymmetricPairsIsNoSaddle) {
-  const int shapes = full() ? 400 : 40;
+  const int shapes = full_form() ? 400 : 40;
   Random random(4);
   SymmetricTally tally;
   const auto body = [&](int k) {
@@ -259,7 +256,7 @@ void try_local(const A& a, const B& b, Random& random, LocalTally& tally) {
 
 /// A local answer is one of the ways out, and hardly ever needs the search: some point is found that both bodies hold.
 TEST(Penetration, LocalIsAWayOutThatNeedsNoSearch) {
-  const int pairs = full() ? 4000 : 100;
+  const int pairs = full_form() ? 4000 : 100;
   for (const double ratio : {1.0, 3.0, 10.0}) {
     for (const double smallest : {1.0, 0.05}) {
       Random random(3);

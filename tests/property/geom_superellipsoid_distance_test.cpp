@@ -3,6 +3,7 @@
 // it hard. HARDBODY_FULL=1: 100,000 pairs of copies a cell and set instead of 500 (20,000 of unlike bodies), 5,000
 // overlaps instead of 30 (2,000).
 
+#include "common/full_form.h"
 #include "common/geom_manufactured.h"
 #include "common/geom_random.h"
 #include "common/geom_superellipsoid_sets.h"
@@ -196,11 +197,11 @@ void expect_known_answers(const char* which, long pairs, const Make& make) {
 }
 
 TEST(SuperellipsoidDistance, OfKnownAnswers) {
-  expect_known_answers("copies", std::getenv("HARDBODY_FULL") != nullptr ? 100000 : 500, copies);
+  expect_known_answers("copies", full_form() ? 100000 : 500, copies);
 }
 
 TEST(SuperellipsoidDistance, OfKnownAnswersOfUnlikeBodies) {
-  expect_known_answers("unlike bodies", std::getenv("HARDBODY_FULL") != nullptr ? 20000 : 500, unlike);
+  expect_known_answers("unlike bodies", full_form() ? 20000 : 500, unlike);
 }
 
 /// Mixed pairs, and a superellipsoid that is an ellipsoid.
@@ -364,11 +365,11 @@ void expect_depths(const char* which, long pairs, const Make& make) {
 /// Bodies pushed into each other along a known normal: the depth is that of the push, or less where a shorter way out
 /// exists, past an edge or a face that is turned the other way.
 TEST(SuperellipsoidDistance, OfOverlaps) {
-  expect_depths("copies", std::getenv("HARDBODY_FULL") != nullptr ? 5000 : 30, copies);
+  expect_depths("copies", full_form() ? 5000 : 30, copies);
 }
 
 TEST(SuperellipsoidDistance, OfOverlapsOfUnlikeBodies) {
-  expect_depths("unlike bodies", std::getenv("HARDBODY_FULL") != nullptr ? 2000 : 30, unlike);
+  expect_depths("unlike bodies", full_form() ? 2000 : 30, unlike);
 }
 
 /// Where edges or faces touch, an ascent of the normal alone stops beside the maximum, its support points say little of

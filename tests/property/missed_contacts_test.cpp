@@ -5,6 +5,7 @@
 #include <common/finder_gauge.h>
 #include <common/finder_reference.h>
 #include <common/finder_scale.h>
+#include <common/full_form.h>
 
 #include <gtest/gtest.h>
 
@@ -40,7 +41,7 @@ constexpr double kHorizon = 4;
 
 /// Of brute force (see there), in units of the pair's size.
 double brute_floor() {
-  return full_run() ? 1e-9 : 1e-8;
+  return full_form() ? 1e-9 : 1e-8;
 }
 
 struct Tally {

@@ -3,6 +3,7 @@
 // orientation (faces, edges and vertices included), of which many graze, and one in five starts as a collision leaves
 // it: in touch, parting. HARDBODY_FULL=1: 100,000 contacts.
 
+#include "common/full_form.h"
 #include "common/geom_random.h"
 #include "common/geom_superellipsoid_sets.h"
 
@@ -288,7 +289,7 @@ void judge(const MovingPair& pair, const Found& finding, double wanted, Tally& t
     ++tally.missed;
 }
 
-const long kContacts = std::getenv("HARDBODY_FULL") != nullptr ? 100000 : 2000;
+const long kContacts = full_form() ? 100000 : 2000;
 
 template <class Gauge, class Draw>
 Tally search_pairs(const char* name, const Draw& draw) {
@@ -365,7 +366,7 @@ TEST(SupportContact, IsMissedWithHalfTheCurvature) {
 /// What a single normal promises: no contact within the step, however good or bad the normal is.
 TEST(SupportContact, NoOverlapWithinACertifiedStep) {
   Random random(2);
-  const int pairs = std::getenv("HARDBODY_FULL") != nullptr ? 100000 : 2000;
+  const int pairs = full_form() ? 100000 : 2000;
   int long_steps = 0;
   for (int k = 0; k < pairs; ++k) {
     const MovingPair pair = random_pair_apart(random);

@@ -6,6 +6,7 @@
 
 #include <common/ed_states.h>
 #include <common/ed_uniaxial_bodies.h>
+#include <common/full_form.h>
 #include <common/geom_batch.h>
 
 #include <ed/ed.h>
@@ -98,7 +99,7 @@ double expect_same_looks(const std::vector<Species>& species, geom::InstructionS
 }
 
 void expect_same_looks(const std::vector<Species>& species) {
-  const int repetitions = ed_test::full_length() ? 200 : 20;
+  const int repetitions = full_form() ? 200 : 20;
   for (const geom::InstructionSet set : geom_test::instruction_sets()) {
     double answered = 0;
     for (int k = 0; k < repetitions; ++k) {

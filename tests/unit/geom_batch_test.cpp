@@ -378,7 +378,8 @@ TEST(DistanceBatch, OfShapesAnswersAsDistance) {
     EXPECT_LE(summary.redone, superellipsoids + 20);
     for (std::size_t k = 0; k < a.size(); ++k) {
       const DistanceResult one = distance(a[k], X_WA[k], b[k], X_WB[k], {.start = warm ? starts[k] : Vector3d::Zero()});
-      const double size = 20;
+      const double size =
+          (X_WB[k].position() - X_WA[k].position()).norm() + bounding_radius(a[k]) + bounding_radius(b[k]);
       EXPECT_EQ(results[k].status, one.status) << k;
       EXPECT_NEAR(results[k].distance, one.distance, 1e-14 * size) << k;
       EXPECT_NEAR((results[k].point_a - one.point_a).norm(), 0, 1e-7) << k;

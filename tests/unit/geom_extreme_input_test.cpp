@@ -59,8 +59,9 @@ TEST(BadInput, SemiAxesOfSuperellipsoidsAreRefusedByName) {
     for (int axis = 0; axis < 3; ++axis) {
       Vector3d semi_axes(1, 1, 1);
       semi_axes[axis] = bad;
-      ASSERT_THAT(message_of([&] { return Superellipsoid(semi_axes, 1, 1); }),
-                  AllOf(HasSubstr("semi-axis is "), HasSubstr("accepted: 1e-50 to 1e+50")))
+      ASSERT_THAT(
+          message_of([&] { return Superellipsoid(semi_axes, 1, 1); }),
+          AllOf(HasSubstr(std::string("semi-axis ") + "xyz"[axis] + " is "), HasSubstr("accepted: 1e-50 to 1e+50")))
           << bad << " as axis " << axis;
     }
   }

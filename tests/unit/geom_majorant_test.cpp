@@ -1,5 +1,6 @@
 // The ellipsoids that hold superellipsoids: the inequality that contact searches rest on.
 
+#include "common/full_form.h"
 #include "common/geom_random.h"
 
 #include <geom/internal/norm_bodies.h>
@@ -11,7 +12,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 
 namespace geom::internal {
 namespace {
@@ -80,7 +80,7 @@ void expect_bound(double allowance, double slack, int draws) {
   }
 }
 
-const int kDraws = std::getenv("HARDBODY_FULL") != nullptr ? 2000000 : 20000;
+const int kDraws = full_form() ? 2000000 : 20000;
 
 TEST(Majorant, BoundsTheSupportFunctionForEveryChangeOfDirection) {
   expect_bound(0, 4e-15, kDraws);

@@ -49,6 +49,46 @@ TEST(Overlap, AgreesWithTheDistance) {
   });
 }
 
+/// A ball that counts how often its support function is evaluated.
+struct CountingBall {
+  double radius;
+  int* count;
+  Support support(const Vector3d& n) const {
+    ++*count;
+    return Ellipsoid(Vector3d::Constant(radius)).support(n);
+  }
+  Eigen::Matrix3d support_hessian(const Vector3d& n) const {
+    return Ellipsoid(Vector3d::Constant(radius)).support_hessian(n);
+  }
+  double bounding_radius() const { return radius; }
+  double inscribed_radius() const { return radius; }
+};
+
+/// Of bodies apart, at random, nearly all are told by one evaluation across the line of centres, or the last normal.
+TEST(Overlap, IsMostlyDecidedByOneEvaluation) {
+  Random random(11);
+  int apart = 0;
+  int by_one = 0;
+  for (int k = 0; k < 2000; ++k) {
+    int count = 0;
+    const CountingBall ball{0.5, &count};
+    const Pose X_WA = Pose::translation(random.uniform(0, 1) * 6 * random.direction());
+    const Answer answer = overlap(ball, X_WA, kBrick, Pose());
+    if (answer != Answer::no) continue;
+    ++apart;
+    by_one += count == 1;
+    const DistanceResult d = distance(ball, X_WA, kBrick, Pose());
+    count = 0;
+    ASSERT_EQ(overlap(ball, X_WA, kBrick, Pose(), d.normal), Answer::no);
+    ASSERT_EQ(count, 1) << d.distance;
+  }
+  EXPECT_GT(apart, 1000);
+  EXPECT_GE(by_one, 0.9 * apart);
+  int count = 0;
+  EXPECT_EQ(overlap(CountingBall{0.5, &count}, Pose::translation({0, 0, 1}), kBrick, Pose()), Answer::yes);
+  EXPECT_EQ(count, 0) << "the inscribed balls tell";
+}
+
 TEST(Overlap, OfBodiesThatNearlyTouch) {
   Random random(2);
   for (int k = 0; k < 1000; ++k) {
@@ -58,12 +98,51 @@ TEST(Overlap, OfBodiesThatNearlyTouch) {
   }
 }
 
+/// g at n, in long double: of superellipsoids with dual exponents q1, q2.
+using Exact = Eigen::Matrix<long double, 3, 1>;
+long double exact_height(const Vector3d& semi_axes, double e1, double e2, const Pose& X, const Exact& n) {
+  const Exact w = semi_axes.cast<long double>().cwiseProduct(X.rotation().cast<long double>().transpose() * n);
+  const auto plane = [](long double u, long double v, double e) {
+    const long double q = 2 / (2 - static_cast<long double>(e));
+    return std::pow(std::pow(std::abs(u), q) + std::pow(std::abs(v), q), 1 / q);
+  };
+  return plane(plane(w.x(), w.y(), e2), w.z(), e1);
+}
+long double exact_lower_bound(const Superellipsoid& a, const Pose& X_WA, const Superellipsoid& b, const Pose& X_WB,
+                              const Vector3d& n) {
+  const Exact unit = n.cast<long double>().normalized();
+  const Exact r = X_WB.position().cast<long double>() - X_WA.position().cast<long double>();
+  return unit.dot(r) - exact_height(a.semi_axes(), a.e1(), a.e2(), X_WA, unit) -
+         exact_height(b.semi_axes(), b.e1(), b.e2(), X_WB, -unit);
+}
+
+TEST(LowerBound, IsNeverAboveTheGapOfTheTangentPlanes) {
+  Random random(13);
+  const Superellipsoid flat({2, 1, 0.01}, 1, 1);
+  for (const Superellipsoid* a : {&kBrick, &kOcta, &flat}) {
+    for (const Superellipsoid* b : {&kBrick, &kOcta, &flat}) {
+      for (int k = 0; k < 2000; ++k) {
+        const Pose X_WA = random.pose(random.log_uniform(1e-3, 1e3));
+        const double reach = a->bounding_radius() + b->bounding_radius();
+        const Pose X_WB(random.pose(0).rotation(),
+                        X_WA.position() + random.log_uniform(1e-3, 10) * reach * random.direction());
+        const Vector3d n = random.log_uniform(1e-3, 1e3) * random.direction();
+        const double bound = distance_lower_bound(*a, X_WA, *b, X_WB, n);
+        const long double exact = exact_lower_bound(*a, X_WA, *b, X_WB, n);
+        ASSERT_LE(bound, exact);
+        ASSERT_GE(bound, exact - 8e-15 * ((X_WB.position() - X_WA.position()).norm() + reach));
+      }
+    }
+  }
+}
+
 TEST(LowerBound, IsNeverAboveTheDistanceAndReachesItAtTheNormal) {
   Random random(3);
   for (int k = 0; k < 1000; ++k) {
     const auto pair = geom_test::manufacture(kNeedle, kBrick, random.log_uniform(1e-6, 10), random);
     const double any = distance_lower_bound(kNeedle, pair.X_WA, kBrick, pair.X_WB, 3 * random.direction());
-    ASSERT_LE(any, pair.distance + 1e-14 * pair.size);
+    // As exactly as B can be put.
+    ASSERT_LE(any, pair.distance + 1e-15 * pair.size);
     const double best = distance_lower_bound(kNeedle, pair.X_WA, kBrick, pair.X_WB, 0.1 * pair.normal);
     ASSERT_NEAR(best, pair.distance, 1e-14 * pair.size);
   }

@@ -193,6 +193,44 @@ double segment_distance(const Vector3d& p0, const Vector3d& p1, const Vector3d& 
   return least;
 }
 
+/// A user's shape beside the library's, in either place, apart and overlapping by little.
+template <class Theirs, class Ours>
+void expect_known_answers(const Theirs& theirs, const Ours& ours, Random& random) {
+  const double gap = (random.coin() ? 1 : -1e-4) * random.log_uniform(1e-6, 1);
+  const bool first = random.coin();
+  const auto ask = [&](const auto& a, const auto& b) {
+    const ManufacturedPair pair = geom_test::manufacture(a, b, gap, random);
+    const DistanceResult r = distance(a, pair.X_WA, b, pair.X_WB);
+    // kBoundGap where faces or edges meet; an overlap may have a shorter way out, past a sharp edge.
+    const double tolerance = kBoundGap * extent_of(pair);
+    const double wanted = gap > 0 ? gap : std::max(gap, r.distance);
+    ASSERT_TRUE(answers(r, wanted, tolerance, extent_of(pair))) << "gap " << gap;
+    ASSERT_LE(r.error_bound, (gap > 0 ? kWidestGap : kWidestDepthGap) * extent_of(pair));
+    if (std::abs(gap) > tolerance) {
+      ASSERT_EQ(overlap(a, pair.X_WA, b, pair.X_WB), gap > 0 ? Answer::no : Answer::yes);
+    }
+  };
+  first ? ask(theirs, ours) : ask(ours, theirs);
+}
+
+TEST(UserShape, BesideTheLibrarysShapesHaveTheirDistance) {
+  Random random(9);
+  const geom_test::Spherocylinder rod{1.3, 0.4};
+  const geom_test::Pear pear{0.7, 1, 0.5};
+  for (int k = 0; k < repetitions(300); ++k) {
+    const Vector3d axes(random.uniform(0.5, 2), random.uniform(0.5, 2), 1);
+    for (const double e : {0.3, 0.7, 1.0, 1.4}) {
+      SCOPED_TRACE(testing::Message() << "pair " << k << ", e = " << e);
+      expect_known_answers(rod, Superellipsoid(axes, e, random.uniform(0.3, 1.4)), random);
+      expect_known_answers(pear, Superellipsoid(axes, random.uniform(0.3, 1.4), e), random);
+      if (testing::Test::HasFatalFailure()) return;
+    }
+    expect_known_answers(rod, Ellipsoid(axes), random);
+    expect_known_answers(pear, random.spheroid(3), random);
+    if (testing::Test::HasFatalFailure()) return;
+  }
+}
+
 TEST(UserShape, SpherocylindersHaveTheDistanceOfTheirSegmentsLessTheRadii) {
   Random random(6);
   int beside = 0;

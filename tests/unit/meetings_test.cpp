@@ -7,6 +7,7 @@
 
 #include <common/ed_states.h>
 #include <common/ed_uniaxial_bodies.h>
+#include <common/full_form.h>
 #include <common/geom_batch.h>
 
 #include <ed/ed.h>
@@ -70,7 +71,7 @@ void expect_same_meetings(const std::vector<Species>& species, geom::Instruction
 }
 
 void expect_same_meetings(const std::vector<Species>& species) {
-  const std::uint64_t repetitions = ed_test::full_length() ? 100 : 10;
+  const std::uint64_t repetitions = full_form() ? 100 : 10;
   for (const geom::InstructionSet set : geom_test::instruction_sets()) {
     Tally tally;
     for (std::uint64_t k = 0; k < repetitions; ++k) expect_same_meetings(species, set, 500 + k, tally);

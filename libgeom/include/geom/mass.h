@@ -17,7 +17,10 @@ struct MassProperties {
 };
 
 /// By quadrature over the directions n from the origin, r(n) the surface: volume = integral of r^3 / 3, second moments
-/// that of n n^T r^5 / 5. Any convex body {f <= 0} with the origin inside, f convex.
+/// that of n n^T r^5 / 5. Any convex body {f <= 0} with the origin inside, f convex. Units: length^3 of the volume, ^4
+/// of the first moment, ^5 of the inertia. `bounding_radius`, positive and finite, is at least the largest distance of
+/// the surface from the origin: Newton's method starts there, outside, where it is monotone. Neither that nor convexity
+/// is checked.
 ///
 /// Tanh-sinh rule in both angles of each octant (Takahasi and Mori, Publ. RIMS 9 (1974) 721), which does not mind that
 /// derivatives are singular in the planes between octants, as those of superquadrics are. The rule is doubled until two

@@ -22,8 +22,9 @@
 namespace geom {
 
 /// A lower bound of the distance of two bodies, certain whatever the direction n (world, from A to B, not zero): the
-/// width of the gap between their tangent planes across n. Negative where they overlap in that projection. The line of
-/// centres is a good first n, the normal of the last `distance` a better one. NaN if n is zero or not finite.
+/// width of the gap between their tangent planes across n, less what rounding can have added to it (kLowerBoundRounding
+/// of the lengths that enter). Negative where they overlap in that projection. The line of centres is a good first n,
+/// the normal of the last `distance` a better one. NaN if n is zero or not finite.
 template <SupportShape ShapeA, SupportShape ShapeB>
 double distance_lower_bound(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const Pose& X_WB,
                             const Eigen::Vector3d& n);

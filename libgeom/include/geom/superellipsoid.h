@@ -23,21 +23,21 @@ class GEOM_EXPORT Superellipsoid {
   double e1() const { return e1_; }                                ///< of the profile along z
   double e2() const { return e2_; }                                ///< of the section across it
 
-  /// f(x) = N(x)^2 - 1 with N the norm whose unit ball the body is, 1-homogeneous: negative inside. For e1 = e2 = 1 it
-  /// is the Ellipsoid's. Smooth but in the planes x = 0, y = 0, z = 0, where second derivatives are infinite for e > 1.
+  /// N(x) = ((|x/a|^(2/e2) + |y/b|^(2/e2))^(e2/e1) + |z/c|^(2/e1))^(e1/2), the norm whose unit ball the body is: x/N(x)
+  /// is on the surface. Right to a few ulps.
+  double norm(const Eigen::Vector3d& x) const;
+  /// f(x) = N(x)^2 - 1: negative inside. For e1 = e2 = 1 it and all that follows is the Ellipsoid's, to the last bit.
+  /// Right to a few ulps of N^2, gradient and Hessian of their largest entry.
   double value(const Eigen::Vector3d& x) const;
-  Eigen::Vector3d gradient(const Eigen::Vector3d& x) const;  ///< of f
-  Eigen::Matrix3d hessian(const Eigen::Vector3d& x) const;   ///< of f
+  Eigen::Vector3d gradient(const Eigen::Vector3d& x) const;  ///< of f; zero in the centre
+  /// Of f; x not 0 (NaN there but for e1 = e2 = 1). In the planes x = 0, y = 0, z = 0, where second derivatives are
+  /// infinite for e > 1, those of a point nearby: huge.
+  Eigen::Matrix3d hessian(const Eigen::Vector3d& x) const;
 
   /// h(n) = N*(a n_x, b n_y, c n_z) with N* the dual norm, exponents 2/(2 - e); n != 0, any length.
   Support support(const Eigen::Vector3d& n) const;
   /// hess h, two rank-ones; across n. Huge where n is along a flat face's normal.
   Eigen::Matrix3d support_hessian(const Eigen::Vector3d& n) const;
-
-  /// N, of x/a: the body is {x : N(x/a) <= 1}.
-  const internal::NestedNorm& norm() const { return norm_; }
-  /// Its dual N*, of a n.
-  const internal::NestedNorm& dual_norm() const { return dual_; }
 
   bool is_ellipsoid() const { return e1_ == 1 && e2_ == 1; }     ///< both exponents are 1
   double bounding_radius() const { return bounding_radius_; }    ///< largest distance of the surface from the centre
@@ -46,9 +46,10 @@ class GEOM_EXPORT Superellipsoid {
   double min_curvature_radius() const {
     return is_ellipsoid() ? inscribed_radius_ * (inscribed_radius_ / bounding_radius_) : 0;
   }
-  /// By Beta functions (Jaklic, Leonardis and Solina, Segmentation and Recovery of Superquadrics (2000), sec. 2.5).
+  /// By Beta functions (Jaklic, Leonardis and Solina, Segmentation and Recovery of Superquadrics (2000), sec. 2.5), to
+  /// a share of 1e-12.
   double volume() const;
-  /// Principal moments about body x, y, z at uniform density.
+  /// Principal moments about body x, y, z at uniform density, in units of mass times length^2; by the same, as exact.
   Eigen::Vector3d inertia(double mass) const;
 
  private:

@@ -89,6 +89,10 @@ inline constexpr double kWidestDepthGap = 1e-3;
 inline constexpr int kMostDepthSamples = 100000;
 /// @}
 
+/// distance_lower_bound: lowered by kLowerBoundRounding * (|r| + hA + hB), above what rounding adds to it: a few ulps
+/// of each (r: the difference of the positions, taken as they are), if support heights are right to as much.
+inline constexpr double kLowerBoundRounding = 8 * 2.3e-16;
+
 /// ray_cast: a ray has met the body where the distance is no larger than kRayGap times the bounding radius plus that of
 /// the origin from the body's centre. Dimensionless.
 inline constexpr double kRayGap = 1e-14;

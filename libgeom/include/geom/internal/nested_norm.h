@@ -10,9 +10,10 @@
 
 namespace geom::internal {
 
-/// x^e for x >= 0 and one e > 0: by products, square and cube roots where e allows it, else by std::pow. Exponents of
-/// fifths, as q = 5 (e = 1.6) has for its root, gain nothing: a fifth root is a pow. Distances do not come here but for
-/// values and gradients: the kernels have both bodies' powers in one vector (lanes.h).
+/// x^e for x >= 0 and one e > 0: by products, square and cube roots where e allows it: e = 1/4, 1/3, 1/2, 2/3, 1 to 5/2
+/// by halves, 3, 7/2, 4. Else by std::pow: fifths, as 1/q of q = 5/2 and 5 (e = 1.2 and 1.6), would gain nothing, as a
+/// fifth root is a pow. Distances do not come here but for values and gradients: the kernels have both bodies' powers
+/// in one vector (lanes.h).
 class Power {
  public:
   explicit Power(double exponent) : exponent_(exponent), kind_(kind_of(exponent)) {}
@@ -33,6 +34,10 @@ class Power {
         return std::sqrt(std::sqrt(x));
       case Kind::three_halves:
         return x * std::sqrt(x);
+      case Kind::five_halves:
+        return x * x * std::sqrt(x);
+      case Kind::seven_halves:
+        return x * x * x * std::sqrt(x);
       case Kind::third:
         return std::cbrt(x);
       case Kind::two_thirds: {
@@ -46,7 +51,20 @@ class Power {
   }
 
  private:
-  enum class Kind { one, two, three, four, half, quarter, three_halves, third, two_thirds, general };
+  enum class Kind {
+    one,
+    two,
+    three,
+    four,
+    half,
+    quarter,
+    three_halves,
+    five_halves,
+    seven_halves,
+    third,
+    two_thirds,
+    general
+  };
 
   static Kind kind_of(double e) {
     const auto is = [e](double value) { return std::abs(e - value) < 4e-16 * value; };
@@ -57,6 +75,8 @@ class Power {
     if (is(0.5)) return Kind::half;
     if (is(0.25)) return Kind::quarter;
     if (is(1.5)) return Kind::three_halves;
+    if (is(2.5)) return Kind::five_halves;
+    if (is(3.5)) return Kind::seven_halves;
     if (is(1.0 / 3)) return Kind::third;
     if (is(2.0 / 3)) return Kind::two_thirds;
     return Kind::general;
@@ -70,8 +90,6 @@ class Power {
 class PlaneNorm {
  public:
   explicit PlaneNorm(double q) : q_(q), power_(q - 1), root_(1 / q) {}
-
-  double exponent() const { return q_; }
 
   struct Value {
     double norm;
@@ -110,9 +128,6 @@ class NestedNorm {
     double norm;
     Eigen::Vector3d gradient;  ///< dN/dw, each in [0, 1]
   };
-
-  double outer_exponent() const { return outer_.exponent(); }
-  double inner_exponent() const { return inner_.exponent(); }
 
   Value operator()(const Eigen::Vector3d& w) const {
     const PlaneNorm::Value inner = inner_(w.x(), w.y());
