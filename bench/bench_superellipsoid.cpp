@@ -5,6 +5,10 @@
 /// semi-axis, or of a known way out, its length in units of the pair's size. A failure is an answer that is declined or
 /// wrong by more than the contract of geom/distance.h allows (1e-12 of the size), of overlaps one that is longer than
 /// the known way; it is counted, not hidden. The tables at the end give ratios within this run.
+///
+/// seed/..., newton8/..., newton5/...: superellipsoid_seeds.h.
+
+#include "superellipsoid_seeds.h"
 
 #include "common/geom_manufactured.h"
 #include "common/geom_random.h"
@@ -307,6 +311,7 @@ void print_overlaps(const KeepRuns& runs) {
 
 int main(int argc, char** argv) {
   register_benchmarks();
+  bench::register_seed_benchmarks();
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
   KeepRuns runs;

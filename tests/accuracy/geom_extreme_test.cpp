@@ -16,7 +16,6 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -238,7 +237,7 @@ TEST(ExtremeShapes, DeepInEachOther) {
   rows("discs, ellipsoids", false, 1e-12, disc);
   rows("the same, nearly parallel", true, 1e-12, disc);
   rows("superellipsoids, long or flat", false, 1e-12, any(0.3, 1.5));
-  rows("the same, nearly parallel", true, 2e-6, any(0.3, 1.5));
+  rows("the same, nearly parallel", true, 1e-12, any(0.3, 1.5));
 }
 
 }  // namespace

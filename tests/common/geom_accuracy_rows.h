@@ -6,6 +6,8 @@
 
 #include <geom/geom.h>
 
+#include <Eigen/Core>
+
 #include <array>
 #include <cstdio>
 
@@ -39,7 +41,7 @@ void for_each_pair_of_shapes(const Rows& rows) {
   for (const double e : {0.2, 0.3, 0.5, 0.7, 1.0, 1.3, 1.6}) {
     char name[64];
     (void)std::snprintf(name, sizeof name, "superellipsoids, e = %g", e);
-    rows(name, kSuperellipsoidAccuracy, barr(e, e), barr(e, e));
+    rows(name, e == 1 ? kEllipsoidAccuracy : kSuperellipsoidAccuracy, barr(e, e), barr(e, e));
   }
   rows("superellipsoids, e1 = 0.3, e2 = 1.3", kSuperellipsoidAccuracy, barr(0.3, 1.3), barr(0.3, 1.3));
   rows("superellipsoids, e1 = 1.3, e2 = 0.3", kSuperellipsoidAccuracy, barr(1.3, 0.3), barr(1.3, 0.3));

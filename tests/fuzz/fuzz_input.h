@@ -123,13 +123,14 @@ class Input {
   }
 
  private:
-  /// Mostly nearly orthonormal: the tolerance is 1e-6.
+  /// Mostly orthonormal within about the tolerance, 1e-6.
   Eigen::Matrix3d matrix() {
     Eigen::Matrix3d R;
     for (int k = 0; k < 3; ++k) R.col(k) = vector();
     if (byte() % 4 == 0) return R;
     R = Eigen::Quaterniond{0.1 + fraction(), fraction(), fraction(), fraction()}.normalized().toRotationMatrix();
-    for (int k = 0; k < 3; ++k) R.col(k) *= 1 + std::ldexp(fraction() - 0.5, -18);
+    const int exponent = byte() % 4 == 0 ? -20 : -40;
+    for (int k = 0; k < 9; ++k) R(k / 3, k % 3) += std::ldexp(fraction() - 0.5, exponent);
     return R;
   }
 

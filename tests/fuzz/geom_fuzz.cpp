@@ -94,7 +94,8 @@ bool may_be_slow(const Input& input) {
   return input.is_one_in(256);
 }
 
-/// Newton's method on a hopeless seed takes hundreds of evaluations before it declines.
+/// Newton's method on a hopeless seed takes hundreds of evaluations before it declines; the kernels of batches are not
+/// optimised where the fuzzer runs.
 bool may_be_tedious(const Input& input) {
   return input.is_one_in(16);
 }
@@ -107,7 +108,7 @@ void ask_distance(const Pair& pair, Input& input) {
   check(pair, r);
 }
 
-/// As pairs of one batch: what `distance` answers is within rounding the same.
+/// Both orders of the pair in one batch: what `distance` answers is within rounding the same.
 void ask_batch(const Pair& pair, Input& input) {
   geom::BatchOptions options;
   if (!may_be_slow(input)) options.penetration = geom::Penetration::local;
@@ -118,11 +119,14 @@ void ask_batch(const Pair& pair, Input& input) {
   std::array<DistanceResult, 2> results;
   (void)geom::distance_batch(a, X_WA, b, X_WB, results, options);
   check(pair, results[0]);
+  check({pair.b, pair.a, pair.X_WB, pair.X_WA}, results[1]);
   const DistanceResult one = geom::distance(pair.a, pair.X_WA, pair.b, pair.X_WB, {.penetration = options.penetration});
   if (!is_answer(one.status) || !(one.distance > 0)) return;
-  require(is_answer(results[0].status), "a batch answers where `distance` does");
-  require(std::abs(results[0].distance - one.distance) <= 1e-14 * size_of(pair) + one.error_bound,
-          "a batch answers what `distance` does");
+  for (const DistanceResult& r : results) {
+    require(is_answer(r.status), "a batch answers where `distance` does");
+    require(std::abs(r.distance - one.distance) <= 1e-14 * size_of(pair) + one.error_bound + r.error_bound,
+            "a batch answers what `distance` does");
+  }
 }
 
 void ask_newton(const Pair& pair, Input& input) {
@@ -238,7 +242,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       ask_overlap(*pair, input);
       break;
     case 4:
-      ask_batch(*pair, input);
+      if (may_be_tedious(input)) {
+        ask_batch(*pair, input);
+      } else {
+        ask_distance(*pair, input);
+      }
       break;
     default:
       ask_distance(*pair, input);

@@ -19,6 +19,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <type_traits>
 #include <vector>
 
 namespace geom {
@@ -39,17 +40,17 @@ struct Errors {
     }
     values.push_back(std::abs((points.point_b - points.point_a).norm() - wanted) / size);
   }
-  double median() {
-    std::sort(values.begin(), values.end());
-    return values[values.size() / 2];
-  }
-  void print() {
+  /// Prints them; at the median they are at most `most`, about what is known of the library (docs/accuracy.md).
+  void report(double most) {
+    EXPECT_LE(declined, static_cast<int>(values.size()) / 10);
     if (values.empty()) {
       std::printf(" - | - | %d |", declined);
-    } else {
-      const double middle = median();
-      std::printf(" %.1e | %.1e | %d |", middle, values.back(), declined);
+      return;
     }
+    std::sort(values.begin(), values.end());
+    const double median = values[values.size() / 2];
+    std::printf(" %.1e | %.1e | %d |", median, values.back(), declined);
+    EXPECT_LE(median, most);
   }
 };
 
@@ -57,7 +58,10 @@ template <class MakeA, class MakeB>
 void row(const char* name, double gap, double tolerance, const MakeA& make_a, const MakeB& make_b) {
   const int pairs = full_form() ? 1000 : 50;
   Random random(1);
-  Errors ours, fcl, ccd, cgal;
+  Errors ours, fcl, ccd;
+#if HARDBODY_WITH_CGAL
+  Errors cgal;
+#endif
   for (int k = 0; k < pairs; ++k) {
     const auto a = make_a(random);
     const auto b = make_b(random);
@@ -74,23 +78,20 @@ void row(const char* name, double gap, double tolerance, const MakeA& make_a, co
     if (k % 10 == 0) cgal.add(cgal_seed(any_a, pair.X_WA, any_b, pair.X_WB), wanted, pair.size);
 #endif
   }
-  std::printf("| %s | %g |", name, gap);
-  ours.median();
-  std::printf(" %.1e |", ours.values.back());
-  fcl.print();
-  ccd.print();
-  cgal.print();
+  const double ours_largest = *std::max_element(ours.values.begin(), ours.values.end());
+  std::printf("| %s | %g | %.1e |", name, gap, ours_largest);
+  EXPECT_LE(ours_largest, tolerance) << name << ", gap " << gap;
+  constexpr bool kPolytopes =
+      !std::is_same_v<decltype(make_a(random)), Ellipsoid> || !std::is_same_v<decltype(make_b(random)), Ellipsoid>;
+  SCOPED_TRACE(testing::Message() << name << ", gap " << gap);
+  fcl.report(kPolytopes ? 5e-3 : 1e-4);
+  ccd.report(1e-3);
+#if HARDBODY_WITH_CGAL
+  cgal.report(2e-2);
+#else
+  std::printf(" - | - | - |");
+#endif
   std::printf("\n");
-  EXPECT_LE(ours.values.back(), tolerance) << name << ", gap " << gap;
-  // Theirs are what they promise, so that the comparison is fair; what is promised, docs/accuracy.md says.
-  if (!fcl.values.empty()) {
-    EXPECT_LE(fcl.median(), 5e-3) << name << ", gap " << gap;
-  }
-  if (!ccd.values.empty()) {
-    EXPECT_LE(ccd.median(), 5e-3) << name << ", gap " << gap;
-  }
-  EXPECT_LE(fcl.declined, pairs / 10) << name << ", gap " << gap;
-  EXPECT_LE(ccd.declined, pairs / 10) << name << ", gap " << gap;
 }
 
 TEST(AccuracyTable, OfOtherLibraries) {

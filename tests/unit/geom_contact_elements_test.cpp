@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -339,15 +340,29 @@ TEST(ContactElements, ConvergeToTheDistance) {
   }
 }
 
-/// By how much g is higher than the answer's, relative to the scale, at the best of 20 normals up to `reach` from it.
+/// By how much g is higher than the answer's, relative to the scale, at the best of 20 normals up to `reach` from it;
+/// NaN if one of them is.
 double gain_nearby(const Query& q, const NormBodyPair::Answer& answer, double reach, Random& random) {
   double gain = -1;
   for (int t = 0; t < 20; ++t) {
     const double turn = random.log_uniform(1e-3 * reach, reach);
     const Vector3d n = (answer.at.n + turn * random.direction()).normalized();
-    gain = std::max(gain, (q.pair.sample(n).g - answer.at.g) / q.pair.scale());
+    const double here = (q.pair.sample(n).g - answer.at.g) / q.pair.scale();
+    if (!(here <= gain)) gain = here;
   }
   return gain;
+}
+
+/// The least eigenvalue of -hess g along the sphere, relative to the scale: positive at a local maximum to second
+/// order.
+double curvature(const Query& q, const Vector3d& n) {
+  const DualSample s = q.pair.sample(n);
+  const LaneVector &t1 = s.support.t1, &t2 = s.support.t2;
+  Matrix3d M = t1.a() * t1.a().transpose() + t2.a() * t2.a().transpose() + t1.b() * t1.b().transpose() +
+               t2.b() * t2.b().transpose();
+  // M vanishes along n: there the eigenvalue is made larger than those across.
+  M += (1 + M.trace()) * n * n.transpose();
+  return (Eigen::SelfAdjointEigenSolver<Matrix3d>(M).eigenvalues()[0] + s.g) / q.pair.scale();
 }
 
 /// How far n is from the axis planes of both bodies: beyond, the curvature of a vertex is another.
@@ -355,8 +370,9 @@ double plane_distance(const geom_test::Orientation& o, const Vector3d& n) {
   return std::min((o.R_a.transpose() * n).cwiseAbs().minCoeff(), (o.R_b.transpose() * n).cwiseAbs().minCoeff());
 }
 
-/// No normal nearby is better: the depth is a local minimum. (One of 5000 pairs whose vertices meet has a deeper one
-/// within 1e-3.)
+/// No normal nearby is better: the depth is a local minimum. Where vertices meet (`faces` for exponents above 1) a few
+/// pairs have a lower one within 1e-3, across an axis plane; theirs are local minima all the same, to second order and
+/// as far as the plane.
 TEST(ContactElements, ConvergeToALocalDepth) {
   for (const PairSet set : kSets) {
     Random random(1);
@@ -376,12 +392,17 @@ TEST(ContactElements, ConvergeToALocalDepth) {
         continue;
       }
       ASSERT_LT(answer.at.g, 0);
-      if (gain_nearby(q, answer, 1e-3, random) <= 4e-14) continue;
+      const double gain = gain_nearby(q, answer, 1e-3, random);
+      ASSERT_FALSE(std::isnan(gain));
+      if (gain <= 4e-14) continue;
       ++beside_others;
-      ASSERT_LE(gain_nearby(q, answer, 0.3 * plane_distance(q.o, answer.at.n), random), 4e-15);
+      const double to_plane = plane_distance(q.o, answer.at.n);
+      ASSERT_GT(to_plane, 1e-6);
+      ASSERT_LE(gain_nearby(q, answer, 0.3 * to_plane, random), 4e-15);
+      ASSERT_GT(curvature(q, answer.at.n), 1e-6);
     }
     EXPECT_LE(declined, kPairs / 50) << "set " << static_cast<int>(set);
-    EXPECT_LE(beside_others, set == PairSet::faces ? kPairs / 1000 : 0) << "set " << static_cast<int>(set);
+    EXPECT_LE(beside_others, set == PairSet::faces ? 3 : 0) << "set " << static_cast<int>(set);
   }
 }
 

@@ -32,8 +32,8 @@ static_assert(ImplicitSurface<Superellipsoid>);
 /// Every pair of exponents, with and without a fast path.
 std::vector<Superellipsoid> shapes() {
   std::vector<Superellipsoid> all;
-  for (const double e1 : {0.2, 0.5, 0.7, 1.0, 1.2, 1.6}) {
-    for (const double e2 : {0.2, 0.4, 0.5, 2.0 / 3, 0.8, 1.0, 4.0 / 3, 1.5, 1.6}) {
+  for (const double e1 : {0.2, 4.0 / 9, 0.5, 0.7, 1.0, 1.2, 10.0 / 7, 1.6}) {
+    for (const double e2 : {0.2, 0.4, 0.5, 4.0 / 7, 2.0 / 3, 0.8, 1.0, 4.0 / 3, 1.5, 14.0 / 9, 1.6}) {
       all.emplace_back(Vector3d(1, 1.7, 0.6), e1, e2);
     }
   }

@@ -89,8 +89,9 @@ inline constexpr double kWidestDepthGap = 1e-3;
 inline constexpr int kMostDepthSamples = 100000;
 /// @}
 
-/// distance_lower_bound: lowered by kLowerBoundRounding * (|r| + hA + hB), above what rounding adds to it: a few ulps
-/// of each (r: the difference of the positions, taken as they are), if support heights are right to as much.
+/// distance_lower_bound: lowered by kLowerBoundRounding * (|r| + RA + RB), r the difference of the positions, R the
+/// bounding radii: above what rounding adds to it. Turning n into the body's frame moves a height by that of n times
+/// |s|, which may be R where the height is much less. Support heights are taken to be right to a few ulps of R.
 inline constexpr double kLowerBoundRounding = 8 * 2.3e-16;
 
 /// ray_cast: a ray has met the body where the distance is no larger than kRayGap times the bounding radius plus that of

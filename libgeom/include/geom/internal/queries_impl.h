@@ -63,7 +63,7 @@ double distance_lower_bound(const ShapeA& a, const Pose& X_WA, const ShapeB& b, 
   const double apart = unit.dot(X_WB.position() - X_WA.position());
   const double h_a = Support(a.support(X_WA.rotation().transpose() * unit)).height;
   const double h_b = Support(b.support(X_WB.rotation().transpose() * -unit)).height;
-  const double lengths = (X_WB.position() - X_WA.position()).norm() + h_a + h_b;
+  const double lengths = (X_WB.position() - X_WA.position()).norm() + a.bounding_radius() + b.bounding_radius();
   return apart - h_a - h_b - kLowerBoundRounding * lengths;
 }
 
