@@ -126,7 +126,7 @@ void expect_below(const Superellipsoid& a, const Pose& X_WA, const Superellipsoi
   const long double exact = exact_lower_bound(a, X_WA, b, X_WB, n);
   ASSERT_LE(bound, exact);
   const double size = (X_WB.position() - X_WA.position()).norm() + a.bounding_radius() + b.bounding_radius();
-  ASSERT_GE(bound, exact - 4e-15 * size);
+  ASSERT_GE(bound, exact - static_cast<long double>(4e-15 * size));
 }
 
 TEST(LowerBound, IsNeverAboveTheGapOfTheTangentPlanes) {
