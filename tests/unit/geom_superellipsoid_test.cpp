@@ -128,6 +128,9 @@ TEST(Superellipsoid, WithExponentsOneIsTheEllipsoid) {
     EXPECT_EQ(same.inscribed_radius(), ellipsoid.inscribed_radius());
     EXPECT_EQ(same.min_curvature_radius(), ellipsoid.min_curvature_radius());
   }
+  const Superellipsoid same({1, 1.7, 0.6}, 1, 1);
+  EXPECT_EQ(same.bounding_radius(), 1.7);
+  EXPECT_EQ(same.inscribed_radius(), 0.6);
 }
 
 TEST(Superellipsoid, IsFiniteInTheCoordinatePlanes) {

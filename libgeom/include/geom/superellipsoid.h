@@ -24,10 +24,9 @@ class GEOM_EXPORT Superellipsoid {
   double e2() const { return e2_; }                                ///< of the section across it
 
   /// N(x) = ((|x/a|^(2/e2) + |y/b|^(2/e2))^(e2/e1) + |z/c|^(2/e1))^(e1/2), the norm whose unit ball the body is: x/N(x)
-  /// is on the surface. Right to a few ulps.
+  /// is on the surface.
   double norm(const Eigen::Vector3d& x) const;
   /// f(x) = N(x)^2 - 1: negative inside. For e1 = e2 = 1 it and all that follows is the Ellipsoid's, to the last bit.
-  /// Right to a few ulps of N^2, gradient and Hessian of their largest entry.
   double value(const Eigen::Vector3d& x) const;
   Eigen::Vector3d gradient(const Eigen::Vector3d& x) const;  ///< of f; zero in the centre
   /// Of f; x not 0 (NaN there but for e1 = e2 = 1). In the planes x = 0, y = 0, z = 0, where second derivatives are

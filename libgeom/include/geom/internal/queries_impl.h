@@ -60,11 +60,11 @@ template <SupportShape ShapeA, SupportShape ShapeB>
 double distance_lower_bound(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const Pose& X_WB,
                             const Eigen::Vector3d& n) {
   const Eigen::Vector3d unit = internal::unit_vector(n);
-  const double apart = unit.dot(X_WB.position() - X_WA.position());
+  const Eigen::Vector3d r = X_WB.position() - X_WA.position();
   const double h_a = Support(a.support(X_WA.rotation().transpose() * unit)).height;
   const double h_b = Support(b.support(X_WB.rotation().transpose() * -unit)).height;
-  const double lengths = (X_WB.position() - X_WA.position()).norm() + a.bounding_radius() + b.bounding_radius();
-  return apart - h_a - h_b - kLowerBoundRounding * lengths;
+  const double lengths = r.norm() + a.bounding_radius() + b.bounding_radius();
+  return unit.dot(r) - h_a - h_b - kLowerBoundRounding * lengths;
 }
 
 template <ImplicitSurface Shape>
