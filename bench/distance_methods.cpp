@@ -1,16 +1,13 @@
 #include "distance_methods.h"
 
+#include "seeds_of.h"
+
 #include "common/forked.h"
 #include "common/geom_manufactured.h"
 
 #include <geom/geom.h>
 #ifdef HARDBODY_WITH_SEEDS
 #include "oracle/fcl_raw.h"
-
-#include <geom/seeds.h>
-#endif
-#ifdef HARDBODY_WITH_CGAL
-#include <geom/cgal.h>
 #endif
 
 #include <benchmark/benchmark.h>
@@ -101,22 +98,15 @@ double ask_fcl(const Query& q) {
 
 std::vector<Method> make_methods() {
   std::vector<Method> methods;
-  std::map<std::string, Seed> seeds;
-  const auto of = [](auto seed) {
-    return [seed](const Query& q) { return seed(q.shape, q.pair.X_WA, q.shape, q.pair.X_WB); };
-  };
   methods.push_back(
       {"dual", [](const Query& q) { return geom::distance(q.shape, q.pair.X_WA, q.shape, q.pair.X_WB).distance; }});
-  seeds["dual"] = of([](const auto&... p) { return geom::dual_seed(p...); });
-  seeds["centres"] = of([](const auto&... p) { return geom::centre_seed(p...); });
 #ifdef HARDBODY_WITH_SEEDS
-  seeds["fcl"] = of([](const auto&... p) { return geom::fcl_seed(p...); });
-  seeds["ccd"] = of([](const auto&... p) { return geom::ccd_seed(p...); });
   methods.push_back({"FCL alone", ask_fcl, /*may_abort=*/true});
 #endif
-#ifdef HARDBODY_WITH_CGAL
-  seeds["cgal"] = of([](const auto&... p) { return geom::cgal_seed(p...); });
-#endif
+  std::map<std::string, Seed> seeds;
+  for (const auto& [name, seed] : seeds_of<Ellipsoid>()) {
+    seeds[name] = [seed = seed](const Query& q) { return seed(q.shape, q.pair.X_WA, q.shape, q.pair.X_WB); };
+  }
   for (const auto& [name, seed] : seeds) {
     if (name != "dual")
       methods.push_back({name + " seed", [seed = seed](const Query& q) { return claim(seed(q), q); }});

@@ -1,16 +1,12 @@
 #include "superellipsoid_seeds.h"
 
+#include "seeds_of.h"
+
 #include "common/geom_manufactured.h"
 #include "common/geom_random.h"
 #include "common/geom_superellipsoid_sets.h"
 
 #include <geom/geom.h>
-#ifdef HARDBODY_WITH_SEEDS
-#include <geom/seeds.h>
-#endif
-#ifdef HARDBODY_WITH_CGAL
-#include <geom/cgal.h>
-#endif
 
 #include <benchmark/benchmark.h>
 
@@ -23,7 +19,6 @@
 #include <limits>
 #include <memory>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace bench {
@@ -42,7 +37,6 @@ struct Query {
   geom_test::ManufacturedPair pair;
 };
 
-using Seed = std::function<WitnessPair(const Query&)>;
 /// A distance; NaN: declined.
 using Ask = std::function<double(const Query&, std::size_t index)>;
 
@@ -83,21 +77,6 @@ void run(benchmark::State& state, const Ask& ask) {
   state.counters["largest_error"] = worst;
 }
 
-std::vector<std::pair<std::string, Seed>> seeds() {
-  const auto of = [](auto seed) { return [seed](const Query& q) { return seed(q.a, q.pair.X_WA, q.b, q.pair.X_WB); }; };
-  std::vector<std::pair<std::string, Seed>> all;
-  all.emplace_back("dual", of([](const auto&... p) { return geom::dual_seed(p...); }));
-  all.emplace_back("centres", of([](const auto&... p) { return geom::centre_seed(p...); }));
-#ifdef HARDBODY_WITH_SEEDS
-  all.emplace_back("fcl", of([](const auto&... p) { return geom::fcl_seed(p...); }));
-  all.emplace_back("ccd", of([](const auto&... p) { return geom::ccd_seed(p...); }));
-#endif
-#ifdef HARDBODY_WITH_CGAL
-  all.emplace_back("cgal", of([](const auto&... p) { return geom::cgal_seed(p...); }));
-#endif
-  return all;
-}
-
 double length_of(const WitnessPair& seed) {
   return seed.status == SeedStatus::usable ? (seed.point_b - seed.point_a).norm()
                                            : std::numeric_limits<double>::quiet_NaN();
@@ -112,13 +91,14 @@ void add(const std::string& name, const Ask& ask) {
 }  // namespace
 
 void register_seed_benchmarks() {
-  for (const auto& [name, seed] : seeds()) {
-    add("seed/" + name, [seed = seed](const Query& q, std::size_t) { return length_of(seed(q)); });
+  for (const auto& [name, seed_of] : seeds_of<Superellipsoid>()) {
+    const auto seed = [seed_of = seed_of](const Query& q) { return seed_of(q.a, q.pair.X_WA, q.b, q.pair.X_WB); };
+    add("seed/" + name, [seed](const Query& q, std::size_t) { return length_of(seed(q)); });
     // Newton's method alone: the seeds are made once, before the time is taken.
     const auto made = std::make_shared<std::vector<WitnessPair>>();
     for (const NewtonSystem system : {NewtonSystem::eight, NewtonSystem::five}) {
       add((system == NewtonSystem::eight ? "newton8/" : "newton5/") + name,
-          [system, made, seed = seed](const Query& q, std::size_t k) {
+          [system, made, seed](const Query& q, std::size_t k) {
             if (made->size() == k) made->push_back(seed(q));
             return geom::newton_distance(q.a, q.pair.X_WA, q.b, q.pair.X_WB, system, (*made)[k]).distance;
           });

@@ -241,8 +241,8 @@ geom::internal::Ascent SupportGauge::ascend(const State& s, const Done& done, in
       if (by_elements) return Ascent::stalled;
       by_elements = true;
       int iterations = 0;
-      const NormBodyPair::Answer answer =
-          s.pair.by_elements(e.sample.n, NormBodyPair::Pace::careful, kElementSteps, iterations);
+      const NormBodyPair::Answer answer = s.pair.by_elements(e.sample.n, NormBodyPair::FirstElements::supports,
+                                                             NormBodyPair::Pace::careful, kElementSteps, iterations);
       budget -= iterations;
       if (answer.at.g > e.g) {
         next = s.pair.sample(answer.at.n);

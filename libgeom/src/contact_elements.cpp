@@ -1,5 +1,6 @@
 #include "contact_elements.h"
 
+#include <geom/internal/dual_newton.h>
 #include <geom/internal/norm_body_pair.h>
 #include <geom/tolerances.h>
 
@@ -15,68 +16,85 @@ namespace {
 using Eigen::Vector3d;
 using Element = ContactElements::Element;
 
+LaneVector magnitudes(const LaneVector& v) {
+  return {abs(v.x), abs(v.y), abs(v.z)};
+}
+
 LaneVector signs(const LaneVector& v) {
   const Lanes one = both(1);
   return {with_sign(one, v.x), with_sign(one, v.y), with_sign(one, v.z)};
 }
 
 /// Names the same element, of the bodies marked, as one beyond the pole of w2: a step through it then goes straight on.
-Element turned(Element e, LaneBits through) {
+void turn(Element& e, LaneBits through) {
   const Lanes flip = select(through, both(-1), both(1));
   e.sign = {flip * e.sign.x, flip * e.sign.y, e.sign.z};
   e.w = {flip * e.w.x, flip * e.w.y, e.w.z};
-  return e;
 }
+
+constexpr LaneBits kNone{0, 0};
+constexpr ArcBits kOfPoints{~kNone, ~kNone};
+constexpr ArcBits kOfNormals{kNone, kNone};
 
 }  // namespace
 
-ContactElements::Element ContactElements::element(const Arc& inner, const Arc& outer, const LaneVector& sign) const {
+ContactElements::Element ContactElements::element(const Arcs& arcs, const LaneVector& sign) const {
   Element e;
-  e.inner = inner;
-  e.outer = outer;
+  set(e, arcs, sign);
+  return e;
+}
+
+void ContactElements::set(Element& e, const Arcs& arcs, const LaneVector& sign) const {
+  const Lanes w0 = arcs.w0.outer;
+  const Lanes m0 = arcs.m0.outer;
+  e.arcs = arcs;
   e.sign = sign;
-  e.w = {outer.w0 * inner.w0, outer.w0 * inner.w1, outer.w1};
-  const LaneVector m{outer.m0 * inner.m0, outer.m0 * inner.m1, outer.m1};  // grad N without signs
+  e.w = {w0 * arcs.w0.inner, w0 * arcs.w1.inner, arcs.w1.outer};
+  const LaneVector m{m0 * arcs.m0.inner, m0 * arcs.m1.inner, arcs.m1.outer};  // grad N without signs
   const LaneVector axes = product(bodies_.semi_axes(), sign);
   const LaneVector along_n = product(product(bodies_.inverse_semi_axes(), sign), m);
   e.by_height = sqrt(along_n.dot(along_n));
   e.normal = bodies_.rotation() * ((1 / e.by_height) * along_n);
   e.point = bodies_.rotation() * product(axes, e.w);
   // t1 and t2 as LaneNorm::curved has them of the dual norm, at m, where it is 1; its Hessian goes with 1/|m|.
-  const Lanes scale = e.by_height * outer.flat0;
-  const Lanes k_inner = sqrt(scale * inner_.by_minus_one() * inner.flat0 * inner.flat1);
-  const Lanes k_outer = sqrt(scale * outer_.by_minus_one() * outer.flat1);
-  e.t1 = bodies_.rotation() * product(axes, {k_inner * inner.m1, -k_inner * inner.m0, both(0)});
-  const Lanes k_z = k_outer * outer.m1;
-  e.t2 = bodies_.rotation() * product(axes, {k_z * inner.w0, k_z * inner.w1, -k_outer * outer.m0});
-  return e;
+  const Lanes scale = e.by_height * arcs.flat0.outer;
+  const ArcLanes k = sqrt(ArcLanes(scale * arcs.flat0.inner, scale) * family_.by_minus_one() * arcs.flat1);
+  e.t1 = bodies_.rotation() * product(axes, {k.inner * arcs.m1.inner, -k.inner * arcs.m0.inner, both(0)});
+  const Lanes k_z = k.outer * arcs.m1.outer;
+  e.t2 = bodies_.rotation() * product(axes, {k_z * arcs.w0.inner, k_z * arcs.w1.inner, -k.outer * m0});
 }
 
 ContactElements::Element ContactElements::at(const Vector3d& n) const {
   const LaneVector v = bodies_.in_norm(n);
-  const LaneVector m{abs(v.x), abs(v.y), abs(v.z)};
-  const LaneBits of_normals{0, 0};
-  const Arc inner = inner_.arc(m.x, m.y, of_normals);
-  return element(inner, outer_.arc(m.x * inner.w0 + m.y * inner.w1, m.z, of_normals), signs(v));
+  const LaneVector m = magnitudes(v);
+  // The outer arc needs the inner one's norm, m.w; of the first pass only that is used.
+  const Arcs inner = family_.arcs({m.x, m.x}, {m.y, m.y}, kOfNormals);
+  const Lanes rho = m.x * inner.w0.inner + m.y * inner.w1.inner;
+  return element(family_.arcs({m.x, rho}, {m.y, m.z}, kOfNormals), signs(v));
 }
 
-ContactElements::Element ContactElements::moved(const Element& from, const LaneVector& step, const Vector3d& n) const {
-  const LaneVector& sign = from.sign;
+ContactElements::Element ContactElements::at_ellipsoids(const Vector3d& n) const {
+  const LaneVector v = bodies_.in_norm(n);
+  const LaneVector w = magnitudes(v);
+  const Lanes rho = select(below(w.x, w.y), w.y, w.x);  // the limit of high exponents, for N2
+  return element(family_.arcs({w.x, rho}, {w.y, w.z}, kOfPoints), signs(v));
+}
+
+void ContactElements::move(Element& e, const LaneVector& step, const Vector3d& n) const {
   const LaneVector dw = product(bodies_.inverse_semi_axes(), bodies_.rotation().transposed_times(step));
-  const LaneVector w = from.w + product(dw, sign);
-  const LaneVector m = from.by_height * product(bodies_.in_norm(n), sign);
-  const LaneBits second = below(from.inner.w0, from.inner.w1);
+  const LaneVector w = e.w + product(dw, e.sign);
+  const LaneVector m = e.by_height * product(bodies_.in_norm(n), e.sign);
+  const LaneBits second = below(e.arcs.w0.inner, e.arcs.w1.inner);
   const LaneBits through = below(select(second, w.y, w.x), both(0)) & below(select(second, m.y, m.x), both(0));
   if (any(through)) [[unlikely]] {
-    return moved(turned(from, through), step, n);
+    turn(e, through);
+    return move(e, step, n);
   }
-  const ArcFamily::Moved inner = inner_.moved(from.inner, w.x, w.y, m.x, m.y);
-  const Lanes x = w.x * inner.sign0, y = w.y * inner.sign1;
-  const Lanes mx = m.x * inner.sign0, my = m.y * inner.sign1;
-  const ArcFamily::Moved outer =
-      outer_.moved(from.outer, x * inner.arc.m0 + y * inner.arc.m1, w.z, mx * inner.arc.w0 + my * inner.arc.w1, m.z);
-  return element(inner.arc, outer.arc,
-                 {sign.x * inner.sign0 * outer.sign0, sign.y * inner.sign1 * outer.sign0, sign.z * outer.sign1});
+  const Lanes rho = w.x * e.arcs.m0.inner + w.y * e.arcs.m1.inner;
+  const Lanes dual_rho = m.x * e.arcs.w0.inner + m.y * e.arcs.w1.inner;
+  const ArcFamily::Moved to = family_.moved(e.arcs, {w.x, rho}, {w.y, w.z}, {m.x, dual_rho}, {m.y, m.z});
+  const LaneVector crossed{to.sign0.inner * to.sign0.outer, to.sign1.inner * to.sign0.outer, to.sign1.outer};
+  set(e, to.arcs, product(e.sign, crossed));
 }
 
 namespace {
@@ -163,14 +181,15 @@ bool last(const ElementStep& step, double largest_move2, double off, double scal
 
 /// It has no line search: it converges or it does not, which the bounds tell. Where bounds agree before the points do,
 /// one more step is made for these; what they may be off by along the tangent planes is of the order of sqrt(g off).
-NormBodyPair::Answer NormBodyPair::by_elements(const Vector3d& start, Pace pace, int max_iterations,
-                                               int& iterations) const {
+NormBodyPair::Answer NormBodyPair::by_elements(const Vector3d& start, FirstElements first, Pace pace,
+                                               int max_iterations, int& iterations) const {
   const Caps caps = pace == Pace::brisk ? kBrisk : kCareful;
   const ContactElements elements(bodies_);
   Answer best{.at = {.n = start, .support = {}, .y = Vector3d::Zero()}, .points = {}};
   double best_off = std::numeric_limits<double>::infinity();  // what it may be wrong by
-  Vector3d n = start;
-  Element e = elements.at(n);
+  const bool from_supports = first == FirstElements::supports;
+  Element e = from_supports ? elements.at(start) : elements.at_ellipsoids(start);
+  Vector3d n = from_supports ? start : unit_or_x(e.normal.a() - e.normal.b());
   bool near = false;
   bool agreed = false;
   for (int k = 0; k < max_iterations; ++k) {
@@ -202,7 +221,7 @@ NormBodyPair::Answer NormBodyPair::by_elements(const Vector3d& start, Pace pace,
     const double fraction =
         std::min({1.0, caps.turn / step.delta.norm(), caps.move * scale_ / std::sqrt(largest_move2)});
     n = (n + fraction * step.delta).normalized();
-    e = elements.moved(e, both(fraction) * step.moves, n);
+    elements.move(e, both(fraction) * step.moves, n);
   }
   // Around tips that nearly touch Newton's method can go in circles, with bounds as close as are promised.
   const bool to_promise = pace == Pace::careful && best.at.g > 0;

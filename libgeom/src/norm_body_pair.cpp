@@ -251,7 +251,7 @@ Tangent NormBodyPair::climbed(const Vector3d& n, double rounding, int& iteration
   const Answer by_n = dual(n, Patience::all, kMaxIterations, iterations);
   Tangent top = tangent(by_n.at.n);
   if (!(by_n.at.residual > kStuck * scale_)) return top;
-  const Answer by_both = by_elements(by_n.at.n, Pace::brisk, kElementSteps, iterations);
+  const Answer by_both = by_elements(by_n.at.n, FirstElements::supports, Pace::brisk, kElementSteps, iterations);
   if (!by_both.converged) return top;
   Tangent other = tangent(by_both.at.n);
   if (!(other.g >= top.g - rounding)) return top;
@@ -295,7 +295,7 @@ NormBodyPair::Answer NormBodyPair::polished(const Answer& answer, int& iteration
   if (!(answer.gap > kTightGap * scale_)) return answer;
   const bool apart = answer.at.g > 0;
   const double upper = answer.at.g + answer.gap;
-  Answer by_both = by_elements(answer.at.n, Pace::careful, kCarefulSteps, iterations);
+  Answer by_both = by_elements(answer.at.n, FirstElements::supports, Pace::careful, kCarefulSteps, iterations);
   if (by_both.converged && (apart ? by_both.gap < answer.gap : by_both.at.g >= answer.at.g - kGrowth * scale_)) {
     if (!apart) by_both.gap = std::max(0.0, upper - by_both.at.g);
     return by_both;
@@ -311,28 +311,42 @@ NormBodyPair::Answer NormBodyPair::polished(const Answer& answer, int& iteration
   return better;
 }
 
-NormBodyPair::Answer NormBodyPair::newton(const Vector3d& start, int limit, int& iterations) const {
+NormBodyPair::Answer NormBodyPair::newton(const Vector3d& start, FirstElements first, int limit,
+                                          int& iterations) const {
+  if (flat_) {
+    Answer by_both = by_elements(start, first, Pace::brisk, std::min(kElementSteps, limit), iterations);
+    if (by_both.converged) return by_both;
+  }
   Answer fast = dual(start, Patience::little, std::min(kPatience, limit), iterations);
   if (fast.converged) return fast;
-  Answer by_both = by_elements(fast.at.n, Pace::brisk, std::min(kElementSteps, limit), iterations);
+  Answer by_both =
+      by_elements(fast.at.n, FirstElements::supports, Pace::brisk, std::min(kElementSteps, limit), iterations);
   if (by_both.converged) return by_both;
   Answer slow = dual(fast.at.n, Patience::all, std::min(kMorePatience, limit), iterations);
   if (slow.converged) return slow;
-  const Answer careful =
-      by_elements(slow.at.n, Pace::careful, limit < kCarefulSteps / 2 ? 2 * limit : kCarefulSteps, iterations);
+  const Answer careful = by_elements(slow.at.n, FirstElements::supports, Pace::careful,
+                                     limit < kCarefulSteps / 2 ? 2 * limit : kCarefulSteps, iterations);
   return careful.converged ? careful : slow;
 }
 
 NormBodyPair::Answer NormBodyPair::solve(const Vector3d& start, const Vector3d& cold, Penetration penetration,
                                          int max_iterations, int& iterations) const {
   const int limit = std::max(1, max_iterations);
-  Answer best = newton(start, limit, iterations);
+  const bool is_cold = start == cold;
+  Answer best = newton(start, is_cold ? FirstElements::ellipsoids : FirstElements::supports, limit, iterations);
   if (ends(best, penetration)) return best;
   // From a normal that is far off, bodies that are apart may end where g < 0 too, or nowhere.
-  if (start != cold) {
-    Answer from_cold = newton(cold, limit, iterations);
+  if (!is_cold) {
+    Answer from_cold = newton(cold, FirstElements::ellipsoids, limit, iterations);
     if (ends(from_cold, penetration)) return from_cold;
     if (from_cold.at.g > best.at.g) best = from_cold;
+  }
+  if (flat_) {
+    // Of two maxima nearly as high the search may keep the one it begins at: it begins at the highest of those found.
+    const Answer other =
+        by_elements(cold, FirstElements::supports, Pace::brisk, std::min(kElementSteps, limit), iterations);
+    if (ends(other, penetration)) return other;
+    if (other.converged && other.at.g > best.at.g) best = other;
   }
   const Answer found = search(best.at.n, iterations);
   return found.converged ? polished(found, iterations) : found;

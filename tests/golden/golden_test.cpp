@@ -32,7 +32,7 @@ using ed_test::State;
 constexpr std::uint64_t kCollisions = 10000;
 
 /// Of which the hashes below are.
-static_assert(ed::internal::kArithmetic == 12);
+static_assert(ed::internal::kArithmetic == 13);
 
 std::string fingerprint() {
 #if !defined(__x86_64__)

@@ -225,6 +225,18 @@ TEST(Penetration, OfPairsThatOnceEndedOnASaddle) {
   EXPECT_GE(balls.distance, geom_test::lower_bound(cases[0].a, Pose(), cases[0].b, Pose(), diagonal) - 1e-14);
 }
 
+/// Two maxima 3e-11 of the size apart, less than the search tells apart by itself.
+TEST(Penetration, IsThatOfTheHigherOfTwoMaximaNearlyAsHigh) {
+  const Superellipsoid shape({1, 1.1947380988778979, 1.943863501793508}, 1.3, 0.7);
+  const Pose X_WA = Pose::from_quaternion(0.75636241671830473, 0.56841484044565505, -0.035243695167228167,
+                                          -0.3218358986939549, Vector3d::Zero());
+  const Pose X_WB =
+      Pose::from_quaternion(0.089792008734208589, 0.83775357117765537, 0.5160326611342525, -0.15432641312900033,
+                            {-1.2086495724833675, -2.4702103496621111, 1.0315437315276796});
+  const DistanceResult r = distance(shape, X_WA, shape, X_WB);
+  EXPECT_NEAR(r.distance, -0.0068317093659207, 1e-14);
+}
+
 struct LocalTally {
   long pairs = 0;
   long deep = 0;      ///< deeper than what is certified: the shortest way out needs the search over all normals

@@ -15,6 +15,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <utility>
 
 namespace geom::internal {
 namespace {
@@ -25,77 +27,101 @@ using geom_test::any_exponent;
 using geom_test::PairSet;
 using geom_test::Random;
 
-constexpr LaneBits kNo{0, 0};
-constexpr LaneBits kYes = ~kNo;
+constexpr LaneBits kNone{0, 0};
+constexpr ArcBits kNo{kNone, kNone};
+constexpr ArcBits kYes{~kNone, ~kNone};
 
-/// `arc` is a point of |w|^p = 1 with the gradient there, in lane k.
-void expect_on_curve(const Arc& arc, double e, int k) {
-  const double p = 2 / e;
-  ASSERT_NEAR(std::pow(arc.w0[k], p) + std::pow(arc.w1[k], p), 1, 4e-16 * (1 + p));
-  ASSERT_NEAR(arc.m0[k], std::pow(arc.w0[k], p - 1), 4e-16 * (1 + p));
-  ASSERT_NEAR(arc.m1[k], std::pow(arc.w1[k], p - 1), 4e-16 * (1 + p));
-  ASSERT_NEAR(arc.w0[k] * arc.m0[k] + arc.w1[k] * arc.m1[k], 1, 1e-15);
+/// Of one body's lane of one arc, what the tests below look at.
+struct Arc {
+  double w0, w1, m0, m1, flat0, flat1;
+};
+
+/// The four of both bodies.
+std::array<Arc, 4> each(const Arcs& arcs) {
+  const auto of = [&arcs](Lanes ArcLanes::*level, int k) {
+    return Arc{(arcs.w0.*level)[k], (arcs.w1.*level)[k],    (arcs.m0.*level)[k],
+               (arcs.m1.*level)[k], (arcs.flat0.*level)[k], (arcs.flat1.*level)[k]};
+  };
+  return {of(&ArcLanes::inner, 0), of(&ArcLanes::inner, 1), of(&ArcLanes::outer, 0), of(&ArcLanes::outer, 1)};
 }
 
-TEST(Arc, IsOnTheCurveOfPointsOrOfGradients) {
+ArcLanes of_four(const std::array<double, 4>& v) {
+  return {Lanes{v[0], v[1]}, Lanes{v[2], v[3]}};
+}
+
+/// `arc` is a point of |w|^p = 1 with the gradient there.
+void expect_on_curve(const Arc& arc, double e) {
+  const double p = 2 / e;
+  ASSERT_NEAR(std::pow(arc.w0, p) + std::pow(arc.w1, p), 1, 4e-16 * (1 + p));
+  ASSERT_NEAR(arc.m0, std::pow(arc.w0, p - 1), 4e-16 * (1 + p));
+  ASSERT_NEAR(arc.m1, std::pow(arc.w1, p - 1), 4e-16 * (1 + p));
+  ASSERT_NEAR(arc.w0 * arc.m0 + arc.w1 * arc.m1, 1, 1e-15);
+}
+
+TEST(ArcFamily, MakesArcsOfPointsOrOfGradients) {
   Random random(1);
-  for (int k = 0; k < 20000; ++k) {
-    const Lanes e{any_exponent(random), random.uniform(kMinExponent, kMaxExponent)};
-    const ArcFamily family(e);
-    const Lanes u{random.log_uniform(1e-3, 1e3), 1};
-    const Lanes v{1, random.log_uniform(1e-3, 1e3)};
-    const Arc of_points = family.arc(u, v, kYes);
-    const Arc of_gradients = family.arc(u, v, kNo);
-    for (const int lane : {0, 1}) {
-      expect_on_curve(of_points, e[lane], lane);
-      expect_on_curve(of_gradients, e[lane], lane);
-      const double ratio = u[lane] / v[lane];
-      ASSERT_NEAR(of_points.w0[lane] / of_points.w1[lane], ratio, 1e-14 * ratio);
-      ASSERT_NEAR(of_gradients.m0[lane] / of_gradients.m1[lane], ratio, 1e-14 * ratio);
-      if (of_points.w0[lane] > 1e-8) {
-        ASSERT_NEAR(of_points.flat0[lane] * of_points.m0[lane], of_points.w0[lane], 1e-13 * of_points.w0[lane]);
+  for (int k = 0; k < 10000; ++k) {
+    std::array<double, 4> e, u, v;
+    for (std::size_t i = 0; i < 4; ++i) {
+      e[i] = i % 2 == 0 ? any_exponent(random) : random.uniform(kMinExponent, kMaxExponent);
+      u[i] = random.log_uniform(1e-3, 1e3);
+      v[i] = 1;
+      if (i % 2 == 1) std::swap(u[i], v[i]);
+    }
+    const ArcFamily family(of_four(e));
+    const std::array<Arc, 4> of_points = each(family.arcs(of_four(u), of_four(v), kYes));
+    const std::array<Arc, 4> of_gradients = each(family.arcs(of_four(u), of_four(v), kNo));
+    for (std::size_t i = 0; i < 4; ++i) {
+      expect_on_curve(of_points[i], e[i]);
+      expect_on_curve(of_gradients[i], e[i]);
+      const double ratio = u[i] / v[i];
+      ASSERT_NEAR(of_points[i].w0 / of_points[i].w1, ratio, 1e-14 * ratio);
+      ASSERT_NEAR(of_gradients[i].m0 / of_gradients[i].m1, ratio, 1e-14 * ratio);
+      if (of_points[i].w0 > 1e-8) {
+        ASSERT_NEAR(of_points[i].flat0 * of_points[i].m0, of_points[i].w0, 1e-13 * of_points[i].w0);
       }
     }
   }
 }
 
 /// On an axis the other component of the point and that of the gradient vanish; their quotient is huge or zero.
-TEST(Arc, EndsOnTheAxes) {
-  const ArcFamily family(Lanes{0.5, 1.5});
-  for (const LaneBits of_points : {kNo, kYes}) {
-    const Arc arc = family.arc(both(1), both(0), of_points);
-    for (const int lane : {0, 1}) {
-      EXPECT_EQ(arc.w0[lane], 1);
-      EXPECT_EQ(arc.m0[lane], 1);
-      EXPECT_LT(arc.w1[lane], 1e-100);
-      EXPECT_LT(arc.m1[lane], 1e-100);
-      EXPECT_TRUE(std::isfinite(arc.flat1[lane]));
+TEST(ArcFamily, EndsOnTheAxes) {
+  const ArcFamily family(ArcLanes(Lanes{0.5, 1.5}, Lanes{1.5, 0.5}));
+  for (const ArcBits of_points : {kNo, kYes}) {
+    const std::array<Arc, 4> arcs = each(family.arcs(1, 0, of_points));
+    for (const Arc& arc : arcs) {
+      EXPECT_EQ(arc.w0, 1);
+      EXPECT_EQ(arc.m0, 1);
+      EXPECT_LT(arc.w1, 1e-100);
+      EXPECT_LT(arc.m1, 1e-100);
+      EXPECT_TRUE(std::isfinite(arc.flat1));
     }
-    EXPECT_GT(arc.flat1[0], 1e15);
-    EXPECT_LT(arc.flat1[1], 1e-15);
+    for (const std::size_t steep : {0, 3}) EXPECT_GT(arcs[steep].flat1, 1e15);
+    for (const std::size_t pointed : {1, 2}) EXPECT_LT(arcs[pointed].flat1, 1e-15);
   }
 }
 
 /// For p = 2, and nearly so for p about 2, a face is no flatter than a ball, and a vertex as round, also where a
 /// component is lost.
-TEST(Arc, OfEllipsesIsRoundOnTheAxes) {
+TEST(ArcFamily, OfEllipsesIsRoundOnTheAxes) {
   for (const double e : {0.98, 0.999999, 1.0, 1 + 1e-15, 1.000001, 1.001}) {
-    const ArcFamily family(both(e));
+    const ArcFamily family(e);
     for (const double ratio : {0.0, 1e-40, 1e-30, 1e-21, 1e-19, 1e-5}) {
-      for (const LaneBits of_points : {kNo, kYes}) {
-        const Arc arc = family.arc(both(1), both(ratio), of_points);
-        EXPECT_NEAR(arc.flat0[0], 1, 1e-9) << e << ", " << ratio;
-        EXPECT_GT(arc.flat1[0], 0.9) << e << ", " << ratio;
-        EXPECT_LT(arc.flat1[0], 10) << e << ", " << ratio;
-        if (e == 1) {
-          EXPECT_NEAR(arc.flat1[0], 1, 1e-13) << ratio;
+      for (const ArcBits of_points : {kNo, kYes}) {
+        for (const Arc& arc : each(family.arcs(1, ratio, of_points))) {
+          EXPECT_NEAR(arc.flat0, 1, 1e-9) << e << ", " << ratio;
+          EXPECT_GT(arc.flat1, 0.9) << e << ", " << ratio;
+          EXPECT_LT(arc.flat1, 10) << e << ", " << ratio;
+          if (e == 1) {
+            EXPECT_NEAR(arc.flat1, 1, 1e-13) << ratio;
+          }
         }
       }
     }
   }
 }
 
-TEST(Arc, ChangesOverWhereItSays) {
+TEST(ArcFamily, ChangesOverWhereItSays) {
   EXPECT_EQ(std::log(ArcFamily::kKnee), ArcFamily::kLogKnee);
 }
 
@@ -115,6 +141,12 @@ SomePair some_pair(Random& random, double least_e, double most_e) {
   const Matrix3d R_a = random.pose(0).rotation();
   const Matrix3d R_b = random.pose(0).rotation();
   return {a, b, R_a, R_b, NormBodies(NormShape(a), R_a, NormShape(b), R_b)};
+}
+
+ContactElements::Element moved(const ContactElements& elements, ContactElements::Element e, const LaneVector& step,
+                               const Vector3d& n) {
+  elements.move(e, step, n);
+  return e;
 }
 
 TEST(ContactElements, AreTheSupportPointsWithTheirHessians) {
@@ -154,7 +186,7 @@ void expect_on_surface(const Superellipsoid& shape, const Matrix3d& R, const Vec
   ASSERT_LT(std::min(off_normal, off_point), 1e-13);
 }
 
-/// By a step that does not fit the turn, and across axes: wherever an element goes, it is one of the surface.
+/// By a step that does not fit the turn, and across axes: wherever an element goes or begins, it is one of the surface.
 TEST(ContactElements, StayOnTheSurfaces) {
   Random random(3);
   for (int k = 0; k < 20000; ++k) {
@@ -164,9 +196,10 @@ TEST(ContactElements, StayOnTheSurfaces) {
     const LaneVector step = LaneVector::of(random.log_uniform(1e-9, 1) * random.direction(),
                                            random.log_uniform(1e-9, 1) * random.direction());
     const Vector3d n = (from.normal.a() + random.log_uniform(1e-9, 1) * random.direction()).normalized();
-    const ContactElements::Element to = elements.moved(from, step, n);
-    expect_on_surface(pair.a, pair.R_a, to.point.a(), to.normal.a());
-    expect_on_surface(pair.b, pair.R_b, to.point.b(), to.normal.b());
+    for (const auto& e : {moved(elements, from, step, n), elements.at_ellipsoids(n)}) {
+      expect_on_surface(pair.a, pair.R_a, e.point.a(), e.normal.a());
+      expect_on_surface(pair.b, pair.R_b, e.point.b(), e.normal.b());
+    }
   }
 }
 
@@ -188,7 +221,7 @@ TEST(ContactElements, MoveToFirstOrder) {
       const LaneVector by_lane = LaneVector::of(delta, -delta);
       const LaneVector step = from.t1.dot(by_lane) * from.t1 + from.t2.dot(by_lane) * from.t2;
       const Vector3d turned = (n + delta).normalized();
-      const ContactElements::Element to = elements.moved(from, step, turned);
+      const ContactElements::Element to = moved(elements, from, step, turned);
       const NormBodies::Support s = pair.bodies.support(turned);
       return std::max({(to.normal.a() - turned).norm(), (to.normal.b() + turned).norm(),
                        (to.point.a() - s.point.a()).norm(), (to.point.b() - s.point.b()).norm()});
@@ -205,14 +238,15 @@ TEST(ContactElements, CrossTheAxes) {
   const Superellipsoid ball({1, 1, 1}, 1, 1);
   const NormBodies bodies(NormShape(box), Matrix3d::Identity(), NormShape(ball), Matrix3d::Identity());
   const ContactElements elements(bodies);
-  // The face z = 1 at x = 0.1, y = 0.2: m = w^4.
-  const Vector3d n = Vector3d(1e-4, 16e-4, 1).normalized();
+  // The face z = 1 at x = 0.05, y = 0.2: m = w^4.
+  const Vector3d n = Vector3d(0.0625e-4, 16e-4, 1).normalized();
   const ContactElements::Element from = elements.at(n);
-  ASSERT_NEAR(from.point.a().x(), 0.1, 1e-4);
-  const ContactElements::Element to =
-      elements.moved(from, LaneVector::of({-0.15, 0, 0}, Vector3d::Zero()), Vector3d(0, 16e-4, 1).normalized());
-  EXPECT_NEAR(to.point.a().x(), -0.05, 1e-4);
-  EXPECT_NEAR(to.point.a().y(), 0.2, 1e-4);
+  ASSERT_NEAR(from.point.a().x(), 0.05, 1e-4);
+  const ContactElements::Element to = moved(elements, from, LaneVector::of({-0.08, 0, 0}, Vector3d::Zero()),
+                                            Vector3d(-0.0081e-4, 16e-4, 1).normalized());
+  // To first order: the tangent of N2 at (0.05, 0.2) changes by 3e-4 over that step, N2 does not.
+  EXPECT_NEAR(to.point.a().x(), -0.03, 1e-4);
+  EXPECT_NEAR(to.point.a().y(), 0.2, 4e-4);
   EXPECT_LT(to.normal.a().x(), 0);
   expect_on_surface(box, Matrix3d::Identity(), to.point.a(), to.normal.a());
 }
@@ -245,7 +279,7 @@ TEST(ContactElements, CrossTheAxesOfEveryFace) {
       ASSERT_LT((from.point.a() - start).norm(), 1e-3);
       const Vector3d step = target - start;
       // B's element is that of -n, at -x.
-      const ContactElements::Element to = elements.moved(from, LaneVector::of(step, -step), normal_at(target));
+      const ContactElements::Element to = moved(elements, from, LaneVector::of(step, -step), normal_at(target));
       const auto where = [&] { return testing::Message() << "face " << face << ", from " << start.transpose(); };
       EXPECT_LT((to.point.a() - target).norm(), 1e-3) << where();
       EXPECT_LT((to.point.b() + target).norm(), 1e-3) << where();
@@ -287,6 +321,9 @@ Query query(PairSet set, double e1, double e2, double gap, Random& random) {
 constexpr std::array kSets{PairSet::random_normal, PairSet::random_point, PairSet::aligned, PairSet::edges,
                            PairSet::faces};
 
+using FirstElements = NormBodyPair::FirstElements;
+constexpr std::array kFirsts{FirstElements::supports, FirstElements::ellipsoids};
+
 struct PaceTraits {
   NormBodyPair::Pace pace;
   int steps;
@@ -298,7 +335,7 @@ constexpr std::array kPaces{PaceTraits{NormBodyPair::Pace::brisk, 24, 9, 1e-14, 
                             PaceTraits{NormBodyPair::Pace::careful, 100, 30, kBoundGap, kBoundGap}};
 
 /// From cold, in few steps: where edges or faces meet the dual method takes tens of them, or none helps.
-void expect_distances(PairSet set, const PaceTraits& traits) {
+void expect_distances(PairSet set, FirstElements first, const PaceTraits& traits) {
   Random random(5);
   int declined = 0;
   int iterations = 0;
@@ -311,7 +348,8 @@ void expect_distances(PairSet set, const PaceTraits& traits) {
     const bool round = std::max(e1, e2) <= 1 && std::min(e1, e2) >= 0.7;
     const double gap = random.log_uniform(1e-6, 1);
     const Query q = query(set, e1, e2, gap, random);
-    const NormBodyPair::Answer answer = q.pair.by_elements(q.pair.cold_normal(), traits.pace, traits.steps, iterations);
+    const NormBodyPair::Answer answer =
+        q.pair.by_elements(q.pair.cold_normal(), first, traits.pace, traits.steps, iterations);
     if (!answer.converged) {
       ++declined;
       continue;
@@ -333,9 +371,12 @@ void expect_distances(PairSet set, const PaceTraits& traits) {
 
 TEST(ContactElements, ConvergeToTheDistance) {
   for (const PairSet set : kSets) {
-    for (const PaceTraits& traits : kPaces) {
-      SCOPED_TRACE(testing::Message() << "set " << static_cast<int>(set) << ", up to " << traits.steps << " steps");
-      expect_distances(set, traits);
+    for (const FirstElements first : kFirsts) {
+      for (const PaceTraits& traits : kPaces) {
+        SCOPED_TRACE(testing::Message() << "set " << static_cast<int>(set) << ", first " << static_cast<int>(first)
+                                        << ", up to " << traits.steps << " steps");
+        expect_distances(set, first, traits);
+      }
     }
   }
 }
@@ -373,56 +414,65 @@ double plane_distance(const geom_test::Orientation& o, const Vector3d& n) {
 /// No normal nearby is better: the depth is a local minimum. Where vertices meet (`faces` for exponents above 1) a few
 /// pairs have a lower one within 1e-3, across an axis plane; theirs are local minima all the same, to second order and
 /// as far as the plane.
+void expect_local_depths(PairSet set, FirstElements first) {
+  Random random(1);
+  int declined = 0;
+  int beside_others = 0;
+  int iterations = 0;
+  constexpr int kPairs = 8000;
+  for (int k = 0; k < kPairs; ++k) {
+    const double e1 = any_exponent(random);
+    const double e2 = any_exponent(random);
+    const double depth = random.log_uniform(1e-6, 0.1);
+    const Query q = query(set, e1, e2, -depth, random);
+    const NormBodyPair::Answer answer =
+        q.pair.by_elements(q.pair.cold_normal(), first, NormBodyPair::Pace::brisk, 24, iterations);
+    if (!answer.converged) {
+      ++declined;
+      continue;
+    }
+    ASSERT_LT(answer.at.g, 0);
+    const double gain = gain_nearby(q, answer, 1e-3, random);
+    ASSERT_FALSE(std::isnan(gain));
+    if (gain <= 4e-14) continue;
+    ++beside_others;
+    const double to_plane = plane_distance(q.o, answer.at.n);
+    ASSERT_GT(to_plane, 1e-6);
+    ASSERT_LE(gain_nearby(q, answer, 0.3 * to_plane, random), 4e-15);
+    ASSERT_GT(curvature(q, answer.at.n), 1e-6);
+  }
+  EXPECT_LE(declined, kPairs / 50) << "set " << static_cast<int>(set);
+  EXPECT_LE(beside_others, set == PairSet::faces ? 3 : 0) << "set " << static_cast<int>(set);
+}
+
 TEST(ContactElements, ConvergeToALocalDepth) {
   for (const PairSet set : kSets) {
-    Random random(1);
-    int declined = 0;
-    int beside_others = 0;
-    int iterations = 0;
-    constexpr int kPairs = 8000;
-    for (int k = 0; k < kPairs; ++k) {
-      const double e1 = any_exponent(random);
-      const double e2 = any_exponent(random);
-      const double depth = random.log_uniform(1e-6, 0.1);
-      const Query q = query(set, e1, e2, -depth, random);
-      const NormBodyPair::Answer answer =
-          q.pair.by_elements(q.pair.cold_normal(), NormBodyPair::Pace::brisk, 24, iterations);
-      if (!answer.converged) {
-        ++declined;
-        continue;
-      }
-      ASSERT_LT(answer.at.g, 0);
-      const double gain = gain_nearby(q, answer, 1e-3, random);
-      ASSERT_FALSE(std::isnan(gain));
-      if (gain <= 4e-14) continue;
-      ++beside_others;
-      const double to_plane = plane_distance(q.o, answer.at.n);
-      ASSERT_GT(to_plane, 1e-6);
-      ASSERT_LE(gain_nearby(q, answer, 0.3 * to_plane, random), 4e-15);
-      ASSERT_GT(curvature(q, answer.at.n), 1e-6);
+    for (const FirstElements first : kFirsts) {
+      SCOPED_TRACE(testing::Message() << "first " << static_cast<int>(first));
+      expect_local_depths(set, first);
     }
-    EXPECT_LE(declined, kPairs / 50) << "set " << static_cast<int>(set);
-    EXPECT_LE(beside_others, set == PairSet::faces ? 3 : 0) << "set " << static_cast<int>(set);
   }
 }
 
 /// Whether it has converged or not, an answer's g is that of its normal.
 TEST(ContactElements, GiveANormalWithEveryBound) {
-  Random random(8);
-  int unconverged = 0;
-  int iterations = 0;
-  for (int k = 0; k < 4000; ++k) {
-    const double e2 = any_exponent(random);
-    const double gap = random.log_uniform(1e-6, 1);
-    const Query q = query(PairSet::edges, 0.2, e2, gap, random);
-    const NormBodyPair::Answer answer =
-        q.pair.by_elements(q.pair.cold_normal(), NormBodyPair::Pace::brisk, 4 + k % 8, iterations);
-    ASSERT_NEAR(answer.at.n.norm(), 1, 1e-15);
-    if (answer.converged || std::isinf(answer.at.g)) continue;
-    ++unconverged;
-    ASSERT_NEAR(q.pair.sample(answer.at.n).g, answer.at.g, 1e-14 * q.pair.scale());
+  for (const FirstElements first : kFirsts) {
+    Random random(8);
+    int unconverged = 0;
+    int iterations = 0;
+    for (int k = 0; k < 4000; ++k) {
+      const double e2 = any_exponent(random);
+      const double gap = random.log_uniform(1e-6, 1);
+      const Query q = query(PairSet::edges, 0.2, e2, gap, random);
+      const NormBodyPair::Answer answer =
+          q.pair.by_elements(q.pair.cold_normal(), first, NormBodyPair::Pace::brisk, 4 + k % 8, iterations);
+      ASSERT_NEAR(answer.at.n.norm(), 1, 1e-15);
+      if (answer.converged || std::isinf(answer.at.g)) continue;
+      ++unconverged;
+      ASSERT_NEAR(q.pair.sample(answer.at.n).g, answer.at.g, 1e-14 * q.pair.scale());
+    }
+    EXPECT_GT(unconverged, 20) << "first " << static_cast<int>(first);
   }
-  EXPECT_GT(unconverged, 20);
 }
 
 /// A ball in an octahedron, on its axis: the way out along that, over the vertex, is stationary by symmetry, and the
@@ -434,8 +484,10 @@ TEST(ContactElements, DoNotStopOnASaddle) {
   const NormBodyPair pair(
       NormBodies(NormShape(ball), Matrix3d::Identity(), NormShape(octahedron), Matrix3d::Identity()), r, 2,
       1 + octahedron.inscribed_radius());
-  int iterations = 0;
-  EXPECT_FALSE(pair.by_elements(Vector3d::UnitZ(), NormBodyPair::Pace::brisk, 24, iterations).converged);
+  for (const FirstElements first : kFirsts) {
+    int iterations = 0;
+    EXPECT_FALSE(pair.by_elements(Vector3d::UnitZ(), first, NormBodyPair::Pace::brisk, 24, iterations).converged);
+  }
   const DistanceResult result =
       distance(ball, Pose(), octahedron, Pose::translation(r), {.penetration = Penetration::local});
   EXPECT_EQ(result.status, DistanceStatus::overlapping);
@@ -451,9 +503,11 @@ TEST(ContactElements, ConvergeInShorterSteps) {
   for (int k = 0; k < 20000; ++k) {
     const Query q = query(PairSet::edges, 0.2, 0.2, random.log_uniform(1e-6, 1), random);
     const Vector3d start = q.pair.cold_normal();
-    if (q.pair.by_elements(start, NormBodyPair::Pace::brisk, 24, iterations).converged) continue;
+    if (q.pair.by_elements(start, FirstElements::supports, NormBodyPair::Pace::brisk, 24, iterations).converged)
+      continue;
     ++hard;
-    declined += !q.pair.by_elements(start, NormBodyPair::Pace::careful, 100, iterations).converged;
+    declined +=
+        !q.pair.by_elements(start, FirstElements::supports, NormBodyPair::Pace::careful, 100, iterations).converged;
   }
   EXPECT_GT(hard, 50);
   EXPECT_LE(declined, hard / 4);

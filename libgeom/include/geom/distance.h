@@ -42,7 +42,7 @@ struct DistanceOptions {
   /// Warm start: a guess of the normal from A to B, for instance the last answer's. Any length from 1e-145 to 1e150;
   /// else, also if it is not finite: cold start.
   Eigen::Vector3d start = Eigen::Vector3d::Zero();
-  /// Evaluations of the pair from each start, >= 1; superellipsoids: by each method, by the last one twice as many. The
+  /// Evaluations of the pair from each start, >= 1; superellipsoids: by each attempt, by the last one twice as many. The
   /// fallback's are not counted.
   int max_iterations = kMaxIterations;
   Penetration penetration = Penetration::global;
@@ -109,8 +109,8 @@ DistanceResult distance(const ShapeA& a, const Pose& X_WA, const ShapeB& b, cons
 GEOM_EXPORT DistanceResult distance(const Ellipsoid& a, const Pose& X_WA, const Ellipsoid& b, const Pose& X_WB,
                                     const DistanceOptions& options = {});
 
-/// The same where a body is a superellipsoid: Newton's method on the sphere with steps made on flat faces, then that of
-/// contact elements, surface points with their normals (internal/norm_body_pair.h).
+/// The same where a body is a superellipsoid: Newton's method of contact elements, surface points with their normals;
+/// where no exponent is about 1 or less that on the sphere goes first (internal/norm_body_pair.h).
 ///
 /// Answers are certified by two bounds, g(n) from below and the distance of two points from above, that differ by less
 /// than kBoundGap (1e-12) of the sum of both bounding radii. `error_bound` tells. Overlaps are searched as above. Where

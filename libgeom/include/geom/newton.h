@@ -108,7 +108,7 @@ template <SupportShape ShapeA, SupportShape ShapeB>
 WitnessPair normal_seed(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const Pose& X_WB, const Eigen::Vector3d& n);
 
 /// The witness points of `distance`; declined where that declines. Takes what that takes, 0.2 to 0.3 microseconds for
-/// ellipsoids, 1 to 4 for superellipsoids. Newton's method converges from these points for all pairs of ellipsoids; of
+/// ellipsoids, 1 to 3 for superellipsoids. Newton's method converges from these points for all pairs of ellipsoids; of
 /// superellipsoids for 99.99 % and more with eight equations and 99.97 % with five.
 template <SupportShape ShapeA, SupportShape ShapeB>
 WitnessPair dual_seed(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const Pose& X_WB);

@@ -4,15 +4,14 @@
 /// faces or edges: superellipsoids, and ellipsoids beside them.
 ///
 /// Where a face is nearly flat its support point runs across it while n hardly turns, and Newton's step of n
-/// overshoots. The remedies, each tried only where the one before has not ended:
+/// overshoots. The methods, each tried only where the one before has not ended:
 ///
-/// 1. Dual Newton (see internal/dual_newton.h), each step of which may, where a body has faces, be a *retraction*: the
-///    step is made with the support point of the flatter body, s + H delta, where the problem is well scaled, and the
-///    normal is read there.
-/// 2. Newton's method of both bodies' contact elements (src/contact_elements.h), points of the surfaces with their
-///    normals, which need not be those of n before it has converged: on a face a step is made by the point, on an edge
-///    by the normal. One random pair in twenty needs it, of those whose edges meet half, at e = 0.2 nearly all.
-/// 3. Dual Newton to its end, and contact elements in shorter steps: where edges of e = 0.2 meet, 1 in 100.
+/// 1. Where an exponent is up to 1, so that a body may have faces: Newton's method of both bodies' contact elements
+///    (src/contact_elements.h), points of the surfaces with their normals, which need not be those of n before it has
+///    converged: on a face a step is made by the point, on an edge by the normal. All but 1 in 90 end here.
+/// 2. Dual Newton (see internal/dual_newton.h) while its steps are good, which are made with the support point of the
+///    flatter body, s + H delta, where it has faces, and n read there: a *retraction*. Then elements from where it is.
+/// 3. Dual Newton to its end, and elements in shorter steps: where edges of e = 0.2 meet, 1 in 200.
 /// 4. Branch and bound over all normals (internal/sphere_search.h): slow, and with whatever bounds it has at its limit
 ///    of evaluations.
 ///
@@ -99,8 +98,13 @@ class GEOM_EXPORT NormBodyPair {
     brisk,   ///< the steps that take the least time on average
     careful  ///< shorter ones, which mostly end where those have not
   };
+  enum class FirstElements {
+    supports,   ///< the bodies' support points at a normal that is nearly right
+    ellipsoids  ///< about where those of their ellipsoids are, and a normal between theirs
+  };
   /// The answer's sample is its normal and g alone; both are worth something only where it has converged.
-  Answer by_elements(const Eigen::Vector3d& start, Pace pace, int max_iterations, int& iterations) const;
+  Answer by_elements(const Eigen::Vector3d& start, FirstElements first, Pace pace, int max_iterations,
+                     int& iterations) const;
   /// All methods, each where the one before has not ended; `cold`: of cold_normal().
   Answer solve(const Eigen::Vector3d& start, const Eigen::Vector3d& cold, Penetration penetration, int max_iterations,
                int& iterations) const;
@@ -117,8 +121,8 @@ class GEOM_EXPORT NormBodyPair {
   /// Least eigenvalue that is kept in Newton's matrix, over the sum of both inscribed radii. Faces and edges leave
   /// none; with more than this steps towards them are too short, with less they run away.
   static constexpr double kFloor = 5e-4;
-  /// Bodies whose exponents are all above have no faces, only vertices: Newton's own step is as good as a retraction,
-  /// and cheaper.
+  /// Bodies whose exponents are all above have no faces, only vertices: the dual method is fast, and Newton's own step
+  /// as good as a retraction, and cheaper.
   static constexpr double kRound = 1.01;
 
   /// S + g I across n, its smallest eigenvalue kept above a floor.
@@ -136,7 +140,7 @@ class GEOM_EXPORT NormBodyPair {
   /// A unit vector across s.n along which g bends upwards by more than `rounding` / rad^2; zero if there is none.
   Eigen::Vector3d upward(const DualSample& s, double rounding) const;
   /// All but branch and bound.
-  Answer newton(const Eigen::Vector3d& start, int limit, int& iterations) const;
+  Answer newton(const Eigen::Vector3d& start, FirstElements first, int limit, int& iterations) const;
   void place_points(const Step& step, Answer& answer) const;
   bool ends(const Answer& answer, Penetration penetration) const;
   /// Whether a point that both bodies hold is found, between the witness points or the centres.
@@ -154,7 +158,7 @@ class GEOM_EXPORT NormBodyPair {
   Eigen::Vector3d r_;
   double scale_;
   double floor_;  ///< least eigenvalue of Newton's matrix
-  bool flat_;     ///< retractions save steps
+  bool flat_;     ///< an exponent is below kRound: elements go first, and retractions save steps
 };
 
 }  // namespace geom::internal
