@@ -53,11 +53,11 @@ void ContactElements::set(Element& e, const Arcs& arcs, const LaneVector& sign) 
   const LaneVector m{m0 * arcs.m0.inner, m0 * arcs.m1.inner, arcs.m1.outer};  // grad N without signs
   const LaneVector axes = product(bodies_.semi_axes(), sign);
   const LaneVector along_n = product(product(bodies_.inverse_semi_axes(), sign), m);
-  e.by_height = sqrt(along_n.dot(along_n));
-  e.normal = bodies_.rotation() * ((1 / e.by_height) * along_n);
+  const Lanes by_height = sqrt(along_n.dot(along_n));
+  e.normal = bodies_.rotation() * ((1 / by_height) * along_n);
   e.point = bodies_.rotation() * product(axes, e.w);
   // t1 and t2 as LaneNorm::curved has them of the dual norm, at m, where it is 1; its Hessian goes with 1/|m|.
-  const Lanes scale = e.by_height * arcs.flat0.outer;
+  const Lanes scale = by_height * arcs.flat0.outer;
   const ArcLanes k = sqrt(ArcLanes(scale * arcs.flat0.inner, scale) * family_.by_minus_one() * arcs.flat1);
   e.t1 = bodies_.rotation() * product(axes, {k.inner * arcs.m1.inner, -k.inner * arcs.m0.inner, both(0)});
   const Lanes k_z = k.outer * arcs.m1.outer;
@@ -83,7 +83,7 @@ ContactElements::Element ContactElements::at_ellipsoids(const Vector3d& n) const
 void ContactElements::move(Element& e, const LaneVector& step, const Vector3d& n) const {
   const LaneVector dw = product(bodies_.inverse_semi_axes(), bodies_.rotation().transposed_times(step));
   const LaneVector w = e.w + product(dw, e.sign);
-  const LaneVector m = e.by_height * product(bodies_.in_norm(n), e.sign);
+  const LaneVector m = product(bodies_.in_norm(n), e.sign);
   const LaneBits second = below(e.arcs.w0.inner, e.arcs.w1.inner);
   const LaneBits through = below(select(second, w.y, w.x), both(0)) & below(select(second, m.y, m.x), both(0));
   if (any(through)) [[unlikely]] {
@@ -163,6 +163,12 @@ ElementStep element_step(const Element& at, const Vector3d& n, const Vector3d& g
 struct Caps {
   double turn;
   double move;
+
+  /// Of a step whose turn and longest move have these squares. Roots wait for each other: most steps need none.
+  double fraction(double turn2, double move2) const {
+    if (turn2 <= turn * turn && move2 <= move * move) return 1;
+    return std::min({1.0, turn / std::sqrt(turn2), move / std::sqrt(move2)});
+  }
 };
 constexpr Caps kBrisk{0.35, 0.15};  // those of a half and of twice take as long
 constexpr Caps kCareful{0.1, 0.03};
@@ -218,10 +224,10 @@ NormBodyPair::Answer NormBodyPair::by_elements(const Vector3d& start, FirstEleme
       agreed = agree;
     }
     near = step.energy < kSmallEnergy * scale_;
-    const double fraction =
-        std::min({1.0, caps.turn / step.delta.norm(), caps.move * scale_ / std::sqrt(largest_move2)});
-    n = (n + fraction * step.delta).normalized();
-    elements.move(e, both(fraction) * step.moves, n);
+    const double fraction = caps.fraction(step.delta.squaredNorm(), largest_move2 / (scale_ * scale_));
+    n += fraction * step.delta;
+    elements.move(e, both(fraction) * step.moves, n);  // without waiting for its length
+    n.normalize();
   }
   // Around tips that nearly touch Newton's method can go in circles, with bounds as close as are promised.
   const bool to_promise = pace == Pace::careful && best.at.g > 0;

@@ -137,7 +137,6 @@ class ContactElements {
     LaneVector t1, t2;  ///< the Hessian of the support function at the normal is t1 t1^T + t2 t2^T
     LaneVector w;       ///< x/a, body axes, without signs
     LaneVector sign;    ///< of w, and of grad N there
-    Lanes by_height;    ///< 1 / support height
     Arcs arcs;
   };
 
@@ -146,7 +145,7 @@ class ContactElements {
   /// About where the support points of the ellipsoids with the same semi-axes are: on faces, where support points of
   /// superellipsoids are near the edges.
   Element at_ellipsoids(const Eigen::Vector3d& n) const;
-  /// Its point moves by `step` and its normal turns towards n (A) or -n (B).
+  /// Its point moves by `step` and its normal turns towards n (A) or -n (B), of any length.
   void move(Element& e, const LaneVector& step, const Eigen::Vector3d& n) const;
 
  private:
