@@ -32,6 +32,7 @@
 #include <map>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 namespace {
@@ -269,8 +270,7 @@ class KeepRuns : public benchmark::ConsoleReporter {
 };
 
 void print_ratios(const KeepRuns& runs) {
-  std::printf("\n%-14s %-6s | %26s %9s | %26s | %s\n", "us per query", "", "cold: us, evaluations,", "warm: us",
-              "FCL's GJK: us, worst, none", "FCL/cold");
+  bool headed = false;
   for (const NamedSet& set : kSets) {
     for (const double row : kRows) {
       const std::string cold = benchmark_name("cold", set.name, row);
@@ -278,6 +278,10 @@ void print_ratios(const KeepRuns& runs) {
       const std::string fcl = benchmark_name("fcl_gjk", set.name, row);
       const double us = runs.microseconds(cold);
       if (std::isnan(us)) continue;
+      if (!std::exchange(headed, true)) {
+        std::printf("\n%-14s %-6s | %26s %9s | %26s | %s\n", "us per query", "", "cold: us, evaluations,", "warm: us",
+                    "FCL's GJK: us, worst, none", "FCL/cold");
+      }
       std::printf("%-14s %-6s | %9.2f %6.1f %4g failed %9.2f", set.name, cold.substr(cold.find("e:", 20) + 2).c_str(),
                   us, runs.counter(cold, "iterations"), runs.counter(cold, "failures"), runs.microseconds(warm));
       if (std::isnan(runs.microseconds(fcl))) {
@@ -293,13 +297,16 @@ void print_ratios(const KeepRuns& runs) {
 }
 
 void print_overlaps(const KeepRuns& runs) {
-  std::printf("\n%-14s %-6s | %33s | %s\n", "us per overlap", "depth", "global: us, evaluations, failed",
-              "local: us, evaluations, failed, longer than known");
+  bool headed = false;
   for (const NamedSet& set : kSets) {
     for (const double depth : kDepths) {
       const std::string global = overlap_name("global", set.name, depth);
       const std::string local = overlap_name("local", set.name, depth);
       if (std::isnan(runs.microseconds(global)) || std::isnan(runs.microseconds(local))) continue;
+      if (!std::exchange(headed, true)) {
+        std::printf("\n%-14s %-6s | %33s | %s\n", "us per overlap", "depth", "global: us, evaluations, failed",
+                    "local: us, evaluations, failed, longer than known");
+      }
       std::printf("%-14s %-6g | %13.1f %13.1f %5g | %9.2f %7.1f %5g %5g\n", set.name, depth, runs.microseconds(global),
                   runs.counter(global, "iterations"), runs.counter(global, "failures"), runs.microseconds(local),
                   runs.counter(local, "iterations"), runs.counter(local, "failures"), runs.counter(local, "longer"));
