@@ -32,7 +32,7 @@ GEOM_EXPORT const char* to_string(DistanceStatus status);
 enum class Penetration {
   global,  ///< the shortest of all translations that part them
   /// The nearest stationary one (the paper's beta < 0), at any depth: cheap. That the bodies overlap is certain (by a
-  /// point that both hold), that no translation is shorter is not. Where no such point shows, in one of 4,000 deep
+  /// point that both hold), that no translation is shorter is not. Where no such point shows, in one of 5,000 deep
   /// overlaps (tests/property/geom_penetration_test.cpp), as `global`.
   local,
 };
@@ -42,7 +42,7 @@ struct DistanceOptions {
   /// Warm start: a guess of the normal from A to B, for instance the last answer's. Any length from 1e-145 to 1e150;
   /// else, also if it is not finite: cold start.
   Eigen::Vector3d start = Eigen::Vector3d::Zero();
-  /// Evaluations of the pair from each start, >= 1; superellipsoids: by each attempt, by the last one twice as many. The
+  /// Evaluations of the pair from each start, >= 1; superellipsoids: in each attempt, in the last twice as many. The
   /// fallback's are not counted.
   int max_iterations = kMaxIterations;
   Penetration penetration = Penetration::global;
