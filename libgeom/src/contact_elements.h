@@ -145,7 +145,7 @@ class ContactElements {
   /// About where the support points of the ellipsoids with the same semi-axes are: on faces, where support points of
   /// superellipsoids are near the edges.
   Element at_ellipsoids(const Eigen::Vector3d& n) const;
-  /// Its point moves by `step` and its normal turns towards n (A) or -n (B), of any length.
+  /// Moves the point of `e` by `step` and turns its normal towards n (A), -n (B); n of any length.
   void move(Element& e, const LaneVector& step, const Eigen::Vector3d& n) const;
 
  private:

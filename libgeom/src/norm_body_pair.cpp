@@ -313,7 +313,7 @@ NormBodyPair::Answer NormBodyPair::polished(const Answer& answer, int& iteration
 
 NormBodyPair::Answer NormBodyPair::newton(const Vector3d& start, FirstElements first, int limit,
                                           int& iterations) const {
-  if (flat_) {
+  if (both_flat_) {
     Answer by_both = by_elements(start, first, Pace::brisk, std::min(kElementSteps, limit), iterations);
     if (by_both.converged) return by_both;
   }
@@ -341,7 +341,7 @@ NormBodyPair::Answer NormBodyPair::solve(const Vector3d& start, const Vector3d& 
     if (ends(from_cold, penetration)) return from_cold;
     if (from_cold.at.g > best.at.g) best = from_cold;
   }
-  if (flat_) {
+  if (both_flat_) {
     // Of two maxima nearly as high the search may keep the one it begins at: it begins at the highest of those found.
     const Answer other =
         by_elements(cold, FirstElements::supports, Pace::brisk, std::min(kElementSteps, limit), iterations);

@@ -197,8 +197,7 @@ TEST(Penetration, OfSymmetricPairsIsNoSaddle) {
   }
   std::printf("%ld symmetric pairs, %ld declined; beaten by more than 1e-12 of the size: %ld, by %.1e at most\n",
               tally.pairs, tally.declined, tally.beaten, tally.worst);
-  // At edges and vertices, where g has no second derivatives, a few may remain; none of the 19,200 of the full run.
-  EXPECT_LE(tally.beaten, tally.pairs / 1000);
+  EXPECT_EQ(tally.beaten, 0);
   EXPECT_LE(tally.worst, kDepthGap);
 }
 

@@ -42,7 +42,7 @@ struct DistanceOptions {
   /// Warm start: a guess of the normal from A to B, for instance the last answer's. Any length from 1e-145 to 1e150;
   /// else, also if it is not finite: cold start.
   Eigen::Vector3d start = Eigen::Vector3d::Zero();
-  /// Evaluations of the pair from each start, >= 1; superellipsoids: in each attempt, in the last twice as many. The
+  /// Evaluations of the pair from each start, >= 1; superellipsoids: in each attempt, of short steps twice as many. The
   /// fallback's are not counted.
   int max_iterations = kMaxIterations;
   Penetration penetration = Penetration::global;
@@ -110,7 +110,8 @@ GEOM_EXPORT DistanceResult distance(const Ellipsoid& a, const Pose& X_WA, const 
                                     const DistanceOptions& options = {});
 
 /// The same where a body is a superellipsoid: Newton's method of contact elements, surface points with their normals;
-/// where no exponent is about 1 or less that on the sphere goes first (internal/norm_body_pair.h).
+/// where a body has no exponent of about 1 or less, or is an ellipsoid, that on the sphere goes first
+/// (internal/norm_body_pair.h).
 ///
 /// Answers are certified by two bounds, g(n) from below and the distance of two points from above, that differ by less
 /// than kBoundGap (1e-12) of the sum of both bounding radii. `error_bound` tells. Overlaps are searched as above. Where

@@ -44,7 +44,8 @@ template <class Shape>
 int wrong_queries(const Shape& shape) {
   const geom::Pose X_WA, X_WB = geom::Pose::translation({5.0, 0.0, 0.0});
   const Eigen::Vector3d e(1.0, 0.0, 0.0);
-  // Never above the gap of 3, below it by what is taken off for rounding; nothing lies farther than 2.7 from a centre.
+  // Never above the gap of 3, below it by what is taken off for rounding, and as much again for rounding itself;
+  // nothing lies farther than 2.7 from a centre.
   const double bound = geom::distance_lower_bound(shape, X_WA, shape, X_WB, e);
   int wrong = bound > 3.0 || bound < 3.0 - 2 * geom::kLowerBoundRounding * (5.0 + 2.7 + 2.7);
   wrong += geom::overlap(shape, X_WA, shape, X_WB) != geom::Answer::no;

@@ -6,14 +6,15 @@
 /// Where a face is nearly flat its support point runs across it while n hardly turns, and Newton's step of n
 /// overshoots. The methods, each tried only where the one before has not ended:
 ///
-/// 1. Where an exponent is up to 1, so that a body may have faces: Newton's method of both bodies' contact elements
-///    (src/contact_elements.h), points of the surfaces with their normals, which need not be those of n before it has
-///    converged: on a face a step is made by the point, on an edge by the normal. All but 1 in 90 end here.
-/// 2. Dual Newton (see internal/dual_newton.h) while its steps are good, which are made with the support point of the
-///    flatter body, s + H delta, where it has faces, and n read there: a *retraction*. Then elements from where it is.
-/// 3. Dual Newton to its end, and elements in shorter steps: where edges of e = 0.2 meet, 1 in 200.
-/// 4. Branch and bound over all normals (internal/sphere_search.h): slow, and with whatever bounds it has at its limit
-///    of evaluations.
+/// 1. Where both bodies may have faces, by an exponent of about 1 or less: Newton's method of both bodies' contact
+///    elements (src/contact_elements.h), points of the surfaces with their normals, which need not be those of n before
+///    it has converged: on a face a step is made by the point, on an edge by the normal. Nearly all end here.
+/// 2. Dual Newton (see internal/dual_newton.h) while its steps are good, some of which are made with the support point
+///    of the flatter body, s + H delta, and n read there: a *retraction*. Then elements from where it is.
+/// 3. Dual Newton to its end, and elements in shorter steps. After that, from another start if there is one.
+/// 4. Branch and bound over all normals (internal/sphere_search.h), from the highest local maximum found: slow, and
+/// with
+///    whatever bounds it has at its limit of evaluations.
 ///
 /// What is certified: g(n) is a lower bound of the distance for every n, and |r + xB - xA| an upper one for every two
 /// points of the bodies.
@@ -56,7 +57,8 @@ class GEOM_EXPORT NormBodyPair {
         r_(r),
         scale_(scale),
         floor_(kFloor * least),
-        flat_(any(below(bodies.e1(), both(kRound)) | below(bodies.e2(), both(kRound)))) {}
+        flat_(any(may_have_faces(bodies))),
+        both_flat_(!any(~may_have_faces(bodies))) {}
 
   /// The answer of one method: a normal, and by how much g there can be below the distance.
   struct Answer {
@@ -102,7 +104,7 @@ class GEOM_EXPORT NormBodyPair {
     supports,   ///< the bodies' support points at a normal that is nearly right
     ellipsoids  ///< about where those of their ellipsoids are, and a normal between theirs
   };
-  /// The answer's sample is its normal and g alone; both are worth something only where it has converged.
+  /// The answer's sample is its normal and g alone, which belong together also where it has not converged.
   Answer by_elements(const Eigen::Vector3d& start, FirstElements first, Pace pace, int max_iterations,
                      int& iterations) const;
   /// All methods, each where the one before has not ended; `cold`: of cold_normal().
@@ -121,9 +123,16 @@ class GEOM_EXPORT NormBodyPair {
   /// Least eigenvalue that is kept in Newton's matrix, over the sum of both inscribed radii. Faces and edges leave
   /// none; with more than this steps towards them are too short, with less they run away.
   static constexpr double kFloor = 5e-4;
-  /// Bodies whose exponents are all above have no faces, only vertices: the dual method is fast, and Newton's own step
-  /// as good as a retraction, and cheaper.
+  /// Bodies whose exponents are all above have no faces, only vertices: Newton's own step is as good as a retraction,
+  /// and cheaper.
   static constexpr double kRound = 1.01;
+
+  /// Ellipsoids, whose exponents are 1, have none.
+  static LaneBits may_have_faces(const NormBodies& bodies) {
+    const Lanes round = both(kRound);
+    const Lanes off_1 = abs(bodies.e1() - 1) + abs(bodies.e2() - 1);
+    return (below(bodies.e1(), round) | below(bodies.e2(), round)) & below(both(0), off_1);
+  }
 
   /// S + g I across n, its smallest eigenvalue kept above a floor.
   struct TangentMatrix {
@@ -157,8 +166,9 @@ class GEOM_EXPORT NormBodyPair {
   NormBodies bodies_;
   Eigen::Vector3d r_;
   double scale_;
-  double floor_;  ///< least eigenvalue of Newton's matrix
-  bool flat_;     ///< an exponent is below kRound: elements go first, and retractions save steps
+  double floor_;    ///< least eigenvalue of Newton's matrix
+  bool flat_;       ///< a body may have faces: retractions save steps
+  bool both_flat_;  ///< both may: elements go first
 };
 
 }  // namespace geom::internal
