@@ -57,8 +57,8 @@ class GEOM_EXPORT NormBodyPair {
         r_(r),
         scale_(scale),
         floor_(kFloor * least),
-        flat_(any(may_have_faces(bodies))),
-        both_flat_(!any(~may_have_faces(bodies))) {}
+        flat_(any(low_exponents(bodies))),
+        both_flat_(!any(~(low_exponents(bodies) & ~ellipsoids(bodies)))) {}
 
   /// The answer of one method: a normal, and by how much g there can be below the distance.
   struct Answer {
@@ -127,11 +127,11 @@ class GEOM_EXPORT NormBodyPair {
   /// and cheaper.
   static constexpr double kRound = 1.01;
 
-  /// Ellipsoids, whose exponents are 1, have none.
-  static LaneBits may_have_faces(const NormBodies& bodies) {
-    const Lanes round = both(kRound);
-    const Lanes off_1 = abs(bodies.e1() - 1) + abs(bodies.e2() - 1);
-    return (below(bodies.e1(), round) | below(bodies.e2(), round)) & below(both(0), off_1);
+  static LaneBits low_exponents(const NormBodies& bodies) {
+    return below(bodies.e1(), both(kRound)) | below(bodies.e2(), both(kRound));
+  }
+  static LaneBits ellipsoids(const NormBodies& bodies) {
+    return ~below(both(0), abs(bodies.e1() - 1) + abs(bodies.e2() - 1));
   }
 
   /// S + g I across n, its smallest eigenvalue kept above a floor.
@@ -167,8 +167,8 @@ class GEOM_EXPORT NormBodyPair {
   Eigen::Vector3d r_;
   double scale_;
   double floor_;    ///< least eigenvalue of Newton's matrix
-  bool flat_;       ///< a body may have faces: retractions save steps
-  bool both_flat_;  ///< both may: elements go first
+  bool flat_;       ///< a body may be flat somewhere, a disc too: retractions save steps
+  bool both_flat_;  ///< both may have faces, which ellipsoids have not: elements go first
 };
 
 }  // namespace geom::internal
