@@ -343,8 +343,7 @@ NormBodyPair::Answer NormBodyPair::solve(const Vector3d& start, const Vector3d& 
   }
   if (both_flat_) {
     // Of two maxima nearly as high the search may keep the one it begins at: it begins at the highest of those found.
-    const Answer other =
-        by_elements(cold, FirstElements::supports, Pace::brisk, std::min(kElementSteps, limit), iterations);
+    Answer other = by_elements(cold, FirstElements::supports, Pace::brisk, std::min(kElementSteps, limit), iterations);
     if (ends(other, penetration)) return other;
     if (other.converged && other.at.g > best.at.g) best = other;
   }
