@@ -16,6 +16,7 @@ hardbody_test(ed_observables_test unit
   unit/correlations_test.cpp
   unit/equilibration_test.cpp
   unit/observables_test.cpp
+  unit/snapshots_test.cpp
   unit/stored_frames_test.cpp
   unit/structure_test.cpp)
 foreach(name conservation correlations counters equation_of_state free_rotor general_bodies same_collisions scale state_points time_reversal)

@@ -1,6 +1,7 @@
 # Tests of this part; see hardbody_test in CMakeLists.txt.
 hardbody_test(geom_unit_test unit
   unit/geom_batch_test.cpp
+  unit/geom_by_elements_test.cpp
   unit/geom_contact_elements_test.cpp
   unit/geom_distance_test.cpp
   unit/geom_dual_newton_test.cpp

@@ -16,10 +16,6 @@ namespace {
 using Eigen::Vector3d;
 using Element = ContactElements::Element;
 
-LaneVector magnitudes(const LaneVector& v) {
-  return {abs(v.x), abs(v.y), abs(v.z)};
-}
-
 LaneVector signs(const LaneVector& v) {
   const Lanes one = both(1);
   return {with_sign(one, v.x), with_sign(one, v.y), with_sign(one, v.z)};
@@ -66,7 +62,7 @@ void ContactElements::set(Element& e, const Arcs& arcs, const LaneVector& sign) 
 
 ContactElements::Element ContactElements::at(const Vector3d& n) const {
   const LaneVector v = bodies_.in_norm(n);
-  const LaneVector m = magnitudes(v);
+  const LaneVector m = abs(v);
   // The outer arc needs the inner one's norm, m.w; of the first pass only that is used.
   const Arcs inner = family_.arcs({m.x, m.x}, {m.y, m.y}, kOfNormals);
   const Lanes rho = m.x * inner.w0.inner + m.y * inner.w1.inner;
@@ -75,7 +71,7 @@ ContactElements::Element ContactElements::at(const Vector3d& n) const {
 
 ContactElements::Element ContactElements::at_ellipsoids(const Vector3d& n) const {
   const LaneVector v = bodies_.in_norm(n);
-  const LaneVector w = magnitudes(v);
+  const LaneVector w = abs(v);
   const Lanes rho = select(below(w.x, w.y), w.y, w.x);  // the limit of high exponents, for N2
   return element(family_.arcs({w.x, rho}, {w.y, w.z}, kOfPoints), signs(v));
 }

@@ -128,6 +128,10 @@ inline LaneVector swapped(const LaneVector& v) {
 inline LaneVector product(const LaneVector& u, const LaneVector& v) {
   return {u.x * v.x, u.y * v.y, u.z * v.z};
 }
+/// Component by component.
+inline LaneVector abs(const LaneVector& v) {
+  return {abs(v.x), abs(v.y), abs(v.z)};
+}
 inline LaneVector normalized(const LaneVector& v) {
   return (1 / sqrt(v.dot(v))) * v;
 }

@@ -235,7 +235,7 @@ class NormBodies {
   /// Of A at n and of B at -n, n a unit vector.
   Support support(const Eigen::Vector3d& n) const {
     const LaneVector v = in_norm(n);
-    const LaneVector w = magnitudes(v);
+    const LaneVector w = abs(v);
     const LaneNorm::Curved at = dual_.curved(w);
     const LaneVector scale = signed_like(axes_, v);
     return {at.norm,
@@ -247,7 +247,7 @@ class NormBodies {
             at.levels.inner,
             at.levels.outer};
   }
-  Lanes heights(const LaneVector& n) const { return dual_(magnitudes(product(axes_, R_.transposed_times(n)))).norm; }
+  Lanes heights(const LaneVector& n) const { return dual_(abs(product(axes_, R_.transposed_times(n)))).norm; }
 
   /// An ellipsoid that holds each body and nearly touches it at its support point: for every change dm of the direction
   /// in the body's axes (D2 too is in these, `gradient` in world axes)
@@ -281,12 +281,10 @@ class NormBodies {
   /// The outward normals of the surfaces at x, or at the surface points in their direction: N is homogeneous.
   LaneVector normals(const LaneVector& x) const {
     const LaneVector w = product(inverse_axes_, R_.transposed_times(x));
-    return normalized(R_ * product(norm_(magnitudes(w)).gradient, signed_like(inverse_axes_, w)));
+    return normalized(R_ * product(norm_(abs(w)).gradient, signed_like(inverse_axes_, w)));
   }
   /// N(x/a): at most 1 in the body.
-  Lanes norms(const LaneVector& x) const {
-    return norm_(magnitudes(product(inverse_axes_, R_.transposed_times(x)))).norm;
-  }
+  Lanes norms(const LaneVector& x) const { return norm_(abs(product(inverse_axes_, R_.transposed_times(x)))).norm; }
   LaneVector on_surface(const LaneVector& x) const { return (1 / norms(x)) * x; }
 
  private:
@@ -299,7 +297,6 @@ class NormBodies {
         norm_(2 / e1, 2 / e2),
         dual_(2 / (2 - e1), 2 / (2 - e2)) {}
 
-  static LaneVector magnitudes(const LaneVector& v) { return {abs(v.x), abs(v.y), abs(v.z)}; }
   static LaneVector signed_like(const LaneVector& size, const LaneVector& sign) {
     return {with_sign(size.x, sign.x), with_sign(size.y, sign.y), with_sign(size.z, sign.z)};
   }

@@ -13,8 +13,7 @@
 ///    of the flatter body, s + H delta, and n read there: a *retraction*. Then elements from where it is.
 /// 3. Dual Newton to its end, and elements in shorter steps. After that, from another start if there is one.
 /// 4. Branch and bound over all normals (internal/sphere_search.h), from the highest local maximum found: slow, and
-/// with
-///    whatever bounds it has at its limit of evaluations.
+///    with whatever bounds it has at its limit of evaluations.
 ///
 /// What is certified: g(n) is a lower bound of the distance for every n, and |r + xB - xA| an upper one for every two
 /// points of the bodies.
@@ -58,7 +57,7 @@ class GEOM_EXPORT NormBodyPair {
         scale_(scale),
         floor_(kFloor * least),
         flat_(any(low_exponents(bodies))),
-        both_flat_(!any(~(low_exponents(bodies) & ~ellipsoids(bodies)))) {}
+        both_flat_(!any(~low_exponents(bodies) | ellipsoids(bodies))) {}
 
   /// The answer of one method: a normal, and by how much g there can be below the distance.
   struct Answer {
@@ -148,7 +147,7 @@ class GEOM_EXPORT NormBodyPair {
   TangentMatrix tangent_matrix(const DualSample& s) const;
   /// A unit vector across s.n along which g bends upwards by more than `rounding` / rad^2; zero if there is none.
   Eigen::Vector3d upward(const DualSample& s, double rounding) const;
-  /// All but branch and bound.
+  /// All but branch and bound; `first` is of the elements that go first.
   Answer newton(const Eigen::Vector3d& start, FirstElements first, int limit, int& iterations) const;
   void place_points(const Step& step, Answer& answer) const;
   bool ends(const Answer& answer, Penetration penetration) const;
