@@ -3,6 +3,7 @@
 #include <ed/stored_frames.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <sstream>
@@ -143,6 +144,7 @@ Measured Analysis::plan() {
   plan.spacing = step_;
   plan.origins_per_block = static_cast<int>(std::max(1.0, std::ceil(static_cast<double>(count_) / blocks)));
   plan.grid = {options_.box, options_.length};
+  plan.length_known = options_.length_known;
   const auto per_block = static_cast<std::size_t>(plan.origins_per_block);
   plan.blocks.resize((count_ + per_block - 1) / per_block);
   for (std::size_t b = 0; b < plan.blocks.size(); ++b) {
@@ -195,23 +197,26 @@ void Analysis::add_lags() {
   }
 }
 
-/// What frames do not tell.
+constexpr Estimate kNotTold = Estimate::none({MissingReason::not_told});
+constexpr std::array<Estimate, 3> kAxesNotTold = {kNotTold, kNotTold, kNotTold};
+
+/// Removes what frames without orientations do not tell.
 void forget_orientations(Correlations& results) {
-  results.t_C2_1overe = results.tau_C2 = results.beta_C2 = {};
+  results.t_C2_1overe = results.tau_C2 = results.beta_C2 = kNotTold;
   results.window_C2 = {};
-  results.t_C2_1overe_axis = {};
+  results.t_C2_1overe_axis = kAxesNotTold;
   for (LagRow& row : results.lags) {
-    row.c1 = row.c2 = {};
-    row.c1_axis = row.c2_axis = {};
+    row.c1 = row.c2 = kNotTold;
+    row.c1_axis = row.c2_axis = kAxesNotTold;
   }
-  for (PairRow& row : results.pairs) row.g2 = {};
+  for (PairRow& row : results.pairs) row.g2 = kNotTold;
 }
 
 void forget_order(Results& results) {
-  results.S = {};
+  results.S = kNotTold;
   results.director = {};
   for (GroupResults& group : results.groups) {
-    group.S = {};
+    group.S = kNotTold;
     group.director = {};
   }
   for (BlockRow& row : results.blocks) {
@@ -220,14 +225,15 @@ void forget_order(Results& results) {
   }
 }
 
+/// Removes what frames do not tell.
 void forget(Correlations& results, bool velocities, bool orientations) {
-  results.D_rot = results.D_rot_body = results.w2 = {};
-  results.D_rot_axis = {};
-  if (!velocities) results.v2 = {};
+  results.D_rot = results.D_rot_body = results.w2 = kNotTold;
+  results.D_rot_axis = kAxesNotTold;
+  if (!velocities) results.v2 = kNotTold;
   for (LagRow& row : results.lags) {
-    row.rot_msd = row.rot_msd_body = row.wacf = {};
-    row.rot_msd_axis = {};
-    if (!velocities) row.vacf = {};
+    row.rot_msd = row.rot_msd_body = row.wacf = kNotTold;
+    row.rot_msd_axis = kAxesNotTold;
+    if (!velocities) row.vacf = kNotTold;
   }
   if (!orientations) forget_orientations(results);
 }
@@ -245,12 +251,12 @@ StoredResults Analysis::results() {
   static_cast<Results&>(results) = internal::results_of(measured_, totals, options_.fit_from.value_or(kNothing));
   const bool velocities = !frames_.empty() && options_.axis.size() == frames_[0].velocity.size() &&
                           !frames_[0].velocity.empty() && !frames_[0].velocity[0].isZero(0);
-  results.translational_kT = results.rotational_kT = {};
+  results.collision_rate = results.Z = results.translational_kT = results.rotational_kT = kNotTold;
   forget(results, velocities, orientations_);
   for (GroupResults& group : results.groups) {
     forget(group, velocities, orientations_);
-    group.translational_kT = group.rotational_kT = {};
-    group.axis_kT = {};
+    group.collision_rate = group.translational_kT = group.rotational_kT = kNotTold;
+    group.axis_kT = kAxesNotTold;
   }
   if (!orientations_) forget_order(results);
   results.wave_numbers = measured_.options.wave_numbers;

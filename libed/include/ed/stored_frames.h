@@ -28,6 +28,9 @@ struct StoredFramesOptions {
   double box = 0;  ///< edge length, of all frames
   /// Unit of distances and wave numbers: the radius of the sphere whose volume is the bodies' mean one.
   double length = 1;
+  /// False where nobody knows the bodies' sizes and `length` is any: D_trans then asks for motion by the bodies' mean
+  /// distance instead of that of the first peak of S(q).
+  bool length_known = true;
   std::vector<BodyGroup> groups{};  ///< their numbers add up to that of the bodies
   std::vector<int> axis{};          ///< of each body: which body axis (0, 1, 2) u is
   /// Of F_self, at most kMostWaveNumbers; empty: wave_numbers_about the first peak of S(q).
@@ -45,9 +48,9 @@ struct StoredResults : Results {
 };
 
 /// Averages over frames, and correlations over all pairs of frames that are a lag apart, at about 20 lags a decade.
-/// Errors are standard errors over blocks as long as the longest lag (2 to 16 of them). What frames do not tell is NaN:
-/// collisions, pressure, temperatures, rotational displacements, and with velocities or rotations missing what is made
-/// of them.
+/// Errors are standard errors over blocks as long as the longest lag (2 to 16 of them). Values that frames do not tell
+/// are missing for the reason MissingReason::not_told: collisions, pressure, temperatures, rotational displacements,
+/// and with velocities or rotations missing what is made of them.
 ///
 /// Memory: some 200 bytes a body and frame beside the frames. Throws std::invalid_argument for no frames, numbers of
 /// bodies that differ, a box that is not positive, times that do not rise, a negative lag to fit from.
