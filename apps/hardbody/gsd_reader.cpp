@@ -393,6 +393,7 @@ void check_unedited(const Frame& frame, const ed::System& system, const std::str
         "unedited frame, or a file without the arrays of log/hardbody and log/particles/hardbody",
         name, k, what));
   };
+  if (!frame.tilt.isZero(0)) refuse("configuration/box, which is tilted,");
   if (!((frame.box - Vector3d::Constant(system.box)).norm() <= 2 * kSingle * system.box)) refuse("configuration/box");
   for (std::size_t t = 0; t < system.species.size() && t < frame.types.size(); ++t) {
     const auto& shape = frame.types[t].shape;
@@ -407,6 +408,7 @@ void check_unedited(const Frame& frame, const ed::System& system, const std::str
 /// The numbers of the state in place of the rounded ones.
 void sharpen(Frame& frame, const ed::System& system) {
   frame.box = Vector3d::Constant(system.box);
+  frame.orientations = frame.velocities = frame.angular_velocities = true;
   for (std::size_t k = 0; k < system.species.size() && k < frame.types.size(); ++k) {
     frame.types[k].shape = system.species[k].shape;
   }
@@ -443,7 +445,7 @@ GsdReader::GsdReader(std::unique_ptr<StoredBytes> bytes, std::string name)
 }
 
 bool GsdReader::has_positions(std::uint64_t k) const {
-  if (file_.find(k, kPositionName) != nullptr) return true;
+  if (exact_ || file_.find(k, kPositionName) != nullptr) return true;
   // Positions that are those of frame 0 are left out, if something else of the bodies is there.
   const auto stored = [&](const char* name) { return file_.find(k, name) != nullptr; };
   return k > 0 && file_.find(0, kPositionName) != nullptr && file_.stored_later(kPositionName) &&
