@@ -255,9 +255,11 @@ void FrameReader::read_motion(Frame& frame) const {
   const std::vector<double> mass = finite<float>("particles/mass", number, 1);
   const std::vector<double> inertia = finite<float>("particles/moment_inertia", number, 3);
   frame.velocities = knows("particles/velocity");
-  frame.angular_velocities = frame.orientations && knows("particles/angmom");
+  frame.angular_velocities = frame.angular_momenta = frame.orientations && knows("particles/angmom");
   const auto velocity = frame.velocities ? finite<float>("particles/velocity", number, 3) : std::vector<double>();
   const auto angmom = frame.angular_velocities ? finite<float>("particles/angmom", number, 4) : std::vector<double>();
+  // An angular momentum is twice the product of the quaternion, of the sign that it has in the file, and L.
+  const auto orientation = angmom.empty() ? std::vector<double>() : finite<float>("particles/orientation", number, 4);
   for (std::size_t i = 0; i < number; ++i) {
     FrameBody& body = frame.bodies[i];
     if (!type.empty()) body.type = type[i];
@@ -270,11 +272,14 @@ void FrameReader::read_motion(Frame& frame) const {
     if (!velocity.empty()) body.velocity = {velocity[3 * i], velocity[3 * i + 1], velocity[3 * i + 2]};
     if (angmom.empty()) continue;
     const double* p = angmom.data() + 4 * i;
-    const Quaterniond q(body.rotation);
+    const double* o = orientation.data() + 4 * i;
+    const Quaterniond q =
+        orientation.empty() ? Quaterniond::Identity() : Quaterniond(o[0], o[1], o[2], o[3]).normalized();
     const Vector3d L = 0.5 * (q.conjugate() * Quaterniond(p[0], p[1], p[2], p[3])).vec();
     Vector3d omega = Vector3d::Zero();
     for (int k = 0; k < 3; ++k) omega[k] = body.inertia[k] > 0 ? L[k] / body.inertia[k] : 0;
     body.angular_velocity = body.rotation * omega;
+    body.angular_momentum = body.rotation * L;
   }
 }
 
