@@ -32,6 +32,15 @@ def with_pause():
     return Walk(w.position, w.orientation, w.velocity)
 
 
+def from_defaults():
+    """At rest and aligned in frame 0, and again in frames 10 to 19: the defaults of GSD files, which are not stored."""
+    w = walk(1.4, seed=6)
+    for frames in (0, slice(10, 20)):
+        w.orientation[frames] = [1, 0, 0, 0]
+        w.velocity[frames] = 0
+    return w
+
+
 def unwrapped(w):
     w = Walk(w.position, w.orientation, w.velocity)
     w.wrapped = w.position
@@ -69,6 +78,7 @@ class Way:
     step: float = 1
     correlated: tuple = (slice(None),)  # stretches of frames of which correlations may be
     every: int = 1
+    more: bytes = b""  # behind the last frame
 
 
 ALL = (MSD, C2, VACF, S, G)
@@ -135,6 +145,12 @@ rows = numpy.random.default_rng(2)
 lammps("lines in any order", [X, *REST], order=lambda k: rows.permutation(walks.BODIES))
 lammps("ids with gaps, in any order", ["id", "type", XU, *REST], LONG, order=lambda k: rows.permutation(walks.BODIES),
        override={"id": lambda k, i: 5 * i + 17})
+lammps("large ids", ["id", "type", XU, *REST], LONG, override={"id": lambda k, i: 3_000_000_000 - 7 * i})
+lammps("lines that are empty", [XU, *REST], LONG, end="\n", way={"more": b"\n\n"})
+lammps("two components of velocities", [X, QUAT, "vx", "vy", SHAPE], absent=(VACF,), override={
+    "vx": lambda k, i: SHORT.velocity[k, i, 0], "vy": lambda k, i: SHORT.velocity[k, i, 1]})
+lammps("times of some frames", [X, *REST], head=lambda k: ["ITEM: TIME", f"{k}.5"] if k < 12 else [], reason="time|even", refused="may be",
+       way={"time_step": None, "correlated": (slice(0, 12),)})
 lammps("no id", ["type", X, *REST], absent=(MSD, C2, VACF), reason=r"\bids?\b", refused="may be")
 lammps("an id that changes in frame 7", ["id", "type", X, *REST], absent=ALL, reason="frame 7", refused="is",
        override={"id": lambda k, i: 99 if k >= 7 and i == 2 else i + 1})
@@ -204,6 +220,8 @@ hoomd("outside the box", LONG, image="never", position="unwrapped")
 hoomd("outside the box, short steps", SHORT, image="never", position="unwrapped")
 for when in ("each", "changed"):
     hoomd(f"all {when}, as in frame 0 again", with_pause(), image=when, orientation=when, velocity=when)
+hoomd("all changed, from their defaults", from_defaults(), image="changed", orientation="changed", velocity="changed")
+lammps("at rest and aligned in some frames", [X, *REST], from_defaults())
 hoomd("orientations of frame 0", orientation="first", absent=(C2, S), reason="orientation")
 hoomd("velocities of frame 0", velocity="first", absent=(VACF,), reason="velocit")
 hoomd("velocities never", velocity="never", absent=(VACF,))
@@ -244,6 +262,8 @@ for name in ("walk.lammpstrj", "walk.txt", "walk"):
 class Conventions(Analyses):
     def compare(self, way):
         way.write(self.path(way.file), way.walk)
+        with open(self.path(way.file), "ab") as file:
+            file.write(way.more)
         result = self.analyze(way.file, *way.arguments, time_step=way.time_step)
         said = self.said(result)
         if result.returncode == 2:
@@ -259,13 +279,13 @@ class Conventions(Analyses):
         def judge(what, found, right):
             """`right`: the numbers of each of the stretches that may be meant."""
             if all(x is None for x in found):
-                self.assertIn(what, way.absent + way.either, "has no value\n" + said)
+                self.assertIn(what, way.absent + way.either, "has no value\n" + result.stdout)
                 missing.add(what)
                 return
-            self.assertNotIn(what, way.absent, f"{found} {right}\n{said}")
+            self.assertNotIn(what, way.absent, f"{found} {right}\n{result.stdout}")
             self.assertNotIn(None, found)
             wrong = [numpy.abs(numpy.array(found) - x).max() for x in right]
-            self.assertLess(min(wrong), precision * max(1, numpy.abs(right).max()), f"{what}: {found} {right}\n{said}")
+            self.assertLess(min(wrong), precision * max(1, numpy.abs(right).max()), f"{what}: {found} {right}\n{result.stdout}")
 
         for what, file, column in [(MSD, "msd", "msd"), (C2, "c2", "c2"), (C2, "c1", "c1"), (VACF, "velocity", "vacf")]:
             right = [[used[part].correlations(k)[column] for _, k in lags] for part in way.correlated]

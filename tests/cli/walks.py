@@ -103,14 +103,14 @@ SCALARS = {"id": 1, "type": 1, "mass": 2.5, "radius": 0.5, "diameter": 1, "eleme
 def dump(path, w, columns, low=-EDGE / 2, bounds="pp pp pp", tilt="", head="", tail=" ", end="\n", order=None,
          override=None, box=None):
     """`columns`: a list of keys of COLUMNS and SCALARS, or other names, whose values `override` has: name ->
-    f(frame, body). `head`: text before each frame, with {k}; `order`: f(frame) gives the order of lines; `tail`: behind
+    f(frame, body). `head`: text before each frame, with {k}, or f(frame); `order`: f(frame) gives the order of lines; `tail`: behind
     each line of ATOMS, as LAMMPS has it; `box`: f(frame) gives the lines of bounds."""
     override = override or {}
     arrays = {c: COLUMNS[c](w, low) for c in columns if c in COLUMNS and c not in override}
     lines = []
     for k, step in enumerate(w.steps):
         if head:
-            lines.append(head.format(k=k, step=step))
+            lines += head(k) if callable(head) else [head.format(k=k)]
         lines += ["ITEM: TIMESTEP", str(step), "ITEM: NUMBER OF ATOMS", str(w.position.shape[1])]
         lines.append(f"ITEM: BOX BOUNDS {bounds}".rstrip())
         lines += box(k) if box else [f"{float(x)!r} {float(x + EDGE)!r}{tilt}" for x in numpy.broadcast_to(low, 3)]
@@ -132,7 +132,7 @@ def dump(path, w, columns, low=-EDGE / 2, bounds="pp pp pp", tilt="", head="", t
 def gsd_file(path, w, image="each", orientation="each", velocity="each", position="wrapped", shapes=(ROD,),
              log_only=lambda k: False, box=None, more=None, where=None):
     """Chunks as the schema has them. "each" frame; "first" frame only; "changed": where they differ from the first
-    frame's; "never". `more`: name -> f(frame), an array or None; `log_only`: frames that another one without positions
+    frame's, and in that from their default, as gsd.hoomd writes them; "never". `more`: name -> f(frame), an array or None; `log_only`: frames that another one without positions
     follows."""
     box = box or (lambda k: [EDGE, EDGE, EDGE, 0, 0, 0] if k == 0 else None)
     chunks = {
@@ -157,7 +157,8 @@ def gsd_file(path, w, image="each", orientation="each", velocity="each", positio
             array = w.wrapped[k] if position == "wrapped" else w.position[k]
             file.write_chunk("particles/position", array.astype(numpy.float32))
             for name, (when, array) in chunks.items():
-                changed = k == 0 or not numpy.array_equal(array[k], array[0])
+                default = [1, 0, 0, 0] if name == "orientation" else [0, 0, 0]
+                changed = numpy.any(array[k] != (array[0] if k > 0 else default))
                 if when == "each" or (when == "first" and k == 0) or (when == "changed" and changed):
                     file.write_chunk(f"particles/{name}", array[k])
             for name, make in (more or {}).items():
