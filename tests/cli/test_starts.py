@@ -45,7 +45,7 @@ def factor(found, given):
     return s, numpy.abs(found - s * given).max()
 
 
-class Starts(Analyses):
+class StartCase(Analyses):
     def of(self, frame, name):
         return frame.log[f"particles/hardbody/{name}"]
 
@@ -56,7 +56,7 @@ class Starts(Analyses):
         return numpy.einsum("nij,nj,nkj,nk->ni", R, inertia, R, self.of(frame, "angular_velocity"))
 
 
-class Velocities(Starts):
+class Velocities(StartCase):
     """Those of the file are kept, all scaled by one factor; a kind of motion that it does not have is drawn."""
 
     UNIFORM = '[dynamics]\ninertia = "uniform"\n'
@@ -134,7 +134,7 @@ class Velocities(Starts):
                 self.assertAlmostEqual(turning / 16, 1, delta=1e-9)
 
 
-class Temperatures(Starts):
+class Temperatures(StartCase):
     """kT = 1 of each species, whatever its masses: on 3 (N_k - M_k / M) degrees of freedom, and 2 N_k of rotation."""
 
     def check(self, frame, masses):
@@ -177,7 +177,7 @@ class Temperatures(Starts):
                 self.check(self.started("start.gsd", config=config)[0], masses)
 
 
-class Paths(Starts):
+class Paths(StartCase):
     """`..` behind a symbolic link is the system's: the parent of the link's target."""
 
     def test_file(self):
