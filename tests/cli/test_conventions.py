@@ -14,6 +14,7 @@ import numpy
 
 import walks
 from test_cases import Analyses
+from test_cli import SMALL
 from walks import BALL, EDGE, FRAMES, ROD, Walk, dump, gsd_file, walk
 
 QUAT, VEL, SHAPE = "quatw quati quatj quatk", "vx vy vz", "shapex shapey shapez"
@@ -334,6 +335,27 @@ class Conventions(Analyses):
                 file.write(content)
             for command in [("analyze", name, "--time-step", "1"), ("check", name)]:
                 self.assert_refused(self.hardbody(*command), name, "accepted")
+
+
+class OwnTrajectories(Analyses):
+    def test_frames_far_apart(self):
+        """Bodies move across the box between frames: GSD files and dumps of a run say where they went."""
+        config = SMALL.replace("time = 5\n", "time = 100\n").replace("aspect_ratio = 2", "aspect_ratio = 1.5")
+        config = config.replace("events = 500", 'trajectory = ["gsd", "lammps"]\nframes = 9')
+        self.run_small("out", config=config)
+        with walks.gsd.hoomd.open(self.path("out/trajectory.gsd"), "rb") as file:
+            frames = list(file)
+        edge = frames[0].log["hardbody/box"][0]
+        x = numpy.array([f.particles.position + edge * f.particles.image for f in frames], float)
+        right = ((x[1:] - x[:-1]) ** 2).sum(axis=2).mean()
+        self.assertGreater(right, (edge / 4) ** 2)
+        rows = []
+        for name, step in [("gsd", None), ("lammpstrj", "12.5")]:
+            result = self.analyze(f"out/trajectory.{name}", time_step=step)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            rows.append(list(self.column("msd", "msd").values()))
+            self.assertAlmostEqual(rows[-1][0], right, delta=1e-5 * right)
+        numpy.testing.assert_allclose(*rows, rtol=1e-9)
 
 
 if __name__ == "__main__":

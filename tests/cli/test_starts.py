@@ -9,7 +9,7 @@ import unittest
 import numpy
 
 import walks
-from test_cases import Analyses
+from test_cases import START, Analyses
 from walks import EDGE, dump, gsd_file
 
 # Eight rods that do not overlap, at rest on the whole.
@@ -132,6 +132,65 @@ class Velocities(StartCase):
             # The spin of bodies of revolution never changes: it is left as it is, and counted where there is any.
             if rotations == 2:
                 self.assertAlmostEqual(turning / 16, 1, delta=1e-9)
+
+
+class FilesOfStarts(StartCase):
+    """What a file says of bodies, and what it does not."""
+
+    def refused(self, *parts, config=""):
+        self.write("start.toml", config + START.format("start"))
+        self.assert_refused(self.hardbody("run", "start.toml", "--out", "out", "--force"), "accepted: ", *parts)
+
+    def same_places(self, frame, w=RODS):
+        wrong = self.of(frame, "position") - w.position[1]
+        self.assertLess(numpy.abs(wrong - EDGE * numpy.round(wrong / EDGE)).max(), 1e-6)
+
+    def test_last_frame_with_positions(self):
+        gsd_file(self.path("start"), RODS, log_only=lambda k: True)
+        frame, _ = self.started("start")
+        self.same_places(frame)
+
+    def test_orientations_of_frame_0(self):
+        """Those of a later frame are not known: bodies that are no spheres are not taken for aligned."""
+        gsd_file(self.path("start"), RODS, orientation="first")
+        self.refused("orientation")
+        self.assertIn("frame 0 of", self.started("start", "start.frame=0")[1])
+        gsd_file(self.path("start"), RODS, orientation="first", shapes=(walks.BALL,))
+        self.same_places(self.started("start")[0])
+
+    def test_columns(self):
+        balls = "[system]\npacking_fraction = 0.0041887902\n[[species]]\nsemi_axes = [0.5, 0.5, 0.5]\nnumber = 8\n"
+        for columns, config in [(["radius"], ""), (["diameter"], ""), ([], balls), (["radius"], balls)]:
+            for where in ["x y z", "xu yu zu", "xs ys zs", "xsu ysu zsu", "x y z ix iy iz"]:
+                with self.subTest(where, columns=columns, config=config):
+                    places = ["x y z", "ix iy iz"] if "ix" in where else [where]
+                    dump(self.path("start"), RODS, ["id", "type", *places, VEL, *columns], low=3.0)
+                    self.write("start.toml", config + START.format("start"))
+                    result = self.hardbody("run", "start.toml", "--out", "out", "--force")
+                    if result.returncode == 2 and columns and not config:
+                        self.assert_refused(result, columns[0])
+                        continue
+                    self.assertEqual(result.returncode, 0, result.stderr)
+                    with walks.gsd.hoomd.open(self.path("out/trajectory.gsd"), "rb") as file:
+                        frame = file[0]
+                    wrong = self.of(frame, "position") - RODS.position[1]
+                    wrong -= wrong[0]  # the box may have another origin
+                    self.assertLess(numpy.abs(wrong - EDGE * numpy.round(wrong / EDGE)).max(), 1e-6)
+                    numpy.testing.assert_allclose(frame.log["hardbody/species"][0, 1:4], 0.5)
+
+    def test_boxes_and_orientations(self):
+        columns = ["id", "type", "x y z", QUAT, SHAPE]
+        dump(self.path("start"), RODS, columns, box=lambda k: ["-5 5", "-5 5", "-10 10"])
+        self.refused("start")
+        dump(self.path("start"), RODS, columns, bounds="xy xz yz pp pp pp", tilt=" 0.5")
+        self.refused("tilt")
+        dump(self.path("start"), RODS, columns, bounds="xy xz yz pp pp pp", tilt=" 0")
+        self.same_places(self.started("start")[0])
+        names = [f"c_orient[{n}]" for n in range(1, 5)]
+        dump(self.path("start"), RODS, ["id", "type", "x y z", *names, SHAPE], override={n: lambda k, i: 0.5 for n in names})
+        self.refused("c_orient")
+        gsd_file(self.path("start"), RODS, box=lambda k: [EDGE, EDGE, 2 * EDGE, 0, 0, 0])
+        self.refused("start")
 
 
 class Temperatures(StartCase):
