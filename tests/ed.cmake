@@ -10,7 +10,8 @@ hardbody_test(ed_unit_test unit
   unit/restart_test.cpp
   unit/simulation_test.cpp
   unit/start_test.cpp
-  unit/system_test.cpp)
+  unit/system_test.cpp
+  unit/velocities_test.cpp)
 hardbody_test(ed_observables_test unit
   unit/analysis_test.cpp
   unit/correlations_test.cpp

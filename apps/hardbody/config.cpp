@@ -399,6 +399,12 @@ std::vector<ed::BodyGroup> Config::groups() const {
   return list;
 }
 
+std::vector<int> Config::numbers() const {
+  std::vector<int> list;
+  for (const SpeciesConfig& s : species) list.push_back(s.number);
+  return list;
+}
+
 bool Config::all_of_revolution() const {
   return std::all_of(species.begin(), species.end(), [](const SpeciesConfig& s) { return s.rotation_axes() == 2; });
 }
@@ -431,6 +437,7 @@ std::optional<ed::LatticeOptions> Config::lattice() const {
   options.packing_fraction = packing_fraction;
   options.seed = static_cast<std::uint64_t>(seed);
   options.nematic_order = nematic_order;
+  options.groups = numbers();
   return options;
 }
 

@@ -114,6 +114,8 @@ struct Config {
   std::vector<ed::Component> components() const;
   /// The species, as the observables take them.
   std::vector<ed::BodyGroup> groups() const;
+  /// Numbers of bodies of the species: those whose temperatures are set by themselves.
+  std::vector<int> numbers() const;
   /// Whether all bodies have an axis of revolution.
   bool all_of_revolution() const;
 

@@ -31,6 +31,7 @@ ed::StartOptions start_options(const Config& config, const std::function<bool(do
   options.packing_fraction = config.packing_fraction;
   options.seed = static_cast<std::uint64_t>(config.seed);
   options.nematic_order = config.nematic_order;
+  options.groups = config.numbers();
   options.progress = progress;
   options.counters = &start.counters;
   options.failures = &start.failures;
@@ -116,8 +117,8 @@ std::optional<Start> compressed_start(const Config& config, Progress& progress, 
   try {
     Start start;
     if (config.start_from) {
-      start.system =
-          ed::compressed(read_origin_state(config), config.packing_fraction, show, &start.counters, &start.failures);
+      start.system = ed::compressed(read_origin_state(config), config.packing_fraction, show, &start.counters,
+                                    &start.failures, config.numbers());
     } else {
       start.system = ed::random_start(config.components(), start_options(config, show, start));
     }

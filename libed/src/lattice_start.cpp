@@ -438,6 +438,7 @@ System lattice_start(const std::vector<Component>& components, const LatticeOpti
   }
   internal::number_along_curve(system);
   internal::draw_velocities(system, random);
+  rescale_velocities(system, options.groups);
   return system;
 }
 

@@ -185,6 +185,7 @@ System compressed_start(const std::vector<Component>& components, const StartOpt
   const double target = box_for(components, options.packing_fraction);
   System system = insert_bodies(components, options, random);
   internal::draw_velocities(system, random);
+  internal::rescale_together(system);
   return system.box > target ? compress(system, target, options) : system;
 }
 
@@ -261,14 +262,15 @@ System random_start(const std::vector<Component>& components, const StartOptions
   if (tiling.along > 1) {
     system = internal::repeat(system, tiling, components, random);
     internal::draw_velocities(system, random);
+    internal::rescale_together(system);
   }
   internal::number_along_curve(system);
-  rescale_velocities(system);
+  rescale_velocities(system, options.groups);
   return system;
 }
 
 System compressed(const System& system, double packing_fraction, const std::function<bool(double)>& progress,
-                  Counters* counters, std::vector<FailedPair>* failures) {
+                  Counters* counters, std::vector<FailedPair>* failures, const std::vector<int>& groups) {
   const std::vector<Component> components = components_of(system);
   internal::check_components(components);
   check_packing(components, packing_fraction);
@@ -287,7 +289,7 @@ System compressed(const System& system, double packing_fraction, const std::func
   options.failures = failures;
   clear(options);
   System result = target < system.box * (1 - kSameBox) ? compress(system, target, options) : system;
-  rescale_velocities(result);
+  rescale_velocities(result, groups);
   return result;
 }
 

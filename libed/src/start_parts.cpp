@@ -18,23 +18,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// The axis about which each species is symmetric, or -1.
-std::vector<int> symmetry_axes(const System& system) {
-  std::vector<int> axes;
-  for (const Species& species : system.species) axes.push_back(symmetry_axis(species).value_or(-1));
-  return axes;
-}
-
-/// The spheres among the bodies.
-System spheres_of(const System& system) {
-  System spheres;
-  spheres.species = system.species;
-  for (const Body& body : system.bodies) {
-    if (is_sphere(system.species[static_cast<std::size_t>(body.species)].shape)) spheres.bodies.push_back(body);
-  }
-  return spheres;
-}
-
 /// From so many bodies on, which the nearest caches do not hold, their order counts.
 constexpr int kOrderedFrom = 4000;
 
@@ -108,58 +91,5 @@ void number_along_curve(System& system) {
   for (std::size_t i = 0; i < placed.size(); ++i) system.bodies[i] = placed[i].second;
 }
 
-void draw_velocities(System& system, Random& random) {
-  const std::vector<int> axes = symmetry_axes(system);
-  for (Body& body : system.bodies) {
-    const auto kind = static_cast<std::size_t>(body.species);
-    const Species& species = system.species[kind];
-    // Variance kT / m, and kT / I of the components along the body's axes; rescaled exactly afterwards.
-    body.velocity = random.normal3() / std::sqrt(species.mass);
-    const Vector3d w = random.normal3();
-    Vector3d omega = w.cwiseQuotient(species.inertia.cwiseSqrt());
-    if (!species.spins) omega[axes[kind]] = 0;
-    body.angular_velocity = body.rotation * omega;
-  }
-  rescale_velocities(system);
-}
-
 }  // namespace internal
-
-void rescale_velocities(System& system) {
-  const int n = system.size();
-  double total_mass = 0;
-  for (int i = 0; i < n; ++i) total_mass += system.species_of(i).mass;
-  Vector3d mean = Vector3d::Zero();
-  for (int i = 0; i < n; ++i) {
-    mean += system.bodies[static_cast<std::size_t>(i)].velocity / (total_mass / system.species_of(i).mass);
-  }
-  for (Body& body : system.bodies) body.velocity -= mean;
-  const KineticState now = kinetic_state(system);
-  const std::vector<int> axes = symmetry_axes(system);
-  const auto factor = [](double wanted, double energy) { return energy > 0 ? std::sqrt(wanted / energy) : 0.0; };
-  const double translation = factor(0.5 * (3 * n - 3), now.translational_energy);
-  // Spheres without friction keep their rotation for ever: in a mixture it would be a reservoir of its own.
-  const KineticState round = kinetic_state(spheres_of(system));
-  const bool mixed = round.rotational_freedoms != now.rotational_freedoms;
-  const double sphere_rotation =
-      factor(0.5 * round.rotational_freedoms, mixed ? round.rotational_energy : now.rotational_energy);
-  const double rotation = mixed ? factor(0.5 * (now.rotational_freedoms - round.rotational_freedoms),
-                                         now.rotational_energy - round.rotational_energy)
-                                : sphere_rotation;
-  const double spin = factor(0.5 * now.spin_freedoms, now.spin_energy);
-  for (Body& body : system.bodies) {
-    body.velocity *= translation;
-    const auto kind = static_cast<std::size_t>(body.species);
-    const double factor_here = is_sphere(system.species[kind].shape) ? sphere_rotation : rotation;
-    if (axes[kind] < 0) {
-      body.angular_velocity *= factor_here;
-      continue;
-    }
-    const Vector3d u = body.rotation.col(axes[kind]);
-    const double w = body.angular_velocity.dot(u);
-    body.angular_velocity =
-        factor_here * (body.angular_velocity - w * u) + (system.species[kind].spins ? spin * w : 0.0) * u;
-  }
-}
-
 }  // namespace ed

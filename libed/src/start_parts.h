@@ -31,7 +31,10 @@ System bodies_of(const std::vector<Component>& components);
 /// other in memory, too. Few are left as they are.
 void number_along_curve(System& system);
 
-/// From the Maxwell distribution, then rescaled.
+/// Draws velocities from the Maxwell distribution; rescale_velocities() is the caller's.
 void draw_velocities(System& system, Random& random);
+
+/// Sets momentum zero and the temperatures of all bodies together, as rescale_velocities() does for one group.
+void rescale_together(System& system);
 
 }  // namespace ed::internal

@@ -37,6 +37,9 @@ struct StartOptions {
   /// species with few bodies each; few large among many small), or boxes would be too small for nearest images, starts
   /// are repeated less often or not at all: compressed_together says how many bodies are compressed.
   int most_compressed = 1000;
+  /// Numbers of bodies, one group after the other, whose temperatures are set by themselves; empty: those of the
+  /// species, as rescale_velocities says.
+  std::vector<int> groups{};
   /// If not null: what the compression has counted, all 0 where nothing was compressed.
   Counters* counters = nullptr;
   /// If not null: the pairs that failed in it, as Simulation::failures, of the bodies that were compressed (masses 1;
@@ -64,6 +67,7 @@ struct LatticeOptions {
   std::optional<int> axis = std::nullopt;
   /// Order parameter S = <P2(u_z)> of that axis in the start, 0 <= S < 1; nothing: all bodies are aligned.
   std::optional<double> nematic_order = std::nullopt;
+  std::vector<int> groups{};  ///< whose temperatures are set by themselves, as in StartOptions
 };
 
 /// The largest packing fraction that a start from a random dilute configuration is asked to reach: 0.02 below random
@@ -84,7 +88,7 @@ ED_EXPORT double densest_start(const std::vector<Component>& components);
 /// Velocities: total momentum zero; translational kT = 1 on 3N - 3 degrees of freedom, rotational kT = 1 on 2 a body of
 /// revolution and 3 of another and, for bodies of revolution that spin, spin kT = 1 on 1, each rescaled separately (at
 /// the end too, so that nearly spherical bodies, which hardly exchange energy, have the right temperatures). In a
-/// mixture the rotation of its spheres is too: it never exchanges energy with anything.
+/// mixture each species has them by itself (rescale_velocities): light and heavy bodies hardly exchange energy either.
 ///
 /// Throws std::invalid_argument for a packing fraction that is not positive or above densest_start, or a number below
 /// smallest_number; std::runtime_error if the compression gets stuck.
@@ -99,15 +103,16 @@ ED_EXPORT System random_start(const std::vector<Component>& components, const St
 ED_EXPORT int compressed_together(const std::vector<Component>& components, const StartOptions& options);
 
 /// The paper's compression of a state that is there already, to a higher packing fraction: from one state point to the
-/// next. Velocities are rescaled at the end as those of random_start; `progress`, `counters` and `failures` are as in
-/// StartOptions.
+/// next. Velocities are rescaled at the end as those of random_start; `progress`, `counters`, `failures` and `groups`
+/// are as in StartOptions.
 ///
 /// Throws std::invalid_argument for a packing fraction below that of the state or above densest_start, and for a box
 /// that would be too small (as random_start); std::runtime_error if the compression gets stuck. At the state's own
 /// packing fraction only velocities change.
 ED_EXPORT System compressed(const System& system, double packing_fraction,
                             const std::function<bool(double packing_fraction)>& progress = nullptr,
-                            Counters* counters = nullptr, std::vector<FailedPair>* failures = nullptr);
+                            Counters* counters = nullptr, std::vector<FailedPair>* failures = nullptr,
+                            const std::vector<int>& groups = {});
 
 /// Bodies on a lattice that fills the box, at exactly this packing fraction: dense and ordered states that no
 /// compression reaches. Velocities as those of random_start; densest_start does not apply.
@@ -129,7 +134,13 @@ ED_EXPORT System compressed(const System& system, double packing_fraction,
 /// axis that is none.
 ED_EXPORT System lattice_start(const std::vector<Component>& components, const LatticeOptions& options);
 
-/// Sets momentum zero and the temperatures as above.
-ED_EXPORT void rescale_velocities(System& system);
+/// Sets the total momentum to zero and the temperatures of each group to 1, the translational one on its own 3 (N_k -
+/// M_k / M) degrees of freedom, M_k the group's share of all mass M: what momentum zero leaves it. `groups`: numbers of
+/// bodies, one group after the other. Without them the bodies of a species are a group, and species of one body each
+/// (a distribution of sizes) are one together. Spheres and other bodies of one group have rotational temperatures of
+/// their own. What is at rest stays at rest. The velocities of a single group change by one factor, those of several by
+/// one a group, relative to the group's mean velocity; mean velocities change only where a group has no other motion
+/// that could be scaled. Throws std::invalid_argument for numbers that do not add up to that of the bodies.
+ED_EXPORT void rescale_velocities(System& system, const std::vector<int>& groups = {});
 
 }  // namespace ed
