@@ -111,8 +111,9 @@ void check_frame(const Frame& frame, const Frame& first, std::uint64_t k, const 
   const auto refuse = [&](const char* what, const char* accepted) {
     throw InputError(fmt::format("{}: frame {}: {}; accepted: {}", name, k, what, accepted));
   };
-  if ((frame.box - Vector3d::Constant(first.box.x())).cwiseAbs().maxCoeff() > 1e-6 * first.box.x()) {
-    refuse("its box is no cube, or another one than that of the first frame", "one cubic box");
+  if (const std::optional<std::string> why = not_a_cube(frame)) refuse(why->c_str(), "a cubic box");
+  if ((frame.box - first.box).cwiseAbs().maxCoeff() > 1e-6 * first.box.x()) {
+    refuse("its box is another one than that of the first frame", "one box");
   }
   if (frame.bodies.size() != first.bodies.size()) refuse("has another number of bodies than the first", "the same");
 }

@@ -115,7 +115,7 @@ bool overlaps(const Frame& frame, const ed::Audit& audit) {
 
 /// What is wrong with a frame, one line each.
 std::vector<std::string> audit_frame(const Frame& frame, std::uint64_t k, const std::string& name, FramesAudit& all) {
-  const bool cube = frame.box.x() == frame.box.y() && frame.box.y() == frame.box.z();
+  const bool cube = !not_a_cube(frame);
   const std::optional<ed::System> system = frame.exact ? frame.exact : cube ? rounded_system(frame) : std::nullopt;
   all.shapes = all.shapes && system;
   if (!system) return {};

@@ -2,6 +2,8 @@
 
 #include <ed/observables.h>
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <cstddef>
 
@@ -22,13 +24,34 @@ Vector3d axis_of(const ed::System& system, int i) {
   return system.bodies[static_cast<std::size_t>(i)].rotation.col(axis);
 }
 
+/// Relative difference of edges of a cube that is rounding to 32 bits.
+constexpr double kSameLength = 1e-5;
+
 }  // namespace
+
+std::optional<std::string> not_a_cube(const Frame& frame) {
+  const Vector3d& L = frame.box;
+  if (!frame.tilt.isZero(0)) {
+    return fmt::format("its box is tilted: edges {:g}, {:g}, {:g}, xy xz yz = {:g}, {:g}, {:g}", L.x(), L.y(), L.z(),
+                       frame.tilt.x(), frame.tilt.y(), frame.tilt.z());
+  }
+  if ((L / L.x() - Vector3d::Ones()).cwiseAbs().maxCoeff() <= kSameLength) return std::nullopt;
+  return fmt::format("its box has edges {:g}, {:g}, {:g}", L.x(), L.y(), L.z());
+}
+
+bool wrap(Vector3d& position, const Vector3d& box) {
+  const Vector3d away = position.cwiseQuotient(box).array().round();
+  if (!(away.cwiseAbs().maxCoeff() < kMostImages)) return false;
+  position -= away.cwiseProduct(box);
+  return true;
+}
 
 Frame frame_of(const ed::System& system, const std::vector<int>& groups) {
   Frame frame;
   frame.time = 0;
   frame.box = Vector3d::Constant(system.box);
-  frame.images = true;
+  frame.images = frame.orientations = frame.velocities = frame.angular_velocities = frame.ids = true;
+  frame.unwrapped_by = "image flags";
   frame.exact = system;
   for (const ed::Species& species : system.species) frame.types.push_back({letters(frame.types.size()), species.shape});
   std::vector<std::uint32_t> group_of;
@@ -48,6 +71,7 @@ Frame frame_of(const ed::System& system, const std::vector<int>& groups) {
     out.inertia = species.inertia;
     out.type = static_cast<std::uint32_t>(body.species);
     out.group = group_of.at(static_cast<std::size_t>(i));
+    out.id = i;
     axes.push_back(axis_of(system, i));
   }
   frame.energy = ed::kinetic_state(system).energy();

@@ -19,10 +19,12 @@ struct FrameType {
   std::optional<ed::BodyShape> shape;  ///< nothing: not said, or none that can move here
 };
 
-/// One body of a frame. World frame.
+/// One body of a frame. World frame. What the file does not say has the default; Frame says what is known.
 struct FrameBody {
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();   ///< wrapped into the box, whose middle is the origin
-  Eigen::Vector3d unwrapped = Eigen::Vector3d::Zero();  ///< continuous across the box's faces, if images were stored
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< wrapped into the box, whose middle is the origin
+  /// Position that goes on across the faces of the box, where Frame::images; else the position as the file has it,
+  /// which may lie outside the box.
+  Eigen::Vector3d unwrapped = Eigen::Vector3d::Zero();
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
   Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();
@@ -30,7 +32,7 @@ struct FrameBody {
   Eigen::Vector3d inertia = Eigen::Vector3d::Zero();  ///< principal moments about body x, y, z; 0: not known
   std::uint32_t type = 0;                             ///< number in Frame::types
   std::uint32_t group = 0;                            ///< species of the config; that of another program: the type
-  double id = 0;                                      ///< as the file numbers it; GSD: from 0
+  double id = 0;  ///< number in the file: `id` of a dump (the line, from 1, without); index of GSD, from 0
 };
 
 /// A coordinate within a box and so many edges of it is a position; beyond, an image's number would overflow.
@@ -41,11 +43,23 @@ struct Frame {
   std::uint64_t step = 0;  ///< of ours: the frame's number
   /// Since production began; NaN: not stored.
   double time = std::numeric_limits<double>::quiet_NaN();
-  Eigen::Vector3d box = Eigen::Vector3d::Zero();  ///< edge lengths
+  Eigen::Vector3d box = Eigen::Vector3d::Zero();  ///< edge lengths along x, y, z
+  /// Lengths xy, xz, yz by which the second and third edge lean; not 0: positions are not wrapped.
+  Eigen::Vector3d tilt = Eigen::Vector3d::Zero();
   std::vector<FrameType> types;
   std::vector<FrameBody> bodies;
-  bool images = false;       ///< unwrapped positions are known
-  bool orientations = true;  ///< are known; of GSD files always: without them bodies are aligned
+
+  // What is known, of every body of this frame.
+  bool images = false;              ///< unwrapped positions: by images, or stored as such
+  bool orientations = false;        ///< stored, or by the schema those of frame 0
+  bool velocities = false;          ///< the same
+  bool angular_velocities = false;  ///< the same
+  bool ids = false;                 ///< the file numbers its bodies, so that they can be followed from frame to frame
+  /// Source of the unwrapped positions: "image flags" or "unwrapped columns"; empty: not known.
+  std::string unwrapped_by;
+  /// Things that were done with the file's numbers or are not used, one line each, "about what: what".
+  std::vector<std::string> notices;
+
   // NaN where they are not known.
   double energy = std::numeric_limits<double>::quiet_NaN();  ///< kinetic, kT
   double Z = std::numeric_limits<double>::quiet_NaN();       ///< since production began; of its first moment: NaN
@@ -53,6 +67,12 @@ struct Frame {
   /// Of our own trajectories: the state itself, to every bit, with the species that belong to it.
   std::optional<ed::System> exact;
 };
+
+/// "its box is tilted: ..", "its box has edges ..": why a frame's box is no cube; nothing if it is one.
+std::optional<std::string> not_a_cube(const Frame& frame);
+
+/// Wraps a position, measured from the middle of the box, into the box. False if it is too far away for that.
+bool wrap(Eigen::Vector3d& position, const Eigen::Vector3d& box);
 
 /// The simulation now. `groups`: how many bodies each species of the config has, one after the other.
 Frame frame_of(const ed::Simulation& simulation, const std::vector<int>& groups, std::uint64_t number);

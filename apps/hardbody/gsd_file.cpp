@@ -154,6 +154,12 @@ void GsdFile::read_index(std::uint64_t location, std::uint64_t entries) {
   if (!std::is_sorted(chunks_.begin(), chunks_.end(), before)) {
     std::stable_sort(chunks_.begin(), chunks_.end(), before);
   }
+  note_last_frames();
+}
+
+void GsdFile::note_last_frames() {
+  last_frame_.assign(names_.size(), 0);
+  for (const GsdChunk& chunk : chunks_) last_frame_[chunk.name] = std::max(last_frame_[chunk.name], chunk.frame);
 }
 
 /// An entry of the index; false: there are no more of whole frames.
@@ -177,12 +183,18 @@ void GsdFile::keep_frames(std::uint64_t count) {
   frame_count_ = count;
   cut_off_ = true;
   std::erase_if(chunks_, [count](const GsdChunk& chunk) { return chunk.frame >= count; });
+  note_last_frames();
 }
 
 std::optional<std::uint16_t> GsdFile::number_of(std::string_view name) const {
   const auto found = std::find(names_.begin(), names_.end(), name);
   if (found == names_.end()) return std::nullopt;
   return static_cast<std::uint16_t>(found - names_.begin());
+}
+
+bool GsdFile::stored_later(std::string_view name) const {
+  const std::optional<std::uint16_t> number = number_of(name);
+  return number && last_frame_[*number] > 0;
 }
 
 const GsdChunk* GsdFile::find(std::uint64_t frame, std::string_view name) const {

@@ -71,6 +71,8 @@ class GsdFile {
 
   /// Whether there can be an array of that name.
   bool has_name(std::string_view name) const { return number_of(name).has_value(); }
+  /// Whether a frame behind the first one has an array of that name.
+  bool stored_later(std::string_view name) const;
   /// The array of a frame; null if it has none of that name.
   const GsdChunk* find(std::uint64_t frame, std::string_view name) const;
   /// Its bytes.
@@ -80,6 +82,7 @@ class GsdFile {
   std::optional<std::uint16_t> number_of(std::string_view name) const;
   void read_names(std::uint64_t location, std::uint64_t blocks, bool fixed_length);
   void read_index(std::uint64_t location, std::uint64_t entries);
+  void note_last_frames();
   bool take_chunk(ed::internal::Reader& reader, std::uint64_t entries);
 
   std::unique_ptr<StoredBytes> bytes_;
@@ -90,7 +93,8 @@ class GsdFile {
   std::uint64_t frame_count_ = 0;
   bool cut_off_ = false;
   std::vector<std::string> names_;
-  std::vector<GsdChunk> chunks_;  ///< sorted by frame, then name
+  std::vector<GsdChunk> chunks_;           ///< sorted by frame, then name
+  std::vector<std::uint64_t> last_frame_;  ///< by name: the last frame that has such an array; 0: none, or the first
 };
 
 /// An array to be written.

@@ -40,6 +40,8 @@ class GsdReader final : public TrajectoryReader {
   /// The file ends before they do, or behind frames of ours there are some without the doubles.
   bool cut_off() const override { return file_.cut_off(); }
 
+  bool has_positions(std::uint64_t k) const override;
+
   /// Frame k < frame_count(). Numbers that are not finite, orientations that are none, types that there are not: all
   /// are refused; and frames of ours of which another program has changed the 32-bit numbers, but not the doubles.
   Frame read(std::uint64_t k) const override;

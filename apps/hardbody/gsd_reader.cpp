@@ -48,12 +48,15 @@ class FrameReader {
     return InputError(fmt::format("{}: frame {}: {}; accepted: {}", file_.name(), k_, what, accepted));
   }
 
-  /// Absent from this frame an array is that of frame 0, if there are as many rows in it; null: the default.
+  /// Array of this frame; where it has none that of frame 0, if that has as many rows; null: the default.
   const GsdChunk* find(const std::string& name, std::uint64_t rows, std::uint32_t columns, GsdType type) const;
+  /// Whether the file says of this frame what moves. Beyond frame 0 an array that is absent is that of frame 0 only if
+  /// some later frame has such an array: else it may just not have been written any more.
+  bool knows(const std::string& name) const { return file_.find(k_, name) != nullptr || file_.stored_later(name); }
   /// Its numbers; empty: the default.
   template <class T>
   std::vector<T> numbers(const std::string& name, std::uint64_t rows, std::uint32_t columns) const;
-  /// The same; finite numbers.
+  /// Finite ones; empty: the default.
   template <class T>
   std::vector<double> finite(const std::string& name, std::uint64_t rows, std::uint32_t columns) const;
   template <class T>
@@ -138,11 +141,11 @@ void FrameReader::read_box(Frame& frame) const {
   if (dimensions != nullptr && file_.read(*dimensions)[0] != '\3') throw bad("is not of three dimensions", "three");
   std::vector<double> box = finite<float>("configuration/box", 6, 1);
   if (box.empty()) box = {1, 1, 1, 0, 0, 0};
-  if (box[3] != 0 || box[4] != 0 || box[5] != 0) throw bad("its box is tilted", "a box with right angles");
   for (int i = 0; i < 3; ++i) {
     frame.box[i] = box[static_cast<std::size_t>(i)];
     if (!(frame.box[i] > 0)) throw bad(fmt::format("its box has an edge of {}", frame.box[i]), "edges above 0");
   }
+  frame.tilt = {box[3] * box[1], box[4] * box[2], box[5] * box[2]};  // the file has ratios
 }
 
 void FrameReader::read_types(Frame& frame) const {
@@ -175,20 +178,25 @@ void FrameReader::read_bodies(Frame& frame) const {
   if (number > kMostInFrame) throw bad(fmt::format("has {} bodies", number), "at most 10^7");
   const std::vector<double> position = finite<float>("particles/position", number, 3);
   if (position.empty()) throw bad(fmt::format("has no positions of its {} bodies", number), "particles/position");
-  const std::vector<double> orientation = finite<float>("particles/orientation", number, 4);
-  const std::vector<std::int32_t> image = numbers<std::int32_t>("particles/image", number, 3);
-  frame.images = !image.empty();
+  // The first frame of all is as the schema has it: without orientations bodies are aligned.
+  frame.orientations = k_ == 0 || knows("particles/orientation");
+  frame.images = knows("particles/image");
+  if (frame.images) frame.unwrapped_by = "image flags";
+  frame.ids = true;
+  const auto orientation =
+      frame.orientations ? finite<float>("particles/orientation", number, 4) : std::vector<double>();
+  const auto image = frame.images ? numbers<std::int32_t>("particles/image", number, 3) : std::vector<std::int32_t>();
   frame.bodies.resize(number);
   for (std::size_t i = 0; i < number; ++i) {
     FrameBody& body = frame.bodies[i];
     body.id = static_cast<double>(i);
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto e = static_cast<Eigen::Index>(k);
-      const double x = position[3 * i + k];
-      const double away = std::round(x / frame.box[e]);
-      if (!(std::abs(away) < kMostImages)) throw bad(fmt::format("body {} is at {:g}", i, x), "positions in the box");
-      body.position[e] = x - away * frame.box[e];
-      body.unwrapped[e] = image.empty() ? x : x + image[3 * i + k] * frame.box[e];
+    body.position = body.unwrapped = {position[3 * i], position[3 * i + 1], position[3 * i + 2]};
+    if (frame.tilt.isZero(0) && !wrap(body.position, frame.box)) {
+      const Vector3d& x = body.unwrapped;
+      throw bad(fmt::format("body {} is at {:g}, {:g}, {:g}", i, x.x(), x.y(), x.z()), "positions in the box");
+    }
+    if (!image.empty()) {
+      body.unwrapped += frame.box.cwiseProduct(Vector3d(image[3 * i], image[3 * i + 1], image[3 * i + 2]));
     }
     if (orientation.empty()) continue;
     const double* q = orientation.data() + 4 * i;
@@ -202,8 +210,10 @@ void FrameReader::read_motion(Frame& frame) const {
   const std::vector<std::uint32_t> group = numbers<std::uint32_t>(kNameTexts[kGroup], number, 1);
   const std::vector<double> mass = finite<float>("particles/mass", number, 1);
   const std::vector<double> inertia = finite<float>("particles/moment_inertia", number, 3);
-  const std::vector<double> velocity = finite<float>("particles/velocity", number, 3);
-  const std::vector<double> angmom = finite<float>("particles/angmom", number, 4);
+  frame.velocities = knows("particles/velocity");
+  frame.angular_velocities = frame.orientations && knows("particles/angmom");
+  const auto velocity = frame.velocities ? finite<float>("particles/velocity", number, 3) : std::vector<double>();
+  const auto angmom = frame.angular_velocities ? finite<float>("particles/angmom", number, 4) : std::vector<double>();
   for (std::size_t i = 0; i < number; ++i) {
     FrameBody& body = frame.bodies[i];
     if (!type.empty()) body.type = type[i];
@@ -386,7 +396,21 @@ GsdReader::GsdReader(std::unique_ptr<StoredBytes> bytes, std::string name)
   file_.keep_frames(whole);
 }
 
+bool GsdReader::has_positions(std::uint64_t k) const {
+  constexpr const char* kPosition = "particles/position";
+  if (file_.find(k, kPosition) != nullptr) return true;
+  // Positions that are those of frame 0 are left out, if something else of the bodies is there.
+  const auto stored = [&](const char* name) { return file_.find(k, name) != nullptr; };
+  return k > 0 && file_.find(0, kPosition) != nullptr && file_.stored_later(kPosition) &&
+         (stored("particles/orientation") || stored("particles/velocity") || stored("particles/angmom") ||
+          stored("particles/image"));
+}
+
 Frame GsdReader::read(std::uint64_t k) const {
+  if (!has_positions(k)) {
+    throw InputError(
+        fmt::format("{}: frame {}: has no positions; accepted: a frame with particles/position", file_.name(), k));
+  }
   FrameReader reader(file_, k);
   Frame frame = reader.read();
   if (!exact_) return frame;

@@ -285,6 +285,8 @@ Frame DumpFrame::read() {
   read_bounds(frame);
   read_columns(line("its bodies"));
   frame.orientations = columns({"quatw", "quati", "quatj", "quatk"}).has_value();
+  frame.velocities = columns({"vx", "vy", "vz"}).has_value();
+  frame.ids = columns({"id"}).has_value();
   for (auto k = static_cast<std::uint64_t>(count); k > 0; --k) {
     const std::vector<std::string_view> words = words_of(line("its last body"));
     if (words.size() != names_.size()) {

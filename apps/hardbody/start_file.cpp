@@ -45,7 +45,8 @@ FoundFrame read_frame(const StartFile& start) {
   const TrajectoryReader& reader = *source;
   const std::uint64_t count = reader.frame_count();
   if (count == 0) throw InputError(fmt::format("{}: has no whole frame; accepted: a file with frames", start.file));
-  const std::uint64_t k = start.frame ? static_cast<std::uint64_t>(*start.frame) : count - 1;
+  const std::uint64_t last = last_frame(reader).value_or(count - 1);
+  const std::uint64_t k = start.frame ? static_cast<std::uint64_t>(*start.frame) : last;
   if (k >= count) {
     throw InputError(
         fmt::format("start.frame is {}, {} has {} whole frames; accepted: 0 to {}", k, start.file, count, count - 1));
@@ -55,12 +56,10 @@ FoundFrame read_frame(const StartFile& start) {
 
 double box_of(const Frame& frame, const std::string& file) {
   if (frame.exact) return frame.exact->box;
-  const double L = frame.box.x();
-  if (std::abs(frame.box.y() / L - 1) > kSameLength || std::abs(frame.box.z() / L - 1) > kSameLength) {
-    throw InputError(
-        fmt::format("{}: its box has edges {:g}, {:g}, {:g}; accepted: a cube", file, L, frame.box.y(), frame.box.z()));
+  if (const std::optional<std::string> why = not_a_cube(frame)) {
+    throw InputError(fmt::format("{}: {}; accepted: a cube", file, *why));
   }
-  return L;
+  return frame.box.x();
 }
 
 /// The bodies of each group, in the order of the groups' numbers.

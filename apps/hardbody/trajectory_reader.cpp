@@ -10,6 +10,12 @@
 
 namespace hardbody {
 
+std::optional<std::uint64_t> last_frame(const TrajectoryReader& reader) {
+  std::uint64_t k = reader.frame_count();
+  while (k > 0 && !reader.has_positions(k - 1)) --k;
+  return k > 0 ? std::optional(k - 1) : std::nullopt;
+}
+
 std::unique_ptr<TrajectoryReader> open_frames(const std::filesystem::path& path) {
   std::unique_ptr<StoredBytes> bytes = open_stored_bytes(path);
   const std::string begin = bytes->read(0, std::min<std::uint64_t>(bytes->size(), 4));

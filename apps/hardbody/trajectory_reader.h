@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 
 namespace hardbody {
@@ -23,14 +24,19 @@ class TrajectoryReader {
   virtual std::uint64_t frame_count() const = 0;
   /// Whether what follows them is left out.
   virtual bool cut_off() const = 0;
-  /// Frame k < frame_count(). Throws InputError, `name: what; accepted: ..`.
+  /// Whether frame k has positions. GSD files may hold frames of logged values only, which are no states.
+  virtual bool has_positions(std::uint64_t /*k*/) const { return true; }
+  /// Frame k < frame_count(). Throws InputError, `name: what; accepted: ..`, also of a frame without positions.
   virtual Frame read(std::uint64_t k) const = 0;
 };
 
 /// What is said of a file that ends before its last frame does, or has others than ours behind ours.
 inline constexpr const char* kCutOff = "; what follows them is not whole and left out";
 
-/// A GSD file or a LAMMPS text dump, whichever it is. Throws InputError.
+/// The last frame that has positions; nothing if there is none.
+std::optional<std::uint64_t> last_frame(const TrajectoryReader& reader);
+
+/// A GSD file or a LAMMPS text dump, as its first bytes say. Throws InputError, which names the format of other files.
 std::unique_ptr<TrajectoryReader> open_frames(const std::filesystem::path& path);
 
 }  // namespace hardbody
