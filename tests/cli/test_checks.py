@@ -48,7 +48,7 @@ GSD = [
     ("oblong", {"box": FIRST(OBLONG)}, "may be"),
     ("oblong, balls", {"box": FIRST(OBLONG), "shapes": (BALL,)}, "may be"),
     ("tilted", {"box": FIRST([EDGE, EDGE, EDGE, 0.25, 0, 0])}, "may be"),
-    ("rods, orientations never", {"orientation": "never"}, "yes"),
+    ("rods, orientations never", {"orientation": "never"}, "may be"),
     ("rods, orientations of frame 0", {"orientation": "first"}, "may be"),
     ("flat", {"more": {"configuration/dimensions": lambda k: numpy.array([2], numpy.uint8)}}, "may be"),
 ]
@@ -86,17 +86,17 @@ class ChecksOfTrajectories(Analyses):
             self.assert_refused(result, "accepted: ")
             self.assertEqual(looked, "may be", said)
             return
-        found = re.search(r"overlaps +(\d+|[a-z ]*not looked[a-z ]*)", said)
+        found = re.search(r"^ *overlaps +(.+)$", said, re.M)
         self.assertIsNotNone(found, said)
-        seen = found.group(1).isdigit()
+        seen = "not looked" not in found.group(1)
         self.assertTrue(seen or looked == "may be", said)
         if overlap and seen:
             self.assertFalse(self.sound(result), said)
             self.assertEqual(result.returncode, 1, said)
             self.assertRegex(said, "frame 1\\b")
-            self.assertRegex(said, who)
+            self.assertRegex(said, who or "frame 1")
         elif seen:
-            self.assertEqual(int(found.group(1)), 0, said)
+            self.assertEqual(int(re.match(r"\d+", found.group(1)).group()), 0, said)
             self.assertEqual(result.returncode, 0, said)
             self.assertTrue(self.sound(result), said)
         else:
