@@ -15,6 +15,7 @@ hardbody_test(ed_unit_test unit
 hardbody_test(ed_observables_test unit
   unit/analysis_test.cpp
   unit/correlations_test.cpp
+  unit/curves_test.cpp
   unit/equilibration_test.cpp
   unit/observables_test.cpp
   unit/snapshots_test.cpp

@@ -29,6 +29,13 @@ constexpr double kSameLength = 1e-5;
 
 }  // namespace
 
+std::uint32_t SphereTypes::of(std::uint32_t type, double radius) {
+  if (!(radius > 0)) return type;
+  const auto [found, fresh] = made_.try_emplace({type, radius}, static_cast<std::uint32_t>(types_.size()));
+  if (fresh) types_.push_back({types_[type].name, geom::Ellipsoid(Vector3d::Constant(radius)), true});
+  return found->second;
+}
+
 std::optional<std::string> not_a_cube(const Frame& frame) {
   const Vector3d& L = frame.box;
   if (!frame.tilt.isZero(0)) {

@@ -7,16 +7,34 @@
 
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace hardbody {
 
-/// What the bodies of one type are, as a trajectory says it.
+/// A type of bodies, as a trajectory says it.
 struct FrameType {
   std::string name;
   std::optional<ed::BodyShape> shape;  ///< nothing: not said, or none that can move here
+  bool shape_given = false;            ///< of those without `shape`: the file has one, which is not known here
+};
+
+/// Types of a file that gives bodies a radius each: every radius of a type makes a type of its own.
+class SphereTypes {
+ public:
+  explicit SphereTypes(std::vector<FrameType> types) : types_(std::move(types)) {}
+
+  /// Number of the type of spheres with that radius; of a radius that is not above 0 the type itself: points. Throws
+  /// std::invalid_argument for radii that no body can have.
+  std::uint32_t of(std::uint32_t type, double radius);
+  std::vector<FrameType> take() { return std::move(types_); }
+
+ private:
+  std::vector<FrameType> types_;
+  std::map<std::pair<std::uint32_t, double>, std::uint32_t> made_;
 };
 
 /// One body of a frame. World frame. What the file does not say has the default; Frame says what is known.

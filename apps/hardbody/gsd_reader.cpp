@@ -2,6 +2,7 @@
 #include "gsd_schema.h"
 
 #include "errors.h"
+#include "stored_orientations.h"
 #include "text_file.h"
 #include "type_shapes.h"
 
@@ -11,8 +12,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -30,13 +33,14 @@ using Eigen::Vector3d;
 constexpr std::uint32_t kMostTypes = 1'000'000;
 constexpr std::uint64_t kMostInFrame = 10'000'000;
 constexpr std::uint64_t kLongestTexts = std::uint64_t{1} << 26;  ///< bytes
-/// A stored quaternion's length may be off 1 by this: 32-bit numbers, integrated by another program.
-constexpr double kGsdQuaternionTolerance = 1e-4;
 
-/// What reads one frame of a file.
+constexpr const char* kPositionName = "particles/position";
+constexpr const char* kOrientationName = "particles/orientation";
+
+/// Reader of one frame of a file.
 class FrameReader {
  public:
-  FrameReader(const GsdFile& file, std::uint64_t k) : file_(file), k_(k) {}
+  FrameReader(const GsdFile& file, std::uint64_t k, bool exact) : file_(file), k_(k), exact_(exact) {}
 
   /// A frame without its exact state.
   Frame read();
@@ -68,11 +72,13 @@ class FrameReader {
   void read_types(Frame& frame) const;
   void read_bodies(Frame& frame) const;
   void read_motion(Frame& frame) const;
-  Matrix3d rotation(const Eigen::Vector4d& q, std::size_t body) const;
+  void read_orientations(Frame& frame) const;
+  void read_diameters(Frame& frame) const;
   std::vector<ed::Species> read_species() const;
 
   const GsdFile& file_;
   std::uint64_t k_;
+  bool exact_;  ///< the state of frames is there in doubles
 };
 
 const GsdChunk* FrameReader::find(const std::string& name, std::uint64_t rows, std::uint32_t columns,
@@ -152,39 +158,80 @@ void FrameReader::read_types(Frame& frame) const {
   std::vector<std::string> names = texts("particles/types");
   if (names.empty()) names = {"A"};
   const std::vector<std::string> shapes = texts("particles/type_shapes");
+  std::string others;
   for (std::size_t k = 0; k < names.size(); ++k) {
-    frame.types.push_back({names[k], std::nullopt});
+    frame.types.push_back({names[k], std::nullopt, k < shapes.size() && shapes[k] != "{}" && !shapes[k].empty()});
     if (k >= shapes.size()) continue;
     try {
       frame.types.back().shape = read_type_shape(shapes[k]);
     } catch (const InputError& error) {
       throw InputError(fmt::format("{}: frame {}: the shape of type {}: {}", file_.name(), k_, k, error.what()));
     }
+    if (frame.types[k].shape_given && !frame.types[k].shape && others.size() < kShownLength) {
+      others += fmt::format(" {}", one_line(names[k], 20));
+    }
+  }
+  if (!others.empty() && !exact_) {
+    frame.notices.push_back(
+        fmt::format("shapes: those of types{} are not used; spheres and ellipsoids are, {{\"type\": \"Sphere\", "
+                    "\"diameter\": ..}}, {{\"type\": \"Ellipsoid\", \"a\": .., \"b\": .., \"c\": ..}}",
+                    others));
   }
 }
 
-Matrix3d FrameReader::rotation(const Eigen::Vector4d& q, std::size_t body) const {
-  const double length = q.norm();
-  if (!(std::abs(length - 1) <= kGsdQuaternionTolerance)) {
-    throw bad(fmt::format("the orientation of body {} is a quaternion of length {:g}", body, length),
-              fmt::format("1 within {:g}", kGsdQuaternionTolerance));
+void FrameReader::read_orientations(Frame& frame) const {
+  // The first frame of all is as the schema has it: without orientations bodies are aligned.
+  frame.orientations = k_ == 0 || knows(kOrientationName);
+  if (!frame.orientations) return;
+  const std::vector<double> orientation = finite<float>(kOrientationName, frame.bodies.size(), 4);
+  StoredOrientations orientations;
+  for (std::size_t i = 0; 4 * i < orientation.size(); ++i) {
+    const Eigen::Vector4d q = Eigen::Map<const Eigen::Vector4d>(orientation.data() + 4 * i);
+    const std::optional<Matrix3d> rotation = orientations.rotation(q);
+    if (!rotation) {
+      throw bad(fmt::format("the orientation of body {} {}", i, StoredOrientations::fault(q)),
+                StoredOrientations::accepted());
+    }
+    frame.bodies[i].rotation = *rotation;
   }
-  return geom::Pose::from_quaternion(q[0] / length, q[1] / length, q[2] / length, q[3] / length).rotation();
+  if (std::optional<std::string> notice = orientations.notice()) frame.notices.push_back(std::move(*notice));
+}
+
+/// Spheres of the stored diameters where no shape is given and no body has an orientation of its own.
+void FrameReader::read_diameters(Frame& frame) const {
+  const auto bare = [](const FrameType& type) { return !type.shape_given; };
+  if (std::none_of(frame.types.begin(), frame.types.end(), bare)) return;
+  const std::vector<double> diameter = finite<float>("particles/diameter", frame.bodies.size(), 1);
+  if (diameter.empty()) return;
+  if (file_.find(0, kOrientationName) != nullptr || file_.stored_later(kOrientationName)) {
+    frame.notices.emplace_back(
+        "particles/diameter: is not used, for bodies with orientations are no spheres; shapes are read from "
+        "particles/type_shapes");
+    return;
+  }
+  SphereTypes types(frame.types);
+  for (std::size_t i = 0; i < frame.bodies.size(); ++i) {
+    FrameBody& body = frame.bodies[i];
+    if (!bare(frame.types[body.type])) continue;
+    try {
+      body.type = types.of(body.type, 0.5 * diameter[i]);
+    } catch (const std::invalid_argument& error) {
+      throw bad(fmt::format("particles/diameter of body {}: {}", i, one_line(error.what())), "diameters of bodies");
+    }
+  }
+  frame.types = types.take();
+  frame.notices.emplace_back("particles/diameter: bodies are taken for spheres of these diameters");
 }
 
 void FrameReader::read_bodies(Frame& frame) const {
   const auto number = std::uint64_t{scalar<std::uint32_t>("particles/N", 0)};
   if (number == 0) throw bad("has no bodies", "at least 1");
   if (number > kMostInFrame) throw bad(fmt::format("has {} bodies", number), "at most 10^7");
-  const std::vector<double> position = finite<float>("particles/position", number, 3);
+  const std::vector<double> position = finite<float>(kPositionName, number, 3);
   if (position.empty()) throw bad(fmt::format("has no positions of its {} bodies", number), "particles/position");
-  // The first frame of all is as the schema has it: without orientations bodies are aligned.
-  frame.orientations = k_ == 0 || knows("particles/orientation");
   frame.images = knows("particles/image");
   if (frame.images) frame.unwrapped_by = "image flags";
   frame.ids = true;
-  const auto orientation =
-      frame.orientations ? finite<float>("particles/orientation", number, 4) : std::vector<double>();
   const auto image = frame.images ? numbers<std::int32_t>("particles/image", number, 3) : std::vector<std::int32_t>();
   frame.bodies.resize(number);
   for (std::size_t i = 0; i < number; ++i) {
@@ -198,9 +245,6 @@ void FrameReader::read_bodies(Frame& frame) const {
     if (!image.empty()) {
       body.unwrapped += frame.box.cwiseProduct(Vector3d(image[3 * i], image[3 * i + 1], image[3 * i + 2]));
     }
-    if (orientation.empty()) continue;
-    const double* q = orientation.data() + 4 * i;
-    body.rotation = rotation({q[0], q[1], q[2], q[3]}, i);
   }
 }
 
@@ -245,7 +289,9 @@ Frame FrameReader::read() {
   read_box(frame);
   read_types(frame);
   read_bodies(frame);
+  read_orientations(frame);
   read_motion(frame);
+  read_diameters(frame);
   return frame;
 }
 
@@ -397,12 +443,11 @@ GsdReader::GsdReader(std::unique_ptr<StoredBytes> bytes, std::string name)
 }
 
 bool GsdReader::has_positions(std::uint64_t k) const {
-  constexpr const char* kPosition = "particles/position";
-  if (file_.find(k, kPosition) != nullptr) return true;
+  if (file_.find(k, kPositionName) != nullptr) return true;
   // Positions that are those of frame 0 are left out, if something else of the bodies is there.
   const auto stored = [&](const char* name) { return file_.find(k, name) != nullptr; };
-  return k > 0 && file_.find(0, kPosition) != nullptr && file_.stored_later(kPosition) &&
-         (stored("particles/orientation") || stored("particles/velocity") || stored("particles/angmom") ||
+  return k > 0 && file_.find(0, kPositionName) != nullptr && file_.stored_later(kPositionName) &&
+         (stored(kOrientationName) || stored("particles/velocity") || stored("particles/angmom") ||
           stored("particles/image"));
 }
 
@@ -411,7 +456,7 @@ Frame GsdReader::read(std::uint64_t k) const {
     throw InputError(
         fmt::format("{}: frame {}: has no positions; accepted: a frame with particles/position", file_.name(), k));
   }
-  FrameReader reader(file_, k);
+  FrameReader reader(file_, k, exact_);
   Frame frame = reader.read();
   if (!exact_) return frame;
   frame.exact = reader.read_exact();

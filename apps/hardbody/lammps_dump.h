@@ -44,6 +44,7 @@ class LammpsReader final : public TrajectoryReader {
   const std::string& name() const override { return name_; }
   std::uint64_t frame_count() const override { return frames_.size(); }
   bool cut_off() const override { return cut_off_; }
+  bool wraps_late() const override { return true; }
 
   /// The bodies in the order of their ids. Types are what type and shape make different, groups what type alone does.
   Frame read(std::uint64_t k) const override;

@@ -26,6 +26,8 @@ class TrajectoryReader {
   virtual bool cut_off() const = 0;
   /// Whether frame k has positions. GSD files may hold frames of logged values only, which are no states.
   virtual bool has_positions(std::uint64_t /*k*/) const { return true; }
+  /// Whether positions may lie a little outside the box until the program that writes such files wraps them.
+  virtual bool wraps_late() const { return false; }
   /// Frame k < frame_count(). Throws InputError, `name: what; accepted: ..`, also of a frame without positions.
   virtual Frame read(std::uint64_t k) const = 0;
 };

@@ -1,39 +1,81 @@
 #include "curves.h"
 
 #include <cmath>
+#include <cstdio>
+#include <string>
 
 namespace ed::internal {
 namespace {
 
-constexpr double kLinearity = 0.2;  ///< of the logarithmic slope of a displacement that counts as diffusion
-constexpr double kNoise = 0.03;     ///< of a decay: what follows is left out
+const double kDecayed = std::exp(-1.0);
 
-}  // namespace
-
-double diffusion(const Curve& curve, double divisor) {
-  if (curve.t.empty()) return kNothing;
+/// The lags that diffusion is fitted over.
+Curve end_of(const Curve& curve) {
   Curve window;
-  Curve logarithms;
   for (std::size_t k = 0; k < curve.t.size(); ++k) {
-    if (curve.t[k] < kFitFrom * curve.t.back() * (1 - 1e-9) || !(curve.y[k] > 0)) continue;
+    if (curve.t[k] < kFitFrom * curve.t.back() * (1 - 1e-9)) continue;
     window.t.push_back(curve.t[k]);
     window.y.push_back(curve.y[k]);
+  }
+  return window;
+}
+
+/// Slope of ln y against ln t; NaN for fewer than two positive values.
+double exponent_of(const Curve& curve) {
+  Curve logarithms;
+  for (std::size_t k = 0; k < curve.t.size(); ++k) {
+    if (!(curve.y[k] > 0)) continue;
     logarithms.t.push_back(std::log(curve.t[k]));
     logarithms.y.push_back(std::log(curve.y[k]));
   }
-  const auto exponent = slope(logarithms.t, logarithms.y);
-  const auto rate = slope(window.t, window.y);
-  if (!exponent || !rate || std::abs(*exponent - 1) > kLinearity) return kNothing;
-  return *rate / divisor;
+  return slope(logarithms.t, logarithms.y).value_or(kNothing);
 }
 
+}  // namespace
+
+// ---- Diffusion
+
+Reach reach_of_translation(double first_wave_number) {
+  return {kDisplaced * 6 / (first_wave_number * first_wave_number), 0, MissingReason::not_displaced};
+}
+
+Reach reach_of_rotation(double components) {
+  return {0, kTurned * components, MissingReason::not_turned};
+}
+
+std::optional<Missing> why_not_diffusive(const Curve& curve, const Reach& reach) {
+  const Curve window = end_of(curve);
+  if (window.t.size() < 2) return Missing{MissingReason::lags_too_short};
+  const double exponent = exponent_of(window);
+  if (exponent > 1 + kLinearity) return Missing{MissingReason::ballistic};
+  // Comparisons that fail if a number is none.
+  const bool diffusive =
+      std::abs(exponent - 1) <= kLinearity && window.y.front() >= reach.at_start && window.y.back() >= reach.at_end;
+  if (diffusive) return std::nullopt;
+  return Missing{reach.short_of_it, std::sqrt(std::abs(window.y.back()))};
+}
+
+double final_slope(const Curve& curve) {
+  const Curve window = end_of(curve);
+  return slope(window.t, window.y).value_or(kNothing);
+}
+
+// ---- Decays
+
 double decay_time(const Curve& curve) {
-  return first_crossing(curve.t, curve.y, 1 / std::exp(1.0)).value_or(kNothing);
+  return first_crossing(curve.t, curve.y, kDecayed).value_or(kNothing);
+}
+
+std::optional<Missing> why_no_decay_time(const Curve& curve) {
+  if (curve.t.empty()) return Missing{MissingReason::lags_too_short};
+  if (std::isfinite(decay_time(curve))) return std::nullopt;
+  if (curve.y.front() <= kDecayed) return Missing{MissingReason::decayed_early};
+  return Missing{MissingReason::not_decayed, curve.y.back()};
 }
 
 std::optional<DecayFit> fit_decay(const Curve& curve, double from) {
   // A comparison that fails if `from` is no number.
-  if (!(decay_time(curve) >= 3 * from)) return std::nullopt;
+  if (!(decay_time(curve) >= kLeastDecay * from)) return std::nullopt;
   Curve window;
   for (std::size_t k = 0; k < curve.t.size() && curve.y[k] > kNoise; ++k) {
     if (curve.t[k] < from) continue;
@@ -41,8 +83,74 @@ std::optional<DecayFit> fit_decay(const Curve& curve, double from) {
     window.y.push_back(curve.y[k]);
   }
   const auto fit = fit_stretched_exponential(window.t, window.y);
-  if (!fit) return std::nullopt;
+  if (!fit || fit->amplitude > kMostAmplitude || fit->beta < kLeastBeta || fit->tau < window.t.front()) {
+    return std::nullopt;
+  }
   return DecayFit{*fit, window.t.front(), window.t.back()};
 }
 
+std::optional<Missing> why_no_fit(const Curve& curve, double from) {
+  if (!std::isfinite(from)) return Missing{MissingReason::end_of_ballistic_unknown};
+  if (const auto missing = why_no_decay_time(curve)) return missing;
+  if (decay_time(curve) < kLeastDecay * from) return Missing{MissingReason::decayed_before_diffusion};
+  if (!fit_decay(curve, from)) return Missing{MissingReason::no_fit};
+  return std::nullopt;
+}
+
 }  // namespace ed::internal
+
+namespace ed {
+
+std::string describe(const Missing& missing, std::string_view length_unit) {
+  const auto reached = [&](const char* before, std::string_view unit, const char* after) {
+    char number[32];
+    std::snprintf(number, sizeof number, "%.2g", missing.reached);
+    return before + std::string(number) + (unit.empty() ? "" : " ") + std::string(unit) + after;
+  };
+  switch (missing.reason) {
+    case MissingReason::not_measured:
+      return "the run is too short: nothing has been measured";
+    case MissingReason::no_collisions:
+      return "no body has met another";
+    case MissingReason::lags_too_short:
+      return "the run has not reached the longest lag";
+    case MissingReason::ballistic:
+      return "motion is still ballistic at the longest lag";
+    case MissingReason::not_displaced:
+      return reached("bodies have moved ", length_unit, " within the longest lag: no diffusion yet");
+    case MissingReason::not_turned:
+      return reached("bodies have turned ", "rad", " within the longest lag: no diffusion yet");
+    case MissingReason::not_decayed:
+      return reached("still ", "", " at the longest lag: not down to 1/e");
+    case MissingReason::decayed_early:
+      return "below 1/e at the first lag already";
+    case MissingReason::decayed_before_diffusion:
+      return "decayed before motion is diffusive: no longer run helps";
+    case MissingReason::end_of_ballistic_unknown:
+      return "it is not known from which lag on motion is diffusive";
+    case MissingReason::no_fit:
+      return "no stretched exponential fits: amplitude, tau or beta is out of range";
+    case MissingReason::meaningless:
+      return "meaningless: nothing turns these bodies";
+    case MissingReason::no_such_axis:
+      return "bodies of revolution have no such axis";
+    case MissingReason::not_told:
+      return "the file does not tell";
+  }
+  return "";
+}
+
+bool longer_lags_help(MissingReason reason) {
+  switch (reason) {
+    case MissingReason::lags_too_short:
+    case MissingReason::ballistic:
+    case MissingReason::not_displaced:
+    case MissingReason::not_turned:
+    case MissingReason::not_decayed:
+      return true;
+    default:
+      return false;
+  }
+}
+
+}  // namespace ed

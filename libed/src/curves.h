@@ -1,11 +1,12 @@
 #pragma once
 
-/// What is read off a time correlation: slopes and decays.
+/// What is read off a time correlation: slopes and decays, and why nothing can be read.
 
 #include <ed/analysis.h>
 
 #include <limits>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace ed::internal {
@@ -18,16 +19,57 @@ struct Curve {
   std::vector<double> y;
 };
 
-/// Diffusion is fitted from this share of the longest lag.
+// ---- Thresholds: where the definition of a number holds. All are dimensionless.
+
+/// Diffusion is fitted over lags t with kFitFrom <= t / longest lag <= 1.
 constexpr double kFitFrom = 0.4;
-/// Decays are fitted from this many mean collision intervals: before, motion is ballistic.
+/// Diffusion: |d ln(displacement) / d ln t - 1| <= kLinearity over those lags. A curve that bends from ballistic motion
+/// (slope 2) to a cage (slope 0) passes this, hence the next two.
+constexpr double kLinearity = 0.2;
+/// Translational diffusion: MSD q^2 / 6 >= kDisplaced at the first of those lags, q the wave number of the first peak
+/// of S(q) (first_wave_number): a Gaussian F_self(q, t) is at or below 1/e there, so that bodies have left their cages.
+constexpr double kDisplaced = 1;
+/// Rotational diffusion: <|Delta Phi|^2> >= kTurned c, in rad^2, at the longest lag, c the number of components.
+constexpr double kTurned = 1.0 / 3;
+
+/// Decays are fitted from the lag of this many mean collision intervals on: before, motion is ballistic.
 constexpr double kBallisticCollisions = 5;
+/// Decays are fitted only if they fall to 1/e at t >= kLeastDecay times that lag.
+constexpr double kLeastDecay = 3;
+/// Decays are fitted while y > kNoise.
+constexpr double kNoise = 0.03;
+/// Fits of a correlation that starts at 1: amplitude <= kMostAmplitude, beta >= kLeastBeta, tau >= first fitted lag.
+/// Others continue the decay to lags where nothing was fitted.
+constexpr double kMostAmplitude = 1.2;
+constexpr double kLeastBeta = 0.3;
 
-/// D = slope / divisor over [kFitFrom, 1] of the longest lag; NaN unless the curve is straight there.
-double diffusion(const Curve& curve, double divisor);
+// ---- Diffusion
 
-/// Where the curve falls to 1/e; NaN if it does not.
+/// How far bodies must have come for their displacements to be diffusion.
+struct Reach {
+  double at_start = 0;                                       ///< least value at the first lag of the fit
+  double at_end = 0;                                         ///< least value at the longest lag
+  MissingReason short_of_it = MissingReason::not_displaced;  ///< reason to give where they have not
+};
+
+/// Requirements of translational diffusion, for the wave number of the first peak of S(q).
+Reach reach_of_translation(double first_wave_number);
+/// Requirements of rotational diffusion of so many components.
+Reach reach_of_rotation(double components);
+
+/// Why the mean square displacement in `curve` is not diffusion; nothing if it is.
+std::optional<Missing> why_not_diffusive(const Curve& curve, const Reach& reach);
+
+/// Slope over [kFitFrom, 1] of the last lag; NaN for fewer than two lags there.
+double final_slope(const Curve& curve);
+
+// ---- Decays
+
+/// Lag at which the curve falls to 1/e; NaN if it does not.
 double decay_time(const Curve& curve);
+
+/// Why the curve does not fall to 1/e; nothing if it does.
+std::optional<Missing> why_no_decay_time(const Curve& curve);
 
 /// A fit and the lags that went into it.
 struct DecayFit {
@@ -36,8 +78,11 @@ struct DecayFit {
   double to;
 };
 
-/// The stretched exponential of a correlation that starts at 1, from the lag `from` on (before, motion is ballistic),
-/// the noise at the end left out. Nothing where the decay is ballistic most of the way, or `from` is not finite.
+/// Stretched exponential of a correlation that starts at 1, fitted to lags from `from` on (before, motion is
+/// ballistic), without the noise at the end. Nothing where the thresholds above are not kept.
 std::optional<DecayFit> fit_decay(const Curve& curve, double from);
+
+/// Why fit_decay gives nothing; nothing if it gives a fit.
+std::optional<Missing> why_no_fit(const Curve& curve, double from);
 
 }  // namespace ed::internal

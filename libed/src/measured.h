@@ -71,8 +71,9 @@ struct Measured {
   int origins_per_block = 0;       ///< of complete blocks
   std::vector<Freedoms> freedoms;  ///< of the groups, as soon as there is a system
   std::vector<Block> blocks;
-  StructureGrid grid;       ///< as soon as there is a box
-  int structure_every = 1;  ///< of so many origins of a block, beginning with its first, the structure is measured
+  StructureGrid grid;        ///< as soon as there is a box
+  bool length_known = true;  ///< whether the grid's length is that of the bodies
+  int structure_every = 1;   ///< of so many origins of a block, beginning with its first, the structure is measured
 
   /// Adds a new origin with its frame, in the last block or a new one; true if blocks have been merged by pairs
   /// first.

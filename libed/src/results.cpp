@@ -35,11 +35,20 @@ double alpha2(const LagSums& s) {
   return 3 * s.r4 * s.count / (5 * s.msd * s.msd) - 1;
 }
 
-/// What is made of the blocks.
+/// The blocks that a value is made of: all of them, only one, or all but one.
+struct Selection {
+  const Block* only = nullptr;
+  const Block* without = nullptr;
+
+  bool takes(const Block& block) const { return (only == nullptr || &block == only) && &block != without; }
+};
+
+/// Results of the blocks.
 class Evaluation {
  public:
   Evaluation(const Measured& measured, const Totals& totals, std::optional<double> fit_from)
       : measured_(measured), totals_(totals) {
+    if (measured.grid.known()) wave_vectors_.emplace(wave_vectors_of(measured.grid));
     for (const Block& block : measured.blocks) {
       if (2 * block.origins > measured.origins_per_block && block.end.time > block.begin.time) full_.push_back(&block);
     }
@@ -57,17 +66,20 @@ class Evaluation {
   Estimate collision_rate(std::size_t group) const;
   BlockRow block_row(const Block& block) const;
   Matrix3d pressure(const Totals& begin, const Totals& end, double kT, const Matrix3d& kinetic) const;
-  LagSums sums_at(std::size_t lag, std::size_t group, const Block* one) const;
+  LagSums sums_at(std::size_t lag, std::size_t group, Selection selection) const;
+  double first_wave_number() const;
+  double first_wave_number(std::size_t group) const;
   bool three_axes(std::size_t group) const;
   bool unturned(std::size_t group) const;
+  bool some_unturned() const;
   double mean_rotation_axes(std::size_t group) const;
 
-  /// A sum over origins as a mean, against lag; of one block, or (nullptr) of all.
+  /// Mean over the origins of a selection, against lag.
   template <class Value>
-  Curve curve(std::size_t group, const Block* one, const Value& value) const {
+  Curve curve(std::size_t group, Selection selection, const Value& value) const {
     Curve result;
     for (std::size_t k = 0; k < measured_.lags.size(); ++k) {
-      const LagSums sums = sums_at(k, group, one);
+      const LagSums sums = sums_at(k, group, selection);
       if (!(sums.count > 0)) continue;
       result.t.push_back(measured_.lags[k]);
       result.y.push_back(value(sums) / sums.count);
@@ -91,35 +103,64 @@ class Evaluation {
     return all;
   }
 
+  /// Value from all data with its standard error, for a quantity that a single block may be too short for: where some
+  /// block has none, the error is that of the jackknife, of which no block is left out.
+  template <class Of>
+  Estimate with_error_of_all_blocks(double lag, const Of& of) const {
+    const auto lacking = [&](const Block* block) { return !std::isfinite(of(Selection{block, nullptr})); };
+    if (std::none_of(full_.begin(), full_.end(), lacking)) {
+      return with_block_error(lag, [&](const Block* block) { return of(Selection{block, nullptr}); });
+    }
+    Estimate all{of(Selection{}), kNothing};
+    if (full_.size() < 2) return all;
+    std::vector<double> values;
+    for (const Block* block : full_) values.push_back(of(Selection{nullptr, block}));
+    const double length = measured_.origins_per_block * measured_.spacing;
+    // sqrt((n - 1) / n sum of squares), against sqrt(1 / (n (n - 1)) sum of squares); NaN if a value is.
+    all.error =
+        shared_data_factor(lag, length) * (static_cast<double>(values.size()) - 1) * mean_of_blocks(values).error;
+    return all;
+  }
+
+  /// Diffusion coefficient of displacements. Whether there is one is decided on all data; blocks then only give its
+  /// error.
   template <class Value>
-  Estimate diffusion_estimate(std::size_t group, double divisor, const Value& value) const {
+  Estimate diffusion_estimate(std::size_t group, double divisor, const Reach& reach, const Value& value) const {
+    const auto complete = [&](const Curve& c) { return !c.t.empty() && c.t.back() >= measured_.lags.back(); };
+    const Curve all = curve(group, {}, value);
+    if (!complete(all)) return Estimate::none({MissingReason::lags_too_short});
+    if (const auto missing = why_not_diffusive(all, reach)) return Estimate::none(*missing);
     return with_block_error(measured_.lags.back(), [&](const Block* block) {
-      const Curve all = curve(group, block, value);
+      const Curve part = curve(group, {block, nullptr}, value);
       // A block whose origins have not reached the longest lag would be fitted over another window.
-      if (all.t.empty() || all.t.back() < measured_.lags.back()) return kNothing;
-      return diffusion(all, divisor);
+      return complete(part) ? final_slope(part) / divisor : kNothing;
     });
   }
 
   template <class Value>
   Estimate decay_time_estimate(std::size_t group, const Value& value) const {
-    return with_block_error(measured_.lags.back(),
-                            [&](const Block* block) { return decay_time(curve(group, block, value)); });
+    if (const auto missing = why_no_decay_time(curve(group, {}, value))) return Estimate::none(*missing);
+    return with_error_of_all_blocks(measured_.lags.back(),
+                                    [&](Selection part) { return decay_time(curve(group, part, value)); });
   }
 
   /// tau, beta and the window of a stretched exponential.
   template <class Value>
   void fit(std::size_t group, const Value& value, Estimate& tau, Estimate& beta, FitWindow& window) const {
-    const auto fitted = [&](const Block* block) { return fit_decay(curve(group, block, value), fit_from_); };
+    const Curve all = curve(group, {}, value);
+    if (const auto missing = why_no_fit(all, fit_from_)) {
+      tau = beta = Estimate::none(*missing);
+      return;
+    }
     const auto estimate = [&](double StretchedExponential::*member) {
-      return with_block_error(measured_.lags.back(), [&](const Block* block) {
-        const auto found = fitted(block);
+      return with_error_of_all_blocks(measured_.lags.back(), [&](Selection part) {
+        const auto found = fit_decay(curve(group, part, value), fit_from_);
         return found ? found->fit.*member : kNothing;
       });
     };
     tau = estimate(&StretchedExponential::tau);
     beta = estimate(&StretchedExponential::beta);
-    if (const auto all = fitted(nullptr)) window = {all->from, all->to};
+    if (const auto found = fit_decay(all, fit_from_)) window = {found->from, found->to};
   }
 
   /// Of one number of a frame.
@@ -140,6 +181,7 @@ class Evaluation {
   void add_structure(std::size_t part, Correlations& results) const;
 
   LagRow lag_row(std::size_t lag, std::size_t group) const;
+  void add_diffusion(std::size_t group, Correlations& results) const;
   void add_axes(std::size_t group, Correlations& results) const;
   Correlations correlations(std::size_t group) const;
   GroupResults group_results(std::size_t group) const;
@@ -148,8 +190,9 @@ class Evaluation {
 
   const Measured& measured_;
   const Totals& totals_;
-  double fit_from_ = kNothing;      ///< the lag from which decays are fitted
-  std::vector<const Block*> full_;  ///< that are complete, or at least half so: what errors are made of
+  double fit_from_ = kNothing;               ///< the lag from which decays are fitted
+  std::vector<const Block*> full_;           ///< that are complete, or at least half so: what errors are made of
+  std::optional<WaveVectors> wave_vectors_;  ///< of S(q), if there is a box
 };
 
 // ---- Blocks
@@ -200,6 +243,7 @@ void Evaluation::add_blocks(Results& results) const {
   results.rotational_kT = frame_mean([](const Block& b) { return b.all.rotational_kT; });
   results.S = frame_mean([](const Block& b) { return b.all.S; });
   results.director = director([](const Block& b) -> const FrameSums& { return b.all; });
+  if (totals_.time > 0) results.collision_rate = results.Z = Estimate::none({MissingReason::no_collisions});
   if (!(totals_.collisions > 0 && totals_.time > 0)) return;
   const int number = measured_.options.number;
   results.collision_rate = {collision_rate({}, totals_), mean_of_blocks(rate).error};
@@ -277,8 +321,7 @@ void Evaluation::add_pairs(std::size_t part, double number, Correlations& result
 }
 
 void Evaluation::add_structure(std::size_t part, Correlations& results) const {
-  const WaveVectors vectors = wave_vectors_of(measured_.grid);
-  const std::vector<double>& q = vectors.wave_numbers();
+  const std::vector<double>& q = wave_vectors_->wave_numbers();
   const auto S_of = [&](const Block* one) {
     double frames = 0;
     std::vector<double> S = structure_sums(part, one, frames).S;
@@ -296,21 +339,43 @@ void Evaluation::add_structure(std::size_t part, Correlations& results) const {
 // ---- Correlations
 
 /// Of the bodies of a group (kAll: of all) at one lag, in one block (nullptr: in all).
-LagSums Evaluation::sums_at(std::size_t lag, std::size_t group, const Block* one) const {
+LagSums Evaluation::sums_at(std::size_t lag, std::size_t group, Selection selection) const {
   LagSums sums;
   const std::size_t groups = measured_.ranges.size();
-  const auto take = [&](const Block& block) {
+  for (const Block& block : measured_.blocks) {
+    if (!selection.takes(block)) continue;
     for (std::size_t g = 0; g < groups; ++g) {
       if (group != kAll && g != group) continue;
       sums.add(block.lags[lag * groups + g], group == kAll ? measured_.weights[g] : 1);
     }
-  };
-  if (one != nullptr) {
-    take(*one);
-  } else {
-    for (const Block& block : measured_.blocks) take(block);
   }
   return sums;
+}
+
+/// Wave number of the first peak of S(q) of all bodies, as a run chooses it; it tells how far bodies have to move to
+/// leave their neighbours. Frames of a block hold much the same configuration and count as one.
+double Evaluation::first_wave_number() const {
+  const StructureGrid& grid = measured_.grid;
+  const double number = measured_.options.number;
+  const double packing = number * 4 * std::numbers::pi / 3 * std::pow(grid.length / grid.box, 3);
+  // Without sizes: the mean distance of bodies. So too where the sizes are none, as bodies would fill more than space.
+  if (!measured_.length_known || packing >= 1) return 2 * std::numbers::pi * std::cbrt(number) / grid.box;
+  double frames = 0;
+  std::vector<double> S = structure_sums(0, nullptr, frames).S;
+  for (double& value : S) value /= frames;
+  return likely_peak(*wave_vectors_, S, static_cast<double>(measured_.blocks.size()), grid, packing);
+}
+
+/// The same for a group. Where its own S(q) has a clear peak at a smaller wave number, as that of large bodies that
+/// cage each other, it is that one.
+double Evaluation::first_wave_number(std::size_t group) const {
+  const double of_all = first_wave_number();
+  if (group == kAll || measured_.ranges.size() == 1 || !measured_.length_known) return of_all;
+  double frames = 0;
+  std::vector<double> S = structure_sums(group + 1, nullptr, frames).S;
+  for (double& value : S) value /= frames;
+  const auto own = clear_peak(*wave_vectors_, S, static_cast<double>(measured_.blocks.size()), measured_.grid.length);
+  return own ? std::min(of_all, *own) : of_all;
 }
 
 bool Evaluation::three_axes(std::size_t group) const {
@@ -323,7 +388,7 @@ bool Evaluation::three_axes(std::size_t group) const {
 bool Evaluation::unturned(std::size_t group) const {
   std::vector<double> c2;
   for (const Block* block : full_) {
-    const Curve all = curve(group, block, [](const LagSums& s) { return s.c2; });
+    const Curve all = curve(group, {block, nullptr}, [](const LagSums& s) { return s.c2; });
     if (!all.t.empty() && all.t.back() == measured_.lags.back()) c2.push_back(all.y.back());
   }
   if (c2.size() < 2) return false;
@@ -331,8 +396,20 @@ bool Evaluation::unturned(std::size_t group) const {
   return *most - *least < kUnturned;
 }
 
-/// What depends on rotation alone has no known error then.
-void drop_rotational_errors(Correlations& results) {
+bool Evaluation::some_unturned() const {
+  for (std::size_t g = 0; g < measured_.ranges.size(); ++g) {
+    if (unturned(g)) return true;
+  }
+  return false;
+}
+
+/// Removes rotational diffusion and its fits, which mean nothing then. Correlations, and the lag at which C2 is 1/e,
+/// are right, but no error of them is known.
+void drop_rotational_errors(Correlations& results, bool three_axes) {
+  const Estimate none = Estimate::none({MissingReason::meaningless});
+  for (Estimate* e : {&results.D_rot, &results.D_rot_body, &results.tau_C2, &results.beta_C2}) *e = none;
+  results.window_C2 = {};
+  if (three_axes) results.D_rot_axis.fill(none);
   const auto drop = [](Estimate& e) { e.error = kNothing; };
   for (LagRow& row : results.lags) {
     for (Estimate* e : {&row.rot_msd, &row.rot_msd_body, &row.c1, &row.c2, &row.wacf}) drop(*e);
@@ -340,11 +417,8 @@ void drop_rotational_errors(Correlations& results) {
       std::for_each(axes->begin(), axes->end(), drop);
     }
   }
-  for (Estimate* e :
-       {&results.D_rot, &results.D_rot_body, &results.t_C2_1overe, &results.tau_C2, &results.beta_C2, &results.w2}) {
-    drop(*e);
-  }
-  for (auto* axes : {&results.D_rot_axis, &results.t_C2_1overe_axis}) std::for_each(axes->begin(), axes->end(), drop);
+  for (Estimate* e : {&results.t_C2_1overe, &results.w2}) drop(*e);
+  std::for_each(results.t_C2_1overe_axis.begin(), results.t_C2_1overe_axis.end(), drop);
 }
 
 double Evaluation::mean_rotation_axes(std::size_t group) const {
@@ -358,7 +432,7 @@ double Evaluation::mean_rotation_axes(std::size_t group) const {
 LagRow Evaluation::lag_row(std::size_t lag, std::size_t group) const {
   const auto estimate = [&](const auto& value) {
     return with_block_error(measured_.lags[lag], [&](const Block* one) {
-      const LagSums sums = sums_at(lag, group, one);
+      const LagSums sums = sums_at(lag, group, {one, nullptr});
       return sums.count > 0 ? value(sums) / sums.count : kNothing;
     });
   };
@@ -388,35 +462,51 @@ LagRow Evaluation::lag_row(std::size_t lag, std::size_t group) const {
 void Evaluation::add_axes(std::size_t group, Correlations& results) const {
   for (int axis = 0; axis < 3; ++axis) {
     const auto at = static_cast<std::size_t>(axis);
-    results.D_rot_axis[at] = diffusion_estimate(group, 2, [axis](const LagSums& s) { return s.rot_msd_axis[axis]; });
+    results.D_rot_axis[at] =
+        diffusion_estimate(group, 2, reach_of_rotation(1), [axis](const LagSums& s) { return s.rot_msd_axis[axis]; });
     results.t_C2_1overe_axis[at] = decay_time_estimate(group, [axis](const LagSums& s) { return s.c2_axis[axis]; });
   }
+}
+
+void Evaluation::add_diffusion(std::size_t group, Correlations& results) const {
+  const double components = mean_rotation_axes(group);
+  const Reach turn = reach_of_rotation(components);
+  if (measured_.grid.known()) {
+    results.D_trans = diffusion_estimate(group, 6, reach_of_translation(first_wave_number(group)),
+                                         [](const LagSums& s) { return s.msd; });
+  }
+  results.D_rot = diffusion_estimate(group, 2 * components, turn, [](const LagSums& s) { return s.rot_msd; });
+  results.D_rot_body = diffusion_estimate(group, 2 * components, turn, [](const LagSums& s) { return s.rot_msd_body; });
+  results.window_D = {kFitFrom * measured_.lags.back(), measured_.lags.back()};
 }
 
 Correlations Evaluation::correlations(std::size_t group) const {
   Correlations results;
   const auto c2 = [](const LagSums& s) { return s.c2; };
   const auto f_self = [](const LagSums& s) { return s.f_self[0]; };
-  const double rotation = 2 * mean_rotation_axes(group);
   for (std::size_t k = 0; k < measured_.lags.size(); ++k) {
     LagRow row = lag_row(k, group);
     if (std::isfinite(row.msd.value)) results.lags.push_back(std::move(row));
   }
-  results.D_trans = diffusion_estimate(group, 6, [](const LagSums& s) { return s.msd; });
-  results.D_rot = diffusion_estimate(group, rotation, [](const LagSums& s) { return s.rot_msd; });
-  results.D_rot_body = diffusion_estimate(group, rotation, [](const LagSums& s) { return s.rot_msd_body; });
-  results.window_D = {kFitFrom * measured_.lags.back(), measured_.lags.back()};
+  add_diffusion(group, results);
   results.t_C2_1overe = decay_time_estimate(group, c2);
   fit(group, c2, results.tau_C2, results.beta_C2, results.window_C2);
   if (!measured_.options.wave_numbers.empty()) {
     results.t_F_1overe = decay_time_estimate(group, f_self);
     fit(group, f_self, results.tau_F, results.beta_F, results.window_F);
   }
+  results.D_rot_axis.fill(Estimate::none({MissingReason::no_such_axis}));
+  results.t_C2_1overe_axis = results.D_rot_axis;
   if (three_axes(group)) add_axes(group, results);
   const auto sums = [group](const Block& b) -> const FrameSums& { return group == kAll ? b.all : b.groups[group]; };
   results.v2 = frame_mean([&](const Block& b) { return sums(b).v2; });
   results.w2 = frame_mean([&](const Block& b) { return sums(b).w2; });
-  if (unturned(group)) drop_rotational_errors(results);
+  if (unturned(group)) {
+    drop_rotational_errors(results, three_axes(group));
+  } else if (group == kAll && some_unturned()) {
+    // The mean of free rotation and diffusion is neither.
+    results.D_rot = results.D_rot_body = Estimate::none({MissingReason::meaningless});
+  }
   if (!measured_.grid.known()) return results;
   const std::size_t part = group == kAll || measured_.ranges.size() == 1 ? 0 : group + 1;
   add_pairs(part, group == kAll ? measured_.options.number : measured_.ranges[group].size(), results);

@@ -3,6 +3,7 @@
 #include <ed/stored_frames.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <sstream>
@@ -55,16 +56,36 @@ void check(const std::vector<StoredFrame>& frames, const StoredFramesOptions& op
   }
 }
 
-/// The first frames, as far as they are equally far apart.
-std::size_t equally_far(const std::vector<StoredFrame>& frames) {
-  if (frames.size() < 3) return frames.size();
-  const double step = frames[1].time - frames[0].time;
-  std::size_t count = 2;
+/// Frames that are equally far apart in time.
+struct Stretch {
+  std::size_t first;
+  std::size_t count;
+};
+
+/// End of the longest stretch from `first` on.
+std::size_t end_of_stretch(const std::vector<StoredFrame>& frames, std::size_t first) {
+  if (frames.size() < first + 3) return frames.size();
+  const double begin = frames[first].time;
+  const double step = frames[first + 1].time - begin;
   const auto fits = [&](std::size_t k) {
-    return std::abs(frames[k].time - frames[0].time - static_cast<double>(k) * step) <= kEquallyFar * step;
+    return std::abs(frames[k].time - begin - static_cast<double>(k - first) * step) <= kEquallyFar * step;
   };
-  while (count < frames.size() && fits(count)) ++count;
-  return count;
+  std::size_t end = first + 2;
+  while (end < frames.size() && fits(end)) ++end;
+  return end;
+}
+
+/// The longest stretch, the first one of several.
+Stretch longest_stretch(const std::vector<StoredFrame>& frames) {
+  Stretch longest{0, end_of_stretch(frames, 0)};
+  // Two stretches share one frame at most.
+  std::size_t end = longest.count;
+  while (end < frames.size()) {
+    const std::size_t first = end - 1;
+    end = end_of_stretch(frames, first);
+    if (end - first > longest.count) longest = {first, end - first};
+  }
+  return longest;
 }
 
 /// Numbers of frames, evenly on a logarithmic scale.
@@ -98,13 +119,15 @@ class Analysis {
  public:
   Analysis(const std::vector<StoredFrame>& frames, const StoredFramesOptions& options)
       : options_(options),
-        count_(equally_far(frames)),
-        step_(count_ > 1 ? frames[1].time - frames[0].time : 1),
+        stretch_(longest_stretch(frames)),
+        count_(stretch_.count),
+        step_(count_ > 1 ? frames[stretch_.first + 1].time - frames[stretch_.first].time : 1),
         orientations_(!frames[0].rotation.empty()),
+        velocities_(!frames[0].velocity.empty()),
         measured_(plan()) {
     const auto three = [](const BodyRange& r) { return r.three_axes; };
     const bool rotations = std::any_of(measured_.ranges.begin(), measured_.ranges.end(), three);
-    for (std::size_t k = 0; k < count_; ++k) frames_.push_back(snapshot_of(frames[k], options, rotations));
+    for (const StoredFrame& frame : frames) frames_.push_back(snapshot_of(frame, options, rotations));
   }
 
   StoredResults results();
@@ -113,16 +136,23 @@ class Analysis {
   Measured plan();
   void add_structure();
   void add_lags();
-  /// The block that frame k is an origin of.
+  /// The block that frame k of the stretch is an origin of.
   Block& block_of(std::size_t k) { return measured_.blocks[k / static_cast<std::size_t>(measured_.origins_per_block)]; }
+  /// The block that the structure of frame k of all is in: as many frames each.
+  Block& structure_block_of(std::size_t k) {
+    if (frames_.size() == count_) return block_of(k);
+    return measured_.blocks[k * measured_.blocks.size() / frames_.size()];
+  }
 
   const StoredFramesOptions& options_;
-  std::size_t count_;
+  Stretch stretch_;
+  std::size_t count_;  ///< of the stretch
   double step_;
   bool orientations_;
+  bool velocities_;
   std::vector<std::size_t> steps_;
   Measured measured_;
-  std::vector<Snapshot> frames_;
+  std::vector<Snapshot> frames_;  ///< all
 };
 
 Measured Analysis::plan() {
@@ -143,6 +173,7 @@ Measured Analysis::plan() {
   plan.spacing = step_;
   plan.origins_per_block = static_cast<int>(std::max(1.0, std::ceil(static_cast<double>(count_) / blocks)));
   plan.grid = {options_.box, options_.length};
+  plan.length_known = options_.length_known;
   const auto per_block = static_cast<std::size_t>(plan.origins_per_block);
   plan.blocks.resize((count_ + per_block - 1) / per_block);
   for (std::size_t b = 0; b < plan.blocks.size(); ++b) {
@@ -159,9 +190,9 @@ Measured Analysis::plan() {
 
 void Analysis::add_structure() {
   const internal::WaveVectors vectors = internal::wave_vectors_of(measured_.grid);
-  for (std::size_t k = 0; k < count_; ++k) {
+  for (std::size_t k = 0; k < frames_.size(); ++k) {
     const Snapshot& now = frames_[k];
-    Block& block = block_of(k);
+    Block& block = structure_block_of(k);
     const BodyRange all{0, now.position.size(), false};
     const std::vector<internal::StructureSums> pairs = internal::count_pairs(measured_.grid, now, measured_.ranges);
     for (std::size_t p = 0; p < block.structure.size(); ++p) {
@@ -187,31 +218,34 @@ void Analysis::add_lags() {
     for (std::size_t k = 0; k + steps_[n] < count_; ++k) {
       for (std::size_t g = 0; g < measured_.ranges.size(); ++g) {
         block_of(k).lags[n * measured_.ranges.size() + g].add(
-            internal::correlate(frames_[k], frames_[k + steps_[n]], measured_.ranges[g],
-                                measured_.options.wave_numbers),
+            internal::correlate(frames_[stretch_.first + k], frames_[stretch_.first + k + steps_[n]],
+                                measured_.ranges[g], measured_.options.wave_numbers),
             1);
       }
     }
   }
 }
 
-/// What frames do not tell.
+constexpr Estimate kNotTold = Estimate::none({MissingReason::not_told});
+constexpr std::array<Estimate, 3> kAxesNotTold = {kNotTold, kNotTold, kNotTold};
+
+/// Removes what frames without orientations do not tell.
 void forget_orientations(Correlations& results) {
-  results.t_C2_1overe = results.tau_C2 = results.beta_C2 = {};
+  results.t_C2_1overe = results.tau_C2 = results.beta_C2 = kNotTold;
   results.window_C2 = {};
-  results.t_C2_1overe_axis = {};
+  results.t_C2_1overe_axis = kAxesNotTold;
   for (LagRow& row : results.lags) {
-    row.c1 = row.c2 = {};
-    row.c1_axis = row.c2_axis = {};
+    row.c1 = row.c2 = kNotTold;
+    row.c1_axis = row.c2_axis = kAxesNotTold;
   }
-  for (PairRow& row : results.pairs) row.g2 = {};
+  for (PairRow& row : results.pairs) row.g2 = kNotTold;
 }
 
 void forget_order(Results& results) {
-  results.S = {};
+  results.S = kNotTold;
   results.director = {};
   for (GroupResults& group : results.groups) {
-    group.S = {};
+    group.S = kNotTold;
     group.director = {};
   }
   for (BlockRow& row : results.blocks) {
@@ -220,16 +254,41 @@ void forget_order(Results& results) {
   }
 }
 
-void forget(Correlations& results, bool velocities, bool orientations) {
-  results.D_rot = results.D_rot_body = results.w2 = {};
-  results.D_rot_axis = {};
-  if (!velocities) results.v2 = {};
+/// Removes what frames with wrapped positions do not tell.
+void forget_displacements(Correlations& results) {
+  results.D_trans = results.t_F_1overe = results.tau_F = results.beta_F = kNotTold;
+  results.window_D = results.window_F = {};
   for (LagRow& row : results.lags) {
-    row.rot_msd = row.rot_msd_body = row.wacf = {};
-    row.rot_msd_axis = {};
-    if (!velocities) row.vacf = {};
+    row.msd = row.alpha2 = kNotTold;
+    row.f_self.assign(row.f_self.size(), kNotTold);
+  }
+}
+
+/// Removes what frames do not tell whose bodies cannot be followed from one to the next.
+void forget_correlations(Correlations& results) {
+  forget_displacements(results);
+  results.t_C2_1overe = results.tau_C2 = results.beta_C2 = kNotTold;
+  results.window_C2 = {};
+  results.t_C2_1overe_axis = kAxesNotTold;
+  for (LagRow& row : results.lags) {
+    row.c1 = row.c2 = row.vacf = kNotTold;
+    row.c1_axis = row.c2_axis = kAxesNotTold;
+  }
+}
+
+/// Removes what frames do not tell.
+void forget(Correlations& results, const StoredFramesOptions& options, bool velocities, bool orientations) {
+  results.D_rot = results.D_rot_body = results.w2 = kNotTold;
+  results.D_rot_axis = kAxesNotTold;
+  if (!velocities) results.v2 = kNotTold;
+  for (LagRow& row : results.lags) {
+    row.rot_msd = row.rot_msd_body = row.wacf = kNotTold;
+    row.rot_msd_axis = kAxesNotTold;
+    if (!velocities) row.vacf = kNotTold;
   }
   if (!orientations) forget_orientations(results);
+  if (!options.unwrapped) forget_displacements(results);
+  if (!options.same_bodies) forget_correlations(results);
 }
 
 StoredResults Analysis::results() {
@@ -243,17 +302,16 @@ StoredResults Analysis::results() {
   add_lags();
   StoredResults results;
   static_cast<Results&>(results) = internal::results_of(measured_, totals, options_.fit_from.value_or(kNothing));
-  const bool velocities = !frames_.empty() && options_.axis.size() == frames_[0].velocity.size() &&
-                          !frames_[0].velocity.empty() && !frames_[0].velocity[0].isZero(0);
-  results.translational_kT = results.rotational_kT = {};
-  forget(results, velocities, orientations_);
+  results.collision_rate = results.Z = results.translational_kT = results.rotational_kT = kNotTold;
+  forget(results, options_, velocities_, orientations_);
   for (GroupResults& group : results.groups) {
-    forget(group, velocities, orientations_);
-    group.translational_kT = group.rotational_kT = {};
-    group.axis_kT = {};
+    forget(group, options_, velocities_, orientations_);
+    group.collision_rate = group.translational_kT = group.rotational_kT = kNotTold;
+    group.axis_kT = kAxesNotTold;
   }
   if (!orientations_) forget_order(results);
   results.wave_numbers = measured_.options.wave_numbers;
+  results.first_frame = stretch_.first;
   results.frames = count_;
   return results;
 }

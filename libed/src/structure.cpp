@@ -356,10 +356,15 @@ bool is_clear(const WaveVectors& vectors, double frames, const Peak& peak) {
 
 }  // namespace
 
+std::optional<double> clear_peak(const WaveVectors& vectors, const std::vector<double>& S, double frames,
+                                 double length) {
+  const Peak peak = first_peak(vectors.wave_numbers(), S, length);
+  return is_clear(vectors, frames, peak) ? std::optional(peak.q) : std::nullopt;
+}
+
 double likely_peak(const WaveVectors& vectors, const std::vector<double>& S, double frames, const StructureGrid& grid,
                    double packing_fraction) {
-  const Peak peak = first_peak(vectors.wave_numbers(), S, grid.length);
-  if (is_clear(vectors, frames, peak)) return peak.q;
+  if (const auto clear = clear_peak(vectors, S, frames, grid.length)) return *clear;
   return best_scale(vectors, S, frames, grid.length, packing_fraction) * percus_yevick_peak(packing_fraction) /
          grid.length;
 }

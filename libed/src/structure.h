@@ -9,6 +9,7 @@
 
 #include <Eigen/Core>
 
+#include <optional>
 #include <vector>
 
 namespace ed::internal {
@@ -88,11 +89,16 @@ Peak first_peak(const std::vector<double>& q, const std::vector<double>& S, doub
 /// Phys. Rev. Lett. 10 (1963) 321. For q not much below 1, where its terms cancel.
 double percus_yevick(double q, double packing_fraction);
 
+/// The first peak if it stands out of the scatter: higher than 1 by five standard errors, where S(q) is the mean over
+/// so many independent frames (that of n vectors in m frames is S / sqrt(n m)).
+std::optional<double> clear_peak(const WaveVectors& vectors, const std::vector<double>& S, double frames,
+                                 double length);
+
 /// Where S(q) has its first peak as well as can be said after few frames: of S(q), the mean over so many frames at
-/// those vectors. It is first_peak if that is higher than 1 by five standard errors (that of n vectors in m frames is
-/// S / sqrt(n m)). Otherwise, where the highest value is chance, Percus and Yevick's S(q) of spheres with the bodies'
-/// mean volume, at their packing fraction, is stretched along q and scaled in height, 1 + a (S_PY(q / s) - 1), until it
-/// fits best between 1 and 7 inverse lengths; ln s is 0 +- 0.08 if S(q) says nothing. It is the top of that.
+/// those vectors. It is clear_peak if there is one. Otherwise, where the highest value is chance, Percus and Yevick's
+/// S(q) of spheres with the bodies' mean volume, at their packing fraction, is stretched along q and scaled in height,
+/// 1 + a (S_PY(q / s) - 1), until it fits best between 1 and 7 inverse lengths; ln s is 0 +- 0.08 if S(q) says nothing.
+/// It is the top of that.
 double likely_peak(const WaveVectors& vectors, const std::vector<double>& S, double frames, const StructureGrid& grid,
                    double packing_fraction);
 

@@ -88,6 +88,9 @@ TEST(Observables, FreeFlightIsNotDiffusion) {
     EXPECT_TRUE(std::isnan(D.value));
     EXPECT_TRUE(std::isnan(D.error));
   }
+  EXPECT_EQ(results.D_trans.missing.reason, ed::MissingReason::ballistic);
+  EXPECT_EQ(results.Z.missing.reason, ed::MissingReason::no_collisions);
+  EXPECT_EQ(results.D_rot_axis[0].missing.reason, ed::MissingReason::no_such_axis);
   // No collisions: no rate, no pressure from them; rotation is ballistic all the way.
   EXPECT_TRUE(std::isnan(results.collision_rate.value));
   EXPECT_TRUE(std::isnan(results.Z.value));
@@ -109,6 +112,10 @@ TEST(Observables, OfBodiesThatNothingTurnsHaveNoRotationalErrors) {
   }
   EXPECT_TRUE(std::isfinite(results.t_C2_1overe.value));
   EXPECT_TRUE(std::isnan(results.t_C2_1overe.error));
+  for (const ed::Estimate& e : {results.D_rot, results.D_rot_body, results.tau_C2, results.beta_C2}) {
+    EXPECT_TRUE(std::isnan(e.value));
+    EXPECT_EQ(e.missing.reason, ed::MissingReason::meaningless);
+  }
 }
 
 TEST(Observables, OfSpheresThatMeetHaveNoRotationalErrorsEither) {
@@ -223,6 +230,7 @@ TEST(Observables, OfARunThatWasStoppedAreThoseSoFar) {
   ASSERT_FALSE(shorter.lags.empty());
   EXPECT_LE(shorter.lags.back().lag, 2 * (1 + 1e-12));
   EXPECT_TRUE(std::isnan(shorter.D_trans.value));
+  EXPECT_EQ(shorter.D_trans.missing.reason, ed::MissingReason::lags_too_short);
 }
 
 TEST(Observables, OfNoRunAreNull) {
@@ -443,6 +451,54 @@ TEST(ObservablesOfGroups, HaveToBeGroupsOfTheBodies) {
         Groups{{-1, 2}, {28, 2}}, Groups{{2147483647, 2}, {2147483647, 2}}}) {
     EXPECT_THROW(ed::Observables({27, 20, 1, groups}), std::invalid_argument);
   }
+}
+
+ed::Results of_run(const ed::System& system, double duration, double longest_lag,
+                   const std::vector<ed::BodyGroup>& groups = {}) {
+  ed::Simulation simulation(system);
+  ed::Observables observables({system.size(), duration, longest_lag, groups});
+  while (observables.next_time() <= duration) {
+    simulation.run_until(observables.next_time());
+    observables.measure(simulation);
+  }
+  return observables.results(simulation);
+}
+
+TEST(Observables, OfCagedSpheresHaveNoDiffusionYet) {
+  // The MSD of a dense fluid of spheres has the slope 1 where it bends from ballistic motion to the cage, at lags of
+  // some tenths: D_trans would be five times what it is.
+  const ed::System system = ed_test::start({1, 0.55, 108, Inertia::uniform, 3});
+  int straight = 0;
+  for (const double longest : {0.4, 0.5}) {
+    const ed::Results results = of_run(system, 16 * longest, longest);
+    std::vector<double> t, y;
+    for (const ed::LagRow& row : results.lags) {
+      if (row.lag < 0.4 * longest * (1 - 1e-9)) continue;
+      t.push_back(std::log(row.lag));
+      y.push_back(std::log(row.msd.value));
+    }
+    if (std::abs(ed::slope(t, y).value_or(0) - 1) <= 0.2) {
+      ++straight;
+      EXPECT_EQ(results.D_trans.missing.reason, ed::MissingReason::not_displaced) << longest;
+      EXPECT_NEAR(results.D_trans.missing.reached, std::sqrt(results.lags.back().msd.value), 1e-12);
+    }
+    EXPECT_TRUE(std::isnan(results.D_trans.value)) << longest;
+  }
+  EXPECT_GT(straight, 0);
+}
+
+TEST(ObservablesOfGroups, RotationOfAllIsMeaninglessWhereNothingTurnsSome) {
+  // The same bodies, with spheres among them whose free rotation would count as diffusion.
+  const std::vector<ed::Component> components = {{ed_test::species(1, Inertia::paper), 4},
+                                                 {ed_test::species(2, Inertia::paper), 60}};
+  ed::StartOptions start;
+  start.packing_fraction = 0.4;
+  const ed::Results results = of_run(ed::random_start(components, start), 32, 2, {{4, 2}, {60, 2}});
+  EXPECT_EQ(results.groups[0].D_rot.missing.reason, ed::MissingReason::meaningless);
+  EXPECT_GT(results.groups[1].D_rot.value, 0);
+  EXPECT_TRUE(std::isnan(results.D_rot.value));
+  EXPECT_EQ(results.D_rot.missing.reason, ed::MissingReason::meaningless);
+  EXPECT_GT(results.D_trans.value, 0);
 }
 
 /// A fluid whose diffusion is certain to have set in, against a direct evaluation of the same run.

@@ -13,6 +13,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -150,8 +151,8 @@ TEST(StoredFrames, OnlyFramesThatAreEquallyFarApartAreUsed) {
 }
 
 /// Bodies whose steps and turns from frame to frame are independent.
-std::vector<StoredFrame> walk(double D_trans, double D_rot, int bodies, int frames) {
-  ed::Random random(8);
+std::vector<StoredFrame> walk(double D_trans, double D_rot, int bodies, int frames, std::uint64_t seed = 8) {
+  ed::Random random(seed);
   StoredFrame frame;
   for (int i = 0; i < bodies; ++i) {
     frame.position.push_back(kBox * Vector3d(random.uniform(), random.uniform(), random.uniform()));
@@ -202,7 +203,46 @@ TEST(StoredFrames, WalksOfIndependentStepsHaveTheirCoefficients) {
   const ed::StoredResults without = ed::analyze_frames(stored, options);
   EXPECT_TRUE(std::isnan(without.tau_C2.value));
   EXPECT_TRUE(std::isnan(without.tau_F.value));
+  EXPECT_EQ(without.tau_F.missing.reason, ed::MissingReason::end_of_ballistic_unknown);
+  EXPECT_EQ(without.D_rot.missing.reason, ed::MissingReason::not_told);
   EXPECT_EQ(without.t_C2_1overe.value, results.t_C2_1overe.value);
+}
+
+TEST(StoredFrames, BlocksThatFallShortCountInTheError) {
+  // Few bodies, and lags that end where C2 is about 1/e: in some blocks it does not come down to it. Left out, they
+  // would make the error too small by half and more.
+  constexpr int kWalks = 60;
+  int fallen = 0;
+  double squares = 0;
+  for (int k = 0; k < kWalks; ++k) {
+    ed::StoredFramesOptions options = options_of(12);
+    options.longest_lag = 0.6;
+    const auto results = ed::analyze_frames(walk(0.3, 0.4, 12, 200, 100 + static_cast<std::uint64_t>(k)), options);
+    if (!std::isfinite(results.t_C2_1overe.value)) continue;
+    EXPECT_GT(results.t_C2_1overe.error, 0);
+    const double tau = -kStep / std::log(mean_p2_of_a_step(0.4));
+    squares += std::pow((results.t_C2_1overe.value - tau) / results.t_C2_1overe.error, 2);
+    ++fallen;
+  }
+  ASSERT_GT(fallen, kWalks / 2);
+  // Errors of a dozen blocks: the mean square is about 1.
+  EXPECT_LT(squares / fallen, 2);
+}
+
+TEST(StoredFrames, DiffusionAsksForMotionByTheDistanceOfBodies) {
+  // 60 bodies in a box of 10: q = 2 pi 0.06^(1/3) = 2.46 where sizes are unknown, 6 / q^2 = 0.99.
+  constexpr double kD = 0.3;
+  const std::vector<StoredFrame> stored = walk(kD, 0.4, 60, 400);
+  ed::StoredFramesOptions options = options_of(60);
+  options.length_known = false;
+  const auto reason_at = [&](double longest) {
+    options.longest_lag = longest;
+    const ed::StoredResults results = ed::analyze_frames(stored, options);
+    return std::isfinite(results.D_trans.value) ? ed::MissingReason::not_measured : results.D_trans.missing.reason;
+  };
+  // 0.99 / (6 D) = 0.55: the first lag from 0.4 of the longest on.
+  EXPECT_EQ(reason_at(1.15), ed::MissingReason::not_displaced);
+  EXPECT_EQ(reason_at(1.6), ed::MissingReason::not_measured);
 }
 
 TEST(StoredFrames, PerfectOrderIsFound) {

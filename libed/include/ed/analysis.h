@@ -5,14 +5,57 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <string>
+#include <string_view>
 #include <vector>
 
 namespace ed {
 
-/// A measured value and its standard error; NaN: the run is too short for it.
+/// Reasons for which an Estimate has no value.
+enum class MissingReason {
+  not_measured,              ///< nothing has been measured, or not even one block of it
+  no_collisions,             ///< no body has met another
+  lags_too_short,            ///< no time origin has been followed up to the longest lag
+  ballistic,                 ///< displacements still grow faster than diffusion at the longest lag
+  not_displaced,             ///< bodies have not moved far enough for diffusion
+  not_turned,                ///< bodies have not turned far enough for rotational diffusion
+  not_decayed,               ///< the correlation is still above 1/e at the longest lag
+  decayed_early,             ///< the correlation is below 1/e at the first lag
+  decayed_before_diffusion,  ///< the correlation falls to 1/e before motion is diffusive
+  end_of_ballistic_unknown,  ///< nobody knows from which lag on motion is diffusive
+  no_fit,                    ///< the stretched exponential that fits best is none: see fit_decay
+  meaningless,               ///< the quantity has no meaning: nothing turns the bodies
+  no_such_axis,              ///< bodies of revolution have no third axis
+  not_told,                  ///< the file does not tell
+};
+
+/// Reason for which a value is missing, and how far motion has come.
+struct Missing {
+  MissingReason reason = MissingReason::not_measured;
+  /// not_displaced: root of the MSD at the longest lag; not_turned: the same of the rotation, in rad; not_decayed: the
+  /// correlation there. NaN for other reasons.
+  double reached = std::numeric_limits<double>::quiet_NaN();
+};
+
+/// Describes the reason in one sentence without a full stop: "bodies have moved 0.19 l within the longest lag: no
+/// diffusion yet". `length_unit` follows the distance.
+ED_EXPORT std::string describe(const Missing& missing, std::string_view length_unit = "l");
+
+/// Whether longer lags, of a longer run, may give the value.
+ED_EXPORT bool longer_lags_help(MissingReason reason);
+
+/// A measured value and its standard error. A NaN value is missing, for the reason given.
 struct Estimate {
   double value = std::numeric_limits<double>::quiet_NaN();
   double error = std::numeric_limits<double>::quiet_NaN();
+  Missing missing{};  ///< without meaning where there is a value
+
+  /// Makes an estimate without a value.
+  static constexpr Estimate none(Missing why) {
+    Estimate e;
+    e.missing = why;
+    return e;
+  }
 };
 
 /// Mean and standard error of the mean, sqrt(s^2 / n), of independent values; error NaN for fewer than two, both NaN

@@ -95,11 +95,29 @@ struct BlockRow {
   Eigen::Matrix3d pressure;  ///< as in Results
 };
 
-/// What follows from the correlations of some of the bodies. What is of rotation alone has no error (NaN) where nothing
-/// turns them, as with spheres: blocks then hold the same motion.
+/// Results from the correlations of some of the bodies.
+///
+/// Diffusion coefficients are slopes of displacements over [0.4, 1] of the longest lag. They exist where motion is
+/// diffusive there; otherwise Estimate::missing says why they do not:
+/// - the logarithmic slope over these lags is 1 +- 0.2;
+/// - D_trans: MSD q^2 / 6 >= 1 at the first of these lags: bodies have left their cages. q is the wave number of the
+/// first
+///   peak of S(q) of all bodies, measured with the rest whatever wave numbers F_self is wanted at; where scatter hides
+///   it, that of spheres of the same packing fraction; where sizes are unknown, 2 pi (N / V)^(1/3). A group of several
+///   whose own S(q) has a clear peak at a smaller wave number takes that one;
+/// - D_rot and D_rot_body of c components: <|Delta Phi|^2> >= c / 3 rad^2 at the longest lag; of one axis, 1/3.
+///
+/// This is decided on all data; errors are from blocks, which decide nothing.
+///
+/// Where nothing turns bodies, as with spheres, rotational diffusion and fits of C2 are meaningless, and what is left
+/// of rotation alone has no error (NaN): blocks hold the same motion. The same for D_rot of all bodies where nothing
+/// turns those of one group.
+///
+/// A decay falls to 1/e, or has no time; its fit has an amplitude of at most 1.2, tau no smaller than the first fitted
+/// lag, and beta of at least 0.3, or is none.
 struct Correlations {
-  Estimate D_trans;      ///< slope of the MSD / 6 over [0.4, 1] of the longest lag
-  Estimate D_rot;        ///< slope of rot_msd / (2 rotation_axes) there: the paper's 4t for two components
+  Estimate D_trans;      ///< slope of the MSD / 6
+  Estimate D_rot;        ///< slope of rot_msd / (2 rotation_axes): the paper's 4t for two components
   Estimate D_rot_body;   ///< slope of rot_msd_body / (2 rotation_axes)
   Estimate t_C2_1overe;  ///< where C2 falls to 1/e
   Estimate tau_C2;       ///< of A exp[-(t/tau)^beta], ballistic part excluded
@@ -174,8 +192,7 @@ struct ObservablesOptions {
 /// Time origins follow each other at a sixteenth of the longest lag (more for very large systems); each is correlated
 /// with the states at 20 lags a decade after it (from a thousandth of the longest on; 10 a decade below, down to
 /// 0.002 time units). Origins are gathered in blocks of one longest lag; when there are more than 32 blocks, neighbours
-/// are merged. Diffusion coefficients are null until the mean square displacement grows linearly (its logarithmic slope
-/// over the fit window within 0.2 of 1).
+/// are merged. Correlations says where diffusion coefficients exist.
 class ED_EXPORT Observables {
  public:
   /// Of a run that is about to start, at time 0. Throws std::invalid_argument for a duration that is not positive, no

@@ -18,16 +18,23 @@ namespace ed {
 /// All bodies at one time, as they were stored.
 struct StoredFrame {
   double time = 0;
-  std::vector<Eigen::Vector3d> position;  ///< unwrapped: continuous across the box's faces
+  std::vector<Eigen::Vector3d> position;  ///< unwrapped, continuous across the box's faces, if the options say so
   std::vector<Eigen::Matrix3d> rotation;  ///< body to world; empty: not known
   std::vector<Eigen::Vector3d> velocity;  ///< empty: not known
 };
 
-/// What `analyze_frames` has to know beside the frames.
+/// Settings of `analyze_frames`: what it has to know beside the frames.
 struct StoredFramesOptions {
   double box = 0;  ///< edge length, of all frames
   /// Unit of distances and wave numbers: the radius of the sphere whose volume is the bodies' mean one.
   double length = 1;
+  /// False where nobody knows the bodies' sizes and `length` is any: D_trans then asks for motion by the bodies' mean
+  /// distance instead of that of the first peak of S(q).
+  bool length_known = true;
+  /// False where body i of one frame need not be body i of the next: there are no correlations in time then.
+  bool same_bodies = true;
+  /// False where positions are wrapped, so that displacements are not known: no MSD, alpha2, F_self, D_trans.
+  bool unwrapped = true;
   std::vector<BodyGroup> groups{};  ///< their numbers add up to that of the bodies
   std::vector<int> axis{};          ///< of each body: which body axis (0, 1, 2) u is
   /// Of F_self, at most kMostWaveNumbers; empty: wave_numbers_about the first peak of S(q).
@@ -38,16 +45,21 @@ struct StoredFramesOptions {
   std::optional<double> fit_from{};
 };
 
-/// What was found.
+/// Results, and what they are from.
 struct StoredResults : Results {
   std::vector<double> wave_numbers;
-  std::size_t frames = 0;  ///< that were used: the first ones, as far as they are equally far apart in time
+  /// Frames that correlations are from: the longest stretch of frames that are equally far apart in time, the first of
+  /// several. S, g(r) and S(q) are from all frames.
+  /// @{
+  std::size_t first_frame = 0;
+  std::size_t frames = 0;
+  /// @}
 };
 
-/// Averages over frames, and correlations over all pairs of frames that are a lag apart, at about 20 lags a decade.
-/// Errors are standard errors over blocks as long as the longest lag (2 to 16 of them). What frames do not tell is NaN:
-/// collisions, pressure, temperatures, rotational displacements, and with velocities or rotations missing what is made
-/// of them.
+/// Takes averages over frames, and correlations over all pairs of frames that are a lag apart, at about 20 lags a
+/// decade. Errors are standard errors over blocks as long as the longest lag (2 to 16 of them). Values that frames do
+/// not tell are missing for the reason MissingReason::not_told: collisions, pressure, temperatures, rotational
+/// displacements, and with velocities or rotations missing what is made of them.
 ///
 /// Memory: some 200 bytes a body and frame beside the frames. Throws std::invalid_argument for no frames, numbers of
 /// bodies that differ, a box that is not positive, times that do not rise, a negative lag to fit from.
