@@ -44,6 +44,7 @@ Reach reach_of_rotation(double components) {
 }
 
 std::optional<Missing> why_not_diffusive(const Curve& curve, const Reach& reach) {
+  if (curve.t.empty()) return Missing{};
   const Curve window = end_of(curve);
   if (window.t.size() < 2) return Missing{MissingReason::lags_too_short};
   const double exponent = exponent_of(window);
@@ -67,7 +68,7 @@ double decay_time(const Curve& curve) {
 }
 
 std::optional<Missing> why_no_decay_time(const Curve& curve) {
-  if (curve.t.empty()) return Missing{MissingReason::lags_too_short};
+  if (curve.t.empty()) return Missing{};
   if (std::isfinite(decay_time(curve))) return std::nullopt;
   if (curve.y.front() <= kDecayed) return Missing{MissingReason::decayed_early};
   return Missing{MissingReason::not_decayed, curve.y.back()};
@@ -90,7 +91,9 @@ std::optional<DecayFit> fit_decay(const Curve& curve, double from) {
 }
 
 std::optional<Missing> why_no_fit(const Curve& curve, double from) {
-  if (!std::isfinite(from)) return Missing{MissingReason::end_of_ballistic_unknown};
+  if (curve.t.empty()) return Missing{};
+  if (std::isinf(from)) return Missing{MissingReason::no_collisions};
+  if (std::isnan(from)) return Missing{MissingReason::end_of_ballistic_unknown};
   if (const auto missing = why_no_decay_time(curve)) return missing;
   if (decay_time(curve) < kLeastDecay * from) return Missing{MissingReason::decayed_before_diffusion};
   if (!fit_decay(curve, from)) return Missing{MissingReason::no_fit};

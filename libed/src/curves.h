@@ -79,7 +79,8 @@ struct DecayFit {
 };
 
 /// Stretched exponential of a correlation that starts at 1, fitted to lags from `from` on (before, motion is
-/// ballistic), without the noise at the end. Nothing where the thresholds above are not kept.
+/// ballistic), without the noise at the end. Nothing where the thresholds above are not kept, or `from` is infinite (no
+/// body has met another) or NaN (not known).
 std::optional<DecayFit> fit_decay(const Curve& curve, double from);
 
 /// Why fit_decay gives nothing; nothing if it gives a fit.

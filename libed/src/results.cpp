@@ -128,6 +128,7 @@ class Evaluation {
   Estimate diffusion_estimate(std::size_t group, double divisor, const Reach& reach, const Value& value) const {
     const auto complete = [&](const Curve& c) { return !c.t.empty() && c.t.back() >= measured_.lags.back(); };
     const Curve all = curve(group, {}, value);
+    if (all.t.empty()) return {};
     if (!complete(all)) return Estimate::none({MissingReason::lags_too_short});
     if (const auto missing = why_not_diffusive(all, reach)) return Estimate::none(*missing);
     return with_block_error(measured_.lags.back(), [&](const Block* block) {
