@@ -114,7 +114,7 @@ class Definitions(Here):
         text = (ROOT / "libed" / "src" / "curves.h").read_text()
         for name, here in [("FitFrom", definitions.FIT_FROM), ("Linearity", definitions.LINEARITY), ("Displaced", definitions.DISPLACED),
                            ("Turned", definitions.TURNED), ("MostAmplitude", definitions.MOST_AMPLITUDE),
-                           ("LeastBeta", definitions.LEAST_BETA)]:
+                           ("LeastBeta", definitions.LEAST_BETA), ("FreeTurning", definitions.STEEPEST_TURN - 1)]:
             with self.subTest(name):
                 numerator, _, denominator = re.search(rf"k{name} = ([^;]+);", text)[1].partition("/")
                 self.assertAlmostEqual(float(numerator) / float(denominator or 1), here, delta=1e-12)
