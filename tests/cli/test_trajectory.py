@@ -945,7 +945,7 @@ class Analyze(Trajectories):
         def nothing(name):
             observables = self.analysis(name)["observables"]
             for key in ["S", "tau_C2", "t_C2_1overe"]:
-                self.assertEqual(observables[key], {"value": None, "error": None}, key)
+                self.assertEqual(observables[key], {"value": None, "error": None, "missing": "the file does not tell"}, key)
             self.assertEqual(observables["director"]["value"], [None] * 3)
             for file, column in [("c1", "c1"), ("c2", "c2"), ("order", "S"), ("g_r", "g2")]:
                 self.assertTrue(numpy.isnan(self.rows(f"{name}/{file}.csv")[column]).all(), file)
