@@ -241,7 +241,7 @@ class PartsOfFrames(Files):
                 file.write_chunk("particles/position", numpy.array(self.two(0.1 * k), numpy.float32))
             file.end_frame()
         file.close()
-        self.assertIn("2 of 5 frames in the file have no positions and are left out", self.analyze("log.gsd"))
+        self.assertIn("frames without positions are left out: 2 of 5 in the file", self.analyze("log.gsd"))
         self.assertAlmostEqual(self.msd()[2], 0.02, places=6)
         self.assertNotIn(1, self.msd())
         frames = self.analysis()["frames"]
@@ -252,8 +252,8 @@ class PartsOfFrames(Files):
         steps = [0, 1, 100, 200, 300, 400]
         self.dump("uneven.lammpstrj", "id type xu yu zu", [[[1, 1, 0.01 * s, 0, 0], [2, 1, 0, 3, 0]] for s in steps], steps=steps)
         out = self.analyze("uneven.lammpstrj")
-        self.assertIn("S, g(r) and S(q) are from all frames, correlations from 4 of them", out)
-        self.assertIn("in time, 100 to 400", out)
+        self.assertIn("S, g(r) and S(q) are from all frames, correlations from the longest even stretch, 4 frames", out)
+        self.assertIn("of times 100 to 400", out)
         self.assertEqual(list(self.msd()), [100])
         self.assertAlmostEqual(self.msd()[100], 0.5, places=6)
         frames = self.analysis()["frames"]
