@@ -2,6 +2,7 @@
 #include "errors.h"
 #include "frame.h"
 #include "json_values.h"
+#include "missing.h"
 #include "observable_files.h"
 #include "run_directory.h"
 #include "stored_trajectory.h"
@@ -81,22 +82,26 @@ std::string order_csv(const StoredTrajectory& stored) {
   return text;
 }
 
+/// Words for values that are missing: lengths have the unit of the file.
+const MissingWords kWords = {"", "--longest-lag or a longer trajectory helps", "--fit-from says it"};
+
 /// As in summary.json.
 Json observables(const ed::Correlations& c, const ed::Estimate& S, const ed::Director& director) {
   Json json;
-  json["D_trans"] = estimate_json(c.D_trans);
-  json["S"] = estimate_json(S);
+  json["D_trans"] = estimate_json(c.D_trans, kWords);
+  json["S"] = estimate_json(S, kWords);
   json["director"] = {
       {"value", {number_json(director.axis.x()), number_json(director.axis.y()), number_json(director.axis.z())}},
       {"error", number_json(director.error)}};
-  json["tau_C2"] = estimate_json(c.tau_C2);
-  json["beta_C2"] = estimate_json(c.beta_C2);
-  json["t_C2_1overe"] = estimate_json(c.t_C2_1overe);
-  json["tau_F"] = estimate_json(c.tau_F);
-  json["beta_F"] = estimate_json(c.beta_F);
-  json["t_F_1overe"] = estimate_json(c.t_F_1overe);
-  json["q_peak"] = estimate_json(c.q_peak);
-  json["S_peak"] = estimate_json(c.S_peak);
+  if (!director.axis.allFinite()) json["director"]["missing"] = missing_text(S.missing, kWords);
+  json["tau_C2"] = estimate_json(c.tau_C2, kWords);
+  json["beta_C2"] = estimate_json(c.beta_C2, kWords);
+  json["t_C2_1overe"] = estimate_json(c.t_C2_1overe, kWords);
+  json["tau_F"] = estimate_json(c.tau_F, kWords);
+  json["beta_F"] = estimate_json(c.beta_F, kWords);
+  json["t_F_1overe"] = estimate_json(c.t_F_1overe, kWords);
+  json["q_peak"] = estimate_json(c.q_peak, kWords);
+  json["S_peak"] = estimate_json(c.S_peak, kWords);
   return json;
 }
 
@@ -150,7 +155,8 @@ void write_files(const fs::path& out, const std::string& name, const StoredTraje
 }
 
 std::string shown(const ed::Estimate& e) {
-  return std::isfinite(e.value) ? fmt::format("{:.5g} +- {:.2g}", e.value, e.error) : "-";
+  if (!std::isfinite(e.value)) return fmt::format("- ({})", missing_text(e.missing, kWords));
+  return fmt::format("{:.5g} +- {:.2g}", e.value, e.error);
 }
 
 fs::path trajectory_in(const fs::path& directory) {

@@ -2,6 +2,7 @@
 #include "distance_query.h"
 #include "distance_seeds.h"
 #include "line_reader.h"
+#include "orientation.h"
 
 #include <geom/tolerances.h>
 
@@ -43,7 +44,8 @@ std::string distance_help() {
   {{"a":{{"shape":{{"kind":"ellipsoid","semi_axes":[1,1,3]}},"position":[0,0,0],"orientation":[1,0,0,0]}},"b":{{..}}}}
   shape        or {{"kind":"superellipsoid","semi_axes":[a,b,c],"exponents":[e1,e2]}}, exponents {} to {}:
                (|x/a|^(2/e2) + |y/b|^(2/e2))^(e2/e1) + |z/c|^(2/e1) <= 1
-  orientation  unit quaternion w, x, y, z from body to world; without it the body is not turned
+  orientation  unit quaternion w, x, y, z from body to world; without it the body is not turned. A length that is off
+               by at most {:g} is normalized, with a notice in the answer beyond 1e-6
   method       "dual" (the default), or the paper's equations: "newton8", "newton5"
   seed         where these two start: {} (the default is the first)
   penetration  of the dual method, where bodies overlap deeply: "global" (the default), the shortest of all translations
@@ -56,9 +58,10 @@ A line out:
                no answer, null instead of the four above
   error_bound  certified: distance <= true distance <= distance + error_bound; null where nothing is
   seed_status  "overlapping", "declined": only if the seed had no points to start from
+  notice       only if a quaternion was not of length 1: which one, and its length
 A bad line is answered by {{"error":"line 3: .."}}, blank lines are skipped.
 Exit status: 0 every line was answered or declined, 2 a line was bad, 1 the answers could not be written.)",
-      geom::kMinExponent, geom::kMaxExponent, built_in_seeds());
+      geom::kMinExponent, geom::kMaxExponent, kQuaternionTolerance, built_in_seeds());
 }
 
 int distance(const std::string& path) {

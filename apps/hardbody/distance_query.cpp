@@ -2,6 +2,7 @@
 
 #include "errors.h"
 #include "json_member.h"
+#include "orientation.h"
 #include "query_scanner.h"
 #include "text_file.h"
 
@@ -13,6 +14,7 @@
 #include <stdexcept>
 #include <utility>
 #include <variant>
+#include <vector>
 
 namespace hardbody {
 namespace {
@@ -30,12 +32,12 @@ struct Body {
   geom::Pose pose;
 };
 
-Body read_body(const JsonMember& body) {
+Body read_body(const JsonMember& body, std::vector<std::string>& notices) {
   body.allow(kBodyKeys);
   const geom::Shape shape = read_shape(body.at("shape", "{\"kind\":\"ellipsoid\",\"semi_axes\":[a,b,c]}"));
   const Vector3d position = read_position(body);
   if (!body.has("orientation")) return {shape, geom::Pose::translation(position)};
-  return {shape, read_orientation(body.at("orientation", ""), position)};
+  return {shape, read_orientation(body.at("orientation", ""), position, notices)};
 }
 
 /// By name; nothing: there is none.
@@ -108,17 +110,16 @@ nlohmann::json parse_line(std::string_view line) {
   }
 }
 
-/// What scan_query found of a body; nothing if that is to be complained about.
-std::optional<Body> scanned_body(const ScannedBody& body) {
+/// Body as scan_query found it; nothing if there is something to complain about.
+std::optional<Body> scanned_body(const ScannedBody& body, const char* name, std::vector<std::string>& notices) {
   const Vector3d axes(body.semi_axes.data());
   const Vector3d position(body.position.data());
   try {
-    const geom::Pose pose = body.orientation
-                                ? geom::Pose::from_quaternion((*body.orientation)[0], (*body.orientation)[1],
-                                                              (*body.orientation)[2], (*body.orientation)[3], position)
-                                : geom::Pose::translation(position);
-    if (!body.is_superellipsoid) return Body{geom::Ellipsoid(axes), pose};
-    return Body{geom::Superellipsoid(axes, body.exponents[0], body.exponents[1]), pose};
+    const StoredOrientation read = body.orientation ? read_quaternion(*body.orientation, position)
+                                                    : StoredOrientation{geom::Pose::translation(position)};
+    if (read.normalized) notices.push_back(normalized_text(fmt::format("{}.orientation", name), read.length));
+    if (!body.is_superellipsoid) return Body{geom::Ellipsoid(axes), read.pose};
+    return Body{geom::Superellipsoid(axes, body.exponents[0], body.exponents[1]), read.pose};
   } catch (const std::invalid_argument&) {
     return {};
   }
@@ -134,12 +135,14 @@ std::optional<DistanceQuery> scanned_query(std::string_view line, std::string& i
   const std::optional<geom::Penetration> penetration = find_penetration(or_else(scanned->penetration, "global"));
   const SeedSource* seed = find_seed(or_else(scanned->seed, seed_sources().front().name));
   if (!method || !penetration || seed == nullptr || seed->function == nullptr) return {};
-  const std::optional<Body> a = scanned_body(scanned->a);
-  const std::optional<Body> b = scanned_body(scanned->b);
+  std::vector<std::string> notices;
+  const std::optional<Body> a = scanned_body(scanned->a, "a", notices);
+  const std::optional<Body> b = scanned_body(scanned->b, "b", notices);
   if (!a || !b) return {};
   id = scanned->id;
   check_options(*method, *seed, !scanned->penetration.empty());
-  return DistanceQuery{a->shape, b->shape, a->pose, b->pose, *method, seed->function, *penetration};
+  return DistanceQuery{a->shape, b->shape,       a->pose,      b->pose,
+                       *method,  seed->function, *penetration, fmt::format("{}", fmt::join(notices, "; "))};
 }
 
 /// `null` for a number that there is none of: those of a declined answer, and infinity.
@@ -180,9 +183,11 @@ DistanceQuery parse_query(std::string_view line, std::string& id) {
   const SeedSource& seed = read_seed(root);
   const geom::Penetration penetration = read_penetration(root);
   check_options(method, seed, root.has("penetration"));
-  const Body a = read_body(root.at("a", "a body"));
-  const Body b = read_body(root.at("b", "a body"));
-  return {a.shape, b.shape, a.pose, b.pose, method, seed.function, penetration};
+  std::vector<std::string> notices;
+  const Body a = read_body(root.at("a", "a body"), notices);
+  const Body b = read_body(root.at("b", "a body"), notices);
+  return {a.shape, b.shape,       a.pose,      b.pose,
+          method,  seed.function, penetration, fmt::format("{}", fmt::join(notices, "; "))};
 }
 
 DistanceAnswer answer(const DistanceQuery& query) {
@@ -202,7 +207,7 @@ DistanceAnswer answer(const DistanceQuery& query) {
       query.a, query.b);
 }
 
-std::string answer_json(const std::string& id, const DistanceAnswer& answer) {
+std::string answer_json(const std::string& id, const DistanceAnswer& answer, const std::string& notice) {
   const geom::DistanceResult& r = answer.result;
   const bool answered = r.status == geom::DistanceStatus::separated || r.status == geom::DistanceStatus::overlapping;
   std::string text;
@@ -218,6 +223,7 @@ std::string answer_json(const std::string& id, const DistanceAnswer& answer) {
                  ",\"status\":\"{}\",\"iterations\":{},\"error_bound\":", geom::to_string(r.status), r.iterations);
   append_number(text, r.error_bound);
   if (answer.seed_status) text += fmt::format(",\"seed_status\":\"{}\"", geom::to_string(*answer.seed_status));
+  if (!notice.empty()) text += fmt::format(",\"notice\":{}", nlohmann::json(notice).dump());
   return text + '}';
 }
 
@@ -231,7 +237,7 @@ Reply reply_to(std::string_view line, long number) {
   std::string id;
   try {
     const DistanceQuery query = parse_query(line, id);
-    return {answer_json(id, answer(query)), true};
+    return {answer_json(id, answer(query), query.notice), true};
   } catch (const InputError& error) {
     return {error_json(id, fmt::format("line {}: {}", number, error.what())), false};
   }

@@ -26,6 +26,7 @@ struct DistanceQuery {
   Method method;
   SeedFunction seed;              ///< for the paper's equations
   geom::Penetration penetration;  ///< for the dual method
+  std::string notice;             ///< what was done with its numbers; empty: nothing
 };
 
 struct DistanceAnswer {
@@ -45,8 +46,8 @@ DistanceQuery parse_query(std::string_view line, std::string& id);
 DistanceAnswer answer(const DistanceQuery& query);
 
 /// {"distance":..,..}, without a line break. Numbers with 17 significant digits, so that they read back as the same
-/// double; a declined answer's are null, and so is an infinite error bound.
-std::string answer_json(const std::string& id, const DistanceAnswer& answer);
+/// double; a declined answer's are null, and so is an infinite error bound. `notice`: of the query.
+std::string answer_json(const std::string& id, const DistanceAnswer& answer, const std::string& notice = "");
 
 /// {"error":".."}
 std::string error_json(const std::string& id, const std::string& message);

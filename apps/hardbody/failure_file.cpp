@@ -74,9 +74,9 @@ int read_index(const JsonMember& member) {
 enum class Rounding { removed, kept };
 
 /// A rotation that is orthonormal to rounding only is made exactly so, unless its bits are wanted.
-geom::Pose read_pose(const JsonMember& body, Rounding rounding = Rounding::removed) {
+geom::Pose read_pose(const JsonMember& body, std::vector<std::string>& notices, Rounding rounding) {
   const Vector3d position = read_position(body);
-  if (body.has("orientation")) return read_orientation(body.at("orientation", ""), position);
+  if (body.has("orientation")) return read_orientation(body.at("orientation", ""), position, notices);
   const JsonMember member =
       body.at("rotation", "the three rows of a rotation matrix (or orientation: a unit quaternion)");
   if (!member.json->is_array() || member.json->size() != 3) throw member.bad("the three rows of a rotation matrix");
@@ -99,9 +99,9 @@ ed::BodyShape read_body_shape(const JsonMember& body) {
   return body_shape(read_geom_shape(body));
 }
 
-ed::Motion read_motion(const JsonMember& body, const ed::BodyShape& shape) {
+ed::Motion read_motion(const JsonMember& body, const ed::BodyShape& shape, std::vector<std::string>& notices) {
   ed::Motion motion;
-  motion.pose = read_pose(body);
+  motion.pose = read_pose(body, notices, Rounding::removed);
   if (body.has("velocity")) motion.velocity = body.at("velocity", "").vector();
   if (body.has("angular_velocity")) motion.angular_velocity = body.at("angular_velocity", "").vector();
   motion.inertia = body.has("inertia") ? body.at("inertia", "").vector() : ed::uniform_species(shape).inertia;
@@ -124,7 +124,7 @@ geom::DistanceStatus read_status(const JsonMember& status) {
   throw status.bad("the status of a distance");
 }
 
-ed::FailedDistance read_newton(const JsonMember& newton) {
+ed::FailedDistance read_newton(const JsonMember& newton, std::vector<std::string>& notices) {
   const JsonMember a = newton.at("a", "a body");
   const JsonMember b = newton.at("b", "a body");
   ed::FailedDistance call;
@@ -132,8 +132,8 @@ ed::FailedDistance read_newton(const JsonMember& newton) {
   call.status = read_status(newton.at("status", "the status of a distance"));
   call.shape_a = read_geom_shape(a);
   call.shape_b = read_geom_shape(b);
-  call.X_WA = read_pose(a, Rounding::kept);
-  call.X_WB = read_pose(b, Rounding::kept);
+  call.X_WA = read_pose(a, notices, Rounding::kept);
+  call.X_WB = read_pose(b, notices, Rounding::kept);
   const JsonMember point_a = newton.at("point_a", "three finite numbers or null");
   const JsonMember point_b = newton.at("point_b", "three finite numbers or null");
   if (point_a.json->is_null() && point_b.json->is_null()) return call;
@@ -150,8 +150,8 @@ Failure read_pair(const JsonMember& root) {
   ed::FailedPair& pair = failure.pair;
   pair.shape_i = read_body_shape(a);
   pair.shape_j = read_body_shape(b);
-  pair.motion_i = read_motion(a, pair.shape_i);
-  pair.motion_j = read_motion(b, pair.shape_j);
+  pair.motion_i = read_motion(a, pair.shape_i, failure.notices);
+  pair.motion_j = read_motion(b, pair.shape_j, failure.notices);
   if (root.has("reason") && root.json->at("reason").is_string()) {
     failure.reason = one_line(root.json->at("reason").get<std::string>());
   }
@@ -164,7 +164,7 @@ Failure read_pair(const JsonMember& root) {
   }
   if (root.has("newton")) {
     pair.reason = ed::FailureReason::distance;
-    pair.distance = read_newton(root.at("newton", ""));
+    pair.distance = read_newton(root.at("newton", ""), failure.notices);
   }
   return failure;
 }

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace hardbody {
 
@@ -25,6 +26,7 @@ namespace hardbody {
 struct Failure {
   std::string reason;  ///< in words; a file may have another than to_string(pair.reason)
   ed::FailedPair pair;
+  std::vector<std::string> notices;  ///< of a file that was read: quaternions that were normalized
 };
 
 std::string failure_json(const Failure& failure);

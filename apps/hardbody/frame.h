@@ -46,6 +46,7 @@ struct FrameBody {
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
   Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();
+  Eigen::Vector3d angular_momentum = Eigen::Vector3d::Zero();  ///< where Frame::angular_momenta
   double mass = 1;
   Eigen::Vector3d inertia = Eigen::Vector3d::Zero();  ///< principal moments about body x, y, z; 0: not known
   std::uint32_t type = 0;                             ///< number in Frame::types
@@ -72,6 +73,7 @@ struct Frame {
   bool orientations = false;        ///< stored, or by the schema those of frame 0
   bool velocities = false;          ///< the same
   bool angular_velocities = false;  ///< the same
+  bool angular_momenta = false;     ///< the same; for bodies whose moments of inertia only the config has
   bool ids = false;                 ///< the file numbers its bodies, so that they can be followed from frame to frame
   /// Source of the unwrapped positions: "image flags" or "unwrapped columns"; empty: not known.
   std::string unwrapped_by;

@@ -255,9 +255,11 @@ void FrameReader::read_motion(Frame& frame) const {
   const std::vector<double> mass = finite<float>("particles/mass", number, 1);
   const std::vector<double> inertia = finite<float>("particles/moment_inertia", number, 3);
   frame.velocities = knows("particles/velocity");
-  frame.angular_velocities = frame.orientations && knows("particles/angmom");
+  frame.angular_velocities = frame.angular_momenta = frame.orientations && knows("particles/angmom");
   const auto velocity = frame.velocities ? finite<float>("particles/velocity", number, 3) : std::vector<double>();
   const auto angmom = frame.angular_velocities ? finite<float>("particles/angmom", number, 4) : std::vector<double>();
+  // An angular momentum is twice the product of the quaternion, of the sign that it has in the file, and L.
+  const auto orientation = angmom.empty() ? std::vector<double>() : finite<float>("particles/orientation", number, 4);
   for (std::size_t i = 0; i < number; ++i) {
     FrameBody& body = frame.bodies[i];
     if (!type.empty()) body.type = type[i];
@@ -270,11 +272,14 @@ void FrameReader::read_motion(Frame& frame) const {
     if (!velocity.empty()) body.velocity = {velocity[3 * i], velocity[3 * i + 1], velocity[3 * i + 2]};
     if (angmom.empty()) continue;
     const double* p = angmom.data() + 4 * i;
-    const Quaterniond q(body.rotation);
+    const double* o = orientation.data() + 4 * i;
+    const Quaterniond q =
+        orientation.empty() ? Quaterniond::Identity() : Quaterniond(o[0], o[1], o[2], o[3]).normalized();
     const Vector3d L = 0.5 * (q.conjugate() * Quaterniond(p[0], p[1], p[2], p[3])).vec();
     Vector3d omega = Vector3d::Zero();
     for (int k = 0; k < 3; ++k) omega[k] = body.inertia[k] > 0 ? L[k] / body.inertia[k] : 0;
     body.angular_velocity = body.rotation * omega;
+    body.angular_momentum = body.rotation * L;
   }
 }
 
@@ -393,6 +398,7 @@ void check_unedited(const Frame& frame, const ed::System& system, const std::str
         "unedited frame, or a file without the arrays of log/hardbody and log/particles/hardbody",
         name, k, what));
   };
+  if (!frame.tilt.isZero(0)) refuse("configuration/box, which is tilted,");
   if (!((frame.box - Vector3d::Constant(system.box)).norm() <= 2 * kSingle * system.box)) refuse("configuration/box");
   for (std::size_t t = 0; t < system.species.size() && t < frame.types.size(); ++t) {
     const auto& shape = frame.types[t].shape;
@@ -407,6 +413,7 @@ void check_unedited(const Frame& frame, const ed::System& system, const std::str
 /// The numbers of the state in place of the rounded ones.
 void sharpen(Frame& frame, const ed::System& system) {
   frame.box = Vector3d::Constant(system.box);
+  frame.orientations = frame.velocities = frame.angular_velocities = true;
   for (std::size_t k = 0; k < system.species.size() && k < frame.types.size(); ++k) {
     frame.types[k].shape = system.species[k].shape;
   }
@@ -443,7 +450,7 @@ GsdReader::GsdReader(std::unique_ptr<StoredBytes> bytes, std::string name)
 }
 
 bool GsdReader::has_positions(std::uint64_t k) const {
-  if (file_.find(k, kPositionName) != nullptr) return true;
+  if (exact_ || file_.find(k, kPositionName) != nullptr) return true;
   // Positions that are those of frame 0 are left out, if something else of the bodies is there.
   const auto stored = [&](const char* name) { return file_.find(k, name) != nullptr; };
   return k > 0 && file_.find(0, kPositionName) != nullptr && file_.stored_later(kPositionName) &&

@@ -1,5 +1,6 @@
 #include "json_member.h"
 
+#include "orientation.h"
 #include "suggest.h"
 #include "text_file.h"
 
@@ -149,9 +150,18 @@ Eigen::Vector3d read_position(const JsonMember& body) {
   return position.checked([&] { return geom::Pose::translation(values).position(); });
 }
 
-geom::Pose read_orientation(const JsonMember& orientation, const Eigen::Vector3d& position) {
+geom::Pose read_orientation(const JsonMember& orientation, const Eigen::Vector3d& position,
+                            std::vector<std::string>& notices) {
   const std::vector<double> q = orientation.numbers(4, "a unit quaternion [w, x, y, z]");
-  return orientation.checked([&] { return geom::Pose::from_quaternion(q[0], q[1], q[2], q[3], position); });
+  const StoredOrientation read = orientation.checked([&] {
+    return read_quaternion({q[0], q[1], q[2], q[3]}, position);
+  });
+  if (read.normalized) notices.push_back(normalized_text(orientation.name, read.length));
+  return read.pose;
+}
+
+std::string normalized_text(std::string_view name, double length) {
+  return fmt::format("{} is a quaternion of length {:.6g}: normalized", name, length);
 }
 
 }  // namespace hardbody

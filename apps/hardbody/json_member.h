@@ -75,7 +75,11 @@ geom::Ellipsoid read_ellipsoid(const JsonMember& shape);
 geom::Shape read_shape(const JsonMember& shape);
 /// Of {"position": [x, y, z]}, as one that a pose may have.
 Eigen::Vector3d read_position(const JsonMember& body);
-/// Of [w, x, y, z].
-geom::Pose read_orientation(const JsonMember& orientation, const Eigen::Vector3d& position);
+/// Reads [w, x, y, z]. A length that is off by no more than kQuaternionTolerance is normalized; beyond rounding a line
+/// of `notices` says so.
+geom::Pose read_orientation(const JsonMember& orientation, const Eigen::Vector3d& position,
+                            std::vector<std::string>& notices);
+/// Line of `notices` for a quaternion of that length; `name`: of the member.
+std::string normalized_text(std::string_view name, double length);
 
 }  // namespace hardbody

@@ -2,6 +2,8 @@
 
 /// Numbers as the program writes them in JSON. Private to the sources that write JSON: it brings the library along.
 
+#include "missing.h"
+
 #include <ed/analysis.h>
 
 #include <Eigen/Core>
@@ -20,9 +22,11 @@ inline nlohmann::ordered_json list_json(const Eigen::Vector3d& v) {
   return {v.x(), v.y(), v.z()};
 }
 
-/// {"value": ..., "error": ...}
-inline nlohmann::ordered_json estimate_json(const ed::Estimate& e) {
-  return {{"value", number_json(e.value)}, {"error", number_json(e.error)}};
+/// {"value": ..., "error": ...}, and without a value the reason: "missing": "..."
+inline nlohmann::ordered_json estimate_json(const ed::Estimate& e, const MissingWords& words) {
+  nlohmann::ordered_json json = {{"value", number_json(e.value)}, {"error", number_json(e.error)}};
+  if (!std::isfinite(e.value)) json["missing"] = missing_text(e.missing, words);
+  return json;
 }
 
 }  // namespace hardbody

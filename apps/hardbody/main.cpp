@@ -106,7 +106,9 @@ CLI::Validator positive_number() {
 
 void add_analyze(CLI::App& app, Request& request) {
   CLI::App* analyze = app.add_subcommand("analyze", "Observables of a stored trajectory, ours or another program's");
-  analyze->add_option("PATH", request.analyze.path, "Run directory with a trajectory.gsd, or FILE.gsd")->required();
+  analyze
+      ->add_option("PATH", request.analyze.path, "Run directory with a trajectory, or a GSD file or LAMMPS text dump")
+      ->required();
   analyze->add_option("--out", request.analyze.out, "Where the files go; without it analysis/ beside the trajectory");
   analyze->add_option("--time-step", request.analyze.time_step, "Time between two steps, instead of the times stored")
       ->check(positive_number());
@@ -117,7 +119,8 @@ void add_analyze(CLI::App& app, Request& request) {
           "--fit-from", request.analyze.fit_from,
           "Lag from which C2 and F_self are fitted; without it as the run in the directory did, if there is one")
       ->check(positive_number());
-  analyze->add_option("--every", request.analyze.every, "Takes only each N-th frame")->check(CLI::Range(1, 1000000));
+  analyze->add_option("--every", request.analyze.every, "Takes only each N-th frame; bodies are followed through all")
+      ->check(CLI::Range(1, 1000000));
 }
 
 void add_distance(CLI::App& app, Request& request) {

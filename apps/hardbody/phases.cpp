@@ -153,10 +153,17 @@ bool precise_enough(const ed::Estimate& D, double target) {
   return D.error <= target * std::abs(D.value);
 }
 
-/// The diffusion coefficients that are to have the error asked for. Spheres turn freely and have no D_rot.
+/// The diffusion coefficients that are to have the error asked for. Spheres turn freely and have no D_rot; nor has the
+/// mixture of spheres and others, whose others then each have one.
 std::vector<ed::Estimate> wanted_coefficients(const Config& config, const ed::Results& results) {
   std::vector<ed::Estimate> wanted = {results.D_trans};
-  if (!std::all_of(config.species.begin(), config.species.end(), is_sphere)) wanted.push_back(results.D_rot);
+  if (std::none_of(config.species.begin(), config.species.end(), is_sphere)) {
+    wanted.push_back(results.D_rot);
+    return wanted;
+  }
+  for (std::size_t k = 0; k < config.species.size() && k < results.groups.size(); ++k) {
+    if (!is_sphere(config.species[k])) wanted.push_back(results.groups[k].D_rot);
+  }
   return wanted;
 }
 
@@ -407,6 +414,10 @@ ProductionRun resumed_production(const Config& config, Checkpoint& checkpoint, c
   run.events.check(state.events);
   run.trajectory.check(state.trajectory);
   return run;
+}
+
+bool lags_are_longest(const Config& config, const Production& production) {
+  return production.longest_lag >= kLongestLag * config.time_unit * (1 - 1e-9);
 }
 
 Checkpoint checkpoint_of(ProductionRun& run) {

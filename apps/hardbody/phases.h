@@ -59,6 +59,9 @@ ProductionRun begin_production(const Config& config, Equilibration equilibration
 /// As resumed_equilibration.
 ProductionRun resumed_production(const Config& config, Checkpoint& checkpoint, const RunDirectory& directory,
                                  const std::string& name);
+/// Whether a longer production would have no longer lags.
+bool lags_are_longest(const Config& config, const Production& production);
+
 /// How far the files go that grow with production.
 struct FilesMark {
   EventsMark events;

@@ -78,6 +78,7 @@ geom::Shape geom_shape(const ed::BodyShape& shape) {
 std::string bodies(const Failure& failure, const Pair& pair) {
   const ed::FailedPair& failed = failure.pair;
   std::string out = fmt::format("reason: {}\n", failure.reason.empty() ? "none given" : failure.reason);
+  for (const std::string& notice : failure.notices) out += fmt::format("notice: {}\n", notice);
   out += fmt::format("time {:.17g}, bodies {} (a) and {} (b)\n", failed.time, failed.i, failed.j);
   const auto add = [&](const char* name, const ed::BodyShape& shape, const ed::Motion& motion) {
     out += fmt::format("{}: {}, inertia {}\n   position {}\n   velocity {}\n   angular velocity {}\n", name,

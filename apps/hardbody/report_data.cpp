@@ -118,7 +118,8 @@ Json headlines_json(const std::vector<Headline>& headlines, Detail detail) {
                     {"unit", h.unit},
                     {"meaning", h.meaning},
                     {"value", number_json(h.value)},
-                    {"error", number_json(h.error)}});
+                    {"error", number_json(h.error)},
+                    {"missing", h.missing}});
   }
   return list;
 }
@@ -214,7 +215,7 @@ Json point_json(const SweepPointReport& point, bool embedded) {
   Json keys = Json::array();
   for (const std::string& key : point.keys) keys.push_back(field_json(key));
   Json values = Json::array();
-  for (const Measured& m : point.values) values.push_back({number_json(m.value), number_json(m.error)});
+  for (const Measured& m : point.values) values.push_back({number_json(m.value), number_json(m.error), m.missing});
   return {{"keys", std::move(keys)},  {"values", std::move(values)},        {"status", point.status},
           {"message", point.message}, {"equilibrated", point.equilibrated}, {"directory", point.directory},
           {"embedded", embedded}};

@@ -61,6 +61,12 @@ double number_in(const nlohmann::json& estimate, const char* key) {
   return place->get<double>();
 }
 
+std::string text_in(const nlohmann::json& estimate, const char* key) {
+  const auto place = estimate.is_object() ? estimate.find(key) : estimate.end();
+  if (!estimate.is_object() || place == estimate.end() || !place->is_string()) return "";
+  return place->get<std::string>();
+}
+
 Headline headline(const Naming& naming, const nlohmann::json& estimate) {
   return {naming.key,
           naming.symbol,
@@ -68,7 +74,8 @@ Headline headline(const Naming& naming, const nlohmann::json& estimate) {
           naming.unit,
           naming.meaning,
           number_in(estimate, "value"),
-          number_in(estimate, "error")};
+          number_in(estimate, "error"),
+          text_in(estimate, "missing")};
 }
 
 void add_axes(std::vector<Headline>& list, const nlohmann::json& observables) {
@@ -106,7 +113,8 @@ Headline headline_named(const std::string& key) {
 }
 
 std::string headline_text(const Headline& headline) {
-  return format_estimate({headline.value, headline.error});
+  if (std::isfinite(headline.value)) return format_estimate({headline.value, headline.error});
+  return headline.missing.empty() ? "no value" : headline.missing;
 }
 
 }  // namespace hardbody

@@ -22,8 +22,9 @@ struct Headline {
   std::string name;     ///< in words
   std::string unit;     ///< empty: a pure number
   std::string meaning;  ///< its definition
-  double value;         ///< NaN: the run was too short for it, or a decay too fast to be fitted
+  double value;         ///< NaN: there is none
   double error;         ///< standard
+  std::string missing;  ///< why there is no value; empty where the summary does not say
 };
 
 /// Something about the run that a reader must know.
@@ -71,7 +72,7 @@ Headline headline_named(const std::string& key);
 /// Those of `observables` in a summary that it has, in the order of interest.
 std::vector<Headline> headlines_of(const nlohmann::json& observables);
 
-/// "0.1729 +- 0.0033"
+/// "0.1729 +- 0.0033"; without a value, why there is none.
 std::string headline_text(const Headline& headline);
 
 }  // namespace hardbody

@@ -76,8 +76,9 @@ std::string plots(const std::vector<RunReport>& runs) {
   std::string html = "<section aria-label=\"Plots\" class=\"plots\">\n";
   for (const PlotChoice& choice : choices()) {
     const std::string svg = svg_plot(plot_of(choice, runs));
-    html += fmt::format("<figure class=\"card\"><figcaption>{}</figcaption>{}</figure>\n", html_text(choice.title),
-                        svg.empty() ? "<p class=\"none\">no values: the run is too short, or unfinished</p>" : svg);
+    html +=
+        fmt::format("<figure class=\"card\"><figcaption>{}</figcaption>{}</figure>\n", html_text(choice.title),
+                    svg.empty() ? "<p class=\"none\">no values: nothing, or too little, has been measured</p>" : svg);
   }
   return html + "</section>\n";
 }
@@ -93,9 +94,7 @@ std::string remarks(const RunReport& run) {
 }
 
 std::string cell(const Headline& headline) {
-  if (std::isfinite(headline.value)) return html_text(headline_text(headline));
-  const bool fit = headline.key.starts_with("tau_") || headline.key.starts_with("beta_");
-  return fit ? "no fit" : "too short";
+  return html_text(headline_text(headline));
 }
 
 const Headline* find(const std::vector<Headline>& list, const std::string& key) {

@@ -120,7 +120,8 @@ std::string sweep_table(const SweepReport& sweep) {
     html += "<tr>";
     for (const std::string& key : point.keys) html += fmt::format("<th scope=\"row\">{}</th>", html_text(key));
     for (const Measured& m : point.values) {
-      html += fmt::format("<td>{}</td>", html_text(format_estimate({m.value, m.error})));
+      const std::string why = m.missing.empty() ? "" : fmt::format(" title=\"{}\"", html_text(m.missing));
+      html += fmt::format("<td{}>{}</td>", why, html_text(format_estimate({m.value, m.error})));
     }
     html += fmt::format("<td>{} {}</td></tr>\n", html_text(point.status), html_text(point.message));
   }

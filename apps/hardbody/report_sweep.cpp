@@ -120,6 +120,17 @@ std::string directory_of(const CsvTable& table, const Row& row, const std::map<s
   return "";
 }
 
+/// Gives missing values the reason that the point's run has. The message of a point that is done says nothing else.
+void add_reasons(SweepPointReport& point, const std::vector<Headline>& observables) {
+  if (point.status != "done") return;
+  point.message.clear();
+  for (std::size_t k = 0; k < observables.size(); ++k) {
+    for (const Headline& own : point.run->headlines) {
+      if (own.key == observables[k].key) point.values[k].missing = own.missing;
+    }
+  }
+}
+
 /// The run of a point, or a message why it cannot be shown.
 void read_run(SweepPointReport& point, const fs::path& sweep, std::size_t& bodies) {
   const fs::path directory = sweep / point.directory;
@@ -173,6 +184,7 @@ SweepReport read_sweep_report(const fs::path& directory) {
     point.equilibrated = field_of(table, row, "equilibrated");
     point.directory = directory_of(table, row, directories);
     read_run(point, directory, bodies);
+    if (point.run) add_reasons(point, sweep.observables);
     sweep.points.push_back(std::move(point));
   }
   return sweep;

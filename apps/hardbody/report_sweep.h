@@ -13,13 +13,14 @@ namespace hardbody {
 struct Measured {
   double value;
   double error;
+  std::string missing{};  ///< why there is none, if the point's run says so
 };
 
 struct SweepPointReport {
   std::vector<std::string> keys;  ///< values of the swept keys, as the table has them
   std::vector<Measured> values;   ///< of the observables
   std::string status;             ///< "done", "failed", ..
-  std::string message;
+  std::string message;            ///< why it failed or cannot be shown
   std::string equilibrated;      ///< "true", "false" or nothing
   std::string directory;         ///< name; empty: none was found
   std::optional<RunReport> run;  ///< of a point that has results

@@ -50,7 +50,7 @@ void check_origin(const RunArguments& arguments, Config& config) {
     throw InputError(fmt::format("system.start_from: {} is the directory of this run; accepted: that of another one",
                                  *config.start_from));
   }
-  config.start_from = std::filesystem::absolute(*config.start_from).lexically_normal().string();
+  config.start_from = absolute_path(*config.start_from).string();
 }
 
 RunDirectory create_directory(const RunArguments& arguments, const Config& config) {
@@ -66,7 +66,7 @@ void write_failures(const RunDirectory& directory, const RunRecord& record, Log&
   for (const auto* failures : {&before.failures_of_start, &before.failures, &record.production.failures}) {
     for (const ed::FailedPair& pair : *failures) {
       directory.write(fmt::format("{}/pair_{:02}.json", kFailuresDirectory, ++count),
-                      failure_json({ed::to_string(pair.reason), pair}));
+                      failure_json({ed::to_string(pair.reason), pair, {}}));
     }
   }
   const std::uint64_t left_out = record.failures_left_out();

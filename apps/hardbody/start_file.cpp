@@ -2,11 +2,9 @@
 
 #include "config_values.h"
 #include "errors.h"
+#include "start_velocities.h"
 #include "text_file.h"
 #include "trajectory_reader.h"
-
-#include <ed/random.h>
-#include <ed/start.h>
 
 #include <fmt/format.h>
 
@@ -179,72 +177,23 @@ ed::System placed(const Config& config, const Frame& frame, const std::vector<st
       body.position = from.position;
       body.rotation = from.rotation;
       if (!frame.orientations && !ed::is_sphere(component.species.shape)) {
-        throw InputError(fmt::format("{}: has no orientations, and body {} is {}; accepted: columns {}, or spheres",
-                                     file, i, ed::describe(component.species.shape), "quatw quati quatj quatk"));
+        throw InputError(
+            fmt::format("{}: has no orientations, and body {:.17g} is {}; accepted: columns {}, or spheres", file,
+                        from.id, ed::describe(component.species.shape), "quatw quati quatj quatk"));
       }
       const std::optional<ed::BodyShape>& shape = frame.types[from.type].shape;
       if (!shape) continue;
       const std::optional<Matrix3d> axes = axes_in_file(*shape, component.species.shape);
       if (!axes) {
         throw InputError(
-            fmt::format("{}: body {} is {}, in the config {}; accepted: the same, or no shape in the config", file, i,
-                        ed::describe(*shape), ed::describe(component.species.shape)));
+            fmt::format("{}: body {:.17g} is {}, in the config {}; accepted: the same, or no shape in the config", file,
+                        from.id, ed::describe(*shape), ed::describe(component.species.shape)));
       }
       if (!axes->isIdentity(0)) body.rotation = from.rotation * *axes;
     }
     system.species.push_back(component.species);
   }
   return system;
-}
-
-/// Maxwell's, of kT = 1.
-void draw_velocities(ed::System& system, std::uint64_t seed) {
-  ed::Random random(seed);
-  for (int i = 0; i < system.size(); ++i) {
-    const ed::Species& species = system.species_of(i);
-    ed::Body& body = system.bodies[static_cast<std::size_t>(i)];
-    body.velocity = random.normal3() / std::sqrt(species.mass);
-    body.angular_velocity = body.rotation * random.normal3().cwiseQuotient(species.inertia.cwiseSqrt());
-  }
-}
-
-/// Whether every degree of freedom that should have energy has some, that of the bodies as a whole left out.
-bool moves(const ed::System& system) {
-  constexpr double kRounding = 1e-12;
-  const ed::KineticState now = ed::kinetic_state(system);
-  double mass = 0;
-  for (int i = 0; i < system.size(); ++i) mass += system.species_of(i).mass;
-  const double of_the_whole = 0.5 * now.momentum.squaredNorm() / mass;
-  return now.translational_energy - of_the_whole > kRounding * now.translational_energy &&
-         (now.rotational_freedoms == 0 || now.rotational_energy > 0) && (now.spin_freedoms == 0 || now.spin_energy > 0);
-}
-
-/// Whether the same velocities have the same energy; moments that two formulas give for one body differ by rounding.
-bool move_alike(const ed::Species& a, const ed::Species& b) {
-  constexpr double kRounding = 1e-12;
-  return a.spins == b.spins && std::abs(a.mass - b.mass) <= kRounding * b.mass &&
-         (a.inertia - b.inertia).cwiseAbs().maxCoeff() <= kRounding * b.inertia.maxCoeff();
-}
-
-/// Where they come from, for the report.
-std::string set_velocities(ed::System& system, const Config& config, const Frame& frame,
-                           const std::vector<std::size_t>& order) {
-  bool same = frame.exact.has_value();
-  for (std::size_t k = 0; k < order.size(); ++k) {
-    const FrameBody& from = frame.bodies[order[k]];
-    system.bodies[k].velocity = from.velocity;
-    system.bodies[k].angular_velocity = from.angular_velocity;
-    same = same && move_alike(frame.exact->species[from.type], system.species_of(static_cast<int>(k)));
-  }
-  if (!std::isfinite(ed::kinetic_state(system).energy())) {
-    throw InputError(fmt::format("{}: its velocities are too large for kinetic energies; accepted: finite ones",
-                                 config.start_file->file));
-  }
-  if (same) return "velocities as they are";
-  const bool drawn = !moves(system);
-  if (drawn) draw_velocities(system, static_cast<std::uint64_t>(config.seed));
-  ed::rescale_velocities(system);
-  return drawn ? "velocities drawn" : "velocities rescaled to kT = 1";
 }
 
 bool overlaps(const ed::Audit& audit) {
@@ -279,7 +228,7 @@ std::optional<double> mending_factor(const ed::System& system) {
 std::string overlap_text(const ed::Audit& audit, const std::vector<double>& ids) {
   if (audit.overlaps == 0)
     return fmt::format("{} pairs of bodies are too deep in each other for a distance", audit.unanswered);
-  return fmt::format("{} pairs of bodies overlap, the worst by {:.3g} (bodies {} and {} of the file)",
+  return fmt::format("{} pairs of bodies overlap, the worst by {:.3g} (bodies {:.17g} and {:.17g} of the file)",
                      audit.overlaps + audit.unanswered, -audit.minimum_distance,
                      ids[static_cast<std::size_t>(audit.closest_i)], ids[static_cast<std::size_t>(audit.closest_j)]);
 }
@@ -335,7 +284,7 @@ std::optional<StartFile> read_start_file(const TomlDocument& document) {
     if (const Entry* entry = document.find(key)) throw bad(*entry, "no such key beside start.file");
   }
   StartFile start;
-  start.file = std::filesystem::absolute(file->value.text).lexically_normal().string();
+  start.file = absolute_path(file->value.text).string();
   if (const Entry* frame = document.find("start.frame")) {
     if (frame->value.kind != Value::Kind::integer || frame->value.integer < 0)
       throw bad(*frame, "an integer, at least 0");

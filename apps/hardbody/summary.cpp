@@ -62,8 +62,8 @@ Json counters(const ed::Counters& c) {
           {"parting_contacts", c.parting_contacts}};
 }
 
-Json axes(const std::array<ed::Estimate, 3>& estimates) {
-  return {estimate_json(estimates[0]), estimate_json(estimates[1]), estimate_json(estimates[2])};
+Json axes(const std::array<ed::Estimate, 3>& estimates, const MissingWords& words) {
+  return {estimate_json(estimates[0], words), estimate_json(estimates[1], words), estimate_json(estimates[2], words)};
 }
 
 Json matrix_json(const Eigen::Matrix3d& m) {
@@ -72,14 +72,16 @@ Json matrix_json(const Eigen::Matrix3d& m) {
   return rows;
 }
 
-/// null where nothing is known.
-Json director(const ed::Director& d) {
-  return {{"value", d.axis.allFinite() ? list_json(d.axis) : Json(nullptr)}, {"error", number_json(d.error)}};
+/// Director with S, whose reason it has where it is missing.
+Json director(const ed::Director& d, const ed::Estimate& S, const MissingWords& words) {
+  if (!d.axis.allFinite()) return estimate_json(ed::Estimate::none(S.missing), words);
+  return {{"value", list_json(d.axis)}, {"error", number_json(d.error)}};
 }
-Json pressure(const ed::TensorEstimate& P) {
-  const bool known = P.value.allFinite();
-  return {{"value", known ? matrix_json(P.value) : Json(nullptr)},
-          {"error", known ? matrix_json(P.error) : Json(nullptr)}};
+
+/// Pressure tensor with Z, whose reason it has where it is missing.
+Json pressure(const ed::TensorEstimate& P, const ed::Estimate& Z, const MissingWords& words) {
+  if (!P.value.allFinite()) return estimate_json(ed::Estimate::none(Z.missing), words);
+  return {{"value", matrix_json(P.value)}, {"error", matrix_json(P.error)}};
 }
 
 Json window(const ed::FitWindow& w) {
@@ -92,47 +94,47 @@ Json fit_windows(const ed::Correlations& r) {
 }
 
 /// Of bodies without an axis of revolution: about body x, y, z.
-void add_axes(Json& json, const ed::GroupResults& r) {
-  json["kT_axes"] = axes(r.axis_kT);
-  json["D_rot_axes"] = axes(r.D_rot_axis);
-  json["t_C2_1overe_axes"] = axes(r.t_C2_1overe_axis);
+void add_axes(Json& json, const ed::GroupResults& r, const MissingWords& words) {
+  json["kT_axes"] = axes(r.axis_kT, words);
+  json["D_rot_axes"] = axes(r.D_rot_axis, words);
+  json["t_C2_1overe_axes"] = axes(r.t_C2_1overe_axis, words);
 }
 
 /// What is measured of all bodies and of those of a species alike.
 template <class Measured>
-void add_measured(Json& json, const Measured& r) {
-  json["D_trans"] = estimate_json(r.D_trans);
-  json["D_rot"] = estimate_json(r.D_rot);
-  json["D_rot_body"] = estimate_json(r.D_rot_body);
-  json["S"] = estimate_json(r.S);
-  json["director"] = director(r.director);
-  json["tau_C2"] = estimate_json(r.tau_C2);
-  json["beta_C2"] = estimate_json(r.beta_C2);
-  json["t_C2_1overe"] = estimate_json(r.t_C2_1overe);
-  json["tau_F"] = estimate_json(r.tau_F);
-  json["beta_F"] = estimate_json(r.beta_F);
-  json["t_F_1overe"] = estimate_json(r.t_F_1overe);
-  json["q_peak"] = estimate_json(r.q_peak);
-  json["S_peak"] = estimate_json(r.S_peak);
-  json["kT_trans"] = estimate_json(r.translational_kT);
-  json["kT_rot"] = estimate_json(r.rotational_kT);
+void add_measured(Json& json, const Measured& r, const MissingWords& words) {
+  json["D_trans"] = estimate_json(r.D_trans, words);
+  json["D_rot"] = estimate_json(r.D_rot, words);
+  json["D_rot_body"] = estimate_json(r.D_rot_body, words);
+  json["S"] = estimate_json(r.S, words);
+  json["director"] = director(r.director, r.S, words);
+  json["tau_C2"] = estimate_json(r.tau_C2, words);
+  json["beta_C2"] = estimate_json(r.beta_C2, words);
+  json["t_C2_1overe"] = estimate_json(r.t_C2_1overe, words);
+  json["tau_F"] = estimate_json(r.tau_F, words);
+  json["beta_F"] = estimate_json(r.beta_F, words);
+  json["t_F_1overe"] = estimate_json(r.t_F_1overe, words);
+  json["q_peak"] = estimate_json(r.q_peak, words);
+  json["S_peak"] = estimate_json(r.S_peak, words);
+  json["kT_trans"] = estimate_json(r.translational_kT, words);
+  json["kT_rot"] = estimate_json(r.rotational_kT, words);
 }
 
-Json observables(const ed::Results& r, const Config& config) {
-  Json json = {{"collision_rate", estimate_json(r.collision_rate)},
-               {"Z", estimate_json(r.Z)},
-               {"pressure_tensor", pressure(r.pressure)}};
-  add_measured(json, r);
+Json observables(const ed::Results& r, const Config& config, const MissingWords& words) {
+  Json json = {{"collision_rate", estimate_json(r.collision_rate, words)},
+               {"Z", estimate_json(r.Z, words)},
+               {"pressure_tensor", pressure(r.pressure, r.Z, words)}};
+  add_measured(json, r, words);
   if (!config.mixture && !config.all_of_revolution())
-    add_axes(json, r.groups.empty() ? ed::GroupResults{} : r.groups[0]);
+    add_axes(json, r.groups.empty() ? ed::GroupResults{} : r.groups[0], words);
   return json;
 }
 
 /// Of one species of a mixture.
-Json observables(const ed::GroupResults& r, const SpeciesConfig& species) {
-  Json json = {{"collision_rate", estimate_json(r.collision_rate)}};
-  add_measured(json, r);
-  if (species.rotation_axes() == 3) add_axes(json, r);
+Json observables(const ed::GroupResults& r, const SpeciesConfig& species, const MissingWords& words) {
+  Json json = {{"collision_rate", estimate_json(r.collision_rate, words)}};
+  add_measured(json, r, words);
+  if (species.rotation_axes() == 3) add_axes(json, r, words);
   return json;
 }
 
@@ -169,7 +171,7 @@ Json sizes(const SpeciesConfig& species) {
           {"standard_deviation", drawn.deviation}, {"smallest", drawn.smallest}, {"largest", drawn.largest}};
 }
 
-Json species_list(const Config& config, const ed::Results& results) {
+Json species_list(const Config& config, const ed::Results& results, const MissingWords& words) {
   Json all = Json::array();
   for (std::size_t k = 0; k < config.species.size(); ++k) {
     const SpeciesConfig& species = config.species[k];
@@ -180,7 +182,7 @@ Json species_list(const Config& config, const ed::Results& results) {
     json["spins"] = species.body.spins;
     json["sizes"] = sizes(species);
     const ed::GroupResults group = k < results.groups.size() ? results.groups[k] : ed::GroupResults{};
-    json["observables"] = observables(group, species);
+    json["observables"] = observables(group, species, words);
     json["fit_windows"] = fit_windows(group);
     all.push_back(std::move(json));
   }
@@ -211,6 +213,7 @@ Json performance(const RunRecord& record) {
 std::string summary_json(const RunRecord& record) {
   const Config& config = record.config;
   const Production& production = record.production;
+  const MissingWords words = missing_words(record);
   Json json;
   json["version"] = version();
   json["seed"] = config.seed;
@@ -224,10 +227,10 @@ std::string summary_json(const RunRecord& record) {
   json["audit"] = {{"minimum_distance", number_json(record.audit.minimum_distance)},
                    {"energy_relative_drift", number_json(record.energy_relative_drift)},
                    {"momentum_drift", number_json(record.momentum_drift)}};
-  json["observables"] = observables(production.results, config);
+  json["observables"] = observables(production.results, config, words);
   json["fit_windows"] = fit_windows(production.results);
   json["wave_numbers"] = production.wave_numbers;
-  if (config.mixture) json["species"] = species_list(config, production.results);
+  if (config.mixture) json["species"] = species_list(config, production.results, words);
   json["equilibrated"] = record.equilibration.reached();
   json["equilibration"] = equilibration(record.equilibration.relaxation);
   if (config.target_error) {

@@ -6,7 +6,7 @@
 
 namespace hardbody {
 
-/// summary.json: observables that the run was too short for are null, never NaN.
+/// summary.json: observables without a value are null, never NaN, and say why.
 std::string summary_json(const RunRecord& record);
 
 }  // namespace hardbody

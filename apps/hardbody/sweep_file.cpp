@@ -342,9 +342,12 @@ SweepFile read_sweep(const fs::path& path) {
 }
 
 TomlDocument moved(TomlDocument whole, const fs::path& from, const fs::path& to) {
-  const fs::path target = fs::absolute(to).lexically_normal();
-  return with_files(std::move(whole),
-                    [&](const fs::path& name) { return absolute_from(from, name).lexically_relative(target); });
+  // Behind a link ".." is the parent of its target: directories are compared as they are.
+  const fs::path target = fs::weakly_canonical(absolute_path(to));
+  return with_files(std::move(whole), [&](const fs::path& name) {
+    const fs::path file = absolute_from(from, name);
+    return (fs::weakly_canonical(file.parent_path()) / file.filename()).lexically_relative(target);
+  });
 }
 
 TomlDocument absolute_files(TomlDocument whole, const fs::path& directory) {

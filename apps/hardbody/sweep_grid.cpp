@@ -207,7 +207,7 @@ Value with_files(Value value, const std::function<fs::path(const fs::path&)>& re
 }
 
 fs::path absolute_from(const fs::path& directory, const fs::path& name) {
-  return fs::absolute(directory / name).lexically_normal();
+  return absolute_path(directory / name);
 }
 
 const Setting* SweepPoint::find(std::string_view key) const {

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <stdexcept>
 #include <string_view>
+#include <utility>
 
 namespace hardbody {
 namespace {
@@ -26,7 +27,8 @@ std::vector<PrintedEstimate> scalars_of(const Json& observables) {
   for (const auto& [name, estimate] : observables.items()) {
     const bool scalar = estimate.is_object() && estimate.contains("value") && estimate.contains("error") &&
                         !estimate["value"].is_array() && name != "director" && name != "pressure_tensor";
-    if (scalar) list.push_back({name, printed(estimate["value"]), printed(estimate["error"])});
+    if (!scalar) continue;
+    list.push_back({name, printed(estimate["value"]), printed(estimate["error"]), estimate.value("missing", "")});
   }
   return list;
 }
@@ -108,6 +110,24 @@ std::string header(const std::vector<std::string>& keys, const std::vector<std::
   return text + ",equilibrated,status,message,wall_seconds,collisions_per_second\n";
 }
 
+/// "D_trans: bodies have moved ..; D_rot, D_rot_body: ..": names that share a reason stand together.
+std::string missing_text(const std::vector<PrintedEstimate>& observables) {
+  std::vector<std::pair<std::string, std::string>> reasons;  // names, reason
+  for (const PrintedEstimate& e : observables) {
+    if (e.missing.empty()) continue;
+    const auto same = [&](const auto& r) { return r.second == e.missing; };
+    const auto found = std::find_if(reasons.begin(), reasons.end(), same);
+    if (found == reasons.end()) {
+      reasons.emplace_back(e.name, e.missing);
+    } else {
+      found->first += ", " + e.name;
+    }
+  }
+  std::string text;
+  for (const auto& [names, reason] : reasons) text += (text.empty() ? "" : "; ") + names + ": " + reason;
+  return text;
+}
+
 std::string row(const PointRecord& record, const std::vector<std::string>& keys,
                 const std::vector<std::string>& names) {
   std::string text;
@@ -121,8 +141,9 @@ std::string row(const PointRecord& record, const std::vector<std::string>& keys,
     const bool known = found != results.observables.end();
     text += fmt::format(",{},{}", known ? found->value : "", known ? found->error : "");
   }
+  const std::string message = record.message.empty() ? missing_text(results.observables) : record.message;
   const char* equilibrated = !record.results ? "" : results.equilibrated ? "true" : "false";
-  return text + fmt::format(",{},{},{},{},{}\n", equilibrated, to_string(record.status), field(record.message),
+  return text + fmt::format(",{},{},{},{},{}\n", equilibrated, to_string(record.status), field(message),
                             results.wall_seconds, results.collisions_per_second);
 }
 

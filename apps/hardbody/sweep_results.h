@@ -22,6 +22,7 @@ struct PrintedEstimate {
   std::string name;
   std::string value;
   std::string error;
+  std::string missing{};  ///< why there is no value
 };
 
 /// Of a run that is over, from its summary.json.
@@ -52,7 +53,8 @@ std::optional<PointResults> finished_results(const std::filesystem::path& direct
 /// The point's state.json.
 std::string state_json(const PointRecord& record);
 
-/// One row a point, in the order of the grid; columns of timing last. Observables are those of all points.
+/// One row a point, in the order of the grid; columns of timing last. Observables are those of all points. The message
+/// of a point that is done says which values are missing, and why.
 std::string sweep_csv(const std::vector<PointRecord>& records);
 
 }  // namespace hardbody

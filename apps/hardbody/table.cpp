@@ -1,5 +1,6 @@
 #include "table.h"
 
+#include "missing.h"
 #include "run_directory.h"
 #include "version.h"
 
@@ -22,9 +23,10 @@ int decimals_of(double error) {
   return std::clamp(1 - static_cast<int>(std::floor(std::log10(error))), 0, 12);
 }
 
-/// A line of the table.
+/// A line of the table; without a value, the reason.
 std::string number_line(const std::string& name, const ed::Estimate& value, const char* unit,
                         const std::string& meaning) {
+  if (!std::isfinite(value.value)) return fmt::format("  {:<15} - ({})\n", name, ed::describe(value.missing));
   return fmt::format("  {:<15} {:<22} {:<14} {}\n", name, format_estimate(value), unit, meaning);
 }
 
@@ -140,6 +142,14 @@ std::string species_numbers(const RunRecord& record) {
   return text;
 }
 
+/// What would help where values are missing because lags are too short; empty where none is.
+std::string longer_lags_line(const RunRecord& record) {
+  const ed::Results& r = record.production.results;
+  const bool help = longer_lags_help(r) || std::any_of(r.groups.begin(), r.groups.end(),
+                                                       [](const auto& group) { return longer_lags_help(group); });
+  return help ? fmt::format("  (longer lags: {})\n", missing_words(record).longer_lags) : "";
+}
+
 std::string numbers(const RunRecord& record) {
   const ed::Results& r = record.production.results;
   const Config& config = record.config;
@@ -153,7 +163,7 @@ std::string numbers(const RunRecord& record) {
       temperature_lines(r.translational_kT, r.rotational_kT, "on 3N - 3 degrees of freedom",
                         fmt::format("on {}", freedoms_text(std::lround(rotation_axes), config.number)));
   if (!config.mixture && !config.all_of_revolution() && !r.groups.empty()) text += axis_lines(r.groups[0]);
-  return text + species_numbers(record) + "  (+- one standard error, from blocks; -: the run is too short for it)\n";
+  return text + species_numbers(record) + "  (+- one standard error, from blocks)\n" + longer_lags_line(record);
 }
 
 /// Empty for a run without rescues.

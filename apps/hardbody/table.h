@@ -10,7 +10,7 @@
 namespace hardbody {
 
 /// "0.2887 +- 0.0018": the error with two significant digits, the value with as many decimals; "-" for a
-/// value that the run was too short for.
+/// missing value.
 std::string format_estimate(const ed::Estimate& estimate);
 
 /// "2N", "3N", or the number itself.

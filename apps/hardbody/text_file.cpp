@@ -96,6 +96,22 @@ void flush_names(const fs::path& directory) {
 
 }  // namespace
 
+fs::path absolute_path(const fs::path& path) {
+  const fs::path whole = fs::absolute(path);
+  fs::path result = whole.root_path();
+  std::error_code ignored;
+  for (const fs::path& name : whole.relative_path()) {
+    if (name.empty() || name == ".") continue;
+    if (name != "..") {
+      result /= name;
+      continue;
+    }
+    if (fs::is_symlink(fs::symlink_status(result, ignored))) result = fs::weakly_canonical(result);
+    result = result.parent_path();
+  }
+  return result;
+}
+
 WriteError::WriteError(const fs::path& path, int error)
     : std::runtime_error(fmt::format("{}: cannot be written: {}", path.string(), std::strerror(error))),
       no_room_(error == ENOSPC || error == EDQUOT || error == EFBIG) {}

@@ -21,6 +21,10 @@ class WriteError : public std::runtime_error {
   bool no_room_;
 };
 
+/// Absolute name of the same file, without "." and "..". As to the system, ".." behind a symbolic link to a directory
+/// is the parent of that directory; other links stay in the name.
+std::filesystem::path absolute_path(const std::filesystem::path& path);
+
 /// The whole file, which must be a regular one: of a pipe nobody knows how long it makes one wait. Throws InputError if
 /// it cannot be read or is longer than `limit` bytes.
 std::string read_file(const std::filesystem::path& path, std::size_t limit);

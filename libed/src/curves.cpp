@@ -109,11 +109,11 @@ std::string describe(const Missing& missing, std::string_view length_unit) {
   };
   switch (missing.reason) {
     case MissingReason::not_measured:
-      return "the run is too short: nothing has been measured";
+      return "too little has been measured";
     case MissingReason::no_collisions:
       return "no body has met another";
     case MissingReason::lags_too_short:
-      return "the run has not reached the longest lag";
+      return "nothing has been followed up to the longest lag";
     case MissingReason::ballistic:
       return "motion is still ballistic at the longest lag";
     case MissingReason::not_displaced:

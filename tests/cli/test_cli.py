@@ -227,9 +227,15 @@ class Run(Case):
         self.assertLess(abs(audit["energy_relative_drift"]), 1e-11)
         self.assertLess(abs(audit["momentum_drift"]), 1e-11)
         for key in OBSERVABLES:
-            self.assertEqual(sorted(summary["observables"][key]), ["error", "value"], key)
-        # Far too short for the diffusion: null, not a number made up.
-        self.assertIsNone(summary["observables"]["D_trans"]["value"])
+            estimate = summary["observables"][key]
+            reason = ["missing"] if estimate["value"] is None else []
+            self.assertEqual(sorted(estimate), sorted(["error", "value"] + reason), key)
+        # Far too short for the diffusion: null, not a number made up, and the reason.
+        self.assertEqual(summary["observables"]["D_trans"],
+                         {"value": None, "error": None,
+                          "missing": "motion is still ballistic at the longest lag; a longer run helps"})
+        self.assertRegex(summary["observables"]["t_C2_1overe"]["missing"],
+                         r"^still 0\.\d+ at the longest lag: not down to 1/e; a longer run helps$")
         self.assertFalse(summary["interrupted"])
         tensor = summary["observables"]["pressure_tensor"]
         self.assertEqual([len(row) for row in tensor["value"] + tensor["error"]], [3] * 6)
@@ -335,6 +341,27 @@ class Run(Case):
         self.assertLessEqual(D_trans["error"], 0.1 * D_trans["value"])
         self.assertLess(summary["time"]["production"], 1000)
         self.assertIn("no D_rot at lags up to", self.read("out/log.txt"))
+
+    def test_numbers_only_where_their_definition_holds(self):
+        """Caged spheres, whose MSD has the slope 1 on its way to the cage; a fluid whose motion is diffusive."""
+        caged = ["--set", "shape.aspect_ratio=1", "--set", "system.packing_fraction=0.55", "--set", "production.time=7"]
+        result = self.run_small("caged", *caged)
+        observables = self.summary("caged")["observables"]
+        self.assertIsNone(observables["D_trans"]["value"])
+        self.assertRegex(observables["D_trans"]["missing"],
+                         r"^bodies have moved 0\.\d+ l within the longest lag: no diffusion yet; a longer run helps$")
+        self.assertRegex(result.stdout, r"  D_trans         - \(bodies have moved 0\.\d+ l within the longest lag: no diffusion yet\)\n")
+        self.assertIn("  (longer lags: a longer run helps)\n", result.stdout)
+        for key in ["D_rot", "D_rot_body", "tau_C2", "beta_C2"]:
+            self.assertEqual(observables[key], {"value": None, "error": None, "missing": "meaningless: nothing turns these bodies"})
+        self.assertIsNotNone(observables["t_C2_1overe"]["value"])
+        self.assertLessEqual(max(len(line) for line in result.stdout.splitlines()), 120)
+        fluid = ["--set", "shape.aspect_ratio=3", "--set", "system.packing_fraction=0.4", "--set", "production.time=100"]
+        result = self.run_small("fluid", *fluid)
+        for key in ["D_trans", "D_rot", "D_rot_body", "t_C2_1overe", "t_F_1overe"]:
+            estimate = self.summary("fluid")["observables"][key]
+            self.assertEqual(sorted(estimate), ["error", "value"], key)
+            self.assertGreater(estimate["value"], 0, key)
 
     def test_wave_numbers(self):
         self.run_small("out", "--set", "production.wave_numbers=[1.5, 3]")

@@ -103,6 +103,11 @@ class Grids(SweepCase):
             estimate = alone["observables"][key]
             self.assertEqual((rows[-1][key], rows[-1][key + "_error"]), (repr(estimate["value"]), repr(estimate["error"])))
         self.assertEqual(rows[-1]["equilibrated"], str(alone["equilibrated"]).lower())
+        # Which values are missing, and why.
+        self.assertEqual(rows[-1]["D_trans"], "")
+        self.assertIn("D_trans", rows[-1]["message"])
+        for key in ["D_trans", "D_rot", "tau_C2"]:
+            self.assertIn(f': {alone["observables"][key]["missing"]}', rows[-1]["message"])
         self.assertEqual(float(rows[-1]["production_time"]), 5)
         state = self.state(name)
         self.assertEqual(state["keys"], {"shape.aspect_ratio": 2, "system.packing_fraction": 0.2})

@@ -214,7 +214,8 @@ class OtherPrograms(Trajectories):
             self.assertEqual(len(lines), 6 * (n + 9))
             names = lines[8].split()[2:]
             self.assertEqual(names, "id type x y z quatw quati quatj quatk shapex shapey shapez "
-                             "SuperquadricRoundness.Phi SuperquadricRoundness.Theta".split())
+                             "SuperquadricRoundness.Phi SuperquadricRoundness.Theta ix iy iz".split())
+            images = numpy.array([f.particles.image for f in exact.frames])
             for k in range(6):
                 rows = numpy.array([[float(x) for x in line.split()] for line in lines[k * (n + 9) + 9:(k + 1) * (n + 9)]])
                 numpy.testing.assert_array_equal(rows[:, 0], numpy.arange(n) + 1)
@@ -224,6 +225,7 @@ class OtherPrograms(Trajectories):
                 species = exact.species[exact.frames[k].particles.typeid]
                 numpy.testing.assert_array_equal(rows[:, 9:12], 2 * species[:, 1:4])
                 numpy.testing.assert_array_equal(rows[:, 12:14], species[:, [5, 4]])
+                numpy.testing.assert_array_equal(rows[:, 14:], images[k])
 
     def test_vtk(self):
         for out, exact in self.families():
@@ -588,8 +590,8 @@ class StartsFromFiles(Trajectories):
 
         for what, text, *parts in [
             ("infinite box", dump(bounds="-1e308 1e308"), "its box has an edge of inf"),
-            ("far away", dump(x="1e17"), "a body is at 1e+17", "positions in the box"),
-            ("no number", dump(x="nan"), "a position is"),
+            ("far away", dump(x="1e17"), "body 1 is at 1e+17", "positions in the box"),
+            ("no number", dump(x="nan"), "x of body 1 is \"nan\""),
             ("many bodies", dump(count="2147483648"), "has no whole frame"),
             ("not periodic", dump().replace("BOUNDS pp pp pp", "BOUNDS pp ff pp"), "boundaries ff", "pp pp pp"),
             ("one id twice", dump(bodies=[bodies[1]] + bodies[1:]), "two bodies have the id 2"),
@@ -784,9 +786,10 @@ class CheckOfFiles(Trajectories):
             with open(self.path(name), "wb") as file:
                 file.write(bytes_)
             result = self.hardbody("check", name)
-            self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+            self.assertEqual(result.returncode, 0 if name == "shapes.gsd" else 1, result.stdout + result.stderr)
             self.assertIn("state to every bit         no", result.stdout)
-            self.assertIn("overlaps                   " + ("0" if name == "shapes.gsd" else "not looked for"), result.stdout)
+            last = result.stdout.splitlines()[-1]
+            self.assertEqual(last[:26], "sound" if name == "shapes.gsd" else "not looked at: overlaps: b")
 
 
 class Analyze(Trajectories):
@@ -915,7 +918,8 @@ class Analyze(Trajectories):
         self.run_with("out", SMALL, ALL.replace("6", "41"))
         arguments = ["analyze", "out", "--out", "other", "--every", "2", "--longest-lag", "1"]
         self.assertEqual(self.hardbody(*arguments).returncode, 0)
-        self.assertEqual(self.analysis("other")["frames"], {"read": 21, "used": 21})
+        self.assertEqual(self.analysis("other")["frames"],
+                         {"in_file": 41, "without_positions": 0, "read": 21, "used": 21, "first_used": 0})
         self.assertAlmostEqual(self.rows("other/msd.csv")["t"][-1], 1)
         self.assert_refused(self.hardbody("analyze", "none"), "none: cannot be read: No such file")
         os.makedirs(self.path("empty"))
@@ -936,8 +940,8 @@ class Analyze(Trajectories):
             numpy.testing.assert_allclose(lammps[column], gsd[column], rtol=1e-9, atol=1e-12, err_msg=column)
 
     def test_without_orientations(self):
-        """A dump without their columns, a GSD file without orientations of bodies of unknown shape: C2 and S have no
-        value; of spheroids such a file says that they are aligned."""
+        """A dump without their columns, a GSD file without orientations: C2 and S have no value. A single frame of
+        spheroids is as the schema has it: they are aligned."""
         def nothing(name):
             observables = self.analysis(name)["observables"]
             for key in ["S", "tau_C2", "t_C2_1overe"]:
@@ -964,6 +968,9 @@ class Analyze(Trajectories):
             file.write(content)
         result = self.hardbody("analyze", "aligned.gsd", "--time-step", step, "--out", "aligned")
         self.assertEqual(result.returncode, 0, result.stderr)
+        nothing("aligned")
+        self.assertIn("orientations: known in 1 of 31 frames, not used", result.stdout)
+        self.assertEqual(self.hardbody("analyze", "aligned.gsd", "--time-step", step, "--out", "aligned", "--every", "31").returncode, 0)
         numpy.testing.assert_allclose(self.rows("aligned/order.csv")["S"], 1)
         with open(self.path("points.gsd"), "wb") as file:
             file.write(content.replace(b"particles/type_shapes", b"Xarticles/type_shapes"))
@@ -998,7 +1005,8 @@ class Analyze(Trajectories):
         self.run_with("out", SMALL.replace("time = 5\n", "time = 0\n"))
         result = self.hardbody("analyze", "out")
         self.assertEqual(result.returncode, 0, result.stderr)
-        self.assertEqual(self.analysis("out/analysis")["frames"], {"read": 1, "used": 1})
+        self.assertEqual(self.analysis("out/analysis")["frames"],
+                         {"in_file": 1, "without_positions": 0, "read": 1, "used": 1, "first_used": 0})
         self.assertGreater(self.rows("out/analysis/g_r.csv")["g"].max(), 0)
 
 

@@ -1,7 +1,7 @@
 #pragma once
 
-/// What both readers of trajectories must do with any bytes: refuse them with one line, or read every frame (or refuse
-/// it) with finite numbers.
+/// Duty of both readers of trajectories with any bytes: refuse them with one line, or read every frame (or refuse it)
+/// with finite numbers, and with none where the file gives none.
 
 #include "errors.h"
 #include "frame.h"
@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <string>
 #include <string_view>
 
 namespace fuzz {
@@ -25,9 +26,18 @@ inline void check_frame(const hardbody::Frame& frame) {
   require(frame.box.allFinite() && frame.box.minCoeff() > 0, "a box has edges");
   for (const hardbody::FrameBody& body : frame.bodies) {
     require(body.position.allFinite() && body.unwrapped.allFinite(), "positions are finite");
-    require((body.position.cwiseAbs() - 0.5000001 * frame.box).maxCoeff() <= 0, "positions are in the box");
+    require(!frame.tilt.isZero(0) || (body.position.cwiseAbs() - 0.5000001 * frame.box).maxCoeff() <= 0,
+            "positions are in the box");
     require(body.rotation.allFinite() && body.velocity.allFinite(), "rotations and velocities are finite");
+    require(body.angular_velocity.allFinite(), "angular velocities are finite");
+    require(frame.orientations || body.rotation.isIdentity(0), "no rotation where none is known");
+    require(frame.velocities || body.velocity.isZero(0), "no velocity where none is known");
+    require(frame.angular_velocities || body.angular_velocity.isZero(0), "no angular velocity where none is known");
     require(body.type < frame.types.size(), "a body's type is there");
+  }
+  require(frame.images == !frame.unwrapped_by.empty(), "unwrapped positions have a source");
+  for (const std::string& notice : frame.notices) {
+    require(notice.find('\n') == std::string::npos, "a notice is one line");
   }
   if (frame.exact) require(frame.exact->bodies.size() == frame.bodies.size(), "the state is of all bodies");
 }
@@ -41,14 +51,19 @@ void refused_or_read(const Read& read) {
   }
 }
 
-/// `open` makes the reader.
-template <class Open>
-void read_all(const Open& open) {
+/// `open` makes the reader; `also(frame, k)` looks at each frame too.
+template <class Open, class Also>
+void read_all(const Open& open, const Also& also) {
   constexpr std::uint64_t kMostFrames = 8;  // enough of those that repeat the first one
   refused_or_read([&] {
     const auto reader = open();
     for (std::uint64_t k = 0; k < std::min(reader.frame_count(), kMostFrames); ++k) {
-      refused_or_read([&] { check_frame(reader.read(k)); });
+      refused_or_read([&] {
+        const hardbody::Frame frame = reader.read(k);
+        require(reader.has_positions(k), "a frame that is read has positions");
+        check_frame(frame);
+        also(frame, k);
+      });
     }
   });
 }

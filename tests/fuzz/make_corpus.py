@@ -66,7 +66,8 @@ def gsd_files():
         limit = 2000 if k % 2 else 2**16
         places = [draws.randrange(limit) for _ in range(k % 8 + 1)]
         changes = b"".join(struct.pack(">HB", place, draws.choice([0, 1, 127, 128, 255])) for place in places)
-        yield bytes([k % 3 + 1]) + changes
+        yield b"\1" + changes
+        yield b"\2" + changes
 
 
 def dumps():
@@ -96,6 +97,17 @@ def dumps():
     yield dump(bounds=("10 0 0 -5", "0 10 0 -5", "0 0 10 -5"), flags="abc origin pp pp pp")
     yield dump(frames=2, head=["ITEM: UNITS", "lj", "ITEM: TIME", "0.5"])
     yield dump(frames=2, flags="")
+    for names in ["id type x y z ix iy iz", "id type xsu ysu zsu radius", "type x y z xu yu zu", "id x ys zu iy diameter mass",
+                  "id type x y z omegax omegay omegaz", "id x y z c_orient[1] c_orient[2] block1 block2",
+                  columns.replace("vx vy vz", "angmomx angmomy angmomz") + " mass", "id x y z shapex shapey shapez"]:
+        rows = [" ".join([str(k + 1), "1"] + ["1"] * (len(names.split()) - 2)) for k in range(2)]
+        if "quatw" in names:
+            rows = [f"{k + 1} 1 1 0 0 1.0005 0 0 0 1 1 2 0.5 0.5 1 0 0 2" for k in range(2)]
+        for head, tilt in [("", ""), (" xy xz yz", " 0"), (" xy xz yz", " 1"), (" abc origin", None)]:
+            text = dump(names=names).replace("BOUNDS", "BOUNDS" + head)
+            bounds = ["-5 5" + (tilt or "")] * 3 if tilt is not None else ["9 0 0 -5", "0 9 0 -5", "0 0 9 -5"]
+            begin, rest = text.split("-5 5\n" * 3)
+            yield begin + "\n".join(bounds) + "\n" + rest.split("\n")[0] + "\n" + "\n".join(rows) + "\n"
     yield dump()[:200]
     for count in ["2147483648", "-1", "0", "nan", "1e300", "2.5", ""]:
         yield dump(count=count)

@@ -498,14 +498,15 @@ class OtherRuns(Case):
         self.assertEqual(len([name for name in msd if "MSD" in name]), 3)
         self.assert_silent(browser)
 
-    def test_too_short_is_said(self):
+    def test_why_values_are_missing_is_said(self):
         directory = self.run_of("superballs", SUPERBALLS)
-        self.assertIsNone(json.loads((directory / "summary.json").read_text())["observables"]["D_trans"]["value"])
+        observables = summary_of(directory)["observables"]
         self.report(directory)
         browser = self.open(directory / "report.html")
-        self.assertEqual(browser.run("""return document.querySelector('[data-key="D_trans"] dd .none').textContent"""), "too short")
-        self.assertIsNone(json.loads((directory / "summary.json").read_text())["observables"]["tau_C2"]["value"])
-        self.assertEqual(browser.run("""return document.querySelector('[data-key="tau_C2"] dd .none').textContent"""), "no fit")
+        for key in ("D_trans", "tau_C2"):
+            self.assertIsNone(observables[key]["value"])
+            shown = browser.run(f"""return document.querySelector('[data-key="{key}"] dd .none').textContent""")
+            self.assertEqual(shown, observables[key]["missing"])
         self.assertNotIn("NaN", browser.run("return document.body.textContent.split('window.')[0]"))
 
     def test_unfinished(self):
@@ -713,12 +714,14 @@ class Sweep(Case):
         subprocess.run([HARDBODY, "sweep", self.here / "real.toml", "--out", self.here / "real"], check=True, capture_output=True)
         self.report(self.here / "real")
         browser = self.open(self.here / "real" / "report.html")
-        # D_trans is what the runs are too short for: something else is shown.
+        # The runs have no D_trans: something else is shown, and the reason beside the point.
         self.assertEqual(browser.run("return [window.hardbodyReport.map.points, window.hardbodyReport.map.known]"), [4, 4])
         embedded = "return window.hardbodyReport.page.sweep.sweep.points.map((p) => p.embedded)"
         self.assertEqual(browser.run(embedded), [True] * 4)
         browser.run("window.hardbodyReport.page.sweep.showPoint(1)")
         self.assertIn("packing fraction 0.2", browser.run("return document.querySelector('#plots h2').textContent"))
+        reason = browser.run("return document.querySelector('.results [data-key=\"D_trans\"] dd .none').textContent")
+        self.assertRegex(reason, "at the longest lag|within the longest lag")
         self.assert_silent(browser)
 
     def test_one_key(self):

@@ -150,6 +150,60 @@ TEST(StoredFrames, OnlyFramesThatAreEquallyFarApartAreUsed) {
   EXPECT_EQ(ed::analyze_frames(flight.stored, options_of(kBodies)).frames, 9U);
 }
 
+TEST(StoredFrames, CorrelationsAreFromTheLongestEvenStretchAndStructureFromAllFrames) {
+  Flight flight(30);
+  // 0, 1 | 11, 12, .. 23 | 40, .. 54: two frames, thirteen of one distance, fifteen of half of it.
+  for (std::size_t k = 0; k < 30; ++k) {
+    const auto n = static_cast<double>(k);
+    flight.stored[k].time = k < 2 ? n : k < 15 ? 11 + 2 * n : 40 + n;
+  }
+  const ed::StoredResults results = ed::analyze_frames(flight.stored, options_of(kBodies));
+  EXPECT_EQ(results.first_frame, 15U);
+  EXPECT_EQ(results.frames, 15U);
+  EXPECT_EQ(results.lags.front().lag, 1);
+  const auto speed2 = [&](std::size_t i) { return std::pow(flight.speed(i) * kStep, 2); };
+  EXPECT_NEAR(results.lags.front().msd.value, flight.mean(speed2), kFrameRounding);
+  // Structure: that of the same frames at even times.
+  Flight even(30);
+  const ed::StoredResults all = ed::analyze_frames(even.stored, options_of(kBodies));
+  ASSERT_EQ(results.pairs.size(), all.pairs.size());
+  for (std::size_t k = 0; k < all.pairs.size(); ++k) {
+    EXPECT_NEAR(results.pairs[k].g.value, all.pairs[k].g.value, kFrameRounding);
+  }
+  EXPECT_NEAR(results.S.value, all.S.value, kFrameRounding);
+}
+
+TEST(StoredFrames, WrappedPositionsHaveNoDisplacements) {
+  const Flight flight(9);
+  ed::StoredFramesOptions options = options_of(kBodies);
+  options.unwrapped = false;
+  const ed::StoredResults results = ed::analyze_frames(flight.stored, options);
+  for (const ed::LagRow& row : results.lags) {
+    EXPECT_TRUE(std::isnan(row.msd.value));
+    EXPECT_TRUE(std::isnan(row.alpha2.value));
+    for (const ed::Estimate& f : row.f_self) EXPECT_TRUE(std::isnan(f.value));
+    EXPECT_TRUE(std::isfinite(row.c2.value));
+    EXPECT_TRUE(std::isfinite(row.vacf.value));
+  }
+  EXPECT_EQ(results.D_trans.missing.reason, ed::MissingReason::not_told);
+  EXPECT_TRUE(std::isfinite(results.S.value));
+}
+
+TEST(StoredFrames, BodiesThatCannotBeFollowedHaveNoCorrelations) {
+  const Flight flight(9);
+  ed::StoredFramesOptions options = options_of(kBodies);
+  options.same_bodies = false;
+  const ed::StoredResults results = ed::analyze_frames(flight.stored, options);
+  for (const ed::LagRow& row : results.lags) {
+    for (const ed::Estimate* e : {&row.msd, &row.alpha2, &row.c1, &row.c2, &row.vacf}) {
+      EXPECT_TRUE(std::isnan(e->value));
+    }
+  }
+  EXPECT_TRUE(std::isnan(results.t_C2_1overe.value));
+  EXPECT_TRUE(std::isfinite(results.S.value));
+  EXPECT_FALSE(results.structure.empty());
+}
+
 /// Bodies whose steps and turns from frame to frame are independent.
 std::vector<StoredFrame> walk(double D_trans, double D_rot, int bodies, int frames, std::uint64_t seed = 8) {
   ed::Random random(seed);

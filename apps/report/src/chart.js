@@ -113,7 +113,7 @@ export class Chart {
     const { data, errors } = series.length ? aligned(series, this.logX, this.logY) : { data: [[]], errors: [] };
     this.errors = errors;
     if (!data.slice(1).some((column) => column.some((y) => y !== null))) {
-      const text = series.length ? 'No positive value to draw on this axis.' : 'No values: the run is too short for this, or unfinished.';
+      const text = series.length ? 'No positive value to draw on this axis.' : 'No values: nothing, or too little, has been measured.';
       this.area.append(h('p', { class: 'none' }, text));
       this.legend.replaceChildren();
       return;

@@ -7,7 +7,7 @@ function decimalsOf(error) {
   return Math.min(12, Math.max(0, 1 - Math.floor(Math.log10(error))));
 }
 
-/** {value, error} as texts, the error with two significant digits; null for what the run was too short for. */
+/** {value, error} as texts, the error with two significant digits; null for a missing value. */
 export function estimate(value, error) {
   if (!finite(value)) return null;
   if (!finite(error)) return { value: short(value), error: '' };

@@ -288,7 +288,7 @@ export class SweepMap {
     if (!cell) return [where, 'no such point'];
     const text = estimate(cell.value, cell.error);
     if (text) return [where, `${this.title}: ${text.value}${text.error ? ` ± ${text.error}` : ''}`];
-    return [where, cell.status === 'done' ? 'no value' : `${cell.status}${cell.message ? `: ${cell.message}` : ''}`];
+    return [where, cell.status === 'done' ? cell.missing || 'no value' : `${cell.status}${cell.message ? `: ${cell.message}` : ''}`];
   }
 
   hover(cell) {

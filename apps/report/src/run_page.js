@@ -16,24 +16,22 @@ export function remarks(run, brief = false) {
     h('b', {}, r.label), ' ', r.kind === 'good' || (brief && r.kind !== 'bad') ? null : rich(r.text))));
 }
 
-const kTooShort = { text: 'too short', why: 'The run is too short for this value' };
-const kNoFit = { text: 'no fit', why: 'Too little of the decay is left to fit once motion is no longer ballistic, or the run is too short' };
-
 /** `missing`: what stands for a value of a run that has not been finished. */
 export function number(line, missing) {
   const text = line ? estimate(line.value, line.error) : null;
-  if (!text) {
-    const absent = /^(tau|beta)_/.test(line?.key) ? kNoFit : kTooShort;
-    return h('span', { class: 'none', title: absent.why }, missing ?? absent.text);
-  }
+  if (!text) return h('span', { class: 'none', title: line?.missing ?? '' }, missing ?? 'no value');
   return h('span', { class: 'number' }, h('b', {}, text.value), text.error ? h('span', { class: 'error' }, ` ± ${text.error}`) : null);
 }
 
 /** Numbers one below the other, as on a data sheet. */
 export function sheet(headlines, missing) {
-  return h('dl', { class: 'sheet' }, headlines.map((line) => h('div', { 'data-key': line.key, title: line.meaning },
-    h('dt', {}, symbol(line.symbol), h('span', { class: 'name' }, rich(line.name))),
-    h('dd', {}, number(line, missing), h('span', { class: 'unit' }, line.unit)))));
+  return h('dl', { class: 'sheet' }, headlines.map((line) => {
+    const name = h('dt', {}, symbol(line.symbol), h('span', { class: 'name' }, rich(line.name)));
+    const why = missing === undefined && !Number.isFinite(line.value) && line.missing;
+    const value = why ? h('dd', { class: 'why' }, h('span', { class: 'none' }, line.missing))
+      : h('dd', {}, number(line, missing), h('span', { class: 'unit' }, line.unit));
+    return h('div', { 'data-key': line.key, title: line.meaning }, name, value);
+  }));
 }
 
 const kFirst = ['Z', 'D_trans', 'D_rot', 'D_rot_body', 't_C2_1overe', 't_F_1overe', 'S', 'collision_rate', 'kT_trans', 'kT_rot'];

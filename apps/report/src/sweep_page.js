@@ -93,7 +93,8 @@ class SweepPage {
       const errors = known.map(([, e]) => e);
       const error = n && errors.every((e) => Number.isFinite(e)) ? Math.sqrt(errors.reduce((sum, e) => sum + e * e, 0)) / n : null;
       const worst = found.find(({ point }) => point.status !== 'done') ?? found[0];
-      this.cells.set(key, { value: mean, error, status: worst.point.status, message: worst.point.message, index: found[0].index });
+      const missing = worst.point.values[this.observable]?.[2];
+      this.cells.set(key, { value: mean, error, missing, status: worst.point.status, message: worst.point.message, index: found[0].index });
     }
     return this.cells.get(key);
   }
@@ -225,7 +226,7 @@ class SweepPage {
   showPoint(index) {
     const point = this.sweep.points[index];
     const run = point.embedded ? pointRun(index) : null;
-    const headlines = this.sweep.observables.map((o, k) => ({ ...o, value: point.values[k]?.[0] ?? null, error: point.values[k]?.[1] ?? null }));
+    const headlines = this.sweep.observables.map((o, k) => ({ ...o, value: point.values[k]?.[0] ?? null, error: point.values[k]?.[1] ?? null, missing: point.values[k]?.[2] }));
     const title = this.varied.map((k) => `${keyName(this.sweep.keys[k])} ${this.axes[k].text(point.keys[k])}`).join(', ');
     const notes = [];
     if (point.status !== 'done' || point.message) notes.push(h('p', { class: 'notice' }, `${point.status}${point.message ? `: ${point.message}` : ''}`));
@@ -303,7 +304,7 @@ class SweepPage {
       const open = () => { this.showPoint(k); document.getElementById('results').scrollIntoView(); };
       const cells = this.varied.map((axis, at) => h(at ? 'td' : 'th', at ? {} : { scope: 'row' },
         at ? this.axes[axis].text(point.keys[axis]) : h('button', { type: 'button', class: 'link', onclick: open }, this.axes[axis].text(point.keys[axis]))));
-      return h('tr', {}, cells, point.values.map(([value, error], at) => h('td', {}, number({ key: sweep.observables[at].key, value, error }, point.status === 'done' ? undefined : ''))),
+      return h('tr', {}, cells, point.values.map(([value, error, missing], at) => h('td', {}, number({ key: sweep.observables[at].key, value, error, missing }, point.status === 'done' ? undefined : ''))),
         h('td', { title: point.message }, point.status));
     }));
   }
