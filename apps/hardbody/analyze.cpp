@@ -175,13 +175,13 @@ void print_reading(const TrajectoryReader& reader, const StoredTrajectory& store
              reader.cut_off() ? kCutOff : "");
   const auto note = [](const std::string& text) { fmt::print("  note: {}\n", text); };
   if (stored.without_positions > 0) {
-    note(fmt::format("{} of {} frames in the file have no positions and are left out", stored.without_positions,
+    note(fmt::format("frames without positions are left out: {} of {} in the file", stored.without_positions,
                      stored.in_file));
   }
   if (results.frames < stored.frames.size()) {
     note(
-        fmt::format("S, g(r) and S(q) are from all frames, correlations from {} of them that are equally far apart in "
-                    "time, {:g} to {:g}",
+        fmt::format("S, g(r) and S(q) are from all frames, correlations from the longest even stretch, {} frames "
+                    "of times {:g} to {:g}",
                     results.frames, stored.frames[results.first_frame].time,
                     stored.frames[results.first_frame + results.frames - 1].time));
   }

@@ -150,6 +150,7 @@ void DumpFrame::set_bounds(const std::array<std::array<double, 4>, 3>& rows, std
     if (!(frame_.box[axis] > 0 && std::isfinite(frame_.box[axis]))) {
       throw bad(fmt::format("its box has an edge of {:g}", frame_.box[axis]), "finite edges above 0");
     }
+    frame_.middle[axis] = low_[axis] + 0.5 * frame_.box[axis];
   }
 }
 
@@ -205,6 +206,8 @@ void DumpFrame::read_position(const Words& words, FrameBody& body) const {
     }
     body.position[axis] = wrapped ? *wrapped : *unwrapped;
     body.unwrapped[axis] = frame_.images ? *unwrapped : body.position[axis];
+    // Where another axis is wrapped, so is this one: the file does not say where bodies went.
+    if (!frame_.images && !wrapped) body.unwrapped[axis] -= L * std::round(body.unwrapped[axis] / L);
   }
   if (frame_.tilt.isZero(0) && !wrap(body.position, frame_.box)) throw far_away(body.unwrapped.cwiseAbs().maxCoeff());
 }

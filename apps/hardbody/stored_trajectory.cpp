@@ -211,6 +211,9 @@ void Reading::check_frame(const Frame& frame, std::uint64_t k) const {
         k, fmt::format("its box has an edge of {:.9g}, that of the first frame {:.9g}", frame.box.x(), first_.box.x()),
         "one box");
   }
+  if ((frame.middle - first_.middle).cwiseAbs().maxCoeff() > kSame * first_.box.x() + kSame * first_.middle.norm()) {
+    throw bad(k, "its box is at another place than that of the first frame", "bounds that stay");
+  }
   if (frame.bodies.size() != first_.bodies.size()) {
     throw bad(k, fmt::format("has {} bodies, the first frame {}", frame.bodies.size(), first_.bodies.size()),
               "the same number");

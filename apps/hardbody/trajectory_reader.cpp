@@ -65,7 +65,7 @@ std::optional<Format> text_format(std::string_view text) {
     return Format{0, "", extended ? "is an extended xyz file" : "is an xyz file", kExport};
   }
   const auto has = [&](std::string_view words) { return text.find(words) != std::string_view::npos; };
-  if (has(" xlo xhi") && (has(" atoms") || has(" ellipsoids"))) {
+  if ((has(" xlo xhi") || has(" atom types")) && (has(" atoms\n") || has(" ellipsoids\n"))) {
     return Format{0, "", "is a LAMMPS data file", "LAMMPS's write_dump writes one after read_data"};
   }
   return std::nullopt;

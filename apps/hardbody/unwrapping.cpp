@@ -71,12 +71,13 @@ Unwrapping::Result Unwrapping::take() {
         std::move(kept_wrapped_)};
   }
   if (near_move_ < kBelievedMove * (1 - 1e-6)) return {"nearest images", "", std::move(kept_near_)};
-  return {
-      "",
-      fmt::format("without images, and bodies move by up to {:.2g} of the box's edge between frames: nearest images "
-                  "are believed below {}; frames at shorter distances, images or unwrapped positions tell",
-                  near_move_, kBelievedMove),
-      std::move(kept_wrapped_)};
+  return {"",
+          fmt::format(
+              "without images, and bodies move by up to {:.2g} of the box's edge between frames: nearest images "
+              "do not tell beyond a quarter of the box, and are believed below {} of it; frames at shorter distances, "
+              "images or unwrapped positions tell",
+              near_move_, kBelievedMove),
+          std::move(kept_wrapped_)};
 }
 
 }  // namespace hardbody
