@@ -291,13 +291,15 @@ void DumpFrame::read_body(const Words& words) {
 /// Angular velocities of stored angular momenta, whose bodies are homogeneous.
 void DumpFrame::set_angular_velocities() {
   if (!columns_->angular_momentum || columns_->angular_velocity) return;
+  frame_.angular_momenta = frame_.orientations;
+  for (std::size_t i = 0; i < frame_.bodies.size(); ++i) frame_.bodies[i].angular_momentum = angular_momentum_[i];
   const auto shape = [](const FrameType& type) { return type.shape.has_value(); };
   const auto massive = [](const FrameBody& body) { return body.mass > 0; };
   if (!columns_->mass || !frame_.orientations || !std::all_of(frame_.types.begin(), frame_.types.end(), shape) ||
       !std::all_of(frame_.bodies.begin(), frame_.bodies.end(), massive)) {
     frame_.notices.emplace_back(
-        "columns angmomx angmomy angmomz: not used; they say angular velocities of bodies whose mass, orientation and "
-        "shape are there: mass, quatw quati quatj quatk, shapex shapey shapez");
+        "columns angmomx angmomy angmomz: not used as angular velocities, which they say of bodies whose mass, "
+        "orientation and shape are there: mass, quatw quati quatj quatk, shapex shapey shapez");
     return;
   }
   std::vector<Vector3d> inertia;  // of mass 1

@@ -85,8 +85,10 @@ void add_map(CLI::App& app, Request& request) {
 
 void add_check(CLI::App& app, Request& request) {
   CLI::App* check =
-      app.add_subcommand("check", "Audit a run's last state, or a trajectory: overlaps, conservation, finite values");
-  check->add_option("PATH", request.check_path, "Run directory, or trajectory FILE.gsd")->required();
+      app.add_subcommand("check",
+                         "Audit a run's last state, or a trajectory: overlaps, conservation, finite values. Exit "
+                         "status 0: sound, and everything was looked at");
+  check->add_option("PATH", request.check_path, "Run directory, GSD file or LAMMPS text dump")->required();
 }
 
 void add_replay(CLI::App& app, Request& request) {

@@ -139,6 +139,10 @@ std::optional<Start> make_start(const Config& config, Progress& progress, Log& l
     FileStart start = start_from_file(config);
     log.line(start.report);
     progress.say(start.report);
+    for (const std::string& notice : start.notices) {
+      log.line(notice);
+      progress.say(notice);
+    }
     return Start{std::move(start.system), {}, {}};
   }
   for (const std::optional<std::string>& warning : {unequal_sizes(config), compressed_as_one(config)}) {

@@ -341,6 +341,9 @@ FileStart start_from_file(const Config& config) {
                                  start.file, fmt::join(found, ", "), fmt::join(wanted, ", ")));
   }
   FileStart result;
+  for (const std::string& notice : frame.notices) {
+    result.notices.push_back(fmt::format("start: {}: {}", one_line(start.file), notice));
+  }
   result.system = placed(config, frame, order);
   const double before = ed::packing_fraction(result.system);
   std::string velocities = set_velocities(result.system, config, frame, order);

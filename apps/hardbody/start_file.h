@@ -29,7 +29,8 @@ StartAdditions additions_from(const StartFile& start, const TomlDocument& docume
 /// A state to start from.
 struct FileStart {
   ed::System system;
-  std::string report;  ///< what was taken from the file and what was changed, one line
+  std::string report;                ///< what was taken from the file and what was changed, one line
+  std::vector<std::string> notices;  ///< of the reader about the frame, one line each
 };
 
 /// The state in the config's file, with the bodies of the config, in their order. Positions and orientations are those

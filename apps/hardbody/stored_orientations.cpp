@@ -1,5 +1,7 @@
 #include "stored_orientations.h"
 
+#include "orientation.h"
+
 #include <geom/pose.h>
 
 #include <fmt/format.h>

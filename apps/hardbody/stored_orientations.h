@@ -12,8 +12,6 @@ namespace hardbody {
 /// kQuaternionTolerance are normalised, and beyond rounding counted for a notice.
 class StoredOrientations {
  public:
-  static constexpr double kQuaternionTolerance = 1e-3;
-
   /// Body to world, from w, x, y, z; nothing if the length is not 1 within the tolerance.
   std::optional<Eigen::Matrix3d> rotation(const Eigen::Vector4d& q);
   /// Line about those that were normalised; nothing if none was.

@@ -32,7 +32,7 @@ def wrapped(x):
     return (numpy.asarray(x) + L / 2) % L - L / 2
 
 
-class Files(Case):
+class FilesCase(Case):
     def gsd(self, name, positions, shapes=BALL, **more):
         """A file with the positions of each frame; of more quantities one a frame, None where it is left out."""
         with gsd.hoomd.open(self.path(name), WRITE) as file:
@@ -82,7 +82,7 @@ class Files(Case):
         return json.loads(self.read("analysis/analysis.json"))
 
 
-class Walks(Files):
+class Walks(FilesCase):
     """One and the same walk in all ways to write it: the same displacements, or the reason why there are none."""
 
     def setUp(self):
@@ -194,7 +194,7 @@ class Walks(Files):
         self.refused("other.lammpstrj", "frame 1: has body 3 where the first frame has 2")
 
 
-class PartsOfFrames(Files):
+class PartsOfFrames(FilesCase):
     """Quantities that only some frames have, and bodies that change."""
 
     def two(self, x):
@@ -317,7 +317,7 @@ class PartsOfFrames(Files):
             self.refused("bad.lammpstrj", "frame 0: " + text)
 
 
-class Boxes(Files):
+class Boxes(FilesCase):
     def row(self, x=0):
         return [[1, 1, x, 0, 0], [2, 1, 0, 3, 0]]
 
