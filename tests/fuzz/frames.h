@@ -3,8 +3,10 @@
 /// Duty of both readers of trajectories with any bytes: refuse them with one line, or read every frame (or refuse it)
 /// with finite numbers, and with none where the file gives none.
 
+#include "commands.h"
 #include "errors.h"
 #include "frame.h"
+#include "stored_trajectory.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -42,6 +44,21 @@ inline void check_frame(const hardbody::Frame& frame) {
   if (frame.exact) require(frame.exact->bodies.size() == frame.bodies.size(), "the state is of all bodies");
 }
 
+/// Frames as `hardbody analyze` takes them: all of the same bodies, each quantity in all of them or in none.
+inline void check_trajectory(const hardbody::StoredTrajectory& trajectory) {
+  require(!trajectory.frames.empty(), "a trajectory has frames");
+  const ed::StoredFrame& first = trajectory.frames.front();
+  require(!first.position.empty(), "a trajectory has bodies");
+  for (const ed::StoredFrame& frame : trajectory.frames) {
+    require(frame.position.size() == first.position.size(), "all frames have all bodies");
+    require(frame.rotation.size() == first.rotation.size(), "orientations are known in all frames or in none");
+    require(frame.velocity.size() == first.velocity.size(), "velocities are known in all frames or in none");
+    for (const Eigen::Vector3d& x : frame.position) require(x.allFinite(), "unwrapped positions are finite");
+  }
+  require(trajectory.not_unwrapped.empty() == trajectory.options.unwrapped, "a reason where nothing is unwrapped");
+  require(trajectory.not_followed.empty() == trajectory.options.same_bodies, "a reason where nothing is followed");
+}
+
 template <class Read>
 void refused_or_read(const Read& read) {
   try {
@@ -65,6 +82,12 @@ void read_all(const Open& open, const Also& also) {
         also(frame, k);
       });
     }
+    if (reader.frame_count() > kMostFrames) return;
+    refused_or_read([&] {
+      hardbody::AnalyzeArguments arguments;
+      arguments.time_step = 1;
+      check_trajectory(hardbody::read_trajectory(reader, arguments));
+    });
   });
 }
 

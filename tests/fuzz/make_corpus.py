@@ -75,10 +75,10 @@ def dumps():
     columns = "id type x y z quatw quati quatj quatk shapex shapey shapez SuperquadricRoundness.Phi SuperquadricRoundness.Theta vx vy vz"
     body = "{id} {type} {x} 0 0 {q} 0 0 0 1 1 2 0.5 0.5 1 0 0"
 
-    def dump(count=2, bounds=("-5 5",) * 3, names=columns, frames=1, **other):
+    def dump(count=2, bounds=("-5 5",) * 3, names=columns, frames=1, flags="pp pp pp", head=(), body=body, **other):
         values = {"type": 1, "x": 1, "q": 1, **other}
         bodies = [body.format(**{"id": k + 1, **values}) for k in range(2)]
-        frame = ["ITEM: TIMESTEP", "0", "ITEM: NUMBER OF ATOMS", str(count), "ITEM: BOX BOUNDS pp pp pp", *bounds,
+        frame = [*head, "ITEM: TIMESTEP", "0", "ITEM: NUMBER OF ATOMS", str(count), f"ITEM: BOX BOUNDS {flags}", *bounds,
                  "ITEM: ATOMS " + names, *bodies]
         return ("\n".join(frame) + "\n") * frames
 
@@ -86,6 +86,17 @@ def dumps():
     yield dump(frames=3)
     yield dump(names=columns.replace(" x y z ", " xs ys zs "))
     yield dump(names=columns.replace(" x y z ", " xu yu zu "))
+    yield dump(names=columns.replace(" x y z ", " xsu ysu zsu "), frames=2)
+    for names in ["id type x y z ix iy iz", "id type xu yu zu ix iy iz", "id xs ys zs ix iy iz mass", "id type x y z radius ix iy",
+                  "id type x y z diameter vx vy", "id type x y z c_orient[1] c_orient[2] c_orient[3]",
+                  "type id xu yu zu angmomx angmomy angmomz", "x y z id type omegax omegay omegaz"]:
+        numbers = " ".join(["{id}", "1"] + (len(names.split()) - 2) * ["{x}"])
+        yield dump(names=names, frames=3, body=numbers)
+    for tilt in ["0", "-0.0", "1", "nan"]:
+        yield dump(bounds=(f"-5 5 {tilt}",) * 3, flags="xy xz yz pp pp pp")
+    yield dump(bounds=("10 0 0 -5", "0 10 0 -5", "0 0 10 -5"), flags="abc origin pp pp pp")
+    yield dump(frames=2, head=["ITEM: UNITS", "lj", "ITEM: TIME", "0.5"])
+    yield dump(frames=2, flags="")
     for names in ["id type x y z ix iy iz", "id type xsu ysu zsu radius", "type x y z xu yu zu", "id x ys zu iy diameter mass",
                   "id type x y z omegax omegay omegaz", "id x y z c_orient[1] c_orient[2] block1 block2",
                   columns.replace("vx vy vz", "angmomx angmomy angmomz") + " mass", "id x y z shapex shapey shapez"]:

@@ -16,6 +16,7 @@ import os
 import random
 import re
 import shutil
+import subprocess
 import sys
 import warnings
 
@@ -27,6 +28,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."
 import gsd.fl
 import test_conventions as conventions
 import walks
+from test_cli import HARDBODY
 from test_conventions import C2, MSD, S, VACF, Way
 from walks import EDGE, Walk
 
@@ -191,6 +193,11 @@ class Fuzz(conventions.Conventions):
 
     def runTest(self):
         pass
+
+    def hardbody(self, *arguments, timeout=30):
+        """Messages may quote bytes that are no text."""
+        return subprocess.run([HARDBODY, *arguments], cwd=self.here, capture_output=True, encoding="utf-8",
+                              errors="backslashreplace", timeout=timeout, stdin=subprocess.DEVNULL)
 
     def finite(self, result):
         json.loads(self.read("analysis/analysis.json"), parse_constant=lambda c: self.fail(f"{c} in analysis.json"))
