@@ -64,7 +64,7 @@ struct Frame {
   double time = std::numeric_limits<double>::quiet_NaN();
   Eigen::Vector3d box = Eigen::Vector3d::Zero();     ///< edge lengths along x, y, z
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();  ///< of the box, in the file's coordinates
-  /// Lengths xy, xz, yz by which the second and third edge lean; not 0: positions are not wrapped.
+  /// Lengths xy, xz, yz by which the second and third edge lean; not 0: positions are not wrapped, and images not used.
   Eigen::Vector3d tilt = Eigen::Vector3d::Zero();
   std::vector<FrameType> types;
   std::vector<FrameBody> bodies;

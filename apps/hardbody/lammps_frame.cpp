@@ -28,6 +28,11 @@ constexpr std::uint64_t kMostBodies = 100'000'000;
 constexpr double kWholeEdges = 1e-3;
 constexpr double kSixDigits = 1e-5;
 
+/// Whether the position along an axis, the wrapped one if there is one, is in edges of the box.
+bool is_scaled(const DumpColumns::Axis& axis) {
+  return !axis.wrapped && (axis.scaled || (!axis.unwrapped && axis.unwrapped_scaled));
+}
+
 /// One frame of a dump, read line by line.
 class DumpFrame {
  public:
@@ -53,6 +58,7 @@ class DumpFrame {
   void read_bounds();
   void set_bounds(const std::array<std::array<double, 4>, 3>& rows, std::size_t columns);
   void read_columns(std::string_view head);
+  void check_tilted_columns();
   void read_body(const Words& words);
   void read_position(const Words& words, FrameBody& body) const;
   void read_orientation(const Words& words, FrameBody& body);
@@ -83,6 +89,7 @@ class DumpFrame {
   Frame frame_;
   Vector3d low_ = Vector3d::Zero();
   std::optional<DumpColumns> columns_;
+  bool tilted_scale_ = false;  ///< positions are scaled ones of a tilted box
   StoredOrientations orientations_;
   std::vector<Vector3d> angular_momentum_;         ///< of each body, in the order of the lines
   std::map<std::uint32_t, std::uint32_t> groups_;  ///< by type
@@ -163,13 +170,24 @@ void DumpFrame::read_columns(std::string_view head) {
       throw bad("has no positions", "columns x y z, xu yu zu, xs ys zs or xsu ysu zsu");
     }
   }
+  if (!frame_.tilt.isZero(0)) check_tilted_columns();
   frame_.ids = columns_->id.has_value();
-  frame_.images = columns_->unwrapped();
+  frame_.images = columns_->unwrapped() && frame_.tilt.isZero(0);
   if (frame_.images) frame_.unwrapped_by = columns_->unwrapped_columns() ? "unwrapped columns" : "image flags";
   frame_.orientations = columns_->quaternion.has_value();
   frame_.velocities = columns_->velocity.has_value();
   frame_.angular_velocities = columns_->angular_velocity.has_value();
   frame_.notices = columns_->notices;
+}
+
+/// In tilted boxes scaled positions are along the edges, others along the axes: not one of each.
+void DumpFrame::check_tilted_columns() {
+  const auto& axes = columns_->axes;
+  tilted_scale_ = is_scaled(axes[0]);
+  for (const DumpColumns::Axis& axis : axes) {
+    if (is_scaled(axis) == tilted_scale_) continue;
+    throw bad("has scaled and other positions in a tilted box", "columns x y z, xu yu zu, xs ys zs or xsu ysu zsu");
+  }
 }
 
 void DumpFrame::read_position(const Words& words, FrameBody& body) const {
@@ -189,7 +207,7 @@ void DumpFrame::read_position(const Words& words, FrameBody& body) const {
     std::optional<double> unwrapped = take(columns.unwrapped, columns.unwrapped_scaled, axis);
     if (wrapped && !(std::abs(*wrapped) < kMostImages * L)) throw far_away(*wrapped);
     if (unwrapped && !(std::abs(*unwrapped) < kMostImages * L)) throw far_away(*unwrapped);
-    if (wrapped && unwrapped) {
+    if (wrapped && unwrapped && frame_.tilt.isZero(0)) {
       const double edges = (*unwrapped - *wrapped) / L;
       if (std::abs(edges - std::round(edges)) > kWholeEdges + kSixDigits * std::abs(*unwrapped / L)) {
         throw bad(fmt::format("wrapped and unwrapped {} of {} are {:g} edges of the box apart", "xyz"[axis],
@@ -209,6 +227,12 @@ void DumpFrame::read_position(const Words& words, FrameBody& body) const {
     // Where another axis is wrapped, so is this one: the file does not say where bodies went.
     if (!frame_.images && !wrapped) body.unwrapped[axis] -= L * std::round(body.unwrapped[axis] / L);
   }
+  if (tilted_scale_) {
+    const Vector3d edges = body.position.cwiseQuotient(frame_.box);
+    body.position.x() += edges.y() * frame_.tilt.x() + edges.z() * frame_.tilt.y();
+    body.position.y() += edges.z() * frame_.tilt.z();
+  }
+  if (!frame_.tilt.isZero(0)) body.unwrapped = body.position;
   if (frame_.tilt.isZero(0) && !wrap(body.position, frame_.box)) throw far_away(body.unwrapped.cwiseAbs().maxCoeff());
 }
 

@@ -341,6 +341,18 @@ class Boxes(FilesCase):
             file.write(content)
         self.refused("tilt.gsd", "its box is tilted: edges 10, 10, 10, xy xz yz = 2.5, 0, 0")
 
+    def test_scaled_positions_in_tilted_boxes(self):
+        """They are along the edges: the image along the second one, (5, 10, 0), is near."""
+        shapes = "shapex shapey shapez"
+        for columns, rows in [("x y z", [[1, 1, 0, -4.9, 0], [2, 1, 4.9, 4.9, 0]]),
+                              ("xs ys zs", [[1, 1, 0.745, 0.01, 0.5], [2, 1, 0.745, 0.99, 0.5]])]:
+            self.dump("tilt.lammpstrj", f"id type {columns} {shapes}", [[[*row, 1, 1, 1] for row in rows]],
+                      "xy xz yz pp pp pp", ["-5 10 5", "-5 5 0", "-5 5 0"])
+            result = self.hardbody("check", "tilt.lammpstrj")
+            self.assertIn("1 pairs overlap, the deepest by 0.77", result.stdout + result.stderr)
+        self.dump("mixed.lammpstrj", "id type x ys z", [[[1, 1, 0, 0.5, 0]]], "xy xz yz pp pp pp", ["-5 10 5", "-5 5 0", "-5 5 0"])
+        self.refused("mixed.lammpstrj", "has scaled and other positions in a tilted box")
+
     def test_oblong(self):
         self.dump("oblong.lammpstrj", "id type x y z", [self.row()], bounds=["-5 5", "-5 5", "-10 10"])
         self.refused("oblong.lammpstrj", "its box has edges 10, 10, 20", "a cubic box")
