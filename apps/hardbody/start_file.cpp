@@ -163,6 +163,18 @@ std::optional<Matrix3d> axes_in_file(const ed::BodyShape& file, const ed::BodySh
   return std::nullopt;
 }
 
+/// Refusal of a frame without orientations, with what the reader says of columns that may be some.
+InputError no_orientations(const Frame& frame, const std::string& file, const std::string& body) {
+  std::string hint;
+  for (const std::string& notice : frame.notices) {
+    if (notice.find("orient") != std::string::npos) hint += fmt::format(" ({})", notice);
+  }
+  return InputError(
+      fmt::format("{}: has no orientations, and {}{}; accepted: columns quatw quati quatj quatk, in GSD files "
+                  "particles/orientation of the frame, or spheres",
+                  file, body, hint));
+}
+
 /// The bodies of the config where those of the file are, without velocities.
 ed::System placed(const Config& config, const Frame& frame, const std::vector<std::size_t>& order) {
   const std::string& file = config.start_file->file;
@@ -177,9 +189,8 @@ ed::System placed(const Config& config, const Frame& frame, const std::vector<st
       body.position = from.position;
       body.rotation = from.rotation;
       if (!frame.orientations && !ed::is_sphere(component.species.shape)) {
-        throw InputError(
-            fmt::format("{}: has no orientations, and body {:.17g} is {}; accepted: columns {}, or spheres", file,
-                        from.id, ed::describe(component.species.shape), "quatw quati quatj quatk"));
+        throw no_orientations(frame, file,
+                              fmt::format("body {:.17g} is {}", from.id, ed::describe(component.species.shape)));
       }
       const std::optional<ed::BodyShape>& shape = frame.types[from.type].shape;
       if (!shape) continue;
