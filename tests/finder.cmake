@@ -4,6 +4,7 @@ hardbody_test(finder_unit_test unit
   unit/calendar_test.cpp
   unit/cell_grid_test.cpp
   unit/certified_contact_test.cpp
+  unit/contact_budget_test.cpp
   unit/elliptic_test.cpp
   unit/first_looks_test.cpp
   unit/free_top_test.cpp

@@ -1,5 +1,6 @@
 # Tests of this part; see hardbody_test in CMakeLists.txt.
 hardbody_test(geom_unit_test unit
+  unit/enumerator_names_test.cpp
   unit/geom_batch_test.cpp
   unit/geom_by_elements_test.cpp
   unit/geom_contact_elements_test.cpp
@@ -16,6 +17,7 @@ hardbody_test(geom_unit_test unit
   unit/geom_perram_wertheim_test.cpp
   unit/geom_pose_test.cpp
   unit/geom_queries_test.cpp
+  unit/geom_ray_from_afar_test.cpp
   unit/geom_sphere_search_test.cpp
   unit/geom_superellipsoid_test.cpp
   unit/geom_user_shape_test.cpp)

@@ -66,6 +66,13 @@ if(BUILD_SHARED_LIBS AND HARDBODY_PYTHON)
   set_tests_properties(package_exports PROPERTIES LABELS package TIMEOUT 60 FIXTURES_REQUIRED package_shared)
 endif()
 
+# How headers and libgeom compile with flags of others; nothing has to be built for that.
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+get_target_property(eigen_dir Eigen3::Eigen INTERFACE_INCLUDE_DIRECTORIES)
+foreach(name eigen_macros no_exceptions)
+  hardbody_package_script(package_${name} ${name}.cmake -DSOURCE_DIR=${PROJECT_SOURCE_DIR} -DEIGEN_DIR=${eigen_dir})
+endforeach()
+
 find_program(HARDBODY_DPKG_DEB dpkg-deb)
 if(TARGET hardbody AND HARDBODY_DPKG_DEB AND NOT HARDBODY_SANITIZE AND NOT BUILD_SHARED_LIBS)
   hardbody_package_script(package_deb deb.cmake -DBUILD_DIR=${PROJECT_BINARY_DIR} -DVERSION=${PROJECT_VERSION})

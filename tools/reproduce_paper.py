@@ -10,7 +10,7 @@ from paper.figures import Lines, write_figures
 from paper.report import write_readme
 from paper.results import Results, point_of, read_rows
 from paper.study import Stop, Study
-from paper.verdicts import verdicts
+from paper.verdicts import changed_claims, verdicts
 
 DOCS = pathlib.Path(__file__).resolve().parent.parent / "docs" / "paper"
 
@@ -65,7 +65,8 @@ def parse(arguments):
     parser.add_argument("--jobs", type=count, default=1, help="points that run at the same time")
     parser.add_argument("--minutes", type=duration, default=0, help="stop after so many; call it again to go on")
     parser.add_argument("--quick", action="store_true", help="a coarse grid with short runs, some three minutes")
-    parser.add_argument("--figures", action="store_true", help="run nothing: figures and README.md from what is there")
+    parser.add_argument("--figures", action="store_true", help="run nothing: figures and README.md from what is there; values whose "
+                                                                 "definitions do not hold are moved to dropped.csv")
     parser.add_argument("--points", nargs="+", type=point, metavar="X0,PHI", help="these points alone")
     return parser.parse_args(arguments)
 
@@ -82,12 +83,16 @@ def known_costs(options):
 
 
 def draw(program, directory):
-    """Figures and README.md."""
+    """Figures and README.md, without the values whose definition does not hold."""
+    dropped = Results(directory).judge()
     study = table.Study(directory)
     lines = Lines(program, directory)
     write_figures(study, lines, directory)
     outcomes = verdicts(study, lines)
-    write_readme(study, outcomes, directory)
+    changes = changed_claims(outcomes, verdicts(table.Study(directory, restored=True), lines))
+    write_readme(study, outcomes, changes, directory)
+    if dropped:
+        print(f"{directory}: the definitions of {dropped} values do not hold; they are now in dropped.csv")
     print(f"{directory}: figures and README.md of {len(study.rows)} points")
     for verdict in outcomes:
         print(f"  {verdict.claim}: {verdict.outcome}")

@@ -10,6 +10,8 @@ import pathlib
 import subprocess
 import sys
 
+import short_runs
+
 REFERENCE = pathlib.Path(__file__).resolve().parent.parent / "tests" / "reference"
 
 
@@ -34,7 +36,7 @@ class Runner:
         self.pool = concurrent.futures.ThreadPoolExecutor(jobs)
 
     def submit(self, name, **settings):
-        return self.pool.submit(self._run, name, settings)
+        return self.pool.submit(self.run, name, **settings)
 
     @staticmethod
     def _bodies(settings):
@@ -47,14 +49,16 @@ class Runner:
 
     @classmethod
     def _start(cls, settings):
-        """The last frame of another run's trajectory, backwards, or a random start."""
+        """The last frame of another run's trajectory, backwards or as it is, or a start at random or on a lattice."""
+        if "start" in settings:
+            return f'[start]\nfile = "{settings["start"].resolve()}"\n' + settings["bodies"]
         if "reversed" in settings:
             return (f'[start]\nfile = "{settings["reversed"].resolve() / "trajectory.gsd"}"\nreverse = true\n'
                     + settings.get("bodies", ""))
         return (f'[system]\nnumber = {settings.get("number", 512)}\npacking_fraction = {settings["phi"]}\n'
-                + cls._bodies(settings))
+                + (f'start = "{settings["lattice"]}"\n' if settings.get("lattice") else "") + cls._bodies(settings))
 
-    def _run(self, name, settings):
+    def run(self, name, **settings):
         directory = self.out / name
         config = self.out / f"{name}.toml"
         text = (
@@ -120,6 +124,14 @@ class Table:
 
     def limit(self, state, quantity, measured, limit, ok):
         self._row(state, quantity, f"{measured:.2e}", "", "", "", limit, ok)
+
+    def plain_heading(self, text, columns):
+        print(f"\n### {text}\n\n{columns}\n|{'---|' * (columns.count('|') - 1)}", flush=True)
+
+    def plain_row(self, cells, ok):
+        self.rows += 1
+        self.failed += 0 if ok else 1
+        print(f"| {' | '.join(map(str, cells))} | {'ok' if ok else '**off**'} |", flush=True)
 
     def _row(self, state, quantity, measured, reference, deviation, sigma, allowed, ok):
         self.rows += 1
@@ -527,7 +539,7 @@ def mixtures(runner, table, collisions):
 
 GROUPS = {"dynamics": dynamics, "pressure": pressure, "spheres": spheres, "dilute": dilute, "rotor": rotor,
           "conservation": conservation, "reversal": reversal, "superellipsoids": superellipsoids, "virial": virial,
-          "mixtures": mixtures}
+          "mixtures": mixtures, "short": short_runs.short}
 
 
 def main():

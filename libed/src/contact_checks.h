@@ -4,11 +4,16 @@
 
 #include <sstream>
 #include <stdexcept>
+#include <string>
 
 namespace ed::internal {
 
 /// Throws std::invalid_argument unless the options are usable for bodies with this smallest semi-axis.
 inline void check_contact_options(const ContactOptions& options, double smallest_semi_axis) {
+  if (options.max_evaluations < 1) {
+    throw std::invalid_argument("max_evaluations is " + std::to_string(options.max_evaluations) +
+                                "; accepted: 1 or more");
+  }
   if (options.finder != Finder::bracketing && options.distance != DistanceMethod::dual) {
     throw std::invalid_argument("distance: only the finder \"bracketing\" has a choice; accepted: \"dual\"");
   }

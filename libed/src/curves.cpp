@@ -1,6 +1,8 @@
 #include "curves.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdio>
 #include <string>
 
@@ -11,13 +13,27 @@ const double kDecayed = std::exp(-1.0);
 
 /// The lags that diffusion is fitted over.
 Curve end_of(const Curve& curve) {
-  Curve window;
-  for (std::size_t k = 0; k < curve.t.size(); ++k) {
-    if (curve.t[k] < kFitFrom * curve.t.back() * (1 - 1e-9)) continue;
-    window.t.push_back(curve.t[k]);
-    window.y.push_back(curve.y[k]);
+  const auto first = static_cast<std::ptrdiff_t>(first_of_fit(curve));
+  return {{curve.t.begin() + first, curve.t.end()}, {curve.y.begin() + first, curve.y.end()}};
+}
+
+/// Least x >= kDisplaced beyond which exp(-x) (1 + alpha2 x^2 / 2) stays at or below exp(-kDisplaced).
+double least_displacement(double alpha2) {
+  const auto decayed = [&](double x) { return std::exp(-x) * (1 + 0.5 * alpha2 * x * x) <= std::exp(-kDisplaced); };
+  // It falls from x = 2 on, whatever alpha2 >= 0 is: x^2 exp(-x) does.
+  if (!(alpha2 > 0)) return kDisplaced;
+  if (!std::isfinite(alpha2)) return alpha2;
+  double low = kDisplaced;
+  double high = 2;
+  while (!decayed(high)) {
+    low = high;
+    high *= 2;
   }
-  return window;
+  while (high - low > 1e-9 * high) {
+    const double middle = 0.5 * (low + high);
+    (decayed(middle) ? high : low) = middle;
+  }
+  return high;
 }
 
 /// Slope of ln y against ln t; NaN for fewer than two positive values.
@@ -35,24 +51,33 @@ double exponent_of(const Curve& curve) {
 
 // ---- Diffusion
 
-Reach reach_of_translation(double first_wave_number) {
-  return {kDisplaced * 6 / (first_wave_number * first_wave_number), 0, MissingReason::not_displaced};
+std::size_t first_of_fit(const Curve& curve) {
+  const auto in_fit = [&](double t) { return t >= kFitFrom * curve.t.back() * (1 - 1e-9); };
+  return static_cast<std::size_t>(std::find_if(curve.t.begin(), curve.t.end(), in_fit) - curve.t.begin());
+}
+
+Reach reach_of_translation(double first_wave_number, double alpha2) {
+  const double unit = 6 / (first_wave_number * first_wave_number);
+  return {least_displacement(alpha2) * unit, 0, 0, MissingReason::not_displaced};
 }
 
 Reach reach_of_rotation(double components) {
-  return {0, kTurned * components, MissingReason::not_turned};
+  return {0, kTurned * components, kTurned * components, MissingReason::not_turned};
 }
 
 std::optional<Missing> why_not_diffusive(const Curve& curve, const Reach& reach) {
+  if (curve.t.empty()) return Missing{};
   const Curve window = end_of(curve);
   if (window.t.size() < 2) return Missing{MissingReason::lags_too_short};
   const double exponent = exponent_of(window);
-  if (exponent > 1 + kLinearity) return Missing{MissingReason::ballistic};
+  const double steepest = window.y.front() < reach.free_below ? kFreeTurning : kLinearity;
+  if (exponent > 1 + steepest) return Missing{MissingReason::ballistic, exponent};
   // Comparisons that fail if a number is none.
-  const bool diffusive =
-      std::abs(exponent - 1) <= kLinearity && window.y.front() >= reach.at_start && window.y.back() >= reach.at_end;
-  if (diffusive) return std::nullopt;
-  return Missing{reach.short_of_it, std::sqrt(std::abs(window.y.back()))};
+  if (!(window.y.front() >= reach.at_start && window.y.back() >= reach.at_end)) {
+    return Missing{reach.short_of_it, std::sqrt(std::abs(window.y.back()))};
+  }
+  if (!(exponent >= 1 - kLinearity)) return Missing{MissingReason::subdiffusive, exponent};
+  return std::nullopt;
 }
 
 double final_slope(const Curve& curve) {
@@ -67,7 +92,7 @@ double decay_time(const Curve& curve) {
 }
 
 std::optional<Missing> why_no_decay_time(const Curve& curve) {
-  if (curve.t.empty()) return Missing{MissingReason::lags_too_short};
+  if (curve.t.empty()) return Missing{};
   if (std::isfinite(decay_time(curve))) return std::nullopt;
   if (curve.y.front() <= kDecayed) return Missing{MissingReason::decayed_early};
   return Missing{MissingReason::not_decayed, curve.y.back()};
@@ -90,7 +115,9 @@ std::optional<DecayFit> fit_decay(const Curve& curve, double from) {
 }
 
 std::optional<Missing> why_no_fit(const Curve& curve, double from) {
-  if (!std::isfinite(from)) return Missing{MissingReason::end_of_ballistic_unknown};
+  if (curve.t.empty()) return Missing{};
+  if (std::isinf(from)) return Missing{MissingReason::no_collisions};
+  if (std::isnan(from)) return Missing{MissingReason::end_of_ballistic_unknown};
   if (const auto missing = why_no_decay_time(curve)) return missing;
   if (decay_time(curve) < kLeastDecay * from) return Missing{MissingReason::decayed_before_diffusion};
   if (!fit_decay(curve, from)) return Missing{MissingReason::no_fit};
@@ -115,7 +142,9 @@ std::string describe(const Missing& missing, std::string_view length_unit) {
     case MissingReason::lags_too_short:
       return "nothing has been followed up to the longest lag";
     case MissingReason::ballistic:
-      return "motion is still ballistic at the longest lag";
+      return reached("displacements grow as t^", "", " up to the longest lag: still in part ballistic");
+    case MissingReason::subdiffusive:
+      return reached("displacements grow as t^", "", " up to the longest lag: not yet diffusive");
     case MissingReason::not_displaced:
       return reached("bodies have moved ", length_unit, " within the longest lag: no diffusion yet");
     case MissingReason::not_turned:
@@ -144,6 +173,7 @@ bool longer_lags_help(MissingReason reason) {
   switch (reason) {
     case MissingReason::lags_too_short:
     case MissingReason::ballistic:
+    case MissingReason::subdiffusive:
     case MissingReason::not_displaced:
     case MissingReason::not_turned:
     case MissingReason::not_decayed:

@@ -4,6 +4,7 @@
 
 #include <ed/analysis.h>
 
+#include <cstddef>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -28,9 +29,15 @@ constexpr double kFitFrom = 0.4;
 constexpr double kLinearity = 0.2;
 /// Translational diffusion: MSD q^2 / 6 >= kDisplaced at the first of those lags, q the wave number of the first peak
 /// of S(q) (first_wave_number): a Gaussian F_self(q, t) is at or below 1/e there, so that bodies have left their cages.
+/// Where a few bodies have moved far and the others not at all, F_self to the next order counts too:
+/// exp(-x) (1 + alpha2 x^2 / 2) <= exp(-kDisplaced), x = MSD q^2 / 6.
 constexpr double kDisplaced = 1;
 /// Rotational diffusion: <|Delta Phi|^2> >= kTurned c, in rad^2, at the longest lag, c the number of components.
 constexpr double kTurned = 1.0 / 3;
+/// Rotation that has not come to kTurned c at the first of those lags may be free still: there d ln(displacement) / d
+/// ln t
+/// <= 1 + kFreeTurning is asked for, too.
+constexpr double kFreeTurning = 0.1;
 
 /// Decays are fitted from the lag of this many mean collision intervals on: before, motion is ballistic.
 constexpr double kBallisticCollisions = 5;
@@ -40,7 +47,7 @@ constexpr double kLeastDecay = 3;
 constexpr double kNoise = 0.03;
 /// Fits of a correlation that starts at 1: amplitude <= kMostAmplitude, beta >= kLeastBeta, tau >= first fitted lag.
 /// Others continue the decay to lags where nothing was fitted.
-constexpr double kMostAmplitude = 1.2;
+constexpr double kMostAmplitude = 1.3;
 constexpr double kLeastBeta = 0.3;
 
 // ---- Diffusion
@@ -49,13 +56,18 @@ constexpr double kLeastBeta = 0.3;
 struct Reach {
   double at_start = 0;                                       ///< least value at the first lag of the fit
   double at_end = 0;                                         ///< least value at the longest lag
+  double free_below = 0;                                     ///< value at the first lag below which kFreeTurning counts
   MissingReason short_of_it = MissingReason::not_displaced;  ///< reason to give where they have not
 };
 
-/// Requirements of translational diffusion, for the wave number of the first peak of S(q).
-Reach reach_of_translation(double first_wave_number);
+/// Requirements of translational diffusion, for the wave number of the first peak of S(q) and the non-Gaussian
+/// parameter at the first lag of the fit.
+Reach reach_of_translation(double first_wave_number, double alpha2);
 /// Requirements of rotational diffusion of so many components.
 Reach reach_of_rotation(double components);
+
+/// Index of the first lag that diffusion is fitted from; the number of lags if there are none.
+std::size_t first_of_fit(const Curve& curve);
 
 /// Why the mean square displacement in `curve` is not diffusion; nothing if it is.
 std::optional<Missing> why_not_diffusive(const Curve& curve, const Reach& reach);
@@ -79,7 +91,8 @@ struct DecayFit {
 };
 
 /// Stretched exponential of a correlation that starts at 1, fitted to lags from `from` on (before, motion is
-/// ballistic), without the noise at the end. Nothing where the thresholds above are not kept.
+/// ballistic), without the noise at the end. Nothing where the thresholds above are not kept, or `from` is infinite (no
+/// body has met another) or NaN (not known).
 std::optional<DecayFit> fit_decay(const Curve& curve, double from);
 
 /// Why fit_decay gives nothing; nothing if it gives a fit.

@@ -128,6 +128,7 @@ class Evaluation {
   Estimate diffusion_estimate(std::size_t group, double divisor, const Reach& reach, const Value& value) const {
     const auto complete = [&](const Curve& c) { return !c.t.empty() && c.t.back() >= measured_.lags.back(); };
     const Curve all = curve(group, {}, value);
+    if (all.t.empty()) return {};
     if (!complete(all)) return Estimate::none({MissingReason::lags_too_short});
     if (const auto missing = why_not_diffusive(all, reach)) return Estimate::none(*missing);
     return with_block_error(measured_.lags.back(), [&](const Block* block) {
@@ -472,8 +473,10 @@ void Evaluation::add_diffusion(std::size_t group, Correlations& results) const {
   const double components = mean_rotation_axes(group);
   const Reach turn = reach_of_rotation(components);
   if (measured_.grid.known()) {
-    results.D_trans = diffusion_estimate(group, 6, reach_of_translation(first_wave_number(group)),
-                                         [](const LagSums& s) { return s.msd; });
+    const auto msd = [](const LagSums& s) { return s.msd; };
+    const std::size_t first = first_of_fit(curve(group, {}, msd));
+    const double non_gaussian = first < measured_.lags.size() ? alpha2(sums_at(first, group, {})) : 0;
+    results.D_trans = diffusion_estimate(group, 6, reach_of_translation(first_wave_number(group), non_gaussian), msd);
   }
   results.D_rot = diffusion_estimate(group, 2 * components, turn, [](const LagSums& s) { return s.rot_msd; });
   results.D_rot_body = diffusion_estimate(group, 2 * components, turn, [](const LagSums& s) { return s.rot_msd_body; });

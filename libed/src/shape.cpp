@@ -45,12 +45,12 @@ std::string by_axes(const char* kind, const Vector3d& a) {
 }
 
 std::string name_of(const geom::Ellipsoid& shape) {
-  return by_axes("ellipsoid", shape.semi_axes());
+  return by_axes("ellipsoid of semi-axes", shape.semi_axes());
 }
 
 std::string name_of(const geom::Superellipsoid& shape) {
   std::ostringstream text;
-  text << by_axes("superellipsoid", shape.semi_axes()) << ", exponents " << shape.e1() << ", " << shape.e2();
+  text << by_axes("superellipsoid of semi-axes", shape.semi_axes()) << ", exponents " << shape.e1() << ", " << shape.e2();
   return text.str();
 }
 

@@ -81,6 +81,18 @@ const char* to_string(FailureReason reason) {
   return "unknown";
 }
 
+const char* to_string(EventKind kind) {
+  switch (kind) {
+    case EventKind::exit:
+      return "exit";
+    case EventKind::look:
+      return "look";
+    case EventKind::contact:
+      return "contact";
+  }
+  return "unknown";
+}
+
 std::string describe(const Stall& stall) {
   std::ostringstream text;
   text << "stalled at time " << stall.time << ": " << stall.events << " events in " << stall.span << " time units, "

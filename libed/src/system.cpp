@@ -192,6 +192,18 @@ double box_for(const std::vector<Component>& components, double packing_fraction
   return std::cbrt(all / packing_fraction);
 }
 
+const char* to_string(Neighbours neighbours) {
+  switch (neighbours) {
+    case Neighbours::dilated:
+      return "dilated";
+    case Neighbours::obp:
+      return "obp";
+    case Neighbours::cells:
+      return "cells";
+  }
+  return "unknown";
+}
+
 double smallest_box(const std::vector<Component>& components, Neighbours neighbours) {
   std::vector<BodyShape> shapes;
   bool of_revolution = true;

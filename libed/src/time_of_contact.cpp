@@ -5,6 +5,7 @@
 #include "convex_gauge.h"
 #include "motion_checks.h"
 #include "support_gauge.h"
+#include "swept_hull.h"
 #include "uniaxial_gauge.h"
 
 #include <ed/time_of_contact.h>
@@ -22,9 +23,6 @@ namespace {
 using geom::Ellipsoid;
 using internal::Outcome;
 using internal::Spheroid;
-
-/// More points in time than any search has been seen to need by a factor of a thousand.
-constexpr int kMaxEvaluations = 100000;
 
 /// The axis about which both the shape and the inertia are symmetric, or -1.
 int common_axis(const Ellipsoid& shape, const Motion& motion) {
@@ -95,6 +93,7 @@ ContactStatus status_of(Outcome outcome) {
     case Outcome::overlapping:
       return ContactStatus::overlapping;
     case Outcome::bound:
+      return ContactStatus::budget_exhausted;
     case Outcome::declined:
       break;
   }
@@ -128,6 +127,30 @@ ContactResult result_of(const internal::Finding& finding, const internal::Finder
   return result;
 }
 
+/// The certified search from time 0 on the bodies' clocks, within a budget of evaluations. It is interrupted now and
+/// then, the earlier the first time: bodies that turn or slide without getting nearer would take it all, and are moved
+/// on to where the hulls of what they sweep meet. `hulls()` makes these, once they are asked for.
+template <class Gauge, class Hulls>
+internal::Finding budgeted_contact(const Gauge& gauge, double duration, int budget, const Hulls& hulls,
+                                   Eigen::Vector3d& n, internal::FinderCounters& count) {
+  constexpr int kFirstLooks = 32;
+  constexpr int kMostLooks = 512;
+  std::optional<internal::SweptPair> swept;
+  double t = 0;
+  for (int looks = kFirstLooks; static_cast<int>(count.evaluations) < budget; looks = std::min(2 * looks, kMostLooks)) {
+    const int left = budget - static_cast<int>(count.evaluations);
+    const internal::Finding finding = internal::certified_contact(gauge, t, duration, std::min(looks, left), n, count);
+    if (finding.outcome != Outcome::bound) return finding;
+    t = finding.time;
+    if (!swept) swept = hulls();
+    const auto state = gauge.at(t);
+    const bool touching = gauge.gap(state, n).g <= state.rounding.gap;
+    t = std::max(t, swept->clear_until(t, n, state.rounding.gap, touching));
+    if (!(t < duration)) return {Outcome::clear, duration};
+  }
+  return {Outcome::bound, t};
+}
+
 /// The search from time 0 on the bodies' clocks.
 ContactResult search(const UniaxialBody& a, const UniaxialBody& b, double reach, double duration,
                      const ContactOptions& options) {
@@ -136,8 +159,12 @@ ContactResult search(const UniaxialBody& a, const UniaxialBody& b, double reach,
   const Eigen::Vector3d r = m_b.position_at(0) - m_a.position_at(0);
   Eigen::Vector3d n = Eigen::Vector3d::Zero();
   internal::FinderCounters count;
+  const auto hulls = [&] {
+    return internal::SweptPair{internal::SweptHull(a.shape, m_a), internal::SweptHull(b.shape, m_b), r,
+                               m_b.velocity - m_a.velocity, reach};
+  };
   const auto certified = [&](const auto& gauge) {
-    return internal::certified_contact(gauge, 0, duration, kMaxEvaluations, n, count);
+    return budgeted_contact(gauge, duration, options.max_evaluations, hulls, n, count);
   };
   internal::Finding finding;
   if (options.finder == Finder::bracketing) {
@@ -174,12 +201,17 @@ ContactResult general_search(const Gauge& gauge, const GeneralBody& a, const Fin
   return result;
 }
 
-ContactResult search(const GeneralBody& a, const GeneralBody& b, double /*reach*/, double duration,
+ContactResult search(const GeneralBody& a, const GeneralBody& b, double reach, double duration,
                      const ContactOptions& options) {
   const Eigen::Vector3d r = b.position_at(0) - a.position_at(0);
+  const auto hulls = [&] {
+    return internal::SweptPair{internal::SweptHull(a.shape, a.motion, a.inertia),
+                               internal::SweptHull(b.shape, b.motion, b.inertia), r, b.velocity() - a.velocity(),
+                               reach};
+  };
   const auto certified = [&](const auto& gauge) {
     return general_search(gauge, a, [&](Eigen::Vector3d& n, internal::FinderCounters& count) {
-      return internal::certified_contact(gauge, 0, duration, kMaxEvaluations, n, count);
+      return budgeted_contact(gauge, duration, options.max_evaluations, hulls, n, count);
     });
   };
   const auto implicit_a = internal::geom_shape(a.shape);
@@ -233,8 +265,42 @@ const char* to_string(ContactStatus status) {
       return "separated";
     case ContactStatus::overlapping:
       return "overlapping";
+    case ContactStatus::budget_exhausted:
+      return "budget_exhausted";
     case ContactStatus::failed:
       return "failed";
+  }
+  return "unknown";
+}
+
+const char* to_string(Finder finder) {
+  switch (finder) {
+    case Finder::certified:
+      return "certified";
+    case Finder::bracketing:
+      return "bracketing";
+  }
+  return "unknown";
+}
+
+const char* to_string(DistanceMethod method) {
+  switch (method) {
+    case DistanceMethod::dual:
+      return "dual";
+    case DistanceMethod::newton8:
+      return "newton8";
+    case DistanceMethod::newton5:
+      return "newton5";
+  }
+  return "unknown";
+}
+
+const char* to_string(ContactRoot root) {
+  switch (root) {
+    case ContactRoot::newton:
+      return "newton";
+    case ContactRoot::one_dimensional:
+      return "one_dimensional";
   }
   return "unknown";
 }

@@ -2,12 +2,12 @@
 
 #include <geom/any_shape.h>
 #include <geom/batch.h>
+#include <geom/internal/refuse.h>
 
 #include <algorithm>
 #include <array>
 #include <optional>
 #include <sstream>
-#include <stdexcept>
 #include <utility>
 #include <variant>
 
@@ -49,7 +49,7 @@ struct Input {
   std::ostringstream message;
   message << "distance_batch: " << name << " has " << size << " elements; accepted: " << other << ", or as many as"
           << " results, which has " << pairs;
-  throw std::invalid_argument(message.str());
+  internal::refuse(message.str());
 }
 
 template <class T>
@@ -197,7 +197,7 @@ class Block {
   for (const InstructionSet set : {InstructionSet::portable, InstructionSet::avx2, InstructionSet::avx512}) {
     if (is_available(set)) message << ", " << to_string(set);
   }
-  throw std::invalid_argument(message.str());
+  internal::refuse(message.str());
 }
 
 InstructionSet chosen(InstructionSet wanted) {

@@ -115,6 +115,16 @@ const char* to_string(DistanceStatus status) {
   return "unknown";
 }
 
+const char* to_string(Penetration penetration) {
+  switch (penetration) {
+    case Penetration::global:
+      return "global";
+    case Penetration::local:
+      return "local";
+  }
+  return "unknown";
+}
+
 DistanceResult distance(const Ellipsoid& a, const Pose& X_WA, const Ellipsoid& b, const Pose& X_WB,
                         const DistanceOptions& options) {
   const Eigen::Vector3d r = X_WB.position() - X_WA.position();

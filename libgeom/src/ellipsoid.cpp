@@ -1,11 +1,11 @@
 #include "shown.h"
 
 #include <geom/ellipsoid.h>
+#include <geom/internal/refuse.h>
 #include <geom/tolerances.h>
 
 #include <cmath>
 #include <numbers>
-#include <stdexcept>
 #include <string>
 
 namespace geom {
@@ -29,15 +29,14 @@ Ellipsoid::Ellipsoid(const Eigen::Vector3d& semi_axes)
   for (int k = 0; k < 3; ++k) {
     const double a = semi_axes[k];
     if (!(a >= kMinSemiAxis && a <= kMaxSemiAxis)) {
-      throw std::invalid_argument(std::string("Ellipsoid: semi-axis ") + "xyz"[k] + " is " + internal::shown(a) +
-                                  "; accepted: " + internal::shown(kMinSemiAxis) + " to " +
-                                  internal::shown(kMaxSemiAxis));
+      internal::refuse(std::string("Ellipsoid: semi-axis ") + "xyz"[k] + " is " + internal::shown(a) +
+                       "; accepted: " + internal::shown(kMinSemiAxis) + " to " + internal::shown(kMaxSemiAxis));
     }
   }
   const double ratio = bounding_radius() / inscribed_radius();
   if (!(ratio <= kMaxAspectRatio)) {
-    throw std::invalid_argument("Ellipsoid: ratio of the largest to the smallest semi-axis is " +
-                                internal::shown(ratio) + "; accepted: at most " + internal::shown(kMaxAspectRatio));
+    internal::refuse("Ellipsoid: ratio of the largest to the smallest semi-axis is " + internal::shown(ratio) +
+                     "; accepted: at most " + internal::shown(kMaxAspectRatio));
   }
 }
 

@@ -16,6 +16,16 @@ const char* to_string(SeedStatus status) {
   return "unknown";
 }
 
+const char* to_string(NewtonSystem system) {
+  switch (system) {
+    case NewtonSystem::eight:
+      return "eight";
+    case NewtonSystem::five:
+      return "five";
+  }
+  return "unknown";
+}
+
 DistanceResult internal::newton_distance_unchecked(const Ellipsoid& a, const Pose& X_WA, const Ellipsoid& b,
                                                    const Pose& X_WB, NewtonSystem system, const WitnessPair& seed,
                                                    const NewtonOptions& options) {

@@ -1,13 +1,13 @@
 #include "shown.h"
 
 #include <geom/ellipsoid.h>
+#include <geom/internal/refuse.h>
 #include <geom/superellipsoid.h>
 #include <geom/tolerances.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <stdexcept>
 #include <string>
 
 namespace geom {
@@ -16,8 +16,8 @@ namespace {
 using Eigen::Vector3d;
 
 [[noreturn]] void refuse(const std::string& what, double value, double least, double most) {
-  throw std::invalid_argument("Superellipsoid: " + what + " is " + internal::shown(value) +
-                              "; accepted: " + internal::shown(least) + " to " + internal::shown(most));
+  internal::refuse("Superellipsoid: " + what + " is " + internal::shown(value) +
+                   "; accepted: " + internal::shown(least) + " to " + internal::shown(most));
 }
 
 void check(const Vector3d& axes, double e1, double e2) {

@@ -103,7 +103,7 @@ TEST(Checkpoint, AMixtureGoesOnWithTheSameBits) {
 TEST(Checkpoint, TheOldFormatIsRead) {
   const Checkpoint old = hardbody::read_checkpoint(HARDBODY_OLD_CHECKPOINT);
   ASSERT_EQ(old.system.size(), 8);
-  EXPECT_EQ(ed::describe(old.system.species.at(0).shape), "ellipsoid 0.793701 x 0.793701 x 1.5874");
+  EXPECT_EQ(ed::describe(old.system.species.at(0).shape), "ellipsoid of semi-axes 0.793701 x 0.793701 x 1.5874");
   EXPECT_TRUE(old.system.species.at(0).spins);
   EXPECT_EQ(old.time, 0.1);
   EXPECT_EQ(check_status(old), 0);  // written again, in the new format

@@ -4,8 +4,10 @@
 """
 
 import csv
+import math
 import os
 import pathlib
+import re
 import shutil
 import signal
 import subprocess
@@ -85,7 +87,7 @@ class Results(Here):
             self.assertLess(abs(float(row["F_self"])), 1.01)
 
     def test_figures_and_verdicts_are_those_of_the_results(self):
-        for name in ["points.csv", "curves.csv"]:
+        for name in ["points.csv", "curves.csv", "dropped.csv"]:
             shutil.copy(DOCS / name, self.here)
         result = tool("--figures", "--results", self.here)
         self.assertEqual(result.returncode, 0, result.stderr)
@@ -99,6 +101,132 @@ class Results(Here):
         text = (DOCS / "README.md").read_text()
         for number in range(1, 17):
             self.assertIn(f"\n{number}. **", text)
+
+
+class Definitions(Here):
+    """What stands in points.csv is what it is called."""
+
+    WINDOWS = {"tau_C2": "C2", "tau_F": "F"}
+
+    def test_thresholds_are_those_of_the_program(self):
+        from paper import definitions
+
+        text = (ROOT / "libed" / "src" / "curves.h").read_text()
+        for name, here in [("FitFrom", definitions.FIT_FROM), ("Linearity", definitions.LINEARITY), ("Displaced", definitions.DISPLACED),
+                           ("Turned", definitions.TURNED), ("MostAmplitude", definitions.MOST_AMPLITUDE),
+                           ("LeastBeta", definitions.LEAST_BETA), ("FreeTurning", definitions.STEEPEST_TURN - 1)]:
+            with self.subTest(name):
+                numerator, _, denominator = re.search(rf"k{name} = ([^;]+);", text)[1].partition("/")
+                self.assertAlmostEqual(float(numerator) / float(denominator or 1), here, delta=1e-12)
+
+    @staticmethod
+    def row(**values):
+        """A fluid whose longest lag is 15 and that has only these values."""
+        from paper.results import POINT_COLUMNS
+
+        row = dict.fromkeys(POINT_COLUMNS, "") | {"X0": "2", "phi": "0.4", "equilibration_time": "8", "production_time": "240",
+                                                  "q": "3", "S_peak": "2", "precise": "true"}
+        return row | {key: str(value) for key, value in values.items()}
+
+    @staticmethod
+    def curve(amplitude=1.0, tau=1.0, beta=1.0):
+        lags = [0.02 * 10 ** (k / 10) for k in range(29)]
+        decay = [amplitude * math.exp(-((t / tau) ** beta)) for t in lags]
+        return [{"t": f"{t:.4g}", "C2": f"{y:.4g}", "F_self": f"{y:.4g}"} for t, y in zip(lags, decay)]
+
+    def dropped(self, row, curve):
+        """Names of the values that fall out; what else the row has stays."""
+        from paper.definitions import judged
+
+        kept, dropped = judged(row, curve)
+        names = [d["observable"] for d in dropped]
+        for d in dropped:
+            self.assertEqual(d["value"], row[d["observable"]])
+            self.assertEqual((kept[d["observable"]], kept[d["observable"] + "_error"]), ("", ""))
+        gone = {*names, *(name + "_error" for name in names)}
+        gone |= {f"{self.WINDOWS[name]}_fit_{end}" for name in names if name in self.WINDOWS for end in ("from", "to")}
+        gone |= {"precise"} if {"D_trans", "D_rot"} & set(names) else set()
+        self.assertEqual({key for key in row if kept[key] != row[key]} - gone, set())
+        self.assertEqual(judged(kept, curve), (kept, []))
+        return names
+
+    def test_translation(self):
+        # MSD q^2 / 6 is D q^2 t: at 3^2 and t = 6.7, 1 for D = 0.0166; from 0.76 to 1.32 of it in a window of slope 1 +- 0.2.
+        for D, names in [(0.02, []), (0.014, []), (0.0120, ["D_trans"]), (0.001, ["D_trans"])]:
+            with self.subTest(D):
+                self.assertEqual(self.dropped(self.row(D_trans=D, D_trans_error=1e-4), self.curve(tau=6)), names)
+        frozen = self.row(D_trans=0.1, S_peak=12)
+        self.assertEqual(self.dropped(frozen, self.curve(tau=40)), ["D_trans"])
+        self.assertEqual(self.dropped(frozen, self.curve(tau=2)), [])
+
+    def test_rotation(self):
+        # <|Delta Phi|^2> = 4 D t: 2/3 rad^2 at lag 15 for D = 0.0111.
+        for D, names in [(0.02, []), (0.011, []), (0.009, ["D_rot"])]:
+            with self.subTest(D):
+                self.assertEqual(self.dropped(self.row(D_rot=D, D_rot_error=1e-4), self.curve()), names)
+        self.assertEqual(self.dropped(self.row(D_rot_body=0.009), self.curve()), ["D_rot_body"])
+
+    def test_fits(self):
+        def fit(curve, name="C2", **values):
+            row = self.row(**{f"{key}_{name}": value for key, value in ({"tau": 1, "beta": 0.8} | values).items()})
+            return self.dropped(row | {f"{name}_fit_from": "0.2", f"{name}_fit_to": "4"}, curve)
+
+        for name in ("C2", "F"):
+            gone = [f"tau_{name}", f"beta_{name}"]
+            for amplitude, names in [(1, []), (1.29, []), (1.32, gone), (6, gone)]:
+                with self.subTest(fit=name, amplitude=amplitude):
+                    self.assertEqual(fit(self.curve(amplitude, 1, 0.8), name), names)
+            self.assertEqual(fit(self.curve(1, 1, 0.31), name, beta=0.31), [])
+            self.assertEqual(fit(self.curve(1, 1, 0.29), name, beta=0.29), gone)
+            self.assertEqual(fit(self.curve(1, 0.19, 0.8), name, tau=0.19), gone)
+
+    def test_longest_lag(self):
+        """Those of runs; curves that have not decayed end at it."""
+        from paper.definitions import longest_lag
+
+        self.assertEqual(longest_lag(self.row(), self.curve()), 15)
+        self.assertEqual(longest_lag(self.row(production_time=60), []), 3.75)
+        self.assertEqual(longest_lag(self.row(X0="3.5", phi="0.49", production_time=400, equilibration_time=60), []), 25)
+        self.assertEqual(longest_lag(self.row(X0="4", phi="0.435", production_time=2400, equilibration_time=106), []), 40)
+        self.assertEqual(longest_lag(self.row(X0="0.3125", phi="0.48", production_time=2120, equilibration_time=106), []), 106)
+
+    def test_committed_values_hold(self):
+        from paper.definitions import judged
+
+        curves = {}
+        for row in read(DOCS / "curves.csv"):
+            curves.setdefault((row["X0"], row["phi"]), []).append(row)
+        for row in read(DOCS / "points.csv"):
+            self.assertEqual(judged(row, curves[row["X0"], row["phi"]]), (row, []))
+
+    def test_what_fell_out_is_listed(self):
+        dropped = read(DOCS / "dropped.csv")
+        self.assertGreater(len(dropped), 30)
+        points = {(row["X0"], row["phi"]): row for row in read(DOCS / "points.csv")}
+        text = (DOCS / "README.md").read_text()
+        for d in dropped:
+            with self.subTest(X0=d["X0"], phi=d["phi"], observable=d["observable"]):
+                self.assertEqual(points[d["X0"], d["phi"]][d["observable"]], "")
+                lines = [line for line in text.splitlines() if line.startswith(f"| {d['X0']} | {d['phi']} |")]
+                self.assertTrue(any(f"{d['observable']} {d['value']}" in line and d["reason"] in line for line in lines))
+
+    def test_stored_rows_are_judged_again(self):
+        """--figures on rows as older programs wrote them: the same files."""
+        from paper.results import POINT_COLUMNS, csv_text
+
+        points = {(row["X0"], row["phi"]): row for row in read(DOCS / "points.csv")}
+        for d in read(DOCS / "dropped.csv"):
+            row = points[d["X0"], d["phi"]]
+            row |= {d["observable"]: d["value"], d["observable"] + "_error": d["error"]}
+            if window := self.WINDOWS.get(d["observable"]):
+                row |= {f"{window}_fit_from": d["fit_from"], f"{window}_fit_to": d["fit_to"]}
+        (self.here / "points.csv").write_text(csv_text(POINT_COLUMNS, points.values()))
+        shutil.copy(DOCS / "curves.csv", self.here)
+        result = tool("--figures", "--results", self.here)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("the definitions of 37 values do not hold", result.stdout)
+        for name in ["points.csv", "dropped.csv", "README.md"]:
+            self.assertEqual((self.here / name).read_text(), (DOCS / name).read_text(), name)
 
 
 class Verdicts(Here):

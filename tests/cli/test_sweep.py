@@ -454,7 +454,7 @@ class Failures(SweepCase):
         result = self.sweep(jamming + "[production]\ntime = 0\n[grid]\nseed = [4, 5, 6]\n")
         self.assertEqual(result.returncode, 1)
         self.assertEqual(sorted(self.statuses()), ["done", "done", "failed"])
-        message = [row["message"] for row in self.table() if row["message"]]
+        message = [row["message"] for row in self.table() if row["status"] == "failed"]
         self.assertRegex(message[0], "the compression got stuck at 0.61[0-9]* of 0.62; a lower value is needed")
         self.assertIn("failed: seed=", result.stdout)
 

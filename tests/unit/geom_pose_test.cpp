@@ -10,8 +10,10 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <Eigen/SVD>
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <stdexcept>
 #include <string>
@@ -153,6 +155,211 @@ TEST(Pose, RefusesQuaternionsThatAreNotOfLengthOne) {
   for (const double w : {0.0, 2.0, 1 + 1.01e-6, 1 - 1.01e-6, 1e200, kNaN, kInfinity}) {
     ASSERT_THAT(refusal([&] { return Pose::from_quaternion(w, 0, 0, 0); }), wanted) << w;
     ASSERT_THAT(refusal([&] { return Pose::from_quaternion(0, 0, w, 0); }), wanted) << w;
+  }
+}
+
+// ---- Quaternions of any length ------------------------------------------------------------------------------------
+
+using Real = long double;
+using ExactMatrix = Eigen::Matrix<Real, 3, 3>;
+using ExactVector = Eigen::Matrix<Real, 3, 1>;
+
+/// The rotation of q / |q| in long double.
+ExactMatrix exact_rotation(double w, double x, double y, double z) {
+  return Eigen::Quaternion<Real>(w, x, y, z).normalized().toRotationMatrix();
+}
+
+double largest_difference(const Matrix3d& R, const ExactMatrix& exact) {
+  return static_cast<double>((R.cast<Real>() - exact).cwiseAbs().maxCoeff());
+}
+
+TEST(Pose, NormalizedQuaternionTakesAnyLength) {
+  Random random(6);
+  for (int i = 0; i < 3000; ++i) {
+    const Vector3d n = random.log_uniform(1e-12, 1) * random.direction();
+    const double length = random.log_uniform(1e-150, 1e150);
+    const double w = length * random.uniform(-1, 1);
+    const Vector3d v = length * n;
+    const Pose X = Pose::normalized_quaternion(w, v.x(), v.y(), v.z(), {1, 2, 3});
+    ASSERT_LE(
+        largest_difference(X.rotation(), exact_rotation(w / length, v.x() / length, v.y() / length, v.z() / length)),
+        1e-15);
+    ASSERT_LE(orthonormality_error(X.rotation()), 2e-15);
+    ASSERT_EQ(X.position(), Vector3d(1, 2, 3));
+  }
+}
+
+TEST(Pose, NormalizedQuaternionTakesTheSmallestAndTheLargestNumbers) {
+  const double tiny = std::numeric_limits<double>::denorm_min();
+  const double huge = std::numeric_limits<double>::max();
+  EXPECT_EQ(Pose::normalized_quaternion(-3, 0, 0, 0).rotation(), Matrix3d::Identity());
+  for (const double length : {tiny, 1e-310, huge}) {
+    EXPECT_EQ(Pose::normalized_quaternion(length, 0, 0, 0).rotation(), Matrix3d::Identity());
+    // Half a turn about (1, 1, 0).
+    const Matrix3d swap = Pose::normalized_quaternion(0, length, length, 0).rotation();
+    EXPECT_LE((swap * Vector3d(1, 0, 0) - Vector3d(0, 1, 0)).norm(), 1e-15);
+  }
+  EXPECT_EQ(Pose::normalized_quaternion(1, tiny, 0, 0).rotation().row(0), Matrix3d::Identity().row(0));
+}
+
+TEST(Pose, NormalizedQuaternionRefusesZeroAndWhatIsNotFinite) {
+  EXPECT_THAT(refusal([] { return Pose::normalized_quaternion(0, 0, 0, -0.0); }),
+              AllOf(HasSubstr("zero"), HasSubstr("accepted: four finite numbers, not all of them 0")));
+  for (const double bad : {kNaN, kInfinity, -kInfinity}) {
+    for (int k = 0; k < 4; ++k) {
+      double q[4] = {1, 1, 1, 1};
+      q[k] = bad;
+      ASSERT_THAT(refusal([&] { return Pose::normalized_quaternion(q[0], q[1], q[2], q[3]); }),
+                  AllOf(HasSubstr("not finite"), HasSubstr("accepted: four finite numbers")));
+    }
+  }
+  EXPECT_THAT(refusal([] { return Pose::normalized_quaternion(1, 0, 0, 0, {kNaN, 0, 0}); }), HasSubstr("position"));
+}
+
+// ---- Eigen's types ------------------------------------------------------------------------------------------------
+
+TEST(Pose, QuaternionsOfEigenGoInAndOut) {
+  Random random(7);
+  for (int i = 0; i < 3000; ++i) {
+    // Small turns and nearly half turns too: every branch of the way back.
+    const double angle = i % 3 == 0   ? random.log_uniform(1e-12, 1)
+                         : i % 3 == 1 ? std::numbers::pi
+                                      : random.uniform(-4, 4);
+    const Vector3d axis = i % 2 == 0 ? random.direction() : Vector3d(Vector3d::Unit(i % 6 / 2));
+    const Eigen::Quaterniond q(Eigen::AngleAxisd(angle, axis));
+    const Pose X = Pose::from_quaternion(q, {1, 2, 3});
+    ASSERT_EQ(X.rotation(), Pose::from_quaternion(q.w(), q.x(), q.y(), q.z()).rotation());
+    const Eigen::Quaterniond back = X.quaternion();
+    ASSERT_NEAR(back.norm(), 1, 4e-16);
+    ASSERT_GE(back.w(), 0);
+    const double sign = back.coeffs().dot(q.coeffs()) < 0 ? -1 : 1;
+    ASSERT_LE((sign * back.coeffs() - q.coeffs()).cwiseAbs().maxCoeff(), 1e-15);
+    ASSERT_LE((Pose::from_quaternion(back).rotation() - X.rotation()).cwiseAbs().maxCoeff(), 3e-15);
+    ASSERT_LE((Pose::normalized_quaternion(q.cast<float>()).rotation() - X.rotation()).cwiseAbs().maxCoeff(), 1e-6);
+  }
+  const Eigen::Quaternion<double, Eigen::DontAlign> unaligned = Pose().quaternion<Eigen::DontAlign>();
+  EXPECT_EQ(unaligned.w(), 1);
+}
+
+TEST(Pose, IsometriesOfEigenGoInAndOutToTheLastBit) {
+  Random random(8);
+  for (int i = 0; i < 1000; ++i) {
+    const Pose X = random.pose(10.0);
+    const Eigen::Isometry3d T = X.isometry();
+    const Vector3d p = random.direction();
+    ASSERT_LE((T * p - X.to_world(p)).norm(), 1e-14);
+    ASSERT_EQ(T.linear(), X.rotation());
+    ASSERT_EQ(T.translation(), X.position());
+    ASSERT_EQ(T.matrix().row(3), Eigen::RowVector4d(0, 0, 0, 1));
+    const Pose back = Pose::from_isometry(T);
+    // What is orthonormal to 1e-15 is taken as it is; the rest is improved, by rounding.
+    ASSERT_LE((back.rotation() - X.rotation()).cwiseAbs().maxCoeff(), 2e-15);
+    ASSERT_EQ(back.position(), X.position());
+  }
+  Eigen::Isometry3d sheared = Eigen::Isometry3d::Identity();
+  sheared.linear()(0, 1) = 0.1;
+  EXPECT_THAT(refusal([&] { return Pose::from_isometry(sheared); }), HasSubstr("not orthonormal"));
+}
+
+// ---- The nearest rotation -----------------------------------------------------------------------------------------
+
+TEST(Pose, NearestRotationIsThePolarFactor) {
+  Random random(9);
+  for (int i = 0; i < 2000; ++i) {
+    const Matrix3d R = random.pose(0.0).rotation();
+    // R (1 + S) with S symmetric: its polar factor is R.
+    const double size = random.log_uniform(1e-12, 3e-3);
+    Matrix3d S;
+    for (int entry = 0; entry < 9; ++entry) S(entry / 3, entry % 3) = random.uniform(-size, size);
+    S = (0.5 * (S + S.transpose())).eval();
+    const ExactMatrix matrix = R.cast<Real>() * (ExactMatrix::Identity() + S.cast<Real>());
+    const Pose X = Pose::nearest_rotation(matrix.cast<double>(), {1, 2, 3});
+    ASSERT_LE((X.rotation() - R).cwiseAbs().maxCoeff(), 3e-15);  // R errs by 1e-15 itself
+    ASSERT_LE(orthonormality_error(X.rotation()), 2e-15);
+    ASSERT_EQ(X.position(), Vector3d(1, 2, 3));
+  }
+}
+
+/// What single precision makes of a chain of 10,000 turns is accepted, and is the rotation that it is nearest to.
+TEST(Pose, NearestRotationTakesChainsInSinglePrecision) {
+  Random random(10);
+  for (int chain = 0; chain < 20; ++chain) {
+    Eigen::Isometry3f T = Eigen::Isometry3f::Identity();
+    for (int i = 0; i < 10'000; ++i) {
+      const Eigen::AngleAxisf turn(static_cast<float>(random.uniform(-3, 3)), random.direction().cast<float>());
+      T = T * Eigen::Isometry3f(turn);
+    }
+    const Matrix3d drifted = T.linear().cast<double>();
+    ASSERT_GT(orthonormality_error(drifted), 1e-6);
+    ASSERT_LT(orthonormality_error(drifted), 0.1 * kNearestRotationTolerance);
+    ASSERT_THAT(refusal([&] { return Pose(drifted, Vector3d::Zero()); }), HasSubstr("not orthonormal"));
+    const Pose X = Pose::nearest_rotation(T);
+    const Eigen::JacobiSVD<Matrix3d> svd(drifted, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    ASSERT_LE((X.rotation() - svd.matrixU() * svd.matrixV().transpose()).cwiseAbs().maxCoeff(), 5e-15);
+  }
+  EXPECT_EQ(Pose::nearest_rotation(Eigen::Affine3d(Eigen::Translation3d(1, 2, 3))).position(), Vector3d(1, 2, 3));
+}
+
+TEST(Pose, NearestRotationRefusesReflectionsAndWorse) {
+  const auto accept = [](const Matrix3d& matrix) {
+    return refusal([&] { return Pose::nearest_rotation(matrix, Vector3d::Zero()); });
+  };
+  const Matrix3d R = Random(11).pose(0.0).rotation();
+  // R^T R - 1 of R (1 + s) is 2 s + s^2 on the diagonal.
+  EXPECT_EQ(accept(R * (1 + 0.49e-2)), "accepted");
+  EXPECT_EQ(accept(R * (1 - 0.5e-2)), "accepted");
+  EXPECT_THAT(accept(R * (1 + 0.5e-2)), AllOf(HasSubstr("not orthonormal"), HasSubstr("accepted: at most 1e-2")));
+  EXPECT_THAT(accept(-R), AllOf(HasSubstr("reflection"), HasSubstr("accepted: +1")));
+  for (const Matrix3d& bad : {Matrix3d(Matrix3d::Zero()), Matrix3d(Matrix3d::Ones()), Matrix3d(2 * R)}) {
+    EXPECT_THAT(accept(bad), HasSubstr("not orthonormal"));
+  }
+  Matrix3d holey = R;
+  holey(1, 2) = kNaN;
+  EXPECT_THAT(accept(holey), HasSubstr("not orthonormal"));
+}
+
+// ---- Composition and inverse --------------------------------------------------------------------------------------
+
+TEST(Pose, CompositionIsOneMapAfterTheOther) {
+  Random random(12);
+  for (int i = 0; i < 2000; ++i) {
+    const Pose X_WA = random.pose(random.log_uniform(1e-3, 1e3));
+    const Pose X_AB = random.pose(random.log_uniform(1e-3, 1e3));
+    const Pose X_WB = X_WA * X_AB;
+    const ExactMatrix R = X_WA.rotation().cast<Real>() * X_AB.rotation().cast<Real>();
+    ASSERT_LE(largest_difference(X_WB.rotation(), R), 2e-15);
+    const ExactVector p = X_WA.rotation().cast<Real>() * X_AB.position().cast<Real>() + X_WA.position().cast<Real>();
+    const double lengths = X_WA.position().norm() + X_AB.position().norm();
+    ASSERT_LE(static_cast<double>((X_WB.position().cast<Real>() - p).cwiseAbs().maxCoeff()), 2e-15 * lengths);
+  }
+  EXPECT_EQ((Pose() * Pose::translation({1, 2, 3})).position(), Vector3d(1, 2, 3));
+  EXPECT_THAT(refusal([] {
+                return Pose::translation({1e100, 0, 0}) * Pose::translation({1e100, 0, 0});
+              }),
+              HasSubstr("position is too far away"));
+}
+
+TEST(Pose, ChainsStayOrthonormal) {
+  Random random(13);
+  Pose X;
+  for (int i = 0; i < 100'000; ++i) {
+    X = X * random.pose(1.0);
+    ASSERT_LE(orthonormality_error(X.rotation()), 2e-15);
+  }
+}
+
+TEST(Pose, InverseUndoesThePose) {
+  Random random(14);
+  for (int i = 0; i < 2000; ++i) {
+    const Pose X = random.pose(random.log_uniform(1e-3, 1e3));
+    const Pose inverse = X.inverse();
+    ASSERT_EQ(inverse.rotation(), X.rotation().transpose());
+    const ExactVector p = -(X.rotation().cast<Real>().transpose() * X.position().cast<Real>());
+    const double length = X.position().norm();
+    ASSERT_LE(static_cast<double>((inverse.position().cast<Real>() - p).cwiseAbs().maxCoeff()), 1e-15 * length);
+    const Pose one = X * inverse;
+    ASSERT_LE((one.rotation() - Matrix3d::Identity()).cwiseAbs().maxCoeff(), 3e-15);
+    ASSERT_LE(one.position().norm(), 4e-15 * length);
   }
 }
 

@@ -31,6 +31,8 @@ NEMATIC_DISCS = [(2.75, 0.55), (3.2, 0.505), (3.47, 0.468), (3.55, 0.455), (4.0,
 # diffusion coefficients follow it, and blocks have to be longer than that for honest errors.
 SLOW_ORDER = {(0.2, 0.325), (0.225, 0.35), (0.25, 0.4), (0.28, 0.435), (0.3125, 0.465), (0.3448, 0.5), (3.2, 0.5), (3.5, 0.465),
               (3.5, 0.48), (4.0, 0.435), (4.5, 0.4)}
+LATE_PRODUCTION = 400  # beyond the nematic's beginning, where precision would take hours
+SLOW_ORDER_PRODUCTION = 2400
 BEYOND = 0.035  # so far into the nematic points are run: the line S = 0.3 lies between them
 
 
@@ -63,6 +65,21 @@ def nematic_packing(X0, table=NEMATIC):
 def is_late(point):
     """Expected to be nematic: C2 does not decay to zero there."""
     return point.phi >= nematic_packing(point.X0, NEMATIC_DISCS if point.X0 < 1 else NEMATIC)
+
+
+def fixed_time(point):
+    """Length of production where it is fixed: where velocities or angular velocities stay correlated for so long that the lags of an
+    "auto" production, 15 time units where equilibration is quick, are too short for diffusion (lags then reach 40); where precision
+    would take hours; where order is slow. None elsewhere."""
+    if point in SLOW_ORDER:
+        return SLOW_ORDER_PRODUCTION
+    turns_freely = point.X0 != 1 and (0.85 < point.X0 < 1.18 or (0.75 < point.X0 < 1.3 and point.phi < 0.35)
+                                      or (0.62 < point.X0 < 1.45 and point.phi <= 0.2))
+    if is_late(point):
+        return LATE_PRODUCTION
+    if point.phi > 0.1 and not turns_freely:
+        return None
+    return 800 if point.phi < 0.42 else 1200 if point.phi <= 0.5 else 3000
 
 
 def all_points():

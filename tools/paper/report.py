@@ -1,6 +1,7 @@
 """README.md of the study: how far it is, the paper's claims one by one, the figures."""
 
 from . import grid
+from .definitions import AMPLITUDE_SLACK, COMPONENTS, DISPLACED, LEAST_BETA, MOST_AMPLITUDE, STEEPEST_TURN, TURNED
 from .results import TARGET_ERROR, write_whole
 from .table import DECAYED, FROZEN, NEMATIC
 
@@ -12,13 +13,14 @@ X0 = 0.4 and 2.5, where D_trans is slow enough), moments of inertia 2/5 m min(a,
 
     tools/reproduce-paper               # goes on where points.csv ends; --minutes M stops after so many, --jobs N
     tools/reproduce-paper --results DIR # afresh: all points, into DIR instead, with this page and the figures; goes on there, too
-    tools/reproduce-paper --figures     # this page and all figures again, from points.csv and curves.csv
+    tools/reproduce-paper --figures     # this page and all figures again, from points.csv and curves.csv; see "Values that fell out"
     tools/reproduce-paper --quick       # a coarse grid with short runs, in some three minutes, in out/paper-quick
 
 `points.csv` has one row a state point: seed, times, every observable with its standard error, the wave number q of F_self, the
 windows of the fits, whether it was `equilibrated` (docs/configuration.md#auto), `precise` ({target:g} % or better in D_trans and D_rot)
-and `sound`, collisions, seconds. `curves.csv` has C2(t) and F_self(t) at about ten lags a decade. Everything else here is made
-from these two.
+and `sound`, collisions, seconds. `curves.csv` has C2(t) and F_self(t) at about ten lags a decade. `dropped.csv` has values
+whose definitions do not hold, see [below](#values-that-fell-out). Everything else here is made
+from these three.
 
 Runs equilibrate by themselves (docs/configuration.md#auto) and then produce until D_trans and D_rot are known to {target:g} %,
 for 16 longest lags at least, or 30 times as long. At packing fraction 0.1, and close to X0 = 1, where bodies fly or turn
@@ -43,14 +45,17 @@ point how long the rest will take.
   production. They are more than 10 % apart in {far_q} rows, where the peak is broad and low.
 - **C2 of spheres has no error**: nothing turns them, so that all blocks of a run hold the same rotation. From one packing fraction to
   the next t_C2_1overe scatters by 0.004, as 512 random angular velocities do.
+- **In nematics <|Delta Phi|^2> grows more slowly than t**: X0 = 3.5, 0.49 and X0 = 4, 0.45, run again for 400 time units, had logarithmic
+  slopes of 0.83 and 0.77 between lags of 11 and 25, at the edge of what counts as diffusion (1 +- 0.2). Whether a nematic row has a
+  D_rot is therefore a matter of chance; lines and verdicts use none of them.
 
-## How far it is
+{dropped}## How far it is
 
 {state}
 
 ## Claims
 
-Computed by `tools/paper/verdicts.py` from the two files, with the criteria that stand in the text.
+Computed by `tools/paper/verdicts.py` from these files, with the criteria that stand in the text.
 
 | claim of the paper | |
 |---|---|
@@ -68,8 +73,8 @@ When C2 has fallen to 1/e, with the lines of constant D_rot.
 
 ![Isochrones of C2](isochrones.svg)
 
-Fits of A exp[-(t/tau)^beta] to C2, from five mean collision intervals on (filled). Where C2 falls too early for that, in the middle,
-open symbols: the time at which it is 1/e, and the exponent of the whole decay from 0.9 to 0.03, A being 1. Above 1: compressed, inertial.
+Fits of A exp[-(t/tau)^beta] to C2, from five mean collision intervals on (filled). Where C2 falls too early for that, or A is above
+{most_amplitude:g}, in the middle, open symbols: the time at which it is 1/e, and the exponent of the whole decay from 0.9 to 0.03, A being 1. Above 1: compressed, inertial.
 
 ![tau_C2 and beta_C2 against X0](c2_fits.svg)
 
@@ -145,12 +150,69 @@ def _imprecise_text(rows):
     return text
 
 
-def readme(study, verdicts):
+DROPPED = """## Values that fell out
+
+`points.csv` has values only where their definitions hold; the program prints no others (doc of `ed::Correlations`):
+
+- D_trans: MSD q^2 / 6 >= {displaced:g} at the first lag of the fit, about 0.4 of the longest. Where displacements are Gaussian, F_self is then
+  at or below 1/e.
+- D_rot: <|Delta Phi|^2> >= {turned:.2g} rad^2 at the longest lag; where it is smaller at the first lag of the fit, a logarithmic slope of at
+  most {steepest:g}.
+- tau and beta: amplitude at most {amplitude:g}, beta at least {beta:g}, tau not below the first fitted lag. A larger amplitude means that C2 falls
+  faster before the first fitted lag: tau and beta describe the rest of a decay.
+
+Programs that wrote rows before wanted a slope of 1 +- 0.2 and nothing of fits. `tools/paper/definitions.py` judges their rows by what is
+stored: displacements by the coefficients, amplitudes by the curves (to {slack:g} %). One condition is the study's own, for the program
+does not see crystals: D_trans of a state that froze during production is dropped where F_self is above 1/e at the first lag of the fit.
+
+{state}
+"""
+
+
+def dropped_text(study, changes):
+    state = (_dropped_table(study) + "\n\n" + _changes_text(changes) + "\n") if study.dropped else "No value has fallen out.\n"
+    open_ones = [(row, doubt) for row, doubt in study.doubts if not doubt.certain]
+    if open_ones:
+        state += ("\nKept, because what is stored does not decide: "
+                  + "; ".join(f"{', '.join(d.names)} of X0 = {row.X0:g} at {row.phi:g} ({d.reason})" for row, d in open_ones) + ".\n")
+    return DROPPED.format(displaced=DISPLACED, turned=TURNED * COMPONENTS, steepest=STEEPEST_TURN, amplitude=MOST_AMPLITUDE, beta=LEAST_BETA,
+                          slack=100 * AMPLITUDE_SLACK, state=state)
+
+
+def _dropped_table(study):
+    """All values that fell out, those of one reason in one row."""
+    groups = {}
+    for d in study.dropped:
+        groups.setdefault((float(d["X0"]), float(d["phi"]), d["reason"]), []).append(d)
+    lines = [f"| {X0:g} | {phi:g} | {', '.join(d['observable'] + ' ' + d['value'] for d in group)} | {reason} |"
+             for (X0, phi, reason), group in sorted(groups.items())]
+    points = {(d["X0"], d["phi"]) for d in study.dropped}
+    text = f"{len(study.dropped)} values of {len(points)} points have fallen out. `dropped.csv` has them with errors and windows.\n\n"
+    return text + "\n".join(["| X0 | phi | values | why |", "|---|---|---|---|", *lines])
+
+
+def _changes_text(changes):
+    if not changes:
+        return "The claims below do not depend on them."
+    outcomes = [f"{number} ({old.outcome} with them, now {new.outcome})" for number, old, new in changes if old.outcome != new.outcome]
+    text = f"Outcomes that change: {'; '.join(outcomes)}." if outcomes else "No claim below has another outcome without them."
+    kept = [str(number) for number, old, new in changes if old.outcome == new.outcome]
+    if kept:
+        text += f" The figures in the {'text' if len(kept) == 1 else 'texts'} of {_listed(kept)} change, since fewer values are compared."
+    return text
+
+
+def _listed(words):
+    return words[0] if len(words) == 1 else ", ".join(words[:-1]) + " and " + words[-1]
+
+
+def readme(study, verdicts, changes):
     table = "\n".join(f"| {k}. {v.claim} | {v.outcome} |" for k, v in enumerate(verdicts, 1))
     details = "".join(f"{k}. **{v.claim}: {v.outcome}.** {v.text}\n\n" for k, v in enumerate(verdicts, 1))
     far_q = sum(abs(r.q / r["q_peak"] - 1) > 0.1 for r in study.rows if r.has("q_peak"))
-    return TEXT.format(target=100 * TARGET_ERROR, far_q=far_q, state=state_text(study), table=table, details=details)
+    return TEXT.format(target=100 * TARGET_ERROR, far_q=far_q, state=state_text(study), table=table, details=details,
+                       dropped=dropped_text(study, changes), most_amplitude=MOST_AMPLITUDE)
 
 
-def write_readme(study, verdicts, directory):
-    write_whole(directory / "README.md", readme(study, verdicts))
+def write_readme(study, verdicts, changes, directory):
+    write_whole(directory / "README.md", readme(study, verdicts, changes))

@@ -1,4 +1,5 @@
-"""points.csv, one row a state point, and curves.csv, C2(t) and F_self(t) of each: read, extended, written whole."""
+"""points.csv, one row a state point, curves.csv, C2(t) and F_self(t) of each, and dropped.csv, values whose definition does not
+hold: read, extended, written whole."""
 
 import csv
 import io
@@ -7,6 +8,7 @@ import math
 import os
 import pathlib
 
+from .definitions import judged
 from .grid import Point
 
 TARGET_ERROR = 0.03  # relative, of D_trans and D_rot
@@ -19,6 +21,7 @@ POINT_COLUMNS = (["X0", "phi", "seed", "number", "equilibration_time", "producti
                  + ["q", "C2_fit_from", "C2_fit_to", "F_fit_from", "F_fit_to", "equilibrated", "precise", "sound",
                     "collisions", "wall_seconds", "version"])
 CURVE_COLUMNS = ["X0", "phi", "t", "C2", "C2_error", "F_self", "F_self_error"]
+DROPPED_COLUMNS = ["X0", "phi", "observable", "value", "error", "fit_from", "fit_to", "reason"]
 
 LAGS_A_DECADE = 10
 SHORTEST_LAG = 0.02
@@ -116,25 +119,42 @@ def csv_text(columns, rows):
 
 
 class Results:
-    """Both files of a directory. A point that is in points.csv has its curves: those are written first."""
+    """The three files of a directory. A point that is in points.csv has its curves and dropped values: those are written first."""
 
     def __init__(self, directory):
         self.directory = pathlib.Path(directory)
         self.points = {point_of(row): row for row in read_rows(self.directory / "points.csv")}
-        self.curves = {}
-        for row in read_rows(self.directory / "curves.csv"):
-            self.curves.setdefault(point_of(row), []).append(row)
+        self.curves = self._of_points("curves.csv")
+        self.dropped = self._of_points("dropped.csv")
+
+    def _of_points(self, name):
+        groups = {}
+        for row in read_rows(self.directory / name):
+            groups.setdefault(point_of(row), []).append(row)
+        return groups
 
     def add(self, point, row, curve):
-        self.points[point] = row
         self.curves[point] = curve
+        self.points[point], self.dropped[point] = judged(row, curve)
         self.write()
+
+    def judge(self):
+        """Drops values of all rows whose definition does not hold; their number. Writes only what changes."""
+        number = 0
+        for point, row in self.points.items():
+            self.points[point], dropped = judged(row, self.curves.get(point, []))
+            self.dropped.setdefault(point, []).extend(dropped)
+            number += len(dropped)
+        if number or not (self.directory / "dropped.csv").exists():
+            self.write()
+        return number
 
     def write(self):
         self.directory.mkdir(parents=True, exist_ok=True)
-        curve_rows_sorted = [row for point in sorted(self.points) for row in self.curves.get(point, [])]
-        write_whole(self.directory / "curves.csv", csv_text(CURVE_COLUMNS, curve_rows_sorted))
-        write_whole(self.directory / "points.csv", csv_text(POINT_COLUMNS, [self.points[p] for p in sorted(self.points)]))
+        points = sorted(self.points)
+        for name, columns, groups in (("curves.csv", CURVE_COLUMNS, self.curves), ("dropped.csv", DROPPED_COLUMNS, self.dropped)):
+            write_whole(self.directory / name, csv_text(columns, [row for point in points for row in groups.get(point, [])]))
+        write_whole(self.directory / "points.csv", csv_text(POINT_COLUMNS, [self.points[p] for p in points]))
 
     def take(self, directory, point):
         """The results of a finished run; its summary."""

@@ -32,31 +32,13 @@ cap = {cap:g}
 """
 
 CAP = 500
-# Where C2 is not expected to decay, at the price of hours for what is no fluid.
-LATE_CAP = 60
-LATE_PRODUCTION = 400
-SLOW_ORDER_PRODUCTION = 2400
+LATE_CAP = 60  # where C2 is not expected to decay, which would take hours for what is no fluid
 QUICK_PRODUCTION = 60
 QUICK_CAP = 60
 
 
-def _fixed_time(point):
-    """Where velocities, or angular velocities, are correlated for so long that the lags of an "auto" production, 15 time
-    units where equilibration is quick, are too short for diffusion: a production with lags up to 40. The same where
-    precision would take hours, and where order is slow. Else nothing."""
-    if point in grid.SLOW_ORDER:
-        return SLOW_ORDER_PRODUCTION
-    turns_freely = point.X0 != 1 and (0.85 < point.X0 < 1.18 or (0.75 < point.X0 < 1.3 and point.phi < 0.35)
-                                      or (0.62 < point.X0 < 1.45 and point.phi <= 0.2))
-    if grid.is_late(point):
-        return LATE_PRODUCTION
-    if point.phi > 0.1 and not turns_freely:
-        return None
-    return 800 if point.phi < 0.42 else 1200 if point.phi <= 0.5 else 3000
-
-
 def production_text(point, quick):
-    time_units = QUICK_PRODUCTION if quick else _fixed_time(point)
+    time_units = QUICK_PRODUCTION if quick else grid.fixed_time(point)
     return f"time = {time_units}" if time_units else f'time = "auto"\ntarget_error = {TARGET_ERROR:g}'
 
 

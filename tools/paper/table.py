@@ -3,15 +3,11 @@
 import math
 from collections import defaultdict
 
+from .definitions import FROZEN, doubts, number
 from .results import OBSERVABLES, point_of, read_rows
 
 NEMATIC = 0.3  # S above it, the paper's criterion
-FROZEN = 4  # S_peak, the mean over production, above it: a crystal; of these fluids it is below 3.3
 DECAYED = 0.03  # C2 must have come down to it for a fit: with little order left it ends at S^2
-
-
-def _number(text):
-    return float(text) if text else math.nan
 
 
 class Row:
@@ -20,13 +16,13 @@ class Row:
     def __init__(self, row):
         self.point = point_of(row)
         self.X0, self.phi = self.point
-        self.values = {name: _number(row[name]) for name in OBSERVABLES}
-        self.errors = {name: _number(row[name + "_error"]) for name in OBSERVABLES}
+        self.values = {name: number(row[name]) for name in OBSERVABLES}
+        self.errors = {name: number(row[name + "_error"]) for name in OBSERVABLES}
         self.equilibrated = row["equilibrated"] == "true"
         self.precise = row["precise"] == "true"
-        self.collisions = _number(row["collisions"])
-        self.seconds = _number(row["wall_seconds"])
-        self.q = _number(row["q"])
+        self.collisions = number(row["collisions"])
+        self.seconds = number(row["wall_seconds"])
+        self.q = number(row["q"])
         self.rate = self.values["collision_rate"]
 
     def __getitem__(self, name):
@@ -47,16 +43,30 @@ class Row:
 
 
 class Study:
-    def __init__(self, directory):
-        self.rows = [Row(row) for row in read_rows(directory / "points.csv")]
+    """All rows; with the values in dropped.csv, if `restored`."""
+
+    def __init__(self, directory, restored=False):
+        rows, curves = read_rows(directory / "points.csv"), defaultdict(list)
+        for row in read_rows(directory / "curves.csv"):
+            curves[point_of(row)].append(row)
+        self.rows = [Row(row) for row in rows]
         self.at = {row.point: row for row in self.rows}
         self.curves = defaultdict(list)
-        for row in read_rows(directory / "curves.csv"):
-            self.curves[point_of(row)].append({key: _number(row[key]) for key in ("t", "C2", "C2_error", "F_self", "F_self_error")})
+        for point, curve in curves.items():
+            self.curves[point] = [{key: number(c[key]) for key in ("t", "C2", "C2_error", "F_self", "F_self_error")} for c in curve]
+        self.dropped = read_rows(directory / "dropped.csv")
+        self.doubts = [(self.at[point_of(row)], doubt) for row in rows for doubt in doubts(row, curves[point_of(row)])]
+        if restored:
+            self._restore()
         self.undecayed = [r for r in self.isotropic
                           if r.has("tau_C2") and not any(c["C2"] <= DECAYED for c in self.curves[r.point])]
         for row in self.undecayed:
             row.values.update(tau_C2=math.nan, beta_C2=math.nan)
+
+    def _restore(self):
+        for d in self.dropped:
+            row = self.at[point_of(d)]
+            row.values[d["observable"]], row.errors[d["observable"]] = number(d["value"]), number(d["error"])
 
     @property
     def isotropic(self):

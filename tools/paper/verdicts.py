@@ -470,3 +470,8 @@ CLAIMS = [swallow, falls_with_phi, rotation_by_X0, perpendicular, slowing_along_
 
 def verdicts(study, lines):
     return [claim(study, lines) for claim in CLAIMS]
+
+
+def changed_claims(after, before):
+    """Numbers of claims, from 1 on, whose outcomes or texts differ: [(number, before, after), ..]."""
+    return [(number, old, new) for number, (old, new) in enumerate(zip(before, after), 1) if old != new]

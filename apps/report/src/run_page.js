@@ -30,7 +30,7 @@ export function sheet(headlines, missing) {
     const why = missing === undefined && !Number.isFinite(line.value) && line.missing;
     const value = why ? h('dd', { class: 'why' }, h('span', { class: 'none' }, line.missing))
       : h('dd', {}, number(line, missing), h('span', { class: 'unit' }, line.unit));
-    return h('div', { 'data-key': line.key, title: line.meaning }, name, value);
+    return h('div', { 'data-key': line.key, class: why ? 'lacks' : '', title: line.meaning }, name, value);
   }));
 }
 

@@ -16,7 +16,8 @@ enum class MissingReason {
   not_measured,              ///< nothing has been measured, or not even one block of it
   no_collisions,             ///< no body has met another
   lags_too_short,            ///< no time origin has been followed up to the longest lag
-  ballistic,                 ///< displacements still grow faster than diffusion at the longest lag
+  ballistic,                 ///< displacements still grow faster than those of diffusion at the longest lag
+  subdiffusive,              ///< displacements still grow more slowly than those of diffusion at the longest lag
   not_displaced,             ///< bodies have not moved far enough for diffusion
   not_turned,                ///< bodies have not turned far enough for rotational diffusion
   not_decayed,               ///< the correlation is still above 1/e at the longest lag
@@ -33,7 +34,7 @@ enum class MissingReason {
 struct Missing {
   MissingReason reason = MissingReason::not_measured;
   /// not_displaced: root of the MSD at the longest lag; not_turned: the same of the rotation, in rad; not_decayed: the
-  /// correlation there. NaN for other reasons.
+  /// correlation there; ballistic, subdiffusive: the power of time that displacements grow with. NaN for other reasons.
   double reached = std::numeric_limits<double>::quiet_NaN();
 };
 

@@ -17,6 +17,9 @@ enum class Finder {
   bracketing,  ///< the paper's: steps of at most d / (an overestimate of |dd/dt|), at least eps_d / that
 };
 
+/// The enumerator's name.
+ED_EXPORT const char* to_string(Finder finder);
+
 /// How "bracketing" finds distances.
 enum class DistanceMethod {
   dual,     ///< geom::distance
@@ -24,11 +27,17 @@ enum class DistanceMethod {
   newton5,  ///< the same on 5
 };
 
+/// The enumerator's name.
+ED_EXPORT const char* to_string(DistanceMethod method);
+
 /// How "bracketing" ends, once a contact is between two times.
 enum class ContactRoot {
   newton,           ///< Newton's method on the paper's eqs. (contime) for contact point, alpha and time
   one_dimensional,  ///< a safeguarded root finder on d(t) = 0 (the paper's footnote)
 };
+
+/// The enumerator's name.
+ED_EXPORT const char* to_string(ContactRoot root);
 
 /// A guess of the closest points of two bodies to start Newton's method from.
 ///
@@ -52,9 +61,13 @@ struct FailedDistance {
   geom::WitnessPair seed;
 };
 
-/// Everything but `finder` is for "bracketing" alone.
+/// Settings of a contact search: everything after `max_evaluations` is for "bracketing" alone.
 struct ContactOptions {
   Finder finder = Finder::certified;
+  /// Budget of time_of_contact with "certified", >= 1: about the number of points in time to look at, at 0.3 to 2
+  /// microseconds for ellipsoids of revolution and up to 50 for other bodies. Most searches need 3 to 20, some turning
+  /// bodies hundreds. A simulation has budgets of its own.
+  int max_evaluations = 2000;
   double eps_d =
       1e-6;  ///< length; 0 < eps_d < the smallest semi-axis. Contacts shallower than about this can be missed
   DistanceMethod distance = DistanceMethod::dual;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <geom/internal/eigen_layout.h>
+
 /// Marks what libhardbody_ed exports; everything else is hidden (built with -fvisibility=hidden).
 #if defined(__GNUC__)
 #define ED_EXPORT __attribute__((visibility("default")))

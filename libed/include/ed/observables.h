@@ -100,12 +100,14 @@ struct BlockRow {
 /// Diffusion coefficients are slopes of displacements over [0.4, 1] of the longest lag. They exist where motion is
 /// diffusive there; otherwise Estimate::missing says why they do not:
 /// - the logarithmic slope over these lags is 1 +- 0.2;
-/// - D_trans: MSD q^2 / 6 >= 1 at the first of these lags: bodies have left their cages. q is the wave number of the
-/// first
-///   peak of S(q) of all bodies, measured with the rest whatever wave numbers F_self is wanted at; where scatter hides
-///   it, that of spheres of the same packing fraction; where sizes are unknown, 2 pi (N / V)^(1/3). A group of several
-///   whose own S(q) has a clear peak at a smaller wave number takes that one;
-/// - D_rot and D_rot_body of c components: <|Delta Phi|^2> >= c / 3 rad^2 at the longest lag; of one axis, 1/3.
+/// - D_trans: bodies have left their cages at the first of these lags: x = MSD q^2 / 6 >= 1, and F_self(q) to the order
+///   of alpha2, exp(-x) (1 + alpha2 x^2 / 2), is at most 1/e. q is the wave number of the first peak of S(q) of all
+///   bodies, measured with the rest whatever wave numbers F_self is wanted at; where scatter hides it, that of spheres
+///   of the same packing fraction; where sizes are unknown, 2 pi (N / V)^(1/3). A group of several whose own S(q) has a
+///   clear peak at a smaller wave number takes that one;
+/// - D_rot and D_rot_body of c components: <|Delta Phi|^2> >= c / 3 rad^2 at the longest lag; where it is less than
+/// that
+///   at the first of these lags, the logarithmic slope is at most 1.1. Single axes have c = 1.
 ///
 /// This is decided on all data; errors are from blocks, which decide nothing.
 ///
@@ -113,7 +115,7 @@ struct BlockRow {
 /// of rotation alone has no error (NaN): blocks hold the same motion. The same for D_rot of all bodies where nothing
 /// turns those of one group.
 ///
-/// A decay falls to 1/e, or has no time; its fit has an amplitude of at most 1.2, tau no smaller than the first fitted
+/// A decay falls to 1/e, or has no time; its fit has an amplitude of at most 1.3, tau no smaller than the first fitted
 /// lag, and beta of at least 0.3, or is none.
 struct Correlations {
   Estimate D_trans;      ///< slope of the MSD / 6

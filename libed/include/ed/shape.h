@@ -109,7 +109,7 @@ ED_EXPORT Eigen::Vector3d half_extents(const BodyShape& shape);
 ED_EXPORT geom::DistanceResult distance(const BodyShape& a, const geom::Pose& X_WA, const BodyShape& b,
                                         const geom::Pose& X_WB);
 
-/// What the shape is, for messages: "ellipsoid 1 x 1 x 3".
+/// The shape in words, for messages: "ellipsoid of semi-axes 1 x 1 x 3".
 ED_EXPORT std::string describe(const BodyShape& shape);
 
 }  // namespace ed

@@ -61,7 +61,7 @@ enum class FailureReason {
   declined,  ///< no method tells whether the bodies overlap; they are looked at again a little later
 };
 
-/// The enumerator's name.
+/// The reason in words.
 ED_EXPORT const char* to_string(FailureReason reason);
 
 /// A pair that could not be predicted as it should, at the moment where that failed, with all that is needed to look at
@@ -86,6 +86,9 @@ enum class EventKind {
   look,     ///< at a pair again, whose certified bound has come
   contact,  ///< of a pair
 };
+
+/// The enumerator's name.
+ED_EXPORT const char* to_string(EventKind kind);
 
 /// Many events in next to no time: a run that would never end. Always a defect, of the state or of the program.
 struct Stall {

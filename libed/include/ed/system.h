@@ -93,6 +93,9 @@ enum class Neighbours {
   cells,    ///< the paper's plain algorithm: bodies in the same or an adjacent cell; no thickness
 };
 
+/// The enumerator's name.
+ED_EXPORT const char* to_string(Neighbours neighbours);
+
 /// The smallest box in which one image of every pair of these bodies is the only one that matters: box / 2 > 2 R + 4
 /// delta_min, with R the largest bounding radius and delta_min the thinnest neighbour-list envelope in use; for cells,
 /// box > 6 R, three cells; for obp of other bodies than ellipsoids of revolution, box / 2 > 2 R + 4 s, with s how far a

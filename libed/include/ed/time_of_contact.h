@@ -18,7 +18,11 @@ enum class ContactStatus {
   hit,          ///< the bodies touch at `time`, approaching, and not before
   separated,    ///< no contact up to `time` = t_max; certified by Finder::certified, not found by Finder::bracketing
   overlapping,  ///< they overlap at `time` by more than kOverlap times the sum of their bounding radii
-  failed,       ///< the search ended at `time` without an answer; no contact before, in the same sense as `separated`
+  /// ContactOptions::max_evaluations are spent: `time` is a lower bound of the time of the contact, if there is one;
+  /// certified in the same sense as `separated`. A search from there on (propagate) goes on.
+  budget_exhausted,
+  failed,  ///< no method tells whether the bodies overlap at `time`; no contact before, in the same sense as
+           ///< `separated`
 };
 
 /// The enumerator's name.
@@ -47,9 +51,14 @@ struct [[nodiscard]] ContactResult {
 /// Accuracy: at the returned time the distance is below 2e-15 times the size of the pair or the rounding error of the
 /// time itself, for bodies of revolution; for others mostly too, and in one of 400,000 trials it was above 1e-13, at
 /// the tips of bodies with exponents of 1.6. The time of a contact met head-on is right to about that over the normal
-/// velocity, that of a grazing one to the square root. `failed` means that the budget of evaluations was spent, or that
-/// no method tells whether the bodies overlap; the motions that were passed are all that is needed to look at the pair
-/// again. Never allocates in the search.
+/// velocity, that of a grazing one to the square root. Never allocates in the search.
+///
+/// Effort is limited by `options.max_evaluations`, a few milliseconds by default. Where it does not suffice, the status
+/// is `budget_exhausted`, and `time` a certified lower bound of the time of the contact. Bodies that touch without
+/// approaching, slide on flat faces or turn fast without getting nearer, take few evaluations: the convex hulls of what
+/// they sweep by turning tell where they may meet. (Exactly for ellipsoids of revolution, nearly so for any body that
+/// turns about an axis that stays where it is; those that wobble are taken to sweep their bounding spheres.) It is
+/// bodies that turn within each other's reach, like wheels that mesh, that exhaust the budget.
 ///
 /// Bodies: ellipsoids and superellipsoids whose exponents are within [kMinExponentInMotion, kMaxExponentInMotion], and
 /// a user's own (CustomShape), with any moments of inertia that a body can have. Ellipsoids of revolution about an axis
@@ -57,8 +66,8 @@ struct [[nodiscard]] ContactResult {
 /// hide is bounded for superellipsoids with semi-axes from 1/1000 to 1000 units of length. Values that are not finite,
 /// exponents out of range and inertia that no body can have throw std::invalid_argument.
 ///
-/// `options.finder = Finder::bracketing` searches as the paper does instead, which is no proof. `failed`, with either
-/// finder, if the budget of evaluations was spent.
+/// `options.finder = Finder::bracketing` searches as the paper does instead, which is no proof; its budget of a million
+/// distances is not an option.
 ED_EXPORT ContactResult time_of_contact(const geom::Ellipsoid& a, const Motion& motion_a, const geom::Ellipsoid& b,
                                         const Motion& motion_b, double t_max, const ContactOptions& options = {});
 

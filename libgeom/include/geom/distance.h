@@ -37,6 +37,9 @@ enum class Penetration {
   local,
 };
 
+/// The enumerator's name.
+GEOM_EXPORT const char* to_string(Penetration penetration);
+
 /// Where a distance query starts, and how far it goes.
 struct DistanceOptions {
   /// Warm start: a guess of the normal from A to B, for instance the last answer's. Any length from 1e-145 to 1e150;

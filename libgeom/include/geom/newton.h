@@ -43,6 +43,9 @@ enum class NewtonSystem {
   five,   ///< xB eliminated by eq. (dist8d): unknowns xA, alpha, beta
 };
 
+/// The enumerator's name.
+GEOM_EXPORT const char* to_string(NewtonSystem system);
+
 /// How far `newton_distance` goes.
 struct NewtonOptions {
   int max_iterations = kMaxNewtonIterations;  ///< evaluations of the equations in each of two attempts, >= 1

@@ -4,40 +4,114 @@
 
 #include <Eigen/Core>
 
+#include <array>
+
 namespace geom {
 
 class Pose;
 
 namespace internal {
 
-/// A pose without the checks, for loops: the rotation must be orthonormal to rounding, the numbers finite.
+/// Pose without the checks, for loops: the rotation must be orthonormal to rounding, the numbers finite.
 Pose unchecked_pose(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& position);
+
+/// The unit quaternion w, x, y, z of an orthonormal matrix, w >= 0. An array, whose alignment depends on no flag of the
+/// compiler, unlike that of Eigen's quaternions (docs/decisions/017).
+GEOM_EXPORT std::array<double, 4> quaternion_of(const Eigen::Matrix3d& rotation);
 
 }  // namespace internal
 
 /// Position and orientation of a body B in a world W: p_W = rotation * p_B + position.
 ///
-/// A Pose is valid by construction, so that no query needs to check it again: the constructors throw
+/// A Pose is valid by construction, so that no query needs to check it again: whatever makes one throws
 /// std::invalid_argument when a number is not finite, a coordinate of the position is beyond +-kMaxCoordinate (1e100),
-/// or the rotation is further than kPoseTolerance (1e-6) from a proper orthonormal matrix; a rotation within that
-/// tolerance is replaced by the nearest orthonormal one.
+/// or the orientation is not one within the tolerance that is stated there. An orientation within it is replaced by the
+/// nearest rotation, so that `rotation()` is always orthonormal to rounding: no entry of R^T R - 1 is above 2e-15.
+///
+/// Functions that take or return Eigen's Quaternion and Transform are for programs that include <Eigen/Geometry>.
 class GEOM_EXPORT Pose {
  public:
   /// The identity.
   Pose() = default;
 
-  /// `rotation`: columns are the body's axes in world coordinates.
+  /// `rotation`: columns are the body's axes in world coordinates, orthonormal within kPoseTolerance (1e-6, the largest
+  /// entry of R^T R - 1), no reflection.
   Pose(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& position);
 
   /// Position alone, not turned.
   static Pose translation(const Eigen::Vector3d& position);
 
-  /// From a quaternion (w, x, y, z), body to world; its norm must be 1 within kPoseTolerance.
+  /// Orientation by a quaternion (w, x, y, z), body to world; its norm must be 1 within kPoseTolerance.
   static Pose from_quaternion(double w, double x, double y, double z,
                               const Eigen::Vector3d& position = Eigen::Vector3d::Zero());
+  /// from_quaternion of Eigen's, whose constructor takes w first and which stores it last.
+  template <int Options>
+  static Pose from_quaternion(const Eigen::Quaternion<double, Options>& q,
+                              const Eigen::Vector3d& position = Eigen::Vector3d::Zero()) {
+    return from_quaternion(q.w(), q.x(), q.y(), q.z(), position);
+  }
+
+  /// Orientation by q / |q|, q any quaternion (w, x, y, z) of finite numbers, body to world, but 0; its length has no
+  /// meaning and may under- or overflow. Entries of the rotation are right to 1e-15.
+  static Pose normalized_quaternion(double w, double x, double y, double z,
+                                    const Eigen::Vector3d& position = Eigen::Vector3d::Zero());
+  /// normalized_quaternion of Eigen's, in either precision.
+  template <class Scalar, int Options>
+  static Pose normalized_quaternion(const Eigen::Quaternion<Scalar, Options>& q,
+                                    const Eigen::Vector3d& position = Eigen::Vector3d::Zero()) {
+    return normalized_quaternion(static_cast<double>(q.w()), static_cast<double>(q.x()), static_cast<double>(q.y()),
+                                 static_cast<double>(q.z()), position);
+  }
+
+  /// Orientation by the rotation nearest to a matrix (in the Frobenius norm: its polar factor), found to 2e-15 an
+  /// entry. For products of many transforms, or of some in single precision, that have drifted: the matrix must be
+  /// orthonormal within kNearestRotationTolerance (1e-2, the largest entry of M^T M - 1), no reflection. Sheared or
+  /// scaled ones beyond that are refused.
+  static Pose nearest_rotation(const Eigen::Matrix3d& matrix, const Eigen::Vector3d& position);
+  /// nearest_rotation of the linear part of a transform in either precision, not projective, with its translation.
+  template <class Scalar, int Mode, int Options>
+  static Pose nearest_rotation(const Eigen::Transform<Scalar, 3, Mode, Options>& X_WB) {
+    static_assert(Mode != int{Eigen::Projective}, "Pose::nearest_rotation takes Isometry, Affine and AffineCompact");
+    return nearest_rotation(Eigen::Matrix3d(X_WB.linear().template cast<double>()),
+                            Eigen::Vector3d(X_WB.translation().template cast<double>()));
+  }
+
+  /// Pose(X_WB.linear(), X_WB.translation()), X_WB mapping body coordinates to the world: to the same bits where the
+  /// linear part is orthonormal to 1e-15.
+  template <int Options>
+  static Pose from_isometry(const Eigen::Transform<double, 3, Eigen::Isometry, Options>& X_WB) {
+    return {Eigen::Matrix3d(X_WB.linear()), Eigen::Vector3d(X_WB.translation())};
+  }
 
   const Eigen::Matrix3d& rotation() const { return rotation_; }  ///< columns: the body's axes in the world
   const Eigen::Vector3d& position() const { return position_; }  ///< of the body's origin
+
+  /// Orientation as a unit quaternion, body to world, w >= 0, each component to 1e-15. `position()` is not in it.
+  template <int Options = Eigen::AutoAlign>
+  Eigen::Quaternion<double, Options> quaternion() const {
+    const std::array<double, 4> q = internal::quaternion_of(rotation_);
+    return {q[0], q[1], q[2], q[3]};
+  }
+
+  /// The same map as Eigen's transform, to the last bit.
+  template <int Options = Eigen::AutoAlign>
+  Eigen::Transform<double, 3, Eigen::Isometry, Options> isometry() const {
+    Eigen::Transform<double, 3, Eigen::Isometry, Options> X_WB;
+    X_WB.setIdentity();
+    X_WB.linear() = rotation_;
+    X_WB.translation() = position_;
+    return X_WB;
+  }
+
+  /// Composition, X_WA * X_AB = X_WB: (X_WA * X_AB).to_world(p) = X_WA.to_world(X_AB.to_world(p)). Entries of the
+  /// rotation are right to 2e-15, in chains of any length orthonormal to rounding; coordinates of the position to 2e-15
+  /// of the sum of both positions' lengths. Throws std::invalid_argument if the position is beyond kMaxCoordinate.
+  Pose operator*(const Pose& X_BC) const;
+
+  /// The pose of the world seen from the body, X_BW: inverse().to_world(p) = to_body(p). The rotation is the transposed
+  /// one, exactly; coordinates of the position are right to 1e-15 of its length. Throws std::invalid_argument if the
+  /// position is beyond kMaxCoordinate.
+  Pose inverse() const;
 
   /// Coordinates of a body point in the world.
   Eigen::Vector3d to_world(const Eigen::Vector3d& p_B) const { return rotation_ * p_B + position_; }

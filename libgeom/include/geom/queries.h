@@ -29,8 +29,15 @@ template <SupportShape ShapeA, SupportShape ShapeB>
 double distance_lower_bound(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const Pose& X_WB,
                             const Eigen::Vector3d& n);
 
-/// Of `overlap`.
-enum class Answer { no, yes, unknown };
+/// The answer of `overlap`.
+enum class Answer {
+  no,       ///< certain: they are apart
+  yes,      ///< certain, or they touch to rounding
+  unknown,  ///< neither is certain
+};
+
+/// The enumerator's name.
+GEOM_EXPORT const char* to_string(Answer answer);
 
 /// Whether two bodies overlap (touching counts as overlap). Mostly decided by one support evaluation, across `start` or
 /// the line of centres, or by the inscribed spheres; else by `distance`: `no` by a positive lower bound, `yes` by a
@@ -72,6 +79,9 @@ enum class RayStatus {
   not_converged,  ///< no answer
 };
 
+/// The enumerator's name.
+GEOM_EXPORT const char* to_string(RayStatus status);
+
 /// Where a ray meets a body. World frame.
 struct [[nodiscard]] RayHit {
   RayStatus status = RayStatus::not_converged;
@@ -83,15 +93,20 @@ struct [[nodiscard]] RayHit {
 
 /// The first point of origin + t direction, t >= 0, in the body; direction != 0, of any length. World frame. Declined
 /// (`not_converged`) if a number is not finite, the direction's length and t included, or the origin beyond
-/// kMaxCoordinate. A ray meets the body where their distance is no larger than kRayGap times the lengths involved: one
+/// kMaxCoordinate. A ray meets the body where their distance is no larger than kRayGap times the lengths involved, the
+/// bounding radius R and the distance of the origin from the body's centre, of which no more than about 4 R counts: one
 /// that starts on the surface does at t = 0, whatever its direction.
 ///
-/// Advances from tangent plane to tangent plane of the closest points: a step never passes the body, and the last ones
-/// converge quadratically, to 1e-14 of the lengths involved; rays that graze take more steps, and meet the body where
-/// its surface is to 1e-14 of them, the ray to the square root of that.
+/// Accuracy, wherever the origin is: `point` is within 1e-13 R of the surface, and within 4 ulp of the largest
+/// coordinate of the origin (or of the point, if that is larger) of the ray; both as far as the coordinates of the
+/// point and of the body's position can hold it. From afar, `point` is more exact than origin + t direction, which is
+/// rounded with t. Where along the ray a grazing one meets the body is known to the square root of 1e-14 only.
+///
+/// Starts two radii before the body (exactly, by fused multiply-adds), and advances from tangent plane to tangent plane
+/// of the closest points: a step never passes the body, and the last ones converge quadratically.
 template <SupportShape Shape>
 RayHit ray_cast(const Shape& shape, const Pose& X_WB, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction);
-/// In closed form, with the same tolerance.
+/// Overload in closed form, with the same tolerance and accuracy.
 GEOM_EXPORT RayHit ray_cast(const Ellipsoid& shape, const Pose& X_WB, const Eigen::Vector3d& origin,
                             const Eigen::Vector3d& direction);
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <geom/export.h>
+
 #include <Eigen/Core>
 
 #include <concepts>

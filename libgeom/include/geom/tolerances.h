@@ -9,6 +9,10 @@ namespace geom {
 /// Pose: |R^T R - 1| (largest entry) or | |q| - 1 | <= kPoseTolerance, else the orientation is refused. Dimensionless.
 inline constexpr double kPoseTolerance = 1e-6;
 
+/// Pose::nearest_rotation: |R^T R - 1| (largest entry) <= kNearestRotationTolerance, else the matrix is refused.
+/// Dimensionless. Products of 10,000 rotations in single precision stay within a tenth of it.
+inline constexpr double kNearestRotationTolerance = 1e-2;
+
 /// Pose: |coordinate of the position| <= kMaxCoordinate, else it is refused; queries decline points beyond. Length, in
 /// the user's unit: squares do not overflow, nor do those of lengths relative to kMinSemiAxis.
 inline constexpr double kMaxCoordinate = 1e100;
@@ -95,7 +99,7 @@ inline constexpr int kMostDepthSamples = 100000;
 inline constexpr double kLowerBoundRounding = 8 * 2.3e-16;
 
 /// ray_cast: a ray has met the body where the distance is no larger than kRayGap times the bounding radius plus that of
-/// the origin from the body's centre. Dimensionless.
+/// the origin from the body's centre; an origin that is far is moved to two radii before the body. Dimensionless.
 inline constexpr double kRayGap = 1e-14;
 
 /// ray_cast: a ray misses the body where it does not come closer to the tangent plane of the closest point, by more

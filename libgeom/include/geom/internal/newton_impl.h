@@ -8,6 +8,7 @@
 /// something and nothing overflows. xA and xB are counted from their own centres (here sA, sB): far pairs lose no
 /// digits.
 
+#include <geom/internal/refuse.h>
 #include <geom/internal/small_solve.h>
 #include <geom/newton.h>
 
@@ -17,7 +18,6 @@
 #include <cmath>
 #include <limits>
 #include <sstream>
-#include <stdexcept>
 #include <string>
 
 namespace geom::internal {
@@ -341,7 +341,7 @@ DistanceResult newton_distance_unchecked(const ShapeA& a, const Pose& X_WA, cons
   std::ostringstream message;
   message << "newton_distance: " << name << " of the seed, (" << point.x() << ", " << point.y() << ", " << point.z()
           << "), " << reason;
-  throw std::invalid_argument(message.str());
+  refuse(message.str());
 }
 
 /// The least f that check_seed accepts at a point x, in the body's frame.

@@ -24,6 +24,39 @@ inline Eigen::Vector3d unit_vector(const Eigen::Vector3d& v) {
   return scaled / scaled.norm();
 }
 
+/// Start of a ray near a body, and the ray's parameter there.
+struct NearRay {
+  Eigen::Vector3d origin;
+  double t = 0;
+};
+
+/// near_ray() takes at most this many steps: coordinates up to kMaxCoordinate, semi-axes down to kMinSemiAxis, and a
+/// step that is right to 1e-15 of its length.
+inline constexpr int kMaxRayApproaches = 16;
+
+/// Moves the origin of a ray that comes from afar to about two bounding radii before it is closest to the body's
+/// centre, so that neither the step into the surface nor the tolerance there is rounded with the length of the way. The
+/// new origin is the point of the ray, for the direction as given and not made unit, rounded once to its own
+/// coordinates (a step from beyond 1e15 radii takes more than one, and is rounded to those on the way). A ray that
+/// starts near, or leads away, stays as it is.
+inline NearRay near_ray(const Eigen::Vector3d& centre, double radius, const Eigen::Vector3d& origin,
+                        const Eigen::Vector3d& direction) {
+  int exponent = 0;
+  std::frexp(direction.cwiseAbs().maxCoeff(), &exponent);
+  Eigen::Vector3d d;  // by a power of two, exactly: lengths of any direction neither under- nor overflow
+  for (int k = 0; k < 3; ++k) d[k] = std::ldexp(direction[k], -exponent);
+  const double length = d.norm();
+  NearRay ray{origin};
+  for (int step = 0; step < kMaxRayApproaches; ++step) {
+    const double ahead = (centre - ray.origin).dot(d) / length - 2 * radius;
+    if (step == 0 ? !(ahead > 2 * radius) : std::abs(ahead) <= 0.5 * radius) break;
+    const double t = ahead / length;
+    for (int k = 0; k < 3; ++k) ray.origin[k] = std::fma(t, d[k], ray.origin[k]);
+    ray.t += std::ldexp(t, -exponent);
+  }
+  return ray;
+}
+
 /// Whether a point's coordinates are finite and as small as those of a Pose.
 inline bool is_within_reach(const Eigen::Vector3d& p_W) {
   return (p_W.array().abs() <= kMaxCoordinate).all();
@@ -97,16 +130,18 @@ RayHit ray_cast(const Shape& shape, const Pose& X_WB, const Eigen::Vector3d& ori
   const Eigen::Vector3d u = internal::unit_vector(direction);
   const double speed = direction.dot(u);
   if (!internal::is_within_reach(origin) || !std::isfinite(speed)) return hit;
-  const double touching = kRayGap * (shape.bounding_radius() + (origin - X_WB.position()).norm());
+  const internal::NearRay near = internal::near_ray(X_WB.position(), shape.bounding_radius(), origin, direction);
+  const double touching = kRayGap * (shape.bounding_radius() + (near.origin - X_WB.position()).norm());
+  const bool starts_here = near.t == 0;
   double way = 0;
   for (int step = 0; step < kMaxRaySteps; ++step) {
-    const ClosestPoint closest = closest_point(shape, X_WB, origin + way * u);
+    const ClosestPoint closest = closest_point(shape, X_WB, near.origin + way * u);
     if (closest.status != DistanceStatus::separated && closest.status != DistanceStatus::overlapping) return hit;
     if (closest.distance <= touching) {
-      const double t = way / speed;
+      const double t = near.t + way / speed;
       if (!std::isfinite(t)) return hit;
-      hit = {step == 0 && closest.distance < 0 ? RayStatus::inside : RayStatus::hit, t, origin + way * u,
-             closest.normal};
+      const bool inside = starts_here && step == 0 && closest.distance < 0;
+      hit = {inside ? RayStatus::inside : RayStatus::hit, t, near.origin + way * u, closest.normal};
       return hit;
     }
     const double approach = -closest.normal.dot(u);
