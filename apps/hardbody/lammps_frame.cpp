@@ -295,12 +295,18 @@ void DumpFrame::set_angular_velocities() {
   for (std::size_t i = 0; i < frame_.bodies.size(); ++i) frame_.bodies[i].angular_momentum = angular_momentum_[i];
   const auto shape = [](const FrameType& type) { return type.shape.has_value(); };
   const auto massive = [](const FrameBody& body) { return body.mass > 0; };
-  if (!columns_->mass || !frame_.orientations || !std::all_of(frame_.types.begin(), frame_.types.end(), shape) ||
+  // Of bodies that are all alike the mass is one unknown factor of all.
+  const bool masses = columns_->mass || frame_.types.size() == 1;
+  if (!masses || !frame_.orientations || !std::all_of(frame_.types.begin(), frame_.types.end(), shape) ||
       !std::all_of(frame_.bodies.begin(), frame_.bodies.end(), massive)) {
     frame_.notices.emplace_back(
-        "columns angmomx angmomy angmomz: not used as angular velocities, which they say of bodies whose mass, "
-        "orientation and shape are there: mass, quatw quati quatj quatk, shapex shapey shapez");
+        "columns angmomx angmomy angmomz: not used; they say angular velocities of bodies whose mass, orientation and "
+        "shape are there: mass, quatw quati quatj quatk, shapex shapey shapez");
     return;
+  }
+  if (!columns_->mass) {
+    frame_.notices.emplace_back(
+        "columns angmomx angmomy angmomz: taken for those of bodies of mass 1; there is no mass");
   }
   std::vector<Vector3d> inertia;  // of mass 1
   for (const FrameType& type : frame_.types) inertia.push_back(ed::uniform_species(*type.shape).inertia);

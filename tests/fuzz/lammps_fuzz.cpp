@@ -15,7 +15,7 @@ void check_columns(const hardbody::Frame& frame, std::string_view text) {
   const auto has = [&](std::string_view name) { return text.find(name) != std::string_view::npos; };
   fuzz::require(!frame.velocities || (has("vx") && has("vy") && has("vz")), "velocities are columns");
   fuzz::require(!frame.orientations || (has("quatw") && has("quatk")), "orientations are columns");
-  fuzz::require(!frame.angular_velocities || has("omegax") || (has("angmomx") && has("mass")), "turning is columns");
+  fuzz::require(!frame.angular_velocities || has("omegax") || has("angmomx"), "turning is columns");
   fuzz::require(!frame.images || has("xu") || has("xsu") || has("ix"), "images are columns");
   fuzz::require(!frame.ids || has("id"), "ids are a column");
   for (const hardbody::FrameType& type : frame.types) {
