@@ -272,9 +272,11 @@ void FrameReader::read_motion(Frame& frame) const {
     if (!velocity.empty()) body.velocity = {velocity[3 * i], velocity[3 * i + 1], velocity[3 * i + 2]};
     if (angmom.empty()) continue;
     const double* p = angmom.data() + 4 * i;
-    const double* o = orientation.data() + 4 * i;
-    const Quaterniond q =
-        orientation.empty() ? Quaterniond::Identity() : Quaterniond(o[0], o[1], o[2], o[3]).normalized();
+    Quaterniond q = Quaterniond::Identity();
+    if (!orientation.empty()) {
+      const double* o = orientation.data() + 4 * i;
+      q = Quaterniond(o[0], o[1], o[2], o[3]).normalized();
+    }
     const Vector3d L = 0.5 * (q.conjugate() * Quaterniond(p[0], p[1], p[2], p[3])).vec();
     Vector3d omega = Vector3d::Zero();
     for (int k = 0; k < 3; ++k) omega[k] = body.inertia[k] > 0 ? L[k] / body.inertia[k] : 0;

@@ -130,7 +130,7 @@ class SmallFiles(Analyses):
     def test_frames_without_positions_are_none(self):
         said = self.msd("m4_log_only.gsd", "--longest-lag", "4", lag2=0.02)
         self.assertIsNone(self.at("msd", "msd", 1))
-        self.assertIn("2 of 5 frames in the file have no positions", said)
+        self.assertIn("frames without positions are left out: 2 of 5", said)
         self.assertEqual(json.loads(self.read("analysis/analysis.json"))["frames"]["used"], 3)
 
     def test_unwrapped_columns(self):

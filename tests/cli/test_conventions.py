@@ -150,7 +150,7 @@ lammps("large ids", ["id", "type", XU, *REST], LONG, override={"id": lambda k, i
 lammps("lines that are empty", [XU, *REST], LONG, end="\n", way={"more": b"\n\n"})
 lammps("two components of velocities", [X, QUAT, "vx", "vy", SHAPE], absent=(VACF,), override={
     "vx": lambda k, i: SHORT.velocity[k, i, 0], "vy": lambda k, i: SHORT.velocity[k, i, 1]})
-lammps("times of some frames", [X, *REST], head=lambda k: ["ITEM: TIME", f"{k}.5"] if k < 12 else [], reason="time|equally", refused="may be",
+lammps("times of some frames", [X, *REST], head=lambda k: ["ITEM: TIME", f"{k}.5"] if k < 12 else [], reason="time|even", refused="may be",
        way={"time_step": None, "correlated": (slice(0, 12),)})
 lammps("no id", ["type", X, *REST], absent=(MSD, C2, VACF), reason=r"\bids?\b", refused="may be")
 lammps("an id that changes in frame 7", ["id", "type", X, *REST], absent=ALL, reason="frame 7", refused="is",
@@ -169,14 +169,14 @@ lammps("units and times", [XU, *REST], LONG, head=TIME, way={"time_step": None})
 lammps("times and --time-step", [XU, *REST], LONG, head=TIME)
 lammps("steps of ten thousand from three thousand million on", [XU, *REST],
        stepped(LONG, 3_000_000_000 + 10_000 * numpy.arange(FRAMES)), way={"time_step": "1e-4"})
-lammps("an uneven first interval", [XU, *REST], stepped(LONG, [0, *range(7, 7 + 39)]), reason="equally far apart",
+lammps("an uneven first interval", [XU, *REST], stepped(LONG, [0, *range(7, 7 + 39)]), reason="even stretch",
        way={"correlated": (slice(1, None),)})
 gap = [k for k in range(FRAMES) if k != 14]
-lammps("a missing frame", [XU, *REST], LONG[gap], reason="equally far apart", way={"correlated": (slice(14, None),)})
+lammps("a missing frame", [XU, *REST], LONG[gap], reason="even stretch", way={"correlated": (slice(14, None),)})
 again = [*range(26), *range(25, FRAMES)]
-lammps("a frame that stands there twice", [XU, *REST], LONG[again], either=(S, G), reason="frame 26|equally|twice|step",
+lammps("a frame that stands there twice", [XU, *REST], LONG[again], either=(S, G), reason="frame 26|even|twice|step",
        refused="may be", way={"correlated": (slice(0, 26), [*range(26), *range(27, 41)])})
-lammps("steps that start again", [XU, *REST], stepped(LONG, [*range(25), *range(15)]), reason="frame 25|equally|step",
+lammps("steps that start again", [XU, *REST], stepped(LONG, [*range(25), *range(15)]), reason="frame 25|even|step",
        refused="may be", way={"correlated": (slice(0, 25),)})
 
 # What else columns hold.
@@ -227,8 +227,8 @@ hoomd("orientations of frame 0", orientation="first", absent=(C2, S), reason="or
 hoomd("velocities of frame 0", velocity="first", absent=(VACF,), reason="velocit")
 hoomd("velocities never", velocity="never", absent=(VACF,))
 hoomd("as HOOMD-blue's default", image="first", velocity="first", absent=(VACF,), reason="velocit")
-hoomd("logged values between all frames", log_only=lambda k: True, reason="frames in the file have no positions")
-hoomd("logged values between some frames", LONG, log_only=lambda k: k % 3 == 1, reason="frames in the file have no positions")
+hoomd("logged values between all frames", log_only=lambda k: True, reason="frames without positions")
+hoomd("logged values between some frames", LONG, log_only=lambda k: k % 3 == 1, reason="frames without positions")
 hoomd("a box in each frame", LONG, box=lambda k: [EDGE, EDGE, EDGE, 0, 0, 0])
 hoomd("a box that grows in frame 7", box=lambda k: 3 * [EDGE + (k >= 7)] + [0, 0, 0], absent=ALL, reason="frame 7",
       refused="is")
@@ -245,7 +245,7 @@ hoomd("masses, diameters, charges, bodies", LONG, more={
 hoomd("a body less in frame 7", absent=ALL, reason="frame 7", refused="is", more={
     "particles/N": lambda k: numpy.array([7], numpy.uint32) if k == 7 else None})
 hoomd("steps of ten thousand", stepped(LONG, 10_000 * numpy.arange(FRAMES)), way={"time_step": "1e-4"})
-hoomd("an uneven first interval", stepped(LONG, [0, *range(7, 7 + 39)]), reason="equally far apart",
+hoomd("an uneven first interval", stepped(LONG, [0, *range(7, 7 + 39)]), reason="even stretch",
       way={"correlated": (slice(1, None),)})
 
 # Not all frames, other names.
