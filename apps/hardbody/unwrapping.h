@@ -15,9 +15,8 @@ namespace hardbody {
 class Unwrapping {
  public:
   /// Component of a move between frames, in edges of the box, from which on nearest images are not believed. Beyond
-  /// half an edge they would be wrong; bodies of which none moves by a quarter hardly ever move by three quarters,
-  /// which would look the same.
-  static constexpr double kBelievedMove = 0.25;
+  /// half an edge they would be wrong; bodies of which none moves by a fifth hardly ever move by more than a half.
+  static constexpr double kBelievedMove = 0.2;
 
   /// `late`: the program that writes such files may leave positions a little outside the box before it wraps them.
   explicit Unwrapping(bool late) : late_(late) {}
