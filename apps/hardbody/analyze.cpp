@@ -156,6 +156,7 @@ void write_files(const fs::path& out, const std::string& name, const StoredTraje
 
 std::string shown(const ed::Estimate& e) {
   if (!std::isfinite(e.value)) return fmt::format("- ({})", missing_text(e.missing, kWords));
+  if (!std::isfinite(e.error)) return fmt::format("{:.5g} (error not known)", e.value);
   return fmt::format("{:.5g} +- {:.2g}", e.value, e.error);
 }
 
@@ -171,7 +172,8 @@ fs::path trajectory_in(const fs::path& directory) {
 
 /// Prints what was read, and what was not used of it.
 void print_reading(const TrajectoryReader& reader, const StoredTrajectory& stored, const ed::StoredResults& results) {
-  fmt::print("{}: {} frames of {} bodies{}\n", reader.name(), stored.frames.size(), stored.options.axis.size(),
+  fmt::print("{}: {} {} of {} bodies{}\n", reader.name(), stored.frames.size(),
+             stored.frames.size() == 1 ? "frame" : "frames", stored.options.axis.size(),
              reader.cut_off() ? kCutOff : "");
   const auto note = [](const std::string& text) { fmt::print("  note: {}\n", text); };
   if (stored.without_positions > 0) {
