@@ -156,7 +156,7 @@ void write_files(const fs::path& out, const std::string& name, const StoredTraje
 
 std::string shown(const ed::Estimate& e) {
   if (!std::isfinite(e.value)) return fmt::format("- ({})", missing_text(e.missing, kWords));
-  if (!std::isfinite(e.error)) return fmt::format("{:.5g} (error not known)", e.value);
+  if (!std::isfinite(e.error)) return fmt::format("{:.5g} (no error)", e.value);
   return fmt::format("{:.5g} +- {:.2g}", e.value, e.error);
 }
 
