@@ -19,6 +19,7 @@
 #include <string>
 #include <vector>
 
+namespace contact_budget {
 namespace {
 
 using ed::BodyShape;
@@ -288,3 +289,4 @@ TEST(SweptHull, NoContactIsSkipped) {
 }
 
 }  // namespace
+}  // namespace contact_budget
