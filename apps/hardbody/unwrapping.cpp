@@ -14,6 +14,9 @@ using Eigen::Vector3d;
 /// Edges of the box by which a position outside it is still one that has not been wrapped yet, or rounding.
 constexpr double kNotWrappedYet = 0.25;
 constexpr double kRounding = 1e-3;
+/// Number of moves beyond half an edge, all of them within kBelievedMove of whole edges, from which on stored positions
+/// look wrapped: a true move is so near to whole edges by a chance of less than 1/2.
+constexpr std::size_t kManyJumps = 10;
 
 double largest_move(const std::vector<Vector3d>& a, const std::vector<Vector3d>& b, const Vector3d& box) {
   double move = 0;
@@ -21,6 +24,14 @@ double largest_move(const std::vector<Vector3d>& a, const std::vector<Vector3d>&
     move = std::max(move, (b[i] - a[i]).cwiseQuotient(box).cwiseAbs().maxCoeff());
   }
   return move;
+}
+
+std::size_t count_jumps(const std::vector<Vector3d>& a, const std::vector<Vector3d>& b, const Vector3d& box) {
+  std::size_t jumps = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    jumps += static_cast<std::size_t>(((b[i] - a[i]).cwiseQuotient(box).array().abs() >= 0.5).count());
+  }
+  return jumps;
 }
 
 }  // namespace
@@ -41,11 +52,13 @@ void Unwrapping::add(const Frame& frame, const std::vector<std::size_t>& order, 
       const Vector3d edges = (body.position - near_[n]).cwiseQuotient(frame.box);
       near.back() -= frame.box.cwiseProduct(edges.array().round().matrix());
     }
-    outside_ = std::max(outside_, raw.back().cwiseQuotient(frame.box).cwiseAbs().maxCoeff() - 0.5);
+    lowest_ = std::min(lowest_, raw.back().cwiseQuotient(frame.box).minCoeff());
+    highest_ = std::max(highest_, raw.back().cwiseQuotient(frame.box).maxCoeff());
   }
   if (!near_.empty()) {
     raw_move_ = std::max(raw_move_, largest_move(raw_, raw, frame.box));
     near_move_ = std::max(near_move_, largest_move(near_, near, frame.box));
+    jumps_ += count_jumps(raw_, raw, frame.box);
   }
   if (by_.empty()) by_ = frame.unwrapped_by;
   all_unwrapped_ = all_unwrapped_ && frame.images;
@@ -61,16 +74,24 @@ void Unwrapping::add(const Frame& frame, const std::vector<std::size_t>& order, 
 
 Unwrapping::Result Unwrapping::take() {
   if (all_unwrapped_) return {by_, "", std::move(kept_unwrapped_)};
-  if (outside_ > kNotWrappedYet) return {"positions outside the box", "", std::move(kept_raw_)};
-  if (!late_ && outside_ > kRounding && raw_move_ >= kBelievedMove) {
-    return {
+  const double outside = std::max(highest_, -lowest_) - 0.5;
+  const auto unclear = [&] {
+    return Result{
         "",
         fmt::format("positions lie outside the box by up to {:.2g} of its edge, and bodies move by up to {:.2g} of it "
                     "between frames: whether positions are wrapped is not clear; images tell",
-                    outside_, raw_move_),
+                    outside, raw_move_),
         std::move(kept_wrapped_)};
+  };
+  const bool jump = raw_move_ >= kBelievedMove;
+  const bool near_believed = near_move_ < kBelievedMove * (1 - 1e-6);
+  const bool from_corner = lowest_ >= -kRounding && highest_ <= 1 + kRounding;
+  if (outside > kNotWrappedYet && !(from_corner && jump)) {
+    if (near_believed && jumps_ >= kManyJumps) return unclear();
+    return {"positions outside the box", "", std::move(kept_raw_)};
   }
-  if (near_move_ < kBelievedMove * (1 - 1e-6)) return {"nearest images", "", std::move(kept_near_)};
+  if (!late_ && outside > kRounding && jump && !from_corner) return unclear();
+  if (near_believed) return {"nearest images", "", std::move(kept_near_)};
   return {"",
           fmt::format(
               "without images, and bodies move by up to {:.2g} of the box's edge between frames: nearest images "

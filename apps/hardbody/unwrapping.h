@@ -12,6 +12,7 @@ namespace hardbody {
 
 /// Positions of bodies that are followed from frame to frame across the faces of the box, by whatever the file has:
 /// unwrapped positions, or such as go on outside the box, or the nearest images, as long as bodies move little.
+/// Positions from 0 to the edge, where the box is about the origin, are wrapped ones, too.
 class Unwrapping {
  public:
   /// Component of a move between frames, in edges of the box, from which on nearest images are not believed. Beyond
@@ -38,11 +39,13 @@ class Unwrapping {
   bool late_;
   bool all_unwrapped_ = true;
   std::string by_;
-  Positions raw_;        ///< of the frame before, as stored
-  Positions near_;       ///< the same by nearest images
-  double outside_ = 0;   ///< the farthest that a stored position is outside the box, in edges
-  double raw_move_ = 0;  ///< the largest component of a move by stored positions
-  double near_move_ = 0;
+  Positions raw_;          ///< of the frame before, as stored
+  Positions near_;         ///< the same by nearest images
+  double lowest_ = 0;      ///< least component of a stored position, in edges from the middle of the box
+  double highest_ = 0;     ///< largest one
+  double raw_move_ = 0;    ///< the largest component of a move by stored positions
+  double near_move_ = 0;   ///< the same by nearest images
+  std::size_t jumps_ = 0;  ///< components of moves by half an edge or more, by stored positions
   std::vector<Positions> kept_unwrapped_, kept_raw_, kept_near_, kept_wrapped_;
 };
 

@@ -48,6 +48,13 @@ def unwrapped(w):
     return w
 
 
+def in_a_box_from(low, w):
+    """Wrapped into a box whose faces are elsewhere than those of the file's box."""
+    w = Walk(w.position, w.orientation, w.velocity)
+    w.wrapped = (w.position - low) % EDGE + low
+    return w
+
+
 def drifting():
     """Wrapped every fifth frame only, as LAMMPS does when it builds lists of neighbours: slightly outside between."""
     w = walk(0.1, frames=200, seed=3)
@@ -219,6 +226,9 @@ for when in ("first", "never"):
     hoomd(f"images {when}, long steps", LONG, (MSD,), reason=QUARTER, image=when)
 hoomd("outside the box", LONG, image="never", position="unwrapped")
 hoomd("outside the box, short steps", SHORT, image="never", position="unwrapped")
+hoomd("from 0 to the edge", in_a_box_from(0, SHORT), image="never")
+hoomd("from 0 to the edge, long steps", in_a_box_from(0, LONG), (MSD,), reason=QUARTER, image="never")
+hoomd("wrapped at other faces", in_a_box_from(-1.5, SHORT), (MSD,), reason="outside the box", image="never")
 for when in ("each", "changed"):
     hoomd(f"all {when}, as in frame 0 again", with_pause(), image=when, orientation=when, velocity=when)
 hoomd("all changed, from their defaults", from_defaults(), image="changed", orientation="changed", velocity="changed")
