@@ -78,8 +78,10 @@ bool translates(const ed::System& system, SpeciesRange range, Vector3d drift) {
   return whole > 0 && relative > kRounding * whole;
 }
 
-/// Which kinds of motion the bodies of a range have; `drift`: mean velocity of all bodies.
+/// Kinds of motion that the bodies of a range have; `drift`: mean velocity of all bodies. Rotation and spin are told
+/// apart up to rounding: that of six digits is 1e-9 of the energy of thin bodies.
 std::array<bool, kKinds> motion_of(const ed::System& system, SpeciesRange range, const Vector3d& drift) {
+  constexpr double kRounding = 1e-8;
   ed::System part;
   for (std::size_t i = range.begin; i < range.end; ++i) {
     part.species.push_back(system.species_of(static_cast<int>(i)));
@@ -87,8 +89,9 @@ std::array<bool, kKinds> motion_of(const ed::System& system, SpeciesRange range,
     part.bodies.back().species = static_cast<int>(part.species.size()) - 1;
   }
   const ed::KineticState now = ed::kinetic_state(part);
-  return {translates(system, range, drift), now.rotational_freedoms == 0 || now.rotational_energy > 0,
-          now.spin_freedoms == 0 || now.spin_energy > 0};
+  const double rest = kRounding * (now.rotational_energy + now.spin_energy);
+  return {translates(system, range, drift), now.rotational_freedoms == 0 || now.rotational_energy > rest,
+          now.spin_freedoms == 0 || now.spin_energy > rest};
 }
 
 Vector3d mean_velocity(const ed::System& system) {

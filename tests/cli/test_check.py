@@ -238,6 +238,28 @@ class StartVelocities(FilesCase):
         self.assertIn("velocities rescaled to kT = 1", self.report)
         self.assert_same_direction(omega, turned)
 
+    def test_rounding_is_no_spin(self):
+        """Of bodies that turn across their axes only, in 64 bits and in 32, the spin that rounding leaves is not kept."""
+        positions = [[x, y, z] for x in (-3, 0, 3) for y in (-3, 3) for z in (-2.5, 2.5)] * 3
+        positions = [[x, y, z + k // 12 * 1.2] for k, (x, y, z) in enumerate(positions)]
+        random = numpy.random.default_rng(10)
+        quaternions = random.normal(size=(36, 4))
+        quaternions /= numpy.linalg.norm(quaternions, axis=1)[:, None]
+        w, x, y, z = quaternions.T
+        across = random.normal(size=(36, 2, 1))
+        v = numpy.concatenate([across[:, 0], across[:, 1], numpy.zeros((36, 1))], axis=1)
+        # Twice the product of the quaternion and (0, L).
+        momenta = 2 * numpy.column_stack([-(x * v[:, 0] + y * v[:, 1]), w * v[:, 0] - z * v[:, 1], w * v[:, 1] + z * v[:, 0],
+                                          x * v[:, 1] - y * v[:, 0]])
+        shape = {"type": "Ellipsoid", "a": 0.4, "b": 0.4, "c": 0.5}
+        frame = frame_of(positions, [shape], orientation=quaternions, moment_inertia=[[0.1, 0.1, 0.05]] * 36,
+                         velocity=random.normal(size=(36, 3)), angmom=momenta)
+        self.start(self.gsd_file("across.gsd", frame))
+        self.assertIn("rotation rescaled to kT = 1, spin drawn", self.report)
+        self.run_small("paper", "--force", config="[system]\nnumber = 36\npacking_fraction = 0.2\n[shape]\naspect_ratio = 2\n" + REST)
+        self.start("paper/trajectory.gsd", config="[shape]\naspect_ratio = 2\n[dynamics]\ninertia = \"uniform\"\n")
+        self.assertIn("rotation rescaled to kT = 1, spin drawn", self.report)
+
     def test_velocities_of_frame_0_are_not_those_of_a_later_one(self):
         frames = [frame_of([[0, 0.1 * k, 0], [0, 3, 0]]) for k in range(2)]
         frames[0].particles.velocity = [[1, 0, 0], [-1, 0, 0]]
