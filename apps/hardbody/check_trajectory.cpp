@@ -26,7 +26,7 @@ void frame_row(const char* name, const std::string& value) {
   fmt::print("  {:<26} {}\n", name, value);
 }
 
-/// What all frames together show.
+/// Findings of all frames together.
 struct FramesAudit {
   std::uint64_t frames = 0;             ///< with positions
   std::uint64_t without_positions = 0;  ///< frames that are left out
@@ -53,9 +53,9 @@ std::string bodies_text(const Frame& frame, std::size_t i, std::size_t j) {
   return fmt::format("bodies {:.17g} and {:.17g}", frame.bodies[i].id, frame.bodies[j].id);
 }
 
-/// By how much bodies in contact may overlap where positions are rounded. 32-bit numbers: half a unit in the last place
-/// of a coordinate of each body, and as much of the points on their surfaces. Text has six significant digits unless
-/// told otherwise: 5e-6 of a coordinate of each of the two bodies, along all three axes.
+/// Depth to which bodies in contact may overlap where positions are rounded. 32-bit numbers: half a unit in the last
+/// place of a coordinate of each body, and as much of the points on their surfaces. Text has six significant digits
+/// unless told otherwise: 5e-6 of a coordinate of each of the two bodies, along all three axes.
 double rounding_of(const Frame& frame, bool text) {
   constexpr auto kEpsilon = static_cast<double>(std::numeric_limits<float>::epsilon());
   constexpr double kSixDigits = 2e-5;
@@ -104,7 +104,7 @@ void add_conservation_defects(const Frame& frame, const ed::KineticState& kineti
   all.last_time = frame.time;
 }
 
-/// What is wrong with a frame, one line each.
+/// Audits a frame; returns its defects, one line each.
 std::vector<std::string> audit_frame(const Frame& frame, std::uint64_t k, const std::string& name, bool text,
                                      FramesAudit& all) {
   ++all.frames;

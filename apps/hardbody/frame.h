@@ -69,7 +69,7 @@ struct Frame {
   std::vector<FrameType> types;
   std::vector<FrameBody> bodies;
 
-  // What is known, of every body of this frame.
+  // Quantities that are known, of every body of this frame.
   bool images = false;              ///< unwrapped positions: by images, or stored as such
   bool orientations = false;        ///< stored, or by the schema those of frame 0
   bool velocities = false;          ///< the same

@@ -65,6 +65,11 @@ class FrameReader {
   std::vector<double> finite(const std::string& name, std::uint64_t rows, std::uint32_t columns) const;
   template <class T>
   T scalar(const std::string& name, T missing) const;
+  /// Number that this frame itself has logged: the schema has no defaults of log/. NaN if there is none.
+  double logged(Name name) const {
+    constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+    return file_.find(k_, kNameTexts[name]) != nullptr ? scalar(kNameTexts[name], kMissing) : kMissing;
+  }
   std::vector<std::string> texts(const std::string& name) const;
   std::vector<double> exact(Name name, std::uint64_t rows, std::uint32_t columns) const;
 
@@ -287,12 +292,11 @@ void FrameReader::read_motion(Frame& frame) const {
 
 Frame FrameReader::read() {
   Frame frame;
-  constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
   frame.step = scalar<std::uint64_t>("configuration/step", 0);
-  frame.time = scalar(kNameTexts[kTime], kMissing);
-  frame.energy = scalar(kNameTexts[kEnergy], kMissing);
-  frame.Z = scalar(kNameTexts[kZ], kMissing);
-  frame.S = scalar(kNameTexts[kS], kMissing);
+  frame.time = logged(kTime);
+  frame.energy = logged(kEnergy);
+  frame.Z = logged(kZ);
+  frame.S = logged(kS);
   read_box(frame);
   read_types(frame);
   read_bodies(frame);

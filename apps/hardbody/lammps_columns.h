@@ -12,7 +12,7 @@ namespace hardbody {
 /// The words of a line.
 std::vector<std::string_view> words_of(std::string_view line);
 
-/// What the columns of a dump's frame are.
+/// Columns of a dump's frame by their names.
 struct DumpColumns {
   using Column = std::optional<std::size_t>;
 

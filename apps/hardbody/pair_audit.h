@@ -12,7 +12,7 @@ namespace hardbody {
 
 /// Distances of the pairs of bodies of a frame that are near each other, in all images of a periodic box of any form.
 struct PairAudit {
-  /// Of the pairs that were looked at; infinite: none is near.
+  /// Least distance of the pairs that were looked at; infinite: none is near.
   double minimum_distance = std::numeric_limits<double>::infinity();
   std::size_t closest_i = 0;     ///< place in Frame::bodies
   std::size_t closest_j = 0;     ///< the same; equal to closest_i: a body and its own image

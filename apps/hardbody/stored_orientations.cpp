@@ -22,16 +22,16 @@ std::optional<Eigen::Matrix3d> StoredOrientations::rotation(const Eigen::Vector4
   const double off = std::abs(length - 1);
   if (!(off <= kQuaternionTolerance)) return std::nullopt;
   if (off > kRoundedLength) {
-    ++normalised_;
+    ++normalized_;
     farthest_ = std::max(farthest_, off);
   }
   return geom::Pose::from_quaternion(q[0] / length, q[1] / length, q[2] / length, q[3] / length).rotation();
 }
 
 std::optional<std::string> StoredOrientations::notice() const {
-  if (normalised_ == 0) return std::nullopt;
-  return fmt::format("orientations: quaternions of {} bodies normalised, their lengths off 1 by up to {:.1e}",
-                     normalised_, farthest_);
+  if (normalized_ == 0) return std::nullopt;
+  return fmt::format("orientations: quaternions of {} bodies normalized, their lengths off 1 by up to {:.1e}",
+                     normalized_, farthest_);
 }
 
 std::string StoredOrientations::fault(const Eigen::Vector4d& q) {

@@ -142,7 +142,7 @@ std::string species_numbers(const RunRecord& record) {
   return text;
 }
 
-/// What would help where values are missing because lags are too short; empty where none is.
+/// Advice where values are missing because lags are too short; empty where none is.
 std::string longer_lags_line(const RunRecord& record) {
   const ed::Results& r = record.production.results;
   const bool help = longer_lags_help(r) || std::any_of(r.groups.begin(), r.groups.end(),

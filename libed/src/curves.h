@@ -34,9 +34,8 @@ constexpr double kLinearity = 0.2;
 constexpr double kDisplaced = 1;
 /// Rotational diffusion: <|Delta Phi|^2> >= kTurned c, in rad^2, at the longest lag, c the number of components.
 constexpr double kTurned = 1.0 / 3;
-/// Rotation that has not come to kTurned c at the first of those lags may be free still: there d ln(displacement) / d
-/// ln t
-/// <= 1 + kFreeTurning is asked for, too.
+/// Rotation that has not come to kTurned c at the first of those lags may be free still: there
+/// d ln(displacement) / d ln t <= 1 + kFreeTurning is asked for, too.
 constexpr double kFreeTurning = 0.1;
 
 /// Decays are fitted from the lag of this many mean collision intervals on: before, motion is ballistic.

@@ -339,7 +339,7 @@ void Evaluation::add_structure(std::size_t part, Correlations& results) const {
 
 // ---- Correlations
 
-/// Of the bodies of a group (kAll: of all) at one lag, in one block (nullptr: in all).
+/// Sums over the bodies of a group (kAll: of all) at one lag, in the blocks of a selection.
 LagSums Evaluation::sums_at(std::size_t lag, std::size_t group, Selection selection) const {
   LagSums sums;
   const std::size_t groups = measured_.ranges.size();
@@ -367,8 +367,8 @@ double Evaluation::first_wave_number() const {
   return likely_peak(*wave_vectors_, S, static_cast<double>(measured_.blocks.size()), grid, packing);
 }
 
-/// The same for a group. Where its own S(q) has a clear peak at a smaller wave number, as that of large bodies that
-/// cage each other, it is that one.
+/// First wave number for a group: that of all bodies. Where its own S(q) has a clear peak at a smaller wave number, as
+/// that of large bodies that cage each other, it is that one.
 double Evaluation::first_wave_number(std::size_t group) const {
   const double of_all = first_wave_number();
   if (group == kAll || measured_.ranges.size() == 1 || !measured_.length_known) return of_all;

@@ -149,7 +149,8 @@ GroupMotion motion_of(const System& system, const Members& group) {
   return motion;
 }
 
-/// What each group has at kT = 1. Masses of the other groups are added up, not subtracted: one may outweigh them all.
+/// Sets the energies that each group has at kT = 1. Masses of the other groups are added up, not subtracted: one may
+/// outweigh them all.
 void set_wanted(std::vector<GroupMotion>& groups, double total_mass) {
   double before = 0;
   for (GroupMotion& group : groups) {

@@ -166,7 +166,7 @@ class ChecksOfTrajectories(Analyses):
                 result = self.hardbody("check", name)
                 self.assertEqual(result.returncode, 0, result.stderr)
                 self.assertTrue(self.sound(result))
-                self.assertIn("normalised", result.stdout + result.stderr)
+                self.assertIn("normalized", result.stdout + result.stderr)
 
 
 if __name__ == "__main__":

@@ -296,13 +296,13 @@ class PartsOfFrames(FilesCase):
         columns = "id type x y z quatw quati quatj quatk shapex shapey shapez"
         row = lambda w: [[4, 1, 0, 0, 0, w, 0, 0, 0, 1, 1, 2], [9, 1, 0, 3, 0, 1, 0, 0, 0, 1, 1, 2]]
         self.dump("q.lammpstrj", columns, [row(1.0005)])
-        self.assertIn("orientations: quaternions of 1 bodies normalised, their lengths off 1 by up to 5.0e-04", self.analyze("q.lammpstrj"))
+        self.assertIn("orientations: quaternions of 1 bodies normalized, their lengths off 1 by up to 5.0e-04", self.analyze("q.lammpstrj"))
         self.dump("q.lammpstrj", columns, [row(1.002)])
         self.refused("q.lammpstrj", "the orientation of body 4 is a quaternion of length 1.002", "1 within 0.001")
         for length, known in [(1.0005, True), (1.002, False)]:
             self.gsd("q.gsd", [self.two(0)], ROD, orientation=[[[1, 0, 0, 0], [length, 0, 0, 0]]])
             if known:
-                self.assertIn("orientations: quaternions of 1 bodies normalised", self.analyze("q.gsd"))
+                self.assertIn("orientations: quaternions of 1 bodies normalized", self.analyze("q.gsd"))
             else:
                 self.refused("q.gsd", "the orientation of body 1 is a quaternion of length 1.002")
 

@@ -106,8 +106,7 @@ struct BlockRow {
 ///   of the same packing fraction; where sizes are unknown, 2 pi (N / V)^(1/3). A group of several whose own S(q) has a
 ///   clear peak at a smaller wave number takes that one;
 /// - D_rot and D_rot_body of c components: <|Delta Phi|^2> >= c / 3 rad^2 at the longest lag; where it is less than
-/// that
-///   at the first of these lags, the logarithmic slope is at most 1.1. Single axes have c = 1.
+///   that at the first of these lags, the logarithmic slope is at most 1.1. Single axes have c = 1.
 ///
 /// This is decided on all data; errors are from blocks, which decide nothing.
 ///
