@@ -139,7 +139,8 @@ void print_pairs(const FramesAudit& all) {
   frame_row("distances not answered", fmt::format("{}", all.unanswered));
   frame_row("minimum distance", std::isfinite(all.minimum_distance)
                                     ? fmt::format("{:.6g} l, {}", all.minimum_distance, all.closest)
-                                    : std::string("no two bounding spheres meet"));
+                                : all.not_looked_at.empty() ? std::string("no two bounding spheres meet")
+                                                            : std::string("not known"));
 }
 
 void print_frames(const TrajectoryReader& reader, const Frame& first, const Frame& last, const FramesAudit& all) {

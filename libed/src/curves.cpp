@@ -140,7 +140,7 @@ std::string describe(const Missing& missing, std::string_view length_unit) {
     case MissingReason::no_collisions:
       return "no body has met another";
     case MissingReason::lags_too_short:
-      return "nothing has been followed up to the longest lag";
+      return "too few lags, up to the longest one, have been followed";
     case MissingReason::ballistic:
       return reached("displacements grow as t^", "", " up to the longest lag: still in part ballistic");
     case MissingReason::subdiffusive:

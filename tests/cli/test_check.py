@@ -105,6 +105,7 @@ class CheckWhatIsNotSaid(FilesCase):
     def test_missing_shapes(self):
         name = self.gsd_file("none.gsd", frame_of([[0, 0, 0], [0.1, 0, 0]], [{}], diameter=[1, 1]))
         self.assertRegex(self.verdict(name), "^not looked at: overlaps: bodies of type A have no shape")
+        self.assertRegex(self.said, "minimum distance +not known")
         # Overlaps of the others are found all the same.
         some = frame_of([[0, 0, 0], [3, 0, 0], [3.1, 0, 0]], [{}, BALL], typeid=[0, 1, 1])
         self.assert_overlap(self.gsd_file("some.gsd", some), "bodies 1 and 2")

@@ -15,7 +15,7 @@ namespace ed {
 enum class MissingReason {
   not_measured,              ///< nothing has been measured, or not even one block of it
   no_collisions,             ///< no body has met another
-  lags_too_short,            ///< no time origin has been followed up to the longest lag
+  lags_too_short,            ///< fewer than two lags to fit, or no time origin followed up to the longest one
   ballistic,                 ///< displacements still grow faster than those of diffusion at the longest lag
   subdiffusive,              ///< displacements still grow more slowly than those of diffusion at the longest lag
   not_displaced,             ///< bodies have not moved far enough for diffusion
