@@ -268,7 +268,7 @@ TEST(SweptHull, OfEllipsoidsOfRevolutionIsExact) {
   }
 }
 
-/// Answers with the hulls and without: whatever they skip has no contact in it.
+/// Bodies do not overlap at sampled times before the answer, hulls or not.
 TEST(SweptHull, NoContactIsSkipped) {
   ed::Random random(63);
   const std::vector<BodyShape> shapes = {kNeedle, kCube, kTriaxial, Ellipsoid({1, 1, 0.3})};
