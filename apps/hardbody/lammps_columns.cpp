@@ -12,8 +12,8 @@ namespace {
 
 /// Beginnings of names that columns of orientations and shapes have where nobody has named them: of computes, fixes,
 /// variables and custom properties, and in other programs.
-constexpr std::array<std::string_view, 10> kUnnamed = {"c_", "f_", "v_", "d_",     "d2_",  "i2_",
-                                                       "q",  "mu", "orient", "shape"};
+constexpr std::array<std::string_view, 10> kUnnamed = {"c_",  "f_", "v_", "d_",     "d2_",
+                                                       "i2_", "q",  "mu", "orient", "shape"};
 
 /// Exponents of superellipsoids in the convention of LIGGGHTS and of LAMMPS's own, beside which shapex is another size.
 constexpr std::array<std::string_view, 3> kExponents = {"blockiness", "roundness", "block"};

@@ -26,6 +26,9 @@ using Eigen::Vector3d;
 constexpr int kStepsBefore = 5;
 constexpr int kStepsAfter = 15;
 
+/// Budget of the search (ContactOptions::max_evaluations): the pair is one that a run has spent its own on, perhaps.
+constexpr int kReplayBudget = 100000;
+
 std::string text(const Vector3d& v) {
   return fmt::format("({:.9g}, {:.9g}, {:.9g})", v.x(), v.y(), v.z());
 }
@@ -147,7 +150,9 @@ std::string newton_now(const Pair& pair) {
 }
 
 std::string contact(const Pair& pair, double from, double until) {
-  const ed::ContactResult found = ed::time_of_contact(pair.a, pair.motion_a, pair.b, pair.motion_b, until);
+  ed::ContactOptions options;
+  options.max_evaluations = kReplayBudget;
+  const ed::ContactResult found = ed::time_of_contact(pair.a, pair.motion_a, pair.b, pair.motion_b, until, options);
   std::string out = fmt::format("\nstep 2, time of contact, searched for {:.6g} time units: {}, {} looks\n",
                                 until - from, ed::to_string(found.status), found.evaluations);
   if (found.status == ed::ContactStatus::overlapping) return out;

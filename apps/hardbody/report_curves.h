@@ -9,10 +9,9 @@ namespace hardbody {
 
 /// A file of observables/: numbers in columns.
 struct Curves {
-  std::string name;                  ///< of the file, without its ending: "msd"
-  std::vector<std::string> columns;  ///< of the header line, with units: "msd [l^2]"
-  std::vector<std::vector<double>>
-      values;  ///< of each column; NaN: an empty field, a missing value
+  std::string name;                         ///< of the file, without its ending: "msd"
+  std::vector<std::string> columns;         ///< of the header line, with units: "msd [l^2]"
+  std::vector<std::vector<double>> values;  ///< of each column; NaN: an empty field, a missing value
 
   std::size_t rows() const { return values.empty() ? 0 : values[0].size(); }
   /// The column of that name, without its unit; nullptr: there is none.

@@ -21,9 +21,9 @@ struct SweepPointReport {
   std::vector<Measured> values;   ///< of the observables
   std::string status;             ///< "done", "failed", ..
   std::string message;            ///< why it failed or cannot be shown
-  std::string equilibrated;      ///< "true", "false" or nothing
-  std::string directory;         ///< name; empty: none was found
-  std::optional<RunReport> run;  ///< of a point that has results
+  std::string equilibrated;       ///< "true", "false" or nothing
+  std::string directory;          ///< name; empty: none was found
+  std::optional<RunReport> run;   ///< of a point that has results
 };
 
 struct SweepReport {

@@ -203,13 +203,13 @@ double certain_step(const Gauge& gauge, const typename Gauge::State& state, doub
 
 /// The certified step, or a longer one. Bounds of what the motion does within a horizon in which bodies turn many times
 /// say next to nothing (cubes with a horizon of 10,000 radian: steps of 1e-19), or are not a number (an infinite
-/// horizon). Then those of a radian or so do better.
+/// horizon). Where the step is below the share `futile` of certain_step(), those of a radian or so do better.
 template <class Gauge>
 double fitting_step(const Gauge& gauge, const typename Gauge::State& state, const typename Gauge::Evaluation& e,
-                    const Eigen::Vector3d& n, double g, double gp, double horizon) {
+                    const Eigen::Vector3d& n, double g, double gp, double horizon, double futile) {
   const double tau = certified_step(gauge, state, e, n, g, gp, horizon);
   const double certain = certain_step(gauge, state, g);
-  if (!(tau < kFutileStep * certain)) return tau;
+  if (!(tau < futile * certain)) return tau;
   const double within = smaller(horizon, gauge.size() / gauge.speed());
   return larger(certain, certified_step(gauge, state, e, n, g, gp, within));
 }
@@ -217,10 +217,10 @@ double fitting_step(const Gauge& gauge, const typename Gauge::State& state, cons
 /// Finds the first contact in [t_begin, t_end], or proves that there is none, or, after `max_evaluations` points in
 /// time, says up to when there is certainly none.
 ///
-/// `n` (from A to B) is the warm start and is left at the last normal; zero: cold start.
+/// `n` (from A to B) is the warm start and is left at the last normal; zero: cold start. `futile`: see fitting_step.
 template <class Gauge>
 Finding certified_contact(const Gauge& gauge, double t_begin, double t_end, int max_evaluations, Eigen::Vector3d& n,
-                          FinderCounters& count) {
+                          FinderCounters& count, double futile = kFutileStep) {
   ++count.predictions;
   const Window window = gauge.window(t_begin, t_end);
   const double size = gauge.size();
@@ -254,7 +254,7 @@ Finding certified_contact(const Gauge& gauge, double t_begin, double t_end, int 
       g = larger(g, 0.0);
       gp = larger(gp, 0.0);
     }
-    double tau = fitting_step(gauge, state, e, n, g, gp, horizon);
+    double tau = fitting_step(gauge, state, e, n, g, gp, horizon, futile);
     if (tau >= horizon) return {Outcome::clear, t_end};
     // Along edges that are flat the support point, and with it g', is lost to rounding; that of the contact is not.
     const bool doubtful = !(gp < 0) && !touching && tau <= kShortStep * size / gauge.speed();

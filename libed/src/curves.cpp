@@ -169,6 +169,42 @@ std::string describe(const Missing& missing, std::string_view length_unit) {
   return "";
 }
 
+const char* to_string(MissingReason reason) {
+  switch (reason) {
+    case MissingReason::not_measured:
+      return "not_measured";
+    case MissingReason::no_collisions:
+      return "no_collisions";
+    case MissingReason::lags_too_short:
+      return "lags_too_short";
+    case MissingReason::ballistic:
+      return "ballistic";
+    case MissingReason::subdiffusive:
+      return "subdiffusive";
+    case MissingReason::not_displaced:
+      return "not_displaced";
+    case MissingReason::not_turned:
+      return "not_turned";
+    case MissingReason::not_decayed:
+      return "not_decayed";
+    case MissingReason::decayed_early:
+      return "decayed_early";
+    case MissingReason::decayed_before_diffusion:
+      return "decayed_before_diffusion";
+    case MissingReason::end_of_ballistic_unknown:
+      return "end_of_ballistic_unknown";
+    case MissingReason::no_fit:
+      return "no_fit";
+    case MissingReason::meaningless:
+      return "meaningless";
+    case MissingReason::no_such_axis:
+      return "no_such_axis";
+    case MissingReason::not_told:
+      return "not_told";
+  }
+  return "unknown";
+}
+
 bool longer_lags_help(MissingReason reason) {
   switch (reason) {
     case MissingReason::lags_too_short:

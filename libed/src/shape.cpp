@@ -50,7 +50,8 @@ std::string name_of(const geom::Ellipsoid& shape) {
 
 std::string name_of(const geom::Superellipsoid& shape) {
   std::ostringstream text;
-  text << by_axes("superellipsoid of semi-axes", shape.semi_axes()) << ", exponents " << shape.e1() << ", " << shape.e2();
+  text << by_axes("superellipsoid of semi-axes", shape.semi_axes()) << ", exponents " << shape.e1() << ", "
+       << shape.e2();
   return text.str();
 }
 

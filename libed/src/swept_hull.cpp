@@ -20,12 +20,12 @@ namespace {
 /// Directions on each cone about an axis.
 constexpr int kSweptTurns = 64;
 
-/// What rounding may take from a height, relative to the bounding radius (rounding.h: 80 of a support function, 24 of a
-/// direction).
+/// Bound of the rounding error of a height, relative to the bounding radius (rounding.h: 80 for a support function, 24
+/// for a direction).
 constexpr double kHeightRounding = 128 * kRoundoff;
 
-/// Whether omega stays where it is at all times, but for rounding: a body that turns about the axis of its middle
-/// moment does not, however exactly it does now.
+/// Whether omega is constant at all times, but for rounding. It is not for a body that now turns about the axis of its
+/// middle moment: that rotation is unstable.
 bool turns_uniformly(const FreeTop& top) {
   return top.max_alpha() <= 8 * kRoundoff * (top.max_omega() * top.max_omega());
 }
@@ -148,8 +148,8 @@ double SweptPair::gap(const Vector3d& n, double t) const {
   return n.dot(r + t * v) - a.height(n) - b.height(-n);
 }
 
-/// A unit vector of a large gap, from the best of some: the guess, the line of centres, the axes of the world and what
-/// is across the way.
+/// Unit vector of a large gap, by a pattern search from the best of the guess, the line of centres and the normal of
+/// the relative velocity nearest to that line.
 Vector3d SweptPair::best_normal(const Vector3d& guess, double t) const {
   Vector3d best = guess;
   double most = gap(best, t);

@@ -135,16 +135,21 @@ internal::Finding budgeted_contact(const Gauge& gauge, double duration, int budg
                                    Eigen::Vector3d& n, internal::FinderCounters& count) {
   constexpr int kFirstLooks = 32;
   constexpr int kMostLooks = 512;
+  constexpr double kFutile = 0.1;  // there is no horizon here but t_max: steps fit a radian or so sooner than in a run
   std::optional<internal::SweptPair> swept;
   double t = 0;
   for (int looks = kFirstLooks; static_cast<int>(count.evaluations) < budget; looks = std::min(2 * looks, kMostLooks)) {
     const int left = budget - static_cast<int>(count.evaluations);
-    const internal::Finding finding = internal::certified_contact(gauge, t, duration, std::min(looks, left), n, count);
+    const internal::Finding finding =
+        internal::certified_contact(gauge, t, duration, std::min(looks, left), n, count, kFutile);
     if (finding.outcome != Outcome::bound) return finding;
     t = finding.time;
     if (!swept) swept = hulls();
     const auto state = gauge.at(t);
-    const bool touching = gauge.gap(state, n).g <= state.rounding.gap;
+    const auto e = gauge.evaluate(state, n);
+    const bool touching = e.g <= state.rounding.gap;
+    // Bodies that touch and approach are the search's: the next look tells.
+    if (touching && internal::contact_rate(gauge, state, e, n) < -kResting * gauge.speed()) continue;
     t = std::max(t, swept->clear_until(t, n, state.rounding.gap, touching));
     if (!(t < duration)) return {Outcome::clear, duration};
   }

@@ -47,10 +47,11 @@ Eigen::Matrix3d towards_polar_factor(const Eigen::Matrix3d& R) {
   return R * (1.5 * Eigen::Matrix3d::Identity() - 0.5 * R.transpose() * R);
 }
 
-/// No step is taken at errors up to this, a few roundings.
+/// Error of R^T R at which the iteration ends: a few roundings.
 constexpr double kOrthonormal = 1e-15;
 
-/// Takes errors up to kNearestRotationTolerance, of which the square of 3 is 1e-3, to rounding and once more.
+/// Steps that take an error of kNearestRotationTolerance to rounding, and one more. A matrix whose entries are at most
+/// 1e-2 has a norm of at most 3e-2, and a step takes the norm e to e^2 at most: 9e-4, 8.1e-7, 6.6e-13, rounding.
 constexpr int kPolarSteps = 5;
 
 /// |q|^2 is between 0.25 and 4.

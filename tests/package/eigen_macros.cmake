@@ -9,7 +9,7 @@ file(MAKE_DIRECTORY ${WORK_DIR})
 function(compile name text)
   file(WRITE ${WORK_DIR}/${name}.cpp "${text}")
   execute_process(COMMAND ${COMPILER} -std=c++20 -fsyntax-only ${ARGN} -I${SOURCE_DIR}/libgeom/include
-    -I${SOURCE_DIR}/libed/include -isystem ${EIGEN_DIR} ${WORK_DIR}/${name}.cpp
+    -I${SOURCE_DIR}/libgeom/seeds/include -I${SOURCE_DIR}/libed/include -isystem ${EIGEN_DIR} ${WORK_DIR}/${name}.cpp
     RESULT_VARIABLE status ERROR_VARIABLE errors)
   set(status ${status} PARENT_SCOPE)
   set(errors "${errors}" PARENT_SCOPE)
@@ -23,7 +23,8 @@ function(must_refuse name text wanted)
 endfunction()
 
 # Every public header, alone.
-file(GLOB headers RELATIVE ${SOURCE_DIR} ${SOURCE_DIR}/libgeom/include/geom/*.h ${SOURCE_DIR}/libed/include/ed/*.h)
+file(GLOB headers RELATIVE ${SOURCE_DIR} ${SOURCE_DIR}/libgeom/include/geom/*.h
+  ${SOURCE_DIR}/libgeom/seeds/include/geom/*.h ${SOURCE_DIR}/libed/include/ed/*.h)
 foreach(header IN LISTS headers)
   string(REGEX REPLACE "^.*/include/" "" included ${header})
   if(NOT included MATCHES "tolerances.h$")  # numbers

@@ -35,6 +35,7 @@ const std::map<std::string, ToString> kToString = {
     {"Finder", name<ed::Finder>},
     {"InstructionSet", name<geom::InstructionSet>},
     {"Lattice", name<ed::Lattice>},
+    {"MissingReason", name<ed::MissingReason>},
     {"Neighbours", name<ed::Neighbours>},
     {"NewtonSystem", name<geom::NewtonSystem>},
     {"Penetration", name<geom::Penetration>},

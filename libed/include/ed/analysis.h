@@ -30,6 +30,9 @@ enum class MissingReason {
   not_told,                  ///< the file does not tell
 };
 
+/// The enumerator's name.
+ED_EXPORT const char* to_string(MissingReason reason);
+
 /// Reason for which a value is missing, and how far motion has come.
 struct Missing {
   MissingReason reason = MissingReason::not_measured;

@@ -18,8 +18,8 @@ enum class ContactStatus {
   hit,          ///< the bodies touch at `time`, approaching, and not before
   separated,    ///< no contact up to `time` = t_max; certified by Finder::certified, not found by Finder::bracketing
   overlapping,  ///< they overlap at `time` by more than kOverlap times the sum of their bounding radii
-  /// ContactOptions::max_evaluations are spent: `time` is a lower bound of the time of the contact, if there is one;
-  /// certified in the same sense as `separated`. A search from there on (propagate) goes on.
+  /// ContactOptions::max_evaluations are spent. `time` is a lower bound of the time of contact, if there is one,
+  /// certified in the same sense as `separated`. To go on, search again from the motions at that time (propagate).
   budget_exhausted,
   failed,  ///< no method tells whether the bodies overlap at `time`; no contact before, in the same sense as
            ///< `separated`
@@ -53,12 +53,13 @@ struct [[nodiscard]] ContactResult {
 /// the tips of bodies with exponents of 1.6. The time of a contact met head-on is right to about that over the normal
 /// velocity, that of a grazing one to the square root. Never allocates in the search.
 ///
-/// Effort is limited by `options.max_evaluations`, a few milliseconds by default. Where it does not suffice, the status
-/// is `budget_exhausted`, and `time` a certified lower bound of the time of the contact. Bodies that touch without
-/// approaching, slide on flat faces or turn fast without getting nearer, take few evaluations: the convex hulls of what
-/// they sweep by turning tell where they may meet. (Exactly for ellipsoids of revolution, nearly so for any body that
-/// turns about an axis that stays where it is; those that wobble are taken to sweep their bounding spheres.) It is
-/// bodies that turn within each other's reach, like wheels that mesh, that exhaust the budget.
+/// Effort is limited by `options.max_evaluations`: by default a few milliseconds for ellipsoids of revolution, up to 20
+/// for other bodies and 100 for a user's own. Where it does not suffice, the status is `budget_exhausted`, and `time` a
+/// certified lower bound of the time of contact. Bodies that touch without approaching, slide on flat faces or turn
+/// fast without getting nearer take few evaluations: the convex hulls of what they sweep by turning tell where they may
+/// meet. The hulls are exact for ellipsoids of revolution and nearly so for any body that turns about a fixed axis; a
+/// body without two equal moments of inertia that wobbles is taken to sweep its bounding sphere. Bodies that turn many
+/// times within each other's reach, like wheels that mesh, exhaust the budget.
 ///
 /// Bodies: ellipsoids and superellipsoids whose exponents are within [kMinExponentInMotion, kMaxExponentInMotion], and
 /// a user's own (CustomShape), with any moments of inertia that a body can have. Ellipsoids of revolution about an axis

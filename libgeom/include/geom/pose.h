@@ -25,8 +25,8 @@ GEOM_EXPORT std::array<double, 4> quaternion_of(const Eigen::Matrix3d& rotation)
 ///
 /// A Pose is valid by construction, so that no query needs to check it again: whatever makes one throws
 /// std::invalid_argument when a number is not finite, a coordinate of the position is beyond +-kMaxCoordinate (1e100),
-/// or the orientation is not one within the tolerance that is stated there. An orientation within it is replaced by the
-/// nearest rotation, so that `rotation()` is always orthonormal to rounding: no entry of R^T R - 1 is above 2e-15.
+/// or the orientation is further from a rotation than the function's tolerance. An orientation within it is replaced by
+/// the nearest rotation, so that `rotation()` is always orthonormal to rounding: no entry of R^T R - 1 is above 2e-15.
 ///
 /// Functions that take or return Eigen's Quaternion and Transform are for programs that include <Eigen/Geometry>.
 class GEOM_EXPORT Pose {
@@ -44,18 +44,18 @@ class GEOM_EXPORT Pose {
   /// Orientation by a quaternion (w, x, y, z), body to world; its norm must be 1 within kPoseTolerance.
   static Pose from_quaternion(double w, double x, double y, double z,
                               const Eigen::Vector3d& position = Eigen::Vector3d::Zero());
-  /// from_quaternion of Eigen's, whose constructor takes w first and which stores it last.
+  /// Overload for Eigen's quaternions, which store w last.
   template <int Options>
   static Pose from_quaternion(const Eigen::Quaternion<double, Options>& q,
                               const Eigen::Vector3d& position = Eigen::Vector3d::Zero()) {
     return from_quaternion(q.w(), q.x(), q.y(), q.z(), position);
   }
 
-  /// Orientation by q / |q|, q any quaternion (w, x, y, z) of finite numbers, body to world, but 0; its length has no
-  /// meaning and may under- or overflow. Entries of the rotation are right to 1e-15.
+  /// Orientation by q / |q|, body to world. The quaternion q = (w, x, y, z) may have any length but 0, even one that
+  /// under- or overflows; its components must be finite. Entries of the rotation are right to 1e-15.
   static Pose normalized_quaternion(double w, double x, double y, double z,
                                     const Eigen::Vector3d& position = Eigen::Vector3d::Zero());
-  /// normalized_quaternion of Eigen's, in either precision.
+  /// Overload for Eigen's quaternions, in either precision.
   template <class Scalar, int Options>
   static Pose normalized_quaternion(const Eigen::Quaternion<Scalar, Options>& q,
                                     const Eigen::Vector3d& position = Eigen::Vector3d::Zero()) {
@@ -68,7 +68,7 @@ class GEOM_EXPORT Pose {
   /// orthonormal within kNearestRotationTolerance (1e-2, the largest entry of M^T M - 1), no reflection. Sheared or
   /// scaled ones beyond that are refused.
   static Pose nearest_rotation(const Eigen::Matrix3d& matrix, const Eigen::Vector3d& position);
-  /// nearest_rotation of the linear part of a transform in either precision, not projective, with its translation.
+  /// Overload for the linear part and the translation of a transform, in either precision, not projective.
   template <class Scalar, int Mode, int Options>
   static Pose nearest_rotation(const Eigen::Transform<Scalar, 3, Mode, Options>& X_WB) {
     static_assert(Mode != int{Eigen::Projective}, "Pose::nearest_rotation takes Isometry, Affine and AffineCompact");
@@ -93,7 +93,7 @@ class GEOM_EXPORT Pose {
     return {q[0], q[1], q[2], q[3]};
   }
 
-  /// The same map as Eigen's transform, to the last bit.
+  /// This map as Eigen's transform, to the last bit.
   template <int Options = Eigen::AutoAlign>
   Eigen::Transform<double, 3, Eigen::Isometry, Options> isometry() const {
     Eigen::Transform<double, 3, Eigen::Isometry, Options> X_WB;
@@ -103,9 +103,10 @@ class GEOM_EXPORT Pose {
     return X_WB;
   }
 
-  /// Composition, X_WA * X_AB = X_WB: (X_WA * X_AB).to_world(p) = X_WA.to_world(X_AB.to_world(p)). Entries of the
-  /// rotation are right to 2e-15, in chains of any length orthonormal to rounding; coordinates of the position to 2e-15
-  /// of the sum of both positions' lengths. Throws std::invalid_argument if the position is beyond kMaxCoordinate.
+  /// Composition: X_WB * X_BC = X_WC, (X_WB * X_BC).to_world(p) = X_WB.to_world(X_BC.to_world(p)). Entries of the
+  /// rotation are right to 2e-15 and stay orthonormal to rounding in chains of any length. Coordinates of the position
+  /// are right to 2e-15 of the sum of both positions' lengths. Throws std::invalid_argument if the position is beyond
+  /// kMaxCoordinate.
   Pose operator*(const Pose& X_BC) const;
 
   /// The pose of the world seen from the body, X_BW: inverse().to_world(p) = to_body(p). The rotation is the transposed
