@@ -164,12 +164,21 @@ class Evaluation {
     if (const auto found = fit_decay(all, fit_from_)) window = {found->from, found->to};
   }
 
-  /// Of one number of a frame.
+  /// Mean of one number of a frame over all frames, with the error of the means of blocks.
   template <class Value>
   Estimate frame_mean(const Value& value) const {
-    std::vector<double> values;
-    for (const Block* block : full_) values.push_back(value(*block) / block->frames);
-    return mean_of_blocks(values);
+    std::vector<double> means;
+    for (const Block* block : full_) means.push_back(value(*block) / block->frames);
+    Estimate result = mean_of_blocks(means);
+    if (means.empty()) return result;
+    double sum = 0;
+    double frames = 0;
+    for (const Block& block : measured_.blocks) {
+      sum += value(block);
+      frames += block.frames;
+    }
+    result.value = sum / frames;
+    return result;
   }
 
   /// Of what `sums` picks of a block.

@@ -157,7 +157,8 @@ TEST(DecayFit, IsNoneWhereItsParametersSayNothing) {
     const Curve curve = curve_of(300, [&](double t) { return amplitude * std::exp(-std::pow(t / 4, beta)); });
     return reason_of(ed::internal::why_no_fit(curve, 0.5));
   };
-  EXPECT_EQ(reason(1.3, 0.8), MissingReason::no_fit);
+  EXPECT_EQ(reason(1.31, 0.8), MissingReason::no_fit);
+  EXPECT_EQ(reason(1.29, 0.8), MissingReason::not_measured) << "it is one";
   EXPECT_EQ(reason(0.95, 0.28), MissingReason::no_fit);
   EXPECT_EQ(reason(1.19, 0.31), MissingReason::not_measured) << "it is one";
 }

@@ -145,7 +145,7 @@ TEST(RayFromAfar, TakesDirectionsOfAnyLengthAndOriginsOfAnyCoordinates) {
         const RayHit hit = ray_cast(shape, Pose(), {0, 0, -afar}, {0, 0, length});
         ASSERT_EQ(hit.status, RayStatus::hit) << size << ' ' << afar << ' ' << length;
         ASSERT_NEAR(hit.point.z(), -0.5 * size, 1e-14 * size);
-        ASSERT_NEAR(hit.t / (afar / length), 1, 1e-14);
+        ASSERT_NEAR(hit.t / ((afar - 0.5 * size) / length), 1, 1e-14);
         ASSERT_EQ(ray_cast(shape, Pose(), {2 * size, 0, -afar}, {0, 0, length}).status, RayStatus::missed);
       }
     }
