@@ -493,7 +493,7 @@ TEST(ObservablesOfGroups, RotationOfAllIsMeaninglessWhereNothingTurnsSome) {
                                                  {ed_test::species(2, Inertia::paper), 60}};
   ed::StartOptions start;
   start.packing_fraction = 0.4;
-  const ed::Results results = of_run(ed::random_start(components, start), 48, 3, {{4, 2}, {60, 2}});
+  const ed::Results results = of_run(ed::random_start(components, start), 64, 4, {{4, 2}, {60, 2}});
   EXPECT_EQ(results.groups[0].D_rot.missing.reason, ed::MissingReason::meaningless);
   EXPECT_GT(results.groups[1].D_rot.value, 0);
   EXPECT_TRUE(std::isnan(results.D_rot.value));
