@@ -103,7 +103,11 @@ void DumpFrame::read_head() {
     if (item == kTimeItem) frame_.time = number(value, "the time");
   }
   const double step = number(line("its time step"), "the time step");
-  frame_.step = step >= 0 && step < 1e18 ? static_cast<std::uint64_t>(step) : 0;
+  // Beyond 2^53 two steps may be one double.
+  if (!(step >= 0 && step <= 9007199254740992.0 && step == std::floor(step))) {
+    throw bad(fmt::format("its time step is {:.17g}", step), "an integer from 0 to 2^53");
+  }
+  frame_.step = static_cast<std::uint64_t>(step);
 }
 
 void DumpFrame::read_bounds() {

@@ -317,6 +317,16 @@ class PartsOfFrames(FilesCase):
             self.refused("bad.lammpstrj", "frame 0: " + text)
 
 
+    def test_time_steps_are_integers(self):
+        for step in ["3.5", "-3", "1e300"]:
+            self.dump("steps.lammpstrj", "id type x y z", [[[1, 1, 0, 0, 0]]])
+            text = self.bytes_of("steps.lammpstrj").decode().replace("TIMESTEP\n0\n", f"TIMESTEP\n{step}\n")
+            self.assertIn(step, text)
+            with open(self.path("steps.lammpstrj"), "w", encoding="utf-8") as file:
+                file.write(text)
+            self.refused("steps.lammpstrj", "frame 0: its time step is ", "an integer from 0 to 2^53")
+
+
 class Boxes(FilesCase):
     def row(self, x=0):
         return [[1, 1, x, 0, 0], [2, 1, 0, 3, 0]]
