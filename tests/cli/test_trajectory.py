@@ -451,7 +451,7 @@ class StartsFromFiles(Trajectories):
         """That of [dynamics] counts for the species of the file; moments need sections of their own."""
         self.run_with("first", SMALL)
         result = self.run_small("second", config='[dynamics]\ninertia = "uniform"\n' + AGAIN)
-        self.assertIn("velocities rescaled", result.stderr)
+        self.assertIn("translation rescaled to kT = 1, rotation rescaled to kT = 1, spin drawn", result.stderr)
         self.assertIn('inertia = "uniform"', self.read("second/config.toml"))
         self.assertEqual(self.run_small("third", config='[dynamics]\ninertia = "paper"\n' + AGAIN).returncode, 0)
         self.same("first/trajectory.gsd", 5, "third/trajectory.gsd")
