@@ -166,7 +166,8 @@ using ExactVector = Eigen::Matrix<Real, 3, 1>;
 
 /// The rotation of q / |q| in long double.
 ExactMatrix exact_rotation(double w, double x, double y, double z) {
-  return Eigen::Quaternion<Real>(Real{w}, Real{x}, Real{y}, Real{z}).normalized().toRotationMatrix();
+  const auto exact = [](double number) { return static_cast<Real>(number); };
+  return Eigen::Quaternion<Real>(exact(w), exact(x), exact(y), exact(z)).normalized().toRotationMatrix();
 }
 
 double largest_difference(const Matrix3d& R, const ExactMatrix& exact) {
