@@ -94,14 +94,7 @@ Json observables(const ed::Correlations& c, const ed::Estimate& S, const ed::Dir
       {"value", {number_json(director.axis.x()), number_json(director.axis.y()), number_json(director.axis.z())}},
       {"error", number_json(director.error)}};
   if (!director.axis.allFinite()) json["director"]["missing"] = missing_text(S.missing, kWords);
-  json["tau_C2"] = estimate_json(c.tau_C2, kWords);
-  json["beta_C2"] = estimate_json(c.beta_C2, kWords);
-  json["t_C2_1overe"] = estimate_json(c.t_C2_1overe, kWords);
-  json["tau_F"] = estimate_json(c.tau_F, kWords);
-  json["beta_F"] = estimate_json(c.beta_F, kWords);
-  json["t_F_1overe"] = estimate_json(c.t_F_1overe, kWords);
-  json["q_peak"] = estimate_json(c.q_peak, kWords);
-  json["S_peak"] = estimate_json(c.S_peak, kWords);
+  add_decays_json(json, c, kWords);
   return json;
 }
 

@@ -184,7 +184,7 @@ void DumpFrame::read_columns(std::string_view head) {
   frame_.notices = columns_->notices;
 }
 
-/// In tilted boxes scaled positions are along the edges, others along the axes: not one of each.
+/// Scaled positions are along the edges of a tilted box, others along the axes: not one of each.
 void DumpFrame::check_tilted_columns() {
   const auto& axes = columns_->axes;
   tilted_scale_ = is_scaled(axes[0]);

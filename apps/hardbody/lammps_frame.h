@@ -14,7 +14,7 @@ class DumpLines {
  public:
   explicit DumpLines(std::string_view text) : text_(text) {}
 
-  /// Without its end; nothing after the last one that has an end.
+  /// Next line without its end; nothing after the last one that has an end.
   std::optional<std::string_view> next() {
     const std::size_t end = text_.find('\n');
     if (end == std::string_view::npos) return std::nullopt;

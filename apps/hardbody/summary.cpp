@@ -108,14 +108,7 @@ void add_measured(Json& json, const Measured& r, const MissingWords& words) {
   json["D_rot_body"] = estimate_json(r.D_rot_body, words);
   json["S"] = estimate_json(r.S, words);
   json["director"] = director(r.director, r.S, words);
-  json["tau_C2"] = estimate_json(r.tau_C2, words);
-  json["beta_C2"] = estimate_json(r.beta_C2, words);
-  json["t_C2_1overe"] = estimate_json(r.t_C2_1overe, words);
-  json["tau_F"] = estimate_json(r.tau_F, words);
-  json["beta_F"] = estimate_json(r.beta_F, words);
-  json["t_F_1overe"] = estimate_json(r.t_F_1overe, words);
-  json["q_peak"] = estimate_json(r.q_peak, words);
-  json["S_peak"] = estimate_json(r.S_peak, words);
+  add_decays_json(json, r, words);
   json["kT_trans"] = estimate_json(r.translational_kT, words);
   json["kT_rot"] = estimate_json(r.rotational_kT, words);
 }

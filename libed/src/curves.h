@@ -1,6 +1,6 @@
 #pragma once
 
-/// What is read off a time correlation: slopes and decays, and why nothing can be read.
+/// Slopes and decays read off a time correlation, and why nothing can be read.
 
 #include <ed/analysis.h>
 

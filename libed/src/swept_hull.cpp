@@ -116,7 +116,7 @@ double SweptHull::AboutAnAxis::height(const Vector3d& n) const {
   return height_at(angle_between(n, axis));
 }
 
-/// Between two directions, half a step from their middle, it is at most the larger height over the cosine of that.
+/// Height between two directions, half a step from their middle: at most the larger one over the cosine of that.
 double SweptHull::AboutAnAxis::highest(double least, double most) const {
   double found = std::max(height_at(least), height_at(most));
   for (int node = 0; node < kSweptNodes; ++node) {

@@ -59,7 +59,7 @@ std::string changed_file(const std::string& good, std::string_view changes) {
   return bytes;
 }
 
-/// What moves is known of a later frame only if some later frame has it; a state in doubles has it all.
+/// Quantities that move are known of a later frame only if some later frame has them; a state in doubles has all.
 void check_known(const hardbody::Frame& frame, std::uint64_t k, const hardbody::GsdFile& file) {
   if (k == 0 || frame.exact) return;
   const auto stored = [&](const char* name) { return file.stored_later(name); };

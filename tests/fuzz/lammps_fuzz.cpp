@@ -10,7 +10,7 @@
 
 namespace {
 
-/// What a dump knows has columns of these names somewhere in it.
+/// Columns of these names stand somewhere in a dump that knows the quantity.
 void check_columns(const hardbody::Frame& frame, std::string_view text) {
   const auto has = [&](std::string_view name) { return text.find(name) != std::string_view::npos; };
   fuzz::require(!frame.velocities || (has("vx") && has("vy") && has("vz")), "velocities are columns");

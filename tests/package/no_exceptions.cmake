@@ -6,13 +6,7 @@ file(MAKE_DIRECTORY ${WORK_DIR})
 set(compile ${COMPILER} -std=c++20 -fno-exceptions -I${SOURCE_DIR}/libgeom/include -I${SOURCE_DIR}/libgeom/src
   -isystem ${EIGEN_DIR})
 
-function(must)
-  execute_process(COMMAND ${ARGN} RESULT_VARIABLE status)
-  if(NOT status EQUAL 0)
-    list(JOIN ARGN " " command)
-    message(FATAL_ERROR "failed (${status}): ${command}")
-  endif()
-endfunction()
+include(${CMAKE_CURRENT_LIST_DIR}/common.cmake)
 
 # All sources as one, to read Eigen once.
 file(GLOB sources ${SOURCE_DIR}/libgeom/src/*.cpp)

@@ -88,7 +88,7 @@ TEST(ContactBudget, BodiesThatSlideInExactTouchNeverMeet) {
   }
 }
 
-/// They turn within each other's bounding spheres, at a distance that what they sweep shows.
+/// Bodies turn within each other's bounding spheres, at a distance that what they sweep shows.
 TEST(ContactBudget, BodiesThatTurnFastBesideEachOtherNeverMeet) {
   for (const double w : {1e3, 1e6}) {
     for (const double t_max : {10.0, 1e3, kForever}) {

@@ -37,7 +37,7 @@ double caged(double t) {
   return kPlateau * x * x / (1 + x * x);
 }
 
-/// Of a dense fluid of spheres: q = 3.5 / l.
+/// Requirements in a dense fluid of spheres: q = 3.5 / l.
 const Reach kFluid = ed::internal::reach_of_translation(3.5, 0);
 
 MissingReason reason_of(const std::optional<ed::Missing>& missing) {

@@ -281,7 +281,7 @@ TEST(Pose, NearestRotationIsThePolarFactor) {
   }
 }
 
-/// What single precision makes of a chain of 10,000 turns is accepted, and is the rotation that it is nearest to.
+/// Chains of 10,000 turns in single precision are accepted, and give the nearest rotation.
 TEST(Pose, NearestRotationTakesChainsInSinglePrecision) {
   Random random(10);
   for (int chain = 0; chain < 20; ++chain) {

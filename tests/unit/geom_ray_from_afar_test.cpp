@@ -18,7 +18,7 @@ using geom_test::Random;
 using Real = long double;
 using Exact = Eigen::Matrix<Real, 3, 1>;
 
-/// What is known of a body without asking it.
+/// Facts about a body that are known without asking it.
 struct Given {
   Vector3d semi_axes;
   double e1;

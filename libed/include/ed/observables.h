@@ -108,7 +108,7 @@ struct BlockRow {
 /// - D_rot and D_rot_body of c components: <|Delta Phi|^2> >= c / 3 rad^2 at the longest lag; where it is less than
 ///   that at the first of these lags, the logarithmic slope is at most 1.1. Single axes have c = 1.
 ///
-/// This is decided on all data; errors are from blocks, which decide nothing.
+/// All data decide this; errors are from blocks, which decide nothing.
 ///
 /// Where nothing turns bodies, as with spheres, rotational diffusion and fits of C2 are meaningless, and what is left
 /// of rotation alone has no error (NaN): blocks hold the same motion. The same for D_rot of all bodies where nothing

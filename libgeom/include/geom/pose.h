@@ -93,7 +93,7 @@ class GEOM_EXPORT Pose {
     return {q[0], q[1], q[2], q[3]};
   }
 
-  /// This map as Eigen's transform, to the last bit.
+  /// Eigen's transform of the same map, to the last bit.
   template <int Options = Eigen::AutoAlign>
   Eigen::Transform<double, 3, Eigen::Isometry, Options> isometry() const {
     Eigen::Transform<double, 3, Eigen::Isometry, Options> X_WB;
