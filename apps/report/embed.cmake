@@ -1,6 +1,6 @@
 # Writes C++ functions that return the bytes of files: cmake -DOUTPUT=x.cpp -Dname=file... -P embed.cmake, for the names
-# that report_assets.h declares.
-set(text "#include \"report_assets.h\"\n\nnamespace hardbody {\n")
+# that report/assets.h declares.
+set(text "#include \"report/assets.h\"\n\nnamespace hardbody {\n")
 foreach(name report_script report_style report_static_style)
   file(READ ${${name}} bytes HEX)
   string(LENGTH "${bytes}" digits)

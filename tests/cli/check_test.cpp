@@ -1,8 +1,8 @@
 /// `hardbody check` on states that no sound run ends in, and what counts as a defect of a run.
 
 #include "checkpoint_states.h"
-#include "config.h"
-#include "run_record.h"
+#include "config/config.h"
+#include "run/record.h"
 
 #include <ed/simulation.h>
 

@@ -2,9 +2,9 @@
 
 /// Checkpoints for tests: of a few bodies of one kind, of a mixture.
 
-#include "checkpoint.h"
-#include "config.h"
-#include "text_file.h"
+#include "run/checkpoint.h"
+#include "config/config.h"
+#include "io/text_file.h"
 
 #include <ed/start.h>
 

@@ -1,9 +1,9 @@
 /// events.csv: what is in it and in memory while it can be written, and while it cannot.
 
-#include "events_file.h"
-#include "config.h"
-#include "run_directory.h"
-#include "text_file.h"
+#include "run/files/events_file.h"
+#include "config/config.h"
+#include "io/run_directory.h"
+#include "io/text_file.h"
 
 #include <ed/simulation.h>
 #include <ed/start.h>

@@ -1,11 +1,11 @@
 /// Trajectories as the program's own reader sees them: states that come back to every bit, files that end anywhere,
 /// files that lie. What other programs read in them is tested by test_trajectory.py.
 
-#include "config.h"
-#include "errors.h"
-#include "frame.h"
-#include "gsd_file.h"
-#include "gsd_frames.h"
+#include "config/config.h"
+#include "base/errors.h"
+#include "trajectory/frame.h"
+#include "trajectory/gsd/container.h"
+#include "trajectory/gsd/frames.h"
 
 #include <ed/internal/archive_types.h>
 #include <ed/random.h>

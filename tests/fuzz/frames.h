@@ -3,10 +3,10 @@
 /// Duty of both readers of trajectories with any bytes: refuse them with one line, or read every frame (or refuse it)
 /// with finite numbers, and with none where the file gives none.
 
-#include "commands.h"
-#include "errors.h"
-#include "frame.h"
-#include "stored_trajectory.h"
+#include "commands/commands.h"
+#include "base/errors.h"
+#include "trajectory/frame.h"
+#include "trajectory/stored_trajectory.h"
 
 #include <algorithm>
 #include <cstdint>

@@ -1,7 +1,7 @@
 /// libFuzzer: files that claim to be GSD trajectories (frames.h).
 
 #include "frames.h"
-#include "gsd_frames.h"
+#include "trajectory/gsd/frames.h"
 
 #include <ed/system.h>
 

@@ -1,7 +1,7 @@
 /// libFuzzer: texts that claim to be LAMMPS dumps (frames.h).
 
 #include "frames.h"
-#include "lammps_dump.h"
+#include "trajectory/lammps/dump.h"
 
 #include <cstddef>
 #include <cstdint>

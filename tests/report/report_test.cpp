@@ -1,10 +1,10 @@
 /// The parts of the report that need no browser.
 
-#include "errors.h"
-#include "report_curves.h"
-#include "report_page.h"
-#include "report_svg.h"
-#include "report_view.h"
+#include "base/errors.h"
+#include "report/curves.h"
+#include "report/page.h"
+#include "report/svg.h"
+#include "report/view.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,10 +1,10 @@
 /// Grids of a sweep, the files they are read from, and lines of constant value.
 
-#include "contours.h"
-#include "csv_table.h"
-#include "errors.h"
-#include "sweep_file.h"
-#include "sweep_grid.h"
+#include "plot/contours.h"
+#include "io/csv_table.h"
+#include "base/errors.h"
+#include "sweep/file.h"
+#include "sweep/grid.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

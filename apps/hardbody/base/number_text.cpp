@@ -1,0 +1,17 @@
+#include "base/number_text.h"
+
+#include <charconv>
+#include <cmath>
+#include <system_error>
+
+namespace hardbody {
+
+std::optional<double> finite_number(std::string_view text) {
+  const char* const last = text.data() + text.size();
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), last, value);
+  if (error != std::errc() || end != last || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+}  // namespace hardbody

@@ -1,0 +1,230 @@
+#include "commands/commands.h"
+#include "base/errors.h"
+#include "trajectory/frame.h"
+#include "io/json_values.h"
+#include "run/missing.h"
+#include "run/files/observable_files.h"
+#include "io/run_directory.h"
+#include "trajectory/stored_trajectory.h"
+#include "io/text_file.h"
+#include "trajectory/reader.h"
+#include "base/version.h"
+
+#include <ed/stored_frames.h>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <numbers>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace hardbody {
+namespace {
+
+namespace fs = std::filesystem;
+using Eigen::Vector3d;
+using Json = nlohmann::ordered_json;
+
+/// What a run has chosen for its own observables.
+struct RunChoices {
+  std::optional<double> fit_from;    ///< nothing: it has fitted nothing
+  std::vector<double> wave_numbers;  ///< of F_self
+};
+
+/// Those of the run in that directory, if there is one.
+RunChoices choices_of_run(const fs::path& directory) {
+  const fs::path file = directory / kSummaryFile;
+  RunChoices choices;
+  if (!fs::exists(file)) return choices;
+  try {
+    const Json summary = Json::parse(read_file(file, kLongestSummary));
+    for (const char* decay : {"F", "C2"}) {
+      const Json& window = summary.at("fit_windows").at(decay);
+      if (!window.is_null()) choices.fit_from = window.at(0).get<double>();
+    }
+    choices.wave_numbers = summary.at("wave_numbers").get<std::vector<double>>();
+  } catch (const Json::exception&) {
+    throw InputError(
+        fmt::format("{}: is not one that a run has written; accepted: a trajectory without such a file "
+                    "beside it",
+                    file.string()));
+  }
+  return choices;
+}
+
+// ---- Files
+
+std::string cell(double x) {
+  return std::isfinite(x) ? fmt::format("{}", x) : "";
+}
+
+std::string order_csv(const StoredTrajectory& stored) {
+  std::string text = "t [l sqrt(m/kT)],S [1],energy [kT]\n";
+  for (std::size_t k = 0; k < stored.frames.size(); ++k) {
+    const ed::StoredFrame& frame = stored.frames[k];
+    std::vector<Vector3d> axes;
+    for (std::size_t i = 0; i < frame.rotation.size(); ++i) {
+      axes.emplace_back(frame.rotation[i].col(stored.options.axis[i]));
+    }
+    const double S = axes.empty() ? std::numeric_limits<double>::quiet_NaN() : ed::nematic_order(axes);
+    text += fmt::format("{},{},{}\n", frame.time, cell(S), cell(stored.energy[k]));
+  }
+  return text;
+}
+
+/// Words for values that are missing: lengths have the unit of the file.
+const MissingWords kWords = {"", "--longest-lag or a longer trajectory helps", "--fit-from says it"};
+
+/// As in summary.json.
+Json observables(const ed::Correlations& c, const ed::Estimate& S, const ed::Director& director) {
+  Json json;
+  json["D_trans"] = estimate_json(c.D_trans, kWords);
+  json["S"] = estimate_json(S, kWords);
+  json["director"] = {
+      {"value", {number_json(director.axis.x()), number_json(director.axis.y()), number_json(director.axis.z())}},
+      {"error", number_json(director.error)}};
+  if (!director.axis.allFinite()) json["director"]["missing"] = missing_text(S.missing, kWords);
+  add_decays_json(json, c, kWords);
+  return json;
+}
+
+Json text_or_null(const std::string& text) {
+  return text.empty() ? Json(nullptr) : Json(text);
+}
+
+std::string analysis_json(const std::string& name, const StoredTrajectory& stored, const ed::StoredResults& results) {
+  Json json;
+  json["version"] = version();
+  json["source"] = name;
+  json["units"] = "those of the file; of ours kT = m = 1, lengths l, times l sqrt(m/kT)";
+  const std::size_t last = results.first_frame + results.frames - 1;
+  json["frames"] = {{"in_file", stored.in_file},
+                    {"without_positions", stored.without_positions},
+                    {"read", stored.frames.size()},
+                    {"used", results.frames},
+                    {"first_used", results.first_frame}};
+  json["time"] = {{"first", stored.frames[results.first_frame].time}, {"last", stored.frames[last].time}};
+  json["unwrapped"] = {{"by", text_or_null(stored.unwrapped_by)}, {"reason", text_or_null(stored.not_unwrapped)}};
+  json["followed"] = {{"by", stored.not_followed.empty() ? Json("ids") : Json(nullptr)},
+                      {"reason", text_or_null(stored.not_followed)}};
+  json["notices"] = stored.notices;
+  json["state"] = {
+      {"number", stored.options.axis.size()}, {"box", stored.options.box}, {"length", stored.options.length}};
+  json["wave_numbers"] = results.wave_numbers;
+  json["fit_from"] = stored.options.fit_from ? Json(*stored.options.fit_from) : Json(nullptr);
+  json["observables"] = observables(results, results.S, results.director);
+  if (results.groups.size() > 1) {
+    for (const ed::GroupResults& group : results.groups)
+      json["species"].push_back(observables(group, group.S, group.director));
+  }
+  return json.dump(2) + "\n";
+}
+
+void write_files(const fs::path& out, const std::string& name, const StoredTrajectory& stored,
+                 const ed::StoredResults& results) {
+  try {
+    fs::create_directories(out);
+  } catch (const fs::filesystem_error& error) {
+    throw InputError(
+        fmt::format("{}: cannot be written to: {}; accepted: a directory", out.string(), error.code().message()));
+  }
+  const std::array<std::string, kAnalysisFiles.size()> contents = {
+      msd_csv(results),    alpha2_csv(results),
+      c1_csv(results),     c2_csv(results),
+      f_self_csv(results), velocity_csv(results),
+      pairs_csv(results),  structure_csv(results),
+      order_csv(stored),   analysis_json(name, stored, results)};
+  for (std::size_t k = 0; k < contents.size(); ++k) write_file(out / kAnalysisFiles[k], contents[k]);
+}
+
+std::string shown(const ed::Estimate& e) {
+  if (!std::isfinite(e.value)) return fmt::format("- ({})", missing_text(e.missing, kWords));
+  if (!std::isfinite(e.error)) return fmt::format("{:.5g} (no error)", e.value);
+  return fmt::format("{:.5g} +- {:.2g}", e.value, e.error);
+}
+
+fs::path trajectory_in(const fs::path& directory) {
+  for (const char* name : {kGsdFile, kLammpsFile}) {
+    if (fs::exists(directory / name)) return directory / name;
+  }
+  throw InputError(
+      fmt::format("{}: has neither {} nor {}; accepted: the directory of a run with [output] trajectory = [\"gsd\"] or "
+                  "[\"lammps\"], or such a file",
+                  directory.string(), kGsdFile, kLammpsFile));
+}
+
+/// Prints what was read, and what was not used of it.
+void print_reading(const TrajectoryReader& reader, const StoredTrajectory& stored, const ed::StoredResults& results) {
+  fmt::print("{}: {} {} of {} bodies{}\n", reader.name(), stored.frames.size(),
+             stored.frames.size() == 1 ? "frame" : "frames", stored.options.axis.size(),
+             reader.cut_off() ? kCutOff : "");
+  const auto note = [](const std::string& text) { fmt::print("  note: {}\n", text); };
+  if (stored.without_positions > 0) {
+    note(fmt::format("frames without positions are left out: {} of {} in the file", stored.without_positions,
+                     stored.in_file));
+  }
+  if (results.frames < stored.frames.size()) {
+    note(
+        fmt::format("S, g(r) and S(q) are from all frames, correlations from the longest even stretch, {} frames "
+                    "of times {:g} to {:g}",
+                    results.frames, stored.frames[results.first_frame].time,
+                    stored.frames[results.first_frame + results.frames - 1].time));
+  }
+  for (const std::string& notice : stored.notices) note(notice);
+  if (!stored.not_followed.empty()) {
+    note(fmt::format("no correlations in time: {}", stored.not_followed));
+  } else if (!stored.not_unwrapped.empty()) {
+    note(fmt::format("no displacements, MSD and F_self: {}", stored.not_unwrapped));
+  } else if (stored.frames.size() > 1) {
+    fmt::print("  positions unwrapped by {}\n", stored.unwrapped_by);
+  }
+}
+
+}  // namespace
+
+int analyze(const AnalyzeArguments& arguments) {
+  const fs::path given(arguments.path);
+  const fs::path file = fs::is_directory(given) ? trajectory_in(given) : given;
+  const fs::path out = arguments.out ? fs::path(*arguments.out) : file.parent_path() / kAnalysisDirectory;
+  const std::unique_ptr<TrajectoryReader> source = open_frames(file);
+  const TrajectoryReader& reader = *source;
+  StoredTrajectory stored = read_trajectory(reader, arguments);
+  const RunChoices run = choices_of_run(file.parent_path());
+  stored.options.fit_from = arguments.fit_from ? arguments.fit_from : run.fit_from;
+  stored.options.wave_numbers = run.wave_numbers;
+  ed::StoredResults results;
+  try {
+    results = ed::analyze_frames(stored.frames, stored.options);
+  } catch (const std::invalid_argument& error) {
+    throw InputError(fmt::format("{}: {}{}", reader.name(), one_line(error.what()), reader.cut_off() ? kCutOff : ""));
+  }
+  write_files(out, reader.name(), stored, results);
+  print_reading(reader, stored, results);
+  for (const auto& [name, value] : {std::pair{"D_trans", results.D_trans},
+                                    {"S", results.S},
+                                    {"t_C2(1/e)", results.t_C2_1overe},
+                                    {"tau_C2", results.tau_C2},
+                                    {"beta_C2", results.beta_C2},
+                                    {"t_F(1/e)", results.t_F_1overe},
+                                    {"tau_F", results.tau_F},
+                                    {"beta_F", results.beta_F},
+                                    {"q_peak", results.q_peak}}) {
+    fmt::print("  {:<12} {}\n", name, shown(value));
+  }
+  if (!stored.options.fit_from)
+    fmt::print("no fits of decays: --fit-from T says from which lag, where ballistic motion has ended\n");
+  fmt::print("\nfiles: {0}/analysis.json, {0}/*.csv\n", out.string());
+  return 0;
+}
+
+}  // namespace hardbody

@@ -1,0 +1,84 @@
+#include "commands/commands.h"
+#include "distance/query.h"
+#include "distance/seeds.h"
+#include "io/line_reader.h"
+#include "trajectory/orientation.h"
+
+#include <geom/tolerances.h>
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <cstddef>
+#include <cstdio>
+#include <cstring>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+namespace hardbody {
+namespace {
+
+constexpr std::size_t kLongestLine = 1 << 20;
+
+bool is_blank(std::string_view line) {
+  return line.find_first_not_of(" \t\r\v\f") == std::string_view::npos;
+}
+
+Reply reply(const LineReader& lines) {
+  if (!lines.too_long()) return reply_to(lines.line(), lines.number());
+  return {error_json("", fmt::format("line {}: is too long; accepted: at most {} bytes", lines.number(), kLongestLine)),
+          false};
+}
+
+/// A full disk; a closed pipe, where SIGPIPE is ignored: there is no point in going on.
+void require_written(bool written) {
+  if (!written) throw std::runtime_error(fmt::format("standard output: cannot be written: {}", std::strerror(errno)));
+}
+
+}  // namespace
+
+std::string distance_help() {
+  return fmt::format(
+      R"(A line in:
+  {{"a":{{"shape":{{"kind":"ellipsoid","semi_axes":[1,1,3]}},"position":[0,0,0],"orientation":[1,0,0,0]}},"b":{{..}}}}
+  shape        or {{"kind":"superellipsoid","semi_axes":[a,b,c],"exponents":[e1,e2]}}, exponents {} to {}:
+               (|x/a|^(2/e2) + |y/b|^(2/e2))^(e2/e1) + |z/c|^(2/e1) <= 1
+  orientation  unit quaternion w, x, y, z from body to world; without it the body is not turned. A length that is off
+               by at most {:g} is normalized, with a notice in the answer beyond 1e-6
+  method       "dual" (the default), or the paper's equations: "newton8", "newton5"
+  seed         where these two start: {} (the default is the first)
+  penetration  of the dual method, where bodies overlap deeply: "global" (the default), the shortest of all translations
+               that part them, or "local", a stationary one: mostly found 10 to 75 times faster
+  id           any JSON, comes back with the answer
+A line out:
+  {{"distance":..,"point_a":[..],"point_b":[..],"normal":[..],"status":"separated","iterations":..,"error_bound":..}}
+  normal       unit, from a to b; point_b - point_a = distance * normal
+  status       "separated"; "overlapping": distance is minus the penetration depth; "not_converged", "singular":
+               no answer, null instead of the four above
+  error_bound  certified: distance <= true distance <= distance + error_bound; null where nothing is
+  seed_status  "overlapping", "declined": only if the seed had no points to start from
+  notice       only if a quaternion was not of length 1: which one, and its length
+A bad line is answered by {{"error":"line 3: .."}}, blank lines are skipped.
+Exit status: 0 every line was answered or declined, 2 a line was bad, 1 the answers could not be written.)",
+      geom::kMinExponent, geom::kMaxExponent, kQuaternionTolerance, built_in_seeds());
+}
+
+int distance(const std::string& path) {
+  LineReader lines(path, kLongestLine);
+  // Whoever writes one line at a time waits for its answer.
+  const bool flush = !lines.is_regular_file();
+  bool all_good = true;
+  while (lines.next()) {
+    if (is_blank(lines.line()) && !lines.too_long()) continue;
+    Reply answered = reply(lines);
+    all_good = all_good && answered.good;
+    answered.text += '\n';
+    require_written(std::fwrite(answered.text.data(), 1, answered.text.size(), stdout) == answered.text.size());
+    if (flush) require_written(std::fflush(stdout) == 0);
+  }
+  require_written(std::fflush(stdout) == 0);
+  return all_good ? 0 : 2;
+}
+
+}  // namespace hardbody

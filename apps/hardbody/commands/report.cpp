@@ -1,0 +1,102 @@
+#include "commands/commands.h"
+#include "base/errors.h"
+#include "report/assets.h"
+#include "report/page.h"
+#include "io/run_directory.h"
+#include "io/text_file.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace hardbody {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path output_path(const ReportArguments& arguments) {
+  if (arguments.out) return *arguments.out;
+  if (arguments.directories.size() == 1) return fs::path(arguments.directories[0]) / kReportFile;
+  throw InputError("hardbody report: several directories, and no file to write to; accepted: -o FILE.html");
+}
+
+void check_output(const fs::path& path) {
+  const fs::path directory = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  if (!fs::is_directory(directory)) {
+    throw InputError(
+        fmt::format("{}: cannot be written: {} is not a directory; accepted: a file in a directory that "
+                    "is there",
+                    path.string(), directory.string()));
+  }
+  check_replaceable(path, kReportBeginning);
+}
+
+std::string size_text(std::size_t bytes) {
+  const auto size = static_cast<double>(bytes);
+  return size < 1e6 ? fmt::format("{:.0f} kB", size / 1e3) : fmt::format("{:.1f} MB", size / 1e6);
+}
+
+/// The last `parts` parts of a directory's path.
+std::string last_parts(const fs::path& directory, int parts) {
+  const fs::path whole = fs::weakly_canonical(directory);
+  fs::path name = whole.filename();
+  for (fs::path rest = whole.parent_path(); --parts > 0 && rest.has_filename(); rest = rest.parent_path()) {
+    name = rest.filename() / name;
+  }
+  return name.string();
+}
+
+/// Runs of the same name are called by as much of their paths as tells them apart.
+void name_apart(std::vector<RunReport>& runs) {
+  constexpr int kMostParts = 64;
+  for (int parts = 2; parts <= kMostParts; ++parts) {
+    std::map<std::string, int> counts;
+    for (const RunReport& run : runs) ++counts[run.name];
+    for (RunReport& run : runs) {
+      if (counts[run.name] > 1) run.name = last_parts(run.path, parts);
+    }
+  }
+}
+
+std::string several_title(const std::vector<RunReport>& runs) {
+  std::string title;
+  for (const RunReport& run : runs) title += (title.empty() ? "" : ", ") + run.name;
+  return fmt::format("{} runs: {}", runs.size(), title);
+}
+
+Report read_report(const std::vector<std::string>& directories) {
+  Report report;
+  if (directories.size() == 1 && is_sweep(directories[0])) {
+    report.sweep = read_sweep_report(directories[0]);
+    report.title = report.sweep->title;
+    return report;
+  }
+  for (const std::string& directory : directories) {
+    if (is_sweep(directory)) {
+      throw InputError(fmt::format("{}: holds a sweep; accepted: a sweep by itself, or several runs", directory));
+    }
+    report.runs.push_back(read_run_report(directory, WithView::yes));
+  }
+  name_apart(report.runs);
+  report.title = report.runs.size() == 1 ? report.runs[0].title : several_title(report.runs);
+  return report;
+}
+
+}  // namespace
+
+int report(const ReportArguments& arguments) {
+  const fs::path path = output_path(arguments);
+  const Report report = read_report(arguments.directories);
+  check_output(path);
+  const std::string page = report_page(report);
+  write_file(path, page);
+  fmt::print("{}: {}{}\n", path.string(), size_text(page.size()),
+             report_script().empty() ? ", static: this program was built without the interactive front end" : "");
+  return 0;
+}
+
+}  // namespace hardbody

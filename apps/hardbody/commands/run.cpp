@@ -1,0 +1,349 @@
+#include "run/checkpoint.h"
+#include "commands/commands.h"
+#include "config/config.h"
+#include "config/text.h"
+#include "base/errors.h"
+#include "run/files/failure_file.h"
+#include "base/log.h"
+#include "start/make_start.h"
+#include "run/files/observable_files.h"
+#include "run/origin.h"
+#include "run/phases.h"
+#include "base/progress.h"
+#include "io/run_directory.h"
+#include "run/record.h"
+#include "run/saver.h"
+#include "base/signals.h"
+#include "start/from_file.h"
+#include "run/summary.h"
+#include "run/table.h"
+#include "io/text_file.h"
+#include "base/version.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+namespace hardbody {
+namespace {
+
+std::filesystem::path directory_for(const RunArguments& arguments) {
+  if (arguments.out && arguments.out->empty()) throw InputError("--out is empty; accepted: the name of a directory");
+  if (arguments.out) return *arguments.out;
+  return std::filesystem::path("out") / std::filesystem::path(arguments.config).stem();
+}
+
+/// Before anything is changed. The name of the run becomes one that is good from everywhere.
+void check_origin(const RunArguments& arguments, Config& config) {
+  (void)read_origin_state(config);
+  std::error_code ignored;
+  if (std::filesystem::equivalent(*config.start_from, directory_for(arguments), ignored)) {
+    throw InputError(fmt::format("system.start_from: {} is the directory of this run; accepted: that of another one",
+                                 *config.start_from));
+  }
+  config.start_from = absolute_path(*config.start_from).string();
+}
+
+RunDirectory create_directory(const RunArguments& arguments, const Config& config) {
+  const Overwrite overwrite = arguments.force ? Overwrite::allowed : Overwrite::refused;
+  std::vector<std::filesystem::path> inputs = {arguments.config};
+  if (config.start_file) inputs.emplace_back(config.start_file->file);
+  return RunDirectory::create(directory_for(arguments), overwrite, inputs, resolved_text(config));
+}
+
+void write_failures(const RunDirectory& directory, const RunRecord& record, Log& log) {
+  int count = 0;
+  const Equilibration& before = record.equilibration;
+  for (const auto* failures : {&before.failures_of_start, &before.failures, &record.production.failures}) {
+    for (const ed::FailedPair& pair : *failures) {
+      directory.write(fmt::format("{}/pair_{:02}.json", kFailuresDirectory, ++count),
+                      failure_json({ed::to_string(pair.reason), pair, {}}));
+    }
+  }
+  const std::uint64_t left_out = record.failures_left_out();
+  if (left_out > 0)
+    log.line(fmt::format("failures: {} pairs in {}/, {} more left out", count, kFailuresDirectory, left_out));
+}
+
+/// Where a run begins, or goes on.
+struct Continuation {
+  std::optional<Start> start;
+  std::optional<EquilibrationRun> equilibration;
+  std::optional<ProductionRun> production;
+  FilesMark files;
+  Upkeep upkeep;
+};
+
+/// The state in which the run has ended.
+Checkpoint last_checkpoint(Continuation& at, const RunRecord& record) {
+  Checkpoint checkpoint = at.production      ? checkpoint_of(*at.production)
+                          : at.equilibration ? checkpoint_of(*at.equilibration)
+                                             : checkpoint_of(*at.start);
+  if (checkpoint.run) checkpoint.run->finished = !record.stopped();
+  return checkpoint;
+}
+
+/// The files of a run's end that have been written, in the order in which its table names them.
+struct WrittenFiles {
+  bool summary = false;
+  bool observables = false;
+  bool checkpoint = false;  ///< and with it what grows with the run
+
+  std::vector<std::string> list(const RunDirectory& directory, const Config& config) const {
+    std::vector<std::string> names;
+    const auto add = [&](bool written, const char* name) {
+      if (written) names.push_back(directory.file(name).string());
+    };
+    add(summary, kSummaryFile);
+    add(observables, "observables/*.csv");
+    add(checkpoint, kCheckpointFile);
+    add(checkpoint && config.events > 0, kEventsFile);
+    add(checkpoint && !config.trajectory.empty(), "trajectory.*");
+    return names;
+  }
+};
+
+/// The summary comes last: where it is, the other files are complete.
+void write_results(const RunDirectory& directory, RunRecord& record, Continuation& at, Saver& saver, Log& log,
+                   WrittenFiles& written) {
+  const ed::Results& results = record.production.results;
+  saver.write(last_checkpoint(at, record));
+  written.checkpoint = true;
+  directory.write(kMsdFile, msd_csv(results));
+  directory.write(kRotationalMsdFile, rotational_msd_csv(results));
+  directory.write(kAlpha2File, alpha2_csv(results));
+  directory.write(kVelocityFile, velocity_csv(results));
+  directory.write(kC1File, c1_csv(results));
+  directory.write(kC2File, c2_csv(results));
+  directory.write(kFSelfFile, f_self_csv(results));
+  directory.write(kPairsFile, pairs_csv(results));
+  directory.write(kStructureFile, structure_csv(results));
+  directory.write(kBlocksFile, blocks_csv(results));
+  written.observables = true;
+  write_failures(directory, record, log);
+  record.upkeep = saver.upkeep();
+  directory.write(kSummaryFile, summary_json(record));
+  written.summary = true;
+}
+
+/// Nothing was measured, and half a start is not kept: only the config and the log stay.
+int stopped_at_the_start(const RunDirectory& directory, Progress& progress, Log& log) {
+  const int signal = pending_signal();
+  const std::string text = fmt::format(
+      "stopped by {} during the start: nothing was measured, and the start is not saved: hardbody resume begins it "
+      "again",
+      signal_name(signal));
+  log.line(text);
+  progress.say(fmt::format("{}: {}", directory.path().string(), text));
+  return exit_status_of(signal);
+}
+
+int conclude(const RunDirectory& directory, RunRecord& record, Continuation& at, Saver& saver, Progress& progress,
+             Log& log) {
+  const int signal = pending_signal();
+  std::exception_ptr failure;
+  WrittenFiles written;
+  try {
+    write_results(directory, record, at, saver, log, written);
+    log.line("files written");
+  } catch (const std::exception&) {
+    failure = std::current_exception();
+  }
+  progress.clear();
+  // The table also when a full disk has kept the files from being written: hours of work may stand in it.
+  (void)std::fputs(results_table(record, written.list(directory, record.config)).c_str(), stdout);
+  (void)std::fflush(stdout);
+  if (failure) std::rethrow_exception(failure);
+  const std::vector<std::string> list = defects(record);
+  for (const std::string& defect : list) {
+    log.line("NOT SOUND: " + defect);
+    progress.say(fmt::format("{}: NOT SOUND: {}", directory.path().string(), defect));
+  }
+  if (record.stopped() && !record.stall) {
+    const std::string text =
+        fmt::format("stopped by {} during {} at time {:g}: what was measured is written, hardbody resume goes on",
+                    signal_name(signal), record.last_phase(), record.last_time());
+    log.line(text);
+    progress.say(fmt::format("{}: {}", directory.path().string(), text));
+    return exit_status_of(signal);
+  }
+  log.line("end");
+  return list.empty() ? 0 : 1;
+}
+
+/// Up to the begin of equilibration, from wherever the run stands; false: a signal came before there was a start.
+bool prepare(const Config& config, Continuation& at, Progress& progress, Saver& saver, Log& log) {
+  if (at.equilibration || at.production) return true;
+  if (!at.start) at.start = make_start(config, progress, log);
+  if (!at.start) return false;
+  // The run or the file that it came from may be gone, or another one, when this one is resumed.
+  if (saver.due() || config.start_from || config.start_file) saver.save([&at] { return checkpoint_of(*at.start); });
+  at.equilibration = begin_equilibration(config, *at.start, progress, saver, log);
+  if (at.equilibration && config.equilibration_time != 0.0) at.start.reset();
+  return true;
+}
+
+void run_equilibration(const Config& config, const RunDirectory& directory, Continuation& at, RunRecord& record,
+                       Progress& progress, Saver& saver, Log& log) {
+  record.equilibration = equilibrate(config, *at.equilibration, progress, saver, log);
+  // Where nothing was to run the start itself, to the last bit.
+  if (at.start) record.equilibration.system = std::exchange(at.start, std::nullopt)->system;
+  record.stall = at.equilibration->simulation.stall();
+  // A state with an overlap is no start for a production run.
+  const bool sound = defects(ed::audit(record.equilibration.system)).empty();
+  if (record.equilibration.stopped || !sound) return;
+  at.equilibration.reset();
+  at.production = begin_production(config, std::move(record.equilibration), directory, log);
+}
+
+void run_production(const Config& config, Continuation& at, RunRecord& record, Progress& progress, Saver& saver,
+                    Log& log) {
+  produce(config, *at.production, at.files, progress, saver, log);
+  record.equilibration = at.production->before;
+  record.production = at.production->result;
+  record.production.system = at.production->simulation.system();
+  record.stall = at.production->simulation.stall();
+}
+
+int run_phases(const Config& config, const RunDirectory& directory, Continuation at, Log& log) {
+  Progress progress;
+  Saver saver(directory, config, at.upkeep, progress, log);
+  if (!prepare(config, at, progress, saver, log)) return stopped_at_the_start(directory, progress, log);
+  RunRecord record;
+  record.config = config;
+  if (at.equilibration) run_equilibration(config, directory, at, record, progress, saver, log);
+  if (at.production) run_production(config, at, record, progress, saver, log);
+  if (!at.equilibration && !at.production) {  // a signal came while the lists were tuned
+    record.equilibration.system = at.start->system;
+    record.equilibration.counters_of_start = at.start->counters;
+    record.equilibration.failures_of_start = at.start->failures;
+    record.equilibration.kinetic_at_start = ed::kinetic_state(at.start->system);
+    record.equilibration.stopped = true;
+  }
+  audit_record(record);
+  return conclude(directory, record, at, saver, progress, log);
+}
+
+/// What to do when a file could not be written.
+std::string advice(const RunDirectory& directory, const WriteError& error) {
+  return fmt::format("{}: {}, then hardbody resume {}{}",
+                     directory.has(kCheckpointFile) ? "the last checkpoint stands" : "there is no checkpoint yet",
+                     error.no_room() ? "free some room" : "mend that", directory.path().string(),
+                     directory.has(kCheckpointFile) ? "" : " starts over");
+}
+
+int run_logged(const Config& config, const RunDirectory& directory, Continuation at, Log& log) {
+  try {
+    return run_phases(config, directory, std::move(at), log);
+  } catch (const WriteError& error) {
+    const std::string text = fmt::format("{}; {}", error.what(), advice(directory, error));
+    log.line("failed: " + text);
+    throw std::runtime_error(text);
+  } catch (const std::exception& error) {
+    log.line(fmt::format("failed: {}", error.what()));
+    throw;
+  }
+}
+
+// ---- Resuming
+
+/// Everything that can be refused is refused here, before anything is changed.
+Continuation continuation(const Config& config, Checkpoint checkpoint, const RunDirectory& directory,
+                          const std::string& name) {
+  Continuation at;
+  at.upkeep = checkpoint.upkeep;
+  ++at.upkeep.resumed;
+  if (checkpoint.phase == "start") {
+    at.start = Start{std::move(checkpoint.system), checkpoint.counters_of_start, checkpoint.failures_of_start};
+  } else if (checkpoint.phase == "equilibration") {
+    at.equilibration = resumed_equilibration(config, checkpoint, name);
+  } else if (checkpoint.phase != "production") {
+    throw InputError(fmt::format("{}: holds an impossible state (phase \"{}\"); accepted: an undamaged checkpoint",
+                                 name, one_line(checkpoint.phase, 40)));
+  } else {
+    at.production = resumed_production(config, checkpoint, directory, name);
+    at.files = {checkpoint.run->events, checkpoint.run->trajectory};
+  }
+  return at;
+}
+
+/// Whether the directory has the results of a run that nothing has interrupted.
+bool has_final_results(const RunDirectory& directory) {
+  if (!directory.has(kSummaryFile)) return false;
+  const std::string text = read_file(directory.file(kSummaryFile), kLongestSummary);
+  const nlohmann::json summary = nlohmann::json::parse(text, nullptr, /*allow_exceptions=*/false);
+  return summary.is_object() && summary.value("interrupted", nlohmann::json()) == false;
+}
+
+/// Nothing is changed.
+int leave_alone(const RunDirectory& directory) {
+  fmt::print("{}: the run is finished: nothing to do\n", directory.path().string());
+  return 0;
+}
+
+/// Without a checkpoint: the same run again, which is the same to every bit.
+int start_over(const RunDirectory& directory) {
+  const Config config = load_config(directory.file(kConfigFile).string(), {});
+  directory.check_writable();
+  directory.reopen();
+  Log log(directory.file(kLogFile), Log::Begin::at_the_end);
+  log.line(fmt::format("hardbody {}: resumed without a checkpoint: starts over", version()));
+  return run_logged(config, directory, {}, log);
+}
+
+}  // namespace
+
+int run(const RunArguments& arguments) {
+  Config config = load_config(arguments.config, arguments.overrides);
+  install_signal_handlers();
+  if (config.start_from) check_origin(arguments, config);
+  // What is wrong with the file is said before anything is written.
+  if (config.start_file) config.packing_fraction = ed::packing_fraction(start_from_file(config).system);
+  const RunDirectory directory = create_directory(arguments, config);
+  Log log(directory.file(kLogFile), Log::Begin::afresh);
+  log.line(fmt::format("hardbody {}: {} with {}", version(), kConfigFile, arguments.config));
+  return run_logged(config, directory, {}, log);
+}
+
+int resume(const std::string& path) {
+  install_signal_handlers();
+  const RunDirectory directory = RunDirectory::open(path);
+  const bool final = has_final_results(directory);
+  if (!directory.has(kCheckpointFile)) return final ? leave_alone(directory) : start_over(directory);
+  const std::string name = directory.file(kCheckpointFile).string();
+  std::optional<Checkpoint> checkpoint;
+  // Of a finished run it does not matter which program could go on with it. Else that comes before the config is
+  // judged, which may have another version's keys.
+  try {
+    checkpoint = read_checkpoint(name);
+    check_version(*checkpoint, name);
+  } catch (const OtherVersion&) {
+    if (final) return leave_alone(directory);
+    throw;
+  }
+  const std::string config_name = directory.file(kConfigFile).string();
+  const Config config = load_config(config_name, {});
+  check_same_config(*checkpoint, config, config_name);
+  if (final || (checkpoint->run && checkpoint->run->finished && directory.has(kSummaryFile)))
+    return leave_alone(directory);
+  check_resumable(*checkpoint, name);
+  directory.check_writable();
+  const std::string from = fmt::format("{} at time {:g}", checkpoint->phase, checkpoint->time);
+  Continuation at = continuation(config, std::move(*checkpoint), directory, name);
+  checkpoint.reset();
+  directory.reopen();
+  Log log(directory.file(kLogFile), Log::Begin::at_the_end);
+  log.line(fmt::format("hardbody {}: resumed from {}", version(), from));
+  return run_logged(config, directory, std::move(at), log);
+}
+
+}  // namespace hardbody

@@ -1,0 +1,105 @@
+#include "config/box.h"
+
+#include "config/species.h"
+#include "base/errors.h"
+
+#include <ed/shape.h>
+#include <ed/start.h>
+#include <ed/system.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace hardbody {
+namespace {
+
+/// What keeps a box that is large enough for "dilated" from being so for the others.
+const char* need_of(const std::string& neighbours) {
+  if (neighbours == "cells") return "three cells as wide as two of them must fit along an edge";
+  if (neighbours == "obp") return "\"obp\" needs room for boxes that a body can turn in";
+  return "a body would meet two images of another";
+}
+
+/// The box that the bodies need over the one that they have.
+double box_ratio(const Config& config) {
+  const std::vector<ed::Component> components = config.components();
+  return ed::smallest_box(components, config.neighbour_search()) / ed::box_for(components, config.packing_fraction);
+}
+
+/// A number of bodies in the same proportions whose box is large enough, the least one where sizes are not drawn;
+/// nothing if so many are too many. A cell of an fcc lattice holds four.
+std::optional<int> larger_number(const Config& config, bool drawn) {
+  constexpr int kTrials = 20;
+  const double in_a_cell = config.start == "fcc" ? 4 : 1;
+  const auto enough = [&](int number, double ratio) {
+    return std::ceil(std::max(2.0, std::ceil(number * (ratio * ratio * ratio))) / in_a_cell) * in_a_cell;
+  };
+  double number = enough(config.number, box_ratio(config));
+  for (int trial = 0; drawn && trial < kTrials && number <= kMostBodies; ++trial) {
+    // Drawn anew, the largest may be larger.
+    const Config larger = with_number(config, static_cast<int>(number));
+    const double ratio = box_ratio(larger);
+    if (ratio <= 1) break;
+    number = enough(larger.number, 1.02 * ratio);
+  }
+  if (number > kMostBodies) return std::nullopt;
+  return static_cast<int>(number);
+}
+
+std::string larger_box(const Config& config) {
+  const bool drawn =
+      std::any_of(config.species.begin(), config.species.end(), [](const auto& s) { return s.sizes != "equal"; });
+  const std::optional<int> number = larger_number(config, drawn);
+  return (number ? fmt::format("a {} {}{}", drawn ? "larger number, for instance" : "number of at least", *number,
+                               config.mixture ? " in these proportions" : "")
+                 : std::string("a lower packing fraction")) +
+         (config.mixture ? ", or bodies of less unequal sizes" : "");
+}
+
+}  // namespace
+
+void check_box(const TomlDocument& document, const Config& config) {
+  if (box_ratio(config) <= 1) return;
+  double largest = 0;
+  for (const ed::Component& c : config.components()) largest = std::max(largest, ed::bounding_radius(c.species.shape));
+  const Entry* number = document.find("system.number");
+  const Entry* entry = number != nullptr ? number : document.find("system.packing_fraction");
+  const bool by_species = config.mixture && number == nullptr;
+  throw InputError(
+      fmt::format("{}: {} is {}: the box, {:.4g} long at this packing fraction, is then too small for bodies of "
+                  "bounding radius {:.4g}{} ({}); accepted: {}",
+                  entry->where, by_species ? "the number of bodies" : "system.number", config.number,
+                  ed::box_for(config.components(), config.packing_fraction), largest,
+                  config.mixture ? ", the largest" : "", need_of(config.neighbours), larger_box(config)));
+}
+
+void check_lattice(const TomlDocument& document, const Config& config) {
+  const std::optional<ed::LatticeOptions> lattice = config.lattice();
+  if (!lattice) return;
+  try {
+    (void)ed::lattice_start(config.components(), *lattice);
+  } catch (const std::invalid_argument& error) {
+    const std::string message = error.what();
+    const Entry* entry = nullptr;
+    for (const char* key : {"system.number", "system.packing_fraction", "system.nematic_order"}) {
+      if (message.starts_with(std::string_view(key).substr(sizeof("system")))) entry = document.find(key);
+    }
+    if (const Entry* first = document.find("species[1].number"); entry == nullptr && first != nullptr) {
+      if (const std::string number = fmt::format("number is {}", config.number); message.starts_with(number)) {
+        throw InputError(fmt::format("{}: the numbers of all [[species]] add up to {}{}", first->where, config.number,
+                                     message.substr(number.size())));
+      }
+    }
+    if (entry == nullptr) entry = document.find("system.start");
+    throw InputError(fmt::format("{}: system.{}", entry->where, message));
+  }
+}
+
+}  // namespace hardbody

@@ -1,0 +1,246 @@
+#include "distance/query.h"
+
+#include "base/errors.h"
+#include "io/json_member.h"
+#include "trajectory/orientation.h"
+#include "distance/scanner.h"
+#include "io/text_file.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <iterator>
+#include <stdexcept>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace hardbody {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr std::string_view kQueryKeys[] = {"a", "b", "method", "seed", "penetration", "id"};
+constexpr std::string_view kBodyKeys[] = {"shape", "position", "orientation"};
+
+constexpr const char* kMethods = "\"dual\", \"newton8\", \"newton5\"";
+constexpr const char* kPenetrations = "\"global\", \"local\"";
+
+struct Body {
+  geom::Shape shape;
+  geom::Pose pose;
+};
+
+Body read_body(const JsonMember& body, std::vector<std::string>& notices) {
+  body.allow(kBodyKeys);
+  const geom::Shape shape = read_shape(body.at("shape", "{\"kind\":\"ellipsoid\",\"semi_axes\":[a,b,c]}"));
+  const Vector3d position = read_position(body);
+  if (!body.has("orientation")) return {shape, geom::Pose::translation(position)};
+  return {shape, read_orientation(body.at("orientation", ""), position, notices)};
+}
+
+/// By name; nothing: there is none.
+std::optional<Method> find_method(std::string_view name) {
+  if (name == "dual") return Method::dual;
+  if (name == "newton8") return Method::newton8;
+  if (name == "newton5") return Method::newton5;
+  return {};
+}
+
+std::optional<geom::Penetration> find_penetration(std::string_view name) {
+  if (name == "global") return geom::Penetration::global;
+  if (name == "local") return geom::Penetration::local;
+  return {};
+}
+
+/// nullptr: there is none; its function: whether it is built in.
+const SeedSource* find_seed(std::string_view name) {
+  for (const SeedSource& source : seed_sources()) {
+    if (source.name == name) return &source;
+  }
+  return nullptr;
+}
+
+Method read_method(const JsonMember& query) {
+  if (!query.has("method")) return Method::dual;
+  const JsonMember member = query.at("method", kMethods);
+  const std::optional<Method> method = find_method(member.text(kMethods));
+  if (!method) throw member.bad(kMethods);
+  return *method;
+}
+
+geom::Penetration read_penetration(const JsonMember& query) {
+  if (!query.has("penetration")) return geom::Penetration::global;
+  const JsonMember member = query.at("penetration", kPenetrations);
+  const std::optional<geom::Penetration> penetration = find_penetration(member.text(kPenetrations));
+  if (!penetration) throw member.bad(kPenetrations);
+  return *penetration;
+}
+
+const SeedSource& read_seed(const JsonMember& query) {
+  if (!query.has("seed")) return seed_sources().front();
+  const JsonMember member = query.at("seed", "");
+  const SeedSource* source = find_seed(member.text(built_in_seeds()));
+  if (source == nullptr) throw member.bad(built_in_seeds());
+  if (source->function != nullptr) return *source;
+  throw InputError(fmt::format("seed \"{}\" is not built in (CMake option {}); accepted: {}", source->name,
+                               source->option, built_in_seeds()));
+}
+
+/// Of options that do not go together.
+void check_options(Method method, const SeedSource& seed, bool has_penetration) {
+  if (method == Method::dual && &seed != &seed_sources().front()) {
+    throw InputError(fmt::format(
+        "seed is \"{}\", but the method \"dual\" starts from no points; accepted: with \"newton8\" or \"newton5\"",
+        seed.name));
+  }
+  if (method != Method::dual && has_penetration) {
+    throw InputError("penetration is for the method \"dual\"; accepted: without a method, or with \"dual\"");
+  }
+}
+
+nlohmann::json parse_line(std::string_view line) {
+  try {
+    return parse_json(line);
+  } catch (const JsonError& error) {
+    const std::string column = error.offset ? fmt::format(" at column {}", *error.offset + 1) : "";
+    throw InputError(
+        fmt::format("{}{}; accepted: {{\"a\":..,\"b\":..}} on one line, every number finite", error.what(), column));
+  }
+}
+
+/// Body as scan_query found it; nothing if there is something to complain about.
+std::optional<Body> scanned_body(const ScannedBody& body, const char* name, std::vector<std::string>& notices) {
+  const Vector3d axes(body.semi_axes.data());
+  const Vector3d position(body.position.data());
+  try {
+    const StoredOrientation read = body.orientation ? read_quaternion(*body.orientation, position)
+                                                    : StoredOrientation{geom::Pose::translation(position)};
+    if (read.normalized) notices.push_back(normalized_text(fmt::format("{}.orientation", name), read.length));
+    if (!body.is_superellipsoid) return Body{geom::Ellipsoid(axes), read.pose};
+    return Body{geom::Superellipsoid(axes, body.exponents[0], body.exponents[1]), read.pose};
+  } catch (const std::invalid_argument&) {
+    return {};
+  }
+}
+
+std::optional<DistanceQuery> scanned_query(std::string_view line, std::string& id) {
+  const std::optional<ScannedQuery> scanned = scan_query(line);
+  if (!scanned) return {};
+  const auto or_else = [](std::string_view name, std::string_view otherwise) {
+    return name.empty() ? otherwise : name;
+  };
+  const std::optional<Method> method = find_method(or_else(scanned->method, "dual"));
+  const std::optional<geom::Penetration> penetration = find_penetration(or_else(scanned->penetration, "global"));
+  const SeedSource* seed = find_seed(or_else(scanned->seed, seed_sources().front().name));
+  if (!method || !penetration || seed == nullptr || seed->function == nullptr) return {};
+  std::vector<std::string> notices;
+  const std::optional<Body> a = scanned_body(scanned->a, "a", notices);
+  const std::optional<Body> b = scanned_body(scanned->b, "b", notices);
+  if (!a || !b) return {};
+  id = scanned->id;
+  check_options(*method, *seed, !scanned->penetration.empty());
+  return DistanceQuery{a->shape, b->shape,       a->pose,      b->pose,
+                       *method,  seed->function, *penetration, fmt::format("{}", fmt::join(notices, "; "))};
+}
+
+/// `null` for a number that there is none of: those of a declined answer, and infinity.
+void append_number(std::string& text, double value) {
+  if (!std::isfinite(value)) {
+    text += "null";
+  } else {
+    fmt::format_to(std::back_inserter(text), "{:.17g}", value);
+  }
+}
+
+void append_member(std::string& text, std::string_view name, bool answered, const Vector3d& v) {
+  text += name;
+  if (!answered) {
+    text += "null";
+    return;
+  }
+  for (int k = 0; k < 3; ++k) {
+    text += k == 0 ? '[' : ',';
+    append_number(text, v[k]);
+  }
+  text += ']';
+}
+
+std::string id_json(const std::string& id) {
+  return id.empty() ? "" : fmt::format("\"id\":{},", id);
+}
+
+}  // namespace
+
+DistanceQuery parse_query(std::string_view line, std::string& id) {
+  if (std::optional<DistanceQuery> query = scanned_query(line, id)) return *std::move(query);
+  const nlohmann::json document = parse_line(line);
+  const JsonMember root{&document, ""};
+  if (root.has("id")) id = document.at("id").dump();
+  root.allow(kQueryKeys);
+  const Method method = read_method(root);
+  const SeedSource& seed = read_seed(root);
+  const geom::Penetration penetration = read_penetration(root);
+  check_options(method, seed, root.has("penetration"));
+  std::vector<std::string> notices;
+  const Body a = read_body(root.at("a", "a body"), notices);
+  const Body b = read_body(root.at("b", "a body"), notices);
+  return {a.shape, b.shape,       a.pose,      b.pose,
+          method,  seed.function, penetration, fmt::format("{}", fmt::join(notices, "; "))};
+}
+
+DistanceAnswer answer(const DistanceQuery& query) {
+  const geom::Pose& X_WA = query.X_WA;
+  const geom::Pose& X_WB = query.X_WB;
+  if (query.method == Method::dual) {
+    return {geom::distance(query.a, X_WA, query.b, X_WB, {.penetration = query.penetration}), {}};
+  }
+  const auto system = query.method == Method::newton8 ? geom::NewtonSystem::eight : geom::NewtonSystem::five;
+  const geom::WitnessPair guess = query.seed(query.a, X_WA, query.b, X_WB);
+  return std::visit(
+      [&](const auto& a, const auto& b) -> DistanceAnswer {
+        const geom::WitnessPair seed = geom::checked_seed(a, X_WA, b, X_WB, guess);
+        if (seed.status != geom::SeedStatus::usable) return {{}, seed.status};
+        return {geom::newton_distance(a, X_WA, b, X_WB, system, seed), {}};
+      },
+      query.a, query.b);
+}
+
+std::string answer_json(const std::string& id, const DistanceAnswer& answer, const std::string& notice) {
+  const geom::DistanceResult& r = answer.result;
+  const bool answered = r.status == geom::DistanceStatus::separated || r.status == geom::DistanceStatus::overlapping;
+  std::string text;
+  text.reserve(400 + id.size());
+  text += '{';
+  text += id_json(id);
+  text += "\"distance\":";
+  append_number(text, r.distance);
+  append_member(text, ",\"point_a\":", answered, r.point_a);
+  append_member(text, ",\"point_b\":", answered, r.point_b);
+  append_member(text, ",\"normal\":", answered, r.normal);
+  fmt::format_to(std::back_inserter(text),
+                 ",\"status\":\"{}\",\"iterations\":{},\"error_bound\":", geom::to_string(r.status), r.iterations);
+  append_number(text, r.error_bound);
+  if (answer.seed_status) text += fmt::format(",\"seed_status\":\"{}\"", geom::to_string(*answer.seed_status));
+  if (!notice.empty()) text += fmt::format(",\"notice\":{}", nlohmann::json(notice).dump());
+  return text + '}';
+}
+
+std::string error_json(const std::string& id, const std::string& message) {
+  // A message quotes its line, cut at a byte that may be the middle of a character.
+  const std::string quoted = nlohmann::json(message).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  return fmt::format("{{{}\"error\":{}}}", id_json(id), quoted);
+}
+
+Reply reply_to(std::string_view line, long number) {
+  std::string id;
+  try {
+    const DistanceQuery query = parse_query(line, id);
+    return {answer_json(id, answer(query), query.notice), true};
+  } catch (const InputError& error) {
+    return {error_json(id, fmt::format("line {}: {}", number, error.what())), false};
+  }
+}
+
+}  // namespace hardbody

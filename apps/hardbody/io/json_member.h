@@ -1,0 +1,85 @@
+#pragma once
+
+/// Reading JSON with messages that name the member, what it is and what is accepted. Private to the sources that read
+/// JSON: it brings the parser along.
+
+#include "base/errors.h"
+
+#include <geom/any_shape.h>
+#include <geom/ellipsoid.h>
+#include <geom/pose.h>
+
+#include <Eigen/Core>
+#include <nlohmann/json.hpp>
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace hardbody {
+
+/// A text that is not JSON, or that nobody writes in good faith: a key twice in one object, numbers beyond the range of
+/// a double, deep nesting (which would exhaust the stack later). what(): "is ...", for a message that says where.
+class JsonError : public std::runtime_error {
+ public:
+  explicit JsonError(const std::string& what, std::optional<std::size_t> byte = {})
+      : std::runtime_error(what), offset(byte) {}
+  std::optional<std::size_t> offset;  ///< the byte that it was noticed at, if known
+};
+
+/// Throws JsonError.
+nlohmann::json parse_json(std::string_view text);
+
+/// A member of a JSON document, with what messages call it. Refers to the document. Throws InputError with messages
+/// that do not say which document: "a.shape.semi_axes is ...; accepted: ...".
+struct JsonMember {
+  const nlohmann::json* json;
+  std::string name;  ///< a.shape.semi_axes; empty: the whole document
+
+  bool has(const char* key) const { return json->is_object() && json->contains(key); }
+  JsonMember at(const char* key, std::string_view accepted) const;
+
+  /// Throws unless this is an object with no other keys.
+  void allow(std::span<const std::string_view> keys) const;
+
+  InputError bad(std::string_view accepted) const;
+
+  double number() const;
+  std::string text(std::string_view accepted) const;
+  std::vector<double> numbers(std::size_t size, const char* accepted) const;
+  Eigen::Vector3d vector() const;
+
+  /// What `make` makes of it; a std::invalid_argument of the library becomes a message about this member.
+  template <class Make>
+  auto checked(const Make& make) const {
+    try {
+      return make();
+    } catch (const std::invalid_argument& error) {
+      throw refused(error.what());
+    }
+  }
+
+ private:
+  std::string path_of(std::string_view key) const;
+  InputError refused(std::string_view why) const;
+};
+
+/// Of {"semi_axes": [a, b, c]}.
+geom::Ellipsoid read_ellipsoid(const JsonMember& shape);
+/// Of {"kind": "ellipsoid" or "superellipsoid", "semi_axes": [a, b, c], "exponents": [e1, e2]}, the last of a
+/// superellipsoid only; no other keys.
+geom::Shape read_shape(const JsonMember& shape);
+/// Of {"position": [x, y, z]}, as one that a pose may have.
+Eigen::Vector3d read_position(const JsonMember& body);
+/// Reads [w, x, y, z]. A length that is off by no more than kQuaternionTolerance is normalized; beyond rounding a line
+/// of `notices` says so.
+geom::Pose read_orientation(const JsonMember& orientation, const Eigen::Vector3d& position,
+                            std::vector<std::string>& notices);
+/// Line of `notices` for a quaternion of that length; `name`: of the member.
+std::string normalized_text(std::string_view name, double length);
+
+}  // namespace hardbody

@@ -1,0 +1,143 @@
+#include "io/run_directory.h"
+
+#include "base/errors.h"
+#include "io/text_file.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <stdexcept>
+#include <system_error>
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+namespace hardbody {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array kFiles = {kConfigFile, kSummaryFile,   kCheckpointFile, kEventsFile, kGsdFile,
+                               kLammpsFile, kVtkFile,       kLogFile,        kMsdFile,    kRotationalMsdFile,
+                               kAlpha2File, kVelocityFile,  kC1File,         kC2File,     kFSelfFile,
+                               kPairsFile,  kStructureFile, kBlocksFile,     kReportFile};
+
+/// The first file of an earlier run; empty if there is none.
+std::string trace_of_a_run(const fs::path& directory) {
+  for (const char* name : kFiles) {
+    if (fs::exists(directory / name)) return name;
+  }
+  return "";
+}
+
+InputError holds_a_run(const fs::path& directory, const std::string& trace) {
+  return InputError(
+      fmt::format("{}: holds a run already ({}); accepted: another directory, hardbody resume to go on with it, or "
+                  "--force to overwrite it",
+                  directory.string(), trace));
+}
+
+InputError unusable(const fs::path& directory, const std::string& why) {
+  return InputError(
+      fmt::format("{}: cannot be used as run directory: {}; accepted: a writable directory", directory.string(), why));
+}
+
+void keep_inputs(const fs::path& directory, const std::vector<fs::path>& inputs) {
+  for (const char* name : kFiles) {
+    for (const fs::path& input : inputs) {
+      std::error_code ignored;
+      if (!fs::equivalent(directory / name, input, ignored)) continue;
+      throw InputError(
+          fmt::format("{}: --force would delete {}, which this run is made from; accepted: another directory",
+                      directory.string(), input.string()));
+    }
+  }
+}
+
+/// Removes what a run writes and nothing else, so that a new run never stands beside results of an old one.
+void remove_run(const fs::path& directory) {
+  for (const char* name : kFiles) fs::remove(directory / name);
+  const fs::path analysis = directory / kAnalysisDirectory;
+  for (const char* name : kAnalysisFiles) fs::remove(analysis / name);
+  if (fs::is_directory(analysis) && fs::is_empty(analysis)) fs::remove(analysis);
+  const fs::path failures = directory / kFailuresDirectory;
+  if (!fs::is_directory(failures)) return;
+  for (const fs::directory_entry& entry : fs::directory_iterator(failures)) {
+    if (entry.path().extension() == ".json") fs::remove(entry.path());
+  }
+}
+
+}  // namespace
+
+DirectoryLock::DirectoryLock(const fs::path& directory)
+    : descriptor_(::open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+  if (descriptor_ >= 0 && ::flock(descriptor_, LOCK_EX | LOCK_NB) == 0) return;
+  const int error = errno;
+  if (descriptor_ >= 0) ::close(descriptor_);
+  if (error != EWOULDBLOCK) throw unusable(directory, fmt::format("it cannot be locked: {}", std::strerror(error)));
+  throw InputError(fmt::format("{}: another hardbody process is at work in it; accepted: another directory, or wait",
+                               directory.string()));
+}
+
+DirectoryLock::~DirectoryLock() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+RunDirectory RunDirectory::create(const fs::path& path, Overwrite overwrite, const std::vector<fs::path>& inputs,
+                                  std::string_view config) {
+  try {
+    if (fs::exists(path) && !fs::is_directory(path)) {
+      throw InputError(fmt::format("{}: is not a directory; accepted: a new or empty directory", path.string()));
+    }
+    std::string trace = trace_of_a_run(path);
+    if (!trace.empty() && overwrite == Overwrite::refused) throw holds_a_run(path, trace);
+    keep_inputs(path, inputs);
+    fs::create_directories(path);
+    RunDirectory directory(path);
+    // Again, now that nobody else can begin one.
+    if (trace.empty()) trace = trace_of_a_run(path);
+    if (!trace.empty() && overwrite == Overwrite::refused) throw holds_a_run(path, trace);
+    if (!trace.empty()) remove_run(path);
+    directory.write(kConfigFile, config);
+    return directory;
+  } catch (const fs::filesystem_error& error) {
+    throw unusable(path, error.code().message());
+  } catch (const InputError&) {
+    throw;
+  } catch (const std::runtime_error& error) {
+    throw InputError(error.what());
+  }
+}
+
+RunDirectory RunDirectory::open(const fs::path& path) {
+  if (!fs::is_directory(path)) {
+    throw InputError(fmt::format("{}: is {}; accepted: the directory of a run", path.string(),
+                                 fs::exists(path) ? "not a directory" : "not there"));
+  }
+  if (!fs::exists(path / kConfigFile)) {
+    throw InputError(
+        fmt::format("{}: holds no run: {} is not there; accepted: the directory of a run", path.string(), kConfigFile));
+  }
+  return RunDirectory(path);
+}
+
+void RunDirectory::check_writable() const {
+  if (::access(path_.c_str(), W_OK | X_OK) != 0) throw unusable(path_, std::strerror(errno));
+}
+
+void RunDirectory::write(const std::string& name, std::string_view content) const {
+  write(name, [content](const Sink& sink) { sink(content); });
+}
+
+void RunDirectory::write(const std::string& name, const std::function<void(const Sink&)>& make) const {
+  const fs::path path = file(name);
+  std::error_code error;
+  fs::create_directories(path.parent_path(), error);
+  if (error) throw WriteError(path.parent_path(), error.value());
+  write_file(path, make);
+}
+
+}  // namespace hardbody

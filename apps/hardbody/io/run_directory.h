@@ -1,0 +1,98 @@
+#pragma once
+
+#include "io/text_file.h"
+
+#include <array>
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace hardbody {
+
+/// Names in a run directory.
+inline constexpr const char* kConfigFile = "config.toml";
+inline constexpr const char* kSummaryFile = "summary.json";
+inline constexpr std::size_t kLongestSummary = 16 << 20;  ///< bytes
+inline constexpr const char* kCheckpointFile = "checkpoint.bin";
+inline constexpr const char* kEventsFile = "events.csv";
+inline constexpr const char* kGsdFile = "trajectory.gsd";
+inline constexpr const char* kLammpsFile = "trajectory.lammpstrj";
+inline constexpr const char* kVtkFile = "trajectory.vtp";
+inline constexpr const char* kLogFile = "log.txt";
+inline constexpr const char* kSweepTableFile = "sweep.csv";
+inline constexpr const char* kPointStateFile = "state.json";
+inline constexpr const char* kReportFile = "report.html";
+// What hardbody analyze makes of its trajectory, unless it is told another directory.
+inline constexpr const char* kAnalysisDirectory = "analysis";
+inline constexpr std::array kAnalysisFiles = {"msd.csv",      "alpha2.csv", "c1.csv",  "c2.csv",    "f_self.csv",
+                                              "velocity.csv", "g_r.csv",    "s_q.csv", "order.csv", "analysis.json"};
+inline constexpr const char* kMsdFile = "observables/msd.csv";
+inline constexpr const char* kRotationalMsdFile = "observables/rotational_msd.csv";
+inline constexpr const char* kAlpha2File = "observables/alpha2.csv";
+inline constexpr const char* kFSelfFile = "observables/f_self.csv";
+inline constexpr const char* kVelocityFile = "observables/velocity.csv";
+inline constexpr const char* kC1File = "observables/c1.csv";
+inline constexpr const char* kC2File = "observables/c2.csv";
+inline constexpr const char* kPairsFile = "observables/g_r.csv";
+inline constexpr const char* kStructureFile = "observables/s_q.csv";
+inline constexpr const char* kBlocksFile = "observables/blocks.csv";
+inline constexpr const char* kFailuresDirectory = "failures";
+
+enum class Overwrite { refused, allowed };
+
+/// Keeps other processes off a directory, by flock on the directory itself: no file is left behind, and the system ends
+/// it with the process, however that ends.
+class DirectoryLock {
+ public:
+  /// Throws InputError if another process has it, or the directory cannot be locked.
+  explicit DirectoryLock(const std::filesystem::path& directory);
+  ~DirectoryLock();
+  DirectoryLock(DirectoryLock&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
+  DirectoryLock& operator=(DirectoryLock&&) = delete;
+
+ private:
+  int descriptor_;
+};
+
+/// Where a run writes its files; no other process can as long as this lives.
+class RunDirectory {
+ public:
+  /// Creates the directory (and its parents) and writes `config` into it, before anything else. Where overwriting
+  /// is allowed the files of an earlier run are removed, nothing else. Throws InputError if the path cannot be
+  /// used, holds a run that may not be overwritten, or has one of `inputs`, the files that the run is made from,
+  /// among those to be removed; then nothing has been changed.
+  static RunDirectory create(const std::filesystem::path& path, Overwrite overwrite,
+                             const std::vector<std::filesystem::path>& inputs, std::string_view config);
+
+  /// The directory of a run that has been begun. Changes nothing. Throws InputError if it is none or is in use.
+  static RunDirectory open(const std::filesystem::path& path);
+
+  /// Throws InputError if the directory cannot be written to.
+  void check_writable() const;
+
+  const std::filesystem::path& path() const { return path_; }
+  std::filesystem::path file(const std::string& name) const { return path_ / name; }
+
+  /// Writes one file as write_file does; `name` may have a directory in it, which is created. Throws WriteError.
+  void write(const std::string& name, std::string_view content) const;
+  /// The same of a content in pieces.
+  void write(const std::string& name, const std::function<void(const Sink&)>& make) const;
+
+  /// Whether there is such a file.
+  bool has(const std::string& name) const { return std::filesystem::exists(file(name)); }
+
+  /// Removes the summary, which says that a run is complete, before the run goes on.
+  void reopen() const { std::filesystem::remove(file(kSummaryFile)); }
+
+ private:
+  explicit RunDirectory(std::filesystem::path path) : path_(std::move(path)), lock_(path_) {}
+
+  std::filesystem::path path_;
+  DirectoryLock lock_;
+};
+
+}  // namespace hardbody

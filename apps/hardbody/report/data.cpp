@@ -1,0 +1,257 @@
+#include "report/page.h"
+
+#include "io/json_values.h"
+#include "base/number_text.h"
+#include "io/run_directory.h"
+#include "base/version.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <optional>
+#include <utility>
+
+namespace hardbody {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Digits of a point of a curve: more than any plot or error bar shows. Averages of blocks keep all, in which the drift
+/// of the energy stands.
+constexpr int kCurveDigits = 9;
+constexpr int kErrorDigits = 4;
+constexpr int kAllDigits = 17;
+
+/// How much of a run is kept: of one of hundreds what its plots show.
+enum class Detail { full, slim };
+
+/// All of a sweep's points together may take so much; what is beyond is left to reports of their own.
+constexpr std::size_t kMostOfPoints = 40'000'000;
+
+Json rounded(double x, int digits = kCurveDigits) {
+  if (!std::isfinite(x)) return nullptr;
+  return std::strtod(fmt::format("{:.{}g}", x, digits).c_str(), nullptr);
+}
+
+/// Little-endian, as every machine that this program runs on is.
+template <class T>
+std::string packed(const std::vector<T>& values) {
+  std::string bytes(values.size() * sizeof(T), '\0');
+  if (!values.empty()) std::memcpy(bytes.data(), values.data(), bytes.size());
+  return base64(bytes);
+}
+
+/// In single precision, as base64; a gap is a NaN.
+Json packed_column(const std::vector<double>& values) {
+  std::vector<float> singles(values.size());
+  std::transform(values.begin(), values.end(), singles.begin(), [](double x) { return static_cast<float>(x); });
+  return packed(singles);
+}
+
+Json full_column(const std::vector<double>& values, int digits) {
+  Json list = Json::array();
+  for (const double x : values) list.push_back(rounded(x, digits));
+  return list;
+}
+
+/// Columns of blocks.csv that are drawn.
+bool is_drawn(const std::string& name) {
+  constexpr std::array kDrawn = {"begin", "end", "Z", "kT_trans", "kT_rot", "S"};
+  return std::find(kDrawn.begin(), kDrawn.end(), name) != kDrawn.end();
+}
+
+Json curves_json(const Curves& curves, Detail detail) {
+  Json columns = Json::array();
+  Json data = Json::array();
+  const bool blocks = curves.name == "blocks";
+  for (std::size_t k = 0; k < curves.columns.size(); ++k) {
+    const std::string name = Curves::bare_name(curves.columns[k]);
+    if (blocks && !is_drawn(name)) continue;
+    columns.push_back({{"name", name}, {"unit", Curves::unit(curves.columns[k])}});
+    if (blocks) {
+      data.push_back(full_column(curves.values[k], kAllDigits));
+    } else if (detail == Detail::slim) {
+      data.push_back(packed_column(curves.values[k]));
+    } else {
+      data.push_back(full_column(curves.values[k], name.ends_with("_error") ? kErrorDigits : kCurveDigits));
+    }
+  }
+  return {{"columns", std::move(columns)}, {"data", std::move(data)}};
+}
+
+Json view_json(const View& view) {
+  Json shapes = Json::array();
+  for (const ViewShape& s : view.shapes) {
+    shapes.push_back({{"semi_axes", {rounded(s.semi_axes.x()), rounded(s.semi_axes.y()), rounded(s.semi_axes.z())}},
+                      {"exponents", {s.exponents.x(), s.exponents.y()}}});
+  }
+  Json frames = Json::array();
+  for (const ViewFrame& frame : view.frames) {
+    frames.push_back({{"time", rounded(frame.time)},
+                      {"positions", packed(frame.positions)},
+                      {"orientations", packed(frame.orientations)}});
+  }
+  return {{"box", view.box},
+          {"number", view.number},
+          {"shown", view.shape_of.size()},
+          {"shapes", std::move(shapes)},
+          {"shape_of", packed(view.shape_of)},
+          {"species_of", packed(view.species_of)},
+          {"frames", std::move(frames)},
+          {"note", view.note}};
+}
+
+Json headlines_json(const std::vector<Headline>& headlines, Detail detail) {
+  Json list = Json::array();
+  for (const Headline& h : headlines) {
+    if (detail == Detail::slim) {
+      list.push_back({{"key", h.key}, {"value", number_json(h.value)}});
+      continue;
+    }
+    list.push_back({{"key", h.key},
+                    {"symbol", h.symbol},
+                    {"name", h.name},
+                    {"unit", h.unit},
+                    {"meaning", h.meaning},
+                    {"value", number_json(h.value)},
+                    {"error", number_json(h.error)},
+                    {"missing", h.missing}});
+  }
+  return list;
+}
+
+const char* kind_text(Remark::Kind kind) {
+  switch (kind) {
+    case Remark::Kind::good:
+      return "good";
+    case Remark::Kind::warning:
+      return "warning";
+    case Remark::Kind::bad:
+      return "bad";
+  }
+  return "bad";
+}
+
+/// What the page shows of a summary; all of it, or what it draws.
+Json summary_json(const nlohmann::json& summary, Detail detail) {
+  if (detail == Detail::full || !summary.is_object()) return summary;
+  Json some = Json::object();
+  for (const char* key : {"version", "seed", "fit_windows", "wave_numbers", "counters", "performance", "audit"}) {
+    if (summary.contains(key)) some[key] = summary[key];
+  }
+  return some;
+}
+
+/// Without lines that are comments.
+std::string config_text(const std::string& config, Detail detail) {
+  if (detail == Detail::full) return config;
+  std::string text;
+  for (std::size_t begin = 0; begin < config.size();) {
+    const std::size_t end = std::min(config.find('\n', begin), config.size() - 1) + 1;
+    const std::string line = config.substr(begin, end - begin);
+    if (!line.starts_with('#')) text += line;
+    begin = end;
+  }
+  return text;
+}
+
+Json run_json(const RunReport& run, Detail detail) {
+  Json remarks = Json::array();
+  for (const Remark& r : run.remarks) {
+    remarks.push_back({{"kind", kind_text(r.kind)}, {"label", r.label}, {"text", r.text}});
+  }
+  Json species = Json::array();
+  for (const SpeciesReport& s : run.species) {
+    species.push_back({{"title", s.title}, {"headlines", headlines_json(s.headlines, detail)}});
+  }
+  Json curves = Json::object();
+  for (const Curves& c : run.curves) curves[c.name] = curves_json(c, detail);
+  return {{"name", run.name},
+          {"path", run.path.string()},
+          {"title", run.title},
+          {"remarks", std::move(remarks)},
+          {"headlines", headlines_json(run.headlines, detail)},
+          {"species", std::move(species)},
+          {"rotational_freedoms", run.rotational_freedoms},
+          {"number", run.config.number},
+          {"summary", summary_json(run.summary, detail)},
+          {"config", config_text(run.config_text, detail)},
+          {"log", detail == Detail::full ? run.log : std::string()},
+          {"curves", std::move(curves)},
+          {"view", run.view ? view_json(*run.view) : Json(nullptr)}};
+}
+
+/// Within <script> neither "</script" nor "<!--" may stand; in JSON every < is within a string.
+std::string for_script(const std::string& json) {
+  std::string text;
+  text.reserve(json.size());
+  for (const char c : json) {
+    if (c == '<') {
+      text += "\\u003c";
+    } else {
+      text += c;
+    }
+  }
+  return text;
+}
+
+/// What is no UTF-8 in a path or a log is shown as such, not refused.
+std::string script_text(const Json& json) {
+  return for_script(json.dump(-1, ' ', false, Json::error_handler_t::replace));
+}
+
+/// A field of the table: a number if it is one.
+Json field_json(const std::string& field) {
+  if (field.empty()) return nullptr;
+  const std::optional<double> value = finite_number(field);
+  return value ? Json(*value) : Json(field);
+}
+
+Json point_json(const SweepPointReport& point, bool embedded) {
+  Json keys = Json::array();
+  for (const std::string& key : point.keys) keys.push_back(field_json(key));
+  Json values = Json::array();
+  for (const Measured& m : point.values) values.push_back({number_json(m.value), number_json(m.error), m.missing});
+  return {{"keys", std::move(keys)},  {"values", std::move(values)},        {"status", point.status},
+          {"message", point.message}, {"equilibrated", point.equilibrated}, {"directory", point.directory},
+          {"embedded", embedded}};
+}
+
+Json sweep_json(const SweepReport& sweep, const std::vector<bool>& embedded) {
+  Json points = Json::array();
+  for (std::size_t k = 0; k < sweep.points.size(); ++k) points.push_back(point_json(sweep.points[k], embedded[k]));
+  return {{"name", sweep.name},
+          {"path", sweep.path.string()},
+          {"keys", sweep.keys},
+          {"observables", headlines_json(sweep.observables, Detail::full)},
+          {"points", std::move(points)}};
+}
+
+}  // namespace
+
+std::string report_data(const Report& report) {
+  std::string scripts;
+  Json data = {{"program", version()}, {"title", report.title}};
+  if (report.sweep) {
+    std::vector<bool> embedded;
+    for (const SweepPointReport& point : report.sweep->points) {
+      const bool shown = point.run && scripts.size() < kMostOfPoints;
+      embedded.push_back(shown);
+      if (!shown) continue;
+      scripts += fmt::format("<script type=\"application/json\" id=\"point-{}\">{}</script>\n", embedded.size() - 1,
+                             script_text(run_json(*point.run, Detail::slim)));
+    }
+    data["sweep"] = sweep_json(*report.sweep, embedded);
+  } else {
+    Json runs = Json::array();
+    for (const RunReport& run : report.runs) runs.push_back(run_json(run, Detail::full));
+    data["runs"] = std::move(runs);
+  }
+  return "<script type=\"application/json\" id=\"data\">" + script_text(data) + "</script>\n" + scripts;
+}
+
+}  // namespace hardbody

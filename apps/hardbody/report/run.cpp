@@ -1,0 +1,281 @@
+#include "report/run.h"
+
+#include "run/checkpoint.h"
+#include "base/errors.h"
+#include "trajectory/gsd/frames.h"
+#include "io/json_member.h"
+#include "io/run_directory.h"
+#include "io/text_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+#include <variant>
+
+namespace hardbody {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kLongestText = std::size_t{1} << 26;
+/// Of the log: its end tells most.
+constexpr std::size_t kLogShown = 30'000;
+
+nlohmann::json read_summary(const fs::path& path) {
+  if (!fs::exists(path)) return nullptr;
+  try {
+    nlohmann::json summary = parse_json(read_file(path, kLongestText));
+    if (!summary.is_object()) throw JsonError("is not an object");
+    return summary;
+  } catch (const JsonError& error) {
+    throw InputError(fmt::format("{}: {}; accepted: the summary of a run", path.string(), error.what()));
+  }
+}
+
+std::string read_log(const fs::path& path) {
+  if (!fs::exists(path)) return "";
+  std::string log = read_file(path, kLongestText);
+  if (log.size() <= kLogShown) return log;
+  const std::size_t line = log.find('\n', log.size() - kLogShown);
+  return "...\n" + log.substr(line == std::string::npos ? log.size() - kLogShown : line + 1);
+}
+
+const nlohmann::json& member(const nlohmann::json& json, const char* key) {
+  static const nlohmann::json kNothing;
+  if (!json.is_object()) return kNothing;
+  const auto place = json.find(key);
+  return place == json.end() ? kNothing : *place;
+}
+
+bool says(const nlohmann::json& json, bool wanted) {
+  return json.is_boolean() && json.get<bool>() == wanted;
+}
+
+double number_of(const nlohmann::json& json) {
+  return json.is_number() ? json.get<double>() : 0;
+}
+
+/// How far it came.
+Remark completion(const nlohmann::json& summary) {
+  using Kind = Remark::Kind;
+  const nlohmann::json& time = member(summary, "time");
+  const double production = number_of(member(time, "production"));
+  if (member(summary, "stalled").is_string()) {
+    return {Kind::bad, "stalled", "The run made no progress and was ended: " + summary["stalled"].get<std::string>()};
+  }
+  if (!says(member(summary, "interrupted"), true)) {
+    return {Kind::good, "complete", fmt::format("The run is complete: {:g} time units of production.", production)};
+  }
+  return {
+      Kind::warning, "stopped early",
+      production > 0
+          ? fmt::format("The run was stopped {:g} time units into production: all numbers are of that part. "
+                        "hardbody resume goes on with it.",
+                        production)
+          : fmt::format("The run was stopped {:g} time units into its equilibration: there is nothing measured yet. "
+                        "hardbody resume goes on with it.",
+                        number_of(member(time, "equilibration")))};
+}
+
+Remark soundness(const nlohmann::json& summary) {
+  using Kind = Remark::Kind;
+  const nlohmann::json& counters = member(summary, "counters");
+  if (says(member(summary, "sound"), true)) {
+    return {Kind::good, "sound", "No overlap, nothing missed, energy and momentum conserved to rounding."};
+  }
+  return {
+      Kind::bad, "not sound",
+      fmt::format("Do not use these results: the audit failed ({:g} overlaps during the run, {:g} pairs that no method "
+                  "answered); log.txt and hardbody check say what is wrong.",
+                  number_of(member(counters, "overlaps")), number_of(member(counters, "declined")))};
+}
+
+std::vector<Remark> remarks_of(const nlohmann::json& summary) {
+  using Kind = Remark::Kind;
+  std::vector<Remark> list = {completion(summary), soundness(summary)};
+  const double equilibration = number_of(member(member(summary, "time"), "equilibration"));
+  if (says(member(summary, "equilibrated"), true)) {
+    list.push_back({Kind::good, "equilibrated",
+                    fmt::format("Bodies forgot where they were, twice, within {:g} time units.", equilibration)});
+  } else {
+    list.push_back({Kind::warning, "not shown to be equilibrated",
+                    fmt::format("In {:g} time units C2 and F_self did not decay below 0.05 twice in a row: a time that "
+                                "was given and is short, a nematic, a crystal or a glass.",
+                                equilibration)});
+  }
+  const nlohmann::json& target = member(summary, "target_error");
+  if (says(member(target, "reached"), false)) {
+    list.push_back({Kind::warning, "errors larger than asked",
+                    fmt::format("D_trans and D_rot have not reached a relative error of {:g}.",
+                                number_of(member(target, "asked")))});
+  }
+  const nlohmann::json& failures = member(summary, "failures");
+  const double failed = number_of(member(failures, "recorded")) + number_of(member(failures, "left_out"));
+  if (failed > 0) {
+    list.push_back({Kind::warning, fmt::format("{:g} pairs in failures/", failed),
+                    "Their prediction needed more than the configured method; hardbody replay shows them."});
+  }
+  return list;
+}
+
+/// A state that can be looked at, and when it was.
+struct Seen {
+  View view;
+  std::string phase = "production";
+  bool cut_off = false;  ///< a last frame that is not whole is left out
+};
+
+/// The stored frames; nothing if there is only one, or none.
+std::optional<Seen> read_trajectory(const fs::path& path) {
+  if (!fs::exists(path)) return std::nullopt;
+  const GsdReader reader(path);
+  if (reader.frame_count() < 2) return std::nullopt;
+  const std::size_t number = reader.read(0).bodies.size();
+  const auto read = [&](std::size_t k) {
+    Frame frame = reader.read(k);
+    if (frame.bodies.size() == number) return frame;
+    throw InputError(fmt::format("{}: frame {} has {} bodies; accepted: {}, as in the first", path.string(), k,
+                                 frame.bodies.size(), number));
+  };
+  Seen seen{view_of({reader.frame_count(), read})};
+  seen.cut_off = reader.cut_off();
+  return seen;
+}
+
+/// What cannot be shown does not keep the rest of the report from being made: a remark says why.
+template <class Read>
+std::optional<Seen> if_readable(const Read& read, const char* what, std::vector<Remark>& remarks) {
+  try {
+    return read();
+  } catch (const InputError& error) {
+    remarks.push_back({Remark::Kind::warning, fmt::format("{} not shown", what), one_line(error.what())});
+    return std::nullopt;
+  }
+}
+
+/// The last state.
+std::optional<Seen> read_last_state(const fs::path& path, const Config& config) {
+  if (!fs::exists(path)) return std::nullopt;
+  const Checkpoint checkpoint = read_checkpoint(path);
+  std::vector<int> numbers;
+  for (const SpeciesConfig& species : config.species) numbers.push_back(species.number);
+  if (std::accumulate(numbers.begin(), numbers.end(), 0) != checkpoint.system.size()) {
+    throw InputError(fmt::format("{}: holds {} bodies, the config {}; accepted: the checkpoint of its config",
+                                 path.string(), checkpoint.system.size(), config.number));
+  }
+  Frame frame = frame_of(checkpoint.system, numbers);
+  frame.time = checkpoint.time;
+  Seen seen{view_of({1, [&](std::size_t /*k*/) { return frame; }}), checkpoint.phase};
+  return seen;
+}
+
+Remark unfinished(const std::optional<Seen>& seen) {
+  using Kind = Remark::Kind;
+  if (!seen) return {Kind::warning, "unfinished", "The run has no results yet, nor a checkpoint."};
+  return {Kind::warning, "unfinished",
+          fmt::format("The run has no results yet; the last state that was stored is of {} at time {:g}.", seen->phase,
+                      seen->view.frames.back().time)};
+}
+
+/// "superballs, p = 4"
+std::string superellipsoids_text(const geom::Superellipsoid& s) {
+  const Eigen::Vector3d& a = s.semi_axes();
+  if (a.x() == a.y() && a.y() == a.z() && s.e1() == s.e2()) return fmt::format("superballs, p = {:.4g}", 2 / s.e1());
+  const double least = a.minCoeff();
+  return fmt::format("superellipsoids {:.4g} : {:.4g} : {:.4g}, exponents {:g} and {:g}", a.x() / least, a.y() / least,
+                     a.z() / least, s.e1(), s.e2());
+}
+
+/// "ellipsoids, X0 = 3"
+std::string bodies_title(const SpeciesConfig& species) {
+  if (const auto* s = std::get_if<geom::Superellipsoid>(&species.body.shape)) return superellipsoids_text(*s);
+  const std::optional<double> ratio = species.shape.true_aspect_ratio();
+  if (ratio) return *ratio == 1 ? std::string("spheres") : fmt::format("ellipsoids, X₀ = {:.4g}", *ratio);
+  const Eigen::Vector3d a = ed::half_extents(species.body.shape);
+  const double least = a.minCoeff();
+  return fmt::format("ellipsoids {:.4g} : {:.4g} : {:.4g}", a.x() / least, a.y() / least, a.z() / least);
+}
+
+std::vector<SpeciesReport> species_of(const Config& config, const nlohmann::json& summary) {
+  std::vector<SpeciesReport> list;
+  const nlohmann::json& all = member(summary, "species");
+  for (std::size_t k = 0; config.mixture && k < config.species.size(); ++k) {
+    SpeciesReport species;
+    species.title = fmt::format("{} {}", config.species[k].number, bodies_title(config.species[k]));
+    if (all.is_array() && k < all.size()) species.headlines = headlines_of(member(all[k], "observables"));
+    list.push_back(std::move(species));
+  }
+  return list;
+}
+
+void check_directory(const fs::path& directory) {
+  if (!fs::is_directory(directory)) {
+    throw InputError(fmt::format("{}: is {}; accepted: the directory of a run", directory.string(),
+                                 fs::exists(directory) ? "not a directory" : "not there"));
+  }
+  if (fs::exists(directory / kConfigFile)) return;
+  throw InputError(fmt::format("{}: holds no run: {} is not there; accepted: the directory of a run or of a sweep",
+                               directory.string(), kConfigFile));
+}
+
+/// Its last part: of out/run/ too.
+std::string name_of(const fs::path& directory) {
+  const fs::path whole = fs::weakly_canonical(directory);
+  return whole.has_filename() ? whole.filename().string() : whole.string();
+}
+
+}  // namespace
+
+const Curves* RunReport::find(std::string_view file) const {
+  for (const Curves& c : curves) {
+    if (c.name == file) return &c;
+  }
+  return nullptr;
+}
+
+std::string title_of(const Config& config) {
+  const std::string bodies =
+      config.mixture ? fmt::format("bodies of {} species", config.species.size()) : bodies_title(config.species[0]);
+  return fmt::format("{} hard {}, packing fraction {:.4g}", config.number, bodies, config.packing_fraction);
+}
+
+RunReport read_run_report(const fs::path& directory, WithView with_view) {
+  check_directory(directory);
+  RunReport run;
+  run.path = directory;
+  run.name = name_of(directory);
+  const fs::path config_file = directory / kConfigFile;
+  run.config_text = read_file(config_file, kLongestText);
+  run.config = parse_config(run.config_text, config_file.string());
+  run.title = title_of(run.config);
+  for (const SpeciesConfig& species : run.config.species) {
+    run.rotational_freedoms += static_cast<long>(species.rotation_axes()) * species.number;
+  }
+  run.log = read_log(directory / kLogFile);
+  run.summary = read_summary(directory / kSummaryFile);
+  run.curves = read_curves(directory);
+  run.headlines = headlines_of(member(run.summary, "observables"));
+  run.species = species_of(run.config, run.summary);
+  std::optional<Seen> seen;
+  std::vector<Remark> unseen;
+  if (with_view == WithView::yes) {
+    seen = if_readable([&] { return read_trajectory(directory / kGsdFile); }, "frames", unseen);
+    if (!seen) {
+      seen =
+          if_readable([&] { return read_last_state(directory / kCheckpointFile, run.config); }, "last state", unseen);
+    }
+  }
+  run.remarks = run.summary.is_null() ? std::vector{unfinished(seen)} : remarks_of(run.summary);
+  run.remarks.insert(run.remarks.end(), unseen.begin(), unseen.end());
+  if (seen && seen->cut_off) {
+    run.remarks.push_back(
+        {Remark::Kind::warning, "frames cut off", fmt::format("{} ends within a frame, which is left out.", kGsdFile)});
+  }
+  if (seen) run.view = std::move(seen->view);
+  return run;
+}
+
+}  // namespace hardbody

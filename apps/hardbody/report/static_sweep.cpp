@@ -1,0 +1,137 @@
+#include "plot/levels.h"
+#include "base/number_text.h"
+#include "report/page.h"
+#include "report/svg.h"
+#include "run/table.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string_view>
+
+namespace hardbody {
+namespace {
+
+/// What is drawn, as far as there are values.
+constexpr std::array<std::string_view, 6> kDrawn = {"D_trans", "D_rot", "t_C2_1overe", "Z", "S", "collision_rate"};
+constexpr double kLogarithmic = 4;  ///< the ratio of extremes from which an axis of positive numbers is logarithmic
+constexpr std::size_t kLeastOfMap = 3;
+
+/// Values of a swept key at the points; NaN where it is no number.
+std::vector<double> numbers_of(const SweepReport& sweep, std::size_t key) {
+  std::vector<double> numbers;
+  for (const SweepPointReport& point : sweep.points) {
+    numbers.push_back(finite_number(point.keys[key]).value_or(std::numeric_limits<double>::quiet_NaN()));
+  }
+  return numbers;
+}
+
+/// A swept key that is a number everywhere and takes several values.
+struct SweptAxis {
+  std::string name;
+  std::vector<double> x;  ///< of each point
+  bool log;
+};
+
+std::vector<SweptAxis> axes_of(const SweepReport& sweep) {
+  std::vector<SweptAxis> axes;
+  for (std::size_t k = 0; k < sweep.keys.size(); ++k) {
+    SweptAxis axis{sweep.keys[k], numbers_of(sweep, k), false};
+    if (!std::all_of(axis.x.begin(), axis.x.end(), [](double x) { return std::isfinite(x); })) continue;
+    const auto [low, high] = std::minmax_element(axis.x.begin(), axis.x.end());
+    if (!(*low < *high)) continue;
+    axis.log = *low > 0 && *high > kLogarithmic * *low;
+    axes.push_back(std::move(axis));
+  }
+  return axes;
+}
+
+std::string label_of(const Headline& observable) {
+  return observable.unit.empty() ? observable.symbol : fmt::format("{} [{}]", observable.symbol, observable.unit);
+}
+
+std::string figure(const char* classes, const std::string& title, const std::string& drawing) {
+  return fmt::format("<figure class=\"{}\"><figcaption>{}</figcaption>{}</figure>\n", classes, html_text(title),
+                     drawing);
+}
+
+std::string map_figure(const SweepReport& sweep, const std::vector<SweptAxis>& axes, std::size_t observable) {
+  Map map;
+  map.x_name = axes[0].name;
+  map.y_name = axes[1].name;
+  map.scales = {axes[0].log, axes[1].log};
+  std::vector<Sample> samples;
+  for (std::size_t p = 0; p < sweep.points.size(); ++p) {
+    const double value = sweep.points[p].values[observable].value;
+    if (!std::isfinite(value)) continue;
+    samples.push_back({axes[0].x[p], axes[1].x[p], value});
+    map.marks.push_back({axes[0].x[p], axes[1].x[p], sweep.points[p].equilibrated == "false"});
+  }
+  if (samples.size() < kLeastOfMap) return "";
+  const Headline& name = sweep.observables[observable];
+  map.levels = map_levels(samples, chosen_levels(samples), map.scales);
+  for (MapLevel& level : map.levels) level.value = name.symbol;
+  return figure("card map", label_of(name), map_svg(map));
+}
+
+std::string plot_figure(const SweepReport& sweep, const SweptAxis& axis, std::size_t observable) {
+  const Headline& name = sweep.observables[observable];
+  std::vector<std::pair<double, double>> points;
+  for (std::size_t p = 0; p < sweep.points.size(); ++p) {
+    points.emplace_back(axis.x[p], sweep.points[p].values[observable].value);
+  }
+  std::sort(points.begin(), points.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  PlotSeries series{name.symbol, {}, {}};
+  for (const auto& [x, y] : points) {
+    series.x.push_back(x);
+    series.y.push_back(y);
+  }
+  const std::string label = label_of(name);
+  const std::string svg = svg_plot({label, axis.name, label, axis.log, false, {series}});
+  return svg.empty() ? "" : figure("card", label, svg);
+}
+
+std::string figures(const SweepReport& sweep) {
+  const std::vector<SweptAxis> axes = axes_of(sweep);
+  std::string html;
+  for (const std::string_view wanted : kDrawn) {
+    const auto named = [&](const Headline& h) { return h.key == wanted; };
+    const auto found = std::find_if(sweep.observables.begin(), sweep.observables.end(), named);
+    if (found == sweep.observables.end()) continue;
+    const auto observable = static_cast<std::size_t>(found - sweep.observables.begin());
+    if (axes.size() == 2) html += map_figure(sweep, axes, observable);
+    if (axes.size() == 1) html += plot_figure(sweep, axes[0], observable);
+  }
+  return html.empty() ? html : "<section aria-label=\"Plots\" class=\"plots\">\n" + html + "</section>\n";
+}
+
+/// All points, one row each.
+std::string sweep_table(const SweepReport& sweep) {
+  std::string html = "<table class=\"card\"><thead><tr>";
+  for (const std::string& key : sweep.keys) html += fmt::format("<th scope=\"col\">{}</th>", html_text(key));
+  for (const Headline& o : sweep.observables) {
+    html += fmt::format("<th scope=\"col\">{}</th>", html_text(label_of(o)));
+  }
+  html += "<th scope=\"col\">status</th></tr></thead><tbody>\n";
+  for (const SweepPointReport& point : sweep.points) {
+    html += "<tr>";
+    for (const std::string& key : point.keys) html += fmt::format("<th scope=\"row\">{}</th>", html_text(key));
+    for (const Measured& m : point.values) {
+      const std::string why = m.missing.empty() ? "" : fmt::format(" title=\"{}\"", html_text(m.missing));
+      html += fmt::format("<td{}>{}</td>", why, html_text(format_estimate({m.value, m.error})));
+    }
+    html += fmt::format("<td>{} {}</td></tr>\n", html_text(point.status), html_text(point.message));
+  }
+  return html + "</tbody></table>\n";
+}
+
+}  // namespace
+
+std::string static_sweep(const SweepReport& sweep) {
+  return figures(sweep) + sweep_table(sweep);
+}
+
+}  // namespace hardbody

@@ -1,0 +1,193 @@
+#include "report/sweep.h"
+
+#include "io/csv_table.h"
+#include "base/errors.h"
+#include "io/json_member.h"
+#include "base/number_text.h"
+#include "io/run_directory.h"
+#include "io/text_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <optional>
+#include <set>
+#include <string_view>
+#include <utility>
+
+namespace hardbody {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kLongestState = std::size_t{1} << 20;
+
+/// So many bodies of all points together are shown.
+constexpr std::size_t kMostBodiesOfPoints = 300'000;
+
+/// Columns of the table that are neither keys nor observables; the keys stand before the first of them.
+constexpr const char* kFirstResult = "equilibration_time";
+constexpr const char* kErrorSuffix = "_error";
+
+using Row = std::vector<std::string>;
+
+CsvTable read_table(const fs::path& path) {
+  CsvTable table = read_csv(path);
+  if (table.find(kFirstResult) && !table.rows.empty()) return table;
+  throw InputError(fmt::format("{}: has no points; accepted: the table of a sweep", path.string()));
+}
+
+/// A field of a row; empty if there is no such column.
+std::string field_of(const CsvTable& table, const Row& row, std::string_view column) {
+  const std::optional<std::size_t> place = table.find(column);
+  return place ? row[*place] : std::string();
+}
+
+double number_of(const std::string& field) {
+  return finite_number(field).value_or(std::numeric_limits<double>::quiet_NaN());
+}
+
+/// Columns of swept keys: those that come first; the seed only if it is not the same everywhere.
+std::vector<std::size_t> key_columns(const CsvTable& table) {
+  std::vector<std::size_t> columns;
+  const std::size_t end = *table.find(kFirstResult);
+  for (std::size_t k = 0; k < end; ++k) {
+    const auto same = [&](const Row& row) { return row[k] == table.rows[0][k]; };
+    if (table.header[k] == "seed" && std::all_of(table.rows.begin(), table.rows.end(), same)) continue;
+    columns.push_back(k);
+  }
+  return columns;
+}
+
+/// Columns that have one of errors.
+std::vector<std::size_t> observable_columns(const CsvTable& table) {
+  std::vector<std::size_t> columns;
+  for (std::size_t k = *table.find(kFirstResult); k < table.header.size(); ++k) {
+    if (table.find(table.header[k] + kErrorSuffix)) columns.push_back(k);
+  }
+  return columns;
+}
+
+/// A value of a key, the same text for the table's field and for state.json's member.
+std::string comparable(std::string text) {
+  if (const std::optional<double> value = finite_number(text)) return fmt::format("{:.15g}", *value);
+  std::erase(text, ' ');
+  return text;
+}
+
+std::string comparable(const nlohmann::json& json) {
+  if (json.is_number()) return fmt::format("{:.15g}", json.get<double>());
+  return comparable(json.is_string() ? json.get<std::string>() : json.dump());
+}
+
+std::string signature_part(const std::string& key, const std::string& value) {
+  return key + "=" + value + "\n";
+}
+
+/// Directories of points by their keys.
+std::map<std::string, std::string> directories_of(const fs::path& sweep) {
+  std::map<std::string, std::string> directories;
+  for (const fs::directory_entry& entry : fs::directory_iterator(sweep)) {
+    const fs::path state = entry.path() / kPointStateFile;
+    if (!fs::exists(state)) continue;
+    try {
+      const nlohmann::json json = parse_json(read_file(state, kLongestState));
+      if (!json.is_object() || !json.contains("keys") || !json["keys"].is_object()) throw JsonError("has no keys");
+      std::string signature;  // sorted, as the library keeps objects
+      for (const auto& [key, value] : json["keys"].items()) signature += signature_part(key, comparable(value));
+      directories[signature] = entry.path().filename().string();
+    } catch (const JsonError& error) {
+      throw InputError(fmt::format("{}: {}; accepted: the state of a sweep's point", state.string(), error.what()));
+    }
+  }
+  return directories;
+}
+
+/// That of a row, in which every column before the results may be a key.
+std::string directory_of(const CsvTable& table, const Row& row, const std::map<std::string, std::string>& directories) {
+  for (const bool with_seed : {true, false}) {
+    std::map<std::string, std::string> sorted;
+    for (std::size_t k = 0; k < *table.find(kFirstResult); ++k) {
+      if (with_seed || table.header[k] != "seed") sorted[table.header[k]] = comparable(row[k]);
+    }
+    std::string signature;
+    for (const auto& [key, value] : sorted) signature += signature_part(key, value);
+    const auto found = directories.find(signature);
+    if (found != directories.end()) return found->second;
+  }
+  return "";
+}
+
+/// Gives missing values the reason that the point's run has. The message of a point that is done says nothing else.
+void add_reasons(SweepPointReport& point, const std::vector<Headline>& observables) {
+  if (point.status != "done") return;
+  point.message.clear();
+  for (std::size_t k = 0; k < observables.size(); ++k) {
+    for (const Headline& own : point.run->headlines) {
+      if (own.key == observables[k].key) point.values[k].missing = own.missing;
+    }
+  }
+}
+
+/// The run of a point, or a message why it cannot be shown.
+void read_run(SweepPointReport& point, const fs::path& sweep, std::size_t& bodies) {
+  const fs::path directory = sweep / point.directory;
+  if (point.directory.empty() || !fs::exists(directory / kConfigFile)) return;
+  try {
+    point.run = read_run_report(directory, bodies < kMostBodiesOfPoints ? WithView::yes : WithView::no);
+    if (point.run->view) bodies += point.run->view->shape_of.size() * point.run->view->frames.size();
+  } catch (const InputError& error) {
+    point.message += (point.message.empty() ? "" : "; ") + one_line(error.what());
+  }
+}
+
+std::string title_of(const std::vector<std::string>& keys, std::size_t points) {
+  std::string names;
+  for (std::size_t k = 0; k < keys.size(); ++k) {
+    const std::string bare = keys[k].substr(keys[k].rfind('.') + 1);
+    std::string words = bare;
+    std::replace(words.begin(), words.end(), '_', ' ');
+    names += (k == 0 ? "" : k + 1 == keys.size() ? " and " : ", ") + words;
+  }
+  return fmt::format("Sweep of {}: {} state points", names.empty() ? "one point" : names, points);
+}
+
+}  // namespace
+
+bool is_sweep(const fs::path& directory) {
+  return fs::exists(directory / kSweepTableFile) && !fs::exists(directory / kConfigFile);
+}
+
+SweepReport read_sweep_report(const fs::path& directory) {
+  const CsvTable table = read_table(directory / kSweepTableFile);
+  const std::map<std::string, std::string> directories = directories_of(directory);
+  const std::vector<std::size_t> keys = key_columns(table);
+  const std::vector<std::size_t> observables = observable_columns(table);
+  SweepReport sweep;
+  sweep.path = directory;
+  const fs::path whole = fs::weakly_canonical(directory);
+  sweep.name = (whole.has_filename() ? whole : whole.parent_path()).filename().string();
+  for (const std::size_t k : keys) sweep.keys.push_back(table.header[k]);
+  for (const std::size_t k : observables) sweep.observables.push_back(headline_named(table.header[k]));
+  sweep.title = title_of(sweep.keys, table.rows.size());
+  std::size_t bodies = 0;
+  for (const Row& row : table.rows) {
+    SweepPointReport point;
+    for (const std::size_t k : keys) point.keys.push_back(row[k]);
+    for (const std::size_t k : observables) {
+      point.values.push_back({number_of(row[k]), number_of(field_of(table, row, table.header[k] + kErrorSuffix))});
+    }
+    point.status = field_of(table, row, "status");
+    point.message = field_of(table, row, "message");
+    point.equilibrated = field_of(table, row, "equilibrated");
+    point.directory = directory_of(table, row, directories);
+    read_run(point, directory, bodies);
+    if (point.run) add_reasons(point, sweep.observables);
+    sweep.points.push_back(std::move(point));
+  }
+  return sweep;
+}
+
+}  // namespace hardbody

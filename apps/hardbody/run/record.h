@@ -1,0 +1,110 @@
+#pragma once
+
+#include "config/config.h"
+
+#include <ed/equilibration.h>
+#include <ed/observables.h>
+#include <ed/simulation.h>
+#include <ed/system.h>
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace hardbody {
+
+/// What the equilibration left.
+struct Equilibration {
+  ed::System system;
+  ed::KineticState kinetic_at_start;
+  double time = 0;
+  double envelope = 0;                            ///< tuned thickness; 0: the simulation's own guess
+  ed::Relaxation relaxation;                      ///< as of its last full unit of time
+  bool stopped = false;                           ///< by a signal
+  ed::Counters counters_of_start;                 ///< of the compression before
+  ed::Counters counters_of_tuning;                ///< of the trial runs that have chosen the envelope
+  std::vector<ed::FailedPair> failures_of_start;  ///< of both
+  ed::Counters counters;
+  std::vector<ed::FailedPair> failures;
+
+  bool reached() const { return relaxation.reached; }
+};
+
+/// What production measured.
+struct Production {
+  ed::System system;  ///< at its end
+  ed::KineticState kinetic_at_start;
+  double time = 0;
+  double planned = 0;  ///< or, with a target error, at the most
+  double longest_lag = 0;
+  double next_look = 0;              ///< with a target error: when it is asked next whether that is reached
+  bool precise = false;              ///< it is, which has ended production
+  std::vector<double> wave_numbers;  ///< of F_self; the first one's decay is fitted
+  bool stopped = false;
+  double wall_seconds = 0;
+  double envelope = 0;
+  ed::Counters counters;
+  ed::Results results;
+  std::vector<ed::FailedPair> failures;
+};
+
+/// What depends on when and how often a run was saved and resumed; grows from one process to the next.
+struct Upkeep {
+  double seconds = 0;                    ///< wall time since the program took the run up
+  double production_seconds = 0;         ///< wall time of production
+  std::uint64_t checkpoints = 0;         ///< written
+  std::uint64_t checkpoints_failed = 0;  ///< that could not be written
+  std::uint64_t resumed = 0;             ///< times
+};
+
+/// How far events.csv goes.
+struct EventsMark {
+  std::uint64_t rows = 0;   ///< collisions
+  std::uint64_t bytes = 0;  ///< header included; 0: there is no file
+};
+
+/// How far the trajectories go, each of the files that the config asks for.
+struct TrajectoryMark {
+  std::uint64_t frames = 0;
+  double last_time = -1;             ///< of the last frame
+  std::vector<std::uint64_t> bytes;  ///< of each file; without a frame: 0
+};
+
+/// Everything that a run's files and its table say.
+struct RunRecord {
+  Config config;
+  Equilibration equilibration;
+  Production production;             ///< empty if the run was stopped before
+  ed::Audit audit;                   ///< of the last state
+  double energy_relative_drift = 0;  ///< |E_end - E_start| / E_start over the last phase
+  double momentum_drift = 0;         ///< |P_end - P_start| / (N sqrt(m kT)) over the last phase
+  Upkeep upkeep;
+  std::optional<ed::Stall> stall;  ///< what ended the run, if that did
+  std::int64_t peak_memory_bytes = 0;
+
+  bool stopped() const { return equilibration.stopped || production.stopped; }
+  /// Whether production has begun, which may be of no length.
+  bool produced() const { return !production.system.bodies.empty(); }
+  const ed::System& last_state() const;
+  /// Pairs that failed and are not among the failures, which have room for so many.
+  std::uint64_t failures_left_out() const;
+  double last_time() const { return produced() ? production.time : equilibration.time; }
+  const char* last_phase() const { return produced() ? "production" : "equilibration"; }
+};
+
+/// Fills in the audit of the last state, the drifts and the memory.
+void audit_record(RunRecord& record);
+
+/// What makes a run's results worthless, one line each; empty for a sound run.
+std::vector<std::string> defects(const RunRecord& record);
+
+/// The same for a single state.
+std::vector<std::string> defects(const ed::Audit& audit);
+
+/// Energy and momentum that the dynamics has not conserved: every run starts with momentum zero and the energy that
+/// kT = 1 gives, 1/2 for each degree of freedom: 3N - 3 of translation, 2 a body of revolution and 1 more if it spins,
+/// 3 of any other.
+std::vector<std::string> conservation_defects(const ed::KineticState& kinetic, const ed::System& system);
+
+}  // namespace hardbody

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "run/record.h"
+
+#include <ed/analysis.h>
+
+#include <string>
+#include <vector>
+
+namespace hardbody {
+
+/// "0.2887 +- 0.0018": the error with two significant digits, the value with as many decimals; "-" for a
+/// missing value.
+std::string format_estimate(const ed::Estimate& estimate);
+
+/// "2N", "3N", or the number itself.
+std::string freedoms_text(long freedoms, int number);
+
+/// A run's headline numbers, with units and conventions, as shown on the terminal; `files`: where the rest was written.
+std::string results_table(const RunRecord& record, const std::vector<std::string>& files);
+
+}  // namespace hardbody

@@ -1,0 +1,126 @@
+#include "run/trajectory_recorder.h"
+
+#include "base/errors.h"
+#include "trajectory/gsd/frames.h"
+#include "trajectory/lammps/dump.h"
+#include "io/text_file.h"
+#include "trajectory/vtk.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+#include <system_error>
+#include <utility>
+
+namespace hardbody {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Bytes in memory that frames may take while no file takes them.
+constexpr std::size_t kMostWaiting = std::size_t{1} << 28;
+
+std::size_t memory_of(const Frame& frame) {
+  return frame.bodies.size() * (sizeof(FrameBody) + sizeof(ed::Body)) + frame.types.size() * sizeof(ed::Species);
+}
+
+}  // namespace
+
+Trajectory::Trajectory(const RunDirectory& directory, const Config& config, double planned)
+    : planned_(planned),
+      wanted_(config.trajectory.empty() ? 0
+              : planned > 0             ? static_cast<std::uint64_t>(config.frames)
+                                        : 1) {
+  for (const SpeciesConfig& species : config.species) groups_.push_back(species.number);
+  for (const std::string& format : config.trajectory) {
+    if (format == "gsd") {
+      const fs::path path = directory.file(kGsdFile);
+      files_.push_back({path, std::make_unique<GsdWriter>(path, wanted_)});
+    } else if (format == "lammps") {
+      const fs::path path = directory.file(kLammpsFile);
+      files_.push_back({path, std::make_unique<LammpsWriter>(path)});
+    } else {
+      const fs::path path = directory.file(kVtkFile);
+      files_.push_back({path, std::make_unique<VtkWriter>(path, wanted_)});
+    }
+  }
+}
+
+double Trajectory::next_time() const {
+  if (taken_ >= wanted_) return std::numeric_limits<double>::infinity();
+  if (taken_ == 0) return 0;
+  // The end itself, not what rounding makes of it.
+  if (taken_ + 1 == wanted_) return planned_;
+  return planned_ * static_cast<double>(taken_) / static_cast<double>(wanted_ - 1);
+}
+
+void Trajectory::check(const TrajectoryMark& mark) const {
+  for (std::size_t k = 0; k < files_.size() && mark.frames > 0; ++k) {
+    std::error_code error;
+    const std::uintmax_t bytes = fs::file_size(files_[k].path, error);
+    if (!error && k < mark.bytes.size() && bytes >= mark.bytes[k]) continue;
+    throw InputError(fmt::format("{}: has {} bytes, {} when the checkpoint was written; accepted: the file of the run",
+                                 files_[k].path.string(), error ? 0 : bytes,
+                                 k < mark.bytes.size() ? mark.bytes[k] : 0));
+  }
+}
+
+void Trajectory::open(const TrajectoryMark& mark) {
+  taken_ = mark.frames;
+  last_time_ = mark.last_time;
+  for (std::size_t k = 0; k < files_.size(); ++k) {
+    files_[k].writer->open({mark.frames, mark.frames > 0 ? mark.bytes.at(k) : 0});
+  }
+}
+
+void Trajectory::take_first(const ed::System& start, Log& log) {
+  if (taken_ == 0 && wanted_ > 0) add(frame_of(start, groups_), 0, log);
+}
+
+void Trajectory::take(const ed::Simulation& simulation, Log& log) {
+  add(frame_of(simulation, groups_, taken_), next_time(), log);
+}
+
+void Trajectory::take_last(const ed::Simulation& simulation, double time, Log& log) {
+  if (taken_ < wanted_ && last_time_ < time) add(frame_of(simulation, groups_, taken_), time, log);
+}
+
+void Trajectory::add(Frame frame, double time, Log& log) {
+  waiting_.push_back(std::move(frame));
+  waiting_.back().time = time;  // as asked for; the simulation's own is rounded
+  last_time_ = time;
+  ++taken_;
+  try {
+    write_waiting();
+    if (std::exchange(failing_, false)) log.line("trajectory: written again");
+  } catch (const std::runtime_error& error) {
+    if (waiting_.size() * memory_of(waiting_.front()) > kMostWaiting) throw;
+    if (!std::exchange(failing_, true)) log.line(fmt::format("trajectory: {}; frames wait in memory", error.what()));
+  }
+}
+
+void Trajectory::flush() {
+  write_waiting();
+  if (taken_ == 0) return;
+  for (const File& file : files_) flush_file(file.path);
+}
+
+void Trajectory::write_waiting() {
+  const std::uint64_t first = taken_ - waiting_.size();
+  for (File& file : files_) {
+    while (file.writer->mark().frames < taken_) file.writer->append(waiting_[file.writer->mark().frames - first]);
+  }
+  waiting_.clear();
+}
+
+TrajectoryMark Trajectory::mark() const {
+  TrajectoryMark mark;
+  mark.frames = taken_;
+  mark.last_time = last_time_;
+  for (const File& file : files_) mark.bytes.push_back(file.writer->mark().bytes);
+  return mark;
+}
+
+}  // namespace hardbody

@@ -1,0 +1,71 @@
+#pragma once
+
+#include "config/config.h"
+#include "trajectory/writer.h"
+#include "base/log.h"
+#include "io/run_directory.h"
+#include "run/record.h"
+
+#include <ed/simulation.h>
+
+#include <deque>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace hardbody {
+
+/// The trajectories of a run: frames at fixed times of production, the first at its begin, the last at its planned end,
+/// appended to each of the files that were asked for. Taking one changes nothing in the run.
+class Trajectory {
+ public:
+  /// Of a production of this length. Nothing is written yet.
+  Trajectory(const RunDirectory& directory, const Config& config, double planned);
+
+  /// When the next frame is due; infinite when there is none.
+  double next_time() const;
+
+  /// Whether the files are at least as long as a checkpoint says. Throws InputError if not.
+  void check(const TrajectoryMark& mark) const;
+
+  /// Begins, or goes on from a checkpoint: cuts off what follows. Throws std::runtime_error.
+  void open(const TrajectoryMark& mark);
+
+  /// The first frame, unless there is one: the state that production begins with, to the bit, of which a simulation may
+  /// change the last one.
+  void take_first(const ed::System& start, Log& log);
+
+  /// The frame that is due: run `simulation` to next_time() first. A file that cannot be written gets it later, which
+  /// is logged; throws std::runtime_error when too much is waiting for that.
+  void take(const ed::Simulation& simulation, Log& log);
+
+  /// The state in which production ends before its planned end, unless it has just been taken.
+  void take_last(const ed::Simulation& simulation, double time, Log& log);
+
+  /// Writes what is waiting, and brings all of it to the disk. Throws std::runtime_error if it cannot be written.
+  void flush();
+
+  /// Once all is written.
+  TrajectoryMark mark() const;
+
+ private:
+  struct File {
+    std::filesystem::path path;
+    std::unique_ptr<FrameFile> writer;
+  };
+
+  void write_waiting();
+  void add(Frame frame, double time, Log& log);
+
+  std::vector<int> groups_;
+  double planned_;
+  std::uint64_t wanted_;  ///< frames; 0: no trajectory
+  std::uint64_t taken_ = 0;
+  double last_time_ = -1;  ///< of the last frame
+  std::vector<File> files_;
+  std::deque<Frame> waiting_;  ///< the last frames taken, those that some file lacks
+  bool failing_ = false;       ///< the last attempt to write
+};
+
+}  // namespace hardbody

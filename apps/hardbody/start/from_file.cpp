@@ -1,0 +1,381 @@
+#include "start/from_file.h"
+
+#include "config/values.h"
+#include "base/errors.h"
+#include "start/velocities.h"
+#include "io/text_file.h"
+#include "trajectory/reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <numeric>
+#include <utility>
+
+namespace hardbody {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+/// Relative difference between the file's lengths and the config's that is rounding to 32 bits.
+constexpr double kSameLength = 1e-5;
+/// The same of packing fractions, a length to the third power.
+constexpr double kSamePacking = 1e-4;
+/// Species of a file that the config is given the sections of; bodies of more sizes than that are one species.
+constexpr std::size_t kMostSpecies = 64;
+/// Bodies that overlap are not moved apart by more than this factor.
+constexpr double kMostMending = 1.1;
+
+/// The frame that a start wants.
+struct FoundFrame {
+  Frame frame;
+  std::uint64_t number;
+  bool cut_off;  ///< the file ends before its last frame does
+};
+
+FoundFrame read_frame(const StartFile& start) {
+  const std::unique_ptr<TrajectoryReader> source = open_frames(start.file);
+  const TrajectoryReader& reader = *source;
+  const std::uint64_t count = reader.frame_count();
+  if (count == 0) throw InputError(fmt::format("{}: has no whole frame; accepted: a file with frames", start.file));
+  const std::uint64_t last = last_frame(reader).value_or(count - 1);
+  const std::uint64_t k = start.frame ? static_cast<std::uint64_t>(*start.frame) : last;
+  if (k >= count) {
+    throw InputError(
+        fmt::format("start.frame is {}, {} has {} whole frames; accepted: 0 to {}", k, start.file, count, count - 1));
+  }
+  return {reader.read(k), k, reader.cut_off()};
+}
+
+double box_of(const Frame& frame, const std::string& file) {
+  if (frame.exact) return frame.exact->box;
+  if (const std::optional<std::string> why = not_a_cube(frame)) {
+    throw InputError(fmt::format("{}: {}; accepted: a cube", file, *why));
+  }
+  return frame.box.x();
+}
+
+/// The bodies of each group, in the order of the groups' numbers.
+std::vector<std::vector<std::size_t>> groups_of(const Frame& frame) {
+  std::map<std::uint32_t, std::vector<std::size_t>> groups;
+  for (std::size_t i = 0; i < frame.bodies.size(); ++i) groups[frame.bodies[i].group].push_back(i);
+  std::vector<std::vector<std::size_t>> list;
+  list.reserve(groups.size());
+  for (auto& [number, bodies] : groups) list.push_back(std::move(bodies));
+  return list;
+}
+
+// ---- What the config does not say
+
+std::string three(const Vector3d& v) {
+  return fmt::format("[{}, {}, {}]", toml_real(v.x()), toml_real(v.y()), toml_real(v.z()));
+}
+
+std::string inertia_line(const Frame& frame, const FrameBody& body) {
+  const ed::Species* exact = frame.exact ? &frame.exact->species[body.type] : nullptr;
+  if (exact != nullptr && !exact->spins) return "inertia = \"paper\"\n";
+  if (!(body.inertia.minCoeff() > 0)) return "";
+  return fmt::format("inertia = {}\n", three(body.inertia));
+}
+
+/// A section for bodies that are all alike, without an inertia where the config has one for all.
+std::string species_section(const Frame& frame, const std::vector<std::size_t>& bodies, const std::string& file,
+                            bool with_inertia) {
+  const FrameBody& first = frame.bodies[bodies.front()];
+  const std::string& type = frame.types[first.type].name;
+  const std::optional<ed::BodyShape>& shape = frame.types[first.type].shape;
+  if (!shape) {
+    throw InputError(
+        fmt::format("{}: has no shape of type {} that can move here; accepted: [shape] or [[species]] in "
+                    "the config",
+                    file, one_line(type, 40)));
+  }
+  const auto alike = [&](std::size_t i) {
+    const FrameBody& b = frame.bodies[i];
+    return b.type == first.type && b.mass == first.mass && b.inertia == first.inertia;
+  };
+  if (!std::all_of(bodies.begin(), bodies.end(), alike)) {
+    throw InputError(
+        fmt::format("{}: its bodies of type {} are of different sizes; accepted: [[species]] with sizes, "
+                    "width and size_seed in the config",
+                    file, one_line(type, 40)));
+  }
+  const auto* barr = std::get_if<geom::Superellipsoid>(&*shape);
+  std::string text = fmt::format("\n[[species]]\nnumber = {}\nmass = {}\nsemi_axes = {}\n", bodies.size(),
+                                 toml_real(first.mass), three(ed::half_extents(*shape)));
+  if (barr != nullptr) {
+    text +=
+        fmt::format("kind = \"superellipsoid\"\nexponents = [{}, {}]\n", toml_real(barr->e1()), toml_real(barr->e2()));
+  }
+  return with_inertia ? text + inertia_line(frame, first) : text;
+}
+
+std::string species_text(const Frame& frame, const std::string& file, bool with_inertia) {
+  const std::vector<std::vector<std::size_t>> groups = groups_of(frame);
+  if (groups.size() > kMostSpecies) {
+    throw InputError(fmt::format("{}: has {} types of bodies; accepted: at most {}, or [[species]] in the config", file,
+                                 groups.size(), kMostSpecies));
+  }
+  std::string text;
+  for (const std::vector<std::size_t>& group : groups) text += species_section(frame, group, file, with_inertia);
+  return text;
+}
+
+bool has_section(const TomlDocument& document, std::string_view prefix) {
+  const auto of_it = [&](const auto& name) { return name.starts_with(prefix); };
+  return std::any_of(document.sections.begin(), document.sections.end(),
+                     [&](const Section& s) { return of_it(s.name); }) ||
+         std::any_of(document.entries.begin(), document.entries.end(), [&](const Entry& e) { return of_it(e.key); });
+}
+
+bool has_numbers(const TomlDocument& document) {
+  return std::any_of(document.entries.begin(), document.entries.end(), [](const Entry& e) {
+    return e.key == "system.number" || (e.key.starts_with("species[") && e.key.ends_with("].number"));
+  });
+}
+
+// ---- The state
+
+/// How the axes of a body as the config has them (the axis of revolution last) lie in the body as the file has it;
+/// nothing if the two are not the same shape.
+std::optional<Matrix3d> axes_in_file(const ed::BodyShape& file, const ed::BodyShape& config) {
+  const auto* a = std::get_if<geom::Superellipsoid>(&file);
+  const auto* b = std::get_if<geom::Superellipsoid>(&config);
+  const auto exponent = [](const geom::Superellipsoid* s, int k) {
+    return s == nullptr ? 1 : k == 1 ? s->e1() : s->e2();
+  };
+  const bool same_exponents = std::abs(exponent(a, 1) - exponent(b, 1)) <= kSameLength &&
+                              std::abs(exponent(a, 2) - exponent(b, 2)) <= kSameLength;
+  if (!same_exponents) return std::nullopt;
+  const Vector3d wanted = ed::half_extents(config);
+  const bool free = b == nullptr;  // an ellipsoid may name its axes in any order
+  for (int shift = 0; shift < (free ? 3 : 1); ++shift) {
+    Matrix3d axes;
+    for (int k = 0; k < 3; ++k) axes.col(k) = Vector3d::Unit((k + shift) % 3);
+    const Vector3d turned = axes.transpose() * ed::half_extents(file);
+    if (((turned - wanted).cwiseQuotient(wanted)).cwiseAbs().maxCoeff() <= kSameLength) return axes;
+  }
+  return std::nullopt;
+}
+
+/// Refusal of a frame without orientations, with what the reader says of columns that may be some.
+InputError no_orientations(const Frame& frame, const std::string& file, const std::string& body) {
+  std::string hint;
+  for (const std::string& notice : frame.notices) {
+    if (notice.find("orient") != std::string::npos) hint += fmt::format(" ({})", notice);
+  }
+  return InputError(
+      fmt::format("{}: has no orientations, and {}{}; accepted: columns quatw quati quatj quatk, in GSD files "
+                  "particles/orientation of the frame, or spheres",
+                  file, body, hint));
+}
+
+/// The bodies of the config where those of the file are, without velocities.
+ed::System placed(const Config& config, const Frame& frame, const std::vector<std::size_t>& order) {
+  const std::string& file = config.start_file->file;
+  ed::System system;
+  system.box = box_of(frame, file);
+  for (const ed::Component& component : config.components()) {
+    for (int k = 0; k < component.number; ++k) {
+      const std::size_t i = order[system.bodies.size()];
+      const FrameBody& from = frame.bodies[i];
+      ed::Body& body = system.bodies.emplace_back();
+      body.species = static_cast<int>(system.species.size());
+      body.position = from.position;
+      body.rotation = from.rotation;
+      if (!frame.orientations && !ed::is_sphere(component.species.shape)) {
+        throw no_orientations(frame, file,
+                              fmt::format("body {:.17g} is {}", from.id, ed::describe(component.species.shape)));
+      }
+      const std::optional<ed::BodyShape>& shape = frame.types[from.type].shape;
+      if (!shape) continue;
+      const std::optional<Matrix3d> axes = axes_in_file(*shape, component.species.shape);
+      if (!axes) {
+        throw InputError(
+            fmt::format("{}: body {:.17g} is {}, in the config {}; accepted: the same, or no shape in the config", file,
+                        from.id, ed::describe(*shape), ed::describe(component.species.shape)));
+      }
+      if (!axes->isIdentity(0)) body.rotation = from.rotation * *axes;
+    }
+    system.species.push_back(component.species);
+  }
+  return system;
+}
+
+bool overlaps(const ed::Audit& audit) {
+  return audit.overlaps > 0 || audit.unanswered > 0;
+}
+
+ed::System scaled(const ed::System& system, double factor) {
+  ed::System result = system;
+  result.box *= factor;
+  for (ed::Body& body : result.bodies) body.position *= factor;
+  return result;
+}
+
+/// Box and positions scaled by the least factor without overlap, to a thousandth of its excess over 1; nothing if it
+/// would be more than kMostMending.
+std::optional<double> mending_factor(const ed::System& system) {
+  double low = 0;
+  double high = 1e-9;
+  while (overlaps(ed::audit(scaled(system, 1 + high)))) {
+    low = high;
+    high *= 4;
+    if (1 + high > kMostMending) return std::nullopt;
+  }
+  while (high - low > 1e-3 * high) {
+    const double middle = 0.5 * (low + high);
+    (overlaps(ed::audit(scaled(system, 1 + middle))) ? low : high) = middle;
+  }
+  return 1 + high;
+}
+
+/// Which bodies overlap, the worst pair by the numbers of the file. `ids`: of the bodies of the state.
+std::string overlap_text(const ed::Audit& audit, const std::vector<double>& ids) {
+  if (audit.overlaps == 0)
+    return fmt::format("{} pairs of bodies are too deep in each other for a distance", audit.unanswered);
+  return fmt::format("{} pairs of bodies overlap, the worst by {:.3g} (bodies {:.17g} and {:.17g} of the file)",
+                     audit.overlaps + audit.unanswered, -audit.minimum_distance,
+                     ids[static_cast<std::size_t>(audit.closest_i)], ids[static_cast<std::size_t>(audit.closest_j)]);
+}
+
+/// Parts bodies that overlap, if the config says so; what was done.
+std::string mend(ed::System& system, const StartFile& start, const std::vector<double>& ids) {
+  const ed::Audit audit = ed::audit(system);
+  if (!overlaps(audit)) return "";
+  if (!start.mend) {
+    throw InputError(fmt::format("{}: {}; accepted: none deeper than {:g} of their size, or start.mend = true",
+                                 start.file, overlap_text(audit, ids), ed::kAuditOverlap));
+  }
+  const std::optional<double> factor = mending_factor(system);
+  if (!factor) {
+    throw InputError(
+        fmt::format("{}: {}: a box {} times as large does not part them; accepted: a state of these bodies", start.file,
+                    overlap_text(audit, ids), kMostMending));
+  }
+  system = scaled(system, *factor);
+  return fmt::format(", mended: {}: box and positions scaled by 1 + {:.6g}", overlap_text(audit, ids), *factor - 1);
+}
+
+/// As it was the other way round: with no more than rounding errors the bodies go back where they came from.
+void reverse(ed::System& system) {
+  for (ed::Body& body : system.bodies) {
+    body.velocity = -body.velocity;
+    body.angular_velocity = -body.angular_velocity;
+  }
+}
+
+bool flag(const TomlDocument& document, const char* key) {
+  const Entry* entry = document.find(key);
+  if (entry == nullptr) return false;
+  if (entry->value.kind != Value::Kind::boolean) throw bad(*entry, "true or false");
+  return entry->value.integer == 1;
+}
+
+bool same_packing(double a, double b) {
+  return std::abs(a / b - 1) <= kSamePacking;
+}
+
+}  // namespace
+
+std::optional<StartFile> read_start_file(const TomlDocument& document) {
+  const Entry* file = document.find("start.file");
+  for (const char* key : {"start.frame", "start.mend", "start.reverse"}) {
+    const Entry* entry = document.find(key);
+    if (entry != nullptr && file == nullptr) throw bad(*entry, "start.file beside it");
+  }
+  if (file == nullptr) return std::nullopt;
+  if (file->value.kind != Value::Kind::text || file->value.text.empty()) throw bad(*file, "the name of a file");
+  for (const char* key : {"system.start", "system.start_from", "system.nematic_order"}) {
+    if (const Entry* entry = document.find(key)) throw bad(*entry, "no such key beside start.file");
+  }
+  StartFile start;
+  start.file = absolute_path(file->value.text).string();
+  if (const Entry* frame = document.find("start.frame")) {
+    if (frame->value.kind != Value::Kind::integer || frame->value.integer < 0)
+      throw bad(*frame, "an integer, at least 0");
+    start.frame = frame->value.integer;
+  }
+  start.mend = flag(document, "start.mend");
+  start.reverse = flag(document, "start.reverse");
+  return start;
+}
+
+StartAdditions additions_from(const StartFile& start, const TomlDocument& document) {
+  const bool shapes = has_section(document, "shape") || has_section(document, "species");
+  const bool packing = document.find("system.packing_fraction") != nullptr;
+  StartAdditions additions;
+  if (shapes && packing && has_numbers(document) && start.frame) return additions;
+  const auto [frame, k, cut_off] = read_frame(start);
+  if (!start.frame) additions.overrides.push_back(fmt::format("start.frame={}", k));
+  if (!shapes) {
+    additions.text = species_text(frame, start.file, document.find("dynamics.inertia") == nullptr);
+  }
+  if (shapes && !has_numbers(document)) {
+    additions.overrides.push_back(fmt::format("system.number={}", frame.bodies.size()));
+  }
+  if (packing) return additions;
+  // Only the bodies' own volume is missing, which the config may say: it is put right when the state is there.
+  double volume = 0;
+  for (const FrameBody& body : frame.bodies) {
+    const std::optional<ed::BodyShape>& shape = frame.types[body.type].shape;
+    volume += shape ? ed::volume(*shape) : 0;
+  }
+  if (volume == 0) {
+    throw InputError(fmt::format("{}: system.packing_fraction is missing, and {} says no shapes; accepted: a number",
+                                 document.where_of("system"), start.file));
+  }
+  additions.overrides.push_back(
+      fmt::format("system.packing_fraction={}", toml_real(volume / std::pow(box_of(frame, start.file), 3))));
+  return additions;
+}
+
+FileStart start_from_file(const Config& config) {
+  const StartFile& start = *config.start_file;
+  const auto [frame, k, cut_off] = read_frame(start);
+  const std::vector<std::vector<std::size_t>> groups = groups_of(frame);
+  std::vector<int> found;
+  std::vector<int> wanted;
+  std::vector<std::size_t> order;
+  for (const std::vector<std::size_t>& group : groups) {
+    found.push_back(static_cast<int>(group.size()));
+    order.insert(order.end(), group.begin(), group.end());
+  }
+  for (const SpeciesConfig& species : config.species) wanted.push_back(species.number);
+  if (found != wanted) {
+    throw InputError(fmt::format("{}: has {} bodies of its types, the config {}; accepted: the same numbers",
+                                 start.file, fmt::join(found, ", "), fmt::join(wanted, ", ")));
+  }
+  FileStart result;
+  for (const std::string& notice : frame.notices) {
+    result.notices.push_back(fmt::format("start: {}: {}", one_line(start.file), notice));
+  }
+  result.system = placed(config, frame, order);
+  const double before = ed::packing_fraction(result.system);
+  std::string velocities = set_velocities(result.system, config, frame, order);
+  if (start.reverse) {
+    reverse(result.system);
+    velocities += ", reversed";
+  }
+  std::vector<double> ids;
+  ids.reserve(order.size());
+  for (const std::size_t i : order) ids.push_back(frame.bodies[i].id);
+  const std::string mended = mend(result.system, start, ids);
+  const double after = ed::packing_fraction(result.system);
+  if (!same_packing(before, config.packing_fraction) && !same_packing(after, config.packing_fraction)) {
+    throw InputError(
+        fmt::format("{}: its packing fraction is {:.8g}, in the config {:.8g}; accepted: the same, or no "
+                    "system.packing_fraction",
+                    start.file, before, config.packing_fraction));
+  }
+  result.report = fmt::format("start: {} bodies of frame {} of {} at packing fraction {:.8g}, {}{}{}", order.size(), k,
+                              one_line(start.file), after, velocities, mended, cut_off ? kCutOff : "");
+  return result;
+}
+
+}  // namespace hardbody

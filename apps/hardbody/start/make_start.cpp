@@ -1,0 +1,162 @@
+#include "start/make_start.h"
+
+#include "run/origin.h"
+#include "base/signals.h"
+#include "start/from_file.h"
+
+#include <ed/shape.h>
+#include <ed/start.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace hardbody {
+namespace {
+
+std::string order_text(const Config& config) {
+  return config.nematic_order ? fmt::format(", S = {:g} about z", *config.nematic_order) : "";
+}
+
+ed::StartOptions start_options(const Config& config, const std::function<bool(double)>& progress, Start& start) {
+  ed::StartOptions options;
+  options.packing_fraction = config.packing_fraction;
+  options.seed = static_cast<std::uint64_t>(config.seed);
+  options.nematic_order = config.nematic_order;
+  options.groups = config.numbers();
+  options.progress = progress;
+  options.counters = &start.counters;
+  options.failures = &start.failures;
+  return options;
+}
+
+/// Bodies in a cell as wide as the largest one, from which on a run is said to be slow: neighbours are sought in cells.
+constexpr double kCrowdedCell = 100;
+
+/// What sizes that differ by much cost; nothing where they do not.
+std::optional<std::string> unequal_sizes(const Config& config) {
+  const std::vector<ed::Component> components = config.components();
+  double largest = 0;
+  double smallest = std::numeric_limits<double>::infinity();
+  for (const ed::Component& component : components) {
+    const double radius = ed::bounding_radius(component.species.shape);
+    largest = std::max(largest, radius);
+    smallest = std::min(smallest, radius);
+  }
+  const double box = ed::box_for(components, config.packing_fraction);
+  const double in_a_cell = config.number * std::pow(2 * largest / box, 3);
+  if (in_a_cell < kCrowdedCell || largest < 2 * smallest) return std::nullopt;
+  return fmt::format(
+      "start: the largest bodies have {:.3g} times the bounding radius of the smallest, and a cell as wide as they are "
+      "holds {:.0f} bodies, among which neighbours are sought; expect a slow start and run",
+      largest / smallest, std::min(in_a_cell, static_cast<double>(config.number)));
+}
+
+/// What a start costs that cannot be repeated; nothing where it costs little.
+std::optional<std::string> compressed_as_one(const Config& config) {
+  if (config.start_from || config.lattice()) return std::nullopt;
+  ed::StartOptions options;
+  options.packing_fraction = config.packing_fraction;
+  const int together = ed::compressed_together(config.components(), options);
+  if (together <= options.most_compressed) return std::nullopt;
+  return fmt::format(
+      "start: {} of {} bodies are compressed together, as too few are alike for a smaller box that is repeated; that "
+      "takes a time that grows with the square of their number",
+      together, config.number);
+}
+
+/// <P2(u_z)> of the bodies that are no spheres.
+double order_about_z(const ed::System& system) {
+  double sum = 0;
+  int number = 0;
+  for (int i = 0; i < system.size(); ++i) {
+    const ed::Species& species = system.species_of(i);
+    if (ed::is_sphere(species.shape)) continue;
+    const double z = system.bodies[static_cast<std::size_t>(i)].rotation(2, ed::symmetry_axis(species).value_or(2));
+    sum += 1.5 * z * z - 0.5;
+    ++number;
+  }
+  return number > 0 ? sum / number : 0;
+}
+
+/// What the compression has left of the order that was asked for goes to the log; a loss is said aloud.
+void report_order(double asked, const ed::System& start, Progress& progress, Log& log) {
+  const double reached = order_about_z(start);
+  log.line(fmt::format("start: S = {:.3g}", reached));
+  // As far off as samples of so many bodies hardly ever are.
+  const double usual = std::max(0.05, 1.5 / std::sqrt(start.size()));
+  if (std::abs(reached - asked) <= usual) return;
+  const std::string text = fmt::format(
+      "start: S = {:.2f} about z after the compression, not nematic_order = {:g}, which start = \"fcc\" would keep",
+      reached, asked);
+  log.line(text);
+  progress.say(text);
+}
+
+/// Random, or the last state of another run; nothing if a signal came first.
+std::optional<Start> compressed_start(const Config& config, Progress& progress, Log& log) {
+  log.line(config.start_from ? fmt::format("start: the last state of {}, compressed to packing fraction {:g}",
+                                           *config.start_from, config.packing_fraction)
+                             : fmt::format("start: {} bodies placed at random{}, compressed to packing fraction {:g}",
+                                           config.number, order_text(config), config.packing_fraction));
+  progress.begin();
+  const auto show = [&](double reached) {
+    if (progress.due()) {
+      progress.show(fmt::format("compression: packing fraction {:.4f} of {:g}", reached, config.packing_fraction));
+    }
+    return pending_signal() == 0;
+  };
+  try {
+    Start start;
+    if (config.start_from) {
+      start.system = ed::compressed(read_origin_state(config), config.packing_fraction, show, &start.counters,
+                                    &start.failures, config.numbers());
+    } else {
+      start.system = ed::random_start(config.components(), start_options(config, show, start));
+    }
+    if (pending_signal() != 0) return std::nullopt;
+    log.line(fmt::format("start: done, {} collisions", start.counters.collisions));
+    if (config.nematic_order) report_order(*config.nematic_order, start.system, progress, log);
+    return start;
+  } catch (const std::runtime_error&) {
+    if (pending_signal() != 0) return std::nullopt;
+    throw;
+  }
+}
+
+}  // namespace
+
+std::optional<Start> make_start(const Config& config, Progress& progress, Log& log) {
+  if (config.start_file) {
+    FileStart start = start_from_file(config);
+    log.line(start.report);
+    progress.say(start.report);
+    for (const std::string& notice : start.notices) {
+      log.line(notice);
+      progress.say(notice);
+    }
+    return Start{std::move(start.system), {}, {}};
+  }
+  for (const std::optional<std::string>& warning : {unequal_sizes(config), compressed_as_one(config)}) {
+    if (!warning) continue;
+    log.line(*warning);
+    progress.say(*warning);
+  }
+  const std::optional<ed::LatticeOptions> lattice = config.lattice();
+  if (!lattice) return compressed_start(config, progress, log);
+  log.line(fmt::format("start: {} bodies on a lattice ({}) at packing fraction {:g}{}", config.number, config.start,
+                       config.packing_fraction, order_text(config)));
+  Start start{ed::lattice_start(config.components(), *lattice), {}, {}};
+  log.line("start: done");
+  return start;
+}
+
+}  // namespace hardbody

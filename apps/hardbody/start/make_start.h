@@ -1,0 +1,27 @@
+#pragma once
+
+#include "config/config.h"
+#include "base/log.h"
+#include "base/progress.h"
+
+#include <ed/simulation.h>
+#include <ed/system.h>
+
+#include <optional>
+#include <vector>
+
+namespace hardbody {
+
+/// The state, what its compression has counted, and the pairs that failed in it.
+struct Start {
+  ed::System system;
+  ed::Counters counters;
+  std::vector<ed::FailedPair> failures;
+};
+
+/// What a run begins with: bodies from a file, the last state of another run, a random dilute state, or a lattice; the
+/// second and third are compressed. Nothing if a signal came first. Throws InputError if there is no such state, and
+/// std::runtime_error if the compression gets stuck.
+std::optional<Start> make_start(const Config& config, Progress& progress, Log& log);
+
+}  // namespace hardbody

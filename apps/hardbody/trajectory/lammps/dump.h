@@ -1,0 +1,66 @@
+#pragma once
+
+#include "trajectory/writer.h"
+#include "io/stored_bytes.h"
+#include "trajectory/reader.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace hardbody {
+
+/// Trajectories as LAMMPS text dumps, which OVITO and MDAnalysis read:
+///
+///     ITEM: ATOMS id type x y z quatw quati quatj quatk shapex shapey shapez SuperquadricRoundness.Phi
+///     SuperquadricRoundness.Theta
+///
+/// shapex .. are the diameters along the body's axes, Phi is e2 and Theta e1. Numbers have the digits that give the
+/// same double back. The time step is the frame's number; the format has no place for the time that every reader knows.
+class LammpsWriter final : public FrameFile {
+ public:
+  explicit LammpsWriter(std::filesystem::path path) : path_(std::move(path)) {}
+
+  void open(FileMark mark) override;
+  void append(const Frame& frame) override;
+  FileMark mark() const override { return mark_; }
+
+ private:
+  std::filesystem::path path_;
+  FileMark mark_;
+};
+
+/// Reads dumps of our own and of LAMMPS: columns id, type, x y z (or xu yu zu, xs ys zs), quatw quati quatj quatk,
+/// shapex shapey shapez, SuperquadricRoundness.Phi .Theta, mass, vx vy vz, in any order; all but the positions may be
+/// missing, others are skipped. Of the file no more than a frame is in memory at a time. Throws InputError, `name:
+/// what; accepted: ..`.
+class LammpsReader final : public TrajectoryReader {
+ public:
+  LammpsReader(std::unique_ptr<StoredBytes> bytes, std::string name);
+
+  const std::string& name() const override { return name_; }
+  std::uint64_t frame_count() const override { return frames_.size(); }
+  bool cut_off() const override { return cut_off_; }
+  bool wraps_late() const override { return true; }
+
+  /// The bodies in the order of their ids. Types are what type and shape make different, groups what type alone does.
+  Frame read(std::uint64_t k) const override;
+
+ private:
+  /// Where a frame's text stands.
+  struct Place {
+    std::uint64_t begin, end;
+  };
+  std::vector<Place> find_frames() const;
+  bool is_whole(Place frame) const;
+
+  std::unique_ptr<StoredBytes> bytes_;
+  std::string name_;
+  std::vector<Place> frames_;
+  bool cut_off_ = false;
+};
+
+}  // namespace hardbody

@@ -1,0 +1,308 @@
+#include "trajectory/stored_trajectory.h"
+
+#include "base/errors.h"
+#include "io/text_file.h"
+#include "trajectory/unwrapping.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <utility>
+#include <variant>
+
+namespace hardbody {
+namespace {
+
+using Eigen::Vector3d;
+
+/// Bytes of all frames in memory.
+constexpr double kMostMemory = 8e9;
+constexpr double kMemoryOfABody = 700;
+/// Relative difference of two sizes, masses or boxes that are the same, as text or 32-bit numbers.
+constexpr double kSame = 1e-6;
+
+/// Lines about frames: each once, with the first frame that it is of.
+class Notices {
+ public:
+  void add(const std::vector<std::string>& lines, std::uint64_t frame) {
+    for (const std::string& line : lines) {
+      const std::string about = line.substr(0, line.find(':'));
+      const auto same = [&](const Notice& n) { return n.about == about; };
+      const auto found = std::find_if(list_.begin(), list_.end(), same);
+      if (found == list_.end()) {
+        list_.push_back({about, line, frame, 1});
+      } else {
+        ++found->frames;
+      }
+    }
+  }
+  std::vector<std::string> lines(std::size_t frames) const {
+    std::vector<std::string> lines;
+    for (const Notice& n : list_) {
+      std::string where;
+      if (n.frames < frames) where = fmt::format(" (frame {}", n.frame);
+      if (n.frames < frames && n.frames > 1) where += fmt::format(" and {} more", n.frames - 1);
+      lines.push_back(n.text + where + (where.empty() ? "" : ")"));
+    }
+    return lines;
+  }
+
+ private:
+  struct Notice {
+    std::string about, text;
+    std::uint64_t frame;
+    std::size_t frames;
+  };
+  std::vector<Notice> list_;
+};
+
+/// Whether a frame's orientations say anything: of bodies whose shape has an orientation, or that are turned.
+bool says_orientations(const Frame& frame) {
+  const auto turned = [](const FrameBody& b) { return b.rotation != Eigen::Matrix3d::Identity(); };
+  const auto turnable = [](const FrameType& t) { return t.shape && !ed::is_sphere(*t.shape); };
+  return frame.orientations && (std::any_of(frame.bodies.begin(), frame.bodies.end(), turned) ||
+                                std::any_of(frame.types.begin(), frame.types.end(), turnable));
+}
+
+bool same_shape(const std::optional<ed::BodyShape>& a, const std::optional<ed::BodyShape>& b) {
+  if (!a || !b) return a.has_value() == b.has_value();
+  const auto* barr = std::get_if<geom::Superellipsoid>(&*a);
+  const auto* other = std::get_if<geom::Superellipsoid>(&*b);
+  if (a->index() != b->index()) return false;
+  if (barr != nullptr &&
+      !(std::abs(barr->e1() - other->e1()) <= kSame && std::abs(barr->e2() - other->e2()) <= kSame)) {
+    return false;
+  }
+  const Vector3d h = ed::half_extents(*a);
+  return (ed::half_extents(*b) - h).norm() <= kSame * h.norm();
+}
+
+/// The body axis u: as in a run, the axis of revolution of bodies that are of revolution by shape and moments; nothing
+/// for others.
+std::optional<int> axis_of(const Frame& frame, const FrameBody& body) {
+  const std::optional<ed::BodyShape>& shape = frame.types[body.type].shape;
+  const std::optional<int> axis = shape ? ed::symmetry_axis(*shape) : std::nullopt;
+  return axis && frame.exact ? ed::symmetry_axis(frame.exact->species[body.type]) : axis;
+}
+
+class Reading {
+ public:
+  Reading(const TrajectoryReader& reader, const AnalyzeArguments& arguments)
+      : reader_(reader), arguments_(arguments), unwrapping_(reader.wraps_late()) {}
+
+  StoredTrajectory read();
+
+ private:
+  InputError bad(std::uint64_t k, const std::string& what, const std::string& accepted) const {
+    return InputError(fmt::format("{}: frame {}: {}; accepted: {}", reader_.name(), k, what, accepted));
+  }
+  std::vector<std::uint64_t> frames_with_positions();
+  void check_memory(std::size_t frames) const;
+  void read_groups();
+  void check_frame(const Frame& frame, std::uint64_t k) const;
+  void check_body(const Frame& frame, std::uint64_t k, std::size_t n) const;
+  void set_order(const Frame& frame);
+  double time_of(const Frame& frame, std::uint64_t k) const;
+  void keep(const Frame& frame, double time);
+  void finish(std::size_t used);
+
+  const TrajectoryReader& reader_;
+  const AnalyzeArguments& arguments_;
+  StoredTrajectory result_;
+  Frame first_;
+  std::vector<std::size_t> first_order_;
+  std::vector<std::size_t> order_;  ///< the bodies of the frame at hand by their groups
+  Unwrapping unwrapping_;
+  Notices notices_;
+  bool ids_ = true;
+  std::size_t known_orientations_ = 0;  ///< frames in which they are
+  std::size_t known_velocities_ = 0;
+  bool say_orientations_ = false;
+};
+
+std::vector<std::uint64_t> Reading::frames_with_positions() {
+  result_.in_file = static_cast<std::size_t>(reader_.frame_count());
+  if (result_.in_file == 0) {
+    throw InputError(fmt::format("{}: has no whole frame; accepted: a file with frames", reader_.name()));
+  }
+  std::vector<std::uint64_t> list;
+  for (std::uint64_t k = 0; k < reader_.frame_count(); ++k) {
+    if (reader_.has_positions(k)) list.push_back(k);
+  }
+  if (list.empty())
+    throw InputError(fmt::format("{}: no frame has positions; accepted: some that have", reader_.name()));
+  result_.without_positions = result_.in_file - list.size();
+  return list;
+}
+
+void Reading::check_memory(std::size_t frames) const {
+  const double bytes =
+      static_cast<double>(first_.bodies.size()) * static_cast<double>(frames) / arguments_.every * kMemoryOfABody;
+  if (bytes <= kMostMemory) return;
+  throw InputError(
+      fmt::format("{}: {} frames of {} bodies take {:.0f} GB of memory; accepted: at most {:.0f} GB, with "
+                  "--every N only each N-th of them",
+                  reader_.name(), frames, first_.bodies.size(), bytes / 1e9, kMostMemory / 1e9));
+}
+
+void Reading::set_order(const Frame& frame) {
+  order_.resize(frame.bodies.size());
+  for (std::size_t i = 0; i < order_.size(); ++i) order_[i] = i;
+  std::stable_sort(order_.begin(), order_.end(),
+                   [&](std::size_t a, std::size_t b) { return frame.bodies[a].group < frame.bodies[b].group; });
+}
+
+/// The bodies of the first frame in the order of their groups, and what each group is.
+void Reading::read_groups() {
+  ed::StoredFramesOptions& options = result_.options;
+  double volume = 0;
+  bool shapes = true;
+  for (std::size_t k = 0; k < first_order_.size(); ++k) {
+    const FrameBody& body = first_.bodies[first_order_[k]];
+    const std::optional<ed::BodyShape>& shape = first_.types[body.type].shape;
+    if (shape) volume += ed::volume(*shape);
+    shapes = shapes && shape;
+    const std::optional<int> axis = axis_of(first_, body);
+    options.axis.push_back(axis.value_or(2));
+    if (k == 0 || first_.bodies[first_order_[k - 1]].group != body.group) options.groups.push_back({0, axis ? 2 : 3});
+    ++options.groups.back().number;
+    if (!axis) options.groups.back().rotation_axes = 3;
+  }
+  options.length_known = shapes;
+  if (volume > 0) {
+    options.length = std::cbrt(volume / static_cast<double>(first_.bodies.size()) / (4 * std::numbers::pi / 3));
+  }
+}
+
+/// Body n of the order is the one that it was in the first frame.
+void Reading::check_body(const Frame& frame, std::uint64_t k, std::size_t n) const {
+  const FrameBody& body = frame.bodies[order_[n]];
+  const FrameBody& before = first_.bodies[first_order_[n]];
+  const char* accepted = "bodies that stay what they are";
+  const std::string which = frame.ids ? fmt::format("body {:.17g}", body.id) : fmt::format("body {} of its type", n);
+  const FrameType& type = frame.types[body.type];
+  const FrameType& type_before = first_.types[before.type];
+  if (frame.ids && body.id != before.id) {
+    throw bad(k, fmt::format("has body {:.17g} where the first frame has {:.17g}", body.id, before.id),
+              "the same bodies in every frame");
+  }
+  if (body.group != before.group || type.name != type_before.name) {
+    throw bad(k,
+              fmt::format("{} is of type {}, in the first frame of {}", which, one_line(type.name, 40),
+                          one_line(type_before.name, 40)),
+              accepted);
+  }
+  if (!same_shape(type.shape, type_before.shape)) {
+    throw bad(k, fmt::format("{} has another shape or size than in the first frame", which), accepted);
+  }
+  if (!(std::abs(body.mass - before.mass) <= kSame * std::abs(before.mass))) {
+    throw bad(k, fmt::format("{} has a mass of {:g}, in the first frame of {:g}", which, body.mass, before.mass),
+              accepted);
+  }
+}
+
+void Reading::check_frame(const Frame& frame, std::uint64_t k) const {
+  if (const std::optional<std::string> why = not_a_cube(frame)) throw bad(k, *why, "a cubic box");
+  if ((frame.box - first_.box).cwiseAbs().maxCoeff() > kSame * first_.box.x()) {
+    throw bad(
+        k, fmt::format("its box has an edge of {:.9g}, that of the first frame {:.9g}", frame.box.x(), first_.box.x()),
+        "one box");
+  }
+  if ((frame.middle - first_.middle).cwiseAbs().maxCoeff() > kSame * first_.box.x() + kSame * first_.middle.norm()) {
+    throw bad(k, "its box is at another place than that of the first frame", "bounds that stay");
+  }
+  if (frame.bodies.size() != first_.bodies.size()) {
+    throw bad(k, fmt::format("has {} bodies, the first frame {}", frame.bodies.size(), first_.bodies.size()),
+              "the same number");
+  }
+  for (std::size_t n = 0; n < order_.size(); ++n) check_body(frame, k, n);
+}
+
+double Reading::time_of(const Frame& frame, std::uint64_t k) const {
+  if (arguments_.time_step) return static_cast<double>(frame.step) * *arguments_.time_step;
+  if (std::isfinite(frame.time)) return frame.time;
+  throw InputError(
+      fmt::format("{}: frame {} has no time; accepted: --time-step, the time between two steps", reader_.name(), k));
+}
+
+void Reading::keep(const Frame& frame, double time) {
+  ed::StoredFrame& out = result_.frames.emplace_back();
+  out.time = time;
+  for (const std::size_t i : order_) {
+    const FrameBody& body = frame.bodies[i];
+    if (frame.orientations) out.rotation.push_back(body.rotation);
+    if (frame.velocities) out.velocity.push_back(body.velocity);
+  }
+  result_.energy.push_back(frame.energy);
+  known_orientations_ += frame.orientations ? 1 : 0;
+  known_velocities_ += frame.velocities ? 1 : 0;
+  say_orientations_ = say_orientations_ || says_orientations(frame);
+}
+
+/// Keeps what all frames know, and what they are unwrapped by.
+void Reading::finish(std::size_t used) {
+  const std::size_t count = result_.frames.size();
+  result_.notices = notices_.lines(used);
+  const auto partly = [&](const char* what, std::size_t known) {
+    if (known == 0 || known == count) return;
+    result_.notices.push_back(fmt::format("{}: known in {} of {} frames, not used", what, known, count));
+  };
+  if (say_orientations_) partly("orientations", known_orientations_);
+  partly("velocities", known_velocities_);
+  const bool orientations = say_orientations_ && known_orientations_ == count;
+  const bool velocities = known_velocities_ == count;
+  Unwrapping::Result unwrapped = unwrapping_.take();
+  for (std::size_t k = 0; k < count; ++k) {
+    ed::StoredFrame& frame = result_.frames[k];
+    if (!orientations) frame.rotation.clear();
+    if (!velocities) frame.velocity.clear();
+    frame.position = std::move(unwrapped.positions[k]);
+  }
+  if (ids_ || count == 1) {
+    result_.unwrapped_by = std::move(unwrapped.by);
+    result_.not_unwrapped = std::move(unwrapped.reason);
+  } else {
+    result_.not_followed =
+        "the file does not number its bodies (no column id), which need not be in the same order in "
+        "every frame";
+    result_.not_unwrapped = result_.not_followed;
+  }
+  result_.options.unwrapped = result_.not_unwrapped.empty();
+  result_.options.same_bodies = result_.not_followed.empty();
+}
+
+StoredTrajectory Reading::read() {
+  const std::vector<std::uint64_t> list = frames_with_positions();
+  first_ = reader_.read(list[0]);
+  check_memory(list.size());
+  set_order(first_);
+  first_order_ = order_;
+  result_.options.box = first_.box.x();
+  result_.options.longest_lag = arguments_.longest_lag.value_or(0);
+  read_groups();
+  const auto every = static_cast<std::size_t>(arguments_.every);
+  for (std::size_t n = 0; n < list.size(); ++n) {
+    const std::uint64_t k = list[n];
+    const Frame frame = reader_.read(k);
+    set_order(frame);
+    check_frame(frame, k);
+    ids_ = ids_ && frame.ids;
+    notices_.add(frame.notices, k);
+    const bool kept = n % every == 0;
+    unwrapping_.add(frame, order_, kept);
+    if (kept) keep(frame, list.size() == 1 ? 0 : time_of(frame, k));
+  }
+  finish(list.size());
+  return std::move(result_);
+}
+
+}  // namespace
+
+StoredTrajectory read_trajectory(const TrajectoryReader& reader, const AnalyzeArguments& arguments) {
+  return Reading(reader, arguments).read();
+}
+
+}  // namespace hardbody
