@@ -1,6 +1,6 @@
 # Kernels for several instruction sets (docs/decisions/008-batches.md).
 
-# Exactly what find_kernels in libgeom/src/batch.cpp asks the processor for. They come behind HARDBODY_ARCH.
+# Exactly what find_kernels in libgeom/src/batch/batch.cpp asks the processor for. They come behind HARDBODY_ARCH.
 set(hardbody_avx2 -mavx2 -mfma -mbmi -mbmi2)
 set(hardbody_avx512 ${hardbody_avx2} -mavx512f -mavx512vl -mavx512dq -mavx512bw)
 
@@ -12,7 +12,6 @@ set(hardbody_avx512 ${hardbody_avx2} -mavx512f -mavx512vl -mavx512dq -mavx512bw)
 # for it.
 function(hardbody_kernels target kernel chooser)
   find_package(hwy 1.0 REQUIRED CONFIG)
-  target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/libgeom/src/kernels)  # what all kernels share
   target_include_directories(${target} SYSTEM PRIVATE $<TARGET_PROPERTY:hwy::hwy,INTERFACE_INCLUDE_DIRECTORIES>)
   target_sources(${target} PRIVATE src/${kernel}_portable.cpp)
   set_source_files_properties(src/${kernel}_portable.cpp PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)

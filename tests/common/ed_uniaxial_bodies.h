@@ -3,7 +3,7 @@
 /// Ellipsoids of revolution in any motion, and comparison to the last bit: for tests of kernels against the code for
 /// one pair.
 
-#include "uniaxial_bodies.h"
+#include "bodies/uniaxial.h"
 
 #include <ed/random.h>
 #include <ed/system.h>

@@ -7,13 +7,13 @@
 #include <certified_contact.h>
 #include <uniaxial_gauge.h>
 
-#include <geom/internal/uniaxial.h>
+#include <geom/kernel/uniaxial.h>
 
 #include <Eigen/Core>
 
 namespace finder_test {
 
-inline geom::internal::Spheroid spheroid_of(const geom::Ellipsoid& shape) {
+inline geom::kernel::Spheroid spheroid_of(const geom::Ellipsoid& shape) {
   return {shape.semi_axes().z(), shape.semi_axes().x()};
 }
 
@@ -48,7 +48,7 @@ class PairGauge {
   const ed::internal::UniaxialGauge<kSpin>& gauge() const { return gauge_; }
 
  private:
-  geom::internal::Spheroid shape_;
+  geom::kernel::Spheroid shape_;
   ed::internal::AxisMotion a_;
   ed::internal::AxisMotion b_;
   ed::internal::UniaxialGauge<kSpin> gauge_;

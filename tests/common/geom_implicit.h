@@ -52,7 +52,7 @@ inline Eigen::Matrix3d turn(const Eigen::Vector3d& from, const Eigen::Vector3d& 
 template <geom::ImplicitSurface Shape>
 Eigen::Vector3d random_surface_point(const Shape& shape, Random& random) {
   const Eigen::Vector3d u = random.direction();
-  Eigen::Vector3d x = geom::internal::ray_exit(shape, u, 1.0) * u;
+  Eigen::Vector3d x = geom::kernel::ray_exit(shape, u, 1.0) * u;
   // ray_exit is right to 1e-9; two Newton steps along the ray take that to rounding.
   for (int i = 0; i < 2; ++i) x -= shape.value(x) / shape.gradient(x).dot(u) * u;
   return x;

@@ -44,7 +44,7 @@ def statements(text):
             continue
         elif character == "{":
             head = text[begin:k]
-            # "class GEOM_EXPORT Name", "namespace geom::internal"; not a function that returns a struct, nor the
+            # "class GEOM_EXPORT Name", "namespace geom::kernel"; not a function that returns a struct, nor the
             # template <class T> of one.
             scope = re.search(r"\b(namespace|class|struct|enum)\b(?:\s*\[\[\w+\]\])?(?:\s+\w+)*?\s+([\w:]+)\s*$", head)
             if scope and "(" not in head:

@@ -8,7 +8,7 @@
 #include <uniaxial_gauge.h>
 
 #include <ed/random.h>
-#include <geom/internal/uniaxial.h>
+#include <geom/kernel/uniaxial.h>
 
 #include <gtest/gtest.h>
 
@@ -25,7 +25,7 @@ namespace {
 
 using ed::internal::SupportCurvature;
 using Eigen::Vector3d;
-using geom::internal::Spheroid;
+using geom::kernel::Spheroid;
 using namespace finder_test;
 
 using Real = long double;

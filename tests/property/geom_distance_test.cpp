@@ -5,7 +5,7 @@
 #include "common/geom_shapes.h"
 
 #include <geom/geom.h>
-#include <geom/internal/perram_wertheim.h>
+#include <geom/kernel/perram_wertheim.h>
 
 #include <gtest/gtest.h>
 
@@ -201,7 +201,7 @@ TEST(Distance, EveryPairIsAnswered) {
     const auto support_matrix = [](const Ellipsoid& shape, const Pose& X) -> Matrix3d {
       return X.rotation() * shape.semi_axes().cwiseAbs2().asDiagonal() * X.rotation().transpose();
     };
-    const double F = internal::perram_wertheim(support_matrix(shapes.a, X_WA), support_matrix(shapes.b, X_WB),
+    const double F = kernel::perram_wertheim(support_matrix(shapes.a, X_WA), support_matrix(shapes.b, X_WB),
                                                X_WB.position() - X_WA.position())
                          .F;
     // F errs by the condition of the matrix, 100, times some epsilons.

@@ -61,7 +61,7 @@ Vector3d best_normal(const Gauge& gauge, double t, Vector3d n) {
   int budget = geom::kMaxIterations;
   (void)ascend(
       gauge, state, [&](const auto& trial) { return settled(gauge, trial); }, budget, n, e);
-  return geom::internal::step_on_sphere(n, e.step);
+  return geom::kernel::step_on_sphere(n, e.step);
 }
 
 /// The distance of the exact bodies, or if that is positive any lower bound that is.

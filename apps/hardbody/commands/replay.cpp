@@ -114,7 +114,7 @@ std::string failed_call(const ed::FailedPair& failed) {
   const bool eight = call.method == ed::DistanceMethod::newton8;
   const auto system = eight ? geom::NewtonSystem::eight : geom::NewtonSystem::five;
   const auto solve = [&](const auto& a, const auto& b) {
-    return geom::internal::newton_distance_unchecked(a, call.X_WA, b, call.X_WB, system, call.seed);
+    return geom::kernel::newton_distance_unchecked(a, call.X_WA, b, call.X_WB, system, call.seed);
   };
   const geom::DistanceResult d = std::visit(solve, call.shape_a, call.shape_b);
   const std::string points = call.seed.status == geom::SeedStatus::usable

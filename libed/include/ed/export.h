@@ -1,6 +1,6 @@
 #pragma once
 
-#include <geom/internal/eigen_layout.h>
+#include <geom/kernel/eigen_layout.h>
 
 /// Marks what libhardbody_ed exports; everything else is hidden (built with -fvisibility=hidden).
 #if defined(__GNUC__)

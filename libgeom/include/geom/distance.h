@@ -2,7 +2,7 @@
 
 #include <geom/ellipsoid.h>
 #include <geom/export.h>
-#include <geom/internal/dual_newton.h>
+#include <geom/kernel/dual_newton.h>
 #include <geom/pose.h>
 #include <geom/shape.h>
 #include <geom/superellipsoid.h>
@@ -75,7 +75,7 @@ struct [[nodiscard]] DistanceResult {
 ///     d = max over unit n of g(n),   g(n) = n.(p_WB - p_WA) - hA(n) - hB(-n),
 ///
 /// which is the distance of the closest points when the bodies are apart, and minus the length of the shortest
-/// translation that parts them when they overlap. Dual Newton on the unit sphere (see internal/dual_newton.h), for two
+/// translation that parts them when they overlap. Dual Newton on the unit sphere (see kernel/dual_newton.h), for two
 /// ellipsoids with steps of third order.
 ///
 /// What is certified. g(n) is a lower bound of d for every n. Apart: g is concave where it is positive, so that a
@@ -83,7 +83,7 @@ struct [[nodiscard]] DistanceResult {
 /// curvature (`min_curvature_radius`). A ball of radius rho rolls freely inside the Minkowski difference of the bodies
 /// (Blaschke), so that a stationary point of depth -g <= rho is the global maximum too: the ball of radius -g around
 /// the origin lies inside the ball of radius rho that touches the boundary at the same point. Deeper overlaps can have
-/// several local maxima; branch and bound over all normals (internal/sphere_search.h) finds the largest, at any depth,
+/// several local maxima; branch and bound over all normals (kernel/sphere_search.h) finds the largest, at any depth,
 /// concentric bodies included: no translation is shorter than the one returned by more than `error_bound`, mostly 1e-9
 /// of the size, 1e-3 at most, or the pair is declined. (The normal returned is a local maximum to second order, no
 /// saddle, where g has second derivatives; at edges and vertices it is the best one found. The bound says how much
@@ -114,7 +114,7 @@ GEOM_EXPORT DistanceResult distance(const Ellipsoid& a, const Pose& X_WA, const 
 
 /// The same where a body is a superellipsoid: Newton's method of contact elements, surface points with their normals;
 /// where a body has no exponent of about 1 or less, or is an ellipsoid, that on the sphere goes first
-/// (internal/norm_body_pair.h).
+/// (kernel/norm_body_pair.h).
 ///
 /// Answers are certified by two bounds, g(n) from below and the distance of two points from above, that differ by less
 /// than kBoundGap (1e-12) of the sum of both bounding radii. `error_bound` tells. Overlaps are searched as above. Where
@@ -137,4 +137,4 @@ GEOM_EXPORT DistanceResult distance(const Ellipsoid& a, const Pose& X_WA, const 
 
 }  // namespace geom
 
-#include <geom/internal/distance_impl.h>
+#include <geom/kernel/distance_impl.h>

@@ -31,4 +31,4 @@ MassProperties mass_properties(const Shape& shape, double bounding_radius, doubl
 
 }  // namespace geom
 
-#include <geom/internal/mass_impl.h>
+#include <geom/kernel/mass_impl.h>

@@ -59,7 +59,7 @@ struct NewtonOptions {
 ///
 /// Newton's method, y <- y - t J^-1 F(y) with the analytic Jacobian (the paper's eq. (NRiter) lost the minus sign) and
 /// step lengths t <= 1, and where that does not settle a second attempt, with |F| falling (see
-/// internal/newton_impl.h). The distance is beta |f_x|: where the bodies overlap beta < 0, and
+/// kernel/newton_impl.h). The distance is beta |f_x|: where the bodies overlap beta < 0, and
 /// it is the paper's "negative distance", minus the length of the shortest translation that parts them.
 ///
 /// What is certified. The equations have several solutions; one with beta > 0 is the answer: the outward normals are
@@ -116,7 +116,7 @@ WitnessPair normal_seed(const ShapeA& a, const Pose& X_WA, const ShapeB& b, cons
 template <SupportShape ShapeA, SupportShape ShapeB>
 WitnessPair dual_seed(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const Pose& X_WB);
 
-namespace internal {
+namespace kernel {
 
 /// newton_distance for the event loop: never throws. A bad seed leads to a declined answer.
 template <ImplicitSurface ShapeA, ImplicitSurface ShapeB>
@@ -127,13 +127,13 @@ GEOM_EXPORT DistanceResult newton_distance_unchecked(const Ellipsoid& a, const P
                                                      const Pose& X_WB, NewtonSystem system, const WitnessPair& seed,
                                                      const NewtonOptions& options = {});
 
-}  // namespace internal
+}  // namespace kernel
 }  // namespace geom
 
-#include <geom/internal/newton_impl.h>
+#include <geom/kernel/newton_impl.h>
 
 namespace geom {
-namespace internal {
+namespace kernel {
 
 /// Whether check_seed accepts the point of a usable seed.
 template <ImplicitSurface Shape>
@@ -143,13 +143,13 @@ bool is_seed_point(const Shape& shape, const Pose& X_WB, const Eigen::Vector3d& 
   return shape.value(x) >= least_seed_value(shape, x);
 }
 
-}  // namespace internal
+}  // namespace kernel
 
 template <ImplicitSurface ShapeA, ImplicitSurface ShapeB>
 WitnessPair checked_seed(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const Pose& X_WB,
                          const WitnessPair& seed) {
   if (seed.status != SeedStatus::usable) return seed;
-  const bool good = internal::is_seed_point(a, X_WA, seed.point_a) && internal::is_seed_point(b, X_WB, seed.point_b);
+  const bool good = kernel::is_seed_point(a, X_WA, seed.point_a) && kernel::is_seed_point(b, X_WB, seed.point_b);
   return good ? seed : WitnessPair{};
 }
 

@@ -10,7 +10,7 @@ namespace geom {
 
 class Pose;
 
-namespace internal {
+namespace kernel {
 
 /// Pose without the checks, for loops: the rotation must be orthonormal to rounding, the numbers finite.
 Pose unchecked_pose(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& position);
@@ -19,7 +19,7 @@ Pose unchecked_pose(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& posi
 /// compiler, unlike that of Eigen's quaternions (docs/decisions/017).
 GEOM_EXPORT std::array<double, 4> quaternion_of(const Eigen::Matrix3d& rotation);
 
-}  // namespace internal
+}  // namespace kernel
 
 /// Position and orientation of a body B in a world W: p_W = rotation * p_B + position.
 ///
@@ -89,7 +89,7 @@ class GEOM_EXPORT Pose {
   /// Orientation as a unit quaternion, body to world, w >= 0, each component to 1e-15. `position()` is not in it.
   template <int Options = Eigen::AutoAlign>
   Eigen::Quaternion<double, Options> quaternion() const {
-    const std::array<double, 4> q = internal::quaternion_of(rotation_);
+    const std::array<double, 4> q = kernel::quaternion_of(rotation_);
     return {q[0], q[1], q[2], q[3]};
   }
 
@@ -120,13 +120,13 @@ class GEOM_EXPORT Pose {
   Eigen::Vector3d to_body(const Eigen::Vector3d& p_W) const { return rotation_.transpose() * (p_W - position_); }
 
  private:
-  friend Pose internal::unchecked_pose(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& position);
+  friend Pose kernel::unchecked_pose(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& position);
 
   Eigen::Matrix3d rotation_ = Eigen::Matrix3d::Identity();
   Eigen::Vector3d position_ = Eigen::Vector3d::Zero();
 };
 
-inline Pose internal::unchecked_pose(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& position) {
+inline Pose kernel::unchecked_pose(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& position) {
   Pose pose;
   pose.rotation_ = rotation;
   pose.position_ = position;

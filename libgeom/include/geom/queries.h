@@ -124,4 +124,4 @@ GEOM_EXPORT RayHit ray_cast(const Shape& shape, const Pose& X_WB, const Eigen::V
 
 }  // namespace geom
 
-#include <geom/internal/queries_impl.h>
+#include <geom/kernel/queries_impl.h>

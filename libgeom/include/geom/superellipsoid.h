@@ -1,7 +1,7 @@
 #pragma once
 
 #include <geom/export.h>
-#include <geom/internal/nested_norm.h>
+#include <geom/kernel/nested_norm.h>
 #include <geom/shape.h>
 
 #include <Eigen/Core>
@@ -55,8 +55,8 @@ class GEOM_EXPORT Superellipsoid {
   Eigen::Vector3d semi_axes_;
   double e1_;
   double e2_;
-  internal::NestedNorm norm_;  ///< of x/a: the body is its unit ball
-  internal::NestedNorm dual_;  ///< of a n: the support function
+  kernel::NestedNorm norm_;  ///< of x/a: the body is its unit ball
+  kernel::NestedNorm dual_;  ///< of a n: the support function
   double bounding_radius_;
   double inscribed_radius_;
 };

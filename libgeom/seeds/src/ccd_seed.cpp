@@ -9,7 +9,7 @@
 #include <variant>
 
 namespace geom {
-namespace internal {
+namespace kernel {
 namespace {
 
 /// Inflation stops when the bodies, inflated, overlap by less than this, relative to the smaller inscribed radius.
@@ -114,7 +114,7 @@ WitnessPair ccd_seed(const SupportBody& a, const SupportBody& b) {
   return seed;
 }
 
-}  // namespace internal
+}  // namespace kernel
 
 WitnessPair ccd_seed(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB) {
   return std::visit([&](const auto& s, const auto& t) { return ccd_seed(s, X_WA, t, X_WB); }, a, b);

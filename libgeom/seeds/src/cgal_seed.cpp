@@ -14,7 +14,7 @@
 #include <vector>
 
 namespace geom {
-namespace internal {
+namespace kernel {
 namespace {
 
 /// Doubles in, exact integers with exponents inside: with plain doubles the simplex method returns garbage.
@@ -63,7 +63,7 @@ WitnessPair cgal_seed(const SupportBody& a, const SupportBody& b) {
   return seed;
 }
 
-}  // namespace internal
+}  // namespace kernel
 
 WitnessPair cgal_seed(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB) {
   return std::visit([&](const auto& s, const auto& t) { return cgal_seed(s, X_WA, t, X_WB); }, a, b);

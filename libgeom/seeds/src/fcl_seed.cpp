@@ -17,7 +17,7 @@
 #include <vector>
 
 namespace geom {
-namespace internal {
+namespace kernel {
 namespace {
 
 /// FCL's default, an absolute length.
@@ -88,7 +88,7 @@ WitnessPair fcl_seed(const SupportBody& a, const SupportBody& b, const DistanceR
   return seed;
 }
 
-}  // namespace internal
+}  // namespace kernel
 
 WitnessPair fcl_seed(const Ellipsoid& a, const Pose& X_WA, const Ellipsoid& b, const Pose& X_WB) {
   return fcl_seed<Ellipsoid, Ellipsoid>(a, X_WA, b, X_WB);

@@ -2,7 +2,7 @@
 
 /// Points of a body's surface, for libraries that know polytopes only. Compiled into each adapter that needs it.
 
-#include <geom/internal/support_body.h>
+#include <geom/kernel/support_body.h>
 
 #include <Eigen/Core>
 
@@ -10,7 +10,7 @@
 #include <numbers>
 #include <vector>
 
-namespace geom::internal {
+namespace geom::kernel {
 
 /// Directions spread evenly over the sphere, along a spiral that turns by the golden angle from one to the next.
 inline std::vector<Eigen::Vector3d> spiral_directions(int count) {
@@ -43,4 +43,4 @@ inline std::vector<Eigen::Vector3d> inscribed_vertices(const SupportBody& body,
   return vertices;
 }
 
-}  // namespace geom::internal
+}  // namespace geom::kernel

@@ -86,7 +86,7 @@ geom::Pose read_pose(const JsonMember& body, std::vector<std::string>& notices, 
         JsonMember{&member.json->at(static_cast<std::size_t>(k)), fmt::format("{}[{}]", member.name, k)}.vector();
   }
   const geom::Pose pose = member.checked([&] { return geom::Pose(R, position); });
-  return rounding == Rounding::kept ? geom::internal::unchecked_pose(R, position) : pose;
+  return rounding == Rounding::kept ? geom::kernel::unchecked_pose(R, position) : pose;
 }
 
 /// Without a kind an ellipsoid.

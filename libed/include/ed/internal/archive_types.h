@@ -62,7 +62,7 @@ inline void fields(Writer& archive, const geom::Pose& pose) {
 inline void fields(Reader& archive, geom::Pose& pose) {
   const auto rotation = archive.value<Eigen::Matrix3d>();
   // Unchecked: the constructor would make it orthonormal again, in other bits.
-  pose = geom::internal::unchecked_pose(rotation, archive.value<Eigen::Vector3d>());
+  pose = geom::kernel::unchecked_pose(rotation, archive.value<Eigen::Vector3d>());
 }
 
 template <class Archive, Is<geom::OrientedBox> T>

@@ -7,14 +7,14 @@
 
 #include <geom/any_shape.h>
 #include <geom/export.h>
-#include <geom/internal/support_body.h>
+#include <geom/kernel/support_body.h>
 #include <geom/newton.h>
 #include <geom/pose.h>
 #include <geom/shape.h>
 
 namespace geom {
 
-namespace internal {
+namespace kernel {
 GEOM_EXPORT WitnessPair cgal_seed(const SupportBody& a, const SupportBody& b);
 }
 
@@ -29,8 +29,8 @@ GEOM_EXPORT WitnessPair cgal_seed(const SupportBody& a, const SupportBody& b);
 /// about a millisecond.
 template <SupportShape ShapeA, SupportShape ShapeB>
 WitnessPair cgal_seed(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const Pose& X_WB) {
-  const WitnessPair seed = internal::cgal_seed(internal::SupportBody(a, X_WA), internal::SupportBody(b, X_WB));
-  return internal::checked(a, X_WA, b, X_WB, seed);
+  const WitnessPair seed = kernel::cgal_seed(kernel::SupportBody(a, X_WA), kernel::SupportBody(b, X_WB));
+  return kernel::checked(a, X_WA, b, X_WB, seed);
 }
 
 /// The same for shapes chosen at run time.

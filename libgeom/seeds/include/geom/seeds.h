@@ -9,17 +9,17 @@
 #include <geom/any_shape.h>
 #include <geom/ellipsoid.h>
 #include <geom/export.h>
-#include <geom/internal/support_body.h>
+#include <geom/kernel/support_body.h>
 #include <geom/newton.h>
 #include <geom/pose.h>
 #include <geom/shape.h>
 
 namespace geom {
 
-namespace internal {
+namespace kernel {
 /// `ours`: what `distance` says of the pair. Not checked yet.
 GEOM_EXPORT WitnessPair fcl_seed(const SupportBody& a, const SupportBody& b, const DistanceResult& ours);
-}  // namespace internal
+}  // namespace kernel
 
 /// The nearest points that FCL finds for two bodies that are apart. An ellipsoid is FCL's own, any other shape an
 /// fcl::Convex: a polytope inscribed in it, of 500 support points.
@@ -48,8 +48,8 @@ GEOM_EXPORT WitnessPair fcl_seed(const SupportBody& a, const SupportBody& b, con
 template <SupportShape ShapeA, SupportShape ShapeB>
 WitnessPair fcl_seed(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const Pose& X_WB) {
   const DistanceResult ours = distance(a, X_WA, b, X_WB);
-  const WitnessPair seed = internal::fcl_seed(internal::SupportBody(a, X_WA), internal::SupportBody(b, X_WB), ours);
-  return internal::checked(a, X_WA, b, X_WB, seed);
+  const WitnessPair seed = kernel::fcl_seed(kernel::SupportBody(a, X_WA), kernel::SupportBody(b, X_WB), ours);
+  return kernel::checked(a, X_WA, b, X_WB, seed);
 }
 
 /// The same, compiled into the library.
@@ -58,7 +58,7 @@ GEOM_EXPORT WitnessPair fcl_seed(const Ellipsoid& a, const Pose& X_WA, const Ell
 GEOM_EXPORT WitnessPair fcl_seed(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB);
 /// @}
 
-namespace internal {
+namespace kernel {
 GEOM_EXPORT WitnessPair ccd_seed(const SupportBody& a, const SupportBody& b);
 }
 
@@ -73,8 +73,8 @@ GEOM_EXPORT WitnessPair ccd_seed(const SupportBody& a, const SupportBody& b);
 /// and 99.8 %. Declined if the centres coincide or MPR does not settle.
 template <SupportShape ShapeA, SupportShape ShapeB>
 WitnessPair ccd_seed(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const Pose& X_WB) {
-  const WitnessPair seed = internal::ccd_seed(internal::SupportBody(a, X_WA), internal::SupportBody(b, X_WB));
-  return internal::checked(a, X_WA, b, X_WB, seed);
+  const WitnessPair seed = kernel::ccd_seed(kernel::SupportBody(a, X_WA), kernel::SupportBody(b, X_WB));
+  return kernel::checked(a, X_WA, b, X_WB, seed);
 }
 
 /// The same for shapes chosen at run time.

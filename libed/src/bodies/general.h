@@ -1,0 +1,140 @@
+#pragma once
+
+/// The state of rigid bodies of any shape and moments of inertia, and what an event loop asks of them. The same
+/// interface as UniaxialBodies.
+///
+/// A body's flight is kept as it began, after its last collision: nothing is computed again where only time has passed.
+
+#include "bodies/body_events.h"
+#include "contact/bracketing.h"
+#include "contact/certified.h"
+#include "neighbours/envelopes.h"
+#include "bodies/first_looks.h"
+#include "base/large_vector.h"
+#include "base/prefetch.h"
+#include "motion/rigid_motion.h"
+#include "contact/support_gap.h"
+
+#include <ed/motion.h>
+#include <ed/simulation.h>
+#include <ed/system.h>
+
+#include <Eigen/Core>
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace ed::internal {
+
+/// What the bodies of one species share.
+struct GeneralKind {
+  BodyShape shape;
+  std::optional<NormBodyShape> norm;    ///< of libgeom's shapes
+  std::optional<geom::Shape> implicit;  ///< the same, for Finder::bracketing
+  double bounding_radius;
+  double inscribed_radius;
+  Eigen::Vector3d half_extents;
+  double lever;  ///< turning_lever
+  double mass;
+  Eigen::Vector3d inertia;
+  /// Of shape and inertia: contacts have no moment about it. -1: none.
+  int symmetry_axis;
+  bool spins;
+  int axis;  ///< which body axis is reported as the body's: symmetry_axis, or z
+};
+
+class GeneralBodies {
+ public:
+  explicit GeneralBodies(const System& system);
+
+  int number() const { return static_cast<int>(motions_.size()); }
+  double bounding_radius() const { return bounding_radius_; }    ///< the largest
+  double inscribed_radius() const { return inscribed_radius_; }  ///< the smallest
+  double bounding_radius(int i) const { return kind_of(i).bounding_radius; }
+  const std::vector<GeneralKind>& kinds() const { return kinds_; }
+
+  Eigen::Vector3d position_at(int i, double t) const { return motions_[at(i)].position_at(t); }
+  /// The state of the body is read soon.
+  void fetch(int i) const {
+    prefetch(motions_[at(i)]);
+    prefetch(events_[at(i)]);
+  }
+  /// All that there is of it.
+  void fetch_all(int i) const {
+    fetch(i);
+    prefetch(turned_[at(i)]);
+  }
+  BodyEvents& events(int i) { return events_[at(i)]; }
+  const BodyEvents& events(int i) const { return events_[at(i)]; }
+  const Eigen::Vector3d& velocity(int i) const { return motions_[at(i)].velocity; }
+  /// How fast the body turns at the most.
+  double turning(int i) const { return motions_[at(i)].top.max_omega(); }
+  Motion motion(int i, double t) const;
+  static constexpr bool kSamplesRotations = true;  ///< of a Snapshot
+  /// All of a Snapshot but the position.
+  void sample(int i, double t, Snapshot& snapshot) const;
+
+  void move(int /*i*/, double /*t*/) {}
+  void shift(int i, const Eigen::Vector3d& by) { motions_[at(i)].position += by; }
+  /// Its clock, at `t` now, shows 0.
+  void restart_clock(int i, double t) { motions_[at(i)].time -= t; }
+  void scale_positions(double factor, double now);
+
+  /// Searches [now, end] for a contact of i and j, whose centres are r apart now.
+  Finding find_contact(int i, int j, const Eigen::Vector3d& r, double now, double end, int max_evaluations,
+                       const ContactOptions& options, Eigen::Vector3d& n, FinderCounters& count,
+                       std::optional<Unsolved>& unsolved) const;
+
+  /// The impulse of a contact now: J, or 0 and nothing is changed if the bodies do not approach.
+  double collide(int i, int j, const Eigen::Vector3d& r, const Eigen::Vector3d& n, double now);
+
+  /// The factor by which r would have to shrink for the pair to touch, from above and no better than `enough`.
+  double contact_scale(int i, int j, const Eigen::Vector3d& r, const Eigen::Vector3d& n, double now,
+                       double enough) const;
+
+  /// Envelopes of this thickness or the nearest possible one.
+  std::unique_ptr<Envelopes<GeneralBodies>> make_envelopes(const SimulationOptions& options, double thickness,
+                                                           double exit_share, double box) const;
+
+  /// Pairs are looked at one by one.
+  std::unique_ptr<FirstLooks<GeneralBodies>> make_first_looks(const SimulationOptions& /*options*/) const {
+    return nullptr;
+  }
+
+  /// The states; read into bodies of the same kinds.
+  template <class Archive, class Self>
+  static void fields(Archive& archive, Self& self) {
+    archive(self.motions_, self.turned_, self.events_);
+    const std::size_t number = self.kind_.size();
+    expect(archive, self.motions_.size() == number && self.turned_.size() == number && self.events_.size() == number,
+           "the number of bodies");
+  }
+
+  const GeneralKind& kind_of(int i) const { return kinds_[at(kind_[at(i)])]; }
+  const RigidMotion& rigid_motion(int i) const { return motions_[at(i)]; }
+  Eigen::Matrix3d rotation_at(int i, double t) const {
+    const RigidMotion& m = motions_[at(i)];
+    return m.top.rotation(t - m.time);
+  }
+
+ private:
+  /// Calls f with the gauge of i and j: the one for libgeom's shapes, or the one for any.
+  template <class F>
+  decltype(auto) with_gauge(int i, int j, const Eigen::Vector3d& r, double now, F&& f) const;
+
+  static std::size_t at(int i) { return static_cast<std::size_t>(i); }
+  void start_flight(int i, double now, const TopState& state, const Eigen::Vector3d& velocity,
+                    const Eigen::Vector3d& omega);
+  TurnedAngles turned_at(int i, double t) const;
+
+  std::vector<GeneralKind> kinds_;
+  std::vector<int> kind_;
+  LargeVector<RigidMotion> motions_;
+  LargeVector<TurnedAngles> turned_;  ///< up to the start of the flight
+  LargeVector<BodyEvents> events_;
+  double bounding_radius_ = 0;
+  double inscribed_radius_ = kNever;
+};
+
+}  // namespace ed::internal

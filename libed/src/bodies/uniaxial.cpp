@@ -1,0 +1,205 @@
+#include "bodies/uniaxial.h"
+
+#include "neighbours/cell.h"
+#include "neighbours/dilated.h"
+#include "vectors/choose.h"
+#include "motion/checks.h"
+#include "neighbours/oriented.h"
+#include "contact/uniaxial_gap.h"
+#include "bodies/uniaxial_looks.h"
+
+#include <ed/impulse.h>
+
+#include <geom/tolerances.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <variant>
+
+namespace ed::internal {
+namespace {
+
+using Eigen::Vector3d;
+using geom::kernel::evaluate_uniaxial;
+using geom::kernel::support_point;
+using geom::kernel::UniaxialEvaluation;
+
+UniaxialKind uniaxial_kind(const Species& species) {
+  const auto& shape = std::get<geom::Ellipsoid>(species.shape);
+  const int axis = *symmetry_axis(species);
+  const Vector3d& a = shape.semi_axes();
+  const double b = a[(axis + 1) % 3];
+  return {.shape = geom::kernel::Spheroid(a[axis], b),
+          .upright = geom::Ellipsoid({b, a[(axis + 2) % 3], a[axis]}),
+          .axis = axis,
+          .inertia = {species.mass, species.inertia[(axis + 1) % 3], species.inertia[axis], species.spins},
+          .bounding_radius = shape.bounding_radius(),
+          .inscribed_radius = shape.inscribed_radius()};
+}
+
+}  // namespace
+
+bool UniaxialBodies::can_hold(const System& system) {
+  return std::all_of(system.species.begin(), system.species.end(), is_uniaxial);
+}
+
+UniaxialBodies::UniaxialBodies(const System& system) : entries_(at(system.size())), frames_(at(system.size())) {
+  for (const Species& species : system.species) {
+    kinds_.push_back(uniaxial_kind(species));
+    bounding_radius_ = std::max(bounding_radius_, kinds_.back().bounding_radius);
+    inscribed_radius_ = std::min(inscribed_radius_, kinds_.back().inscribed_radius);
+    spins_ = spins_ || species.spins;
+  }
+  for (int i = 0; i < system.size(); ++i) {
+    const Body& body = system.bodies[at(i)];
+    kind_.push_back(body.species);
+    const UniaxialKind& kind = kind_of(i);
+    AxisMotion& motion = entries_[at(i)].motion;
+    BodyFrame& frame = frames_[at(i)];
+    const Vector3d u = body.rotation.col(kind.axis);
+    motion.position = body.position;
+    motion.velocity = body.velocity;
+    motion.time = 0;
+    frame.x_axis = body.rotation.col((kind.axis + 1) % 3);
+    const double spin = body.angular_velocity.dot(u);
+    frame.spin = kind.inertia.spins ? spin : 0;
+    set_rotation(kind.inertia, u, body.angular_velocity - spin * u, motion, frame);
+  }
+}
+
+Motion UniaxialBodies::motion(int i, double t) const {
+  const UniaxialKind& kind = kind_of(i);
+  AxisMotion m = entries_[at(i)].motion;
+  BodyFrame f = frames_[at(i)];
+  advance(kind.inertia, t, m, f);
+  const Vector3d u = m.axis();
+  Eigen::Matrix3d R;
+  R.col(kind.axis) = u;
+  R.col((kind.axis + 1) % 3) = f.x_axis;
+  R.col((kind.axis + 2) % 3) = u.cross(f.x_axis);
+  Vector3d inertia = Vector3d::Constant(kind.inertia.perpendicular);
+  inertia[kind.axis] = kind.inertia.axial;
+  return {geom::Pose(R, m.position), m.velocity, omega_across(m) + f.spin * u, inertia, t};
+}
+
+void UniaxialBodies::sample(int i, double t, Snapshot& snapshot) const {
+  const UniaxialKind& kind = kind_of(i);
+  AxisMotion m = entries_[at(i)].motion;
+  BodyFrame f = frames_[at(i)];
+  advance(kind.inertia, t, m, f);
+  snapshot.axis[at(i)] = m.axis();
+  snapshot.phi_lab[at(i)] = f.phi_lab;
+  snapshot.phi_body[at(i)] = {f.phi_body.x(), f.phi_body.y(), 0};
+  snapshot.velocity[at(i)] = m.velocity;
+  snapshot.angular_velocity[at(i)] = omega_across(m);
+}
+
+Finding UniaxialBodies::find_contact(int i, int j, const Vector3d& r, double now, double end, int max_evaluations,
+                                     const ContactOptions& options, Vector3d& n, FinderCounters& count,
+                                     std::optional<Unsolved>& unsolved) const {
+  const UniaxialKind& A = kind_of(i);
+  const UniaxialKind& B = kind_of(j);
+  const AxisMotion& a = entries_[at(i)].motion;
+  const AxisMotion& b = entries_[at(j)].motion;
+  if (options.finder == Finder::bracketing) {
+    return bracketing_contact({A.upright, B.upright, a, b, r, now}, now, end, options, n, count, unsolved);
+  }
+  const double reach = A.bounding_radius + B.bounding_radius;
+  if (spins_) {
+    const UniaxialGauge<true> gauge(A.shape, a, B.shape, b, r, now, reach);
+    return certified_contact(gauge, now, end, max_evaluations, n, count);
+  }
+  const UniaxialGauge<false> gauge(A.shape, a, B.shape, b, r, now, reach);
+  return certified_contact(gauge, now, end, max_evaluations, n, count);
+}
+
+/// Of the square of a rate that a collision may take without what rounding has left of it being scaled up.
+constexpr double kMostLost = 1e-4;
+
+double UniaxialBodies::collide(int i, int j, const Vector3d& /*r*/, const Vector3d& n, double /*now*/) {
+  const auto contact_body = [this](int body, const Vector3d& outward) -> ContactBody {
+    const AxisMotion& m = entries_[at(body)].motion;
+    const UniaxialKind& kind = kind_of(body);
+    // The impulse of a body of revolution has no moment along the axis: any multiple of the identity with 1/I_perp
+    // does.
+    return {1 / kind.inertia.mass, Eigen::Matrix3d::Identity() / kind.inertia.perpendicular,
+            support_point(kind.shape, m.axis(), outward), m.velocity, omega_across(m)};
+  };
+  ContactBody a = contact_body(i, n);
+  ContactBody b = contact_body(j, -n);
+  const double J = ed::collide(a, b, n);
+  if (!(J > 0)) return 0;
+  for (const auto& [body, state] : {std::pair<int, const ContactBody&>{i, a}, {j, b}}) {
+    AxisMotion& m = entries_[at(body)].motion;
+    m.velocity = state.velocity;
+    const Vector3d u = m.axis();
+    const Vector3d before = omega_across(m);
+    const double rate2 = m.rate * m.rate;
+    const Vector3d omega = state.angular_velocity - state.angular_velocity.dot(u) * u;
+    const UniaxialInertia& inertia = kind_of(body).inertia;
+    set_rotation(inertia, u, omega, m, frames_[at(body)]);
+    // e2 and u are unit vectors but for rounding that has a sign, and omega is made of them: |omega| instead of the
+    // rate would gain energy with every collision. What they lack is given back, where it is small against the rest.
+    const double omega2 = omega.squaredNorm();
+    if (!inertia.spins && omega2 > kMostLost * rate2) m.rate = std::sqrt(omega2 + (rate2 - before.squaredNorm()));
+  }
+  return J;
+}
+
+/// For every n with n.r > 0 the pair is apart for scales above (hA + hB) / n.r = 1 - g / n.r; the best n is near the
+/// one that maximises g, which is improved until the pair is out of the question or converged.
+double UniaxialBodies::contact_scale(int i, int j, const Vector3d& r, const Vector3d& start, double now,
+                                     double enough) const {
+  const UniaxialKind& A = kind_of(i);
+  const UniaxialKind& B = kind_of(j);
+  const Vector3d u_a = entries_[at(i)].motion.axis_at(now);
+  const Vector3d u_b = entries_[at(j)].motion.axis_at(now);
+  Vector3d n = start.isZero(0) ? geom::kernel::cold_normal(A.shape, B.shape, r, u_a, u_b) : start;
+  double best = 1;
+  const auto evaluate = [&](const Vector3d& m) { return evaluate_uniaxial(A.shape, B.shape, r, u_a, u_b, m); };
+  const auto done = [&](const UniaxialEvaluation& e) {
+    if (n.dot(r) > 0) best = std::min(best, 1 - e.g / n.dot(r));
+    return best <= enough || e.step2 < geom::kNormalTolerance2;
+  };
+  UniaxialEvaluation e = evaluate(n);
+  int budget = geom::kMaxIterations;
+  const double scale = geom::kRoundingFactor * (A.bounding_radius + B.bounding_radius);
+  (void)geom::kernel::ascend(evaluate, scale, done, budget, n, e);
+  return best;
+}
+
+UniaxialKernels UniaxialBodies::kernels(const SimulationOptions& options) const {
+  // Of near spheres most pairs are told apart by their bounding spheres, without what the kernels are good at
+  // (bench_engine, vectors/).
+  constexpr double kNearSphere = 0.9;
+  const UniaxialKernels found = find_uniaxial_kernels(options.batches);
+  const bool near_spheres = inscribed_radius_ > kNearSphere * bounding_radius_;
+  return near_spheres && options.batches == geom::InstructionSet::best ? UniaxialKernels() : found;
+}
+
+std::unique_ptr<Envelopes<UniaxialBodies>> UniaxialBodies::make_envelopes(const SimulationOptions& options,
+                                                                          double thickness, double exit_share,
+                                                                          double box) const {
+  const double thinnest = kThinnestEnvelope * bounding_radius_;
+  switch (options.neighbours) {
+    case Neighbours::dilated:
+      thickness = std::clamp(thickness, thinnest, std::max(thinnest, thickest_envelope(box, bounding_radius_)));
+      return std::make_unique<DilatedEnvelopes>(*this, thickness, exit_share * thickness, kernels(options).meet);
+    case Neighbours::obp:
+      return std::make_unique<OrientedEnvelopes>(*this, std::min(thickness, thickest_oriented_envelope(*this, box)));
+    case Neighbours::cells:
+      break;
+  }
+  return std::make_unique<CellEnvelopes<UniaxialBodies>>(number(), box, bounding_radius_);
+}
+
+std::unique_ptr<FirstLooks<UniaxialBodies>> UniaxialBodies::make_first_looks(const SimulationOptions& options) const {
+  // Cells have images of their own.
+  if (options.contact.finder != Finder::certified || options.neighbours == Neighbours::cells) return nullptr;
+  const UniaxialKernels found = kernels(options);
+  if (found.look_across == nullptr) return nullptr;
+  return std::make_unique<UniaxialLooks>(*this, found);
+}
+
+}  // namespace ed::internal

@@ -1,0 +1,98 @@
+#include "bodies/uniaxial_looks.h"
+
+#include "vectors/kernels.h"
+
+#include <geom/kernel/uniaxial.h>
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+
+namespace ed::internal {
+namespace {
+
+/// Fewer pairs are not worth a kernel's call.
+constexpr int kFewestLooks = 3;
+
+void put(const geom::kernel::Spheroid& shape, LookRow* rows, int lane) {
+  rows[ShapeRows::a2][lane] = shape.a2;
+  rows[ShapeRows::b2][lane] = shape.b2;
+  rows[ShapeRows::c][lane] = shape.c;
+  rows[ShapeRows::rho][lane] = shape.rho;
+}
+
+void put(const UniaxialKind& a, const UniaxialKind& b, LookInput& in, int lane) {
+  put(a.shape, in.rows + LookInput::shape_a, lane);
+  put(b.shape, in.rows + LookInput::shape_b, lane);
+  in.rows[LookInput::turning_limit_a][lane] = a.shape.turning_limit;
+  in.rows[LookInput::turning_limit_b][lane] = b.shape.turning_limit;
+  in.rows[LookInput::reach][lane] = a.bounding_radius + b.bounding_radius;
+}
+
+/// The numbers of LookBody.
+const double* numbers(const AxisMotion& motion) {
+  constexpr auto stands = [](std::size_t offset, int number) { return offset == sizeof(double) * number; };
+  static_assert(stands(offsetof(AxisMotion, position), LookBody::position) &&
+                stands(offsetof(AxisMotion, velocity), LookBody::velocity) &&
+                stands(offsetof(AxisMotion, e1), LookBody::e1) && stands(offsetof(AxisMotion, e2), LookBody::e2) &&
+                stands(offsetof(AxisMotion, rate), LookBody::rate) &&
+                stands(offsetof(AxisMotion, time), LookBody::time) && stands(offsetof(AxisMotion, e0), LookBody::e0));
+  return reinterpret_cast<const double*>(&motion);
+}
+
+}  // namespace
+
+UniaxialLooks::UniaxialLooks(const UniaxialBodies& bodies, const UniaxialKernels& kernels)
+    : kernel_(bodies.spins() ? kernels.look_spinning : kernels.look_across), one_kind_(bodies.kinds().size() == 1) {
+  if (!one_kind_) return;
+  for (int lane = 0; lane < kBlockLooks; ++lane) internal::put(bodies.kinds()[0], bodies.kinds()[0], in_, lane);
+}
+
+void UniaxialLooks::put(const UniaxialBodies& bodies, const Look& look, int lane) {
+  const Pair& pair = *look.pair;
+  if (!one_kind_) internal::put(bodies.kind_of(pair.i), bodies.kind_of(pair.j), in_, lane);
+  in_.body_a[lane] = numbers(bodies.axis_motion(pair.i));
+  in_.body_b[lane] = numbers(bodies.axis_motion(pair.j));
+  in_.normal[lane] = pair.normal.data();
+  in_.rows[LookInput::end][lane] = look.end;
+}
+
+void UniaxialLooks::read(int lane, Look& look, FinderCounters& count) const {
+  const double verdict = out_.rows[LookOutput::verdict][lane];
+  if (verdict == LookOutput::open) return;
+  const double kernel_calls = out_.rows[LookOutput::kernel_calls][lane];
+  look.answered = true;
+  look.finding = verdict == LookOutput::clear ? Finding{Outcome::clear, look.end}
+                                              : Finding{Outcome::bound, out_.rows[LookOutput::time][lane]};
+  if (kernel_calls > 1) {
+    for (int k = 0; k < 3; ++k) look.pair->normal[k] = out_.rows[LookOutput::normal + k][lane];
+  }
+  ++count.predictions;
+  if (kernel_calls > 0) ++count.evaluations;
+  count.kernel_calls += static_cast<std::uint64_t>(kernel_calls);
+}
+
+void UniaxialLooks::take(const UniaxialBodies& bodies, double now, double box, std::span<Look> looks,
+                         FinderCounters& count) {
+  in_.now = now;
+  in_.box = box;
+  std::array<Look*, kBlockLooks> look_of;
+  const auto look_in = [&](int lane) -> Look& { return *look_of[static_cast<std::size_t>(lane)]; };
+  for (std::size_t next = 0; next < looks.size();) {
+    int lanes = 0;
+    for (; next < looks.size() && lanes < kBlockLooks; ++next) {
+      if (looks[next].pair->normal.isZero(0)) continue;
+      look_of[static_cast<std::size_t>(lanes++)] = &looks[next];
+    }
+    if (lanes < kFewestLooks) return;
+    const int last = lanes - 1;
+    const int filled = (lanes + kLongestVector - 1) / kLongestVector * kLongestVector;
+    for (int lane = 0; lane < filled; ++lane) put(bodies, look_in(std::min(lane, last)), lane);
+    kernel_(in_, lanes, out_);
+    for (int lane = 0; lane < lanes; ++lane) read(lane, look_in(lane), count);
+  }
+}
+
+}  // namespace ed::internal

@@ -1,0 +1,31 @@
+#pragma once
+
+/// First looks at ellipsoids of revolution, in vectors: most of an event loop's time
+/// (docs/decisions/014-first-looks.md).
+
+#include "bodies/first_looks.h"
+#include "bodies/uniaxial.h"
+#include "vectors/kernels.h"
+
+#include <span>
+
+namespace ed::internal {
+
+class UniaxialLooks final : public FirstLooks<UniaxialBodies> {
+ public:
+  UniaxialLooks(const UniaxialBodies& bodies, const UniaxialKernels& kernels);
+
+  void take(const UniaxialBodies& bodies, double now, double box, std::span<Look> looks,
+            FinderCounters& count) override;
+
+ private:
+  void put(const UniaxialBodies& bodies, const Look& look, int lane);
+  void read(int lane, Look& look, FinderCounters& count) const;
+
+  LookKernel* kernel_;
+  bool one_kind_;  ///< its rows are in all lanes
+  LookInput in_;
+  LookOutput out_;
+};
+
+}  // namespace ed::internal

@@ -1,4 +1,0 @@
-/// The kernel of linked cells. With AVX-512 F, VL, DQ and BW.
-
-#define HARDBODY_CELL_KERNEL cell_kernel_avx512
-#include "cell_kernels-inl.h"

@@ -1,4 +1,0 @@
-/// The kernel of linked cells. What the whole library is compiled for.
-
-#define HARDBODY_CELL_KERNEL cell_kernel_portable
-#include "cell_kernels-inl.h"

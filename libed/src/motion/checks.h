@@ -1,0 +1,33 @@
+#pragma once
+
+#include "motion/axis_motion.h"
+
+#include <ed/motion.h>
+
+namespace ed {
+struct Species;
+}  // namespace ed
+
+namespace ed::internal {
+
+/// Throws std::invalid_argument unless the moments are positive, finite and satisfy the triangle inequality.
+void check_inertia(const Eigen::Vector3d& inertia);
+
+/// Throws std::invalid_argument for a Motion with numbers that are not finite or an impossible inertia.
+void check_motion(const Motion& motion);
+
+/// The body axis about which the other two moments are equal (2 if all three are), or -1.
+int symmetry_axis_of_inertia(const Eigen::Vector3d& inertia);
+
+/// A Motion as that of its symmetry axis; the body frame's x is the next body axis in cyclic order.
+struct TopMotion {
+  UniaxialInertia inertia;
+  AxisMotion axis;
+  BodyFrame frame;
+};
+TopMotion top_motion(const Motion& motion, int axis);
+
+/// Whether the species is one of ellipsoids of revolution about an axis that their inertia shares (UniaxialBodies).
+bool is_uniaxial(const Species& species);
+
+}  // namespace ed::internal

@@ -1,0 +1,121 @@
+#pragma once
+
+#include "base/large_vector.h"
+#include "base/prefetch.h"
+
+#include <ed/internal/archive.h>
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+namespace ed::internal {
+
+inline constexpr double kNever = std::numeric_limits<double>::infinity();
+
+/// What is known of a pair of neighbours.
+enum class PairEvent : std::int32_t {
+  clear,    ///< certified: no contact while both bodies stay in their envelopes (up to the earlier exit bound)
+  bound,    ///< certified: no contact before `time`; to be looked at again then
+  contact,  ///< they touch at `time`
+};
+
+/// One cache line: a collision looks at tens of pairs, each somewhere else in memory.
+struct alignas(64) Pair {
+  double time = kNever;
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< from i to j: the last one found, or zero
+  std::int32_t i = -1;
+  std::int32_t j = -1;
+  std::int32_t slot_i = -1;  ///< where the pair stands in the list of i
+  std::int32_t slot_j = -1;
+  std::int32_t owner = -1;  ///< in whose calendar entry the pair counts: i or j
+  PairEvent event = PairEvent::clear;
+
+  std::int32_t partner(std::int32_t body) const { return i == body ? j : i; }
+};
+
+template <class Archive, Is<Pair> T>
+void fields(Archive& archive, T& pair) {
+  archive(pair.time, pair.normal, pair.i, pair.j, pair.slot_i, pair.slot_j, pair.owner, pair.event);
+}
+
+static_assert(sizeof(Pair) == 64);
+
+/// Neighbour lists: a pool of pairs, and for each body the pairs that it is in.
+class NeighbourLists {
+ public:
+  explicit NeighbourLists(int number) : lengths_(static_cast<std::size_t>(number), 0) {}
+
+  std::span<const std::int32_t> of(int body) const {
+    const std::size_t length = lengths_[static_cast<std::size_t>(body)];
+    if (length > room_) [[unlikely]]
+      return long_.at(body);
+    return {slots_.data() + static_cast<std::size_t>(body) * room_, length};
+  }
+  Pair& pair(std::int32_t index) { return pairs_[static_cast<std::size_t>(index)]; }
+  const Pair& pair(std::int32_t index) const { return pairs_[static_cast<std::size_t>(index)]; }
+  int number() const { return static_cast<int>(lengths_.size()); }
+
+  /// The list of the body is read soon.
+  void fetch(int body) const {
+    prefetch(lengths_[static_cast<std::size_t>(body)]);
+    prefetch_line(slots_.data() + static_cast<std::size_t>(body) * room_);
+  }
+
+  /// A new pair of neighbours, owned by i; returns its index.
+  std::int32_t add(std::int32_t i, std::int32_t j, const Eigen::Vector3d& normal);
+  void remove(std::int32_t index);
+
+  /// Makes room for lists to become twice as long as the longest is now, so that none has to grow while a run goes on.
+  /// Returns that length.
+  std::size_t reserve();
+
+  /// Indices, slots and the order of everything as they are; read into lists of the same number of bodies.
+  template <class Archive, class Self>
+  static void fields(Archive& archive, Self& self) {
+    archive(self.pairs_, self.free_);
+    if constexpr (Archive::kReads) {
+      std::vector<std::vector<std::int32_t>> lists;
+      archive(lists);
+      const bool fits = std::all_of(lists.begin(), lists.end(), [&](const auto& l) { return l.size() < lists.size(); });
+      expect(archive, fits && lists.size() == self.lengths_.size(), "the neighbour lists of the bodies");
+      self.assign(lists);
+      expect(archive, self.linked(), "the neighbour lists do not fit together");
+    } else {
+      archive(std::uint64_t{self.lengths_.size()});
+      for (int body = 0; body < self.number(); ++body) {
+        const auto list = self.of(body);
+        archive(std::vector<std::int32_t>(list.begin(), list.end()));
+      }
+    }
+  }
+
+  /// Whether the pair is one of this body's.
+  bool lists(std::int32_t body, std::int32_t index) const;
+
+ private:
+  bool linked() const;
+  std::int32_t append(std::int32_t body, std::int32_t index);
+  void unlink(std::int32_t body, std::int32_t slot);
+  void assign(const std::vector<std::vector<std::int32_t>>& lists);
+  void make_room(std::size_t room);
+  std::size_t most_room() const;
+  std::int32_t* list_of(std::size_t body) { return slots_.data() + body * room_; }  ///< of one that fits
+
+  LargeVector<Pair> pairs_;
+  LargeVector<std::int32_t> free_;
+  // A list stands where its body's number says: no pointer has to be read first. Lists that are longer than most, those
+  // of the largest bodies of a mixture, stand elsewhere: with room for them at every body memory would be theirs.
+  std::size_t room_ = 0;                                              ///< for each list
+  LargeVector<std::int32_t> slots_;                                   ///< room_ for each body
+  LargeVector<std::uint32_t> lengths_;                                ///< of the lists
+  std::unordered_map<std::int32_t, std::vector<std::int32_t>> long_;  ///< whole lists; those of shorter ones are stale
+};
+
+}  // namespace ed::internal

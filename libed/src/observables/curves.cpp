@@ -1,0 +1,222 @@
+#include "observables/curves.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdio>
+#include <string>
+
+namespace ed::internal {
+namespace {
+
+const double kDecayed = std::exp(-1.0);
+
+/// The lags that diffusion is fitted over.
+Curve end_of(const Curve& curve) {
+  const auto first = static_cast<std::ptrdiff_t>(first_of_fit(curve));
+  return {{curve.t.begin() + first, curve.t.end()}, {curve.y.begin() + first, curve.y.end()}};
+}
+
+/// Least x >= kDisplaced beyond which exp(-x) (1 + alpha2 x^2 / 2) stays at or below exp(-kDisplaced).
+double least_displacement(double alpha2) {
+  const auto decayed = [&](double x) { return std::exp(-x) * (1 + 0.5 * alpha2 * x * x) <= std::exp(-kDisplaced); };
+  // It falls from x = 2 on, whatever alpha2 >= 0 is: x^2 exp(-x) does.
+  if (!(alpha2 > 0)) return kDisplaced;
+  if (!std::isfinite(alpha2)) return alpha2;
+  double low = kDisplaced;
+  double high = 2;
+  while (!decayed(high)) {
+    low = high;
+    high *= 2;
+  }
+  while (high - low > 1e-9 * high) {
+    const double middle = 0.5 * (low + high);
+    (decayed(middle) ? high : low) = middle;
+  }
+  return high;
+}
+
+/// Slope of ln y against ln t; NaN for fewer than two positive values.
+double exponent_of(const Curve& curve) {
+  Curve logarithms;
+  for (std::size_t k = 0; k < curve.t.size(); ++k) {
+    if (!(curve.y[k] > 0)) continue;
+    logarithms.t.push_back(std::log(curve.t[k]));
+    logarithms.y.push_back(std::log(curve.y[k]));
+  }
+  return slope(logarithms.t, logarithms.y).value_or(kNothing);
+}
+
+}  // namespace
+
+// ---- Diffusion
+
+std::size_t first_of_fit(const Curve& curve) {
+  const auto in_fit = [&](double t) { return t >= kFitFrom * curve.t.back() * (1 - 1e-9); };
+  return static_cast<std::size_t>(std::find_if(curve.t.begin(), curve.t.end(), in_fit) - curve.t.begin());
+}
+
+Reach reach_of_translation(double first_wave_number, double alpha2) {
+  const double unit = 6 / (first_wave_number * first_wave_number);
+  return {least_displacement(alpha2) * unit, 0, 0, MissingReason::not_displaced};
+}
+
+Reach reach_of_rotation(double components) {
+  return {0, kTurned * components, kTurned * components, MissingReason::not_turned};
+}
+
+std::optional<Missing> why_not_diffusive(const Curve& curve, const Reach& reach) {
+  if (curve.t.empty()) return Missing{};
+  const Curve window = end_of(curve);
+  if (window.t.size() < 2) return Missing{MissingReason::lags_too_short};
+  const double exponent = exponent_of(window);
+  const double steepest = window.y.front() < reach.free_below ? kFreeTurning : kLinearity;
+  if (exponent > 1 + steepest) return Missing{MissingReason::ballistic, exponent};
+  // Comparisons that fail if a number is none.
+  if (!(window.y.front() >= reach.at_start && window.y.back() >= reach.at_end)) {
+    return Missing{reach.short_of_it, std::sqrt(std::abs(window.y.back()))};
+  }
+  if (!(exponent >= 1 - kLinearity)) return Missing{MissingReason::subdiffusive, exponent};
+  return std::nullopt;
+}
+
+double final_slope(const Curve& curve) {
+  const Curve window = end_of(curve);
+  return slope(window.t, window.y).value_or(kNothing);
+}
+
+// ---- Decays
+
+double decay_time(const Curve& curve) {
+  return first_crossing(curve.t, curve.y, kDecayed).value_or(kNothing);
+}
+
+std::optional<Missing> why_no_decay_time(const Curve& curve) {
+  if (curve.t.empty()) return Missing{};
+  if (std::isfinite(decay_time(curve))) return std::nullopt;
+  if (curve.y.front() <= kDecayed) return Missing{MissingReason::decayed_early};
+  return Missing{MissingReason::not_decayed, curve.y.back()};
+}
+
+std::optional<DecayFit> fit_decay(const Curve& curve, double from) {
+  // A comparison that fails if `from` is no number.
+  if (!(decay_time(curve) >= kLeastDecay * from)) return std::nullopt;
+  Curve window;
+  for (std::size_t k = 0; k < curve.t.size() && curve.y[k] > kNoise; ++k) {
+    if (curve.t[k] < from) continue;
+    window.t.push_back(curve.t[k]);
+    window.y.push_back(curve.y[k]);
+  }
+  const auto fit = fit_stretched_exponential(window.t, window.y);
+  if (!fit || fit->amplitude > kMostAmplitude || fit->beta < kLeastBeta || fit->tau < window.t.front()) {
+    return std::nullopt;
+  }
+  return DecayFit{*fit, window.t.front(), window.t.back()};
+}
+
+std::optional<Missing> why_no_fit(const Curve& curve, double from) {
+  if (curve.t.empty()) return Missing{};
+  if (std::isinf(from)) return Missing{MissingReason::no_collisions};
+  if (std::isnan(from)) return Missing{MissingReason::end_of_ballistic_unknown};
+  if (const auto missing = why_no_decay_time(curve)) return missing;
+  if (decay_time(curve) < kLeastDecay * from) return Missing{MissingReason::decayed_before_diffusion};
+  if (!fit_decay(curve, from)) return Missing{MissingReason::no_fit};
+  return std::nullopt;
+}
+
+}  // namespace ed::internal
+
+namespace ed {
+
+std::string describe(const Missing& missing, std::string_view length_unit) {
+  const auto reached = [&](const char* before, std::string_view unit, const char* after) {
+    char number[32];
+    std::snprintf(number, sizeof number, "%.2g", missing.reached);
+    return before + std::string(number) + (unit.empty() ? "" : " ") + std::string(unit) + after;
+  };
+  switch (missing.reason) {
+    case MissingReason::not_measured:
+      return "too little has been measured";
+    case MissingReason::no_collisions:
+      return "no body has met another";
+    case MissingReason::lags_too_short:
+      return "too few lags, up to the longest one, have been followed";
+    case MissingReason::ballistic:
+      return reached("displacements grow as t^", "", " up to the longest lag: still in part ballistic");
+    case MissingReason::subdiffusive:
+      return reached("displacements grow as t^", "", " up to the longest lag: not yet diffusive");
+    case MissingReason::not_displaced:
+      return reached("bodies have moved ", length_unit, " within the longest lag: no diffusion yet");
+    case MissingReason::not_turned:
+      return reached("bodies have turned ", "rad", " within the longest lag: no diffusion yet");
+    case MissingReason::not_decayed:
+      return reached("still ", "", " at the longest lag: not down to 1/e");
+    case MissingReason::decayed_early:
+      return "below 1/e at the first lag already";
+    case MissingReason::decayed_before_diffusion:
+      return "decayed before motion is diffusive: no longer run helps";
+    case MissingReason::end_of_ballistic_unknown:
+      return "it is not known from which lag on motion is diffusive";
+    case MissingReason::no_fit:
+      return "no stretched exponential fits: amplitude, tau or beta is out of range";
+    case MissingReason::meaningless:
+      return "meaningless: nothing turns these bodies";
+    case MissingReason::no_such_axis:
+      return "bodies of revolution have no such axis";
+    case MissingReason::not_told:
+      return "the file does not tell";
+  }
+  return "";
+}
+
+const char* to_string(MissingReason reason) {
+  switch (reason) {
+    case MissingReason::not_measured:
+      return "not_measured";
+    case MissingReason::no_collisions:
+      return "no_collisions";
+    case MissingReason::lags_too_short:
+      return "lags_too_short";
+    case MissingReason::ballistic:
+      return "ballistic";
+    case MissingReason::subdiffusive:
+      return "subdiffusive";
+    case MissingReason::not_displaced:
+      return "not_displaced";
+    case MissingReason::not_turned:
+      return "not_turned";
+    case MissingReason::not_decayed:
+      return "not_decayed";
+    case MissingReason::decayed_early:
+      return "decayed_early";
+    case MissingReason::decayed_before_diffusion:
+      return "decayed_before_diffusion";
+    case MissingReason::end_of_ballistic_unknown:
+      return "end_of_ballistic_unknown";
+    case MissingReason::no_fit:
+      return "no_fit";
+    case MissingReason::meaningless:
+      return "meaningless";
+    case MissingReason::no_such_axis:
+      return "no_such_axis";
+    case MissingReason::not_told:
+      return "not_told";
+  }
+  return "unknown";
+}
+
+bool longer_lags_help(MissingReason reason) {
+  switch (reason) {
+    case MissingReason::lags_too_short:
+    case MissingReason::ballistic:
+    case MissingReason::subdiffusive:
+    case MissingReason::not_displaced:
+    case MissingReason::not_turned:
+    case MissingReason::not_decayed:
+      return true;
+    default:
+      return false;
+  }
+}
+
+}  // namespace ed

@@ -1,0 +1,63 @@
+#pragma once
+
+/// What is averaged over single frames of a run: order and temperatures.
+
+#include "observables/lag_sums.h"
+
+#include <ed/internal/archive.h>
+#include <ed/system.h>
+
+#include <Eigen/Core>
+
+#include <vector>
+
+namespace ed::internal {
+
+/// Degrees of freedom of some of the bodies, of a system with momentum zero.
+struct Freedoms {
+  double translational = 0;
+  double rotational = 0;
+  Eigen::Vector3d axis = Eigen::Vector3d::Zero();  ///< of the rotation about body x, y, z
+
+  template <class Archive, class Self>
+  static void fields(Archive& archive, Self& self) {
+    archive(self.translational, self.rotational, self.axis);
+  }
+};
+
+Freedoms freedoms_of(const System& system, BodyRange range);
+
+/// Averages over some of the bodies, summed over frames.
+struct FrameSums {
+  double S = 0;
+  Eigen::Matrix3d order = Eigen::Matrix3d::Zero();  ///< Q
+  double translational_kT = 0;
+  double rotational_kT = 0;
+  Eigen::Vector3d axis_kT = Eigen::Vector3d::Zero();
+  double v2 = 0;  ///< <v^2>
+  double w2 = 0;  ///< <w^2>, spin excluded
+
+  FrameSums& operator+=(const FrameSums& other);
+
+  template <class Archive, class Self>
+  static void fields(Archive& archive, Self& self) {
+    archive(self.S, self.order, self.translational_kT, self.rotational_kT, self.axis_kT, self.v2, self.w2);
+  }
+};
+
+/// All but the temperatures.
+FrameSums order_and_speeds(const Snapshot& snapshot, BodyRange range);
+
+/// The temperatures alone; NaN where there are no degrees of freedom.
+FrameSums temperatures(const System& system, BodyRange range, const Freedoms& freedoms);
+
+/// 3 sum m v v^T / sum m v^2: the tensor of the ideal gas' share of the pressure, of trace 3.
+Eigen::Matrix3d kinetic_tensor(const System& system);
+
+/// Q = 3/2 <u u^T> - 1/2.
+Eigen::Matrix3d order_tensor(const std::vector<Eigen::Vector3d>& axes, std::size_t begin, std::size_t end);
+double largest_eigenvalue(const Eigen::Matrix3d& Q);
+/// Of the largest eigenvalue; of the two directions the one whose largest component is positive.
+Eigen::Vector3d director_of(const Eigen::Matrix3d& Q);
+
+}  // namespace ed::internal

@@ -1,0 +1,113 @@
+#pragma once
+
+/// What a run's observables are kept as: blocks of sums, of which there are never more than a fixed number.
+
+#include "observables/frame_sums.h"
+#include "observables/lag_sums.h"
+#include "observables/structure.h"
+
+#include <ed/internal/archive_types.h>
+#include <ed/observables.h>
+
+#include <Eigen/Core>
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace ed::internal {
+
+constexpr std::size_t kMaxBlocks = 32;
+
+/// Totals at an instant, whose differences give block averages.
+struct Totals {
+  double time = 0;
+  double collisions = 0;
+  double virial = 0;
+  Eigen::Matrix3d virial_tensor = Eigen::Matrix3d::Zero();
+  std::vector<double> collisions_of;  ///< the bodies of each group, each its own; empty if nothing is known of them
+
+  template <class Archive, class Self>
+  static void fields(Archive& archive, Self& self) {
+    archive(self.time, self.collisions, self.virial, self.virial_tensor, self.collisions_of);
+  }
+};
+
+Totals totals_of(const Simulation& simulation, const std::vector<BodyRange>& groups);
+
+/// All that was measured from origins in one stretch of time.
+struct Block {
+  std::vector<LagSums> lags;                          ///< of group g at lag k: [k * groups + g]
+  std::vector<FrameSums> groups;                      ///< of each
+  FrameSums all;                                      ///< of all bodies; axis_kT is left out
+  Eigen::Matrix3d kinetic = Eigen::Matrix3d::Zero();  ///< kinetic_tensor, summed over frames
+  Totals begin;
+  Totals end;
+  double frames = 0;
+  int origins = 0;
+  std::vector<StructureSums> structure;  ///< of all bodies, then, if there are several groups, of each
+  double structure_frames = 0;           ///< that have been summed there
+
+  /// Adds the block that follows.
+  void append(const Block& next);
+
+  template <class Archive, class Self>
+  static void fields(Archive& archive, Self& self) {
+    archive(self.lags, self.groups, self.all, self.kinetic, self.begin, self.end, self.frames, self.origins,
+            self.structure, self.structure_frames);
+  }
+};
+
+/// Blocks, and what they are blocks of.
+struct Measured {
+  /// Throws std::invalid_argument for options that are none.
+  explicit Measured(const ObservablesOptions& options);
+
+  ObservablesOptions options;
+  std::vector<BodyRange> ranges;   ///< of the groups
+  std::vector<double> weights;     ///< their shares of all bodies
+  std::vector<double> lags;        ///< rising
+  double spacing = 0;              ///< of origins
+  int origins_per_block = 0;       ///< of complete blocks
+  std::vector<Freedoms> freedoms;  ///< of the groups, as soon as there is a system
+  std::vector<Block> blocks;
+  StructureGrid grid;        ///< as soon as there is a box
+  bool length_known = true;  ///< whether the grid's length is that of the bodies
+  int structure_every = 1;   ///< of so many origins of a block, beginning with its first, the structure is measured
+
+  /// Adds a new origin with its frame, in the last block or a new one; true if blocks have been merged by pairs
+  /// first.
+  bool add_origin(const Simulation& simulation, const Snapshot& now);
+
+  std::size_t structure_parts() const { return ranges.size() > 1 ? ranges.size() + 1 : 1; }
+
+  /// Whether what was read is what these options make.
+  bool fits(std::size_t number_of_lags) const;
+
+  /// What the options make is left out, but for lags and spacing: the C library's pow has a hand in them.
+  template <class Archive, class Self>
+  static void fields(Archive& archive, Self& self) {
+    const std::size_t number_of_lags = self.lags.size();
+    archive(self.freedoms, self.lags, self.spacing, self.origins_per_block, self.grid, self.blocks);
+    expect(archive, self.fits(number_of_lags), "the observables do not fit together");
+  }
+
+ private:
+  void make_groups();
+  Block& open_block(const Simulation& simulation);
+  void add_structure(const Snapshot& now, Block& block);
+  void add_frame(const Simulation& simulation, const Snapshot& now, Block& block);
+  void merge_blocks();
+  bool structure_fits(const Block& block) const;
+
+  std::optional<WaveVectors> wave_vectors_;  ///< of the grid, once they have been used
+};
+
+/// The wave vectors of S(q).
+WaveVectors wave_vectors_of(const StructureGrid& grid);
+
+/// All results, of a run whose totals are these now. Decays are fitted from the lag `fit_from`; without it, from
+/// kBallisticCollisions mean collision intervals.
+Results results_of(const Measured& measured, const Totals& totals, std::optional<double> fit_from = std::nullopt);
+
+}  // namespace ed::internal

@@ -1,0 +1,326 @@
+#include "observables/measured.h"
+
+#include <ed/stored_frames.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+
+namespace ed {
+namespace {
+
+using Eigen::Vector3d;
+using internal::Block;
+using internal::BodyRange;
+using internal::Measured;
+
+constexpr double kLagsPerDecade = 20;
+constexpr double kBlocks = 16;          ///< at most
+constexpr double kEquallyFar = 1e-6;    ///< relative to the distance of frames in time
+constexpr double kDefaultShare = 0.25;  ///< of the trajectory: the longest lag
+constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
+
+std::string text_of(double x) {
+  std::ostringstream text;
+  text << x;
+  return text.str();
+}
+
+void check(const std::vector<StoredFrame>& frames, const StoredFramesOptions& options) {
+  const auto require = [](bool holds, const std::string& what) {
+    if (!holds) throw std::invalid_argument("analyze_frames: " + what);
+  };
+  require(!frames.empty(), "no frames; accepted: one at least");
+  require(options.box > 0 && std::isfinite(options.box), "box; accepted: a positive number");
+  require(options.length > 0 && options.length > 1e-6 * options.box, "length; accepted: a positive number");
+  const std::size_t n = frames[0].position.size();
+  require(options.axis.size() == n, "axis; accepted: one of each body");
+  require(!options.fit_from || (*options.fit_from >= 0 && std::isfinite(*options.fit_from)),
+          "fit_from; accepted: a finite lag that is not negative");
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    const StoredFrame& f = frames[k];
+    const auto all_or_none = [n](const auto& of, const auto& first) {
+      return of.size() == first.size() && (of.empty() || of.size() == n);
+    };
+    require(f.position.size() == n && all_or_none(f.rotation, frames[0].rotation) &&
+                all_or_none(f.velocity, frames[0].velocity),
+            "frame " + std::to_string(k) + "; accepted: as many bodies as in the first one");
+    require(std::isfinite(f.time) && (k == 0 || f.time > frames[k - 1].time),
+            "time of frame " + std::to_string(k) + " is " + text_of(f.time) +
+                (k > 0 ? ", that of the one before " + text_of(frames[k - 1].time) : "") +
+                "; accepted: finite times that rise");
+  }
+}
+
+/// Frames that are equally far apart in time.
+struct Stretch {
+  std::size_t first;
+  std::size_t count;
+};
+
+/// End of the longest stretch from `first` on.
+std::size_t end_of_stretch(const std::vector<StoredFrame>& frames, std::size_t first) {
+  if (frames.size() < first + 3) return frames.size();
+  const double begin = frames[first].time;
+  const double step = frames[first + 1].time - begin;
+  const auto fits = [&](std::size_t k) {
+    return std::abs(frames[k].time - begin - static_cast<double>(k - first) * step) <= kEquallyFar * step;
+  };
+  std::size_t end = first + 2;
+  while (end < frames.size() && fits(end)) ++end;
+  return end;
+}
+
+/// The longest stretch, the first one of several.
+Stretch longest_stretch(const std::vector<StoredFrame>& frames) {
+  Stretch longest{0, end_of_stretch(frames, 0)};
+  // Two stretches share one frame at most.
+  std::size_t end = longest.count;
+  while (end < frames.size()) {
+    const std::size_t first = end - 1;
+    end = end_of_stretch(frames, first);
+    if (end - first > longest.count) longest = {first, end - first};
+  }
+  return longest;
+}
+
+/// Numbers of frames, evenly on a logarithmic scale.
+std::vector<std::size_t> lag_steps(std::size_t longest) {
+  std::vector<std::size_t> steps = {1};
+  for (int k = 1; steps.back() < longest; ++k) {
+    const auto next = static_cast<std::size_t>(std::lround(std::pow(10.0, k / kLagsPerDecade)));
+    if (next > steps.back()) steps.push_back(std::min(next, longest));
+  }
+  return steps;
+}
+
+Snapshot snapshot_of(const StoredFrame& stored, const StoredFramesOptions& options, bool rotations) {
+  Snapshot s;
+  const std::size_t n = stored.position.size();
+  s.time = stored.time;
+  s.position = stored.position;
+  const bool turned = !stored.rotation.empty();
+  for (std::size_t i = 0; i < n; ++i) {
+    s.axis.emplace_back(turned ? Vector3d(stored.rotation[i].col(options.axis[i])) : Vector3d::UnitZ());
+  }
+  s.phi_lab.assign(n, Vector3d::Zero());
+  s.phi_body = s.angular_velocity = s.phi_lab;
+  s.velocity = stored.velocity.empty() ? s.phi_lab : stored.velocity;
+  if (rotations) s.rotation = turned ? stored.rotation : std::vector<Eigen::Matrix3d>(n, Eigen::Matrix3d::Identity());
+  return s;
+}
+
+/// Blocks of frames in the place of those that a run measures.
+class Analysis {
+ public:
+  Analysis(const std::vector<StoredFrame>& frames, const StoredFramesOptions& options)
+      : options_(options),
+        stretch_(longest_stretch(frames)),
+        count_(stretch_.count),
+        step_(count_ > 1 ? frames[stretch_.first + 1].time - frames[stretch_.first].time : 1),
+        orientations_(!frames[0].rotation.empty()),
+        velocities_(!frames[0].velocity.empty()),
+        measured_(plan()) {
+    const auto three = [](const BodyRange& r) { return r.three_axes; };
+    const bool rotations = std::any_of(measured_.ranges.begin(), measured_.ranges.end(), three);
+    for (const StoredFrame& frame : frames) frames_.push_back(snapshot_of(frame, options, rotations));
+  }
+
+  StoredResults results();
+
+ private:
+  Measured plan();
+  void add_structure();
+  void add_lags();
+  /// The block that frame k of the stretch is an origin of.
+  Block& block_of(std::size_t k) { return measured_.blocks[k / static_cast<std::size_t>(measured_.origins_per_block)]; }
+  /// The block that the structure of frame k of all is in: as many frames each.
+  Block& structure_block_of(std::size_t k) {
+    if (frames_.size() == count_) return block_of(k);
+    return measured_.blocks[k * measured_.blocks.size() / frames_.size()];
+  }
+
+  const StoredFramesOptions& options_;
+  Stretch stretch_;
+  std::size_t count_;  ///< of the stretch
+  double step_;
+  bool orientations_;
+  bool velocities_;
+  std::vector<std::size_t> steps_;
+  Measured measured_;
+  std::vector<Snapshot> frames_;  ///< all
+};
+
+Measured Analysis::plan() {
+  ObservablesOptions wanted{};
+  wanted.number = static_cast<int>(options_.axis.size());
+  wanted.duration = step_ * static_cast<double>(count_);
+  wanted.groups = options_.groups;
+  wanted.wave_numbers = options_.wave_numbers;
+  Measured plan(wanted);
+  const double last = static_cast<double>(count_) - 1;
+  const double longest =
+      options_.longest_lag > 0 ? options_.longest_lag / step_ * (1 + kEquallyFar) : kDefaultShare * last;
+  const auto steps = static_cast<std::size_t>(std::clamp(std::floor(longest), 1.0, std::max(1.0, last)));
+  steps_ = lag_steps(steps);
+  plan.lags.clear();
+  for (const std::size_t step : steps_) plan.lags.push_back(static_cast<double>(step) * step_);
+  const double blocks = std::clamp(std::floor(static_cast<double>(count_) / static_cast<double>(steps)), 2.0, kBlocks);
+  plan.spacing = step_;
+  plan.origins_per_block = static_cast<int>(std::max(1.0, std::ceil(static_cast<double>(count_) / blocks)));
+  plan.grid = {options_.box, options_.length};
+  plan.length_known = options_.length_known;
+  const auto per_block = static_cast<std::size_t>(plan.origins_per_block);
+  plan.blocks.resize((count_ + per_block - 1) / per_block);
+  for (std::size_t b = 0; b < plan.blocks.size(); ++b) {
+    Block& block = plan.blocks[b];
+    block.lags.resize(plan.lags.size() * plan.ranges.size());
+    block.groups.resize(plan.ranges.size());
+    block.structure.resize(plan.structure_parts());
+    block.origins = static_cast<int>(std::min(per_block, count_ - b * per_block));
+    block.begin.time = static_cast<double>(b * per_block) * step_;
+    block.end.time = block.begin.time + block.origins * step_;
+  }
+  return plan;
+}
+
+void Analysis::add_structure() {
+  const internal::WaveVectors vectors = internal::wave_vectors_of(measured_.grid);
+  for (std::size_t k = 0; k < frames_.size(); ++k) {
+    const Snapshot& now = frames_[k];
+    Block& block = structure_block_of(k);
+    const BodyRange all{0, now.position.size(), false};
+    const std::vector<internal::StructureSums> pairs = internal::count_pairs(measured_.grid, now, measured_.ranges);
+    for (std::size_t p = 0; p < block.structure.size(); ++p) {
+      internal::StructureSums sums = pairs[p];
+      sums.S = vectors.structure_factor(now.position, p == 0 ? all : measured_.ranges[p - 1]);
+      if (block.structure[p].pairs.empty()) {
+        block.structure[p] = std::move(sums);
+      } else {
+        block.structure[p].add(sums);
+      }
+    }
+    block.structure_frames += 1;
+    block.frames += 1;
+    block.all += internal::order_and_speeds(now, all);
+    for (std::size_t g = 0; g < measured_.ranges.size(); ++g) {
+      block.groups[g] += internal::order_and_speeds(now, measured_.ranges[g]);
+    }
+  }
+}
+
+void Analysis::add_lags() {
+  for (std::size_t n = 0; n < steps_.size(); ++n) {
+    for (std::size_t k = 0; k + steps_[n] < count_; ++k) {
+      for (std::size_t g = 0; g < measured_.ranges.size(); ++g) {
+        block_of(k).lags[n * measured_.ranges.size() + g].add(
+            internal::correlate(frames_[stretch_.first + k], frames_[stretch_.first + k + steps_[n]],
+                                measured_.ranges[g], measured_.options.wave_numbers),
+            1);
+      }
+    }
+  }
+}
+
+constexpr Estimate kNotTold = Estimate::none({MissingReason::not_told});
+constexpr std::array<Estimate, 3> kAxesNotTold = {kNotTold, kNotTold, kNotTold};
+
+/// Removes what frames without orientations do not tell.
+void forget_orientations(Correlations& results) {
+  results.t_C2_1overe = results.tau_C2 = results.beta_C2 = kNotTold;
+  results.window_C2 = {};
+  results.t_C2_1overe_axis = kAxesNotTold;
+  for (LagRow& row : results.lags) {
+    row.c1 = row.c2 = kNotTold;
+    row.c1_axis = row.c2_axis = kAxesNotTold;
+  }
+  for (PairRow& row : results.pairs) row.g2 = kNotTold;
+}
+
+void forget_order(Results& results) {
+  results.S = kNotTold;
+  results.director = {};
+  for (GroupResults& group : results.groups) {
+    group.S = kNotTold;
+    group.director = {};
+  }
+  for (BlockRow& row : results.blocks) {
+    row.S = kNothing;
+    row.director.setConstant(kNothing);
+  }
+}
+
+/// Removes what frames with wrapped positions do not tell.
+void forget_displacements(Correlations& results) {
+  results.D_trans = results.t_F_1overe = results.tau_F = results.beta_F = kNotTold;
+  results.window_D = results.window_F = {};
+  for (LagRow& row : results.lags) {
+    row.msd = row.alpha2 = kNotTold;
+    row.f_self.assign(row.f_self.size(), kNotTold);
+  }
+}
+
+/// Removes what frames do not tell whose bodies cannot be followed from one to the next.
+void forget_correlations(Correlations& results) {
+  forget_displacements(results);
+  results.t_C2_1overe = results.tau_C2 = results.beta_C2 = kNotTold;
+  results.window_C2 = {};
+  results.t_C2_1overe_axis = kAxesNotTold;
+  for (LagRow& row : results.lags) {
+    row.c1 = row.c2 = row.vacf = kNotTold;
+    row.c1_axis = row.c2_axis = kAxesNotTold;
+  }
+}
+
+/// Removes what frames do not tell.
+void forget(Correlations& results, const StoredFramesOptions& options, bool velocities, bool orientations) {
+  results.D_rot = results.D_rot_body = results.w2 = kNotTold;
+  results.D_rot_axis = kAxesNotTold;
+  if (!velocities) results.v2 = kNotTold;
+  for (LagRow& row : results.lags) {
+    row.rot_msd = row.rot_msd_body = row.wacf = kNotTold;
+    row.rot_msd_axis = kAxesNotTold;
+    if (!velocities) row.vacf = kNotTold;
+  }
+  if (!orientations) forget_orientations(results);
+  if (!options.unwrapped) forget_displacements(results);
+  if (!options.same_bodies) forget_correlations(results);
+}
+
+StoredResults Analysis::results() {
+  add_structure();
+  internal::Totals totals;
+  totals.time = step_ * static_cast<double>(count_ - 1);
+  if (measured_.options.wave_numbers.empty()) {
+    const double q = internal::results_of(measured_, totals).q_peak.value;
+    if (std::isfinite(q)) measured_.options.wave_numbers = wave_numbers_about(q);
+  }
+  add_lags();
+  StoredResults results;
+  static_cast<Results&>(results) = internal::results_of(measured_, totals, options_.fit_from.value_or(kNothing));
+  results.collision_rate = results.Z = results.translational_kT = results.rotational_kT = kNotTold;
+  forget(results, options_, velocities_, orientations_);
+  for (GroupResults& group : results.groups) {
+    forget(group, options_, velocities_, orientations_);
+    group.collision_rate = group.translational_kT = group.rotational_kT = kNotTold;
+    group.axis_kT = kAxesNotTold;
+  }
+  if (!orientations_) forget_order(results);
+  results.wave_numbers = measured_.options.wave_numbers;
+  results.first_frame = stretch_.first;
+  results.frames = count_;
+  return results;
+}
+
+}  // namespace
+
+StoredResults analyze_frames(const std::vector<StoredFrame>& frames, const StoredFramesOptions& options) {
+  check(frames, options);
+  return Analysis(frames, options).results();
+}
+
+}  // namespace ed

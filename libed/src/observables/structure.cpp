@@ -1,0 +1,390 @@
+#include "observables/structure.h"
+
+#include "cells/grid.h"
+#include "base/legendre.h"
+#include "base/periodic.h"
+#include "base/sincos.h"
+
+#include <ed/random.h>
+#include <ed/system.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace ed::internal {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::Vector3i;
+
+constexpr double kReach = 6;        ///< of pairs, in lengths
+constexpr double kBin = 0.05;       ///< of distances, in lengths
+constexpr double kLargestQ = 12;    ///< in inverse lengths
+constexpr double kMostShells = 64;  ///< about as many
+constexpr double kPeakFrom = 1.5;   ///< in inverse lengths
+constexpr double kPeakTo = 7;
+// Of the fit to Percus and Yevick's S(q).
+constexpr double kFittedFrom = 1;          ///< in inverse lengths
+constexpr double kScaleStep = 1.01;        ///< between two scales that are tried
+constexpr int kScaleSteps = 40;            ///< on either side of 1
+constexpr double kLogScaleStep = 0.00995;  ///< ln kScaleStep
+constexpr double kScaleSpread = 0.08;      ///< of ln s, from one shape of bodies to the next
+constexpr double kClearPeak = 5;           ///< standard errors by which that has to stand out
+constexpr int kTries = 12;                 ///< to find a wave vector that is new
+constexpr int kFewBodies = 1000;           ///< whose pairs are all looked at: quicker than cells
+
+constexpr std::size_t kAtATime = 512;  ///< bodies whose phases are tabulated at once
+constexpr int kLargestPower = 500;     ///< of a phase
+
+/// Of two that are opposite, the one that is taken.
+Vector3i one_of_two(const Vector3i& n) {
+  for (int k = 0; k < 3; ++k) {
+    if (n[k] != 0) return n[k] < 0 ? Vector3i(-n) : n;
+  }
+  return n;
+}
+
+/// Vectors in a shell, in units of 2 pi / box.
+std::vector<Vector3i> draw_vectors(double from, double to, int most, Random& random) {
+  std::vector<Vector3i> found;
+  for (int k = 0; k < kTries * most && found.size() < static_cast<std::size_t>(most); ++k) {
+    const Vector3d aim = (from + (to - from) * random.uniform()) * random.direction();
+    const Vector3i n = one_of_two(aim.array().round().cast<int>());
+    const double size = n.cast<double>().norm();
+    if (size < from || size >= to || std::find(found.begin(), found.end(), n) != found.end()) continue;
+    found.push_back(n);
+  }
+  return found;
+}
+
+/// exp(i k x) of all bodies for k = 0, 1, .. along one axis: real and imaginary parts, those of one k together.
+struct Phases {
+  std::vector<double> re, im;
+
+  Phases(const std::vector<Vector3d>& positions, BodyRange range, int axis, double unit, int largest) {
+    const std::size_t n = range.end - range.begin;
+    re.assign(n * (static_cast<std::size_t>(largest) + 1), 1);
+    im.assign(re.size(), 0);
+    for (std::size_t i = 0; i < n; ++i) {
+      const SinCos one = sincos(unit * positions[range.begin + i][axis]);
+      for (std::size_t k = n + i; k < re.size(); k += n) {
+        re[k] = re[k - n] * one.cos - im[k - n] * one.sin;
+        im[k] = re[k - n] * one.sin + im[k - n] * one.cos;
+      }
+    }
+  }
+};
+
+/// A complex number.
+struct Amplitude {
+  double re = 0, im = 0;
+};
+
+/// Adds the sum of exp(i q.r) over the bodies.
+void add_amplitude(const Phases (&phases)[3], const Vector3i& n, std::size_t bodies, Amplitude& sum) {
+  const auto at = [&](int axis) { return static_cast<std::size_t>(std::abs(n[axis])) * bodies; };
+  const double* const xr = &phases[0].re[at(0)];
+  const double* const xi = &phases[0].im[at(0)];
+  const double* const yr = &phases[1].re[at(1)];
+  const double* const yi = &phases[1].im[at(1)];
+  const double* const zr = &phases[2].re[at(2)];
+  const double* const zi = &phases[2].im[at(2)];
+  const double sx = n.x() < 0 ? -1 : 1;
+  const double sy = n.y() < 0 ? -1 : 1;
+  const double sz = n.z() < 0 ? -1 : 1;
+  for (std::size_t i = 0; i < bodies; ++i) {
+    const double pr = xr[i] * yr[i] - sx * sy * xi[i] * yi[i];
+    const double pi = sy * xr[i] * yi[i] + sx * xi[i] * yr[i];
+    sum.re += pr * zr[i] - sz * pi * zi[i];
+    sum.im += sz * pr * zi[i] + pi * zr[i];
+  }
+}
+
+/// The same body by body.
+void add_amplitude(const std::vector<Vector3d>& positions, BodyRange range, const Vector3d& q, Amplitude& sum) {
+  for (std::size_t i = range.begin; i < range.end; ++i) {
+    const SinCos one = sincos(q.dot(positions[i]));
+    sum.re += one.cos;
+    sum.im += one.sin;
+  }
+}
+
+/// Puts a pair where it belongs.
+class PairCounter {
+ public:
+  PairCounter(const StructureGrid& grid, const Snapshot& snapshot, const std::vector<BodyRange>& ranges,
+              std::vector<StructureSums>& sums)
+      : snapshot_(snapshot), sums_(sums), bins_(grid.bins()), scale_(static_cast<double>(bins_) / grid.reach()) {
+    group_.resize(snapshot.position.size());
+    for (std::size_t g = 0; g < ranges.size(); ++g) {
+      std::fill(group_.begin() + static_cast<std::ptrdiff_t>(ranges[g].begin),
+                group_.begin() + static_cast<std::ptrdiff_t>(ranges[g].end), g);
+    }
+  }
+
+  void count(std::size_t i, std::size_t j, double squared_distance) {
+    const auto bin = static_cast<std::size_t>(std::sqrt(squared_distance) * scale_);
+    if (bin >= bins_) return;
+    const double value = p2(snapshot_.axis[i].dot(snapshot_.axis[j]));
+    add(sums_[0], bin, value);
+    if (sums_.size() > 1 && group_[i] == group_[j]) add(sums_[group_[i] + 1], bin, value);
+  }
+
+ private:
+  static void add(StructureSums& sums, std::size_t bin, double value) {
+    sums.pairs[bin] += 1;
+    sums.p2[bin] += value;
+  }
+
+  const Snapshot& snapshot_;
+  std::vector<StructureSums>& sums_;
+  std::size_t bins_;
+  double scale_;
+  std::vector<std::size_t> group_;  ///< of each body
+};
+
+void count_all(const StructureGrid& grid, const Snapshot& snapshot, PairCounter& counter) {
+  const double reach2 = grid.reach() * grid.reach();
+  std::vector<Vector3d> wrapped;
+  for (const Vector3d& r : snapshot.position) wrapped.push_back(nearest_image(r, grid.box));
+  const double half = 0.5 * grid.box;
+  const auto image = [&](double x) { return std::abs(x) > half ? std::abs(x) - grid.box : x; };
+  for (std::size_t i = 0; i < wrapped.size(); ++i) {
+    for (std::size_t j = i + 1; j < wrapped.size(); ++j) {
+      const Vector3d d = wrapped[j] - wrapped[i];
+      const double x = image(d.x()), y = image(d.y()), z = image(d.z());
+      const double r2 = x * x + y * y + z * z;
+      if (r2 < reach2) counter.count(i, j, r2);
+    }
+  }
+}
+
+void count_in_cells(const StructureGrid& grid, const Snapshot& snapshot, PairCounter& counter) {
+  const auto number = static_cast<int>(snapshot.position.size());
+  CellGrid cells(number, grid.box, grid.reach());
+  for (int i = 0; i < number; ++i) cells.place(i, snapshot.position[static_cast<std::size_t>(i)]);
+  std::vector<NearBody> buffer;
+  for (int i = 0; i < number; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    for (const NearBody& other : cells.collect(snapshot.position[at], grid.reach(), buffer)) {
+      if (other.body > i) counter.count(at, static_cast<std::size_t>(other.body), other.r.squaredNorm());
+    }
+  }
+}
+
+}  // namespace
+
+// ---- Grid
+
+double StructureGrid::reach() const {
+  return std::min(0.5 * box, kReach * length);
+}
+std::size_t StructureGrid::bins() const {
+  return static_cast<std::size_t>(std::max(1.0, std::round(reach() / (kBin * length))));
+}
+double StructureGrid::shell_width() const {
+  return std::max(2 * std::numbers::pi / box, kLargestQ / (length * kMostShells));
+}
+std::size_t StructureGrid::shells() const {
+  return static_cast<std::size_t>(std::max(1.0, kLargestQ / (length * shell_width())));
+}
+
+StructureGrid structure_grid(const System& system) {
+  const double volume = packing_fraction(system) * system.box * system.box * system.box / system.size();
+  return {system.box, std::cbrt(volume / (4 * std::numbers::pi / 3))};
+}
+
+void StructureSums::add(const StructureSums& other) {
+  for (std::size_t k = 0; k < pairs.size(); ++k) pairs[k] += other.pairs[k];
+  for (std::size_t k = 0; k < p2.size(); ++k) p2[k] += other.p2[k];
+  for (std::size_t k = 0; k < S.size(); ++k) S[k] += other.S[k];
+}
+
+// ---- S(q)
+
+WaveVectors::WaveVectors(const StructureGrid& grid, double from, double to, int most)
+    : box_(grid.box), vectors_(grid.shells()), wave_numbers_(grid.shells(), 0) {
+  Random random(1);
+  const double unit = 2 * std::numbers::pi / box_;
+  const double width = grid.shell_width() / unit;
+  for (std::size_t shell = 0; shell < vectors_.size(); ++shell) {
+    const double centre = (static_cast<double>(shell) + 1) * width;
+    if (centre * unit < from || centre * unit > to) continue;
+    vectors_[shell] = draw_vectors(centre - 0.5 * width, centre + 0.5 * width, most, random);
+    for (const Vector3i& n : vectors_[shell]) {
+      largest_ = std::max(largest_, n.cwiseAbs().maxCoeff());
+      wave_numbers_[shell] += unit * n.cast<double>().norm() / static_cast<double>(vectors_[shell].size());
+    }
+  }
+}
+
+std::vector<double> WaveVectors::structure_factor(const std::vector<Vector3d>& positions, BodyRange range) const {
+  const double unit = 2 * std::numbers::pi / box_;
+  std::vector<std::vector<Amplitude>> sums;
+  for (const std::vector<Vector3i>& shell : vectors_) sums.emplace_back(shell.size());
+  for (std::size_t begin = range.begin; begin < range.end; begin += kAtATime) {
+    const BodyRange some{begin, std::min(range.end, begin + kAtATime), false};
+    // Of large boxes the powers of one phase would be more than the wave vectors.
+    const int largest = largest_ > kLargestPower ? 0 : largest_;
+    const Phases phases[3] = {
+        {positions, some, 0, unit, largest}, {positions, some, 1, unit, largest}, {positions, some, 2, unit, largest}};
+    for (std::size_t s = 0; s < vectors_.size(); ++s) {
+      for (std::size_t v = 0; v < vectors_[s].size(); ++v) {
+        const Vector3i& n = vectors_[s][v];
+        if (largest == largest_) {
+          add_amplitude(phases, n, some.end - some.begin, sums[s][v]);
+        } else {
+          add_amplitude(positions, some, unit * n.cast<double>(), sums[s][v]);
+        }
+      }
+    }
+  }
+  std::vector<double> S;
+  for (const std::vector<Amplitude>& shell : sums) {
+    double sum = 0;
+    for (const Amplitude& a : shell) sum += a.re * a.re + a.im * a.im;
+    S.push_back(shell.empty() ? 0 : sum / (static_cast<double>(shell.size()) * range.size()));
+  }
+  return S;
+}
+
+Peak first_peak(const std::vector<double>& q, const std::vector<double>& S, double length) {
+  Peak peak{std::numeric_limits<double>::quiet_NaN(), -1};
+  std::size_t top = 0;
+  for (std::size_t k = 0; k < q.size(); ++k) {
+    if (q[k] * length < kPeakFrom || q[k] * length > kPeakTo || S[k] <= peak.S) continue;
+    peak = {q[k], S[k]};
+    top = k;
+  }
+  if (!(peak.S > 0)) return {peak.q, peak.q};
+  if (top < 1 || top + 1 >= q.size() || !(q[top - 1] > 0 && q[top + 1] > 0)) return peak;
+  // Newton's divided differences about the top.
+  const double left = q[top - 1] - q[top];
+  const double right = q[top + 1] - q[top];
+  const double d_left = (S[top - 1] - S[top]) / left;
+  const double d_right = (S[top + 1] - S[top]) / right;
+  const double curvature = (d_right - d_left) / (right - left);
+  const double slope = d_left - curvature * left;
+  const double x = -slope / (2 * curvature);
+  if (!(curvature < 0) || x < left || x > right) return peak;
+  return {q[top] + x, S[top] + 0.5 * slope * x};
+}
+
+// ---- The first peak of noisy data
+
+double percus_yevick(double q, double packing_fraction) {
+  const double eta = packing_fraction;
+  const double x = 2 * q;
+  const auto [sin, cos] = sincos(x);
+  const double x2 = x * x;
+  const double close = (1 - eta) * (1 - eta);
+  const double a = (1 + 2 * eta) * (1 + 2 * eta) / (close * close);
+  const double b = -(1 + eta / 2) * (1 + eta / 2) / (close * close);
+  const double first = a * (sin - x * cos) / (x2 * x);
+  const double second = -6 * eta * b * (x2 * cos - 2 * x * sin - 2 * cos + 2) / (x2 * x2);
+  const double third =
+      -0.5 * eta * a * ((x2 * x2 - 12 * x2 + 24) * cos + (24 * x - 4 * x2 * x) * sin - 24) / (x2 * x2 * x2);
+  return 1 / (1 + 24 * eta * (first + second + third));
+}
+
+namespace {
+
+/// The top of Percus and Yevick's first peak.
+double percus_yevick_peak(double packing_fraction) {
+  // From 2.88 in a gas to 4 beyond all fluids.
+  constexpr int kNumber = 40;
+  std::vector<double> q, S;
+  q.reserve(kNumber);
+  S.reserve(kNumber);
+  for (int k = 0; k < kNumber; ++k) {
+    q.push_back(2.5 + 0.05 * k);
+    S.push_back(percus_yevick(q.back(), packing_fraction));
+  }
+  return first_peak(q, S, 1).q;
+}
+
+/// The sum of squares that the best height leaves, in units of the scatter, and what is expected of the scale.
+double misfit(const WaveVectors& vectors, const std::vector<double>& S, double frames, double length,
+              double packing_fraction, double scale, int step) {
+  double tt = 0, ty = 0, yy = 0;
+  for (std::size_t k = 0; k < S.size(); ++k) {
+    const double q = vectors.wave_numbers()[k] * length;
+    if (q < kFittedFrom || q > kPeakTo) continue;
+    const double weight = frames * static_cast<double>(vectors.number(k));
+    const double t = percus_yevick(q / scale, packing_fraction) - 1;
+    tt += weight * t * t;
+    ty += weight * t * (S[k] - 1);
+    yy += weight * (S[k] - 1) * (S[k] - 1);
+  }
+  const double off = step * kLogScaleStep / kScaleSpread;
+  return yy - (ty > 0 ? ty * ty / tt : 0) + off * off;
+}
+
+/// By how much the peak is stretched: the least misfit, with a parabola through its neighbours.
+double best_scale(const WaveVectors& vectors, const std::vector<double>& S, double frames, double length,
+                  double packing_fraction) {
+  std::vector<double> scales = {1};
+  for (int k = 0; k < kScaleSteps; ++k) {
+    scales.insert(scales.begin(), scales.front() / kScaleStep);
+    scales.push_back(scales.back() * kScaleStep);
+  }
+  std::vector<double> misfits;
+  misfits.reserve(scales.size());
+  for (int k = 0; k < static_cast<int>(scales.size()); ++k) {
+    misfits.push_back(
+        misfit(vectors, S, frames, length, packing_fraction, scales[static_cast<std::size_t>(k)], k - kScaleSteps));
+  }
+  const auto best = static_cast<std::size_t>(std::min_element(misfits.begin(), misfits.end()) - misfits.begin());
+  if (best == 0 || best + 1 == misfits.size()) return scales[best];
+  const double bend = misfits[best - 1] - 2 * misfits[best] + misfits[best + 1];
+  const double shift = bend > 0 ? 0.5 * (misfits[best - 1] - misfits[best + 1]) / bend : 0;
+  return scales[best] * (1 + shift * (kScaleStep - 1));
+}
+
+/// Whether a peak of S(q) stands out of its scatter.
+bool is_clear(const WaveVectors& vectors, double frames, const Peak& peak) {
+  const std::vector<double>& q = vectors.wave_numbers();
+  std::size_t nearest = 0;
+  for (std::size_t k = 0; k < q.size(); ++k) {
+    if (std::abs(q[k] - peak.q) < std::abs(q[nearest] - peak.q)) nearest = k;
+  }
+  const double error = peak.S / std::sqrt(frames * static_cast<double>(vectors.number(nearest)));
+  return peak.S - 1 > kClearPeak * error;
+}
+
+}  // namespace
+
+std::optional<double> clear_peak(const WaveVectors& vectors, const std::vector<double>& S, double frames,
+                                 double length) {
+  const Peak peak = first_peak(vectors.wave_numbers(), S, length);
+  return is_clear(vectors, frames, peak) ? std::optional(peak.q) : std::nullopt;
+}
+
+double likely_peak(const WaveVectors& vectors, const std::vector<double>& S, double frames, const StructureGrid& grid,
+                   double packing_fraction) {
+  if (const auto clear = clear_peak(vectors, S, frames, grid.length)) return *clear;
+  return best_scale(vectors, S, frames, grid.length, packing_fraction) * percus_yevick_peak(packing_fraction) /
+         grid.length;
+}
+
+// ---- Pairs
+
+std::vector<StructureSums> count_pairs(const StructureGrid& grid, const Snapshot& snapshot,
+                                       const std::vector<BodyRange>& ranges) {
+  std::vector<StructureSums> sums(ranges.size() > 1 ? ranges.size() + 1 : 1);
+  for (StructureSums& part : sums) {
+    part.pairs.assign(grid.bins(), 0);
+    part.p2.assign(grid.bins(), 0);
+  }
+  PairCounter counter(grid, snapshot, ranges, sums);
+  if (snapshot.position.size() <= kFewBodies) {
+    count_all(grid, snapshot, counter);
+  } else {
+    count_in_cells(grid, snapshot, counter);
+  }
+  return sums;
+}
+
+}  // namespace ed::internal

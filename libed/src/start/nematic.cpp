@@ -1,0 +1,250 @@
+#include "start/nematic.h"
+
+#include "cells/grid.h"
+#include "start/parts.h"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <iomanip>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace ed::internal {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+/// Not aligned: the same for every -march (geom/kernel/small_solve.h says why).
+using Quaternion = Eigen::Quaternion<double, Eigen::DontAlign>;
+
+/// u = 1 - |cos(theta)| is proposed with density ~ 1 / (1 + m u)^2 on [0, 1], of which this is the inverse of the
+/// distribution function.
+double proposed(double m, double r) {
+  return r / (1 + m * (1 - r));
+}
+
+/// exp(m (cos^2 - 1)) / proposal, at most 4/e: the exponent is -m u (2 - u) <= -m u, and (1 + y)^2 exp(-y) has its
+/// maximum at y = 1.
+double weight(double m, double u) {
+  return std::exp(-m * u * (2 - u)) * (1 + m * u) * (1 + m * u);
+}
+constexpr double kLargestWeight = 1.4715177646857694;  // 4 / e, rounded up
+
+/// 1 - S by Simpson's rule in r, where the weight is smooth whatever m.
+double disorder(double m) {
+  constexpr int kIntervals = 512;
+  double all = 0;
+  double sum = 0;
+  for (int i = 0; i <= kIntervals; ++i) {
+    const double u = proposed(m, static_cast<double>(i) / kIntervals);
+    const double w = weight(m, u) * (i == 0 || i == kIntervals ? 1 : i % 2 == 1 ? 4 : 2);
+    all += w;
+    sum += w * u * (2 - u);
+  }
+  return 1.5 * sum / all;
+}
+
+/// By bisection: libm has a say only in which half is taken, far from rounding.
+double strength_for(double order) {
+  double high = 1;
+  while (disorder(high) > 1 - order) high *= 2;
+  double low = 0;
+  while (high - low > 1e-12 * high) {
+    const double middle = 0.5 * (low + high);
+    (disorder(middle) > 1 - order ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+void check_order(double order) {
+  if (order >= 0 && order < 1) return;
+  std::ostringstream message;
+  message << "nematic_order is " << order << "; accepted: at least 0, below 1";
+  throw std::invalid_argument(message.str());
+}
+
+// ---- Rotations in place
+
+/// Sweeps over all bodies in one round, after each of which is seen whether the order still falls; and as many after it
+/// has arrived, in which the orientations forget where they come from.
+constexpr int kRound = 50;
+/// Less than this a round, relative to 1 - S, is no progress.
+constexpr double kLeastFall = 4e-3;
+
+/// All bodies turning together would lower the order about z too: elements xz and yz of the order tensor stay below
+/// kMostTilt / sqrt(number of bodies), their standard deviation for independent bodies being at most 0.39 of that each.
+constexpr double kMostTilt = 1;
+
+/// Bodies that turn where they stand.
+class Turning {
+ public:
+  Turning(System& system, const std::vector<int>& axes, double order)
+      : system_(system),
+        axes_(axes),
+        least_(order),
+        most_tilt_(kMostTilt / std::sqrt(system.size())),
+        cells_(system.size(), system.box, reach_of(system)) {
+    reach_ = reach_of(system);
+    for (int i = 0; i < system.size(); ++i) {
+      const Body& body = system.bodies[static_cast<std::size_t>(i)];
+      cells_.place(i, body.position);
+      turns_.emplace_back(body.rotation);
+      order_ += p2(body.rotation, axis_of(body)) / system.size();
+    }
+  }
+
+  double order() const { return order_; }
+  bool arrived() const { return arrived_; }
+
+  void sweep(Random& random) {
+    int accepted = 0;
+    for (int i = 0; i < system_.size(); ++i) accepted += try_turn(i, random) ? 1 : 0;
+    // A third of the turns accepted, or as large ones as make sense.
+    step_ = std::min(1.0, step_ * (3 * accepted > system_.size() ? 1.1 : 0.9));
+  }
+
+ private:
+  static double reach_of(const System& system) {
+    double largest = 0;
+    for (const Species& species : system.species) largest = std::max(largest, bounding_radius(species.shape));
+    return 2 * largest;
+  }
+  /// Elements xz and yz of the order tensor.
+  static Vector2d tilt_of(const Matrix3d& rotation, int axis) {
+    return 1.5 * rotation(2, axis) * rotation.col(axis).head<2>();
+  }
+  static double p2(const Matrix3d& rotation, int axis) { return 1.5 * rotation(2, axis) * rotation(2, axis) - 0.5; }
+  int axis_of(const Body& body) const { return axes_[static_cast<std::size_t>(body.species)]; }
+
+  bool try_turn(int i, Random& random) {
+    Body& body = system_.bodies[static_cast<std::size_t>(i)];
+    Quaternion& turn = turns_[static_cast<std::size_t>(i)];
+    const Vector3d small = step_ * random.normal3();
+    const Quaternion next = (Quaternion(1, small.x(), small.y(), small.z()) * turn).normalized();
+    const Matrix3d rotation = next.toRotationMatrix();
+    const double change = (p2(rotation, axis_of(body)) - p2(body.rotation, axis_of(body))) / system_.size();
+    if (order_ + change < least_) {
+      arrived_ = true;
+      return false;
+    }
+    const Vector2d tilt =
+        tilt_ + (tilt_of(rotation, axis_of(body)) - tilt_of(body.rotation, axis_of(body))) / system_.size();
+    if (tilt.norm() > most_tilt_ || blocked(i, rotation)) return false;
+    order_ += change;
+    tilt_ = tilt;
+    turn = next;
+    body.rotation = rotation;
+    return true;
+  }
+
+  bool blocked(int i, const Matrix3d& rotation) {
+    const geom::Pose pose(rotation, system_.bodies[static_cast<std::size_t>(i)].position);
+    const auto others = cells_.collect(pose.position(), reach_, near_);
+    return std::any_of(others.begin(), others.end(), [&](const NearBody& other) {
+      if (other.body == i) return false;
+      const Matrix3d& R = system_.bodies[static_cast<std::size_t>(other.body)].rotation;
+      return overlaps(system_.species_of(i).shape, pose, system_.species_of(other.body).shape,
+                      geom::Pose(R, pose.position() + other.r));
+    });
+  }
+
+  System& system_;
+  const std::vector<int>& axes_;
+  double least_;
+  double order_ = 0;
+  Vector2d tilt_ = Vector2d::Zero();
+  double most_tilt_;
+  bool arrived_ = false;
+  double step_ = 0.1;
+  double reach_ = 0;
+  CellGrid cells_;
+  std::vector<Quaternion> turns_;  ///< unit: products of rotation matrices would drift
+  std::vector<NearBody> near_;
+};
+
+/// An order next to 1, with two digits of what it lacks; three at least.
+std::string shown(double order) {
+  const double digits = std::clamp(1 - std::floor(std::log10(1 - order)), 3.0, 15.0);
+  std::ostringstream text;
+  text << std::fixed << std::setprecision(static_cast<int>(digits)) << order;
+  return text.str();
+}
+
+/// The value named is accepted: the same turns come to it on their way to `reached`.
+[[noreturn]] void refuse_order(const System& system, double order, double reached, const std::string& numbers) {
+  const double from_one = 0.9 * (1 - reached);
+  std::ostringstream message;
+  message << "nematic_order is " << order << ": at packing fraction " << packing_fraction(system)
+          << " bodies on these sites do not turn further than to an order of " << shown(reached) << "; accepted: ";
+  if (from_one > 1e-9) {
+    const double unit = std::pow(10, std::floor(std::log10(from_one)) - 1);
+    message << "at least " << std::setprecision(12) << 1 - std::floor(from_one / unit) * unit << ", ";
+  }
+  if (!numbers.empty()) message << "a number of " << numbers << ", whose cells fit the bodies, ";
+  message << "no nematic_order (all aligned), or a lower packing fraction";
+  throw std::invalid_argument(message.str());
+}
+
+}  // namespace
+
+void turn_to_order(System& system, const std::vector<int>& axes, double order, Random& random,
+                   const std::function<std::string()>& other_numbers) {
+  check_order(order);
+  Turning turning(system, axes, order);
+  for (double before = 2; !turning.arrived();) {
+    double mean = 0;
+    for (int k = 0; k < kRound && !turning.arrived(); ++k) {
+      turning.sweep(random);
+      mean += turning.order() / kRound;
+    }
+    if (!turning.arrived() && mean > before - kLeastFall * (1 - mean)) {
+      refuse_order(system, order, mean, other_numbers());
+    }
+    before = mean;
+  }
+  for (int k = 0; k < kRound; ++k) turning.sweep(random);
+}
+
+NematicOrientations::NematicOrientations(double order) {
+  check_order(order);
+  m_ = order == 0 ? 0 : strength_for(order);
+}
+
+Matrix3d NematicOrientations::draw(int axis, Random& random) const {
+  double u = 0;
+  do {
+    u = proposed(m_, random.uniform());
+  } while (random.uniform() * kLargestWeight > weight(m_, u));
+  const double z = random.bits() >> 63 == 0 ? 1 - u : u - 1;
+  // Directions across z, and then across the axis, are uniform as those of a random vector are.
+  const Vector3d around = random.direction();
+  const Vector3d across = Vector3d(around.x(), around.y(), 0).normalized();
+  const Vector3d direction = (std::sqrt(u * (2 - u)) * across + z * Vector3d::UnitZ()).normalized();
+  Vector3d other = random.direction();
+  while (direction.cross(other).squaredNorm() < 1e-4) other = random.direction();
+  Matrix3d rotation;
+  rotation.col(axis) = direction;
+  rotation.col((axis + 1) % 3) = direction.cross(other).normalized();
+  rotation.col((axis + 2) % 3) = direction.cross(Vector3d(rotation.col((axis + 1) % 3)));
+  return rotation;
+}
+
+int ordered_axis(const Species& species) {
+  return symmetry_axis(species).value_or(2);
+}
+
+Matrix3d aligned(int axis) {
+  Matrix3d rotation;
+  rotation.col(axis) = Vector3d::UnitZ();
+  rotation.col((axis + 1) % 3) = Vector3d::UnitX();
+  rotation.col((axis + 2) % 3) = Vector3d::UnitY();
+  return rotation;
+}
+
+}  // namespace ed::internal

@@ -1,0 +1,236 @@
+#include "contact/body_shapes.h"
+
+#include <ed/shape.h>
+#include <ed/tolerances.h>
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace ed {
+namespace {
+
+using Eigen::Vector3d;
+
+/// Calls f with the shape inside.
+template <class F>
+decltype(auto) with(const BodyShape& shape, F&& f) {
+  return std::visit(std::forward<F>(f), shape);
+}
+
+std::optional<int> axis_of(const geom::Ellipsoid& shape) {
+  return shape.symmetry_axis();
+}
+
+std::optional<int> axis_of(const geom::Superellipsoid& shape) {
+  const Vector3d& a = shape.semi_axes();
+  if (shape.is_ellipsoid()) return geom::Ellipsoid(a).symmetry_axis();
+  if (shape.e2() == 1 && a.x() == a.y()) return 2;
+  return std::nullopt;
+}
+
+std::optional<int> axis_of(const CustomShape& shape) {
+  return shape.symmetry_axis();
+}
+
+std::string by_axes(const char* kind, const Vector3d& a) {
+  std::ostringstream text;
+  text << kind << " " << a.x() << " x " << a.y() << " x " << a.z();
+  return text.str();
+}
+
+std::string name_of(const geom::Ellipsoid& shape) {
+  return by_axes("ellipsoid of semi-axes", shape.semi_axes());
+}
+
+std::string name_of(const geom::Superellipsoid& shape) {
+  std::ostringstream text;
+  text << by_axes("superellipsoid of semi-axes", shape.semi_axes()) << ", exponents " << shape.e1() << ", "
+       << shape.e2();
+  return text.str();
+}
+
+std::string name_of(const CustomShape& shape) {
+  return shape.name();
+}
+
+[[noreturn]] void refuse(const std::string& name, const std::string& what, double value, const std::string& accepted) {
+  std::ostringstream message;
+  message << "shape " << name << ": " << what << " is " << value << "; accepted: " << accepted;
+  throw std::invalid_argument(message.str());
+}
+
+/// The body's axes to both sides, and others spread evenly, on a spiral.
+std::vector<Vector3d> directions_to_check() {
+  constexpr int kSpread = 64;
+  constexpr double kGoldenAngle = 2.39996322972865332;
+  std::vector<Vector3d> result;
+  result.reserve(6 + kSpread);
+  for (int k = 0; k < 6; ++k) result.emplace_back((k < 3 ? 1.0 : -1.0) * Vector3d::Unit(k % 3));
+  for (int k = 0; k < kSpread; ++k) {
+    const double z = 1 - (2 * k + 1.0) / kSpread;
+    const double across = std::sqrt(1 - z * z);
+    result.emplace_back(across * std::cos(kGoldenAngle * k), across * std::sin(kGoldenAngle * k), z);
+  }
+  return result;
+}
+
+std::string along(const Vector3d& n) {
+  std::ostringstream text;
+  text << " along (" << n.x() << ", " << n.y() << ", " << n.z() << ")";
+  return text.str();
+}
+
+}  // namespace
+
+void CustomShape::check() {
+  bounding_radius_ = shape_->bounding_radius();
+  inscribed_radius_ = shape_->inscribed_radius();
+  min_curvature_radius_ = shape_->min_curvature_radius();
+  constexpr double kBall = 4.18879020478639098;  // 4 pi / 3
+  constexpr double kRounding = 1e-9;
+  constexpr double kAnyAngle = 1;  // none by which polygons turn into themselves
+  const double R = bounding_radius_;
+  const double r = inscribed_radius_;
+  if (!(R > 0) || !std::isfinite(R)) refuse(name(), "bounding_radius()", R, "a positive number");
+  if (!(r > 0 && r <= R * (1 + kRounding))) {
+    refuse(name(), "inscribed_radius()", r, "positive, at most the bounding radius");
+  }
+  if (!(min_curvature_radius_ >= 0 && min_curvature_radius_ <= r * (1 + kRounding))) {
+    refuse(name(), "min_curvature_radius()", min_curvature_radius_, "0 to the inscribed radius");
+  }
+  if (!(volume() >= kBall * r * r * r * (1 - kRounding) && volume() <= kBall * R * R * R * (1 + kRounding))) {
+    refuse(name(), "volume", volume(), "between those of the inscribed and the bounding sphere");
+  }
+  if (symmetry_axis() && (*symmetry_axis() < 0 || *symmetry_axis() > 2)) {
+    refuse(name(), "symmetry_axis", *symmetry_axis(), "0, 1 or 2");
+  }
+  for (const Vector3d& n : directions_to_check()) {
+    const double height = support(n).height;
+    if (!(height >= r * (1 - kRounding) && height <= R * (1 + kRounding))) {
+      refuse(name(), "the support height" + along(n), height, "between the inscribed and the bounding radius");
+    }
+    const auto differs = [&](const Vector3d& m) { return std::abs(support(m).height - height) > kRounding * R; };
+    if (centrally_symmetric() && differs(-n)) {
+      refuse(name(), "centrally_symmetric", 1, "false: the support heights to both sides differ" + along(n));
+    }
+    if (!symmetry_axis()) continue;
+    const Vector3d axis = Vector3d::Unit(*symmetry_axis());
+    if (differs(Eigen::AngleAxisd(kAnyAngle, axis) * n)) {
+      refuse(name(), "symmetry_axis", *symmetry_axis(), "none: a turn about it changes the support height" + along(n));
+    }
+  }
+}
+
+double bounding_radius(const BodyShape& shape) {
+  return with(shape, [](const auto& s) { return s.bounding_radius(); });
+}
+
+double inscribed_radius(const BodyShape& shape) {
+  return with(shape, [](const auto& s) { return s.inscribed_radius(); });
+}
+
+bool is_sphere(const BodyShape& shape) {
+  return bounding_radius(shape) == inscribed_radius(shape);
+}
+
+double volume(const BodyShape& shape) {
+  return with(shape, [](const auto& s) { return s.volume(); });
+}
+
+geom::Support support(const BodyShape& shape, const Vector3d& n) {
+  return with(shape, [&n](const auto& s) { return geom::Support(s.support(n)); });
+}
+
+std::optional<int> symmetry_axis(const BodyShape& shape) {
+  return with(shape, [](const auto& s) { return axis_of(s); });
+}
+
+Vector3d half_extents(const BodyShape& shape) {
+  Vector3d result;
+  for (int k = 0; k < 3; ++k) {
+    const Vector3d e = Vector3d::Unit(k);
+    result[k] = std::max(support(shape, e).height, support(shape, -e).height);
+  }
+  return result;
+}
+
+geom::DistanceResult distance(const BodyShape& a, const geom::Pose& X_WA, const BodyShape& b, const geom::Pose& X_WB) {
+  return std::visit([&](const auto& A, const auto& B) { return geom::distance(A, X_WA, B, X_WB); }, a, b);
+}
+
+std::string describe(const BodyShape& shape) {
+  return with(shape, [](const auto& s) { return name_of(s); });
+}
+
+namespace internal {
+namespace {
+
+/// |s| <= R, h >= r.
+template <class Shape>
+double lever(const Shape& shape) {
+  const double R = shape.bounding_radius();
+  const double r = shape.inscribed_radius();
+  return std::sqrt(std::max(0.0, (R - r) * (R + r)));
+}
+
+/// |s|^2 - h^2 = n.A^4 n / n.A^2 n - n.A^2 n <= (a_max - a_min)^2 (Kantorovich).
+double lever(const geom::Ellipsoid& shape) {
+  return shape.bounding_radius() - shape.inscribed_radius();
+}
+
+}  // namespace
+
+double turning_lever(const geom::Ellipsoid& shape) {
+  return lever(shape);
+}
+
+double turning_lever(const geom::Shape& shape) {
+  return std::visit([](const auto& s) { return lever(s); }, shape);
+}
+
+double turning_lever(const BodyShape& shape) {
+  return std::visit([](const auto& s) { return lever(s); }, shape);
+}
+
+void check_exponents(const BodyShape& shape) {
+  const auto* s = std::get_if<geom::Superellipsoid>(&shape);
+  if (s == nullptr) return;
+  for (const double e : {s->e1(), s->e2()}) {
+    if (e >= kMinExponentInMotion && e <= kMaxExponentInMotion) continue;
+    std::ostringstream message;
+    message << "exponent is " << e << "; accepted of bodies in motion: " << kMinExponentInMotion << " to "
+            << kMaxExponentInMotion;
+    throw std::invalid_argument(message.str());
+  }
+}
+
+std::optional<geom::Shape> geom_shape(const BodyShape& shape) {
+  if (const auto* ellipsoid = std::get_if<geom::Ellipsoid>(&shape)) return *ellipsoid;
+  if (const auto* superellipsoid = std::get_if<geom::Superellipsoid>(&shape)) return *superellipsoid;
+  return std::nullopt;
+}
+
+void check_finder(const ContactOptions& options, const BodyShape& shape) {
+  if (options.finder == Finder::certified || geom_shape(shape)) return;
+  throw std::invalid_argument("finder \"bracketing\" solves equations of implicit surfaces, and shape " +
+                              describe(shape) + " is a support function; accepted: \"certified\"");
+}
+
+NormBodyShape norm_body(const BodyShape& shape) {
+  const auto make = [](const auto& s, bool has_vertices) -> NormBodyShape {
+    return {geom::kernel::NormShape(s), s.bounding_radius(), s.inscribed_radius(), lever(s), has_vertices};
+  };
+  if (const auto* ellipsoid = std::get_if<geom::Ellipsoid>(&shape)) return make(*ellipsoid, false);
+  const auto& body = std::get<geom::Superellipsoid>(shape);
+  return make(body, body.e1() > 1 || body.e2() > 1);
+}
+
+}  // namespace internal
+
+}  // namespace ed

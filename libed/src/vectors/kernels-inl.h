@@ -1,0 +1,27 @@
+/// The kernels of ellipsoids of revolution.
+///
+/// Included once by each uniaxial_kernels_*.cpp, which sets HARDBODY_UNIAXIAL_KERNELS, the function's name, and is
+/// compiled for its own instruction set. All else here has internal linkage (uniaxial_kernels.h says why).
+///
+/// A lane gives the bits that the code for one pair gives: the same formulas in the same order, without fused
+/// multiply-add. What a lane computes does not depend on its neighbours.
+
+// What the kernels do not need should not be asked of the processor.
+#define HWY_DISABLE_PCLMUL_AES
+#define HWY_DISABLE_F16C
+// Highway's checks would call its library.
+#undef HWY_IS_DEBUG_BUILD
+#define HWY_IS_DEBUG_BUILD 0
+
+#include "vectors/kernels.h"
+
+#include "vectors/look_kernel-inl.h"
+#include "vectors/meet_kernel-inl.h"
+
+namespace ed::internal {
+
+UniaxialKernels HARDBODY_UNIAXIAL_KERNELS() {
+  return {look<false>, look<true>, meet};
+}
+
+}  // namespace ed::internal

@@ -1,0 +1,342 @@
+/// What certified_contact (certified_contact.h) finds with one evaluation, one pair to a vector lane. Part of
+/// uniaxial_kernels-inl.h.
+///
+/// Lanes that need anything but the usual (a normal that needs more than kMostSteps steps or falls back, bodies that
+/// touch, a contact near enough for Newton's method) are left open, and searched from the start.
+
+#pragma once
+
+#include "vectors/lanes-inl.h"
+#include "base/nearest_integer.h"
+#include "contact/parabola_steps.h"
+#include "base/reduced_sincos.h"
+#include "contact/rounding.h"
+#include "contact/sphere_window.h"
+#include "contact/support_curvature.h"
+
+#include <ed/tolerances.h>
+
+#include <geom/tolerances.h>
+
+#include <cstddef>
+#include <cstdint>
+
+HWY_BEFORE_NAMESPACE();
+namespace ed::internal {
+namespace {
+
+/// Newton steps of a normal before its pair is left open.
+constexpr int kMostSteps = 3;
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Pairs in motion
+
+/// As sincos, for |x| <= kLargestAngle.
+HWY_INLINE void sincos(Real x, Real& sin, Real& cos) {
+  const ReducedSinCos<Real> reduced = reduced_sincos(x);
+  const auto one = hn::Set(Bits(), std::uint64_t{1});
+  const auto quadrant = hn::BitCast(Bits(), reduced.shifted.v);
+  const auto odd = hn::MaskFromVec(hn::BitCast(Tag(), hn::Sub(hn::Zero(Bits()), hn::And(quadrant, one))));
+  const auto sin_sign = hn::BitCast(Tag(), hn::ShiftLeft<62>(hn::AndNot(one, quadrant)));
+  const auto cos_sign = hn::BitCast(Tag(), hn::ShiftLeft<62>(hn::AndNot(one, hn::Add(quadrant, one))));
+  const auto sign_bit = hn::SignBit(Tag());
+  sin = Real(hn::Xor(hn::IfThenElse(odd, reduced.cos.v, reduced.sin.v), hn::And(sin_sign, sign_bit)));
+  cos = Real(hn::Xor(hn::IfThenElse(odd, reduced.sin.v, reduced.cos.v), hn::And(cos_sign, sign_bit)));
+}
+
+template <bool kSpin>
+struct SpinAxis {
+  Real3 e0;
+};
+template <>
+struct SpinAxis<false> {};
+
+/// One body at the time of the look.
+template <bool kSpin>
+struct Body : SpinAxis<kSpin> {
+  Shape shape;
+  Real3 u, du;  ///< axis and its rate of change
+  Real rate;
+  Real axis_rate;  ///< AxisMotion::axis_rate
+};
+
+/// An AxisMotion in each lane.
+template <bool kSpin>
+struct Course : SpinAxis<kSpin> {
+  Real3 position, velocity;
+  Real3 e1, e2;
+  Real rate, time;
+};
+
+template <bool kSpin>
+HWY_INLINE Course<kSpin> load_course(const double* const* bodies) {
+  using Number = LookBody::Number;
+  static_assert(Number::e0 == 14);
+  Real x[Number::e0];
+  for (int k = 0; k < Number::e0; k += 2) load_two(bodies, k, x[k], x[k + 1]);
+  const auto vector = [&](Number k) { return Real3(x[k], x[k + 1], x[k + 2]); };
+  Course<kSpin> course;
+  course.position = vector(Number::position);
+  course.velocity = vector(Number::velocity);
+  course.e1 = vector(Number::e1);
+  course.e2 = vector(Number::e2);
+  course.rate = x[Number::rate];
+  course.time = x[Number::time];
+  if constexpr (kSpin) course.e0 = load_three(bodies, Number::e0);
+  return course;
+}
+
+/// Axis and its rate of change, as `turn` in uniaxial_gauge.h. Returns the lanes whose angle is within the range of
+/// sincos.
+template <bool kSpin>
+HWY_INLINE Lanes turn(const Course<kSpin>& course, Real t, Body<kSpin>& body) {
+  const Real3& e1 = course.e1;
+  const Real3& e2 = course.e2;
+  const Real dt = t - course.time;
+  body.rate = course.rate;
+  body.axis_rate = body.rate;
+  if constexpr (kSpin) body.axis_rate = select(sum_of_magnitudes(e2) > 0, body.rate, 0.0);
+  const Real3 du_now = body.rate * e2;
+  const Lanes at_once = dt == 0;
+  body.u = e1;
+  body.du = du_now;
+  const Real angle = body.rate * dt;
+  if (!all(at_once)) {
+    Real sin, cos;
+    sincos(angle, sin, cos);
+    body.u = select(at_once, e1, cos * e1 + sin * e2);
+    body.du = select(at_once, du_now, body.rate * (cos * e2 - sin * e1));
+  }
+  if constexpr (kSpin) {
+    body.e0 = course.e0;
+    body.u = body.u + body.e0;
+  }
+  return abs(angle) <= kLargestAngle;
+}
+
+/// As in periodic.h.
+HWY_INLINE Real nearest_image(Real d, Real box, Real inverse) {
+  return d - box * nearest_integer(d * inverse);
+}
+
+/// Pairs at the time of the look.
+template <bool kSpin>
+struct Pairs {
+  Body<kSpin> a, b;
+  Real3 r, v, n;
+  Real reach;
+  Real turning;  ///< reach times both rates of the axes
+  Real limit;    ///< UniaxialGauge::curvature_limit
+  RoundingOf<Real> hidden;
+  Real t;
+  Real end;  ///< of the window
+
+  HWY_INLINE Gap gap() const { return geom::kernel::uniaxial_gap_of<Both>(a.shape, b.shape, r, a.u, b.u, n); }
+  HWY_INLINE Real rate(const Gap& gap) const { return gap_rate(v, a.du, b.du, gap.lever, n); }
+  HWY_INLINE Lanes clear(const Gap& gap) const { return clear_by_parabola(gap.g, rate(gap), limit, hidden, end - t); }
+  HWY_INLINE Step step(const Gap& gap, Lanes& definite) const {
+    return newton_step(a.shape, b.shape, r, a.u, b.u, n, gap, definite);
+  }
+};
+
+/// As `pair_scales` in uniaxial_gauge.h.
+template <bool kSpin>
+HWY_INLINE PairScalesOf<Real> pair_scales(const LookInput& in, int lane, const Pairs<kSpin>& p, const Course<kSpin>& a,
+                                          const Course<kSpin>& b) {
+  return {.size = p.reach,
+          .places = sum_of_magnitudes(a.position) + sum_of_magnitudes(b.position),
+          .speed = sum_of_magnitudes(a.velocity) + sum_of_magnitudes(b.velocity),
+          .turning = p.turning,
+          .bending = load(in.rows[LookInput::turning_limit_a], lane) * p.a.axis_rate +
+                     load(in.rows[LookInput::turning_limit_b], lane) * p.b.axis_rate,
+          .limit = p.limit,
+          .origin = larger(abs(Real(in.now)), larger(abs(a.time), abs(b.time)))};
+}
+
+/// Makes the pairs, and evaluates the gap at the normals that they came with, which settles most. `open`: those that
+/// count; then those among them that a second pass may settle.
+template <bool kSpin>
+HWY_INLINE void first_pass(const LookInput& in, int lane, LookOutput& out, Pairs<kSpin>& p, Lanes& open) {
+  const Real now = in.now;
+  const Real box = in.box;
+  const Real inverse = 1 / in.box;
+  const Course<kSpin> course_a = load_course<kSpin>(in.body_a + lane);
+  const Course<kSpin> course_b = load_course<kSpin>(in.body_b + lane);
+  const auto position = [&](const Course<kSpin>& course) {
+    return course.position + (now - course.time) * course.velocity;
+  };
+  const Real3 d = position(course_b) - position(course_a);
+  const Real3 r(nearest_image(d.x(), box, inverse), nearest_image(d.y(), box, inverse),
+                nearest_image(d.z(), box, inverse));
+  p.v = course_b.velocity - course_a.velocity;
+  p.reach = load(in.rows[LookInput::reach], lane);
+  p.n = load_three(in.normal + lane, 0);
+  const WindowOf<Real> window = sphere_window(r, p.v, p.reach, now, now, load(in.rows[LookInput::end], lane));
+  const Lanes meet = window.begin < window.end;
+  p.t = window.begin;
+  p.end = window.end;
+  p.r = r + (p.t - now) * p.v;
+  p.a.shape = load_shape(in.rows + LookInput::shape_a, lane);
+  p.b.shape = load_shape(in.rows + LookInput::shape_b, lane);
+  const Lanes in_range = turn(course_a, p.t, p.a) & turn(course_b, p.t, p.b);
+  p.turning = p.reach * (p.a.axis_rate + p.b.axis_rate);
+  p.limit = load(in.rows[LookInput::turning_limit_a], lane) * (p.a.axis_rate * p.a.axis_rate) +
+            load(in.rows[LookInput::turning_limit_b], lane) * (p.b.axis_rate * p.b.axis_rate);
+  p.hidden = pair_scales(in, lane, p, course_a, course_b).rounding(p.t);
+  const Lanes clear = meet & in_range & p.clear(p.gap());
+  open = open & meet & in_range & !clear;
+  store(select(clear | !meet, LookOutput::clear, LookOutput::open), out.rows[LookOutput::verdict], lane);
+  store(select(meet, 1, 0), out.rows[LookOutput::kernel_calls], lane);
+}
+
+/// As certified_step in curvature_steps.h.
+template <bool kSpin>
+HWY_INLINE Real certified_step(const Pairs<kSpin>& p, const Gap& gap, Real gp, Real horizon) {
+  const auto curvature_of = [&](const Body<kSpin>& body, Real x) -> SupportCurvature<kSpin, Real> {
+    Real centre = 0;
+    if constexpr (kSpin) centre = body.e0.dot(p.n);
+    return {x, body.du.dot(p.n), body.rate, centre};
+  };
+  const auto a = curvature_of(p.a, gap.x[0]);
+  const auto b = curvature_of(p.b, gap.x[1]);
+  return step_by_parabola(gap.g, gp, p.hidden, horizon,
+                          [&](Real reach) { return a.bound(p.a.shape, reach) + b.bound(p.b.shape, reach); });
+}
+
+/// Improves the normals of the first `pairs` as improve_normal in certified_contact.h does, and makes the certified
+/// step.
+template <bool kSpin>
+HWY_INLINE void second_pass(Pairs<kSpin>& p, int pairs, LookOutput& out, int lane) {
+  Lanes improving{hn::FirstN(Tag(), static_cast<std::size_t>(pairs))};
+  Lanes clear = none();
+  Lanes usable = none();
+  Real kernel_calls = 1;
+  Gap gap = p.gap();
+  for (int steps = 0;; ++steps) {
+    Lanes definite;
+    const Step newton = p.step(gap, definite);
+    usable =
+        usable | (improving & definite &
+                  ((newton.decrement <= kLooseDecrement * gap.g) | (newton.decrement <= kTightDecrement * p.reach)));
+    // A step that would be capped leaves the pair open.
+    improving = improving & !usable & definite & (newton.delta2 <= geom::kMaxNormalStep * geom::kMaxNormalStep);
+    if (steps == kMostSteps || !any(improving)) break;
+    const Real least = gap.g - geom::kRoundingFactor * p.reach;
+    // The others stay where they are: their numbers come out the same again.
+    p.n = select(improving, step_on_sphere(p.n, newton.delta), p.n);
+    kernel_calls = kernel_calls + select(improving, 1, 0);
+    gap = p.gap();
+    improving = improving & (gap.g >= least);
+    clear = clear | (improving & p.clear(gap));
+    improving = improving & !clear;
+  }
+  usable = usable & (gap.g > p.hidden.gap);
+
+  const Real horizon = p.end - p.t;
+  const Real gp = p.rate(gap);
+  const Real tau = certified_step<kSpin>(p, gap, gp, horizon);
+  const Lanes to_the_end = usable & (tau >= horizon);
+  const Lanes approach = gp < 0;
+  // Worth refining: left open.
+  const Real speed = sqrt(p.v.squaredNorm()) + p.turning;
+  const Real spread = -gap.g / gp - tau;
+  const Lanes worth_refining = approach & nearly_straight(gp, spread, p.reach, speed, p.limit);
+  const Real until = p.t + tau;
+  const Lanes bound = usable & !to_the_end & !worth_refining & (until > p.t);
+  clear = clear | to_the_end | (bound & !(until < p.end));
+  store(select(clear, LookOutput::clear, select(bound, LookOutput::bound, LookOutput::open)),
+        out.rows[LookOutput::verdict], lane);
+  store(until, out.rows[LookOutput::time], lane);
+  store(kernel_calls, out.rows[LookOutput::kernel_calls], lane);
+  store3(p.n, out.rows + LookOutput::normal, lane);
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Blocks
+
+/// Fewer pairs than this are not worth a vector's second pass.
+constexpr int kFewest = kLanes / 4 + 1;
+
+/// The pairs of a block, and which of them are open.
+template <bool kSpin>
+class Block {
+ public:
+  /// A vector of pairs, those from `lane` on.
+  HWY_INLINE Pairs<kSpin>& from(int lane) { return pairs_[lane / kLanes]; }
+
+  HWY_INLINE void add_open(Lanes open, int lane) {
+    alignas(8) std::uint8_t bits[8] = {};
+    hn::StoreMaskBits(Tag(), open.mask, bits);
+    for (unsigned left = bits[0]; left != 0; left &= left - 1) home_[count_++] = lane + __builtin_ctz(left);
+  }
+  HWY_INLINE int open() const { return count_; }
+  HWY_INLINE int lane_of(int k) const { return home_[k]; }
+
+  /// Some open pairs, `together` of them from the k-th on, in one vector; its other lanes hold valid numbers.
+  HWY_INLINE Pairs<kSpin> gather(int k, int together) const {
+    alignas(64) Index lanes[kLanes] = {};
+    alignas(64) Index vectors[kLanes];
+    const int last = home_[k + together - 1] / kLanes;
+    for (int to = 0; to < kLanes; ++to) vectors[to] = last;
+    for (int to = 0; to < together; ++to) {
+      lanes[to] = home_[k + to] % kLanes;
+      vectors[to] = home_[k + to] / kLanes;
+    }
+    const auto lane_in = hn::SetTableIndices(Tag(), lanes);
+    const auto vector_in = hn::Load(IndexTag(), vectors);
+    const auto in_lanes = [&](const double* numbers) {
+      return hn::TableLookupLanes(hn::Load(Tag(), numbers), lane_in);
+    };
+    Pairs<kSpin> gathered;
+    move(pairs_[last], gathered, [&](const double* from, const double* /*to*/) { return in_lanes(from); });
+    for (int vector = static_cast<int>(vectors[0]); vector < last; ++vector) {
+      const auto of_it = hn::RebindMask(Tag(), hn::Eq(vector_in, hn::Set(IndexTag(), Index{vector})));
+      move(pairs_[vector], gathered, [&](const double* from, const double* to) {
+        return hn::IfThenElse(of_it, in_lanes(from), hn::Load(Tag(), to));
+      });
+    }
+    return gathered;
+  }
+
+ private:
+  using Index = std::int64_t;
+  using IndexTag = hn::RebindToSigned<Tag>;
+
+  /// Every number of `to`, from the same of `source`. Pairs are vectors and nothing else.
+  template <class Move>
+  static HWY_INLINE void move(const Pairs<kSpin>& source, Pairs<kSpin>& to, const Move& moved) {
+    constexpr unsigned kNumbers = sizeof(Pairs<kSpin>) / sizeof(double);
+    static_assert(sizeof(Pairs<kSpin>) % sizeof(Real) == 0);
+    const auto* const from = reinterpret_cast<const double*>(&source);
+    auto* const numbers = reinterpret_cast<double*>(&to);
+    for (unsigned k = 0; k < kNumbers; k += kLanes) hn::Store(moved(from + k, numbers + k), Tag(), numbers + k);
+  }
+
+  Pairs<kSpin> pairs_[kBlockLooks / kLanes];
+  int home_[kBlockLooks];
+  int count_ = 0;
+};
+
+template <bool kSpin>
+void look(const LookInput& in, int pairs, LookOutput& out) {
+  Block<kSpin> block;
+  for (int lane = 0; lane < pairs; lane += kLanes) {
+    Lanes open{hn::FirstN(Tag(), static_cast<std::size_t>(pairs - lane))};
+    first_pass<kSpin>(in, lane, out, block.from(lane), open);
+    block.add_open(open, lane);
+  }
+  // Few pairs need the second pass.
+  for (int k = 0; block.open() - k >= kFewest; k += kLanes) {
+    const int together = block.open() - k < kLanes ? block.open() - k : kLanes;
+    LookOutput late;
+    Pairs<kSpin> gathered = block.gather(k, together);
+    second_pass<kSpin>(gathered, together, late, 0);
+    for (int lane = 0; lane < together; ++lane) {
+      for (int row = 0; row < LookOutput::count; ++row) out.rows[row][block.lane_of(k + lane)] = late.rows[row][lane];
+    }
+  }
+}
+
+}  // namespace
+}  // namespace ed::internal
+HWY_AFTER_NAMESPACE();

@@ -1,0 +1,354 @@
+#pragma once
+
+/// The frame around the dual Newton that turns a converged normal into a DistanceResult; used by every shape.
+
+#include <geom/distance.h>
+#include <geom/kernel/simplex_descent.h>
+#include <geom/kernel/sphere_search.h>
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace geom::kernel {
+
+/// Support height, point and Hessian in the world frame at once.
+struct CurvedSupport {
+  double height;
+  Eigen::Vector3d point;
+  Eigen::Matrix3d hessian;
+};
+
+/// A SupportShape turned into the world frame (about its own centre).
+template <SupportShape Shape>
+struct WorldSupport {
+  const Shape& shape;
+  const Eigen::Matrix3d& R;
+
+  Support support(const Eigen::Vector3d& n) const {
+    const Support s = shape.support(R.transpose() * n);
+    return {s.height, R * s.point};
+  }
+  CurvedSupport operator()(const Eigen::Vector3d& n) const {
+    const Eigen::Vector3d n_body = R.transpose() * n;
+    const Support s = shape.support(n_body);
+    return {s.height, R * s.point, R * Eigen::Matrix3d(shape.support_hessian(n_body)) * R.transpose()};
+  }
+};
+
+/// Evaluates g and its Newton step for two bodies given by their world-frame supports, B's centre at r from A's.
+template <class SupportA, class SupportB>
+class GeneralPair {
+ public:
+  /// `least`: the smallest eigenvalue that Newton's matrix is left with, length.
+  GeneralPair(SupportA a, SupportB b, const Eigen::Vector3d& r, double least)
+      : a_(std::move(a)), b_(std::move(b)), r_(r), least_(least) {}
+
+  Evaluation operator()(const Eigen::Vector3d& n) const {
+    const CurvedSupport s_a = a_(n);
+    const CurvedSupport s_b = b_(-n);
+    Evaluation out;
+    out.g = r_.dot(n) - s_a.height - s_b.height;
+    const Eigen::Vector3d y = r_ - s_a.point + s_b.point - out.g * n;
+    const TangentBasis basis(n);
+    const auto& [e, f] = basis;
+    TangentForm m = TangentForm::of(s_a.hessian + s_b.hessian, out.g, basis);
+    const double smallest = m.smallest_eigenvalue();
+    // Only a matrix that is not definite is lifted, by no more than it needs: a lifted one converges linearly.
+    if (smallest < least_) [[unlikely]] {
+      const double lift = std::max(least_, -smallest) - smallest;
+      m.ee += lift;
+      m.ff += lift;
+    }
+    const double y_e = y.dot(e);
+    const double y_f = y.dot(f);
+    const double inv_det = 1 / (m.ee * m.ff - m.ef * m.ef);
+    const double d_e = (m.ff * y_e - m.ef * y_f) * inv_det;
+    const double d_f = (m.ee * y_f - m.ef * y_e) * inv_det;
+    out.decrement = d_e * y_e + d_f * y_f;
+    set_step(out, d_e * e + d_f * f, d_e * d_e + d_f * d_f);
+    return out;
+  }
+
+  SupportPair support_pair(const Eigen::Vector3d& n) const {
+    const Support a = a_.support(n);
+    const Support b = b_.support(-n);
+    return {a.height, b.height, a.point, b.point};
+  }
+  const Eigen::Vector3d& r() const { return r_; }
+
+  /// A unit vector across n along which g bends upwards by more than `rounding` / rad^2; zero if there is none.
+  Eigen::Vector3d upward(const Eigen::Vector3d& n, double rounding) const {
+    const CurvedSupport s_a = a_(n);
+    const CurvedSupport s_b = b_(-n);
+    const TangentBasis basis(n);
+    const double g = r_.dot(n) - s_a.height - s_b.height;
+    return TangentForm::of(s_a.hessian + s_b.hessian, g, basis).direction_below(-rounding, basis);
+  }
+
+ private:
+  SupportA a_;
+  SupportB b_;
+  Eigen::Vector3d r_;
+  double least_;
+};
+
+/// Lengths that the certificates and tolerances of one query need.
+struct PairScale {
+  double size;             ///< |r| + both bounding radii: what rounding errors are relative to
+  double certified_depth;  ///< the sum of both smallest radii of curvature
+};
+
+template <class Shape>
+double min_curvature_radius_or_zero(const Shape& shape) {
+  if constexpr (requires { shape.min_curvature_radius(); }) {
+    return shape.min_curvature_radius();
+  } else {
+    return 0;
+  }
+}
+
+/// The answer at a converged normal n: witness points, half of the tangential mismatch given to each.
+template <class Pair>
+[[gnu::always_inline]] inline DistanceResult witness_result(const Pair& pair, const Eigen::Vector3d& p_WA,
+                                                            const Eigen::Vector3d& n, int iterations) {
+  DistanceResult result;
+  const SupportPair s = pair.support_pair(n);
+  const Eigen::Vector3d gap = (pair.r() + s.s_b) - s.s_a;
+  result.distance = (n.dot(pair.r()) - s.h_a) - s.h_b;
+  const Eigen::Vector3d y = gap - n.dot(gap) * n;
+  result.normal = n;
+  result.point_a = p_WA + s.s_a + 0.5 * y;
+  result.point_b = result.point_a + result.distance * n;
+  result.residual = y.norm();
+  result.iterations = iterations;
+  result.status = result.distance >= 0 ? DistanceStatus::separated : DistanceStatus::overlapping;
+  return result;
+}
+
+/// By how much the distance of an answer can be below the true one: with the ball of radius rho that rolls in the
+/// Minkowski difference (sphere_search.h), g(m) <= |p + rho n| - rho everywhere, p = g n + y the point of that
+/// difference at n.
+inline double newton_error_bound(const PairScale& scale, const DistanceResult& r) {
+  const double lambda = r.distance + scale.certified_depth;
+  if (lambda > r.residual) [[likely]]
+    return 0.5 * r.residual * r.residual / lambda;  // a little more than the difference below
+  return std::hypot(lambda, r.residual) - lambda;
+}
+
+inline bool needs_polish(const PairScale& scale, const DistanceResult& r) {
+  return r.error_bound > 0.5 * kResidualTolerance * scale.size;
+}
+
+/// Takes more Newton steps while they are needed and help.
+///
+/// Where the radii of curvature are much larger than the pair, a thin disc beside a small body, Newton's step from
+/// |delta| = 1e-6 is not yet right to rounding.
+template <class Pair>
+[[gnu::noinline, gnu::cold]] void polish(const Pair& pair, const PairScale& scale, const Eigen::Vector3d& p_WA,
+                                         DistanceResult& result) {
+  constexpr int kMostSteps = 4;
+  for (int step = 0; step < kMostSteps && needs_polish(scale, result); ++step) {
+    const auto e = pair(result.normal);
+    DistanceResult next = witness_result(pair, p_WA, step_on_sphere(result.normal, e.step), result.iterations + 1);
+    if (!(next.residual < result.residual)) return;
+    result = next;
+    result.error_bound = newton_error_bound(scale, result);
+  }
+}
+
+/// Ascends from `start`, then from cold() if that led to a stationary point without a certificate.
+///
+/// A stationary point with g < 0 is no proof of overlap: flat bodies that are apart have some. Where a local answer is
+/// asked for, one beyond the certified depth counts only if shares(point_a, point_b), of its witness points, says that
+/// both bodies hold a point. `cold` is called only when it is needed. Returns a result whose status declines when
+/// neither start gives a certified answer; `iterations` is then the number of evaluations spent.
+template <class Pair, class Cold, class Shares>
+DistanceResult solve_dual(const Pair& pair, const Cold& cold, const PairScale& scale, const Eigen::Vector3d& p_WA,
+                          const DistanceOptions& options, const Shares& shares) {
+  const double rounding = kRoundingFactor * scale.size;
+  const bool warm = is_warm(options.start);
+  const int limit = std::max(1, options.max_iterations);
+  int spent = 0;
+  for (int attempt = warm ? 0 : 1; attempt < 2; ++attempt) {
+    Eigen::Vector3d n = attempt == 0 ? Eigen::Vector3d(options.start / options.start.norm()) : cold();
+    decltype(pair(n)) e;
+    int budget = limit;
+    const Ascent ascent = climb(pair, rounding, budget, n, e);
+    spent += limit - budget;
+    if (ascent != Ascent::converged) continue;
+    const bool certified = e.g >= -scale.certified_depth - rounding;
+    if (!certified && options.penetration == Penetration::global) continue;
+    DistanceResult result = witness_result(pair, p_WA, step_on_sphere(n, e.step), spent);
+    if (!certified) {
+      if (!shares(result.point_a, result.point_b)) continue;
+      result.error_bound = std::numeric_limits<double>::infinity();
+      return result;
+    }
+    result.error_bound = newton_error_bound(scale, result);
+    if (needs_polish(scale, result)) [[unlikely]]
+      polish(pair, scale, p_WA, result);
+    return result;
+  }
+  DistanceResult declined;
+  declined.iterations = spent;
+  return declined;
+}
+
+/// A pair whose bodies have lost a skin of the thickness of their smallest radius of curvature: still convex
+/// (Blaschke).
+template <class Pair>
+struct CorePair {
+  const Pair& pair;
+  double rho_a, rho_b;
+
+  SupportPair support_pair(const Eigen::Vector3d& n) const {
+    const SupportPair s = pair.support_pair(n);
+    return {s.h_a - rho_a, s.h_b - rho_b, s.s_a - rho_a * n, s.s_b + rho_b * n};
+  }
+  const Eigen::Vector3d& r() const { return pair.r(); }
+};
+template <class Pair>
+CorePair(const Pair&, double, double) -> CorePair<Pair>;
+
+/// Whether holds(p) for a point p between the witness points of bodies that overlap.
+///
+/// Each body holds a part of the segment, which begins at its own witness point: mostly either holds half of it, but of
+/// a small or thin body inside a larger one the larger holds nearly all.
+template <class Holds>
+bool holds_between(const Eigen::Vector3d& point_a, const Eigen::Vector3d& point_b, const Holds& holds) {
+  // Not the ends, of which rounding decides on which side of the surface they are.
+  for (const double share : {0.5, 0.02, 0.98, 0.25, 0.75}) {
+    if (holds(Eigen::Vector3d(point_a + share * (point_b - point_a)))) return true;
+  }
+  return false;
+}
+
+/// Whether a point of the world is in both bodies; of shapes without an equation that is not known: false.
+template <class ShapeA, class ShapeB>
+bool both_contain(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const Pose& X_WB, const Eigen::Vector3d& p_W) {
+  if constexpr (ImplicitSurface<ShapeA> && ImplicitSurface<ShapeB>) {
+    return a.value(X_WA.to_body(p_W)) <= 0 && b.value(X_WB.to_body(p_W)) <= 0;
+  } else {
+    return false;
+  }
+}
+
+/// Whether both bodies hold the point between their centres that bodies which overlap deeply are likely to share.
+template <class ShapeA, class ShapeB>
+bool share_the_middle(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const Pose& X_WB) {
+  const double r_a = a.inscribed_radius();
+  const double r_b = b.inscribed_radius();
+  return both_contain(a, X_WA, b, X_WB, Eigen::Vector3d((r_b * X_WA.position() + r_a * X_WB.position()) / (r_a + r_b)));
+}
+
+/// Whether a point of the world that both bodies hold is found: between the witness points of an answer, or between the
+/// centres. True is certain, false is not.
+template <class ShapeA, class ShapeB>
+bool share_a_point(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const Pose& X_WB, const Eigen::Vector3d& point_a,
+                   const Eigen::Vector3d& point_b) {
+  const auto holds = [&](const Eigen::Vector3d& p_W) { return both_contain(a, X_WA, b, X_WB, p_W); };
+  return holds_between(point_a, point_b, holds) || share_the_middle(a, X_WA, b, X_WB);
+}
+
+/// Where Newton's method does not converge, because support points jump: the closest points of the cores.
+template <class Pair>
+[[gnu::noinline, gnu::cold]] DistanceResult descend_cores(const CorePair<Pair>& cores, double size,
+                                                          const Eigen::Vector3d& start, const Eigen::Vector3d& p_WA,
+                                                          int iterations) {
+  const SimplexAnswer found = descend(cores, start, kBoundGap * size);
+  DistanceResult result;
+  result.iterations = iterations + found.iterations;
+  const double bound = std::max(0.0, found.upper - found.lower);
+  if (!(found.lower > 0) || !(bound < kWidestGap * size)) return result;
+  result.distance = found.lower - cores.rho_a - cores.rho_b;
+  result.normal = found.n;
+  const Eigen::Vector3d y = found.closest.p() - found.lower * found.n;
+  result.point_a = p_WA + found.closest.a + cores.rho_a * found.n + 0.5 * y;
+  result.point_b = result.point_a + result.distance * found.n;
+  result.residual = y.norm();
+  result.error_bound = bound;
+  result.status = result.distance >= 0 ? DistanceStatus::separated : DistanceStatus::overlapping;
+  return result;
+}
+
+/// The last resort: branch and bound over all normals (sphere_search.h). It finds the shortest translation that parts
+/// bodies deep in each other, and the distance of bodies for which Newton's method did not converge.
+template <class Pair>
+[[gnu::noinline, gnu::cold]] DistanceResult search_sphere(const Pair& pair, const PairScale& scale,
+                                                          const Eigen::Vector3d& start, const Eigen::Vector3d& p_WA,
+                                                          int iterations) {
+  const auto sample = [&](const Eigen::Vector3d& n) {
+    ++iterations;
+    const SupportPair s = pair.support_pair(n);
+    return Tangent{n, (pair.r() + s.s_b) - s.s_a, (n.dot(pair.r()) - s.h_a) - s.h_b};
+  };
+  const auto done = [](const auto& e) { return converged(e); };
+  const double rounding = kRoundingFactor * scale.size;
+  const auto ascend_from = [&](const Eigen::Vector3d& start_n) {
+    Eigen::Vector3d n = start_n;
+    auto e = pair(n);
+    int budget = kMaxIterations;
+    (void)ascend(pair, rounding, done, budget, n, e);
+    iterations += kMaxIterations - budget + 1;
+    const Tangent before = sample(n);
+    const Tangent after = sample(step_on_sphere(n, e.step));
+    return after.g >= before.g ? after : before;
+  };
+  const auto upward = [&](const Eigen::Vector3d& n) { return pair.upward(n, rounding); };
+  const auto polish = [&](const Eigen::Vector3d& n) {
+    return climb_over_saddles(sample, ascend_from, upward, n, rounding);
+  };
+  SphereSearch<decltype(sample), decltype(polish)> sphere(sample, polish, scale.certified_depth, polish(start),
+                                                          rounding);
+  sphere.run_to(kDepthGap * scale.size, kMostDepthSamples);
+  // Concave there: what is left is to come close to the one maximum.
+  if (sphere.best().g > 0) sphere.run_to(kBoundGap * scale.size, kMostDepthSamples);
+  DistanceResult result = witness_result(pair, p_WA, sphere.best().n, iterations);
+  result.error_bound = std::min(newton_error_bound(scale, result), std::max(0.0, sphere.upper() - sphere.best().g));
+  if (result.error_bound < (result.distance > 0 ? kWidestGap : kWidestDepthGap) * scale.size) return result;
+  DistanceResult declined;
+  declined.iterations = result.iterations;
+  return declined;
+}
+
+}  // namespace geom::kernel
+
+namespace geom {
+
+template <SupportShape ShapeA, SupportShape ShapeB>
+DistanceResult distance(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const Pose& X_WB,
+                        const DistanceOptions& options) {
+  using kernel::WorldSupport;
+  const Eigen::Vector3d r = X_WB.position() - X_WA.position();
+  const double rho = kernel::min_curvature_radius_or_zero(a) + kernel::min_curvature_radius_or_zero(b);
+  // Shapes with flat faces or edges have rho = 0; a small share of the inscribed spheres keeps the step bounded.
+  const double least =
+      kLeastEigenvalue * std::max(rho, kLeastCurvature * (a.inscribed_radius() + b.inscribed_radius()));
+  const kernel::GeneralPair pair(WorldSupport<ShapeA>{a, X_WA.rotation()}, WorldSupport<ShapeB>{b, X_WB.rotation()},
+                                   r, least);
+  const auto cold = [&r] { return kernel::unit_or_x(r); };
+  const kernel::PairScale scale{r.norm() + a.bounding_radius() + b.bounding_radius(), rho};
+  const auto shares = [&](const Eigen::Vector3d& point_a, const Eigen::Vector3d& point_b) {
+    return kernel::share_a_point(a, X_WA, b, X_WB, point_a, point_b);
+  };
+  DistanceResult result = kernel::solve_dual(pair, cold, scale, X_WA.position(), options, shares);
+  if (result.status != DistanceStatus::not_converged) return result;
+  const kernel::CorePair cores{pair, kernel::min_curvature_radius_or_zero(a),
+                                 kernel::min_curvature_radius_or_zero(b)};
+  result = kernel::descend_cores(cores, scale.size, cold(), X_WA.position(), result.iterations);
+  if (result.status != DistanceStatus::not_converged) {
+    if (!kernel::needs_polish(scale, result)) return result;
+    // From there Newton's method has a second chance: where it converges it is the more exact.
+    DistanceResult polished =
+        kernel::solve_dual(pair, cold, scale, X_WA.position(), {.start = result.normal}, shares);
+    polished.iterations += result.iterations;
+    return polished.error_bound < result.error_bound ? polished : result;
+  }
+  return kernel::search_sphere(pair, scale, cold(), X_WA.position(), result.iterations);
+}
+
+}  // namespace geom

@@ -1,0 +1,133 @@
+#include "shapes/format.h"
+
+#include <geom/ellipsoid.h>
+#include <geom/kernel/refuse.h>
+#include <geom/superellipsoid.h>
+#include <geom/tolerances.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+namespace geom {
+namespace {
+
+using Eigen::Vector3d;
+
+[[noreturn]] void refuse(const std::string& what, double value, double least, double most) {
+  kernel::refuse("Superellipsoid: " + what + " is " + kernel::shown(value) +
+                   "; accepted: " + kernel::shown(least) + " to " + kernel::shown(most));
+}
+
+void check(const Vector3d& axes, double e1, double e2) {
+  for (int k = 0; k < 3; ++k) {
+    if (!(axes[k] >= kMinSemiAxis && axes[k] <= kMaxSemiAxis)) {
+      refuse(std::string("semi-axis ") + "xyz"[k], axes[k], kMinSemiAxis, kMaxSemiAxis);
+    }
+  }
+  const double ratio = axes.maxCoeff() / axes.minCoeff();
+  if (!(ratio <= kMaxAspectRatio)) refuse("ratio of the largest to the smallest semi-axis", ratio, 1, kMaxAspectRatio);
+  if (!(e1 >= kMinExponent && e1 <= kMaxExponent)) refuse("exponent e1", e1, kMinExponent, kMaxExponent);
+  if (!(e2 >= kMinExponent && e2 <= kMaxExponent)) refuse("exponent e2", e2, kMinExponent, kMaxExponent);
+}
+
+kernel::NestedNorm checked_norm(const Vector3d& axes, double e1, double e2) {
+  check(axes, e1, e2);
+  return {2 / e1, 2 / e2};
+}
+
+/// (u^s + v^s)^(1/s); s = infinity: the maximum.
+double plane_norm(double u, double v, double s) {
+  const double larger = std::max(u, v);
+  if (!std::isfinite(s)) return larger;
+  return larger * std::pow(1 + std::pow(std::min(u, v) / larger, s), 1 / s);
+}
+
+/// The largest sqrt(sum of k_i x_i^2) over N(x) <= 1, N nested with exponents p1, p2: linear in x_i^2, for which N^2 is
+/// a norm with half the exponents if p >= 2, whose dual gives the maximum, and not convex if p < 2, where the maximum
+/// is at a corner.
+double largest(const Vector3d& k, double p1, double p2) {
+  const auto dual = [](double p) { return p > 2 ? p / (p - 2) : std::numeric_limits<double>::infinity(); };
+  return std::sqrt(plane_norm(plane_norm(k.x(), k.y(), dual(p2)), k.z(), dual(p1)));
+}
+
+}  // namespace
+
+Superellipsoid::Superellipsoid(const Vector3d& semi_axes, double e1, double e2)
+    : semi_axes_(semi_axes),
+      e1_(e1),
+      e2_(e2),
+      norm_(checked_norm(semi_axes, e1, e2)),
+      dual_(2 / (2 - e1), 2 / (2 - e2)) {
+  if (is_ellipsoid()) {
+    bounding_radius_ = semi_axes.maxCoeff();
+    inscribed_radius_ = semi_axes.minCoeff();
+    return;
+  }
+  // Scaled, so that squares neither underflow nor overflow. |n|^2 is largest, for given h(n), where h is least for unit
+  // n.
+  const double size = semi_axes.maxCoeff();
+  bounding_radius_ = size * largest((semi_axes / size).cwiseAbs2(), 2 / e1, 2 / e2);
+  inscribed_radius_ = size / largest((semi_axes / size).cwiseAbs2().cwiseInverse(), 2 / (2 - e1), 2 / (2 - e2));
+}
+
+double Superellipsoid::norm(const Vector3d& x) const {
+  return norm_(x.cwiseQuotient(semi_axes_).cwiseAbs()).norm;
+}
+
+double Superellipsoid::value(const Vector3d& x) const {
+  // To the last bit an Ellipsoid's, here and below: the general norm rounds 5 ulps away.
+  if (is_ellipsoid()) return x.cwiseQuotient(semi_axes_).squaredNorm() - 1;
+  const double N = norm(x);
+  return N * N - 1;
+}
+
+Vector3d Superellipsoid::gradient(const Vector3d& x) const {
+  if (is_ellipsoid()) return 2 * x.cwiseQuotient(semi_axes_.cwiseAbs2());
+  const auto at = norm_(x.cwiseQuotient(semi_axes_).cwiseAbs());
+  return 2 * at.norm * at.gradient.cwiseProduct(x.cwiseSign()).cwiseQuotient(semi_axes_);
+}
+
+Eigen::Matrix3d Superellipsoid::hessian(const Vector3d& x) const {
+  if (is_ellipsoid()) return Ellipsoid(semi_axes_).hessian(x);
+  const Vector3d w = x.cwiseQuotient(semi_axes_).cwiseAbs();
+  const auto at = norm_(w);
+  // A component that is zero has either sign.
+  const Vector3d scale = (x.array() < 0).select(-semi_axes_.cwiseInverse(), semi_axes_.cwiseInverse());
+  const Eigen::Matrix3d H = 2 * (at.gradient * at.gradient.transpose() + at.norm * norm_.hessian(w));
+  return scale.asDiagonal() * H * scale.asDiagonal();
+}
+
+Support Superellipsoid::support(const Vector3d& n) const {
+  if (is_ellipsoid()) {
+    const double h = semi_axes_.cwiseProduct(n).norm();
+    return {h, semi_axes_.cwiseAbs2().cwiseProduct(n) / h};
+  }
+  const auto at = dual_(semi_axes_.cwiseProduct(n).cwiseAbs());
+  return {at.norm, at.gradient.cwiseProduct(semi_axes_).cwiseProduct(n.cwiseSign())};
+}
+
+Eigen::Matrix3d Superellipsoid::support_hessian(const Vector3d& n) const {
+  if (is_ellipsoid()) return Ellipsoid(semi_axes_).support_hessian(n);
+  const Vector3d scale = (n.array() < 0).select(-semi_axes_, semi_axes_);
+  return scale.asDiagonal() * dual_.hessian(semi_axes_.cwiseProduct(n).cwiseAbs()) * scale.asDiagonal();
+}
+
+double Superellipsoid::volume() const {
+  if (is_ellipsoid()) return Ellipsoid(semi_axes_).volume();
+  return 2 * semi_axes_.prod() * e1_ * e2_ * std::beta(0.5 * e1_ + 1, e1_) * std::beta(0.5 * e2_, 0.5 * e2_);
+}
+
+Vector3d Superellipsoid::inertia(double mass) const {
+  if (is_ellipsoid()) return Ellipsoid(semi_axes_).inertia(mass);
+  // Integrals of x^2, y^2, z^2 over the body.
+  const Vector3d a2 = semi_axes_.cwiseAbs2();
+  const double along = std::beta(0.5 * e2_, 0.5 * e2_) * std::beta(1.5 * e1_, e1_ + 1);
+  // For one exponent all axes are alike, to the last bit: a superball is a spherical top.
+  const double across = e1_ == e2_ ? along : 0.5 * std::beta(1.5 * e2_, 0.5 * e2_) * std::beta(0.5 * e1_, 2 * e1_ + 1);
+  const Vector3d second = semi_axes_.prod() * e1_ * e2_ * Vector3d(across * a2.x(), across * a2.y(), along * a2.z());
+  return mass / volume() * (Vector3d::Constant(second.sum()) - second);
+}
+
+}  // namespace geom

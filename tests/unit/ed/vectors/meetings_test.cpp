@@ -1,0 +1,97 @@
+// Meetings of dilated envelopes found in vectors against may_meet, pair by pair: the same bits.
+
+#include "neighbours/dilated.h"
+#include "vectors/choose.h"
+#include "base/periodic.h"
+#include "bodies/uniaxial.h"
+
+#include <common/ed_states.h>
+#include <common/ed_uniaxial_bodies.h>
+#include <common/full_form.h>
+#include <common/geom_batch.h>
+
+#include <ed/ed.h>
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace ed::internal {
+namespace {
+
+/// All bodies, in the order of their numbers, as a cell grid of one cell finds them; centres that coincide among them.
+std::vector<NearBody> all_near(const UniaxialBodies& bodies, int i, double box, Random& random) {
+  std::vector<NearBody> near;
+  for (int k = 0; k < bodies.number(); ++k) {
+    const Eigen::Vector3d d = bodies.position_at(k, 0) - bodies.position_at(i, 0);
+    near.push_back({k, random.uniform() < 0.01 ? Eigen::Vector3d(0, 0, 0) : nearest_image(d, box)});
+  }
+  return near;
+}
+
+struct Tally {
+  std::size_t pairs = 0;
+  std::size_t meetings = 0;
+};
+
+void expect_same_meetings(const std::vector<Species>& species, geom::InstructionSet set, std::uint64_t seed,
+                          Tally& tally) {
+  SCOPED_TRACE(std::string(geom::to_string(set)) + ", seed " + std::to_string(seed));
+  constexpr int kNumber = 150;  // more than a block
+  Random random(seed);
+  const double box = 8 + 16 * random.uniform();
+  const UniaxialBodies bodies = ed_test::random_bodies(species, kNumber, box, random);
+  const double thickness = random.uniform();
+  DilatedEnvelopes one_by_one(bodies, thickness, thickness);
+  DilatedEnvelopes in_vectors(bodies, thickness, thickness, find_uniaxial_kernels(set).meet);
+  for (int i = 0; i < kNumber; ++i) {
+    one_by_one.place(i, bodies, 0);
+    in_vectors.place(i, bodies, 0);
+  }
+  std::vector<Meeting> expected;
+  std::vector<Meeting> found;
+  for (int i = 0; i < kNumber; ++i) {
+    const std::vector<NearBody> near = all_near(bodies, i, box, random);
+    const int first = i % 2 == 0 ? 0 : i + 1;
+    one_by_one.find_meetings(i, near, first, expected);
+    in_vectors.find_meetings(i, near, first, found);
+    ASSERT_EQ(found.size(), expected.size()) << i;
+    for (std::size_t k = 0; k < found.size(); ++k) {
+      EXPECT_EQ(found[k].body, expected[k].body) << i;
+      ed_test::expect_same_bits(found[k].normal, expected[k].normal);
+    }
+    tally.pairs += near.size();
+    tally.meetings += found.size();
+  }
+}
+
+void expect_same_meetings(const std::vector<Species>& species) {
+  const std::uint64_t repetitions = full_form() ? 100 : 10;
+  for (const geom::InstructionSet set : geom_test::instruction_sets()) {
+    Tally tally;
+    for (std::uint64_t k = 0; k < repetitions; ++k) expect_same_meetings(species, set, 500 + k, tally);
+    EXPECT_GT(tally.meetings, tally.pairs / 200);
+    EXPECT_LT(tally.meetings, tally.pairs / 2);
+  }
+}
+
+TEST(Meetings, OfRodsAreThoseOfOnePair) {
+  expect_same_meetings({paper_species(ed_test::spheroid(3))});
+}
+
+TEST(Meetings, OfFlatDiscsAreThoseOfOnePair) {
+  expect_same_meetings({paper_species(ed_test::spheroid(0.15))});
+}
+
+TEST(Meetings, OfMixturesAreThoseOfOnePair) {
+  expect_same_meetings({uniform_species(ed_test::spheroid(8)), uniform_species(ed_test::spheroid(0.4)),
+                        uniform_species(ed_test::spheroid(1))});
+}
+
+}  // namespace
+}  // namespace ed::internal
