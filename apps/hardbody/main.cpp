@@ -1,8 +1,8 @@
-#include "commands/commands.h"
 #include "base/errors.h"
 #include "base/number_text.h"
-#include "io/text_file.h"
 #include "base/version.h"
+#include "commands/commands.h"
+#include "io/text_file.h"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>

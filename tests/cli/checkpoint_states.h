@@ -2,9 +2,9 @@
 
 /// Checkpoints for tests: of a few bodies of one kind, of a mixture.
 
-#include "run/checkpoint.h"
 #include "config/config.h"
 #include "io/text_file.h"
+#include "run/checkpoint.h"
 
 #include <ed/start.h>
 

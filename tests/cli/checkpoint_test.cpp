@@ -1,8 +1,8 @@
 /// Checkpoints: written and read again, damaged, foreign, of states that no sound run ends in.
 
-#include "checkpoint_states.h"
 #include "base/errors.h"
 #include "base/version.h"
+#include "checkpoint_states.h"
 
 #include <ed/simulation.h>
 

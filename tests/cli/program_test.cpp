@@ -1,11 +1,11 @@
 /// The program's parts, as far as test_cli.py cannot reach them: files of failed pairs, configs, formats.
 
+#include "base/suggest.h"
 #include "config/config.h"
 #include "config/text.h"
-#include "run/files/failure_file.h"
-#include "base/suggest.h"
-#include "run/table.h"
 #include "io/text_file.h"
+#include "run/files/failure_file.h"
+#include "run/table.h"
 
 #include <ed/random.h>
 

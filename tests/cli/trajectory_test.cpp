@@ -1,13 +1,13 @@
 /// Trajectories as the program's own reader sees them: states that come back to every bit, files that end anywhere,
 /// files that lie. What other programs read in them is tested by test_trajectory.py.
 
-#include "config/config.h"
 #include "base/errors.h"
+#include "config/config.h"
 #include "trajectory/frame.h"
 #include "trajectory/gsd/container.h"
 #include "trajectory/gsd/frames.h"
 
-#include <ed/internal/archive_types.h>
+#include <ed/archive_system.h>
 #include <ed/random.h>
 #include <ed/simulation.h>
 #include <ed/start.h>
@@ -119,7 +119,7 @@ TEST_F(Trajectory, StatesComeBackToEveryBit) {
   for (std::uint64_t k = 0; k < kFrames; ++k) {
     const Frame read = gsd.read(k);
     const Frame& written = frames[k];
-    EXPECT_EQ(ed::internal::bytes_of(*read.exact), ed::internal::bytes_of(*written.exact)) << "frame " << k;
+    EXPECT_EQ(ed::archive::bytes_of(*read.exact), ed::archive::bytes_of(*written.exact)) << "frame " << k;
     EXPECT_EQ(read.step, k);
     EXPECT_EQ(read.time, 2.0 * static_cast<double>(k));
     EXPECT_EQ(read.energy, written.energy);
@@ -187,7 +187,7 @@ TEST_F(Trajectory, EndsAnywhere) {
     ASSERT_EQ(gsd.frame_count(), whole) << "of " << size << " bytes";
     EXPECT_EQ(gsd.cut_off(), whole < kFrames);
     if (whole > 0) {
-      EXPECT_EQ(ed::internal::bytes_of(*gsd.read(whole - 1).exact), ed::internal::bytes_of(*frames[whole - 1].exact));
+      EXPECT_EQ(ed::archive::bytes_of(*gsd.read(whole - 1).exact), ed::archive::bytes_of(*frames[whole - 1].exact));
     }
   }
 }

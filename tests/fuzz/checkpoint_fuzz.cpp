@@ -2,8 +2,8 @@
 ///
 /// Whatever they are, they are refused with one line, or read and written again as the same bytes.
 
-#include "run/checkpoint.h"
 #include "base/errors.h"
+#include "run/checkpoint.h"
 
 #include <ed/observables.h>
 #include <ed/simulation.h>

@@ -3,8 +3,8 @@
 /// Duty of both readers of trajectories with any bytes: refuse them with one line, or read every frame (or refuse it)
 /// with finite numbers, and with none where the file gives none.
 
-#include "commands/commands.h"
 #include "base/errors.h"
+#include "commands/commands.h"
 #include "trajectory/frame.h"
 #include "trajectory/stored_trajectory.h"
 

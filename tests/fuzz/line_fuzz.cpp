@@ -3,10 +3,10 @@
 /// Whatever the line, the reply is one line of JSON: an error, or an answer whose numbers are finite or null. Both
 /// readers read alike what both can read: the reply to the same line with a blank that only the slow one takes.
 
-#include "distance/query.h"
 #include "base/errors.h"
-#include "fuzz/fuzz_input.h"
+#include "distance/query.h"
 #include "distance/scanner.h"
+#include "fuzz/fuzz_input.h"
 
 #include <nlohmann/json.hpp>
 

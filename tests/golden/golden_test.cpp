@@ -12,8 +12,8 @@
 #include <common/ed_states.h>
 #include <common/geom_batch.h>
 
+#include <ed/arithmetic.h>
 #include <ed/ed.h>
-#include <ed/internal/arithmetic.h>
 
 #include <gtest/gtest.h>
 
@@ -32,7 +32,7 @@ using ed_test::State;
 constexpr std::uint64_t kCollisions = 10000;
 
 /// Of which the hashes below are.
-static_assert(ed::internal::kArithmetic == 13);
+static_assert(ed::kArithmetic == 13);
 
 std::string fingerprint() {
 #if !defined(__x86_64__)

@@ -202,7 +202,7 @@ TEST(Distance, EveryPairIsAnswered) {
       return X.rotation() * shape.semi_axes().cwiseAbs2().asDiagonal() * X.rotation().transpose();
     };
     const double F = kernel::perram_wertheim(support_matrix(shapes.a, X_WA), support_matrix(shapes.b, X_WB),
-                                               X_WB.position() - X_WA.position())
+                                             X_WB.position() - X_WA.position())
                          .F;
     // F errs by the condition of the matrix, 100, times some epsilons.
     if (r.status == DistanceStatus::separated) {

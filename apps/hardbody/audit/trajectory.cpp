@@ -1,10 +1,10 @@
 #include "audit/trajectory.h"
 
-#include "base/errors.h"
-#include "trajectory/gsd/frames.h"
 #include "audit/pairs.h"
-#include "run/record.h"
+#include "base/errors.h"
 #include "io/text_file.h"
+#include "run/record.h"
+#include "trajectory/gsd/frames.h"
 
 #include <ed/system.h>
 

@@ -1,6 +1,6 @@
 #include "base/version.h"
 
-#include <ed/internal/arithmetic.h>
+#include <ed/arithmetic.h>
 
 #include <fmt/format.h>
 #include <Eigen/Core>
@@ -77,7 +77,7 @@ std::string arithmetic() {
 #else
   constexpr bool fused = false;
 #endif
-  return fmt::format("{}{}, arithmetic {}", build_arch(), fused ? ", FMA" : "", ed::internal::kArithmetic);
+  return fmt::format("{}{}, arithmetic {}", build_arch(), fused ? ", FMA" : "", ed::kArithmetic);
 }
 
 std::vector<std::string> cpu_features() {

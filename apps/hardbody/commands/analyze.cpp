@@ -1,14 +1,15 @@
-#include "commands/commands.h"
 #include "base/errors.h"
-#include "trajectory/frame.h"
-#include "io/json_values.h"
-#include "run/missing.h"
-#include "run/files/observable_files.h"
-#include "io/run_directory.h"
-#include "trajectory/stored_trajectory.h"
-#include "io/text_file.h"
-#include "trajectory/reader.h"
 #include "base/version.h"
+#include "commands/commands.h"
+#include "io/json_values.h"
+#include "io/run_directory.h"
+#include "io/text_file.h"
+#include "run/estimate_json.h"
+#include "run/files/observable_files.h"
+#include "run/missing.h"
+#include "trajectory/frame.h"
+#include "trajectory/reader.h"
+#include "trajectory/stored_trajectory.h"
 
 #include <ed/stored_frames.h>
 
@@ -198,7 +199,7 @@ int analyze(const AnalyzeArguments& arguments) {
   const fs::path out = arguments.out ? fs::path(*arguments.out) : file.parent_path() / kAnalysisDirectory;
   const std::unique_ptr<TrajectoryReader> source = open_frames(file);
   const TrajectoryReader& reader = *source;
-  StoredTrajectory stored = read_trajectory(reader, arguments);
+  StoredTrajectory stored = read_trajectory(reader, {arguments.every, arguments.time_step, arguments.longest_lag});
   const RunChoices run = choices_of_run(file.parent_path());
   stored.options.fit_from = arguments.fit_from ? arguments.fit_from : run.fit_from;
   stored.options.wave_numbers = run.wave_numbers;

@@ -1,12 +1,12 @@
-#include "start/agreement.h"
 #include "audit/trajectory.h"
-#include "run/checkpoint.h"
+#include "base/errors.h"
 #include "commands/commands.h"
 #include "config/config.h"
-#include "base/errors.h"
 #include "io/run_directory.h"
+#include "run/checkpoint.h"
 #include "run/record.h"
 #include "run/table.h"
+#include "start/agreement.h"
 #include "trajectory/reader.h"
 
 #include <fmt/format.h>

@@ -2,7 +2,7 @@
 #include "distance/query.h"
 #include "distance/seeds.h"
 #include "io/line_reader.h"
-#include "trajectory/orientation.h"
+#include "io/orientation.h"
 
 #include <geom/tolerances.h>
 

@@ -1,6 +1,6 @@
+#include "base/errors.h"
 #include "commands/commands.h"
 #include "config/text.h"
-#include "base/errors.h"
 #include "io/text_file.h"
 
 #include <fmt/format.h>

@@ -1,13 +1,13 @@
-#include "commands/commands.h"
-#include "plot/contours.h"
-#include "io/csv_table.h"
 #include "base/errors.h"
+#include "base/number_text.h"
+#include "commands/commands.h"
+#include "io/csv_table.h"
+#include "io/run_directory.h"
+#include "io/text_file.h"
+#include "plot/contours.h"
 #include "plot/levels.h"
 #include "plot/map_svg.h"
-#include "base/number_text.h"
-#include "io/run_directory.h"
 #include "sweep/results.h"
-#include "io/text_file.h"
 
 #include <fmt/format.h>
 

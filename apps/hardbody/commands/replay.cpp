@@ -1,5 +1,5 @@
-#include "commands/commands.h"
 #include "base/errors.h"
+#include "commands/commands.h"
 #include "run/files/failure_file.h"
 
 #include <ed/impulse.h>

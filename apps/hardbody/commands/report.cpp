@@ -1,9 +1,9 @@
-#include "commands/commands.h"
 #include "base/errors.h"
-#include "report/assets.h"
-#include "report/page.h"
+#include "commands/commands.h"
 #include "io/run_directory.h"
 #include "io/text_file.h"
+#include "report/assets.h"
+#include "report/page.h"
 
 #include <fmt/format.h>
 

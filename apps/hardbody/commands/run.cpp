@@ -1,24 +1,24 @@
-#include "run/checkpoint.h"
+#include "base/errors.h"
+#include "base/log.h"
+#include "base/progress.h"
+#include "base/signals.h"
+#include "base/version.h"
 #include "commands/commands.h"
 #include "config/config.h"
 #include "config/text.h"
-#include "base/errors.h"
+#include "io/run_directory.h"
+#include "io/text_file.h"
+#include "run/checkpoint.h"
 #include "run/files/failure_file.h"
-#include "base/log.h"
-#include "start/make_start.h"
 #include "run/files/observable_files.h"
 #include "run/origin.h"
 #include "run/phases.h"
-#include "base/progress.h"
-#include "io/run_directory.h"
 #include "run/record.h"
 #include "run/saver.h"
-#include "base/signals.h"
-#include "start/from_file.h"
 #include "run/summary.h"
 #include "run/table.h"
-#include "io/text_file.h"
-#include "base/version.h"
+#include "start/from_file.h"
+#include "start/make_start.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -183,7 +183,11 @@ int conclude(const RunDirectory& directory, RunRecord& record, Continuation& at,
 /// Up to the begin of equilibration, from wherever the run stands; false: a signal came before there was a start.
 bool prepare(const Config& config, Continuation& at, Progress& progress, Saver& saver, Log& log) {
   if (at.equilibration || at.production) return true;
-  if (!at.start) at.start = make_start(config, progress, log);
+  if (!at.start) {
+    std::optional<ed::System> origin;
+    if (config.start_from) origin = read_origin_state(config);
+    at.start = make_start(config, origin, progress, log);
+  }
   if (!at.start) return false;
   // The run or the file that it came from may be gone, or another one, when this one is resumed.
   if (saver.due() || config.start_from || config.start_file) saver.save([&at] { return checkpoint_of(*at.start); });

@@ -1,13 +1,13 @@
-#include "commands/commands.h"
-#include "config/config.h"
 #include "base/errors.h"
 #include "base/progress.h"
-#include "io/run_directory.h"
 #include "base/signals.h"
+#include "commands/commands.h"
+#include "config/config.h"
+#include "io/run_directory.h"
+#include "io/text_file.h"
 #include "sweep/file.h"
 #include "sweep/grid.h"
 #include "sweep/results.h"
-#include "io/text_file.h"
 #include "sweep/workers.h"
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 #include "config/box.h"
 
-#include "config/species.h"
 #include "base/errors.h"
+#include "config/species.h"
 
 #include <ed/shape.h>
 #include <ed/start.h>

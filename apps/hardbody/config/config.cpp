@@ -1,11 +1,11 @@
 #include "config/config.h"
 
+#include "base/errors.h"
+#include "base/suggest.h"
 #include "config/box.h"
 #include "config/species.h"
+#include "config/start_additions.h"
 #include "config/values.h"
-#include "base/errors.h"
-#include "start/from_file.h"
-#include "base/suggest.h"
 #include "io/text_file.h"
 #include "io/toml_document.h"
 

@@ -1,7 +1,7 @@
 #include "config/text.h"
 
-#include "io/toml_document.h"
 #include "base/version.h"
+#include "io/toml_document.h"
 
 #include <fmt/format.h>
 

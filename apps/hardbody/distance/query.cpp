@@ -1,9 +1,9 @@
 #include "distance/query.h"
 
 #include "base/errors.h"
-#include "io/json_member.h"
-#include "trajectory/orientation.h"
 #include "distance/scanner.h"
+#include "io/json_member.h"
+#include "io/orientation.h"
 #include "io/text_file.h"
 
 #include <fmt/format.h>

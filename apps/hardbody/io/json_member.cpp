@@ -1,7 +1,7 @@
 #include "io/json_member.h"
 
-#include "trajectory/orientation.h"
 #include "base/suggest.h"
+#include "io/orientation.h"
 #include "io/text_file.h"
 
 #include <fmt/format.h>

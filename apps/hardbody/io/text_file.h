@@ -1,5 +1,7 @@
 #pragma once
 
+#include <ed/archive.h>
+
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -38,7 +40,7 @@ void check_replaceable(const std::filesystem::path& path, std::string_view begin
 void write_file(const std::filesystem::path& path, std::string_view content);
 
 /// Takes a file's bytes piece by piece.
-using Sink = std::function<void(std::string_view)>;
+using Sink = ed::archive::Sink;
 
 /// The same of a content that `make` hands over in pieces. What that throws is passed on; no file is left then.
 void write_file(const std::filesystem::path& path, const std::function<void(const Sink&)>& make);

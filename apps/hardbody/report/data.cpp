@@ -1,9 +1,9 @@
 #include "report/page.h"
 
-#include "io/json_values.h"
 #include "base/number_text.h"
-#include "io/run_directory.h"
 #include "base/version.h"
+#include "io/json_values.h"
+#include "io/run_directory.h"
 
 #include <fmt/format.h>
 

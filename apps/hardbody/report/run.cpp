@@ -1,11 +1,11 @@
 #include "report/run.h"
 
-#include "run/checkpoint.h"
 #include "base/errors.h"
-#include "trajectory/gsd/frames.h"
 #include "io/json_member.h"
 #include "io/run_directory.h"
 #include "io/text_file.h"
+#include "run/checkpoint.h"
+#include "trajectory/gsd/frames.h"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
-#include "plot/levels.h"
 #include "base/number_text.h"
+#include "plot/levels.h"
 #include "report/page.h"
 #include "report/svg.h"
 #include "run/table.h"

@@ -1,9 +1,9 @@
 #include "report/sweep.h"
 
-#include "io/csv_table.h"
 #include "base/errors.h"
-#include "io/json_member.h"
 #include "base/number_text.h"
+#include "io/csv_table.h"
+#include "io/json_member.h"
 #include "io/run_directory.h"
 #include "io/text_file.h"
 

@@ -1,12 +1,13 @@
 #include "run/checkpoint.h"
 
-#include "config/text.h"
 #include "base/errors.h"
+#include "base/version.h"
+#include "config/text.h"
 #include "io/text_file.h"
 #include "io/toml_document.h"
-#include "base/version.h"
 
-#include <ed/internal/archive_types.h>
+#include <ed/archive_observables.h>
+#include <ed/archive_simulation.h>
 
 #include <fmt/format.h>
 
@@ -20,9 +21,9 @@
 
 namespace hardbody {
 
-using ed::internal::Is;
-using ed::internal::Reader;
-using ed::internal::Writer;
+using ed::archive::Is;
+using ed::archive::Reader;
+using ed::archive::Writer;
 
 // ---- Members, found by the archive through their types -------------------------------------------------------------
 
@@ -110,8 +111,8 @@ Checkpoint take_checkpoint(std::uint32_t format, std::string_view payload) {
   if (format >= kOtherRun && format < kFormat) (void)reader.raw(reader.left());
   reader.finish();
   const ed::System& system = checkpoint.system;
-  ed::internal::expect(reader, system.box > 0 && std::isfinite(system.box), "the box");
-  ed::internal::expect(reader, !system.bodies.empty(), "no bodies");
+  ed::archive::expect(reader, system.box > 0 && std::isfinite(system.box), "the box");
+  ed::archive::expect(reader, !system.bodies.empty(), "no bodies");
   ed::check_species(system);
   return checkpoint;
 }
@@ -208,10 +209,10 @@ void seal(std::uint32_t format, std::uint64_t length, const std::function<void(c
     }
     sink(piece);
   };
-  hashed(std::string(kMagic) + ed::internal::bytes_of(kByteOrder) + ed::internal::bytes_of(format) +
-         ed::internal::bytes_of(length));
+  hashed(std::string(kMagic) + ed::archive::bytes_of(kByteOrder) + ed::archive::bytes_of(format) +
+         ed::archive::bytes_of(length));
   payload(hashed);
-  sink(ed::internal::bytes_of(std::uint64_t{XXH3_64bits_digest(hash.get())}));
+  sink(ed::archive::bytes_of(std::uint64_t{XXH3_64bits_digest(hash.get())}));
 }
 
 }  // namespace

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "base/errors.h"
-#include "run/record.h"
 #include "io/text_file.h"
+#include "run/record.h"
 
 #include <ed/simulation.h>
 #include <ed/system.h>

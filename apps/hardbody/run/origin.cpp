@@ -1,9 +1,9 @@
 #include "run/origin.h"
 
-#include "start/agreement.h"
-#include "run/checkpoint.h"
 #include "base/errors.h"
 #include "io/run_directory.h"
+#include "run/checkpoint.h"
+#include "start/agreement.h"
 
 #include <fmt/format.h>
 

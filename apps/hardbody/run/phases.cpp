@@ -3,7 +3,7 @@
 #include "base/errors.h"
 #include "base/signals.h"
 
-#include <ed/internal/archive_types.h>
+#include <ed/archive_system.h>
 #include <ed/observables.h>
 #include <ed/shape.h>
 #include <ed/simulation.h>
@@ -242,7 +242,7 @@ ed::Simulation restored_simulation(const Config& config, Checkpoint& checkpoint,
     ed::Simulation simulation = ed::Simulation::restore(checkpoint.run->simulation.bytes(), checkpoint.system.species,
                                                         config.simulation_options());
     checkpoint.run->simulation = {};
-    if (ed::internal::bytes_of(simulation.system()) == ed::internal::bytes_of(checkpoint.system)) return simulation;
+    if (ed::archive::bytes_of(simulation.system()) == ed::archive::bytes_of(checkpoint.system)) return simulation;
     throw std::invalid_argument("state: two that should be the same differ");
   });
 }

@@ -1,14 +1,14 @@
 #pragma once
 
-#include "run/checkpoint.h"
-#include "config/config.h"
-#include "run/files/events_file.h"
 #include "base/log.h"
-#include "start/make_start.h"
 #include "base/progress.h"
+#include "config/config.h"
+#include "run/checkpoint.h"
+#include "run/files/events_file.h"
 #include "run/record.h"
 #include "run/saver.h"
 #include "run/trajectory_recorder.h"
+#include "start/make_start.h"
 
 #include <ed/equilibration.h>
 #include <ed/observables.h>

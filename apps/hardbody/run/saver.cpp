@@ -1,7 +1,7 @@
 #include "run/saver.h"
 
-#include "config/text.h"
 #include "base/version.h"
+#include "config/text.h"
 
 #include <fmt/format.h>
 

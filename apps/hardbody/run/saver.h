@@ -1,10 +1,10 @@
 #pragma once
 
-#include "run/checkpoint.h"
-#include "config/config.h"
 #include "base/log.h"
 #include "base/progress.h"
+#include "config/config.h"
 #include "io/run_directory.h"
+#include "run/checkpoint.h"
 #include "run/record.h"
 
 #include <chrono>

@@ -1,7 +1,8 @@
 #include "run/summary.h"
 
-#include "io/json_values.h"
 #include "base/version.h"
+#include "io/json_values.h"
+#include "run/estimate_json.h"
 
 #include <nlohmann/json.hpp>
 

@@ -1,8 +1,8 @@
 #include "run/table.h"
 
-#include "run/missing.h"
-#include "io/run_directory.h"
 #include "base/version.h"
+#include "io/run_directory.h"
+#include "run/missing.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

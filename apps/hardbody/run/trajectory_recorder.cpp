@@ -1,9 +1,9 @@
 #include "run/trajectory_recorder.h"
 
 #include "base/errors.h"
+#include "io/text_file.h"
 #include "trajectory/gsd/frames.h"
 #include "trajectory/lammps/dump.h"
-#include "io/text_file.h"
 #include "trajectory/vtk.h"
 
 #include <fmt/format.h>

@@ -1,10 +1,10 @@
 #pragma once
 
-#include "config/config.h"
-#include "trajectory/writer.h"
 #include "base/log.h"
+#include "config/config.h"
 #include "io/run_directory.h"
 #include "run/record.h"
+#include "trajectory/writer.h"
 
 #include <ed/simulation.h>
 

@@ -1,8 +1,6 @@
 #pragma once
 
 #include "config/config.h"
-#include "trajectory/frame.h"
-#include "io/toml_document.h"
 
 #include <ed/system.h>
 
@@ -10,21 +8,6 @@
 #include <vector>
 
 namespace hardbody {
-
-/// [start] of a document, if it has a file. Throws InputError.
-std::optional<StartFile> read_start_file(const TomlDocument& document);
-
-/// What a config that starts from a file leaves to it: text to stand at the end of the config, and values to lay over.
-struct StartAdditions {
-  std::string text;                    ///< [[species]]
-  std::vector<std::string> overrides;  ///< section.key=value
-
-  bool empty() const { return text.empty() && overrides.empty(); }
-};
-
-/// The frame's number, the number of bodies, their shapes, masses and moments, the packing fraction: those of them that
-/// the document does not say. The file is read only if there are any. Throws InputError.
-StartAdditions additions_from(const StartFile& start, const TomlDocument& document);
 
 /// A state to start from.
 struct FileStart {

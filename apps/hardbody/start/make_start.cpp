@@ -1,6 +1,5 @@
 #include "start/make_start.h"
 
-#include "run/origin.h"
 #include "base/signals.h"
 #include "start/from_file.h"
 
@@ -102,7 +101,8 @@ void report_order(double asked, const ed::System& start, Progress& progress, Log
 }
 
 /// Random, or the last state of another run; nothing if a signal came first.
-std::optional<Start> compressed_start(const Config& config, Progress& progress, Log& log) {
+std::optional<Start> compressed_start(const Config& config, const std::optional<ed::System>& origin, Progress& progress,
+                                      Log& log) {
   log.line(config.start_from ? fmt::format("start: the last state of {}, compressed to packing fraction {:g}",
                                            *config.start_from, config.packing_fraction)
                              : fmt::format("start: {} bodies placed at random{}, compressed to packing fraction {:g}",
@@ -116,9 +116,9 @@ std::optional<Start> compressed_start(const Config& config, Progress& progress, 
   };
   try {
     Start start;
-    if (config.start_from) {
-      start.system = ed::compressed(read_origin_state(config), config.packing_fraction, show, &start.counters,
-                                    &start.failures, config.numbers());
+    if (origin) {
+      start.system =
+          ed::compressed(*origin, config.packing_fraction, show, &start.counters, &start.failures, config.numbers());
     } else {
       start.system = ed::random_start(config.components(), start_options(config, show, start));
     }
@@ -134,7 +134,8 @@ std::optional<Start> compressed_start(const Config& config, Progress& progress, 
 
 }  // namespace
 
-std::optional<Start> make_start(const Config& config, Progress& progress, Log& log) {
+std::optional<Start> make_start(const Config& config, const std::optional<ed::System>& origin, Progress& progress,
+                                Log& log) {
   if (config.start_file) {
     FileStart start = start_from_file(config);
     log.line(start.report);
@@ -151,7 +152,7 @@ std::optional<Start> make_start(const Config& config, Progress& progress, Log& l
     progress.say(*warning);
   }
   const std::optional<ed::LatticeOptions> lattice = config.lattice();
-  if (!lattice) return compressed_start(config, progress, log);
+  if (!lattice) return compressed_start(config, origin, progress, log);
   log.line(fmt::format("start: {} bodies on a lattice ({}) at packing fraction {:g}{}", config.number, config.start,
                        config.packing_fraction, order_text(config)));
   Start start{ed::lattice_start(config.components(), *lattice), {}, {}};

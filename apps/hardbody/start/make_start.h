@@ -1,8 +1,8 @@
 #pragma once
 
-#include "config/config.h"
 #include "base/log.h"
 #include "base/progress.h"
+#include "config/config.h"
 
 #include <ed/simulation.h>
 #include <ed/system.h>
@@ -20,8 +20,10 @@ struct Start {
 };
 
 /// What a run begins with: bodies from a file, the last state of another run, a random dilute state, or a lattice; the
-/// second and third are compressed. Nothing if a signal came first. Throws InputError if there is no such state, and
-/// std::runtime_error if the compression gets stuck.
-std::optional<Start> make_start(const Config& config, Progress& progress, Log& log);
+/// second and third are compressed. `origin`: last state of the run that the config starts from, if any. Nothing if a
+/// signal came first. Throws InputError if there is no such state, and std::runtime_error if the compression gets
+/// stuck.
+std::optional<Start> make_start(const Config& config, const std::optional<ed::System>& origin, Progress& progress,
+                                Log& log);
 
 }  // namespace hardbody

@@ -1,8 +1,8 @@
 #include "sweep/file.h"
 
-#include "config/values.h"
 #include "base/errors.h"
 #include "base/suggest.h"
+#include "config/values.h"
 #include "io/text_file.h"
 
 #include <fmt/format.h>

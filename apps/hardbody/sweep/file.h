@@ -3,8 +3,8 @@
 /// A sweep's configuration: that of its runs, and the grid of what changes from one to the next.
 
 #include "config/config.h"
-#include "sweep/grid.h"
 #include "io/toml_document.h"
+#include "sweep/grid.h"
 
 #include <filesystem>
 #include <optional>

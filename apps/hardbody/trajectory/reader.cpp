@@ -1,9 +1,9 @@
 #include "trajectory/reader.h"
 
 #include "base/errors.h"
+#include "io/stored_bytes.h"
 #include "trajectory/gsd/frames.h"
 #include "trajectory/lammps/dump.h"
-#include "io/stored_bytes.h"
 
 #include <fmt/format.h>
 

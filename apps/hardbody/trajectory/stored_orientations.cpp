@@ -1,6 +1,6 @@
 #include "trajectory/stored_orientations.h"
 
-#include "trajectory/orientation.h"
+#include "io/orientation.h"
 
 #include <geom/pose.h>
 

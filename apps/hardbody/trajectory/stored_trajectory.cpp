@@ -90,8 +90,8 @@ std::optional<int> axis_of(const Frame& frame, const FrameBody& body) {
 
 class Reading {
  public:
-  Reading(const TrajectoryReader& reader, const AnalyzeArguments& arguments)
-      : reader_(reader), arguments_(arguments), unwrapping_(reader.wraps_late()) {}
+  Reading(const TrajectoryReader& reader, const ReadingOptions& options)
+      : reader_(reader), asked_(options), unwrapping_(reader.wraps_late()) {}
 
   StoredTrajectory read();
 
@@ -110,7 +110,7 @@ class Reading {
   void finish(std::size_t used);
 
   const TrajectoryReader& reader_;
-  const AnalyzeArguments& arguments_;
+  const ReadingOptions& asked_;
   StoredTrajectory result_;
   Frame first_;
   std::vector<std::size_t> first_order_;
@@ -140,7 +140,7 @@ std::vector<std::uint64_t> Reading::frames_with_positions() {
 
 void Reading::check_memory(std::size_t frames) const {
   const double bytes =
-      static_cast<double>(first_.bodies.size()) * static_cast<double>(frames) / arguments_.every * kMemoryOfABody;
+      static_cast<double>(first_.bodies.size()) * static_cast<double>(frames) / asked_.every * kMemoryOfABody;
   if (bytes <= kMostMemory) return;
   throw InputError(
       fmt::format("{}: {} frames of {} bodies take {:.0f} GB of memory; accepted: at most {:.0f} GB, with "
@@ -222,7 +222,7 @@ void Reading::check_frame(const Frame& frame, std::uint64_t k) const {
 }
 
 double Reading::time_of(const Frame& frame, std::uint64_t k) const {
-  if (arguments_.time_step) return static_cast<double>(frame.step) * *arguments_.time_step;
+  if (asked_.time_step) return static_cast<double>(frame.step) * *asked_.time_step;
   if (std::isfinite(frame.time)) return frame.time;
   throw InputError(
       fmt::format("{}: frame {} has no time; accepted: --time-step, the time between two steps", reader_.name(), k));
@@ -281,9 +281,9 @@ StoredTrajectory Reading::read() {
   set_order(first_);
   first_order_ = order_;
   result_.options.box = first_.box.x();
-  result_.options.longest_lag = arguments_.longest_lag.value_or(0);
+  result_.options.longest_lag = asked_.longest_lag.value_or(0);
   read_groups();
-  const auto every = static_cast<std::size_t>(arguments_.every);
+  const auto every = static_cast<std::size_t>(asked_.every);
   for (std::size_t n = 0; n < list.size(); ++n) {
     const std::uint64_t k = list[n];
     const Frame frame = reader_.read(k);
@@ -301,8 +301,8 @@ StoredTrajectory Reading::read() {
 
 }  // namespace
 
-StoredTrajectory read_trajectory(const TrajectoryReader& reader, const AnalyzeArguments& arguments) {
-  return Reading(reader, arguments).read();
+StoredTrajectory read_trajectory(const TrajectoryReader& reader, const ReadingOptions& options) {
+  return Reading(reader, options).read();
 }
 
 }  // namespace hardbody

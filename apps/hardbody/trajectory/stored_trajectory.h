@@ -1,11 +1,11 @@
 #pragma once
 
-#include "commands/commands.h"
 #include "trajectory/reader.h"
 
 #include <ed/stored_frames.h>
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,7 +26,15 @@ struct StoredTrajectory {
   std::vector<std::string> notices;  ///< of the reader, one line each
 };
 
-/// Reads each `arguments.every`-th frame that has positions; they are unwrapped through all of them. Throws InputError.
-StoredTrajectory read_trajectory(const TrajectoryReader& reader, const AnalyzeArguments& arguments);
+/// Options of read_trajectory().
+struct ReadingOptions {
+  int every = 1;                      ///< frames taken: each `every`-th one that has positions
+  std::optional<double> time_step;    ///< time between two steps; nothing: the times that are stored
+  std::optional<double> longest_lag;  ///< nothing: a quarter of the trajectory
+};
+
+/// Reads frames of a trajectory. Positions are unwrapped through all frames, those that are left out too. Throws
+/// InputError.
+StoredTrajectory read_trajectory(const TrajectoryReader& reader, const ReadingOptions& options);
 
 }  // namespace hardbody

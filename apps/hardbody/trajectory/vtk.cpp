@@ -2,7 +2,7 @@
 
 #include "io/text_file.h"
 
-#include <ed/internal/archive.h>
+#include <ed/archive.h>
 
 #include <Eigen/Geometry>
 
@@ -17,7 +17,7 @@
 namespace hardbody {
 namespace {
 
-using ed::internal::Writer;
+using ed::archive::Writer;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 

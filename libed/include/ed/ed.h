@@ -16,6 +16,7 @@
 #include <ed/random.h>
 #include <ed/shape.h>
 #include <ed/simulation.h>
+#include <ed/snapshot.h>
 #include <ed/start.h>
 #include <ed/stored_frames.h>
 #include <ed/system.h>

@@ -3,6 +3,7 @@
 #include <ed/contact_options.h>
 #include <ed/export.h>
 #include <ed/motion.h>
+#include <ed/snapshot.h>
 #include <ed/system.h>
 
 #include <geom/batch.h>
@@ -103,19 +104,6 @@ struct Stall {
 
 /// In words, one line.
 ED_EXPORT std::string describe(const Stall& stall);
-
-/// All bodies at one time, as the observables want them.
-struct Snapshot {
-  double time = 0;
-  std::vector<Eigen::Vector3d> position;  ///< unwrapped: continuous across the box's faces
-  std::vector<Eigen::Vector3d> axis;      ///< of revolution (of bodies that have none: body z), unit
-  /// Body to world. Empty where all bodies are ellipsoids of revolution that do not spin about their axes.
-  std::vector<Eigen::Matrix3d> rotation;
-  std::vector<Eigen::Vector3d> phi_lab;   ///< integral of omega (spin excluded), world frame, since the start
-  std::vector<Eigen::Vector3d> phi_body;  ///< the same, components along the body's own axes
-  std::vector<Eigen::Vector3d> velocity;
-  std::vector<Eigen::Vector3d> angular_velocity;  ///< spin excluded, world frame
-};
 
 /// How a simulation finds neighbours and contacts.
 struct SimulationOptions {

@@ -9,9 +9,8 @@
 /// below 2 units in the last place of 1 against long double (tests/unit/sincos_test.cpp); beyond the range, the C
 /// library's.
 
+#include "base/archive.h"
 #include "base/reduced_sincos.h"
-
-#include <ed/internal/archive.h>
 
 #include <bit>
 #include <cmath>

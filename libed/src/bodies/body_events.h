@@ -1,8 +1,7 @@
 #pragma once
 
-#include <ed/internal/archive.h>
-
 #include <cstdint>
+#include "base/archive.h"
 
 namespace ed::internal {
 

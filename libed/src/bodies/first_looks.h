@@ -2,8 +2,8 @@
 
 /// First looks: what a contact search finds with one evaluation, at many pairs at once.
 
+#include "bodies/pair.h"
 #include "contact/certified.h"
-#include "neighbours/lists.h"
 
 #include <span>
 

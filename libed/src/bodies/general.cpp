@@ -1,10 +1,7 @@
 #include "bodies/general.h"
 
 #include "contact/body_shapes.h"
-#include "neighbours/cell.h"
 #include "contact/convex_gap.h"
-#include "neighbours/limits.h"
-#include "neighbours/general.h"
 #include "motion/checks.h"
 
 #include <ed/impulse.h>
@@ -190,22 +187,6 @@ double GeneralBodies::contact_scale(int i, int j, const Vector3d& r, const Vecto
     if (gauge.ascend(state, done, budget, n, e) == geom::kernel::Ascent::converged) (void)done(e);
     return best;
   });
-}
-
-std::unique_ptr<Envelopes<GeneralBodies>> GeneralBodies::make_envelopes(const SimulationOptions& options,
-                                                                        double thickness, double exit_share,
-                                                                        double box) const {
-  const double thinnest = kThinnestEnvelope * bounding_radius_;
-  switch (options.neighbours) {
-    case Neighbours::dilated:
-      thickness = std::clamp(thickness, thinnest, std::max(thinnest, thickest_envelope(box, bounding_radius_)));
-      return std::make_unique<GeneralDilatedEnvelopes>(*this, thickness, exit_share * thickness);
-    case Neighbours::obp:
-      return std::make_unique<GeneralOrientedEnvelopes>(*this, std::min(thickness, thickest_oriented(*this, box)));
-    case Neighbours::cells:
-      break;
-  }
-  return std::make_unique<CellEnvelopes<GeneralBodies>>(number(), box, bounding_radius_);
 }
 
 }  // namespace ed::internal

@@ -5,23 +5,22 @@
 ///
 /// A body's flight is kept as it began, after its last collision: nothing is computed again where only time has passed.
 
-#include "bodies/body_events.h"
-#include "contact/bracketing.h"
-#include "contact/certified.h"
-#include "neighbours/envelopes.h"
-#include "bodies/first_looks.h"
 #include "base/large_vector.h"
 #include "base/prefetch.h"
-#include "motion/rigid_motion.h"
+#include "bodies/body_events.h"
+#include "bodies/pair.h"
+#include "contact/bracketing.h"
+#include "contact/certified.h"
 #include "contact/support_gap.h"
+#include "motion/rigid_motion.h"
 
+#include <ed/contact_options.h>
 #include <ed/motion.h>
-#include <ed/simulation.h>
+#include <ed/snapshot.h>
 #include <ed/system.h>
 
 #include <Eigen/Core>
 
-#include <memory>
 #include <optional>
 #include <vector>
 
@@ -92,15 +91,6 @@ class GeneralBodies {
   /// The factor by which r would have to shrink for the pair to touch, from above and no better than `enough`.
   double contact_scale(int i, int j, const Eigen::Vector3d& r, const Eigen::Vector3d& n, double now,
                        double enough) const;
-
-  /// Envelopes of this thickness or the nearest possible one.
-  std::unique_ptr<Envelopes<GeneralBodies>> make_envelopes(const SimulationOptions& options, double thickness,
-                                                           double exit_share, double box) const;
-
-  /// Pairs are looked at one by one.
-  std::unique_ptr<FirstLooks<GeneralBodies>> make_first_looks(const SimulationOptions& /*options*/) const {
-    return nullptr;
-  }
 
   /// The states; read into bodies of the same kinds.
   template <class Archive, class Self>

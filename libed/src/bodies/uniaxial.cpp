@@ -1,12 +1,9 @@
 #include "bodies/uniaxial.h"
 
-#include "neighbours/cell.h"
-#include "neighbours/dilated.h"
-#include "vectors/choose.h"
-#include "motion/checks.h"
-#include "neighbours/oriented.h"
 #include "contact/uniaxial_gap.h"
-#include "bodies/uniaxial_looks.h"
+#include "motion/checks.h"
+#include "system/uniaxial.h"
+#include "vectors/choose.h"
 
 #include <ed/impulse.h>
 
@@ -169,37 +166,13 @@ double UniaxialBodies::contact_scale(int i, int j, const Vector3d& r, const Vect
   return best;
 }
 
-UniaxialKernels UniaxialBodies::kernels(const SimulationOptions& options) const {
+UniaxialKernels UniaxialBodies::kernels(const std::optional<geom::InstructionSet>& batches) const {
   // Of near spheres most pairs are told apart by their bounding spheres, without what the kernels are good at
   // (bench_engine, vectors/).
   constexpr double kNearSphere = 0.9;
-  const UniaxialKernels found = find_uniaxial_kernels(options.batches);
+  const UniaxialKernels found = find_uniaxial_kernels(batches);
   const bool near_spheres = inscribed_radius_ > kNearSphere * bounding_radius_;
-  return near_spheres && options.batches == geom::InstructionSet::best ? UniaxialKernels() : found;
-}
-
-std::unique_ptr<Envelopes<UniaxialBodies>> UniaxialBodies::make_envelopes(const SimulationOptions& options,
-                                                                          double thickness, double exit_share,
-                                                                          double box) const {
-  const double thinnest = kThinnestEnvelope * bounding_radius_;
-  switch (options.neighbours) {
-    case Neighbours::dilated:
-      thickness = std::clamp(thickness, thinnest, std::max(thinnest, thickest_envelope(box, bounding_radius_)));
-      return std::make_unique<DilatedEnvelopes>(*this, thickness, exit_share * thickness, kernels(options).meet);
-    case Neighbours::obp:
-      return std::make_unique<OrientedEnvelopes>(*this, std::min(thickness, thickest_oriented_envelope(*this, box)));
-    case Neighbours::cells:
-      break;
-  }
-  return std::make_unique<CellEnvelopes<UniaxialBodies>>(number(), box, bounding_radius_);
-}
-
-std::unique_ptr<FirstLooks<UniaxialBodies>> UniaxialBodies::make_first_looks(const SimulationOptions& options) const {
-  // Cells have images of their own.
-  if (options.contact.finder != Finder::certified || options.neighbours == Neighbours::cells) return nullptr;
-  const UniaxialKernels found = kernels(options);
-  if (found.look_across == nullptr) return nullptr;
-  return std::make_unique<UniaxialLooks>(*this, found);
+  return near_spheres && batches == geom::InstructionSet::best ? UniaxialKernels() : found;
 }
 
 }  // namespace ed::internal

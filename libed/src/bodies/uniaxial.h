@@ -4,18 +4,18 @@
 ///
 /// What an event loop asks of its bodies is the public interface below; GeneralBodies has the same.
 
-#include "motion/axis_motion.h"
-#include "bodies/body_events.h"
-#include "contact/bracketing.h"
-#include "contact/certified.h"
-#include "neighbours/envelopes.h"
-#include "bodies/first_looks.h"
 #include "base/large_vector.h"
 #include "base/prefetch.h"
+#include "bodies/body_events.h"
+#include "bodies/pair.h"
+#include "contact/bracketing.h"
+#include "contact/certified.h"
+#include "motion/axis_motion.h"
 #include "vectors/kernels.h"
 
+#include <ed/contact_options.h>
 #include <ed/motion.h>
-#include <ed/simulation.h>
+#include <ed/snapshot.h>
 #include <ed/system.h>
 
 #include <geom/kernel/uniaxial.h>
@@ -23,7 +23,6 @@
 #include <Eigen/Core>
 
 #include <cstddef>
-#include <memory>
 #include <optional>
 #include <vector>
 
@@ -97,12 +96,8 @@ class UniaxialBodies {
   double contact_scale(int i, int j, const Eigen::Vector3d& r, const Eigen::Vector3d& n, double now,
                        double enough) const;
 
-  /// Envelopes of this thickness or the nearest possible one.
-  std::unique_ptr<Envelopes<UniaxialBodies>> make_envelopes(const SimulationOptions& options, double thickness,
-                                                            double exit_share, double box) const;
-
-  /// Null if pairs are to be looked at one by one.
-  std::unique_ptr<FirstLooks<UniaxialBodies>> make_first_looks(const SimulationOptions& options) const;
+  /// None if pairs are better answered one by one.
+  UniaxialKernels kernels(const std::optional<geom::InstructionSet>& batches) const;
 
   const std::vector<UniaxialKind>& kinds() const { return kinds_; }
   const UniaxialKind& kind_of(int i) const { return kinds_[at(kind_[at(i)])]; }
@@ -132,9 +127,6 @@ class UniaxialBodies {
     }
   };
   static_assert(sizeof(BodyEvents) + offsetof(AxisMotion, e0) == 128);
-
-  /// None if pairs are better answered one by one.
-  UniaxialKernels kernels(const SimulationOptions& options) const;
 
   static std::size_t at(int i) { return static_cast<std::size_t>(i); }
 

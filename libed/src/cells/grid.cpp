@@ -1,7 +1,7 @@
 #include "cells/grid.h"
 
-#include "vectors/choose.h"
 #include "base/prefetch.h"
+#include "cells/choose.h"
 
 #include <algorithm>
 #include <cassert>

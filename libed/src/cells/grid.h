@@ -1,10 +1,9 @@
 #pragma once
 
-#include "cells/kernels.h"
+#include "base/archive.h"
 #include "base/large_vector.h"
+#include "cells/kernels.h"
 #include "cells/near_body.h"
-
-#include <ed/internal/archive.h>
 
 #include <geom/batch.h>
 

@@ -89,7 +89,7 @@ struct MovingSurface {
     const geom::kernel::LocalSurface local = with(shape, [&](const auto& inside) {
       constexpr double kUnitLength = 1;
       const geom::kernel::WorldSurface<std::decay_t<decltype(inside)>> surface{inside, body.pose.rotation(),
-                                                                                 kUnitLength};
+                                                                               kUnitLength};
       return surface(x - body.pose.position());
     });
     const Vector3d w = body.velocity_at(x);

@@ -6,8 +6,8 @@
 /// distance: two independent ways to every contact. Unlike that, it can step over a contact that is shallower than
 /// eps_d.
 
-#include "motion/axis_motion.h"
 #include "contact/certified.h"
+#include "motion/axis_motion.h"
 #include "motion/rigid_motion.h"
 
 #include <ed/contact_options.h>

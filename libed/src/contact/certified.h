@@ -20,10 +20,10 @@
 /// speed, where its sign is rounding), g and g' are set to 0 if below, and the step is at least the least_step of the
 /// gauge. docs/time-of-contact.md says what is promised then.
 
+#include "base/archive.h"
+#include "base/select.h"
 #include "contact/curvature_steps.h"
 #include "contact/least_step.h"
-#include "neighbours/lists.h"
-#include "base/select.h"
 #include "contact/separation.h"
 #include "contact/sphere_window.h"
 

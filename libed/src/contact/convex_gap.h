@@ -20,10 +20,10 @@
 /// edged or flat the bodies are: the curvature of their surfaces does not enter.
 
 #include "contact/curvature_steps.h"
-#include "motion/rigid_motion.h"
 #include "contact/rounding.h"
 #include "contact/separation.h"
 #include "contact/sphere_window.h"
+#include "motion/rigid_motion.h"
 
 #include <ed/shape.h>
 #include <ed/tolerances.h>
@@ -74,8 +74,7 @@ class ConvexGauge {
     return least_g > 0 && least_g + horizon * (n.dot(v_) - surface_speed_ - s.rounding.rate) > 0;
   }
   template <class Done>
-  geom::kernel::Ascent ascend(const State& s, const Done& done, int& budget, Eigen::Vector3d& n,
-                                Evaluation& e) const {
+  geom::kernel::Ascent ascend(const State& s, const Done& done, int& budget, Eigen::Vector3d& n, Evaluation& e) const {
     if (done(e)) return geom::kernel::Ascent::converged;
     --budget;
     return solve(s, n, e) ? geom::kernel::Ascent::converged : geom::kernel::Ascent::stalled;

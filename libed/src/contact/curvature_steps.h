@@ -4,9 +4,9 @@
 /// (curvature_limit) and, better, over an interval ahead (certificate). Gauges without such a bound, of bodies with
 /// flat faces, answer these questions by members of the same names: see support_gauge.h.
 
+#include "base/select.h"
 #include "contact/parabola_steps.h"
 #include "contact/rounding.h"
-#include "base/select.h"
 
 #include <ed/tolerances.h>
 
@@ -35,7 +35,7 @@ bool clears(const Gauge& gauge, const typename Gauge::State& state, const GapOrE
 /// Improves n until done(e), as geom::kernel::ascend.
 template <CurvatureBounded Gauge, class Done>
 geom::kernel::Ascent ascend(const Gauge& gauge, const typename Gauge::State& state, const Done& done, int& budget,
-                              Eigen::Vector3d& n, typename Gauge::Evaluation& e) {
+                            Eigen::Vector3d& n, typename Gauge::Evaluation& e) {
   const auto evaluate = [&](const Eigen::Vector3d& m) { return gauge.evaluate(state, m); };
   return geom::kernel::ascend(evaluate, geom::kRoundingFactor * gauge.size(), done, budget, n, e);
 }
@@ -101,7 +101,7 @@ bool clears(const Gauge& gauge, const typename Gauge::State& state, const Argume
 }
 template <class Gauge, class Done>
 geom::kernel::Ascent ascend(const Gauge& gauge, const typename Gauge::State& state, const Done& done, int& budget,
-                              Eigen::Vector3d& n, typename Gauge::Evaluation& e) {
+                            Eigen::Vector3d& n, typename Gauge::Evaluation& e) {
   return gauge.ascend(state, done, budget, n, e);
 }
 template <class Gauge>

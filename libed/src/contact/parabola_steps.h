@@ -3,9 +3,9 @@
 /// What a gap, its rate and a bound of its curvature say of the time ahead. Of one pair, or of one in each lane of a
 /// vector, in the same order and with the same bits.
 
+#include "base/select.h"
 #include "contact/first_root.h"
 #include "contact/rounding.h"
-#include "base/select.h"
 
 #include <ed/tolerances.h>
 

@@ -3,10 +3,10 @@
 /// The gauge of a body of revolution inside a half-space: when does it touch the plane? (See uniaxial_gauge.h for what
 /// a gauge is.) The normal n is that of the plane, outward, and never changes: g(t) = offset - n.r(t) - h(n, u(t)).
 
-#include "motion/axis_motion.h"
 #include "contact/separation.h"
 #include "contact/sphere_window.h"
 #include "contact/uniaxial_gap.h"
+#include "motion/axis_motion.h"
 
 #include <Eigen/Core>
 

@@ -38,12 +38,12 @@
 /// need g > 0 to see two faces part. Tried are Omega = 0, that of the best normal, and those of the bodies, whose flat
 /// faces then do not tilt at all.
 
-#include "contact/curvature_steps.h"
-#include "motion/rigid_motion.h"
-#include "contact/rounding.h"
 #include "base/select.h"
+#include "contact/curvature_steps.h"
+#include "contact/rounding.h"
 #include "contact/separation.h"
 #include "contact/sphere_window.h"
+#include "motion/rigid_motion.h"
 
 #include <ed/tolerances.h>
 
@@ -228,7 +228,7 @@ class SupportGauge {
 
 template <class Done>
 geom::kernel::Ascent SupportGauge::ascend(const State& s, const Done& done, int& budget, Eigen::Vector3d& n,
-                                            Evaluation& e) const {
+                                          Evaluation& e) const {
   using geom::kernel::Ascent;
   constexpr int kPatience = 20;  // where edges nearly touch, steps may go on helping next to nothing
   constexpr int kElementSteps = 30;

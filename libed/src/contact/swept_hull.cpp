@@ -1,7 +1,7 @@
 #include "contact/swept_hull.h"
 
-#include "motion/checks.h"
 #include "contact/rounding.h"
+#include "motion/checks.h"
 
 #include <ed/tolerances.h>
 

@@ -3,10 +3,10 @@
 #include "contact/certified.h"
 #include "contact/checks.h"
 #include "contact/convex_gap.h"
-#include "motion/checks.h"
 #include "contact/support_gap.h"
 #include "contact/swept_hull.h"
 #include "contact/uniaxial_gap.h"
+#include "motion/checks.h"
 
 #include <ed/time_of_contact.h>
 #include <ed/tolerances.h>

@@ -14,12 +14,12 @@
 ///   double rate_slope()                   >= |d2g/dt dn| for every n and t
 ///   double size(), certified_depth(), speed(), and window(t_begin, t_end)
 
-#include "motion/axis_motion.h"
-#include "contact/rounding.h"
 #include "base/select.h"
+#include "contact/rounding.h"
 #include "contact/separation.h"
 #include "contact/sphere_window.h"
 #include "contact/support_curvature.h"
+#include "motion/axis_motion.h"
 
 #include <ed/tolerances.h>
 

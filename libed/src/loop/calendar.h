@@ -1,9 +1,8 @@
 #pragma once
 
+#include "base/archive.h"
 #include "base/large_vector.h"
 #include "base/prefetch.h"
-
-#include <ed/internal/archive.h>
 
 #include <algorithm>
 #include <array>

@@ -1,12 +1,14 @@
 #include "loop/event_loop.h"
 
-#include "contact/body_shapes.h"
-#include "neighbours/cell.h"
-#include "contact/checks.h"
-#include "neighbours/limits.h"
-#include "bodies/general.h"
+#include "loop/factory.h"
+
 #include "base/power_of_two.h"
+#include "bodies/general.h"
 #include "bodies/uniaxial.h"
+#include "contact/body_shapes.h"
+#include "contact/checks.h"
+#include "neighbours/cell.h"
+#include "neighbours/limits.h"
 
 #include <algorithm>
 #include <cmath>
@@ -88,7 +90,7 @@ EventLoop<Bodies>::EventLoop(const System& system, const SimulationOptions& opti
       images_(at(system.size()), Eigen::Vector3i::Zero()),
       lists_(system.size()),
       calendar_(system.size()),
-      first_looks_(bodies_.make_first_looks(options)) {
+      first_looks_(make_first_looks(bodies_, options)) {
   check_box(system, bodies_.bounding_radius());
   check_contact_options(options.contact, bodies_.inscribed_radius());
   if (options.neighbours == Neighbours::cells) check_cells(box_, bodies_.bounding_radius());
@@ -102,7 +104,7 @@ template <class Bodies>
 void EventLoop<Bodies>::set_envelope(double thickness, bool shrinking) {
   // A share of the mean distance of neighbours: a first guess that is within a factor of two of the best.
   if (!(thickness > 0)) thickness = 0.22 * box_ / std::cbrt(static_cast<double>(number()));
-  envelopes_ = bodies_.make_envelopes(options_, thickness, shrinking ? kShrinkingExit : 1.0, box_);
+  envelopes_ = make_envelopes(bodies_, options_, thickness, shrinking ? kShrinkingExit : 1.0, box_);
   rebuild_all();
 }
 

@@ -1,17 +1,17 @@
 #pragma once
 
-#include "bodies/body_events.h"
-#include "contact/bracketing.h"
-#include "loop/calendar.h"
-#include "cells/grid.h"
-#include "contact/certified.h"
-#include "neighbours/envelopes.h"
-#include "loop/prefetch_events.h"
-#include "bodies/first_looks.h"
+#include "base/archive.h"
 #include "base/large_vector.h"
+#include "bodies/body_events.h"
+#include "bodies/first_looks.h"
+#include "cells/grid.h"
+#include "contact/bracketing.h"
+#include "contact/certified.h"
+#include "loop/calendar.h"
+#include "loop/prefetch_events.h"
+#include "neighbours/envelopes.h"
 #include "neighbours/lists.h"
 
-#include <ed/internal/archive.h>
 #include <ed/simulation.h>
 
 #include <array>

@@ -1,11 +1,11 @@
 #pragma once
 
+#include "base/prefetch.h"
 #include "bodies/body_events.h"
-#include "loop/calendar.h"
 #include "cells/grid.h"
+#include "loop/calendar.h"
 #include "neighbours/envelopes.h"
 #include "neighbours/lists.h"
-#include "base/prefetch.h"
 
 #include <cstddef>
 #include <cstdint>

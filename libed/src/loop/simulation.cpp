@@ -1,7 +1,8 @@
-#include "neighbours/cell.h"
+#include "base/archive.h"
 #include "loop/event_loop.h"
+#include "neighbours/cell.h"
 
-#include <ed/internal/archive_types.h>
+#include <ed/archive_simulation.h>
 #include <ed/simulation.h>
 
 #include <algorithm>

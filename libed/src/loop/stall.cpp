@@ -1,8 +1,8 @@
 // What an event loop that makes no progress is stuck in. Apart from the loop, as event_loop_state.cpp.
 
-#include "loop/event_loop.h"
 #include "bodies/general.h"
 #include "bodies/uniaxial.h"
+#include "loop/event_loop.h"
 
 #include <algorithm>
 #include <map>

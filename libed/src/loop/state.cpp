@@ -1,11 +1,14 @@
 // The event loop's state as bytes. Apart from the loop, which the compiler inlines less of in a larger source.
 
+#include "base/archive.h"
 #include "contact/body_shapes.h"
 #include "loop/event_loop.h"
+
 #include "bodies/general.h"
 #include "bodies/uniaxial.h"
+#include "loop/factory.h"
 
-#include <ed/internal/archive_types.h>
+#include <ed/archive_simulation.h>
 
 #include <algorithm>
 #include <cmath>
@@ -39,7 +42,7 @@ EventLoop<Bodies>::EventLoop(const System& system, const SimulationOptions& opti
   expect(reader, box_ <= 1e8 * R, "the box");
   expect(reader, thickness >= 0 && thickness <= box_, "the thickness of the envelopes");
   // What is read replaces the contents of both.
-  envelopes_ = bodies_.make_envelopes(options_, thickness, 1, box_);
+  envelopes_ = make_envelopes(bodies_, options_, thickness, 1, box_);
   envelopes_->load(reader);
   const bool fits = envelopes_->reach() >= R && envelopes_->reach() <= 2 * box_;
   expect(reader, envelopes_->thickness() == thickness && fits, "the size of the envelopes");

@@ -1,7 +1,7 @@
 #include "motion/asymmetric_top.h"
 
-#include "motion/elliptic.h"
 #include "base/exponential.h"
+#include "motion/elliptic.h"
 
 #include <algorithm>
 #include <cmath>

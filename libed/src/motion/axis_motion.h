@@ -8,9 +8,8 @@
 ///
 /// Without spin about the axis, L is across u and e0 = 0.
 
+#include "base/archive.h"
 #include "base/sincos.h"
-
-#include <ed/internal/archive.h>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>

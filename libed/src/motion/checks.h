@@ -4,10 +4,6 @@
 
 #include <ed/motion.h>
 
-namespace ed {
-struct Species;
-}  // namespace ed
-
 namespace ed::internal {
 
 /// Throws std::invalid_argument unless the moments are positive, finite and satisfy the triangle inequality.
@@ -26,8 +22,5 @@ struct TopMotion {
   BodyFrame frame;
 };
 TopMotion top_motion(const Motion& motion, int axis);
-
-/// Whether the species is one of ellipsoids of revolution about an axis that their inertia shares (UniaxialBodies).
-bool is_uniaxial(const Species& species);
 
 }  // namespace ed::internal

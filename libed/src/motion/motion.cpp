@@ -1,6 +1,6 @@
 #include "motion/axis_motion.h"
-#include "motion/free_top.h"
 #include "motion/checks.h"
+#include "motion/free_top.h"
 
 #include <ed/motion.h>
 

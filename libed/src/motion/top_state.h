@@ -2,9 +2,8 @@
 
 /// What the kinds of free tops answer; see free_top.h.
 
+#include "base/archive.h"
 #include "base/sincos.h"
-
-#include <ed/internal/archive.h>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>

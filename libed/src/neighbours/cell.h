@@ -3,9 +3,9 @@
 /// The paper's plain algorithm: a body's region is its cell of a regular grid, its neighbours are all bodies in that
 /// and the 26 adjacent cells, and leaving it is a cell crossing (step 5 of the paper's list).
 
+#include "base/periodic.h"
 #include "neighbours/envelopes.h"
 #include "neighbours/lists.h"
-#include "base/periodic.h"
 
 #include <Eigen/Core>
 

@@ -6,14 +6,14 @@
 /// between u and u0, because the support function changes by at most |a - b| a radian. Two bodies whose envelopes do
 /// not meet, gap of the bodies at (r0, u0) > 2 delta, cannot touch.
 
-#include "vectors/dilated_gap.h"
-#include "neighbours/limits.h"
-#include "neighbours/envelopes.h"
 #include "base/large_vector.h"
-#include "neighbours/lists.h"
 #include "base/periodic.h"
 #include "base/prefetch.h"
 #include "bodies/uniaxial.h"
+#include "neighbours/envelopes.h"
+#include "neighbours/limits.h"
+#include "neighbours/lists.h"
+#include "vectors/dilated_gap.h"
 #include "vectors/kernels.h"
 
 #include <geom/kernel/uniaxial.h>

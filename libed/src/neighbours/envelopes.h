@@ -5,10 +5,9 @@
 /// Two bodies are neighbours while their envelopes meet; a body that leaves its envelope gets a new one and a new list.
 /// Three kinds, one list code: the dilated body, the paper's oriented box, and the cell of the paper's plain algorithm.
 
-#include "cells/near_body.h"
+#include "base/archive.h"
 #include "base/periodic.h"
-
-#include <ed/internal/archive.h>
+#include "cells/near_body.h"
 
 #include <Eigen/Core>
 

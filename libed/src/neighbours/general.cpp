@@ -1,8 +1,8 @@
 #include "neighbours/general.h"
 
+#include "base/periodic.h"
 #include "neighbours/limits.h"
 #include "neighbours/oriented_slack.h"
-#include "base/periodic.h"
 
 #include <geom/kernel/norm_body_pair.h>
 

@@ -7,10 +7,11 @@
 /// direction seen from the body by theta at the most. So a body at (r, R) lies inside its dilated envelope of (r0, R0)
 /// while |r - r0| + lever theta <= delta, theta the angle of R R0^T.
 
-#include "neighbours/envelopes.h"
+#include "base/archive.h"
 #include "bodies/general.h"
+#include "neighbours/envelopes.h"
 
-#include <ed/internal/archive_types.h>
+#include <ed/archive_system.h>
 
 #include <geom/obb.h>
 

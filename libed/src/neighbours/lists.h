@@ -1,51 +1,20 @@
 #pragma once
 
+#include "base/archive.h"
 #include "base/large_vector.h"
 #include "base/prefetch.h"
-
-#include <ed/internal/archive.h>
+#include "bodies/pair.h"
 
 #include <Eigen/Core>
 
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <unordered_map>
 #include <vector>
 
 namespace ed::internal {
-
-inline constexpr double kNever = std::numeric_limits<double>::infinity();
-
-/// What is known of a pair of neighbours.
-enum class PairEvent : std::int32_t {
-  clear,    ///< certified: no contact while both bodies stay in their envelopes (up to the earlier exit bound)
-  bound,    ///< certified: no contact before `time`; to be looked at again then
-  contact,  ///< they touch at `time`
-};
-
-/// One cache line: a collision looks at tens of pairs, each somewhere else in memory.
-struct alignas(64) Pair {
-  double time = kNever;
-  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< from i to j: the last one found, or zero
-  std::int32_t i = -1;
-  std::int32_t j = -1;
-  std::int32_t slot_i = -1;  ///< where the pair stands in the list of i
-  std::int32_t slot_j = -1;
-  std::int32_t owner = -1;  ///< in whose calendar entry the pair counts: i or j
-  PairEvent event = PairEvent::clear;
-
-  std::int32_t partner(std::int32_t body) const { return i == body ? j : i; }
-};
-
-template <class Archive, Is<Pair> T>
-void fields(Archive& archive, T& pair) {
-  archive(pair.time, pair.normal, pair.i, pair.j, pair.slot_i, pair.slot_j, pair.owner, pair.event);
-}
-
-static_assert(sizeof(Pair) == 64);
 
 /// Neighbour lists: a pool of pairs, and for each body the pairs that it is in.
 class NeighbourLists {

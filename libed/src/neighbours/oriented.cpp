@@ -1,10 +1,10 @@
 #include "neighbours/oriented.h"
 
+#include "base/periodic.h"
 #include "contact/certified.h"
+#include "contact/plane_gap.h"
 #include "neighbours/limits.h"
 #include "neighbours/lists.h"
-#include "base/periodic.h"
-#include "contact/plane_gap.h"
 
 #include <algorithm>
 #include <cmath>

@@ -7,10 +7,11 @@
 /// six planes, "a particular case of the collision between rigid bodies" (the paper, section 2.1): the same certified
 /// search says when.
 
-#include "neighbours/envelopes.h"
+#include "base/archive.h"
 #include "bodies/uniaxial.h"
+#include "neighbours/envelopes.h"
 
-#include <ed/internal/archive_types.h>
+#include <ed/archive_system.h>
 
 #include <geom/kernel/uniaxial.h>
 #include <geom/obb.h>

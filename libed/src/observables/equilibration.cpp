@@ -1,9 +1,10 @@
+#include "base/archive.h"
 #include "observables/frame_sums.h"
 #include "observables/structure.h"
 
 #include <ed/analysis.h>
+#include <ed/archive_observables.h>
 #include <ed/equilibration.h>
-#include <ed/internal/archive_types.h>
 #include <ed/system.h>
 
 #include <algorithm>

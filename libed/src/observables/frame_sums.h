@@ -2,9 +2,9 @@
 
 /// What is averaged over single frames of a run: order and temperatures.
 
+#include "base/archive.h"
 #include "observables/lag_sums.h"
 
-#include <ed/internal/archive.h>
 #include <ed/system.h>
 
 #include <Eigen/Core>

@@ -2,9 +2,10 @@
 
 /// What a time correlation is made of: two frames of a run, compared body by body.
 
-#include <ed/internal/archive_types.h>
+#include <ed/archive_simulation.h>
 #include <ed/observables.h>
 #include <ed/simulation.h>
+#include "base/archive.h"
 
 #include <Eigen/Core>
 

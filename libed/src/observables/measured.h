@@ -2,11 +2,12 @@
 
 /// What a run's observables are kept as: blocks of sums, of which there are never more than a fixed number.
 
+#include "base/archive.h"
 #include "observables/frame_sums.h"
 #include "observables/lag_sums.h"
 #include "observables/structure.h"
 
-#include <ed/internal/archive_types.h>
+#include <ed/archive_observables.h>
 #include <ed/observables.h>
 
 #include <Eigen/Core>

@@ -1,6 +1,7 @@
+#include "base/archive.h"
 #include "observables/measured.h"
 
-#include <ed/internal/archive_types.h>
+#include <ed/archive_observables.h>
 #include <ed/observables.h>
 #include <ed/system.h>
 

@@ -1,9 +1,9 @@
 #include "observables/structure.h"
 
-#include "cells/grid.h"
 #include "base/legendre.h"
 #include "base/periodic.h"
 #include "base/sincos.h"
+#include "cells/grid.h"
 
 #include <ed/random.h>
 #include <ed/system.h>

@@ -2,9 +2,9 @@
 
 /// Static structure: pair correlations and the structure factor of single frames.
 
+#include "base/archive.h"
 #include "observables/lag_sums.h"
 
-#include <ed/internal/archive.h>
 #include <ed/simulation.h>
 
 #include <Eigen/Core>

@@ -1,10 +1,8 @@
-#include "contact/body_shapes.h"
-#include "neighbours/cell.h"
-#include "cells/grid.h"
-#include "neighbours/limits.h"
-#include "motion/checks.h"
-#include "neighbours/oriented_slack.h"
 #include "base/power_of_two.h"
+#include "cells/grid.h"
+#include "contact/body_shapes.h"
+#include "motion/checks.h"
+#include "system/uniaxial.h"
 
 #include <ed/system.h>
 #include <ed/tolerances.h>
@@ -33,19 +31,6 @@ bool is_of_revolution(const BodyShape& shape, int axis) {
   if (!symmetric) return false;
   const bool round = bounding_radius(shape) == inscribed_radius(shape);  // a sphere: about every axis
   return *symmetric == axis || round;
-}
-
-double smallest_box_of(const std::vector<BodyShape>& shapes, bool of_revolution, Neighbours neighbours) {
-  double radius = 0;
-  double inscribed = std::numeric_limits<double>::infinity();
-  for (const BodyShape& shape : shapes) {
-    radius = std::max(radius, bounding_radius(shape));
-    inscribed = std::min(inscribed, inscribed_radius(shape));
-  }
-  const double by_images = internal::smallest_image_box(radius);
-  if (neighbours == Neighbours::cells) return std::max(by_images, internal::CellLayout::smallest_box(radius));
-  if (neighbours == Neighbours::dilated || of_revolution) return by_images;
-  return std::max(by_images, internal::smallest_oriented_box(shapes, internal::kThinnestOriented * inscribed));
 }
 
 [[noreturn]] void refuse_moments(const Vector3d& inertia, const std::string& why) {
@@ -204,30 +189,8 @@ const char* to_string(Neighbours neighbours) {
   return "unknown";
 }
 
-double smallest_box(const std::vector<Component>& components, Neighbours neighbours) {
-  std::vector<BodyShape> shapes;
-  bool of_revolution = true;
-  for (const Component& component : components) {
-    shapes.push_back(component.species.shape);
-    of_revolution = of_revolution && internal::is_uniaxial(component.species);
-  }
-  return smallest_box_of(shapes, of_revolution, neighbours);
-}
-
 bool internal::is_uniaxial(const Species& species) {
   return std::holds_alternative<geom::Ellipsoid>(species.shape) && symmetry_axis(species);
-}
-
-int smallest_number(const BodyShape& shape, double packing_fraction, Neighbours neighbours) {
-  if (!(packing_fraction > 0)) {
-    std::ostringstream message;
-    message << "packing_fraction is " << packing_fraction << "; accepted: above 0";
-    throw std::invalid_argument(message.str());
-  }
-  const bool of_revolution = std::holds_alternative<geom::Ellipsoid>(shape) && symmetry_axis(shape);
-  const double box = smallest_box_of({shape}, of_revolution, neighbours);
-  const double number = std::ceil(packing_fraction * box * box * box / volume(shape));
-  return static_cast<int>(std::clamp(number, 2.0, double{std::numeric_limits<int>::max()}));
 }
 
 KineticState kinetic_state(const System& system) {

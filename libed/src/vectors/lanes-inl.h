@@ -8,8 +8,8 @@
 #include <geom/kernel/uniaxial_pair.h>
 #include <geom/tolerances.h>
 
-#include <hwy/highway.h>
 #include <geom/kernel/records-inl.h>
+#include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace ed::internal {

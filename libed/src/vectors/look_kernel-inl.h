@@ -6,13 +6,13 @@
 
 #pragma once
 
-#include "vectors/lanes-inl.h"
 #include "base/nearest_integer.h"
-#include "contact/parabola_steps.h"
 #include "base/reduced_sincos.h"
+#include "contact/parabola_steps.h"
 #include "contact/rounding.h"
 #include "contact/sphere_window.h"
 #include "contact/support_curvature.h"
+#include "vectors/lanes-inl.h"
 
 #include <ed/tolerances.h>
 

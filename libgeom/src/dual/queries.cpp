@@ -74,8 +74,7 @@ RayHit ray_cast(const Ellipsoid& shape, const Pose& X_WB, const Vector3d& origin
     if (!std::isfinite(t)) return;
     const Vector3d at_unit_ball = o + way * d;
     const Vector3d m = at_unit_ball.squaredNorm() > 0 ? kernel::unit_vector(at_unit_ball) : -kernel::unit_vector(d);
-    hit = {status, t, near.origin + way * u,
-           X_WB.rotation() * kernel::unit_vector(m.cwiseQuotient(shape.semi_axes()))};
+    hit = {status, t, near.origin + way * u, X_WB.rotation() * kernel::unit_vector(m.cwiseQuotient(shape.semi_axes()))};
   };
   if (o.squaredNorm() < 1) {
     // From afar this is a body smaller than what its own coordinates are rounded by.

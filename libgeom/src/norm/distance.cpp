@@ -19,8 +19,8 @@ template <class A, class B>
 DistanceResult norm_body_distance(const A& a, const Pose& X_WA, const B& b, const Pose& X_WB,
                                   const DistanceOptions& options) {
   const Vector3d r = X_WB.position() - X_WA.position();
-  const NormBodyPair pair(NormBodies(kernel::NormShape(a), X_WA.rotation(), kernel::NormShape(b), X_WB.rotation()),
-                          r, a.bounding_radius() + b.bounding_radius(), a.inscribed_radius() + b.inscribed_radius());
+  const NormBodyPair pair(NormBodies(kernel::NormShape(a), X_WA.rotation(), kernel::NormShape(b), X_WB.rotation()), r,
+                          a.bounding_radius() + b.bounding_radius(), a.inscribed_radius() + b.inscribed_radius());
   DistanceResult result;
   const Vector3d cold = pair.cold_normal();
   const Answer answer =

@@ -27,8 +27,8 @@ const char* to_string(NewtonSystem system) {
 }
 
 DistanceResult kernel::newton_distance_unchecked(const Ellipsoid& a, const Pose& X_WA, const Ellipsoid& b,
-                                                   const Pose& X_WB, NewtonSystem system, const WitnessPair& seed,
-                                                   const NewtonOptions& options) {
+                                                 const Pose& X_WB, NewtonSystem system, const WitnessPair& seed,
+                                                 const NewtonOptions& options) {
   return newton_distance_unchecked<Ellipsoid, Ellipsoid>(a, X_WA, b, X_WB, system, seed, options);
 }
 

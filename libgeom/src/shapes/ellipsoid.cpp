@@ -30,13 +30,13 @@ Ellipsoid::Ellipsoid(const Eigen::Vector3d& semi_axes)
     const double a = semi_axes[k];
     if (!(a >= kMinSemiAxis && a <= kMaxSemiAxis)) {
       kernel::refuse(std::string("Ellipsoid: semi-axis ") + "xyz"[k] + " is " + kernel::shown(a) +
-                       "; accepted: " + kernel::shown(kMinSemiAxis) + " to " + kernel::shown(kMaxSemiAxis));
+                     "; accepted: " + kernel::shown(kMinSemiAxis) + " to " + kernel::shown(kMaxSemiAxis));
     }
   }
   const double ratio = bounding_radius() / inscribed_radius();
   if (!(ratio <= kMaxAspectRatio)) {
     kernel::refuse("Ellipsoid: ratio of the largest to the smallest semi-axis is " + kernel::shown(ratio) +
-                     "; accepted: at most " + kernel::shown(kMaxAspectRatio));
+                   "; accepted: at most " + kernel::shown(kMaxAspectRatio));
   }
 }
 

@@ -16,8 +16,8 @@ namespace {
 using Eigen::Vector3d;
 
 [[noreturn]] void refuse(const std::string& what, double value, double least, double most) {
-  kernel::refuse("Superellipsoid: " + what + " is " + kernel::shown(value) +
-                   "; accepted: " + kernel::shown(least) + " to " + kernel::shown(most));
+  kernel::refuse("Superellipsoid: " + what + " is " + kernel::shown(value) + "; accepted: " + kernel::shown(least) +
+                 " to " + kernel::shown(most));
 }
 
 void check(const Vector3d& axes, double e1, double e2) {

@@ -1,8 +1,8 @@
 /// Grids of a sweep, the files they are read from, and lines of constant value.
 
-#include "plot/contours.h"
-#include "io/csv_table.h"
 #include "base/errors.h"
+#include "io/csv_table.h"
+#include "plot/contours.h"
 #include "sweep/file.h"
 #include "sweep/grid.h"
 

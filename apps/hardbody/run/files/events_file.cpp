@@ -1,8 +1,8 @@
 #include "run/files/events_file.h"
 
 #include "base/errors.h"
-#include "run/files/observable_files.h"
 #include "io/text_file.h"
+#include "run/files/observable_files.h"
 
 #include <fmt/format.h>
 

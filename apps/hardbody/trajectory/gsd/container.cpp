@@ -2,7 +2,7 @@
 
 #include "base/errors.h"
 
-#include <ed/internal/archive.h>
+#include <ed/archive.h>
 
 #include <fmt/format.h>
 
@@ -15,8 +15,8 @@
 
 namespace hardbody {
 
-using ed::internal::Reader;
-using ed::internal::Writer;
+using ed::archive::Reader;
+using ed::archive::Writer;
 
 namespace {
 

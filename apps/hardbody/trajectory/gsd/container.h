@@ -8,7 +8,7 @@
 
 #include "io/stored_bytes.h"
 
-#include <ed/internal/archive.h>
+#include <ed/archive.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -83,7 +83,7 @@ class GsdFile {
   void read_names(std::uint64_t location, std::uint64_t blocks, bool fixed_length);
   void read_index(std::uint64_t location, std::uint64_t entries);
   void note_last_frames();
-  bool take_chunk(ed::internal::Reader& reader, std::uint64_t entries);
+  bool take_chunk(ed::archive::Reader& reader, std::uint64_t entries);
 
   std::unique_ptr<StoredBytes> bytes_;
   std::string name_;

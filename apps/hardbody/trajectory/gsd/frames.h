@@ -1,9 +1,9 @@
 #pragma once
 
 #include "trajectory/frame.h"
-#include "trajectory/writer.h"
 #include "trajectory/gsd/container.h"
 #include "trajectory/reader.h"
+#include "trajectory/writer.h"
 
 #include <cstdint>
 #include <filesystem>

@@ -2,11 +2,11 @@
 #include "trajectory/gsd/schema.h"
 
 #include "base/errors.h"
-#include "trajectory/stored_orientations.h"
 #include "io/text_file.h"
 #include "trajectory/gsd/type_shapes.h"
+#include "trajectory/stored_orientations.h"
 
-#include <ed/internal/archive.h>
+#include <ed/archive.h>
 
 #include <Eigen/Geometry>
 
@@ -25,7 +25,7 @@ namespace hardbody {
 namespace {
 
 using namespace gsd;
-using ed::internal::Reader;
+using ed::archive::Reader;
 using Eigen::Matrix3d;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;

@@ -1,11 +1,11 @@
 #include "trajectory/gsd/frames.h"
 #include "trajectory/gsd/schema.h"
 
+#include "base/version.h"
 #include "io/text_file.h"
 #include "trajectory/gsd/type_shapes.h"
-#include "base/version.h"
 
-#include <ed/internal/archive.h>
+#include <ed/archive.h>
 
 #include <Eigen/Geometry>
 
@@ -22,7 +22,7 @@ namespace hardbody {
 namespace {
 
 using namespace gsd;
-using ed::internal::Writer;
+using ed::archive::Writer;
 using Eigen::Matrix3d;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;

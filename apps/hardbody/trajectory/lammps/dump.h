@@ -1,8 +1,8 @@
 #pragma once
 
-#include "trajectory/writer.h"
 #include "io/stored_bytes.h"
 #include "trajectory/reader.h"
+#include "trajectory/writer.h"
 
 #include <cstdint>
 #include <filesystem>

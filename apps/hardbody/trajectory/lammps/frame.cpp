@@ -1,10 +1,10 @@
 #include "trajectory/lammps/frame.h"
 
 #include "base/errors.h"
-#include "trajectory/lammps/columns.h"
 #include "base/number_text.h"
-#include "trajectory/stored_orientations.h"
 #include "io/text_file.h"
+#include "trajectory/lammps/columns.h"
+#include "trajectory/stored_orientations.h"
 
 #include <fmt/format.h>
 

@@ -328,8 +328,8 @@ DistanceResult distance(const ShapeA& a, const Pose& X_WA, const ShapeB& b, cons
   // Shapes with flat faces or edges have rho = 0; a small share of the inscribed spheres keeps the step bounded.
   const double least =
       kLeastEigenvalue * std::max(rho, kLeastCurvature * (a.inscribed_radius() + b.inscribed_radius()));
-  const kernel::GeneralPair pair(WorldSupport<ShapeA>{a, X_WA.rotation()}, WorldSupport<ShapeB>{b, X_WB.rotation()},
-                                   r, least);
+  const kernel::GeneralPair pair(WorldSupport<ShapeA>{a, X_WA.rotation()}, WorldSupport<ShapeB>{b, X_WB.rotation()}, r,
+                                 least);
   const auto cold = [&r] { return kernel::unit_or_x(r); };
   const kernel::PairScale scale{r.norm() + a.bounding_radius() + b.bounding_radius(), rho};
   const auto shares = [&](const Eigen::Vector3d& point_a, const Eigen::Vector3d& point_b) {
@@ -337,14 +337,12 @@ DistanceResult distance(const ShapeA& a, const Pose& X_WA, const ShapeB& b, cons
   };
   DistanceResult result = kernel::solve_dual(pair, cold, scale, X_WA.position(), options, shares);
   if (result.status != DistanceStatus::not_converged) return result;
-  const kernel::CorePair cores{pair, kernel::min_curvature_radius_or_zero(a),
-                                 kernel::min_curvature_radius_or_zero(b)};
+  const kernel::CorePair cores{pair, kernel::min_curvature_radius_or_zero(a), kernel::min_curvature_radius_or_zero(b)};
   result = kernel::descend_cores(cores, scale.size, cold(), X_WA.position(), result.iterations);
   if (result.status != DistanceStatus::not_converged) {
     if (!kernel::needs_polish(scale, result)) return result;
     // From there Newton's method has a second chance: where it converges it is the more exact.
-    DistanceResult polished =
-        kernel::solve_dual(pair, cold, scale, X_WA.position(), {.start = result.normal}, shares);
+    DistanceResult polished = kernel::solve_dual(pair, cold, scale, X_WA.position(), {.start = result.normal}, shares);
     polished.iterations += result.iterations;
     return polished.error_bound < result.error_bound ? polished : result;
   }

@@ -3,6 +3,7 @@
 #include "bodies/first_looks.h"
 #include "base/periodic.h"
 #include "bodies/uniaxial.h"
+#include "loop/factory.h"
 
 #include <common/ed_states.h>
 #include <common/ed_uniaxial_bodies.h>
@@ -69,7 +70,7 @@ double expect_same_looks(const std::vector<Species>& species, geom::InstructionS
   for (Pair& pair : pairs) looks.push_back({&pair, now + std::exp(3 * random.uniform() - 4)});
   SimulationOptions options;
   options.batches = set;
-  const auto batch = bodies.make_first_looks(options);
+  const auto batch = make_first_looks(bodies, options);
   FinderCounters count;
   batch->take(bodies, now, box, looks, count);
 
@@ -155,15 +156,15 @@ TEST(FirstLooks, AreTakenOneByOneWherePairsNeedMore) {
   const UniaxialBodies bodies(system);
   SimulationOptions options;
   options.batches.reset();
-  EXPECT_EQ(bodies.make_first_looks(options), nullptr);
+  EXPECT_EQ(make_first_looks(bodies, options), nullptr);
   options = {};
   options.batches = geom::InstructionSet::portable;
-  EXPECT_NE(bodies.make_first_looks(options), nullptr);
+  EXPECT_NE(make_first_looks(bodies, options), nullptr);
   options.neighbours = Neighbours::cells;
-  EXPECT_EQ(bodies.make_first_looks(options), nullptr);
+  EXPECT_EQ(make_first_looks(bodies, options), nullptr);
   options.neighbours = Neighbours::obp;
   options.contact.finder = Finder::bracketing;
-  EXPECT_EQ(bodies.make_first_looks(options), nullptr);
+  EXPECT_EQ(make_first_looks(bodies, options), nullptr);
 }
 
 TEST(FirstLooks, RefuseInstructionSetsThatAreNotThere) {

@@ -3,7 +3,7 @@
 
 #include <common/geom_batch.h>
 
-#include <ed/internal/archive.h>
+#include <ed/archive.h>
 #include <ed/random.h>
 
 #include <Eigen/Core>
@@ -214,11 +214,11 @@ TEST(CellGrid, GoesOnAsItWasAfterReading) {
   CellGrid grid(kNumber, kBox, kReach);
   place_all(kNumber, kBox, random, grid);
   grid.scale(0.9);
-  const std::string bytes = ed::internal::bytes_of(grid);
+  const std::string bytes = ed::archive::bytes_of(grid);
   CellGrid read(kNumber, 0.9 * kBox, 0.9 * kReach);
-  ed::internal::Reader reader(bytes);
+  ed::archive::Reader reader(bytes);
   reader(read);
-  EXPECT_EQ(ed::internal::bytes_of(read), bytes);
+  EXPECT_EQ(ed::archive::bytes_of(read), bytes);
   // In the same order, too, after bodies have left their cells and come to others.
   for (int k = 0; k < 5000; ++k) {
     const int body = static_cast<int>(kNumber * random.uniform());
@@ -230,7 +230,7 @@ TEST(CellGrid, GoesOnAsItWasAfterReading) {
       ASSERT_EQ(found_by(grid, centre, 0.9 * kReach), found_by(read, centre, 0.9 * kReach)) << k;
     }
   }
-  EXPECT_EQ(ed::internal::bytes_of(read), ed::internal::bytes_of(grid));
+  EXPECT_EQ(ed::archive::bytes_of(read), ed::archive::bytes_of(grid));
 }
 
 /// Bodies stand last but for their places: `back` of them from the end.
@@ -245,13 +245,13 @@ TEST(CellGrid, RefusesWhatHoldsNotEachBodyOnce) {
   CellGrid grid(kNumber, 10, 2.5);
   ed::Random random(12);
   for (int i = 0; i < kNumber; ++i) grid.place(i, draw(random, 10));
-  const std::string bytes = ed::internal::bytes_of(grid);
+  const std::string bytes = ed::archive::bytes_of(grid);
   const auto expect_refused = [](const std::string& bad, const std::string& what) {
-    ed::internal::Reader reader(bad);
+    ed::archive::Reader reader(bad);
     CellGrid read(kNumber, 10, 2.5);
     EXPECT_THROW(reader(read), std::invalid_argument) << what;
   };
-  ed::internal::Reader sound(bytes);
+  ed::archive::Reader sound(bytes);
   EXPECT_NO_THROW(sound(grid));
   int last = 0;
   std::memcpy(&last, bytes.data() + bytes.size() - sizeof(std::uint64_t) - sizeof(Vector3d) * kNumber - sizeof last,

@@ -1,6 +1,6 @@
 #include <calendar.h>
 
-#include <ed/internal/archive.h>
+#include <ed/archive.h>
 #include <ed/random.h>
 
 #include <gtest/gtest.h>
@@ -44,8 +44,8 @@ TEST_P(CalendarOfSize, IsTheSameAfterItWasReadBack) {
   Calendar calendar(number);
   ed::Random random(9);
   for (int i = 0; i < number; ++i) calendar.set(i, random.uniform() < 0.2 ? kNever : random.uniform());
-  const std::string bytes = ed::internal::bytes_of(calendar);
-  ed::internal::Reader reader(bytes);
+  const std::string bytes = ed::archive::bytes_of(calendar);
+  ed::archive::Reader reader(bytes);
   Calendar read(number);
   reader(read);
   for (int event = 0; event < 2 * number; ++event) {
@@ -53,7 +53,7 @@ TEST_P(CalendarOfSize, IsTheSameAfterItWasReadBack) {
     const double next = read.earliest_time() + random.uniform();
     for (Calendar* c : {&calendar, &read}) c->set(c->earliest(), next);
   }
-  ed::internal::Reader again(bytes);
+  ed::archive::Reader again(bytes);
   Calendar other(number + 1);
   EXPECT_THROW(again(other), std::invalid_argument);
 }

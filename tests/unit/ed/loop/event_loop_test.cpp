@@ -2,8 +2,8 @@
 
 #include <common/ed_states.h>
 
-#include "loop/event_loop.h"
 #include "bodies/uniaxial.h"
+#include "loop/event_loop.h"
 
 #include <geom/newton.h>
 

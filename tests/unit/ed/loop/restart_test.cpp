@@ -6,8 +6,8 @@
 #include <common/finder_scale.h>
 #include <common/message_of.h>
 
+#include <ed/archive.h>
 #include <ed/ed.h>
-#include <ed/internal/archive.h>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -338,11 +338,11 @@ TEST(Restart, EnvelopesWithoutAnExitAreRefused) {
     const ed::Simulation simulation(one->system);
     const std::string state = simulation.save();
     const double t = simulation.envelope();
-    const std::size_t at = state.find(ed::internal::bytes_of(Eigen::Vector3d(t, t, t)));
+    const std::size_t at = state.find(ed::archive::bytes_of(Eigen::Vector3d(t, t, t)));
     ASSERT_NE(at, std::string::npos);
     for (const double bad : {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN(), -1.0}) {
       std::string changed = state;
-      changed.replace(at + 2 * sizeof bad, sizeof bad, ed::internal::bytes_of(bad));
+      changed.replace(at + 2 * sizeof bad, sizeof bad, ed::archive::bytes_of(bad));
       EXPECT_THAT(refusal(changed, one->system.species), testing::HasSubstr("exit")) << bad;
     }
   }

@@ -1,11 +1,11 @@
 // Envelopes: a body never leaves its envelope before exit_time says so, and no pair that could touch is kept
 // out of the lists. Both are sampled against the definition; that the samples would see a wrong bound is tested too.
 
+#include "base/periodic.h"
 #include "motion/axis_motion.h"
 #include "neighbours/cell.h"
 #include "neighbours/dilated.h"
 #include "neighbours/oriented.h"
-#include "base/periodic.h"
 
 #include <common/ed_states.h>
 #include <common/finder_ensemble.h>

@@ -1,6 +1,6 @@
 #include <neighbour_lists.h>
 
-#include <ed/internal/archive.h>
+#include <ed/archive.h>
 #include <ed/random.h>
 
 #include <Eigen/Core>
@@ -108,8 +108,8 @@ TEST(NeighbourLists, HoldOneThatIsMuchLongerThanTheOthers) {
   ASSERT_NO_FATAL_FAILURE(expect_consistent(lists, model));
   EXPECT_EQ(lists.reserve(), 2U * (kNumber - 1));
   ASSERT_NO_FATAL_FAILURE(expect_consistent(lists, model));
-  const std::string bytes = ed::internal::bytes_of(lists);
-  ed::internal::Reader reader(bytes);
+  const std::string bytes = ed::archive::bytes_of(lists);
+  ed::archive::Reader reader(bytes);
   NeighbourLists read(kNumber);
   reader(read);
   ASSERT_NO_FATAL_FAILURE(expect_consistent(read, model));
@@ -135,13 +135,13 @@ TEST(NeighbourLists, HoldOneThatIsMuchLongerThanTheOthers) {
 
 /// A list that claims more than there are pairs costs no memory before it is refused.
 TEST(NeighbourLists, RefuseListsThatDoNotFitThePairs) {
-  ed::internal::Writer writer;
+  ed::archive::Writer writer;
   constexpr int kNumber = 20000;
   std::vector<std::vector<std::int32_t>> lists(kNumber);
   lists[3].assign(kNumber - 1, 0);
   writer(std::vector<Pair>(), std::vector<std::int32_t>{0, 1, 2}, lists);
   const std::string bytes = writer.take();
-  ed::internal::Reader reader(bytes);
+  ed::archive::Reader reader(bytes);
   NeighbourLists read(kNumber);
   EXPECT_THROW(reader(read), std::invalid_argument);
 }

@@ -1,9 +1,9 @@
 // Meetings of dilated envelopes found in vectors against may_meet, pair by pair: the same bits.
 
-#include "neighbours/dilated.h"
-#include "vectors/choose.h"
 #include "base/periodic.h"
 #include "bodies/uniaxial.h"
+#include "neighbours/dilated.h"
+#include "vectors/choose.h"
 
 #include <common/ed_states.h>
 #include <common/ed_uniaxial_bodies.h>

@@ -5,7 +5,7 @@
 /// A class names its members once, for both directions, in one of
 ///
 ///     template <class Archive, class Self> static void fields(Archive& archive, Self& self);  // in the class
-///     template <class Archive, Is<Type> T> void fields(Archive& archive, T& value);           // in ed::internal
+///     template <class Archive, Is<Type> T> void fields(Archive& archive, T& value);           // beside T
 ///
 /// by archive(self.a_, self.b_): a Writer takes them, a Reader sets them. Numbers and enumerators are their own bytes,
 /// little-endian; containers are preceded by their length in 8 bytes; nothing is padded. What bytes cannot be is looked
@@ -30,7 +30,7 @@
 #include <variant>
 #include <vector>
 
-namespace ed::internal {
+namespace ed::archive {
 
 static_assert(std::endian::native == std::endian::little, "states are written as they are in memory");
 
@@ -241,4 +241,4 @@ std::string bytes_of(const T& value) {
   return writer.take();
 }
 
-}  // namespace ed::internal
+}  // namespace ed::archive

@@ -1,4 +1,4 @@
-#include "trajectory/orientation.h"
+#include "io/orientation.h"
 
 #include <geom/tolerances.h>
 

@@ -1,11 +1,10 @@
 #pragma once
 
-/// The members of libed's and libgeom's public types; see archive.h.
+/// @file
+/// Members of shapes, poses, motions and systems, for archives (archive.h).
 
-#include <ed/equilibration.h>
-#include <ed/internal/archive.h>
-#include <ed/observables.h>
-#include <ed/simulation.h>
+#include <ed/archive.h>
+#include <ed/motion.h>
 #include <ed/system.h>
 
 #include <geom/any_shape.h>
@@ -16,7 +15,7 @@
 
 #include <stdexcept>
 
-namespace ed::internal {
+namespace ed::archive {
 
 // ---- Shapes and poses
 
@@ -98,74 +97,4 @@ void fields(Archive& archive, T& motion) {
   archive(motion.pose, motion.velocity, motion.angular_velocity, motion.inertia, motion.time);
 }
 
-// ---- Simulations
-
-template <class Archive, Is<Counters> T>
-void fields(Archive& archive, T& c) {
-  archive(c.collisions, c.predictions, c.evaluations, c.kernel_calls, c.refinements, c.cold_restarts, c.rescues,
-          c.neighbour_rebuilds, c.envelope_checks, c.candidate_tests, c.overlaps, c.declined, c.parting_contacts,
-          c.unrecorded_failures);
-}
-
-template <class Archive, Is<Collision> T>
-void fields(Archive& archive, T& collision) {
-  archive(collision.time, collision.i, collision.j);
-}
-
-template <class Archive, Is<Snapshot> T>
-void fields(Archive& archive, T& snapshot) {
-  archive(snapshot.time, snapshot.position, snapshot.axis, snapshot.rotation, snapshot.phi_lab, snapshot.phi_body,
-          snapshot.velocity, snapshot.angular_velocity);
-}
-
-template <class Archive, Is<geom::WitnessPair> T>
-void fields(Archive& archive, T& pair) {
-  archive(pair.point_a, pair.point_b, pair.status);
-  expect(archive, pair.status <= geom::SeedStatus::declined, "a seed's status");
-}
-
-template <class Archive, Is<FailedDistance> T>
-void fields(Archive& archive, T& call) {
-  archive(call.method, call.status, call.shape_a, call.shape_b, call.X_WA, call.X_WB, call.seed);
-  expect(archive, call.method <= DistanceMethod::newton5, "a distance's method");
-  expect(archive, call.status <= geom::DistanceStatus::singular, "a distance's status");
-}
-
-/// All but the shapes, which may be a user's own.
-template <class Archive, Is<FailedPair> T>
-void fields_but_shapes(Archive& archive, T& pair) {
-  archive(pair.reason, pair.motion_i, pair.motion_j, pair.time, pair.i, pair.j, pair.finder, pair.eps_d, pair.distance);
-  expect(archive, pair.reason <= FailureReason::declined, "a failure's reason");
-  expect(archive, pair.finder <= Finder::bracketing, "a failure's finder");
-}
-
-template <class Archive, Is<FailedPair> T>
-void fields(Archive& archive, T& pair) {
-  archive(pair.shape_i, pair.shape_j);
-  fields_but_shapes(archive, pair);
-}
-
-/// Without the seed, which is code.
-template <class Archive, Is<ContactOptions> T>
-void fields(Archive& archive, T& options) {
-  archive(options.finder, options.eps_d, options.distance, options.root);
-}
-
-// ---- Observables
-
-template <class Archive, Is<BodyGroup> T>
-void fields(Archive& archive, T& group) {
-  archive(group.number, group.rotation_axes);
-}
-
-template <class Archive, Is<ObservablesOptions> T>
-void fields(Archive& archive, T& options) {
-  archive(options.number, options.duration, options.longest_lag, options.groups, options.wave_numbers);
-}
-
-template <class Archive, Is<Relaxation> T>
-void fields(Archive& archive, T& r) {
-  archive(r.q, r.c2, r.f_self, r.relaxations, r.relaxation_time, r.Z_change, r.S_change, r.reached);
-}
-
-}  // namespace ed::internal
+}  // namespace ed::archive

@@ -1,0 +1,27 @@
+#pragma once
+
+/// @file
+/// Members of the options of observables and of equilibration, for archives (archive.h).
+
+#include <ed/archive.h>
+#include <ed/equilibration.h>
+#include <ed/observables.h>
+
+namespace ed::archive {
+
+template <class Archive, Is<BodyGroup> T>
+void fields(Archive& archive, T& group) {
+  archive(group.number, group.rotation_axes);
+}
+
+template <class Archive, Is<ObservablesOptions> T>
+void fields(Archive& archive, T& options) {
+  archive(options.number, options.duration, options.longest_lag, options.groups, options.wave_numbers);
+}
+
+template <class Archive, Is<Relaxation> T>
+void fields(Archive& archive, T& r) {
+  archive(r.q, r.c2, r.f_self, r.relaxations, r.relaxation_time, r.Z_change, r.S_change, r.reached);
+}
+
+}  // namespace ed::archive
