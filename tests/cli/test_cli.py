@@ -1658,9 +1658,9 @@ class Distance(Case):
         short, full = self.answers(self.README_PAIR, spelt)
         self.assertEqual(short, full)
 
-    def test_example_of_the_readme(self):
-        with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "README.md")) as readme:
-            example = re.search(r"^\$ pair='(.*)'\n\$ echo \"\$pair\" \| hardbody distance\n(.*)$", readme.read(), re.M)
+    def test_example_of_the_documentation(self):
+        with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "docs", "distance.md")) as page:
+            example = re.search(r"^\$ pair='(.*)'\n\$ echo \"\$pair\" \| hardbody distance\n(.*)$", page.read(), re.M)
         self.assertEqual(json.loads(example[1])["b"]["position"], [4, 0, 2.4])
         answer, printed = self.answers(json.loads(example[1]))[0], json.loads(example[2])
         self.assertEqual(list(answer), list(printed))
