@@ -1,7 +1,7 @@
 """README.md of the study: how far it is, the paper's claims one by one, the figures."""
 
 from . import grid
-from .definitions import AMPLITUDE_SLACK, COMPONENTS, DISPLACED, LEAST_BETA, MOST_AMPLITUDE, STEEPEST_TURN, TURNED
+from .definitions import AMPLITUDE_SLACK, COMPONENTS, DISPLACED, LEAST_BETA, MOST_AMPLITUDE, SHORT_DECAY, STEADY_TAU, STEEPEST_TURN, TURNED
 from .results import TARGET_ERROR, write_whole
 from .table import DECAYED, FROZEN, NEMATIC
 
@@ -159,7 +159,8 @@ DROPPED = """## Values that fell out
 - D_rot: <|Delta Phi|^2> >= {turned:.2g} rad^2 at the longest lag; where it is smaller at the first lag of the fit, a logarithmic slope of at
   most {steepest:g}.
 - tau and beta: amplitude at most {amplitude:g}, beta at least {beta:g}, tau not below the first fitted lag. A larger amplitude means that C2 falls
-  faster before the first fitted lag: tau and beta describe the rest of a decay.
+  faster before the first fitted lag: tau and beta describe the rest of a decay. Where the correlation is still above {short:g} at the longest
+  lag, tau of the lags without their first third is the same to {steady:.0%}: a nematic's C2 ends at a plateau that these fits do not have.
 
 Programs that wrote rows before wanted a slope of 1 +- 0.2 and nothing of fits. `tools/paper/definitions.py` judges their rows by what is
 stored: displacements by the coefficients, amplitudes by the curves (to {slack:g} %). One condition is the study's own, for the program
@@ -175,7 +176,7 @@ def dropped_text(study, changes):
     if open_ones:
         state += ("\nKept, because what is stored does not decide: "
                   + "; ".join(f"{', '.join(d.names)} of X0 = {row.X0:g} at {row.phi:g} ({d.reason})" for row, d in open_ones) + ".\n")
-    return DROPPED.format(displaced=DISPLACED, turned=TURNED * COMPONENTS, steepest=STEEPEST_TURN, amplitude=MOST_AMPLITUDE, beta=LEAST_BETA,
+    return DROPPED.format(displaced=DISPLACED, turned=TURNED * COMPONENTS, steepest=STEEPEST_TURN, amplitude=MOST_AMPLITUDE, beta=LEAST_BETA, short=SHORT_DECAY, steady=STEADY_TAU,
                           slack=100 * AMPLITUDE_SLACK, state=state)
 
 
