@@ -44,7 +44,7 @@ void Unwrapping::add(const Frame& frame, const std::vector<std::size_t>& order, 
   for (const std::size_t i : order) {
     const FrameBody& body = frame.bodies[i];
     const std::size_t n = near.size();
-    raw.push_back(frame.images ? body.position : body.unwrapped);
+    raw.push_back(frame.images && !frame.zero_images ? body.position : body.unwrapped);
     wrapped.push_back(body.position);
     unwrapped.push_back(body.unwrapped);
     near.push_back(body.position);
@@ -62,6 +62,7 @@ void Unwrapping::add(const Frame& frame, const std::vector<std::size_t>& order, 
   }
   if (by_.empty()) by_ = frame.unwrapped_by;
   all_unwrapped_ = all_unwrapped_ && frame.images;
+  zero_images_ = zero_images_ && frame.zero_images;
   if (kept) {
     kept_wrapped_.push_back(std::move(wrapped));
     kept_unwrapped_.push_back(std::move(unwrapped));
@@ -73,32 +74,39 @@ void Unwrapping::add(const Frame& frame, const std::vector<std::size_t>& order, 
 }
 
 Unwrapping::Result Unwrapping::take() {
-  if (all_unwrapped_) return {by_, "", std::move(kept_unwrapped_)};
   const double outside = std::max(highest_, -lowest_) - 0.5;
+  const bool from_corner = lowest_ >= -kRounding && highest_ <= 1 + kRounding;
+  const bool not_kept = zero_images_ && raw_move_ > 0.5 && (outside <= kNotWrappedYet || from_corner);
+  if (all_unwrapped_ && !not_kept) return {by_, "", "", std::move(kept_unwrapped_)};
+  const std::string notice =
+      not_kept ? fmt::format(
+                     "images: 0 in all frames, while bodies jump by up to {:.2g} of the box's edge between "
+                     "frames: they are not kept, and not used",
+                     raw_move_)
+               : "";
   const auto unclear = [&] {
     return Result{
         "",
         fmt::format("positions lie outside the box by up to {:.2g} of its edge, and bodies move by up to {:.2g} of it "
                     "between frames: whether positions are wrapped is not clear; images tell",
                     outside, raw_move_),
-        std::move(kept_wrapped_)};
+        notice, std::move(kept_wrapped_)};
   };
   const bool jump = raw_move_ >= kBelievedMove;
   const bool near_believed = near_move_ < kBelievedMove * (1 - 1e-6);
-  const bool from_corner = lowest_ >= -kRounding && highest_ <= 1 + kRounding;
   if (outside > kNotWrappedYet && !(from_corner && jump)) {
     if (near_believed && jumps_ >= kManyJumps) return unclear();
-    return {"positions outside the box", "", std::move(kept_raw_)};
+    return {"positions outside the box", "", notice, std::move(kept_raw_)};
   }
   if (!late_ && outside > kRounding && jump && !from_corner) return unclear();
-  if (near_believed) return {"nearest images", "", std::move(kept_near_)};
+  if (near_believed) return {"nearest images", "", notice, std::move(kept_near_)};
   return {"",
           fmt::format(
               "without images, and bodies move by up to {:.2g} of the box's edge between frames: nearest images "
               "do not tell beyond a quarter of the box, and are believed below {} of it; frames at shorter distances, "
               "images or unwrapped positions tell",
               near_move_, kBelievedMove),
-          std::move(kept_wrapped_)};
+          notice, std::move(kept_wrapped_)};
 }
 
 }  // namespace hardbody

@@ -12,7 +12,8 @@ namespace hardbody {
 
 /// Positions of bodies that are followed from frame to frame across the faces of the box, by whatever the file has:
 /// unwrapped positions, or such as go on outside the box, or the nearest images, as long as bodies move little.
-/// Positions from 0 to the edge, where the box is about the origin, are wrapped ones, too.
+/// Positions from 0 to the edge, where the box is about the origin, are wrapped ones, too. Images that are 0 in all
+/// frames, while bodies in the box jump by more than half an edge, are no images: nobody has kept them.
 class Unwrapping {
  public:
   /// Component of a move between frames, in edges of the box, from which on nearest images are not believed. Beyond
@@ -29,6 +30,7 @@ class Unwrapping {
   struct Result {
     std::string by;
     std::string reason;
+    std::string notice;                                   ///< about images that are not used; mostly empty
     std::vector<std::vector<Eigen::Vector3d>> positions;  ///< of the frames that were kept; wrapped without a source
   };
   Result take();
@@ -38,6 +40,7 @@ class Unwrapping {
 
   bool late_;
   bool all_unwrapped_ = true;
+  bool zero_images_ = true;  ///< images are 0 in all frames
   std::string by_;
   Positions raw_;          ///< of the frame before, as stored
   Positions near_;         ///< the same by nearest images
