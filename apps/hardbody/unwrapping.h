@@ -13,7 +13,8 @@ namespace hardbody {
 /// Positions of bodies that are followed from frame to frame across the faces of the box, by whatever the file has:
 /// unwrapped positions, or such as go on outside the box, or the nearest images, as long as bodies move little.
 /// Positions from 0 to the edge, where the box is about the origin, are wrapped ones, too. Images that are 0 in all
-/// frames, while bodies in the box jump by more than half an edge, are no images: nobody has kept them.
+/// frames, while bodies jump so often and far within the box as they hardly could without leaving it, are no images:
+/// nobody has kept them.
 class Unwrapping {
  public:
   /// Component of a move between frames, in edges of the box, from which on nearest images are not believed. Beyond
@@ -49,6 +50,7 @@ class Unwrapping {
   double raw_move_ = 0;    ///< the largest component of a move by stored positions
   double near_move_ = 0;   ///< the same by nearest images
   std::size_t jumps_ = 0;  ///< components of moves by half an edge or more, by stored positions
+  double chance_ = 1;      ///< that all these jumps end in the box, of bodies that are anywhere in it
   std::vector<Positions> kept_unwrapped_, kept_raw_, kept_near_, kept_wrapped_;
 };
 

@@ -205,6 +205,13 @@ class Walks(FilesCase):
                 out = self.analyze(name, "--longest-lag", "2")
                 self.same(within, "image flags")
                 self.assertNotIn("not used", out)
+        # Within the box by half of it and more, a few times: that may be. A jump by all but 0.4 % of it hardly can.
+        for x, by in [([-4, 4], "image flags"), ([-3, 2.5, -2.7], "image flags"), ([-4.98, 4.98], "nearest images"),
+                      ([-4.6, 4.6, -4.6], "nearest images")]:
+            with self.subTest(x):
+                dump("few.lammpstrj", [[[a, 0, 0], [0, 3, 0]] for a in x], "x y z")
+                self.analyze("few.lammpstrj", "--longest-lag", "1")
+                self.assertEqual(self.analysis()["unwrapped"]["by"], by)
         # Another body that has crossed a face: images are kept, and these bodies have jumped.
         x = wrapped(across)
         rows = [[[i + 1, 1, *b, int(k == 11 and i == 0), 0, 0] for i, b in enumerate(f)] for k, f in enumerate(x)]

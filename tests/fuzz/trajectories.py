@@ -69,8 +69,9 @@ def stored_at_random(draws):
         more = {f"particles/{name}": lambda k, name=name: chunks[name][k] if when[name][k] else None for name in chunks}
         walks.gsd_file(path, x, "never", "never", "never", more=more, log_only=lambda k: log_only[k])
 
-    # Images that are 0 in all frames while bodies jump by more than half an edge are not believed.
-    kept = known["image"] and (w.image.any() or numpy.abs(numpy.diff(w.wrapped, axis=0)).max() <= EDGE / 2)
+    # Images that are 0 in all frames while bodies jump by more than half an edge, as they hardly can within the box, are not believed.
+    jumps = numpy.abs(numpy.diff(w.wrapped, axis=0)) / EDGE
+    kept = known["image"] and (w.image.any() or (1 - jumps[jumps >= 0.5]).prod() >= 0.01)
     if not kept and near:  # only what nearest images tell
         position = w.position.copy()
         position[1:] = position[0] + numpy.cumsum(nearest, axis=0)
