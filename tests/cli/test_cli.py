@@ -351,8 +351,8 @@ class Run(Case):
         observables = self.summary("caged")["observables"]
         self.assertIsNone(observables["D_trans"]["value"])
         self.assertRegex(observables["D_trans"]["missing"],
-                         r"^bodies have moved 0\.\d+ l within the longest lag: no diffusion yet; a longer run helps$")
-        self.assertRegex(result.stdout, r"  D_trans         - \(bodies have moved 0\.\d+ l within the longest lag: no diffusion yet\)\n")
+                         r"^bodies have moved 0\.\d+ l by lag 0\.\d+, where the fit begins: no diffusion yet; a longer run helps$")
+        self.assertRegex(result.stdout, r"  D_trans         - \(bodies have moved 0\.\d+ l by lag 0\.\d+, where the fit begins: no diffusion yet\)\n")
         self.assertIn("  (longer lags: a longer run helps)\n", result.stdout)
         for key in ["D_rot", "D_rot_body", "tau_C2", "beta_C2"]:
             self.assertEqual(observables[key], {"value": None, "error": None, "missing": "meaningless: nothing turns these bodies"})

@@ -3,7 +3,7 @@
 import os
 
 from . import grid
-from .definitions import AMPLITUDE_SLACK, COMPONENTS, DISPLACED, LEAST_BETA, MOST_AMPLITUDE, STEEPEST_TURN, TURNED
+from .definitions import AMPLITUDE_SLACK, COMPONENTS, DISPLACED, LEAST_BETA, MOST_AMPLITUDE, SHORT_DECAY, STEADY_TAU, STEEPEST_TURN, TURNED
 from .results import TARGET_ERROR, write_whole
 from .table import DECAYED, FROZEN, NEMATIC
 
@@ -165,7 +165,9 @@ DROPPED = """## Dropped values
 - D_rot: <|Delta Phi|^2> >= {turned:.2g} rad^2 at the longest lag; where it is smaller at the first lag of the fit, a logarithmic slope of at
   most {steepest:g}.
 - tau and beta: amplitude at most {amplitude:g}, beta at least {beta:g}, tau not below the first fitted lag. A larger amplitude means that C2
-  falls faster before the first fitted lag, so that tau and beta describe only the rest of the decay.
+  falls faster before the first fitted lag, so that tau and beta describe only the rest of the decay. Where the correlation is still above
+  {short:g} at the longest lag, tau fitted without the first third of the lags must agree to {steady:.0%}: C2 of a nematic ends at a plateau,
+  which these fits do not have.
 
 Earlier programs required only a slope of 1 +- 0.2 and nothing of fits. `tools/paper/definitions.py` checks their rows with what is
 stored: displacements from the coefficients, amplitudes from the curves (to {slack:g} %). One condition belongs to the study alone, because
@@ -182,7 +184,7 @@ def dropped_text(study, changes):
     if open_ones:
         state += ("\nKept, because the stored values do not decide: "
                   + "; ".join(f"{', '.join(d.names)} of X0 = {row.X0:g} at {row.phi:g} ({d.reason})" for row, d in open_ones) + ".\n")
-    return DROPPED.format(displaced=DISPLACED, turned=TURNED * COMPONENTS, steepest=STEEPEST_TURN, amplitude=MOST_AMPLITUDE, beta=LEAST_BETA,
+    return DROPPED.format(displaced=DISPLACED, turned=TURNED * COMPONENTS, steepest=STEEPEST_TURN, amplitude=MOST_AMPLITUDE, beta=LEAST_BETA, short=SHORT_DECAY, steady=STEADY_TAU,
                           slack=100 * AMPLITUDE_SLACK, state=state)
 
 
