@@ -3,8 +3,8 @@
 #include <common/finder_ensemble.h>
 #include <common/finder_gauge.h>
 
-#include <certified_contact.h>
-#include <uniaxial_gauge.h>
+#include <contact/certified.h>
+#include <contact/uniaxial_gap.h>
 
 #include <Eigen/Core>
 
