@@ -77,7 +77,7 @@ def comments(text):
         if whole:
             block = (whole[1], number, [whole[2] or ""])
         elif trailing:
-            block = (trailing[1], number, [trailing[2]])
+            block = (trailing[1], number, [line[trailing.start(2):]])
     for match in re.finditer(r"/\*\*(.*?)\*/", text, re.DOTALL):
         yield text[:match.start()].count("\n") + 1, [re.sub(r"^\s*\*", "", t) for t in match[1].split("\n")], True
 
