@@ -4,7 +4,7 @@
 
 namespace finder_test {
 
-/// Builds without optimisation or with sanitizers are ten to thirty times slower.
+/// Returns whether this is a build without optimisation or with sanitizers, which is ten to thirty times slower.
 constexpr bool slow_build() {
 #if !defined(__OPTIMIZE__) || defined(__SANITIZE_ADDRESS__)
   return true;
@@ -19,7 +19,7 @@ constexpr bool slow_build() {
 #endif
 }
 
-/// `count`, or `full` in the full run, or a tenth of it in a slow build.
+/// Returns `count`, or `full` in the full run, or a tenth of it in a slow build.
 inline int scaled(int count, int full) {
   if (full_form()) return full;
   return slow_build() ? count / 10 : count;
