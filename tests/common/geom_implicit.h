@@ -60,7 +60,7 @@ Eigen::Vector3d random_surface_point(const Shape& shape, Random& random) {
 
 struct ManufacturedSurfaces {
   ManufacturedPair pair;
-  Eigen::Vector3d point_a;  ///< in the world frame, like point_b
+  Eigen::Vector3d point_a;  ///< witness points, world frame
   Eigen::Vector3d point_b;
 };
 
