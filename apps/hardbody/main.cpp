@@ -21,7 +21,7 @@ namespace {
 constexpr int kBadInput = 2;
 constexpr int kFailed = 1;
 
-/// What the user asked for.
+/// Subcommand and arguments of the command line.
 struct Request {
   RunArguments run;
   SweepArguments sweep;
@@ -96,7 +96,7 @@ void add_replay(CLI::App& app, Request& request) {
   replay->add_option("FILE", request.replay_file, "failures/*.json")->required();
 }
 
-/// CLI11's own check names the largest double, digit by digit.
+/// Validator of positive numbers: CLI11's own names the largest double with all its digits.
 CLI::Validator positive_number() {
   return {[](const std::string& text) -> std::string {
             const std::optional<double> value =
@@ -151,7 +151,7 @@ int dispatch(const CLI::App& app, const Request& request) {
   return replay(request.replay_file);
 }
 
-/// `--set a=1 b=2` means `--set a=1 --set b=2`. CLI11 would take a config path after it as a third value.
+/// Expands `--set a=1 b=2` to `--set a=1 --set b=2`. CLI11 would take a config path after it as a third value.
 std::vector<std::string> expand_overrides(int argc, char** argv) {
   std::vector<std::string> arguments;
   bool in_set = false;
@@ -184,7 +184,7 @@ int run_command_line(int argc, char** argv) {
   add_report(app, request);
   add_distance(app, request);
   std::vector<std::string> arguments = expand_overrides(argc, argv);
-  // CLI11 takes them from the back.
+  // CLI11 takes arguments from the back.
   std::reverse(arguments.begin(), arguments.end());
   try {
     app.parse(std::move(arguments));

@@ -28,41 +28,41 @@ void frame_row(const char* name, const std::string& value) {
 
 /// Findings of all frames together.
 struct FramesAudit {
-  std::uint64_t frames = 0;             ///< with positions
-  std::uint64_t without_positions = 0;  ///< frames that are left out
+  std::uint64_t frames = 0;             ///< number of frames with positions
+  std::uint64_t without_positions = 0;  ///< number of frames that are left out
   std::uint64_t unsound = 0;
   double minimum_distance = std::numeric_limits<double>::infinity();
-  std::string closest;  ///< frame and bodies
+  std::string closest;  ///< frame and bodies of the smallest distance
   std::uint64_t overlaps = 0;
   std::uint64_t unanswered = 0;
-  double tolerance = 0;  ///< overlaps up to this do not count, in the frame with the largest box
+  double tolerance = 0;  ///< largest overlap that is not counted, in the frame with the largest box
   double first_energy = 0;
   double energy_drift = 0;
   double last_time = -std::numeric_limits<double>::infinity();
   std::vector<std::string> not_looked_at;  ///< each reason once
-  std::vector<std::string> notices;        ///< of the reader, each once
+  std::vector<std::string> notices;        ///< notices of the reader, each once
 };
 
 void add_once(std::vector<std::string>& list, const std::string& text) {
   if (std::find(list.begin(), list.end(), text) == list.end()) list.push_back(text);
 }
 
-/// Bodies by the numbers of the file.
+/// Names bodies by the numbers of the file.
 std::string bodies_text(const Frame& frame, std::size_t i, std::size_t j) {
   if (i == j) return fmt::format("body {:.17g} and its own image", frame.bodies[i].id);
   return fmt::format("bodies {:.17g} and {:.17g}", frame.bodies[i].id, frame.bodies[j].id);
 }
 
-/// Depth to which bodies in contact may overlap where positions are rounded. 32-bit numbers: half a unit in the last
-/// place of a coordinate of each body, and as much of the points on their surfaces. Text has six significant digits
-/// unless told otherwise: 5e-6 of a coordinate of each of the two bodies, along all three axes.
+/// Returns the depth to which bodies in contact may overlap because positions are rounded. 32-bit numbers: half a unit
+/// in the last place of a coordinate of each body, and the same for the points on their surfaces. Text has six
+/// significant digits by default: 5e-6 of a coordinate of each of the two bodies, along all three axes.
 double rounding_of(const Frame& frame, bool text) {
   constexpr auto kEpsilon = static_cast<double>(std::numeric_limits<float>::epsilon());
   constexpr double kSixDigits = 2e-5;
   return (text ? kSixDigits : 4 * kEpsilon) * frame.box.maxCoeff();
 }
 
-/// The state itself, as the program's own trajectories hold it.
+/// Audits the state itself, which the program's own trajectories contain.
 PairAudit audit_exactly(const Frame& frame, const std::string& where, ed::KineticState& kinetic) {
   try {
     const ed::Audit audit = ed::audit(*frame.exact);
@@ -93,7 +93,7 @@ std::vector<std::string> pair_defects(const Frame& frame, const PairAudit& audit
   return list;
 }
 
-/// Energy, momentum and time, which only the program's own frames have to every bit.
+/// Adds defects of energy, momentum and time, which only the program's own frames contain exactly.
 void add_conservation_defects(const Frame& frame, const ed::KineticState& kinetic, FramesAudit& all,
                               std::vector<std::string>& list) {
   if (all.frames == 1) all.first_energy = kinetic.energy();
@@ -104,7 +104,7 @@ void add_conservation_defects(const Frame& frame, const ed::KineticState& kineti
   all.last_time = frame.time;
 }
 
-/// Audits a frame; returns its defects, one line each.
+/// Audits a frame and returns its defects, one line each.
 std::vector<std::string> audit_frame(const Frame& frame, std::uint64_t k, const std::string& name, bool text,
                                      FramesAudit& all) {
   ++all.frames;
@@ -126,7 +126,7 @@ std::vector<std::string> audit_frame(const Frame& frame, std::uint64_t k, const 
   return list;
 }
 
-/// Prints what is known of the pairs.
+/// Prints the results for the pairs.
 void print_pairs(const FramesAudit& all) {
   if (all.not_looked_at.empty()) {
     frame_row("overlaps", all.tolerance > 0 ? fmt::format("{}, deeper than the numbers are rounded ({:.2g})",

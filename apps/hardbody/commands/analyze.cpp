@@ -36,13 +36,13 @@ namespace fs = std::filesystem;
 using Eigen::Vector3d;
 using Json = nlohmann::ordered_json;
 
-/// What a run has chosen for its own observables.
+/// Choices that a run has made for its own observables.
 struct RunChoices {
-  std::optional<double> fit_from;    ///< nothing: it has fitted nothing
-  std::vector<double> wave_numbers;  ///< of F_self
+  std::optional<double> fit_from;    ///< nullopt: no fits
+  std::vector<double> wave_numbers;  ///< wave numbers of F_self
 };
 
-/// Those of the run in that directory, if there is one.
+/// Returns those of the run in this directory, if there is one.
 RunChoices choices_of_run(const fs::path& directory) {
   const fs::path file = directory / kSummaryFile;
   RunChoices choices;
@@ -83,10 +83,10 @@ std::string order_csv(const StoredTrajectory& stored) {
   return text;
 }
 
-/// Words for values that are missing: lengths have the unit of the file.
+/// Words for missing values: lengths have the unit of the file.
 const MissingWords kWords = {"", "--longest-lag or a longer trajectory helps", "--fit-from says it"};
 
-/// As in summary.json.
+/// Returns the observables as in summary.json.
 Json observables(const ed::Correlations& c, const ed::Estimate& S, const ed::Director& director) {
   Json json;
   json["D_trans"] = estimate_json(c.D_trans, kWords);
@@ -164,7 +164,7 @@ fs::path trajectory_in(const fs::path& directory) {
                   directory.string(), kGsdFile, kLammpsFile));
 }
 
-/// Prints what was read, and what was not used of it.
+/// Prints what was read, and which of it was not used.
 void print_reading(const TrajectoryReader& reader, const StoredTrajectory& stored, const ed::StoredResults& results) {
   fmt::print("{}: {} {} of {} bodies{}\n", reader.name(), stored.frames.size(),
              stored.frames.size() == 1 ? "frame" : "frames", stored.options.axis.size(),

@@ -63,7 +63,7 @@ void print_state(const Checkpoint& checkpoint, const ed::Audit& audit) {
   row("momentum", fmt::format("{:.2e} sqrt(m kT) a body", kinetic.momentum.norm() / checkpoint.system.size()));
 }
 
-/// Whether the state is that of the config it was made with.
+/// Compares the state with the config it was made with, prints the result and returns whether they agree.
 bool print_config(const Checkpoint& checkpoint, const std::string& name) {
   const Config config = parse_config(checkpoint.config, name + " (its config)");
   const double phi = ed::packing_fraction(checkpoint.system);

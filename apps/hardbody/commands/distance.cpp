@@ -31,7 +31,7 @@ Reply reply(const LineReader& lines) {
           false};
 }
 
-/// A full disk; a closed pipe, where SIGPIPE is ignored: there is no point in going on.
+/// Throws if output failed: after a full disk, or a closed pipe with SIGPIPE ignored, nothing more can be written.
 void require_written(bool written) {
   if (!written) throw std::runtime_error(fmt::format("standard output: cannot be written: {}", std::strerror(errno)));
 }
@@ -66,7 +66,7 @@ Exit status: 0 every line was answered or declined, 2 a line was bad, 1 the answ
 
 int distance(const std::string& path) {
   LineReader lines(path, kLongestLine);
-  // Whoever writes one line at a time waits for its answer.
+  // A process that writes one line at a time waits for its answer.
   const bool flush = !lines.is_regular_file();
   bool all_good = true;
   while (lines.next()) {

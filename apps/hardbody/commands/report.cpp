@@ -40,7 +40,7 @@ std::string size_text(std::size_t bytes) {
   return size < 1e6 ? fmt::format("{:.0f} kB", size / 1e3) : fmt::format("{:.1f} MB", size / 1e6);
 }
 
-/// The last `parts` parts of a directory's path.
+/// Returns the last `parts` parts of a directory's path.
 std::string last_parts(const fs::path& directory, int parts) {
   const fs::path whole = fs::weakly_canonical(directory);
   fs::path name = whole.filename();
@@ -50,7 +50,7 @@ std::string last_parts(const fs::path& directory, int parts) {
   return name.string();
 }
 
-/// Runs of the same name are called by as much of their paths as tells them apart.
+/// Renames runs of the same name by as many parts of their paths as distinguish them.
 void name_apart(std::vector<RunReport>& runs) {
   constexpr int kMostParts = 64;
   for (int parts = 2; parts <= kMostParts; ++parts) {

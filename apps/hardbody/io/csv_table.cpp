@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kLongestTable = std::size_t{1} << 28;  ///< bytes
 
-/// Reads one row, and over the end of its line; quoted fields may go over several.
+/// Reads one row and the end of its line; quoted fields may contain line breaks.
 class RowReader {
  public:
   RowReader(std::string_view text, const std::string& name) : text_(text), name_(name) {}

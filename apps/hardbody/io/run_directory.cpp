@@ -25,7 +25,7 @@ constexpr std::array kFiles = {kConfigFile, kSummaryFile,   kCheckpointFile, kEv
                                kAlpha2File, kVelocityFile,  kC1File,         kC2File,     kFSelfFile,
                                kPairsFile,  kStructureFile, kBlocksFile,     kReportFile};
 
-/// The first file of an earlier run; empty if there is none.
+/// Returns the first file of an earlier run; empty if there is none.
 std::string trace_of_a_run(const fs::path& directory) {
   for (const char* name : kFiles) {
     if (fs::exists(directory / name)) return name;
@@ -57,7 +57,7 @@ void keep_inputs(const fs::path& directory, const std::vector<fs::path>& inputs)
   }
 }
 
-/// Removes what a run writes and nothing else, so that a new run never stands beside results of an old one.
+/// Removes the files that a run writes and nothing else, so that a new run is never mixed with results of an old one.
 void remove_run(const fs::path& directory) {
   for (const char* name : kFiles) fs::remove(directory / name);
   const fs::path analysis = directory / kAnalysisDirectory;
@@ -97,7 +97,7 @@ RunDirectory RunDirectory::create(const fs::path& path, Overwrite overwrite, con
     keep_inputs(path, inputs);
     fs::create_directories(path);
     RunDirectory directory(path);
-    // Again, now that nobody else can begin one.
+    // Checked again, now that no other process can begin a run.
     if (trace.empty()) trace = trace_of_a_run(path);
     if (!trace.empty() && overwrite == Overwrite::refused) throw holds_a_run(path, trace);
     if (!trace.empty()) remove_run(path);

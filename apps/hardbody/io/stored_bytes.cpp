@@ -18,7 +18,7 @@ namespace {
 class DiskBytes final : public StoredBytes {
  public:
   explicit DiskBytes(const std::filesystem::path& path)
-      // O_NONBLOCK: opening a pipe would wait for whoever writes it.
+      // O_NONBLOCK: opening a pipe would otherwise wait for its writer.
       : name_(path.string()), descriptor_(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {
     struct stat status = {};
     if (descriptor_ < 0 || ::fstat(descriptor_, &status) != 0) {

@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kLongestText = std::size_t{1} << 26;
-/// Of the log: its end tells most.
+/// Bytes of the log that are shown, from its end, which is the most informative part.
 constexpr std::size_t kLogShown = 30'000;
 
 nlohmann::json read_summary(const fs::path& path) {
@@ -58,7 +58,7 @@ double number_of(const nlohmann::json& json) {
   return json.is_number() ? json.get<double>() : 0;
 }
 
-/// How far it came.
+/// Returns a remark on how far the run came.
 Remark completion(const nlohmann::json& summary) {
   using Kind = Remark::Kind;
   const nlohmann::json& time = member(summary, "time");
@@ -121,14 +121,14 @@ std::vector<Remark> remarks_of(const nlohmann::json& summary) {
   return list;
 }
 
-/// A state that can be looked at, and when it was.
+/// State that can be shown, with its time.
 struct Seen {
   View view;
   std::string phase = "production";
-  bool cut_off = false;  ///< a last frame that is not whole is left out
+  bool cut_off = false;  ///< whether an incomplete last frame is left out
 };
 
-/// The stored frames; nothing if there is only one, or none.
+/// Reads the stored frames; nullopt if there is at most one.
 std::optional<Seen> read_trajectory(const fs::path& path) {
   if (!fs::exists(path)) return std::nullopt;
   const GsdReader reader(path);
@@ -145,7 +145,7 @@ std::optional<Seen> read_trajectory(const fs::path& path) {
   return seen;
 }
 
-/// What cannot be shown does not keep the rest of the report from being made: a remark says why.
+/// Calls `read`. If a part cannot be shown, the report is still made: a remark gives the reason.
 template <class Read>
 std::optional<Seen> if_readable(const Read& read, const char* what, std::vector<Remark>& remarks) {
   try {
@@ -156,7 +156,7 @@ std::optional<Seen> if_readable(const Read& read, const char* what, std::vector<
   }
 }
 
-/// The last state.
+/// Reads the last state.
 std::optional<Seen> read_last_state(const fs::path& path, const Config& config) {
   if (!fs::exists(path)) return std::nullopt;
   const Checkpoint checkpoint = read_checkpoint(path);
@@ -180,7 +180,7 @@ Remark unfinished(const std::optional<Seen>& seen) {
                       seen->view.frames.back().time)};
 }
 
-/// "superballs, p = 4"
+/// Returns "superballs, p = 4".
 std::string superellipsoids_text(const geom::Superellipsoid& s) {
   const Eigen::Vector3d& a = s.semi_axes();
   if (a.x() == a.y() && a.y() == a.z() && s.e1() == s.e2()) return fmt::format("superballs, p = {:.4g}", 2 / s.e1());
@@ -189,7 +189,7 @@ std::string superellipsoids_text(const geom::Superellipsoid& s) {
                      a.z() / least, s.e1(), s.e2());
 }
 
-/// "ellipsoids, X0 = 3"
+/// Returns "ellipsoids, X0 = 3".
 std::string bodies_title(const SpeciesConfig& species) {
   if (const auto* s = std::get_if<geom::Superellipsoid>(&species.body.shape)) return superellipsoids_text(*s);
   const std::optional<double> ratio = species.shape.true_aspect_ratio();
@@ -221,7 +221,7 @@ void check_directory(const fs::path& directory) {
                                directory.string(), kConfigFile));
 }
 
-/// Its last part: of out/run/ too.
+/// Returns the last part of the path, also for out/run/.
 std::string name_of(const fs::path& directory) {
   const fs::path whole = fs::weakly_canonical(directory);
   return whole.has_filename() ? whole.filename().string() : whole.string();

@@ -21,7 +21,7 @@ using namespace std::string_view_literals;
 constexpr std::uint64_t kLongestBeginning = 4096;
 constexpr std::string_view kGsdBeginning = "\xDF\x65\xDF\x65"sv;
 
-/// A format that is told by some of its first bytes.
+/// Format that is recognised by some of its first bytes.
 struct Format {
   std::size_t place;
   std::string_view bytes;
@@ -54,7 +54,7 @@ std::string_view first_line(std::string_view& text) {
   return line;
 }
 
-/// Text formats of other programs by their first lines; nothing for others.
+/// Recognises text formats of other programs by their first lines; nullopt for others.
 std::optional<Format> text_format(std::string_view text) {
   constexpr const char* kExport = "OVITO exports one";
   std::string_view rest = text;

@@ -12,7 +12,7 @@
 namespace hardbody {
 namespace {
 
-/// Deviation of a length from 1 that is rounding, of 32-bit numbers or of six digits, and not worth a notice.
+/// Deviation of a length from 1 that counts as rounding, of 32-bit numbers or of six digits, and gives no notice.
 constexpr double kRoundedLength = 1e-5;
 
 }  // namespace

@@ -10,19 +10,19 @@
 namespace hardbody {
 namespace {
 
-/// Beginnings of names that columns of orientations and shapes have where nobody has named them: of computes, fixes,
-/// variables and custom properties, and in other programs.
+/// Prefixes of columns that may contain orientations and shapes under names that the program does not use: of computes,
+/// fixes, variables and custom properties, and in other programs.
 constexpr std::array<std::string_view, 10> kUnnamed = {"c_",  "f_", "v_", "d_",     "d2_",
                                                        "i2_", "q",  "mu", "orient", "shape"};
 
-/// Exponents of superellipsoids in the convention of LIGGGHTS and of LAMMPS's own, beside which shapex is another size.
+/// Exponents of superellipsoids in the conventions of LIGGGHTS and of LAMMPS's own, with which shapex is another size.
 constexpr std::array<std::string_view, 3> kExponents = {"blockiness", "roundness", "block"};
 
 bool begins_as(std::string_view name, const auto& list) {
   return std::any_of(list.begin(), list.end(), [&](std::string_view begin) { return name.starts_with(begin); });
 }
 
-/// Names for a message.
+/// Lists names for a message.
 std::string listed(const std::vector<std::string_view>& names) {
   return one_line(fmt::format("column{} {}", names.size() > 1 ? "s" : "", fmt::join(names, " ")), 120);
 }
@@ -91,7 +91,7 @@ void DumpColumns::note_unused() {
         "shapex shapey shapez with exponents SuperquadricRoundness.Phi .Theta",
         listed(exponents)));
     diameters.reset();
-    radius.reset();  // that of a sphere around such a body
+    radius.reset();  // the radius of a sphere around such a body
     diameter.reset();
   }
   const auto unnamed = named([](std::string_view name) {
