@@ -48,9 +48,9 @@ class ExactSymmetricTop {
     const Quad3 w(omega);
     const Quad spin = w.dot(z_);
     const Quad ratio = static_cast<Quad>(inertia.z()) / inertia.x();
-    const Quad3 turning = w + ((ratio - 1) * spin) * z_;
-    precession_ = turning.norm();
-    l_ = unit(turning);
+    const Quad3 precession = w + ((ratio - 1) * spin) * z_;
+    precession_ = precession.norm();
+    l_ = unit(precession);
     own_ = spin * (1 - ratio);
   }
 

@@ -73,7 +73,7 @@ class FreeMotion {
 
   Eigen::Vector3d position(double t) const { return start_.position + t * start_.velocity; }
   const Eigen::Vector3d& velocity() const { return start_.velocity; }
-  double turning_rate() const { return start_.across.norm(); }  ///< |d axis / dt|, constant
+  double axis_rate() const { return start_.across.norm(); }  ///< |d axis / dt|, constant
 
  private:
   BodyState start_;
@@ -100,7 +100,7 @@ class BruteForce {
              double floor)
       : shape_a_(shape_a), shape_b_(shape_b), a_(a), b_(b) {
     const auto tip_rate = [](const geom::Ellipsoid& s, const FreeMotion& m) {
-      return (s.bounding_radius() - s.inscribed_radius()) * m.turning_rate();
+      return (s.bounding_radius() - s.inscribed_radius()) * m.axis_rate();
     };
     size_ = shape_a.bounding_radius() + shape_b.bounding_radius();
     rate_ = (b.velocity() - a.velocity()).norm() + tip_rate(shape_a, a) + tip_rate(shape_b, b);

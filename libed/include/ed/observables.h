@@ -101,13 +101,12 @@ struct BlockRow {
 /// diffusive there; otherwise Estimate::missing gives the reason. Conditions:
 /// - the logarithmic slope over these lags is 1 +- 0.2;
 /// - D_trans: bodies have left their cages at the first of these lags: x = MSD q^2 / 6 >= 1, and F_self(q) to the order
-///     of alpha2, exp(-x) (1 + alpha2 x^2 / 2), is at most 1/e. q is the wave number of the first peak of S(q) of all
-///     bodies, measured in any case, whatever wave numbers F_self is measured at. If scatter hides the peak, it is that
-///     of spheres of the same packing fraction; if sizes are unknown, 2 pi (N / V)^(1/3). A group of several whose own
-///     S(q) has a clear peak at a smaller wave number uses that one;
+///   of alpha2, exp(-x) (1 + alpha2 x^2 / 2), is at most 1/e. q is the wave number of the first peak of S(q) of all
+///   bodies, measured in any case, whatever wave numbers F_self is measured at. If scatter hides the peak, it is that
+///   of spheres of the same packing fraction; if sizes are unknown, 2 pi (N / V)^(1/3). A group of several whose own
+///   S(q) has a clear peak at a smaller wave number uses that one;
 /// - D_rot and D_rot_body of c components: <|Delta Phi|^2> >= c / 3 rad^2 at the longest lag; if it is less than that
-/// at
-///     the first of these lags, the logarithmic slope is at most 1.1. Single axes have c = 1.
+///   at the first of these lags, the logarithmic slope is at most 1.1. Single axes have c = 1.
 ///
 /// These conditions are tested on all data; the errors come from blocks, which are not tested.
 ///

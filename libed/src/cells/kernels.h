@@ -41,8 +41,8 @@ struct CellQuery {
 };
 
 /// Finds the bodies in these blocks, in their order, that are within reach. Writes body and vector to its nearest
-/// image, as in NearBody, one after another from `near` on, and returns their number. There must be room for kCellBlock
-/// * count.
+/// image, as in NearBody, one after another from `near` on, and returns their number. `near` must have room for
+/// kCellBlock * count.
 using CellKernel = int(const CellQuery& query, const CellBlock* blocks, const int* which, int count, double* near);
 
 CellKernel* cell_kernel_portable();

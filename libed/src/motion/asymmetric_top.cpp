@@ -144,8 +144,8 @@ struct Flight {
 };
 
 struct Moduli {
-  double L, mean_turning;  ///< mean_turning: 2 E / L
-  double s1, s2, s3;       ///< s1 > 0, the others with their signs
+  double L, mean_rate;  ///< mean_rate: 2 E / L
+  double s1, s2, s3;    ///< s1 > 0, the others with their signs
   double p;
   double k2, kc2;  ///< k^2, k'^2
   SinCos phi;      ///< amplitude of u at the start
@@ -197,7 +197,7 @@ Moduli moduli(const Flight& f) {
   const double L2 = I2 * f.w[1];
   const double L3 = I3 * f.w[2];
   m.L = std::sqrt(L1 * L1 + L2 * L2 + L3 * L3);
-  m.mean_turning = (L1 * f.w[0] + L2 * f.w[1] + L3 * f.w[2]) / m.L;
+  m.mean_rate = (L1 * f.w[0] + L2 * f.w[1] + L3 * f.w[2]) / m.L;
   const double root3 = std::sqrt(f.D3);
   m.s1 = std::sqrt(I1 / f.I31) * root3 / m.L;
   m.s2 = std::copysign(std::sqrt(I2 / f.I32) * root3 / m.L, f.sense * f.w[2]);
@@ -227,17 +227,17 @@ TopBounds top_bounds(const Flight& f, const Moduli& m) {
 // ----------------------------------------------------------------------------------------------------------
 
 /// Theta function whose angle is the periodic part of phi, and the rate of that angle at u = K (over x or v).
-struct Turning {
+struct ThetaAngle {
   Cubic re, im;
   double slope;
 };
 
 /// Returns theta4(x + i chi eta) (axis 3 leads) or theta1(x + i chi eta), times e^-eta: e^(-2 eta) = G, q e^(2 eta) =
 /// h.
-Turning trigonometric_turning(bool lead_is_3, double chi, const Nome& nome, double G, double h) {
+ThetaAngle trigonometric_angle(bool lead_is_3, double chi, const Nome& nome, double G, double h) {
   const double G2 = G * G;
   const Cubic powers{1, h, h * h, h * h * h};
-  Turning t;
+  ThetaAngle t;
   if (lead_is_3) {
     // 1 + sum (-1)^n q^(n^2) 2 [cos 2nx cosh 2n eta - i chi sin 2nx sinh 2n eta]; sin 2nx / sin 2x = 1, y, y^2 - 1.
     const Cubic a = times(alternating(nome.less), powers);
@@ -261,7 +261,7 @@ Turning trigonometric_turning(bool lead_is_3, double chi, const Nome& nome, doub
 /// Returns theta2(chi eta' - iv) (axis 3 leads) or theta1(chi eta' - iv), the results of Jacobi's transformation of the
 /// functions above except for factors and a phase linear in time. At u = K their angles are chi eta' and chi (eta' - pi
 /// / 2), and their logarithmic derivatives those of theta3 and theta4 at eta'.
-Turning hyperbolic_turning(bool lead_is_3, double chi, const Nome& nome, const SinCos& eta) {
+ThetaAngle hyperbolic_angle(bool lead_is_3, double chi, const Nome& nome, const SinCos& eta) {
   std::array<SinCos, 8> multiple{{{0, 1}}};
   for (std::size_t n = 1; n < multiple.size(); ++n) multiple[n] = product(multiple[n - 1], eta);
   const Cubic a = lead_is_3 ? nome.square : alternating(nome.square);
@@ -276,7 +276,7 @@ Turning hyperbolic_turning(bool lead_is_3, double chi, const Nome& nome, const S
     rise += 4 * static_cast<double>(n) * a[n] * multiple[2 * n].sin;
     sum += 2 * a[n] * multiple[2 * n].cos;
   }
-  Turning t;
+  ThetaAngle t;
   t.slope = chi * rise / sum;
   if (lead_is_3) {
     t.re = odd_sum(cosines, -nome.q);
@@ -305,7 +305,7 @@ void set_trigonometric(const Moduli& m, double chi, ThetaSeries& s) {
   const bool far = k * s3 * s3 > m.s1 * m.s1;
   const double decay = far ? landen.decay(m.s1, k * s3) : landen.decay(s3, m.s1);
   const double other = nome.q / decay;
-  const Turning t = trigonometric_turning(s.lead_is_3, chi, nome, far ? other : decay, far ? decay : other);
+  const ThetaAngle t = trigonometric_angle(s.lead_is_3, chi, nome, far ? other : decay, far ? decay : other);
   s.re = t.re;
   s.im = t.im;
   s.secular = s.secular - s.rate * t.slope;
@@ -335,7 +335,7 @@ void set_hyperbolic(const Moduli& m, double chi, ThetaSeries& s) {
   s.start_exp = (m.phi.sin < 0) != beyond ? std::sqrt(decay) : 1 / std::sqrt(decay);
   const double length = std::sqrt(m.s1 * m.s1 + m.s3 * m.s3);
   const SinCos eta = landen.argument({std::abs(m.s3) / length, m.s1 / length});
-  const Turning t = hyperbolic_turning(s.lead_is_3, chi, nome, eta);
+  const ThetaAngle t = hyperbolic_angle(s.lead_is_3, chi, nome, eta);
   s.re = t.re;
   s.im = t.im;
   s.secular = s.secular - s.rate * t.slope;
@@ -346,7 +346,7 @@ ThetaSeries theta_series(const Flight& f, const Moduli& m) {
   ThetaSeries s{};
   s.hyperbolic = m.k2 > m.kc2;
   s.lead_is_3 = m.s1 >= std::abs(m.s3);
-  s.secular = s.lead_is_3 ? m.L / f.I[1] : m.mean_turning;  // phi' at u = K
+  s.secular = s.lead_is_3 ? m.L / f.I[1] : m.mean_rate;  // phi' at u = K
   if (s.hyperbolic) {
     set_hyperbolic(m, f.chi, s);
   } else {
@@ -462,7 +462,7 @@ std::optional<AsymmetricTop> AsymmetricTop::make(const Vector3d& inertia, const 
   top.series_ = theta_series(f, m);
   top.bounds_ = top_bounds(f, m);
   top.orientation_ = f.orientation;
-  top.mean_turning_ = f.scale * m.mean_turning;
+  top.mean_rate_ = f.scale * m.mean_rate;
   const std::array<int, 3> order = top.series_.lead_is_3 ? std::array{2, 0, 1} : std::array{0, 1, 2};
   for (int i = 0; i < 3; ++i) {
     const double I = f.I[order[i]];
@@ -498,7 +498,7 @@ TurnedAngles AsymmetricTop::turned(double tau) const {
     const Vector3d omega(rates_[0] * b.lead.z(), rates_[1] * b.next.z(), rates_[2] * b.last_z);
     return TurnedAngles{omega.x() * b.lead + omega.y() * b.next + omega.z() * last, omega};
   });
-  TurnedAngles turned{product(world_, {sum.world.x(), sum.world.y(), mean_turning_ * tau}), {}};
+  TurnedAngles turned{product(world_, {sum.world.x(), sum.world.y(), mean_rate_ * tau}), {}};
   for (int i = 0; i < 3; ++i) turned.body[axes_[i]] = sum.body[i];
   return turned;
 }

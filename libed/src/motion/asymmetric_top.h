@@ -89,7 +89,7 @@ class AsymmetricTop {
 
   template <class Archive, class Self>
   static void fields(Archive& archive, Self& self) {
-    archive(self.series_, self.axes_, self.rates_, self.euler_, self.orientation_, self.mean_turning_, self.world_,
+    archive(self.series_, self.axes_, self.rates_, self.euler_, self.orientation_, self.mean_rate_, self.world_,
             self.bounds_);
     expect(archive, are_axes(self.axes_), "the axes of a top");
   }
@@ -100,7 +100,7 @@ class AsymmetricTop {
   std::array<double, 3> rates_;  ///< |L| / I of these axes
   std::array<double, 3> euler_;  ///< (I_j - I_k) / I_i of these axes, i, j, k cyclic in the body
   double orientation_;           ///< handedness of these axes: 1, or -1 if they are left-handed
-  double mean_turning_;          ///< 2 E / L
+  double mean_rate_;             ///< 2 E / L
   Eigen::Matrix3d world_;        ///< rotation from the frame of L to the world
   TopBounds bounds_;
 };

@@ -10,7 +10,7 @@ using Eigen::Vector3d;
 
 /// Returns the integral over [0, t] of (w1 + i w2) exp(-i k s): the angular velocity across the axis in the body's
 /// frame.
-Vector2d integrate_turning(const Vector2d& w, double k, double t) {
+Vector2d integrate_across(const Vector2d& w, double k, double t) {
   const double x = k * t;
   double sinc = 1 - x * x / 6;
   double cosc = x * (0.5 - x * x / 24);  // (1 - cos x) / x
@@ -65,7 +65,7 @@ void advance(const UniaxialInertia& inertia, double t, AxisMotion& motion, BodyF
     frame.phi_lab -= cos_alpha * (angle * motion.e0 + sc.sin * motion.e1 + (1 - sc.cos) * motion.e2);
     own_rate = frame.spin - motion.rate * cos_alpha;
   }
-  frame.phi_body += integrate_turning(omega_body, own_rate, dt);
+  frame.phi_body += integrate_across(omega_body, own_rate, dt);
 
   // Body x: first about u, then about l.
   Vector3d x = frame.x_axis;

@@ -88,8 +88,8 @@ class Landen {
   }
 
   /// Returns exp(-pi w / K) where sc(w, k') = s / c; s, c >= 0. The steps are those of argument() with imaginary phi =
-  /// i chi, sinh chi = s / c, and all differences positive. This holds for w <= K'/2, that is k s^2 <= c^2; beyond, K'
-  /// - w satisfies it: sc(K' - w) = 1 / (k sc(w)).
+  /// i chi, sinh chi = s / c, and all differences positive. This holds for w <= K'/2, that is k s^2 <= c^2; beyond,
+  /// K' - w satisfies it: sc(K' - w) = 1 / (k sc(w)).
   double decay(double s, double c) const {
     const double root = (s + std::sqrt(s * s + c * c)) / c;
     const double e = root * root;  // e^(2 chi)

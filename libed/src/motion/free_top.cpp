@@ -38,7 +38,7 @@ std::variant<UniformTurn, SymmetricTop, AsymmetricTop> make_top(const Vector3d& 
 
 // ---- Constant angular velocity -------------------------------------------------------------------------------------
 
-TurningAxis TurningAxis::of(const Vector3d& v, const Vector3d& l) {
+RotatingAxis RotatingAxis::of(const Vector3d& v, const Vector3d& l) {
   const Vector3d along = inner(l, v) * l;
   return {along, v - along, l.cross(v)};
 }
@@ -46,8 +46,8 @@ TurningAxis TurningAxis::of(const Vector3d& v, const Vector3d& l) {
 UniformTurn::UniformTurn(const Matrix3d& rotation, const Vector3d& omega) : omega_(omega), rate_(length(omega)) {
   const TopAxes start = polished(rotation.col(0), rotation.col(1), 1);
   const Vector3d direction = rate_ > 0 ? Vector3d(omega / rate_) : Vector3d::UnitZ();
-  x_ = TurningAxis::of(start.first, direction);
-  y_ = TurningAxis::of(start.second, direction);
+  x_ = RotatingAxis::of(start.first, direction);
+  y_ = RotatingAxis::of(start.second, direction);
 }
 
 Matrix3d UniformTurn::rotation(double tau) const {
@@ -73,10 +73,10 @@ SymmetricTop::SymmetricTop(int axis, const Vector3d& inertia, const Matrix3d& ro
   spin_ = inner(omega, start_.first);
   across_ = {inner(omega, start_.second), inner(omega, start_.third)};
   // L / I_perp.
-  const Vector3d turning =
+  const Vector3d precession =
       across_.x() * start_.second + across_.y() * start_.third + (inertia[axis] / perpendicular * spin_) * start_.first;
-  precession_ = length(turning);
-  l_ = turning / precession_;
+  precession_ = length(precession);
+  l_ = precession / precession_;
   own_ = spin_ * ((perpendicular - inertia[axis]) / perpendicular);
 }
 

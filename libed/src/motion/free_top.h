@@ -8,9 +8,9 @@
 /// would gain nothing, because an asymmetric top's formulas are as accurate for moments that nearly agree.
 ///
 /// - Spherical top (three equal moments), or omega along a principal axis, or no rotation: omega is constant.
-/// - Symmetric top (two equal moments I_perp, about any body axis u): with Omega = |L| / I_perp and
-///     k = (omega.u) (1 - I_3 / I_perp), R(tau) = Rot(l, Omega tau) R(0) Rot(e_u, k tau) and omega = Omega l + k u(tau)
-///     (Landau and Lifshitz, Mechanics, sec. 33 and 35).
+/// - Symmetric top (two equal moments I_perp, about any body axis u): with Omega = |L| / I_perp and k = (omega.u) (1 -
+///   I_3 / I_perp), R(tau) = Rot(l, Omega tau) R(0) Rot(e_u, k tau) and omega = Omega l + k u(tau) (Landau and
+///   Lifshitz, Mechanics, sec. 33 and 35).
 /// - Asymmetric top: elliptic functions, see asymmetric_top.h.
 ///
 /// Determinism: +, -, *, / and sqrt, libed's own sine, cosine and exponential, and exact functions of the C library
@@ -28,15 +28,15 @@
 namespace ed::internal {
 
 /// Unit vector that rotates about another one: along + cos part + sin part of the angle.
-struct TurningAxis {
+struct RotatingAxis {
   Eigen::Vector3d along, cosine, sine;
 
   /// Returns the motion of `v` about the unit vector l.
-  static TurningAxis of(const Eigen::Vector3d& v, const Eigen::Vector3d& l);
+  static RotatingAxis of(const Eigen::Vector3d& v, const Eigen::Vector3d& l);
   Eigen::Vector3d at(const SinCos& sc) const { return along + sc.cos * cosine + sc.sin * sine; }
 };
 
-template <class Archive, Is<TurningAxis> T>
+template <class Archive, Is<RotatingAxis> T>
 void fields(Archive& archive, T& axis) {
   archive(axis.along, axis.cosine, axis.sine);
 }
@@ -57,7 +57,7 @@ class UniformTurn {
   }
 
  private:
-  TurningAxis x_, y_;  ///< body axes
+  RotatingAxis x_, y_;  ///< body axes
   Eigen::Vector3d omega_;
   double rate_;  ///< |omega|
 };

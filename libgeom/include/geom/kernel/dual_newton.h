@@ -2,10 +2,10 @@
 
 /// Newton's method for d = max over unit n of g(n) = n.r - hA(n) - hB(-n), r the vector from A's centre to B's.
 ///
-/// With support points sA = grad hA(n) and sB' = -grad hB(-n), the gradient of g along the sphere is y = r - sA - sB' -
-/// g n, and the Riemannian Hessian is -(M + g I) with M = P (HA + HB) P, H the Hessians of the support functions, P = I
-/// - n n^T. The Newton step solves (M + g I) delta = y across n. g is 1-homogeneous and concave, so M is positive
-/// semidefinite, and M + g I positive definite wherever g > 0.
+/// With support points sA = grad hA(n) and sB' = -grad hB(-n), the gradient of g along the sphere is
+/// y = r - sA - sB' - g n, and the Riemannian Hessian is -(M + g I) with M = P (HA + HB) P, P = I - n n^T, H the
+/// Hessians of the support functions. The Newton step solves (M + g I) delta = y across n. g is 1-homogeneous and
+/// concave, so M is positive semidefinite, and M + g I positive definite wherever g > 0.
 ///
 /// With rho the smallest radius of curvature, M >= rhoA + rhoB everywhere, so that the matrix is definite for g >
 /// -(rhoA + rhoB) too. Below, eigenvalues that are not positive are raised ("lifted"), which makes every step an ascent
@@ -60,9 +60,9 @@ inline double chebyshev_share(double change) {
   return std::min(1.0, kChebyshevChange / change);
 }
 
-/// Replaces the Newton step of set_step by `bent`, which has that fraction of the correction added. `cubic` is y.(bent
-/// - delta). The step remains Newton's if too little of y.delta is left to ensure that g grows, or if the step becomes
-/// too long.
+/// Replaces the Newton step of set_step by `bent`, which has that fraction of the correction added. `cubic` is
+/// y.(bent - delta). The step remains Newton's if too little of y.delta is left to ensure that g grows, or if the step
+/// becomes too long.
 ///
 /// Not to be used with a lifted matrix: such a step converges linearly, whatever is added.
 inline void set_bent_step(ChebyshevEvaluation& e, const Eigen::Vector3d& bent, double cubic, double change) {

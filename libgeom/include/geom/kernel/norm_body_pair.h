@@ -7,14 +7,14 @@
 /// overshoots. The methods follow each other; each is tried only if the one before has not converged:
 ///
 /// 1. If both bodies may have faces, by an exponent of about 1 or less: Newton's method of both bodies' contact
-///     elements (src/norm/contact_elements.h), points of the surfaces with their normals. The normals need not be n
-///     before it has converged: on a face a step is made by the point, on an edge by the normal. Nearly all pairs end
-///     here.
+///    elements (src/norm/contact_elements.h), points of the surfaces with their normals. The normals need not be n
+///    before it has converged: on a face a step is made by the point, on an edge by the normal. Nearly all pairs end
+///    here.
 /// 2. Dual Newton (see kernel/dual_newton.h) while its steps are good. Some of them are made with the support point of
-///     the flatter body, s + H delta, from which n is computed: a *retraction*. Then elements from the point reached.
-/// 3. Dual Newton to its end, and elements in shorter steps. After that, from another start if there is one. 4. Branch
-/// and bound over all normals (kernel/sphere_search.h), from the highest local maximum found: slow, and with
-///     whatever bounds it has at its limit of evaluations.
+///    the flatter body, s + H delta, from which n is computed: a *retraction*. Then elements from the point reached.
+/// 3. Dual Newton to its end, and elements in shorter steps. After that, from another start if there is one.
+/// 4. Branch and bound over all normals (kernel/sphere_search.h), from the highest local maximum found: slow, and with
+///    whatever bounds it has at its limit of evaluations.
 ///
 /// Certificates: g(n) is a lower bound of the distance for every n, and |r + xB - xA| an upper one for every two points
 /// of the bodies.

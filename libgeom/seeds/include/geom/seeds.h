@@ -34,15 +34,15 @@ GEOM_EXPORT WitnessPair fcl_seed(const SupportBody& a, const SupportBody& b, con
 /// FCL is called only where it has an answer, and never where Debian's build of it, with assertions on, would abort the
 /// process:
 /// - `distance` comes first. FCL is not called for pairs that overlap (`overlapping` if `distance` finds an overlap or
-///     the inscribed spheres overlap, else `declined`), nor for pairs that touch, their gap below 1e-12 of their size
-///     (`declined`): an assertion of its GJK fails on some of them.
+///   the inscribed spheres overlap, else `declined`), nor for pairs that touch, their gap below 1e-12 of their size
+///   (`declined`): an assertion of its GJK fails on some of them.
 /// - The pair is turned by an arbitrary rotation: the same assertion then fails by chance only, with a probability of
-///     1e-16, also for bodies that are aligned with the axes.
+///   1e-16, also for bodies that are aligned with the axes.
 /// - Only GST_LIBCCD is used: GST_INDEP aborts the process on overlaps.
 /// - Only the unsigned distance is used: with signed ones a pair that FCL considers overlapping goes to its EPA, which
-///     contains the assertions.
+///   contains the assertions.
 /// - Lengths are divided by the smaller inscribed radius, because FCL's default tolerance of 1e-6 is an absolute
-/// length.
+///   length.
 ///
 /// If FCL throws, considers the pair overlapping all the same, or returns a point deep inside a body (about one in
 /// 1e5), the seed is `declined`. Allocates.
