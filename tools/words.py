@@ -1,15 +1,15 @@
 #!/usr/bin/env python3
 """Checks the words of comments in headers, and names file, line and comment where they break the rule.
 
-usage: words.py [--count] [FILE...]
+usage: words.py [--count | --all] [FILE...]
 
 The rule (CONTRIBUTING.md): a doc comment is a sentence whose omitted subject is the declared thing. It begins with a
 verb for a function ("Returns ...") and with a noun for data ("Number of ..."), with "True ..." or "Whether ..." for a
 truth value. It never begins with a preposition, a pronoun, a conjunction or a stand-in for one ("The same ..."): a
 condition follows what it limits. Some phrases are refused anywhere in a comment, because they have to be read twice.
 
-Without FILE all headers of the repository are read. --count prints the figure alone. Exit code 1: more than LIMIT of
-the doc comments begin with a wrong word or hold such a phrase.
+Without FILE all headers of the repository are read. --count prints the figure alone, --all every fault even below the
+limit. Exit code 1: more than LIMIT of the doc comments begin with a wrong word or contain such a phrase.
 """
 
 import pathlib
