@@ -22,7 +22,7 @@ LIMIT = 0.01
 
 PREPOSITIONS = """
     about above across after against along among around as at before behind below beneath beside besides between beyond
-    by despite down during except for from in inside into like near next of off on onto out outside over past per since
+    by despite down during except for from in inside into like of off on onto out outside over per since
     through throughout till to toward towards under until unto up upon via with within without
 """
 PRONOUNS = """
@@ -33,8 +33,7 @@ PRONOUNS = """
 CONJUNCTIONS = "although and because but else if nor or otherwise than then though unless whereas while yet"
 WRONG_FIRST = frozenset(f"{PREPOSITIONS} {PRONOUNS} {CONJUNCTIONS}".split())
 
-WRONG_BEGINNINGS = re.compile(r"(?:the|much the|just the)?\s*same\b(?! (?:as|[a-z]+) [`:a-z_]*\()|all (?:that|of|but)\b|"
-                              r"one (?:of|that|which)\b|next to\b|not\b", re.IGNORECASE)
+WRONG_BEGINNINGS = re.compile(r"(?:the )?same\b|all (?:that|of|but)\b|one (?:of|that|which)\b|next to\b|not\b", re.IGNORECASE)
 
 PHRASES = [
     r"so many\b(?! \w+ that)",
@@ -49,8 +48,8 @@ PHRASES = [
     r"what is made of",
     r"what (?:it|they) (?:is|are) worth",
     r"of which it is (?:said|known)",
-    r"as (?:good|well) as nothing",
-    r"is no longer theirs",
+    r"as good as nothing",
+    r"no longer theirs",
     r"all that there",
     r"is for an? \w+ to say",
     r"who(?:ever)? (?:wants|asks)",
