@@ -132,7 +132,7 @@ void note_missing_shapes(const Frame& frame, PairAudit& audit) {
   for (const FrameBody& body : frame.bodies) used[body.type] = true;
   for (std::size_t k = 0; k < frame.types.size(); ++k) {
     if (!used[k] || frame.types[k].shape) continue;
-    audit.not_looked_at.push_back(
+    audit.not_tested.push_back(
         fmt::format("bodies of type {} have no shape in the file", one_line(frame.types[k].name, 40)));
   }
 }
@@ -151,8 +151,8 @@ void audit_pair(const Frame& frame, std::size_t i, std::size_t j, const Vector3d
   const ed::BodyShape& shape_b = *frame.types[b.type].shape;
   if (!lies_as_known(frame, a) || !lies_as_known(frame, b)) {
     const std::string reason = "orientations of bodies that are near each other are not known";
-    if (std::find(audit.not_looked_at.begin(), audit.not_looked_at.end(), reason) == audit.not_looked_at.end()) {
-      audit.not_looked_at.push_back(reason);
+    if (std::find(audit.not_tested.begin(), audit.not_tested.end(), reason) == audit.not_tested.end()) {
+      audit.not_tested.push_back(reason);
     }
     return;
   }
@@ -184,7 +184,7 @@ PairAudit audit_pairs(const Frame& frame, double tolerance) {
   if (largest == 0) return audit;
   const PeriodicCells cells(frame, 2 * largest);
   if (cells.too_wide()) {
-    audit.not_looked_at.push_back(fmt::format("the box is too small for bodies of bounding radius {:g}", largest));
+    audit.not_tested.push_back(fmt::format("the box is too small for bodies of bounding radius {:g}", largest));
     return audit;
   }
   for (std::size_t k = 0; k < cells.size(); ++k) {

@@ -19,7 +19,7 @@ struct PairAudit {
   std::uint64_t overlaps = 0;    ///< pairs that overlap by more than the tolerance
   std::uint64_t unanswered = 0;  ///< pairs whose distance query declined
   /// Reasons for which pairs were left out, each once: "bodies of type A have no shape"; empty: all were tested.
-  std::vector<std::string> not_looked_at;
+  std::vector<std::string> not_tested;
 };
 
 /// Tests all pairs of bodies whose shapes are known, by `geom::distance`, in every image that they can touch. An

@@ -56,7 +56,7 @@ RunChoices choices_of_run(const fs::path& directory) {
     choices.wave_numbers = summary.at("wave_numbers").get<std::vector<double>>();
   } catch (const Json::exception&) {
     throw InputError(
-        fmt::format("{}: is not one that a run has written; accepted: a trajectory without such a file "
+        fmt::format("{}: was not written by a run; accepted: a trajectory without such a file "
                     "beside it",
                     file.string()));
   }
@@ -84,7 +84,7 @@ std::string order_csv(const StoredTrajectory& stored) {
 }
 
 /// Words for missing values: lengths have the unit of the file.
-const MissingWords kWords = {"", "--longest-lag or a longer trajectory helps", "--fit-from says it"};
+const MissingWords kWords = {"", "--longest-lag or a longer trajectory helps", "--fit-from sets it"};
 
 /// Returns the observables as in summary.json.
 Json observables(const ed::Correlations& c, const ed::Estimate& S, const ed::Director& director) {
@@ -107,7 +107,7 @@ std::string analysis_json(const std::string& name, const StoredTrajectory& store
   Json json;
   json["version"] = version();
   json["source"] = name;
-  json["units"] = "those of the file; of ours kT = m = 1, lengths l, times l sqrt(m/kT)";
+  json["units"] = "those of the file; for files of hardbody kT = m = 1, lengths l, times l sqrt(m/kT)";
   const std::size_t last = results.first_frame + results.frames - 1;
   json["frames"] = {{"in_file", stored.in_file},
                     {"without_positions", stored.without_positions},
@@ -175,11 +175,11 @@ void print_reading(const TrajectoryReader& reader, const StoredTrajectory& store
                      stored.in_file));
   }
   if (results.frames < stored.frames.size()) {
-    note(
-        fmt::format("S, g(r) and S(q) are from all frames, correlations from the longest even stretch, {} frames "
-                    "of times {:g} to {:g}",
-                    results.frames, stored.frames[results.first_frame].time,
-                    stored.frames[results.first_frame + results.frames - 1].time));
+    note(fmt::format(
+        "S, g(r) and S(q) are from all frames, correlations from the longest evenly spaced sequence, {} frames "
+        "of times {:g} to {:g}",
+        results.frames, stored.frames[results.first_frame].time,
+        stored.frames[results.first_frame + results.frames - 1].time));
   }
   for (const std::string& notice : stored.notices) note(notice);
   if (!stored.not_followed.empty()) {
@@ -223,7 +223,7 @@ int analyze(const AnalyzeArguments& arguments) {
     fmt::print("  {:<12} {}\n", name, shown(value));
   }
   if (!stored.options.fit_from)
-    fmt::print("no fits of decays: --fit-from T says from which lag, where ballistic motion has ended\n");
+    fmt::print("no fits of decays: --fit-from T sets the first lag, where ballistic motion has ended\n");
   fmt::print("\nfiles: {0}/analysis.json, {0}/*.csv\n", out.string());
   return 0;
 }

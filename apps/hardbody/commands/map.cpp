@@ -61,12 +61,12 @@ std::vector<std::size_t> chosen_rows(const CsvTable& table, const std::vector<st
   for (const std::string& condition : conditions) {
     const std::size_t equals = condition.find('=');
     if (equals == std::string::npos) {
-      throw InputError(fmt::format("--where {}: is no condition; accepted: column=value", one_line(condition, 60)));
+      throw InputError(fmt::format("--where {}: is not a condition; accepted: column=value", one_line(condition, 60)));
     }
     const std::size_t column = table.column(std::string_view(condition).substr(0, equals));
     const std::string wanted = condition.substr(equals + 1);
     std::erase_if(rows, [&](std::size_t k) { return !is_same(table.rows[k][column], wanted); });
-    if (rows.empty()) throw InputError(fmt::format("--where {}: no row of {} is so", condition, table.name));
+    if (rows.empty()) throw InputError(fmt::format("--where {}: no row of {} fulfils it", condition, table.name));
   }
   return rows;
 }
@@ -137,8 +137,8 @@ void check_spread(const CsvTable& table, const std::vector<Sample>& samples, con
     columns.insert(s.x);
   }
   throw InputError(
-      fmt::format("{}: {} is known at {} points with {} values of {}, between which no line can be drawn (as of "
-                  "keys that a sweep zips); accepted: two values of {} at least, side by side, one of them with two "
+      fmt::format("{}: {} is known at {} points with {} values of {}, between which no line can be drawn (as "
+                  "for keys that a sweep zips); accepted: at least two neighbouring values of {}, one of them with two "
                   "values of {}",
                   table.name, value, points.size(), columns.size(), x, x, y));
 }
@@ -150,7 +150,7 @@ std::vector<MapLevel> all_levels(const CsvTable& table, const std::vector<std::s
     const std::vector<Sample> samples = samples_of(table, rows, columns, columns.values[v], arguments);
     if (samples.empty()) {
       throw InputError(
-          fmt::format("{}: {} has no values; accepted: a column with some", table.name, arguments.values[v]));
+          fmt::format("{}: {} has no values; accepted: a column with values", table.name, arguments.values[v]));
     }
     check_spread(table, samples, arguments.x, arguments.y, arguments.values[v]);
     const std::vector<double> levels =
@@ -198,7 +198,7 @@ std::string lines_csv(const Map& map) {
 void check(const MapArguments& arguments) {
   if (!arguments.levels.empty() && arguments.levels.size() != arguments.values.size()) {
     throw InputError(
-        fmt::format("--levels is there {} times and --value {} times; accepted: levels for each value, or "
+        fmt::format("--levels is given {} times and --value {} times; accepted: levels for each value, or "
                     "for none",
                     arguments.levels.size(), arguments.values.size()));
   }

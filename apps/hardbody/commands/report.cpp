@@ -21,15 +21,15 @@ namespace fs = std::filesystem;
 fs::path output_path(const ReportArguments& arguments) {
   if (arguments.out) return *arguments.out;
   if (arguments.directories.size() == 1) return fs::path(arguments.directories[0]) / kReportFile;
-  throw InputError("hardbody report: several directories, and no file to write to; accepted: -o FILE.html");
+  throw InputError("hardbody report: several directories, but no output file; accepted: -o FILE.html");
 }
 
 void check_output(const fs::path& path) {
   const fs::path directory = path.has_parent_path() ? path.parent_path() : fs::path(".");
   if (!fs::is_directory(directory)) {
     throw InputError(
-        fmt::format("{}: cannot be written: {} is not a directory; accepted: a file in a directory that "
-                    "is there",
+        fmt::format("{}: cannot be written: {} is not a directory; accepted: a file in an "
+                    "existing directory",
                     path.string(), directory.string()));
   }
   check_replaceable(path, kReportBeginning);
@@ -77,7 +77,7 @@ Report read_report(const std::vector<std::string>& directories) {
   }
   for (const std::string& directory : directories) {
     if (is_sweep(directory)) {
-      throw InputError(fmt::format("{}: holds a sweep; accepted: a sweep by itself, or several runs", directory));
+      throw InputError(fmt::format("{}: holds a sweep; accepted: a single sweep, or several runs", directory));
     }
     report.runs.push_back(read_run_report(directory, WithView::yes));
   }

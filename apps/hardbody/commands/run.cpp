@@ -172,7 +172,7 @@ int conclude(const RunDirectory& directory, RunRecord& record, Continuation& at,
   }
   if (record.stopped() && !record.stall) {
     const std::string text =
-        fmt::format("stopped by {} during {} at time {:g}: what was measured is written, hardbody resume goes on",
+        fmt::format("stopped by {} during {} at time {:g}: results so far are written, hardbody resume continues",
                     signal_name(signal), record.last_phase(), record.last_time());
     log.line(text);
     progress.say(fmt::format("{}: {}", directory.path().string(), text));
@@ -243,8 +243,8 @@ int run_phases(const Config& config, const RunDirectory& directory, Continuation
 /// Returns what to do when a file could not be written.
 std::string advice(const RunDirectory& directory, const WriteError& error) {
   return fmt::format("{}: {}, then hardbody resume {}{}",
-                     directory.has(kCheckpointFile) ? "the last checkpoint stands" : "there is no checkpoint yet",
-                     error.no_room() ? "free some room" : "mend that", directory.path().string(),
+                     directory.has(kCheckpointFile) ? "the last checkpoint is intact" : "there is no checkpoint yet",
+                     error.no_room() ? "free some room" : "resolve this", directory.path().string(),
                      directory.has(kCheckpointFile) ? "" : " starts over");
 }
 

@@ -68,7 +68,7 @@ void check_same_sweep(const fs::path& directory, const SweepFile& sweep) {
       changed_key(absolute_files(before, directory), absolute_files(sweep.whole, sweep.directory));
   if (!changed) return;
   throw InputError(
-      fmt::format("{}: {} is {}, but {} in the sweep that {} holds; accepted: the sweep as it was begun, or another "
+      fmt::format("{}: {} is {}, but {} in the sweep that {} holds; accepted: the original sweep, or another "
                   "directory",
                   changed->where, changed->key, changed->now, changed->before, directory.string()));
 }
@@ -84,7 +84,7 @@ DirectoryLock take_directory(const fs::path& directory, const SweepFile& sweep) 
     if (holds_other_files(directory)) {
       throw InputError(
           fmt::format("{}: holds files, but no sweep; accepted: a new or empty directory, or that of a "
-                      "sweep to go on with",
+                      "sweep to continue",
                       directory.string()));
     }
     if (fs::exists(directory / kSweepFile)) {
@@ -357,7 +357,8 @@ int Sweep::conclude(int signal) {
   }
   (void)std::fflush(stdout);
   if (signal != 0) {
-    progress_.say(fmt::format("{}: stopped by {}: the same command goes on", directory_.string(), signal_name(signal)));
+    progress_.say(
+        fmt::format("{}: stopped by {}: the same command continues", directory_.string(), signal_name(signal)));
     return exit_status_of(signal);
   }
   return failed > 0 || table_failed_ ? 1 : 0;

@@ -35,7 +35,7 @@ std::string trace_of_a_run(const fs::path& directory) {
 
 InputError holds_a_run(const fs::path& directory, const std::string& trace) {
   return InputError(
-      fmt::format("{}: holds a run already ({}); accepted: another directory, hardbody resume to go on with it, or "
+      fmt::format("{}: already holds a run ({}); accepted: another directory, hardbody resume to continue it, or "
                   "--force to overwrite it",
                   directory.string(), trace));
 }
@@ -51,7 +51,7 @@ void keep_inputs(const fs::path& directory, const std::vector<fs::path>& inputs)
       std::error_code ignored;
       if (!fs::equivalent(directory / name, input, ignored)) continue;
       throw InputError(
-          fmt::format("{}: --force would delete {}, which this run is made from; accepted: another directory",
+          fmt::format("{}: --force would delete {}, which is an input of this run; accepted: another directory",
                       directory.string(), input.string()));
     }
   }
@@ -78,7 +78,7 @@ DirectoryLock::DirectoryLock(const fs::path& directory)
   const int error = errno;
   if (descriptor_ >= 0) ::close(descriptor_);
   if (error != EWOULDBLOCK) throw unusable(directory, fmt::format("it cannot be locked: {}", std::strerror(error)));
-  throw InputError(fmt::format("{}: another hardbody process is at work in it; accepted: another directory, or wait",
+  throw InputError(fmt::format("{}: another hardbody process is using it; accepted: another directory, or wait",
                                directory.string()));
 }
 
@@ -119,7 +119,7 @@ RunDirectory RunDirectory::open(const fs::path& path) {
   }
   if (!fs::exists(path / kConfigFile)) {
     throw InputError(
-        fmt::format("{}: holds no run: {} is not there; accepted: the directory of a run", path.string(), kConfigFile));
+        fmt::format("{}: holds no run: {} is missing; accepted: the directory of a run", path.string(), kConfigFile));
   }
   return RunDirectory(path);
 }

@@ -45,7 +45,7 @@ class DiskBytes final : public StoredBytes {
           ::pread(descriptor_, bytes.data() + done, size - done, static_cast<::off_t>(position + done));
       if (got < 0 && errno == EINTR) continue;
       if (got < 0) throw unreadable(std::strerror(errno));
-      if (got == 0) throw unreadable("it was made shorter meanwhile");
+      if (got == 0) throw unreadable("it has become shorter since it was opened");
       done += static_cast<std::uint64_t>(got);
     }
     return bytes;

@@ -163,7 +163,7 @@ void check_replaceable(const fs::path& path, std::string_view beginning) {
   std::ifstream file(path, std::ios::binary);
   std::string found(beginning.size(), '\0');
   file.read(found.data(), static_cast<std::streamsize>(found.size()));
-  if (!file || found != beginning) refuse("is there and something else");
+  if (!file || found != beginning) refuse("exists and is something else");
 }
 
 void write_file(const fs::path& path, const std::function<void(const Sink&)>& make) {

@@ -72,11 +72,11 @@ Remark completion(const nlohmann::json& summary) {
   return {
       Kind::warning, "stopped early",
       production > 0
-          ? fmt::format("The run was stopped {:g} time units into production: all numbers are of that part. "
-                        "hardbody resume goes on with it.",
+          ? fmt::format("The run was stopped {:g} time units into production: all numbers are from that part. "
+                        "hardbody resume continues it.",
                         production)
-          : fmt::format("The run was stopped {:g} time units into its equilibration: there is nothing measured yet. "
-                        "hardbody resume goes on with it.",
+          : fmt::format("The run was stopped {:g} time units into its equilibration: nothing has been measured yet. "
+                        "hardbody resume continues it.",
                         number_of(member(time, "equilibration")))};
 }
 
@@ -98,12 +98,13 @@ std::vector<Remark> remarks_of(const nlohmann::json& summary) {
   std::vector<Remark> list = {completion(summary), soundness(summary)};
   const double equilibration = number_of(member(member(summary, "time"), "equilibration"));
   if (says(member(summary, "equilibrated"), true)) {
-    list.push_back({Kind::good, "equilibrated",
-                    fmt::format("Bodies forgot where they were, twice, within {:g} time units.", equilibration)});
+    list.push_back(
+        {Kind::good, "equilibrated",
+         fmt::format("C2 and F_self decayed below 0.05 twice in a row within {:g} time units.", equilibration)});
   } else {
     list.push_back({Kind::warning, "not shown to be equilibrated",
-                    fmt::format("In {:g} time units C2 and F_self did not decay below 0.05 twice in a row: a time that "
-                                "was given and is short, a nematic, a crystal or a glass.",
+                    fmt::format("In {:g} time units C2 and F_self did not decay below 0.05 twice in a row: the "
+                                "configured time is too short, or the state is a nematic, a crystal or a glass.",
                                 equilibration)});
   }
   const nlohmann::json& target = member(summary, "target_error");
@@ -116,7 +117,7 @@ std::vector<Remark> remarks_of(const nlohmann::json& summary) {
   const double failed = number_of(member(failures, "recorded")) + number_of(member(failures, "left_out"));
   if (failed > 0) {
     list.push_back({Kind::warning, fmt::format("{:g} pairs in failures/", failed),
-                    "Their prediction needed more than the configured method; hardbody replay shows them."});
+                    "The configured method could not predict them; hardbody replay shows them."});
   }
   return list;
 }
@@ -217,7 +218,7 @@ void check_directory(const fs::path& directory) {
                                  fs::exists(directory) ? "not a directory" : "not there"));
   }
   if (fs::exists(directory / kConfigFile)) return;
-  throw InputError(fmt::format("{}: holds no run: {} is not there; accepted: the directory of a run or of a sweep",
+  throw InputError(fmt::format("{}: holds no run: {} is missing; accepted: the directory of a run or of a sweep",
                                directory.string(), kConfigFile));
 }
 

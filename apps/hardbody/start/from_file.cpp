@@ -123,8 +123,7 @@ std::optional<double> mending_factor(const ed::System& system) {
 /// Describes the bodies that overlap, the worst pair by the numbers of the file. `ids`: those of the bodies of the
 /// state.
 std::string overlap_text(const ed::Audit& audit, const std::vector<double>& ids) {
-  if (audit.overlaps == 0)
-    return fmt::format("{} pairs of bodies are too deep in each other for a distance", audit.unanswered);
+  if (audit.overlaps == 0) return fmt::format("{} pairs of bodies overlap too deeply for a distance", audit.unanswered);
   return fmt::format("{} pairs of bodies overlap, the worst by {:.3g} (bodies {:.17g} and {:.17g} of the file)",
                      audit.overlaps + audit.unanswered, -audit.minimum_distance,
                      ids[static_cast<std::size_t>(audit.closest_i)], ids[static_cast<std::size_t>(audit.closest_j)]);
@@ -135,14 +134,14 @@ std::string mend(ed::System& system, const StartFile& start, const std::vector<d
   const ed::Audit audit = ed::audit(system);
   if (!overlaps(audit)) return "";
   if (!start.mend) {
-    throw InputError(fmt::format("{}: {}; accepted: none deeper than {:g} of their size, or start.mend = true",
+    throw InputError(fmt::format("{}: {}; accepted: overlaps of at most {:g} of their size, or start.mend = true",
                                  start.file, overlap_text(audit, ids), ed::kAuditOverlap));
   }
   const std::optional<double> factor = mending_factor(system);
   if (!factor) {
     throw InputError(
-        fmt::format("{}: {}: a box {} times as large does not part them; accepted: a state of these bodies", start.file,
-                    overlap_text(audit, ids), kMostMending));
+        fmt::format("{}: {}: a box {} times as large does not separate them; accepted: a state of these bodies",
+                    start.file, overlap_text(audit, ids), kMostMending));
   }
   system = scaled(system, *factor);
   return fmt::format(", mended: {}: box and positions scaled by 1 + {:.6g}", overlap_text(audit, ids), *factor - 1);

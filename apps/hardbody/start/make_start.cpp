@@ -55,8 +55,9 @@ std::optional<std::string> unequal_sizes(const Config& config) {
   const double in_a_cell = config.number * std::pow(2 * largest / box, 3);
   if (in_a_cell < kCrowdedCell || largest < 2 * smallest) return std::nullopt;
   return fmt::format(
-      "start: the largest bodies have {:.3g} times the bounding radius of the smallest, and a cell as wide as they are "
-      "holds {:.0f} bodies, among which neighbours are sought; expect a slow start and run",
+      "start: the largest bodies have {:.3g} times the bounding radius of the smallest: neighbours are searched in "
+      "cells "
+      "as wide as the largest body, which hold {:.0f} bodies; expect a slow start and run",
       largest / smallest, std::min(in_a_cell, static_cast<double>(config.number)));
 }
 
@@ -68,8 +69,8 @@ std::optional<std::string> compressed_as_one(const Config& config) {
   const int together = ed::compressed_together(config.components(), options);
   if (together <= options.most_compressed) return std::nullopt;
   return fmt::format(
-      "start: {} of {} bodies are compressed together, as too few are alike for a smaller box that is repeated; that "
-      "takes a time that grows with the square of their number",
+      "start: {} of {} bodies are compressed together, because too few are alike to repeat a smaller box; the time "
+      "grows with the square of their number",
       together, config.number);
 }
 
@@ -95,7 +96,7 @@ void report_order(double asked, const ed::System& start, Progress& progress, Log
   const double usual = std::max(0.05, 1.5 / std::sqrt(start.size()));
   if (std::abs(reached - asked) <= usual) return;
   const std::string text = fmt::format(
-      "start: S = {:.2f} about z after the compression, not nematic_order = {:g}, which start = \"fcc\" would keep",
+      "start: S = {:.2f} about z after the compression, not nematic_order = {:g}; start = \"fcc\" would keep it",
       reached, asked);
   log.line(text);
   progress.say(text);

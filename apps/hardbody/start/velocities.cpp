@@ -177,11 +177,11 @@ std::string set_velocities(ed::System& system, const Config& config, const Frame
     throw InputError(fmt::format("{}: its velocities are too large for kinetic energies; accepted: finite ones",
                                  config.start_file->file));
   }
-  if (same) return "velocities as they are";
+  if (same) return "velocities unchanged";
   ed::System drawn = system;
   draw_thermal(drawn, static_cast<std::uint64_t>(config.seed));
-  const ed::KineticState freedoms = ed::kinetic_state(system);
-  const std::array<bool, kKinds> has = {true, freedoms.rotational_freedoms > 0, freedoms.spin_freedoms > 0};
+  const ed::KineticState kinetic = ed::kinetic_state(system);
+  const std::array<bool, kKinds> has = {true, kinetic.rotational_freedoms > 0, kinetic.spin_freedoms > 0};
   const bool turns = frame.angular_velocities || frame.angular_momenta;
   const Vector3d drift = mean_velocity(system);
   std::vector<int> numbers;

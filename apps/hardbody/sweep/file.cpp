@@ -110,8 +110,9 @@ TomlDocument read_base(const TomlDocument& document, const fs::path& directory) 
   if (base->value.kind != Value::Kind::text || base->value.text.empty()) throw bad(*base, "the name of a config");
   if (!own.entries.empty() || !own.sections.empty()) {
     const std::string& where = own.entries.empty() ? own.sections[0].where : own.entries[0].where;
-    throw InputError(fmt::format("{}: stands beside base = {}; accepted: the config's keys either here or in that file",
-                                 where, base->value.shown));
+    throw InputError(
+        fmt::format("{}: cannot be combined with base = {}; accepted: the config's keys either here or in that file",
+                    where, base->value.shown));
   }
   const fs::path named = base->value.text;
   const fs::path path = directory / named;
@@ -241,8 +242,8 @@ void zip_axes(Grid& grid, const Entry& entry, const std::vector<std::string>& ke
                                     [&](const ZippedAxes& g) { return g.size() == 1 && g[0].key == key; });
     if (found != grid.groups.end()) return found;
     throw InputError(
-        fmt::format("{}: zip names {}, which is no key of this grid that is free; accepted: each of its "
-                    "keys in one list",
+        fmt::format("{}: zip names {}, which is no key of this grid or is in another list; accepted: each "
+                    "of its keys in one list",
                     entry.where, one_line(key, 60)));
   };
   ZippedAxes together;
@@ -294,7 +295,7 @@ std::optional<std::string> read_chain(const TomlDocument& document, const std::v
       for (const Axis& axis : group) {
         if (axis.key != kChainKey) continue;
         if (group.size() == 1) return chain->value.text;
-        throw bad(*chain, fmt::format("no chain along a key that zip walks together with others ({})", axis.where));
+        throw bad(*chain, fmt::format("no chain along a key that zip combines with others ({})", axis.where));
       }
     }
   }

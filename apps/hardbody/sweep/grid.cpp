@@ -111,8 +111,8 @@ void check_lengths(const ZippedAxes& group) {
   for (const Axis& axis : group) {
     if (axis.values.size() == group[0].values.size()) continue;
     throw InputError(
-        fmt::format("{}: {} has {} values and {} has {}; accepted: lists of one length where zip walks "
-                    "them together",
+        fmt::format("{}: {} has {} values and {} has {}; accepted: lists of equal length for keys that "
+                    "zip combines",
                     axis.where, axis.key, axis.values.size(), group[0].key, group[0].values.size()));
   }
 }
@@ -139,7 +139,7 @@ void check_keys(const std::vector<Grid>& grids) {
     std::set_symmetric_difference(keys.begin(), keys.end(), first.begin(), first.end(), std::back_inserter(differing));
     throw InputError(
         fmt::format("{}: {} is a key of one grid and not of another; accepted: the same keys in every "
-                    "[[grid]], where need be with a single value",
+                    "[[grid]], if necessary with a single value",
                     grid.where, differing[0]));
   }
 }
@@ -230,7 +230,7 @@ std::vector<SweepPoint> expand(const std::vector<Grid>& grids) {
       SweepPoint point = point_of(grid, k);
       const auto [other, is_new] = seen.try_emplace(identity(point), grid.where);
       if (!is_new) {
-        throw InputError(fmt::format("{}: the point {} is there twice{}; accepted: every point once", grid.where,
+        throw InputError(fmt::format("{}: the point {} occurs twice{}; accepted: every point once", grid.where,
                                      description(point),
                                      other->second == grid.where ? "" : fmt::format(", also in {}", other->second)));
       }
@@ -246,7 +246,7 @@ std::vector<std::optional<std::size_t>> predecessors(const std::vector<SweepPoin
   for (std::size_t k = 0; k < points.size(); ++k) {
     const Setting* setting = points[k].find(key);
     if (!is_numeric(setting->value)) {
-      throw InputError(fmt::format("{}: {} is {}; accepted: numbers, of the key that is chained", setting->where, key,
+      throw InputError(fmt::format("{}: {} is {}; accepted: numbers for the key of the chain", setting->where, key,
                                    setting->value.shown));
     }
     chains[identity(points[k], key)][setting->value.real] = k;

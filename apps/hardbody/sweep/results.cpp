@@ -175,7 +175,7 @@ std::optional<PointResults> finished_results(const std::filesystem::path& direct
   } catch (const Json::exception&) {
     const std::string name = directory.filename().string();
     throw std::runtime_error(
-        fmt::format("{}/{} is not one that a run has written; accepted: delete the directory {}, and the same command "
+        fmt::format("{}/{} was not written by a run; accepted: delete the directory {}, and the same command "
                     "runs the point again",
                     name, kSummaryFile, name));
   }

@@ -33,7 +33,7 @@ class TrajectoryReader {
 };
 
 /// Text about a file that ends before its last frame does, or in which this program's frames are followed by others.
-inline constexpr const char* kCutOff = "; what follows them is not whole and left out";
+inline constexpr const char* kCutOff = "; data after them is incomplete and left out";
 
 /// Returns the last frame that has positions; nullopt if there is none.
 std::optional<std::uint64_t> last_frame(const TrajectoryReader& reader);

@@ -127,14 +127,14 @@ class Reading {
 std::vector<std::uint64_t> Reading::frames_with_positions() {
   result_.in_file = static_cast<std::size_t>(reader_.frame_count());
   if (result_.in_file == 0) {
-    throw InputError(fmt::format("{}: has no whole frame; accepted: a file with frames", reader_.name()));
+    throw InputError(fmt::format("{}: has no complete frame; accepted: a file with frames", reader_.name()));
   }
   std::vector<std::uint64_t> list;
   for (std::uint64_t k = 0; k < reader_.frame_count(); ++k) {
     if (reader_.has_positions(k)) list.push_back(k);
   }
   if (list.empty())
-    throw InputError(fmt::format("{}: no frame has positions; accepted: some that have", reader_.name()));
+    throw InputError(fmt::format("{}: no frame has positions; accepted: frames with positions", reader_.name()));
   result_.without_positions = result_.in_file - list.size();
   return list;
 }
@@ -144,8 +144,8 @@ void Reading::check_memory(std::size_t frames) const {
       static_cast<double>(first_.bodies.size()) * static_cast<double>(frames) / asked_.every * kMemoryOfABody;
   if (bytes <= kMostMemory) return;
   throw InputError(
-      fmt::format("{}: {} frames of {} bodies take {:.0f} GB of memory; accepted: at most {:.0f} GB, with "
-                  "--every N only each N-th of them",
+      fmt::format("{}: {} frames of {} bodies take {:.0f} GB of memory; accepted: at most {:.0f} GB; "
+                  "--every N uses only every N-th of them",
                   reader_.name(), frames, first_.bodies.size(), bytes / 1e9, kMostMemory / 1e9));
 }
 
@@ -182,7 +182,7 @@ void Reading::read_groups() {
 void Reading::check_body(const Frame& frame, std::uint64_t k, std::size_t n) const {
   const FrameBody& body = frame.bodies[order_[n]];
   const FrameBody& before = first_.bodies[first_order_[n]];
-  const char* accepted = "bodies that stay what they are";
+  const char* accepted = "bodies that do not change";
   const std::string which = frame.ids ? fmt::format("body {:.17g}", body.id) : fmt::format("body {} of its type", n);
   const FrameType& type = frame.types[body.type];
   const FrameType& type_before = first_.types[before.type];
@@ -213,7 +213,7 @@ void Reading::check_frame(const Frame& frame, std::uint64_t k) const {
         "one box");
   }
   if ((frame.middle - first_.middle).cwiseAbs().maxCoeff() > kSame * first_.box.x() + kSame * first_.middle.norm()) {
-    throw bad(k, "its box is at another place than that of the first frame", "bounds that stay");
+    throw bad(k, "its box is not where that of the first frame is", "constant bounds");
   }
   if (frame.bodies.size() != first_.bodies.size()) {
     throw bad(k, fmt::format("has {} bodies, the first frame {}", frame.bodies.size(), first_.bodies.size()),

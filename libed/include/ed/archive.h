@@ -216,7 +216,7 @@ class Reader {
   template <class... T>
   void get(std::variant<T...>& value) {
     const auto index = this->value<std::uint8_t>();
-    if (index >= sizeof...(T)) throw std::invalid_argument("state: an alternative that there is not");
+    if (index >= sizeof...(T)) throw std::invalid_argument("state: an unknown alternative");
     choose(value, index, std::index_sequence_for<T...>());
   }
   template <class... T, std::size_t... I>

@@ -83,9 +83,9 @@ constexpr double kLeastFall = 4e-3;
 constexpr double kMostTilt = 1;
 
 /// Bodies that rotate about their centres.
-class Turning {
+class RotationMoves {
  public:
-  Turning(System& system, const std::vector<int>& axes, double order)
+  RotationMoves(System& system, const std::vector<int>& axes, double order)
       : system_(system),
         axes_(axes),
         least_(order),
@@ -183,7 +183,7 @@ std::string shown(double order) {
   const double from_one = 0.9 * (1 - reached);
   std::ostringstream message;
   message << "nematic_order is " << order << ": at packing fraction " << packing_fraction(system)
-          << " bodies on these sites do not turn further than to an order of " << shown(reached) << "; accepted: ";
+          << " bodies on these sites cannot rotate beyond an order of " << shown(reached) << "; accepted: ";
   if (from_one > 1e-9) {
     const double unit = std::pow(10, std::floor(std::log10(from_one)) - 1);
     message << "at least " << std::setprecision(12) << 1 - std::floor(from_one / unit) * unit << ", ";
@@ -198,19 +198,19 @@ std::string shown(double order) {
 void turn_to_order(System& system, const std::vector<int>& axes, double order, Random& random,
                    const std::function<std::string()>& other_numbers) {
   check_order(order);
-  Turning turning(system, axes, order);
-  for (double before = 2; !turning.arrived();) {
+  RotationMoves moves(system, axes, order);
+  for (double before = 2; !moves.arrived();) {
     double mean = 0;
-    for (int k = 0; k < kRound && !turning.arrived(); ++k) {
-      turning.sweep(random);
-      mean += turning.order() / kRound;
+    for (int k = 0; k < kRound && !moves.arrived(); ++k) {
+      moves.sweep(random);
+      mean += moves.order() / kRound;
     }
-    if (!turning.arrived() && mean > before - kLeastFall * (1 - mean)) {
+    if (!moves.arrived() && mean > before - kLeastFall * (1 - mean)) {
       refuse_order(system, order, mean, other_numbers());
     }
     before = mean;
   }
-  for (int k = 0; k < kRound; ++k) turning.sweep(random);
+  for (int k = 0; k < kRound; ++k) moves.sweep(random);
 }
 
 NematicOrientations::NematicOrientations(double order) {

@@ -37,7 +37,7 @@ constexpr std::size_t kReserved = 80;
 /// Returns the error "is cut off ..", for a file that is shorter than its header says.
 InputError ends_early(const std::string& name, std::uint64_t size, const char* before) {
   return InputError(
-      fmt::format("{}: is cut off after {} bytes, before {}; accepted: a whole GSD file", name, size, before));
+      fmt::format("{}: is cut off after {} bytes, before {}; accepted: a complete GSD file", name, size, before));
 }
 
 InputError damaged(const std::string& name, const std::string& what) {
@@ -83,7 +83,7 @@ void put_entry(Writer& writer, const GsdChunk& chunk) {
 
 /// Returns the fault of an entry of the index; nullptr: it may be read, if the file is long enough.
 const char* fault(const GsdChunk& chunk, std::uint8_t flags, std::size_t names, std::uint64_t entries) {
-  if (size_of(chunk.type) == 0) return "an array of a type that there is not";
+  if (size_of(chunk.type) == 0) return "an array of unknown type";
   if (flags != 0) return "an array with unknown flags";
   if (chunk.name >= names) return "an array whose name is not in the list";
   if (chunk.columns == 0) return "an array without columns";
@@ -168,7 +168,7 @@ bool GsdFile::take_chunk(Reader& reader, std::uint64_t entries) {
   const GsdChunk chunk = take_entry(reader, flags);
   if (chunk.location == 0) return false;
   if (const char* why = fault(chunk, flags, names_.size(), entries)) throw damaged(name_, why);
-  if (!chunks_.empty() && chunk.frame < chunks_.back().frame) throw damaged(name_, "frames that run backwards");
+  if (!chunks_.empty() && chunk.frame < chunks_.back().frame) throw damaged(name_, "frames in descending order");
   frame_count_ = chunk.frame + 1;
   if (!fits(chunk.location, chunk.rows, std::uint64_t{chunk.columns} * size_of(chunk.type), bytes_->size())) {
     keep_frames(chunk.frame);  // entries are written in this order, so that no complete frame can follow

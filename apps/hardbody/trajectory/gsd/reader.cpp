@@ -211,7 +211,7 @@ void FrameReader::read_diameters(Frame& frame) const {
   if (diameter.empty()) return;
   if (file_.find(0, kOrientationName) != nullptr || file_.stored_later(kOrientationName)) {
     frame.notices.emplace_back(
-        "particles/diameter: is not used, for bodies with orientations are no spheres; shapes are read from "
+        "particles/diameter: not used, because bodies with orientations are not spheres; shapes are read from "
         "particles/type_shapes");
     return;
   }
@@ -226,7 +226,7 @@ void FrameReader::read_diameters(Frame& frame) const {
     }
   }
   frame.types = types.take();
-  frame.notices.emplace_back("particles/diameter: bodies are taken for spheres of these diameters");
+  frame.notices.emplace_back("particles/diameter: bodies are treated as spheres of these diameters");
 }
 
 void FrameReader::read_bodies(Frame& frame) const {
@@ -309,7 +309,7 @@ Frame FrameReader::read() {
 
 std::vector<double> FrameReader::exact(Name name, std::uint64_t rows, std::uint32_t columns) const {
   std::vector<double> result = finite<double>(kNameTexts[name], rows, columns);
-  if (result.empty()) throw bad(fmt::format("{} is missing", kNameTexts[name]), "a whole frame of hardbody");
+  if (result.empty()) throw bad(fmt::format("{} is missing", kNameTexts[name]), "a complete frame of hardbody");
   return result;
 }
 
@@ -327,7 +327,7 @@ std::vector<ed::Species> FrameReader::read_species() const {
       const Vector3d a(row[1], row[2], row[3]);
       if (row[0] == 0) species.shape = geom::Ellipsoid(a);
       if (row[0] == 1) species.shape = geom::Superellipsoid(a, row[4], row[5]);
-      if (row[0] != 0 && row[0] != 1) throw std::invalid_argument("a kind of shape that there is not");
+      if (row[0] != 0 && row[0] != 1) throw std::invalid_argument("an unknown kind of shape");
       species.mass = row[6];
       species.inertia = {row[7], row[8], row[9]};
       species.spins = row[10] != 0;
@@ -363,7 +363,7 @@ ed::System FrameReader::read_exact() {
     }
     // At most rounding outside its box.
     if (!(body.position.cwiseAbs().maxCoeff() <= 0.5 * system.box * (1 + 1e-12))) {
-      throw bad(fmt::format("body {} is outside the box", i), "a whole frame of hardbody");
+      throw bad(fmt::format("body {} is outside the box", i), "a complete frame of hardbody");
     }
     try {
       (void)geom::Pose(body.rotation, body.position);
@@ -402,7 +402,7 @@ bool nearly_same_shape(const ed::BodyShape& a, const ed::BodyShape& b) {
 void check_unedited(const Frame& frame, const ed::System& system, const std::string& name, std::uint64_t k) {
   const auto refuse = [&](const std::string& what) {
     throw InputError(fmt::format(
-        "{}: frame {}: {} is not what log/ holds in double precision, so the frame was edited; accepted: an "
+        "{}: frame {}: {} differs from the double-precision value in log/, so the frame was edited; accepted: an "
         "unedited frame, or a file without the arrays of log/hardbody and log/particles/hardbody",
         name, k, what));
   };

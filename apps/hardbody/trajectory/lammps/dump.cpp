@@ -133,7 +133,7 @@ std::vector<LammpsReader::Place> LammpsReader::find_frames() const {
   in_pieces(*bytes_, 0, size, kBegin.size() - 1, [&](std::uint64_t at, std::uint64_t length, std::string_view text) {
     const std::size_t zero = text.find('\0');
     if (zero != std::string_view::npos) {
-      throw InputError(fmt::format("{}: byte {} is 0; accepted: a whole LAMMPS text dump", name_,
+      throw InputError(fmt::format("{}: byte {} is 0; accepted: a complete LAMMPS text dump", name_,
                                    at + static_cast<std::uint64_t>(zero)));
     }
     for (std::size_t k = text.find(kBegin); k < length; k = text.find(kBegin, k + 1)) {

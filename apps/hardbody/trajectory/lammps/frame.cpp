@@ -45,7 +45,7 @@ class DumpFrame {
   }
   std::string_view line(const char* what) {
     const std::optional<std::string_view> found = lines_.next();
-    if (!found) throw bad(fmt::format("ends before {}", what), "a whole LAMMPS text dump");
+    if (!found) throw bad(fmt::format("ends before {}", what), "a complete LAMMPS text dump");
     return *found;
   }
   double number(std::string_view word, const char* what) const {
@@ -168,7 +168,7 @@ void DumpFrame::set_bounds(const std::array<std::array<double, 4>, 3>& rows, std
 
 void DumpFrame::read_columns(std::string_view head) {
   constexpr std::string_view kHead = "ITEM: ATOMS ";
-  if (!head.starts_with(kHead)) throw bad(fmt::format("\"{}\" stands before its bodies", head), "ITEM: ATOMS");
+  if (!head.starts_with(kHead)) throw bad(fmt::format("\"{}\" precedes its bodies", head), "ITEM: ATOMS");
   columns_.emplace(words_of(head.substr(kHead.size())));
   for (const DumpColumns::Axis& axis : columns_->axes) {
     if (!axis.wrapped && !axis.scaled && !axis.unwrapped && !axis.unwrapped_scaled) {
@@ -329,13 +329,14 @@ void DumpFrame::set_angular_velocities() {
   if (!masses || !frame_.orientations || !std::all_of(frame_.types.begin(), frame_.types.end(), shape) ||
       !std::all_of(frame_.bodies.begin(), frame_.bodies.end(), massive)) {
     frame_.notices.emplace_back(
-        "columns angmomx angmomy angmomz: not used; they say angular velocities of bodies whose mass, orientation and "
-        "shape are there: mass, quatw quati quatj quatk, shapex shapey shapez");
+        "columns angmomx angmomy angmomz: not used; angular velocities follow from them only with mass, orientation "
+        "and "
+        "shape: mass, quatw quati quatj quatk, shapex shapey shapez");
     return;
   }
   if (!columns_->mass) {
     frame_.notices.emplace_back(
-        "columns angmomx angmomy angmomz: taken for those of bodies of mass 1; there is no mass");
+        "columns angmomx angmomy angmomz: treated as those of bodies of mass 1, because there is no mass");
   }
   std::vector<Vector3d> inertia;  // moments for mass 1
   for (const FrameType& type : frame_.types) inertia.push_back(ed::uniform_species(*type.shape).inertia);
@@ -357,7 +358,7 @@ void DumpFrame::sort_bodies() {
   const auto same = [](const FrameBody& a, const FrameBody& b) { return a.id == b.id; };
   const auto twice = std::adjacent_find(frame_.bodies.begin(), frame_.bodies.end(), same);
   if (twice != frame_.bodies.end()) {
-    throw bad(fmt::format("two bodies have the id {:.17g}", twice->id), "an id of its own for each");
+    throw bad(fmt::format("two bodies have the id {:.17g}", twice->id), "a different id for each");
   }
   std::uint32_t next = 0;
   for (auto& [type, group] : groups_) group = next++;
