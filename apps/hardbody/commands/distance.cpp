@@ -45,7 +45,7 @@ std::string distance_help() {
   shape        or {{"kind":"superellipsoid","semi_axes":[a,b,c],"exponents":[e1,e2]}}, exponents {} to {}:
                (|x/a|^(2/e2) + |y/b|^(2/e2))^(e2/e1) + |z/c|^(2/e1) <= 1
   orientation  unit quaternion w, x, y, z from body to world; default: no rotation. A quaternion whose length differs
-               from 1 by at most {:g} is normalized, with a notice in the answer if by more than 1e-6
+               from 1 by at most {:g} is normalized, with a notice in the answer if by more than {:g}
   method       "dual" (the default), or the paper's equations: "newton8", "newton5"
   seed         starting points of these two methods: {} (the default is the first)
   penetration  answer of the dual method for deep overlaps: "global" (the default), the shortest of all translations
@@ -61,7 +61,7 @@ A line out:
   notice       only if the length of a quaternion was not 1: names it and its length
 An invalid line is answered by {{"error":"line 3: .."}}, blank lines are skipped.
 Exit status: 0 every line was answered or declined, 1 the answers could not be written, 2 a line was invalid.)",
-      geom::kMinExponent, geom::kMaxExponent, kQuaternionTolerance, built_in_seeds());
+      geom::kMinExponent, geom::kMaxExponent, kQuaternionTolerance, kQuaternionRounding, built_in_seeds());
 }
 
 int distance(const std::string& path) {

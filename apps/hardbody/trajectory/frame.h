@@ -73,6 +73,7 @@ struct Frame {
 
   // Quantities that are known for every body of this frame.
   bool images = false;              ///< positions can be unwrapped: by images, or they are stored unwrapped
+  bool zero_images = false;         ///< the images of all bodies are 0, in a file of another program
   bool orientations = false;        ///< stored here, or in frame 0 according to the schema
   bool velocities = false;          ///< stored here, or in frame 0 according to the schema
   bool angular_velocities = false;  ///< stored here, or in frame 0 according to the schema

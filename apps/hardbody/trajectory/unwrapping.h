@@ -12,7 +12,9 @@ namespace hardbody {
 
 /// Unwraps the positions of bodies, from frame to frame across the faces of the box. The source is what the file
 /// contains: unwrapped positions, positions that continue outside the box, or the nearest images, if bodies move
-/// little. Positions from 0 to the edge, while the box is about the origin, are also treated as wrapped.
+/// little. Positions from 0 to the edge, while the box is about the origin, are also treated as wrapped. Images that
+/// are 0 in all frames are not used if bodies jump so often and so far within the box that they could hardly do so
+/// without leaving it: the program has then not kept track of images.
 class Unwrapping {
  public:
   /// Largest accepted component of a move between frames by nearest images, in edges of the box. Beyond half an edge
@@ -30,6 +32,7 @@ class Unwrapping {
   struct Result {
     std::string by;
     std::string reason;
+    std::string notice;  ///< text about images that are not used; mostly empty
     /// Positions of the frames that were kept; wrapped if there is no source.
     std::vector<std::vector<Eigen::Vector3d>> positions;
   };
@@ -40,6 +43,7 @@ class Unwrapping {
 
   bool late_;
   bool all_unwrapped_ = true;
+  bool zero_images_ = true;  ///< images are 0 in all frames
   std::string by_;
   Positions raw_;          ///< positions of the previous frame, as stored
   Positions near_;         ///< positions of the previous frame by nearest images
@@ -48,6 +52,7 @@ class Unwrapping {
   double raw_move_ = 0;    ///< largest component of a move by stored positions
   double near_move_ = 0;   ///< largest component of a move by nearest images
   std::size_t jumps_ = 0;  ///< number of components of moves by half an edge or more, by stored positions
+  double chance_ = 1;      ///< probability that all these jumps end in the box, for bodies that are anywhere in it
   std::vector<Positions> kept_unwrapped_, kept_raw_, kept_near_, kept_wrapped_;
 };
 

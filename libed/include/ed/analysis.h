@@ -25,9 +25,12 @@ enum class MissingReason {
   decayed_before_diffusion,  ///< the correlation falls to 1/e before motion is diffusive
   end_of_ballistic_unknown,  ///< the lag at which ballistic motion ends is not known
   no_fit,                    ///< the best fit is not a stretched exponential: see fit_decay
+  tau_unsteady,              ///< the correlation has decayed little, and tau depends on the fitted lags
   meaningless,               ///< the quantity has no meaning: nothing changes the bodies' rotation
   no_such_axis,              ///< bodies of revolution have no third axis
   not_told,                  ///< the stored frames do not contain the data
+  not_unwrapped,             ///< positions are wrapped, or may be, and bodies move far between frames
+  not_followed,              ///< frames do not identify the bodies
 };
 
 /// Returns the enumerator's name.
@@ -36,14 +39,17 @@ ED_EXPORT const char* to_string(MissingReason reason);
 /// Reason for which a value is missing, and how far motion has come.
 struct Missing {
   MissingReason reason = MissingReason::not_measured;
-  /// Value reached, which depends on the reason. not_displaced: root of the MSD at the longest lag; not_turned: root of
-  /// the rotational MSD at the longest lag, in rad; not_decayed: the correlation at the longest lag; ballistic,
-  /// subdiffusive: the exponent of the power of time with which displacements grow. NaN for other reasons.
+  /// Value reached, which depends on the reason. not_displaced: root of the MSD at the first lag of the fit;
+  /// not_turned: root of the rotational MSD at the longest lag, in rad; not_decayed, tau_unsteady: the correlation at
+  /// the longest lag; ballistic, subdiffusive: the exponent of the power of time with which displacements grow. NaN for
+  /// other reasons.
   double reached = std::numeric_limits<double>::quiet_NaN();
+  /// Lag of `reached` for not_displaced and not_turned; NaN for other reasons.
+  double lag = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// Describes the reason in one sentence without a full stop: "bodies have moved 0.19 l within the longest lag: no
-/// diffusion yet". `length_unit` follows the distance.
+/// Describes the reason in one sentence without a full stop: "bodies have moved 0.19 l by lag 16, where the fit begins:
+/// no diffusion yet". `length_unit` follows the distance.
 ED_EXPORT std::string describe(const Missing& missing, std::string_view length_unit = "l");
 
 /// Returns whether longer lags, from a longer run, may give the value.

@@ -115,7 +115,8 @@ struct BlockRow {
 /// D_rot of all bodies if nothing changes the rotation of those of one group.
 ///
 /// A decay time exists only if the correlation falls to 1/e. A fit exists only if its amplitude is at most 1.3, tau is
-/// no smaller than the first fitted lag, and beta is at least 0.3.
+/// no smaller than the first fitted lag, and beta is at least 0.3. If the correlation is above 1/4 at the longest lag,
+/// tau must also agree to 25 % with that of a fit without the first third of the lags.
 struct Correlations {
   Estimate D_trans;      ///< slope of the MSD / 6
   Estimate D_rot;        ///< slope of rot_msd / (2 rotation_axes): the paper's 4t for two components

@@ -85,6 +85,7 @@ enum class EventKind {
   exit,     ///< a body leaves its envelope
   look,     ///< a pair is evaluated again, because its certified bound is reached
   contact,  ///< a pair is in contact
+  added,    ///< event of a single body, of a kind that the library does not define
 };
 
 /// Returns the enumerator's name.

@@ -59,7 +59,9 @@ struct StoredResults : Results {
 /// Computes averages over frames, and correlations over all pairs of frames that are a lag apart, at about 20 lags a
 /// decade. Errors are standard errors over blocks as long as the longest lag (2 to 16 of them). Results that the frames
 /// do not determine are missing for the reason MissingReason::not_told: collisions, pressure, temperatures, rotational
-/// displacements, and if velocities or rotations are missing, all results from these.
+/// displacements, and if velocities or rotations are missing, all results from these. Without unwrapped positions
+/// displacements are missing for the reason not_unwrapped; if frames need not contain the same bodies, all correlations
+/// are missing for the reason not_followed.
 ///
 /// Memory: about 200 bytes a body and frame in addition to the frames. Throws std::invalid_argument for no frames,
 /// numbers of bodies that differ, a box that is not positive, times that do not rise, a negative lag to fit from.
