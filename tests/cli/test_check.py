@@ -110,7 +110,7 @@ class CheckWhatIsNotSaid(FilesCase):
         some = frame_of([[0, 0, 0], [3, 0, 0], [3.1, 0, 0]], [{}, BALL], typeid=[0, 1, 1])
         self.assert_overlap(self.gsd_file("some.gsd", some), "bodies 1 and 2")
         apart = frame_of([[0, 0, 0], [3, 0, 0]], [{}, BALL], typeid=[0, 1])
-        self.assertRegex(self.verdict(self.gsd_file("apart.gsd", apart)), "^not looked at: .*type A")
+        self.assertRegex(self.verdict(self.gsd_file("apart.gsd", apart)), "^not tested: .*type A")
         # A type without bodies needs none.
         self.assertEqual(self.verdict(self.gsd_file("unused.gsd", frame_of([[1, 0, 0]], [BALL, {}]))), "sound")
 
@@ -119,7 +119,7 @@ class CheckWhatIsNotSaid(FilesCase):
         frames = [frame_of([[0, 0, 0], [1.1, 0, 0]], [ROD], orientation=[[1, 0, 0, 0]] * 2) for _ in range(2)]
         frames[1].particles.orientation = None
         frames[1].particles.position = [[0, 0, 0], [1.2, 0, 0]]
-        self.assertRegex(self.verdict(self.gsd_file("near.gsd", *frames)), "^not looked at: .*orientations")
+        self.assertRegex(self.verdict(self.gsd_file("near.gsd", *frames)), "^not tested: .*orientations")
         frames[1].particles.position = [[0, 0, 0], [3.2, 0, 0]]
         self.assertEqual(self.verdict(self.gsd_file("far.gsd", *frames)), "sound")
 
