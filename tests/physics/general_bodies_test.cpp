@@ -84,7 +84,8 @@ struct Mean {
 
 TEST(GeneralBodies, ShareTheirEnergyAlike) {
   // The energy about the axis of the roundest section takes ten collisions a body to be forgotten: means over blocks.
-  constexpr int kBlocks = 100;
+  const int blocks = full_form() ? 100 : 25;
+  const double largest_error = full_form() ? 0.02 : 0.04;
   constexpr int kLooks = 4;  // in a block, five collisions a body apart
   for (const Family& family : ed_test::families(216)) {
     if (family.components.size() > 1) continue;  // of every species: tools/validate
@@ -94,7 +95,7 @@ TEST(GeneralBodies, ShareTheirEnergyAlike) {
     Mean translation;
     std::array<Mean, 3> axes;
     simulation.run_collisions(20 * static_cast<std::uint64_t>(number));
-    for (int block = 0; block < kBlocks; ++block) {
+    for (int block = 0; block < blocks; ++block) {
       double translational_kT = 0;
       Eigen::Vector3d axis_kT = Eigen::Vector3d::Zero();
       for (int k = 0; k < kLooks; ++k) {
@@ -113,7 +114,7 @@ TEST(GeneralBodies, ShareTheirEnergyAlike) {
       const Mean& mean = axes[static_cast<std::size_t>(axis)];
       std::printf(", of body axis %d %.4f +- %.4f", axis, mean.value(), mean.error());
       EXPECT_LE(std::abs(mean.value() - 1), 3 * mean.error()) << family.name << ", body axis " << axis;
-      EXPECT_LE(mean.error(), 0.02) << family.name;
+      EXPECT_LE(mean.error(), largest_error) << family.name;
     }
     std::printf("\n");
   }
