@@ -3,8 +3,8 @@
 #include "base/large_vector.h"
 #include "bodies/body_events.h"
 #include "bodies/pair.h"
-#include "loop/epoch_clock.h"
-#include "loop/periodic_box.h"
+#include "loop/parts/epoch_clock.h"
+#include "loop/parts/periodic_box.h"
 
 #include <algorithm>
 #include <array>

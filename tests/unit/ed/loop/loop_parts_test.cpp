@@ -1,13 +1,13 @@
 // The parts of the event loop, each by itself.
 
 #include "loop/added_events.h"
-#include "loop/collision_log.h"
-#include "loop/epoch_clock.h"
+#include "loop/parts/collision_log.h"
+#include "loop/parts/epoch_clock.h"
 #include "loop/event_kinds.h"
-#include "loop/failure_log.h"
-#include "loop/periodic_box.h"
-#include "loop/schedule.h"
-#include "loop/stall_watch.h"
+#include "loop/parts/failure_log.h"
+#include "loop/parts/periodic_box.h"
+#include "loop/parts/schedule.h"
+#include "loop/parts/stall_watch.h"
 #include "neighbours/lists.h"
 
 #include <geom/ellipsoid.h>
