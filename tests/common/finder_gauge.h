@@ -1,6 +1,6 @@
 #pragma once
 
-/// The finder under test, fed with a MovingPair.
+/// Adapter of the finder under test for a MovingPair.
 
 #include <common/finder_ensemble.h>
 
@@ -17,7 +17,7 @@ inline geom::kernel::Spheroid spheroid_of(const geom::Ellipsoid& shape) {
   return {shape.semi_axes().z(), shape.semi_axes().x()};
 }
 
-/// The state as libed's internals keep it. `spins`: false for bodies that never spin about their axis.
+/// Returns the state in the form of libed's internals. `spins`: false for bodies that never spin about their axis.
 inline ed::internal::AxisMotion axis_motion(const BodyState& state, const Moments& moments, bool spins) {
   ed::internal::UniaxialInertia inertia;
   inertia.perpendicular = moments.perpendicular;
@@ -75,7 +75,7 @@ class WeakenedGauge : public Gauge {
   double divisor_;
 };
 
-/// More points in time than any search of these tests needs.
+/// Number of evaluations that no search of these tests exceeds.
 inline constexpr int kManyEvaluations = 100000;
 
 template <class Gauge>
@@ -84,7 +84,7 @@ ed::internal::Finding search(const Gauge& gauge, double t_end, ed::internal::Fin
   return ed::internal::certified_contact(gauge, 0, t_end, kManyEvaluations, n, count);
 }
 
-/// The first contact of the pair up to t_end as libed finds it; with `divisor` other than 1, by a finder made wrong.
+/// Returns the first contact of the pair up to t_end as libed finds it; if `divisor` is not 1, by a finder made wrong.
 inline ed::internal::Finding find_contact(const Fluid& fluid, const MovingPair& pair, double t_end,
                                           ed::internal::FinderCounters& count, double divisor = 1) {
   const auto find = [&](const auto& gauge) {

@@ -221,7 +221,7 @@ Tallies try_all(int contacts_each, double divisor) {
 
 TEST(MissedContacts, NoneAgainstBruteForce) {
   constexpr int kClasses = 12;
-  const int wanted = scaled(10'000, 100'000);
+  const int wanted = scaled(4'000, 100'000);
   const Tallies all = try_all((wanted + kClasses - 1) / kClasses, 1);
   const Tally sum = all.sum();
   EXPECT_EQ(sum.missed, 0);

@@ -449,7 +449,7 @@ TEST(Rounding, SuperellipsoidsAndTriaxialEllipsoids) {
 TEST(Rounding, BodiesWithThreeDifferentMoments) {
   // Exact tops of this kind take half a second a state.
   expect_certified(
-      run("asymmetric tops", 6, finder_test::scaled(150, 20'000), [](Random& random, bool search, Tally& tally) {
+      run("asymmetric tops", 6, finder_test::scaled(60, 20'000), [](Random& random, bool search, Tally& tally) {
         try_superellipsoids<quad::ExactAsymmetricTop>(random, Top::asymmetric, search, tally);
       }));
 }

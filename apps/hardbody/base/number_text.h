@@ -5,7 +5,7 @@
 
 namespace hardbody {
 
-/// A text that is a finite number from its first character to its last; nothing for any other.
+/// Returns the finite number that a text consists of, from its first character to its last; nullopt for any other text.
 std::optional<double> finite_number(std::string_view text);
 
 }  // namespace hardbody

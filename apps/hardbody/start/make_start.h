@@ -12,17 +12,17 @@
 
 namespace hardbody {
 
-/// The state, what its compression has counted, and the pairs that failed in it.
+/// Initial state, the counters of its compression, and the pairs that failed in it.
 struct Start {
   ed::System system;
   ed::Counters counters;
   std::vector<ed::FailedPair> failures;
 };
 
-/// What a run begins with: bodies from a file, the last state of another run, a random dilute state, or a lattice; the
-/// second and third are compressed. `origin`: last state of the run that the config starts from, if any. Nothing if a
-/// signal came first. Throws InputError if there is no such state, and std::runtime_error if the compression gets
-/// stuck.
+/// Makes the initial state of a run: bodies from a file, the last state of another run, a random dilute state, or a
+/// lattice; the second and third are compressed. `origin`: last state of the run that the config starts from, if any.
+/// Returns nullopt if a signal came first. Throws InputError if there is no such state, and std::runtime_error if the
+/// compression gets stuck.
 std::optional<Start> make_start(const Config& config, const std::optional<ed::System>& origin, Progress& progress,
                                 Log& log);
 

@@ -42,9 +42,9 @@ class FrameReader {
  public:
   FrameReader(const GsdFile& file, std::uint64_t k, bool exact) : file_(file), k_(k), exact_(exact) {}
 
-  /// A frame without its exact state.
+  /// Reads a frame without its exact state.
   Frame read();
-  /// The state that belongs to it.
+  /// Reads the exact state of the frame.
   ed::System read_exact();
 
  private:
@@ -52,20 +52,21 @@ class FrameReader {
     return InputError(fmt::format("{}: frame {}: {}; accepted: {}", file_.name(), k_, what, accepted));
   }
 
-  /// Array of this frame; where it has none that of frame 0, if that has as many rows; null: the default.
+  /// Returns the array of this frame. If it has none: that of frame 0, provided that has as many rows; nullptr: the
+  /// default.
   const GsdChunk* find(const std::string& name, std::uint64_t rows, std::uint32_t columns, GsdType type) const;
-  /// Whether the file says of this frame what moves. Beyond frame 0 an array that is absent is that of frame 0 only if
-  /// some later frame has such an array: else it may just not have been written any more.
+  /// Returns whether the file contains this quantity for this frame. After frame 0 an absent array is that of frame 0
+  /// only if some later frame has such an array: otherwise the program may just have stopped writing it.
   bool knows(const std::string& name) const { return file_.find(k_, name) != nullptr || file_.stored_later(name); }
-  /// Its numbers; empty: the default.
+  /// Returns the numbers of an array; empty: the default.
   template <class T>
   std::vector<T> numbers(const std::string& name, std::uint64_t rows, std::uint32_t columns) const;
-  /// Finite ones; empty: the default.
+  /// Returns the numbers of an array, which must be finite; empty: the default.
   template <class T>
   std::vector<double> finite(const std::string& name, std::uint64_t rows, std::uint32_t columns) const;
   template <class T>
   T scalar(const std::string& name, T missing) const;
-  /// Number that this frame itself has logged: the schema has no defaults of log/. NaN if there is none.
+  /// Returns a number that this frame itself has logged: the schema has no defaults for log/. NaN if there is none.
   double logged(Name name) const {
     constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
     return file_.find(k_, kNameTexts[name]) != nullptr ? scalar(kNameTexts[name], kMissing) : kMissing;
@@ -83,7 +84,7 @@ class FrameReader {
 
   const GsdFile& file_;
   std::uint64_t k_;
-  bool exact_;  ///< the state of frames is there in doubles
+  bool exact_;  ///< whether frames contain their state in doubles
 };
 
 const GsdChunk* FrameReader::find(const std::string& name, std::uint64_t rows, std::uint32_t columns,
@@ -130,7 +131,7 @@ T FrameReader::scalar(const std::string& name, T missing) const {
   return result.empty() ? missing : result[0];
 }
 
-/// The rows of an array of texts.
+/// Returns the rows of an array of texts.
 std::vector<std::string> FrameReader::texts(const std::string& name) const {
   const GsdChunk* chunk = file_.find(k_, name);
   if (chunk == nullptr) chunk = file_.find(0, name);
@@ -156,7 +157,7 @@ void FrameReader::read_box(Frame& frame) const {
     frame.box[i] = box[static_cast<std::size_t>(i)];
     if (!(frame.box[i] > 0)) throw bad(fmt::format("its box has an edge of {}", frame.box[i]), "edges above 0");
   }
-  frame.tilt = {box[3] * box[1], box[4] * box[2], box[5] * box[2]};  // the file has ratios
+  frame.tilt = {box[3] * box[1], box[4] * box[2], box[5] * box[2]};  // the file contains ratios
 }
 
 void FrameReader::read_types(Frame& frame) const {
@@ -185,7 +186,7 @@ void FrameReader::read_types(Frame& frame) const {
 }
 
 void FrameReader::read_orientations(Frame& frame) const {
-  // The first frame of all is as the schema has it: without orientations bodies are aligned.
+  // The first frame follows the schema: without orientations bodies are aligned.
   frame.orientations = k_ == 0 || knows(kOrientationName);
   if (!frame.orientations) return;
   const std::vector<double> orientation = finite<float>(kOrientationName, frame.bodies.size(), 4);
@@ -202,7 +203,7 @@ void FrameReader::read_orientations(Frame& frame) const {
   if (std::optional<std::string> notice = orientations.notice()) frame.notices.push_back(std::move(*notice));
 }
 
-/// Spheres of the stored diameters where no shape is given and no body has an orientation of its own.
+/// Sets spheres of the stored diameters if no shape is given and no body has an orientation of its own.
 void FrameReader::read_diameters(Frame& frame) const {
   const auto bare = [](const FrameType& type) { return !type.shape_given; };
   if (std::none_of(frame.types.begin(), frame.types.end(), bare)) return;
@@ -210,7 +211,7 @@ void FrameReader::read_diameters(Frame& frame) const {
   if (diameter.empty()) return;
   if (file_.find(0, kOrientationName) != nullptr || file_.stored_later(kOrientationName)) {
     frame.notices.emplace_back(
-        "particles/diameter: is not used, for bodies with orientations are no spheres; shapes are read from "
+        "particles/diameter: not used, because bodies with orientations are not spheres; shapes are read from "
         "particles/type_shapes");
     return;
   }
@@ -225,7 +226,7 @@ void FrameReader::read_diameters(Frame& frame) const {
     }
   }
   frame.types = types.take();
-  frame.notices.emplace_back("particles/diameter: bodies are taken for spheres of these diameters");
+  frame.notices.emplace_back("particles/diameter: bodies are treated as spheres of these diameters");
 }
 
 void FrameReader::read_bodies(Frame& frame) const {
@@ -238,6 +239,7 @@ void FrameReader::read_bodies(Frame& frame) const {
   if (frame.images) frame.unwrapped_by = "image flags";
   frame.ids = true;
   const auto image = frame.images ? numbers<std::int32_t>("particles/image", number, 3) : std::vector<std::int32_t>();
+  frame.zero_images = frame.images && std::all_of(image.begin(), image.end(), [](std::int32_t n) { return n == 0; });
   frame.bodies.resize(number);
   for (std::size_t i = 0; i < number; ++i) {
     FrameBody& body = frame.bodies[i];
@@ -263,7 +265,7 @@ void FrameReader::read_motion(Frame& frame) const {
   frame.angular_velocities = frame.angular_momenta = frame.orientations && knows("particles/angmom");
   const auto velocity = frame.velocities ? finite<float>("particles/velocity", number, 3) : std::vector<double>();
   const auto angmom = frame.angular_velocities ? finite<float>("particles/angmom", number, 4) : std::vector<double>();
-  // An angular momentum is twice the product of the quaternion, of the sign that it has in the file, and L.
+  // An angular momentum is twice the product of the quaternion, with the sign that it has in the file, and L.
   const auto orientation = angmom.empty() ? std::vector<double>() : finite<float>("particles/orientation", number, 4);
   for (std::size_t i = 0; i < number; ++i) {
     FrameBody& body = frame.bodies[i];
@@ -308,7 +310,7 @@ Frame FrameReader::read() {
 
 std::vector<double> FrameReader::exact(Name name, std::uint64_t rows, std::uint32_t columns) const {
   std::vector<double> result = finite<double>(kNameTexts[name], rows, columns);
-  if (result.empty()) throw bad(fmt::format("{} is missing", kNameTexts[name]), "a whole frame of hardbody");
+  if (result.empty()) throw bad(fmt::format("{} is missing", kNameTexts[name]), "a complete frame of hardbody");
   return result;
 }
 
@@ -326,7 +328,7 @@ std::vector<ed::Species> FrameReader::read_species() const {
       const Vector3d a(row[1], row[2], row[3]);
       if (row[0] == 0) species.shape = geom::Ellipsoid(a);
       if (row[0] == 1) species.shape = geom::Superellipsoid(a, row[4], row[5]);
-      if (row[0] != 0 && row[0] != 1) throw std::invalid_argument("a kind of shape that there is not");
+      if (row[0] != 0 && row[0] != 1) throw std::invalid_argument("an unknown kind of shape");
       species.mass = row[6];
       species.inertia = {row[7], row[8], row[9]};
       species.spins = row[10] != 0;
@@ -360,9 +362,9 @@ ed::System FrameReader::read_exact() {
     if (type[i] >= system.species.size()) {
       throw bad(fmt::format("body {} is of type {}", i, type[i]), fmt::format("below {}", system.species.size()));
     }
-    // Beyond its box by no more than rounding.
+    // At most rounding outside its box.
     if (!(body.position.cwiseAbs().maxCoeff() <= 0.5 * system.box * (1 + 1e-12))) {
-      throw bad(fmt::format("body {} is outside the box", i), "a whole frame of hardbody");
+      throw bad(fmt::format("body {} is outside the box", i), "a complete frame of hardbody");
     }
     try {
       (void)geom::Pose(body.rotation, body.position);
@@ -373,10 +375,10 @@ ed::System FrameReader::read_exact() {
   return system;
 }
 
-/// Of a 32-bit number, relative.
+/// Relative rounding of a 32-bit number.
 constexpr double kSingle = 1e-6;
 
-/// Which of the 32-bit numbers of a body are not those of the state; null: none.
+/// Returns the 32-bit number of a body that disagrees with the state; nullptr: none.
 const char* edited(const FrameBody& body, const ed::Body& exact, const ed::Species& species, double box) {
   Vector3d away = body.position - exact.position;
   away -= box * (away / box).array().round().matrix();
@@ -385,7 +387,8 @@ const char* edited(const FrameBody& body, const ed::Body& exact, const ed::Speci
   if (!(std::abs(body.mass - species.mass) <= kSingle * species.mass)) return "particles/mass";
   if (!((body.inertia - species.inertia).norm() <= kSingle * species.inertia.norm())) return "particles/moment_inertia";
   if (!((body.velocity - exact.velocity).norm() <= kSingle * exact.velocity.norm())) return "particles/velocity";
-  // As it was stored, along the body's axes: rounding of a long component says nothing of the rate about a thin axis.
+  // Along the body's axes, as it was stored: rounding of a long component says nothing about the rate about a thin
+  // axis.
   const Vector3d L = species.inertia.cwiseProduct(exact.rotation.transpose() * exact.angular_velocity);
   const Vector3d stored = body.inertia.cwiseProduct(body.rotation.transpose() * body.angular_velocity);
   return (stored - L).norm() <= 10 * kSingle * L.norm() ? nullptr : "particles/angmom";
@@ -396,11 +399,11 @@ bool nearly_same_shape(const ed::BodyShape& a, const ed::BodyShape& b) {
   return a.index() == b.index() && (ed::half_extents(a) - h).norm() <= kSingle * h.norm();
 }
 
-/// Throws if another program has changed what it knows of, the schema's own arrays, and kept the doubles of before.
+/// Throws if another program has changed the schema's own arrays, which it knows, but kept the doubles.
 void check_unedited(const Frame& frame, const ed::System& system, const std::string& name, std::uint64_t k) {
   const auto refuse = [&](const std::string& what) {
     throw InputError(fmt::format(
-        "{}: frame {}: {} is not what log/ holds in double precision, so the frame was edited; accepted: an "
+        "{}: frame {}: {} differs from the double-precision value in log/, so the frame was edited; accepted: an "
         "unedited frame, or a file without the arrays of log/hardbody and log/particles/hardbody",
         name, k, what));
   };
@@ -416,10 +419,11 @@ void check_unedited(const Frame& frame, const ed::System& system, const std::str
   }
 }
 
-/// The numbers of the state in place of the rounded ones.
+/// Replaces the rounded numbers by those of the state.
 void sharpen(Frame& frame, const ed::System& system) {
   frame.box = Vector3d::Constant(system.box);
   frame.orientations = frame.velocities = frame.angular_velocities = true;
+  frame.zero_images = false;
   for (std::size_t k = 0; k < system.species.size() && k < frame.types.size(); ++k) {
     frame.types[k].shape = system.species[k].shape;
   }
@@ -457,7 +461,7 @@ GsdReader::GsdReader(std::unique_ptr<StoredBytes> bytes, std::string name)
 
 bool GsdReader::has_positions(std::uint64_t k) const {
   if (exact_ || file_.find(k, kPositionName) != nullptr) return true;
-  // Positions that are those of frame 0 are left out, if something else of the bodies is there.
+  // Positions that equal those of frame 0 are left out, if the frame has other data of the bodies.
   const auto stored = [&](const char* name) { return file_.find(k, name) != nullptr; };
   return k > 0 && file_.find(0, kPositionName) != nullptr && file_.stored_later(kPositionName) &&
          (stored(kOrientationName) || stored("particles/velocity") || stored("particles/angmom") ||
