@@ -172,6 +172,11 @@ void GeneralBodies::leave(int i, int j, const Contact& contact, double now) {
   start_flight(j, now, contact.top_b, contact.b.velocity, contact.b.angular_velocity + contact.spin_b);
 }
 
+void GeneralBodies::set_velocity(int i, const Vector3d& velocity, double now) {
+  const TopState top = motions_[at(i)].top.at(now - motions_[at(i)].time);
+  start_flight(i, now, top, velocity, top.omega);
+}
+
 double GeneralBodies::contact_scale(int i, int j, const Vector3d& r, const Vector3d& start, double now,
                                     double enough) const {
   return with_gauge(i, j, r, now, [&](const auto& gauge) {

@@ -99,6 +99,8 @@ class GeneralBodies {
   Contact contact(int i, int j, const Eigen::Vector3d& r, const Eigen::Vector3d& n, double now) const;
   /// Gives i and j the velocities with which they leave the contact.
   void leave(int i, int j, const Contact& contact, double now);
+  /// Sets the velocity of the centre from now on.
+  void set_velocity(int i, const Eigen::Vector3d& velocity, double now);
 
   /// The factor by which r would have to shrink for the pair to touch, from above and no better than `enough`.
   double contact_scale(int i, int j, const Eigen::Vector3d& r, const Eigen::Vector3d& n, double now,

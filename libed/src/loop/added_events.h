@@ -3,8 +3,8 @@
 #include "base/large_vector.h"
 #include "bodies/body_events.h"
 #include "bodies/pair.h"
-#include "loop/epoch_clock.h"
-#include "loop/periodic_box.h"
+#include "loop/parts/epoch_clock.h"
+#include "loop/parts/periodic_box.h"
 
 #include <algorithm>
 #include <array>
@@ -28,12 +28,10 @@ enum class BodyChange {
 ///     BodyChange process(Bodies& bodies, int body, const EpochClock& clock, const PeriodicBox& box);
 ///
 /// predict() returns the local time of the body's next event, not before clock.now(); kNever if there is none. It is
-/// called at the start, and when the motion of the body has changed. process() is called at that time, with the body
-/// moved to it, and then predict() again, which must not return the event that has just been processed.
-///
-/// An event may come at any time, so that its body's time has to lie within its flight: process() changes velocities
-/// only (set_velocity), no position. States hold the times of the events, but not the kinds: whoever restores hands
-/// them in again. Loops without added kinds pay nothing for them.
+/// called at the start, when the motion of the body or the box has changed, and after each event. process() is called
+/// at the time of the event; the event that predict() returns next must be another one. process() may change the
+/// velocity of the body (set_velocity) and nothing else of it. States hold the times of the events, but not the kinds:
+/// whoever restores a loop hands them in again. A loop without added kinds pays nothing for them.
 template <class... Kinds>
 class AddedEvents {
  public:

@@ -100,7 +100,6 @@ template <std::size_t k>
 template <class Loop>
 void AddedEvent<k>::process(Loop& loop) const {
   loop.fetch_pairs(body);
-  loop.bodies.move(body, loop.now());
   const BodyChange change = loop.added.template process<k>(loop.bodies, body, loop.clock, loop.box);
   if (change == BodyChange::none) {
     predict(loop, body);

@@ -5,7 +5,7 @@
 #include "loop/any_event_loop.h"
 #include "loop/collision_law.h"
 #include "loop/loop_parts.h"
-#include "loop/stall_watch.h"
+#include "loop/parts/stall_watch.h"
 
 #include <ed/simulation.h>
 

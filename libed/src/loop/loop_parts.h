@@ -3,16 +3,16 @@
 #include "base/large_vector.h"
 #include "bodies/first_looks.h"
 #include "loop/collision_law.h"
-#include "loop/collision_log.h"
-#include "loop/epoch_clock.h"
+#include "loop/parts/collision_log.h"
+#include "loop/parts/epoch_clock.h"
 #include "loop/event_kinds.h"
 #include "loop/factory.h"
-#include "loop/failure_log.h"
-#include "loop/neighbourhood.h"
-#include "loop/periodic_box.h"
-#include "loop/predictor.h"
+#include "loop/parts/failure_log.h"
+#include "loop/parts/neighbourhood.h"
+#include "loop/parts/periodic_box.h"
+#include "loop/parts/predictor.h"
 #include "loop/prefetch_events.h"
-#include "loop/schedule.h"
+#include "loop/parts/schedule.h"
 
 #include <ed/simulation.h>
 

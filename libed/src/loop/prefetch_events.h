@@ -3,7 +3,7 @@
 #include "base/prefetch.h"
 #include "bodies/body_events.h"
 #include "cells/grid.h"
-#include "loop/calendar.h"
+#include "loop/parts/calendar.h"
 #include "loop/event_kinds.h"
 #include "neighbours/envelopes.h"
 #include "neighbours/lists.h"

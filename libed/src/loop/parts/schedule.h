@@ -2,7 +2,7 @@
 
 #include "bodies/body_events.h"
 #include "bodies/pair.h"
-#include "loop/calendar.h"
+#include "loop/parts/calendar.h"
 #include "neighbours/lists.h"
 
 #include <cstddef>

@@ -2,7 +2,7 @@
 
 #include "bodies/pair.h"
 #include "cells/grid.h"
-#include "loop/periodic_box.h"
+#include "loop/parts/periodic_box.h"
 #include "neighbours/envelopes.h"
 #include "neighbours/lists.h"
 

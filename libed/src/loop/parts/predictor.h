@@ -4,10 +4,10 @@
 #include "bodies/pair.h"
 #include "contact/bracketing.h"
 #include "contact/certified.h"
-#include "loop/epoch_clock.h"
-#include "loop/failure_log.h"
-#include "loop/neighbourhood.h"
-#include "loop/periodic_box.h"
+#include "loop/parts/epoch_clock.h"
+#include "loop/parts/failure_log.h"
+#include "loop/parts/neighbourhood.h"
+#include "loop/parts/periodic_box.h"
 
 #include <ed/simulation.h>
 
