@@ -141,31 +141,30 @@ struct Correlations {
   Estimate w2;                     ///< <omega^2>, spin excluded: wacf at lag 0
 };
 
-/// What was measured of the bodies of one group.
+/// Results for the bodies of one group.
 struct GroupResults : Correlations {
-  Estimate collision_rate;  ///< collisions a body of the group takes part in, with bodies of any, a time unit
-  /// On 3 (N_k - M_k / M) degrees of freedom, M_k the group's share of all mass M: what momentum zero leaves it.
+  /// Collisions that a body of the group takes part in, with bodies of any group, per time unit.
+  Estimate collision_rate;
+  /// Temperature on 3 (N_k - M_k / M) degrees of freedom, M_k the group's share of all mass M: what momentum zero
+  /// leaves it.
   Estimate translational_kT;
   Estimate rotational_kT;
-  std::array<Estimate, 3> axis_kT{};  ///< of the rotation about body x, y, z; NaN where there is none
-  Estimate S;
+  std::array<Estimate, 3> axis_kT{};  ///< temperature of the rotation about body x, y, z; NaN where there is none
+  Estimate S;                         ///< largest eigenvalue of Q, averaged over frames
   Director director;
 };
 
-/// What a run measured. Errors are standard errors over blocks. The correlations are averages over all bodies; where
-/// some rotate about two axes and others about three, rot_msd is divided by twice their mean number.
-struct Results : Correlations {
+/// Results for all bodies, and for each group. Errors are standard errors over blocks. The correlations are averages
+/// over all bodies; where some rotate about two axes and others about three, rot_msd is divided by twice their mean
+/// number. The collision rate is 2 N_coll / (N t), the translational temperature is on 3 N - 3 degrees of freedom, and
+/// axis_kT is that of a single group, NaN for several.
+struct Results : GroupResults {
   double duration = 0;
-  Estimate collision_rate;  ///< collisions a body takes part in, a time unit: 2 N_coll / (N t)
-  Estimate Z;               ///< 1 + sum of r_AB.dp / (3 N kT t), kT the measured translational temperature
-  Estimate translational_kT;
-  Estimate rotational_kT;
-  Estimate S;  ///< largest eigenvalue of Q, averaged over frames
-  Director director;
+  Estimate Z;  ///< 1 + sum of r_AB.dp / (3 N kT t), kT the measured translational temperature
   /// P V / (N kT): K + sum of r_AB dp^T / (N kT t), symmetrised, with K = 3 sum m v v^T / sum m v^2. Its trace is 3 Z.
   TensorEstimate pressure;
   std::vector<BlockRow> blocks;
-  std::vector<GroupResults> groups;  ///< of one group too
+  std::vector<GroupResults> groups;  ///< also a single group
 };
 
 /// Wave numbers that F_self is measured at, at most.
