@@ -14,4 +14,9 @@ std::optional<double> finite_number(std::string_view text) {
   return value;
 }
 
+std::string freedoms_text(long freedoms, int number) {
+  if (freedoms % number == 0) return fmt::format("{}N", freedoms / number);
+  return fmt::format("{}", freedoms);
+}
+
 }  // namespace hardbody

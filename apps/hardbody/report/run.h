@@ -17,8 +17,8 @@ namespace hardbody {
 
 /// A number that a reader looks for first.
 struct Headline {
-  std::string key;      ///< in summary.json: D_trans, or D_rot_axes_x
-  std::string symbol;   ///< D_trans; what follows an underscore is an index
+  std::string key;      ///< in summary.json; with the axis behind it for a body axis
+  std::string symbol;   ///< what follows an underscore is an index
   std::string name;     ///< in words
   std::string unit;     ///< empty: a pure number
   std::string meaning;  ///< its definition
