@@ -9,17 +9,18 @@
 
 namespace hardbody {
 
-/// A file of comma-separated values with one line of names.
+/// File of comma-separated values with one line of names.
 struct CsvTable {
   std::string name;  ///< of the file, for messages
   std::vector<std::string> header;
   std::vector<std::vector<std::string>> rows;  ///< each as long as the header
+  std::vector<int> lines;                      ///< of the file, in which the rows begin
 
-  /// The column of that name, or the only one whose name ends in .NAME. Throws InputError.
+  /// Returns the column of that name, or the only one whose name ends in .NAME. Throws InputError.
   std::size_t column(std::string_view wanted) const;
   std::optional<std::size_t> find(std::string_view wanted) const;
 
-  /// Nothing for an empty field; throws InputError for one that is no number.
+  /// Returns nullopt for an empty field; throws InputError for one that is no number.
   std::optional<double> number(std::size_t row, std::size_t column) const;
 };
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "base/errors.h"
+
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -9,6 +11,9 @@ namespace hardbody {
 
 /// A real as TOML writes it: the shortest digits that read back as the same number, and never an integer.
 std::string toml_real(double x);
+
+/// Returns a string as TOML, in quotes.
+std::string toml_string(std::string_view text);
 
 struct Member;
 
@@ -35,6 +40,9 @@ struct Member {
 /// A value as TOML on one line, reals to the last bit.
 std::string toml_text(const Value& value);
 
+/// Whether a value is an integer or a real, and finite.
+bool is_number(const Value& value);
+
 /// Whether they are the same to a config: 2 and 2.0 are.
 bool same_value(const Value& a, const Value& b);
 
@@ -52,6 +60,9 @@ struct Section {
   std::string where;
   int line = 0;
 };
+
+/// Returns "file:line: key is what was got{why}; accepted: ..".
+InputError bad(const Entry& entry, std::string_view accepted, std::string_view why = "");
 
 /// A TOML file of two levels (keys at the top, keys in sections, of which there may be several of one name) with values
 /// from the command line laid over it.
