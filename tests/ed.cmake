@@ -21,9 +21,12 @@ hardbody_test(ed_observables_test unit
   unit/ed/observables/snapshots_test.cpp
   unit/ed/observables/stored_frames_test.cpp
   unit/ed/observables/structure_test.cpp)
-foreach(name conservation correlations counters equation_of_state free_rotor general_bodies same_collisions scale state_points time_reversal)
+foreach(name conservation correlations counters equation_of_state free_rotor general_bodies same_collisions scale
+    time_reversal)
   hardbody_test(physics_${name}_test physics physics/${name}_test.cpp)
 endforeach()
+# Its tests judge the same runs.
+hardbody_test(physics_state_points_test physics WHOLE physics/state_points_test.cpp)
 # Its own program: it replaces operator new.
 hardbody_test(physics_allocation_test physics physics/allocation_test.cpp)
 hardbody_test(golden_test golden golden/golden_test.cpp)

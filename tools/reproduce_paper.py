@@ -12,13 +12,15 @@ from paper.results import Results, point_of, read_rows
 from paper.study import Stop, Study
 from paper.verdicts import changed_claims, verdicts
 
-DOCS = pathlib.Path(__file__).resolve().parent.parent / "docs" / "paper"
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+DATA = ROOT / "data" / "paper"
+PAGES = ROOT / "docs" / "paper"
 
 
-EPILOG = """Finished points are merged into points.csv and curves.csv at once and not run again: stop it whenever you like, and
-the same command goes on. docs/paper has all of them; to begin afresh name another directory, which is made if it is
-not there: tools/reproduce-paper --results out/my-paper --out out/my-runs. What is left to run and how long that will take
-is printed at the beginning and with every point."""
+EPILOG = """Finished points are merged into points.csv and curves.csv at once and are not run again. The tool can be stopped at any
+time; the same command continues. data/paper holds all points; to begin afresh name another directory, which is created if
+necessary: tools/reproduce-paper --results out/my-paper --out out/my-runs. The number of points left and the estimated time
+are printed at the beginning and with every point."""
 
 
 def point(text):
@@ -60,8 +62,9 @@ def parse(arguments):
     parser = Parser(prog="tools/reproduce-paper", description=__doc__, epilog=EPILOG)
     parser.add_argument("--hardbody", required=True, help="the program (tools/reproduce-paper builds it)")
     parser.add_argument("--out", default="out/paper", help="run directories, one a point that is not finished")
-    parser.add_argument("--results", metavar="DIR", help="directory of points.csv, curves.csv and what is made of them, by default docs/paper "
-                                                         "(of --quick OUT-quick/results); a new one begins afresh")
+    parser.add_argument("--results", metavar="DIR", help="directory of points.csv, curves.csv and everything derived from them, by default data/paper "
+                                                         "with the page and the drawings in docs/paper (with --quick: OUT-quick/results); a new "
+                                                         "directory begins afresh")
     parser.add_argument("--jobs", type=count, default=1, help="points that run at the same time")
     parser.add_argument("--minutes", type=duration, default=0, help="stop after so many; call it again to go on")
     parser.add_argument("--quick", action="store_true", help="a coarse grid with short runs, some three minutes")
@@ -78,22 +81,23 @@ def chosen(options):
 
 
 def known_costs(options):
-    """Seconds that points took when docs/paper was made; nothing of --quick, whose points are shorter."""
-    return {} if options.quick else {point_of(row): float(row["wall_seconds"]) for row in read_rows(DOCS / "points.csv")}
+    """Seconds that the points in data/paper took; empty with --quick, whose points are shorter."""
+    return {} if options.quick else {point_of(row): float(row["wall_seconds"]) for row in read_rows(DATA / "points.csv")}
 
 
-def draw(program, directory):
-    """Figures and README.md, without the values whose definition does not hold."""
+def draw(program, directory, pages):
+    """Writes figures and README.md, without the values whose definition does not hold."""
     dropped = Results(directory).judge()
     study = table.Study(directory)
     lines = Lines(program, directory)
-    write_figures(study, lines, directory)
+    pages.mkdir(parents=True, exist_ok=True)
+    write_figures(study, lines, directory, pages)
     outcomes = verdicts(study, lines)
     changes = changed_claims(outcomes, verdicts(table.Study(directory, restored=True), lines))
-    write_readme(study, outcomes, changes, directory)
+    write_readme(study, outcomes, changes, directory, pages)
     if dropped:
         print(f"{directory}: the definitions of {dropped} values do not hold; they are now in dropped.csv")
-    print(f"{directory}: figures and README.md of {len(study.rows)} points")
+    print(f"{pages}: figures and README.md of {len(study.rows)} points")
     for verdict in outcomes:
         print(f"  {verdict.claim}: {verdict.outcome}")
 
@@ -101,12 +105,13 @@ def draw(program, directory):
 def main(arguments):
     options = parse(arguments)
     out = pathlib.Path(options.out + ("-quick" if options.quick else ""))
-    directory = pathlib.Path(options.results or (out / "results" if options.quick else DOCS))
+    directory = pathlib.Path(options.results or (out / "results" if options.quick else DATA))
+    pages = PAGES if directory.resolve() == DATA else directory
     if options.figures:
         if not (directory / "points.csv").exists():
             print(f"{directory}: has no points.csv; accepted: results of tools/reproduce-paper", file=sys.stderr)
             return 2
-        draw(options.hardbody, directory)
+        draw(options.hardbody, directory, pages)
         return 0
     stop = Stop(options.minutes)
     study = Study(options.hardbody, out, Results(directory), options.jobs, options.quick, known_costs(options))
@@ -114,7 +119,7 @@ def main(arguments):
     if stop.signal:
         return 128 + stop.signal
     if study.results.points:
-        draw(options.hardbody, directory)
+        draw(options.hardbody, directory, pages)
     if study.failed:
         return 1
     if not done:

@@ -20,7 +20,7 @@ def ellipsoids(*axes):
 
 
 def superballs(e):
-    return f'[shape]\nkind = "superellipsoid"\nexponents = [{e}, {e}]\n[dynamics]\ninertia = "uniform"\n'
+    return f'[shape]\nkind = "superellipsoid"\nsemi_axes = [1, 1, 1]\nexponents = [{e}, {e}]\n[dynamics]\ninertia = "uniform"\n'
 
 
 def mixture(first, second):

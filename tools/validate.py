@@ -11,6 +11,7 @@ import subprocess
 import sys
 
 import short_runs
+from validation_tables import Table, store, write_page
 
 REFERENCE = pathlib.Path(__file__).resolve().parent.parent / "tests" / "reference"
 
@@ -87,58 +88,6 @@ class Runner:
             last = (done.stderr.strip().splitlines() or [""])[-1]
             raise SystemExit(f"hardbody {' '.join(arguments)}: exit {done.returncode}: {last}\n"
                              "The same command again keeps what is done and goes on with a run that was interrupted.")
-
-
-class Table:
-    """Rows of: what, measured, reference, deviation, allowed."""
-
-    def __init__(self):
-        self.failed = 0
-        self.rows = 0
-
-    def heading(self, text):
-        print(f"\n### {text}\n")
-        print("| state | quantity | measured | reference | deviation | sigma | allowed | |")
-        print("|---|---|---|---|---|---|---|---|", flush=True)
-
-    def relative(self, state, quantity, measured, error, reference, allowed, reference_error=0.0, sigmas=math.inf):
-        """|measured / reference - 1| <= allowed, and no more than so many combined standard errors, which are shown
-        beside."""
-        if measured is None:
-            self._row(state, quantity, "null", f"{reference:.5g}", "", "", f"{100 * allowed:g} %", False)
-            return
-        deviation = measured / reference - 1
-        combined = math.hypot(error or 0.0, reference_error or 0.0)
-        distance = (measured - reference) / combined if combined > 0 else 0.0
-        sigma = f"{distance:+.1f}" if combined > 0 else ""
-        uncertainty = f" +- {error:.2g}" if error else ""
-        both = f"{100 * allowed:g} %" + (f", {sigmas:g} sigma" if sigmas < math.inf else "")
-        self._row(state, quantity, f"{measured:.5g}{uncertainty}", f"{reference:.5g}", f"{100 * deviation:+.2f} %", sigma,
-                  both, abs(deviation) <= allowed and abs(distance) <= sigmas)
-
-    def sigmas(self, state, quantity, measured, error, reference, allowed):
-        """|measured - reference| <= allowed standard errors."""
-        deviation = (measured - reference) / error
-        self._row(state, quantity, f"{measured:.5g} +- {error:.2g}", f"{reference:.5g}",
-                  f"{measured - reference:+.2g}", f"{deviation:+.1f}", f"{allowed:g} sigma", abs(deviation) <= allowed)
-
-    def limit(self, state, quantity, measured, limit, ok):
-        self._row(state, quantity, f"{measured:.2e}", "", "", "", limit, ok)
-
-    def plain_heading(self, text, columns):
-        print(f"\n### {text}\n\n{columns}\n|{'---|' * (columns.count('|') - 1)}", flush=True)
-
-    def plain_row(self, cells, ok):
-        self.rows += 1
-        self.failed += 0 if ok else 1
-        print(f"| {' | '.join(map(str, cells))} | {'ok' if ok else '**off**'} |", flush=True)
-
-    def _row(self, state, quantity, measured, reference, deviation, sigma, allowed, ok):
-        self.rows += 1
-        self.failed += 0 if ok else 1
-        verdict = "ok" if ok else "**off**"
-        print(f"| {state} | {quantity} | {measured} | {reference} | {deviation} | {sigma} | {allowed} | {verdict} |",
-              flush=True)
 
 
 def observable(result, name):
@@ -549,13 +498,20 @@ def main():
     parser.add_argument("--out", required=True)
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--collisions", type=float, default=3e6, help="of each run, at least")
+    parser.add_argument("--record", action="store_true", help="store the tables in data/validation and summarise them in docs/validation.md")
     arguments = parser.parse_args()
-    table = Table()
     runner = Runner(arguments.hardbody, arguments.out, arguments.jobs)
+    rows = failed = 0
     for name in arguments.groups or GROUPS:
+        table = Table()
         GROUPS[name](runner, table, arguments.collisions)
-    print(f"\n{table.rows} comparisons, {table.failed} off")
-    return 1 if table.failed else 0
+        rows, failed = rows + table.rows, failed + table.failed
+        if arguments.record:
+            store(name, table)
+    if arguments.record:
+        write_page()
+    print(f"\n{rows} comparisons, {failed} off")
+    return 1 if failed else 0
 
 
 if __name__ == "__main__":

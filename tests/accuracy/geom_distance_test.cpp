@@ -28,7 +28,7 @@ using geom_test::LongDistance;
 using geom_test::ManufacturedPair;
 using geom_test::Random;
 
-constexpr int kExtremePairs = geom_test::repetitions(100'000);
+const int kExtremePairs = geom_test::repetitions(100'000);
 
 // The contract of distance.h.
 constexpr double kDistanceTolerance = 1e-13;       // relative to |p_AB| + both bounding radii

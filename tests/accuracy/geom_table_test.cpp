@@ -1,4 +1,4 @@
-/// The table of docs/accuracy.md: errors of distance() by pair of shapes and gap. tools/accuracy writes it.
+/// The table data/accuracy/pairs.csv: errors of distance() by pair of shapes and gap. tools/accuracy writes it.
 ///
 /// Known answers: B is put so that the support points of a random normal are the witness points. The reference is g at
 /// that normal, so that the rounding of B's position does not count. HARDBODY_FULL=1: 100,000 pairs a row instead of

@@ -34,44 +34,50 @@ def column(name, values):
     return {name: lambda k, i: values[i] if isinstance(values, list) else values}
 
 
-# Name, how it is written, whether overlaps can be looked for: "yes", or "may be" (then it is said that they were not).
+LOOKED = "looked"  # overlaps are looked for among all bodies, and found
+# Why they are not looked for among some.
+NO_SHAPE = "bodies of type %s have no shape in the file"
+NO_ORIENTATION = "orientations of bodies that are near each other are not known"
+REFUSED = "refused: "
+
+# Name, how it is written, what becomes of it: LOOKED, the reason for which it is not, or REFUSED and the words of the message.
 GSD = [
-    ("rods", {}, "yes"),
-    ("balls", {"shapes": (BALL,)}, "yes"),
-    ("no shapes", {"shapes": None}, "may be"),
-    ("empty shapes", {"shapes": ({},)}, "may be"),
-    ("unknown shapes", {"shapes": ({"type": "Polyhedron"},)}, "may be"),
-    ("polyhedra", {"shapes": ({"type": "ConvexPolyhedron", "vertices": [[1, 0, 0], [0, 1, 0], [0, 0, 1]]},)}, "may be"),
+    ("rods", {}, LOOKED),
+    ("balls", {"shapes": (BALL,)}, LOOKED),
+    ("no shapes", {"shapes": None}, NO_SHAPE % "A"),
+    ("empty shapes", {"shapes": ({},)}, NO_SHAPE % "A"),
+    ("unknown shapes", {"shapes": ({"type": "Polyhedron"},)}, NO_SHAPE % "A"),
+    ("polyhedra", {"shapes": ({"type": "ConvexPolyhedron", "vertices": [[1, 0, 0], [0, 1, 0], [0, 0, 1]]},)}, NO_SHAPE % "A"),
     ("one shape of two missing", {"shapes": (BALL, {}), "more": {
-        "particles/typeid": lambda k: numpy.arange(8, dtype=numpy.uint32) // 4}}, "may be"),
-    ("diameters", {"shapes": None, "more": {"particles/diameter": lambda k: numpy.ones(8, numpy.float32)}}, "may be"),
-    ("oblong", {"box": FIRST(OBLONG)}, "may be"),
-    ("oblong, balls", {"box": FIRST(OBLONG), "shapes": (BALL,)}, "may be"),
-    ("tilted", {"box": FIRST([EDGE, EDGE, EDGE, 0.25, 0, 0])}, "may be"),
-    ("rods, orientations never", {"orientation": "never"}, "may be"),
-    ("rods, orientations of frame 0", {"orientation": "first"}, "may be"),
-    ("flat", {"more": {"configuration/dimensions": lambda k: numpy.array([2], numpy.uint8)}}, "may be"),
+        "particles/typeid": lambda k: numpy.arange(8, dtype=numpy.uint32) // 4}}, NO_SHAPE % "B"),
+    ("diameters", {"shapes": None, "more": {"particles/diameter": lambda k: numpy.ones(8, numpy.float32)}}, NO_SHAPE % "A"),
+    ("oblong", {"box": FIRST(OBLONG)}, LOOKED),
+    ("oblong, balls", {"box": FIRST(OBLONG), "shapes": (BALL,)}, LOOKED),
+    ("tilted", {"box": FIRST([EDGE, EDGE, EDGE, 0.25, 0, 0])}, LOOKED),
+    ("rods, orientations never", {"orientation": "never"}, NO_ORIENTATION),
+    ("rods, orientations of frame 0", {"orientation": "first"}, NO_ORIENTATION),
+    ("flat", {"more": {"configuration/dimensions": lambda k: numpy.array([2], numpy.uint8)}}, REFUSED + "is not of three dimensions; accepted: three"),
 ]
 DUMPS = [
-    ("rods", {"columns": [X, QUAT, SHAPE]}, "yes"),
+    ("rods", {"columns": [X, QUAT, SHAPE]}, LOOKED),
     ("balls", {"columns": [X, "shapex", "shapey", "shapez"],
-               "override": {n: lambda k, i: 1 for n in ("shapex", "shapey", "shapez")}}, "yes"),
-    ("radius", {"columns": [X, "radius"]}, "may be"),
-    ("diameter", {"columns": [X, "diameter"]}, "may be"),
-    ("radii and diameters", {"columns": [X, "radius", "diameter"]}, "may be"),
-    ("no shape", {"columns": [X, QUAT, VEL]}, "may be"),
-    ("rods without orientations", {"columns": [X, SHAPE]}, "may be"),
+               "override": {n: lambda k, i: 1 for n in ("shapex", "shapey", "shapez")}}, LOOKED),
+    ("radius", {"columns": [X, "radius"]}, LOOKED),
+    ("diameter", {"columns": [X, "diameter"]}, LOOKED),
+    ("radii and diameters", {"columns": [X, "radius", "diameter"]}, LOOKED),
+    ("no shape", {"columns": [X, QUAT, VEL]}, NO_SHAPE % "1"),
+    ("rods without orientations", {"columns": [X, SHAPE]}, NO_ORIENTATION),
     ("points, as LAMMPS has shapes of bodies that have none", {
         "columns": [X, QUAT, "shapex", "shapey", "shapez"],
-        "override": {n: lambda k, i: 0 for n in ("shapex", "shapey", "shapez")}}, "may be"),
-    ("half of them points", {"columns": [X, "radius"], "override": column("radius", 4 * [0.5] + 4 * [0])}, "may be"),
-    ("no ids", {"columns": ["type", X, QUAT, SHAPE]}, "may be"),
-    ("oblong", {"columns": [X, QUAT, SHAPE], "box": lambda k: ["-5 5", "-5 5", "-10 10"]}, "may be"),
-    ("tilted", {"columns": [X, QUAT, SHAPE], "bounds": "xy xz yz pp pp pp", "tilt": " 0.25"}, "may be"),
-    ("tilts of 0", {"columns": [X, QUAT, SHAPE], "bounds": "xy xz yz pp pp pp", "tilt": " 0"}, "yes"),
-    ("unwrapped", {"columns": ["xu yu zu", QUAT, SHAPE]}, "yes"),
-    ("scaled, from 0", {"columns": ["xs ys zs", QUAT, SHAPE], "low": 0.0}, "yes"),
-    ("walls", {"columns": [X, QUAT, SHAPE], "bounds": "ff ff ff"}, "may be"),
+        "override": {n: lambda k, i: 0 for n in ("shapex", "shapey", "shapez")}}, NO_SHAPE % "1"),
+    ("half of them points", {"columns": [X, "radius"], "override": column("radius", 4 * [0.5] + 4 * [0])}, NO_SHAPE % "1"),
+    ("no ids", {"columns": ["type", X, QUAT, SHAPE]}, LOOKED),
+    ("oblong", {"columns": [X, QUAT, SHAPE], "box": lambda k: ["-5 5", "-5 5", "-10 10"]}, LOOKED),
+    ("tilted", {"columns": [X, QUAT, SHAPE], "bounds": "xy xz yz pp pp pp", "tilt": " 0.25"}, LOOKED),
+    ("tilts of 0", {"columns": [X, QUAT, SHAPE], "bounds": "xy xz yz pp pp pp", "tilt": " 0"}, LOOKED),
+    ("unwrapped", {"columns": ["xu yu zu", QUAT, SHAPE]}, LOOKED),
+    ("scaled, from 0", {"columns": ["xs ys zs", QUAT, SHAPE], "low": 0.0}, LOOKED),
+    ("walls", {"columns": [X, QUAT, SHAPE], "bounds": "ff ff ff"}, REFUSED + "its box has boundaries ff; accepted: a periodic box, pp pp pp"),
 ]
 
 
@@ -79,39 +85,35 @@ class ChecksOfTrajectories(Analyses):
     def sound(self, result):
         return re.search(r"^sound$", result.stdout, re.M) is not None
 
-    def judge(self, name, overlap, looked, who):
+    def judge(self, name, overlap, outcome, who):
         result = self.hardbody("check", name)
         said = result.stdout + result.stderr
-        if result.returncode == 2:
-            self.assert_refused(result, "accepted: ")
-            self.assertEqual(looked, "may be", said)
+        if outcome.startswith(REFUSED):
+            self.assert_refused(result, name, outcome.removeprefix(REFUSED))
             return
+        self.assertEqual(result.stderr, "")
         found = re.search(r"^ *overlaps +(.+)$", said, re.M)
         self.assertIsNotNone(found, said)
-        seen = "not looked" not in found.group(1)
-        self.assertTrue(seen or looked == "may be", said)
-        if overlap and seen:
-            self.assertFalse(self.sound(result), said)
-            self.assertEqual(result.returncode, 1, said)
-            self.assertRegex(said, "frame 1\\b")
-            self.assertRegex(said, who or "frame 1")
-        elif seen:
-            self.assertEqual(int(re.match(r"\d+", found.group(1)).group()), 0, said)
-            self.assertEqual(result.returncode, 0, said)
-            self.assertTrue(self.sound(result), said)
+        sound = outcome == LOOKED and not overlap
+        self.assertEqual(result.returncode, 0 if sound else 1, said)
+        self.assertEqual(self.sound(result), sound, said)
+        if outcome == LOOKED:
+            self.assertRegex(found.group(1), r"^%d, deeper than the numbers are rounded" % overlap)
+            if overlap:
+                self.assertRegex(said, "frame 1\\b")
+                self.assertRegex(said, who or "frame 1")
         else:
-            self.assertFalse(self.sound(result), said)
-            self.assertRegex(said, "shape|cube|oblong|tilt|orientation|edges|box")
+            self.assertEqual(found.group(1), f"0 found; not looked at everywhere: {outcome}")
 
     def test_gsd(self):
-        for name, how, looked in GSD:
+        for name, how, outcome in GSD:
             for apart, w in [(1.25, FAR), (0.125, NEAR)]:
                 with self.subTest(name, apart=apart):
                     gsd_file(self.path("walk.gsd"), w, **{"shapes": (ROD,), **how})
-                    self.judge("walk.gsd", w is NEAR and "polyhedra" not in name, looked, r"\b2\b.*\b5\b")
+                    self.judge("walk.gsd", w is NEAR, outcome, r"\b2\b.*\b5\b")
 
     def test_dumps(self):
-        for name, how, looked in DUMPS:
+        for name, how, outcome in DUMPS:
             for apart, w in [(1.25, FAR), (0.125, NEAR)]:
                 with self.subTest(name, apart=apart):
                     columns = how["columns"] if "type" in how["columns"] else ["id", "type", *how["columns"]]
@@ -119,7 +121,7 @@ class ChecksOfTrajectories(Analyses):
                     override = {**ids, **how.get("override", {})}
                     dump(self.path("walk.lammpstrj"), w, **{**how, "columns": columns, "override": override})
                     who = r"\b27\b.*\b57\b" if "id" in columns else ""
-                    self.judge("walk.lammpstrj", w is NEAR and "points" not in name, looked, who)
+                    self.judge("walk.lammpstrj", w is NEAR, outcome, who)
 
     def test_other_names(self):
         for apart, w in [(1.25, FAR), (0.125, NEAR)]:
@@ -130,7 +132,7 @@ class ChecksOfTrajectories(Analyses):
                     else:
                         dump(self.path("file"), w, ["id", "type", X, QUAT, SHAPE])
                     shutil.move(self.path("file"), self.path(name))
-                    self.judge(name, w is NEAR, "yes", r"\b2\b.*\b5\b" if written == "gsd" else r"\b3\b.*\b6\b")
+                    self.judge(name, w is NEAR, LOOKED, r"\b2\b.*\b5\b" if written == "gsd" else r"\b3\b.*\b6\b")
 
     def test_a_directory(self):
         """A run is checked by its checkpoint; a directory without one is named."""

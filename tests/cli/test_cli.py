@@ -351,8 +351,8 @@ class Run(Case):
         observables = self.summary("caged")["observables"]
         self.assertIsNone(observables["D_trans"]["value"])
         self.assertRegex(observables["D_trans"]["missing"],
-                         r"^bodies have moved 0\.\d+ l within the longest lag: no diffusion yet; a longer run helps$")
-        self.assertRegex(result.stdout, r"  D_trans         - \(bodies have moved 0\.\d+ l within the longest lag: no diffusion yet\)\n")
+                         r"^bodies have moved 0\.\d+ l by lag 0\.\d+, where the fit begins: no diffusion yet; a longer run helps$")
+        self.assertRegex(result.stdout, r"  D_trans         - \(bodies have moved 0\.\d+ l by lag 0\.\d+, where the fit begins: no diffusion yet\)\n")
         self.assertIn("  (longer lags: a longer run helps)\n", result.stdout)
         for key in ["D_rot", "D_rot_body", "tau_C2", "beta_C2"]:
             self.assertEqual(observables[key], {"value": None, "error": None, "missing": "meaningless: nothing turns these bodies"})
@@ -1658,9 +1658,9 @@ class Distance(Case):
         short, full = self.answers(self.README_PAIR, spelt)
         self.assertEqual(short, full)
 
-    def test_example_of_the_readme(self):
-        with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "README.md")) as readme:
-            example = re.search(r"^\$ pair='(.*)'\n\$ echo \"\$pair\" \| hardbody distance\n(.*)$", readme.read(), re.M)
+    def test_example_of_the_documentation(self):
+        with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "docs", "distance.md")) as page:
+            example = re.search(r"^\$ pair='(.*)'\n\$ echo \"\$pair\" \| hardbody distance\n(.*)$", page.read(), re.M)
         self.assertEqual(json.loads(example[1])["b"]["position"], [4, 0, 2.4])
         answer, printed = self.answers(json.loads(example[1]))[0], json.loads(example[2])
         self.assertEqual(list(answer), list(printed))

@@ -19,7 +19,8 @@ import xml.dom.minidom
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 HARDBODY = os.path.abspath(os.environ.get("HARDBODY", "build/release/apps/hardbody/hardbody"))
-DOCS = ROOT / "docs" / "paper"
+DATA = ROOT / "data" / "paper"
+PAGES = ROOT / "docs" / "paper"
 FIGURES = ["isodiffusivity", "isochrones", "c2_fits", "correlators"]
 
 sys.path.insert(0, str(ROOT / "tools"))
@@ -28,6 +29,13 @@ sys.path.insert(0, str(ROOT / "tools"))
 def read(path):
     with open(path, newline="", encoding="utf-8") as file:
         return list(csv.DictReader(file))
+
+
+def committed(name):
+    """Text of a committed file as it reads in a directory that holds data, page and drawings."""
+    if name.endswith(".csv"):
+        return (DATA / name).read_text(encoding="utf-8")
+    return (PAGES / name).read_text(encoding="utf-8").replace("](../../data/paper/", "](")
 
 
 def tool(*arguments, **options):
@@ -44,7 +52,7 @@ class Here(unittest.TestCase):
 
 class Results(Here):
     def test_points(self):
-        rows = read(DOCS / "points.csv")
+        rows = read(DATA / "points.csv")
         points = [(float(row["X0"]), float(row["phi"])) for row in rows]
         self.assertGreaterEqual(len(rows), 500)
         self.assertEqual(points, sorted(set(points)), "distinct, and in order")
@@ -61,7 +69,7 @@ class Results(Here):
                         self.assertLessEqual(float(row[f"{name}_error"]), 0.03 * float(row[name]) * (1 + 1e-5))
 
     def test_isotropic_points_are_equilibrated_and_precise(self):
-        isotropic = [row for row in read(DOCS / "points.csv") if float(row["S"]) <= 0.3]
+        isotropic = [row for row in read(DATA / "points.csv") if float(row["S"]) <= 0.3]
         equilibrated = [row for row in isotropic if row["equilibrated"] == "true"]
         self.assertGreaterEqual(len(equilibrated), 0.95 * len(isotropic))
         for row in equilibrated:
@@ -79,26 +87,26 @@ class Results(Here):
                                     or 0.85 < X0 < 1.15)
 
     def test_every_point_has_its_curves(self):
-        curves = read(DOCS / "curves.csv")
+        curves = read(DATA / "curves.csv")
         with_curves = {(row["X0"], row["phi"]) for row in curves}
-        self.assertEqual(with_curves, {(row["X0"], row["phi"]) for row in read(DOCS / "points.csv")})
+        self.assertEqual(with_curves, {(row["X0"], row["phi"]) for row in read(DATA / "points.csv")})
         for row in curves:
             self.assertLess(abs(float(row["C2"])), 1.01)
             self.assertLess(abs(float(row["F_self"])), 1.01)
 
     def test_figures_and_verdicts_are_those_of_the_results(self):
         for name in ["points.csv", "curves.csv", "dropped.csv"]:
-            shutil.copy(DOCS / name, self.here)
+            shutil.copy(DATA / name, self.here)
         result = tool("--figures", "--results", self.here)
         self.assertEqual(result.returncode, 0, result.stderr)
         names = sorted(path.name for path in self.here.iterdir())
-        self.assertEqual(names, sorted(path.name for path in DOCS.iterdir()))
+        self.assertEqual(names, sorted(path.name for folder in (DATA, PAGES) for path in folder.iterdir()))
         for name in names:
-            self.assertEqual((self.here / name).read_text(), (DOCS / name).read_text(),
+            self.assertEqual((self.here / name).read_text(), committed(name),
                              f"{name}: tools/reproduce-paper --figures makes another one")
         for name in FIGURES:
-            xml.dom.minidom.parse(str(DOCS / f"{name}.svg"))
-        text = (DOCS / "README.md").read_text()
+            xml.dom.minidom.parse(str(PAGES / f"{name}.svg"))
+        text = (PAGES / "README.md").read_text()
         for number in range(1, 17):
             self.assertIn(f"\n{number}. **", text)
 
@@ -111,10 +119,11 @@ class Definitions(Here):
     def test_thresholds_are_those_of_the_program(self):
         from paper import definitions
 
-        text = (ROOT / "libed" / "src" / "curves.h").read_text()
+        text = (ROOT / "libed" / "src" / "observables" / "curves.h").read_text()
         for name, here in [("FitFrom", definitions.FIT_FROM), ("Linearity", definitions.LINEARITY), ("Displaced", definitions.DISPLACED),
                            ("Turned", definitions.TURNED), ("MostAmplitude", definitions.MOST_AMPLITUDE),
-                           ("LeastBeta", definitions.LEAST_BETA), ("FreeTurning", definitions.STEEPEST_TURN - 1)]:
+                           ("LeastBeta", definitions.LEAST_BETA), ("ShortDecay", definitions.SHORT_DECAY),
+                           ("SteadyTau", definitions.STEADY_TAU), ("FreeTurning", definitions.STEEPEST_TURN - 1)]:
             with self.subTest(name):
                 numerator, _, denominator = re.search(rf"k{name} = ([^;]+);", text)[1].partition("/")
                 self.assertAlmostEqual(float(numerator) / float(denominator or 1), here, delta=1e-12)
@@ -180,6 +189,16 @@ class Definitions(Here):
             self.assertEqual(fit(self.curve(1, 1, 0.29), name, beta=0.29), gone)
             self.assertEqual(fit(self.curve(1, 0.19, 0.8), name, tau=0.19), gone)
 
+    def test_fits_of_plateaus(self):
+        """A correlation that ends above 1/4: one decay, and one with a plateau."""
+        lags = [0.02 * 10 ** (k / 10) for k in range(27)]
+        for plateau, names in [(0, []), (0.3, ["tau_C2", "beta_C2"])]:
+            with self.subTest(plateau):
+                decay = [(1 - plateau) * math.exp(-((t / (2 if plateau else 7)) ** 0.7)) + plateau for t in lags]
+                curve = [{"t": f"{t:.4g}", "C2": f"{y:.4g}", "F_self": ""} for t, y in zip(lags, decay)]
+                row = self.row(tau_C2=4.75 if plateau else 7, beta_C2=0.42 if plateau else 0.7)
+                self.assertEqual(self.dropped(row | {"C2_fit_from": "0.1262", "C2_fit_to": curve[-1]["t"]}, curve), names)
+
     def test_longest_lag(self):
         """Those of runs; curves that have not decayed end at it."""
         from paper.definitions import longest_lag
@@ -194,16 +213,16 @@ class Definitions(Here):
         from paper.definitions import judged
 
         curves = {}
-        for row in read(DOCS / "curves.csv"):
+        for row in read(DATA / "curves.csv"):
             curves.setdefault((row["X0"], row["phi"]), []).append(row)
-        for row in read(DOCS / "points.csv"):
+        for row in read(DATA / "points.csv"):
             self.assertEqual(judged(row, curves[row["X0"], row["phi"]]), (row, []))
 
     def test_what_fell_out_is_listed(self):
-        dropped = read(DOCS / "dropped.csv")
+        dropped = read(DATA / "dropped.csv")
         self.assertGreater(len(dropped), 30)
-        points = {(row["X0"], row["phi"]): row for row in read(DOCS / "points.csv")}
-        text = (DOCS / "README.md").read_text()
+        points = {(row["X0"], row["phi"]): row for row in read(DATA / "points.csv")}
+        text = (PAGES / "README.md").read_text()
         for d in dropped:
             with self.subTest(X0=d["X0"], phi=d["phi"], observable=d["observable"]):
                 self.assertEqual(points[d["X0"], d["phi"]][d["observable"]], "")
@@ -214,26 +233,26 @@ class Definitions(Here):
         """--figures on rows as older programs wrote them: the same files."""
         from paper.results import POINT_COLUMNS, csv_text
 
-        points = {(row["X0"], row["phi"]): row for row in read(DOCS / "points.csv")}
-        for d in read(DOCS / "dropped.csv"):
+        points = {(row["X0"], row["phi"]): row for row in read(DATA / "points.csv")}
+        for d in read(DATA / "dropped.csv"):
             row = points[d["X0"], d["phi"]]
             row |= {d["observable"]: d["value"], d["observable"] + "_error": d["error"]}
             if window := self.WINDOWS.get(d["observable"]):
                 row |= {f"{window}_fit_from": d["fit_from"], f"{window}_fit_to": d["fit_to"]}
         (self.here / "points.csv").write_text(csv_text(POINT_COLUMNS, points.values()))
-        shutil.copy(DOCS / "curves.csv", self.here)
+        shutil.copy(DATA / "curves.csv", self.here)
         result = tool("--figures", "--results", self.here)
         self.assertEqual(result.returncode, 0, result.stderr)
-        self.assertIn("the definitions of 37 values do not hold", result.stdout)
+        self.assertIn("the definitions of 43 values do not hold", result.stdout)
         for name in ["points.csv", "dropped.csv", "README.md"]:
-            self.assertEqual((self.here / name).read_text(), (DOCS / name).read_text(), name)
+            self.assertEqual((self.here / name).read_text(), committed(name), name)
 
 
 class Verdicts(Here):
     def study(self, points):
         """A study of some of the committed points."""
         for name in ["points.csv", "curves.csv"]:
-            rows = [row for row in read(DOCS / name) if (row["X0"], row["phi"]) in points]
+            rows = [row for row in read(DATA / name) if (row["X0"], row["phi"]) in points]
             with open(self.here / name, "w", newline="") as file:
                 writer = csv.DictWriter(file, rows[0])
                 writer.writeheader()
@@ -253,9 +272,9 @@ class Verdicts(Here):
         from paper.table import Row, Study
 
         for name in ["points.csv", "curves.csv"]:
-            shutil.copy(DOCS / name, self.here)
+            shutil.copy(DATA / name, self.here)
         study = Study(self.here)
-        row = Row(read(DOCS / "points.csv")[0])
+        row = Row(read(DATA / "points.csv")[0])
         times = [0.02 * 1.25 ** k for k in range(40)]
         for beta in [0.7, 1, 2]:
             study.curves[row.point] = [{"t": t, "C2": 2.718281828 ** -((t / 0.3) ** beta)} for t in times]
@@ -265,18 +284,18 @@ class Verdicts(Here):
         from paper.table import Study
 
         for name in ["points.csv", "curves.csv"]:
-            shutil.copy(DOCS / name, self.here)
+            shutil.copy(DATA / name, self.here)
         study = Study(self.here)
         self.assertEqual([r.point for r in study.rows if r.frozen], [(1.0, 0.54)])
         self.assertNotIn((1.0, 0.54), [r.point for r in study.isotropic])
-        self.assertIn("froze during production", (DOCS / "README.md").read_text())
+        self.assertIn("froze during production", (PAGES / "README.md").read_text())
 
 
 class Drawings(unittest.TestCase):
     def test_labels_do_not_overlap(self):
         """By rectangles a little smaller than the texts are."""
         for name in ["isodiffusivity", "isochrones"]:
-            tree = xml.dom.minidom.parse(str(DOCS / f"{name}.svg"))
+            tree = xml.dom.minidom.parse(str(PAGES / f"{name}.svg"))
             labels = [(float(t.getAttribute("x")), float(t.getAttribute("y")), len(t.firstChild.data))
                       for t in tree.getElementsByTagName("text") if t.getAttribute("font-size") == "11"]
             self.assertGreater(len(labels), 15)
@@ -286,13 +305,13 @@ class Drawings(unittest.TestCase):
 
     def test_every_level_has_its_label(self):
         for name in ["isodiffusivity", "isochrones"]:
-            tree = xml.dom.minidom.parse(str(DOCS / f"{name}.svg"))
+            tree = xml.dom.minidom.parse(str(PAGES / f"{name}.svg"))
             labels = {t.firstChild.data for t in tree.getElementsByTagName("text") if t.getAttribute("font-size") == "11"}
-            self.assertEqual(labels, {row["level"] for row in read(DOCS / f"{name}.csv") if row["value"] != "S"})
+            self.assertEqual(labels, {row["level"] for row in read(DATA / f"{name}.csv") if row["value"] != "S"})
 
     def test_no_line_crosses_the_gap_of_fits(self):
         """Between the last fit of discs and the first of rods."""
-        tree = xml.dom.minidom.parse(str(DOCS / "c2_fits.svg"))
+        tree = xml.dom.minidom.parse(str(PAGES / "c2_fits.svg"))
         for path in tree.getElementsByTagName("path"):
             points = [float(p.split()[0]) for p in path.getAttribute("d").replace("L", "M").split("M")[1:] if "h" not in p and "V" not in p]
             if path.getAttribute("stroke") == "#999999" or len(points) < 2:

@@ -27,6 +27,9 @@ GsdFrame = getattr(gsd.hoomd, "Frame", None) or gsd.hoomd.Snapshot
 WRITE = "w" if hasattr(gsd.hoomd, "Frame") else "wb"
 AGAIN = "w+" if WRITE == "w" else "rb+"
 
+WRAPPED = ("positions are wrapped, or may be, and bodies move far between frames; unwrapped columns, image flags or frames closer "
+           "together help")
+
 
 def wrapped(x):
     return (numpy.asarray(x) + L / 2) % L - L / 2
@@ -155,10 +158,74 @@ class Walks(FilesCase):
             out = self.analyze(name)
             self.assertIn("no displacements, MSD and F_self: without images, and bodies move by up to 0.4", out)
             self.assertEqual(self.msd(), {})
+            for key in ["D_trans", "t_F_1overe", "tau_F", "beta_F"]:
+                self.assertEqual(self.analysis()["observables"][key], {"value": None, "error": None, "missing": WRAPPED}, key)
+            self.assertIn(f"D_trans      - ({WRAPPED})", out)
             self.assertTrue(numpy.isnan(self.rows("f_self")["f_self_q1"]).all())
             self.assertIsNone(self.analysis()["unwrapped"]["by"])
             self.assertIn("nearest images", self.analysis()["unwrapped"]["reason"])
             self.assertTrue(numpy.isfinite(self.rows("s_q")["S"]).any())
+
+    def test_images_that_nobody_keeps(self):
+        """0 in all frames while bodies jump across the box: nearest images, if they tell. Where they do not jump, they are 0."""
+        def dump(name, x, columns):
+            rows = [[[i + 1, 1, *body, 0, 0, 0] for i, body in enumerate(frame)] for frame in x]
+            self.dump(name, f"id type {columns} ix iy iz", rows)
+
+        def gsd_zeros(name, x):
+            """Images as they are, which the module for GSD files leaves out where they are 0."""
+            with gsd.fl.open(self.path(name), WRITE, application="test", schema="hoomd", schema_version=[1, 4]) as file:
+                for k, frame in enumerate(x):
+                    for chunk, data in [("configuration/step", numpy.array([k], numpy.uint64)),
+                                        ("configuration/box", numpy.array([L, L, L, 0, 0, 0], numpy.float32)),
+                                        ("particles/N", numpy.array([len(frame)], numpy.uint32)),
+                                        ("particles/position", frame.astype(numpy.float32)),
+                                        ("particles/image", numpy.zeros(frame.shape, numpy.int32))]:
+                        file.write_chunk(chunk, data)
+                    file.end_frame()
+
+        across = self.slow + 4.7  # they begin at a face of the box
+        within = numpy.clip(0.1 * self.slow, -4.9, 4.9)
+        for name, write in [("slow.lammpstrj", lambda n, x: dump(n, wrapped(x), "x y z")),
+                            ("scaled.lammpstrj", lambda n, x: dump(n, wrapped(x) / L + 0.5, "xs ys zs")),
+                            ("slow.gsd", lambda n, x: gsd_zeros(n, wrapped(x)))]:
+            with self.subTest(name):
+                write(name, across)
+                out = self.analyze(name, "--longest-lag", "2")
+                self.same(across, "nearest images")
+                self.assertIn("note: images: 0 in all frames, while bodies jump by up to 0.9", out)
+                write(name, self.walk)
+                out = self.analyze(name)
+                self.assertIn("not used", out)
+                self.assertEqual(self.msd(), {})
+                D_trans = self.analysis()["observables"]["D_trans"]
+                self.assertEqual(D_trans, {"value": None, "error": None, "missing": WRAPPED})
+                self.assertIn(f"D_trans      - ({WRAPPED})", out)
+                write(name, within)
+                out = self.analyze(name, "--longest-lag", "2")
+                self.same(within, "image flags")
+                self.assertNotIn("not used", out)
+        # Within the box by half of it and more, a few times: that may be. A jump by all but 0.4 % of it hardly can.
+        for x, by in [([-4, 4], "image flags"), ([-3, 2.5, -2.7], "image flags"), ([-4.98, 4.98], "nearest images"),
+                      ([-4.6, 4.6, -4.6], "nearest images")]:
+            with self.subTest(x):
+                dump("few.lammpstrj", [[[a, 0, 0], [0, 3, 0]] for a in x], "x y z")
+                self.analyze("few.lammpstrj", "--longest-lag", "1")
+                self.assertEqual(self.analysis()["unwrapped"]["by"], by)
+        # Another body that has crossed a face: images are kept, and these bodies have jumped.
+        x = wrapped(across)
+        rows = [[[i + 1, 1, *b, int(k == 11 and i == 0), 0, 0] for i, b in enumerate(f)] for k, f in enumerate(x)]
+        self.dump("kept.lammpstrj", "id type x y z ix iy iz", rows)
+        self.analyze("kept.lammpstrj", "--longest-lag", "2")
+        self.assertEqual(self.analysis()["unwrapped"]["by"], "image flags")
+        # Not wrapped at all: what is stored goes on outside the box, and images add nothing.
+        dump("outside.lammpstrj", self.walk, "x y z")
+        self.assertNotIn("not used", self.analyze("outside.lammpstrj", "--longest-lag", "2"))
+        self.same(self.walk, "image flags")
+        # From 0 to the edge, in a box about the origin.
+        dump("corner.lammpstrj", (across + L / 2) % L, "x y z")
+        self.assertIn("note: images: 0 in all frames", self.analyze("corner.lammpstrj", "--longest-lag", "2"))
+        self.same(across, "nearest images")
 
     def test_a_little_outside_the_box(self):
         """LAMMPS wraps only now and then; another program's file may mean either."""
@@ -299,6 +366,9 @@ class PartsOfFrames(FilesCase):
         self.assertIn("orientations: quaternions of 1 bodies normalized, their lengths off 1 by up to 5.0e-04", self.analyze("q.lammpstrj"))
         self.dump("q.lammpstrj", columns, [row(1.002)])
         self.refused("q.lammpstrj", "the orientation of body 4 is a quaternion of length 1.002", "1 within 0.001")
+        for length, said in [(1 + 9e-6, False), (1 + 1.1e-5, True)]:
+            self.dump("q.lammpstrj", columns, [row(f"{length:.9f}")])
+            self.assertEqual("normalized" in self.analyze("q.lammpstrj"), said)
         for length, known in [(1.0005, True), (1.002, False)]:
             self.gsd("q.gsd", [self.two(0)], ROD, orientation=[[[1, 0, 0, 0], [length, 0, 0, 0]]])
             if known:

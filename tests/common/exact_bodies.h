@@ -4,7 +4,7 @@
 
 #include <common/quad.h>
 
-#include <axis_motion.h>
+#include <motion/axis_motion.h>
 
 #include <Eigen/Core>
 

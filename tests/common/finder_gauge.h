@@ -4,8 +4,8 @@
 
 #include <common/finder_ensemble.h>
 
-#include <certified_contact.h>
-#include <uniaxial_gauge.h>
+#include <contact/certified.h>
+#include <contact/uniaxial_gap.h>
 
 #include <geom/kernel/uniaxial.h>
 

@@ -4,25 +4,9 @@
 
 namespace finder_test {
 
-/// Builds without optimisation or with sanitizers are ten to thirty times slower.
-constexpr bool slow_build() {
-#if !defined(__OPTIMIZE__) || defined(__SANITIZE_ADDRESS__)
-  return true;
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer)
-  return true;
-#else
-  return false;
-#endif
-#else
-  return false;
-#endif
-}
-
-/// `count`, or `full` in the full run, or a tenth of it in a slow build.
+/// Number of draws: `count`, `full` in the full form, or a tenth of `count` in a slow build and in the quick form.
 inline int scaled(int count, int full) {
-  if (full_form()) return full;
-  return slow_build() ? count / 10 : count;
+  return full_form() ? full : repetitions(count);
 }
 
 }  // namespace finder_test

@@ -3,8 +3,38 @@
 #include <cstdlib>
 #include <string_view>
 
-/// HARDBODY_FULL=1 asks for the long form of the tests, that of the figures in docs/.
-inline bool full_form() {
-  const char* value = std::getenv("HARDBODY_FULL");
+/// Returns whether an environment variable is 1.
+inline bool is_set(const char* name) {
+  const char* value = std::getenv(name);
   return value != nullptr && std::string_view(value) == "1";
+}
+
+/// Returns whether the long form of the tests is asked for, that of the figures in docs/.
+inline bool full_form() {
+  return is_set("HARDBODY_FULL");
+}
+
+/// Returns whether a tenth of the usual draws is enough: the form of `tools/test --quick`.
+inline bool quick_form() {
+  return is_set("HARDBODY_QUICK");
+}
+
+/// Returns whether the build has no optimisation or has sanitizers, and is ten to thirty times slower.
+constexpr bool slow_build() {
+#if !defined(__OPTIMIZE__) || defined(__SANITIZE_ADDRESS__)
+  return true;
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer)
+  return true;
+#else
+  return false;
+#endif
+#else
+  return false;
+#endif
+}
+
+/// Number of draws: `count`, or a tenth of it in a slow build and in the quick form.
+inline int repetitions(int count) {
+  return slow_build() || quick_form() ? count / 10 : count;
 }

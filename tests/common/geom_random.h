@@ -1,5 +1,7 @@
 #pragma once
 
+#include <common/full_form.h>
+
 /// Seeded random directions, rotations and shapes for the tests of libgeom.
 
 #include <geom/geom.h>
@@ -12,21 +14,7 @@
 
 namespace geom_test {
 
-/// `count`, or a tenth of it in builds without optimisation or with sanitizers: these are ten to a hundred times
-/// slower.
-constexpr int repetitions(int count) {
-#if !defined(__OPTIMIZE__) || defined(__SANITIZE_ADDRESS__)
-  return count / 10;
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer)
-  return count / 10;
-#else
-  return count;
-#endif
-#else
-  return count;
-#endif
-}
+using ::repetitions;
 
 /// Draws from std::mt19937_64 without the distributions of <random>, whose results differ between standard libraries.
 class Random {

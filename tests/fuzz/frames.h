@@ -4,7 +4,6 @@
 /// with finite numbers, and with none where the file gives none.
 
 #include "base/errors.h"
-#include "commands/commands.h"
 #include "trajectory/frame.h"
 #include "trajectory/stored_trajectory.h"
 
@@ -84,9 +83,9 @@ void read_all(const Open& open, const Also& also) {
     }
     if (reader.frame_count() > kMostFrames) return;
     refused_or_read([&] {
-      hardbody::AnalyzeArguments arguments;
-      arguments.time_step = 1;
-      check_trajectory(hardbody::read_trajectory(reader, arguments));
+      hardbody::ReadingOptions options;
+      options.time_step = 1;
+      check_trajectory(hardbody::read_trajectory(reader, options));
     });
   });
 }

@@ -1,5 +1,5 @@
-/// The table of docs/accuracy.md for other libraries: the rows of tests/accuracy/geom_table_test.cpp, the first pairs
-/// of each. tools/accuracy writes it. HARDBODY_FULL=1: 1,000 pairs a row instead of 50, of CGAL a tenth.
+/// The table data/accuracy/libraries.csv: the rows of tests/accuracy/geom_table_test.cpp by other libraries, the first
+/// pairs of each. tools/accuracy writes it. HARDBODY_FULL=1: 1,000 pairs a row instead of 50, of CGAL a tenth.
 
 #include "common/full_form.h"
 #include "common/geom_accuracy_rows.h"

@@ -5,7 +5,7 @@
 #include <common/finder_gauge.h>
 #include <common/finder_scale.h>
 
-#include <uniaxial_gauge.h>
+#include <contact/uniaxial_gap.h>
 
 #include <ed/random.h>
 #include <geom/kernel/uniaxial.h>

@@ -79,7 +79,7 @@ std::ostream& operator<<(std::ostream& out, const Population& population) {
 
 class ManufacturedDistance : public testing::TestWithParam<Population> {
  protected:
-  static constexpr int kPairs = repetitions(20'000);
+  static inline const int kPairs = repetitions(20'000);
 };
 
 TEST_P(ManufacturedDistance, OfSeparatedBodiesIsFound) {

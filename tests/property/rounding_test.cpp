@@ -7,12 +7,12 @@
 #include <common/finder_scale.h>
 #include <common/geom_shapes.h>
 
-#include <body_shapes.h>
-#include <certified_contact.h>
-#include <convex_gauge.h>
-#include <periodic.h>
-#include <support_gauge.h>
-#include <uniaxial_gauge.h>
+#include <base/periodic.h>
+#include <contact/body_shapes.h>
+#include <contact/certified.h>
+#include <contact/convex_gap.h>
+#include <contact/support_gap.h>
+#include <contact/uniaxial_gap.h>
 
 #include <ed/random.h>
 

@@ -7,9 +7,9 @@
 #include "common/geom_random.h"
 #include "common/geom_superellipsoid_sets.h"
 
-#include <body_shapes.h>
-#include <certified_contact.h>
-#include <support_gauge.h>
+#include <contact/body_shapes.h>
+#include <contact/certified.h>
+#include <contact/support_gap.h>
 
 #include <geom/geom.h>
 

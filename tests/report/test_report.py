@@ -721,7 +721,7 @@ class Sweep(Case):
         browser.run("window.hardbodyReport.page.sweep.showPoint(1)")
         self.assertIn("packing fraction 0.2", browser.run("return document.querySelector('#plots h2').textContent"))
         reason = browser.run("return document.querySelector('.results [data-key=\"D_trans\"] dd .none').textContent")
-        self.assertRegex(reason, "(at|within|up to) the longest lag")
+        self.assertRegex(reason, "(at|within|up to) the longest lag|where the fit begins")
         self.assert_silent(browser)
 
     def test_one_key(self):

@@ -9,6 +9,7 @@ import math
 from typing import NamedTuple
 
 from . import grid
+from .decay_fit import stretched_exponential
 
 # Thresholds of libed/src/curves.h, under the names that they have there.
 FIT_FROM = 0.4  # diffusion is fitted from this share of the longest lag on
@@ -17,6 +18,8 @@ DISPLACED = 1  # MSD q^2 / 6 at the first of these lags, at least
 TURNED = 1 / 3  # <|Delta Phi|^2> / components at the longest lag, in rad^2, at least
 MOST_AMPLITUDE = 1.3
 LEAST_BETA = 0.3
+SHORT_DECAY = 0.25
+STEADY_TAU = 0.25
 
 # Rotation: where <|Delta Phi|^2> at the first lag is below TURNED times the components, the slope may be this, at most.
 STEEPEST_TURN = 1.1
@@ -27,6 +30,8 @@ COMPONENTS = 2  # of rotation: bodies of revolution
 FROZEN = 4  # S_peak, the mean over production, above it: a crystal; of these fluids it is below 3.3
 # Amplitudes are fitted here to half of the lags that the program fits.
 AMPLITUDE_SLACK = 0.005
+# The same of tau of the later lags: twice the share is certain, half of it may be too much.
+TAU_SLACK = 2
 FEWEST_LAGS = 4
 FITS = {"C2": "C2", "F": "F_self"}  # suffixes of tau and beta, columns of curves.csv
 
@@ -74,6 +79,17 @@ def amplitude(row, curve, fit):
         return math.nan
     decays = [math.exp(-((t / tau) ** beta)) for t, _ in lags]
     return sum(g * y for g, (_, y) in zip(decays, lags)) / sum(g * g for g in decays)
+
+
+def tau_without_first_third(row, curve, fit):
+    """tau of the lags that were fitted but for the first third of them, in units of that of all; NaN if they have no fit. 1 where the
+    correlation has come down to SHORT_DECAY or the noise."""
+    first, last = (number(row[f"{fit}_fit_{end}"]) for end in ("from", "to"))
+    lags = [(t, number(c[FITS[fit]])) for c in curve if first * 0.999 <= (t := number(c["t"])) <= last * 1.001]
+    if len(lags) < FEWEST_LAGS or lags[-1][1] <= SHORT_DECAY or last < number(curve[-1]["t"]) * 0.999:
+        return 1
+    all_lags, late = stretched_exponential(lags), stretched_exponential(lags[len(lags) // 3:])
+    return late[1] / all_lags[1] if all_lags and late else math.nan
 
 
 def f_self_at(curve, lag):
@@ -137,8 +153,16 @@ def fits(row, curve):
             reasons.append(f"beta {beta:.3g}, at least {LEAST_BETA:g} wanted")
         if tau < number(row[f"{fit}_fit_from"]):
             reasons.append(f"tau {tau:.3g} is before the first fitted lag, {row[f'{fit}_fit_from']}")
+        change = abs(tau_without_first_third(row, curve, fit) - 1)
+        wanted = f"without the first third of the lags, at most {STEADY_TAU:.0%} wanted, with {FITS[fit]} above {SHORT_DECAY:g} at the longest"
+        if math.isnan(change):
+            reasons.append(f"no fit {wanted.partition(',')[0]}, with {FITS[fit]} above {SHORT_DECAY:g} at the longest")
+        elif change > STEADY_TAU * TAU_SLACK:
+            reasons.append(f"tau changes by {change:.0%} {wanted}")
         if reasons:
             yield Doubt((f"tau_{fit}", f"beta_{fit}"), "; ".join(reasons))
+        elif change > STEADY_TAU / TAU_SLACK:
+            yield Doubt((f"tau_{fit}", f"beta_{fit}"), f"tau changes by {change:.0%} {wanted}", False)
         elif A > MOST_AMPLITUDE * (1 - AMPLITUDE_SLACK):
             yield Doubt((f"tau_{fit}", f"beta_{fit}"), f"amplitude {A:.4g}, at most {MOST_AMPLITUDE:g} wanted", False)
 

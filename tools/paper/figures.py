@@ -207,12 +207,9 @@ FIGURES = {"isodiffusivity": isodiffusivity, "isochrones": isochrones}
 CURVE_FIGURES = {"c2_fits": c2_fits, "correlators": correlators}
 
 
-def write_figures(study, lines, directory):
-    for name, draw in FIGURES.items():
-        svg, numbers = draw(study, lines)
-        write_whole(directory / f"{name}.svg", svg)
-        write_whole(directory / f"{name}.csv", numbers)
-    for name, draw in CURVE_FIGURES.items():
-        svg, numbers = draw(study)
-        write_whole(directory / f"{name}.svg", svg)
+def write_figures(study, lines, directory, pages):
+    """Writes the drawings to `pages` and the numbers drawn to `directory`."""
+    figures = {name: draw(study, lines) for name, draw in FIGURES.items()} | {name: draw(study) for name, draw in CURVE_FIGURES.items()}
+    for name, (svg, numbers) in figures.items():
+        write_whole(pages / f"{name}.svg", svg)
         write_whole(directory / f"{name}.csv", numbers)

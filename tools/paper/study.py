@@ -168,7 +168,7 @@ class Study:
         self.say(f"{len(self.pending)} of {len(points)} points to run, {self.jobs} at a time")
         seconds = self.seconds_left()
         if seconds:
-            self.say(f"by the times of those in docs/paper they cost about {_duration(seconds)} of one core, here about "
+            self.say(f"by the times of those in data/paper they cost about {_duration(seconds)} of one core, here about "
                      f"{_duration(seconds / self.jobs)}")
 
     def reap(self):

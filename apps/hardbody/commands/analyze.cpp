@@ -84,7 +84,8 @@ std::string order_csv(const StoredTrajectory& stored) {
 }
 
 /// Words for values that are missing: lengths have the unit of the file.
-const MissingWords kWords = {"", "--longest-lag or a longer trajectory helps", "--fit-from says it"};
+const MissingWords kWords = {"", "--longest-lag or a longer trajectory helps", "--fit-from says it",
+                             "unwrapped columns, image flags or frames closer together help", "a column id helps"};
 
 /// As in summary.json.
 Json observables(const ed::Correlations& c, const ed::Estimate& S, const ed::Director& director) {

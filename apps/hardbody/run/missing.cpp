@@ -18,9 +18,13 @@ MissingWords missing_words(const RunRecord& record) {
 
 std::string missing_text(const ed::Missing& missing, const MissingWords& words) {
   std::string text = ed::describe(missing, words.length_unit);
-  if (ed::longer_lags_help(missing.reason) && !words.longer_lags.empty()) text += "; " + words.longer_lags;
-  const bool unknown = missing.reason == ed::MissingReason::end_of_ballistic_unknown;
-  if (unknown && !words.end_of_ballistic.empty()) text += "; " + words.end_of_ballistic;
+  const auto add = [&](bool wanted, const std::string& help) {
+    if (wanted && !help.empty()) text += "; " + help;
+  };
+  add(ed::longer_lags_help(missing.reason), words.longer_lags);
+  add(missing.reason == ed::MissingReason::end_of_ballistic_unknown, words.end_of_ballistic);
+  add(missing.reason == ed::MissingReason::not_unwrapped, words.unwrapping);
+  add(missing.reason == ed::MissingReason::not_followed, words.following);
   return text;
 }
 

@@ -16,6 +16,8 @@ struct MissingWords {
   std::string length_unit = "l";
   std::string longer_lags;       ///< what to do for longer lags: "a longer run helps"
   std::string end_of_ballistic;  ///< what to do where the lag that fits begin with is unknown; empty: nothing
+  std::string unwrapping;        ///< what to do where positions are wrapped; empty: nothing
+  std::string following;         ///< what to do where bodies are not numbered; empty: nothing
 };
 
 /// Words for the values of a run.

@@ -71,6 +71,7 @@ struct Frame {
 
   // Quantities that are known, of every body of this frame.
   bool images = false;              ///< unwrapped positions: by images, or stored as such
+  bool zero_images = false;         ///< the images of all bodies are 0, in a file of another program
   bool orientations = false;        ///< stored, or by the schema those of frame 0
   bool velocities = false;          ///< the same
   bool angular_velocities = false;  ///< the same

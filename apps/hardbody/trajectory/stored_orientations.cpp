@@ -7,24 +7,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 namespace hardbody {
-namespace {
-
-/// Deviation of a length from 1 that is rounding, of 32-bit numbers or of six digits, and not worth a notice.
-constexpr double kRoundedLength = 1e-5;
-
-}  // namespace
 
 std::optional<Eigen::Matrix3d> StoredOrientations::rotation(const Eigen::Vector4d& q) {
-  const double length = q.norm();
-  const double off = std::abs(length - 1);
-  if (!(off <= kQuaternionTolerance)) return std::nullopt;
-  if (off > kRoundedLength) {
+  const QuaternionLength found(q);
+  if (!found.accepted) return std::nullopt;
+  if (found.normalized) {
     ++normalized_;
-    farthest_ = std::max(farthest_, off);
+    farthest_ = std::max(farthest_, found.off);
   }
+  const double length = found.length;
   return geom::Pose::from_quaternion(q[0] / length, q[1] / length, q[2] / length, q[3] / length).rotation();
 }
 

@@ -255,6 +255,7 @@ void Reading::finish(std::size_t used) {
   const bool orientations = say_orientations_ && known_orientations_ == count;
   const bool velocities = known_velocities_ == count;
   Unwrapping::Result unwrapped = unwrapping_.take();
+  if (!unwrapped.notice.empty()) result_.notices.push_back(unwrapped.notice);
   for (std::size_t k = 0; k < count; ++k) {
     ed::StoredFrame& frame = result_.frames[k];
     if (!orientations) frame.rotation.clear();

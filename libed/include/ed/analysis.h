@@ -25,9 +25,12 @@ enum class MissingReason {
   decayed_before_diffusion,  ///< the correlation falls to 1/e before motion is diffusive
   end_of_ballistic_unknown,  ///< nobody knows from which lag on motion is diffusive
   no_fit,                    ///< the stretched exponential that fits best is none: see fit_decay
+  tau_unsteady,              ///< the correlation has come down little, and tau depends on the lags that are fitted
   meaningless,               ///< the quantity has no meaning: nothing turns the bodies
   no_such_axis,              ///< bodies of revolution have no third axis
   not_told,                  ///< the file does not tell
+  not_unwrapped,             ///< positions are wrapped, or may be, and bodies move far between frames
+  not_followed,              ///< frames do not say which body is which
 };
 
 /// The enumerator's name.
@@ -36,13 +39,16 @@ ED_EXPORT const char* to_string(MissingReason reason);
 /// Reason for which a value is missing, and how far motion has come.
 struct Missing {
   MissingReason reason = MissingReason::not_measured;
-  /// not_displaced: root of the MSD at the longest lag; not_turned: the same of the rotation, in rad; not_decayed: the
-  /// correlation there; ballistic, subdiffusive: the power of time that displacements grow with. NaN for other reasons.
+  /// not_displaced: root of the MSD at the first lag of the fit; not_turned: the same of the rotation at the longest
+  /// lag, in rad; not_decayed, tau_unsteady: the correlation there; ballistic, subdiffusive: the power of time that
+  /// displacements grow with. NaN for other reasons.
   double reached = std::numeric_limits<double>::quiet_NaN();
+  /// not_displaced, not_turned: the lag of `reached`. NaN for other reasons.
+  double lag = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// Describes the reason in one sentence without a full stop: "bodies have moved 0.19 l within the longest lag: no
-/// diffusion yet". `length_unit` follows the distance.
+/// Describes the reason in one sentence without a full stop: "bodies have moved 0.19 l by lag 16, where the fit begins:
+/// no diffusion yet". `length_unit` follows the distance.
 ED_EXPORT std::string describe(const Missing& missing, std::string_view length_unit = "l");
 
 /// Whether longer lags, of a longer run, may give the value.

@@ -115,7 +115,8 @@ struct BlockRow {
 /// turns those of one group.
 ///
 /// A decay falls to 1/e, or has no time; its fit has an amplitude of at most 1.3, tau no smaller than the first fitted
-/// lag, and beta of at least 0.3, or is none.
+/// lag, and beta of at least 0.3, or is none. Where the correlation is above 1/4 at the longest lag, tau is also that
+/// of the lags without the first third of them, to 25 %.
 struct Correlations {
   Estimate D_trans;      ///< slope of the MSD / 6
   Estimate D_rot;        ///< slope of rot_msd / (2 rotation_axes): the paper's 4t for two components

@@ -86,6 +86,7 @@ enum class EventKind {
   exit,     ///< of a body from its envelope
   look,     ///< at a pair again, whose certified bound has come
   contact,  ///< of a pair
+  added,    ///< of a single body, of a kind that is none of the library's
 };
 
 /// The enumerator's name.

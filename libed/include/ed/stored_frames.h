@@ -59,7 +59,8 @@ struct StoredResults : Results {
 /// Takes averages over frames, and correlations over all pairs of frames that are a lag apart, at about 20 lags a
 /// decade. Errors are standard errors over blocks as long as the longest lag (2 to 16 of them). Values that frames do
 /// not tell are missing for the reason MissingReason::not_told: collisions, pressure, temperatures, rotational
-/// displacements, and with velocities or rotations missing what is made of them.
+/// displacements, and with velocities or rotations missing what is made of them. Without unwrapped positions
+/// displacements are missing for the reason not_unwrapped, without the same bodies all correlations for not_followed.
 ///
 /// Memory: some 200 bytes a body and frame beside the frames. Throws std::invalid_argument for no frames, numbers of
 /// bodies that differ, a box that is not positive, times that do not rise, a negative lag to fit from.

@@ -4,8 +4,6 @@
 #include "contact/convex_gap.h"
 #include "motion/checks.h"
 
-#include <ed/impulse.h>
-
 #include <geom/tolerances.h>
 
 #include <algorithm>
@@ -139,12 +137,10 @@ void GeneralBodies::start_flight(int i, double now, const TopState& state, const
   m.time = now;
 }
 
-double GeneralBodies::collide(int i, int j, const Vector3d& r, const Vector3d& n, double now) {
+GeneralBodies::Contact GeneralBodies::contact(int i, int j, const Vector3d& r, const Vector3d& n, double now) const {
   const ContactPoints points =
       with_gauge(i, j, r, now, [&](const auto& gauge) { return gauge.contact_points(gauge.at(now), n); });
   const auto top = [&](int body) { return motions_[at(body)].top.at(now - motions_[at(body)].time); };
-  const TopState top_i = top(i);
-  const TopState top_j = top(j);
   // The spin of a body of revolution has no part in it, so that energy is kept however well its contact point is known.
   const auto spin = [this](int body, const TopState& at_contact) -> Vector3d {
     const int axis = kind_of(body).symmetry_axis;
@@ -152,7 +148,8 @@ double GeneralBodies::collide(int i, int j, const Vector3d& r, const Vector3d& n
     const Vector3d u = at_contact.R.col(axis);
     return at_contact.omega.dot(u) * u;
   };
-  const auto contact_body = [&](int body, const TopState& at_contact, const Vector3d& arm) -> ContactBody {
+  const auto contact_body = [&](int body, const TopState& at_contact, const Vector3d& arm,
+                                const Vector3d& spinning) -> ContactBody {
     const GeneralKind& kind = kind_of(body);
     Vector3d inverse = kind.inertia.cwiseInverse();
     if (kind.symmetry_axis >= 0) inverse[kind.symmetry_axis] = 0;
@@ -160,16 +157,19 @@ double GeneralBodies::collide(int i, int j, const Vector3d& r, const Vector3d& n
     for (int k = 0; k < 3; ++k) {
       inverse_inertia += inverse[k] * at_contact.R.col(k) * at_contact.R.col(k).transpose();
     }
-    return {1 / kind.mass, inverse_inertia, arm, motions_[at(body)].velocity,
-            at_contact.omega - spin(body, at_contact)};
+    return {1 / kind.mass, inverse_inertia, arm, motions_[at(body)].velocity, at_contact.omega - spinning};
   };
-  ContactBody a = contact_body(i, top_i, points.a);
-  ContactBody b = contact_body(j, top_j, points.b);
-  const double J = ed::collide(a, b, n);
-  if (!(J > 0)) return 0;
-  start_flight(i, now, top_i, a.velocity, a.angular_velocity + spin(i, top_i));
-  start_flight(j, now, top_j, b.velocity, b.angular_velocity + spin(j, top_j));
-  return J;
+  const TopState top_i = top(i);
+  const TopState top_j = top(j);
+  const Vector3d spin_i = spin(i, top_i);
+  const Vector3d spin_j = spin(j, top_j);
+  return {
+      contact_body(i, top_i, points.a, spin_i), contact_body(j, top_j, points.b, spin_j), top_i, top_j, spin_i, spin_j};
+}
+
+void GeneralBodies::leave(int i, int j, const Contact& contact, double now) {
+  start_flight(i, now, contact.top_a, contact.a.velocity, contact.a.angular_velocity + contact.spin_a);
+  start_flight(j, now, contact.top_b, contact.b.velocity, contact.b.angular_velocity + contact.spin_b);
 }
 
 double GeneralBodies::contact_scale(int i, int j, const Vector3d& r, const Vector3d& start, double now,

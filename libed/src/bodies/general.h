@@ -15,6 +15,7 @@
 #include "motion/rigid_motion.h"
 
 #include <ed/contact_options.h>
+#include <ed/impulse.h>
 #include <ed/motion.h>
 #include <ed/snapshot.h>
 #include <ed/system.h>
@@ -85,8 +86,19 @@ class GeneralBodies {
                        const ContactOptions& options, Eigen::Vector3d& n, FinderCounters& count,
                        std::optional<Unsolved>& unsolved) const;
 
-  /// The impulse of a contact now: J, or 0 and nothing is changed if the bodies do not approach.
-  double collide(int i, int j, const Eigen::Vector3d& r, const Eigen::Vector3d& n, double now);
+  /// Two bodies in contact, and what else their motion is made of.
+  struct Contact {
+    ContactBody a;  ///< without spin
+    ContactBody b;
+    TopState top_a;
+    TopState top_b;
+    Eigen::Vector3d spin_a;  ///< part of the angular velocity that contacts do not change
+    Eigen::Vector3d spin_b;
+  };
+  /// Returns i and j, r apart, in contact along n now.
+  Contact contact(int i, int j, const Eigen::Vector3d& r, const Eigen::Vector3d& n, double now) const;
+  /// Gives i and j the velocities with which they leave the contact.
+  void leave(int i, int j, const Contact& contact, double now);
 
   /// The factor by which r would have to shrink for the pair to touch, from above and no better than `enough`.
   double contact_scale(int i, int j, const Eigen::Vector3d& r, const Eigen::Vector3d& n, double now,

@@ -5,8 +5,6 @@
 #include "system/uniaxial.h"
 #include "vectors/choose.h"
 
-#include <ed/impulse.h>
-
 #include <geom/tolerances.h>
 
 #include <algorithm>
@@ -114,7 +112,8 @@ Finding UniaxialBodies::find_contact(int i, int j, const Vector3d& r, double now
 /// Of the square of a rate that a collision may take without what rounding has left of it being scaled up.
 constexpr double kMostLost = 1e-4;
 
-double UniaxialBodies::collide(int i, int j, const Vector3d& /*r*/, const Vector3d& n, double /*now*/) {
+UniaxialBodies::Contact UniaxialBodies::contact(int i, int j, const Vector3d& /*r*/, const Vector3d& n,
+                                                double /*now*/) const {
   const auto contact_body = [this](int body, const Vector3d& outward) -> ContactBody {
     const AxisMotion& m = entries_[at(body)].motion;
     const UniaxialKind& kind = kind_of(body);
@@ -123,11 +122,11 @@ double UniaxialBodies::collide(int i, int j, const Vector3d& /*r*/, const Vector
     return {1 / kind.inertia.mass, Eigen::Matrix3d::Identity() / kind.inertia.perpendicular,
             support_point(kind.shape, m.axis(), outward), m.velocity, omega_across(m)};
   };
-  ContactBody a = contact_body(i, n);
-  ContactBody b = contact_body(j, -n);
-  const double J = ed::collide(a, b, n);
-  if (!(J > 0)) return 0;
-  for (const auto& [body, state] : {std::pair<int, const ContactBody&>{i, a}, {j, b}}) {
+  return {contact_body(i, n), contact_body(j, -n)};
+}
+
+void UniaxialBodies::leave(int i, int j, const Contact& contact, double /*now*/) {
+  for (const auto& [body, state] : {std::pair<int, const ContactBody&>{i, contact.a}, {j, contact.b}}) {
     AxisMotion& m = entries_[at(body)].motion;
     m.velocity = state.velocity;
     const Vector3d u = m.axis();
@@ -141,7 +140,6 @@ double UniaxialBodies::collide(int i, int j, const Vector3d& /*r*/, const Vector
     const double omega2 = omega.squaredNorm();
     if (!inertia.spins && omega2 > kMostLost * rate2) m.rate = std::sqrt(omega2 + (rate2 - before.squaredNorm()));
   }
-  return J;
 }
 
 /// For every n with n.r > 0 the pair is apart for scales above (hA + hB) / n.r = 1 - g / n.r; the best n is near the

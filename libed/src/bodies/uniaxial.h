@@ -14,6 +14,7 @@
 #include "vectors/kernels.h"
 
 #include <ed/contact_options.h>
+#include <ed/impulse.h>
 #include <ed/motion.h>
 #include <ed/snapshot.h>
 #include <ed/system.h>
@@ -89,8 +90,15 @@ class UniaxialBodies {
                        const ContactOptions& options, Eigen::Vector3d& n, FinderCounters& count,
                        std::optional<Unsolved>& unsolved) const;
 
-  /// The impulse of a contact now, both bodies moved to it: J, or 0 and nothing is changed if they do not approach.
-  double collide(int i, int j, const Eigen::Vector3d& r, const Eigen::Vector3d& n, double now);
+  /// Two bodies in contact.
+  struct Contact {
+    ContactBody a;
+    ContactBody b;
+  };
+  /// Returns i and j in contact along n, both moved to that time.
+  Contact contact(int i, int j, const Eigen::Vector3d& r, const Eigen::Vector3d& n, double now) const;
+  /// Gives i and j the velocities with which they leave the contact.
+  void leave(int i, int j, const Contact& contact, double now);
 
   /// The factor by which r would have to shrink for the pair to touch, from above and no better than `enough`.
   double contact_scale(int i, int j, const Eigen::Vector3d& r, const Eigen::Vector3d& n, double now,

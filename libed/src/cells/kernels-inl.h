@@ -1,6 +1,6 @@
 /// The kernel of linked cells.
 ///
-/// Included once by each cell_kernels_*.cpp, which sets HARDBODY_CELL_KERNEL, the function's name, and is compiled for
+/// Included once by each cells/kernels_*.cpp, which sets HARDBODY_CELL_KERNEL, the function's name, and is compiled for
 /// its own instruction set. All give the bits of nearest_image (periodic.h).
 
 // What the kernel does not need should not be asked of the processor.

@@ -1,6 +1,6 @@
 #pragma once
 
-/// The contact finder: one function over gauges (see uniaxial_gauge.h for what a gauge is).
+/// The contact finder: one function over gauges (see uniaxial_gap.h for what a gauge is).
 ///
 /// Why no contact is ever stepped over. For a fixed unit n let g(tau) be the gap along n at time t + tau; the distance
 /// is the maximum over n, so d(t + tau) >= g(tau) for every n. Let K >= -g'' on [0, T]. Integrating twice,

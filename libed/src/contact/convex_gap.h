@@ -1,7 +1,7 @@
 #pragma once
 
 /// The gauge of two convex bodies of which nothing is known but their support functions and radii: a user's own shapes
-/// (see uniaxial_gauge.h for what a gauge is), and the steps it certifies. Every look is a whole distance query.
+/// (see uniaxial_gap.h for what a gauge is), and the steps it certifies. Every look is a whole distance query.
 ///
 /// Chords. Let the normal turn uniformly from n0 now to n1 at T, by an angle a, so that Omega = a / T. Seen from a body
 /// that turns at omega(t), |omega| <= w, |d omega/dt| <= w', its direction u(tau) has |u''| <= B = (Omega + w)^2 + w'.

@@ -2,7 +2,7 @@
 
 /// What certified_contact asks of a gauge whose g has a second derivative bounded from below for every n and t
 /// (curvature_limit) and, better, over an interval ahead (certificate). Gauges without such a bound, of bodies with
-/// flat faces, answer these questions by members of the same names: see support_gauge.h.
+/// flat faces, answer these questions by members of the same names: see support_gap.h.
 
 #include "base/select.h"
 #include "contact/parabola_steps.h"

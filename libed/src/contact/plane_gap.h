@@ -1,6 +1,6 @@
 #pragma once
 
-/// The gauge of a body of revolution inside a half-space: when does it touch the plane? (See uniaxial_gauge.h for what
+/// The gauge of a body of revolution inside a half-space: when does it touch the plane? (See uniaxial_gap.h for what
 /// a gauge is.) The normal n is that of the plane, outward, and never changes: g(t) = offset - n.r(t) - h(n, u(t)).
 
 #include "contact/separation.h"

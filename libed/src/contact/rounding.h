@@ -9,7 +9,7 @@
 ///     g >= g_c - gap,    g' >= g'_c - rate,    K <= K_c + curvature,
 ///
 /// with what the root of the parabola and t + tau are rounded by included. The step is made of the numbers on the right
-/// (curvature_steps.h, support_gauge.cpp, convex_gauge.cpp). Bodies with g_c <= gap cannot be told from touching ones.
+/// (curvature_steps.h, support_gap.cpp, convex_gap.cpp). Bodies with g_c <= gap cannot be told from touching ones.
 ///
 /// Derivation for bodies of revolution. u = 2^-53 is the unit roundoff, gamma_n = n u / (1 - n u), and sums and
 /// products are bounded as by Higham, Accuracy and Stability of Numerical Algorithms (2nd ed., 2002), ch. 2 and 3;
@@ -68,7 +68,7 @@
 ///                                                    gap = u (185 S + 3 P + T (18 V + 20 W)) at least
 ///   g'             n.v as above, levers and largest rates by a relative 12: rate = u 21 (V + W).
 ///
-/// Of a certificate with moving normals (support_gauge.h) the direction seen from a body is known to `direction`, and
+/// Of a certificate with moving normals (support_gap.h) the direction seen from a body is known to `direction`, and
 /// so are its change mu1 tau, relative to |Omega| + |omega|, and mu2 tau^2 / 2, relative to (|Omega| + |omega|)^2 +
 /// |alpha|. That moves h by at most R times as much, whatever D, and is added to g' and K. So rounding is not
 /// multiplied by the Hessian of a face.

@@ -1,6 +1,6 @@
 #pragma once
 
-/// The gauge of two superellipsoids or ellipsoids with any semi-axes and moments of inertia (see uniaxial_gauge.h for
+/// The gauge of two superellipsoids or ellipsoids with any semi-axes and moments of inertia (see uniaxial_gap.h for
 /// what a gauge is), and the steps it certifies.
 ///
 /// The second derivative of a support function at fixed n has no bound where a face is flat, so that

@@ -4,6 +4,7 @@
 #include "bodies/body_events.h"
 #include "cells/grid.h"
 #include "loop/calendar.h"
+#include "loop/event_kinds.h"
 #include "neighbours/envelopes.h"
 #include "neighbours/lists.h"
 
@@ -13,7 +14,7 @@
 
 namespace ed::internal {
 
-/// What events read.
+/// Data that events read, and the prefetching of it.
 template <class Bodies>
 struct EventSources {
   const Calendar& calendar;
@@ -22,12 +23,12 @@ struct EventSources {
   const Envelopes<Bodies>& envelopes;
   const CellGrid& cells;
 
-  /// The pairs of a body, whose list has been read or asked for before, and where its time stands.
+  /// Prefetches the pairs of a body, whose list has been read or prefetched before, and where its time stands.
   void fetch_pairs(int body) const {
     for (const std::int32_t index : lists.of(body)) prefetch(lists.pair(index));
     calendar.fetch(body);
   }
-  /// The other bodies of these pairs.
+  /// Prefetches the other bodies of these pairs.
   void fetch_partners(int body) const {
     for (const std::int32_t index : lists.of(body)) bodies.fetch(lists.pair(index).partner(body));
   }
@@ -39,9 +40,9 @@ struct EventSources {
   void fetch_lists_of_partners(int body) const {
     for (const std::int32_t index : lists.of(body)) lists.fetch(lists.pair(index).partner(body));
   }
-  /// The bodies around it, of which its new list is made.
+  /// Prefetches the bodies around it, of which its new list is made.
   void fetch_cells(int body, double now) const { cells.fetch(bodies.position_at(body, now), envelopes.reach()); }
-  /// A pair that leaves the list of a partner gives its place to the last one there.
+  /// Prefetches the last pair in each partner's list: it takes the place of a pair that leaves the list.
   void fetch_last_pairs_of_partners(int body) const {
     for (const std::int32_t index : lists.of(body)) {
       const auto list = lists.of(lists.pair(index).partner(body));
@@ -50,23 +51,23 @@ struct EventSources {
   }
 };
 
-/// Asks for what the next events read, in good time.
+/// Prefetches what the next events read.
 ///
-/// In a large system every event is somewhere else: the calendar's lines, the body, its list, the pairs in it, their
-/// partners, each named by the one before, would be waited for one after another. But the events to come are known:
-/// those of the earliest body of each part into which the calendar divides all. With every event each of these comes
-/// one stage further, which asks for what the next stage reads.
+/// In a large system every event reads memory that is in no cache: lines of the calendar, the body, its list, the pairs
+/// in it, their partners. Each is named by the one before, so that the loop would wait for one after another. But the
+/// next events are known: those of the earliest body of each part into which the calendar divides all bodies. With
+/// every event that is processed each of these goes on by one stage, which prefetches what the next stage reads.
 ///
-/// Nothing but speed depends on it: what turns out otherwise was asked for in vain.
-template <class Bodies>
+/// Only speed depends on it. An event that turns out to be another one was prefetched in vain.
+template <class Bodies, class Added>
 class EventsAhead {
  public:
-  /// Bodies, so that the parts of the calendar are not the bodies themselves.
+  /// Smallest number of bodies for which the parts of the calendar are not the bodies themselves.
   static constexpr int kFewest = Calendar::kFewestInParts;
 
   explicit EventsAhead(const Calendar& calendar) : coming_(calendar.parts()) {}
 
-  /// Before each event.
+  /// Goes on by one stage; called before each event.
   void step(const EventSources<Bodies>& from, double now) {
     for (std::size_t part = 0; part < coming_.size(); ++part) {
       Coming& coming = coming_[part];
@@ -80,20 +81,20 @@ class EventsAhead {
   }
 
  private:
-  /// What is asked for next.
+  /// Data that is prefetched next.
   enum class Stage : std::uint8_t { body, pairs, partners, pairs_of_other, partners_of_other, last_pairs, done };
 
   /// The earliest event of a part of the bodies.
   struct Coming {
     double time = -1;
-    Calendar::Entry entry{0, 0};  ///< with this time; above the body's while that is looked for
+    Calendar::Entry entry{0, 0};  ///< has this time; stands above the body's while that is looked for
     Stage stage = Stage::done;
-    std::int32_t other = 0;  ///< the second body of a contact
+    std::int32_t other = 0;  ///< the other body of a pair
 
     int body() const { return static_cast<int>(entry.index); }
   };
 
-  /// Levels of the calendar that caches do not hold.
+  /// Number of levels of the calendar that caches do not hold.
   static constexpr std::size_t kFarLevels = 2;
 
   static Coming start(const Calendar& calendar, std::size_t part, double time) {
@@ -133,25 +134,39 @@ class EventsAhead {
     return Stage::done;
   }
 
-  /// By the kind of event.
   static Stage after_pairs(Coming& coming, const EventSources<Bodies>& from, double now) {
-    const int body = coming.body();
-    const std::int32_t first = from.bodies.events(body).first;
-    if (first == BodyEvents::kExit) {
-      from.fetch_partners(body);
-      from.fetch_lists_of_partners(body);
-      from.fetch_cells(body, now);
-      return Stage::last_pairs;
-    }
-    const Pair& pair = from.lists.pair(first);
-    coming.other = pair.partner(body);
-    from.fetch_body(coming.other);
-    if (pair.event == PairEvent::bound) return Stage::done;
-    from.fetch_partners(body);
-    return Stage::pairs_of_other;
+    Stage next = Stage::done;
+    dispatch<Added>(from.bodies, from.lists, coming.body(), [&](const auto& event) {
+      const auto [i, j] = event.bodies(from.lists);
+      coming.other = i == coming.body() ? j : i;
+      next = fetch_for(event.kReads, coming, from, now);
+    });
+    return next;
   }
 
-  std::vector<Coming> coming_;  ///< of each part
+  static Stage fetch_for(EventReads reads, const Coming& coming, const EventSources<Bodies>& from, double now) {
+    const int body = coming.body();
+    switch (reads) {
+      case EventReads::new_list:
+        from.fetch_partners(body);
+        from.fetch_lists_of_partners(body);
+        from.fetch_cells(body, now);
+        return Stage::last_pairs;
+      case EventReads::partners:
+        from.fetch_partners(body);
+        return Stage::done;
+      case EventReads::other:
+        from.fetch_body(coming.other);
+        return Stage::done;
+      case EventReads::partners_of_both:
+        from.fetch_body(coming.other);
+        from.fetch_partners(body);
+        return Stage::pairs_of_other;
+    }
+    return Stage::done;
+  }
+
+  std::vector<Coming> coming_;  ///< for each part
 };
 
 }  // namespace ed::internal

@@ -1,5 +1,5 @@
 #include "base/archive.h"
-#include "loop/event_loop.h"
+#include "loop/any_event_loop.h"
 #include "neighbours/cell.h"
 
 #include <ed/archive_simulation.h>
@@ -90,6 +90,8 @@ const char* to_string(EventKind kind) {
       return "look";
     case EventKind::contact:
       return "contact";
+    case EventKind::added:
+      return "added";
   }
   return "unknown";
 }
@@ -107,6 +109,9 @@ std::string describe(const Stall& stall) {
       break;
     case EventKind::contact:
       text << "contacts of bodies " << stall.i << " and " << stall.j;
+      break;
+    case EventKind::added:
+      text << "events of body " << stall.i << " of an added kind";
       break;
   }
   return text.str();

@@ -1,7 +1,7 @@
 #pragma once
 
-/// Envelopes of bodies of any shape: dilated, and the paper's oriented boxes (see dilated_envelopes.h and
-/// oriented_envelopes.h for those of ellipsoids of revolution).
+/// Envelopes of bodies of any shape: dilated, and the paper's oriented boxes (see dilated.h and
+/// oriented.h for those of ellipsoids of revolution).
 ///
 /// Turning by an angle theta moves the surface along any normal by at most lever * theta, because it turns the
 /// direction seen from the body by theta at the most. So a body at (r, R) lies inside its dilated envelope of (r0, R0)

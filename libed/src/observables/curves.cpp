@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdio>
+#include <span>
 #include <string>
 
 namespace ed::internal {
@@ -47,6 +48,25 @@ double exponent_of(const Curve& curve) {
   return slope(logarithms.t, logarithms.y).value_or(kNothing);
 }
 
+/// Lags that a decay is fitted to.
+Curve decay_window(const Curve& curve, double from) {
+  Curve window;
+  for (std::size_t k = 0; k < curve.t.size() && curve.y[k] > kNoise; ++k) {
+    if (curve.t[k] < from) continue;
+    window.t.push_back(curve.t[k]);
+    window.y.push_back(curve.y[k]);
+  }
+  return window;
+}
+
+/// Whether tau of a fit to `window` depends little on the lags fitted, or the correlation has come down far enough.
+bool is_steady(const Curve& window, double longest_lag, double tau) {
+  if (window.t.back() < longest_lag || window.y.back() <= kShortDecay) return true;
+  const std::size_t first = window.t.size() / 3;
+  const auto late = fit_stretched_exponential(std::span(window.t).subspan(first), std::span(window.y).subspan(first));
+  return late && std::abs(late->tau - tau) <= kSteadyTau * tau;
+}
+
 }  // namespace
 
 // ---- Diffusion
@@ -74,7 +94,10 @@ std::optional<Missing> why_not_diffusive(const Curve& curve, const Reach& reach)
   if (exponent > 1 + steepest) return Missing{MissingReason::ballistic, exponent};
   // Comparisons that fail if a number is none.
   if (!(window.y.front() >= reach.at_start && window.y.back() >= reach.at_end)) {
-    return Missing{reach.short_of_it, std::sqrt(std::abs(window.y.back()))};
+    // Where it is asked for: at the beginning of the fit, or at its end.
+    const bool early = reach.at_start > 0;
+    return Missing{reach.short_of_it, std::sqrt(std::abs(early ? window.y.front() : window.y.back())),
+                   early ? window.t.front() : window.t.back()};
   }
   if (!(exponent >= 1 - kLinearity)) return Missing{MissingReason::subdiffusive, exponent};
   return std::nullopt;
@@ -101,12 +124,7 @@ std::optional<Missing> why_no_decay_time(const Curve& curve) {
 std::optional<DecayFit> fit_decay(const Curve& curve, double from) {
   // A comparison that fails if `from` is no number.
   if (!(decay_time(curve) >= kLeastDecay * from)) return std::nullopt;
-  Curve window;
-  for (std::size_t k = 0; k < curve.t.size() && curve.y[k] > kNoise; ++k) {
-    if (curve.t[k] < from) continue;
-    window.t.push_back(curve.t[k]);
-    window.y.push_back(curve.y[k]);
-  }
+  const Curve window = decay_window(curve, from);
   const auto fit = fit_stretched_exponential(window.t, window.y);
   if (!fit || fit->amplitude > kMostAmplitude || fit->beta < kLeastBeta || fit->tau < window.t.front()) {
     return std::nullopt;
@@ -120,7 +138,11 @@ std::optional<Missing> why_no_fit(const Curve& curve, double from) {
   if (std::isnan(from)) return Missing{MissingReason::end_of_ballistic_unknown};
   if (const auto missing = why_no_decay_time(curve)) return missing;
   if (decay_time(curve) < kLeastDecay * from) return Missing{MissingReason::decayed_before_diffusion};
-  if (!fit_decay(curve, from)) return Missing{MissingReason::no_fit};
+  const auto found = fit_decay(curve, from);
+  if (!found) return Missing{MissingReason::no_fit};
+  if (!is_steady(decay_window(curve, from), curve.t.back(), found->fit.tau)) {
+    return Missing{MissingReason::tau_unsteady, curve.y.back()};
+  }
   return std::nullopt;
 }
 
@@ -129,10 +151,13 @@ std::optional<Missing> why_no_fit(const Curve& curve, double from) {
 namespace ed {
 
 std::string describe(const Missing& missing, std::string_view length_unit) {
-  const auto reached = [&](const char* before, std::string_view unit, const char* after) {
+  const auto text_of = [](double value) {
     char number[32];
-    std::snprintf(number, sizeof number, "%.2g", missing.reached);
-    return before + std::string(number) + (unit.empty() ? "" : " ") + std::string(unit) + after;
+    std::snprintf(number, sizeof number, "%.2g", value);
+    return std::string(number);
+  };
+  const auto reached = [&](const char* before, std::string_view unit, const std::string& after) {
+    return before + text_of(missing.reached) + (unit.empty() ? "" : " ") + std::string(unit) + after;
   };
   switch (missing.reason) {
     case MissingReason::not_measured:
@@ -146,7 +171,8 @@ std::string describe(const Missing& missing, std::string_view length_unit) {
     case MissingReason::subdiffusive:
       return reached("displacements grow as t^", "", " up to the longest lag: not yet diffusive");
     case MissingReason::not_displaced:
-      return reached("bodies have moved ", length_unit, " within the longest lag: no diffusion yet");
+      return reached("bodies have moved ", length_unit,
+                     " by lag " + text_of(missing.lag) + ", where the fit begins: no diffusion yet");
     case MissingReason::not_turned:
       return reached("bodies have turned ", "rad", " within the longest lag: no diffusion yet");
     case MissingReason::not_decayed:
@@ -159,12 +185,18 @@ std::string describe(const Missing& missing, std::string_view length_unit) {
       return "it is not known from which lag on motion is diffusive";
     case MissingReason::no_fit:
       return "no stretched exponential fits: amplitude, tau or beta is out of range";
+    case MissingReason::tau_unsteady:
+      return reached("still ", "", " at the longest lag: tau depends on the lags that are fitted");
     case MissingReason::meaningless:
       return "meaningless: nothing turns these bodies";
     case MissingReason::no_such_axis:
       return "bodies of revolution have no such axis";
     case MissingReason::not_told:
       return "the file does not tell";
+    case MissingReason::not_unwrapped:
+      return "positions are wrapped, or may be, and bodies move far between frames";
+    case MissingReason::not_followed:
+      return "the file does not tell which body is which from frame to frame";
   }
   return "";
 }
@@ -195,12 +227,18 @@ const char* to_string(MissingReason reason) {
       return "end_of_ballistic_unknown";
     case MissingReason::no_fit:
       return "no_fit";
+    case MissingReason::tau_unsteady:
+      return "tau_unsteady";
     case MissingReason::meaningless:
       return "meaningless";
     case MissingReason::no_such_axis:
       return "no_such_axis";
     case MissingReason::not_told:
       return "not_told";
+    case MissingReason::not_unwrapped:
+      return "not_unwrapped";
+    case MissingReason::not_followed:
+      return "not_followed";
   }
   return "unknown";
 }
@@ -213,6 +251,7 @@ bool longer_lags_help(MissingReason reason) {
     case MissingReason::not_displaced:
     case MissingReason::not_turned:
     case MissingReason::not_decayed:
+    case MissingReason::tau_unsteady:
       return true;
     default:
       return false;

@@ -48,6 +48,11 @@ constexpr double kNoise = 0.03;
 /// Others continue the decay to lags where nothing was fitted.
 constexpr double kMostAmplitude = 1.3;
 constexpr double kLeastBeta = 0.3;
+/// A correlation that is still above kShortDecay at the longest lag has shown little but its way to 1/e, which a slower
+/// decay or a plateau may follow. There the lags without the first third of them have to give the same tau, to a share
+/// of kSteadyTau.
+constexpr double kShortDecay = 0.25;
+constexpr double kSteadyTau = 0.25;
 
 // ---- Diffusion
 
@@ -94,7 +99,7 @@ struct DecayFit {
 /// body has met another) or NaN (not known).
 std::optional<DecayFit> fit_decay(const Curve& curve, double from);
 
-/// Why fit_decay gives nothing; nothing if it gives a fit.
+/// Why there is no fit of all data: why fit_decay gives nothing, or that tau is not steady; nothing if there is one.
 std::optional<Missing> why_no_fit(const Curve& curve, double from);
 
 }  // namespace ed::internal

@@ -483,8 +483,10 @@ void Evaluation::add_diffusion(std::size_t group, Correlations& results) const {
   const Reach turn = reach_of_rotation(components);
   if (measured_.grid.known()) {
     const auto msd = [](const LagSums& s) { return s.msd; };
+    // Curves leave out the same lags, those without data, so that an index is the same lag in both.
     const std::size_t first = first_of_fit(curve(group, {}, msd));
-    const double non_gaussian = first < measured_.lags.size() ? alpha2(sums_at(first, group, {})) : 0;
+    const Curve non_gaussian_at = curve(group, {}, [](const LagSums& s) { return alpha2(s) * s.count; });
+    const double non_gaussian = first < non_gaussian_at.y.size() ? non_gaussian_at.y[first] : 0;
     results.D_trans = diffusion_estimate(group, 6, reach_of_translation(first_wave_number(group), non_gaussian), msd);
   }
   results.D_rot = diffusion_estimate(group, 2 * components, turn, [](const LagSums& s) { return s.rot_msd; });

@@ -254,25 +254,28 @@ void forget_order(Results& results) {
   }
 }
 
-/// Removes what frames with wrapped positions do not tell.
-void forget_displacements(Correlations& results) {
-  results.D_trans = results.t_F_1overe = results.tau_F = results.beta_F = kNotTold;
+/// Removes displacements, for the reason given.
+void forget_displacements(Correlations& results, MissingReason reason) {
+  const Estimate none = Estimate::none({reason});
+  results.D_trans = results.t_F_1overe = results.tau_F = results.beta_F = none;
   results.window_D = results.window_F = {};
   for (LagRow& row : results.lags) {
-    row.msd = row.alpha2 = kNotTold;
-    row.f_self.assign(row.f_self.size(), kNotTold);
+    row.msd = row.alpha2 = none;
+    row.f_self.assign(row.f_self.size(), none);
   }
 }
 
 /// Removes what frames do not tell whose bodies cannot be followed from one to the next.
 void forget_correlations(Correlations& results) {
-  forget_displacements(results);
-  results.t_C2_1overe = results.tau_C2 = results.beta_C2 = kNotTold;
+  constexpr Estimate kNone = Estimate::none({MissingReason::not_followed});
+  forget_displacements(results, MissingReason::not_followed);
+  results.t_C2_1overe = results.tau_C2 = results.beta_C2 = kNone;
   results.window_C2 = {};
-  results.t_C2_1overe_axis = kAxesNotTold;
+  results.t_C2_1overe_axis.fill(kNone);
   for (LagRow& row : results.lags) {
-    row.c1 = row.c2 = row.vacf = kNotTold;
-    row.c1_axis = row.c2_axis = kAxesNotTold;
+    row.c1 = row.c2 = row.vacf = kNone;
+    row.c1_axis.fill(kNone);
+    row.c2_axis.fill(kNone);
   }
 }
 
@@ -287,7 +290,7 @@ void forget(Correlations& results, const StoredFramesOptions& options, bool velo
     if (!velocities) row.vacf = kNotTold;
   }
   if (!orientations) forget_orientations(results);
-  if (!options.unwrapped) forget_displacements(results);
+  if (!options.unwrapped) forget_displacements(results, MissingReason::not_unwrapped);
   if (!options.same_bodies) forget_correlations(results);
 }
 

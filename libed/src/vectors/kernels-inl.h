@@ -1,7 +1,7 @@
 /// The kernels of ellipsoids of revolution.
 ///
-/// Included once by each uniaxial_kernels_*.cpp, which sets HARDBODY_UNIAXIAL_KERNELS, the function's name, and is
-/// compiled for its own instruction set. All else here has internal linkage (uniaxial_kernels.h says why).
+/// Included once by each vectors/kernels_*.cpp, which sets HARDBODY_UNIAXIAL_KERNELS, the function's name, and is
+/// compiled for its own instruction set. All else here has internal linkage (vectors/kernels.h says why).
 ///
 /// A lane gives the bits that the code for one pair gives: the same formulas in the same order, without fused
 /// multiply-add. What a lane computes does not depend on its neighbours.

@@ -1,6 +1,6 @@
 #pragma once
 
-/// The kernels of ellipsoids of revolution, compiled once for each instruction set (uniaxial_kernels-inl.h).
+/// The kernels of ellipsoids of revolution, compiled once for each instruction set (vectors/kernels-inl.h).
 ///
 /// Plain arrays only, neither Eigen nor containers: what a translation unit compiled for AVX-512 instantiates of them
 /// could be linked into code for processors without it.

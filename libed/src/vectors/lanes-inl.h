@@ -1,5 +1,5 @@
 /// Numbers, conditions and vectors of three components of every lane, and what all kernels of ellipsoids of revolution
-/// do with them. Part of uniaxial_kernels-inl.h.
+/// do with them. Part of vectors/kernels-inl.h.
 
 #pragma once
 

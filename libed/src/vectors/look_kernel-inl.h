@@ -1,5 +1,5 @@
-/// What certified_contact (certified_contact.h) finds with one evaluation, one pair to a vector lane. Part of
-/// uniaxial_kernels-inl.h.
+/// What certified_contact (certified.h) finds with one evaluation, one pair to a vector lane. Part of
+/// vectors/kernels-inl.h.
 ///
 /// Lanes that need anything but the usual (a normal that needs more than kMostSteps steps or falls back, bodies that
 /// touch, a contact near enough for Newton's method) are left open, and searched from the start.
@@ -86,7 +86,7 @@ HWY_INLINE Course<kSpin> load_course(const double* const* bodies) {
   return course;
 }
 
-/// Axis and its rate of change, as `turn` in uniaxial_gauge.h. Returns the lanes whose angle is within the range of
+/// Axis and its rate of change, as `turn` in uniaxial_gap.h. Returns the lanes whose angle is within the range of
 /// sincos.
 template <bool kSpin>
 HWY_INLINE Lanes turn(const Course<kSpin>& course, Real t, Body<kSpin>& body) {
@@ -139,7 +139,7 @@ struct Pairs {
   }
 };
 
-/// As `pair_scales` in uniaxial_gauge.h.
+/// As `pair_scales` in uniaxial_gap.h.
 template <bool kSpin>
 HWY_INLINE PairScalesOf<Real> pair_scales(const LookInput& in, int lane, const Pairs<kSpin>& p, const Course<kSpin>& a,
                                           const Course<kSpin>& b) {
@@ -203,7 +203,7 @@ HWY_INLINE Real certified_step(const Pairs<kSpin>& p, const Gap& gap, Real gp, R
                           [&](Real reach) { return a.bound(p.a.shape, reach) + b.bound(p.b.shape, reach); });
 }
 
-/// Improves the normals of the first `pairs` as improve_normal in certified_contact.h does, and makes the certified
+/// Improves the normals of the first `pairs` as improve_normal in certified.h does, and makes the certified
 /// step.
 template <bool kSpin>
 HWY_INLINE void second_pass(Pairs<kSpin>& p, int pairs, LookOutput& out, int lane) {

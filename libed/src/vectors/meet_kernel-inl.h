@@ -1,5 +1,5 @@
 /// Whether dilated envelopes may meet, as DilatedEnvelopes::may_meet has it, one pair to a vector lane. Part of
-/// uniaxial_kernels-inl.h.
+/// vectors/kernels-inl.h.
 
 #pragma once
 

@@ -2,7 +2,7 @@
 
 #include "unit/geom/batch_roots.h"
 
-#include <batch_vectors-inl.h>
+#include <batch/vectors-inl.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace geom_test {

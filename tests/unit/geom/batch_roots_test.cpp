@@ -1,4 +1,4 @@
-/// Roots and inverses from the processor's estimates: as exact as batch_vectors-inl.h says.
+/// Roots and inverses from the processor's estimates: as exact as batch/vectors-inl.h says.
 
 #include "unit/geom/batch_roots.h"
 

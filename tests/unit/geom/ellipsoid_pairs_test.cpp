@@ -4,10 +4,10 @@
 #include "common/geom_manufactured.h"
 #include "common/special_values.h"
 
-#include <ellipsoid_pair.h>
+#include <dual/ellipsoid_pair.h>
+#include <dual/spheroid_pair.h>
 #include <geom/geom.h>
 #include <gtest/gtest.h>
-#include <spheroid_pair.h>
 
 #include <Eigen/Core>
 #include <Eigen/LU>

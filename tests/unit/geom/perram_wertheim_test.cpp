@@ -139,7 +139,7 @@ TEST(PerramWertheimFallback, GivesTheDistanceOfEverySeparatedPair) {
 
 TEST(PerramWertheimFallback, AnswersCertifiedOverlapsRightOrDeclinesThem) {
   Random random(6);
-  constexpr int kPairs = repetitions(5000);
+  const int kPairs = repetitions(5000);
   int answered = 0;
   for (int i = 0; i < kPairs; ++i) {
     const Ellipsoid a = any_ellipsoid(random, 10);

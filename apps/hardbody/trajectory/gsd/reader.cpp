@@ -238,6 +238,7 @@ void FrameReader::read_bodies(Frame& frame) const {
   if (frame.images) frame.unwrapped_by = "image flags";
   frame.ids = true;
   const auto image = frame.images ? numbers<std::int32_t>("particles/image", number, 3) : std::vector<std::int32_t>();
+  frame.zero_images = frame.images && std::all_of(image.begin(), image.end(), [](std::int32_t n) { return n == 0; });
   frame.bodies.resize(number);
   for (std::size_t i = 0; i < number; ++i) {
     FrameBody& body = frame.bodies[i];
@@ -420,6 +421,7 @@ void check_unedited(const Frame& frame, const ed::System& system, const std::str
 void sharpen(Frame& frame, const ed::System& system) {
   frame.box = Vector3d::Constant(system.box);
   frame.orientations = frame.velocities = frame.angular_velocities = true;
+  frame.zero_images = false;
   for (std::size_t k = 0; k < system.species.size() && k < frame.types.size(); ++k) {
     frame.types[k].shape = system.species[k].shape;
   }

@@ -60,7 +60,7 @@ class DumpFrame {
   void read_columns(std::string_view head);
   void check_tilted_columns();
   void read_body(const Words& words);
-  void read_position(const Words& words, FrameBody& body) const;
+  void read_position(const Words& words, FrameBody& body);
   void read_orientation(const Words& words, FrameBody& body);
   void read_motion(const Words& words, FrameBody& body);
   void read_shape(const Words& words, std::uint32_t type, FrameBody& body);
@@ -178,6 +178,8 @@ void DumpFrame::read_columns(std::string_view head) {
   frame_.ids = columns_->id.has_value();
   frame_.images = columns_->unwrapped() && frame_.tilt.isZero(0);
   if (frame_.images) frame_.unwrapped_by = columns_->unwrapped_columns() ? "unwrapped columns" : "image flags";
+  const auto by_image = [](const DumpColumns::Axis& axis) { return !axis.unwrapped && !axis.unwrapped_scaled; };
+  frame_.zero_images = frame_.images && std::all_of(columns_->axes.begin(), columns_->axes.end(), by_image);
   frame_.orientations = columns_->quaternion.has_value();
   frame_.velocities = columns_->velocity.has_value();
   frame_.angular_velocities = columns_->angular_velocity.has_value();
@@ -194,7 +196,7 @@ void DumpFrame::check_tilted_columns() {
   }
 }
 
-void DumpFrame::read_position(const Words& words, FrameBody& body) const {
+void DumpFrame::read_position(const Words& words, FrameBody& body) {
   const auto take = [&](DumpColumns::Column plain, DumpColumns::Column scaled, int axis) -> std::optional<double> {
     const double L = frame_.box[axis];
     if (plain) return cell(words, *plain, body) - (low_[axis] + 0.5 * L);
@@ -225,6 +227,7 @@ void DumpFrame::read_position(const Words& words, FrameBody& body) const {
         throw bad(fmt::format("i{} of {} is {:g}", "xyz"[axis], label(body), image), "an integer");
       }
       unwrapped = *wrapped + image * L;
+      frame_.zero_images = frame_.zero_images && image == 0;
     }
     body.position[axis] = wrapped ? *wrapped : *unwrapped;
     body.unwrapped[axis] = frame_.images ? *unwrapped : body.position[axis];

@@ -1,4 +1,4 @@
-#include <sincos.h>
+#include <base/sincos.h>
 
 #include <common/finder_ensemble.h>
 

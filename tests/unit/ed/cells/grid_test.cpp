@@ -1,5 +1,5 @@
-#include <cell_grid.h>
-#include <periodic.h>
+#include <base/periodic.h>
+#include <cells/grid.h>
 
 #include <common/geom_batch.h>
 

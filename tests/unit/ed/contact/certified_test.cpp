@@ -3,8 +3,8 @@
 #include <common/finder_ensemble.h>
 #include <common/finder_gauge.h>
 
-#include <certified_contact.h>
-#include <uniaxial_gauge.h>
+#include <contact/certified.h>
+#include <contact/uniaxial_gap.h>
 
 #include <Eigen/Core>
 
@@ -52,7 +52,7 @@ TEST(CertifiedContact, NormalStaysUnitThroughLongSearches) {
     longest = std::max(longest, static_cast<long>(count.evaluations));
   }
   EXPECT_GT(longest, 50) << "the searches were too easy for this test";
-  // Of the last step alone (libed/src/rounding.h), and three for the norm taken here.
+  // Of the last step alone (libed/src/contact/rounding.h), and three for the norm taken here.
   EXPECT_LE(deviation, 8 * 0x1p-53);
 }
 

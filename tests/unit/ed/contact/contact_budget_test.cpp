@@ -1,8 +1,8 @@
 /// time_of_contact's budget: bodies that slide in touch, or turn a million times, are answered after few evaluations,
 /// and never wrongly.
 
-#include <motion_checks.h>
-#include <swept_hull.h>
+#include <contact/swept_hull.h>
+#include <motion/checks.h>
 
 #include <common/finder_ensemble.h>
 #include <common/message_of.h>

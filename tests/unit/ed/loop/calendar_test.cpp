@@ -1,4 +1,4 @@
-#include <calendar.h>
+#include <loop/calendar.h>
 
 #include <ed/archive.h>
 #include <ed/random.h>

@@ -89,7 +89,7 @@ TEST(Restart, EveryBitIsThere) {
     for (const ed::SimulationOptions& options : all_options()) {
       // The paper's finder takes ten times as long as the other one.
       const bool paper = options.contact.finder == Finder::bracketing;
-      if (paper && finder_test::slow_build() && &c != &cases().front()) continue;
+      if (paper && slow_build() && &c != &cases().front()) continue;
       ed::Simulation undisturbed(c.system, options);
       undisturbed.record_collisions(300);
       ed::Simulation other(c.system, options);
@@ -271,7 +271,7 @@ ed::ObservablesOptions options_for(const Case& c, double duration) {
 }
 
 /// Of the measurements: so that blocks are merged on the way.
-const double kDuration = finder_test::slow_build() ? 0.3 : 1;
+const double kDuration = slow_build() ? 0.3 : 1;
 
 /// Restored before every 61st measurement, or never.
 std::string measure(Measured run, const Case& c, bool restarted) {

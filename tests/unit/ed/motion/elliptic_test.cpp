@@ -1,8 +1,8 @@
 // The functions that the motion of asymmetric tops is made of, against the C library's and Boost's.
 
-#include <elliptic.h>
-#include <exponential.h>
-#include <sincos.h>
+#include <base/exponential.h>
+#include <base/sincos.h>
+#include <motion/elliptic.h>
 
 #include <common/finder_ensemble.h>
 

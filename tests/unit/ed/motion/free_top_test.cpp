@@ -1,4 +1,4 @@
-#include <free_top.h>
+#include <motion/free_top.h>
 
 #include <common/finder_ensemble.h>
 #include <common/top_reference.h>

@@ -1,5 +1,5 @@
-#include <axis_motion.h>
-#include <motion_checks.h>
+#include <motion/axis_motion.h>
+#include <motion/checks.h>
 
 #include <common/finder_reference.h>
 

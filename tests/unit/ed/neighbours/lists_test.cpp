@@ -1,4 +1,4 @@
-#include <neighbour_lists.h>
+#include <neighbours/lists.h>
 
 #include <ed/archive.h>
 #include <ed/random.h>

@@ -50,9 +50,12 @@ TEST(Diffusion, IsNotWhatPassesSlopeOneOnItsWayToACage) {
   EXPECT_FALSE(ed::internal::why_not_diffusive(curve, Reach{}));
   const auto missing = ed::internal::why_not_diffusive(curve, kFluid);
   ASSERT_EQ(reason_of(missing), MissingReason::not_displaced);
-  EXPECT_DOUBLE_EQ(missing->reached, std::sqrt(caged(0.42)));
-  EXPECT_EQ(ed::describe(*missing), "bodies have moved 0.38 l within the longest lag: no diffusion yet");
-  EXPECT_EQ(ed::describe(*missing, ""), "bodies have moved 0.38 within the longest lag: no diffusion yet");
+  // It says what is asked for: the displacement at the first lag of the fit, 7 of 20 of a decade before the longest.
+  const double first = 0.42 * std::pow(10.0, -7 / 20.0);
+  EXPECT_DOUBLE_EQ(missing->lag, first);
+  EXPECT_DOUBLE_EQ(missing->reached, std::sqrt(caged(first)));
+  EXPECT_EQ(ed::describe(*missing), "bodies have moved 0.26 l by lag 0.19, where the fit begins: no diffusion yet");
+  EXPECT_EQ(ed::describe(*missing, ""), "bodies have moved 0.26 by lag 0.19, where the fit begins: no diffusion yet");
 }
 
 TEST(Diffusion, IsNotACageNorBallisticMotion) {
@@ -127,6 +130,7 @@ TEST(Diffusion, OfRotationNeedsAThirdOfASquareRadianForEachComponent) {
     const auto missing = ed::internal::why_not_diffusive(curve_of(0.999 * longest, turned), reach);
     ASSERT_EQ(reason_of(missing), MissingReason::not_turned) << components;
     EXPECT_NEAR(missing->reached, std::sqrt(components / 3), 1e-3);
+    EXPECT_DOUBLE_EQ(missing->lag, 0.999 * longest);
   }
 }
 
@@ -163,6 +167,37 @@ TEST(DecayFit, IsNoneWhereItsParametersSayNothing) {
   EXPECT_EQ(reason(1.19, 0.31), MissingReason::not_measured) << "it is one";
 }
 
+TEST(DecayFit, IsNoneWhereASlowerDecayBeginsThatHasNotBeenSeen) {
+  // Down to 0.31 at the longest lag. A stretched exponential goes through all lags: amplitude 1.17, tau 0.72, beta
+  // 0.63; without the first third of them tau is half as large.
+  const auto two = [](double t) { return 0.75 * std::exp(-t / 0.5) + 0.25 * std::exp(-t / 50); };
+  const Curve curve = curve_of(1.2, two);
+  const auto found = ed::internal::fit_decay(curve, 0.1);
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(found->fit.amplitude, 1.17, 0.01);
+  const auto missing = ed::internal::why_no_fit(curve, 0.1);
+  ASSERT_EQ(reason_of(missing), MissingReason::tau_unsteady);
+  EXPECT_DOUBLE_EQ(missing->reached, curve.y.back());
+  EXPECT_EQ(ed::describe(*missing), "still 0.31 at the longest lag: tau depends on the lags that are fitted");
+  // A plateau, as that of a nematic.
+  const auto plateau = [](double t) { return 0.7 * std::exp(-std::pow(t / 2, 0.7)) + 0.3; };
+  EXPECT_EQ(reason_of(ed::internal::why_no_fit(curve_of(8, plateau), 0.1)), MissingReason::tau_unsteady);
+}
+
+TEST(DecayFit, OfOneDecayIsSteadyHoweverLittleIsSeenOfIt) {
+  for (const double beta : {0.4, 0.7, 1.0, 1.5}) {
+    const auto decay = [beta](double t) { return std::exp(-std::pow(t / 4, beta)) * 1.05; };
+    EXPECT_FALSE(ed::internal::why_no_fit(curve_of(5, decay), 0.3)) << beta;
+  }
+  // Two decays that have both been seen, down to 0.08: tau is a mean of theirs.
+  const auto two = [](double t) { return 0.8 * std::exp(-t) + 0.2 * std::exp(-t / 5); };
+  EXPECT_FALSE(ed::internal::why_no_fit(curve_of(4.5, two), 0.2));
+  // Too few lags to leave any out.
+  const Curve four{{1, 2, 3, 4}, {0.75, 0.56, 0.42, 0.32}};
+  ASSERT_TRUE(ed::internal::fit_decay(four, 1));
+  EXPECT_EQ(reason_of(ed::internal::why_no_fit(four, 1)), MissingReason::tau_unsteady);
+}
+
 TEST(DecayFit, IsNoneOfPlateausAndOfWhatHasDecayedBefore) {
   const auto crystal = [](double t) { return 0.7 + 0.3 * std::exp(-t * t); };
   EXPECT_EQ(reason_of(ed::internal::why_no_fit(curve_of(100, crystal), 0.5)), MissingReason::not_decayed);
@@ -177,8 +212,8 @@ TEST(DecayFit, IsNoneOfPlateausAndOfWhatHasDecayedBefore) {
 }
 
 TEST(Missing, EveryReasonIsDescribed) {
-  for (int k = 0; k <= static_cast<int>(MissingReason::not_told); ++k) {
-    const std::string text = ed::describe({static_cast<MissingReason>(k), 0.19});
+  for (int k = 0; k <= static_cast<int>(MissingReason::not_followed); ++k) {
+    const std::string text = ed::describe({static_cast<MissingReason>(k), 0.19, 16});
     EXPECT_FALSE(text.empty()) << k;
     EXPECT_LE(text.size(), 75U) << text;
     EXPECT_EQ(text.find('\n'), std::string::npos);

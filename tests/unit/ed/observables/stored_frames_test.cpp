@@ -185,7 +185,10 @@ TEST(StoredFrames, WrappedPositionsHaveNoDisplacements) {
     EXPECT_TRUE(std::isfinite(row.c2.value));
     EXPECT_TRUE(std::isfinite(row.vacf.value));
   }
-  EXPECT_EQ(results.D_trans.missing.reason, ed::MissingReason::not_told);
+  for (const ed::Estimate* e : {&results.D_trans, &results.t_F_1overe, &results.tau_F}) {
+    EXPECT_EQ(e->missing.reason, ed::MissingReason::not_unwrapped);
+  }
+  EXPECT_EQ(results.D_rot.missing.reason, ed::MissingReason::not_told);
   EXPECT_TRUE(std::isfinite(results.S.value));
 }
 
@@ -199,7 +202,10 @@ TEST(StoredFrames, BodiesThatCannotBeFollowedHaveNoCorrelations) {
       EXPECT_TRUE(std::isnan(e->value));
     }
   }
-  EXPECT_TRUE(std::isnan(results.t_C2_1overe.value));
+  for (const ed::Estimate* e : {&results.D_trans, &results.t_F_1overe, &results.t_C2_1overe}) {
+    EXPECT_TRUE(std::isnan(e->value));
+    EXPECT_EQ(e->missing.reason, ed::MissingReason::not_followed);
+  }
   EXPECT_TRUE(std::isfinite(results.S.value));
   EXPECT_FALSE(results.structure.empty());
 }

@@ -3,7 +3,7 @@
 #include <common/ed_observed.h>
 #include <common/ed_states.h>
 
-#include <structure.h>
+#include <observables/structure.h>
 
 #include <ed/ed.h>
 

@@ -1,0 +1,111 @@
+#pragma once
+
+/// The kinds of events of a loop, and the one place that tells which of them an event is.
+///
+/// A kind is a class of events with
+///
+///     static constexpr EventKind kKind;
+///     static constexpr EventReads kReads;      // what is prefetched for it
+///     std::array<std::int32_t, 2> bodies(const NeighbourLists& lists) const;  // -1: none
+///     static void predict(loop, ...);          // sets the time of the event
+///     void process(loop) const;                // at that time
+///
+/// `loop` are the parts of an event loop (loop_parts.h). Exits and added events are of one body: BodyEvents::first says
+/// which it is. The others are of a pair: Pair::event says which it is.
+
+#include "bodies/body_events.h"
+#include "bodies/pair.h"
+#include "neighbours/lists.h"
+
+#include <ed/simulation.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace ed::internal {
+
+/// What an event reads beyond its body, the list of it and the pairs in it.
+enum class EventReads : std::uint8_t {
+  new_list,          ///< partners, their lists, and the bodies near by
+  partners,          ///< partners
+  other,             ///< the other body of a pair
+  partners_of_both,  ///< the other body of a pair, and the partners of both
+};
+
+/// A body may leave its envelope.
+struct ExitEvent {
+  static constexpr EventKind kKind = EventKind::exit;
+  static constexpr EventReads kReads = EventReads::new_list;
+  std::int32_t body;
+
+  std::array<std::int32_t, 2> bodies(const NeighbourLists& /*lists*/) const { return {body, -1}; }
+  template <class Loop>
+  static void predict(Loop& loop, int body);
+  template <class Loop>
+  void process(Loop& loop) const;
+};
+
+/// An event of a pair, by its index. One search predicts which kind it is.
+struct PairEventBase {
+  std::int32_t index;
+
+  std::array<std::int32_t, 2> bodies(const NeighbourLists& lists) const {
+    return {lists.pair(index).i, lists.pair(index).j};
+  }
+  template <class Loop>
+  static void predict(Loop& loop, std::int32_t index, int owner, int max_evaluations);
+};
+
+/// The certified bound of a pair has come: it is looked at again.
+struct LookEvent : PairEventBase {
+  static constexpr EventKind kKind = EventKind::look;
+  static constexpr EventReads kReads = EventReads::other;
+
+  template <class Loop>
+  void process(Loop& loop) const;
+};
+
+/// A pair touches.
+struct ContactEvent : PairEventBase {
+  static constexpr EventKind kKind = EventKind::contact;
+  static constexpr EventReads kReads = EventReads::partners_of_both;
+
+  template <class Loop>
+  void process(Loop& loop) const;
+};
+
+/// An event of the added kind number k (added_events.h).
+template <std::size_t k>
+struct AddedEvent {
+  static constexpr EventKind kKind = EventKind::added;
+  static constexpr EventReads kReads = EventReads::partners;
+  std::int32_t body;
+
+  std::array<std::int32_t, 2> bodies(const NeighbourLists& /*lists*/) const { return {body, -1}; }
+  template <class Loop>
+  static void predict(Loop& loop, int body);
+  template <class Loop>
+  void process(Loop& loop) const;
+};
+
+/// Calls f with the first event of `body`, as an object of its kind.
+template <class Added, class Bodies, class F>
+void dispatch(const Bodies& bodies, const NeighbourLists& lists, std::int32_t body, const F& f) {
+  const std::int32_t first = bodies.events(body).first;
+  if (first >= 0) {
+    if (lists.pair(first).event == PairEvent::bound) {
+      f(LookEvent{first});
+    } else {
+      f(ContactEvent{first});
+    }
+  } else if (Added::kNumber == 0 || first == BodyEvents::kExit) {
+    f(ExitEvent{body});
+  } else {
+    Added::for_each_kind([&](auto k) {
+      if (first == Added::first_of(static_cast<std::int32_t>(k))) f(AddedEvent<k>{body});
+    });
+  }
+}
+
+}  // namespace ed::internal

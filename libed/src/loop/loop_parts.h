@@ -1,0 +1,200 @@
+#pragma once
+
+#include "base/large_vector.h"
+#include "bodies/first_looks.h"
+#include "loop/collision_law.h"
+#include "loop/collision_log.h"
+#include "loop/epoch_clock.h"
+#include "loop/event_kinds.h"
+#include "loop/factory.h"
+#include "loop/failure_log.h"
+#include "loop/neighbourhood.h"
+#include "loop/periodic_box.h"
+#include "loop/predictor.h"
+#include "loop/prefetch_events.h"
+#include "loop/schedule.h"
+
+#include <ed/simulation.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <utility>
+#include <vector>
+
+namespace ed::internal {
+
+/// The parts of an event loop, and what several kinds of events do with them.
+template <class Bodies, CollisionLaw Law, class Added>
+struct LoopParts {
+  LoopParts(const System& system, const SimulationOptions& with, Law collision_law, Added added_events);
+  LoopParts(const LoopParts&) = delete;
+  LoopParts& operator=(const LoopParts&) = delete;
+
+  double now() const { return clock.now(); }
+  int number() const { return bodies.number(); }
+
+  /// Predicts what depends on the motion of a body alone.
+  void predict_body(int body);
+  /// Has pairs predicted; `owner` owns them from now on. `skip`: a pair that is left out; kNoPair: none.
+  void queue(std::int32_t index, int owner) { predictor.queue(schedule.claim(index, owner)); }
+  void queue_all_of(int body, std::int32_t skip);
+  /// Predicts the queued pairs, and reschedules bodies whose first event is no longer theirs.
+  void predict_queued();
+  /// Gives a body a new envelope and a new list.
+  void rebuild(int body);
+
+  /// Makes lists and predictions of all bodies.
+  void rebuild_all();
+  /// Predicts every pair, for its body i, and reschedules all bodies.
+  void predict_all();
+  /// Makes room, so that nothing allocates while events are processed but for records that a long run breaks.
+  void reserve();
+  void start_epoch();
+
+  // Prefetching, in large systems only.
+  EventSources<Bodies> sources() const {
+    return {schedule.calendar(), bodies, neighbourhood.lists(), neighbourhood.envelopes(), neighbourhood.cells()};
+  }
+  void fetch_pairs(int body) const {
+    if (ahead) sources().fetch_pairs(body);
+  }
+  /// After fetch_pairs and something else to do: it reads the pairs.
+  void fetch_partners(int body) const {
+    if (ahead) sources().fetch_partners(body);
+  }
+
+  static constexpr std::int32_t kNoPair = -1;
+
+  SimulationOptions options;
+  std::vector<Species> species;
+  std::vector<int> species_of;  ///< number of each body's
+  Counters counters;
+  EpochClock clock;
+  PeriodicBox box;
+  Bodies bodies;
+  Law law;
+  Added added;
+  Neighbourhood<Bodies> neighbourhood;
+  Schedule<Bodies, Added> schedule;
+  FailureLog failures;
+  Predictor<Bodies> predictor;
+  CollisionLog collisions;
+  std::optional<EventsAhead<Bodies, Added>> ahead;  ///< if most of what an event reads is not in the caches
+
+ private:
+  static std::vector<int> species_numbers(const System& system) {
+    std::vector<int> numbers;
+    for (const Body& body : system.bodies) numbers.push_back(body.species);
+    return numbers;
+  }
+};
+
+template <class Bodies, CollisionLaw Law, class Added>
+LoopParts<Bodies, Law, Added>::LoopParts(const System& system, const SimulationOptions& with, Law collision_law,
+                                         Added added_events)
+    : options(with),
+      species(system.species),
+      species_of(species_numbers(system)),
+      box(system.box, system.size()),
+      bodies(system),
+      law(std::move(collision_law)),
+      added(std::move(added_events)),
+      neighbourhood(bodies, box, counters, options.batches),
+      schedule(bodies, neighbourhood.lists(), added),
+      failures(species, species_of),
+      predictor({bodies, neighbourhood, box, clock, counters, failures}, options.contact,
+                make_first_looks(bodies, options)),
+      collisions(system.size()) {
+  added.resize(number());
+  if (number() >= std::max(options.prepare_from, EventsAhead<Bodies, Added>::kFewest)) {
+    ahead.emplace(schedule.calendar());
+  }
+}
+
+template <class Bodies, CollisionLaw Law, class Added>
+void LoopParts<Bodies, Law, Added>::predict_body(int body) {
+  ExitEvent::predict(*this, body);
+  added.predict(bodies, body, clock, box);
+}
+
+template <class Bodies, CollisionLaw Law, class Added>
+void LoopParts<Bodies, Law, Added>::queue_all_of(int body, std::int32_t skip) {
+  for (const std::int32_t index : neighbourhood.lists().of(body)) {
+    if (index != skip) queue(index, body);
+  }
+}
+
+template <class Bodies, CollisionLaw Law, class Added>
+void LoopParts<Bodies, Law, Added>::predict_queued() {
+  predictor.predict_queued();
+  for (const int body : schedule.orphans()) fetch_pairs(body);
+  schedule.reschedule_orphans();
+}
+
+template <class Bodies, CollisionLaw Law, class Added>
+void LoopParts<Bodies, Law, Added>::rebuild(int i) {
+  ++counters.neighbour_rebuilds;
+  fetch_pairs(i);
+  neighbourhood.place(i, now());
+  if (ahead) sources().fetch_lists_of_partners(i);
+  neighbourhood.drop_list(i, [this](std::int32_t index, std::int32_t partner) { schedule.release(index, partner); });
+  ExitEvent::predict(*this, i);
+  neighbourhood.find_list(i, now());
+  fetch_partners(i);
+  queue_all_of(i, kNoPair);
+  predict_queued();
+  schedule.reschedule(i);
+}
+
+template <class Bodies, CollisionLaw Law, class Added>
+void LoopParts<Bodies, Law, Added>::rebuild_all() {
+  neighbourhood.make_all(now());
+  for (int i = 0; i < number(); ++i) added.predict(bodies, i, clock, box);
+  predict_all();
+  reserve();
+}
+
+template <class Bodies, CollisionLaw Law, class Added>
+void LoopParts<Bodies, Law, Added>::predict_all() {
+  const NeighbourLists& lists = neighbourhood.lists();
+  for (int i = 0; i < number(); ++i) {
+    for (const std::int32_t index : lists.of(i)) {
+      if (lists.pair(index).i == i) queue(index, i);
+    }
+    predictor.predict_queued();
+  }
+  schedule.forget_orphans();
+  schedule.reschedule_all();
+}
+
+template <class Bodies, CollisionLaw Law, class Added>
+void LoopParts<Bodies, Law, Added>::reserve() {
+  // Of an event every pair of two bodies, or all that a body had and all that it gets.
+  const std::size_t most = 2 * neighbourhood.reserve();
+  predictor.reserve(most);
+  schedule.reserve(most);
+}
+
+template <class Bodies, CollisionLaw Law, class Added>
+void LoopParts<Bodies, Law, Added>::start_epoch() {
+  clock.go_to_end_of_epoch();
+  NeighbourLists& lists = neighbourhood.lists();
+  for (int i = 0; i < number(); ++i) {
+    bodies.move(i, now());
+    bodies.restart_clock(i, now());
+    bodies.events(i).exit -= clock.epoch();
+  }
+  for (int i = 0; i < number(); ++i) {
+    for (const std::int32_t index : lists.of(i)) {
+      Pair& pair = lists.pair(index);
+      if (pair.i == i) pair.time -= clock.epoch();
+    }
+  }
+  added.start_epoch(clock.epoch());
+  clock.start_epoch();
+  schedule.reschedule_all();
+}
+
+}  // namespace ed::internal
