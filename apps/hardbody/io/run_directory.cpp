@@ -72,6 +72,11 @@ void remove_run(const fs::path& directory) {
 
 }  // namespace
 
+fs::path directory_for(const std::optional<std::string>& out, const fs::path& config) {
+  if (out && out->empty()) throw InputError("--out is empty; accepted: the name of a directory");
+  return out ? fs::path(*out) : "out" / config.stem();
+}
+
 DirectoryLock::DirectoryLock(const fs::path& directory)
     : descriptor_(::open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
   if (descriptor_ >= 0 && ::flock(descriptor_, LOCK_EX | LOCK_NB) == 0) return;

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -41,6 +42,10 @@ inline constexpr const char* kPairsFile = "observables/g_r.csv";
 inline constexpr const char* kStructureFile = "observables/s_q.csv";
 inline constexpr const char* kBlocksFile = "observables/blocks.csv";
 inline constexpr const char* kFailuresDirectory = "failures";
+
+/// Returns the directory that a command writes to: `out`, or out/<stem of the config>. Throws InputError if `out` is
+/// empty.
+std::filesystem::path directory_for(const std::optional<std::string>& out, const std::filesystem::path& config);
 
 enum class Overwrite { refused, allowed };
 
