@@ -10,7 +10,7 @@
 namespace ed::internal {
 
 /// A pair to look at now, and what was found.
-struct Look {
+struct PairLook {
   Pair* pair;
   double end;  ///< of the search
   bool answered = false;
@@ -25,7 +25,7 @@ class FirstLooks {
 
   /// Answers the looks that it can, setting finding and normal, and counts them, all as certified_contact with one
   /// evaluation does, bit for bit. The others are left as they are. Centres are as far apart as nearest images are.
-  virtual void take(const Bodies& bodies, double now, double box, std::span<Look> looks, FinderCounters& count) = 0;
+  virtual void take(const Bodies& bodies, double now, double box, std::span<PairLook> looks, FinderCounters& count) = 0;
 };
 
 }  // namespace ed::internal

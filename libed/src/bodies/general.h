@@ -69,7 +69,7 @@ class GeneralBodies {
   const BodyEvents& events(int i) const { return events_[at(i)]; }
   const Eigen::Vector3d& velocity(int i) const { return motions_[at(i)].velocity; }
   /// How fast the body turns at the most.
-  double turning(int i) const { return motions_[at(i)].top.max_omega(); }
+  double angular_speed_bound(int i) const { return motions_[at(i)].top.max_omega(); }
   Motion motion(int i, double t) const;
   static constexpr bool kSamplesRotations = true;  ///< of a Snapshot
   /// All of a Snapshot but the position.
@@ -123,9 +123,9 @@ class GeneralBodies {
   }
 
  private:
-  /// Calls f with the gauge of i and j: the one for libgeom's shapes, or the one for any.
+  /// Calls f with the pair gap of i and j: the one for libgeom's shapes, or the one for any.
   template <class F>
-  decltype(auto) with_gauge(int i, int j, const Eigen::Vector3d& r, double now, F&& f) const;
+  decltype(auto) with_gap(int i, int j, const Eigen::Vector3d& r, double now, F&& f) const;
 
   static std::size_t at(int i) { return static_cast<std::size_t>(i); }
   void start_flight(int i, double now, const TopState& state, const Eigen::Vector3d& velocity,

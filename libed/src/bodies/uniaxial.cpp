@@ -102,11 +102,11 @@ Finding UniaxialBodies::find_contact(int i, int j, const Vector3d& r, double now
   }
   const double reach = A.bounding_radius + B.bounding_radius;
   if (spins_) {
-    const UniaxialGauge<true> gauge(A.shape, a, B.shape, b, r, now, reach);
-    return certified_contact(gauge, now, end, max_evaluations, n, count);
+    const UniaxialGap<true> gap(A.shape, a, B.shape, b, r, now, reach);
+    return certified_contact(gap, now, end, max_evaluations, n, count);
   }
-  const UniaxialGauge<false> gauge(A.shape, a, B.shape, b, r, now, reach);
-  return certified_contact(gauge, now, end, max_evaluations, n, count);
+  const UniaxialGap<false> gap(A.shape, a, B.shape, b, r, now, reach);
+  return certified_contact(gap, now, end, max_evaluations, n, count);
 }
 
 /// Of the square of a rate that a collision may take without what rounding has left of it being scaled up.

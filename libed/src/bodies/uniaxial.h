@@ -67,7 +67,7 @@ class UniaxialBodies {
   const BodyEvents& events(int i) const { return entries_[at(i)].events; }
   const Eigen::Vector3d& velocity(int i) const { return entries_[at(i)].motion.velocity; }
   /// How fast the body turns at the most.
-  double turning(int i) const { return entries_[at(i)].motion.rate; }
+  double angular_speed_bound(int i) const { return entries_[at(i)].motion.rate; }
   Motion motion(int i, double t) const;
   static constexpr bool kSamplesRotations = false;  ///< of a Snapshot
   /// Orientation and the integrals of the angular velocity; not the position.

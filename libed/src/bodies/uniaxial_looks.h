@@ -15,12 +15,12 @@ class UniaxialLooks final : public FirstLooks<UniaxialBodies> {
  public:
   UniaxialLooks(const UniaxialBodies& bodies, const UniaxialKernels& kernels);
 
-  void take(const UniaxialBodies& bodies, double now, double box, std::span<Look> looks,
+  void take(const UniaxialBodies& bodies, double now, double box, std::span<PairLook> looks,
             FinderCounters& count) override;
 
  private:
-  void put(const UniaxialBodies& bodies, const Look& look, int lane);
-  void read(int lane, Look& look, FinderCounters& count) const;
+  void put(const UniaxialBodies& bodies, const PairLook& look, int lane);
+  void read(int lane, PairLook& look, FinderCounters& count) const;
 
   LookKernel* kernel_;
   bool one_kind_;  ///< its rows are in all lanes

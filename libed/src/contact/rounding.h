@@ -111,19 +111,19 @@ template <class Vector>
 /// each lane of a vector.
 template <class Real>
 struct PairScalesOf {
-  Real size;     ///< S
-  Real places;   ///< P or more
-  Real speed;    ///< V or more
-  Real turning;  ///< W or more
-  Real bending;  ///< sum of L Omega
-  Real limit;    ///< sum of L Omega^2
-  Real origin;   ///< the largest of |now| and both |time|
+  Real size;           ///< S
+  Real places;         ///< P or more
+  Real speed;          ///< V or more
+  Real surface_speed;  ///< W or more
+  Real bending;        ///< sum of L Omega
+  Real limit;          ///< sum of L Omega^2
+  Real origin;         ///< the largest of |now| and both |time|
 
   [[gnu::always_inline]] RoundingOf<Real> rounding(Real t) const {
     using std::abs;
     const Real T = abs(t) + origin;
-    return {kRoundoff * ((52 * size + 3 * places) + T * (18 * speed + 4 * turning)),
-            kRoundoff * ((21 * (speed + turning) + 71 * bending) + (6 * T) * limit), kCurvatureRounding * limit};
+    return {kRoundoff * ((52 * size + 3 * places) + T * (18 * speed + 4 * surface_speed)),
+            kRoundoff * ((21 * (speed + surface_speed) + 71 * bending) + (6 * T) * limit), kCurvatureRounding * limit};
   }
 };
 
@@ -136,30 +136,30 @@ struct GeneralRounding {
 
 /// What PairScalesOf is for bodies of revolution.
 struct GeneralScales {
-  double size;     ///< S
-  double places;   ///< P or more
-  double speed;    ///< V or more
-  double turning;  ///< W or more
-  double omega;    ///< the larger of both bodies' greatest |omega|
-  double origin;   ///< the largest of |now| and both |time|
+  double size;           ///< S
+  double places;         ///< P or more
+  double speed;          ///< V or more
+  double surface_speed;  ///< W or more
+  double omega;          ///< the larger of both bodies' greatest |omega|
+  double origin;         ///< the largest of |now| and both |time|
 
   template <class Motion>
   static GeneralScales of(double reach_a, const Motion& a, double reach_b, const Motion& b, double now) {
     return {.size = reach_a + reach_b,
             .places = sum_of_magnitudes(a.position) + sum_of_magnitudes(b.position),
             .speed = sum_of_magnitudes(a.velocity) + sum_of_magnitudes(b.velocity),
-            .turning = reach_a * a.top.max_omega() + reach_b * b.top.max_omega(),
+            .surface_speed = reach_a * a.top.max_omega() + reach_b * b.top.max_omega(),
             .omega = larger(a.top.max_omega(), b.top.max_omega()),
             .origin = larger(std::abs(now), larger(std::abs(a.time), std::abs(b.time)))};
   }
 
   /// What may be hidden of g a time tau later, beyond what is now.
-  double later(double tau) const { return kRoundoff * tau * (18 * speed + 20 * turning); }
+  double later(double tau) const { return kRoundoff * tau * (18 * speed + 20 * surface_speed); }
 
   GeneralRounding rounding(double t) const {
     const double T = std::abs(t) + origin;
-    return {kRoundoff * ((185 * size + 3 * places) + T * (18 * speed + 20 * turning)),
-            kRoundoff * (21 * (speed + turning)), kRoundoff * (64 + 20 * (omega * T))};
+    return {kRoundoff * ((185 * size + 3 * places) + T * (18 * speed + 20 * surface_speed)),
+            kRoundoff * (21 * (speed + surface_speed)), kRoundoff * (64 + 20 * (omega * T))};
   }
 };
 

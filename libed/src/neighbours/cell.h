@@ -73,7 +73,7 @@ class CellEnvelopes final : public Envelopes<Bodies>, public CellLayout {
   double worthwhile(int i, const Bodies& bodies) const override { return worthwhile(bodies.velocity(i)); }
   double worthwhile(const Eigen::Vector3d& velocity) const { return kOvershoot * width() / (velocity.norm() + 1e-300); }
 
-  bool may_meet(int i, int k, const Eigen::Vector3d& r, Eigen::Vector3d& normal) const override {
+  bool may_overlap(int i, int k, const Eigen::Vector3d& r, Eigen::Vector3d& normal) const override {
     if (offset(i, k).cwiseAbs().maxCoeff() > 1) return false;
     const Eigen::Vector3d d = image(i, k, r, box_);
     normal = d.squaredNorm() > 0 ? Eigen::Vector3d(d.normalized()) : Eigen::Vector3d::UnitX();

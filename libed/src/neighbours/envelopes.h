@@ -17,7 +17,7 @@
 namespace ed::internal {
 
 /// A body whose envelope may meet another, and the normal to start from.
-struct Meeting {
+struct OverlappingEnvelope {
   int body;
   Eigen::Vector3d normal;
 };
@@ -54,15 +54,16 @@ class Envelopes {
 
   /// Whether the envelopes of i and k, the bodies r apart when they were made (nearest image), may meet; false: they do
   /// not, proved. Sets a normal from i to k to start a contact search from.
-  virtual bool may_meet(int i, int k, const Eigen::Vector3d& r, Eigen::Vector3d& normal) const = 0;
+  virtual bool may_overlap(int i, int k, const Eigen::Vector3d& r, Eigen::Vector3d& normal) const = 0;
 
-  /// Of the bodies near i, in their order, those whose envelopes may meet that of i: may_meet of i with each from
+  /// Of the bodies near i, in their order, those whose envelopes may meet that of i: may_overlap of i with each from
   /// number `first` on, but i itself.
-  virtual void find_meetings(int i, std::span<const NearBody> near, int first, std::vector<Meeting>& found) const {
+  virtual void find_overlapping(int i, std::span<const NearBody> near, int first,
+                                std::vector<OverlappingEnvelope>& found) const {
     found.clear();
     for (const auto& [k, r] : near) {
       Eigen::Vector3d normal;
-      if (k >= first && k != i && may_meet(i, k, r, normal)) found.push_back({k, normal});
+      if (k >= first && k != i && may_overlap(i, k, r, normal)) found.push_back({k, normal});
     }
   }
 

@@ -27,7 +27,7 @@ std::size_t slot(int i) {
 
 /// How fast the surface moves at the most.
 double surface_speed(const GeneralBodies& bodies, int i) {
-  return bodies.kind_of(i).lever * bodies.turning(i);
+  return bodies.kind_of(i).lever * bodies.angular_speed_bound(i);
 }
 
 double worthwhile_time(const GeneralBodies& bodies, int i, double thickness) {
@@ -86,11 +86,11 @@ void GeneralDilatedEnvelopes::place(int i, const GeneralBodies& bodies, double n
 }
 
 void GeneralDilatedEnvelopes::scale(double factor) {
-  for (Place& place : places_) place.centre *= factor;
+  for (EnvelopePose& place : places_) place.centre *= factor;
 }
 
 double GeneralDilatedEnvelopes::exit_time(int i, const GeneralBodies& bodies, double now, double box) const {
-  const Place& place = places_[slot(i)];
+  const EnvelopePose& place = places_[slot(i)];
   const Vector3d d = nearest_image(bodies.position_at(i, now) - place.centre, box);
   const double lever = bodies.kind_of(i).lever;
   const double left = exit_thickness_ - lever * angle_between(bodies.rotation_at(i, now), place.rotation);
@@ -110,7 +110,7 @@ double GeneralDilatedEnvelopes::worthwhile(int i, const GeneralBodies& bodies) c
   return worthwhile_time(bodies, i, exit_thickness_);
 }
 
-bool GeneralDilatedEnvelopes::may_meet(int i, int k, const Vector3d& r, Vector3d& normal) const {
+bool GeneralDilatedEnvelopes::may_overlap(int i, int k, const Vector3d& r, Vector3d& normal) const {
   const GeneralKind& a = bodies_->kind_of(i);
   const GeneralKind& b = bodies_->kind_of(k);
   const double limit = 2 * thickness_;
@@ -192,7 +192,7 @@ double GeneralOrientedEnvelopes::worthwhile(int i, const GeneralBodies& bodies) 
   return worthwhile_time(bodies, i, thickness_);
 }
 
-bool GeneralOrientedEnvelopes::may_meet(int i, int k, const Vector3d& r, Vector3d& normal) const {
+bool GeneralOrientedEnvelopes::may_overlap(int i, int k, const Vector3d& r, Vector3d& normal) const {
   const geom::OrientedBox& a = boxes_[slot(i)];
   geom::OrientedBox b = boxes_[slot(k)];
   b.centre = a.centre + r;

@@ -83,7 +83,7 @@ using LookKernel = void(const LookInput& in, int pairs, LookOutput& out);
 // ---- Meetings: whether dilated envelopes may meet -------------------------------------------------------------------
 
 /// Bodies in one call, at most.
-constexpr int kBlockMeetings = 64;
+constexpr int kBlockOverlaps = 64;
 
 /// A dilated envelope: half a cache line of what says where it is, half of what only exit_time wants.
 struct alignas(64) DilatedEnvelope {
@@ -95,7 +95,7 @@ struct alignas(64) DilatedEnvelope {
 
 static_assert(offsetof(DilatedEnvelope, kind) == 3 * sizeof(double));
 
-struct MeetingInput {
+struct OverlapInput {
   const void* near;                  ///< NearBodys
   int count;                         ///< of them
   const DilatedEnvelope* envelopes;  ///< of all bodies
@@ -107,17 +107,17 @@ struct MeetingInput {
 };
 
 /// In the order of the bodies, but for those that were told apart at once.
-struct MeetingOutput {
+struct OverlapOutput {
   enum Row { verdict = 0, normal = 1, rows_count = 4 };
   static constexpr double open = 0;  ///< not known
   static constexpr double apart = 1;
   static constexpr double meet = 2;
   int count;
-  int place[kBlockMeetings];  ///< among the NearBodys
-  alignas(64) double rows[rows_count][kBlockMeetings];
+  int place[kBlockOverlaps];  ///< among the NearBodys
+  alignas(64) double rows[rows_count][kBlockOverlaps];
 };
 
-using MeetingKernel = void(const MeetingInput& in, MeetingOutput& out);
+using OverlapKernel = void(const OverlapInput& in, OverlapOutput& out);
 
 // ---------------------------------------------------------------------------------------------------------------------
 
@@ -125,7 +125,7 @@ using MeetingKernel = void(const MeetingInput& in, MeetingOutput& out);
 struct UniaxialKernels {
   LookKernel* look_across = nullptr;    ///< at bodies that turn about axes across their own (e0 = 0)
   LookKernel* look_spinning = nullptr;  ///< and at those that spin
-  MeetingKernel* meet = nullptr;
+  OverlapKernel* overlap = nullptr;
 };
 
 /// Of one instruction set each.

@@ -21,7 +21,7 @@ using Bits = hn::RebindToUnsigned<Tag>;
 
 constexpr int kLanes = static_cast<int>(HWY_LANES(double));
 static_assert(kLongestVector % kLanes == 0 && kBlockLooks % kLongestVector == 0 &&
-              kBlockMeetings % kLongestVector == 0);
+              kBlockOverlaps % kLongestVector == 0);
 
 struct Lanes {
   hn::Mask<Tag> mask;

@@ -125,8 +125,8 @@ struct Pairs {
   Body<kSpin> a, b;
   Real3 r, v, n;
   Real reach;
-  Real turning;  ///< reach times both rates of the axes
-  Real limit;    ///< UniaxialGauge::curvature_limit
+  Real surface_speed;  ///< reach times both rates of the axes
+  Real limit;          ///< UniaxialGap::curvature_limit
   RoundingOf<Real> hidden;
   Real t;
   Real end;  ///< of the window
@@ -146,7 +146,7 @@ HWY_INLINE PairScalesOf<Real> pair_scales(const LookInput& in, int lane, const P
   return {.size = p.reach,
           .places = sum_of_magnitudes(a.position) + sum_of_magnitudes(b.position),
           .speed = sum_of_magnitudes(a.velocity) + sum_of_magnitudes(b.velocity),
-          .turning = p.turning,
+          .surface_speed = p.surface_speed,
           .bending = load(in.rows[LookInput::turning_limit_a], lane) * p.a.axis_rate +
                      load(in.rows[LookInput::turning_limit_b], lane) * p.b.axis_rate,
           .limit = p.limit,
@@ -179,7 +179,7 @@ HWY_INLINE void first_pass(const LookInput& in, int lane, LookOutput& out, Pairs
   p.a.shape = load_shape(in.rows + LookInput::shape_a, lane);
   p.b.shape = load_shape(in.rows + LookInput::shape_b, lane);
   const Lanes in_range = turn(course_a, p.t, p.a) & turn(course_b, p.t, p.b);
-  p.turning = p.reach * (p.a.axis_rate + p.b.axis_rate);
+  p.surface_speed = p.reach * (p.a.axis_rate + p.b.axis_rate);
   p.limit = load(in.rows[LookInput::turning_limit_a], lane) * (p.a.axis_rate * p.a.axis_rate) +
             load(in.rows[LookInput::turning_limit_b], lane) * (p.b.axis_rate * p.b.axis_rate);
   p.hidden = pair_scales(in, lane, p, course_a, course_b).rounding(p.t);
@@ -238,7 +238,7 @@ HWY_INLINE void second_pass(Pairs<kSpin>& p, int pairs, LookOutput& out, int lan
   const Lanes to_the_end = usable & (tau >= horizon);
   const Lanes approach = gp < 0;
   // Worth refining: left open.
-  const Real speed = sqrt(p.v.squaredNorm()) + p.turning;
+  const Real speed = sqrt(p.v.squaredNorm()) + p.surface_speed;
   const Real spread = -gap.g / gp - tau;
   const Lanes worth_refining = approach & nearly_straight(gp, spread, p.reach, speed, p.limit);
   const Real until = p.t + tau;

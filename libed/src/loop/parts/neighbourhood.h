@@ -95,7 +95,7 @@ class Neighbourhood {
   std::size_t reserve() {
     const std::size_t longest = lists_.reserve();
     old_pairs_.reserve(longest);
-    meetings_.reserve(longest);
+    overlapping_.reserve(longest);
     // Candidates are two to three times as many as neighbours.
     near_.resize(std::max(near_.size(), 2 * longest + kCandidatesReserved));
     return longest;
@@ -134,8 +134,8 @@ class Neighbourhood {
   /// Adds the pairs of body i with bodies from number `first` on. Returns the number of candidates.
   std::size_t add_pairs(int i, double now, int first) {
     const auto candidates = cells_->collect(bodies_.position_at(i, now), envelopes_->reach(), near_);
-    envelopes_->find_meetings(i, candidates, first, meetings_);
-    for (const auto& [k, normal] : meetings_) lists_.add(i, k, normal);
+    envelopes_->find_overlapping(i, candidates, first, overlapping_);
+    for (const auto& [k, normal] : overlapping_) lists_.add(i, k, normal);
     return candidates.size();
   }
 
@@ -149,7 +149,7 @@ class Neighbourhood {
   double list_scale_ = 1;  ///< by what the box has shrunk since all lists were made
   // Room for the list of one body.
   std::vector<NearBody> near_;
-  std::vector<Meeting> meetings_;
+  std::vector<OverlappingEnvelope> overlapping_;
   std::vector<std::int32_t> old_pairs_;
 };
 

@@ -90,7 +90,7 @@ class Predictor {
   Sources from_;
   const ContactOptions& options_;
   std::unique_ptr<FirstLooks<Bodies>> first_looks_;
-  std::vector<Look> queue_;
+  std::vector<PairLook> queue_;
   FinderCounters count_;
   std::optional<Unsolved> unsolved_;  ///< by the last search
 };
@@ -110,7 +110,7 @@ void Predictor<Bodies>::search(Pair& pair, int max_evaluations) {
 template <class Bodies>
 void Predictor<Bodies>::predict_queued() {
   if (first_looks_) first_looks_->take(from_.bodies, now(), from_.box.edge(), queue_, count_);
-  for (const Look& look : queue_) {
+  for (const PairLook& look : queue_) {
     if (look.answered) {
       keep(*look.pair, look.finding);
     } else {
@@ -160,7 +160,7 @@ double Predictor<Bodies>::parting_time(const Pair& pair) const {
   const Bodies& bodies = from_.bodies;
   const double reach = bodies.bounding_radius(pair.i) + bodies.bounding_radius(pair.j);
   const double speed = (bodies.velocity(pair.j) - bodies.velocity(pair.i)).norm();
-  return reach / (speed + reach * (bodies.turning(pair.i) + bodies.turning(pair.j)));
+  return reach / (speed + reach * (bodies.angular_speed_bound(pair.i) + bodies.angular_speed_bound(pair.j)));
 }
 
 template <class Bodies>
