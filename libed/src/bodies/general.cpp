@@ -36,7 +36,8 @@ GeneralKind general_kind(const Species& species) {
           .axis = axis < 0 ? 2 : axis};
 }
 
-/// Without spin the angular velocity is across the axis of revolution and stays so.
+/// Returns the angular velocity, without spin where the species has none: it is across the axis of revolution then and
+/// stays so.
 Vector3d allowed_omega(const GeneralKind& kind, const Matrix3d& R, const Vector3d& omega) {
   if (kind.spins) return omega;
   const Vector3d u = R.col(kind.symmetry_axis);

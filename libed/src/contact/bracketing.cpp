@@ -101,9 +101,9 @@ struct MovingSurface {
   }
 };
 
-/// By how much turning can change the distance, in a unit of time: eq. (distOver) has |w| L here, L the bounding
-/// radius; the speed of the axis times |a - b|, the largest slope of the support function, is an overestimate too, and
-/// makes longer steps.
+/// Returns a bound of how much turning can change the distance in a unit of time: eq. (distOver) has |w| L here, L the
+/// bounding radius; the speed of the axis times |a - b|, the largest slope of the support function, is an overestimate
+/// too, and makes longer steps.
 double turning_speed(const geom::Ellipsoid& shape, const AxisMotion& motion) {
   return turning_lever(shape) * motion.rate * motion.e2.norm();
 }
@@ -119,8 +119,8 @@ double bounding_radius_of(const geom::Shape& shape) {
   return geom::bounding_radius(shape);
 }
 
-/// Whether the second derivatives of the shape's implicit function have no bound: Newton's method on eqs. (contime)
-/// creeps there, and ends up to 1e-7 from the contact.
+/// Returns whether the second derivatives of the shape's implicit function have no bound: Newton's method on eqs.
+/// (contime) creeps there, and ends up to 1e-7 from the contact.
 bool has_vertices(const geom::Ellipsoid& /*shape*/) {
   return false;
 }
@@ -146,7 +146,7 @@ class Search {
   Finding run(double t_begin, double t_end);
 
  private:
-  /// The bodies at one time, and what is known of their distance then.
+  /// Both bodies at one time, with their distance and its rate.
   struct PairAtTime {
     double time;
     MovingBody a, b;
@@ -160,7 +160,7 @@ class Search {
   geom::DistanceResult distance(double t, const MovingBody& a, const MovingBody& b);
   geom::DistanceResult dual_distance(const MovingBody& a, const MovingBody& b) const;
   geom::WitnessPair seed(const MovingBody& a, const MovingBody& b);
-  // In axes that move with A's centre.
+  // Bodies in axes that move with A's centre.
   MovingBody body_a(double t) const { return moving_body(pair_.a, t, Vector3d::Zero(), Vector3d::Zero()); }
   MovingBody body_b(double t) const { return moving_body(pair_.b, t, pair_.r_now + (t - pair_.now) * v_, v_); }
 

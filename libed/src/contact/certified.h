@@ -1,18 +1,18 @@
 #pragma once
 
-/// The contact finder: one function over pair gaps (see uniaxial_gap.h for what a pair gap is).
+/// The contact finder: one function over pair gaps, which uniaxial_gap.h defines.
 ///
 /// Why no contact is ever stepped over. For a fixed unit n let g(tau) be the gap along n at time t + tau; the distance
 /// is the maximum over n, so d(t + tau) >= g(tau) for every n. Let K >= -g'' on [0, T]. Integrating twice,
 ///
 ///     g(tau) >= q(tau) = g + g' tau - K tau^2 / 2   on [0, T],
 ///
-/// so that there is no contact before the first root of q in [0, T]. The search goes there and starts again with a
+/// so that no contact comes before the first root of q in [0, T]. The search goes there and starts again with a
 /// better n. Near a contact d ~ |g'| (tc - t) and q's root falls short of tc by K (tc - t)^2 / (2 |g'|) at most:
 /// convergence is quadratic. No resolution parameter enters; a grazing contact costs more steps, not a wrong answer.
 ///
 /// The end. When the root of q and that of its tangent are close, Newton's method on d(t) takes over; its contact is
-/// accepted only with a proof that there is none between the certified bound and it (see refine_contact).
+/// accepted only with a proof that none comes between the certified bound and it (see refine_contact).
 ///
 /// Rounding. The step is made of g, g' and K less (K: and) all that rounding may hide of them, rounding.h, so that what
 /// is said above is true of the exact bodies. Bodies whose g is no larger than that touch. If they approach, that is
@@ -43,9 +43,9 @@ namespace ed::internal {
 
 struct FinderCounters {
   std::uint64_t predictions = 0;         ///< calls
-  std::uint64_t evaluations = 0;         ///< points in time at which a pair was looked at
-  std::uint64_t newton_evaluations = 0;  ///< those of the final Newton on d(t) alone
-  std::uint64_t kernel_calls = 0;        ///< evaluations of g at a normal
+  std::uint64_t evaluations = 0;         ///< points in time at which a pair was evaluated
+  std::uint64_t newton_evaluations = 0;  ///< evaluations of the final Newton on d(t) alone
+  std::uint64_t kernel_calls = 0;        ///< evaluations of g along a normal
   std::uint64_t cold_restarts = 0;       ///< a warm normal had led to a spurious maximum
   std::uint64_t rescues = 0;             ///< the pair gap's last resort was needed
 };
@@ -56,22 +56,22 @@ void fields(Archive& archive, T& c) {
 }
 
 enum class Outcome {
-  contact,      ///< at `time`: the bodies touch and approach along the normal
+  contact,      ///< contact at `time`: the bodies touch and approach along the normal
   clear,        ///< certified: no contact up to t_end
   bound,        ///< certified: no contact before `time`; the budget of evaluations is spent
-  overlapping,  ///< at `time` the bodies overlap by more than kOverlap * size; proved
+  overlapping,  ///< proved: at `time` the bodies overlap by more than kOverlap * size
   declined,     ///< certified: no contact before `time`, at which no method tells whether the bodies overlap
 };
 
 struct Finding {
   Outcome outcome;
   double time;
-  bool approaching = false;  ///< of bodies that overlap: whether the overlap grows
+  bool approaching = false;  ///< whether the overlap grows, if the bodies overlap
 };
 
 enum class Quality {
   usable,    ///< the normal certifies a step, or says that the bodies touch
-  clear,     ///< it certifies that there is no contact within the horizon
+  clear,     ///< certified: no contact within the horizon
   overlap,   ///< the bodies overlap by more than kOverlap * size
   declined,  ///< no method tells
 };
@@ -95,7 +95,7 @@ Quality improve_normal(const PairGap& gap, const typename PairGap::State& state,
     clear = clears(gap, state, trial, n, horizon);
     if (clear) return true;
     const bool converged = trial.decrement <= kTightDecrement * size;
-    // That bodies touch is for a normal to say that is right.
+    // Only a converged normal may declare a contact.
     if (!(trial.g > state.rounding.gap)) return converged && settled(gap, trial);
     return converged || trial.decrement <= kLooseDecrement * trial.g;
   };
@@ -201,9 +201,9 @@ double certain_step(const PairGap& gap, const typename PairGap::State& state, do
   return 0.9 * (g - state.rounding.gap) / gap.speed();
 }
 
-/// The certified step, or a longer one. Bounds of what the motion does within a horizon in which bodies turn many times
-/// say next to nothing (cubes with a horizon of 10,000 radian: steps of 1e-19), or are not a number (an infinite
-/// horizon). Where the step is below the share `futile` of certain_step(), those of a radian or so do better.
+/// Returns the certified step, or a longer one. Bounds over a horizon in which bodies turn many times are very weak
+/// (cubes with a horizon of 10,000 radian: steps of 1e-19), or are not a number (an infinite horizon). Where the step
+/// is below the share `futile` of certain_step(), those of a radian or so do better.
 template <class PairGap>
 double fitting_step(const PairGap& gap, const typename PairGap::State& state, const typename PairGap::Evaluation& e,
                     const Eigen::Vector3d& n, double g, double gp, double horizon, double futile) {
@@ -214,8 +214,8 @@ double fitting_step(const PairGap& gap, const typename PairGap::State& state, co
   return larger(certain, certified_step(gap, state, e, n, g, gp, within));
 }
 
-/// Finds the first contact in [t_begin, t_end], or proves that there is none, or, after `max_evaluations` points in
-/// time, says up to when there is certainly none.
+/// Finds the first contact in [t_begin, t_end], or proves that none comes, or, after `max_evaluations` points in time,
+/// returns a time before which certainly none comes.
 ///
 /// `n` (from A to B) is the warm start and is left at the last normal; zero: cold start. `futile`: see fitting_step.
 template <class PairGap>
@@ -271,7 +271,7 @@ Finding certified_contact(const PairGap& gap, double t_begin, double t_end, int 
       t += tau;
     } else {
       // Below the resolution of time (late times only: g is above that of distance). Bodies that approach and cannot be
-      // told to be apart until the next double touch before it; others are looked at again then.
+      // told to be apart until the next double touch before it; for others the search goes on there.
       if (gp < 0 && !(t + certain_step(gap, state, g) > t)) return {Outcome::contact, t};
       t = std::nextafter(t, std::numeric_limits<double>::infinity());
     }

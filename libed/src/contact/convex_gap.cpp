@@ -32,7 +32,7 @@ double curvature_radius(const BodyShape& shape) {
   return std::visit(of, shape);
 }
 
-/// In the world's axes.
+/// Returns the support point along n in the world's axes.
 geom::Support world_support(const BodyShape& shape, const geom::Pose& pose, const Vector3d& n) {
   const geom::Support s = support(shape, transposed_product(pose.rotation(), n));
   return {s.height, pose.rotation() * s.point};
@@ -43,7 +43,7 @@ geom::DistanceResult query(const BodyShape& a, const geom::Pose& X_a, const Body
   return std::visit([&](const auto& A, const auto& B) { return geom::distance(A, X_a, B, X_b, options); }, a, b);
 }
 
-/// The least of (1 - x) g0 + x g1 - K T^2 x (1 - x) / 2 over x in [0, 1].
+/// Returns the least of (1 - x) g0 + x g1 - K T^2 x (1 - x) / 2 over x in [0, 1].
 double lowest(double g0, double g1, double KT2) {
   const double slope = g1 - g0 - 0.5 * KT2;
   if (slope >= 0) return g0;
@@ -126,7 +126,7 @@ geom::DistanceResult ConvexGap::last_resort(const State& s) const {
 ContactPoints ConvexGap::contact_points(const State& s, const Vector3d& n) const {
   Vector3d normal = n;
   Evaluation e = evaluate(s, n);
-  // By one of the two the search has had its answer.
+  // The search has had its answer by one of the two.
   if (!solve(s, normal, e)) take(s, last_resort(s), normal, e);
   return {e.point_a, e.point_b};
 }
@@ -142,7 +142,7 @@ double ConvexGap::chord_curvature(double T, const Vector3d& n0, const Vector3d& 
   return kBoundMargin * (reach_a_ * bend(a_.top) + reach_b_ * bend(b_.top) + centres);
 }
 
-/// Whether there is no contact up to s.t + T, for a gap that is certainly g >= 0 along n now; `end`: the distance
+/// Returns whether no contact comes up to s.t + T, for a gap that is certainly g >= 0 along n now; `end`: the distance
 /// there. Less what rounding may hide, but of bodies that are taken to touch.
 bool ConvexGap::chord_clears(const State& s, const Vector3d& n, double g, bool touching, double T, double& end) const {
   const State later = at(s.t + T);
@@ -183,7 +183,7 @@ double ConvexGap::least_step(const State& s, const Evaluation& /*e*/, const Vect
                              double tau) const {
   const double unit = size() / speed_;
   if (!touching || tau > kShortStep * unit) return tau;
-  // Of bodies that touch g is not known: it may fall by what rounding hides.
+  // g of bodies that touch is not known: it may fall by what rounding hides.
   double end = 0;
   return longest_clear_step(kTouching * unit, unit,
                             [&](double trial) { return chord_clears(s, n, 0, true, trial, end); });

@@ -1,7 +1,7 @@
 #pragma once
 
 /// The pair gap of two convex bodies of which nothing is known but their support functions and radii: a user's own
-/// shapes (see uniaxial_gap.h for what a pair gap is), and the steps it certifies. Every look is a whole distance
+/// shapes (uniaxial_gap.h defines pair gaps), and the steps it certifies. Every evaluation is a whole distance
 /// query.
 ///
 /// Chords. Let the normal turn uniformly from n0 now to n1 at T, by an angle a, so that Omega = a / T. Seen from a body
@@ -40,16 +40,16 @@ class ConvexGap {
  public:
   struct State {
     double t;
-    geom::Pose a, b;  ///< about A's centre
+    geom::Pose a, b;  ///< poses relative to A's centre
     Eigen::Vector3d omega_a, omega_b;
     GeneralRounding rounding;
   };
   struct Sample {
     double g;
-    Eigen::Vector3d point_a, point_b;  ///< the support points, from the bodies' centres
+    Eigen::Vector3d point_a, point_b;  ///< support points, from the bodies' centres
   };
   struct Evaluation : geom::kernel::Evaluation {
-    Eigen::Vector3d point_a, point_b;  ///< from the bodies' centres: the closest ones, or the support points
+    Eigen::Vector3d point_a, point_b;  ///< closest points, or support points, from the bodies' centres
   };
 
   /// `r_now`: the vector from A's centre to B's at `now`, in the image that is meant.

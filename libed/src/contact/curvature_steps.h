@@ -1,6 +1,6 @@
 #pragma once
 
-/// What certified_contact asks of a pair gap whose g has a second derivative bounded from below for every n and t
+/// Questions of certified_contact about a pair gap whose g has a second derivative bounded from below for every n and t
 /// (curvature_limit) and, better, over an interval ahead (certificate). Pair gaps without such a bound, of bodies with
 /// flat faces, answer these questions by members of the same names: see support_gap.h.
 
@@ -24,8 +24,8 @@ concept CurvatureBounded = requires(const PairGap& gap) {
   gap.curvature_limit();
 };
 
-/// Whether n certifies by itself that there is no contact within the horizon. Here and below with what rounding may
-/// hide taken off (rounding.h).
+/// Returns whether n certifies by itself that no contact comes within the horizon. What rounding may hide (rounding.h)
+/// is taken off, here and below.
 template <CurvatureBounded PairGap, class SampleOrEvaluation>
 bool clears(const PairGap& gap, const typename PairGap::State& state, const SampleOrEvaluation& e,
             const Eigen::Vector3d& n, double horizon) {
@@ -62,9 +62,9 @@ double certified_step(const PairGap& gap, const typename PairGap::State& state, 
   return step_by_parabola(g, gp, state.rounding, horizon, [&](double reach) { return certificate.curvature(reach); });
 }
 
-/// How far bodies that do not approach may be moved, certified up to tau: if they touch, as far as the overlap on the
-/// way stays below what g resolves, kTouching * size for the turning and as much for a rate whose sign is rounding. By
-/// the bound that holds over any reach: certificates may be those of a short one.
+/// Returns the time by which bodies that do not approach may be moved, certified up to tau. Bodies that touch may be
+/// moved while the overlap on the way stays below what g resolves, kTouching * size for the turning and as much for a
+/// rate whose sign is rounding. By the bound that holds over any reach: certificates may be those of a short one.
 template <CurvatureBounded PairGap>
 double least_step(const PairGap& gap, const typename PairGap::State& state, const typename PairGap::Evaluation& /*e*/,
                   const Eigen::Vector3d& /*n*/, bool touching, double tau) {

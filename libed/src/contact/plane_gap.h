@@ -1,7 +1,7 @@
 #pragma once
 
-/// The pair gap of a body of revolution inside a half-space: when does it touch the plane? (See uniaxial_gap.h for what
-/// a pair gap is.) The normal n is that of the plane, outward, and never changes: g(t) = offset - n.r(t) - h(n, u(t)).
+/// The gap of a body of revolution inside a half-space and its plane (uniaxial_gap.h defines pair gaps). The normal n
+/// is that of the plane, outward, and never changes: g(t) = offset - n.r(t) - h(n, u(t)).
 
 #include "contact/separation.h"
 #include "contact/sphere_window.h"
@@ -89,7 +89,7 @@ class PlaneGap {
   double speed() const { return motion_.velocity.norm() + reach_ * motion_.rate; }
 
  private:
-  /// As of a pair; the plane is as far away as the body, and the offset twice rounded.
+  /// Returns the scales as for a pair; the plane is as far away as the body, and the offset twice rounded.
   PairScalesOf<double> scales() const {
     return {.size = reach_,
             .places = 2 * (sum_of_magnitudes(r_now_) + std::abs(offset_)),

@@ -1,6 +1,6 @@
 #pragma once
 
-/// What rounding may hide from a certificate, and how the step pays for it.
+/// Bounds of what rounding may hide from a certificate, and how the step pays for it.
 ///
 /// Certified steps rest on g(tau) >= g + g' tau - K tau^2 / 2, true of real numbers. Computed are others, g_c, g'_c and
 /// K_c. The bounds below are such that for the exact bodies (those that the numbers of both motions describe, axes made
@@ -91,7 +91,7 @@ inline constexpr double kRoundoff = 0x1p-53;
 /// See K above: 1000 kMaxAspectRatio^2 kRoundoff, rounded up. It costs steps a hundred thousandth of their length.
 inline constexpr double kCurvatureRounding = 1.2e-5;
 
-/// What may be hidden at one time of one pair.
+/// Bounds of what rounding hides of one pair at one time.
 template <class Real>
 struct RoundingOf {
   Real gap;
@@ -127,14 +127,14 @@ struct PairScalesOf {
   }
 };
 
-/// Of two bodies of any kind, at one time.
+/// Bounds of what rounding hides of two bodies of any kind at one time.
 struct GeneralRounding {
   double gap;
   double rate;
-  double direction;  ///< of a unit vector seen from a body
+  double direction;  ///< error of a unit vector seen from a body
 };
 
-/// What PairScalesOf is for bodies of revolution.
+/// Scales of a pair of bodies of any kind, as PairScalesOf for bodies of revolution.
 struct GeneralScales {
   double size;           ///< S
   double places;         ///< P or more
@@ -153,7 +153,7 @@ struct GeneralScales {
             .origin = larger(std::abs(now), larger(std::abs(a.time), std::abs(b.time)))};
   }
 
-  /// What may be hidden of g a time tau later, beyond what is now.
+  /// Returns what rounding may hide of g a time tau later, beyond what it hides now.
   double later(double tau) const { return kRoundoff * tau * (18 * speed + 20 * surface_speed); }
 
   GeneralRounding rounding(double t) const {

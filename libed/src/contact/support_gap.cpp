@@ -95,8 +95,8 @@ SupportGap::Certificate SupportGap::certificate(const State& s, const DualSample
   return c;
 }
 
-/// The longest step of one choice for a gap that is certainly g, or less than `best` if it is certainly no longer than
-/// that.
+/// Returns the longest step of one choice for a gap that is certainly g, or less than `best` if it is certainly no
+/// longer than that.
 double SupportGap::longest_step(const State& s, const DualSample& at, const NormBodies::Majorant& majorant, double g,
                                 const Vector3d& Omega, double horizon, double best) const {
   const Certificate c = certificate(s, at, majorant, Omega);
@@ -144,7 +144,7 @@ double SupportGap::certified_step(const State& s, const Evaluation& e, const Vec
   return tau;
 }
 
-/// Whether the tilted end leaves more than `least`.
+/// Returns whether the tilted end leaves more than `least`.
 bool SupportGap::tilted_end_clears(const State& s, const Vector3d& n, const Vector3d& Omega, double least,
                                    double tau) const {
   const Vector3d& r = s.pair.between();
@@ -163,7 +163,7 @@ bool SupportGap::tilted_end_clears(const State& s, const Vector3d& n, const Vect
 double SupportGap::least_step(const State& s, const Evaluation& e, const Vector3d& n, bool touching, double tau) const {
   const double unit = size() / speed();
   if (tau > kShortStep * unit) return tau;
-  // Of bodies that touch g is not known: it may fall by what rounding hides.
+  // g of bodies that touch is not known: it may fall by what rounding hides.
   const auto least = [&](double trial) { return touching ? 0 : s.rounding.gap + scales_.later(trial); };
   const std::array<Vector3d, 4> turns{Vector3d::Zero(), angular_velocity_of_best_normal(s, e.sample), s.omega.a(),
                                       s.omega.b()};

@@ -24,7 +24,7 @@ using geom::Ellipsoid;
 using internal::Outcome;
 using internal::Spheroid;
 
-/// The axis about which both the shape and the inertia are symmetric, or -1.
+/// Returns the axis about which both the shape and the inertia are symmetric, or -1.
 int common_axis(const Ellipsoid& shape, const Motion& motion) {
   const Eigen::Vector3d& a = shape.semi_axes();
   const Eigen::Vector3d& I = motion.inertia;
@@ -127,9 +127,9 @@ ContactResult result_of(const internal::Finding& finding, const internal::Finder
   return result;
 }
 
-/// The certified search from time 0 on the bodies' clocks, within a budget of evaluations. It is interrupted now and
-/// then, the earlier the first time: bodies that turn or slide without getting nearer would take it all, and are moved
-/// on to where the hulls of what they sweep meet. `hulls()` makes these, once they are asked for.
+/// Does the certified search from time 0 on the bodies' clocks, within a budget of evaluations. It is interrupted now
+/// and then, the earlier the first time: bodies that turn or slide without getting nearer would take it all, and are
+/// moved on to where the hulls of what they sweep meet. `hulls()` makes these, once they are asked for.
 template <class PairGap, class Hulls>
 internal::Finding budgeted_contact(const PairGap& gap, double duration, int budget, const Hulls& hulls,
                                    Eigen::Vector3d& n, internal::FinderCounters& count) {
@@ -156,7 +156,7 @@ internal::Finding budgeted_contact(const PairGap& gap, double duration, int budg
   return {Outcome::bound, t};
 }
 
-/// The search from time 0 on the bodies' clocks.
+/// Does the search from time 0 on the bodies' clocks.
 ContactResult search(const UniaxialBody& a, const UniaxialBody& b, double reach, double duration,
                      const ContactOptions& options) {
   const internal::AxisMotion& m_a = a.top.axis;
@@ -193,7 +193,7 @@ ContactResult search(const UniaxialBody& a, const UniaxialBody& b, double reach,
   return result;
 }
 
-/// With a certified search, or the paper's: `find(n, count)`.
+/// Searches by `find(n, count)`, a certified search or the paper's, and returns its result.
 template <class PairGap, class Find>
 ContactResult general_search(const PairGap& gap, const GeneralBody& a, const Find& find) {
   Eigen::Vector3d n = Eigen::Vector3d::Zero();
@@ -238,7 +238,7 @@ ContactResult search(const GeneralBody& a, const GeneralBody& b, double reach, d
   return result;
 }
 
-/// The search on clocks that count from 0: one that shows a long time has few digits left for the contact.
+/// Does the search on clocks that count from 0: one that shows a long time has few digits left for the contact.
 template <class Body>
 ContactResult search_from(double now, Body a, Body b, double reach, double t_max, const ContactOptions& options) {
   a.rebase(now);
@@ -249,7 +249,7 @@ ContactResult search_from(double now, Body a, Body b, double reach, double t_max
   return result;
 }
 
-/// The later of both motions' times.
+/// Returns the later of both motions' times.
 double checked_begin(const Motion& motion_a, const Motion& motion_b, double t_max) {
   internal::check_motion(motion_a);
   internal::check_motion(motion_b);

@@ -2,9 +2,10 @@
 
 /// The pair gap of two bodies of revolution: g_n(t), its rate, and a bound of how fast that rate can fall.
 ///
-/// A pair gap, as `certified_contact` wants it, has
+/// A pair gap is the gap g of two moving bodies along a normal n as a function of time, in the form that
+/// certified_contact needs. It is a class with
 ///   State at(t)                           the pair at time t, with what rounding may hide in `rounding` (rounding.h)
-///   Sample sample(state, n)                     g, and what its rate needs
+///   Sample sample(state, n)                     g, with what its rate needs
 ///   Evaluation complete(state, gap, n)    g and the Newton step of n; evaluate(state, n) is both at once
 ///   double rate(state, gap or e, n)       dg/dt at fixed n
 ///   Certificate certificate(state, e, n)  with curvature(tau) >= -d2g/dt2 at fixed n over [t, t + tau]

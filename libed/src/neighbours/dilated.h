@@ -31,7 +31,7 @@ namespace ed::internal {
 class DilatedEnvelopes final : public Envelopes<UniaxialBodies> {
  public:
   /// `thickness`: delta. Bodies leave at `exit_thickness` <= delta already, which is what a shrinking box eats up.
-  /// `kernel`: for find_overlapping; null: one pair at a time.
+  /// `kernel` is for find_overlapping; null: one pair at a time.
   DilatedEnvelopes(const UniaxialBodies& bodies, double thickness, double exit_thickness,
                    OverlapKernel* kernel = nullptr)
       : kernel_(kernel),
@@ -183,7 +183,7 @@ class DilatedEnvelopes final : public Envelopes<UniaxialBodies> {
 
   OverlapKernel* kernel_ = nullptr;
   std::vector<Kind> kinds_;
-  std::vector<ShapeNumbers> shapes_;  ///< of the kinds, for the kernel
+  std::vector<ShapeNumbers> shapes_;  ///< shapes of the kinds, for the kernel
   double bounding_radius_;
   double thickness_;
   double exit_thickness_;

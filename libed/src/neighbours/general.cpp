@@ -25,7 +25,7 @@ std::size_t slot(int i) {
   return static_cast<std::size_t>(i);
 }
 
-/// How fast the surface moves at the most.
+/// Returns an upper bound of the speed at which turning moves the surface.
 double surface_speed(const GeneralBodies& bodies, int i) {
   return bodies.kind_of(i).lever * bodies.angular_speed_bound(i);
 }
@@ -34,13 +34,14 @@ double worthwhile_time(const GeneralBodies& bodies, int i, double thickness) {
   return kWorthwhile * thickness / (bodies.velocity(i).norm() + surface_speed(bodies, i) + 1e-300);
 }
 
-/// An upper bound of the angle of R R0^T: |R - R0| = sqrt(8) sin(angle / 2) in the Frobenius norm.
+/// Returns an upper bound of the angle of R R0^T: |R - R0| = sqrt(8) sin(angle / 2) in the Frobenius norm.
 double angle_between(const Matrix3d& R, const Matrix3d& R0) {
   return angle_bound(std::sqrt(0.5 * (R - R0).squaredNorm()));
 }
 
-/// Whether two bodies may be within `limit` of each other; false is certain. `normal`: along r, then a better one.
-/// `inscribed`: the sum of both inscribed radii. `elongated`: some body is; of others the cold normal is that along r.
+/// Returns whether two bodies may be within `limit` of each other; false is certain. `normal`: along r, then a better
+/// one. `inscribed`: the sum of both inscribed radii. `elongated`: some body is; of others the cold normal is that
+/// along r.
 bool within(const NormBodyPair& pair, double inscribed, bool elongated, double limit, Vector3d& normal) {
   const Vector3d along = normal;
   const double apart = along.dot(pair.between());
@@ -63,7 +64,7 @@ bool within(const NormBodyPair& pair, double inscribed, bool elongated, double l
   return !(sample.g > limit);
 }
 
-/// The same for any shapes.
+/// Returns the same as within(), for any shapes.
 bool any_within(const BodyShape& a, const Matrix3d& R_a, const BodyShape& b, const Matrix3d& R_b, const Vector3d& r,
                 double limit, Vector3d& normal) {
   const double h_a = support(a, transposed_product(R_a, normal)).height;
@@ -167,7 +168,7 @@ void GeneralOrientedEnvelopes::scale(double factor) {
   for (geom::OrientedBox& box : boxes_) box.centre *= factor;
 }
 
-/// When the surface, at its highest speed along each normal, would have crossed one of the six planes.
+/// Returns when the surface, at its highest speed along each normal, would have crossed one of the six planes.
 double GeneralOrientedEnvelopes::exit_time(int i, const GeneralBodies& bodies, double now, double box) const {
   const geom::OrientedBox& envelope = boxes_[slot(i)];
   const BodyShape& shape = bodies.kind_of(i).shape;

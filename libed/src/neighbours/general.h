@@ -24,7 +24,7 @@ namespace ed::internal {
 
 class GeneralDilatedEnvelopes final : public Envelopes<GeneralBodies> {
  public:
-  /// As DilatedEnvelopes. `bodies` must outlive this.
+  /// Makes envelopes as DilatedEnvelopes does. `bodies` must outlive this.
   GeneralDilatedEnvelopes(const GeneralBodies& bodies, double thickness, double exit_thickness);
 
   double thickness() const override { return thickness_; }

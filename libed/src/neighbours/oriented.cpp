@@ -27,7 +27,7 @@ Vector3d half_extents(const Spheroid& shape, double thickness) {
   return {b, b, std::sqrt(shape.a2) + thickness};
 }
 
-/// How far a body's centre can be from that of its box while it stays inside, along each of the box's axes.
+/// Returns how far a body's centre can be from that of its box while it stays inside, along each of the box's axes.
 ///
 /// Along axis e_k the centre is within extent_k - h(e_k, u). The squares of the three h add up to a^2 + 2 b^2 whatever
 /// u, and none exceeds its extent, which bounds each from below by what the other two leave; min(a, b) does too.

@@ -22,10 +22,10 @@
 
 namespace ed::internal {
 
-/// The thickest box envelope for which nearest images are safe in this periodic box: see OrientedEnvelopes::slack. 0 if
-/// the periodic box is below smallest_image_box.
+/// Returns the thickest box envelope for which nearest images are safe in this periodic box: see
+/// OrientedEnvelopes::slack. 0 if the periodic box is below smallest_image_box.
 double thickest_oriented_envelope(const geom::kernel::Spheroid& shape, double bounding_radius, double box);
-/// For all kinds of bodies.
+/// Returns the thickest envelope that is safe for all kinds of bodies.
 double thickest_oriented_envelope(const UniaxialBodies& bodies, double box);
 
 class OrientedEnvelopes final : public Envelopes<UniaxialBodies> {

@@ -6,7 +6,8 @@
 
 namespace ed::internal {
 
-/// Newton steps after the first evaluation, at the most; a pair that is still undecided is taken, which is always safe.
+/// Largest number of Newton steps after the first evaluation; a pair that is still undecided is taken, which is always
+/// safe.
 inline constexpr int kOverlapSteps = 2;
 
 /// Whether the gap along the line of centres is above `limit`.

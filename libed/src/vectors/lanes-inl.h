@@ -104,7 +104,7 @@ HWY_INLINE Real copysign(Real magnitude, Real sign) {
   return Real(hn::CopySign(magnitude.v, sign.v));
 }
 
-/// As Eigen's vectors, as far as the formulas go.
+/// Vector with the part of the interface of Eigen's vectors that the formulas use.
 class Real3 {
  public:
   Real3() = default;

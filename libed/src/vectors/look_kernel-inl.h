@@ -1,4 +1,4 @@
-/// What certified_contact (certified.h) finds with one evaluation, one pair to a vector lane. Part of
+/// Result of certified_contact (certified.h) with one evaluation, one pair to a vector lane. Part of
 /// vectors/kernels-inl.h.
 ///
 /// Lanes that need anything but the usual (a normal that needs more than kMostSteps steps or falls back, bodies that
@@ -31,7 +31,7 @@ constexpr int kMostSteps = 3;
 // ---------------------------------------------------------------------------------------------------------------------
 // Pairs in motion
 
-/// As sincos, for |x| <= kLargestAngle.
+/// Returns sine and cosine as sincos does, for |x| <= kLargestAngle.
 HWY_INLINE void sincos(Real x, Real& sin, Real& cos) {
   const ReducedSinCos<Real> reduced = reduced_sincos(x);
   const auto one = hn::Set(Bits(), std::uint64_t{1});
@@ -114,7 +114,7 @@ HWY_INLINE Lanes turn(const Course<kSpin>& course, Real t, Body<kSpin>& body) {
   return abs(angle) <= kLargestAngle;
 }
 
-/// As in periodic.h.
+/// Returns the nearest image as periodic.h does.
 HWY_INLINE Real nearest_image(Real d, Real box, Real inverse) {
   return d - box * nearest_integer(d * inverse);
 }
@@ -129,7 +129,7 @@ struct Pairs {
   Real limit;          ///< UniaxialGap::curvature_limit
   RoundingOf<Real> hidden;
   Real t;
-  Real end;  ///< of the window
+  Real end;  ///< end of the window
 
   HWY_INLINE Gap gap() const { return geom::kernel::uniaxial_gap_of<Both>(a.shape, b.shape, r, a.u, b.u, n); }
   HWY_INLINE Real rate(const Gap& gap) const { return gap_rate(v, a.du, b.du, gap.lever, n); }
@@ -139,7 +139,7 @@ struct Pairs {
   }
 };
 
-/// As `pair_scales` in uniaxial_gap.h.
+/// Returns the scales as `pair_scales` in uniaxial_gap.h does.
 template <bool kSpin>
 HWY_INLINE PairScalesOf<Real> pair_scales(const LookInput& in, int lane, const Pairs<kSpin>& p, const Course<kSpin>& a,
                                           const Course<kSpin>& b) {
@@ -189,7 +189,7 @@ HWY_INLINE void first_pass(const LookInput& in, int lane, LookOutput& out, Pairs
   store(select(meet, 1, 0), out.rows[LookOutput::kernel_calls], lane);
 }
 
-/// As certified_step in curvature_steps.h.
+/// Returns the step as certified_step in curvature_steps.h does.
 template <bool kSpin>
 HWY_INLINE Real certified_step(const Pairs<kSpin>& p, const Gap& gap, Real gp, Real horizon) {
   const auto curvature_of = [&](const Body<kSpin>& body, Real x) -> SupportCurvature<kSpin, Real> {

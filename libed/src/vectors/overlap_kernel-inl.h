@@ -1,5 +1,5 @@
-/// Whether dilated envelopes may meet, as DilatedEnvelopes::may_overlap has it, one pair to a vector lane. Part of
-/// vectors/kernels-inl.h.
+/// Whether dilated envelopes may overlap, as DilatedEnvelopes::may_overlap decides it, one pair to a vector lane. Part
+/// of vectors/kernels-inl.h.
 
 #pragma once
 
@@ -19,7 +19,7 @@ struct Envelope {
   Real3 axis;
 };
 
-/// Where what is near stands, NearBodys, and the envelopes of these bodies: four numbers of each count.
+/// Addresses of NearBodys and of the envelopes of these bodies; four numbers of each are read.
 struct Candidates {
   const double* near[kBlockOverlaps];
   const double* envelope[kBlockOverlaps];

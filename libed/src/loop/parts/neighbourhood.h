@@ -22,11 +22,11 @@
 
 namespace ed::internal {
 
-/// Which bodies are neighbours: envelopes, the cells in which bodies near another are found, and the lists of pairs.
+/// Neighbours of all bodies: envelopes, cells in which the bodies near another are found, and lists of pairs.
 template <class Bodies>
 class Neighbourhood {
  public:
-  /// Without envelopes and lists. All but `batches` (see CellGrid) must outlive this.
+  /// Makes no envelopes and lists yet. All but `batches` (see CellGrid) must outlive this.
   Neighbourhood(Bodies& bodies, PeriodicBox& box, Counters& counters,
                 const std::optional<geom::InstructionSet>& batches)
       : bodies_(bodies), box_(box), counters_(counters), batches_(batches), lists_(bodies.number()) {}
@@ -90,8 +90,8 @@ class Neighbourhood {
     for (int i = 0; i < bodies_.number(); ++i) (void)add_pairs(i, now, i + 1);
   }
 
-  /// Makes room, so that nothing allocates while events are processed but for records that a long run breaks. Returns
-  /// the length of lists that there is room for.
+  /// Makes room, so that nothing allocates while events are processed unless a list becomes longer than any before.
+  /// Returns the length of lists that have room.
   std::size_t reserve() {
     const std::size_t longest = lists_.reserve();
     old_pairs_.reserve(longest);
@@ -146,7 +146,7 @@ class Neighbourhood {
   std::unique_ptr<Envelopes<Bodies>> envelopes_;
   std::optional<CellGrid> cells_;
   NeighbourLists lists_;
-  double list_scale_ = 1;  ///< by what the box has shrunk since all lists were made
+  double list_scale_ = 1;  ///< factor by which the box has shrunk since all lists were made
   // Room for the list of one body.
   std::vector<NearBody> near_;
   std::vector<OverlappingEnvelope> overlapping_;
