@@ -77,7 +77,7 @@ std::vector<Key> system_keys() {
   return {
       {kSeedKey, "1", integer(&Config::seed, 0), "of the start: an integer, at least 0"},
       {kNumberKey, "512", integer(&Config::number, 2, kMostBodies), "of bodies, in a periodic cubic box"},
-      {kPackingKey, "needed, but with [start] file", bound(&Config::packing_fraction, take_packing),
+      {kPackingKey, "required, except with [start] file", bound(&Config::packing_fraction, take_packing),
        "volume of the bodies / volume of the box"},
       {kStartKey, "\"random\"",
        choice(&Config::start, {std::nullopt, ed::Lattice::simple_cubic, ed::Lattice::fcc}, "random"),
@@ -261,7 +261,7 @@ std::vector<Key> species_keys() {
        choice(&SpeciesConfig::sizes, {std::nullopt, Sizes::uniform, Sizes::gaussian, Sizes::lognormal}, "equal"),
        "of the bodies: \"equal\", or of mean 1 (the semi-axes above)\n"
        "and \"uniform\", \"gaussian\" or \"lognormal\" with a width"},
-      {"species.width", "needed with sizes", unless(without_sizes, kNoSizes, bound(&SpeciesConfig::width, take_width)),
+      {"species.width", "required with sizes", unless(without_sizes, kNoSizes, bound(&SpeciesConfig::width, take_width)),
        width_comment, has_sizes},
       {"species.size_seed", "the run's seed", unless(without_sizes, kNoSizes, integer(&SpeciesConfig::size_seed, 0)),
        "of the sizes, instead of seed", has_sizes},
@@ -281,7 +281,7 @@ Taken take_eps_d(const Value& value, const Place& at, double& result) {
 
 std::vector<Key> dynamics_keys() {
   return {
-      {kInertiaKey, "see below", inertia_rule(), inertia_comment, [](const Place& at) { return !at.config.mixture; }},
+      {kInertiaKey, "see inertia", inertia_rule(), inertia_comment, [](const Place& at) { return !at.config.mixture; }},
       {"dynamics.finder", "\"certified\"", choice(&Config::finder, {ed::Finder::certified, ed::Finder::bracketing}),
        "of contact times: \"certified\", or \"bracketing\" (the paper's)"},
       {"dynamics.eps_d", "1e-6 of the bodies' mean size", bound(&Config::eps_d, take_eps_d),
