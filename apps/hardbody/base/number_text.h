@@ -5,7 +5,7 @@
 
 namespace hardbody {
 
-/// Returns the value of a text that is a finite number from its first character to its last; nullopt for any other.
+/// Returns the finite number that a text consists of, from its first character to its last; nullopt for any other text.
 std::optional<double> finite_number(std::string_view text);
 
 /// Returns the seconds of a positive number with a unit, as in 60s, 5m, 1.5h; nullopt for any other text.

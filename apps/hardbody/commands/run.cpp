@@ -70,7 +70,7 @@ void write_failures(const RunDirectory& directory, const RunRecord& record, Log&
     log.line(fmt::format("failures: {} pairs in {}/, {} more left out", count, kFailuresDirectory, left_out));
 }
 
-/// Point at which a run begins, or goes on.
+/// State at which a run begins, or is continued.
 struct Continuation {
   LoadedStates loaded;
   std::optional<Start> start;
@@ -80,7 +80,7 @@ struct Continuation {
   Upkeep upkeep;
 };
 
-/// The state in which the run has ended.
+/// Returns the final state of the run.
 Checkpoint last_checkpoint(Continuation& at, const RunRecord& record) {
   Checkpoint checkpoint = at.production      ? checkpoint_of(*at.production)
                           : at.equilibration ? checkpoint_of(*at.equilibration)
@@ -89,11 +89,11 @@ Checkpoint last_checkpoint(Continuation& at, const RunRecord& record) {
   return checkpoint;
 }
 
-/// The files of a run's end that have been written, in the order in which its table names them.
+/// Files of a run's end that have been written, in the order in which the results table names them.
 struct WrittenFiles {
   bool summary = false;
   bool observables = false;
-  bool checkpoint = false;  ///< and with it what grows with the run
+  bool checkpoint = false;  ///< the checkpoint, and with it the files that grow with the run
 
   std::vector<std::string> list(const RunDirectory& directory, const Config& config) const {
     std::vector<std::string> names;
@@ -109,7 +109,7 @@ struct WrittenFiles {
   }
 };
 
-/// The summary comes last: where it is, the other files are complete.
+/// Writes the results. The summary comes last: if it exists, the other files are complete.
 void write_results(const RunDirectory& directory, RunRecord& record, Continuation& at, Saver& saver, Log& log,
                    WrittenFiles& written) {
   const ed::Results& results = record.production.results;
@@ -132,7 +132,8 @@ void write_results(const RunDirectory& directory, RunRecord& record, Continuatio
   written.summary = true;
 }
 
-/// Nothing was measured, and half a start is not kept: only the config and the log stay.
+/// Ends a run without a start. Nothing was measured, and an incomplete start is not kept: only the config and the log
+/// remain.
 int stopped_at_the_start(const RunDirectory& directory, Progress& progress, Log& log) {
   const int signal = pending_signal();
   const std::string text = fmt::format(
@@ -156,7 +157,8 @@ int conclude(const RunDirectory& directory, RunRecord& record, Continuation& at,
     failure = std::current_exception();
   }
   progress.clear();
-  // The table also when a full disk has kept the files from being written: hours of work may stand in it.
+  // The table is printed even if a full disk has kept the files from being written: it may be the result of hours of
+  // work.
   (void)std::fputs(results_table(record, written.list(directory, record.config)).c_str(), stdout);
   (void)std::fflush(stdout);
   if (failure) std::rethrow_exception(failure);
@@ -167,7 +169,7 @@ int conclude(const RunDirectory& directory, RunRecord& record, Continuation& at,
   }
   if (record.stopped() && !record.stall) {
     const std::string text =
-        fmt::format("stopped by {} during {} at time {:g}: what was measured is written, hardbody resume goes on",
+        fmt::format("stopped by {} during {} at time {:g}: results so far are written, hardbody resume continues",
                     signal_name(signal), record.last_phase(), record.last_time());
     log.line(text);
     progress.say(fmt::format("{}: {}", directory.path().string(), text));
@@ -177,7 +179,8 @@ int conclude(const RunDirectory& directory, RunRecord& record, Continuation& at,
   return list.empty() ? 0 : 1;
 }
 
-/// Up to the begin of equilibration, from wherever the run stands; false: a signal came before there was a start.
+/// Brings the run to the begin of equilibration, from its current state; returns false if a signal came before there
+/// was a start.
 bool prepare(const Config& config, Continuation& at, Progress& progress, Saver& saver, Log& log) {
   if (at.equilibration || at.production) return true;
   if (!at.start) {
@@ -185,7 +188,7 @@ bool prepare(const Config& config, Continuation& at, Progress& progress, Saver& 
     at.start = make_start(config, std::exchange(at.loaded, {}), progress, log);
   }
   if (!at.start) return false;
-  // The run or the file that it came from may be gone, or another one, when this one is resumed.
+  // The run or file that it started from may be gone, or another one, when this run is resumed.
   if (saver.due() || config.start_from || config.start_file) saver.save([&at] { return checkpoint_of(*at.start); });
   at.equilibration = begin_equilibration(config, *at.start, progress, saver, log);
   if (at.equilibration && config.equilibration_time != 0.0) at.start.reset();
@@ -195,10 +198,10 @@ bool prepare(const Config& config, Continuation& at, Progress& progress, Saver& 
 void run_equilibration(const Config& config, const RunDirectory& directory, Continuation& at, RunRecord& record,
                        Progress& progress, Saver& saver, Log& log) {
   record.equilibration = equilibrate(config, *at.equilibration, progress, saver, log);
-  // Where nothing was to run the start itself, to the last bit.
+  // If there was no equilibration, the start itself, to the last bit.
   if (at.start) record.equilibration.system = std::exchange(at.start, std::nullopt)->system;
   record.stall = at.equilibration->simulation.stall();
-  // A state with an overlap is no start for a production run.
+  // A state with an overlap cannot start a production run.
   const bool sound = defects(ed::audit(record.equilibration.system)).empty();
   if (record.equilibration.stopped || !sound) return;
   at.equilibration.reset();
@@ -222,7 +225,7 @@ int run_phases(const Config& config, const RunDirectory& directory, Continuation
   record.config = config;
   if (at.equilibration) run_equilibration(config, directory, at, record, progress, saver, log);
   if (at.production) run_production(config, at, record, progress, saver, log);
-  if (!at.equilibration && !at.production) {  // a signal came while the lists were tuned
+  if (!at.equilibration && !at.production) {  // a signal came while the neighbour lists were tuned
     record.equilibration.system = at.start->system;
     record.equilibration.counters_of_start = at.start->counters;
     record.equilibration.failures_of_start = at.start->failures;
@@ -233,11 +236,11 @@ int run_phases(const Config& config, const RunDirectory& directory, Continuation
   return conclude(directory, record, at, saver, progress, log);
 }
 
-/// What to do when a file could not be written.
+/// Returns what to do when a file could not be written.
 std::string advice(const RunDirectory& directory, const WriteError& error) {
   return fmt::format("{}: {}, then hardbody resume {}{}",
-                     directory.has(kCheckpointFile) ? "the last checkpoint stands" : "there is no checkpoint yet",
-                     error.no_room() ? "free some room" : "mend that", directory.path().string(),
+                     directory.has(kCheckpointFile) ? "the last checkpoint is intact" : "there is no checkpoint yet",
+                     error.no_room() ? "free some room" : "resolve this", directory.path().string(),
                      directory.has(kCheckpointFile) ? "" : " starts over");
 }
 
@@ -256,7 +259,7 @@ int run_logged(const Config& config, const RunDirectory& directory, Continuation
 
 // ---- Resuming
 
-/// Everything that can be refused is refused here, before anything is changed.
+/// Makes the state to continue from. All errors are detected here, before anything is changed.
 Continuation continuation(const Config& config, Checkpoint checkpoint, const RunDirectory& directory,
                           const std::string& name) {
   Continuation at;
@@ -276,7 +279,7 @@ Continuation continuation(const Config& config, Checkpoint checkpoint, const Run
   return at;
 }
 
-/// Whether the directory has the results of a run that nothing has interrupted.
+/// Returns whether the directory has the results of a run that was not interrupted.
 bool has_final_results(const RunDirectory& directory) {
   if (!directory.has(kSummaryFile)) return false;
   const std::string text = read_file(directory.file(kSummaryFile), kLongestSummary);
@@ -284,13 +287,13 @@ bool has_final_results(const RunDirectory& directory) {
   return summary.is_object() && summary.value("interrupted", nlohmann::json()) == false;
 }
 
-/// Nothing is changed.
+/// Reports that the run is complete. Nothing is changed.
 int leave_alone(const RunDirectory& directory) {
   fmt::print("{}: the run is finished: nothing to do\n", directory.path().string());
   return 0;
 }
 
-/// Without a checkpoint: the same run again, which is the same to every bit.
+/// Starts a run without a checkpoint again, which gives the same run bit for bit.
 int start_over(const RunDirectory& directory) {
   const Config config = load_config(directory.file(kConfigFile).string(), {});
   directory.check_writable();
@@ -306,7 +309,7 @@ int run(const RunArguments& arguments) {
   std::optional<StartFrame> frame;
   Config config = load_config(arguments.config, arguments.overrides, &frame);
   install_signal_handlers();
-  // What is wrong with a state to start from is said before anything is written.
+  // Errors of a state to start from are reported before anything is written.
   Continuation at;
   if (config.start_from) at.loaded.origin = take_origin(directory_for(arguments.out, arguments.config), config);
   if (config.start_file) {
@@ -326,8 +329,8 @@ int resume(const std::string& path) {
   if (!directory.has(kCheckpointFile)) return final ? leave_alone(directory) : start_over(directory);
   const std::string name = directory.file(kCheckpointFile).string();
   std::optional<Checkpoint> checkpoint;
-  // Of a finished run it does not matter which program could go on with it. Else that comes before the config is
-  // judged, which may have another version's keys.
+  // For a finished run it does not matter which program could continue it. Otherwise that is checked before the config,
+  // which may have another version's keys.
   try {
     checkpoint = read_checkpoint(name);
     check_version(*checkpoint, name);

@@ -14,7 +14,7 @@
 namespace hardbody {
 namespace {
 
-/// A value as the user would write it: toml++ prints reals with digits that nobody wrote.
+/// Returns a value as the user would write it: toml++ prints reals with digits that nobody wrote.
 std::string shown(const Value& value, const toml::node& node) {
   if (value.kind == Value::Kind::real) return toml_real(value.real);
   if (value.kind == Value::Kind::text) return one_line(fmt::format("\"{}\"", value.text), kShownLength);
@@ -39,7 +39,7 @@ int line_of(const toml::source_region& source) {
 
 Value value_of(const toml::node& node);
 
-/// In the order of the file; toml++ keeps the alphabet's.
+/// Returns the members in the order of the file; toml++ sorts them alphabetically.
 std::vector<Member> members_of(const toml::table& table) {
   std::vector<std::pair<toml::source_position, Member>> found;
   for (const auto& [key, node] : table) {
@@ -79,7 +79,7 @@ Value value_of(const toml::node& node) {
 }
 
 void add_entry(TomlDocument& document, std::string key, const toml::key& name, const toml::node& node) {
-  // The line of the key, not of the value: a value may go over several lines.
+  // The line of the key, not of the value, which may span several lines.
   const int line = line_of(name.source());
   document.entries.push_back({std::move(key), fmt::format("{}:{}", document.name, line), line, value_of(node)});
 }
@@ -89,7 +89,7 @@ void add_section(TomlDocument& document, const std::string& name, bool several, 
   for (const auto& [key, node] : section) add_entry(document, fmt::format("{}.{}", name, key.str()), key, node);
 }
 
-/// [name], or several [[name]]: name[1], name[2], ..
+/// Adds [name], or several [[name]]: name[1], name[2], ..
 void add_sections(TomlDocument& document, const toml::key& name, const toml::node& node) {
   if (const toml::table* section = node.as_table()) {
     add_section(document, std::string(name.str()), false, line_of(name.source()), *section);
@@ -110,11 +110,11 @@ toml::table parse(std::string_view text, const std::string& name) {
   }
 }
 
-/// `text` as the value of a TOML assignment; a string if it is none.
+/// Parses `text` as the value of a TOML assignment; returns a string if it is not TOML.
 Value parse_value(const std::string& text) {
   try {
     const toml::table table = toml::parse("value = " + text);
-    // More than one key: the text had a line break in it and went on as another assignment.
+    // More than one key: the text contained a line break followed by another assignment.
     if (table.size() == 1 && table.contains("value")) return value_of(*table.get("value"));
   } catch (const toml::parse_error&) {
     // Not TOML: a bare word.
@@ -161,7 +161,7 @@ std::string table_text(const std::vector<Member>& members) {
   return text + "}";
 }
 
-/// The lines of a section ("": of none).
+/// Returns the lines of a section; "": of the keys in no section.
 std::string entries_text(const TomlDocument& document, const std::string& section) {
   std::string text;
   for (const Entry& entry : document.entries) {
@@ -284,7 +284,7 @@ TomlDocument read_toml(std::string_view text, const std::string& name, const std
       add_entry(document, std::string(key.str()), key, node);
     }
   }
-  // toml++ keeps keys in alphabetical order; the first error reported should be the first in the file.
+  // toml++ sorts keys alphabetically, but the first error reported should be the first in the file.
   std::stable_sort(document.entries.begin(), document.entries.end(),
                    [](const Entry& a, const Entry& b) { return a.line < b.line; });
   std::stable_sort(document.sections.begin(), document.sections.end(),

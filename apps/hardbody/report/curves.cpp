@@ -21,10 +21,10 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kLongestFile = std::size_t{1} << 26;
 
-/// A file of observables/ and what the report takes from it.
+/// File of observables/ with the columns that the report uses.
 struct CurveFile {
   const char* name;
-  std::array<const char*, 3> columns;  ///< that are in all such files, the abscissa first; nullptr: no more
+  std::array<const char*, 3> columns;  ///< columns that exist in all such files, the abscissa first; nullptr: no more
 };
 
 constexpr CurveFile kCurveFiles[] = {
@@ -40,7 +40,7 @@ constexpr CurveFile kCurveFiles[] = {
     {kBlocksFile, {"end", "Z", "S"}},
 };
 
-/// Returns NaN for an empty field and for what is no finite number; nullopt for what is no number.
+/// Returns NaN for an empty field and for a number that is not finite; nullopt for text that is not a number.
 std::optional<double> field_value(std::string_view field) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   if (field.empty()) return kNone;

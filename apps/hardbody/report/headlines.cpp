@@ -16,7 +16,7 @@ constexpr const char* kRate = "√(kT/m)/l";
 constexpr const char* kDiffusion = "l √(kT/m)";
 constexpr const char* kTime = "l √(m/kT)";
 
-/// What a number of summary.json is called.
+/// Names of a number of summary.json.
 struct Naming {
   const char* key;
   const char* symbol;
@@ -46,7 +46,7 @@ constexpr std::array kNamings = {
     Naming{"kT_rot", "kT_rot", "Rotational temperature", "kT", "the same of rotation"},
 };
 
-/// Of bodies without an axis of revolution: a list of three.
+/// Observables of bodies without an axis of revolution: a list of three.
 constexpr std::array kAxisNamings = {
     Naming{"D_rot_axes", "D", "Rotational diffusion about body", kRate, "⟨(∫ω dt)²⟩ / 2t, of that component"},
     Naming{"t_C2_1overe_axes", "t_C2", "Orientational relaxation of body", kTime, "⟨P₂(u(t)·u(0))⟩ = 1/e of that axis"},

@@ -13,13 +13,13 @@
 namespace hardbody {
 namespace {
 
-/// What a plot shows: columns of a file of observables/.
+/// Content of a plot: columns of a file of observables/.
 struct PlotChoice {
   const char* file;
   const char* title;
   bool log_x;
   bool log_y;
-  std::vector<const char*> columns;  ///< of one run; of several runs the first one of each
+  std::vector<const char*> columns;  ///< columns for one run; for several runs the first one is used
 };
 
 const std::vector<PlotChoice>& choices() {
@@ -39,7 +39,7 @@ const std::vector<PlotChoice>& choices() {
   return list;
 }
 
-/// Of blocks.csv the ends of the stretches of time.
+/// Returns the column of the abscissa; for blocks.csv the ends of the blocks.
 std::string x_column(const Curves& curves) {
   return curves.name == "blocks" ? "end" : Curves::bare_name(curves.columns[0]);
 }
@@ -104,7 +104,7 @@ const Headline* find(const std::vector<Headline>& list, const std::string& key) 
   return nullptr;
 }
 
-/// One row a quantity, one column a run.
+/// Returns a table with one row a quantity, one column a run.
 std::string headline_table(const std::vector<RunReport>& runs) {
   std::string html = "<table class=\"card\"><thead><tr><th scope=\"col\">quantity</th>";
   for (const RunReport& run : runs) html += fmt::format("<th scope=\"col\">{}</th>", html_text(run.name));

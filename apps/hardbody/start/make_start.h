@@ -13,7 +13,7 @@
 
 namespace hardbody {
 
-/// State, with the counters of its compression and the pairs that failed in it.
+/// Initial state, the counters of its compression, and the pairs that failed in it.
 struct Start {
   ed::System system;
   ed::Counters counters;
@@ -26,9 +26,9 @@ struct LoadedStates {
   std::optional<FileStart> file;
 };
 
-/// Makes the start of a run: bodies from a file, the last state of another run, a random dilute state, or a lattice;
-/// the second and third are compressed. An origin has to be loaded. Returns nullopt if a signal came first. Throws
-/// InputError if there is no such state, and std::runtime_error if the compression gets stuck.
+/// Makes the initial state of a run: bodies from a file, the last state of another run, a random dilute state, or a
+/// lattice; the second and third are compressed. The state of an origin has to be loaded. Returns nullopt if a signal
+/// came first. Throws InputError if there is no such state, and std::runtime_error if the compression gets stuck.
 std::optional<Start> make_start(const Config& config, LoadedStates loaded, Progress& progress, Log& log);
 
 }  // namespace hardbody
