@@ -68,7 +68,8 @@ struct Comment {
   std::function<std::string(const Place&)> at;
 
   Comment(const char* text) : at([text](const Place&) { return text; }) {}
-  Comment(std::string (*text)(const Place&)) : at(text) {}
+  template <class F>
+  Comment(F text) : at(text) {}
 };
 
 struct Key {
