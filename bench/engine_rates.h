@@ -1,6 +1,6 @@
 #pragma once
 
-/// What the benchmarks of the event loop report.
+/// Results reported by the benchmarks of the event loop.
 
 #include <ed/simulation.h>
 
@@ -14,7 +14,8 @@
 
 namespace hardbody_bench {
 
-/// Collisions a second, and the counters that explain them, of the collisions between the two states of the counters.
+/// Reports collisions a second, and the counters that explain them, for the collisions between two states of the
+/// counters.
 inline void report_rates(benchmark::State& timing, const ed::Counters& before, const ed::Counters& after) {
   const auto collisions = static_cast<double>(after.collisions - before.collisions);
   const auto each = [&](std::uint64_t ed::Counters::*counter) {
@@ -43,7 +44,7 @@ class KeepRates : public benchmark::ConsoleReporter {
     benchmark::ConsoleReporter::ReportRuns(runs);
   }
 
-  /// NaN if the filter left that benchmark out.
+  /// Returns the rate of a benchmark, NaN if the filter left it out.
   double rate(const std::string& name) const {
     const auto found = rates_.find(name);
     return found == rates_.end() ? std::nan("") : found->second;

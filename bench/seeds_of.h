@@ -1,6 +1,6 @@
 #pragma once
 
-/// The seeds of the distance equations that this build has, by name.
+/// Seeds of the distance equations that this build has, by name.
 
 #include <geom/geom.h>
 #ifdef HARDBODY_WITH_SEEDS

@@ -2,7 +2,9 @@
 hardbody_test(ed_unit_test unit
   unit/ed/bodies/custom_shape_test.cpp
   unit/ed/neighbours/envelopes_test.cpp
+  unit/ed/loop/added_events_test.cpp
   unit/ed/loop/event_loop_test.cpp
+  unit/ed/loop/loop_parts_test.cpp
   unit/ed/loop/prefetch_events_test.cpp
   unit/ed/neighbours/general_test.cpp
   unit/ed/start/lattice_test.cpp

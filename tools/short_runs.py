@@ -8,7 +8,7 @@ KINDS = {
     "D_trans": ("msd.csv", 6), "D_rot": ("rotational_msd.csv", None),
     "tau_C2": (None, None), "tau_F": (None, None),
 }
-PRODUCTIONS = (2, 3, 5, 8, 12, 20, 40, 100)
+PRODUCTIONS = (2, 3, 5, 8, 12, 20, 40, 100, 200)
 
 
 def spheroids(X0):

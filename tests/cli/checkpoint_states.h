@@ -1,6 +1,6 @@
 #pragma once
 
-/// Checkpoints for tests: of a few bodies of one kind, of a mixture.
+/// Checkpoints for tests: with a few bodies of one kind, and with a mixture.
 
 #include "config/config.h"
 #include "io/text_file.h"
@@ -27,7 +27,7 @@ inline ed::System dilute_state() {
   return ed::random_start(hardbody::parse_config(kConfig, "memory").components(), options);
 }
 
-/// Two different semi-axes, three, exponents, sizes, masses.
+/// Config of a mixture with two different semi-axes, three, exponents, sizes, masses.
 inline constexpr const char* kMixture =
     "[system]\npacking_fraction = 0.02\n"
     "[[species]]\nsemi_axes = [0.5, 0.5, 1.5]\nnumber = 20\n"
@@ -52,7 +52,7 @@ inline hardbody::Checkpoint checkpoint_of(const ed::System& system, const char* 
   return checkpoint;
 }
 
-/// Exit status of `hardbody check` on a run directory with this checkpoint.
+/// Returns the exit status of `hardbody check` on a run directory with this checkpoint.
 inline int check_status(const hardbody::Checkpoint& checkpoint) {
   const std::filesystem::path directory =
       std::filesystem::path(testing::TempDir()) / ("hardbody_check_" + std::to_string(::getpid()));

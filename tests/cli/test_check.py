@@ -104,13 +104,13 @@ class CheckEveryBox(FilesCase):
 class CheckWhatIsNotSaid(FilesCase):
     def test_missing_shapes(self):
         name = self.gsd_file("none.gsd", frame_of([[0, 0, 0], [0.1, 0, 0]], [{}], diameter=[1, 1]))
-        self.assertRegex(self.verdict(name), "^not looked at: overlaps: bodies of type A have no shape")
+        self.assertRegex(self.verdict(name), "^not tested: overlaps: bodies of type A have no shape")
         self.assertRegex(self.said, "minimum distance +not known")
         # Overlaps of the others are found all the same.
         some = frame_of([[0, 0, 0], [3, 0, 0], [3.1, 0, 0]], [{}, BALL], typeid=[0, 1, 1])
         self.assert_overlap(self.gsd_file("some.gsd", some), "bodies 1 and 2")
         apart = frame_of([[0, 0, 0], [3, 0, 0]], [{}, BALL], typeid=[0, 1])
-        self.assertRegex(self.verdict(self.gsd_file("apart.gsd", apart)), "^not looked at: .*type A")
+        self.assertRegex(self.verdict(self.gsd_file("apart.gsd", apart)), "^not tested: .*type A")
         # A type without bodies needs none.
         self.assertEqual(self.verdict(self.gsd_file("unused.gsd", frame_of([[1, 0, 0]], [BALL, {}]))), "sound")
 
@@ -119,7 +119,7 @@ class CheckWhatIsNotSaid(FilesCase):
         frames = [frame_of([[0, 0, 0], [1.1, 0, 0]], [ROD], orientation=[[1, 0, 0, 0]] * 2) for _ in range(2)]
         frames[1].particles.orientation = None
         frames[1].particles.position = [[0, 0, 0], [1.2, 0, 0]]
-        self.assertRegex(self.verdict(self.gsd_file("near.gsd", *frames)), "^not looked at: .*orientations")
+        self.assertRegex(self.verdict(self.gsd_file("near.gsd", *frames)), "^not tested: .*orientations")
         frames[1].particles.position = [[0, 0, 0], [3.2, 0, 0]]
         self.assertEqual(self.verdict(self.gsd_file("far.gsd", *frames)), "sound")
 
@@ -166,7 +166,7 @@ class CheckDumps(FilesCase):
 
     def test_without_shapes(self):
         self.write("dump", dump_of("id type x y z", [[1, 1, 0, 0, 0], [2, 1, 0.1, 0, 0]]))
-        self.assertRegex(self.verdict("dump"), "^not looked at: overlaps: bodies of type 1 have no shape")
+        self.assertRegex(self.verdict("dump"), "^not tested: overlaps: bodies of type 1 have no shape")
 
     def test_ours(self):
         self.run_small("out", config=SMALL + 'trajectory = ["gsd", "lammps"]\nframes = 3\n')

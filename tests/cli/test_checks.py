@@ -103,7 +103,7 @@ class ChecksOfTrajectories(Analyses):
                 self.assertRegex(said, "frame 1\\b")
                 self.assertRegex(said, who or "frame 1")
         else:
-            self.assertEqual(found.group(1), f"0 found; not looked at everywhere: {outcome}")
+            self.assertEqual(found.group(1), f"0 found; not tested everywhere: {outcome}")
 
     def test_gsd(self):
         for name, how, outcome in GSD:

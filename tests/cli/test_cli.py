@@ -1270,7 +1270,7 @@ class CommandLine(Case):
         for option in ["--fit-from", "--longest-lag", "--time-step"]:
             for value in ["inf", "nan", "0", "-1", "1e999", "x"]:
                 refusal = self.hardbody("analyze", "out", f"{option}={value}")
-                self.assert_refused(refusal, f"{option}: {value} is no positive finite number")
+                self.assert_refused(refusal, f"{option}: {value} is not a positive finite number")
 
 
 class Signals(Case):

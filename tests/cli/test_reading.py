@@ -319,7 +319,7 @@ class PartsOfFrames(FilesCase):
         steps = [0, 1, 100, 200, 300, 400]
         self.dump("uneven.lammpstrj", "id type xu yu zu", [[[1, 1, 0.005 * s, 0, 0], [2, 1, 0, 3, 0]] for s in steps], steps=steps)
         out = self.analyze("uneven.lammpstrj")
-        self.assertIn("S, g(r) and S(q) are from all frames, correlations from the longest even stretch, 4 frames", out)
+        self.assertIn("S, g(r) and S(q) are from all frames, correlations from the longest evenly spaced sequence, 4 frames", out)
         self.assertIn("of times 100 to 400", out)
         self.assertEqual(list(self.msd()), [100])
         self.assertAlmostEqual(self.msd()[100], 0.125, places=6)
@@ -343,13 +343,13 @@ class PartsOfFrames(FilesCase):
 
     def test_radius_and_diameter(self):
         self.dump("r.lammpstrj", "id type x y z radius", [[[1, 1, 0, 0, 0, 0.5], [2, 1, 0, 3, 0, 1]]])
-        self.assertIn("column radius: bodies are taken for spheres of these sizes", self.analyze("r.lammpstrj"))
+        self.assertIn("column radius: bodies are treated as spheres of these sizes", self.analyze("r.lammpstrj"))
         self.assertAlmostEqual(self.analysis()["state"]["length"], ((0.125 + 1) / 2) ** (1 / 3), places=9)
         q = "quatw quati quatj quatk"
         self.dump("q.lammpstrj", f"id type x y z radius {q}", [[[1, 1, 0, 0, 0, 0.5, 1, 0, 0, 0]]])
-        self.assertIn("column radius: not used, for bodies with orientations are no spheres", self.analyze("q.lammpstrj"))
+        self.assertIn("column radius: not used, because bodies with orientations are not spheres", self.analyze("q.lammpstrj"))
         self.gsd("d.gsd", [self.two(0)], shapes=[{}], diameter=[[2, 3]])
-        self.assertIn("particles/diameter: bodies are taken for spheres of these diameters", self.analyze("d.gsd"))
+        self.assertIn("particles/diameter: bodies are treated as spheres of these diameters", self.analyze("d.gsd"))
         self.assertAlmostEqual(self.analysis()["state"]["length"], ((1 + 1.5**3) / 2) ** (1 / 3), places=6)
 
     def test_columns_of_other_names(self):

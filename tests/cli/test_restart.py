@@ -404,7 +404,7 @@ class Refusals(Restart):
         self.write("file", "x")
         self.assert_refused(self.hardbody("resume", "file"), "file: is not a directory")
         os.makedirs(self.path("empty"))
-        self.assert_refused(self.hardbody("resume", "empty"), "empty: holds no run: config.toml is not there")
+        self.assert_refused(self.hardbody("resume", "empty"), "empty: holds no run: config.toml is missing")
         self.assert_refused(self.hardbody("resume"), "hardbody --help")
 
     def test_pipes(self):
@@ -516,7 +516,7 @@ class Faults(Restart):
                 error, files = self.ended(process)
                 self.assertIn(
                     "cannot be written: File too large; "
-                    + ("the last checkpoint stands: free some room, then hardbody resume out\n" if size > 6000 else
+                    + ("the last checkpoint is intact: free some room, then hardbody resume out\n" if size > 6000 else
                        "there is no checkpoint yet: free some room, then hardbody resume out starts over\n"),
                     error,
                 )
@@ -540,7 +540,7 @@ class Faults(Restart):
             "run", "run.toml", "--out", "out", preexec_fn=self.limited(int(0.9 * size)), stdout=subprocess.PIPE
         )
         error, files = self.ended(process)
-        self.assertIn("events.csv: cannot be written: File too large; the last checkpoint stands: free some room", error)
+        self.assertIn("events.csv: cannot be written: File too large; the last checkpoint is intact: free some room", error)
         self.assertEqual(files, [])
         check = self.hardbody("check", "out")
         self.assertEqual(check.returncode, 0, check.stdout)
@@ -563,7 +563,7 @@ class Faults(Restart):
                 os.makedirs(self.path(f"out/{path}.part"))
                 error, files = self.ended(process)
                 self.assertIn(f"out/{path}: cannot be written: ", error)
-                self.assertIn("; the last checkpoint stands: mend that, then hardbody resume out\n", error)
+                self.assertIn("; the last checkpoint is intact: mend that, then hardbody resume out\n", error)
                 self.assertEqual(files, written)
                 shutil.rmtree(self.path(f"out/{path}.part"), ignore_errors=True)
                 self.resume("out")
@@ -588,7 +588,7 @@ class Faults(Restart):
         self.wait_for(lambda: self.log_has("out", "collisions wait in memory"), "a full disk")
         self.assertEqual(self.stop(process, signal.SIGTERM), 1)
         error = process.stderr.read()
-        self.assertIn("events.csv: cannot be written: File too large; the last checkpoint stands: free some room", error)
+        self.assertIn("events.csv: cannot be written: File too large; the last checkpoint is intact: free some room", error)
         self.assertEqual(self.hardbody("check", "out").returncode, 0)
         process = self.start("resume", "out")
         self.wait_for(lambda: self.log_has("out", "resumed from production"), "production")

@@ -207,7 +207,7 @@ class Resumed(SweepCase):
                 self.wait_for(lambda: os.path.exists(self.path(f"{first}/checkpoint.bin")), "a checkpoint")
                 process.send_signal(number)
                 self.assertEqual(process.wait(timeout=60), status)
-                self.assertIn("the same command goes on", process.stderr.read())
+                self.assertIn("the same command continues", process.stderr.read())
                 self.assertTrue(self.summary(first)["interrupted"])
                 self.assertEqual(self.statuses(f"out{status}")[:2], ["stopped", "stopped"])
                 self.assertEqual(self.state("aspect_ratio=0.5_packing_fraction=0.1", f"out{status}")["status"], "stopped")
@@ -466,7 +466,7 @@ class Failures(SweepCase):
         self.write("out/seed=2/summary.json", "garbage")
         result = self.sweep(text)
         self.assertEqual(result.returncode, 1)
-        self.assertIn("seed=2/summary.json is not one that a run has written; accepted: delete the directory seed=2, and the same "
+        self.assertIn("seed=2/summary.json was not written by a run; accepted: delete the directory seed=2, and the same "
                       "command runs the point again", self.table()[1]["message"])
         shutil.rmtree(self.path("out/seed=2"))
         self.assertEqual(self.sweep(text).returncode, 0)
@@ -543,7 +543,7 @@ class Refused(SweepCase):
         self.refuse("sede = 1\n" + SMALL + GRID, "unknown key sede, did you mean seed?")
         self.refuse(SMALL.replace("[shape]", "[shap]") + GRID, "unknown section [shap], did you mean [shape]?")
         self.refuse("bases = 1\n" + SMALL + GRID, "did you mean base?")
-        self.refuse('base = "small.toml"\n' + SMALL + GRID, "stands beside base")
+        self.refuse('base = "small.toml"\n' + SMALL + GRID, "cannot be combined with base")
         self.refuse('base = "missing.toml"\n' + GRID, "missing.toml: cannot be read")
         self.refuse(SMALL + GRID + "nonsense", "is not valid TOML")
         self.assert_refused(self.hardbody("sweep", "missing.toml"), "missing.toml: cannot be read")
@@ -599,7 +599,7 @@ class Refused(SweepCase):
         text = TWELVE.replace("time = 200", "time = 100000")
         process = self.start(text, "--jobs", "1")
         self.wait_for(lambda: os.path.exists(self.path("out/sweep.csv")), "the first sweep")
-        self.assert_refused(self.sweep(text), "out: another hardbody process is at work in it")
+        self.assert_refused(self.sweep(text), "out: another hardbody process is using it")
         process.send_signal(signal.SIGTERM)
         self.assertEqual(process.wait(timeout=60), 143)
 

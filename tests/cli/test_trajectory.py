@@ -426,7 +426,7 @@ class StartsFromFiles(Trajectories):
         """The bodies go back where they came from: rounding errors have grown by far less than 1e9."""
         self.run_with("first", SMALL)
         result = self.run_small("back", "--set", "start.reverse=true", "production.time=1", "output.frames=2", config=AGAIN)
-        self.assertIn("velocities as they are, reversed", result.stderr)
+        self.assertIn("velocities unchanged, reversed", result.stderr)
         there = Frames(self.path("first/trajectory.gsd"))
         back = Frames(self.path("back/trajectory.gsd"))
         numpy.testing.assert_array_equal(back.velocity[0], -there.velocity[5])
@@ -443,7 +443,7 @@ class StartsFromFiles(Trajectories):
         shape = '[shape]\nkind = "ellipsoid"\nsemi_axes = [1.0, 0.8, 0.5]\n'
         self.run_with("first", SMALL.replace("[shape]\naspect_ratio = 2\n", shape))
         shape = shape.replace('"ellipsoid"', '"superellipsoid"\nexponents = [1.0, 1.0]')
-        self.assertIn("velocities as they are", self.run_small("second", config=shape + AGAIN).stderr)
+        self.assertIn("velocities unchanged", self.run_small("second", config=shape + AGAIN).stderr)
         heavier = shape + "[dynamics]\ninertia = [0.3, 0.3, 0.4]\n" + AGAIN
         self.assertIn("velocities rescaled", self.run_small("third", config=heavier).stderr)
 
@@ -682,7 +682,7 @@ class CheckOfFiles(Trajectories):
                 self.run_with("out", config)
                 result = self.hardbody("check", "out/trajectory.gsd")
                 self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
-                for text in ["frames                     6", "overlaps                   0", "state to every bit         yes"]:
+                for text in ["frames                     6", "overlaps                   0", "bit-exact state            yes"]:
                     self.assertIn(text, result.stdout)
                 self.assertTrue(result.stdout.endswith("sound\n"))
                 self.assertNotIn("NOT", result.stdout)
@@ -730,7 +730,7 @@ class CheckOfFiles(Trajectories):
                 with gsd.hoomd.open(self.path("trajectory.gsd"), "wb") as file:
                     file.append(frame)
                 for command in [("check", "trajectory.gsd"), ("run", "again.toml", "--out", "again")]:
-                    what = f"trajectory.gsd: frame 0: particles/{array} of body 7 is not what log/ holds in double precision"
+                    what = f"trajectory.gsd: frame 0: particles/{array} of body 7 differs from the double-precision value in log/"
                     self.assert_refused(self.hardbody(*command), what, "accepted: an unedited frame")
         # Without the doubles it is a file as any other.
         frame.log = {}
@@ -751,7 +751,7 @@ class CheckOfFiles(Trajectories):
         content = self.bytes_of("out/trajectory.gsd")
         with open(self.path("cut.gsd"), "wb") as file:
             file.write(content[:-1000])
-        said = "5; what follows them is not whole and left out"
+        said = "5; data after them is incomplete and left out"
         self.assertIn(said, self.hardbody("check", "cut.gsd").stdout)
         self.assertIn("what follows them is not whole", self.hardbody("analyze", "cut.gsd", "--out", "analysis").stdout)
         result = self.run_small("again", config=AGAIN.replace("first/trajectory", "cut"))
@@ -787,9 +787,9 @@ class CheckOfFiles(Trajectories):
                 file.write(bytes_)
             result = self.hardbody("check", name)
             self.assertEqual(result.returncode, 0 if name == "shapes.gsd" else 1, result.stdout + result.stderr)
-            self.assertIn("state to every bit         no", result.stdout)
+            self.assertIn("bit-exact state            no", result.stdout)
             last = result.stdout.splitlines()[-1]
-            self.assertEqual(last[:26], "sound" if name == "shapes.gsd" else "not looked at: overlaps: b")
+            self.assertEqual(last[:26], "sound" if name == "shapes.gsd" else "not tested: overlaps: b")
 
 
 class Analyze(Trajectories):

@@ -1,6 +1,7 @@
 #pragma once
 
-/// Every form of operator new of the test that includes this, once, counts its calls; the test says that it does.
+/// Replaces every form of operator new in the program, by one that counts its calls. To be included in one source file;
+/// a test checks that calls are counted.
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-/// Families of bodies beyond ellipsoids of revolution, for the tests of the event loop: a volume of 4 pi / 3 each,
+/// Families of bodies other than ellipsoids of revolution, for the tests of the event loop: volume 4 pi / 3 each,
 /// uniform density, kT = m = 1.
 
 #include <ed/ed.h>
@@ -17,7 +17,7 @@
 
 namespace ed_test {
 
-/// Bodies as wanted, scaled to the volume of the unit sphere.
+/// Returns a body with these proportions, scaled to the volume of the unit sphere.
 inline geom::Superellipsoid superellipsoid(const Eigen::Vector3d& axes, double e1, double e2) {
   const double scale = std::cbrt(4.18879020478639098 / geom::Superellipsoid(axes, e1, e2).volume());
   return {scale * axes, e1, e2};
@@ -27,7 +27,7 @@ inline geom::Ellipsoid ellipsoid(const Eigen::Vector3d& axes) {
   return geom::Ellipsoid(axes / std::cbrt(axes.prod()));
 }
 
-/// |x|^p + |y|^p + |z|^p <= 1.
+/// Returns the body |x|^p + |y|^p + |z|^p <= 1.
 inline geom::Superellipsoid superball(double p) {
   return superellipsoid({1, 1, 1}, 2 / p, 2 / p);
 }
@@ -41,7 +41,7 @@ inline Family pure(const std::string& name, const ed::BodyShape& shape, int numb
   return {name, {{ed::uniform_species(shape), number}}};
 }
 
-/// One of each kind; `number` of bodies in all.
+/// Returns one family of each kind; `number` of bodies in all.
 inline std::vector<Family> families(int number) {
   std::vector<Family> all;
   all.push_back(pure("superballs, p = 4", superball(4), number));

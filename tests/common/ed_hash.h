@@ -1,6 +1,6 @@
 #pragma once
 
-/// A hash over the bits of a simulation's state.
+/// Hash over the bits of a simulation's state.
 
 #include <ed/ed.h>
 
@@ -34,7 +34,7 @@ class Hash {
   std::uint64_t value_ = 14695981039346656037ULL;
 };
 
-/// Box, positions, all three body axes, velocities and angular velocities.
+/// Returns the hash of box, positions, all three body axes, velocities and angular velocities.
 inline std::uint64_t hash_of(const ed::System& system) {
   Hash hash;
   hash.add(system.box);
@@ -47,7 +47,8 @@ inline std::uint64_t hash_of(const ed::System& system) {
   return hash.value();
 }
 
-/// The same with the time, the number of collisions, their virial and the integrals of the angular velocities.
+/// Returns the hash of the system together with the time, the number of collisions, their virial and the integrals of
+/// the angular velocities.
 inline std::uint64_t hash_of(const ed::Simulation& simulation) {
   Hash hash;
   hash.add(hash_of(simulation.system()));

@@ -1,6 +1,6 @@
 #pragma once
 
-/// A run as the program does it: start, equilibration, production with observables.
+/// Run in the same phases as the program's: start, equilibration, production with observables.
 
 #include <common/ed_states.h>
 
@@ -11,9 +11,9 @@
 namespace ed_test {
 
 struct Protocol {
-  double equilibration;    ///< time units
-  double duration;         ///< of the production
-  double longest_lag = 0;  ///< 0: as ObservablesOptions has it
+  double equilibration;    ///< time of the equilibration, in time units
+  double duration;         ///< duration of the production
+  double longest_lag = 0;  ///< longest lag; 0: the default of ObservablesOptions
 };
 
 struct Measured {
@@ -23,7 +23,7 @@ struct Measured {
   std::uint64_t overlaps = 0;
 };
 
-/// From an equilibrated state.
+/// Runs the production from an equilibrated state.
 inline Measured measure(ed::System system, const Protocol& protocol) {
   double envelope = 0;
   {

@@ -28,7 +28,7 @@ inline ed::Results observed(const ed::System& system, const ed::ObservablesOptio
   return observables.results(simulation);
 }
 
-/// Options for bodies of revolution alone.
+/// Returns options for bodies of revolution only.
 inline ed::ObservablesOptions options_of(const ed::System& system, double duration, double longest_lag,
                                          const std::vector<double>& wave_numbers = {}) {
   ed::ObservablesOptions options{};
@@ -39,8 +39,8 @@ inline ed::ObservablesOptions options_of(const ed::System& system, double durati
   return options;
 }
 
-/// A gas of bodies that never meet: Maxwellian velocities and angular velocities at kT = 1, not rescaled, which would
-/// fix the totals and narrow the distribution.
+/// Returns a gas of bodies that never collide: Maxwellian velocities and angular velocities at kT = 1, not rescaled,
+/// because rescaling would fix the totals and narrow the distribution.
 inline ed::System maxwellian_gas(const ed::Species& species, int along, double spacing, std::uint64_t seed) {
   ed::System system = grid(species, along, spacing);
   ed::Random random(seed);

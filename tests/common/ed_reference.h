@@ -1,6 +1,6 @@
 #pragma once
 
-/// The tables of tests/reference.
+/// Tables of tests/reference.
 
 #include <cmath>
 #include <fstream>
@@ -13,8 +13,8 @@
 
 namespace ed_test {
 
-/// A file of comma-separated values: comments begin with '#', the first other line names the columns. Names may stand
-/// in quotes; commas within quotes do not separate.
+/// File of comma-separated values: comments begin with '#', the first other line names the columns. Names may be in
+/// quotes; commas within quotes do not separate.
 class ReferenceTable {
  public:
   explicit ReferenceTable(const std::string& file) : file_(file) {
@@ -35,7 +35,7 @@ class ReferenceTable {
   const std::string& text(std::size_t row, const std::string& column) const { return rows_.at(row).at(index(column)); }
   double value(std::size_t row, const std::string& column) const { return std::stod(text(row, column)); }
 
-  /// The value in the one row whose key columns have these values (to the six digits of the tables).
+  /// Returns the value in the one row whose key columns have these values (to the six digits of the tables).
   double at(std::initializer_list<std::pair<std::string, double>> keys, const std::string& column) const {
     for (std::size_t row = 0; row < rows_.size(); ++row) {
       bool match = true;

@@ -1,6 +1,6 @@
 #pragma once
 
-/// The first collisions of a run, and whether those of another one are the same.
+/// Comparison of the first collisions of two runs.
 
 #include <ed/ed.h>
 
@@ -15,10 +15,10 @@
 
 namespace ed_test {
 
-/// Contacts are found with other rounding errors (about 1e-15 of the time) from other neighbours, times and normals,
-/// and the dynamics multiplies them: in the first 1000 collisions, some four a body, to 1e-12 for ellipsoids of
-/// revolution, 2e-11 for other round bodies, 3e-10 where faces meet. A wrong or missing collision changes times by a
-/// good part of the mean time between collisions, 1e-4 or more.
+/// Tolerance of times. Contacts that are found from other neighbours, times and normals have different rounding errors
+/// (about 1e-15 of the time), and the dynamics multiplies them: in the first 1000 collisions, some four a body, to
+/// 1e-12 for ellipsoids of revolution, 2e-11 for other round bodies, 3e-10 where faces meet. A wrong or missing
+/// collision changes times by a considerable part of the mean time between collisions, 1e-4 or more.
 inline constexpr double kSameTime = 1e-9;
 
 inline std::vector<ed::Collision> first_collisions(const ed::System& system, const ed::SimulationOptions& options,
@@ -47,7 +47,7 @@ inline void expect_same(const std::vector<ed::Collision>& a, const std::vector<e
   EXPECT_LE(worst, same_time) << what;
 }
 
-/// A way to run the event loop.
+/// Variant of running the event loop.
 struct Mode {
   const char* name;
   ed::Finder finder;

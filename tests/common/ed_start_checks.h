@@ -1,6 +1,6 @@
 #pragma once
 
-/// What every start must be, however it was made.
+/// Properties that every start must have, however it was made.
 
 #include <ed/ed.h>
 
@@ -11,7 +11,7 @@
 
 namespace ed_test {
 
-/// Sums over some hundred bodies, each term rounded.
+/// Tolerance of sums over some hundred bodies, each term rounded.
 inline constexpr double kRounding = 1e-12;
 
 inline double spin_kT(const ed::System& system) {
@@ -36,14 +36,14 @@ inline void expect_sound(const ed::System& system, double packing_fraction) {
   EXPECT_EQ(ed::audit(simulation.system()).overlaps, 0);
 }
 
-/// <P2> of the body axis about z.
+/// Returns <P2> of the body axis about z.
 inline double order_about_z(const ed::System& system, int axis) {
   double sum = 0;
   for (const ed::Body& body : system.bodies) sum += 1.5 * body.rotation(2, axis) * body.rotation(2, axis) - 0.5;
   return sum / system.size();
 }
 
-/// <x^4>, x = cos(theta), by quadrature with the m that gives this <P2(x)>.
+/// Returns <x^4>, x = cos(theta), by quadrature with the m that gives this <P2(x)>.
 inline double maier_saupe_fourth_moment(double order) {
   const auto moment = [](double m, int k) {
     double sum = 0;

@@ -1,7 +1,7 @@
 #pragma once
 
-/// Fluids of hard ellipsoids of revolution for the tests of the event loop: fixed seeds, our units (semi-axes with
-/// a b^2 = 1, kT = m = 1).
+/// Fluids of hard ellipsoids of revolution for the tests of the event loop: fixed seeds, the program's units (semi-axes
+/// with a b^2 = 1, kT = m = 1).
 
 #include <ed/ed.h>
 
@@ -14,7 +14,7 @@
 
 namespace ed_test {
 
-/// Semi-axes along body x, y, z with a along z and X0 = a / b.
+/// Returns an ellipsoid with semi-axes along body x, y, z, a along z and X0 = a / b.
 inline geom::Ellipsoid spheroid(double aspect_ratio) {
   const double b = 1 / std::cbrt(aspect_ratio);
   return geom::Ellipsoid({b, b, aspect_ratio * b});
@@ -53,23 +53,23 @@ inline ed::System start(const State& state) {
   return ed::random_start(species(state.aspect_ratio, state.inertia), options);
 }
 
-/// A state after `time` of dynamics, its temperatures set again to exactly 1.
+/// Returns a state after `time` of dynamics, its temperatures reset to exactly 1.
 inline ed::System equilibrated(const State& state, double time) {
   ed::Simulation simulation(start(state));
   simulation.tune_envelopes();
-  // Tuning ends with a collision, while two bodies touch: a moment later.
+  // Tuning ends with a collision, while two bodies touch; a moment later they are apart.
   simulation.run_until(std::max(time, simulation.time() + 0.01));
   ed::System system = simulation.system();
   ed::rescale_velocities(system);
   return system;
 }
 
-/// The shape of all bodies of a system of one species.
+/// Returns the shape of all bodies of a system of one species.
 inline const geom::Ellipsoid& ellipsoid_of(const ed::System& system) {
   return std::get<geom::Ellipsoid>(system.species.at(0).shape);
 }
 
-/// Bodies of an ideal gas: one in each cell of a cubic grid whose spacing is `spacing`, at rest.
+/// Returns bodies of an ideal gas: one in each cell of a cubic grid whose spacing is `spacing`, at rest.
 inline ed::System grid(const ed::Species& kind, int along, double spacing) {
   ed::System system;
   system.species = {kind};

@@ -1,6 +1,6 @@
 #pragma once
 
-/// Ellipsoids of revolution in any motion, and comparison to the last bit: for tests of kernels against the code for
+/// Ellipsoids of revolution in any motion, and comparison to the last bit, for tests of kernels against the code for
 /// one pair.
 
 #include "bodies/uniaxial.h"
@@ -19,7 +19,7 @@
 
 namespace ed_test {
 
-/// Bits, where 0 and -0 differ and NaN is itself.
+/// Returns the bits of a number: 0 and -0 differ, NaN equals itself.
 inline std::uint64_t bits(double x) {
   return std::bit_cast<std::uint64_t>(x);
 }
@@ -27,7 +27,7 @@ inline void expect_same_bits(const Eigen::Vector3d& a, const Eigen::Vector3d& b)
   for (int k = 0; k < 3; ++k) EXPECT_EQ(bits(a[k]), bits(b[k])) << k;
 }
 
-/// Bodies in a box, overlaps and all, each with a clock of its own; some at rest, some turning fast or slowly.
+/// Returns bodies in a box, with overlaps, each with its own local time; some at rest, some rotating fast or slowly.
 inline ed::internal::UniaxialBodies random_bodies(const std::vector<ed::Species>& species, int number, double box,
                                                   ed::Random& random) {
   ed::System system;
@@ -37,7 +37,7 @@ inline ed::internal::UniaxialBodies random_bodies(const std::vector<ed::Species>
     ed::Body body;
     body.species = i % static_cast<int>(species.size());
     body.position = box * Eigen::Vector3d(random.uniform(), random.uniform(), random.uniform());
-    // Some along the box's edges, where numbers are exactly 0.
+    // Some are along the box's edges, where numbers are exactly 0.
     if (i % 5 != 0) body.rotation = random.rotation();
     body.velocity = i % 7 == 0 ? Eigen::Vector3d(0, 0, 0) : random.normal3();
     body.angular_velocity =

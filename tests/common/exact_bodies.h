@@ -1,6 +1,6 @@
 #pragma once
 
-/// Bodies in motion without rounding (quad.h): the ones that the numbers of libed's motions describe.
+/// Bodies in motion without rounding (quad.h): exactly those that the numbers of libed's motions describe.
 
 #include <common/quad.h>
 
@@ -13,7 +13,7 @@
 
 namespace quad {
 
-/// An ellipsoid of revolution whose axis turns as AxisMotion says, with its vectors made exactly orthonormal.
+/// Ellipsoid of revolution whose axis moves according to an AxisMotion, with its vectors made exactly orthonormal.
 class ExactSpheroid {
  public:
   ExactSpheroid(double a, double b, const ed::internal::AxisMotion& m)
@@ -48,13 +48,13 @@ class ExactSymmetricTop {
     const Quad3 w(omega);
     const Quad spin = w.dot(z_);
     const Quad ratio = static_cast<Quad>(inertia.z()) / inertia.x();
-    const Quad3 turning = w + ((ratio - 1) * spin) * z_;
-    precession_ = turning.norm();
-    l_ = unit(turning);
+    const Quad3 precession = w + ((ratio - 1) * spin) * z_;
+    precession_ = precession.norm();
+    l_ = unit(precession);
     own_ = spin * (1 - ratio);
   }
 
-  /// n in the body's axes.
+  /// Returns n in the body's axes.
   std::array<Quad, 3> seen(Quad t, const Quad3& n) const {
     const Quad tau = t - time_;
     const Quad3 z = turned(z_, l_, precession_ * tau);
@@ -68,7 +68,7 @@ class ExactSymmetricTop {
 };
 
 /// Free rotation of a body with any moments: Euler's equations and those of its axes by their Taylor series, a quarter
-/// of a radian a step, with what is left out below 1e-30.
+/// of a radian a step, with a truncation error below 1e-30.
 class ExactAsymmetricTop {
  public:
   ExactAsymmetricTop(const Eigen::Vector3d& inertia, const Eigen::Matrix3d& R, const Eigen::Vector3d& omega,
@@ -89,7 +89,7 @@ class ExactAsymmetricTop {
     longest_ = fastest > 0 ? 0.25 / fastest : 1e300;
   }
 
-  /// n in the body's axes.
+  /// Returns n in the body's axes.
   std::array<Quad, 3> seen(Quad t, const Quad3& n) const {
     go_to(t);
     return {n.dot(axes_[0]), n.dot(axes_[1]), n.dot(axes_[2])};
@@ -98,7 +98,7 @@ class ExactAsymmetricTop {
  private:
   static constexpr int kOrder = 44;
 
-  /// From where it was asked last.
+  /// Integrates from the time of the last call.
   void go_to(Quad t) const {
     while (time_ != t) {
       const Quad left = t - time_;
@@ -145,13 +145,13 @@ class ExactAsymmetricTop {
   }
 
   mutable Quad time_;
-  mutable std::array<Quad, 3> rates_;  ///< about the body's axes
+  mutable std::array<Quad, 3> rates_;  ///< rates about the body's axes
   mutable std::array<Quad3, 3> axes_;
   std::array<Quad, 3> coupling_;
-  double longest_;  ///< step
+  double longest_;  ///< longest step
 };
 
-/// A superellipsoid with any exponents; roots alone where the dual ones, 2 / (2 - e), need no more.
+/// Superellipsoid with any exponents; only roots are needed if the dual exponents, 2 / (2 - e), allow it.
 template <class Top>
 class ExactSuperellipsoid {
  public:
@@ -203,14 +203,14 @@ struct ExactPath {
   Quad3 at(Quad t) const { return position + (t - time) * velocity; }
 };
 
-/// Two bodies; B moved by whole boxes.
+/// Pair of bodies; B is moved by whole boxes.
 template <class Body>
 struct ExactPair {
   Body a, b;
   ExactPath path_a, path_b;
   Quad3 shift;
 
-  /// The gap along n / |n|.
+  /// Returns the gap along n / |n|.
   Quad gap(Quad t, const Eigen::Vector3d& normal) const {
     const Quad3 n = unit(Quad3(normal));
     return n.dot(path_b.at(t) + shift - path_a.at(t)) - a.height(t, n) - b.height(t, Quad(-1) * n);

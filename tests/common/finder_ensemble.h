@@ -1,6 +1,6 @@
 #pragma once
 
-/// Pairs of bodies as a dense fluid makes them, in motion: what the contact finder is tried on.
+/// Pairs of bodies in motion as they occur in a dense fluid, for tests of the contact finder.
 
 #include <common/finder_reference.h>
 
@@ -24,13 +24,13 @@
 
 namespace finder_test {
 
-/// Semi-axes along x, y, z with a along z, X0 = a / b and a b^2 = 1.
+/// Returns an ellipsoid with semi-axes along x, y, z, a along z, X0 = a / b and a b^2 = 1.
 inline geom::Ellipsoid spheroid(double aspect_ratio) {
   const double b = 1 / std::cbrt(aspect_ratio);
   return geom::Ellipsoid({b, b, aspect_ratio * b});
 }
 
-/// Two bodies of the same kind.
+/// Pair of bodies of the same kind.
 struct MovingPair {
   BodyState a;
   BodyState b;
@@ -40,16 +40,16 @@ inline double log_uniform(ed::Random& random, double low, double high) {
   return low * std::exp(random.uniform() * std::log(high / low));
 }
 
-/// Velocity of B's contact point relative to A's, at a point given in the world frame.
+/// Returns the velocity of B's contact point relative to A's, at a point given in the world frame.
 inline Eigen::Vector3d contact_velocity(const BodyState& a, const BodyState& b, const Eigen::Vector3d& point) {
   return b.velocity + b.omega().cross(point - b.position) - a.velocity - a.omega().cross(point - a.position);
 }
 
-/// Near neighbours in an equilibrated fluid: their places and orientations, A at the origin. These do not depend on the
-/// moments of inertia.
+/// Returns near neighbours in an equilibrated fluid: their positions and orientations, A at the origin. These do not
+/// depend on the moments of inertia.
 inline std::vector<MovingPair> near_neighbours(double aspect_ratio, double packing_fraction, int number,
                                                std::uint64_t seed) {
-  /// Closer than this, surface to surface (the geometric mean of the semi-axes is 1).
+  /// Largest surface-to-surface distance of near neighbours (the geometric mean of the semi-axes is 1).
   constexpr double kNear = 0.5;
   const geom::Ellipsoid shape = spheroid(aspect_ratio);
   ed::StartOptions options;
@@ -82,7 +82,8 @@ inline std::vector<MovingPair> near_neighbours(double aspect_ratio, double packi
 /// Pairs of near neighbours of a fluid with fresh velocities.
 class Fluid {
  public:
-  /// `spins`: uniform moments of inertia and spin about the axis; else the paper's moments and none.
+  /// Constructs the fluid. `spins`: uniform moments of inertia and spin about the axis; else the paper's moments and no
+  /// spin.
   Fluid(double aspect_ratio, bool spins, std::vector<MovingPair> neighbours, std::uint64_t seed)
       : shape_(spheroid(aspect_ratio)), spins_(spins), random_(seed), neighbours_(std::move(neighbours)) {
     const Eigen::Vector3d inertia = spins ? shape_.inertia(1.0) : ed::paper_species(shape_).inertia;
@@ -95,7 +96,7 @@ class Fluid {
   double size() const { return 2 * shape_.bounding_radius(); }
   ed::Random& random() { return random_; }
 
-  /// Neighbours with thermal velocities (kT = m = 1), turning `boost` times as fast.
+  /// Returns neighbours with thermal velocities (kT = m = 1), rotating `boost` times as fast.
   MovingPair thermal_pair(double boost = 1) {
     const auto index = static_cast<std::size_t>(random_.uniform() * static_cast<double>(neighbours_.size()));
     MovingPair pair = neighbours_[index];
@@ -104,8 +105,9 @@ class Fluid {
     return pair;
   }
 
-  /// A pair that touches at time 0, moved together along its normal, with the normal velocity of the contact points
-  /// made `share` of their relative velocity (> 0: parting), and then a distance `gap` (< 0: an overlap) put between.
+  /// Returns a pair that touches at time 0, moved together along its normal. The normal velocity of the contact points
+  /// is made `share` of their relative velocity (> 0: parting), and the bodies are then moved apart by `gap` (< 0: an
+  /// overlap).
   MovingPair touching_pair(double boost, double share, double gap) {
     while (true) {
       MovingPair pair = thermal_pair(boost);
@@ -120,12 +122,12 @@ class Fluid {
     }
   }
 
-  /// The same motion, its time 0 put `before` earlier.
+  /// Returns the same motion with its time 0 moved `before` earlier.
   MovingPair earlier(const MovingPair& pair, double before) const {
     return {FreeMotion(pair.a, moments_).at(-before), FreeMotion(pair.b, moments_).at(-before)};
   }
 
-  /// The pair as it was up to `longest` before, where the bodies were apart; nothing if no such time is found.
+  /// Returns the pair as it was up to `longest` before, where the bodies were apart; nullopt if no such time is found.
   std::optional<MovingPair> approach(const MovingPair& pair, double longest) const {
     constexpr int kAttempts = 19;
     double before = longest;

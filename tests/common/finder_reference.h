@@ -1,7 +1,7 @@
 #pragma once
 
-/// A contact finder by brute force, and the free motion that it needs. Shares no code with the finder under test but
-/// `geom::distance`: the motion is written out anew with rotation matrices and the C library's sine.
+/// Brute-force contact finder, and the free motion that it needs. It shares no code with the finder under test except
+/// `geom::distance`: the motion is implemented independently with rotation matrices and the C library's sine.
 
 #include <geom/distance.h>
 #include <geom/ellipsoid.h>
@@ -16,26 +16,26 @@
 
 namespace finder_test {
 
-/// The state of a body of revolution about its z axis, world frame, at time 0.
+/// State of a body of revolution about its z axis, world frame, at time 0.
 struct BodyState {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
-  Eigen::Vector3d across = Eigen::Vector3d::Zero();  ///< the part of omega across the axis
+  Eigen::Vector3d across = Eigen::Vector3d::Zero();  ///< part of omega across the axis
   double spin = 0;                                   ///< omega.axis
 
   Eigen::Vector3d axis() const { return rotation.col(2); }
   Eigen::Vector3d omega() const { return across + spin * axis(); }
 };
 
-/// Principal moments, across the axis and about it.
+/// Principal moments across the axis and about it.
 struct Moments {
   double perpendicular = 1;
   double axial = 1;
 };
 
-/// Torque-free motion from a state at time 0. The body turns about its constant angular momentum L at |L| / I_perp and
-/// about its own axis at (1 - I_3 / I_perp) spin.
+/// Free motion from a state at time 0. The body rotates about its constant angular momentum L at |L| / I_perp and about
+/// its own axis at (1 - I_3 / I_perp) spin.
 class FreeMotion {
  public:
   FreeMotion(const BodyState& start, const Moments& moments) : start_(start) {
@@ -56,8 +56,8 @@ class FreeMotion {
     return s;
   }
 
-  /// All that the distance of a body of revolution depends on: its centre and axis. Turned about the axis it looks the
-  /// same, so that any frame will do; most of the time of brute force goes in here.
+  /// Returns the centre and axis, on which alone the distance of a body of revolution depends. Rotation about the axis
+  /// has no effect, so that any frame will do; brute force spends most of its time here.
   geom::Pose pose(double t) const {
     const double angle = precession_ * t;
     const Eigen::Vector3d along = momentum_direction_.dot(start_.axis()) * momentum_direction_;
@@ -73,7 +73,7 @@ class FreeMotion {
 
   Eigen::Vector3d position(double t) const { return start_.position + t * start_.velocity; }
   const Eigen::Vector3d& velocity() const { return start_.velocity; }
-  double turning_rate() const { return start_.across.norm(); }  ///< |d axis / dt|, constant
+  double axis_rate() const { return start_.across.norm(); }  ///< |d axis / dt|, constant
 
  private:
   BodyState start_;
@@ -85,35 +85,35 @@ class FreeMotion {
 struct BruteContact {
   bool found = false;
   double time = std::numeric_limits<double>::infinity();
-  double least_gap = std::numeric_limits<double>::infinity();  ///< least local minimum of d before it (t > 0)
+  double least_gap = std::numeric_limits<double>::infinity();  ///< smallest local minimum of d before it (t > 0)
 };
 
-/// First contact of two bodies by steps d / (largest possible |dd/dt|).
+/// Finds the first contact of two bodies by steps d / (largest possible |dd/dt|).
 ///
-/// The step is certified, but vanishes with d; below `floor` it is floor / rate instead, over which d changes by no
-/// more than floor. What could hide between two such steps is found by minimising d(t) around every sampled minimum
-/// below ten floors.
+/// The step is certified, but vanishes with d; below `floor` it is floor / rate instead, over which d changes by at
+/// most floor. A contact between two such steps is found by minimising d(t) around every sampled minimum below ten
+/// floors.
 class BruteForce {
  public:
-  /// `floor` in units of size(), the sum of both bounding radii.
+  /// Constructs the finder with `floor` in units of size(), the sum of both bounding radii.
   BruteForce(const geom::Ellipsoid& shape_a, const FreeMotion& a, const geom::Ellipsoid& shape_b, const FreeMotion& b,
              double floor)
       : shape_a_(shape_a), shape_b_(shape_b), a_(a), b_(b) {
     const auto tip_rate = [](const geom::Ellipsoid& s, const FreeMotion& m) {
-      return (s.bounding_radius() - s.inscribed_radius()) * m.turning_rate();
+      return (s.bounding_radius() - s.inscribed_radius()) * m.axis_rate();
     };
     size_ = shape_a.bounding_radius() + shape_b.bounding_radius();
     rate_ = (b.velocity() - a.velocity()).norm() + tip_rate(shape_a, a) + tip_rate(shape_b, b);
     floor_ = floor * size_;
   }
 
-  /// d below -kPenetration * size is an overlap and not the rounding error of a touch.
+  /// Limit of overlap: d below -kPenetration * size is an overlap and not the rounding error of a touch.
   static constexpr double kPenetration = 1e-14;
 
   double size() const { return size_; }
   double rate() const { return rate_; }
   long evaluations() const { return evaluations_; }
-  const Eigen::Vector3d& normal() const { return normal_; }  ///< of the last distance
+  const Eigen::Vector3d& normal() const { return normal_; }  ///< normal of the last distance
 
   double distance(double t) {
     ++evaluations_;
@@ -149,8 +149,8 @@ class BruteForce {
     return result;
   }
 
-  /// Plain conservative advancement: the first time at which d is at most the floor, or t_end. For comparison of costs;
-  /// it cannot tell a contact from a near miss.
+  /// Returns the first time at which d is at most the floor, or t_end, by plain conservative advancement. For
+  /// comparison of costs; it cannot distinguish a contact from a near miss.
   double advance(double t_end) {
     double t = 0;
     while (t < t_end && !parted_for_good(t)) {
@@ -161,8 +161,8 @@ class BruteForce {
     return t_end;
   }
 
-  /// How deep the bodies go in once they have met at time t: the largest -d until they are apart again. Stops looking
-  /// when it is more than `enough`.
+  /// Returns how deep the bodies overlap after they have touched at time t: the largest -d until they are apart again.
+  /// Stops when it is more than `enough`.
   double depth_after(double t, double enough) {
     double deepest = 0;
     double before = t;
@@ -189,21 +189,21 @@ class BruteForce {
     return r.squaredNorm() > size_ * size_ && r.dot(b_.velocity() - a_.velocity()) >= 0;
   }
 
-  /// The first crossing of zero between a time with d >= -rounding and one with d < 0, by bisection.
+  /// Returns the first crossing of zero between a time with d >= -rounding and one with d < 0, by bisection.
   BruteContact contact_between(double apart, double inside, BruteContact result) {
     while (true) {
       const double middle = 0.5 * (apart + inside);
       if (!(middle > apart && middle < inside)) break;
       (distance(middle) < 0 ? inside : apart) = middle;
     }
-    (void)distance(inside);  // leaves the normal there
+    (void)distance(inside);  // sets the normal there
     result.found = true;
     result.time = inside;
     return result;
   }
 
-  /// Golden-section search. The minimum of d is a parabola at the least: a relative width of 1e-9 is well below where
-  /// rounding of d makes further steps pointless.
+  /// Finds a minimum by golden-section search. The minimum of d is at least parabolic: a relative width of 1e-9 is well
+  /// below where rounding of d makes further steps pointless.
   Minimum minimum(double lo, double hi) {
     constexpr double kGolden = 0.6180339887498949;
     double x1 = hi - kGolden * (hi - lo);

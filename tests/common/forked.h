@@ -1,6 +1,6 @@
 #pragma once
 
-/// Runs code that may end the process in a child of its own.
+/// Isolation of code that may abort the process, in forked children.
 
 #include <sys/mman.h>
 #include <sys/wait.h>
@@ -14,9 +14,9 @@
 namespace geom_test {
 
 /// Calls work(i, record) for each i in [0, count) in forked children, and returns how many of them a signal ended (an
-/// assertion, mostly). The item that did it is lost; the next child goes on behind it.
+/// assertion, mostly). The item that caused it is lost; the next child continues after it.
 ///
-/// `record` lies in memory that the children share with this process: all they can report.
+/// `record` must be in memory that the children share with this process: they can report nothing else.
 template <class Record, class Work>
 int run_forked(int count, Record& record, const Work& work) {
   static_assert(std::is_trivially_copyable_v<Record>);
@@ -30,11 +30,11 @@ int run_forked(int count, Record& record, const Work& work) {
   shared->record = record;
   int aborts = 0;
   while (shared->next < count) {
-    std::fflush(nullptr);  // or the child prints what waits in the buffers once more
+    std::fflush(nullptr);  // or the child would print buffered output again
     const pid_t child = fork();
     if (child < 0) throw std::runtime_error("run_forked: fork failed");
     if (child == 0) {
-      std::fclose(stderr);  // the text of the assertions
+      std::fclose(stderr);  // suppresses the text of assertions
       while (shared->next < count) {
         const int i = shared->next++;
         work(i, shared->record);

@@ -34,7 +34,7 @@ constexpr bool slow_build() {
 #endif
 }
 
-/// Number of draws: `count`, or a tenth of it in a slow build and in the quick form.
+/// Returns the number of draws: `count`, or a tenth of it in a slow build and in the quick form.
 inline int repetitions(int count) {
   return slow_build() || quick_form() ? count / 10 : count;
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-/// The rows of the table of docs/accuracy.md: pairs of shapes, and gaps.
+/// Rows of the table of docs/accuracy.md: pairs of shapes, and gaps.
 
 #include "common/geom_random.h"
 
@@ -13,7 +13,7 @@
 
 namespace geom_test {
 
-/// What is asserted: the contract of distance.h, of the size of the pair.
+/// Asserted accuracy: the contract of distance.h, relative to the size of the pair.
 inline constexpr double kEllipsoidAccuracy = 1e-13;
 inline constexpr double kSuperellipsoidAccuracy = 1e-12;
 

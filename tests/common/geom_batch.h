@@ -1,6 +1,6 @@
 #pragma once
 
-/// What the tests of distance_batch share: the instruction sets to test, and when an answer is that of `distance`.
+/// Common parts of the tests of distance_batch: the instruction sets to test, and the comparison with `distance`.
 
 #include "common/geom_expect.h"
 
@@ -16,7 +16,7 @@
 
 namespace geom_test {
 
-/// Those of this processor.
+/// Returns the instruction sets of this processor.
 inline std::vector<geom::InstructionSet> instruction_sets() {
   std::vector<geom::InstructionSet> sets;
   for (const auto set : {geom::InstructionSet::portable, geom::InstructionSet::avx2, geom::InstructionSet::avx512}) {
@@ -25,7 +25,7 @@ inline std::vector<geom::InstructionSet> instruction_sets() {
   return sets;
 }
 
-/// Pairs as distance_batch takes them.
+/// Pairs in the form that distance_batch takes.
 struct Pairs {
   std::vector<geom::Ellipsoid> a;
   std::vector<geom::Pose> X_WA;
@@ -42,9 +42,9 @@ struct Pairs {
   std::size_t size() const { return a.size(); }
   Eigen::Vector3d p_AB(std::size_t i) const { return X_WB[i].position() - X_WA[i].position(); }
   double radii(std::size_t i) const { return a[i].bounding_radius() + b[i].bounding_radius(); }
-  /// What errors are relative to.
+  /// Returns the length that errors are relative to.
   double scale(std::size_t i) const { return p_AB(i).norm() + radii(i); }
-  /// A bound of the coordinates that occur.
+  /// Returns a bound of the coordinates that occur.
   double extent(std::size_t i) const { return X_WA[i].position().norm() + 2 * scale(i); }
 
   geom::DistanceResult distance(std::size_t i, const geom::DistanceOptions& options = {}) const {
@@ -57,7 +57,8 @@ struct Pairs {
   }
 };
 
-/// The promise of batch.h: within 1e-14 of the size, and the same status unless the bodies touch to that.
+/// Checks the contract of batch.h: within 1e-14 of the size, and the same status unless the bodies touch to that
+/// accuracy.
 inline testing::AssertionResult same_answer(const geom::DistanceResult& batch, const geom::DistanceResult& scalar,
                                             double scale, double extent) {
   using geom::DistanceStatus;
@@ -69,7 +70,7 @@ inline testing::AssertionResult same_answer(const geom::DistanceResult& batch, c
     return testing::AssertionFailure() << "status " << to_string(batch.status) << ", of distance "
                                        << to_string(scalar.status);
   }
-  // The kernels answer where the certificate is as tight as rounding, and else leave the pair to `distance`.
+  // The kernels answer if the certificate is as tight as rounding, and else leave the pair to `distance`.
   if (!(batch.error_bound >= 0 && batch.error_bound <= std::max(scalar.error_bound, 1.01e-15 * scale))) {
     return testing::AssertionFailure() << "error bound " << batch.error_bound << ", of distance " << scalar.error_bound;
   }

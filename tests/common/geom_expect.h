@@ -16,7 +16,7 @@ inline bool all_nan(const Eigen::Vector3d& v) {
   return std::isnan(v.x()) && std::isnan(v.y()) && std::isnan(v.z());
 }
 
-/// A declined result carries no number that could be taken for an answer.
+/// Checks that a declined result contains no number that could be mistaken for an answer.
 inline testing::AssertionResult declined(const geom::DistanceResult& r) {
   if (r.status != geom::DistanceStatus::not_converged && r.status != geom::DistanceStatus::singular) {
     return testing::AssertionFailure() << "status " << to_string(r.status) << ", distance " << r.distance;
@@ -28,7 +28,8 @@ inline testing::AssertionResult declined(const geom::DistanceResult& r) {
   return testing::AssertionSuccess();
 }
 
-/// The answer is `distance` within `tolerance`, its status the sign of it, and its parts agree with each other.
+/// Checks that the answer is `distance` within `tolerance`, that its status is the sign of it, and that its parts agree
+/// with each other.
 ///
 /// `extent`: a bound of the coordinates that occur; identities hold to a few roundings of it.
 inline testing::AssertionResult answers(const geom::DistanceResult& r, double distance, double tolerance,

@@ -1,6 +1,6 @@
 #pragma once
 
-/// A user's own body given by an equation, and pairs of such bodies whose distance is known before it is computed.
+/// User-defined body given by an equation, and pairs of such bodies whose distance is known by construction.
 
 #include "common/geom_manufactured.h"
 #include "common/geom_random.h"
@@ -14,7 +14,7 @@
 
 namespace geom_test {
 
-/// {|x/a|^n + |y/b|^m + |z/c|^p <= 1}: convex for exponents >= 1, its Hessian finite for exponents >= 2.
+/// Body {|x/a|^n + |y/b|^m + |z/c|^p <= 1}: convex for exponents >= 1, its Hessian finite for exponents >= 2.
 struct PowerBody {
   Eigen::Vector3d semi_axes;
   Eigen::Vector3d exponents;
@@ -42,29 +42,29 @@ struct PowerBody {
   }
 };
 
-/// A rotation that turns the unit vector `from` to `to`, by any angle about the latter.
+/// Returns a rotation that turns the unit vector `from` to `to`, by any angle about the latter.
 inline Eigen::Matrix3d turn(const Eigen::Vector3d& from, const Eigen::Vector3d& to, Random& random) {
   const Eigen::AngleAxisd spin(random.uniform(0, 6.283185307179586), to);
   return (spin * Eigen::Quaterniond::FromTwoVectors(from, to)).normalized().toRotationMatrix();
 }
 
-/// A point of the surface, in the body's frame, where a random ray from the centre leaves it.
+/// Returns a point of the surface, in the body's frame, where a random ray from the centre leaves it.
 template <geom::ImplicitSurface Shape>
 Eigen::Vector3d random_surface_point(const Shape& shape, Random& random) {
   const Eigen::Vector3d u = random.direction();
   Eigen::Vector3d x = geom::kernel::ray_exit(shape, u, 1.0) * u;
-  // ray_exit is right to 1e-9; two Newton steps along the ray take that to rounding.
+  // ray_exit is accurate to 1e-9; two Newton steps along the ray reduce that to rounding.
   for (int i = 0; i < 2; ++i) x -= shape.value(x) / shape.gradient(x).dot(u) * u;
   return x;
 }
 
 struct ManufacturedSurfaces {
   ManufacturedPair pair;
-  Eigen::Vector3d point_a;  ///< world frame, as is point_b
+  Eigen::Vector3d point_a;  ///< witness points, world frame
   Eigen::Vector3d point_b;
 };
 
-/// Turns and puts B so that a random point of its surface faces one of A's at `distance` along the common normal.
+/// Turns and places B so that a random point of its surface faces one of A's at `distance` along the common normal.
 ///
 /// Exact up to rounding for distance >= 0: the bodies lie on either side of two parallel planes.
 template <geom::ImplicitSurface ShapeA, geom::ImplicitSurface ShapeB>

@@ -20,7 +20,7 @@ using LongMatrix = Eigen::Matrix<long double, 3, 3>;
 struct LongDistance {
   long double distance;
   LongVector normal;
-  bool converged;  ///< the last Newton step was rounding: distance is right to about 1e-18 * size
+  bool converged;  ///< whether the last Newton step was rounding: distance is then accurate to about 1e-18 * size
 };
 
 /// Support of an ellipsoid in the world frame, about its centre.
@@ -34,7 +34,7 @@ class LongEllipsoid {
     const LongVector n_body = R_.transpose() * n;
     return R_ * LongVector(a_.cwiseAbs2().cwiseProduct(n_body) / height(n));
   }
-  /// (hess h) v = (Q v - (s.v) s) / h.
+  /// Returns (hess h) v = (Q v - (s.v) s) / h.
   LongVector curve(const LongVector& n, const LongVector& v) const {
     const LongVector s = point(n);
     const LongVector Qv = R_ * LongVector(a_.cwiseAbs2().cwiseProduct(R_.transpose() * v));
@@ -46,10 +46,10 @@ class LongEllipsoid {
   LongVector a_;
 };
 
-/// Newton's method for a stationary point of g(n) = n.p_AB - hA(n) - hB(-n) near `start`.
+/// Finds a stationary point of g(n) = n.p_AB - hA(n) - hB(-n) near `start` by Newton's method.
 ///
-/// It is the distance if g > 0 there, or if -g is no more than the sum of both smallest radii of curvature. No
-/// safeguards: `start` must be close, and `converged` says whether it was.
+/// It is the distance if g > 0 there, or if -g is at most the sum of both smallest radii of curvature. There are no
+/// safeguards: `start` must be close, and `converged` reports whether it was.
 inline LongDistance long_distance(const geom::Ellipsoid& a, const geom::Pose& X_WA, const geom::Ellipsoid& b,
                                   const geom::Pose& X_WB, const Eigen::Vector3d& start) {
   const LongEllipsoid A(a, X_WA);
@@ -71,7 +71,7 @@ inline LongDistance long_distance(const geom::Ellipsoid& a, const geom::Pose& X_
     const long double d_e = (m_ff * e.dot(y) - m_ef * f.dot(y)) / det;
     const long double d_f = (m_ee * f.dot(y) - m_ef * e.dot(y)) / det;
     n = (n + d_e * e + d_f * f).normalized();
-    // The error after this step is the square of it times the aspect ratio or so, and g errs by its square again.
+    // The error after this step is its square times about the aspect ratio, and the error of g is that squared.
     converged = std::hypot(d_e, d_f) < 1e-8L;
   }
   return {n.dot(p_AB) - A.height(n) - B.height(-n), n, converged};

@@ -1,6 +1,6 @@
 #pragma once
 
-/// Pairs of bodies whose distance is known before it is computed.
+/// Pairs of bodies whose distance is known by construction.
 
 #include "common/geom_random.h"
 
@@ -16,17 +16,17 @@ namespace geom_test {
 struct ManufacturedPair {
   geom::Pose X_WA;
   geom::Pose X_WB;
-  Eigen::Vector3d normal;  ///< unit, A to B
+  Eigen::Vector3d normal;  ///< unit normal, A to B
   double distance;
-  double size;  ///< |p_AB| + both bounding radii: what errors are relative to
+  double size;  ///< |p_AB| + both bounding radii: the length that errors are relative to
 };
 
-/// The size of the pair's coordinates: how far off the origin its points are.
+/// Returns the size of the pair's coordinates: how far its points are from the origin.
 inline double extent_of(const ManufacturedPair& pair) {
   return pair.X_WA.position().norm() + 2 * pair.size;
 }
 
-/// Puts B so that the support points of `normal` are the witness points: sA + distance * normal = p_AB + sB(-normal).
+/// Places B so that the support points of `normal` are the witness points: sA + distance * normal = p_AB + sB(-normal).
 ///
 /// Exact up to the rounding of p_WB for distance >= 0 (both bodies lie on their sides of two parallel planes), and for
 /// overlaps no deeper than the sum of both smallest radii of curvature (see distance.h).
@@ -43,7 +43,8 @@ ManufacturedPair manufacture(const ShapeA& a, const ShapeB& b, double distance, 
   return {X_WA, X_WB, n, distance, p_AB.norm() + radii};
 }
 
-/// g(n) = n.p_AB - hA(n) - hB(-n), from the public support functions: a lower bound of the distance for any unit n.
+/// Returns g(n) = n.p_AB - hA(n) - hB(-n), from the public support functions: a lower bound of the distance for any
+/// unit n.
 template <geom::SupportShape ShapeA, geom::SupportShape ShapeB>
 double lower_bound(const ShapeA& a, const geom::Pose& X_WA, const ShapeB& b, const geom::Pose& X_WB,
                    const Eigen::Vector3d& n) {
@@ -51,16 +52,16 @@ double lower_bound(const ShapeA& a, const geom::Pose& X_WA, const ShapeB& b, con
          b.support(X_WB.rotation().transpose() * -n).height;
 }
 
-/// The contract of distance.h: |error of d| <= 1e-13 * size.
+/// Returns the tolerance of the contract of distance.h: |error of d| <= 1e-13 * size.
 inline double distance_tolerance(double size) {
   return 1e-13 * size;
 }
 
-/// Bound of the angle between the computed and the true normal, in radian.
+/// Returns a bound of the angle between the computed and the true normal, in radian.
 ///
 /// The last Newton step is at most 1e-6 long, and its quadratic remainder 1e-12 times the relative change of the
-/// curvature for a radian, at most about the aspect ratio; ten times that is allowed. What steps of third order leave,
-/// kChebyshevTolerance2 and kChebyshevSmallChange, is no more. The second part is rounding: some
+/// curvature for a radian, at most about the aspect ratio; ten times that is allowed. The remaining error of steps of
+/// third order, kChebyshevTolerance2 and kChebyshevSmallChange, is no larger. The second part is rounding: some
 /// epsilons of size in the tangential mismatch of the support points, over the smallest eigenvalue of M + g I.
 inline double normal_tolerance(const geom::Ellipsoid& a, const geom::Ellipsoid& b, double distance, double size) {
   const double aspect_ratio =

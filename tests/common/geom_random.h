@@ -21,13 +21,13 @@ class Random {
  public:
   explicit Random(std::uint64_t seed) : engine_(seed) {}
 
-  /// In [0, 1), 53 random bits.
+  /// Returns a uniform number in [0, 1), 53 random bits.
   double uniform() { return 0x1p-53 * static_cast<double>(engine_() >> 11); }
   double uniform(double low, double high) { return low + (high - low) * uniform(); }
   double log_uniform(double low, double high) { return low * std::exp(uniform() * std::log(high / low)); }
   bool coin() { return uniform() < 0.5; }
 
-  /// Uniform on the unit sphere.
+  /// Returns a direction, uniform on the unit sphere.
   Eigen::Vector3d direction() {
     while (true) {
       const Eigen::Vector3d v(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1));
@@ -37,7 +37,7 @@ class Random {
     }
   }
 
-  /// Uniform over the rotations, at `position`.
+  /// Returns a pose, uniform over the rotations, at `position`.
   geom::Pose pose(const Eigen::Vector3d& position) {
     while (true) {
       const Eigen::Vector4d q(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1), uniform(-1, 1));
@@ -48,19 +48,20 @@ class Random {
     }
   }
 
-  /// Uniform over the rotations, the position within a cube of side 2 * extent about the origin.
+  /// Returns a pose, uniform over the rotations, the position within a cube of side 2 * extent about the origin.
   geom::Pose pose(double extent) {
     return pose(Eigen::Vector3d(extent * signed_unit(), extent * signed_unit(), extent * signed_unit()));
   }
 
-  /// A spheroid with semi-axis 1 across its axis and `aspect_ratio` along it, its axis along x, y or z of the body.
+  /// Returns a spheroid with semi-axis 1 across its axis and `aspect_ratio` along it, its axis along x, y or z of the
+  /// body.
   geom::Ellipsoid spheroid(double aspect_ratio) {
     Eigen::Vector3d semi_axes = Eigen::Vector3d::Ones();
     semi_axes[static_cast<int>(3 * uniform())] = aspect_ratio;
     return geom::Ellipsoid(semi_axes);
   }
 
-  /// Three semi-axes, each drawn log-uniformly from [1, ratio].
+  /// Returns an ellipsoid with three semi-axes, each drawn log-uniformly from [1, ratio].
   geom::Ellipsoid biaxial(double ratio) {
     return geom::Ellipsoid({log_uniform(1, ratio), log_uniform(1, ratio), log_uniform(1, ratio)});
   }

@@ -1,6 +1,6 @@
 #pragma once
 
-/// Shapes that a user might bring along: they take the template path of `distance`.
+/// Shapes as a user might define them: they take the template path of `distance`.
 
 #include <geom/geom.h>
 
@@ -11,7 +11,7 @@
 
 namespace geom_test {
 
-/// The least that `distance` asks for: no `min_curvature_radius`, so that no overlap is certified.
+/// Minimal shape for `distance`: no `min_curvature_radius`, so that no overlap is certified.
 struct PlainBall {
   double radius;
 
@@ -24,7 +24,7 @@ struct PlainBall {
   double inscribed_radius() const { return radius; }
 };
 
-/// An ellipsoid of which `distance` does not know that it is one.
+/// Ellipsoid that `distance` cannot recognise as one.
 struct WrappedEllipsoid {
   geom::Ellipsoid ellipsoid;
 
@@ -35,7 +35,7 @@ struct WrappedEllipsoid {
   double min_curvature_radius() const { return ellipsoid.min_curvature_radius(); }
 };
 
-/// All points within `skin` of an ellipsoid: distances to it are those to the ellipsoid less `skin`.
+/// Set of all points within `skin` of an ellipsoid: distances to it are those to the ellipsoid minus `skin`.
 struct SweptEllipsoid {
   geom::Ellipsoid core;
   double skin;
@@ -52,8 +52,8 @@ struct SweptEllipsoid {
   double min_curvature_radius() const { return core.min_curvature_radius() + skin; }
 };
 
-/// All points within `radius` of the segment from -half_length to half_length along z: a cylinder with round ends,
-/// whose support function has a kink where n is across z.
+/// Set of all points within `radius` of the segment from -half_length to half_length along z: a cylinder with round
+/// ends, whose support function has a kink where n is across z.
 struct Spherocylinder {
   double half_length;
   double radius;
@@ -68,9 +68,9 @@ struct Spherocylinder {
   double min_curvature_radius() const { return radius; }
 };
 
-/// The convex hull of two balls: not centrally symmetric. large - small <= 2 half_length.
+/// Convex hull of two balls: not centrally symmetric. large - small <= 2 half_length.
 struct Pear {
-  double half_length;  ///< of their centres from the origin, the large one's at +z
+  double half_length;  ///< distance of their centres from the origin, the large one's at +z
   double large;
   double small;
 
@@ -86,13 +86,13 @@ struct Pear {
     return PlainBall{up >= 0 ? large : small}.support_hessian(n);
   }
   double bounding_radius() const { return half_length + large; }
-  /// Where both balls reach equally far.
+  /// Returns the radius in the direction in which both balls reach equally far.
   double inscribed_radius() const { return 0.5 * (large + small); }
   double min_curvature_radius() const { return small; }
 };
 
-/// |x/a|^n + |y/b|^m + |z/c|^p <= 1, all powers > 1: no closed support function, but one unknown leads to it, mu with
-/// grad f(s) = n / mu.
+/// Body |x/a|^n + |y/b|^m + |z/c|^p <= 1, all powers > 1: its support function has no closed form, but follows from one
+/// unknown, mu with grad f(s) = n / mu.
 class Superquadric {
  public:
   Superquadric(const Eigen::Vector3d& semi_axes, const Eigen::Vector3d& powers) : a_(semi_axes), p_(powers) {}
@@ -110,8 +110,8 @@ class Superquadric {
     const Eigen::Vector3d s = at(multiplier(n), n);
     return {n.dot(s), s};
   }
-  /// From grad f(s) = n / mu and f(s) = 0: H = mu^-1 (F^-1 - F^-1 g g^T F^-1 / (g^T F^-1 g)) with F = hess f(s), g =
-  /// grad f(s), and lengths in n.
+  /// Returns the Hessian, from grad f(s) = n / mu and f(s) = 0: H = mu^-1 (F^-1 - F^-1 g g^T F^-1 / (g^T F^-1 g)) with
+  /// F = hess f(s), g = grad f(s), and lengths in n.
   Eigen::Matrix3d support_hessian(const Eigen::Vector3d& n) const {
     const double mu = multiplier(n);
     const Eigen::Vector3d s = at(mu, n);
@@ -121,19 +121,19 @@ class Superquadric {
     return (H - k * k.transpose() / k.dot(gradient(s))) / mu;
   }
   double bounding_radius() const { return a_.norm(); }
-  double inscribed_radius() const { return 1 / a_.cwiseInverse().norm(); }  // of the octahedron inside
+  double inscribed_radius() const { return 1 / a_.cwiseInverse().norm(); }  // that of the inscribed octahedron
 
  private:
   Eigen::Vector3d curvatures(const Eigen::Vector3d& x) const {
     const Eigen::Array3d w = x.cwiseQuotient(a_).cwiseAbs();
     return p_.array() * (p_.array() - 1) / a_.array().square() * w.pow(p_.array() - 2);
   }
-  /// The point where grad f = n / mu.
+  /// Returns the point where grad f = n / mu.
   Eigen::Vector3d at(double mu, const Eigen::Vector3d& n) const {
     const Eigen::Array3d w = (a_.array() * n.array().abs() / (mu * p_.array())).pow(1 / (p_.array() - 1));
     return a_.array() * w * n.array().sign();
   }
-  /// f(at(mu)) falls as mu grows: bisection on its logarithm.
+  /// Returns mu by bisection on its logarithm: f(at(mu)) falls as mu grows.
   double multiplier(const Eigen::Vector3d& n) const {
     double low = -60;
     double high = 60;

@@ -31,7 +31,7 @@ inline Eigen::Vector3d small_turn(const Eigen::Vector3d& v, Random& random) {
   return (v + random.log_uniform(1e-6, 0.1) * random.direction()).normalized();
 }
 
-/// Near the middle of an edge, or near a vertex.
+/// Returns a point near the middle of an edge, or near a vertex.
 inline Eigen::Vector3d edge_point(const geom::Superellipsoid& shape, Random& random) {
   Eigen::Vector3d v =
       random.coin() ? Eigen::Vector3d(1, 1, 0) : (random.coin() ? Eigen::Vector3d(1, 0, 1) : Eigen::Vector3d(1, 1, 1));
@@ -78,7 +78,7 @@ inline Orientation choose(PairSet set, const geom::Superellipsoid& a, const geom
   return o;
 }
 
-/// B placed so that the support points of `n` are `gap` apart along it: the distance, to rounding, for gap >= 0.
+/// Returns the pose of B with the support points of `n` `gap` apart along it: the distance, to rounding, for gap >= 0.
 inline void place(const Orientation& o, const geom::Superellipsoid& a, const geom::Superellipsoid& b, double gap,
                   geom::Pose& X_WA, geom::Pose& X_WB) {
   const Eigen::Vector3d s_a = o.R_a * a.support(o.R_a.transpose() * o.n).point;
@@ -87,7 +87,7 @@ inline void place(const Orientation& o, const geom::Superellipsoid& a, const geo
   X_WB = geom::Pose(o.R_b, s_a - s_b + gap * o.n);
 }
 
-/// The same of two equal bodies.
+/// Overload for two equal bodies.
 /// @{
 inline Orientation choose(PairSet set, const geom::Superellipsoid& shape, Random& random) {
   return choose(set, shape, shape, random);
@@ -98,7 +98,7 @@ inline void place(const Orientation& o, const geom::Superellipsoid& shape, doubl
 }
 /// @}
 
-/// How far p_W is off the surface, to first order.
+/// Returns the distance of p_W from the surface, to first order.
 inline double off_surface(const geom::Superellipsoid& shape, const geom::Pose& X_WB, const Eigen::Vector3d& p_W) {
   const Eigen::Vector3d x = X_WB.to_body(p_W);
   const double N = shape.norm(x);

@@ -5,7 +5,7 @@
 
 namespace test_common {
 
-/// The message of the std::invalid_argument that f() throws; that there is none, if it throws none.
+/// Returns the message of the std::invalid_argument that f() throws, or a text that says that it throws none.
 template <class F>
 std::string message_of(const F& f) {
   try {

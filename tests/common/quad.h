@@ -1,6 +1,6 @@
 #pragma once
 
-/// Numbers of 113 bits: what double precision is judged by. Arithmetic is the compiler's; no library is needed.
+/// Numbers of 113 bits, the reference for double precision. The arithmetic is the compiler's; no library is needed.
 
 #include <Eigen/Core>
 
@@ -11,14 +11,14 @@ namespace quad {
 #if defined(__SIZEOF_FLOAT128__)
 __extension__ typedef __float128 Quad;
 #else
-using Quad = long double;  // 113 bits too, where there is no __float128
+using Quad = long double;  // 113 bits too, for compilers without __float128
 #endif
 
 inline Quad abs(Quad x) {
   return x < 0 ? -x : x;
 }
 
-/// Newton's method doubles the digits of the double.
+/// Returns the root by Newton's method, which doubles the digits of the double.
 inline Quad sqrt(Quad x) {
   if (!(x > 0)) return 0;
   Quad root = std::sqrt(static_cast<double>(x));
@@ -32,7 +32,8 @@ inline Quad cbrt(Quad x) {
   return root;
 }
 
-/// By the series, of the argument less whole ln 2 and over 256; squared again. Error about 1e-31 of the value.
+/// Returns the exponential by its series, of the argument reduced by multiples of ln 2 and divided by 256; squared
+/// again. The error is about 1e-31 of the value.
 inline Quad exp(Quad x) {
   // ln 2 as the sum of a double and two corrections.
   const Quad ln2 = static_cast<Quad>(0x1.62e42fefa39efp-1) + static_cast<Quad>(0x1.abc9e3b39803fp-56) +
@@ -45,7 +46,7 @@ inline Quad exp(Quad x) {
   for (int k = 0; k < 8; ++k) e = e * (2 + e);
   return (1 + e) * static_cast<Quad>(std::ldexp(1.0, twos));
 }
-/// Newton's method (Halley's form) from the double: its error is cubed.
+/// Returns the logarithm by Newton's method (Halley's form) from the double: its error is cubed.
 inline Quad log(Quad x) {
   const Quad y = std::log(static_cast<double>(x));
   const Quad e = exp(y);
@@ -59,7 +60,8 @@ struct SinCos {
   Quad sin, cos;
 };
 
-/// By their series, of an angle halved to below 1/8 radian. Error about 1e-32 for angles of some hundred radian.
+/// Returns sine and cosine by their series, of an angle halved to below 1/8 radian. The error is about 1e-32 for angles
+/// of some hundred radian.
 inline SinCos sincos(Quad x) {
   // pi / 2 as the sum of a double and two corrections.
   const Quad half_pi = static_cast<Quad>(1.57079632679489655800) + static_cast<Quad>(6.12323399573676603587e-17) +
@@ -115,7 +117,7 @@ inline Quad3 unit(const Quad3& a) {
   return (1 / a.norm()) * a;
 }
 
-/// v turned about the unit vector l.
+/// Returns v rotated about the unit vector l.
 inline Quad3 turned(const Quad3& v, const Quad3& l, Quad angle) {
   const SinCos sc = sincos(angle);
   return sc.cos * v + sc.sin * l.cross(v) + ((1 - sc.cos) * l.dot(v)) * l;

@@ -2,7 +2,7 @@
 
 #include <limits>
 
-/// Numbers that the tests of libgeom write often.
+/// Numbers that the tests of libgeom use often.
 namespace geom {
 
 inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();

@@ -1,6 +1,6 @@
 #pragma once
 
-/// Free rotation by integration, the oracle of the closed forms: Taylor series of order 26 in long double.
+/// Free rotation by integration, the reference for the closed forms: Taylor series of order 26 in long double.
 
 #include <Eigen/Core>
 
@@ -22,7 +22,7 @@ class IntegratedTop {
     fastest_ = std::sqrt(omega_.dot(inertia_.cwiseProduct(omega_)) / inertia_.minCoeff());
   }
 
-  /// Moves on by t. The series of a top converges within about 1.5 / |omega|; a sixth of that is a step.
+  /// Advances by t. The series of a top converges within about 1.5 / |omega|; a sixth of that is a step.
   void advance(double t) {
     const auto whole = static_cast<Real>(t);
     const auto steps = static_cast<int>(std::ceil(4 * fastest_ * std::abs(whole)));
@@ -30,7 +30,7 @@ class IntegratedTop {
   }
 
   const Matrix& rotation() const { return rotation_; }  ///< body to world
-  Vector omega() const { return rotation_ * omega_; }   ///< world frame
+  Vector omega() const { return rotation_ * omega_; }   ///< angular velocity, world frame
   const Vector& turned_world() const { return turned_world_; }
   const Vector& turned_body() const { return turned_body_; }
 

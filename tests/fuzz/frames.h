@@ -1,7 +1,7 @@
 #pragma once
 
-/// Duty of both readers of trajectories with any bytes: refuse them with one line, or read every frame (or refuse it)
-/// with finite numbers, and with none where the file gives none.
+/// Contract of both readers of trajectories for any bytes: refuse them with one line, or read every frame (or refuse
+/// it) with finite numbers, and without numbers that the file does not contain.
 
 #include "base/errors.h"
 #include "trajectory/frame.h"
@@ -43,7 +43,8 @@ inline void check_frame(const hardbody::Frame& frame) {
   if (frame.exact) require(frame.exact->bodies.size() == frame.bodies.size(), "the state is of all bodies");
 }
 
-/// Frames as `hardbody analyze` takes them: all of the same bodies, each quantity in all of them or in none.
+/// Checks frames in the form that `hardbody analyze` takes: all of the same bodies, each quantity in all of them or in
+/// none.
 inline void check_trajectory(const hardbody::StoredTrajectory& trajectory) {
   require(!trajectory.frames.empty(), "a trajectory has frames");
   const ed::StoredFrame& first = trajectory.frames.front();
@@ -67,10 +68,10 @@ void refused_or_read(const Read& read) {
   }
 }
 
-/// `open` makes the reader; `also(frame, k)` looks at each frame too.
+/// Reads all frames. `open` makes the reader; `also(frame, k)` checks each frame too.
 template <class Open, class Also>
 void read_all(const Open& open, const Also& also) {
-  constexpr std::uint64_t kMostFrames = 8;  // enough of those that repeat the first one
+  constexpr std::uint64_t kMostFrames = 8;  // enough frames that repeat the first one
   refused_or_read([&] {
     const auto reader = open();
     for (std::uint64_t k = 0; k < std::min(reader.frame_count(), kMostFrames); ++k) {

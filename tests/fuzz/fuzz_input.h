@@ -1,6 +1,6 @@
 #pragma once
 
-/// The bytes of a fuzz input as numbers, shapes and poses.
+/// Conversion of the bytes of a fuzz input to numbers, shapes and poses.
 
 #include <geom/geom.h>
 
@@ -20,18 +20,18 @@
 
 namespace fuzz {
 
-/// Reads from the front; zeros behind the end.
+/// Reads bytes from the front; zeros after the end.
 ///
-/// Most bit patterns are no numbers that get past a constructor. So a tag decides what a number is: any bits, or one of
-/// ranges that matter.
+/// Most bit patterns are numbers that constructors refuse. Therefore a tag decides which numbers are drawn: any bits,
+/// or one of several ranges that matter.
 class Input {
  public:
   Input(const std::uint8_t* data, std::size_t size) : data_(data), size_(size) {
     for (std::size_t k = 0; k < size; ++k) hash_ = (hash_ ^ data[k]) * 0x100000001b3;  // FNV-1a
   }
 
-  /// Whether this is one of a share of 1/n of all inputs, a different share for each n. No mutation can learn to be in
-  /// it: what is slow, and would otherwise crowd out all else because it covers more code, is rationed by this.
+  /// Returns whether this input belongs to a fraction 1/n of all inputs, a different one for each n. No mutation can
+  /// learn to be in it. It limits slow cases, which would otherwise displace all others because they cover more code.
   bool is_one_in(std::uint64_t n) const { return (hash_ * (2 * n + 1)) >> 32U < (std::uint64_t{1} << 32U) / n; }
 
   std::uint8_t byte() {
@@ -40,13 +40,13 @@ class Input {
     return *data_++;
   }
 
-  /// Any double at all.
+  /// Returns any double.
   double bits() { return read<double>(); }
 
-  /// In [0, 1).
+  /// Returns a number in [0, 1).
   double fraction() { return read<std::uint16_t>() / 65536.0; }
 
-  /// A coordinate: mostly within a few units, and often a round number.
+  /// Returns a coordinate: mostly within a few units, and often a round number.
   double coordinate() {
     switch (byte() % 8) {
       case 0:
@@ -64,7 +64,7 @@ class Input {
     }
   }
 
-  /// A length: mostly 0.01 to 100.
+  /// Returns a length: mostly 0.01 to 100.
   double length() {
     switch (byte() % 8) {
       case 0:
@@ -96,7 +96,7 @@ class Input {
     return in_order([this] { return coordinate(); });
   }
 
-  /// Throws std::invalid_argument as the constructors do.
+  /// Returns a shape. Throws std::invalid_argument as the constructors do.
   geom::Shape shape() {
     const bool barr = byte() % 2 == 1;
     const Eigen::Vector3d axes =
@@ -110,7 +110,7 @@ class Input {
     std::array<double, 4> q{1, 0, 0, 0};
     const int kind = byte() % 8;
     if (kind == 7) return {matrix(), position};
-    if (kind == 1) {  // a turn of the cube
+    if (kind == 1) {  // rotation of the cube
       q = {0.5, byte() % 2 == 0 ? 0.5 : -0.5, 0.5, 0.5};
     } else if (kind > 1) {
       for (double& x : q) x = kind % 2 == 0 ? fraction() - 0.5 : coordinate();
@@ -123,7 +123,7 @@ class Input {
   }
 
  private:
-  /// Mostly orthonormal within about the tolerance, 1e-6.
+  /// Returns a matrix that is mostly orthonormal within about the tolerance, 1e-6.
   Eigen::Matrix3d matrix() {
     Eigen::Matrix3d R;
     for (int k = 0; k < 3; ++k) R.col(k) = vector();
@@ -160,10 +160,10 @@ inline double aspect_ratio(const geom::Shape& shape) {
   return geom::bounding_radius(shape) / geom::inscribed_radius(shape);
 }
 
-/// Bodies whose distance takes microseconds: apart or overlapping by little, across the line of centres, which is what
-/// a look costs nothing at, and not so flat that faces and edges need the last resort. The search over all normals, of
-/// the others (and of bodies lost in the rounding of their distance), is a thousand times slower than all the rest;
-/// fuzzers ration it.
+/// Returns whether the distance of two bodies takes microseconds: apart or overlapping slightly in the projection on
+/// the line of centres, which costs nothing to test, and not so flat that faces and edges need the last resort. The
+/// search over all normals for the others (and for bodies lost in the rounding of their distance) is a thousand times
+/// slower than everything else; fuzzers limit it.
 inline bool are_quick(const geom::Shape& a, const geom::Pose& X_WA, const geom::Shape& b, const geom::Pose& X_WB) {
   const Eigen::Vector3d r = X_WB.position() - X_WA.position();
   const double r_a = geom::inscribed_radius(a);

@@ -48,12 +48,12 @@ TEST(Counters, OfOtherBodiesPerCollisionStayWithinTheirBounds) {
        {Bound{"superballs, p = 4", geom::Superellipsoid({1, 1, 1}, 0.5, 0.5), 20.5, 35},
         Bound{"superellipsoids 1 : 1 : 2, e = 0.5", geom::Superellipsoid({1, 1, 2}, 0.5, 0.5), 33.5, 52},
         Bound{"ellipsoids 1 : 0.8 : 0.5", geom::Ellipsoid({1, 0.8, 0.5}), 30, 38.5}}) {
-    constexpr std::uint64_t kCollisions = 20000;
+    constexpr std::uint64_t kCollisions = 8000;
     ed::StartOptions options;
     options.number = 512;
     options.packing_fraction = 0.40;
     ed::Simulation simulation(ed::random_start(ed::uniform_species(bound.shape), options));
-    simulation.run_collisions(10000);
+    simulation.run_collisions(5000);
     simulation.tune_envelopes();
     const ed::Counters before = simulation.counters();
     simulation.run_collisions(kCollisions);

@@ -84,7 +84,8 @@ struct Mean {
 
 TEST(GeneralBodies, ShareTheirEnergyAlike) {
   // The energy about the axis of the roundest section takes ten collisions a body to be forgotten: means over blocks.
-  constexpr int kBlocks = 100;
+  const int blocks = full_form() ? 100 : 25;
+  const double largest_error = full_form() ? 0.02 : 0.04;
   constexpr int kLooks = 4;  // in a block, five collisions a body apart
   for (const Family& family : ed_test::families(216)) {
     if (family.components.size() > 1) continue;  // of every species: tools/validate
@@ -94,7 +95,7 @@ TEST(GeneralBodies, ShareTheirEnergyAlike) {
     Mean translation;
     std::array<Mean, 3> axes;
     simulation.run_collisions(20 * static_cast<std::uint64_t>(number));
-    for (int block = 0; block < kBlocks; ++block) {
+    for (int block = 0; block < blocks; ++block) {
       double translational_kT = 0;
       Eigen::Vector3d axis_kT = Eigen::Vector3d::Zero();
       for (int k = 0; k < kLooks; ++k) {
@@ -113,30 +114,33 @@ TEST(GeneralBodies, ShareTheirEnergyAlike) {
       const Mean& mean = axes[static_cast<std::size_t>(axis)];
       std::printf(", of body axis %d %.4f +- %.4f", axis, mean.value(), mean.error());
       EXPECT_LE(std::abs(mean.value() - 1), 3 * mean.error()) << family.name << ", body axis " << axis;
-      EXPECT_LE(mean.error(), 0.02) << family.name;
+      EXPECT_LE(mean.error(), largest_error) << family.name;
     }
     std::printf("\n");
   }
 }
 
-/// Rate (0: not known) and Z, within these shares of what is wanted, which are three standard errors or more.
+/// Rate (0: not known) and Z, within these shares of what is wanted. In the full form they are three standard errors or
+/// more; the usual runs, a seventh as long, have three of their own standard errors on top.
 void expect_fluid(const std::string& what, const ed_test::Measured& run, double rate, double rate_share, double Z,
                   double Z_share) {
+  const double errors = full_form() ? 0 : 3;
   const ed::Estimate& r = run.results.collision_rate;
   const ed::Estimate& z = run.results.Z;
   std::printf("%s: %llu collisions, rate %.4f +- %.4f for %.4f, Z %.4f +- %.4f for %.4f\n", what.c_str(),
               static_cast<unsigned long long>(run.collisions), r.value, r.error, rate, z.value, z.error, Z);
   EXPECT_EQ(run.overlaps, 0U) << what;
   if (rate > 0) {
-    EXPECT_LE(std::abs(r.value - rate), rate_share * rate) << what;
-    EXPECT_LE(r.error, rate_share / 3 * rate) << what;
+    EXPECT_LE(std::abs(r.value - rate), rate_share * rate + errors * r.error) << what;
+    EXPECT_LE(r.error, rate_share * rate / (full_form() ? 3 : 1)) << what;
   }
-  EXPECT_LE(std::abs(z.value - Z), Z_share * Z) << what;
-  EXPECT_LE(z.error, Z_share / 3 * Z) << what;
+  EXPECT_LE(std::abs(z.value - Z), Z_share * Z + errors * z.error) << what;
+  EXPECT_LE(z.error, Z_share * Z / (full_form() ? 3 : 1)) << what;
 }
 
 TEST(GeneralBodies, CollideAtTheRateOfTheReference) {
-  constexpr double kDuration = 700;  // for errors of the rate of up to 0.14 %, and of the reference 0.1 %
+  // In the full form for errors of the rate of up to 0.14 %, and of the reference 0.1 %.
+  const double duration = full_form() ? 700 : 100;
   const ed_test::ReferenceTable table("superellipsoid_dynamics.csv");
   for (std::size_t row = 0; row < table.size(); ++row) {
     const double length = table.value(row, "az_over_ax");
@@ -146,7 +150,7 @@ TEST(GeneralBodies, CollideAtTheRateOfTheReference) {
         ed_test::pure("1 : 1 : " + table.text(row, "az_over_ax"), shape, static_cast<int>(table.value(row, "N")));
     ed::Simulation simulation(ed_test::start(family, table.value(row, "phi")));
     simulation.run_until(10);
-    expect_fluid(family.name, ed_test::measure(simulation.system(), {0, kDuration}), table.value(row, "rate"), 0.005,
+    expect_fluid(family.name, ed_test::measure(simulation.system(), {0, duration}), table.value(row, "rate"), 0.005,
                  table.value(row, "Z"), 0.007);
   }
 }
@@ -165,7 +169,7 @@ TEST(GeneralBodies, MixedSpheresHaveTheirPressure) {
       1 / free + 3 * z(1) * z(2) / (z(0) * free * free) + std::pow(z(2), 3) * (3 - z(3)) / (z(0) * std::pow(free, 3));
   ed::Simulation simulation(ed_test::start(family, kPacking));
   simulation.run_until(10);
-  expect_fluid(family.name, ed_test::measure(simulation.system(), {0, 90}), 0, 0, wanted, 0.01);
+  expect_fluid(family.name, ed_test::measure(simulation.system(), {0, full_form() ? 90.0 : 30.0}), 0, 0, wanted, 0.01);
 }
 
 TEST(GeneralBodies, KeepEnergyAndMomentumAndApart) {

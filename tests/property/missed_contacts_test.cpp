@@ -2,7 +2,7 @@
 // for it, against brute force (common/finder_reference.h). HARDBODY_FULL=1 runs ten times as many.
 
 #include <common/finder_ensemble.h>
-#include <common/finder_gauge.h>
+#include <common/finder_gap.h>
 #include <common/finder_reference.h>
 #include <common/finder_scale.h>
 #include <common/full_form.h>
@@ -221,7 +221,7 @@ Tallies try_all(int contacts_each, double divisor) {
 
 TEST(MissedContacts, NoneAgainstBruteForce) {
   constexpr int kClasses = 12;
-  const int wanted = scaled(10'000, 100'000);
+  const int wanted = scaled(4'000, 100'000);
   const Tallies all = try_all((wanted + kClasses - 1) / kClasses, 1);
   const Tally sum = all.sum();
   EXPECT_EQ(sum.missed, 0);

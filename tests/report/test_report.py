@@ -800,7 +800,7 @@ class CommandLine(Case):
     def test_what_is_no_run(self):
         (self.here / "empty").mkdir(exist_ok=True)
         self.assertIn("is not there; accepted", self.line(self.here / "nothing"))
-        self.assertIn("config.toml is not there", self.line(self.here / "empty"))
+        self.assertIn("config.toml is missing", self.line(self.here / "empty"))
 
     def test_damaged_files(self):
         source = self.run_of("superballs", SUPERBALLS)
@@ -849,7 +849,7 @@ class CommandLine(Case):
         letter.write_text("<!doctype html>\n<p>Dear reader,")
         pipe = self.here / "pipe"
         os.mkfifo(pipe)
-        self.assertIn("letter.html: is there and something else; accepted: a new file", self.line(directory, "-o", letter))
+        self.assertIn("letter.html: exists and is something else; accepted: a new file", self.line(directory, "-o", letter))
         self.assertEqual(letter.read_text(), "<!doctype html>\n<p>Dear reader,")
         for place in [pipe, directory / "config.toml"]:
             before = os.stat(place)

@@ -22,11 +22,11 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Eigen::Vector3i;
 
-/// Images of a cell along an edge that are looked at on either side, at most: bodies that reach further fill the box
-/// many times over.
+/// Maximum number of images of a cell that are tested along an edge on either side: bodies that reach further fill the
+/// box many times over.
 constexpr int kMostImagesAlong = 4;
 
-/// Columns: the edges of the box.
+/// Returns the edges of the box as columns.
 Matrix3d edges_of(const Frame& frame) {
   Matrix3d edges = frame.box.asDiagonal();
   edges(0, 1) = frame.tilt.x();
@@ -35,14 +35,14 @@ Matrix3d edges_of(const Frame& frame) {
   return edges;
 }
 
-/// Bodies of known shapes, sorted into cells of the box. Cells are counted along the edges of the box; beyond a face
-/// they are images of those inside.
+/// Bodies of known shapes, sorted into cells of the box. Cells are counted along the edges of the box; cells beyond a
+/// face are images of those inside.
 class PeriodicCells {
  public:
   PeriodicCells(const Frame& frame, double reach) : edges_(edges_of(frame)), inverse_(edges_.inverse()) {
     const double most = std::cbrt(static_cast<double>(frame.bodies.size())) + 1;
     for (int k = 0; k < 3; ++k) {
-      // Distance of opposite faces, across which a cell is as wide as the reach, or the box is one cell.
+      // Distance of opposite faces: across it a cell is as wide as the reach, or the box is one cell.
       const double width = 1 / inverse_.row(k).norm();
       cells_[k] = static_cast<int>(std::clamp(std::floor(width / reach), 1.0, most));
       const double around = std::ceil(reach * cells_[k] / width);
@@ -57,13 +57,13 @@ class PeriodicCells {
     sort();
   }
 
-  /// Whether bodies reach over more images of the box than are looked at.
+  /// Returns whether bodies reach over more images of the box than are tested.
   bool too_wide() const { return too_wide_; }
   std::size_t size() const { return placed_.size(); }
   std::size_t body(std::size_t k) const { return placed_[k].body; }
 
   /// Calls `visit(body, r)` for every image of every body that may be within reach of the k-th placed one, r from its
-  /// centre to that of the image. Each pair of two placed bodies comes once an image, from the earlier one.
+  /// centre to that of the image. Each pair of two placed bodies is visited once for each image, from the earlier body.
   template <class Visit>
   void neighbours(std::size_t k, const Visit& visit) const {
     const Placed& from = placed_[k];
@@ -91,11 +91,11 @@ class PeriodicCells {
  private:
   struct Placed {
     std::size_t body;
-    Vector3d position;  ///< within the box
+    Vector3d position;  ///< position within the box
     Vector3i cell;
   };
 
-  /// One of each pair of opposite vectors.
+  /// Returns true for exactly one of each pair of opposite vectors.
   static bool positive(const Vector3i& v) { return v.z() != 0 ? v.z() > 0 : v.y() != 0 ? v.y() > 0 : v.x() > 0; }
 
   int number_of(const Vector3i& cell) const { return (cell.z() * cells_.y() + cell.y()) * cells_.x() + cell.x(); }
@@ -126,23 +126,23 @@ class PeriodicCells {
   std::vector<Placed> placed_;
 };
 
-/// Types of which there are bodies, without a shape.
+/// Notes the types without a shape of which there are bodies.
 void note_missing_shapes(const Frame& frame, PairAudit& audit) {
   std::vector<bool> used(frame.types.size(), false);
   for (const FrameBody& body : frame.bodies) used[body.type] = true;
   for (std::size_t k = 0; k < frame.types.size(); ++k) {
     if (!used[k] || frame.types[k].shape) continue;
-    audit.not_looked_at.push_back(
+    audit.not_tested.push_back(
         fmt::format("bodies of type {} have no shape in the file", one_line(frame.types[k].name, 40)));
   }
 }
 
-/// Whether the frame says how a body lies.
+/// Returns whether the frame determines the orientation of a body, as far as it matters.
 bool lies_as_known(const Frame& frame, const FrameBody& body) {
   return frame.orientations || ed::is_sphere(*frame.types[body.type].shape);
 }
 
-/// Looks at a pair, r from the centre of the first to that of the second.
+/// Tests a pair, r from the centre of the first to that of the second.
 void audit_pair(const Frame& frame, std::size_t i, std::size_t j, const Vector3d& r, double tolerance,
                 PairAudit& audit) {
   const FrameBody& a = frame.bodies[i];
@@ -151,8 +151,8 @@ void audit_pair(const Frame& frame, std::size_t i, std::size_t j, const Vector3d
   const ed::BodyShape& shape_b = *frame.types[b.type].shape;
   if (!lies_as_known(frame, a) || !lies_as_known(frame, b)) {
     const std::string reason = "orientations of bodies that are near each other are not known";
-    if (std::find(audit.not_looked_at.begin(), audit.not_looked_at.end(), reason) == audit.not_looked_at.end()) {
-      audit.not_looked_at.push_back(reason);
+    if (std::find(audit.not_tested.begin(), audit.not_tested.end(), reason) == audit.not_tested.end()) {
+      audit.not_tested.push_back(reason);
     }
     return;
   }
@@ -184,7 +184,7 @@ PairAudit audit_pairs(const Frame& frame, double tolerance) {
   if (largest == 0) return audit;
   const PeriodicCells cells(frame, 2 * largest);
   if (cells.too_wide()) {
-    audit.not_looked_at.push_back(fmt::format("the box is too small for bodies of bounding radius {:g}", largest));
+    audit.not_tested.push_back(fmt::format("the box is too small for bodies of bounding radius {:g}", largest));
     return audit;
   }
   for (std::size_t k = 0; k < cells.size(); ++k) {

@@ -10,20 +10,20 @@
 
 namespace hardbody {
 
-/// Distances of the pairs of bodies of a frame that are near each other, in all images of a periodic box of any form.
+/// Result of checking the pairs of near bodies of a frame, in all images of a periodic box of any form.
 struct PairAudit {
-  /// Least distance of the pairs that were looked at; infinite: none is near.
+  /// Smallest distance of the pairs tested; infinite: there are no near pairs.
   double minimum_distance = std::numeric_limits<double>::infinity();
-  std::size_t closest_i = 0;     ///< place in Frame::bodies
-  std::size_t closest_j = 0;     ///< the same; equal to closest_i: a body and its own image
+  std::size_t closest_i = 0;     ///< index into Frame::bodies
+  std::size_t closest_j = 0;     ///< index into Frame::bodies; equal to closest_i: a body and its own image
   std::uint64_t overlaps = 0;    ///< pairs that overlap by more than the tolerance
   std::uint64_t unanswered = 0;  ///< pairs whose distance query declined
-  /// Reasons why pairs were left out, each once: "bodies of type A have no shape"; empty: all were looked at.
-  std::vector<std::string> not_looked_at;
+  /// Reasons for which pairs were left out, each once: "bodies of type A have no shape"; empty: all were tested.
+  std::vector<std::string> not_tested;
 };
 
-/// Looks at all pairs of bodies whose shapes are known, by `geom::distance`, in every image that they can meet. An
-/// overlap of up to `tolerance` does not count.
+/// Tests all pairs of bodies whose shapes are known, by `geom::distance`, in every image that they can touch. An
+/// overlap of up to `tolerance` is not counted.
 PairAudit audit_pairs(const Frame& frame, double tolerance);
 
 }  // namespace hardbody

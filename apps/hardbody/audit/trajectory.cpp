@@ -28,41 +28,41 @@ void frame_row(const char* name, const std::string& value) {
 
 /// Findings of all frames together.
 struct FramesAudit {
-  std::uint64_t frames = 0;             ///< with positions
-  std::uint64_t without_positions = 0;  ///< frames that are left out
+  std::uint64_t frames = 0;             ///< number of frames with positions
+  std::uint64_t without_positions = 0;  ///< number of frames that are left out
   std::uint64_t unsound = 0;
   double minimum_distance = std::numeric_limits<double>::infinity();
-  std::string closest;  ///< frame and bodies
+  std::string closest;  ///< frame and bodies of the smallest distance
   std::uint64_t overlaps = 0;
   std::uint64_t unanswered = 0;
-  double tolerance = 0;  ///< overlaps up to this do not count, in the frame with the largest box
+  double tolerance = 0;  ///< largest overlap that is not counted, in the frame with the largest box
   double first_energy = 0;
   double energy_drift = 0;
   double last_time = -std::numeric_limits<double>::infinity();
-  std::vector<std::string> not_looked_at;  ///< each reason once
-  std::vector<std::string> notices;        ///< of the reader, each once
+  std::vector<std::string> not_tested;  ///< each reason once
+  std::vector<std::string> notices;     ///< notices of the reader, each once
 };
 
 void add_once(std::vector<std::string>& list, const std::string& text) {
   if (std::find(list.begin(), list.end(), text) == list.end()) list.push_back(text);
 }
 
-/// Bodies by the numbers of the file.
+/// Names bodies by the numbers of the file.
 std::string bodies_text(const Frame& frame, std::size_t i, std::size_t j) {
   if (i == j) return fmt::format("body {:.17g} and its own image", frame.bodies[i].id);
   return fmt::format("bodies {:.17g} and {:.17g}", frame.bodies[i].id, frame.bodies[j].id);
 }
 
-/// Depth to which bodies in contact may overlap where positions are rounded. 32-bit numbers: half a unit in the last
-/// place of a coordinate of each body, and as much of the points on their surfaces. Text has six significant digits
-/// unless told otherwise: 5e-6 of a coordinate of each of the two bodies, along all three axes.
+/// Returns the depth to which bodies in contact may overlap because positions are rounded. 32-bit numbers: half a unit
+/// in the last place of a coordinate of each body, and the same for the points on their surfaces. Text has six
+/// significant digits by default: 5e-6 of a coordinate of each of the two bodies, along all three axes.
 double rounding_of(const Frame& frame, bool text) {
   constexpr auto kEpsilon = static_cast<double>(std::numeric_limits<float>::epsilon());
   constexpr double kSixDigits = 2e-5;
   return (text ? kSixDigits : 4 * kEpsilon) * frame.box.maxCoeff();
 }
 
-/// The state itself, as the program's own trajectories hold it.
+/// Audits the state itself, which the program's own trajectories contain.
 PairAudit audit_exactly(const Frame& frame, const std::string& where, ed::KineticState& kinetic) {
   try {
     const ed::Audit audit = ed::audit(*frame.exact);
@@ -70,7 +70,7 @@ PairAudit audit_exactly(const Frame& frame, const std::string& where, ed::Kineti
     PairAudit result;
     result.overlaps = static_cast<std::uint64_t>(audit.overlaps);
     result.unanswered = static_cast<std::uint64_t>(audit.unanswered);
-    if (!audit.finite) result.not_looked_at.emplace_back("numbers are not finite");
+    if (!audit.finite) result.not_tested.emplace_back("numbers are not finite");
     if (audit.closest_i < 0) return result;
     result.minimum_distance = audit.minimum_distance;
     result.closest_i = static_cast<std::size_t>(audit.closest_i);
@@ -88,23 +88,23 @@ std::vector<std::string> pair_defects(const Frame& frame, const PairAudit& audit
                                bodies_text(frame, audit.closest_i, audit.closest_j)));
   }
   if (audit.unanswered > 0) {
-    list.push_back(fmt::format("{} pairs are too deep in each other for a distance", audit.unanswered));
+    list.push_back(fmt::format("{} pairs overlap too deeply for a distance", audit.unanswered));
   }
   return list;
 }
 
-/// Energy, momentum and time, which only the program's own frames have to every bit.
+/// Adds defects of energy, momentum and time, which only the program's own frames contain exactly.
 void add_conservation_defects(const Frame& frame, const ed::KineticState& kinetic, FramesAudit& all,
                               std::vector<std::string>& list) {
   if (all.frames == 1) all.first_energy = kinetic.energy();
   all.energy_drift = std::max(all.energy_drift, std::abs(kinetic.energy() / all.first_energy - 1));
   for (std::string& defect : conservation_defects(kinetic, *frame.exact)) list.push_back(std::move(defect));
   if (!std::isfinite(frame.time)) list.emplace_back("its time is not a number");
-  if (!(frame.time > all.last_time)) list.emplace_back("its time is not after that of the one before");
+  if (!(frame.time > all.last_time)) list.emplace_back("its time is not later than that of the previous frame");
   all.last_time = frame.time;
 }
 
-/// Audits a frame; returns its defects, one line each.
+/// Audits a frame and returns its defects, one line each.
 std::vector<std::string> audit_frame(const Frame& frame, std::uint64_t k, const std::string& name, bool text,
                                      FramesAudit& all) {
   ++all.frames;
@@ -116,7 +116,7 @@ std::vector<std::string> audit_frame(const Frame& frame, std::uint64_t k, const 
   all.tolerance = std::max(all.tolerance, tolerance);
   all.overlaps += audit.overlaps;
   all.unanswered += audit.unanswered;
-  for (const std::string& reason : audit.not_looked_at) add_once(all.not_looked_at, reason);
+  for (const std::string& reason : audit.not_tested) add_once(all.not_tested, reason);
   if (audit.minimum_distance < all.minimum_distance) {
     all.minimum_distance = audit.minimum_distance;
     all.closest = fmt::format("frame {}, {}", k, bodies_text(frame, audit.closest_i, audit.closest_j));
@@ -126,42 +126,40 @@ std::vector<std::string> audit_frame(const Frame& frame, std::uint64_t k, const 
   return list;
 }
 
-/// Prints what is known of the pairs.
+/// Prints the results for the pairs.
 void print_pairs(const FramesAudit& all) {
-  if (all.not_looked_at.empty()) {
-    frame_row("overlaps", all.tolerance > 0 ? fmt::format("{}, deeper than the numbers are rounded ({:.2g})",
+  if (all.not_tested.empty()) {
+    frame_row("overlaps", all.tolerance > 0 ? fmt::format("{}, more than the rounding of the numbers ({:.2g})",
                                                           all.overlaps, all.tolerance)
                                             : fmt::format("{}", all.overlaps));
   } else {
     frame_row("overlaps",
-              fmt::format("{} found; not looked at everywhere: {}", all.overlaps, fmt::join(all.not_looked_at, "; ")));
+              fmt::format("{} found; not tested everywhere: {}", all.overlaps, fmt::join(all.not_tested, "; ")));
   }
   frame_row("distances not answered", fmt::format("{}", all.unanswered));
   frame_row("minimum distance", std::isfinite(all.minimum_distance)
                                     ? fmt::format("{:.6g} l, {}", all.minimum_distance, all.closest)
-                                : all.not_looked_at.empty() ? std::string("no two bounding spheres meet")
-                                                            : std::string("not known"));
+                                : all.not_tested.empty() ? std::string("no two bounding spheres meet")
+                                                         : std::string("not known"));
 }
 
 void print_frames(const TrajectoryReader& reader, const Frame& first, const Frame& last, const FramesAudit& all) {
   const auto* gsd = dynamic_cast<const GsdReader*>(&reader);
   const bool exact = first.exact.has_value();
-  frame_row("written by", gsd != nullptr ? one_line(gsd->application(), 60) : std::string("not said (LAMMPS dump)"));
+  frame_row("written by", gsd != nullptr ? one_line(gsd->application(), 60) : std::string("not stored (LAMMPS dump)"));
   frame_row("frames", fmt::format("{}{}", reader.frame_count(), reader.cut_off() ? kCutOff : ""));
   if (all.without_positions > 0) {
     frame_row("frames left out", fmt::format("{}, which have no positions", all.without_positions));
   }
   frame_row("bodies", fmt::format("{}", first.bodies.size()));
-  frame_row("state to every bit", exact            ? "yes"
-                                  : gsd != nullptr ? "no, 32-bit numbers"
-                                                   : "no, rounded decimal numbers");
+  frame_row("bit-exact state", exact ? "yes" : gsd != nullptr ? "no, 32-bit numbers" : "no, rounded decimal numbers");
   if (exact) frame_row("times", fmt::format("{:g} to {:g}", first.time, last.time));
   frame_row("all numbers finite", "yes");
   print_pairs(all);
   if (exact) {
     frame_row("energy drift", fmt::format("{:.1e} (relative, from the first frame)", all.energy_drift));
   } else {
-    frame_row("energy and momentum", "not judged: not known to every bit");
+    frame_row("energy and momentum", "not tested: not known exactly");
   }
   for (const std::string& notice : all.notices) frame_row("notice", notice);
 }
@@ -189,16 +187,16 @@ int check_trajectory(const TrajectoryReader& reader) {
     for (const std::string& defect : list) shown += fmt::format("  *** NOT SOUND: frame {}: {} ***\n", k, defect);
   }
   if (all.frames == 0) {
-    throw InputError(fmt::format("{}: has no whole frame with positions; accepted: a file with frames", name));
+    throw InputError(fmt::format("{}: has no complete frame with positions; accepted: a file with frames", name));
   }
   if (all.unsound > kMostShown) shown += fmt::format("  *** and {} more frames ***\n", all.unsound - kMostShown);
   fmt::print("{}\n{}", name, shown);
   print_frames(reader, first, last, all);
-  const std::string reasons = fmt::format("{}", fmt::join(all.not_looked_at, "; "));
+  const std::string reasons = fmt::format("{}", fmt::join(all.not_tested, "; "));
   if (all.unsound > 0) {
     fmt::print("NOT SOUND\n");
   } else {
-    fmt::print("{}\n", reasons.empty() ? "sound" : fmt::format("not looked at: overlaps: {}", reasons));
+    fmt::print("{}\n", reasons.empty() ? "sound" : fmt::format("not tested: overlaps: {}", reasons));
   }
   return all.unsound == 0 && reasons.empty() ? 0 : 1;
 }

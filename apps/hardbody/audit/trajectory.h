@@ -4,8 +4,8 @@
 
 namespace hardbody {
 
-/// Audits every frame that has positions and prints what it found, for `hardbody check`. 0: every frame is sound; 1:
-/// one is not, or something was not looked at, which the last line then says. Throws InputError.
+/// Checks every frame that has positions and prints the result, for `hardbody check`. Returns 0 if every frame is
+/// sound; 1 if one is not, or if something could not be tested, which the last line then says. Throws InputError.
 int check_trajectory(const TrajectoryReader& reader);
 
 }  // namespace hardbody

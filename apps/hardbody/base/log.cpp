@@ -15,7 +15,7 @@ Log::Log(const std::filesystem::path& path, Begin begin)
 
 void Log::line(std::string_view text) {
   const std::tm utc = fmt::gmtime(std::time(nullptr));
-  file_.clear();  // of an earlier line that found the disk full
+  file_.clear();  // after an earlier line that found the disk full
   file_ << fmt::format("{:%Y-%m-%d %H:%M:%S} UTC {:10.3f} s  {}\n", utc, seconds(), text) << std::flush;
 }
 

@@ -7,18 +7,18 @@
 
 namespace hardbody {
 
-/// A run's log.txt: what happened when. Each line is on the disk before the run goes on.
+/// Log of a run in log.txt: events with their times. Each line is on the disk before the run continues.
 class Log {
  public:
-  enum class Begin { afresh, at_the_end };  ///< of what the file holds
+  enum class Begin { afresh, at_the_end };  ///< treatment of an existing file
 
-  /// Throws std::runtime_error.
+  /// Opens the file. Throws std::runtime_error.
   Log(const std::filesystem::path& path, Begin begin);
 
-  /// A line that cannot be written is lost; the run is worth more.
+  /// Writes a line. A line that cannot be written is lost, so that the run can continue.
   void line(std::string_view text);
 
-  /// Since the construction.
+  /// Returns the seconds since the construction.
   double seconds() const;
 
  private:

@@ -42,7 +42,7 @@ void Progress::show(const std::string& text) {
 
 void Progress::say(const std::string& text) {
   clear();
-  // Not fmt::print, which throws when the reader of a pipe has gone.
+  // fmt::print is not used, because it throws when the reader of a pipe has gone.
   (void)std::fputs((text + '\n').c_str(), stderr);
 }
 

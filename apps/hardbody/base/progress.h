@@ -5,8 +5,7 @@
 
 namespace hardbody {
 
-/// What a run shows on stderr while it goes on: one line that is rewritten on a terminal, else a line every
-/// ten seconds.
+/// Progress of a run on stderr: one line that is rewritten on a terminal, else a line every ten seconds.
 class Progress {
  public:
   Progress();
@@ -14,20 +13,20 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// A new phase: its clock starts.
+  /// Begins a new phase and starts its clock.
   void begin();
 
-  /// Whether it is time to show something; ask before composing the text.
+  /// Returns whether an update is due; to be called before the text is composed.
   bool due() const;
   void show(const std::string& text);
 
-  /// A line that stays.
+  /// Prints a line that is not overwritten.
   void say(const std::string& text);
 
   /// Clears the line that is being rewritten.
   void clear();
 
-  /// Since the phase began.
+  /// Returns the seconds since the phase began.
   double seconds() const;
 
  private:
@@ -38,7 +37,7 @@ class Progress {
   Clock::time_point last_;
 };
 
-/// "ETA 1.5 h", "ETA 42 s"; empty if nothing is done yet.
+/// Returns the remaining time as text, "ETA 1.5 h", "ETA 42 s"; empty if nothing is done yet.
 std::string eta(double seconds, double done, double total);
 
 }  // namespace hardbody

@@ -26,7 +26,7 @@ void on_signal(int signal) {
 void install_signal_handlers() {
   struct sigaction action = {};
   action.sa_handler = on_signal;
-  // Writing files goes on where it was.
+  // Interrupted writes are continued.
   action.sa_flags = SA_RESTART;
   sigemptyset(&action.sa_mask);
   struct sigaction before = {};

@@ -2,23 +2,24 @@
 
 namespace hardbody {
 
-/// From now on the first SIGINT, SIGTERM, SIGHUP (the terminal is gone) or SIGXCPU (the processor time allowed is used
-/// up) only sets a mark, so that a run can save what it has; a SIGINT or SIGTERM after it kills. The other two come
-/// more than once for one cause, SIGXCPU each second. Where SIGHUP was ignored, as nohup does, it still is. A closed
-/// pipe on stdout or stderr (SIGPIPE), or a file longer than allowed (SIGXFSZ), does not end the run.
+/// Installs handlers by which the first SIGINT, SIGTERM, SIGHUP (the terminal is gone) or SIGXCPU (the allowed
+/// processor time is used up) only sets a flag, so that a run can save its state. A second SIGINT or SIGTERM kills the
+/// process. The other two are sent more than once for one cause, SIGXCPU each second. If SIGHUP was ignored, as with
+/// nohup, it remains ignored. A closed pipe on stdout or stderr (SIGPIPE), or a file longer than allowed (SIGXFSZ),
+/// does not end the run.
 void install_signal_handlers();
 
-/// The first of these signals, if one has come, else 0.
+/// Returns the first of these signals, or 0 if none has arrived.
 int pending_signal();
 
-/// What the shell expects of a program that a signal ended: 130 for SIGINT, 143 for SIGTERM, 129 for SIGHUP, 152 for
-/// SIGXCPU.
+/// Returns the exit status that a shell expects of a program ended by a signal: 130 for SIGINT, 143 for SIGTERM, 129
+/// for SIGHUP, 152 for SIGXCPU.
 int exit_status_of(int signal);
 
-/// Whether that is the exit status of a run that one of these signals has stopped.
+/// Returns whether this is the exit status of a run that one of these signals has stopped.
 bool stopped_by_signal(int exit_status);
 
-/// "SIGINT", ...
+/// Returns the name, "SIGINT", ...
 const char* signal_name(int signal);
 
 }  // namespace hardbody

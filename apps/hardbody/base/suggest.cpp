@@ -29,12 +29,12 @@ int edit_distance(std::string_view a, std::string_view b) {
 
 std::optional<std::string> nearest_name(std::string_view word, std::span<const std::string_view> known) {
   std::optional<std::string> nearest;
-  // Never as many changes as there are letters: any other name would do then.
+  // Fewer changes than there are letters: otherwise any name would match.
   const int letters = static_cast<int>(last_part(word).size());
   int least = std::min(std::max(2, letters / 2), letters - 1);
   for (const std::string_view name : known) {
     const int whole = edit_distance(word, name);
-    // One for the wrong section, so that a key of the right section wins.
+    // Plus one for the wrong section, so that a key of the right section is preferred.
     const int tail = edit_distance(last_part(word), last_part(name)) + 1;
     const int distance = std::min(whole, tail);
     if (distance > least || (nearest && distance == least)) continue;

@@ -11,7 +11,7 @@
 namespace hardbody {
 namespace {
 
-// Arrays: either may be empty.
+// Arrays, because either may be empty.
 constexpr char kArch[] = HARDBODY_ARCH_NAME;
 constexpr char kBuildType[] = HARDBODY_BUILD_TYPE;
 
@@ -25,7 +25,7 @@ std::string compiler() {
 #endif
 }
 
-/// Of this binary: that of its sources, unless what it contains asks for more.
+/// Returns the licence of this binary: that of its sources, unless a part of it requires another.
 const char* licence() {
 #if HARDBODY_WITH_CGAL
   return "GPL-3.0-or-later for this binary, because it contains CGAL's Polytope_distance_d; BSD-3-Clause for its "

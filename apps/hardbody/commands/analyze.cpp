@@ -35,13 +35,13 @@ namespace fs = std::filesystem;
 using Eigen::Vector3d;
 using Json = nlohmann::ordered_json;
 
-/// What a run has chosen for its own observables.
+/// Choices that a run has made for its own observables.
 struct RunChoices {
-  std::optional<double> fit_from;    ///< nothing: it has fitted nothing
-  std::vector<double> wave_numbers;  ///< of F_self
+  std::optional<double> fit_from;    ///< nullopt: no fits
+  std::vector<double> wave_numbers;  ///< wave numbers of F_self
 };
 
-/// Those of the run in that directory, if there is one.
+/// Returns those of the run in this directory, if there is one.
 RunChoices choices_of_run(const fs::path& directory) {
   const fs::path file = directory / kSummaryFile;
   RunChoices choices;
@@ -55,7 +55,7 @@ RunChoices choices_of_run(const fs::path& directory) {
     choices.wave_numbers = summary.at("wave_numbers").get<std::vector<double>>();
   } catch (const Json::exception&) {
     throw InputError(
-        fmt::format("{}: is not one that a run has written; accepted: a trajectory without such a file "
+        fmt::format("{}: was not written by a run; accepted: a trajectory without such a file "
                     "beside it",
                     file.string()));
   }
@@ -82,11 +82,11 @@ std::string order_csv(const StoredTrajectory& stored) {
   return text;
 }
 
-/// Words for values that are missing: lengths have the unit of the file.
-const MissingWords kWords = {"", "--longest-lag or a longer trajectory helps", "--fit-from says it",
+/// Words for missing values: lengths have the unit of the file.
+const MissingWords kWords = {"", "--longest-lag or a longer trajectory helps", "--fit-from sets it",
                              "unwrapped columns, image flags or frames closer together help", "a column id helps"};
 
-/// The entries of summary.json that frames tell. A director that is missing is a list of nulls.
+/// Returns the entries of summary.json that frames tell. A director that is missing is a list of nulls.
 Json frame_observables(const Part& part) {
   Json json = observables_json(part, kWords, Measured::in_frames);
   if (!part.results.director.axis.allFinite()) json["director"]["value"] = list_json(part.results.director.axis);
@@ -101,7 +101,7 @@ std::string analysis_json(const std::string& name, const StoredTrajectory& store
   Json json;
   json["version"] = version();
   json["source"] = name;
-  json["units"] = "those of the file; of ours kT = m = 1, lengths l, times l sqrt(m/kT)";
+  json["units"] = "those of the file; for files of hardbody kT = m = 1, lengths l, times l sqrt(m/kT)";
   const std::size_t last = results.first_frame + results.frames - 1;
   json["frames"] = {{"in_file", stored.in_file},
                     {"without_positions", stored.without_positions},
@@ -155,7 +155,7 @@ fs::path trajectory_in(const fs::path& directory) {
                   directory.string(), kGsdFile, kLammpsFile));
 }
 
-/// Prints what was read, and what was not used of it.
+/// Prints what was read, and which of it was not used.
 void print_reading(const TrajectoryReader& reader, const StoredTrajectory& stored, const ed::StoredResults& results) {
   fmt::print("{}: {} {} of {} bodies{}\n", reader.name(), stored.frames.size(),
              stored.frames.size() == 1 ? "frame" : "frames", stored.options.axis.size(),
@@ -166,11 +166,11 @@ void print_reading(const TrajectoryReader& reader, const StoredTrajectory& store
                      stored.in_file));
   }
   if (results.frames < stored.frames.size()) {
-    note(
-        fmt::format("S, g(r) and S(q) are from all frames, correlations from the longest even stretch, {} frames "
-                    "of times {:g} to {:g}",
-                    results.frames, stored.frames[results.first_frame].time,
-                    stored.frames[results.first_frame + results.frames - 1].time));
+    note(fmt::format(
+        "S, g(r) and S(q) are from all frames, correlations from the longest evenly spaced sequence, {} frames "
+        "of times {:g} to {:g}",
+        results.frames, stored.frames[results.first_frame].time,
+        stored.frames[results.first_frame + results.frames - 1].time));
   }
   for (const std::string& notice : stored.notices) note(notice);
   if (!stored.not_followed.empty()) {
@@ -209,7 +209,7 @@ int analyze(const AnalyzeArguments& arguments) {
     }
   }
   if (!stored.options.fit_from)
-    fmt::print("no fits of decays: --fit-from T says from which lag, where ballistic motion has ended\n");
+    fmt::print("no fits of decays: --fit-from T sets the first lag, where ballistic motion has ended\n");
   fmt::print("\nfiles: {0}/analysis.json, {0}/*.csv\n", out.string());
   return 0;
 }

@@ -54,17 +54,18 @@ void print_state(const Checkpoint& checkpoint, const ed::Audit& audit) {
                                                 : fmt::format("{:.6g} l, bodies {} and {}", audit.minimum_distance,
                                                               audit.closest_i, audit.closest_j));
   } else {
-    row("overlaps", "not looked at");
+    row("overlaps", "not tested");
   }
   row("energy", fmt::format("{:.10g} kT (translation {:.6g}, rotation {:.6g}, spin {:.6g})", kinetic.energy(),
                             kinetic.translational_energy, kinetic.rotational_energy, kinetic.spin_energy));
   row("translational temperature", fmt::format("{:.6f} on 3N - 3 degrees of freedom", kinetic.translational_kT));
-  row("rotational temperature", fmt::format("{:.6f} on {}", kinetic.rotational_kT,
-                                            freedoms_text(kinetic.rotational_freedoms, checkpoint.system.size())));
+  row("rotational temperature",
+      fmt::format("{:.6f} on {}", kinetic.rotational_kT,
+                  freedoms_text(kinetic.rotational_degrees_of_freedom, checkpoint.system.size())));
   row("momentum", fmt::format("{:.2e} sqrt(m kT) a body", kinetic.momentum.norm() / checkpoint.system.size()));
 }
 
-/// Whether the state is that of the config it was made with.
+/// Compares the state with the config it was made with, prints the result and returns whether they agree.
 bool print_config(const Checkpoint& checkpoint, const std::string& name) {
   const Config config = parse_config(checkpoint.config, name + " (its config)");
   const double phi = ed::packing_fraction(checkpoint.system);
@@ -94,7 +95,7 @@ int check(const std::string& path) {
   print_state(checkpoint, result);
   std::vector<std::string> list = defects(result);
   for (std::string& defect : conservation_defects(result.kinetic, checkpoint.system)) list.push_back(std::move(defect));
-  if (!print_config(checkpoint, file.string())) list.emplace_back("the state is not that of its config");
+  if (!print_config(checkpoint, file.string())) list.emplace_back("the state does not match its config");
   for (const std::string& defect : list) fmt::print("  *** NOT SOUND: {} ***\n", defect);
   fmt::print("{}\n", list.empty() ? "sound" : "NOT SOUND");
   return list.empty() ? 0 : 1;

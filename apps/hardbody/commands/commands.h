@@ -1,6 +1,7 @@
 #pragma once
 
-/// The subcommands, one source file each. They return the program's exit status and throw what errors.h says.
+/// Subcommands, one source file each. They return the program's exit status and throw the exceptions described in
+/// errors.h.
 
 #include <optional>
 #include <string>
@@ -16,39 +17,39 @@ struct RunArguments {
 };
 
 struct AnalyzeArguments {
-  std::string path;                   ///< of a run directory, or of a .gsd file
-  std::optional<std::string> out;     ///< by default analysis/ beside the file
-  std::optional<double> time_step;    ///< time between two steps; nothing: the times that are stored
-  std::optional<double> longest_lag;  ///< nothing: a quarter of the trajectory
-  std::optional<double> fit_from;     ///< lag from which decays are fitted; nothing: as the run itself has done
-  int every = 1;                      ///< frames taken
+  std::string path;                   ///< path of a run directory, or of a .gsd file
+  std::optional<std::string> out;     ///< output directory; by default analysis/ beside the file
+  std::optional<double> time_step;    ///< time between two steps; nullopt: the stored times
+  std::optional<double> longest_lag;  ///< longest lag; nullopt: a quarter of the trajectory
+  std::optional<double> fit_from;     ///< lag from which decays are fitted; nullopt: as in the run itself
+  int every = 1;                      ///< stride: each `every`-th frame is read
 };
 
 struct SweepArguments {
   std::string sweep;               ///< path of the TOML file
   std::optional<std::string> out;  ///< directory of the sweep; by default out/<stem of the file>
-  std::optional<int> jobs;         ///< runs at a time; by default one for each processor
+  std::optional<int> jobs;         ///< number of simultaneous runs; by default one for each processor
 };
 
 struct MapArguments {
   std::string table;                ///< path of a sweep's directory, or of a table like its sweep.csv
-  std::string x;                    ///< column
-  std::string y;                    ///< column
-  std::vector<std::string> values;  ///< columns whose lines are wanted
-  std::vector<std::string> levels;  ///< of each value, with commas between; empty: chosen
-  std::vector<std::string> where;   ///< column=value
+  std::string x;                    ///< column of the x axis
+  std::string y;                    ///< column of the y axis
+  std::vector<std::string> values;  ///< columns whose contour lines are drawn
+  std::vector<std::string> levels;  ///< levels of each value, separated by commas; empty: chosen automatically
+  std::vector<std::string> where;   ///< filters of the form column=value
   bool log_x = false;
   bool log_y = false;
-  std::optional<std::string> out;  ///< the drawing; by default beside the table
-  std::optional<std::string> csv;  ///< the lines as numbers; the same
+  std::optional<std::string> out;  ///< output file of the drawing; by default beside the table
+  std::optional<std::string> csv;  ///< output file of the lines as numbers; by default beside the table
 };
 
 struct ReportArguments {
-  std::vector<std::string> directories;  ///< of runs
+  std::vector<std::string> directories;  ///< run directories
   std::optional<std::string> out;        ///< HTML file; by default report.html in the directory, if it is one
 };
 
-/// An empty path: standard output.
+/// Writes a template config; an empty path means standard output.
 int init(const std::string& path, const std::string& template_name);
 int run(const RunArguments& arguments);
 int resume(const std::string& path);
@@ -58,9 +59,9 @@ int check(const std::string& path);
 int replay(const std::string& path);
 int analyze(const AnalyzeArguments& arguments);
 int report(const ReportArguments& arguments);
-/// "-": standard input.
+/// Answers the lines of a file; "-" means standard input.
 int distance(const std::string& path);
-/// The formats of its lines, for --help.
+/// Returns the description of the input and output lines for --help.
 std::string distance_help();
 
 }  // namespace hardbody

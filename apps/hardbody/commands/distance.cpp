@@ -31,7 +31,7 @@ Reply reply(const LineReader& lines) {
           false};
 }
 
-/// A full disk; a closed pipe, where SIGPIPE is ignored: there is no point in going on.
+/// Throws if output failed: after a full disk, or a closed pipe with SIGPIPE ignored, nothing more can be written.
 void require_written(bool written) {
   if (!written) throw std::runtime_error(fmt::format("standard output: cannot be written: {}", std::strerror(errno)));
 }
@@ -44,29 +44,29 @@ std::string distance_help() {
   {{"a":{{"shape":{{"kind":"ellipsoid","semi_axes":[1,1,3]}},"position":[0,0,0],"orientation":[1,0,0,0]}},"b":{{..}}}}
   shape        or {{"kind":"superellipsoid","semi_axes":[a,b,c],"exponents":[e1,e2]}}, exponents {} to {}:
                (|x/a|^(2/e2) + |y/b|^(2/e2))^(e2/e1) + |z/c|^(2/e1) <= 1
-  orientation  unit quaternion w, x, y, z from body to world; without it the body is not turned. A length that is off
-               by at most {:g} is normalized, with a notice in the answer beyond 1e-6
+  orientation  unit quaternion w, x, y, z from body to world; default: no rotation. A quaternion whose length differs
+               from 1 by at most {:g} is normalized, with a notice in the answer if by more than {:g}
   method       "dual" (the default), or the paper's equations: "newton8", "newton5"
-  seed         where these two start: {} (the default is the first)
-  penetration  of the dual method, where bodies overlap deeply: "global" (the default), the shortest of all translations
-               that part them, or "local", a stationary one: mostly found 10 to 75 times faster
-  id           any JSON, comes back with the answer
+  seed         starting points of these two methods: {} (the default is the first)
+  penetration  answer of the dual method for deep overlaps: "global" (the default), the shortest of all translations
+               that separate the bodies, or "local", a stationary one, mostly found 10 to 75 times faster
+  id           any JSON, returned with the answer
 A line out:
   {{"distance":..,"point_a":[..],"point_b":[..],"normal":[..],"status":"separated","iterations":..,"error_bound":..}}
   normal       unit, from a to b; point_b - point_a = distance * normal
   status       "separated"; "overlapping": distance is minus the penetration depth; "not_converged", "singular":
-               no answer, null instead of the four above
-  error_bound  certified: distance <= true distance <= distance + error_bound; null where nothing is
-  seed_status  "overlapping", "declined": only if the seed had no points to start from
-  notice       only if a quaternion was not of length 1: which one, and its length
-A bad line is answered by {{"error":"line 3: .."}}, blank lines are skipped.
-Exit status: 0 every line was answered or declined, 2 a line was bad, 1 the answers could not be written.)",
-      geom::kMinExponent, geom::kMaxExponent, kQuaternionTolerance, built_in_seeds());
+               no answer; the four members above are null
+  error_bound  certified: distance <= true distance <= distance + error_bound; null if nothing is certified
+  seed_status  "overlapping", "declined": only if the seed had no starting points
+  notice       only if the length of a quaternion was not 1: names it and its length
+An invalid line is answered by {{"error":"line 3: .."}}, blank lines are skipped.
+Exit status: 0 every line was answered or declined, 1 the answers could not be written, 2 a line was invalid.)",
+      geom::kMinExponent, geom::kMaxExponent, kQuaternionTolerance, kQuaternionRounding, built_in_seeds());
 }
 
 int distance(const std::string& path) {
   LineReader lines(path, kLongestLine);
-  // Whoever writes one line at a time waits for its answer.
+  // A process that writes one line at a time waits for its answer.
   const bool flush = !lines.is_regular_file();
   bool all_good = true;
   while (lines.next()) {

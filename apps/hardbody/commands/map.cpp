@@ -48,39 +48,41 @@ std::vector<double> parse_levels(std::string_view text) {
   return levels;
 }
 
-/// Of a field and what --where asks for: the same text, or the same number (2 and 2.0).
+/// Returns whether a field equals the value in --where: the same text, or the same number (2 and 2.0).
 bool is_same(const std::string& field, const std::string& wanted) {
   const std::optional<double> number = finite_number(wanted);
   return field == wanted || (number && finite_number(field) == number);
 }
 
-/// Rows for which every --where column=value holds.
+/// Returns the rows for which every --where column=value holds.
 std::vector<std::size_t> chosen_rows(const CsvTable& table, const std::vector<std::string>& conditions) {
   std::vector<std::size_t> rows(table.rows.size());
   for (std::size_t k = 0; k < rows.size(); ++k) rows[k] = k;
   for (const std::string& condition : conditions) {
     const std::size_t equals = condition.find('=');
     if (equals == std::string::npos) {
-      throw InputError(fmt::format("--where {}: is no condition; accepted: column=value", one_line(condition, 60)));
+      throw InputError(fmt::format("--where {}: is not a condition; accepted: column=value", one_line(condition, 60)));
     }
     const std::size_t column = table.column(std::string_view(condition).substr(0, equals));
     const std::string wanted = condition.substr(equals + 1);
     std::erase_if(rows, [&](std::size_t k) { return !is_same(table.rows[k][column], wanted); });
-    if (rows.empty()) throw InputError(fmt::format("--where {}: no row of {} is so", condition, table.name));
+    if (rows.empty()) throw InputError(fmt::format("--where {}: no row of {} fulfils it", condition, table.name));
   }
   return rows;
 }
 
 constexpr const char* kStatusColumn = "status";
 
-/// As a sweep's table has it; other tables may mean something else by `status`.
+/// Returns whether a status is that of an unfinished point in a sweep's table; in other tables `status` may have
+/// another meaning.
 bool is_unfinished(const std::string& status) {
   constexpr std::array kOthers = {PointStatus::pending, PointStatus::running, PointStatus::stopped,
                                   PointStatus::failed};
   return std::any_of(kOthers.begin(), kOthers.end(), [&](PointStatus s) { return status == to_string(s); });
 }
 
-/// Of a sweep's table: points that failed, unsound ones above all, have values that are no results. How many had some.
+/// Leaves out failed points of a sweep's table, above all unsound ones, whose values are not results. Returns how many
+/// of them had values.
 std::size_t leave_out_failures(const CsvTable& table, std::vector<std::size_t>& rows,
                                const std::vector<std::size_t>& values) {
   const auto status = std::find(table.header.begin(), table.header.end(), kStatusColumn);
@@ -98,13 +100,13 @@ std::size_t leave_out_failures(const CsvTable& table, std::vector<std::size_t>& 
   return left_out;
 }
 
-/// A coordinate that can be drawn.
+/// Returns a coordinate after checking that it can be drawn.
 double coordinate(double x, bool log, const std::string& name) {
   if (!log || x > 0) return x;
   throw InputError(fmt::format("{}: has {:g}, which has no logarithm; accepted: values above 0", name, x));
 }
 
-/// What the map is made of.
+/// Columns that the map is made of.
 struct Columns {
   std::size_t x;
   std::size_t y;
@@ -124,7 +126,7 @@ std::vector<Sample> samples_of(const CsvTable& table, const std::vector<std::siz
   return samples;
 }
 
-/// Lines need a plane to be drawn in.
+/// Throws unless the samples spread over a plane, which lines need.
 void check_spread(const CsvTable& table, const std::vector<Sample>& samples, const std::string& x, const std::string& y,
                   const std::string& value) {
   if (has_cells(lattice_of(samples))) return;
@@ -135,8 +137,8 @@ void check_spread(const CsvTable& table, const std::vector<Sample>& samples, con
     columns.insert(s.x);
   }
   throw InputError(
-      fmt::format("{}: {} is known at {} points with {} values of {}, between which no line can be drawn (as of "
-                  "keys that a sweep zips); accepted: two values of {} at least, side by side, one of them with two "
+      fmt::format("{}: {} is known at {} points with {} values of {}, between which no line can be drawn (as "
+                  "for keys that a sweep zips); accepted: at least two neighbouring values of {}, one of them with two "
                   "values of {}",
                   table.name, value, points.size(), columns.size(), x, x, y));
 }
@@ -148,7 +150,7 @@ std::vector<MapLevel> all_levels(const CsvTable& table, const std::vector<std::s
     const std::vector<Sample> samples = samples_of(table, rows, columns, columns.values[v], arguments);
     if (samples.empty()) {
       throw InputError(
-          fmt::format("{}: {} has no values; accepted: a column with some", table.name, arguments.values[v]));
+          fmt::format("{}: {} has no values; accepted: a column with values", table.name, arguments.values[v]));
     }
     check_spread(table, samples, arguments.x, arguments.y, arguments.values[v]);
     const std::vector<double> levels =
@@ -163,7 +165,7 @@ std::vector<MapLevel> all_levels(const CsvTable& table, const std::vector<std::s
   return all;
 }
 
-/// Open where the row says that it was not equilibrated.
+/// Returns the marks, open ones for rows that were not equilibrated.
 std::vector<MapMark> marks_of(const CsvTable& table, const std::vector<std::size_t>& rows, const Columns& columns) {
   std::vector<MapMark> marks;
   const std::optional<std::size_t> equilibrated = table.find("equilibrated");
@@ -196,7 +198,7 @@ std::string lines_csv(const Map& map) {
 void check(const MapArguments& arguments) {
   if (!arguments.levels.empty() && arguments.levels.size() != arguments.values.size()) {
     throw InputError(
-        fmt::format("--levels is there {} times and --value {} times; accepted: levels for each value, or "
+        fmt::format("--levels is given {} times and --value {} times; accepted: levels for each value, or "
                     "for none",
                     arguments.levels.size(), arguments.values.size()));
   }

@@ -26,7 +26,7 @@ using Eigen::Vector3d;
 constexpr int kStepsBefore = 5;
 constexpr int kStepsAfter = 15;
 
-/// Budget of the search (ContactOptions::max_evaluations): the pair is one that a run has spent its own on, perhaps.
+/// Budget of the search (ContactOptions::max_evaluations): the pair may be one that exhausted the run's own budget.
 constexpr int kReplayBudget = 100000;
 
 std::string text(const Vector3d& v) {
@@ -39,14 +39,14 @@ struct Pair {
   ed::Motion motion_a;
   ed::Motion motion_b;
 
-  /// The pair at another time.
+  /// Returns the pair at another time.
   Pair at(double t) const { return {a, b, ed::propagate(motion_a, t), ed::propagate(motion_b, t)}; }
 
   geom::DistanceResult distance() const { return ed::distance(a, motion_a.pose, b, motion_b.pose); }
 
   double size() const { return ed::bounding_radius(a) + ed::bounding_radius(b); }
 
-  /// No point of a body moves faster than this relative to the other body.
+  /// Returns a bound of the speed of any point of a body relative to the other body.
   double speed() const {
     return (motion_b.velocity - motion_a.velocity).norm() + motion_a.angular_velocity.norm() * ed::bounding_radius(a) +
            motion_b.angular_velocity.norm() * ed::bounding_radius(b);
@@ -61,7 +61,7 @@ ed::ContactBody contact_body(const ed::Motion& motion, const Vector3d& point) {
   return body;
 }
 
-/// Rate at which the distance changes: the relative normal velocity of the closest points.
+/// Returns the rate of change of the distance: the relative normal velocity of the closest points.
 double distance_rate(const Pair& pair, const geom::DistanceResult& d) {
   return ed::normal_velocity(contact_body(pair.motion_a, d.point_a), contact_body(pair.motion_b, d.point_b), d.normal);
 }
@@ -72,7 +72,7 @@ std::string shape_text(const ed::BodyShape& shape) {
   return s == nullptr ? axes : fmt::format("superellipsoid, {}, exponents ({:.9g}, {:.9g})", axes, s->e1(), s->e2());
 }
 
-/// The shipped shapes alone: a file has no others.
+/// Returns the shape, which is one of libgeom's: a file can contain no other.
 geom::Shape geom_shape(const ed::BodyShape& shape) {
   if (const auto* s = std::get_if<geom::Superellipsoid>(&shape)) return *s;
   return std::get<geom::Ellipsoid>(shape);
@@ -107,7 +107,7 @@ std::string value_of(const geom::DistanceResult& d) {
   return std::isfinite(d.distance) ? fmt::format("{:.17g}", d.distance) : "no answer";
 }
 
-/// The call that failed, repeated bit for bit.
+/// Repeats the call that failed, bit for bit.
 std::string failed_call(const ed::FailedPair& failed) {
   if (!failed.distance) return "";
   const ed::FailedDistance& call = *failed.distance;
@@ -125,7 +125,7 @@ std::string failed_call(const ed::FailedPair& failed) {
                      geom::to_string(call.status));
 }
 
-/// What the paper's equations make of the same pair.
+/// Solves the paper's equations for the same pair.
 std::string newton_now(const Pair& pair) {
   std::string out;
   const geom::Shape a = geom_shape(pair.a);
@@ -166,7 +166,7 @@ std::string contact(const Pair& pair, double from, double until) {
                    found.time - from, text(found.point), text(found.normal), d.distance, geom::to_string(d.status));
 }
 
-/// The same by the finder of the run, if that was the paper's.
+/// Repeats the search with the finder of the run, if that was the paper's.
 std::string contact_by_bracketing(const ed::FailedPair& failed, const Pair& pair, double from, double until) {
   if (failed.finder != ed::Finder::bracketing) return "";
   ed::ContactOptions options;
@@ -193,12 +193,12 @@ std::string course(const Pair& pair, double from, double step) {
   return out;
 }
 
-/// Composed as a whole before anything is printed: a pair that the library refuses leaves one line and no more.
+/// Composes the whole text before anything is printed: a pair that the library refuses gives one line and no more.
 std::string replayed(const Failure& failure) {
   const ed::FailedPair& failed = failure.pair;
   const double from = std::max(failed.motion_i.time, failed.motion_j.time);
   const Pair pair = Pair{failed.shape_i, failed.shape_j, failed.motion_i, failed.motion_j}.at(from);
-  // In twenty steps the fastest points move by about the size of the pair; bodies at rest: any time does.
+  // In twenty steps the fastest points move by about the size of the pair; for bodies at rest any time will do.
   const double window = pair.speed() > 0 ? pair.size() / pair.speed() : 1.0;
   return bodies(failure, pair) + distance_now(pair) + failed_call(failed) + newton_now(pair) +
          contact(pair, from, from + 2 * window) + contact_by_bracketing(failed, pair, from, from + 2 * window) +

@@ -21,15 +21,15 @@ namespace fs = std::filesystem;
 fs::path output_path(const ReportArguments& arguments) {
   if (arguments.out) return *arguments.out;
   if (arguments.directories.size() == 1) return fs::path(arguments.directories[0]) / kReportFile;
-  throw InputError("hardbody report: several directories, and no file to write to; accepted: -o FILE.html");
+  throw InputError("hardbody report: several directories, but no output file; accepted: -o FILE.html");
 }
 
 void check_output(const fs::path& path) {
   const fs::path directory = path.has_parent_path() ? path.parent_path() : fs::path(".");
   if (!fs::is_directory(directory)) {
     throw InputError(
-        fmt::format("{}: cannot be written: {} is not a directory; accepted: a file in a directory that "
-                    "is there",
+        fmt::format("{}: cannot be written: {} is not a directory; accepted: a file in an "
+                    "existing directory",
                     path.string(), directory.string()));
   }
   check_replaceable(path, kReportBeginning);
@@ -40,7 +40,7 @@ std::string size_text(std::size_t bytes) {
   return size < 1e6 ? fmt::format("{:.0f} kB", size / 1e3) : fmt::format("{:.1f} MB", size / 1e6);
 }
 
-/// The last `parts` parts of a directory's path.
+/// Returns the last `parts` parts of a directory's path.
 std::string last_parts(const fs::path& directory, int parts) {
   const fs::path whole = fs::weakly_canonical(directory);
   fs::path name = whole.filename();
@@ -50,7 +50,7 @@ std::string last_parts(const fs::path& directory, int parts) {
   return name.string();
 }
 
-/// Runs of the same name are called by as much of their paths as tells them apart.
+/// Renames runs of the same name by as many parts of their paths as distinguish them.
 void name_apart(std::vector<RunReport>& runs) {
   constexpr int kMostParts = 64;
   for (int parts = 2; parts <= kMostParts; ++parts) {
@@ -77,7 +77,7 @@ Report read_report(const std::vector<std::string>& directories) {
   }
   for (const std::string& directory : directories) {
     if (is_sweep(directory)) {
-      throw InputError(fmt::format("{}: holds a sweep; accepted: a sweep by itself, or several runs", directory));
+      throw InputError(fmt::format("{}: holds a sweep; accepted: a single sweep, or several runs", directory));
     }
     report.runs.push_back(read_run_report(directory, WithView::yes));
   }

@@ -5,6 +5,7 @@
 #include "base/version.h"
 #include "commands/commands.h"
 #include "config/config.h"
+#include "config/keys.h"
 #include "config/text.h"
 #include "io/run_directory.h"
 #include "io/text_file.h"
@@ -37,28 +38,23 @@
 namespace hardbody {
 namespace {
 
-std::filesystem::path directory_for(const RunArguments& arguments) {
-  if (arguments.out && arguments.out->empty()) throw InputError("--out is empty; accepted: the name of a directory");
-  if (arguments.out) return *arguments.out;
-  return std::filesystem::path("out") / std::filesystem::path(arguments.config).stem();
-}
-
-/// Before anything is changed. The name of the run becomes one that is good from everywhere.
-void check_origin(const RunArguments& arguments, Config& config) {
-  (void)read_origin_state(config);
+/// Reads the state that the run starts from, before anything is changed. The name of its run becomes an absolute one.
+ed::System take_origin(const std::filesystem::path& directory, Config& config) {
+  ed::System origin = read_origin_state(config);
   std::error_code ignored;
-  if (std::filesystem::equivalent(*config.start_from, directory_for(arguments), ignored)) {
-    throw InputError(fmt::format("system.start_from: {} is the directory of this run; accepted: that of another one",
+  if (std::filesystem::equivalent(*config.start_from, directory, ignored)) {
+    throw InputError(fmt::format("{}: {} is the directory of this run; accepted: that of another one", kStartFromKey,
                                  *config.start_from));
   }
   config.start_from = absolute_path(*config.start_from).string();
+  return origin;
 }
 
 RunDirectory create_directory(const RunArguments& arguments, const Config& config) {
   const Overwrite overwrite = arguments.force ? Overwrite::allowed : Overwrite::refused;
   std::vector<std::filesystem::path> inputs = {arguments.config};
   if (config.start_file) inputs.emplace_back(config.start_file->file);
-  return RunDirectory::create(directory_for(arguments), overwrite, inputs, resolved_text(config));
+  return RunDirectory::create(directory_for(arguments.out, arguments.config), overwrite, inputs, resolved_text(config));
 }
 
 void write_failures(const RunDirectory& directory, const RunRecord& record, Log& log) {
@@ -75,8 +71,9 @@ void write_failures(const RunDirectory& directory, const RunRecord& record, Log&
     log.line(fmt::format("failures: {} pairs in {}/, {} more left out", count, kFailuresDirectory, left_out));
 }
 
-/// Where a run begins, or goes on.
+/// State at which a run begins, or is continued.
 struct Continuation {
+  LoadedStates loaded;
   std::optional<Start> start;
   std::optional<EquilibrationRun> equilibration;
   std::optional<ProductionRun> production;
@@ -84,7 +81,7 @@ struct Continuation {
   Upkeep upkeep;
 };
 
-/// The state in which the run has ended.
+/// Returns the final state of the run.
 Checkpoint last_checkpoint(Continuation& at, const RunRecord& record) {
   Checkpoint checkpoint = at.production      ? checkpoint_of(*at.production)
                           : at.equilibration ? checkpoint_of(*at.equilibration)
@@ -93,11 +90,11 @@ Checkpoint last_checkpoint(Continuation& at, const RunRecord& record) {
   return checkpoint;
 }
 
-/// The files of a run's end that have been written, in the order in which its table names them.
+/// Files of a run's end that have been written, in the order in which the results table names them.
 struct WrittenFiles {
   bool summary = false;
   bool observables = false;
-  bool checkpoint = false;  ///< and with it what grows with the run
+  bool checkpoint = false;  ///< the checkpoint, and with it the files that grow with the run
 
   std::vector<std::string> list(const RunDirectory& directory, const Config& config) const {
     std::vector<std::string> names;
@@ -113,7 +110,7 @@ struct WrittenFiles {
   }
 };
 
-/// The summary comes last: where it is, the other files are complete.
+/// Writes the results. The summary comes last: if it exists, the other files are complete.
 void write_results(const RunDirectory& directory, RunRecord& record, Continuation& at, Saver& saver, Log& log,
                    WrittenFiles& written) {
   const ed::Results& results = record.production.results;
@@ -127,7 +124,8 @@ void write_results(const RunDirectory& directory, RunRecord& record, Continuatio
   written.summary = true;
 }
 
-/// Nothing was measured, and half a start is not kept: only the config and the log stay.
+/// Ends a run without a start. Nothing was measured, and an incomplete start is not kept: only the config and the log
+/// remain.
 int stopped_at_the_start(const RunDirectory& directory, Progress& progress, Log& log) {
   const int signal = pending_signal();
   const std::string text = fmt::format(
@@ -151,7 +149,8 @@ int conclude(const RunDirectory& directory, RunRecord& record, Continuation& at,
     failure = std::current_exception();
   }
   progress.clear();
-  // The table also when a full disk has kept the files from being written: hours of work may stand in it.
+  // The table is printed even if a full disk has kept the files from being written: it may be the result of hours of
+  // work.
   (void)std::fputs(results_table(record, written.list(directory, record.config)).c_str(), stdout);
   (void)std::fflush(stdout);
   if (failure) std::rethrow_exception(failure);
@@ -162,7 +161,7 @@ int conclude(const RunDirectory& directory, RunRecord& record, Continuation& at,
   }
   if (record.stopped() && !record.stall) {
     const std::string text =
-        fmt::format("stopped by {} during {} at time {:g}: what was measured is written, hardbody resume goes on",
+        fmt::format("stopped by {} during {} at time {:g}: results so far are written, hardbody resume continues",
                     signal_name(signal), record.last_phase(), record.last_time());
     log.line(text);
     progress.say(fmt::format("{}: {}", directory.path().string(), text));
@@ -172,16 +171,16 @@ int conclude(const RunDirectory& directory, RunRecord& record, Continuation& at,
   return list.empty() ? 0 : 1;
 }
 
-/// Up to the begin of equilibration, from wherever the run stands; false: a signal came before there was a start.
+/// Brings the run to the begin of equilibration, from its current state; returns false if a signal came before there
+/// was a start.
 bool prepare(const Config& config, Continuation& at, Progress& progress, Saver& saver, Log& log) {
   if (at.equilibration || at.production) return true;
   if (!at.start) {
-    std::optional<ed::System> origin;
-    if (config.start_from) origin = read_origin_state(config);
-    at.start = make_start(config, origin, progress, log);
+    if (config.start_from && !at.loaded.origin) at.loaded.origin = read_origin_state(config);
+    at.start = make_start(config, std::exchange(at.loaded, {}), progress, log);
   }
   if (!at.start) return false;
-  // The run or the file that it came from may be gone, or another one, when this one is resumed.
+  // The run or file that it started from may be gone, or another one, when this run is resumed.
   if (saver.due() || config.start_from || config.start_file) saver.save([&at] { return checkpoint_of(*at.start); });
   at.equilibration = begin_equilibration(config, *at.start, progress, saver, log);
   if (at.equilibration && config.equilibration_time != 0.0) at.start.reset();
@@ -191,10 +190,10 @@ bool prepare(const Config& config, Continuation& at, Progress& progress, Saver& 
 void run_equilibration(const Config& config, const RunDirectory& directory, Continuation& at, RunRecord& record,
                        Progress& progress, Saver& saver, Log& log) {
   record.equilibration = equilibrate(config, *at.equilibration, progress, saver, log);
-  // Where nothing was to run the start itself, to the last bit.
+  // If there was no equilibration, the start itself, to the last bit.
   if (at.start) record.equilibration.system = std::exchange(at.start, std::nullopt)->system;
   record.stall = at.equilibration->simulation.stall();
-  // A state with an overlap is no start for a production run.
+  // A state with an overlap cannot start a production run.
   const bool sound = defects(ed::audit(record.equilibration.system)).empty();
   if (record.equilibration.stopped || !sound) return;
   at.equilibration.reset();
@@ -218,7 +217,7 @@ int run_phases(const Config& config, const RunDirectory& directory, Continuation
   record.config = config;
   if (at.equilibration) run_equilibration(config, directory, at, record, progress, saver, log);
   if (at.production) run_production(config, at, record, progress, saver, log);
-  if (!at.equilibration && !at.production) {  // a signal came while the lists were tuned
+  if (!at.equilibration && !at.production) {  // a signal came while the neighbour lists were tuned
     record.equilibration.system = at.start->system;
     record.equilibration.counters_of_start = at.start->counters;
     record.equilibration.failures_of_start = at.start->failures;
@@ -229,11 +228,11 @@ int run_phases(const Config& config, const RunDirectory& directory, Continuation
   return conclude(directory, record, at, saver, progress, log);
 }
 
-/// What to do when a file could not be written.
+/// Returns what to do when a file could not be written.
 std::string advice(const RunDirectory& directory, const WriteError& error) {
   return fmt::format("{}: {}, then hardbody resume {}{}",
-                     directory.has(kCheckpointFile) ? "the last checkpoint stands" : "there is no checkpoint yet",
-                     error.no_room() ? "free some room" : "mend that", directory.path().string(),
+                     directory.has(kCheckpointFile) ? "the last checkpoint is intact" : "there is no checkpoint yet",
+                     error.no_room() ? "free some room" : "resolve this", directory.path().string(),
                      directory.has(kCheckpointFile) ? "" : " starts over");
 }
 
@@ -252,7 +251,7 @@ int run_logged(const Config& config, const RunDirectory& directory, Continuation
 
 // ---- Resuming
 
-/// Everything that can be refused is refused here, before anything is changed.
+/// Makes the state to continue from. All errors are detected here, before anything is changed.
 Continuation continuation(const Config& config, Checkpoint checkpoint, const RunDirectory& directory,
                           const std::string& name) {
   Continuation at;
@@ -272,7 +271,7 @@ Continuation continuation(const Config& config, Checkpoint checkpoint, const Run
   return at;
 }
 
-/// Whether the directory has the results of a run that nothing has interrupted.
+/// Returns whether the directory has the results of a run that was not interrupted.
 bool has_final_results(const RunDirectory& directory) {
   if (!directory.has(kSummaryFile)) return false;
   const std::string text = read_file(directory.file(kSummaryFile), kLongestSummary);
@@ -280,13 +279,13 @@ bool has_final_results(const RunDirectory& directory) {
   return summary.is_object() && summary.value("interrupted", nlohmann::json()) == false;
 }
 
-/// Nothing is changed.
+/// Reports that the run is complete. Nothing is changed.
 int leave_alone(const RunDirectory& directory) {
   fmt::print("{}: the run is finished: nothing to do\n", directory.path().string());
   return 0;
 }
 
-/// Without a checkpoint: the same run again, which is the same to every bit.
+/// Starts a run without a checkpoint again, which gives the same run bit for bit.
 int start_over(const RunDirectory& directory) {
   const Config config = load_config(directory.file(kConfigFile).string(), {});
   directory.check_writable();
@@ -299,15 +298,20 @@ int start_over(const RunDirectory& directory) {
 }  // namespace
 
 int run(const RunArguments& arguments) {
-  Config config = load_config(arguments.config, arguments.overrides);
+  std::optional<StartFrame> frame;
+  Config config = load_config(arguments.config, arguments.overrides, &frame);
   install_signal_handlers();
-  if (config.start_from) check_origin(arguments, config);
-  // What is wrong with the file is said before anything is written.
-  if (config.start_file) config.packing_fraction = ed::packing_fraction(start_from_file(config).system);
+  // Errors of a state to start from are reported before anything is written.
+  Continuation at;
+  if (config.start_from) at.loaded.origin = take_origin(directory_for(arguments.out, arguments.config), config);
+  if (config.start_file) {
+    at.loaded.file = start_from_file(config, std::exchange(frame, std::nullopt));
+    config.packing_fraction = ed::packing_fraction(at.loaded.file->system);
+  }
   const RunDirectory directory = create_directory(arguments, config);
   Log log(directory.file(kLogFile), Log::Begin::afresh);
   log.line(fmt::format("hardbody {}: {} with {}", version(), kConfigFile, arguments.config));
-  return run_logged(config, directory, {}, log);
+  return run_logged(config, directory, std::move(at), log);
 }
 
 int resume(const std::string& path) {
@@ -317,8 +321,8 @@ int resume(const std::string& path) {
   if (!directory.has(kCheckpointFile)) return final ? leave_alone(directory) : start_over(directory);
   const std::string name = directory.file(kCheckpointFile).string();
   std::optional<Checkpoint> checkpoint;
-  // Of a finished run it does not matter which program could go on with it. Else that comes before the config is
-  // judged, which may have another version's keys.
+  // For a finished run it does not matter which program could continue it. Otherwise that is checked before the config,
+  // which may have another version's keys.
   try {
     checkpoint = read_checkpoint(name);
     check_version(*checkpoint, name);

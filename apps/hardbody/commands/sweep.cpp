@@ -3,6 +3,7 @@
 #include "base/signals.h"
 #include "commands/commands.h"
 #include "config/config.h"
+#include "config/keys.h"
 #include "io/run_directory.h"
 #include "io/text_file.h"
 #include "sweep/file.h"
@@ -35,16 +36,10 @@ constexpr const char* kBaseFile = "base.toml";
 constexpr std::size_t kLongestStoredSweep = 1 << 24;  ///< bytes
 
 constexpr int kMostJobs = 1024;
-constexpr int kSignalLook = 100;  ///< milliseconds between two looks at signals
+constexpr int kSignalLook = 100;  ///< milliseconds between two checks for signals
 
-/// A worker of a sweep that was killed saves its state before it ends: its point has to wait for that.
+/// Time to wait for a worker of a killed sweep, which saves its state before it ends: its point is locked until then.
 constexpr std::chrono::seconds kPatience{60};
-
-fs::path directory_for(const SweepArguments& arguments) {
-  if (arguments.out && arguments.out->empty()) throw InputError("--out is empty; accepted: the name of a directory");
-  if (arguments.out) return *arguments.out;
-  return fs::path("out") / fs::path(arguments.sweep).stem();
-}
 
 int jobs_for(const SweepArguments& arguments) {
   const int jobs = arguments.jobs.value_or(std::max(1, static_cast<int>(std::thread::hardware_concurrency())));
@@ -54,7 +49,7 @@ int jobs_for(const SweepArguments& arguments) {
 
 // ---- The directory
 
-/// Files of something else, that a sweep must not mix with.
+/// Returns whether there are files of something else, which a sweep must not be mixed with.
 bool holds_other_files(const fs::path& directory) {
   if (fs::exists(directory / kSweepFile)) return false;
   return std::any_of(fs::directory_iterator(directory), fs::directory_iterator(),
@@ -68,12 +63,12 @@ void check_same_sweep(const fs::path& directory, const SweepFile& sweep) {
       changed_key(absolute_files(before, directory), absolute_files(sweep.whole, sweep.directory));
   if (!changed) return;
   throw InputError(
-      fmt::format("{}: {} is {}, but {} in the sweep that {} holds; accepted: the sweep as it was begun, or another "
+      fmt::format("{}: {} is {}, but {} in the sweep that {} holds; accepted: the original sweep, or another "
                   "directory",
                   changed->where, changed->key, changed->now, changed->before, directory.string()));
 }
 
-/// Ours from now on, with the sweep in it. What is refused has changed nothing.
+/// Locks the directory and stores the sweep in it. If it is refused nothing has been changed.
 DirectoryLock take_directory(const fs::path& directory, const SweepFile& sweep) {
   try {
     if (fs::exists(directory) && !fs::is_directory(directory)) {
@@ -84,7 +79,7 @@ DirectoryLock take_directory(const fs::path& directory, const SweepFile& sweep) 
     if (holds_other_files(directory)) {
       throw InputError(
           fmt::format("{}: holds files, but no sweep; accepted: a new or empty directory, or that of a "
-                      "sweep to go on with",
+                      "sweep to continue",
                       directory.string()));
     }
     if (fs::exists(directory / kSweepFile)) {
@@ -108,7 +103,7 @@ DirectoryLock take_directory(const fs::path& directory, const SweepFile& sweep) 
 
 // ---- The points
 
-/// All of them; those that no run could have are failed already.
+/// Returns all points; those whose config is invalid are failed already.
 std::vector<PointRecord> planned(const SweepFile& sweep) {
   std::vector<PointRecord> records;
   std::string first_refusal;
@@ -121,7 +116,7 @@ std::vector<PointRecord> planned(const SweepFile& sweep) {
     record.starts_from = before[k];
     const TomlDocument document = document_of(sweep, point);
     record.point = std::move(point);
-    if (const Entry* seed = document.find("seed")) record.seed = seed->value.integer;
+    if (const Entry* seed = document.find(kSeedKey)) record.seed = seed->value.integer;
     try {
       (void)read_config(document);
     } catch (const InputError& error) {
@@ -133,7 +128,7 @@ std::vector<PointRecord> planned(const SweepFile& sweep) {
   }
   const bool any =
       std::any_of(records.begin(), records.end(), [](const PointRecord& r) { return r.status != PointStatus::failed; });
-  // No point can be run: a mistake of the sweep, not of its points.
+  // No point can be run: an error of the sweep, not of its points.
   if (!any) throw InputError(first_refusal);
   return records;
 }
@@ -144,7 +139,7 @@ class Sweep {
   Sweep(fs::path directory, std::vector<PointRecord> records, std::size_t jobs)
       : directory_(std::move(directory)), records_(std::move(records)), jobs_(jobs) {}
 
-  /// The exit status.
+  /// Runs all points and returns the exit status.
   int run();
 
  private:
@@ -169,7 +164,8 @@ class Sweep {
   std::vector<PointRecord> records_;
   std::size_t jobs_;
   std::deque<std::size_t> waiting_;
-  std::map<std::size_t, Clock::time_point> locked_;  ///< points that another process has, and since when we know
+  /// Points locked by another process, with the time at which this was noticed.
+  std::map<std::size_t, Clock::time_point> locked_;
   std::size_t done_before_ = 0;
   bool table_failed_ = false;
   Workers workers_;
@@ -190,8 +186,8 @@ std::string Sweep::text() const {
                      workers_.running(), failed, eta(progress_.seconds(), over, to_do));
 }
 
-/// A file of the sweep's own that cannot be written costs no point that is done; the table is tried again with the
-/// next.
+/// Writes the table. If a file of the sweep itself cannot be written, completed points are kept; the table is written
+/// again after the next point.
 void Sweep::write_table() {
   try {
     write_file(directory_ / kSweepTableFile, sweep_csv(records_));
@@ -220,7 +216,7 @@ void Sweep::settle(PointRecord& record, PointStatus status, const std::string& m
   }
 }
 
-/// What an earlier sweep has left: runs that are over are kept, all others wait.
+/// Takes over the results of an earlier sweep: completed runs are kept, all others wait.
 void Sweep::take_up() {
   for (std::size_t k = 0; k < records_.size(); ++k) {
     PointRecord& record = records_[k];
@@ -247,7 +243,7 @@ void Sweep::take_up() {
 
 void Sweep::launch(std::size_t k) {
   PointRecord& record = records_[k];
-  // In the directory of the sweep, so that what a point says is the same wherever that stands.
+  // The process runs in the directory of the sweep, so that messages of a point do not depend on where that is.
   std::vector<std::string> arguments;
   if (fs::exists(path_of(record) / kConfigFile)) {
     arguments = {"resume", record.point.name};
@@ -259,7 +255,7 @@ void Sweep::launch(std::size_t k) {
     }
     if (record.starts_from) {
       arguments.emplace_back("--set");
-      arguments.push_back("system.start_from=" + records_[*record.starts_from].point.name);
+      arguments.push_back(std::string(kStartFromKey) + "=" + records_[*record.starts_from].point.name);
     }
   }
   record.status = PointStatus::running;
@@ -268,7 +264,8 @@ void Sweep::launch(std::size_t k) {
   workers_.start(static_cast<int>(k), directory_, arguments);
 }
 
-/// False: it has to wait, for the point that it starts from, or for another process to leave its directory.
+/// Returns false if the point has to wait, for the point that it starts from, or for another process to release its
+/// directory.
 bool Sweep::try_to_start(std::size_t k) {
   PointRecord& record = records_[k];
   if (record.starts_from) {
@@ -330,7 +327,7 @@ void Sweep::end_point(const WorkerEnd& end) {
   write_table();
 }
 
-/// The workers save what they have.
+/// Stops the workers, which save their states.
 void Sweep::stop() {
   workers_.signal_all(pending_signal());
   while (workers_.running() > 0) {
@@ -355,7 +352,8 @@ int Sweep::conclude(int signal) {
   }
   (void)std::fflush(stdout);
   if (signal != 0) {
-    progress_.say(fmt::format("{}: stopped by {}: the same command goes on", directory_.string(), signal_name(signal)));
+    progress_.say(
+        fmt::format("{}: stopped by {}: the same command continues", directory_.string(), signal_name(signal)));
     return exit_status_of(signal);
   }
   return failed > 0 || table_failed_ ? 1 : 0;
@@ -382,7 +380,7 @@ int sweep(const SweepArguments& arguments) {
   const std::size_t jobs = static_cast<std::size_t>(jobs_for(arguments));
   const SweepFile file = read_sweep(arguments.sweep);
   std::vector<PointRecord> records = planned(file);
-  const fs::path directory = directory_for(arguments);
+  const fs::path directory = directory_for(arguments.out, arguments.sweep);
   const DirectoryLock lock = take_directory(directory, file);
   return Sweep(directory, std::move(records), jobs).run();
 }

@@ -40,7 +40,7 @@ Body read_body(const JsonMember& body, std::vector<std::string>& notices) {
   return {shape, read_orientation(body.at("orientation", ""), position, notices)};
 }
 
-/// By name; nothing: there is none.
+/// Returns the method of this name; nullopt if there is none.
 std::optional<Method> find_method(std::string_view name) {
   if (name == "dual") return Method::dual;
   if (name == "newton8") return Method::newton8;
@@ -54,7 +54,7 @@ std::optional<geom::Penetration> find_penetration(std::string_view name) {
   return {};
 }
 
-/// nullptr: there is none; its function: whether it is built in.
+/// Returns the seed of this name; nullptr if there is none. Its function is null if it is not built in.
 const SeedSource* find_seed(std::string_view name) {
   for (const SeedSource& source : seed_sources()) {
     if (source.name == name) return &source;
@@ -88,7 +88,7 @@ const SeedSource& read_seed(const JsonMember& query) {
                                source->option, built_in_seeds()));
 }
 
-/// Of options that do not go together.
+/// Throws for options that cannot be combined.
 void check_options(Method method, const SeedSource& seed, bool has_penetration) {
   if (method == Method::dual && &seed != &seed_sources().front()) {
     throw InputError(fmt::format(
@@ -110,7 +110,7 @@ nlohmann::json parse_line(std::string_view line) {
   }
 }
 
-/// Body as scan_query found it; nothing if there is something to complain about.
+/// Converts a body found by scan_query; nullopt if it has an error.
 std::optional<Body> scanned_body(const ScannedBody& body, const char* name, std::vector<std::string>& notices) {
   const Vector3d axes(body.semi_axes.data());
   const Vector3d position(body.position.data());
@@ -145,7 +145,7 @@ std::optional<DistanceQuery> scanned_query(std::string_view line, std::string& i
                        *method,  seed->function, *penetration, fmt::format("{}", fmt::join(notices, "; "))};
 }
 
-/// `null` for a number that there is none of: those of a declined answer, and infinity.
+/// Appends a number, or `null` if there is none: in a declined answer, and for infinity.
 void append_number(std::string& text, double value) {
   if (!std::isfinite(value)) {
     text += "null";
@@ -228,7 +228,7 @@ std::string answer_json(const std::string& id, const DistanceAnswer& answer, con
 }
 
 std::string error_json(const std::string& id, const std::string& message) {
-  // A message quotes its line, cut at a byte that may be the middle of a character.
+  // A message quotes its line, which may be cut in the middle of a character.
   const std::string quoted = nlohmann::json(message).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
   return fmt::format("{{{}\"error\":{}}}", id_json(id), quoted);
 }

@@ -19,45 +19,45 @@ enum class Method {
   newton5,
 };
 
-/// What one line of `hardbody distance` asks.
+/// Query in one line of `hardbody distance`.
 struct DistanceQuery {
   geom::Shape a, b;
   geom::Pose X_WA, X_WB;
   Method method;
-  SeedFunction seed;              ///< for the paper's equations
-  geom::Penetration penetration;  ///< for the dual method
-  std::string notice;             ///< what was done with its numbers; empty: nothing
+  SeedFunction seed;              ///< seed of the paper's equations
+  geom::Penetration penetration;  ///< treatment of overlaps by the dual method
+  std::string notice;             ///< changes made to the numbers of the query; empty: none
 };
 
 struct DistanceAnswer {
   geom::DistanceResult result;
-  std::optional<geom::SeedStatus> seed_status;  ///< set if the seed had no points to start from
+  std::optional<geom::SeedStatus> seed_status;  ///< status of the seed if it had no starting points
 };
 
-/// Of one line, `{"a":{"shape":{..},"position":[..],"orientation":[..]},"b":{..},"method":..,"seed":..,"id":..}`: see
-/// distance_help(). The JSON text of "id" goes to `id` even if the rest of the line is bad. Throws InputError, with a
-/// message that does not say which line.
+/// Parses one line, `{"a":{"shape":{..},"position":[..],"orientation":[..]},"b":{..},"method":..,"seed":..,"id":..}`:
+/// see distance_help(). The JSON text of "id" is stored in `id` even if the rest of the line is invalid. Throws
+/// InputError, with a message that does not contain the line number.
 ///
-/// Two readers: scan_query for lines that are as nearly all are, and a JSON library for the others. What both read they
-/// read alike.
+/// There are two readers: scan_query for lines of the usual form, and a JSON library for all others. Both give the same
+/// result for lines that both can read.
 DistanceQuery parse_query(std::string_view line, std::string& id);
 
-/// Never throws: what no method answers is declined.
+/// Answers a query. Never throws: a query that no method answers is declined.
 DistanceAnswer answer(const DistanceQuery& query);
 
-/// {"distance":..,..}, without a line break. Numbers with 17 significant digits, so that they read back as the same
-/// double; a declined answer's are null, and so is an infinite error bound. `notice`: of the query.
+/// Returns {"distance":..,..}, without a line break. Numbers have 17 significant digits, so that they read back as the
+/// same double; numbers of a declined answer are null, and so is an infinite error bound. `notice`: that of the query.
 std::string answer_json(const std::string& id, const DistanceAnswer& answer, const std::string& notice = "");
 
-/// {"error":".."}
+/// Returns {"error":".."}.
 std::string error_json(const std::string& id, const std::string& message);
 
 struct Reply {
   std::string text;  ///< one line, without a line break
-  bool good;         ///< answered or declined; false: an error
+  bool good;         ///< true: answered or declined; false: an error
 };
 
-/// All of the above for one line, the `number`th. Never throws on account of the line.
+/// Parses and answers one line, the `number`th. Never throws because of the line's content.
 Reply reply_to(std::string_view line, long number);
 
 }  // namespace hardbody

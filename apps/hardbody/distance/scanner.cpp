@@ -12,8 +12,8 @@ bool is_digit(char c) {
   return c >= '0' && c <= '9';
 }
 
-/// Reads from the front of a text; every function answers whether it found what it was asked for, and once one has not
-/// the rest of the text means nothing.
+/// Reads from the front of a text. Every function returns whether it found what it reads; after the first failure the
+/// position in the text is meaningless.
 class Scanner {
  public:
   explicit Scanner(std::string_view text) : next_(text.data()), end_(text.data() + text.size()) {}
@@ -30,7 +30,7 @@ class Scanner {
     return true;
   }
 
-  /// Between quotes; no escapes, and ASCII only.
+  /// Reads a string in quotes: no escapes, and ASCII only.
   bool string(std::string_view& value) {
     if (!symbol('"')) return false;
     const char* begin = next_;
@@ -56,7 +56,7 @@ class Scanner {
     return symbol(']');
   }
 
-  /// A string, or an integer of at most 18 digits: the text of both is what a JSON library would print.
+  /// Reads a string, or an integer of at most 18 digits, whose text is the same as a JSON library would print.
   bool identity(std::string_view& text) {
     skip_blanks();
     const char* begin = next_;
@@ -66,7 +66,7 @@ class Scanner {
     return found;
   }
 
-  /// An object; `member(key)` reads the value. Each key is one of `keys`, and none comes twice.
+  /// Reads an object; `member(key)` reads the value. Each key must be one of `keys`, and none may occur twice.
   template <std::size_t N, class Member>
   bool object(const std::array<std::string_view, N>& keys, const Member& member) {
     if (!symbol('{')) return false;
@@ -93,7 +93,7 @@ class Scanner {
     return next_ != begin;
   }
 
-  /// -?(0|[1-9][0-9]*)
+  /// Reads -?(0|[1-9][0-9]*).
   bool integer_text() {
     if (next_ != end_ && *next_ == '-') ++next_;
     const bool zero = next_ != end_ && *next_ == '0';

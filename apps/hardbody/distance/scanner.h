@@ -7,7 +7,7 @@
 
 namespace hardbody {
 
-/// The numbers and names of a line of `hardbody distance`, not looked at yet.
+/// Numbers and names in a line of `hardbody distance`, not validated yet.
 struct ScannedBody {
   bool is_superellipsoid = false;
   std::array<double, 3> semi_axes{};
@@ -18,13 +18,13 @@ struct ScannedBody {
 
 struct ScannedQuery {
   ScannedBody a, b;
-  std::string_view method, seed, penetration;  ///< empty: not there
-  std::string_view id;                         ///< JSON text; empty: not there
+  std::string_view method, seed, penetration;  ///< empty: absent
+  std::string_view id;                         ///< JSON text; empty: absent
 };
 
-/// Reads a line that is as nearly all are: an object with known keys, each once, in any order; every value of the type
-/// that it should have; strings of plain characters; numbers of JSON's form. Nothing for all other lines, good or bad:
-/// those are for parse_json, which takes five times as long and knows what to complain about.
+/// Reads a line of the usual form: an object with known keys, each once, in any order; every value of the expected
+/// type; strings of plain characters; numbers of JSON's form. Returns nullopt for all other lines, valid or not: those
+/// are for parse_json, which takes five times as long and produces the error messages.
 std::optional<ScannedQuery> scan_query(std::string_view line);
 
 }  // namespace hardbody

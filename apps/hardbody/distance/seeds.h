@@ -13,17 +13,17 @@ namespace hardbody {
 using SeedFunction = geom::WitnessPair (*)(const geom::Shape& a, const geom::Pose& X_WA, const geom::Shape& b,
                                            const geom::Pose& X_WB);
 
-/// A way to guess closest points, by the name that queries use.
+/// Method of guessing closest points, by its name in queries.
 struct SeedSource {
   std::string_view name;
   SeedFunction function;    ///< nullptr: not built in
-  std::string_view option;  ///< of CMake, that builds it in; empty: always there
+  std::string_view option;  ///< CMake option that builds it in; empty: always available
 };
 
-/// The default first.
+/// Returns all methods, the default first.
 std::span<const SeedSource> seed_sources();
 
-/// "dual", "centres", ..: those that are built in, as messages list them.
+/// Returns the names of those built in, "dual", "centres", .., as messages list them.
 std::string built_in_seeds();
 
 }  // namespace hardbody

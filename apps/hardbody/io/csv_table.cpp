@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kLongestTable = std::size_t{1} << 28;  ///< bytes
 
-/// Reads one row, and over the end of its line; quoted fields may go over several.
+/// Reads one row and the end of its line; quoted fields may contain line breaks.
 class RowReader {
  public:
   RowReader(std::string_view text, const std::string& name) : text_(text), name_(name) {}
@@ -91,8 +91,8 @@ std::optional<double> CsvTable::number(std::size_t row, std::size_t column) cons
   const std::string& field = rows[row][column];
   if (field.empty()) return std::nullopt;
   if (const std::optional<double> value = finite_number(field)) return value;
-  throw InputError(fmt::format("{}: {} of row {} is {}; accepted: numbers, and nothing", name, header[column], row + 1,
-                               one_line(field, 40)));
+  throw InputError(fmt::format("{}: {} of row {} is {}; accepted: numbers or empty fields", name, header[column],
+                               row + 1, one_line(field, 40)));
 }
 
 CsvTable parse_csv(std::string_view text, const std::string& name) {
@@ -108,10 +108,11 @@ CsvTable parse_csv(std::string_view text, const std::string& name) {
     std::vector<std::string> row = reader.next();
     if (row.size() == 1 && row[0].empty()) continue;
     if (row.size() != table.header.size()) {
-      throw InputError(fmt::format("{}:{}: has {} fields; accepted: {}, as the first line has", name, line, row.size(),
+      throw InputError(fmt::format("{}:{}: has {} fields; accepted: {}, as in the first line", name, line, row.size(),
                                    table.header.size()));
     }
     table.rows.push_back(std::move(row));
+    table.lines.push_back(line);
   }
   return table;
 }

@@ -14,16 +14,16 @@
 namespace hardbody {
 namespace {
 
-/// Deeper than anything that is meant; far less than the recursion of json::dump can take.
+/// Deeper than any meaningful document; far less than the recursion that json::dump supports.
 constexpr int kDeepest = 100;
 constexpr int kNumberOverflow = 406;
 
-/// For messages: a value as JSON on one line, shortened.
+/// Returns a value as JSON on one line, shortened, for messages.
 std::string shown(const nlohmann::json& value) {
   return one_line(value.dump(), kShownLength);
 }
 
-/// Parser callback that refuses what json::parse would take: the last of several members of one name, any depth.
+/// Parser callback that refuses duplicate names at any depth, of which json::parse would keep the last.
 class StrictObjects {
  public:
   bool operator()(int depth, nlohmann::json::parse_event_t event, const nlohmann::json& parsed) {
@@ -37,7 +37,7 @@ class StrictObjects {
   }
 
  private:
-  std::vector<std::set<std::string>> keys_;  ///< of the objects that are open
+  std::vector<std::set<std::string>> keys_;  ///< keys of the objects that are open
 };
 
 constexpr std::string_view kEllipsoidKeys[] = {"kind", "semi_axes"};
@@ -48,7 +48,7 @@ geom::Superellipsoid read_superellipsoid(const JsonMember& shape) {
   const Eigen::Vector3d a = axes.vector();
   const JsonMember exponents = shape.at("exponents", "two numbers [e1, e2]");
   const std::vector<double> e = exponents.numbers(2, "two numbers [e1, e2]");
-  // Axes first, so that what the library refuses is blamed on the right member.
+  // The axes are checked first, so that the right member is named if the library refuses them.
   axes.checked([&] { return geom::Superellipsoid(a, 1, 1); });
   return exponents.checked([&] { return geom::Superellipsoid(a, e[0], e[1]); });
 }
@@ -62,7 +62,7 @@ nlohmann::json parse_json(std::string_view text) {
       return strict(depth, event, parsed);
     });
   } catch (const nlohmann::json::parse_error& error) {
-    // The parser counts bytes from 1, and one more if it ran into the end.
+    // The parser counts bytes from 1, plus one if it reached the end.
     throw JsonError("is not valid JSON", std::min(error.byte == 0 ? 0 : error.byte - 1, text.size()));
   } catch (const nlohmann::json::out_of_range& error) {
     throw JsonError(error.id == kNumberOverflow ? "has a number beyond the range of a double" : "is not valid JSON");
@@ -95,7 +95,7 @@ InputError JsonMember::bad(std::string_view accepted) const {
 }
 
 InputError JsonMember::refused(std::string_view why) const {
-  // The library's messages end in what is accepted, too.
+  // The library's messages also end with what is accepted.
   constexpr std::string_view kAccepted = "; accepted: ";
   const std::size_t cut = std::min(why.find(kAccepted), why.size());
   return InputError(fmt::format("{} is {} ({}){}", name, shown(*json), one_line(why.substr(0, cut)), why.substr(cut)));
@@ -134,7 +134,7 @@ geom::Shape read_shape(const JsonMember& shape) {
   constexpr const char* kAccepted = "\"ellipsoid\", \"superellipsoid\"";
   if (!shape.json->is_object()) throw shape.bad("{\"kind\":\"ellipsoid\",\"semi_axes\":[a,b,c]}");
   const JsonMember kind = shape.at("kind", kAccepted);
-  // First of all: another kind has other keys.
+  // Checked first, because another kind has other keys.
   if (*kind.json == "superellipsoid") {
     shape.allow(kSuperellipsoidKeys);
     return read_superellipsoid(shape);

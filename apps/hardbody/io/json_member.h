@@ -1,7 +1,7 @@
 #pragma once
 
-/// Reading JSON with messages that name the member, what it is and what is accepted. Private to the sources that read
-/// JSON: it brings the parser along.
+/// Reading of JSON with messages that name the member, its value and what is accepted. Private to the sources that read
+/// JSON, because it includes the parser.
 
 #include "base/errors.h"
 
@@ -22,23 +22,23 @@
 
 namespace hardbody {
 
-/// A text that is not JSON, or that nobody writes in good faith: a key twice in one object, numbers beyond the range of
-/// a double, deep nesting (which would exhaust the stack later). what(): "is ...", for a message that says where.
+/// Text that is not JSON, or that is malformed on purpose: a duplicate key in one object, numbers beyond the range of a
+/// double, deep nesting (which would exhaust the stack later). what(): "is ...", for a message that says where.
 class JsonError : public std::runtime_error {
  public:
   explicit JsonError(const std::string& what, std::optional<std::size_t> byte = {})
       : std::runtime_error(what), offset(byte) {}
-  std::optional<std::size_t> offset;  ///< the byte that it was noticed at, if known
+  std::optional<std::size_t> offset;  ///< byte at which the error was noticed, if known
 };
 
-/// Throws JsonError.
+/// Parses a text. Throws JsonError.
 nlohmann::json parse_json(std::string_view text);
 
-/// A member of a JSON document, with what messages call it. Refers to the document. Throws InputError with messages
-/// that do not say which document: "a.shape.semi_axes is ...; accepted: ...".
+/// Member of a JSON document, with its name in messages. Refers to the document. Throws InputError with messages that
+/// do not name the document: "a.shape.semi_axes is ...; accepted: ...".
 struct JsonMember {
   const nlohmann::json* json;
-  std::string name;  ///< a.shape.semi_axes; empty: the whole document
+  std::string name;  ///< name, a.shape.semi_axes; empty: the whole document
 
   bool has(const char* key) const { return json->is_object() && json->contains(key); }
   JsonMember at(const char* key, std::string_view accepted) const;
@@ -53,7 +53,7 @@ struct JsonMember {
   std::vector<double> numbers(std::size_t size, const char* accepted) const;
   Eigen::Vector3d vector() const;
 
-  /// What `make` makes of it; a std::invalid_argument of the library becomes a message about this member.
+  /// Returns make(); a std::invalid_argument of the library becomes a message about this member.
   template <class Make>
   auto checked(const Make& make) const {
     try {
@@ -68,18 +68,18 @@ struct JsonMember {
   InputError refused(std::string_view why) const;
 };
 
-/// Of {"semi_axes": [a, b, c]}.
+/// Reads {"semi_axes": [a, b, c]}.
 geom::Ellipsoid read_ellipsoid(const JsonMember& shape);
-/// Of {"kind": "ellipsoid" or "superellipsoid", "semi_axes": [a, b, c], "exponents": [e1, e2]}, the last of a
+/// Reads {"kind": "ellipsoid" or "superellipsoid", "semi_axes": [a, b, c], "exponents": [e1, e2]}, the last for a
 /// superellipsoid only; no other keys.
 geom::Shape read_shape(const JsonMember& shape);
-/// Of {"position": [x, y, z]}, as one that a pose may have.
+/// Reads {"position": [x, y, z]}, within the range of a pose.
 Eigen::Vector3d read_position(const JsonMember& body);
-/// Reads [w, x, y, z]. A length that is off by no more than kQuaternionTolerance is normalized; beyond rounding a line
-/// of `notices` says so.
+/// Reads [w, x, y, z]. A quaternion whose length differs from 1 by at most kQuaternionTolerance is normalised; if the
+/// difference is more than rounding, a line is added to `notices`.
 geom::Pose read_orientation(const JsonMember& orientation, const Eigen::Vector3d& position,
                             std::vector<std::string>& notices);
-/// Line of `notices` for a quaternion of that length; `name`: of the member.
+/// Returns the line of `notices` for a quaternion of this length; `name`: that of the member.
 std::string normalized_text(std::string_view name, double length);
 
 }  // namespace hardbody

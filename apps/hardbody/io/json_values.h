@@ -1,6 +1,6 @@
 #pragma once
 
-/// Numbers as the program writes them in JSON. Private to the sources that write JSON: it brings the library along.
+/// Numbers as the program writes them in JSON. Private to the sources that write JSON, because it includes the library.
 
 #include <Eigen/Core>
 #include <nlohmann/json.hpp>
@@ -9,7 +9,7 @@
 
 namespace hardbody {
 
-/// JSON knows no NaN: null stands for a number that is not finite.
+/// Returns null for a number that is not finite: JSON has no NaN.
 inline nlohmann::ordered_json number_json(double x) {
   return std::isfinite(x) ? nlohmann::ordered_json(x) : nlohmann::ordered_json(nullptr);
 }

@@ -51,12 +51,12 @@ bool LineReader::next() {
       return true;
     }
   } while (fill());
-  // The last line needs no line break.
+  // The last line may lack a line break.
   unread_ = {};
   return true;
 }
 
-/// False at the end. read(), not stdio: it returns what is there instead of waiting for a full buffer.
+/// Fills the buffer; returns false at the end. It uses read(), not stdio, which would wait for a full buffer.
 bool LineReader::fill() {
   ssize_t size = 0;
   do {

@@ -30,7 +30,7 @@ std::vector<std::string> files_of_run() {
   return files;
 }
 
-/// The first file of an earlier run; empty if there is none.
+/// Returns the first file of an earlier run; empty if there is none.
 std::string trace_of_a_run(const fs::path& directory) {
   for (const std::string& name : files_of_run()) {
     if (fs::exists(directory / name)) return name;
@@ -40,7 +40,7 @@ std::string trace_of_a_run(const fs::path& directory) {
 
 InputError holds_a_run(const fs::path& directory, const std::string& trace) {
   return InputError(
-      fmt::format("{}: holds a run already ({}); accepted: another directory, hardbody resume to go on with it, or "
+      fmt::format("{}: already holds a run ({}); accepted: another directory, hardbody resume to continue it, or "
                   "--force to overwrite it",
                   directory.string(), trace));
 }
@@ -56,13 +56,13 @@ void keep_inputs(const fs::path& directory, const std::vector<fs::path>& inputs)
       std::error_code ignored;
       if (!fs::equivalent(directory / name, input, ignored)) continue;
       throw InputError(
-          fmt::format("{}: --force would delete {}, which this run is made from; accepted: another directory",
+          fmt::format("{}: --force would delete {}, which is an input of this run; accepted: another directory",
                       directory.string(), input.string()));
     }
   }
 }
 
-/// Removes what a run writes and nothing else, so that a new run never stands beside results of an old one.
+/// Removes the files that a run writes and nothing else, so that a new run is never mixed with results of an old one.
 void remove_run(const fs::path& directory) {
   for (const std::string& name : files_of_run()) fs::remove(directory / name);
   const fs::path analysis = directory / kAnalysisDirectory;
@@ -80,13 +80,18 @@ void remove_run(const fs::path& directory) {
 
 }  // namespace
 
+fs::path directory_for(const std::optional<std::string>& out, const fs::path& config) {
+  if (out && out->empty()) throw InputError("--out is empty; accepted: the name of a directory");
+  return out ? fs::path(*out) : "out" / config.stem();
+}
+
 DirectoryLock::DirectoryLock(const fs::path& directory)
     : descriptor_(::open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
   if (descriptor_ >= 0 && ::flock(descriptor_, LOCK_EX | LOCK_NB) == 0) return;
   const int error = errno;
   if (descriptor_ >= 0) ::close(descriptor_);
   if (error != EWOULDBLOCK) throw unusable(directory, fmt::format("it cannot be locked: {}", std::strerror(error)));
-  throw InputError(fmt::format("{}: another hardbody process is at work in it; accepted: another directory, or wait",
+  throw InputError(fmt::format("{}: another hardbody process is using it; accepted: another directory, or wait",
                                directory.string()));
 }
 
@@ -105,7 +110,7 @@ RunDirectory RunDirectory::create(const fs::path& path, Overwrite overwrite, con
     keep_inputs(path, inputs);
     fs::create_directories(path);
     RunDirectory directory(path);
-    // Again, now that nobody else can begin one.
+    // Checked again, now that no other process can begin a run.
     if (trace.empty()) trace = trace_of_a_run(path);
     if (!trace.empty() && overwrite == Overwrite::refused) throw holds_a_run(path, trace);
     if (!trace.empty()) remove_run(path);
@@ -127,7 +132,7 @@ RunDirectory RunDirectory::open(const fs::path& path) {
   }
   if (!fs::exists(path / kConfigFile)) {
     throw InputError(
-        fmt::format("{}: holds no run: {} is not there; accepted: the directory of a run", path.string(), kConfigFile));
+        fmt::format("{}: holds no run: {} is missing; accepted: the directory of a run", path.string(), kConfigFile));
   }
   return RunDirectory(path);
 }

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -12,10 +13,10 @@
 
 namespace hardbody {
 
-/// Names in a run directory.
+/// Names of files in a run directory.
 inline constexpr const char* kConfigFile = "config.toml";
 inline constexpr const char* kSummaryFile = "summary.json";
-inline constexpr std::size_t kLongestSummary = 16 << 20;  ///< bytes
+inline constexpr std::size_t kLongestSummary = 16 << 20;  ///< limit in bytes
 inline constexpr const char* kCheckpointFile = "checkpoint.bin";
 inline constexpr const char* kEventsFile = "events.csv";
 inline constexpr const char* kGsdFile = "trajectory.gsd";
@@ -25,19 +26,23 @@ inline constexpr const char* kLogFile = "log.txt";
 inline constexpr const char* kSweepTableFile = "sweep.csv";
 inline constexpr const char* kPointStateFile = "state.json";
 inline constexpr const char* kReportFile = "report.html";
-// What hardbody analyze makes of its trajectory, unless it is told another directory.
+// Output of hardbody analyze for the run's trajectory, unless another directory is given.
 inline constexpr const char* kAnalysisDirectory = "analysis";
 inline constexpr const char* kAnalysisFile = "analysis.json";
 inline constexpr const char* kOrderFile = "order.csv";
 inline constexpr const char* kFailuresDirectory = "failures";
 
+/// Returns the directory that a command writes to: `out`, or out/<stem of the config>. Throws InputError if `out` is
+/// empty.
+std::filesystem::path directory_for(const std::optional<std::string>& out, const std::filesystem::path& config);
+
 enum class Overwrite { refused, allowed };
 
-/// Keeps other processes off a directory, by flock on the directory itself: no file is left behind, and the system ends
-/// it with the process, however that ends.
+/// Lock of a directory against other processes, by flock on the directory itself: no file is left behind, and the
+/// system releases the lock when the process ends, in whatever way.
 class DirectoryLock {
  public:
-  /// Throws InputError if another process has it, or the directory cannot be locked.
+  /// Locks the directory. Throws InputError if another process holds the lock, or the directory cannot be locked.
   explicit DirectoryLock(const std::filesystem::path& directory);
   ~DirectoryLock();
   DirectoryLock(DirectoryLock&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
@@ -47,17 +52,18 @@ class DirectoryLock {
   int descriptor_;
 };
 
-/// Where a run writes its files; no other process can as long as this lives.
+/// Directory that a run writes its files to, locked against other processes during the object's lifetime.
 class RunDirectory {
  public:
-  /// Creates the directory (and its parents) and writes `config` into it, before anything else. Where overwriting
-  /// is allowed the files of an earlier run are removed, nothing else. Throws InputError if the path cannot be
-  /// used, holds a run that may not be overwritten, or has one of `inputs`, the files that the run is made from,
-  /// among those to be removed; then nothing has been changed.
+  /// Creates the directory (and its parents) and writes `config` into it, before anything else. If overwriting is
+  /// allowed the files of an earlier run are removed, nothing else. Throws InputError if the path cannot be used, holds
+  /// a run that may not be overwritten, or if one of `inputs`, the files that the run is made from, is among those to
+  /// be removed; then nothing has been changed.
   static RunDirectory create(const std::filesystem::path& path, Overwrite overwrite,
                              const std::vector<std::filesystem::path>& inputs, std::string_view config);
 
-  /// The directory of a run that has been begun. Changes nothing. Throws InputError if it is none or is in use.
+  /// Opens the directory of an existing run. Changes nothing. Throws InputError if it is not a run directory or is in
+  /// use.
   static RunDirectory open(const std::filesystem::path& path);
 
   /// Throws InputError if the directory cannot be written to.
@@ -66,15 +72,15 @@ class RunDirectory {
   const std::filesystem::path& path() const { return path_; }
   std::filesystem::path file(const std::string& name) const { return path_ / name; }
 
-  /// Writes one file as write_file does; `name` may have a directory in it, which is created. Throws WriteError.
+  /// Writes one file, see write_file; `name` may contain a directory, which is created. Throws WriteError.
   void write(const std::string& name, std::string_view content) const;
-  /// The same of a content in pieces.
+  /// Writes one file whose content is produced in pieces.
   void write(const std::string& name, const std::function<void(const Sink&)>& make) const;
 
-  /// Whether there is such a file.
+  /// Returns whether this file exists.
   bool has(const std::string& name) const { return std::filesystem::exists(file(name)); }
 
-  /// Removes the summary, which says that a run is complete, before the run goes on.
+  /// Removes the summary, which marks a run as complete, before the run is continued.
   void reopen() const { std::filesystem::remove(file(kSummaryFile)); }
 
  private:

@@ -18,7 +18,7 @@ namespace {
 class DiskBytes final : public StoredBytes {
  public:
   explicit DiskBytes(const std::filesystem::path& path)
-      // O_NONBLOCK: opening a pipe would wait for whoever writes it.
+      // O_NONBLOCK: opening a pipe would otherwise wait for its writer.
       : name_(path.string()), descriptor_(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {
     struct stat status = {};
     if (descriptor_ < 0 || ::fstat(descriptor_, &status) != 0) {
@@ -45,7 +45,7 @@ class DiskBytes final : public StoredBytes {
           ::pread(descriptor_, bytes.data() + done, size - done, static_cast<::off_t>(position + done));
       if (got < 0 && errno == EINTR) continue;
       if (got < 0) throw unreadable(std::strerror(errno));
-      if (got == 0) throw unreadable("it was made shorter meanwhile");
+      if (got == 0) throw unreadable("it has become shorter since it was opened");
       done += static_cast<std::uint64_t>(got);
     }
     return bytes;

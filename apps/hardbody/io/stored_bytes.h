@@ -7,19 +7,19 @@
 
 namespace hardbody {
 
-/// The bytes of a file that is read in parts.
+/// Bytes of a file that is read in parts.
 class StoredBytes {
  public:
   virtual ~StoredBytes() = default;
   virtual std::uint64_t size() const = 0;
-  /// `size` bytes from `position` on, all of which there are. Throws InputError if they cannot be read.
+  /// Returns `size` bytes from `position` on, all of which must exist. Throws InputError if they cannot be read.
   virtual std::string read(std::uint64_t position, std::uint64_t size) const = 0;
 };
 
-/// A regular file on the disk, read as it is asked for; one that was longer when it was opened is reported, not
-/// trusted. Throws InputError if it cannot be read.
+/// Opens a regular file on the disk, which is read on demand. If it becomes shorter after it was opened, an error is
+/// reported. Throws InputError if it cannot be read.
 std::unique_ptr<StoredBytes> open_stored_bytes(const std::filesystem::path& path);
-/// Bytes in memory.
+/// Returns bytes in memory.
 std::unique_ptr<StoredBytes> stored_bytes_in_memory(std::string bytes);
 
 }  // namespace hardbody

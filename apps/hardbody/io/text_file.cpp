@@ -30,7 +30,7 @@ using File = std::unique_ptr<std::FILE, Close>;
   throw WriteError(path, error);
 }
 
-/// A descriptor, closed at the end.
+/// File descriptor that is closed by the destructor.
 class Descriptor {
  public:
   explicit Descriptor(int number) : number_(number) {}
@@ -45,7 +45,7 @@ class Descriptor {
   int number_;
 };
 
-/// Everything into `temporary`, down to the disk; messages name `path`.
+/// Writes everything into `temporary` and flushes it to the disk; messages name `path`.
 void write_pieces(const fs::path& temporary, const fs::path& path, const std::function<void(const Sink&)>& make) {
   File file(std::fopen(temporary.c_str(), "wb"));
   if (!file) fail_to_write(path, errno);
@@ -56,7 +56,7 @@ void write_pieces(const fs::path& temporary, const fs::path& path, const std::fu
   if (std::fclose(file.release()) != 0) fail_to_write(path, errno);
 }
 
-/// Whether all of it could be written; errno says why not.
+/// Returns whether all of it could be written; errno gives the reason.
 bool write_all(int file, ::off_t place, std::string_view content) {
   for (std::size_t done = 0; done < content.size();) {
     const ::ssize_t written =
@@ -71,11 +71,11 @@ bool flushed(int file, Flush flush) {
   return flush == Flush::later || ::fsync(file) == 0;
 }
 
-/// What a path stands for: a link's target, or itself.
+/// Returns a link's target, or the path itself.
 fs::path behind_links(const fs::path& path) {
   std::error_code ignored;
   const fs::file_status status = fs::status(path, ignored);
-  // A link to what is not there yet: it will be there.
+  // A link to a file that does not exist yet: the file will be created.
   if (!fs::exists(status))
     return fs::is_symlink(fs::symlink_status(path, ignored))
                ? fs::weakly_canonical(path.parent_path() / fs::read_symlink(path))
@@ -86,7 +86,7 @@ fs::path behind_links(const fs::path& path) {
   return fs::is_symlink(fs::symlink_status(path, ignored)) ? fs::canonical(path, ignored) : path;
 }
 
-/// That the names in a directory survive a loss of power, where the file system can say so.
+/// Makes the names in a directory survive a loss of power, if the file system supports that.
 void flush_names(const fs::path& directory) {
   const int file = ::open(directory.empty() ? "." : directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (file < 0) return;
@@ -123,14 +123,14 @@ std::string read_file(const fs::path& path, std::size_t limit) {
   const auto too_long = [&] {
     return InputError(fmt::format("{}: is longer than {} bytes; accepted: shorter files", path.string(), limit));
   };
-  // O_NONBLOCK: opening a pipe would wait for whoever writes it.
+  // O_NONBLOCK: opening a pipe would otherwise wait for its writer.
   const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   struct stat status = {};
   if (*file < 0 || ::fstat(*file, &status) != 0) throw fail(std::strerror(errno));
   if (S_ISDIR(status.st_mode)) throw fail("it is a directory");
   if (!S_ISREG(status.st_mode)) throw fail("it is not a file");
   if (static_cast<std::uint64_t>(status.st_size) > limit) throw too_long();
-  // As it was when it was opened, and one byte more to see the end: a large one needs no more room than it has bytes.
+  // One byte more than the size at opening, to detect the end: a large file needs no more memory than it has bytes.
   std::string content(static_cast<std::size_t>(status.st_size) + 1, '\0');
   std::size_t done = 0;
   for (;;) {
@@ -163,7 +163,7 @@ void check_replaceable(const fs::path& path, std::string_view beginning) {
   std::ifstream file(path, std::ios::binary);
   std::string found(beginning.size(), '\0');
   file.read(found.data(), static_cast<std::streamsize>(found.size()));
-  if (!file || found != beginning) refuse("is there and something else");
+  if (!file || found != beginning) refuse("exists and is something else");
 }
 
 void write_file(const fs::path& path, const std::function<void(const Sink&)>& make) {
@@ -186,7 +186,7 @@ void write_at(const fs::path& path, std::uint64_t position, std::string_view con
   if (file < 0) fail_to_write(path, errno);
   const bool good = ::ftruncate(file, place) == 0 && write_all(file, place, content) && flushed(file, flush);
   const int error = errno;
-  // Shorter needs no room: this does what it can, and what is left over is cut off by the next call.
+  // Truncation needs no room; if even this fails, the next call cuts off the remainder.
   if (!good) (void)!::ftruncate(file, place);
   ::close(file);
   if (!good) fail_to_write(path, error);

@@ -7,13 +7,14 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 #include <utility>
 
 namespace hardbody {
 namespace {
 
-/// A value as the user would write it: toml++ prints reals with digits that nobody wrote.
+/// Returns a value as the user would write it: toml++ prints reals with digits that nobody wrote.
 std::string shown(const Value& value, const toml::node& node) {
   if (value.kind == Value::Kind::real) return toml_real(value.real);
   if (value.kind == Value::Kind::text) return one_line(fmt::format("\"{}\"", value.text), kShownLength);
@@ -38,7 +39,7 @@ int line_of(const toml::source_region& source) {
 
 Value value_of(const toml::node& node);
 
-/// In the order of the file; toml++ keeps the alphabet's.
+/// Returns the members in the order of the file; toml++ sorts them alphabetically.
 std::vector<Member> members_of(const toml::table& table) {
   std::vector<std::pair<toml::source_position, Member>> found;
   for (const auto& [key, node] : table) {
@@ -78,7 +79,7 @@ Value value_of(const toml::node& node) {
 }
 
 void add_entry(TomlDocument& document, std::string key, const toml::key& name, const toml::node& node) {
-  // The line of the key, not of the value: a value may go over several lines.
+  // The line of the key, not of the value, which may span several lines.
   const int line = line_of(name.source());
   document.entries.push_back({std::move(key), fmt::format("{}:{}", document.name, line), line, value_of(node)});
 }
@@ -88,7 +89,7 @@ void add_section(TomlDocument& document, const std::string& name, bool several, 
   for (const auto& [key, node] : section) add_entry(document, fmt::format("{}.{}", name, key.str()), key, node);
 }
 
-/// [name], or several [[name]]: name[1], name[2], ..
+/// Adds [name], or several [[name]]: name[1], name[2], ..
 void add_sections(TomlDocument& document, const toml::key& name, const toml::node& node) {
   if (const toml::table* section = node.as_table()) {
     add_section(document, std::string(name.str()), false, line_of(name.source()), *section);
@@ -109,11 +110,11 @@ toml::table parse(std::string_view text, const std::string& name) {
   }
 }
 
-/// `text` as the value of a TOML assignment; a string if it is none.
+/// Parses `text` as the value of a TOML assignment; returns a string if it is not TOML.
 Value parse_value(const std::string& text) {
   try {
     const toml::table table = toml::parse("value = " + text);
-    // More than one key: the text had a line break in it and went on as another assignment.
+    // More than one key: the text contained a line break followed by another assignment.
     if (table.size() == 1 && table.contains("value")) return value_of(*table.get("value"));
   } catch (const toml::parse_error&) {
     // Not TOML: a bare word.
@@ -139,25 +140,11 @@ void lay_over(TomlDocument& document, const std::string& override_text) {
 
 // ---- Writing
 
-std::string string_text(std::string_view text) {
-  std::string result = "\"";
-  for (const char c : text) {
-    const auto code = static_cast<unsigned char>(c);
-    if (code < 0x20 || code == 0x7f) {
-      result += fmt::format("\\u{:04X}", code);
-      continue;
-    }
-    if (c == '"' || c == '\\') result += '\\';
-    result += c;
-  }
-  return result + '"';
-}
-
 std::string key_text(std::string_view key) {
   const bool bare = !key.empty() && std::all_of(key.begin(), key.end(), [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
   });
-  return bare ? std::string(key) : string_text(key);
+  return bare ? std::string(key) : toml_string(key);
 }
 
 std::string array_text(const std::vector<Value>& items) {
@@ -174,7 +161,7 @@ std::string table_text(const std::vector<Member>& members) {
   return text + "}";
 }
 
-/// The lines of a section ("": of none).
+/// Returns the lines of a section; "": of the keys in no section.
 std::string entries_text(const TomlDocument& document, const std::string& section) {
   std::string text;
   for (const Entry& entry : document.entries) {
@@ -195,6 +182,20 @@ const Member* Value::find(std::string_view key) const {
   return found == members.end() ? nullptr : &*found;
 }
 
+std::string toml_string(std::string_view text) {
+  std::string result = "\"";
+  for (const char c : text) {
+    const auto code = static_cast<unsigned char>(c);
+    if (code < 0x20 || code == 0x7f) {
+      result += fmt::format("\\u{:04X}", code);
+      continue;
+    }
+    if (c == '"' || c == '\\') result += '\\';
+    result += c;
+  }
+  return result + '"';
+}
+
 std::string toml_text(const Value& value) {
   switch (value.kind) {
     case Value::Kind::boolean:
@@ -204,7 +205,7 @@ std::string toml_text(const Value& value) {
     case Value::Kind::real:
       return toml_real(value.real);
     case Value::Kind::text:
-      return string_text(value.text);
+      return toml_string(value.text);
     case Value::Kind::array:
       return array_text(value.items);
     case Value::Kind::table:
@@ -213,6 +214,15 @@ std::string toml_text(const Value& value) {
       break;
   }
   return value.shown;
+}
+
+InputError bad(const Entry& entry, std::string_view accepted, std::string_view why) {
+  return InputError(
+      fmt::format("{}: {} is {}{}; accepted: {}", entry.where, entry.key, entry.value.shown, why, accepted));
+}
+
+bool is_number(const Value& value) {
+  return (value.kind == Value::Kind::integer || value.kind == Value::Kind::real) && std::isfinite(value.real);
 }
 
 bool same_value(const Value& a, const Value& b) {
@@ -274,7 +284,7 @@ TomlDocument read_toml(std::string_view text, const std::string& name, const std
       add_entry(document, std::string(key.str()), key, node);
     }
   }
-  // toml++ keeps keys in alphabetical order; the first error reported should be the first in the file.
+  // toml++ sorts keys alphabetically, but the first error reported should be the first in the file.
   std::stable_sort(document.entries.begin(), document.entries.end(),
                    [](const Entry& a, const Entry& b) { return a.line < b.line; });
   std::stable_sort(document.sections.begin(), document.sections.end(),

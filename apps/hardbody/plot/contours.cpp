@@ -9,12 +9,12 @@
 namespace hardbody {
 namespace {
 
-/// Rows by which the end of one column may stand away from the end of the next for the gap between them to be filled.
+/// Maximum number of rows between the ends of adjacent columns for the gap between them to be filled.
 constexpr std::size_t kHighestStep = 4;
 
-using Node = std::size_t;               // of the lattice
-using Edge = std::pair<Node, Node>;     // between two nodes, the smaller first
-using Segment = std::pair<Edge, Edge>;  // of a line through a cell: from one edge to another
+using Node = std::size_t;               // index of a point of the lattice
+using Edge = std::pair<Node, Node>;     // edge between two nodes, the smaller first
+using Segment = std::pair<Edge, Edge>;  // part of a line in a cell: from one edge to another
 
 std::vector<double> distinct(std::vector<double> values) {
   std::sort(values.begin(), values.end());
@@ -26,7 +26,7 @@ std::size_t index_of(const std::vector<double>& values, double x) {
   return static_cast<std::size_t>(std::lower_bound(values.begin(), values.end(), x) - values.begin());
 }
 
-/// Between known values of the column.
+/// Interpolates between known values of a column.
 void fill_column(Lattice& lattice, std::size_t i) {
   const std::size_t rows = lattice.y.size();
   std::optional<std::size_t> last;
@@ -73,7 +73,7 @@ class Marcher {
 
   static Edge edge(Node a, Node b) { return a < b ? Edge{a, b} : Edge{b, a}; }
 
-  /// The corners in turn; edges between them that the level passes.
+  /// Returns the edges between successive corners that the level crosses.
   template <std::size_t n>
   std::vector<Edge> crossed(const std::array<Node, n>& corners) const {
     std::vector<Edge> edges;
@@ -96,7 +96,7 @@ class Marcher {
     if (known(corners[0]) && known(corners[3])) cross_fan(i + 1, j, corners[0], corners[3]);
   }
 
-  /// The last known node of column i below row j, or the first one above row j + 1; nothing if that is far.
+  /// Returns the last known node of column i below row j, or the first one above row j + 1; nullopt if that is far.
   std::optional<Node> end_near(std::size_t i, std::size_t j) const {
     for (std::size_t step = 1; step < kHighestStep; ++step) {
       if (step <= j && known(node(i, j - step))) return node(i, j - step);
@@ -105,7 +105,7 @@ class Marcher {
     return std::nullopt;
   }
 
-  /// Between the end of column i and an edge of the column beside it, at row j.
+  /// Handles the triangle of the end of column i and an edge of the adjacent column, at row j.
   void cross_fan(std::size_t i, std::size_t j, Node low, Node high) {
     if (const std::optional<Node> end = end_near(i, j)) cross_triangle({*end, low, high});
   }
@@ -127,7 +127,7 @@ class Marcher {
     const std::vector<Edge> edges = crossed(corners);
     if (edges.size() == 2) segments_.emplace_back(edges[0], edges[1]);
     if (edges.size() != 4) return;
-    // A saddle: the corners that are on the centre's side belong together. Edge k leads from corner k to k + 1.
+    // A saddle: corners on the same side of the level as the centre are connected. Edge k leads from corner k to k + 1.
     double mean = 0;
     for (const Node n : corners) mean += value(n) / 4;
     const bool around_first = (mean >= level_) != above(corners[0]);
@@ -141,7 +141,7 @@ class Marcher {
     return {x(a) + share * (x(b) - x(a)), y(a) + share * (y(b) - y(a))};
   }
 
-  /// Takes the segments from `begin` on, as far as they lead.
+  /// Follows the segments from `begin` on, to the end of the line.
   ContourLine walk(Edge at, std::multimap<Edge, std::size_t>& of_edge) {
     ContourLine line = {crossing(at)};
     for (auto found = of_edge.find(at); found != of_edge.end(); found = of_edge.find(at)) {
@@ -172,7 +172,7 @@ class Marcher {
       of_edge.emplace(segments_[k].second, k);
     }
     std::vector<ContourLine> lines;
-    // Open lines begin at an edge that only one segment reaches; what is left then is closed.
+    // Open lines begin at an edge that only one segment reaches; the remaining ones are closed.
     for (const bool open : {true, false}) {
       for (const Segment& segment : segments_) {
         for (const Edge& e : {segment.first, segment.second}) {

@@ -8,7 +8,7 @@
 
 namespace hardbody {
 
-/// A measured point of the plane.
+/// Measured point of the plane.
 struct Sample {
   double x;
   double y;
@@ -19,16 +19,16 @@ struct Sample {
 struct Lattice {
   std::vector<double> x;                      ///< ascending
   std::vector<double> y;                      ///< ascending
-  std::vector<std::optional<double>> values;  ///< at x[i], y[j]: i * y.size() + j
+  std::vector<std::optional<double>> values;  ///< value at x[i], y[j]: i * y.size() + j
 
   const std::optional<double>& at(std::size_t i, std::size_t j) const { return values[i * y.size() + j]; }
 };
 
-/// The samples in order; of several at one point the mean. What is missing between two known values of one x is
-/// interpolated along y, linearly, so that every x may have its own y.
+/// Returns the lattice of the samples; several samples at one point are averaged. Missing values between two known
+/// values of one x are interpolated along y, linearly, so that every x may have its own y.
 Lattice lattice_of(const std::vector<Sample>& samples);
 
-/// Whether there is any cell, or triangle, for lines to go through: not where each x has a single y.
+/// Returns whether the lattice has any cell, or triangle, for lines to pass through; false if each x has a single y.
 bool has_cells(const Lattice& lattice);
 
 struct PlanePoint {
@@ -36,12 +36,13 @@ struct PlanePoint {
   double y;
 };
 
-/// A line of constant value; a closed one ends where it begins.
+/// Line of constant value; a closed one ends where it begins.
 using ContourLine = std::vector<PlanePoint>;
 
-/// The lines on which the interpolated values are `level`, by marching squares: linear along the edges of the lattice,
-/// through cells with four known corners (saddles by the mean of the corners) and, by triangles, with three. Where a
-/// column ends up to four rows before the one beside it, triangles fan out from its end. The longest line comes first.
+/// Returns the lines on which the interpolated values are `level`, by marching squares: linear along the edges of the
+/// lattice, through cells with four known corners (saddles by the mean of the corners) and, by triangles, with three.
+/// If a column ends up to four rows before the one beside it, triangles fan out from its end. The longest line comes
+/// first.
 std::vector<ContourLine> contour_lines(const Lattice& lattice, double level);
 
 }  // namespace hardbody

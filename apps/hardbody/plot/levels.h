@@ -7,13 +7,13 @@
 
 namespace hardbody {
 
-/// Levels for lines where none are given: six between the extremes, by equal factors where all values are positive; two
-/// digits. Of one sample at least.
+/// Returns default levels: six between the extremes, by equal factors if all values are positive; two digits. Needs at
+/// least one sample.
 std::vector<double> chosen_levels(const std::vector<Sample>& samples);
 
-/// The lines of the levels, `value` and `of` still to be filled in. Samples and lines are in the coordinates of the
-/// data, interpolation is in those of the drawing: on a logarithmic axis coordinates are above 0. Values between
-/// positive ones are interpolated by their logarithms: diffusivities span decades.
+/// Returns the lines of the levels, with `value` and `of` still to be set. Samples and lines are in the coordinates of
+/// the data, interpolation is in those of the drawing: on a logarithmic axis coordinates are above 0. Positive values
+/// are interpolated by their logarithms, because diffusivities span decades.
 std::vector<MapLevel> map_levels(std::vector<Sample> samples, const std::vector<double>& levels, MapScales scales);
 
 }  // namespace hardbody

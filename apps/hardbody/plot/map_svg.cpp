@@ -10,14 +10,14 @@
 namespace hardbody {
 namespace {
 
-// In pixels.
+// Lengths in pixels.
 constexpr double kWidth = 760;
 constexpr double kHeight = 540;
 constexpr double kLeft = 70;
 constexpr double kRight = 30;
 constexpr double kTop = 50;
 constexpr double kBottom = 60;
-constexpr double kMargin = 0.03;  ///< of the data's range, on either side
+constexpr double kMargin = 0.03;  ///< fraction of the data's range, on either side
 
 constexpr std::array<const char*, 6> kColours = {"#1f4e9c", "#c23b22", "#2e7d32", "#7b1fa2", "#b26a00", "#00695c"};
 constexpr std::array<const char*, 6> kDashes = {"", "7 4", "2 3", "9 3 2 3", "", "4 2"};
@@ -36,7 +36,7 @@ std::string escaped(const std::string& text) {
   return result;
 }
 
-/// 1, 2 or 5 times a power of ten, about a sixth of the range.
+/// Returns 1, 2 or 5 times a power of ten, about a sixth of the range.
 double tick_step(double range) {
   const double power = std::pow(10.0, std::floor(std::log10(range / 6)));
   for (const double factor : {1.0, 2.0, 5.0}) {
@@ -45,7 +45,7 @@ double tick_step(double range) {
   return 10 * power;
 }
 
-/// One axis: from data to pixels.
+/// Axis: maps data to pixels.
 class Scale {
  public:
   Scale(double low, double high, double from, double to, bool log) : from_(from), to_(to), log_(log) {
@@ -152,7 +152,7 @@ class Drawing {
     }
   }
 
-  /// At the line's highest point.
+  /// Writes the label at the line's highest point.
   void label(const MapLevel& level, const ContourLine& line) {
     if (line.size() < 3) return;
     const PlanePoint& top =

@@ -7,28 +7,28 @@
 
 namespace hardbody {
 
-/// Which axes are logarithmic.
+/// Axes that are logarithmic.
 struct MapScales {
   bool log_x = false;
   bool log_y = false;
 };
 
-/// The lines of one level of one observable.
+/// Lines of one level of one observable.
 struct MapLevel {
   std::string value;   ///< name of the observable
-  std::size_t of = 0;  ///< number of the observable: its colour
+  std::size_t of = 0;  ///< index of the observable, which determines its colour
   double level = 0;
   std::vector<ContourLine> lines;
 };
 
-/// A measured state point; open ones are less to be trusted.
+/// Measured state point; open marks are less reliable.
 struct MapMark {
   double x;
   double y;
   bool open;
 };
 
-/// All that is drawn.
+/// Content of a drawing.
 struct Map {
   std::string x_name;
   std::string y_name;
@@ -37,7 +37,7 @@ struct Map {
   std::vector<MapLevel> levels;
 };
 
-/// A drawing of it. Coordinates of lines and marks are those of the data, also with logarithmic axes.
+/// Returns the drawing as SVG. Coordinates of lines and marks are those of the data, also with logarithmic axes.
 std::string map_svg(const Map& map);
 
 }  // namespace hardbody

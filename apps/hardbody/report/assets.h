@@ -4,9 +4,9 @@
 
 namespace hardbody {
 
-/// The front end as it was built in; the script is empty where there was no npm to bundle it.
+/// Returns the front end that was built in; empty if there was no npm to bundle it.
 std::string_view report_script();
-std::string_view report_style();         ///< of the script
-std::string_view report_static_style();  ///< of a page without script, and the script's too
+std::string_view report_style();         ///< style of the page with script
+std::string_view report_static_style();  ///< style of the page without script, also used with it
 
 }  // namespace hardbody

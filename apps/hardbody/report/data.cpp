@@ -21,16 +21,16 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Digits of a point of a curve: more than any plot or error bar shows. Averages of blocks keep all, in which the drift
-/// of the energy stands.
+/// Digits of a point of a curve: more than any plot or error bar shows. Averages of blocks keep all digits, because the
+/// drift of the energy is visible only in the last ones.
 constexpr int kCurveDigits = 9;
 constexpr int kErrorDigits = 4;
 constexpr int kAllDigits = 17;
 
-/// How much of a run is kept: of one of hundreds what its plots show.
+/// Amount of data kept of a run; slim: of one of hundreds only what its plots show.
 enum class Detail { full, slim };
 
-/// All of a sweep's points together may take so much; what is beyond is left to reports of their own.
+/// Maximum number of bytes of all of a sweep's points together; points beyond are left to reports of their own.
 constexpr std::size_t kMostOfPoints = 40'000'000;
 
 Json rounded(double x, int digits = kCurveDigits) {
@@ -38,7 +38,7 @@ Json rounded(double x, int digits = kCurveDigits) {
   return std::strtod(fmt::format("{:.{}g}", x, digits).c_str(), nullptr);
 }
 
-/// Little-endian, as every machine that this program runs on is.
+/// Returns the bytes, little-endian like every machine that this program runs on.
 template <class T>
 std::string packed(const std::vector<T>& values) {
   std::string bytes(values.size() * sizeof(T), '\0');
@@ -46,7 +46,7 @@ std::string packed(const std::vector<T>& values) {
   return base64(bytes);
 }
 
-/// In single precision, as base64; a gap is a NaN.
+/// Returns a column in single precision, as base64; a gap is a NaN.
 Json packed_column(const std::vector<double>& values) {
   std::vector<float> singles(values.size());
   std::transform(values.begin(), values.end(), singles.begin(), [](double x) { return static_cast<float>(x); });
@@ -59,7 +59,7 @@ Json full_column(const std::vector<double>& values, int digits) {
   return list;
 }
 
-/// Columns of blocks.csv that are drawn.
+/// Returns whether a column of blocks.csv is drawn.
 bool is_drawn(const std::string& name) {
   return std::any_of(block_columns().begin(), block_columns().end(),
                      [&](const BlockColumn& c) { return c.name == name && c.in_reports; });
@@ -137,7 +137,7 @@ const char* kind_text(Remark::Kind kind) {
   return "bad";
 }
 
-/// What the page shows of a summary; all of it, or what it draws.
+/// Returns the part of a summary that the page shows; all of it, or what it draws.
 Json summary_json(const nlohmann::json& summary, Detail detail) {
   if (detail == Detail::full || !summary.is_object()) return summary;
   Json some = Json::object();
@@ -147,7 +147,7 @@ Json summary_json(const nlohmann::json& summary, Detail detail) {
   return some;
 }
 
-/// Without lines that are comments.
+/// Returns the config without lines that are comments.
 std::string config_text(const std::string& config, Detail detail) {
   if (detail == Detail::full) return config;
   std::string text;
@@ -218,7 +218,7 @@ Json plots_json() {
   return list;
 }
 
-/// Within <script> neither "</script" nor "<!--" may stand; in JSON every < is within a string.
+/// Escapes JSON for <script>, which may contain neither "</script" nor "<!--"; in JSON every < is within a string.
 std::string for_script(const std::string& json) {
   std::string text;
   text.reserve(json.size());
@@ -232,12 +232,12 @@ std::string for_script(const std::string& json) {
   return text;
 }
 
-/// What is no UTF-8 in a path or a log is shown as such, not refused.
+/// Bytes of a path or a log that are not UTF-8 are replaced, not refused.
 std::string script_text(const Json& json) {
   return for_script(json.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
-/// A field of the table: a number if it is one.
+/// Returns a field of the table: a number if it is one.
 Json field_json(const std::string& field) {
   if (field.empty()) return nullptr;
   const std::optional<double> value = finite_number(field);

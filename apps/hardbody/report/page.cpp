@@ -7,7 +7,7 @@
 namespace hardbody {
 namespace {
 
-/// Nothing may be fetched: not even by mistake does a report tell anybody that it is being read.
+/// Policy that nothing may be fetched: a report can never tell anybody that it is being read.
 constexpr const char* kPolicy =
     "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:; base-uri 'none'; "
     "form-action 'none'";

@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kLongestText = std::size_t{1} << 26;
-/// Of the log: its end tells most.
+/// Bytes of the log that are shown, from its end, which is the most informative part.
 constexpr std::size_t kLogShown = 30'000;
 
 nlohmann::json read_summary(const fs::path& path) {
@@ -58,7 +58,7 @@ double number_of(const nlohmann::json& json) {
   return json.is_number() ? json.get<double>() : 0;
 }
 
-/// How far it came.
+/// Returns a remark on how far the run came.
 Remark completion(const nlohmann::json& summary) {
   using Kind = Remark::Kind;
   const nlohmann::json& time = member(summary, "time");
@@ -72,11 +72,11 @@ Remark completion(const nlohmann::json& summary) {
   return {
       Kind::warning, "stopped early",
       production > 0
-          ? fmt::format("The run was stopped {:g} time units into production: all numbers are of that part. "
-                        "hardbody resume goes on with it.",
+          ? fmt::format("The run was stopped {:g} time units into production: all numbers are from that part. "
+                        "hardbody resume continues it.",
                         production)
-          : fmt::format("The run was stopped {:g} time units into its equilibration: there is nothing measured yet. "
-                        "hardbody resume goes on with it.",
+          : fmt::format("The run was stopped {:g} time units into its equilibration: nothing has been measured yet. "
+                        "hardbody resume continues it.",
                         number_of(member(time, "equilibration")))};
 }
 
@@ -98,12 +98,13 @@ std::vector<Remark> remarks_of(const nlohmann::json& summary) {
   std::vector<Remark> list = {completion(summary), soundness(summary)};
   const double equilibration = number_of(member(member(summary, "time"), "equilibration"));
   if (says(member(summary, "equilibrated"), true)) {
-    list.push_back({Kind::good, "equilibrated",
-                    fmt::format("Bodies forgot where they were, twice, within {:g} time units.", equilibration)});
+    list.push_back(
+        {Kind::good, "equilibrated",
+         fmt::format("C2 and F_self decayed below 0.05 twice in a row within {:g} time units.", equilibration)});
   } else {
     list.push_back({Kind::warning, "not shown to be equilibrated",
-                    fmt::format("In {:g} time units C2 and F_self did not decay below 0.05 twice in a row: a time that "
-                                "was given and is short, a nematic, a crystal or a glass.",
+                    fmt::format("In {:g} time units C2 and F_self did not decay below 0.05 twice in a row: the "
+                                "configured time is too short, or the state is a nematic, a crystal or a glass.",
                                 equilibration)});
   }
   const nlohmann::json& target = member(summary, "target_error");
@@ -116,19 +117,19 @@ std::vector<Remark> remarks_of(const nlohmann::json& summary) {
   const double failed = number_of(member(failures, "recorded")) + number_of(member(failures, "left_out"));
   if (failed > 0) {
     list.push_back({Kind::warning, fmt::format("{:g} pairs in failures/", failed),
-                    "Their prediction needed more than the configured method; hardbody replay shows them."});
+                    "The configured method could not predict them; hardbody replay shows them."});
   }
   return list;
 }
 
-/// A state that can be looked at, and when it was.
+/// State that can be shown, with its time.
 struct Seen {
   View view;
   std::string phase = "production";
-  bool cut_off = false;  ///< a last frame that is not whole is left out
+  bool cut_off = false;  ///< whether an incomplete last frame is left out
 };
 
-/// The stored frames; nothing if there is only one, or none.
+/// Reads the stored frames; nullopt if there is at most one.
 std::optional<Seen> read_trajectory(const fs::path& path) {
   if (!fs::exists(path)) return std::nullopt;
   const GsdReader reader(path);
@@ -145,7 +146,7 @@ std::optional<Seen> read_trajectory(const fs::path& path) {
   return seen;
 }
 
-/// What cannot be shown does not keep the rest of the report from being made: a remark says why.
+/// Calls `read`. If a part cannot be shown, the report is still made: a remark gives the reason.
 template <class Read>
 std::optional<Seen> if_readable(const Read& read, const char* what, std::vector<Remark>& remarks) {
   try {
@@ -156,7 +157,7 @@ std::optional<Seen> if_readable(const Read& read, const char* what, std::vector<
   }
 }
 
-/// The last state.
+/// Reads the last state.
 std::optional<Seen> read_last_state(const fs::path& path, const Config& config) {
   if (!fs::exists(path)) return std::nullopt;
   const Checkpoint checkpoint = read_checkpoint(path);
@@ -180,7 +181,7 @@ Remark unfinished(const std::optional<Seen>& seen) {
                       seen->view.frames.back().time)};
 }
 
-/// "superballs, p = 4"
+/// Returns "superballs, p = 4".
 std::string superellipsoids_text(const geom::Superellipsoid& s) {
   const Eigen::Vector3d& a = s.semi_axes();
   if (a.x() == a.y() && a.y() == a.z() && s.e1() == s.e2()) return fmt::format("superballs, p = {:.4g}", 2 / s.e1());
@@ -189,7 +190,7 @@ std::string superellipsoids_text(const geom::Superellipsoid& s) {
                      a.z() / least, s.e1(), s.e2());
 }
 
-/// "ellipsoids, X0 = 3"
+/// Returns "ellipsoids, X0 = 3".
 std::string bodies_title(const SpeciesConfig& species) {
   if (const auto* s = std::get_if<geom::Superellipsoid>(&species.body.shape)) return superellipsoids_text(*s);
   const std::optional<double> ratio = species.shape.true_aspect_ratio();
@@ -217,11 +218,11 @@ void check_directory(const fs::path& directory) {
                                  fs::exists(directory) ? "not a directory" : "not there"));
   }
   if (fs::exists(directory / kConfigFile)) return;
-  throw InputError(fmt::format("{}: holds no run: {} is not there; accepted: the directory of a run or of a sweep",
+  throw InputError(fmt::format("{}: holds no run: {} is missing; accepted: the directory of a run or of a sweep",
                                directory.string(), kConfigFile));
 }
 
-/// Its last part: of out/run/ too.
+/// Returns the last part of the path, also for out/run/.
 std::string name_of(const fs::path& directory) {
   const fs::path whole = fs::weakly_canonical(directory);
   return whole.has_filename() ? whole.filename().string() : whole.string();

@@ -89,7 +89,7 @@ const Headline* find(const std::vector<Headline>& list, const std::string& key) 
   return nullptr;
 }
 
-/// One row a quantity, one column a run.
+/// Returns a table with one row a quantity, one column a run.
 std::string headline_table(const std::vector<RunReport>& runs) {
   std::string html = "<table class=\"card\"><thead><tr><th scope=\"col\">quantity</th>";
   for (const RunReport& run : runs) html += fmt::format("<th scope=\"col\">{}</th>", html_text(run.name));

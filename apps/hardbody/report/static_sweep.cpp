@@ -14,10 +14,10 @@
 namespace hardbody {
 namespace {
 
-constexpr double kLogarithmic = 4;  ///< the ratio of extremes from which an axis of positive numbers is logarithmic
+constexpr double kLogarithmic = 4;  ///< ratio of the extremes from which on an axis of positive numbers is logarithmic
 constexpr std::size_t kLeastOfMap = 3;
 
-/// Values of a swept key at the points; NaN where it is no number.
+/// Returns the values of a swept key at the points; NaN if it is not a number.
 std::vector<double> numbers_of(const SweepReport& sweep, std::size_t key) {
   std::vector<double> numbers;
   for (const SweepPointReport& point : sweep.points) {
@@ -26,10 +26,10 @@ std::vector<double> numbers_of(const SweepReport& sweep, std::size_t key) {
   return numbers;
 }
 
-/// A swept key that is a number everywhere and takes several values.
+/// Swept key that is a number at all points and takes several values.
 struct SweptAxis {
   std::string name;
-  std::vector<double> x;  ///< of each point
+  std::vector<double> x;  ///< value at each point
   bool log;
 };
 
@@ -105,7 +105,7 @@ std::string figures(const SweepReport& sweep) {
   return html.empty() ? html : "<section aria-label=\"Plots\" class=\"plots\">\n" + html + "</section>\n";
 }
 
-/// All points, one row each.
+/// Returns a table with one row for each point.
 std::string sweep_table(const SweepReport& sweep) {
   std::string html = "<table class=\"card\"><thead><tr>";
   for (const std::string& key : sweep.keys) html += fmt::format("<th scope=\"col\">{}</th>", html_text(key));

@@ -19,7 +19,7 @@ constexpr double kPlotTop = 14;
 constexpr double kPlotBottom = 48;
 constexpr std::size_t kPlotColours = 8;  ///< classes c0 to c7 of the style
 
-/// One axis: from data to the page.
+/// Axis: maps data to the page.
 class PlotAxis {
  public:
   PlotAxis(bool logarithmic, double page_from, double page_to)
@@ -33,7 +33,7 @@ class PlotAxis {
   }
   bool empty() const { return low_ > high_; }
 
-  /// Room around the data, so that a constant is a line in the middle.
+  /// Extends the range around the data, so that a constant is a line in the middle.
   void widen() {
     const double least = logarithmic_ ? 0.1 : 1e-6 * std::max(1.0, std::abs(low_));
     const double margin = std::max(0.04 * (high_ - low_), least);
@@ -43,7 +43,7 @@ class PlotAxis {
 
   double place(double x) const { return page_from_ + (scale(x) - low_) / (high_ - low_) * (page_to_ - page_from_); }
 
-  /// Values to be marked: decades, or round numbers.
+  /// Returns the values to be marked: decades, or round numbers.
   std::vector<double> ticks() const {
     std::vector<double> list;
     const double step = logarithmic_ ? std::max(1.0, std::ceil((high_ - low_) / 6)) : round_step();
@@ -93,7 +93,7 @@ std::string grid(const PlotAxis& x, const PlotAxis& y) {
   return svg;
 }
 
-/// A line through the points, broken where one is missing, and the points.
+/// Returns a line through the points, interrupted where one is missing, and the points.
 std::string drawn(const PlotSeries& series, std::size_t index, const PlotAxis& x, const PlotAxis& y) {
   std::string line;
   std::string points;

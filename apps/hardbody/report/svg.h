@@ -11,7 +11,7 @@ struct PlotSeries {
   std::vector<double> y;
 };
 
-/// A plot of a static report. Points that are not finite, or not positive on a logarithmic axis, are left out.
+/// Plot of a static report. Points that are not finite, or not positive on a logarithmic axis, are left out.
 struct Plot {
   std::string title;
   std::string x_label;
@@ -21,7 +21,7 @@ struct Plot {
   std::vector<PlotSeries> series;
 };
 
-/// As inline SVG, with classes for its colours; empty if there is no point to draw.
+/// Returns the plot as inline SVG, with classes for its colours; empty if there is no point to draw.
 std::string svg_plot(const Plot& plot);
 
 }  // namespace hardbody

@@ -24,10 +24,10 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kLongestState = std::size_t{1} << 20;
 
-/// So many bodies of all points together are shown.
+/// Maximum number of bodies shown of all points together.
 constexpr std::size_t kMostBodiesOfPoints = 300'000;
 
-/// Columns of the table that are neither keys nor observables; the keys stand before the first of them.
+/// First of the columns of the table that are neither keys nor observables; the keys come before it.
 constexpr const char* kFirstResult = "equilibration_time";
 constexpr const char* kErrorSuffix = "_error";
 
@@ -39,7 +39,7 @@ CsvTable read_table(const fs::path& path) {
   throw InputError(fmt::format("{}: has no points; accepted: the table of a sweep", path.string()));
 }
 
-/// A field of a row; empty if there is no such column.
+/// Returns a field of a row; empty if there is no such column.
 std::string field_of(const CsvTable& table, const Row& row, std::string_view column) {
   const std::optional<std::size_t> place = table.find(column);
   return place ? row[*place] : std::string();
@@ -49,7 +49,7 @@ double number_of(const std::string& field) {
   return finite_number(field).value_or(std::numeric_limits<double>::quiet_NaN());
 }
 
-/// Columns of swept keys: those that come first; the seed only if it is not the same everywhere.
+/// Returns the columns of swept keys, which come first; the seed only if it is not the same everywhere.
 std::vector<std::size_t> key_columns(const CsvTable& table) {
   std::vector<std::size_t> columns;
   const std::size_t end = *table.find(kFirstResult);
@@ -61,7 +61,7 @@ std::vector<std::size_t> key_columns(const CsvTable& table) {
   return columns;
 }
 
-/// Columns that have one of errors.
+/// Returns the columns that have a column of errors.
 std::vector<std::size_t> observable_columns(const CsvTable& table) {
   std::vector<std::size_t> columns;
   for (std::size_t k = *table.find(kFirstResult); k < table.header.size(); ++k) {
@@ -70,7 +70,7 @@ std::vector<std::size_t> observable_columns(const CsvTable& table) {
   return columns;
 }
 
-/// A value of a key, the same text for the table's field and for state.json's member.
+/// Returns the value of a key as a text that is the same for the table's field and for state.json's member.
 std::string comparable(std::string text) {
   if (const std::optional<double> value = finite_number(text)) return fmt::format("{:.15g}", *value);
   std::erase(text, ' ');
@@ -86,7 +86,7 @@ std::string signature_part(const std::string& key, const std::string& value) {
   return key + "=" + value + "\n";
 }
 
-/// Directories of points by their keys.
+/// Returns the directories of points by their keys.
 std::map<std::string, std::string> directories_of(const fs::path& sweep) {
   std::map<std::string, std::string> directories;
   for (const fs::directory_entry& entry : fs::directory_iterator(sweep)) {
@@ -105,7 +105,7 @@ std::map<std::string, std::string> directories_of(const fs::path& sweep) {
   return directories;
 }
 
-/// That of a row, in which every column before the results may be a key.
+/// Returns the directory of a row, in which every column before the results may be a key.
 std::string directory_of(const CsvTable& table, const Row& row, const std::map<std::string, std::string>& directories) {
   for (const bool with_seed : {true, false}) {
     std::map<std::string, std::string> sorted;
@@ -120,7 +120,7 @@ std::string directory_of(const CsvTable& table, const Row& row, const std::map<s
   return "";
 }
 
-/// Gives missing values the reason that the point's run has. The message of a point that is done says nothing else.
+/// Gives missing values the reason from the point's run. The message of a completed point contains nothing else.
 void add_reasons(SweepPointReport& point, const std::vector<Headline>& observables) {
   if (point.status != "done") return;
   point.message.clear();
@@ -131,7 +131,7 @@ void add_reasons(SweepPointReport& point, const std::vector<Headline>& observabl
   }
 }
 
-/// The run of a point, or a message why it cannot be shown.
+/// Reads the run of a point, or sets a message why it cannot be shown.
 void read_run(SweepPointReport& point, const fs::path& sweep, std::size_t& bodies) {
   const fs::path directory = sweep / point.directory;
   if (point.directory.empty() || !fs::exists(directory / kConfigFile)) return;

@@ -9,36 +9,37 @@
 
 namespace hardbody {
 
-/// A number of the table of a sweep; NaN: none.
+/// Number in the table of a sweep; NaN: none.
 struct Measured {
   double value;
   double error;
-  std::string missing{};  ///< why there is none, if the point's run says so
+  std::string missing{};  ///< reason for which there is none, if the point's run gives it
 };
 
 struct SweepPointReport {
-  std::vector<std::string> keys;  ///< values of the swept keys, as the table has them
-  std::vector<Measured> values;   ///< of the observables
+  std::vector<std::string> keys;  ///< values of the swept keys, as in the table
+  std::vector<Measured> values;   ///< values of the observables
   std::string status;             ///< "done", "failed", ..
-  std::string message;            ///< why it failed or cannot be shown
-  std::string equilibrated;       ///< "true", "false" or nothing
-  std::string directory;          ///< name; empty: none was found
-  std::optional<RunReport> run;   ///< of a point that has results
+  std::string message;            ///< reason for which it failed or cannot be shown
+  std::string equilibrated;       ///< "true", "false" or empty
+  std::string directory;          ///< name of the directory; empty: none was found
+  std::optional<RunReport> run;   ///< run of a point that has results
 };
 
 struct SweepReport {
   std::filesystem::path path;
   std::string name;
   std::string title;
-  std::vector<std::string> keys;      ///< that are swept: system.packing_fraction
-  std::vector<Headline> observables;  ///< what they are called; their values are those of the points
+  std::vector<std::string> keys;      ///< swept keys: system.packing_fraction
+  std::vector<Headline> observables;  ///< names of the observables; their values are those of the points
   std::vector<SweepPointReport> points;
 };
 
-/// Whether the directory holds a sweep.
+/// Returns whether the directory holds a sweep.
 bool is_sweep(const std::filesystem::path& directory);
 
-/// Throws InputError if its table cannot be read. What is wrong with the run of a point is said in its message.
+/// Reads a sweep. Throws InputError if its table cannot be read. A fault of a point's run is reported in the point's
+/// message.
 SweepReport read_sweep_report(const std::filesystem::path& directory);
 
 }  // namespace hardbody

@@ -26,12 +26,13 @@ ShapeKey key_of(const ViewShape& s) {
   return {s.semi_axes.x(), s.semi_axes.y(), s.semi_axes.z(), s.exponents.x(), s.exponents.y()};
 }
 
-/// The image in the box about the origin.
+/// Returns the coordinate of the image in the box about the origin.
 float centred(double x, double box) {
   return static_cast<float>(x - box * std::round(x / box));
 }
 
-/// Those in a corner of the box which holds about as many as may be shown; all, if they may.
+/// Returns the bodies in a corner of the box that contains about as many as may be shown; all bodies if there are no
+/// more.
 std::vector<std::size_t> bodies_shown(const Frame& frame) {
   const std::size_t all = frame.bodies.size();
   const double share = static_cast<double>(kMostBodiesShown) / static_cast<double>(all);
@@ -44,7 +45,7 @@ std::vector<std::size_t> bodies_shown(const Frame& frame) {
   return bodies;
 }
 
-/// `most` of 0 .. all - 1, the last one among them.
+/// Returns `most` of 0 .. all - 1, including the last one.
 std::vector<std::size_t> frames_shown(std::size_t all, std::size_t most) {
   std::vector<std::size_t> list;
   for (std::size_t k = 0; k < std::min(all, most); ++k) {
@@ -57,7 +58,7 @@ std::vector<std::size_t> frames_shown(std::size_t all, std::size_t most) {
   return list;
 }
 
-/// A type that nobody says the shape of is shown as a sphere.
+/// Returns the shape of a body; a type of unknown shape is shown as a sphere.
 ViewShape shape_of(const Frame& frame, std::size_t body) {
   const FrameType& type = frame.types.at(frame.bodies[body].type);
   return type.shape ? view_shape(*type.shape) : ViewShape{{1, 1, 1}, {1, 1}};

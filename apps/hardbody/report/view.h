@@ -13,45 +13,45 @@
 
 namespace hardbody {
 
-/// What the report draws a body as.
+/// Shape as which the report draws a body.
 struct ViewShape {
   Eigen::Vector3d semi_axes;
   Eigen::Vector2d exponents;  ///< 1, 1: an ellipsoid
 };
 
-/// Where the bodies are at a time, in single precision.
+/// Positions and orientations of the bodies at one time, in single precision.
 struct ViewFrame {
   double time = 0;
-  std::vector<float> positions;     ///< x, y, z of each body, from the middle of the box
-  std::vector<float> orientations;  ///< w, x, y, z
+  std::vector<float> positions;     ///< x, y, z of each body, relative to the middle of the box
+  std::vector<float> orientations;  ///< w, x, y, z of each body
 };
 
-/// States of a run to be looked at.
+/// States of a run for the three-dimensional view.
 struct View {
   double box = 0;
-  std::size_t number = 0;  ///< of bodies in the system; fewer may be shown
+  std::size_t number = 0;  ///< number of bodies in the system; fewer may be shown
   std::vector<ViewShape> shapes;
-  std::vector<std::uint32_t> shape_of;    ///< of each body shown
-  std::vector<std::uint32_t> species_of;  ///< of each body shown, from 0
+  std::vector<std::uint32_t> shape_of;    ///< index of the shape of each body shown
+  std::vector<std::uint32_t> species_of;  ///< species of each body shown, from 0
   std::vector<ViewFrame> frames;
-  std::string note;  ///< what is left out, in words
+  std::string note;  ///< description of what is left out
 };
 
-/// No more bodies than that are shown, and no more bodies times frames: a page has to open on a telephone.
+/// Maximum number of bodies shown, and of bodies times frames: a page has to open on a telephone.
 inline constexpr std::size_t kMostBodiesShown = 20'000;
 inline constexpr std::size_t kMostBodyFrames = 200'000;
 
 /// Frames that can be read one at a time.
 struct FrameSource {
-  std::size_t count = 0;  ///< at least 1
+  std::size_t count = 0;  ///< number of frames, at least 1
   std::function<Frame(std::size_t)> read;
 };
 
-/// Of too many bodies those in a corner of the box, of too many frames some as far apart as one another, the last one
-/// among them; the note says so.
+/// Returns the view of these frames. If there are too many bodies, those in a corner of the box are shown; if there are
+/// too many frames, some at equal intervals, including the last one. The note says so.
 View view_of(const FrameSource& source);
 
-/// RFC 4648, with padding.
+/// Encodes bytes by RFC 4648, with padding.
 std::string base64(std::string_view bytes);
 
 }  // namespace hardbody

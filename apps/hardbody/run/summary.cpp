@@ -60,7 +60,7 @@ Json fit_windows(const ed::Correlations& r) {
 /// kind, aspect_ratio, semi_axes, exponents of a body of nominal size.
 void add_shape(Json& json, const SpeciesConfig& species) {
   const std::optional<double> ratio = species.shape.true_aspect_ratio();
-  json["kind"] = species.shape.kind;
+  json["kind"] = to_string(species.shape.kind);
   json["aspect_ratio"] = ratio ? Json(*ratio) : Json(nullptr);
   if (const auto* s = std::get_if<geom::Superellipsoid>(&species.body.shape)) {
     json["semi_axes"] = list_json(s->semi_axes());
@@ -86,8 +86,8 @@ Json state(const Config& config) {
 Json sizes(const SpeciesConfig& species) {
   if (species.factors.empty()) return nullptr;
   const SizeStatistics drawn = statistics_of(species.factors);
-  return {{"distribution", species.sizes},         {"width", species.width},     {"mean", drawn.mean},
-          {"standard_deviation", drawn.deviation}, {"smallest", drawn.smallest}, {"largest", drawn.largest}};
+  return {{"distribution", ed::to_string(*species.sizes)}, {"width", species.width},     {"mean", drawn.mean},
+          {"standard_deviation", drawn.deviation},         {"smallest", drawn.smallest}, {"largest", drawn.largest}};
 }
 
 Json species_list(const RunRecord& record, const MissingWords& words) {
@@ -164,8 +164,9 @@ std::string summary_json(const RunRecord& record) {
                                        record.equilibration.failures.size() + record.production.failures.size()},
                       {"left_out", record.failures_left_out()}};
   json["sound"] = defects(record).empty();
-  json["finder"] = {{"kind", config.finder}, {"distance", config.distance}, {"eps_d", config.eps_d}};
-  json["neighbours"] = {{"kind", config.neighbours}, {"envelope", production.envelope}};
+  json["finder"] = {
+      {"kind", ed::to_string(config.finder)}, {"distance", ed::to_string(config.distance)}, {"eps_d", config.eps_d}};
+  json["neighbours"] = {{"kind", ed::to_string(config.neighbour_search())}, {"envelope", production.envelope}};
   json["cpu_features"] = cpu_features();
   json["units"] = units(config, whole);
   return json.dump(2) + "\n";

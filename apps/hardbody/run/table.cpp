@@ -68,8 +68,8 @@ std::string species_text(const SpeciesConfig& species, std::size_t index) {
       fmt::format("species {}: {} {}, mass {:g}", index + 1, species.number, bodies_text(species), species.mass);
   if (species.factors.empty()) return text + "\n";
   const SizeStatistics drawn = statistics_of(species.factors);
-  return text + fmt::format("; sizes {}, drawn {:.4g} +- {:.2g}, {:.4g} to {:.4g}\n", species.sizes, drawn.mean,
-                            drawn.deviation, drawn.smallest, drawn.largest);
+  return text + fmt::format("; sizes {}, drawn {:.4g} +- {:.2g}, {:.4g} to {:.4g}\n", ed::to_string(*species.sizes),
+                            drawn.mean, drawn.deviation, drawn.smallest, drawn.largest);
 }
 
 std::string state_text(const Config& config) {
@@ -124,7 +124,7 @@ std::string rescue_line(const RunRecord& record) {
   const std::uint64_t rescues = record.production.counters.rescues;
   if (rescues == 0) return "";
   return fmt::format("  rescues {}: {}\n", rescues,
-                     record.config.finder == "bracketing"
+                     record.config.finder == ed::Finder::bracketing
                          ? "distances that Newton's method declined and the dual answered; the first ones in failures/"
                          : "pairs whose normal the Perram-Wertheim fallback found, which is slower and as safe");
 }

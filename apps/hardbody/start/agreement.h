@@ -6,10 +6,11 @@
 
 namespace hardbody {
 
-/// Relative difference between state and config that is rounding (of another machine's cube root, say).
+/// Relative difference between state and config that is regarded as rounding (of another machine's cube root, for
+/// instance).
 inline constexpr double kStateRounding = 1e-12;
 
-/// What of the state is as its config says.
+/// Properties of the state that agree with its config.
 struct Agreement {
   bool number = true;
   bool shape = true;

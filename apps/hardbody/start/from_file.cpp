@@ -1,7 +1,7 @@
 #include "start/from_file.h"
 
 #include "base/errors.h"
-#include "config/start_additions.h"
+#include "config/keys.h"
 #include "io/text_file.h"
 #include "start/velocities.h"
 #include "trajectory/reader.h"
@@ -19,15 +19,15 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// Relative difference between the file's lengths and the config's that is rounding to 32 bits.
+/// Relative difference between the file's lengths and the config's that counts as rounding to 32 bits.
 constexpr double kSameLength = 1e-5;
-/// The same of packing fractions, a length to the third power.
+/// Relative difference of packing fractions, a length to the third power, that counts as rounding.
 constexpr double kSamePacking = 1e-4;
-/// Bodies that overlap are not moved apart by more than this factor.
+/// Largest factor by which overlapping bodies are moved apart.
 constexpr double kMostMending = 1.1;
 
-/// How the axes of a body as the config has them (the axis of revolution last) lie in the body as the file has it;
-/// nothing if the two are not the same shape.
+/// Returns the orientation of the config's body axes (the axis of revolution last) in the file's body axes; nullopt if
+/// the two shapes are different.
 std::optional<Matrix3d> axes_in_file(const ed::BodyShape& file, const ed::BodyShape& config) {
   const auto* a = std::get_if<geom::Superellipsoid>(&file);
   const auto* b = std::get_if<geom::Superellipsoid>(&config);
@@ -38,7 +38,7 @@ std::optional<Matrix3d> axes_in_file(const ed::BodyShape& file, const ed::BodySh
                               std::abs(exponent(a, 2) - exponent(b, 2)) <= kSameLength;
   if (!same_exponents) return std::nullopt;
   const Vector3d wanted = ed::half_extents(config);
-  const bool free = b == nullptr;  // an ellipsoid may name its axes in any order
+  const bool free = b == nullptr;  // an ellipsoid's axes may be in any order
   for (int shift = 0; shift < (free ? 3 : 1); ++shift) {
     Matrix3d axes;
     for (int k = 0; k < 3; ++k) axes.col(k) = Vector3d::Unit((k + shift) % 3);
@@ -48,7 +48,7 @@ std::optional<Matrix3d> axes_in_file(const ed::BodyShape& file, const ed::BodySh
   return std::nullopt;
 }
 
-/// Refusal of a frame without orientations, with what the reader says of columns that may be some.
+/// Returns the refusal of a frame without orientations, with the reader's notices of columns that may contain some.
 InputError no_orientations(const Frame& frame, const std::string& file, const std::string& body) {
   std::string hint;
   for (const std::string& notice : frame.notices) {
@@ -60,7 +60,7 @@ InputError no_orientations(const Frame& frame, const std::string& file, const st
                   file, body, hint));
 }
 
-/// The bodies of the config where those of the file are, without velocities.
+/// Returns the bodies of the config at the positions of those of the file, without velocities.
 ed::System placed(const Config& config, const Frame& frame, const std::vector<std::size_t>& order) {
   const std::string& file = config.start_file->file;
   ed::System system;
@@ -103,8 +103,8 @@ ed::System scaled(const ed::System& system, double factor) {
   return result;
 }
 
-/// Box and positions scaled by the least factor without overlap, to a thousandth of its excess over 1; nothing if it
-/// would be more than kMostMending.
+/// Returns the smallest factor of box and positions without overlap, to a thousandth of its excess over 1; nullopt if
+/// it would be more than kMostMending.
 std::optional<double> mending_factor(const ed::System& system) {
   double low = 0;
   double high = 1e-9;
@@ -120,34 +120,34 @@ std::optional<double> mending_factor(const ed::System& system) {
   return 1 + high;
 }
 
-/// Which bodies overlap, the worst pair by the numbers of the file. `ids`: of the bodies of the state.
+/// Describes the bodies that overlap, the worst pair by the numbers of the file. `ids`: those of the bodies of the
+/// state.
 std::string overlap_text(const ed::Audit& audit, const std::vector<double>& ids) {
-  if (audit.overlaps == 0)
-    return fmt::format("{} pairs of bodies are too deep in each other for a distance", audit.unanswered);
+  if (audit.overlaps == 0) return fmt::format("{} pairs of bodies overlap too deeply for a distance", audit.unanswered);
   return fmt::format("{} pairs of bodies overlap, the worst by {:.3g} (bodies {:.17g} and {:.17g} of the file)",
                      audit.overlaps + audit.unanswered, -audit.minimum_distance,
                      ids[static_cast<std::size_t>(audit.closest_i)], ids[static_cast<std::size_t>(audit.closest_j)]);
 }
 
-/// Parts bodies that overlap, if the config says so; what was done.
+/// Removes overlaps if the config requests it; returns what was done.
 std::string mend(ed::System& system, const StartFile& start, const std::vector<double>& ids) {
   const ed::Audit audit = ed::audit(system);
   if (!overlaps(audit)) return "";
   if (!start.mend) {
-    throw InputError(fmt::format("{}: {}; accepted: none deeper than {:g} of their size, or start.mend = true",
-                                 start.file, overlap_text(audit, ids), ed::kAuditOverlap));
+    throw InputError(fmt::format("{}: {}; accepted: overlaps of at most {:g} of their size, or {} = true", start.file,
+                                 overlap_text(audit, ids), ed::kAuditOverlap, kMendKey));
   }
   const std::optional<double> factor = mending_factor(system);
   if (!factor) {
     throw InputError(
-        fmt::format("{}: {}: a box {} times as large does not part them; accepted: a state of these bodies", start.file,
-                    overlap_text(audit, ids), kMostMending));
+        fmt::format("{}: {}: a box {} times as large does not separate them; accepted: a state of these bodies",
+                    start.file, overlap_text(audit, ids), kMostMending));
   }
   system = scaled(system, *factor);
   return fmt::format(", mended: {}: box and positions scaled by 1 + {:.6g}", overlap_text(audit, ids), *factor - 1);
 }
 
-/// As it was the other way round: with no more than rounding errors the bodies go back where they came from.
+/// Reverses the motion: except for rounding errors the bodies retrace their paths.
 void reverse(ed::System& system) {
   for (ed::Body& body : system.bodies) {
     body.velocity = -body.velocity;
@@ -161,9 +161,9 @@ bool same_packing(double a, double b) {
 
 }  // namespace
 
-FileStart start_from_file(const Config& config) {
+FileStart start_from_file(const Config& config, std::optional<StartFrame> loaded) {
   const StartFile& start = *config.start_file;
-  const auto [frame, k, cut_off] = read_start_frame(start);
+  const auto [frame, k, cut_off] = loaded ? std::move(*loaded) : read_start_frame(start);
   const std::vector<std::vector<std::size_t>> groups = groups_of(frame);
   std::vector<int> found;
   std::vector<int> wanted;
@@ -195,9 +195,8 @@ FileStart start_from_file(const Config& config) {
   const double after = ed::packing_fraction(result.system);
   if (!same_packing(before, config.packing_fraction) && !same_packing(after, config.packing_fraction)) {
     throw InputError(
-        fmt::format("{}: its packing fraction is {:.8g}, in the config {:.8g}; accepted: the same, or no "
-                    "system.packing_fraction",
-                    start.file, before, config.packing_fraction));
+        fmt::format("{}: its packing fraction is {:.8g}, in the config {:.8g}; accepted: the same, or no {}",
+                    start.file, before, config.packing_fraction, kPackingKey));
   }
   result.report = fmt::format("start: {} bodies of frame {} of {} at packing fraction {:.8g}, {}{}{}", order.size(), k,
                               one_line(start.file), after, velocities, mended, cut_off ? kCutOff : "");

@@ -1,25 +1,28 @@
 #pragma once
 
 #include "config/config.h"
+#include "config/start_additions.h"
 
 #include <ed/system.h>
 
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace hardbody {
 
-/// A state to start from.
+/// State to start from, taken from a file.
 struct FileStart {
   ed::System system;
-  std::string report;                ///< what was taken from the file and what was changed, one line
-  std::vector<std::string> notices;  ///< of the reader about the frame, one line each
+  std::string report;                ///< one line that says what was taken from the file and what was changed
+  std::vector<std::string> notices;  ///< notices of the reader about the frame, one line each
 };
 
-/// The state in the config's file, with the bodies of the config, in their order. Positions and orientations are those
-/// of the file, of our own files to every bit; velocities too, where the bodies are those of the file to every bit,
-/// otherwise they are rescaled to kT = 1 (or drawn, where there are none). Throws InputError if the bodies are others,
-/// if the packing fraction is another, and if bodies overlap and are not to be mended.
-FileStart start_from_file(const Config& config);
+/// Returns the state in the config's file, with the bodies of the config, in their order. `frame`: frame of the file if
+/// it has been read already. Positions and orientations are those of the file, bit for bit if the file is of this
+/// program. Velocities are also taken if the bodies are those of the file bit for bit; otherwise they are rescaled to
+/// kT = 1 (or drawn, if there are none). Throws InputError if the bodies or the packing fraction are different, or if
+/// bodies overlap and overlaps are not to be removed.
+FileStart start_from_file(const Config& config, std::optional<StartFrame> frame = {});
 
 }  // namespace hardbody

@@ -1,7 +1,6 @@
 #include "start/make_start.h"
 
 #include "base/signals.h"
-#include "start/from_file.h"
 
 #include <ed/shape.h>
 #include <ed/start.h>
@@ -37,10 +36,11 @@ ed::StartOptions start_options(const Config& config, const std::function<bool(do
   return options;
 }
 
-/// Bodies in a cell as wide as the largest one, from which on a run is said to be slow: neighbours are sought in cells.
+/// Number of bodies in a cell as wide as the largest one from which on a run is reported as slow: neighbours are
+/// searched in cells.
 constexpr double kCrowdedCell = 100;
 
-/// What sizes that differ by much cost; nothing where they do not.
+/// Describes the cost of very different sizes; nullopt if they are similar.
 std::optional<std::string> unequal_sizes(const Config& config) {
   const std::vector<ed::Component> components = config.components();
   double largest = 0;
@@ -54,12 +54,13 @@ std::optional<std::string> unequal_sizes(const Config& config) {
   const double in_a_cell = config.number * std::pow(2 * largest / box, 3);
   if (in_a_cell < kCrowdedCell || largest < 2 * smallest) return std::nullopt;
   return fmt::format(
-      "start: the largest bodies have {:.3g} times the bounding radius of the smallest, and a cell as wide as they are "
-      "holds {:.0f} bodies, among which neighbours are sought; expect a slow start and run",
+      "start: the largest bodies have {:.3g} times the bounding radius of the smallest: neighbours are searched in "
+      "cells "
+      "as wide as the largest body, which hold {:.0f} bodies; expect a slow start and run",
       largest / smallest, std::min(in_a_cell, static_cast<double>(config.number)));
 }
 
-/// What a start costs that cannot be repeated; nothing where it costs little.
+/// Describes the cost of a start that cannot be repeated; nullopt if it is small.
 std::optional<std::string> compressed_as_one(const Config& config) {
   if (config.start_from || config.lattice()) return std::nullopt;
   ed::StartOptions options;
@@ -67,12 +68,12 @@ std::optional<std::string> compressed_as_one(const Config& config) {
   const int together = ed::compressed_together(config.components(), options);
   if (together <= options.most_compressed) return std::nullopt;
   return fmt::format(
-      "start: {} of {} bodies are compressed together, as too few are alike for a smaller box that is repeated; that "
-      "takes a time that grows with the square of their number",
+      "start: {} of {} bodies are compressed together, because too few are alike to repeat a smaller box; the time "
+      "grows with the square of their number",
       together, config.number);
 }
 
-/// <P2(u_z)> of the bodies that are no spheres.
+/// Returns <P2(u_z)> of the bodies that are not spheres.
 double order_about_z(const ed::System& system) {
   double sum = 0;
   int number = 0;
@@ -86,21 +87,21 @@ double order_about_z(const ed::System& system) {
   return number > 0 ? sum / number : 0;
 }
 
-/// What the compression has left of the order that was asked for goes to the log; a loss is said aloud.
+/// Logs how much of the requested order the compression has left; a loss is also printed.
 void report_order(double asked, const ed::System& start, Progress& progress, Log& log) {
   const double reached = order_about_z(start);
   log.line(fmt::format("start: S = {:.3g}", reached));
-  // As far off as samples of so many bodies hardly ever are.
+  // Deviation that samples of this size hardly ever exceed.
   const double usual = std::max(0.05, 1.5 / std::sqrt(start.size()));
   if (std::abs(reached - asked) <= usual) return;
   const std::string text = fmt::format(
-      "start: S = {:.2f} about z after the compression, not nematic_order = {:g}, which start = \"fcc\" would keep",
+      "start: S = {:.2f} about z after the compression, not nematic_order = {:g}; start = \"fcc\" would keep it",
       reached, asked);
   log.line(text);
   progress.say(text);
 }
 
-/// Random, or the last state of another run; nothing if a signal came first.
+/// Compresses a random start or the last state of another run; nullopt if a signal came first.
 std::optional<Start> compressed_start(const Config& config, const std::optional<ed::System>& origin, Progress& progress,
                                       Log& log) {
   log.line(config.start_from ? fmt::format("start: the last state of {}, compressed to packing fraction {:g}",
@@ -134,10 +135,9 @@ std::optional<Start> compressed_start(const Config& config, const std::optional<
 
 }  // namespace
 
-std::optional<Start> make_start(const Config& config, const std::optional<ed::System>& origin, Progress& progress,
-                                Log& log) {
+std::optional<Start> make_start(const Config& config, LoadedStates loaded, Progress& progress, Log& log) {
   if (config.start_file) {
-    FileStart start = start_from_file(config);
+    FileStart start = loaded.file ? std::move(*loaded.file) : start_from_file(config);
     log.line(start.report);
     progress.say(start.report);
     for (const std::string& notice : start.notices) {
@@ -152,9 +152,9 @@ std::optional<Start> make_start(const Config& config, const std::optional<ed::Sy
     progress.say(*warning);
   }
   const std::optional<ed::LatticeOptions> lattice = config.lattice();
-  if (!lattice) return compressed_start(config, origin, progress, log);
-  log.line(fmt::format("start: {} bodies on a lattice ({}) at packing fraction {:g}{}", config.number, config.start,
-                       config.packing_fraction, order_text(config)));
+  if (!lattice) return compressed_start(config, loaded.origin, progress, log);
+  log.line(fmt::format("start: {} bodies on a lattice ({}) at packing fraction {:g}{}", config.number,
+                       ed::to_string(*config.start), config.packing_fraction, order_text(config)));
   Start start{ed::lattice_start(config.components(), *lattice), {}, {}};
   log.line("start: done");
   return start;

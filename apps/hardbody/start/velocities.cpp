@@ -21,11 +21,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Kinds of motion that keep their energy to themselves or may be known by themselves.
+/// Kinds of motion that do not exchange energy, or may be known separately.
 enum Kind : std::size_t { kTranslation, kRotation, kSpin, kKinds };
 constexpr std::array<const char*, kKinds> kKindNames = {"translation", "rotation", "spin"};
 
-/// Angular velocity of a body that the frame knows the angular momentum of, with the moments of the config.
+/// Returns the angular velocity of a body whose angular momentum the frame contains, with the moments of the config.
 Vector3d angular_velocity_of(const Frame& frame, const FrameBody& from, const ed::Body& body,
                              const ed::Species& species) {
   const bool by_momentum = frame.angular_momenta && !(from.inertia.minCoeff() > 0);
@@ -33,7 +33,7 @@ Vector3d angular_velocity_of(const Frame& frame, const FrameBody& from, const ed
   return body.rotation * (body.rotation.transpose() * from.angular_momentum).cwiseQuotient(species.inertia);
 }
 
-/// Maxwell's, of kT = 1.
+/// Draws Maxwell's velocities at kT = 1.
 void draw_thermal(ed::System& system, std::uint64_t seed) {
   ed::Random random(seed);
   for (int i = 0; i < system.size(); ++i) {
@@ -44,7 +44,8 @@ void draw_thermal(ed::System& system, std::uint64_t seed) {
   }
 }
 
-/// Whether the same velocities have the same energy; moments that two formulas give for one body differ by rounding.
+/// Returns whether the same velocities have the same energy; moments that two formulas give for one body differ by
+/// rounding.
 bool move_alike(const ed::Species& a, const ed::Species& b) {
   constexpr double kRounding = 1e-12;
   return a.spins == b.spins && std::abs(a.mass - b.mass) <= kRounding * b.mass &&
@@ -57,7 +58,7 @@ struct SpeciesRange {
   std::size_t end;
 };
 
-/// Whether the bodies of a range move relative to each other; a body by itself, relative to `drift`.
+/// Returns whether the bodies of a range move relative to each other; for a single body, relative to `drift`.
 bool translates(const ed::System& system, SpeciesRange range, Vector3d drift) {
   constexpr double kRounding = 1e-12;
   const bool single = range.end - range.begin == 1;
@@ -78,8 +79,8 @@ bool translates(const ed::System& system, SpeciesRange range, Vector3d drift) {
   return whole > 0 && relative > kRounding * whole;
 }
 
-/// Kinds of motion that the bodies of a range have; `drift`: mean velocity of all bodies. Rotation and spin are told
-/// apart up to rounding: that of six digits is 1e-9 of the energy of thin bodies.
+/// Returns the kinds of motion that the bodies of a range have; `drift`: mean velocity of all bodies. Rotation and spin
+/// are separated up to rounding: that of six digits is 1e-9 of the energy of thin bodies.
 std::array<bool, kKinds> motion_of(const ed::System& system, SpeciesRange range, const Vector3d& drift) {
   constexpr double kRounding = 1e-8;
   ed::System part;
@@ -90,8 +91,8 @@ std::array<bool, kKinds> motion_of(const ed::System& system, SpeciesRange range,
   }
   const ed::KineticState now = ed::kinetic_state(part);
   const double rest = kRounding * (now.rotational_energy + now.spin_energy);
-  return {translates(system, range, drift), now.rotational_freedoms == 0 || now.rotational_energy > rest,
-          now.spin_freedoms == 0 || now.spin_energy > rest};
+  return {translates(system, range, drift), now.rotational_degrees_of_freedom == 0 || now.rotational_energy > rest,
+          now.spin_degrees_of_freedom == 0 || now.spin_energy > rest};
 }
 
 Vector3d mean_velocity(const ed::System& system) {
@@ -104,7 +105,7 @@ Vector3d mean_velocity(const ed::System& system) {
   return mean;
 }
 
-/// Takes the kinds of motion of `range` that are not kept from another system.
+/// Copies the kinds of motion of `range` that are not kept from another system.
 void replace(ed::System& system, const ed::System& drawn, SpeciesRange range, const std::array<bool, kKinds>& kept) {
   for (std::size_t i = range.begin; i < range.end; ++i) {
     ed::Body& body = system.bodies[i];
@@ -122,7 +123,8 @@ void replace(ed::System& system, const ed::System& drawn, SpeciesRange range, co
   }
 }
 
-/// "translation rescaled to kT = 1", "spin drawn", "rotation drawn for species 2, otherwise rescaled to kT = 1".
+/// Returns "translation rescaled to kT = 1", "spin drawn", "rotation drawn for species 2, otherwise rescaled to kT =
+/// 1".
 std::string kind_text(Kind kind, const std::vector<std::array<bool, kKinds>>& kept) {
   std::vector<std::size_t> drawn;
   for (std::size_t k = 0; k < kept.size(); ++k) {
@@ -152,7 +154,7 @@ std::string report_of(const std::vector<std::array<bool, kKinds>>& kept, const s
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 
-/// The frame's velocities; whether they are those of the same bodies to every bit.
+/// Takes the frame's velocities; returns whether the bodies are the same bit for bit.
 bool take_velocities(ed::System& system, const Frame& frame, const std::vector<std::size_t>& order) {
   bool same = frame.exact.has_value();
   for (std::size_t k = 0; k < order.size(); ++k) {
@@ -175,11 +177,12 @@ std::string set_velocities(ed::System& system, const Config& config, const Frame
     throw InputError(fmt::format("{}: its velocities are too large for kinetic energies; accepted: finite ones",
                                  config.start_file->file));
   }
-  if (same) return "velocities as they are";
+  if (same) return "velocities unchanged";
   ed::System drawn = system;
   draw_thermal(drawn, static_cast<std::uint64_t>(config.seed));
-  const ed::KineticState freedoms = ed::kinetic_state(system);
-  const std::array<bool, kKinds> has = {true, freedoms.rotational_freedoms > 0, freedoms.spin_freedoms > 0};
+  const ed::KineticState kinetic = ed::kinetic_state(system);
+  const std::array<bool, kKinds> has = {true, kinetic.rotational_degrees_of_freedom > 0,
+                                        kinetic.spin_degrees_of_freedom > 0};
   const bool turns = frame.angular_velocities || frame.angular_momenta;
   const Vector3d drift = mean_velocity(system);
   std::vector<int> numbers;

@@ -2,7 +2,7 @@
 
 #include "base/errors.h"
 #include "base/suggest.h"
-#include "config/values.h"
+#include "config/keys.h"
 #include "io/text_file.h"
 
 #include <fmt/format.h>
@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kLongestSweepFile = 1 << 20;  ///< bytes
-constexpr const char* kChainKey = "system.packing_fraction";
+constexpr const char* kChainKey = kPackingKey;
 constexpr const char* kZipKey = "zip";
 constexpr const char* kValues =
     "a list of values, {from, to, step}, {from, to, count} or {from, to, count, spacing = \"log\"}";
@@ -39,9 +39,9 @@ bool is_own_key(const Entry& entry) {
   return entry.key == "base" || entry.key == "chain" || entry.key == "grid";
 }
 
-/// Keys at the top and sections that only a sweep has; all others are the config's to refuse.
+/// Checks keys at the top and sections that only a sweep has; all others are checked by the config.
 void check_own_names(const TomlDocument& document) {
-  constexpr std::array<std::string_view, 4> kTop = {"seed", "base", "chain", "grid"};
+  constexpr std::array<std::string_view, 4> kTop = {kSeedKey, "base", "chain", "grid"};
   for (const Entry& entry : document.entries) {
     const bool at_the_top = entry.key.find('.') == std::string::npos;
     if (!at_the_top || std::find(kTop.begin(), kTop.end(), entry.key) != kTop.end()) continue;
@@ -64,13 +64,13 @@ void check_own_names(const TomlDocument& document) {
 
 using Renaming = std::function<fs::path(const fs::path&)>;
 
-/// A key of the config, which may be one of a grid: grid[2].start.file is start.file.
+/// Returns the key of the config that a key of a grid stands for: grid[2].start.file is start.file.
 std::string_view config_key(std::string_view key) {
   const std::size_t dot = key.find('.');
   return dot != std::string_view::npos && is_grid(key.substr(0, dot)) ? key.substr(dot + 1) : key;
 }
 
-/// Of all keys that name files, those of [grid.start] too.
+/// Renames the files of all keys that name files, those of [grid.start] too.
 TomlDocument with_files(TomlDocument document, const Renaming& renamed) {
   for (Entry& entry : document.entries) {
     const std::string key(config_key(entry.key));
@@ -101,7 +101,8 @@ TomlDocument config_part(const TomlDocument& document) {
   return base;
 }
 
-/// The config in the file itself, or the one that `base` names; relative names of files are relative to `directory`.
+/// Returns the config in the file itself, or the one that `base` names; relative names of files are relative to
+/// `directory`.
 TomlDocument read_base(const TomlDocument& document, const fs::path& directory) {
   TomlDocument own = config_part(document);
   const Entry* base = document.find("base");
@@ -109,8 +110,9 @@ TomlDocument read_base(const TomlDocument& document, const fs::path& directory) 
   if (base->value.kind != Value::Kind::text || base->value.text.empty()) throw bad(*base, "the name of a config");
   if (!own.entries.empty() || !own.sections.empty()) {
     const std::string& where = own.entries.empty() ? own.sections[0].where : own.entries[0].where;
-    throw InputError(fmt::format("{}: stands beside base = {}; accepted: the config's keys either here or in that file",
-                                 where, base->value.shown));
+    throw InputError(
+        fmt::format("{}: cannot be combined with base = {}; accepted: the config's keys either here or in that file",
+                    where, base->value.shown));
   }
   const fs::path named = base->value.text;
   const fs::path path = directory / named;
@@ -133,7 +135,7 @@ Value number_value(double x, bool integer) {
   return value;
 }
 
-/// A number of a range.
+/// Returns a number of a range.
 double member_number(const Entry& entry, const char* key) {
   const Member* member = entry.value.find(key);
   if (member == nullptr || !is_number(member->value)) throw bad(entry, kValues);
@@ -190,7 +192,7 @@ std::vector<Value> axis_values(const Entry& entry) {
   return entry.value.items;
 }
 
-/// shape.aspect_ratio = .. and [grid.shape] with aspect_ratio = .. are the same.
+/// Returns the entries with full names: shape.aspect_ratio = .. and [grid.shape] with aspect_ratio = .. are the same.
 std::vector<Entry> flattened(const TomlDocument& document, const Entry& entry) {
   if (entry.value.kind != Value::Kind::table || is_range(entry.value)) return {entry};
   std::vector<Entry> entries;
@@ -214,7 +216,7 @@ std::vector<Entry> grid_entries(const TomlDocument& document, const std::string&
   return entries;
 }
 
-/// Lists of keys to be walked together.
+/// Returns the lists of keys whose values change together.
 std::vector<std::vector<std::string>> zipped_keys(const Entry& entry) {
   constexpr const char* kAccepted = "a list of keys of this grid, or a list of such lists";
   const auto keys_of = [&](const Value& list) {
@@ -233,15 +235,15 @@ std::vector<std::vector<std::string>> zipped_keys(const Entry& entry) {
   return lists;
 }
 
-/// Moves the other keys' axes to that of the list's first.
+/// Moves the axes of the other keys to that of the list's first.
 void zip_axes(Grid& grid, const Entry& entry, const std::vector<std::string>& keys) {
   const auto group_of = [&](const std::string& key) {
     const auto found = std::find_if(grid.groups.begin(), grid.groups.end(),
                                     [&](const ZippedAxes& g) { return g.size() == 1 && g[0].key == key; });
     if (found != grid.groups.end()) return found;
     throw InputError(
-        fmt::format("{}: zip names {}, which is no key of this grid that is free; accepted: each of its "
-                    "keys in one list",
+        fmt::format("{}: zip names {}, which is no key of this grid or is in another list; accepted: each "
+                    "of its keys in one list",
                     entry.where, one_line(key, 60)));
   };
   ZippedAxes together;
@@ -293,14 +295,14 @@ std::optional<std::string> read_chain(const TomlDocument& document, const std::v
       for (const Axis& axis : group) {
         if (axis.key != kChainKey) continue;
         if (group.size() == 1) return chain->value.text;
-        throw bad(*chain, fmt::format("no chain along a key that zip walks together with others ({})", axis.where));
+        throw bad(*chain, fmt::format("no chain along a key that zip combines with others ({})", axis.where));
       }
     }
   }
   throw bad(*chain, "a key of the grid");
 }
 
-/// The base config and, without the name of its file, what is the sweep's own.
+/// Returns the base config together with the sweep's own part, without the name of the base's file.
 TomlDocument merged(const TomlDocument& base, const TomlDocument& document) {
   TomlDocument whole = base;
   for (const Entry& entry : document.entries) {
@@ -312,7 +314,7 @@ TomlDocument merged(const TomlDocument& base, const TomlDocument& document) {
   return whole;
 }
 
-/// Keys by their full names: those of sections in a grid too, [grid] shape.aspect_ratio.
+/// Returns the keys by their full names, including those of sections in a grid, [grid] shape.aspect_ratio.
 std::vector<Entry> all_keys(const TomlDocument& document) {
   std::vector<Entry> entries;
   for (const Entry& entry : document.entries) {
@@ -342,7 +344,7 @@ SweepFile read_sweep(const fs::path& path) {
 }
 
 TomlDocument moved(TomlDocument whole, const fs::path& from, const fs::path& to) {
-  // Behind a link ".." is the parent of its target: directories are compared as they are.
+  // After a link ".." is the parent of its target: directories are compared with links resolved.
   const fs::path target = fs::weakly_canonical(absolute_path(to));
   return with_files(std::move(whole), [&](const fs::path& name) {
     const fs::path file = absolute_from(from, name);

@@ -2,6 +2,7 @@
 
 #include "base/errors.h"
 #include "base/suggest.h"
+#include "config/keys.h"
 #include "io/text_file.h"
 
 #include <fmt/format.h>
@@ -21,13 +22,13 @@ namespace fs = std::filesystem;
 /// Longer names of directories are replaced by numbers.
 constexpr std::size_t kLongestName = 120;
 
-/// Of a value with names of files, in messages.
+/// Maximum length of a value with names of files in messages.
 constexpr std::size_t kLongestShown = 300;
 
-/// Steps from here to there are rounded to this many digits: 0.1 + 2 * 0.1 is 0.3. Numbers that agree in them are one.
+/// Number of digits to which steps are rounded: 0.1 + 2 * 0.1 is 0.3. Numbers that agree in them are equal.
 constexpr int kDigits = 12;
 
-/// The last step may miss `to` by this share of a step.
+/// Fraction of a step by which the last step may miss `to`.
 constexpr double kStepSlack = 1e-6;
 
 double rounded(double x) {
@@ -38,7 +39,7 @@ bool is_numeric(const Value& value) {
   return value.kind == Value::Kind::integer || value.kind == Value::Kind::real;
 }
 
-/// Of a value, for the name of a directory: letters, digits, and what shells leave alone.
+/// Returns the part of a directory's name for a value: letters, digits, and characters that are not special in shells.
 std::string name_part(const Value& value) {
   if (value.kind == Value::Kind::real) return fmt::format("{}", value.real);
   std::string text = value.kind == Value::Kind::text ? value.text : toml_text(value);
@@ -57,7 +58,7 @@ std::string name_part(const Value& value) {
   return text;
 }
 
-/// The last parts of the keys, or all of them where two would look the same.
+/// Returns the last parts of the keys, or the whole keys if two would be the same.
 std::vector<std::string> short_keys(const std::vector<Setting>& settings) {
   std::map<std::string_view, int> times;
   for (const Setting& s : settings) ++times[last_part(s.key)];
@@ -76,7 +77,7 @@ std::string point_name(const std::vector<Setting>& settings) {
   return name;
 }
 
-/// "system.packing_fraction = 0.3, shape.aspect_ratio = 2"
+/// Returns "system.packing_fraction = 0.3, shape.aspect_ratio = 2".
 std::string description(const SweepPoint& point) {
   std::string text;
   for (const Setting& s : point.settings) {
@@ -85,7 +86,8 @@ std::string description(const SweepPoint& point) {
   return text;
 }
 
-/// What tells points apart: not the last digits of a number, which are rounding. Integers (seeds) have none.
+/// Returns a text that distinguishes points. The last digits of a number are ignored as rounding; integers (seeds) have
+/// none.
 std::string identity(const Value& value) {
   std::string number = fmt::format("{:.{}g}", value.real, kDigits);
   if (value.kind == Value::Kind::real || (is_numeric(value) && number == fmt::format("{}", value.integer)))
@@ -95,7 +97,7 @@ std::string identity(const Value& value) {
   for (const Value& item : value.items) text += identity(item) + ",";
   return text + "]";
 }
-/// But for one key, if that is named.
+/// Overload for a point; `without`: a key that is ignored.
 std::string identity(const SweepPoint& point, std::string_view without = {}) {
   std::map<std::string, std::string> of_key;
   for (const Setting& s : point.settings) {
@@ -110,8 +112,8 @@ void check_lengths(const ZippedAxes& group) {
   for (const Axis& axis : group) {
     if (axis.values.size() == group[0].values.size()) continue;
     throw InputError(
-        fmt::format("{}: {} has {} values and {} has {}; accepted: lists of one length where zip walks "
-                    "them together",
+        fmt::format("{}: {} has {} values and {} has {}; accepted: lists of equal length for keys that "
+                    "zip combines",
                     axis.where, axis.key, axis.values.size(), group[0].key, group[0].values.size()));
   }
 }
@@ -124,7 +126,8 @@ std::set<std::string> keys_of(const Grid& grid) {
   return keys;
 }
 
-/// Points of different keys could be the same one unnoticed, and would not fit into one table.
+/// Throws for grids with different keys: their points could be equal without being noticed, and would not fit into one
+/// table.
 void check_keys(const std::vector<Grid>& grids) {
   const std::set<std::string> first = keys_of(grids[0]);
   for (const Grid& grid : grids) {
@@ -137,7 +140,7 @@ void check_keys(const std::vector<Grid>& grids) {
     std::set_symmetric_difference(keys.begin(), keys.end(), first.begin(), first.end(), std::back_inserter(differing));
     throw InputError(
         fmt::format("{}: {} is a key of one grid and not of another; accepted: the same keys in every "
-                    "[[grid]], where need be with a single value",
+                    "[[grid]], if necessary with a single value",
                     grid.where, differing[0]));
   }
 }
@@ -153,7 +156,7 @@ std::size_t number_of_points(const Grid& grid) {
   return number;
 }
 
-/// The last group's value changes with every point.
+/// Returns a point; the last group's value changes with every point.
 SweepPoint point_of(const Grid& grid, std::size_t index) {
   SweepPoint point;
   for (std::size_t g = grid.groups.size(); g-- > 0;) {
@@ -174,7 +177,7 @@ SweepPoint point_of(const Grid& grid, std::size_t index) {
   return point;
 }
 
-/// Names that are too long, or the same for two points, give way to numbers.
+/// Replaces names that are too long, or the same for two points, by numbers.
 void name_points(std::vector<SweepPoint>& points) {
   std::map<std::string, int> times;
   for (SweepPoint& point : points) {
@@ -194,12 +197,12 @@ std::string Setting::assignment() const {
 }
 
 bool names_file(std::string_view key) {
-  return key == "start.file" || key == "system.start_from";
+  return key == kStartFileKey || key == kStartFromKey;
 }
 
 Value with_files(Value value, const std::function<fs::path(const fs::path&)>& renamed) {
   const fs::path file = value.text;
-  // An empty name is the run's to refuse.
+  // An empty name is refused by the run.
   if (value.kind == Value::Kind::text && !file.empty() && file.is_relative()) value.text = renamed(file).string();
   for (Value& item : value.items) item = with_files(std::move(item), renamed);
   value.shown = one_line(toml_text(value), kLongestShown);
@@ -218,7 +221,7 @@ const Setting* SweepPoint::find(std::string_view key) const {
 std::vector<SweepPoint> expand(const std::vector<Grid>& grids) {
   check_keys(grids);
   std::vector<SweepPoint> points;
-  std::map<std::string, std::string> seen;  // which grid has the point
+  std::map<std::string, std::string> seen;  // grid that contains the point
   for (const Grid& grid : grids) {
     const std::size_t number = number_of_points(grid);
     if (points.size() + number > kMostPoints) {
@@ -228,7 +231,7 @@ std::vector<SweepPoint> expand(const std::vector<Grid>& grids) {
       SweepPoint point = point_of(grid, k);
       const auto [other, is_new] = seen.try_emplace(identity(point), grid.where);
       if (!is_new) {
-        throw InputError(fmt::format("{}: the point {} is there twice{}; accepted: every point once", grid.where,
+        throw InputError(fmt::format("{}: the point {} occurs twice{}; accepted: every point once", grid.where,
                                      description(point),
                                      other->second == grid.where ? "" : fmt::format(", also in {}", other->second)));
       }
@@ -244,7 +247,7 @@ std::vector<std::optional<std::size_t>> predecessors(const std::vector<SweepPoin
   for (std::size_t k = 0; k < points.size(); ++k) {
     const Setting* setting = points[k].find(key);
     if (!is_numeric(setting->value)) {
-      throw InputError(fmt::format("{}: {} is {}; accepted: numbers, of the key that is chained", setting->where, key,
+      throw InputError(fmt::format("{}: {} is {}; accepted: numbers for the key of the chain", setting->where, key,
                                    setting->value.shown));
     }
     chains[identity(points[k], key)][setting->value.real] = k;

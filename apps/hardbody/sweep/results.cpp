@@ -17,12 +17,12 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// A number as it stands there; empty for null.
+/// Returns a number as printed in the summary; empty for null.
 std::string printed(const Json& json) {
   return json.is_null() ? "" : json.dump();
 }
 
-/// The observables that are numbers: no director, no tensors, no lists by axis.
+/// Returns the observables that are numbers: no director, no tensors, no lists by axis.
 std::vector<PrintedEstimate> scalars_of(const Json& observables) {
   std::vector<PrintedEstimate> list;
   for (const auto& [name, estimate] : observables.items()) {
@@ -65,7 +65,7 @@ Json json_of(const Value& value) {
   }
 }
 
-/// As a field of CSV: texts with commas, quotes or blanks at their ends are quoted.
+/// Returns a field of CSV: texts with commas, quotes or blanks at their ends are quoted.
 std::string field(const std::string& text) {
   if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
   std::string quoted = "\"";
@@ -79,7 +79,7 @@ std::string field(const Value& value) {
   return field(toml_text(value));
 }
 
-/// Names of all, in the order in which they first come.
+/// Returns the names of all, in the order of their first occurrence.
 std::vector<std::string> observable_names(const std::vector<PointRecord>& records) {
   std::vector<std::string> names;
   for (const PointRecord& record : records) {
@@ -91,7 +91,7 @@ std::vector<std::string> observable_names(const std::vector<PointRecord>& record
   return names;
 }
 
-/// Keys have their order from the first grid.
+/// Returns the keys in the order of the first grid.
 std::vector<std::string> keys_of(const std::vector<PointRecord>& records) {
   std::vector<std::string> keys;
   if (records.empty()) return keys;
@@ -112,7 +112,7 @@ std::string header(const std::vector<std::string>& keys, const std::vector<std::
   return text + ",equilibrated,status,message,wall_seconds,collisions_per_second\n";
 }
 
-/// "A: bodies have moved ..; B, C: ..": names that share a reason stand together.
+/// Returns "A: bodies have moved ..; B, C: ..": names with the same reason are listed together.
 std::string missing_text(const std::vector<PrintedEstimate>& observables) {
   std::vector<std::pair<std::string, std::string>> reasons;  // names, reason
   for (const PrintedEstimate& e : observables) {
@@ -177,7 +177,7 @@ std::optional<PointResults> finished_results(const std::filesystem::path& direct
   } catch (const Json::exception&) {
     const std::string name = directory.filename().string();
     throw std::runtime_error(
-        fmt::format("{}/{} is not one that a run has written; accepted: delete the directory {}, and the same command "
+        fmt::format("{}/{} was not written by a run; accepted: delete the directory {}, and the same command "
                     "runs the point again",
                     name, kSummaryFile, name));
   }

@@ -19,7 +19,7 @@
 namespace hardbody {
 namespace {
 
-/// This very file, also when another one has been installed under its name since.
+/// This file itself, even if another one has been installed under its name since.
 constexpr const char* kThisProgram = "/proc/self/exe";
 constexpr int kNotStarted = 127;
 constexpr std::size_t kMostSaid = 4096;  ///< bytes of stderr that are kept
@@ -28,12 +28,12 @@ std::runtime_error cannot_start(int error) {
   return std::runtime_error(fmt::format("a process cannot be started: {}", std::strerror(error)));
 }
 
-/// Between fork and exec: only what is safe there.
+/// Runs between fork and exec: only functions that are safe there are called.
 [[noreturn]] void become_worker(const char* directory, char* const* arguments, int errors, ::pid_t parent) {
   (void)::setpgid(0, 0);
   (void)::prctl(PR_SET_PDEATHSIG, SIGTERM);
   const int nothing = ::open("/dev/null", O_RDWR);
-  // The parent may have died before it was asked to tell of that.
+  // The parent may have died before its death could be signalled.
   const bool ready = ::getppid() == parent && ::chdir(directory) == 0 && nothing >= 0 &&
                      ::dup2(nothing, STDIN_FILENO) >= 0 && ::dup2(nothing, STDOUT_FILENO) >= 0 &&
                      ::dup2(errors, STDERR_FILENO) >= 0;

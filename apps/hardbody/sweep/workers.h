@@ -1,6 +1,6 @@
 #pragma once
 
-/// Other processes of this very program, a few at a time.
+/// Other processes of this program, a few at a time.
 
 #include <cstddef>
 #include <filesystem>
@@ -11,27 +11,27 @@
 
 namespace hardbody {
 
-/// How a process has ended.
+/// End of a process.
 struct WorkerEnd {
-  int id = 0;             ///< as it was started with
+  int id = 0;             ///< id given to start()
   int status = 0;         ///< exit status, or 128 + the signal that ended it
-  std::string last_line;  ///< of what it said on stderr: why it failed
+  std::string last_line;  ///< last line on stderr, which gives the reason of a failure
 };
 
-/// Starts the program again with other arguments and waits for its processes. Their stdout goes nowhere, of stderr the
-/// last line is kept. A process is in a group of its own, so that Ctrl-C reaches it only by way of `signal_all`, and it
-/// gets SIGTERM if this one dies.
+/// Starts the program with other arguments and waits for its processes. Their stdout is discarded, the last line of
+/// stderr is kept. Each process is in a group of its own, so that Ctrl-C reaches it only through `signal_all`, and it
+/// gets SIGTERM if this process dies.
 class Workers {
  public:
   Workers() = default;
-  ~Workers();  ///< ends those that still run by SIGTERM, and waits
+  ~Workers();  ///< ends running processes by SIGTERM, and waits for them
   Workers(const Workers&) = delete;
   Workers& operator=(const Workers&) = delete;
 
-  /// In that directory. Throws std::runtime_error if the system has no more processes.
+  /// Starts a process in this directory. Throws std::runtime_error if the system cannot create it.
   void start(int id, const std::filesystem::path& directory, const std::vector<std::string>& arguments);
 
-  /// Those that have ended since the last call; waits for the first one, `milliseconds` at the most.
+  /// Returns the processes that have ended since the last call; waits for the first one, at most `milliseconds`.
   std::vector<WorkerEnd> ended(int milliseconds);
 
   void signal_all(int signal) const;
@@ -42,7 +42,7 @@ class Workers {
   struct Worker {
     int id;
     ::pid_t process;
-    int errors;  ///< the reading end of its stderr; -1: at its end
+    int errors;  ///< reading end of its stderr; -1: closed
     std::string said;
   };
 

@@ -12,19 +12,19 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// "A" to "Z", "AA", ...: what other programs call types.
+/// Returns "A" to "Z", "AA", ...: names of types in other programs.
 std::string letters(std::size_t k) {
   std::string name(1, static_cast<char>('A' + k % 26));
   return k < 26 ? name : letters(k / 26 - 1) + name;
 }
 
-/// The body axis that S is about, in the world.
+/// Returns the body axis whose order S measures, in the world.
 Vector3d axis_of(const ed::System& system, int i) {
   const int axis = ed::symmetry_axis(system.species_of(i).shape).value_or(2);
   return system.bodies[static_cast<std::size_t>(i)].rotation.col(axis);
 }
 
-/// Relative difference of edges of a cube that is rounding to 32 bits.
+/// Relative difference of edges of a cube that counts as rounding to 32 bits.
 constexpr double kSameLength = 1e-5;
 
 }  // namespace

@@ -21,7 +21,7 @@ using namespace std::string_view_literals;
 constexpr std::uint64_t kLongestBeginning = 4096;
 constexpr std::string_view kGsdBeginning = "\xDF\x65\xDF\x65"sv;
 
-/// A format that is told by some of its first bytes.
+/// Format that is recognised by some of its first bytes.
 struct Format {
   std::size_t place;
   std::string_view bytes;
@@ -30,19 +30,19 @@ struct Format {
 };
 
 constexpr std::array kFormats = {
-    Format{0, "\x1F\x8B"sv, "is compressed by gzip", "gunzip makes one of it"},
-    Format{0, "\x28\xB5\x2F\xFD"sv, "is compressed by zstd", "unzstd makes one of it"},
+    Format{0, "\x1F\x8B"sv, "is compressed by gzip", "gunzip unpacks it"},
+    Format{0, "\x28\xB5\x2F\xFD"sv, "is compressed by zstd", "unzstd unpacks it"},
     Format{0,
            "\xFD"
            "7zXZ"sv,
-           "is compressed by xz", "unxz makes one of it"},
-    Format{0, "BZh"sv, "is compressed by bzip2", "bunzip2 makes one of it"},
-    Format{0, "PK\x03\x04"sv, "is a zip archive", "unzip takes the files out of it"},
-    Format{8, "DUMPATOM"sv, "is a binary LAMMPS dump", "LAMMPS's binary2txt makes one of it"},
-    Format{8, "DUMPCUSTOM"sv, "is a binary LAMMPS dump", "LAMMPS's binary2txt makes one of it"},
-    Format{0, "CDF"sv, "is a NetCDF file", "OVITO exports one"},
-    Format{0, "\x89HDF"sv, "is an HDF5 file", "OVITO exports one"},
-    Format{4, "CORD"sv, "is a DCD file", "OVITO exports one, with the topology beside it"},
+           "is compressed by xz", "unxz unpacks it"},
+    Format{0, "BZh"sv, "is compressed by bzip2", "bunzip2 unpacks it"},
+    Format{0, "PK\x03\x04"sv, "is a zip archive", "unzip unpacks it"},
+    Format{8, "DUMPATOM"sv, "is a binary LAMMPS dump", "LAMMPS's binary2txt converts it"},
+    Format{8, "DUMPCUSTOM"sv, "is a binary LAMMPS dump", "LAMMPS's binary2txt converts it"},
+    Format{0, "CDF"sv, "is a NetCDF file", "OVITO can export one"},
+    Format{0, "\x89HDF"sv, "is an HDF5 file", "OVITO can export one"},
+    Format{4, "CORD"sv, "is a DCD file", "OVITO can export one, with the topology beside it"},
 };
 
 std::string_view first_line(std::string_view& text) {
@@ -54,9 +54,9 @@ std::string_view first_line(std::string_view& text) {
   return line;
 }
 
-/// Text formats of other programs by their first lines; nothing for others.
+/// Recognises text formats of other programs by their first lines; nullopt for others.
 std::optional<Format> text_format(std::string_view text) {
-  constexpr const char* kExport = "OVITO exports one";
+  constexpr const char* kExport = "OVITO can export one";
   std::string_view rest = text;
   const std::string_view first = first_line(rest);
   const std::string_view second = first_line(rest);

@@ -18,13 +18,13 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Bytes of all frames in memory.
+/// Maximum number of bytes of all frames in memory.
 constexpr double kMostMemory = 8e9;
 constexpr double kMemoryOfABody = 700;
-/// Relative difference of two sizes, masses or boxes that are the same, as text or 32-bit numbers.
+/// Relative difference of two sizes, masses or boxes that are regarded as the same, as text or 32-bit numbers.
 constexpr double kSame = 1e-6;
 
-/// Lines about frames: each once, with the first frame that it is of.
+/// Lines about frames: each once, with the first frame to which it applies.
 class Notices {
  public:
   void add(const std::vector<std::string>& lines, std::uint64_t frame) {
@@ -59,7 +59,8 @@ class Notices {
   std::vector<Notice> list_;
 };
 
-/// Whether a frame's orientations say anything: of bodies whose shape has an orientation, or that are turned.
+/// Returns whether a frame's orientations are meaningful: for bodies whose shape has an orientation, or that are
+/// rotated.
 bool says_orientations(const Frame& frame) {
   const auto turned = [](const FrameBody& b) { return b.rotation != Eigen::Matrix3d::Identity(); };
   const auto turnable = [](const FrameType& t) { return t.shape && !ed::is_sphere(*t.shape); };
@@ -80,8 +81,8 @@ bool same_shape(const std::optional<ed::BodyShape>& a, const std::optional<ed::B
   return (ed::half_extents(*b) - h).norm() <= kSame * h.norm();
 }
 
-/// The body axis u: as in a run, the axis of revolution of bodies that are of revolution by shape and moments; nothing
-/// for others.
+/// Returns the body axis u: as in a run, the axis of revolution of bodies that are of revolution by shape and moments;
+/// nullopt for others.
 std::optional<int> axis_of(const Frame& frame, const FrameBody& body) {
   const std::optional<ed::BodyShape>& shape = frame.types[body.type].shape;
   const std::optional<int> axis = shape ? ed::symmetry_axis(*shape) : std::nullopt;
@@ -114,11 +115,11 @@ class Reading {
   StoredTrajectory result_;
   Frame first_;
   std::vector<std::size_t> first_order_;
-  std::vector<std::size_t> order_;  ///< the bodies of the frame at hand by their groups
+  std::vector<std::size_t> order_;  ///< bodies of the current frame by their groups
   Unwrapping unwrapping_;
   Notices notices_;
   bool ids_ = true;
-  std::size_t known_orientations_ = 0;  ///< frames in which they are
+  std::size_t known_orientations_ = 0;  ///< number of frames in which orientations are known
   std::size_t known_velocities_ = 0;
   bool say_orientations_ = false;
 };
@@ -126,14 +127,14 @@ class Reading {
 std::vector<std::uint64_t> Reading::frames_with_positions() {
   result_.in_file = static_cast<std::size_t>(reader_.frame_count());
   if (result_.in_file == 0) {
-    throw InputError(fmt::format("{}: has no whole frame; accepted: a file with frames", reader_.name()));
+    throw InputError(fmt::format("{}: has no complete frame; accepted: a file with frames", reader_.name()));
   }
   std::vector<std::uint64_t> list;
   for (std::uint64_t k = 0; k < reader_.frame_count(); ++k) {
     if (reader_.has_positions(k)) list.push_back(k);
   }
   if (list.empty())
-    throw InputError(fmt::format("{}: no frame has positions; accepted: some that have", reader_.name()));
+    throw InputError(fmt::format("{}: no frame has positions; accepted: frames with positions", reader_.name()));
   result_.without_positions = result_.in_file - list.size();
   return list;
 }
@@ -143,8 +144,8 @@ void Reading::check_memory(std::size_t frames) const {
       static_cast<double>(first_.bodies.size()) * static_cast<double>(frames) / asked_.every * kMemoryOfABody;
   if (bytes <= kMostMemory) return;
   throw InputError(
-      fmt::format("{}: {} frames of {} bodies take {:.0f} GB of memory; accepted: at most {:.0f} GB, with "
-                  "--every N only each N-th of them",
+      fmt::format("{}: {} frames of {} bodies take {:.0f} GB of memory; accepted: at most {:.0f} GB; "
+                  "--every N uses only every N-th of them",
                   reader_.name(), frames, first_.bodies.size(), bytes / 1e9, kMostMemory / 1e9));
 }
 
@@ -155,7 +156,7 @@ void Reading::set_order(const Frame& frame) {
                    [&](std::size_t a, std::size_t b) { return frame.bodies[a].group < frame.bodies[b].group; });
 }
 
-/// The bodies of the first frame in the order of their groups, and what each group is.
+/// Determines the groups and the order of the bodies from the first frame.
 void Reading::read_groups() {
   ed::StoredFramesOptions& options = result_.options;
   double volume = 0;
@@ -177,11 +178,11 @@ void Reading::read_groups() {
   }
 }
 
-/// Body n of the order is the one that it was in the first frame.
+/// Checks that body n of the order is the same as in the first frame.
 void Reading::check_body(const Frame& frame, std::uint64_t k, std::size_t n) const {
   const FrameBody& body = frame.bodies[order_[n]];
   const FrameBody& before = first_.bodies[first_order_[n]];
-  const char* accepted = "bodies that stay what they are";
+  const char* accepted = "bodies that do not change";
   const std::string which = frame.ids ? fmt::format("body {:.17g}", body.id) : fmt::format("body {} of its type", n);
   const FrameType& type = frame.types[body.type];
   const FrameType& type_before = first_.types[before.type];
@@ -212,7 +213,7 @@ void Reading::check_frame(const Frame& frame, std::uint64_t k) const {
         "one box");
   }
   if ((frame.middle - first_.middle).cwiseAbs().maxCoeff() > kSame * first_.box.x() + kSame * first_.middle.norm()) {
-    throw bad(k, "its box is at another place than that of the first frame", "bounds that stay");
+    throw bad(k, "its box is not where that of the first frame is", "constant bounds");
   }
   if (frame.bodies.size() != first_.bodies.size()) {
     throw bad(k, fmt::format("has {} bodies, the first frame {}", frame.bodies.size(), first_.bodies.size()),
@@ -242,7 +243,7 @@ void Reading::keep(const Frame& frame, double time) {
   say_orientations_ = say_orientations_ || says_orientations(frame);
 }
 
-/// Keeps what all frames know, and what they are unwrapped by.
+/// Keeps the quantities that all frames contain, and the source of unwrapped positions.
 void Reading::finish(std::size_t used) {
   const std::size_t count = result_.frames.size();
   result_.notices = notices_.lines(used);

@@ -11,11 +11,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Edges of the box by which a position outside it is still one that has not been wrapped yet, or rounding.
+/// Largest distance of a position outside the box, in edges, that is regarded as not wrapped yet, or as rounding.
 constexpr double kNotWrappedYet = 0.25;
 constexpr double kRounding = 1e-3;
 /// Number of moves beyond half an edge, all of them within kBelievedMove of whole edges, from which on stored positions
-/// look wrapped: a true move is so near to whole edges by a chance of less than 1/2.
+/// are regarded as wrapped: a true move is that near to whole edges with a probability of less than 1/2.
 constexpr std::size_t kManyJumps = 10;
 /// Images that are all 0 are believed as long as bodies that jump within the box have at least this chance not to leave
 /// it.

@@ -30,8 +30,8 @@ constexpr std::string_view kBeforeTimes =
     "<PolyData TimeValues=\"";
 constexpr std::string_view kEnd = "\n</AppendedData>\n</VTKFile>\n";
 
-/// An array of every frame, in the order of their bytes. Every frame has all of them, also those that do not change:
-/// VTK's reader loses arrays without a time step when the step is changed.
+/// Array of every frame, in the order of their bytes. Every frame has all of them, also those that do not change: VTK's
+/// reader loses arrays without a time step when the step is changed.
 struct Array {
   const char* name;
   const char* type;
@@ -46,13 +46,13 @@ constexpr std::array<Array, 6> kArrays = {{
     {"position", "Float32", 3},
 }};
 constexpr std::uint64_t kNumberBytes = 4;
-constexpr std::uint64_t kLengthBytes = 8;  ///< of an array's length, before it
+constexpr std::uint64_t kLengthBytes = 8;  ///< bytes of an array's length, which precedes it
 
 std::uint64_t array_bytes(const Array& array, std::uint64_t bodies) {
   return kLengthBytes + kNumberBytes * array.components * bodies;
 }
 
-/// The elements of array k, one a frame.
+/// Writes the elements of array k, one for each frame.
 void put_elements(fmt::memory_buffer& text, std::size_t k, std::uint64_t bodies, std::uint64_t capacity) {
   std::uint64_t before = 0;
   std::uint64_t frame = 0;
@@ -68,7 +68,7 @@ void put_elements(fmt::memory_buffer& text, std::size_t k, std::uint64_t bodies,
   }
 }
 
-/// All up to the first array's bytes, without a time.
+/// Returns everything up to the first array's bytes, without times.
 std::string head_text(std::uint64_t bodies, std::uint64_t capacity) {
   fmt::memory_buffer text;
   const auto out = std::back_inserter(text);
@@ -89,8 +89,8 @@ Vector3d semi_axes(const Frame& frame, const FrameBody& body) {
   return type.shape ? ed::half_extents(*type.shape) : Vector3d::Zero();
 }
 
-/// What makes the ellipsoid of a unit sphere: symmetric, so that it is the same with the eigenvectors or the columns
-/// taken for the axes.
+/// Returns the tensor that transforms a unit sphere into the ellipsoid: symmetric, so that it is the same whether
+/// eigenvectors or columns are taken for the axes.
 Matrix3d shape_tensor(const Frame& frame, const FrameBody& body) {
   return body.rotation * semi_axes(frame, body).asDiagonal() * body.rotation.transpose();
 }
@@ -100,7 +100,7 @@ Eigen::Vector4d quaternion(const FrameBody& body) {
   return {q.w(), q.x(), q.y(), q.z()};
 }
 
-/// An array with its length before it.
+/// Writes an array with its length before it.
 template <class Get>
 void put_array(Writer& writer, const Frame& frame, const Array& array, const Get& get) {
   writer(std::uint64_t{array_bytes(array, frame.bodies.size()) - kLengthBytes});
@@ -143,7 +143,7 @@ void VtkWriter::append(const Frame& frame) {
   const std::string head = first ? head_text(frame.bodies.size(), capacity_) : "";
   const std::string bytes = frame_bytes(frame);
   if (first) {
-    write_file(path_, head + bytes + std::string(kEnd));  // renamed: never a head that is not whole
+    write_file(path_, head + bytes + std::string(kEnd));  // renamed, so that readers never see an incomplete head
   } else {
     write_at(path_, mark_.bytes, bytes + std::string(kEnd), Flush::later);
   }

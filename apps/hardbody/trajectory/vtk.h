@@ -7,15 +7,15 @@
 
 namespace hardbody {
 
-/// Trajectories as one VTK XML file of points, all frames as its time steps, which ParaView reads. At each point:
-/// `shape`, the tensor that makes the ellipsoid of these semi-axes of a sphere of radius 1 (for ParaView's Tensor
-/// Glyph), `semi_axes`, `orientation` (w, x, y, z), `velocity`, `species` (of the config, from 0).
+/// Writer of trajectories as one VTK XML file of points, all frames as its time steps, which ParaView reads. Data of
+/// each point: `shape`, the tensor that transforms a sphere of radius 1 into the ellipsoid of these semi-axes (for
+/// ParaView's Tensor Glyph), `semi_axes`, `orientation` (w, x, y, z), `velocity`, `species` (of the config, from 0).
 ///
-/// The head has room for all frames from the start, and says of each array where it will be; a frame's time is filled
-/// in when its arrays are there.
+/// The head has room for all frames from the start, and contains the future position of each array; a frame's time is
+/// filled in when its arrays are written.
 class VtkWriter final : public FrameFile {
  public:
-  /// Of `capacity` frames at most. Nothing is written yet.
+  /// Prepares a file of at most `capacity` frames. Nothing is written yet.
   VtkWriter(std::filesystem::path path, std::uint64_t capacity);
 
   void open(FileMark mark) override;

@@ -6,14 +6,14 @@
 
 namespace hardbody {
 
-/// How far a file of frames goes.
+/// Length of a file of frames.
 struct FileMark {
   std::uint64_t frames = 0;
-  std::uint64_t bytes = 0;  ///< without what only ends the file; 0: there is none
+  std::uint64_t bytes = 0;  ///< length without a trailer; 0: there is no file
 };
 
-/// A file to which one frame after the other is appended. What it holds after so many frames depends on them alone,
-/// not on how often it was cut back and gone on with.
+/// File to which frames are appended. Its content after k frames depends on these frames alone, not on how often it was
+/// truncated and continued.
 class FrameFile {
  public:
   FrameFile() = default;
@@ -21,11 +21,12 @@ class FrameFile {
   FrameFile(const FrameFile&) = delete;
   FrameFile& operator=(const FrameFile&) = delete;
 
-  /// Goes on from `mark`: cuts off what follows. Before the first frame nothing is written. Throws std::runtime_error.
+  /// Continues from `mark`: cuts off what follows. Nothing is written before the first frame. Throws
+  /// std::runtime_error.
   virtual void open(FileMark mark) = 0;
 
-  /// Not always on the disk when this returns. Throws std::runtime_error if it cannot be written; what was there is
-  /// kept.
+  /// Appends a frame, not necessarily flushed to the disk when this returns. Throws std::runtime_error if it cannot be
+  /// written; the previous content is kept.
   virtual void append(const Frame& frame) = 0;
 
   virtual FileMark mark() const = 0;

@@ -13,37 +13,38 @@ namespace ed {
 
 /// Reasons for which an Estimate has no value.
 enum class MissingReason {
-  not_measured,              ///< nothing has been measured, or not even one block of it
-  no_collisions,             ///< no body has met another
+  not_measured,              ///< no data, not even one complete block
+  no_collisions,             ///< no collisions have happened
   lags_too_short,            ///< fewer than two lags to fit, or no time origin followed up to the longest one
   ballistic,                 ///< displacements still grow faster than those of diffusion at the longest lag
   subdiffusive,              ///< displacements still grow more slowly than those of diffusion at the longest lag
   not_displaced,             ///< bodies have not moved far enough for diffusion
   not_turned,                ///< bodies have not turned far enough for rotational diffusion
   not_decayed,               ///< the correlation is still above 1/e at the longest lag
-  decayed_early,             ///< the correlation is below 1/e at the first lag
+  decayed_early,             ///< the correlation is already below 1/e at the first lag
   decayed_before_diffusion,  ///< the correlation falls to 1/e before motion is diffusive
-  end_of_ballistic_unknown,  ///< nobody knows from which lag on motion is diffusive
-  no_fit,                    ///< the stretched exponential that fits best is none: see fit_decay
-  tau_unsteady,              ///< the correlation has come down little, and tau depends on the lags that are fitted
-  meaningless,               ///< the quantity has no meaning: nothing turns the bodies
+  end_of_ballistic_unknown,  ///< the lag at which ballistic motion ends is not known
+  no_fit,                    ///< the best fit is not a stretched exponential: see fit_decay
+  tau_unsteady,              ///< the correlation has decayed little, and tau depends on the fitted lags
+  meaningless,               ///< the quantity has no meaning: nothing changes the bodies' rotation
   no_such_axis,              ///< bodies of revolution have no third axis
-  not_told,                  ///< the file does not tell
+  not_told,                  ///< the stored frames do not contain the data
   not_unwrapped,             ///< positions are wrapped, or may be, and bodies move far between frames
-  not_followed,              ///< frames do not say which body is which
+  not_followed,              ///< frames do not identify the bodies
 };
 
-/// The enumerator's name.
+/// Returns the enumerator's name.
 ED_EXPORT const char* to_string(MissingReason reason);
 
 /// Reason for which a value is missing, and how far motion has come.
 struct Missing {
   MissingReason reason = MissingReason::not_measured;
-  /// not_displaced: root of the MSD at the first lag of the fit; not_turned: the same of the rotation at the longest
-  /// lag, in rad; not_decayed, tau_unsteady: the correlation there; ballistic, subdiffusive: the power of time that
-  /// displacements grow with. NaN for other reasons.
+  /// Value reached, which depends on the reason. not_displaced: root of the MSD at the first lag of the fit;
+  /// not_turned: root of the rotational MSD at the longest lag, in rad; not_decayed, tau_unsteady: the correlation at
+  /// the longest lag; ballistic, subdiffusive: the exponent of the power of time with which displacements grow. NaN for
+  /// other reasons.
   double reached = std::numeric_limits<double>::quiet_NaN();
-  /// not_displaced, not_turned: the lag of `reached`. NaN for other reasons.
+  /// Lag of `reached` for not_displaced and not_turned; NaN for other reasons.
   double lag = std::numeric_limits<double>::quiet_NaN();
 };
 
@@ -51,14 +52,14 @@ struct Missing {
 /// no diffusion yet". `length_unit` follows the distance.
 ED_EXPORT std::string describe(const Missing& missing, std::string_view length_unit = "l");
 
-/// Whether longer lags, of a longer run, may give the value.
+/// Returns whether longer lags, from a longer run, may give the value.
 ED_EXPORT bool longer_lags_help(MissingReason reason);
 
-/// A measured value and its standard error. A NaN value is missing, for the reason given.
+/// Measured value with its standard error. A NaN value is missing, for the reason given.
 struct Estimate {
   double value = std::numeric_limits<double>::quiet_NaN();
   double error = std::numeric_limits<double>::quiet_NaN();
-  Missing missing{};  ///< without meaning where there is a value
+  Missing missing{};  ///< meaningless if there is a value
 
   /// Makes an estimate without a value.
   static constexpr Estimate none(Missing why) {
@@ -68,26 +69,26 @@ struct Estimate {
   }
 };
 
-/// Mean and standard error of the mean, sqrt(s^2 / n), of independent values; error NaN for fewer than two, both NaN
-/// for none.
+/// Returns mean and standard error of the mean, sqrt(s^2 / n), of independent values. The error is NaN for fewer than
+/// two values, both are NaN for none.
 ED_EXPORT Estimate mean_of_blocks(std::span<const double> values);
 
-/// Least-squares slope of y against x; nothing for fewer than two different x.
+/// Returns the least-squares slope of y against x; nullopt for fewer than two different x.
 ED_EXPORT std::optional<double> slope(std::span<const double> x, std::span<const double> y);
 
-/// The first x at which y, falling, crosses `level`: quadratic interpolation through the three nearest points; nothing
-/// if it does not.
+/// Returns the first x at which y, falling, crosses `level`, by quadratic interpolation through the three nearest
+/// points; nullopt if it does not.
 ED_EXPORT std::optional<double> first_crossing(std::span<const double> x, std::span<const double> y, double level);
 
-/// A exp[-(t / tau)^beta], the paper's fit of C2.
+/// Stretched exponential A exp[-(t / tau)^beta], the paper's fit of C2.
 struct StretchedExponential {
   double amplitude;  ///< dimensionless
-  double tau;        ///< in the unit of t
+  double tau;        ///< time constant, in the unit of t
   double beta;       ///< dimensionless; 1 for simple diffusion
 };
 
-/// Least-squares fit (Levenberg-Marquardt); y > 0 is not needed. Nothing for fewer than four points, or if the fit does
-/// not converge to 0.1 < beta < 3 and tau > 0.
+/// Returns the least-squares fit (Levenberg-Marquardt); y may be <= 0. Returns nullopt for fewer than four points, or
+/// if the fit does not converge to 0.1 < beta < 3 and tau > 0.
 ED_EXPORT std::optional<StretchedExponential> fit_stretched_exponential(std::span<const double> t,
                                                                         std::span<const double> y);
 

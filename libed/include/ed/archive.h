@@ -1,15 +1,16 @@
 #pragma once
 
-/// Values as bytes and back, bit for bit: what exact restarts are made of.
+/// @file
+/// Serialisation of values to bytes and back, bit for bit, for exact restarts.
 ///
 /// A class names its members once, for both directions, in one of
 ///
 ///     template <class Archive, class Self> static void fields(Archive& archive, Self& self);  // in the class
 ///     template <class Archive, Is<Type> T> void fields(Archive& archive, T& value);           // beside T
 ///
-/// by archive(self.a_, self.b_): a Writer takes them, a Reader sets them. Numbers and enumerators are their own bytes,
-/// little-endian; containers are preceded by their length in 8 bytes; nothing is padded. What bytes cannot be is looked
-/// for where members are named, by `expect`: a Reader never trusts a length, and a class never an index.
+/// by archive(self.a_, self.b_): a Writer takes them, a Reader sets them. Numbers and enumerators are stored as in
+/// memory, little-endian; containers are preceded by their length in 8 bytes; there is no padding. Invalid values are
+/// rejected where members are named, by `expect`: a Reader never trusts a length, and a class never an index.
 
 #include <Eigen/Core>
 
@@ -34,19 +35,22 @@ namespace ed::archive {
 
 static_assert(std::endian::native == std::endian::little, "states are written as they are in memory");
 
-/// T is U or const U.
+/// True if T is U or const U.
 template <class T, class U>
 concept Is = std::same_as<std::remove_const_t<T>, U>;
 
+/// Type that is stored as its own bytes.
 template <class T>
 concept Scalar = std::is_arithmetic_v<T> || std::is_enum_v<T>;
 
+/// Eigen matrix of fixed size.
 template <class T>
 concept FixedMatrix = requires {
   T::SizeAtCompileTime;
 }
 &&(T::SizeAtCompileTime > 0);
 
+/// Container that elements are appended to.
 template <class T>
 concept Sequence = requires(T& x) {
   x.clear();
@@ -54,38 +58,41 @@ concept Sequence = requires(T& x) {
   x.size();
 };
 
-/// What a value is read into.
+/// Makes the object that a value is read into.
 template <class T>
 struct Blank {
-  static T make() { return T{}; }
+  static T make() { return T{}; }  ///< makes the object
 };
 
-/// Takes bytes piece by piece.
+/// Receives bytes piece by piece.
 using Sink = std::function<void(std::string_view)>;
 
-/// Appends values to bytes, which it keeps, or hands on to a sink: large states need no room of their own then.
+/// Appends values to a buffer of bytes. With a sink the buffer is handed on piece by piece, so that large states need
+/// no memory of their own.
 class Writer {
  public:
-  static constexpr bool kReads = false;
+  static constexpr bool kReads = false;  ///< direction of this archive
 
   Writer() = default;
-  /// flush() hands on the last piece.
+  /// Constructs a writer that hands its bytes to `sink`; flush() hands on the last piece.
   explicit Writer(Sink sink) : sink_(std::move(sink)) {}
 
+  /// Appends values.
   template <class... T>
   void operator()(const T&... values) {
     (put(values), ...);
   }
 
-  /// Bytes as they are.
+  /// Appends bytes unchanged.
   void raw(std::string_view bytes) { raw(bytes.data(), bytes.size()); }
 
+  /// Hands all bytes to the sink.
   void flush() {
     sink_(bytes_);
     bytes_.clear();
   }
 
-  /// Without a sink: all of it.
+  /// Returns all bytes written; only for a writer without a sink.
   std::string take() { return std::move(bytes_); }
 
  private:
@@ -133,20 +140,22 @@ class Writer {
   Sink sink_;
 };
 
-/// Takes values off the front of bytes, which must outlive it. Throws std::invalid_argument where they end too early or
-/// cannot be what they should be.
+/// Takes values off the front of bytes, which must outlive it. Throws std::invalid_argument if they end too early or
+/// have an invalid value.
 class Reader {
  public:
-  static constexpr bool kReads = true;
+  static constexpr bool kReads = true;  ///< direction of this archive
 
+  /// Constructs a reader of these bytes.
   explicit Reader(std::string_view bytes) : bytes_(bytes) {}
 
+  /// Reads values in the order in which they were written.
   template <class... T>
   void operator()(T&... values) {
     (get(values), ...);
   }
 
-  /// The next value.
+  /// Reads the next value.
   template <class T>
   T value() {
     T result = Blank<T>::make();
@@ -154,7 +163,7 @@ class Reader {
     return result;
   }
 
-  /// The next `size` bytes.
+  /// Returns the next `size` bytes.
   std::string_view raw(std::uint64_t size) {
     if (size > bytes_.size()) throw std::invalid_argument("state: is cut off");
     const std::string_view taken = bytes_.substr(0, size);
@@ -162,10 +171,10 @@ class Reader {
     return taken;
   }
 
-  /// Bytes that are left.
+  /// Returns the number of bytes left.
   std::size_t left() const { return bytes_.size(); }
 
-  /// Nothing may follow.
+  /// Throws std::invalid_argument if bytes are left.
   void finish() const {
     if (!bytes_.empty()) throw std::invalid_argument("state: is longer than it should be");
   }
@@ -186,7 +195,7 @@ class Reader {
     } else if constexpr (std::same_as<T, std::string>) {
       value = raw(this->value<std::uint64_t>());
     } else if constexpr (Sequence<T>) {
-      // One by one, so that memory is only taken for what is there.
+      // One by one, so that a corrupt length cannot allocate more than the bytes hold.
       value.clear();
       for (auto k = this->value<std::uint64_t>(); k > 0; --k) get(value.emplace_back());
     } else if constexpr (requires { T::fields(*this, value); }) {
@@ -207,7 +216,7 @@ class Reader {
   template <class... T>
   void get(std::variant<T...>& value) {
     const auto index = this->value<std::uint8_t>();
-    if (index >= sizeof...(T)) throw std::invalid_argument("state: an alternative that there is not");
+    if (index >= sizeof...(T)) throw std::invalid_argument("state: an unknown alternative");
     choose(value, index, std::index_sequence_for<T...>());
   }
   template <class... T, std::size_t... I>
@@ -218,7 +227,8 @@ class Reader {
   std::string_view bytes_;
 };
 
-/// What read members must fulfil; of members that are written it is known.
+/// Throws std::invalid_argument if a condition on read members does not hold. Does nothing when writing, where it
+/// always holds.
 template <class Archive>
 void expect(const Archive& /*archive*/, bool holds, const char* what) {
   if constexpr (Archive::kReads) {
@@ -226,14 +236,14 @@ void expect(const Archive& /*archive*/, bool holds, const char* what) {
   }
 }
 
-/// Takes the version of a format, which must be this one.
+/// Reads the version of a format and throws std::invalid_argument unless it is `known`.
 inline void check_format(Reader& reader, std::uint32_t known) {
   const auto format = reader.value<std::uint32_t>();
   if (format == known) return;
   throw std::invalid_argument("state: has format " + std::to_string(format) + ", known is " + std::to_string(known));
 }
 
-/// A value by itself, as bytes.
+/// Returns the bytes of a single value.
 template <class T>
 std::string bytes_of(const T& value) {
   Writer writer;

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file
-/// Members of the options of observables and of equilibration, for archives (archive.h).
+/// Serialisation of the options of observables and of equilibration (archive.h).
 
 #include <ed/archive.h>
 #include <ed/equilibration.h>

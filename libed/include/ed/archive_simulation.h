@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file
-/// Members of what a simulation returns, for archives (archive.h).
+/// Serialisation of what a simulation returns (archive.h).
 
 #include <ed/archive_system.h>
 #include <ed/simulation.h>
@@ -39,7 +39,7 @@ void fields(Archive& archive, T& call) {
   expect(archive, call.status <= geom::DistanceStatus::singular, "a distance's status");
 }
 
-/// All but the shapes, which may be a user's own.
+/// Archives all members except the shapes, which may be user-defined.
 template <class Archive, Is<FailedPair> T>
 void fields_but_shapes(Archive& archive, T& pair) {
   archive(pair.reason, pair.motion_i, pair.motion_j, pair.time, pair.i, pair.j, pair.finder, pair.eps_d, pair.distance);
@@ -53,7 +53,7 @@ void fields(Archive& archive, T& pair) {
   fields_but_shapes(archive, pair);
 }
 
-/// Without the seed, which is code.
+/// Archives all members except the seed, which is code.
 template <class Archive, Is<ContactOptions> T>
 void fields(Archive& archive, T& options) {
   archive(options.finder, options.eps_d, options.distance, options.root);

@@ -2,8 +2,8 @@
 
 namespace ed {
 
-/// Which arithmetic a run is made with: raised with every change that alters bits of some run (those that the hashes of
-/// tests/golden show, and others). A state goes on with the same arithmetic or not at all.
+/// Version of the arithmetic of a run, raised with every change that alters bits of some run (those whose hashes are in
+/// tests/golden, and others). A saved state can only be resumed with the same version.
 inline constexpr int kArithmetic = 13;
 
 }  // namespace ed

@@ -1,10 +1,9 @@
 #pragma once
 
 /// @file
-/// The whole public interface of libed.
+/// Includes the whole public interface of libed.
 
-/// @namespace ed
-/// Event-driven dynamics of hard bodies: libed.
+/// @namespace ed libed: event-driven dynamics of hard bodies.
 
 #include <ed/analysis.h>
 #include <ed/contact_options.h>

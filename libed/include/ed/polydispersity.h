@@ -8,31 +8,33 @@
 
 namespace ed {
 
-/// How the sizes of the bodies of a polydisperse species are distributed.
+/// Distribution of the sizes of the bodies of a polydisperse species.
 enum class SizeDistribution {
-  uniform,    ///< between 1 - sqrt(3) width and 1 + sqrt(3) width
-  gaussian,   ///< cut off kSizeCutoff standard deviations from its centre
-  lognormal,  ///< the logarithm is Gaussian, cut off in the same way
+  uniform,    ///< uniform between 1 - sqrt(3) width and 1 + sqrt(3) width
+  gaussian,   ///< Gaussian, cut off kSizeCutoff standard deviations from its centre
+  lognormal,  ///< Gaussian distribution of the logarithm, cut off in the same way
 };
 
-/// The enumerator's name.
+/// Returns the enumerator's name.
 ED_EXPORT const char* to_string(SizeDistribution distribution);
 
-/// Where a Gaussian (of the size, or of its logarithm) is cut off, in its standard deviations before the cut. Nobody's
-/// results should hang on one body in a thousand that is ten times as large as the others, or that has no size left.
+/// Cut-off of a Gaussian (of the size, or of its logarithm), in its standard deviations before the cut. It avoids
+/// results that depend on one body in a thousand that is ten times as large as the others, or has almost no size.
 inline constexpr double kSizeCutoff = 3;
 
-/// The largest width of a distribution: 0.5, 0.3 and 0.5. The smallest sizes are then 0.13, 0.09 and 0.21 of the mean.
+/// Returns the largest width of a distribution: 0.5, 0.3 and 0.5. The smallest sizes are then 0.13, 0.09 and 0.21 of
+/// the mean.
 ED_EXPORT double widest(SizeDistribution distribution);
 
-/// Sizes relative to the nominal one, drawn independently: mean 1 and standard deviation `width`, both exactly those of
+/// Draws sizes relative to the nominal one, independently. Mean 1 and standard deviation `width` are exactly those of
 /// the distribution after it was cut off (the sizes drawn scatter about them, as any sample). The same seed gives the
-/// same sizes, and the first of a larger number. Throws std::invalid_argument unless 0 < width <= widest and number >=
-/// 0.
+/// same sizes, and also the first ones of a larger number. Throws std::invalid_argument unless 0 < width <= widest and
+/// number >= 0.
 ED_EXPORT std::vector<double> draw_sizes(SizeDistribution distribution, double width, int number, std::uint64_t seed);
 
-/// The same body `factor` times as large, of the same density: mass times factor^3, moments of inertia times factor^5.
-/// Throws std::invalid_argument for a CustomShape, which cannot be scaled, and unless factor is positive and finite.
+/// Returns a species `factor` times as large, of the same density: mass times factor^3, moments of inertia times
+/// factor^5. Throws std::invalid_argument for a CustomShape, which cannot be scaled, and unless factor is positive and
+/// finite.
 ED_EXPORT Species scaled(const Species& species, double factor);
 
 }  // namespace ed

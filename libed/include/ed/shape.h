@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file
-/// The shapes of bodies in motion: libgeom's, and a user's own.
+/// Shapes of bodies in motion: libgeom's, and a user's own.
 
 #include <ed/export.h>
 
@@ -21,33 +21,34 @@
 
 namespace ed {
 
-/// A user's own convex body: any type that models geom::SupportShape, and what dynamics needs beside its surface. It is
-/// itself a SupportShape. Copies share the shape.
+/// User-defined convex body: any type that models geom::SupportShape, with the properties that dynamics needs beside
+/// its surface. It is itself a SupportShape. Copies share the shape.
 class ED_EXPORT CustomShape {
  public:
-  /// What a support function does not tell.
+  /// Properties that cannot be taken from a support function.
   struct Properties {
-    std::string name = "custom";       ///< in messages
+    std::string name = "custom";       ///< name in messages
     double volume = 0;                 ///< > 0
     std::optional<int> symmetry_axis;  ///< body axis (0, 1, 2) about which the body is one of revolution, if any
-    bool centrally_symmetric = false;  ///< -x is in the body for every x in it: the paper's boxes are tighter then
+    bool centrally_symmetric = false;  ///< -x is in the body for every x in it, which makes the paper's boxes tighter
   };
 
-  /// Throws std::invalid_argument unless the radii are positive, finite and in order, the volume is between those of
-  /// the inscribed and the bounding sphere, and the support function agrees with both radii along the axes.
+  /// Constructs the body. Throws std::invalid_argument unless the radii are positive, finite and in order, the volume
+  /// is between those of the inscribed and the bounding sphere, and the support function agrees with both radii along
+  /// the axes.
   template <geom::SupportShape T>
   CustomShape(T shape, Properties properties)
       : shape_(std::make_shared<const Model<T>>(std::move(shape))), properties_(std::move(properties)) {
     check();
   }
 
-  /// Those of the user's shape.
+  /// Forwards to the user's shape.
   /// @{
   geom::Support support(const Eigen::Vector3d& n) const { return shape_->support(n); }
   Eigen::Matrix3d support_hessian(const Eigen::Vector3d& n) const { return shape_->support_hessian(n); }
   double bounding_radius() const { return bounding_radius_; }
   double inscribed_radius() const { return inscribed_radius_; }
-  double min_curvature_radius() const { return min_curvature_radius_; }  ///< 0 if the user's type does not tell
+  double min_curvature_radius() const { return min_curvature_radius_; }  ///< 0 if the user's type does not provide it
   double volume() const { return properties_.volume; }
   const std::string& name() const { return properties_.name; }
   std::optional<int> symmetry_axis() const { return properties_.symmetry_axis; }
@@ -86,30 +87,31 @@ class ED_EXPORT CustomShape {
   double min_curvature_radius_ = 0;
 };
 
-/// The shape of a body in a simulation.
+/// Shape of a body in a simulation.
 using BodyShape = std::variant<geom::Ellipsoid, geom::Superellipsoid, CustomShape>;
 
-/// The member functions of the shape inside; see there.
+/// Forwards to the member function of the shape inside, where it is documented.
 /// @{
 ED_EXPORT double bounding_radius(const BodyShape& shape);
 ED_EXPORT double inscribed_radius(const BodyShape& shape);
-/// Bit for bit: no turn changes where it is.
+/// Returns whether the shape is exactly a sphere, so that no rotation changes the space it fills.
 ED_EXPORT bool is_sphere(const BodyShape& shape);
 ED_EXPORT double volume(const BodyShape& shape);
 ED_EXPORT geom::Support support(const BodyShape& shape, const Eigen::Vector3d& n);
 /// @}
 
-/// The body axis (0, 1, 2) about which the shape is one of revolution: 2 if it is so about all; nothing if about none.
+/// Returns the body axis (0, 1, 2) about which the shape is one of revolution: 2 if it is so about all; nullopt if
+/// about none.
 ED_EXPORT std::optional<int> symmetry_axis(const BodyShape& shape);
 
-/// Half the edges of the smallest box around the body along its own axes.
+/// Returns half the edges of the smallest box around the body along its own axes.
 ED_EXPORT Eigen::Vector3d half_extents(const BodyShape& shape);
 
-/// geom::distance of the shapes inside.
+/// Returns geom::distance of the shapes inside.
 ED_EXPORT geom::DistanceResult distance(const BodyShape& a, const geom::Pose& X_WA, const BodyShape& b,
                                         const geom::Pose& X_WB);
 
-/// The shape in words, for messages: "ellipsoid of semi-axes 1 x 1 x 3".
+/// Describes the shape in words, for messages: "ellipsoid of semi-axes 1 x 1 x 3".
 ED_EXPORT std::string describe(const BodyShape& shape);
 
 }  // namespace ed

@@ -1,8 +1,8 @@
 #pragma once
 
 /// @file
-/// Observables of a trajectory that has been stored, ours or another program's: what `Observables` measures while a run
-/// goes on, as far as positions and orientations tell.
+/// Observables of a stored trajectory, from this or another program: the quantities that `Observables` measures during
+/// a run, as far as they follow from positions and orientations.
 
 #include <ed/export.h>
 #include <ed/observables.h>
@@ -15,40 +15,40 @@
 
 namespace ed {
 
-/// All bodies at one time, as they were stored.
+/// State of all bodies at one time, as stored.
 struct StoredFrame {
   double time = 0;
   std::vector<Eigen::Vector3d> position;  ///< unwrapped, continuous across the box's faces, if the options say so
-  std::vector<Eigen::Matrix3d> rotation;  ///< body to world; empty: not known
-  std::vector<Eigen::Vector3d> velocity;  ///< empty: not known
+  std::vector<Eigen::Matrix3d> rotation;  ///< rotations, body to world; empty: not known
+  std::vector<Eigen::Vector3d> velocity;  ///< velocities; empty: not known
 };
 
-/// Settings of `analyze_frames`: what it has to know beside the frames.
+/// Settings of `analyze_frames` that the frames do not contain.
 struct StoredFramesOptions {
-  double box = 0;  ///< edge length, of all frames
+  double box = 0;  ///< edge length of the box, in all frames
   /// Unit of distances and wave numbers: the radius of the sphere whose volume is the bodies' mean one.
   double length = 1;
-  /// False where nobody knows the bodies' sizes and `length` is any: D_trans then asks for motion by the bodies' mean
-  /// distance instead of that of the first peak of S(q).
+  /// False if the bodies' sizes are unknown and `length` is arbitrary. D_trans then requires motion by the bodies' mean
+  /// distance instead of by the length of the first peak of S(q).
   bool length_known = true;
-  /// False where body i of one frame need not be body i of the next: there are no correlations in time then.
+  /// False if body i of one frame need not be body i of the next: there are no correlations in time then.
   bool same_bodies = true;
-  /// False where positions are wrapped, so that displacements are not known: no MSD, alpha2, F_self, D_trans.
+  /// False if positions are wrapped, so that displacements are not known: no MSD, alpha2, F_self, D_trans.
   bool unwrapped = true;
-  std::vector<BodyGroup> groups{};  ///< their numbers add up to that of the bodies
-  std::vector<int> axis{};          ///< of each body: which body axis (0, 1, 2) u is
-  /// Of F_self, at most kMostWaveNumbers; empty: wave_numbers_about the first peak of S(q).
+  std::vector<BodyGroup> groups{};  ///< groups of bodies, whose numbers add up to that of the bodies
+  std::vector<int> axis{};          ///< index (0, 1, 2) of the body axis that u is, for each body
+  /// Wave numbers of F_self, at most kMostWaveNumbers; empty: wave_numbers_about the first peak of S(q).
   std::vector<double> wave_numbers{};
-  double longest_lag = 0;  ///< 0: a quarter of the trajectory
-  /// Decays are fitted from this lag, where ballistic motion has ended: a run takes five mean collision intervals.
-  /// Nothing: no fits.
+  double longest_lag = 0;  ///< longest lag; 0: a quarter of the trajectory
+  /// First lag of the fits of decays, where ballistic motion has ended: a run uses five mean collision intervals.
+  /// nullopt: no fits.
   std::optional<double> fit_from{};
 };
 
-/// Results, and what they are from.
+/// Results of stored frames, and the frames used.
 struct StoredResults : Results {
   std::vector<double> wave_numbers;
-  /// Frames that correlations are from: the longest stretch of frames that are equally far apart in time, the first of
+  /// Frames used for correlations: the longest sequence of frames that are equally far apart in time, the first of
   /// several. S, g(r) and S(q) are from all frames.
   /// @{
   std::size_t first_frame = 0;
@@ -56,14 +56,15 @@ struct StoredResults : Results {
   /// @}
 };
 
-/// Takes averages over frames, and correlations over all pairs of frames that are a lag apart, at about 20 lags a
-/// decade. Errors are standard errors over blocks as long as the longest lag (2 to 16 of them). Values that frames do
-/// not tell are missing for the reason MissingReason::not_told: collisions, pressure, temperatures, rotational
-/// displacements, and with velocities or rotations missing what is made of them. Without unwrapped positions
-/// displacements are missing for the reason not_unwrapped, without the same bodies all correlations for not_followed.
+/// Computes averages over frames, and correlations over all pairs of frames that are a lag apart, at about 20 lags a
+/// decade. Errors are standard errors over blocks as long as the longest lag (2 to 16 of them). Results that the frames
+/// do not determine are missing for the reason MissingReason::not_told: collisions, pressure, temperatures, rotational
+/// displacements, and if velocities or rotations are missing, all results from these. Without unwrapped positions
+/// displacements are missing for the reason not_unwrapped; if frames need not contain the same bodies, all correlations
+/// are missing for the reason not_followed.
 ///
-/// Memory: some 200 bytes a body and frame beside the frames. Throws std::invalid_argument for no frames, numbers of
-/// bodies that differ, a box that is not positive, times that do not rise, a negative lag to fit from.
+/// Memory: about 200 bytes a body and frame in addition to the frames. Throws std::invalid_argument for no frames,
+/// numbers of bodies that differ, a box that is not positive, times that do not rise, a negative lag to fit from.
 ED_EXPORT StoredResults analyze_frames(const std::vector<StoredFrame>& frames, const StoredFramesOptions& options);
 
 }  // namespace ed

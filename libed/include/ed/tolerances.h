@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file
-/// Every tolerance of libed, with the inequality it enters and its unit. "size" is the sum of both bounding radii.
+/// Tolerances of libed, with the inequality that each enters and its unit. "size" is the sum of both bounding radii.
 
 namespace ed {
 
@@ -13,30 +13,31 @@ inline constexpr double kLooseDecrement = 0.05;
 inline constexpr double kTightDecrement = 2e-17;
 
 /// Contact search: Newton's method on d(t) ends at |d| <= kTouching * size; bodies that touch and do not approach are
-/// moved on as long as g falls by no more. Dimensionless; a few times the usual rounding error of g. (Which bodies
-/// touch is decided by its proved bound, libed/src/rounding.h; by the paper's search, with kTouching * size.)
+/// moved on as long as g falls by no more. Dimensionless; a few times the usual rounding error of g. (Whether bodies
+/// touch is decided by the proved bound of that error, libed/src/contact/rounding.h; in the paper's search, by
+/// kTouching * size.)
 inline constexpr double kTouching = 2e-15;
 
 /// Contact search: bodies that touch approach when g' < -kResting * speed, speed a bound of |g'|. Dimensionless; some
 /// tens of rounding errors, so that the impulse's normal velocity has the same sign.
 inline constexpr double kResting = 1e-14;
 
-/// Contact search: g < -kOverlap * size is an overlap; above, it is taken for a contact whose time was rounded (that of
-/// a run's late collisions, or of a state that was written and read). Dimensionless.
+/// Contact search: g < -kOverlap * size is an overlap; a smaller overlap is treated as a contact whose time was rounded
+/// (in late collisions of a run, or in a state that was written and read). Dimensionless.
 inline constexpr double kOverlap = 1e-12;
 
 /// Contact search: Newton's method on d(t) is tried when the root of the certified parabola and that of its tangent
-/// differ by at most kTangentAgreement * size / speed. Dimensionless. Its result is certified by itself; this only
-/// keeps it from being tried in vain.
+/// differ by at most kTangentAgreement * size / speed. Dimensionless. Its result is certified independently; this
+/// criterion only avoids useless attempts.
 inline constexpr double kTangentAgreement = 3e-4;
 
 /// Species: principal moments of inertia >= kLeastMoment * mass * (inscribed radius)^2. Dimensionless. Below, thermal
-/// bodies turn a hundred times while they move by their own size, and nothing is tested. (Above mass * (bounding
-/// radius)^2 no body has any.)
+/// bodies rotate a hundred times while they move by their own size, and nothing is tested. (Moments above mass *
+/// (bounding radius)^2 are impossible.)
 inline constexpr double kLeastMoment = 1e-4;
 
-/// Superellipsoids in motion: kMinExponentInMotion <= e1, e2 <= kMaxExponentInMotion. Dimensionless. The range in which
-/// contact searches are tested; flatter faces lose support points and their curvature to rounding.
+/// Superellipsoids in motion: kMinExponentInMotion <= e1, e2 <= kMaxExponentInMotion, the range in which contact
+/// searches are tested. Flatter faces lose support points and their curvature to rounding. Dimensionless.
 /// @{
 inline constexpr double kMinExponentInMotion = 0.25;
 inline constexpr double kMaxExponentInMotion = 1.6;

@@ -7,10 +7,10 @@
 
 namespace ed::internal {
 
-/// e^x for |x| <= 700, to 2 units in the last place: x = k ln 2 + r with ln 2 in two parts (k times the first is
-/// exact), |r| <= ln 2 / 2, and the power series of e^r to r^13 / 13! (the next term is below 5e-18).
+/// Returns e^x for |x| <= 700, to 2 units in the last place: x = k ln 2 + r with ln 2 in two parts (k times the first
+/// is exact), |r| <= ln 2 / 2, and the power series of e^r to r^13 / 13! (the next term is below 5e-18).
 inline double exponential(double x) {
-  constexpr double kRound = 0x1.8p52;  // its last bit is worth 1
+  constexpr double kRound = 0x1.8p52;  // the last bit of this number is worth 1
   constexpr double kLn2High = 0x1.62e42fefa3800p-1;
   constexpr double kLn2Low = 5.497923018708371174712472e-14;
   const double shifted = x * 1.4426950408889634074 + kRound;

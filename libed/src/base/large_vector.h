@@ -10,8 +10,8 @@
 
 namespace ed::internal {
 
-/// Memory in pages of 2 MB where there is much of it and the system has them: of small pages, a collision of a large
-/// system reads more than a processor keeps addresses of.
+/// Allocator that requests pages of 2 MB for large allocations, if the system has them. With small pages a collision of
+/// a large system reads from more pages than a processor keeps addresses of.
 template <class T>
 class LargePages {
  public:
@@ -19,14 +19,14 @@ class LargePages {
 
   LargePages() = default;
   template <class U>
-  LargePages(const LargePages<U>& /*other*/) noexcept {}  // NOLINT(google-explicit-constructor): as allocators must
+  LargePages(const LargePages<U>& /*other*/) noexcept {}  // NOLINT(google-explicit-constructor): required of allocators
 
   T* allocate(std::size_t number) {
     if (number > static_cast<std::size_t>(-1) / 2 / sizeof(T)) throw std::bad_array_new_length();
     const std::size_t bytes = number * sizeof(T);
     void* const memory = ::operator new(bytes, alignment(number));
 #if defined(MADV_HUGEPAGE)
-    // A wish: where it is refused, small pages do.
+    // A hint: if it is refused, small pages are used.
     if (large(number)) (void)::madvise(memory, bytes, MADV_HUGEPAGE);
 #endif
     return static_cast<T*>(memory);
@@ -51,7 +51,7 @@ class LargePages {
   }
 };
 
-/// For what an event reads of bodies and pairs.
+/// Vector for the data of bodies and pairs that an event reads.
 template <class T>
 using LargeVector = std::vector<T, LargePages<T>>;
 

@@ -2,7 +2,7 @@
 
 namespace ed::internal {
 
-/// The second Legendre polynomial, of the cosine between two axes.
+/// Returns the second Legendre polynomial of x, the cosine of the angle between two axes.
 inline double p2(double x) {
   return 1.5 * x * x - 0.5;
 }

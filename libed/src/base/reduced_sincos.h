@@ -1,13 +1,14 @@
 #pragma once
 
-/// The part of sincos.h that is one formula for one number and for one in each lane of a vector. (Kernels for several
-/// instruction sets must not include what sincos.h includes.)
+/// Part of sincos.h that is the same formula for one number and for one in each lane of a vector. (Kernels for several
+/// instruction sets must not include the headers that sincos.h includes.)
 
 namespace ed::internal {
 
 inline constexpr double kLargestAngle = 1048576.0;
 
-/// Of x less a multiple of pi/2; the lowest two bits of `shifted` are that multiple's number.
+/// Sine and cosine of x minus a multiple of pi/2; the lowest two bits of `shifted` are the number of that multiple
+/// modulo 4.
 template <class Real>
 struct ReducedSinCos {
   Real shifted;
@@ -15,7 +16,7 @@ struct ReducedSinCos {
   Real cos;
 };
 
-/// For |x| <= kLargestAngle. Of one number, or of one in each lane of a vector.
+/// Returns the reduced sine and cosine for |x| <= kLargestAngle, of one number or of one in each lane of a vector.
 template <class Real>
 [[gnu::always_inline]] inline ReducedSinCos<Real> reduced_sincos(Real x) {
   // Adding 1.5 * 2^52 rounds to an integer, kept in the low bits.

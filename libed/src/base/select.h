@@ -1,11 +1,11 @@
 #pragma once
 
 /// Minimum and maximum by value. std::min and std::max return references, which g++ turns into branches; on random data
-/// half of them are mispredicted, and they stand in the innermost loop.
+/// half of them are mispredicted, and they are in the innermost loop.
 
 namespace ed::internal {
 
-// As std::min and std::max, also in that the first argument is returned when they do not compare (NaN).
+// Same results as std::min and std::max; the first argument is returned when they do not compare (NaN).
 inline double smaller(double a, double b) {
   return b < a ? b : a;
 }
@@ -13,7 +13,7 @@ inline double larger(double a, double b) {
   return a < b ? b : a;
 }
 
-// What formulas ask of a condition that are written once for one pair and for one pair in each lane of a vector.
+// Functions of conditions for formulas that are written once for one pair and for one pair in each lane of a vector.
 inline bool any(bool condition) {
   return condition;
 }

@@ -16,11 +16,12 @@ std::size_t at(int i) {
   return static_cast<std::size_t>(i);
 }
 
-/// By which cells count as nearer than they are, in widths of a cell: more than the rounding of a place up to 10^7
+/// Width, in cells, by which distances of cells are underestimated: more than the rounding of a position up to 10^7
 /// boxes away.
 constexpr double kMargin = 1e-6;
 
-/// Along an edge. No more cells than bodies (to within a factor): finer ones would be empty.
+/// Returns the maximum number of cells along an edge: no more cells than bodies (to within a factor), because finer
+/// ones would be empty.
 double most_cells(std::size_t number) {
   return 1.3 * std::cbrt(static_cast<double>(number));
 }
@@ -36,17 +37,17 @@ CellGrid::CellGrid(int number, double box, double reach, const std::optional<geo
   clear();
 }
 
-/// The number along an edge with which least blocks are looked at.
+/// Returns the number along an edge for which the fewest blocks are tested.
 int CellGrid::choose_cells(int number, double box, double reach) {
   const double most = std::min(most_cells(at(number)), kNarrowest * box / reach);
   int best = 1;
   double least = std::numeric_limits<double>::infinity();
   for (int cells = 1; cells <= std::max(1, static_cast<int>(most)); ++cells) {
     const double all = static_cast<double>(cells) * cells * cells;
-    // A sphere of this radius, and half a cell and a little more around it.
+    // Volume of a sphere of this radius: the reach plus half a cell and a little more.
     const double radius = reach * cells / box + 0.55;
     const double touched = std::min(all, 4 * std::numbers::pi / 3 * radius * radius * radius);
-    // What comes behind a cell's own block has to be waited for.
+    // Blocks after a cell's own block have to be waited for.
     const double blocks = 1 + 1.5 * std::max(0.0, number / all - 2) / kCellBlock;
     if (touched * blocks < least) {
       least = touched * blocks;
@@ -56,7 +57,7 @@ int CellGrid::choose_cells(int number, double box, double reach) {
   return best;
 }
 
-/// No bodies, and memory for all of them wherever they are.
+/// Removes all bodies, and reserves memory for all of them wherever they are.
 void CellGrid::clear() {
   const std::size_t own = at(cells_) * at(cells_) * at(cells_);
   const std::size_t full = cell_of_body_.size() / kCellBlock;
@@ -72,7 +73,7 @@ void CellGrid::clear() {
   std::fill(cell_of_body_.begin(), cell_of_body_.end(), kNone);
 }
 
-/// In widths of a cell, from 0 to cells_.
+/// Returns a coordinate in widths of a cell, from 0 to cells_.
 double CellGrid::coordinate(double x) const {
   const double boxes = x / box_;
   return (boxes - std::floor(boxes)) * cells_;
@@ -89,7 +90,7 @@ int CellGrid::cell_of(const Eigen::Vector3d& p) const {
 
 // ---- Bodies --------------------------------------------------------------------------------------------------------
 
-CellGrid::Place CellGrid::find(int i) const {
+CellGrid::BlockLane CellGrid::find(int i) const {
   for (int block = cell_of_body_[at(i)];; block = next_[at(block)]) {
     for (int lane = 0; lane < kCellBlock; ++lane) {
       if (blocks_[at(block)].name[lane].body == i) return {block, lane};
@@ -98,7 +99,7 @@ CellGrid::Place CellGrid::find(int i) const {
   }
 }
 
-void CellGrid::put(Place where, int i, const Eigen::Vector3d& position) {
+void CellGrid::put(BlockLane where, int i, const Eigen::Vector3d& position) {
   CellBlock& block = blocks_[at(where.block)];
   block.x[where.lane] = position.x();
   block.y[where.lane] = position.y();
@@ -132,7 +133,7 @@ void CellGrid::insert(int i, int cell, const Eigen::Vector3d& position) {
 void CellGrid::remove(int i) {
   const int cell = cell_of_body_[at(i)];
   int& count = count_[at(cell)];
-  const Place hole = find(i);
+  const BlockLane hole = find(i);
   CellBlock& own = blocks_[at(cell)];
   const int last = (count - 1) % kCellBlock;
   put(hole, own.name[last].body, {own.x[last], own.y[last], own.z[last]});
@@ -173,7 +174,8 @@ void CellGrid::scale(double factor) {
   }
 }
 
-// ---- Looking -------------------------------------------------------------------------------------------------------
+// ---- Search
+// ----------------------------------------------------------------------------------------------------------
 
 CellGrid::Along CellGrid::along(double coordinate, double widths) const {
   assert(widths <= kNarrowest + 2 * kMargin || 2 * widths >= cells_);
@@ -181,7 +183,7 @@ CellGrid::Along CellGrid::along(double coordinate, double widths) const {
   const bool all = 2 * widths >= cells_;
   const int first = all ? 0 : static_cast<int>(coordinate - widths + cells_) - cells_;
   const int last = all ? 0 : static_cast<int>(coordinate + widths);
-  // Every cell, once, and whether from this side or from the other is not asked.
+  // Every cell is tested once, without distinguishing between its images on either side.
   if (all || last - first + 1 > cells_) {
     result.count = cells_;
     for (int k = 0; k < cells_; ++k) {
@@ -224,12 +226,12 @@ void CellGrid::fetch(const Eigen::Vector3d& position, double reach) const {
 
 std::span<const NearBody> CellGrid::collect(const Eigen::Vector3d& position, double reach,
                                             std::vector<NearBody>& buffer) const {
-  // The cells' own blocks, then one behind each of those that have more, and so on: what is read in a round does not
-  // wait for what was read before it in the round.
+  // The cells' own blocks, then one block after each of those that have more, and so on: reads within a round do not
+  // wait for each other.
   std::array<int, kMostAlong * kMostAlong * kMostAlong> round;
   std::size_t open = 0;
   for_each_cell_near(position, reach, [&](int cell, bool counts) {
-    // Written always and kept if it counts: whether it does is not predictable.
+    // Always written and kept if it counts: whether it does is not predictable.
     round[open] = cell;
     open += counts ? 1 : 0;
   });
@@ -272,7 +274,7 @@ CellGrid::Content CellGrid::content() const {
   return result;
 }
 
-/// False if there is no such grid of these bodies in this box.
+/// Returns false if there is no such grid of these bodies in this box.
 bool CellGrid::assign(const Content& content) {
   const std::size_t number = cell_of_body_.size();
   if (content.box != box_) return false;

@@ -17,35 +17,36 @@
 
 namespace ed::internal {
 
-/// Linked cells of a periodic cubic box: which points are within a given reach of another.
+/// Linked cells of a periodic cubic box, which find the points within a given reach of another.
 ///
-/// Bodies of a cell stand in blocks (cell_kernels.h). Its own block comes at the number of the cell, those of a row of
-/// cells one after another, and holds the newest bodies, up to a block of them; behind it follow full ones, the newest
-/// first.
+/// Bodies of a cell are stored in blocks (cells/kernels.h). A cell's own block has the number of the cell, so that
+/// those of a row of cells are consecutive. It holds the newest bodies, up to a block of them; it is followed by full
+/// blocks, the newest first.
 class CellGrid {
  public:
-  /// `batches`: as SimulationOptions has it, which makes no difference but of speed. Throws std::invalid_argument if
-  /// the processor or the build does not have the instruction set.
+  /// Constructs an empty grid. `batches` is SimulationOptions::batches, which affects only the speed. Throws
+  /// std::invalid_argument if the processor or the build does not have the instruction set.
   CellGrid(int number, double box, double reach,
            const std::optional<geom::InstructionSet>& batches = geom::InstructionSet::best);
 
-  /// Puts body i (already placed or not) at `position`; any image.
+  /// Puts body i (whether placed before or not) at `position`; any image.
   void place(int i, const Eigen::Vector3d& position);
 
-  /// Whether bodies within this reach are found.
+  /// Returns whether bodies within this reach are found.
   bool cover(double reach) const;
 
-  /// Scales the box with all that is in it. The reach is scaled too.
+  /// Scales the box with all bodies in it. The reach is scaled too.
   void scale(double factor);
 
-  /// All bodies within `reach` (at most that of the constructor) of `position`, nearest images; they stand in `buffer`,
-  /// which grows as needed and is never shrunk.
+  /// Returns all bodies within `reach` (at most that of the constructor) of `position`, nearest images. They are stored
+  /// in `buffer`, which grows as needed and is never shrunk.
   std::span<const NearBody> collect(const Eigen::Vector3d& position, double reach, std::vector<NearBody>& buffer) const;
 
-  /// These bodies are collected soon: asks for the cells' own blocks, in which most of them stand.
+  /// Prefetches data for a later collect() with these arguments: the cells' own blocks, which contain most of the
+  /// bodies.
   void fetch(const Eigen::Vector3d& position, double reach) const;
 
-  /// The cells, and the order of the bodies in each, as they are; read into a grid of the same number of bodies.
+  /// Archives the cells and the order of the bodies in each; they are read into a grid of the same number of bodies.
   template <class Archive, class Self>
   static void fields(Archive& archive, Self& self) {
     if constexpr (Archive::kReads) {
@@ -60,25 +61,25 @@ class CellGrid {
 
  private:
   static constexpr int kNone = -1;
-  /// Cells are no narrower than reach / kNarrowest, so that along an axis at most this many count.
+  /// Cells are no narrower than reach / kNarrowest, so that at most kMostAlong cells along an axis are within reach.
   static constexpr int kNarrowest = 3;
   static constexpr std::size_t kMostAlong = 2 * kNarrowest + 2;
 
-  /// What a grid holds, but for which block is where.
+  /// Content of a grid, without the positions of its blocks.
   struct Content {
     double box = 0;
     int cells = 0;
-    std::vector<int> count;                  ///< of bodies in each cell
-    std::vector<int> bodies;                 ///< cell by cell, those of its own block last
-    std::vector<Eigen::Vector3d> positions;  ///< of each of them
+    std::vector<int> count;                  ///< number of bodies in each cell
+    std::vector<int> bodies;                 ///< bodies cell by cell, those of a cell's own block last
+    std::vector<Eigen::Vector3d> positions;  ///< position of each of these bodies
   };
-  /// Cells along one axis, and how far each is from a point at least, squared, in widths of a cell.
+  /// Cells along one axis, with a lower bound of the squared distance of each from a point, in widths of a cell.
   struct Along {
     std::array<int, kMostAlong> cell;
     std::array<double, kMostAlong> distance2;
     int count = 0;
   };
-  struct Place {
+  struct BlockLane {
     int block;
     int lane;
   };
@@ -96,19 +97,19 @@ class CellGrid {
   template <class Found>
   void for_each_cell_near(const Eigen::Vector3d& position, double reach, Found&& found) const;
 
-  Place find(int i) const;
+  BlockLane find(int i) const;
   void insert(int i, int cell, const Eigen::Vector3d& position);
   void remove(int i);
-  void put(Place where, int i, const Eigen::Vector3d& position);
+  void put(BlockLane where, int i, const Eigen::Vector3d& position);
 
   double box_;
-  double reach_;  ///< the most that is asked for
-  int cells_;     ///< along an edge
+  double reach_;  ///< largest reach that can be requested
+  int cells_;     ///< number of cells along an edge
   CellKernel* kernel_;
-  LargeVector<CellBlock> blocks_;  ///< one of each cell, and the full ones
-  LargeVector<int> next_;          ///< of each block
+  LargeVector<CellBlock> blocks_;  ///< one block of each cell, followed by the full ones
+  LargeVector<int> next_;          ///< successor of each block
   std::vector<int> free_;          ///< blocks that are in no cell
-  LargeVector<int> count_;         ///< bodies of each cell
+  LargeVector<int> count_;         ///< number of bodies in each cell
   LargeVector<int> cell_of_body_;
 };
 

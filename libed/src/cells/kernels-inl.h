@@ -1,9 +1,9 @@
-/// The kernel of linked cells.
+/// Kernel of linked cells.
 ///
 /// Included once by each cells/kernels_*.cpp, which sets HARDBODY_CELL_KERNEL, the function's name, and is compiled for
 /// its own instruction set. All give the bits of nearest_image (periodic.h).
 
-// What the kernel does not need should not be asked of the processor.
+// Instructions that the kernel does not need are not required of the processor.
 #define HWY_DISABLE_PCLMUL_AES
 #define HWY_DISABLE_F16C
 // Highway's checks would call its library.
@@ -33,13 +33,14 @@ struct CellScales {
 };
 
 HWY_INLINE CellReal image(const double* row, CellReal from, const CellScales& scales) {
-  const auto shift = hn::Set(CellTag(), 6755399441055744.0);  // as nearest_integer does it
+  const auto shift = hn::Set(CellTag(), 6755399441055744.0);  // see nearest_integer
   const auto d = hn::Sub(hn::Load(CellTag(), row), from);
   const auto boxes = hn::Sub(hn::Add(hn::Mul(d, scales.inverse), shift), shift);
   return hn::Sub(d, hn::Mul(scales.box, boxes));
 }
 
-/// Writes every lane, a body after the other, and keeps those of `within`: which ones is not predictable.
+/// Writes every lane, one body after the other, and advances only past those of `within`: which lanes these are is not
+/// predictable.
 HWY_INLINE std::ptrdiff_t keep(CellReal name, CellReal x, CellReal y, CellReal z, unsigned within, double* near) {
   const CellTag tag;
   std::ptrdiff_t found = 0;

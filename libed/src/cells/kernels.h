@@ -1,7 +1,7 @@
 #pragma once
 
-/// The kernel of linked cells, compiled once for each instruction set (cell_kernels-inl.h). Plain arrays only, as in
-/// uniaxial_kernels.h, which says why: kernels make no CellBlock.
+/// Kernel of linked cells, compiled once for each instruction set (cells/kernels-inl.h). It uses plain arrays only, for
+/// the reason given in vectors/kernels.h: kernels construct no CellBlock.
 
 #include <cstdint>
 #include <limits>
@@ -10,9 +10,9 @@ namespace ed::internal {
 
 constexpr int kCellBlock = 4;
 
-/// Some bodies of a cell, a number of each in a row: two cache lines.
+/// Block of bodies of a cell, in rows of one number of each: two cache lines.
 struct alignas(64) CellBlock {
-  /// As a NearBody begins.
+  /// Layout of the beginning of a NearBody.
   struct alignas(8) Name {
     std::int32_t body;
     std::int32_t none;
@@ -26,7 +26,7 @@ struct alignas(64) CellBlock {
   CellBlock() {
     for (int lane = 0; lane < kCellBlock; ++lane) clear(lane);
   }
-  /// Nothing is near an infinite place.
+  /// Empties a lane: nothing is near an infinite position.
   void clear(int lane) {
     x[lane] = y[lane] = z[lane] = std::numeric_limits<double>::infinity();
     name[lane] = {-1, 0};
@@ -40,8 +40,9 @@ struct CellQuery {
   double reach2;
 };
 
-/// Of the bodies in these blocks, in their order, those within reach: body and vector to its nearest image, as in
-/// NearBody, one after another from `near` on. Returns how many. There must be room for kCellBlock * count.
+/// Finds the bodies in these blocks, in their order, that are within reach. Writes body and vector to its nearest
+/// image, as in NearBody, one after another from `near` on, and returns their number. `near` must have room for
+/// kCellBlock * count.
 using CellKernel = int(const CellQuery& query, const CellBlock* blocks, const int* which, int count, double* near);
 
 CellKernel* cell_kernel_portable();

@@ -6,13 +6,13 @@
 
 namespace ed::internal {
 
-/// A body found near a point, with the vector to its nearest image.
+/// Body found near a point, with the vector to its nearest image.
 struct NearBody {
   int body;
   Eigen::Vector3d r;
 };
 
-// As kernels write them (cell_kernels.h).
+// The kernels write this layout (cells/kernels.h).
 static_assert(sizeof(NearBody) == 4 * sizeof(double) && offsetof(NearBody, r) == sizeof(double));
 
 }  // namespace ed::internal

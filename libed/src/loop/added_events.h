@@ -3,8 +3,8 @@
 #include "base/large_vector.h"
 #include "bodies/body_events.h"
 #include "bodies/pair.h"
-#include "loop/epoch_clock.h"
-#include "loop/periodic_box.h"
+#include "loop/parts/epoch_clock.h"
+#include "loop/parts/periodic_box.h"
 
 #include <algorithm>
 #include <array>
@@ -16,9 +16,9 @@
 
 namespace ed::internal {
 
-/// What an event has changed of its body.
+/// Change that an event has made to its body.
 enum class BodyChange {
-  none,    ///< of what predictions depend on
+  none,    ///< predictions stay as they are
   motion,  ///< exit and contacts of the body are predicted again
 };
 
@@ -28,12 +28,10 @@ enum class BodyChange {
 ///     BodyChange process(Bodies& bodies, int body, const EpochClock& clock, const PeriodicBox& box);
 ///
 /// predict() returns the local time of the body's next event, not before clock.now(); kNever if there is none. It is
-/// called at the start, and when the motion of the body has changed. process() is called at that time, with the body
-/// moved to it, and then predict() again, which must not return the event that has just been processed.
-///
-/// An event may come at any time, so that its body's time has to lie within its flight: process() changes velocities
-/// only (set_velocity), no position. States hold the times of the events, but not the kinds: whoever restores hands
-/// them in again. Loops without added kinds pay nothing for them.
+/// called at the start, when the motion of the body or the box has changed, and after each event. process() is called
+/// at the time of the event; the event that predict() returns next must be another one. process() may change the
+/// velocity of the body (set_velocity) and nothing else of it. States hold the times of the events, but not the kinds:
+/// whoever restores a loop hands them in again. A loop without added kinds pays nothing for them.
 template <class... Kinds>
 class AddedEvents {
  public:
@@ -49,7 +47,7 @@ class AddedEvents {
   /// Whether `first` is that of an added event.
   static constexpr bool has(std::int32_t first) { return first < BodyEvents::kExit && first >= first_of(kNumber - 1); }
 
-  /// Makes room for the events of so many bodies, of which none is predicted.
+  /// Makes room for the events of `number` bodies; none is predicted.
   void resize(int number) {
     for (LargeVector<double>& times : times_) times.assign(static_cast<std::size_t>(number), kNever);
   }
@@ -105,7 +103,7 @@ class AddedEvents {
 
  private:
   std::tuple<Kinds...> kinds_;
-  std::array<LargeVector<double>, sizeof...(Kinds)> times_;  ///< of each kind, for each body
+  std::array<LargeVector<double>, sizeof...(Kinds)> times_;  ///< times of each kind, for each body
 };
 
 }  // namespace ed::internal

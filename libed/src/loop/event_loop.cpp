@@ -1,7 +1,6 @@
 #include "loop/event_loop.h"
 
 #include "contact/body_shapes.h"
-#include "loop/event_loop_impl.h"
 
 namespace ed::internal {
 
@@ -10,8 +9,5 @@ std::unique_ptr<AnyEventLoop> make_event_loop(const System& system, const Simula
   if (UniaxialBodies::can_hold(system)) return std::make_unique<EventLoop<UniaxialBodies>>(system, options);
   return std::make_unique<EventLoop<GeneralBodies>>(system, options);
 }
-
-template class EventLoop<UniaxialBodies>;
-template class EventLoop<GeneralBodies>;
 
 }  // namespace ed::internal

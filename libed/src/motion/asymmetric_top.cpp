@@ -1,6 +1,7 @@
 #include "motion/asymmetric_top.h"
 
 #include "base/exponential.h"
+#include "motion/asymmetric_flight.h"
 #include "motion/elliptic.h"
 
 #include <algorithm>
@@ -16,227 +17,20 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// Squares below this, relative to the largest moment and component of omega, are zero.
-constexpr double kNothing = 1e-270;
-
-/// The part of the terms of D2 that is below their rounding.
-constexpr double kBelowRounding = 0x1p-56;
-
-// ---- Quadrature ----------------------------------------------------------------------------------------------------
-
-/// A Gauss-Legendre rule: half of its nodes on [-1, 1], the others are opposite, and their weights.
-struct GaussRule {
-  double longest;  ///< piece, times the rate
-  std::span<const std::array<double, 2>> nodes;
-};
-
-constexpr std::array<std::array<double, 2>, 2> kFourNodes{
-    {{0.33998104358485626480, 0.65214515486254614263}, {0.86113631159405257522, 0.34785484513745385737}}};
-constexpr std::array<std::array<double, 2>, 3> kSixNodes{{{0.23861918608319690863, 0.46791393457269104739},
-                                                          {0.66120938646626451366, 0.36076157304813860757},
-                                                          {0.93246951420315202781, 0.17132449237917034504}}};
-constexpr std::array<std::array<double, 2>, 4> kEightNodes{{{0.18343464249564980494, 0.36268378337836198297},
-                                                            {0.52553240991632898582, 0.31370664587788728734},
-                                                            {0.79666647741362673959, 0.22238103445337447054},
-                                                            {0.96028985649753623168, 0.10122853629037625915}}};
-constexpr std::array<std::array<double, 2>, 5> kTenNodes{{{0.14887433898163121088, 0.29552422471475287017},
-                                                          {0.43339539412924719080, 0.26926671930999635509},
-                                                          {0.67940956829902440623, 0.21908636251598204400},
-                                                          {0.86506336668898451073, 0.14945134915058059315},
-                                                          {0.97390652851717172008, 0.06667134430868813759}}};
-constexpr std::array<GaussRule, 4> kGaussRules{
-    {{1.0 / 16, kFourNodes}, {0.28, kSixNodes}, {0.6, kEightNodes}, {1, kTenNodes}}};
-
-/// Integral of f over [0, tau] by Gauss-Legendre rules on pieces of at most 1 / rate, which is that of the motion. The
-/// poles of a top's motion lie (pi/2) / rate or farther from the real axis: at u = i K', K' >= pi/2, and
-/// p <= max |omega| because p^2 / w3^2 = (|I3 - I2| / I1) (|I3 - I1| / I2) at dn = 1, both below 1 for a body. So f is
-/// analytic in an ellipse about a piece of x / rate whose semi-axes sum to rho = pi / x + sqrt((pi / x)^2 + 1) times
-/// its half-length, and the error with n nodes is some rho^(-2n) of it (Trefethen, Approximation Theory and
-/// Approximation Practice, theorem 19.3): at the longest pieces of each rule 1e-16.
-template <class F>
-TurnedAngles integral(double tau, double rate, const F& f) {
-  const double turns = std::abs(tau) * rate;
-  const auto pieces = static_cast<std::int64_t>(std::clamp(std::ceil(turns), 1.0, 1e15));
-  const auto fits = [&](const GaussRule& rule) { return turns <= rule.longest; };
-  const auto* rule = std::find_if(kGaussRules.begin(), kGaussRules.end() - 1, fits);
-  const double half = 0.5 * tau / static_cast<double>(pieces);
-  TurnedAngles sum;
-  for (std::int64_t k = 0; k < pieces; ++k) {
-    const double middle = static_cast<double>(2 * k + 1) * half;
-    for (const auto& [node, weight] : rule->nodes) {
-      for (const double t : {middle - half * node, middle + half * node}) {
-        const TurnedAngles at = f(t);
-        sum.world += weight * at.world;
-        sum.body += weight * at.body;
-      }
-    }
-  }
-  return {half * sum.world, half * sum.body};
-}
-
-// ---- Bounds --------------------------------------------------------------------------------------------------------
-
-/// The squares of omega's components along axes 1, 2, 3 as functions of s = sn^2; A_i = (I_j - I_k) / I_i, whose signs
-/// are those of the labels in cyclic order.
-struct Squares {
-  std::array<double, 3> w;  ///< largest values
-  double k2;
-  std::array<double, 3> A;
-
-  std::array<double, 3> at(double s) const { return {w[0] * (1 - s), w[1] * s, w[2] * (1 - k2 * s)}; }
-
-  /// |d omega/dt|^2, each component A_i w_j w_k.
-  double alpha(double s) const {
-    const auto [a, b, c] = at(s);
-    return A[0] * A[0] * b * c + A[1] * A[1] * c * a + A[2] * A[2] * a * b;
-  }
-
-  /// |d2 omega/dt2|^2 in the world frame: components w_i [A_j w_k^2 (A_i - 1) + A_k w_j^2 (A_i + 1)], the derivative of
-  /// alpha in the body plus omega x alpha.
-  double jerk(double s) const {
-    const std::array<double, 3> v = at(s);
-    double sum = 0;
-    for (int i = 0; i < 3; ++i) {
-      const int j = (i + 1) % 3;
-      const int k = (i + 2) % 3;
-      const double bracket = A[j] * v[k] * (A[i] - 1) + A[k] * v[j] * (A[i] + 1);
-      sum += v[i] * bracket * bracket;
-    }
-    return sum;
-  }
-};
-
-/// The largest value on [0, 1] of a cubic polynomial f: at an end or where the derivative, taken from four values, is
-/// zero.
-template <class F>
-double largest(const F& f) {
-  const double f0 = f(0);
-  const double f1 = f(1);
-  // f = f0 + b s + c s^2 + d s^3 through s = 0, 1/2, 1 and -1.
-  const double odd = 0.5 * (f1 - f(-1));  // b + d
-  const double c = 0.5 * (f1 + f(-1)) - f0;
-  const double d = (2 * odd - 4 * (f(0.5) - f0 - 0.25 * c)) / 1.5;
-  const double b = odd - d;
-  double most = std::max(f0, f1);
-  const double discriminant = c * c - 3 * b * d;
-  if (discriminant >= 0) {
-    // Roots of b + 2 c s + 3 d s^2 without cancellation.
-    const double sum = -(c + std::copysign(std::sqrt(discriminant), c));
-    for (const double s : {sum / (3 * d), b / sum}) {
-      if (s > 0 && s < 1) most = std::max(most, f(s));
-    }
-  }
-  return most;
-}
-
-// ---- Constants of a flight -----------------------------------------------------------------------------------------
-
-/// A top in units where the largest moment and the largest component of omega lie in [1/2, 1), its axes labelled.
-struct Flight {
-  std::array<int, 3> axis;  ///< body axes 1, 2, 3
-  std::array<double, 3> I, w;
-  double scale;        ///< of omega
-  double orientation;  ///< of the labels in the body: 1, or -1 if left-handed
-  double sense;        ///< of M2 against M3 at sn > 0
-  double chi;          ///< sign(I2 - I1)
-  double I21, I32, I31;
-  double D1, D2, D3;
-};
-
-struct Moduli {
-  double L, mean_turning;  ///< mean_turning: 2 E / L
-  double s1, s2, s3;       ///< s1 > 0, the others with their signs
-  double p;
-  double k2, kc2;  ///< k^2, k'^2
-  SinCos phi;      ///< amplitude of u at the start
-};
-
-/// Nothing if omega keeps its direction.
-std::optional<Flight> labelled(const Vector3d& inertia, const Vector3d& omega_body) {
-  if (omega_body.isZero(0)) return std::nullopt;
-  int exponent_I = 0;
-  int exponent_w = 0;
-  std::frexp(inertia.maxCoeff(), &exponent_I);
-  std::frexp(omega_body.cwiseAbs().maxCoeff(), &exponent_w);
-  Flight f;
-  f.scale = std::ldexp(1.0, exponent_w);
-  f.axis = {0, 1, 2};
-  std::sort(f.axis.begin(), f.axis.end(), [&](int a, int b) { return inertia[a] < inertia[b]; });
-  for (int i = 0; i < 3; ++i) {
-    f.I[i] = std::ldexp(inertia[f.axis[i]], -exponent_I);
-    f.w[i] = std::ldexp(omega_body[f.axis[i]], -exponent_w);
-  }
-  f.orientation = (f.axis[1] - f.axis[0] + 3) % 3 == 1 ? 1 : -1;
-  f.sense = f.orientation;
-  f.chi = 1;
-  double term1 = f.I[0] * (f.I[1] - f.I[0]) * f.w[0] * f.w[0];
-  double term3 = f.I[2] * (f.I[2] - f.I[1]) * f.w[2] * f.w[2];
-  if (term3 < term1) {
-    std::swap(f.axis[0], f.axis[2]);
-    std::swap(f.I[0], f.I[2]);
-    std::swap(f.w[0], f.w[2]);
-    std::swap(term1, term3);
-    f.orientation = -f.orientation;
-    f.chi = -1;
-  }
-  const auto [I1, I2, I3] = f.I;
-  f.I21 = std::abs(I2 - I1);
-  f.I32 = std::abs(I3 - I2);
-  f.I31 = std::abs(I3 - I1);
-  f.D1 = I2 * f.I21 * f.w[1] * f.w[1] + I3 * f.I31 * f.w[2] * f.w[2];
-  f.D2 = std::max(term3 - term1, kBelowRounding * (term3 + term1));
-  f.D3 = I1 * f.I31 * f.w[0] * f.w[0] + I2 * f.I32 * f.w[1] * f.w[1];
-  if (f.D3 < kNothing || term3 + term1 < kNothing) return std::nullopt;
-  return f;
-}
-
-Moduli moduli(const Flight& f) {
-  const auto [I1, I2, I3] = f.I;
-  Moduli m;
-  const double L1 = I1 * f.w[0];
-  const double L2 = I2 * f.w[1];
-  const double L3 = I3 * f.w[2];
-  m.L = std::sqrt(L1 * L1 + L2 * L2 + L3 * L3);
-  m.mean_turning = (L1 * f.w[0] + L2 * f.w[1] + L3 * f.w[2]) / m.L;
-  const double root3 = std::sqrt(f.D3);
-  m.s1 = std::sqrt(I1 / f.I31) * root3 / m.L;
-  m.s2 = std::copysign(std::sqrt(I2 / f.I32) * root3 / m.L, f.sense * f.w[2]);
-  m.s3 = std::copysign(std::sqrt(I3 * f.D1 / f.I31) / m.L, f.w[2]);
-  m.p = std::sqrt(f.I32 * f.D1 / (I1 * I2 * I3));
-  m.k2 = f.I21 * f.D3 / (f.I32 * f.D1);
-  m.kc2 = f.I31 * f.D2 / (f.I32 * f.D1);
-  // cn and sn; their squares sum to 1 by the definition of D3.
-  m.phi.cos = std::sqrt(I1 * f.I31) * f.w[0] / root3;
-  m.phi.sin = std::sqrt(I2 * f.I32) * f.w[1] / root3 * std::copysign(1.0, m.s2);
-  return m;
-}
-
-TopBounds top_bounds(const Flight& f, const Moduli& m) {
-  Squares squares;
-  for (int i = 0; i < 3; ++i) squares.A[i] = (f.I[(i + 1) % 3] - f.I[(i + 2) % 3]) / f.I[i];
-  squares.w = {f.D3 / (f.I[0] * f.I31), f.D3 / (f.I[1] * f.I32), f.D1 / (f.I[2] * f.I31)};
-  squares.k2 = m.k2;
-  // |omega|^2 is linear in s and falls with it.
-  const double unit = kBoundMargin * f.scale;
-  return {unit * std::sqrt(squares.w[0] + squares.w[2]),
-          unit * f.scale * std::sqrt(largest([&](double s) { return squares.alpha(s); })),
-          unit * f.scale * f.scale * std::sqrt(largest([&](double s) { return squares.jerk(s); }))};
-}
-
 // ---- Series
-// ----------------------------------------------------------------------------------------------------------
 
-/// The theta function whose angle is phi's periodic part, and the rate of that angle at u = K (over x or v).
-struct Turning {
+/// Theta function whose angle is the periodic part of phi, and the rate of that angle at u = K (over x or v).
+struct ThetaAngle {
   Cubic re, im;
   double slope;
 };
 
-/// theta4(x + i chi eta) (lead 3) or theta1(x + i chi eta), times e^-eta: e^(-2 eta) = G, q e^(2 eta) = h.
-Turning trigonometric_turning(bool lead_is_3, double chi, const Nome& nome, double G, double h) {
+/// Returns theta4(x + i chi eta) (axis 3 leads) or theta1(x + i chi eta), times e^-eta: e^(-2 eta) = G, q e^(2 eta) =
+/// h.
+ThetaAngle trigonometric_angle(bool lead_is_3, double chi, const Nome& nome, double G, double h) {
   const double G2 = G * G;
   const Cubic powers{1, h, h * h, h * h * h};
-  Turning t;
+  ThetaAngle t;
   if (lead_is_3) {
     // 1 + sum (-1)^n q^(n^2) 2 [cos 2nx cosh 2n eta - i chi sin 2nx sinh 2n eta]; sin 2nx / sin 2x = 1, y, y^2 - 1.
     const Cubic a = times(alternating(nome.less), powers);
@@ -257,10 +51,10 @@ Turning trigonometric_turning(bool lead_is_3, double chi, const Nome& nome, doub
   return t;
 }
 
-/// theta2(chi eta' - iv) (lead 3) or theta1(chi eta' - iv), which Jacobi's transformation makes of the above but for
-/// factors and a phase linear in time. At u = K their angles are chi eta' and chi (eta' - pi / 2), and their
-/// logarithmic derivatives those of theta3 and theta4 at eta'.
-Turning hyperbolic_turning(bool lead_is_3, double chi, const Nome& nome, const SinCos& eta) {
+/// Returns theta2(chi eta' - iv) (axis 3 leads) or theta1(chi eta' - iv), the results of Jacobi's transformation of the
+/// functions above except for factors and a phase linear in time. At u = K their angles are chi eta' and chi (eta' - pi
+/// / 2), and their logarithmic derivatives those of theta3 and theta4 at eta'.
+ThetaAngle hyperbolic_angle(bool lead_is_3, double chi, const Nome& nome, const SinCos& eta) {
   std::array<SinCos, 8> multiple{{{0, 1}}};
   for (std::size_t n = 1; n < multiple.size(); ++n) multiple[n] = product(multiple[n - 1], eta);
   const Cubic a = lead_is_3 ? nome.square : alternating(nome.square);
@@ -275,7 +69,7 @@ Turning hyperbolic_turning(bool lead_is_3, double chi, const Nome& nome, const S
     rise += 4 * static_cast<double>(n) * a[n] * multiple[2 * n].sin;
     sum += 2 * a[n] * multiple[2 * n].cos;
   }
-  Turning t;
+  ThetaAngle t;
   t.slope = chi * rise / sum;
   if (lead_is_3) {
     t.re = odd_sum(cosines, -nome.q);
@@ -287,9 +81,9 @@ Turning hyperbolic_turning(bool lead_is_3, double chi, const Nome& nome, const S
   return t;
 }
 
-/// k^2 <= 1/2. cn = (theta4 / theta2) theta2(x) / theta4(x), sn = (theta3 / theta2) theta1(x) / theta4(x),
-/// dn = (theta4 / theta3) theta3(x) / theta4(x) (Whittaker and Watson, Modern Analysis, sec. 22.11); theta4(x) is left
-/// out.
+/// Sets the series for k^2 <= 1/2. cn = (theta4 / theta2) theta2(x) / theta4(x), sn = (theta3 / theta2) theta1(x) /
+/// theta4(x), dn = (theta4 / theta3) theta3(x) / theta4(x) (Whittaker and Watson, Modern Analysis, sec. 22.11);
+/// theta4(x) is left out.
 void set_trigonometric(const Moduli& m, double chi, ThetaSeries& s) {
   const Landen landen(m.k2, std::sqrt(m.kc2));
   const Nome nome(landen.nome());
@@ -298,20 +92,20 @@ void set_trigonometric(const Moduli& m, double chi, ThetaSeries& s) {
   s.m1 = scaled(m.s1 * nome.theta4 / nome.theta2, odd_sum(nome.more, -1));
   s.m2 = scaled(m.s2 * nome.theta3 / nome.theta2, odd_sum(alternating(nome.more), 1));
   s.m3 = scaled(m.s3 * nome.theta4 / nome.theta3, cosine_sum(nome.square, 1));
-  // sc(eta, k') = s3 / s1; e^(-2 eta) from it or, if eta is beyond the middle, q e^(2 eta) from sc(K' - eta).
+  // sc(eta, k') = s3 / s1; e^(-2 eta) follows from it or, if eta is beyond the middle, q e^(2 eta) from sc(K' - eta).
   const double k = std::sqrt(m.k2);
   const double s3 = std::abs(m.s3);
   const bool far = k * s3 * s3 > m.s1 * m.s1;
   const double decay = far ? landen.decay(m.s1, k * s3) : landen.decay(s3, m.s1);
   const double other = nome.q / decay;
-  const Turning t = trigonometric_turning(s.lead_is_3, chi, nome, far ? other : decay, far ? decay : other);
+  const ThetaAngle t = trigonometric_angle(s.lead_is_3, chi, nome, far ? other : decay, far ? decay : other);
   s.re = t.re;
   s.im = t.im;
   s.secular = s.secular - s.rate * t.slope;
 }
 
-/// k^2 > 1/2. The same after Jacobi's transformation: cn = (theta2 / theta4) theta4(iv) / theta2(iv),
-/// sn = (theta3 / theta4) theta1(iv) / (i theta2(iv)), dn = (theta2 / theta3) theta3(iv) / theta2(iv).
+/// Sets the series for k^2 > 1/2, after Jacobi's transformation: cn = (theta2 / theta4) theta4(iv) / theta2(iv), sn =
+/// (theta3 / theta4) theta1(iv) / (i theta2(iv)), dn = (theta2 / theta3) theta3(iv) / theta2(iv).
 void set_hyperbolic(const Moduli& m, double chi, ThetaSeries& s) {
   const double kc = std::sqrt(m.kc2);
   const Landen landen(m.kc2, std::sqrt(m.k2));
@@ -323,8 +117,8 @@ void set_hyperbolic(const Moduli& m, double chi, ThetaSeries& s) {
   s.m1 = scaled(m.s1 * nome.theta2 / nome.theta4, cosine_sum(alternating(nome.less), nome.q));
   s.m2 = scaled(m.s2 * nome.theta3 / nome.theta4, odd_sum(alternating(nome.square), nome.q));
   s.m3 = scaled(m.s3 * nome.theta2 / nome.theta3, cosine_sum(nome.less, nome.q));
-  // cn(u) < 0 belongs to u beyond K: one reduction by 2 K, which changes the signs of cn and sn. sc(u, k) gives
-  // e^(-2v); beyond the middle, sc(K - u) is the smaller.
+  // cn(u) < 0 means u beyond K: one reduction by 2 K, which changes the signs of cn and sn. sc(u, k) gives e^(-2v);
+  // beyond the middle, sc(K - u) is the smaller.
   const bool beyond = m.phi.cos < 0;
   const double sn = std::abs(m.phi.sin);
   const double cn = std::abs(m.phi.cos);
@@ -334,7 +128,7 @@ void set_hyperbolic(const Moduli& m, double chi, ThetaSeries& s) {
   s.start_exp = (m.phi.sin < 0) != beyond ? std::sqrt(decay) : 1 / std::sqrt(decay);
   const double length = std::sqrt(m.s1 * m.s1 + m.s3 * m.s3);
   const SinCos eta = landen.argument({std::abs(m.s3) / length, m.s1 / length});
-  const Turning t = hyperbolic_turning(s.lead_is_3, chi, nome, eta);
+  const ThetaAngle t = hyperbolic_angle(s.lead_is_3, chi, nome, eta);
   s.re = t.re;
   s.im = t.im;
   s.secular = s.secular - s.rate * t.slope;
@@ -345,7 +139,7 @@ ThetaSeries theta_series(const Flight& f, const Moduli& m) {
   ThetaSeries s{};
   s.hyperbolic = m.k2 > m.kc2;
   s.lead_is_3 = m.s1 >= std::abs(m.s3);
-  s.secular = s.lead_is_3 ? m.L / f.I[1] : m.mean_turning;  // phi' at u = K
+  s.secular = s.lead_is_3 ? m.L / f.I[1] : m.mean_rate;  // phi' at u = K
   if (s.hyperbolic) {
     set_hyperbolic(m, f.chi, s);
   } else {
@@ -357,9 +151,8 @@ ThetaSeries theta_series(const Flight& f, const Moduli& m) {
 }
 
 // ---- Evaluation
-// ------------------------------------------------------------------------------------------------------
 
-/// What the polynomials are multiplied by, their argument, and the secular part of phi.
+/// Factors and argument of the polynomials, and the secular part of phi.
 struct Phase {
   double f1, f2, f3;
   double re, im;
@@ -375,7 +168,7 @@ struct Phase {
   return {x.cos, x.sin, 1, x.sin, x.cos, y, angle};
 }
 
-/// Everything over cosh v: no square overflows.
+/// Returns the phase with all factors divided by cosh v: no square overflows.
 [[gnu::always_inline]] inline Phase hyperbolic_phase(const ThetaSeries& s, double tau) {
   double v = s.rate * tau;
   double turns = std::nearbyint(v / s.half_period);
@@ -408,7 +201,7 @@ struct Phase {
   return s.hyperbolic ? hyperbolic_phase(s, tau) : trigonometric_phase(s, tau);
 }
 
-/// M up to length, in the order lead, next, last.
+/// Returns M up to length, in the order leading, next, last axis.
 [[gnu::always_inline]] inline std::array<double, 3> momentum(const ThetaSeries& s, const Phase& f) {
   const double m1 = f.f1 * value(s.m1, f.y);
   const double m2 = f.f2 * value(s.m2, f.y);
@@ -416,21 +209,22 @@ struct Phase {
   return s.lead_is_3 ? std::array{m3, m1, m2} : std::array{m1, m2, m3};
 }
 
-/// Of the matrix body -> frame of L (l along z): the columns of the axes lead and next, and the z of the last.
+/// Columns of the rotation from the body to the frame of L (l along z): those of the leading and the next axis, and the
+/// z component of the last.
 struct Columns {
   Vector3d lead, next;
   double last_z;
 };
 
-/// orientation: of lead, next and last in the body.
+/// Computes the columns. `orientation`: handedness of the leading, next and last axis in the body.
 [[gnu::always_inline]] inline Columns columns(const ThetaSeries& s, double orientation, double tau) {
   const Phase f = phase(s, tau);
   const auto [a, b, c] = momentum(s, f);
   const double re = f.re * value(s.re, f.y);
   const double im = f.im * value(s.im, f.y);
   const SinCos sc = turn(f.angle);
-  // With M of length 1, rho^2 = M_b^2 + M_c^2 and z = exp(i phi), the first two columns across l are rho z and
-  // z (-M_a M_b + i M_c) / rho.
+  // With M of length 1, rho^2 = M_b^2 + M_c^2 and z = exp(i phi), the first two columns across l are rho z and z (-M_a
+  // M_b + i M_c) / rho.
   const double rho2 = b * b + c * c;
   const double inverse = 1 / std::sqrt(rho2 + a * a);
   const double unit = 1 / std::sqrt(rho2 * (re * re + im * im));
@@ -460,7 +254,7 @@ std::optional<AsymmetricTop> AsymmetricTop::make(const Vector3d& inertia, const 
   top.series_ = theta_series(f, m);
   top.bounds_ = top_bounds(f, m);
   top.orientation_ = f.orientation;
-  top.mean_turning_ = f.scale * m.mean_turning;
+  top.mean_rate_ = f.scale * m.mean_rate;
   const std::array<int, 3> order = top.series_.lead_is_3 ? std::array{2, 0, 1} : std::array{0, 1, 2};
   for (int i = 0; i < 3; ++i) {
     const double I = f.I[order[i]];
@@ -468,7 +262,7 @@ std::optional<AsymmetricTop> AsymmetricTop::make(const Vector3d& inertia, const 
     top.rates_[i] = f.scale * (m.L / I);
     top.euler_[i] = f.orientation * (f.I[order[(i + 1) % 3]] - f.I[order[(i + 2) % 3]]) / I;
   }
-  // The frame of L is where it must be for the start.
+  // The frame of L follows from the start.
   const Columns b = columns(top.series_, f.orientation, 0);
   const Matrix3d start = matrix(polished(b.lead, b.next, f.orientation), top.axes_);
   top.world_ = matrix(polished(product(R, start.row(2)), product(R, start.row(0)), 1), {2, 0, 1});
@@ -496,7 +290,7 @@ TurnedAngles AsymmetricTop::turned(double tau) const {
     const Vector3d omega(rates_[0] * b.lead.z(), rates_[1] * b.next.z(), rates_[2] * b.last_z);
     return TurnedAngles{omega.x() * b.lead + omega.y() * b.next + omega.z() * last, omega};
   });
-  TurnedAngles turned{product(world_, {sum.world.x(), sum.world.y(), mean_turning_ * tau}), {}};
+  TurnedAngles turned{product(world_, {sum.world.x(), sum.world.y(), mean_rate_ * tau}), {}};
   for (int i = 0; i < 3; ++i) turned.body[axes_[i]] = sum.body[i];
   return turned;
 }

@@ -8,8 +8,9 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-/// Integral over [0, t] of (w1 + i w2) exp(-i k s): the angular velocity across the axis as the body sees it.
-Vector2d integrate_turning(const Vector2d& w, double k, double t) {
+/// Returns the integral over [0, t] of (w1 + i w2) exp(-i k s): the angular velocity across the axis in the body's
+/// frame.
+Vector2d integrate_across(const Vector2d& w, double k, double t) {
   const double x = k * t;
   double sinc = 1 - x * x / 6;
   double cosc = x * (0.5 - x * x / 24);  // (1 - cos x) / x
@@ -27,7 +28,7 @@ void set_rotation(const UniaxialInertia& inertia, const Vector3d& u, const Vecto
                   BodyFrame& frame) {
   if (!inertia.spins) {
     const double rate = omega.norm();
-    // A body that does not turn may point anywhere: any direction across u serves as that of L.
+    // The axis of a body that does not rotate may have any relation to L: any direction across u serves as that of L.
     const Vector3d l = rate > 0 ? Vector3d(omega / rate) : u.unitOrthogonal();
     motion.e0.setZero();
     motion.e1 = u;
@@ -57,14 +58,14 @@ void advance(const UniaxialInertia& inertia, double t, AxisMotion& motion, BodyF
 
   // Integrals of omega. Across the axis omega(t) = Omega l - Omega (u.l) u(t), which integrates term by term.
   const Vector2d omega_body(omega.dot(frame.x_axis), omega.dot(u.cross(frame.x_axis)));
-  double own_rate = 0;  // turning about the body's own axis, beside that about l
+  double own_rate = 0;  // rate about the body's own axis, in addition to that about l
   frame.phi_lab += angle * l;
   if (inertia.spins) {
     const double cos_alpha = l.dot(u);
     frame.phi_lab -= cos_alpha * (angle * motion.e0 + sc.sin * motion.e1 + (1 - sc.cos) * motion.e2);
     own_rate = frame.spin - motion.rate * cos_alpha;
   }
-  frame.phi_body += integrate_turning(omega_body, own_rate, dt);
+  frame.phi_body += integrate_across(omega_body, own_rate, dt);
 
   // Body x: first about u, then about l.
   Vector3d x = frame.x_axis;
@@ -77,7 +78,7 @@ void advance(const UniaxialInertia& inertia, double t, AxisMotion& motion, BodyF
   const Vector3d u_new = renormalized(motion.e0 + sc.cos * motion.e1 + sc.sin * motion.e2);
   const Vector3d e2_new = sc.cos * motion.e2 - sc.sin * motion.e1;
   if (inertia.spins) {
-    // omega = u x du/dt; taken across u again so that rounding does not feed the spin.
+    // omega = u x du/dt; made orthogonal to u again so that rounding does not feed the spin.
     set_rotation(inertia, u_new, motion.rate * u_new.cross(e2_new), motion, frame);
   } else {
     motion.e1 = u_new;

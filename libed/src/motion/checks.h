@@ -12,10 +12,10 @@ void check_inertia(const Eigen::Vector3d& inertia);
 /// Throws std::invalid_argument for a Motion with numbers that are not finite or an impossible inertia.
 void check_motion(const Motion& motion);
 
-/// The body axis about which the other two moments are equal (2 if all three are), or -1.
+/// Returns the body axis about which the other two moments are equal (2 if all three are), or -1.
 int symmetry_axis_of_inertia(const Eigen::Vector3d& inertia);
 
-/// A Motion as that of its symmetry axis; the body frame's x is the next body axis in cyclic order.
+/// Motion in terms of its symmetry axis; the body frame's x is the next body axis in cyclic order.
 struct TopMotion {
   UniaxialInertia inertia;
   AxisMotion axis;

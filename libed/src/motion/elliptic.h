@@ -23,12 +23,12 @@ inline Cubic scaled(double factor, const Cubic& p) {
   return {factor * p[0], factor * p[1], factor * p[2], factor * p[3]};
 }
 
-/// Of unit complex numbers: the angles add up.
+/// Returns the product of unit complex numbers: the angles add up.
 inline SinCos product(const SinCos& a, const SinCos& b) {
   return {a.sin * b.cos + a.cos * b.sin, a.cos * b.cos - a.sin * b.sin};
 }
 
-/// Limit of the arithmetic-geometric mean (Gauss): K(k) = pi / (2 agm(1, k')).
+/// Returns the arithmetic-geometric mean (Gauss): K(k) = pi / (2 agm(1, k')).
 inline double agm(double a, double b) {
   while (std::abs(a - b) > 1e-9 * a) {
     const double next = 0.5 * (a + b);
@@ -38,9 +38,9 @@ inline double agm(double a, double b) {
   return 0.5 * (a + b);
 }
 
-/// The steps of the arithmetic-geometric mean of 1 and the complementary modulus for a modulus with k^2 <= 1/2, and
-/// what descends them (Landen's transformation; Abramowitz and Stegun, sec. 17.5, 17.6). After five steps a - b <
-/// 1e-21.
+/// Steps of the arithmetic-geometric mean of 1 and the complementary modulus for a modulus with k^2 <= 1/2, and the
+/// functions computed by descending them (Landen's transformation; Abramowitz and Stegun, sec. 17.5, 17.6). After five
+/// steps a - b < 1e-21.
 class Landen {
  public:
   Landen(double k2, double complement) {
@@ -64,13 +64,14 @@ class Landen {
 
   double mean() const { return mean_; }  ///< agm(1, k') = pi / (2 K)
 
-  /// exp(-pi K'/K): Weierstrass' series in e = (1 - sqrt k') / (2 (1 + sqrt k')) (Whittaker and Watson, sec. 21.8).
+  /// Returns exp(-pi K'/K) by Weierstrass' series in e = (1 - sqrt k') / (2 (1 + sqrt k')) (Whittaker and Watson, sec.
+  /// 21.8).
   double nome() const { return nome_; }
 
-  /// exp(i pi F(phi, k) / (2 K)) from exp(i phi). A step: tan(phi' - phi) = (b / a) tan phi, phi' = 2 phi + d with
-  /// |d| < pi / 2; pi F / (2 K) = phi + sum of d_n / 2^(n+1).
+  /// Returns exp(i pi F(phi, k) / (2 K)) from exp(i phi). A step: tan(phi' - phi) = (b / a) tan phi, phi' = 2 phi + d
+  /// with |d| < pi / 2; pi F / (2 K) = phi + sum of d_n / 2^(n+1).
   SinCos argument(SinCos phi) const {
-    constexpr int kReal = kSteps - 1;  // d after that is below 1e-21
+    constexpr int kReal = kSteps - 1;  // later d are below 1e-21
     std::array<SinCos, kReal> d;
     SinCos p = phi;
     for (int n = 0; n < kReal; ++n) {
@@ -86,8 +87,9 @@ class Landen {
     return product(phi, sum);
   }
 
-  /// exp(-pi w / K) where sc(w, k') = s / c; s, c >= 0. The same with imaginary phi = i chi, sinh chi = s / c, and all
-  /// differences positive. For w <= K'/2, that is k s^2 <= c^2; beyond, K' - w is: sc(K' - w) = 1 / (k sc(w)).
+  /// Returns exp(-pi w / K) where sc(w, k') = s / c; s, c >= 0. The steps are those of argument() with imaginary phi =
+  /// i chi, sinh chi = s / c, and all differences positive. This holds for w <= K'/2, that is k s^2 <= c^2; beyond,
+  /// K' - w satisfies it: sc(K' - w) = 1 / (k sc(w)).
   double decay(double s, double c) const {
     const double root = (s + std::sqrt(s * s + c * c)) / c;
     const double e = root * root;  // e^(2 chi)
@@ -112,7 +114,7 @@ class Landen {
     double a, b, difference, shrink;
   };
 
-  /// The square root of a unit complex number with positive real part.
+  /// Returns the square root of a unit complex number with positive real part.
   static SinCos half(const SinCos& a) {
     const double cos = std::sqrt(0.5 * (1 + a.cos));
     return {0.5 * a.sin / cos, cos};
@@ -123,8 +125,8 @@ class Landen {
   double nome_;
 };
 
-/// The angle in (-pi, pi] of a unit complex number: a guess good to 0.005 (Abramowitz and Stegun, sec. 4.4),
-/// twice corrected by the arc sine's series of the sine of what is left.
+/// Returns the angle in (-pi, pi] of a unit complex number: a guess accurate to 0.005 (Abramowitz and Stegun, sec.
+/// 4.4), corrected twice by the arc sine's series of the sine of the remainder.
 inline double angle_of(const SinCos& z) {
   const double x = std::min(std::abs(z.sin), std::abs(z.cos)) / std::max(std::abs(z.sin), std::abs(z.cos));
   constexpr double kPi = std::numbers::pi;
@@ -144,20 +146,20 @@ inline Cubic times(const Cubic& a, const Cubic& b) {
   return {a[0] * b[0], a[1] * b[1], a[2] * b[2], a[3] * b[3]};
 }
 
-/// Coefficients with the factor (-1)^n.
+/// Returns the coefficients with the factor (-1)^n.
 inline Cubic alternating(const Cubic& a) {
   return {a[0], -a[1], a[2], -a[3]};
 }
 
-/// sum a_n C_n with C_0 = 1, C_1 = y, C_2 = y^2 - 2 g^2, C_3 = y^3 - 3 g^2 y: C_n = 2 cos 2nx for y = 2 cos 2x, g = 1;
-/// C_n = 2 q^n cosh 2nv for y = 2 q cosh 2v, g = q.
+/// Returns the polynomial in y of sum a_n C_n with C_0 = 1, C_1 = y, C_2 = y^2 - 2 g^2, C_3 = y^3 - 3 g^2 y: C_n = 2
+/// cos 2nx for y = 2 cos 2x, g = 1; C_n = 2 q^n cosh 2nv for y = 2 q cosh 2v, g = q.
 inline Cubic cosine_sum(const Cubic& a, double g) {
   const double g2 = g * g;
   return {a[0] - 2 * g2 * a[2], a[1] - 3 * g2 * a[3], a[2], a[3]};
 }
 
-/// sum a_n S_n with S_n = C_n + g C_{n-1} + ... + g^n: for g = -1, cos((2n+1) x) / cos x; for g = 1,
-/// sin((2n+1) x) / sin x; for g = -q and q, q^n times the same with cosh and sinh.
+/// Returns the polynomial in y of sum a_n S_n with S_n = C_n + g C_{n-1} + ... + g^n: for g = -1, cos((2n+1) x) / cos
+/// x; for g = 1, sin((2n+1) x) / sin x; for g = -q and q, q^n times the same with cosh and sinh.
 inline Cubic odd_sum(Cubic a, double g) {
   for (int n = 2; n >= 0; --n) a[n] += g * a[n + 1];
   return cosine_sum(a, g);
@@ -180,7 +182,7 @@ struct Nome {
   Cubic square;                   ///< q^(n^2)
   Cubic less;                     ///< q^(n^2 - n)
   Cubic more;                     ///< q^(n^2 + n)
-  double theta2, theta3, theta4;  ///< theta2 over 2 q^(1/4)
+  double theta2, theta3, theta4;  ///< theta2 / (2 q^(1/4)), theta3, theta4 at 0
 };
 
 }  // namespace ed::internal

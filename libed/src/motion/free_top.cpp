@@ -10,7 +10,7 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// Means of the cosine and the sine over [0, x]: sin(x) / x and (1 - cos(x)) / x.
+/// Returns the means of the cosine and the sine over [0, x]: sin(x) / x and (1 - cos(x)) / x.
 SinCos mean_turn(double x) {
   if (x == 0) return {0, 1};
   const SinCos half = turn(0.5 * x);
@@ -18,7 +18,7 @@ SinCos mean_turn(double x) {
   return {sinc * half.sin, sinc * half.cos};
 }
 
-/// v turned about the unit vector l.
+/// Returns v rotated about the unit vector l.
 [[gnu::always_inline]] inline Vector3d rotated(const Vector3d& v, const Vector3d& l, const SinCos& sc) {
   return sc.cos * v + sc.sin * l.cross(v) + ((1 - sc.cos) * inner(l, v)) * l;
 }
@@ -38,7 +38,7 @@ std::variant<UniformTurn, SymmetricTop, AsymmetricTop> make_top(const Vector3d& 
 
 // ---- Constant angular velocity -------------------------------------------------------------------------------------
 
-TurningAxis TurningAxis::of(const Vector3d& v, const Vector3d& l) {
+RotatingAxis RotatingAxis::of(const Vector3d& v, const Vector3d& l) {
   const Vector3d along = inner(l, v) * l;
   return {along, v - along, l.cross(v)};
 }
@@ -46,8 +46,8 @@ TurningAxis TurningAxis::of(const Vector3d& v, const Vector3d& l) {
 UniformTurn::UniformTurn(const Matrix3d& rotation, const Vector3d& omega) : omega_(omega), rate_(length(omega)) {
   const TopAxes start = polished(rotation.col(0), rotation.col(1), 1);
   const Vector3d direction = rate_ > 0 ? Vector3d(omega / rate_) : Vector3d::UnitZ();
-  x_ = TurningAxis::of(start.first, direction);
-  y_ = TurningAxis::of(start.second, direction);
+  x_ = RotatingAxis::of(start.first, direction);
+  y_ = RotatingAxis::of(start.second, direction);
 }
 
 Matrix3d UniformTurn::rotation(double tau) const {
@@ -73,14 +73,14 @@ SymmetricTop::SymmetricTop(int axis, const Vector3d& inertia, const Matrix3d& ro
   spin_ = inner(omega, start_.first);
   across_ = {inner(omega, start_.second), inner(omega, start_.third)};
   // L / I_perp.
-  const Vector3d turning =
+  const Vector3d precession =
       across_.x() * start_.second + across_.y() * start_.third + (inertia[axis] / perpendicular * spin_) * start_.first;
-  precession_ = length(turning);
-  l_ = turning / precession_;
+  precession_ = length(precession);
+  l_ = precession / precession_;
   own_ = spin_ * ((perpendicular - inertia[axis]) / perpendicular);
 }
 
-/// First about u, then about l.
+/// Rotates first about u, then about l.
 [[gnu::always_inline]] inline TopAxes SymmetricTop::axes_at(double tau) const {
   const SinCos about_u = turn(own_ * tau);
   const SinCos about_l = turn(precession_ * tau);
@@ -98,7 +98,7 @@ TopState SymmetricTop::at(double tau) const {
 }
 
 TopBounds SymmetricTop::bounds() const {
-  // omega - (omega.l) l = k (u - (u.l) l) turns about l at Omega: the same lengths at all times. 1e-15: rounding of u.
+  // omega - (omega.l) l = k (u - (u.l) l) rotates about l at Omega: its length is constant. 1e-15: rounding of u.
   const double alpha = kBoundMargin * precession_ * std::abs(own_) * (length(l_.cross(start_.first)) + 1e-15);
   return {kBoundMargin * length(precession_ * l_ + own_ * start_.first), alpha, kBoundMargin * precession_ * alpha};
 }
@@ -109,7 +109,7 @@ TurnedAngles SymmetricTop::turned(double tau) const {
   const Vector3d e0 = inner(l_, start_.first) * l_;
   const Vector3d u = e0 + about_l.cos * (start_.first - e0) + about_l.sin * l_.cross(start_.first);
   TurnedAngles turned{tau * (precession_ * l_ + own_ * u), {}};
-  // Across the axis, omega turns at -k in the body's frame.
+  // Across the axis, omega rotates at -k in the body's frame.
   const SinCos about_u = mean_turn(own_ * tau);
   turned.body[axes_[0]] = tau * spin_;
   turned.body[axes_[1]] = tau * (about_u.cos * across_.x() + about_u.sin * across_.y());

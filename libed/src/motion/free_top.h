@@ -1,15 +1,16 @@
 #pragma once
 
-/// Exact free rotation of any rigid body about its centre of mass, for one flight: constants once, then any time.
+/// Exact free rotation of any rigid body about its centre of mass: constants are computed once a flight, then the state
+/// at any time.
 ///
 /// Notation: I1, I2, I3 principal moments; L = R I R^T omega the angular momentum, constant in the world; l = L / |L|;
-/// E the kinetic energy of rotation. The kind follows from the moments alone, exactly equal or not: nothing is gained
-/// by a tolerance, because an asymmetric top's formulas are as accurate for moments that nearly agree.
+/// E the kinetic energy of rotation. The kind is determined by the moments alone, exactly equal or not: a tolerance
+/// would gain nothing, because an asymmetric top's formulas are as accurate for moments that nearly agree.
 ///
 /// - Spherical top (three equal moments), or omega along a principal axis, or no rotation: omega is constant.
-/// - Symmetric top (two equal moments I_perp, about any body axis u): with Omega = |L| / I_perp and
-///   k = (omega.u) (1 - I_3 / I_perp), R(tau) = Rot(l, Omega tau) R(0) Rot(e_u, k tau) and omega = Omega l + k u(tau)
-///   (Landau and Lifshitz, Mechanics, sec. 33 and 35).
+/// - Symmetric top (two equal moments I_perp, about any body axis u): with Omega = |L| / I_perp and k = (omega.u) (1 -
+///   I_3 / I_perp), R(tau) = Rot(l, Omega tau) R(0) Rot(e_u, k tau) and omega = Omega l + k u(tau) (Landau and
+///   Lifshitz, Mechanics, sec. 33 and 35).
 /// - Asymmetric top: elliptic functions, see asymmetric_top.h.
 ///
 /// Determinism: +, -, *, / and sqrt, libed's own sine, cosine and exponential, and exact functions of the C library
@@ -26,24 +27,24 @@
 
 namespace ed::internal {
 
-/// A unit vector that turns about another one: along + cos part + sin part of the angle.
-struct TurningAxis {
+/// Unit vector that rotates about another one: along + cos part + sin part of the angle.
+struct RotatingAxis {
   Eigen::Vector3d along, cosine, sine;
 
-  /// `v` about the unit vector l.
-  static TurningAxis of(const Eigen::Vector3d& v, const Eigen::Vector3d& l);
+  /// Returns the motion of `v` about the unit vector l.
+  static RotatingAxis of(const Eigen::Vector3d& v, const Eigen::Vector3d& l);
   Eigen::Vector3d at(const SinCos& sc) const { return along + sc.cos * cosine + sc.sin * sine; }
 };
 
-template <class Archive, Is<TurningAxis> T>
+template <class Archive, Is<RotatingAxis> T>
 void fields(Archive& archive, T& axis) {
   archive(axis.along, axis.cosine, axis.sine);
 }
 
-/// Constant angular velocity.
+/// Rotation with constant angular velocity.
 class UniformTurn {
  public:
-  UniformTurn() = default;  ///< to be read into
+  UniformTurn() = default;  ///< makes an object to be read into
   UniformTurn(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& omega);
   TopState at(double tau) const { return {rotation(tau), omega_, Eigen::Vector3d::Zero()}; }
   Eigen::Matrix3d rotation(double tau) const;
@@ -56,15 +57,15 @@ class UniformTurn {
   }
 
  private:
-  TurningAxis x_, y_;  ///< body axes
+  RotatingAxis x_, y_;  ///< body axes
   Eigen::Vector3d omega_;
   double rate_;  ///< |omega|
 };
 
-/// Two equal moments, about the body axis number `axis`.
+/// Rotation with two equal moments, about the body axis number `axis`.
 class SymmetricTop {
  public:
-  SymmetricTop() = default;  ///< to be read into
+  SymmetricTop() = default;  ///< makes an object to be read into
   SymmetricTop(int axis, const Eigen::Vector3d& inertia, const Eigen::Matrix3d& rotation, const Eigen::Vector3d& omega);
   TopState at(double tau) const;
   Eigen::Matrix3d rotation(double tau) const;
@@ -81,40 +82,41 @@ class SymmetricTop {
   TopAxes axes_at(double tau) const;
 
   std::array<int, 3> axes_;  ///< body axes: u and the next two in cyclic order
-  TopAxes start_;            ///< these at tau = 0
+  TopAxes start_;            ///< axes at tau = 0
   Eigen::Vector3d l_;
   double precession_;       ///< Omega
   double own_;              ///< k
   double spin_;             ///< omega.u
-  Eigen::Vector2d across_;  ///< omega along the axes after u at tau = 0
+  Eigen::Vector2d across_;  ///< components of omega along the axes after u at tau = 0
 };
 
 /// Free rotation about the centre of mass, constants computed once a flight.
 class FreeTop {
  public:
-  /// At rest, body axes along the world's.
+  /// Constructs a body at rest, body axes along the world's.
   FreeTop();
 
-  /// The state at tau = 0. Moments positive and such as a body can have (check_inertia), rotation orthonormal to 1e-8,
-  /// omega in the world frame; numbers finite (not checked).
+  /// Computes the constants from the state at tau = 0. Moments must be positive and physically possible
+  /// (check_inertia), the rotation orthonormal to 1e-8, omega in the world frame, all numbers finite (not checked).
   FreeTop(const Eigen::Vector3d& inertia, const Eigen::Matrix3d& rotation, const Eigen::Vector3d& omega);
 
-  /// The state at tau, of either sign and any length. Error: rounding, below 2e-15 (1 + |omega| |tau|); for asymmetric
-  /// tops, and what rounding of omega itself makes of the motion, which is more near the separatrix.
+  /// Returns the state at tau, of either sign and any length. The error is rounding, below 2e-15 (1 + |omega| |tau|).
+  /// For asymmetric tops the effect of the rounding of omega on the motion is added, which is larger near the
+  /// separatrix.
   TopState at(double tau) const;
   Eigen::Matrix3d rotation(double tau) const;
 
-  /// Upper bounds over all times: |omega|, |d omega/dt|, |d2 omega/dt2| (world frame). Each is the maximum itself, but
-  /// for rounding.
+  /// Upper bounds over all times: |omega|, |d omega/dt|, |d2 omega/dt2| (world frame). Each is the maximum itself,
+  /// except for rounding.
   double max_omega() const { return bounds_.omega; }
   double max_alpha() const { return bounds_.alpha; }
   double max_jerk() const { return bounds_.jerk; }
 
-  /// In closed form for spherical and symmetric tops. For asymmetric ones by quadrature to rounding,
-  /// 1e-15 (1 + |omega| |tau|)^2, in a time proportional to |omega| |tau|.
+  /// Returns the integrals of omega over [0, tau]. Closed form for spherical and symmetric tops. Asymmetric ones need
+  /// quadrature, to rounding, 1e-15 (1 + |omega| |tau|)^2, in a time proportional to |omega| |tau|.
   TurnedAngles turned(double tau) const;
 
-  /// The constants as they are: computed again from a state they would have other last bits.
+  /// Archives the constants themselves: computed again from a state they would have other last bits.
   template <class Archive, class Self>
   static void fields(Archive& archive, Self& self) {
     archive(self.top_, self.bounds_);

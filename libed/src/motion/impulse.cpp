@@ -24,8 +24,8 @@ double collide(ContactBody& a, ContactBody& b, const Eigen::Vector3d& normal) {
   };
   const double J = -2 * v_n / inverse_effective_mass;
   push(J);
-  // |normal|^2 is 1 but for rounding that has a sign, and so has the mass: the energy would drift by half a unit in the
-  // last place with every collision. What is missing of the reflection has none.
+  // |normal|^2 deviates from 1 by rounding of a fixed sign, and so does the mass: the energy would drift by half a unit
+  // in the last place with every collision. The remainder of the reflection has no fixed sign.
   const double rest = -(v_n + normal_velocity(a, b, normal)) / inverse_effective_mass;
   push(rest);
   return J + rest;

@@ -1,6 +1,6 @@
 #pragma once
 
-/// The free motion of any rigid body between two events.
+/// Free motion of any rigid body between two events.
 
 #include "motion/free_top.h"
 
@@ -26,7 +26,7 @@ void fields(Archive& archive, T& m) {
   expect(archive, (m.position + m.velocity).allFinite() && std::isfinite(m.time), "a motion is not finite");
 }
 
-/// The points of two bodies, each from its own centre, at which they touch.
+/// Contact points of two bodies, each from its own centre.
 struct ContactPoints {
   Eigen::Vector3d a, b;
 };

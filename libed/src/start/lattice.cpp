@@ -1,4 +1,5 @@
 #include "neighbours/limits.h"
+#include "start/lattice_cells.h"
 #include "start/nematic.h"
 #include "start/parts.h"
 
@@ -24,168 +25,37 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Eigen::Vector3i;
+using internal::fits;
+using internal::free_box;
+using internal::in_box;
+using internal::is_site;
+using internal::least_box;
+using internal::near_vectors;
+using internal::reach_of;
+using internal::shortest_vector;
+using internal::sites_in_cell;
+using internal::Turned;
+using internal::ways_to_fill;
 
-// Sites and the vectors between them are counted in half edges of a cell: all even (simple cubic), or with an even sum
-// (fcc).
-
-int sites_in_cell(Lattice lattice) {
-  return lattice == Lattice::fcc ? 4 : 1;
-}
-
-bool is_site(Lattice lattice, const Vector3i& p) {
-  if (lattice == Lattice::fcc) return p.sum() % 2 == 0;
-  return p.x() % 2 == 0 && p.y() % 2 == 0 && p.z() % 2 == 0;
-}
-
-/// In units of the box's edge.
-Vector3d in_box(const Vector3i& p, const Vector3i& cells) {
-  return 0.5 * p.cast<double>().cwiseQuotient(cells.cast<double>());
-}
-
-/// One of each pair of opposite vectors between sites whose components are below `reach` (in units of the box), the
-/// shortest first: what overlaps does so along these.
-std::vector<Vector3i> near_vectors(Lattice lattice, const Vector3i& cells, const Vector3d& reach) {
-  const Vector3i most = (2 * reach.cwiseProduct(cells.cast<double>())).array().ceil().cast<int>();
-  std::vector<Vector3i> result;
-  for (int z = 0; z <= most.z(); ++z) {
-    for (int y = -most.y(); y <= most.y(); ++y) {
-      for (int x = -most.x(); x <= most.x(); ++x) {
-        const Vector3i p(x, y, z);
-        const bool upper = z > 0 || (z == 0 && (y > 0 || (y == 0 && x > 0)));
-        if (upper && is_site(lattice, p)) result.push_back(p);
-      }
-    }
-  }
-  std::stable_sort(result.begin(), result.end(), [&](const Vector3i& a, const Vector3i& b) {
-    return in_box(a, cells).squaredNorm() < in_box(b, cells).squaredNorm();
-  });
-  return result;
-}
-
-// ---- Room
-
-/// A body as it stands: turned, at no particular place.
-struct Turned {
-  const BodyShape* shape;
-  Matrix3d rotation;
-
-  /// Beyond its centre, in the direction n of the world.
-  double height(const Vector3d& n) const { return support(*shape, rotation.transpose() * n).height; }
-};
-
-/// Extents along the world's axes, to both sides added up: of two such bodies that meet, the centres are no further
-/// apart along any.
-Vector3d reach_of(const std::vector<Turned>& bodies) {
-  Vector3d up = Vector3d::Zero();
-  Vector3d down = Vector3d::Zero();
-  for (const Turned& body : bodies) {
-    for (int k = 0; k < 3; ++k) {
-      up[k] = std::max(up[k], body.height(Vector3d::Unit(k)));
-      down[k] = std::max(down[k], body.height(-Vector3d::Unit(k)));
-    }
-  }
-  return up + down;
-}
-
-bool overlap(const Turned& a, const Turned& b, const Vector3d& apart) {
-  return internal::overlaps(*a.shape, geom::Pose(a.rotation, Vector3d::Zero()), *b.shape,
-                            geom::Pose(b.rotation, apart));
-}
-
-/// The smallest box, `box` or larger, in which the two do not overlap with their centres v boxes apart. A larger box
-/// only moves them apart along v: each holds its centre.
-double free_box(double box, const Turned& a, const Turned& b, const Vector3d& v) {
-  const auto blocked = [&](double edge) { return overlap(a, b, edge * v); };
-  if (!blocked(box)) return box;
-  double large = (bounding_radius(*a.shape) + bounding_radius(*b.shape)) / v.norm() * (1 + 1e-9);
-  double small = box;
-  while (large - small > 1e-13 * large) {
-    const double middle = 0.5 * (small + large);
-    (blocked(middle) ? small : large) = middle;
-  }
-  return large;
-}
-
-/// The same for one body on every site of the lattice.
-double free_box(double box, Lattice lattice, const Vector3i& cells, const Turned& body) {
-  for (const Vector3i& p : near_vectors(lattice, cells, reach_of({body}) / box)) {
-    box = free_box(box, body, body, in_box(p, cells));
-  }
-  return box;
-}
-
-// ---- Cells
-
-/// Relative to the extents, the shortest vector between sites: of ellipsoids the cube of it is proportional to the
-/// largest packing fraction.
-double shortest_vector(Lattice lattice, const Vector3i& cells, const Vector3d& extents) {
-  const Vector3d edge = cells.cast<double>().cwiseProduct(extents).cwiseInverse();
-  if (lattice == Lattice::simple_cubic) return edge.minCoeff();
-  const double diagonal = std::sqrt(edge.squaredNorm() - edge.maxCoeff() * edge.maxCoeff());
-  return std::min(edge.minCoeff(), 0.5 * diagonal);
-}
-
-/// In a smaller box the spheres inscribed in the bodies on two sites overlap, beyond rounding.
-double least_box(Lattice lattice, const Vector3i& cells, const Turned& body) {
-  constexpr double kRounding = 1e-9;
-  return (1 - kRounding) * 2 * inscribed_radius(*body.shape) / shortest_vector(lattice, cells, Vector3d::Ones());
-}
-
-/// Whether the bodies on all sites of the box are without overlap.
-bool fits(double box, Lattice lattice, const Vector3i& cells, const Turned& body) {
-  if (box < least_box(lattice, cells, body)) return false;
-  const std::vector<Vector3i> vectors = near_vectors(lattice, cells, reach_of({body}) / box);
-  return std::none_of(vectors.begin(), vectors.end(),
-                      [&](const Vector3i& p) { return overlap(body, body, box * in_box(p, cells)); });
-}
-
-std::vector<int> divisors(int number) {
-  std::vector<int> result;
-  for (int d = 1; d <= number / d; ++d) {
-    if (number % d != 0) continue;
-    result.push_back(d);
-    if (d != number / d) result.push_back(number / d);
-  }
-  return result;
-}
-
-/// All ways to fill the box with so many cells, at most `most`, those with the longest shortest vector first.
-std::vector<Vector3i> ways_to_fill(Lattice lattice, int cells, const Vector3d& extents, std::size_t most) {
-  std::vector<std::pair<double, Vector3i>> ways;
-  for (const int x : divisors(cells)) {
-    for (const int y : divisors(cells / x)) {
-      const Vector3i way(x, y, cells / x / y);
-      ways.emplace_back(shortest_vector(lattice, way, extents), way);
-    }
-  }
-  const auto last = ways.begin() + static_cast<std::ptrdiff_t>(std::min(most, ways.size()));
-  std::partial_sort(ways.begin(), last, ways.end(), [](const auto& a, const auto& b) {
-    if (a.first != b.first) return a.first > b.first;
-    return std::lexicographical_compare(a.second.begin(), a.second.end(), b.second.begin(), b.second.end());
-  });
-  std::vector<Vector3i> result;
-  for (auto way = ways.begin(); way != last; ++way) result.push_back(way->second);
-  return result;
-}
-
-/// The shortest vector decides for ellipsoids; of other bodies so many ways are tried, when the best is wanted and when
-/// numbers are.
+/// Number of ways that are tried for bodies other than ellipsoids, for which the shortest vector decides; both for the
+/// best way and for alternative numbers.
 constexpr std::size_t kTriedWays = 24;
 constexpr std::size_t kTriedWaysOfOthers = 4;
 
-/// Numbers up to so many steps away are tried for the message that names the nearest which hold a packing fraction.
+/// Number of steps away up to which numbers are tried for the message that names the nearest ones with a packing
+/// fraction.
 constexpr int kTriedNumbers = 1000;
 
-// ---- What is asked for
+// ---- Request
 
-/// A request, with what follows from it.
+/// Request, with quantities derived from it.
 struct Request {
   const std::vector<Component>& components;
   const LatticeOptions& options;
   int number = 0;
   double box = 0;
-  Vector3d extents = Vector3d::Zero();  ///< half of them, of a typical body along x, y, z
-  /// The body on all sites, if they are all of one species.
+  Vector3d extents = Vector3d::Zero();  ///< half of the extents of a typical body along x, y, z
+  /// Body on all sites, if they are all of one species.
   std::optional<Turned> body = std::nullopt;
 };
 
@@ -193,7 +63,7 @@ int axis_of(const Species& species, const LatticeOptions& options) {
   return options.axis.value_or(internal::ordered_axis(species));
 }
 
-/// R.m.s. over the bodies.
+/// Returns the r.m.s. of the extents over the bodies.
 Vector3d typical_extents(const std::vector<Component>& components, const LatticeOptions& options) {
   Vector3d squares = Vector3d::Zero();
   double number = 0;
@@ -230,14 +100,14 @@ Request request_of(const std::vector<Component>& components, const LatticeOption
 
 // ---- Numbers
 
-/// Whether there are cells for so many bodies, in a box that is large enough for nearest images.
+/// Returns whether this number of bodies can be divided into cells, in a box that is large enough for nearest images.
 bool possible(const Request& request, int number) {
   if (number < 1 || number % sites_in_cell(request.options.lattice) != 0) return false;
   const double box = request.box * std::cbrt(static_cast<double>(number) / request.number);
   return box >= internal::smallest_image_box(internal::largest_radius(request.components));
 }
 
-/// Whether so many bodies, of one species and aligned, have the packing fraction on this lattice.
+/// Returns whether this number of bodies, of one species and aligned, reaches the packing fraction on this lattice.
 bool holds(const Request& request, int number) {
   if (!possible(request, number)) return false;
   const Lattice lattice = request.options.lattice;
@@ -247,22 +117,22 @@ bool holds(const Request& request, int number) {
                      [&](const Vector3i& way) { return fits(box, lattice, way, *request.body); });
 }
 
-/// The largest packing fraction of ellipsoids of these extents in the best cells for so many, over that in cells of
-/// just their proportions.
+/// Returns the largest packing fraction of ellipsoids of these extents in the best cells for this number, over that in
+/// cells of exactly their proportions.
 double filling(const Request& request, int number) {
   const Lattice lattice = request.options.lattice;
   const Vector3i way = ways_to_fill(lattice, number / sites_in_cell(lattice), request.extents, 1).front();
   const double shortest = shortest_vector(lattice, way, request.extents);
-  // Edges of 1, relative to the extents: so many cells to a box.
+  // Edges of 1, relative to the extents, give the number of cells in a box.
   const double perfect = shortest_vector(lattice, Vector3i::Ones(), Vector3d::Ones());
   const double sites = sites_in_cell(lattice) / request.extents.prod();
   return number * shortest * shortest * shortest / (sites * perfect * perfect * perfect);
 }
 
-/// Cells fit the bodies: filling() is this or more.
+/// Value of filling() from which on cells fit the bodies.
 constexpr double kFits = 0.95;
 
-/// "500 or 576": the nearest to either side; empty if there are none near.
+/// Returns "500 or 576", the nearest numbers on either side; empty if there are none near.
 template <typename Wanted>
 std::string nearest_numbers(const Request& request, const Wanted& wanted) {
   std::string text;
@@ -296,10 +166,10 @@ void check_number(const Request& request) {
   throw std::invalid_argument(message.str());
 }
 
-/// Of a mixture, whose bodies stand on sites drawn at random, numbers in whose cells ellipsoids of its mean extents
-/// would have room for what is asked; or else how much the nearest that fit would hold.
+/// Returns, for a mixture, whose bodies are on sites drawn at random, body counts whose lattice cells fit the mean
+/// ellipsoid; or else the packing fraction that the nearest counts that fit would reach.
 std::string numbers_of_mixture(const Request& request, double most) {
-  constexpr double kMargin = 1.02;  // others may be neighbours then
+  constexpr double kMargin = 1.02;  // neighbours may be different then
   const double now = filling(request, request.number);
   const double wanted = kMargin * request.options.packing_fraction / most * now;
   const std::string enough = nearest_numbers(request, [&](int number) { return filling(request, number) >= wanted; });
@@ -312,9 +182,9 @@ std::string numbers_of_mixture(const Request& request, double most) {
   return text.str();
 }
 
-/// The bodies overlap: the box would have to be `box`.
+/// Throws for bodies that overlap: the box would have to be `box`.
 [[noreturn]] void refuse_packing(const Request& request, const Vector3i& cells, double box) {
-  // Rounded down to four digits: the value named is accepted.
+  // Rounded down to four digits, so that the value in the message is accepted.
   const double ratio = request.box / box;
   const double exact = request.options.packing_fraction * (ratio * ratio * ratio);
   const double unit = std::pow(10, std::floor(std::log10(exact)) - 3);
@@ -331,19 +201,19 @@ std::string numbers_of_mixture(const Request& request, double most) {
   throw std::invalid_argument(message.str());
 }
 
-// ---- Placing
+// ---- Placement
 
-/// How many cells along each edge, and the smallest box of them that the bodies have room in; 0 if they are of several
-/// species, which may stand anywhere.
+/// Returns the number of cells along each edge, and the smallest box of them in which the bodies do not overlap; 0 if
+/// they are of several species, which may be on any site.
 std::pair<Vector3i, double> choose_cells(const Request& request) {
   const Lattice lattice = request.options.lattice;
   const auto ways = ways_to_fill(lattice, request.number / sites_in_cell(lattice), request.extents, kTriedWays);
   if (!request.body) return {ways.front(), 0};
-  // A box in which the bodies would fill all space.
+  // Box in which the bodies would fill all space.
   const double smallest = request.box * std::cbrt(request.options.packing_fraction);
   Vector3i best = ways.front();
   double best_box = std::numeric_limits<double>::infinity();
-  // Ways that differ by rounding are the same, turned.
+  // Ways that differ by rounding are equivalent up to a rotation.
   const auto better = [&](double box) { return box < best_box * (1 - 1e-9); };
   for (const Vector3i& way : ways) {
     if (!better(least_box(lattice, way, *request.body))) continue;
@@ -367,13 +237,13 @@ std::vector<Vector3i> sites_of(Lattice lattice, const Vector3i& cells) {
   return sites;
 }
 
-/// Bodies of several species stand anywhere; those of one cell by cell.
+/// Shuffles the sites, for bodies of several species; those of one species are placed cell by cell.
 void shuffle(std::vector<Vector3i>& sites, Random& random) {
   for (std::size_t i = sites.size(); i > 1; --i) std::swap(sites[i - 1], sites[random.bits() % i]);
 }
 
-/// The smallest box, `box` or larger, in which no two of these bodies overlap.
-double free_box(const System& system, Lattice lattice, const Vector3i& cells, const std::vector<Vector3i>& sites) {
+/// Returns the smallest box, `box` or larger, in which no two of these bodies overlap.
+double free_box_of(const System& system, Lattice lattice, const Vector3i& cells, const std::vector<Vector3i>& sites) {
   const auto place = [&](Vector3i p) {
     for (int k = 0; k < 3; ++k) p[k] = (p[k] + 2 * cells[k]) % (2 * cells[k]);
     return (static_cast<std::size_t>(p.z()) * static_cast<std::size_t>(2 * cells.y()) +
@@ -409,7 +279,7 @@ System lattice_start(const std::vector<Component>& components, const LatticeOpti
   internal::check_target(components, request.box);
   check_number(request);
   const auto [cells, smallest] = choose_cells(request);
-  // Bodies that are all alike have the same neighbours each.
+  // Identical bodies all have the same neighbours.
   if (request.body && !fits(request.box, options.lattice, cells, *request.body)) {
     refuse_packing(request, cells, smallest);
   }
@@ -423,13 +293,13 @@ System lattice_start(const std::vector<Component>& components, const LatticeOpti
   for (const Component& component : components) axes.push_back(axis_of(component.species, options));
   for (std::size_t i = 0; i < sites.size(); ++i) {
     Body& body = system.bodies[i];
-    // A quarter of a cell in: no body stands on a face of the box.
+    // Shifted by a quarter of a cell: no body is on a face of the box.
     const Vector3d quarter = Vector3d(0.25, 0.25, 0.25).cwiseQuotient(cells.cast<double>());
     body.position = system.box * (in_box(sites[i], cells) + quarter - Vector3d::Constant(0.5));
     body.rotation = internal::aligned(axes[static_cast<std::size_t>(body.species)]);
   }
   if (!request.body) {
-    const double box = free_box(system, options.lattice, cells, sites);
+    const double box = free_box_of(system, options.lattice, cells, sites);
     if (box > request.box) refuse_packing(request, cells, box);
   }
   if (options.nematic_order) {

@@ -20,23 +20,23 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-/// Not aligned: the same for every -march (geom/kernel/small_solve.h says why).
+/// Not aligned: the same layout for every -march (see geom/kernel/small_solve.h).
 using Quaternion = Eigen::Quaternion<double, Eigen::DontAlign>;
 
-/// u = 1 - |cos(theta)| is proposed with density ~ 1 / (1 + m u)^2 on [0, 1], of which this is the inverse of the
-/// distribution function.
+/// Returns the inverse of the distribution function of the proposal, u = 1 - |cos(theta)| with density ~ 1 / (1 + m
+/// u)^2 on [0, 1].
 double proposed(double m, double r) {
   return r / (1 + m * (1 - r));
 }
 
-/// exp(m (cos^2 - 1)) / proposal, at most 4/e: the exponent is -m u (2 - u) <= -m u, and (1 + y)^2 exp(-y) has its
-/// maximum at y = 1.
+/// Returns exp(m (cos^2 - 1)) / proposal, at most 4/e: the exponent is -m u (2 - u) <= -m u, and (1 + y)^2 exp(-y) has
+/// its maximum at y = 1.
 double weight(double m, double u) {
   return std::exp(-m * u * (2 - u)) * (1 + m * u) * (1 + m * u);
 }
 constexpr double kLargestWeight = 1.4715177646857694;  // 4 / e, rounded up
 
-/// 1 - S by Simpson's rule in r, where the weight is smooth whatever m.
+/// Returns 1 - S by Simpson's rule in r, where the weight is smooth for any m.
 double disorder(double m) {
   constexpr int kIntervals = 512;
   double all = 0;
@@ -50,7 +50,7 @@ double disorder(double m) {
   return 1.5 * sum / all;
 }
 
-/// By bisection: libm has a say only in which half is taken, far from rounding.
+/// Returns m by bisection: libm only decides which half is taken, far from rounding.
 double strength_for(double order) {
   double high = 1;
   while (disorder(high) > 1 - order) high *= 2;
@@ -71,20 +71,21 @@ void check_order(double order) {
 
 // ---- Rotations in place
 
-/// Sweeps over all bodies in one round, after each of which is seen whether the order still falls; and as many after it
-/// has arrived, in which the orientations forget where they come from.
+/// Number of sweeps over all bodies in one round, after which it is tested whether the order still falls; and of the
+/// sweeps after the order is reached, in which the orientations decorrelate from the start.
 constexpr int kRound = 50;
-/// Less than this a round, relative to 1 - S, is no progress.
+/// Smallest decrease in a round, relative to 1 - S, that counts as progress.
 constexpr double kLeastFall = 4e-3;
 
-/// All bodies turning together would lower the order about z too: elements xz and yz of the order tensor stay below
-/// kMostTilt / sqrt(number of bodies), their standard deviation for independent bodies being at most 0.39 of that each.
+/// Limit of the tilt of the director: bodies that all rotate together would lower the order about z too. Elements xz
+/// and yz of the order tensor stay below kMostTilt / sqrt(number of bodies); their standard deviation for independent
+/// bodies is at most 0.39 of that each.
 constexpr double kMostTilt = 1;
 
-/// Bodies that turn where they stand.
-class Turning {
+/// Bodies that rotate about their centres.
+class RotationMoves {
  public:
-  Turning(System& system, const std::vector<int>& axes, double order)
+  RotationMoves(System& system, const std::vector<int>& axes, double order)
       : system_(system),
         axes_(axes),
         least_(order),
@@ -105,7 +106,7 @@ class Turning {
   void sweep(Random& random) {
     int accepted = 0;
     for (int i = 0; i < system_.size(); ++i) accepted += try_turn(i, random) ? 1 : 0;
-    // A third of the turns accepted, or as large ones as make sense.
+    // The step is adjusted to accept a third of the rotations, or limited to the largest meaningful one.
     step_ = std::min(1.0, step_ * (3 * accepted > system_.size() ? 1.1 : 0.9));
   }
 
@@ -115,7 +116,7 @@ class Turning {
     for (const Species& species : system.species) largest = std::max(largest, bounding_radius(species.shape));
     return 2 * largest;
   }
-  /// Elements xz and yz of the order tensor.
+  /// Returns elements xz and yz of the order tensor.
   static Vector2d tilt_of(const Matrix3d& rotation, int axis) {
     return 1.5 * rotation(2, axis) * rotation.col(axis).head<2>();
   }
@@ -164,11 +165,11 @@ class Turning {
   double step_ = 0.1;
   double reach_ = 0;
   CellGrid cells_;
-  std::vector<Quaternion> turns_;  ///< unit: products of rotation matrices would drift
+  std::vector<Quaternion> turns_;  ///< unit quaternions: products of rotation matrices would drift
   std::vector<NearBody> near_;
 };
 
-/// An order next to 1, with two digits of what it lacks; three at least.
+/// Returns an order near 1 with two digits of its difference from 1; at least three digits.
 std::string shown(double order) {
   const double digits = std::clamp(1 - std::floor(std::log10(1 - order)), 3.0, 15.0);
   std::ostringstream text;
@@ -176,12 +177,13 @@ std::string shown(double order) {
   return text.str();
 }
 
-/// The value named is accepted: the same turns come to it on their way to `reached`.
+/// Throws for an order that is not reached. The value in the message is accepted: the same rotations pass it on their
+/// way to `reached`.
 [[noreturn]] void refuse_order(const System& system, double order, double reached, const std::string& numbers) {
   const double from_one = 0.9 * (1 - reached);
   std::ostringstream message;
   message << "nematic_order is " << order << ": at packing fraction " << packing_fraction(system)
-          << " bodies on these sites do not turn further than to an order of " << shown(reached) << "; accepted: ";
+          << " bodies on these sites cannot rotate beyond an order of " << shown(reached) << "; accepted: ";
   if (from_one > 1e-9) {
     const double unit = std::pow(10, std::floor(std::log10(from_one)) - 1);
     message << "at least " << std::setprecision(12) << 1 - std::floor(from_one / unit) * unit << ", ";
@@ -196,19 +198,19 @@ std::string shown(double order) {
 void turn_to_order(System& system, const std::vector<int>& axes, double order, Random& random,
                    const std::function<std::string()>& other_numbers) {
   check_order(order);
-  Turning turning(system, axes, order);
-  for (double before = 2; !turning.arrived();) {
+  RotationMoves moves(system, axes, order);
+  for (double before = 2; !moves.arrived();) {
     double mean = 0;
-    for (int k = 0; k < kRound && !turning.arrived(); ++k) {
-      turning.sweep(random);
-      mean += turning.order() / kRound;
+    for (int k = 0; k < kRound && !moves.arrived(); ++k) {
+      moves.sweep(random);
+      mean += moves.order() / kRound;
     }
-    if (!turning.arrived() && mean > before - kLeastFall * (1 - mean)) {
+    if (!moves.arrived() && mean > before - kLeastFall * (1 - mean)) {
       refuse_order(system, order, mean, other_numbers());
     }
     before = mean;
   }
-  for (int k = 0; k < kRound; ++k) turning.sweep(random);
+  for (int k = 0; k < kRound; ++k) moves.sweep(random);
 }
 
 NematicOrientations::NematicOrientations(double order) {
@@ -222,7 +224,7 @@ Matrix3d NematicOrientations::draw(int axis, Random& random) const {
     u = proposed(m_, random.uniform());
   } while (random.uniform() * kLargestWeight > weight(m_, u));
   const double z = random.bits() >> 63 == 0 ? 1 - u : u - 1;
-  // Directions across z, and then across the axis, are uniform as those of a random vector are.
+  // Directions across z, and then across the axis, are uniform like those of a random vector.
   const Vector3d around = random.direction();
   const Vector3d across = Vector3d(around.x(), around.y(), 0).normalized();
   const Vector3d direction = (std::sqrt(u * (2 - u)) * across + z * Vector3d::UnitZ()).normalized();

@@ -18,10 +18,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// From so many bodies on, which the nearest caches do not hold, their order counts.
+/// Number of bodies from which on their order in memory matters, because the nearest caches do not hold them.
 constexpr int kOrderedFrom = 4000;
 
-/// Where a point of the box stands on a Z-order curve (Morton): the bits of its coordinates in turn.
+/// Returns the position of a point of the box on a Z-order curve (Morton): the bits of its coordinates interleaved.
 std::uint64_t place_on_curve(const Vector3d& position, double box) {
   constexpr int kBits = 21;
   std::uint64_t place = 0;

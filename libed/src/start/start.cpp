@@ -27,7 +27,7 @@ using Eigen::Vector3d;
 using internal::NematicOrientations;
 
 /// Packing fraction of the random insertion up to an aspect ratio of 10, where the excluded volume is 13 times a
-/// body's; beyond, it falls as the excluded volume grows. Low enough that a place is found within a few tries.
+/// body's. Beyond, it falls as the excluded volume grows, so that a position is found within a few tries.
 constexpr double kDilute = 0.04;
 
 double dilute_packing(const std::vector<Component>& components) {
@@ -38,7 +38,7 @@ double dilute_packing(const std::vector<Component>& components) {
   return kDilute * least;
 }
 
-/// Tries to insert one body before giving up.
+/// Maximum number of tries to insert one body.
 constexpr int kInsertions = 100000;
 
 /// Collisions a body between two shrinkings of the box.
@@ -48,21 +48,21 @@ constexpr double kPauseCollisions = 0.03;
 constexpr double kStuckGrowth = 1e-5;
 constexpr int kStuckRounds = 2000;
 
-/// Events between two calls of StartOptions::progress, at the most.
+/// Maximum number of events between two calls of StartOptions::progress.
 constexpr std::uint64_t kLookEvents = 1000000;
 
-/// A dilute box with its bodies still to be placed.
+/// Returns a dilute box whose bodies are not placed yet.
 System empty_box(const std::vector<Component>& components, double packing_fraction) {
   System system = internal::bodies_of(components);
   const double dilute = dilute_packing(components);
   system.box = std::max(box_for(components, std::min(packing_fraction, dilute)),
                         1.05 * internal::smallest_image_box(internal::largest_radius(components)));
-  // A box at the wanted packing fraction is taken as it is, so that nothing is left to compress.
+  // A box at the wanted packing fraction is used unchanged, so that nothing is left to compress.
   if (packing_fraction <= dilute) system.box = box_for(components, packing_fraction);
   return system;
 }
 
-/// Random sequential insertion into a box large enough for it.
+/// Inserts bodies by random sequential insertion into a box large enough for it.
 System insert_bodies(const std::vector<Component>& components, const StartOptions& options, Random& random) {
   System system = empty_box(components, options.packing_fraction);
   std::optional<NematicOrientations> nematic;
@@ -72,7 +72,7 @@ System insert_bodies(const std::vector<Component>& components, const StartOption
   std::vector<geom::Pose> poses;
   std::vector<internal::NearBody> near;
   for (int i = 0; i < system.size(); ++i) {
-    // Once a body: drawn again with each place, aligned bodies would be accepted more often.
+    // Drawn once a body: if it were drawn again with each position, aligned bodies would be accepted more often.
     Matrix3d orientation;
     if (nematic) orientation = nematic->draw(internal::ordered_axis(system.species_of(i)), random);
     for (int attempt = 0;; ++attempt) {
@@ -101,8 +101,8 @@ System insert_bodies(const std::vector<Component>& components, const StartOption
   return system;
 }
 
-/// Each body with a mass of 1 and sqrt(m) times as fast: as hot as before. Where bodies may be does not depend on their
-/// masses, and among equal ones none waits for the others.
+/// Returns the system with masses of 1 and velocities scaled by sqrt(m), which keeps the temperature. The accessible
+/// configurations do not depend on masses, and with equal masses no bodies are slower than others.
 System with_unit_masses(System system) {
   for (Body& body : system.bodies) {
     const double faster = std::sqrt(system.species[static_cast<std::size_t>(body.species)].mass);
@@ -116,7 +116,7 @@ System with_unit_masses(System system) {
   return system;
 }
 
-/// Undoes with_unit_masses.
+/// Reverses with_unit_masses.
 System with_masses(System system, const std::vector<Species>& species) {
   system.species = species;
   for (int i = 0; i < system.size(); ++i) {
@@ -142,9 +142,9 @@ System compress(const System& system, double target_box, const StartOptions& opt
   // the collision rate.
   const double wanted = system.size() * kPauseCollisions;
   double pause = 0.1 * longest_pause;
-  // Bodies that roll on each other in small hops leave next to no room for a while: a gain far below the usual one is
-  // not worth the work, and would squeeze them into smaller hops. The threshold falls only if nothing better comes for
-  // long.
+  // Bodies that roll on each other in small hops leave almost no room for a while: a gain far below the usual one is
+  // not worth the work, and would force them into smaller hops. The threshold is lowered only if no better gain occurs
+  // for long.
   double usual_gain = 0;
   double checkpoint = simulation.box();
   const auto reached = [&] { return options.packing_fraction * std::pow(target_box / simulation.box(), 3); };
@@ -189,10 +189,10 @@ System compressed_start(const std::vector<Component>& components, const StartOpt
   return system.box > target ? compress(system, target, options) : system;
 }
 
-/// A box that shrinks by less than this, relative, is the one that was asked for.
+/// Relative difference of boxes that are regarded as the same.
 constexpr double kSameBox = 1e-12;
 
-/// Each body as a component of its own.
+/// Returns each body as a component of its own.
 std::vector<Component> components_of(const System& system) {
   std::vector<Component> components;
   components.reserve(system.bodies.size());

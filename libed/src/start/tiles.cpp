@@ -16,10 +16,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// The most that may have to be taken out again, as a share of the number of bodies and of their volume.
+/// Largest excess that may have to be removed, relative to the number of bodies and to their volume.
 constexpr double kMostExcess = 0.02;
 
-/// Shapes of which bodies have sizes of their own.
+/// Maximum number of shapes of which bodies have individual sizes.
 constexpr std::size_t kMostShapes = 64;
 
 double number_of(const std::vector<Component>& components) {
@@ -34,10 +34,10 @@ double volume_of(const std::vector<Component>& components) {
   return volume;
 }
 
-/// Relative difference of lengths that are the same but for rounding.
+/// Relative difference of lengths that are equal except for rounding.
 constexpr double kRounding = 1e-14;
 
-/// Whether the second is the first shrunk about its centre, or the first.
+/// Returns whether the second shape is the first, or the first shrunk about its centre.
 bool is_smaller_copy(const BodyShape& large, const BodyShape& small) {
   if (large.index() != small.index() || std::holds_alternative<CustomShape>(large)) return false;
   if (const auto* a = std::get_if<geom::Superellipsoid>(&large)) {
@@ -48,7 +48,7 @@ bool is_smaller_copy(const BodyShape& large, const BodyShape& small) {
   return ratio.maxCoeff() <= 1 + kRounding && ratio.minCoeff() >= ratio.maxCoeff() * (1 - kRounding);
 }
 
-/// Components of fewer bodies than there are tiles, in groups of one shape, the largest body first.
+/// Returns the components that have fewer bodies than there are tiles, in groups of one shape, the largest body first.
 std::vector<std::vector<int>> groups_by_size(const std::vector<Component>& components, int tiles) {
   std::vector<std::pair<double, int>> few;
   for (std::size_t k = 0; k < components.size(); ++k) {
@@ -105,7 +105,7 @@ bool sound(const Tiling& tiling, const std::vector<Component>& components) {
          box_for(tiling.tile, tiling.packing_fraction) >= 1.05 * least_box;
 }
 
-/// `wanted` of them, each as likely as any other, in their order.
+/// Returns `wanted` of the bodies, each equally likely, in their order.
 std::vector<Body> draw(const std::vector<Body>& bodies, int wanted, Random& random) {
   std::vector<Body> drawn;
   drawn.reserve(static_cast<std::size_t>(wanted));
@@ -118,7 +118,7 @@ std::vector<Body> draw(const std::vector<Body>& bodies, int wanted, Random& rand
   return drawn;
 }
 
-/// Each body becomes one of the component, or of one of the components, in any order.
+/// Makes each body one of the component, or of one of the components, in random order.
 void assign(std::vector<Body>& bodies, std::vector<int> components, Random& random) {
   if (components.size() == 1) {
     components.resize(bodies.size(), components.front());

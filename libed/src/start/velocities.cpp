@@ -21,14 +21,14 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// The axis about which each species is symmetric, or -1.
+/// Returns the axis about which each species is symmetric, or -1.
 std::vector<int> symmetry_axes(const System& system) {
   std::vector<int> axes;
   for (const Species& species : system.species) axes.push_back(symmetry_axis(species).value_or(-1));
   return axes;
 }
 
-/// The spheres among the bodies.
+/// Returns the spheres among the bodies.
 System spheres_of(const System& system) {
   System spheres;
   spheres.species = system.species;
@@ -38,7 +38,7 @@ System spheres_of(const System& system) {
   return spheres;
 }
 
-/// Factor from an energy to the one that is wanted, for velocities; 0 for bodies at rest.
+/// Returns the factor of velocities that changes an energy to the wanted one; 0 for bodies at rest.
 double factor(double wanted, double energy) {
   return energy > 0 ? std::sqrt(wanted / energy) : 0.0;
 }
@@ -57,15 +57,16 @@ void remove_momentum(System& system) {
 void rescale_rotation(System& system) {
   const KineticState now = kinetic_state(system);
   const std::vector<int> axes = symmetry_axes(system);
-  // Spheres without friction keep their rotation for ever: in a mixture it would be a reservoir of its own.
+  // Spheres without friction never change their rotation: in a mixture it would be an isolated reservoir.
   const KineticState round = kinetic_state(spheres_of(system));
-  const bool mixed = round.rotational_freedoms != now.rotational_freedoms;
+  const bool mixed = round.rotational_degrees_of_freedom != now.rotational_degrees_of_freedom;
   const double sphere_rotation =
-      factor(0.5 * round.rotational_freedoms, mixed ? round.rotational_energy : now.rotational_energy);
-  const double rotation = mixed ? factor(0.5 * (now.rotational_freedoms - round.rotational_freedoms),
-                                         now.rotational_energy - round.rotational_energy)
-                                : sphere_rotation;
-  const double spin = factor(0.5 * now.spin_freedoms, now.spin_energy);
+      factor(0.5 * round.rotational_degrees_of_freedom, mixed ? round.rotational_energy : now.rotational_energy);
+  const double rotation = mixed
+                              ? factor(0.5 * (now.rotational_degrees_of_freedom - round.rotational_degrees_of_freedom),
+                                       now.rotational_energy - round.rotational_energy)
+                              : sphere_rotation;
+  const double spin = factor(0.5 * now.spin_degrees_of_freedom, now.spin_energy);
   for (Body& body : system.bodies) {
     const auto kind = static_cast<std::size_t>(body.species);
     const double factor_here = is_sphere(system.species[kind].shape) ? sphere_rotation : rotation;
@@ -84,8 +85,8 @@ void rescale_rotation(System& system) {
 
 using Members = std::vector<std::size_t>;
 
-/// The bodies of each group: as many as `numbers` says, one group after the other; without numbers each species is a
-/// group, and all species of one body each are one together.
+/// Returns the bodies of each group: as many as `numbers` says, consecutively. Without numbers each species is a group,
+/// and all species of one body each are one group together.
 std::vector<Members> groups_of(const System& system, const std::vector<int>& numbers) {
   const auto size = static_cast<std::size_t>(system.size());
   std::vector<Members> groups;
@@ -109,7 +110,7 @@ std::vector<Members> groups_of(const System& system, const std::vector<int>& num
                               std::to_string(size));
 }
 
-/// The bodies of a group as a system of their own, for their rotation.
+/// Returns the bodies of a group as a separate system, for their rotation.
 System part_of(const System& system, const Members& group) {
   System part;
   int last = -1;
@@ -123,15 +124,15 @@ System part_of(const System& system, const Members& group) {
   return part;
 }
 
-/// Translation of a group: that of its centre of mass, and the motion about it.
+/// Translation of a group: the motion of its centre of mass, and the motion about it.
 struct GroupMotion {
   double number = 0;
   double mass = 0;
-  Vector3d velocity = Vector3d::Zero();  ///< of the centre of mass, as it was
-  Vector3d rescaled = Vector3d::Zero();  ///< of the centre of mass, as it will be
-  double internal_energy = 0;            ///< about the centre of mass, as it was
+  Vector3d velocity = Vector3d::Zero();  ///< velocity of the centre of mass before rescaling
+  Vector3d rescaled = Vector3d::Zero();  ///< velocity of the centre of mass after rescaling
+  double internal_energy = 0;            ///< energy about the centre of mass before rescaling
   double wanted = 0;                     ///< energy at kT = 1
-  double of_centre = 0;                  ///< its part on the degrees of freedom of the centre of mass
+  double of_centre = 0;                  ///< part of `wanted` on the degrees of freedom of the centre of mass
 
   double centre_energy() const { return 0.5 * mass * rescaled.squaredNorm(); }
 };
@@ -149,8 +150,8 @@ GroupMotion motion_of(const System& system, const Members& group) {
   return motion;
 }
 
-/// Sets the energies that each group has at kT = 1. Masses of the other groups are added up, not subtracted: one may
-/// outweigh them all.
+/// Sets the energies that each group has at kT = 1. Masses of the other groups are added up, not subtracted from the
+/// total: one group may outweigh all others.
 void set_wanted(std::vector<GroupMotion>& groups, double total_mass) {
   double before = 0;
   for (GroupMotion& group : groups) {
@@ -165,8 +166,8 @@ void set_wanted(std::vector<GroupMotion>& groups, double total_mass) {
   }
 }
 
-/// Takes away the mean velocity, and scales to the energy of all groups together. Whether the motion about each centre
-/// of mass can then make up for what its group lacks or has too much.
+/// Removes the mean velocity, and scales to the energy of all groups together. Returns whether scaling the motion about
+/// each centre of mass can then give each group its energy.
 bool scale_together(std::vector<GroupMotion>& groups, double total_mass) {
   Vector3d mean = Vector3d::Zero();
   for (const GroupMotion& group : groups) mean += group.velocity * (group.mass / total_mass);
@@ -183,11 +184,12 @@ bool scale_together(std::vector<GroupMotion>& groups, double total_mass) {
   });
 }
 
-/// Gives each centre of mass the energy of its own degrees of freedom, 3/2 (1 - M_k / M), in directions that are turned
-/// until the momenta add up to zero. Their lengths L_k = sqrt(3 M_k (1 - M_k / M)) are the r.m.s. momenta of thermal
-/// motion whose sum is zero, so that none is longer than the others together and such directions exist. Turning p_k by
-/// a small rotation w_k changes the sum by sum w_k x p_k; the least rotations that cancel it are w_k = -p_k x c with
-/// sum (L_k^2 - p_k p_k^T) c = sum p_k. Momenta along one line that do not cancel cannot be turned so and are left.
+/// Gives each centre of mass the energy of its own degrees of freedom, 3/2 (1 - M_k / M), in directions that are
+/// rotated until the momenta add up to zero. Their lengths L_k = sqrt(3 M_k (1 - M_k / M)) are the r.m.s. momenta of
+/// thermal motion whose sum is zero, so that none is longer than the others together and such directions exist.
+/// Rotating p_k by a small rotation w_k changes the sum by sum w_k x p_k; the smallest rotations that cancel it are w_k
+/// = -p_k x c with sum (L_k^2 - p_k p_k^T) c = sum p_k. Momenta along one line that do not cancel cannot be rotated
+/// this way and are left unchanged.
 void set_centres(std::vector<GroupMotion>& groups) {
   constexpr int kMostSteps = 200;
   constexpr double kRounding = 1e-15;
@@ -219,10 +221,10 @@ void set_centres(std::vector<GroupMotion>& groups) {
 }
 
 /// Sets the translational kT of each group to 1 and the momentum to zero. A group of N_k bodies and mass M_k has 3 N_k
-/// - 3 degrees of freedom about its centre of mass, and the centres of mass share the 3 that momentum zero takes away
-/// by mass: 3 (1 - M_k / M) are left to each. Scaling the motion about a centre of mass changes no momentum, so the
-/// centres keep their relative velocities where that is enough; a body by itself, which has no such motion, has its
-/// speed set.
+/// - 3 degrees of freedom about its centre of mass. The 3 degrees of freedom removed by zero momentum are divided among
+/// the centres of mass by mass: 3 (1 - M_k / M) are left to each. Scaling the motion about a centre of mass changes no
+/// momentum, so the centres keep their relative velocities if that is sufficient; a single body, which has no such
+/// motion, gets a new speed.
 void rescale_translation(System& system, const std::vector<Members>& members) {
   double total_mass = 0;
   for (int i = 0; i < system.size(); ++i) total_mass += system.species_of(i).mass;

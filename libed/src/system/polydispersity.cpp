@@ -10,24 +10,24 @@
 namespace ed {
 namespace {
 
-/// Probability that a normal deviate is below x.
+/// Returns the probability that a normal deviate is below x.
 double below(double x) {
   return 0.5 * std::erfc(-x / std::sqrt(2.0));
 }
 
-/// <exp(s z)> of a normal deviate z that is cut off at +-kSizeCutoff.
+/// Returns <exp(s z)> of a normal deviate z that is cut off at +-kSizeCutoff.
 double mean_exponential(double s) {
   const double kept = below(kSizeCutoff) - below(-kSizeCutoff);
   return std::exp(0.5 * s * s) * (below(kSizeCutoff - s) - below(-kSizeCutoff - s)) / kept;
 }
 
-/// Standard deviation of exp(s z) relative to its mean.
+/// Returns the standard deviation of exp(s z) relative to its mean.
 double spread(double s) {
   const double mean = mean_exponential(s);
   return std::sqrt(std::max(0.0, mean_exponential(2 * s) / (mean * mean) - 1));
 }
 
-/// s with spread(s) = width, by bisection: spread grows with s, and is 0.82 at 0.75.
+/// Returns s with spread(s) = width, by bisection: spread grows with s, and is 0.82 at 0.75.
 double exponent_of(double width) {
   double low = 0;
   double high = 0.75;
@@ -38,7 +38,7 @@ double exponent_of(double width) {
   return 0.5 * (low + high);
 }
 
-/// Standard deviation of a normal deviate that is cut off at +-kSizeCutoff.
+/// Returns the standard deviation of a normal deviate that is cut off at +-kSizeCutoff.
 double cut_deviation() {
   constexpr double kInverseSqrt2Pi = 0.39894228040143268;
   const double density = kInverseSqrt2Pi * std::exp(-0.5 * kSizeCutoff * kSizeCutoff);

@@ -25,7 +25,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Whether the shape is one of revolution about this body axis.
+/// Returns whether the shape is one of revolution about this body axis.
 bool is_of_revolution(const BodyShape& shape, int axis) {
   const auto symmetric = symmetry_axis(shape);
   if (!symmetric) return false;
@@ -39,7 +39,7 @@ bool is_of_revolution(const BodyShape& shape, int axis) {
   throw std::invalid_argument(message.str());
 }
 
-/// "I2 + I3 - I1 at most 0.5".
+/// Returns "I2 + I3 - I1 at most 0.5".
 std::string bound_of_sum(int axis, double most) {
   constexpr std::array<const char*, 3> kSums = {"I2 + I3 - I1", "I3 + I1 - I2", "I1 + I2 - I3"};
   std::ostringstream text;
@@ -49,10 +49,10 @@ std::string bound_of_sum(int axis, double most) {
   return text.str();
 }
 
-/// Throws unless the moments are such as mass within the shape can have, and not next to nothing: the second moments
-/// S_x = <x^2> m = (I_y + I_z - I_x) / 2, ... are those of mass within the half extents, and their sum that of mass
-/// within the bounding radius. Without spin the moment about the symmetry axis is not looked at: of a body of
-/// revolution I = S_x + S_z there, 2 S_x <= m (half extent)^2.
+/// Throws unless the moments are possible for mass within the shape, and not too small: the second moments S_x = <x^2>
+/// m = (I_y + I_z - I_x) / 2, ... must be those of mass within the half extents, and their sum that of mass within the
+/// bounding radius. Without spin the moment about the symmetry axis is ignored: for a body of revolution I = S_x + S_z
+/// there, 2 S_x <= m (half extent)^2.
 void check_moments(const Species& species, std::optional<int> symmetry_axis) {
   constexpr double kRounding = 1 + 1e-9;
   const Vector3d& I = species.inertia;
@@ -204,11 +204,11 @@ KineticState kinetic_state(const System& system) {
     state.momentum += species.mass * body.velocity;
     const Vector3d w = body.rotation.transpose() * body.angular_velocity;
     Vector3d energy = 0.5 * species.inertia.cwiseProduct(w.cwiseProduct(w));
-    if (axis >= 0 && !species.spins) energy[axis] = 0;  // whatever the moment about it is
+    if (axis >= 0 && !species.spins) energy[axis] = 0;  // excluded, whatever the moment about it is
     state.axis_energy += energy;
     if (axis < 0) {
       state.rotational_energy += energy.sum();
-      state.rotational_freedoms += 3;
+      state.rotational_degrees_of_freedom += 3;
       continue;
     }
     const Vector3d u = body.rotation.col(axis);
@@ -216,11 +216,11 @@ KineticState kinetic_state(const System& system) {
     const double perpendicular = species.inertia[(axis + 1) % 3];
     state.rotational_energy += 0.5 * perpendicular * (body.angular_velocity - spin * u).squaredNorm();
     if (species.spins) state.spin_energy += 0.5 * species.inertia[axis] * spin * spin;
-    state.rotational_freedoms += 2;
-    state.spin_freedoms += species.spins ? 1 : 0;
+    state.rotational_degrees_of_freedom += 2;
+    state.spin_degrees_of_freedom += species.spins ? 1 : 0;
   }
   state.translational_kT = 2 * state.translational_energy / std::max(1, 3 * system.size() - 3);
-  state.rotational_kT = 2 * state.rotational_energy / std::max(1, state.rotational_freedoms);
+  state.rotational_kT = 2 * state.rotational_energy / std::max(1, state.rotational_degrees_of_freedom);
   return state;
 }
 
@@ -230,8 +230,8 @@ Audit audit(const System& system) {
   result.kinetic = kinetic_state(system);
   const int n = system.size();
   std::vector<geom::Pose> poses(static_cast<std::size_t>(n));
-  // Bounding spheres that meet, and a mean distance more, so that there is a closest pair to name in a dilute system
-  // too.
+  // Pairs whose bounding spheres overlap, or are within a mean distance of that, so that a closest pair can be named in
+  // a dilute system too.
   double largest = 0;
   for (const Species& species : system.species) largest = std::max(largest, bounding_radius(species.shape));
   const double reach = std::min(2 * largest + system.box / std::cbrt(n), 0.5 * system.box);

@@ -4,7 +4,7 @@
 
 namespace ed::internal {
 
-/// Whether the species is one of ellipsoids of revolution about an axis that their inertia shares (UniaxialBodies).
+/// Returns whether the species is an ellipsoid of revolution about an axis that its inertia shares (UniaxialBodies).
 bool is_uniaxial(const Species& species);
 
 }  // namespace ed::internal

@@ -19,21 +19,21 @@
 
 namespace geom {
 
-/// A body whose kind is chosen at run time.
+/// Body whose kind is chosen at run time.
 using Shape = std::variant<Ellipsoid, Superellipsoid>;
 
-/// `distance` of the shapes inside: one dispatch a query.
+/// Returns `distance` of the shapes inside, with one dispatch a query.
 GEOM_EXPORT DistanceResult distance(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB,
                                     const DistanceOptions& options = {});
 
-/// `distance_batch` of the shapes inside (batch.h). Pairs of ellipsoids, superellipsoids with both exponents 1 among
-/// them, go to the vector kernels; pairs with any other superellipsoid go to `distance` one by one and count as
-/// `redone`: their kernel fills the vectors with both bodies of one pair.
+/// Runs `distance_batch` on the shapes inside (batch.h). Pairs of ellipsoids go to the vector kernels; superellipsoids
+/// with both exponents 1 count as ellipsoids. Pairs with any other superellipsoid go to `distance` one by one and count
+/// as `redone`: their kernel fills the vectors with both bodies of one pair.
 GEOM_EXPORT BatchSummary distance_batch(std::span<const Shape> a, std::span<const Pose> X_WA, std::span<const Shape> b,
                                         std::span<const Pose> X_WB, std::span<DistanceResult> results,
                                         const BatchOptions& options = {});
 
-/// The member functions of the shape inside; see there.
+/// Forwards to the member function of the shape inside, where it is documented.
 /// @{
 GEOM_EXPORT Support support(const Shape& shape, const Eigen::Vector3d& n);
 GEOM_EXPORT double bounding_radius(const Shape& shape);
@@ -42,7 +42,7 @@ GEOM_EXPORT double volume(const Shape& shape);
 GEOM_EXPORT Eigen::Vector3d inertia(const Shape& shape, double mass);
 /// @}
 
-/// The functions of obb.h and newton.h for the shapes inside; see there.
+/// Forwards to the function of obb.h or newton.h for the shapes inside, where it is documented.
 /// @{
 GEOM_EXPORT OrientedBox oriented_box(const Shape& shape, const Pose& X_WB);
 GEOM_EXPORT DistanceResult newton_distance(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB,

@@ -9,37 +9,38 @@
 
 namespace geom {
 
-/// {x : (x/a)^2 + (y/b)^2 + (z/c)^2 <= 1} in the body's frame.
+/// Ellipsoid {x : (x/a)^2 + (y/b)^2 + (z/c)^2 <= 1} in the body's frame.
 class GEOM_EXPORT Ellipsoid {
  public:
-  /// Semi-axes along body x, y, z. Throws std::invalid_argument unless each is within [kMinSemiAxis, kMaxSemiAxis],
-  /// 1e-50 to 1e50, and the largest is at most kMaxAspectRatio, 1e4, times the smallest. Everything that is accepted is
-  /// answered within the contract of distance.h, beside bodies of any size.
+  /// Constructs an ellipsoid from its semi-axes along body x, y, z. Throws std::invalid_argument unless each is within
+  /// [kMinSemiAxis, kMaxSemiAxis], 1e-50 to 1e50, and the largest is at most kMaxAspectRatio, 1e4, times the smallest.
+  /// Every accepted ellipsoid is answered within the contract of distance.h, beside bodies of any size.
   explicit Ellipsoid(const Eigen::Vector3d& semi_axes);
 
-  const Eigen::Vector3d& semi_axes() const { return semi_axes_; }  ///< along body x, y, z
+  const Eigen::Vector3d& semi_axes() const { return semi_axes_; }  ///< semi-axes along body x, y, z
 
-  /// The index (0, 1, 2) of the axis of revolution if two semi-axes are equal (2 for a sphere), else nothing.
+  /// Returns the index (0, 1, 2) of the axis of revolution if two semi-axes are equal (2 for a sphere), else nullopt.
   std::optional<int> symmetry_axis() const {
     return symmetry_axis_ < 0 ? std::nullopt : std::optional<int>(symmetry_axis_);
   }
 
-  /// f(x) = (x/a)^2 + (y/b)^2 + (z/c)^2 - 1 (the paper's eq. Shapes): negative inside.
+  /// Returns f(x) = (x/a)^2 + (y/b)^2 + (z/c)^2 - 1 (the paper's eq. Shapes): negative inside.
   double value(const Eigen::Vector3d& x) const;
-  Eigen::Vector3d gradient(const Eigen::Vector3d& x) const;  ///< of f
-  Eigen::Matrix3d hessian(const Eigen::Vector3d& x) const;   ///< of f
+  Eigen::Vector3d gradient(const Eigen::Vector3d& x) const;  ///< gradient of f
+  Eigen::Matrix3d hessian(const Eigen::Vector3d& x) const;   ///< Hessian of f
 
-  /// h(n) = |D n|, s(n) = D^2 n / h with D = diag(a, b, c); n != 0, any length.
+  /// Returns h(n) = |D n| and s(n) = D^2 n / h with D = diag(a, b, c); n != 0, any length.
   Support support(const Eigen::Vector3d& n) const;
-  /// hess h = (D^2 - s s^T) / h: its eigenvalues across n are the principal radii of curvature at s, for |n| = 1.
+  /// Returns hess h = (D^2 - s s^T) / h. For |n| = 1 its eigenvalues across n are the principal radii of curvature at
+  /// s.
   Eigen::Matrix3d support_hessian(const Eigen::Vector3d& n) const;
 
   double bounding_radius() const { return bounding_radius_; }    ///< the largest semi-axis
   double inscribed_radius() const { return inscribed_radius_; }  ///< the smallest semi-axis
-  /// The smallest principal radius of curvature of the surface, amin^2 / amax.
+  /// Returns the smallest principal radius of curvature of the surface, amin^2 / amax.
   double min_curvature_radius() const { return min_curvature_radius_; }
   double volume() const;  ///< 4 pi a b c / 3
-  /// Principal moments of inertia about body x, y, z at uniform density: m (b^2 + c^2) / 5, ...
+  /// Returns the principal moments of inertia about body x, y, z at uniform density: m (b^2 + c^2) / 5, ...
   Eigen::Vector3d inertia(double mass) const;
 
  private:

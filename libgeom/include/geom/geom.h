@@ -1,10 +1,9 @@
 #pragma once
 
 /// @file
-/// The whole public interface of libgeom.
+/// Includes the whole public interface of libgeom.
 
-/// @namespace geom
-/// Distances of smooth convex bodies: libgeom, and seeds from other libraries.
+/// @namespace geom libgeom: distances of smooth convex bodies, and seeds from other libraries.
 
 #include <geom/any_shape.h>
 #include <geom/batch.h>

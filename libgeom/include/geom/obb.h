@@ -8,14 +8,14 @@
 
 namespace geom {
 
-/// A box of any orientation: {centre + axes x : |x_k| <= half_extents_k}. World frame.
+/// Box of any orientation, {centre + axes x : |x_k| <= half_extents_k}. World frame.
 struct OrientedBox {
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
   Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();  ///< orthonormal columns
   Eigen::Vector3d half_extents = Eigen::Vector3d::Zero();
 };
 
-/// The smallest box along the body's own axes that holds the body at X_WB (the paper's oriented bounding
+/// Returns the smallest box along the body's own axes that contains the body at X_WB (the paper's oriented bounding
 /// parallelepiped): half extents (h(e_k) + h(-e_k)) / 2.
 template <SupportShape Shape>
 OrientedBox oriented_box(const Shape& shape, const Pose& X_WB) {
@@ -33,9 +33,9 @@ OrientedBox oriented_box(const Shape& shape, const Pose& X_WB) {
   return box;
 }
 
-/// Whether two boxes meet: the separating-axis test with the 3 + 3 face normals and the 9 products of edges
-/// (Gottschalk, Lin and Manocha, SIGGRAPH 1996). False is certain; boxes that are apart by less than 1e-12 of their
-/// sizes may be said to meet. Never throws, never allocates.
+/// Returns whether two boxes overlap, by the separating-axis test with the 3 + 3 face normals and the 9 products of
+/// edges (Gottschalk, Lin and Manocha, SIGGRAPH 1996). False is certain; true may be returned for boxes that are apart
+/// by less than 1e-12 of their sizes. Never throws, never allocates.
 GEOM_EXPORT bool boxes_meet(const OrientedBox& a, const OrientedBox& b);
 
 }  // namespace geom

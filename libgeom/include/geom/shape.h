@@ -14,13 +14,13 @@ struct Support {
   Eigen::Vector3d point;  ///< s(n) = grad h(n), the point where that maximum is reached
 };
 
-/// A convex body given by its support function, in its own frame, the origin in its interior.
+/// Convex body given by its support function, in its own frame, the origin in its interior.
 ///
-/// `support(n)` and `support_hessian(n)` = hess h(n) take any n != 0; `bounding_radius()` and `inscribed_radius()` are
-/// the radii of spheres about the origin that contain the body and are contained in it. This is all that `distance`
-/// needs. A shape may also have `min_curvature_radius()`, a lower bound of its smallest principal radius of curvature
-/// (0 without it): overlaps down to the sum of both bodies' values are answered by Newton's method alone, exact to
-/// rounding and within microseconds; deeper ones take the search over all normals and have its `error_bound` (see
+/// `support(n)` and `support_hessian(n)` = hess h(n) take any n != 0. `bounding_radius()` and `inscribed_radius()` are
+/// the radii of spheres about the origin that contain the body and are contained in it. `distance` needs nothing else.
+/// A shape may also have `min_curvature_radius()`, a lower bound of its smallest principal radius of curvature (0
+/// without it): overlaps down to the sum of both bodies' values are answered by Newton's method alone, exact to
+/// rounding and within microseconds; deeper ones need the search over all normals and have its `error_bound` (see
 /// distance.h).
 template <class T>
 concept SupportShape = requires(const T& shape, const Eigen::Vector3d& n) {
@@ -30,7 +30,7 @@ concept SupportShape = requires(const T& shape, const Eigen::Vector3d& n) {
   { shape.inscribed_radius() } -> std::convertible_to<double>;
 };
 
-/// A body given as {x : f(x) <= 0} with f smooth, in its own frame: what the paper's distance equations need.
+/// Body given as {x : f(x) <= 0} with f smooth, in its own frame: the form that the paper's distance equations need.
 template <class T>
 concept ImplicitSurface = requires(const T& shape, const Eigen::Vector3d& x) {
   { shape.value(x) } -> std::convertible_to<double>;

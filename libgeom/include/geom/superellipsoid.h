@@ -8,55 +8,58 @@
 
 namespace geom {
 
-/// Barr's superellipsoid {x : (|x/a|^(2/e2) + |y/b|^(2/e2))^(e2/e1) + |z/c|^(2/e1) <= 1} in the body's frame: e < 1 has
-/// flat faces and rounded edges (a box for e -> 0), e = 1 is the ellipsoid, e > 1 has edges (an octahedron for e = 2).
-/// e1 shapes the profile along z, e2 the section across it.
+/// Barr's superellipsoid {x : (|x/a|^(2/e2) + |y/b|^(2/e2))^(e2/e1) + |z/c|^(2/e1) <= 1} in the body's frame. Exponent
+/// e < 1: flat faces and rounded edges (a box for e -> 0); e = 1: the ellipsoid; e > 1: edges (an octahedron for e =
+/// 2). e1 shapes the profile along z, e2 the section across it.
 class GEOM_EXPORT Superellipsoid {
  public:
-  /// Semi-axes along body x, y, z. Throws std::invalid_argument unless each is within [kMinSemiAxis, kMaxSemiAxis],
-  /// 1e-50 to 1e50, the largest at most kMaxAspectRatio, 1e4, times the smallest, and both exponents are within
-  /// [kMinExponent, kMaxExponent], 0.2 to 1.6. Beyond an aspect ratio of 10 distances can be less exact and slower
-  /// (distance.h says how).
+  /// Constructs a superellipsoid from its semi-axes along body x, y, z and its exponents. Throws std::invalid_argument
+  /// unless each semi-axis is within [kMinSemiAxis, kMaxSemiAxis], 1e-50 to 1e50, the largest at most kMaxAspectRatio,
+  /// 1e4, times the smallest, and both exponents are within [kMinExponent, kMaxExponent], 0.2 to 1.6. Beyond an aspect
+  /// ratio of 10 distances can be less accurate and slower (see distance.h).
   Superellipsoid(const Eigen::Vector3d& semi_axes, double e1, double e2);
 
-  const Eigen::Vector3d& semi_axes() const { return semi_axes_; }  ///< along body x, y, z
-  double e1() const { return e1_; }                                ///< of the profile along z
-  double e2() const { return e2_; }                                ///< of the section across it
+  const Eigen::Vector3d& semi_axes() const { return semi_axes_; }  ///< semi-axes along body x, y, z
+  double e1() const { return e1_; }                                ///< exponent of the profile along z
+  double e2() const { return e2_; }                                ///< exponent of the section across z
 
-  /// N(x) = ((|x/a|^(2/e2) + |y/b|^(2/e2))^(e2/e1) + |z/c|^(2/e1))^(e1/2), the norm whose unit ball the body is: x/N(x)
-  /// is on the surface.
+  /// Returns N(x) = ((|x/a|^(2/e2) + |y/b|^(2/e2))^(e2/e1) + |z/c|^(2/e1))^(e1/2), the norm whose unit ball the body
+  /// is: x/N(x) is on the surface.
   double norm(const Eigen::Vector3d& x) const;
-  /// f(x) = N(x)^2 - 1: negative inside. For e1 = e2 = 1 it and all that follows is the Ellipsoid's, to the last bit.
+  /// Returns f(x) = N(x)^2 - 1: negative inside. For e1 = e2 = 1 this function and the following ones give the same
+  /// bits as Ellipsoid.
   double value(const Eigen::Vector3d& x) const;
-  Eigen::Vector3d gradient(const Eigen::Vector3d& x) const;  ///< of f; zero in the centre
-  /// Of f; x not 0 (NaN there but for e1 = e2 = 1). In the planes x = 0, y = 0, z = 0, where second derivatives are
-  /// infinite for e > 1, those of a point nearby: huge.
+  Eigen::Vector3d gradient(const Eigen::Vector3d& x) const;  ///< gradient of f; zero in the centre
+  /// Returns the Hessian of f; x != 0 (NaN at 0 unless e1 = e2 = 1). In the planes x = 0, y = 0, z = 0, where second
+  /// derivatives are infinite for e > 1, the Hessian of a point nearby is returned, which is huge.
   Eigen::Matrix3d hessian(const Eigen::Vector3d& x) const;
 
-  /// h(n) = N*(a n_x, b n_y, c n_z) with N* the dual norm, exponents 2/(2 - e); n != 0, any length.
+  /// Returns h(n) = N*(a n_x, b n_y, c n_z) and its gradient, with N* the dual norm, exponents 2/(2 - e); n != 0, any
+  /// length.
   Support support(const Eigen::Vector3d& n) const;
-  /// hess h, two rank-ones; across n. Huge where n is along a flat face's normal.
+  /// Returns hess h, a sum of two rank-one matrices across n. Huge if n is along a flat face's normal.
   Eigen::Matrix3d support_hessian(const Eigen::Vector3d& n) const;
 
-  bool is_ellipsoid() const { return e1_ == 1 && e2_ == 1; }     ///< both exponents are 1
+  bool is_ellipsoid() const { return e1_ == 1 && e2_ == 1; }     ///< whether both exponents are 1
   double bounding_radius() const { return bounding_radius_; }    ///< largest distance of the surface from the centre
-  double inscribed_radius() const { return inscribed_radius_; }  ///< the least
-  /// A lower bound of the smallest radius of curvature: an ellipsoid's if both exponents are 1, else 0.
+  double inscribed_radius() const { return inscribed_radius_; }  ///< smallest distance of the surface from the centre
+  /// Returns a lower bound of the smallest radius of curvature: that of the ellipsoid if both exponents are 1, else 0.
   double min_curvature_radius() const {
     return is_ellipsoid() ? inscribed_radius_ * (inscribed_radius_ / bounding_radius_) : 0;
   }
-  /// By Beta functions (Jaklic, Leonardis and Solina, Segmentation and Recovery of Superquadrics (2000), sec. 2.5), to
-  /// a share of 1e-12.
+  /// Returns the volume, by Beta functions (Jaklic, Leonardis and Solina, Segmentation and Recovery of Superquadrics
+  /// (2000), sec. 2.5), with a relative error of at most 1e-12.
   double volume() const;
-  /// Principal moments about body x, y, z at uniform density, in units of mass times length^2; by the same, as exact.
+  /// Returns the principal moments about body x, y, z at uniform density, in units of mass times length^2; same source
+  /// and accuracy as the volume.
   Eigen::Vector3d inertia(double mass) const;
 
  private:
   Eigen::Vector3d semi_axes_;
   double e1_;
   double e2_;
-  kernel::NestedNorm norm_;  ///< of x/a: the body is its unit ball
-  kernel::NestedNorm dual_;  ///< of a n: the support function
+  kernel::NestedNorm norm_;  ///< norm of x/a: the body is its unit ball
+  kernel::NestedNorm dual_;  ///< norm of a n: the support function
   double bounding_radius_;
   double inscribed_radius_;
 };

@@ -12,14 +12,14 @@ namespace geom {
 namespace kernel {
 namespace {
 
-/// Inflation stops when the bodies, inflated, overlap by less than this, relative to the smaller inscribed radius.
+/// Inflation stops when the inflated bodies overlap by less than this, relative to the smaller inscribed radius.
 constexpr double kContactDepth = 5e-2;
 constexpr int kMaxInflations = 60;
 constexpr unsigned long kMaxPortals = 200;
-/// MPR's own tolerance, relative to the same.
+/// MPR's own tolerance, relative to the smaller inscribed radius.
 constexpr double kPortalTolerance = 1e-3;
 
-/// A body as libccd's callbacks see it: inflated by a ball, about `centre`.
+/// Body for libccd's callbacks: inflated by a ball, about `centre`.
 struct InflatedBody {
   const SupportBody* body;
   Eigen::Vector3d centre;
@@ -36,7 +36,7 @@ void centre(const void* object, ccd_vec3_t* out) {
   Eigen::Map<Eigen::Vector3d>(out->v) = static_cast<const InflatedBody*>(object)->centre;
 }
 
-/// What MPR says of two bodies that overlap.
+/// Result of MPR for two bodies that overlap.
 struct Contact {
   double depth;
   Eigen::Vector3d normal;  ///< unit, A to B
@@ -54,7 +54,7 @@ class Mpr {
     ccd_.mpr_tolerance = kPortalTolerance * unit;
   }
 
-  /// Whether both bodies, inflated by `skin`, overlap; if so, how.
+  /// Returns whether both bodies, inflated by `skin`, overlap; if so, sets `contact`.
   bool overlap(double skin, Contact& contact) {
     a_.skin = b_.skin = skin;
     ccd_vec3_t direction, position;
@@ -69,9 +69,9 @@ class Mpr {
   ccd_t ccd_;
 };
 
-/// Lowers `skin`, at which the bodies overlap, until they hardly do; `contact` is what MPR says there.
+/// Lowers `skin`, at which the bodies overlap, until they barely overlap; `contact` is MPR's result there.
 ///
-/// MPR's depth is no less than the true one, 2 skin - d: half of it may be too much to take off, but not by far.
+/// MPR's depth is at least the true one, 2 skin - d: subtracting half of it may be too much, but not by far.
 bool shrink_to_contact(Mpr& mpr, double tolerance, double& skin, Contact& contact) {
   double apart = 0;  // a skin with which the bodies are apart
   for (int i = 0; i < kMaxInflations; ++i) {
@@ -104,7 +104,7 @@ WitnessPair ccd_seed(const SupportBody& a, const SupportBody& b) {
     seed.status = SeedStatus::usable;
     return seed;
   }
-  // Inflated by this the inscribed spheres meet.
+  // Inflated by this radius the inscribed spheres overlap.
   double skin = std::max(0.0, 0.5 * (centres - a.inscribed_radius() - b.inscribed_radius())) + unit * kContactDepth;
   if (!mpr.overlap(skin, contact) || !shrink_to_contact(mpr, kContactDepth * unit, skin, contact)) return seed;
   const double back = skin - 0.5 * contact.depth;

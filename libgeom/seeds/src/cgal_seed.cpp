@@ -17,14 +17,14 @@ namespace geom {
 namespace kernel {
 namespace {
 
-/// Doubles in, exact integers with exponents inside: with plain doubles the simplex method returns garbage.
+/// Doubles as input, exact integers with exponents inside: with plain doubles the simplex method returns garbage.
 using Kernel = CGAL::Simple_cartesian<double>;
 using Traits = CGAL::Polytope_distance_d_traits_3<Kernel, CGAL::Gmpzf, double>;
 using PolytopeDistance = CGAL::Polytope_distance_d<Traits>;
 
 constexpr int kVertices = 200;
 
-/// The vertices of a polytope inscribed in the body, about `origin`, lengths over `unit`.
+/// Returns the vertices of a polytope inscribed in the body, about `origin`, lengths over `unit`.
 std::vector<Kernel::Point_3> polytope(const SupportBody& body, const Eigen::Vector3d& origin, double unit) {
   static const std::vector<Eigen::Vector3d> directions = spiral_directions(kVertices);
   std::vector<Kernel::Point_3> points;
@@ -36,7 +36,7 @@ std::vector<Kernel::Point_3> polytope(const SupportBody& body, const Eigen::Vect
   return points;
 }
 
-/// A point in homogeneous coordinates, as CGAL returns it.
+/// Converts a point in homogeneous coordinates, as CGAL returns it.
 template <class Iterator>
 Eigen::Vector3d to_vector(Iterator coordinate) {
   Eigen::Vector3d x;

@@ -23,12 +23,13 @@ namespace {
 /// FCL's default, an absolute length.
 constexpr double kFclTolerance = 1e-6;
 
-/// FCL is not asked of pairs whose gap is smaller, relative to their size: they touch, to rounding, and there an
-/// assertion of its GJK (doSimplex2) compares two sums of rounding errors.
+/// FCL is not called for pairs whose gap is smaller, relative to their size. They touch, to rounding, and an assertion
+/// of FCL's GJK (doSimplex2) then compares two sums of rounding errors.
 constexpr double kLeastGap = 1e-12;
 
-/// A turn by 1 radian about no axis in particular. The same assertion can fail too where its GJK, which starts along x,
-/// meets supporting planes through the origin; of pairs that a user has aligned with the axes that is no coincidence.
+/// Returns a rotation by 1 radian about an arbitrary axis. The same assertion can also fail if FCL's GJK, which starts
+/// along x, encounters supporting planes through the origin; for pairs that a user has aligned with the axes that is
+/// likely.
 const Eigen::Matrix3d& askew() {
   static const Eigen::Matrix3d R =
       Eigen::AngleAxisd(1, Eigen::Vector3d(0.41, -0.67, 0.53).normalized()).toRotationMatrix();
@@ -44,11 +45,10 @@ fcl::Transform3d to_fcl(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& 
 
 constexpr int kVertices = 500;
 
-/// An ellipsoid as what it is, anything else as a polytope; lengths over `unit`.
+/// Converts an ellipsoid to FCL's ellipsoid, anything else to a polytope; lengths over `unit`.
 ///
-/// A polytope without faces: FCL finds its support points by looking at all vertices then. With faces it would walk
-/// along the edges, which ends at the right vertex only where the mesh is convex, and one between support points need
-/// not be.
+/// The polytope has no faces: FCL then finds its support points by testing all vertices. With faces it would walk along
+/// the edges, which ends at the right vertex only if the mesh is convex, and a mesh between support points need not be.
 std::shared_ptr<fcl::CollisionGeometryd> to_fcl(const SupportBody& body, double unit) {
   if (body.ellipsoid() != nullptr) return std::make_shared<fcl::Ellipsoidd>(body.ellipsoid()->semi_axes() / unit);
   static const std::vector<Eigen::Vector3d> directions = spiral_directions(kVertices);
@@ -63,7 +63,7 @@ WitnessPair fcl_seed(const SupportBody& a, const SupportBody& b, const DistanceR
   WitnessPair seed;
   const Eigen::Vector3d p_AB = b.pose().position() - a.pose().position();
   if (!(ours.status == DistanceStatus::separated && ours.distance > 0)) {
-    // Declined: deep in each other, or so far apart that their distance overflows.
+    // Declined: the bodies overlap deeply, or are so far apart that their distance overflows.
     const bool concentric = p_AB.norm() < a.inscribed_radius() + b.inscribed_radius();
     if (ours.status == DistanceStatus::overlapping || concentric) seed.status = SeedStatus::overlapping;
     return seed;

@@ -1,6 +1,6 @@
 #pragma once
 
-/// Points of a body's surface, for libraries that know polytopes only. Compiled into each adapter that needs it.
+/// Points of a body's surface, for libraries that handle only polytopes. Compiled into each adapter that needs it.
 
 #include <geom/kernel/support_body.h>
 
@@ -12,7 +12,8 @@
 
 namespace geom::kernel {
 
-/// Directions spread evenly over the sphere, along a spiral that turns by the golden angle from one to the next.
+/// Returns directions spread evenly over the sphere, along a spiral that turns by the golden angle from one to the
+/// next.
 inline std::vector<Eigen::Vector3d> spiral_directions(int count) {
   const double golden_angle = std::numbers::pi * (3 - std::sqrt(5.0));
   std::vector<Eigen::Vector3d> directions;
@@ -25,10 +26,11 @@ inline std::vector<Eigen::Vector3d> spiral_directions(int count) {
   return directions;
 }
 
-/// The vertices of a polytope inscribed in the body, in the body's frame: its support points along `directions`.
+/// Returns the vertices of a polytope inscribed in the body, in the body's frame: its support points along
+/// `directions`.
 ///
-/// A direction is divided by the body's half-widths along its axes: those of an ellipsoid are then the images of an
-/// even distribution over a sphere, where plain directions would crowd at the tips and leave the sides bare.
+/// Each direction is divided by the body's half-widths along its axes: for an ellipsoid the vertices are then the
+/// images of an even distribution over a sphere. Plain directions would crowd at the tips and leave the sides bare.
 inline std::vector<Eigen::Vector3d> inscribed_vertices(const SupportBody& body,
                                                        const std::vector<Eigen::Vector3d>& directions) {
   const double unit = body.inscribed_radius();

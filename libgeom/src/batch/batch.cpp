@@ -22,7 +22,7 @@ using kernel::kBlockPairs;
 using kernel::kLongestVector;
 using kernel::UniaxialInput;
 
-/// Null pointers where the build has no such kernels or the processor cannot run them.
+/// Returns null pointers if the build has no such kernels or the processor cannot run them.
 BatchKernels find_kernels(InstructionSet set) {
 #ifdef HARDBODY_X86_KERNELS
   const bool avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi") &&
@@ -36,7 +36,7 @@ BatchKernels find_kernels(InstructionSet set) {
   return {nullptr, nullptr};
 }
 
-/// An input span and its step from one pair to the next: 0 where one element serves all.
+/// Input span with its step from one pair to the next: 0 if one element serves all pairs.
 template <class T>
 struct Input {
   const T* data;
@@ -58,7 +58,7 @@ Input<T> checked(const char* name, std::span<const T> span, std::size_t pairs) {
   return {span.data(), span.size() == 1 ? std::size_t{0} : std::size_t{1}};
 }
 
-/// Of the pairs that go to `distance`, without the start.
+/// Returns the options of the pairs that go to `distance`, without the start.
 DistanceOptions scalar_options(const BatchOptions& options) {
   DistanceOptions scalar;
   scalar.max_iterations = options.max_iterations;
@@ -66,7 +66,7 @@ DistanceOptions scalar_options(const BatchOptions& options) {
   return scalar;
 }
 
-/// What a batch is asked, and where its answers go.
+/// Input of a batch, and the destination of its answers.
 struct Query {
   Input<Ellipsoid> a;
   Input<Pose> X_WA;
@@ -83,7 +83,7 @@ struct Query {
   }
 };
 
-/// Two bodies, and where their answer goes.
+/// Pair of bodies, and the destination of their answer.
 struct Pair {
   const Ellipsoid* a;
   const Pose* X_WA;
@@ -101,7 +101,7 @@ void put_shapes(const Pair& pair, GeneralInput& in, int lane) {
   in.rotation_b[lane] = pair.X_WB->rotation().data();
 }
 
-/// Of a body of revolution. Returns where its axis stands.
+/// Writes the numbers of a body of revolution into the rows. Returns the address of its axis.
 const double* put_revolution(const Ellipsoid& shape, const Pose& X, BatchRow* rows, int lane) {
   const int axis = *shape.symmetry_axis();
   rows[0][lane] = shape.semi_axes()[axis];
@@ -118,7 +118,8 @@ int iterations_of(const BatchOutput& out, int lane) {
   return static_cast<int>(out.iterations[lane]);
 }
 
-/// In place: a result built elsewhere would be copied in other pieces than it was written, which stalls.
+/// Writes the answer in place: a result built elsewhere would be copied in other pieces than it was written, which
+/// causes stalls.
 void read_answer(const BatchOutput& out, int lane, DistanceResult& result) {
   const double* const first = out.records[BatchOutput::distance_and_point_a][lane];
   const double* const second = out.records[BatchOutput::point_b_and_residual][lane];
@@ -133,7 +134,7 @@ void read_answer(const BatchOutput& out, int lane, DistanceResult& result) {
   result.error_bound = third[3];
 }
 
-/// Collects pairs of one kind until there are enough for a call of their kernel.
+/// Collects pairs of one kind until there are enough for one call of their kernel.
 template <class KernelInput>
 class Block {
  public:
@@ -168,7 +169,7 @@ class Block {
   std::size_t redone() const { return redone_; }
 
  private:
-  /// A start always has its first evaluation.
+  /// True if the kernel answered: a pair that it started has at least one evaluation.
   bool is_answered(int lane) const {
     return out_.iterations[lane] > 0 && iterations_of(out_, lane) <= std::max(1, query_.scalar.max_iterations);
   }
@@ -222,7 +223,7 @@ std::optional<Ellipsoid> as_ellipsoid(const Shape& shape) {
 /// Pairs of ellipsoids among other shapes, copied side by side for the kernels.
 class EllipsoidPairs {
  public:
-  /// `options` without starts.
+  /// Constructs the collection; `options` must have no starts.
   EllipsoidPairs(std::span<DistanceResult> results, const BatchOptions& options)
       : results_(results), options_(options) {}
 

@@ -1,10 +1,10 @@
-/// The dual Newton (geom/kernel/dual_newton.h) for blocks of pairs of ellipsoids, one pair to a vector lane.
+/// Dual Newton (geom/kernel/dual_newton.h) for blocks of pairs of ellipsoids, one pair to a vector lane.
 ///
-/// Included once by each batch_kernel_*.cpp, which sets HARDBODY_BATCH_KERNELS, the function's name, and is compiled
-/// for its own instruction set. All else here has internal linkage (batch_kernel.h says why).
+/// Included once by each batch/kernel_*.cpp, which sets HARDBODY_BATCH_KERNELS, the function's name, and is compiled
+/// for its own instruction set. All else here has internal linkage (batch/kernel.h states why).
 ///
-/// What a lane computes does not depend on its neighbours: where some lanes need another branch, all take it, and each
-/// keeps the result that is its own.
+/// The result of a lane does not depend on its neighbours: if some lanes need another branch, all take it, and each
+/// keeps its own result.
 
 #include "batch/kernel.h"
 #include "batch/vectors-inl.h"
@@ -19,14 +19,14 @@ namespace {
 
 static_assert(kLongestVector % kLanes == 0 && kBlockPairs % kLongestVector == 0);
 
-/// Evaluations before a pair is left to `distance`: few need more.
+/// Number of evaluations before a pair is left to `distance`: few need more.
 constexpr int kMostRounds = 24;
 static_assert(kMostRounds % 2 == 0, "the last normals are then in the first of their rows");
 
 // ---------------------------------------------------------------------------------------------------------------------
-// The iteration, the same for every kind of pair
+// Iteration, the same for every kind of pair
 
-/// One number of each pair while it is worked on.
+/// Row of one number of each pair during the iteration.
 using StateRow = double[kBlockPairs];
 
 /// Rows that every kind of pair has.
@@ -34,23 +34,23 @@ struct State {
   enum Row {
     rho = 0,        ///< certified depth
     rounding = 1,   ///< kRoundingFactor * size
-    g = 2,          ///< at the last normal from which a step was made
-    active = 3,     ///< 1: goes on
-    converged = 4,  ///< 1: the normal is the answer's
+    g = 2,          ///< g at the last normal from which a step was made
+    active = 3,     ///< 1: the iteration continues
+    converged = 4,  ///< 1: the normal is the answer
     iterations = 5,
-    normal = 6,        ///< the one to evaluate in even rounds, the one before it in odd rounds,
-    older_normal = 9,  ///< and the reverse
-    common_rows = 12,  ///< further rows are of the kind of pair
+    normal = 6,        ///< normal to evaluate in even rounds, previous one in odd rounds
+    older_normal = 9,  ///< normal to evaluate in odd rounds, previous one in even rounds
+    common_rows = 12,  ///< number of rows above; further rows depend on the kind of pair
   };
 };
 
 struct Evaluation {
   Real g;
-  Real3 step;  ///< of Newton's method, before it is capped
+  Real3 step;  ///< Newton's step before it is capped
 };
 
-/// By how much eigenvalues are lifted where H + g I is not definite enough: see evaluate_uniaxial in
-/// geom/kernel/uniaxial.h, whose rule this is. `shift + t / 2 +- sqrt(t^2 / 4 - D)` are the eigenvalues.
+/// Returns the lift of eigenvalues if H + g I is not definite enough, by the rule of evaluate_uniaxial in
+/// geom/kernel/uniaxial.h. The eigenvalues are `shift + t / 2 +- sqrt(t^2 / 4 - D)`.
 HWY_INLINE Real lift(Real g, Real rho, Real shift, Real t, Real D) {
   const Real zero = constant(0), half = constant(0.5);
   const Real least = rho * hn::IfThenElse(g > hn::Neg(rho), constant(kLeastEigenvalue), half);
@@ -62,7 +62,7 @@ HWY_INLINE Real lift(Real g, Real rho, Real shift, Real t, Real D) {
   return hn::IfThenElse(definite, shift, shift + hn::Max(zero, least - smallest));
 }
 
-/// The first normal: `start` where it is good for something (as in solve_dual), else `cold`; any lengths.
+/// Sets the first normal: `start` if it is usable (as in solve_dual), else `cold`; any lengths.
 HWY_INLINE void start_from(StateRow* rows, int lane, const Real3& start, Real3 cold, Real rho, Real size) {
   const Real least2 = constant(kLeastStart2), most2 = constant(1e300);
   const Real start2 = dot(start, start);
@@ -86,13 +86,13 @@ HWY_INLINE Real3 load_start(const Input& in, int lane) {
   return {constant(0), constant(0), constant(0)};
 }
 
-/// |r| without a root, at most a factor of sqrt(3) too small: tolerances relative to it are then stricter.
+/// Returns |r| without a root, at most a factor of sqrt(3) too small: tolerances relative to it are then stricter.
 HWY_INLINE Real length_at_least(const Real3& r) {
   return hn::Max(hn::Max(hn::Abs(r.x), hn::Abs(r.y)), hn::Abs(r.z));
 }
 
-/// Evaluates the pairs from `lane` on and moves their normals: by a Newton step, or where g fell, back (`ascend` and
-/// `backtrack` of geom/kernel/dual_newton.h). Returns whether some of them go on.
+/// Evaluates the pairs from `lane` on and moves their normals: by a Newton step, or back if g fell (`ascend` and
+/// `backtrack` of geom/kernel/dual_newton.h). Returns whether some of them continue.
 template <class Pairs>
 HWY_INLINE bool advance(StateRow* rows, int lane, int round) {
   const Real one = constant(1), zero = constant(0);
@@ -112,7 +112,7 @@ HWY_INLINE bool advance(StateRow* rows, int lane, int round) {
   const Real g_before = load(rows[State::g], lane);
   const Lanes fell = hn::And(active, g < g_before - load(rows[State::rounding], lane));
   if (any(fell)) {
-    // The step that fell, from its two ends.
+    // The step that lowered g, from its two ends.
     const Real3 previous = load3(row_previous, lane);
     const Real3 fallen = (one / dot(n, previous)) * n - previous;
     from = select(fell, previous, from);
@@ -123,7 +123,7 @@ HWY_INLINE bool advance(StateRow* rows, int lane, int round) {
   const Real3 m = from + step;
   const Real3 next = inverse_norm(m) * m;
 
-  // NaN compares false: a pair whose numbers overflow is neither converged nor does it go on.
+  // NaN compares false: a pair whose numbers overflow is neither converged nor does it continue.
   const Real tolerance = constant(kNormalTolerance2);
   const Lanes converged = hn::AndNot(fell, hn::And(active, step2 <= tolerance));
   const Lanes goes_on = hn::And(active, hn::Or(fell, hn::And(step2 > tolerance, step2 < constant(1e300))));
@@ -134,11 +134,11 @@ HWY_INLINE bool advance(StateRow* rows, int lane, int round) {
   store(load(rows[State::converged], lane) + flag(converged), rows[State::converged], lane);
   store(load(rows[State::iterations], lane) + flag(active), rows[State::iterations], lane);
   const bool some_go_on = any(goes_on);
-  if (!some_go_on) store3(kept, row_n, lane);  // done: it is in either row
+  if (!some_go_on) store3(kept, row_n, lane);  // done: both rows hold it
   return some_go_on;
 }
 
-/// The answer at a normal, as witness_result. `s_b` is minus the support point of B at -n.
+/// Answer at a normal, as in witness_result. `s_b` is minus the support point of B at -n.
 struct Witness {
   Real3 n, r, s_a, s_b;
   Real h_a, h_b;
@@ -146,7 +146,7 @@ struct Witness {
 
 struct Answer {
   Real distance;
-  Real3 from_centre;  ///< of A to the witness point on A
+  Real3 from_centre;  ///< vector from A's centre to the witness point on A
   Real residual;
   Real error_bound;
 };
@@ -163,8 +163,8 @@ HWY_INLINE Answer finish(const StateRow* rows, int lane, const Witness& w, Batch
   const Lanes converged = load(rows[State::converged], lane) > constant(0);
   const Lanes answered = hn::And(converged, hn::And(certified, polished));
   store(hn::IfThenElseZero(answered, load(rows[State::iterations], lane)), out.iterations, lane);
-  const Real residual = y2 * inverse_root(hn::Max(y2, constant(1e-300)));  // 0 for 0; no allowed size gives less
-  const Real error_bound = constant(0.5) * y2 * near_inverse(depth_left);  // as newton_error_bound
+  const Real residual = y2 * inverse_root(hn::Max(y2, constant(1e-300)));  // 0 for 0; no accepted size gives less
+  const Real error_bound = constant(0.5) * y2 * near_inverse(depth_left);  // see newton_error_bound
   return {distance, add(w.s_a, constant(0.5), y), residual, error_bound};
 }
 
@@ -178,7 +178,7 @@ HWY_INLINE void store_answer(const Answer& answer, const Real3& p_WA, const Real
   store_record(n, answer.error_bound, out.records[BatchOutput::normal_and_error_bound], lane);
 }
 
-/// A block of pairs while it is worked on.
+/// Block of pairs during the iteration.
 template <class Pairs>
 class Block {
  public:
@@ -189,7 +189,8 @@ class Block {
     }
   }
 
-  /// Vectors take turns, so that the processor has several independent chains of operations at a time.
+  /// Iterates until all pairs are done. Vectors take turns, so that the processor has several independent chains of
+  /// operations at a time.
   HWY_INLINE void solve() {
     for (int round = 0; round < kMostRounds && vectors_ > 0; ++round) {
       int kept = 0;
@@ -206,14 +207,15 @@ class Block {
 
  private:
   alignas(64) StateRow rows_[Pairs::rows];
-  int active_[kBlockPairs / kLanes];  ///< first lanes of the vectors that go on
-  int vectors_ = 0;                   ///< how many these are
+  int active_[kBlockPairs / kLanes];  ///< first lanes of the vectors that continue
+  int vectors_ = 0;                   ///< number of vectors that continue
 };
 
 // ---------------------------------------------------------------------------------------------------------------------
 // Two ellipsoids
 
-/// In A's frame, where QA = diag(a^2): B's centre at r = R_A^T p_AB, R = R_A^T R_B, QB = R diag(b^2) R^T.
+/// Pairs of two ellipsoids, in A's frame, where QA = diag(a^2): B's centre at r = R_A^T p_AB, R = R_A^T R_B, QB = R
+/// diag(b^2) R^T.
 ///
 /// With H = HA + HB, T = trace H and D the product of its two eigenvalues across n (the sum of its principal minors, as
 /// H n = 0), the Cayley-Hamilton theorem inverts H + g I across n without a basis there:
@@ -224,13 +226,13 @@ struct GeneralPairs {
   enum Row {
     r = State::common_rows,
     semi_axes_a = r + 3,
-    Q_b = semi_axes_a + 3,  ///< as Real6
+    Q_b = semi_axes_a + 3,  ///< elements in the order of Real6
     semi_axes_b = Q_b + 6,
     R = semi_axes_b + 3,  ///< column by column
     rows = R + 9,
   };
 
-  /// (QA + QB)^-1 r, up to a positive factor.
+  /// Returns (QA + QB)^-1 r, up to a positive factor.
   static HWY_INLINE Real3 cold_normal(const Real3& a, const Real6& Q, const Real3& r_AB) {
     const Real xx = hn::MulAdd(a.x, a.x, Q.xx), yy = hn::MulAdd(a.y, a.y, Q.yy), zz = hn::MulAdd(a.z, a.z, Q.zz);
     const Real6 adjugate = {hn::NegMulAdd(Q.yz, Q.yz, yy * zz),   hn::NegMulAdd(Q.xz, Q.xz, xx * zz),
@@ -304,7 +306,7 @@ struct GeneralPairs {
     const Real3 a = load3(state + semi_axes_a, lane);
     const Real3 b = load3(state + semi_axes_b, lane);
     const Real33 R_AB = load33(state + R, lane);
-    // Heights by |diag(a) R^T n|, which loses no digits for flat bodies as n.Q n does.
+    // Heights are computed by |diag(a) R^T n|, which loses no digits for flat bodies, unlike n.Q n.
     const Real3 m_a = product(a, n);
     const Real3 m_b = product(b, transposed_times(R_AB, n));
     const auto [h_a, h_b, inv_a, inv_b] = roots(dot(m_a, m_a), dot(m_b, m_b));
@@ -321,16 +323,16 @@ struct GeneralPairs {
 // ---------------------------------------------------------------------------------------------------------------------
 // Two ellipsoids of revolution
 
-/// In the world frame, by the formulas of geom/kernel/uniaxial.h.
+/// Pairs of two ellipsoids of revolution, in the world frame, by the formulas of geom/kernel/uniaxial.h.
 struct UniaxialPairs {
   using Input = UniaxialInput;
   enum Row {
     r = State::common_rows,
     u_a = r + 3,
     u_b = u_a + 3,
-    along2_a = u_b + 3,        ///< square of the semi-axis along the axis
-    across2_a = along2_a + 1,  ///< and of those across it
-    c_a = across2_a + 1,       ///< their difference
+    along2_a = u_b + 3,        ///< squares of the semi-axes along the axis
+    across2_a = along2_a + 1,  ///< squares of the semi-axes across it
+    c_a = across2_a + 1,       ///< differences of these squares
     along2_b = c_a + 1,
     across2_b = along2_b + 1,
     c_b = across2_b + 1,
@@ -353,7 +355,7 @@ struct UniaxialPairs {
     store(d2, state[along2_b], lane);
     store(b2_b, state[across2_b], lane);
     store(f, state[c_b], lane);
-    // Cold start, as cold_normal in geom/kernel/uniaxial.h but for the factor b^2 + b^2 there divided by.
+    // Cold start, as cold_normal in geom/kernel/uniaxial.h except for the factor b^2 + b^2, by which that one divides.
     const Real sum = b2_a + b2_b;
     const Real k = dot(u, v);
     const Real r_a = dot(p_AB, u), r_b = dot(p_AB, v);

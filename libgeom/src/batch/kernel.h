@@ -1,23 +1,23 @@
 #pragma once
 
-/// The kernels of distance_batch, compiled once for each instruction set (batch_kernel-inl.h).
+/// Kernels of distance_batch, compiled once for each instruction set (batch/kernel-inl.h).
 ///
-/// Plain arrays only, neither Eigen nor containers: what a translation unit compiled for AVX-512 instantiates of them
-/// could be linked into code for processors without it.
+/// They use plain arrays only, neither Eigen nor containers: a template that a translation unit compiled for AVX-512
+/// instantiates could be linked into code for processors without it.
 
 namespace geom::kernel {
 
-/// Pairs that a kernel answers in one call, at most, and a multiple of every vector's length.
+/// Maximum number of pairs that a kernel answers in one call, and a multiple of every vector's length.
 constexpr int kBlockPairs = 32;
 constexpr int kLongestVector = 8;
 
-/// One number of each pair of a block.
+/// Row of one number of each pair of a block.
 using BatchRow = double[kBlockPairs];
 
-/// Where some numbers of each pair stand, one after the other.
+/// Addresses of consecutive numbers of each pair.
 using BatchRecords = const double* [kBlockPairs];
 
-/// Two ellipsoids.
+/// Input of pairs of two ellipsoids.
 struct GeneralInput {
   enum Row {
     depth = 0,  ///< the sum of both min_curvature_radius()
@@ -26,16 +26,16 @@ struct GeneralInput {
   alignas(64) BatchRow rows[count];
   BatchRecords semi_axes_a, semi_axes_b;
   BatchRecords position_a, position_b;
-  BatchRecords rotation_a, rotation_b;  ///< body to world, column by column
-  BatchRecords start;                   ///< as DistanceOptions::start
-  bool has_starts;                      ///< else all are 0, cold
+  BatchRecords rotation_a, rotation_b;  ///< rotations, body to world, column by column
+  BatchRecords start;                   ///< see DistanceOptions::start
+  bool has_starts;                      ///< false: cold starts for all pairs
 };
 
-/// Two ellipsoids of revolution, by their axes of revolution in world coordinates.
+/// Input of pairs of two ellipsoids of revolution, by their axes of revolution in world coordinates.
 struct UniaxialInput {
   enum Row {
     along_a = 0,   ///< semi-axis along the axis of revolution
-    across_a = 1,  ///< the two equal ones
+    across_a = 1,  ///< the two equal semi-axes
     along_b = 2,
     across_b = 3,
     depth = 4,
@@ -43,12 +43,12 @@ struct UniaxialInput {
   };
   alignas(64) BatchRow rows[count];
   BatchRecords position_a, position_b;
-  BatchRecords axis_a, axis_b;  ///< unit vectors
+  BatchRecords axis_a, axis_b;  ///< unit vectors along the axes of revolution
   BatchRecords start;
   bool has_starts;
 };
 
-/// Four numbers of each pair, pair after pair.
+/// Records of four numbers of each pair, pair after pair.
 using BatchRecord = double[kBlockPairs][4];
 
 struct BatchOutput {
@@ -59,17 +59,18 @@ struct BatchOutput {
     count = 3,
   };
   alignas(64) BatchRecord records[count];
-  /// Evaluations; 0 where the pair was not answered: its numbers mean nothing.
+  /// Number of evaluations; 0 if the pair was not answered: its other numbers are meaningless.
   alignas(64) double iterations[kBlockPairs];
 };
 
-/// Answer the first `pairs` pairs; up to the next multiple of kLongestVector the input must hold valid pairs too.
+/// Functions that answer the first `pairs` pairs; up to the next multiple of kLongestVector the input must hold valid
+/// pairs too.
 struct BatchKernels {
   void (*general)(const GeneralInput& in, int pairs, BatchOutput& out);
   void (*uniaxial)(const UniaxialInput& in, int pairs, BatchOutput& out);
 };
 
-/// Of one instruction set each.
+/// Returns the kernels of one instruction set.
 BatchKernels batch_kernels_portable();
 BatchKernels batch_kernels_avx2();
 BatchKernels batch_kernels_avx512();

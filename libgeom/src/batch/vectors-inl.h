@@ -1,10 +1,9 @@
 #pragma once
 
 /// Vectors of three components, each of which holds one number of every lane, and roots and inverses of such numbers,
-/// for batch_kernel-inl.h: what else there is about the instruction set, the linkage and what may be included is said
-/// there.
+/// for batch/kernel-inl.h. That file documents the instruction set, the linkage and what may be included.
 
-// What the kernels do not need should not be asked of the processor.
+// Instructions that the kernels do not need are not required of the processor.
 #define HWY_DISABLE_PCLMUL_AES
 #define HWY_DISABLE_F16C
 // Highway's checks would call its library.
@@ -31,12 +30,12 @@ struct Real3 {
   Real x, y, z;
 };
 
-/// A symmetric matrix.
+/// Symmetric matrix.
 struct Real6 {
   Real xx, yy, zz, yz, xz, xy;
 };
 
-/// A matrix by its columns.
+/// Matrix by its columns.
 struct Real33 {
   Real3 x, y, z;
 };
@@ -53,15 +52,15 @@ HWY_INLINE Real3 operator-(const Real3& a, const Real3& b) {
 HWY_INLINE Real3 operator*(Real s, const Real3& a) {
   return {s * a.x, s * a.y, s * a.z};
 }
-/// a + s b.
+/// Returns a + s b.
 HWY_INLINE Real3 add(const Real3& a, Real s, const Real3& b) {
   return {hn::MulAdd(s, b.x, a.x), hn::MulAdd(s, b.y, a.y), hn::MulAdd(s, b.z, a.z)};
 }
-/// a - s b.
+/// Returns a - s b.
 HWY_INLINE Real3 subtract(const Real3& a, Real s, const Real3& b) {
   return {hn::NegMulAdd(s, b.x, a.x), hn::NegMulAdd(s, b.y, a.y), hn::NegMulAdd(s, b.z, a.z)};
 }
-/// Component by component.
+/// Returns the product component by component.
 HWY_INLINE Real3 product(const Real3& a, const Real3& b) {
   return {a.x * b.x, a.y * b.y, a.z * b.z};
 }
@@ -89,7 +88,7 @@ HWY_INLINE bool any(Lanes lanes) {
   return !hn::AllFalse(Tag(), lanes);
 }
 
-// Rows may be those of a block's input or output, or of its state.
+// Row of a block's input or output, or of its state.
 template <class Row>
 HWY_INLINE Real load(const Row& row, int lane) {
   return hn::Load(Tag(), row + lane);
@@ -99,14 +98,14 @@ HWY_INLINE Real3 load3(const Row* rows, int lane) {
   return {load(rows[0], lane), load(rows[1], lane), load(rows[2], lane)};
 }
 
-/// Three numbers of each record.
+/// Loads three numbers of each record.
 HWY_INLINE Real3 load_three(const double* const* records) {
   Real3 v;
   load_two(Tag(), records, 0, v.x, v.y);
   load_two(Tag(), records, 1, v.y, v.z);
   return v;
 }
-/// Of nine.
+/// Loads nine numbers of each record as a matrix.
 HWY_INLINE Real33 load_nine(const double* const* records) {
   Real33 m;
   load_two(Tag(), records, 0, m.x.x, m.x.y);
@@ -145,10 +144,10 @@ struct Roots {
 
 #if HWY_TARGET <= HWY_AVX3
 
-/// An estimate of 1 / sqrt(x) to 14 bits, t = x times it, and p by which 1 / sqrt(x) = estimate + p estimate and
-/// sqrt(x) = t + p t, to 1.4 units in the last place: with e = 1 - x estimate^2, at most 2^-13, p = (1 - e)^(-1/2) - 1,
-/// whose next term, 35/128 e^4, is below 2^-53. Shorter than the processor's own roots and quotients, which wait for
-/// each other.
+/// Estimate of 1 / sqrt(x) to 14 bits, t = x times it, and p by which 1 / sqrt(x) = estimate + p estimate and sqrt(x) =
+/// t + p t, to 1.4 units in the last place: with e = 1 - x estimate^2, at most 2^-13, p = (1 - e)^(-1/2) - 1, whose
+/// next term, 35/128 e^4, is below 2^-53. Shorter than the processor's own roots and quotients, which wait for each
+/// other.
 struct RootSeries {
   Real estimate, t, p;
 };
@@ -173,14 +172,14 @@ HWY_INLINE Roots roots(Real a, Real b) {
           hn::MulAdd(of_a.estimate, of_a.p, of_a.estimate), hn::MulAdd(of_b.estimate, of_b.p, of_b.estimate)};
 }
 
-/// 1 / x to 40 bits: for what an error of 1e-12 of it does not matter to.
+/// Returns 1 / x to 40 bits, for uses where a relative error of 1e-12 does not matter.
 HWY_INLINE Real near_inverse(Real x) {
   const Real estimate{_mm512_rcp14_pd(x.raw)};
   const Real e = hn::NegMulAdd(x, estimate, constant(1));
   return hn::MulAdd(estimate, hn::MulAdd(e, e, e), estimate);
 }
 
-/// 1 / |m|.
+/// Returns 1 / |m|.
 HWY_INLINE Real inverse_norm(const Real3& m) {
   return inverse_root(dot(m, m));
 }
@@ -193,7 +192,7 @@ HWY_INLINE Real inverse_root(Real x) {
 
 HWY_INLINE Roots roots(Real a, Real b) {
   const Real root_a = hn::Sqrt(a), root_b = hn::Sqrt(b);
-  const Real inverse_ab = constant(1) / (a * b);  // beside the square roots, not behind them
+  const Real inverse_ab = constant(1) / (a * b);  // computed in parallel with the square roots
   return {root_a, root_b, (inverse_ab * b) * root_a, (inverse_ab * a) * root_b};
 }
 
@@ -201,7 +200,7 @@ HWY_INLINE Real near_inverse(Real x) {
   return constant(1) / x;
 }
 
-/// 1 / |m|, for m that is nearly a unit vector as inverse_sqrt_1p in geom/kernel/dual_newton.h.
+/// Returns 1 / |m| for m that is nearly a unit vector, see inverse_sqrt_1p in geom/kernel/dual_newton.h.
 HWY_INLINE Real inverse_norm(const Real3& m) {
   const Real one = constant(1);
   const Real m2 = dot(m, m);

@@ -40,9 +40,9 @@ DistanceResult general_distance(const Ellipsoid& a, const Pose& X_WA, const Elli
   return kernel::solve_dual(pair, cold, scale, X_WA.position(), options, shares);
 }
 
-/// Newton with Armijo's rule. g never falls: from a normal with g > 0 the ascent stays where M + g I is positive
-/// definite and the only stationary point is the answer. From one with g < 0 it may end on one that is too deep to be
-/// certified.
+/// Ascends by Newton's method with Armijo's rule. g never falls: from a normal with g > 0 the ascent stays where M + g
+/// I is positive definite and the only stationary point is the answer. From a normal with g < 0 it may end at a
+/// stationary point that is too deep to be certified.
 DistanceResult armijo_ascent(const EllipsoidPair& pair, Eigen::Vector3d n, const PairScale& scale,
                              const Eigen::Vector3d& p_WA, DistanceResult declined) {
   const double rounding = kRoundingFactor * scale.size;
@@ -91,8 +91,8 @@ DistanceResult perram_wertheim_distance(const Ellipsoid& a, const Pose& X_WA, co
   const EllipsoidPair pair(a, X_WA, b, X_WB, r);
   const ContactFunction contact = perram_wertheim(pair.quadric(0), pair.quadric(1), r);
   const double rho = a.min_curvature_radius() + b.min_curvature_radius();
-  // Shrunk by sqrt F the bodies touch, so that the depth is at least this. F itself is no test: its rounding error is
-  // that of a matrix inverse, and F <= 1 is computed for bodies that are apart by less.
+  // Scaled by sqrt F the bodies touch, so that the depth is at least this. F itself is no test: its rounding error is
+  // that of a matrix inverse, and F <= 1 is computed for bodies that are apart by less than that error.
   const double least_depth = (1 - std::sqrt(contact.F)) * (a.inscribed_radius() + b.inscribed_radius());
   if (!(least_depth <= rho)) return declined;
   const PairScale scale{r.norm() + a.bounding_radius() + b.bounding_radius(), rho};

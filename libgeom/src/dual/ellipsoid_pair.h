@@ -1,14 +1,15 @@
 #pragma once
 
-/// Two ellipsoids with any semi-axes for the dual Newton (geom/kernel/dual_newton.h): both bodies at once, A in lane
-/// 0 and B in lane 1, in the world frame.
+/// Two ellipsoids with any semi-axes for the dual Newton (geom/kernel/dual_newton.h): both bodies at once, A in lane 0
+/// and B in lane 1, in the world frame.
 ///
 /// With U = diag(a) R^T and Q = U^T U = R diag(a^2) R^T,
 ///
 ///     h = |U n| = sqrt(n.Q n),   s = Q n / h,   H = (Q - s s^T) / h,
 ///
-/// and H = HA + HB maps n to 0. So T = trace H and D, the sum of its principal minors, are the sum and the product of
-/// its two eigenvalues across n, and the Cayley-Hamilton theorem solves (H + sigma I) delta = y without a basis there:
+/// and H = HA + HB maps n to 0. Hence T = trace H and D, the sum of its principal minors, are the sum and the product
+/// of its two eigenvalues across n, and the Cayley-Hamilton theorem solves (H + sigma I) delta = y without a basis
+/// there:
 ///
 ///     delta = [(T + sigma) y - H y] / [sigma (sigma + T) + D].
 
@@ -39,7 +40,8 @@ class EllipsoidPair {
     Q_ = {entry(0, 0), entry(1, 1), entry(2, 2), entry(1, 2), entry(0, 2), entry(0, 1)};
   }
 
-  /// The step is Chebyshev's (spheroid_pair.h), with half the second derivative of the mismatch along delta
+  /// Evaluates g and its step at n. The step is Chebyshev's (spheroid_pair.h), with half the second derivative of the
+  /// mismatch along delta
   ///
   ///     q = P sum of [(s.delta) H delta + 1/2 (delta.H delta) s] / h over both bodies.
   [[gnu::always_inline]] ChebyshevEvaluation operator()(const Eigen::Vector3d& n) const {
@@ -71,7 +73,7 @@ class EllipsoidPair {
     return out;
   }
 
-  /// By U, which loses no digits for flat bodies as n.Q n does.
+  /// Returns heights and points, computed by U, which loses no digits for flat bodies, unlike n.Q n.
   [[gnu::always_inline]] SupportPair support_pair(const Eigen::Vector3d& n) const {
     const Both m0 = U_[0][0] * n.x() + (U_[0][1] * n.y() + U_[0][2] * n.z());
     const Both m1 = U_[1][0] * n.x() + (U_[1][1] * n.y() + U_[1][2] * n.z());
@@ -88,7 +90,8 @@ class EllipsoidPair {
 
   const Eigen::Vector3d& r() const { return r_; }
 
-  /// A unit vector across n along which g bends upwards by more than `rounding` / rad^2; zero if there is none.
+  /// Returns a unit vector across n along which g curves upwards by more than `rounding` / rad^2; zero if there is
+  /// none.
   Eigen::Vector3d upward(const Eigen::Vector3d& n, double rounding) const {
     const Curved at_n = curved(n);
     const TangentBasis basis(n);
@@ -96,10 +99,10 @@ class EllipsoidPair {
     return TangentForm::of(at_n.hessian.matrix(), g, basis).direction_below(-rounding, basis);
   }
 
-  /// Q of A (lane 0) or B (1).
+  /// Returns Q of A (lane 0) or B (1).
   Eigen::Matrix3d quadric(int lane) const { return Q_.lane(lane).matrix(); }
 
-  /// As SpheroidPair::start_normal; x for centres that coincide.
+  /// Returns the start of a query, see SpheroidPair::start_normal; x for centres that coincide.
   [[gnu::always_inline]] Eigen::Vector3d start_normal() const {
     const double r2 = r_.squaredNorm();
     const Both h2 = Q_.times(r_, r_);
@@ -143,11 +146,11 @@ class EllipsoidPair {
   };
 
   struct Bend {
-    double change;      ///< of the logarithm of either height, the larger one
-    Eigen::Vector3d q;  ///< that above
+    double change;      ///< larger change of the logarithm of the two heights
+    Eigen::Vector3d q;  ///< q of operator()
   };
 
-  /// Along delta = length * v, where `length` is known later than v.
+  /// Returns the bend along delta = length * v, where `length` is known later than v.
   [[gnu::always_inline]] Bend bend_along(const Curved& at_n, const Eigen::Vector3d& n, const Eigen::Vector3d& v,
                                          double length) const {
     const Both Qx = Q_.xx * v.x() + (Q_.xy * v.y() + Q_.xz * v.z());
@@ -155,7 +158,7 @@ class EllipsoidPair {
     const Both Qz = Q_.xz * v.x() + (Q_.yz * v.y() + Q_.zz * v.z());
     const Both s_v = at_n.inv_h * (at_n.sx * v.x() + (at_n.sy * v.y() + at_n.sz * v.z()));
     const Both vQv = at_n.inv_h * (0.5 * (Qx * v.x() + (Qy * v.y() + Qz * v.z())));
-    // With H v = Q v / h - s_v s.
+    // H v = Q v / h - s_v s.
     const Both change = length * s_v;
     const double length2 = length * length;
     const Both of_Q = (length * at_n.inv_h) * change;
@@ -174,7 +177,7 @@ class EllipsoidPair {
     Curved out;
     out.z = r_.dot(n);
     out.h = h2.sqrt();
-    const Both inv_h = out.h * (1 / h2);  // beside the square root, not behind it
+    const Both inv_h = out.h * (1 / h2);  // computed in parallel with the square root
     out.inv_h = inv_h;
     out.sx = inv_h * qx;
     out.sy = inv_h * qy;

@@ -32,7 +32,7 @@ const char* to_string(RayStatus status) {
 
 ClosestPoint closest_point(const Superellipsoid& shape, const Pose& X_WB, const Vector3d& p_W) {
   if (!kernel::is_within_reach(p_W)) return {};
-  // As a small ball, for the methods that flat faces and edges need.
+  // The point is treated as a small ball, for the methods that flat faces and edges need.
   const double radius = std::max(1e-25 * shape.inscribed_radius(), kMinSemiAxis);
   return kernel::closest_point_from(
       p_W, distance(Ellipsoid(Vector3d::Constant(radius)), Pose::translation(p_W), shape, X_WB), radius);
@@ -40,9 +40,9 @@ ClosestPoint closest_point(const Superellipsoid& shape, const Pose& X_WB, const 
 
 namespace {
 
-/// Way along o + way d into the unit ball, improved by Newton's method while that brings the point closer to the
-/// surface: what the point closest to the centre lost to rounding, if the ball is a flat body, is not lost where the
-/// ray meets it.
+/// Returns the distance along o + way d to the unit ball, improved by Newton's method while that brings the point
+/// closer to the surface. If the ball is a flat body, this recovers the digits that the point closest to the centre
+/// lost to rounding.
 double refined_way(const Vector3d& o, const Vector3d& d, double way) {
   const auto excess = [&](double w) { return (o + w * d).squaredNorm() - 1; };
   double f = excess(way);
@@ -66,7 +66,7 @@ RayHit ray_cast(const Ellipsoid& shape, const Pose& X_WB, const Vector3d& origin
   const double speed = direction.dot(u);
   if (!kernel::is_within_reach(origin) || !std::isfinite(speed)) return hit;
   const kernel::NearRay near = kernel::near_ray(X_WB.position(), shape.bounding_radius(), origin, direction);
-  // In coordinates in which the body is the unit ball.
+  // These are coordinates in which the body is the unit ball.
   const Vector3d o = X_WB.to_body(near.origin).cwiseQuotient(shape.semi_axes());
   const Vector3d d = (X_WB.rotation().transpose() * u).cwiseQuotient(shape.semi_axes());
   const auto at = [&](RayStatus status, double way) {
@@ -77,12 +77,12 @@ RayHit ray_cast(const Ellipsoid& shape, const Pose& X_WB, const Vector3d& origin
     hit = {status, t, near.origin + way * u, X_WB.rotation() * kernel::unit_vector(m.cwiseQuotient(shape.semi_axes()))};
   };
   if (o.squaredNorm() < 1) {
-    // From afar this is a body smaller than what its own coordinates are rounded by.
+    // Seen from far away, this body is smaller than the rounding of its own coordinates.
     at(near.t == 0 ? RayStatus::inside : RayStatus::hit, 0);
     return hit;
   }
-  // f(p) = |p|^2 - 1 is convex in the world's lengths too, where its gradient is 2 p / a: the distance of a point
-  // outside is at least f / |2 p / a|, and no more than that to first order where the surface is near.
+  // f(p) = |p|^2 - 1 is also convex in the world's lengths, where its gradient is 2 p / a: the distance of a point
+  // outside is at least f / |2 p / a|, and equal to that to first order near the surface.
   const double touching = kRayGap * (shape.bounding_radius() + (near.origin - X_WB.position()).norm());
   const auto touches = [&](const Vector3d& p) {
     return p.squaredNorm() - 1 <= 2 * touching * p.cwiseQuotient(shape.semi_axes()).stableNorm();
@@ -91,7 +91,7 @@ RayHit ray_cast(const Ellipsoid& shape, const Pose& X_WB, const Vector3d& origin
     at(RayStatus::hit, 0);
     return hit;
   }
-  // From the point of the ray closest to the centre: b^2 - 4 a c would cancel.
+  // The roots are computed from the point of the ray closest to the centre: b^2 - 4 a c would cancel.
   const double t_closest = -o.dot(d) / d.squaredNorm();
   const Vector3d closest = o + t_closest * d;
   if (!(t_closest >= 0) || !touches(closest)) {

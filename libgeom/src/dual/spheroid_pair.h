@@ -3,9 +3,9 @@
 /// Two ellipsoids of revolution for the dual Newton (geom/kernel/dual_newton.h), by the formulas of
 /// geom/kernel/uniaxial.h: both bodies at once, A in lane 0 and B in lane 1.
 ///
-/// A query is one long chain of operations that wait for each other, so that its time is the length of that chain. Here
-/// products of w and the step are sums of numbers that are known before the step is, |w|^2 is |u x n|^2, which does not
-/// wait for n.u, and roots are beside divisions.
+/// A query is one long chain of dependent operations, whose length determines its time. To shorten it, products of w
+/// and the step are sums of numbers that are known before the step is, |w|^2 is |u x n|^2, which does not wait for n.u,
+/// and roots are computed in parallel with divisions.
 
 #include <geom/kernel/dual_newton.h>
 #include <geom/kernel/uniaxial.h>
@@ -29,9 +29,9 @@ class SpheroidPair {
         c_(A.c, B.c),
         rho_(A.rho + B.rho) {}
 
-  /// g, Newton's step delta and what Chebyshev's method adds to it, (M + g I)^-1 q, with q half the second derivative
-  /// along delta of the mismatch in the plane that touches the sphere at n, P p - (n.p) delta with p the gradient of
-  /// n.r - hA - hB at n + delta (y at delta = 0):
+  /// Evaluates g, Newton's step delta and Chebyshev's correction to it, (M + g I)^-1 q, with q half the second
+  /// derivative along delta of the mismatch in the plane that touches the sphere at n, P p - (n.p) delta with p the
+  /// gradient of n.r - hA - hB at n + delta (y at delta = 0):
   ///
   ///     q = sum of (c x / h^2) { f (w.delta) delta + [3/2 e (w.delta)^2 + 1/2 f |delta|^2] w } over both bodies.
   [[gnu::always_inline]] ChebyshevEvaluation operator()(const Eigen::Vector3d& n) const {
@@ -39,7 +39,7 @@ class SpheroidPair {
     const Both w2 = sine2(n);
     const Both h2 = b2_ * w2 + a2_ * (x * x);
     const Both h = h2.sqrt();
-    const Both inv_h2 = 1 / h2;  // beside the square root, not behind it
+    const Both inv_h2 = 1 / h2;  // computed in parallel with the square root
     const double z = r_.dot(n);
     const Eigen::Vector3d r_across = r_ - z * n;
     const Both wx = ux_ - x * n.x(), wy = uy_ - x * n.y(), wz = uz_ - x * n.z();
@@ -48,8 +48,8 @@ class SpheroidPair {
     // M + g I = sigma I + eA wA wA^T + eB wB wB^T
     const Both inv_h = h * inv_h2;
     const Both lever = (c_ * x) * inv_h;
-    // All that follows is made of this y: sums of r.w and of heights that are the same but for rounding would leave
-    // errors of the pair's size along w, which a needle's large eigenvalue there does not take away.
+    // The following values are all computed from this y: sums of r.w and of heights that are equal except for rounding
+    // would leave errors of the pair's size along w, which a needle's large eigenvalue there does not remove.
     const Eigen::Vector3d y(r_across.x() - (lever * wx).sum(), r_across.y() - (lever * wy).sum(),
                             r_across.z() - (lever * wz).sum());
     const Both w_y = wx * y.x() + wy * y.y() + wz * y.z();
@@ -95,7 +95,8 @@ class SpheroidPair {
     return out;
   }
 
-  /// s(n) = (b^2 w' + a^2 x u) / h with w' = n - x u (without the cancellation of b^2 n + c x u for discs).
+  /// Returns the support points s(n) = (b^2 w' + a^2 x u) / h with w' = n - x u (without the cancellation of b^2 n + c
+  /// x u for discs).
   [[gnu::always_inline]] SupportPair support_pair(const Eigen::Vector3d& n) const {
     const Both x = ux_ * n.x() + uy_ * n.y() + uz_ * n.z();
     const Both h2 = b2_ * sine2(n) + a2_ * (x * x);
@@ -110,14 +111,14 @@ class SpheroidPair {
 
   const Eigen::Vector3d& r() const { return r_; }
 
-  /// Where a query without a start begins: (QA / hA + QB / hB + g I)^-1 r on the unit sphere, with hA, hB and g, if
-  /// that is positive, those of the line of centres; r is g n + QA n / hA + QB n / hB at the answer. For centres that
-  /// coincide A's axis.
+  /// Returns the cold start of a query: (QA / hA + QB / hB + g I)^-1 r on the unit sphere, with hA, hB and g, if that
+  /// is positive, those of the line of centres; r is g n + QA n / hA + QB n / hB at the answer. A's axis for centres
+  /// that coincide.
   ///
-  /// Between bodies apart by their size that is one evaluation nearer to the answer than cold_normal of uniaxial.h,
-  /// which is made for bodies that touch, and between those never further from it.
+  /// For bodies whose distance is about their size it is one evaluation nearer to the answer than cold_normal of
+  /// uniaxial.h, which is made for bodies that touch, and for bodies that touch it is never further from it.
   [[gnu::always_inline]] Eigen::Vector3d start_normal() const {
-    // All for n = r, of any length: numbers of the line of centres are divided by |r|.
+    // The following values are for n = r, of any length: numbers of the line of centres are divided by |r|.
     const double r2 = r_.squaredNorm();
     const Both along = ux_ * r_.x() + uy_ * r_.y() + uz_ * r_.z();
     const Both h2 = b2_ * r2 + c_ * (along * along);
@@ -138,10 +139,10 @@ class SpheroidPair {
   }
 
  private:
-  /// B's number beside A and A's beside B.
+  /// Exchanges the lanes of A and B.
   static Both other(const Both& v) { return {v[1], v[0]}; }
 
-  /// |u x n|^2, which is |w|^2.
+  /// Returns |u x n|^2, which is |w|^2.
   Both sine2(const Eigen::Vector3d& n) const {
     const Both x = uy_ * n.z() - uz_ * n.y();
     const Both y = uz_ * n.x() - ux_ * n.z();
@@ -150,7 +151,7 @@ class SpheroidPair {
   }
 
   Eigen::Vector3d r_;
-  Both ux_, uy_, uz_;  ///< the axes of revolution
+  Both ux_, uy_, uz_;  ///< axes of revolution
   Both a2_, b2_, c_;
   double rho_;
 };

@@ -1,7 +1,7 @@
 #pragma once
 
-/// A number of each arc of two bodies' nested norms (contact_elements.h): the inner and the outer one of A and B. Two
-/// registers, whose chains of operations the processor works on at once.
+/// Numbers of each arc of two bodies' nested norms (contact_elements.h): the inner and the outer one of A and B. They
+/// fill two registers, whose chains of operations the processor works on at once.
 
 #include <geom/kernel/lanes.h>
 
@@ -12,7 +12,7 @@ struct ArcLanes {
 
   ArcLanes() = default;
   ArcLanes(Lanes of_inner, Lanes of_outer) : inner(of_inner), outer(of_outer) {}
-  ArcLanes(double value) : inner(both(value)), outer(both(value)) {}  // implicit: constants are of all four
+  ArcLanes(double value) : inner(both(value)), outer(both(value)) {}  // implicit: constants apply to all four
 };
 
 struct ArcBits {

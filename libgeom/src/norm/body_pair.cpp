@@ -13,37 +13,38 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Lengths are in units of the scale, the sum of both bounding radii, unless something else is said.
+// Lengths are in units of the scale, the sum of both bounding radii, unless stated otherwise.
 
-/// As kTightGap, of the mismatch of the support points.
+/// Mismatch of the support points that counts as rounding, see kTightGap.
 constexpr double kTightResidual = 1e-14;
-/// What rounding of the support points can leave of their mismatch at the stationary normal of an overlap.
+/// Largest mismatch of the support points that rounding can cause at the stationary normal of an overlap.
 constexpr double kSmallResidual = 1e-8;
-/// Mismatch of the support points above which an overlap's normal is no maximum to rounding but stuck beside one ...
+/// Mismatch of the support points above which an overlap's normal is not a maximum to rounding but stuck beside one ...
 constexpr double kStuck = 1e-12;
-/// ... and is searched for until no other is better by this.
+/// ... so that the search continues until no other normal is better by this.
 constexpr double kStuckDepthGap = 1e-12;
 
-/// An ascent: g grows by more than kGrowth, or falls by no more while the mismatch of the support points shrinks to
-/// below kShrink of what it was.
+/// Success of an ascent: g grows by more than kGrowth, or falls by no more while the mismatch of the support points
+/// shrinks below kShrink of its previous value.
 constexpr double kGrowth = 1e-15;
 constexpr double kShrink = 0.9;
-/// A Newton step of the normal (radian) and what it promises: below both there is nothing to gain but rounding.
+/// Newton step of the normal (radian) and its predicted gain: if both are smaller, only rounding remains.
 constexpr double kRoundingStep = 1e-9;
 constexpr double kRoundingDecrement = 1e-16;
-/// A promise that g may not show; it is kept if what is promised next is less than this share of it.
+/// Predicted gain that may be invisible in g; the step is accepted if the next predicted gain is less than
+/// kPromiseShrink of it.
 constexpr double kHiddenDecrement = 1e-14;
 constexpr double kPromiseShrink = 0.1;
 
-/// By what steps along a surface are shortened. Dimensionless.
+/// Factor by which steps along a surface are shortened. Dimensionless.
 constexpr double kShorterMove = 0.4;
 
-/// The dual method is fast while the mismatch of the support points after a step is no more than kFast of the least
-/// before; it has kTrials steps to become so, and kPatience to end.
+/// The dual method is fast while the mismatch of the support points after a step is at most kFast of the smallest
+/// before. It has kTrials steps to become fast, and kPatience to converge.
 constexpr double kFast = 0.5;
 constexpr int kTrials = 2;
 constexpr int kPatience = 9;
-/// Steps of the other methods, in the order in which they are tried.
+/// Maximum number of steps of the other methods, in the order in which they are tried.
 constexpr int kElementSteps = 24;
 constexpr int kMorePatience = 25;
 constexpr int kCarefulSteps = 100;
@@ -77,7 +78,7 @@ Vector3d NormBodyPair::tangent_solve(const DualSample& s, const Vector3d& y) con
   return tangent_matrix(s).solve(y);
 }
 
-/// By the eigenvalues of S + g I.
+/// Uses the eigenvalues of S + g I.
 Vector3d NormBodyPair::upward(const DualSample& s, double rounding) const {
   const TangentBasis basis(s.n);
   TangentForm form{s.g, 0, s.g};
@@ -98,7 +99,7 @@ NormBodyPair::Step NormBodyPair::newton_step(const DualSample& s) const {
 }
 
 LaneVector NormBodyPair::moved_points(const DualSample& s, const Step& step) {
-  // In an overlap a step that had to be made definite may lead anywhere.
+  // In an overlap a step whose matrix had to be made definite may lead anywhere.
   if (step.lifted && s.g < 0) return s.support.point;
   return s.support.point + moves(s, step);
 }
@@ -115,15 +116,16 @@ LaneVector NormBodyPair::joined(const LaneVector& points, const DualSample& at) 
   return LaneVector::of(point_a, point_a + gap - r_);
 }
 
-/// g grows, or stays while the mismatch of the support points falls: near the maximum g's growth is below rounding.
+/// True if g grows, or stays while the mismatch of the support points falls: near the maximum the growth of g is below
+/// rounding.
 bool NormBodyPair::improves(const DualSample& from, const DualSample& to) const {
   const double rounding = kGrowth * scale_;
   return to.g >= from.g - rounding && (to.g > from.g + rounding || to.residual < kShrink * from.residual);
 }
 
-/// Newton's step made with a support point on the surface, and the normal read there.
+/// Takes Newton's step with a support point on the surface, and computes the normal there.
 bool NormBodyPair::retract(DualSample& s, const Step& step, double cap) const {
-  constexpr double kTurned = 0.3;  // least cosine between the normals before and after
+  constexpr double kTurned = 0.3;  // smallest cosine between the normals before and after
   constexpr int kMoves = 3;
   const auto take = [&](const Vector3d& n) {
     const DualSample trial = sample(n);
@@ -148,14 +150,14 @@ bool NormBodyPair::retract(DualSample& s, const Step& step, double cap) const {
 }
 
 bool NormBodyPair::advance(DualSample& s, const Step& step) const {
-  constexpr double kFlat = 0.15;  // trace of H above this share of the size: the support point runs
+  constexpr double kFlat = 0.15;  // trace of H above this fraction of the size: the support point moves far
   constexpr int kShortenings = 18;
   const double length = step.delta.norm();
   const double cap = std::min(1.0, kMaxNormalStep / length);
   const Lanes traces = s.traces();
   if (flat_ && std::max(traces[0], traces[1]) > kFlat * scale_ && retract(s, step, cap)) return true;
   double fraction = cap;
-  // A step whose promise is rounding is tried once.
+  // A step whose predicted gain is rounding is tried once.
   const int tries = length < kRoundingStep && step.decrement < kRoundingDecrement * scale_ ? 2 : kShortenings;
   for (int k = 0; k < tries; ++k, fraction *= kBacktrack) {
     const DualSample trial = sample((s.n + fraction * step.delta).normalized());
@@ -167,9 +169,9 @@ bool NormBodyPair::advance(DualSample& s, const Step& step) const {
   return false;
 }
 
-/// Where one body is flat its support point is lost to rounding, and with it the mismatch: neither g nor that can show
-/// that the normal is off by 1e-7 along the direction in which both are round. The next promise can, in which flat
-/// directions weigh nothing.
+/// If one body is flat its support point is lost to rounding, and with it the mismatch: neither g nor the mismatch can
+/// show that the normal is off by 1e-7 along the direction in which both bodies are round. The next predicted gain can,
+/// because flat directions have no weight in it.
 bool NormBodyPair::keeps_promise(const DualSample& from, const Step& step, const DualSample& to) const {
   if (step.lifted || !(step.decrement < kHiddenDecrement * scale_)) return false;
   if (!(step.delta.squaredNorm() < kNormalTolerance2) || !(to.g >= from.g - kGrowth * scale_)) return false;
@@ -177,8 +179,8 @@ bool NormBodyPair::keeps_promise(const DualSample& from, const Step& step, const
   return !next.lifted && next.decrement < kPromiseShrink * step.decrement;
 }
 
-/// Moves the points and the normal by the step, and takes the upper bound that the points are where rounding keeps the
-/// support points apart.
+/// Moves the points and the normal by the step, and uses the upper bound from the points if rounding keeps the support
+/// points apart.
 void NormBodyPair::place_points(const Step& step, Answer& answer) const {
   answer.points = moved_points(answer.at, step);
   answer.gap = answer.at.gap();
@@ -211,11 +213,11 @@ NormBodyPair::Answer NormBodyPair::dual(const Vector3d& start, Patience patience
     if (!settled) step = newton_step(answer.at);
   }
   place_points(step, answer);
-  // Of bodies that overlap there is no upper bound: the decrement, twice what g can gain by its quadratic model,
-  // decides. It says nothing on a flat face, where the model holds for no step at all, nor while steps still help.
+  // For overlaps there is no upper bound: the criterion is the decrement, twice the possible gain of g in its quadratic
+  // model. It is meaningless on a flat face, where the model holds for no step, and while steps still help.
   const bool stationary = settled && !(answer.at.g > 0) && answer.at.residual < kSmallResidual * scale_ &&
                           step.decrement < kTightGap * scale_ && !step.lifted;
-  // Steps that still help would take a wide gap to rounding.
+  // Steps that still help would reduce a wide gap to rounding.
   answer.converged = answer.gap < (settled ? kBoundGap : kTightGap) * scale_ || stationary;
   return answer;
 }
@@ -225,7 +227,7 @@ Vector3d NormBodyPair::cold_normal() const {
   return unit_or_x(Q.inverse() * r_);
 }
 
-/// Whether an answer of one of the methods ends the query.
+/// Returns whether an answer of one of the methods ends the query.
 bool NormBodyPair::ends(const Answer& answer, Penetration penetration) const {
   if (!answer.converged) return false;
   if (answer.at.g > 0 || answer.gap < kBoundGap * scale_) return true;
@@ -239,14 +241,15 @@ bool NormBodyPair::shares_a_point(const Answer& answer) const {
   };
   const LaneVector points = joined(answer.points, answer.at);
   if (holds_between(points.a(), r_ + points.b(), holds)) return true;
-  // Of the points t r between the centres the one with N_A(t r) = N_B((1 - t) r). No norm is beyond kMaxCoordinate /
+  // Of the points t r between the centres, the one with N_A(t r) = N_B((1 - t) r). No norm is beyond kMaxCoordinate /
   // kMinSemiAxis, 1e150, by more than a small factor.
   const Lanes norms = bodies_.norms(LaneVector::of(r_, r_));
   return norms[0] * norms[1] <= norms[0] + norms[1];
 }
 
-/// A local maximum of g uphill of n. Where the support points still disagree there, on flat faces, by contact elements,
-/// whose points bound g around it as those cannot (kernel/sphere_search.h; rho is 0 here).
+/// Returns a local maximum of g uphill of n. If the support points still disagree there, on flat faces, it is found by
+/// contact elements, whose points bound g around it better than the support points can (kernel/sphere_search.h; rho is
+/// 0 here).
 Tangent NormBodyPair::climbed(const Vector3d& n, double rounding, int& iterations) const {
   const Answer by_n = dual(n, Patience::all, kMaxIterations, iterations);
   Tangent top = tangent(by_n.at.n);
@@ -260,7 +263,7 @@ Tangent NormBodyPair::climbed(const Vector3d& n, double rounding, int& iteration
   return other;
 }
 
-/// Branch and bound from a normal that it raises to a local maximum first.
+/// Runs branch and bound from a normal, which is first raised to a local maximum.
 NormBodyPair::Answer NormBodyPair::search(const Vector3d& start, int& iterations) const {
   const auto at = [&](const Vector3d& n) {
     ++iterations;
@@ -274,10 +277,10 @@ NormBodyPair::Answer NormBodyPair::search(const Vector3d& start, int& iterations
   sphere.run_to(kDepthGap * scale_, kMostDepthSamples);
   const bool apart = sphere.best().g > 0;
   if (apart) {
-    // Concave there: what is left is to come close to the one maximum.
+    // g is concave there, so it remains to approach its single maximum.
     sphere.run_to(kBoundGap * scale_, kMostDepthSamples);
   } else if ((sphere.best().p - sphere.best().g * sphere.best().n).norm() > kStuck * scale_) {
-    // Neither method has come to the maximum, but triangles do.
+    // Neither method has reached the maximum, but triangles do.
     sphere.run_to(kStuckDepthGap * scale_, kMostDepthSamples);
   }
   Answer answer;
@@ -289,8 +292,8 @@ NormBodyPair::Answer NormBodyPair::search(const Vector3d& start, int& iterations
   return answer;
 }
 
-/// The search ends when its bounds are close, a distance to kBoundGap where it can; from its normal other methods end.
-/// Its upper bound stays where theirs is no better.
+/// Improves an answer of the search. The search ends when its bounds are close, for a distance at kBoundGap if
+/// possible; the other methods are then started from its normal. Its upper bound is kept if theirs is no better.
 NormBodyPair::Answer NormBodyPair::polished(const Answer& answer, int& iterations) const {
   if (!(answer.gap > kTightGap * scale_)) return answer;
   const bool apart = answer.at.g > 0;
@@ -335,14 +338,15 @@ NormBodyPair::Answer NormBodyPair::solve(const Vector3d& start, const Vector3d& 
   const bool is_cold = start == cold;
   Answer best = newton(start, is_cold ? FirstElements::ellipsoids : FirstElements::supports, limit, iterations);
   if (ends(best, penetration)) return best;
-  // From a normal that is far off, bodies that are apart may end where g < 0 too, or nowhere.
+  // From a normal that is far off, the ascent for bodies apart may also end at g < 0, or nowhere.
   if (!is_cold) {
     Answer from_cold = newton(cold, FirstElements::ellipsoids, limit, iterations);
     if (ends(from_cold, penetration)) return from_cold;
     if (from_cold.at.g > best.at.g) best = from_cold;
   }
   if (both_flat_) {
-    // Of two maxima nearly as high the search may keep the one it begins at: it begins at the highest of those found.
+    // If two maxima are nearly equal, the search may keep the one it begins at: it therefore begins at the highest of
+    // those found.
     Answer other = by_elements(cold, FirstElements::supports, Pace::brisk, std::min(kElementSteps, limit), iterations);
     if (ends(other, penetration)) return other;
     if (other.converged && other.at.g > best.at.g) best = other;

@@ -21,7 +21,8 @@ LaneVector signs(const LaneVector& v) {
   return {with_sign(one, v.x), with_sign(one, v.y), with_sign(one, v.z)};
 }
 
-/// Names the same element, of the bodies marked, as one beyond the pole of w2: a step through it then goes straight on.
+/// Changes the description of an element, of the bodies marked, to the equivalent one beyond the pole of w2, so that a
+/// step through the pole goes straight on.
 void turn(Element& e, LaneBits through) {
   const Lanes flip = select(through, both(-1), both(1));
   e.sign = {flip * e.sign.x, flip * e.sign.y, e.sign.z};
@@ -52,7 +53,7 @@ void ContactElements::set(Element& e, const Arcs& arcs, const LaneVector& sign) 
   const Lanes by_height = sqrt(along_n.dot(along_n));
   e.normal = bodies_.rotation() * ((1 / by_height) * along_n);
   e.point = bodies_.rotation() * product(axes, e.w);
-  // t1 and t2 as LaneNorm::curved has them of the dual norm, at m, where it is 1; its Hessian goes with 1/|m|.
+  // t1 and t2 of the dual norm as in LaneNorm::curved, at m, where the norm is 1; its Hessian scales with 1/|m|.
   const Lanes scale = by_height * arcs.flat0.outer;
   const ArcLanes k = sqrt(ArcLanes(scale * arcs.flat0.inner, scale) * family_.by_minus_one() * arcs.flat1);
   e.t1 = bodies_.rotation() * product(axes, {k.inner * arcs.m1.inner, -k.inner * arcs.m0.inner, both(0)});
@@ -63,7 +64,7 @@ void ContactElements::set(Element& e, const Arcs& arcs, const LaneVector& sign) 
 ContactElements::Element ContactElements::at(const Vector3d& n) const {
   const LaneVector v = bodies_.in_norm(n);
   const LaneVector m = abs(v);
-  // The outer arc needs the inner one's norm, m.w; of the first pass only that is used.
+  // The outer arc needs the inner one's norm, m.w; only that is used of the first pass.
   const Arcs inner = family_.arcs({m.x, m.x}, {m.y, m.y}, kOfNormals);
   const Lanes rho = m.x * inner.w0.inner + m.y * inner.w1.inner;
   return element(family_.arcs({m.x, rho}, {m.y, m.z}, kOfNormals), signs(v));
@@ -96,30 +97,31 @@ void ContactElements::move(Element& e, const LaneVector& step, const Vector3d& n
 namespace {
 
 /// Newton's step of two contact elements towards a common normal n + delta along which their points are apart: with y
-/// the mismatch of the points that both would have at n, (S + g I) delta = y across n, as of the dual method.
+/// the mismatch of the points that both would have at n, (S + g I) delta = y across n, as in the dual method.
 struct ElementStep {
-  Vector3d delta;    ///< of n
-  LaneVector moves;  ///< of the points
-  double energy;     ///< length; about what bounds of the distance taken at the elements are apart
-  bool lifted;       ///< the matrix had to be made definite: the step promises nothing
+  Vector3d delta;    ///< step of n
+  LaneVector moves;  ///< steps of the points
+  double energy;     ///< length; about the difference of the bounds of the distance at the elements
+  bool lifted;       ///< the matrix had to be made definite: the step predicts nothing
 };
 
-/// Normals that differ by less are taken for equal: on a flat face the point that belongs to the difference would be
+/// Normals that differ by less are treated as equal: on a flat face the point that belongs to the difference would be
 /// noise.
 constexpr double kEqualNormals = 4e-15;
 
-/// t.difference, or 0 where that is rounding.
+/// Returns t.difference, or 0 if that is rounding.
 Lanes clear_dot(const LaneVector& t, const LaneVector& difference) {
   const Lanes dot = t.dot(difference);
   const Lanes rounding2 = kEqualNormals * kEqualNormals * t.dot(t);
   return select(below(dot * dot, rounding2), both(0), dot);
 }
 
-/// What the least eigenvalue of S + g I is lifted to where it is less and the bodies overlap, of |g|: on vertices that
-/// hardly touch S vanishes, and that eigenvalue is of the order of g at the best normals around theirs.
+/// Lower limit of the smallest eigenvalue of S + g I for overlapping bodies, relative to |g|: on vertices that barely
+/// touch S vanishes, and that eigenvalue is of the order of g at the best normals around the vertices' own.
 constexpr double kFloorOfDepth = 0.1;
 
-/// `gap`: from A's point to B's. `floor`: what that eigenvalue is lifted to where this is less than kFloorOfDepth |g|.
+/// Computes the step. `gap`: vector from A's point to B's. `floor`: lower limit of that eigenvalue if it is less than
+/// kFloorOfDepth |g|.
 ElementStep element_step(const Element& at, const Vector3d& n, const Vector3d& gap, double floor) {
   const double g = gap.dot(n);
   const LaneVector difference = LaneVector::of(n, -n) - at.normal;
@@ -140,7 +142,7 @@ ElementStep element_step(const Element& at, const Vector3d& n, const Vector3d& g
   }
   const double by_determinant = S.by_determinant(identity);
   step.delta = by_determinant * S.adjugate_times(y, identity);
-  // t_k.delta without the terms of t_k itself, which vanish: where t_k is huge they would be noise.
+  // t_k.delta without the terms of t_k itself, which vanish: for huge t_k they would be noise.
   const Lanes py1 = S.p1.dot(y);
   const Lanes py2 = S.p2.dot(y);
   const Lanes oy1 = swapped(py1);
@@ -160,20 +162,21 @@ struct Caps {
   double turn;
   double move;
 
-  /// Of a step whose turn and longest move have these squares. Roots wait for each other: most steps need none.
+  /// Returns the fraction of a step whose turn and longest move have these squares. It avoids roots, which wait for
+  /// each other: most steps need none.
   double fraction(double turn2, double move2) const {
     if (turn2 <= turn * turn && move2 <= move * move) return 1;
     return std::min({1.0, turn / std::sqrt(turn2), move / std::sqrt(move2)});
   }
 };
-constexpr Caps kBrisk{0.35, 0.15};  // those of a half and of twice take as long
+constexpr Caps kBrisk{0.35, 0.15};  // half or twice these values take the same time
 constexpr Caps kCareful{0.1, 0.03};
-/// Of the sum of both bounding radii: after a step of so much energy what is left is rounding, mostly.
+/// Energy relative to the sum of both bounding radii: after a step with less, the remaining error is mostly rounding.
 constexpr double kSmallEnergy = 1e-7;
-/// The same, what bounds that agree can hide.
+/// Energy relative to the sum of both bounding radii that agreeing bounds can hide.
 constexpr double kRoundingGain = 1e-16;
 
-/// Whether what is left after the step is of second order and rounding.
+/// Returns whether the remaining error after the step is of second order and rounding.
 bool last(const ElementStep& step, double largest_move2, double off, double scale) {
   const double length2 = std::max(step.delta.squaredNorm(), largest_move2 / (scale * scale));
   return length2 < kNormalTolerance2 && step.energy < off + kRoundingGain * scale;
@@ -181,14 +184,15 @@ bool last(const ElementStep& step, double largest_move2, double off, double scal
 
 }  // namespace
 
-/// It has no line search: it converges or it does not, which the bounds tell. Where bounds agree before the points do,
-/// one more step is made for these; what they may be off by along the tangent planes is of the order of sqrt(g off).
+/// Runs Newton's method of contact elements. It has no line search: it converges or it does not, which the bounds show.
+/// If the bounds agree before the points do, one more step is made for the points, whose error along the tangent planes
+/// is of the order of sqrt(g off).
 NormBodyPair::Answer NormBodyPair::by_elements(const Vector3d& start, FirstElements first, Pace pace,
                                                int max_iterations, int& iterations) const {
   const Caps caps = pace == Pace::brisk ? kBrisk : kCareful;
   const ContactElements elements(bodies_);
   Answer best{.at = {.n = start, .support = {}, .y = Vector3d::Zero()}, .points = {}};
-  double best_off = std::numeric_limits<double>::infinity();  // what it may be wrong by
+  double best_off = std::numeric_limits<double>::infinity();  // bound of its error
   const bool from_supports = first == FirstElements::supports;
   Element e = from_supports ? elements.at(start) : elements.at_ellipsoids(start);
   Vector3d n = from_supports ? start : unit_or_x(e.normal.a() - e.normal.b());
@@ -203,8 +207,8 @@ NormBodyPair::Answer NormBodyPair::by_elements(const Vector3d& start, FirstEleme
     if (near) {
       const double g = r_.dot(n) - sum(bodies_.heights(LaneVector::of(n, -n)));
       const double upper = gap.norm();
-      // Of bodies that overlap there is no upper bound: what the step would gain decides, and whether the points are as
-      // far apart as the tangent planes.
+      // For overlaps there is no upper bound: the criterion is the gain of the step, and whether the points are as far
+      // apart as the tangent planes.
       const double off = g > 0 ? std::max(upper - g, 0.0) : std::max(step.energy, std::abs(upper + g));
       const bool valid = g > 0 || !step.lifted;
       const bool agree = valid && off < kTightGap * scale_;
@@ -222,10 +226,10 @@ NormBodyPair::Answer NormBodyPair::by_elements(const Vector3d& start, FirstEleme
     near = step.energy < kSmallEnergy * scale_;
     const double fraction = caps.fraction(step.delta.squaredNorm(), largest_move2 / (scale_ * scale_));
     n += fraction * step.delta;
-    elements.move(e, both(fraction) * step.moves, n);  // without waiting for its length
+    elements.move(e, both(fraction) * step.moves, n);  // does not wait for its length
     n.normalize();
   }
-  // Around tips that nearly touch Newton's method can go in circles, with bounds as close as are promised.
+  // Around tips that nearly touch Newton's method can go in circles, with bounds that are as close as promised.
   const bool to_promise = pace == Pace::careful && best.at.g > 0;
   best.converged = best_off < (to_promise ? kBoundGap : kTightGap) * scale_;
   return best;

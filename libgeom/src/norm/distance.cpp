@@ -33,7 +33,7 @@ DistanceResult norm_body_distance(const A& a, const Pose& X_WA, const B& b, cons
   const Vector3d on_a = pair.joined(answer.points, at).a();
   result.point_a = X_WA.position() + on_a;
   result.point_b = result.point_a + at.g * at.n;
-  result.residual = 2 * (on_a - answer.points.a()).norm();  // either point has moved half of it
+  result.residual = 2 * (on_a - answer.points.a()).norm();  // each point has moved half of it
   const bool bounded = at.g > 0 || answer.gap < kWidestDepthGap * pair.scale();
   // The upper bound can be below g by rounding.
   result.error_bound = bounded ? std::max(0.0, answer.gap) : std::numeric_limits<double>::infinity();

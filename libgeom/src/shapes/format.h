@@ -6,8 +6,8 @@
 
 namespace geom::kernel {
 
-/// A number in a message: with as many digits as tell it from every other one, so that what is refused does not look
-/// like what is accepted.
+/// Formats a number for a message, with enough digits to distinguish it from every other one, so that a refused value
+/// does not look like an accepted one.
 inline std::string shown(double x) {
   std::array<char, 32> text{};
   const std::to_chars_result end = std::to_chars(text.data(), text.data() + text.size(), x);

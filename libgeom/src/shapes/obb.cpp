@@ -5,14 +5,14 @@
 namespace geom {
 namespace {
 
-/// Added to every |cosine| between edges: near-parallel edges, whose product is no axis but rounding, then never tell
-/// boxes apart, and rounding never tells boxes apart that touch.
+/// Added to every |cosine| between edges: near-parallel edges, whose product is no axis but rounding, then never
+/// separate boxes, and rounding never separates boxes that touch.
 constexpr double kMargin = 1e-12;
 
 }  // namespace
 
 bool boxes_meet(const OrientedBox& a, const OrientedBox& b) {
-  // All in the frame of A: C = cosines between the axes, t = B's centre.
+  // All quantities are in the frame of A: C = cosines between the axes, t = B's centre.
   const Eigen::Matrix3d C = a.axes.transpose() * b.axes;
   const Eigen::Matrix3d absC = (C.cwiseAbs().array() + kMargin).matrix();
   const Eigen::Vector3d t = a.axes.transpose() * (b.centre - a.centre);

@@ -28,13 +28,13 @@ void check_position(const Eigen::Vector3d& position) {
   }
 }
 
-/// Largest entry of R^T R - 1; NaN if an entry of R is.
+/// Returns the largest entry of R^T R - 1; NaN if an entry of R is NaN.
 double orthonormality_error(const Eigen::Matrix3d& R) {
   const Eigen::Matrix3d excess = R.transpose() * R - Eigen::Matrix3d::Identity();
   return excess.cwiseAbs().maxCoeff<Eigen::PropagateNaN>();
 }
 
-/// `accepted`: the tolerance in words.
+/// Returns that error or throws if it is above `tolerance`; `accepted`: the tolerance in words.
 double checked_orthonormality_error(const Eigen::Matrix3d& R, double tolerance, const char* accepted) {
   const double error = orthonormality_error(R);
   if (!(error <= tolerance)) refuse("rotation is not orthonormal: largest entry of R^T R - 1", error, accepted);
@@ -42,7 +42,7 @@ double checked_orthonormality_error(const Eigen::Matrix3d& R, double tolerance, 
   return error;
 }
 
-/// A step of Newton's iteration for the polar decomposition, which squares the error of R^T R.
+/// Returns the result of a step of Newton's iteration for the polar decomposition, which squares the error of R^T R.
 Eigen::Matrix3d towards_polar_factor(const Eigen::Matrix3d& R) {
   return R * (1.5 * Eigen::Matrix3d::Identity() - 0.5 * R.transpose() * R);
 }
@@ -50,11 +50,12 @@ Eigen::Matrix3d towards_polar_factor(const Eigen::Matrix3d& R) {
 /// Error of R^T R at which the iteration ends: a few roundings.
 constexpr double kOrthonormal = 1e-15;
 
-/// Steps that take an error of kNearestRotationTolerance to rounding, and one more. A matrix whose entries are at most
-/// 1e-2 has a norm of at most 3e-2, and a step takes the norm e to e^2 at most: 9e-4, 8.1e-7, 6.6e-13, rounding.
+/// Number of steps that reduce an error of kNearestRotationTolerance to rounding, plus one. A matrix whose entries are
+/// at most 1e-2 has a norm of at most 3e-2, and a step changes the norm e to at most e^2: 9e-4, 8.1e-7, 6.6e-13,
+/// rounding.
 constexpr int kPolarSteps = 5;
 
-/// |q|^2 is between 0.25 and 4.
+/// Returns the rotation of a quaternion; |q|^2 must be between 0.25 and 4.
 Eigen::Matrix3d rotation_of(double w, double x, double y, double z) {
   const double s = 2 / (w * w + x * x + y * y + z * z);
   Eigen::Matrix3d R;
@@ -70,7 +71,7 @@ Pose::Pose(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& position)
     : rotation_(rotation), position_(position) {
   check_position(position);
   if (checked_orthonormality_error(rotation, kPoseTolerance, "at most 1e-6") <= kOrthonormal) return;
-  // Two steps take 1e-6 to rounding.
+  // Two steps reduce 1e-6 to rounding.
   for (int step = 0; step < 2; ++step) rotation_ = towards_polar_factor(rotation_);
 }
 
@@ -104,7 +105,7 @@ Pose Pose::normalized_quaternion(double w, double x, double y, double z, const E
   if (!(largest > 0)) refuse("quaternion (w, x, y, z) is zero: largest component", largest, kAccepted);
   int exponent = 0;
   std::frexp(largest, &exponent);
-  // By a power of two: exact.
+  // Scaled by a power of two: exact.
   const auto scaled = [&](double component) { return std::ldexp(component, -exponent); };
   return {rotation_of(scaled(w), scaled(x), scaled(y), scaled(z)), position};
 }

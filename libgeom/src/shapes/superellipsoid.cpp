@@ -37,16 +37,16 @@ kernel::NestedNorm checked_norm(const Vector3d& axes, double e1, double e2) {
   return {2 / e1, 2 / e2};
 }
 
-/// (u^s + v^s)^(1/s); s = infinity: the maximum.
+/// Returns (u^s + v^s)^(1/s); s = infinity: the maximum.
 double plane_norm(double u, double v, double s) {
   const double larger = std::max(u, v);
   if (!std::isfinite(s)) return larger;
   return larger * std::pow(1 + std::pow(std::min(u, v) / larger, s), 1 / s);
 }
 
-/// The largest sqrt(sum of k_i x_i^2) over N(x) <= 1, N nested with exponents p1, p2: linear in x_i^2, for which N^2 is
-/// a norm with half the exponents if p >= 2, whose dual gives the maximum, and not convex if p < 2, where the maximum
-/// is at a corner.
+/// Returns the largest sqrt(sum of k_i x_i^2) over N(x) <= 1, N nested with exponents p1, p2. The sum is linear in
+/// x_i^2. For p >= 2, N^2 is a norm of the x_i^2 with half the exponents, whose dual gives the maximum; for p < 2 it is
+/// not convex, and the maximum is at a corner.
 double largest(const Vector3d& k, double p1, double p2) {
   const auto dual = [](double p) { return p > 2 ? p / (p - 2) : std::numeric_limits<double>::infinity(); };
   return std::sqrt(plane_norm(plane_norm(k.x(), k.y(), dual(p2)), k.z(), dual(p1)));
@@ -65,8 +65,8 @@ Superellipsoid::Superellipsoid(const Vector3d& semi_axes, double e1, double e2)
     inscribed_radius_ = semi_axes.minCoeff();
     return;
   }
-  // Scaled, so that squares neither underflow nor overflow. |n|^2 is largest, for given h(n), where h is least for unit
-  // n.
+  // Scaled, so that squares neither underflow nor overflow. |n|^2 is largest, for given h(n), where h is smallest for
+  // unit n.
   const double size = semi_axes.maxCoeff();
   bounding_radius_ = size * largest((semi_axes / size).cwiseAbs2(), 2 / e1, 2 / e2);
   inscribed_radius_ = size / largest((semi_axes / size).cwiseAbs2().cwiseInverse(), 2 / (2 - e1), 2 / (2 - e2));
@@ -77,7 +77,7 @@ double Superellipsoid::norm(const Vector3d& x) const {
 }
 
 double Superellipsoid::value(const Vector3d& x) const {
-  // To the last bit an Ellipsoid's, here and below: the general norm rounds 5 ulps away.
+  // The same bits as an Ellipsoid, here and below: the general norm rounds 5 ulps away.
   if (is_ellipsoid()) return x.cwiseQuotient(semi_axes_).squaredNorm() - 1;
   const double N = norm(x);
   return N * N - 1;
@@ -124,7 +124,7 @@ Vector3d Superellipsoid::inertia(double mass) const {
   // Integrals of x^2, y^2, z^2 over the body.
   const Vector3d a2 = semi_axes_.cwiseAbs2();
   const double along = std::beta(0.5 * e2_, 0.5 * e2_) * std::beta(1.5 * e1_, e1_ + 1);
-  // For one exponent all axes are alike, to the last bit: a superball is a spherical top.
+  // For one exponent all axes are treated alike, to the last bit: a superball is a spherical top.
   const double across = e1_ == e2_ ? along : 0.5 * std::beta(1.5 * e2_, 0.5 * e2_) * std::beta(0.5 * e1_, 2 * e1_ + 1);
   const Vector3d second = semi_axes_.prod() * e1_ * e2_ * Vector3d(across * a2.x(), across * a2.y(), along * a2.z());
   return mass / volume() * (Vector3d::Constant(second.sum()) - second);

@@ -98,12 +98,13 @@ std::optional<EquilibrationRun> begin_equilibration(const Config& config, const 
   log.line(config.equilibration_time
                ? fmt::format("equilibration: {:g} time units", *config.equilibration_time)
                : fmt::format("equilibration: auto, at most {:g} time units", config.equilibration_cap));
-  log.line(fmt::format("finder: {}; neighbours: {}{}", config.finder, config.neighbours,
+  log.line(fmt::format("finder: {}; neighbours: {}{}", ed::to_string(config.finder),
+                       ed::to_string(config.neighbour_search()),
                        config.neighbours_chosen ? " (chosen by \"auto\")" : ""));
   Equilibration result;
   result.counters_of_start = start.counters;
   result.failures_of_start = start.failures;
-  if (config.packing_fraction >= kTunedPacking && config.neighbours != "cells") {
+  if (config.packing_fraction >= kTunedPacking && config.neighbour_search() != ed::Neighbours::cells) {
     tune_envelope(config, start, result, progress, saver, log);
     // The best of those that were tried would not be that of an undisturbed run.
     if (pending_signal() != 0) return std::nullopt;

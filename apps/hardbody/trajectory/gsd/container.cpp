@@ -30,26 +30,26 @@ constexpr std::size_t kEntry = 32;
 constexpr std::size_t kName = 64;  ///< bytes of a name of version 1, and unit of the names' block
 constexpr std::size_t kTextInHeader = 64;
 constexpr std::uint64_t kMostNames = std::uint64_t{1} << 24;  ///< bytes of all names
-/// Entries of the index that are read: a file may have holes where it should be.
+/// Number of entries of the index that are read at once: a file may have holes in the place of the index.
 constexpr std::uint64_t kEntriesAtOnce = 65536;
 constexpr std::size_t kReserved = 80;
 
-/// "is cut off ..": a file that is shorter than what its header says.
+/// Returns the error "is cut off ..", for a file that is shorter than its header says.
 InputError ends_early(const std::string& name, std::uint64_t size, const char* before) {
   return InputError(
-      fmt::format("{}: is cut off after {} bytes, before {}; accepted: a whole GSD file", name, size, before));
+      fmt::format("{}: is cut off after {} bytes, before {}; accepted: a complete GSD file", name, size, before));
 }
 
 InputError damaged(const std::string& name, const std::string& what) {
   return InputError(fmt::format("{}: is damaged: {}; accepted: an undamaged GSD file", name, what));
 }
 
-/// Up to the first 0.
+/// Returns the text up to the first 0.
 std::string text_of(std::string_view bytes) {
   return std::string(bytes.substr(0, std::min(bytes.find('\0'), bytes.size())));
 }
 
-/// Whether `count` things of `size` bytes from `location` on are within a file; no product overflows.
+/// Returns whether `count` things of `size` bytes from `location` on are within a file; no product overflows.
 bool fits(std::uint64_t location, std::uint64_t count, std::uint64_t size, std::uint64_t file) {
   return location <= file && (count == 0 || size == 0 || count <= (file - location) / size);
 }
@@ -81,9 +81,9 @@ void put_entry(Writer& writer, const GsdChunk& chunk) {
   writer(chunk.frame, chunk.rows, chunk.location, chunk.columns, chunk.name, chunk.type, std::uint8_t{0});
 }
 
-/// What is wrong with an entry of the index in itself; nothing: it may be read, if the file is long enough.
+/// Returns the fault of an entry of the index; nullptr: it may be read, if the file is long enough.
 const char* fault(const GsdChunk& chunk, std::uint8_t flags, std::size_t names, std::uint64_t entries) {
-  if (size_of(chunk.type) == 0) return "an array of a type that there is not";
+  if (size_of(chunk.type) == 0) return "an array of unknown type";
   if (flags != 0) return "an array with unknown flags";
   if (chunk.name >= names) return "an array whose name is not in the list";
   if (chunk.columns == 0) return "an array without columns";
@@ -162,16 +162,16 @@ void GsdFile::note_last_frames() {
   for (const GsdChunk& chunk : chunks_) last_frame_[chunk.name] = std::max(last_frame_[chunk.name], chunk.frame);
 }
 
-/// An entry of the index; false: there are no more of whole frames.
+/// Adds an entry of the index; returns false if there are no more of complete frames.
 bool GsdFile::take_chunk(Reader& reader, std::uint64_t entries) {
   std::uint8_t flags = 0;
   const GsdChunk chunk = take_entry(reader, flags);
   if (chunk.location == 0) return false;
   if (const char* why = fault(chunk, flags, names_.size(), entries)) throw damaged(name_, why);
-  if (!chunks_.empty() && chunk.frame < chunks_.back().frame) throw damaged(name_, "frames that run backwards");
+  if (!chunks_.empty() && chunk.frame < chunks_.back().frame) throw damaged(name_, "frames in descending order");
   frame_count_ = chunk.frame + 1;
   if (!fits(chunk.location, chunk.rows, std::uint64_t{chunk.columns} * size_of(chunk.type), bytes_->size())) {
-    keep_frames(chunk.frame);  // written in this order, so that nothing whole can follow
+    keep_frames(chunk.frame);  // entries are written in this order, so that no complete frame can follow
     return false;
   }
   chunks_.push_back(chunk);

@@ -1,10 +1,10 @@
 #pragma once
 
-/// The container of GSD files (glotzerlab's General Simulation Data, layout 1 and 2): named arrays, frame by frame.
-/// Nothing of what they mean; that is gsd_frames.h.
+/// Container of GSD files (glotzerlab's General Simulation Data, layout 1 and 2): named arrays, frame by frame. Their
+/// meaning is in gsd/frames.h.
 ///
 /// A file is a header of 256 bytes, an index of 32 bytes an array, a list of names, and the arrays themselves, in any
-/// order but the header first; little-endian.
+/// order except that the header is first; little-endian.
 
 #include "io/stored_bytes.h"
 
@@ -20,7 +20,7 @@
 
 namespace hardbody {
 
-/// What the numbers of an array are.
+/// Number type of an array.
 enum class GsdType : std::uint8_t {
   uint8 = 1,
   uint16,
@@ -35,27 +35,27 @@ enum class GsdType : std::uint8_t {
   character,
 };
 
-/// Bytes of one number; 0 for what is no type.
+/// Returns the bytes of one number; 0 for an unknown type.
 std::size_t size_of(GsdType type);
 
-/// Where an array of a frame stands in the file.
+/// Location of an array of a frame in the file.
 struct GsdChunk {
   std::uint64_t frame = 0;
   std::uint64_t rows = 0;
   std::uint64_t location = 0;
   std::uint32_t columns = 0;
-  std::uint16_t name = 0;  ///< its number in the list of names
+  std::uint16_t name = 0;  ///< index of its name in the list of names
   GsdType type = GsdType::uint8;
 
   std::uint64_t bytes() const { return rows * columns * size_of(type); }
 };
 
-/// A GSD file that is read. Whatever the bytes are, no more memory is taken than a small multiple of what they are, and
-/// what is wrong with them is thrown as InputError, `name: what; accepted: ..`.
+/// GSD file that is read. For any content, the memory used is limited to a small multiple of the file's size, and
+/// faults are thrown as InputError, `name: what; accepted: ..`.
 class GsdFile {
  public:
-  /// `name`: what messages call the file. Reads header, names and index. A file that ends before the arrays that its
-  /// index lists is one that was cut off: its last frames are left out, from the first one that is not whole on.
+  /// Reads header, names and index. `name`: that of the file in messages. A file that ends before the arrays that its
+  /// index lists was cut off: its last frames are left out, from the first incomplete one on.
   GsdFile(std::unique_ptr<StoredBytes> bytes, std::string name);
 
   const std::string& name() const { return name_; }
@@ -64,18 +64,18 @@ class GsdFile {
   std::uint32_t schema_version() const { return schema_version_; }  ///< 0x00010004: 1.4
 
   std::uint64_t frame_count() const { return frame_count_; }
-  /// Leaves out the frames from `count` on, which are not whole.
+  /// Leaves out the frames from `count` on, which are incomplete.
   void keep_frames(std::uint64_t count);
-  /// Whether frames were left out.
+  /// Returns whether frames were left out.
   bool cut_off() const { return cut_off_; }
 
-  /// Whether there can be an array of that name.
+  /// Returns whether there can be an array of this name.
   bool has_name(std::string_view name) const { return number_of(name).has_value(); }
-  /// Whether a frame behind the first one has an array of that name.
+  /// Returns whether a frame after the first one has an array of this name.
   bool stored_later(std::string_view name) const;
-  /// The array of a frame; null if it has none of that name.
+  /// Returns the array of a frame; nullptr if it has none of this name.
   const GsdChunk* find(std::uint64_t frame, std::string_view name) const;
-  /// Its bytes.
+  /// Returns the bytes of an array.
   std::string read(const GsdChunk& chunk) const;
 
  private:
@@ -93,11 +93,12 @@ class GsdFile {
   std::uint64_t frame_count_ = 0;
   bool cut_off_ = false;
   std::vector<std::string> names_;
-  std::vector<GsdChunk> chunks_;           ///< sorted by frame, then name
-  std::vector<std::uint64_t> last_frame_;  ///< by name: the last frame that has such an array; 0: none, or the first
+  std::vector<GsdChunk> chunks_;  ///< sorted by frame, then name
+  /// Last frame that has an array of each name; 0: none, or the first.
+  std::vector<std::uint64_t> last_frame_;
 };
 
-/// An array to be written.
+/// Array to be written.
 struct GsdArray {
   std::uint16_t name;
   GsdType type;
@@ -106,7 +107,7 @@ struct GsdArray {
   std::string bytes;
 };
 
-/// The start of a file that will hold `entries` arrays at most of these names: header, an empty index, the names.
+/// Beginning of a file with up to `entries` arrays of these names: header, an empty index, the names.
 struct GsdHead {
   std::string application;
   std::string schema;
@@ -115,13 +116,13 @@ struct GsdHead {
   std::uint64_t entries;
 
   std::string bytes() const;
-  /// Length of that.
+  /// Returns its length.
   std::uint64_t size() const;
-  /// Where entry k of the index stands.
+  /// Returns the position of entry k of the index.
   static std::uint64_t entry_location(std::uint64_t k);
 };
 
-/// The arrays of one frame, sorted by name: their bytes one after the other, to stand at `location`, and their entries
+/// Arrays of one frame, sorted by name: their bytes one after the other, to be written at `location`, and their entries
 /// in the index.
 struct GsdFrameBytes {
   std::string data;

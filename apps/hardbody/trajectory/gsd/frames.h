@@ -13,19 +13,19 @@ namespace hardbody {
 
 /// Trajectories as GSD files of schema `hoomd` 1.4, which HOOMD-blue, OVITO, freud and MDAnalysis read.
 ///
-/// Positions, orientations (w, x, y, z), velocities, angular momenta and images are 32-bit numbers there. Beside them,
-/// under log/, ours hold the state in the program's own doubles, from which `Frame::exact` comes back to every bit:
+/// The schema stores positions, orientations (w, x, y, z), velocities, angular momenta and images as 32-bit numbers.
+/// This program adds, under log/, the state in its own doubles, from which `Frame::exact` is restored bit for bit:
 ///
-///     log/hardbody/time (last array of every frame: one without it is not whole), energy, Z, S
+///     log/hardbody/time (last array of every frame: one without it is incomplete), energy, Z, S
 ///     log/hardbody/box
 ///     log/hardbody/species             a row a type: kind (0 ellipsoid, 1 superellipsoid), semi-axes, e1, e2, mass,
 ///                                      moments, spins (0 or 1)
 ///     log/particles/hardbody/group     the species of the config
 ///     log/particles/hardbody/position, rotation (a row after the other), velocity, angular_velocity
 ///
-/// What does not change is in frame 0 only, as the schema has it.
+/// Constant quantities are in frame 0 only, as the schema prescribes.
 
-/// Reads any file of that schema, ours or not. Throws InputError, `name: what; accepted: ..`.
+/// Reads any file of this schema, written by this program or another. Throws InputError, `name: what; accepted: ..`.
 class GsdReader final : public TrajectoryReader {
  public:
   explicit GsdReader(const std::filesystem::path& path);
@@ -33,17 +33,18 @@ class GsdReader final : public TrajectoryReader {
 
   const std::string& name() const override { return file_.name(); }
   const std::string& application() const { return file_.application(); }
-  /// Whether the frames have their state to every bit.
+  /// Returns whether the frames contain their state bit for bit.
   bool exact() const { return exact_; }
 
   std::uint64_t frame_count() const override { return file_.frame_count(); }
-  /// The file ends before they do, or behind frames of ours there are some without the doubles.
+  /// Returns whether the file ends before its frames do, or this program's frames are followed by some without the
+  /// doubles.
   bool cut_off() const override { return file_.cut_off(); }
 
   bool has_positions(std::uint64_t k) const override;
 
-  /// Frame k < frame_count(). Numbers that are not finite, orientations that are none, types that there are not: all
-  /// are refused; and frames of ours of which another program has changed the 32-bit numbers, but not the doubles.
+  /// Reads frame k < frame_count(). Refuses numbers that are not finite, invalid orientations and unknown types; also
+  /// frames of this program in which another program has changed the 32-bit numbers, but not the doubles.
   Frame read(std::uint64_t k) const override;
 
  private:
@@ -51,10 +52,10 @@ class GsdReader final : public TrajectoryReader {
   bool exact_;
 };
 
-/// A frame shows only once it is whole.
+/// Writes frames so that each becomes visible to readers only once it is complete.
 class GsdWriter final : public FrameFile {
  public:
-  /// Of `capacity` frames at most. Nothing is written yet.
+  /// Prepares a file of at most `capacity` frames. Nothing is written yet.
   GsdWriter(std::filesystem::path path, std::uint64_t capacity);
 
   void open(FileMark mark) override;

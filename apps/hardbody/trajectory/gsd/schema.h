@@ -5,10 +5,10 @@
 #include <array>
 #include <cstdint>
 
-/// What the writer and the reader of gsd_frames.h agree on: the arrays and their types.
+/// Definitions shared by the writer and the reader of gsd/frames.h: the arrays and their types.
 namespace hardbody::gsd {
 
-/// Every array that is written, in the order of its number: first what is in frame 0 only.
+/// Arrays in the order of their numbers: those that are in frame 0 only come first.
 enum Name : std::uint16_t {
   kDimensions,
   kBox,
@@ -21,7 +21,7 @@ enum Name : std::uint16_t {
   kExactBox,
   kExactSpecies,
   kGroup,
-  kStep,  // from here on in every frame
+  kStep,  // this and the following arrays are in every frame
   kPosition,
   kOrientation,
   kVelocity,
@@ -34,7 +34,7 @@ enum Name : std::uint16_t {
   kExactRotation,
   kExactVelocity,
   kExactAngularVelocity,
-  kTime,  // the last: a frame with it is whole
+  kTime,  // last array: a frame with it is complete
   kNames,
 };
 
@@ -66,7 +66,7 @@ inline constexpr std::array<const char*, kNames> kNameTexts = {
     "log/hardbody/time",
 };
 
-/// A row of log/hardbody/species.
+/// Number of columns in a row of log/hardbody/species.
 inline constexpr std::uint32_t kSpeciesColumns = 11;
 
 template <class T>

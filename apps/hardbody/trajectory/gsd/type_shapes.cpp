@@ -15,15 +15,16 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Types beyond this number are drawn coarsely: every body of a polydisperse system is of a type of its own.
+/// Number of types beyond which they are drawn coarsely: in a polydisperse system every body has a type of its own.
 constexpr std::size_t kFineTypes = 64;
 
-/// Sign and power, |x|^e with the sign of x.
+/// Returns |x|^e with the sign of x.
 double signed_power(double x, double e) {
   return std::copysign(std::pow(std::abs(x), e), x);
 }
 
-/// Points of Barr's parametrisation, dense where the surface is bent for exponents below 1: both poles, and rings.
+/// Returns points of Barr's parametrisation, which are dense where the surface is strongly curved for exponents below
+/// 1: both poles, and rings.
 std::vector<Vector3d> surface_points(const geom::Superellipsoid& shape, int rings, int per_ring) {
   const Vector3d& a = shape.semi_axes();
   std::vector<Vector3d> points = {{0, 0, -a.z()}, {0, 0, a.z()}};

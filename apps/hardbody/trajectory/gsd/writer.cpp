@@ -36,7 +36,7 @@ GsdArray array_of(Name name, const std::vector<T>& numbers, std::uint32_t column
   return {name, kTypeOf<T>, numbers.size() / columns, columns, writer.take()};
 }
 
-/// A number a body for every number that `get` gives.
+/// Returns an array with one row for each body: the numbers that `get` returns.
 template <class T, class Get>
 GsdArray body_array(Name name, const Frame& frame, std::uint32_t columns, const Get& get) {
   std::vector<T> numbers;
@@ -48,7 +48,7 @@ GsdArray body_array(Name name, const Frame& frame, std::uint32_t columns, const 
   return array_of(name, numbers, columns);
 }
 
-/// Texts as rows of equal length, each with a 0 at its end.
+/// Returns texts as rows of equal length, each with a 0 at its end.
 GsdArray text_array(Name name, const std::vector<std::string>& texts) {
   std::size_t longest = 0;
   for (const std::string& text : texts) longest = std::max(longest, text.size());
@@ -57,7 +57,7 @@ GsdArray text_array(Name name, const std::vector<std::string>& texts) {
   return {name, GsdType::int8, texts.size(), static_cast<std::uint32_t>(longest + 1), std::move(bytes)};
 }
 
-/// A position as the schema wants it, -L/2 <= x < L/2 as a 32-bit number, and the image it is in.
+/// Position in the schema's form, -L/2 <= x < L/2 as a 32-bit number, and the image it is in.
 struct Wrapped {
   std::array<float, 3> position;
   std::array<std::int32_t, 3> image;
@@ -85,7 +85,7 @@ std::array<double, 4> quaternion(const Matrix3d& rotation) {
   return {q.w(), q.x(), q.y(), q.z()};
 }
 
-/// HOOMD's: 2 q (0, L), L along the body's axes.
+/// Returns HOOMD's form: 2 q (0, L), L along the body's axes.
 std::array<double, 4> angular_momentum(const FrameBody& body) {
   const Vector3d L = body.inertia.cwiseProduct(body.rotation.transpose() * body.angular_velocity);
   const Quaterniond q = Quaterniond(body.rotation).normalized() * Quaterniond(0, L.x(), L.y(), L.z());
@@ -131,7 +131,7 @@ std::vector<GsdArray> constant_arrays(const Frame& frame) {
   };
 }
 
-/// The doubles of the state.
+/// Returns an array of the doubles of the state.
 template <class Get>
 GsdArray exact_array(Name name, const ed::System& system, std::uint32_t columns, const Get& get) {
   Writer writer;
@@ -169,7 +169,7 @@ GsdHead head_for(std::uint64_t capacity) {
   return head;
 }
 
-/// Entries in the index of so many frames.
+/// Returns the number of index entries of this number of frames.
 std::uint64_t entries_of(std::uint64_t frames) {
   return frames == 0 ? 0 : kStep + frames * (kNames - kStep);
 }
@@ -182,7 +182,7 @@ GsdWriter::GsdWriter(std::filesystem::path path, std::uint64_t capacity)
 void GsdWriter::open(FileMark mark) {
   mark_ = mark;
   if (mark.frames == 0) return;
-  // First the entries: they must not point to what is no longer there.
+  // The entries first: they must not point to data that no longer exists.
   const std::uint64_t from = entries_of(mark.frames);
   overwrite_at(path_, GsdHead::entry_location(from),
                std::string(GsdHead::entry_location(entries_of(capacity_)) - GsdHead::entry_location(from), '\0'));
@@ -197,7 +197,7 @@ void GsdWriter::append(const Frame& frame) {
   const std::uint64_t location = first ? head.size() : mark_.bytes;
   const GsdFrameBytes bytes = gsd_frame_bytes(mark_.frames, arrays, location);
   if (first) {
-    write_file(path_, head.bytes() + bytes.data);  // renamed: never a head that is not whole
+    write_file(path_, head.bytes() + bytes.data);  // renamed, so that readers never see an incomplete head
   } else {
     write_at(path_, mark_.bytes, bytes.data, Flush::later);
   }

@@ -10,24 +10,24 @@
 namespace hardbody {
 namespace {
 
-/// Beginnings of names that columns of orientations and shapes have where nobody has named them: of computes, fixes,
-/// variables and custom properties, and in other programs.
+/// Prefixes of columns that may contain orientations and shapes under names that the program does not use: of computes,
+/// fixes, variables and custom properties, and in other programs.
 constexpr std::array<std::string_view, 10> kUnnamed = {"c_",  "f_", "v_", "d_",     "d2_",
                                                        "i2_", "q",  "mu", "orient", "shape"};
 
-/// Exponents of superellipsoids in the convention of LIGGGHTS and of LAMMPS's own, beside which shapex is another size.
+/// Exponents of superellipsoids in the conventions of LIGGGHTS and of LAMMPS's own, with which shapex is another size.
 constexpr std::array<std::string_view, 3> kExponents = {"blockiness", "roundness", "block"};
 
 bool begins_as(std::string_view name, const auto& list) {
   return std::any_of(list.begin(), list.end(), [&](std::string_view begin) { return name.starts_with(begin); });
 }
 
-/// Names for a message.
+/// Lists names for a message.
 std::string listed(const std::vector<std::string_view>& names) {
   return one_line(fmt::format("column{} {}", names.size() > 1 ? "s" : "", fmt::join(names, " ")), 120);
 }
 
-constexpr std::string_view kRename = "dump_modify colname, or another head of each frame, names them so";
+constexpr std::string_view kRename = "dump_modify colname, or editing the head of each frame, gives these names";
 
 }  // namespace
 
@@ -86,12 +86,13 @@ void DumpColumns::note_unused() {
   };
   const auto exponents = named([](std::string_view name) { return begins_as(name, kExponents); });
   if (diameters && !exponents.empty()) {
-    notices.push_back(fmt::format(
-        "shapex shapey shapez: are not used beside {}, of another convention; shapes are read from diameters "
-        "shapex shapey shapez with exponents SuperquadricRoundness.Phi .Theta",
-        listed(exponents)));
+    notices.push_back(
+        fmt::format("shapex shapey shapez: not used together with {}, which have another convention; shapes are read "
+                    "from diameters "
+                    "shapex shapey shapez with exponents SuperquadricRoundness.Phi .Theta",
+                    listed(exponents)));
     diameters.reset();
-    radius.reset();  // that of a sphere around such a body
+    radius.reset();  // the radius of a sphere around such a body
     diameter.reset();
   }
   const auto unnamed = named([](std::string_view name) {
@@ -105,20 +106,20 @@ void DumpColumns::note_unused() {
     notices.push_back(fmt::format("{}: {}", text, kRename));
   }
   if ((radius || diameter) && !diameters && quaternion) {
-    notices.push_back(
-        fmt::format("column {}: not used, for bodies with orientations are no spheres; shapes are read from diameters "
-                    "shapex shapey shapez",
-                    radius ? "radius" : "diameter"));
+    notices.push_back(fmt::format(
+        "column {}: not used, because bodies with orientations are not spheres; shapes are read from diameters "
+        "shapex shapey shapez",
+        radius ? "radius" : "diameter"));
     radius.reset();
     diameter.reset();
   }
   if (diameters) radius = diameter = Column();
   if (radius || diameter) {
     notices.push_back(
-        fmt::format("column {}: bodies are taken for spheres of these sizes", radius ? "radius" : "diameter"));
+        fmt::format("column {}: bodies are treated as spheres of these sizes", radius ? "radius" : "diameter"));
   }
   if (!type && find("element")) {
-    notices.emplace_back("column element: not used; types are read from type, and all bodies are of one here");
+    notices.emplace_back("column element: not used; types are read from type; without it all bodies have one type");
   }
 }
 

@@ -9,14 +9,14 @@
 
 namespace hardbody {
 
-/// The words of a line.
+/// Splits a line into words.
 std::vector<std::string_view> words_of(std::string_view line);
 
 /// Columns of a dump's frame by their names.
 struct DumpColumns {
   using Column = std::optional<std::size_t>;
 
-  /// Positions along one axis.
+  /// Columns of positions along one axis.
   struct Axis {
     Column wrapped, scaled, unwrapped, unwrapped_scaled, image;
   };
@@ -26,16 +26,16 @@ struct DumpColumns {
   std::vector<std::string_view> names;
   std::array<Axis, 3> axes;
   Column id, type, mass, radius, diameter;
-  // Nothing where one of them is missing.
+  // nullopt if one of them is missing.
   std::optional<std::array<std::size_t, 4>> quaternion;
   std::optional<std::array<std::size_t, 3>> velocity, angular_momentum, angular_velocity, diameters;
   std::optional<std::array<std::size_t, 2>> roundness;  ///< Phi = e2, Theta = e1
-  /// Columns that are there and are not used, each with what to do.
+  /// Columns that are present and not used, each with advice.
   std::vector<std::string> notices;
 
-  /// Whether each axis has a column of unwrapped positions or of images.
+  /// Returns whether each axis has a column of unwrapped positions or of images.
   bool unwrapped() const;
-  /// Whether each has one of unwrapped positions.
+  /// Returns whether each axis has a column of unwrapped positions.
   bool unwrapped_columns() const;
 
  private:

@@ -23,7 +23,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// "shapex shapey shapez Phi Theta" of each type.
+/// Returns "shapex shapey shapez Phi Theta" of each type.
 std::vector<std::string> shape_columns(const Frame& frame) {
   std::vector<std::string> columns;
   for (const FrameType& type : frame.types) {
@@ -80,18 +80,18 @@ InputError foreign(const std::string& name) {
   return InputError(fmt::format("{}: is neither a GSD file nor a LAMMPS text dump; accepted: one of these", name));
 }
 
-/// Whether it is how a dump may begin.
+/// Returns whether a text begins like a dump.
 bool begins_dump(std::string_view text) {
   return text.starts_with(kBegin) || text.starts_with(kTimeItem) || text.starts_with(kUnitsItem);
 }
 
-/// Where the line before the one at `at` > 0 begins.
+/// Returns the begin of the line before the one at `at` > 0.
 std::size_t line_before(std::string_view text, std::size_t at) {
   const std::size_t end = at < 2 ? std::string_view::npos : text.rfind('\n', at - 2);
   return end == std::string_view::npos ? 0 : end + 1;
 }
 
-/// Where the frame begins whose time step is at `at`: what is said before it is a line and its value each.
+/// Returns the begin of the frame whose time step is at `at`: items before it have one line and one value each.
 std::size_t begin_of(std::string_view text, std::size_t at) {
   while (at > 0) {
     const std::size_t item = line_before(text, line_before(text, at));
@@ -102,8 +102,8 @@ std::size_t begin_of(std::string_view text, std::size_t at) {
   return at;
 }
 
-/// Calls f with the text of [begin, end) in pieces that each begin where the one before ended, and are longer by `more`
-/// as far as there is more.
+/// Calls f with the text of [begin, end) in pieces. Each begins where the previous one ended, and is extended by `more`
+/// bytes if there are any.
 template <class F>
 void in_pieces(const StoredBytes& bytes, std::uint64_t begin, std::uint64_t end, std::uint64_t more, F&& f) {
   constexpr std::uint64_t kPiece = std::uint64_t{1} << 20;
@@ -113,14 +113,14 @@ void in_pieces(const StoredBytes& bytes, std::uint64_t begin, std::uint64_t end,
   }
 }
 
-/// The longest text of what may stand before a frame's time step.
+/// Maximum length of the text that may precede a frame's time step.
 constexpr std::uint64_t kLongestPrelude = 1024;
 
 }  // namespace
 
 LammpsReader::LammpsReader(std::unique_ptr<StoredBytes> bytes, std::string name)
     : bytes_(std::move(bytes)), name_(std::move(name)), frames_(find_frames()) {
-  // Only the last one can have been cut off.
+  // Only the last frame can have been cut off.
   cut_off_ = !is_whole(frames_.back());
   if (cut_off_) frames_.pop_back();
 }
@@ -133,7 +133,7 @@ std::vector<LammpsReader::Place> LammpsReader::find_frames() const {
   in_pieces(*bytes_, 0, size, kBegin.size() - 1, [&](std::uint64_t at, std::uint64_t length, std::string_view text) {
     const std::size_t zero = text.find('\0');
     if (zero != std::string_view::npos) {
-      throw InputError(fmt::format("{}: byte {} is 0; accepted: a whole LAMMPS text dump", name_,
+      throw InputError(fmt::format("{}: byte {} is 0; accepted: a complete LAMMPS text dump", name_,
                                    at + static_cast<std::uint64_t>(zero)));
     }
     for (std::size_t k = text.find(kBegin); k < length; k = text.find(kBegin, k + 1)) {
@@ -153,7 +153,7 @@ std::vector<LammpsReader::Place> LammpsReader::find_frames() const {
   return frames;
 }
 
-/// Whether it has a line for each of its bodies.
+/// Returns whether a frame has a line for each of its bodies.
 bool LammpsReader::is_whole(Place frame) const {
   constexpr std::uint64_t kLongestHead = 4096;
   const std::string head = bytes_->read(frame.begin, std::min(frame.end - frame.begin, kLongestHead));

@@ -13,13 +13,14 @@
 
 namespace hardbody {
 
-/// Trajectories as LAMMPS text dumps, which OVITO and MDAnalysis read:
+/// Writer of trajectories as LAMMPS text dumps, which OVITO and MDAnalysis read:
 ///
 ///     ITEM: ATOMS id type x y z quatw quati quatj quatk shapex shapey shapez SuperquadricRoundness.Phi
 ///     SuperquadricRoundness.Theta
 ///
-/// shapex .. are the diameters along the body's axes, Phi is e2 and Theta e1. Numbers have the digits that give the
-/// same double back. The time step is the frame's number; the format has no place for the time that every reader knows.
+/// shapex .. are the diameters along the body's axes, Phi is e2 and Theta e1. Numbers have as many digits as the same
+/// double needs to be read back. The time step is the frame's number; the format has no field for the time that every
+/// reader supports.
 class LammpsWriter final : public FrameFile {
  public:
   explicit LammpsWriter(std::filesystem::path path) : path_(std::move(path)) {}
@@ -33,10 +34,10 @@ class LammpsWriter final : public FrameFile {
   FileMark mark_;
 };
 
-/// Reads dumps of our own and of LAMMPS: columns id, type, x y z (or xu yu zu, xs ys zs), quatw quati quatj quatk,
-/// shapex shapey shapez, SuperquadricRoundness.Phi .Theta, mass, vx vy vz, in any order; all but the positions may be
-/// missing, others are skipped. Of the file no more than a frame is in memory at a time. Throws InputError, `name:
-/// what; accepted: ..`.
+/// Reads dumps of this program and of LAMMPS: columns id, type, x y z (or xu yu zu, xs ys zs), quatw quati quatj quatk,
+/// shapex shapey shapez, SuperquadricRoundness.Phi .Theta, mass, vx vy vz, in any order; all but the positions are
+/// optional, others are skipped. At most one frame of the file is in memory at a time. Throws InputError, `name: what;
+/// accepted: ..`.
 class LammpsReader final : public TrajectoryReader {
  public:
   LammpsReader(std::unique_ptr<StoredBytes> bytes, std::string name);
@@ -46,11 +47,12 @@ class LammpsReader final : public TrajectoryReader {
   bool cut_off() const override { return cut_off_; }
   bool wraps_late() const override { return true; }
 
-  /// The bodies in the order of their ids. Types are what type and shape make different, groups what type alone does.
+  /// Reads a frame. The bodies are in the order of their ids. Each combination of type and shape is a type of the
+  /// frame; each type of the file is a group.
   Frame read(std::uint64_t k) const override;
 
  private:
-  /// Where a frame's text stands.
+  /// Position of a frame's text in the file.
   struct Place {
     std::uint64_t begin, end;
   };

@@ -23,17 +23,17 @@ using Eigen::Vector3d;
 using Words = std::vector<std::string_view>;
 
 constexpr std::uint64_t kMostBodies = 100'000'000;
-/// Edges by which a stored unwrapped position may be off a whole number of edges from the wrapped one, beside what six
-/// digits leave of it.
+/// Accepted deviation, in edges, of a stored unwrapped position from the wrapped one plus a whole number of edges, in
+/// addition to the rounding of six digits.
 constexpr double kWholeEdges = 1e-3;
 constexpr double kSixDigits = 1e-5;
 
-/// Whether the position along an axis, the wrapped one if there is one, is in edges of the box.
+/// Returns whether the position along an axis, the wrapped one if there is one, is in edges of the box.
 bool is_scaled(const DumpColumns::Axis& axis) {
   return !axis.wrapped && (axis.scaled || (!axis.unwrapped && axis.unwrapped_scaled));
 }
 
-/// One frame of a dump, read line by line.
+/// Frame of a dump, read line by line.
 class DumpFrame {
  public:
   DumpFrame(std::string_view text, const std::string& name, std::uint64_t k) : lines_(text), name_(name), k_(k) {}
@@ -45,7 +45,7 @@ class DumpFrame {
   }
   std::string_view line(const char* what) {
     const std::optional<std::string_view> found = lines_.next();
-    if (!found) throw bad(fmt::format("ends before {}", what), "a whole LAMMPS text dump");
+    if (!found) throw bad(fmt::format("ends before {}", what), "a complete LAMMPS text dump");
     return *found;
   }
   double number(std::string_view word, const char* what) const {
@@ -68,11 +68,11 @@ class DumpFrame {
   void set_angular_velocities();
   void sort_bodies();
 
-  /// The body that is being read, for a message.
+  /// Returns the name of the current body in a message.
   std::string label(const FrameBody& body) const {
     return columns_->id ? fmt::format("body {:.17g}", body.id) : fmt::format("the body in line {:g}", body.id);
   }
-  /// The number of the body in a column.
+  /// Returns the number in a column of the current body.
   double cell(const Words& words, std::size_t column, const FrameBody& body) const {
     const std::optional<double> value = finite_number(words[column]);
     if (value) return *value;
@@ -89,11 +89,11 @@ class DumpFrame {
   Frame frame_;
   Vector3d low_ = Vector3d::Zero();
   std::optional<DumpColumns> columns_;
-  bool tilted_scale_ = false;  ///< positions are scaled ones of a tilted box
+  bool tilted_scale_ = false;  ///< positions are scaled to a tilted box
   StoredOrientations orientations_;
-  std::vector<Vector3d> angular_momentum_;         ///< of each body, in the order of the lines
-  std::map<std::uint32_t, std::uint32_t> groups_;  ///< by type
-  std::map<std::string, std::uint32_t> types_;     ///< by type and shape, as text
+  std::vector<Vector3d> angular_momentum_;         ///< angular momentum of each body, in the order of the lines
+  std::map<std::uint32_t, std::uint32_t> groups_;  ///< groups by type
+  std::map<std::string, std::uint32_t> types_;     ///< types by type and shape, as text
 };
 
 void DumpFrame::read_head() {
@@ -103,7 +103,7 @@ void DumpFrame::read_head() {
     if (item == kTimeItem) frame_.time = number(value, "the time");
   }
   const double step = number(line("its time step"), "the time step");
-  // Beyond 2^53 two steps may be one double.
+  // Beyond 2^53 two steps may be the same double.
   if (!(step >= 0 && step <= 9007199254740992.0 && step == std::floor(step))) {
     throw bad(fmt::format("its time step is {:.17g}", step), "an integer from 0 to 2^53");
   }
@@ -138,7 +138,8 @@ void DumpFrame::read_bounds() {
   set_bounds(rows, columns);
 }
 
-/// `columns`: 2, bounds; 3, bounds of the box around a tilted one, and a tilt; 4, edges as vectors, and the origin.
+/// Sets the box. `columns`: 2, bounds; 3, bounds of the box around a tilted one, and a tilt; 4, edges as vectors, and
+/// the origin.
 void DumpFrame::set_bounds(const std::array<std::array<double, 4>, 3>& rows, std::size_t columns) {
   if (columns == 4) {
     const bool tilted =
@@ -167,7 +168,7 @@ void DumpFrame::set_bounds(const std::array<std::array<double, 4>, 3>& rows, std
 
 void DumpFrame::read_columns(std::string_view head) {
   constexpr std::string_view kHead = "ITEM: ATOMS ";
-  if (!head.starts_with(kHead)) throw bad(fmt::format("\"{}\" stands before its bodies", head), "ITEM: ATOMS");
+  if (!head.starts_with(kHead)) throw bad(fmt::format("\"{}\" precedes its bodies", head), "ITEM: ATOMS");
   columns_.emplace(words_of(head.substr(kHead.size())));
   for (const DumpColumns::Axis& axis : columns_->axes) {
     if (!axis.wrapped && !axis.scaled && !axis.unwrapped && !axis.unwrapped_scaled) {
@@ -186,7 +187,7 @@ void DumpFrame::read_columns(std::string_view head) {
   frame_.notices = columns_->notices;
 }
 
-/// Scaled positions are along the edges of a tilted box, others along the axes: not one of each.
+/// Throws if positions are mixed: scaled ones are along the edges of a tilted box, others along the axes.
 void DumpFrame::check_tilted_columns() {
   const auto& axes = columns_->axes;
   tilted_scale_ = is_scaled(axes[0]);
@@ -231,7 +232,7 @@ void DumpFrame::read_position(const Words& words, FrameBody& body) {
     }
     body.position[axis] = wrapped ? *wrapped : *unwrapped;
     body.unwrapped[axis] = frame_.images ? *unwrapped : body.position[axis];
-    // Where another axis is wrapped, so is this one: the file does not say where bodies went.
+    // If another axis is wrapped, so is this one: the file does not determine the paths of bodies.
     if (!frame_.images && !wrapped) body.unwrapped[axis] -= L * std::round(body.unwrapped[axis] / L);
   }
   if (tilted_scale_) {
@@ -264,7 +265,7 @@ void DumpFrame::read_motion(const Words& words, FrameBody& body) {
 
 std::optional<ed::BodyShape> DumpFrame::shape_of(const std::vector<double>& numbers, const FrameBody& body) const {
   const Vector3d axes = 0.5 * Vector3d(numbers[0], numbers[1], numbers[2]);
-  if (axes.isZero(0)) return std::nullopt;  // of points, as LAMMPS has them
+  if (axes.isZero(0)) return std::nullopt;  // points, in LAMMPS' convention
   try {
     if (numbers.size() == 5 && (numbers[3] != 1 || numbers[4] != 1)) {
       return geom::Superellipsoid(axes, numbers[4], numbers[3]);
@@ -319,27 +320,28 @@ void DumpFrame::read_body(const Words& words) {
   read_shape(words, body.group, body);
 }
 
-/// Angular velocities of stored angular momenta, whose bodies are homogeneous.
+/// Computes angular velocities from stored angular momenta, assuming homogeneous bodies.
 void DumpFrame::set_angular_velocities() {
   if (!columns_->angular_momentum || columns_->angular_velocity) return;
   frame_.angular_momenta = frame_.orientations;
   for (std::size_t i = 0; i < frame_.bodies.size(); ++i) frame_.bodies[i].angular_momentum = angular_momentum_[i];
   const auto shape = [](const FrameType& type) { return type.shape.has_value(); };
   const auto massive = [](const FrameBody& body) { return body.mass > 0; };
-  // Of bodies that are all alike the mass is one unknown factor of all.
+  // If all bodies are alike, the mass is one unknown factor of all.
   const bool masses = columns_->mass || frame_.types.size() == 1;
   if (!masses || !frame_.orientations || !std::all_of(frame_.types.begin(), frame_.types.end(), shape) ||
       !std::all_of(frame_.bodies.begin(), frame_.bodies.end(), massive)) {
     frame_.notices.emplace_back(
-        "columns angmomx angmomy angmomz: not used; they say angular velocities of bodies whose mass, orientation and "
-        "shape are there: mass, quatw quati quatj quatk, shapex shapey shapez");
+        "columns angmomx angmomy angmomz: not used; angular velocities follow from them only with mass, orientation "
+        "and "
+        "shape: mass, quatw quati quatj quatk, shapex shapey shapez");
     return;
   }
   if (!columns_->mass) {
     frame_.notices.emplace_back(
-        "columns angmomx angmomy angmomz: taken for those of bodies of mass 1; there is no mass");
+        "columns angmomx angmomy angmomz: treated as those of bodies of mass 1, because there is no mass");
   }
-  std::vector<Vector3d> inertia;  // of mass 1
+  std::vector<Vector3d> inertia;  // moments for mass 1
   for (const FrameType& type : frame_.types) inertia.push_back(ed::uniform_species(*type.shape).inertia);
   for (std::size_t i = 0; i < frame_.bodies.size(); ++i) {
     FrameBody& body = frame_.bodies[i];
@@ -352,14 +354,14 @@ void DumpFrame::set_angular_velocities() {
   frame_.angular_velocities = true;
 }
 
-/// Puts the bodies in the order of their ids, and numbers the groups.
+/// Sorts the bodies by their ids, and numbers the groups.
 void DumpFrame::sort_bodies() {
   std::stable_sort(frame_.bodies.begin(), frame_.bodies.end(),
                    [](const FrameBody& a, const FrameBody& b) { return a.id < b.id; });
   const auto same = [](const FrameBody& a, const FrameBody& b) { return a.id == b.id; };
   const auto twice = std::adjacent_find(frame_.bodies.begin(), frame_.bodies.end(), same);
   if (twice != frame_.bodies.end()) {
-    throw bad(fmt::format("two bodies have the id {:.17g}", twice->id), "an id of its own for each");
+    throw bad(fmt::format("two bodies have the id {:.17g}", twice->id), "a different id for each");
   }
   std::uint32_t next = 0;
   for (auto& [type, group] : groups_) group = next++;

@@ -9,12 +9,12 @@
 
 namespace hardbody {
 
-/// The lines of a text, one after the other.
+/// Iterates over the lines of a text.
 class DumpLines {
  public:
   explicit DumpLines(std::string_view text) : text_(text) {}
 
-  /// Next line without its end; nothing after the last one that has an end.
+  /// Returns the next line without its end; nullopt after the last one that has an end.
   std::optional<std::string_view> next() {
     const std::size_t end = text_.find('\n');
     if (end == std::string_view::npos) return std::nullopt;
@@ -29,11 +29,11 @@ class DumpLines {
   std::string_view text_;
 };
 
-/// Items that may stand before the time step: dump_modify has options for them.
+/// Items that may precede the time step: options of dump_modify add them.
 inline constexpr std::string_view kTimeItem = "ITEM: TIME";
 inline constexpr std::string_view kUnitsItem = "ITEM: UNITS";
 
-/// Frame k of a LAMMPS text dump, from its own text. `name`: what messages call the file. Throws InputError.
+/// Reads frame k of a LAMMPS text dump from its own text. `name`: that of the file in messages. Throws InputError.
 Frame read_dump_frame(std::string_view text, const std::string& name, std::uint64_t k);
 
 }  // namespace hardbody

@@ -1,6 +1,6 @@
 #pragma once
 
-/// The frame around the dual Newton that turns a converged normal into a DistanceResult; used by every shape.
+/// Conversion of a converged normal of the dual Newton into a DistanceResult; used by every shape.
 
 #include <geom/distance.h>
 #include <geom/kernel/simplex_descent.h>
@@ -39,11 +39,11 @@ struct WorldSupport {
   }
 };
 
-/// Evaluates g and its Newton step for two bodies given by their world-frame supports, B's centre at r from A's.
+/// Evaluates g and its Newton step for two bodies given by their world-frame supports, with B's centre at r from A's.
 template <class SupportA, class SupportB>
 class GeneralPair {
  public:
-  /// `least`: the smallest eigenvalue that Newton's matrix is left with, length.
+  /// Constructs the pair. `least` (length) is a lower limit of Newton's matrix: smaller eigenvalues are raised to it.
   GeneralPair(SupportA a, SupportB b, const Eigen::Vector3d& r, double least)
       : a_(std::move(a)), b_(std::move(b)), r_(r), least_(least) {}
 
@@ -57,7 +57,8 @@ class GeneralPair {
     const auto& [e, f] = basis;
     TangentForm m = TangentForm::of(s_a.hessian + s_b.hessian, out.g, basis);
     const double smallest = m.smallest_eigenvalue();
-    // Only a matrix that is not definite is lifted, by no more than it needs: a lifted one converges linearly.
+    // Only a matrix that is not definite is raised, and no more than needed: with a raised one Newton converges
+    // linearly.
     if (smallest < least_) [[unlikely]] {
       const double lift = std::max(least_, -smallest) - smallest;
       m.ee += lift;
@@ -80,7 +81,8 @@ class GeneralPair {
   }
   const Eigen::Vector3d& r() const { return r_; }
 
-  /// A unit vector across n along which g bends upwards by more than `rounding` / rad^2; zero if there is none.
+  /// Returns a unit vector across n along which g curves upwards by more than `rounding` / rad^2; zero if there is
+  /// none.
   Eigen::Vector3d upward(const Eigen::Vector3d& n, double rounding) const {
     const CurvedSupport s_a = a_(n);
     const CurvedSupport s_b = b_(-n);
@@ -98,7 +100,7 @@ class GeneralPair {
 
 /// Lengths that the certificates and tolerances of one query need.
 struct PairScale {
-  double size;             ///< |r| + both bounding radii: what rounding errors are relative to
+  double size;             ///< |r| + both bounding radii: the length that rounding errors are relative to
   double certified_depth;  ///< the sum of both smallest radii of curvature
 };
 
@@ -111,7 +113,7 @@ double min_curvature_radius_or_zero(const Shape& shape) {
   }
 }
 
-/// The answer at a converged normal n: witness points, half of the tangential mismatch given to each.
+/// Returns the answer at a converged normal n: witness points, half of the tangential mismatch assigned to each.
 template <class Pair>
 [[gnu::always_inline]] inline DistanceResult witness_result(const Pair& pair, const Eigen::Vector3d& p_WA,
                                                             const Eigen::Vector3d& n, int iterations) {
@@ -129,7 +131,7 @@ template <class Pair>
   return result;
 }
 
-/// By how much the distance of an answer can be below the true one: with the ball of radius rho that rolls in the
+/// Returns a bound of the true distance minus the distance of an answer. With the ball of radius rho that rolls in the
 /// Minkowski difference (sphere_search.h), g(m) <= |p + rho n| - rho everywhere, p = g n + y the point of that
 /// difference at n.
 inline double newton_error_bound(const PairScale& scale, const DistanceResult& r) {
@@ -143,10 +145,10 @@ inline bool needs_polish(const PairScale& scale, const DistanceResult& r) {
   return r.error_bound > 0.5 * kResidualTolerance * scale.size;
 }
 
-/// Takes more Newton steps while they are needed and help.
+/// Takes more Newton steps while they are needed and reduce the residual.
 ///
-/// Where the radii of curvature are much larger than the pair, a thin disc beside a small body, Newton's step from
-/// |delta| = 1e-6 is not yet right to rounding.
+/// If the radii of curvature are much larger than the pair, for instance a thin disc beside a small body, Newton's step
+/// from |delta| = 1e-6 does not yet reach rounding.
 template <class Pair>
 [[gnu::noinline, gnu::cold]] void polish(const Pair& pair, const PairScale& scale, const Eigen::Vector3d& p_WA,
                                          DistanceResult& result) {
@@ -162,10 +164,10 @@ template <class Pair>
 
 /// Ascends from `start`, then from cold() if that led to a stationary point without a certificate.
 ///
-/// A stationary point with g < 0 is no proof of overlap: flat bodies that are apart have some. Where a local answer is
-/// asked for, one beyond the certified depth counts only if shares(point_a, point_b), of its witness points, says that
-/// both bodies hold a point. `cold` is called only when it is needed. Returns a result whose status declines when
-/// neither start gives a certified answer; `iterations` is then the number of evaluations spent.
+/// A stationary point with g < 0 is no proof of overlap: flat bodies that are apart have some. With Penetration::local,
+/// one beyond the certified depth counts only if shares(point_a, point_b), called with its witness points, confirms
+/// that both bodies contain a common point. `cold` is called only when it is needed. Returns a result whose status
+/// declines when neither start gives a certified answer; `iterations` is then the number of evaluations spent.
 template <class Pair, class Cold, class Shares>
 DistanceResult solve_dual(const Pair& pair, const Cold& cold, const PairScale& scale, const Eigen::Vector3d& p_WA,
                           const DistanceOptions& options, const Shares& shares) {
@@ -198,8 +200,7 @@ DistanceResult solve_dual(const Pair& pair, const Cold& cold, const PairScale& s
   return declined;
 }
 
-/// A pair whose bodies have lost a skin of the thickness of their smallest radius of curvature: still convex
-/// (Blaschke).
+/// Pair whose bodies have lost a skin of the thickness of their smallest radius of curvature: still convex (Blaschke).
 template <class Pair>
 struct CorePair {
   const Pair& pair;
@@ -214,20 +215,21 @@ struct CorePair {
 template <class Pair>
 CorePair(const Pair&, double, double) -> CorePair<Pair>;
 
-/// Whether holds(p) for a point p between the witness points of bodies that overlap.
+/// Returns whether holds(p) is true for a point p between the witness points of bodies that overlap.
 ///
-/// Each body holds a part of the segment, which begins at its own witness point: mostly either holds half of it, but of
-/// a small or thin body inside a larger one the larger holds nearly all.
+/// Each body contains a part of the segment, which begins at its own witness point. Mostly each contains half of it; if
+/// a small or thin body is inside a larger one, the larger contains nearly all.
 template <class Holds>
 bool holds_between(const Eigen::Vector3d& point_a, const Eigen::Vector3d& point_b, const Holds& holds) {
-  // Not the ends, of which rounding decides on which side of the surface they are.
+  // The ends are left out: rounding decides on which side of the surface they are.
   for (const double share : {0.5, 0.02, 0.98, 0.25, 0.75}) {
     if (holds(Eigen::Vector3d(point_a + share * (point_b - point_a)))) return true;
   }
   return false;
 }
 
-/// Whether a point of the world is in both bodies; of shapes without an equation that is not known: false.
+/// Returns whether a point (world frame) is in both bodies; false for shapes without an equation, for which it is
+/// unknown.
 template <class ShapeA, class ShapeB>
 bool both_contain(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const Pose& X_WB, const Eigen::Vector3d& p_W) {
   if constexpr (ImplicitSurface<ShapeA> && ImplicitSurface<ShapeB>) {
@@ -237,7 +239,8 @@ bool both_contain(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const Pose
   }
 }
 
-/// Whether both bodies hold the point between their centres that bodies which overlap deeply are likely to share.
+/// Returns whether both bodies contain the point between their centres that deeply overlapping bodies are likely to
+/// share.
 template <class ShapeA, class ShapeB>
 bool share_the_middle(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const Pose& X_WB) {
   const double r_a = a.inscribed_radius();
@@ -245,8 +248,8 @@ bool share_the_middle(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const 
   return both_contain(a, X_WA, b, X_WB, Eigen::Vector3d((r_b * X_WA.position() + r_a * X_WB.position()) / (r_a + r_b)));
 }
 
-/// Whether a point of the world that both bodies hold is found: between the witness points of an answer, or between the
-/// centres. True is certain, false is not.
+/// Returns whether a point inside both bodies is found, between the witness points of an answer or between the centres.
+/// True is certain, false is not.
 template <class ShapeA, class ShapeB>
 bool share_a_point(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const Pose& X_WB, const Eigen::Vector3d& point_a,
                    const Eigen::Vector3d& point_b) {
@@ -254,7 +257,7 @@ bool share_a_point(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const Pos
   return holds_between(point_a, point_b, holds) || share_the_middle(a, X_WA, b, X_WB);
 }
 
-/// Where Newton's method does not converge, because support points jump: the closest points of the cores.
+/// Finds the closest points of the cores; used where Newton's method does not converge because support points jump.
 template <class Pair>
 [[gnu::noinline, gnu::cold]] DistanceResult descend_cores(const CorePair<Pair>& cores, double size,
                                                           const Eigen::Vector3d& start, const Eigen::Vector3d& p_WA,
@@ -275,8 +278,8 @@ template <class Pair>
   return result;
 }
 
-/// The last resort: branch and bound over all normals (sphere_search.h). It finds the shortest translation that parts
-/// bodies deep in each other, and the distance of bodies for which Newton's method did not converge.
+/// Searches all normals by branch and bound (sphere_search.h), the last resort. It finds the shortest translation that
+/// separates deeply overlapping bodies, and the distance of bodies for which Newton's method did not converge.
 template <class Pair>
 [[gnu::noinline, gnu::cold]] DistanceResult search_sphere(const Pair& pair, const PairScale& scale,
                                                           const Eigen::Vector3d& start, const Eigen::Vector3d& p_WA,
@@ -305,7 +308,7 @@ template <class Pair>
   SphereSearch<decltype(sample), decltype(polish)> sphere(sample, polish, scale.certified_depth, polish(start),
                                                           rounding);
   sphere.run_to(kDepthGap * scale.size, kMostDepthSamples);
-  // Concave there: what is left is to come close to the one maximum.
+  // g is concave there, so it remains to approach its single maximum.
   if (sphere.best().g > 0) sphere.run_to(kBoundGap * scale.size, kMostDepthSamples);
   DistanceResult result = witness_result(pair, p_WA, sphere.best().n, iterations);
   result.error_bound = std::min(newton_error_bound(scale, result), std::max(0.0, sphere.upper() - sphere.best().g));
@@ -325,7 +328,7 @@ DistanceResult distance(const ShapeA& a, const Pose& X_WA, const ShapeB& b, cons
   using kernel::WorldSupport;
   const Eigen::Vector3d r = X_WB.position() - X_WA.position();
   const double rho = kernel::min_curvature_radius_or_zero(a) + kernel::min_curvature_radius_or_zero(b);
-  // Shapes with flat faces or edges have rho = 0; a small share of the inscribed spheres keeps the step bounded.
+  // Shapes with flat faces or edges have rho = 0; a small fraction of the inscribed radii keeps the step bounded.
   const double least =
       kLeastEigenvalue * std::max(rho, kLeastCurvature * (a.inscribed_radius() + b.inscribed_radius()));
   const kernel::GeneralPair pair(WorldSupport<ShapeA>{a, X_WA.rotation()}, WorldSupport<ShapeB>{b, X_WB.rotation()}, r,
@@ -341,7 +344,7 @@ DistanceResult distance(const ShapeA& a, const Pose& X_WA, const ShapeB& b, cons
   result = kernel::descend_cores(cores, scale.size, cold(), X_WA.position(), result.iterations);
   if (result.status != DistanceStatus::not_converged) {
     if (!kernel::needs_polish(scale, result)) return result;
-    // From there Newton's method has a second chance: where it converges it is the more exact.
+    // Newton's method has a second chance from there, and is more accurate if it converges.
     DistanceResult polished = kernel::solve_dual(pair, cold, scale, X_WA.position(), {.start = result.normal}, shares);
     polished.iterations += result.iterations;
     return polished.error_bound < result.error_bound ? polished : result;

@@ -1,12 +1,12 @@
 #pragma once
 
 /// @file
-/// Refuses to compile where Eigen is configured to lay vectors and matrices out otherwise than the libraries were
-/// compiled for. Every public header of libgeom and libed that uses Eigen includes this one.
+/// Compile-time check that Eigen is configured to lay out vectors and matrices as the libraries were compiled for.
+/// Every public header of libgeom and libed that uses Eigen includes this one.
 ///
-/// The libraries use `Vector3d` and `Matrix3d` alone in what they exchange with a program. No value of -march,
-/// EIGEN_MAX_ALIGN_BYTES, EIGEN_MAX_STATIC_ALIGN_BYTES or EIGEN_DONT_ALIGN changes those, since their sizes are no
-/// multiples of 16 bytes; EIGEN_DEFAULT_TO_ROW_MAJOR transposes every matrix, and plugins can add members.
+/// The libraries exchange only `Vector3d` and `Matrix3d` with a program. No value of -march, EIGEN_MAX_ALIGN_BYTES,
+/// EIGEN_MAX_STATIC_ALIGN_BYTES or EIGEN_DONT_ALIGN changes those, since their sizes are not multiples of 16 bytes;
+/// EIGEN_DEFAULT_TO_ROW_MAJOR transposes every matrix, and plugins can add members.
 
 #include <Eigen/Core>
 
@@ -18,7 +18,7 @@ accepted: Eigen's default, column-major. Declare row-major matrices of your own 
 
 namespace geom::kernel {
 
-// The macro may have been defined for the first inclusion of Eigen alone.
+// The macro may have been defined for the first inclusion of Eigen only.
 static_assert(!Eigen::Matrix3d::IsRowMajor,
               "hardbody: Eigen::Matrix3d is row-major (EIGEN_DEFAULT_TO_ROW_MAJOR), with which rotations would be read "
               "transposed; accepted: Eigen's default, column-major");

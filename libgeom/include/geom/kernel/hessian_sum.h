@@ -1,6 +1,6 @@
 #pragma once
 
-/// The sum S of the Hessians of both bodies' support functions across a normal, each t1 t1^T + t2 t2^T.
+/// Sum S of the Hessians of both bodies' support functions across a normal, each t1 t1^T + t2 t2^T.
 
 #include <geom/kernel/lanes.h>
 
@@ -12,11 +12,12 @@
 
 namespace geom::kernel {
 
-/// With t_k the four vectors and p_k = n x t_k: det S = sum over k < l of (p_k.t_l)^2, all terms positive, so that
-/// nothing cancels where one body is flat and the other is not; the smallest eigenvalue is det S over the largest.
+/// Determinant and adjugate of S. With t_k the four vectors and p_k = n x t_k: det S = sum over k < l of (p_k.t_l)^2,
+/// all terms positive, so that nothing cancels if one body is flat and the other is not; the smallest eigenvalue is det
+/// S over the largest.
 struct HessianSum {
   LaneVector p1, p2;  ///< n x t1, n x t2
-  Lanes within;       ///< p1.t2 of each body; below, of A with B's and of B with A's:
+  Lanes within;       ///< p1.t2 of each body; the next members: of A with B's and of B with A's
   Lanes across11, across12, across22;
   double determinant;
   double trace;
@@ -37,11 +38,11 @@ struct HessianSum {
     const double largest = 0.5 * trace + std::sqrt(std::max(0.0, 0.25 * trace * trace - determinant));
     return largest > 0 ? determinant / largest : 0;
   }
-  /// 1 / det(S + identity I); of two points and no gap no more than the largest number.
+  /// Returns 1 / det(S + identity I); for two points without a gap at most the largest number.
   double by_determinant(double identity) const {
     return 1 / (identity * (identity + trace) + determinant + std::numeric_limits<double>::min());
   }
-  /// The adjugate of S + identity I times y, which is across n.
+  /// Returns the adjugate of S + identity I times y, which is across n.
   Eigen::Vector3d adjugate_times(const Eigen::Vector3d& y, double identity) const {
     const LaneVector up = p1.dot(y) * p1 + p2.dot(y) * p2;
     return identity * y + up.a() + up.b();

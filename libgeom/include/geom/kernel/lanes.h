@@ -1,9 +1,9 @@
 #pragma once
 
-/// Two bodies at once, A in lane 0 and B in lane 1, and the exponential and the logarithm of such pairs.
+/// Vectors of two numbers, one for body A in lane 0 and one for body B in lane 1, with exponential and logarithm.
 ///
-/// Both are made of operations that IEEE 754 rounds exactly, so that they give the same bits on every processor, which
-/// the C library's pow, with its variants for each, does not promise.
+/// Both functions consist of operations that IEEE 754 rounds exactly, so that they give the same bits on every
+/// processor. The C library's pow, with its variants for each processor, does not guarantee that.
 
 #include <Eigen/Core>
 
@@ -23,7 +23,7 @@ inline double sum(Lanes v) {
 inline Lanes select(LaneBits where, Lanes yes, Lanes no) {
   return reinterpret_cast<Lanes>((where & reinterpret_cast<LaneBits>(yes)) | (~where & reinterpret_cast<LaneBits>(no)));
 }
-/// A's where B's was and the other way round.
+/// Exchanges the lanes of A and B.
 inline Lanes swapped(Lanes v) {
   return Lanes{v[1], v[0]};
 }
@@ -37,7 +37,7 @@ inline Lanes abs(Lanes v) {
   constexpr std::uint64_t kSign = std::uint64_t{1} << 63;
   return reinterpret_cast<Lanes>(reinterpret_cast<LaneBits>(v) & LaneBits{~kSign, ~kSign});
 }
-/// `size`, which is positive, with the sign of `sign`.
+/// Returns `size`, which is positive, with the sign of `sign`.
 inline Lanes with_sign(Lanes size, Lanes sign) {
   constexpr std::uint64_t kSign = std::uint64_t{1} << 63;
   return reinterpret_cast<Lanes>(reinterpret_cast<LaneBits>(size) |
@@ -47,7 +47,7 @@ inline Lanes sqrt(Lanes v) {
   return Lanes{__builtin_sqrt(v[0]), __builtin_sqrt(v[1])};
 }
 
-/// ln x to 1 ulp for positive normal x; about -709 for 0.
+/// Returns ln x to 1 ulp for positive normal x; about -709 for 0.
 ///
 /// x = 2^k m, sqrt(1/2) <= m < sqrt(2), z = (m - 1)/(m + 1): ln m = 2 atanh z = f - z (f - z^2 P(z^2)), f = m - 1, with
 /// P a Chebyshev fit, to 5e-18.
@@ -67,16 +67,16 @@ inline Lanes log(Lanes x) {
                     (0.28571428626253837606 + 0.22222211089379496214 * w) * w2;
   const Lanes high = (0.181828924325368712 + 0.15331611722055007897 * w) + 0.14617807153417324815 * w2;
   const Lanes P = low + high * (w2 * w2);
-  constexpr double kLn2High = 0x1.62e42fefa3800p-1;  // k times it is exact
+  constexpr double kLn2High = 0x1.62e42fefa3800p-1;  // k times this is exact
   constexpr double kLn2Low = 5.497923018708371174712472e-14;
   return k * kLn2High - ((z * (f - w * P) - k * kLn2Low) - f);
 }
 
-/// e^y to 1 ulp for y <= 700; e^-700 below that.
+/// Returns e^y to 1 ulp for y <= 700; e^-700 below -700.
 ///
 /// y = n ln 2 + r, |r| <= ln 2 / 2: e^r = 1 + r + r^2 Q(r), with Q a Chebyshev fit, to 1.3e-17.
 inline Lanes exp(Lanes y) {
-  constexpr double kRound = 0x1.8p52;  // its last bit is worth 1
+  constexpr double kRound = 0x1.8p52;  // the last bit of this number is worth 1
   constexpr double kLn2High = 0x1.62e42fefa3800p-1;
   constexpr double kLn2Low = 5.497923018708371174712472e-14;
   const Lanes least = both(-700);
@@ -96,7 +96,7 @@ inline Lanes exp(Lanes y) {
   return reinterpret_cast<Lanes>(reinterpret_cast<LaneBits>(e) + (reinterpret_cast<LaneBits>(shifted) << 52));
 }
 
-/// A vector of each body.
+/// Vector of each of the two bodies.
 struct LaneVector {
   Lanes x, y, z;
 
@@ -124,11 +124,11 @@ inline LaneVector operator*(Lanes s, const LaneVector& v) {
 inline LaneVector swapped(const LaneVector& v) {
   return {swapped(v.x), swapped(v.y), swapped(v.z)};
 }
-/// Component by component.
+/// Returns the product component by component.
 inline LaneVector product(const LaneVector& u, const LaneVector& v) {
   return {u.x * v.x, u.y * v.y, u.z * v.z};
 }
-/// Component by component.
+/// Returns the absolute value of each component.
 inline LaneVector abs(const LaneVector& v) {
   return {abs(v.x), abs(v.y), abs(v.z)};
 }
@@ -136,7 +136,7 @@ inline LaneVector normalized(const LaneVector& v) {
   return (1 / sqrt(v.dot(v))) * v;
 }
 
-/// A rotation of each body: its columns.
+/// Rotation of each of the two bodies, by its columns.
 struct LaneRotation {
   LaneVector x, y, z;
 

@@ -11,12 +11,12 @@
 namespace geom {
 namespace kernel {
 
-/// One node of the tanh-sinh rule on (0, 1).
+/// Node of the tanh-sinh rule on (0, 1).
 struct QuadratureNode {
   double x, complement, weight;  ///< complement = 1 - x, without cancellation
 };
 
-/// The node at t, for a step of that much in t.
+/// Returns the node at t for nodes that are `step` apart in t.
 inline QuadratureNode tanh_sinh_node(double t, double step) {
   const double u = std::numbers::pi * std::sinh(t);
   const double x = 1 / (1 + std::exp(-u));
@@ -24,7 +24,8 @@ inline QuadratureNode tanh_sinh_node(double t, double step) {
   return {x, complement, step * std::numbers::pi * std::cosh(t) * x * complement};
 }
 
-/// Distance of the surface along the unit vector n: Newton's method from outside, which is monotone for a convex f.
+/// Returns the distance of the surface along the unit vector n, by Newton's method from outside, which is monotone for
+/// a convex f.
 template <class Shape>
 double surface_radius(const Shape& shape, const Eigen::Vector3d& n, double bounding_radius) {
   constexpr int kMostSteps = 200;
@@ -37,7 +38,7 @@ double surface_radius(const Shape& shape, const Eigen::Vector3d& n, double bound
   return r;
 }
 
-/// The rule with 2 half + 1 nodes an angle; the last ones are 1e-17 from the ends.
+/// Integrates with 2 half + 1 nodes an angle; the last ones are 1e-17 from the ends.
 template <class Shape>
 MassProperties quadrature(const Shape& shape, double bounding_radius, int half) {
   constexpr double kQuarter = std::numbers::pi / 2;
@@ -48,7 +49,7 @@ MassProperties quadrature(const Shape& shape, double bounding_radius, int half) 
     const QuadratureNode theta = tanh_sinh_node(step * i, step);
     for (int j = -half; j <= half; ++j) {
       const QuadratureNode phi = tanh_sinh_node(step * j, step);
-      // Sines from the nearer end: the last nodes are closer to it than rounding.
+      // Sines are computed from the nearer end: the last nodes are closer to it than rounding.
       const double sin_theta = std::sin(kQuarter * theta.x);
       const Eigen::Vector3d n(sin_theta * std::sin(kQuarter * phi.complement), sin_theta * std::sin(kQuarter * phi.x),
                               std::sin(kQuarter * theta.complement));

@@ -1,7 +1,7 @@
 #pragma once
 
-/// N(w) = N1(N2(w0, w1), w2), Nk(u, v) = (u^qk + v^qk)^(1/qk), w >= 0: the norm whose unit ball is a superellipsoid
-/// (with qk = 2/ek), and whose dual, of the same kind with qk = 2/(2 - ek), is its support function (Hoelder).
+/// Nested norm N(w) = N1(N2(w0, w1), w2), Nk(u, v) = (u^qk + v^qk)^(1/qk), w >= 0. Its unit ball is a superellipsoid
+/// (with qk = 2/ek), and its dual, of the same kind with qk = 2/(2 - ek), is the support function (Hoelder).
 
 #include <Eigen/Core>
 
@@ -10,9 +10,9 @@
 
 namespace geom::kernel {
 
-/// x^e for x >= 0 and one e > 0: by products, square and cube roots where e allows it: e = 1/4, 1/3, 1/2, 2/3, 1 to 5/2
-/// by halves, 3, 7/2, 4. Else by std::pow: fifths, as 1/q of q = 5/2 and 5 (e = 1.2 and 1.6), would gain nothing, as a
-/// fifth root is a pow. Distances do not come here but for values and gradients: the kernels have both bodies' powers
+/// Power x^e for x >= 0 and one e > 0: by products, square and cube roots for e = 1/4, 1/3, 1/2, 2/3, 1 to 5/2 by
+/// halves, 3, 7/2, 4, else by std::pow. Fifths, as 1/q of q = 5/2 and 5 (e = 1.2 and 1.6), would gain nothing, because
+/// a fifth root is a pow. Distances use this class only for values and gradients: the kernels have both bodies' powers
 /// in one vector (lanes.h).
 class Power {
  public:
@@ -86,7 +86,7 @@ class Power {
   Kind kind_;
 };
 
-/// N(u, v) = (u^q + v^q)^(1/q) for u, v >= 0, and its derivatives.
+/// Norm N(u, v) = (u^q + v^q)^(1/q) for u, v >= 0, and its derivatives.
 class PlaneNorm {
  public:
   explicit PlaneNorm(double q) : q_(q), power_(q - 1), root_(1 / q) {}
@@ -111,7 +111,7 @@ class PlaneNorm {
     return swapped ? Value{larger * root, d_smaller, d_larger} : Value{larger * root, d_larger, d_smaller};
   }
 
-  /// l of the Hessian l (v, -u)(v, -u)^T; u, v > 0.
+  /// Returns l of the Hessian l (v, -u)(v, -u)^T; u, v > 0.
   double curvature(const Value& at, double u, double v) const { return (q_ - 1) * (at.du / u) * (at.dv / v) / at.norm; }
 
  private:
@@ -135,15 +135,15 @@ class NestedNorm {
     return {outer.norm, {outer.du * inner.du, outer.du * inner.dv, outer.dv}};
   }
 
-  /// With the Hessian, across across^T + along along^T.
+  /// Value, gradient and Hessian across across^T + along along^T.
   struct Curved : Value {
-    Eigen::Vector3d across;  ///< in the plane of w0 and w1
+    Eigen::Vector3d across;  ///< vector in the plane of w0 and w1
     Eigen::Vector3d along;
   };
 
-  /// All of it from one evaluation of either plane's norm. Both vectors are orthogonal to w to rounding. Where a w
-  /// vanishes and q < 2 (a flat face) the Hessian is infinite; there it is that of w kept above kLeast of the largest,
-  /// which is huge.
+  /// Returns value, gradient and Hessian from one evaluation of either plane's norm. Both vectors of the Hessian are
+  /// orthogonal to w to rounding. If a component of w vanishes and q < 2 (a flat face) the Hessian is infinite; it is
+  /// then that of w with components kept above kLeast of the largest, which is huge.
   Curved curved(const Eigen::Vector3d& w) const {
     const double least = kLeast * w.maxCoeff();
     if (w.minCoeff() < least) [[unlikely]] {

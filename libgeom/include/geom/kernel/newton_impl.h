@@ -2,12 +2,13 @@
 
 /// Newton's method for the paper's eqs. (dist8), and the check that its solution is the answer.
 ///
-/// Everything is made dimensionless first: lengths by L = |r| + |xA| + |xB| of the seed, f and g by the lengths of
+/// All quantities are first made dimensionless: lengths by L = |r| + |xA| + |xB| of the seed, f and g by the lengths of
 /// their gradients there. That multiplies equations and unknowns by constants, which changes no iterate of Newton's
-/// method, but makes alpha and all equations of order one, so that one number measures how well they hold, pivots mean
-/// something and nothing overflows. xA and xB are counted from their own centres (here sA, sB): far pairs lose no
+/// method, but makes alpha and all equations of order one, so that a single number measures the residual, pivots are
+/// meaningful and nothing overflows. xA and xB are relative to their own centres (here sA, sB): far pairs lose no
 /// digits.
 
+#include <geom/kernel/newton_equations.h>
 #include <geom/kernel/refuse.h>
 #include <geom/kernel/small_solve.h>
 #include <geom/newton.h>
@@ -22,140 +23,15 @@
 
 namespace geom::kernel {
 
-/// f, its gradient and Hessian at one point, in world axes, dimensionless.
-struct LocalSurface {
-  double value;
-  Eigen::Vector3d gradient;
-  Eigen::Matrix3d hessian;
-};
-
-/// A body's equation in world axes about its own centre, points divided by `length` and f by `unit` * `length`.
-template <ImplicitSurface Shape>
-struct WorldSurface {
-  const Shape& shape;
-  const Eigen::Matrix3d& R;
-  double length;
-  double unit = 1;  ///< |gradient of the shape's f| at the seed
-
-  LocalSurface operator()(const Eigen::Vector3d& s) const {
-    const Eigen::Vector3d x = length * (R.transpose() * s);
-    return {static_cast<double>(shape.value(x)) / (unit * length), R * (Eigen::Vector3d(shape.gradient(x)) / unit),
-            R * (Eigen::Matrix3d(shape.hessian(x)) * (length / unit)) * R.transpose()};
-  }
-};
-
-/// The unknowns of eqs. (dist8).
-struct NewtonState {
-  Eigen::Vector3d s_a;  ///< xA from A's centre
-  Eigen::Vector3d s_b;  ///< xB from B's centre
-  double alpha;
-  double beta;
-};
-
-/// Eqs. (dist8): F and its Jacobian in (sA, sB, alpha, beta).
-struct EightEquations {
-  static constexpr int kSize = 8;
-  using Vector = SmallVector<kSize>;
-  using Matrix = SmallMatrix<kSize>;
-
-  static void eliminate(const LocalSurface& /*f*/, const Eigen::Vector3d& /*r*/, NewtonState& /*y*/) {}
-
-  static Vector residual(const LocalSurface& f, const LocalSurface& g, const Eigen::Vector3d& r, const NewtonState& y) {
-    Vector F;
-    F << f.gradient + y.alpha * y.alpha * g.gradient, f.value, g.value, y.s_a + y.beta * f.gradient - y.s_b - r;
-    return F;
-  }
-
-  static Matrix jacobian(const LocalSurface& f, const LocalSurface& g, const NewtonState& y) {
-    Matrix J = Matrix::Zero();
-    J.block<3, 3>(0, 0) = f.hessian;
-    J.block<3, 3>(0, 3) = y.alpha * y.alpha * g.hessian;
-    J.block<3, 1>(0, 6) = 2 * y.alpha * g.gradient;
-    J.block<1, 3>(3, 0) = f.gradient.transpose();
-    J.block<1, 3>(4, 3) = g.gradient.transpose();
-    J.block<3, 3>(5, 0) = Eigen::Matrix3d::Identity() + y.beta * f.hessian;
-    J.block<3, 3>(5, 3) = -Eigen::Matrix3d::Identity();
-    J.block<3, 1>(5, 7) = f.gradient;
-    return J;
-  }
-
-  static NewtonState moved(const NewtonState& y, const Vector& step) {
-    return {y.s_a + step.head<3>(), y.s_b + step.segment<3>(3), y.alpha + step[6], y.beta + step[7]};
-  }
-
-  /// The length of a step: how far the points move.
-  static double length(const Vector& step) { return step.head<6>().cwiseAbs().maxCoeff<Eigen::PropagateNaN>(); }
-};
-
-/// The same with sB = sA + beta f_x - r, eq. (dist8d), put into the others: F and its Jacobian in (sA, alpha, beta).
-struct FiveEquations {
-  static constexpr int kSize = 5;
-  using Vector = SmallVector<kSize>;
-  using Matrix = SmallMatrix<kSize>;
-
-  static void eliminate(const LocalSurface& f, const Eigen::Vector3d& r, NewtonState& y) {
-    y.s_b = y.s_a + y.beta * f.gradient - r;
-  }
-
-  static Vector residual(const LocalSurface& f, const LocalSurface& g, const Eigen::Vector3d& /*r*/,
-                         const NewtonState& y) {
-    Vector F;
-    F << f.gradient + y.alpha * y.alpha * g.gradient, f.value, g.value;
-    return F;
-  }
-
-  static Matrix jacobian(const LocalSurface& f, const LocalSurface& g, const NewtonState& y) {
-    const Eigen::Matrix3d ds_b = Eigen::Matrix3d::Identity() + y.beta * f.hessian;  // d sB / d sA
-    const Eigen::Matrix3d H_b = y.alpha * y.alpha * g.hessian;
-    Matrix J = Matrix::Zero();
-    J.block<3, 3>(0, 0) = f.hessian + H_b * ds_b;
-    J.block<3, 1>(0, 3) = 2 * y.alpha * g.gradient;
-    J.block<3, 1>(0, 4) = H_b * f.gradient;
-    J.block<1, 3>(3, 0) = f.gradient.transpose();
-    J.block<1, 3>(4, 0) = g.gradient.transpose() * ds_b;
-    J(4, 4) = g.gradient.dot(f.gradient);
-    return J;
-  }
-
-  static NewtonState moved(const NewtonState& y, const Vector& step) {
-    return {y.s_a + step.head<3>(), y.s_b, y.alpha + step[3], y.beta + step[4]};
-  }
-
-  static double length(const Vector& step) {
-    const double beta = std::abs(step[4]);
-    const double points = step.head<3>().cwiseAbs().maxCoeff<Eigen::PropagateNaN>();
-    // NaN if either is: std::max is its first argument then.
-    return std::isnan(beta) ? beta : std::max(points, beta);
-  }
-};
-
-/// A point of the iteration with all that was evaluated there.
-template <class Equations>
-struct NewtonPoint {
-  NewtonState y;
-  LocalSurface f;
-  LocalSurface g;
-  typename Equations::Vector F;
-};
-
-template <class Equations, ImplicitSurface ShapeA, ImplicitSurface ShapeB>
-NewtonPoint<Equations> newton_point(const WorldSurface<ShapeA>& a, const WorldSurface<ShapeB>& b,
-                                    const Eigen::Vector3d& r, NewtonState y) {
-  const LocalSurface f = a(y.s_a);
-  Equations::eliminate(f, r, y);
-  const LocalSurface g = b(y.s_b);
-  return {y, f, g, Equations::residual(f, g, r, y)};
-}
-
-/// The frame around one query: what turns its dimensionless solution into a DistanceResult.
+/// Scales and positions of one query, which convert its dimensionless solution into a DistanceResult.
 struct NewtonFrame {
-  Eigen::Vector3d r;  ///< A's centre to B's, over `length`
+  Eigen::Vector3d r;  ///< vector from A's centre to B's, over `length`
   Eigen::Vector3d p_WA;
   double length;
   double certified_depth;  ///< the sum of both smallest radii of curvature
 };
 
-/// g(n) of distance.h, dimensionless: a lower bound of the distance. NaN for shapes without a support function.
+/// Returns g(n) of distance.h, dimensionless: a lower bound of the distance. NaN for shapes without a support function.
 template <ImplicitSurface ShapeA, ImplicitSurface ShapeB>
 double certain_gap(const WorldSurface<ShapeA>& a, const WorldSurface<ShapeB>& b, const NewtonFrame& frame,
                    const Eigen::Vector3d& n) {
@@ -168,11 +44,11 @@ double certain_gap(const WorldSurface<ShapeA>& a, const WorldSurface<ShapeB>& b,
   }
 }
 
-/// What a solution of eqs. (dist8) is worth.
+/// Judgement of a solution of eqs. (dist8).
 enum class Verdict {
   answer,
-  too_deep,   ///< a solution, but one that need not be the answer
-  imprecise,  ///< it does not hold well enough
+  too_deep,   ///< a solution, but not necessarily the answer
+  imprecise,  ///< the equations are not fulfilled accurately enough
 };
 
 struct JudgedResult {
@@ -180,16 +56,17 @@ struct JudgedResult {
   Verdict verdict = Verdict::imprecise;
 };
 
-/// The answer at a solution of eqs. (dist8), or a declined one if it is not the answer or does not hold well enough.
+/// Returns the answer at a solution of eqs. (dist8), or a declined one if the solution is not the answer or not
+/// accurate enough.
 ///
-/// A last step of eqs. (dist8b) and (dist8c) alone, -f f_x / |f_x|^2, takes the points onto their surfaces to second
-/// order. With theta the angle between the normals and y the part of xB - xA across them, the distance of the tangent
-/// planes, n.(xB - xA), then errs by no more than |y|^2 / (2 d) (or |y|) upwards and, downwards, by theta^2 / 2 radii
-/// of curvature.
+/// A last step of eqs. (dist8b) and (dist8c) alone, -f f_x / |f_x|^2, moves the points onto their surfaces to second
+/// order. With theta the angle between the normals and y the part of xB - xA across them, the error of the distance of
+/// the tangent planes, n.(xB - xA), is then at most |y|^2 / (2 d) (or |y|) upwards and theta^2 / 2 radii of curvature
+/// downwards.
 ///
-/// Those are unbounded on flat faces. Bodies that have a support function have the lower bound g(n) too, which is
-/// taken instead. At a sharp edge the normal of f changes with the last digit of the point; there n is the direction of
-/// xB - xA, for which g(n) certifies the distance whatever the normals.
+/// Radii of curvature are unbounded on flat faces. Bodies that have a support function also have the lower bound g(n),
+/// which is used instead. At a sharp edge the normal of f changes with the last digit of the point; there n is the
+/// direction of xB - xA, for which g(n) certifies the distance whatever the normals.
 template <ImplicitSurface ShapeA, ImplicitSurface ShapeB>
 JudgedResult judge_solution(const WorldSurface<ShapeA>& a, const WorldSurface<ShapeB>& b, const LocalSurface& f,
                             const LocalSurface& g, const NewtonState& solution, const NewtonFrame& frame) {
@@ -200,7 +77,7 @@ JudgedResult judge_solution(const WorldSurface<ShapeA>& a, const WorldSurface<Sh
   const Eigen::Vector3d m = g.gradient / norm_g;
   const double offset_a = f.value / norm_f;
   const double offset_b = g.value / norm_g;
-  // Of the solution: `length` is that of the seed, whose points may lie anywhere.
+  // Size of the solution: `length` is that of the seed, whose points may lie anywhere.
   const double size = std::min(1.0, frame.r.norm() + solution.s_a.norm() + solution.s_b.norm());
   const double tolerance = kNewtonResidual * size;
   if (!(std::abs(offset_a) <= tolerance && std::abs(offset_b) <= tolerance)) return judged;
@@ -237,13 +114,13 @@ JudgedResult judge_solution(const WorldSurface<ShapeA>& a, const WorldSurface<Sh
   return judged;
 }
 
-/// How steps are shortened, besides to kMaxNewtonLength.
+/// Shortening of steps in addition to kMaxNewtonLength.
 enum class Damping {
   none,
   residual,  ///< halved until |F| falls, up to kMaxNewtonHalvings times
 };
 
-/// One attempt of Newton's method from `start`.
+/// Makes one attempt of Newton's method from `start`.
 template <class Equations, ImplicitSurface ShapeA, ImplicitSurface ShapeB>
 DistanceResult attempt_newton(const WorldSurface<ShapeA>& a, const WorldSurface<ShapeB>& b, const NewtonState& start,
                               const NewtonFrame& frame, int max_iterations, Damping damping) {
@@ -272,8 +149,8 @@ DistanceResult attempt_newton(const WorldSurface<ShapeA>& a, const WorldSurface<
       }
     }
     point = next;
-    // Convergence is quadratic until the steps are rounding, which is when they stop shrinking. Where a face is flat
-    // they stay long (nothing is changed by a move along it), and what tells is that the equations hold.
+    // Convergence is quadratic until the steps are rounding, which is when they stop shrinking. On a flat face they
+    // stay long (a move along it changes nothing), and the criterion is that the equations are fulfilled.
     const bool rounding = length <= kNewtonStall && length > 0.5 * previous_length;
     if (length <= kNewtonStep || rounding || point.F.cwiseAbs().maxCoeff() <= kNewtonResidual) {
       JudgedResult judged = judge_solution(a, b, point.f, point.g, point.y, frame);
@@ -286,15 +163,16 @@ DistanceResult attempt_newton(const WorldSurface<ShapeA>& a, const WorldSurface<
   return declined;
 }
 
-/// Newton's method from `start`, twice if need be.
+/// Runs Newton's method from `start`, twice if necessary.
 ///
-/// First steps are shortened to kMaxNewtonLength and no more: of 1000 ellipsoids with X0 = 10, from the points on the
-/// line of centres, that raised the share of pairs that are solved from 56 % to 99 % (eight equations) and from 41 % to
-/// 91 % (five), while shortening steps until |F| falls lowered it: on the way from a bad guess |F| has to grow.
+/// In the first attempt steps are only shortened to kMaxNewtonLength. For 1000 ellipsoids with X0 = 10, from the points
+/// on the line of centres, that raised the fraction of pairs that are solved from 56 % to 99 % (eight equations) and
+/// from 41 % to 91 % (five), while shortening steps until |F| falls lowered it: on the way from a bad guess |F| has to
+/// grow.
 ///
-/// Across an edge of a superellipsoid the normal turns by a right angle within nothing, and steps overshoot for ever.
-/// There |F| tells: from libccd's points, of pairs with exponents 1.6 the first attempt solves 40 %, the second, with
-/// |F| falling, nearly all of the rest.
+/// Across an edge of a superellipsoid the normal changes by a right angle within a tiny distance, and steps overshoot
+/// again and again. Requiring |F| to fall prevents that: from libccd's points, for pairs with exponents 1.6 the first
+/// attempt solves 40 %, the second nearly all of the rest.
 template <class Equations, ImplicitSurface ShapeA, ImplicitSurface ShapeB>
 DistanceResult solve_newton(const WorldSurface<ShapeA>& a, const WorldSurface<ShapeB>& b, const NewtonState& start,
                             const NewtonFrame& frame, int max_iterations) {
@@ -336,7 +214,7 @@ DistanceResult newton_distance_unchecked(const ShapeA& a, const Pose& X_WA, cons
              : solve_newton<FiveEquations>(surface_a, surface_b, start, frame, options.max_iterations);
 }
 
-/// Refuses a seed's point; `name` is the member of WitnessPair, `reason` what is wrong and what is accepted.
+/// Refuses a seed's point; `name` is the member of WitnessPair, `reason` states what is wrong and what is accepted.
 [[noreturn]] inline void refuse_seed(const char* name, const Eigen::Vector3d& point, const std::string& reason) {
   std::ostringstream message;
   message << "newton_distance: " << name << " of the seed, (" << point.x() << ", " << point.y() << ", " << point.z()
@@ -344,7 +222,7 @@ DistanceResult newton_distance_unchecked(const ShapeA& a, const Pose& X_WA, cons
   refuse(message.str());
 }
 
-/// The least f that check_seed accepts at a point x, in the body's frame.
+/// Returns the smallest f that check_seed accepts at a point x, in the body's frame.
 template <ImplicitSurface Shape>
 double least_seed_value(const Shape& shape, const Eigen::Vector3d& x) {
   return -kMaxSeedDepth * Eigen::Vector3d(shape.gradient(x)).norm() * x.norm();
@@ -364,7 +242,8 @@ void check_seed_point(const char* name, const Shape& shape, const Pose& X, const
   refuse_seed(name, point, reason.str());
 }
 
-/// The t > 0 where the ray t u from the centre leaves the body, to 1e-9 relative; NaN if the centre is not inside.
+/// Returns the t > 0 where the ray t u from the centre leaves the body, to 1e-9 relative; NaN if the centre is not
+/// inside.
 template <ImplicitSurface Shape>
 double ray_exit(const Shape& shape, const Eigen::Vector3d& u, double guess) {
   if (!(shape.value(Eigen::Vector3d::Zero()) < 0)) return std::numeric_limits<double>::quiet_NaN();
@@ -375,7 +254,7 @@ double ray_exit(const Shape& shape, const Eigen::Vector3d& u, double guess) {
     high *= 2;
     if (!std::isfinite(high)) return std::numeric_limits<double>::quiet_NaN();
   }
-  // Newton's method, and bisection where that leaves the bracket.
+  // Newton's method, with bisection if it leaves the bracket.
   double t = high;
   for (int iteration = 0; iteration < 200; ++iteration) {
     const double f = shape.value(t * u);

@@ -1,9 +1,10 @@
 #pragma once
 
-/// Two bodies {x : N(x/a) <= 1}, N a nested norm (kernel/nested_norm.h), evaluated at once: superellipsoids, and
-/// ellipsoids beside them.
+/// Two bodies {x : N(x/a) <= 1}, N a nested norm (kernel/nested_norm.h), evaluated at once: superellipsoids, or one of
+/// them with an ellipsoid.
 
 #include <geom/ellipsoid.h>
+#include <geom/kernel/lane_norms.h>
 #include <geom/kernel/lanes.h>
 #include <geom/superellipsoid.h>
 
@@ -11,180 +12,7 @@
 
 namespace geom::kernel {
 
-/// Nk(u, v) = (u^q + v^q)^(1/q), u, v >= 0, as in PlaneNorm, by logarithms.
-///
-/// With t = v/u <= 1: t^(q-1) = exp((q - 1) ln t), whose relative error, |(q - 1) ln t| epsilon, grows no faster than
-/// the value falls, so that everything is exact to some epsilon of the norm.
-class LanePlaneNorm {
- public:
-  explicit LanePlaneNorm(Lanes q) : minus_one_(q - 1), inverse_(1 / q) {}
-
-  Lanes exponent() const { return 1 + minus_one_; }
-
-  struct Value {
-    Lanes norm;
-    Lanes du, dv;  ///< (u / N)^(q-1)
-  };
-  struct Logged : Value {
-    Lanes log_norm;  ///< ln N
-  };
-
-  Logged operator()(Lanes u, Lanes v, Lanes log_u, Lanes log_v) const {
-    const LaneBits swapped = below(u, v);
-    const Lanes larger = select(swapped, v, u);
-    const Lanes smaller = select(swapped, u, v);
-    const Lanes log_larger = select(swapped, log_v, log_u);
-    const Lanes log_t = select(swapped, log_u, log_v) - log_larger;
-    const Lanes zero = both(0);
-    const Lanes t = smaller / select(below(zero, larger), larger, both(1));
-    const Lanes p = select(below(zero, smaller), exp(minus_one_ * log_t), zero);  // t^(q-1)
-    const Lanes s = 1 + t * p;
-    const Lanes log_root = log(s) * inverse_;
-    const Lanes root = exp(log_root);
-    const Lanes d_larger = root / s;  // s^(1/q - 1)
-    const Lanes d_smaller = p * d_larger;
-    return {{larger * root, select(swapped, d_smaller, d_larger), select(swapped, d_larger, d_smaller)},
-            log_larger + log_root};
-  }
-
-  /// t^(q-1) of ln t; next to nothing, below e^-70, for log(0).
-  Lanes slope(Lanes log_t) const { return exp(minus_one_ * log_t); }
-  /// s^(1/q).
-  Lanes root(Lanes s) const { return exp(log(s) * inverse_); }
-
-  /// l of the Hessian l (v, -u)(v, -u)^T; u, v > 0.
-  Lanes curvature(const Value& at, Lanes u, Lanes v) const { return minus_one_ * (at.du * at.dv) / (u * v * at.norm); }
-
- private:
-  Lanes minus_one_;
-  Lanes inverse_;
-};
-
-class LaneNorm {
- public:
-  struct Levels {
-    LanePlaneNorm::Value inner, outer;
-  };
-
-  LaneNorm(Lanes q1, Lanes q2) : outer_(q1), inner_(q2), kind_(kind_of(q1, q2)) {}
-
-  struct Value {
-    Lanes norm;
-    LaneVector gradient;  ///< dN/dw, each in [0, 1]
-  };
-  /// With the Hessian, across across^T + along along^T.
-  struct Curved : Value {
-    LaneVector across;  ///< in the plane of w0 and w1
-    LaneVector along;
-    Levels levels;
-  };
-
-  const LanePlaneNorm& outer() const { return outer_; }
-  const LanePlaneNorm& inner() const { return inner_; }
-
-  Value operator()(const LaneVector& w) const {
-    if (kind_ == Kind::nested) return value(nested(w));
-    if (kind_ == Kind::quadratic) {
-      const Lanes norm = sqrt(w.dot(w));
-      return {norm, (1 / norm) * w};
-    }
-    const Powers t = powers(w);
-    const Lanes root = outer_.root(t.s);
-    return {t.larger * root, (root / t.s) * t.p};
-  }
-
-  /// Both vectors are orthogonal to w to rounding. Where a w vanishes and q < 2 (a flat face) the Hessian is infinite;
-  /// there it is that of w kept above kLeast of the largest, which is huge.
-  Curved curved(const LaneVector& w) const {
-    const Lanes larger = select(below(w.x, w.y), w.y, w.x);
-    const Lanes least = kLeast * select(below(larger, w.z), w.z, larger);
-    const LaneBits vanishing = below(w.x, least) | below(w.y, least) | below(w.z, least);
-    if (any(vanishing)) [[unlikely]] {
-      const auto lifted = [&least](Lanes v) { return select(below(v, least), 2 * least, v); };
-      Curved at = curved({lifted(w.x), lifted(w.y), lifted(w.z)});
-      at.levels = nested(w);
-      static_cast<Value&>(at) = value(at.levels);
-      return at;
-    }
-    const Levels levels = kind_ == Kind::equal ? equal(w) : kind_ == Kind::quadratic ? quadratic(w) : nested(w);
-    const auto& [inner, outer] = levels;
-    const Lanes k_inner = sqrt(outer.du * inner_.curvature(inner, w.x, w.y));
-    const Lanes k_outer = sqrt(outer_.curvature(outer, inner.norm, w.z));
-    return {value(levels),
-            {k_inner * w.y, -k_inner * w.x, both(0)},
-            {k_outer * w.z * inner.du, k_outer * w.z * inner.dv, -k_outer * inner.norm},
-            levels};
-  }
-
- private:
-  /// Of both lanes: q1 = q2 = 2, q1 = q2, or anything.
-  enum class Kind { quadratic, equal, nested };
-  static Kind kind_of(Lanes q1, Lanes q2) {
-    if (q1[0] != q2[0] || q1[1] != q2[1]) return Kind::nested;
-    return q1[0] == 2 && q1[1] == 2 ? Kind::quadratic : Kind::equal;
-  }
-
-  static constexpr double kLeast = 1e-20;
-
-  Levels nested(const LaneVector& w) const {
-    const Lanes log_z = log(w.z);
-    const LanePlaneNorm::Logged inner = inner_(w.x, w.y, log(w.x), log(w.y));
-    return {inner, outer_(inner.norm, w.z, inner.log_norm, log_z)};
-  }
-
-  /// For w > 0: the square root of a sum of squares.
-  static Levels quadratic(const LaneVector& w) {
-    const Lanes xy = w.x * w.x + w.y * w.y;
-    const Lanes rho = sqrt(xy);
-    const Lanes norm = sqrt(xy + w.z * w.z);
-    const Lanes by_rho = 1 / rho;
-    const Lanes by_norm = 1 / norm;
-    return {{rho, w.x * by_rho, w.y * by_rho}, {norm, rho * by_norm, w.z * by_norm}};
-  }
-
-  /// Of q1 = q2 = q, where no power waits for that of another level: N = larger s^(1/q).
-  struct Powers {
-    Lanes larger;   ///< of all three
-    LaneVector p;   ///< t^(q-1), t = w / larger
-    Lanes s_xy, s;  ///< sums of t^q
-  };
-  Powers powers(const LaneVector& w) const {
-    const LaneVector logs{log(w.x), log(w.y), log(w.z)};
-    const LaneBits y_leads = below(w.x, w.y);
-    const Lanes larger_xy = select(y_leads, w.y, w.x);
-    const Lanes log_xy = select(y_leads, logs.y, logs.x);
-    const LaneBits z_leads = below(larger_xy, w.z);
-    const Lanes larger = select(z_leads, w.z, larger_xy);
-    const Lanes log_larger = select(z_leads, logs.z, log_xy);
-    const LaneVector p{outer_.slope(logs.x - log_larger), outer_.slope(logs.y - log_larger),
-                       outer_.slope(logs.z - log_larger)};
-    const Lanes zero = both(0);
-    const LaneVector t = (1 / select(below(zero, larger), larger, both(1))) * w;
-    const Lanes s_xy = t.x * p.x + t.y * p.y;
-    return {larger, p, s_xy, s_xy + t.z * p.z};
-  }
-
-  /// For w > 0.
-  Levels equal(const LaneVector& w) const {
-    const Powers t = powers(w);
-    const Lanes root_xy = outer_.root(t.s_xy);
-    const Lanes root = outer_.root(t.s);
-    const Lanes d_xy = root_xy / t.s_xy;
-    const Lanes d = root / t.s;
-    return {{t.larger * root_xy, t.p.x * d_xy, t.p.y * d_xy}, {t.larger * root, d / d_xy, t.p.z * d}};
-  }
-
-  static Value value(const Levels& levels) {
-    const auto& [inner, outer] = levels;
-    return {outer.norm, {outer.du * inner.du, outer.du * inner.dv, outer.dv}};
-  }
-
-  LanePlaneNorm outer_;
-  LanePlaneNorm inner_;
-  Kind kind_;
-};
-
-/// A shape's semi-axes and exponents.
+/// Semi-axes and exponents of a shape.
 struct NormShape {
   explicit NormShape(const Superellipsoid& s) : semi_axes(s.semi_axes()), e1(s.e1()), e2(s.e2()) {}
   explicit NormShape(const Ellipsoid& s) : semi_axes(s.semi_axes()), e1(1), e2(1) {}
@@ -193,7 +21,7 @@ struct NormShape {
   double e1, e2;
 };
 
-/// Both bodies in world axes, each about its own centre.
+/// Pair of bodies in world axes, each about its own centre.
 class NormBodies {
  public:
   NormBodies(const NormShape& a, const Eigen::Matrix3d& R_a, const NormShape& b, const Eigen::Matrix3d& R_b)
@@ -206,7 +34,7 @@ class NormBodies {
   Lanes e1() const { return e1_; }
   Lanes e2() const { return e2_; }
 
-  /// Sum of R diag(a^2) R^T of both.
+  /// Returns the sum of R diag(a^2) R^T over both bodies.
   Eigen::Matrix3d quadrics() const {
     const LaneVector u = axes_.x * R_.x;
     const LaneVector v = axes_.y * R_.y;
@@ -216,7 +44,7 @@ class NormBodies {
     return Q;
   }
 
-  /// a n in body axes, n and -n: what the dual norm is taken of.
+  /// Returns the arguments of the dual norm: a n in body axes, for n (A) and -n (B).
   LaneVector in_norm(const Eigen::Vector3d& n) const {
     return product(axes_, R_.transposed_times(LaneVector::of(n, -n)));
   }
@@ -226,13 +54,13 @@ class NormBodies {
     Lanes height;
     LaneVector point;
     LaneVector t1, t2;
-    // What a majorant is made of.
+    // Input of a majorant.
     LaneVector w;      ///< a |n|, body axes
-    LaneVector scale;  ///< the semi-axes with the signs of n
+    LaneVector scale;  ///< semi-axes with the signs of n
     LanePlaneNorm::Value inner, outer;
   };
 
-  /// Of A at n and of B at -n, n a unit vector.
+  /// Returns the supports of A at n and of B at -n, n a unit vector.
   Support support(const Eigen::Vector3d& n) const {
     const LaneVector v = in_norm(n);
     const LaneVector w = abs(v);
@@ -273,17 +101,17 @@ class NormBodies {
     LaneVector gradient;
     Lanes offset;
     Lanes height;
-    bool raised;  ///< some w_i was
+    bool raised;  ///< some w_i was raised
   };
   Majorant majorant(const Support& s, double allowance) const;
   LaneVector to_body(const LaneVector& v) const { return R_.transposed_times(v); }
 
-  /// The outward normals of the surfaces at x, or at the surface points in their direction: N is homogeneous.
+  /// Returns the outward normals of the surfaces at x, or at the surface points in their direction: N is homogeneous.
   LaneVector normals(const LaneVector& x) const {
     const LaneVector w = product(inverse_axes_, R_.transposed_times(x));
     return normalized(R_ * product(norm_(abs(w)).gradient, signed_like(inverse_axes_, w)));
   }
-  /// N(x/a): at most 1 in the body.
+  /// Returns N(x/a): at most 1 in the body.
   Lanes norms(const LaneVector& x) const { return norm_(abs(product(inverse_axes_, R_.transposed_times(x)))).norm; }
   LaneVector on_surface(const LaneVector& x) const { return (1 / norms(x)) * x; }
 
@@ -301,15 +129,14 @@ class NormBodies {
     return {with_sign(size.x, sign.x), with_sign(size.y, sign.y), with_sign(size.z, sign.z)};
   }
 
-  /// The tangent (A, B) of a plane norm, q < 2, at (x, y)/N or, where one of them is below `floor`, with that one
-  /// raised.
+  /// Tangent (A, B) of a plane norm, q < 2, at (x, y)/N; a component below `floor` is raised to it.
   struct Weights {
     Lanes a, b;
   };
   static Weights raised_weights(Lanes q, Lanes x, Lanes y, Lanes floor);
   static Lanes floor_for(Lanes q, Lanes allowance);
 
-  /// What a majorant takes from either norm; see there.
+  /// Tangents of the inner and the outer norm that enter a majorant; see there.
   struct InnerTangent {
     Weights Q;
     Lanes R2;
@@ -323,7 +150,7 @@ class NormBodies {
   InnerTangent inner_tangent(const Support& s, Lanes rho, Lanes relative) const;
   OuterTangent outer_tangent(const Support& s, Lanes rho, Lanes relative) const;
 
-  /// rho is kept above this share of h: n along body z has none.
+  /// rho is kept above this fraction of h: rho = 0 for n along body z.
   static constexpr double kLeastRho = 1e-30;
   /// An exponent below 2 for lanes whose result is not used.
   static constexpr double kAnyFlat = 1.5;
@@ -332,16 +159,16 @@ class NormBodies {
   LaneVector inverse_axes_;
   LaneRotation R_;
   Lanes e1_, e2_;
-  LaneNorm norm_;  ///< of x/a
-  LaneNorm dual_;  ///< of a n
+  LaneNorm norm_;  ///< norm of x/a
+  LaneNorm dual_;  ///< norm of a n
 };
 
-/// x^e for positive x.
+/// Returns x^e for positive x.
 inline Lanes power(Lanes x, Lanes e) {
   return exp(e * log(x));
 }
 
-/// N at (U, V)/N raises the norm by about T^q (1/q - 1/2): T for which that is the allowance.
+/// Returns the T for which the norm is raised by the allowance: at (U, V)/N it is raised by about T^q (1/q - 1/2).
 inline Lanes NormBodies::floor_for(Lanes q, Lanes allowance) {
   constexpr double kLeast = 1e-15;  // an offset below rounding
   constexpr double kMost = 0.3;
@@ -358,8 +185,8 @@ inline NormBodies::Weights NormBodies::raised_weights(Lanes q, Lanes x, Lanes y,
   return {Z * px, Z * py};
 }
 
-/// Of rho' = N2 (see Majorant): Q_i, R2 = sum of Q_i w_i^2 for q2 < 2, which is rho^2 or a little more, and half the
-/// derivative of rho'^2.
+/// Returns the tangent of rho' = N2 (see Majorant): Q_i, R2 = sum of Q_i w_i^2 for q2 < 2, which is rho^2 or a little
+/// more, and half the derivative of rho'^2.
 inline NormBodies::InnerTangent NormBodies::inner_tangent(const Support& s, Lanes rho, Lanes relative) const {
   const Lanes q2 = dual_.inner().exponent();
   const LaneBits flat = below(q2, both(2));
@@ -385,7 +212,7 @@ inline NormBodies::InnerTangent NormBodies::inner_tangent(const Support& s, Lane
   return t;
 }
 
-/// Of h' = N1 for q1 <= 2: h'^2 <= A rho'^2 + B w2'^2.
+/// Returns the tangent of h' = N1 for q1 <= 2: h'^2 <= A rho'^2 + B w2'^2.
 inline NormBodies::OuterTangent NormBodies::outer_tangent(const Support& s, Lanes rho, Lanes relative) const {
   const Lanes q1 = dual_.outer().exponent();
   const LaneBits flat = below(q1, both(2));
@@ -401,7 +228,7 @@ inline NormBodies::OuterTangent NormBodies::outer_tangent(const Support& s, Lane
   return t;
 }
 
-/// Each quantity for q1 <= 2 and for q1 > 2, a lane takes its own.
+/// Computes each quantity for q1 <= 2 and for q1 > 2; each lane selects its own.
 inline NormBodies::Majorant NormBodies::majorant(const Support& s, double allowance) const {
   const Lanes two = both(2);
   const Lanes q1 = dual_.outer().exponent();

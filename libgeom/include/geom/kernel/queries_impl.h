@@ -5,7 +5,7 @@
 namespace geom {
 namespace kernel {
 
-/// A body of one point.
+/// Body that consists of one point.
 struct Point {
   Support support(const Eigen::Vector3d& /*n*/) const { return {0, Eigen::Vector3d::Zero()}; }
   Eigen::Matrix3d support_hessian(const Eigen::Vector3d& /*n*/) const { return Eigen::Matrix3d::Zero(); }
@@ -14,7 +14,7 @@ struct Point {
   double min_curvature_radius() const { return 0; }
 };
 
-/// v / |v|, also where |v|^2 under- or overflows; NaN if v is zero or not finite.
+/// Returns v / |v|, also if |v|^2 under- or overflows; NaN if v is zero or not finite.
 inline Eigen::Vector3d unit_vector(const Eigen::Vector3d& v) {
   const double v2 = v.squaredNorm();
   constexpr double kMost2 = 1e300;  // below overflow
@@ -30,20 +30,20 @@ struct NearRay {
   double t = 0;
 };
 
-/// near_ray() takes at most this many steps: coordinates up to kMaxCoordinate, semi-axes down to kMinSemiAxis, and a
-/// step that is right to 1e-15 of its length.
+/// Maximum number of steps of near_ray(): coordinates up to kMaxCoordinate, semi-axes down to kMinSemiAxis, and a step
+/// that is accurate to 1e-15 of its length.
 inline constexpr int kMaxRayApproaches = 16;
 
-/// Moves the origin of a ray that comes from afar to about two bounding radii before it is closest to the body's
+/// Moves the origin of a ray that starts far away to about two bounding radii before it is closest to the body's
 /// centre, so that neither the step into the surface nor the tolerance there is rounded with the length of the way. The
-/// new origin is the point of the ray, for the direction as given and not made unit, rounded once to its own
-/// coordinates (a step from beyond 1e15 radii takes more than one, and is rounded to those on the way). A ray that
-/// starts near, or leads away, stays as it is.
+/// new origin is the point of the ray, for the direction as given (not normalised), rounded once to its own coordinates
+/// (a step from beyond 1e15 radii takes more than one, and is rounded to the coordinates on the way). A ray that starts
+/// near, or leads away, is not changed.
 inline NearRay near_ray(const Eigen::Vector3d& centre, double radius, const Eigen::Vector3d& origin,
                         const Eigen::Vector3d& direction) {
   int exponent = 0;
   std::frexp(direction.cwiseAbs().maxCoeff(), &exponent);
-  Eigen::Vector3d d;  // by a power of two, exactly: lengths of any direction neither under- nor overflow
+  Eigen::Vector3d d;  // scaled by a power of two, exactly: lengths of any direction neither under- nor overflow
   for (int k = 0; k < 3; ++k) d[k] = std::ldexp(direction[k], -exponent);
   const double length = d.norm();
   NearRay ray{origin};
@@ -57,16 +57,17 @@ inline NearRay near_ray(const Eigen::Vector3d& centre, double radius, const Eige
   return ray;
 }
 
-/// Whether a point's coordinates are finite and as small as those of a Pose.
+/// Returns whether a point's coordinates are finite and as small as those of a Pose.
 inline bool is_within_reach(const Eigen::Vector3d& p_W) {
   return (p_W.array().abs() <= kMaxCoordinate).all();
 }
 
-/// From the distance of a ball of that radius about the point, as body A, to the shape, as body B.
+/// Returns the closest point from the distance of a ball of that radius about the point, as body A, to the shape, as
+/// body B.
 inline ClosestPoint closest_point_from(const Eigen::Vector3d& p_W, const DistanceResult& r, double radius) {
   ClosestPoint closest;
-  closest.distance = r.distance + radius;             // exactly so, whatever the radius: support functions add up
-  closest.point = p_W + closest.distance * r.normal;  // what mismatch there is of the support points goes to the shape
+  closest.distance = r.distance + radius;             // exact for any radius: support functions are additive
+  closest.point = p_W + closest.distance * r.normal;  // any mismatch of the support points is assigned to the shape
   closest.normal = -r.normal;
   closest.error_bound = r.error_bound;
   closest.status = r.status;
@@ -75,8 +76,8 @@ inline ClosestPoint closest_point_from(const Eigen::Vector3d& p_W, const Distanc
   return closest;
 }
 
-/// What an answer of `distance` says for certain: apart, by a positive lower bound; overlapping, by a negative upper
-/// bound or a point that both bodies hold, or touching to rounding.
+/// Returns what is certain from an answer of `distance`: apart, by a positive lower bound; overlapping, by a negative
+/// upper bound or a point inside both bodies, or touching to rounding.
 template <class ShapeA, class ShapeB>
 Answer certain_answer(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const Pose& X_WB, const DistanceResult& d) {
   if (d.status == DistanceStatus::separated) return d.distance > 0 ? Answer::no : Answer::yes;
@@ -145,7 +146,7 @@ RayHit ray_cast(const Shape& shape, const Pose& X_WB, const Eigen::Vector3d& ori
       return hit;
     }
     const double approach = -closest.normal.dot(u);
-    // Above its tangent plane the body has no point.
+    // The body has no point above its tangent plane.
     if (!(approach > kRayApproach)) {
       hit.status = RayStatus::missed;
       return hit;

@@ -1,9 +1,9 @@
 #pragma once
 
-/// Numbers of records that stand anywhere in memory, into vectors of one number for each lane: what the kernels of both
-/// libraries read bodies with, without the stores that filling rows of numbers would cost. There must be as many
-/// records as lanes, and both numbers that are loaded in each. Included by files that are compiled for their
-/// instruction set each (batch_kernel.h says what follows).
+/// Loads numbers of records anywhere in memory into vectors of one number for each lane. The kernels of both libraries
+/// read bodies this way, without the stores that filling rows of numbers would cost. There must be as many records as
+/// lanes, and both numbers that are loaded in each. Included by files that are each compiled for their instruction set
+/// (src/batch/kernel.h states the consequences).
 
 #include <hwy/highway.h>
 
@@ -23,7 +23,7 @@ HWY_INLINE void load_two(D d, const double* const* records, int number, hn::Vec<
 
 #else
 
-/// Of the first of every two records a number and the one after it, side by side.
+/// Loads a number and its successor from the first of every two records, side by side.
 template <class D>
 HWY_INLINE hn::Vec<D> load_blocks(D d, const double* const* records, int number) {
   if constexpr (hn::MaxLanes(D()) == 2) {
@@ -35,7 +35,7 @@ HWY_INLINE hn::Vec<D> load_blocks(D d, const double* const* records, int number)
   }
 }
 
-/// A number of each record, and the one after it.
+/// Loads a number of each record, and its successor.
 template <class D>
 HWY_INLINE void load_two(D d, const double* const* records, int number, hn::Vec<D>& first, hn::Vec<D>& second) {
   const auto even = load_blocks(d, records, number);

@@ -1,11 +1,11 @@
 #pragma once
 
-/// The point of a convex set closest to the origin, by the algorithm of Gilbert, Johnson and Keerthi (IEEE J. Robotics
+/// Point of a convex set closest to the origin, by the algorithm of Gilbert, Johnson and Keerthi (IEEE J. Robotics
 /// Autom. 4 (1988) 193), for bodies that are apart but whose support points jump: cylinders side by side, flat faces.
 ///
 /// The set is B - A. Each step takes the closest point x of the convex hull of up to four of its points, and adds the
-/// point of the set that reaches least far along x. |x| is an upper bound of the distance, as the hull is inside the
-/// set; the gap across n = x / |x| is a lower one.
+/// point of the set that has the smallest component along x. |x| is an upper bound of the distance, because the hull is
+/// inside the set; the gap across n = x / |x| is a lower one.
 
 #include <geom/kernel/dual_newton.h>
 
@@ -20,14 +20,14 @@
 
 namespace geom::kernel {
 
-/// A point of B - A and where it comes from, both relative to A's centre.
+/// Point of B - A and the points of A and B that it comes from, both relative to A's centre.
 struct DifferencePoint {
   Eigen::Vector3d a = Eigen::Vector3d::Zero();
   Eigen::Vector3d b = Eigen::Vector3d::Zero();
   Eigen::Vector3d p() const { return b - a; }
 };
 
-/// A convex combination of up to three of them.
+/// Convex combination of up to three points.
 struct Simplex {
   std::array<DifferencePoint, 4> point;
   std::array<double, 4> weight{};
@@ -43,8 +43,8 @@ struct Simplex {
   }
 };
 
-/// The weights of the point of a triangle's plane closest to the origin; false if one is negative, or the triangle is
-/// degenerate.
+/// Computes the weights of the point of a triangle's plane closest to the origin; returns false if one is negative, or
+/// the triangle is degenerate.
 inline bool foot(const Eigen::Vector3d& p, const Eigen::Vector3d& q, const Eigen::Vector3d& r, double& u, double& v,
                  double& w) {
   const Eigen::Vector3d d = q - p;
@@ -91,15 +91,15 @@ inline void reduce(Simplex& s) {
 }
 
 struct SimplexAnswer {
-  DifferencePoint closest;                      ///< the points of both bodies
-  Eigen::Vector3d n = Eigen::Vector3d::Zero();  ///< the normal of the best lower bound
+  DifferencePoint closest;                      ///< closest point, with the points of both bodies
+  Eigen::Vector3d n = Eigen::Vector3d::Zero();  ///< normal of the best lower bound
   double lower = -std::numeric_limits<double>::infinity();
   double upper = std::numeric_limits<double>::infinity();
   int iterations = 0;
 };
 
-/// `pair.support_pair(n)` and `pair.r()` as for solve_dual. Ends when the bounds are `tolerance` apart or improve no
-/// more; upper = 0: the bodies overlap.
+/// Runs the algorithm; `pair.support_pair(n)` and `pair.r()` are as for solve_dual. Ends when the bounds are
+/// `tolerance` apart or improve no more; upper = 0: the bodies overlap.
 template <class Pair>
 SimplexAnswer descend(const Pair& pair, const Eigen::Vector3d& start, double tolerance) {
   constexpr int kMostSteps = 300;

@@ -2,10 +2,10 @@
 
 /// Linear systems of a few unknowns.
 ///
-/// Not Eigen's solvers: an object whose fixed size is a multiple of 16 bytes, as its 4x4 and 8x8 matrices and their
-/// decompositions are, is aligned as -march says. A program may be compiled with another -march than the library, and
-/// of an inline function that both contain the linker keeps one copy: functions on such objects must not be shared.
-/// These types look the same to everybody.
+/// Eigen's solvers are avoided: an object whose fixed size is a multiple of 16 bytes, such as its 4x4 and 8x8 matrices
+/// and their decompositions, is aligned according to -march. A program may be compiled with another -march than the
+/// library, and the linker keeps one copy of an inline function that both contain: functions on such objects must not
+/// be shared. The types here have the same layout for all.
 
 #include <Eigen/Core>
 
@@ -19,7 +19,7 @@ using SmallVector = Eigen::Matrix<double, N, 1, Eigen::DontAlign>;
 template <int N>
 using SmallMatrix = Eigen::Matrix<double, N, N, Eigen::DontAlign>;
 
-/// x with A x = b, by Gaussian elimination with partial pivoting; infinite or NaN if A is singular.
+/// Returns x with A x = b, by Gaussian elimination with partial pivoting; infinite or NaN if A is singular.
 template <int N>
 SmallVector<N> solve_small(SmallMatrix<N> A, SmallVector<N> b) {
   for (int k = 0; k < N; ++k) {

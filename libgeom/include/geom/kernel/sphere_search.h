@@ -1,8 +1,8 @@
 #pragma once
 
-/// The largest value of g(n) = n.r - hA(n) - hB(-n) over the whole sphere, between two bounds: branch and bound.
+/// Bounds of the largest value of g(n) = n.r - hA(n) - hB(-n) over the whole sphere, by branch and bound.
 ///
-/// Deep overlaps have several local maxima, and nothing local tells which is the largest. But -g is the support
+/// Deep overlaps have several local maxima, and no local property distinguishes the largest. But -g is the support
 /// function of the Minkowski difference of the bodies, so that every point p of the difference bounds g everywhere:
 /// g(n) <= n.p. The point p(m) = r - sA(m) + sB(-m) does so with equality at n = m. If a ball of radius rho rolls
 /// freely inside the difference (rho: the sum of both smallest radii of curvature), -g - rho is a support function,
@@ -12,13 +12,14 @@
 ///
 /// is sharper: its error is (R - rho) theta^2 / 2 at the angle theta from m, R the local radius of curvature.
 ///
-/// The sphere is cut into spherical triangles. Over one with corners n_i, every unit n is a convex combination of them
-/// divided by its length, which is between c, the distance of their plane from the origin, and 1; so n.q is at most max
-/// n_i.q, divided by c if that is positive, and at most |q| anyway. A triangle whose bound, the least over the points q
-/// of its corners and of the best normal found so far, is not above the best value is done; others are halved.
+/// The sphere is divided into spherical triangles. In a triangle with corners n_i, every unit n is a convex combination
+/// of them divided by its length, which is between c, the distance of their plane from the origin, and 1; so n.q is at
+/// most max n_i.q, divided by c if that is positive, and at most |q| anyway. The bound of a triangle is the smallest
+/// over the points q of its corners and of the best normal found so far. A triangle whose bound is not above the best
+/// value is done; others are halved.
 ///
 /// Across a ridge of g, which belongs to a face of the difference, p(m) jumps, and each of the points bounds one side
-/// only. A point between two of them, or in the triangle of three, bounds both sides: the difference is convex.
+/// only. A point between two of them, or in the triangle of three, bounds both sides, because the difference is convex.
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -32,15 +33,16 @@
 
 namespace geom::kernel {
 
-/// g at a unit normal, and the point of the Minkowski difference that bounds it elsewhere: p(n), or with rho = 0 any.
+/// Value of g at a unit normal, and the point of the Minkowski difference that bounds it elsewhere: p(n), or with rho =
+/// 0 any.
 struct Tangent {
   Eigen::Vector3d n;
   Eigen::Vector3d p;
   double g;
 };
 
-/// The highest of some normals beside n along v, a unit vector across n; n itself if g is higher at none of them by
-/// more than `rounding`.
+/// Returns the highest of some normals near n along v, a unit vector across n; n itself if none of them has a g that is
+/// higher by more than `rounding`.
 template <class Sample>
 Eigen::Vector3d highest_beside(const Sample& sample, const Tangent& at, const Eigen::Vector3d& v, double rounding) {
   Eigen::Vector3d best = at.n;
@@ -57,22 +59,24 @@ Eigen::Vector3d highest_beside(const Sample& sample, const Tangent& at, const Ei
   return best;
 }
 
-/// The heights of a point above three planes through the origin, n_i.q.
+/// Heights of a point above three planes through the origin, n_i.q.
 using Heights = Eigen::Vector3d;
 
-/// The least that the largest height of a point between two points can be; infinite if one of the two is the best.
+/// Returns the minimum over the points between two points of the largest height; infinite if one of the two is the
+/// best.
 inline double least_between(const Heights& a, const Heights& b) {
   const Heights rise = b - a;
   double least = std::numeric_limits<double>::infinity();
   for (int i = 0; i < 3; ++i) {
     const int j = (i + 1) % 3;
-    const double t = (a[i] - a[j]) / (rise[j] - rise[i]);  // there the two are equal
+    const double t = (a[i] - a[j]) / (rise[j] - rise[i]);  // the two are equal there
     if (t > 0 && t < 1) least = std::min(least, (a + t * rise).maxCoeff());
   }
   return least;
 }
 
-/// The largest height of the point of the triangle of three whose heights are all equal; infinite if there is none.
+/// Returns the largest height of the point of the triangle of three whose heights are all equal; infinite if there is
+/// none.
 inline double equal_within(const Heights& a, const Heights& b, const Heights& c) {
   const Eigen::Vector3d shares(b.cross(c).sum(), c.cross(a).sum(), a.cross(b).sum());
   const double all = shares.sum();
@@ -80,8 +84,9 @@ inline double equal_within(const Heights& a, const Heights& b, const Heights& c)
   return ((shares[0] * a + shares[1] * b + shares[2] * c) / all).maxCoeff();
 }
 
-/// The Tangent that climb(n) ends at, a stationary point; where that is a saddle, as between symmetric bodies, it goes
-/// on from beside it. `upward(n)` is a unit vector across n along which g bends upwards, or zero.
+/// Returns the Tangent at the stationary point where climb(n) ends. If that is a saddle, as between symmetric bodies,
+/// the climb continues from a normal beside it. `upward(n)` is a unit vector across n along which g curves upwards, or
+/// zero.
 template <class Sample, class Climb, class Upward>
 Tangent climb_over_saddles(const Sample& sample, const Climb& climb, const Upward& upward, const Eigen::Vector3d& n,
                            double rounding) {
@@ -99,17 +104,18 @@ Tangent climb_over_saddles(const Sample& sample, const Climb& climb, const Upwar
   return top;
 }
 
-/// `sample(n)` returns the Tangent at n; `polish(n)` one at a local maximum uphill of n, or at n.
+/// Branch and bound over all normals. `sample(n)` returns the Tangent at n; `polish(n)` one at a local maximum uphill
+/// of n, or at n.
 template <class Sample, class Polish>
 class SphereSearch {
  public:
-  /// `start`: a local maximum; `rounding`: by how much g must grow to be called higher.
+  /// Constructs the search. `start`: a local maximum; `rounding`: increase of g that counts as higher.
   SphereSearch(const Sample& sample, const Polish& polish, double rho, const Tangent& start, double rounding)
       : sample_(sample), polish_(polish), rho_(rho), rounding_(rounding), best_(start) {}
 
-  /// Looks for a normal with g > best().g + tolerance until none is left or `budget` samples are spent; for larger
-  /// tolerances first, so that what is spent is not spent on one corner of the sphere. After it, max g <= upper(), and
-  /// best() is a local maximum, as high as any normal that was looked at.
+  /// Searches for a normal with g > best().g + tolerance until none is left or `budget` samples are spent; for larger
+  /// tolerances first, so that the budget is not spent on one corner of the sphere. Afterwards max g <= upper(), and
+  /// best() is a local maximum, at least as high as every normal that was sampled.
   void run_to(double tolerance, int budget);
 
   const Tangent& best() const { return best_; }
@@ -123,7 +129,7 @@ class SphereSearch {
   };
 
   void run(double tolerance, int last_sample);
-  /// By single points at first, by more while that is above `enough`.
+  /// Returns a bound of g in a triangle, by single points at first, by more points while it is above `enough`.
   double bound(const Corners& corners, double enough) const;
   void consider(const Tangent& t, double tolerance);
   void consider_rival(const Tangent& t, double tolerance);
@@ -139,12 +145,12 @@ class SphereSearch {
   double rho_;
   double rounding_;
   Tangent best_;
-  bool polished_ = true;  ///< best_ is a local maximum
+  bool polished_ = true;  ///< whether best_ is a local maximum
   double upper_ = std::numeric_limits<double>::infinity();
   double pruned_ = 0;  ///< the largest bound among the triangles that are done
   std::array<Eigen::Vector3d, 16> rivals_;
   std::size_t rival_count_ = 0;
-  bool finest_ = false;  ///< the tolerance is the one that was asked for
+  bool finest_ = false;  ///< whether the tolerance is the requested one
   int samples_ = 0;
   std::array<Cell, kMostHalvings + 8> open_;
   std::size_t count_ = 0;
@@ -185,17 +191,18 @@ template <class Sample, class Polish>
 void SphereSearch<Sample, Polish>::consider(const Tangent& t, double tolerance) {
   if (finest_) consider_rival(t, tolerance);
   if (!(t.g > best_.g + rounding_)) return;
-  // What is higher by less than the tolerance is kept as it is: one ascent at the end is enough.
+  // An increase by less than the tolerance is not polished: one ascent at the end is enough.
   polished_ = t.g > best_.g + tolerance;
   best_ = t;
   if (polished_) polish_best();
 }
 
-/// Of two maxima that differ by less than the tolerance the search may have found the lower one. Where it has seen
-/// samples nearly as high beside the other it climbs from a few of those; beside a sharp one it need not have seen any.
+/// Handles two maxima that differ by less than the tolerance, of which the search may have found the lower one. If it
+/// has seen samples nearly as high near the other, it climbs from a few of those; near a sharp maximum it need not have
+/// seen any.
 template <class Sample, class Polish>
 void SphereSearch<Sample, Polish>::consider_rival(const Tangent& t, double tolerance) {
-  constexpr double kNearlyAsHigh = 10;  // tolerances
+  constexpr double kNearlyAsHigh = 10;  // in units of the tolerance
   constexpr double kBeside = 3e-3;      // rad
   if (rival_count_ == rivals_.size() || !(t.g > best_.g - kNearlyAsHigh * tolerance)) return;
   const auto beside = [&](const Eigen::Vector3d& n) { return (n - t.n).squaredNorm() < kBeside * kBeside; };
@@ -229,7 +236,7 @@ void SphereSearch<Sample, Polish>::push(const Corners& corners, double tolerance
   }
 }
 
-/// Across the longest edge, so that triangles stay well shaped.
+/// Halves a triangle across its longest edge, so that triangles stay well shaped.
 template <class Sample, class Polish>
 void SphereSearch<Sample, Polish>::halve(const Corners& corners, double tolerance) {
   int k = 0;  // the corner opposite to that edge

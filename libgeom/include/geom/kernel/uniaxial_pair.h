@@ -1,14 +1,14 @@
 #pragma once
 
-/// The formulas of uniaxial.h for numbers of any kind: one pair, or one pair in each lane of a vector. The order of the
-/// operations is the same, and so is every bit of the results, where the instructions round correctly.
+/// Formulas of uniaxial.h for any number type: one pair, or one pair in each lane of a vector. The order of the
+/// operations is the same, and so is every bit of the results if the instructions round correctly.
 ///
 /// `Both` holds one number of A and one of B, `Both::Scalar` is such a number, `Vector` three of them. Nothing here
 /// includes Eigen: kernels for several instruction sets must not.
 
 namespace geom::kernel {
 
-/// The first half of an evaluation: g, what its time derivative needs, and what the second half goes on with.
+/// First half of an evaluation: g, the values that its time derivative needs, and the input of the second half.
 template <class Both>
 struct UniaxialGapOf {
   typename Both::Scalar g;  ///< n.r - hA(n) - hB(-n)
@@ -20,12 +20,12 @@ struct UniaxialGapOf {
   Both inv_h2;              ///< 1 / h^2
 };
 
-/// g at the unit vector n, for A at the origin and B at r.
+/// Returns g at the unit vector n, for A at the origin and B at r.
 template <class Both, class Shape, class Vector>
 [[gnu::always_inline]] inline UniaxialGapOf<Both> uniaxial_gap_of(const Shape& A, const Shape& B, const Vector& r,
                                                                   const Vector& u_a, const Vector& u_b,
                                                                   const Vector& n) {
-  // Here and below the order of the operations keeps the dependency chain short: it is what the time goes into.
+  // Here and below the order of the operations keeps the dependency chain short, which determines the time.
   const Both ux(u_a.x(), u_b.x()), uy(u_a.y(), u_b.y()), uz(u_a.z(), u_b.z());
   UniaxialGapOf<Both> out;
   out.x = ux * n.x() + uy * n.y() + uz * n.z();
@@ -35,7 +35,7 @@ template <class Both, class Shape, class Vector>
   out.w2 = wx * wx + wy * wy + wz * wz;
   const Both h2 = Both(A.b2, B.b2) * out.w2 + Both(A.a2, B.a2) * (out.x * out.x);
   const Both h = h2.sqrt();
-  out.inv_h2 = 1 / h2;  // beside the square root, not behind it
+  out.inv_h2 = 1 / h2;  // computed in parallel with the square root
   out.inv_h = h * out.inv_h2;
   out.z = r.dot(n);
   out.g = (out.z - h[0]) - h[1];
@@ -43,15 +43,16 @@ template <class Both, class Shape, class Vector>
   return out;
 }
 
-/// Whether both eigenvalues, sigma + t1/2 +- sqrt(t1^2/4 - D), are at least `floor`: if and only if the quadratic q^2 +
-/// q t1 + D and q + t1/2 are non-negative at q = sigma - floor. The square root is needed only when they are not.
+/// Returns whether both eigenvalues, sigma + t1/2 +- sqrt(t1^2/4 - D), are at least `floor`: if and only if the
+/// quadratic q^2 + q t1 + D and q + t1/2 are non-negative at q = sigma - floor. The square root is needed only when
+/// they are not.
 template <class Real>
 [[gnu::always_inline]] inline auto definite_above(Real floor, Real sigma, Real t1, Real D) {
   const Real q = sigma - floor;
   return (q * (q + t1) + D >= 0) & (q + 0.5 * t1 >= 0);
 }
 
-/// The second half: the Newton step of n, not capped.
+/// Second half of an evaluation: the Newton step of n, not capped.
 template <class Both, class Vector>
 struct UniaxialStepOf {
   typename Both::Scalar decrement;  ///< y.delta
@@ -59,7 +60,7 @@ struct UniaxialStepOf {
   Vector delta;
 };
 
-/// `lift(sigma, t1, D)`: sigma, raised where the matrix is not definite enough.
+/// Computes the Newton step. `lift(sigma, t1, D)` returns sigma, raised if the matrix is not definite enough.
 template <class Both, class Shape, class Vector, class Lift>
 [[gnu::always_inline]] inline UniaxialStepOf<Both, Vector> uniaxial_step_of(const Shape& A, const Shape& B,
                                                                             const Vector& r, const Vector& u_a,
@@ -88,8 +89,8 @@ template <class Both, class Shape, class Vector, class Lift>
           (inv_det * inv_det) * adjugate_y.squaredNorm(), inv_det * adjugate_y};
 }
 
-/// Cold start: n along (QA + QB)^-1 r, by Woodbury's formula; of any length. Exact for spheres and for parallel coaxial
-/// bodies. Zero only for centres that coincide.
+/// Returns the cold start: n along (QA + QB)^-1 r, by Woodbury's formula; of any length. Exact for spheres and for
+/// parallel coaxial bodies. Zero only for centres that coincide.
 template <class Shape, class Vector>
 [[gnu::always_inline]] inline Vector cold_direction(const Shape& A, const Shape& B, const Vector& r, const Vector& u_a,
                                                     const Vector& u_b) {
@@ -105,8 +106,9 @@ template <class Shape, class Vector>
   return det * r - (p * x_a) * u_a - (q * x_b) * u_b;
 }
 
-/// 1 / sqrt(1 + s) for |s| < kInverseSqrtSeries by its series, whose first omitted term, 231/1024 s^6 < 2e-17, is below
-/// rounding: a few multiplications instead of a square root and a division in the longest dependency chain.
+/// Returns 1 / sqrt(1 + s) for |s| < kInverseSqrtSeries by its series, whose first omitted term, 231/1024 s^6 < 2e-17,
+/// is below rounding. This replaces a square root and a division by a few multiplications in the longest dependency
+/// chain.
 template <class Real>
 [[gnu::always_inline]] inline Real inverse_sqrt_series(Real s) {
   const Real s2 = s * s;  // Estrin's scheme: half the length of Horner's chain

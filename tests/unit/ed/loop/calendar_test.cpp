@@ -1,4 +1,4 @@
-#include <loop/calendar.h>
+#include <loop/parts/calendar.h>
 
 #include <ed/archive.h>
 #include <ed/random.h>

@@ -1,7 +1,7 @@
 #pragma once
 
-/// What the adapters have in common: bodies of any SupportShape without their type, for code that is compiled once, and
-/// the last look at a seed.
+/// Common parts of the adapters: bodies of any SupportShape without their type, for code that is compiled once, and the
+/// final check of a seed.
 
 #include <geom/ellipsoid.h>
 #include <geom/newton.h>
@@ -14,7 +14,7 @@
 
 namespace geom::kernel {
 
-/// Refers to the shape and the pose, which must outlive it.
+/// Type-erased reference to a shape and its pose, which must outlive it.
 class SupportBody {
  public:
   template <SupportShape Shape>
@@ -27,16 +27,16 @@ class SupportBody {
     if constexpr (std::is_same_v<Shape, Ellipsoid>) ellipsoid_ = &shape;
   }
 
-  /// The support point along n (body frame, any length but 0), in the body frame.
+  /// Returns the support point along n (body frame, any length except 0), in the body frame.
   Eigen::Vector3d support_B(const Eigen::Vector3d& n) const { return support_point_(shape_, n); }
-  /// The same in world axes, from the body's centre.
+  /// Returns the support point along n (world frame), in world axes from the body's centre.
   Eigen::Vector3d support_W(const Eigen::Vector3d& n) const {
     return X_WB_->rotation() * support_point_(shape_, X_WB_->rotation().transpose() * n);
   }
   const Pose& pose() const { return *X_WB_; }
   double inscribed_radius() const { return inscribed_radius_; }
   double bounding_radius() const { return bounding_radius_; }
-  /// nullptr: it is none.
+  /// Returns the shape if it is an Ellipsoid, else nullptr.
   const Ellipsoid* ellipsoid() const { return ellipsoid_; }
 
  private:
@@ -53,13 +53,13 @@ class SupportBody {
   const Ellipsoid* ellipsoid_ = nullptr;
 };
 
-/// For a shape without an equation: whether the point is finite.
+/// Overload for a shape without an equation: returns whether the point is finite.
 template <class Shape>
 bool is_seed_point(const Shape& /*shape*/, const Pose& /*X_WB*/, const Eigen::Vector3d& p_W) {
   return p_W.allFinite();
 }
 
-/// The seed, or a declined one if a point of a usable seed is not one that check_seed accepts.
+/// Returns the seed, or a declined one if check_seed would not accept a point of a usable seed.
 template <class ShapeA, class ShapeB>
 WitnessPair checked(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const Pose& X_WB, const WitnessPair& seed) {
   const bool good = is_seed_point(a, X_WA, seed.point_a) && is_seed_point(b, X_WB, seed.point_b);

@@ -1,4 +1,4 @@
-#include "loop/stall_watch.h"
+#include "loop/parts/stall_watch.h"
 
 namespace ed::internal {
 

@@ -1,0 +1,144 @@
+#!/usr/bin/env python3
+"""Checks the words of comments in headers, and names file, line and comment where they break the rule.
+
+usage: words.py [--count | --all] [FILE...]
+
+The rule (CONTRIBUTING.md): a doc comment is a sentence whose omitted subject is the declared thing. It begins with a
+verb for a function ("Returns ...") and with a noun for data ("Number of ..."), with "True ..." or "Whether ..." for a
+truth value. It never begins with a preposition, a pronoun, a conjunction or a stand-in for one ("The same ..."): a
+condition follows what it limits. Some phrases are refused anywhere in a comment, because they have to be read twice.
+
+Without FILE all headers of the repository are read. --count prints the figure alone, --all every fault even below the
+limit. Exit code 1: more than LIMIT of the doc comments begin with a wrong word or contain such a phrase.
+"""
+
+import pathlib
+import re
+import subprocess
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+LIMIT = 0.01
+
+PREPOSITIONS = """
+    about above across after against along among around as at before behind below beneath beside besides between beyond
+    by despite down during except for from in inside into like of off on onto out outside over per since
+    through throughout till to toward towards under until unto up upon via with within without
+"""
+PRONOUNS = """
+    anything everything he her his how it its itself nobody none nothing others she so something such that
+    their theirs them there these they this those we what whatever when whenever where wherever which whichever who
+    whom whose why you
+"""
+CONJUNCTIONS = "although and because but else if nor or otherwise than then though unless whereas while yet"
+WRONG_FIRST = frozenset(f"{PREPOSITIONS} {PRONOUNS} {CONJUNCTIONS}".split())
+
+WRONG_BEGINNINGS = re.compile(r"(?:the )?same\b|all (?:that|of|but)\b|one (?:of|that|which)\b|next to\b|not\b", re.IGNORECASE)
+
+PHRASES = [
+    r"so many\b(?! \w+ that)",
+    r"so much as",
+    r"next to nothing",
+    r"in good time",
+    r"(?:is|are) looked at",
+    r"there (?:is|are) not\b",
+    r"that there (?:is|are)\b",
+    r"that (?:it|they|he) (?:has|have|is|are) not\b",
+    r"at the least\b(?! \w)",
+    r"what is made of",
+    r"what (?:it|they) (?:is|are) worth",
+    r"of which it is (?:said|known)",
+    r"as good as nothing",
+    r"no longer theirs",
+    r"all that there",
+    r"is for an? \w+ to say",
+    r"who(?:ever)? (?:wants|asks)",
+    r"be it\b",
+    r"for ever\b",
+    r"a share of 1e",
+]
+WRONG_PHRASES = re.compile("|".join(rf"\b{phrase}" for phrase in PHRASES), re.IGNORECASE)
+
+
+def comments(text):
+    """Yields line number, text and whether it is a doc comment, of each comment of a C++ source."""
+    lines = text.split("\n")
+    block = None  # marker, number of the first line, texts
+    for number, line in enumerate([*lines, ""], 1):
+        whole = re.match(r"\s*(///<|///|//)(?:\s(.*)|)$", line)
+        trailing = None if whole else re.match(r"[^\"]*?\S\s+(///<|///|//)\s(.*)$", strip_strings(line))
+        if whole and block and whole[1] in (block[0], "///<"):
+            block[2].append(whole[2] or "")
+            continue
+        if block:
+            yield block[1], block[2], block[0] != "//"
+        block = None
+        if whole:
+            block = (whole[1], number, [whole[2] or ""])
+        elif trailing:
+            block = (trailing[1], number, [line[trailing.start(2):]])
+    for match in re.finditer(r"/\*\*(.*?)\*/", text, re.DOTALL):
+        yield text[:match.start()].count("\n") + 1, [re.sub(r"^\s*\*", "", t) for t in match[1].split("\n")], True
+
+
+def strip_strings(line):
+    return re.sub(r'"(?:[^"\\]|\\.)*"', lambda m: "'" * len(m[0]), line)
+
+
+def wording(lines):
+    """The words of a comment: without doxygen's commands and grouping marks."""
+    text = " ".join(line.strip() for line in lines)
+    return re.sub(r"\s*@(?:file|brief|\{|\})\s*", " ", text).strip()
+
+
+def fault(text, is_doc):
+    """What is wrong with a comment, or nothing."""
+    phrase = WRONG_PHRASES.search(text)
+    if phrase:
+        return f'says "{phrase[0]}"'
+    if not is_doc:
+        return None
+    beginning = WRONG_BEGINNINGS.match(text)
+    if beginning:
+        return f'begins with "{beginning[0].strip()}"'
+    first = re.match(r"\W*([A-Za-z]+)(?=[\s,;:.)]|$)", text)
+    if first and not re.match(r"\W*[=<>^(*/|+-]", text) and first[1].lower() in WRONG_FIRST:
+        return f'begins with "{first[1]}"'
+    return None
+
+
+def headers():
+    listed = subprocess.run(["git", "ls-files", "*.h"], cwd=ROOT, check=True, capture_output=True, text=True).stdout
+    return [ROOT / name for name in listed.split() if (ROOT / name).is_file()]
+
+
+def main():
+    names = [argument for argument in sys.argv[1:] if not argument.startswith("--")]
+    paths = [pathlib.Path(name).resolve() for name in names] or headers()
+    number, messages = 0, []
+    for path in paths:
+        for line, texts, is_doc in comments(path.read_text()):
+            text = wording(texts)
+            if not text:
+                continue
+            number += is_doc
+            wrong = fault(text, is_doc)
+            if wrong:
+                name = path.relative_to(ROOT) if path.is_relative_to(ROOT) else path
+                messages.append(f"{name}:{line}: {wrong}: {text[:100]}")
+    share = len(messages) / max(1, number)
+    verdict = f"words: {len(messages)} of {number} comments in headers break the rule, {100 * share:.1f} %"
+    if "--count" in sys.argv:
+        print(verdict)
+        return 0
+    if share <= LIMIT and "--all" not in sys.argv:
+        print(f"{verdict}; accepted: {100 * LIMIT:g} %")
+        return 0
+    for message in messages:
+        print(message, file=sys.stderr)
+    print(f"{verdict}; accepted: {100 * LIMIT:g} %", file=sys.stderr)
+    return 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
