@@ -8,7 +8,7 @@
 /// advancement, which ends a floor away from the contact and cannot tell one from a near miss.
 
 #include <common/finder_ensemble.h>
-#include <common/finder_gauge.h>
+#include <common/finder_gap.h>
 #include <common/finder_reference.h>
 
 #include <ed/time_of_contact.h>

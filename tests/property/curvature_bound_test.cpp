@@ -2,7 +2,7 @@
 // h of a turning body at a fixed direction. HARDBODY_FULL=1 draws ten times as many states.
 
 #include <common/finder_ensemble.h>
-#include <common/finder_gauge.h>
+#include <common/finder_gap.h>
 #include <common/finder_scale.h>
 
 #include <contact/uniaxial_gap.h>
@@ -225,7 +225,7 @@ struct UnlikePair {
     return axis_motion(s, {1.0, 1.6}, kSpin);
   }
 
-  ed::internal::UniaxialGauge<kSpin> gauge() const { return {A, a, B, b, b.position - a.position, 0, 3.3}; }
+  ed::internal::UniaxialGap<kSpin> pair_gap() const { return {A, a, B, b, b.position - a.position, 0, 3.3}; }
 };
 
 template <bool kSpin>
@@ -233,24 +233,24 @@ void expect_certificate_of_pair() {
   ed::Random random(40 + kSpin);
   for (int k = 0; k < 1000; ++k) {
     const UnlikePair<kSpin> pair(random);
-    const auto gauge = pair.gauge();
+    const auto pair_gap = pair.pair_gap();
     const Vector3d n = random.direction();
     const double t0 = random.uniform();
-    const auto state = gauge.at(t0);
-    const auto e = gauge.evaluate(state, n);
-    const auto gap = [&](double t) { return gauge.evaluate(gauge.at(t), n).g; };
+    const auto state = pair_gap.at(t0);
+    const auto e = pair_gap.evaluate(state, n);
+    const auto gap = [&](double t) { return pair_gap.evaluate(pair_gap.at(t), n).g; };
     // Truncation step^2 / 6 g''' and rounding 1e-15 / step are both below 1e-9 for rates of order ten.
     const double step = 2e-6;
-    EXPECT_NEAR(gauge.rate(state, e, n), (gap(t0 + step) - gap(t0 - step)) / (2 * step), 1e-8);
+    EXPECT_NEAR(pair_gap.rate(state, e, n), (gap(t0 + step) - gap(t0 - step)) / (2 * step), 1e-8);
     // The parabola g + g' tau - K tau^2 / 2 stays below g all over [0, tau].
     const double tau = log_uniform(random, 1e-3, 3);
-    const double K = gauge.certificate(state, e, n).curvature(tau);
-    EXPECT_LE(K, kFactorsApart * gauge.curvature_limit());
-    const double rate = gauge.rate(state, e, n);
+    const double K = pair_gap.certificate(state, e, n).curvature(tau);
+    EXPECT_LE(K, kFactorsApart * pair_gap.curvature_limit());
+    const double rate = pair_gap.rate(state, e, n);
     for (int i = 1; i <= 40; ++i) {
       const double s = tau * i / 40;
       EXPECT_GE(gap(t0 + s), e.g + s * (rate - 0.5 * K * s) - 1e-13);
-      EXPECT_GE(gap(t0 + s), e.g + s * (rate - 0.5 * gauge.curvature_limit() * s) - 1e-13);
+      EXPECT_GE(gap(t0 + s), e.g + s * (rate - 0.5 * pair_gap.curvature_limit() * s) - 1e-13);
     }
   }
 }

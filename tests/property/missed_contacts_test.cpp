@@ -2,7 +2,7 @@
 // for it, against brute force (common/finder_reference.h). HARDBODY_FULL=1 runs ten times as many.
 
 #include <common/finder_ensemble.h>
-#include <common/finder_gauge.h>
+#include <common/finder_gap.h>
 #include <common/finder_reference.h>
 #include <common/finder_scale.h>
 #include <common/full_form.h>

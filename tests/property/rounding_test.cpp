@@ -54,32 +54,32 @@ double signed_log_uniform(Random& random, double low, double high) {
 }
 
 /// The best normal at time t, from a good one.
-template <class Gauge>
-Vector3d best_normal(const Gauge& gauge, double t, Vector3d n) {
-  const auto state = gauge.at(t);
-  auto e = gauge.evaluate(state, n);
+template <class PairGap>
+Vector3d best_normal(const PairGap& pair_gap, double t, Vector3d n) {
+  const auto state = pair_gap.at(t);
+  auto e = pair_gap.evaluate(state, n);
   int budget = geom::kMaxIterations;
   (void)ascend(
-      gauge, state, [&](const auto& trial) { return settled(gauge, trial); }, budget, n, e);
+      pair_gap, state, [&](const auto& trial) { return settled(pair_gap, trial); }, budget, n, e);
   return geom::kernel::step_on_sphere(n, e.step);
 }
 
 /// The distance of the exact bodies, or if that is positive any lower bound that is.
-template <class Gauge, class Exact>
-Quad distance(const Gauge& gauge, const Exact& exact, Quad t, const Vector3d& n) {
+template <class PairGap, class Exact>
+Quad distance(const PairGap& pair_gap, const Exact& exact, Quad t, const Vector3d& n) {
   const Quad along_n = exact.gap(t, n);
   if (along_n > 0) return along_n;
   // The error of a normal counts in second order.
-  const Quad along_best = exact.gap(t, best_normal(gauge, static_cast<double>(t), n));
+  const Quad along_best = exact.gap(t, best_normal(pair_gap, static_cast<double>(t), n));
   return std::max(along_n, along_best);
 }
 
 /// The least distance at some times of [t, end]: at the end, at shares of the way, and where the gap along n is least.
-template <class Gauge, class Exact>
-Quad least_distance(const Gauge& gauge, const Exact& exact, double t, double end, const Vector3d& n) {
+template <class PairGap, class Exact>
+Quad least_distance(const PairGap& pair_gap, const Exact& exact, double t, double end, const Vector3d& n) {
   const Quad span = static_cast<Quad>(end) - t;
-  Quad least = distance(gauge, exact, end, n);
-  const auto look = [&](Quad time) { least = std::min(least, distance(gauge, exact, time, n)); };
+  Quad least = distance(pair_gap, exact, end, n);
+  const auto look = [&](Quad time) { least = std::min(least, distance(pair_gap, exact, time, n)); };
   for (const double share : {1e-6, 1e-3, 0.1, 0.5, 0.9}) look(t + share * span);
   const Quad g0 = exact.gap(t, n);
   const Quad g1 = exact.gap(t + span / 2, n);
@@ -90,24 +90,25 @@ Quad least_distance(const Gauge& gauge, const Exact& exact, double t, double end
   return least;
 }
 
-/// Errors of g and g', and of K if the gauge has one, in units of their bounds.
-template <class Gauge, class Exact>
-void measure_errors(const Gauge& gauge, const typename Gauge::State& state, const typename Gauge::Evaluation& e,
-                    const Exact& exact, double t, const Vector3d& n, Tally& tally) {
+/// Errors of g and g', and of K if the pair gap has one, in units of their bounds.
+template <class PairGap, class Exact>
+void measure_errors(const PairGap& pair_gap, const typename PairGap::State& state,
+                    const typename PairGap::Evaluation& e, const Exact& exact, double t, const Vector3d& n,
+                    Tally& tally) {
   const auto worst = [](double& sofar, Quad error, double bound) {
     sofar = std::max(sofar, static_cast<double>(error) / bound);
   };
   const Quad g = exact.gap(t, n);
   worst(tally.gap, quad::abs(e.g - g), state.rounding.gap);
-  if constexpr (CurvatureBounded<Gauge>) {
+  if constexpr (CurvatureBounded<PairGap>) {
     // Central differences: truncation 1e-20 and 1e-16, rounding 1e-24 and 1e-18, of g in units of its fastest motion.
-    const Quad unit = gauge.size() / gauge.speed();
+    const Quad unit = pair_gap.size() / pair_gap.speed();
     const Quad step = static_cast<Quad>(1e-10) * unit;
     const Quad wide = static_cast<Quad>(1e-8) * unit;
     const Quad rate = (exact.gap(t + step, n) - exact.gap(t - step, n)) / (2 * step);
     const Quad bend = (exact.gap(t + wide, n) - 2 * g + exact.gap(t - wide, n)) / (wide * wide);
-    worst(tally.rate, quad::abs(gauge.rate(state, e, n) - rate), state.rounding.rate);
-    const double K = gauge.certificate(state, e, n).curvature(0);
+    worst(tally.rate, quad::abs(pair_gap.rate(state, e, n) - rate), state.rounding.rate);
+    const double K = pair_gap.certificate(state, e, n).curvature(0);
     worst(tally.curvature, -bend - K, state.rounding.curvature);
   }
 }
@@ -119,21 +120,22 @@ State without_terms(State state) {
 }
 
 /// One pair at t, with the normal that it was made with.
-template <class Gauge, class Exact>
-void judge(const Gauge& gauge, const Exact& exact, double t, const Vector3d& start, Tally& tally) {
+template <class PairGap, class Exact>
+void judge(const PairGap& pair_gap, const Exact& exact, double t, const Vector3d& start, Tally& tally) {
   ++tally.states;
-  const auto state = gauge.at(t);
+  const auto state = pair_gap.at(t);
   Vector3d n = start;
-  auto e = gauge.evaluate(state, n);
+  auto e = pair_gap.evaluate(state, n);
   int budget = geom::kMaxIterations;
   (void)ascend(
-      gauge, state, [&](const auto& trial) { return settled(gauge, trial); }, budget, n, e);
-  measure_errors(gauge, state, e, exact, t, n, tally);
-  const double gp = gauge.rate(state, e, n);
-  const auto passes = [&](const typename Gauge::State& s) {
-    if (!(e.g > kTouching * gauge.size())) return false;  // a contact, with or without the terms
-    const double tau = clears(gauge, s, e, n, kHorizon) ? kHorizon : certified_step(gauge, s, e, n, e.g, gp, kHorizon);
-    return t + tau > t && least_distance(gauge, exact, t, t + tau, n) < 0;
+      pair_gap, state, [&](const auto& trial) { return settled(pair_gap, trial); }, budget, n, e);
+  measure_errors(pair_gap, state, e, exact, t, n, tally);
+  const double gp = pair_gap.rate(state, e, n);
+  const auto passes = [&](const typename PairGap::State& s) {
+    if (!(e.g > kTouching * pair_gap.size())) return false;  // a contact, with or without the terms
+    const double tau =
+        clears(pair_gap, s, e, n, kHorizon) ? kHorizon : certified_step(pair_gap, s, e, n, e.g, gp, kHorizon);
+    return t + tau > t && least_distance(pair_gap, exact, t, t + tau, n) < 0;
   };
   if (e.g > state.rounding.gap) {
     if (!(exact.gap(t, n) > 0)) ++tally.not_apart;
@@ -145,18 +147,18 @@ void judge(const Gauge& gauge, const Exact& exact, double t, const Vector3d& sta
 }
 
 /// The whole search: how deep the exact bodies overlap before the time it reports.
-template <class Gauge, class Exact>
-void judge_search(const Gauge& gauge, const Exact& exact, double t, const Vector3d& start, Tally& tally) {
+template <class PairGap, class Exact>
+void judge_search(const PairGap& pair_gap, const Exact& exact, double t, const Vector3d& start, Tally& tally) {
   Vector3d n = start;
   FinderCounters count;
-  const Finding finding = certified_contact(gauge, t, t + kHorizon, 1000, n, count);
+  const Finding finding = certified_contact(pair_gap, t, t + kHorizon, 1000, n, count);
   EXPECT_NE(finding.outcome, Outcome::declined);
   if (finding.outcome == Outcome::contact) ++tally.contacts;
   if (finding.outcome == Outcome::clear) ++tally.clear;
   // At the start the bodies may overlap by what rounding hides.
-  const Quad begun = std::min(Quad(0), distance(gauge, exact, t, start));
-  const Quad deepest = least_distance(gauge, exact, t, finding.time, n) - begun;
-  const double promised = gauge.at(finding.time).rounding.gap + 2 * kTouching * gauge.size();
+  const Quad begun = std::min(Quad(0), distance(pair_gap, exact, t, start));
+  const Quad deepest = least_distance(pair_gap, exact, t, finding.time, n) - begun;
+  const double promised = pair_gap.at(finding.time).rounding.gap + 2 * kTouching * pair_gap.size();
   if (deepest < -promised) ++tally.sunk;
 }
 
@@ -183,38 +185,38 @@ struct Image {
   }
 };
 
-/// Moves B so that it is `gap` from A at scene.t along n, and parts from it at `rate`. `gauge_of(image)` makes the
-/// gauge, `points(gauge, state)` are the support points of both, each from its own centre.
-template <class Motion, class GaugeOf, class Points>
+/// Moves B so that it is `gap` from A at scene.t along n, and parts from it at `rate`. `gap_of(image)` makes the
+/// pair gap, `points(pair_gap, state)` are the support points of both, each from its own centre.
+template <class Motion, class GapOf, class Points>
 void arrange(Random& random, const Scene& scene, const Vector3d& n, double gap, Motion& a, Motion& b,
-             const GaugeOf& gauge_of, const Points& points) {
+             const GapOf& gap_of, const Points& points) {
   const auto place = [&] {
-    const auto gauge = gauge_of(Image(a, b, scene));
-    const auto [p_a, p_b] = points(gauge, gauge.at(scene.t));
+    const auto pair_gap = gap_of(Image(a, b, scene));
+    const auto [p_a, p_b] = points(pair_gap, pair_gap.at(scene.t));
     const Vector3d r = p_a - p_b + gap * n;
     b.position = a.position_at(scene.t) + r - (scene.t - b.time) * b.velocity;
     for (double& x : b.position) x -= scene.box * std::floor(x / scene.box);
   };
   place();
-  const auto gauge = gauge_of(Image(a, b, scene));
-  const auto state = gauge.at(scene.t);
-  const auto e = gauge.evaluate(state, n);
-  double K = std::pow(gauge.speed(), 2) / gauge.size();
-  if constexpr (requires { gauge.certificate(state, e, n).curvature(0); })
-    K = gauge.certificate(state, e, n).curvature(0);
+  const auto pair_gap = gap_of(Image(a, b, scene));
+  const auto state = pair_gap.at(scene.t);
+  const auto e = pair_gap.evaluate(state, n);
+  double K = std::pow(pair_gap.speed(), 2) / pair_gap.size();
+  if constexpr (requires { pair_gap.certificate(state, e, n).curvature(0); })
+    K = pair_gap.certificate(state, e, n).curvature(0);
   const double natural = std::sqrt(2 * gap * std::abs(K));  // the rate with which the gap just closes, or just does not
   double wanted = 0;
   const double kind = random.uniform();
   if (kind < 0.4) {
-    wanted = -log_uniform(random, 1e-3, 1) * gauge.speed();
+    wanted = -log_uniform(random, 1e-3, 1) * pair_gap.speed();
   } else if (kind < 0.6) {
-    wanted = -log_uniform(random, 1e-9, 1e-3) * gauge.speed();
+    wanted = -log_uniform(random, 1e-9, 1e-3) * pair_gap.speed();
   } else if (kind < 0.9) {
     wanted = -natural * (1 + signed_log_uniform(random, 1e-5, 1));
   } else {
     wanted = natural * log_uniform(random, 1e-3, 10);
   }
-  b.velocity += (wanted - gauge.rate(state, e, n)) * n;
+  b.velocity += (wanted - pair_gap.rate(state, e, n)) * n;
   place();
 }
 
@@ -280,19 +282,17 @@ void try_spheroids(Random& random, bool search, Tally& tally) {
   };
   AxisMotion a = motion();
   AxisMotion b = motion();
-  const auto gauge_of = [&](const Image& image) {
-    return UniaxialGauge<kSpin>(A, a, B, b, image.r_now, scene.now, reach);
-  };
+  const auto gap_of = [&](const Image& image) { return UniaxialGap<kSpin>(A, a, B, b, image.r_now, scene.now, reach); };
   const Vector3d n = draw_normal(random, a.axis_at(scene.t));
-  const auto points = [&](const auto& /*gauge*/, const auto& state) {
+  const auto points = [&](const auto& /*pair_gap*/, const auto& state) {
     return std::pair<Vector3d, Vector3d>(support_point(A, state.u_a, n), -support_point(B, state.u_b, n));
   };
-  arrange(random, scene, n, reach * log_uniform(random, 1e-14, 1e-12), a, b, gauge_of, points);
+  arrange(random, scene, n, reach * log_uniform(random, 1e-14, 1e-12), a, b, gap_of, points);
   const Image image(a, b, scene);
   const ExactPair<quad::ExactSpheroid> exact{
       {kind_a.a, kind_a.b, a}, {kind_b.a, kind_b.b, b}, ExactPath::of(a), ExactPath::of(b), image.shift};
-  judge(gauge_of(image), exact, scene.t, n, tally);
-  if (search) judge_search(gauge_of(image), exact, scene.t, n, tally);
+  judge(gap_of(image), exact, scene.t, n, tally);
+  if (search) judge_search(gap_of(image), exact, scene.t, n, tally);
 }
 
 /// A body with two equal moments of inertia, about z; or with three different ones.
@@ -362,19 +362,19 @@ void try_superellipsoids(Random& random, const DrawTop& draw_top, bool search, T
   Scene& scene = flights.scene;
   RigidMotion& a = flights.a;
   RigidMotion& b = flights.b;
-  const auto gauge_of = [&](const Image& image) { return SupportGauge(norm_a, a, norm_b, b, image.r_now, scene.now); };
+  const auto gap_of = [&](const Image& image) { return SupportGap(norm_a, a, norm_b, b, image.r_now, scene.now); };
   const Vector3d n = random.direction();
-  const auto points = [&](const auto& /*gauge*/, const auto& state) {
+  const auto points = [&](const auto& /*pair_gap*/, const auto& state) {
     const auto support = state.pair.bodies().support(n);
     return std::pair<Vector3d, Vector3d>(support.point.a(), support.point.b());
   };
-  arrange(random, scene, n, reach * log_uniform(random, 1e-14, 1e-12), a, b, gauge_of, points);
+  arrange(random, scene, n, reach * log_uniform(random, 1e-14, 1e-12), a, b, gap_of, points);
   const Image image(a, b, scene);
   const ExactPair<Exact> exact{Exact(A.semi_axes(), A.e1(), A.e2(), flights.top_a.exact<ExactTop>(a.time)),
                                Exact(B.semi_axes(), B.e1(), B.e2(), flights.top_b.exact<ExactTop>(b.time)),
                                ExactPath::of(a), ExactPath::of(b), image.shift};
-  judge(gauge_of(image), exact, scene.t, n, tally);
-  if (search) judge_search(gauge_of(image), exact, scene.t, n, tally);
+  judge(gap_of(image), exact, scene.t, n, tally);
+  if (search) judge_search(gap_of(image), exact, scene.t, n, tally);
 }
 
 void try_spherocylinders(Random& random, bool search, Tally& tally) {
@@ -386,13 +386,13 @@ void try_spherocylinders(Random& random, bool search, Tally& tally) {
   Scene& scene = flights.scene;
   RigidMotion& a = flights.a;
   RigidMotion& b = flights.b;
-  const auto gauge_of = [&](const Image& image) { return ConvexGauge(shape, a, shape, b, image.r_now, scene.now); };
+  const auto gap_of = [&](const Image& image) { return ConvexGap(shape, a, shape, b, image.r_now, scene.now); };
   const Vector3d n = random.direction();
-  const auto points = [&](const auto& gauge, const auto& state) {
-    const auto gap = gauge.gap(state, n);
+  const auto points = [&](const auto& pair_gap, const auto& state) {
+    const auto gap = pair_gap.sample(state, n);
     return std::pair<Vector3d, Vector3d>(gap.point_a, gap.point_b);
   };
-  arrange(random, scene, n, reach * log_uniform(random, 1e-14, 1e-12), a, b, gauge_of, points);
+  arrange(random, scene, n, reach * log_uniform(random, 1e-14, 1e-12), a, b, gap_of, points);
   const Image image(a, b, scene);
   const ExactPair<quad::ExactSpherocylinder> exact{
       {rod.half_length, rod.radius, flights.top_a.exact<quad::ExactSymmetricTop>(a.time)},
@@ -400,8 +400,8 @@ void try_spherocylinders(Random& random, bool search, Tally& tally) {
       ExactPath::of(a),
       ExactPath::of(b),
       image.shift};
-  judge(gauge_of(image), exact, scene.t, n, tally);
-  if (search) judge_search(gauge_of(image), exact, scene.t, n, tally);
+  judge(gap_of(image), exact, scene.t, n, tally);
+  if (search) judge_search(gap_of(image), exact, scene.t, n, tally);
 }
 
 template <class Try>

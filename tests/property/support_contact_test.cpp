@@ -231,17 +231,17 @@ struct Found : Finding {
   Vector3d normal;
 };
 
-Found find(const SupportGauge& gauge, FinderCounters& count) {
+Found find(const SupportGap& gap, FinderCounters& count) {
   Vector3d n = Vector3d::Zero();
-  const Finding finding = certified_contact(gauge, 0, kHorizon, 100000, n, count);
+  const Finding finding = certified_contact(gap, 0, kHorizon, 100000, n, count);
   return {finding, n};
 }
 
-/// A gauge whose bounds of the curvature are half the right ones.
-class HalvedGauge : public SupportGauge {
+/// A pair gap whose bounds of the curvature are half the right ones.
+class HalvedGap : public SupportGap {
  public:
   template <class... Arguments>
-  explicit HalvedGauge(const Arguments&... arguments) : SupportGauge(arguments...) {
+  explicit HalvedGap(const Arguments&... arguments) : SupportGap(arguments...) {
     curvature_share_ = 0.5;
   }
 };
@@ -290,7 +290,7 @@ void judge(const MovingPair& pair, const Found& finding, double wanted, Tally& t
 
 const long kContacts = full_form() ? 100000 : 2000;
 
-template <class Gauge, class Draw>
+template <class PairGap, class Draw>
 Tally search_pairs(const char* name, const Draw& draw) {
   Random random(1);
   Tally tally;
@@ -299,8 +299,8 @@ Tally search_pairs(const char* name, const Draw& draw) {
     const MovingPair pair = draw(random);
     const NormBodyShape a = norm_body(pair.shape_a);
     const NormBodyShape b = norm_body(pair.shape_b);
-    const Gauge gauge(a, pair.a, b, pair.b, pair.b.position - pair.a.position, 0);
-    judge(pair, find(gauge, count), reference(pair, kHorizon), tally);
+    const PairGap gap(a, pair.a, b, pair.b, pair.b.position - pair.a.position, 0);
+    judge(pair, find(gap, count), reference(pair, kHorizon), tally);
   }
   std::printf(
       "%s: %ld pairs, %ld in touch at first, %ld contacts, %ld grazing: %ld missed, %ld late, %ld unanswered; %ld off "
@@ -330,20 +330,20 @@ void expect_none_missed(const Tally& tally, Tips tips = Tips::sharp) {
 }
 
 TEST(SupportContact, MissesNoContact) {
-  expect_none_missed(search_pairs<SupportGauge>("superellipsoids", random_equal_pair));
+  expect_none_missed(search_pairs<SupportGap>("superellipsoids", random_equal_pair));
 }
 
 TEST(SupportContact, MissesNoneOfBiaxialEllipsoids) {
-  expect_none_missed(search_pairs<SupportGauge>("biaxial ellipsoids",
-                                                [](Random& random) {
-                                                  return random_pair(random, Superellipsoid({1, 0.8, 0.5}, 1, 1));
-                                                }),
+  expect_none_missed(search_pairs<SupportGap>("biaxial ellipsoids",
+                                              [](Random& random) {
+                                                return random_pair(random, Superellipsoid({1, 0.8, 0.5}, 1, 1));
+                                              }),
                      Tips::round);
 }
 
 /// Two equal moments: these turn about their axis and precess.
 TEST(SupportContact, MissesNoneOfSymmetricTops) {
-  expect_none_missed(search_pairs<SupportGauge>("symmetric tops", [](Random& random) {
+  expect_none_missed(search_pairs<SupportGap>("symmetric tops", [](Random& random) {
     const double length = random.coin() ? 0.5 : 2;
     return random_pair(random, Superellipsoid({1, 1, length}, random.coin() ? 1 : exponent(random), 1));
   }));
@@ -351,14 +351,14 @@ TEST(SupportContact, MissesNoneOfSymmetricTops) {
 
 /// Of other exponents, proportions, sizes and moments each.
 TEST(SupportContact, MissesNoneOfUnlikePairs) {
-  expect_none_missed(search_pairs<SupportGauge>("unlike pairs", [](Random& random) {
+  expect_none_missed(search_pairs<SupportGap>("unlike pairs", [](Random& random) {
     const Kind a = random_kind(random, 1);
     return random_pair(random, a, random_kind(random, 0.1));
   }));
 }
 
 TEST(SupportContact, IsMissedWithHalfTheCurvature) {
-  const Tally tally = search_pairs<HalvedGauge>("half the curvature", random_equal_pair);
+  const Tally tally = search_pairs<HalvedGap>("half the curvature", random_equal_pair);
   EXPECT_GT(tally.missed + tally.late, tally.contacts / 100);
 }
 
@@ -371,14 +371,14 @@ TEST(SupportContact, NoOverlapWithinACertifiedStep) {
     const MovingPair pair = random_pair_apart(random);
     const NormBodyShape a = norm_body(pair.shape_a);
     const NormBodyShape b = norm_body(pair.shape_b);
-    const SupportGauge gauge(a, pair.a, b, pair.b, pair.b.position - pair.a.position, 0);
-    const SupportGauge::State state = gauge.at(0);
+    const SupportGap gap(a, pair.a, b, pair.b, pair.b.position - pair.a.position, 0);
+    const SupportGap::State state = gap.at(0);
     const geom::DistanceResult d = pair.distance(0);
     const double tilt = random.coin() ? 0 : random.log_uniform(1e-9, 1e-1);
     const Vector3d n = (d.normal + tilt * random.direction()).normalized();
-    const SupportGauge::Evaluation e = gauge.evaluate(state, n);
+    const SupportGap::Evaluation e = gap.evaluate(state, n);
     if (!(e.g > 0)) continue;
-    const double step = certified_step(gauge, state, e, n, e.g, gauge.rate(state, e, n), kHorizon);
+    const double step = certified_step(gap, state, e, n, e.g, gap.rate(state, e, n), kHorizon);
     ASSERT_GT(step, 0);
     if (step > 1e-2) ++long_steps;
     for (const double share : {1e-3, 0.1, 0.3, 0.5, 0.7, 0.9, 0.99, 1.0}) {
@@ -401,10 +401,10 @@ TEST(SupportContact, PointsAreOnTheSurfacesAndOneGapApart) {
     const geom::DistanceResult apart = pair.distance(0);
     ASSERT_EQ(apart.status, geom::DistanceStatus::separated);
     if (random.coin()) r -= apart.distance * apart.normal;
-    const SupportGauge gauge(a, pair.a, b, pair.b, r, 0);
-    const SupportGauge::State state = gauge.at(0);
-    const ContactPoints points = SupportGauge::contact_points(state, apart.normal);
-    const double g = gauge.gap(state, apart.normal).g;
+    const SupportGap gap(a, pair.a, b, pair.b, r, 0);
+    const SupportGap::State state = gap.at(0);
+    const ContactPoints points = SupportGap::contact_points(state, apart.normal);
+    const double g = gap.sample(state, apart.normal).g;
     ASSERT_LE((r + points.b - points.a - g * apart.normal).norm(), 1e-15 * (r.norm() + pair.size())) << "pair " << k;
     const geom::Pose X_WA(pair.a.top.at(0).R, Vector3d(Vector3d::Zero()));
     const geom::Pose X_WB(pair.b.top.at(0).R, r);

@@ -8,4 +8,10 @@ namespace hardbody {
 /// Returns the finite number that a text consists of, from its first character to its last; nullopt for any other text.
 std::optional<double> finite_number(std::string_view text);
 
+/// Returns the seconds of a positive number with a unit, as in 60s, 5m, 1.5h; nullopt for any other text.
+std::optional<double> duration_seconds(std::string_view text);
+
+/// Returns degrees of freedom of so many bodies: "2N", "3N", or the number itself.
+std::string freedoms_text(long freedoms, int number);
+
 }  // namespace hardbody

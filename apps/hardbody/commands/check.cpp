@@ -1,5 +1,6 @@
 #include "audit/trajectory.h"
 #include "base/errors.h"
+#include "base/number_text.h"
 #include "commands/commands.h"
 #include "config/config.h"
 #include "io/run_directory.h"
@@ -58,8 +59,9 @@ void print_state(const Checkpoint& checkpoint, const ed::Audit& audit) {
   row("energy", fmt::format("{:.10g} kT (translation {:.6g}, rotation {:.6g}, spin {:.6g})", kinetic.energy(),
                             kinetic.translational_energy, kinetic.rotational_energy, kinetic.spin_energy));
   row("translational temperature", fmt::format("{:.6f} on 3N - 3 degrees of freedom", kinetic.translational_kT));
-  row("rotational temperature", fmt::format("{:.6f} on {}", kinetic.rotational_kT,
-                                            freedoms_text(kinetic.rotational_freedoms, checkpoint.system.size())));
+  row("rotational temperature",
+      fmt::format("{:.6f} on {}", kinetic.rotational_kT,
+                  freedoms_text(kinetic.rotational_degrees_of_freedom, checkpoint.system.size())));
   row("momentum", fmt::format("{:.2e} sqrt(m kT) a body", kinetic.momentum.norm() / checkpoint.system.size()));
 }
 

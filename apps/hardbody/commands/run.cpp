@@ -5,6 +5,7 @@
 #include "base/version.h"
 #include "commands/commands.h"
 #include "config/config.h"
+#include "config/keys.h"
 #include "config/text.h"
 #include "io/run_directory.h"
 #include "io/text_file.h"
@@ -12,7 +13,8 @@
 #include "run/files/failure_file.h"
 #include "run/files/observable_files.h"
 #include "run/origin.h"
-#include "run/phases.h"
+#include "run/phases/equilibration.h"
+#include "run/phases/production.h"
 #include "run/record.h"
 #include "run/saver.h"
 #include "run/summary.h"
@@ -36,28 +38,23 @@
 namespace hardbody {
 namespace {
 
-std::filesystem::path directory_for(const RunArguments& arguments) {
-  if (arguments.out && arguments.out->empty()) throw InputError("--out is empty; accepted: the name of a directory");
-  if (arguments.out) return *arguments.out;
-  return std::filesystem::path("out") / std::filesystem::path(arguments.config).stem();
-}
-
-/// Checks the run to start from, before anything is changed, and makes its name absolute.
-void check_origin(const RunArguments& arguments, Config& config) {
-  (void)read_origin_state(config);
+/// Reads the state that the run starts from, before anything is changed. The name of its run becomes an absolute one.
+ed::System take_origin(const std::filesystem::path& directory, Config& config) {
+  ed::System origin = read_origin_state(config);
   std::error_code ignored;
-  if (std::filesystem::equivalent(*config.start_from, directory_for(arguments), ignored)) {
-    throw InputError(fmt::format("system.start_from: {} is the directory of this run; accepted: that of another one",
+  if (std::filesystem::equivalent(*config.start_from, directory, ignored)) {
+    throw InputError(fmt::format("{}: {} is the directory of this run; accepted: that of another one", kStartFromKey,
                                  *config.start_from));
   }
   config.start_from = absolute_path(*config.start_from).string();
+  return origin;
 }
 
 RunDirectory create_directory(const RunArguments& arguments, const Config& config) {
   const Overwrite overwrite = arguments.force ? Overwrite::allowed : Overwrite::refused;
   std::vector<std::filesystem::path> inputs = {arguments.config};
   if (config.start_file) inputs.emplace_back(config.start_file->file);
-  return RunDirectory::create(directory_for(arguments), overwrite, inputs, resolved_text(config));
+  return RunDirectory::create(directory_for(arguments.out, arguments.config), overwrite, inputs, resolved_text(config));
 }
 
 void write_failures(const RunDirectory& directory, const RunRecord& record, Log& log) {
@@ -76,6 +73,7 @@ void write_failures(const RunDirectory& directory, const RunRecord& record, Log&
 
 /// State at which a run begins, or is continued.
 struct Continuation {
+  LoadedStates loaded;
   std::optional<Start> start;
   std::optional<EquilibrationRun> equilibration;
   std::optional<ProductionRun> production;
@@ -118,16 +116,7 @@ void write_results(const RunDirectory& directory, RunRecord& record, Continuatio
   const ed::Results& results = record.production.results;
   saver.write(last_checkpoint(at, record));
   written.checkpoint = true;
-  directory.write(kMsdFile, msd_csv(results));
-  directory.write(kRotationalMsdFile, rotational_msd_csv(results));
-  directory.write(kAlpha2File, alpha2_csv(results));
-  directory.write(kVelocityFile, velocity_csv(results));
-  directory.write(kC1File, c1_csv(results));
-  directory.write(kC2File, c2_csv(results));
-  directory.write(kFSelfFile, f_self_csv(results));
-  directory.write(kPairsFile, pairs_csv(results));
-  directory.write(kStructureFile, structure_csv(results));
-  directory.write(kBlocksFile, blocks_csv(results));
+  for (const CurveFile& file : curve_files()) directory.write(file.path(), curve_csv(file, results));
   written.observables = true;
   write_failures(directory, record, log);
   record.upkeep = saver.upkeep();
@@ -187,9 +176,8 @@ int conclude(const RunDirectory& directory, RunRecord& record, Continuation& at,
 bool prepare(const Config& config, Continuation& at, Progress& progress, Saver& saver, Log& log) {
   if (at.equilibration || at.production) return true;
   if (!at.start) {
-    std::optional<ed::System> origin;
-    if (config.start_from) origin = read_origin_state(config);
-    at.start = make_start(config, origin, progress, log);
+    if (config.start_from && !at.loaded.origin) at.loaded.origin = read_origin_state(config);
+    at.start = make_start(config, std::exchange(at.loaded, {}), progress, log);
   }
   if (!at.start) return false;
   // The run or file that it started from may be gone, or another one, when this run is resumed.
@@ -310,15 +298,20 @@ int start_over(const RunDirectory& directory) {
 }  // namespace
 
 int run(const RunArguments& arguments) {
-  Config config = load_config(arguments.config, arguments.overrides);
+  std::optional<StartFrame> frame;
+  Config config = load_config(arguments.config, arguments.overrides, &frame);
   install_signal_handlers();
-  if (config.start_from) check_origin(arguments, config);
-  // Errors of the file are reported before anything is written.
-  if (config.start_file) config.packing_fraction = ed::packing_fraction(start_from_file(config).system);
+  // Errors of a state to start from are reported before anything is written.
+  Continuation at;
+  if (config.start_from) at.loaded.origin = take_origin(directory_for(arguments.out, arguments.config), config);
+  if (config.start_file) {
+    at.loaded.file = start_from_file(config, std::exchange(frame, std::nullopt));
+    config.packing_fraction = ed::packing_fraction(at.loaded.file->system);
+  }
   const RunDirectory directory = create_directory(arguments, config);
   Log log(directory.file(kLogFile), Log::Begin::afresh);
   log.line(fmt::format("hardbody {}: {} with {}", version(), kConfigFile, arguments.config));
-  return run_logged(config, directory, {}, log);
+  return run_logged(config, directory, std::move(at), log);
 }
 
 int resume(const std::string& path) {

@@ -3,6 +3,7 @@
 #include "base/signals.h"
 #include "commands/commands.h"
 #include "config/config.h"
+#include "config/keys.h"
 #include "io/run_directory.h"
 #include "io/text_file.h"
 #include "sweep/file.h"
@@ -39,12 +40,6 @@ constexpr int kSignalLook = 100;  ///< milliseconds between two checks for signa
 
 /// Time to wait for a worker of a killed sweep, which saves its state before it ends: its point is locked until then.
 constexpr std::chrono::seconds kPatience{60};
-
-fs::path directory_for(const SweepArguments& arguments) {
-  if (arguments.out && arguments.out->empty()) throw InputError("--out is empty; accepted: the name of a directory");
-  if (arguments.out) return *arguments.out;
-  return fs::path("out") / fs::path(arguments.sweep).stem();
-}
 
 int jobs_for(const SweepArguments& arguments) {
   const int jobs = arguments.jobs.value_or(std::max(1, static_cast<int>(std::thread::hardware_concurrency())));
@@ -121,7 +116,7 @@ std::vector<PointRecord> planned(const SweepFile& sweep) {
     record.starts_from = before[k];
     const TomlDocument document = document_of(sweep, point);
     record.point = std::move(point);
-    if (const Entry* seed = document.find("seed")) record.seed = seed->value.integer;
+    if (const Entry* seed = document.find(kSeedKey)) record.seed = seed->value.integer;
     try {
       (void)read_config(document);
     } catch (const InputError& error) {
@@ -260,7 +255,7 @@ void Sweep::launch(std::size_t k) {
     }
     if (record.starts_from) {
       arguments.emplace_back("--set");
-      arguments.push_back("system.start_from=" + records_[*record.starts_from].point.name);
+      arguments.push_back(std::string(kStartFromKey) + "=" + records_[*record.starts_from].point.name);
     }
   }
   record.status = PointStatus::running;
@@ -385,7 +380,7 @@ int sweep(const SweepArguments& arguments) {
   const std::size_t jobs = static_cast<std::size_t>(jobs_for(arguments));
   const SweepFile file = read_sweep(arguments.sweep);
   std::vector<PointRecord> records = planned(file);
-  const fs::path directory = directory_for(arguments);
+  const fs::path directory = directory_for(arguments.out, arguments.sweep);
   const DirectoryLock lock = take_directory(directory, file);
   return Sweep(directory, std::move(records), jobs).run();
 }

@@ -1,6 +1,7 @@
 #include "config/box.h"
 
 #include "base/errors.h"
+#include "config/keys.h"
 #include "config/species.h"
 
 #include <ed/shape.h>
@@ -20,24 +21,24 @@
 namespace hardbody {
 namespace {
 
-/// What keeps a box that is large enough for "dilated" from being so for the others.
-const char* need_of(const std::string& neighbours) {
-  if (neighbours == "cells") return "three cells as wide as two of them must fit along an edge";
-  if (neighbours == "obp") return "\"obp\" needs room for boxes that a body can turn in";
+/// Returns what a neighbour search needs a large box for.
+const char* need_of(ed::Neighbours neighbours) {
+  if (neighbours == ed::Neighbours::cells) return "three cells as wide as two of them must fit along an edge";
+  if (neighbours == ed::Neighbours::obp) return "\"obp\" needs room for boxes that a body can turn in";
   return "a body would meet two images of another";
 }
 
-/// The box that the bodies need over the one that they have.
+/// Returns the edge of the box that the bodies need over that of the box that they have.
 double box_ratio(const Config& config) {
   const std::vector<ed::Component> components = config.components();
   return ed::smallest_box(components, config.neighbour_search()) / ed::box_for(components, config.packing_fraction);
 }
 
-/// A number of bodies in the same proportions whose box is large enough, the least one where sizes are not drawn;
-/// nothing if so many are too many. A cell of an fcc lattice holds four.
+/// Returns a number of bodies in the same proportions whose box is large enough, the least one where sizes are not
+/// drawn; nullopt if that is above kMostBodies. A cell of an fcc lattice holds four.
 std::optional<int> larger_number(const Config& config, bool drawn) {
   constexpr int kTrials = 20;
-  const double in_a_cell = config.start == "fcc" ? 4 : 1;
+  const double in_a_cell = config.start == ed::Lattice::fcc ? 4 : 1;
   const auto enough = [&](int number, double ratio) {
     return std::ceil(std::max(2.0, std::ceil(number * (ratio * ratio * ratio))) / in_a_cell) * in_a_cell;
   };
@@ -55,7 +56,7 @@ std::optional<int> larger_number(const Config& config, bool drawn) {
 
 std::string larger_box(const Config& config) {
   const bool drawn =
-      std::any_of(config.species.begin(), config.species.end(), [](const auto& s) { return s.sizes != "equal"; });
+      std::any_of(config.species.begin(), config.species.end(), [](const auto& s) { return s.sizes.has_value(); });
   const std::optional<int> number = larger_number(config, drawn);
   return (number ? fmt::format("a {} {}{}", drawn ? "larger number, for instance" : "number of at least", *number,
                                config.mixture ? " in these proportions" : "")
@@ -69,15 +70,15 @@ void check_box(const TomlDocument& document, const Config& config) {
   if (box_ratio(config) <= 1) return;
   double largest = 0;
   for (const ed::Component& c : config.components()) largest = std::max(largest, ed::bounding_radius(c.species.shape));
-  const Entry* number = document.find("system.number");
-  const Entry* entry = number != nullptr ? number : document.find("system.packing_fraction");
+  const Entry* number = document.find(kNumberKey);
+  const Entry* entry = number != nullptr ? number : document.find(kPackingKey);
   const bool by_species = config.mixture && number == nullptr;
   throw InputError(
       fmt::format("{}: {} is {}: the box, {:.4g} long at this packing fraction, is then too small for bodies of "
                   "bounding radius {:.4g}{} ({}); accepted: {}",
-                  entry->where, by_species ? "the number of bodies" : "system.number", config.number,
+                  entry->where, by_species ? "the number of bodies" : kNumberKey, config.number,
                   ed::box_for(config.components(), config.packing_fraction), largest,
-                  config.mixture ? ", the largest" : "", need_of(config.neighbours), larger_box(config)));
+                  config.mixture ? ", the largest" : "", need_of(config.neighbour_search()), larger_box(config)));
 }
 
 void check_lattice(const TomlDocument& document, const Config& config) {
@@ -88,7 +89,7 @@ void check_lattice(const TomlDocument& document, const Config& config) {
   } catch (const std::invalid_argument& error) {
     const std::string message = error.what();
     const Entry* entry = nullptr;
-    for (const char* key : {"system.number", "system.packing_fraction", "system.nematic_order"}) {
+    for (const char* key : {kNumberKey, kPackingKey, kOrderKey}) {
       if (message.starts_with(std::string_view(key).substr(sizeof("system")))) entry = document.find(key);
     }
     if (const Entry* first = document.find("species[1].number"); entry == nullptr && first != nullptr) {
@@ -97,7 +98,7 @@ void check_lattice(const TomlDocument& document, const Config& config) {
                                      message.substr(number.size())));
       }
     }
-    if (entry == nullptr) entry = document.find("system.start");
+    if (entry == nullptr) entry = document.find(kStartKey);
     throw InputError(fmt::format("{}: system.{}", entry->where, message));
   }
 }

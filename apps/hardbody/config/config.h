@@ -1,6 +1,8 @@
 #pragma once
 
+#include <ed/contact_options.h>
 #include <ed/observables.h>
+#include <ed/polydispersity.h>
 #include <ed/simulation.h>
 #include <ed/start.h>
 #include <ed/system.h>
@@ -15,42 +17,52 @@
 
 namespace hardbody {
 
+enum class ShapeKind { ellipsoid, superellipsoid };
+enum class Inertia { paper, uniform, moments };
+enum class TrajectoryFormat { gsd, lammps, vtk };
+
+/// Return the words that a config has for them.
+const char* to_string(ShapeKind kind);
+const char* to_string(Inertia inertia);
+const char* to_string(TrajectoryFormat format);
+
 /// A shape as the user gave it.
 struct ShapeConfig {
-  std::string kind = "ellipsoid";  ///< or "superellipsoid"
+  ShapeKind kind = ShapeKind::ellipsoid;
   // Exactly one of the two.
   std::optional<double> aspect_ratio;
   std::optional<Eigen::Vector3d> semi_axes;
   Eigen::Vector2d exponents{1, 1};  ///< e1, e2 of a superellipsoid
 
-  /// a/b, a along the axis of revolution (of superellipsoids: body z) and b the two equal semi-axes across it; nothing
-  /// for shapes with three different ones.
+  /// Returns a/b, a along the axis of revolution (of superellipsoids: body z) and b the two equal semi-axes across it;
+  /// nullopt for shapes with three different semi-axes.
   std::optional<double> true_aspect_ratio() const;
 };
 
 /// Bodies of one kind, as the user gave them ([shape], or one of several [[species]]) and as the run takes them.
 struct SpeciesConfig {
   ShapeConfig shape;
-  std::string inertia = "paper";             ///< or "uniform", or "moments"
-  Eigen::Vector3d inertia_moments{0, 0, 0};  ///< for "moments": as given, about the axes that semi_axes names
+  Inertia inertia = Inertia::paper;
+  Eigen::Vector3d inertia_moments{0, 0, 0};  ///< for Inertia::moments: as given, about the axes that semi_axes names
   double mass = 1;
-  std::optional<double> fraction;  ///< of the number of bodies; nothing: the number itself was given
+  std::optional<double> fraction;  ///< of the number of bodies; nullopt: the number itself was given
   int number = 0;
 
-  std::string sizes = "equal";            ///< or "uniform", "gaussian", "lognormal"
-  double width = 0;                       ///< of the distribution of sizes: standard deviation / mean
-  std::optional<std::int64_t> size_seed;  ///< nothing: the run's
+  std::optional<ed::SizeDistribution> sizes;  ///< nullopt: all bodies have the same size
+  double width = 0;                           ///< of the distribution of sizes: standard deviation / mean
+  std::optional<std::int64_t> size_seed;      ///< nullopt: the run's
 
-  /// A body of nominal size, in the program's units. An ellipsoid's axis of revolution is along body z.
+  /// Body of nominal size, in the program's units. An ellipsoid's axis of revolution is along body z.
   ed::Species body;
   /// Size of each body relative to the nominal one; empty: all 1.
   std::vector<double> factors;
 
-  /// Degrees of freedom of rotation that count as such: 2 of bodies of revolution (spin excluded), 3 of others.
+  /// Returns the degrees of freedom of rotation that count as such: 2 of bodies of revolution (spin excluded), 3 of
+  /// others.
   int rotation_axes() const;
 };
 
-/// Of sizes that were drawn.
+/// Statistics of sizes that were drawn.
 struct SizeStatistics {
   double mean;
   double deviation;  ///< standard, of the sample
@@ -61,14 +73,14 @@ SizeStatistics statistics_of(const std::vector<double>& sizes);
 
 bool is_sphere(const SpeciesConfig& species);
 
-/// Production "auto", in ed::time_unit of the bodies.
+/// Limits of production "auto", in ed::time_unit of the bodies.
 inline constexpr double kLeastProduction = 30;
 inline constexpr double kMostProduction = 5000;
 
-/// [start]: a state in a file.
+/// State in a file that a run starts from, as [start] names it.
 struct StartFile {
   std::string file;                   ///< absolute
-  std::optional<std::int64_t> frame;  ///< nothing: the last
+  std::optional<std::int64_t> frame;  ///< nullopt: the last
   bool mend = false;                  ///< bodies that overlap are moved apart
   bool reverse = false;               ///< all velocities are negated: time runs backwards
 };
@@ -80,9 +92,9 @@ struct Config {
   // [system]
   int number = 512;
   double packing_fraction = 0;
-  std::string start = "random";           ///< or "cubic", "fcc": on a lattice
+  std::optional<ed::Lattice> start;       ///< nullopt: "random"
   std::optional<std::string> start_from;  ///< directory of a run whose last state is compressed; instead of `start`
-  std::optional<double> nematic_order;    ///< of the start; nothing: uniform orientations, or on a lattice aligned ones
+  std::optional<double> nematic_order;    ///< of the start; nullopt: uniform orientations, or on a lattice aligned ones
 
   std::optional<StartFile> start_file;  ///< instead of a start of the run's own
 
@@ -92,13 +104,13 @@ struct Config {
   double time_unit = 1;  ///< ed::time_unit of the bodies: of all times that the user does not give
 
   // [dynamics]
-  std::string finder = "certified";
+  ed::Finder finder = ed::Finder::certified;
   double eps_d = 1e-6;
-  std::string distance = "dual";
-  std::string neighbours = "dilated";  ///< what "auto" chose
-  bool neighbours_chosen = true;       ///< by "auto"
+  ed::DistanceMethod distance = ed::DistanceMethod::dual;
+  std::optional<ed::Neighbours> neighbours;  ///< nullopt: "auto" has not chosen yet
+  bool neighbours_chosen = true;             ///< by "auto"
 
-  std::optional<double> equilibration_time;  ///< nothing: "auto"
+  std::optional<double> equilibration_time;  ///< nullopt: "auto"
   double equilibration_cap = 0;              ///< of "auto"
   std::optional<double> production_time;
   std::optional<double> target_error;  ///< of "auto": relative, of D_trans and D_rot
@@ -106,39 +118,43 @@ struct Config {
 
   // [output]
   std::int64_t events = 0;
-  std::vector<std::string> trajectory;   ///< of "gsd", "lammps", "vtk"; each once
-  std::int64_t frames = 100;             ///< of each trajectory
-  std::string checkpoint_every = "60s";  ///< a number and s, m or h
+  std::vector<TrajectoryFormat> trajectory;  ///< each once
+  std::int64_t frames = 100;                 ///< of each trajectory
+  std::string checkpoint_every = "60s";      ///< a number and s, m or h
 
-  /// The bodies in the order of their species; of a species with sizes one component a body.
+  /// Returns the bodies in the order of their species; of a species with sizes one component a body.
   std::vector<ed::Component> components() const;
-  /// The species, as the observables take them.
+  /// Returns the species as the observables take them.
   std::vector<ed::BodyGroup> groups() const;
-  /// Numbers of bodies of the species: those whose temperatures are set by themselves.
+  /// Returns the numbers of bodies of the species, whose temperatures are set separately.
   std::vector<int> numbers() const;
   /// Whether all bodies have an axis of revolution.
   bool all_of_revolution() const;
 
   double checkpoint_seconds() const;
 
-  /// The start on a lattice; nothing: a random one.
+  /// Returns the options of a start on a lattice; nullopt for another start.
   std::optional<ed::LatticeOptions> lattice() const;
 
-  /// `neighbours`; "dilated" as long as "auto" has not chosen.
+  /// Returns `neighbours`; dilated as long as "auto" has not chosen.
   ed::Neighbours neighbour_search() const;
-  /// [dynamics], as the simulation takes it; `envelope`: the thickness of the neighbour-list envelopes, 0 for a guess.
+  /// Returns [dynamics] as the simulation takes it; `envelope`: thickness of the neighbour-list envelopes, 0 for a
+  /// guess.
   ed::SimulationOptions simulation_options(double envelope = 0) const;
 };
 
-/// Reads and checks a config. `overrides`: section.key=value. Throws InputError.
-Config load_config(const std::string& path, const std::vector<std::string>& overrides);
-
+struct StartFrame;
 struct TomlDocument;
 
-/// The same from a document that has been read.
-Config read_config(const TomlDocument& document);
+/// Reads and checks a config. Where it starts from a file and leaves something to that file, the frame that was read
+/// for it is handed out in `frame`. Throws InputError.
+Config read_config(const TomlDocument& document, std::optional<StartFrame>* frame = nullptr);
 
-/// The same from a text; `name` is what messages call it.
+/// Reads and checks the config in a file, with `overrides` (section.key=value) laid over it. Throws InputError.
+Config load_config(const std::string& path, const std::vector<std::string>& overrides,
+                   std::optional<StartFrame>* frame = nullptr);
+
+/// Reads and checks a config from a text; `name` is what messages call it. Throws InputError.
 Config parse_config(std::string_view text, const std::string& name, const std::vector<std::string>& overrides = {});
 
 }  // namespace hardbody

@@ -1,24 +1,26 @@
 #pragma once
 
-/// Reading [shape] and [[species]]. Private to config.cpp.
+/// Bodies of a config: [shape] or [[species]].
 
 #include "config/config.h"
 #include "io/toml_document.h"
 
-#include <string>
+#include <ed/shape.h>
 
 namespace hardbody {
 
-inline constexpr std::int64_t kMostBodies = 1'000'000;
+/// Returns the body of a shape that has been read. `literal`: lengths are taken as they are given.
+ed::BodyShape body_shape(const ShapeConfig& shape, bool literal);
 
-/// What a config calls the bodies of a species: "species[2]".
-std::string species_name(std::size_t index);
+/// Whether a body is an ellipsoid of revolution.
+bool is_of_revolution(const ed::BodyShape& shape);
 
 /// Reads [shape] with [dynamics] inertia, or all [[species]], with the number of bodies of each and their sizes. Throws
 /// InputError.
 void read_species(const TomlDocument& document, Config& config);
 
-/// The same bodies in the same proportions, `number` of them or as few more as that takes: sizes are drawn anew.
+/// Returns a config of the same bodies in the same proportions, `number` of them or as few more as that takes: sizes
+/// are drawn anew.
 Config with_number(Config config, int number);
 
 }  // namespace hardbody

@@ -1,7 +1,8 @@
 #include "config/start_additions.h"
 
 #include "base/errors.h"
-#include "config/values.h"
+#include "config/keys.h"
+#include "config/rules.h"
 #include "io/text_file.h"
 #include "trajectory/reader.h"
 
@@ -24,18 +25,15 @@ using Eigen::Vector3d;
 
 /// Species of a file that the config is given the sections of; bodies of more sizes than that are one species.
 constexpr std::size_t kMostSpecies = 64;
-std::string three(const Vector3d& v) {
-  return fmt::format("[{}, {}, {}]", toml_real(v.x()), toml_real(v.y()), toml_real(v.z()));
-}
 
 std::string inertia_line(const Frame& frame, const FrameBody& body) {
   const ed::Species* exact = frame.exact ? &frame.exact->species[body.type] : nullptr;
   if (exact != nullptr && !exact->spins) return "inertia = \"paper\"\n";
   if (!(body.inertia.minCoeff() > 0)) return "";
-  return fmt::format("inertia = {}\n", three(body.inertia));
+  return fmt::format("inertia = {}\n", value_text(body.inertia));
 }
 
-/// A section for bodies that are all alike, without an inertia where the config has one for all.
+/// Returns a section for bodies that are all alike, without an inertia where the config has one for all.
 std::string species_section(const Frame& frame, const std::vector<std::size_t>& bodies, const std::string& file,
                             bool with_inertia) {
   const FrameBody& first = frame.bodies[bodies.front()];
@@ -59,7 +57,7 @@ std::string species_section(const Frame& frame, const std::vector<std::size_t>& 
   }
   const auto* barr = std::get_if<geom::Superellipsoid>(&*shape);
   std::string text = fmt::format("\n[[species]]\nnumber = {}\nmass = {}\nsemi_axes = {}\n", bodies.size(),
-                                 toml_real(first.mass), three(ed::half_extents(*shape)));
+                                 toml_real(first.mass), value_text(ed::half_extents(*shape)));
   if (barr != nullptr) {
     text +=
         fmt::format("kind = \"superellipsoid\"\nexponents = [{}, {}]\n", toml_real(barr->e1()), toml_real(barr->e2()));
@@ -86,16 +84,23 @@ bool has_section(const TomlDocument& document, std::string_view prefix) {
 }
 
 bool has_numbers(const TomlDocument& document) {
-  return std::any_of(document.entries.begin(), document.entries.end(), [](const Entry& e) {
-    return e.key == "system.number" || (e.key.starts_with("species[") && e.key.ends_with("].number"));
-  });
+  return std::any_of(document.entries.begin(), document.entries.end(),
+                     [](const Entry& e) { return e.key == kNumberKey || without_index(e.key) == "species.number"; });
 }
 
-bool flag(const TomlDocument& document, const char* key) {
-  const Entry* entry = document.find(key);
-  if (entry == nullptr) return false;
-  if (entry->value.kind != Value::Kind::boolean) throw bad(*entry, "true or false");
-  return entry->value.integer == 1;
+/// Returns the volume of the bodies whose shapes the frame says over that of the box. Where the config says the shapes,
+/// it is put right when the state is there.
+double packing_of(const Frame& frame, const TomlDocument& document, const std::string& file) {
+  double volume = 0;
+  for (const FrameBody& body : frame.bodies) {
+    const std::optional<ed::BodyShape>& shape = frame.types[body.type].shape;
+    volume += shape ? ed::volume(*shape) : 0;
+  }
+  if (volume == 0) {
+    throw InputError(fmt::format("{}: {} is missing, and {} says no shapes; accepted: a number",
+                                 document.where_of("system"), kPackingKey, file));
+  }
+  return volume / std::pow(box_of(frame, file), 3);
 }
 
 }  // namespace
@@ -108,8 +113,8 @@ StartFrame read_start_frame(const StartFile& start) {
   const std::uint64_t last = last_frame(reader).value_or(count - 1);
   const std::uint64_t k = start.frame ? static_cast<std::uint64_t>(*start.frame) : last;
   if (k >= count) {
-    throw InputError(
-        fmt::format("start.frame is {}, {} has {} whole frames; accepted: 0 to {}", k, start.file, count, count - 1));
+    throw InputError(fmt::format("{} is {}, {} has {} whole frames; accepted: 0 to {}", kStartFrameKey, k, start.file,
+                                 count, count - 1));
   }
   return {reader.read(k), k, reader.cut_off()};
 }
@@ -131,56 +136,30 @@ std::vector<std::vector<std::size_t>> groups_of(const Frame& frame) {
   return list;
 }
 
-std::optional<StartFile> read_start_file(const TomlDocument& document) {
-  const Entry* file = document.find("start.file");
-  for (const char* key : {"start.frame", "start.mend", "start.reverse"}) {
-    const Entry* entry = document.find(key);
-    if (entry != nullptr && file == nullptr) throw bad(*entry, "start.file beside it");
-  }
-  if (file == nullptr) return std::nullopt;
-  if (file->value.kind != Value::Kind::text || file->value.text.empty()) throw bad(*file, "the name of a file");
-  for (const char* key : {"system.start", "system.start_from", "system.nematic_order"}) {
-    if (const Entry* entry = document.find(key)) throw bad(*entry, "no such key beside start.file");
-  }
-  StartFile start;
-  start.file = absolute_path(file->value.text).string();
-  if (const Entry* frame = document.find("start.frame")) {
-    if (frame->value.kind != Value::Kind::integer || frame->value.integer < 0)
-      throw bad(*frame, "an integer, at least 0");
-    start.frame = frame->value.integer;
-  }
-  start.mend = flag(document, "start.mend");
-  start.reverse = flag(document, "start.reverse");
-  return start;
-}
-
-StartAdditions additions_from(const StartFile& start, const TomlDocument& document) {
+TomlDocument completed(TomlDocument document, const StartFile& start, std::optional<StartFrame>& frame) {
   const bool shapes = has_section(document, "shape") || has_section(document, "species");
-  const bool packing = document.find("system.packing_fraction") != nullptr;
-  StartAdditions additions;
-  if (shapes && packing && has_numbers(document) && start.frame) return additions;
-  const auto [frame, k, cut_off] = read_start_frame(start);
-  if (!start.frame) additions.overrides.push_back(fmt::format("start.frame={}", k));
-  if (!shapes) {
-    additions.text = species_text(frame, start.file, document.find("dynamics.inertia") == nullptr);
+  const bool packing = document.find(kPackingKey) != nullptr;
+  const bool numbers = has_numbers(document);
+  if (shapes && packing && numbers && start.frame) return document;
+  frame = read_start_frame(start);
+  std::string text;
+  std::vector<std::string> values;
+  if (!start.frame) values.push_back(fmt::format("{}={}", kStartFrameKey, frame->number));
+  if (!shapes) text = species_text(frame->frame, start.file, document.find(kInertiaKey) == nullptr);
+  if (shapes && !numbers) values.push_back(fmt::format("{}={}", kNumberKey, frame->frame.bodies.size()));
+  if (!packing) {
+    values.push_back(fmt::format("{}={}", kPackingKey, toml_real(packing_of(frame->frame, document, start.file))));
   }
-  if (shapes && !has_numbers(document)) {
-    additions.overrides.push_back(fmt::format("system.number={}", frame.bodies.size()));
+  TomlDocument added = read_toml(text, start.file, values);
+  for (Section& section : added.sections) {
+    section.where = start.file;
+    document.sections.push_back(std::move(section));
   }
-  if (packing) return additions;
-  // Only the bodies' own volume is missing, which the config may say: it is put right when the state is there.
-  double volume = 0;
-  for (const FrameBody& body : frame.bodies) {
-    const std::optional<ed::BodyShape>& shape = frame.types[body.type].shape;
-    volume += shape ? ed::volume(*shape) : 0;
+  for (Entry& entry : added.entries) {
+    entry.where = start.file;
+    document.set(std::move(entry));
   }
-  if (volume == 0) {
-    throw InputError(fmt::format("{}: system.packing_fraction is missing, and {} says no shapes; accepted: a number",
-                                 document.where_of("system"), start.file));
-  }
-  additions.overrides.push_back(
-      fmt::format("system.packing_fraction={}", toml_real(volume / std::pow(box_of(frame, start.file), 3))));
-  return additions;
+  return document;
 }
 
 }  // namespace hardbody

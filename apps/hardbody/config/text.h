@@ -8,16 +8,16 @@
 
 namespace hardbody {
 
-/// A config as TOML with every key and a comment that says what it is, in what unit. Reading it gives the
-/// same Config, to the bit.
+/// Returns a config as TOML with every key and a comment that says what it is, in what unit. Reading it gives the same
+/// Config, to the bit.
 std::string config_text(const Config& config, const std::string& header);
 
-/// What `hardbody init --template NAME` writes; nothing if there is no such template.
+/// Returns what `hardbody init --template NAME` writes; nullopt if there is no such template.
 std::optional<std::string> template_text(std::string_view name);
-/// "ellipsoid, superball, mixture, sweep": the first is the default.
+/// Returns "ellipsoid, superball, mixture, sweep"; the first is the default.
 std::string template_names();
 
-/// What a run directory holds: the defaults filled in.
+/// Returns the config.toml of a run directory: the defaults filled in.
 std::string resolved_text(const Config& config);
 
 }  // namespace hardbody

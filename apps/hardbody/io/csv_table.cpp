@@ -112,6 +112,7 @@ CsvTable parse_csv(std::string_view text, const std::string& name) {
                                    table.header.size()));
     }
     table.rows.push_back(std::move(row));
+    table.lines.push_back(line);
   }
   return table;
 }

@@ -14,6 +14,7 @@ struct CsvTable {
   std::string name;  ///< name of the file, for messages
   std::vector<std::string> header;
   std::vector<std::vector<std::string>> rows;  ///< rows, each as long as the header
+  std::vector<int> lines;                      ///< lines of the file in which the rows begin
 
   /// Returns the column of this name, or the only one whose name ends in .NAME. Throws InputError.
   std::size_t column(std::string_view wanted) const;

@@ -7,6 +7,7 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 #include <utility>
 
@@ -139,25 +140,11 @@ void lay_over(TomlDocument& document, const std::string& override_text) {
 
 // ---- Writing
 
-std::string string_text(std::string_view text) {
-  std::string result = "\"";
-  for (const char c : text) {
-    const auto code = static_cast<unsigned char>(c);
-    if (code < 0x20 || code == 0x7f) {
-      result += fmt::format("\\u{:04X}", code);
-      continue;
-    }
-    if (c == '"' || c == '\\') result += '\\';
-    result += c;
-  }
-  return result + '"';
-}
-
 std::string key_text(std::string_view key) {
   const bool bare = !key.empty() && std::all_of(key.begin(), key.end(), [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
   });
-  return bare ? std::string(key) : string_text(key);
+  return bare ? std::string(key) : toml_string(key);
 }
 
 std::string array_text(const std::vector<Value>& items) {
@@ -195,6 +182,20 @@ const Member* Value::find(std::string_view key) const {
   return found == members.end() ? nullptr : &*found;
 }
 
+std::string toml_string(std::string_view text) {
+  std::string result = "\"";
+  for (const char c : text) {
+    const auto code = static_cast<unsigned char>(c);
+    if (code < 0x20 || code == 0x7f) {
+      result += fmt::format("\\u{:04X}", code);
+      continue;
+    }
+    if (c == '"' || c == '\\') result += '\\';
+    result += c;
+  }
+  return result + '"';
+}
+
 std::string toml_text(const Value& value) {
   switch (value.kind) {
     case Value::Kind::boolean:
@@ -204,7 +205,7 @@ std::string toml_text(const Value& value) {
     case Value::Kind::real:
       return toml_real(value.real);
     case Value::Kind::text:
-      return string_text(value.text);
+      return toml_string(value.text);
     case Value::Kind::array:
       return array_text(value.items);
     case Value::Kind::table:
@@ -213,6 +214,15 @@ std::string toml_text(const Value& value) {
       break;
   }
   return value.shown;
+}
+
+InputError bad(const Entry& entry, std::string_view accepted, std::string_view why) {
+  return InputError(
+      fmt::format("{}: {} is {}{}; accepted: {}", entry.where, entry.key, entry.value.shown, why, accepted));
+}
+
+bool is_number(const Value& value) {
+  return (value.kind == Value::Kind::integer || value.kind == Value::Kind::real) && std::isfinite(value.real);
 }
 
 bool same_value(const Value& a, const Value& b) {

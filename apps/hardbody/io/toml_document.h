@@ -1,5 +1,7 @@
 #pragma once
 
+#include "base/errors.h"
+
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -9,6 +11,9 @@ namespace hardbody {
 
 /// Returns a real number in TOML: the shortest digits that read back as the same number, and never an integer.
 std::string toml_real(double x);
+
+/// Returns a string as TOML, in quotes.
+std::string toml_string(std::string_view text);
 
 struct Member;
 
@@ -35,6 +40,9 @@ struct Member {
 /// Returns a value as TOML on one line, reals to the last bit.
 std::string toml_text(const Value& value);
 
+/// Returns whether a value is an integer or a real, and finite.
+bool is_number(const Value& value);
+
 /// Returns whether a config treats both values alike: 2 and 2.0 are the same.
 bool same_value(const Value& a, const Value& b);
 
@@ -52,6 +60,9 @@ struct Section {
   std::string where;
   int line = 0;
 };
+
+/// Returns "file:line: key is what was got{why}; accepted: ..".
+InputError bad(const Entry& entry, std::string_view accepted, std::string_view why = "");
 
 /// TOML file of two levels (keys at the top, keys in sections, of which several may have one name), with values from
 /// the command line that replace those of the file.

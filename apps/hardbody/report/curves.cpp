@@ -1,16 +1,17 @@
 #include "report/curves.h"
 
 #include "base/errors.h"
-#include "io/run_directory.h"
+#include "io/csv_table.h"
 #include "io/text_file.h"
+#include "registry/curves.h"
 
 #include <fmt/format.h>
 
-#include <array>
 #include <charconv>
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 
 namespace hardbody {
 namespace {
@@ -18,34 +19,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kLongestFile = std::size_t{1} << 26;
-
-/// File of observables/ with the columns that the report uses.
-struct CurveFile {
-  const char* name;
-  std::array<const char*, 3> columns;  ///< columns that exist in all such files, the abscissa first; nullptr: no more
-};
-
-constexpr CurveFile kCurveFiles[] = {
-    {kMsdFile, {"t", "msd"}},
-    {kRotationalMsdFile, {"t", "rot_msd", "rot_msd_body"}},
-    {kAlpha2File, {"t", "alpha2"}},
-    {kVelocityFile, {"t", "vacf", "wacf"}},
-    {kC1File, {"t", "c1"}},
-    {kC2File, {"t", "c2"}},
-    {kFSelfFile, {"t"}},
-    {kPairsFile, {"r", "g", "g2"}},
-    {kStructureFile, {"q", "S"}},
-    {kBlocksFile, {"end", "Z", "S"}},
-};
-
-std::vector<std::string_view> split(std::string_view line, char separator) {
-  std::vector<std::string_view> parts;
-  for (std::size_t end; (end = line.find(separator)) != std::string_view::npos; line.remove_prefix(end + 1)) {
-    parts.push_back(line.substr(0, end));
-  }
-  parts.push_back(line);
-  return parts;
-}
 
 /// Returns NaN for an empty field and for a number that is not finite; nullopt for text that is not a number.
 std::optional<double> field_value(std::string_view field) {
@@ -56,22 +29,6 @@ std::optional<double> field_value(std::string_view field) {
   if (error == std::errc::result_out_of_range && end == field.data() + field.size()) return kNone;
   if (error != std::errc() || end != field.data() + field.size()) return std::nullopt;
   return std::isfinite(value) ? value : kNone;
-}
-
-void add_row(Curves& curves, std::string_view line, const std::string& where) {
-  const std::vector<std::string_view> fields = split(line, ',');
-  if (fields.size() != curves.columns.size()) {
-    throw InputError(fmt::format("{}: has {} fields; accepted: {}, as in the header line", where, fields.size(),
-                                 curves.columns.size()));
-  }
-  for (std::size_t k = 0; k < fields.size(); ++k) {
-    const std::optional<double> value = field_value(fields[k]);
-    if (!value) {
-      throw InputError(
-          fmt::format("{}: \"{}\" is not a number; accepted: a number or nothing", where, one_line(fields[k], 40)));
-    }
-    curves.values[k].push_back(*value);
-  }
 }
 
 }  // namespace
@@ -94,35 +51,35 @@ std::string Curves::bare_name(std::string_view column) {
 }
 
 Curves parse_curves(std::string_view text, const std::string& name, const std::string& where) {
-  Curves curves;
-  curves.name = name;
-  int number = 0;
-  for (std::string_view line : split(text, '\n')) {
-    ++number;
-    if (line.ends_with('\r')) line.remove_suffix(1);
-    if (line.empty()) continue;
-    if (curves.columns.empty()) {
-      for (const std::string_view column : split(line, ',')) curves.columns.emplace_back(column);
-      curves.values.resize(curves.columns.size());
-    } else {
-      add_row(curves, line, fmt::format("{}:{}", where, number));
-    }
-  }
-  if (curves.columns.empty() || text.find('\0') != std::string_view::npos) {
+  if (text.find_first_not_of("\r\n") == std::string_view::npos || text.find('\0') != std::string_view::npos) {
     throw InputError(
         fmt::format("{}: has no header line of columns; accepted: a CSV file that a run has written", where));
+  }
+  CsvTable table = parse_csv(text, where);
+  Curves curves{name, std::move(table.header), {}};
+  curves.values.resize(curves.columns.size());
+  for (std::size_t row = 0; row < table.rows.size(); ++row) {
+    for (std::size_t k = 0; k < curves.columns.size(); ++k) {
+      const std::string& field = table.rows[row][k];
+      const std::optional<double> value = field_value(field);
+      if (!value) {
+        throw InputError(fmt::format("{}:{}: \"{}\" is not a number; accepted: a number or nothing", where,
+                                     table.lines[row], one_line(field, 40)));
+      }
+      curves.values[k].push_back(*value);
+    }
   }
   return curves;
 }
 
 std::vector<Curves> read_curves(const fs::path& directory) {
   std::vector<Curves> all;
-  for (const CurveFile& file : kCurveFiles) {
-    const fs::path path = directory / file.name;
+  for (const CurveFile& file : curve_files()) {
+    const fs::path path = directory / file.path();
     if (!fs::exists(path)) continue;
-    all.push_back(parse_curves(read_file(path, kLongestFile), path.stem().string(), path.string()));
-    for (const char* column : file.columns) {
-      if (column != nullptr && all.back().find(column) == nullptr) {
+    all.push_back(parse_curves(read_file(path, kLongestFile), file.name, path.string()));
+    for (const std::string& column : required_columns(file)) {
+      if (all.back().find(column) == nullptr) {
         throw InputError(
             fmt::format("{}:1: has no column {}; accepted: a CSV file that a run has written", path.string(), column));
       }

@@ -2,9 +2,8 @@
 
 #include "base/errors.h"
 #include "base/version.h"
-#include "config/text.h"
+#include "config/keys.h"
 #include "io/text_file.h"
-#include "io/toml_document.h"
 
 #include <ed/archive_observables.h>
 #include <ed/archive_simulation.h>
@@ -149,25 +148,6 @@ Payload checked_payload(std::string_view bytes, const std::string& name) {
   return {format, bytes.substr(kHead, length)};
 }
 
-/// A key and its value in each of two configs that differ; "nothing" where it is missing.
-struct Difference {
-  std::string key;
-  std::string here;
-  std::string there;
-};
-
-std::optional<Difference> difference(const TomlDocument& here, const TomlDocument& there) {
-  for (const Entry& entry : here.entries) {
-    const Entry* other = there.find(entry.key);
-    if (other == nullptr) return Difference{entry.key, entry.value.shown, "nothing"};
-    if (other->value.shown != entry.value.shown) return Difference{entry.key, entry.value.shown, other->value.shown};
-  }
-  for (const Entry& entry : there.entries) {
-    if (here.find(entry.key) == nullptr) return Difference{entry.key, "nothing", entry.value.shown};
-  }
-  return std::nullopt;
-}
-
 std::string or_none(const std::string& features) {
   return features.empty() ? "none" : features;
 }
@@ -261,11 +241,8 @@ Checkpoint read_checkpoint(const std::filesystem::path& path) {
 }
 
 void check_same_config(const Checkpoint& checkpoint, const Config& config, const std::string& config_name) {
-  const std::string there_name = config_name + " (of the checkpoint)";
-  // Both through the same writer: what was written by hand otherwise is no difference.
-  const TomlDocument here = read_toml(resolved_text(config), config_name, {});
-  const TomlDocument there = read_toml(resolved_text(parse_config(checkpoint.config, there_name)), there_name, {});
-  const std::optional<Difference> found = difference(here, there);
+  const Config there = parse_config(checkpoint.config, config_name + " (of the checkpoint)");
+  const std::optional<Difference> found = difference(config, there);
   if (!found) return;
   throw InputError(fmt::format("{}: {} is {}, the checkpoint was made with {}; accepted: the config of the run",
                                config_name, found->key, found->here, found->there));

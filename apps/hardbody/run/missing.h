@@ -27,6 +27,6 @@ MissingWords missing_words(const RunRecord& record);
 std::string missing_text(const ed::Missing& missing, const MissingWords& words);
 
 /// Whether longer lags may give one of the values of `results`.
-bool longer_lags_help(const ed::Correlations& results);
+bool longer_lags_help(const ed::GroupResults& results);
 
 }  // namespace hardbody

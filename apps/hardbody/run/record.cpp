@@ -61,7 +61,7 @@ std::vector<std::string> defects(const ed::Audit& audit) {
 std::vector<std::string> conservation_defects(const ed::KineticState& kinetic, const ed::System& system) {
   std::vector<std::string> list;
   const double n = system.size();
-  const double wanted = 0.5 * (3 * n - 3 + kinetic.rotational_freedoms + kinetic.spin_freedoms);
+  const double wanted = 0.5 * (3 * n - 3 + kinetic.rotational_degrees_of_freedom + kinetic.spin_degrees_of_freedom);
   const double drift = std::abs(kinetic.energy() / wanted - 1);
   if (!(drift <= kEnergyDrift)) {
     list.push_back(fmt::format("the energy is {:.12g} kT instead of {:g}: off by {:.1e}, allowed {:.0e}",

@@ -34,11 +34,11 @@ Trajectory::Trajectory(const RunDirectory& directory, const Config& config, doub
               : planned > 0             ? static_cast<std::uint64_t>(config.frames)
                                         : 1) {
   for (const SpeciesConfig& species : config.species) groups_.push_back(species.number);
-  for (const std::string& format : config.trajectory) {
-    if (format == "gsd") {
+  for (const TrajectoryFormat format : config.trajectory) {
+    if (format == TrajectoryFormat::gsd) {
       const fs::path path = directory.file(kGsdFile);
       files_.push_back({path, std::make_unique<GsdWriter>(path, wanted_)});
-    } else if (format == "lammps") {
+    } else if (format == TrajectoryFormat::lammps) {
       const fs::path path = directory.file(kLammpsFile);
       files_.push_back({path, std::make_unique<LammpsWriter>(path)});
     } else {

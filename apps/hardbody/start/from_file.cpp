@@ -1,7 +1,7 @@
 #include "start/from_file.h"
 
 #include "base/errors.h"
-#include "config/start_additions.h"
+#include "config/keys.h"
 #include "io/text_file.h"
 #include "start/velocities.h"
 #include "trajectory/reader.h"
@@ -134,8 +134,8 @@ std::string mend(ed::System& system, const StartFile& start, const std::vector<d
   const ed::Audit audit = ed::audit(system);
   if (!overlaps(audit)) return "";
   if (!start.mend) {
-    throw InputError(fmt::format("{}: {}; accepted: overlaps of at most {:g} of their size, or start.mend = true",
-                                 start.file, overlap_text(audit, ids), ed::kAuditOverlap));
+    throw InputError(fmt::format("{}: {}; accepted: overlaps of at most {:g} of their size, or {} = true", start.file,
+                                 overlap_text(audit, ids), ed::kAuditOverlap, kMendKey));
   }
   const std::optional<double> factor = mending_factor(system);
   if (!factor) {
@@ -161,9 +161,9 @@ bool same_packing(double a, double b) {
 
 }  // namespace
 
-FileStart start_from_file(const Config& config) {
+FileStart start_from_file(const Config& config, std::optional<StartFrame> loaded) {
   const StartFile& start = *config.start_file;
-  const auto [frame, k, cut_off] = read_start_frame(start);
+  const auto [frame, k, cut_off] = loaded ? std::move(*loaded) : read_start_frame(start);
   const std::vector<std::vector<std::size_t>> groups = groups_of(frame);
   std::vector<int> found;
   std::vector<int> wanted;
@@ -195,9 +195,8 @@ FileStart start_from_file(const Config& config) {
   const double after = ed::packing_fraction(result.system);
   if (!same_packing(before, config.packing_fraction) && !same_packing(after, config.packing_fraction)) {
     throw InputError(
-        fmt::format("{}: its packing fraction is {:.8g}, in the config {:.8g}; accepted: the same, or no "
-                    "system.packing_fraction",
-                    start.file, before, config.packing_fraction));
+        fmt::format("{}: its packing fraction is {:.8g}, in the config {:.8g}; accepted: the same, or no {}",
+                    start.file, before, config.packing_fraction, kPackingKey));
   }
   result.report = fmt::format("start: {} bodies of frame {} of {} at packing fraction {:.8g}, {}{}{}", order.size(), k,
                               one_line(start.file), after, velocities, mended, cut_off ? kCutOff : "");

@@ -1,9 +1,11 @@
 #pragma once
 
 #include "config/config.h"
+#include "config/start_additions.h"
 
 #include <ed/system.h>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,10 +18,11 @@ struct FileStart {
   std::vector<std::string> notices;  ///< notices of the reader about the frame, one line each
 };
 
-/// Returns the state in the config's file, with the bodies of the config, in their order. Positions and orientations
-/// are those of the file, bit for bit if the file is of this program. Velocities are also taken if the bodies are those
-/// of the file bit for bit; otherwise they are rescaled to kT = 1 (or drawn, if there are none). Throws InputError if
-/// the bodies or the packing fraction are different, or if bodies overlap and overlaps are not to be removed.
-FileStart start_from_file(const Config& config);
+/// Returns the state in the config's file, with the bodies of the config, in their order. `frame`: frame of the file if
+/// it has been read already. Positions and orientations are those of the file, bit for bit if the file is of this
+/// program. Velocities are also taken if the bodies are those of the file bit for bit; otherwise they are rescaled to
+/// kT = 1 (or drawn, if there are none). Throws InputError if the bodies or the packing fraction are different, or if
+/// bodies overlap and overlaps are not to be removed.
+FileStart start_from_file(const Config& config, std::optional<StartFrame> frame = {});
 
 }  // namespace hardbody

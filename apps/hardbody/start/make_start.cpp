@@ -1,7 +1,6 @@
 #include "start/make_start.h"
 
 #include "base/signals.h"
-#include "start/from_file.h"
 
 #include <ed/shape.h>
 #include <ed/start.h>
@@ -136,10 +135,9 @@ std::optional<Start> compressed_start(const Config& config, const std::optional<
 
 }  // namespace
 
-std::optional<Start> make_start(const Config& config, const std::optional<ed::System>& origin, Progress& progress,
-                                Log& log) {
+std::optional<Start> make_start(const Config& config, LoadedStates loaded, Progress& progress, Log& log) {
   if (config.start_file) {
-    FileStart start = start_from_file(config);
+    FileStart start = loaded.file ? std::move(*loaded.file) : start_from_file(config);
     log.line(start.report);
     progress.say(start.report);
     for (const std::string& notice : start.notices) {
@@ -154,9 +152,9 @@ std::optional<Start> make_start(const Config& config, const std::optional<ed::Sy
     progress.say(*warning);
   }
   const std::optional<ed::LatticeOptions> lattice = config.lattice();
-  if (!lattice) return compressed_start(config, origin, progress, log);
-  log.line(fmt::format("start: {} bodies on a lattice ({}) at packing fraction {:g}{}", config.number, config.start,
-                       config.packing_fraction, order_text(config)));
+  if (!lattice) return compressed_start(config, loaded.origin, progress, log);
+  log.line(fmt::format("start: {} bodies on a lattice ({}) at packing fraction {:g}{}", config.number,
+                       ed::to_string(*config.start), config.packing_fraction, order_text(config)));
   Start start{ed::lattice_start(config.components(), *lattice), {}, {}};
   log.line("start: done");
   return start;

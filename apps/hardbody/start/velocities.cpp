@@ -91,8 +91,8 @@ std::array<bool, kKinds> motion_of(const ed::System& system, SpeciesRange range,
   }
   const ed::KineticState now = ed::kinetic_state(part);
   const double rest = kRounding * (now.rotational_energy + now.spin_energy);
-  return {translates(system, range, drift), now.rotational_freedoms == 0 || now.rotational_energy > rest,
-          now.spin_freedoms == 0 || now.spin_energy > rest};
+  return {translates(system, range, drift), now.rotational_degrees_of_freedom == 0 || now.rotational_energy > rest,
+          now.spin_degrees_of_freedom == 0 || now.spin_energy > rest};
 }
 
 Vector3d mean_velocity(const ed::System& system) {
@@ -181,7 +181,8 @@ std::string set_velocities(ed::System& system, const Config& config, const Frame
   ed::System drawn = system;
   draw_thermal(drawn, static_cast<std::uint64_t>(config.seed));
   const ed::KineticState kinetic = ed::kinetic_state(system);
-  const std::array<bool, kKinds> has = {true, kinetic.rotational_freedoms > 0, kinetic.spin_freedoms > 0};
+  const std::array<bool, kKinds> has = {true, kinetic.rotational_degrees_of_freedom > 0,
+                                        kinetic.spin_degrees_of_freedom > 0};
   const bool turns = frame.angular_velocities || frame.angular_momenta;
   const Vector3d drift = mean_velocity(system);
   std::vector<int> numbers;

@@ -2,7 +2,7 @@
 
 #include "base/errors.h"
 #include "base/suggest.h"
-#include "config/values.h"
+#include "config/keys.h"
 #include "io/text_file.h"
 
 #include <fmt/format.h>
@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kLongestSweepFile = 1 << 20;  ///< bytes
-constexpr const char* kChainKey = "system.packing_fraction";
+constexpr const char* kChainKey = kPackingKey;
 constexpr const char* kZipKey = "zip";
 constexpr const char* kValues =
     "a list of values, {from, to, step}, {from, to, count} or {from, to, count, spacing = \"log\"}";
@@ -41,7 +41,7 @@ bool is_own_key(const Entry& entry) {
 
 /// Checks keys at the top and sections that only a sweep has; all others are checked by the config.
 void check_own_names(const TomlDocument& document) {
-  constexpr std::array<std::string_view, 4> kTop = {"seed", "base", "chain", "grid"};
+  constexpr std::array<std::string_view, 4> kTop = {kSeedKey, "base", "chain", "grid"};
   for (const Entry& entry : document.entries) {
     const bool at_the_top = entry.key.find('.') == std::string::npos;
     if (!at_the_top || std::find(kTop.begin(), kTop.end(), entry.key) != kTop.end()) continue;

@@ -2,6 +2,7 @@
 
 #include "base/errors.h"
 #include "base/suggest.h"
+#include "config/keys.h"
 #include "io/text_file.h"
 
 #include <fmt/format.h>
@@ -196,7 +197,7 @@ std::string Setting::assignment() const {
 }
 
 bool names_file(std::string_view key) {
-  return key == "start.file" || key == "system.start_from";
+  return key == kStartFileKey || key == kStartFromKey;
 }
 
 Value with_files(Value value, const std::function<fs::path(const fs::path&)>& renamed) {

@@ -102,7 +102,8 @@ void fields(Archive& archive, T& system) {
 template <class Archive, Is<KineticState> T>
 void fields(Archive& archive, T& state) {
   archive(state.translational_energy, state.rotational_energy, state.spin_energy, state.translational_kT,
-          state.rotational_kT, state.rotational_freedoms, state.spin_freedoms, state.axis_energy, state.momentum);
+          state.rotational_kT, state.rotational_degrees_of_freedom, state.spin_degrees_of_freedom, state.axis_energy,
+          state.momentum);
 }
 
 template <class Archive, Is<Motion> T>

@@ -113,12 +113,12 @@ ED_EXPORT int smallest_number(const BodyShape& shape, double packing_fraction,
 /// Kinetic energies and the temperatures kT that follow from them.
 struct KineticState {
   double translational_energy = 0;
-  double rotational_energy = 0;  ///< bodies of revolution: only the motion across their axes
-  double spin_energy = 0;        ///< bodies of revolution: rotation about their axes
-  double translational_kT = 0;   ///< temperature on 3N - 3 degrees of freedom (momentum is zero)
-  double rotational_kT = 0;      ///< temperature on rotational_freedoms
-  int rotational_freedoms = 0;   ///< degrees of freedom: 2 for each body of revolution, 3 for others
-  int spin_freedoms = 0;         ///< degrees of freedom: 1 for each body of revolution that spins
+  double rotational_energy = 0;           ///< bodies of revolution: only the motion across their axes
+  double spin_energy = 0;                 ///< bodies of revolution: rotation about their axes
+  double translational_kT = 0;            ///< temperature on 3N - 3 degrees of freedom (momentum is zero)
+  double rotational_kT = 0;               ///< temperature on rotational_degrees_of_freedom
+  int rotational_degrees_of_freedom = 0;  ///< degrees of freedom: 2 for each body of revolution, 3 for others
+  int spin_degrees_of_freedom = 0;        ///< degrees of freedom: 1 for each body of revolution that spins
   /// Energy of rotation about body x, y, z; these add up to rotational_energy + spin_energy.
   Eigen::Vector3d axis_energy = Eigen::Vector3d::Zero();
   Eigen::Vector3d momentum = Eigen::Vector3d::Zero();

@@ -5,12 +5,12 @@
 
 namespace ed::internal {
 
-/// When the next events of a body come. Bodies keep it for the event loop: next to the motion, where that is small.
+/// Times of the next events of a body. Bodies keep it for the event loop, beside the motion where that is small.
 struct BodyEvents {
   static constexpr std::int32_t kExit = -1;
 
-  double exit = 0;             ///< lower bound of when the body leaves its envelope
-  std::int32_t first = kExit;  ///< what its calendar entry is: a pair, or kExit
+  double exit = 0;             ///< lower bound of the time when the body leaves its envelope
+  std::int32_t first = kExit;  ///< event of its calendar entry: a pair's index, kExit, or an added one (added_events.h)
 
   template <class Archive, class Self>
   static void fields(Archive& archive, Self& self) {

@@ -1,6 +1,6 @@
 #pragma once
 
-/// First looks: what a contact search finds with one evaluation, at many pairs at once.
+/// First looks: contact searches with one evaluation each, for many pairs at once.
 
 #include "bodies/pair.h"
 #include "contact/certified.h"
@@ -9,10 +9,10 @@
 
 namespace ed::internal {
 
-/// A pair to look at now, and what was found.
-struct Look {
+/// A pair whose contact search is wanted, and its result.
+struct PairLook {
   Pair* pair;
-  double end;  ///< of the search
+  double end;  ///< end of the search
   bool answered = false;
   Finding finding{};
 };
@@ -23,9 +23,9 @@ class FirstLooks {
  public:
   virtual ~FirstLooks() = default;
 
-  /// Answers the looks that it can, setting finding and normal, and counts them, all as certified_contact with one
-  /// evaluation does, bit for bit. The others are left as they are. Centres are as far apart as nearest images are.
-  virtual void take(const Bodies& bodies, double now, double box, std::span<Look> looks, FinderCounters& count) = 0;
+  /// Searches where it can, sets finding and normal, and counts, all as certified_contact with one evaluation does, bit
+  /// for bit. The other looks stay unanswered. Pairs are in the nearest image.
+  virtual void take(const Bodies& bodies, double now, double box, std::span<PairLook> looks, FinderCounters& count) = 0;
 };
 
 }  // namespace ed::internal

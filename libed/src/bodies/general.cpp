@@ -36,7 +36,8 @@ GeneralKind general_kind(const Species& species) {
           .axis = axis < 0 ? 2 : axis};
 }
 
-/// Without spin the angular velocity is across the axis of revolution and stays so.
+/// Returns the angular velocity, without spin where the species has none: it is across the axis of revolution then and
+/// stays so.
 Vector3d allowed_omega(const GeneralKind& kind, const Matrix3d& R, const Vector3d& omega) {
   if (kind.spins) return omega;
   const Vector3d u = R.col(kind.symmetry_axis);
@@ -107,13 +108,13 @@ void GeneralBodies::scale_positions(double factor, double now) {
 }
 
 template <class F>
-decltype(auto) GeneralBodies::with_gauge(int i, int j, const Vector3d& r, double now, F&& f) const {
+decltype(auto) GeneralBodies::with_gap(int i, int j, const Vector3d& r, double now, F&& f) const {
   const GeneralKind& A = kind_of(i);
   const GeneralKind& B = kind_of(j);
   const RigidMotion& a = motions_[at(i)];
   const RigidMotion& b = motions_[at(j)];
-  if (A.norm && B.norm) return f(SupportGauge(*A.norm, a, *B.norm, b, r, now));
-  return f(ConvexGauge(A.shape, a, B.shape, b, r, now));
+  if (A.norm && B.norm) return f(SupportGap(*A.norm, a, *B.norm, b, r, now));
+  return f(ConvexGap(A.shape, a, B.shape, b, r, now));
 }
 
 Finding GeneralBodies::find_contact(int i, int j, const Vector3d& r, double now, double end, int max_evaluations,
@@ -123,8 +124,8 @@ Finding GeneralBodies::find_contact(int i, int j, const Vector3d& r, double now,
     return bracketing_contact({*kind_of(i).implicit, *kind_of(j).implicit, motions_[at(i)], motions_[at(j)], r, now},
                               now, end, options, n, count, unsolved);
   }
-  return with_gauge(i, j, r, now,
-                    [&](const auto& gauge) { return certified_contact(gauge, now, end, max_evaluations, n, count); });
+  return with_gap(i, j, r, now,
+                  [&](const auto& gap) { return certified_contact(gap, now, end, max_evaluations, n, count); });
 }
 
 void GeneralBodies::start_flight(int i, double now, const TopState& state, const Vector3d& velocity,
@@ -139,7 +140,7 @@ void GeneralBodies::start_flight(int i, double now, const TopState& state, const
 
 GeneralBodies::Contact GeneralBodies::contact(int i, int j, const Vector3d& r, const Vector3d& n, double now) const {
   const ContactPoints points =
-      with_gauge(i, j, r, now, [&](const auto& gauge) { return gauge.contact_points(gauge.at(now), n); });
+      with_gap(i, j, r, now, [&](const auto& gap) { return gap.contact_points(gap.at(now), n); });
   const auto top = [&](int body) { return motions_[at(body)].top.at(now - motions_[at(body)].time); };
   // The spin of a body of revolution has no part in it, so that energy is kept however well its contact point is known.
   const auto spin = [this](int body, const TopState& at_contact) -> Vector3d {
@@ -179,17 +180,17 @@ void GeneralBodies::set_velocity(int i, const Vector3d& velocity, double now) {
 
 double GeneralBodies::contact_scale(int i, int j, const Vector3d& r, const Vector3d& start, double now,
                                     double enough) const {
-  return with_gauge(i, j, r, now, [&](const auto& gauge) {
-    const auto state = gauge.at(now);
-    Vector3d n = start.isZero(0) ? gauge.cold_normal(state) : start;
+  return with_gap(i, j, r, now, [&](const auto& gap) {
+    const auto state = gap.at(now);
+    Vector3d n = start.isZero(0) ? gap.cold_normal(state) : start;
     double best = 1;
     const auto done = [&](const auto& e) {
       if (n.dot(r) > 0) best = std::min(best, 1 - e.g / n.dot(r));
       return best <= enough || e.step2 < geom::kNormalTolerance2;
     };
-    auto e = gauge.evaluate(state, n);
+    auto e = gap.evaluate(state, n);
     int budget = geom::kMaxIterations;
-    if (gauge.ascend(state, done, budget, n, e) == geom::kernel::Ascent::converged) (void)done(e);
+    if (gap.ascend(state, done, budget, n, e) == geom::kernel::Ascent::converged) (void)done(e);
     return best;
   });
 }

@@ -1,9 +1,10 @@
 #pragma once
 
-/// The state of rigid bodies of any shape and moments of inertia, and what an event loop asks of them. The same
-/// interface as UniaxialBodies.
+/// State of rigid bodies of any shape and moments of inertia, with the interface that an event loop needs
+/// (bodies/uniaxial.h).
 ///
-/// A body's flight is kept as it began, after its last collision: nothing is computed again where only time has passed.
+/// Each body's flight is kept as it began after its last collision, so that nothing is computed again while only time
+/// passes.
 
 #include "base/large_vector.h"
 #include "base/prefetch.h"
@@ -27,21 +28,21 @@
 
 namespace ed::internal {
 
-/// What the bodies of one species share.
+/// Constants of the bodies of one species.
 struct GeneralKind {
   BodyShape shape;
-  std::optional<NormBodyShape> norm;    ///< of libgeom's shapes
-  std::optional<geom::Shape> implicit;  ///< the same, for Finder::bracketing
+  std::optional<NormBodyShape> norm;    ///< nullopt for a user's shape
+  std::optional<geom::Shape> implicit;  ///< shape for Finder::bracketing; none of a user's shape
   double bounding_radius;
   double inscribed_radius;
   Eigen::Vector3d half_extents;
   double lever;  ///< turning_lever
   double mass;
   Eigen::Vector3d inertia;
-  /// Of shape and inertia: contacts have no moment about it. -1: none.
+  /// Symmetry axis of shape and inertia, about which contacts have no moment; -1: none.
   int symmetry_axis;
   bool spins;
-  int axis;  ///< which body axis is reported as the body's: symmetry_axis, or z
+  int axis;  ///< body axis that is reported as the body's: symmetry_axis, or z
 };
 
 class GeneralBodies {
@@ -49,18 +50,18 @@ class GeneralBodies {
   explicit GeneralBodies(const System& system);
 
   int number() const { return static_cast<int>(motions_.size()); }
-  double bounding_radius() const { return bounding_radius_; }    ///< the largest
-  double inscribed_radius() const { return inscribed_radius_; }  ///< the smallest
+  double bounding_radius() const { return bounding_radius_; }    ///< largest of all
+  double inscribed_radius() const { return inscribed_radius_; }  ///< smallest of all
   double bounding_radius(int i) const { return kind_of(i).bounding_radius; }
   const std::vector<GeneralKind>& kinds() const { return kinds_; }
 
   Eigen::Vector3d position_at(int i, double t) const { return motions_[at(i)].position_at(t); }
-  /// The state of the body is read soon.
+  /// Prefetches the state of body i.
   void fetch(int i) const {
     prefetch(motions_[at(i)]);
     prefetch(events_[at(i)]);
   }
-  /// All that there is of it.
+  /// Prefetches all data of body i.
   void fetch_all(int i) const {
     fetch(i);
     prefetch(turned_[at(i)]);
@@ -68,16 +69,16 @@ class GeneralBodies {
   BodyEvents& events(int i) { return events_[at(i)]; }
   const BodyEvents& events(int i) const { return events_[at(i)]; }
   const Eigen::Vector3d& velocity(int i) const { return motions_[at(i)].velocity; }
-  /// How fast the body turns at the most.
-  double turning(int i) const { return motions_[at(i)].top.max_omega(); }
+  /// Returns an upper bound of the angular speed.
+  double angular_speed_bound(int i) const { return motions_[at(i)].top.max_omega(); }
   Motion motion(int i, double t) const;
-  static constexpr bool kSamplesRotations = true;  ///< of a Snapshot
-  /// All of a Snapshot but the position.
+  static constexpr bool kSamplesRotations = true;  ///< whether sample() sets Snapshot::rotation
+  /// Sets the numbers of body i in a Snapshot, without its position.
   void sample(int i, double t, Snapshot& snapshot) const;
 
   void move(int /*i*/, double /*t*/) {}
   void shift(int i, const Eigen::Vector3d& by) { motions_[at(i)].position += by; }
-  /// Its clock, at `t` now, shows 0.
+  /// Shifts the clock of body i so that it shows 0 at t.
   void restart_clock(int i, double t) { motions_[at(i)].time -= t; }
   void scale_positions(double factor, double now);
 
@@ -88,7 +89,7 @@ class GeneralBodies {
 
   /// Two bodies in contact, and what else their motion is made of.
   struct Contact {
-    ContactBody a;  ///< without spin
+    ContactBody a;  ///< angular velocity without spin
     ContactBody b;
     TopState top_a;
     TopState top_b;
@@ -102,7 +103,8 @@ class GeneralBodies {
   /// Sets the velocity of the centre from now on.
   void set_velocity(int i, const Eigen::Vector3d& velocity, double now);
 
-  /// The factor by which r would have to shrink for the pair to touch, from above and no better than `enough`.
+  /// Returns an upper bound of the factor by which r would have to shrink for the pair to touch, no better than needed
+  /// to see that it is at most `enough`.
   double contact_scale(int i, int j, const Eigen::Vector3d& r, const Eigen::Vector3d& n, double now,
                        double enough) const;
 
@@ -123,9 +125,9 @@ class GeneralBodies {
   }
 
  private:
-  /// Calls f with the gauge of i and j: the one for libgeom's shapes, or the one for any.
+  /// Calls f with the pair gap of i and j: SupportGap for libgeom's shapes, ConvexGap for others.
   template <class F>
-  decltype(auto) with_gauge(int i, int j, const Eigen::Vector3d& r, double now, F&& f) const;
+  decltype(auto) with_gap(int i, int j, const Eigen::Vector3d& r, double now, F&& f) const;
 
   static std::size_t at(int i) { return static_cast<std::size_t>(i); }
   void start_flight(int i, double now, const TopState& state, const Eigen::Vector3d& velocity,
@@ -135,7 +137,7 @@ class GeneralBodies {
   std::vector<GeneralKind> kinds_;
   std::vector<int> kind_;
   LargeVector<RigidMotion> motions_;
-  LargeVector<TurnedAngles> turned_;  ///< up to the start of the flight
+  LargeVector<TurnedAngles> turned_;  ///< angles turned up to the start of the flight
   LargeVector<BodyEvents> events_;
   double bounding_radius_ = 0;
   double inscribed_radius_ = kNever;

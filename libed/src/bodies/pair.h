@@ -10,22 +10,22 @@ namespace ed::internal {
 
 inline constexpr double kNever = std::numeric_limits<double>::infinity();
 
-/// What is known of a pair of neighbours.
+/// Kind of a pair's next event.
 enum class PairEvent : std::int32_t {
   clear,    ///< certified: no contact while both bodies stay in their envelopes (up to the earlier exit bound)
-  bound,    ///< certified: no contact before `time`; to be looked at again then
-  contact,  ///< they touch at `time`
+  bound,    ///< search from `time` on; certified: no contact before
+  contact,  ///< contact at `time`
 };
 
-/// One cache line: a collision looks at tens of pairs, each somewhere else in memory.
+/// A pair of neighbours. It is one cache line: a collision reads tens of pairs, each somewhere else in memory.
 struct alignas(64) Pair {
   double time = kNever;
-  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< from i to j: the last one found, or zero
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< last one found, from i to j, or zero
   std::int32_t i = -1;
   std::int32_t j = -1;
-  std::int32_t slot_i = -1;  ///< where the pair stands in the list of i
+  std::int32_t slot_i = -1;  ///< place of the pair in the list of i
   std::int32_t slot_j = -1;
-  std::int32_t owner = -1;  ///< in whose calendar entry the pair counts: i or j
+  std::int32_t owner = -1;  ///< body in whose calendar entry the pair counts: i or j
   PairEvent event = PairEvent::clear;
 
   std::int32_t partner(std::int32_t body) const { return i == body ? j : i; }

@@ -102,14 +102,15 @@ Finding UniaxialBodies::find_contact(int i, int j, const Vector3d& r, double now
   }
   const double reach = A.bounding_radius + B.bounding_radius;
   if (spins_) {
-    const UniaxialGauge<true> gauge(A.shape, a, B.shape, b, r, now, reach);
-    return certified_contact(gauge, now, end, max_evaluations, n, count);
+    const UniaxialGap<true> gap(A.shape, a, B.shape, b, r, now, reach);
+    return certified_contact(gap, now, end, max_evaluations, n, count);
   }
-  const UniaxialGauge<false> gauge(A.shape, a, B.shape, b, r, now, reach);
-  return certified_contact(gauge, now, end, max_evaluations, n, count);
+  const UniaxialGap<false> gap(A.shape, a, B.shape, b, r, now, reach);
+  return certified_contact(gap, now, end, max_evaluations, n, count);
 }
 
-/// Of the square of a rate that a collision may take without what rounding has left of it being scaled up.
+/// Least share of the square of a rate that a collision must leave for its rounding errors to be corrected: below, they
+/// would be scaled up.
 constexpr double kMostLost = 1e-4;
 
 UniaxialBodies::Contact UniaxialBodies::contact(int i, int j, const Vector3d& /*r*/, const Vector3d& n,
@@ -142,8 +143,8 @@ void UniaxialBodies::leave(int i, int j, const Contact& contact, double /*now*/)
   }
 }
 
-/// For every n with n.r > 0 the pair is apart for scales above (hA + hB) / n.r = 1 - g / n.r; the best n is near the
-/// one that maximises g, which is improved until the pair is out of the question or converged.
+/// Computed by normals: for every n with n.r > 0 the pair is apart for scales above (hA + hB) / n.r = 1 - g / n.r; the
+/// best n is near the one that maximises g, which is improved until the pair is out of the question or converged.
 double UniaxialBodies::contact_scale(int i, int j, const Vector3d& r, const Vector3d& start, double now,
                                      double enough) const {
   const UniaxialKind& A = kind_of(i);
@@ -165,7 +166,7 @@ double UniaxialBodies::contact_scale(int i, int j, const Vector3d& r, const Vect
 }
 
 UniaxialKernels UniaxialBodies::kernels(const std::optional<geom::InstructionSet>& batches) const {
-  // Of near spheres most pairs are told apart by their bounding spheres, without what the kernels are good at
+  // Most pairs of near spheres are told apart by their bounding spheres, without what the kernels are good at
   // (bench_engine, vectors/).
   constexpr double kNearSphere = 0.9;
   const UniaxialKernels found = find_uniaxial_kernels(batches);

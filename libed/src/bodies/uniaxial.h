@@ -1,8 +1,8 @@
 #pragma once
 
-/// The state of ellipsoids of revolution, one or several species, and what an event loop asks of them: the fast case.
+/// State of ellipsoids of revolution of one or several species: the fast case of an event loop.
 ///
-/// What an event loop asks of its bodies is the public interface below; GeneralBodies has the same.
+/// The public interface is what an event loop needs of its bodies; GeneralBodies has the same.
 
 #include "base/large_vector.h"
 #include "base/prefetch.h"
@@ -29,11 +29,11 @@
 
 namespace ed::internal {
 
-/// What the bodies of one species share.
+/// Constants of the bodies of one species.
 struct UniaxialKind {
   geom::kernel::Spheroid shape;
   geom::Ellipsoid upright;  ///< the shape with its axis of revolution along body z
-  int axis;                 ///< of revolution, in the user's body frame
+  int axis;                 ///< axis of revolution, in the user's body frame
   UniaxialInertia inertia;
   double bounding_radius;
   double inscribed_radius;
@@ -41,24 +41,24 @@ struct UniaxialKind {
 
 class UniaxialBodies {
  public:
-  /// Whether all species are ellipsoids of revolution about an axis that their inertia shares.
+  /// Returns whether all species are ellipsoids of revolution about an axis that their inertia shares.
   static bool can_hold(const System& system);
 
   explicit UniaxialBodies(const System& system);
 
   int number() const { return static_cast<int>(entries_.size()); }
-  double bounding_radius() const { return bounding_radius_; }    ///< the largest
-  double inscribed_radius() const { return inscribed_radius_; }  ///< the smallest
+  double bounding_radius() const { return bounding_radius_; }    ///< largest of all
+  double inscribed_radius() const { return inscribed_radius_; }  ///< smallest of all
   double bounding_radius(int i) const { return kind_of(i).bounding_radius; }
 
-  /// Position of the centre, at any time of the flight.
+  /// Returns the position of the centre at any time of the flight.
   Eigen::Vector3d position_at(int i, double t) const { return entries_[at(i)].motion.position_at(t); }
-  /// The state of the body is read soon.
+  /// Prefetches the state of body i.
   void fetch(int i) const {
     prefetch_line(&entries_[at(i)]);
     prefetch_line(&entries_[at(i)].motion.time);
   }
-  /// All that there is of it.
+  /// Prefetches all data of body i.
   void fetch_all(int i) const {
     prefetch(entries_[at(i)]);
     prefetch(frames_[at(i)]);
@@ -66,20 +66,20 @@ class UniaxialBodies {
   BodyEvents& events(int i) { return entries_[at(i)].events; }
   const BodyEvents& events(int i) const { return entries_[at(i)].events; }
   const Eigen::Vector3d& velocity(int i) const { return entries_[at(i)].motion.velocity; }
-  /// How fast the body turns at the most.
-  double turning(int i) const { return entries_[at(i)].motion.rate; }
+  /// Returns an upper bound of the angular speed.
+  double angular_speed_bound(int i) const { return entries_[at(i)].motion.rate; }
   Motion motion(int i, double t) const;
-  static constexpr bool kSamplesRotations = false;  ///< of a Snapshot
-  /// Orientation and the integrals of the angular velocity; not the position.
+  static constexpr bool kSamplesRotations = false;  ///< whether sample() sets Snapshot::rotation
+  /// Sets orientation and integrals of the angular velocity of body i in a Snapshot, without its position.
   void sample(int i, double t, Snapshot& snapshot) const;
 
-  /// Keeps the state at t instead of that of an earlier time.
+  /// Moves body i to the time t, which is not before that of its state.
   void move(int i, double t) {
     AxisMotion& m = entries_[at(i)].motion;
     advance(kind_of(i).inertia, t, m, frames_[at(i)]);
   }
   void shift(int i, const Eigen::Vector3d& by) { entries_[at(i)].motion.position += by; }
-  /// Its clock, at `t` now, shows 0; after move(i, t).
+  /// Shifts the clock of body i so that it shows 0 at t; after move(i, t).
   void restart_clock(int i, double /*t*/) { entries_[at(i)].motion.time = 0; }
   void scale_positions(double factor, double /*now*/) {
     for (Entry& entry : entries_) entry.motion.position *= factor;
@@ -105,16 +105,17 @@ class UniaxialBodies {
     entries_[at(i)].motion.velocity = velocity;
   }
 
-  /// The factor by which r would have to shrink for the pair to touch, from above and no better than `enough`.
+  /// Returns an upper bound of the factor by which r would have to shrink for the pair to touch, no better than needed
+  /// to see that it is at most `enough`.
   double contact_scale(int i, int j, const Eigen::Vector3d& r, const Eigen::Vector3d& n, double now,
                        double enough) const;
 
-  /// None if pairs are better answered one by one.
+  /// Returns the vector kernels for these bodies; none where one pair at a time is faster.
   UniaxialKernels kernels(const std::optional<geom::InstructionSet>& batches) const;
 
   const std::vector<UniaxialKind>& kinds() const { return kinds_; }
   const UniaxialKind& kind_of(int i) const { return kinds_[at(kind_[at(i)])]; }
-  bool spins() const { return spins_; }  ///< some body may
+  bool spins() const { return spins_; }  ///< whether some body may spin
   int kind_index(int i) const { return kind_[at(i)]; }
   /// The states; read into bodies of the same kinds.
   template <class Archive, class Self>
@@ -128,8 +129,8 @@ class UniaxialBodies {
   const BodyFrame& frame(int i) const { return frames_[at(i)]; }
 
  private:
-  /// Of a neighbour without spin two cache lines are read, all but AxisMotion::e0: of large systems, what a collision
-  /// costs is the number of lines that it reads.
+  /// Events and motion of a body. Of a neighbour without spin two cache lines are read, all but AxisMotion::e0: in
+  /// large systems the cost of a collision is the number of lines that it reads.
   struct alignas(64) Entry {
     BodyEvents events;
     AxisMotion motion;

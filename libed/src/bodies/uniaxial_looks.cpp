@@ -50,7 +50,7 @@ UniaxialLooks::UniaxialLooks(const UniaxialBodies& bodies, const UniaxialKernels
   for (int lane = 0; lane < kBlockLooks; ++lane) internal::put(bodies.kinds()[0], bodies.kinds()[0], in_, lane);
 }
 
-void UniaxialLooks::put(const UniaxialBodies& bodies, const Look& look, int lane) {
+void UniaxialLooks::put(const UniaxialBodies& bodies, const PairLook& look, int lane) {
   const Pair& pair = *look.pair;
   if (!one_kind_) internal::put(bodies.kind_of(pair.i), bodies.kind_of(pair.j), in_, lane);
   in_.body_a[lane] = numbers(bodies.axis_motion(pair.i));
@@ -59,7 +59,7 @@ void UniaxialLooks::put(const UniaxialBodies& bodies, const Look& look, int lane
   in_.rows[LookInput::end][lane] = look.end;
 }
 
-void UniaxialLooks::read(int lane, Look& look, FinderCounters& count) const {
+void UniaxialLooks::read(int lane, PairLook& look, FinderCounters& count) const {
   const double verdict = out_.rows[LookOutput::verdict][lane];
   if (verdict == LookOutput::open) return;
   const double kernel_calls = out_.rows[LookOutput::kernel_calls][lane];
@@ -74,12 +74,12 @@ void UniaxialLooks::read(int lane, Look& look, FinderCounters& count) const {
   count.kernel_calls += static_cast<std::uint64_t>(kernel_calls);
 }
 
-void UniaxialLooks::take(const UniaxialBodies& bodies, double now, double box, std::span<Look> looks,
+void UniaxialLooks::take(const UniaxialBodies& bodies, double now, double box, std::span<PairLook> looks,
                          FinderCounters& count) {
   in_.now = now;
   in_.box = box;
-  std::array<Look*, kBlockLooks> look_of;
-  const auto look_in = [&](int lane) -> Look& { return *look_of[static_cast<std::size_t>(lane)]; };
+  std::array<PairLook*, kBlockLooks> look_of;
+  const auto look_in = [&](int lane) -> PairLook& { return *look_of[static_cast<std::size_t>(lane)]; };
   for (std::size_t next = 0; next < looks.size();) {
     int lanes = 0;
     for (; next < looks.size() && lanes < kBlockLooks; ++next) {

@@ -1,6 +1,6 @@
 #pragma once
 
-/// First looks at ellipsoids of revolution, in vectors: most of an event loop's time
+/// First looks at ellipsoids of revolution, in vectors. They take most of an event loop's time
 /// (docs/decisions/014-first-looks.md).
 
 #include "bodies/first_looks.h"
@@ -15,15 +15,15 @@ class UniaxialLooks final : public FirstLooks<UniaxialBodies> {
  public:
   UniaxialLooks(const UniaxialBodies& bodies, const UniaxialKernels& kernels);
 
-  void take(const UniaxialBodies& bodies, double now, double box, std::span<Look> looks,
+  void take(const UniaxialBodies& bodies, double now, double box, std::span<PairLook> looks,
             FinderCounters& count) override;
 
  private:
-  void put(const UniaxialBodies& bodies, const Look& look, int lane);
-  void read(int lane, Look& look, FinderCounters& count) const;
+  void put(const UniaxialBodies& bodies, const PairLook& look, int lane);
+  void read(int lane, PairLook& look, FinderCounters& count) const;
 
   LookKernel* kernel_;
-  bool one_kind_;  ///< its rows are in all lanes
+  bool one_kind_;  ///< rows of the only kind are in all lanes
   LookInput in_;
   LookOutput out_;
 };

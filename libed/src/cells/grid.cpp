@@ -90,7 +90,7 @@ int CellGrid::cell_of(const Eigen::Vector3d& p) const {
 
 // ---- Bodies --------------------------------------------------------------------------------------------------------
 
-CellGrid::Place CellGrid::find(int i) const {
+CellGrid::BlockLane CellGrid::find(int i) const {
   for (int block = cell_of_body_[at(i)];; block = next_[at(block)]) {
     for (int lane = 0; lane < kCellBlock; ++lane) {
       if (blocks_[at(block)].name[lane].body == i) return {block, lane};
@@ -99,7 +99,7 @@ CellGrid::Place CellGrid::find(int i) const {
   }
 }
 
-void CellGrid::put(Place where, int i, const Eigen::Vector3d& position) {
+void CellGrid::put(BlockLane where, int i, const Eigen::Vector3d& position) {
   CellBlock& block = blocks_[at(where.block)];
   block.x[where.lane] = position.x();
   block.y[where.lane] = position.y();
@@ -133,7 +133,7 @@ void CellGrid::insert(int i, int cell, const Eigen::Vector3d& position) {
 void CellGrid::remove(int i) {
   const int cell = cell_of_body_[at(i)];
   int& count = count_[at(cell)];
-  const Place hole = find(i);
+  const BlockLane hole = find(i);
   CellBlock& own = blocks_[at(cell)];
   const int last = (count - 1) % kCellBlock;
   put(hole, own.name[last].body, {own.x[last], own.y[last], own.z[last]});

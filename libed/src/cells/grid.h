@@ -79,7 +79,7 @@ class CellGrid {
     std::array<double, kMostAlong> distance2;
     int count = 0;
   };
-  struct Place {
+  struct BlockLane {
     int block;
     int lane;
   };
@@ -97,10 +97,10 @@ class CellGrid {
   template <class Found>
   void for_each_cell_near(const Eigen::Vector3d& position, double reach, Found&& found) const;
 
-  Place find(int i) const;
+  BlockLane find(int i) const;
   void insert(int i, int cell, const Eigen::Vector3d& position);
   void remove(int i);
-  void put(Place where, int i, const Eigen::Vector3d& position);
+  void put(BlockLane where, int i, const Eigen::Vector3d& position);
 
   double box_;
   double reach_;  ///< largest reach that can be requested

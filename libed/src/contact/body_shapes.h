@@ -1,6 +1,6 @@
 #pragma once
 
-/// What contact searches need of a BodyShape.
+/// Properties of a BodyShape that contact searches need.
 
 #include "contact/support_gap.h"
 
@@ -17,27 +17,27 @@ namespace ed::internal {
 /// Throws std::invalid_argument for exponents beyond those tested in motion.
 void check_exponents(const BodyShape& shape);
 
-/// The shape as libgeom's own variant; nothing for a user's.
+/// Returns the shape as libgeom's own variant; nullopt for a user's.
 std::optional<geom::Shape> geom_shape(const BodyShape& shape);
 
 /// Throws std::invalid_argument if the options ask for the paper's search, which needs implicit surfaces, of a body
 /// that has none.
 void check_finder(const ContactOptions& options, const BodyShape& shape);
 
-/// How far a radian of turning can move the surface along any normal: max |s(n) - h(n) n| over unit n, the derivative
-/// of h along the sphere, or more.
+/// Returns an upper bound of the way by which a radian of turning can move the surface along any normal: max |s(n) -
+/// h(n) n| over unit n, the derivative of h along the sphere, or more.
 /// @{
 double turning_lever(const geom::Ellipsoid& shape);
 double turning_lever(const geom::Shape& shape);
 double turning_lever(const BodyShape& shape);
 /// @}
 
-/// Whether there is a distance: the bodies are apart or overlap.
+/// Returns whether the result has a distance: the bodies are apart or overlap.
 inline bool is_answer(const geom::DistanceResult& result) {
   return result.status == geom::DistanceStatus::separated || result.status == geom::DistanceStatus::overlapping;
 }
 
-/// Of an ellipsoid or superellipsoid.
+/// Returns an ellipsoid or superellipsoid as SupportGap needs it.
 NormBodyShape norm_body(const BodyShape& shape);
 
 }  // namespace ed::internal

@@ -101,9 +101,9 @@ struct MovingSurface {
   }
 };
 
-/// By how much turning can change the distance, in a unit of time: eq. (distOver) has |w| L here, L the bounding
-/// radius; the speed of the axis times |a - b|, the largest slope of the support function, is an overestimate too, and
-/// makes longer steps.
+/// Returns a bound of how much turning can change the distance in a unit of time: eq. (distOver) has |w| L here, L the
+/// bounding radius; the speed of the axis times |a - b|, the largest slope of the support function, is an overestimate
+/// too, and makes longer steps.
 double turning_speed(const geom::Ellipsoid& shape, const AxisMotion& motion) {
   return turning_lever(shape) * motion.rate * motion.e2.norm();
 }
@@ -119,8 +119,8 @@ double bounding_radius_of(const geom::Shape& shape) {
   return geom::bounding_radius(shape);
 }
 
-/// Whether the second derivatives of the shape's implicit function have no bound: Newton's method on eqs. (contime)
-/// creeps there, and ends up to 1e-7 from the contact.
+/// Returns whether the second derivatives of the shape's implicit function have no bound: Newton's method on eqs.
+/// (contime) creeps there, and ends up to 1e-7 from the contact.
 bool has_vertices(const geom::Ellipsoid& /*shape*/) {
   return false;
 }
@@ -146,8 +146,8 @@ class Search {
   Finding run(double t_begin, double t_end);
 
  private:
-  /// The bodies at one time, and what is known of their distance then.
-  struct Look {
+  /// Both bodies at one time, with their distance and its rate.
+  struct PairAtTime {
     double time;
     MovingBody a, b;
     double d;
@@ -156,20 +156,20 @@ class Search {
     Vector3d normal;
   };
 
-  Look look(double t);
+  PairAtTime look(double t);
   geom::DistanceResult distance(double t, const MovingBody& a, const MovingBody& b);
   geom::DistanceResult dual_distance(const MovingBody& a, const MovingBody& b) const;
   geom::WitnessPair seed(const MovingBody& a, const MovingBody& b);
-  // In axes that move with A's centre.
+  // Bodies in axes that move with A's centre.
   MovingBody body_a(double t) const { return moving_body(pair_.a, t, Vector3d::Zero(), Vector3d::Zero()); }
   MovingBody body_b(double t) const { return moving_body(pair_.b, t, pair_.r_now + (t - pair_.now) * v_, v_); }
 
-  bool grazes(const Look& from, const Look& to, Finding& finding);
-  bool refine(const Look& outside, const Look& inside, double guess, Finding& finding);
-  bool refine_by_newton(const Look& outside, double t_last, double guess, Finding& finding);
-  bool refine_in_one_dimension(Look outside, Look inside, Finding& finding);
-  bool touches(const Look& at) const { return at.d <= kTouching * size_; }
-  bool approaches(const Look& at) const { return at.rate < -kResting * fastest_; }
+  bool grazes(const PairAtTime& from, const PairAtTime& to, Finding& finding);
+  bool refine(const PairAtTime& outside, const PairAtTime& inside, double guess, Finding& finding);
+  bool refine_by_newton(const PairAtTime& outside, double t_last, double guess, Finding& finding);
+  bool refine_in_one_dimension(PairAtTime outside, PairAtTime inside, Finding& finding);
+  bool touches(const PairAtTime& at) const { return at.d <= kTouching * size_; }
+  bool approaches(const PairAtTime& at) const { return at.rate < -kResting * fastest_; }
 
   const Pair& pair_;
   const ContactOptions& options_;
@@ -228,9 +228,9 @@ geom::DistanceResult Search<Pair>::distance(double t, const MovingBody& a, const
 }
 
 template <class Pair>
-typename Search<Pair>::Look Search<Pair>::look(double t) {
+typename Search<Pair>::PairAtTime Search<Pair>::look(double t) {
   ++count_.evaluations;
-  Look at;
+  PairAtTime at;
   at.time = t;
   at.a = body_a(t);
   at.b = body_b(t);
@@ -261,7 +261,7 @@ Finding Search<Pair>::run(double t_begin, double t_end) {
   const Window window = sphere_window(pair_.r_now, v_, size_, pair_.now, t_begin, t_end);
   Finding finding{Outcome::clear, t_end};
   if (!(window.begin < window.end)) return finding;
-  Look here = look(window.begin);  // step 2
+  PairAtTime here = look(window.begin);  // step 2
   for (int distances = 0; distances < kMaxDistances; ++distances) {
     if (here.d < -kOverlap * size_) return {Outcome::overlapping, here.time, approaches(here)};
     if (touches(here)) {
@@ -270,7 +270,8 @@ Finding Search<Pair>::run(double t_begin, double t_end) {
     }
     if (!(here.time < window.end) || fastest_ == 0) return finding;   // step 8
     const double step = std::max(here.d, options_.eps_d) / fastest_;  // step 3
-    const Look next = look(std::max(std::nextafter(here.time, window.end), std::min(here.time + step, window.end)));
+    const PairAtTime next =
+        look(std::max(std::nextafter(here.time, window.end), std::min(here.time + step, window.end)));
     if (next.d < 0 && here.d > 0) {  // step 5
       const double guess = here.time + (next.time - here.time) * here.d / (here.d - next.d);
       if (refine(here, next, guess, finding)) return finding;
@@ -284,11 +285,11 @@ Finding Search<Pair>::run(double t_begin, double t_end) {
 
 /// Step 6: both distances are in (0, eps_d); the parabola through them and the distance half way may have zeros.
 template <class Pair>
-bool Search<Pair>::grazes(const Look& from, const Look& to, Finding& finding) {
+bool Search<Pair>::grazes(const PairAtTime& from, const PairAtTime& to, Finding& finding) {
   // Distances that fall at the end, or rise at the start, have no minimum between: nothing to look for.
   if (from.rate >= 0 || to.rate <= 0) return false;
   const double span = to.time - from.time;
-  const Look middle = look(from.time + 0.5 * span);
+  const PairAtTime middle = look(from.time + 0.5 * span);
   if (middle.d < 0) return refine(from, middle, from.time + 0.25 * span, finding);
   // d = c0 + c1 s + c2 s^2, s in [0, 1].
   const double c0 = from.d;
@@ -298,13 +299,13 @@ bool Search<Pair>::grazes(const Look& from, const Look& to, Finding& finding) {
   if (!(c2 > 0) || !(c1 < 0) || !(discriminant >= 0)) return false;
   const double smallest_zero = 2 * c0 / (std::sqrt(discriminant) - c1);
   if (!(smallest_zero <= 1)) return false;
-  const Look lowest = look(from.time + span * std::min(1.0, -c1 / (2 * c2)));
+  const PairAtTime lowest = look(from.time + span * std::min(1.0, -c1 / (2 * c2)));
   if (lowest.d < 0) return refine(from, lowest, from.time + smallest_zero * span, finding);
   return refine_by_newton(from, to.time, from.time + smallest_zero * span, finding);
 }
 
 template <class Pair>
-bool Search<Pair>::refine(const Look& outside, const Look& inside, double guess, Finding& finding) {
+bool Search<Pair>::refine(const PairAtTime& outside, const PairAtTime& inside, double guess, Finding& finding) {
   const bool by_newton =
       options_.root == ContactRoot::newton && !has_vertices(pair_.shape_a) && !has_vertices(pair_.shape_b);
   if (by_newton && refine_by_newton(outside, inside.time, guess, finding)) return true;
@@ -313,7 +314,7 @@ bool Search<Pair>::refine(const Look& outside, const Look& inside, double guess,
 
 /// Newton's method on eqs. (contime), f_x + alpha^2 g_x = 0, f = 0, g = 0, in the contact point, alpha and time.
 template <class Pair>
-bool Search<Pair>::refine_by_newton(const Look& outside, double t_last, double guess, Finding& finding) {
+bool Search<Pair>::refine_by_newton(const PairAtTime& outside, double t_last, double guess, Finding& finding) {
   Vector3d x = 0.5 * (outside.point_a + outside.point_b);
   double t = guess;
   double alpha = 0;
@@ -355,8 +356,8 @@ bool Search<Pair>::refine_by_newton(const Look& outside, double t_last, double g
 
 /// Newton's method on d(t), kept between a time outside and one inside by bisection.
 template <class Pair>
-bool Search<Pair>::refine_in_one_dimension(Look outside, Look inside, Finding& finding) {
-  Look best = outside;
+bool Search<Pair>::refine_in_one_dimension(PairAtTime outside, PairAtTime inside, Finding& finding) {
+  PairAtTime best = outside;
   for (int step = 0; step < kMaxRootSteps; ++step) {
     double t = best.time - best.d / best.rate;
     if (!(t > outside.time && t < inside.time)) t = 0.5 * (outside.time + inside.time);

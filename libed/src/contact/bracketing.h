@@ -28,20 +28,20 @@ struct PairInFlight {
   const Shape& shape_b;
   const Flight& a;
   const Flight& b;
-  Eigen::Vector3d r_now;  ///< from A's centre to B's at `now`, in the image that is meant
+  Eigen::Vector3d r_now;  ///< vector from A's centre to B's at `now`, in the image that is meant
   double now;
 };
-/// Of revolution; shapes have their axis of revolution along body z.
+/// Pair of ellipsoids of revolution; shapes have their axis of revolution along body z.
 using UniaxialPair = PairInFlight<geom::Ellipsoid, AxisMotion>;
 using GeneralPair = PairInFlight<geom::Shape, RigidMotion>;
 
-/// A distance that Newton's method has declined, and when.
+/// A distance that Newton's method has declined, and its time.
 struct Unsolved {
   double time;
   FailedDistance call;
 };
 
-/// Finds a contact in [t_begin, t_end] by the paper's steps 1 to 9. Outcome::clear says that none was found, which is
+/// Finds a contact in [t_begin, t_end] by the paper's steps 1 to 9. Outcome::clear means that none was found, which is
 /// no proof. Where Newton's method for a distance fails the dual answers instead: `count.rescues` is raised and
 /// `unsolved` set to the last such failure. `n` as in certified_contact.
 Finding bracketing_contact(const UniaxialPair& pair, double t_begin, double t_end, const ContactOptions& options,

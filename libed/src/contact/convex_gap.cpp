@@ -32,7 +32,7 @@ double curvature_radius(const BodyShape& shape) {
   return std::visit(of, shape);
 }
 
-/// In the world's axes.
+/// Returns the support point along n in the world's axes.
 geom::Support world_support(const BodyShape& shape, const geom::Pose& pose, const Vector3d& n) {
   const geom::Support s = support(shape, transposed_product(pose.rotation(), n));
   return {s.height, pose.rotation() * s.point};
@@ -43,7 +43,7 @@ geom::DistanceResult query(const BodyShape& a, const geom::Pose& X_a, const Body
   return std::visit([&](const auto& A, const auto& B) { return geom::distance(A, X_a, B, X_b, options); }, a, b);
 }
 
-/// The least of (1 - x) g0 + x g1 - K T^2 x (1 - x) / 2 over x in [0, 1].
+/// Returns the least of (1 - x) g0 + x g1 - K T^2 x (1 - x) / 2 over x in [0, 1].
 double lowest(double g0, double g1, double KT2) {
   const double slope = g1 - g0 - 0.5 * KT2;
   if (slope >= 0) return g0;
@@ -53,8 +53,8 @@ double lowest(double g0, double g1, double KT2) {
 
 }  // namespace
 
-ConvexGauge::ConvexGauge(const BodyShape& A, const RigidMotion& a, const BodyShape& B, const RigidMotion& b,
-                         const Vector3d& r_now, double now)
+ConvexGap::ConvexGap(const BodyShape& A, const RigidMotion& a, const BodyShape& B, const RigidMotion& b,
+                     const Vector3d& r_now, double now)
     : A_(A),
       B_(B),
       a_(a),
@@ -69,7 +69,7 @@ ConvexGauge::ConvexGauge(const BodyShape& A, const RigidMotion& a, const BodySha
       speed_(v_.norm() + reach_a_ * a.top.max_omega() + reach_b_ * b.top.max_omega()),
       scales_(GeneralScales::of(reach_a_, a, reach_b_, b, now)) {}
 
-ConvexGauge::State ConvexGauge::at(double t) const {
+ConvexGap::State ConvexGap::at(double t) const {
   const TopState a = a_.top.at(t - a_.time);
   const TopState b = b_.top.at(t - b_.time);
   return {t,
@@ -80,28 +80,28 @@ ConvexGauge::State ConvexGauge::at(double t) const {
           scales_.rounding(t)};
 }
 
-ConvexGauge::Gap ConvexGauge::gap(const State& s, const Vector3d& n) const {
+ConvexGap::Sample ConvexGap::sample(const State& s, const Vector3d& n) const {
   const geom::Support a = world_support(A_, s.a, n);
   const geom::Support b = world_support(B_, s.b, -n);
   return {n.dot(s.b.position()) - (a.height + b.height), a.point, b.point};
 }
 
-ConvexGauge::Evaluation ConvexGauge::complete(const State& /*s*/, const Gap& gap, const Vector3d& /*n*/) const {
+ConvexGap::Evaluation ConvexGap::complete(const State& /*s*/, const Sample& sample, const Vector3d& /*n*/) const {
   Evaluation e;
-  e.g = gap.g;
+  e.g = sample.g;
   e.decrement = std::numeric_limits<double>::infinity();
   e.step2 = std::numeric_limits<double>::infinity();
   e.step.setZero();
-  e.point_a = gap.point_a;
-  e.point_b = gap.point_b;
+  e.point_a = sample.point_a;
+  e.point_b = sample.point_b;
   return e;
 }
 
 /// n and e of an answer; false if it is none.
-bool ConvexGauge::take(const State& s, const geom::DistanceResult& d, Vector3d& n, Evaluation& e) const {
+bool ConvexGap::take(const State& s, const geom::DistanceResult& d, Vector3d& n, Evaluation& e) const {
   if (!is_answer(d)) return false;
   n = d.normal;
-  e.g = gap(s, n).g;
+  e.g = sample(s, n).g;
   // The distance is between g and g + error_bound: bodies that may only touch do not overlap.
   if (e.g < 0) e.g = std::min(0.0, e.g + d.error_bound);
   e.decrement = 0;
@@ -113,39 +113,38 @@ bool ConvexGauge::take(const State& s, const geom::DistanceResult& d, Vector3d& 
 }
 
 /// n and e of the distance itself, from n on; false if the query declines.
-bool ConvexGauge::solve(const State& s, Vector3d& n, Evaluation& e) const {
+bool ConvexGap::solve(const State& s, Vector3d& n, Evaluation& e) const {
   return take(
       s, query(A_, s.a, B_, s.b, {.start = n, .max_iterations = kNewtonSteps, .penetration = geom::Penetration::local}),
       n, e);
 }
 
-geom::DistanceResult ConvexGauge::last_resort(const State& s) const {
+geom::DistanceResult ConvexGap::last_resort(const State& s) const {
   return query(A_, s.a, B_, s.b, {.start = cold_normal(s)});
 }
 
-ContactPoints ConvexGauge::contact_points(const State& s, const Vector3d& n) const {
+ContactPoints ConvexGap::contact_points(const State& s, const Vector3d& n) const {
   Vector3d normal = n;
   Evaluation e = evaluate(s, n);
-  // By one of the two the search has had its answer.
+  // The search has had its answer by one of the two.
   if (!solve(s, normal, e)) take(s, last_resort(s), normal, e);
   return {e.point_a, e.point_b};
 }
 
-double ConvexGauge::chord_curvature(double T, const Vector3d& n0, const Vector3d& n1, double distance) const {
+double ConvexGap::chord_curvature(double T, const Vector3d& n0, const Vector3d& n1, double distance) const {
   const double chord = 0.5 * (n1 - n0).norm();
-  const double turning = 2 * std::asin(std::min(1.0, chord)) / T;
-  const auto bend = [turning](const FreeTop& top) {
-    const double w = turning + top.max_omega();
+  const double angular_speed = 2 * std::asin(std::min(1.0, chord)) / T;
+  const auto bend = [angular_speed](const FreeTop& top) {
+    const double w = angular_speed + top.max_omega();
     return w * w + top.max_alpha();
   };
-  const double centres = turning * (turning * (distance + v_.norm() * T) + 2 * v_.norm());
+  const double centres = angular_speed * (angular_speed * (distance + v_.norm() * T) + 2 * v_.norm());
   return kBoundMargin * (reach_a_ * bend(a_.top) + reach_b_ * bend(b_.top) + centres);
 }
 
-/// Whether there is no contact up to s.t + T, for a gap that is certainly g >= 0 along n now; `end`: the distance
+/// Returns whether no contact comes up to s.t + T, for a gap that is certainly g >= 0 along n now; `end`: the distance
 /// there. Less what rounding may hide, but of bodies that are taken to touch.
-bool ConvexGauge::chord_clears(const State& s, const Vector3d& n, double g, bool touching, double T,
-                               double& end) const {
+bool ConvexGap::chord_clears(const State& s, const Vector3d& n, double g, bool touching, double T, double& end) const {
   const State later = at(s.t + T);
   const double hidden = touching ? 0 : s.rounding.gap + scales_.later(T);
   Vector3d n1 = n;
@@ -164,8 +163,8 @@ bool ConvexGauge::chord_clears(const State& s, const Vector3d& n, double g, bool
   return false;
 }
 
-double ConvexGauge::certified_step(const State& s, const Evaluation& /*e*/, const Vector3d& n, double computed_g,
-                                   double gp, double horizon) const {
+double ConvexGap::certified_step(const State& s, const Evaluation& /*e*/, const Vector3d& n, double computed_g,
+                                 double gp, double horizon) const {
   const double g = std::max(0.0, computed_g - s.rounding.gap);
   // Where the tangent ends or, for bodies that part or hardly approach, as far as the sag of a chord allows.
   const double K = chord_curvature(1, n, n, 0);
@@ -180,18 +179,18 @@ double ConvexGauge::certified_step(const State& s, const Evaluation& /*e*/, cons
   return std::min(horizon, g / speed_);  // nothing moves faster
 }
 
-double ConvexGauge::least_step(const State& s, const Evaluation& /*e*/, const Vector3d& n, bool touching,
-                               double tau) const {
+double ConvexGap::least_step(const State& s, const Evaluation& /*e*/, const Vector3d& n, bool touching,
+                             double tau) const {
   const double unit = size() / speed_;
   if (!touching || tau > kShortStep * unit) return tau;
-  // Of bodies that touch g is not known: it may fall by what rounding hides.
+  // g of bodies that touch is not known: it may fall by what rounding hides.
   double end = 0;
   return longest_clear_step(kTouching * unit, unit,
                             [&](double trial) { return chord_clears(s, n, 0, true, trial, end); });
 }
 
-bool ConvexGauge::falls_since(const State& s, const Evaluation& /*e*/, const Vector3d& n, double rate,
-                              double span) const {
+bool ConvexGap::falls_since(const State& s, const Evaluation& /*e*/, const Vector3d& n, double rate,
+                            double span) const {
   if (!(rate < -kResting * speed_)) return false;
   if (!(span > 0)) return true;
   const State before = at(s.t - span);
@@ -201,16 +200,16 @@ bool ConvexGauge::falls_since(const State& s, const Evaluation& /*e*/, const Vec
   return e.g >= before.rounding.gap + 0.5 * chord_curvature(span, n0, n, before.b.position().norm()) * span * span;
 }
 
-Vector3d ConvexGauge::cold_normal(const State& s) const {
+Vector3d ConvexGap::cold_normal(const State& s) const {
   const Vector3d& r = s.b.position();
   return r.squaredNorm() > 0 ? Vector3d(r.stableNormalized()) : Vector3d::UnitX();
 }
 
-Separation ConvexGauge::separating_normal(const State& s, Vector3d& n) const {
+Separation ConvexGap::separating_normal(const State& s, Vector3d& n) const {
   const geom::DistanceResult d = last_resort(s);
   if (!is_answer(d)) return Separation::declined;
   n = d.normal;
-  const double g = gap(s, n).g;
+  const double g = sample(s, n).g;
   if (g + d.error_bound < -kOverlap * size()) return Separation::overlapping;
   return g >= -kOverlap * size() || d.error_bound <= geom::kWidestGap * size() ? Separation::apart
                                                                                : Separation::declined;

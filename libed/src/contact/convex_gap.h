@@ -1,7 +1,8 @@
 #pragma once
 
-/// The gauge of two convex bodies of which nothing is known but their support functions and radii: a user's own shapes
-/// (see uniaxial_gap.h for what a gauge is), and the steps it certifies. Every look is a whole distance query.
+/// The pair gap of two convex bodies of which nothing is known but their support functions and radii: a user's own
+/// shapes (uniaxial_gap.h defines pair gaps), and the steps it certifies. Every evaluation is a whole distance
+/// query.
 ///
 /// Chords. Let the normal turn uniformly from n0 now to n1 at T, by an angle a, so that Omega = a / T. Seen from a body
 /// that turns at omega(t), |omega| <= w, |d omega/dt| <= w', its direction u(tau) has |u''| <= B = (Omega + w)^2 + w'.
@@ -35,41 +36,41 @@
 
 namespace ed::internal {
 
-class ConvexGauge {
+class ConvexGap {
  public:
   struct State {
     double t;
-    geom::Pose a, b;  ///< about A's centre
+    geom::Pose a, b;  ///< poses relative to A's centre
     Eigen::Vector3d omega_a, omega_b;
     GeneralRounding rounding;
   };
-  struct Gap {
+  struct Sample {
     double g;
-    Eigen::Vector3d point_a, point_b;  ///< the support points, from the bodies' centres
+    Eigen::Vector3d point_a, point_b;  ///< support points, from the bodies' centres
   };
   struct Evaluation : geom::kernel::Evaluation {
-    Eigen::Vector3d point_a, point_b;  ///< from the bodies' centres: the closest ones, or the support points
+    Eigen::Vector3d point_a, point_b;  ///< closest points, or support points, from the bodies' centres
   };
 
   /// `r_now`: the vector from A's centre to B's at `now`, in the image that is meant.
-  ConvexGauge(const BodyShape& A, const RigidMotion& a, const BodyShape& B, const RigidMotion& b,
-              const Eigen::Vector3d& r_now, double now);
+  ConvexGap(const BodyShape& A, const RigidMotion& a, const BodyShape& B, const RigidMotion& b,
+            const Eigen::Vector3d& r_now, double now);
 
   State at(double t) const;
-  Gap gap(const State& s, const Eigen::Vector3d& n) const;
+  Sample sample(const State& s, const Eigen::Vector3d& n) const;
   /// No Newton step: `ascend` asks for the distance.
-  Evaluation complete(const State& s, const Gap& gap, const Eigen::Vector3d& n) const;
-  Evaluation evaluate(const State& s, const Eigen::Vector3d& n) const { return complete(s, gap(s, n), n); }
+  Evaluation complete(const State& s, const Sample& sample, const Eigen::Vector3d& n) const;
+  Evaluation evaluate(const State& s, const Eigen::Vector3d& n) const { return complete(s, sample(s, n), n); }
 
   /// dd/dt: the closest points move with their bodies.
-  template <class GapOrEvaluation>
-  double rate(const State& s, const GapOrEvaluation& e, const Eigen::Vector3d& n) const {
+  template <class SampleOrEvaluation>
+  double rate(const State& s, const SampleOrEvaluation& e, const Eigen::Vector3d& n) const {
     return n.dot(v_ + s.omega_b.cross(e.point_b) - s.omega_a.cross(e.point_a));
   }
   double contact_rate(const State& s, const Evaluation& e, const Eigen::Vector3d& n) const { return rate(s, e, n); }
 
-  template <class GapOrEvaluation>
-  bool clears(const State& s, const GapOrEvaluation& e, const Eigen::Vector3d& n, double horizon) const {
+  template <class SampleOrEvaluation>
+  bool clears(const State& s, const SampleOrEvaluation& e, const Eigen::Vector3d& n, double horizon) const {
     const double least_g = e.g - s.rounding.gap;
     return least_g > 0 && least_g + horizon * (n.dot(v_) - surface_speed_ - s.rounding.rate) > 0;
   }

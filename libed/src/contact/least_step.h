@@ -1,6 +1,6 @@
 #pragma once
 
-/// Steps of bodies that touch, or nearly, and do not approach, where the certified step is next to nothing.
+/// Steps of bodies that touch, or nearly, and do not approach, where the certified step is of no use.
 
 #include "base/select.h"
 
@@ -9,8 +9,8 @@ namespace ed::internal {
 /// Steps shorter than this, in units of size / speed, are tried to be made longer.
 inline constexpr double kShortStep = 1e-7;
 
-/// The longest of some steps up to a tenth of `unit` = size / speed that `clears`, tried from the shortest on, or
-/// `shortest`. The first ones may drown in rounding where longer ones see the bodies part.
+/// Returns the longest of some steps up to a tenth of `unit` = size / speed that `clears`, tried from the shortest on,
+/// or `shortest`. The first ones may drown in rounding where longer ones see the bodies part.
 template <class Clears>
 double longest_clear_step(double shortest, double unit, const Clears& clears) {
   constexpr double kFirst = 1e-12;

@@ -1,7 +1,7 @@
 #pragma once
 
-/// What a gap, its rate and a bound of its curvature say of the time ahead. Of one pair, or of one in each lane of a
-/// vector, in the same order and with the same bits.
+/// Certificates made of a gap, its rate and a bound of its curvature. One formula serves one pair, or one in each lane
+/// of a vector, in the same order and with the same bits.
 
 #include "base/select.h"
 #include "contact/first_root.h"

@@ -1,7 +1,7 @@
 #pragma once
 
-/// The gauge of a body of revolution inside a half-space: when does it touch the plane? (See uniaxial_gap.h for what
-/// a gauge is.) The normal n is that of the plane, outward, and never changes: g(t) = offset - n.r(t) - h(n, u(t)).
+/// The gap of a body of revolution inside a half-space and its plane (uniaxial_gap.h defines pair gaps). The normal n
+/// is that of the plane, outward, and never changes: g(t) = offset - n.r(t) - h(n, u(t)).
 
 #include "contact/separation.h"
 #include "contact/sphere_window.h"
@@ -16,13 +16,13 @@
 namespace ed::internal {
 
 template <bool kSpin>
-class PlaneGauge {
+class PlaneGap {
  public:
   struct State {
     Eigen::Vector3d r, u, du;
     Rounding rounding;
   };
-  struct Gap {
+  struct Sample {
     double g;
     double x;
     double lever;
@@ -32,14 +32,14 @@ class PlaneGauge {
     double lever;
   };
   struct Certificate {
-    const PlaneGauge& gauge;
+    const PlaneGap& gap;
     SupportCurvature<kSpin> body;
-    double curvature(double tau) const { return body.bound(gauge.shape_, tau); }
+    double curvature(double tau) const { return body.bound(gap.shape_, tau); }
   };
 
   /// The half-space is {x : n.x <= offset}, with positions in the image of `r_now`, the body's centre at `now`.
-  PlaneGauge(const Spheroid& shape, const AxisMotion& motion, const Eigen::Vector3d& r_now, double now, double offset,
-             double reach)
+  PlaneGap(const Spheroid& shape, const AxisMotion& motion, const Eigen::Vector3d& r_now, double now, double offset,
+           double reach)
       : shape_(shape), motion_(motion), r_now_(r_now), now_(now), offset_(offset), reach_(reach), scales_(scales()) {}
 
   State at(double t) const {
@@ -50,28 +50,28 @@ class PlaneGauge {
     return s;
   }
 
-  Gap gap(const State& s, const Eigen::Vector3d& n) const {
+  Sample sample(const State& s, const Eigen::Vector3d& n) const {
     const double x = s.u.dot(n);
     const double h = std::sqrt(shape_.b2 * (s.u - x * n).squaredNorm() + shape_.a2 * (x * x));
     return {offset_ - n.dot(s.r) - h, x, shape_.c * x / h};
   }
 
   /// No better normal is to be had: the step is zero.
-  Evaluation complete(const State& /*s*/, const Gap& gap, const Eigen::Vector3d& /*n*/) const {
+  Evaluation complete(const State& /*s*/, const Sample& sample, const Eigen::Vector3d& /*n*/) const {
     Evaluation e;
-    e.g = gap.g;
+    e.g = sample.g;
     e.decrement = 0;
     e.step2 = 0;
     e.step.setZero();
-    e.x = gap.x;
-    e.lever = gap.lever;
+    e.x = sample.x;
+    e.lever = sample.lever;
     return e;
   }
 
-  Evaluation evaluate(const State& s, const Eigen::Vector3d& n) const { return complete(s, gap(s, n), n); }
+  Evaluation evaluate(const State& s, const Eigen::Vector3d& n) const { return complete(s, sample(s, n), n); }
 
-  template <class GapOrEvaluation>
-  double rate(const State& s, const GapOrEvaluation& e, const Eigen::Vector3d& n) const {
+  template <class SampleOrEvaluation>
+  double rate(const State& s, const SampleOrEvaluation& e, const Eigen::Vector3d& n) const {
     return -n.dot(motion_.velocity) - e.lever * n.dot(s.du);
   }
 
@@ -89,12 +89,12 @@ class PlaneGauge {
   double speed() const { return motion_.velocity.norm() + reach_ * motion_.rate; }
 
  private:
-  /// As of a pair; the plane is as far away as the body, and the offset twice rounded.
+  /// Returns the scales as for a pair; the plane is as far away as the body, and the offset twice rounded.
   PairScalesOf<double> scales() const {
     return {.size = reach_,
             .places = 2 * (sum_of_magnitudes(r_now_) + std::abs(offset_)),
             .speed = sum_of_magnitudes(motion_.velocity),
-            .turning = reach_ * motion_.axis_rate(),
+            .surface_speed = reach_ * motion_.axis_rate(),
             .bending = shape_.turning_limit * motion_.axis_rate(),
             .limit = curvature_limit(),
             .origin = larger(std::abs(now_), std::abs(motion_.time))};

@@ -1,6 +1,6 @@
 #pragma once
 
-/// What rounding may hide from a certificate, and how the step pays for it.
+/// Bounds of what rounding may hide from a certificate, and how the step pays for it.
 ///
 /// Certified steps rest on g(tau) >= g + g' tau - K tau^2 / 2, true of real numbers. Computed are others, g_c, g'_c and
 /// K_c. The bounds below are such that for the exact bodies (those that the numbers of both motions describe, axes made
@@ -91,7 +91,7 @@ inline constexpr double kRoundoff = 0x1p-53;
 /// See K above: 1000 kMaxAspectRatio^2 kRoundoff, rounded up. It costs steps a hundred thousandth of their length.
 inline constexpr double kCurvatureRounding = 1.2e-5;
 
-/// What may be hidden at one time of one pair.
+/// Bounds of what rounding hides of one pair at one time.
 template <class Real>
 struct RoundingOf {
   Real gap;
@@ -111,55 +111,55 @@ template <class Vector>
 /// each lane of a vector.
 template <class Real>
 struct PairScalesOf {
-  Real size;     ///< S
-  Real places;   ///< P or more
-  Real speed;    ///< V or more
-  Real turning;  ///< W or more
-  Real bending;  ///< sum of L Omega
-  Real limit;    ///< sum of L Omega^2
-  Real origin;   ///< the largest of |now| and both |time|
+  Real size;           ///< S
+  Real places;         ///< P or more
+  Real speed;          ///< V or more
+  Real surface_speed;  ///< W or more
+  Real bending;        ///< sum of L Omega
+  Real limit;          ///< sum of L Omega^2
+  Real origin;         ///< the largest of |now| and both |time|
 
   [[gnu::always_inline]] RoundingOf<Real> rounding(Real t) const {
     using std::abs;
     const Real T = abs(t) + origin;
-    return {kRoundoff * ((52 * size + 3 * places) + T * (18 * speed + 4 * turning)),
-            kRoundoff * ((21 * (speed + turning) + 71 * bending) + (6 * T) * limit), kCurvatureRounding * limit};
+    return {kRoundoff * ((52 * size + 3 * places) + T * (18 * speed + 4 * surface_speed)),
+            kRoundoff * ((21 * (speed + surface_speed) + 71 * bending) + (6 * T) * limit), kCurvatureRounding * limit};
   }
 };
 
-/// Of two bodies of any kind, at one time.
+/// Bounds of what rounding hides of two bodies of any kind at one time.
 struct GeneralRounding {
   double gap;
   double rate;
-  double direction;  ///< of a unit vector seen from a body
+  double direction;  ///< error of a unit vector seen from a body
 };
 
-/// What PairScalesOf is for bodies of revolution.
+/// Scales of a pair of bodies of any kind, as PairScalesOf for bodies of revolution.
 struct GeneralScales {
-  double size;     ///< S
-  double places;   ///< P or more
-  double speed;    ///< V or more
-  double turning;  ///< W or more
-  double omega;    ///< the larger of both bodies' greatest |omega|
-  double origin;   ///< the largest of |now| and both |time|
+  double size;           ///< S
+  double places;         ///< P or more
+  double speed;          ///< V or more
+  double surface_speed;  ///< W or more
+  double omega;          ///< the larger of both bodies' greatest |omega|
+  double origin;         ///< the largest of |now| and both |time|
 
   template <class Motion>
   static GeneralScales of(double reach_a, const Motion& a, double reach_b, const Motion& b, double now) {
     return {.size = reach_a + reach_b,
             .places = sum_of_magnitudes(a.position) + sum_of_magnitudes(b.position),
             .speed = sum_of_magnitudes(a.velocity) + sum_of_magnitudes(b.velocity),
-            .turning = reach_a * a.top.max_omega() + reach_b * b.top.max_omega(),
+            .surface_speed = reach_a * a.top.max_omega() + reach_b * b.top.max_omega(),
             .omega = larger(a.top.max_omega(), b.top.max_omega()),
             .origin = larger(std::abs(now), larger(std::abs(a.time), std::abs(b.time)))};
   }
 
-  /// What may be hidden of g a time tau later, beyond what is now.
-  double later(double tau) const { return kRoundoff * tau * (18 * speed + 20 * turning); }
+  /// Returns what rounding may hide of g a time tau later, beyond what it hides now.
+  double later(double tau) const { return kRoundoff * tau * (18 * speed + 20 * surface_speed); }
 
   GeneralRounding rounding(double t) const {
     const double T = std::abs(t) + origin;
-    return {kRoundoff * ((185 * size + 3 * places) + T * (18 * speed + 20 * turning)),
-            kRoundoff * (21 * (speed + turning)), kRoundoff * (64 + 20 * (omega * T))};
+    return {kRoundoff * ((185 * size + 3 * places) + T * (18 * speed + 20 * surface_speed)),
+            kRoundoff * (21 * (speed + surface_speed)), kRoundoff * (64 + 20 * (omega * T))};
   }
 };
 

@@ -2,7 +2,7 @@
 
 namespace ed::internal {
 
-/// What a gauge's last resort says of two bodies at one time, by bounds of their signed distance.
+/// Verdict of a pair gap's last resort on two bodies at one time, by bounds of their signed distance.
 enum class Separation {
   apart,        ///< certainly not deeper than kOverlap * size, or not known to be
   overlapping,  ///< certainly deeper than kOverlap * size

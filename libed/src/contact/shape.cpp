@@ -65,7 +65,7 @@ std::string name_of(const CustomShape& shape) {
   throw std::invalid_argument(message.str());
 }
 
-/// The body's axes to both sides, and others spread evenly, on a spiral.
+/// Returns the body's axes to both sides, and others spread evenly, on a spiral.
 std::vector<Vector3d> directions_to_check() {
   constexpr int kSpread = 64;
   constexpr double kGoldenAngle = 2.39996322972865332;

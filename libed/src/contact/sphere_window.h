@@ -14,8 +14,8 @@ struct WindowOf {
 };
 using Window = WindowOf<double>;
 
-/// When the bounding spheres of two bodies (distance r, relative velocity v at `now`, radii adding up to `reach`)
-/// overlap within [t_begin, t_end]. Of one pair, or of one in each lane.
+/// Returns when the bounding spheres of two bodies (distance r, relative velocity v at `now`, radii adding up to
+/// `reach`) overlap within [t_begin, t_end]. Of one pair, or of one in each lane.
 ///
 /// The spheres are taken larger by more than rounding. With u = 2^-53 the terms of the discriminant have errors of 6 u
 /// r^2 v^2 or less in all; 32 u (r^2 + reach^2) in the excess makes it larger by 32 u r^2 v^2, and the spheres that

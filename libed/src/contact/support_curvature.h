@@ -1,7 +1,7 @@
 #pragma once
 
-/// How fast the gap of two bodies of revolution changes along a fixed normal, and how fast that can change. Of one
-/// pair, or of one in each lane of a vector.
+/// Rate of the gap of two bodies of revolution along a fixed normal, and a bound of its change. One formula serves one
+/// pair, or one in each lane of a vector.
 
 #include "base/select.h"
 
@@ -9,14 +9,15 @@
 
 namespace ed::internal {
 
-/// dg/dt at fixed n, centres moving at v, axes at du; lever = c x / h of both bodies.
+/// Returns dg/dt at fixed n, centres moving at v, axes at du; lever = c x / h of both bodies.
 template <class Vector, class Both>
 [[gnu::always_inline]] inline auto gap_rate(const Vector& v, const Vector& du_a, const Vector& du_b, const Both& lever,
                                             const Vector& n) {
   return v.dot(n) - lever[0] * du_a.dot(n) - lever[1] * du_b.dot(n);
 }
 
-/// Of the square of the amplitude r of x: 60 units of 2^-53, more than the errors of x and of its rate make of it.
+/// Error of the square of the amplitude r of x: 60 units of 2^-53, more than the errors of x and of its rate make of
+/// it.
 inline constexpr double kAmplitudeRounding = 7e-15;
 
 /// An upper bound over tau' in [0, tau] of d2h/dt2, h = h(n, u(t + tau')) the support function of one body at fixed n.
@@ -43,7 +44,8 @@ struct SupportCurvature {
   }
 
  private:
-  /// Without spin C = 0 and h'' depends on s = x^2 alone: falling in s for a rod (c > 0), rising for a disc.
+  /// Returns the bound for bodies without spin. Then C = 0 and h'' depends on s = x^2 alone: falling in s for a rod (c
+  /// > 0), rising for a disc.
   template <class Shape>
   Real bound_across(const Shape& S, Real tau) const {
     using std::abs, std::copysign, std::sqrt;
@@ -67,7 +69,7 @@ struct SupportCurvature {
     return select(rod, of_rod, -S.c * rate2 * (s_high / h_high - S.b2 * (r2 - s_high) / h3_low));
   }
 
-  /// With spin each factor is taken at its own worst end over the reach [low, high] of x.
+  /// Returns the bound for bodies that spin. Each factor is taken at its own worst end over the reach [low, high] of x.
   template <class Shape>
   Real bound_spinning(const Shape& S, Real tau) const {
     using std::sqrt;
@@ -111,7 +113,7 @@ struct SupportCurvature {
   struct Range {
     Real least, most;
   };
-  /// Of y^2 over [low, high].
+  /// Returns the range of y^2 over [low, high].
   static Range squares(Real low, Real high) {
     const Real low2 = low * low;
     const Real high2 = high * high;

@@ -36,7 +36,7 @@ geom::kernel::Lanes smaller_of(geom::kernel::Lanes a, geom::kernel::Lanes b) {
 
 }  // namespace
 
-SupportGauge::Evaluation SupportGauge::evaluation(const State& s, const DualSample& sample) const {
+SupportGap::Evaluation SupportGap::evaluation(const State& s, const DualSample& sample) const {
   Evaluation e;
   e.sample = sample;
   e.newton = s.pair.newton_step(sample);
@@ -46,24 +46,25 @@ SupportGauge::Evaluation SupportGauge::evaluation(const State& s, const DualSamp
   return e;
 }
 
-double SupportGauge::Certificate::curvature(double tau) const {
-  const Lanes omega{gauge.a_.top.max_omega(), gauge.b_.top.max_omega()};
-  const Lanes alpha{gauge.a_.top.max_alpha(), gauge.b_.top.max_alpha()};
-  const Lanes jerk{gauge.a_.top.max_jerk(), gauge.b_.top.max_jerk()};
-  const Lanes both_turn = turning + omega;
+double SupportGap::Certificate::curvature(double tau) const {
+  const Lanes omega{gap.a_.top.max_omega(), gap.b_.top.max_omega()};
+  const Lanes alpha{gap.a_.top.max_alpha(), gap.b_.top.max_alpha()};
+  const Lanes jerk{gap.a_.top.max_jerk(), gap.b_.top.max_jerk()};
+  const Lanes both_turn = angular_speed + omega;
   const Lanes most_slip = smaller_of(slip + alpha * tau, both_turn);
   const Lanes M3 = most_slip * both_turn * both_turn + 3 * alpha * both_turn + jerk;
   const Lanes change = d1 + tau * (d2 + (tau / 6) * d_max * M3);
   const Lanes bodies = reach * M3 * (tau / 3) + change * change / height;
-  const double centres = turning * turning_across * (turning * (distance + speed * tau) / 3 + speed) * tau;
-  const Lanes radii{gauge.A_.bounding_radius, gauge.B_.bounding_radius};
+  const double centres =
+      angular_speed * angular_speed_across * (angular_speed * (distance + speed * tau) / 3 + speed) * tau;
+  const Lanes radii{gap.A_.bounding_radius, gap.B_.bounding_radius};
   const double hidden = direction * (sum(radii * (both_turn * both_turn + alpha) + bodies) +
-                                     turning * (turning * distance + 2 * speed) + centres);
-  return gauge.curvature_share_ * (bend + centres + sum(bodies) + hidden);
+                                     angular_speed * (angular_speed * distance + 2 * speed) + centres);
+  return gap.curvature_share_ * (bend + centres + sum(bodies) + hidden);
 }
 
-SupportGauge::Certificate SupportGauge::certificate(const State& s, const DualSample& at,
-                                                    const NormBodies::Majorant& majorant, const Vector3d& Omega) const {
+SupportGap::Certificate SupportGap::certificate(const State& s, const DualSample& at,
+                                                const NormBodies::Majorant& majorant, const Vector3d& Omega) const {
   const Vector3d& r = s.pair.between();
   const Vector3d turned = Omega.cross(at.n);
   const LaneVector n = LaneVector::of(at.n, -at.n);
@@ -72,32 +73,32 @@ SupportGauge::Certificate SupportGauge::certificate(const State& s, const DualSa
   const LaneVector mu1 = slip.cross(n);
   const LaneVector mu2 = slip.cross(W.cross(n)) - s.omega.cross(mu1) - s.alpha.cross(n);
   const NormBodies& bodies = s.pair.bodies();
-  const double turning = Omega.norm();
+  const double angular_speed = Omega.norm();
   const double distance = r.norm();
   const double speed = v_.norm();
-  Certificate c{
-      .gauge = *this,
-      .rate = turned.dot(r) + at.n.dot(v_) - sum(majorant.gradient.dot(mu1)),
-      .turning = turning,
-      .turning_across = turned.norm(),
-      .distance = distance,
-      .speed = speed,
-      .bend = -Omega.cross(turned).dot(r) - 2 * turned.dot(v_) + sum(majorant.gradient.dot(mu2)),
-      .slip = norm(slip),
-      .reach = norm(majorant.gradient),
-      .height = majorant.height,
-      .d1 = sqrt(weighted(majorant.D2, bodies.to_body(mu1))),
-      .d2 = 0.5 * sqrt(weighted(majorant.D2, bodies.to_body(mu2))),
-      .d_max = sqrt(larger_of(majorant.D2.x, larger_of(majorant.D2.y, majorant.D2.z))),
-      .direction = s.rounding.direction,
-      .hidden_rate = s.rounding.direction * (turning * distance + speed + turning * size() + scales_.turning)};
+  Certificate c{.gap = *this,
+                .rate = turned.dot(r) + at.n.dot(v_) - sum(majorant.gradient.dot(mu1)),
+                .angular_speed = angular_speed,
+                .angular_speed_across = turned.norm(),
+                .distance = distance,
+                .speed = speed,
+                .bend = -Omega.cross(turned).dot(r) - 2 * turned.dot(v_) + sum(majorant.gradient.dot(mu2)),
+                .slip = norm(slip),
+                .reach = norm(majorant.gradient),
+                .height = majorant.height,
+                .d1 = sqrt(weighted(majorant.D2, bodies.to_body(mu1))),
+                .d2 = 0.5 * sqrt(weighted(majorant.D2, bodies.to_body(mu2))),
+                .d_max = sqrt(larger_of(majorant.D2.x, larger_of(majorant.D2.y, majorant.D2.z))),
+                .direction = s.rounding.direction,
+                .hidden_rate = s.rounding.direction *
+                               (angular_speed * distance + speed + angular_speed * size() + scales_.surface_speed)};
   return c;
 }
 
-/// The longest step of one choice for a gap that is certainly g, or less than `best` if it is certainly no longer than
-/// that.
-double SupportGauge::longest_step(const State& s, const DualSample& at, const NormBodies::Majorant& majorant, double g,
-                                  const Vector3d& Omega, double horizon, double best) const {
+/// Returns the longest step of one choice for a gap that is certainly g, or less than `best` if it is certainly no
+/// longer than that.
+double SupportGap::longest_step(const State& s, const DualSample& at, const NormBodies::Majorant& majorant, double g,
+                                const Vector3d& Omega, double horizon, double best) const {
   const Certificate c = certificate(s, at, majorant, Omega);
   const double gap = g - sum(majorant.offset);
   if (!(gap >= 0)) return 0;
@@ -112,7 +113,7 @@ double SupportGauge::longest_step(const State& s, const DualSample& at, const No
 }
 
 /// n x dn/dt of the normal that stays the best, by (M + g I) dn/dt = P d(r - sA - sB)/dt at fixed n.
-Vector3d SupportGauge::turning_of_best_normal(const State& s, const DualSample& at) const {
+Vector3d SupportGap::angular_velocity_of_best_normal(const State& s, const DualSample& at) const {
   const LaneVector n = LaneVector::of(at.n, -at.n);
   const LaneVector turned = s.omega.cross(n);
   const auto& support = at.support;
@@ -124,11 +125,11 @@ Vector3d SupportGauge::turning_of_best_normal(const State& s, const DualSample& 
   return at.n.cross(rate) + mean.dot(at.n) * at.n;
 }
 
-double SupportGauge::certified_step(const State& s, const Evaluation& e, const Vector3d& /*n*/, double g, double /*gp*/,
-                                    double horizon) const {
+double SupportGap::certified_step(const State& s, const Evaluation& e, const Vector3d& /*n*/, double g, double /*gp*/,
+                                  double horizon) const {
   const NormBodies& bodies = s.pair.bodies();
   const Vector3d fixed = Vector3d::Zero();
-  const Vector3d best_turning = turning_of_best_normal(s, e.sample);
+  const Vector3d best_turning = angular_velocity_of_best_normal(s, e.sample);
   const double least_g = larger(0.0, g - s.rounding.gap);
   double tau = 0;
   const auto try_all = [&](const NormBodies::Majorant& majorant) {
@@ -143,49 +144,49 @@ double SupportGauge::certified_step(const State& s, const Evaluation& e, const V
   return tau;
 }
 
-/// Whether the tilted end leaves more than `least`.
-bool SupportGauge::tilted_end_clears(const State& s, const Vector3d& n, const Vector3d& Omega, double least,
-                                     double tau) const {
+/// Returns whether the tilted end leaves more than `least`.
+bool SupportGap::tilted_end_clears(const State& s, const Vector3d& n, const Vector3d& Omega, double least,
+                                   double tau) const {
   const Vector3d& r = s.pair.between();
   const LaneVector n2 = LaneVector::of(n, -n);
   const LaneVector tilted = n2 + both(tau) * (LaneVector::same(Omega) - s.omega).cross(n2);
   const double end = n.dot(r + tau * v_) + tau * Omega.cross(n).dot(r) - sum(s.pair.bodies().heights(tilted));
-  const double turning = Omega.norm();
-  const auto bend = [turning](const NormBodyShape& shape, const FreeTop& top) {
-    const double both_turn = turning + top.max_omega();
+  const double angular_speed = Omega.norm();
+  const auto bend = [angular_speed](const NormBodyShape& shape, const FreeTop& top) {
+    const double both_turn = angular_speed + top.max_omega();
     return shape.bounding_radius * (both_turn * both_turn + top.max_alpha());
   };
-  const double centres = turning * (turning * (r.norm() + tau * v_.norm()) + 2 * v_.norm());
+  const double centres = angular_speed * (angular_speed * (r.norm() + tau * v_.norm()) + 2 * v_.norm());
   return end - 0.5 * tau * tau * (bend(A_, a_.top) + bend(B_, b_.top) + centres) > least;
 }
 
-double SupportGauge::least_step(const State& s, const Evaluation& e, const Vector3d& n, bool touching,
-                                double tau) const {
+double SupportGap::least_step(const State& s, const Evaluation& e, const Vector3d& n, bool touching, double tau) const {
   const double unit = size() / speed();
   if (tau > kShortStep * unit) return tau;
-  // Of bodies that touch g is not known: it may fall by what rounding hides.
+  // g of bodies that touch is not known: it may fall by what rounding hides.
   const auto least = [&](double trial) { return touching ? 0 : s.rounding.gap + scales_.later(trial); };
-  const std::array<Vector3d, 4> turns{Vector3d::Zero(), turning_of_best_normal(s, e.sample), s.omega.a(), s.omega.b()};
+  const std::array<Vector3d, 4> turns{Vector3d::Zero(), angular_velocity_of_best_normal(s, e.sample), s.omega.a(),
+                                      s.omega.b()};
   return longest_clear_step(touching ? kTouching * unit : tau, unit, [&](double trial) {
     return std::any_of(turns.begin(), turns.end(),
                        [&](const Vector3d& Omega) { return tilted_end_clears(s, n, Omega, least(trial), trial); });
   });
 }
 
-bool SupportGauge::falls_since(const State& s, const Evaluation& e, const Vector3d& /*n*/, double rate,
-                               double span) const {
+bool SupportGap::falls_since(const State& s, const Evaluation& e, const Vector3d& /*n*/, double rate,
+                             double span) const {
   if (!(rate < -kResting * speed())) return false;
   if (!(span > 0)) return true;
   // Backwards omega, v and Omega change sign, and with them g' and mu1; mu2, alpha and K do not.
   const NormBodies::Majorant majorant = s.pair.bodies().majorant(e.sample.support, 0);
-  for (const Vector3d& Omega : {Vector3d(Vector3d::Zero()), turning_of_best_normal(s, e.sample)}) {
+  for (const Vector3d& Omega : {Vector3d(Vector3d::Zero()), angular_velocity_of_best_normal(s, e.sample)}) {
     const Certificate c = certificate(s, e.sample, majorant, Omega);
     if (-c.rate - c.hidden_rate > 0.5 * span * c.curvature(span)) return true;
   }
   return false;
 }
 
-Separation SupportGauge::separating_normal(const State& s, Vector3d& n) const {
+Separation SupportGap::separating_normal(const State& s, Vector3d& n) const {
   int iterations = 0;
   const NormBodyPair::Answer answer = s.pair.solve(s.pair.cold_normal(), s.pair.cold_normal(),
                                                    geom::Penetration::global, geom::kMaxIterations, iterations);

@@ -1,7 +1,7 @@
 #pragma once
 
-/// The gauge of two superellipsoids or ellipsoids with any semi-axes and moments of inertia (see uniaxial_gap.h for
-/// what a gauge is), and the steps it certifies.
+/// The pair gap of two superellipsoids or ellipsoids with any semi-axes and moments of inertia (uniaxial_gap.h
+/// defines pair gaps), and the steps it certifies.
 ///
 /// The second derivative of a support function at fixed n has no bound where a face is flat, so that
 /// certified_contact's parabola cannot be made of one number K. Instead:
@@ -58,7 +58,7 @@
 
 namespace ed::internal {
 
-/// A shape as the gauge needs it.
+/// A shape as SupportGap needs it.
 struct NormBodyShape {
   geom::kernel::NormShape norm;
   double bounding_radius;
@@ -67,11 +67,12 @@ struct NormBodyShape {
   bool has_vertices;  ///< some exponent is above 1
 };
 
-/// At vertices g is so flat that decrement and |delta|^2, which a quadratic model tells, are small long before the
-/// normal is right: with geom::kNormalTolerance2, 1e-12, gaps of 1e-12 were taken for contacts (decision 020).
+/// |delta|^2 of a settled normal where a body has vertices. There g is so flat that decrement and |delta|^2, which a
+/// quadratic model tells, are small long before the normal is right: with geom::kNormalTolerance2, 1e-12, gaps of 1e-12
+/// were taken for contacts (decision 020).
 inline constexpr double kVertexStep2 = 1e-18;
 
-class SupportGauge {
+class SupportGap {
  public:
   using DualSample = geom::kernel::DualSample;
   using LaneVector = geom::kernel::LaneVector;
@@ -84,9 +85,9 @@ class SupportGauge {
     LaneVector omega, alpha;
     GeneralRounding rounding;
   };
-  struct Gap {
+  struct Sample {
     double g;
-    DualSample sample;
+    DualSample dual;
   };
   struct Evaluation : geom::kernel::Evaluation {
     DualSample sample;
@@ -94,8 +95,8 @@ class SupportGauge {
   };
 
   /// `r_now`: the vector from A's centre to B's at `now`, in the image that is meant.
-  SupportGauge(const NormBodyShape& A, const RigidMotion& a, const NormBodyShape& B, const RigidMotion& b,
-               const Eigen::Vector3d& r_now, double now)
+  SupportGap(const NormBodyShape& A, const RigidMotion& a, const NormBodyShape& B, const RigidMotion& b,
+             const Eigen::Vector3d& r_now, double now)
       : A_(A),
         B_(B),
         a_(a),
@@ -114,22 +115,22 @@ class SupportGauge {
             LaneVector::of(top_a.omega, top_b.omega), LaneVector::of(top_a.alpha, top_b.alpha), scales_.rounding(t)};
   }
 
-  Gap gap(const State& s, const Eigen::Vector3d& n) const {
+  Sample sample(const State& s, const Eigen::Vector3d& n) const {
     const DualSample sample = s.pair.sample(n);
     return {sample.g, sample};
   }
-  Evaluation complete(const State& s, const Gap& gap, const Eigen::Vector3d& /*n*/) const {
-    return evaluation(s, gap.sample);
+  Evaluation complete(const State& s, const Sample& sample, const Eigen::Vector3d& /*n*/) const {
+    return evaluation(s, sample.dual);
   }
   Evaluation evaluate(const State& s, const Eigen::Vector3d& n) const { return evaluation(s, s.pair.sample(n)); }
 
   /// dg/dt at fixed n: support points move with their bodies, to first order.
-  template <class GapOrEvaluation>
-  double rate(const State& s, const GapOrEvaluation& e, const Eigen::Vector3d& n) const {
+  template <class SampleOrEvaluation>
+  double rate(const State& s, const SampleOrEvaluation& e, const Eigen::Vector3d& n) const {
     return n.dot(v_) - point_rate(s, e.sample.support.point, n);
   }
-  /// The same at the contact: on a flat face the support point is lost to rounding, and the sign must be that of the
-  /// impulse (contact_points).
+  /// Returns the rate at the contact. On a flat face the support point is lost to rounding, and the sign must be that
+  /// of the impulse (contact_points).
   double contact_rate(const State& s, const Evaluation& e, const Eigen::Vector3d& n) const {
     return n.dot(v_) - point_rate(s, contact_points(s, e.sample, e.newton), n);
   }
@@ -139,8 +140,8 @@ class SupportGauge {
     return s.pair.joined(NormBodyPair::moved_points(sample, step), sample);
   }
 
-  template <class GapOrEvaluation>
-  bool clears(const State& s, const GapOrEvaluation& e, const Eigen::Vector3d& n, double horizon) const {
+  template <class SampleOrEvaluation>
+  bool clears(const State& s, const SampleOrEvaluation& e, const Eigen::Vector3d& n, double horizon) const {
     const double least_g = e.g - s.rounding.gap;
     return least_g > 0 && least_g + horizon * (n.dot(v_) - surface_speed() - s.rounding.rate) > 0;
   }
@@ -155,7 +156,7 @@ class SupportGauge {
   template <class Done>
   geom::kernel::Ascent ascend(const State& s, const Done& done, int& budget, Eigen::Vector3d& n, Evaluation& e) const;
 
-  /// On a face the quadratic model holds for no step at all: nothing may be left to gain.
+  /// Returns whether n is right. On a face the quadratic model holds for no step at all: nothing may be left to gain.
   bool settled(const Evaluation& e) const { return e.step2 <= settled_step2_ && e.decrement <= kTouching * size(); }
 
   double certified_step(const State& s, const Evaluation& e, const Eigen::Vector3d& n, double g, double gp,
@@ -166,12 +167,12 @@ class SupportGauge {
   bool falls_since(const State& s, const Evaluation& e, const Eigen::Vector3d& n, double rate, double span) const;
 
   Eigen::Vector3d cold_normal(const State& s) const { return s.pair.cold_normal(); }
-  /// By every method of geom::distance.
+  /// Searches for a separating normal by every method of geom::distance.
   Separation separating_normal(const State& s, Eigen::Vector3d& n) const;
 
   Window window(double t_begin, double t_end) const { return sphere_window(r_now_, v_, size(), now_, t_begin, t_end); }
   double size() const { return A_.bounding_radius + B_.bounding_radius; }
-  /// None: a stationary point of an overlap is no proof, faces and edges have many.
+  /// Returns a negative number: a stationary point of an overlap is no proof at any depth, faces and edges have many.
   double certified_depth() const { return -1; }
   double speed() const {
     return v_.norm() + A_.bounding_radius * a_.top.max_omega() + B_.bounding_radius * b_.top.max_omega();
@@ -183,22 +184,22 @@ class SupportGauge {
  private:
   /// g' and K over [0, tau] of one choice of Omega and c.
   struct Certificate {
-    const SupportGauge& gauge;
-    double rate;            ///< g'
-    double turning;         ///< |Omega|
-    double turning_across;  ///< |Omega x n|
-    double distance;        ///< |r|
-    double speed;           ///< |v|
-    double bend;            ///< -f'' - ..., what does not depend on tau
-    Lanes slip;             ///< |Delta|
-    Lanes reach;            ///< |s|
+    const SupportGap& gap;
+    double rate;                  ///< g'
+    double angular_speed;         ///< |Omega|
+    double angular_speed_across;  ///< |Omega x n|
+    double distance;              ///< |r|
+    double speed;                 ///< |v|
+    double bend;                  ///< -f'' - ..., what does not depend on tau
+    Lanes slip;                   ///< |Delta|
+    Lanes reach;                  ///< |s|
     Lanes height;
     Lanes d1, d2;  ///< |D mu1|, |D mu2| / 2
     Lanes d_max;
-    double direction;    ///< as in GeneralRounding
-    double hidden_rate;  ///< what rounding may hide of g'
+    double direction;    ///< error of a direction, as in GeneralRounding
+    double hidden_rate;  ///< bound of what rounding hides of g'
 
-    double curvature(double tau) const;  ///< with what rounding may hide
+    double curvature(double tau) const;  ///< includes what rounding may hide
   };
 
   Evaluation evaluation(const State& s, const DualSample& sample) const;
@@ -211,7 +212,7 @@ class SupportGauge {
                           const Eigen::Vector3d& Omega) const;
   double longest_step(const State& s, const DualSample& at, const NormBodies::Majorant& majorant, double g,
                       const Eigen::Vector3d& Omega, double horizon, double best) const;
-  Eigen::Vector3d turning_of_best_normal(const State& s, const DualSample& at) const;
+  Eigen::Vector3d angular_velocity_of_best_normal(const State& s, const DualSample& at) const;
   bool tilted_end_clears(const State& s, const Eigen::Vector3d& n, const Eigen::Vector3d& Omega, double least,
                          double tau) const;
 
@@ -227,10 +228,10 @@ class SupportGauge {
 };
 
 template <class Done>
-geom::kernel::Ascent SupportGauge::ascend(const State& s, const Done& done, int& budget, Eigen::Vector3d& n,
-                                          Evaluation& e) const {
+geom::kernel::Ascent SupportGap::ascend(const State& s, const Done& done, int& budget, Eigen::Vector3d& n,
+                                        Evaluation& e) const {
   using geom::kernel::Ascent;
-  constexpr int kPatience = 20;  // where edges nearly touch, steps may go on helping next to nothing
+  constexpr int kPatience = 20;  // where edges nearly touch, steps may go on with hardly any gain
   constexpr int kElementSteps = 30;
   bool by_elements = false;
   for (int step = 0; !done(e); ++step) {

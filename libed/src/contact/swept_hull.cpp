@@ -24,8 +24,8 @@ constexpr int kSweptTurns = 64;
 /// for a direction).
 constexpr double kHeightRounding = 128 * kRoundoff;
 
-/// Whether omega is constant at all times, but for rounding. It is not for a body that now turns about the axis of its
-/// middle moment: that rotation is unstable.
+/// Returns whether omega is constant at all times, but for rounding. It is not for a body that now turns about the axis
+/// of its middle moment: that rotation is unstable.
 bool turns_uniformly(const FreeTop& top) {
   return top.max_alpha() <= 8 * kRoundoff * (top.max_omega() * top.max_omega());
 }
@@ -165,7 +165,7 @@ Vector3d SweptPair::best_normal(const Vector3d& guess, double t) const {
   const Vector3d between = r + t * v;
   improve(between);
   if (v.squaredNorm() > 0) improve(between - (between.dot(v) / v.squaredNorm()) * v);
-  // By steps along the sphere, the shorter the less they help. (Hulls have kinks.)
+  // Steps along the sphere, shorter where they do not help. (Hulls have kinks.)
   constexpr double kLongest = 0.5;
   constexpr double kShortest = 1e-6;
   for (double step = kLongest; step > kShortest;) {

@@ -50,7 +50,7 @@ class SweptHull {
   };
   struct AboutAnAxis {
     Eigen::Vector3d axis;
-    std::array<double, kSweptNodes> heights;  ///< at equal angles from the axis, 0 to pi
+    std::array<double, kSweptNodes> heights;  ///< values at equal angles from the axis, 0 to pi
     double height(const Eigen::Vector3d& n) const;
     double height_at(double angle) const;
     /// Largest height at the angles from `least` to `most`, or an upper bound.
@@ -73,8 +73,8 @@ class SweptHull {
 /// Two hulls that move with their centres.
 struct SweptPair {
   SweptHull a, b;
-  Eigen::Vector3d r;  ///< from A's centre to B's at time 0
-  Eigen::Vector3d v;  ///< of B relative to A
+  Eigen::Vector3d r;  ///< vector from A's centre to B's at time 0
+  Eigen::Vector3d v;  ///< velocity of B relative to A
   double size;        ///< sum of the bounding radii
 
   /// Time, at least `t`, before which the hulls certainly do not meet, with `n`, from A to B, as first guess of the

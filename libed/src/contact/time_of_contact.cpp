@@ -24,7 +24,7 @@ using geom::Ellipsoid;
 using internal::Outcome;
 using internal::Spheroid;
 
-/// The axis about which both the shape and the inertia are symmetric, or -1.
+/// Returns the axis about which both the shape and the inertia are symmetric, or -1.
 int common_axis(const Ellipsoid& shape, const Motion& motion) {
   const Eigen::Vector3d& a = shape.semi_axes();
   const Eigen::Vector3d& I = motion.inertia;
@@ -127,11 +127,11 @@ ContactResult result_of(const internal::Finding& finding, const internal::Finder
   return result;
 }
 
-/// The certified search from time 0 on the bodies' clocks, within a budget of evaluations. It is interrupted now and
-/// then, the earlier the first time: bodies that turn or slide without getting nearer would take it all, and are moved
-/// on to where the hulls of what they sweep meet. `hulls()` makes these, once they are asked for.
-template <class Gauge, class Hulls>
-internal::Finding budgeted_contact(const Gauge& gauge, double duration, int budget, const Hulls& hulls,
+/// Does the certified search from time 0 on the bodies' clocks, within a budget of evaluations. It is interrupted now
+/// and then, the earlier the first time: bodies that turn or slide without getting nearer would take it all, and are
+/// moved on to where the hulls of what they sweep meet. `hulls()` makes these, once they are asked for.
+template <class PairGap, class Hulls>
+internal::Finding budgeted_contact(const PairGap& gap, double duration, int budget, const Hulls& hulls,
                                    Eigen::Vector3d& n, internal::FinderCounters& count) {
   constexpr int kFirstLooks = 32;
   constexpr int kMostLooks = 512;
@@ -141,22 +141,22 @@ internal::Finding budgeted_contact(const Gauge& gauge, double duration, int budg
   for (int looks = kFirstLooks; static_cast<int>(count.evaluations) < budget; looks = std::min(2 * looks, kMostLooks)) {
     const int left = budget - static_cast<int>(count.evaluations);
     const internal::Finding finding =
-        internal::certified_contact(gauge, t, duration, std::min(looks, left), n, count, kFutile);
+        internal::certified_contact(gap, t, duration, std::min(looks, left), n, count, kFutile);
     if (finding.outcome != Outcome::bound) return finding;
     t = finding.time;
     if (!swept) swept = hulls();
-    const auto state = gauge.at(t);
-    const auto e = gauge.evaluate(state, n);
+    const auto state = gap.at(t);
+    const auto e = gap.evaluate(state, n);
     const bool touching = e.g <= state.rounding.gap;
     // Bodies that touch and approach are the search's: the next look tells.
-    if (touching && internal::contact_rate(gauge, state, e, n) < -kResting * gauge.speed()) continue;
+    if (touching && internal::contact_rate(gap, state, e, n) < -kResting * gap.speed()) continue;
     t = std::max(t, swept->clear_until(t, n, state.rounding.gap, touching));
     if (!(t < duration)) return {Outcome::clear, duration};
   }
   return {Outcome::bound, t};
 }
 
-/// The search from time 0 on the bodies' clocks.
+/// Does the search from time 0 on the bodies' clocks.
 ContactResult search(const UniaxialBody& a, const UniaxialBody& b, double reach, double duration,
                      const ContactOptions& options) {
   const internal::AxisMotion& m_a = a.top.axis;
@@ -168,8 +168,8 @@ ContactResult search(const UniaxialBody& a, const UniaxialBody& b, double reach,
     return internal::SweptPair{internal::SweptHull(a.shape, m_a), internal::SweptHull(b.shape, m_b), r,
                                m_b.velocity - m_a.velocity, reach};
   };
-  const auto certified = [&](const auto& gauge) {
-    return budgeted_contact(gauge, duration, options.max_evaluations, hulls, n, count);
+  const auto certified = [&](const auto& gap) {
+    return budgeted_contact(gap, duration, options.max_evaluations, hulls, n, count);
   };
   internal::Finding finding;
   if (options.finder == Finder::bracketing) {
@@ -177,9 +177,9 @@ ContactResult search(const UniaxialBody& a, const UniaxialBody& b, double reach,
     finding = internal::bracketing_contact({a.ellipsoid, b.ellipsoid, m_a, m_b, r, 0}, 0, duration, options, n, count,
                                            unsolved);
   } else if (a.top.inertia.spins || b.top.inertia.spins) {
-    finding = certified(internal::UniaxialGauge<true>(a.shape, m_a, b.shape, m_b, r, 0, reach));
+    finding = certified(internal::UniaxialGap<true>(a.shape, m_a, b.shape, m_b, r, 0, reach));
   } else {
-    finding = certified(internal::UniaxialGauge<false>(a.shape, m_a, b.shape, m_b, r, 0, reach));
+    finding = certified(internal::UniaxialGap<false>(a.shape, m_a, b.shape, m_b, r, 0, reach));
   }
   ContactResult result = result_of(finding, count);
   result.rescues = options.finder == Finder::bracketing ? static_cast<int>(count.rescues) : 0;
@@ -193,15 +193,15 @@ ContactResult search(const UniaxialBody& a, const UniaxialBody& b, double reach,
   return result;
 }
 
-/// With a certified search, or the paper's: `find(n, count)`.
-template <class Gauge, class Find>
-ContactResult general_search(const Gauge& gauge, const GeneralBody& a, const Find& find) {
+/// Searches by `find(n, count)`, a certified search or the paper's, and returns its result.
+template <class PairGap, class Find>
+ContactResult general_search(const PairGap& gap, const GeneralBody& a, const Find& find) {
   Eigen::Vector3d n = Eigen::Vector3d::Zero();
   internal::FinderCounters count;
   const internal::Finding finding = find(n, count);
   ContactResult result = result_of(finding, count);
   if (result.status != ContactStatus::hit) return result;
-  result.point = a.position_at(finding.time) + gauge.contact_points(gauge.at(finding.time), n).a;
+  result.point = a.position_at(finding.time) + gap.contact_points(gap.at(finding.time), n).a;
   result.normal = n;
   return result;
 }
@@ -214,20 +214,20 @@ ContactResult search(const GeneralBody& a, const GeneralBody& b, double reach, d
                                internal::SweptHull(b.shape, b.motion, b.inertia), r, b.velocity() - a.velocity(),
                                reach};
   };
-  const auto certified = [&](const auto& gauge) {
-    return general_search(gauge, a, [&](Eigen::Vector3d& n, internal::FinderCounters& count) {
-      return budgeted_contact(gauge, duration, options.max_evaluations, hulls, n, count);
+  const auto certified = [&](const auto& gap) {
+    return general_search(gap, a, [&](Eigen::Vector3d& n, internal::FinderCounters& count) {
+      return budgeted_contact(gap, duration, options.max_evaluations, hulls, n, count);
     });
   };
   const auto implicit_a = internal::geom_shape(a.shape);
   const auto implicit_b = internal::geom_shape(b.shape);
-  if (!implicit_a || !implicit_b) return certified(internal::ConvexGauge(a.shape, a.motion, b.shape, b.motion, r, 0));
+  if (!implicit_a || !implicit_b) return certified(internal::ConvexGap(a.shape, a.motion, b.shape, b.motion, r, 0));
   const internal::NormBodyShape norm_a = internal::norm_body(a.shape);
   const internal::NormBodyShape norm_b = internal::norm_body(b.shape);
-  const internal::SupportGauge gauge(norm_a, a.motion, norm_b, b.motion, r, 0);
-  if (options.finder == Finder::certified) return certified(gauge);
+  const internal::SupportGap gap(norm_a, a.motion, norm_b, b.motion, r, 0);
+  if (options.finder == Finder::certified) return certified(gap);
   std::uint64_t rescues = 0;
-  ContactResult result = general_search(gauge, a, [&](Eigen::Vector3d& n, internal::FinderCounters& count) {
+  ContactResult result = general_search(gap, a, [&](Eigen::Vector3d& n, internal::FinderCounters& count) {
     std::optional<internal::Unsolved> unsolved;
     const internal::Finding finding = internal::bracketing_contact({*implicit_a, *implicit_b, a.motion, b.motion, r, 0},
                                                                    0, duration, options, n, count, unsolved);
@@ -238,7 +238,7 @@ ContactResult search(const GeneralBody& a, const GeneralBody& b, double reach, d
   return result;
 }
 
-/// The search on clocks that count from 0: one that shows a long time has few digits left for the contact.
+/// Does the search on clocks that count from 0: one that shows a long time has few digits left for the contact.
 template <class Body>
 ContactResult search_from(double now, Body a, Body b, double reach, double t_max, const ContactOptions& options) {
   a.rebase(now);
@@ -249,7 +249,7 @@ ContactResult search_from(double now, Body a, Body b, double reach, double t_max
   return result;
 }
 
-/// The later of both motions' times.
+/// Returns the later of both motions' times.
 double checked_begin(const Motion& motion_a, const Motion& motion_b, double t_max) {
   internal::check_motion(motion_a);
   internal::check_motion(motion_b);

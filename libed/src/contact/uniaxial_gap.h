@@ -1,10 +1,11 @@
 #pragma once
 
-/// The gauge of two bodies of revolution: g_n(t), its rate, and a bound of how fast that rate can fall.
+/// The pair gap of two bodies of revolution: g_n(t), its rate, and a bound of how fast that rate can fall.
 ///
-/// A gauge, as `certified_contact` wants it, has
+/// A pair gap is the gap g of two moving bodies along a normal n as a function of time, in the form that
+/// certified_contact needs. It is a class with
 ///   State at(t)                           the pair at time t, with what rounding may hide in `rounding` (rounding.h)
-///   Gap gap(state, n)                     g, and what its rate needs
+///   Sample sample(state, n)                     g, with what its rate needs
 ///   Evaluation complete(state, gap, n)    g and the Newton step of n; evaluate(state, n) is both at once
 ///   double rate(state, gap or e, n)       dg/dt at fixed n
 ///   Certificate certificate(state, e, n)  with curvature(tau) >= -d2g/dt2 at fixed n over [t, t + tau]
@@ -64,32 +65,32 @@ inline PairScalesOf<double> pair_scales(const Spheroid& A, const AxisMotion& a, 
   return {.size = reach,
           .places = sum_of_magnitudes(a.position) + sum_of_magnitudes(b.position),
           .speed = sum_of_magnitudes(a.velocity) + sum_of_magnitudes(b.velocity),
-          .turning = reach * (rate_a + rate_b),
+          .surface_speed = reach * (rate_a + rate_b),
           .bending = A.turning_limit * rate_a + B.turning_limit * rate_b,
           .limit = A.turning_limit * (rate_a * rate_a) + B.turning_limit * (rate_b * rate_b),
           .origin = larger(std::abs(now), larger(std::abs(a.time), std::abs(b.time)))};
 }
 
 template <bool kSpin>
-class UniaxialGauge {
+class UniaxialGap {
  public:
   struct State {
     Eigen::Vector3d r, u_a, u_b, du_a, du_b;
     Rounding rounding;
   };
-  using Gap = geom::kernel::UniaxialGap;
+  using Sample = geom::kernel::UniaxialGap;
   using Evaluation = UniaxialEvaluation;
 
   struct Certificate {
-    const UniaxialGauge& gauge;
+    const UniaxialGap& gap;
     SupportCurvature<kSpin> a, b;
-    double curvature(double tau) const { return a.bound(gauge.A_, tau) + b.bound(gauge.B_, tau); }
+    double curvature(double tau) const { return a.bound(gap.A_, tau) + b.bound(gap.B_, tau); }
   };
 
   /// `r_now`: the vector from A's centre to B's at `now`, in the image that is meant. `reach`: sum of the bounding
   /// radii.
-  UniaxialGauge(const Spheroid& A, const AxisMotion& a, const Spheroid& B, const AxisMotion& b,
-                const Eigen::Vector3d& r_now, double now, double reach)
+  UniaxialGap(const Spheroid& A, const AxisMotion& a, const Spheroid& B, const AxisMotion& b,
+              const Eigen::Vector3d& r_now, double now, double reach)
       : A_(A),
         B_(B),
         a_(a),
@@ -108,18 +109,18 @@ class UniaxialGauge {
     return s;
   }
 
-  Gap gap(const State& s, const Eigen::Vector3d& n) const {
+  Sample sample(const State& s, const Eigen::Vector3d& n) const {
     return geom::kernel::uniaxial_gap(A_, B_, s.r, s.u_a, s.u_b, n);
   }
 
-  Evaluation complete(const State& s, const Gap& gap, const Eigen::Vector3d& n) const {
-    return geom::kernel::uniaxial_step(A_, B_, s.r, s.u_a, s.u_b, n, gap);
+  Evaluation complete(const State& s, const Sample& sample, const Eigen::Vector3d& n) const {
+    return geom::kernel::uniaxial_step(A_, B_, s.r, s.u_a, s.u_b, n, sample);
   }
 
-  Evaluation evaluate(const State& s, const Eigen::Vector3d& n) const { return complete(s, gap(s, n), n); }
+  Evaluation evaluate(const State& s, const Eigen::Vector3d& n) const { return complete(s, sample(s, n), n); }
 
-  template <class GapOrEvaluation>
-  double rate(const State& s, const GapOrEvaluation& e, const Eigen::Vector3d& n) const {
+  template <class SampleOrEvaluation>
+  double rate(const State& s, const SampleOrEvaluation& e, const Eigen::Vector3d& n) const {
     return gap_rate(v_, s.du_a, s.du_b, e.lever, n);
   }
 
@@ -150,7 +151,7 @@ class UniaxialGauge {
   double size() const { return scales_.size; }
   double certified_depth() const { return A_.rho + B_.rho; }
   /// An upper bound of |dd/dt|.
-  double speed() const { return v_.norm() + scales_.turning; }
+  double speed() const { return v_.norm() + scales_.surface_speed; }
 
  private:
   static Eigen::Matrix3d quadric(const Spheroid& S, const Eigen::Vector3d& u) {

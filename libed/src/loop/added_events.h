@@ -16,9 +16,9 @@
 
 namespace ed::internal {
 
-/// What an event has changed of its body.
+/// Change that an event has made to its body.
 enum class BodyChange {
-  none,    ///< of what predictions depend on
+  none,    ///< predictions stay as they are
   motion,  ///< exit and contacts of the body are predicted again
 };
 
@@ -47,7 +47,7 @@ class AddedEvents {
   /// Whether `first` is that of an added event.
   static constexpr bool has(std::int32_t first) { return first < BodyEvents::kExit && first >= first_of(kNumber - 1); }
 
-  /// Makes room for the events of so many bodies, of which none is predicted.
+  /// Makes room for the events of `number` bodies; none is predicted.
   void resize(int number) {
     for (LargeVector<double>& times : times_) times.assign(static_cast<std::size_t>(number), kNever);
   }
@@ -103,7 +103,7 @@ class AddedEvents {
 
  private:
   std::tuple<Kinds...> kinds_;
-  std::array<LargeVector<double>, sizeof...(Kinds)> times_;  ///< of each kind, for each body
+  std::array<LargeVector<double>, sizeof...(Kinds)> times_;  ///< times of each kind, for each body
 };
 
 }  // namespace ed::internal

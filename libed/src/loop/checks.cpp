@@ -35,8 +35,9 @@ void check_cells(double box, double bounding_radius) {
 
 double epoch_of(const System& system) {
   const KineticState kinetic = kinetic_state(system);
-  const int freedoms = 3 * system.size() + kinetic.rotational_freedoms + kinetic.spin_freedoms;
-  const double kT = 2 * kinetic.energy() / freedoms;
+  const int degrees_of_freedom =
+      3 * system.size() + kinetic.rotational_degrees_of_freedom + kinetic.spin_degrees_of_freedom;
+  const double kT = 2 * kinetic.energy() / degrees_of_freedom;
   if (!(kT > 0)) return 1;  // nothing moves
   double rates = 0;
   for (int i = 0; i < system.size(); ++i) rates += 1 / thermal_time(system.species_of(i));

@@ -1,11 +1,11 @@
 #pragma once
 
-/// The kinds of events of a loop, and the one place that tells which of them an event is.
+/// List of the kinds of events of a loop, and the only dispatch between them.
 ///
 /// A kind is a class of events with
 ///
 ///     static constexpr EventKind kKind;
-///     static constexpr EventReads kReads;      // what is prefetched for it
+///     static constexpr EventReads kReads;      // data to prefetch
 ///     std::array<std::int32_t, 2> bodies(const NeighbourLists& lists) const;  // -1: none
 ///     static void predict(loop, ...);          // sets the time of the event
 ///     void process(loop) const;                // at that time
@@ -25,7 +25,7 @@
 
 namespace ed::internal {
 
-/// What an event reads beyond its body, the list of it and the pairs in it.
+/// Data that an event reads beyond its body, the body's list and the pairs in that.
 enum class EventReads : std::uint8_t {
   new_list,          ///< partners, their lists, and the bodies near by
   partners,          ///< partners
@@ -57,7 +57,7 @@ struct PairEventBase {
   static void predict(Loop& loop, std::int32_t index, int owner, int max_evaluations);
 };
 
-/// The certified bound of a pair has come: it is looked at again.
+/// The certified bound of a pair has come: its search goes on from there.
 struct LookEvent : PairEventBase {
   static constexpr EventKind kKind = EventKind::look;
   static constexpr EventReads kReads = EventReads::other;

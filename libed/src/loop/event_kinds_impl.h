@@ -1,6 +1,6 @@
 #pragma once
 
-/// How the kinds of events (event_kinds.h) are predicted and processed. `loop`: LoopParts.
+/// Prediction and processing of the kinds of events (event_kinds.h). `loop`: LoopParts.
 
 #include "loop/added_events.h"
 #include "loop/event_kinds.h"
@@ -23,7 +23,7 @@ void ExitEvent::process(Loop& loop) const {
     loop.rebuild(body);
     return;
   }
-  // Still inside: pairs that were clear up to the earlier bound are looked at again.
+  // Still inside: pairs that were clear up to the earlier bound are searched again.
   const NeighbourLists& lists = loop.neighbourhood.lists();
   for (const std::int32_t index : lists.of(body)) {
     if (lists.pair(index).event == PairEvent::clear) loop.queue(index, body);

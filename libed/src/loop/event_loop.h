@@ -53,7 +53,7 @@ class EventLoop final : public AnyEventLoop {
   const Added& added() const { return parts_.added; }
 
  private:
-  struct Unbuilt {};  ///< without envelopes, lists and events
+  struct Unbuilt {};  ///< tag: no envelopes, lists and events are made
   EventLoop(const System& system, const SimulationOptions& options, Unbuilt unbuilt, Law law, Added added);
   template <class Archive, class Self>
   static void fields(Archive& archive, Self& self);

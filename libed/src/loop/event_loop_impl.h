@@ -1,6 +1,6 @@
 #pragma once
 
-/// Members of EventLoop, but for those that are needed seldom (state_impl.h).
+/// Members of EventLoop, except for those of its state (state_impl.h) and of stalls (stall_impl.h).
 
 #include "contact/checks.h"
 #include "loop/checks.h"
@@ -14,7 +14,7 @@
 
 namespace ed::internal {
 
-/// While the box shrinks bodies count as leaving their envelopes at this share of the thickness.
+/// Share of the thickness at which bodies count as leaving their envelopes while the box shrinks.
 inline constexpr double kShrinkingExit = 0.8;
 
 template <class Bodies, CollisionLaw Law, class Added>

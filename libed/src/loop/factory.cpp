@@ -19,7 +19,7 @@ std::unique_ptr<Envelopes<UniaxialBodies>> make_envelopes(const UniaxialBodies& 
     case Neighbours::dilated:
       thickness = std::clamp(thickness, thinnest, std::max(thinnest, thickest_envelope(box, bodies.bounding_radius())));
       return std::make_unique<DilatedEnvelopes>(bodies, thickness, exit_share * thickness,
-                                                bodies.kernels(options.batches).meet);
+                                                bodies.kernels(options.batches).overlap);
     case Neighbours::obp:
       return std::make_unique<OrientedEnvelopes>(bodies, std::min(thickness, thickest_oriented_envelope(bodies, box)));
     case Neighbours::cells:

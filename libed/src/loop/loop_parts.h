@@ -3,16 +3,16 @@
 #include "base/large_vector.h"
 #include "bodies/first_looks.h"
 #include "loop/collision_law.h"
-#include "loop/parts/collision_log.h"
-#include "loop/parts/epoch_clock.h"
 #include "loop/event_kinds.h"
 #include "loop/factory.h"
+#include "loop/parts/collision_log.h"
+#include "loop/parts/epoch_clock.h"
 #include "loop/parts/failure_log.h"
 #include "loop/parts/neighbourhood.h"
 #include "loop/parts/periodic_box.h"
 #include "loop/parts/predictor.h"
-#include "loop/prefetch_events.h"
 #include "loop/parts/schedule.h"
+#include "loop/prefetch_events.h"
 
 #include <ed/simulation.h>
 
@@ -40,7 +40,7 @@ struct LoopParts {
   /// Has pairs predicted; `owner` owns them from now on. `skip`: a pair that is left out; kNoPair: none.
   void queue(std::int32_t index, int owner) { predictor.queue(schedule.claim(index, owner)); }
   void queue_all_of(int body, std::int32_t skip);
-  /// Predicts the queued pairs, and reschedules bodies whose first event is no longer theirs.
+  /// Predicts the queued pairs, and reschedules the orphans (Schedule).
   void predict_queued();
   /// Gives a body a new envelope and a new list.
   void rebuild(int body);
@@ -49,18 +49,18 @@ struct LoopParts {
   void rebuild_all();
   /// Predicts every pair, for its body i, and reschedules all bodies.
   void predict_all();
-  /// Makes room, so that nothing allocates while events are processed but for records that a long run breaks.
+  /// Makes room, so that nothing allocates while events are processed unless a list becomes longer than any before.
   void reserve();
   void start_epoch();
 
-  // Prefetching, in large systems only.
+  // Prefetching, in large systems only (see `ahead`).
   EventSources<Bodies> sources() const {
     return {schedule.calendar(), bodies, neighbourhood.lists(), neighbourhood.envelopes(), neighbourhood.cells()};
   }
   void fetch_pairs(int body) const {
     if (ahead) sources().fetch_pairs(body);
   }
-  /// After fetch_pairs and something else to do: it reads the pairs.
+  /// Prefetches the partners of a body. It reads the pairs, so that some work should follow fetch_pairs first.
   void fetch_partners(int body) const {
     if (ahead) sources().fetch_partners(body);
   }
@@ -81,7 +81,8 @@ struct LoopParts {
   FailureLog failures;
   Predictor<Bodies> predictor;
   CollisionLog collisions;
-  std::optional<EventsAhead<Bodies, Added>> ahead;  ///< if most of what an event reads is not in the caches
+  /// Prefetching; only in large systems, whose events read memory that is in no cache.
+  std::optional<EventsAhead<Bodies, Added>> ahead;
 
  private:
   static std::vector<int> species_numbers(const System& system) {

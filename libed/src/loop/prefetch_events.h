@@ -3,8 +3,8 @@
 #include "base/prefetch.h"
 #include "bodies/body_events.h"
 #include "cells/grid.h"
-#include "loop/parts/calendar.h"
 #include "loop/event_kinds.h"
+#include "loop/parts/calendar.h"
 #include "neighbours/envelopes.h"
 #include "neighbours/lists.h"
 
@@ -166,7 +166,7 @@ class EventsAhead {
     return Stage::done;
   }
 
-  std::vector<Coming> coming_;  ///< for each part
+  std::vector<Coming> coming_;  ///< one for each part
 };
 
 }  // namespace ed::internal

@@ -13,7 +13,7 @@ double EventLoop<Bodies, Law, Added>::fastest_speed() const {
   const Bodies& bodies = parts_.bodies;
   double fastest = 0;
   for (int i = 0; i < number(); ++i) {
-    fastest = std::max(fastest, bodies.velocity(i).norm() + bodies.turning(i) * bodies.bounding_radius(i));
+    fastest = std::max(fastest, bodies.velocity(i).norm() + bodies.angular_speed_bound(i) * bodies.bounding_radius(i));
   }
   return fastest;
 }

@@ -13,7 +13,7 @@
 
 namespace ed::internal {
 
-/// What a state must be loaded with; without the seed function.
+/// Returns the options that a state must be loaded with, as bytes; without the seed function.
 inline std::string bytes_of_choice(const SimulationOptions& options) {
   return bytes_of(options.neighbours) + bytes_of(options.contact);
 }

@@ -22,14 +22,14 @@ class CellLayout {
   static int cells_along(double box, double bounding_radius) {
     return static_cast<int>(box / (2 * bounding_radius * (1 + 4 * kOvershoot)));
   }
-  /// Below 3 cells along an edge a neighbouring cell is met on both sides.
+  /// Least number of cells along an edge: with fewer a neighbouring cell is met on both sides.
   static constexpr int kLeastCells = 3;
   static double smallest_box(double bounding_radius) {
     return kLeastCells * 2 * bounding_radius * (1 + 8 * kOvershoot);
   }
 
  protected:
-  static constexpr double kOvershoot = 1e-10;  ///< in cell widths
+  static constexpr double kOvershoot = 1e-10;  ///< way beyond a face at which a body has left its cell; in cell widths
 };
 
 template <class Bodies>
@@ -51,7 +51,8 @@ class CellEnvelopes final : public Envelopes<Bodies>, public CellLayout {
     }
   }
 
-  /// When the centre has crossed a face of the cell, and is so far beyond it that rounding cannot put it back.
+  /// Returns the time when the centre has crossed a face of the cell, so far beyond it that rounding cannot put it
+  /// back.
   double exit_time(int i, const Bodies& bodies, double now, double box) const override {
     return exit_time(i, bodies.position_at(i, now), bodies.velocity(i), now, box);
   }
@@ -73,15 +74,15 @@ class CellEnvelopes final : public Envelopes<Bodies>, public CellLayout {
   double worthwhile(int i, const Bodies& bodies) const override { return worthwhile(bodies.velocity(i)); }
   double worthwhile(const Eigen::Vector3d& velocity) const { return kOvershoot * width() / (velocity.norm() + 1e-300); }
 
-  bool may_meet(int i, int k, const Eigen::Vector3d& r, Eigen::Vector3d& normal) const override {
+  bool may_overlap(int i, int k, const Eigen::Vector3d& r, Eigen::Vector3d& normal) const override {
     if (offset(i, k).cwiseAbs().maxCoeff() > 1) return false;
     const Eigen::Vector3d d = image(i, k, r, box_);
     normal = d.squaredNorm() > 0 ? Eigen::Vector3d(d.normalized()) : Eigen::Vector3d::UnitX();
     return true;
   }
 
-  /// The vector between bodies of adjacent cells, in the image that the cells mean; `d` is its value in any image. The
-  /// nearest image may be another one, where there are only three or four cells along an edge.
+  /// Returns the vector between bodies of adjacent cells, in the image that the cells mean; `d` is its value in any
+  /// image. The nearest image may be another one, where there are only three or four cells along an edge.
   Eigen::Vector3d image(int i, int k, const Eigen::Vector3d& d, double /*box*/) const override {
     const Eigen::Vector3d middle = width() * offset(i, k).template cast<double>();
     return middle + nearest_image(d - middle, box_);
@@ -102,7 +103,7 @@ class CellEnvelopes final : public Envelopes<Bodies>, public CellLayout {
 
   double width() const { return box_ / cells_; }
 
-  /// From the cell of i to that of k, the short way round.
+  /// Returns the vector from the cell of i to that of k, the short way round.
   Eigen::Vector3i offset(int i, int k) const {
     Eigen::Vector3i d = cell_[static_cast<std::size_t>(k)] - cell_[static_cast<std::size_t>(i)];
     for (int c = 0; c < 3; ++c) {
@@ -113,7 +114,7 @@ class CellEnvelopes final : public Envelopes<Bodies>, public CellLayout {
   }
 
   double box_;
-  int cells_;  ///< along an edge
+  int cells_;  ///< number along an edge
   std::vector<Eigen::Vector3i> cell_;
 };
 

@@ -31,9 +31,9 @@ namespace ed::internal {
 class DilatedEnvelopes final : public Envelopes<UniaxialBodies> {
  public:
   /// `thickness`: delta. Bodies leave at `exit_thickness` <= delta already, which is what a shrinking box eats up.
-  /// `kernel`: for find_meetings; null: one pair at a time.
+  /// `kernel` is for find_overlapping; null: one pair at a time.
   DilatedEnvelopes(const UniaxialBodies& bodies, double thickness, double exit_thickness,
-                   MeetingKernel* kernel = nullptr)
+                   OverlapKernel* kernel = nullptr)
       : kernel_(kernel),
         bounding_radius_(bodies.bounding_radius()),
         thickness_(thickness),
@@ -104,7 +104,7 @@ class DilatedEnvelopes final : public Envelopes<UniaxialBodies> {
     return 0.15 * exit_thickness_ / (motion.velocity.norm() + surface_speed(i, motion) + 1e-300);
   }
 
-  bool may_meet(int i, int k, const Eigen::Vector3d& r, Eigen::Vector3d& normal) const override {
+  bool may_overlap(int i, int k, const Eigen::Vector3d& r, Eigen::Vector3d& normal) const override {
     const geom::kernel::Spheroid& shape_i = kind_of(i).shape;
     const geom::kernel::Spheroid& shape_k = kind_of(k).shape;
     const Eigen::Vector3d u_i = axis_of(i);
@@ -115,7 +115,7 @@ class DilatedEnvelopes final : public Envelopes<UniaxialBodies> {
     normal = geom::kernel::cold_normal(shape_i, shape_k, r, u_i, u_k);
     auto e = geom::kernel::evaluate_uniaxial(shape_i, shape_k, r, u_i, u_k, normal);
     if (e.g > limit) return false;
-    for (int step = 0; step < kMeetingSteps && e.g + e.decrement > limit; ++step) {
+    for (int step = 0; step < kOverlapSteps && e.g + e.decrement > limit; ++step) {
       normal = geom::kernel::step_on_sphere(normal, e.step);
       e = geom::kernel::evaluate_uniaxial(shape_i, shape_k, r, u_i, u_k, normal);
       if (e.g > limit) return false;
@@ -124,23 +124,24 @@ class DilatedEnvelopes final : public Envelopes<UniaxialBodies> {
     return true;
   }
 
-  void find_meetings(int i, std::span<const NearBody> near, int first, std::vector<Meeting>& found) const override {
-    if (kernel_ == nullptr) return Envelopes::find_meetings(i, near, first, found);
+  void find_overlapping(int i, std::span<const NearBody> near, int first,
+                        std::vector<OverlappingEnvelope>& found) const override {
+    if (kernel_ == nullptr) return Envelopes::find_overlapping(i, near, first, found);
     found.clear();
-    MeetingInput in{nullptr, 0, envelopes_.data(), shapes_.data(), kinds_.size() == 1, i, first, 2 * thickness_};
-    for (std::size_t next = 0; next < near.size(); next += kBlockMeetings) {
-      const auto block = near.subspan(next, std::min(near.size() - next, std::size_t{kBlockMeetings}));
+    OverlapInput in{nullptr, 0, envelopes_.data(), shapes_.data(), kinds_.size() == 1, i, first, 2 * thickness_};
+    for (std::size_t next = 0; next < near.size(); next += kBlockOverlaps) {
+      const auto block = near.subspan(next, std::min(near.size() - next, std::size_t{kBlockOverlaps}));
       in.near = block.data();
       in.count = static_cast<int>(block.size());
-      MeetingOutput out;
+      OverlapOutput out;
       kernel_(in, out);
       for (int lane = 0; lane < out.count; ++lane) {
-        const double verdict = out.rows[MeetingOutput::verdict][lane];
-        if (verdict == MeetingOutput::apart) continue;
+        const double verdict = out.rows[OverlapOutput::verdict][lane];
+        if (verdict == OverlapOutput::apart) continue;
         const NearBody& other = block[static_cast<std::size_t>(out.place[lane])];
-        const auto normal = [&](int axis) { return out.rows[MeetingOutput::normal + axis][lane]; };
-        Meeting meeting{other.body, {normal(0), normal(1), normal(2)}};
-        if (verdict == MeetingOutput::open && !may_meet(i, other.body, other.r, meeting.normal)) continue;
+        const auto normal = [&](int axis) { return out.rows[OverlapOutput::normal + axis][lane]; };
+        OverlappingEnvelope meeting{other.body, {normal(0), normal(1), normal(2)}};
+        if (verdict == OverlapOutput::open && !may_overlap(i, other.body, other.r, meeting.normal)) continue;
         found.push_back(meeting);
       }
     }
@@ -180,9 +181,9 @@ class DilatedEnvelopes final : public Envelopes<UniaxialBodies> {
     return kind_of(i).axis_difference * motion.rate * motion.e2.norm();
   }
 
-  MeetingKernel* kernel_ = nullptr;
+  OverlapKernel* kernel_ = nullptr;
   std::vector<Kind> kinds_;
-  std::vector<ShapeNumbers> shapes_;  ///< of the kinds, for the kernel
+  std::vector<ShapeNumbers> shapes_;  ///< shapes of the kinds, for the kernel
   double bounding_radius_;
   double thickness_;
   double exit_thickness_;

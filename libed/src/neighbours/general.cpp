@@ -25,22 +25,23 @@ std::size_t slot(int i) {
   return static_cast<std::size_t>(i);
 }
 
-/// How fast the surface moves at the most.
+/// Returns an upper bound of the speed at which turning moves the surface.
 double surface_speed(const GeneralBodies& bodies, int i) {
-  return bodies.kind_of(i).lever * bodies.turning(i);
+  return bodies.kind_of(i).lever * bodies.angular_speed_bound(i);
 }
 
 double worthwhile_time(const GeneralBodies& bodies, int i, double thickness) {
   return kWorthwhile * thickness / (bodies.velocity(i).norm() + surface_speed(bodies, i) + 1e-300);
 }
 
-/// An upper bound of the angle of R R0^T: |R - R0| = sqrt(8) sin(angle / 2) in the Frobenius norm.
+/// Returns an upper bound of the angle of R R0^T: |R - R0| = sqrt(8) sin(angle / 2) in the Frobenius norm.
 double angle_between(const Matrix3d& R, const Matrix3d& R0) {
   return angle_bound(std::sqrt(0.5 * (R - R0).squaredNorm()));
 }
 
-/// Whether two bodies may be within `limit` of each other; false is certain. `normal`: along r, then a better one.
-/// `inscribed`: the sum of both inscribed radii. `elongated`: some body is; of others the cold normal is that along r.
+/// Returns whether two bodies may be within `limit` of each other; false is certain. `normal`: along r, then a better
+/// one. `inscribed`: the sum of both inscribed radii. `elongated`: some body is; of others the cold normal is that
+/// along r.
 bool within(const NormBodyPair& pair, double inscribed, bool elongated, double limit, Vector3d& normal) {
   const Vector3d along = normal;
   const double apart = along.dot(pair.between());
@@ -63,7 +64,7 @@ bool within(const NormBodyPair& pair, double inscribed, bool elongated, double l
   return !(sample.g > limit);
 }
 
-/// The same for any shapes.
+/// Returns the same as within(), for any shapes.
 bool any_within(const BodyShape& a, const Matrix3d& R_a, const BodyShape& b, const Matrix3d& R_b, const Vector3d& r,
                 double limit, Vector3d& normal) {
   const double h_a = support(a, transposed_product(R_a, normal)).height;
@@ -86,11 +87,11 @@ void GeneralDilatedEnvelopes::place(int i, const GeneralBodies& bodies, double n
 }
 
 void GeneralDilatedEnvelopes::scale(double factor) {
-  for (Place& place : places_) place.centre *= factor;
+  for (EnvelopePose& place : places_) place.centre *= factor;
 }
 
 double GeneralDilatedEnvelopes::exit_time(int i, const GeneralBodies& bodies, double now, double box) const {
-  const Place& place = places_[slot(i)];
+  const EnvelopePose& place = places_[slot(i)];
   const Vector3d d = nearest_image(bodies.position_at(i, now) - place.centre, box);
   const double lever = bodies.kind_of(i).lever;
   const double left = exit_thickness_ - lever * angle_between(bodies.rotation_at(i, now), place.rotation);
@@ -110,7 +111,7 @@ double GeneralDilatedEnvelopes::worthwhile(int i, const GeneralBodies& bodies) c
   return worthwhile_time(bodies, i, exit_thickness_);
 }
 
-bool GeneralDilatedEnvelopes::may_meet(int i, int k, const Vector3d& r, Vector3d& normal) const {
+bool GeneralDilatedEnvelopes::may_overlap(int i, int k, const Vector3d& r, Vector3d& normal) const {
   const GeneralKind& a = bodies_->kind_of(i);
   const GeneralKind& b = bodies_->kind_of(k);
   const double limit = 2 * thickness_;
@@ -167,7 +168,7 @@ void GeneralOrientedEnvelopes::scale(double factor) {
   for (geom::OrientedBox& box : boxes_) box.centre *= factor;
 }
 
-/// When the surface, at its highest speed along each normal, would have crossed one of the six planes.
+/// Returns when the surface, at its highest speed along each normal, would have crossed one of the six planes.
 double GeneralOrientedEnvelopes::exit_time(int i, const GeneralBodies& bodies, double now, double box) const {
   const geom::OrientedBox& envelope = boxes_[slot(i)];
   const BodyShape& shape = bodies.kind_of(i).shape;
@@ -192,7 +193,7 @@ double GeneralOrientedEnvelopes::worthwhile(int i, const GeneralBodies& bodies) 
   return worthwhile_time(bodies, i, thickness_);
 }
 
-bool GeneralOrientedEnvelopes::may_meet(int i, int k, const Vector3d& r, Vector3d& normal) const {
+bool GeneralOrientedEnvelopes::may_overlap(int i, int k, const Vector3d& r, Vector3d& normal) const {
   const geom::OrientedBox& a = boxes_[slot(i)];
   geom::OrientedBox b = boxes_[slot(k)];
   b.centre = a.centre + r;

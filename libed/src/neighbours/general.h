@@ -24,7 +24,7 @@ namespace ed::internal {
 
 class GeneralDilatedEnvelopes final : public Envelopes<GeneralBodies> {
  public:
-  /// As DilatedEnvelopes. `bodies` must outlive this.
+  /// Makes envelopes as DilatedEnvelopes does. `bodies` must outlive this.
   GeneralDilatedEnvelopes(const GeneralBodies& bodies, double thickness, double exit_thickness);
 
   double thickness() const override { return thickness_; }
@@ -34,12 +34,12 @@ class GeneralDilatedEnvelopes final : public Envelopes<GeneralBodies> {
   void scale(double factor) override;
   double exit_time(int i, const GeneralBodies& bodies, double now, double box) const override;
   double worthwhile(int i, const GeneralBodies& bodies) const override;
-  bool may_meet(int i, int k, const Eigen::Vector3d& r, Eigen::Vector3d& normal) const override;
+  bool may_overlap(int i, int k, const Eigen::Vector3d& r, Eigen::Vector3d& normal) const override;
   void save(Writer& writer) const override { fields(writer, *this); }
   void load(Reader& reader) override { fields(reader, *this); }
 
  private:
-  struct Place {
+  struct EnvelopePose {
     Eigen::Vector3d centre;
     Eigen::Matrix3d rotation;
 
@@ -55,14 +55,16 @@ class GeneralDilatedEnvelopes final : public Envelopes<GeneralBodies> {
     archive(self.thickness_, self.exit_thickness_, self.places_);
     expect(archive, self.places_.size() == number, "the envelopes of the bodies");
     expect(archive, self.exit_thickness_ >= 0 && self.exit_thickness_ <= self.thickness_, "the room to an exit");
-    const auto finite = [](const Place& place) { return place.centre.allFinite() && place.rotation.allFinite(); };
+    const auto finite = [](const EnvelopePose& place) {
+      return place.centre.allFinite() && place.rotation.allFinite();
+    };
     expect(archive, std::all_of(self.places_.begin(), self.places_.end(), finite), "an envelope is not finite");
   }
 
   const GeneralBodies* bodies_;
   double thickness_;
   double exit_thickness_;
-  std::vector<Place> places_;
+  std::vector<EnvelopePose> places_;
 };
 
 /// The thickest box envelope for which nearest images are safe in this periodic box.
@@ -78,7 +80,7 @@ class GeneralOrientedEnvelopes final : public Envelopes<GeneralBodies> {
   void scale(double factor) override;
   double exit_time(int i, const GeneralBodies& bodies, double now, double box) const override;
   double worthwhile(int i, const GeneralBodies& bodies) const override;
-  bool may_meet(int i, int k, const Eigen::Vector3d& r, Eigen::Vector3d& normal) const override;
+  bool may_overlap(int i, int k, const Eigen::Vector3d& r, Eigen::Vector3d& normal) const override;
   void save(Writer& writer) const override { fields(writer, *this); }
   void load(Reader& reader) override { fields(reader, *this); }
 

@@ -1,32 +1,32 @@
 #pragma once
 
-/// What thicknesses of envelopes and boxes are possible, and which envelopes are kept.
+/// Limits of the thickness of envelopes and of the size of boxes, and of how long envelopes are kept.
 
 namespace ed::internal {
 
-/// The thinnest envelope in use, in units of the bounding radius.
+/// Thickness of the thinnest envelope in use, in units of the bounding radius.
 inline constexpr double kThinnestEnvelope = 0.02;
-/// The thinnest box around a body of any shape, in units of the smallest inscribed radius.
+/// Thickness of the thinnest box around a body of any shape, in units of the smallest inscribed radius.
 inline constexpr double kThinnestOriented = 0.02;
 
 /// An envelope that lasts longer than this is not made anew early; in units of the time in which the surface can cross
 /// the thickness.
 inline constexpr double kWorthwhile = 0.15;
 
-/// The smallest box in which the nearest image of a neighbour is the only one that can touch. Neighbours' envelope
-/// centres are within 2 R + 2 delta of each other, their centres then within 2 R + 4 delta, which must be below half
-/// the box.
+/// Returns the smallest box in which the nearest image of a neighbour is the only one that can touch. Neighbours'
+/// envelope centres are within 2 R + 2 delta of each other, their centres then within 2 R + 4 delta, which must be
+/// below half the box.
 inline double smallest_image_box(double bounding_radius) {
   return 2 * (2 + 4 * kThinnestEnvelope) * bounding_radius;
 }
 
-/// The thickest envelope for which the nearest image is safe in this box.
+/// Returns the thickest envelope for which the nearest image is safe in this box.
 inline double thickest_envelope(double box, double bounding_radius) {
   return (0.5 * box - 2 * bounding_radius) / 4;
 }
 
-/// An upper bound of the angle between unit vectors a chord apart: 2 asin(c/2) = c + c^3/24 + 3 c^5/640 + ..., whose
-/// tail after the second term is below c^5/120 for c <= 1.
+/// Returns an upper bound of the angle between unit vectors a chord apart: 2 asin(c/2) = c + c^3/24 + 3 c^5/640 + ...,
+/// whose tail after the second term is below c^5/120 for c <= 1.
 inline double angle_bound(double chord) {
   if (!(chord <= 1)) return 3.1416;
   const double c2 = chord * chord;

@@ -54,7 +54,7 @@ bool NeighbourLists::lists(std::int32_t body, std::int32_t index) const {
   return slot >= 0 && static_cast<std::size_t>(slot) < list.size() && list[static_cast<std::size_t>(slot)] == index;
 }
 
-/// Every pair is in the lists of its two bodies and nowhere else, or free.
+/// Returns whether every pair is in the lists of its two bodies and nowhere else, or free.
 bool NeighbourLists::linked() const {
   std::vector<bool> free(pairs_.size(), false);
   for (const std::int32_t index : free_) {
@@ -76,7 +76,7 @@ bool NeighbourLists::linked() const {
   return places == 2 * (pairs_.size() - free_.size());
 }
 
-/// Returns the slot.
+/// Appends the pair to the list of the body, and returns its slot.
 std::int32_t NeighbourLists::append(std::int32_t body, std::int32_t index) {
   const auto at = static_cast<std::size_t>(body);
   const std::size_t length = lengths_[at];
@@ -107,13 +107,13 @@ void NeighbourLists::unlink(std::int32_t body, std::int32_t slot) {
   (p.i == body ? p.slot_i : p.slot_j) = slot;
 }
 
-/// The most that each body is given: several times the mean.
+/// Returns the most room that each body is given: several times the mean.
 std::size_t NeighbourLists::most_room() const {
   constexpr std::size_t kAlways = 64;
   return std::max(kAlways, 8 * (pairs_.size() - std::min(free_.size(), pairs_.size())) / lengths_.size());
 }
 
-/// As many lists as there are bodies; the pairs are there already.
+/// Sets the lists, one for each body; the pairs are set already.
 void NeighbourLists::assign(const std::vector<std::vector<std::int32_t>>& lists) {
   std::size_t longest = 0;
   for (const std::vector<std::int32_t>& list : lists) longest = std::max(longest, list.size());
@@ -131,7 +131,7 @@ void NeighbourLists::assign(const std::vector<std::vector<std::int32_t>>& lists)
   }
 }
 
-/// `room`: no less than now.
+/// Gives each list this room, no less than now.
 void NeighbourLists::make_room(std::size_t room) {
   LargeVector<std::int32_t> slots(room * lengths_.size());
   for (std::size_t body = 0; body < lengths_.size(); ++body) {

@@ -31,13 +31,13 @@ class NeighbourLists {
   const Pair& pair(std::int32_t index) const { return pairs_[static_cast<std::size_t>(index)]; }
   int number() const { return static_cast<int>(lengths_.size()); }
 
-  /// The list of the body is read soon.
+  /// Prefetches the list of the body.
   void fetch(int body) const {
     prefetch(lengths_[static_cast<std::size_t>(body)]);
     prefetch_line(slots_.data() + static_cast<std::size_t>(body) * room_);
   }
 
-  /// A new pair of neighbours, owned by i; returns its index.
+  /// Adds a pair of neighbours, owned by i, and returns its index.
   std::int32_t add(std::int32_t i, std::int32_t j, const Eigen::Vector3d& normal);
   void remove(std::int32_t index);
 
@@ -65,7 +65,7 @@ class NeighbourLists {
     }
   }
 
-  /// Whether the pair is one of this body's.
+  /// Returns whether the pair is one of this body's.
   bool lists(std::int32_t body, std::int32_t index) const;
 
  private:
@@ -75,15 +75,16 @@ class NeighbourLists {
   void assign(const std::vector<std::vector<std::int32_t>>& lists);
   void make_room(std::size_t room);
   std::size_t most_room() const;
-  std::int32_t* list_of(std::size_t body) { return slots_.data() + body * room_; }  ///< of one that fits
+  /// Returns the list of a body, which fits its room.
+  std::int32_t* list_of(std::size_t body) { return slots_.data() + body * room_; }
 
   LargeVector<Pair> pairs_;
   LargeVector<std::int32_t> free_;
   // A list stands where its body's number says: no pointer has to be read first. Lists that are longer than most, those
   // of the largest bodies of a mixture, stand elsewhere: with room for them at every body memory would be theirs.
-  std::size_t room_ = 0;                                              ///< for each list
+  std::size_t room_ = 0;                                              ///< room for each list
   LargeVector<std::int32_t> slots_;                                   ///< room_ for each body
-  LargeVector<std::uint32_t> lengths_;                                ///< of the lists
+  LargeVector<std::uint32_t> lengths_;                                ///< lengths of the lists
   std::unordered_map<std::int32_t, std::vector<std::int32_t>> long_;  ///< whole lists; those of shorter ones are stale
 };
 

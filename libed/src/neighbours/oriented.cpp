@@ -27,7 +27,7 @@ Vector3d half_extents(const Spheroid& shape, double thickness) {
   return {b, b, std::sqrt(shape.a2) + thickness};
 }
 
-/// How far a body's centre can be from that of its box while it stays inside, along each of the box's axes.
+/// Returns how far a body's centre can be from that of its box while it stays inside, along each of the box's axes.
 ///
 /// Along axis e_k the centre is within extent_k - h(e_k, u). The squares of the three h add up to a^2 + 2 b^2 whatever
 /// u, and none exceeds its extent, which bounds each from below by what the other two leave; min(a, b) does too.
@@ -113,8 +113,8 @@ double OrientedEnvelopes::exit(int i, const AxisMotion& motion, const Vector3d& 
     for (const double side : {1.0, -1.0}) {
       Vector3d n = side * box.axes.col(k);
       const double offset = n.dot(box.centre) + box.half_extents[k];
-      const PlaneGauge<kSpin> gauge(kind.shape, motion, position, now, offset, kind.bounding_radius);
-      const Finding finding = certified_contact(gauge, now, earliest, kLooks, n, count);
+      const PlaneGap<kSpin> gap(kind.shape, motion, position, now, offset, kind.bounding_radius);
+      const Finding finding = certified_contact(gap, now, earliest, kLooks, n, count);
       if (finding.outcome == Outcome::overlapping) return now;
       earliest = std::min(earliest, finding.time);
     }
@@ -143,7 +143,7 @@ double OrientedEnvelopes::worthwhile(int i, const AxisMotion& motion) const {
   return kWorthwhile * crossing_time(kind_of(i), motion);
 }
 
-bool OrientedEnvelopes::may_meet(int i, int k, const Vector3d& r, Vector3d& normal) const {
+bool OrientedEnvelopes::may_overlap(int i, int k, const Vector3d& r, Vector3d& normal) const {
   const geom::OrientedBox& a = boxes_[static_cast<std::size_t>(i)];
   geom::OrientedBox b = boxes_[static_cast<std::size_t>(k)];
   b.centre = a.centre + r;

@@ -22,10 +22,10 @@
 
 namespace ed::internal {
 
-/// The thickest box envelope for which nearest images are safe in this periodic box: see OrientedEnvelopes::slack. 0 if
-/// the periodic box is below smallest_image_box.
+/// Returns the thickest box envelope for which nearest images are safe in this periodic box: see
+/// OrientedEnvelopes::slack. 0 if the periodic box is below smallest_image_box.
 double thickest_oriented_envelope(const geom::kernel::Spheroid& shape, double bounding_radius, double box);
-/// For all kinds of bodies.
+/// Returns the thickest envelope that is safe for all kinds of bodies.
 double thickest_oriented_envelope(const UniaxialBodies& bodies, double box);
 
 class OrientedEnvelopes final : public Envelopes<UniaxialBodies> {
@@ -44,7 +44,7 @@ class OrientedEnvelopes final : public Envelopes<UniaxialBodies> {
   double exit_time(int i, const AxisMotion& motion, const Eigen::Vector3d& position, double now, double box) const;
   double worthwhile(int i, const UniaxialBodies& bodies) const override { return worthwhile(i, bodies.axis_motion(i)); }
   double worthwhile(int i, const AxisMotion& motion) const;
-  bool may_meet(int i, int k, const Eigen::Vector3d& r, Eigen::Vector3d& normal) const override;
+  bool may_overlap(int i, int k, const Eigen::Vector3d& r, Eigen::Vector3d& normal) const override;
 
   const geom::OrientedBox& box(int i) const { return boxes_[static_cast<std::size_t>(i)]; }
 

@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// A distance from its centre to which the body certainly reaches; 0 of one that is not centrally symmetric.
+/// Returns a distance from its centre to which the body certainly reaches; 0 if it is not centrally symmetric.
 double certain_reach(const BodyShape& shape) {
   const auto* custom = std::get_if<CustomShape>(&shape);
   if (custom == nullptr) return bounding_radius(shape);

@@ -48,8 +48,11 @@ struct FrameSums {
 /// All but the temperatures.
 FrameSums order_and_speeds(const Snapshot& snapshot, BodyRange range);
 
-/// The temperatures alone; NaN where there are no degrees of freedom.
-FrameSums temperatures(const System& system, BodyRange range, const Freedoms& freedoms);
+/// Returns the bodies of a range as a system.
+System part_of(const System& system, BodyRange range);
+
+/// The temperatures alone, from the energies of the bodies; NaN where there are no degrees of freedom.
+FrameSums temperatures(const KineticState& kinetic, const Freedoms& freedoms);
 
 /// 3 sum m v v^T / sum m v^2: the tensor of the ideal gas' share of the pressure, of trace 3.
 Eigen::Matrix3d kinetic_tensor(const System& system);

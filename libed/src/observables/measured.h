@@ -59,6 +59,19 @@ struct Block {
   }
 };
 
+/// Reasons for which values are missing in principle; nullopt where they are known. A run knows everything; stored
+/// frames do not.
+struct Gaps {
+  using Gap = std::optional<MissingReason>;
+  Gap collisions{};             ///< collisions, pressure, temperatures
+  Gap displacements{};          ///< MSD, alpha2, F_self
+  Gap orientations{};           ///< order and g2 of single frames
+  Gap turning{};                ///< C1 and C2
+  Gap rotations{};              ///< angular velocities and their integrals
+  Gap velocities{};             ///< velocities in single frames
+  Gap velocity_correlations{};  ///< the VACF
+};
+
 /// Blocks, and what they are blocks of.
 struct Measured {
   /// Throws std::invalid_argument for options that are none.
@@ -75,10 +88,17 @@ struct Measured {
   StructureGrid grid;        ///< as soon as there is a box
   bool length_known = true;  ///< whether the grid's length is that of the bodies
   int structure_every = 1;   ///< of so many origins of a block, beginning with its first, the structure is measured
+  Gaps gaps{};
 
   /// Adds a new origin with its frame, in the last block or a new one; true if blocks have been merged by pairs
   /// first.
   bool add_origin(const Simulation& simulation, const Snapshot& now);
+
+  /// Adds the structure of a frame to a block.
+  void add_structure(const Snapshot& now, Block& block);
+
+  /// Counts a frame in a block, and adds its order and speeds.
+  void add_order(const Snapshot& now, Block& block) const;
 
   std::size_t structure_parts() const { return ranges.size() > 1 ? ranges.size() + 1 : 1; }
 
@@ -96,8 +116,7 @@ struct Measured {
  private:
   void make_groups();
   Block& open_block(const Simulation& simulation);
-  void add_structure(const Snapshot& now, Block& block);
-  void add_frame(const Simulation& simulation, const Snapshot& now, Block& block);
+  void add_temperatures(const Simulation& simulation, Block& block);
   void merge_blocks();
   bool structure_fits(const Block& block) const;
 
@@ -110,5 +129,8 @@ WaveVectors wave_vectors_of(const StructureGrid& grid);
 /// All results, of a run whose totals are these now. Decays are fitted from the lag `fit_from`; without it, from
 /// kBallisticCollisions mean collision intervals.
 Results results_of(const Measured& measured, const Totals& totals, std::optional<double> fit_from = std::nullopt);
+
+/// Returns the wave number of the first peak of S(q) of all bodies.
+Estimate first_peak_of(const Measured& measured);
 
 }  // namespace ed::internal

@@ -1,4 +1,5 @@
 #include "neighbours/limits.h"
+#include "start/lattice_cells.h"
 #include "start/nematic.h"
 #include "start/parts.h"
 
@@ -24,151 +25,17 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Eigen::Vector3i;
-
-// Sites and the vectors between them are counted in half edges of a cell: all even (simple cubic), or with an even sum
-// (fcc).
-
-int sites_in_cell(Lattice lattice) {
-  return lattice == Lattice::fcc ? 4 : 1;
-}
-
-bool is_site(Lattice lattice, const Vector3i& p) {
-  if (lattice == Lattice::fcc) return p.sum() % 2 == 0;
-  return p.x() % 2 == 0 && p.y() % 2 == 0 && p.z() % 2 == 0;
-}
-
-/// Converts to units of the box's edge.
-Vector3d in_box(const Vector3i& p, const Vector3i& cells) {
-  return 0.5 * p.cast<double>().cwiseQuotient(cells.cast<double>());
-}
-
-/// Returns one of each pair of opposite vectors between sites whose components are below `reach` (in units of the box),
-/// the shortest first: any overlap is along one of these.
-std::vector<Vector3i> near_vectors(Lattice lattice, const Vector3i& cells, const Vector3d& reach) {
-  const Vector3i most = (2 * reach.cwiseProduct(cells.cast<double>())).array().ceil().cast<int>();
-  std::vector<Vector3i> result;
-  for (int z = 0; z <= most.z(); ++z) {
-    for (int y = -most.y(); y <= most.y(); ++y) {
-      for (int x = -most.x(); x <= most.x(); ++x) {
-        const Vector3i p(x, y, z);
-        const bool upper = z > 0 || (z == 0 && (y > 0 || (y == 0 && x > 0)));
-        if (upper && is_site(lattice, p)) result.push_back(p);
-      }
-    }
-  }
-  std::stable_sort(result.begin(), result.end(), [&](const Vector3i& a, const Vector3i& b) {
-    return in_box(a, cells).squaredNorm() < in_box(b, cells).squaredNorm();
-  });
-  return result;
-}
-
-// ---- Room
-
-/// Body with its orientation, at no particular position.
-struct Turned {
-  const BodyShape* shape;
-  Matrix3d rotation;
-
-  /// Returns the height beyond its centre, in the direction n of the world.
-  double height(const Vector3d& n) const { return support(*shape, rotation.transpose() * n).height; }
-};
-
-/// Returns the extents along the world's axes, the sum of both sides: if two such bodies overlap, their centres are no
-/// further apart along any axis.
-Vector3d reach_of(const std::vector<Turned>& bodies) {
-  Vector3d up = Vector3d::Zero();
-  Vector3d down = Vector3d::Zero();
-  for (const Turned& body : bodies) {
-    for (int k = 0; k < 3; ++k) {
-      up[k] = std::max(up[k], body.height(Vector3d::Unit(k)));
-      down[k] = std::max(down[k], body.height(-Vector3d::Unit(k)));
-    }
-  }
-  return up + down;
-}
-
-bool overlap(const Turned& a, const Turned& b, const Vector3d& apart) {
-  return internal::overlaps(*a.shape, geom::Pose(a.rotation, Vector3d::Zero()), *b.shape,
-                            geom::Pose(b.rotation, apart));
-}
-
-/// Returns the smallest box, `box` or larger, in which the two do not overlap with their centres v boxes apart. A
-/// larger box only moves them apart along v, because each contains its centre.
-double free_box(double box, const Turned& a, const Turned& b, const Vector3d& v) {
-  const auto blocked = [&](double edge) { return overlap(a, b, edge * v); };
-  if (!blocked(box)) return box;
-  double large = (bounding_radius(*a.shape) + bounding_radius(*b.shape)) / v.norm() * (1 + 1e-9);
-  double small = box;
-  while (large - small > 1e-13 * large) {
-    const double middle = 0.5 * (small + large);
-    (blocked(middle) ? small : large) = middle;
-  }
-  return large;
-}
-
-/// Overload for one body on every site of the lattice.
-double free_box(double box, Lattice lattice, const Vector3i& cells, const Turned& body) {
-  for (const Vector3i& p : near_vectors(lattice, cells, reach_of({body}) / box)) {
-    box = free_box(box, body, body, in_box(p, cells));
-  }
-  return box;
-}
-
-// ---- Cells
-
-/// Returns the shortest vector between sites, relative to the extents: for ellipsoids its cube is proportional to the
-/// largest packing fraction.
-double shortest_vector(Lattice lattice, const Vector3i& cells, const Vector3d& extents) {
-  const Vector3d edge = cells.cast<double>().cwiseProduct(extents).cwiseInverse();
-  if (lattice == Lattice::simple_cubic) return edge.minCoeff();
-  const double diagonal = std::sqrt(edge.squaredNorm() - edge.maxCoeff() * edge.maxCoeff());
-  return std::min(edge.minCoeff(), 0.5 * diagonal);
-}
-
-/// Returns a lower limit of the box: in a smaller one the spheres inscribed in the bodies on two sites overlap, beyond
-/// rounding.
-double least_box(Lattice lattice, const Vector3i& cells, const Turned& body) {
-  constexpr double kRounding = 1e-9;
-  return (1 - kRounding) * 2 * inscribed_radius(*body.shape) / shortest_vector(lattice, cells, Vector3d::Ones());
-}
-
-/// Returns whether there are no overlaps with this body on all sites of the box.
-bool fits(double box, Lattice lattice, const Vector3i& cells, const Turned& body) {
-  if (box < least_box(lattice, cells, body)) return false;
-  const std::vector<Vector3i> vectors = near_vectors(lattice, cells, reach_of({body}) / box);
-  return std::none_of(vectors.begin(), vectors.end(),
-                      [&](const Vector3i& p) { return overlap(body, body, box * in_box(p, cells)); });
-}
-
-std::vector<int> divisors(int number) {
-  std::vector<int> result;
-  for (int d = 1; d <= number / d; ++d) {
-    if (number % d != 0) continue;
-    result.push_back(d);
-    if (d != number / d) result.push_back(number / d);
-  }
-  return result;
-}
-
-/// Returns all ways to fill the box with this number of cells, at most `most`, those with the longest shortest vector
-/// first.
-std::vector<Vector3i> ways_to_fill(Lattice lattice, int cells, const Vector3d& extents, std::size_t most) {
-  std::vector<std::pair<double, Vector3i>> ways;
-  for (const int x : divisors(cells)) {
-    for (const int y : divisors(cells / x)) {
-      const Vector3i way(x, y, cells / x / y);
-      ways.emplace_back(shortest_vector(lattice, way, extents), way);
-    }
-  }
-  const auto last = ways.begin() + static_cast<std::ptrdiff_t>(std::min(most, ways.size()));
-  std::partial_sort(ways.begin(), last, ways.end(), [](const auto& a, const auto& b) {
-    if (a.first != b.first) return a.first > b.first;
-    return std::lexicographical_compare(a.second.begin(), a.second.end(), b.second.begin(), b.second.end());
-  });
-  std::vector<Vector3i> result;
-  for (auto way = ways.begin(); way != last; ++way) result.push_back(way->second);
-  return result;
-}
+using internal::fits;
+using internal::free_box;
+using internal::in_box;
+using internal::is_site;
+using internal::least_box;
+using internal::near_vectors;
+using internal::reach_of;
+using internal::shortest_vector;
+using internal::sites_in_cell;
+using internal::Turned;
+using internal::ways_to_fill;
 
 /// Number of ways that are tried for bodies other than ellipsoids, for which the shortest vector decides; both for the
 /// best way and for alternative numbers.
@@ -376,7 +243,7 @@ void shuffle(std::vector<Vector3i>& sites, Random& random) {
 }
 
 /// Returns the smallest box, `box` or larger, in which no two of these bodies overlap.
-double free_box(const System& system, Lattice lattice, const Vector3i& cells, const std::vector<Vector3i>& sites) {
+double free_box_of(const System& system, Lattice lattice, const Vector3i& cells, const std::vector<Vector3i>& sites) {
   const auto place = [&](Vector3i p) {
     for (int k = 0; k < 3; ++k) p[k] = (p[k] + 2 * cells[k]) % (2 * cells[k]);
     return (static_cast<std::size_t>(p.z()) * static_cast<std::size_t>(2 * cells.y()) +
@@ -432,7 +299,7 @@ System lattice_start(const std::vector<Component>& components, const LatticeOpti
     body.rotation = internal::aligned(axes[static_cast<std::size_t>(body.species)]);
   }
   if (!request.body) {
-    const double box = free_box(system, options.lattice, cells, sites);
+    const double box = free_box_of(system, options.lattice, cells, sites);
     if (box > request.box) refuse_packing(request, cells, box);
   }
   if (options.nematic_order) {

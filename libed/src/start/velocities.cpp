@@ -59,13 +59,14 @@ void rescale_rotation(System& system) {
   const std::vector<int> axes = symmetry_axes(system);
   // Spheres without friction never change their rotation: in a mixture it would be an isolated reservoir.
   const KineticState round = kinetic_state(spheres_of(system));
-  const bool mixed = round.rotational_freedoms != now.rotational_freedoms;
+  const bool mixed = round.rotational_degrees_of_freedom != now.rotational_degrees_of_freedom;
   const double sphere_rotation =
-      factor(0.5 * round.rotational_freedoms, mixed ? round.rotational_energy : now.rotational_energy);
-  const double rotation = mixed ? factor(0.5 * (now.rotational_freedoms - round.rotational_freedoms),
-                                         now.rotational_energy - round.rotational_energy)
-                                : sphere_rotation;
-  const double spin = factor(0.5 * now.spin_freedoms, now.spin_energy);
+      factor(0.5 * round.rotational_degrees_of_freedom, mixed ? round.rotational_energy : now.rotational_energy);
+  const double rotation = mixed
+                              ? factor(0.5 * (now.rotational_degrees_of_freedom - round.rotational_degrees_of_freedom),
+                                       now.rotational_energy - round.rotational_energy)
+                              : sphere_rotation;
+  const double spin = factor(0.5 * now.spin_degrees_of_freedom, now.spin_energy);
   for (Body& body : system.bodies) {
     const auto kind = static_cast<std::size_t>(body.species);
     const double factor_here = is_sphere(system.species[kind].shape) ? sphere_rotation : rotation;

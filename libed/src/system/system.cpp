@@ -208,7 +208,7 @@ KineticState kinetic_state(const System& system) {
     state.axis_energy += energy;
     if (axis < 0) {
       state.rotational_energy += energy.sum();
-      state.rotational_freedoms += 3;
+      state.rotational_degrees_of_freedom += 3;
       continue;
     }
     const Vector3d u = body.rotation.col(axis);
@@ -216,11 +216,11 @@ KineticState kinetic_state(const System& system) {
     const double perpendicular = species.inertia[(axis + 1) % 3];
     state.rotational_energy += 0.5 * perpendicular * (body.angular_velocity - spin * u).squaredNorm();
     if (species.spins) state.spin_energy += 0.5 * species.inertia[axis] * spin * spin;
-    state.rotational_freedoms += 2;
-    state.spin_freedoms += species.spins ? 1 : 0;
+    state.rotational_degrees_of_freedom += 2;
+    state.spin_degrees_of_freedom += species.spins ? 1 : 0;
   }
   state.translational_kT = 2 * state.translational_energy / std::max(1, 3 * system.size() - 3);
-  state.rotational_kT = 2 * state.rotational_energy / std::max(1, state.rotational_freedoms);
+  state.rotational_kT = 2 * state.rotational_energy / std::max(1, state.rotational_degrees_of_freedom);
   return state;
 }
 

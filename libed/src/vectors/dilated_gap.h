@@ -6,8 +6,9 @@
 
 namespace ed::internal {
 
-/// Newton steps after the first evaluation, at the most; a pair that is still undecided is taken, which is always safe.
-inline constexpr int kMeetingSteps = 2;
+/// Largest number of Newton steps after the first evaluation; a pair that is still undecided is taken, which is always
+/// safe.
+inline constexpr int kOverlapSteps = 2;
 
 /// Whether the gap along the line of centres is above `limit`.
 template <class Shape, class Vector, class Real>

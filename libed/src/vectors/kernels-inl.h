@@ -16,12 +16,12 @@
 #include "vectors/kernels.h"
 
 #include "vectors/look_kernel-inl.h"
-#include "vectors/meet_kernel-inl.h"
+#include "vectors/overlap_kernel-inl.h"
 
 namespace ed::internal {
 
 UniaxialKernels HARDBODY_UNIAXIAL_KERNELS() {
-  return {look<false>, look<true>, meet};
+  return {look<false>, look<true>, overlap};
 }
 
 }  // namespace ed::internal

@@ -22,9 +22,9 @@ struct ShapeNumbers {
   double numbers[ShapeRows::count];
 };
 
-// ---- First looks: what certified_contact finds with one evaluation --------------------------------------------------
+// ---- First looks: certified_contact with one evaluation ------------------------------------------------------------
 
-/// Pairs in one call, at most, and a multiple of every vector's length.
+/// Largest number of pairs in one call; a multiple of every vector's length.
 constexpr int kBlockLooks = 48;
 
 /// One number of each pair of a block.
@@ -47,17 +47,17 @@ struct LookInput {
   enum Row {
     shape_a = 0,
     shape_b = ShapeRows::count,
-    turning_limit_a = 2 * ShapeRows::count,  ///< as in Spheroid
+    turning_limit_a = 2 * ShapeRows::count,  ///< turning limits, as in Spheroid
     turning_limit_b,
     reach,  ///< the sum of both bounding radii
-    end,    ///< of the search
+    end,    ///< end of the search
     count,
   };
   alignas(64) LookRow rows[count];
   // Where each lane's numbers stand.
   const double* body_a[kBlockLooks];
   const double* body_b[kBlockLooks];
-  const double* normal[kBlockLooks];  ///< from A to B, unit; three numbers
+  const double* normal[kBlockLooks];  ///< three numbers of the unit normal from A to B
   double now;
   double box;
 };
@@ -65,13 +65,13 @@ struct LookInput {
 struct LookOutput {
   enum Row {
     verdict = 0,
-    time = 1,          ///< of a bound
+    time = 1,          ///< time of a bound
     kernel_calls = 2,  ///< 0: the bounding spheres do not meet; 1: the normal is as it was
     normal = 3,
     count = 6,
   };
-  /// What `verdict` may be.
-  static constexpr double open = 0;  ///< not known: the other rows mean nothing
+  /// Values of `verdict`.
+  static constexpr double open = 0;  ///< unanswered: the other rows mean nothing
   static constexpr double clear = 1;
   static constexpr double bound = 2;
   alignas(64) LookRow rows[count];
@@ -80,12 +80,12 @@ struct LookOutput {
 /// Answers the first pairs of a block; up to the next multiple of kLongestVector the input must hold valid pairs too.
 using LookKernel = void(const LookInput& in, int pairs, LookOutput& out);
 
-// ---- Meetings: whether dilated envelopes may meet -------------------------------------------------------------------
+// ---- Overlaps: whether dilated envelopes may overlap ----------------------------------------------------------------
 
-/// Bodies in one call, at most.
-constexpr int kBlockMeetings = 64;
+/// Largest number of bodies in one call.
+constexpr int kBlockOverlaps = 64;
 
-/// A dilated envelope: half a cache line of what says where it is, half of what only exit_time wants.
+/// Dilated envelope of a body. Half of its cache line is what kernels read, the other half is for exit_time alone.
 struct alignas(64) DilatedEnvelope {
   double axis[3];
   std::int32_t kind;
@@ -95,40 +95,40 @@ struct alignas(64) DilatedEnvelope {
 
 static_assert(offsetof(DilatedEnvelope, kind) == 3 * sizeof(double));
 
-struct MeetingInput {
+struct OverlapInput {
   const void* near;                  ///< NearBodys
-  int count;                         ///< of them
-  const DilatedEnvelope* envelopes;  ///< of all bodies
-  const ShapeNumbers* shapes;        ///< of all kinds
+  int count;                         ///< number of them
+  const DilatedEnvelope* envelopes;  ///< envelopes of all bodies
+  const ShapeNumbers* shapes;        ///< shapes of all kinds
   bool one_kind;
-  std::int32_t one;    ///< the body whose envelope the others may meet; itself it does not meet
-  std::int32_t first;  ///< and none of the bodies before this one
-  double limit;        ///< gaps above are none
+  std::int32_t one;    ///< body whose envelope the others may overlap; itself it is left out
+  std::int32_t first;  ///< number of the first body that counts
+  double limit;        ///< gap above which envelopes are apart
 };
 
-/// In the order of the bodies, but for those that were told apart at once.
-struct MeetingOutput {
+/// Results in the order of the bodies, without those that were told apart at once.
+struct OverlapOutput {
   enum Row { verdict = 0, normal = 1, rows_count = 4 };
-  static constexpr double open = 0;  ///< not known
+  static constexpr double open = 0;  ///< unanswered
   static constexpr double apart = 1;
   static constexpr double meet = 2;
   int count;
-  int place[kBlockMeetings];  ///< among the NearBodys
-  alignas(64) double rows[rows_count][kBlockMeetings];
+  int place[kBlockOverlaps];  ///< place among the NearBodys
+  alignas(64) double rows[rows_count][kBlockOverlaps];
 };
 
-using MeetingKernel = void(const MeetingInput& in, MeetingOutput& out);
+using OverlapKernel = void(const OverlapInput& in, OverlapOutput& out);
 
 // ---------------------------------------------------------------------------------------------------------------------
 
-/// Null if pairs are to be answered one by one.
+/// Kernels of one instruction set; null if pairs are to be answered one by one.
 struct UniaxialKernels {
-  LookKernel* look_across = nullptr;    ///< at bodies that turn about axes across their own (e0 = 0)
-  LookKernel* look_spinning = nullptr;  ///< and at those that spin
-  MeetingKernel* meet = nullptr;
+  LookKernel* look_across = nullptr;    ///< kernel for bodies that turn about axes across their own (e0 = 0)
+  LookKernel* look_spinning = nullptr;  ///< kernel for bodies that spin
+  OverlapKernel* overlap = nullptr;
 };
 
-/// Of one instruction set each.
+/// Return the kernels of one instruction set each.
 UniaxialKernels uniaxial_kernels_portable();
 UniaxialKernels uniaxial_kernels_avx2();
 UniaxialKernels uniaxial_kernels_avx512();

@@ -21,7 +21,7 @@ using Bits = hn::RebindToUnsigned<Tag>;
 
 constexpr int kLanes = static_cast<int>(HWY_LANES(double));
 static_assert(kLongestVector % kLanes == 0 && kBlockLooks % kLongestVector == 0 &&
-              kBlockMeetings % kLongestVector == 0);
+              kBlockOverlaps % kLongestVector == 0);
 
 struct Lanes {
   hn::Mask<Tag> mask;
@@ -104,7 +104,7 @@ HWY_INLINE Real copysign(Real magnitude, Real sign) {
   return Real(hn::CopySign(magnitude.v, sign.v));
 }
 
-/// As Eigen's vectors, as far as the formulas go.
+/// Vector with the part of the interface of Eigen's vectors that the formulas use.
 class Real3 {
  public:
   Real3() = default;

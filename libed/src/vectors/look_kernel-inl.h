@@ -1,4 +1,4 @@
-/// What certified_contact (certified.h) finds with one evaluation, one pair to a vector lane. Part of
+/// Result of certified_contact (certified.h) with one evaluation, one pair to a vector lane. Part of
 /// vectors/kernels-inl.h.
 ///
 /// Lanes that need anything but the usual (a normal that needs more than kMostSteps steps or falls back, bodies that
@@ -31,7 +31,7 @@ constexpr int kMostSteps = 3;
 // ---------------------------------------------------------------------------------------------------------------------
 // Pairs in motion
 
-/// As sincos, for |x| <= kLargestAngle.
+/// Returns sine and cosine as sincos does, for |x| <= kLargestAngle.
 HWY_INLINE void sincos(Real x, Real& sin, Real& cos) {
   const ReducedSinCos<Real> reduced = reduced_sincos(x);
   const auto one = hn::Set(Bits(), std::uint64_t{1});
@@ -114,7 +114,7 @@ HWY_INLINE Lanes turn(const Course<kSpin>& course, Real t, Body<kSpin>& body) {
   return abs(angle) <= kLargestAngle;
 }
 
-/// As in periodic.h.
+/// Returns the nearest image as periodic.h does.
 HWY_INLINE Real nearest_image(Real d, Real box, Real inverse) {
   return d - box * nearest_integer(d * inverse);
 }
@@ -125,11 +125,11 @@ struct Pairs {
   Body<kSpin> a, b;
   Real3 r, v, n;
   Real reach;
-  Real turning;  ///< reach times both rates of the axes
-  Real limit;    ///< UniaxialGauge::curvature_limit
+  Real surface_speed;  ///< reach times both rates of the axes
+  Real limit;          ///< UniaxialGap::curvature_limit
   RoundingOf<Real> hidden;
   Real t;
-  Real end;  ///< of the window
+  Real end;  ///< end of the window
 
   HWY_INLINE Gap gap() const { return geom::kernel::uniaxial_gap_of<Both>(a.shape, b.shape, r, a.u, b.u, n); }
   HWY_INLINE Real rate(const Gap& gap) const { return gap_rate(v, a.du, b.du, gap.lever, n); }
@@ -139,14 +139,14 @@ struct Pairs {
   }
 };
 
-/// As `pair_scales` in uniaxial_gap.h.
+/// Returns the scales as `pair_scales` in uniaxial_gap.h does.
 template <bool kSpin>
 HWY_INLINE PairScalesOf<Real> pair_scales(const LookInput& in, int lane, const Pairs<kSpin>& p, const Course<kSpin>& a,
                                           const Course<kSpin>& b) {
   return {.size = p.reach,
           .places = sum_of_magnitudes(a.position) + sum_of_magnitudes(b.position),
           .speed = sum_of_magnitudes(a.velocity) + sum_of_magnitudes(b.velocity),
-          .turning = p.turning,
+          .surface_speed = p.surface_speed,
           .bending = load(in.rows[LookInput::turning_limit_a], lane) * p.a.axis_rate +
                      load(in.rows[LookInput::turning_limit_b], lane) * p.b.axis_rate,
           .limit = p.limit,
@@ -179,7 +179,7 @@ HWY_INLINE void first_pass(const LookInput& in, int lane, LookOutput& out, Pairs
   p.a.shape = load_shape(in.rows + LookInput::shape_a, lane);
   p.b.shape = load_shape(in.rows + LookInput::shape_b, lane);
   const Lanes in_range = turn(course_a, p.t, p.a) & turn(course_b, p.t, p.b);
-  p.turning = p.reach * (p.a.axis_rate + p.b.axis_rate);
+  p.surface_speed = p.reach * (p.a.axis_rate + p.b.axis_rate);
   p.limit = load(in.rows[LookInput::turning_limit_a], lane) * (p.a.axis_rate * p.a.axis_rate) +
             load(in.rows[LookInput::turning_limit_b], lane) * (p.b.axis_rate * p.b.axis_rate);
   p.hidden = pair_scales(in, lane, p, course_a, course_b).rounding(p.t);
@@ -189,7 +189,7 @@ HWY_INLINE void first_pass(const LookInput& in, int lane, LookOutput& out, Pairs
   store(select(meet, 1, 0), out.rows[LookOutput::kernel_calls], lane);
 }
 
-/// As certified_step in curvature_steps.h.
+/// Returns the step as certified_step in curvature_steps.h does.
 template <bool kSpin>
 HWY_INLINE Real certified_step(const Pairs<kSpin>& p, const Gap& gap, Real gp, Real horizon) {
   const auto curvature_of = [&](const Body<kSpin>& body, Real x) -> SupportCurvature<kSpin, Real> {
@@ -238,7 +238,7 @@ HWY_INLINE void second_pass(Pairs<kSpin>& p, int pairs, LookOutput& out, int lan
   const Lanes to_the_end = usable & (tau >= horizon);
   const Lanes approach = gp < 0;
   // Worth refining: left open.
-  const Real speed = sqrt(p.v.squaredNorm()) + p.turning;
+  const Real speed = sqrt(p.v.squaredNorm()) + p.surface_speed;
   const Real spread = -gap.g / gp - tau;
   const Lanes worth_refining = approach & nearly_straight(gp, spread, p.reach, speed, p.limit);
   const Real until = p.t + tau;

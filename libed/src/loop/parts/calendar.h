@@ -15,10 +15,10 @@
 
 namespace ed::internal {
 
-/// The event calendar: the body with the earliest event, in O(log N) an update.
+/// Event calendar: finds the body with the earliest event, in O(log N) operations for each update.
 ///
-/// A tournament of eights: the times of eight bodies' earliest events stand in one cache line, the earliest of each
-/// eight in a line of the next level, and so on up to a single line. Ties go to the body with the lower number.
+/// It is a tournament of eights. The times of eight bodies' earliest events stand in one cache line, the earliest of
+/// each eight in a line of the next level, and so on up to a single line. Ties go to the body with the lower number.
 class Calendar {
  public:
   static constexpr int kFewestInParts = 64;  ///< eight lines of eight
@@ -50,27 +50,27 @@ class Calendar {
     }
   }
 
-  /// The time of body i is set soon.
+  /// Prefetches the place of body i's time.
   void fetch(int i) const { prefetch(groups_[at(i) / kGroup]); }
 
-  /// The earliest time of some bodies that are numbered one after another; at level 0 of one.
+  /// Earliest time of some bodies that are numbered one after another; at level 0 of a single one.
   struct Entry {
     std::size_t level;
     std::size_t index;
   };
-  /// All bodies are divided into so many parts, fewer than 64, of which each is an entry; the bodies themselves, if
-  /// they are fewer than kFewestInParts.
+  /// Returns the number of parts, fewer than 64, into which all bodies are divided. Each part is an entry. Parts are
+  /// single bodies if these are fewer than kFewestInParts.
   std::size_t parts() const {
     return level_of_parts_ == 0 ? number_ : first_of_level_[level_of_parts_] - first_of_level_[level_of_parts_ - 1];
   }
   Entry part(std::size_t k) const { return {level_of_parts_, k}; }
   double time(Entry e) const { return groups_[first_of_level_[e.level] + e.index / kGroup].times[e.index % kGroup]; }
-  /// The entry of the level below from which this one's time is; of an entry above level 0.
+  /// Returns the entry of the level below that has this one's time, for an entry above level 0.
   Entry earliest_below(Entry e) const {
     const Group& group = group_below(e);
     return {e.level - 1, kGroup * e.index + group.place_of(group.earliest())};
   }
-  /// That is asked soon.
+  /// Prefetches what earliest_below(e) reads.
   void fetch_below(Entry e) const { prefetch(group_below(e)); }
 
   double earliest_time() const { return groups_.back().earliest(); }
@@ -127,9 +127,9 @@ class Calendar {
     return groups_[first_of_level_[e.level - 1] + e.index];
   }
 
-  std::size_t number_;  ///< of bodies
+  std::size_t number_;  ///< number of bodies
   std::size_t level_of_parts_ = 0;
-  std::vector<std::size_t> first_of_level_;  ///< its first group; the bodies' own level first
+  std::vector<std::size_t> first_of_level_;  ///< first group of each level; the bodies' own level first
   LargeVector<Group> groups_;
 };
 

@@ -15,7 +15,7 @@
 
 namespace ed::internal {
 
-/// What a loop keeps of its collisions: their numbers for each body, the virial, and as many of them as were asked for.
+/// Log of a loop's collisions: their number for each body, the virial, and as many of them as were asked for.
 class CollisionLog {
  public:
   explicit CollisionLog(int number) : of_body_(static_cast<std::size_t>(number), 0) {}
@@ -46,7 +46,7 @@ class CollisionLog {
   std::uint64_t of_bodies(int first, int end) const {
     return std::accumulate(of_body_.begin() + first, of_body_.begin() + end, std::uint64_t{0});
   }
-  std::size_t number() const { return of_body_.size(); }  ///< of bodies
+  std::size_t number() const { return of_body_.size(); }  ///< number of bodies
 
   /// Virial, its tensor, collisions of each body, recorded ones, number of those that are wanted.
   template <class Self>

@@ -11,9 +11,9 @@ namespace ed::internal {
 /// bodies are moved there and every time is shifted, so that no digits are lost however long a run lasts.
 class EpochClock {
  public:
-  double now() const { return now_; }                              ///< local
+  double now() const { return now_; }                              ///< current local time
   double epoch() const { return epoch_; }                          ///< length of an epoch
-  double time() const { return time_at(now_); }                    ///< since the start of the run
+  double time() const { return time_at(now_); }                    ///< time since the start of the run
   double time_at(double t) const { return epochs_ * epoch_ + t; }  ///< time since the start, of a local one
   /// Returns a time since the start as a local one.
   double local(double time) const { return time - epochs_ * epoch_; }

@@ -78,7 +78,7 @@ class FailureLog {
   const std::vector<Species>* species_;
   const std::vector<int>* species_of_;
   std::vector<FailedPair> pairs_;
-  std::array<std::size_t, kReasons> recorded_{};  ///< by reason
+  std::array<std::size_t, kReasons> recorded_{};  ///< numbers of recorded pairs by reason
 };
 
 }  // namespace ed::internal

@@ -22,11 +22,11 @@
 
 namespace ed::internal {
 
-/// Which bodies are neighbours: envelopes, the cells in which bodies near another are found, and the lists of pairs.
+/// Neighbours of all bodies: envelopes, cells in which the bodies near another are found, and lists of pairs.
 template <class Bodies>
 class Neighbourhood {
  public:
-  /// Without envelopes and lists. All but `batches` (see CellGrid) must outlive this.
+  /// Makes no envelopes and lists yet. All but `batches` (see CellGrid) must outlive this.
   Neighbourhood(Bodies& bodies, PeriodicBox& box, Counters& counters,
                 const std::optional<geom::InstructionSet>& batches)
       : bodies_(bodies), box_(box), counters_(counters), batches_(batches), lists_(bodies.number()) {}
@@ -90,12 +90,12 @@ class Neighbourhood {
     for (int i = 0; i < bodies_.number(); ++i) (void)add_pairs(i, now, i + 1);
   }
 
-  /// Makes room, so that nothing allocates while events are processed but for records that a long run breaks. Returns
-  /// the length of lists that there is room for.
+  /// Makes room, so that nothing allocates while events are processed unless a list becomes longer than any before.
+  /// Returns the length of lists that have room.
   std::size_t reserve() {
     const std::size_t longest = lists_.reserve();
     old_pairs_.reserve(longest);
-    meetings_.reserve(longest);
+    overlapping_.reserve(longest);
     // Candidates are two to three times as many as neighbours.
     near_.resize(std::max(near_.size(), 2 * longest + kCandidatesReserved));
     return longest;
@@ -134,8 +134,8 @@ class Neighbourhood {
   /// Adds the pairs of body i with bodies from number `first` on. Returns the number of candidates.
   std::size_t add_pairs(int i, double now, int first) {
     const auto candidates = cells_->collect(bodies_.position_at(i, now), envelopes_->reach(), near_);
-    envelopes_->find_meetings(i, candidates, first, meetings_);
-    for (const auto& [k, normal] : meetings_) lists_.add(i, k, normal);
+    envelopes_->find_overlapping(i, candidates, first, overlapping_);
+    for (const auto& [k, normal] : overlapping_) lists_.add(i, k, normal);
     return candidates.size();
   }
 
@@ -146,10 +146,10 @@ class Neighbourhood {
   std::unique_ptr<Envelopes<Bodies>> envelopes_;
   std::optional<CellGrid> cells_;
   NeighbourLists lists_;
-  double list_scale_ = 1;  ///< by what the box has shrunk since all lists were made
+  double list_scale_ = 1;  ///< factor by which the box has shrunk since all lists were made
   // Room for the list of one body.
   std::vector<NearBody> near_;
-  std::vector<Meeting> meetings_;
+  std::vector<OverlappingEnvelope> overlapping_;
   std::vector<std::int32_t> old_pairs_;
 };
 

@@ -30,12 +30,13 @@ namespace ed::internal {
 template <class Bodies>
 class Predictor {
  public:
-  /// Points in time that a pair is looked at when it is predicted, and when it comes up again. One gives a bound that
-  /// lasts for most pairs; what is left is close, and gets a second look at once.
+  /// Number of evaluations when a pair is predicted, and when its bound comes up. One gives a bound that lasts for most
+  /// pairs; the others are close, and get a second one at once.
   static constexpr int kFirstLook = 1;
   static constexpr int kSecondLook = 2;
 
-  /// What a prediction depends on, and where it is counted and reported. All must outlive the predictor.
+  /// State that predictions depend on, and the places where they are counted and reported. All must outlive the
+  /// predictor.
   struct Sources {
     const Bodies& bodies;
     const Neighbourhood<Bodies>& neighbourhood;
@@ -48,17 +49,17 @@ class Predictor {
   Predictor(const Sources& from, const ContactOptions& options, std::unique_ptr<FirstLooks<Bodies>> first_looks)
       : from_(from), options_(options), first_looks_(std::move(first_looks)) {}
 
-  /// Looks at the pair at up to `max_evaluations` points in time, and sets its event.
+  /// Searches for the contact of the pair with up to `max_evaluations` evaluations, and sets its event.
   void search(Pair& pair, int max_evaluations);
 
-  /// Has the pair predicted by predict_queued().
+  /// Queues the pair for predict_queued().
   void queue(Pair& pair) { queue_.push_back({&pair, search_end(pair)}); }
   /// Predicts all queued pairs. Since they were queued no pair may have been added to the lists or removed, and no body
   /// may have changed.
   void predict_queued();
 
-  /// Has the pair, whose bodies overlap or touch but do not approach, looked at again when they have moved a little
-  /// since the time t.
+  /// Sets the next search of a pair whose bodies overlap or touch but do not approach: a little after the time t, when
+  /// they have moved.
   void retry_after(double t, Pair& pair) const {
     pair.event = PairEvent::bound;
     pair.time = t + kPartingLook * parting_time(pair);
@@ -74,7 +75,7 @@ class Predictor {
   }
 
  private:
-  /// Bodies that overlap and part are looked at again after this share of the time in which they could cross each
+  /// Time to the next search of bodies that overlap and part, in units of the time in which they could cross each
   /// other.
   static constexpr double kPartingLook = 1e-3;
 
@@ -90,9 +91,9 @@ class Predictor {
   Sources from_;
   const ContactOptions& options_;
   std::unique_ptr<FirstLooks<Bodies>> first_looks_;
-  std::vector<Look> queue_;
+  std::vector<PairLook> queue_;
   FinderCounters count_;
-  std::optional<Unsolved> unsolved_;  ///< by the last search
+  std::optional<Unsolved> unsolved_;  ///< set by the last search
 };
 
 template <class Bodies>
@@ -110,7 +111,7 @@ void Predictor<Bodies>::search(Pair& pair, int max_evaluations) {
 template <class Bodies>
 void Predictor<Bodies>::predict_queued() {
   if (first_looks_) first_looks_->take(from_.bodies, now(), from_.box.edge(), queue_, count_);
-  for (const Look& look : queue_) {
+  for (const PairLook& look : queue_) {
     if (look.answered) {
       keep(*look.pair, look.finding);
     } else {
@@ -160,7 +161,7 @@ double Predictor<Bodies>::parting_time(const Pair& pair) const {
   const Bodies& bodies = from_.bodies;
   const double reach = bodies.bounding_radius(pair.i) + bodies.bounding_radius(pair.j);
   const double speed = (bodies.velocity(pair.j) - bodies.velocity(pair.i)).norm();
-  return reach / (speed + reach * (bodies.turning(pair.i) + bodies.turning(pair.j)));
+  return reach / (speed + reach * (bodies.angular_speed_bound(pair.i) + bodies.angular_speed_bound(pair.j)));
 }
 
 template <class Bodies>

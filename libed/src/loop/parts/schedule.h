@@ -63,7 +63,7 @@ class Schedule {
     for (const int body : orphans_) reschedule(body);
     orphans_.clear();
   }
-  /// For when all bodies are to be rescheduled.
+  /// Forgets the orphans, before all bodies are rescheduled.
   void forget_orphans() { orphans_.clear(); }
   void reserve(std::size_t orphans) { orphans_.reserve(orphans); }
 

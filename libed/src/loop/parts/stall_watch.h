@@ -25,35 +25,35 @@ class EventTally {
   int events_ = 0;
 };
 
-/// Asks, each time that some number of events has been processed, whether the run still makes progress.
+/// Decides when to ask whether the run still makes progress, and keeps the answer.
 class StallWatch {
  public:
-  /// Events that are looked at to say what a run is stuck in.
+  /// Number of events whose tally shows what a run is stuck in.
   static constexpr int kSample = 1000;
 
   explicit StallWatch(int number) : events_between_(kEvents * static_cast<std::uint64_t>(number)) {}
 
-  /// Counts an event. Returns whether it is time to ask.
+  /// Counts an event. Returns whether it is time to ask for progress.
   bool count() { return ++events_ >= events_between_; }
-  /// Returns the time since it was last asked. `time`: since the start of the run, here and below.
+  /// Returns the simulated time since the last question. `time` is the time since the start of the run, here and below.
   double span(double time) const { return time - since_; }
-  /// Sets the stall: the events since it was last asked, of which these, the last ones, are a sample.
+  /// Sets the stall, made of the events since the last question; `sample` are the latest of them.
   void declare_stalled(const EventTally& sample, double time);
-  /// Starts to count anew.
+  /// Starts to count anew, after a question.
   void restart(double time) {
     events_ = 0;
     since_ = time;
   }
   const std::optional<Stall>& stall() const { return stall_; }
 
-  /// Number of events, and time, since it was last asked.
+  /// Number of events since the last question, and its time.
   template <class Self>
   static auto members(Self& self) {
     return std::tie(self.events_, self.since_);
   }
 
  private:
-  static constexpr std::uint64_t kEvents = 2000;  ///< for each body, between two questions
+  static constexpr std::uint64_t kEvents = 2000;  ///< number for each body between two questions
 
   std::uint64_t events_between_;
   std::uint64_t events_ = 0;

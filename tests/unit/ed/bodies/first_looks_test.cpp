@@ -66,7 +66,7 @@ double expect_same_looks(const std::vector<Species>& species, geom::InstructionS
   const UniaxialBodies bodies = random_bodies(species, kNumber, box, random);
   std::vector<Pair> pairs = random_pairs(bodies, now, box, random);
   std::vector<Pair> scalar = pairs;
-  std::vector<Look> looks;
+  std::vector<PairLook> looks;
   for (Pair& pair : pairs) looks.push_back({&pair, now + std::exp(3 * random.uniform() - 4)});
   SimulationOptions options;
   options.batches = set;

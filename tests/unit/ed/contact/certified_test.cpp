@@ -1,7 +1,7 @@
 // The certified search itself: its normals, and its budget.
 
 #include <common/finder_ensemble.h>
-#include <common/finder_gauge.h>
+#include <common/finder_gap.h>
 
 #include <contact/certified.h>
 #include <contact/uniaxial_gap.h>
@@ -22,16 +22,16 @@ using Eigen::Vector3d;
 constexpr double kForever = std::numeric_limits<double>::infinity();
 
 /// Passes everything on, and keeps the largest deviation of a normal from unit length.
-class WatchedGauge : public ed::internal::UniaxialGauge<true> {
+class WatchedGap : public ed::internal::UniaxialGap<true> {
  public:
-  using Base = ed::internal::UniaxialGauge<true>;
-  WatchedGauge(const Base& gauge, double& deviation) : Base(gauge), deviation_(deviation) {}
+  using Base = ed::internal::UniaxialGap<true>;
+  WatchedGap(const Base& gap, double& deviation) : Base(gap), deviation_(deviation) {}
 
-  Gap gap(const State& s, const Vector3d& n) const {
+  Sample sample(const State& s, const Vector3d& n) const {
     deviation_ = std::max(deviation_, std::abs(n.norm() - 1));
-    return Base::gap(s, n);
+    return Base::sample(s, n);
   }
-  Evaluation evaluate(const State& s, const Vector3d& n) const { return complete(s, gap(s, n), n); }
+  Evaluation evaluate(const State& s, const Vector3d& n) const { return complete(s, sample(s, n), n); }
 
  private:
   double& deviation_;
@@ -46,9 +46,9 @@ TEST(CertifiedContact, NormalStaysUnitThroughLongSearches) {
   long longest = 0;
   for (int k = 0; k < 2000; ++k) {
     const finder_test::MovingPair pair = fluid.thermal_pair(20);
-    const finder_test::PairGauge<true> owner(fluid, pair);
+    const finder_test::OwnedGap<true> owner(fluid, pair);
     ed::internal::FinderCounters count;
-    (void)finder_test::search(WatchedGauge(owner.gauge(), deviation), 4, count);
+    (void)finder_test::search(WatchedGap(owner.gap(), deviation), 4, count);
     longest = std::max(longest, static_cast<long>(count.evaluations));
   }
   EXPECT_GT(longest, 50) << "the searches were too easy for this test";
@@ -62,16 +62,16 @@ TEST(CertifiedContact, StopsAtItsBudgetWithABoundBelowTheContact) {
   int bounds = 0;
   for (int k = 0; k < 2000; ++k) {
     const finder_test::MovingPair pair = fluid.thermal_pair();
-    const finder_test::PairGauge<false> owner(fluid, pair);
+    const finder_test::OwnedGap<false> owner(fluid, pair);
     ed::internal::FinderCounters count;
-    const ed::internal::Finding whole = finder_test::search(owner.gauge(), 4, count);
+    const ed::internal::Finding whole = finder_test::search(owner.gap(), 4, count);
     const double contact = whole.outcome == ed::internal::Outcome::contact ? whole.time : kForever;
     // Going on from the bound with the normal it left leads to the same contact.
     Vector3d n = Vector3d::Zero();
     double t = 0;
     ed::internal::Finding part{};
     do {
-      part = ed::internal::certified_contact(owner.gauge(), t, 4, 1, n, count);
+      part = ed::internal::certified_contact(owner.gap(), t, 4, 1, n, count);
       if (part.outcome != ed::internal::Outcome::bound) break;
       ++bounds;
       ASSERT_GT(part.time, t);

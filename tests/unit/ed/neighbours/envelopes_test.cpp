@@ -226,7 +226,7 @@ TEST(MayMeet, NeverRejectsAPairCloserThanTwiceTheThickness) {
       envelope.place(0, Vector3d::Zero(), pair.u_i);
       envelope.place(1, pair.r, pair.u_k);
       Vector3d normal = Vector3d::Zero();
-      ASSERT_TRUE(envelope.may_meet(0, 1, pair.r, normal))
+      ASSERT_TRUE(envelope.may_overlap(0, 1, pair.r, normal))
           << "a = " << shape.a << ", b = " << shape.b << ", delta = " << delta << ", share = " << share;
       ASSERT_NEAR(normal.norm(), 1, 1e-10);
       ++taken;
@@ -244,7 +244,7 @@ TEST(MayMeet, TakesOverlappingPairs) {
       envelope.place(0, Vector3d::Zero(), pair.u_i);
       envelope.place(1, pair.r, pair.u_k);
       Vector3d normal = Vector3d::Zero();
-      ASSERT_TRUE(envelope.may_meet(0, 1, pair.r, normal));
+      ASSERT_TRUE(envelope.may_overlap(0, 1, pair.r, normal));
     }
   }
 }
@@ -261,7 +261,7 @@ TEST(MayMeet, RejectsNearlyAllPairsThatCannot) {
       envelope.place(0, Vector3d::Zero(), pair.u_i);
       envelope.place(1, pair.r, pair.u_k);
       Vector3d normal = Vector3d::Zero();
-      rejected += envelope.may_meet(0, 1, pair.r, normal) ? 0 : 1;
+      rejected += envelope.may_overlap(0, 1, pair.r, normal) ? 0 : 1;
     }
     // Two Newton steps decide nearly all pairs 2 % beyond the limit: else lists would be too long, and this test's
     // counterpart above would prove little.
@@ -378,7 +378,7 @@ TEST(OrientedEnvelopes, BodiesThatTouchAreNeighbours) {
       ++tested;
       Vector3d normal = Vector3d::Zero();
       const Vector3d r = pair.r + d_k - d_i;
-      ASSERT_TRUE(envelopes.may_meet(0, 1, r, normal));
+      ASSERT_TRUE(envelopes.may_overlap(0, 1, r, normal));
       ASSERT_LE(r.norm(), envelopes.reach());
       ASSERT_NEAR(normal.norm(), 1, 1e-10);
     }
@@ -442,7 +442,7 @@ TEST(CellEnvelopes, BodiesThatTouchAreNeighboursInTheImageThatTouches) {
       cells.place(0, r_i);
       cells.place(1, r_k);
       Vector3d normal;
-      ASSERT_TRUE(cells.may_meet(0, 1, ed::internal::nearest_image(r_k - r_i, box), normal));
+      ASSERT_TRUE(cells.may_overlap(0, 1, ed::internal::nearest_image(r_k - r_i, box), normal));
       ASSERT_LT((cells.image(0, 1, r_k - r_i, box) - d).norm(), 1e-12) << box;
       ASSERT_LE(d.norm(), cells.reach());
     }

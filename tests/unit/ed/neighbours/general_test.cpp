@@ -211,7 +211,7 @@ TEST(GeneralEnvelopes, NeverKeepAPairApartThatCanTouch) {
       const double thickness = log_uniform(random, 0.01, 1);
       // Half of them at the very edge, where the decision is hardest; some overlap.
       const double share = trial % 4 == 0 ? 1.2 * random.uniform() - 0.2 : 1 - log_uniform(random, 1e-12, 1e-2);
-      const auto may_meet = [&](const ed::System& system, bool boxes) {
+      const auto may_overlap = [&](const ed::System& system, bool boxes) {
         const GeneralBodies bodies(system);
         GeneralDilatedEnvelopes dilated(bodies, thickness, thickness);
         GeneralOrientedEnvelopes oriented(bodies, thickness);
@@ -219,12 +219,12 @@ TEST(GeneralEnvelopes, NeverKeepAPairApartThatCanTouch) {
         for (const int k : {0, 1}) envelopes.place(k, bodies, 0);
         const Vector3d r = system.bodies[1].position - system.bodies[0].position;
         Vector3d normal;
-        return r.norm() <= envelopes.reach() && envelopes.may_meet(0, 1, r, normal);
+        return r.norm() <= envelopes.reach() && envelopes.may_overlap(0, 1, r, normal);
       };
       const ed::System near = placed_pair(a, b, 2 * thickness * share, random);
-      ASSERT_TRUE(may_meet(near, false)) << ed::describe(a) << ", " << ed::describe(b) << ", share " << share;
-      ASSERT_TRUE(may_meet(near, true)) << ed::describe(a) << ", " << ed::describe(b) << ", share " << share;
-      rejected += may_meet(placed_pair(a, b, 2 * thickness * 1.1, random), false) ? 0 : 1;
+      ASSERT_TRUE(may_overlap(near, false)) << ed::describe(a) << ", " << ed::describe(b) << ", share " << share;
+      ASSERT_TRUE(may_overlap(near, true)) << ed::describe(a) << ", " << ed::describe(b) << ", share " << share;
+      rejected += may_overlap(placed_pair(a, b, 2 * thickness * 1.1, random), false) ? 0 : 1;
     }
     // Lists would be too long otherwise, and this test would prove little.
     EXPECT_GT(rejected, kPairs * 9 / 10) << ed::describe(all[i]);

@@ -42,7 +42,7 @@ GroupTemperatures temperatures_of(const ed::System& system, int begin, int numbe
   const ed::KineticState kinetic = ed::kinetic_state(part);
   const double freedoms = 3 * (number - 1) + 3 * others / (mass + others);
   return {2 * kinetic.translational_energy / freedoms, kinetic.rotational_kT,
-          kinetic.spin_freedoms > 0 ? 2 * kinetic.spin_energy / kinetic.spin_freedoms : 1};
+          kinetic.spin_degrees_of_freedom > 0 ? 2 * kinetic.spin_energy / kinetic.spin_degrees_of_freedom : 1};
 }
 
 /// Expects momentum zero, relative to that of a thermal body, and each group at kT = 1.

@@ -1,4 +1,4 @@
-// Meetings of dilated envelopes found in vectors against may_meet, pair by pair: the same bits.
+// Meetings of dilated envelopes found in vectors against may_overlap, pair by pair: the same bits.
 
 #include "base/periodic.h"
 #include "bodies/uniaxial.h"
@@ -39,7 +39,7 @@ struct Tally {
   std::size_t meetings = 0;
 };
 
-void expect_same_meetings(const std::vector<Species>& species, geom::InstructionSet set, std::uint64_t seed,
+void expect_same_overlaps(const std::vector<Species>& species, geom::InstructionSet set, std::uint64_t seed,
                           Tally& tally) {
   SCOPED_TRACE(std::string(geom::to_string(set)) + ", seed " + std::to_string(seed));
   constexpr int kNumber = 150;  // more than a block
@@ -48,18 +48,18 @@ void expect_same_meetings(const std::vector<Species>& species, geom::Instruction
   const UniaxialBodies bodies = ed_test::random_bodies(species, kNumber, box, random);
   const double thickness = random.uniform();
   DilatedEnvelopes one_by_one(bodies, thickness, thickness);
-  DilatedEnvelopes in_vectors(bodies, thickness, thickness, find_uniaxial_kernels(set).meet);
+  DilatedEnvelopes in_vectors(bodies, thickness, thickness, find_uniaxial_kernels(set).overlap);
   for (int i = 0; i < kNumber; ++i) {
     one_by_one.place(i, bodies, 0);
     in_vectors.place(i, bodies, 0);
   }
-  std::vector<Meeting> expected;
-  std::vector<Meeting> found;
+  std::vector<OverlappingEnvelope> expected;
+  std::vector<OverlappingEnvelope> found;
   for (int i = 0; i < kNumber; ++i) {
     const std::vector<NearBody> near = all_near(bodies, i, box, random);
     const int first = i % 2 == 0 ? 0 : i + 1;
-    one_by_one.find_meetings(i, near, first, expected);
-    in_vectors.find_meetings(i, near, first, found);
+    one_by_one.find_overlapping(i, near, first, expected);
+    in_vectors.find_overlapping(i, near, first, found);
     ASSERT_EQ(found.size(), expected.size()) << i;
     for (std::size_t k = 0; k < found.size(); ++k) {
       EXPECT_EQ(found[k].body, expected[k].body) << i;
@@ -70,26 +70,26 @@ void expect_same_meetings(const std::vector<Species>& species, geom::Instruction
   }
 }
 
-void expect_same_meetings(const std::vector<Species>& species) {
+void expect_same_overlaps(const std::vector<Species>& species) {
   const std::uint64_t repetitions = full_form() ? 100 : 10;
   for (const geom::InstructionSet set : geom_test::instruction_sets()) {
     Tally tally;
-    for (std::uint64_t k = 0; k < repetitions; ++k) expect_same_meetings(species, set, 500 + k, tally);
+    for (std::uint64_t k = 0; k < repetitions; ++k) expect_same_overlaps(species, set, 500 + k, tally);
     EXPECT_GT(tally.meetings, tally.pairs / 200);
     EXPECT_LT(tally.meetings, tally.pairs / 2);
   }
 }
 
 TEST(Meetings, OfRodsAreThoseOfOnePair) {
-  expect_same_meetings({paper_species(ed_test::spheroid(3))});
+  expect_same_overlaps({paper_species(ed_test::spheroid(3))});
 }
 
 TEST(Meetings, OfFlatDiscsAreThoseOfOnePair) {
-  expect_same_meetings({paper_species(ed_test::spheroid(0.15))});
+  expect_same_overlaps({paper_species(ed_test::spheroid(0.15))});
 }
 
 TEST(Meetings, OfMixturesAreThoseOfOnePair) {
-  expect_same_meetings({uniform_species(ed_test::spheroid(8)), uniform_species(ed_test::spheroid(0.4)),
+  expect_same_overlaps({uniform_species(ed_test::spheroid(8)), uniform_species(ed_test::spheroid(0.4)),
                         uniform_species(ed_test::spheroid(1))});
 }
 

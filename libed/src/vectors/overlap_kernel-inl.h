@@ -1,5 +1,5 @@
-/// Whether dilated envelopes may meet, as DilatedEnvelopes::may_meet has it, one pair to a vector lane. Part of
-/// vectors/kernels-inl.h.
+/// Whether dilated envelopes may overlap, as DilatedEnvelopes::may_overlap decides it, one pair to a vector lane. Part
+/// of vectors/kernels-inl.h.
 
 #pragma once
 
@@ -19,10 +19,10 @@ struct Envelope {
   Real3 axis;
 };
 
-/// Where what is near stands, NearBodys, and the envelopes of these bodies: four numbers of each count.
+/// Addresses of NearBodys and of the envelopes of these bodies; four numbers of each are read.
 struct Candidates {
-  const double* near[kBlockMeetings];
-  const double* envelope[kBlockMeetings];
+  const double* near[kBlockOverlaps];
+  const double* envelope[kBlockOverlaps];
 
   HWY_INLINE void move(int from, int to) {
     near[to] = near[from];
@@ -42,7 +42,7 @@ struct Other {
 };
 
 template <bool kOneKind>
-HWY_INLINE Other load_other(const MeetingInput& in, const Envelope& one, const Candidates& candidates, int lane) {
+HWY_INLINE Other load_other(const OverlapInput& in, const Envelope& one, const Candidates& candidates, int lane) {
   Other other;
   Real x, y, z, kind;
   load_two(candidates.near + lane, 0, other.name, x);
@@ -77,7 +77,7 @@ HWY_INLINE Step capped_step(const Envelope& a, const Envelope& b, const Real3& r
 }
 
 /// Bodies whose gap along the line of centres does not tell them apart.
-HWY_INLINE void meet_closely(const Envelope& a, const Other& other, Real limit, MeetingOutput& out, int lane) {
+HWY_INLINE void overlap_closely(const Envelope& a, const Other& other, Real limit, OverlapOutput& out, int lane) {
   const Envelope& b = other.envelope;
   const Real3& r = other.r;
   const Real3 cold = geom::kernel::cold_direction(a.shape, b.shape, r, a.axis, b.axis);
@@ -88,7 +88,7 @@ HWY_INLINE void meet_closely(const Envelope& a, const Other& other, Real limit, 
   Lanes definite;
   Step step = capped_step(a, b, r, n, gap, definite);
   Lanes known = definite;
-  for (int steps = 0; steps < kMeetingSteps; ++steps) {
+  for (int steps = 0; steps < kOverlapSteps; ++steps) {
     const Lanes going_on = known & (gap.g + step.decrement > limit) & !apart;
     if (!any(going_on)) break;
     // The others stay where they are: their numbers come out the same again.
@@ -98,13 +98,13 @@ HWY_INLINE void meet_closely(const Envelope& a, const Other& other, Real limit, 
     step = capped_step(a, b, r, n, gap, definite);
     known = known & definite;
   }
-  store3(step_on_sphere(n, step.delta), out.rows + MeetingOutput::normal, lane);
-  store(select(apart, MeetingOutput::apart, select(known, MeetingOutput::meet, MeetingOutput::open)),
-        out.rows[MeetingOutput::verdict], lane);
+  store3(step_on_sphere(n, step.delta), out.rows + OverlapOutput::normal, lane);
+  store(select(apart, OverlapOutput::apart, select(known, OverlapOutput::meet, OverlapOutput::open)),
+        out.rows[OverlapOutput::verdict], lane);
 }
 
 /// Lanes of bodies that count and are not told apart by the gap along the line of centres, a bit each.
-HWY_INLINE unsigned close_lanes(const MeetingInput& in, const Envelope& a, const Other& other) {
+HWY_INLINE unsigned close_lanes(const OverlapInput& in, const Envelope& a, const Other& other) {
   const hn::RebindToSigned<Tag> places;
   const auto body = hn::And(hn::BitCast(places, other.name.v), hn::Set(places, std::int64_t{0xFFFFFFFF}));
   const auto none = hn::Or(hn::Eq(body, hn::Set(places, std::int64_t{in.one})),
@@ -117,7 +117,7 @@ HWY_INLINE unsigned close_lanes(const MeetingInput& in, const Envelope& a, const
 }
 
 template <bool kOneKind>
-HWY_INLINE void meet_all(const MeetingInput& in, MeetingOutput& out) {
+HWY_INLINE void overlap_all(const OverlapInput& in, OverlapOutput& out) {
   const DilatedEnvelope& one = in.envelopes[in.one];
   const double* const shape = in.shapes[one.kind].numbers;
   const Envelope a{{shape[ShapeRows::a2], shape[ShapeRows::b2], shape[ShapeRows::c], shape[ShapeRows::rho]},
@@ -146,12 +146,12 @@ HWY_INLINE void meet_all(const MeetingInput& in, MeetingOutput& out) {
   if (count == 0) return;
   candidates.fill_up(count);
   for (int lane = 0; lane < count; lane += kLanes) {
-    meet_closely(a, load_other<kOneKind>(in, a, candidates, lane), in.limit, out, lane);
+    overlap_closely(a, load_other<kOneKind>(in, a, candidates, lane), in.limit, out, lane);
   }
 }
 
-void meet(const MeetingInput& in, MeetingOutput& out) {
-  in.one_kind ? meet_all<true>(in, out) : meet_all<false>(in, out);
+void overlap(const OverlapInput& in, OverlapOutput& out) {
+  in.one_kind ? overlap_all<true>(in, out) : overlap_all<false>(in, out);
 }
 
 }  // namespace

@@ -33,43 +33,43 @@ inline ed::internal::AxisMotion axis_motion(const BodyState& state, const Moment
   return motion;
 }
 
-/// A gauge that owns what UniaxialGauge refers to.
+/// A pair gap that owns what UniaxialGap refers to.
 template <bool kSpin>
-class PairGauge {
+class OwnedGap {
  public:
-  PairGauge(const Fluid& fluid, const MovingPair& pair)
+  OwnedGap(const Fluid& fluid, const MovingPair& pair)
       : shape_(spheroid_of(fluid.shape())),
         a_(axis_motion(pair.a, fluid.moments(), kSpin)),
         b_(axis_motion(pair.b, fluid.moments(), kSpin)),
-        gauge_(shape_, a_, shape_, b_, pair.b.position - pair.a.position, 0, fluid.size()) {}
-  PairGauge(const PairGauge&) = delete;
-  PairGauge& operator=(const PairGauge&) = delete;
+        gap_(shape_, a_, shape_, b_, pair.b.position - pair.a.position, 0, fluid.size()) {}
+  OwnedGap(const OwnedGap&) = delete;
+  OwnedGap& operator=(const OwnedGap&) = delete;
 
-  const ed::internal::UniaxialGauge<kSpin>& gauge() const { return gauge_; }
+  const ed::internal::UniaxialGap<kSpin>& gap() const { return gap_; }
 
  private:
   geom::kernel::Spheroid shape_;
   ed::internal::AxisMotion a_;
   ed::internal::AxisMotion b_;
-  ed::internal::UniaxialGauge<kSpin> gauge_;
+  ed::internal::UniaxialGap<kSpin> gap_;
 };
 
-/// A gauge whose bounds of the curvature are wrong: `1 / divisor` of the right ones.
-template <class Gauge>
-class WeakenedGauge : public Gauge {
+/// A pair gap whose bounds of the curvature are wrong: `1 / divisor` of the right ones.
+template <class PairGap>
+class WeakenedGap : public PairGap {
  public:
-  WeakenedGauge(const Gauge& gauge, double divisor) : Gauge(gauge), divisor_(divisor) {}
+  WeakenedGap(const PairGap& gap, double divisor) : PairGap(gap), divisor_(divisor) {}
 
   struct Certificate {
-    typename Gauge::Certificate proper;
+    typename PairGap::Certificate proper;
     double divisor;
     double curvature(double tau) const { return proper.curvature(tau) / divisor; }
   };
-  Certificate certificate(const typename Gauge::State& state, const typename Gauge::Evaluation& e,
+  Certificate certificate(const typename PairGap::State& state, const typename PairGap::Evaluation& e,
                           const Eigen::Vector3d& n) const {
-    return {Gauge::certificate(state, e, n), divisor_};
+    return {PairGap::certificate(state, e, n), divisor_};
   }
-  double curvature_limit() const { return Gauge::curvature_limit() / divisor_; }
+  double curvature_limit() const { return PairGap::curvature_limit() / divisor_; }
 
  private:
   double divisor_;
@@ -78,19 +78,19 @@ class WeakenedGauge : public Gauge {
 /// Number of evaluations that no search of these tests exceeds.
 inline constexpr int kManyEvaluations = 100000;
 
-template <class Gauge>
-ed::internal::Finding search(const Gauge& gauge, double t_end, ed::internal::FinderCounters& count) {
+template <class PairGap>
+ed::internal::Finding search(const PairGap& gap, double t_end, ed::internal::FinderCounters& count) {
   Eigen::Vector3d n = Eigen::Vector3d::Zero();
-  return ed::internal::certified_contact(gauge, 0, t_end, kManyEvaluations, n, count);
+  return ed::internal::certified_contact(gap, 0, t_end, kManyEvaluations, n, count);
 }
 
 /// Returns the first contact of the pair up to t_end as libed finds it; if `divisor` is not 1, by a finder made wrong.
 inline ed::internal::Finding find_contact(const Fluid& fluid, const MovingPair& pair, double t_end,
                                           ed::internal::FinderCounters& count, double divisor = 1) {
-  const auto find = [&](const auto& gauge) {
-    return divisor == 1 ? search(gauge, t_end, count) : search(WeakenedGauge(gauge, divisor), t_end, count);
+  const auto find = [&](const auto& gap) {
+    return divisor == 1 ? search(gap, t_end, count) : search(WeakenedGap(gap, divisor), t_end, count);
   };
-  return fluid.spins() ? find(PairGauge<true>(fluid, pair).gauge()) : find(PairGauge<false>(fluid, pair).gauge());
+  return fluid.spins() ? find(OwnedGap<true>(fluid, pair).gap()) : find(OwnedGap<false>(fluid, pair).gap());
 }
 
 }  // namespace finder_test

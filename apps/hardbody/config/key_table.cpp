@@ -1,0 +1,375 @@
+#include "config/keys.h"
+
+#include "base/number_text.h"
+#include "config/rules.h"
+#include "config/species.h"
+
+#include <ed/observables.h>
+#include <ed/polydispersity.h>
+#include <ed/shape.h>
+#include <ed/tolerances.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+namespace hardbody {
+namespace {
+
+constexpr std::int64_t kMostEvents = 100'000'000;  ///< of events.csv, 50 bytes each
+constexpr std::int64_t kMostFrames = 100'000;      ///< there is room for all of them in the files' heads
+constexpr double kLongestTime = 1e9;               ///< this and the next: in ed::time_unit of the bodies
+constexpr double kLeastCap = 1;
+constexpr double kLargestWaveNumber = 1e6;
+constexpr double kLeastPacking = 1e-9;
+constexpr double kDensestLattice = 0.9999;  ///< of a lattice; how dense it can be depends on the number of bodies too
+constexpr double kThinnest = 1e-2;          ///< least ratio of two semi-axes; the largest is the inverse
+constexpr double kShortestAxis = 1e-3;      ///< where semi-axes are taken literally; the longest is the inverse
+constexpr double kLightest = 1e-6;          ///< the heaviest is the inverse
+
+/// Returns `rule`, which accepts nothing (but `accepted`) where `when` holds.
+Rule unless(bool (*when)(const Place&), const char* accepted, Rule rule) {
+  rule.take = [=, take = rule.take](const Value& value, const Target& to) {
+    return when(to) ? Refusal{accepted} : take(value, to);
+  };
+  return rule;
+}
+
+// ---- [system] and [start]
+
+Taken take_packing(const Value& value, const Place& at, double& result) {
+  const Config& config = at.config;
+  const bool ordered = config.lattice() || config.start_file;
+  const double densest = ordered ? kDensestLattice : ed::densest_start(config.components());
+  if (is_number(value) && value.real >= kLeastPacking && value.real <= densest) {
+    result = value.real;
+    return std::nullopt;
+  }
+  // Rounded down: the value that the message names is accepted.
+  return Refusal{fmt::format("a number from {:g} to {:.4f} for {}", kLeastPacking, std::floor(densest * 1e4) / 1e4,
+                             config.start_file  ? "a start from a file"
+                             : config.lattice() ? "a lattice"
+                             : config.mixture   ? "these shapes"
+                                                : "this shape")};
+}
+
+constexpr auto is_name = [](const std::string& text) { return !text.empty(); };
+constexpr auto is_duration = [](const std::string& text) { return duration_seconds(text).has_value(); };
+constexpr auto all_spheres = [](const Place& at) {
+  return std::all_of(at.config.species.begin(), at.config.species.end(), is_sphere);
+};
+constexpr auto without_file = [](const Place& at) { return !at.config.start_file; };
+constexpr auto order_comment = [](const Place& at) -> std::string {
+  return at.config.start ? "S about z" : "S about z, before the compression, which lets it relax";
+};
+
+std::vector<Key> system_keys() {
+  return {
+      {kSeedKey, "1", integer(&Config::seed, 0), "of the start: an integer, at least 0"},
+      {kNumberKey, "512", integer(&Config::number, 2, kMostBodies), "of bodies, in a periodic cubic box"},
+      {kPackingKey, "required, except with [start] file", bound(&Config::packing_fraction, take_packing),
+       "volume of the bodies / volume of the box"},
+      {kStartKey, "\"random\"",
+       choice(&Config::start, {std::nullopt, ed::Lattice::simple_cubic, ed::Lattice::fcc}, "random"),
+       "at random and compressed; or on a lattice, \"cubic\" or \"fcc\",\n"
+       "stretched to the bodies' proportions, the bodies aligned",
+       without_file},
+      {kOrderKey, "",
+       unless(all_spheres, "no key nematic_order: spheres have no orientation",
+              number(&Config::nematic_order, {0, 1, true, false}, "the order parameter S of the start")),
+       order_comment, [](const Place& at) { return without_file(at) && !at.config.start_from; },
+       "nematic_order = S: orientations of that order parameter, which a lattice\n"
+       "keeps and compression from \"random\" loses;"},
+      {kStartFromKey, "", text(&Config::start_from, is_name, "the directory of a run"),
+       "instead: the last state of that run, compressed",
+       [](const Place& at) { return without_file(at) && !at.config.nematic_order; },
+       "start_from = \"DIR\" instead: the last state of that run, compressed"},
+      {kStartFileKey, "", text(&StartFile::file, is_name, "the name of a file"), "GSD, or LAMMPS text dump"},
+      {kStartFrameKey, "the last", integer(&StartFile::frame, 0), "from 0"},
+      {kMendKey, "false", flag(&StartFile::mend), "overlaps, by scaling box and positions; else they are refused"},
+      {"start.reverse", "false", flag(&StartFile::reverse), "all velocities negated"},
+  };
+}
+
+// ---- [shape] and [[species]]
+
+/// Takes a list of numbers above 0 that fills the vector. Returns whether the value is one.
+template <class Vector>
+bool take_positive(const Value& value, Vector& result) {
+  if (value.kind != Value::Kind::array || value.items.size() != static_cast<std::size_t>(result.size())) return false;
+  for (std::size_t k = 0; k < value.items.size(); ++k) result[static_cast<int>(k)] = value.items[k].real;
+  return std::all_of(value.items.begin(), value.items.end(), [](const Value& v) { return is_number(v) && v.real > 0; });
+}
+
+constexpr Range kRatios = {kThinnest, 1 / kThinnest};
+constexpr const char* kRatioMeaning = "X0 = a/b, a along the axis of revolution";
+constexpr const char* kKindComment = "\"ellipsoid\", or \"superellipsoid\" with exponents";
+constexpr const char* kExponentsComment =
+    "[e1, e2], of the profile along z and of the section across it: 1 an\n"
+    "ellipsoid, towards 0.25 a box, towards 1.6 an octahedron. The superball\n"
+    "|x|^p + |y|^p + |z|^p = a^p has a = b = c and e1 = e2 = 2/p";
+
+Taken take_semi_axes(const Value& value, const Place& at, std::optional<Eigen::Vector3d>& result) {
+  Eigen::Vector3d& axes = result.emplace();
+  if (!take_positive(value, axes)) return Refusal{"three positive finite numbers [a, b, c]"};
+  if (!(axes.minCoeff() >= kThinnest * axes.maxCoeff())) {
+    return Refusal{fmt::format("semi-axes of which none is more than {:g} times another", 1 / kThinnest)};
+  }
+  if (at.config.mixture && !(axes.minCoeff() >= kShortestAxis && axes.maxCoeff() <= 1 / kShortestAxis)) {
+    return Refusal{fmt::format("semi-axes from {:g} to {:g}", kShortestAxis, 1 / kShortestAxis)};
+  }
+  return std::nullopt;
+}
+
+Taken take_exponents(const Value& value, const Place&, Eigen::Vector2d& result) {
+  if (take_positive(value, result) && result.minCoeff() >= ed::kMinExponentInMotion &&
+      result.maxCoeff() <= ed::kMaxExponentInMotion) {
+    return std::nullopt;
+  }
+  return Refusal{
+      fmt::format("two numbers [e1, e2], each from {:g} to {:g}", ed::kMinExponentInMotion, ed::kMaxExponentInMotion)};
+}
+
+constexpr auto is_ellipsoid = [](const Place& at) { return at.species->shape.kind == ShapeKind::ellipsoid; };
+constexpr auto has_exponents = [](const Place& at) { return !is_ellipsoid(at); };
+
+Rule exponents_rule() {
+  return unless(is_ellipsoid, "no exponents of an ellipsoid, or kind = \"superellipsoid\"",
+                bound(&ShapeConfig::exponents, take_exponents));
+}
+
+Taken take_inertia(const Value& value, const Place& at, Inertia& result, Eigen::Vector3d& moments) {
+  const bool paper = is_of_revolution(body_shape(at.species->shape, at.config.mixture));
+  if (value.kind == Value::Kind::text && (value.text == "uniform" || (value.text == "paper" && paper))) {
+    result = value.text == "paper" ? Inertia::paper : Inertia::uniform;
+    return std::nullopt;
+  }
+  // Those of a flat plate are at the limit, and decimals are rounded.
+  if (take_positive(value, moments) && moments.maxCoeff() <= (moments.sum() - moments.maxCoeff()) * (1 + 1e-12)) {
+    result = Inertia::moments;
+    return std::nullopt;
+  }
+  const auto index = static_cast<std::size_t>(at.species - at.config.species.data());
+  const std::string which = at.config.mixture ? fmt::format(" and {} is none", species_name(index)) : "";
+  return Refusal{
+      std::string(paper ? "\"paper\", " : "") +
+          "\"uniform\" or three positive moments [I1, I2, I3] of which none exceeds the sum of the other two",
+      value.text == "paper" ? ", which is for ellipsoids of revolution" + which : ""};
+}
+
+Rule inertia_rule() {
+  return {[](const Value& value, const Target& to) {
+            return take_inertia(value, to, to.species->inertia, to.species->inertia_moments);
+          },
+          [](const Place& at) {
+            const SpeciesConfig& species = *at.species;
+            return species.inertia == Inertia::moments ? value_text(species.inertia_moments)
+                                                       : value_text(species.inertia);
+          },
+          [](const Place& a, const Place& b) {
+            return a.species->inertia == b.species->inertia && a.species->inertia_moments == b.species->inertia_moments;
+          }};
+}
+
+std::string inertia_comment(const Place& at) {
+  constexpr const char* kMoments = "\nabout the axes as semi_axes names them, in m l^2, with spin";
+  constexpr const char* kPaper =
+      "\"paper\": 2/5 m min(a,b)^2, no spin about the axis of revolution;\n"
+      "\"uniform\": uniform density, with spin; or moments [I1, I2, I3]";
+  constexpr const char* kUniform = "\"uniform\": uniform density; or moments [I1, I2, I3]";
+  return std::string(is_of_revolution(at.species->body.shape) ? kPaper : kUniform) + kMoments;
+}
+
+std::string axes_comment(const Place& at) {
+  const Eigen::Vector3d used = ed::half_extents(at.species->body.shape);
+  const bool last = is_ellipsoid(at) && at.species->shape.true_aspect_ratio();
+  return fmt::format("in any unit: only their ratios count;\nin use, l = 1{}: {:.6g}, {:.6g}, {:.6g}",
+                     last ? " and the axis of revolution last" : "", used.x(), used.y(), used.z());
+}
+
+std::vector<Key> shape_keys() {
+  return {
+      {"shape.kind", "\"ellipsoid\"", choice(&ShapeConfig::kind, {ShapeKind::ellipsoid, ShapeKind::superellipsoid}),
+       kKindComment},
+      {"shape.aspect_ratio", "", number(&ShapeConfig::aspect_ratio, kRatios, kRatioMeaning),
+       "X0 = a/b, a along the axis of revolution, from 0.01 to 100;\n"
+       "or semi_axes = [a, b, c], in any unit: only their ratios count"},
+      {"shape.semi_axes", "", bound(&ShapeConfig::semi_axes, take_semi_axes), axes_comment},
+      {"shape.exponents", "", exponents_rule(), kExponentsComment, has_exponents},
+  };
+}
+
+using Sizes = ed::SizeDistribution;
+
+constexpr auto without_sizes = [](const Place& at) { return !at.species->sizes; };
+constexpr auto has_sizes = [](const Place& at) { return at.species->sizes.has_value(); };
+constexpr const char* kNoSizes = "none without sizes = \"uniform\", \"gaussian\" or \"lognormal\"";
+
+Taken take_width(const Value& value, const Place& at, double& result) {
+  const Sizes sizes = *at.species->sizes;
+  return take_number(value, {0, ed::widest(sizes), false},
+                     fmt::format("standard deviation / mean of the {} sizes", ed::to_string(sizes)), result);
+}
+
+std::string width_comment(const Place& at) {
+  const SizeStatistics drawn = statistics_of(at.species->factors);
+  return fmt::format(
+      "standard deviation / mean; the tails beyond 3 of them are cut off.\n"
+      "Mass goes with the volume: all have the same density\ndrawn: {:.4g} to {:.4g}",
+      drawn.smallest, drawn.largest);
+}
+
+constexpr auto fraction_comment = [](const Place& at) -> std::string {
+  return fmt::format("of the bodies, {} of them; or number", at.species->number);
+};
+
+std::vector<Key> species_keys() {
+  return {
+      {"species.kind", "", choice(&ShapeConfig::kind, {ShapeKind::ellipsoid, ShapeKind::superellipsoid}), kKindComment},
+      {"species.aspect_ratio", "", number(&ShapeConfig::aspect_ratio, kRatios, kRatioMeaning),
+       "X0 = a/b, a along the axis of revolution, from 0.01 to 100;\nor semi_axes; (a b c)^(1/3) = 1 then"},
+      {"species.semi_axes", "", bound(&ShapeConfig::semi_axes, take_semi_axes), "[a, b, c], as they are"},
+      {"species.exponents", "", exponents_rule(), kExponentsComment, has_exponents},
+      {"species.fraction", "1 for a single species",
+       number(&SpeciesConfig::fraction, {0, 1, false}, "of the number of bodies"), fraction_comment},
+      {"species.number", "1 for a single species", integer(&SpeciesConfig::number, 1, kMostBodies),
+       "of bodies; or a fraction of [system] number", [](const Place& at) { return !at.species->fraction; }},
+      {"species.mass", "1", number(&SpeciesConfig::mass, {kLightest, 1 / kLightest}), "of a body of nominal size"},
+      {"species.inertia", "that of [dynamics]", inertia_rule(), inertia_comment},
+      {"species.sizes", "\"equal\"",
+       choice(&SpeciesConfig::sizes, {std::nullopt, Sizes::uniform, Sizes::gaussian, Sizes::lognormal}, "equal"),
+       "of the bodies: \"equal\", or of mean 1 (the semi-axes above)\n"
+       "and \"uniform\", \"gaussian\" or \"lognormal\" with a width"},
+      {"species.width", "required with sizes",
+       unless(without_sizes, kNoSizes, bound(&SpeciesConfig::width, take_width)), width_comment, has_sizes},
+      {"species.size_seed", "the run's seed", unless(without_sizes, kNoSizes, integer(&SpeciesConfig::size_seed, 0)),
+       "of the sizes, instead of seed", has_sizes},
+  };
+}
+
+// ---- [dynamics]
+
+Taken take_eps_d(const Value& value, const Place& at, double& result) {
+  double limit = std::numeric_limits<double>::infinity();
+  for (const ed::Component& c : at.config.components()) limit = std::min(limit, ed::inscribed_radius(c.species.shape));
+  result = value.real;
+  return is_number(value) && result > 0 && result < limit
+             ? Taken()
+             : Refusal{fmt::format("a number above 0 and below the smallest semi-axis, {:.4g}", limit)};
+}
+
+std::vector<Key> dynamics_keys() {
+  return {
+      {kInertiaKey, "see inertia", inertia_rule(), inertia_comment, [](const Place& at) { return !at.config.mixture; }},
+      {"dynamics.finder", "\"certified\"", choice(&Config::finder, {ed::Finder::certified, ed::Finder::bracketing}),
+       "of contact times: \"certified\", or \"bracketing\" (the paper's)"},
+      {"dynamics.eps_d", "1e-6 of the bodies' mean size", bound(&Config::eps_d, take_eps_d),
+       "in l, for \"bracketing\": shallower contacts may be missed"},
+      {kDistanceKey, "\"dual\"",
+       choice(&Config::distance, {ed::DistanceMethod::dual, ed::DistanceMethod::newton8, ed::DistanceMethod::newton5}),
+       "for \"bracketing\": \"dual\", \"newton8\" or \"newton5\""},
+      {"dynamics.neighbours", "\"auto\"",
+       choice(&Config::neighbours, {std::nullopt, ed::Neighbours::dilated, ed::Neighbours::obp, ed::Neighbours::cells},
+              "auto"),
+       "lists: \"auto\", \"dilated\", \"obp\" (the paper's) or \"cells\""},
+  };
+}
+
+// ---- [equilibration], [production] and [output]
+
+constexpr const char* kAuto = "\"auto\"";
+constexpr const char* kTimeUnit = "time unit l sqrt(m/kT)";
+
+Taken take_time(const Value& value, const Place& at, std::optional<double>& result) {
+  const double longest = kLongestTime * at.config.time_unit;
+  result = std::nullopt;
+  if (toml_text(value) == kAuto) return std::nullopt;
+  result = value.real;
+  return is_number(value) && value.real >= 0 && value.real <= longest
+             ? Taken()
+             : Refusal{fmt::format("{} or a number at least 0, at most {:g} ({})", kAuto, longest, kTimeUnit)};
+}
+
+Rule time_or_auto(std::optional<double> Config::*member) {
+  Rule rule = bound(member, take_time);
+  rule.text = [member](const Place& at) { return at.config.*member ? value_text(at.config.*member) : kAuto; };
+  return rule;
+}
+
+Taken take_cap(const Value& value, const Place& at, double& result) {
+  const double unit = at.config.time_unit;
+  return take_number(value, {kLeastCap * unit, kLongestTime * unit}, kTimeUnit, result);
+}
+
+Taken take_wave_numbers(const Value& value, const Place&, std::vector<double>& result) {
+  result.resize(value.items.size());
+  const bool good = take_positive(value, result) && result.size() <= ed::kMostWaveNumbers &&
+                    std::all_of(result.begin(), result.end(), [](double q) { return q <= kLargestWaveNumber; });
+  return good ? Taken()
+              : Refusal{fmt::format("a list of at most {} numbers above 0, at most {:g} (1/l)", ed::kMostWaveNumbers,
+                                    kLargestWaveNumber)};
+}
+
+Taken take_trajectory(const Value& value, const Place&, std::vector<TrajectoryFormat>& result) {
+  for (const Value& item : value.items) {
+    for (const auto format : {TrajectoryFormat::gsd, TrajectoryFormat::lammps, TrajectoryFormat::vtk}) {
+      const bool twice = std::find(result.begin(), result.end(), format) != result.end();
+      if (toml_text(item) == value_text(format) && !twice) result.push_back(format);
+    }
+  }
+  const bool all = value.kind == Value::Kind::array && result.size() == value.items.size();
+  return all ? Taken() : Refusal{"an array of \"gsd\", \"lammps\" and \"vtk\", each at most once"};
+}
+
+std::string production_comment(const Place& at) {
+  const double unit = at.config.time_unit;
+  return fmt::format(
+      "in l sqrt(m/kT); \"auto\": 30 times the equilibration, from {:g}\n"
+      "to {:g}; or until the relative errors of D_trans and D_rot are",
+      kLeastProduction * unit, kMostProduction * unit);
+}
+
+constexpr auto has_production_time = [](const Place& at) { return at.config.production_time.has_value(); };
+
+std::vector<Key> run_keys() {
+  return {
+      {"equilibration.time", "\"auto\"", time_or_auto(&Config::equilibration_time),
+       "in l sqrt(m/kT); \"auto\": until C2 and F_self have decayed below\n0.05 twice in a row, and Z and S do not "
+       "drift"},
+      {"equilibration.cap", "500 thermal times", bound(&Config::equilibration_cap, take_cap),
+       "of \"auto\": the state counts as not equilibrated then"},
+      {"production.time", "\"auto\"", time_or_auto(&Config::production_time), production_comment},
+      {"production.target_error", "",
+       unless(has_production_time, "no target_error, or production.time = \"auto\"",
+              number(&Config::target_error, {1e-4, 1}, "standard error over value, of D_trans and D_rot")),
+       "at most this", nullptr, "target_error = 0.02, if that is given"},
+      {"production.wave_numbers", "[]", bound(&Config::wave_numbers, take_wave_numbers),
+       "of F_self, in 1/l, at most 8, the first is fitted; none: at\n"
+       "the first peak of S(q), a quarter, half and twice of it"},
+      {"output.events", "0", integer(&Config::events, 0, kMostEvents),
+       "so many collisions of production go to events.csv"},
+      {"output.trajectory", "[]", bound(&Config::trajectory, take_trajectory),
+       "of production: any of \"gsd\", \"lammps\" and \"vtk\""},
+      {"output.frames", "100", integer(&Config::frames, 2, kMostFrames), "of each, evenly from the begin to the end"},
+      {"output.checkpoint_every", "\"60s\"",
+       text(&Config::checkpoint_every, is_duration,
+            "a string of a positive number and a unit, as in \"60s\", \"5m\", \"1h\""),
+       "of checkpoint.bin: a number and s, m or h; it is also written at\nthe end, and when the run is stopped"},
+  };
+}
+
+}  // namespace
+
+const std::vector<Key>& keys() {
+  static const std::vector<Key> table = [] {
+    std::vector<Key> all;
+    for (const auto make : {system_keys, shape_keys, species_keys, dynamics_keys, run_keys}) {
+      std::vector<Key> some = make();
+      std::move(some.begin(), some.end(), std::back_inserter(all));
+    }
+    return all;
+  }();
+  return table;
+}
+
+}  // namespace hardbody
