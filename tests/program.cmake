@@ -37,6 +37,10 @@ if(TARGET hardbody)
   hardbody_test(sweep_test unit unit/app/sweep_test.cpp unit/app/config_keys_test.cpp)
   target_link_libraries(sweep_test PRIVATE hardbody_program)
 
+  hardbody_test(registry_test unit unit/app/registry_test.cpp)
+  target_link_libraries(registry_test PRIVATE hardbody_program nlohmann_json::nlohmann_json)
+  target_compile_definitions(registry_test PRIVATE HARDBODY_DOCS="${PROJECT_SOURCE_DIR}/docs")
+
   hardbody_test(program_test cli cli/program_test.cpp cli/checkpoint_test.cpp cli/check_test.cpp
     cli/events_file_test.cpp)
   target_link_libraries(program_test PRIVATE hardbody_program)
@@ -48,5 +52,5 @@ if(TARGET hardbody)
   target_link_libraries(trajectory_test PRIVATE hardbody_program)
 else()
   list(APPEND unbuilt_tests cli/program_test.cpp cli/checkpoint_test.cpp cli/check_test.cpp cli/events_file_test.cpp
-    cli/trajectory_test.cpp unit/app/sweep_test.cpp unit/app/config_keys_test.cpp)
+    cli/trajectory_test.cpp unit/app/registry_test.cpp unit/app/sweep_test.cpp unit/app/config_keys_test.cpp)
 endif()

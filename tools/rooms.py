@@ -33,7 +33,7 @@ LIBRARIES = {
         }),
     },
     "apps/hardbody": {
-        "order": "base < io < trajectory < config < start < run < sweep, plot, audit < report, distance < commands",
+        "order": "base < registry < io < trajectory < config < start < run < sweep, plot, audit < report, distance < commands",
         "public": ("hardbody", {}),
     },
 }

@@ -1,5 +1,7 @@
 #include "base/number_text.h"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -22,6 +24,11 @@ std::optional<double> duration_seconds(std::string_view text) {
   if (number.find_first_not_of("0123456789.") != std::string_view::npos || unit > 2) return std::nullopt;
   const std::optional<double> value = finite_number(number);
   return value && *value > 0 ? std::optional(*value * std::array{1.0, 60.0, 3600.0}[unit]) : std::nullopt;
+}
+
+std::string freedoms_text(long freedoms, int number) {
+  if (freedoms % number == 0) return fmt::format("{}N", freedoms / number);
+  return fmt::format("{}", freedoms);
 }
 
 }  // namespace hardbody

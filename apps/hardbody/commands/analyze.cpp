@@ -4,9 +4,9 @@
 #include "io/json_values.h"
 #include "io/run_directory.h"
 #include "io/text_file.h"
-#include "run/estimate_json.h"
 #include "run/files/observable_files.h"
 #include "run/missing.h"
+#include "run/observables_json.h"
 #include "trajectory/frame.h"
 #include "trajectory/reader.h"
 #include "trajectory/stored_trajectory.h"
@@ -17,7 +17,6 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -87,16 +86,10 @@ std::string order_csv(const StoredTrajectory& stored) {
 const MissingWords kWords = {"", "--longest-lag or a longer trajectory helps", "--fit-from sets it",
                              "unwrapped columns, image flags or frames closer together help", "a column id helps"};
 
-/// Returns the observables as in summary.json.
-Json observables(const ed::Correlations& c, const ed::Estimate& S, const ed::Director& director) {
-  Json json;
-  json["D_trans"] = estimate_json(c.D_trans, kWords);
-  json["S"] = estimate_json(S, kWords);
-  json["director"] = {
-      {"value", {number_json(director.axis.x()), number_json(director.axis.y()), number_json(director.axis.z())}},
-      {"error", number_json(director.error)}};
-  if (!director.axis.allFinite()) json["director"]["missing"] = missing_text(S.missing, kWords);
-  add_decays_json(json, c, kWords);
+/// Returns the entries of summary.json that frames tell. A director that is missing is a list of nulls.
+Json frame_observables(const Part& part) {
+  Json json = observables_json(part, kWords, Measured::in_frames);
+  if (!part.results.director.axis.allFinite()) json["director"]["value"] = list_json(part.results.director.axis);
   return json;
 }
 
@@ -124,10 +117,9 @@ std::string analysis_json(const std::string& name, const StoredTrajectory& store
       {"number", stored.options.axis.size()}, {"box", stored.options.box}, {"length", stored.options.length}};
   json["wave_numbers"] = results.wave_numbers;
   json["fit_from"] = stored.options.fit_from ? Json(*stored.options.fit_from) : Json(nullptr);
-  json["observables"] = observables(results, results.S, results.director);
+  json["observables"] = frame_observables({results, &results});
   if (results.groups.size() > 1) {
-    for (const ed::GroupResults& group : results.groups)
-      json["species"].push_back(observables(group, group.S, group.director));
+    for (const ed::GroupResults& group : results.groups) json["species"].push_back(frame_observables({group}));
   }
   return json.dump(2) + "\n";
 }
@@ -140,13 +132,11 @@ void write_files(const fs::path& out, const std::string& name, const StoredTraje
     throw InputError(
         fmt::format("{}: cannot be written to: {}; accepted: a directory", out.string(), error.code().message()));
   }
-  const std::array<std::string, kAnalysisFiles.size()> contents = {
-      msd_csv(results),    alpha2_csv(results),
-      c1_csv(results),     c2_csv(results),
-      f_self_csv(results), velocity_csv(results),
-      pairs_csv(results),  structure_csv(results),
-      order_csv(stored),   analysis_json(name, stored, results)};
-  for (std::size_t k = 0; k < contents.size(); ++k) write_file(out / kAnalysisFiles[k], contents[k]);
+  for (const CurveFile& file : curve_files()) {
+    if (file.in_frames) write_file(out / (file.name + ".csv"), curve_csv(file, results));
+  }
+  write_file(out / kOrderFile, order_csv(stored));
+  write_file(out / kAnalysisFile, analysis_json(name, stored, results));
 }
 
 std::string shown(const ed::Estimate& e) {
@@ -212,16 +202,11 @@ int analyze(const AnalyzeArguments& arguments) {
   }
   write_files(out, reader.name(), stored, results);
   print_reading(reader, stored, results);
-  for (const auto& [name, value] : {std::pair{"D_trans", results.D_trans},
-                                    {"S", results.S},
-                                    {"t_C2(1/e)", results.t_C2_1overe},
-                                    {"tau_C2", results.tau_C2},
-                                    {"beta_C2", results.beta_C2},
-                                    {"t_F(1/e)", results.t_F_1overe},
-                                    {"tau_F", results.tau_F},
-                                    {"beta_F", results.beta_F},
-                                    {"q_peak", results.q_peak}}) {
-    fmt::print("  {:<12} {}\n", name, shown(value));
+  for (const Observable& o : observables()) {
+    if (!o.in_frames || o.label.empty()) continue;
+    for (const ed::Estimate& value : numbers_of(o, {results, &results})) {
+      fmt::print("  {:<12} {}\n", o.label, shown(value));
+    }
   }
   if (!stored.options.fit_from)
     fmt::print("no fits of decays: --fit-from T sets the first lag, where ballistic motion has ended\n");

@@ -1,5 +1,6 @@
 #include "audit/trajectory.h"
 #include "base/errors.h"
+#include "base/number_text.h"
 #include "commands/commands.h"
 #include "config/config.h"
 #include "io/run_directory.h"

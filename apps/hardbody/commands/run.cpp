@@ -13,7 +13,8 @@
 #include "run/files/failure_file.h"
 #include "run/files/observable_files.h"
 #include "run/origin.h"
-#include "run/phases.h"
+#include "run/phases/equilibration.h"
+#include "run/phases/production.h"
 #include "run/record.h"
 #include "run/saver.h"
 #include "run/summary.h"
@@ -115,16 +116,7 @@ void write_results(const RunDirectory& directory, RunRecord& record, Continuatio
   const ed::Results& results = record.production.results;
   saver.write(last_checkpoint(at, record));
   written.checkpoint = true;
-  directory.write(kMsdFile, msd_csv(results));
-  directory.write(kRotationalMsdFile, rotational_msd_csv(results));
-  directory.write(kAlpha2File, alpha2_csv(results));
-  directory.write(kVelocityFile, velocity_csv(results));
-  directory.write(kC1File, c1_csv(results));
-  directory.write(kC2File, c2_csv(results));
-  directory.write(kFSelfFile, f_self_csv(results));
-  directory.write(kPairsFile, pairs_csv(results));
-  directory.write(kStructureFile, structure_csv(results));
-  directory.write(kBlocksFile, blocks_csv(results));
+  for (const CurveFile& file : curve_files()) directory.write(file.path(), curve_csv(file, results));
   written.observables = true;
   write_failures(directory, record, log);
   record.upkeep = saver.upkeep();

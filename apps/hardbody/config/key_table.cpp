@@ -53,31 +53,21 @@ Taken take_packing(const Value& value, const Place& at, double& result) {
                                                 : "this shape")};
 }
 
-bool is_name(const std::string& text) {
-  return !text.empty();
-}
-
-bool is_duration(const std::string& text) {
-  return duration_seconds(text).has_value();
-}
-
-bool all_spheres(const Place& at) {
+constexpr auto is_name = [](const std::string& text) { return !text.empty(); };
+constexpr auto is_duration = [](const std::string& text) { return duration_seconds(text).has_value(); };
+constexpr auto all_spheres = [](const Place& at) {
   return std::all_of(at.config.species.begin(), at.config.species.end(), is_sphere);
-}
-
-bool without_file(const Place& at) {
-  return !at.config.start_file;
-}
-
-std::string order_comment(const Place& at) {
+};
+constexpr auto without_file = [](const Place& at) { return !at.config.start_file; };
+constexpr auto order_comment = [](const Place& at) -> std::string {
   return at.config.start ? "S about z" : "S about z, before the compression, which lets it relax";
-}
+};
 
 std::vector<Key> system_keys() {
   return {
       {kSeedKey, "1", integer(&Config::seed, 0), "of the start: an integer, at least 0"},
       {kNumberKey, "512", integer(&Config::number, 2, kMostBodies), "of bodies, in a periodic cubic box"},
-      {kPackingKey, "needed, but with [start] file", bound(&Config::packing_fraction, take_packing),
+      {kPackingKey, "required, except with [start] file", bound(&Config::packing_fraction, take_packing),
        "volume of the bodies / volume of the box"},
       {kStartKey, "\"random\"",
        choice(&Config::start, {std::nullopt, ed::Lattice::simple_cubic, ed::Lattice::fcc}, "random"),
@@ -140,13 +130,8 @@ Taken take_exponents(const Value& value, const Place&, Eigen::Vector2d& result) 
       fmt::format("two numbers [e1, e2], each from {:g} to {:g}", ed::kMinExponentInMotion, ed::kMaxExponentInMotion)};
 }
 
-bool is_ellipsoid(const Place& at) {
-  return at.species->shape.kind == ShapeKind::ellipsoid;
-}
-
-bool has_exponents(const Place& at) {
-  return !is_ellipsoid(at);
-}
+constexpr auto is_ellipsoid = [](const Place& at) { return at.species->shape.kind == ShapeKind::ellipsoid; };
+constexpr auto has_exponents = [](const Place& at) { return !is_ellipsoid(at); };
 
 Rule exponents_rule() {
   return unless(is_ellipsoid, "no exponents of an ellipsoid, or kind = \"superellipsoid\"",
@@ -214,16 +199,10 @@ std::vector<Key> shape_keys() {
   };
 }
 
-bool without_sizes(const Place& at) {
-  return !at.species->sizes;
-}
-
 using Sizes = ed::SizeDistribution;
 
-bool has_sizes(const Place& at) {
-  return at.species->sizes.has_value();
-}
-
+constexpr auto without_sizes = [](const Place& at) { return !at.species->sizes; };
+constexpr auto has_sizes = [](const Place& at) { return at.species->sizes.has_value(); };
 constexpr const char* kNoSizes = "none without sizes = \"uniform\", \"gaussian\" or \"lognormal\"";
 
 Taken take_width(const Value& value, const Place& at, double& result) {
@@ -240,9 +219,9 @@ std::string width_comment(const Place& at) {
       drawn.smallest, drawn.largest);
 }
 
-std::string fraction_comment(const Place& at) {
+constexpr auto fraction_comment = [](const Place& at) -> std::string {
   return fmt::format("of the bodies, {} of them; or number", at.species->number);
-}
+};
 
 std::vector<Key> species_keys() {
   return {
@@ -261,8 +240,8 @@ std::vector<Key> species_keys() {
        choice(&SpeciesConfig::sizes, {std::nullopt, Sizes::uniform, Sizes::gaussian, Sizes::lognormal}, "equal"),
        "of the bodies: \"equal\", or of mean 1 (the semi-axes above)\n"
        "and \"uniform\", \"gaussian\" or \"lognormal\" with a width"},
-      {"species.width", "needed with sizes", unless(without_sizes, kNoSizes, bound(&SpeciesConfig::width, take_width)),
-       width_comment, has_sizes},
+      {"species.width", "required with sizes",
+       unless(without_sizes, kNoSizes, bound(&SpeciesConfig::width, take_width)), width_comment, has_sizes},
       {"species.size_seed", "the run's seed", unless(without_sizes, kNoSizes, integer(&SpeciesConfig::size_seed, 0)),
        "of the sizes, instead of seed", has_sizes},
   };
@@ -281,7 +260,7 @@ Taken take_eps_d(const Value& value, const Place& at, double& result) {
 
 std::vector<Key> dynamics_keys() {
   return {
-      {kInertiaKey, "see below", inertia_rule(), inertia_comment, [](const Place& at) { return !at.config.mixture; }},
+      {kInertiaKey, "see inertia", inertia_rule(), inertia_comment, [](const Place& at) { return !at.config.mixture; }},
       {"dynamics.finder", "\"certified\"", choice(&Config::finder, {ed::Finder::certified, ed::Finder::bracketing}),
        "of contact times: \"certified\", or \"bracketing\" (the paper's)"},
       {"dynamics.eps_d", "1e-6 of the bodies' mean size", bound(&Config::eps_d, take_eps_d),
@@ -350,9 +329,7 @@ std::string production_comment(const Place& at) {
       kLeastProduction * unit, kMostProduction * unit);
 }
 
-bool has_production_time(const Place& at) {
-  return at.config.production_time.has_value();
-}
+constexpr auto has_production_time = [](const Place& at) { return at.config.production_time.has_value(); };
 
 std::vector<Key> run_keys() {
   return {

@@ -184,25 +184,26 @@ std::vector<PlacedKey> keys_of(const Config& config) {
 }
 
 std::optional<Difference> difference(const Config& here, const Config& there) {
-  const auto shown = [](const PlacedKey* key) {
-    const std::string text = key != nullptr ? key->key->rule.text(key->place) : "";
-    return text.empty() ? "nothing" : one_line(text, kShownLength);
+  const auto text = [](const PlacedKey& key) { return one_line(key.key->rule.text(key.place), kShownLength); };
+  const auto with_value = [&](const Config& config) {
+    std::vector<PlacedKey> list;
+    for (const PlacedKey& key : keys_of(config)) {
+      if (!text(key).empty()) list.push_back(key);
+    }
+    return list;
   };
-  const auto find = [](const std::vector<PlacedKey>& list, const std::string& name) -> const PlacedKey* {
-    const auto found = std::find_if(list.begin(), list.end(), [&](const PlacedKey& k) { return k.name == name; });
-    return found == list.end() ? nullptr : &*found;
+  const auto find = [](const std::vector<PlacedKey>& list, const std::string& name) {
+    return std::find_if(list.begin(), list.end(), [&](const PlacedKey& key) { return key.name == name; });
   };
-  const std::vector<PlacedKey> mine = keys_of(here);
-  const std::vector<PlacedKey> theirs = keys_of(there);
+  const std::vector<PlacedKey> mine = with_value(here);
+  const std::vector<PlacedKey> theirs = with_value(there);
   for (const PlacedKey& key : mine) {
-    const PlacedKey* other = find(theirs, key.name);
-    const bool same =
-        other != nullptr ? key.key->rule.same(key.place, other->place) : key.key->rule.text(key.place).empty();
-    if (!same) return Difference{key.name, shown(&key), shown(other)};
+    const auto other = find(theirs, key.name);
+    if (other == theirs.end()) return Difference{key.name, text(key), "nothing"};
+    if (!key.key->rule.same(key.place, other->place)) return Difference{key.name, text(key), text(*other)};
   }
   for (const PlacedKey& key : theirs) {
-    if (find(mine, key.name) == nullptr && shown(&key) != "nothing")
-      return Difference{key.name, "nothing", shown(&key)};
+    if (find(mine, key.name) == mine.end()) return Difference{key.name, "nothing", text(key)};
   }
   return std::nullopt;
 }

@@ -68,7 +68,8 @@ struct Comment {
   std::function<std::string(const Place&)> at;
 
   Comment(const char* text) : at([text](const Place&) { return text; }) {}
-  Comment(std::string (*text)(const Place&)) : at(text) {}
+  template <class F>
+  Comment(F text) : at(text) {}
 };
 
 struct Key {
@@ -110,7 +111,7 @@ InputError missing(const std::string& where, const std::string& name, const Targ
 
 /// Key of a config in its place.
 struct PlacedKey {
-  std::string name;  ///< as a document has it: species[2].mass
+  std::string name;  ///< name in a document: species[2].mass
   const Key* key;
   Place place;
 };

@@ -2,6 +2,7 @@
 
 #include "base/errors.h"
 #include "io/text_file.h"
+#include "registry/curves.h"
 
 #include <fmt/format.h>
 
@@ -20,14 +21,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array kFiles = {kConfigFile, kSummaryFile,   kCheckpointFile, kEventsFile, kGsdFile,
-                               kLammpsFile, kVtkFile,       kLogFile,        kMsdFile,    kRotationalMsdFile,
-                               kAlpha2File, kVelocityFile,  kC1File,         kC2File,     kFSelfFile,
-                               kPairsFile,  kStructureFile, kBlocksFile,     kReportFile};
+/// Files that a run writes into its directory.
+std::vector<std::string> files_of_run() {
+  std::vector<std::string> files = {kConfigFile, kSummaryFile, kCheckpointFile, kEventsFile,
+                                    kGsdFile,    kLammpsFile,  kVtkFile,        kLogFile};
+  for (const CurveFile& file : curve_files()) files.push_back(file.path());
+  files.emplace_back(kReportFile);
+  return files;
+}
 
 /// Returns the first file of an earlier run; empty if there is none.
 std::string trace_of_a_run(const fs::path& directory) {
-  for (const char* name : kFiles) {
+  for (const std::string& name : files_of_run()) {
     if (fs::exists(directory / name)) return name;
   }
   return "";
@@ -46,7 +51,7 @@ InputError unusable(const fs::path& directory, const std::string& why) {
 }
 
 void keep_inputs(const fs::path& directory, const std::vector<fs::path>& inputs) {
-  for (const char* name : kFiles) {
+  for (const std::string& name : files_of_run()) {
     for (const fs::path& input : inputs) {
       std::error_code ignored;
       if (!fs::equivalent(directory / name, input, ignored)) continue;
@@ -59,9 +64,12 @@ void keep_inputs(const fs::path& directory, const std::vector<fs::path>& inputs)
 
 /// Removes the files that a run writes and nothing else, so that a new run is never mixed with results of an old one.
 void remove_run(const fs::path& directory) {
-  for (const char* name : kFiles) fs::remove(directory / name);
+  for (const std::string& name : files_of_run()) fs::remove(directory / name);
   const fs::path analysis = directory / kAnalysisDirectory;
-  for (const char* name : kAnalysisFiles) fs::remove(analysis / name);
+  for (const CurveFile& file : curve_files()) {
+    if (file.in_frames) fs::remove(analysis / (file.name + ".csv"));
+  }
+  for (const char* name : {kOrderFile, kAnalysisFile}) fs::remove(analysis / name);
   if (fs::is_directory(analysis) && fs::is_empty(analysis)) fs::remove(analysis);
   const fs::path failures = directory / kFailuresDirectory;
   if (!fs::is_directory(failures)) return;

@@ -2,7 +2,6 @@
 
 #include "io/text_file.h"
 
-#include <array>
 #include <cstddef>
 #include <filesystem>
 #include <functional>
@@ -29,18 +28,8 @@ inline constexpr const char* kPointStateFile = "state.json";
 inline constexpr const char* kReportFile = "report.html";
 // Output of hardbody analyze for the run's trajectory, unless another directory is given.
 inline constexpr const char* kAnalysisDirectory = "analysis";
-inline constexpr std::array kAnalysisFiles = {"msd.csv",      "alpha2.csv", "c1.csv",  "c2.csv",    "f_self.csv",
-                                              "velocity.csv", "g_r.csv",    "s_q.csv", "order.csv", "analysis.json"};
-inline constexpr const char* kMsdFile = "observables/msd.csv";
-inline constexpr const char* kRotationalMsdFile = "observables/rotational_msd.csv";
-inline constexpr const char* kAlpha2File = "observables/alpha2.csv";
-inline constexpr const char* kFSelfFile = "observables/f_self.csv";
-inline constexpr const char* kVelocityFile = "observables/velocity.csv";
-inline constexpr const char* kC1File = "observables/c1.csv";
-inline constexpr const char* kC2File = "observables/c2.csv";
-inline constexpr const char* kPairsFile = "observables/g_r.csv";
-inline constexpr const char* kStructureFile = "observables/s_q.csv";
-inline constexpr const char* kBlocksFile = "observables/blocks.csv";
+inline constexpr const char* kAnalysisFile = "analysis.json";
+inline constexpr const char* kOrderFile = "order.csv";
 inline constexpr const char* kFailuresDirectory = "failures";
 
 /// Returns the directory that a command writes to: `out`, or out/<stem of the config>. Throws InputError if `out` is

@@ -2,12 +2,11 @@
 
 #include "base/errors.h"
 #include "io/csv_table.h"
-#include "io/run_directory.h"
 #include "io/text_file.h"
+#include "registry/curves.h"
 
 #include <fmt/format.h>
 
-#include <array>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -20,25 +19,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kLongestFile = std::size_t{1} << 26;
-
-/// File of observables/ with the columns that the report uses.
-struct CurveFile {
-  const char* name;
-  std::array<const char*, 3> columns;  ///< columns that exist in all such files, the abscissa first; nullptr: no more
-};
-
-constexpr CurveFile kCurveFiles[] = {
-    {kMsdFile, {"t", "msd"}},
-    {kRotationalMsdFile, {"t", "rot_msd", "rot_msd_body"}},
-    {kAlpha2File, {"t", "alpha2"}},
-    {kVelocityFile, {"t", "vacf", "wacf"}},
-    {kC1File, {"t", "c1"}},
-    {kC2File, {"t", "c2"}},
-    {kFSelfFile, {"t"}},
-    {kPairsFile, {"r", "g", "g2"}},
-    {kStructureFile, {"q", "S"}},
-    {kBlocksFile, {"end", "Z", "S"}},
-};
 
 /// Returns NaN for an empty field and for a number that is not finite; nullopt for text that is not a number.
 std::optional<double> field_value(std::string_view field) {
@@ -94,12 +74,12 @@ Curves parse_curves(std::string_view text, const std::string& name, const std::s
 
 std::vector<Curves> read_curves(const fs::path& directory) {
   std::vector<Curves> all;
-  for (const CurveFile& file : kCurveFiles) {
-    const fs::path path = directory / file.name;
+  for (const CurveFile& file : curve_files()) {
+    const fs::path path = directory / file.path();
     if (!fs::exists(path)) continue;
-    all.push_back(parse_curves(read_file(path, kLongestFile), path.stem().string(), path.string()));
-    for (const char* column : file.columns) {
-      if (column != nullptr && all.back().find(column) == nullptr) {
+    all.push_back(parse_curves(read_file(path, kLongestFile), file.name, path.string()));
+    for (const std::string& column : required_columns(file)) {
+      if (all.back().find(column) == nullptr) {
         throw InputError(
             fmt::format("{}:1: has no column {}; accepted: a CSV file that a run has written", path.string(), column));
       }

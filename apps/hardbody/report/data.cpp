@@ -3,7 +3,8 @@
 #include "base/number_text.h"
 #include "base/version.h"
 #include "io/json_values.h"
-#include "io/run_directory.h"
+#include "registry/curves.h"
+#include "registry/observables.h"
 
 #include <fmt/format.h>
 
@@ -60,8 +61,8 @@ Json full_column(const std::vector<double>& values, int digits) {
 
 /// Returns whether a column of blocks.csv is drawn.
 bool is_drawn(const std::string& name) {
-  constexpr std::array kDrawn = {"begin", "end", "Z", "kT_trans", "kT_rot", "S"};
-  return std::find(kDrawn.begin(), kDrawn.end(), name) != kDrawn.end();
+  return std::any_of(block_columns().begin(), block_columns().end(),
+                     [&](const BlockColumn& c) { return c.name == name && c.in_reports; });
 }
 
 Json curves_json(const Curves& curves, Detail detail) {
@@ -185,6 +186,38 @@ Json run_json(const RunReport& run, Detail detail) {
           {"view", run.view ? view_json(*run.view) : Json(nullptr)}};
 }
 
+Json line_json(const CurveLine& line, const CurveFile* file) {
+  constexpr std::array kKinds = {"", "slope", "stretched", "mean"};
+  Json json = {{"column", line.column}, {"label", line.label}};
+  const auto split = [&](const Column& c) { return c.name == line.column && c.split == Split::wave_numbers; };
+  if (file != nullptr && std::any_of(file->columns.begin(), file->columns.end(), split)) json["wave_numbers"] = true;
+  if (line.fit.kind == Fit::Kind::none) return json;
+  json["fit"] = {{"kind", kKinds[static_cast<std::size_t>(line.fit.kind)]},
+                 {"keys", line.fit.keys},
+                 {"window", line.fit.window},
+                 {"factor", line.fit.factor},
+                 {"label", line.fit.label}};
+  return json;
+}
+
+/// What the front end draws.
+Json plots_json() {
+  Json list = Json::array();
+  for (const CurvePlot& plot : plots()) {
+    Json lines = Json::array();
+    for (const CurveLine& line : plot.lines) lines.push_back(line_json(line, find_curves(plot.file)));
+    list.push_back({{"id", plot.id},
+                    {"title", plot.title},
+                    {"about", plot.about},
+                    {"file", plot.file},
+                    {"x", {{"label", plot.x_label}, {"log", plot.log_x}}},
+                    {"y", {{"label", plot.y_label}, {"log", plot.log_y}}},
+                    {"normalised", plot.normalised},
+                    {"lines", std::move(lines)}});
+  }
+  return list;
+}
+
 /// Escapes JSON for <script>, which may contain neither "</script" nor "<!--"; in JSON every < is within a string.
 std::string for_script(const std::string& json) {
   std::string text;
@@ -235,7 +268,11 @@ Json sweep_json(const SweepReport& sweep, const std::vector<bool>& embedded) {
 
 std::string report_data(const Report& report) {
   std::string scripts;
-  Json data = {{"program", version()}, {"title", report.title}};
+  Json data = {{"program", version()},
+               {"title", report.title},
+               {"plots", plots_json()},
+               {"card", keys_by(&Places::card)},
+               {"opened", keys_by(&Places::opened)}};
   if (report.sweep) {
     std::vector<bool> embedded;
     for (const SweepPointReport& point : report.sweep->points) {

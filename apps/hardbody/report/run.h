@@ -17,8 +17,8 @@ namespace hardbody {
 
 /// Number that a reader looks for first.
 struct Headline {
-  std::string key;      ///< key in summary.json: D_trans, or D_rot_axes_x
-  std::string symbol;   ///< symbol, D_trans; the part after an underscore is an index
+  std::string key;      ///< key in summary.json; of a body axis with the axis appended
+  std::string symbol;   ///< symbol; the part after an underscore is an index
   std::string name;     ///< name in words
   std::string unit;     ///< unit; empty: a pure number
   std::string meaning;  ///< definition

@@ -1,3 +1,4 @@
+#include "registry/curves.h"
 #include "report/page.h"
 #include "report/svg.h"
 #include "run/table.h"
@@ -13,35 +14,17 @@
 namespace hardbody {
 namespace {
 
-/// Content of a plot: columns of a file of observables/.
-struct PlotChoice {
-  const char* file;
-  const char* title;
-  bool log_x;
-  bool log_y;
-  std::vector<const char*> columns;  ///< columns for one run; for several runs the first one is used
-};
-
-const std::vector<PlotChoice>& choices() {
-  static const std::vector<PlotChoice> list = {
-      {"msd", "Mean square displacement", true, true, {"msd"}},
-      {"rotational_msd", "Rotational mean square displacement", true, true, {"rot_msd", "rot_msd_body"}},
-      {"c1", "C1, first-order orientational correlation", true, false, {"c1"}},
-      {"c2", "C2, second-order orientational correlation", true, false, {"c2"}},
-      {"f_self", "F_self", true, false, {"f_self_q1", "f_self_q2", "f_self_q3", "f_self_q4"}},
-      {"velocity", "Velocity correlations", true, false, {"vacf", "wacf"}},
-      {"alpha2", "Non-Gaussian parameter", true, false, {"alpha2"}},
-      {"g_r", "Pair correlations", false, false, {"g", "g2"}},
-      {"s_q", "Structure factor", false, false, {"S"}},
-      {"blocks", "Nematic order", false, false, {"S"}},
-      {"blocks", "Compressibility factor", false, false, {"Z"}},
+/// Columns of a plot that a run has: of one run all of all bodies, of several runs the first one.
+std::vector<std::string> columns_of(const CurvePlot& wanted, const Curves& curves, bool all) {
+  std::vector<std::string> columns;
+  const auto add = [&](const std::string& name) {
+    if (curves.find(name) != nullptr && (all || columns.empty())) columns.push_back(name);
   };
-  return list;
-}
-
-/// Returns the column of the abscissa; for blocks.csv the ends of the blocks.
-std::string x_column(const Curves& curves) {
-  return curves.name == "blocks" ? "end" : Curves::bare_name(curves.columns[0]);
+  for (const CurveLine& line : wanted.lines) {
+    add(line.column);
+    for (std::size_t k = 1; k <= ed::kMostWaveNumbers; ++k) add(fmt::format("{}_q{}", line.column, k));
+  }
+  return columns;
 }
 
 std::string label_of(const Curves& curves, const std::string& column) {
@@ -51,33 +34,35 @@ std::string label_of(const Curves& curves, const std::string& column) {
   return column;
 }
 
-Plot plot_of(const PlotChoice& choice, const std::vector<RunReport>& runs) {
+Plot plot_of(const CurvePlot& wanted, const CurveFile& file, const std::vector<RunReport>& runs) {
   Plot plot;
-  plot.title = choice.title;
-  plot.log_x = choice.log_x;
-  plot.log_y = choice.log_y;
+  plot.title = wanted.title;
+  plot.log_x = wanted.log_x;
+  plot.log_y = wanted.log_y;
+  const std::string x = required_columns(file)[0];
   for (const RunReport& run : runs) {
-    const Curves* curves = run.find(choice.file);
-    if (curves == nullptr || curves->columns.empty()) continue;
-    const std::string x = x_column(*curves);
-    for (std::size_t k = 0; k < (runs.size() == 1 ? choice.columns.size() : 1); ++k) {
-      const std::vector<double>* abscissa = curves->find(x);
-      const std::vector<double>* ordinate = curves->find(choice.columns[k]);
-      if (abscissa == nullptr || ordinate == nullptr) continue;
-      plot.x_label = label_of(*curves, x);
-      plot.y_label = k == 0 ? label_of(*curves, choice.columns[0]) : plot.y_label;
-      plot.series.push_back({runs.size() == 1 ? choice.columns[k] : run.name, *abscissa, *ordinate});
+    const Curves* curves = run.find(wanted.file);
+    if (curves == nullptr) continue;
+    const std::vector<double>* abscissa = curves->find(x);
+    const std::vector<std::string> columns = columns_of(wanted, *curves, runs.size() == 1);
+    if (abscissa == nullptr || columns.empty()) continue;
+    plot.x_label = label_of(*curves, x);
+    plot.y_label = label_of(*curves, columns[0]);
+    for (const std::string& column : columns) {
+      plot.series.push_back({runs.size() == 1 ? column : run.name, *abscissa, *curves->find(column)});
     }
   }
   return plot;
 }
 
-std::string plots(const std::vector<RunReport>& runs) {
+std::string plots_section(const std::vector<RunReport>& runs) {
   std::string html = "<section aria-label=\"Plots\" class=\"plots\">\n";
-  for (const PlotChoice& choice : choices()) {
-    const std::string svg = svg_plot(plot_of(choice, runs));
+  for (const CurvePlot& wanted : plots()) {
+    const CurveFile* file = find_curves(wanted.file);
+    if (file == nullptr) continue;
+    const std::string svg = svg_plot(plot_of(wanted, *file, runs));
     html +=
-        fmt::format("<figure class=\"card\"><figcaption>{}</figcaption>{}</figure>\n", html_text(choice.title),
+        fmt::format("<figure class=\"card\"><figcaption>{}</figcaption>{}</figure>\n", html_text(wanted.title),
                     svg.empty() ? "<p class=\"none\">no values: nothing, or too little, has been measured</p>" : svg);
   }
   return html + "</section>\n";
@@ -156,7 +141,7 @@ std::string static_body(const Report& report) {
   for (const RunReport& run : report.runs) {
     html += fmt::format("<p class=\"path\">{}</p>\n", html_text(run.path.string())) + remarks(run);
   }
-  html += headline_table(report.runs) + plots(report.runs);
+  html += headline_table(report.runs) + plots_section(report.runs);
   for (const RunReport& run : report.runs) {
     html += fmt::format("<h2>{}</h2>\n", html_text(run.title)) + details(run);
   }

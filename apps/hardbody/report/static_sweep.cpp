@@ -1,5 +1,6 @@
 #include "base/number_text.h"
 #include "plot/levels.h"
+#include "registry/observables.h"
 #include "report/page.h"
 #include "report/svg.h"
 #include "run/table.h"
@@ -7,16 +8,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
-#include <string_view>
 
 namespace hardbody {
 namespace {
 
-/// Observables that are drawn if they have values.
-constexpr std::array<std::string_view, 6> kDrawn = {"D_trans", "D_rot", "t_C2_1overe", "Z", "S", "collision_rate"};
 constexpr double kLogarithmic = 4;  ///< ratio of the extremes from which on an axis of positive numbers is logarithmic
 constexpr std::size_t kLeastOfMap = 3;
 
@@ -97,7 +94,7 @@ std::string plot_figure(const SweepReport& sweep, const SweptAxis& axis, std::si
 std::string figures(const SweepReport& sweep) {
   const std::vector<SweptAxis> axes = axes_of(sweep);
   std::string html;
-  for (const std::string_view wanted : kDrawn) {
+  for (const std::string& wanted : keys_by(&Places::map)) {
     const auto named = [&](const Headline& h) { return h.key == wanted; };
     const auto found = std::find_if(sweep.observables.begin(), sweep.observables.end(), named);
     if (found == sweep.observables.end()) continue;

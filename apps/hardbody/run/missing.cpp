@@ -1,10 +1,11 @@
 #include "run/missing.h"
 
-#include "run/phases.h"
+#include "registry/observables.h"
+#include "run/phases/production.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <vector>
 
 namespace hardbody {
 
@@ -28,22 +29,13 @@ std::string missing_text(const ed::Missing& missing, const MissingWords& words) 
   return text;
 }
 
-bool longer_lags_help(const ed::Correlations& r) {
-  const std::array all = {r.D_trans,
-                          r.D_rot,
-                          r.D_rot_body,
-                          r.t_C2_1overe,
-                          r.tau_C2,
-                          r.t_F_1overe,
-                          r.tau_F,
-                          r.D_rot_axis[0],
-                          r.D_rot_axis[1],
-                          r.D_rot_axis[2],
-                          r.t_C2_1overe_axis[0],
-                          r.t_C2_1overe_axis[1],
-                          r.t_C2_1overe_axis[2]};
-  return std::any_of(all.begin(), all.end(), [](const ed::Estimate& e) {
+bool longer_lags_help(const ed::GroupResults& results) {
+  const auto help = [](const ed::Estimate& e) {
     return !std::isfinite(e.value) && ed::longer_lags_help(e.missing.reason);
+  };
+  return std::any_of(observables().begin(), observables().end(), [&](const Observable& o) {
+    const std::vector<ed::Estimate> numbers = numbers_of(o, {results});
+    return std::any_of(numbers.begin(), numbers.end(), help);
   });
 }
 

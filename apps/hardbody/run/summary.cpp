@@ -2,12 +2,11 @@
 
 #include "base/version.h"
 #include "io/json_values.h"
-#include "run/estimate_json.h"
+#include "run/observables_json.h"
+#include "run/part.h"
 
 #include <nlohmann/json.hpp>
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -19,32 +18,18 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// What D_rot is divided by.
-std::string rotation_divisor(const Config& config) {
-  if (config.all_of_revolution()) return "/ 4, two components, spin excluded";
-  const bool none = std::all_of(config.species.begin(), config.species.end(),
-                                [](const SpeciesConfig& s) { return s.rotation_axes() == 3; });
-  if (none) return "/ 6, three components";
-  return "/ (2 c), c the number of components: 2 of bodies of revolution, spin excluded, 3 of others, of all their "
-         "mean";
-}
-
-Json units(const Config& config) {
-  return {{"length",
-           config.mixture ? "l = 1: semi-axes are taken as they are given" : "l = (a b c)^(1/3) of the semi-axes = 1"},
-          {"mass", config.mixture ? "m = 1: masses are taken as they are given" : "m = 1"},
-          {"energy", "kT = 1"},
-          {"time", "l sqrt(m/kT)"},
-          {"D_trans", "slope of the MSD / 6"},
-          {"D_rot", "slope of <|integral of omega dt|^2> " + rotation_divisor(config) + ", world frame"},
-          {"D_rot_body", "the same with the components along the body's axes accumulated"},
-          {"collision_rate", "collisions a body takes part in, a time unit"},
-          {"pressure_tensor", "P V / (N kT), of trace 3 Z"},
-          {"director", "eigenvector of Q of its largest eigenvalue; the error in radians"},
-          {"wave_numbers", "of F_self, 1/l; tau_F, beta_F, t_F_1overe are of the first"},
-          {"fit_windows", "from and to, l sqrt(m/kT)"},
-          {"momentum_drift", config.mixture ? "|P_end - P_start| / (N sqrt(m kT)), m the mean mass"
-                                            : "|P_end - P_start| / (N sqrt(m kT))"}};
+Json units(const Config& config, const Part& part) {
+  Json json = {{"length", config.mixture ? "l = 1: semi-axes are taken as they are given"
+                                         : "l = (a b c)^(1/3) of the semi-axes = 1"},
+               {"mass", config.mixture ? "m = 1: masses are taken as they are given" : "m = 1"},
+               {"energy", "kT = 1"},
+               {"time", "l sqrt(m/kT)"}};
+  for (const Observable* o : observables_by(&Places::units)) json[o->key] = o->convention(part);
+  json["wave_numbers"] = kWaveNumbersConvention;
+  json["fit_windows"] = "from and to, l sqrt(m/kT)";
+  json["momentum_drift"] =
+      config.mixture ? "|P_end - P_start| / (N sqrt(m kT)), m the mean mass" : "|P_end - P_start| / (N sqrt(m kT))";
+  return json;
 }
 
 Json counters(const ed::Counters& c) {
@@ -63,28 +48,6 @@ Json counters(const ed::Counters& c) {
           {"parting_contacts", c.parting_contacts}};
 }
 
-Json axes(const std::array<ed::Estimate, 3>& estimates, const MissingWords& words) {
-  return {estimate_json(estimates[0], words), estimate_json(estimates[1], words), estimate_json(estimates[2], words)};
-}
-
-Json matrix_json(const Eigen::Matrix3d& m) {
-  Json rows = Json::array();
-  for (int i = 0; i < 3; ++i) rows.push_back({number_json(m(i, 0)), number_json(m(i, 1)), number_json(m(i, 2))});
-  return rows;
-}
-
-/// Director with S, whose reason it has where it is missing.
-Json director(const ed::Director& d, const ed::Estimate& S, const MissingWords& words) {
-  if (!d.axis.allFinite()) return estimate_json(ed::Estimate::none(S.missing), words);
-  return {{"value", list_json(d.axis)}, {"error", number_json(d.error)}};
-}
-
-/// Pressure tensor with Z, whose reason it has where it is missing.
-Json pressure(const ed::TensorEstimate& P, const ed::Estimate& Z, const MissingWords& words) {
-  if (!P.value.allFinite()) return estimate_json(ed::Estimate::none(Z.missing), words);
-  return {{"value", matrix_json(P.value)}, {"error", matrix_json(P.error)}};
-}
-
 Json window(const ed::FitWindow& w) {
   return std::isfinite(w.from) ? Json{w.from, w.to} : Json(nullptr);
 }
@@ -92,44 +55,6 @@ Json window(const ed::FitWindow& w) {
 /// The lags that fits have used.
 Json fit_windows(const ed::Correlations& r) {
   return {{"D", window(r.window_D)}, {"C2", window(r.window_C2)}, {"F", window(r.window_F)}};
-}
-
-/// Of bodies without an axis of revolution: about body x, y, z.
-void add_axes(Json& json, const ed::GroupResults& r, const MissingWords& words) {
-  json["kT_axes"] = axes(r.axis_kT, words);
-  json["D_rot_axes"] = axes(r.D_rot_axis, words);
-  json["t_C2_1overe_axes"] = axes(r.t_C2_1overe_axis, words);
-}
-
-/// What is measured of all bodies and of those of a species alike.
-template <class Measured>
-void add_measured(Json& json, const Measured& r, const MissingWords& words) {
-  json["D_trans"] = estimate_json(r.D_trans, words);
-  json["D_rot"] = estimate_json(r.D_rot, words);
-  json["D_rot_body"] = estimate_json(r.D_rot_body, words);
-  json["S"] = estimate_json(r.S, words);
-  json["director"] = director(r.director, r.S, words);
-  add_decays_json(json, r, words);
-  json["kT_trans"] = estimate_json(r.translational_kT, words);
-  json["kT_rot"] = estimate_json(r.rotational_kT, words);
-}
-
-Json observables(const ed::Results& r, const Config& config, const MissingWords& words) {
-  Json json = {{"collision_rate", estimate_json(r.collision_rate, words)},
-               {"Z", estimate_json(r.Z, words)},
-               {"pressure_tensor", pressure(r.pressure, r.Z, words)}};
-  add_measured(json, r, words);
-  if (!config.mixture && !config.all_of_revolution())
-    add_axes(json, r.groups.empty() ? ed::GroupResults{} : r.groups[0], words);
-  return json;
-}
-
-/// Of one species of a mixture.
-Json observables(const ed::GroupResults& r, const SpeciesConfig& species, const MissingWords& words) {
-  Json json = {{"collision_rate", estimate_json(r.collision_rate, words)}};
-  add_measured(json, r, words);
-  if (species.rotation_axes() == 3) add_axes(json, r, words);
-  return json;
 }
 
 /// kind, aspect_ratio, semi_axes, exponents of a body of nominal size.
@@ -165,7 +90,9 @@ Json sizes(const SpeciesConfig& species) {
           {"standard_deviation", drawn.deviation},         {"smallest", drawn.smallest}, {"largest", drawn.largest}};
 }
 
-Json species_list(const Config& config, const ed::Results& results, const MissingWords& words) {
+Json species_list(const RunRecord& record, const MissingWords& words) {
+  const Config& config = record.config;
+  const ed::Results& results = record.production.results;
   Json all = Json::array();
   for (std::size_t k = 0; k < config.species.size(); ++k) {
     const SpeciesConfig& species = config.species[k];
@@ -176,7 +103,7 @@ Json species_list(const Config& config, const ed::Results& results, const Missin
     json["spins"] = species.body.spins;
     json["sizes"] = sizes(species);
     const ed::GroupResults group = k < results.groups.size() ? results.groups[k] : ed::GroupResults{};
-    json["observables"] = observables(group, species, words);
+    json["observables"] = observables_json(part_of_species(record, k, group), words, Measured::in_run);
     json["fit_windows"] = fit_windows(group);
     all.push_back(std::move(json));
   }
@@ -208,6 +135,7 @@ std::string summary_json(const RunRecord& record) {
   const Config& config = record.config;
   const Production& production = record.production;
   const MissingWords words = missing_words(record);
+  const Part whole = part_of_all(record);
   Json json;
   json["version"] = version();
   json["seed"] = config.seed;
@@ -221,10 +149,10 @@ std::string summary_json(const RunRecord& record) {
   json["audit"] = {{"minimum_distance", number_json(record.audit.minimum_distance)},
                    {"energy_relative_drift", number_json(record.energy_relative_drift)},
                    {"momentum_drift", number_json(record.momentum_drift)}};
-  json["observables"] = observables(production.results, config, words);
+  json["observables"] = observables_json(whole, words, Measured::in_run);
   json["fit_windows"] = fit_windows(production.results);
   json["wave_numbers"] = production.wave_numbers;
-  if (config.mixture) json["species"] = species_list(config, production.results, words);
+  if (config.mixture) json["species"] = species_list(record, words);
   json["equilibrated"] = record.equilibration.reached();
   json["equilibration"] = equilibration(record.equilibration.relaxation);
   if (config.target_error) {
@@ -240,7 +168,7 @@ std::string summary_json(const RunRecord& record) {
       {"kind", ed::to_string(config.finder)}, {"distance", ed::to_string(config.distance)}, {"eps_d", config.eps_d}};
   json["neighbours"] = {{"kind", ed::to_string(config.neighbour_search())}, {"envelope", production.envelope}};
   json["cpu_features"] = cpu_features();
-  json["units"] = units(config);
+  json["units"] = units(config, whole);
   return json.dump(2) + "\n";
 }
 

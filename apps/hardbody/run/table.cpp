@@ -3,6 +3,7 @@
 #include "base/version.h"
 #include "io/run_directory.h"
 #include "run/missing.h"
+#include "run/part.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -24,57 +25,26 @@ int decimals_of(double error) {
 }
 
 /// A line of the table; without a value, the reason.
-std::string number_line(const std::string& name, const ed::Estimate& value, const char* unit,
-                        const std::string& meaning) {
+std::string number_line(const std::string& name, const ed::Estimate& value, const std::string& unit,
+                        const std::string& remark) {
   if (!std::isfinite(value.value)) return fmt::format("  {:<15} - ({})\n", name, ed::describe(value.missing));
-  return fmt::format("  {:<15} {:<22} {:<14} {}\n", name, format_estimate(value), unit, meaning);
+  return fmt::format("  {:<15} {:<22} {:<14} {}\n", name, format_estimate(value), unit, remark);
 }
 
-/// How many components of its rotation D_rot counts, and what it divides by.
-std::string rotation_text(double rotation_axes) {
-  if (rotation_axes == 2) return "<|integral of omega|^2> / 4t: 2 components, world frame";
-  if (rotation_axes == 3) return "<|integral of omega|^2> / 6t: 3 components, world frame";
-  return fmt::format("<|integral of omega|^2> / {:.4g}t: {:.4g} components on average, world frame", 2 * rotation_axes,
-                     rotation_axes);
-}
-
-/// What all bodies have, and each species; F_self is measured at `wave_numbers`.
-std::string diffusion_lines(const ed::Correlations& r, double rotation_axes, const std::vector<double>& wave_numbers) {
-  const std::string f_self =
-      wave_numbers.empty() ? "F_self" : fmt::format("F_self(q, t) at q = {:.4g} / l", wave_numbers[0]);
-  return number_line("D_trans", r.D_trans, "l sqrt(kT/m)", "MSD / 6t") +
-         number_line("D_rot", r.D_rot, "sqrt(kT/m)/l", rotation_text(rotation_axes)) +
-         number_line("D_rot_body", r.D_rot_body, "sqrt(kT/m)/l", "the same, components along the body's axes") +
-         number_line("t_C2(1/e)", r.t_C2_1overe, "l sqrt(m/kT)",
-                     rotation_axes == 2 ? "<P2(u(t).u(0))> = 1/e" : "<P2(u(t).u(0))> = 1/e, u body z") +
-         number_line("tau_C2", r.tau_C2, "l sqrt(m/kT)", "of A exp[-(t/tau)^beta]") +
-         number_line("beta_C2", r.beta_C2, "1", "of the same") +
-         number_line("t_F(1/e)", r.t_F_1overe, "l sqrt(m/kT)", f_self + " = 1/e") +
-         number_line("tau_F", r.tau_F, "l sqrt(m/kT)", "of A exp[-(t/tau)^beta]") +
-         number_line("beta_F", r.beta_F, "1", "of the same");
-}
-
-/// About each body axis, of bodies without an axis of revolution.
-std::string axis_lines(const ed::GroupResults& r) {
+/// All observables of a part.
+std::string observable_lines(const Part& part) {
+  const bool body_axes = part.body_axes && (part.whole == nullptr || !part.whole->groups.empty());
   std::string text;
-  constexpr const char* kNames[] = {"x", "y", "z"};
-  for (std::size_t k = 0; k < 3; ++k) {
-    text += number_line(fmt::format("kT_rot about {}", kNames[k]), r.axis_kT[k], "kT", "on N: one body axis");
-  }
-  for (std::size_t k = 0; k < 3; ++k) {
-    text += number_line(fmt::format("D_rot about {}", kNames[k]), r.D_rot_axis[k], "sqrt(kT/m)/l",
-                        "that component / 2t, body axis");
-  }
-  for (std::size_t k = 0; k < 3; ++k) {
-    text += number_line(fmt::format("t_C2(1/e) of {}", kNames[k]), r.t_C2_1overe_axis[k], "l sqrt(m/kT)",
-                        "u that body axis");
+  for (const Observable* o : observables_by(&Places::reading)) {
+    const bool axes = is_per_axis(*o);
+    const std::string remark = o->remark ? o->remark(part) : "";
+    if (remark.empty() || (axes && !body_axes)) continue;
+    const std::vector<ed::Estimate> numbers = numbers_of(*o, part);
+    for (std::size_t k = 0; k < numbers.size(); ++k) {
+      text += number_line(axes ? fmt::format("{} {}", o->label, kBodyAxes[k]) : o->label, numbers[k], o->unit, remark);
+    }
   }
   return text;
-}
-
-std::string temperature_lines(const ed::Estimate& translation, const ed::Estimate& rotation, const char* translational,
-                              const std::string& rotational) {
-  return number_line("kT_trans", translation, "kT", translational) + number_line("kT_rot", rotation, "kT", rotational);
 }
 
 std::string axes_text(const ed::BodyShape& shape) {
@@ -130,14 +100,8 @@ std::string species_numbers(const RunRecord& record) {
   const std::vector<ed::GroupResults>& groups = record.production.results.groups;
   if (!record.config.mixture) return text;
   for (std::size_t k = 0; k < groups.size(); ++k) {
-    const SpeciesConfig& species = record.config.species[k];
-    const int axes = species.rotation_axes();
     text += '\n';
-    text += species_text(species, k) + diffusion_lines(groups[k], axes, record.production.wave_numbers) +
-            number_line("S", groups[k].S, "1", "nematic order of this species") +
-            temperature_lines(groups[k].translational_kT, groups[k].rotational_kT,
-                              "on its share of 3N - 3 degrees of freedom", axes == 2 ? "on 2 a body" : "on 3 a body");
-    if (axes == 3) text += axis_lines(groups[k]);
+    text += species_text(record.config.species[k], k) + observable_lines(part_of_species(record, k, groups[k]));
   }
   return text;
 }
@@ -151,19 +115,8 @@ std::string longer_lags_line(const RunRecord& record) {
 }
 
 std::string numbers(const RunRecord& record) {
-  const ed::Results& r = record.production.results;
-  const Config& config = record.config;
-  double rotation_axes = 0;
-  for (const SpeciesConfig& s : config.species) rotation_axes += s.rotation_axes() * s.number;
-  std::string text =
-      number_line("collision rate", r.collision_rate, "sqrt(kT/m)/l", "collisions of a body in a time unit") +
-      number_line("Z", r.Z, "1", "P V / (N kT)") +
-      diffusion_lines(r, rotation_axes / config.number, record.production.wave_numbers) +
-      number_line("S", r.S, "1", "nematic order: largest eigenvalue of Q, by frame") +
-      temperature_lines(r.translational_kT, r.rotational_kT, "on 3N - 3 degrees of freedom",
-                        fmt::format("on {}", freedoms_text(std::lround(rotation_axes), config.number)));
-  if (!config.mixture && !config.all_of_revolution() && !r.groups.empty()) text += axis_lines(r.groups[0]);
-  return text + species_numbers(record) + "  (+- one standard error, from blocks)\n" + longer_lags_line(record);
+  return observable_lines(part_of_all(record)) + species_numbers(record) + "  (+- one standard error, from blocks)\n" +
+         longer_lags_line(record);
 }
 
 /// Empty for a run without rescues.
@@ -200,11 +153,6 @@ std::string audit_lines(const RunRecord& record) {
 }
 
 }  // namespace
-
-std::string freedoms_text(long freedoms, int number) {
-  if (freedoms % number == 0) return fmt::format("{}N", freedoms / number);
-  return fmt::format("{}", freedoms);
-}
 
 std::string format_estimate(const ed::Estimate& estimate) {
   if (!std::isfinite(estimate.value)) return "-";

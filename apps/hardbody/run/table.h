@@ -13,9 +13,6 @@ namespace hardbody {
 /// missing value.
 std::string format_estimate(const ed::Estimate& estimate);
 
-/// "2N", "3N", or the number itself.
-std::string freedoms_text(long freedoms, int number);
-
 /// A run's headline numbers, with units and conventions, as shown on the terminal; `files`: where the rest was written.
 std::string results_table(const RunRecord& record, const std::vector<std::string>& files);
 

@@ -2,6 +2,7 @@
 
 #include "io/run_directory.h"
 #include "io/text_file.h"
+#include "registry/observables.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -25,8 +26,9 @@ std::string printed(const Json& json) {
 std::vector<PrintedEstimate> scalars_of(const Json& observables) {
   std::vector<PrintedEstimate> list;
   for (const auto& [name, estimate] : observables.items()) {
+    const Observable* known = find_observable(name);
     const bool scalar = estimate.is_object() && estimate.contains("value") && estimate.contains("error") &&
-                        !estimate["value"].is_array() && name != "director" && name != "pressure_tensor";
+                        !estimate["value"].is_array() && (known == nullptr || is_number(*known));
     if (!scalar) continue;
     list.push_back({name, printed(estimate["value"]), printed(estimate["error"]), estimate.value("missing", "")});
   }
@@ -110,7 +112,7 @@ std::string header(const std::vector<std::string>& keys, const std::vector<std::
   return text + ",equilibrated,status,message,wall_seconds,collisions_per_second\n";
 }
 
-/// Returns "D_trans: bodies have moved ..; D_rot, D_rot_body: ..": names with the same reason are listed together.
+/// Returns "A: bodies have moved ..; B, C: ..": names with the same reason are listed together.
 std::string missing_text(const std::vector<PrintedEstimate>& observables) {
   std::vector<std::pair<std::string, std::string>> reasons;  // names, reason
   for (const PrintedEstimate& e : observables) {

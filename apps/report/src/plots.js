@@ -48,9 +48,9 @@ function fitWindow(run, name) {
 const inside = (x, [from, to]) => x >= from * (1 - 1e-9) && x <= to * (1 + 1e-9);
 
 /** The straight line of a diffusion coefficient over the window it was fitted in, through the middle of the points. */
-function slope(run, base, key, factor, label) {
+function slope(run, base, key, windowName, factor, label) {
   const D = value(run, key);
-  const window = fitWindow(run, 'D');
+  const window = fitWindow(run, windowName);
   if (!base || D === null || !window) return [];
   const known = base.x.map((x, k) => (inside(x, window) && base.y[k] !== null ? k : -1)).filter((k) => k >= 0);
   if (!known.length) return [];
@@ -78,99 +78,42 @@ function stretched(run, base, tauKey, betaKey, name, label) {
   return [{ label, fit: true, x: base.x, y }];
 }
 
-const time = { label: 't  [l √(m/kT)]', log: true };
-
-function msd(run) {
-  const all = family(run, 'msd', 'msd', 'MSD');
-  return {
-    id: 'msd', title: 'Mean square displacement', about: 'Of the centres. A dashed line has the slope 6 D_trans.',
-    x: time, y: { label: '⟨Δr²⟩  [l²]', log: true },
-    series: [...all.slice(0, 1), ...slope(run, all[0], 'D_trans', 6, '6 D_trans t'), ...all.slice(1)],
-  };
+/** The fit that a plot's line asks for, from the run's values. */
+function fitted(run, base, fit) {
+  if (!fit) return [];
+  const [key, second] = fit.keys;
+  if (fit.kind === 'mean') return mean(run, base, key, fit.label);
+  if (fit.kind === 'stretched') return stretched(run, base, key, second, fit.window, fit.label);
+  const factor = fit.factor || 2 * run.rotational_freedoms / run.number;
+  return slope(run, base, key, fit.window, factor, `${short(factor, 3)} ${fit.label}`);
 }
 
-function rotationalMsd(run) {
-  const world = family(run, 'rotational_msd', 'rot_msd', 'world frame');
-  const body = family(run, 'rotational_msd', 'rot_msd_body', 'body frame');
-  const components = run.rotational_freedoms / run.number;
-  const factor = 2 * components;
-  return {
-    id: 'rotational_msd', title: 'Rotational mean square displacement',
-    about: 'Of the integral of the angular velocity, its components taken in the world or along the body’s axes.',
-    x: time, y: { label: '⟨ΔΦ²⟩  [rad²]', log: true },
-    series: [...world.slice(0, 1), ...slope(run, world[0], 'D_rot', factor, `${short(factor, 3)} D_rot t`),
-      ...body.slice(0, 1), ...world.slice(1), ...body.slice(1)],
-  };
+/** The mean over the run, as a line. */
+function mean(run, base, key, label) {
+  const level = value(run, key);
+  if (!base || level === null) return [];
+  return [{ label, fit: true, x: base.x, y: base.x.map(() => level) }];
 }
 
-function c1(run) {
-  return {
-    id: 'c1', title: 'Orientation, first order', about: 'C₁: how far an axis still points where it pointed.',
-    x: time, y: { label: 'C₁ = ⟨u(t)·u(0)⟩' }, series: family(run, 'c1', 'c1', 'C₁'),
-  };
-}
-
-function c2(run) {
-  const all = family(run, 'c2', 'c2', 'C₂');
-  return {
-    id: 'c2', title: 'Orientation, second order', about: 'C₂ decides what is relaxed: the fit leaves the ballistic part out.',
-    x: time, y: { label: 'C₂ = ⟨P₂(u(t)·u(0))⟩' },
-    series: [...all.slice(0, 1), ...stretched(run, all[0], 'tau_C2', 'beta_C2', 'C2', 'A exp[−(t/τ)ᵝ]'), ...all.slice(1)],
-  };
-}
-
-function fSelf(run) {
+/** F_self at each wave number, of all bodies and of each species. */
+function scattering(run, file, stem) {
   const numbers = run.summary?.wave_numbers ?? [];
   const all = [];
   for (let k = 1; k <= 16; k += 1) {
     const q = Number.isFinite(numbers[k - 1]) ? `q l = ${short(numbers[k - 1], 3)}` : `q${k}`;
-    const add = (column, rest) => all.push(...series(run, 'f_self', column, q + rest).map((s) => ({ ...s, key: `wave number ${k}${rest}` })));
-    add(`f_self_q${k}`, '');
-    for (let s = 1; s <= run.species.length; s += 1) add(`f_self_${s}_q${k}`, `, species ${s}`);
+    const add = (column, rest) => all.push(...series(run, file, column, q + rest).map((s) => ({ ...s, key: `wave number ${k}${rest}` })));
+    add(`${stem}_q${k}`, '');
+    for (let s = 1; s <= run.species.length; s += 1) add(`${stem}_${s}_q${k}`, `, species ${s}`);
   }
-  return {
-    id: 'f_self', title: 'Self-intermediate scattering',
-    about: 'F_self at four wave numbers. The first wave number is that of the first peak of S(q); a dashed line is its fit.',
-    x: time, y: { label: 'Fₛ(q, t)' },
-    series: [...all.slice(0, 1), ...stretched(run, all[0], 'tau_F', 'beta_F', 'F', 'A exp[−(t/τ)ᵝ]'), ...all.slice(1)],
-  };
+  return all;
 }
 
 /** Over its value at t = 0, which the file has in its first row. */
-function normalised(run, column, label) {
-  return series(run, 'velocity', column, label).map((s) => {
+function normalised(run, file, column, label) {
+  return series(run, file, column, label).map((s) => {
     const first = s.y[0];
     return { ...s, y: s.y.map((y) => (y === null ? null : y / first)), error: s.error?.map((e) => (e === null ? null : e / first)) };
   });
-}
-
-function velocity(run) {
-  return {
-    id: 'velocity', title: 'Velocity correlations', about: 'Over their values at t = 0. Below zero: bodies bounce back.',
-    x: time, y: { label: '⟨v(t)·v(0)⟩ / ⟨v²⟩' },
-    series: [...normalised(run, 'vacf', 'velocity'), ...normalised(run, 'wacf', 'angular velocity')],
-  };
-}
-
-function alpha2(run) {
-  return {
-    id: 'alpha2', title: 'Non-Gaussian parameter', about: '0 for displacements that are distributed as in free diffusion.',
-    x: time, y: { label: 'α₂ = 3⟨Δr⁴⟩ / 5⟨Δr²⟩² − 1' }, series: family(run, 'alpha2', 'alpha2', 'α₂'),
-  };
-}
-
-function pairs(run) {
-  return {
-    id: 'g_r', title: 'Pair correlations', about: 'g of the centres; g₂ the mean P₂ of the angle between bodies r apart.',
-    x: { label: 'r  [l]' }, y: { label: 'g(r), g₂(r)' }, series: [...family(run, 'g_r', 'g', 'g'), ...family(run, 'g_r', 'g2', 'g₂')],
-  };
-}
-
-function structure(run) {
-  return {
-    id: 's_q', title: 'Structure factor', about: 'Of the centres, at wave vectors of the box.',
-    x: { label: 'q  [1/l]' }, y: { label: 'S(q)' }, series: family(run, 's_q', 'S', 'S(q)'),
-  };
 }
 
 /** Averages over stretches of the run, against their middle. */
@@ -182,51 +125,42 @@ function blocks(run, column, label) {
   return [{ label, x: found.x.map((begin, k) => (begin + end[k]) / 2), y: found.y, error: null }];
 }
 
-/** The mean over the run, as a line. */
-function mean(run, base, key) {
-  const level = value(run, key);
-  if (!base || level === null) return [];
-  return [{ label: 'mean', fit: true, x: base.x, y: base.x.map(() => level) }];
-}
-
-const runTime = { label: 't in production  [l √(m/kT)]' };
-
-function order(run) {
-  const all = blocks(run, 'S', 'S');
-  return {
-    id: 'order', title: 'Nematic order in time', about: 'Largest eigenvalue of Q, averaged over stretches of the run.',
-    x: runTime, y: { label: 'S' }, series: [...all, ...mean(run, all[0], 'S')],
-  };
-}
-
-function pressure(run) {
-  const all = blocks(run, 'Z', 'Z');
-  return {
-    id: 'pressure', title: 'Compressibility factor in time', about: 'A drift would mean that the run is not equilibrated.',
-    x: runTime, y: { label: 'Z = PV / NkT' }, series: [...all, ...mean(run, all[0], 'Z')],
-  };
-}
-
 /** Kinetic energy, which is all that there is, against its first value: it is conserved to rounding. */
 function energy(run) {
   const translation = blocks(run, 'kT_trans', 'E')[0];
   const rotation = blocks(run, 'kT_rot', 'E')[0];
-  let series = [];
-  if (translation && rotation) {
-    const energies = translation.y.map((kT, k) => {
-      if (kT === null || rotation.y[k] === null) return null;
-      return 0.5 * ((3 * run.number - 3) * kT + run.rotational_freedoms * rotation.y[k]);
-    });
-    const first = energies.find((E) => E !== null);
-    series = [{ label: 'E(t) / E(0) − 1', x: translation.x, y: energies.map((E) => (E === null ? null : E / first - 1)), error: null }];
-  }
-  return {
-    id: 'energy', title: 'Energy drift', about: 'Nothing but rounding: collisions are elastic and motion between them is exact.',
-    x: runTime, y: { label: 'E(t) / E(0) − 1' }, series,
-  };
+  if (!translation || !rotation) return [];
+  const energies = translation.y.map((kT, k) => {
+    if (kT === null || rotation.y[k] === null) return null;
+    return 0.5 * ((3 * run.number - 3) * kT + run.rotational_freedoms * rotation.y[k]);
+  });
+  const first = energies.find((E) => E !== null);
+  return [{ label: 'E(t) / E(0) − 1', x: translation.x, y: energies.map((E) => (E === null ? null : E / first - 1)), error: null }];
 }
 
-const makers = [msd, rotationalMsd, c2, c1, fSelf, velocity, alpha2, pairs, structure, pressure, order, energy];
+/** The curves of one line of a plot: that of all bodies first. */
+function curvesOf(run, plot, line) {
+  if (plot.file === 'blocks') return blocks(run, line.column, line.label);
+  if (plot.normalised) return normalised(run, plot.file, line.column, line.label);
+  if (line.wave_numbers) return scattering(run, plot.file, line.column);
+  return family(run, plot.file, line.column, line.label);
+}
+
+/** Where there are fits, curves of all bodies with their fits come first, then those of species and body axes. */
+function seriesOf(run, plot) {
+  if (!plot.file) return energy(run);
+  const families = plot.lines.map((line) => curvesOf(run, plot, line));
+  if (!plot.lines.some((line) => line.fit)) return families.flat();
+  const heads = families.flatMap((all, k) => [...all.slice(0, 1), ...fitted(run, all[0], plot.lines[k].fit)]);
+  return [...heads, ...families.flatMap((all) => all.slice(1))];
+}
+
+/** What is drawn: the program's registry of plots. */
+let registry = [];
+
+export function setPlots(plots) {
+  registry = plots;
+}
 
 function hasPoints(s) {
   return s.y.some((y) => y !== null && Number.isFinite(y));
@@ -234,9 +168,8 @@ function hasPoints(s) {
 
 /** Without series that have no value. */
 export function plotsOf(run) {
-  return makers.map((make) => {
-    const plot = make(run);
-    plot.series = plot.series.filter(hasPoints);
+  return registry.map((entry) => {
+    const plot = { ...entry, series: seriesOf(run, entry).filter(hasPoints) };
     // A fit takes the colour of its curve, and its key.
     plot.series.forEach((s, k) => {
       const base = s.fit ? plot.series[k - 1] : null;

@@ -3,6 +3,7 @@ import 'uplot/dist/uPlot.min.css';
 import './report.css';
 import { charts } from './chart.js';
 import { h } from './dom.js';
+import { setPlots } from './plots.js';
 import { page, runPage, severalPage } from './run_page.js';
 import { sweepPage } from './sweep_page.js';
 import { themeSwitch } from './theme.js';
@@ -10,6 +11,9 @@ import { themeSwitch } from './theme.js';
 const data = JSON.parse(document.getElementById('data').textContent);
 
 page.title = data.title;
+page.card = data.card;
+page.opened = data.opened;
+setPlots(data.plots);
 
 const kSections = data.sweep ? [['results', 'Map'], ['plots', 'Point'], ['settings', 'Table']]
   : [['results', 'Results'], ['bodies', 'Bodies'], ['plots', 'Plots'], ['settings', 'Settings']];

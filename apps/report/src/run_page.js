@@ -5,8 +5,8 @@ import { bytes, duration, estimate, grouped, short } from './format.js';
 import { comparisonsOf, plotsOf } from './plots.js';
 import { View3d } from './view3d.js';
 
-/** What the page holds, for whoever inspects it. */
-export const page = { views: [] };
+/** What the page holds, for whoever inspects it; `card`: keys of the results that are shown first. */
+export const page = { views: [], card: [] };
 
 // ---- Head ------------------------------------------------------------------------------------------------------------
 
@@ -34,12 +34,10 @@ export function sheet(headlines, missing) {
   }));
 }
 
-const kFirst = ['Z', 'D_trans', 'D_rot', 'D_rot_body', 't_C2_1overe', 't_F_1overe', 'S', 'collision_rate', 'kT_trans', 'kT_rot'];
-
 function resultsCard(run) {
   const missing = run.headlines.some((line) => line.value !== null) ? undefined : 'none yet';
-  const first = kFirst.map((key) => run.headlines.find((line) => line.key === key)).filter(Boolean);
-  const rest = run.headlines.filter((line) => !kFirst.includes(line.key));
+  const first = page.card.map((key) => run.headlines.find((line) => line.key === key)).filter(Boolean);
+  const rest = run.headlines.filter((line) => !page.card.includes(line.key));
   if (!run.headlines.length) {
     return h('article', { class: 'card results' }, h('header', {}, h('h3', {}, 'Results')), h('p', { class: 'none' }, 'None yet: this run has not been finished.'));
   }

@@ -11,8 +11,6 @@ const kNames = {
 };
 const kSymbols = { 'shape.aspect_ratio': 'X₀', 'system.packing_fraction': 'φ', 'system.number': 'N' };
 const kMostCuts = 8;
-/** What is looked at first, if it was measured. */
-const kFirst = ['D_trans', 'Z', 'D_rot'];
 
 function keyName(key) {
   return kNames[key] ?? key.slice(key.lastIndexOf('.') + 1).replaceAll('_', ' ');
@@ -53,11 +51,11 @@ class SweepPage {
     return this.sweep.points.map((p) => p.values[this.observable]?.[0]).filter((v) => Number.isFinite(v));
   }
 
-  /** One that has values. */
+  /** One that has values; of those that the program names to be opened, if it can be. */
   firstObservable() {
     const { observables, points } = this.sweep;
     const known = (k) => points.some((p) => Number.isFinite(p.values[k]?.[0]));
-    const wanted = kFirst.map((key) => observables.findIndex((o) => o.key === key)).filter((k) => k >= 0);
+    const wanted = page.opened.map((key) => observables.findIndex((o) => o.key === key)).filter((k) => k >= 0);
     return [...wanted, ...observables.keys()].find(known) ?? 0;
   }
 

@@ -143,30 +143,28 @@ struct Correlations {
 
 /// Results for the bodies of one group.
 struct GroupResults : Correlations {
-  Estimate collision_rate;  ///< collisions a body of the group and time unit, with bodies of any group
-  /// Temperature from 3 (N_k - M_k / M) degrees of freedom, which zero total momentum leaves the group; M_k is the
-  /// group's part of the total mass M.
+  /// Collisions that a body of the group takes part in, with bodies of any group, per time unit.
+  Estimate collision_rate;
+  /// Temperature on 3 (N_k - M_k / M) degrees of freedom, M_k the group's share of all mass M: what momentum zero
+  /// leaves it.
   Estimate translational_kT;
   Estimate rotational_kT;
-  std::array<Estimate, 3> axis_kT{};  ///< temperature of the rotation about body x, y, z; NaN if there is none
-  Estimate S;
+  std::array<Estimate, 3> axis_kT{};  ///< temperature of the rotation about body x, y, z; NaN where there is none
+  Estimate S;                         ///< largest eigenvalue of Q, averaged over frames
   Director director;
 };
 
-/// Results of a run. Errors are standard errors over blocks. The correlations are averages over all bodies; if some
-/// rotate about two axes and others about three, rot_msd is divided by twice their mean number.
-struct Results : Correlations {
+/// Results for all bodies, and for each group. Errors are standard errors over blocks. The correlations are averages
+/// over all bodies; where some rotate about two axes and others about three, rot_msd is divided by twice their mean
+/// number. The collision rate is 2 N_coll / (N t), the translational temperature is on 3 N - 3 degrees of freedom, and
+/// axis_kT is that of a single group, NaN for several.
+struct Results : GroupResults {
   double duration = 0;
-  Estimate collision_rate;  ///< collisions a body and time unit: 2 N_coll / (N t)
-  Estimate Z;               ///< 1 + sum of r_AB.dp / (3 N kT t), kT the measured translational temperature
-  Estimate translational_kT;
-  Estimate rotational_kT;
-  Estimate S;  ///< largest eigenvalue of Q, averaged over frames
-  Director director;
+  Estimate Z;  ///< 1 + sum of r_AB.dp / (3 N kT t), kT the measured translational temperature
   /// P V / (N kT): K + sum of r_AB dp^T / (N kT t), symmetrised, with K = 3 sum m v v^T / sum m v^2. Its trace is 3 Z.
   TensorEstimate pressure;
   std::vector<BlockRow> blocks;
-  std::vector<GroupResults> groups;  ///< results of each group, also if there is only one
+  std::vector<GroupResults> groups;  ///< also a single group
 };
 
 /// Maximum number of wave numbers at which F_self is measured.

@@ -55,12 +55,15 @@ FrameSums order_and_speeds(const Snapshot& snapshot, BodyRange range) {
   return result;
 }
 
-FrameSums temperatures(const System& system, BodyRange range, const Freedoms& freedoms) {
+System part_of(const System& system, BodyRange range) {
   System part;
   part.species = system.species;
   part.bodies.assign(system.bodies.begin() + static_cast<std::ptrdiff_t>(range.begin),
                      system.bodies.begin() + static_cast<std::ptrdiff_t>(range.end));
-  const KineticState kinetic = kinetic_state(part);
+  return part;
+}
+
+FrameSums temperatures(const KineticState& kinetic, const Freedoms& freedoms) {
   FrameSums result;
   result.translational_kT = 2 * kinetic.translational_energy / freedoms.translational;
   result.rotational_kT = 2 * kinetic.rotational_energy / freedoms.rotational;

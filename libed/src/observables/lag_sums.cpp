@@ -3,16 +3,46 @@
 #include "base/legendre.h"
 #include "base/sincos.h"
 
+#include <bit>
 #include <cmath>
+#include <cstdint>
 
 namespace ed::internal {
 namespace {
 
 using Eigen::Vector3d;
 
+constexpr double kSmall = 1e-4;  ///< below it sin(x) / x is 1 - x^2 / 6 to rounding
+
 /// sin(x) / x; the rounding of a small x is that of its square root.
 double sinc(double x) {
-  return x < 1e-4 ? 1 - x * x / 6 : sincos(x).sin / x;
+  return x < kSmall ? 1 - x * x / 6 : sincos(x).sin / x;
+}
+
+// Two numbers at a time: the vectors of every 64-bit processor.
+using Lanes = double __attribute__((vector_size(16)));
+using Bits = std::uint64_t __attribute__((vector_size(16)));
+
+/// Returns sinc() of both lanes with the same bits, for kSmall <= x <= kLargestAngle.
+Lanes sinc_of_both(Lanes x) {
+  const ReducedSinCos<Lanes> reduced = reduced_sincos(x);
+  const auto quadrant = std::bit_cast<Bits>(reduced.shifted);
+  const auto sin = std::bit_cast<Bits>(reduced.sin);
+  const auto cos = std::bit_cast<Bits>(reduced.cos);
+  const Bits exchange = (sin ^ cos) & -(quadrant & 1);
+  return std::bit_cast<Lanes>(sin ^ exchange ^ ((quadrant & 2) << 62)) / x;
+}
+
+void add_scattering(double r, std::span<const double> wave_numbers, LagSums& sums) {
+  std::size_t k = 0;
+  for (; k + 2 <= wave_numbers.size(); k += 2) {
+    const Lanes x = {wave_numbers[k] * r, wave_numbers[k + 1] * r};
+    const bool usual = x[0] >= kSmall && x[0] <= kLargestAngle && x[1] >= kSmall && x[1] <= kLargestAngle;
+    const Lanes both = usual ? sinc_of_both(x) : Lanes{sinc(x[0]), sinc(x[1])};
+    sums.f_self[k] += both[0];
+    sums.f_self[k + 1] += both[1];
+  }
+  for (; k < wave_numbers.size(); ++k) sums.f_self[k] += sinc(wave_numbers[k] * r);
 }
 
 void add_displacements(const Snapshot& a, const Snapshot& b, BodyRange range, std::span<const double> wave_numbers,
@@ -21,8 +51,7 @@ void add_displacements(const Snapshot& a, const Snapshot& b, BodyRange range, st
     const double r2 = (b.position[i] - a.position[i]).squaredNorm();
     sums.msd += r2;
     sums.r4 += r2 * r2;
-    const double r = std::sqrt(r2);
-    for (std::size_t k = 0; k < wave_numbers.size(); ++k) sums.f_self[k] += sinc(wave_numbers[k] * r);
+    add_scattering(std::sqrt(r2), wave_numbers, sums);
   }
 }
 

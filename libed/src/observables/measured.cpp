@@ -112,7 +112,8 @@ bool Measured::add_origin(const Simulation& simulation, const Snapshot& now) {
     add_structure(now, block);
   }
   block.origins += 1;
-  add_frame(simulation, now, block);
+  add_order(now, block);
+  add_temperatures(simulation, block);
   block.end = totals_of(simulation, ranges);
   return blocks.size() < before;
 }
@@ -149,18 +150,25 @@ void Measured::add_structure(const Snapshot& now, Block& block) {
   block.structure_frames += 1;
 }
 
-void Measured::add_frame(const Simulation& simulation, const Snapshot& now, Block& block) {
+void Measured::add_order(const Snapshot& now, Block& block) const {
+  const FrameSums all = order_and_speeds(now, {0, now.axis.size(), false});
+  block.frames += 1;
+  block.all += all;
+  for (std::size_t g = 0; g < ranges.size(); ++g) {
+    block.groups[g] += ranges.size() == 1 ? all : order_and_speeds(now, ranges[g]);
+  }
+}
+
+void Measured::add_temperatures(const Simulation& simulation, Block& block) {
   const System system = simulation.system();
   const KineticState kinetic = kinetic_state(system);
-  block.frames += 1;
-  block.all += order_and_speeds(now, {0, now.axis.size(), false});
   block.all.translational_kT += kinetic.translational_kT;
   block.all.rotational_kT += kinetic.rotational_kT;
   block.kinetic += kinetic_tensor(system);
   for (std::size_t g = freedoms.size(); g < ranges.size(); ++g) freedoms.push_back(freedoms_of(system, ranges[g]));
   for (std::size_t g = 0; g < ranges.size(); ++g) {
-    block.groups[g] += temperatures(system, ranges[g], freedoms[g]);
-    block.groups[g] += order_and_speeds(now, ranges[g]);
+    block.groups[g] +=
+        temperatures(ranges.size() == 1 ? kinetic : kinetic_state(part_of(system, ranges[g])), freedoms[g]);
   }
 }
 

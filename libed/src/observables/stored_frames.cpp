@@ -3,7 +3,6 @@
 #include <ed/stored_frames.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <sstream>
@@ -114,6 +113,19 @@ Snapshot snapshot_of(const StoredFrame& stored, const StoredFramesOptions& optio
   return s;
 }
 
+/// Returns what frames do not tell.
+internal::Gaps gaps_of(const std::vector<StoredFrame>& frames, const StoredFramesOptions& options) {
+  internal::Gaps gaps;
+  gaps.collisions = gaps.rotations = MissingReason::not_told;
+  if (frames[0].velocity.empty()) gaps.velocities = gaps.velocity_correlations = MissingReason::not_told;
+  if (frames[0].rotation.empty()) gaps.orientations = gaps.turning = MissingReason::not_told;
+  if (!options.unwrapped) gaps.displacements = MissingReason::not_unwrapped;
+  if (!options.same_bodies) {
+    gaps.displacements = gaps.turning = gaps.velocity_correlations = MissingReason::not_followed;
+  }
+  return gaps;
+}
+
 /// Blocks of frames in the place of those that a run measures.
 class Analysis {
  public:
@@ -122,9 +134,8 @@ class Analysis {
         stretch_(longest_stretch(frames)),
         count_(stretch_.count),
         step_(count_ > 1 ? frames[stretch_.first + 1].time - frames[stretch_.first].time : 1),
-        orientations_(!frames[0].rotation.empty()),
-        velocities_(!frames[0].velocity.empty()),
         measured_(plan()) {
+    measured_.gaps = gaps_of(frames, options);
     const auto three = [](const BodyRange& r) { return r.three_axes; };
     const bool rotations = std::any_of(measured_.ranges.begin(), measured_.ranges.end(), three);
     for (const StoredFrame& frame : frames) frames_.push_back(snapshot_of(frame, options, rotations));
@@ -148,8 +159,6 @@ class Analysis {
   Stretch stretch_;
   std::size_t count_;  ///< of the stretch
   double step_;
-  bool orientations_;
-  bool velocities_;
   std::vector<std::size_t> steps_;
   Measured measured_;
   std::vector<Snapshot> frames_;  ///< all
@@ -189,27 +198,10 @@ Measured Analysis::plan() {
 }
 
 void Analysis::add_structure() {
-  const internal::WaveVectors vectors = internal::wave_vectors_of(measured_.grid);
   for (std::size_t k = 0; k < frames_.size(); ++k) {
-    const Snapshot& now = frames_[k];
     Block& block = structure_block_of(k);
-    const BodyRange all{0, now.position.size(), false};
-    const std::vector<internal::StructureSums> pairs = internal::count_pairs(measured_.grid, now, measured_.ranges);
-    for (std::size_t p = 0; p < block.structure.size(); ++p) {
-      internal::StructureSums sums = pairs[p];
-      sums.S = vectors.structure_factor(now.position, p == 0 ? all : measured_.ranges[p - 1]);
-      if (block.structure[p].pairs.empty()) {
-        block.structure[p] = std::move(sums);
-      } else {
-        block.structure[p].add(sums);
-      }
-    }
-    block.structure_frames += 1;
-    block.frames += 1;
-    block.all += internal::order_and_speeds(now, all);
-    for (std::size_t g = 0; g < measured_.ranges.size(); ++g) {
-      block.groups[g] += internal::order_and_speeds(now, measured_.ranges[g]);
-    }
+    measured_.add_structure(frames_[k], block);
+    measured_.add_order(frames_[k], block);
   }
 }
 
@@ -226,93 +218,17 @@ void Analysis::add_lags() {
   }
 }
 
-constexpr Estimate kNotTold = Estimate::none({MissingReason::not_told});
-constexpr std::array<Estimate, 3> kAxesNotTold = {kNotTold, kNotTold, kNotTold};
-
-/// Removes what frames without orientations do not tell.
-void forget_orientations(Correlations& results) {
-  results.t_C2_1overe = results.tau_C2 = results.beta_C2 = kNotTold;
-  results.window_C2 = {};
-  results.t_C2_1overe_axis = kAxesNotTold;
-  for (LagRow& row : results.lags) {
-    row.c1 = row.c2 = kNotTold;
-    row.c1_axis = row.c2_axis = kAxesNotTold;
-  }
-  for (PairRow& row : results.pairs) row.g2 = kNotTold;
-}
-
-void forget_order(Results& results) {
-  results.S = kNotTold;
-  results.director = {};
-  for (GroupResults& group : results.groups) {
-    group.S = kNotTold;
-    group.director = {};
-  }
-  for (BlockRow& row : results.blocks) {
-    row.S = kNothing;
-    row.director.setConstant(kNothing);
-  }
-}
-
-/// Removes displacements, for the reason given.
-void forget_displacements(Correlations& results, MissingReason reason) {
-  const Estimate none = Estimate::none({reason});
-  results.D_trans = results.t_F_1overe = results.tau_F = results.beta_F = none;
-  results.window_D = results.window_F = {};
-  for (LagRow& row : results.lags) {
-    row.msd = row.alpha2 = none;
-    row.f_self.assign(row.f_self.size(), none);
-  }
-}
-
-/// Removes what frames do not tell whose bodies cannot be followed from one to the next.
-void forget_correlations(Correlations& results) {
-  constexpr Estimate kNone = Estimate::none({MissingReason::not_followed});
-  forget_displacements(results, MissingReason::not_followed);
-  results.t_C2_1overe = results.tau_C2 = results.beta_C2 = kNone;
-  results.window_C2 = {};
-  results.t_C2_1overe_axis.fill(kNone);
-  for (LagRow& row : results.lags) {
-    row.c1 = row.c2 = row.vacf = kNone;
-    row.c1_axis.fill(kNone);
-    row.c2_axis.fill(kNone);
-  }
-}
-
-/// Removes what frames do not tell.
-void forget(Correlations& results, const StoredFramesOptions& options, bool velocities, bool orientations) {
-  results.D_rot = results.D_rot_body = results.w2 = kNotTold;
-  results.D_rot_axis = kAxesNotTold;
-  if (!velocities) results.v2 = kNotTold;
-  for (LagRow& row : results.lags) {
-    row.rot_msd = row.rot_msd_body = row.wacf = kNotTold;
-    row.rot_msd_axis = kAxesNotTold;
-    if (!velocities) row.vacf = kNotTold;
-  }
-  if (!orientations) forget_orientations(results);
-  if (!options.unwrapped) forget_displacements(results, MissingReason::not_unwrapped);
-  if (!options.same_bodies) forget_correlations(results);
-}
-
 StoredResults Analysis::results() {
   add_structure();
   internal::Totals totals;
   totals.time = step_ * static_cast<double>(count_ - 1);
   if (measured_.options.wave_numbers.empty()) {
-    const double q = internal::results_of(measured_, totals).q_peak.value;
+    const double q = internal::first_peak_of(measured_).value;
     if (std::isfinite(q)) measured_.options.wave_numbers = wave_numbers_about(q);
   }
   add_lags();
   StoredResults results;
   static_cast<Results&>(results) = internal::results_of(measured_, totals, options_.fit_from.value_or(kNothing));
-  results.collision_rate = results.Z = results.translational_kT = results.rotational_kT = kNotTold;
-  forget(results, options_, velocities_, orientations_);
-  for (GroupResults& group : results.groups) {
-    forget(group, options_, velocities_, orientations_);
-    group.collision_rate = group.translational_kT = group.rotational_kT = kNotTold;
-    group.axis_kT = kAxesNotTold;
-  }
-  if (!orientations_) forget_order(results);
   results.wave_numbers = measured_.options.wave_numbers;
   results.first_frame = stretch_.first;
   results.frames = count_;

@@ -1,0 +1,218 @@
+#include "registry/curves.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+namespace hardbody {
+namespace {
+
+using ed::Correlations;
+using ed::Estimate;
+using ed::LagRow;
+
+using ColumnValue = std::function<Estimate(const Correlations&, std::size_t, std::size_t)>;
+
+ColumnValue of_axes(std::array<Estimate, 3> LagRow::*member) {
+  return [member](const Correlations& c, std::size_t row, std::size_t axis) { return (c.lags[row].*member)[axis]; };
+}
+
+Estimate f_self(const Correlations& c, std::size_t row, std::size_t k) {
+  return c.lags[row].f_self[k];
+}
+
+Estimate structure_factor(const Correlations& c, std::size_t row, std::size_t /*k*/) {
+  return c.structure[row].S;
+}
+
+std::vector<CurveFile> built_in_files() {
+  return {
+      {.name = "msd", .columns = {{"msd", "l^2", of_lags(&LagRow::msd)}}, .in_frames = true},
+      {.name = "rotational_msd",
+       .columns = {{"rot_msd", "rad^2", of_lags(&LagRow::rot_msd)},
+                   {"rot_msd_body", "rad^2", of_lags(&LagRow::rot_msd_body)},
+                   {"rot_msd_body", "rad^2", of_axes(&LagRow::rot_msd_axis), Split::axes}}},
+      {.name = "alpha2", .columns = {{"alpha2", "1", of_lags(&LagRow::alpha2)}}, .in_frames = true},
+      {.name = "velocity",
+       .columns = {{"vacf", "kT/m", of_lags(&LagRow::vacf), Split::none, &Correlations::v2},
+                   {"wacf", "kT/(m l^2)", of_lags(&LagRow::wacf), Split::none, &Correlations::w2}},
+       .in_frames = true},
+      {.name = "c1",
+       .columns = {{"c1", "1", of_lags(&LagRow::c1)}, {"c1", "1", of_axes(&LagRow::c1_axis), Split::axes}},
+       .in_frames = true},
+      {.name = "c2",
+       .columns = {{"c2", "1", of_lags(&LagRow::c2)}, {"c2", "1", of_axes(&LagRow::c2_axis), Split::axes}},
+       .in_frames = true},
+      {.name = "f_self", .columns = {{"f_self", "1", f_self, Split::wave_numbers}}, .in_frames = true},
+      {.name = "g_r",
+       .rows = Rows::pairs,
+       .columns = {{"g", "1", of_pairs(&ed::PairRow::g)}, {"g2", "1", of_pairs(&ed::PairRow::g2)}},
+       .in_frames = true},
+      {.name = "s_q", .rows = Rows::waves, .columns = {{"S", "1", structure_factor}}, .in_frames = true},
+      {.name = "blocks", .rows = Rows::blocks},
+  };
+}
+
+std::vector<CurveFile>& registered_files() {
+  static std::vector<CurveFile> all = built_in_files();
+  return all;
+}
+
+constexpr const char* kTimeLabel = "t  [l √(m/kT)]";
+constexpr const char* kRunTimeLabel = "t in production  [l √(m/kT)]";
+constexpr const char* kStretched = "A exp[−(t/τ)ᵝ]";
+
+// clang-format off
+/// Plots against the lag.
+std::vector<CurvePlot> lag_plots() {
+  return {
+      {.id = "msd", .title = "Mean square displacement",
+       .about = "Of the centres. A dashed line has the slope 6 D_trans.", .file = "msd", .y_label = "⟨Δr²⟩  [l²]",
+       .log_y = true, .lines = {{"msd", "MSD", {Fit::Kind::slope, {"D_trans"}, "D", 6, "D_trans t"}}}},
+      {.id = "rotational_msd", .title = "Rotational mean square displacement",
+       .about = "Of the integral of the angular velocity, its components taken in the world or along the body’s axes.",
+       .file = "rotational_msd", .y_label = "⟨ΔΦ²⟩  [rad²]", .log_y = true,
+       .lines = {{"rot_msd", "world frame", {Fit::Kind::slope, {"D_rot"}, "D", 0, "D_rot t"}},
+                 {"rot_msd_body", "body frame"}}},
+      {.id = "c2", .title = "Orientation, second order",
+       .about = "C₂ decides what is relaxed: the fit leaves the ballistic part out.", .file = "c2",
+       .y_label = "C₂ = ⟨P₂(u(t)·u(0))⟩",
+       .lines = {{"c2", "C₂", {Fit::Kind::stretched, {"tau_C2", "beta_C2"}, "C2", 0, kStretched}}}},
+      {.id = "c1", .title = "Orientation, first order", .about = "C₁: how far an axis still points where it pointed.",
+       .file = "c1", .y_label = "C₁ = ⟨u(t)·u(0)⟩", .lines = {{"c1", "C₁"}}},
+      {.id = "f_self", .title = "Self-intermediate scattering",
+       .about = "F_self at four wave numbers. The first wave number is that of the first peak of S(q); "
+                "a dashed line is its fit.",
+       .file = "f_self", .y_label = "Fₛ(q, t)",
+       .lines = {{"f_self", "", {Fit::Kind::stretched, {"tau_F", "beta_F"}, "F", 0, kStretched}}}},
+      {.id = "velocity", .title = "Velocity correlations",
+       .about = "Over their values at t = 0. Below zero: bodies bounce back.", .file = "velocity",
+       .y_label = "⟨v(t)·v(0)⟩ / ⟨v²⟩", .normalised = true,
+       .lines = {{"vacf", "velocity"}, {"wacf", "angular velocity"}}},
+      {.id = "alpha2", .title = "Non-Gaussian parameter",
+       .about = "0 for displacements that are distributed as in free diffusion.", .file = "alpha2",
+       .y_label = "α₂ = 3⟨Δr⁴⟩ / 5⟨Δr²⟩² − 1", .lines = {{"alpha2", "α₂"}}},
+  };
+}
+
+/// Plots against distance, wave number and the time of the run.
+std::vector<CurvePlot> other_plots() {
+  return {
+      {.id = "g_r", .title = "Pair correlations",
+       .about = "g of the centres; g₂ the mean P₂ of the angle between bodies r apart.", .file = "g_r",
+       .x_label = "r  [l]", .y_label = "g(r), g₂(r)", .lines = {{"g", "g"}, {"g2", "g₂"}}},
+      {.id = "s_q", .title = "Structure factor", .about = "Of the centres, at wave vectors of the box.",
+       .file = "s_q", .x_label = "q  [1/l]", .y_label = "S(q)", .lines = {{"S", "S(q)"}}},
+      {.id = "pressure", .title = "Compressibility factor in time",
+       .about = "A drift would mean that the run is not equilibrated.", .file = "blocks", .x_label = kRunTimeLabel,
+       .y_label = "Z = PV / NkT", .lines = {{"Z", "Z", {Fit::Kind::mean, {"Z"}, "", 0, "mean"}}}},
+      {.id = "order", .title = "Nematic order in time",
+       .about = "Largest eigenvalue of Q, averaged over stretches of the run.", .file = "blocks",
+       .x_label = kRunTimeLabel, .y_label = "S", .lines = {{"S", "S", {Fit::Kind::mean, {"S"}, "", 0, "mean"}}}},
+      {.id = "energy", .title = "Energy drift",
+       .about = "Nothing but rounding: collisions are elastic and motion between them is exact.",
+       .x_label = kRunTimeLabel, .y_label = "E(t) / E(0) − 1"},
+  };
+}
+// clang-format on
+
+std::vector<CurvePlot> all_plots() {
+  std::vector<CurvePlot> all = lag_plots();
+  for (CurvePlot& plot : all) {
+    plot.x_label = kTimeLabel;
+    plot.log_x = true;
+  }
+  for (CurvePlot& plot : other_plots()) all.push_back(std::move(plot));
+  return all;
+}
+
+std::vector<CurvePlot>& registered_plots() {
+  static std::vector<CurvePlot> all = all_plots();
+  return all;
+}
+
+}  // namespace
+
+ColumnValue of_lags(Estimate LagRow::*member) {
+  return [member](const Correlations& c, std::size_t row, std::size_t /*k*/) { return c.lags[row].*member; };
+}
+
+ColumnValue of_pairs(Estimate ed::PairRow::*member) {
+  return [member](const Correlations& c, std::size_t row, std::size_t /*k*/) { return c.pairs[row].*member; };
+}
+
+const std::vector<CurveFile>& curve_files() {
+  return registered_files();
+}
+
+const CurveFile* find_curves(std::string_view name) {
+  const auto named = [name](const CurveFile& f) { return f.name == name; };
+  const auto found = std::find_if(curve_files().begin(), curve_files().end(), named);
+  return found == curve_files().end() ? nullptr : &*found;
+}
+
+const std::vector<BlockColumn>& block_columns() {
+  using Row = ed::BlockRow;
+  static const std::vector<BlockColumn> all = {
+      {"begin", "l sqrt(m/kT)", [](const Row& r) { return r.begin; }, true},
+      {"end", "l sqrt(m/kT)", [](const Row& r) { return r.end; }, true},
+      {"collision_rate", "sqrt(kT/m)/l", [](const Row& r) { return r.collision_rate; }},
+      {"Z", "1", [](const Row& r) { return r.Z; }, true},
+      {"kT_trans", "kT", [](const Row& r) { return r.translational_kT; }, true},
+      {"kT_rot", "kT", [](const Row& r) { return r.rotational_kT; }, true},
+      {"S", "1", [](const Row& r) { return r.S; }, true},
+      {"director_x", "1", [](const Row& r) { return r.director.x(); }},
+      {"director_y", "1", [](const Row& r) { return r.director.y(); }},
+      {"director_z", "1", [](const Row& r) { return r.director.z(); }},
+      {"Z_xx", "1", [](const Row& r) { return r.pressure(0, 0); }},
+      {"Z_yy", "1", [](const Row& r) { return r.pressure(1, 1); }},
+      {"Z_zz", "1", [](const Row& r) { return r.pressure(2, 2); }},
+      {"Z_yz", "1", [](const Row& r) { return r.pressure(1, 2); }},
+      {"Z_xz", "1", [](const Row& r) { return r.pressure(0, 2); }},
+      {"Z_xy", "1", [](const Row& r) { return r.pressure(0, 1); }},
+  };
+  return all;
+}
+
+std::string abscissa_of(Rows rows) {
+  switch (rows) {
+    case Rows::lags:
+      return "t [l sqrt(m/kT)]";
+    case Rows::pairs:
+      return "r [l]";
+    case Rows::waves:
+      return "q [1/l]";
+    case Rows::blocks:
+      break;
+  }
+  return "end [l sqrt(m/kT)]";
+}
+
+std::vector<std::string> required_columns(const CurveFile& file) {
+  const std::string abscissa = abscissa_of(file.rows);
+  std::vector<std::string> names = {abscissa.substr(0, abscissa.find(' '))};
+  for (const Column& column : file.columns) {
+    if (column.split == Split::none) names.push_back(column.name);
+  }
+  for (const CurvePlot& plot : plots()) {
+    if (file.rows != Rows::blocks || plot.file != file.name) continue;
+    for (const CurveLine& line : plot.lines) names.push_back(line.column);
+  }
+  return names;
+}
+
+const std::vector<CurvePlot>& plots() {
+  return registered_plots();
+}
+
+RegisteredCurves::RegisteredCurves(CurveFile file, std::vector<CurvePlot> plots) : name_(file.name) {
+  registered_files().push_back(std::move(file));
+  for (CurvePlot& plot : plots) registered_plots().push_back(std::move(plot));
+}
+
+RegisteredCurves::~RegisteredCurves() {
+  std::erase_if(registered_files(), [this](const CurveFile& f) { return f.name == name_; });
+  std::erase_if(registered_plots(), [this](const CurvePlot& p) { return p.file == name_; });
+}
+
+}  // namespace hardbody

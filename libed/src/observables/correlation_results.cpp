@@ -1,0 +1,235 @@
+#include "observables/correlation_results.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace ed::internal {
+namespace {
+
+/// Blocks whose C2 at the longest lag differ by no more are of bodies that nothing turns: rounding leaves 1e-15 to
+/// 1e-12, one body in a million that a collision has turned 1e-7.
+constexpr double kUnturned = 1e-11;
+
+double alpha2(const LagSums& s) {
+  return 3 * s.r4 * s.count / (5 * s.msd * s.msd) - 1;
+}
+
+}  // namespace
+
+// ---- Estimates
+
+/// Returns the diffusion coefficient of displacements. Whether there is one is decided on all data; blocks then only
+/// give its error.
+template <class Value>
+Estimate CorrelationResults::diffusion_estimate(const Gap& gap, std::size_t group, double divisor, const Reach& reach,
+                                                const Value& value) const {
+  if (gap) return Estimate::none({*gap});
+  const double longest = averages_.longest_lag();
+  const auto complete = [&](const Curve& c) { return !c.t.empty() && c.t.back() >= longest; };
+  const Curve all = averages_.curve(group, {}, value);
+  if (all.t.empty()) return {};
+  if (!complete(all)) return Estimate::none({MissingReason::lags_too_short});
+  if (const auto missing = why_not_diffusive(all, reach)) return Estimate::none(*missing);
+  return averages_.with_block_error(longest, [&](const Block* block) {
+    const Curve part = averages_.curve(group, {block, nullptr}, value);
+    // A block whose origins have not reached the longest lag would be fitted over another window.
+    return complete(part) ? final_slope(part) / divisor : kNothing;
+  });
+}
+
+template <class Value>
+Estimate CorrelationResults::decay_time_estimate(const Gap& gap, std::size_t group, const Value& value) const {
+  if (gap) return Estimate::none({*gap});
+  if (const auto missing = why_no_decay_time(averages_.curve(group, {}, value))) return Estimate::none(*missing);
+  return averages_.with_error_of_all_blocks(
+      averages_.longest_lag(), [&](Selection part) { return decay_time(averages_.curve(group, part, value)); });
+}
+
+/// Sets tau, beta and the window of a stretched exponential.
+template <class Value>
+void CorrelationResults::fit(const Gap& gap, std::size_t group, const Value& value, Estimate& tau, Estimate& beta,
+                             FitWindow& window) const {
+  const Curve all = gap ? Curve{} : averages_.curve(group, {}, value);
+  if (const auto missing = gap ? Missing{*gap} : why_no_fit(all, fit_from_)) {
+    tau = beta = Estimate::none(*missing);
+    return;
+  }
+  const auto estimate = [&](double StretchedExponential::*member) {
+    return averages_.with_error_of_all_blocks(averages_.longest_lag(), [&](Selection part) {
+      const auto found = fit_decay(averages_.curve(group, part, value), fit_from_);
+      return found ? found->fit.*member : kNothing;
+    });
+  };
+  tau = estimate(&StretchedExponential::tau);
+  beta = estimate(&StretchedExponential::beta);
+  if (const auto found = fit_decay(all, fit_from_)) window = {found->from, found->to};
+}
+
+// ---- Bodies
+
+bool CorrelationResults::three_axes(std::size_t group) const {
+  const std::vector<BodyRange>& ranges = measured_.ranges;
+  return group == kAll ? ranges.size() == 1 && ranges[0].three_axes : ranges[group].three_axes;
+}
+
+double CorrelationResults::mean_rotation_axes(std::size_t group) const {
+  const std::vector<BodyGroup>& groups = measured_.options.groups;
+  if (group != kAll) return groups[group].rotation_axes;
+  double mean = 0;
+  for (std::size_t g = 0; g < groups.size(); ++g) mean += measured_.weights[g] * groups[g].rotation_axes;
+  return mean;
+}
+
+/// True if nothing turns the bodies, as with spheres, and in a gas in which nothing has met: all blocks then hold one
+/// and the same motion, and their scatter, which is rounding, is no error.
+bool CorrelationResults::unturned(std::size_t group) const {
+  std::vector<double> c2;
+  for (const Block* block : averages_.full_blocks()) {
+    const Curve all = averages_.curve(group, {block, nullptr}, [](const LagSums& s) { return s.c2; });
+    if (!all.t.empty() && all.t.back() == averages_.longest_lag()) c2.push_back(all.y.back());
+  }
+  if (c2.size() < 2) return false;
+  const auto [least, most] = std::minmax_element(c2.begin(), c2.end());
+  return *most - *least < kUnturned;
+}
+
+bool CorrelationResults::some_unturned() const {
+  for (std::size_t g = 0; g < measured_.ranges.size(); ++g) {
+    if (unturned(g)) return true;
+  }
+  return false;
+}
+
+/// Removes rotational diffusion and its fits where nothing turns the bodies, since they mean nothing then.
+/// Correlations, and the lag at which C2 is 1/e, are right, but no error of them is known. Where that holds for one
+/// group, D_rot of all bodies is removed: the mean of free rotation and diffusion is neither.
+void CorrelationResults::drop_meaningless(std::size_t group, Correlations& results) const {
+  const bool none_turns = unturned(group);
+  const auto drop = [](const Gap& gap, Estimate& e) {
+    if (!gap) e = Estimate::none({MissingReason::meaningless});
+  };
+  if (none_turns || (group == kAll && some_unturned())) {
+    for (Estimate* e : {&results.D_rot, &results.D_rot_body}) drop(measured_.gaps.rotations, *e);
+  }
+  if (!none_turns) return;
+  for (Estimate* e : {&results.tau_C2, &results.beta_C2}) drop(measured_.gaps.turning, *e);
+  results.window_C2 = {};
+  for (Estimate& e : results.D_rot_axis) {
+    if (three_axes(group)) drop(measured_.gaps.rotations, e);
+  }
+  const auto drop_error = [](Estimate& e) { e.error = kNothing; };
+  for (LagRow& row : results.lags) {
+    for (Estimate* e : {&row.rot_msd, &row.rot_msd_body, &row.c1, &row.c2, &row.wacf}) drop_error(*e);
+    for (auto* axes : {&row.rot_msd_axis, &row.c1_axis, &row.c2_axis}) {
+      std::for_each(axes->begin(), axes->end(), drop_error);
+    }
+  }
+  for (Estimate* e : {&results.t_C2_1overe, &results.w2}) drop_error(*e);
+  std::for_each(results.t_C2_1overe_axis.begin(), results.t_C2_1overe_axis.end(), drop_error);
+}
+
+// ---- Results
+
+LagRow CorrelationResults::lag_row(std::size_t lag, std::size_t group) const {
+  const auto estimate = [&](const Gap& gap, const auto& value) {
+    if (gap) return Estimate::none({*gap});
+    return averages_.with_block_error(measured_.lags[lag], [&](const Block* one) {
+      const LagSums sums = averages_.sums_at(lag, group, {one, nullptr});
+      return sums.count > 0 ? value(sums) / sums.count : kNothing;
+    });
+  };
+  const Gaps& gaps = measured_.gaps;
+  LagRow row{};
+  row.lag = measured_.lags[lag];
+  row.msd = estimate(gaps.displacements, [](const LagSums& s) { return s.msd; });
+  row.rot_msd = estimate(gaps.rotations, [](const LagSums& s) { return s.rot_msd; });
+  row.rot_msd_body = estimate(gaps.rotations, [](const LagSums& s) { return s.rot_msd_body; });
+  row.c1 = estimate(gaps.turning, [](const LagSums& s) { return s.c1; });
+  row.c2 = estimate(gaps.turning, [](const LagSums& s) { return s.c2; });
+  row.vacf = estimate(gaps.velocity_correlations, [](const LagSums& s) { return s.vacf; });
+  row.wacf = estimate(gaps.rotations, [](const LagSums& s) { return s.wacf; });
+  row.alpha2 = estimate(gaps.displacements, [](const LagSums& s) { return alpha2(s) * s.count; });
+  for (std::size_t k = 0; k < measured_.options.wave_numbers.size(); ++k) {
+    row.f_self.push_back(estimate(gaps.displacements, [k](const LagSums& s) { return s.f_self[k]; }));
+  }
+  if (!three_axes(group)) return row;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto at = static_cast<std::size_t>(axis);
+    row.rot_msd_axis[at] = estimate(gaps.rotations, [axis](const LagSums& s) { return s.rot_msd_axis[axis]; });
+    row.c1_axis[at] = estimate(gaps.turning, [axis](const LagSums& s) { return s.c1_axis[axis]; });
+    row.c2_axis[at] = estimate(gaps.turning, [axis](const LagSums& s) { return s.c2_axis[axis]; });
+  }
+  return row;
+}
+
+void CorrelationResults::add_lags(std::size_t group, Correlations& results) const {
+  for (std::size_t k = 0; k < measured_.lags.size(); ++k) {
+    if (averages_.sums_at(k, group).count > 0) results.lags.push_back(lag_row(k, group));
+  }
+}
+
+void CorrelationResults::add_diffusion(std::size_t group, Correlations& results) const {
+  const Gaps& gaps = measured_.gaps;
+  const double components = mean_rotation_axes(group);
+  const Reach turn = reach_of_rotation(components);
+  if (measured_.grid.known()) {
+    const auto msd = [](const LagSums& s) { return s.msd; };
+    // Curves leave out the same lags, those without data, so that an index is the same lag in both.
+    const std::size_t first = first_of_fit(averages_.curve(group, {}, msd));
+    const Curve non_gaussian_at = averages_.curve(group, {}, [](const LagSums& s) { return alpha2(s) * s.count; });
+    const double non_gaussian = first < non_gaussian_at.y.size() ? non_gaussian_at.y[first] : 0;
+    const Reach move = reach_of_translation(structure_.first_wave_number(group), non_gaussian);
+    results.D_trans = diffusion_estimate(gaps.displacements, group, 6, move, msd);
+  }
+  results.D_rot =
+      diffusion_estimate(gaps.rotations, group, 2 * components, turn, [](const LagSums& s) { return s.rot_msd; });
+  results.D_rot_body =
+      diffusion_estimate(gaps.rotations, group, 2 * components, turn, [](const LagSums& s) { return s.rot_msd_body; });
+  if (!gaps.displacements) results.window_D = {kFitFrom * averages_.longest_lag(), averages_.longest_lag()};
+}
+
+void CorrelationResults::add_decays(std::size_t group, Correlations& results) const {
+  const Gaps& gaps = measured_.gaps;
+  const auto c2 = [](const LagSums& s) { return s.c2; };
+  results.t_C2_1overe = decay_time_estimate(gaps.turning, group, c2);
+  fit(gaps.turning, group, c2, results.tau_C2, results.beta_C2, results.window_C2);
+  if (measured_.options.wave_numbers.empty() && !gaps.displacements) return;
+  const auto f_self = [](const LagSums& s) { return s.f_self[0]; };
+  results.t_F_1overe = decay_time_estimate(gaps.displacements, group, f_self);
+  fit(gaps.displacements, group, f_self, results.tau_F, results.beta_F, results.window_F);
+}
+
+void CorrelationResults::add_axes(std::size_t group, Correlations& results) const {
+  const Gaps& gaps = measured_.gaps;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto at = static_cast<std::size_t>(axis);
+    Estimate& D = results.D_rot_axis[at];
+    Estimate& t = results.t_C2_1overe_axis[at];
+    D = Estimate::none({gaps.rotations.value_or(MissingReason::no_such_axis)});
+    t = Estimate::none({gaps.turning.value_or(MissingReason::no_such_axis)});
+    if (!three_axes(group)) continue;
+    D = diffusion_estimate(gaps.rotations, group, 2, reach_of_rotation(1),
+                           [axis](const LagSums& s) { return s.rot_msd_axis[axis]; });
+    t = decay_time_estimate(gaps.turning, group, [axis](const LagSums& s) { return s.c2_axis[axis]; });
+  }
+}
+
+Correlations CorrelationResults::of_group(std::size_t group) const {
+  const Gaps& gaps = measured_.gaps;
+  Correlations results;
+  add_lags(group, results);
+  add_diffusion(group, results);
+  add_decays(group, results);
+  add_axes(group, results);
+  const auto sums = [group](const Block& b) -> const FrameSums& { return group == kAll ? b.all : b.groups[group]; };
+  results.v2 = gaps.velocities ? Estimate::none({*gaps.velocities})
+                               : averages_.frame_mean([&](const Block& b) { return sums(b).v2; });
+  results.w2 = gaps.rotations ? Estimate::none({*gaps.rotations})
+                              : averages_.frame_mean([&](const Block& b) { return sums(b).w2; });
+  drop_meaningless(group, results);
+  structure_.add_to(results, group);
+  return results;
+}
+
+}  // namespace ed::internal

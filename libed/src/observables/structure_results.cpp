@@ -1,0 +1,105 @@
+#include "observables/structure_results.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace ed::internal {
+
+StructureResults::StructureResults(const BlockAverages& averages)
+    : averages_(averages), measured_(averages.measured()) {
+  if (!measured_.grid.known()) return;
+  wave_vectors_.emplace(wave_vectors_of(measured_.grid));
+  if (measured_.blocks.empty()) return;
+  sums_.resize(measured_.structure_parts());
+  for (std::size_t part = 0; part < sums_.size(); ++part) {
+    std::vector<Sum>& sums = sums_[part];
+    sums.emplace_back();
+    for (const Block& block : measured_.blocks) sums.push_back({block.structure[part], block.structure_frames, {}});
+    sums[0] = sums[1];
+    for (std::size_t k = 2; k < sums.size(); ++k) {
+      sums[0].sums.add(sums[k].sums);
+      sums[0].frames += sums[k].frames;
+    }
+    for (Sum& sum : sums) {
+      for (const double S : sum.sums.S) sum.S.push_back(S / sum.frames);
+    }
+  }
+}
+
+std::size_t StructureResults::part_of(std::size_t group) const {
+  return group == kAll || measured_.ranges.size() == 1 ? 0 : group + 1;
+}
+
+/// Returns the sum over one block, or (nullptr) over all.
+const StructureResults::Sum& StructureResults::sum_of(std::size_t part, const Block* one) const {
+  if (one == nullptr) return sums_[part][0];
+  return sums_[part][static_cast<std::size_t>(one - measured_.blocks.data()) + 1];
+}
+
+void StructureResults::add_pairs(std::size_t part, double number, Correlations& results) const {
+  const StructureGrid& grid = measured_.grid;
+  const double width = grid.reach() / static_cast<double>(grid.bins());
+  const double density = 0.5 * number * (number - 1) / (grid.box * grid.box * grid.box);
+  for (std::size_t k = 0; k < grid.bins(); ++k) {
+    const double inner = width * static_cast<double>(k);
+    const double outer = inner + width;
+    const double shell = 4 * std::numbers::pi / 3 * (outer * outer * outer - inner * inner * inner);
+    const Estimate g = averages_.with_block_error(0, [&](const Block* one) {
+      const Sum& sum = sum_of(part, one);
+      return sum.sums.pairs[k] / (sum.frames * density * shell);
+    });
+    Estimate g2 = averages_.with_block_error(0, [&](const Block* one) {
+      const StructureSums& sums = sum_of(part, one).sums;
+      return sums.pairs[k] > 0 ? sums.p2[k] / sums.pairs[k] : kNothing;
+    });
+    if (const auto gap = measured_.gaps.orientations) g2 = Estimate::none({*gap});
+    results.pairs.push_back({0.5 * (inner + outer), g, g2});
+  }
+}
+
+Estimate StructureResults::peak(std::size_t part, double Peak::*member) const {
+  const std::vector<double>& q = wave_vectors_->wave_numbers();
+  return averages_.with_block_error(
+      0, [&](const Block* one) { return first_peak(q, sum_of(part, one).S, measured_.grid.length).*member; });
+}
+
+void StructureResults::add_to(Correlations& results, std::size_t group) const {
+  if (sums_.empty()) return;
+  const std::size_t part = part_of(group);
+  add_pairs(part, group == kAll ? measured_.options.number : measured_.ranges[group].size(), results);
+  const std::vector<double>& q = wave_vectors_->wave_numbers();
+  for (std::size_t k = 0; k < q.size(); ++k) {
+    if (!(q[k] > 0)) continue;
+    results.structure.push_back(
+        {q[k], averages_.with_block_error(0, [&](const Block* one) { return sum_of(part, one).S[k]; })});
+  }
+  results.q_peak = peak(part, &Peak::q);
+  results.S_peak = peak(part, &Peak::S);
+}
+
+Estimate StructureResults::first_peak_of_all() const {
+  return sums_.empty() ? Estimate{} : peak(0, &Peak::q);
+}
+
+// ---- The wave number that tells how far bodies have to move
+
+/// Returns the wave number of the first peak of S(q) of all bodies, as a run chooses it; it tells how far bodies have
+/// to move to leave their neighbours. Frames of a block hold much the same configuration and count as one.
+double StructureResults::first_wave_number() const {
+  const StructureGrid& grid = measured_.grid;
+  const double number = measured_.options.number;
+  const double packing = number * 4 * std::numbers::pi / 3 * std::pow(grid.length / grid.box, 3);
+  // Without sizes: the mean distance of bodies. So too where the sizes are none, as bodies would fill more than space.
+  if (!measured_.length_known || packing >= 1) return 2 * std::numbers::pi * std::cbrt(number) / grid.box;
+  return likely_peak(*wave_vectors_, sum_of(0, nullptr).S, static_cast<double>(measured_.blocks.size()), grid, packing);
+}
+
+double StructureResults::first_wave_number(std::size_t group) const {
+  const double of_all = first_wave_number();
+  if (group == kAll || measured_.ranges.size() == 1 || !measured_.length_known) return of_all;
+  const auto own = clear_peak(*wave_vectors_, sum_of(group + 1, nullptr).S,
+                              static_cast<double>(measured_.blocks.size()), measured_.grid.length);
+  return own ? std::min(of_all, *own) : of_all;
+}
+
+}  // namespace ed::internal

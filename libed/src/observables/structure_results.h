@@ -1,0 +1,48 @@
+#pragma once
+
+/// g(r), S(q) and its first peak from the structure that blocks hold.
+
+#include "observables/block_averages.h"
+#include "observables/structure.h"
+
+#include <optional>
+#include <vector>
+
+namespace ed::internal {
+
+/// Results of the static structure. Parts are all bodies, then, if there are several groups, each.
+class StructureResults {
+ public:
+  explicit StructureResults(const BlockAverages& averages);
+
+  /// Adds g(r), g2(r), S(q) and its peak of a part to the results.
+  void add_to(Correlations& results, std::size_t group) const;
+
+  /// Returns the wave number of the first peak of S(q) of all bodies, without a value if there is none.
+  Estimate first_peak_of_all() const;
+
+  /// Returns the first wave number for a group: that of all bodies. Where its own S(q) has a clear peak at a smaller
+  /// wave number, as that of large bodies that cage each other, it is that one.
+  double first_wave_number(std::size_t group) const;
+
+ private:
+  /// Structure summed over frames.
+  struct Sum {
+    StructureSums sums;
+    double frames = 0;
+    std::vector<double> S;  ///< mean over frames
+  };
+
+  std::size_t part_of(std::size_t group) const;
+  const Sum& sum_of(std::size_t part, const Block* one) const;
+  double first_wave_number() const;
+  void add_pairs(std::size_t part, double number, Correlations& results) const;
+  Estimate peak(std::size_t part, double Peak::*member) const;
+
+  const BlockAverages& averages_;
+  const Measured& measured_;
+  std::optional<WaveVectors> wave_vectors_;  ///< wave vectors of S(q), if there is a box
+  std::vector<std::vector<Sum>> sums_;       ///< sums of each part: over all blocks, then of each block
+};
+
+}  // namespace ed::internal
