@@ -109,11 +109,11 @@ StartFrame read_start_frame(const StartFile& start) {
   const std::unique_ptr<TrajectoryReader> source = open_frames(start.file);
   const TrajectoryReader& reader = *source;
   const std::uint64_t count = reader.frame_count();
-  if (count == 0) throw InputError(fmt::format("{}: has no whole frame; accepted: a file with frames", start.file));
+  if (count == 0) throw InputError(fmt::format("{}: has no complete frame; accepted: a file with frames", start.file));
   const std::uint64_t last = last_frame(reader).value_or(count - 1);
   const std::uint64_t k = start.frame ? static_cast<std::uint64_t>(*start.frame) : last;
   if (k >= count) {
-    throw InputError(fmt::format("{} is {}, {} has {} whole frames; accepted: 0 to {}", kStartFrameKey, k, start.file,
+    throw InputError(fmt::format("{} is {}, {} has {} complete frames; accepted: 0 to {}", kStartFrameKey, k, start.file,
                                  count, count - 1));
   }
   return {reader.read(k), k, reader.cut_off()};
