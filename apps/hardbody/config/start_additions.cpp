@@ -109,7 +109,7 @@ StartFrame read_start_frame(const StartFile& start) {
   const std::unique_ptr<TrajectoryReader> source = open_frames(start.file);
   const TrajectoryReader& reader = *source;
   const std::uint64_t count = reader.frame_count();
-  if (count == 0) throw InputError(fmt::format("{}: has no whole frame; accepted: a file with frames", start.file));
+  if (count == 0) throw InputError(fmt::format("{}: has no complete frame; accepted: a file with frames", start.file));
   const std::uint64_t last = last_frame(reader).value_or(count - 1);
   const std::uint64_t k = start.frame ? static_cast<std::uint64_t>(*start.frame) : last;
   if (k >= count) {
