@@ -27,7 +27,7 @@ file(GLOB headers RELATIVE ${SOURCE_DIR} ${SOURCE_DIR}/libgeom/include/geom/*.h
   ${SOURCE_DIR}/libgeom/seeds/include/geom/*.h ${SOURCE_DIR}/libed/include/ed/*.h)
 foreach(header IN LISTS headers)
   string(REGEX REPLACE "^.*/include/" "" included ${header})
-  if(NOT included MATCHES "tolerances.h$")  # numbers
+  if(NOT included MATCHES "(tolerances|arithmetic).h$")  # numbers
     string(MAKE_C_IDENTIFIER ${included} name)
     must_refuse(${name} "#include <${included}>\n" "EIGEN_DEFAULT_TO_ROW_MAJOR is defined" -DEIGEN_DEFAULT_TO_ROW_MAJOR
       -Wfatal-errors)

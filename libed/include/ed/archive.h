@@ -12,6 +12,8 @@
 /// memory, little-endian; containers are preceded by their length in 8 bytes; there is no padding. Invalid values are
 /// rejected where members are named, by `expect`: a Reader never trusts a length, and a class never an index.
 
+#include <geom/kernel/eigen_layout.h>
+
 #include <Eigen/Core>
 
 #include <array>

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <geom/kernel/eigen_layout.h>
+
 #include <Eigen/Core>
 
 #include <vector>
