@@ -113,8 +113,8 @@ StartFrame read_start_frame(const StartFile& start) {
   const std::uint64_t last = last_frame(reader).value_or(count - 1);
   const std::uint64_t k = start.frame ? static_cast<std::uint64_t>(*start.frame) : last;
   if (k >= count) {
-    throw InputError(fmt::format("{} is {}, {} has {} complete frames; accepted: 0 to {}", kStartFrameKey, k, start.file,
-                                 count, count - 1));
+    throw InputError(fmt::format("{} is {}, {} has {} complete frames; accepted: 0 to {}", kStartFrameKey, k,
+                                 start.file, count, count - 1));
   }
   return {reader.read(k), k, reader.cut_off()};
 }
