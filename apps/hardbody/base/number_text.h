@@ -11,7 +11,7 @@ std::optional<double> finite_number(std::string_view text);
 /// Returns the seconds of a positive number with a unit, as in 60s, 5m, 1.5h; nullopt for any other text.
 std::optional<double> duration_seconds(std::string_view text);
 
-/// Returns degrees of freedom of so many bodies: "2N", "3N", or the number itself.
+/// Returns degrees of freedom in units of the number of bodies, "2N" or "3N", or the number itself.
 std::string freedoms_text(long freedoms, int number);
 
 }  // namespace hardbody

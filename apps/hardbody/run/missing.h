@@ -1,6 +1,6 @@
 #pragma once
 
-/// Why a value is missing, as the program prints it.
+/// Texts for missing values: the reason, and what would help.
 
 #include "run/record.h"
 
@@ -11,22 +11,22 @@
 
 namespace hardbody {
 
-/// Words that depend on where the values are from.
+/// Words that depend on the source of the values.
 struct MissingWords {
   std::string length_unit = "l";
-  std::string longer_lags;       ///< what to do for longer lags: "a longer run helps"
-  std::string end_of_ballistic;  ///< what to do where the lag that fits begin with is unknown; empty: nothing
-  std::string unwrapping;        ///< what to do where positions are wrapped; empty: nothing
-  std::string following;         ///< what to do where bodies are not numbered; empty: nothing
+  std::string longer_lags;       ///< advice for longer lags: "a longer run helps"
+  std::string end_of_ballistic;  ///< advice where the lag that fits begin with is unknown; empty: none
+  std::string unwrapping;        ///< advice where positions are wrapped; empty: none
+  std::string following;         ///< advice where bodies are not numbered; empty: none
 };
 
-/// Words for the values of a run.
+/// Returns the words for the values of a run.
 MissingWords missing_words(const RunRecord& record);
 
-/// The reason, and what would help, in one sentence without a full stop.
+/// Returns the reason, and what would help, in one sentence without a full stop.
 std::string missing_text(const ed::Missing& missing, const MissingWords& words);
 
-/// Whether longer lags may give one of the values of `results`.
+/// Returns whether longer lags may give one of the values of `results`.
 bool longer_lags_help(const ed::GroupResults& results);
 
 }  // namespace hardbody

@@ -1,6 +1,6 @@
 #pragma once
 
-/// What is averaged over single frames of a run: order and temperatures.
+/// Averages over single frames of a run: order and temperatures.
 
 #include "base/archive.h"
 #include "observables/lag_sums.h"
@@ -17,7 +17,7 @@ namespace ed::internal {
 struct Freedoms {
   double translational = 0;
   double rotational = 0;
-  Eigen::Vector3d axis = Eigen::Vector3d::Zero();  ///< of the rotation about body x, y, z
+  Eigen::Vector3d axis = Eigen::Vector3d::Zero();  ///< degrees of freedom of the rotation about body x, y, z
 
   template <class Archive, class Self>
   static void fields(Archive& archive, Self& self) {
@@ -45,22 +45,22 @@ struct FrameSums {
   }
 };
 
-/// All but the temperatures.
+/// Returns all sums but the temperatures.
 FrameSums order_and_speeds(const Snapshot& snapshot, BodyRange range);
 
 /// Returns the bodies of a range as a system.
 System part_of(const System& system, BodyRange range);
 
-/// The temperatures alone, from the energies of the bodies; NaN where there are no degrees of freedom.
+/// Returns the temperatures alone, from the energies of the bodies; NaN where there are no degrees of freedom.
 FrameSums temperatures(const KineticState& kinetic, const Freedoms& freedoms);
 
-/// 3 sum m v v^T / sum m v^2: the tensor of the ideal gas' share of the pressure, of trace 3.
+/// Returns 3 sum m v v^T / sum m v^2: the tensor of the ideal gas' share of the pressure, of trace 3.
 Eigen::Matrix3d kinetic_tensor(const System& system);
 
-/// Q = 3/2 <u u^T> - 1/2.
+/// Returns Q = 3/2 <u u^T> - 1/2.
 Eigen::Matrix3d order_tensor(const std::vector<Eigen::Vector3d>& axes, std::size_t begin, std::size_t end);
 double largest_eigenvalue(const Eigen::Matrix3d& Q);
-/// Of the largest eigenvalue; of the two directions the one whose largest component is positive.
+/// Returns the eigenvector of the largest eigenvalue, with the sign that makes its largest component positive.
 Eigen::Vector3d director_of(const Eigen::Matrix3d& Q);
 
 }  // namespace ed::internal

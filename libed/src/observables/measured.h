@@ -1,6 +1,6 @@
 #pragma once
 
-/// What a run's observables are kept as: blocks of sums, of which there are never more than a fixed number.
+/// Storage of a run's observables: blocks of sums, whose number never exceeds kMaxBlocks.
 
 #include "base/archive.h"
 #include "observables/frame_sums.h"
@@ -26,7 +26,7 @@ struct Totals {
   double collisions = 0;
   double virial = 0;
   Eigen::Matrix3d virial_tensor = Eigen::Matrix3d::Zero();
-  std::vector<double> collisions_of;  ///< the bodies of each group, each its own; empty if nothing is known of them
+  std::vector<double> collisions_of;  ///< collisions of the bodies of each group; empty if they are not known
 
   template <class Archive, class Self>
   static void fields(Archive& archive, Self& self) {
@@ -36,18 +36,18 @@ struct Totals {
 
 Totals totals_of(const Simulation& simulation, const std::vector<BodyRange>& groups);
 
-/// All that was measured from origins in one stretch of time.
+/// Sums over the origins in one stretch of time.
 struct Block {
-  std::vector<LagSums> lags;                          ///< of group g at lag k: [k * groups + g]
-  std::vector<FrameSums> groups;                      ///< of each
-  FrameSums all;                                      ///< of all bodies; axis_kT is left out
+  std::vector<LagSums> lags;                          ///< sums of group g at lag k: [k * groups + g]
+  std::vector<FrameSums> groups;                      ///< sums of each group
+  FrameSums all;                                      ///< sums of all bodies; axis_kT is left out
   Eigen::Matrix3d kinetic = Eigen::Matrix3d::Zero();  ///< kinetic_tensor, summed over frames
   Totals begin;
   Totals end;
   double frames = 0;
   int origins = 0;
-  std::vector<StructureSums> structure;  ///< of all bodies, then, if there are several groups, of each
-  double structure_frames = 0;           ///< that have been summed there
+  std::vector<StructureSums> structure;  ///< structure of all bodies, then, if there are several groups, of each
+  double structure_frames = 0;           ///< number of frames in `structure`
 
   /// Adds the block that follows.
   void append(const Block& next);
@@ -59,7 +59,7 @@ struct Block {
   }
 };
 
-/// Reasons for which values are missing in principle; nullopt where they are known. A run knows everything; stored
+/// Reasons for which kinds of data are missing; nullopt for known ones. A run knows everything; stored
 /// frames do not.
 struct Gaps {
   using Gap = std::optional<MissingReason>;
@@ -72,22 +72,22 @@ struct Gaps {
   Gap velocity_correlations{};  ///< the VACF
 };
 
-/// Blocks, and what they are blocks of.
+/// Blocks, and the lags, groups and grids that their sums refer to.
 struct Measured {
-  /// Throws std::invalid_argument for options that are none.
+  /// Throws std::invalid_argument for options that are not usable.
   explicit Measured(const ObservablesOptions& options);
 
   ObservablesOptions options;
-  std::vector<BodyRange> ranges;   ///< of the groups
-  std::vector<double> weights;     ///< their shares of all bodies
-  std::vector<double> lags;        ///< rising
-  double spacing = 0;              ///< of origins
-  int origins_per_block = 0;       ///< of complete blocks
-  std::vector<Freedoms> freedoms;  ///< of the groups, as soon as there is a system
+  std::vector<BodyRange> ranges;   ///< bodies of the groups
+  std::vector<double> weights;     ///< fractions of all bodies that the groups have
+  std::vector<double> lags;        ///< lags in rising order
+  double spacing = 0;              ///< interval between origins
+  int origins_per_block = 0;       ///< number of origins of a complete block
+  std::vector<Freedoms> freedoms;  ///< degrees of freedom of the groups; empty before the first frame
   std::vector<Block> blocks;
-  StructureGrid grid;        ///< as soon as there is a box
+  StructureGrid grid;        ///< grid of g(r) and S(q); not known() before the first frame
   bool length_known = true;  ///< whether the grid's length is that of the bodies
-  int structure_every = 1;   ///< of so many origins of a block, beginning with its first, the structure is measured
+  int structure_every = 1;   ///< interval, in origins of a block from its first on, at which the structure is measured
   Gaps gaps{};
 
   /// Adds a new origin with its frame, in the last block or a new one; true if blocks have been merged by pairs
@@ -102,10 +102,10 @@ struct Measured {
 
   std::size_t structure_parts() const { return ranges.size() > 1 ? ranges.size() + 1 : 1; }
 
-  /// Whether what was read is what these options make.
+  /// Returns whether restored members are consistent with the options.
   bool fits(std::size_t number_of_lags) const;
 
-  /// What the options make is left out, but for lags and spacing: the C library's pow has a hand in them.
+  /// Members that follow from the options are left out, but for lags and spacing, which depend on the C library's pow.
   template <class Archive, class Self>
   static void fields(Archive& archive, Self& self) {
     const std::size_t number_of_lags = self.lags.size();
@@ -120,13 +120,13 @@ struct Measured {
   void merge_blocks();
   bool structure_fits(const Block& block) const;
 
-  std::optional<WaveVectors> wave_vectors_;  ///< of the grid, once they have been used
+  std::optional<WaveVectors> wave_vectors_;  ///< wave vectors of the grid; empty before their first use
 };
 
-/// The wave vectors of S(q).
+/// Returns the wave vectors of S(q).
 WaveVectors wave_vectors_of(const StructureGrid& grid);
 
-/// All results, of a run whose totals are these now. Decays are fitted from the lag `fit_from`; without it, from
+/// Returns all results of a run with these totals. Decays are fitted from the lag `fit_from`; without it, from
 /// kBallisticCollisions mean collision intervals.
 Results results_of(const Measured& measured, const Totals& totals, std::optional<double> fit_from = std::nullopt);
 

@@ -41,7 +41,7 @@ class StructureResults {
 
   const BlockAverages& averages_;
   const Measured& measured_;
-  std::optional<WaveVectors> wave_vectors_;  ///< those of S(q), if there is a box
+  std::optional<WaveVectors> wave_vectors_;  ///< wave vectors of S(q), if there is a box
   std::vector<std::vector<Sum>> sums_;       ///< sums of each part: over all blocks, then of each block
 };
 
