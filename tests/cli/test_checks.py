@@ -98,7 +98,7 @@ class ChecksOfTrajectories(Analyses):
         self.assertEqual(result.returncode, 0 if sound else 1, said)
         self.assertEqual(self.sound(result), sound, said)
         if outcome == LOOKED:
-            self.assertRegex(found.group(1), r"^%d, deeper than the numbers are rounded" % overlap)
+            self.assertRegex(found.group(1), r"^%d, more than the rounding of the numbers" % overlap)
             if overlap:
                 self.assertRegex(said, "frame 1\\b")
                 self.assertRegex(said, who or "frame 1")

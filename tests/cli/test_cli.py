@@ -1115,7 +1115,7 @@ class Starts(Case):
         gas = self.run_start("gas", self.ROD.replace("0.2", "0.002"), "nematic_order = 0.8", said=True)
         reached = [re.search(r"start: S = ([-0-9.]+)$", self.read(f"{out}/log.txt"), re.MULTILINE)[1]
                    for out in ("compressed", "gas")]
-        lost = f'start: S = {float(reached[0]):.2f} about z after the compression, not nematic_order = 0.8, which start = "fcc"'
+        lost = f'start: S = {float(reached[0]):.2f} about z after the compression, not nematic_order = 0.8; start = "fcc"'
         self.assertIn(lost, said)
         self.assertIn(lost, self.read("compressed/log.txt"))
         self.assertNotIn("nematic_order", gas)
@@ -1136,7 +1136,7 @@ class Starts(Case):
         species = "".join(f"[[species]]\nsemi_axes = [{a}, {a}, {a}]\nfraction = {x}\n" for a, x in [(1, 0.003), (0.1, 0.997)])
         config = SMALL.replace("[shape]\naspect_ratio = 2\n", species).replace("64", "1200").replace("0.2", "0.25")
         result = self.run_small("out", "--set", "equilibration.time=0.01", "production.time=0.01", config=config)
-        words = r"the largest bodies have 10 times the bounding radius of the smallest, and a cell .* holds \d+ bodies"
+        words = r"the largest bodies have 10 times the bounding radius of the smallest: neighbours are searched in cells .* hold \d+ bodies"
         self.assertRegex(self.read("out/log.txt"), words)
         self.assertRegex(result.stderr, words)
         self.assertIn("1200 of 1200 bodies are compressed together", result.stderr)

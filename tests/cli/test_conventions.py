@@ -143,7 +143,7 @@ lammps("oblong", [X, *REST], absent=ALL, reason="cube|oblong|edges", refused=Tru
        box=lambda k: ["-5 5", "-5 5", "-10 10"])
 lammps("a box that grows in frame 7", [X, *REST], absent=ALL, reason="frame 7", refused=True,
        box=lambda k: 3 * ["-5 5" if k < 7 else "-5.5 5.5"])
-lammps("bounds that shift", [X, *REST], absent=ALL, reason="frame 1: .*bounds that stay", refused=True,
+lammps("bounds that shift", [X, *REST], absent=ALL, reason="frame 1: .*constant bounds", refused=True,
        box=lambda k: 3 * [f"{-5 + k / 16!r} {5 + k / 16!r}"])
 
 # Who is who, and when.
@@ -174,10 +174,10 @@ lammps("units and times", [XU, *REST], LONG, head=TIME, way={"time_step": None})
 lammps("times and --time-step", [XU, *REST], LONG, head=TIME)
 lammps("steps of ten thousand from three thousand million on", [XU, *REST],
        stepped(LONG, 3_000_000_000 + 10_000 * numpy.arange(FRAMES)), way={"time_step": "1e-4"})
-lammps("an uneven first interval", [XU, *REST], stepped(LONG, [0, *range(7, 7 + 39)]), reason="even stretch",
+lammps("an uneven first interval", [XU, *REST], stepped(LONG, [0, *range(7, 7 + 39)]), reason="evenly spaced",
        way={"correlated": (slice(1, None),)})
 gap = [k for k in range(FRAMES) if k != 14]
-lammps("a missing frame", [XU, *REST], LONG[gap], reason="even stretch", way={"correlated": (slice(14, None),)})
+lammps("a missing frame", [XU, *REST], LONG[gap], reason="evenly spaced", way={"correlated": (slice(14, None),)})
 again = [*range(26), *range(25, FRAMES)]
 lammps("a frame that stands there twice", [XU, *REST], LONG[again], absent=ALL, reason="time of frame 26", refused=True)
 lammps("steps that start again", [XU, *REST], stepped(LONG, [*range(25), *range(15)]), absent=ALL, reason="time of frame 25",
@@ -252,7 +252,7 @@ hoomd("masses, diameters, charges, bodies", LONG, more={
 hoomd("a body less in frame 7", absent=ALL, reason="frame 7", refused=True, more={
     "particles/N": lambda k: numpy.array([7], numpy.uint32) if k == 7 else None})
 hoomd("steps of ten thousand", stepped(LONG, 10_000 * numpy.arange(FRAMES)), way={"time_step": "1e-4"})
-hoomd("an uneven first interval", stepped(LONG, [0, *range(7, 7 + 39)]), reason="even stretch",
+hoomd("an uneven first interval", stepped(LONG, [0, *range(7, 7 + 39)]), reason="evenly spaced",
       way={"correlated": (slice(1, None),)})
 
 # Not all frames, other names.

@@ -357,7 +357,7 @@ class PartsOfFrames(FilesCase):
         self.dump("c.lammpstrj", f"id type x y z {names}", [[[1, 1, 0, 0, 0, 1, 0, 0, 0]]])
         self.assertIn(f"columns {names}: not used; orientations are read from quatw quati quatj quatk", self.analyze("c.lammpstrj"))
         self.dump("l.lammpstrj", "id type x y z shapex shapey shapez blockiness1 blockiness2", [[[1, 1, 0, 0, 0, 1, 1, 2, 2, 2]]])
-        self.assertIn("shapex shapey shapez: are not used beside columns blockiness1 blockiness2", self.analyze("l.lammpstrj"))
+        self.assertIn("shapex shapey shapez: not used together with columns blockiness1 blockiness2", self.analyze("l.lammpstrj"))
 
     def test_quaternions(self):
         columns = "id type x y z quatw quati quatj quatk shapex shapey shapez"

@@ -563,7 +563,7 @@ class Faults(Restart):
                 os.makedirs(self.path(f"out/{path}.part"))
                 error, files = self.ended(process)
                 self.assertIn(f"out/{path}: cannot be written: ", error)
-                self.assertIn("; the last checkpoint is intact: mend that, then hardbody resume out\n", error)
+                self.assertIn("; the last checkpoint is intact: resolve this, then hardbody resume out\n", error)
                 self.assertEqual(files, written)
                 shutil.rmtree(self.path(f"out/{path}.part"), ignore_errors=True)
                 self.resume("out")

@@ -418,7 +418,7 @@ class Files(SweepCase):
 
     def test_one_file_by_two_names(self):
         self.write("project/sweep.toml", self.BASE + '[grid]\nstart.file = ["states/first.gsd", "./states/first.gsd"]\n')
-        self.assert_refused(self.call(".", "project/sweep.toml"), "is there twice")
+        self.assert_refused(self.call(".", "project/sweep.toml"), "occurs twice")
 
     def test_another_file_of_the_same_name(self):
         text = self.BASE + '[start]\nfile = "states/first.gsd"\n[grid]\nstart.frame = [0]\n'
@@ -519,9 +519,9 @@ class Refused(SweepCase):
         axis = "[grid]\nsystem.packing_fraction = "
         self.refuse(SMALL, "sweep.toml: has no [grid]")
         self.refuse(SMALL + "[grid]\n", "sweep.toml:13: the grid has no keys")
-        self.refuse(SMALL + axis + "[0.1, 0.2, 0.1]\n", "packing_fraction = 0.1 is there twice")
-        self.refuse(SMALL + axis + "[0.1, 0.1000000000000001]\n", "packing_fraction = 0.1000000000000001 is there twice")
-        self.refuse(SMALL + "[grid]\nshape.semi_axes = [[1, 1, 0.3], [1, 1.0, 0.30000000000000004]]\n", "is there twice")
+        self.refuse(SMALL + axis + "[0.1, 0.2, 0.1]\n", "packing_fraction = 0.1 occurs twice")
+        self.refuse(SMALL + axis + "[0.1, 0.1000000000000001]\n", "packing_fraction = 0.1000000000000001 occurs twice")
+        self.refuse(SMALL + "[grid]\nshape.semi_axes = [[1, 1, 0.3], [1, 1.0, 0.30000000000000004]]\n", "occurs twice")
         self.refuse(SMALL + axis + "[]\n", "system.packing_fraction is []", "sweep.toml:14")
         self.refuse(SMALL + axis + "{from = 0.1, to = 0.2}\n", "sweep.toml:14", "{from, to, step}")
         self.refuse(SMALL + axis + "{from = 0.1, to = 0.2, step = -0.1}\n", "sweep.toml:14", "a step that leads")
@@ -558,7 +558,7 @@ class Refused(SweepCase):
     def test_overlapping_grids(self):
         one = "[[grid]]\nshape.aspect_ratio = [0.5, 2]\nsystem.packing_fraction = [0.1, 0.2]\n"
         two = "[[grid]]\nsystem.packing_fraction = 0.2\nshape.aspect_ratio = [3, 2.0]\n"
-        self.refuse(SMALL + one + two, "sweep.toml:16: the point", "system.packing_fraction = 0.2", "is there twice, also in sweep.toml:13")
+        self.refuse(SMALL + one + two, "sweep.toml:16: the point", "system.packing_fraction = 0.2", "occurs twice, also in sweep.toml:13")
         self.refuse(SMALL + one + "[[grid]]\nseed = 1\n", "is a key of one grid and not of another")
 
     def test_no_point_is_possible(self):
@@ -693,7 +693,7 @@ class Maps(SweepCase):
         for rows in [[(x, 2 * x, x) for x in range(5)], [(1, y, y) for y in range(5)], [(x, 1, x) for x in range(5)]]:
             self.write("line.csv", "\n".join(["x,y,D", *(",".join(map(str, row)) for row in rows)]) + "\n")
             result = self.hardbody("map", "line.csv", "--x", "x", "--y", "y", "--value", "D", "--out", "a.svg", "--csv", "a.csv")
-            self.assert_refused(result, "line.csv: D is known at 5 points with", "no line can be drawn", "accepted: two values of x")
+            self.assert_refused(result, "line.csv: D is known at 5 points with", "no line can be drawn", "accepted: at least two neighbouring values of x")
             self.assertFalse(os.path.exists(self.path("a.svg")))
 
     def test_conditions_are_numbers(self):
@@ -718,7 +718,7 @@ class Maps(SweepCase):
             (["--value", "F"], ["table.csv: has no column F", "accepted: shape.aspect_ratio, phi"]),
             (["--value", "D", "--levels", "0.1,x"], ["--levels: x is not a number"]),
             (["--value", "D", "--levels", "0.1,"], ["--levels: is not a number"]),
-            (["--value", "D", "--value", "E", "--levels", "0.1"], ["--levels is there 1 times and --value 2 times"]),
+            (["--value", "D", "--value", "E", "--levels", "0.1"], ["--levels is given 1 times and --value 2 times"]),
             (["--value", "D", "--where", "seed"], ["--where seed"]),
             (["--value", "D", "--where", "seed=5"], ["--where seed=5: no row"]),
             (["--value", "D", "--where", "sed=5"], ["did you mean seed?"]),

@@ -592,7 +592,7 @@ class StartsFromFiles(Trajectories):
             ("infinite box", dump(bounds="-1e308 1e308"), "its box has an edge of inf"),
             ("far away", dump(x="1e17"), "body 1 is at 1e+17", "positions in the box"),
             ("no number", dump(x="nan"), "x of body 1 is \"nan\""),
-            ("many bodies", dump(count="2147483648"), "has no whole frame"),
+            ("many bodies", dump(count="2147483648"), "has no complete frame"),
             ("not periodic", dump().replace("BOUNDS pp pp pp", "BOUNDS pp ff pp"), "boundaries ff", "pp pp pp"),
             ("one id twice", dump(bodies=[bodies[1]] + bodies[1:]), "two bodies have the id 2"),
             ("no orientations", dump().replace("quatw", "spare"), "has no orientations", "columns quatw quati quatj quatk"),
@@ -629,7 +629,7 @@ class StartsFromFiles(Trajectories):
         result = self.hardbody("run", "again.toml", "--out", "out")
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertIn(f"frame {frames - 1} of ", result.stderr)
-        self.assertIn("what follows them is not whole", result.stderr)
+        self.assertIn("data after them is incomplete", result.stderr)
 
     def test_refusals(self):
         self.run_with("first", SMALL)
@@ -753,10 +753,10 @@ class CheckOfFiles(Trajectories):
             file.write(content[:-1000])
         said = "5; data after them is incomplete and left out"
         self.assertIn(said, self.hardbody("check", "cut.gsd").stdout)
-        self.assertIn("what follows them is not whole", self.hardbody("analyze", "cut.gsd", "--out", "analysis").stdout)
+        self.assertIn("data after them is incomplete", self.hardbody("analyze", "cut.gsd", "--out", "analysis").stdout)
         result = self.run_small("again", config=AGAIN.replace("first/trajectory", "cut"))
         self.assertIn("of frame 4 of ", result.stderr)
-        self.assertIn("what follows them is not whole", result.stderr)
+        self.assertIn("data after them is incomplete", result.stderr)
 
     def test_files_with_holes(self):
         """A terabyte of which the disk holds next to nothing: refused, or read, without the memory it claims."""
@@ -774,7 +774,7 @@ class CheckOfFiles(Trajectories):
 
         index, entries, names = 8, 16, 32
         end = len(content)
-        self.assertIn("has no whole frame", sparse("index.gsd", at=(index, end), of=(entries, (1 << 40) // 32 - end)).stderr)
+        self.assertIn("has no complete frame", sparse("index.gsd", at=(index, end), of=(entries, (1 << 40) // 32 - end)).stderr)
         self.assertIn("more than 16 MiB of names", sparse("names.gsd", of=(names, (1 << 39) // 64)).stderr)
         self.assertIn("sound", sparse("sound.gsd").stdout)
 
@@ -789,7 +789,7 @@ class CheckOfFiles(Trajectories):
             self.assertEqual(result.returncode, 0 if name == "shapes.gsd" else 1, result.stdout + result.stderr)
             self.assertIn("bit-exact state            no", result.stdout)
             last = result.stdout.splitlines()[-1]
-            self.assertEqual(last[:26], "sound" if name == "shapes.gsd" else "not tested: overlaps: b")
+            self.assertEqual(last[:26], "sound" if name == "shapes.gsd" else "not tested: overlaps: bodi")
 
 
 class Analyze(Trajectories):

@@ -43,14 +43,15 @@ struct ShapeConfig {
 struct SpeciesConfig {
   ShapeConfig shape;
   Inertia inertia = Inertia::paper;
-  Eigen::Vector3d inertia_moments{0, 0, 0};  ///< for Inertia::moments: as given, about the axes that semi_axes names
+  Eigen::Vector3d inertia_moments{0, 0,
+                                  0};  ///< moments of Inertia::moments, as given, about the axes that semi_axes names
   double mass = 1;
-  std::optional<double> fraction;  ///< of the number of bodies; nullopt: the number itself was given
+  std::optional<double> fraction;  ///< fraction of the number of bodies; nullopt: the number itself was given
   int number = 0;
 
   std::optional<ed::SizeDistribution> sizes;  ///< nullopt: all bodies have the same size
-  double width = 0;                           ///< of the distribution of sizes: standard deviation / mean
-  std::optional<std::int64_t> size_seed;      ///< nullopt: the run's
+  double width = 0;                           ///< standard deviation / mean of the distribution of sizes
+  std::optional<std::int64_t> size_seed;      ///< nullopt: the seed of the run
 
   /// Body of nominal size, in the program's units. An ellipsoid's axis of revolution is along body z.
   ed::Species body;
@@ -94,9 +95,10 @@ struct Config {
   double packing_fraction = 0;
   std::optional<ed::Lattice> start;       ///< nullopt: "random"
   std::optional<std::string> start_from;  ///< directory of a run whose last state is compressed; instead of `start`
-  std::optional<double> nematic_order;    ///< of the start; nullopt: uniform orientations, or on a lattice aligned ones
+  std::optional<double>
+      nematic_order;  ///< nematic order of the start; nullopt: uniform orientations, or on a lattice aligned ones
 
-  std::optional<StartFile> start_file;  ///< instead of a start of the run's own
+  std::optional<StartFile> start_file;  ///< state in a file that replaces a start of the run's own
 
   // [shape], or one or more [[species]]
   bool mixture = false;  ///< [[species]]: lengths are taken as they are given
@@ -108,18 +110,18 @@ struct Config {
   double eps_d = 1e-6;
   ed::DistanceMethod distance = ed::DistanceMethod::dual;
   std::optional<ed::Neighbours> neighbours;  ///< nullopt: "auto" has not chosen yet
-  bool neighbours_chosen = true;             ///< by "auto"
+  bool neighbours_chosen = true;             ///< "auto" chose the neighbours
 
   std::optional<double> equilibration_time;  ///< nullopt: "auto"
-  double equilibration_cap = 0;              ///< of "auto"
+  double equilibration_cap = 0;              ///< longest time of "auto"
   std::optional<double> production_time;
-  std::optional<double> target_error;  ///< of "auto": relative, of D_trans and D_rot
-  std::vector<double> wave_numbers;    ///< of F_self, 1/l; none: the first peak of S(q), and about it
+  std::optional<double> target_error;  ///< relative error of D_trans and D_rot at which "auto" ends
+  std::vector<double> wave_numbers;  ///< wave numbers of F_self, 1/l; none: the first peak of S(q), and others about it
 
   // [output]
   std::int64_t events = 0;
   std::vector<TrajectoryFormat> trajectory;  ///< each once
-  std::int64_t frames = 100;                 ///< of each trajectory
+  std::int64_t frames = 100;                 ///< frames of each trajectory
   std::string checkpoint_every = "60s";      ///< a number and s, m or h
 
   /// Returns the bodies in the order of their species; of a species with sizes one component a body.

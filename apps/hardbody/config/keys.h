@@ -111,7 +111,7 @@ InputError missing(const std::string& where, const std::string& name, const Targ
 
 /// Key of a config in its place.
 struct PlacedKey {
-  std::string name;  ///< as a document has it: species[2].mass
+  std::string name;  ///< name in a document: species[2].mass
   const Key* key;
   Place place;
 };

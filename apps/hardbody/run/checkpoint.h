@@ -32,7 +32,7 @@ class StoredState {
   std::uint64_t size() const { return make_ ? size_ : bytes_.size(); }
   void write(const Sink& sink) const;
 
-  const std::string& bytes() const { return bytes_; }  ///< of one that was read
+  const std::string& bytes() const { return bytes_; }  ///< bytes of a state that was read
   std::string& bytes() { return bytes_; }
 
  private:
@@ -41,13 +41,13 @@ class StoredState {
   std::uint64_t size_ = 0;
 };
 
-/// What a run needs, beside its config, to go on bit for bit.
+/// State that a run needs, besides its config, to continue bit for bit.
 struct RunState {
-  bool finished = false;  ///< nothing is left to do but to write what was measured
-  /// Without its system. While it goes on: as of the last full unit of time.
+  bool finished = false;  ///< only the measured results are left to be written
+  /// Equilibration without its system; while it runs, as of the last full unit of time.
   Equilibration equilibration;
   std::string monitor;    ///< ed::EquilibrationMonitor::save; not in production
-  Production production;  ///< what it began with
+  Production production;  ///< values at the beginning of production
   EventsMark events;
   TrajectoryMark trajectory;
   StoredState simulation;   ///< ed::Simulation::save
@@ -62,18 +62,18 @@ inline constexpr std::uint32_t kCheckpointFormat = 10;
 /// payload; the XXH3 checksum of everything before it. Versions 1 (one ellipsoid of revolution for all bodies) and 2
 /// hold no RunState, versions 3 to 8 another one, which is left unread: they can be checked, not resumed.
 struct Checkpoint {
-  std::uint32_t format = kCheckpointFormat;  ///< of the file that it was read from
+  std::uint32_t format = kCheckpointFormat;  ///< format of the file that it was read from
   std::string program_version;
   std::string config;        ///< the run's resolved config.toml
-  std::string cpu_features;  ///< of the processor that made it, blank-separated
-  std::string arithmetic;    ///< of the program that made it
+  std::string cpu_features;  ///< features of the processor that made it, blank-separated
+  std::string arithmetic;    ///< arithmetic of the program that made it
   std::string phase;         ///< "start", "equilibration" or "production"
-  double time = 0;           ///< since the phase began
+  double time = 0;           ///< time since the phase began
   ed::System system;
   // In a "start"; later in RunState's equilibration.
   ed::Counters counters_of_start;
   std::vector<ed::FailedPair> failures_of_start;
-  std::optional<RunState> run;  ///< nothing in a "start", which goes on from the system
+  std::optional<RunState> run;  ///< nullopt in a "start", which continues from the system
   Upkeep upkeep;                ///< last, so that the checkpoints of two like runs differ in their last 48 bytes only
 };
 

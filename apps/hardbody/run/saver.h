@@ -21,13 +21,14 @@ class Saver {
 
   bool due() const;
 
-  /// What is made of the run where it stands. If that or writing fails it is logged and counted, and the run goes on.
+  /// Saves a checkpoint of the current state, which `make` makes. A failure of that or of writing is logged and
+  /// counted, and the run continues.
   void save(const std::function<Checkpoint()>& make);
 
-  /// The same for the end of a run; throws if it fails.
+  /// Writes the checkpoint at the end of a run; throws if that fails.
   void write(Checkpoint checkpoint);
 
-  /// Up to now, but for production's seconds.
+  /// Returns the statistics up to now, without production's seconds.
   Upkeep upkeep() const;
 
  private:

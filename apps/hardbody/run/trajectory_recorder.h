@@ -20,10 +20,10 @@ namespace hardbody {
 /// appended to each of the files that were asked for. Taking one changes nothing in the run.
 class Trajectory {
  public:
-  /// Of a production of this length. Nothing is written yet.
+  /// Prepares the trajectories of a production of this length. Writes nothing yet.
   Trajectory(const RunDirectory& directory, const Config& config, double planned);
 
-  /// When the next frame is due; infinite when there is none.
+  /// Returns the time of the next frame, infinity if there is none.
   double next_time() const;
 
   /// Whether the files are at least as long as a checkpoint says. Throws InputError if not.
@@ -62,7 +62,7 @@ class Trajectory {
   double planned_;
   std::uint64_t wanted_;  ///< frames; 0: no trajectory
   std::uint64_t taken_ = 0;
-  double last_time_ = -1;  ///< of the last frame
+  double last_time_ = -1;  ///< time of the last frame
   std::vector<File> files_;
   std::deque<Frame> waiting_;  ///< the last frames taken, those that some file lacks
   bool failing_ = false;       ///< the last attempt to write

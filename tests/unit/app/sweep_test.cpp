@@ -143,9 +143,9 @@ TEST(SweepGrids, NamesTellPointsApart) {
 
 TEST(SweepGrids, PointsThatAreThereTwice) {
   EXPECT_THAT(refusal_of("[grid]\nsystem.packing_fraction = [0.1, 0.10]\n"),
-              HasSubstr("packing_fraction = 0.1 is there twice"));
-  EXPECT_THAT(refusal_of("[grid]\nshape.aspect_ratio = [2, 2.0]\n"), HasSubstr("is there twice"));
-  EXPECT_THAT(refusal_of("[grid]\nshape.semi_axes = [[1, 1, 2], [1.0, 1, 2.0]]\n"), HasSubstr("is there twice"));
+              HasSubstr("packing_fraction = 0.1 occurs twice"));
+  EXPECT_THAT(refusal_of("[grid]\nshape.aspect_ratio = [2, 2.0]\n"), HasSubstr("occurs twice"));
+  EXPECT_THAT(refusal_of("[grid]\nshape.semi_axes = [[1, 1, 2], [1.0, 1, 2.0]]\n"), HasSubstr("occurs twice"));
   EXPECT_THAT(refusal_of("[[grid]]\nseed = [1, 2]\nsystem.number = 64\n[[grid]]\nsystem.number = [64, 70]\nseed = 2\n"),
               HasSubstr("also in sweep.toml:7"));
   EXPECT_EQ(

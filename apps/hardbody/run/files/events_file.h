@@ -20,7 +20,7 @@ class EventsFile {
   /// Collisions that may wait in memory for a disk that takes them: 256 MB.
   static constexpr std::size_t kMostWaiting = std::size_t{1} << 24;
 
-  /// Of `wanted` collisions; 0: there is no file. Nothing is written yet.
+  /// Prepares a file of `wanted` collisions; 0: there is no file. Writes nothing yet.
   EventsFile(const RunDirectory& directory, std::int64_t wanted, std::size_t most_waiting = kMostWaiting);
 
   /// Whether the file is at least as long as a checkpoint says. Throws InputError if not.
@@ -34,9 +34,9 @@ class EventsFile {
   /// if it cannot be written; the file is then as it was, and the collisions are kept.
   void take(ed::Simulation& simulation);
 
-  /// The same, once much has been recorded: to be called often, so that memory does not grow with the time between two
-  /// checkpoints. What cannot be written is kept and tried again later, which is logged; throws WriteError when too
-  /// many are waiting for that.
+  /// Does what take() does, once much has been recorded. Called often, it keeps memory from growing with the time
+  /// between two checkpoints. What cannot be written is kept and tried again later, which is logged; throws WriteError
+  /// when too many are waiting for that.
   void keep_up(ed::Simulation& simulation, Log& log);
 
   EventsMark mark() const { return mark_; }

@@ -24,9 +24,9 @@ namespace hardbody {
 /// there was no seed, its frame has its origin at a's centre. World frame; rotation: rows of the matrix from body to
 /// world, or instead of it "orientation": [w, x, y, z]. Numbers are written so that they read back as the same double.
 struct Failure {
-  std::string reason;  ///< in words; a file may have another than to_string(pair.reason)
+  std::string reason;  ///< reason in words; that of a file may differ from to_string(pair.reason)
   ed::FailedPair pair;
-  std::vector<std::string> notices;  ///< of a file that was read: quaternions that were normalized
+  std::vector<std::string> notices;  ///< notices about a file that was read: quaternions that were normalized
 };
 
 std::string failure_json(const Failure& failure);

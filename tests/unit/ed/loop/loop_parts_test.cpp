@@ -1,11 +1,18 @@
 // The parts of the event loop, each by itself.
 
+#include <common/ed_states.h>
+
+#include "base/periodic.h"
+#include "bodies/uniaxial.h"
 #include "loop/added_events.h"
+#include "loop/event_kinds.h"
+#include "loop/factory.h"
 #include "loop/parts/collision_log.h"
 #include "loop/parts/epoch_clock.h"
-#include "loop/event_kinds.h"
 #include "loop/parts/failure_log.h"
+#include "loop/parts/neighbourhood.h"
 #include "loop/parts/periodic_box.h"
+#include "loop/parts/predictor.h"
 #include "loop/parts/schedule.h"
 #include "loop/parts/stall_watch.h"
 #include "neighbours/lists.h"
@@ -14,7 +21,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cstddef>
 #include <cstdint>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -207,6 +216,93 @@ TEST(Schedule, AddedEventsTakePart) {
   added.start_epoch(6);
   schedule.reschedule_all();
   EXPECT_EQ(schedule.earliest_time(), 0);
+}
+
+using ed::internal::UniaxialBodies;
+
+/// Bodies with their neighbourhood.
+struct Surrounded {
+  explicit Surrounded(const ed::System& system)
+      : bodies(system), box(system.box, system.size()), neighbourhood(bodies, box, counters, {}) {
+    neighbourhood.set_envelopes(ed::internal::make_envelopes(bodies, {}, 0.3, 1, system.box));
+    neighbourhood.make_all(0);
+  }
+
+  /// Neighbours of body i by its list.
+  std::set<int> listed(int i) const {
+    const NeighbourLists& lists = neighbourhood.lists();
+    std::set<int> partners;
+    for (const std::int32_t index : lists.of(i)) partners.insert(lists.pair(index).partner(i));
+    return partners;
+  }
+
+  ed::Counters counters;
+  UniaxialBodies bodies;
+  ed::internal::PeriodicBox box;
+  ed::internal::Neighbourhood<UniaxialBodies> neighbourhood;
+};
+
+TEST(Neighbourhood, ListsHaveAllPairsOfOverlappingEnvelopes) {
+  const ed::System system = ed_test::start({3, 0.2, 60, ed_test::Inertia::paper, 4});
+  Surrounded all(system);
+  const auto expected = [&](int i) {
+    std::set<int> partners;
+    for (int k = 0; k < system.size(); ++k) {
+      const Vector3d r =
+          ed::internal::nearest_image(all.bodies.position_at(k, 0) - all.bodies.position_at(i, 0), system.box);
+      Vector3d normal;
+      if (k != i && all.neighbourhood.envelopes().may_overlap(i, k, r, normal)) partners.insert(k);
+    }
+    return partners;
+  };
+  std::size_t pairs = 0;
+  for (int i = 0; i < system.size(); ++i) {
+    EXPECT_EQ(all.listed(i), expected(i)) << i;
+    pairs += all.listed(i).size();
+  }
+  EXPECT_GT(pairs, 100U);
+  EXPECT_EQ(all.counters.envelope_checks, 60U);
+
+  std::set<int> removed;
+  all.neighbourhood.drop_list(5, [&removed](std::int32_t /*index*/, std::int32_t partner) { removed.insert(partner); });
+  EXPECT_EQ(removed, expected(5));
+  EXPECT_TRUE(all.listed(5).empty());
+  all.neighbourhood.find_list(5, 0);
+  EXPECT_EQ(all.listed(5), expected(5));
+}
+
+TEST(Predictor, FindsTheContactOfTwoSpheres) {
+  ed::System system;
+  system.species = {ed_test::species(1, ed_test::Inertia::paper)};
+  system.box = 20;
+  system.bodies.resize(2);
+  system.bodies[0].position = {-9, 0, 0};
+  system.bodies[1].position = {8.5, 0, 0};  // 2.5 away, across the face of the box
+  system.bodies[1].velocity = {2, 0, 0};
+  Surrounded two(system);
+  for (int i = 0; i < 2; ++i) two.bodies.events(i).exit = 1;
+  const std::vector<int> species_of = {0, 0};
+  ed::internal::FailureLog failures(system.species, species_of);
+  const ed::internal::EpochClock clock;
+  const ed::ContactOptions options;
+  ed::internal::Predictor<UniaxialBodies> predictor(
+      {two.bodies, two.neighbourhood, two.box, clock, two.counters, failures}, options, nullptr);
+  ASSERT_EQ(two.neighbourhood.lists().of(0).size(), 1U);
+  auto& pair = two.neighbourhood.lists().pair(two.neighbourhood.lists().of(0)[0]);
+  predictor.queue(pair);
+  predictor.predict_queued();
+  for (int look = 0; look < 10 && pair.event == PairEvent::bound; ++look) {
+    EXPECT_LE(pair.time, 0.25);
+    predictor.search(pair, predictor.kSecondLook + look);
+  }
+  EXPECT_EQ(pair.event, PairEvent::contact);
+  EXPECT_NEAR(pair.time, 0.25, 1e-12);
+
+  two.bodies.events(0).exit = 0.2;  // the search ends there
+  predictor.search(pair, 10);
+  EXPECT_EQ(pair.event, PairEvent::clear);
+  EXPECT_EQ(predictor.count().rescues, 0U);
+  EXPECT_TRUE(failures.pairs().empty());
 }
 
 }  // namespace

@@ -154,7 +154,7 @@ TEST(LatticeStart, NamesTheNumbersThatBodiesCanTurnIn) {
   const ed::Species species = ed_test::species(3, Inertia::paper);
   const ed::LatticeOptions options{.packing_fraction = 0.4, .nematic_order = 0.8};
   const std::string message = message_of([&] { (void)lattice(species, 512, options); });
-  EXPECT_THAT(message, HasSubstr("do not turn further than to an order of 0.86"));
+  EXPECT_THAT(message, HasSubstr("cannot rotate beyond an order of 0.86"));
   const std::vector<int> numbers = numbers_after(message, "a number of ");
   ASSERT_EQ(numbers.size(), 2U) << message;
   for (const int number : numbers) EXPECT_EQ(ed::audit(lattice(species, number, options)).overlaps, 0) << number;
