@@ -13,6 +13,14 @@ using ed::LagRow;
 
 using ColumnValue = std::function<Estimate(const Correlations&, std::size_t, std::size_t)>;
 
+ColumnValue of_lags(Estimate LagRow::*member) {
+  return [member](const Correlations& c, std::size_t row, std::size_t /*k*/) { return c.lags[row].*member; };
+}
+
+ColumnValue of_pairs(Estimate ed::PairRow::*member) {
+  return [member](const Correlations& c, std::size_t row, std::size_t /*k*/) { return c.pairs[row].*member; };
+}
+
 ColumnValue of_axes(std::array<Estimate, 3> LagRow::*member) {
   return [member](const Correlations& c, std::size_t row, std::size_t axis) { return (c.lags[row].*member)[axis]; };
 }
@@ -132,14 +140,6 @@ std::vector<CurvePlot>& registered_plots() {
 }
 
 }  // namespace
-
-ColumnValue of_lags(Estimate LagRow::*member) {
-  return [member](const Correlations& c, std::size_t row, std::size_t /*k*/) { return c.lags[row].*member; };
-}
-
-ColumnValue of_pairs(Estimate ed::PairRow::*member) {
-  return [member](const Correlations& c, std::size_t row, std::size_t /*k*/) { return c.pairs[row].*member; };
-}
 
 const std::vector<CurveFile>& curve_files() {
   return registered_files();

@@ -106,10 +106,4 @@ class RegisteredCurves {
   std::string name_;
 };
 
-/// Makes a column's value of a member of the rows.
-/// @{
-std::function<ed::Estimate(const ed::Correlations&, std::size_t, std::size_t)> of_lags(ed::Estimate ed::LagRow::*m);
-std::function<ed::Estimate(const ed::Correlations&, std::size_t, std::size_t)> of_pairs(ed::Estimate ed::PairRow::*m);
-/// @}
-
 }  // namespace hardbody

@@ -56,35 +56,35 @@ constexpr double kSteadyTau = 0.25;
 
 // ---- Diffusion
 
-/// How far bodies must have come for their displacements to be diffusion.
+/// Displacements that bodies must have reached for their motion to be diffusion.
 struct Reach {
   double at_start = 0;                                       ///< least value at the first lag of the fit
   double at_end = 0;                                         ///< least value at the longest lag
   double free_below = 0;                                     ///< value at the first lag below which kFreeTurning counts
-  MissingReason short_of_it = MissingReason::not_displaced;  ///< reason to give where they have not
+  MissingReason short_of_it = MissingReason::not_displaced;  ///< reason to give if they have not
 };
 
-/// Requirements of translational diffusion, for the wave number of the first peak of S(q) and the non-Gaussian
-/// parameter at the first lag of the fit.
+/// Returns the requirements of translational diffusion, for the wave number of the first peak of S(q) and the
+/// non-Gaussian parameter at the first lag of the fit.
 Reach reach_of_translation(double first_wave_number, double alpha2);
-/// Requirements of rotational diffusion of so many components.
+/// Returns the requirements of rotational diffusion with this number of components.
 Reach reach_of_rotation(double components);
 
-/// Index of the first lag that diffusion is fitted from; the number of lags if there are none.
+/// Returns the index of the first lag that diffusion is fitted from; the number of lags if there are none.
 std::size_t first_of_fit(const Curve& curve);
 
-/// Why the mean square displacement in `curve` is not diffusion; nothing if it is.
+/// Returns the reason for which the mean square displacement in `curve` is not diffusion; nullopt if it is.
 std::optional<Missing> why_not_diffusive(const Curve& curve, const Reach& reach);
 
-/// Slope over [kFitFrom, 1] of the last lag; NaN for fewer than two lags there.
+/// Returns the slope over [kFitFrom, 1] of the last lag; NaN for fewer than two lags there.
 double final_slope(const Curve& curve);
 
 // ---- Decays
 
-/// Lag at which the curve falls to 1/e; NaN if it does not.
+/// Returns the lag at which the curve falls to 1/e; NaN if it does not.
 double decay_time(const Curve& curve);
 
-/// Why the curve does not fall to 1/e; nothing if it does.
+/// Returns the reason for which the curve does not fall to 1/e; nullopt if it does.
 std::optional<Missing> why_no_decay_time(const Curve& curve);
 
 /// A fit and the lags that went into it.
@@ -94,12 +94,13 @@ struct DecayFit {
   double to;
 };
 
-/// Stretched exponential of a correlation that starts at 1, fitted to lags from `from` on (before, motion is
-/// ballistic), without the noise at the end. Nothing where the thresholds above are not kept, or `from` is infinite (no
-/// body has met another) or NaN (not known).
+/// Fits a stretched exponential to a correlation that starts at 1, to lags from `from` on (before, motion is
+/// ballistic), without the noise at the end. Returns nullopt where the thresholds above are not kept, or `from` is
+/// infinite (no body has met another) or NaN (not known).
 std::optional<DecayFit> fit_decay(const Curve& curve, double from);
 
-/// Why there is no fit of all data: why fit_decay gives nothing, or that tau is not steady; nothing if there is one.
+/// Returns the reason for which all data have no fit: that of fit_decay, or that tau is not steady; nullopt if they
+/// have one.
 std::optional<Missing> why_no_fit(const Curve& curve, double from);
 
 }  // namespace ed::internal

@@ -1,11 +1,12 @@
 #pragma once
 
-/// What a time correlation is made of: two frames of a run, compared body by body.
+/// Correlations of two frames of a run, compared body by body.
+
+#include "base/archive.h"
 
 #include <ed/archive_simulation.h>
 #include <ed/observables.h>
 #include <ed/simulation.h>
-#include "base/archive.h"
 
 #include <Eigen/Core>
 
@@ -25,7 +26,7 @@ struct BodyRange {
   double size() const { return static_cast<double>(end - begin); }
 };
 
-/// Sums, over the origins of a block, of what is measured at one lag: averages over the bodies of a range.
+/// Sums, over the origins of a block, of the quantities measured at one lag: averages over the bodies of a range.
 struct LagSums {
   double count = 0;
   double msd = 0;
@@ -37,11 +38,11 @@ struct LagSums {
   double vacf = 0;                                         ///< <v(t).v(0)>
   double wacf = 0;                                         ///< <w(t).w(0)>, spin excluded
   Eigen::Vector3d rot_msd_axis = Eigen::Vector3d::Zero();  ///< the body axes' shares of rot_msd_body
-  Eigen::Vector3d c1_axis = Eigen::Vector3d::Zero();       ///< of each body axis
-  Eigen::Vector3d c2_axis = Eigen::Vector3d::Zero();
-  std::array<double, kMostWaveNumbers> f_self{};  ///< at as many wave numbers as are asked for
+  Eigen::Vector3d c1_axis = Eigen::Vector3d::Zero();       ///< c1 of each body axis
+  Eigen::Vector3d c2_axis = Eigen::Vector3d::Zero();       ///< c2 of each body axis
+  std::array<double, kMostWaveNumbers> f_self{};  ///< F_self at the wave numbers of the options, in their order
 
-  /// The weight: the range's share of what is averaged.
+  /// Adds sums with a weight: the range's share of the bodies that are averaged.
   void add(const LagSums& other, double weight);
 };
 
@@ -51,13 +52,13 @@ void fields(Archive& archive, T& s) {
           s.c2_axis, s.f_self);
 }
 
-/// Averages over the bodies of a range, with c1_axis and c2_axis if it has three axes: rotations are looked at only
+/// Returns averages over the bodies of a range, with c1_axis and c2_axis if it has three axes: rotations are read only
 /// then.
 ///
 /// F_self is averaged over all directions of q: sin(q r) / (q r), r the displacement, which a box does not confine.
 LagSums correlate(const Snapshot& a, const Snapshot& b, BodyRange range, std::span<const double> wave_numbers);
 
-/// Single ones of them.
+/// Return single quantities of correlate().
 /// @{
 double mean_square_displacement(const Snapshot& a, const Snapshot& b, BodyRange range);
 double mean_p2(const Snapshot& a, const Snapshot& b, BodyRange range);
