@@ -236,12 +236,12 @@ TEST_F(Trajectory, LiesAreRefusedInOneLine) {
   EXPECT_THAT(refusal(with(40, 0x0003000000010004)), HasSubstr("version 3.0"));
   // The first array's frame, type and flags, columns.
   EXPECT_THAT(refusal(with(256, 1ULL << 60)), HasSubstr("a frame beyond the end"));
-  EXPECT_THAT(refusal(with(256 + 24, 0x0100000000000001)), HasSubstr("a type that there is not"));
+  EXPECT_THAT(refusal(with(256 + 24, 0x0100000000000001)), HasSubstr("an array of unknown type"));
   EXPECT_THAT(refusal(with(256 + 24, 0x01010000'00000001)), HasSubstr("unknown flags"));
   EXPECT_THAT(refusal(with(256 + 24, 0x00010000'00000000)), HasSubstr("without columns"));
   EXPECT_THAT(refusal(with(256 + 24, 0x0001FFFF'00000001)), HasSubstr("whose name is not in the list"));
   // The second array's frame: 1, before the others' 0.
-  EXPECT_THAT(refusal(with(256 + 32, 1)), HasSubstr("run backwards"));
+  EXPECT_THAT(refusal(with(256 + 32, 1)), HasSubstr("frames in descending order"));
   EXPECT_THAT(refusal(with_number<std::uint32_t>("particles/N", 0, 1U << 31)), HasSubstr("accepted: at most 10^7"));
   EXPECT_THAT(refusal(with_number<std::uint32_t>("particles/N", 0, 1U << 20)), HasSubstr("accepted: 1048576 x"));
   EXPECT_THAT(refusal(with_number<std::uint32_t>("particles/N", 0, 0)), HasSubstr("has no bodies"));
