@@ -123,7 +123,7 @@ def main(arguments):
     if study.failed:
         return 1
     if not done:
-        print("stopped: the same command goes on")
+        print("stopped: the same command continues")
     return 0
 
 

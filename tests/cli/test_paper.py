@@ -371,7 +371,7 @@ class Tool(Here):
             self.assertEqual(result.returncode, 0, result.stderr)
             if "0 of 3 points are left" in result.stdout:
                 break
-            self.assertIn("the same command goes on", result.stdout)
+            self.assertIn("the same command continues", result.stdout)
         rows = [{k: v for k, v in row.items() if k != "wall_seconds"} for row in read(self.here / "results" / "points.csv")]
         self.assertEqual(rows, reference)
 
