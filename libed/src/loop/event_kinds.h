@@ -33,20 +33,25 @@ enum class EventReads : std::uint8_t {
   partners_of_both,  ///< the other body of a pair, and the partners of both
 };
 
-/// A body may leave its envelope.
-struct ExitEvent {
-  static constexpr EventKind kKind = EventKind::exit;
-  static constexpr EventReads kReads = EventReads::new_list;
+/// Event of one body.
+struct BodyEventBase {
   std::int32_t body;
 
   std::array<std::int32_t, 2> bodies(const NeighbourLists& /*lists*/) const { return {body, -1}; }
+};
+
+/// Exit of a body from its envelope.
+struct ExitEvent : BodyEventBase {
+  static constexpr EventKind kKind = EventKind::exit;
+  static constexpr EventReads kReads = EventReads::new_list;
+
   template <class Loop>
   static void predict(Loop& loop, int body);
   template <class Loop>
   void process(Loop& loop) const;
 };
 
-/// An event of a pair, by its index. One search predicts which kind it is.
+/// Event of a pair, by its index. One search predicts which kind it is.
 struct PairEventBase {
   std::int32_t index;
 
@@ -66,7 +71,7 @@ struct LookEvent : PairEventBase {
   void process(Loop& loop) const;
 };
 
-/// A pair touches.
+/// Contact of a pair.
 struct ContactEvent : PairEventBase {
   static constexpr EventKind kKind = EventKind::contact;
   static constexpr EventReads kReads = EventReads::partners_of_both;
@@ -75,14 +80,12 @@ struct ContactEvent : PairEventBase {
   void process(Loop& loop) const;
 };
 
-/// An event of the added kind number k (added_events.h).
+/// Event of the added kind number k (added_events.h).
 template <std::size_t k>
-struct AddedEvent {
+struct AddedEvent : BodyEventBase {
   static constexpr EventKind kKind = EventKind::added;
   static constexpr EventReads kReads = EventReads::partners;
-  std::int32_t body;
 
-  std::array<std::int32_t, 2> bodies(const NeighbourLists& /*lists*/) const { return {body, -1}; }
   template <class Loop>
   static void predict(Loop& loop, int body);
   template <class Loop>

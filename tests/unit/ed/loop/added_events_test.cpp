@@ -55,16 +55,21 @@ class Slabs {
   std::vector<int> slab_;
 };
 
-/// Counts how often bodies cross these planes.
-struct PlaneCrossing {
+/// Events at these planes.
+struct AtPlanes {
   bool wanted = false;
   Slabs slabs;
-  std::uint64_t crossings = 0;
 
   template <class Bodies>
   double predict(const Bodies& bodies, int body, const EpochClock& clock, const PeriodicBox& box) {
     return wanted ? slabs.crossing(bodies, body, clock, box) : kNever;
   }
+};
+
+/// Counts how often bodies cross these planes.
+struct PlaneCrossing : AtPlanes {
+  std::uint64_t crossings = 0;
+
   template <class Bodies>
   BodyChange process(const Bodies& bodies, int body, const EpochClock& /*clock*/, const PeriodicBox& /*box*/) {
     slabs.of(body) += bodies.velocity(body).x() > 0 ? 1 : -1;
@@ -74,15 +79,9 @@ struct PlaneCrossing {
 };
 
 /// Reflects bodies there.
-struct Mirror {
-  bool wanted = false;
-  Slabs slabs;
+struct Mirror : AtPlanes {
   std::uint64_t reflections = 0;
 
-  template <class Bodies>
-  double predict(const Bodies& bodies, int body, const EpochClock& clock, const PeriodicBox& box) {
-    return wanted ? slabs.crossing(bodies, body, clock, box) : kNever;
-  }
   template <class Bodies>
   BodyChange process(Bodies& bodies, int body, const EpochClock& clock, const PeriodicBox& /*box*/) {
     const Vector3d v = bodies.velocity(body);
