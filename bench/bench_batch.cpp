@@ -89,7 +89,7 @@ Queries make_queries(const geom::Ellipsoid& shape) {
   return queries;
 }
 
-/// How many pairs were left to distance().
+/// Answers all queries by the method; returns the number of pairs that a batch left to distance().
 std::size_t answer(const Method& method, const Queries& q, std::vector<geom::DistanceResult>& results) {
   if (method) {
     return geom::distance_batch(q.shapes, q.X_WA, q.shapes, q.X_WB, results, {.instruction_set = *method}).redone;

@@ -29,7 +29,7 @@ const char* const kReference = "ellipsoids 1:1:3";
 struct Bodies {
   std::string name;
   ed::Species species;
-  std::uint64_t collisions = 20000;  ///< of a stretch
+  std::uint64_t collisions = 20000;  ///< collisions of a stretch
 };
 
 /// A user's shape, as that of docs/user-shapes.md.

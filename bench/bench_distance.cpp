@@ -33,7 +33,7 @@ constexpr double kWarmAngle = 0.01;  // radian; how far a normal turns between t
 
 constexpr std::array kAspectRatios{0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0};
 // In units of the two equal semi-axes. The overlap is certified for every X0: the sum of both smallest radii of
-// curvature is 0.02 at the least.
+// curvature is at least 0.02.
 constexpr std::array kGaps{1.0, 1e-1, 1e-6, -1e-3};
 
 enum class Kernel { uniaxial, general };
@@ -137,7 +137,7 @@ class KeepTimes : public benchmark::ConsoleReporter {
     benchmark::ConsoleReporter::ReportRuns(runs);
   }
 
-  /// By the benchmark's name.
+  /// Returns nanoseconds by the benchmark's name.
   const std::map<std::string, double>& ns() const { return ns_; }
 
   /// NaN if the filter left that benchmark out.

@@ -63,7 +63,7 @@ struct Method {
     return std::string(finder == ed::Finder::certified ? "certified" : "bracketing") + "/" +
            lists[static_cast<int>(neighbours)] + "/" + distances[static_cast<int>(distance)];
   }
-  /// Of an iteration: some tenths of a second.
+  /// Returns the number of collisions of an iteration: some tenths of a second.
   std::uint64_t collisions() const {
     if (finder == ed::Finder::certified) return 50000;
     return distance == ed::DistanceMethod::dual ? 3000 : 500;
@@ -112,7 +112,7 @@ void engine(benchmark::State& timing, const StatePoint& state, const Method& met
   hardbody_bench::report_rates(timing, before, simulation.counters());
 }
 
-/// Of the process, resident.
+/// Returns the resident memory of the process, in bytes.
 double memory() {
   std::ifstream statm("/proc/self/statm");
   double total = 0;
@@ -196,7 +196,7 @@ const std::vector<StatePoint>& method_states() {
   return states;
 }
 
-/// Where cells may be the fastest, three of them along an edge at the least.
+/// Returns the states in which cells may be the fastest, at least three of them along an edge.
 const std::vector<StatePoint>& dilute_states() {
   static const std::vector<StatePoint> states = [] {
     std::vector<StatePoint> all;
@@ -212,7 +212,7 @@ const std::vector<StatePoint>& dilute_states() {
   return states;
 }
 
-/// Where Newton's method for the distance is least at home, and the paper's state.
+/// State in which Newton's method for the distance fares worst, or the paper's state.
 struct HardState {
   StatePoint state;
   ed::Neighbours neighbours;

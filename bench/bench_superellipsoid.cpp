@@ -62,14 +62,14 @@ constexpr std::array<NamedSet, 5> kSets{{{PairSet::random_normal, "random_normal
 /// Both exponents; kMixed: one of each kind, drawn from kExponents for each pair.
 constexpr double kMixed = 0;
 constexpr std::array kRows{0.2, 0.3, 0.5, 0.7, 1.3, 1.6, kMixed};
-/// Of overlaps, whose exponents are mixed.
+/// Depths of overlaps, whose exponents are mixed.
 constexpr std::array kDepths{1e-6, 1e-3, 0.1};
 
 struct Query {
-  Superellipsoid shape;  ///< of both bodies
+  Superellipsoid shape;  ///< shape of both bodies
   Pose X_WA;
   Pose X_WB;
-  double distance;  ///< what rounding has left of the gap
+  double distance;  ///< gap as rounding has left it
   double size;
   Vector3d start;  ///< the normal, turned by kWarmAngle
 };
@@ -183,7 +183,7 @@ double ask_fcl(const Query& q) {
   return geom_test::fcl_gjk_distance(&a, &b, fed_support);
 }
 
-/// What FCL's GJK answers, in a process of its own: NaN where it ends that.
+/// Returns the answers of FCL's GJK, which runs in a process of its own: NaN where it ends that.
 std::array<double, kPairs> fcl_answers(const std::vector<Query>& all) {
   std::array<double, kPairs> answers;
   answers.fill(std::numeric_limits<double>::quiet_NaN());

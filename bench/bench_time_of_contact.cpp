@@ -63,7 +63,7 @@ Work make_work(const Case& c) {
   return work;
 }
 
-/// What a batch of predictions found and cost.
+/// Results and cost of a batch of predictions.
 struct Totals {
   long contacts = 0;
   long evaluations = 0;  ///< points in time that were looked at

@@ -43,7 +43,7 @@ constexpr std::array kGaps{1.0, 1e-1, 1e-6, -1e-3};
 constexpr double kDeclined = std::numeric_limits<double>::quiet_NaN();
 
 struct Query {
-  Ellipsoid shape;  ///< of both bodies
+  Ellipsoid shape;  ///< shape of both bodies
   geom_test::ManufacturedPair pair;
 };
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Checks the words of comments in headers, and names file, line and comment where they break the rule.
+"""Checks the words of comments in C++ files, and names file, line and comment where they break the rule.
 
 usage: words.py [--count | --all] [FILE...]
 
@@ -8,8 +8,9 @@ verb for a function ("Returns ...") and with a noun for data ("Number of ..."), 
 truth value. It never begins with a preposition, a pronoun, a conjunction or a stand-in for one ("The same ..."): a
 condition follows what it limits. Some phrases are refused anywhere in a comment, because they have to be read twice.
 
-Without FILE all headers of the repository are read. --count prints the figure alone, --all every fault even below the
-limit. Exit code 1: more than LIMIT of the doc comments begin with a wrong word or contain such a phrase.
+Without FILE all headers and sources (.h, .cpp) of the repository are read. --count prints the figure alone, --all
+every fault even below the limit. Exit code 1: more than LIMIT of the doc comments begin with a wrong word or contain
+such a phrase.
 """
 
 import pathlib
@@ -107,14 +108,15 @@ def fault(text, is_doc):
     return None
 
 
-def headers():
-    listed = subprocess.run(["git", "ls-files", "*.h"], cwd=ROOT, check=True, capture_output=True, text=True).stdout
+def sources():
+    command = ["git", "ls-files", "*.h", "*.cpp"]
+    listed = subprocess.run(command, cwd=ROOT, check=True, capture_output=True, text=True).stdout
     return [ROOT / name for name in listed.split() if (ROOT / name).is_file()]
 
 
 def main():
     names = [argument for argument in sys.argv[1:] if not argument.startswith("--")]
-    paths = [pathlib.Path(name).resolve() for name in names] or headers()
+    paths = [pathlib.Path(name).resolve() for name in names] or sources()
     number, messages = 0, []
     for path in paths:
         for line, texts, is_doc in comments(path.read_text()):
@@ -127,7 +129,7 @@ def main():
                 name = path.relative_to(ROOT) if path.is_relative_to(ROOT) else path
                 messages.append(f"{name}:{line}: {wrong}: {text[:100]}")
     share = len(messages) / max(1, number)
-    verdict = f"words: {len(messages)} of {number} comments in headers break the rule, {100 * share:.1f} %"
+    verdict = f"words: {len(messages)} of {number} comments break the rule, {100 * share:.1f} %"
     if "--count" in sys.argv:
         print(verdict)
         return 0

@@ -45,7 +45,7 @@ struct Row {
   int pairs = 0;
   int failures = 0;      ///< declined, or with the wrong status
   int unsettled = 0;     ///< the reference did not converge
-  double max_error = 0;  ///< of the distance, over the size of the pair
+  double max_error = 0;  ///< error of the distance, over the size of the pair
   double sum_error = 0;
   std::vector<float> normal_errors;
   long iterations = 0;

@@ -26,17 +26,17 @@ namespace {
 using Eigen::Vector3d;
 using geom_test::Random;
 
-/// What became of the pairs of one row.
+/// Results of the pairs of one row.
 struct ExtremeRow {
   long pairs = 0;
-  long wrong = 0;  ///< off by more than the contract and more than the error bound, or of the wrong sign
+  long wrong = 0;  ///< pairs off by more than both the contract and the error bound, or of the wrong sign
   long declined = 0;
-  long certified = 0;  ///< off by more than the contract, by no more than the error bound
+  long certified = 0;  ///< pairs off by more than the contract, by no more than the error bound
   double largest = 0;  ///< error of the distance, over the size of the pair
 };
 
 constexpr double kRatios[] = {1, 1e2, 1e4, 1e6};           // of the bodies' largest semi-axes
-constexpr double kGaps[] = {1, 1e-3, 1e-6, -1e-6, -1e-3};  // of the smaller body's largest semi-axis
+constexpr double kGaps[] = {1, 1e-3, 1e-6, -1e-6, -1e-3};  // of the smaller body's radius; below 0 of `deepest`
 constexpr double kUnits[] = {1e-12, 1, 1e12};              // of the larger body's
 
 template <class A, class B>
@@ -103,8 +103,9 @@ ExtremeRow run(const char* name, double aspect_ratio, double tolerance, double d
   return row;
 }
 
-/// Of superellipsoids, beyond an aspect ratio of 10 too: none is wrong, none is declined, and no more than 1 % have a
-/// last resort's answer, of kWidestGap, instead of the contract's (docs/accuracy.md: 33 of 12,000 at most).
+/// Expects of superellipsoids, beyond an aspect ratio of 10 too, that none is wrong and none is declined. No more than
+/// 1 % have a last resort's answer, of kWidestGap, instead of the contract's (docs/accuracy.md: 33 of 12,000 at most);
+/// up to an aspect ratio of 10 none has.
 void expect_certified(const ExtremeRow& row, const char* name, double aspect_ratio) {
   EXPECT_EQ(row.wrong + row.declined, 0) << name << ' ' << aspect_ratio;
   EXPECT_LE(row.certified, aspect_ratio <= 10 ? 0 : row.pairs / 100) << name << ' ' << aspect_ratio;
@@ -167,8 +168,8 @@ struct DeepRow {
   std::vector<double> milliseconds;
 };
 
-/// Of B: its centre closer to A's than the bodies are thick, so that they overlap whatever their orientations, any
-/// orientation or, `parallel`, A's but for an angle of about the thickness over the length.
+/// Returns a pose of B. Its centre is closer to A's than the bodies are thick, so that they overlap whatever their
+/// orientations. The orientation is any or, `parallel`, A's but for an angle of about the thickness over the length.
 Pose deep_pose(const Pose& X_WA, double aspect_ratio, bool parallel, Random& random) {
   const Vector3d shift = random.uniform(0, 1) / aspect_ratio * random.direction();
   if (!parallel) return Pose(random.pose(0.0).rotation(), shift);
@@ -214,8 +215,8 @@ void expect_deep(const char* name, double aspect_ratio, bool parallel, double la
   EXPECT_EQ(row.declined, 0) << name << ' ' << aspect_ratio;
 }
 
-/// What is found is the shortest way out, to an aspect ratio of 1000; how much of that is proved depends on the length:
-/// error bounds are relative to it, not to the thickness.
+/// Finds the shortest way out, to an aspect ratio of 1000. How much of that is proved depends on the length: error
+/// bounds are relative to it, not to the thickness.
 TEST(ExtremeShapes, DeepInEachOther) {
   std::printf(
       "| pair | aspect ratio | pairs | declined | largest error | bound / depth, median | largest | ms, median |"

@@ -45,7 +45,7 @@ TEST(Checkpoint, ReadsBackTheSameBits) {
   EXPECT_EQ(read.system.species.at(0).spins, written.system.species.at(0).spins);
 }
 
-/// With all that a run needs to go on, but for observables.
+/// Adds all that a run needs to resume; observables and monitor are placeholders that cannot be read.
 Checkpoint with_a_run(Checkpoint checkpoint) {
   const ed::Simulation simulation(dilute_state(), hardbody::parse_config(kConfig, "memory").simulation_options());
   checkpoint.system = simulation.system();
@@ -167,14 +167,15 @@ void expect_refused(const Checkpoint& checkpoint, const std::string& why) {
   expect_refused(hardbody::encode_checkpoint(checkpoint), why);
 }
 
-/// The same in an older format; what such a one holds of the run is not read.
+/// Returns the bytes of the checkpoint in another format. What a checkpoint of an older format holds of the run is not
+/// read.
 std::string in_format(const Checkpoint& checkpoint, std::uint32_t format) {
   const std::string bytes = hardbody::encode_checkpoint(checkpoint);
   constexpr std::size_t kHead = 24;
   return hardbody::seal_checkpoint(std::string_view(bytes).substr(kHead, bytes.size() - kHead - 8), format);
 }
 
-/// Of this program on this processor.
+/// Marks the checkpoint as one of this program on this processor.
 Checkpoint own(Checkpoint checkpoint) {
   checkpoint.program_version = hardbody::version();
   checkpoint.arithmetic = hardbody::arithmetic();
@@ -247,7 +248,7 @@ TEST(Resume, AnotherVersionIsNamedBeforeItsConfigIsJudged) {
   expect_refused(in_format(other, hardbody::kCheckpointFormat + 1), "has format version ", other.config);
 }
 
-/// Whichever program could go on with it.
+/// Ends with status 0 whichever program could resume the run, and with 2 if it was interrupted.
 TEST(Resume, AFinishedRunOfAnotherVersionIsFinished) {
   Checkpoint other = own(with_a_run(checkpoint_of(dilute_state())));
   other.program_version = "99.0.0";

@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 constexpr const char* kSpheresConfig =
     "[system]\nnumber = 64\npacking_fraction = 0.3\n[shape]\naspect_ratio = 1\n"
     "[equilibration]\ntime = 1\n[production]\ntime = 1\n";
-constexpr std::uint64_t kPiece = std::uint64_t{1} << 17;  ///< of collisions that are appended
+constexpr std::uint64_t kPiece = std::uint64_t{1} << 17;  ///< number of collisions that are appended at a time
 
 class EventsFileTest : public testing::Test {
  protected:

@@ -92,7 +92,7 @@ class Trajectory : public testing::Test {
     }
     return "none";
   }
-  /// Where an array of frame 0 stands.
+  /// Finds an array of frame 0.
   static hardbody::GsdChunk chunk(const char* name) {
     const hardbody::GsdFile file(hardbody::stored_bytes_in_memory(bytes), "t.gsd");
     return *file.find(0, name);
@@ -192,7 +192,7 @@ TEST_F(Trajectory, EndsAnywhere) {
   }
 }
 
-/// The same while a frame's entries are being written: at any byte of them.
+/// Tears the file at any byte of a frame's entries, as while they are being written.
 TEST_F(Trajectory, AFrameShowsOnlyWhenItIsWhole) {
   const std::size_t end = hardbody::GsdHead::entry_location(11 + 4 * 14);
   const std::size_t begin = hardbody::GsdHead::entry_location(11 + 3 * 14);

@@ -44,14 +44,14 @@ ed::System two_bodies(bool any) {
   return system;
 }
 
-/// Of each kind of state that can be read.
+/// Returns a state of either kind that can be read.
 std::string state(bool any) {
   ed::Simulation simulation(two_bodies(any));
   simulation.run_until(0.5);
   return simulation.save();
 }
 
-/// With some bytes replaced: (2 bytes of place, 1 of value) each. Bytes at random would never get past the first texts.
+/// Replaces some bytes: (2 bytes of place, 1 of value) each. Bytes at random would never get past the first texts.
 std::string changed(std::string bytes, std::string_view changes) {
   for (; changes.size() >= 3; changes.remove_prefix(3)) {
     const auto place = static_cast<unsigned char>(changes[0]) * 256U + static_cast<unsigned char>(changes[1]);
@@ -81,7 +81,7 @@ void check_checkpoint(std::string_view bytes) {
   }
 }
 
-/// What stands between head and checksum of a checkpoint.
+/// Returns the bytes between head and checksum of a checkpoint.
 std::string payload() {
   constexpr std::size_t kHead = 24;
   constexpr std::size_t kTail = 8;

@@ -32,7 +32,7 @@ struct Pair {
   Pose X_WA, X_WB;
 };
 
-/// As code, to be repeated.
+/// Prints a body with all its digits, to be made again.
 void print(const Shape& shape, const Pose& X) {
   const auto list = [](const auto& values) {
     for (int k = 0; k < values.size(); ++k) std::fprintf(stderr, "%s%.17g", k == 0 ? "" : ", ", values.reshaped()[k]);
@@ -48,7 +48,7 @@ void print(const Shape& shape, const Pose& X) {
   std::fprintf(stderr, "\n");
 }
 
-const Pair* asked = nullptr;  ///< by the input that runs
+const Pair* asked = nullptr;  ///< pair of the input that runs
 
 void require(bool holds, const char* what) {
   if (holds) return;
@@ -60,7 +60,7 @@ void require(bool holds, const char* what) {
   std::abort();
 }
 
-/// What errors are relative to. Infinite where squares overflow: then nothing is compared.
+/// Returns the length that errors are relative to. It is infinite where squares overflow: then nothing is compared.
 double size_of(const Pair& pair) {
   return (pair.X_WB.position() - pair.X_WA.position()).norm() + geom::bounding_radius(pair.a) +
          geom::bounding_radius(pair.b);
@@ -146,7 +146,7 @@ void ask_newton(const Pair& pair, Input& input) {
       pair.a, pair.b);
 }
 
-/// Of a point inside, or so far away that the body is lost in its rounding.
+/// True if the point is inside, or so far away that the body is lost in its rounding.
 bool is_slow_point(const Pair& pair, const Vector3d& p) {
   const double way = (p - pair.X_WA.position()).norm();
   return geom::contains(pair.a, pair.X_WA, p) || !(way < 1e12 * geom::bounding_radius(pair.a));
@@ -196,11 +196,11 @@ std::optional<Pair> read_pair(Input& input) {
   }
 }
 
-/// How many inputs were more than a refusal; printed at the end.
+/// Numbers of inputs and of those that were skipped; printed at the end.
 struct Counters {
   long inputs = 0;
-  long refused = 0;   ///< by a constructor
-  long rationed = 0;  ///< as too slow
+  long refused = 0;   ///< inputs refused by a constructor
+  long rationed = 0;  ///< inputs skipped as too slow
   ~Counters() {
     std::fprintf(stderr, "%ld inputs: %ld refused by constructors, %ld too slow to be asked, %ld answered\n", inputs,
                  refused, rationed, inputs - refused - rationed);

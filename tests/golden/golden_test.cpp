@@ -31,7 +31,7 @@ using ed_test::State;
 
 constexpr std::uint64_t kCollisions = 10000;
 
-/// Of which the hashes below are.
+/// Version of the arithmetic of the hashes below.
 static_assert(ed::kArithmetic == 13);
 
 std::string fingerprint() {
@@ -53,7 +53,7 @@ std::uint64_t state_hash(const ed::System& start, const ed::SimulationOptions& o
   return ed_test::hash_of(simulation);
 }
 
-/// At pairs: one by one, and in vectors of every instruction set.
+/// Lists the ways to predict pairs: one by one, and in vectors of every instruction set.
 std::vector<std::optional<geom::InstructionSet>> ways_to_look() {
   std::vector<std::optional<geom::InstructionSet>> ways{std::nullopt};
   for (const geom::InstructionSet set : geom_test::instruction_sets()) ways.emplace_back(set);
@@ -132,7 +132,7 @@ TEST(Golden, StateOfRodsByThePapersFinder) {
   expect_hash({3, 0.30, 128, Inertia::paper, 7}, {{"x86-64", "0x0b68732d8b367788"}}, options);
 }
 
-/// What the hash is made of depends on the seed and on nothing else.
+/// Runs with one seed have one hash, runs with another seed another.
 TEST(Golden, RunsOfOneBuildAreAlike) {
   const State state{3, 0.30, 128, Inertia::paper, 8};
   EXPECT_EQ(state_hash(ed_test::start(state)), state_hash(ed_test::start(state)));

@@ -27,8 +27,8 @@ using geom::WitnessPair;
 struct Source {
   std::string name;
   ed::SeedFunction function;
-  int searches;    ///< of a pair: CGAL takes a millisecond
-  int collisions;  ///< of the short run
+  int searches;    ///< number of searches, a pair each: CGAL takes a millisecond
+  int collisions;  ///< collisions of the short run
   bool good;       ///< Newton's method solves (nearly) all from there
 };
 

@@ -32,7 +32,7 @@ constexpr double kFclTolerance = 1e-6;
 
 struct Comparison {
   int pairs = 0;
-  int agree = 0;       ///< within kFclTolerance
+  int agree = 0;       ///< pairs that agree within kFclTolerance
   int fcl_far = 0;     ///< FCL's distance is too large: our points are on the surfaces, and closer
   int fcl_near = 0;    ///< FCL's distance is too small: g(n) is larger, a lower bound of the distance
   int fcl_no_gap = 0;  ///< FCL takes the pair for overlapping: g(n) > 0 proves it is not
@@ -51,7 +51,7 @@ double rounding(const ManufacturedPair& pair) {
   return 1e-13 * (pair.size + pair.X_WA.position().norm());
 }
 
-/// How far `point` is from the surface, to first order in f.
+/// Returns the distance of `point` from the surface, to first order in f.
 double offset(const Ellipsoid& shape, const Pose& X, const Vector3d& point) {
   const Vector3d x = X.to_body(point);
   return std::abs(shape.value(x)) / shape.gradient(x).norm();

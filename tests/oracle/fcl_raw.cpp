@@ -22,7 +22,7 @@ fcl::CollisionObjectd to_fcl(const geom::Ellipsoid& shape, const geom::Pose& X) 
   return placed(std::make_shared<fcl::Ellipsoidd>(shape.semi_axes()), X);
 }
 
-/// Without faces: FCL looks at all points then.
+/// Makes a body of points without faces: FCL then looks at all points.
 fcl::CollisionObjectd to_fcl(const std::vector<Eigen::Vector3d>& points, const geom::Pose& X) {
   return placed(std::make_shared<fcl::Convexd>(std::make_shared<const std::vector<Eigen::Vector3d>>(points), 0,
                                                std::make_shared<const std::vector<int>>()),

@@ -63,7 +63,7 @@ struct Tessellated {
   double error;  ///< bound of h - h_P over all directions: how far the body reaches out of the polytope
 };
 
-/// About 500 support points, and the bound of what lies between them.
+/// Returns about 500 support points, and the bound of what lies between them.
 ///
 /// On a triangle of directions n = sum of l_i n_i, sum of l_i = 1, l_i >= 0: h(n) <= sum of l_i h(n_i), for h is
 /// convex, and h_P(n) >= n.v for every vertex v. So h(n) - h_P(n) <= max_i (h(n_i) - n_i.v), with the vertex that is
@@ -116,7 +116,7 @@ const std::vector<Tessellated>& tessellated_bodies() {
   return bodies;
 }
 
-/// How far `point` is from the surface, to first order in f.
+/// Returns the distance of `point` from the surface, to first order in f.
 double offset(const Superellipsoid& shape, const Pose& X, const Vector3d& point) {
   const Vector3d x = X.to_body(point);
   return std::abs(shape.value(x)) / shape.gradient(x).norm();
@@ -124,7 +124,7 @@ double offset(const Superellipsoid& shape, const Pose& X, const Vector3d& point)
 
 /// A pair of which FCL's distance is not within what is certified.
 struct Disagreement {
-  int pair;  ///< its seed less one
+  int pair;  ///< seed of the pair less one
   double fcl, lower, upper;
 };
 
@@ -147,9 +147,9 @@ struct Comparison {
   int fcl_near = 0;   ///< smaller than g(n), which no points of the bodies come below
   int undecided = 0;  ///< ours does not hold
   int fcl_threw = 0;
-  double worst = 0;       ///< of the disagreements, beyond what was allowed
+  double worst = 0;       ///< largest excess over the bounds, of polytopes also over FCL's tolerance
   double margins = 0;     ///< sum of the tessellation errors, over all directions
-  int agree_closely = 0;  ///< with the tessellation error along FCL's own normal alone
+  int agree_closely = 0;  ///< pairs that agree with the tessellation error along FCL's own normal alone
   double close_margins = 0;
 };
 
@@ -271,7 +271,7 @@ constexpr std::array kMethods{"`distance`", "FCL: ellipsoids its own, others pol
                               "CGAL: polytopes of 200 vertices"};
 constexpr int kMostErrors = 2'000;
 
-/// Of the distance over the size of the pair; infinite: none, or the bodies are said to overlap.
+/// Errors of the distance over the size of the pair; infinite: no answer, or the bodies are said to overlap.
 struct Errors {
   std::array<std::array<double, kMostErrors>, kMethods.size()> of{};
 };
@@ -280,7 +280,7 @@ double length_of(const WitnessPair& seed) {
   return seed.status == SeedStatus::usable ? (seed.point_b - seed.point_a).norm() : HUGE_VAL;
 }
 
-/// What each library says of the same pair, apart by 1e-3 to 10.
+/// Asks each library about the same pair, apart by 1e-3 to 10.
 void try_libraries(bool ellipsoids, std::size_t i, Errors& errors) {
   Random random(i + 1);
   const auto shape = [&]() -> Shape {

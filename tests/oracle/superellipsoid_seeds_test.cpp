@@ -214,7 +214,7 @@ Solved solve_cell(double e1, double e2, int pairs, const Seed& seed_of) {
   return cell;
 }
 
-/// By the eight equations, by the five.
+/// Shares of pairs solved by the eight equations and by the five.
 using Shares = std::array<double, 2>;
 
 Shares shares_of(const Solved& solved) {

@@ -73,7 +73,7 @@ TEST_P(Conservation, NoOverlapAndNoDriftInALongRun) {
 struct Drift {
   const char* name;
   ed::Species species;
-  double allowed;  ///< of the energy, relative, with each collision of a body
+  double allowed;  ///< largest relative change of the energy with each collision of a body
 };
 
 std::ostream& operator<<(std::ostream& out, const Drift& drift) {

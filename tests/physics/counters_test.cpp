@@ -37,7 +37,7 @@ TEST(Counters, EvaluationsAndRefinementsPerCollisionStayWithinTheirBounds) {
   EXPECT_GT(rebuilds, 0);
 }
 
-/// As bench_bodies measures them.
+/// Measures other bodies as bench_bodies does.
 TEST(Counters, OfOtherBodiesPerCollisionStayWithinTheirBounds) {
   struct Bound {
     const char* name;

@@ -155,8 +155,8 @@ TEST(GeneralBodies, CollideAtTheRateOfTheReference) {
   }
 }
 
-/// As many spheres of radius 1 and 0.5: Boublik, and Mansoori, Carnahan, Starling and Leland, whose Z is 0.4 % low
-/// here.
+/// Compares equal numbers of spheres of radius 1 and 0.5 with Boublik, and Mansoori, Carnahan, Starling and Leland,
+/// whose Z is 0.4 % low here.
 TEST(GeneralBodies, MixedSpheresHaveTheirPressure) {
   constexpr double kPacking = 0.4;
   const Family family{"spheres, 1 and 0.5",

@@ -1,5 +1,5 @@
 // The physics does not depend on how the event loop is run: the finder, the kind of neighbour lists and the thickness
-// of their envelopes, where runs are cut into pieces, and when they are looked at.
+// of their envelopes, where runs are cut into pieces, and when states are read.
 
 #include <common/ed_hash.h>
 #include <common/ed_same_collisions.h>

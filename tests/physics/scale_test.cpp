@@ -17,7 +17,7 @@
 
 namespace {
 
-/// What everything is multiplied by. The mass a power of four, so that times are scaled by a power of two.
+/// Factors by which everything is multiplied. The mass is a power of four, so that times are scaled by a power of two.
 struct Scale {
   double length;
   double mass;
@@ -26,7 +26,7 @@ struct Scale {
 };
 
 constexpr std::uint64_t kCollisions = 1000;
-/// Of runs that differ by rounding, which the dynamics multiplies: some six a body.
+/// Collisions of runs that differ by rounding, which the dynamics multiplies: some six a body.
 constexpr std::uint64_t kFewCollisions = 300;
 constexpr double kPacking = 0.35;
 

@@ -28,12 +28,12 @@ using ed_test::State;
 constexpr double kNudge = 1e-11;
 
 /// Rounding errors that add up, in units of the roundoff of the largest coordinate: a few for each of the collisions
-/// and renewed envelopes of a body, and the largest of all coordinates is looked at.
+/// and renewed envelopes of a body. The largest difference of all coordinates has to stay below.
 constexpr double kRoundings = 30;
-/// Where faces meet, the contact points are what is left of some hundred roundings.
+/// Rounding errors where faces meet: a contact point carries some hundred of them there.
 constexpr double kRoundingsOfFaces = 300;
 
-/// What a return may be off at most, whatever G is: a millionth of a semi-axis.
+/// Largest tolerance of a return, whatever G is: a millionth of a semi-axis.
 constexpr double kFarFromWrong = 1e-6;
 
 double periodic_distance(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double box) {

@@ -110,7 +110,8 @@ double largest(const Turning& s, double tau) {
   return most;
 }
 
-/// With each factor taken at its own worst end a rod's bound is at most b^2 r^2 / h^3 + C^2 / (4 h) <= 1.25 / b.
+/// Largest bound over Turning::scale(). With each factor taken at its own worst end a rod's is at most
+/// b^2 r^2 / h^3 + C^2 / (4 h) <= 1.25 / b.
 constexpr double kFactorsApart = 1.25 * (1 + 1e-12);
 
 struct Count {

@@ -34,7 +34,7 @@ enum class Kind { uniaxial, biaxial, mixed };
 struct Population {
   const char* name;
   Kind kind;
-  double ratio;  ///< of semi-axes, at most
+  double ratio;  ///< largest ratio of semi-axes
   std::uint64_t seed;
   double most_redone;  ///< share of the pairs that may be left to distance()
 };

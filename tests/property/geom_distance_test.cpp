@@ -57,7 +57,7 @@ DistanceResult ask(const ShapePair& shapes, const ManufacturedPair& pair) {
   return distance(shapes.a, pair.X_WA, shapes.b, pair.X_WB);
 }
 
-/// How far the world point is from the surface of the body, to first order.
+/// Returns the distance of the world point from the surface of the body, to first order.
 double off_surface(const Ellipsoid& shape, const Pose& X, const Vector3d& p_W) {
   const Vector3d p = X.to_body(p_W);
   return std::abs(shape.value(p)) / shape.gradient(p).norm();

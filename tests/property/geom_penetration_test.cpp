@@ -122,7 +122,7 @@ TEST(Penetration, OfSuperellipsoidsIsTheLeastOverAllDirections) {
   }
 }
 
-/// By how much g grows uphill of n, in steps of 0.3 to 1e-8 in 16 directions.
+/// Returns by how much g grows uphill of n, in steps of 0.3 to 1e-8 in 16 directions.
 template <class A, class B>
 double growth_uphill(const A& a, const Pose& X_WA, const B& b, const Pose& X_WB, const Vector3d& start) {
   Vector3d n = start;
@@ -201,7 +201,7 @@ TEST(Penetration, OfSymmetricPairsIsNoSaddle) {
   EXPECT_LE(tally.worst, kDepthGap);
 }
 
-/// Where sharp edges or vertices meet, or a body is nearly a ball.
+/// Pairs whose sharp edges or vertices meet, or of which a body is nearly a ball.
 TEST(Penetration, OfPairsThatOnceEndedOnASaddle) {
   struct Case {
     Superellipsoid a, b;
@@ -240,11 +240,11 @@ struct LocalTally {
   long pairs = 0;
   long deep = 0;      ///< deeper than what is certified: the shortest way out needs the search over all normals
   long searched = 0;  ///< the local answer needed it too
-  long longer = 0;    ///< than the shortest way out
+  long longer = 0;    ///< answers longer than the shortest way out
   long wrong = 0;
 };
 
-/// Of two bodies that overlap.
+/// Compares the local answer of two bodies that overlap with the shortest way out.
 template <class A, class B>
 void try_local(const A& a, const B& b, Random& random, LocalTally& tally) {
   const double depth = random.log_uniform(1e-3, 1) * (a.inscribed_radius() + b.inscribed_radius());

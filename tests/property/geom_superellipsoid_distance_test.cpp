@@ -33,9 +33,9 @@ using geom_test::Random;
 struct SetTraits {
   PairSet set;
   const char* name;
-  double depth_tolerance;  ///< of the depths of overlaps, relative to the size of the pair
-  double depth_bound;      ///< of the error bounds of overlaps, relative to it: kDepthGap, but for parallel faces
-  double off_surface;      ///< of the witness points of bodies apart; normals of faces are those of vertices for e > 1
+  double depth_tolerance;  ///< excess of the depths of overlaps, relative to the size of the pair
+  double depth_bound;      ///< error bound of overlaps, relative to it: kDepthGap, but for parallel faces
+  double off_surface;  ///< offset of witness points of bodies apart; normals of faces are those of vertices for e > 1
 };
 
 constexpr std::array<SetTraits, 5> kSets{{{PairSet::random_normal, "random normal", 1e-12, kDepthGap, 1e-10},
@@ -44,7 +44,7 @@ constexpr std::array<SetTraits, 5> kSets{{{PairSet::random_normal, "random norma
                                           {PairSet::edges, "edges and vertices", 1e-12, kDepthGap, 1e-10},
                                           {PairSet::faces, "faces", 2e-10, 1e-7, 1e-9}}};
 
-/// Of the distance of bodies that are apart, relative to the size of the pair: distance.h promises it.
+/// Error of the distance of bodies that are apart, relative to the size of the pair: distance.h promises it.
 constexpr double kTolerance = 1e-12;
 
 struct Bodies {
@@ -82,9 +82,9 @@ struct AnswerTally {
   double worst = 0;
   double bound = 0;        ///< largest `error_bound`, over the sum of both bounding radii
   double off_g = 0;        ///< largest |g(normal) - distance| over the size of the pair
-  double above = 0;        ///< by how much a distance is above the true one, over the size
+  double above = 0;        ///< largest excess of a distance over the true one, over the size
   double off_normal = 0;   ///< largest angle to the known normal, over what distance.h promises
-  double off_surface = 0;  ///< over the size
+  double off_surface = 0;  ///< largest offset of a witness point, over the size
 
   AnswerTally& operator+=(const AnswerTally& t) {
     pairs += t.pairs;
@@ -100,7 +100,7 @@ struct AnswerTally {
   }
 };
 
-/// Where the bodies are apart: the angle that error_bound leaves (distance.h).
+/// Returns the angle that error_bound leaves (distance.h), for bodies apart.
 double promised_angle(const DistanceResult& r, double size) {
   return std::sqrt(2 * (r.error_bound + 1e-15 * size) / r.distance);
 }
@@ -302,8 +302,8 @@ struct OverlapTally {
   long misses = 0;  ///< deeper than the push, which is a way out
   long declined = 0;
   long shorter = 0;  ///< a way out that is shorter than the push
-  double worst = 0;  ///< by how much an answer is deeper than the push
-  double bound = 0;  ///< widest `error_bound`
+  double worst = 0;  ///< largest excess of an answer's depth over the push, over the size
+  double bound = 0;  ///< widest `error_bound`, over the size
 };
 
 /// `depth` in units of the smaller body's first semi-axis.
@@ -371,16 +371,16 @@ TEST(SuperellipsoidDistance, OfOverlapsOfUnlikeBodies) {
   expect_depths("unlike bodies", full_form() ? 2000 : 30, unlike);
 }
 
-/// Where edges or faces touch, an ascent of the normal alone stops beside the maximum, its support points say little of
-/// g around it, and no single one bounds g on both sides of a ridge: the search over all normals took 1,000 and 3,600
-/// evaluations. What it has proved holds for all of them.
+/// Counts evaluations where edges or faces touch. There an ascent of the normal alone stops beside the maximum, its
+/// support points say little of g around it, and no single one bounds g on both sides of a ridge: the search over all
+/// normals took 1,000 and 3,600 evaluations. What it has proved holds for all of them.
 TEST(SuperellipsoidDistance, DepthsOfEdgesAndFacesInFewEvaluations) {
   constexpr int kPairs = 300;
   constexpr int kNormals = 50;
   struct Row {
     PairSet set;
     long most;
-    double tolerance;  ///< as SetTraits::depth_tolerance
+    double tolerance;  ///< tolerance as SetTraits::depth_tolerance
   };
   for (const auto& [set, most, tolerance] : {Row{PairSet::edges, 100, 1e-12}, Row{PairSet::faces, 150, 2e-10}}) {
     Random random(15);

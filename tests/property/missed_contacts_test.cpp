@@ -27,7 +27,7 @@ using namespace finder_test;
 /// that was missed is off by far more.
 constexpr double kSameTime = 1e-7;
 
-/// In units of the pair's size. A contact no deeper than this cannot be told from a near miss of this width.
+/// Largest depth of a contact, in units of the pair's size, that cannot be told from a near miss of this width.
 constexpr double kAmbiguous = 1e-12;
 
 /// A near miss passes closer than this, in units of the pair's size.
@@ -39,13 +39,13 @@ constexpr double kGrazing = 1e-2;
 /// Long enough for neighbours to meet or part for good.
 constexpr double kHorizon = 4;
 
-/// Of brute force (see there), in units of the pair's size.
+/// Returns the floor of brute force (see there), in units of the pair's size.
 double brute_floor() {
   return full_form() ? 1e-9 : 1e-8;
 }
 
 struct Tally {
-  long pairs = 0;  ///< of this class by what brute force says of them
+  long pairs = 0;  ///< pairs that brute force puts into this class
   long predicted = 0;
   long missed = 0;  ///< no contact found, or overlapping bodies found where they had met unnoticed
   long late = 0;
@@ -177,7 +177,7 @@ struct Species {
   double packing_fraction;
 };
 
-/// As dense as each shape still flows well; X0 = 5 is kept short of its nematic.
+/// Species, as dense as each shape still flows well; X0 = 5 is kept short of its nematic.
 constexpr std::array<Species, 6> kSpecies{{{0.2, 0.35}, {0.33, 0.42}, {0.5, 0.45}, {2, 0.45}, {3, 0.42}, {5, 0.35}}};
 
 void print_header() {

@@ -42,7 +42,7 @@ struct Tally {
   long states = 0;
   long touching = 0;       ///< g is below what rounding may hide: no step, as there is nothing to certify
   long stepped_over = 0;   ///< contacts of the exact bodies within the step
-  long without_terms = 0;  ///< the same for steps made without the terms
+  long without_terms = 0;  ///< contacts stepped over by steps made without the terms
   long not_apart = 0;      ///< g was above what rounding may hide, but the exact gap was not positive
   long sunk = 0;           ///< the search passed an overlap deeper than what it promises
   long contacts = 0, clear = 0;
@@ -164,7 +164,7 @@ void judge_search(const PairGap& pair_gap, const Exact& exact, double t, const V
 
 // ---- States --------------------------------------------------------------------------------------------------------
 
-/// When and where: bodies whose clocks, places and images have nothing to do with each other.
+/// Time and place of bodies whose clocks, places and images have nothing to do with each other.
 struct Scene {
   double now, t, box;
 
@@ -231,7 +231,7 @@ void set_path(Random& random, const Scene& scene, double speed, RigidMotion& m) 
   m.position = scene.box * Vector3d(random.uniform(), random.uniform(), random.uniform());
 }
 
-/// How fast a pair is. Fast ones do not get far between now and t.
+/// Draws the speed of a pair, and t: fast pairs do not get far between now and t.
 double draw_speed(Random& random, double size, Scene& scene) {
   const double speed = log_uniform(random, 1e-2, 1e2);
   scene.t += random.uniform() * std::min(0.2, 0.05 * size / speed);
@@ -249,7 +249,7 @@ struct SpheroidKind {
   double bounding_radius() const { return std::max(a, b); }
 };
 
-/// Along any direction, or the flat or the long side of the body with axis u.
+/// Draws a normal along any direction, or the flat or the long side of the body with axis u.
 Vector3d draw_normal(Random& random, const Vector3d& u) {
   const double kind = random.uniform();
   const Vector3d any = random.direction();

@@ -31,7 +31,7 @@ using geom_test::PairSet;
 using geom_test::Random;
 
 constexpr double kShortest = 2e-5;   ///< the least step of the reference, in units of size over the largest rate
-constexpr int kHalvings = 4;         ///< of such a step
+constexpr int kHalvings = 4;         ///< halvings of such a step
 constexpr double kGrazing = 1e-2;    ///< normal velocity below this share of the relative one
 constexpr double kResolved = 1e-12;  ///< overlaps below this, in units of the size, are rounding
 constexpr double kHorizon = 3;
@@ -39,7 +39,7 @@ constexpr double kHorizon = 3;
 struct MovingPair {
   Superellipsoid shape_a, shape_b;
   RigidMotion a, b;
-  bool touching = false;  ///< at the start, and parting
+  bool touching = false;  ///< true if they touch at the start, and part
 
   double size() const { return shape_a.bounding_radius() + shape_b.bounding_radius(); }
   geom::DistanceResult distance(double t, const Vector3d& start = Vector3d::Zero()) const {
@@ -96,7 +96,7 @@ geom_test::Orientation parallel_faces(Random& random) {
   return o;
 }
 
-/// Bodies near each other. Grazing: the normal part of the relative velocity is next to nothing.
+/// Draws bodies near each other. Grazing ones have a normal relative velocity of 1e-6 to 1e-1.
 MovingPair random_pair(Random& random, const Kind& A, const Kind& B) {
   const auto set = static_cast<PairSet>(static_cast<int>(5 * random.uniform()));
   const bool parallel = set == PairSet::faces && random.uniform() < 0.3;
@@ -226,7 +226,7 @@ double reference(const MovingPair& pair, double t_end) {
   return std::numeric_limits<double>::infinity();
 }
 
-/// What the search says, and its last normal.
+/// Finding of the search, and its last normal.
 struct Found : Finding {
   Vector3d normal;
 };
@@ -349,7 +349,7 @@ TEST(SupportContact, MissesNoneOfSymmetricTops) {
   }));
 }
 
-/// Of other exponents, proportions, sizes and moments each.
+/// Draws bodies of other exponents, proportions, sizes and moments each.
 TEST(SupportContact, MissesNoneOfUnlikePairs) {
   expect_none_missed(search_pairs<SupportGap>("unlike pairs", [](Random& random) {
     const Kind a = random_kind(random, 1);
@@ -362,7 +362,7 @@ TEST(SupportContact, IsMissedWithHalfTheCurvature) {
   EXPECT_GT(tally.missed + tally.late, tally.contacts / 100);
 }
 
-/// What a single normal promises: no contact within the step, however good or bad the normal is.
+/// Checks the promise of a single normal: no contact within the step, however good or bad the normal is.
 TEST(SupportContact, NoOverlapWithinACertifiedStep) {
   Random random(2);
   const int pairs = full_form() ? 100000 : 2000;

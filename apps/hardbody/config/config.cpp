@@ -19,8 +19,8 @@ namespace hardbody {
 namespace {
 
 constexpr std::size_t kLongestConfig = 1 << 20;  ///< bytes
-constexpr double kUsualCap = 500;                ///< in ed::time_unit of the bodies
-constexpr double kUsualEpsD = 1e-6;              ///< of the bodies' length
+constexpr double kUsualCap = 500;                ///< default cap of equilibration, in ed::time_unit of the bodies
+constexpr double kUsualEpsD = 1e-6;              ///< default of eps_d, in mean_length() of the bodies
 
 /// Refuses keys that have no meaning beside `other`.
 void refuse_beside(const TomlDocument& document, const char* other, std::initializer_list<const char*> names) {

@@ -16,16 +16,17 @@
 namespace hardbody {
 namespace {
 
-constexpr std::int64_t kMostEvents = 100'000'000;  ///< of events.csv, 50 bytes each
-constexpr std::int64_t kMostFrames = 100'000;      ///< there is room for all of them in the files' heads
-constexpr double kLongestTime = 1e9;               ///< this and the next: in ed::time_unit of the bodies
+constexpr std::int64_t kMostEvents = 100'000'000;  ///< rows of events.csv, 50 bytes each
+constexpr std::int64_t kMostFrames = 100'000;      ///< frames for all of which the files' heads have room
+constexpr double kLongestTime = 1e9;               ///< time in ed::time_unit of the bodies, as is kLeastCap
 constexpr double kLeastCap = 1;
 constexpr double kLargestWaveNumber = 1e6;
 constexpr double kLeastPacking = 1e-9;
-constexpr double kDensestLattice = 0.9999;  ///< of a lattice; how dense it can be depends on the number of bodies too
-constexpr double kThinnest = 1e-2;          ///< least ratio of two semi-axes; the largest is the inverse
-constexpr double kShortestAxis = 1e-3;      ///< where semi-axes are taken literally; the longest is the inverse
-constexpr double kLightest = 1e-6;          ///< the heaviest is the inverse
+/// Packing fraction of a lattice or a start from a file; the number of bodies of a lattice may allow less.
+constexpr double kDensestLattice = 0.9999;
+constexpr double kThinnest = 1e-2;      ///< least ratio of two semi-axes; the largest is the inverse
+constexpr double kShortestAxis = 1e-3;  ///< semi-axis where semi-axes are taken literally; the longest is the inverse
+constexpr double kLightest = 1e-6;      ///< the heaviest is the inverse
 
 /// Returns `rule`, which accepts nothing (but `accepted`) where `when` holds.
 Rule unless(bool (*when)(const Place&), const char* accepted, Rule rule) {

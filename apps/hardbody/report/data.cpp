@@ -200,7 +200,7 @@ Json line_json(const CurveLine& line, const CurveFile* file) {
   return json;
 }
 
-/// What the front end draws.
+/// Lists the plots that the front end draws.
 Json plots_json() {
   Json list = Json::array();
   for (const CurvePlot& plot : plots()) {

@@ -71,8 +71,9 @@ namespace {
 constexpr std::string_view kMagic = "HARDBODY";
 constexpr std::uint32_t kByteOrder = 0x01020304;
 constexpr std::uint32_t kFormat = kCheckpointFormat;
-constexpr std::uint32_t kOtherRun = 3;  ///< to kFormat - 1: whose run only an older program can go on with
-/// Of one ellipsoid of revolution; like 2 without what a run needs to go on.
+/// First of the formats, up to kFormat - 1, whose runs only an older program can resume.
+constexpr std::uint32_t kOtherRun = 3;
+/// Format of one ellipsoid of revolution; like format 2 it lacks what a run needs to resume.
 constexpr std::uint32_t kOneEllipsoid = 1;
 constexpr std::size_t kHead = 8 + 4 + 4 + 8;  ///< magic, byte order, format, length of the payload
 constexpr std::size_t kTail = 8;              ///< checksum
@@ -166,7 +167,7 @@ void put_payload(const Checkpoint& checkpoint, const Sink& sink) {
   payload.flush();
 }
 
-/// How many bytes `make` hands over.
+/// Returns the number of bytes that `make` hands over.
 std::uint64_t count_bytes(const std::function<void(const Sink&)>& make) {
   std::uint64_t count = 0;
   make([&count](std::string_view piece) { count += piece.size(); });

@@ -13,7 +13,7 @@ namespace {
 /// Rounding adds up to 1e-18 of the energy with every collision of a body that does not spin, and to 4e-17 of others
 /// (physics_conservation_test, EnergyDrift): to this after 1e9 and 2.5e7 collisions of each body.
 constexpr double kEnergyDrift = 1e-9;
-constexpr double kMomentumDrift = 1e-9;  ///< of a body, in sqrt(m kT)
+constexpr double kMomentumDrift = 1e-9;  ///< momentum per body, in sqrt(m kT)
 
 /// sqrt(m kT), m the mean mass: exactly 1 where all masses are 1.
 double thermal_momentum(const ed::System& system) {

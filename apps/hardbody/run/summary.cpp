@@ -82,7 +82,7 @@ Json state(const Config& config) {
   return json;
 }
 
-/// What was drawn; null for bodies of one size.
+/// Describes the sizes that were drawn; null for bodies of one size.
 Json sizes(const SpeciesConfig& species) {
   if (species.factors.empty()) return nullptr;
   const SizeStatistics drawn = statistics_of(species.factors);

@@ -19,7 +19,7 @@
 namespace hardbody {
 namespace {
 
-/// This file itself, even if another one has been installed under its name since.
+/// Path of the running program itself, even if another one has been installed under its name since.
 constexpr const char* kThisProgram = "/proc/self/exe";
 constexpr int kNotStarted = 127;
 constexpr std::size_t kMostSaid = 4096;  ///< bytes of stderr that are kept

@@ -32,7 +32,7 @@ double largest_move(const std::vector<Vector3d>& a, const std::vector<Vector3d>&
 /// Moves along an axis by half an edge or more.
 struct Jumps {
   std::size_t count = 0;
-  double chance = 1;  ///< that all of them end in the box: 1 - d for each, of bodies that are anywhere in it
+  double chance = 1;  ///< probability that all end in the box: product of 1 - d, for bodies anywhere in it
 };
 
 Jumps jumps_between(const std::vector<Vector3d>& a, const std::vector<Vector3d>& b, const Vector3d& box) {

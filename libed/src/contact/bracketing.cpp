@@ -54,7 +54,8 @@ decltype(auto) with_both(const Shape& a, const Shape& b, F&& f) {
 struct MovingBody {
   geom::Pose pose;
   Vector3d velocity;
-  Vector3d omega;  ///< of bodies of revolution without the spin about their axis, which moves no surface
+  /// Angular velocity; of bodies of revolution without the spin about their axis, which moves no surface.
+  Vector3d omega;
 
   Vector3d velocity_at(const Vector3d& x) const { return velocity + omega.cross(x - pose.position()); }
 };
@@ -188,8 +189,9 @@ geom::DistanceResult Search<Pair>::dual_distance(const MovingBody& a, const Movi
                         {.start = n_, .penetration = geom::Penetration::local});
 }
 
-/// Where Newton's method starts. The normal that a search begins with may be crude, or old: the first distance starts
-/// from the user's points or the dual's, later ones from the support points along the normal before.
+/// Returns the points from which Newton's method starts. The normal that a search begins with may be crude, or old: the
+/// first distance starts from the user's points or the dual's, later ones from the support points along the normal
+/// before.
 template <class Pair>
 geom::WitnessPair Search<Pair>::seed(const MovingBody& a, const MovingBody& b) {
   const bool first = first_;

@@ -45,7 +45,7 @@ struct UniaxialBody {
   Eigen::Vector3d position_at(double t) const { return top.axis.position_at(t); }
   const Eigen::Vector3d& velocity() const { return top.axis.velocity; }
   void rebase(double now) { top.axis.time -= now; }
-  /// To time t, from where its clock shows 0.
+  /// Moves the body to time t of its clock, which then shows 0.
   void restart_at(double t) {
     internal::advance(top.inertia, t, top.axis, top.frame);
     top.axis.time = 0;

@@ -18,8 +18,8 @@ using geom::kernel::Spheroid;
 /// Looks at each plane when a body's exit is predicted; a bound that is not final is renewed when it comes up.
 constexpr int kLooks = 2;
 
-/// No exit is predicted further ahead than this; it is looked at again then. In units of the time in which the surface
-/// can cross the thickness.
+/// Longest time ahead for which an exit is predicted, in units of the time in which the surface can cross the
+/// thickness. The exit is predicted again then.
 constexpr double kHorizon = 10;
 
 Vector3d half_extents(const Spheroid& shape, double thickness) {

@@ -40,7 +40,7 @@ struct StretchedResiduals {
   }
 };
 
-/// Where the parabola through three points falls through `level`, within the middle pair or beside it.
+/// Returns where the parabola through three points falls through `level`, between two of them or outside.
 double parabola_crossing(std::span<const double> x, std::span<const double> y, double level) {
   // Newton's divided differences about x[1].
   const double d01 = (y[1] - y[0]) / (x[1] - x[0]);

@@ -24,7 +24,7 @@ using internal::WaveVectors;
 constexpr std::uint32_t kEquilibrationFormat = 3;
 
 constexpr double kDecayed = 0.05;
-constexpr std::size_t kLeastSamples = 4;  ///< of a relaxation, one a time_unit
+constexpr std::size_t kLeastSamples = 4;  ///< least number of samples of a relaxation, one a time_unit
 constexpr int kInARow = 2;
 constexpr double kZDrift = 0.01;  ///< relative
 constexpr double kSDrift = 0.05;
@@ -34,7 +34,7 @@ constexpr int kVectorsPerShell = 100;
 constexpr double kFrom = 1;
 constexpr double kTo = 8;
 
-/// What differs by more than fluctuations and `allowed`.
+/// True if the estimates differ by more than fluctuations and by more than `allowed`, or are NaN.
 bool drifts(const Estimate& before, const Estimate& after, double allowed) {
   return !(std::abs(after.value - before.value) <= std::max(allowed, kErrors * std::hypot(before.error, after.error)));
 }
@@ -159,19 +159,19 @@ class EquilibrationMonitor::Impl {
     frames_ = 0;
   }
 
-  std::vector<BodyRange> ranges_;  ///< of the groups
+  std::vector<BodyRange> ranges_;  ///< bodies of each group
   std::vector<bool> turns_;
   Relaxation state_;
-  Snapshot origin_;  ///< of the current relaxation
-  double q_ = 0;     ///< at which it is looked at
+  Snapshot origin_;  ///< first frame of the current relaxation
+  double q_ = 0;     ///< wave number at which that relaxation is measured
   StructureGrid grid_;
-  std::optional<WaveVectors> vectors_;  ///< of the grid, once they have been used
+  std::optional<WaveVectors> vectors_;  ///< wave vectors of the grid, made when they are first used
   double packing_fraction_ = 0;
   std::vector<double> structure_;  ///< S(q), summed over the frames of the relaxation
   double frames_ = 0;
-  std::vector<double> structure_before_;  ///< of the one before
+  std::vector<double> structure_before_;  ///< sum of the relaxation before
   double frames_before_ = 0;
-  std::vector<double> Z_, S_;  ///< of each time unit of the relaxation
+  std::vector<double> Z_, S_;  ///< values of each time unit of the relaxation
   Estimate Z_before_, S_before_;
   double virial_ = 0;
   double time_ = 0;

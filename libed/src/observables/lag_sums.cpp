@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kSmall = 1e-4;  ///< below it sin(x) / x is 1 - x^2 / 6 to rounding
+constexpr double kSmall = 1e-4;  ///< limit below which sin(x) / x is 1 - x^2 / 6 to rounding
 
 /// sin(x) / x; the rounding of a small x is that of its square root.
 double sinc(double x) {

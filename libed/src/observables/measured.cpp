@@ -12,7 +12,7 @@ namespace {
 
 // Times are in the options' time unit.
 constexpr double kLongestLag = 40;     ///< default cap: MSD slopes have settled well before, errors grow beyond
-constexpr double kShortestLag = 1e-3;  ///< in units of the longest lag
+constexpr double kShortestLag = 1e-3;  ///< shortest lag at kLagsPerDecade, in units of the longest one
 constexpr double kLagsPerDecade = 20;
 /// Half as many follow below, down to here: shorter than the interval between two collisions of any fluid.
 constexpr double kShortest = 2e-3;

@@ -81,7 +81,7 @@ double f_self_between(const Snapshot& origin, const Snapshot& now, double wave_n
   return internal::self_scattering(origin, now, range_of(first, number), wave_number);
 }
 
-/// When which frames are taken, and what they are correlated with.
+/// Schedule of the frames that are taken, and of the frames that they are correlated with.
 class Observables::Impl {
  public:
   explicit Impl(const ObservablesOptions& options) : measured_(options) {}

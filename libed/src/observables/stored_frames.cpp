@@ -18,9 +18,9 @@ using internal::BodyRange;
 using internal::Measured;
 
 constexpr double kLagsPerDecade = 20;
-constexpr double kBlocks = 16;          ///< at most
+constexpr double kBlocks = 16;          ///< largest number of blocks
 constexpr double kEquallyFar = 1e-6;    ///< relative to the distance of frames in time
-constexpr double kDefaultShare = 0.25;  ///< of the trajectory: the longest lag
+constexpr double kDefaultShare = 0.25;  ///< default longest lag, as a share of the stretch
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 
 std::string text_of(double x) {
@@ -157,7 +157,7 @@ class Analysis {
 
   const StoredFramesOptions& options_;
   Stretch stretch_;
-  std::size_t count_;  ///< of the stretch
+  std::size_t count_;  ///< number of frames in the stretch
   double step_;
   std::vector<std::size_t> steps_;
   Measured measured_;

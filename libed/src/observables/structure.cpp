@@ -19,26 +19,26 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3i;
 
-constexpr double kReach = 6;        ///< of pairs, in lengths
-constexpr double kBin = 0.05;       ///< of distances, in lengths
-constexpr double kLargestQ = 12;    ///< in inverse lengths
-constexpr double kMostShells = 64;  ///< about as many
-constexpr double kPeakFrom = 1.5;   ///< in inverse lengths
+constexpr double kReach = 6;        ///< largest distance of pairs, in lengths
+constexpr double kBin = 0.05;       ///< width of a bin of distances, in lengths
+constexpr double kLargestQ = 12;    ///< largest wave number, in inverse lengths
+constexpr double kMostShells = 64;  ///< largest number of shells
+constexpr double kPeakFrom = 1.5;   ///< least wave number of a first peak, in inverse lengths
 constexpr double kPeakTo = 7;
 // Of the fit to Percus and Yevick's S(q).
-constexpr double kFittedFrom = 1;          ///< in inverse lengths
-constexpr double kScaleStep = 1.01;        ///< between two scales that are tried
-constexpr int kScaleSteps = 40;            ///< on either side of 1
+constexpr double kFittedFrom = 1;          ///< least wave number, in inverse lengths
+constexpr double kScaleStep = 1.01;        ///< ratio of two successive scales that are tried
+constexpr int kScaleSteps = 40;            ///< steps on either side of 1
 constexpr double kLogScaleStep = 0.00995;  ///< ln kScaleStep
-constexpr double kScaleSpread = 0.08;      ///< of ln s, from one shape of bodies to the next
+constexpr double kScaleSpread = 0.08;      ///< spread of ln s from one shape of bodies to the next
 constexpr double kClearPeak = 5;           ///< standard errors by which that has to stand out
-constexpr int kTries = 12;                 ///< to find a wave vector that is new
-constexpr int kFewBodies = 1000;           ///< whose pairs are all looked at: quicker than cells
+constexpr int kTries = 12;                 ///< draws for each wave vector that is to be new
+constexpr int kFewBodies = 1000;           ///< number of bodies up to which all pairs are visited: quicker than cells
 
 constexpr std::size_t kAtATime = 512;  ///< bodies whose phases are tabulated at once
-constexpr int kLargestPower = 500;     ///< of a phase
+constexpr int kLargestPower = 500;     ///< largest power of a phase that is tabulated
 
-/// Of two that are opposite, the one that is taken.
+/// Returns the one of n and -n that stands for both.
 Vector3i one_of_two(const Vector3i& n) {
   for (int k = 0; k < 3; ++k) {
     if (n[k] != 0) return n[k] < 0 ? Vector3i(-n) : n;
@@ -102,7 +102,7 @@ void add_amplitude(const Phases (&phases)[3], const Vector3i& n, std::size_t bod
   }
 }
 
-/// The same body by body.
+/// Adds that sum body by body, without tabulated phases.
 void add_amplitude(const std::vector<Vector3d>& positions, BodyRange range, const Vector3d& q, Amplitude& sum) {
   for (std::size_t i = range.begin; i < range.end; ++i) {
     const SinCos one = sincos(q.dot(positions[i]));
@@ -142,7 +142,7 @@ class PairCounter {
   std::vector<StructureSums>& sums_;
   std::size_t bins_;
   double scale_;
-  std::vector<std::size_t> group_;  ///< of each body
+  std::vector<std::size_t> group_;  ///< group of each body
 };
 
 void count_all(const StructureGrid& grid, const Snapshot& snapshot, PairCounter& counter) {
@@ -322,7 +322,7 @@ double misfit(const WaveVectors& vectors, const std::vector<double>& S, double f
   return yy - (ty > 0 ? ty * ty / tt : 0) + off * off;
 }
 
-/// By how much the peak is stretched: the least misfit, with a parabola through its neighbours.
+/// Returns by how much the peak is stretched: the scale of least misfit, by a parabola through it and its neighbours.
 double best_scale(const WaveVectors& vectors, const std::vector<double>& S, double frames, double length,
                   double packing_fraction) {
   std::vector<double> scales = {1};

@@ -20,7 +20,7 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-/// Not aligned: the same layout for every -march (see geom/kernel/small_solve.h).
+/// Quaternion that is not aligned: the same layout for every -march (see geom/kernel/small_solve.h).
 using Quaternion = Eigen::Quaternion<double, Eigen::DontAlign>;
 
 /// Returns the inverse of the distribution function of the proposal, u = 1 - |cos(theta)| with density ~ 1 / (1 + m

@@ -40,7 +40,7 @@ void centre(const void* object, ccd_vec3_t* out) {
 struct Contact {
   double depth;
   Eigen::Vector3d normal;  ///< unit, A to B
-  Eigen::Vector3d point;   ///< in the middle of the overlap
+  Eigen::Vector3d point;   ///< point in the middle of the overlap
 };
 
 class Mpr {

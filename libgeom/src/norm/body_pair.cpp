@@ -19,9 +19,9 @@ using Eigen::Vector3d;
 constexpr double kTightResidual = 1e-14;
 /// Largest mismatch of the support points that rounding can cause at the stationary normal of an overlap.
 constexpr double kSmallResidual = 1e-8;
-/// Mismatch of the support points above which an overlap's normal is not a maximum to rounding but stuck beside one ...
+/// Mismatch of the support points above which an overlap's normal is not a maximum to rounding but stuck beside one.
 constexpr double kStuck = 1e-12;
-/// ... so that the search continues until no other normal is better by this.
+/// Gain of any other normal below which the search from a stuck one ends.
 constexpr double kStuckDepthGap = 1e-12;
 
 /// Success of an ascent: g grows by more than kGrowth, or falls by no more while the mismatch of the support points
@@ -169,9 +169,9 @@ bool NormBodyPair::advance(DualSample& s, const Step& step) const {
   return false;
 }
 
-/// If one body is flat its support point is lost to rounding, and with it the mismatch: neither g nor the mismatch can
-/// show that the normal is off by 1e-7 along the direction in which both bodies are round. The next predicted gain can,
-/// because flat directions have no weight in it.
+/// True if the next predicted gain is less than kPromiseShrink of this one. The support point of a flat body is lost to
+/// rounding, and with it the mismatch: neither g nor the mismatch can show that the normal is off by 1e-7 along the
+/// direction in which both bodies are round. The next predicted gain can, because flat directions have no weight in it.
 bool NormBodyPair::keeps_promise(const DualSample& from, const Step& step, const DualSample& to) const {
   if (step.lifted || !(step.decrement < kHiddenDecrement * scale_)) return false;
   if (!(step.delta.squaredNorm() < kNormalTolerance2) || !(to.g >= from.g - kGrowth * scale_)) return false;

@@ -100,7 +100,7 @@ struct Ball {
   Eigen::Matrix3d hessian(const Eigen::Vector3d& /*x*/) const { return 2 * Eigen::Matrix3d::Identity(); }
 };
 
-/// Of templates, which are compiled here too, with other roundings: nine digits.
+/// Prints an answer of templates to nine digits: they are compiled here too, with other roundings.
 void print_digits(const char* name, double x) {
   std::printf("%s %.9e\n", name, x);
 }

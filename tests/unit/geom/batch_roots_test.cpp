@@ -15,7 +15,7 @@
 namespace geom {
 namespace {
 
-/// In units of the last place of a double.
+/// Returns the error in units of the last place of a double.
 double ulps(double found, long double exact) {
   const double near = static_cast<double>(exact);
   const double unit = std::nextafter(near, 2 * near) - near;

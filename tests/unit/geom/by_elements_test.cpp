@@ -28,7 +28,7 @@ using geom_test::Random;
 struct Query {
   geom_test::Orientation o;
   NormBodyPair pair;
-  double g;  ///< at o.n: what rounding has left of the gap
+  double g;  ///< gap along o.n as rounding has left it
 };
 
 Query query(PairSet set, double e1, double e2, double gap, Random& random) {
@@ -50,14 +50,15 @@ constexpr std::array kFirsts{FirstElements::supports, FirstElements::ellipsoids}
 struct PaceTraits {
   NormBodyPair::Pace pace;
   int steps;
-  int mean_steps;    ///< at most
-  double bound;      ///< of what is certified, relative to the scale
-  double tolerance;  ///< of g, the same
+  int mean_steps;    ///< largest mean number of steps
+  double bound;      ///< largest certified error, relative to the scale
+  double tolerance;  ///< error of g, relative to the scale
 };
 constexpr std::array kPaces{PaceTraits{NormBodyPair::Pace::brisk, 24, 9, 1e-14, 4e-14},
                             PaceTraits{NormBodyPair::Pace::careful, 100, 30, kBoundGap, kBoundGap}};
 
-/// From cold, in few steps: where edges or faces meet the dual method takes tens of them, or none helps. Adds up steps.
+/// Finds distances from cold, in few steps: where edges or faces meet the dual method takes tens of them, or none
+/// helps. Adds up steps.
 void expect_distances(PairSet set, FirstElements first, const PaceTraits& traits, int& all_iterations) {
   Random random(5);
   int declined = 0;
@@ -110,8 +111,8 @@ TEST(ByElements, ConvergeToTheDistance) {
   }
 }
 
-/// By how much g is higher than the answer's, relative to the scale, at the best of 20 normals up to `reach` from it;
-/// NaN if one of them is.
+/// Returns by how much g is higher than the answer's, relative to the scale, at the best of 20 normals up to `reach`
+/// from it; NaN if one of them is.
 double gain_nearby(const Query& q, const NormBodyPair::Answer& answer, double reach, Random& random) {
   double gain = -1;
   for (int t = 0; t < 20; ++t) {
@@ -135,7 +136,7 @@ double curvature(const Query& q, const Vector3d& n) {
   return (Eigen::SelfAdjointEigenSolver<Matrix3d>(M).eigenvalues()[0] + s.g) / q.pair.scale();
 }
 
-/// How far n is from the axis planes of both bodies: beyond, the curvature of a vertex is another.
+/// Returns how far n is from the axis planes of both bodies. Beyond such a plane a vertex has another curvature.
 double plane_distance(const geom_test::Orientation& o, const Vector3d& n) {
   return std::min((o.R_a.transpose() * n).cwiseAbs().minCoeff(), (o.R_b.transpose() * n).cwiseAbs().minCoeff());
 }

@@ -29,7 +29,7 @@ constexpr LaneBits kNone{0, 0};
 constexpr ArcBits kNo{kNone, kNone};
 constexpr ArcBits kYes{~kNone, ~kNone};
 
-/// Of one body's lane of one arc, what the tests below look at.
+/// Numbers of one body's lane of one arc that the tests below read.
 struct Arc {
   double w0, w1, m0, m1, flat0, flat1;
 };
@@ -82,7 +82,8 @@ TEST(ArcFamily, MakesArcsOfPointsOrOfGradients) {
   }
 }
 
-/// On an axis the other component of the point and that of the gradient vanish; their quotient is huge or zero.
+/// Arcs end on an axis, where the other component of the point and that of the gradient vanish; their quotient is huge
+/// or zero.
 TEST(ArcFamily, EndsOnTheAxes) {
   const ArcFamily family(ArcLanes(Lanes{0.5, 1.5}, Lanes{1.5, 0.5}));
   for (const ArcBits of_points : {kNo, kYes}) {
@@ -99,8 +100,8 @@ TEST(ArcFamily, EndsOnTheAxes) {
   }
 }
 
-/// For p = 2, and nearly so for p about 2, a face is no flatter than a ball, and a vertex as round, also where a
-/// component is lost.
+/// Compares with a ball: for p = 2, and nearly so for p about 2, a face is no flatter, and a vertex as round, also
+/// where a component is lost.
 TEST(ArcFamily, OfEllipsesIsRoundOnTheAxes) {
   for (const double e : {0.98, 0.999999, 1.0, 1 + 1e-15, 1.000001, 1.001}) {
     const ArcFamily family(e);
@@ -184,8 +185,8 @@ void expect_on_surface(const Superellipsoid& shape, const Matrix3d& R, const Vec
   ASSERT_LT(std::min(off_normal, off_point), 1e-13);
 }
 
-/// By a step that does not fit the turn, and across axes: wherever an element goes or begins, it is one of the surface.
-/// The length of the normal that it turns towards is nothing to it.
+/// Moves by a step that does not fit the turn, and across axes: wherever an element goes or begins, it is one of the
+/// surface. The length of the normal that it turns towards does not matter.
 TEST(ContactElements, StayOnTheSurfaces) {
   Random random(3);
   for (int k = 0; k < 20000; ++k) {
@@ -209,7 +210,7 @@ TEST(ContactElements, StayOnTheSurfaces) {
   }
 }
 
-/// Where a step and a turn agree to first order, the new element is off to second order, by whichever variable.
+/// Moves by a step and a turn that agree to first order: the new element is off to second order, by whichever variable.
 TEST(ContactElements, MoveToFirstOrder) {
   Random random(4);
   int tried = 0;
@@ -257,7 +258,7 @@ TEST(ContactElements, CrossTheAxes) {
   expect_on_surface(box, Matrix3d::Identity(), to.point.a(), to.normal.a());
 }
 
-/// The same on every face, across either axis and across both at once.
+/// Crosses the axes of every face, either one and both at once.
 TEST(ContactElements, CrossTheAxesOfEveryFace) {
   const Superellipsoid box({1, 1, 1}, 0.4, 0.4);
   const NormBodies bodies(NormShape(box), Matrix3d::Identity(), NormShape(box), Matrix3d::Identity());

@@ -147,8 +147,8 @@ TEST(Kernels, StepsLieAcrossTheNormalAreCappedAndAscend) {
       ASSERT_LE(e.step2, kMaxNormalStep * kMaxNormalStep * (1 + 1e-15)) << "pair " << i;
       ASSERT_NEAR(e.step2, e.step.squaredNorm(), 1e-14) << "pair " << i;
       ASSERT_GE(e.decrement, 0) << "pair " << i;
-      // A short way along the step g rises by its slope, decrement times the share; a share of 1e-6 leaves curvature
-      // (at most 100 a body) a relative weight of 1e-4 where the decrement is not tiny.
+      // A short way along the step g rises by its slope, decrement times the share. A share of the step of 1e-6 leaves
+      // curvature (at most 100 a body) a relative weight of 1e-4 where the decrement is not tiny.
       if (e.decrement < 1e-2) continue;
       const double share = 1e-6;
       const double uphill = pair.uniaxial(step_on_sphere(n, share * e.step)).g;
@@ -170,7 +170,7 @@ TEST(Kernels, ANewtonStepSquaresTheErrorOfTheNormal) {
     for (const Evaluation& e : {Evaluation(pair.uniaxial(n)), pair.general(n)}) {
       const Vector3d next = step_on_sphere(n, e.step);
       // The factor of off^2 is the relative change of curvature for a radian, about X0 <= 5, over the share of the
-      // curvature that the overlap leaves, 1/5 at the least; 4 times that.
+      // curvature that the overlap leaves, at least 1/5; 4 times that.
       ASSERT_LE((next - pair.placed.normal).norm(), 100 * off * off) << "pair " << i;
     }
   }

@@ -59,7 +59,7 @@ Matrix3d difference_jacobian(const F& f, const Vector3d& x) {
   return jacobian;
 }
 
-/// What making an ellipsoid says.
+/// Returns the message of making an ellipsoid.
 std::string refusal_of(const Vector3d& semi_axes) {
   return message_of([&] { return Ellipsoid(semi_axes); });
 }

@@ -36,7 +36,7 @@ Vector3d body_direction(Random& random) {
   return n.normalized();
 }
 
-/// In what rounding is counted: bodies are of size 1 to 10.
+/// Returns the unit in which rounding is counted: bodies are of size 1 to 10.
 double scale(const Superellipsoid& body) {
   return std::max(1.0, body.semi_axes().maxCoeff() / 2);
 }

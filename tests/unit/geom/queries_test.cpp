@@ -64,7 +64,8 @@ struct CountingBall {
   double inscribed_radius() const { return radius; }
 };
 
-/// Of bodies apart, at random, nearly all are told by one evaluation across the line of centres, or the last normal.
+/// Counts the evaluations for bodies apart, at random: nearly all are told by one across the line of centres, all by
+/// one across the last normal.
 TEST(Overlap, IsMostlyDecidedByOneEvaluation) {
   Random random(11);
   int apart = 0;
@@ -284,8 +285,8 @@ Vector3d tangent(const Vector3d& n, Random& random) {
   return n.cross(random.direction()).normalized();
 }
 
-/// Along tangents of the surface, a little above it and a little below; some of the normals are those of edges and
-/// ridges, where a support point is the same for many of them.
+/// Casts rays along tangents of the surface, a little above it and a little below. Some of the normals are those of
+/// edges and ridges, where a support point is the same for many of them.
 TEST(RayCast, GrazesTheSurface) {
   Random random(8);
   for_each_exponent([&](const Superellipsoid& shape) {
@@ -349,7 +350,7 @@ TEST(RayCast, ThroughTheCentre) {
   });
 }
 
-/// Where rounding decides on which side of the surface the origin is.
+/// Casts rays from the surface, where rounding decides on which side of it the origin is.
 template <class AnyShape>
 void expect_in_the_body_at_once(const AnyShape& shape, const Pose& X, const Vector3d& on_surface, const Vector3d& n,
                                 Random& random) {

@@ -33,7 +33,8 @@ Real planar(Real u, Real v, double e) {
   return larger * std::pow(std::pow(std::abs(u) / larger, p) + std::pow(std::abs(v) / larger, p), 1 / p);
 }
 
-/// How far a point of the body's frame is from the surface, measured towards the centre: never less than the distance.
+/// Returns how far a point of the body's frame is from the surface, measured towards the centre: never less than the
+/// distance.
 Real off_the_surface(const Given& body, const Exact& x) {
   const Exact y = x.cwiseQuotient(body.semi_axes.cast<Real>());
   return std::abs(planar(planar(y.x(), y.y(), body.e2), y.z(), body.e1) - 1) * x.norm();

@@ -67,7 +67,8 @@ TEST(UserShape, BallsWithoutACurvatureBoundHaveTheirDistance) {
   }
 }
 
-/// Without a curvature bound nothing tells that every direction is as good: the bound says how far the proof got.
+/// Checks balls without a curvature bound: nothing tells that every direction is as good, and the error bound says how
+/// far the proof got.
 TEST(UserShape, ConcentricBallsHaveADepthAndAWideBound) {
   const DistanceResult r = distance(PlainBall{1}, Pose(), PlainBall{1}, Pose());
   EXPECT_EQ(r.status, DistanceStatus::overlapping);

@@ -89,7 +89,7 @@ geom::Pose read_pose(const JsonMember& body, std::vector<std::string>& notices, 
   return rounding == Rounding::kept ? geom::kernel::unchecked_pose(R, position) : pose;
 }
 
-/// Without a kind an ellipsoid.
+/// Reads a shape; one without a kind is an ellipsoid.
 geom::Shape read_geom_shape(const JsonMember& body) {
   const JsonMember shape = body.at("shape", "{\"kind\": \"ellipsoid\", \"semi_axes\": [a, b, c]}");
   return shape.has("kind") ? read_shape(shape) : geom::Shape(read_ellipsoid(shape));

@@ -42,7 +42,7 @@ struct PartColumn {
   std::string name;
 
   ed::Estimate at(std::size_t row) const { return column->value(*part, row, k); }
-  /// At lag 0, of which displacements and orientations need none.
+  /// Returns the value at lag 0; none for displacements and orientations, which need none.
   ed::Estimate at_zero() const { return column->at_zero != nullptr ? part->*column->at_zero : ed::Estimate{}; }
 };
 

@@ -14,8 +14,8 @@
 namespace hardbody {
 namespace {
 
-/// Below this packing fraction the envelopes keep their first guess. Tuning runs for tens of collisions a
-/// body, which take a long time in a dilute gas, and there is next to nothing to gain.
+/// Packing fraction below which the envelopes keep their first guess. Tuning runs for tens of collisions a body, which
+/// take a long time in a dilute gas and gain little there.
 constexpr double kTunedPacking = 0.005;
 
 std::vector<ed::RelaxingGroup> relaxing_groups(const Config& config) {
@@ -53,7 +53,7 @@ Equilibration run_equilibration(const Config& config, EquilibrationRun& run, Run
   return run.result;
 }
 
-/// How far positions and orientations are forgotten. Where no body turns there is no C2.
+/// Describes how far positions and orientations are forgotten; without C2 where no body turns.
 std::string decays_text(const ed::Relaxation& relaxation) {
   const std::string f_self = fmt::format("F_self {:.3f}", relaxation.f_self);
   return std::isnan(relaxation.c2) ? f_self : fmt::format("C2 {:.3f} and ", relaxation.c2) + f_self;

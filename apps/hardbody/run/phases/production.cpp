@@ -15,9 +15,9 @@ namespace {
 
 /// "auto": production in units of the equilibration time, and its limits. Times are in units of Config::time_unit.
 constexpr double kProductionFactor = 30;
-constexpr double kLongestLag = 40;  ///< or the equilibration, if that took longer
-/// At least, in collisions of a body: diffusion coefficients are fitted from 0.4 of it on, and a velocity is forgotten
-/// in about 1.5 of them, so that what is left of it there is exp(-7).
+constexpr double kLongestLag = 40;  ///< cap of the longest lag; with "auto" the equilibration time, if that is longer
+/// Least longest lag of "auto", in collisions of a body. Diffusion coefficients are fitted from 0.4 of it on, and a
+/// velocity is forgotten in about 1.5 collisions, so that exp(-7) of it is left there.
 constexpr double kLagCollisions = 25;
 /// Longest lags that production lasts, at least. With a target error it is asked for then, and again each time that the
 /// run has grown by a factor.
@@ -30,13 +30,13 @@ double dilute_lag(const Config& config, const Equilibration& equilibration) {
   return collisions > 0 ? kLagCollisions * equilibration.time * config.number / (2 * collisions) : 0;
 }
 
-/// Of a production without a target error.
+/// Returns the usual length of a production without a target error.
 double usual_length(const Config& config, const Equilibration& equilibration) {
   const double unit = config.time_unit;
   return std::clamp(kProductionFactor * equilibration.time, kLeastProduction * unit, kMostProduction * unit);
 }
 
-/// How long production is to be, and what is measured in it.
+/// Plans the length of production and what is measured in it.
 Production planned_production(const Config& config, const Equilibration& equilibration) {
   Production plan;
   const double length = usual_length(config, equilibration);
@@ -97,9 +97,9 @@ bool run_to(double time, ProductionRun& run, Runner& runner, Log& log) {
   return runner.run_to(time, planned);
 }
 
-/// With a target error, once in a while, at times that do not depend on a clock: whether nothing is to be gained by
-/// going on. A coefficient that has no value after a production of the usual length will not get one: motion is
-/// ballistic up to the longest lag, as the rotation of what is nearly a sphere, or arrested.
+/// Returns whether a run with a target error gains nothing by going on. It is asked at times that do not depend on a
+/// clock. A coefficient that has no value after a production of the usual length will not get one: motion is ballistic
+/// up to the longest lag, as the rotation of what is nearly a sphere, or arrested.
 bool look_at_errors(const Config& config, ProductionRun& run, Log& log) {
   run.result.next_look *= kNextLook;
   const std::vector<ed::Estimate> wanted = wanted_coefficients(config, run.observables.results(run.simulation));

@@ -48,7 +48,8 @@ bool Runner::run_to(double time, double planned_end) {
   return false;
 }
 
-/// Where a slice ends changes no bit of the run, so that its length may follow the clock.
+/// Runs one slice; true if `time` is reached. The end of a slice changes no bit of the run, so that its length may
+/// follow the clock.
 bool Runner::run_slice(double time) {
   const double begin = progress_.seconds();
   const bool arrived = simulation_.run_until(time, static_cast<std::uint64_t>(slice_),

@@ -230,7 +230,7 @@ struct Box {
   double inscribed_radius() const { return half.minCoeff(); }
 };
 
-/// About z.
+/// Cylinder about z.
 struct Cylinder {
   double half_length;
   double radius;

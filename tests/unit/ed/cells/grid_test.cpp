@@ -146,7 +146,7 @@ TEST(CellGrid, ABodyPlacedTwiceIsOneAndStandsWhereItWasPutLast) {
   EXPECT_NEAR(found[0].r.x(), 0.01, 1e-15);
 }
 
-/// What a grid finds, in its order and bit by bit.
+/// Bodies that a grid finds, in its order and bit by bit.
 struct Found {
   std::vector<int> bodies;
   std::vector<Vector3d> r;

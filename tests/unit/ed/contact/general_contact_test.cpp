@@ -66,7 +66,7 @@ TEST(GeneralContact, BiaxialEllipsoidsMeetHeadOn) {
   EXPECT_LT((r.normal - Vector3d::UnitZ()).norm(), 1e-7);
 }
 
-/// The same bodies by both pair gaps.
+/// Predicts the same bodies by both pair gaps.
 TEST(GeneralContact, ExponentOneIsTheEllipsoid) {
   Random random(1);
   int hits = 0;

@@ -20,7 +20,7 @@ using EventLoop = ed::internal::EventLoop<ed::internal::UniaxialBodies>;
 using ed_test::Inertia;
 using Eigen::Vector3d;
 
-constexpr std::uint64_t kAnyNumber = ~std::uint64_t{0};  ///< of events
+constexpr std::uint64_t kAnyNumber = ~std::uint64_t{0};  ///< limit that no number of events reaches
 
 ed::SimulationOptions bracketing(DistanceMethod distance) {
   ed::SimulationOptions options;
@@ -29,7 +29,7 @@ ed::SimulationOptions bracketing(DistanceMethod distance) {
   return options;
 }
 
-/// In the middle of each body: Newton's method declines.
+/// Returns the centres of both bodies, from which Newton's method declines.
 geom::WitnessPair centres(const geom::Shape& /*a*/, const geom::Pose& X_WA, const geom::Shape& /*b*/,
                           const geom::Pose& X_WB) {
   return {X_WA.position(), X_WB.position(), geom::SeedStatus::usable};

@@ -144,7 +144,7 @@ TEST(Restart, EnvelopesThatWereTunedAreKept) {
   EXPECT_TRUE(restored.save() == simulation.save());
 }
 
-/// In the middle of each body: Newton's method declines, the failure is kept, the dual answers.
+/// Returns the centres of both bodies: Newton's method declines, the failure is kept, the dual answers.
 geom::WitnessPair middles(const geom::Shape& /*a*/, const geom::Pose& X_WA, const geom::Shape& /*b*/,
                           const geom::Pose& X_WB) {
   return {X_WA.position(), X_WB.position(), geom::SeedStatus::usable};
@@ -263,14 +263,14 @@ ed::ObservablesOptions options_for(const Case& c, double duration) {
   ed::ObservablesOptions options{};
   options.number = c.system.size();
   options.duration = duration;
-  options.longest_lag = 0.03;  // so that there are more blocks than are kept
+  options.longest_lag = 0.03;  // short: more blocks than are kept
   const int half = options.number / 2;
   const int axes = ed::symmetry_axis(c.system.species_of(options.number - 1)) ? 2 : 3;
   options.groups = {{half, 2}, {options.number - half, axes}};
   return options;
 }
 
-/// Of the measurements: so that blocks are merged on the way.
+/// Duration of the measurements, long enough for blocks to be merged on the way.
 const double kDuration = slow_build() ? 0.3 : 1;
 
 /// Restored before every 61st measurement, or never.
@@ -305,7 +305,7 @@ TEST(Restart, ObservablesGoOn) {
   }
 }
 
-/// Of the bytes without a checksum: whatever they say, they are refused or give a state that can be asked.
+/// Damages bytes without a checksum: whatever they say, they are refused or give a state that can be used.
 TEST(Restart, DamagedBytesAreNeverTrusted) {
   for (const Case* one : {&cases().front(), &cases().back()}) {
     const Case& c = *one;
@@ -332,7 +332,8 @@ TEST(Restart, DamagedBytesAreNeverTrusted) {
   }
 }
 
-/// How thick envelopes are stands three times in a row in a state: of the loop, of the envelopes, and up to an exit.
+/// Replaces the last of three equal thicknesses of envelopes that follow each other in a state: of the loop, of the
+/// envelopes, and up to an exit.
 TEST(Restart, EnvelopesWithoutAnExitAreRefused) {
   for (const Case* one : {&cases().front(), &cases().back()}) {
     const ed::Simulation simulation(one->system);

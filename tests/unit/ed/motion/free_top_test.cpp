@@ -69,7 +69,7 @@ Start draw_spherical(ed::Random& random) {
   return with_rotation(random, Vector3d::Constant(log_uniform(random, 0.1, 10)));
 }
 
-/// From needles to discs, about any body axis.
+/// Draws tops from needles to discs, about any body axis.
 Start draw_symmetric(ed::Random& random) {
   const double perpendicular = log_uniform(random, 0.1, 10);
   Vector3d inertia = Vector3d::Constant(perpendicular);
@@ -94,7 +94,8 @@ Start draw_asymmetric(ed::Random& random) {
   return with_rotation(random, log_uniform(random, 0.01, 100) * Vector3d(m.y() + m.z(), m.z() + m.x(), m.x() + m.y()));
 }
 
-/// How much rounding of omega is magnified in k'^2: 1 for all but asymmetric tops near the separatrix.
+/// Returns how much rounding of omega is magnified in k'^2: 1 for symmetric tops, large for asymmetric ones near the
+/// separatrix.
 double condition(const Start& s) {
   std::array<int, 3> i{0, 1, 2};
   std::sort(i.begin(), i.end(), [&](int a, int b) { return s.inertia[a] < s.inertia[b]; });
@@ -154,8 +155,8 @@ TEST_P(FreeTops, AreTheIntegratedEquationsOfMotion) {
   }
 }
 
-/// Where the body axis with the moment `axis.back()` points, and the angular velocity in body axes, by the textbook's
-/// solution of Euler's equations (Landau and Lifshitz, Mechanics, section 37) with Boost's elliptic functions.
+/// Direction of the body axis axis(), and the angular velocity in body axes, by the textbook's solution of Euler's
+/// equations (Landau and Lifshitz, Mechanics, section 37) with Boost's elliptic functions.
 class TextbookTop {
  public:
   using Real = long double;
@@ -356,14 +357,14 @@ Vector3d jerk(const Start& start, const TopState& now) {
   return now.R * (rate + w.cross(a));
 }
 
-/// At all phases of the motion: times from a fraction of a turn to many periods of the slowest top, whose moments agree
-/// to 1e-15. There is no digit left of the phase then, but omega is one that the top takes.
+/// Samples all phases of the motion: times from a fraction of a turn to many periods of the slowest top, whose moments
+/// agree to 1e-15. No digit is left of the phase then, but omega is one that the top takes.
 TEST_P(FreeTops, KeepTheirBoundsAndNearlyReachThem) {
   for (int k = 0; k < 100'000; ++k) {
     const Start start = draw();
     const FreeTop top = start.top();
     const double rate = top.max_omega();
-    // Every hundredth top is looked at closely.
+    // Every hundredth top is sampled densely.
     const int samples = k % 100 == 0 ? 1000 : 5;
     double omega = 0;
     double alpha = 0;
@@ -464,8 +465,9 @@ TEST(FreeTop, KeepsTurningAboutAPrincipalAxisEvenTheUnstableOne) {
   }
 }
 
-/// Where the motion itself magnifies small changes, the answer is as good as omega is known: the error is no more than
-/// four times what a change of one component of omega in its last place does, by integration.
+/// Expects an answer that is as good as omega is known, where the motion itself magnifies small changes: beyond
+/// rounding the error is no more than four times what a change of one component of omega in its last place does, by
+/// integration.
 void expect_as_good_as_omega(const Start& start, double t) {
   using Real = IntegratedTop::Real;
   const auto integrated = [&](const Vector3d& omega) {
@@ -552,7 +554,7 @@ TEST(FreeTop, StaysNearAStableAxis) {
   }
 }
 
-/// Nothing jumps where the formulas change: two moments that agree, against moments that nearly do.
+/// Compares two moments that agree with moments that nearly do: nothing jumps where the formulas change.
 TEST(FreeTop, KindsAgreeWhereTheyMeet) {
   ed::Random random(75);
   for (int k = 0; k < 1000; ++k) {

@@ -42,7 +42,7 @@ Vector3d momentum(const ContactBody& b) {
   return b.velocity / b.inverse_mass;
 }
 
-/// About the contact point, where the centre is at -arm.
+/// Returns the angular momentum about the contact point, where the centre is at -arm.
 Vector3d angular_momentum(const ContactBody& b) {
   return Vector3d(-b.arm).cross(momentum(b)) + b.inverse_inertia.inverse() * b.angular_velocity;
 }

@@ -83,8 +83,8 @@ Vector3d axis_at(const AxisMotion& motion, double t) {
   return motion.e0 + std::cos(angle) * motion.e1 + std::sin(angle) * motion.e2;
 }
 
-/// How far the body at (r, u) reaches beyond the body at (r0, u0), along the worst of all directions: by sampling, a
-/// little below the truth.
+/// Returns how far the body at (r, u) reaches beyond the body at (r0, u0), along the worst of all directions: by
+/// sampling, a little below the truth.
 double reach_beyond(const Shape& shape, const Vector3d& r, const Vector3d& u, const Vector3d& r0, const Vector3d& u0) {
   double worst = -1e300;
   Vector3d best = Vector3d::UnitX();
@@ -288,7 +288,8 @@ TEST(Envelopes, ThickestAndThinnestFitTheBox) {
 
 // ---- The paper's boxes and cells ------------------------------------------------------------------------------------
 
-/// By how much the body at (r, u) reaches beyond the box: exact, from the support function along the faces' normals.
+/// Returns by how much the body at (r, u) reaches beyond the box: exact, from the support function along the faces'
+/// normals.
 double beyond_box(const Shape& shape, const geom::OrientedBox& box, const Vector3d& r, const Vector3d& u) {
   double worst = -1e300;
   for (int k = 0; k < 3; ++k) {

@@ -78,8 +78,8 @@ ed::System pair_of(const BodyShape& a, const BodyShape& b, ed::Random& random) {
   return system;
 }
 
-/// How far the body in `now` reaches beyond the body in `before`, along the worst of all directions: by sampling, a
-/// little below the truth.
+/// Returns how far the body in `now` reaches beyond the body in `before`, along the worst of all directions: by
+/// sampling, a little below the truth.
 double reach_beyond(const BodyShape& shape, const ed::Motion& now, const ed::Motion& before) {
   ed::Random random(1);
   double worst = -1e300;
@@ -102,7 +102,7 @@ double reach_beyond(const BodyShape& shape, const ed::Motion& now, const ed::Mot
   return worst;
 }
 
-/// By how much the body in `now` reaches beyond the box, thicker by `thickness`, of the body in `before`.
+/// Returns by how much the body in `now` reaches beyond the box, thicker by `thickness`, of the body in `before`.
 double beyond_general_box(const BodyShape& shape, double thickness, const ed::Motion& now, const ed::Motion& before) {
   const Vector3d extents = ed::half_extents(shape).array() + thickness;
   double worst = -1e300;
@@ -118,8 +118,8 @@ double beyond_general_box(const BodyShape& shape, double thickness, const ed::Mo
 
 struct GeneralExits {
   int trials = 0;
-  double worst = -1e300;  ///< beyond the envelope, before the exit
-  int late = 0;           ///< of which a part is outside before three times the bound
+  double worst = -1e300;  ///< largest reach beyond the envelope before the exit
+  int late = 0;           ///< trials in which a part is outside before three times the bound
 };
 
 /// Bodies are followed by their exit bounds, renewed as the event loop does, and are outside soon after the last.

@@ -141,7 +141,8 @@ TEST(Director, OfAlignedAxesIsTheirs) {
   }
   const ed::Results results = observed(system, options_of(system, 4, 0.25));
   EXPECT_GT(results.S.value, 0.98);
-  // The largest component is positive: of -2 and 2, which only rounding and `off` tell apart, either may be it.
+  // The largest component is positive. Of -2 and 2, which only rounding and `off` tell apart, either may be the
+  // largest.
   EXPECT_LT(results.director.axis.cross(n).norm(), 1e-3);
   EXPECT_GT(results.director.axis.maxCoeff(), 0.5);
   EXPECT_NEAR(results.director.axis.norm(), 1, kCorrelationRounding);
@@ -186,7 +187,7 @@ TEST(Pressure, OfTwoSpheresThatMeetIsAlongTheirCentres) {
 
 // ---- Streaming -----------------------------------------------------------------------------------------------------
 
-/// Everything at one lag from all pairs of stored frames that are so far apart, the first an origin.
+/// Sums at one lag over all pairs of stored frames that are this far apart, the first an origin.
 struct Direct {
   double pairs = 0;
   double r2 = 0, r4 = 0, c1 = 0, c2 = 0, vacf = 0, wacf = 0, f_self = 0, phi2 = 0;

@@ -1,4 +1,4 @@
-// When a run counts as equilibrated: motions of which it is known.
+// When a run counts as equilibrated: motions with known relaxation.
 
 #include <common/ed_observed.h>
 #include <common/ed_states.h>
@@ -18,7 +18,7 @@ namespace {
 
 using ed_test::Inertia;
 
-/// What is known after each of so many time units.
+/// Returns the monitor's state after each of `units` time units.
 std::vector<ed::Relaxation> watched(const ed::System& system, const std::vector<ed::RelaxingGroup>& groups, int units) {
   ed::Simulation simulation(system);
   ed::EquilibrationMonitor monitor(simulation, groups);

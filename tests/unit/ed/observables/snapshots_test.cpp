@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Of a hundred terms of order 1.
+/// Rounding of a hundred terms of order 1.
 constexpr double kExact = 1e-11;
 
 TEST(NematicOrder, IsOneForAlignedAndAntiparallelAxes) {

@@ -25,7 +25,7 @@ using Eigen::Vector3d;
 constexpr int kBodies = 60;
 constexpr double kBox = 10;
 constexpr double kStep = 0.05;
-/// Of sums of a thousand terms of order 1, of positions of order 10.
+/// Rounding of sums of a thousand terms of order 1, of positions of order 10.
 constexpr double kFrameRounding = 1e-11;
 
 ed::StoredFramesOptions options_of(int bodies) {

@@ -147,7 +147,7 @@ TEST(RandomStart, RefusesSpeciesThatAreNone) {
               HasSubstr("species: none"));
 }
 
-/// How many have a copy half a box away in x, as old as they are, but of another velocity.
+/// Counts bodies with a copy half a box away in x, of the same orientation but another velocity.
 int copies_half_a_box_away(const ed::System& system) {
   int copies = 0;
   for (const ed::Body& a : system.bodies) {
@@ -264,7 +264,7 @@ double mean_distance_of_successors(const ed::System& system) {
   return sum / system.size() / (system.box / std::cbrt(static_cast<double>(system.size())));
 }
 
-/// In any order it would be half a box: 8 of these.
+/// Measures the distance of successors. In any order it would be half a box: 8 distances of neighbours.
 TEST(LargeStarts, NumberNeighboursOneAfterTheOther) {
   const ed::Species species = ed::paper_species(ed_test::spheroid(0.9));
   ed::StartOptions dilute;
@@ -304,7 +304,7 @@ TEST(RandomStart, MassesThatDifferByMuchCostNothing) {
   EXPECT_NEAR(twice_energy[1] / 150, 1, 1e-11);
 }
 
-/// So few spheres jam now and then below the densest start.
+/// Compresses so few spheres that they jam now and then below the densest start.
 TEST(RandomStart, SaysWhereItGotStuck) {
   const ed::Species sphere = ed::paper_species(geom::Ellipsoid({1, 1, 1}));
   ed::StartOptions options;

@@ -53,7 +53,7 @@ TEST(Species, OfUniformDensityHasTheInertiaOfAnEllipsoidAndSpins) {
   EXPECT_TRUE(species.spins);
 }
 
-/// Of equal masses at +- points: a centre at the origin.
+/// Returns the moments of equal masses at +- points, whose centre is the origin.
 Vector3d moments_of(const std::vector<Vector3d>& points, double mass) {
   Vector3d second = Vector3d::Zero();
   for (const Vector3d& x : points) second += x.cwiseAbs2() * (mass / static_cast<double>(points.size()));
