@@ -13,6 +13,7 @@ hardbody_test(ed_unit_test unit
   unit/ed/loop/restart_test.cpp
   unit/ed/loop/simulation_test.cpp
   unit/ed/loop/simulation_refuses_test.cpp
+  unit/ed/start/large_starts_test.cpp
   unit/ed/start/start_test.cpp
   unit/ed/system/system_test.cpp
   unit/ed/start/velocities_test.cpp)
@@ -21,6 +22,7 @@ hardbody_test(ed_observables_test unit
   unit/ed/observables/correlations_test.cpp
   unit/ed/observables/curves_test.cpp
   unit/ed/observables/equilibration_test.cpp
+  unit/ed/observables/group_observables_test.cpp
   unit/ed/observables/observables_test.cpp
   unit/ed/observables/snapshots_test.cpp
   unit/ed/observables/stored_frames_test.cpp

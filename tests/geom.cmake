@@ -17,6 +17,7 @@ hardbody_test(geom_unit_test unit
   unit/geom/perram_wertheim_test.cpp
   unit/geom/pose_test.cpp
   unit/geom/queries_test.cpp
+  unit/geom/ray_cast_test.cpp
   unit/geom/ray_from_afar_test.cpp
   unit/geom/sphere_search_test.cpp
   unit/geom/superellipsoid_test.cpp

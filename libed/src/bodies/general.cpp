@@ -174,8 +174,9 @@ void GeneralBodies::leave(int i, int j, const Contact& contact, double now) {
 }
 
 void GeneralBodies::set_velocity(int i, const Vector3d& velocity, double now) {
-  const TopState top = motions_[at(i)].top.at(now - motions_[at(i)].time);
-  start_flight(i, now, top, velocity, top.omega);
+  RigidMotion& motion = motions_[at(i)];
+  motion.position += (now - motion.time) * (motion.velocity - velocity);
+  motion.velocity = velocity;
 }
 
 double GeneralBodies::contact_scale(int i, int j, const Vector3d& r, const Vector3d& start, double now,

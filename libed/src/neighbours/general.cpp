@@ -46,7 +46,7 @@ bool within(const NormBodyPair& pair, double inscribed, bool elongated, double l
   const Vector3d along = normal;
   const double apart = along.dot(pair.between());
   normal = pair.cold_normal();
-  // They are: so are the spheres within them. That spares them a query.
+  // The envelopes overlap, because the spheres within them do: no query is needed.
   if (apart - inscribed <= limit) return true;
   if (elongated) {
     const auto both_ways = geom::kernel::LaneVector::of(along, -along);
@@ -131,7 +131,7 @@ bool GeneralDilatedEnvelopes::may_overlap(int i, int k, const Vector3d& r, Vecto
   return within(pair, a.inscribed_radius + b.inscribed_radius, elongated(*a.norm) || elongated(*b.norm), limit, normal);
 }
 
-double thickest_oriented(const GeneralBodies& bodies, double box) {
+double thickest_oriented_envelope(const GeneralBodies& bodies, double box) {
   std::vector<BodyShape> shapes;
   for (const GeneralKind& kind : bodies.kinds()) shapes.push_back(kind.shape);
   double low = kThinnestOriented * bodies.inscribed_radius();

@@ -15,7 +15,7 @@ using Eigen::Vector3d;
 double certain_reach(const BodyShape& shape) {
   const auto* custom = std::get_if<CustomShape>(&shape);
   if (custom == nullptr) return bounding_radius(shape);
-  // Its bounding sphere may be too large; each height is that of a point no nearer than it.
+  // The bounding sphere of a user's shape may be too large; each height is that of a point no nearer than it.
   return custom->centrally_symmetric() ? half_extents(shape).maxCoeff() : 0;
 }
 

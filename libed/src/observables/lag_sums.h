@@ -4,9 +4,9 @@
 
 #include "base/archive.h"
 
-#include <ed/archive_simulation.h>
+#include <ed/archive_system.h>
 #include <ed/observables.h>
-#include <ed/simulation.h>
+#include <ed/snapshot.h>
 
 #include <Eigen/Core>
 
