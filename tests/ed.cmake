@@ -2,6 +2,7 @@
 hardbody_test(ed_unit_test unit
   unit/ed/bodies/custom_shape_test.cpp
   unit/ed/neighbours/envelopes_test.cpp
+  unit/ed/neighbours/paper_envelopes_test.cpp
   unit/ed/loop/added_events_test.cpp
   unit/ed/loop/event_loop_test.cpp
   unit/ed/loop/loop_parts_test.cpp
@@ -11,6 +12,7 @@ hardbody_test(ed_unit_test unit
   unit/ed/system/polydispersity_test.cpp
   unit/ed/loop/restart_test.cpp
   unit/ed/loop/simulation_test.cpp
+  unit/ed/loop/simulation_refuses_test.cpp
   unit/ed/start/start_test.cpp
   unit/ed/system/system_test.cpp
   unit/ed/start/velocities_test.cpp)

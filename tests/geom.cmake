@@ -33,6 +33,7 @@ hardbody_test(geom_allocation_test unit unit/geom/allocation_test.cpp)
 hardbody_test(geom_batch_test property property/geom_batch_test.cpp)
 hardbody_test(geom_property_test property property/geom_distance_test.cpp
   property/geom_penetration_test.cpp
+  property/geom_superellipsoid_depth_test.cpp
   property/geom_superellipsoid_distance_test.cpp)
 hardbody_test(geom_accuracy_test accuracy accuracy/geom_distance_test.cpp accuracy/geom_extreme_test.cpp
   accuracy/geom_table_test.cpp)
