@@ -115,8 +115,8 @@ std::optional<Body> scanned_body(const ScannedBody& body, const char* name, std:
   const Vector3d axes(body.semi_axes.data());
   const Vector3d position(body.position.data());
   try {
-    const StoredOrientation read = body.orientation ? read_quaternion(*body.orientation, position)
-                                                    : StoredOrientation{geom::Pose::translation(position)};
+    const JsonOrientation read = body.orientation ? read_quaternion(*body.orientation, position)
+                                                  : JsonOrientation{geom::Pose::translation(position)};
     if (read.normalized) notices.push_back(normalized_text(fmt::format("{}.orientation", name), read.length));
     if (!body.is_superellipsoid) return Body{geom::Ellipsoid(axes), read.pose};
     return Body{geom::Superellipsoid(axes, body.exponents[0], body.exponents[1]), read.pose};

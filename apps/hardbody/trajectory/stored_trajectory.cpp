@@ -256,14 +256,16 @@ void Reading::finish(std::size_t used) {
   const bool orientations = say_orientations_ && known_orientations_ == count;
   const bool velocities = known_velocities_ == count;
   Unwrapping::Result unwrapped = unwrapping_.take();
-  if (!unwrapped.notice.empty()) result_.notices.push_back(unwrapped.notice);
+  // Without ids a jump may be another body in the same line, and says nothing about images.
+  const bool followed = ids_ || count == 1;
+  if (followed && !unwrapped.notice.empty()) result_.notices.push_back(unwrapped.notice);
   for (std::size_t k = 0; k < count; ++k) {
     ed::StoredFrame& frame = result_.frames[k];
     if (!orientations) frame.rotation.clear();
     if (!velocities) frame.velocity.clear();
     frame.position = std::move(unwrapped.positions[k]);
   }
-  if (ids_ || count == 1) {
+  if (followed) {
     result_.unwrapped_by = std::move(unwrapped.by);
     result_.not_unwrapped = std::move(unwrapped.reason);
   } else {

@@ -1,9 +1,9 @@
 #include "trajectory/gsd/frame_reader.h"
 
 #include "base/errors.h"
+#include "io/orientation.h"
 #include "io/text_file.h"
 #include "trajectory/gsd/type_shapes.h"
-#include "trajectory/stored_orientations.h"
 
 #include <ed/archive.h>
 
@@ -138,13 +138,13 @@ void FrameReader::read_orientations(Frame& frame) const {
   frame.orientations = k_ == 0 || knows(kOrientationName);
   if (!frame.orientations) return;
   const std::vector<double> orientation = finite<float>(kOrientationName, frame.bodies.size(), 4);
-  StoredOrientations orientations;
+  FrameOrientations orientations;
   for (std::size_t i = 0; 4 * i < orientation.size(); ++i) {
     const Eigen::Vector4d q = Eigen::Map<const Eigen::Vector4d>(orientation.data() + 4 * i);
     const std::optional<Matrix3d> rotation = orientations.rotation(q);
     if (!rotation) {
-      throw bad(fmt::format("the orientation of body {} {}", i, StoredOrientations::fault(q)),
-                StoredOrientations::accepted());
+      throw bad(fmt::format("the orientation of body {} {}", i, FrameOrientations::fault(q)),
+                FrameOrientations::accepted());
     }
     frame.bodies[i].rotation = *rotation;
   }
