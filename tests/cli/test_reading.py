@@ -348,6 +348,20 @@ class PartsOfFrames(FilesCase):
         for r in pairs([0.005 * s for s in steps]):
             self.assertLess(numpy.abs(seen - r).min(), rows["r"][1] - rows["r"][0])
 
+    def test_times_that_do_not_rise(self):
+        """Frames are named by their numbers in the file, whichever are used."""
+        steps = [0, 1, 2, 3, 2, 5]
+        self.dump("back.lammpstrj", "id type xu yu zu", [[[1, 1, 0, 0, 0], [2, 1, 0, 3, 0]] for _ in steps], steps=steps)
+        self.refused("back.lammpstrj", "back.lammpstrj: time of frame 4 is 2, that of frame 3 is 3; accepted: finite times")
+        result = self.hardbody("analyze", "back.lammpstrj", "--time-step", "1", "--every", "2", "--out", "analysis")
+        self.assert_refused(result, "back.lammpstrj: time of frame 4 is 2, that of frame 2 is 2; accepted: finite times")
+
+    def test_boxes_that_are_far_too_large(self):
+        row = [[[1, 1, 0, 0, 0, 1e-6], [2, 1, 0, 3, 0, 1e-6]]]
+        self.dump("far.lammpstrj", "id type x y z radius", row)
+        self.refused("far.lammpstrj", "frame 0: its box has an edge of 10, its bodies have a mean radius of 1e-06",
+                     "an edge below 1e+06 times this length")
+
     def test_bodies_that_change(self):
         first = [[1, 1, 0, 0, 0, 1, 1], [5, 2, 0, 3, 0, 1, 1]]
         for what, row, text in [("type", [5, 1, 0, 3, 0, 1, 1], "body 5 is of type 1, in the first frame of 2"),

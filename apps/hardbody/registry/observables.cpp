@@ -112,7 +112,7 @@ std::vector<Observable> built_in_observables() {
        .value = &GroupResults::beta_C2, .label = "beta_C2", .remark = always("of the same"), .in_frames = true,
        .places = {.summary = 100, .reading = 80}},
       {.key = "t_F_1overe", .symbol = "t_F", .name = "Relaxation of F_self", .unit = kTime,
-       .definition = "F_self(q, t) = 1/e at the first peak of S(q)", .value = &GroupResults::t_F_1overe,
+       .definition = "F_self(q, t) = 1/e at the first wave number of the run", .value = &GroupResults::t_F_1overe,
        .label = "t_F(1/e)", .remark = f_self_remark, .in_frames = true,
        .places = {.summary = 140, .reading = 90, .card = 60}},
       {.key = "tau_F", .symbol = "τ_F", .name = "Relaxation time of F_self", .unit = kTime,

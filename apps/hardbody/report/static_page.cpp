@@ -27,6 +27,17 @@ std::vector<std::string> columns_of(const CurvePlot& wanted, const Curves& curve
   return columns;
 }
 
+/// Returns "q l = 7.05" for F_self at a wave number of the run; else the column's name.
+std::string series_label(const RunReport& run, const CurvePlot& plot, const std::string& column) {
+  using nlohmann::json;
+  const json numbers = run.summary.is_object() ? run.summary.value("wave_numbers", json::array()) : json::array();
+  for (std::size_t k = 0; k < numbers.size(); ++k) {
+    if (!numbers[k].is_number() || column != fmt::format("{}_q{}", plot.lines[0].column, k + 1)) continue;
+    return fmt::format("q l = {:.3g}", numbers[k].get<double>());
+  }
+  return column;
+}
+
 std::string label_of(const Curves& curves, const std::string& column) {
   for (const std::string& name : curves.columns) {
     if (Curves::bare_name(name) == column) return name;
@@ -49,7 +60,8 @@ Plot plot_of(const CurvePlot& wanted, const CurveFile& file, const std::vector<R
     plot.x_label = label_of(*curves, x);
     plot.y_label = label_of(*curves, columns[0]);
     for (const std::string& column : columns) {
-      plot.series.push_back({runs.size() == 1 ? column : run.name, *abscissa, *curves->find(column)});
+      plot.series.push_back(
+          {runs.size() == 1 ? series_label(run, wanted, column) : run.name, *abscissa, *curves->find(column)});
     }
   }
   return plot;
