@@ -89,7 +89,7 @@ const MissingWords kWords = {"", "--longest-lag or a longer trajectory helps", "
 
 /// Returns the entries of summary.json that frames tell. A director that is missing is a list of nulls.
 Json frame_observables(const Part& part) {
-  Json json = observables_json(part, kWords, Measured::in_frames);
+  Json json = observables_json(part, kWords, Source::frames);
   if (!part.results.director.axis.allFinite()) json["director"]["value"] = list_json(part.results.director.axis);
   return json;
 }

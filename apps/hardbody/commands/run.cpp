@@ -124,16 +124,21 @@ void write_results(const RunDirectory& directory, RunRecord& record, Continuatio
   written.summary = true;
 }
 
+/// Logs a line and prints it after the name of the run.
+void announce(const std::string& text, const RunDirectory& directory, Progress& progress, Log& log) {
+  log.line(text);
+  progress.say(fmt::format("{}: {}", directory.path().string(), text));
+}
+
 /// Ends a run without a start. Nothing was measured, and an incomplete start is not kept: only the config and the log
 /// remain.
 int stopped_at_the_start(const RunDirectory& directory, Progress& progress, Log& log) {
   const int signal = pending_signal();
-  const std::string text = fmt::format(
-      "stopped by {} during the start: nothing was measured, and the start is not saved: hardbody resume begins it "
-      "again",
-      signal_name(signal));
-  log.line(text);
-  progress.say(fmt::format("{}: {}", directory.path().string(), text));
+  announce(
+      fmt::format("stopped by {} during the start: nothing was measured, and the start is not saved: hardbody resume "
+                  "begins it again",
+                  signal_name(signal)),
+      directory, progress, log);
   return exit_status_of(signal);
 }
 
@@ -155,16 +160,11 @@ int conclude(const RunDirectory& directory, RunRecord& record, Continuation& at,
   (void)std::fflush(stdout);
   if (failure) std::rethrow_exception(failure);
   const std::vector<std::string> list = defects(record);
-  for (const std::string& defect : list) {
-    log.line("NOT SOUND: " + defect);
-    progress.say(fmt::format("{}: NOT SOUND: {}", directory.path().string(), defect));
-  }
+  for (const std::string& defect : list) announce("NOT SOUND: " + defect, directory, progress, log);
   if (record.stopped() && !record.stall) {
-    const std::string text =
-        fmt::format("stopped by {} during {} at time {:g}: results so far are written, hardbody resume continues",
-                    signal_name(signal), record.last_phase(), record.last_time());
-    log.line(text);
-    progress.say(fmt::format("{}: {}", directory.path().string(), text));
+    announce(fmt::format("stopped by {} during {} at time {:g}: results so far are written, hardbody resume continues",
+                         signal_name(signal), record.last_phase(), record.last_time()),
+             directory, progress, log);
     return exit_status_of(signal);
   }
   log.line("end");
@@ -266,7 +266,7 @@ Continuation continuation(const Config& config, Checkpoint checkpoint, const Run
                                  name, one_line(checkpoint.phase, 40)));
   } else {
     at.production = resumed_production(config, checkpoint, directory, name);
-    at.files = {checkpoint.run->events, checkpoint.run->trajectory};
+    at.files = checkpoint.run->files;
   }
   return at;
 }

@@ -345,10 +345,10 @@ std::vector<Key> run_keys() {
               number(&Config::target_error, {1e-4, 1}, "standard error over value, of D_trans and D_rot")),
        "at most this", nullptr, "target_error = 0.02, if that is given"},
       {"production.wave_numbers", "[]", bound(&Config::wave_numbers, take_wave_numbers),
-       "of F_self, in 1/l, at most 8, the first is fitted; none: at\n"
-       "the first peak of S(q), a quarter, half and twice of it"},
+       "of F_self in 1/l, at most 8; the decay at the first is fitted.\n"
+       "[]: first peak of S(q), and a quarter, half and twice of it"},
       {"output.events", "0", integer(&Config::events, 0, kMostEvents),
-       "so many collisions of production go to events.csv"},
+       "number of production collisions to record in events.csv"},
       {"output.trajectory", "[]", bound(&Config::trajectory, take_trajectory),
        "of production: any of \"gsd\", \"lammps\" and \"vtk\""},
       {"output.frames", "100", integer(&Config::frames, 2, kMostFrames), "of each, evenly from the begin to the end"},

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <ed/archive.h>
-
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -39,8 +37,8 @@ void check_replaceable(const std::filesystem::path& path, std::string_view begin
 /// file. A link remains a link; anything that is neither a file nor a link to one is left unchanged. Throws WriteError.
 void write_file(const std::filesystem::path& path, std::string_view content);
 
-/// Receives a file's bytes piece by piece.
-using Sink = ed::archive::Sink;
+/// Receiver of a file's bytes piece by piece: the type that ed::archive::Writer takes.
+using Sink = std::function<void(std::string_view)>;
 
 /// Writes a file whose content `make` produces in pieces. Exceptions of `make` are passed on; no file is left then.
 void write_file(const std::filesystem::path& path, const std::function<void(const Sink&)>& make);

@@ -152,8 +152,6 @@ std::vector<Observable>& registered_observables() {
 
 }  // namespace
 
-const char* const kWaveNumbersConvention = "of F_self, 1/l; tau_F, beta_F, t_F_1overe are of the first";
-
 const std::vector<Observable>& observables() {
   return registered_observables();
 }

@@ -161,8 +161,7 @@ std::optional<Seen> if_readable(const Read& read, const char* what, std::vector<
 std::optional<Seen> read_last_state(const fs::path& path, const Config& config) {
   if (!fs::exists(path)) return std::nullopt;
   const Checkpoint checkpoint = read_checkpoint(path);
-  std::vector<int> numbers;
-  for (const SpeciesConfig& species : config.species) numbers.push_back(species.number);
+  const std::vector<int> numbers = config.numbers();
   if (std::accumulate(numbers.begin(), numbers.end(), 0) != checkpoint.system.size()) {
     throw InputError(fmt::format("{}: holds {} bodies, the config {}; accepted: the checkpoint of its config",
                                  path.string(), checkpoint.system.size(), config.number));

@@ -29,9 +29,7 @@ void Saver::save(const std::function<Checkpoint()>& make) {
     write(make());
   } catch (const std::exception& error) {
     ++upkeep_.checkpoints_failed;
-    const std::string text = fmt::format("no checkpoint: {}", error.what());
-    log_.line(text);
-    progress_.say(text);
+    announce(fmt::format("no checkpoint: {}", error.what()), progress_, log_);
   }
   last_ = Clock::now();
 }

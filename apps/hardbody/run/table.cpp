@@ -3,7 +3,6 @@
 #include "base/version.h"
 #include "io/run_directory.h"
 #include "run/missing.h"
-#include "run/part.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -29,11 +29,11 @@ std::size_t memory_of(const Frame& frame) {
 }  // namespace
 
 Trajectory::Trajectory(const RunDirectory& directory, const Config& config, double planned)
-    : planned_(planned),
+    : groups_(config.numbers()),
+      planned_(planned),
       wanted_(config.trajectory.empty() ? 0
               : planned > 0             ? static_cast<std::uint64_t>(config.frames)
                                         : 1) {
-  for (const SpeciesConfig& species : config.species) groups_.push_back(species.number);
   for (const TrajectoryFormat format : config.trajectory) {
     if (format == TrajectoryFormat::gsd) {
       const fs::path path = directory.file(kGsdFile);

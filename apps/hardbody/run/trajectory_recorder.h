@@ -26,27 +26,27 @@ class Trajectory {
   /// Returns the time of the next frame, infinity if there is none.
   double next_time() const;
 
-  /// Whether the files are at least as long as a checkpoint says. Throws InputError if not.
+  /// Checks that the files are at least as long as a checkpoint says. Throws InputError.
   void check(const TrajectoryMark& mark) const;
 
-  /// Begins, or goes on from a checkpoint: cuts off what follows. Throws std::runtime_error.
+  /// Begins new files, or continues those of a checkpoint and cuts off what follows. Throws std::runtime_error.
   void open(const TrajectoryMark& mark);
 
-  /// The first frame, unless there is one: the state that production begins with, to the bit, of which a simulation may
-  /// change the last one.
+  /// Takes the first frame, unless there is one: the state that production begins with, bit for bit. A simulation may
+  /// change the last bit of it.
   void take_first(const ed::System& start, Log& log);
 
-  /// The frame that is due: run `simulation` to next_time() first. A file that cannot be written gets it later, which
-  /// is logged; throws std::runtime_error when too much is waiting for that.
+  /// Takes the frame that is due, of a simulation at next_time(). A file that cannot be written gets it later, which is
+  /// logged. Throws std::runtime_error when too many frames are waiting.
   void take(const ed::Simulation& simulation, Log& log);
 
-  /// The state in which production ends before its planned end, unless it has just been taken.
+  /// Takes the state in which production ends before its planned end, unless it has just been taken.
   void take_last(const ed::Simulation& simulation, double time, Log& log);
 
-  /// Writes what is waiting, and brings all of it to the disk. Throws std::runtime_error if it cannot be written.
+  /// Writes the frames that are waiting and flushes all files to the disk. Throws std::runtime_error.
   void flush();
 
-  /// Once all is written.
+  /// Returns the extent of the files; no frame may be waiting.
   TrajectoryMark mark() const;
 
  private:

@@ -185,14 +185,13 @@ std::string set_velocities(ed::System& system, const Config& config, const Frame
                                         kinetic.spin_degrees_of_freedom > 0};
   const bool turns = frame.angular_velocities || frame.angular_momenta;
   const Vector3d drift = mean_velocity(system);
-  std::vector<int> numbers;
+  const std::vector<int> numbers = config.numbers();
   std::vector<std::array<bool, kKinds>> kept;
   std::vector<SpeciesRange> ranges;
   std::size_t begin = 0;
-  for (const SpeciesConfig& species : config.species) {
-    ranges.push_back({begin, begin + static_cast<std::size_t>(species.number)});
+  for (const int number : numbers) {
+    ranges.push_back({begin, begin + static_cast<std::size_t>(number)});
     begin = ranges.back().end;
-    numbers.push_back(species.number);
     const std::array<bool, kKinds> moves = motion_of(system, ranges.back(), drift);
     kept.push_back({frame.velocities && moves[kTranslation], turns && moves[kRotation], turns && moves[kSpin]});
   }

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <variant>
 
 namespace hardbody {
 namespace {
@@ -34,6 +35,17 @@ std::uint32_t SphereTypes::of(std::uint32_t type, double radius) {
   const auto [found, fresh] = made_.try_emplace({type, radius}, static_cast<std::uint32_t>(types_.size()));
   if (fresh) types_.push_back({types_[type].name, geom::Ellipsoid(Vector3d::Constant(radius)), true});
   return found->second;
+}
+
+Eigen::Vector2d exponents_of(const ed::BodyShape& shape) {
+  const auto* s = std::get_if<geom::Superellipsoid>(&shape);
+  return s == nullptr ? Eigen::Vector2d(1, 1) : Eigen::Vector2d(s->e1(), s->e2());
+}
+
+bool same_shape(const ed::BodyShape& a, const ed::BodyShape& b, double lengths, double exponents) {
+  const Vector3d h = ed::half_extents(b);
+  return a.index() == b.index() && (exponents_of(a) - exponents_of(b)).cwiseAbs().maxCoeff() <= exponents &&
+         (ed::half_extents(a) - h).norm() <= lengths * h.norm();
 }
 
 std::optional<std::string> not_a_cube(const Frame& frame) {

@@ -11,12 +11,9 @@
 #include <numbers>
 #include <optional>
 #include <utility>
-#include <variant>
 
 namespace hardbody {
 namespace {
-
-using Eigen::Vector3d;
 
 /// Maximum number of bytes of all frames in memory.
 constexpr double kMostMemory = 8e9;
@@ -69,19 +66,6 @@ bool says_orientations(const Frame& frame) {
   const auto turnable = [](const FrameType& t) { return t.shape && !ed::is_sphere(*t.shape); };
   return frame.orientations && (std::any_of(frame.bodies.begin(), frame.bodies.end(), turned) ||
                                 std::any_of(frame.types.begin(), frame.types.end(), turnable));
-}
-
-bool same_shape(const std::optional<ed::BodyShape>& a, const std::optional<ed::BodyShape>& b) {
-  if (!a || !b) return a.has_value() == b.has_value();
-  const auto* barr = std::get_if<geom::Superellipsoid>(&*a);
-  const auto* other = std::get_if<geom::Superellipsoid>(&*b);
-  if (a->index() != b->index()) return false;
-  if (barr != nullptr &&
-      !(std::abs(barr->e1() - other->e1()) <= kSame && std::abs(barr->e2() - other->e2()) <= kSame)) {
-    return false;
-  }
-  const Vector3d h = ed::half_extents(*a);
-  return (ed::half_extents(*b) - h).norm() <= kSame * h.norm();
 }
 
 /// Returns the body axis u: as in a run, the axis of revolution of bodies that are of revolution by shape and moments;
@@ -206,7 +190,8 @@ void Reading::check_body(const Frame& frame, std::uint64_t k, std::size_t n) con
                           one_line(type_before.name, 40)),
               accepted);
   }
-  if (!same_shape(type.shape, type_before.shape)) {
+  const std::optional<ed::BodyShape>& was = type_before.shape;
+  if (type.shape.has_value() != was.has_value() || (was && !same_shape(*was, *type.shape, kSame, kSame))) {
     throw bad(k, fmt::format("{} has another shape or size than in the first frame", which), accepted);
   }
   if (!(std::abs(body.mass - before.mass) <= kSame * std::abs(before.mass))) {

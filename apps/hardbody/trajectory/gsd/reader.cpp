@@ -38,11 +38,6 @@ const char* edited(const FrameBody& body, const ed::Body& exact, const ed::Speci
   return (stored - L).norm() <= 10 * kSingle * L.norm() ? nullptr : "particles/angmom";
 }
 
-bool nearly_same_shape(const ed::BodyShape& a, const ed::BodyShape& b) {
-  const Vector3d h = ed::half_extents(b);
-  return a.index() == b.index() && (ed::half_extents(a) - h).norm() <= kSingle * h.norm();
-}
-
 /// Throws if another program has changed the schema's own arrays, which it knows, but kept the doubles.
 void check_unedited(const Frame& frame, const ed::System& system, const std::string& name, std::uint64_t k) {
   const auto refuse = [&](const std::string& what) {
@@ -55,7 +50,8 @@ void check_unedited(const Frame& frame, const ed::System& system, const std::str
   if (!((frame.box - Vector3d::Constant(system.box)).norm() <= 2 * kSingle * system.box)) refuse("configuration/box");
   for (std::size_t t = 0; t < system.species.size() && t < frame.types.size(); ++t) {
     const auto& shape = frame.types[t].shape;
-    if (shape && !nearly_same_shape(*shape, system.species[t].shape)) refuse(fmt::format("the shape of type {}", t));
+    const bool same = !shape || same_shape(*shape, system.species[t].shape, kSingle, kSingle);
+    if (!same) refuse(fmt::format("the shape of type {}", t));
   }
   for (std::size_t i = 0; i < frame.bodies.size(); ++i) {
     const char* what = edited(frame.bodies[i], system.bodies[i], system.species_of(static_cast<int>(i)), system.box);

@@ -99,9 +99,8 @@ GsdArray species_array(const ed::System& system) {
     const auto* ellipsoid = std::get_if<geom::Ellipsoid>(&s.shape);
     if (barr == nullptr && ellipsoid == nullptr) throw std::logic_error("a user's own shape in a trajectory");
     const Vector3d a = barr != nullptr ? barr->semi_axes() : ellipsoid->semi_axes();
-    const double e1 = barr != nullptr ? barr->e1() : 1;
-    const double e2 = barr != nullptr ? barr->e2() : 1;
-    rows.insert(rows.end(), {barr != nullptr ? 1.0 : 0.0, a.x(), a.y(), a.z(), e1, e2, s.mass, s.inertia.x(),
+    const Eigen::Vector2d e = exponents_of(s.shape);
+    rows.insert(rows.end(), {barr != nullptr ? 1.0 : 0.0, a.x(), a.y(), a.z(), e.x(), e.y(), s.mass, s.inertia.x(),
                              s.inertia.y(), s.inertia.z(), s.spins ? 1.0 : 0.0});
   }
   return array_of(kExactSpecies, rows, kSpeciesColumns);

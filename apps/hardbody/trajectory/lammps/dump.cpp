@@ -28,9 +28,8 @@ std::vector<std::string> shape_columns(const Frame& frame) {
   std::vector<std::string> columns;
   for (const FrameType& type : frame.types) {
     const Vector3d a = type.shape ? ed::half_extents(*type.shape) : Vector3d::Zero();
-    const auto* barr = type.shape ? std::get_if<geom::Superellipsoid>(&*type.shape) : nullptr;
-    columns.push_back(fmt::format("{} {} {} {} {}", 2 * a.x(), 2 * a.y(), 2 * a.z(), barr != nullptr ? barr->e2() : 1,
-                                  barr != nullptr ? barr->e1() : 1));
+    const Eigen::Vector2d e = type.shape ? exponents_of(*type.shape) : Eigen::Vector2d(1, 1);
+    columns.push_back(fmt::format("{} {} {} {} {}", 2 * a.x(), 2 * a.y(), 2 * a.z(), e.y(), e.x()));
   }
   return columns;
 }
