@@ -1,5 +1,7 @@
 #include "registry/curves.h"
 
+#include "base/find.h"
+
 #include <algorithm>
 #include <array>
 #include <utility>
@@ -146,9 +148,7 @@ const std::vector<CurveFile>& curve_files() {
 }
 
 const CurveFile* find_curves(std::string_view name) {
-  const auto named = [name](const CurveFile& f) { return f.name == name; };
-  const auto found = std::find_if(curve_files().begin(), curve_files().end(), named);
-  return found == curve_files().end() ? nullptr : &*found;
+  return find_by(curve_files(), &CurveFile::name, name);
 }
 
 const std::vector<BlockColumn>& block_columns() {

@@ -1,5 +1,6 @@
 #include "registry/observables.h"
 
+#include "base/find.h"
 #include "base/number_text.h"
 
 #include <fmt/format.h>
@@ -173,9 +174,7 @@ std::vector<std::string> keys_by(int Places::*place) {
 }
 
 const Observable* find_observable(std::string_view key) {
-  const auto named = [key](const Observable& o) { return o.key == key; };
-  const auto found = std::find_if(observables().begin(), observables().end(), named);
-  return found == observables().end() ? nullptr : &*found;
+  return find_by(observables(), &Observable::key, key);
 }
 
 bool is_per_axis(const Observable& observable) {

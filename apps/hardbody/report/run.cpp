@@ -1,6 +1,7 @@
 #include "report/run.h"
 
 #include "base/errors.h"
+#include "base/find.h"
 #include "io/json_member.h"
 #include "io/run_directory.h"
 #include "io/text_file.h"
@@ -41,13 +42,6 @@ std::string read_log(const fs::path& path) {
   if (log.size() <= kLogShown) return log;
   const std::size_t line = log.find('\n', log.size() - kLogShown);
   return "...\n" + log.substr(line == std::string::npos ? log.size() - kLogShown : line + 1);
-}
-
-const nlohmann::json& member(const nlohmann::json& json, const char* key) {
-  static const nlohmann::json kNothing;
-  if (!json.is_object()) return kNothing;
-  const auto place = json.find(key);
-  return place == json.end() ? kNothing : *place;
 }
 
 bool says(const nlohmann::json& json, bool wanted) {
@@ -211,29 +205,21 @@ std::vector<SpeciesReport> species_of(const Config& config, const nlohmann::json
   return list;
 }
 
-void check_directory(const fs::path& directory) {
-  if (!fs::is_directory(directory)) {
-    throw InputError(fmt::format("{}: is {}; accepted: the directory of a run", directory.string(),
-                                 fs::exists(directory) ? "not a directory" : "not there"));
-  }
-  if (fs::exists(directory / kConfigFile)) return;
-  throw InputError(fmt::format("{}: holds no run: {} is missing; accepted: the directory of a run or of a sweep",
-                               directory.string(), kConfigFile));
+}  // namespace
+
+const nlohmann::json& member(const nlohmann::json& json, const char* key) {
+  static const nlohmann::json kNothing;
+  const auto place = json.find(key);
+  return json.is_object() && place != json.end() ? *place : kNothing;
 }
 
-/// Returns the last part of the path, also for out/run/.
 std::string name_of(const fs::path& directory) {
   const fs::path whole = fs::weakly_canonical(directory);
   return whole.has_filename() ? whole.filename().string() : whole.string();
 }
 
-}  // namespace
-
 const Curves* RunReport::find(std::string_view file) const {
-  for (const Curves& c : curves) {
-    if (c.name == file) return &c;
-  }
-  return nullptr;
+  return find_by(curves, &Curves::name, file);
 }
 
 std::string title_of(const Config& config) {
@@ -243,7 +229,7 @@ std::string title_of(const Config& config) {
 }
 
 RunReport read_run_report(const fs::path& directory, WithView with_view) {
-  check_directory(directory);
+  check_run_directory(directory, "a run or of a sweep");
   RunReport run;
   run.path = directory;
   run.name = name_of(directory);

@@ -1,3 +1,4 @@
+#include "base/find.h"
 #include "registry/curves.h"
 #include "report/page.h"
 #include "report/svg.h"
@@ -29,8 +30,7 @@ std::vector<std::string> columns_of(const CurvePlot& wanted, const Curves& curve
 
 /// Returns "q l = 7.05" for F_self at a wave number of the run; else the column's name.
 std::string series_label(const RunReport& run, const CurvePlot& plot, const std::string& column) {
-  using nlohmann::json;
-  const json numbers = run.summary.is_object() ? run.summary.value("wave_numbers", json::array()) : json::array();
+  const nlohmann::json& numbers = member(run.summary, "wave_numbers");
   for (std::size_t k = 0; k < numbers.size(); ++k) {
     if (!numbers[k].is_number() || column != fmt::format("{}_q{}", plot.lines[0].column, k + 1)) continue;
     return fmt::format("q l = {:.3g}", numbers[k].get<double>());
@@ -94,13 +94,6 @@ std::string cell(const Headline& headline) {
   return html_text(headline_text(headline));
 }
 
-const Headline* find(const std::vector<Headline>& list, const std::string& key) {
-  for (const Headline& h : list) {
-    if (h.key == key) return &h;
-  }
-  return nullptr;
-}
-
 /// Returns a table with one row a quantity, one column a run.
 std::string headline_table(const std::vector<RunReport>& runs) {
   std::string html = "<table class=\"card\"><thead><tr><th scope=\"col\">quantity</th>";
@@ -109,7 +102,7 @@ std::string headline_table(const std::vector<RunReport>& runs) {
   for (const Headline& row : runs[0].headlines) {
     html += fmt::format("<tr><th scope=\"row\">{}</th>", html_text(row.name));
     for (const RunReport& run : runs) {
-      const Headline* own = find(run.headlines, row.key);
+      const Headline* own = find_by(run.headlines, &Headline::key, row.key);
       html += fmt::format("<td>{}</td>", own == nullptr ? "" : cell(*own));
     }
     html += fmt::format("<td>{}</td><td>{}</td></tr>\n", html_text(row.unit), html_text(row.meaning));

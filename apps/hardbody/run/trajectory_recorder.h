@@ -9,7 +9,6 @@
 #include <ed/simulation.h>
 
 #include <deque>
-#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -50,11 +49,6 @@ class Trajectory {
   TrajectoryMark mark() const;
 
  private:
-  struct File {
-    std::filesystem::path path;
-    std::unique_ptr<FrameFile> writer;
-  };
-
   void write_waiting();
   void add(Frame frame, double time, Log& log);
 
@@ -63,7 +57,7 @@ class Trajectory {
   std::uint64_t wanted_;  ///< frames; 0: no trajectory
   std::uint64_t taken_ = 0;
   double last_time_ = -1;  ///< time of the last frame
-  std::vector<File> files_;
+  std::vector<std::unique_ptr<FrameFile>> files_;
   std::deque<Frame> waiting_;  ///< the last frames taken, those that some file lacks
   bool failing_ = false;       ///< the last attempt to write
 };

@@ -19,8 +19,6 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// Relative difference between the file's lengths and the config's that counts as rounding to 32 bits.
-constexpr double kSameLength = 1e-5;
 /// Relative difference of packing fractions, a length to the third power, that counts as rounding.
 constexpr double kSamePacking = 1e-4;
 /// Largest factor by which overlapping bodies are moved apart.

@@ -1,5 +1,6 @@
 #include "sweep/results.h"
 
+#include "base/find.h"
 #include "io/run_directory.h"
 #include "io/text_file.h"
 #include "registry/observables.h"
@@ -138,10 +139,8 @@ std::string row(const PointRecord& record, const std::vector<std::string>& keys,
   const PointResults results = record.results.value_or(PointResults{});
   text += fmt::format("{},{}", results.equilibration_time, results.production_time);
   for (const std::string& name : names) {
-    const auto found = std::find_if(results.observables.begin(), results.observables.end(),
-                                    [&](const PrintedEstimate& e) { return e.name == name; });
-    const bool known = found != results.observables.end();
-    text += fmt::format(",{},{}", known ? found->value : "", known ? found->error : "");
+    const PrintedEstimate* known = find_by(results.observables, &PrintedEstimate::name, name);
+    text += fmt::format(",{},{}", known != nullptr ? known->value : "", known != nullptr ? known->error : "");
   }
   const std::string message = record.message.empty() ? missing_text(results.observables) : record.message;
   const char* equilibrated = !record.results ? "" : results.equilibrated ? "true" : "false";

@@ -25,9 +25,6 @@ Vector3d axis_of(const ed::System& system, int i) {
   return system.bodies[static_cast<std::size_t>(i)].rotation.col(axis);
 }
 
-/// Relative difference of edges of a cube that counts as rounding to 32 bits.
-constexpr double kSameLength = 1e-5;
-
 }  // namespace
 
 std::uint32_t SphereTypes::of(std::uint32_t type, double radius) {

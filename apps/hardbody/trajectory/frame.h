@@ -58,6 +58,9 @@ struct FrameBody {
 /// Maximum number of box edges between a position and the box; beyond, the number of an image would overflow.
 inline constexpr double kMostImages = 1e9;
 
+/// Relative difference of lengths that counts as rounding to 32 bits.
+inline constexpr double kSameLength = 1e-5;
+
 /// State of all bodies at one time, as a trajectory contains it.
 struct Frame {
   std::uint64_t step = 0;  ///< time step; in this program's files the frame's number

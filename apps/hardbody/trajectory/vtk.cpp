@@ -128,9 +128,6 @@ std::uint64_t time_place(std::uint64_t frame) {
 
 }  // namespace
 
-VtkWriter::VtkWriter(std::filesystem::path path, std::uint64_t capacity)
-    : path_(std::move(path)), capacity_(capacity) {}
-
 void VtkWriter::open(FileMark mark) {
   mark_ = mark;
   if (mark.frames == 0) return;

@@ -175,9 +175,6 @@ std::uint64_t entries_of(std::uint64_t frames) {
 
 }  // namespace
 
-GsdWriter::GsdWriter(std::filesystem::path path, std::uint64_t capacity)
-    : path_(std::move(path)), capacity_(capacity) {}
-
 void GsdWriter::open(FileMark mark) {
   mark_ = mark;
   if (mark.frames == 0) return;
