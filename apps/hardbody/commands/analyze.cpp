@@ -21,10 +21,8 @@
 #include <filesystem>
 #include <limits>
 #include <memory>
-#include <numbers>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace hardbody {

@@ -6,7 +6,6 @@
 #include "io/run_directory.h"
 #include "run/checkpoint.h"
 #include "run/record.h"
-#include "run/table.h"
 #include "start/agreement.h"
 #include "trajectory/reader.h"
 

@@ -12,6 +12,8 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <string>
+#include <utility>
 
 namespace hardbody {
 namespace {
@@ -188,16 +190,22 @@ std::string axes_comment(const Place& at) {
                      last ? " and the axis of revolution last" : "", used.x(), used.y(), used.z());
 }
 
-std::vector<Key> shape_keys() {
+/// Returns the keys that [shape] and [[species]] share.
+std::vector<Key> form_keys(const std::string& section, const char* usual_kind, Comment ratio, Comment axes) {
   return {
-      {"shape.kind", "\"ellipsoid\"", choice(&ShapeConfig::kind, {ShapeKind::ellipsoid, ShapeKind::superellipsoid}),
+      {section + ".kind", usual_kind, choice(&ShapeConfig::kind, {ShapeKind::ellipsoid, ShapeKind::superellipsoid}),
        kKindComment},
-      {"shape.aspect_ratio", "", number(&ShapeConfig::aspect_ratio, kRatios, kRatioMeaning),
-       "X0 = a/b, a along the axis of revolution, from 0.01 to 100;\n"
-       "or semi_axes = [a, b, c], in any unit: only their ratios count"},
-      {"shape.semi_axes", "", bound(&ShapeConfig::semi_axes, take_semi_axes), axes_comment},
-      {"shape.exponents", "", exponents_rule(), kExponentsComment, has_exponents},
+      {section + ".aspect_ratio", "", number(&ShapeConfig::aspect_ratio, kRatios, kRatioMeaning), std::move(ratio)},
+      {section + ".semi_axes", "", bound(&ShapeConfig::semi_axes, take_semi_axes), std::move(axes)},
+      {section + ".exponents", "", exponents_rule(), kExponentsComment, has_exponents},
   };
+}
+
+std::vector<Key> shape_keys() {
+  return form_keys("shape", "\"ellipsoid\"",
+                   "X0 = a/b, a along the axis of revolution, from 0.01 to 100;\n"
+                   "or semi_axes = [a, b, c], in any unit: only their ratios count",
+                   axes_comment);
 }
 
 using Sizes = ed::SizeDistribution;
@@ -225,12 +233,11 @@ constexpr auto fraction_comment = [](const Place& at) -> std::string {
 };
 
 std::vector<Key> species_keys() {
-  return {
-      {"species.kind", "", choice(&ShapeConfig::kind, {ShapeKind::ellipsoid, ShapeKind::superellipsoid}), kKindComment},
-      {"species.aspect_ratio", "", number(&ShapeConfig::aspect_ratio, kRatios, kRatioMeaning),
-       "X0 = a/b, a along the axis of revolution, from 0.01 to 100;\nor semi_axes; (a b c)^(1/3) = 1 then"},
-      {"species.semi_axes", "", bound(&ShapeConfig::semi_axes, take_semi_axes), "[a, b, c], as they are"},
-      {"species.exponents", "", exponents_rule(), kExponentsComment, has_exponents},
+  std::vector<Key> keys = form_keys("species", "",
+                                    "X0 = a/b, a along the axis of revolution, from 0.01 to 100;\n"
+                                    "or semi_axes; (a b c)^(1/3) = 1 then",
+                                    "[a, b, c], as they are");
+  const std::vector<Key> others = {
       {"species.fraction", "1 for a single species",
        number(&SpeciesConfig::fraction, {0, 1, false}, "of the number of bodies"), fraction_comment},
       {"species.number", "1 for a single species", integer(&SpeciesConfig::number, 1, kMostBodies),
@@ -246,6 +253,8 @@ std::vector<Key> species_keys() {
       {"species.size_seed", "the run's seed", unless(without_sizes, kNoSizes, integer(&SpeciesConfig::size_seed, 0)),
        "of the sizes, instead of seed", has_sizes},
   };
+  keys.insert(keys.end(), others.begin(), others.end());
+  return keys;
 }
 
 // ---- [dynamics]

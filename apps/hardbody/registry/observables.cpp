@@ -24,9 +24,9 @@ PartText always(const char* text) {
   return [text](const Part& /*part*/) { return std::string(text); };
 }
 
-/// Left out for a species.
-std::string collision_remark(const Part& part) {
-  return part.whole != nullptr ? "collisions of a body in a time unit" : "";
+/// Text for all bodies and that for one species; an empty one leaves the observable out of its table.
+PartText by_part(const char* all, const char* species) {
+  return [=](const Part& part) { return std::string(part.whole != nullptr ? all : species); };
 }
 
 /// Number of rotation components that D_rot counts, and its divisor.
@@ -54,14 +54,6 @@ std::string f_self_remark(const Part& part) {
   return fmt::format("F_self(q, t) at q = {:.4g} / l = 1/e", part.wave_numbers[0]);
 }
 
-std::string order_remark(const Part& part) {
-  return part.whole != nullptr ? "nematic order: largest eigenvalue of Q, by frame" : "nematic order of this species";
-}
-
-std::string translation_remark(const Part& part) {
-  return part.whole != nullptr ? "on 3N - 3 degrees of freedom" : "on its share of 3N - 3 degrees of freedom";
-}
-
 std::string rotation_temperature_remark(const Part& part) {
   if (part.whole == nullptr) return fmt::format("on {} a body", part.rotation_axes);
   return "on " + freedoms_text(std::lround(part.rotation_axes * part.number), part.number);
@@ -72,7 +64,7 @@ std::vector<Observable> built_in_observables() {
   return {
       {.key = "collision_rate", .symbol = "Γ", .name = "Collision rate", .unit = kRate,
        .definition = "collisions that a body takes part in, a time unit", .value = &GroupResults::collision_rate,
-       .label = "collision rate", .remark = collision_remark,
+       .label = "collision rate", .remark = by_part("collisions of a body in a time unit", ""),
        .convention = always("collisions a body takes part in, a time unit"),
        .places = {.summary = 10, .reading = 10, .units = 40, .card = 80, .map = 60}},
       {.key = "Z", .symbol = "Z", .name = "Compressibility factor", .unit = "1", .definition = "P V / (N kT)",
@@ -96,8 +88,9 @@ std::vector<Observable> built_in_observables() {
        .places = {.summary = 60, .reading = 50, .units = 30, .card = 40}},
       {.key = "S", .symbol = "S", .name = "Nematic order", .unit = "1",
        .definition = "largest eigenvalue of Q of each frame, averaged; above 0.3 nematic", .value = &GroupResults::S,
-       .label = "S", .remark = order_remark, .in_frames = true,
-       .places = {.summary = 70, .reading = 120, .card = 70, .map = 50}},
+       .label = "S",
+       .remark = by_part("nematic order: largest eigenvalue of Q, by frame", "nematic order of this species"),
+       .in_frames = true, .places = {.summary = 70, .reading = 120, .card = 70, .map = 50}},
       {.key = "director", .name = "Director", .unit = "1",
        .definition = "eigenvector of the largest eigenvalue of Q, averaged over frames; its error in radians",
        .value = &GroupResults::director,
@@ -129,7 +122,9 @@ std::vector<Observable> built_in_observables() {
        .value = &GroupResults::S_peak, .in_frames = true, .places = {.summary = 160, .reading = 140}},
       {.key = "kT_trans", .symbol = "kT_trans", .name = "Translational temperature", .unit = "kT",
        .definition = "on 3N − 3 degrees of freedom; exactly 1 on average", .value = &GroupResults::translational_kT,
-       .label = "kT_trans", .remark = translation_remark, .places = {.summary = 170, .reading = 150, .card = 90}},
+       .label = "kT_trans",
+       .remark = by_part("on 3N - 3 degrees of freedom", "on its share of 3N - 3 degrees of freedom"),
+       .places = {.summary = 170, .reading = 150, .card = 90}},
       {.key = "kT_rot", .symbol = "kT_rot", .name = "Rotational temperature", .unit = "kT",
        .definition = "the same of rotation", .value = &GroupResults::rotational_kT, .label = "kT_rot",
        .remark = rotation_temperature_remark, .places = {.summary = 180, .reading = 160, .card = 100}},

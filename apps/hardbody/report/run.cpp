@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+#include <array>
 #include <numeric>
 #include <utility>
 #include <variant>
@@ -206,6 +206,10 @@ std::vector<SpeciesReport> species_of(const Config& config, const nlohmann::json
 }
 
 }  // namespace
+
+const char* to_string(Remark::Kind kind) {
+  return std::array{"good", "warning", "bad"}[static_cast<std::size_t>(kind)];
+}
 
 const nlohmann::json& member(const nlohmann::json& json, const char* key) {
   static const nlohmann::json kNothing;

@@ -35,6 +35,9 @@ struct Remark {
   std::string text;   ///< a sentence
 };
 
+/// Returns the name, "good", ..
+const char* to_string(Remark::Kind kind);
+
 struct SpeciesReport {
   std::string title;
   std::vector<Headline> headlines;

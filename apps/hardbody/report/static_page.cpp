@@ -2,15 +2,10 @@
 #include "registry/curves.h"
 #include "report/page.h"
 #include "report/svg.h"
-#include "run/table.h"
 
 #include "base/version.h"
 
 #include <fmt/format.h>
-
-#include <array>
-#include <cmath>
-#include <utility>
 
 namespace hardbody {
 namespace {
@@ -81,11 +76,9 @@ std::string plots_section(const std::vector<RunReport>& runs) {
 }
 
 std::string remarks(const RunReport& run) {
-  constexpr std::array kClasses = {"good", "warning", "bad"};
   std::string html = "<ul class=\"remarks\">";
   for (const Remark& r : run.remarks) {
-    html += fmt::format("<li class=\"{}\"><b>{}</b> {}</li>", kClasses[static_cast<std::size_t>(r.kind)],
-                        html_text(r.label), html_text(r.text));
+    html += fmt::format("<li class=\"{}\"><b>{}</b> {}</li>", to_string(r.kind), html_text(r.label), html_text(r.text));
   }
   return html + "</ul>\n";
 }

@@ -8,8 +8,6 @@
 #include <limits>
 #include <map>
 #include <tuple>
-#include <utility>
-#include <variant>
 
 namespace hardbody {
 namespace {

@@ -2,7 +2,6 @@
 
 #include "io/json_values.h"
 
-#include <array>
 #include <cmath>
 #include <utility>
 #include <variant>

@@ -6,8 +6,6 @@
 #include <fmt/format.h>
 
 #include <exception>
-#include <string>
-#include <utility>
 
 namespace hardbody {
 

@@ -1,7 +1,6 @@
 #include "run/table.h"
 
 #include "base/version.h"
-#include "io/run_directory.h"
 #include "run/missing.h"
 
 #include <fmt/format.h>

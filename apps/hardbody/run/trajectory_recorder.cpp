@@ -1,6 +1,5 @@
 #include "run/trajectory_recorder.h"
 
-#include "base/errors.h"
 #include "io/text_file.h"
 #include "trajectory/gsd/frames.h"
 #include "trajectory/lammps/dump.h"
@@ -8,10 +7,9 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <limits>
+#include <optional>
 #include <stdexcept>
-#include <system_error>
 #include <utility>
 
 namespace hardbody {
@@ -53,12 +51,7 @@ double Trajectory::next_time() const {
 
 void Trajectory::check(const TrajectoryMark& mark) const {
   for (std::size_t k = 0; k < files_.size() && mark.frames > 0; ++k) {
-    std::error_code error;
-    const std::uintmax_t bytes = fs::file_size(files_[k]->path(), error);
-    if (!error && k < mark.bytes.size() && bytes >= mark.bytes[k]) continue;
-    throw InputError(fmt::format("{}: has {} bytes, {} when the checkpoint was written; accepted: the file of the run",
-                                 files_[k]->path().string(), error ? 0 : bytes,
-                                 k < mark.bytes.size() ? mark.bytes[k] : 0));
+    check_length(files_[k]->path(), k < mark.bytes.size() ? std::optional(mark.bytes[k]) : std::nullopt);
   }
 }
 

@@ -9,8 +9,8 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
 #include <stdexcept>
-#include <string_view>
 #include <utility>
 
 namespace hardbody {
@@ -151,19 +151,7 @@ std::string row(const PointRecord& record, const std::vector<std::string>& keys,
 }  // namespace
 
 const char* to_string(PointStatus status) {
-  switch (status) {
-    case PointStatus::pending:
-      return "pending";
-    case PointStatus::running:
-      return "running";
-    case PointStatus::stopped:
-      return "stopped";
-    case PointStatus::done:
-      return "done";
-    case PointStatus::failed:
-      return "failed";
-  }
-  return "";
+  return std::array{"pending", "running", "stopped", "done", "failed"}[static_cast<std::size_t>(status)];
 }
 
 std::optional<PointResults> finished_results(const std::filesystem::path& directory) {

@@ -2,9 +2,10 @@
 
 #include <ed/observables.h>
 
+#include <Eigen/Geometry>
+
 #include <fmt/format.h>
 
-#include <cmath>
 #include <cstddef>
 #include <variant>
 
@@ -32,6 +33,11 @@ std::uint32_t SphereTypes::of(std::uint32_t type, double radius) {
   const auto [found, fresh] = made_.try_emplace({type, radius}, static_cast<std::uint32_t>(types_.size()));
   if (fresh) types_.push_back({types_[type].name, geom::Ellipsoid(Vector3d::Constant(radius)), true});
   return found->second;
+}
+
+Eigen::Vector4d quaternion_of(const Eigen::Matrix3d& rotation) {
+  const Eigen::Quaterniond q = Eigen::Quaterniond(rotation).normalized();
+  return {q.w(), q.x(), q.y(), q.z()};
 }
 
 Eigen::Vector2d exponents_of(const ed::BodyShape& shape) {

@@ -97,6 +97,9 @@ struct Frame {
   std::optional<ed::System> exact;
 };
 
+/// Returns the unit quaternion w, x, y, z of a rotation.
+Eigen::Vector4d quaternion_of(const Eigen::Matrix3d& rotation);
+
 /// Returns the exponents e1, e2 of a superellipsoid; 1, 1 for other shapes.
 Eigen::Vector2d exponents_of(const ed::BodyShape& shape);
 

@@ -80,11 +80,6 @@ Wrapped wrapped(const FrameBody& body, const Vector3d& box) {
   return result;
 }
 
-std::array<double, 4> quaternion(const Matrix3d& rotation) {
-  const Quaterniond q = Quaterniond(rotation).normalized();
-  return {q.w(), q.x(), q.y(), q.z()};
-}
-
 /// Returns HOOMD's form: 2 q (0, L), L along the body's axes.
 std::array<double, 4> angular_momentum(const FrameBody& body) {
   const Vector3d L = body.inertia.cwiseProduct(body.rotation.transpose() * body.angular_velocity);
@@ -143,7 +138,7 @@ std::vector<GsdArray> moving_arrays(const Frame& frame) {
   return {
       array_of(kStep, std::vector{frame.step}),
       body_array<float>(kPosition, frame, 3, [&](const FrameBody& b) { return wrapped(b, frame.box).position; }),
-      body_array<float>(kOrientation, frame, 4, [](const FrameBody& b) { return quaternion(b.rotation); }),
+      body_array<float>(kOrientation, frame, 4, [](const FrameBody& b) { return quaternion_of(b.rotation); }),
       body_array<float>(kVelocity, frame, 3, [](const FrameBody& b) { return b.velocity; }),
       body_array<float>(kAngularMomentum, frame, 4, angular_momentum),
       body_array<std::int32_t>(kImage, frame, 3, [&](const FrameBody& b) { return wrapped(b, frame.box).image; }),
