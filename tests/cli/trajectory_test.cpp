@@ -2,6 +2,7 @@
 /// files that lie. What other programs read in them is tested by test_trajectory.py.
 
 #include "base/errors.h"
+#include "base/shapes.h"
 #include "config/config.h"
 #include "trajectory/frame.h"
 #include "trajectory/gsd/container.h"
@@ -62,7 +63,7 @@ TEST(Shapes, AreTheSameByKindLengthsAndExponents) {
   EXPECT_TRUE(hardbody::same_shape(other(3, 0.5, 0.8 - 1e-7), box, 1e-6, 1e-6));
   const ed::BodyShape ellipsoid = geom::Ellipsoid({1, 2, 3});
   EXPECT_FALSE(hardbody::same_shape(ellipsoid, other(3, 1, 1), 1e-6, 1e-6));
-  EXPECT_EQ(hardbody::exponents_of(ellipsoid), Eigen::Vector2d(1, 1));
+  EXPECT_EQ(hardbody::numbers_of(ellipsoid).exponents, Eigen::Vector2d(1, 1));
 }
 
 std::string content(const fs::path& path) {

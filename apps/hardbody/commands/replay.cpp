@@ -1,4 +1,5 @@
 #include "base/errors.h"
+#include "base/shapes.h"
 #include "commands/commands.h"
 #include "run/files/failure_file.h"
 
@@ -68,14 +69,14 @@ double distance_rate(const Pair& pair, const geom::DistanceResult& d) {
 
 std::string shape_text(const ed::BodyShape& shape) {
   const std::string axes = "semi-axes " + text(ed::half_extents(shape));
-  const auto* s = std::get_if<geom::Superellipsoid>(&shape);
-  return s == nullptr ? axes : fmt::format("superellipsoid, {}, exponents ({:.9g}, {:.9g})", axes, s->e1(), s->e2());
+  const auto [kind, a, e] = numbers_of(shape);
+  if (!has_exponents(kind)) return axes;
+  return fmt::format("{}, {}, exponents ({:.9g}, {:.9g})", to_string(kind), axes, e.x(), e.y());
 }
 
 /// Returns the shape, which is one of libgeom's: a file can contain no other.
 geom::Shape geom_shape(const ed::BodyShape& shape) {
-  if (const auto* s = std::get_if<geom::Superellipsoid>(&shape)) return *s;
-  return std::get<geom::Ellipsoid>(shape);
+  return make_shape(numbers_of(shape));
 }
 
 std::string bodies(const Failure& failure, const Pair& pair) {

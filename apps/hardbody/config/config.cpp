@@ -75,17 +75,13 @@ void read_packing(const TomlDocument& document, Config& config) {
 /// several sizes, dilated bodies are what costs little at any density.
 void choose_neighbours(Config& config) {
   const ed::BodyShape& shape = config.species[0].body.shape;
-  const bool measured = !config.mixture && std::holds_alternative<geom::Ellipsoid>(shape) && config.all_of_revolution();
+  const bool measured = !config.mixture && ed::is_spheroid(shape) && config.all_of_revolution();
   const bool cells = measured && ed::fastest_neighbours(shape, config.number, config.packing_fraction, config.finder) ==
                                      ed::Neighbours::cells;
   config.neighbours = cells ? ed::Neighbours::cells : ed::Neighbours::dilated;
 }
 
 }  // namespace
-
-const char* to_string(ShapeKind kind) {
-  return kind == ShapeKind::ellipsoid ? "ellipsoid" : "superellipsoid";
-}
 
 const char* to_string(Inertia inertia) {
   return std::array{"paper", "uniform", "moments"}[static_cast<std::size_t>(inertia)];

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "base/shapes.h"
+
 #include <ed/contact_options.h>
 #include <ed/observables.h>
 #include <ed/polydispersity.h>
@@ -17,12 +19,10 @@
 
 namespace hardbody {
 
-enum class ShapeKind { ellipsoid, superellipsoid };
 enum class Inertia { paper, uniform, moments };
 enum class TrajectoryFormat { gsd, lammps, vtk };
 
 /// Return the words that a config has for them.
-const char* to_string(ShapeKind kind);
 const char* to_string(Inertia inertia);
 const char* to_string(TrajectoryFormat format);
 
@@ -115,7 +115,7 @@ struct Config {
   std::optional<double> equilibration_time;  ///< nullopt: "auto"
   double equilibration_cap = 0;              ///< longest time of "auto"
   std::optional<double> production_time;
-  std::optional<double> target_error;  ///< relative error of D_trans and D_rot at which "auto" ends
+  std::optional<double> target_error;  ///< relative error of both diffusion coefficients at which "auto" ends
   std::vector<double> wave_numbers;  ///< wave numbers of F_self, 1/l; none: the first peak of S(q), and others about it
 
   // [output]

@@ -142,7 +142,7 @@ Rule exponents_rule() {
 }
 
 Taken take_inertia(const Value& value, const Place& at, Inertia& result, Eigen::Vector3d& moments) {
-  const bool paper = is_of_revolution(body_shape(at.species->shape, at.config.mixture));
+  const bool paper = ed::is_spheroid(body_shape(at.species->shape, at.config.mixture));
   if (value.kind == Value::Kind::text && (value.text == "uniform" || (value.text == "paper" && paper))) {
     result = value.text == "paper" ? Inertia::paper : Inertia::uniform;
     return std::nullopt;
@@ -180,7 +180,7 @@ std::string inertia_comment(const Place& at) {
       "\"paper\": 2/5 m min(a,b)^2, no spin about the axis of revolution;\n"
       "\"uniform\": uniform density, with spin; or moments [I1, I2, I3]";
   constexpr const char* kUniform = "\"uniform\": uniform density; or moments [I1, I2, I3]";
-  return std::string(is_of_revolution(at.species->body.shape) ? kPaper : kUniform) + kMoments;
+  return std::string(ed::is_spheroid(at.species->body.shape) ? kPaper : kUniform) + kMoments;
 }
 
 std::string axes_comment(const Place& at) {
@@ -335,7 +335,7 @@ std::string production_comment(const Place& at) {
   const double unit = at.config.time_unit;
   return fmt::format(
       "in l sqrt(m/kT); \"auto\": 30 times the equilibration, from {:g}\n"
-      "to {:g}; or until the relative errors of D_trans and D_rot are",
+      "to {:g}; or until the relative errors of both diffusion coefficients are",
       kLeastProduction * unit, kMostProduction * unit);
 }
 
@@ -351,7 +351,7 @@ std::vector<Key> run_keys() {
       {"production.time", "\"auto\"", time_or_auto(&Config::production_time), production_comment},
       {"production.target_error", "",
        unless(has_production_time, "no target_error, or production.time = \"auto\"",
-              number(&Config::target_error, {1e-4, 1}, "standard error over value, of D_trans and D_rot")),
+              number(&Config::target_error, {1e-4, 1}, "standard error over value, of both diffusion coefficients")),
        "at most this", nullptr, "target_error = 0.02, if that is given"},
       {"production.wave_numbers", "[]", bound(&Config::wave_numbers, take_wave_numbers),
        "of F_self in 1/l, at most 8; the decay at the first is fitted.\n"

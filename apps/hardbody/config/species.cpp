@@ -1,6 +1,7 @@
 #include "config/species.h"
 
 #include "base/find.h"
+#include "base/shapes.h"
 #include "config/keys.h"
 
 #include <ed/polydispersity.h>
@@ -84,7 +85,7 @@ const Entry* inertia_entry(const TomlDocument& document, const std::string& sect
 
 void read_inertia(const TomlDocument& document, const std::string& section, const Target& target) {
   SpeciesConfig& species = *target.species;
-  species.inertia = is_of_revolution(species.body.shape) ? Inertia::paper : Inertia::uniform;
+  species.inertia = ed::is_spheroid(species.body.shape) ? Inertia::paper : Inertia::uniform;
   const Entry* entry = inertia_entry(document, section);
   if (entry == nullptr) return;
   if (target.config.mixture && entry->key == kInertiaKey && entry->value.kind != Value::Kind::text) {
@@ -106,13 +107,13 @@ ed::Species body_of(const SpeciesConfig& species) {
 /// Returns the body with the axes in the order in which the config names them, as messages have to.
 ed::Species as_named(const SpeciesConfig& species) {
   ed::Species body = species.body;
-  const auto* ellipsoid = std::get_if<geom::Ellipsoid>(&body.shape);
   const int axis = axis_moved_last(species.shape);
-  if (ellipsoid == nullptr || axis < 0) return body;
+  if (axis < 0) return body;
   const int back = (4 - axis) % 3;
-  const Vector3d axes = axis_last(ellipsoid->semi_axes(), back);
+  ShapeNumbers numbers = numbers_of(body.shape);
+  numbers.semi_axes = axis_last(numbers.semi_axes, back);
   body.inertia = axis_last(body.inertia, back);
-  body.shape = geom::Ellipsoid(axes);
+  body.shape = make_body_shape(numbers);
   return body;
 }
 
@@ -224,7 +225,7 @@ void read_one(const TomlDocument& document, const std::string& section, Config& 
   const Target target{config, &species};
   check_one_of_lengths(document, section, config.mixture);
   read_section(document, section, target);
-  if (species.shape.kind == ShapeKind::superellipsoid && document.find(section + ".exponents") == nullptr) {
+  if (has_exponents(species.shape.kind) && document.find(section + ".exponents") == nullptr) {
     throw missing(document.where_of(section), section + ".exponents", target, " of a superellipsoid");
   }
   if (species.sizes && document.find(section + ".width") == nullptr) {
@@ -268,13 +269,7 @@ void refuse_unused_inertia(const TomlDocument& document, std::size_t number) {
 
 ed::BodyShape body_shape(const ShapeConfig& shape, bool literal) {
   const Vector3d axes = semi_axes_in_use(shape, literal);
-  if (shape.kind == ShapeKind::superellipsoid)
-    return geom::Superellipsoid(axes, shape.exponents.x(), shape.exponents.y());
-  return geom::Ellipsoid(axes);
-}
-
-bool is_of_revolution(const ed::BodyShape& shape) {
-  return std::holds_alternative<geom::Ellipsoid>(shape) && ed::symmetry_axis(shape);
+  return make_body_shape({shape.kind, axes, shape.exponents});
 }
 
 SizeStatistics statistics_of(const std::vector<double>& sizes) {

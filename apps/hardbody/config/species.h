@@ -12,9 +12,6 @@ namespace hardbody {
 /// Returns the body of a shape that has been read. `literal`: lengths are taken as they are given.
 ed::BodyShape body_shape(const ShapeConfig& shape, bool literal);
 
-/// Whether a body is an ellipsoid of revolution.
-bool is_of_revolution(const ed::BodyShape& shape);
-
 /// Reads [shape] with [dynamics] inertia, or all [[species]], with the number of bodies of each and their sizes. Throws
 /// InputError.
 void read_species(const TomlDocument& document, Config& config);

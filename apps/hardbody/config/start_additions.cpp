@@ -1,6 +1,7 @@
 #include "config/start_additions.h"
 
 #include "base/errors.h"
+#include "base/shapes.h"
 #include "config/keys.h"
 #include "config/rules.h"
 #include "io/text_file.h"
@@ -55,12 +56,12 @@ std::string species_section(const Frame& frame, const std::vector<std::size_t>& 
                     "width and size_seed in the config",
                     file, one_line(type, 40)));
   }
-  const auto* barr = std::get_if<geom::Superellipsoid>(&*shape);
+  const ShapeNumbers numbers = numbers_of(*shape);
   std::string text = fmt::format("\n[[species]]\nnumber = {}\nmass = {}\nsemi_axes = {}\n", bodies.size(),
                                  toml_real(first.mass), value_text(ed::half_extents(*shape)));
-  if (barr != nullptr) {
-    text +=
-        fmt::format("kind = \"superellipsoid\"\nexponents = [{}, {}]\n", toml_real(barr->e1()), toml_real(barr->e2()));
+  if (has_exponents(numbers.kind)) {
+    text += fmt::format("kind = \"{}\"\nexponents = [{}, {}]\n", to_string(numbers.kind),
+                        toml_real(numbers.exponents.x()), toml_real(numbers.exponents.y()));
   }
   return with_inertia ? text + inertia_line(frame, first) : text;
 }

@@ -2,6 +2,7 @@
 
 #include "base/errors.h"
 #include "base/find.h"
+#include "base/shapes.h"
 #include "distance/scanner.h"
 #include "io/json_member.h"
 #include "io/orientation.h"
@@ -112,8 +113,7 @@ std::optional<Body> scanned_body(const ScannedBody& body, const char* name, std:
     const JsonOrientation read = body.orientation ? read_quaternion(*body.orientation, position)
                                                   : JsonOrientation{geom::Pose::translation(position)};
     if (read.normalized) notices.push_back(normalized_text(fmt::format("{}.orientation", name), read.length));
-    if (!body.is_superellipsoid) return Body{geom::Ellipsoid(axes), read.pose};
-    return Body{geom::Superellipsoid(axes, body.exponents[0], body.exponents[1]), read.pose};
+    return Body{make_shape({body.kind, axes, Eigen::Vector2d(body.exponents.data())}), read.pose};
   } catch (const std::invalid_argument&) {
     return {};
   }

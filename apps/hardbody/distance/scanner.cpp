@@ -136,8 +136,9 @@ bool scan_shape(Scanner& in, ScannedBody& body) {
     if (key == 1) return axes = in.numbers(body.semi_axes);
     return exponents = in.numbers(body.exponents);
   });
-  body.is_superellipsoid = kind == "superellipsoid";
-  return good && axes && (body.is_superellipsoid ? exponents : kind == "ellipsoid" && !exponents);
+  const std::optional<ShapeKind> found = find_shape_kind(kind);
+  body.kind = found.value_or(ShapeKind::ellipsoid);
+  return good && axes && found && exponents == has_exponents(*found);
 }
 
 bool scan_body(Scanner& in, ScannedBody& body) {

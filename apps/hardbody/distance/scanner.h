@@ -1,5 +1,7 @@
 #pragma once
 
+#include "base/shapes.h"
+
 #include <array>
 #include <optional>
 #include <string_view>
@@ -8,7 +10,7 @@ namespace hardbody {
 
 /// Numbers and names in a line of `hardbody distance`, not validated yet.
 struct ScannedBody {
-  bool is_superellipsoid = false;
+  ShapeKind kind = ShapeKind::ellipsoid;
   std::array<double, 3> semi_axes{};
   std::array<double, 2> exponents{};
   std::array<double, 3> position{};

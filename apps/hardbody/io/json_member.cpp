@@ -39,18 +39,8 @@ class StrictObjects {
   std::vector<std::set<std::string>> keys_;  ///< keys of the objects that are open
 };
 
-constexpr std::string_view kEllipsoidKeys[] = {"kind", "semi_axes"};
-constexpr std::string_view kSuperellipsoidKeys[] = {"kind", "semi_axes", "exponents"};
-
-geom::Superellipsoid read_superellipsoid(const JsonMember& shape) {
-  const JsonMember axes = shape.at("semi_axes", "three positive numbers");
-  const Eigen::Vector3d a = axes.vector();
-  const JsonMember exponents = shape.at("exponents", "two numbers [e1, e2]");
-  const std::vector<double> e = exponents.numbers(2, "two numbers [e1, e2]");
-  // The axes are checked first, so that the right member is named if the library refuses them.
-  axes.checked([&] { return geom::Superellipsoid(a, 1, 1); });
-  return exponents.checked([&] { return geom::Superellipsoid(a, e[0], e[1]); });
-}
+constexpr std::string_view kShapeKeys[] = {"kind", "semi_axes"};
+constexpr std::string_view kKeysWithExponents[] = {"kind", "semi_axes", "exponents"};
 
 }  // namespace
 
@@ -123,24 +113,31 @@ Eigen::Vector3d JsonMember::vector() const {
   return {v[0], v[1], v[2]};
 }
 
-geom::Ellipsoid read_ellipsoid(const JsonMember& shape) {
+geom::Shape read_shape(const JsonMember& shape, ShapeKind kind) {
   const JsonMember axes = shape.at("semi_axes", "three positive numbers");
-  const Eigen::Vector3d values = axes.vector();
-  return axes.checked([&] { return geom::Ellipsoid(values); });
+  ShapeNumbers numbers{kind, axes.vector()};
+  if (!has_exponents(kind)) return axes.checked([&] { return make_shape(numbers); });
+  const JsonMember exponents = shape.at("exponents", "two numbers [e1, e2]");
+  const std::vector<double> e = exponents.numbers(2, "two numbers [e1, e2]");
+  // The axes are checked first, so that the right member is named if the library refuses them.
+  axes.checked([&] { return make_shape(numbers); });
+  numbers.exponents = {e[0], e[1]};
+  return exponents.checked([&] { return make_shape(numbers); });
 }
 
 geom::Shape read_shape(const JsonMember& shape) {
   constexpr const char* kAccepted = "\"ellipsoid\", \"superellipsoid\"";
   if (!shape.json->is_object()) throw shape.bad("{\"kind\":\"ellipsoid\",\"semi_axes\":[a,b,c]}");
   const JsonMember kind = shape.at("kind", kAccepted);
-  // Checked first, because another kind has other keys.
-  if (*kind.json == "superellipsoid") {
-    shape.allow(kSuperellipsoidKeys);
-    return read_superellipsoid(shape);
+  const std::optional<ShapeKind> found =
+      kind.json->is_string() ? find_shape_kind(kind.json->get_ref<const std::string&>()) : std::nullopt;
+  if (!found) throw kind.bad(kAccepted);
+  if (has_exponents(*found)) {
+    shape.allow(kKeysWithExponents);
+  } else {
+    shape.allow(kShapeKeys);
   }
-  if (*kind.json != "ellipsoid") throw kind.bad(kAccepted);
-  shape.allow(kEllipsoidKeys);
-  return read_ellipsoid(shape);
+  return read_shape(shape, *found);
 }
 
 Eigen::Vector3d read_position(const JsonMember& body) {

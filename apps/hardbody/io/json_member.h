@@ -4,9 +4,9 @@
 /// JSON, because it includes the parser.
 
 #include "base/errors.h"
+#include "base/shapes.h"
 
 #include <geom/any_shape.h>
-#include <geom/ellipsoid.h>
 #include <geom/pose.h>
 
 #include <Eigen/Core>
@@ -68,8 +68,8 @@ struct JsonMember {
   InputError refused(std::string_view why) const;
 };
 
-/// Reads {"semi_axes": [a, b, c]}.
-geom::Ellipsoid read_ellipsoid(const JsonMember& shape);
+/// Reads the numbers of a shape of a known kind.
+geom::Shape read_shape(const JsonMember& shape, ShapeKind kind);
 /// Reads {"kind": "ellipsoid" or "superellipsoid", "semi_axes": [a, b, c], "exponents": [e1, e2]}, the last for a
 /// superellipsoid only; no other keys.
 geom::Shape read_shape(const JsonMember& shape);

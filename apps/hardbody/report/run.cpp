@@ -2,6 +2,7 @@
 
 #include "base/errors.h"
 #include "base/find.h"
+#include "base/shapes.h"
 #include "io/json_member.h"
 #include "io/run_directory.h"
 #include "io/text_file.h"
@@ -104,7 +105,7 @@ std::vector<Remark> remarks_of(const nlohmann::json& summary) {
   const nlohmann::json& target = member(summary, "target_error");
   if (says(member(target, "reached"), false)) {
     list.push_back({Kind::warning, "errors larger than asked",
-                    fmt::format("D_trans and D_rot have not reached a relative error of {:g}.",
+                    fmt::format("The diffusion coefficients have not both reached a relative error of {:g}.",
                                 number_of(member(target, "asked")))});
   }
   const nlohmann::json& failures = member(summary, "failures");
@@ -175,20 +176,21 @@ Remark unfinished(const std::optional<Seen>& seen) {
 }
 
 /// Returns "superballs, p = 4".
-std::string superellipsoids_text(const geom::Superellipsoid& s) {
-  const Eigen::Vector3d& a = s.semi_axes();
-  if (a.x() == a.y() && a.y() == a.z() && s.e1() == s.e2()) return fmt::format("superballs, p = {:.4g}", 2 / s.e1());
+std::string with_exponents_text(const ShapeNumbers& shape) {
+  const auto& [kind, a, e] = shape;
+  if (a.x() == a.y() && a.y() == a.z() && e.x() == e.y()) return fmt::format("superballs, p = {:.4g}", 2 / e.x());
   const double least = a.minCoeff();
-  return fmt::format("superellipsoids {:.4g} : {:.4g} : {:.4g}, exponents {:g} and {:g}", a.x() / least, a.y() / least,
-                     a.z() / least, s.e1(), s.e2());
+  return fmt::format("{}s {:.4g} : {:.4g} : {:.4g}, exponents {:g} and {:g}", to_string(kind), a.x() / least,
+                     a.y() / least, a.z() / least, e.x(), e.y());
 }
 
 /// Returns "ellipsoids, X0 = 3".
 std::string bodies_title(const SpeciesConfig& species) {
-  if (const auto* s = std::get_if<geom::Superellipsoid>(&species.body.shape)) return superellipsoids_text(*s);
+  const ShapeNumbers numbers = numbers_of(species.body.shape);
+  if (has_exponents(numbers.kind)) return with_exponents_text(numbers);
   const std::optional<double> ratio = species.shape.true_aspect_ratio();
   if (ratio) return *ratio == 1 ? std::string("spheres") : fmt::format("ellipsoids, X₀ = {:.4g}", *ratio);
-  const Eigen::Vector3d a = ed::half_extents(species.body.shape);
+  const Eigen::Vector3d& a = numbers.semi_axes;
   const double least = a.minCoeff();
   return fmt::format("ellipsoids {:.4g} : {:.4g} : {:.4g}", a.x() / least, a.y() / least, a.z() / least);
 }

@@ -1,5 +1,6 @@
 #include "run/summary.h"
 
+#include "base/shapes.h"
 #include "base/version.h"
 #include "io/json_values.h"
 #include "run/observables_json.h"
@@ -61,13 +62,9 @@ void add_shape(Json& json, const SpeciesConfig& species) {
   const std::optional<double> ratio = species.shape.true_aspect_ratio();
   json["kind"] = to_string(species.shape.kind);
   json["aspect_ratio"] = ratio ? Json(*ratio) : Json(nullptr);
-  if (const auto* s = std::get_if<geom::Superellipsoid>(&species.body.shape)) {
-    json["semi_axes"] = list_json(s->semi_axes());
-    json["exponents"] = {s->e1(), s->e2()};
-  } else {
-    json["semi_axes"] = list_json(std::get<geom::Ellipsoid>(species.body.shape).semi_axes());
-    json["exponents"] = nullptr;
-  }
+  const auto [kind, semi_axes, e] = numbers_of(species.body.shape);
+  json["semi_axes"] = list_json(semi_axes);
+  json["exponents"] = has_exponents(kind) ? Json{e.x(), e.y()} : Json(nullptr);
 }
 
 Json state(const Config& config) {

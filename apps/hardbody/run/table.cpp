@@ -1,5 +1,6 @@
 #include "run/table.h"
 
+#include "base/shapes.h"
 #include "base/version.h"
 #include "run/missing.h"
 
@@ -53,8 +54,8 @@ std::string axes_text(const ed::BodyShape& shape) {
 /// "hard ellipsoids, X0 = 3 (semi-axes ..)"
 std::string bodies_text(const SpeciesConfig& species) {
   const ed::BodyShape& shape = species.body.shape;
-  if (const auto* s = std::get_if<geom::Superellipsoid>(&shape)) {
-    return fmt::format("hard superellipsoids ({}, exponents {:g}, {:g})", axes_text(shape), s->e1(), s->e2());
+  if (const auto [kind, a, e] = numbers_of(shape); has_exponents(kind)) {
+    return fmt::format("hard {}s ({}, exponents {:g}, {:g})", to_string(kind), axes_text(shape), e.x(), e.y());
   }
   const std::optional<double> ratio = species.shape.true_aspect_ratio();
   if (ratio) return fmt::format("hard ellipsoids, X0 = {:g} ({})", *ratio, axes_text(shape));

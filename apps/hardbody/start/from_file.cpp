@@ -1,6 +1,7 @@
 #include "start/from_file.h"
 
 #include "base/errors.h"
+#include "base/shapes.h"
 #include "config/keys.h"
 #include "io/text_file.h"
 #include "start/velocities.h"
@@ -25,13 +26,15 @@ constexpr double kMostMending = 1.1;
 /// Returns the orientation of the config's body axes (the axis of revolution last) in the file's body axes; nullopt if
 /// the two shapes are different.
 std::optional<Matrix3d> axes_in_file(const ed::BodyShape& file, const ed::BodyShape& config) {
-  if (!((exponents_of(file) - exponents_of(config)).cwiseAbs().maxCoeff() <= kSameLength)) return std::nullopt;
-  const Vector3d wanted = ed::half_extents(config);
-  const bool free = std::holds_alternative<geom::Ellipsoid>(config);  // an ellipsoid's axes may be in any order
+  const ShapeNumbers from = numbers_of(file);
+  const ShapeNumbers to = numbers_of(config);
+  if (!((from.exponents - to.exponents).cwiseAbs().maxCoeff() <= kSameLength)) return std::nullopt;
+  const Vector3d& wanted = to.semi_axes;
+  const bool free = to.kind == ShapeKind::ellipsoid;  // an ellipsoid's axes may be in any order
   for (int shift = 0; shift < (free ? 3 : 1); ++shift) {
     Matrix3d axes;
     for (int k = 0; k < 3; ++k) axes.col(k) = Vector3d::Unit((k + shift) % 3);
-    const Vector3d turned = axes.transpose() * ed::half_extents(file);
+    const Vector3d turned = axes.transpose() * from.semi_axes;
     if (((turned - wanted).cwiseQuotient(wanted)).cwiseAbs().maxCoeff() <= kSameLength) return axes;
   }
   return std::nullopt;

@@ -40,17 +40,6 @@ Eigen::Vector4d quaternion_of(const Eigen::Matrix3d& rotation) {
   return {q.w(), q.x(), q.y(), q.z()};
 }
 
-Eigen::Vector2d exponents_of(const ed::BodyShape& shape) {
-  const auto* s = std::get_if<geom::Superellipsoid>(&shape);
-  return s == nullptr ? Eigen::Vector2d(1, 1) : Eigen::Vector2d(s->e1(), s->e2());
-}
-
-bool same_shape(const ed::BodyShape& a, const ed::BodyShape& b, double lengths, double exponents) {
-  const Vector3d h = ed::half_extents(b);
-  return a.index() == b.index() && (exponents_of(a) - exponents_of(b)).cwiseAbs().maxCoeff() <= exponents &&
-         (ed::half_extents(a) - h).norm() <= lengths * h.norm();
-}
-
 std::optional<std::string> not_a_cube(const Frame& frame) {
   const Vector3d& L = frame.box;
   if (!frame.tilt.isZero(0)) {

@@ -100,13 +100,6 @@ struct Frame {
 /// Returns the unit quaternion w, x, y, z of a rotation.
 Eigen::Vector4d quaternion_of(const Eigen::Matrix3d& rotation);
 
-/// Returns the exponents e1, e2 of a superellipsoid; 1, 1 for other shapes.
-Eigen::Vector2d exponents_of(const ed::BodyShape& shape);
-
-/// Returns whether two shapes are of one kind and agree: their half extents within `lengths`, relative to those of `b`,
-/// and their exponents within `exponents`.
-bool same_shape(const ed::BodyShape& a, const ed::BodyShape& b, double lengths, double exponents);
-
 /// Returns why a frame's box is not a cube, "its box is tilted: ..", "its box has edges .."; nullopt if it is one.
 std::optional<std::string> not_a_cube(const Frame& frame);
 

@@ -1,6 +1,7 @@
 #include "trajectory/stored_trajectory.h"
 
 #include "base/errors.h"
+#include "base/shapes.h"
 #include "io/text_file.h"
 #include "trajectory/unwrapping.h"
 

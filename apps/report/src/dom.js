@@ -12,14 +12,14 @@ export function h(tag, attributes = {}, ...children) {
   return element;
 }
 
-/** "D_rot,body" with what follows the underscore as an index. */
+/** "X_a" with what follows the underscore as an index. */
 export function symbol(text) {
   const cut = text.indexOf('_');
   if (cut < 0) return h('span', { class: 'symbol' }, text);
   return h('span', { class: 'symbol' }, text.slice(0, cut), h('sub', {}, text.slice(cut + 1)));
 }
 
-/** Text in which D_trans and the like have their index below the line. */
+/** Text in which symbols with an underscore have their index below the line. */
 export function rich(text) {
   return text.split(/([A-Za-zΓτβ]+_[A-Za-z0-9,]+)/).map((part, k) => {
     const cut = part.indexOf('_');

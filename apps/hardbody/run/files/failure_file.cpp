@@ -1,6 +1,7 @@
 #include "run/files/failure_file.h"
 
 #include "base/errors.h"
+#include "base/shapes.h"
 #include "io/json_member.h"
 #include "io/json_values.h"
 #include "io/text_file.h"
@@ -26,10 +27,10 @@ constexpr std::size_t kLongestPair = 1 << 20;
 constexpr const char* kNewtonMethods = "\"newton8\" or \"newton5\"";
 
 Json shape_json(const ed::BodyShape& shape) {
-  if (const auto* s = std::get_if<geom::Superellipsoid>(&shape)) {
-    return {{"kind", "superellipsoid"}, {"semi_axes", list_json(s->semi_axes())}, {"exponents", {s->e1(), s->e2()}}};
-  }
-  return {{"kind", "ellipsoid"}, {"semi_axes", list_json(std::get<geom::Ellipsoid>(shape).semi_axes())}};
+  const auto [kind, semi_axes, e] = numbers_of(shape);
+  Json json = {{"kind", to_string(kind)}, {"semi_axes", list_json(semi_axes)}};
+  if (has_exponents(kind)) json["exponents"] = {e.x(), e.y()};
+  return json;
 }
 
 Json placed_json(const ed::BodyShape& shape, const geom::Pose& pose) {
@@ -92,7 +93,7 @@ geom::Pose read_pose(const JsonMember& body, std::vector<std::string>& notices, 
 /// Reads a shape; one without a kind is an ellipsoid.
 geom::Shape read_geom_shape(const JsonMember& body) {
   const JsonMember shape = body.at("shape", "{\"kind\": \"ellipsoid\", \"semi_axes\": [a, b, c]}");
-  return shape.has("kind") ? read_shape(shape) : geom::Shape(read_ellipsoid(shape));
+  return shape.has("kind") ? read_shape(shape) : read_shape(shape, ShapeKind::ellipsoid);
 }
 
 ed::BodyShape read_body_shape(const JsonMember& body) {

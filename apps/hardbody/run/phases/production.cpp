@@ -119,11 +119,10 @@ bool look_at_errors(const Config& config, ProductionRun& run, Log& log) {
 ProductionRun begin_production(const Config& config, Equilibration equilibration, const RunDirectory& directory,
                                Log& log) {
   Production production = planned_production(config, equilibration);
-  log.line(
-      config.target_error
-          ? fmt::format("production: until the relative errors of D_trans and D_rot are {:g}, at most {:g} time units",
-                        *config.target_error, production.planned)
-          : fmt::format("production: {:g} time units", production.planned));
+  log.line(config.target_error ? fmt::format("production: until the relative errors of both diffusion coefficients are "
+                                             "{:g}, at most {:g} time units",
+                                             *config.target_error, production.planned)
+                               : fmt::format("production: {:g} time units", production.planned));
   // A new simulation: its time starts at 0 and its counters count production only.
   ed::Simulation simulation(equilibration.system, config.simulation_options(equilibration.envelope));
   std::optional<ed::System> begin;

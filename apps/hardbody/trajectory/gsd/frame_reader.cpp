@@ -1,6 +1,7 @@
 #include "trajectory/gsd/frame_reader.h"
 
 #include "base/errors.h"
+#include "base/shapes.h"
 #include "io/orientation.h"
 #include "io/text_file.h"
 #include "trajectory/gsd/type_shapes.h"
@@ -273,10 +274,10 @@ std::vector<ed::Species> FrameReader::read_species() const {
     const double* row = numbers.data() + k * kSpeciesColumns;
     ed::Species& species = list.emplace_back();
     try {
-      const Vector3d a(row[1], row[2], row[3]);
-      if (row[0] == 0) species.shape = geom::Ellipsoid(a);
-      if (row[0] == 1) species.shape = geom::Superellipsoid(a, row[4], row[5]);
-      if (row[0] != 0 && row[0] != 1) throw std::invalid_argument("an unknown kind of shape");
+      const auto is_kind = [&](ShapeKind kind) { return row[0] == static_cast<double>(kind); };
+      const auto* kind = std::find_if(kShapeKinds.begin(), kShapeKinds.end(), is_kind);
+      if (kind == kShapeKinds.end()) throw std::invalid_argument("an unknown kind of shape");
+      species.shape = make_body_shape({*kind, {row[1], row[2], row[3]}, {row[4], row[5]}});
       species.mass = row[6];
       species.inertia = {row[7], row[8], row[9]};
       species.spins = row[10] != 0;

@@ -1,4 +1,5 @@
 #include "base/errors.h"
+#include "base/shapes.h"
 #include "io/text_file.h"
 #include "trajectory/gsd/frame_reader.h"
 #include "trajectory/gsd/frames.h"

@@ -1,6 +1,7 @@
 #include "trajectory/gsd/type_shapes.h"
 
 #include "base/errors.h"
+#include "base/shapes.h"
 #include "io/json_member.h"
 
 #include <fmt/format.h>
@@ -25,23 +26,24 @@ double signed_power(double x, double e) {
 
 /// Returns points of Barr's parametrisation, which are dense where the surface is strongly curved for exponents below
 /// 1: both poles, and rings.
-std::vector<Vector3d> surface_points(const geom::Superellipsoid& shape, int rings, int per_ring) {
-  const Vector3d& a = shape.semi_axes();
+std::vector<Vector3d> surface_points(const ShapeNumbers& shape, int rings, int per_ring) {
+  const Vector3d& a = shape.semi_axes;
+  const double e1 = shape.exponents.x();
+  const double e2 = shape.exponents.y();
   std::vector<Vector3d> points = {{0, 0, -a.z()}, {0, 0, a.z()}};
   for (int i = 1; i <= rings; ++i) {
     const double eta = std::numbers::pi * (static_cast<double>(i) / (rings + 1) - 0.5);
-    const double across = signed_power(std::cos(eta), shape.e1());
+    const double across = signed_power(std::cos(eta), e1);
     for (int k = 0; k < per_ring; ++k) {
       const double omega = 2 * std::numbers::pi * k / per_ring;
-      points.emplace_back(a.x() * across * signed_power(std::cos(omega), shape.e2()),
-                          a.y() * across * signed_power(std::sin(omega), shape.e2()),
-                          a.z() * signed_power(std::sin(eta), shape.e1()));
+      points.emplace_back(a.x() * across * signed_power(std::cos(omega), e2),
+                          a.y() * across * signed_power(std::sin(omega), e2), a.z() * signed_power(std::sin(eta), e1));
     }
   }
   return points;
 }
 
-std::string polyhedron_json(const geom::Superellipsoid& shape, bool fine) {
+std::string polyhedron_json(const ShapeNumbers& shape, bool fine) {
   std::string vertices;
   for (const Vector3d& p : surface_points(shape, fine ? 11 : 5, fine ? 24 : 8)) {
     vertices += fmt::format("{}[{:.7g}, {:.7g}, {:.7g}]", vertices.empty() ? "" : ", ", p.x(), p.y(), p.z());
@@ -49,8 +51,7 @@ std::string polyhedron_json(const geom::Superellipsoid& shape, bool fine) {
   return fmt::format(R"({{"type": "ConvexPolyhedron", "rounding_radius": 0, "vertices": [{}]}})", vertices);
 }
 
-std::string ellipsoid_json(const geom::Ellipsoid& shape) {
-  const Vector3d& a = shape.semi_axes();
+std::string ellipsoid_json(const Vector3d& a) {
   if (a.x() == a.y() && a.y() == a.z()) return fmt::format(R"({{"type": "Sphere", "diameter": {}}})", 2 * a.x());
   return fmt::format(R"({{"type": "Ellipsoid", "a": {}, "b": {}, "c": {}}})", a.x(), a.y(), a.z());
 }
@@ -65,9 +66,9 @@ double positive(const JsonMember& shape, const char* key) {
 
 std::string type_shape_json(const std::optional<ed::BodyShape>& shape, std::size_t types) {
   if (!shape) return "{}";
-  if (const auto* ellipsoid = std::get_if<geom::Ellipsoid>(&*shape)) return ellipsoid_json(*ellipsoid);
-  if (const auto* barr = std::get_if<geom::Superellipsoid>(&*shape)) return polyhedron_json(*barr, types <= kFineTypes);
-  return "{}";
+  const ShapeNumbers numbers = numbers_of(*shape);
+  if (numbers.kind == ShapeKind::ellipsoid) return ellipsoid_json(numbers.semi_axes);
+  return polyhedron_json(numbers, types <= kFineTypes);
 }
 
 std::optional<ed::BodyShape> read_type_shape(const std::string& text) {
@@ -88,7 +89,7 @@ std::optional<ed::BodyShape> read_type_shape(const std::string& text) {
   } else {
     return std::nullopt;
   }
-  return shape.checked([&] { return geom::Ellipsoid(axes); });
+  return shape.checked([&] { return make_body_shape({ShapeKind::ellipsoid, axes}); });
 }
 
 }  // namespace hardbody

@@ -1,3 +1,4 @@
+#include "base/shapes.h"
 #include "trajectory/gsd/frames.h"
 #include "trajectory/gsd/schema.h"
 
@@ -90,12 +91,8 @@ std::array<double, 4> angular_momentum(const FrameBody& body) {
 GsdArray species_array(const ed::System& system) {
   std::vector<double> rows;
   for (const ed::Species& s : system.species) {
-    const auto* barr = std::get_if<geom::Superellipsoid>(&s.shape);
-    const auto* ellipsoid = std::get_if<geom::Ellipsoid>(&s.shape);
-    if (barr == nullptr && ellipsoid == nullptr) throw std::logic_error("a user's own shape in a trajectory");
-    const Vector3d a = barr != nullptr ? barr->semi_axes() : ellipsoid->semi_axes();
-    const Eigen::Vector2d e = exponents_of(s.shape);
-    rows.insert(rows.end(), {barr != nullptr ? 1.0 : 0.0, a.x(), a.y(), a.z(), e.x(), e.y(), s.mass, s.inertia.x(),
+    const auto [kind, a, e] = numbers_of(s.shape);
+    rows.insert(rows.end(), {static_cast<double>(kind), a.x(), a.y(), a.z(), e.x(), e.y(), s.mass, s.inertia.x(),
                              s.inertia.y(), s.inertia.z(), s.spins ? 1.0 : 0.0});
   }
   return array_of(kExactSpecies, rows, kSpeciesColumns);

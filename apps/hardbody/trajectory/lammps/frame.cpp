@@ -2,6 +2,7 @@
 
 #include "base/errors.h"
 #include "base/number_text.h"
+#include "base/shapes.h"
 #include "io/orientation.h"
 #include "io/text_file.h"
 #include "trajectory/lammps/columns.h"
@@ -267,10 +268,9 @@ std::optional<ed::BodyShape> DumpFrame::shape_of(const std::vector<double>& numb
   const Vector3d axes = 0.5 * Vector3d(numbers[0], numbers[1], numbers[2]);
   if (axes.isZero(0)) return std::nullopt;  // points, in LAMMPS' convention
   try {
-    if (numbers.size() == 5 && (numbers[3] != 1 || numbers[4] != 1)) {
-      return geom::Superellipsoid(axes, numbers[4], numbers[3]);
-    }
-    return geom::Ellipsoid(axes);
+    const bool round = numbers.size() != 5 || (numbers[3] == 1 && numbers[4] == 1);
+    if (round) return make_body_shape({ShapeKind::ellipsoid, axes});
+    return make_body_shape({ShapeKind::superellipsoid, axes, {numbers[4], numbers[3]}});
   } catch (const std::invalid_argument& error) {
     throw bad(fmt::format("shape of {}: {}", label(body), error.what()), "shapes of bodies");
   }
