@@ -19,7 +19,7 @@ foreach(component IN LISTS CPACK_COMPONENTS_ALL)
     # -n: no time, no name; the same bytes every time.
     execute_process(COMMAND gzip -9n ${file} COMMAND_ERROR_IS_FATAL ANY)
   endforeach()
-  # Whatever the umask is. Other files have their permissions from install().
+  # Set whatever the umask is; other files have their permissions from install().
   set(readable OWNER_READ OWNER_WRITE GROUP_READ WORLD_READ)
   set(enterable ${readable} OWNER_EXECUTE GROUP_EXECUTE WORLD_EXECUTE)
   file(CHMOD_RECURSE ${share} FILE_PERMISSIONS ${readable} DIRECTORY_PERMISSIONS ${enterable})

@@ -21,7 +21,8 @@ endfunction()
 
 set(HARDBODY_HEADER_DIR ${CMAKE_INSTALL_INCLUDEDIR}/hardbody)
 hardbody_install(geom)
-install(DIRECTORY libgeom/include/geom DESTINATION ${HARDBODY_HEADER_DIR})
+# *-inl.h are included by sources of these libraries only, and need Highway.
+install(DIRECTORY libgeom/include/geom DESTINATION ${HARDBODY_HEADER_DIR} PATTERN "*-inl.h" EXCLUDE)
 hardbody_install(ed)
 install(DIRECTORY libed/include/ed DESTINATION ${HARDBODY_HEADER_DIR})
 hardbody_install(geom_seeds)

@@ -8,7 +8,7 @@ set(hardbody_avx512 ${hardbody_avx2} -mavx512f -mavx512vl -mavx512dq -mavx512bw)
 # src/<kernel>_avx512.cpp, each compiled for its instruction set. src/<chooser>, which asks the processor, learns by
 # HARDBODY_X86_KERNELS that they are there.
 #
-# Of Highway only headers are used: linking hwy::hwy, even privately, would make consumers of the static libraries look
+# Only headers of Highway are used: linking hwy::hwy, even privately, would make consumers of the static libraries look
 # for it.
 function(hardbody_kernels target kernel chooser)
   find_package(hwy 1.0 REQUIRED CONFIG)
@@ -16,7 +16,7 @@ function(hardbody_kernels target kernel chooser)
   target_sources(${target} PRIVATE src/${kernel}_portable.cpp)
   set_source_files_properties(src/${kernel}_portable.cpp PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
   if(HARDBODY_SANITIZE AND CMAKE_CXX_COMPILER_ID MATCHES "Clang")
-    # It takes ten minutes to optimise vectors of loops with all that the sanitizers add.
+    # Optimising vectors of loops with all that the sanitizers add takes ten minutes.
     set_source_files_properties(src/${kernel}_portable.cpp PROPERTIES COMPILE_OPTIONS -O0)
   endif()
   if(NOT CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64)$")

@@ -44,7 +44,7 @@ if(HARDBODY_WITH_CGAL)
 endif()
 list(JOIN suggests ", " CPACK_DEBIAN_DEV_PACKAGE_SUGGESTS)
 
-# What Debian asks of a package and a plain installation does not have: copyright, compressed manual and changelog.
+# Files that Debian requires beyond a plain installation: copyright, compressed manual and changelog.
 set(HARDBODY_COPYRIGHT ${PROJECT_BINARY_DIR}/debian-copyright)
 set(combined_licence "")
 if(HARDBODY_WITH_CGAL)

@@ -45,18 +45,20 @@ function(hardbody_target target)
   endif()
 endfunction()
 
-# hardbody_grouped(<target> [LIBRARY]): its sources are compiled eight at a time, so that Eigen and the kernels are read
-# and instantiated once for all eight; those of the program and of the tests with HARDBODY_UNITY=ON, those of the
-# libraries only with HARDBODY_UNITY=ALL (docs/decisions/031).
 set(HARDBODY_UNITY_LIBRARY_BATCH 8 CACHE STRING "Sources of the libraries in a group, with HARDBODY_UNITY=ALL")
+
+# hardbody_grouped(<target> [LIBRARY]): compiles its sources in groups, so that Eigen and the kernels are read and
+# instantiated once for all of a group; those of the program and of the tests, eight at a time, with HARDBODY_UNITY=ON,
+# those of the libraries only with HARDBODY_UNITY=ALL (docs/decisions/031).
 function(hardbody_grouped target)
   cmake_parse_arguments(PARSE_ARGV 1 arg "LIBRARY" "" "")
   if(HARDBODY_UNITY STREQUAL "ALL" OR (HARDBODY_UNITY AND NOT arg_LIBRARY))
-    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
+    set(batch 8)
     if(arg_LIBRARY)
-      set_target_properties(${target} PROPERTIES UNITY_BUILD_BATCH_SIZE ${HARDBODY_UNITY_LIBRARY_BATCH})
+      set(batch ${HARDBODY_UNITY_LIBRARY_BATCH})
       # GCC takes the anonymous namespace of a source that is included for one of a header.
       target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
     endif()
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${batch})
   endif()
 endfunction()

@@ -1,7 +1,9 @@
 # Tests of this part; see hardbody_test in CMakeLists.txt. HARDBODY_FULL=1 in the environment raises the lengths.
 hardbody_test(ed_unit_test unit
   unit/ed/bodies/custom_shape_test.cpp
+  unit/ed/bodies/pair_distance_test.cpp
   unit/ed/neighbours/envelopes_test.cpp
+  unit/ed/neighbours/paper_envelopes_test.cpp
   unit/ed/loop/added_events_test.cpp
   unit/ed/loop/event_loop_test.cpp
   unit/ed/loop/loop_parts_test.cpp
@@ -11,6 +13,8 @@ hardbody_test(ed_unit_test unit
   unit/ed/system/polydispersity_test.cpp
   unit/ed/loop/restart_test.cpp
   unit/ed/loop/simulation_test.cpp
+  unit/ed/loop/simulation_refuses_test.cpp
+  unit/ed/start/large_starts_test.cpp
   unit/ed/start/start_test.cpp
   unit/ed/system/system_test.cpp
   unit/ed/start/velocities_test.cpp)
@@ -19,6 +23,7 @@ hardbody_test(ed_observables_test unit
   unit/ed/observables/correlations_test.cpp
   unit/ed/observables/curves_test.cpp
   unit/ed/observables/equilibration_test.cpp
+  unit/ed/observables/group_observables_test.cpp
   unit/ed/observables/observables_test.cpp
   unit/ed/observables/snapshots_test.cpp
   unit/ed/observables/stored_frames_test.cpp

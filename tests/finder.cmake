@@ -5,9 +5,13 @@ hardbody_test(finder_unit_test unit
   unit/ed/cells/grid_test.cpp
   unit/ed/contact/certified_test.cpp
   unit/ed/contact/contact_budget_test.cpp
+  unit/ed/contact/contact_refusals_test.cpp
+  unit/ed/contact/contact_scenes_test.cpp
   unit/ed/motion/elliptic_test.cpp
   unit/ed/bodies/first_looks_test.cpp
   unit/ed/motion/free_top_test.cpp
+  unit/ed/motion/free_top_limits_test.cpp
+  unit/ed/motion/textbook_top_test.cpp
   unit/ed/contact/general_contact_test.cpp
   unit/ed/motion/impulse_test.cpp
   unit/ed/vectors/overlapping_envelopes_test.cpp

@@ -5,7 +5,8 @@ usage: links.py
 
 Documentation: relative links of every page lead to a file, and to a heading of it; a path between backticks that begins with a
 folder of this repository is a file, a folder or a pattern that matches one; a name of a source (`shapes/pose.cpp`, `pose.h`) is
-the end of the path of one. Comments of sources: names of headers and sources likewise, and docs/*.md.
+the end of the path of one; tools, tests and programs of tests and benchmarks exist, in commands too. Comments of sources: names of
+headers and sources likewise, and docs/*.md.
 """
 
 import fnmatch
@@ -20,6 +21,7 @@ WRITTEN_LATER = ("docs/api/",)  # by tools/docs
 SOURCE = r"[\w./*-]+\.(?:h|cpp|py|cmake|js)"
 # Names of sources of other projects, and of readers' own files.
 ELSEWHERE = {"mine.cpp", "uPlot.js", "three.js"}
+OF_OTHERS = {"SuperquadricRoundness.Phi", "SuperquadricRoundness.Theta"}
 
 
 def tracked():
@@ -53,14 +55,22 @@ def anchor(heading):
     return re.sub(r"[^\w\- ]", "", text).strip().replace(" ", "-")
 
 
+def prose(text):
+    """A page without its blocks of code."""
+    return re.sub(r"^```.*?^```", "", text, flags=re.MULTILINE | re.DOTALL)
+
+
 def anchors(path):
-    text = re.sub(r"^```.*?^```", "", path.read_text(encoding="utf-8"), flags=re.MULTILINE | re.DOTALL)
+    text = prose(path.read_text(encoding="utf-8"))
     return {anchor(heading) for heading in re.findall(r"^#+ (.+)$", text, re.MULTILINE)}
 
 
 def check_links(name, text):
     """Messages about relative links of a page."""
-    for target in re.findall(r"\]\(([^)\s]+)\)", text):
+    text = prose(text)
+    for other in re.findall(r"^\[[^\]]+\]:|\]\[|<(?:a|img)\s[^>]*", re.sub(r"`[^`]*`", "", text), re.MULTILINE):
+        yield f"{name}: {other} is another kind of link; accepted: [text](target)"
+    for target in re.findall(r"\]\(<?([^)>\s]+)", text):
         if re.match(r"[a-z]+:", target):
             continue
         path, _, fragment = target.partition("#")
@@ -75,13 +85,37 @@ def check_names(name, text, files):
     """Messages about paths and sources between backticks of a page."""
     for token in re.findall(r"`([^`\n]+)`", text):
         for word in token.split():
-            word = word.removeprefix("./").rstrip(",;:")
+            word = word.removeprefix("./").rstrip(",;:").strip("<>")
             if word.startswith(tuple(f"{folder}/" for folder in FOLDERS)) and re.fullmatch(r"[\w./*-]+", word):
                 if not word.startswith(WRITTEN_LATER) and not files.has_path(word):
                     yield f"{name}: `{word}` is no file"
             elif re.fullmatch(SOURCE, word) and word not in ELSEWHERE and not word.startswith(("build/", "out/")):
                 if not files.has_source(word):
                     yield f"{name}: `{word}` is the name of no file"
+
+
+def programs(names):
+    """Patterns of the programs of tests and benchmarks, and Suite.Test of all tests."""
+    texts = {name: (ROOT / name).read_text(encoding="utf-8") for name in names if re.match(r"(tests|bench)/.*(\.cpp|\.cmake|\.txt)$", name)}
+    called = r"(?:hardbody_test|hardbody_bench|add_executable)\(([\w${}]+)"
+    patterns = [re.sub(r"\$\{\w+\}", "*", found) for text in texts.values() for found in re.findall(called, text)]
+    tests = [".".join(found) for text in texts.values() for found in re.findall(r"^(?:TYPED_)?TEST(?:_[FP])?\((\w+),\s*(\w+)\)", text, re.MULTILINE)]
+    return [p for p in patterns if p.strip("*")], tests
+
+
+def check_commands(name, text, files, patterns, tests):
+    """Messages about tools, programs and tests that a page names, in commands too."""
+    for tool in set(re.findall(r"(?<![\w/.-])tools/[\w.-]*\w", text)):
+        if not files.has_path(tool):
+            yield f"{name}: {tool} is no file"
+    for program in set(re.findall(r"build/\w+/(?:tests|bench)/(\w+)|(?<![\w/.])(\w+_test|bench_\w+)\b(?!\.)", text)):
+        program = "".join(program)
+        if not any(fnmatch.fnmatch(program, pattern) for pattern in patterns):
+            yield f"{name}: {program} is no program of tests or benchmarks"
+    filters = re.findall(r"gtest_filter='?([\w*.]+)", text) + re.findall(r"`([A-Z]\w+\.[A-Z][\w*]+)`", text)
+    for wanted in set(filters) - OF_OTHERS:
+        if not any(fnmatch.fnmatch(test, wanted) for test in tests):
+            yield f"{name}: {wanted} is no test"
 
 
 def comments(text):
@@ -111,6 +145,7 @@ def released(text):
 def main():
     names = tracked()
     files = Files(names)
+    known = programs(names)
     messages = []
     pages = 0
     for name in names:
@@ -121,7 +156,7 @@ def main():
             text = text.removesuffix(released(text))
         if name.endswith(".md"):
             pages += 1
-            messages += [*check_links(name, text), *check_names(name, text, files)]
+            messages += [*check_links(name, text), *check_names(name, text, files), *check_commands(name, text, files, *known)]
         if name.endswith((".h", ".cpp")):
             messages += check_comments(name, text, files)
         if name != "tools/links.py":

@@ -13,7 +13,7 @@ namespace ed {
 
 /// Reasons for which an Estimate has no value.
 enum class MissingReason {
-  not_measured,              ///< no data, not even one complete block
+  not_measured,              ///< no data, or no block that is at least half complete
   no_collisions,             ///< no collisions have happened
   lags_too_short,            ///< fewer than two lags to fit, or no time origin followed up to the longest one
   ballistic,                 ///< displacements still grow faster than those of diffusion at the longest lag

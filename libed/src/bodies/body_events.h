@@ -1,7 +1,9 @@
 #pragma once
 
-#include <cstdint>
 #include "base/archive.h"
+
+#include <cmath>
+#include <cstdint>
 
 namespace ed::internal {
 
@@ -15,6 +17,7 @@ struct BodyEvents {
   template <class Archive, class Self>
   static void fields(Archive& archive, Self& self) {
     archive(self.exit, self.first);
+    expect(archive, !std::isnan(self.exit), "the exit of a body is not a number");
   }
 };
 

@@ -1,7 +1,8 @@
 #pragma once
 
-#include <Eigen/Core>
 #include "base/archive.h"
+
+#include <Eigen/Core>
 
 #include <cstdint>
 #include <limits>

@@ -111,7 +111,7 @@ Finding UniaxialBodies::find_contact(int i, int j, const Vector3d& r, double now
 
 /// Least share of the square of a rate that a collision must leave for its rounding errors to be corrected: below, they
 /// would be scaled up.
-constexpr double kMostLost = 1e-4;
+constexpr double kLeastLeft = 1e-4;
 
 UniaxialBodies::Contact UniaxialBodies::contact(int i, int j, const Vector3d& /*r*/, const Vector3d& n,
                                                 double /*now*/) const {
@@ -139,7 +139,7 @@ void UniaxialBodies::leave(int i, int j, const Contact& contact, double /*now*/)
     // e2 and u are unit vectors but for rounding that has a sign, and omega is made of them: |omega| instead of the
     // rate would gain energy with every collision. What they lack is given back, where it is small against the rest.
     const double omega2 = omega.squaredNorm();
-    if (!inertia.spins && omega2 > kMostLost * rate2) m.rate = std::sqrt(omega2 + (rate2 - before.squaredNorm()));
+    if (!inertia.spins && omega2 > kLeastLeft * rate2) m.rate = std::sqrt(omega2 + (rate2 - before.squaredNorm()));
   }
 }
 

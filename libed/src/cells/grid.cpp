@@ -175,7 +175,6 @@ void CellGrid::scale(double factor) {
 }
 
 // ---- Search
-// ----------------------------------------------------------------------------------------------------------
 
 CellGrid::Along CellGrid::along(double coordinate, double widths) const {
   assert(widths <= kNarrowest + 2 * kMargin || 2 * widths >= cells_);

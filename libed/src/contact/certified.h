@@ -127,8 +127,9 @@ Quality improve_normal(const PairGap& gap, const typename PairGap::State& state,
   }
   e = gap.evaluate(state, n);
   ++count.kernel_calls;
-  // Of bodies that touch the resort's normal is right to within its own error. From there the ascent often succeeds:
-  // without it a third more that part are taken to approach (finder_support_contact_test, "once more").
+  // If the bodies touch, the resort's normal is right to within its own error, and the ascent often succeeds from
+  // there: without it a third more of bodies that part are taken to approach (finder_support_contact_test, "once
+  // more").
   if (!(e.g > state.rounding.gap)) {
     int budget = geom::kMaxIterations;
     ascend(gap, state, done, budget, n, e);
@@ -270,8 +271,8 @@ Finding certified_contact(const PairGap& gap, double t_begin, double t_end, int 
     if (t + tau > t) {
       t += tau;
     } else {
-      // Below the resolution of time (late times only: g is above that of distance). Bodies that approach and cannot be
-      // told to be apart until the next double touch before it; for others the search goes on there.
+      // The step is below the resolution of time (late times only: g is above that of distance). If the bodies approach
+      // and are not certainly apart until the next double, they touch before it; else the search continues there.
       if (gp < 0 && !(t + certain_step(gap, state, g) > t)) return {Outcome::contact, t};
       t = std::nextafter(t, std::numeric_limits<double>::infinity());
     }

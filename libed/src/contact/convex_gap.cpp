@@ -38,11 +38,6 @@ geom::Support world_support(const BodyShape& shape, const geom::Pose& pose, cons
   return {s.height, pose.rotation() * s.point};
 }
 
-geom::DistanceResult query(const BodyShape& a, const geom::Pose& X_a, const BodyShape& b, const geom::Pose& X_b,
-                           const geom::DistanceOptions& options) {
-  return std::visit([&](const auto& A, const auto& B) { return geom::distance(A, X_a, B, X_b, options); }, a, b);
-}
-
 /// Returns the least of (1 - x) g0 + x g1 - K T^2 x (1 - x) / 2 over x in [0, 1].
 double lowest(double g0, double g1, double KT2) {
   const double slope = g1 - g0 - 0.5 * KT2;
@@ -115,12 +110,13 @@ bool ConvexGap::take(const State& s, const geom::DistanceResult& d, Vector3d& n,
 /// n and e of the distance itself, from n on; false if the query declines.
 bool ConvexGap::solve(const State& s, Vector3d& n, Evaluation& e) const {
   return take(
-      s, query(A_, s.a, B_, s.b, {.start = n, .max_iterations = kNewtonSteps, .penetration = geom::Penetration::local}),
+      s,
+      distance(A_, s.a, B_, s.b, {.start = n, .max_iterations = kNewtonSteps, .penetration = geom::Penetration::local}),
       n, e);
 }
 
 geom::DistanceResult ConvexGap::last_resort(const State& s) const {
-  return query(A_, s.a, B_, s.b, {.start = cold_normal(s)});
+  return distance(A_, s.a, B_, s.b, {.start = cold_normal(s)});
 }
 
 ContactPoints ConvexGap::contact_points(const State& s, const Vector3d& n) const {
@@ -143,7 +139,7 @@ double ConvexGap::chord_curvature(double T, const Vector3d& n0, const Vector3d& 
 }
 
 /// Returns whether no contact comes up to s.t + T, for a gap that is certainly g >= 0 along n now; `end`: the distance
-/// there. Less what rounding may hide, but of bodies that are taken to touch.
+/// there. What rounding may hide is subtracted, except for bodies that are taken to touch.
 bool ConvexGap::chord_clears(const State& s, const Vector3d& n, double g, bool touching, double T, double& end) const {
   const State later = at(s.t + T);
   const double hidden = touching ? 0 : s.rounding.gap + scales_.later(T);
@@ -152,7 +148,7 @@ bool ConvexGap::chord_clears(const State& s, const Vector3d& n, double g, bool t
   const double fixed = e.g - hidden;
   const bool solved = solve(later, n1, e);
   end = e.g - hidden;
-  // Along another normal, or along the same one.
+  // Tries another normal at the end first, then the same one.
   for (const bool moving : {true, false}) {
     if (moving && !solved) continue;
     const double g1 = moving ? end : fixed;
@@ -166,7 +162,8 @@ bool ConvexGap::chord_clears(const State& s, const Vector3d& n, double g, bool t
 double ConvexGap::certified_step(const State& s, const Evaluation& /*e*/, const Vector3d& n, double computed_g,
                                  double gp, double horizon) const {
   const double g = std::max(0.0, computed_g - s.rounding.gap);
-  // Where the tangent ends or, for bodies that part or hardly approach, as far as the sag of a chord allows.
+  // The first trial goes to the end of the tangent or, for bodies that part or hardly approach, as far as the sag of a
+  // chord allows.
   const double K = chord_curvature(1, n, n, 0);
   double T = std::min(horizon, std::max(gp < 0 ? -g / gp : 0.0, std::sqrt(2 * g / K)));
   for (int trial = 0; trial < kTrials && T * speed_ > g; ++trial) {

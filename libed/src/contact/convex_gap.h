@@ -63,8 +63,7 @@ class ConvexGap {
   Evaluation evaluate(const State& s, const Eigen::Vector3d& n) const { return complete(s, sample(s, n), n); }
 
   /// dd/dt: the closest points move with their bodies.
-  template <class SampleOrEvaluation>
-  double rate(const State& s, const SampleOrEvaluation& e, const Eigen::Vector3d& n) const {
+  double rate(const State& s, const Evaluation& e, const Eigen::Vector3d& n) const {
     return n.dot(v_ + s.omega_b.cross(e.point_b) - s.omega_a.cross(e.point_a));
   }
   double contact_rate(const State& s, const Evaluation& e, const Eigen::Vector3d& n) const { return rate(s, e, n); }

@@ -100,7 +100,7 @@ struct SupportCurvature {
       of_rod = S.c * rate2 * (S.b2 * larger(0.0, r2 - offset2.least) / (h2_inner * h_min) + pull / h_pull);
       if (all(rod)) return of_rod;
     }
-    // Of a disc h is least where |x| is greatest, of a rod where it is least.
+    // h of a disc is least where |x| is greatest, h of a rod where it is least.
     const Real h_min = sqrt(larger(S.a2, h2_outer));
     const Real h_max = sqrt(h2_inner);
     const Real product = larger(at_low, at_high);

@@ -129,11 +129,11 @@ double SupportGap::certified_step(const State& s, const Evaluation& e, const Vec
                                   double horizon) const {
   const NormBodies& bodies = s.pair.bodies();
   const Vector3d fixed = Vector3d::Zero();
-  const Vector3d best_turning = angular_velocity_of_best_normal(s, e.sample);
+  const Vector3d best_rotation = angular_velocity_of_best_normal(s, e.sample);
   const double least_g = larger(0.0, g - s.rounding.gap);
   double tau = 0;
   const auto try_all = [&](const NormBodies::Majorant& majorant) {
-    for (const Vector3d* Omega : {&fixed, &best_turning}) {
+    for (const Vector3d* Omega : {&fixed, &best_rotation}) {
       if (tau >= horizon) return;
       tau = larger(tau, longest_step(s, e.sample, majorant, least_g, *Omega, horizon, tau));
     }

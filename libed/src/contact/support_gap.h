@@ -125,8 +125,7 @@ class SupportGap {
   Evaluation evaluate(const State& s, const Eigen::Vector3d& n) const { return evaluation(s, s.pair.sample(n)); }
 
   /// dg/dt at fixed n: support points move with their bodies, to first order.
-  template <class SampleOrEvaluation>
-  double rate(const State& s, const SampleOrEvaluation& e, const Eigen::Vector3d& n) const {
+  double rate(const State& s, const Evaluation& e, const Eigen::Vector3d& n) const {
     return n.dot(v_) - point_rate(s, e.sample.support.point, n);
   }
   /// Returns the rate at the contact. On a flat face the support point is lost to rounding, and the sign must be that

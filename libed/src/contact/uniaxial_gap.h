@@ -78,7 +78,7 @@ class UniaxialGap {
     Eigen::Vector3d r, u_a, u_b, du_a, du_b;
     Rounding rounding;
   };
-  using Sample = geom::kernel::UniaxialGap;
+  using Sample = geom::kernel::UniaxialSample;
   using Evaluation = UniaxialEvaluation;
 
   struct Certificate {

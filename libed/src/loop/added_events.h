@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/archive.h"
 #include "base/large_vector.h"
 #include "bodies/body_events.h"
 #include "bodies/pair.h"
@@ -12,6 +13,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <tuple>
+#include <type_traits>
 #include <utility>
 
 namespace ed::internal {

@@ -104,7 +104,7 @@ bool EventLoop<Bodies, Law, Added>::run_until(double time, std::uint64_t max_col
       parts_.start_epoch();
       continue;
     }
-    // Not before: without events left, too, the end is reached.
+    // Tested only here, because the end can also be reached without events left.
     if (events_left-- == 0) return false;
     process_next();
     if (watch_.count()) [[unlikely]]

@@ -10,14 +10,23 @@
 #include <algorithm>
 
 namespace ed::internal {
+namespace {
+
+/// Returns a thickness of dilated envelopes that is possible in this box, as near to the wanted one as can be.
+template <class Bodies>
+double possible_thickness(const Bodies& bodies, double wanted, double box) {
+  const double thinnest = kThinnestEnvelope * bodies.bounding_radius();
+  return std::clamp(wanted, thinnest, std::max(thinnest, thickest_envelope(box, bodies.bounding_radius())));
+}
+
+}  // namespace
 
 std::unique_ptr<Envelopes<UniaxialBodies>> make_envelopes(const UniaxialBodies& bodies,
                                                           const SimulationOptions& options, double thickness,
                                                           double exit_share, double box) {
-  const double thinnest = kThinnestEnvelope * bodies.bounding_radius();
   switch (options.neighbours) {
     case Neighbours::dilated:
-      thickness = std::clamp(thickness, thinnest, std::max(thinnest, thickest_envelope(box, bodies.bounding_radius())));
+      thickness = possible_thickness(bodies, thickness, box);
       return std::make_unique<DilatedEnvelopes>(bodies, thickness, exit_share * thickness,
                                                 bodies.kernels(options.batches).overlap);
     case Neighbours::obp:
@@ -39,13 +48,13 @@ std::unique_ptr<FirstLooks<UniaxialBodies>> make_first_looks(const UniaxialBodie
 
 std::unique_ptr<Envelopes<GeneralBodies>> make_envelopes(const GeneralBodies& bodies, const SimulationOptions& options,
                                                          double thickness, double exit_share, double box) {
-  const double thinnest = kThinnestEnvelope * bodies.bounding_radius();
   switch (options.neighbours) {
     case Neighbours::dilated:
-      thickness = std::clamp(thickness, thinnest, std::max(thinnest, thickest_envelope(box, bodies.bounding_radius())));
+      thickness = possible_thickness(bodies, thickness, box);
       return std::make_unique<GeneralDilatedEnvelopes>(bodies, thickness, exit_share * thickness);
     case Neighbours::obp:
-      return std::make_unique<GeneralOrientedEnvelopes>(bodies, std::min(thickness, thickest_oriented(bodies, box)));
+      return std::make_unique<GeneralOrientedEnvelopes>(bodies,
+                                                        std::min(thickness, thickest_oriented_envelope(bodies, box)));
     case Neighbours::cells:
       break;
   }

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "base/large_vector.h"
 #include "bodies/first_looks.h"
 #include "loop/collision_law.h"
 #include "loop/event_kinds.h"
@@ -172,7 +171,7 @@ void LoopParts<Bodies, Law, Added>::predict_all() {
 
 template <class Bodies, CollisionLaw Law, class Added>
 void LoopParts<Bodies, Law, Added>::reserve() {
-  // Of an event every pair of two bodies, or all that a body had and all that it gets.
+  // An event predicts at most every pair of two bodies, or all pairs that a body had and all that it gets.
   const std::size_t most = 2 * neighbourhood.reserve();
   predictor.reserve(most);
   schedule.reserve(most);

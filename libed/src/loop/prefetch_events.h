@@ -1,7 +1,6 @@
 #pragma once
 
 #include "base/prefetch.h"
-#include "bodies/body_events.h"
 #include "cells/grid.h"
 #include "loop/event_kinds.h"
 #include "loop/parts/calendar.h"

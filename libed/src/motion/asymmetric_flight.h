@@ -3,7 +3,6 @@
 /// Flight of a body with three different moments: its constants, bounds of its angular velocity, and quadrature along
 /// it. Included by asymmetric_top.cpp alone.
 
-#include "base/exponential.h"
 #include "motion/asymmetric_top.h"
 #include "motion/elliptic.h"
 

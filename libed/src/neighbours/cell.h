@@ -3,9 +3,11 @@
 /// The paper's plain algorithm: a body's region is its cell of a regular grid, its neighbours are all bodies in that
 /// and the 26 adjacent cells, and leaving it is a cell crossing (step 5 of the paper's list).
 
+#include "base/archive.h"
 #include "base/periodic.h"
+#include "bodies/pair.h"
 #include "neighbours/envelopes.h"
-#include "neighbours/lists.h"
+#include "neighbours/limits.h"
 
 #include <Eigen/Core>
 
@@ -14,23 +16,6 @@
 #include <vector>
 
 namespace ed::internal {
-
-/// The grid of cells, and how many of them a box must have.
-class CellLayout {
- public:
-  /// Cells are at least 2 R wide, so that bodies that touch are in adjacent ones.
-  static int cells_along(double box, double bounding_radius) {
-    return static_cast<int>(box / (2 * bounding_radius * (1 + 4 * kOvershoot)));
-  }
-  /// Least number of cells along an edge: with fewer a neighbouring cell is met on both sides.
-  static constexpr int kLeastCells = 3;
-  static double smallest_box(double bounding_radius) {
-    return kLeastCells * 2 * bounding_radius * (1 + 8 * kOvershoot);
-  }
-
- protected:
-  static constexpr double kOvershoot = 1e-10;  ///< way beyond a face at which a body has left its cell; in cell widths
-};
 
 template <class Bodies>
 class CellEnvelopes final : public Envelopes<Bodies>, public CellLayout {

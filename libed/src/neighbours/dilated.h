@@ -9,10 +9,10 @@
 #include "base/large_vector.h"
 #include "base/periodic.h"
 #include "base/prefetch.h"
+#include "bodies/pair.h"
 #include "bodies/uniaxial.h"
 #include "neighbours/envelopes.h"
 #include "neighbours/limits.h"
-#include "neighbours/lists.h"
 #include "vectors/dilated_gap.h"
 #include "vectors/kernels.h"
 
@@ -101,7 +101,7 @@ class DilatedEnvelopes final : public Envelopes<UniaxialBodies> {
 
   double worthwhile(int i, const UniaxialBodies& bodies) const override { return worthwhile(i, bodies.axis_motion(i)); }
   double worthwhile(int i, const AxisMotion& motion) const {
-    return 0.15 * exit_thickness_ / (motion.velocity.norm() + surface_speed(i, motion) + 1e-300);
+    return kWorthwhile * exit_thickness_ / (motion.velocity.norm() + surface_speed(i, motion) + 1e-300);
   }
 
   bool may_overlap(int i, int k, const Eigen::Vector3d& r, Eigen::Vector3d& normal) const override {
@@ -140,9 +140,9 @@ class DilatedEnvelopes final : public Envelopes<UniaxialBodies> {
         if (verdict == OverlapOutput::apart) continue;
         const NearBody& other = block[static_cast<std::size_t>(out.place[lane])];
         const auto normal = [&](int axis) { return out.rows[OverlapOutput::normal + axis][lane]; };
-        OverlappingEnvelope meeting{other.body, {normal(0), normal(1), normal(2)}};
-        if (verdict == OverlapOutput::open && !may_overlap(i, other.body, other.r, meeting.normal)) continue;
-        found.push_back(meeting);
+        OverlappingEnvelope overlapping{other.body, {normal(0), normal(1), normal(2)}};
+        if (verdict == OverlapOutput::open && !may_overlap(i, other.body, other.r, overlapping.normal)) continue;
+        found.push_back(overlapping);
       }
     }
   }

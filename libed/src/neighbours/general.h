@@ -68,7 +68,7 @@ class GeneralDilatedEnvelopes final : public Envelopes<GeneralBodies> {
 };
 
 /// The thickest box envelope for which nearest images are safe in this periodic box.
-double thickest_oriented(const GeneralBodies& bodies, double box);
+double thickest_oriented_envelope(const GeneralBodies& bodies, double box);
 
 class GeneralOrientedEnvelopes final : public Envelopes<GeneralBodies> {
  public:

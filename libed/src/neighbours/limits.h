@@ -4,6 +4,25 @@
 
 namespace ed::internal {
 
+/// Grid of cells of the paper's algorithm, and the number of them that a box must have.
+class CellLayout {
+ public:
+  /// Returns the number of cells along an edge: they are at least 2 R wide, so that bodies that touch are in adjacent
+  /// ones.
+  static int cells_along(double box, double bounding_radius) {
+    return static_cast<int>(box / (2 * bounding_radius * (1 + 4 * kOvershoot)));
+  }
+  /// Least number of cells along an edge: with fewer a neighbouring cell is met on both sides.
+  static constexpr int kLeastCells = 3;
+  static double smallest_box(double bounding_radius) {
+    return kLeastCells * 2 * bounding_radius * (1 + 8 * kOvershoot);
+  }
+
+ protected:
+  /// Distance beyond a face at which a body counts as having left its cell, in cell widths.
+  static constexpr double kOvershoot = 1e-10;
+};
+
 /// Thickness of the thinnest envelope in use, in units of the bounding radius.
 inline constexpr double kThinnestEnvelope = 0.02;
 /// Thickness of the thinnest box around a body of any shape, in units of the smallest inscribed radius.

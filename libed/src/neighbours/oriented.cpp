@@ -4,7 +4,6 @@
 #include "contact/certified.h"
 #include "contact/plane_gap.h"
 #include "neighbours/limits.h"
-#include "neighbours/lists.h"
 
 #include <algorithm>
 #include <cmath>

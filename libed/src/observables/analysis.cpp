@@ -112,7 +112,7 @@ std::optional<StretchedExponential> fit_stretched_exponential(std::span<const do
   solver.parameters.xtol = 1e-10;
   solver.parameters.ftol = 1e-12;
   const auto status = solver.minimize(p);
-  // Of an amplitude of zero neither tau nor beta can be told.
+  // An amplitude of zero leaves tau and beta undetermined.
   if (status <= 0 || !p.allFinite() || p[0] == 0 || !(p[2] > 0.1 && p[2] < 3)) return std::nullopt;
   return StretchedExponential{p[0], std::exp(p[1]), p[2]};
 }

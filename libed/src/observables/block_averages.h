@@ -14,8 +14,6 @@
 
 namespace ed::internal {
 
-constexpr std::size_t kAll = static_cast<std::size_t>(-1);  ///< all bodies, instead of a group
-
 /// Blocks that a value is computed from: all of them, only one, or all but one.
 struct Selection {
   const Block* only = nullptr;

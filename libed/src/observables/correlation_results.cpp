@@ -1,8 +1,6 @@
 #include "observables/correlation_results.h"
 
 #include <algorithm>
-#include <cmath>
-#include <utility>
 
 namespace ed::internal {
 namespace {
@@ -222,11 +220,10 @@ Correlations CorrelationResults::of_group(std::size_t group) const {
   add_diffusion(group, results);
   add_decays(group, results);
   add_axes(group, results);
-  const auto sums = [group](const Block& b) -> const FrameSums& { return group == kAll ? b.all : b.groups[group]; };
   results.v2 = gaps.velocities ? Estimate::none({*gaps.velocities})
-                               : averages_.frame_mean([&](const Block& b) { return sums(b).v2; });
+                               : averages_.frame_mean([&](const Block& b) { return b.sums_of(group).v2; });
   results.w2 = gaps.rotations ? Estimate::none({*gaps.rotations})
-                              : averages_.frame_mean([&](const Block& b) { return sums(b).w2; });
+                              : averages_.frame_mean([&](const Block& b) { return b.sums_of(group).w2; });
   drop_meaningless(group, results);
   structure_.add_to(results, group);
   return results;

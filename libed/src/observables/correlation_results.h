@@ -19,7 +19,7 @@ class CorrelationResults {
   Correlations of_group(std::size_t group) const;
 
  private:
-  using Gap = std::optional<MissingReason>;
+  using Gap = Gaps::Gap;
 
   bool three_axes(std::size_t group) const;
   bool unturned(std::size_t group) const;

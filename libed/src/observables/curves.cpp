@@ -21,7 +21,7 @@ Curve end_of(const Curve& curve) {
 /// Least x >= kDisplaced beyond which exp(-x) (1 + alpha2 x^2 / 2) stays at or below exp(-kDisplaced).
 double least_displacement(double alpha2) {
   const auto decayed = [&](double x) { return std::exp(-x) * (1 + 0.5 * alpha2 * x * x) <= std::exp(-kDisplaced); };
-  // It falls from x = 2 on, whatever alpha2 >= 0 is: x^2 exp(-x) does.
+  // The function falls from x = 2 on for any alpha2 >= 0, because x^2 exp(-x) does.
   if (!(alpha2 > 0)) return kDisplaced;
   if (!std::isfinite(alpha2)) return alpha2;
   double low = kDisplaced;
@@ -94,8 +94,8 @@ std::optional<Missing> why_not_diffusive(const Curve& curve, const Reach& reach)
   if (exponent > 1 + steepest) return Missing{MissingReason::ballistic, exponent};
   // Comparisons that fail if a number is none.
   if (!(window.y.front() >= reach.at_start && window.y.back() >= reach.at_end)) {
-    // Where it is asked for: at the beginning of the fit, or at its end.
-    const bool early = reach.at_start > 0;
+    // Place where too little is reached: the beginning of the fit, or its end.
+    const bool early = !(window.y.front() >= reach.at_start);
     return Missing{reach.short_of_it, std::sqrt(std::abs(early ? window.y.front() : window.y.back())),
                    early ? window.t.front() : window.t.back()};
   }

@@ -6,7 +6,7 @@
 
 #include <ed/archive_simulation.h>
 #include <ed/observables.h>
-#include <ed/simulation.h>
+#include <ed/snapshot.h>
 
 #include <Eigen/Core>
 

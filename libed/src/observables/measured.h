@@ -36,6 +36,8 @@ struct Totals {
 
 Totals totals_of(const Simulation& simulation, const std::vector<BodyRange>& groups);
 
+constexpr std::size_t kAll = static_cast<std::size_t>(-1);  ///< all bodies, instead of a group
+
 /// Sums over the origins in one stretch of time.
 struct Block {
   std::vector<LagSums> lags;                          ///< sums of group g at lag k: [k * groups + g]
@@ -48,6 +50,9 @@ struct Block {
   int origins = 0;
   std::vector<StructureSums> structure;  ///< structure of all bodies, then, if there are several groups, of each
   double structure_frames = 0;           ///< number of frames in `structure`
+
+  /// Returns the sums over the bodies of a group (kAll: of all).
+  const FrameSums& sums_of(std::size_t group) const { return group == kAll ? all : groups[group]; }
 
   /// Adds the block that follows.
   void append(const Block& next);

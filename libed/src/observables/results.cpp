@@ -4,7 +4,6 @@
 #include "observables/structure_results.h"
 
 #include <cmath>
-#include <utility>
 
 namespace ed::internal {
 namespace {
@@ -12,9 +11,9 @@ namespace {
 using Eigen::Matrix3d;
 
 /// Results of all bodies and of each group.
-class Evaluation {
+class ResultsOf {
  public:
-  Evaluation(const Measured& measured, const Totals& totals, std::optional<double> fit_from)
+  ResultsOf(const Measured& measured, const Totals& totals, std::optional<double> fit_from)
       : measured_(measured),
         totals_(totals),
         averages_(measured),
@@ -35,8 +34,7 @@ class Evaluation {
   Matrix3d pressure(const Totals& begin, const Totals& end, double kT, const Matrix3d& kinetic) const;
   void add_blocks(Results& results) const;
   void add_pressure(Results& results) const;
-  template <class Sums>
-  void add_order(const Sums& sums, GroupResults& results) const;
+  void add_order(std::size_t group, GroupResults& results) const;
   void add_temperatures(std::size_t group, GroupResults& results) const;
 
   const Measured& measured_;
@@ -48,7 +46,7 @@ class Evaluation {
 
 // ---- All bodies
 
-BlockRow Evaluation::block_row(const Block& block) const {
+BlockRow ResultsOf::block_row(const Block& block) const {
   const int number = measured_.options.number;
   const double time = block.end.time - block.begin.time;
   const bool oriented = !measured_.gaps.orientations;
@@ -65,14 +63,14 @@ BlockRow Evaluation::block_row(const Block& block) const {
   return row;
 }
 
-Matrix3d Evaluation::pressure(const Totals& begin, const Totals& end, double kT, const Matrix3d& kinetic) const {
+Matrix3d ResultsOf::pressure(const Totals& begin, const Totals& end, double kT, const Matrix3d& kinetic) const {
   const Matrix3d virial = end.virial_tensor - begin.virial_tensor;
   const double share = 2 * measured_.options.number * kT * (end.time - begin.time);
   return kinetic + (virial + virial.transpose()) / share;
 }
 
 /// Adds the blocks and what only all bodies have.
-void Evaluation::add_blocks(Results& results) const {
+void ResultsOf::add_blocks(Results& results) const {
   std::vector<double> rate, Z;
   for (const Block* block : averages_.full_blocks()) {
     const BlockRow row = block_row(*block);
@@ -80,7 +78,7 @@ void Evaluation::add_blocks(Results& results) const {
     rate.push_back(row.collision_rate);
     Z.push_back(row.Z);
   }
-  add_order([](const Block& b) -> const FrameSums& { return b.all; }, results);
+  add_order(kAll, results);
   if (const auto gap = measured_.gaps.collisions) {
     results.collision_rate = results.Z = results.translational_kT = results.rotational_kT = Estimate::none({*gap});
     return;
@@ -97,7 +95,7 @@ void Evaluation::add_blocks(Results& results) const {
   add_pressure(results);
 }
 
-void Evaluation::add_pressure(Results& results) const {
+void ResultsOf::add_pressure(Results& results) const {
   Matrix3d kinetic = Matrix3d::Zero();
   double frames = 0;
   for (const Block& block : measured_.blocks) {
@@ -116,28 +114,28 @@ void Evaluation::add_pressure(Results& results) const {
 
 // ---- All bodies or one group
 
-/// Adds S and the director of the frames' sums that `sums` picks of a block.
-template <class Sums>
-void Evaluation::add_order(const Sums& sums, GroupResults& results) const {
+/// Adds S and the director of a group.
+void ResultsOf::add_order(std::size_t group, GroupResults& results) const {
   if (const auto gap = measured_.gaps.orientations) {
     results.S = Estimate::none({*gap});
     return;
   }
-  results.S = averages_.frame_mean([&](const Block& b) { return sums(b).S; });
+  results.S = averages_.frame_mean([&](const Block& b) { return b.sums_of(group).S; });
   const std::vector<const Block*>& blocks = averages_.full_blocks();
   if (blocks.empty()) return;
   Matrix3d all = Matrix3d::Zero();
-  for (const Block* block : blocks) all += sums(*block).order;
+  for (const Block* block : blocks) all += block->sums_of(group).order;
   Director& director = results.director;
   director.axis = director_of(all);
   const auto n = static_cast<double>(blocks.size());
   if (blocks.size() < 2) return;
   double squares = 0;
-  for (const Block* block : blocks) squares += director.axis.cross(director_of(sums(*block).order)).squaredNorm();
+  for (const Block* block : blocks)
+    squares += director.axis.cross(director_of(block->sums_of(group).order)).squaredNorm();
   director.error = std::sqrt(squares / (n * (n - 1)));
 }
 
-Estimate Evaluation::collision_rate(std::size_t group) const {
+Estimate ResultsOf::collision_rate(std::size_t group) const {
   if (totals_.collisions_of.empty() || !(totals_.time > 0)) return {};
   const auto bodies = static_cast<double>(measured_.ranges[group].size());
   std::vector<double> values;
@@ -149,7 +147,7 @@ Estimate Evaluation::collision_rate(std::size_t group) const {
 }
 
 /// Adds collision rate and temperatures of a group.
-void Evaluation::add_temperatures(std::size_t group, GroupResults& results) const {
+void ResultsOf::add_temperatures(std::size_t group, GroupResults& results) const {
   if (const auto gap = measured_.gaps.collisions) {
     results.collision_rate = results.translational_kT = results.rotational_kT = Estimate::none({*gap});
     results.axis_kT.fill(results.collision_rate);
@@ -164,7 +162,7 @@ void Evaluation::add_temperatures(std::size_t group, GroupResults& results) cons
   }
 }
 
-Results Evaluation::results() const {
+Results ResultsOf::results() const {
   Results results;
   static_cast<Correlations&>(results) = correlations_.of_group(kAll);
   results.duration = totals_.time;
@@ -173,7 +171,7 @@ Results Evaluation::results() const {
   for (std::size_t g = 0; g < measured_.ranges.size(); ++g) {
     GroupResults& group = results.groups.emplace_back();
     static_cast<Correlations&>(group) = single ? static_cast<const Correlations&>(results) : correlations_.of_group(g);
-    add_order([g](const Block& b) -> const FrameSums& { return b.groups[g]; }, group);
+    add_order(g, group);
     add_temperatures(g, group);
   }
   if (single) results.axis_kT = results.groups[0].axis_kT;
@@ -183,7 +181,7 @@ Results Evaluation::results() const {
 }  // namespace
 
 Results results_of(const Measured& measured, const Totals& totals, std::optional<double> fit_from) {
-  return Evaluation(measured, totals, fit_from).results();
+  return ResultsOf(measured, totals, fit_from).results();
 }
 
 Estimate first_peak_of(const Measured& measured) {

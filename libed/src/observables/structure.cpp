@@ -25,7 +25,7 @@ constexpr double kLargestQ = 12;    ///< largest wave number, in inverse lengths
 constexpr double kMostShells = 64;  ///< largest number of shells
 constexpr double kPeakFrom = 1.5;   ///< least wave number of a first peak, in inverse lengths
 constexpr double kPeakTo = 7;
-// Of the fit to Percus and Yevick's S(q).
+// Parameters of the fit to Percus and Yevick's S(q).
 constexpr double kFittedFrom = 1;          ///< least wave number, in inverse lengths
 constexpr double kScaleStep = 1.01;        ///< ratio of two successive scales that are tried
 constexpr int kScaleSteps = 40;            ///< steps on either side of 1
@@ -226,7 +226,7 @@ std::vector<double> WaveVectors::structure_factor(const std::vector<Vector3d>& p
   for (const std::vector<Vector3i>& shell : vectors_) sums.emplace_back(shell.size());
   for (std::size_t begin = range.begin; begin < range.end; begin += kAtATime) {
     const BodyRange some{begin, std::min(range.end, begin + kAtATime), false};
-    // Of large boxes the powers of one phase would be more than the wave vectors.
+    // In large boxes the powers of one phase would outnumber the wave vectors.
     const int largest = largest_ > kLargestPower ? 0 : largest_;
     const Phases phases[3] = {
         {positions, some, 0, unit, largest}, {positions, some, 1, unit, largest}, {positions, some, 2, unit, largest}};
@@ -293,7 +293,7 @@ namespace {
 
 /// The top of Percus and Yevick's first peak.
 double percus_yevick_peak(double packing_fraction) {
-  // From 2.88 in a gas to 4 beyond all fluids.
+  // The peak moves from 2.88 in a gas to 4 beyond all fluids.
   constexpr int kNumber = 40;
   std::vector<double> q, S;
   q.reserve(kNumber);

@@ -89,7 +89,7 @@ double StructureResults::first_wave_number() const {
   const StructureGrid& grid = measured_.grid;
   const double number = measured_.options.number;
   const double packing = number * 4 * std::numbers::pi / 3 * std::pow(grid.length / grid.box, 3);
-  // Without sizes: the mean distance of bodies. So too where the sizes are none, as bodies would fill more than space.
+  // Mean distance of bodies, where sizes are unknown or cannot be right, because bodies would fill more than space.
   if (!measured_.length_known || packing >= 1) return 2 * std::numbers::pi * std::cbrt(number) / grid.box;
   return likely_peak(*wave_vectors_, sum_of(0, nullptr).S, static_cast<double>(measured_.blocks.size()), grid, packing);
 }

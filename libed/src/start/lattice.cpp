@@ -37,8 +37,8 @@ using internal::sites_in_cell;
 using internal::Turned;
 using internal::ways_to_fill;
 
-/// Number of ways that are tried for bodies other than ellipsoids, for which the shortest vector decides; both for the
-/// best way and for alternative numbers.
+/// Largest number of ways that are tried for bodies other than ellipsoids: for the best way, and for each alternative
+/// number. (For ellipsoids the shortest vector decides.)
 constexpr std::size_t kTriedWays = 24;
 constexpr std::size_t kTriedWaysOfOthers = 4;
 

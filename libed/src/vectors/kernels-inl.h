@@ -6,7 +6,7 @@
 /// A lane gives the bits that the code for one pair gives: the same formulas in the same order, without fused
 /// multiply-add. What a lane computes does not depend on its neighbours.
 
-// What the kernels do not need should not be asked of the processor.
+// Processor features that the kernels do not use are not required.
 #define HWY_DISABLE_PCLMUL_AES
 #define HWY_DISABLE_F16C
 // Highway's checks would call its library.

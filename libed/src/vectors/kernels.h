@@ -111,7 +111,7 @@ struct OverlapOutput {
   enum Row { verdict = 0, normal = 1, rows_count = 4 };
   static constexpr double open = 0;  ///< unanswered
   static constexpr double apart = 1;
-  static constexpr double meet = 2;
+  static constexpr double overlapping = 2;
   int count;
   int place[kBlockOverlaps];  ///< place among the NearBodys
   alignas(64) double rows[rows_count][kBlockOverlaps];

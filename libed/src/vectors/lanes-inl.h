@@ -200,7 +200,7 @@ HWY_INLINE Shape load_shape(const Row* rows, int lane) {
           load(rows[ShapeRows::rho], lane)};
 }
 
-using Gap = geom::kernel::UniaxialGapOf<Both>;
+using Gap = geom::kernel::UniaxialSampleOf<Both>;
 using Step = geom::kernel::UniaxialStepOf<Both, Real3>;
 
 /// The Newton step, not capped. `definite`: where it is one, the matrix needing no lift.

@@ -126,7 +126,7 @@ struct Pairs {
   Real3 r, v, n;
   Real reach;
   Real surface_speed;  ///< reach times both rates of the axes
-  Real limit;          ///< UniaxialGap::curvature_limit
+  Real limit;          ///< UniaxialSample::curvature_limit
   RoundingOf<Real> hidden;
   Real t;
   Real end;  ///< end of the window

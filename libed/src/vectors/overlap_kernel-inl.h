@@ -99,7 +99,7 @@ HWY_INLINE void overlap_closely(const Envelope& a, const Other& other, Real limi
     known = known & definite;
   }
   store3(step_on_sphere(n, step.delta), out.rows + OverlapOutput::normal, lane);
-  store(select(apart, OverlapOutput::apart, select(known, OverlapOutput::meet, OverlapOutput::open)),
+  store(select(apart, OverlapOutput::apart, select(known, OverlapOutput::overlapping, OverlapOutput::open)),
         out.rows[OverlapOutput::verdict], lane);
 }
 

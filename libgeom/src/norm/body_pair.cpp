@@ -169,7 +169,8 @@ bool NormBodyPair::advance(DualSample& s, const Step& step) const {
   return false;
 }
 
-/// True if the next predicted gain is less than kPromiseShrink of this one. The support point of a flat body is lost to
+/// True if a step whose predicted gain is too small to show in g is a good one: g has not fallen by more than rounding,
+/// and the next predicted gain is less than kPromiseShrink of this one. The support point of a flat body is lost to
 /// rounding, and with it the mismatch: neither g nor the mismatch can show that the normal is off by 1e-7 along the
 /// direction in which both bodies are round. The next predicted gain can, because flat directions have no weight in it.
 bool NormBodyPair::keeps_promise(const DualSample& from, const Step& step, const DualSample& to) const {
@@ -241,8 +242,8 @@ bool NormBodyPair::shares_a_point(const Answer& answer) const {
   };
   const LaneVector points = joined(answer.points, answer.at);
   if (holds_between(points.a(), r_ + points.b(), holds)) return true;
-  // Of the points t r between the centres, the one with N_A(t r) = N_B((1 - t) r). No norm is beyond kMaxCoordinate /
-  // kMinSemiAxis, 1e150, by more than a small factor.
+  // The point t r between the centres with N_A(t r) = N_B((1 - t) r) is in both bodies if in any. No norm is beyond
+  // kMaxCoordinate / kMinSemiAxis, 1e150, by more than a small factor.
   const Lanes norms = bodies_.norms(LaneVector::of(r_, r_));
   return norms[0] * norms[1] <= norms[0] + norms[1];
 }

@@ -27,8 +27,8 @@ class FailureLog {
 
   const std::vector<FailedPair>& pairs() const { return pairs_; }
 
-  /// Returns a new entry, with reason, numbers and shapes set; null if there is no more room for this reason. Allocates
-  /// nothing but what copies of the shapes need.
+  /// Returns a new entry, with reason, numbers and shapes set; null if there is no more room for this reason. Copies
+  /// of users' shapes may allocate; nothing else does.
   FailedPair* add(FailureReason reason, int i, int j) {
     std::size_t& recorded = recorded_[static_cast<std::size_t>(reason)];
     if (recorded == kMaxRecorded) return nullptr;

@@ -15,7 +15,6 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <span>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -115,7 +114,7 @@ class Neighbourhood {
 
   /// Whether cells and scale that were read fit the envelopes.
   bool is_sound() const {
-    // Else cells would be too narrow for what is looked for in them, now or when the box has shrunk on.
+    // Otherwise cells would be too narrow for the reach of a search, now or after the box has shrunk further.
     const double least = envelopes_->least_scale();
     const bool shrinks = list_scale_ > 0 && list_scale_ <= 1 && list_scale_ >= least * (1 - 1e-9);
     return least > 0 && shrinks && cells_->cover(envelopes_->reach() * (list_scale_ / least));

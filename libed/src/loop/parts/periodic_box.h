@@ -44,7 +44,7 @@ class PeriodicBox {
   static void fields(Archive& archive, Self& self) {
     const std::size_t number = self.images_.size();
     archive(self.images_);
-    expect(archive, self.images_.size() == number, "the events do not fit the lists");
+    expect(archive, self.images_.size() == number, "the images of the bodies");
   }
 
  private:

@@ -3,13 +3,12 @@
 /// Equations (dist8) of the paper, in eight and in five unknowns, made dimensionless (newton_impl.h says how).
 
 #include <geom/kernel/small_solve.h>
-#include <geom/newton.h>
+#include <geom/shape.h>
 
 #include <Eigen/Core>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace geom::kernel {
 

@@ -45,7 +45,7 @@ struct Spheroid {
 /// Pair of numbers, one of A and one of B: both bodies go through the same operations, two to an SSE2 register.
 using Both = Eigen::Array2d;
 
-using UniaxialGap = UniaxialGapOf<Both>;
+using UniaxialSample = UniaxialSampleOf<Both>;
 
 /// Evaluation with the values that the time derivative of g needs.
 struct UniaxialEvaluation : Evaluation {
@@ -54,9 +54,9 @@ struct UniaxialEvaluation : Evaluation {
 };
 
 /// Returns g at the unit vector n, for A at the origin and B at r.
-[[gnu::always_inline]] inline UniaxialGap uniaxial_gap(const Spheroid& A, const Spheroid& B, const Eigen::Vector3d& r,
-                                                       const Eigen::Vector3d& u_a, const Eigen::Vector3d& u_b,
-                                                       const Eigen::Vector3d& n) {
+[[gnu::always_inline]] inline UniaxialSample uniaxial_gap(const Spheroid& A, const Spheroid& B,
+                                                          const Eigen::Vector3d& r, const Eigen::Vector3d& u_a,
+                                                          const Eigen::Vector3d& u_b, const Eigen::Vector3d& n) {
   return uniaxial_gap_of<Both>(A, B, r, u_a, u_b, n);
 }
 
@@ -64,7 +64,7 @@ struct UniaxialEvaluation : Evaluation {
 [[gnu::always_inline]] inline UniaxialEvaluation uniaxial_step(const Spheroid& A, const Spheroid& B,
                                                                const Eigen::Vector3d& r, const Eigen::Vector3d& u_a,
                                                                const Eigen::Vector3d& u_b, const Eigen::Vector3d& n,
-                                                               const UniaxialGap& gap) {
+                                                               const UniaxialSample& gap) {
   const auto lift = [&](double sigma, double t1, double D) { return lifted(gap.g, A.rho + B.rho, sigma, t1, D); };
   const auto newton = uniaxial_step_of(A, B, r, u_a, u_b, n, gap, lift);
   UniaxialEvaluation out;

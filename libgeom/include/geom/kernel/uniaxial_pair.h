@@ -10,7 +10,7 @@ namespace geom::kernel {
 
 /// First half of an evaluation: g, the values that its time derivative needs, and the input of the second half.
 template <class Both>
-struct UniaxialGapOf {
+struct UniaxialSampleOf {
   typename Both::Scalar g;  ///< n.r - hA(n) - hB(-n)
   typename Both::Scalar z;  ///< n.r
   Both lever;               ///< c x / h: dh/dt = lever * (n.du/dt) at fixed n
@@ -22,12 +22,12 @@ struct UniaxialGapOf {
 
 /// Returns g at the unit vector n, for A at the origin and B at r.
 template <class Both, class Shape, class Vector>
-[[gnu::always_inline]] inline UniaxialGapOf<Both> uniaxial_gap_of(const Shape& A, const Shape& B, const Vector& r,
-                                                                  const Vector& u_a, const Vector& u_b,
-                                                                  const Vector& n) {
+[[gnu::always_inline]] inline UniaxialSampleOf<Both> uniaxial_gap_of(const Shape& A, const Shape& B, const Vector& r,
+                                                                     const Vector& u_a, const Vector& u_b,
+                                                                     const Vector& n) {
   // Here and below the order of the operations keeps the dependency chain short, which determines the time.
   const Both ux(u_a.x(), u_b.x()), uy(u_a.y(), u_b.y()), uz(u_a.z(), u_b.z());
-  UniaxialGapOf<Both> out;
+  UniaxialSampleOf<Both> out;
   out.x = ux * n.x() + uy * n.y() + uz * n.z();
   const Both wx = ux - out.x * n.x();
   const Both wy = uy - out.x * n.y();
@@ -65,7 +65,7 @@ template <class Both, class Shape, class Vector, class Lift>
 [[gnu::always_inline]] inline UniaxialStepOf<Both, Vector> uniaxial_step_of(const Shape& A, const Shape& B,
                                                                             const Vector& r, const Vector& u_a,
                                                                             const Vector& u_b, const Vector& n,
-                                                                            const UniaxialGapOf<Both>& gap,
+                                                                            const UniaxialSampleOf<Both>& gap,
                                                                             const Lift& lift) {
   using Real = typename Both::Scalar;
   const Both wx = Both(u_a.x(), u_b.x()) - gap.x * n.x();

@@ -22,7 +22,6 @@ using geom::Ellipsoid;
 using geom::Pose;
 using Shape = ed::BodyShape;
 using geom::Superellipsoid;
-using geom_test::Random;
 
 Motion moving(const Vector3d& position, const Vector3d& velocity, const Vector3d& omega = Vector3d::Zero()) {
   Motion motion;
@@ -32,7 +31,8 @@ Motion moving(const Vector3d& position, const Vector3d& velocity, const Vector3d
   return motion;
 }
 
-Motion random_motion(Random& random, const Vector3d& centre, const Vector3d& velocity, const Vector3d& inertia) {
+Motion random_motion(geom_test::Random& random, const Vector3d& centre, const Vector3d& velocity,
+                     const Vector3d& inertia) {
   Motion motion;
   motion.pose = Pose(random.pose(0).rotation(), centre);
   motion.velocity = velocity;
@@ -68,7 +68,7 @@ TEST(GeneralContact, BiaxialEllipsoidsMeetHeadOn) {
 
 /// Predicts the same bodies by both pair gaps.
 TEST(GeneralContact, ExponentOneIsTheEllipsoid) {
-  Random random(1);
+  geom_test::Random random(1);
   int hits = 0;
   for (int k = 0; k < 1000; ++k) {
     const Vector3d axes(1, 1, k % 2 == 0 ? 3 : 0.3);
@@ -90,7 +90,7 @@ TEST(GeneralContact, ExponentOneIsTheEllipsoid) {
 }
 
 TEST(GeneralContact, SwappingUnlikeBodiesTurnsTheNormalRound) {
-  Random random(2);
+  geom_test::Random random(2);
   for (int k = 0; k < 300; ++k) {
     const Shape a = Superellipsoid({1, 1, 2}, 0.5, 0.7);
     const Shape b = Ellipsoid({1, 1, 0.4});
