@@ -705,7 +705,7 @@ class Maps(SweepCase):
                 result = self.map("--value", "D", *options)
                 self.assertEqual(result.returncode, 0, result.stderr)
                 self.assertIn("written from 106 points", result.stdout)
-        self.assert_refused(self.map("--value", "D", "--where", "mass=half"), "--where mass=half: no row")
+        self.assert_refused(self.map("--value", "D", "--where", "mass=half"), "--where mass=half: no row of table.csv has this value; accepted: ")
 
     def test_of_a_sweep(self):
         self.assertEqual(self.sweep(SMALL + GRID).returncode, 0)

@@ -67,8 +67,9 @@ std::vector<std::size_t> chosen_rows(const CsvTable& table, const std::vector<st
     const std::string wanted = condition.substr(equals + 1);
     std::erase_if(rows, [&](std::size_t k) { return !is_same(table.rows[k][column], wanted); });
     if (!rows.empty()) continue;
-    throw InputError(fmt::format("--where {}: holds in no row of {}{}; accepted: a value of that column", condition,
-                                 table.name, conditions.size() > 1 ? " where the conditions before it hold" : ""));
+    throw InputError(fmt::format("--where {}: no row of {} has this value{}; accepted: a value of that column",
+                                 condition, table.name,
+                                 conditions.size() > 1 ? " and those of the conditions before it" : ""));
   }
   return rows;
 }
