@@ -34,7 +34,7 @@ LIBRARIES = {
     "libed/src": {
         "order": "base < cells < motion < contact < vectors < system < bodies < neighbours < loop < start, observables",
         "public": ("ed", {
-            "base": "archive arithmetic export random tolerances",
+            "base": "archive arithmetic export random sink tolerances",
             "motion": "impulse motion",
             "contact": "contact_options shape time_of_contact",
             "system": "archive_system polydispersity system",

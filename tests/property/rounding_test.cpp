@@ -225,8 +225,8 @@ void try_superellipsoids(Random& random, const DrawTop& draw_top, bool search, T
   const double length = log_uniform(random, 2e-3, 500);  // the powers are made of logarithms
   const geom::Superellipsoid A = draw_superellipsoid(random, length);
   const geom::Superellipsoid B = draw_superellipsoid(random, length);
-  const NormBodyShape norm_a = norm_body(A);
-  const NormBodyShape norm_b = norm_body(B);
+  const NormBodyShape norm_a = norm_body(A).value();
+  const NormBodyShape norm_b = norm_body(B).value();
   const double reach = norm_a.bounding_radius + norm_b.bounding_radius;
   Flights flights(random, reach, draw_top);
   Scene& scene = flights.scene;

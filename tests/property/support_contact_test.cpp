@@ -97,8 +97,8 @@ Tally search_pairs(const char* name, const Draw& draw) {
   FinderCounters count;
   while (tally.contacts < kContacts) {
     const MovingPair pair = draw(random);
-    const NormBodyShape a = norm_body(pair.shape_a);
-    const NormBodyShape b = norm_body(pair.shape_b);
+    const NormBodyShape a = norm_body(pair.shape_a).value();
+    const NormBodyShape b = norm_body(pair.shape_b).value();
     const PairGap gap(a, pair.a, b, pair.b, pair.b.position - pair.a.position, 0);
     judge(pair, find(gap, count), reference(pair, kHorizon), tally);
   }
@@ -169,8 +169,8 @@ TEST(SupportContact, NoOverlapWithinACertifiedStep) {
   int long_steps = 0;
   for (int k = 0; k < pairs; ++k) {
     const MovingPair pair = random_pair_apart(random);
-    const NormBodyShape a = norm_body(pair.shape_a);
-    const NormBodyShape b = norm_body(pair.shape_b);
+    const NormBodyShape a = norm_body(pair.shape_a).value();
+    const NormBodyShape b = norm_body(pair.shape_b).value();
     const SupportGap gap(a, pair.a, b, pair.b, pair.b.position - pair.a.position, 0);
     const SupportGap::State state = gap.at(0);
     const geom::DistanceResult d = pair.distance(0);
@@ -195,8 +195,8 @@ TEST(SupportContact, PointsAreOnTheSurfacesAndOneGapApart) {
   double worst = 0;
   for (int k = 0; k < 2000; ++k) {
     const MovingPair pair = random_pair_apart(random);
-    const NormBodyShape a = norm_body(pair.shape_a);
-    const NormBodyShape b = norm_body(pair.shape_b);
+    const NormBodyShape a = norm_body(pair.shape_a).value();
+    const NormBodyShape b = norm_body(pair.shape_b).value();
     Vector3d r = pair.b.position - pair.a.position;
     const geom::DistanceResult apart = pair.distance(0);
     ASSERT_EQ(apart.status, geom::DistanceStatus::separated);

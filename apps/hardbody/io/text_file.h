@@ -1,5 +1,7 @@
 #pragma once
 
+#include <ed/sink.h>
+
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -38,8 +40,7 @@ void check_replaceable(const std::filesystem::path& path, std::string_view begin
 /// file. A link remains a link; anything that is neither a file nor a link to one is left unchanged. Throws WriteError.
 void write_file(const std::filesystem::path& path, std::string_view content);
 
-/// Receiver of a file's bytes piece by piece: the type that ed::archive::Writer takes.
-using Sink = std::function<void(std::string_view)>;
+using ed::archive::Sink;
 
 /// Writes a file whose content `make` produces in pieces. Exceptions of `make` are passed on; no file is left then.
 void write_file(const std::filesystem::path& path, const std::function<void(const Sink&)>& make);

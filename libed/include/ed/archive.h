@@ -12,6 +12,8 @@
 /// memory, little-endian; containers are preceded by their length in 8 bytes; there is no padding. Invalid values are
 /// rejected where members are named, by `expect`: a Reader never trusts a length, and a class never an index.
 
+#include <ed/sink.h>
+
 #include <geom/kernel/eigen_layout.h>
 
 #include <Eigen/Core>
@@ -23,7 +25,6 @@
 #include <cstdint>
 #include <cstring>
 #include <deque>
-#include <functional>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -65,9 +66,6 @@ template <class T>
 struct Blank {
   static T make() { return T{}; }  ///< makes the object
 };
-
-/// Receives bytes piece by piece.
-using Sink = std::function<void(std::string_view)>;
 
 /// Appends values to a buffer of bytes. With a sink the buffer is handed on piece by piece, so that large states need
 /// no memory of their own.

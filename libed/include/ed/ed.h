@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file
-/// Includes the whole public interface of libed, except for serialisation (archive*.h, arithmetic.h).
+/// Includes the whole public interface of libed, except for serialisation (archive*.h, arithmetic.h, sink.h).
 
 /// @namespace ed libed: event-driven dynamics of hard bodies.
 

@@ -33,8 +33,8 @@ struct GapShape {
   explicit GapShape(const BodyShape& body) : shape(body), norm(norm_body(body)), implicit(geom_shape(body)) {}
 
   BodyShape shape;
-  std::optional<NormBodyShape> norm;    ///< for SupportGap
-  std::optional<geom::Shape> implicit;  ///< for Finder::bracketing
+  std::optional<NormBodyShape> norm;    ///< shape as SupportGap takes it
+  std::optional<geom::Shape> implicit;  ///< shape as Finder::bracketing takes it
 };
 
 /// Returns f(gap) with the pair gap of two bodies in flight. `r`: vector from A's centre to B's at `now`, in the image

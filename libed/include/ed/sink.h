@@ -1,0 +1,14 @@
+#pragma once
+
+/// @file
+/// Receiver of bytes piece by piece, for writers of states and files.
+
+#include <functional>
+#include <string_view>
+
+namespace ed::archive {
+
+/// Receives bytes piece by piece.
+using Sink = std::function<void(std::string_view)>;
+
+}  // namespace ed::archive
