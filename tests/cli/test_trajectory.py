@@ -305,7 +305,7 @@ class Killed(Trajectories):
         self.write("run.toml", config.replace("[output]\n", '[output]\ntrajectory = ["gsd"]\nframes = 5001\n'))
         draws = random.Random(1)
         frames = []
-        for k in range(50):
+        for k in range(50 if FULL else 20):
             out = f"out{k}"
             process = subprocess.Popen([HARDBODY, "run", "run.toml", "--out", out], cwd=self.here,
                                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
