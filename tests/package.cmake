@@ -15,7 +15,7 @@ endfunction()
 
 # hardbody_package_tests(<linkage>)
 function(hardbody_package_tests linkage)
-  set(prefix ${package_dir}/prefix)
+  set(prefix ${package_dir}/prefix)  # the same for both linkages: ccache then knows the consumers' object files
   hardbody_package_script(package_${linkage}_install install.cmake -DBUILD_DIR=${PROJECT_BINARY_DIR} -DPREFIX=${prefix})
   # All install from the same build tree.
   set_tests_properties(package_${linkage}_install PROPERTIES FIXTURES_SETUP package_${linkage} RESOURCE_LOCK install)
@@ -70,12 +70,15 @@ if(BUILD_SHARED_LIBS AND HARDBODY_PYTHON)
   set_tests_properties(package_exports PROPERTIES LABELS package TIMEOUT 60 FIXTURES_REQUIRED package_shared)
 endif()
 
-# How headers and libgeom compile with flags of others; nothing has to be built for that.
-find_package(Eigen3 3.4 REQUIRED NO_MODULE)
-get_target_property(eigen_dir Eigen3::Eigen INTERFACE_INCLUDE_DIRECTORIES)
-foreach(name eigen_macros no_exceptions)
-  hardbody_package_script(package_${name} ${name}.cmake -DSOURCE_DIR=${PROJECT_SOURCE_DIR} -DEIGEN_DIR=${eigen_dir})
-endforeach()
+# How headers and libgeom compile with flags of others; nothing has to be built for that, and shared libraries are made of
+# the same sources.
+if(NOT BUILD_SHARED_LIBS)
+  find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+  get_target_property(eigen_dir Eigen3::Eigen INTERFACE_INCLUDE_DIRECTORIES)
+  foreach(name eigen_macros no_exceptions)
+    hardbody_package_script(package_${name} ${name}.cmake -DSOURCE_DIR=${PROJECT_SOURCE_DIR} -DEIGEN_DIR=${eigen_dir})
+  endforeach()
+endif()
 
 find_program(HARDBODY_DPKG_DEB dpkg-deb)
 if(TARGET hardbody AND HARDBODY_DPKG_DEB AND NOT HARDBODY_SANITIZE AND NOT BUILD_SHARED_LIBS)
