@@ -1,7 +1,7 @@
 # Tests of this part; see hardbody_test in CMakeLists.txt.
 hardbody_test(geom_unit_test unit
   unit/geom/enumerator_names_test.cpp
-  unit/geom/batch_test.cpp
+  unit/geom/batch/batch_test.cpp
   unit/geom/by_elements_test.cpp
   unit/geom/contact_elements_test.cpp
   unit/geom/distance_test.cpp
@@ -9,7 +9,7 @@ hardbody_test(geom_unit_test unit
   unit/geom/ellipsoid_pairs_test.cpp
   unit/geom/ellipsoid_test.cpp
   unit/geom/extreme_input_test.cpp
-  unit/geom/lanes_test.cpp
+  unit/geom/batch/lanes_test.cpp
   unit/geom/majorant_test.cpp
   unit/geom/mass_test.cpp
   unit/geom/newton_test.cpp
@@ -24,11 +24,11 @@ hardbody_test(geom_unit_test unit
   unit/geom/user_shape_test.cpp)
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64)$")
   find_package(hwy 1.0 REQUIRED CONFIG)
-  target_sources(geom_unit_test PRIVATE unit/geom/batch_roots.cpp unit/geom/batch_roots_test.cpp)
+  target_sources(geom_unit_test PRIVATE unit/geom/batch/batch_roots.cpp unit/geom/batch/batch_roots_test.cpp)
   target_include_directories(geom_unit_test SYSTEM PRIVATE $<TARGET_PROPERTY:hwy::hwy,INTERFACE_INCLUDE_DIRECTORIES>)
-  set_source_files_properties(unit/geom/batch_roots.cpp PROPERTIES COMPILE_OPTIONS "${hardbody_avx512}")
+  set_source_files_properties(unit/geom/batch/batch_roots.cpp PROPERTIES COMPILE_OPTIONS "${hardbody_avx512}")
 else()
-  list(APPEND unbuilt_tests unit/geom/batch_roots_test.cpp)
+  list(APPEND unbuilt_tests unit/geom/batch/batch_roots_test.cpp)
 endif()
 hardbody_test(geom_allocation_test unit unit/geom/allocation_test.cpp)
 hardbody_test(geom_batch_test property property/geom_batch_test.cpp)

@@ -55,13 +55,19 @@ def anchor(heading):
     return re.sub(r"[^\w\- ]", "", text).strip().replace(" ", "-")
 
 
+def prose(text):
+    """A page without its blocks of code."""
+    return re.sub(r"^```.*?^```", "", text, flags=re.MULTILINE | re.DOTALL)
+
+
 def anchors(path):
-    text = re.sub(r"^```.*?^```", "", path.read_text(encoding="utf-8"), flags=re.MULTILINE | re.DOTALL)
+    text = prose(path.read_text(encoding="utf-8"))
     return {anchor(heading) for heading in re.findall(r"^#+ (.+)$", text, re.MULTILINE)}
 
 
 def check_links(name, text):
     """Messages about relative links of a page."""
+    text = prose(text)
     for other in re.findall(r"^\[[^\]]+\]:|\]\[|<(?:a|img)\s[^>]*", re.sub(r"`[^`]*`", "", text), re.MULTILINE):
         yield f"{name}: {other} is another kind of link; accepted: [text](target)"
     for target in re.findall(r"\]\(<?([^)>\s]+)", text):

@@ -53,7 +53,7 @@ Checkpoint with_a_run(Checkpoint checkpoint) {
   run.simulation = simulation.save();
   run.observables = std::string("not read here");
   run.production.planned = 10;
-  run.events = {3, 77};
+  run.files.events = {3, 77};
   run.equilibration.kinetic_at_start = ed::kinetic_state(checkpoint.system);
   run.equilibration.failures.resize(2);
   run.equilibration.failures[1].distance.emplace();
@@ -69,7 +69,7 @@ TEST(Checkpoint, ARunReadsBackTheSameBits) {
   EXPECT_EQ(hardbody::encode_checkpoint(read), bytes);
   ASSERT_TRUE(read.run.has_value());
   EXPECT_EQ(read.run->simulation.bytes(), written.run->simulation.bytes());
-  EXPECT_EQ(read.run->events.bytes, 77U);
+  EXPECT_EQ(read.run->files.events.bytes, 77U);
   EXPECT_EQ(read.upkeep.resumed, 5U);
 }
 

@@ -359,14 +359,15 @@ class Quaternions(Case):
         for spare in ["", ',"id":"\\u0041"']:
             _, exact = self.query(1, spare)
             self.assertNotIn("notice", exact)
-            for length in [1 - 9.9e-4, 1 + 9.9e-4, 1 + 1.1e-5]:
+            for length, said in [(1 - 9.9e-4, "0.99901"), (1 + 9.9e-4, "1.00099"), (1 + 1.1e-5, "1.00001"),
+                                 (1.000005, "1.000005"), (1 + 2e-6, "1.000002"), (1 - 2e-6, "0.999998")]:
                 status, answer = self.query(length, spare)
                 self.assertEqual(status, 0)
-                self.assertEqual(answer.pop("notice"), f"a.orientation is a quaternion of length {length:.6g}: normalized")
+                self.assertEqual(answer.pop("notice"), f"a.orientation is a quaternion of length {said}: normalized")
                 self.assertEqual(list(answer), list(exact))
                 self.assertAlmostEqual(answer["distance"], exact["distance"], delta=1e-14)
-            # As in files: rounding is no notice.
-            for length in [1 + 9e-7, 1 - 9e-6]:
+            # A pose takes these as they are.
+            for length in [1 + 9e-7, 1 - 9e-7]:
                 status, answer = self.query(length, spare)
                 self.assertEqual(status, 0)
                 self.assertNotIn("notice", answer)

@@ -179,7 +179,8 @@ lammps("an uneven first interval", [XU, *REST], stepped(LONG, [0, *range(7, 7 + 
 gap = [k for k in range(FRAMES) if k != 14]
 lammps("a missing frame", [XU, *REST], LONG[gap], reason="evenly spaced", way={"correlated": (slice(14, None),)})
 again = [*range(26), *range(25, FRAMES)]
-lammps("a frame that stands there twice", [XU, *REST], LONG[again], absent=ALL, reason="time of frame 26", refused=True)
+lammps("a frame that stands there twice", [XU, *REST], LONG[again], absent=ALL,
+       reason="lammpstrj: time of frame 26 is 25, that of frame 25 is 25; accepted: finite times that rise", refused=True)
 lammps("steps that start again", [XU, *REST], stepped(LONG, [*range(25), *range(15)]), absent=ALL, reason="time of frame 25",
        refused=True)
 

@@ -227,6 +227,22 @@ class Walks(FilesCase):
         self.assertIn("note: images: 0 in all frames", self.analyze("corner.lammpstrj", "--longest-lag", "2"))
         self.same(across, "nearest images")
 
+    def test_images_without_ids(self):
+        """Bodies in another order in every frame: a jump is another body, and says nothing about images."""
+        def dump(columns):
+            x = wrapped(self.slow + 4.7)
+            rows = [numpy.roll([[1, *b, 0, 0, 0] for b in f], k, axis=0) for k, f in enumerate(x)]
+            numbered = [[[i + 1, *row] for i, row in enumerate(f)] for f in rows] if "id" in columns else rows
+            self.dump("jumps.lammpstrj", f"{columns} x y z ix iy iz", numbered)
+
+        dump("type")
+        out = self.analyze("jumps.lammpstrj")
+        self.assertIn("the file does not number its bodies (no column id)", out)
+        self.assertNotIn("images:", out)
+        self.assertEqual(self.analysis()["notices"], [])
+        dump("id type")
+        self.assertIn("note: images: 0 in all frames, while bodies jump", self.analyze("jumps.lammpstrj"))
+
     def test_a_little_outside_the_box(self):
         """LAMMPS wraps only now and then; another program's file may mean either."""
         near = [[[4.9, 0, 0], [0, 3, 0]], [[5.3, 0, 0], [0, 3, 0]], [[-4.2, 0, 0], [0, 3, 0]]]
@@ -332,6 +348,20 @@ class PartsOfFrames(FilesCase):
         for r in pairs([0.005 * s for s in steps]):
             self.assertLess(numpy.abs(seen - r).min(), rows["r"][1] - rows["r"][0])
 
+    def test_times_that_do_not_rise(self):
+        """Frames are named by their numbers in the file, whichever are used."""
+        steps = [0, 1, 2, 3, 2, 5]
+        self.dump("back.lammpstrj", "id type xu yu zu", [[[1, 1, 0, 0, 0], [2, 1, 0, 3, 0]] for _ in steps], steps=steps)
+        self.refused("back.lammpstrj", "back.lammpstrj: time of frame 4 is 2, that of frame 3 is 3; accepted: finite times")
+        result = self.hardbody("analyze", "back.lammpstrj", "--time-step", "1", "--every", "2", "--out", "analysis")
+        self.assert_refused(result, "back.lammpstrj: time of frame 4 is 2, that of frame 2 is 2; accepted: finite times")
+
+    def test_boxes_that_are_far_too_large(self):
+        row = [[[1, 1, 0, 0, 0, 1e-6], [2, 1, 0, 3, 0, 1e-6]]]
+        self.dump("far.lammpstrj", "id type x y z radius", row)
+        self.refused("far.lammpstrj", "frame 0: its box has an edge of 10, its bodies have a mean radius of 1e-06",
+                     "an edge below 1e+06 times this length")
+
     def test_bodies_that_change(self):
         first = [[1, 1, 0, 0, 0, 1, 1], [5, 2, 0, 3, 0, 1, 1]]
         for what, row, text in [("type", [5, 1, 0, 3, 0, 1, 1], "body 5 is of type 1, in the first frame of 2"),
@@ -366,7 +396,7 @@ class PartsOfFrames(FilesCase):
         self.assertIn("orientations: quaternions of 1 bodies normalized, their lengths off 1 by up to 5.0e-04", self.analyze("q.lammpstrj"))
         self.dump("q.lammpstrj", columns, [row(1.002)])
         self.refused("q.lammpstrj", "the orientation of body 4 is a quaternion of length 1.002", "1 within 0.001")
-        for length, said in [(1 + 9e-6, False), (1 + 1.1e-5, True)]:
+        for length, said in [(1.000005, False), (1 + 9e-6, False), (1 + 1.1e-5, True)]:
             self.dump("q.lammpstrj", columns, [row(f"{length:.9f}")])
             self.assertEqual("normalized" in self.analyze("q.lammpstrj"), said)
         for length, known in [(1.0005, True), (1.002, False)]:
@@ -375,6 +405,8 @@ class PartsOfFrames(FilesCase):
                 self.assertIn("orientations: quaternions of 1 bodies normalized", self.analyze("q.gsd"))
             else:
                 self.refused("q.gsd", "the orientation of body 1 is a quaternion of length 1.002")
+        self.gsd("q.gsd", [self.two(0)], ROD, orientation=[[[1, 0, 0, 0], [1.000005, 0, 0, 0]]])
+        self.assertNotIn("normalized", self.analyze("q.gsd"))
 
     def test_messages_give_ids(self):
         for column, value, text in [("x", "nan", 'x of body 17 is "nan"'), ("x", 1e17, "body 17 is at 1e+17"),

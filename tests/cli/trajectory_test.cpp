@@ -49,6 +49,22 @@ ed::System start() {
   return ed::random_start(hardbody::parse_config(kMixture, "memory").components(), options);
 }
 
+TEST(Shapes, AreTheSameByKindLengthsAndExponents) {
+  const ed::BodyShape box = geom::Superellipsoid({1, 2, 3}, 0.5, 0.8);
+  const auto other = [](double c, double e1, double e2) -> ed::BodyShape {
+    return geom::Superellipsoid({1, 2, c}, e1, e2);
+  };
+  EXPECT_TRUE(hardbody::same_shape(box, box, 0, 0));
+  EXPECT_TRUE(hardbody::same_shape(other(3 + 1e-6, 0.5, 0.8), box, 1e-6, 0));
+  EXPECT_FALSE(hardbody::same_shape(other(3 + 1e-5, 0.5, 0.8), box, 1e-6, 0));
+  EXPECT_FALSE(hardbody::same_shape(other(3, 0.5 + 1e-5, 0.8), box, 1e-6, 1e-6));
+  EXPECT_FALSE(hardbody::same_shape(other(3, 0.5, 0.8 - 1e-5), box, 1e-6, 1e-6));
+  EXPECT_TRUE(hardbody::same_shape(other(3, 0.5, 0.8 - 1e-7), box, 1e-6, 1e-6));
+  const ed::BodyShape ellipsoid = geom::Ellipsoid({1, 2, 3});
+  EXPECT_FALSE(hardbody::same_shape(ellipsoid, other(3, 1, 1), 1e-6, 1e-6));
+  EXPECT_EQ(hardbody::exponents_of(ellipsoid), Eigen::Vector2d(1, 1));
+}
+
 std::string content(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), {}};

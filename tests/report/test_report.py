@@ -771,6 +771,8 @@ class Static(Case):
         self.assertIn("static", result.stdout)
         text = (self.here / "static.html").read_text(encoding="utf-8")
         self.assertNotIn("<script", text)
+        for q in summary_of(directory)["wave_numbers"]:
+            self.assertIn(f">q l = {q:.3g}<", text)
         for width, height in SIZES:
             with self.subTest(width=width):
                 browser = self.open(self.here / "static.html", width, height)

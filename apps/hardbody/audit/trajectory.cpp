@@ -22,10 +22,6 @@
 namespace hardbody {
 namespace {
 
-void frame_row(const char* name, const std::string& value) {
-  fmt::print("  {:<26} {}\n", name, value);
-}
-
 /// Findings of all frames together.
 struct FramesAudit {
   std::uint64_t frames = 0;             ///< number of frames with positions
@@ -64,21 +60,17 @@ double rounding_of(const Frame& frame, bool text) {
 
 /// Audits the state itself, which the program's own trajectories contain.
 PairAudit audit_exactly(const Frame& frame, const std::string& where, ed::KineticState& kinetic) {
-  try {
-    const ed::Audit audit = ed::audit(*frame.exact);
-    kinetic = audit.kinetic;
-    PairAudit result;
-    result.overlaps = static_cast<std::uint64_t>(audit.overlaps);
-    result.unanswered = static_cast<std::uint64_t>(audit.unanswered);
-    if (!audit.finite) result.not_tested.emplace_back("numbers are not finite");
-    if (audit.closest_i < 0) return result;
-    result.minimum_distance = audit.minimum_distance;
-    result.closest_i = static_cast<std::size_t>(audit.closest_i);
-    result.closest_j = static_cast<std::size_t>(audit.closest_j);
-    return result;
-  } catch (const std::invalid_argument& error) {
-    throw InputError(fmt::format("{}: holds an impossible state: {}", where, error.what()));
-  }
+  const ed::Audit audit = audited(*frame.exact, where);
+  kinetic = audit.kinetic;
+  PairAudit result;
+  result.overlaps = static_cast<std::uint64_t>(audit.overlaps);
+  result.unanswered = static_cast<std::uint64_t>(audit.unanswered);
+  if (!audit.finite) result.not_tested.emplace_back("numbers are not finite");
+  if (audit.closest_i < 0) return result;
+  result.minimum_distance = audit.minimum_distance;
+  result.closest_i = static_cast<std::size_t>(audit.closest_i);
+  result.closest_j = static_cast<std::size_t>(audit.closest_j);
+  return result;
 }
 
 std::vector<std::string> pair_defects(const Frame& frame, const PairAudit& audit) {
@@ -129,42 +121,54 @@ std::vector<std::string> audit_frame(const Frame& frame, std::uint64_t k, const 
 /// Prints the results for the pairs.
 void print_pairs(const FramesAudit& all) {
   if (all.not_tested.empty()) {
-    frame_row("overlaps", all.tolerance > 0 ? fmt::format("{}, more than the rounding of the numbers ({:.2g})",
-                                                          all.overlaps, all.tolerance)
-                                            : fmt::format("{}", all.overlaps));
+    report_row("overlaps", all.tolerance > 0 ? fmt::format("{}, more than the rounding of the numbers ({:.2g})",
+                                                           all.overlaps, all.tolerance)
+                                             : fmt::format("{}", all.overlaps));
   } else {
-    frame_row("overlaps",
-              fmt::format("{} found; not tested everywhere: {}", all.overlaps, fmt::join(all.not_tested, "; ")));
+    report_row("overlaps",
+               fmt::format("{} found; not tested everywhere: {}", all.overlaps, fmt::join(all.not_tested, "; ")));
   }
-  frame_row("distances not answered", fmt::format("{}", all.unanswered));
-  frame_row("minimum distance", std::isfinite(all.minimum_distance)
-                                    ? fmt::format("{:.6g} l, {}", all.minimum_distance, all.closest)
-                                : all.not_tested.empty() ? std::string("no two bounding spheres meet")
-                                                         : std::string("not known"));
+  report_row("distances not answered", fmt::format("{}", all.unanswered));
+  report_row("minimum distance", std::isfinite(all.minimum_distance)
+                                     ? fmt::format("{:.6g} l, {}", all.minimum_distance, all.closest)
+                                 : all.not_tested.empty() ? std::string("no two bounding spheres meet")
+                                                          : std::string("not known"));
 }
 
 void print_frames(const TrajectoryReader& reader, const Frame& first, const Frame& last, const FramesAudit& all) {
   const auto* gsd = dynamic_cast<const GsdReader*>(&reader);
   const bool exact = first.exact.has_value();
-  frame_row("written by", gsd != nullptr ? one_line(gsd->application(), 60) : std::string("not stored (LAMMPS dump)"));
-  frame_row("frames", fmt::format("{}{}", reader.frame_count(), reader.cut_off() ? kCutOff : ""));
+  report_row("written by", gsd != nullptr ? one_line(gsd->application(), 60) : std::string("not stored (LAMMPS dump)"));
+  report_row("frames", fmt::format("{}{}", reader.frame_count(), reader.cut_off() ? kCutOff : ""));
   if (all.without_positions > 0) {
-    frame_row("frames left out", fmt::format("{}, which have no positions", all.without_positions));
+    report_row("frames left out", fmt::format("{}, which have no positions", all.without_positions));
   }
-  frame_row("bodies", fmt::format("{}", first.bodies.size()));
-  frame_row("bit-exact state", exact ? "yes" : gsd != nullptr ? "no, 32-bit numbers" : "no, rounded decimal numbers");
-  if (exact) frame_row("times", fmt::format("{:g} to {:g}", first.time, last.time));
-  frame_row("all numbers finite", "yes");
+  report_row("bodies", fmt::format("{}", first.bodies.size()));
+  report_row("bit-exact state", exact ? "yes" : gsd != nullptr ? "no, 32-bit numbers" : "no, rounded decimal numbers");
+  if (exact) report_row("times", fmt::format("{:g} to {:g}", first.time, last.time));
+  report_row("all numbers finite", "yes");
   print_pairs(all);
   if (exact) {
-    frame_row("energy drift", fmt::format("{:.1e} (relative, from the first frame)", all.energy_drift));
+    report_row("energy drift", fmt::format("{:.1e} (relative, from the first frame)", all.energy_drift));
   } else {
-    frame_row("energy and momentum", "not tested: not known exactly");
+    report_row("energy and momentum", "not tested: not known exactly");
   }
-  for (const std::string& notice : all.notices) frame_row("notice", notice);
+  for (const std::string& notice : all.notices) report_row("notice", notice);
 }
 
 }  // namespace
+
+void report_row(const char* name, const std::string& value) {
+  fmt::print("  {:<26} {}\n", name, value);
+}
+
+ed::Audit audited(const ed::System& system, const std::string& where) {
+  try {
+    return ed::audit(system);
+  } catch (const std::invalid_argument& error) {
+    throw InputError(fmt::format("{}: holds an impossible state: {}", where, error.what()));
+  }
+}
 
 int check_trajectory(const TrajectoryReader& reader) {
   constexpr std::uint64_t kMostShown = 20;

@@ -5,16 +5,23 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <system_error>
 
 namespace hardbody {
 
-std::optional<double> finite_number(std::string_view text) {
+std::optional<double> number_or_nan(std::string_view text) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   const char* const last = text.data() + text.size();
-  double value = 0;
+  double value = kNone;
   const auto [end, error] = std::from_chars(text.data(), last, value);
-  if (error != std::errc() || end != last || !std::isfinite(value)) return std::nullopt;
-  return value;
+  if (end != last || (error != std::errc() && error != std::errc::result_out_of_range)) return std::nullopt;
+  return error == std::errc() && std::isfinite(value) ? value : kNone;
+}
+
+std::optional<double> finite_number(std::string_view text) {
+  const std::optional<double> value = number_or_nan(text);
+  return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
 std::optional<double> duration_seconds(std::string_view text) {

@@ -57,6 +57,11 @@ double Progress::seconds() const {
   return std::chrono::duration<double>(Clock::now() - begun_).count();
 }
 
+void announce(const std::string& text, Progress& progress, Log& log) {
+  log.line(text);
+  progress.say(text);
+}
+
 std::string eta(double seconds, double done, double total) {
   if (!(done > 0) || !(total > done)) return "";
   const double left = seconds * (total - done) / done;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "base/log.h"
+
 #include <chrono>
 #include <string>
 
@@ -36,6 +38,9 @@ class Progress {
   Clock::time_point begun_;
   Clock::time_point last_;
 };
+
+/// Logs a line and prints it.
+void announce(const std::string& text, Progress& progress, Log& log);
 
 /// Returns the remaining time as text, "ETA 1.5 h", "ETA 42 s"; empty if nothing is done yet.
 std::string eta(double seconds, double done, double total);

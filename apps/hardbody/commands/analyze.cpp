@@ -21,11 +21,8 @@
 #include <filesystem>
 #include <limits>
 #include <memory>
-#include <numbers>
 #include <optional>
-#include <stdexcept>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace hardbody {
@@ -46,6 +43,8 @@ RunChoices choices_of_run(const fs::path& directory) {
   const fs::path file = directory / kSummaryFile;
   RunChoices choices;
   if (!fs::exists(file)) return choices;
+  const InputError foreign(
+      fmt::format("{}: was not written by a run; accepted: a trajectory without such a file beside it", file.string()));
   try {
     const Json summary = Json::parse(read_file(file, kLongestSummary));
     for (const char* decay : {"F", "C2"}) {
@@ -53,13 +52,13 @@ RunChoices choices_of_run(const fs::path& directory) {
       if (!window.is_null()) choices.fit_from = window.at(0).get<double>();
     }
     choices.wave_numbers = summary.at("wave_numbers").get<std::vector<double>>();
+    const auto positive = [](double q) { return q > 0 && std::isfinite(q); };
+    const bool valid = choices.wave_numbers.size() <= ed::kMostWaveNumbers && choices.fit_from.value_or(0) >= 0;
+    if (valid && std::all_of(choices.wave_numbers.begin(), choices.wave_numbers.end(), positive)) return choices;
   } catch (const Json::exception&) {
-    throw InputError(
-        fmt::format("{}: was not written by a run; accepted: a trajectory without such a file "
-                    "beside it",
-                    file.string()));
+    throw foreign;
   }
-  return choices;
+  throw foreign;
 }
 
 // ---- Files
@@ -88,7 +87,7 @@ const MissingWords kWords = {"", "--longest-lag or a longer trajectory helps", "
 
 /// Returns the entries of summary.json that frames tell. A director that is missing is a list of nulls.
 Json frame_observables(const Part& part) {
-  Json json = observables_json(part, kWords, Measured::in_frames);
+  Json json = observables_json(part, kWords, Source::frames);
   if (!part.results.director.axis.allFinite()) json["director"]["value"] = list_json(part.results.director.axis);
   return json;
 }
@@ -194,12 +193,7 @@ int analyze(const AnalyzeArguments& arguments) {
   const RunChoices run = choices_of_run(file.parent_path());
   stored.options.fit_from = arguments.fit_from ? arguments.fit_from : run.fit_from;
   stored.options.wave_numbers = run.wave_numbers;
-  ed::StoredResults results;
-  try {
-    results = ed::analyze_frames(stored.frames, stored.options);
-  } catch (const std::invalid_argument& error) {
-    throw InputError(fmt::format("{}: {}{}", reader.name(), one_line(error.what()), reader.cut_off() ? kCutOff : ""));
-  }
+  const ed::StoredResults results = ed::analyze_frames(stored.frames, stored.options);
   write_files(out, reader.name(), stored, results);
   print_reading(reader, stored, results);
   for (const Observable& o : observables()) {

@@ -6,7 +6,6 @@
 #include "io/run_directory.h"
 #include "run/checkpoint.h"
 #include "run/record.h"
-#include "run/table.h"
 #include "start/agreement.h"
 #include "trajectory/reader.h"
 
@@ -14,7 +13,6 @@
 
 #include <cmath>
 #include <filesystem>
-#include <stdexcept>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -25,44 +23,33 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void row(const char* name, const std::string& value) {
-  fmt::print("  {:<26} {}\n", name, value);
-}
-
 std::string yes_or_no(bool yes) {
   return yes ? "yes" : "NO";
 }
 
-ed::Audit audit(const ed::System& system, const std::string& name) {
-  try {
-    return ed::audit(system);
-  } catch (const std::invalid_argument& error) {
-    throw InputError(fmt::format("{}: holds an impossible state: {}", name, error.what()));
-  }
-}
-
 void print_state(const Checkpoint& checkpoint, const ed::Audit& audit) {
   const ed::KineticState& kinetic = audit.kinetic;
-  row("state at", fmt::format("time {:g} of {}, written by hardbody {}", checkpoint.time, checkpoint.phase,
-                              checkpoint.program_version));
-  row("bodies", fmt::format("{}", checkpoint.system.size()));
-  row("all numbers finite", yes_or_no(audit.finite));
+  report_row("state at", fmt::format("time {:g} of {}, written by hardbody {}", checkpoint.time, checkpoint.phase,
+                                     checkpoint.program_version));
+  report_row("bodies", fmt::format("{}", checkpoint.system.size()));
+  report_row("all numbers finite", yes_or_no(audit.finite));
   if (audit.finite) {
-    row("overlaps", fmt::format("{}", audit.overlaps));
-    row("distances not answered", fmt::format("{}", audit.unanswered));
-    row("minimum distance", audit.closest_i < 0 ? std::string("no two bounding spheres meet")
-                                                : fmt::format("{:.6g} l, bodies {} and {}", audit.minimum_distance,
-                                                              audit.closest_i, audit.closest_j));
+    report_row("overlaps", fmt::format("{}", audit.overlaps));
+    report_row("distances not answered", fmt::format("{}", audit.unanswered));
+    report_row("minimum distance", audit.closest_i < 0
+                                       ? std::string("no two bounding spheres meet")
+                                       : fmt::format("{:.6g} l, bodies {} and {}", audit.minimum_distance,
+                                                     audit.closest_i, audit.closest_j));
   } else {
-    row("overlaps", "not tested");
+    report_row("overlaps", "not tested");
   }
-  row("energy", fmt::format("{:.10g} kT (translation {:.6g}, rotation {:.6g}, spin {:.6g})", kinetic.energy(),
-                            kinetic.translational_energy, kinetic.rotational_energy, kinetic.spin_energy));
-  row("translational temperature", fmt::format("{:.6f} on 3N - 3 degrees of freedom", kinetic.translational_kT));
-  row("rotational temperature",
-      fmt::format("{:.6f} on {}", kinetic.rotational_kT,
-                  freedoms_text(kinetic.rotational_degrees_of_freedom, checkpoint.system.size())));
-  row("momentum", fmt::format("{:.2e} sqrt(m kT) a body", kinetic.momentum.norm() / checkpoint.system.size()));
+  report_row("energy", fmt::format("{:.10g} kT (translation {:.6g}, rotation {:.6g}, spin {:.6g})", kinetic.energy(),
+                                   kinetic.translational_energy, kinetic.rotational_energy, kinetic.spin_energy));
+  report_row("translational temperature", fmt::format("{:.6f} on 3N - 3 degrees of freedom", kinetic.translational_kT));
+  report_row("rotational temperature",
+             fmt::format("{:.6f} on {}", kinetic.rotational_kT,
+                         freedoms_text(kinetic.rotational_degrees_of_freedom, checkpoint.system.size())));
+  report_row("momentum", fmt::format("{:.2e} sqrt(m kT) a body", kinetic.momentum.norm() / checkpoint.system.size()));
 }
 
 /// Compares the state with the config it was made with, prints the result and returns whether they agree.
@@ -71,10 +58,10 @@ bool print_config(const Checkpoint& checkpoint, const std::string& name) {
   const double phi = ed::packing_fraction(checkpoint.system);
   const bool same_phi = std::abs(phi / config.packing_fraction - 1) < kStateRounding;
   const Agreement same = compare(checkpoint.system, config);
-  row("packing fraction", fmt::format("{:.15g}, as configured: {}", phi, yes_or_no(same_phi)));
-  row("number as configured", yes_or_no(same.number));
-  row("shape as configured", yes_or_no(same.shape));
-  row("inertia as configured", yes_or_no(same.dynamics));
+  report_row("packing fraction", fmt::format("{:.15g}, as configured: {}", phi, yes_or_no(same_phi)));
+  report_row("number as configured", yes_or_no(same.number));
+  report_row("shape as configured", yes_or_no(same.shape));
+  report_row("inertia as configured", yes_or_no(same.dynamics));
   return same_phi && same.number && same.shape && same.dynamics;
 }
 
@@ -90,7 +77,7 @@ int check(const std::string& path) {
   if (!fs::is_directory(status)) return check_trajectory(*open_frames(path));
   const fs::path file = fs::path(path) / kCheckpointFile;
   const Checkpoint checkpoint = read_checkpoint(file);
-  const ed::Audit result = audit(checkpoint.system, file.string());
+  const ed::Audit result = audited(checkpoint.system, file.string());
   fmt::print("{}\n", file.string());
   print_state(checkpoint, result);
   std::vector<std::string> list = defects(result);

@@ -61,7 +61,7 @@ A line out:
   notice       only if the length of a quaternion was not 1: names it and its length
 An invalid line is answered by {{"error":"line 3: .."}}, blank lines are skipped.
 Exit status: 0 every line was answered or declined, 1 the answers could not be written, 2 a line was invalid.)",
-      geom::kMinExponent, geom::kMaxExponent, kQuaternionTolerance, kQuaternionRounding, built_in_seeds());
+      geom::kMinExponent, geom::kMaxExponent, kQuaternionTolerance, kJsonRounding, built_in_seeds());
 }
 
 int distance(const std::string& path) {

@@ -66,7 +66,9 @@ std::vector<std::size_t> chosen_rows(const CsvTable& table, const std::vector<st
     const std::size_t column = table.column(std::string_view(condition).substr(0, equals));
     const std::string wanted = condition.substr(equals + 1);
     std::erase_if(rows, [&](std::size_t k) { return !is_same(table.rows[k][column], wanted); });
-    if (rows.empty()) throw InputError(fmt::format("--where {}: no row of {} fulfils it", condition, table.name));
+    if (!rows.empty()) continue;
+    throw InputError(fmt::format("--where {}: holds in no row of {}{}; accepted: a value of that column", condition,
+                                 table.name, conditions.size() > 1 ? " where the conditions before it hold" : ""));
   }
   return rows;
 }

@@ -12,13 +12,13 @@
 #include "run/checkpoint.h"
 #include "run/files/failure_file.h"
 #include "run/files/observable_files.h"
-#include "run/origin.h"
 #include "run/phases/equilibration.h"
 #include "run/phases/production.h"
 #include "run/record.h"
 #include "run/saver.h"
 #include "run/summary.h"
 #include "run/table.h"
+#include "start/agreement.h"
 #include "start/from_file.h"
 #include "start/make_start.h"
 
@@ -37,6 +37,32 @@
 
 namespace hardbody {
 namespace {
+
+/// Returns the last state of the run that the config starts from. Throws InputError if there is none, or it is not one
+/// of the config's bodies at its packing fraction or below.
+ed::System read_origin_state(const Config& config) {
+  const std::filesystem::path file = std::filesystem::path(*config.start_from) / kCheckpointFile;
+  const Checkpoint checkpoint = read_checkpoint(file);
+  const auto refuse = [&](const std::string& why, const std::string& accepted) {
+    return InputError(fmt::format("{}: {} {}; accepted: {}", kStartFromKey, file.string(), why, accepted));
+  };
+  if (!checkpoint.run || !checkpoint.run->finished) {
+    throw refuse("is of a run that is not finished", "the directory of a finished run");
+  }
+  const Agreement same = compare(checkpoint.system, config);
+  if (!same.number) {
+    throw refuse(fmt::format("holds {} bodies, {} is {}", checkpoint.system.size(), kNumberKey, config.number),
+                 "a run of as many");
+  }
+  if (!same.shape) throw refuse("holds bodies of another shape", "a run of the same bodies");
+  if (!same.dynamics) throw refuse("holds bodies of other mass or inertia", "a run of the same bodies");
+  const double phi = ed::packing_fraction(checkpoint.system);
+  if (phi > config.packing_fraction * (1 + kStateRounding)) {
+    throw refuse(fmt::format("has packing fraction {:g}, {} is {:g}", phi, kPackingKey, config.packing_fraction),
+                 "a run that is not denser");
+  }
+  return checkpoint.system;
+}
 
 /// Reads the state that the run starts from, before anything is changed. The name of its run becomes an absolute one.
 ed::System take_origin(const std::filesystem::path& directory, Config& config) {
@@ -124,16 +150,21 @@ void write_results(const RunDirectory& directory, RunRecord& record, Continuatio
   written.summary = true;
 }
 
+/// Logs a line and prints it after the name of the run.
+void announce(const std::string& text, const RunDirectory& directory, Progress& progress, Log& log) {
+  log.line(text);
+  progress.say(fmt::format("{}: {}", directory.path().string(), text));
+}
+
 /// Ends a run without a start. Nothing was measured, and an incomplete start is not kept: only the config and the log
 /// remain.
 int stopped_at_the_start(const RunDirectory& directory, Progress& progress, Log& log) {
   const int signal = pending_signal();
-  const std::string text = fmt::format(
-      "stopped by {} during the start: nothing was measured, and the start is not saved: hardbody resume begins it "
-      "again",
-      signal_name(signal));
-  log.line(text);
-  progress.say(fmt::format("{}: {}", directory.path().string(), text));
+  announce(
+      fmt::format("stopped by {} during the start: nothing was measured, and the start is not saved: hardbody resume "
+                  "begins it again",
+                  signal_name(signal)),
+      directory, progress, log);
   return exit_status_of(signal);
 }
 
@@ -155,16 +186,11 @@ int conclude(const RunDirectory& directory, RunRecord& record, Continuation& at,
   (void)std::fflush(stdout);
   if (failure) std::rethrow_exception(failure);
   const std::vector<std::string> list = defects(record);
-  for (const std::string& defect : list) {
-    log.line("NOT SOUND: " + defect);
-    progress.say(fmt::format("{}: NOT SOUND: {}", directory.path().string(), defect));
-  }
+  for (const std::string& defect : list) announce("NOT SOUND: " + defect, directory, progress, log);
   if (record.stopped() && !record.stall) {
-    const std::string text =
-        fmt::format("stopped by {} during {} at time {:g}: results so far are written, hardbody resume continues",
-                    signal_name(signal), record.last_phase(), record.last_time());
-    log.line(text);
-    progress.say(fmt::format("{}: {}", directory.path().string(), text));
+    announce(fmt::format("stopped by {} during {} at time {:g}: results so far are written, hardbody resume continues",
+                         signal_name(signal), record.last_phase(), record.last_time()),
+             directory, progress, log);
     return exit_status_of(signal);
   }
   log.line("end");
@@ -266,7 +292,7 @@ Continuation continuation(const Config& config, Checkpoint checkpoint, const Run
                                  name, one_line(checkpoint.phase, 40)));
   } else {
     at.production = resumed_production(config, checkpoint, directory, name);
-    at.files = {checkpoint.run->events, checkpoint.run->trajectory};
+    at.files = checkpoint.run->files;
   }
   return at;
 }

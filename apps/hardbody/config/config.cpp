@@ -1,6 +1,5 @@
 #include "config/config.h"
 
-#include "base/errors.h"
 #include "base/number_text.h"
 #include "config/box.h"
 #include "config/keys.h"

@@ -12,6 +12,8 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <string>
+#include <utility>
 
 namespace hardbody {
 namespace {
@@ -188,16 +190,22 @@ std::string axes_comment(const Place& at) {
                      last ? " and the axis of revolution last" : "", used.x(), used.y(), used.z());
 }
 
-std::vector<Key> shape_keys() {
+/// Returns the keys that [shape] and [[species]] share.
+std::vector<Key> form_keys(const std::string& section, const char* usual_kind, Comment ratio, Comment axes) {
   return {
-      {"shape.kind", "\"ellipsoid\"", choice(&ShapeConfig::kind, {ShapeKind::ellipsoid, ShapeKind::superellipsoid}),
+      {section + ".kind", usual_kind, choice(&ShapeConfig::kind, {ShapeKind::ellipsoid, ShapeKind::superellipsoid}),
        kKindComment},
-      {"shape.aspect_ratio", "", number(&ShapeConfig::aspect_ratio, kRatios, kRatioMeaning),
-       "X0 = a/b, a along the axis of revolution, from 0.01 to 100;\n"
-       "or semi_axes = [a, b, c], in any unit: only their ratios count"},
-      {"shape.semi_axes", "", bound(&ShapeConfig::semi_axes, take_semi_axes), axes_comment},
-      {"shape.exponents", "", exponents_rule(), kExponentsComment, has_exponents},
+      {section + ".aspect_ratio", "", number(&ShapeConfig::aspect_ratio, kRatios, kRatioMeaning), std::move(ratio)},
+      {section + ".semi_axes", "", bound(&ShapeConfig::semi_axes, take_semi_axes), std::move(axes)},
+      {section + ".exponents", "", exponents_rule(), kExponentsComment, has_exponents},
   };
+}
+
+std::vector<Key> shape_keys() {
+  return form_keys("shape", "\"ellipsoid\"",
+                   "X0 = a/b, a along the axis of revolution, from 0.01 to 100;\n"
+                   "or semi_axes = [a, b, c], in any unit: only their ratios count",
+                   axes_comment);
 }
 
 using Sizes = ed::SizeDistribution;
@@ -225,12 +233,11 @@ constexpr auto fraction_comment = [](const Place& at) -> std::string {
 };
 
 std::vector<Key> species_keys() {
-  return {
-      {"species.kind", "", choice(&ShapeConfig::kind, {ShapeKind::ellipsoid, ShapeKind::superellipsoid}), kKindComment},
-      {"species.aspect_ratio", "", number(&ShapeConfig::aspect_ratio, kRatios, kRatioMeaning),
-       "X0 = a/b, a along the axis of revolution, from 0.01 to 100;\nor semi_axes; (a b c)^(1/3) = 1 then"},
-      {"species.semi_axes", "", bound(&ShapeConfig::semi_axes, take_semi_axes), "[a, b, c], as they are"},
-      {"species.exponents", "", exponents_rule(), kExponentsComment, has_exponents},
+  std::vector<Key> keys = form_keys("species", "",
+                                    "X0 = a/b, a along the axis of revolution, from 0.01 to 100;\n"
+                                    "or semi_axes; (a b c)^(1/3) = 1 then",
+                                    "[a, b, c], as they are");
+  const std::vector<Key> others = {
       {"species.fraction", "1 for a single species",
        number(&SpeciesConfig::fraction, {0, 1, false}, "of the number of bodies"), fraction_comment},
       {"species.number", "1 for a single species", integer(&SpeciesConfig::number, 1, kMostBodies),
@@ -246,6 +253,8 @@ std::vector<Key> species_keys() {
       {"species.size_seed", "the run's seed", unless(without_sizes, kNoSizes, integer(&SpeciesConfig::size_seed, 0)),
        "of the sizes, instead of seed", has_sizes},
   };
+  keys.insert(keys.end(), others.begin(), others.end());
+  return keys;
 }
 
 // ---- [dynamics]
@@ -345,10 +354,10 @@ std::vector<Key> run_keys() {
               number(&Config::target_error, {1e-4, 1}, "standard error over value, of D_trans and D_rot")),
        "at most this", nullptr, "target_error = 0.02, if that is given"},
       {"production.wave_numbers", "[]", bound(&Config::wave_numbers, take_wave_numbers),
-       "of F_self, in 1/l, at most 8, the first is fitted; none: at\n"
-       "the first peak of S(q), a quarter, half and twice of it"},
+       "of F_self in 1/l, at most 8; the decay at the first is fitted.\n"
+       "[]: first peak of S(q), and a quarter, half and twice of it"},
       {"output.events", "0", integer(&Config::events, 0, kMostEvents),
-       "so many collisions of production go to events.csv"},
+       "number of production collisions to record in events.csv"},
       {"output.trajectory", "[]", bound(&Config::trajectory, take_trajectory),
        "of production: any of \"gsd\", \"lammps\" and \"vtk\""},
       {"output.frames", "100", integer(&Config::frames, 2, kMostFrames), "of each, evenly from the begin to the end"},

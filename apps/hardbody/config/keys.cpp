@@ -1,6 +1,7 @@
 #include "config/keys.h"
 
 #include "base/errors.h"
+#include "base/find.h"
 #include "base/suggest.h"
 #include "io/text_file.h"
 
@@ -36,7 +37,7 @@ std::vector<std::string_view> key_names() {
 }
 
 const Key& key_called(std::string_view name) {
-  return *std::find_if(keys().begin(), keys().end(), [&](const Key& key) { return key.name == name; });
+  return *find_by(keys(), &Key::name, name);
 }
 
 std::string full_name(std::string_view section, std::string_view name) {
@@ -192,18 +193,15 @@ std::optional<Difference> difference(const Config& here, const Config& there) {
     }
     return list;
   };
-  const auto find = [](const std::vector<PlacedKey>& list, const std::string& name) {
-    return std::find_if(list.begin(), list.end(), [&](const PlacedKey& key) { return key.name == name; });
-  };
   const std::vector<PlacedKey> mine = with_value(here);
   const std::vector<PlacedKey> theirs = with_value(there);
   for (const PlacedKey& key : mine) {
-    const auto other = find(theirs, key.name);
-    if (other == theirs.end()) return Difference{key.name, text(key), "nothing"};
+    const PlacedKey* other = find_by(theirs, &PlacedKey::name, key.name);
+    if (other == nullptr) return Difference{key.name, text(key), "nothing"};
     if (!key.key->rule.same(key.place, other->place)) return Difference{key.name, text(key), text(*other)};
   }
   for (const PlacedKey& key : theirs) {
-    if (find(mine, key.name) == mine.end()) return Difference{key.name, "nothing", text(key)};
+    if (find_by(mine, &PlacedKey::name, key.name) == nullptr) return Difference{key.name, "nothing", text(key)};
   }
   return std::nullopt;
 }

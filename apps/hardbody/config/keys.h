@@ -73,7 +73,7 @@ struct Comment {
 };
 
 struct Key {
-  std::string_view name;   ///< section.key; of a [[species]] species.key
+  std::string name;        ///< section.key; of a [[species]] species.key
   std::string_view usual;  ///< default, as docs/configuration.md has it; empty: none
   Rule rule;
   Comment comment;

@@ -1,5 +1,6 @@
 #include "config/species.h"
 
+#include "base/find.h"
 #include "config/keys.h"
 
 #include <ed/polydispersity.h>
@@ -246,10 +247,7 @@ void read_one(const TomlDocument& document, const std::string& section, Config& 
 
 /// Refuses [shape] or [[species]], whichever stands later.
 void refuse_both(const TomlDocument& document, const Entry& shape) {
-  const Section* species = nullptr;
-  for (const Section& section : document.sections) {
-    if (section.name == "species[1]") species = &section;
-  }
+  const Section* species = find_by(document.sections, &Section::name, "species[1]");
   const bool shape_later = shape.line == 0 || shape.line > species->line;
   throw InputError(
       fmt::format("{}: {} and [[species]] are both given; accepted: one [shape], or one or more [[species]]",

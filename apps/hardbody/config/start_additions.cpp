@@ -97,7 +97,7 @@ double packing_of(const Frame& frame, const TomlDocument& document, const std::s
     volume += shape ? ed::volume(*shape) : 0;
   }
   if (volume == 0) {
-    throw InputError(fmt::format("{}: {} is missing, and {} says no shapes; accepted: a number",
+    throw InputError(fmt::format("{}: {} is missing, and {} has no shapes to compute it from; accepted: a number",
                                  document.where_of("system"), kPackingKey, file));
   }
   return volume / std::pow(box_of(frame, file), 3);
@@ -144,7 +144,6 @@ TomlDocument completed(TomlDocument document, const StartFile& start, std::optio
   frame = read_start_frame(start);
   std::string text;
   std::vector<std::string> values;
-  if (!start.frame) values.push_back(fmt::format("{}={}", kStartFrameKey, frame->number));
   if (!shapes) text = species_text(frame->frame, start.file, document.find(kInertiaKey) == nullptr);
   if (shapes && !numbers) values.push_back(fmt::format("{}={}", kNumberKey, frame->frame.bodies.size()));
   if (!packing) {

@@ -1,5 +1,6 @@
 #include "config/text.h"
 
+#include "base/find.h"
 #include "base/suggest.h"
 #include "base/version.h"
 #include "config/keys.h"
@@ -7,7 +8,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <iterator>
 #include <string_view>
 
 namespace hardbody {
@@ -100,9 +100,8 @@ std::string sweep_template() {
 
 std::optional<std::string> template_text(std::string_view name) {
   if (name == kSweepTemplate) return sweep_template();
-  const auto found =
-      std::find_if(std::begin(kTemplates), std::end(kTemplates), [&](const Template& t) { return t.name == name; });
-  if (found == std::end(kTemplates)) return std::nullopt;
+  const Template* found = find_by(kTemplates, &Template::name, name);
+  if (found == nullptr) return std::nullopt;
   Config config = parse_config(found->config, "template");
   config.neighbours.reset();
   return config_text(config, fmt::format("# hardbody: a run of {}. Start it with: hardbody run THIS_FILE\n"

@@ -1,6 +1,7 @@
 #include "distance/query.h"
 
 #include "base/errors.h"
+#include "base/find.h"
 #include "distance/scanner.h"
 #include "io/json_member.h"
 #include "io/orientation.h"
@@ -56,26 +57,19 @@ std::optional<geom::Penetration> find_penetration(std::string_view name) {
 
 /// Returns the seed of this name; nullptr if there is none. Its function is null if it is not built in.
 const SeedSource* find_seed(std::string_view name) {
-  for (const SeedSource& source : seed_sources()) {
-    if (source.name == name) return &source;
-  }
-  return nullptr;
+  const std::span<const SeedSource> sources = seed_sources();
+  return find_by(sources, &SeedSource::name, name);
 }
 
-Method read_method(const JsonMember& query) {
-  if (!query.has("method")) return Method::dual;
-  const JsonMember member = query.at("method", kMethods);
-  const std::optional<Method> method = find_method(member.text(kMethods));
-  if (!method) throw member.bad(kMethods);
-  return *method;
-}
-
-geom::Penetration read_penetration(const JsonMember& query) {
-  if (!query.has("penetration")) return geom::Penetration::global;
-  const JsonMember member = query.at("penetration", kPenetrations);
-  const std::optional<geom::Penetration> penetration = find_penetration(member.text(kPenetrations));
-  if (!penetration) throw member.bad(kPenetrations);
-  return *penetration;
+/// Returns the value of a key whose words `find` knows; the first value of its type without that key.
+template <class Choice>
+Choice read_choice(const JsonMember& query, const char* key, std::optional<Choice> (*find)(std::string_view),
+                   const char* accepted) {
+  if (!query.has(key)) return Choice{};
+  const JsonMember member = query.at(key, accepted);
+  const std::optional<Choice> choice = find(member.text(accepted));
+  if (!choice) throw member.bad(accepted);
+  return *choice;
 }
 
 const SeedSource& read_seed(const JsonMember& query) {
@@ -115,8 +109,8 @@ std::optional<Body> scanned_body(const ScannedBody& body, const char* name, std:
   const Vector3d axes(body.semi_axes.data());
   const Vector3d position(body.position.data());
   try {
-    const StoredOrientation read = body.orientation ? read_quaternion(*body.orientation, position)
-                                                    : StoredOrientation{geom::Pose::translation(position)};
+    const JsonOrientation read = body.orientation ? read_quaternion(*body.orientation, position)
+                                                  : JsonOrientation{geom::Pose::translation(position)};
     if (read.normalized) notices.push_back(normalized_text(fmt::format("{}.orientation", name), read.length));
     if (!body.is_superellipsoid) return Body{geom::Ellipsoid(axes), read.pose};
     return Body{geom::Superellipsoid(axes, body.exponents[0], body.exponents[1]), read.pose};
@@ -179,9 +173,9 @@ DistanceQuery parse_query(std::string_view line, std::string& id) {
   const JsonMember root{&document, ""};
   if (root.has("id")) id = document.at("id").dump();
   root.allow(kQueryKeys);
-  const Method method = read_method(root);
+  const Method method = read_choice(root, "method", find_method, kMethods);
   const SeedSource& seed = read_seed(root);
-  const geom::Penetration penetration = read_penetration(root);
+  const auto penetration = read_choice(root, "penetration", find_penetration, kPenetrations);
   check_options(method, seed, root.has("penetration"));
   std::vector<std::string> notices;
   const Body a = read_body(root.at("a", "a body"), notices);

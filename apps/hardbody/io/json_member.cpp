@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
-#include <utility>
 
 namespace hardbody {
 namespace {
@@ -153,15 +152,14 @@ Eigen::Vector3d read_position(const JsonMember& body) {
 geom::Pose read_orientation(const JsonMember& orientation, const Eigen::Vector3d& position,
                             std::vector<std::string>& notices) {
   const std::vector<double> q = orientation.numbers(4, "a unit quaternion [w, x, y, z]");
-  const StoredOrientation read = orientation.checked([&] {
-    return read_quaternion({q[0], q[1], q[2], q[3]}, position);
-  });
+  const JsonOrientation read = orientation.checked([&] { return read_quaternion({q[0], q[1], q[2], q[3]}, position); });
   if (read.normalized) notices.push_back(normalized_text(orientation.name, read.length));
   return read.pose;
 }
 
 std::string normalized_text(std::string_view name, double length) {
-  return fmt::format("{} is a quaternion of length {:.6g}: normalized", name, length);
+  const int digits = std::abs(length - 1) > kFrameRounding ? 6 : 9;
+  return fmt::format("{} is a quaternion of length {:.{}g}: normalized", name, length, digits);
 }
 
 }  // namespace hardbody

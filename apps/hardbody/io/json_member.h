@@ -76,7 +76,7 @@ geom::Shape read_shape(const JsonMember& shape);
 /// Reads {"position": [x, y, z]}, within the range of a pose.
 Eigen::Vector3d read_position(const JsonMember& body);
 /// Reads [w, x, y, z]. A quaternion whose length differs from 1 by at most kQuaternionTolerance is normalised; if the
-/// difference is more than rounding, a line is added to `notices`.
+/// difference exceeds kJsonRounding, a line is added to `notices`.
 geom::Pose read_orientation(const JsonMember& orientation, const Eigen::Vector3d& position,
                             std::vector<std::string>& notices);
 /// Returns the line of `notices` for a quaternion of this length; `name`: that of the member.

@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <cerrno>
 #include <cstring>
 #include <stdexcept>
@@ -125,15 +124,18 @@ RunDirectory RunDirectory::create(const fs::path& path, Overwrite overwrite, con
   }
 }
 
+void check_run_directory(const fs::path& directory, const char* kinds) {
+  if (!fs::is_directory(directory)) {
+    throw InputError(fmt::format("{}: is {}; accepted: the directory of a run", directory.string(),
+                                 fs::exists(directory) ? "not a directory" : "not there"));
+  }
+  if (fs::exists(directory / kConfigFile)) return;
+  throw InputError(fmt::format("{}: holds no run: {} is missing; accepted: the directory of {}", directory.string(),
+                               kConfigFile, kinds));
+}
+
 RunDirectory RunDirectory::open(const fs::path& path) {
-  if (!fs::is_directory(path)) {
-    throw InputError(fmt::format("{}: is {}; accepted: the directory of a run", path.string(),
-                                 fs::exists(path) ? "not a directory" : "not there"));
-  }
-  if (!fs::exists(path / kConfigFile)) {
-    throw InputError(
-        fmt::format("{}: holds no run: {} is missing; accepted: the directory of a run", path.string(), kConfigFile));
-  }
+  check_run_directory(path);
   return RunDirectory(path);
 }
 

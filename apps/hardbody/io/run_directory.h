@@ -36,6 +36,9 @@ inline constexpr const char* kFailuresDirectory = "failures";
 /// empty.
 std::filesystem::path directory_for(const std::optional<std::string>& out, const std::filesystem::path& config);
 
+/// Checks that the directory of a run is there, with its config; `kinds` ends the message. Throws InputError.
+void check_run_directory(const std::filesystem::path& directory, const char* kinds = "a run");
+
 enum class Overwrite { refused, allowed };
 
 /// Lock of a directory against other processes, by flock on the directory itself: no file is left behind, and the

@@ -88,10 +88,8 @@ fs::path behind_links(const fs::path& path) {
 
 /// Makes the names in a directory survive a loss of power, if the file system supports that.
 void flush_names(const fs::path& directory) {
-  const int file = ::open(directory.empty() ? "." : directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (file < 0) return;
-  (void)::fsync(file);
-  ::close(file);
+  const Descriptor file(::open(directory.empty() ? "." : directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (*file >= 0) (void)::fsync(*file);
 }
 
 }  // namespace
@@ -182,14 +180,13 @@ void write_file(const fs::path& path, const std::function<void(const Sink&)>& ma
 
 void write_at(const fs::path& path, std::uint64_t position, std::string_view content, Flush flush) {
   const auto place = static_cast<::off_t>(position);
-  const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
-  if (file < 0) fail_to_write(path, errno);
-  const bool good = ::ftruncate(file, place) == 0 && write_all(file, place, content) && flushed(file, flush);
+  const Descriptor file(::open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666));
+  if (*file < 0) fail_to_write(path, errno);
+  if (::ftruncate(*file, place) == 0 && write_all(*file, place, content) && flushed(*file, flush)) return;
   const int error = errno;
   // Truncation needs no room; if even this fails, the next call cuts off the remainder.
-  if (!good) (void)!::ftruncate(file, place);
-  ::close(file);
-  if (!good) fail_to_write(path, error);
+  (void)!::ftruncate(*file, place);
+  fail_to_write(path, error);
 }
 
 void cut_off(const fs::path& path, std::uint64_t position) {
@@ -197,12 +194,17 @@ void cut_off(const fs::path& path, std::uint64_t position) {
 }
 
 void overwrite_at(const fs::path& path, std::uint64_t position, std::string_view content, Flush flush) {
-  const int file = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
-  if (file < 0) fail_to_write(path, errno);
-  const bool good = write_all(file, static_cast<::off_t>(position), content) && flushed(file, flush);
-  const int error = errno;
-  ::close(file);
-  if (!good) fail_to_write(path, error);
+  const Descriptor file(::open(path.c_str(), O_WRONLY | O_CLOEXEC));
+  const bool good = *file >= 0 && write_all(*file, static_cast<::off_t>(position), content) && flushed(*file, flush);
+  if (!good) fail_to_write(path, errno);
+}
+
+void check_length(const fs::path& path, std::optional<std::uint64_t> at_checkpoint) {
+  std::error_code error;
+  const std::uintmax_t bytes = fs::file_size(path, error);
+  if (!error && at_checkpoint && bytes >= *at_checkpoint) return;
+  throw InputError(fmt::format("{}: has {} bytes, {} when the checkpoint was written; accepted: the file of the run",
+                               path.string(), error ? 0 : bytes, at_checkpoint.value_or(0)));
 }
 
 void flush_file(const fs::path& path) {

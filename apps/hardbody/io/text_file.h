@@ -1,10 +1,9 @@
 #pragma once
 
-#include <ed/archive.h>
-
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -39,8 +38,8 @@ void check_replaceable(const std::filesystem::path& path, std::string_view begin
 /// file. A link remains a link; anything that is neither a file nor a link to one is left unchanged. Throws WriteError.
 void write_file(const std::filesystem::path& path, std::string_view content);
 
-/// Receives a file's bytes piece by piece.
-using Sink = ed::archive::Sink;
+/// Receiver of a file's bytes piece by piece: the type that ed::archive::Writer takes.
+using Sink = std::function<void(std::string_view)>;
 
 /// Writes a file whose content `make` produces in pieces. Exceptions of `make` are passed on; no file is left then.
 void write_file(const std::filesystem::path& path, const std::function<void(const Sink&)>& make);
@@ -59,6 +58,9 @@ void cut_off(const std::filesystem::path& path, std::uint64_t position);
 /// Replaces bytes within a file; content beyond its end extends it. Throws WriteError.
 void overwrite_at(const std::filesystem::path& path, std::uint64_t position, std::string_view content,
                   Flush flush = Flush::now);
+
+/// Checks that a file of a run is at least as long as its checkpoint says; nullopt: it says nothing. Throws InputError.
+void check_length(const std::filesystem::path& path, std::optional<std::uint64_t> at_checkpoint);
 
 /// Flushes to the disk what was written with Flush::later. Throws WriteError.
 void flush_file(const std::filesystem::path& path);

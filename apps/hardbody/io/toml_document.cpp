@@ -1,6 +1,7 @@
 #include "io/toml_document.h"
 
 #include "base/errors.h"
+#include "base/find.h"
 #include "io/text_file.h"
 
 #include <fmt/format.h>
@@ -178,8 +179,7 @@ std::string entries_text(const TomlDocument& document, const std::string& sectio
 }  // namespace
 
 const Member* Value::find(std::string_view key) const {
-  const auto found = std::find_if(members.begin(), members.end(), [&](const Member& m) { return m.key == key; });
-  return found == members.end() ? nullptr : &*found;
+  return find_by(members, &Member::key, key);
 }
 
 std::string toml_string(std::string_view text) {
@@ -262,15 +262,12 @@ std::string toml_real(double x) {
 }
 
 const Entry* TomlDocument::find(std::string_view key) const {
-  const auto found = std::find_if(entries.begin(), entries.end(), [&](const Entry& e) { return e.key == key; });
-  return found == entries.end() ? nullptr : &*found;
+  return find_by(entries, &Entry::key, key);
 }
 
 std::string TomlDocument::where_of(std::string_view section) const {
-  for (const Section& s : sections) {
-    if (s.name == section) return s.where;
-  }
-  return name + ":1";
+  const Section* found = find_by(sections, &Section::name, section);
+  return found != nullptr ? found->where : name + ":1";
 }
 
 TomlDocument read_toml(std::string_view text, const std::string& name, const std::vector<std::string>& overrides) {

@@ -1,5 +1,7 @@
 #include "plot/map_svg.h"
 
+#include "base/escape.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -22,18 +24,9 @@ constexpr double kMargin = 0.03;  ///< fraction of the data's range, on either s
 constexpr std::array<const char*, 6> kColours = {"#1f4e9c", "#c23b22", "#2e7d32", "#7b1fa2", "#b26a00", "#00695c"};
 constexpr std::array<const char*, 6> kDashes = {"", "7 4", "2 3", "9 3 2 3", "", "4 2"};
 
-std::string escaped(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    if (c == '&') {
-      result += "&amp;";
-    } else if (c == '<') {
-      result += "&lt;";
-    } else {
-      result += c;
-    }
-  }
-  return result;
+std::string svg_text(const std::string& text) {
+  constexpr Escape kEscapes[] = {{'&', "&amp;"}, {'<', "&lt;"}};
+  return escaped(text, kEscapes);
 }
 
 /// Returns 1, 2 or 5 times a power of ten, about a sixth of the range.
@@ -130,9 +123,9 @@ class Drawing {
           kLeft, y_.at(tick), kLeft - 7, y_.at(tick) + 4.5, tick);
     }
     add("<text x=\"{}\" y=\"{}\" text-anchor=\"middle\" font-size=\"15\">{}</text>\n", (kLeft + kWidth - kRight) / 2,
-        kHeight - 18, escaped(map_.x_name));
+        kHeight - 18, svg_text(map_.x_name));
     add("<text transform=\"translate(20 {}) rotate(-90)\" text-anchor=\"middle\" font-size=\"15\">{}</text>\n",
-        (kTop + kHeight - kBottom) / 2, escaped(map_.y_name));
+        (kTop + kHeight - kBottom) / 2, svg_text(map_.y_name));
   }
 
   static const char* colour(std::size_t of) { return kColours[of % kColours.size()]; }
@@ -170,7 +163,7 @@ class Drawing {
       next = level.of + 1;
       add("<path d=\"M{:.1f} 28h30\" stroke=\"{}\" stroke-width=\"1.6\" stroke-dasharray=\"{}\"/>"
           "<text x=\"{:.1f}\" y=\"32.5\">{}</text>\n",
-          at, colour(level.of), dashes(level.of), at + 36, escaped(level.value));
+          at, colour(level.of), dashes(level.of), at + 36, svg_text(level.value));
       at += 60 + 8 * static_cast<double>(level.value.size());
     }
   }

@@ -1,5 +1,7 @@
 #include "registry/curves.h"
 
+#include "base/find.h"
+
 #include <algorithm>
 #include <array>
 #include <utility>
@@ -89,8 +91,8 @@ std::vector<CurvePlot> lag_plots() {
       {.id = "c1", .title = "Orientation, first order", .about = "C₁: how far an axis still points where it pointed.",
        .file = "c1", .y_label = "C₁ = ⟨u(t)·u(0)⟩", .lines = {{"c1", "C₁"}}},
       {.id = "f_self", .title = "Self-intermediate scattering",
-       .about = "F_self at four wave numbers. The first wave number is that of the first peak of S(q); "
-                "a dashed line is its fit.",
+       .about = "F_self at the wave numbers of the legend: those of the config, by default the first peak of S(q), a "
+                "quarter, half and twice of it. A dashed line is the fit at the first.",
        .file = "f_self", .y_label = "Fₛ(q, t)",
        .lines = {{"f_self", "", {Fit::Kind::stretched, {"tau_F", "beta_F"}, "F", 0, kStretched}}}},
       {.id = "velocity", .title = "Velocity correlations",
@@ -146,9 +148,7 @@ const std::vector<CurveFile>& curve_files() {
 }
 
 const CurveFile* find_curves(std::string_view name) {
-  const auto named = [name](const CurveFile& f) { return f.name == name; };
-  const auto found = std::find_if(curve_files().begin(), curve_files().end(), named);
-  return found == curve_files().end() ? nullptr : &*found;
+  return find_by(curve_files(), &CurveFile::name, name);
 }
 
 const std::vector<BlockColumn>& block_columns() {

@@ -1,5 +1,6 @@
 #include "registry/observables.h"
 
+#include "base/find.h"
 #include "base/number_text.h"
 
 #include <fmt/format.h>
@@ -23,9 +24,9 @@ PartText always(const char* text) {
   return [text](const Part& /*part*/) { return std::string(text); };
 }
 
-/// Left out for a species.
-std::string collision_remark(const Part& part) {
-  return part.whole != nullptr ? "collisions of a body in a time unit" : "";
+/// Text for all bodies and that for one species; an empty one leaves the observable out of its table.
+PartText by_part(const char* all, const char* species) {
+  return [=](const Part& part) { return std::string(part.whole != nullptr ? all : species); };
 }
 
 /// Number of rotation components that D_rot counts, and its divisor.
@@ -53,14 +54,6 @@ std::string f_self_remark(const Part& part) {
   return fmt::format("F_self(q, t) at q = {:.4g} / l = 1/e", part.wave_numbers[0]);
 }
 
-std::string order_remark(const Part& part) {
-  return part.whole != nullptr ? "nematic order: largest eigenvalue of Q, by frame" : "nematic order of this species";
-}
-
-std::string translation_remark(const Part& part) {
-  return part.whole != nullptr ? "on 3N - 3 degrees of freedom" : "on its share of 3N - 3 degrees of freedom";
-}
-
 std::string rotation_temperature_remark(const Part& part) {
   if (part.whole == nullptr) return fmt::format("on {} a body", part.rotation_axes);
   return "on " + freedoms_text(std::lround(part.rotation_axes * part.number), part.number);
@@ -71,7 +64,7 @@ std::vector<Observable> built_in_observables() {
   return {
       {.key = "collision_rate", .symbol = "Γ", .name = "Collision rate", .unit = kRate,
        .definition = "collisions that a body takes part in, a time unit", .value = &GroupResults::collision_rate,
-       .label = "collision rate", .remark = collision_remark,
+       .label = "collision rate", .remark = by_part("collisions of a body in a time unit", ""),
        .convention = always("collisions a body takes part in, a time unit"),
        .places = {.summary = 10, .reading = 10, .units = 40, .card = 80, .map = 60}},
       {.key = "Z", .symbol = "Z", .name = "Compressibility factor", .unit = "1", .definition = "P V / (N kT)",
@@ -95,8 +88,9 @@ std::vector<Observable> built_in_observables() {
        .places = {.summary = 60, .reading = 50, .units = 30, .card = 40}},
       {.key = "S", .symbol = "S", .name = "Nematic order", .unit = "1",
        .definition = "largest eigenvalue of Q of each frame, averaged; above 0.3 nematic", .value = &GroupResults::S,
-       .label = "S", .remark = order_remark, .in_frames = true,
-       .places = {.summary = 70, .reading = 120, .card = 70, .map = 50}},
+       .label = "S",
+       .remark = by_part("nematic order: largest eigenvalue of Q, by frame", "nematic order of this species"),
+       .in_frames = true, .places = {.summary = 70, .reading = 120, .card = 70, .map = 50}},
       {.key = "director", .name = "Director", .unit = "1",
        .definition = "eigenvector of the largest eigenvalue of Q, averaged over frames; its error in radians",
        .value = &GroupResults::director,
@@ -112,7 +106,7 @@ std::vector<Observable> built_in_observables() {
        .value = &GroupResults::beta_C2, .label = "beta_C2", .remark = always("of the same"), .in_frames = true,
        .places = {.summary = 100, .reading = 80}},
       {.key = "t_F_1overe", .symbol = "t_F", .name = "Relaxation of F_self", .unit = kTime,
-       .definition = "F_self(q, t) = 1/e at the first peak of S(q)", .value = &GroupResults::t_F_1overe,
+       .definition = "F_self(q, t) = 1/e at the first wave number of the run", .value = &GroupResults::t_F_1overe,
        .label = "t_F(1/e)", .remark = f_self_remark, .in_frames = true,
        .places = {.summary = 140, .reading = 90, .card = 60}},
       {.key = "tau_F", .symbol = "τ_F", .name = "Relaxation time of F_self", .unit = kTime,
@@ -128,7 +122,9 @@ std::vector<Observable> built_in_observables() {
        .value = &GroupResults::S_peak, .in_frames = true, .places = {.summary = 160, .reading = 140}},
       {.key = "kT_trans", .symbol = "kT_trans", .name = "Translational temperature", .unit = "kT",
        .definition = "on 3N − 3 degrees of freedom; exactly 1 on average", .value = &GroupResults::translational_kT,
-       .label = "kT_trans", .remark = translation_remark, .places = {.summary = 170, .reading = 150, .card = 90}},
+       .label = "kT_trans",
+       .remark = by_part("on 3N - 3 degrees of freedom", "on its share of 3N - 3 degrees of freedom"),
+       .places = {.summary = 170, .reading = 150, .card = 90}},
       {.key = "kT_rot", .symbol = "kT_rot", .name = "Rotational temperature", .unit = "kT",
        .definition = "the same of rotation", .value = &GroupResults::rotational_kT, .label = "kT_rot",
        .remark = rotation_temperature_remark, .places = {.summary = 180, .reading = 160, .card = 100}},
@@ -152,8 +148,6 @@ std::vector<Observable>& registered_observables() {
 
 }  // namespace
 
-const char* const kWaveNumbersConvention = "of F_self, 1/l; tau_F, beta_F, t_F_1overe are of the first";
-
 const std::vector<Observable>& observables() {
   return registered_observables();
 }
@@ -175,9 +169,7 @@ std::vector<std::string> keys_by(int Places::*place) {
 }
 
 const Observable* find_observable(std::string_view key) {
-  const auto named = [key](const Observable& o) { return o.key == key; };
-  const auto found = std::find_if(observables().begin(), observables().end(), named);
-  return found == observables().end() ? nullptr : &*found;
+  return find_by(observables(), &Observable::key, key);
 }
 
 bool is_per_axis(const Observable& observable) {

@@ -60,9 +60,6 @@ struct Observable {
   Places places{};
 };
 
-/// Definition of the wave numbers in summary.json, and of which values are at the first one.
-extern const char* const kWaveNumbersConvention;
-
 /// Returns all observables, in the order of documentation and of `hardbody analyze`.
 const std::vector<Observable>& observables();
 

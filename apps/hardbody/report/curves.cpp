@@ -1,14 +1,13 @@
 #include "report/curves.h"
 
 #include "base/errors.h"
+#include "base/number_text.h"
 #include "io/csv_table.h"
 #include "io/text_file.h"
 #include "registry/curves.h"
 
 #include <fmt/format.h>
 
-#include <charconv>
-#include <cmath>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -19,17 +18,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kLongestFile = std::size_t{1} << 26;
-
-/// Returns NaN for an empty field and for a number that is not finite; nullopt for text that is not a number.
-std::optional<double> field_value(std::string_view field) {
-  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  if (field.empty()) return kNone;
-  double value = 0;
-  const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
-  if (error == std::errc::result_out_of_range && end == field.data() + field.size()) return kNone;
-  if (error != std::errc() || end != field.data() + field.size()) return std::nullopt;
-  return std::isfinite(value) ? value : kNone;
-}
 
 }  // namespace
 
@@ -61,7 +49,8 @@ Curves parse_curves(std::string_view text, const std::string& name, const std::s
   for (std::size_t row = 0; row < table.rows.size(); ++row) {
     for (std::size_t k = 0; k < curves.columns.size(); ++k) {
       const std::string& field = table.rows[row][k];
-      const std::optional<double> value = field_value(field);
+      const std::optional<double> value =
+          field.empty() ? std::numeric_limits<double>::quiet_NaN() : number_or_nan(field);
       if (!value) {
         throw InputError(fmt::format("{}:{}: \"{}\" is not a number; accepted: a number or nothing", where,
                                      table.lines[row], one_line(field, 40)));

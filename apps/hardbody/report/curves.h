@@ -22,8 +22,7 @@ struct Curves {
   static std::string bare_name(std::string_view column);
 };
 
-/// Parses a table. Throws InputError, naming the line, for text that is not a table of numbers. Returns no columns for
-/// an empty text.
+/// Parses a table. Throws InputError, naming the line, for text that is not a table of numbers, an empty text included.
 Curves parse_curves(std::string_view text, const std::string& name, const std::string& where);
 
 /// Reads all files of a run's observables/ that exist.

@@ -1,5 +1,6 @@
 #include "report/page.h"
 
+#include "base/escape.h"
 #include "base/number_text.h"
 #include "base/version.h"
 #include "io/json_values.h"
@@ -125,18 +126,6 @@ Json headlines_json(const std::vector<Headline>& headlines, Detail detail) {
   return list;
 }
 
-const char* kind_text(Remark::Kind kind) {
-  switch (kind) {
-    case Remark::Kind::good:
-      return "good";
-    case Remark::Kind::warning:
-      return "warning";
-    case Remark::Kind::bad:
-      return "bad";
-  }
-  return "bad";
-}
-
 /// Returns the part of a summary that the page shows; all of it, or what it draws.
 Json summary_json(const nlohmann::json& summary, Detail detail) {
   if (detail == Detail::full || !summary.is_object()) return summary;
@@ -163,7 +152,7 @@ std::string config_text(const std::string& config, Detail detail) {
 Json run_json(const RunReport& run, Detail detail) {
   Json remarks = Json::array();
   for (const Remark& r : run.remarks) {
-    remarks.push_back({{"kind", kind_text(r.kind)}, {"label", r.label}, {"text", r.text}});
+    remarks.push_back({{"kind", to_string(r.kind)}, {"label", r.label}, {"text", r.text}});
   }
   Json species = Json::array();
   for (const SpeciesReport& s : run.species) {
@@ -218,23 +207,11 @@ Json plots_json() {
   return list;
 }
 
-/// Escapes JSON for <script>, which may contain neither "</script" nor "<!--"; in JSON every < is within a string.
-std::string for_script(const std::string& json) {
-  std::string text;
-  text.reserve(json.size());
-  for (const char c : json) {
-    if (c == '<') {
-      text += "\\u003c";
-    } else {
-      text += c;
-    }
-  }
-  return text;
-}
-
+/// Returns JSON for <script>, which may contain neither "</script" nor "<!--": in JSON every < is within a string.
 /// Bytes of a path or a log that are not UTF-8 are replaced, not refused.
 std::string script_text(const Json& json) {
-  return for_script(json.dump(-1, ' ', false, Json::error_handler_t::replace));
+  constexpr Escape kEscapes[] = {{'<', "\\u003c"}};
+  return escaped(json.dump(-1, ' ', false, Json::error_handler_t::replace), kEscapes);
 }
 
 /// Returns a field of the table: a number if it is one.

@@ -12,20 +12,12 @@ namespace hardbody {
 namespace {
 
 double number_in(const nlohmann::json& estimate, const char* key) {
-  const auto place = estimate.is_object() ? estimate.find(key) : estimate.end();
-  if (!estimate.is_object() || place == estimate.end() || !place->is_number()) {
-    return std::numeric_limits<double>::quiet_NaN();
-  }
-  return place->get<double>();
-}
-
-std::string text_in(const nlohmann::json& estimate, const char* key) {
-  const auto place = estimate.is_object() ? estimate.find(key) : estimate.end();
-  if (!estimate.is_object() || place == estimate.end() || !place->is_string()) return "";
-  return place->get<std::string>();
+  const nlohmann::json& number = member(estimate, key);
+  return number.is_number() ? number.get<double>() : std::numeric_limits<double>::quiet_NaN();
 }
 
 Headline headline(const Observable& observable, const nlohmann::json& estimate) {
+  const nlohmann::json& missing = member(estimate, "missing");
   return {observable.key,
           observable.symbol,
           observable.name,
@@ -33,7 +25,7 @@ Headline headline(const Observable& observable, const nlohmann::json& estimate) 
           observable.definition,
           number_in(estimate, "value"),
           number_in(estimate, "error"),
-          text_in(estimate, "missing")};
+          missing.is_string() ? missing.get<std::string>() : std::string()};
 }
 
 /// Bodies without an axis of revolution have a list of three.

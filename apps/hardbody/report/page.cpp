@@ -1,5 +1,6 @@
 #include "report/page.h"
 
+#include "base/escape.h"
 #include "report/assets.h"
 
 #include <fmt/format.h>
@@ -24,29 +25,8 @@ std::string head(const Report& report, std::string_view style) {
 }  // namespace
 
 std::string html_text(std::string_view text) {
-  std::string result;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      case '\'':
-        result += "&#39;";
-        break;
-      default:
-        result += c;
-    }
-  }
-  return result;
+  constexpr Escape kEscapes[] = {{'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}, {'\'', "&#39;"}};
+  return escaped(text, kEscapes);
 }
 
 std::string report_page(const Report& report) {

@@ -1,6 +1,7 @@
 #include "report/run.h"
 
 #include "base/errors.h"
+#include "base/find.h"
 #include "io/json_member.h"
 #include "io/run_directory.h"
 #include "io/text_file.h"
@@ -10,7 +11,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+#include <array>
 #include <numeric>
 #include <utility>
 #include <variant>
@@ -41,13 +42,6 @@ std::string read_log(const fs::path& path) {
   if (log.size() <= kLogShown) return log;
   const std::size_t line = log.find('\n', log.size() - kLogShown);
   return "...\n" + log.substr(line == std::string::npos ? log.size() - kLogShown : line + 1);
-}
-
-const nlohmann::json& member(const nlohmann::json& json, const char* key) {
-  static const nlohmann::json kNothing;
-  if (!json.is_object()) return kNothing;
-  const auto place = json.find(key);
-  return place == json.end() ? kNothing : *place;
 }
 
 bool says(const nlohmann::json& json, bool wanted) {
@@ -161,8 +155,7 @@ std::optional<Seen> if_readable(const Read& read, const char* what, std::vector<
 std::optional<Seen> read_last_state(const fs::path& path, const Config& config) {
   if (!fs::exists(path)) return std::nullopt;
   const Checkpoint checkpoint = read_checkpoint(path);
-  std::vector<int> numbers;
-  for (const SpeciesConfig& species : config.species) numbers.push_back(species.number);
+  const std::vector<int> numbers = config.numbers();
   if (std::accumulate(numbers.begin(), numbers.end(), 0) != checkpoint.system.size()) {
     throw InputError(fmt::format("{}: holds {} bodies, the config {}; accepted: the checkpoint of its config",
                                  path.string(), checkpoint.system.size(), config.number));
@@ -212,29 +205,25 @@ std::vector<SpeciesReport> species_of(const Config& config, const nlohmann::json
   return list;
 }
 
-void check_directory(const fs::path& directory) {
-  if (!fs::is_directory(directory)) {
-    throw InputError(fmt::format("{}: is {}; accepted: the directory of a run", directory.string(),
-                                 fs::exists(directory) ? "not a directory" : "not there"));
-  }
-  if (fs::exists(directory / kConfigFile)) return;
-  throw InputError(fmt::format("{}: holds no run: {} is missing; accepted: the directory of a run or of a sweep",
-                               directory.string(), kConfigFile));
+}  // namespace
+
+const char* to_string(Remark::Kind kind) {
+  return std::array{"good", "warning", "bad"}[static_cast<std::size_t>(kind)];
 }
 
-/// Returns the last part of the path, also for out/run/.
+const nlohmann::json& member(const nlohmann::json& json, const char* key) {
+  static const nlohmann::json kNothing;
+  const auto place = json.find(key);
+  return json.is_object() && place != json.end() ? *place : kNothing;
+}
+
 std::string name_of(const fs::path& directory) {
   const fs::path whole = fs::weakly_canonical(directory);
   return whole.has_filename() ? whole.filename().string() : whole.string();
 }
 
-}  // namespace
-
 const Curves* RunReport::find(std::string_view file) const {
-  for (const Curves& c : curves) {
-    if (c.name == file) return &c;
-  }
-  return nullptr;
+  return find_by(curves, &Curves::name, file);
 }
 
 std::string title_of(const Config& config) {
@@ -244,7 +233,7 @@ std::string title_of(const Config& config) {
 }
 
 RunReport read_run_report(const fs::path& directory, WithView with_view) {
-  check_directory(directory);
+  check_run_directory(directory, "a run or of a sweep");
   RunReport run;
   run.path = directory;
   run.name = name_of(directory);

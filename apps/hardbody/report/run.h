@@ -35,6 +35,9 @@ struct Remark {
   std::string text;   ///< a sentence
 };
 
+/// Returns the name, "good", ..
+const char* to_string(Remark::Kind kind);
+
 struct SpeciesReport {
   std::string title;
   std::vector<Headline> headlines;
@@ -62,6 +65,12 @@ enum class WithView { no, yes };
 
 /// Reads a run. Throws InputError if the directory holds no run, or a file that cannot be read.
 RunReport read_run_report(const std::filesystem::path& directory, WithView with_view);
+
+/// Returns the member of an object; null if it has none of that name, or is no object.
+const nlohmann::json& member(const nlohmann::json& json, const char* key);
+
+/// Returns the last part of a directory's path, also for out/run/.
+std::string name_of(const std::filesystem::path& directory);
 
 /// Returns "512 hard ellipsoids, X0 = 3, packing fraction 0.4".
 std::string title_of(const Config& config);

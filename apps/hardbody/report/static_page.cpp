@@ -1,15 +1,11 @@
+#include "base/find.h"
 #include "registry/curves.h"
 #include "report/page.h"
 #include "report/svg.h"
-#include "run/table.h"
 
 #include "base/version.h"
 
 #include <fmt/format.h>
-
-#include <array>
-#include <cmath>
-#include <utility>
 
 namespace hardbody {
 namespace {
@@ -25,6 +21,16 @@ std::vector<std::string> columns_of(const CurvePlot& wanted, const Curves& curve
     for (std::size_t k = 1; k <= ed::kMostWaveNumbers; ++k) add(fmt::format("{}_q{}", line.column, k));
   }
   return columns;
+}
+
+/// Returns "q l = 7.05" for F_self at a wave number of the run; else the column's name.
+std::string series_label(const RunReport& run, const CurvePlot& plot, const std::string& column) {
+  const nlohmann::json& numbers = member(run.summary, "wave_numbers");
+  for (std::size_t k = 0; k < numbers.size(); ++k) {
+    if (!numbers[k].is_number() || column != fmt::format("{}_q{}", plot.lines[0].column, k + 1)) continue;
+    return fmt::format("q l = {:.3g}", numbers[k].get<double>());
+  }
+  return column;
 }
 
 std::string label_of(const Curves& curves, const std::string& column) {
@@ -49,7 +55,8 @@ Plot plot_of(const CurvePlot& wanted, const CurveFile& file, const std::vector<R
     plot.x_label = label_of(*curves, x);
     plot.y_label = label_of(*curves, columns[0]);
     for (const std::string& column : columns) {
-      plot.series.push_back({runs.size() == 1 ? column : run.name, *abscissa, *curves->find(column)});
+      plot.series.push_back(
+          {runs.size() == 1 ? series_label(run, wanted, column) : run.name, *abscissa, *curves->find(column)});
     }
   }
   return plot;
@@ -69,24 +76,15 @@ std::string plots_section(const std::vector<RunReport>& runs) {
 }
 
 std::string remarks(const RunReport& run) {
-  constexpr std::array kClasses = {"good", "warning", "bad"};
   std::string html = "<ul class=\"remarks\">";
   for (const Remark& r : run.remarks) {
-    html += fmt::format("<li class=\"{}\"><b>{}</b> {}</li>", kClasses[static_cast<std::size_t>(r.kind)],
-                        html_text(r.label), html_text(r.text));
+    html += fmt::format("<li class=\"{}\"><b>{}</b> {}</li>", to_string(r.kind), html_text(r.label), html_text(r.text));
   }
   return html + "</ul>\n";
 }
 
 std::string cell(const Headline& headline) {
   return html_text(headline_text(headline));
-}
-
-const Headline* find(const std::vector<Headline>& list, const std::string& key) {
-  for (const Headline& h : list) {
-    if (h.key == key) return &h;
-  }
-  return nullptr;
 }
 
 /// Returns a table with one row a quantity, one column a run.
@@ -97,7 +95,7 @@ std::string headline_table(const std::vector<RunReport>& runs) {
   for (const Headline& row : runs[0].headlines) {
     html += fmt::format("<tr><th scope=\"row\">{}</th>", html_text(row.name));
     for (const RunReport& run : runs) {
-      const Headline* own = find(run.headlines, row.key);
+      const Headline* own = find_by(run.headlines, &Headline::key, row.key);
       html += fmt::format("<td>{}</td>", own == nullptr ? "" : cell(*own));
     }
     html += fmt::format("<td>{}</td><td>{}</td></tr>\n", html_text(row.unit), html_text(row.meaning));

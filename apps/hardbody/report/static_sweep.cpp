@@ -1,3 +1,4 @@
+#include "base/find.h"
 #include "base/number_text.h"
 #include "plot/levels.h"
 #include "registry/observables.h"
@@ -95,10 +96,9 @@ std::string figures(const SweepReport& sweep) {
   const std::vector<SweptAxis> axes = axes_of(sweep);
   std::string html;
   for (const std::string& wanted : keys_by(&Places::map)) {
-    const auto named = [&](const Headline& h) { return h.key == wanted; };
-    const auto found = std::find_if(sweep.observables.begin(), sweep.observables.end(), named);
-    if (found == sweep.observables.end()) continue;
-    const auto observable = static_cast<std::size_t>(found - sweep.observables.begin());
+    const Headline* found = find_by(sweep.observables, &Headline::key, wanted);
+    if (found == nullptr) continue;
+    const auto observable = static_cast<std::size_t>(found - sweep.observables.data());
     if (axes.size() == 2) html += map_figure(sweep, axes, observable);
     if (axes.size() == 1) html += plot_figure(sweep, axes[0], observable);
   }

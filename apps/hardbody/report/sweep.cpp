@@ -1,6 +1,7 @@
 #include "report/sweep.h"
 
 #include "base/errors.h"
+#include "base/find.h"
 #include "base/number_text.h"
 #include "io/csv_table.h"
 #include "io/json_member.h"
@@ -13,7 +14,6 @@
 #include <limits>
 #include <map>
 #include <optional>
-#include <set>
 #include <string_view>
 #include <utility>
 
@@ -125,9 +125,8 @@ void add_reasons(SweepPointReport& point, const std::vector<Headline>& observabl
   if (point.status != "done") return;
   point.message.clear();
   for (std::size_t k = 0; k < observables.size(); ++k) {
-    for (const Headline& own : point.run->headlines) {
-      if (own.key == observables[k].key) point.values[k].missing = own.missing;
-    }
+    const Headline* own = find_by(point.run->headlines, &Headline::key, observables[k].key);
+    if (own != nullptr) point.values[k].missing = own->missing;
   }
 }
 
@@ -167,8 +166,7 @@ SweepReport read_sweep_report(const fs::path& directory) {
   const std::vector<std::size_t> observables = observable_columns(table);
   SweepReport sweep;
   sweep.path = directory;
-  const fs::path whole = fs::weakly_canonical(directory);
-  sweep.name = (whole.has_filename() ? whole : whole.parent_path()).filename().string();
+  sweep.name = name_of(directory);
   for (const std::size_t k : keys) sweep.keys.push_back(table.header[k]);
   for (const std::size_t k : observables) sweep.observables.push_back(headline_named(table.header[k]));
   sweep.title = title_of(sweep.keys, table.rows.size());

@@ -8,17 +8,9 @@
 #include <limits>
 #include <map>
 #include <tuple>
-#include <utility>
-#include <variant>
 
 namespace hardbody {
 namespace {
-
-ViewShape view_shape(const ed::BodyShape& shape) {
-  ViewShape result{ed::half_extents(shape), {1, 1}};
-  if (const auto* s = std::get_if<geom::Superellipsoid>(&shape)) result.exponents = {s->e1(), s->e2()};
-  return result;
-}
 
 using ShapeKey = std::tuple<double, double, double, double, double>;
 
@@ -61,7 +53,8 @@ std::vector<std::size_t> frames_shown(std::size_t all, std::size_t most) {
 /// Returns the shape of a body; a type of unknown shape is shown as a sphere.
 ViewShape shape_of(const Frame& frame, std::size_t body) {
   const FrameType& type = frame.types.at(frame.bodies[body].type);
-  return type.shape ? view_shape(*type.shape) : ViewShape{{1, 1, 1}, {1, 1}};
+  return type.shape ? ViewShape{ed::half_extents(*type.shape), exponents_of(*type.shape)}
+                    : ViewShape{{1, 1, 1}, {1, 1}};
 }
 
 void set_bodies(View& view, const Frame& frame, const std::vector<std::size_t>& bodies) {

@@ -62,8 +62,8 @@ void fields(Archive& archive, T& mark) {
 
 template <class Archive, Is<RunState> T>
 void fields(Archive& archive, T& run) {
-  archive(run.finished, run.equilibration, run.monitor, run.production, run.events, run.trajectory, run.simulation,
-          run.observables);
+  archive(run.finished, run.equilibration, run.monitor, run.production, run.files.events, run.files.trajectory,
+          run.simulation, run.observables);
 }
 
 namespace {
@@ -229,16 +229,21 @@ std::string encode_checkpoint(const Checkpoint& checkpoint) {
 
 Checkpoint decode_checkpoint(std::string_view bytes, const std::string& name) {
   const Payload payload = checked_payload(bytes, name);
-  try {
-    return take_checkpoint(payload.format, payload.bytes);
-  } catch (const std::invalid_argument& error) {
-    throw InputError(
-        fmt::format("{}: holds an impossible state ({}); accepted: an undamaged checkpoint", name, error.what()));
-  }
+  return restored(name, [&] { return take_checkpoint(payload.format, payload.bytes); });
 }
 
 Checkpoint read_checkpoint(const std::filesystem::path& path) {
   return decode_checkpoint(read_file(path, kLongest), path.string());
+}
+
+ed::Simulation restored_simulation(const Config& config, Checkpoint& checkpoint, const std::string& name) {
+  return restored(name, [&] {
+    ed::Simulation simulation = ed::Simulation::restore(checkpoint.run->simulation.bytes(), checkpoint.system.species,
+                                                        config.simulation_options());
+    checkpoint.run->simulation = {};
+    if (ed::archive::bytes_of(simulation.system()) == ed::archive::bytes_of(checkpoint.system)) return simulation;
+    throw std::invalid_argument("state: two that should be the same differ");
+  });
 }
 
 void check_same_config(const Checkpoint& checkpoint, const Config& config, const std::string& config_name) {

@@ -7,10 +7,13 @@
 #include <ed/simulation.h>
 #include <ed/system.h>
 
+#include <fmt/format.h>
+
 #include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -18,15 +21,15 @@
 
 namespace hardbody {
 
-/// A state as bytes: those that were read, or what hands them over while they are written, so that a large run needs
-/// no room for a second self.
+/// State of a simulation as bytes: either bytes that were read, or a function that produces them piece by piece when
+/// the file is written, so that a large run needs no memory for a copy of its state.
 class StoredState {
  public:
   using Make = std::function<void(const Sink&)>;
 
   StoredState() = default;
   StoredState(std::string bytes) : bytes_(std::move(bytes)) {}  // NOLINT(google-explicit-constructor): it is one
-  /// `make` hands over the same bytes whenever it is called.
+  /// Stores a function that passes the same bytes to the sink whenever it is called.
   explicit StoredState(Make make);
 
   std::uint64_t size() const { return make_ ? size_ : bytes_.size(); }
@@ -43,15 +46,14 @@ class StoredState {
 
 /// State that a run needs, besides its config, to continue bit for bit.
 struct RunState {
-  bool finished = false;  ///< only the measured results are left to be written
+  bool finished = false;  ///< true at the end of a run: only its results may remain to be written
   /// Equilibration without its system; while it runs, as of the last full unit of time.
   Equilibration equilibration;
-  std::string monitor;    ///< ed::EquilibrationMonitor::save; not in production
-  Production production;  ///< values at the beginning of production
-  EventsMark events;
-  TrajectoryMark trajectory;
-  StoredState simulation;   ///< ed::Simulation::save
-  StoredState observables;  ///< ed::Observables::save; of production
+  std::string monitor;      ///< bytes of ed::EquilibrationMonitor::save; empty in production
+  Production production;    ///< plan of production and its progress; results are not stored
+  FilesMark files;          ///< lengths of the files that grow with production
+  StoredState simulation;   ///< bytes of ed::Simulation::save
+  StoredState observables;  ///< bytes of ed::Observables::save; empty before production
 };
 
 inline constexpr std::uint32_t kCheckpointFormat = 10;
@@ -60,7 +62,7 @@ inline constexpr std::uint32_t kCheckpointFormat = 10;
 ///
 /// Layout: "HARDBODY", a mark of the byte order, the format's version, the length of the payload; the
 /// payload; the XXH3 checksum of everything before it. Versions 1 (one ellipsoid of revolution for all bodies) and 2
-/// hold no RunState, versions 3 to 8 another one, which is left unread: they can be checked, not resumed.
+/// contain no RunState, versions 3 to 9 another one, which is not read: these can be checked, but not resumed.
 struct Checkpoint {
   std::uint32_t format = kCheckpointFormat;  ///< format of the file that it was read from
   std::string program_version;
@@ -70,41 +72,55 @@ struct Checkpoint {
   std::string phase;         ///< "start", "equilibration" or "production"
   double time = 0;           ///< time since the phase began
   ed::System system;
-  // In a "start"; later in RunState's equilibration.
+  // Only in a "start"; later they are in RunState::equilibration.
   ed::Counters counters_of_start;
   std::vector<ed::FailedPair> failures_of_start;
   std::optional<RunState> run;  ///< nullopt in a "start", which continues from the system
-  Upkeep upkeep;                ///< last, so that the checkpoints of two like runs differ in their last 48 bytes only
+  Upkeep upkeep;                ///< stored last: the checkpoints of two equal runs differ in their last 48 bytes only
 };
 
-/// The file's bytes, piece by piece.
+/// Passes the file's bytes to the sink, piece by piece.
 void encode_checkpoint(const Checkpoint& checkpoint, const Sink& sink);
 std::string encode_checkpoint(const Checkpoint& checkpoint);
 
-/// A payload with head and checksum: what decode_checkpoint takes for whole.
+/// Returns a payload with head and checksum, as decode_checkpoint accepts it.
 std::string seal_checkpoint(std::string_view payload, std::uint32_t format = kCheckpointFormat);
 
-/// A checkpoint of another version of the program or of the format.
+/// Error for a checkpoint of another version of the program or of the format.
 class OtherVersion : public InputError {
  public:
   using InputError::InputError;
 };
 
-/// Throws InputError, `name: why`, for anything but an undamaged checkpoint of a version that is known, in this byte
-/// order; OtherVersion for one of a later format.
+/// Decodes an undamaged checkpoint of a known version in this byte order. Throws InputError, `name: why`, for anything
+/// else; OtherVersion for a later format.
 Checkpoint decode_checkpoint(std::string_view bytes, const std::string& name);
 
 Checkpoint read_checkpoint(const std::filesystem::path& path);
 
-/// Whether it has a run of this program's version and format. Throws OtherVersion, naming what differs. To be asked
-/// before the config is read, which may be another version's too.
+/// Returns restore(). A std::invalid_argument becomes an InputError that calls the checkpoint `name` damaged.
+template <class F>
+auto restored(const std::string& name, const F& restore) {
+  try {
+    return restore();
+  } catch (const std::invalid_argument& error) {
+    throw InputError(
+        fmt::format("{}: holds an impossible state ({}); accepted: an undamaged checkpoint", name, error.what()));
+  }
+}
+
+/// Returns the simulation of a checkpoint, whose bytes are released. Throws InputError if they do not fit its system.
+ed::Simulation restored_simulation(const Config& config, Checkpoint& checkpoint, const std::string& name);
+
+/// Checks that a run of this program's version and format can continue from it. Throws OtherVersion, naming the
+/// difference. Must be called before the config is read, which may also be that of another version.
 void check_version(const Checkpoint& checkpoint, const std::string& name);
 
-/// Whether the config is still that of the run. Throws InputError, naming the key that differs.
+/// Checks that the config is still that of the run. Throws InputError, naming the key that differs.
 void check_same_config(const Checkpoint& checkpoint, const Config& config, const std::string& config_name);
 
-/// Whether this program, of the same version, and this processor go on with the same bits. Throws InputError, naming
-/// what differs.
+/// Checks that this build of the program on this processor continues with the same bits. Throws InputError, naming the
+/// difference.
 void check_resumable(const Checkpoint& checkpoint, const std::string& name);
 
 }  // namespace hardbody

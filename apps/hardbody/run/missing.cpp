@@ -1,7 +1,7 @@
 #include "run/missing.h"
 
 #include "registry/observables.h"
-#include "run/phases/production.h"
+#include "run/record.h"
 
 #include <algorithm>
 #include <cmath>

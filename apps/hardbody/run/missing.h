@@ -2,14 +2,14 @@
 
 /// Texts for missing values: the reason, and what would help.
 
-#include "run/record.h"
-
 #include <ed/analysis.h>
 #include <ed/observables.h>
 
 #include <string>
 
 namespace hardbody {
+
+struct RunRecord;
 
 /// Words that depend on the source of the values.
 struct MissingWords {

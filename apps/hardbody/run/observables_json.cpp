@@ -2,7 +2,6 @@
 
 #include "io/json_values.h"
 
-#include <array>
 #include <cmath>
 #include <utility>
 #include <variant>
@@ -53,10 +52,10 @@ Json value_json(const Observable& observable, const Part& part, const MissingWor
 
 }  // namespace
 
-nlohmann::ordered_json observables_json(const Part& part, const MissingWords& words, Measured measured) {
+nlohmann::ordered_json observables_json(const Part& part, const MissingWords& words, Source source) {
   Json json;
   for (const Observable* observable : observables_by(&Places::summary)) {
-    if (measured == Measured::in_frames && !observable->in_frames) continue;
+    if (source == Source::frames && !observable->in_frames) continue;
     Json value = value_json(*observable, part, words);
     if (!value.is_null()) json[observable->key] = std::move(value);
   }

@@ -1,12 +1,14 @@
 #pragma once
 
 #include "config/config.h"
+#include "registry/observables.h"
 
 #include <ed/equilibration.h>
 #include <ed/observables.h>
 #include <ed/simulation.h>
 #include <ed/system.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -71,6 +73,12 @@ struct TrajectoryMark {
   std::vector<std::uint64_t> bytes;  ///< bytes of each file; without a frame: 0
 };
 
+/// Lengths of the files that grow with production.
+struct FilesMark {
+  EventsMark events;
+  TrajectoryMark trajectory;
+};
+
 /// Contents of a run's files and of its table.
 struct RunRecord {
   Config config;
@@ -92,6 +100,19 @@ struct RunRecord {
   double last_time() const { return produced() ? production.time : equilibration.time; }
   const char* last_phase() const { return produced() ? "production" : "equilibration"; }
 };
+
+/// Cap of the longest lag, in units of Config::time_unit; production "auto" may go beyond, up to the equilibration
+/// time.
+inline constexpr double kLongestLag = 40;
+
+/// Returns whether a longer production would have no longer lags.
+bool lags_are_longest(const Config& config, const Production& production);
+
+/// Returns all bodies of a run, as the registry of observables takes them. The record must outlive the result.
+Part part_of_all(const RunRecord& record);
+
+/// Returns a species of a mixture with its results, which must outlive the result.
+Part part_of_species(const RunRecord& record, std::size_t species, const ed::GroupResults& results);
 
 /// Fills in the audit of the last state, the drifts and the memory.
 void audit_record(RunRecord& record);

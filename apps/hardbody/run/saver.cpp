@@ -6,8 +6,6 @@
 #include <fmt/format.h>
 
 #include <exception>
-#include <string>
-#include <utility>
 
 namespace hardbody {
 
@@ -29,9 +27,7 @@ void Saver::save(const std::function<Checkpoint()>& make) {
     write(make());
   } catch (const std::exception& error) {
     ++upkeep_.checkpoints_failed;
-    const std::string text = fmt::format("no checkpoint: {}", error.what());
-    log_.line(text);
-    progress_.say(text);
+    announce(fmt::format("no checkpoint: {}", error.what()), progress_, log_);
   }
   last_ = Clock::now();
 }

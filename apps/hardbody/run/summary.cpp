@@ -3,7 +3,6 @@
 #include "base/version.h"
 #include "io/json_values.h"
 #include "run/observables_json.h"
-#include "run/part.h"
 
 #include <nlohmann/json.hpp>
 
@@ -25,7 +24,7 @@ Json units(const Config& config, const Part& part) {
                {"energy", "kT = 1"},
                {"time", "l sqrt(m/kT)"}};
   for (const Observable* o : observables_by(&Places::units)) json[o->key] = o->convention(part);
-  json["wave_numbers"] = kWaveNumbersConvention;
+  json["wave_numbers"] = "of F_self, 1/l; tau_F, beta_F, t_F_1overe are of the first";
   json["fit_windows"] = "from and to, l sqrt(m/kT)";
   json["momentum_drift"] =
       config.mixture ? "|P_end - P_start| / (N sqrt(m kT)), m the mean mass" : "|P_end - P_start| / (N sqrt(m kT))";
@@ -103,7 +102,7 @@ Json species_list(const RunRecord& record, const MissingWords& words) {
     json["spins"] = species.body.spins;
     json["sizes"] = sizes(species);
     const ed::GroupResults group = k < results.groups.size() ? results.groups[k] : ed::GroupResults{};
-    json["observables"] = observables_json(part_of_species(record, k, group), words, Measured::in_run);
+    json["observables"] = observables_json(part_of_species(record, k, group), words, Source::run);
     json["fit_windows"] = fit_windows(group);
     all.push_back(std::move(json));
   }
@@ -149,7 +148,7 @@ std::string summary_json(const RunRecord& record) {
   json["audit"] = {{"minimum_distance", number_json(record.audit.minimum_distance)},
                    {"energy_relative_drift", number_json(record.energy_relative_drift)},
                    {"momentum_drift", number_json(record.momentum_drift)}};
-  json["observables"] = observables_json(whole, words, Measured::in_run);
+  json["observables"] = observables_json(whole, words, Source::run);
   json["fit_windows"] = fit_windows(production.results);
   json["wave_numbers"] = production.wave_numbers;
   if (config.mixture) json["species"] = species_list(record, words);

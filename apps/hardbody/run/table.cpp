@@ -1,9 +1,7 @@
 #include "run/table.h"
 
 #include "base/version.h"
-#include "io/run_directory.h"
 #include "run/missing.h"
-#include "run/part.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

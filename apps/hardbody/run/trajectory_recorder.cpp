@@ -1,6 +1,5 @@
 #include "run/trajectory_recorder.h"
 
-#include "base/errors.h"
 #include "io/text_file.h"
 #include "trajectory/gsd/frames.h"
 #include "trajectory/lammps/dump.h"
@@ -8,10 +7,9 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <limits>
+#include <optional>
 #include <stdexcept>
-#include <system_error>
 #include <utility>
 
 namespace hardbody {
@@ -26,26 +24,21 @@ std::size_t memory_of(const Frame& frame) {
   return frame.bodies.size() * (sizeof(FrameBody) + sizeof(ed::Body)) + frame.types.size() * sizeof(ed::Species);
 }
 
+std::unique_ptr<FrameFile> writer_of(TrajectoryFormat format, const RunDirectory& directory, std::uint64_t capacity) {
+  if (format == TrajectoryFormat::gsd) return std::make_unique<GsdWriter>(directory.file(kGsdFile), capacity);
+  if (format == TrajectoryFormat::lammps) return std::make_unique<LammpsWriter>(directory.file(kLammpsFile));
+  return std::make_unique<VtkWriter>(directory.file(kVtkFile), capacity);
+}
+
 }  // namespace
 
 Trajectory::Trajectory(const RunDirectory& directory, const Config& config, double planned)
-    : planned_(planned),
+    : groups_(config.numbers()),
+      planned_(planned),
       wanted_(config.trajectory.empty() ? 0
               : planned > 0             ? static_cast<std::uint64_t>(config.frames)
                                         : 1) {
-  for (const SpeciesConfig& species : config.species) groups_.push_back(species.number);
-  for (const TrajectoryFormat format : config.trajectory) {
-    if (format == TrajectoryFormat::gsd) {
-      const fs::path path = directory.file(kGsdFile);
-      files_.push_back({path, std::make_unique<GsdWriter>(path, wanted_)});
-    } else if (format == TrajectoryFormat::lammps) {
-      const fs::path path = directory.file(kLammpsFile);
-      files_.push_back({path, std::make_unique<LammpsWriter>(path)});
-    } else {
-      const fs::path path = directory.file(kVtkFile);
-      files_.push_back({path, std::make_unique<VtkWriter>(path, wanted_)});
-    }
-  }
+  for (const TrajectoryFormat format : config.trajectory) files_.push_back(writer_of(format, directory, wanted_));
 }
 
 double Trajectory::next_time() const {
@@ -58,12 +51,7 @@ double Trajectory::next_time() const {
 
 void Trajectory::check(const TrajectoryMark& mark) const {
   for (std::size_t k = 0; k < files_.size() && mark.frames > 0; ++k) {
-    std::error_code error;
-    const std::uintmax_t bytes = fs::file_size(files_[k].path, error);
-    if (!error && k < mark.bytes.size() && bytes >= mark.bytes[k]) continue;
-    throw InputError(fmt::format("{}: has {} bytes, {} when the checkpoint was written; accepted: the file of the run",
-                                 files_[k].path.string(), error ? 0 : bytes,
-                                 k < mark.bytes.size() ? mark.bytes[k] : 0));
+    check_length(files_[k]->path(), k < mark.bytes.size() ? std::optional(mark.bytes[k]) : std::nullopt);
   }
 }
 
@@ -71,7 +59,7 @@ void Trajectory::open(const TrajectoryMark& mark) {
   taken_ = mark.frames;
   last_time_ = mark.last_time;
   for (std::size_t k = 0; k < files_.size(); ++k) {
-    files_[k].writer->open({mark.frames, mark.frames > 0 ? mark.bytes.at(k) : 0});
+    files_[k]->open({mark.frames, mark.frames > 0 ? mark.bytes.at(k) : 0});
   }
 }
 
@@ -104,13 +92,13 @@ void Trajectory::add(Frame frame, double time, Log& log) {
 void Trajectory::flush() {
   write_waiting();
   if (taken_ == 0) return;
-  for (const File& file : files_) flush_file(file.path);
+  for (const auto& file : files_) flush_file(file->path());
 }
 
 void Trajectory::write_waiting() {
   const std::uint64_t first = taken_ - waiting_.size();
-  for (File& file : files_) {
-    while (file.writer->mark().frames < taken_) file.writer->append(waiting_[file.writer->mark().frames - first]);
+  for (const auto& file : files_) {
+    while (file->mark().frames < taken_) file->append(waiting_[file->mark().frames - first]);
   }
   waiting_.clear();
 }
@@ -119,7 +107,7 @@ TrajectoryMark Trajectory::mark() const {
   TrajectoryMark mark;
   mark.frames = taken_;
   mark.last_time = last_time_;
-  for (const File& file : files_) mark.bytes.push_back(file.writer->mark().bytes);
+  for (const auto& file : files_) mark.bytes.push_back(file->mark().bytes);
   return mark;
 }
 

@@ -9,9 +9,7 @@
 #include <ed/simulation.h>
 
 #include <deque>
-#include <filesystem>
 #include <memory>
-#include <string>
 #include <vector>
 
 namespace hardbody {
@@ -26,35 +24,30 @@ class Trajectory {
   /// Returns the time of the next frame, infinity if there is none.
   double next_time() const;
 
-  /// Whether the files are at least as long as a checkpoint says. Throws InputError if not.
+  /// Checks that the files are at least as long as a checkpoint says. Throws InputError.
   void check(const TrajectoryMark& mark) const;
 
-  /// Begins, or goes on from a checkpoint: cuts off what follows. Throws std::runtime_error.
+  /// Begins new files, or continues those of a checkpoint and cuts off what follows. Throws std::runtime_error.
   void open(const TrajectoryMark& mark);
 
-  /// The first frame, unless there is one: the state that production begins with, to the bit, of which a simulation may
-  /// change the last one.
+  /// Takes the first frame, unless there is one: the state that production begins with, bit for bit. A simulation may
+  /// change the last bit of it.
   void take_first(const ed::System& start, Log& log);
 
-  /// The frame that is due: run `simulation` to next_time() first. A file that cannot be written gets it later, which
-  /// is logged; throws std::runtime_error when too much is waiting for that.
+  /// Takes the frame that is due, of a simulation at next_time(). A file that cannot be written gets it later, which is
+  /// logged. Throws std::runtime_error when too many frames are waiting.
   void take(const ed::Simulation& simulation, Log& log);
 
-  /// The state in which production ends before its planned end, unless it has just been taken.
+  /// Takes the state in which production ends before its planned end, unless it has just been taken.
   void take_last(const ed::Simulation& simulation, double time, Log& log);
 
-  /// Writes what is waiting, and brings all of it to the disk. Throws std::runtime_error if it cannot be written.
+  /// Writes the frames that are waiting and flushes all files to the disk. Throws std::runtime_error.
   void flush();
 
-  /// Once all is written.
+  /// Returns the extent of the files; no frame may be waiting.
   TrajectoryMark mark() const;
 
  private:
-  struct File {
-    std::filesystem::path path;
-    std::unique_ptr<FrameFile> writer;
-  };
-
   void write_waiting();
   void add(Frame frame, double time, Log& log);
 
@@ -63,7 +56,7 @@ class Trajectory {
   std::uint64_t wanted_;  ///< frames; 0: no trajectory
   std::uint64_t taken_ = 0;
   double last_time_ = -1;  ///< time of the last frame
-  std::vector<File> files_;
+  std::vector<std::unique_ptr<FrameFile>> files_;
   std::deque<Frame> waiting_;  ///< the last frames taken, those that some file lacks
   bool failing_ = false;       ///< the last attempt to write
 };

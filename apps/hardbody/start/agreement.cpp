@@ -1,21 +1,14 @@
 #include "start/agreement.h"
 
+#include "trajectory/frame.h"
+
 #include <cmath>
-#include <variant>
 
 namespace hardbody {
 namespace {
 
 bool near(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return (a - b).norm() <= kStateRounding * b.norm();
-}
-
-bool same_shape(const ed::BodyShape& a, const ed::BodyShape& b) {
-  if (a.index() != b.index()) return false;
-  const auto* s = std::get_if<geom::Superellipsoid>(&a);
-  const auto* t = std::get_if<geom::Superellipsoid>(&b);
-  const bool exponents = s == nullptr || (s->e1() == t->e1() && s->e2() == t->e2());
-  return exponents && near(ed::half_extents(a), ed::half_extents(b));
 }
 
 bool same_dynamics(const ed::Species& a, const ed::Species& b) {
@@ -31,7 +24,7 @@ Agreement compare(const ed::System& system, const Config& config) {
   for (const ed::Component& component : config.components()) {
     for (int k = 0; k < component.number && body < system.size(); ++k, ++body) {
       const ed::Species& species = system.species_of(body);
-      result.shape = result.shape && same_shape(species.shape, component.species.shape);
+      result.shape = result.shape && same_shape(species.shape, component.species.shape, kStateRounding, 0);
       result.dynamics = result.dynamics && same_dynamics(species, component.species);
     }
   }

@@ -8,9 +8,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <utility>
 
 namespace hardbody {
@@ -19,8 +17,6 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// Relative difference between the file's lengths and the config's that counts as rounding to 32 bits.
-constexpr double kSameLength = 1e-5;
 /// Relative difference of packing fractions, a length to the third power, that counts as rounding.
 constexpr double kSamePacking = 1e-4;
 /// Largest factor by which overlapping bodies are moved apart.
@@ -29,16 +25,9 @@ constexpr double kMostMending = 1.1;
 /// Returns the orientation of the config's body axes (the axis of revolution last) in the file's body axes; nullopt if
 /// the two shapes are different.
 std::optional<Matrix3d> axes_in_file(const ed::BodyShape& file, const ed::BodyShape& config) {
-  const auto* a = std::get_if<geom::Superellipsoid>(&file);
-  const auto* b = std::get_if<geom::Superellipsoid>(&config);
-  const auto exponent = [](const geom::Superellipsoid* s, int k) {
-    return s == nullptr ? 1 : k == 1 ? s->e1() : s->e2();
-  };
-  const bool same_exponents = std::abs(exponent(a, 1) - exponent(b, 1)) <= kSameLength &&
-                              std::abs(exponent(a, 2) - exponent(b, 2)) <= kSameLength;
-  if (!same_exponents) return std::nullopt;
+  if (!((exponents_of(file) - exponents_of(config)).cwiseAbs().maxCoeff() <= kSameLength)) return std::nullopt;
   const Vector3d wanted = ed::half_extents(config);
-  const bool free = b == nullptr;  // an ellipsoid's axes may be in any order
+  const bool free = std::holds_alternative<geom::Ellipsoid>(config);  // an ellipsoid's axes may be in any order
   for (int shift = 0; shift < (free ? 3 : 1); ++shift) {
     Matrix3d axes;
     for (int k = 0; k < 3; ++k) axes.col(k) = Vector3d::Unit((k + shift) % 3);
@@ -166,13 +155,12 @@ FileStart start_from_file(const Config& config, std::optional<StartFrame> loaded
   const auto [frame, k, cut_off] = loaded ? std::move(*loaded) : read_start_frame(start);
   const std::vector<std::vector<std::size_t>> groups = groups_of(frame);
   std::vector<int> found;
-  std::vector<int> wanted;
   std::vector<std::size_t> order;
   for (const std::vector<std::size_t>& group : groups) {
     found.push_back(static_cast<int>(group.size()));
     order.insert(order.end(), group.begin(), group.end());
   }
-  for (const SpeciesConfig& species : config.species) wanted.push_back(species.number);
+  const std::vector<int> wanted = config.numbers();
   if (found != wanted) {
     throw InputError(fmt::format("{}: has {} bodies of its types, the config {}; accepted: the same numbers",
                                  start.file, fmt::join(found, ", "), fmt::join(wanted, ", ")));

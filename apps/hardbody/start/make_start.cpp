@@ -94,11 +94,11 @@ void report_order(double asked, const ed::System& start, Progress& progress, Log
   // Deviation that samples of this size hardly ever exceed.
   const double usual = std::max(0.05, 1.5 / std::sqrt(start.size()));
   if (std::abs(reached - asked) <= usual) return;
-  const std::string text = fmt::format(
-      "start: S = {:.2f} about z after the compression, not nematic_order = {:g}; start = \"fcc\" would keep it",
-      reached, asked);
-  log.line(text);
-  progress.say(text);
+  announce(
+      fmt::format("start: S = {:.2f} about z after the compression, not nematic_order = {:g}; start = \"fcc\" would "
+                  "keep it",
+                  reached, asked),
+      progress, log);
 }
 
 /// Compresses a random start or the last state of another run; nullopt if a signal came first.
@@ -138,18 +138,12 @@ std::optional<Start> compressed_start(const Config& config, const std::optional<
 std::optional<Start> make_start(const Config& config, LoadedStates loaded, Progress& progress, Log& log) {
   if (config.start_file) {
     FileStart start = loaded.file ? std::move(*loaded.file) : start_from_file(config);
-    log.line(start.report);
-    progress.say(start.report);
-    for (const std::string& notice : start.notices) {
-      log.line(notice);
-      progress.say(notice);
-    }
+    announce(start.report, progress, log);
+    for (const std::string& notice : start.notices) announce(notice, progress, log);
     return Start{std::move(start.system), {}, {}};
   }
   for (const std::optional<std::string>& warning : {unequal_sizes(config), compressed_as_one(config)}) {
-    if (!warning) continue;
-    log.line(*warning);
-    progress.say(*warning);
+    if (warning) announce(*warning, progress, log);
   }
   const std::optional<ed::LatticeOptions> lattice = config.lattice();
   if (!lattice) return compressed_start(config, loaded.origin, progress, log);

@@ -25,6 +25,9 @@ using Eigen::Vector3d;
 enum Kind : std::size_t { kTranslation, kRotation, kSpin, kKinds };
 constexpr std::array<const char*, kKinds> kKindNames = {"translation", "rotation", "spin"};
 
+/// Relative difference of masses, moments and energies that counts as rounding.
+constexpr double kVelocityRounding = 1e-12;
+
 /// Returns the angular velocity of a body whose angular momentum the frame contains, with the moments of the config.
 Vector3d angular_velocity_of(const Frame& frame, const FrameBody& from, const ed::Body& body,
                              const ed::Species& species) {
@@ -47,9 +50,8 @@ void draw_thermal(ed::System& system, std::uint64_t seed) {
 /// Returns whether the same velocities have the same energy; moments that two formulas give for one body differ by
 /// rounding.
 bool move_alike(const ed::Species& a, const ed::Species& b) {
-  constexpr double kRounding = 1e-12;
-  return a.spins == b.spins && std::abs(a.mass - b.mass) <= kRounding * b.mass &&
-         (a.inertia - b.inertia).cwiseAbs().maxCoeff() <= kRounding * b.inertia.maxCoeff();
+  return a.spins == b.spins && std::abs(a.mass - b.mass) <= kVelocityRounding * b.mass &&
+         (a.inertia - b.inertia).cwiseAbs().maxCoeff() <= kVelocityRounding * b.inertia.maxCoeff();
 }
 
 /// Bodies [begin, end) of a system: one species of the config.
@@ -60,7 +62,6 @@ struct SpeciesRange {
 
 /// Returns whether the bodies of a range move relative to each other; for a single body, relative to `drift`.
 bool translates(const ed::System& system, SpeciesRange range, Vector3d drift) {
-  constexpr double kRounding = 1e-12;
   const bool single = range.end - range.begin == 1;
   if (!single) drift.setZero();
   double mass = 0;
@@ -76,13 +77,13 @@ bool translates(const ed::System& system, SpeciesRange range, Vector3d drift) {
     whole += m * system.bodies[i].velocity.squaredNorm();
     relative += m * (system.bodies[i].velocity - drift).squaredNorm();
   }
-  return whole > 0 && relative > kRounding * whole;
+  return whole > 0 && relative > kVelocityRounding * whole;
 }
 
 /// Returns the kinds of motion that the bodies of a range have; `drift`: mean velocity of all bodies. Rotation and spin
 /// are separated up to rounding: that of six digits is 1e-9 of the energy of thin bodies.
 std::array<bool, kKinds> motion_of(const ed::System& system, SpeciesRange range, const Vector3d& drift) {
-  constexpr double kRounding = 1e-8;
+  constexpr double kSeparation = 1e-8;
   ed::System part;
   for (std::size_t i = range.begin; i < range.end; ++i) {
     part.species.push_back(system.species_of(static_cast<int>(i)));
@@ -90,7 +91,7 @@ std::array<bool, kKinds> motion_of(const ed::System& system, SpeciesRange range,
     part.bodies.back().species = static_cast<int>(part.species.size()) - 1;
   }
   const ed::KineticState now = ed::kinetic_state(part);
-  const double rest = kRounding * (now.rotational_energy + now.spin_energy);
+  const double rest = kSeparation * (now.rotational_energy + now.spin_energy);
   return {translates(system, range, drift), now.rotational_degrees_of_freedom == 0 || now.rotational_energy > rest,
           now.spin_degrees_of_freedom == 0 || now.spin_energy > rest};
 }
@@ -185,14 +186,13 @@ std::string set_velocities(ed::System& system, const Config& config, const Frame
                                         kinetic.spin_degrees_of_freedom > 0};
   const bool turns = frame.angular_velocities || frame.angular_momenta;
   const Vector3d drift = mean_velocity(system);
-  std::vector<int> numbers;
+  const std::vector<int> numbers = config.numbers();
   std::vector<std::array<bool, kKinds>> kept;
   std::vector<SpeciesRange> ranges;
   std::size_t begin = 0;
-  for (const SpeciesConfig& species : config.species) {
-    ranges.push_back({begin, begin + static_cast<std::size_t>(species.number)});
+  for (const int number : numbers) {
+    ranges.push_back({begin, begin + static_cast<std::size_t>(number)});
     begin = ranges.back().end;
-    numbers.push_back(species.number);
     const std::array<bool, kKinds> moves = motion_of(system, ranges.back(), drift);
     kept.push_back({frame.velocities && moves[kTranslation], turns && moves[kRotation], turns && moves[kSpin]});
   }

@@ -1,6 +1,7 @@
 #include "sweep/file.h"
 
 #include "base/errors.h"
+#include "base/find.h"
 #include "base/suggest.h"
 #include "config/keys.h"
 #include "io/text_file.h"
@@ -366,18 +367,16 @@ std::optional<ChangedKey> changed_key(const TomlDocument& before, const TomlDocu
   constexpr const char* kMissing = "not there";
   const std::vector<Entry> then = all_keys(before);
   const std::vector<Entry> today = all_keys(now);
-  const auto of_key = [](const std::vector<Entry>& entries, const std::string& key) {
-    return std::find_if(entries.begin(), entries.end(), [&](const Entry& e) { return e.key == key; });
-  };
   for (const Entry& entry : today) {
-    const auto other = of_key(then, entry.key);
-    if (other == then.end()) return ChangedKey{entry.key, entry.where, kMissing, entry.value.shown};
+    const Entry* other = find_by(then, &Entry::key, entry.key);
+    if (other == nullptr) return ChangedKey{entry.key, entry.where, kMissing, entry.value.shown};
     if (!same_value(other->value, entry.value)) {
       return ChangedKey{entry.key, entry.where, other->value.shown, entry.value.shown};
     }
   }
   for (const Entry& entry : then) {
-    if (of_key(today, entry.key) == today.end()) return ChangedKey{entry.key, now.name, entry.value.shown, kMissing};
+    if (find_by(today, &Entry::key, entry.key) == nullptr)
+      return ChangedKey{entry.key, now.name, entry.value.shown, kMissing};
   }
   return std::nullopt;
 }

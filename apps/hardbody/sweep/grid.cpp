@@ -1,6 +1,7 @@
 #include "sweep/grid.h"
 
 #include "base/errors.h"
+#include "base/find.h"
 #include "base/suggest.h"
 #include "config/keys.h"
 #include "io/text_file.h"
@@ -214,8 +215,7 @@ fs::path absolute_from(const fs::path& directory, const fs::path& name) {
 }
 
 const Setting* SweepPoint::find(std::string_view key) const {
-  const auto found = std::find_if(settings.begin(), settings.end(), [&](const Setting& s) { return s.key == key; });
-  return found == settings.end() ? nullptr : &*found;
+  return find_by(settings, &Setting::key, key);
 }
 
 std::vector<SweepPoint> expand(const std::vector<Grid>& grids) {

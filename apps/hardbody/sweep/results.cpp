@@ -1,5 +1,6 @@
 #include "sweep/results.h"
 
+#include "base/find.h"
 #include "io/run_directory.h"
 #include "io/text_file.h"
 #include "registry/observables.h"
@@ -8,8 +9,8 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
 #include <stdexcept>
-#include <string_view>
 #include <utility>
 
 namespace hardbody {
@@ -138,10 +139,8 @@ std::string row(const PointRecord& record, const std::vector<std::string>& keys,
   const PointResults results = record.results.value_or(PointResults{});
   text += fmt::format("{},{}", results.equilibration_time, results.production_time);
   for (const std::string& name : names) {
-    const auto found = std::find_if(results.observables.begin(), results.observables.end(),
-                                    [&](const PrintedEstimate& e) { return e.name == name; });
-    const bool known = found != results.observables.end();
-    text += fmt::format(",{},{}", known ? found->value : "", known ? found->error : "");
+    const PrintedEstimate* known = find_by(results.observables, &PrintedEstimate::name, name);
+    text += fmt::format(",{},{}", known != nullptr ? known->value : "", known != nullptr ? known->error : "");
   }
   const std::string message = record.message.empty() ? missing_text(results.observables) : record.message;
   const char* equilibrated = !record.results ? "" : results.equilibrated ? "true" : "false";
@@ -152,19 +151,7 @@ std::string row(const PointRecord& record, const std::vector<std::string>& keys,
 }  // namespace
 
 const char* to_string(PointStatus status) {
-  switch (status) {
-    case PointStatus::pending:
-      return "pending";
-    case PointStatus::running:
-      return "running";
-    case PointStatus::stopped:
-      return "stopped";
-    case PointStatus::done:
-      return "done";
-    case PointStatus::failed:
-      return "failed";
-  }
-  return "";
+  return std::array{"pending", "running", "stopped", "done", "failed"}[static_cast<std::size_t>(status)];
 }
 
 std::optional<PointResults> finished_results(const std::filesystem::path& directory) {

@@ -2,10 +2,12 @@
 
 #include <ed/observables.h>
 
+#include <Eigen/Geometry>
+
 #include <fmt/format.h>
 
-#include <cmath>
 #include <cstddef>
+#include <variant>
 
 namespace hardbody {
 namespace {
@@ -24,9 +26,6 @@ Vector3d axis_of(const ed::System& system, int i) {
   return system.bodies[static_cast<std::size_t>(i)].rotation.col(axis);
 }
 
-/// Relative difference of edges of a cube that counts as rounding to 32 bits.
-constexpr double kSameLength = 1e-5;
-
 }  // namespace
 
 std::uint32_t SphereTypes::of(std::uint32_t type, double radius) {
@@ -34,6 +33,22 @@ std::uint32_t SphereTypes::of(std::uint32_t type, double radius) {
   const auto [found, fresh] = made_.try_emplace({type, radius}, static_cast<std::uint32_t>(types_.size()));
   if (fresh) types_.push_back({types_[type].name, geom::Ellipsoid(Vector3d::Constant(radius)), true});
   return found->second;
+}
+
+Eigen::Vector4d quaternion_of(const Eigen::Matrix3d& rotation) {
+  const Eigen::Quaterniond q = Eigen::Quaterniond(rotation).normalized();
+  return {q.w(), q.x(), q.y(), q.z()};
+}
+
+Eigen::Vector2d exponents_of(const ed::BodyShape& shape) {
+  const auto* s = std::get_if<geom::Superellipsoid>(&shape);
+  return s == nullptr ? Eigen::Vector2d(1, 1) : Eigen::Vector2d(s->e1(), s->e2());
+}
+
+bool same_shape(const ed::BodyShape& a, const ed::BodyShape& b, double lengths, double exponents) {
+  const Vector3d h = ed::half_extents(b);
+  return a.index() == b.index() && (exponents_of(a) - exponents_of(b)).cwiseAbs().maxCoeff() <= exponents &&
+         (ed::half_extents(a) - h).norm() <= lengths * h.norm();
 }
 
 std::optional<std::string> not_a_cube(const Frame& frame) {

@@ -58,6 +58,9 @@ struct FrameBody {
 /// Maximum number of box edges between a position and the box; beyond, the number of an image would overflow.
 inline constexpr double kMostImages = 1e9;
 
+/// Relative difference of lengths that counts as rounding to 32 bits.
+inline constexpr double kSameLength = 1e-5;
+
 /// State of all bodies at one time, as a trajectory contains it.
 struct Frame {
   std::uint64_t step = 0;  ///< time step; in this program's files the frame's number
@@ -93,6 +96,16 @@ struct Frame {
   /// State itself, bit for bit, with its species; only in this program's trajectories.
   std::optional<ed::System> exact;
 };
+
+/// Returns the unit quaternion w, x, y, z of a rotation.
+Eigen::Vector4d quaternion_of(const Eigen::Matrix3d& rotation);
+
+/// Returns the exponents e1, e2 of a superellipsoid; 1, 1 for other shapes.
+Eigen::Vector2d exponents_of(const ed::BodyShape& shape);
+
+/// Returns whether two shapes are of one kind and agree: their half extents within `lengths`, relative to those of `b`,
+/// and their exponents within `exponents`.
+bool same_shape(const ed::BodyShape& a, const ed::BodyShape& b, double lengths, double exponents);
 
 /// Returns why a frame's box is not a cube, "its box is tilted: ..", "its box has edges .."; nullopt if it is one.
 std::optional<std::string> not_a_cube(const Frame& frame);

@@ -11,18 +11,18 @@
 #include <numbers>
 #include <optional>
 #include <utility>
-#include <variant>
 
 namespace hardbody {
 namespace {
-
-using Eigen::Vector3d;
 
 /// Maximum number of bytes of all frames in memory.
 constexpr double kMostMemory = 8e9;
 constexpr double kMemoryOfABody = 700;
 /// Relative difference of two sizes, masses or boxes that are regarded as the same, as text or 32-bit numbers.
 constexpr double kSame = 1e-6;
+
+/// Shortest unit of length in edges of the box.
+constexpr double kLeastLength = 1e-6;
 
 /// Lines about frames: each once, with the first frame to which it applies.
 class Notices {
@@ -68,19 +68,6 @@ bool says_orientations(const Frame& frame) {
                                 std::any_of(frame.types.begin(), frame.types.end(), turnable));
 }
 
-bool same_shape(const std::optional<ed::BodyShape>& a, const std::optional<ed::BodyShape>& b) {
-  if (!a || !b) return a.has_value() == b.has_value();
-  const auto* barr = std::get_if<geom::Superellipsoid>(&*a);
-  const auto* other = std::get_if<geom::Superellipsoid>(&*b);
-  if (a->index() != b->index()) return false;
-  if (barr != nullptr &&
-      !(std::abs(barr->e1() - other->e1()) <= kSame && std::abs(barr->e2() - other->e2()) <= kSame)) {
-    return false;
-  }
-  const Vector3d h = ed::half_extents(*a);
-  return (ed::half_extents(*b) - h).norm() <= kSame * h.norm();
-}
-
 /// Returns the body axis u: as in a run, the axis of revolution of bodies that are of revolution by shape and moments;
 /// nullopt for others.
 std::optional<int> axis_of(const Frame& frame, const FrameBody& body) {
@@ -102,12 +89,13 @@ class Reading {
   }
   std::vector<std::uint64_t> frames_with_positions();
   void check_memory(std::size_t frames) const;
-  void read_groups();
+  void read_groups(std::uint64_t k);
   void check_frame(const Frame& frame, std::uint64_t k) const;
   void check_body(const Frame& frame, std::uint64_t k, std::size_t n) const;
   void set_order(const Frame& frame);
   double time_of(const Frame& frame, std::uint64_t k) const;
-  void keep(const Frame& frame, double time);
+  void check_time(double time, std::uint64_t k) const;
+  void keep(const Frame& frame, double time, std::uint64_t k);
   void finish(std::size_t used);
 
   const TrajectoryReader& reader_;
@@ -119,6 +107,7 @@ class Reading {
   Unwrapping unwrapping_;
   Notices notices_;
   bool ids_ = true;
+  std::uint64_t last_kept_ = 0;         ///< number in the file of the last frame in result_
   std::size_t known_orientations_ = 0;  ///< number of frames in which orientations are known
   std::size_t known_velocities_ = 0;
   bool say_orientations_ = false;
@@ -156,19 +145,19 @@ void Reading::set_order(const Frame& frame) {
                    [&](std::size_t a, std::size_t b) { return frame.bodies[a].group < frame.bodies[b].group; });
 }
 
-/// Determines the groups and the order of the bodies from the first frame.
-void Reading::read_groups() {
+/// Determines the groups and the order of the bodies from the first frame, the file's k-th.
+void Reading::read_groups(std::uint64_t k) {
   ed::StoredFramesOptions& options = result_.options;
   double volume = 0;
   bool shapes = true;
-  for (std::size_t k = 0; k < first_order_.size(); ++k) {
-    const FrameBody& body = first_.bodies[first_order_[k]];
+  for (std::size_t n = 0; n < first_order_.size(); ++n) {
+    const FrameBody& body = first_.bodies[first_order_[n]];
     const std::optional<ed::BodyShape>& shape = first_.types[body.type].shape;
     if (shape) volume += ed::volume(*shape);
     shapes = shapes && shape;
     const std::optional<int> axis = axis_of(first_, body);
     options.axis.push_back(axis.value_or(2));
-    if (k == 0 || first_.bodies[first_order_[k - 1]].group != body.group) options.groups.push_back({0, axis ? 2 : 3});
+    if (n == 0 || first_.bodies[first_order_[n - 1]].group != body.group) options.groups.push_back({0, axis ? 2 : 3});
     ++options.groups.back().number;
     if (!axis) options.groups.back().rotation_axes = 3;
   }
@@ -176,6 +165,11 @@ void Reading::read_groups() {
   if (volume > 0) {
     options.length = std::cbrt(volume / static_cast<double>(first_.bodies.size()) / (4 * std::numbers::pi / 3));
   }
+  if (options.length > kLeastLength * options.box) return;
+  throw bad(k,
+            fmt::format("its box has an edge of {:g}, its bodies have {} of {:g}", options.box,
+                        volume > 0 ? "a mean radius" : "no shapes and the default length", options.length),
+            fmt::format("an edge below {:g} times this length", 1 / kLeastLength));
 }
 
 /// Checks that body n of the order is the same as in the first frame.
@@ -196,7 +190,8 @@ void Reading::check_body(const Frame& frame, std::uint64_t k, std::size_t n) con
                           one_line(type_before.name, 40)),
               accepted);
   }
-  if (!same_shape(type.shape, type_before.shape)) {
+  const std::optional<ed::BodyShape>& was = type_before.shape;
+  if (type.shape.has_value() != was.has_value() || (was && !same_shape(*was, *type.shape, kSame, kSame))) {
     throw bad(k, fmt::format("{} has another shape or size than in the first frame", which), accepted);
   }
   if (!(std::abs(body.mass - before.mass) <= kSame * std::abs(before.mass))) {
@@ -229,7 +224,18 @@ double Reading::time_of(const Frame& frame, std::uint64_t k) const {
       fmt::format("{}: frame {} has no time; accepted: --time-step, the time between two steps", reader_.name(), k));
 }
 
-void Reading::keep(const Frame& frame, double time) {
+void Reading::check_time(double time, std::uint64_t k) const {
+  const std::vector<ed::StoredFrame>& before = result_.frames;
+  if (std::isfinite(time) && (before.empty() || time > before.back().time)) return;
+  const std::string than =
+      before.empty() ? "" : fmt::format(", that of frame {} is {:.9g}", last_kept_, before.back().time);
+  throw InputError(
+      fmt::format("{}: time of frame {} is {:.9g}{}; accepted: finite times that rise", reader_.name(), k, time, than));
+}
+
+void Reading::keep(const Frame& frame, double time, std::uint64_t k) {
+  check_time(time, k);
+  last_kept_ = k;
   ed::StoredFrame& out = result_.frames.emplace_back();
   out.time = time;
   for (const std::size_t i : order_) {
@@ -256,14 +262,16 @@ void Reading::finish(std::size_t used) {
   const bool orientations = say_orientations_ && known_orientations_ == count;
   const bool velocities = known_velocities_ == count;
   Unwrapping::Result unwrapped = unwrapping_.take();
-  if (!unwrapped.notice.empty()) result_.notices.push_back(unwrapped.notice);
+  // Without ids a jump may be another body in the same line, and says nothing about images.
+  const bool followed = ids_ || count == 1;
+  if (followed && !unwrapped.notice.empty()) result_.notices.push_back(unwrapped.notice);
   for (std::size_t k = 0; k < count; ++k) {
     ed::StoredFrame& frame = result_.frames[k];
     if (!orientations) frame.rotation.clear();
     if (!velocities) frame.velocity.clear();
     frame.position = std::move(unwrapped.positions[k]);
   }
-  if (ids_ || count == 1) {
+  if (followed) {
     result_.unwrapped_by = std::move(unwrapped.by);
     result_.not_unwrapped = std::move(unwrapped.reason);
   } else {
@@ -284,7 +292,7 @@ StoredTrajectory Reading::read() {
   first_order_ = order_;
   result_.options.box = first_.box.x();
   result_.options.longest_lag = asked_.longest_lag.value_or(0);
-  read_groups();
+  read_groups(list[0]);
   const auto every = static_cast<std::size_t>(asked_.every);
   for (std::size_t n = 0; n < list.size(); ++n) {
     const std::uint64_t k = list[n];
@@ -295,7 +303,7 @@ StoredTrajectory Reading::read() {
     notices_.add(frame.notices, k);
     const bool kept = n % every == 0;
     unwrapping_.add(frame, order_, kept);
-    if (kept) keep(frame, list.size() == 1 ? 0 : time_of(frame, k));
+    if (kept) keep(frame, list.size() == 1 ? 0 : time_of(frame, k), k);
   }
   finish(list.size());
   return std::move(result_);

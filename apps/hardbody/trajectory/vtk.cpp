@@ -4,15 +4,12 @@
 
 #include <ed/archive.h>
 
-#include <Eigen/Geometry>
-
 #include <fmt/format.h>
 
 #include <array>
 #include <iterator>
 #include <string>
 #include <string_view>
-#include <utility>
 
 namespace hardbody {
 namespace {
@@ -95,11 +92,6 @@ Matrix3d shape_tensor(const Frame& frame, const FrameBody& body) {
   return body.rotation * semi_axes(frame, body).asDiagonal() * body.rotation.transpose();
 }
 
-Eigen::Vector4d quaternion(const FrameBody& body) {
-  const Eigen::Quaterniond q = Eigen::Quaterniond(body.rotation).normalized();
-  return {q.w(), q.x(), q.y(), q.z()};
-}
-
 /// Writes an array with its length before it.
 template <class Get>
 void put_array(Writer& writer, const Frame& frame, const Array& array, const Get& get) {
@@ -115,7 +107,7 @@ std::string frame_bytes(const Frame& frame) {
   put_array(writer, frame, kArrays[1],
             [&](const FrameBody& b) -> Vector3f { return semi_axes(frame, b).cast<float>(); });
   put_array(writer, frame, kArrays[2],
-            [](const FrameBody& b) -> Eigen::Vector4f { return quaternion(b).cast<float>(); });
+            [](const FrameBody& b) -> Eigen::Vector4f { return quaternion_of(b.rotation).cast<float>(); });
   put_array(writer, frame, kArrays[3], [](const FrameBody& b) -> Vector3f { return b.velocity.cast<float>(); });
   put_array(writer, frame, kArrays[4], [](const FrameBody& b) { return static_cast<std::int32_t>(b.group); });
   put_array(writer, frame, kArrays[5], [](const FrameBody& b) -> Vector3f { return b.position.cast<float>(); });
@@ -127,9 +119,6 @@ std::uint64_t time_place(std::uint64_t frame) {
 }
 
 }  // namespace
-
-VtkWriter::VtkWriter(std::filesystem::path path, std::uint64_t capacity)
-    : path_(std::move(path)), capacity_(capacity) {}
 
 void VtkWriter::open(FileMark mark) {
   mark_ = mark;

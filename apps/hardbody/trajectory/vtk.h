@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <utility>
 
 namespace hardbody {
 
@@ -16,16 +17,13 @@ namespace hardbody {
 class VtkWriter final : public FrameFile {
  public:
   /// Prepares a file of at most `capacity` frames. Nothing is written yet.
-  VtkWriter(std::filesystem::path path, std::uint64_t capacity);
+  VtkWriter(std::filesystem::path path, std::uint64_t capacity) : FrameFile(std::move(path)), capacity_(capacity) {}
 
   void open(FileMark mark) override;
   void append(const Frame& frame) override;
-  FileMark mark() const override { return mark_; }
 
  private:
-  std::filesystem::path path_;
   std::uint64_t capacity_;
-  FileMark mark_;
 };
 
 }  // namespace hardbody

@@ -3,6 +3,8 @@
 #include "trajectory/frame.h"
 
 #include <cstdint>
+#include <filesystem>
+#include <utility>
 
 namespace hardbody {
 
@@ -16,7 +18,7 @@ struct FileMark {
 /// truncated and continued.
 class FrameFile {
  public:
-  FrameFile() = default;
+  explicit FrameFile(std::filesystem::path path) : path_(std::move(path)) {}
   virtual ~FrameFile() = default;
   FrameFile(const FrameFile&) = delete;
   FrameFile& operator=(const FrameFile&) = delete;
@@ -29,7 +31,12 @@ class FrameFile {
   /// written; the previous content is kept.
   virtual void append(const Frame& frame) = 0;
 
-  virtual FileMark mark() const = 0;
+  const std::filesystem::path& path() const { return path_; }
+  FileMark mark() const { return mark_; }
+
+ protected:
+  std::filesystem::path path_;
+  FileMark mark_;
 };
 
 }  // namespace hardbody

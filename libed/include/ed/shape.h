@@ -5,21 +5,36 @@
 
 #include <ed/export.h>
 
+#include <geom/any_shape.h>
 #include <geom/distance.h>
-#include <geom/ellipsoid.h>
 #include <geom/pose.h>
 #include <geom/shape.h>
-#include <geom/superellipsoid.h>
 
 #include <Eigen/Core>
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <utility>
-#include <variant>
 
 namespace ed {
+
+class CustomShape;
+
+/// Shape of a body in a simulation: one of libgeom's, or a user's own.
+using BodyShape = geom::AnyShape<CustomShape>;
+
+/// Distance of a user's shape from another shape by the user's own method, a closed form for instance, in place of
+/// libgeom's search on support functions. A is the user's shape at X_WA, B is `other` at X_WB; nullopt: the method does
+/// not know this pair, and libgeom's answers. The options may be ignored, except that overlapping bodies need a local
+/// penetration only (geom::Penetration::local).
+///
+/// The answer must keep the contract of geom::DistanceResult: status, distance, unit normal from A to B, both points in
+/// the world's axes, and an error bound that is true: contacts are certified with it. It must depend on its arguments
+/// alone, so that runs repeat.
+using PairDistance = std::function<std::optional<geom::DistanceResult>(
+    const geom::Pose& X_WA, const BodyShape& other, const geom::Pose& X_WB, const geom::DistanceOptions& options)>;
 
 /// User-defined convex body: any type that models geom::SupportShape, with the properties that dynamics needs beside
 /// its surface. It is itself a SupportShape. Copies share the shape.
@@ -31,6 +46,7 @@ class ED_EXPORT CustomShape {
     double volume = 0;                 ///< > 0
     std::optional<int> symmetry_axis;  ///< body axis (0, 1, 2) about which the body is one of revolution, if any
     bool centrally_symmetric = false;  ///< -x is in the body for every x in it, which makes the paper's boxes tighter
+    PairDistance pair_distance = {};   ///< the user's own distance from other shapes; empty: libgeom's
   };
 
   /// Constructs the body. Throws std::invalid_argument unless the radii are positive, finite and in order, the volume
@@ -53,6 +69,8 @@ class ED_EXPORT CustomShape {
   const std::string& name() const { return properties_.name; }
   std::optional<int> symmetry_axis() const { return properties_.symmetry_axis; }
   bool centrally_symmetric() const { return properties_.centrally_symmetric; }
+  const PairDistance& pair_distance() const { return properties_.pair_distance; }
+  const std::string& description() const { return name(); }
   /// @}
 
  private:
@@ -87,9 +105,6 @@ class ED_EXPORT CustomShape {
   double min_curvature_radius_ = 0;
 };
 
-/// Shape of a body in a simulation.
-using BodyShape = std::variant<geom::Ellipsoid, geom::Superellipsoid, CustomShape>;
-
 /// Forwards to the member function of the shape inside, where it is documented.
 /// @{
 ED_EXPORT double bounding_radius(const BodyShape& shape);
@@ -104,12 +119,16 @@ ED_EXPORT geom::Support support(const BodyShape& shape, const Eigen::Vector3d& n
 /// about none.
 ED_EXPORT std::optional<int> symmetry_axis(const BodyShape& shape);
 
+/// Returns whether the shape is an ellipsoid of revolution, spheres included.
+ED_EXPORT bool is_spheroid(const BodyShape& shape);
+
 /// Returns half the edges of the smallest box around the body along its own axes.
 ED_EXPORT Eigen::Vector3d half_extents(const BodyShape& shape);
 
-/// Returns geom::distance of the shapes inside.
+/// Returns the distance of the shapes inside: by the PairDistance of a user's shape where it knows the pair (that of A
+/// is asked first), else geom::distance.
 ED_EXPORT geom::DistanceResult distance(const BodyShape& a, const geom::Pose& X_WA, const BodyShape& b,
-                                        const geom::Pose& X_WB);
+                                        const geom::Pose& X_WB, const geom::DistanceOptions& options = {});
 
 /// Describes the shape in words, for messages: "ellipsoid of semi-axes 1 x 1 x 3".
 ED_EXPORT std::string describe(const BodyShape& shape);

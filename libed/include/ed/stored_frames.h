@@ -33,7 +33,7 @@ struct StoredFramesOptions {
   bool length_known = true;
   /// False if body i of one frame need not be body i of the next: there are no correlations in time then.
   bool same_bodies = true;
-  /// False if positions are wrapped, so that displacements are not known: no MSD, alpha2, F_self, D_trans.
+  /// False if positions are wrapped, so that displacements are not known, nor what follows from them.
   bool unwrapped = true;
   std::vector<BodyGroup> groups{};  ///< groups of bodies, whose numbers add up to that of the bodies
   std::vector<int> axis{};          ///< index (0, 1, 2) of the body axis that u is, for each body

@@ -1,14 +1,13 @@
 #include "bodies/general.h"
 
 #include "contact/body_shapes.h"
-#include "contact/convex_gap.h"
 #include "motion/checks.h"
 
 #include <geom/tolerances.h>
 
 #include <algorithm>
 #include <cmath>
-#include <variant>
+#include <utility>
 
 namespace ed::internal {
 namespace {
@@ -21,10 +20,7 @@ GeneralKind general_kind(const Species& species) {
   Vector3d inertia = species.inertia;
   // Irrelevant, and maybe no number; spherical tops turn uniformly.
   if (axis >= 0 && !species.spins) inertia[axis] = inertia[(axis + 1) % 3];
-  const bool custom = std::holds_alternative<CustomShape>(species.shape);
-  return {.shape = species.shape,
-          .norm = custom ? std::nullopt : std::optional(norm_body(species.shape)),
-          .implicit = geom_shape(species.shape),
+  return {.body = GapShape(species.shape),
           .bounding_radius = bounding_radius(species.shape),
           .inscribed_radius = inscribed_radius(species.shape),
           .half_extents = half_extents(species.shape),
@@ -109,20 +105,16 @@ void GeneralBodies::scale_positions(double factor, double now) {
 
 template <class F>
 decltype(auto) GeneralBodies::with_gap(int i, int j, const Vector3d& r, double now, F&& f) const {
-  const GeneralKind& A = kind_of(i);
-  const GeneralKind& B = kind_of(j);
-  const RigidMotion& a = motions_[at(i)];
-  const RigidMotion& b = motions_[at(j)];
-  if (A.norm && B.norm) return f(SupportGap(*A.norm, a, *B.norm, b, r, now));
-  return f(ConvexGap(A.shape, a, B.shape, b, r, now));
+  return with_pair_gap(kind_of(i).body, motions_[at(i)], kind_of(j).body, motions_[at(j)], r, now, std::forward<F>(f));
 }
 
 Finding GeneralBodies::find_contact(int i, int j, const Vector3d& r, double now, double end, int max_evaluations,
                                     const ContactOptions& options, Vector3d& n, FinderCounters& count,
                                     std::optional<Unsolved>& unsolved) const {
   if (options.finder == Finder::bracketing) {
-    return bracketing_contact({*kind_of(i).implicit, *kind_of(j).implicit, motions_[at(i)], motions_[at(j)], r, now},
-                              now, end, options, n, count, unsolved);
+    return bracketing_contact(
+        {*kind_of(i).body.implicit, *kind_of(j).body.implicit, motions_[at(i)], motions_[at(j)], r, now}, now, end,
+        options, n, count, unsolved);
   }
   return with_gap(i, j, r, now,
                   [&](const auto& gap) { return certified_contact(gap, now, end, max_evaluations, n, count); });

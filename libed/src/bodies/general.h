@@ -12,7 +12,7 @@
 #include "bodies/pair.h"
 #include "contact/bracketing.h"
 #include "contact/certified.h"
-#include "contact/support_gap.h"
+#include "contact/pair_gaps.h"
 #include "motion/rigid_motion.h"
 
 #include <ed/contact_options.h>
@@ -30,9 +30,7 @@ namespace ed::internal {
 
 /// Constants of the bodies of one species.
 struct GeneralKind {
-  BodyShape shape;
-  std::optional<NormBodyShape> norm;    ///< nullopt for a user's shape
-  std::optional<geom::Shape> implicit;  ///< shape for Finder::bracketing; none of a user's shape
+  GapShape body;
   double bounding_radius;
   double inscribed_radius;
   Eigen::Vector3d half_extents;
@@ -125,7 +123,7 @@ class GeneralBodies {
   }
 
  private:
-  /// Calls f with the pair gap of i and j: SupportGap for libgeom's shapes, ConvexGap for others.
+  /// Returns f(gap) with the pair gap of i and j.
   template <class F>
   decltype(auto) with_gap(int i, int j, const Eigen::Vector3d& r, double now, F&& f) const;
 

@@ -37,7 +37,7 @@ inline bool is_answer(const geom::DistanceResult& result) {
   return result.status == geom::DistanceStatus::separated || result.status == geom::DistanceStatus::overlapping;
 }
 
-/// Returns an ellipsoid or superellipsoid as SupportGap needs it.
-NormBodyShape norm_body(const BodyShape& shape);
+/// Returns the shape as SupportGap needs it; nullopt for one that is not the unit ball of a norm that NormShape knows.
+std::optional<NormBodyShape> norm_body(const BodyShape& shape);
 
 }  // namespace ed::internal

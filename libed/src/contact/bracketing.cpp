@@ -113,21 +113,16 @@ double turning_speed(const geom::Shape& shape, const RigidMotion& motion) {
   return turning_lever(shape) * motion.top.max_omega();
 }
 
-double bounding_radius_of(const geom::Ellipsoid& shape) {
-  return shape.bounding_radius();
-}
-double bounding_radius_of(const geom::Shape& shape) {
-  return geom::bounding_radius(shape);
+template <class Shape>
+double bounding_radius_of(const Shape& shape) {
+  return with(shape, [](const auto& s) { return s.bounding_radius(); });
 }
 
 /// Returns whether the second derivatives of the shape's implicit function have no bound: Newton's method on eqs.
 /// (contime) creeps there, and ends up to 1e-7 from the contact.
-bool has_vertices(const geom::Ellipsoid& /*shape*/) {
-  return false;
-}
-bool has_vertices(const geom::Shape& shape) {
-  const auto* s = std::get_if<geom::Superellipsoid>(&shape);
-  return s != nullptr && std::max(s->e1(), s->e2()) > 1;
+template <class Shape>
+bool has_vertices(const Shape& shape) {
+  return with(shape, [](const auto& s) { return s.has_vertices(); });
 }
 
 template <class Pair>

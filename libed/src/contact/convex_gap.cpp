@@ -38,11 +38,6 @@ geom::Support world_support(const BodyShape& shape, const geom::Pose& pose, cons
   return {s.height, pose.rotation() * s.point};
 }
 
-geom::DistanceResult query(const BodyShape& a, const geom::Pose& X_a, const BodyShape& b, const geom::Pose& X_b,
-                           const geom::DistanceOptions& options) {
-  return std::visit([&](const auto& A, const auto& B) { return geom::distance(A, X_a, B, X_b, options); }, a, b);
-}
-
 /// Returns the least of (1 - x) g0 + x g1 - K T^2 x (1 - x) / 2 over x in [0, 1].
 double lowest(double g0, double g1, double KT2) {
   const double slope = g1 - g0 - 0.5 * KT2;
@@ -115,12 +110,13 @@ bool ConvexGap::take(const State& s, const geom::DistanceResult& d, Vector3d& n,
 /// n and e of the distance itself, from n on; false if the query declines.
 bool ConvexGap::solve(const State& s, Vector3d& n, Evaluation& e) const {
   return take(
-      s, query(A_, s.a, B_, s.b, {.start = n, .max_iterations = kNewtonSteps, .penetration = geom::Penetration::local}),
+      s,
+      distance(A_, s.a, B_, s.b, {.start = n, .max_iterations = kNewtonSteps, .penetration = geom::Penetration::local}),
       n, e);
 }
 
 geom::DistanceResult ConvexGap::last_resort(const State& s) const {
-  return query(A_, s.a, B_, s.b, {.start = cold_normal(s)});
+  return distance(A_, s.a, B_, s.b, {.start = cold_normal(s)});
 }
 
 ContactPoints ConvexGap::contact_points(const State& s, const Vector3d& n) const {

@@ -7,9 +7,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <concepts>
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <utility>
+#include <variant>
 #include <vector>
 
 namespace ed {
@@ -21,42 +24,6 @@ using Eigen::Vector3d;
 template <class F>
 decltype(auto) with(const BodyShape& shape, F&& f) {
   return std::visit(std::forward<F>(f), shape);
-}
-
-std::optional<int> axis_of(const geom::Ellipsoid& shape) {
-  return shape.symmetry_axis();
-}
-
-std::optional<int> axis_of(const geom::Superellipsoid& shape) {
-  const Vector3d& a = shape.semi_axes();
-  if (shape.is_ellipsoid()) return geom::Ellipsoid(a).symmetry_axis();
-  if (shape.e2() == 1 && a.x() == a.y()) return 2;
-  return std::nullopt;
-}
-
-std::optional<int> axis_of(const CustomShape& shape) {
-  return shape.symmetry_axis();
-}
-
-std::string by_axes(const char* kind, const Vector3d& a) {
-  std::ostringstream text;
-  text << kind << " " << a.x() << " x " << a.y() << " x " << a.z();
-  return text.str();
-}
-
-std::string name_of(const geom::Ellipsoid& shape) {
-  return by_axes("ellipsoid of semi-axes", shape.semi_axes());
-}
-
-std::string name_of(const geom::Superellipsoid& shape) {
-  std::ostringstream text;
-  text << by_axes("superellipsoid of semi-axes", shape.semi_axes()) << ", exponents " << shape.e1() << ", "
-       << shape.e2();
-  return text.str();
-}
-
-std::string name_of(const CustomShape& shape) {
-  return shape.name();
 }
 
 [[noreturn]] void refuse(const std::string& name, const std::string& what, double value, const std::string& accepted) {
@@ -78,6 +45,21 @@ std::vector<Vector3d> directions_to_check() {
     result.emplace_back(across * std::cos(kGoldenAngle * k), across * std::sin(kGoldenAngle * k), z);
   }
   return result;
+}
+
+/// Returns the answer for (B, A) of one for (A, B).
+geom::DistanceResult reversed(geom::DistanceResult result) {
+  result.normal = -result.normal;
+  std::swap(result.point_a, result.point_b);
+  return result;
+}
+
+/// Returns the distance by A's own method, if it has one that knows the pair.
+std::optional<geom::DistanceResult> own_distance(const BodyShape& a, const geom::Pose& X_WA, const BodyShape& b,
+                                                 const geom::Pose& X_WB, const geom::DistanceOptions& options) {
+  const auto* custom = std::get_if<CustomShape>(&a);
+  if (custom == nullptr || !custom->pair_distance()) return std::nullopt;
+  return custom->pair_distance()(X_WA, b, X_WB, options);
 }
 
 std::string along(const Vector3d& n) {
@@ -148,7 +130,11 @@ geom::Support support(const BodyShape& shape, const Vector3d& n) {
 }
 
 std::optional<int> symmetry_axis(const BodyShape& shape) {
-  return with(shape, [](const auto& s) { return axis_of(s); });
+  return with(shape, [](const auto& s) { return s.symmetry_axis(); });
+}
+
+bool is_spheroid(const BodyShape& shape) {
+  return std::holds_alternative<geom::Ellipsoid>(shape) && symmetry_axis(shape);
 }
 
 Vector3d half_extents(const BodyShape& shape) {
@@ -160,12 +146,17 @@ Vector3d half_extents(const BodyShape& shape) {
   return result;
 }
 
-geom::DistanceResult distance(const BodyShape& a, const geom::Pose& X_WA, const BodyShape& b, const geom::Pose& X_WB) {
-  return std::visit([&](const auto& A, const auto& B) { return geom::distance(A, X_WA, B, X_WB); }, a, b);
+geom::DistanceResult distance(const BodyShape& a, const geom::Pose& X_WA, const BodyShape& b, const geom::Pose& X_WB,
+                              const geom::DistanceOptions& options) {
+  if (const auto own = own_distance(a, X_WA, b, X_WB, options)) return *own;
+  geom::DistanceOptions from_b = options;
+  from_b.start = -options.start;
+  if (const auto own = own_distance(b, X_WB, a, X_WA, from_b)) return reversed(*own);
+  return std::visit([&](const auto& A, const auto& B) { return geom::distance(A, X_WA, B, X_WB, options); }, a, b);
 }
 
 std::string describe(const BodyShape& shape) {
-  return with(shape, [](const auto& s) { return name_of(s); });
+  return with(shape, [](const auto& s) { return std::string(s.description()); });
 }
 
 namespace internal {
@@ -199,21 +190,26 @@ double turning_lever(const BodyShape& shape) {
 }
 
 void check_exponents(const BodyShape& shape) {
-  const auto* s = std::get_if<geom::Superellipsoid>(&shape);
-  if (s == nullptr) return;
-  for (const double e : {s->e1(), s->e2()}) {
-    if (e >= kMinExponentInMotion && e <= kMaxExponentInMotion) continue;
+  const auto check = [](double e) {
+    if (e >= kMinExponentInMotion && e <= kMaxExponentInMotion) return;
     std::ostringstream message;
     message << "exponent is " << e << "; accepted of bodies in motion: " << kMinExponentInMotion << " to "
             << kMaxExponentInMotion;
     throw std::invalid_argument(message.str());
-  }
+  };
+  with(shape, [&](const auto& s) {
+    if constexpr (requires { s.e1(); }) {
+      check(s.e1());
+      check(s.e2());
+    }
+  });
 }
 
 std::optional<geom::Shape> geom_shape(const BodyShape& shape) {
-  if (const auto* ellipsoid = std::get_if<geom::Ellipsoid>(&shape)) return *ellipsoid;
-  if (const auto* superellipsoid = std::get_if<geom::Superellipsoid>(&shape)) return *superellipsoid;
-  return std::nullopt;
+  return with(shape, [](const auto& s) -> std::optional<geom::Shape> {
+    if constexpr (std::constructible_from<geom::Shape, decltype(s)>) return s;
+    return std::nullopt;
+  });
 }
 
 void check_finder(const ContactOptions& options, const BodyShape& shape) {
@@ -222,13 +218,14 @@ void check_finder(const ContactOptions& options, const BodyShape& shape) {
                               describe(shape) + " is a support function; accepted: \"certified\"");
 }
 
-NormBodyShape norm_body(const BodyShape& shape) {
-  const auto make = [](const auto& s, bool has_vertices) -> NormBodyShape {
-    return {geom::kernel::NormShape(s), s.bounding_radius(), s.inscribed_radius(), lever(s), has_vertices};
-  };
-  if (const auto* ellipsoid = std::get_if<geom::Ellipsoid>(&shape)) return make(*ellipsoid, false);
-  const auto& body = std::get<geom::Superellipsoid>(shape);
-  return make(body, body.e1() > 1 || body.e2() > 1);
+std::optional<NormBodyShape> norm_body(const BodyShape& shape) {
+  return with(shape, [](const auto& s) -> std::optional<NormBodyShape> {
+    if constexpr (std::constructible_from<geom::kernel::NormShape, decltype(s)>) {
+      return NormBodyShape{geom::kernel::NormShape(s), s.bounding_radius(), s.inscribed_radius(), lever(s),
+                           s.has_vertices()};
+    }
+    return std::nullopt;
+  });
 }
 
 }  // namespace internal

@@ -2,8 +2,7 @@
 #include "contact/bracketing.h"
 #include "contact/certified.h"
 #include "contact/checks.h"
-#include "contact/convex_gap.h"
-#include "contact/support_gap.h"
+#include "contact/pair_gaps.h"
 #include "contact/swept_hull.h"
 #include "contact/uniaxial_gap.h"
 #include "motion/checks.h"
@@ -61,7 +60,7 @@ UniaxialBody uniaxial_body(const Ellipsoid& shape, const Motion& motion) {
 
 /// Any other.
 struct GeneralBody {
-  BodyShape shape;
+  internal::GapShape body;
   internal::RigidMotion motion;
   Eigen::Vector3d inertia;
 
@@ -78,7 +77,7 @@ struct GeneralBody {
 
 GeneralBody general_body(const BodyShape& shape, const Motion& motion) {
   internal::check_exponents(shape);
-  return {shape,
+  return {internal::GapShape(shape),
           {motion.pose.position(), motion.velocity,
            internal::FreeTop(motion.inertia, motion.pose.rotation(), motion.angular_velocity), motion.time},
           motion.inertia};
@@ -210,8 +209,8 @@ ContactResult search(const GeneralBody& a, const GeneralBody& b, double reach, d
                      const ContactOptions& options) {
   const Eigen::Vector3d r = b.position_at(0) - a.position_at(0);
   const auto hulls = [&] {
-    return internal::SweptPair{internal::SweptHull(a.shape, a.motion, a.inertia),
-                               internal::SweptHull(b.shape, b.motion, b.inertia), r, b.velocity() - a.velocity(),
+    return internal::SweptPair{internal::SweptHull(a.body.shape, a.motion, a.inertia),
+                               internal::SweptHull(b.body.shape, b.motion, b.inertia), r, b.velocity() - a.velocity(),
                                reach};
   };
   const auto certified = [&](const auto& gap) {
@@ -219,21 +218,19 @@ ContactResult search(const GeneralBody& a, const GeneralBody& b, double reach, d
       return budgeted_contact(gap, duration, options.max_evaluations, hulls, n, count);
     });
   };
-  const auto implicit_a = internal::geom_shape(a.shape);
-  const auto implicit_b = internal::geom_shape(b.shape);
-  if (!implicit_a || !implicit_b) return certified(internal::ConvexGap(a.shape, a.motion, b.shape, b.motion, r, 0));
-  const internal::NormBodyShape norm_a = internal::norm_body(a.shape);
-  const internal::NormBodyShape norm_b = internal::norm_body(b.shape);
-  const internal::SupportGap gap(norm_a, a.motion, norm_b, b.motion, r, 0);
-  if (options.finder == Finder::certified) return certified(gap);
+  const auto with_gap = [&](const auto& f) {
+    return internal::with_pair_gap(a.body, a.motion, b.body, b.motion, r, 0, f);
+  };
+  if (options.finder == Finder::certified) return with_gap(certified);
   std::uint64_t rescues = 0;
-  ContactResult result = general_search(gap, a, [&](Eigen::Vector3d& n, internal::FinderCounters& count) {
+  const auto bracketing = [&](Eigen::Vector3d& n, internal::FinderCounters& count) {
     std::optional<internal::Unsolved> unsolved;
-    const internal::Finding finding = internal::bracketing_contact({*implicit_a, *implicit_b, a.motion, b.motion, r, 0},
-                                                                   0, duration, options, n, count, unsolved);
+    const internal::Finding finding = internal::bracketing_contact(
+        {*a.body.implicit, *b.body.implicit, a.motion, b.motion, r, 0}, 0, duration, options, n, count, unsolved);
     rescues = count.rescues;
     return finding;
-  });
+  };
+  ContactResult result = with_gap([&](const auto& gap) { return general_search(gap, a, bracketing); });
   result.rescues = static_cast<int>(rescues);
   return result;
 }

@@ -121,19 +121,21 @@ bool GeneralDilatedEnvelopes::may_overlap(int i, int k, const Vector3d& r, Vecto
   normal = r2 > 0 ? Vector3d(r / std::sqrt(r2)) : Vector3d::UnitX();
   const Matrix3d& R_a = places_[slot(i)].rotation;
   const Matrix3d& R_b = places_[slot(k)].rotation;
-  if (!a.norm || !b.norm) return any_within(a.shape, R_a, b.shape, R_b, r, limit, normal);
-  const NormBodyPair pair(NormBodies(a.norm->norm, R_a, b.norm->norm, R_b), r, size,
+  const std::optional<NormBodyShape>& norm_a = a.body.norm;
+  const std::optional<NormBodyShape>& norm_b = b.body.norm;
+  if (!norm_a || !norm_b) return any_within(a.body.shape, R_a, b.body.shape, R_b, r, limit, normal);
+  const NormBodyPair pair(NormBodies(norm_a->norm, R_a, norm_b->norm, R_b), r, size,
                           a.inscribed_radius + b.inscribed_radius);
   const auto elongated = [](const NormBodyShape& shape) {
     const Vector3d& axes = shape.norm.semi_axes;
     return axes.x() != axes.y() || axes.y() != axes.z();
   };
-  return within(pair, a.inscribed_radius + b.inscribed_radius, elongated(*a.norm) || elongated(*b.norm), limit, normal);
+  return within(pair, a.inscribed_radius + b.inscribed_radius, elongated(*norm_a) || elongated(*norm_b), limit, normal);
 }
 
 double thickest_oriented_envelope(const GeneralBodies& bodies, double box) {
   std::vector<BodyShape> shapes;
-  for (const GeneralKind& kind : bodies.kinds()) shapes.push_back(kind.shape);
+  for (const GeneralKind& kind : bodies.kinds()) shapes.push_back(kind.body.shape);
   double low = kThinnestOriented * bodies.inscribed_radius();
   const double least = smallest_oriented_box(shapes, low);
   if (box < least * (1 - 1e-12)) {
@@ -155,7 +157,8 @@ GeneralOrientedEnvelopes::GeneralOrientedEnvelopes(const GeneralBodies& bodies, 
     : thickness_(thickness), reach_(0), boxes_(slot(bodies.number())) {
   for (const GeneralKind& kind : bodies.kinds()) {
     const double diagonal = (kind.half_extents.array() + thickness).matrix().norm();
-    reach_ = std::max(reach_, 2 * std::min(diagonal, kind.bounding_radius + oriented_slack(kind.shape, thickness)));
+    reach_ =
+        std::max(reach_, 2 * std::min(diagonal, kind.bounding_radius + oriented_slack(kind.body.shape, thickness)));
   }
 }
 
@@ -171,7 +174,7 @@ void GeneralOrientedEnvelopes::scale(double factor) {
 /// Returns when the surface, at its highest speed along each normal, would have crossed one of the six planes.
 double GeneralOrientedEnvelopes::exit_time(int i, const GeneralBodies& bodies, double now, double box) const {
   const geom::OrientedBox& envelope = boxes_[slot(i)];
-  const BodyShape& shape = bodies.kind_of(i).shape;
+  const BodyShape& shape = bodies.kind_of(i).body.shape;
   const Vector3d d = nearest_image(bodies.position_at(i, now) - envelope.centre, box);
   const Matrix3d R = bodies.rotation_at(i, now);
   const double w = surface_speed(bodies, i);

@@ -13,10 +13,15 @@ using Eigen::Vector3d;
 
 /// Returns a distance from its centre to which the body certainly reaches; 0 if it is not centrally symmetric.
 double certain_reach(const BodyShape& shape) {
-  const auto* custom = std::get_if<CustomShape>(&shape);
-  if (custom == nullptr) return bounding_radius(shape);
-  // The bounding sphere of a user's shape may be too large; each height is that of a point no nearer than it.
-  return custom->centrally_symmetric() ? half_extents(shape).maxCoeff() : 0;
+  const auto reach = [&](const auto& s) -> double {
+    if constexpr (requires { s.centrally_symmetric(); }) {
+      // The bounding sphere of a user's shape may be too large; each height is that of a point no nearer than it.
+      return s.centrally_symmetric() ? half_extents(shape).maxCoeff() : 0;
+    } else {
+      return s.bounding_radius();
+    }
+  };
+  return std::visit(reach, shape);
 }
 
 }  // namespace

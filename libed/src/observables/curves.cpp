@@ -18,12 +18,14 @@ Curve end_of(const Curve& curve) {
   return {{curve.t.begin() + first, curve.t.end()}, {curve.y.begin() + first, curve.y.end()}};
 }
 
-/// Least x >= kDisplaced beyond which exp(-x) (1 + alpha2 x^2 / 2) stays at or below exp(-kDisplaced).
-double least_displacement(double alpha2) {
-  const auto decayed = [&](double x) { return std::exp(-x) * (1 + 0.5 * alpha2 * x * x) <= std::exp(-kDisplaced); };
-  // The function falls from x = 2 on for any alpha2 >= 0, because x^2 exp(-x) does.
-  if (!(alpha2 > 0)) return kDisplaced;
-  if (!std::isfinite(alpha2)) return alpha2;
+/// Least x >= kDisplaced beyond which exp(-x) (1 + non_gaussian x^2 / 2) stays at or below exp(-kDisplaced).
+double least_displacement(double non_gaussian) {
+  const auto decayed = [&](double x) {
+    return std::exp(-x) * (1 + 0.5 * non_gaussian * x * x) <= std::exp(-kDisplaced);
+  };
+  // The function falls from x = 2 on for any non_gaussian >= 0, because x^2 exp(-x) does.
+  if (!(non_gaussian > 0)) return kDisplaced;
+  if (!std::isfinite(non_gaussian)) return non_gaussian;
   double low = kDisplaced;
   double high = 2;
   while (!decayed(high)) {
@@ -76,9 +78,9 @@ std::size_t first_of_fit(const Curve& curve) {
   return static_cast<std::size_t>(std::find_if(curve.t.begin(), curve.t.end(), in_fit) - curve.t.begin());
 }
 
-Reach reach_of_translation(double first_wave_number, double alpha2) {
+Reach reach_of_translation(double first_wave_number, double non_gaussian) {
   const double unit = 6 / (first_wave_number * first_wave_number);
-  return {least_displacement(alpha2) * unit, 0, 0, MissingReason::not_displaced};
+  return {least_displacement(non_gaussian) * unit, 0, 0, MissingReason::not_displaced};
 }
 
 Reach reach_of_rotation(double components) {

@@ -30,7 +30,7 @@ constexpr double kLinearity = 0.2;
 /// Translational diffusion: MSD q^2 / 6 >= kDisplaced at the first of those lags, q the wave number of the first peak
 /// of S(q) (first_wave_number): a Gaussian F_self(q, t) is at or below 1/e there, so that bodies have left their cages.
 /// Where a few bodies have moved far and the others not at all, F_self to the next order counts too:
-/// exp(-x) (1 + alpha2 x^2 / 2) <= exp(-kDisplaced), x = MSD q^2 / 6.
+/// exp(-x) (1 + non_gaussian x^2 / 2) <= exp(-kDisplaced), x = MSD q^2 / 6.
 constexpr double kDisplaced = 1;
 /// Rotational diffusion: <|Delta Phi|^2> >= kTurned c, in rad^2, at the longest lag, c the number of components.
 constexpr double kTurned = 1.0 / 3;
@@ -66,7 +66,7 @@ struct Reach {
 
 /// Returns the requirements of translational diffusion, for the wave number of the first peak of S(q) and the
 /// non-Gaussian parameter at the first lag of the fit.
-Reach reach_of_translation(double first_wave_number, double alpha2);
+Reach reach_of_translation(double first_wave_number, double non_gaussian);
 /// Returns the requirements of rotational diffusion with this number of components.
 Reach reach_of_rotation(double components);
 

@@ -4,7 +4,7 @@
 
 #include "base/archive.h"
 
-#include <ed/archive_system.h>
+#include <ed/archive_simulation.h>
 #include <ed/observables.h>
 #include <ed/snapshot.h>
 

@@ -69,7 +69,7 @@ struct Block {
 struct Gaps {
   using Gap = std::optional<MissingReason>;
   Gap collisions{};             ///< collisions, pressure, temperatures
-  Gap displacements{};          ///< MSD, alpha2, F_self
+  Gap displacements{};          ///< displacements and F_self
   Gap orientations{};           ///< order and g2 of single frames
   Gap turning{};                ///< C1 and C2
   Gap rotations{};              ///< angular velocities and their integrals

@@ -35,7 +35,8 @@ void check(const std::vector<StoredFrame>& frames, const StoredFramesOptions& op
   };
   require(!frames.empty(), "no frames; accepted: one at least");
   require(options.box > 0 && std::isfinite(options.box), "box; accepted: a positive number");
-  require(options.length > 0 && options.length > 1e-6 * options.box, "length; accepted: a positive number");
+  require(options.length > 0 && options.length > 1e-6 * options.box,
+          "length; accepted: a positive number above 1e-6 of the box");
   const std::size_t n = frames[0].position.size();
   require(options.axis.size() == n, "axis; accepted: one of each body");
   require(!options.fit_from || (*options.fit_from >= 0 && std::isfinite(*options.fit_from)),

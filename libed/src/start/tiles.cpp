@@ -39,11 +39,15 @@ constexpr double kRounding = 1e-14;
 
 /// Returns whether the second shape is the first, or the first shrunk about its centre.
 bool is_smaller_copy(const BodyShape& large, const BodyShape& small) {
-  if (large.index() != small.index() || std::holds_alternative<CustomShape>(large)) return false;
-  if (const auto* a = std::get_if<geom::Superellipsoid>(&large)) {
-    const auto& b = std::get<geom::Superellipsoid>(small);
-    if (a->e1() != b.e1() || a->e2() != b.e2()) return false;
-  }
+  const auto of_one_form = [&](const auto& a) {
+    const auto* b = std::get_if<std::decay_t<decltype(a)>>(&small);
+    if (b == nullptr) return false;
+    if constexpr (requires { a.e1(); }) return a.e1() == b->e1() && a.e2() == b->e2();
+    return requires {
+      a.scaled(1.0);
+    };
+  };
+  if (!std::visit(of_one_form, large)) return false;
   const Vector3d ratio = half_extents(small).cwiseQuotient(half_extents(large));
   return ratio.maxCoeff() <= 1 + kRounding && ratio.minCoeff() >= ratio.maxCoeff() * (1 - kRounding);
 }

@@ -53,14 +53,12 @@ double cut_normal(Random& random) {
 }
 
 BodyShape scaled_shape(const BodyShape& shape, double factor) {
-  if (const auto* ellipsoid = std::get_if<geom::Ellipsoid>(&shape)) {
-    return geom::Ellipsoid(factor * ellipsoid->semi_axes());
-  }
-  if (const auto* s = std::get_if<geom::Superellipsoid>(&shape)) {
-    return geom::Superellipsoid(factor * s->semi_axes(), s->e1(), s->e2());
-  }
-  throw std::invalid_argument("scaled: shape " + describe(shape) +
-                              " cannot be scaled; accepted: ellipsoids and superellipsoids");
+  const auto scaled = [&](const auto& s) -> BodyShape {
+    if constexpr (requires { s.scaled(factor); }) return s.scaled(factor);
+    throw std::invalid_argument("scaled: shape " + describe(shape) +
+                                " cannot be scaled; accepted: ellipsoids and superellipsoids");
+  };
+  return std::visit(scaled, shape);
 }
 
 }  // namespace

@@ -131,11 +131,12 @@ Species paper_species(const geom::Ellipsoid& shape, double mass) {
 }
 
 Species uniform_species(const BodyShape& shape, double mass) {
-  if (const auto* ellipsoid = std::get_if<geom::Ellipsoid>(&shape))
-    return {shape, mass, ellipsoid->inertia(mass), true};
-  if (const auto* s = std::get_if<geom::Superellipsoid>(&shape)) return {shape, mass, s->inertia(mass), true};
-  throw std::invalid_argument("uniform_species: the moments of inertia of shape " + describe(shape) +
-                              " are not known; accepted: a Species with its own");
+  const auto inertia = [&](const auto& s) -> Vector3d {
+    if constexpr (requires { s.inertia(mass); }) return s.inertia(mass);
+    throw std::invalid_argument("uniform_species: the moments of inertia of shape " + describe(shape) +
+                                " are not known; accepted: a Species with its own");
+  };
+  return {shape, mass, std::visit(inertia, shape), true};
 }
 
 double thermal_time(const Species& species) {
@@ -190,7 +191,7 @@ const char* to_string(Neighbours neighbours) {
 }
 
 bool internal::is_uniaxial(const Species& species) {
-  return std::holds_alternative<geom::Ellipsoid>(species.shape) && symmetry_axis(species);
+  return is_spheroid(species.shape) && symmetry_axis(species);
 }
 
 KineticState kinetic_state(const System& system) {

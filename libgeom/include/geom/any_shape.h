@@ -19,8 +19,12 @@
 
 namespace geom {
 
+/// Closed variant of the shapes that libgeom brings, and of others. This is their one list: a new shape is added here.
+template <class... Others>
+using AnyShape = std::variant<Ellipsoid, Superellipsoid, Others...>;
+
 /// Body whose kind is chosen at run time.
-using Shape = std::variant<Ellipsoid, Superellipsoid>;
+using Shape = AnyShape<>;
 
 /// Returns `distance` of the shapes inside, with one dispatch a query.
 GEOM_EXPORT DistanceResult distance(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB,

@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 
 #include <optional>
+#include <string>
 
 namespace geom {
 
@@ -23,6 +24,12 @@ class GEOM_EXPORT Ellipsoid {
   std::optional<int> symmetry_axis() const {
     return symmetry_axis_ < 0 ? std::nullopt : std::optional<int>(symmetry_axis_);
   }
+
+  bool has_vertices() const { return false; }  ///< whether the second derivatives of f are unbounded on the surface
+  /// Returns the ellipsoid of `factor` times the size. Throws as the constructor does.
+  Ellipsoid scaled(double factor) const { return Ellipsoid(factor * semi_axes_); }
+  /// Returns "ellipsoid of semi-axes 1 x 1 x 3", for messages.
+  std::string description() const;
 
   /// Returns f(x) = (x/a)^2 + (y/b)^2 + (z/c)^2 - 1 (the paper's eq. Shapes): negative inside.
   double value(const Eigen::Vector3d& x) const;

@@ -6,6 +6,9 @@
 
 #include <Eigen/Core>
 
+#include <optional>
+#include <string>
+
 namespace geom {
 
 /// Barr's superellipsoid {x : (|x/a|^(2/e2) + |y/b|^(2/e2))^(e2/e1) + |z/c|^(2/e1) <= 1} in the body's frame. Exponent
@@ -39,6 +42,15 @@ class GEOM_EXPORT Superellipsoid {
   Support support(const Eigen::Vector3d& n) const;
   /// Returns hess h, a sum of two rank-one matrices across n. Huge if n is along a flat face's normal.
   Eigen::Matrix3d support_hessian(const Eigen::Vector3d& n) const;
+
+  /// Returns the index (0, 1, 2) of an axis of revolution (2 if all axes are), else nullopt.
+  std::optional<int> symmetry_axis() const;
+  /// Returns whether the second derivatives of f are unbounded on the surface: some exponent is above 1.
+  bool has_vertices() const { return e1_ > 1 || e2_ > 1; }
+  /// Returns the superellipsoid of `factor` times the size. Throws as the constructor does.
+  Superellipsoid scaled(double factor) const { return {factor * semi_axes_, e1_, e2_}; }
+  /// Returns "superellipsoid of semi-axes 1 x 1 x 3, exponents 0.5, 0.5", for messages.
+  std::string description() const;
 
   bool is_ellipsoid() const { return e1_ == 1 && e2_ == 1; }     ///< whether both exponents are 1
   double bounding_radius() const { return bounding_radius_; }    ///< largest distance of the surface from the centre

@@ -1,6 +1,6 @@
+#include "batch/checks.h"
 #include "batch/kernel.h"
 
-#include <geom/any_shape.h>
 #include <geom/batch.h>
 #include <geom/kernel/refuse.h>
 
@@ -17,7 +17,9 @@ namespace {
 using kernel::BatchKernels;
 using kernel::BatchOutput;
 using kernel::BatchRow;
+using kernel::checked;
 using kernel::GeneralInput;
+using kernel::Input;
 using kernel::kBlockPairs;
 using kernel::kLongestVector;
 using kernel::UniaxialInput;
@@ -34,36 +36,6 @@ BatchKernels find_kernels(InstructionSet set) {
 #endif
   if (set == InstructionSet::portable) return kernel::batch_kernels_portable();
   return {nullptr, nullptr};
-}
-
-/// Input span with its step from one pair to the next: 0 if one element serves all pairs.
-template <class T>
-struct Input {
-  const T* data;
-  std::size_t stride;
-
-  const T& operator[](std::size_t pair) const { return data[pair * stride]; }
-};
-
-[[noreturn]] void refuse_size(const char* name, std::size_t size, const char* other, std::size_t pairs) {
-  std::ostringstream message;
-  message << "distance_batch: " << name << " has " << size << " elements; accepted: " << other << ", or as many as"
-          << " results, which has " << pairs;
-  kernel::refuse(message.str());
-}
-
-template <class T>
-Input<T> checked(const char* name, std::span<const T> span, std::size_t pairs) {
-  if (span.size() != pairs && span.size() != 1) refuse_size(name, span.size(), "1", pairs);
-  return {span.data(), span.size() == 1 ? std::size_t{0} : std::size_t{1}};
-}
-
-/// Returns the options of the pairs that go to `distance`, without the start.
-DistanceOptions scalar_options(const BatchOptions& options) {
-  DistanceOptions scalar;
-  scalar.max_iterations = options.max_iterations;
-  scalar.penetration = options.penetration;
-  return scalar;
 }
 
 /// Input of a batch, and the destination of its answers.
@@ -191,6 +163,31 @@ class Block {
   BatchOutput out_;
 };
 
+}  // namespace
+
+namespace kernel {
+
+[[noreturn]] void refuse_size(const char* name, std::size_t size, const char* other, std::size_t pairs) {
+  std::ostringstream message;
+  message << "distance_batch: " << name << " has " << size << " elements; accepted: " << other << ", or as many as"
+          << " results, which has " << pairs;
+  kernel::refuse(message.str());
+}
+
+/// Returns the options of the pairs that go to `distance`, without the start.
+DistanceOptions scalar_options(const BatchOptions& options) {
+  DistanceOptions scalar;
+  scalar.max_iterations = options.max_iterations;
+  scalar.penetration = options.penetration;
+  return scalar;
+}
+
+void check_starts(const BatchOptions& options, std::size_t pairs) {
+  if (!options.starts.empty() && options.starts.size() != pairs) {
+    refuse_size("starts", options.starts.size(), "0", pairs);
+  }
+}
+
 [[noreturn]] void refuse_instruction_set(InstructionSet wanted) {
   std::ostringstream message;
   message << "distance_batch: instruction_set is " << to_string(wanted)
@@ -207,70 +204,7 @@ InstructionSet chosen(InstructionSet wanted) {
   return set;
 }
 
-void check_starts(const BatchOptions& options, std::size_t pairs) {
-  if (!options.starts.empty() && options.starts.size() != pairs) {
-    refuse_size("starts", options.starts.size(), "0", pairs);
-  }
-}
-
-std::optional<Ellipsoid> as_ellipsoid(const Shape& shape) {
-  if (const auto* ellipsoid = std::get_if<Ellipsoid>(&shape)) return *ellipsoid;
-  const auto& s = std::get<Superellipsoid>(shape);
-  if (s.is_ellipsoid()) return Ellipsoid(s.semi_axes());
-  return std::nullopt;
-}
-
-/// Pairs of ellipsoids among other shapes, copied side by side for the kernels.
-class EllipsoidPairs {
- public:
-  /// Constructs the collection; `options` must have no starts.
-  EllipsoidPairs(std::span<DistanceResult> results, const BatchOptions& options)
-      : results_(results), options_(options) {}
-
-  void add(std::size_t pair, const Ellipsoid& a, const Pose& X_WA, const Ellipsoid& b, const Pose& X_WB,
-           const Eigen::Vector3d& start) {
-    pairs_[count_] = pair;
-    a_[count_] = a;
-    b_[count_] = b;
-    X_WA_[count_] = X_WA;
-    X_WB_[count_] = X_WB;
-    starts_[count_] = start;
-    if (++count_ == kMost) flush();
-  }
-
-  void flush() {
-    const auto first = [this](const auto& all) { return std::span(all).first(count_); };
-    options_.starts = first(starts_);
-    redone_ +=
-        distance_batch(first(a_), first(X_WA_), first(b_), first(X_WB_), std::span(found_).first(count_), options_)
-            .redone;
-    for (std::size_t k = 0; k < count_; ++k) results_[pairs_[k]] = found_[k];
-    count_ = 0;
-  }
-
-  std::size_t redone() const { return redone_; }
-
- private:
-  static constexpr std::size_t kMost = 64;
-  template <std::size_t... k>
-  static std::array<Ellipsoid, kMost> balls(std::index_sequence<k...>) {
-    return {((void)k, Ellipsoid(Eigen::Vector3d::Ones()))...};
-  }
-
-  std::span<DistanceResult> results_;
-  BatchOptions options_;
-  std::size_t count_ = 0;
-  std::size_t redone_ = 0;
-  std::array<std::size_t, kMost> pairs_{};
-  std::array<Ellipsoid, kMost> a_ = balls(std::make_index_sequence<kMost>());
-  std::array<Ellipsoid, kMost> b_ = a_;
-  std::array<Pose, kMost> X_WA_;
-  std::array<Pose, kMost> X_WB_;
-  std::array<Eigen::Vector3d, kMost> starts_;
-  std::array<DistanceResult, kMost> found_;
-};
-
-}  // namespace
+}  // namespace kernel
 
 const char* to_string(InstructionSet set) {
   switch (set) {
@@ -301,12 +235,15 @@ BatchSummary distance_batch(std::span<const Ellipsoid> a, std::span<const Pose> 
                             std::span<const Pose> X_WB, std::span<DistanceResult> results,
                             const BatchOptions& options) {
   const std::size_t pairs = results.size();
-  const Query query{checked("a", a, pairs), checked("X_WA", X_WA, pairs),
-                    checked("b", b, pairs), checked("X_WB", X_WB, pairs),
-                    options.starts,         results,
-                    scalar_options(options)};
-  check_starts(options, pairs);
-  const InstructionSet set = chosen(options.instruction_set);
+  const Query query{checked("a", a, pairs),
+                    checked("X_WA", X_WA, pairs),
+                    checked("b", b, pairs),
+                    checked("X_WB", X_WB, pairs),
+                    options.starts,
+                    results,
+                    kernel::scalar_options(options)};
+  kernel::check_starts(options, pairs);
+  const InstructionSet set = kernel::chosen(options.instruction_set);
   const BatchKernels kernels = find_kernels(set);
 
   Block<UniaxialInput> uniaxial(query, kernels.uniaxial);
@@ -329,34 +266,6 @@ BatchSummary distance_batch(std::span<const Ellipsoid> a, std::span<const Pose> 
   uniaxial.flush();
   general.flush();
   return {set, uniaxial.redone() + general.redone()};
-}
-
-BatchSummary distance_batch(std::span<const Shape> a, std::span<const Pose> X_WA, std::span<const Shape> b,
-                            std::span<const Pose> X_WB, std::span<DistanceResult> results,
-                            const BatchOptions& options) {
-  const std::size_t pairs = results.size();
-  const Input<Shape> in_a = checked("a", a, pairs), in_b = checked("b", b, pairs);
-  const Input<Pose> in_X_WA = checked("X_WA", X_WA, pairs), in_X_WB = checked("X_WB", X_WB, pairs);
-  check_starts(options, pairs);
-  const InstructionSet set = chosen(options.instruction_set);
-  BatchOptions of_ellipsoids = options;
-  of_ellipsoids.instruction_set = set;
-  EllipsoidPairs ellipsoids(results, of_ellipsoids);
-  DistanceOptions scalar = scalar_options(options);
-  std::size_t redone = 0;
-  for (std::size_t k = 0; k < pairs; ++k) {
-    if (!options.starts.empty()) scalar.start = options.starts[k];
-    const std::optional<Ellipsoid> s = as_ellipsoid(in_a[k]);
-    const std::optional<Ellipsoid> t = s ? as_ellipsoid(in_b[k]) : std::nullopt;
-    if (t) {
-      ellipsoids.add(k, *s, in_X_WA[k], *t, in_X_WB[k], scalar.start);
-    } else {
-      results[k] = distance(in_a[k], in_X_WA[k], in_b[k], in_X_WB[k], scalar);
-      ++redone;
-    }
-  }
-  ellipsoids.flush();
-  return {set, redone + ellipsoids.redone()};
 }
 
 }  // namespace geom

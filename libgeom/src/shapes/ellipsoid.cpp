@@ -73,4 +73,8 @@ Eigen::Vector3d Ellipsoid::inertia(double mass) const {
   return mass / 5 * (Eigen::Vector3d::Constant(a2.sum()) - a2);
 }
 
+std::string Ellipsoid::description() const {
+  return "ellipsoid " + kernel::of_semi_axes(semi_axes_);
+}
+
 }  // namespace geom

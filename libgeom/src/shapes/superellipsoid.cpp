@@ -130,4 +130,16 @@ Vector3d Superellipsoid::inertia(double mass) const {
   return mass / volume() * (Vector3d::Constant(second.sum()) - second);
 }
 
+std::optional<int> Superellipsoid::symmetry_axis() const {
+  if (is_ellipsoid()) return Ellipsoid(semi_axes_).symmetry_axis();
+  if (e2_ == 1 && semi_axes_.x() == semi_axes_.y()) return 2;
+  return std::nullopt;
+}
+
+std::string Superellipsoid::description() const {
+  std::ostringstream text;
+  text << "superellipsoid " << kernel::of_semi_axes(semi_axes_) << ", exponents " << e1_ << ", " << e2_;
+  return text.str();
+}
+
 }  // namespace geom

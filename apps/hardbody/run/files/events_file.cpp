@@ -1,17 +1,13 @@
 #include "run/files/events_file.h"
 
-#include "base/errors.h"
 #include "io/text_file.h"
 #include "run/files/observable_files.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <span>
-#include <system_error>
 #include <utility>
-#include <vector>
 
 namespace hardbody {
 namespace {
@@ -28,12 +24,7 @@ EventsFile::EventsFile(const RunDirectory& directory, std::int64_t wanted, std::
       next_try_(kPiece) {}
 
 void EventsFile::check(EventsMark mark) const {
-  if (wanted_ == 0 || mark.bytes == 0) return;
-  std::error_code error;
-  const std::uintmax_t bytes = std::filesystem::file_size(path_, error);
-  if (!error && bytes >= mark.bytes) return;
-  throw InputError(fmt::format("{}: has {} bytes, {} when the checkpoint was written; accepted: the file of the run",
-                               path_.string(), error ? 0 : bytes, mark.bytes));
+  if (wanted_ > 0 && mark.bytes > 0) check_length(path_, mark.bytes);
 }
 
 void EventsFile::open(EventsMark mark, ed::Simulation& simulation) {

@@ -23,7 +23,7 @@ class EventsFile {
   /// Prepares a file of `wanted` collisions; 0: there is no file. Writes nothing yet.
   EventsFile(const RunDirectory& directory, std::int64_t wanted, std::size_t most_waiting = kMostWaiting);
 
-  /// Whether the file is at least as long as a checkpoint says. Throws InputError if not.
+  /// Checks that the file is at least as long as a checkpoint says. Throws InputError.
   void check(EventsMark mark) const;
 
   /// Begins a new file (mark.bytes 0), or goes on from `mark`: cuts off what follows. From then on `simulation` records

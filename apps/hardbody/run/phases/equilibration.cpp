@@ -1,7 +1,6 @@
 #include "run/phases/equilibration.h"
 
 #include "base/signals.h"
-#include "run/phases/restored.h"
 #include "run/phases/runner.h"
 
 #include <fmt/format.h>
@@ -150,12 +149,10 @@ Equilibration equilibrate(const Config& config, EquilibrationRun& run, Progress&
                        decays_text(relaxation), relaxation.q,
                        config.species.size() > 1 ? " (of the slowest species)" : ""));
   if (!config.equilibration_time && !result.stopped && !result.reached()) {
-    const std::string warning = fmt::format(
-        "warning: not equilibrated after {:g} time units: {} (wanted below 0.05, twice in a row), {}; production goes "
-        "on",
-        result.time, decays_text(relaxation), drift_text(relaxation));
-    log.line(warning);
-    progress.say(warning);
+    announce(fmt::format("warning: not equilibrated after {:g} time units: {} (wanted below 0.05, twice in a row), {}; "
+                         "production goes on",
+                         result.time, decays_text(relaxation), drift_text(relaxation)),
+             progress, log);
   }
   return result;
 }

@@ -1,6 +1,5 @@
 #include "run/phases/production.h"
 
-#include "run/phases/restored.h"
 #include "run/phases/runner.h"
 
 #include <fmt/format.h>
@@ -15,7 +14,6 @@ namespace {
 
 /// "auto": production in units of the equilibration time, and its limits. Times are in units of Config::time_unit.
 constexpr double kProductionFactor = 30;
-constexpr double kLongestLag = 40;  ///< cap of the longest lag; with "auto" the equilibration time, if that is longer
 /// Least longest lag of "auto", in collisions of a body. Diffusion coefficients are fitted from 0.4 of it on, and a
 /// velocity is forgotten in about 1.5 collisions, so that exp(-7) of it is left there.
 constexpr double kLagCollisions = 25;
@@ -157,13 +155,9 @@ ProductionRun resumed_production(const Config& config, Checkpoint& checkpoint, c
                     state.production};
   state.observables = {};
   run.result.wall_seconds = checkpoint.upkeep.production_seconds;
-  run.events.check(state.events);
-  run.trajectory.check(state.trajectory);
+  run.events.check(state.files.events);
+  run.trajectory.check(state.files.trajectory);
   return run;
-}
-
-bool lags_are_longest(const Config& config, const Production& production) {
-  return production.longest_lag >= kLongestLag * config.time_unit * (1 - 1e-9);
 }
 
 Checkpoint checkpoint_of(ProductionRun& run) {
@@ -177,8 +171,7 @@ Checkpoint checkpoint_of(ProductionRun& run) {
   RunState& state = checkpoint.run.emplace();
   state.equilibration = run.before;
   state.production = run.result;
-  state.events = run.events.mark();
-  state.trajectory = run.trajectory.mark();
+  state.files = {run.events.mark(), run.trajectory.mark()};
   state.simulation = StoredState([&run](const Sink& sink) { run.simulation.save(sink); });
   state.observables = StoredState([&run](const Sink& sink) { run.observables.save(sink); });
   return checkpoint;

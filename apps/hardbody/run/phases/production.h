@@ -38,14 +38,6 @@ ProductionRun begin_production(const Config& config, Equilibration equilibration
 /// Resumes a production, with the contract of resumed_equilibration().
 ProductionRun resumed_production(const Config& config, Checkpoint& checkpoint, const RunDirectory& directory,
                                  const std::string& name);
-/// Whether a longer production would have no longer lags.
-bool lags_are_longest(const Config& config, const Production& production);
-
-/// Lengths of the files that grow with production.
-struct FilesMark {
-  EventsMark events;
-  TrajectoryMark trajectory;
-};
 
 /// Appends the collisions so far to events.csv and what is waiting to the trajectories, which throws if they cannot be
 /// written.

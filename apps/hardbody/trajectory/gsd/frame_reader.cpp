@@ -1,9 +1,9 @@
 #include "trajectory/gsd/frame_reader.h"
 
 #include "base/errors.h"
+#include "io/orientation.h"
 #include "io/text_file.h"
 #include "trajectory/gsd/type_shapes.h"
-#include "trajectory/stored_orientations.h"
 
 #include <ed/archive.h>
 
@@ -13,7 +13,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -35,16 +34,15 @@ constexpr std::uint64_t kLongestTexts = std::uint64_t{1} << 26;  ///< bytes
 
 }  // namespace
 
-const GsdChunk* FrameReader::find(const std::string& name, std::uint64_t rows, std::uint32_t columns,
-                                  GsdType type) const {
+const GsdChunk* FrameReader::find(ArrayName name, std::uint64_t rows, std::uint32_t columns, GsdType type) const {
   const auto fits = [&](const GsdChunk& chunk) { return chunk.rows == rows && chunk.columns == columns; };
-  const GsdChunk* chunk = file_.find(k_, name);
+  const GsdChunk* chunk = file_.find(k_, name.text);
   if (chunk == nullptr) {
-    chunk = file_.find(0, name);
+    chunk = file_.find(0, name.text);
     if (chunk == nullptr || !fits(*chunk)) return nullptr;
   }
   if (!fits(*chunk) || chunk->type != type) {
-    throw bad(fmt::format("{} is {} x {} numbers of type {}", name, chunk->rows, chunk->columns,
+    throw bad(fmt::format("{} is {} x {} numbers of type {}", name.text, chunk->rows, chunk->columns,
                           static_cast<int>(chunk->type)),
               fmt::format("{} x {} of type {}", rows, columns, static_cast<int>(type)));
   }
@@ -52,7 +50,7 @@ const GsdChunk* FrameReader::find(const std::string& name, std::uint64_t rows, s
 }
 
 template <class T>
-std::vector<T> FrameReader::numbers(const std::string& name, std::uint64_t rows, std::uint32_t columns) const {
+std::vector<T> FrameReader::numbers(ArrayName name, std::uint64_t rows, std::uint32_t columns) const {
   const GsdChunk* chunk = find(name, rows, columns, kTypeOf<T>);
   if (chunk == nullptr) return {};
   const std::string bytes = file_.read(*chunk);
@@ -63,30 +61,31 @@ std::vector<T> FrameReader::numbers(const std::string& name, std::uint64_t rows,
 }
 
 template <class T>
-std::vector<double> FrameReader::finite(const std::string& name, std::uint64_t rows, std::uint32_t columns) const {
+std::vector<double> FrameReader::finite(ArrayName name, std::uint64_t rows, std::uint32_t columns) const {
   std::vector<double> result;
   for (const T x : numbers<T>(name, rows, columns)) result.push_back(static_cast<double>(x));
   for (std::size_t k = 0; k < result.size(); ++k) {
     if (std::isfinite(result[k])) continue;
-    throw bad(fmt::format("{} of body {} is {}", name, k / columns, result[k]), "finite numbers");
+    throw bad(fmt::format("{} of body {} is {}", name.text, k / columns, result[k]), "finite numbers");
   }
   return result;
 }
 
 template <class T>
-T FrameReader::scalar(const std::string& name, T missing) const {
+T FrameReader::scalar(ArrayName name, T missing) const {
   const std::vector<T> result = numbers<T>(name, 1, 1);
   return result.empty() ? missing : result[0];
 }
 
 /// Returns the rows of an array of texts.
-std::vector<std::string> FrameReader::texts(const std::string& name) const {
-  const GsdChunk* chunk = file_.find(k_, name);
-  if (chunk == nullptr) chunk = file_.find(0, name);
+std::vector<std::string> FrameReader::texts(ArrayName name) const {
+  const GsdChunk* chunk = file_.find(k_, name.text);
+  if (chunk == nullptr) chunk = file_.find(0, name.text);
   if (chunk == nullptr) return {};
-  if (size_of(chunk->type) != 1) throw bad(name + " is not text", "bytes");
-  if (chunk->rows > kMostTypes) throw bad(fmt::format("{} has {} rows", name, chunk->rows), "at most 10^6");
-  if (chunk->bytes() > kLongestTexts) throw bad(fmt::format("{} has {} bytes", name, chunk->bytes()), "at most 2^26");
+  if (size_of(chunk->type) != 1) throw bad(fmt::format("{} is not text", name.text), "bytes");
+  if (chunk->rows > kMostTypes) throw bad(fmt::format("{} has {} rows", name.text, chunk->rows), "at most 10^6");
+  if (chunk->bytes() > kLongestTexts)
+    throw bad(fmt::format("{} has {} bytes", name.text, chunk->bytes()), "at most 2^26");
   const std::string bytes = file_.read(*chunk);
   std::vector<std::string> result;
   for (std::size_t at = 0; at < bytes.size(); at += chunk->columns) {
@@ -97,9 +96,9 @@ std::vector<std::string> FrameReader::texts(const std::string& name) const {
 }
 
 void FrameReader::read_box(Frame& frame) const {
-  const GsdChunk* dimensions = find("configuration/dimensions", 1, 1, GsdType::uint8);
+  const GsdChunk* dimensions = find(kDimensions, 1, 1, GsdType::uint8);
   if (dimensions != nullptr && file_.read(*dimensions)[0] != '\3') throw bad("is not of three dimensions", "three");
-  std::vector<double> box = finite<float>("configuration/box", 6, 1);
+  std::vector<double> box = finite<float>(kBox, 6, 1);
   if (box.empty()) box = {1, 1, 1, 0, 0, 0};
   for (int i = 0; i < 3; ++i) {
     frame.box[i] = box[static_cast<std::size_t>(i)];
@@ -109,9 +108,9 @@ void FrameReader::read_box(Frame& frame) const {
 }
 
 void FrameReader::read_types(Frame& frame) const {
-  std::vector<std::string> names = texts("particles/types");
+  std::vector<std::string> names = texts(kTypes);
   if (names.empty()) names = {"A"};
-  const std::vector<std::string> shapes = texts("particles/type_shapes");
+  const std::vector<std::string> shapes = texts(kTypeShapes);
   std::string others;
   for (std::size_t k = 0; k < names.size(); ++k) {
     frame.types.push_back({names[k], std::nullopt, k < shapes.size() && shapes[k] != "{}" && !shapes[k].empty()});
@@ -135,16 +134,16 @@ void FrameReader::read_types(Frame& frame) const {
 
 void FrameReader::read_orientations(Frame& frame) const {
   // The first frame follows the schema: without orientations bodies are aligned.
-  frame.orientations = k_ == 0 || knows(kOrientationName);
+  frame.orientations = k_ == 0 || knows(kOrientation);
   if (!frame.orientations) return;
-  const std::vector<double> orientation = finite<float>(kOrientationName, frame.bodies.size(), 4);
-  StoredOrientations orientations;
+  const std::vector<double> orientation = finite<float>(kOrientation, frame.bodies.size(), 4);
+  FrameOrientations orientations;
   for (std::size_t i = 0; 4 * i < orientation.size(); ++i) {
     const Eigen::Vector4d q = Eigen::Map<const Eigen::Vector4d>(orientation.data() + 4 * i);
     const std::optional<Matrix3d> rotation = orientations.rotation(q);
     if (!rotation) {
-      throw bad(fmt::format("the orientation of body {} {}", i, StoredOrientations::fault(q)),
-                StoredOrientations::accepted());
+      throw bad(fmt::format("the orientation of body {} {}", i, FrameOrientations::fault(q)),
+                FrameOrientations::accepted());
     }
     frame.bodies[i].rotation = *rotation;
   }
@@ -155,11 +154,12 @@ void FrameReader::read_orientations(Frame& frame) const {
 void FrameReader::read_diameters(Frame& frame) const {
   const auto bare = [](const FrameType& type) { return !type.shape_given; };
   if (std::none_of(frame.types.begin(), frame.types.end(), bare)) return;
-  const std::vector<double> diameter = finite<float>("particles/diameter", frame.bodies.size(), 1);
+  const std::vector<double> diameter = finite<float>(ArrayName("particles/diameter"), frame.bodies.size(), 1);
   if (diameter.empty()) return;
-  if (file_.find(0, kOrientationName) != nullptr || file_.stored_later(kOrientationName)) {
+  if (file_.find(0, kNameTexts[kOrientation]) != nullptr || file_.stored_later(kNameTexts[kOrientation])) {
     frame.notices.emplace_back(
-        "particles/diameter: not used, because bodies with orientations are not spheres; shapes are read from "
+        "particles/diameter: not used, because bodies with orientations are not spheres; shapes are read "
+        "from "
         "particles/type_shapes");
     return;
   }
@@ -178,15 +178,15 @@ void FrameReader::read_diameters(Frame& frame) const {
 }
 
 void FrameReader::read_bodies(Frame& frame) const {
-  const auto number = std::uint64_t{scalar<std::uint32_t>("particles/N", 0)};
+  const auto number = std::uint64_t{scalar<std::uint32_t>(kNumber, 0)};
   if (number == 0) throw bad("has no bodies", "at least 1");
   if (number > kMostInFrame) throw bad(fmt::format("has {} bodies", number), "at most 10^7");
-  const std::vector<double> position = finite<float>(kPositionName, number, 3);
-  if (position.empty()) throw bad(fmt::format("has no positions of its {} bodies", number), "particles/position");
-  frame.images = knows("particles/image");
+  const std::vector<double> position = finite<float>(kPosition, number, 3);
+  if (position.empty()) throw bad(fmt::format("has no positions of its {} bodies", number), kNameTexts[kPosition]);
+  frame.images = knows(kImage);
   if (frame.images) frame.unwrapped_by = "image flags";
   frame.ids = true;
-  const auto image = frame.images ? numbers<std::int32_t>("particles/image", number, 3) : std::vector<std::int32_t>();
+  const auto image = frame.images ? numbers<std::int32_t>(kImage, number, 3) : std::vector<std::int32_t>();
   frame.zero_images = frame.images && std::all_of(image.begin(), image.end(), [](std::int32_t n) { return n == 0; });
   frame.bodies.resize(number);
   for (std::size_t i = 0; i < number; ++i) {
@@ -205,16 +205,16 @@ void FrameReader::read_bodies(Frame& frame) const {
 
 void FrameReader::read_motion(Frame& frame) const {
   const std::uint64_t number = frame.bodies.size();
-  const std::vector<std::uint32_t> type = numbers<std::uint32_t>("particles/typeid", number, 1);
-  const std::vector<std::uint32_t> group = numbers<std::uint32_t>(kNameTexts[kGroup], number, 1);
-  const std::vector<double> mass = finite<float>("particles/mass", number, 1);
-  const std::vector<double> inertia = finite<float>("particles/moment_inertia", number, 3);
-  frame.velocities = knows("particles/velocity");
-  frame.angular_velocities = frame.angular_momenta = frame.orientations && knows("particles/angmom");
-  const auto velocity = frame.velocities ? finite<float>("particles/velocity", number, 3) : std::vector<double>();
-  const auto angmom = frame.angular_velocities ? finite<float>("particles/angmom", number, 4) : std::vector<double>();
+  const std::vector<std::uint32_t> type = numbers<std::uint32_t>(kTypeId, number, 1);
+  const std::vector<std::uint32_t> group = numbers<std::uint32_t>(kGroup, number, 1);
+  const std::vector<double> mass = finite<float>(kMass, number, 1);
+  const std::vector<double> inertia = finite<float>(kInertia, number, 3);
+  frame.velocities = knows(kVelocity);
+  frame.angular_velocities = frame.angular_momenta = frame.orientations && knows(kAngularMomentum);
+  const auto velocity = frame.velocities ? finite<float>(kVelocity, number, 3) : std::vector<double>();
+  const auto angmom = frame.angular_velocities ? finite<float>(kAngularMomentum, number, 4) : std::vector<double>();
   // An angular momentum is twice the product of the quaternion, with the sign that it has in the file, and L.
-  const auto orientation = angmom.empty() ? std::vector<double>() : finite<float>("particles/orientation", number, 4);
+  const auto orientation = angmom.empty() ? std::vector<double>() : finite<float>(kOrientation, number, 4);
   for (std::size_t i = 0; i < number; ++i) {
     FrameBody& body = frame.bodies[i];
     if (!type.empty()) body.type = type[i];
@@ -242,7 +242,7 @@ void FrameReader::read_motion(Frame& frame) const {
 
 Frame FrameReader::read() {
   Frame frame;
-  frame.step = scalar<std::uint64_t>("configuration/step", 0);
+  frame.step = scalar<std::uint64_t>(kStep, 0);
   frame.time = logged(kTime);
   frame.energy = logged(kEnergy);
   frame.Z = logged(kZ);
@@ -257,7 +257,7 @@ Frame FrameReader::read() {
 }
 
 std::vector<double> FrameReader::exact(Name name, std::uint64_t rows, std::uint32_t columns) const {
-  std::vector<double> result = finite<double>(kNameTexts[name], rows, columns);
+  std::vector<double> result = finite<double>(name, rows, columns);
   if (result.empty()) throw bad(fmt::format("{} is missing", kNameTexts[name]), "a complete frame of hardbody");
   return result;
 }
@@ -293,8 +293,8 @@ ed::System FrameReader::read_exact() {
   system.box = exact(kExactBox, 1, 1)[0];
   if (!(system.box > 0)) throw bad(fmt::format("its box has edges of {:g}", system.box), "a positive number");
   system.species = read_species();
-  const auto number = std::uint64_t{scalar<std::uint32_t>("particles/N", 0)};
-  std::vector<std::uint32_t> type = numbers<std::uint32_t>("particles/typeid", number, 1);
+  const auto number = std::uint64_t{scalar<std::uint32_t>(kNumber, 0)};
+  std::vector<std::uint32_t> type = numbers<std::uint32_t>(kTypeId, number, 1);
   const std::vector<double> position = exact(kExactPosition, number, 3);
   const std::vector<double> rotation = exact(kExactRotation, number, 9);
   const std::vector<double> velocity = exact(kExactVelocity, number, 3);

@@ -16,8 +16,13 @@
 
 namespace hardbody {
 
-inline constexpr const char* kPositionName = "particles/position";
-inline constexpr const char* kOrientationName = "particles/orientation";
+/// Name of an array, of the schema or another.
+struct ArrayName {
+  ArrayName(gsd::Name name) : text(gsd::kNameTexts[name]) {}  // NOLINT(google-explicit-constructor)
+  explicit ArrayName(const char* name) : text(name) {}
+
+  const char* text;
+};
 
 /// Reader of one frame of a file.
 class FrameReader {
@@ -36,24 +41,24 @@ class FrameReader {
 
   /// Returns the array of this frame. If it has none: that of frame 0, provided that has as many rows; nullptr: the
   /// default.
-  const GsdChunk* find(const std::string& name, std::uint64_t rows, std::uint32_t columns, GsdType type) const;
+  const GsdChunk* find(ArrayName name, std::uint64_t rows, std::uint32_t columns, GsdType type) const;
   /// Returns whether the file contains this quantity for this frame. After frame 0 an absent array is that of frame 0
   /// only if some later frame has such an array: otherwise the program may just have stopped writing it.
-  bool knows(const std::string& name) const { return file_.find(k_, name) != nullptr || file_.stored_later(name); }
+  bool knows(ArrayName name) const { return file_.find(k_, name.text) != nullptr || file_.stored_later(name.text); }
   /// Returns the numbers of an array; empty: the default.
   template <class T>
-  std::vector<T> numbers(const std::string& name, std::uint64_t rows, std::uint32_t columns) const;
+  std::vector<T> numbers(ArrayName name, std::uint64_t rows, std::uint32_t columns) const;
   /// Returns the numbers of an array, which must be finite; empty: the default.
   template <class T>
-  std::vector<double> finite(const std::string& name, std::uint64_t rows, std::uint32_t columns) const;
+  std::vector<double> finite(ArrayName name, std::uint64_t rows, std::uint32_t columns) const;
   template <class T>
-  T scalar(const std::string& name, T missing) const;
+  T scalar(ArrayName name, T missing) const;
   /// Returns a number that this frame itself has logged: the schema has no defaults for log/. NaN if there is none.
   double logged(gsd::Name name) const {
     constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
-    return file_.find(k_, gsd::kNameTexts[name]) != nullptr ? scalar(gsd::kNameTexts[name], kMissing) : kMissing;
+    return file_.find(k_, gsd::kNameTexts[name]) != nullptr ? scalar(name, kMissing) : kMissing;
   }
-  std::vector<std::string> texts(const std::string& name) const;
+  std::vector<std::string> texts(ArrayName name) const;
   std::vector<double> exact(gsd::Name name, std::uint64_t rows, std::uint32_t columns) const;
 
   void read_box(Frame& frame) const;

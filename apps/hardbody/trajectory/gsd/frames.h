@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <utility>
 
 namespace hardbody {
 
@@ -56,16 +57,13 @@ class GsdReader final : public TrajectoryReader {
 class GsdWriter final : public FrameFile {
  public:
   /// Prepares a file of at most `capacity` frames. Nothing is written yet.
-  GsdWriter(std::filesystem::path path, std::uint64_t capacity);
+  GsdWriter(std::filesystem::path path, std::uint64_t capacity) : FrameFile(std::move(path)), capacity_(capacity) {}
 
   void open(FileMark mark) override;
   void append(const Frame& frame) override;
-  FileMark mark() const override { return mark_; }
 
  private:
-  std::filesystem::path path_;
   std::uint64_t capacity_;
-  FileMark mark_;
 };
 
 }  // namespace hardbody

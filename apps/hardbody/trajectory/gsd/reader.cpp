@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <string>
@@ -26,21 +28,16 @@ constexpr double kSingle = 1e-6;
 const char* edited(const FrameBody& body, const ed::Body& exact, const ed::Species& species, double box) {
   Vector3d away = body.position - exact.position;
   away -= box * (away / box).array().round().matrix();
-  if (!(away.norm() <= kSingle * box)) return "particles/position";
-  if (!((body.rotation - exact.rotation).norm() <= 10 * kSingle)) return "particles/orientation";
-  if (!(std::abs(body.mass - species.mass) <= kSingle * species.mass)) return "particles/mass";
-  if (!((body.inertia - species.inertia).norm() <= kSingle * species.inertia.norm())) return "particles/moment_inertia";
-  if (!((body.velocity - exact.velocity).norm() <= kSingle * exact.velocity.norm())) return "particles/velocity";
+  if (!(away.norm() <= kSingle * box)) return kNameTexts[kPosition];
+  if (!((body.rotation - exact.rotation).norm() <= 10 * kSingle)) return kNameTexts[kOrientation];
+  if (!(std::abs(body.mass - species.mass) <= kSingle * species.mass)) return kNameTexts[kMass];
+  if (!((body.inertia - species.inertia).norm() <= kSingle * species.inertia.norm())) return kNameTexts[kInertia];
+  if (!((body.velocity - exact.velocity).norm() <= kSingle * exact.velocity.norm())) return kNameTexts[kVelocity];
   // Along the body's axes, as it was stored: rounding of a long component says nothing about the rate about a thin
   // axis.
   const Vector3d L = species.inertia.cwiseProduct(exact.rotation.transpose() * exact.angular_velocity);
   const Vector3d stored = body.inertia.cwiseProduct(body.rotation.transpose() * body.angular_velocity);
-  return (stored - L).norm() <= 10 * kSingle * L.norm() ? nullptr : "particles/angmom";
-}
-
-bool nearly_same_shape(const ed::BodyShape& a, const ed::BodyShape& b) {
-  const Vector3d h = ed::half_extents(b);
-  return a.index() == b.index() && (ed::half_extents(a) - h).norm() <= kSingle * h.norm();
+  return (stored - L).norm() <= 10 * kSingle * L.norm() ? nullptr : kNameTexts[kAngularMomentum];
 }
 
 /// Throws if another program has changed the schema's own arrays, which it knows, but kept the doubles.
@@ -55,7 +52,8 @@ void check_unedited(const Frame& frame, const ed::System& system, const std::str
   if (!((frame.box - Vector3d::Constant(system.box)).norm() <= 2 * kSingle * system.box)) refuse("configuration/box");
   for (std::size_t t = 0; t < system.species.size() && t < frame.types.size(); ++t) {
     const auto& shape = frame.types[t].shape;
-    if (shape && !nearly_same_shape(*shape, system.species[t].shape)) refuse(fmt::format("the shape of type {}", t));
+    const bool same = !shape || same_shape(*shape, system.species[t].shape, kSingle, kSingle);
+    if (!same) refuse(fmt::format("the shape of type {}", t));
   }
   for (std::size_t i = 0; i < frame.bodies.size(); ++i) {
     const char* what = edited(frame.bodies[i], system.bodies[i], system.species_of(static_cast<int>(i)), system.box);
@@ -104,12 +102,14 @@ GsdReader::GsdReader(std::unique_ptr<StoredBytes> bytes, std::string name)
 }
 
 bool GsdReader::has_positions(std::uint64_t k) const {
-  if (exact_ || file_.find(k, kPositionName) != nullptr) return true;
+  if (exact_ || file_.find(k, kNameTexts[kPosition]) != nullptr) return true;
   // Positions that equal those of frame 0 are left out, if the frame has other data of the bodies.
-  const auto stored = [&](const char* name) { return file_.find(k, name) != nullptr; };
-  return k > 0 && file_.find(0, kPositionName) != nullptr && file_.stored_later(kPositionName) &&
-         (stored(kOrientationName) || stored("particles/velocity") || stored("particles/angmom") ||
-          stored("particles/image"));
+  if (k == 0 || file_.find(0, kNameTexts[kPosition]) == nullptr || !file_.stored_later(kNameTexts[kPosition])) {
+    return false;
+  }
+  constexpr std::array kOthers = {kOrientation, kVelocity, kAngularMomentum, kImage};
+  const auto stored = [&](Name name) { return file_.find(k, kNameTexts[name]) != nullptr; };
+  return std::any_of(kOthers.begin(), kOthers.end(), stored);
 }
 
 Frame GsdReader::read(std::uint64_t k) const {

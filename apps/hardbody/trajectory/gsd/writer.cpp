@@ -80,11 +80,6 @@ Wrapped wrapped(const FrameBody& body, const Vector3d& box) {
   return result;
 }
 
-std::array<double, 4> quaternion(const Matrix3d& rotation) {
-  const Quaterniond q = Quaterniond(rotation).normalized();
-  return {q.w(), q.x(), q.y(), q.z()};
-}
-
 /// Returns HOOMD's form: 2 q (0, L), L along the body's axes.
 std::array<double, 4> angular_momentum(const FrameBody& body) {
   const Vector3d L = body.inertia.cwiseProduct(body.rotation.transpose() * body.angular_velocity);
@@ -99,9 +94,8 @@ GsdArray species_array(const ed::System& system) {
     const auto* ellipsoid = std::get_if<geom::Ellipsoid>(&s.shape);
     if (barr == nullptr && ellipsoid == nullptr) throw std::logic_error("a user's own shape in a trajectory");
     const Vector3d a = barr != nullptr ? barr->semi_axes() : ellipsoid->semi_axes();
-    const double e1 = barr != nullptr ? barr->e1() : 1;
-    const double e2 = barr != nullptr ? barr->e2() : 1;
-    rows.insert(rows.end(), {barr != nullptr ? 1.0 : 0.0, a.x(), a.y(), a.z(), e1, e2, s.mass, s.inertia.x(),
+    const Eigen::Vector2d e = exponents_of(s.shape);
+    rows.insert(rows.end(), {barr != nullptr ? 1.0 : 0.0, a.x(), a.y(), a.z(), e.x(), e.y(), s.mass, s.inertia.x(),
                              s.inertia.y(), s.inertia.z(), s.spins ? 1.0 : 0.0});
   }
   return array_of(kExactSpecies, rows, kSpeciesColumns);
@@ -144,7 +138,7 @@ std::vector<GsdArray> moving_arrays(const Frame& frame) {
   return {
       array_of(kStep, std::vector{frame.step}),
       body_array<float>(kPosition, frame, 3, [&](const FrameBody& b) { return wrapped(b, frame.box).position; }),
-      body_array<float>(kOrientation, frame, 4, [](const FrameBody& b) { return quaternion(b.rotation); }),
+      body_array<float>(kOrientation, frame, 4, [](const FrameBody& b) { return quaternion_of(b.rotation); }),
       body_array<float>(kVelocity, frame, 3, [](const FrameBody& b) { return b.velocity; }),
       body_array<float>(kAngularMomentum, frame, 4, angular_momentum),
       body_array<std::int32_t>(kImage, frame, 3, [&](const FrameBody& b) { return wrapped(b, frame.box).image; }),
@@ -175,9 +169,6 @@ std::uint64_t entries_of(std::uint64_t frames) {
 }
 
 }  // namespace
-
-GsdWriter::GsdWriter(std::filesystem::path path, std::uint64_t capacity)
-    : path_(std::move(path)), capacity_(capacity) {}
 
 void GsdWriter::open(FileMark mark) {
   mark_ = mark;

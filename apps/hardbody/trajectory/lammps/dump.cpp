@@ -5,18 +5,11 @@
 #include "base/number_text.h"
 #include "io/text_file.h"
 
-#include <Eigen/Geometry>
-
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <initializer_list>
 #include <iterator>
-#include <map>
 #include <optional>
-#include <stdexcept>
-#include <variant>
 
 namespace hardbody {
 namespace {
@@ -28,9 +21,8 @@ std::vector<std::string> shape_columns(const Frame& frame) {
   std::vector<std::string> columns;
   for (const FrameType& type : frame.types) {
     const Vector3d a = type.shape ? ed::half_extents(*type.shape) : Vector3d::Zero();
-    const auto* barr = type.shape ? std::get_if<geom::Superellipsoid>(&*type.shape) : nullptr;
-    columns.push_back(fmt::format("{} {} {} {} {}", 2 * a.x(), 2 * a.y(), 2 * a.z(), barr != nullptr ? barr->e2() : 1,
-                                  barr != nullptr ? barr->e1() : 1));
+    const Eigen::Vector2d e = type.shape ? exponents_of(*type.shape) : Eigen::Vector2d(1, 1);
+    columns.push_back(fmt::format("{} {} {} {} {}", 2 * a.x(), 2 * a.y(), 2 * a.z(), e.y(), e.x()));
   }
   return columns;
 }
@@ -47,11 +39,11 @@ std::string frame_text(const Frame& frame) {
   const std::vector<std::string> shapes = shape_columns(frame);
   for (std::size_t i = 0; i < frame.bodies.size(); ++i) {
     const FrameBody& body = frame.bodies[i];
-    const Eigen::Quaterniond q = Eigen::Quaterniond(body.rotation).normalized();
+    const Eigen::Vector4d q = quaternion_of(body.rotation);
     const Vector3d image = (body.unwrapped - body.position).cwiseQuotient(frame.box).array().round();
     fmt::format_to(out, "{} {} {} {} {} {} {} {} {} {} {:.0f} {:.0f} {:.0f}\n", i + 1, body.group + 1,
-                   body.position.x(), body.position.y(), body.position.z(), q.w(), q.x(), q.y(), q.z(),
-                   shapes[body.type], image.x() + 0.0, image.y() + 0.0, image.z() + 0.0);
+                   body.position.x(), body.position.y(), body.position.z(), q[0], q[1], q[2], q[3], shapes[body.type],
+                   image.x() + 0.0, image.y() + 0.0, image.z() + 0.0);
   }
   return fmt::to_string(text);
 }

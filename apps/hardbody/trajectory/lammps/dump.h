@@ -5,10 +5,8 @@
 #include "trajectory/writer.h"
 
 #include <cstdint>
-#include <filesystem>
 #include <memory>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace hardbody {
@@ -23,15 +21,10 @@ namespace hardbody {
 /// reader supports.
 class LammpsWriter final : public FrameFile {
  public:
-  explicit LammpsWriter(std::filesystem::path path) : path_(std::move(path)) {}
+  using FrameFile::FrameFile;
 
   void open(FileMark mark) override;
   void append(const Frame& frame) override;
-  FileMark mark() const override { return mark_; }
-
- private:
-  std::filesystem::path path_;
-  FileMark mark_;
 };
 
 /// Reads dumps of this program and of LAMMPS: columns id, type, x y z (or xu yu zu, xs ys zs), quatw quati quatj quatk,

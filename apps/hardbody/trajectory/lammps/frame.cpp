@@ -2,9 +2,9 @@
 
 #include "base/errors.h"
 #include "base/number_text.h"
+#include "io/orientation.h"
 #include "io/text_file.h"
 #include "trajectory/lammps/columns.h"
-#include "trajectory/stored_orientations.h"
 
 #include <fmt/format.h>
 
@@ -90,7 +90,7 @@ class DumpFrame {
   Vector3d low_ = Vector3d::Zero();
   std::optional<DumpColumns> columns_;
   bool tilted_scale_ = false;  ///< positions are scaled to a tilted box
-  StoredOrientations orientations_;
+  FrameOrientations orientations_;
   std::vector<Vector3d> angular_momentum_;         ///< angular momentum of each body, in the order of the lines
   std::map<std::uint32_t, std::uint32_t> groups_;  ///< groups by type
   std::map<std::string, std::uint32_t> types_;     ///< types by type and shape, as text
@@ -250,8 +250,8 @@ void DumpFrame::read_orientation(const Words& words, FrameBody& body) {
   for (int k = 0; k < 4; ++k) q[k] = cell(words, (*columns_->quaternion)[static_cast<std::size_t>(k)], body);
   const std::optional<Eigen::Matrix3d> rotation = orientations_.rotation(q);
   if (!rotation) {
-    throw bad(fmt::format("the orientation of {} {}", label(body), StoredOrientations::fault(q)),
-              StoredOrientations::accepted());
+    throw bad(fmt::format("the orientation of {} {}", label(body), FrameOrientations::fault(q)),
+              FrameOrientations::accepted());
   }
   body.rotation = *rotation;
 }

@@ -1,6 +1,8 @@
 // A simulation that is saved, and restored from the bytes, goes on as if nothing had happened: every bit of what it
 // would save later is the same, which is all there is of it.
 
+#include "bodies/body_events.h"
+
 #include <common/ed_families.h>
 #include <common/ed_states.h>
 #include <common/finder_scale.h>
@@ -347,6 +349,19 @@ TEST(Restart, EnvelopesWithoutAnExitAreRefused) {
       EXPECT_THAT(refusal(changed, one->system.species), testing::HasSubstr("exit")) << bad;
     }
   }
+}
+
+/// A body whose exit is not a number would never be looked at again.
+TEST(Restart, ExitsThatAreNoNumbersAreRefused) {
+  ed::internal::BodyEvents events;
+  for (const double exit : {0.0, -1.0, std::numeric_limits<double>::infinity()}) {
+    events.exit = exit;
+    const std::string bytes = ed::archive::bytes_of(events);
+    EXPECT_EQ(ed::archive::Reader(bytes).value<ed::internal::BodyEvents>().exit, exit);
+  }
+  events.exit = std::numeric_limits<double>::quiet_NaN();
+  const std::string bytes = ed::archive::bytes_of(events);
+  EXPECT_THROW((void)ed::archive::Reader(bytes).value<ed::internal::BodyEvents>(), std::invalid_argument);
 }
 
 }  // namespace

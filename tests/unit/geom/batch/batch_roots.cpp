@@ -1,6 +1,6 @@
 /// Compiled with AVX-512 F, VL, DQ and BW; called only where the processor has them.
 
-#include "unit/geom/batch_roots.h"
+#include "unit/geom/batch/batch_roots.h"
 
 #include <batch/vectors-inl.h>
 

@@ -1,6 +1,6 @@
 /// Roots and inverses from the processor's estimates: as exact as batch/vectors-inl.h says.
 
-#include "unit/geom/batch_roots.h"
+#include "unit/geom/batch/batch_roots.h"
 
 #include "common/geom_random.h"
 

@@ -1,0 +1,49 @@
+#pragma once
+
+/// Table of the pair gaps: which one belongs to two bodies in flight. Every search for a contact of general bodies asks
+/// here. Ellipsoids of revolution whose inertia shares their axis have a state of their own (bodies/uniaxial.h), with
+/// UniaxialGap.
+///
+/// | A              | B              | distance (ed::distance)                  | pair gap   | bracketing finder |
+/// |----------------|----------------|------------------------------------------|------------|-------------------|
+/// | libgeom's      | libgeom's      | geom::distance of the two kinds          | SupportGap | yes               |
+/// | a user's       | any            | PairDistance of A, of B, geom::distance  | ConvexGap  | refused           |
+///
+/// A shape of libgeom's variant for which there is no NormShape has ConvexGap, too, and the bracketing finder if it has
+/// an implicit function.
+
+#include "contact/body_shapes.h"
+#include "contact/convex_gap.h"
+#include "contact/support_gap.h"
+#include "motion/rigid_motion.h"
+
+#include <ed/shape.h>
+
+#include <geom/any_shape.h>
+
+#include <Eigen/Core>
+
+#include <optional>
+#include <utility>
+
+namespace ed::internal {
+
+/// Shape with what the pair gaps take of it.
+struct GapShape {
+  explicit GapShape(const BodyShape& body) : shape(body), norm(norm_body(body)), implicit(geom_shape(body)) {}
+
+  BodyShape shape;
+  std::optional<NormBodyShape> norm;    ///< for SupportGap
+  std::optional<geom::Shape> implicit;  ///< for Finder::bracketing
+};
+
+/// Returns f(gap) with the pair gap of two bodies in flight. `r`: vector from A's centre to B's at `now`, in the image
+/// that is meant.
+template <class F>
+decltype(auto) with_pair_gap(const GapShape& A, const RigidMotion& a, const GapShape& B, const RigidMotion& b,
+                             const Eigen::Vector3d& r, double now, F&& f) {
+  if (A.norm && B.norm) return std::forward<F>(f)(SupportGap(*A.norm, a, *B.norm, b, r, now));
+  return std::forward<F>(f)(ConvexGap(A.shape, a, B.shape, b, r, now));
+}
+
+}  // namespace ed::internal
