@@ -692,7 +692,7 @@ class Sweep(Case):
     def test_many_points_one_after_the_other(self):
         """A page may have some sixteen WebGL contexts: a view gives its own back."""
         browser = self.open(self.file, 600, 400, scale=0.5)
-        for k in range(20):
+        for k in range(18):
             browser.run(
                 """const {map} = window.hardbodyReport.page.sweep; const [x, y, w, h] = map.rectangle(map.g, [arguments[0], 10]);
                 const at = map.canvas.getBoundingClientRect();
