@@ -27,9 +27,9 @@ function(hardbody_package_tests linkage)
   set(unneeded "-DUNNEEDED=lib(fcl|ccd|octomap|octomath|gmp|mpfr|hwy)")
   set(other_flags "-DOTHER_FLAGS=-march=native -fno-inline")
   hardbody_package_script(package_${linkage}_geom run.cmake -DPREFIX=${prefix} -DCOMPONENTS=geom ${hidden} ${unneeded}
-    -DPROGRAMS=geom,no_exceptions,quickstart ${other_flags} -DOTHER_PROGRAMS=geom -DCOMPARED=geom)
+    -DPROGRAMS=geom,no_exceptions,quickstart ${other_flags} -DCOMPARED=geom)
   hardbody_package_script(package_${linkage}_geom_ed run.cmake -DPREFIX=${prefix} -DCOMPONENTS=geom,ed ${hidden} ${unneeded}
-    -DPROGRAMS=quickstart,user_shapes,ed ${other_flags} -DOTHER_PROGRAMS=quickstart,user_shapes,ed -DCOMPARED=ed)
+    -DPROGRAMS=quickstart,user_shapes,ed ${other_flags} -DCOMPARED=ed)
   set(names geom geom_ed)
   if(HARDBODY_WITH_SEEDS)
     hardbody_package_script(package_${linkage}_geom_seeds run.cmake -DPREFIX=${prefix} -DCOMPONENTS=geom,geom_seeds

@@ -7,8 +7,8 @@ include(${CMAKE_CURRENT_LIST_DIR}/common.cmake)
 #
 # PROGRAMS: those of the project to build and run. OPTIONAL=geom_seeds: components that may be missing. HIDDEN=fcl,ccd:
 # packages that cannot be found. REFUSED=text: find_package must fail, with that in its message.
-# OTHER_FLAGS: OTHER_PROGRAMS are built a second time, with these flags; COMPARED=geom: that one must give the same
-# answers both times, bit for bit.
+# OTHER_FLAGS, COMPARED=geom: that program is built a second time, with these flags, and must give the same answers, bit for
+# bit. HARDBODY_FULL=1: all of PROGRAMS are built and run with these flags, too.
 # UNNEEDED=regex: what the dynamic linker must not load with the project's programs.
 file(REMOVE_RECURSE ${WORK_DIR})
 if(REFUSED)
@@ -20,9 +20,7 @@ if(REFUSED)
   return()
 endif()
 
-foreach(list PROGRAMS OTHER_PROGRAMS)
-  string(REPLACE "," ";" ${list} "${${list}}")
-endforeach()
+string(REPLACE "," ";" PROGRAMS "${PROGRAMS}")
 build_consumer(${WORK_DIR}/build "${FLAGS}" ${PROGRAMS})
 if(UNNEEDED)
   foreach(program IN LISTS PROGRAMS)
@@ -34,7 +32,11 @@ if(UNNEEDED)
   endforeach()
 endif()
 if(OTHER_FLAGS)
-  build_consumer(${WORK_DIR}/other "${FLAGS} ${OTHER_FLAGS}" ${OTHER_PROGRAMS})
+  set(others ${COMPARED})
+  if("$ENV{HARDBODY_FULL}" STREQUAL "1")
+    set(others ${PROGRAMS})
+  endif()
+  build_consumer(${WORK_DIR}/other "${FLAGS} ${OTHER_FLAGS}" ${others})
   set(program ${COMPARED}_consumer)
   must_print(wanted ${WORK_DIR}/build/${program} answers)
   must_print(got ${WORK_DIR}/other/${program} answers)
