@@ -30,6 +30,7 @@ function(hardbody_package_tests linkage)
     -DPROGRAMS=geom,no_exceptions,quickstart ${other_flags} -DCOMPARED=geom)
   hardbody_package_script(package_${linkage}_geom_ed run.cmake -DPREFIX=${prefix} -DCOMPONENTS=geom,ed ${hidden} ${unneeded}
     -DPROGRAMS=quickstart,user_shapes,ed ${other_flags} -DCOMPARED=ed)
+  set_tests_properties(package_${linkage}_geom PROPERTIES COST 100)
   set(names geom geom_ed)
   if(HARDBODY_WITH_SEEDS)
     hardbody_package_script(package_${linkage}_geom_seeds run.cmake -DPREFIX=${prefix} -DCOMPONENTS=geom,geom_seeds
