@@ -15,30 +15,35 @@ endfunction()
 
 # hardbody_package_tests(<linkage>)
 function(hardbody_package_tests linkage)
-  set(prefix ${package_dir}/${linkage}_prefix)
+  set(prefix ${package_dir}/prefix)  # the same for both linkages: ccache then knows the consumers' object files
   hardbody_package_script(package_${linkage}_install install.cmake -DBUILD_DIR=${PROJECT_BINARY_DIR} -DPREFIX=${prefix})
   # All install from the same build tree.
   set_tests_properties(package_${linkage}_install PROPERTIES FIXTURES_SETUP package_${linkage} RESOURCE_LOCK install)
 
-  # Whoever asks for no seeds needs none of their packages.
+  # Whoever asks for no seeds needs none of their packages. With the other flags, which give inline functions of the
+  # headers symbols, too, and of instructions that the library does not use, the answers must be the same. Every program is
+  # built in one of the tests with the usual flags, and those that are long to compile in no other.
   set(hidden -DHIDDEN=fcl,ccd,octomap,CGAL)
   set(unneeded "-DUNNEEDED=lib(fcl|ccd|octomap|octomath|gmp|mpfr|hwy)")
-  hardbody_package_script(package_${linkage}_geom run.cmake -DPREFIX=${prefix} -DCOMPONENTS=geom ${hidden} ${unneeded})
-  hardbody_package_script(package_${linkage}_geom_ed run.cmake -DPREFIX=${prefix} -DCOMPONENTS=geom,ed ${hidden}
-    ${unneeded} "-DOTHER_FLAGS=-march=native -fno-inline")  # inline functions of the headers get symbols, too
+  set(other_flags "-DOTHER_FLAGS=-march=native -fno-inline")
+  hardbody_package_script(package_${linkage}_geom run.cmake -DPREFIX=${prefix} -DCOMPONENTS=geom ${hidden} ${unneeded}
+    -DPROGRAMS=geom,no_exceptions,quickstart ${other_flags} -DCOMPARED=geom)
+  hardbody_package_script(package_${linkage}_geom_ed run.cmake -DPREFIX=${prefix} -DCOMPONENTS=geom,ed ${hidden} ${unneeded}
+    -DPROGRAMS=quickstart,user_shapes,ed ${other_flags} -DCOMPARED=ed)
+  set_tests_properties(package_${linkage}_geom PROPERTIES COST 100)
   set(names geom geom_ed)
   if(HARDBODY_WITH_SEEDS)
     hardbody_package_script(package_${linkage}_geom_seeds run.cmake -DPREFIX=${prefix} -DCOMPONENTS=geom,geom_seeds
-      -DHIDDEN=CGAL)
+      -DPROGRAMS=quickstart,seeds -DHIDDEN=CGAL)
     # ... which proves that they are hidden above.
     hardbody_package_script(package_${linkage}_hidden run.cmake -DPREFIX=${prefix} -DCOMPONENTS=geom,geom_seeds
       ${hidden} "-DREFUSED=geom_seeds needs ccd, which was not found")
     hardbody_package_script(package_${linkage}_optional run.cmake -DPREFIX=${prefix} -DCOMPONENTS=geom
-      -DOPTIONAL=geom_seeds ${hidden})
+      -DPROGRAMS=quickstart -DOPTIONAL=geom_seeds ${hidden})
     list(APPEND names geom_seeds hidden optional)
     if(HARDBODY_WITH_CGAL)
       hardbody_package_script(package_${linkage}_geom_cgal run.cmake -DPREFIX=${prefix}
-        -DCOMPONENTS=geom,geom_seeds,geom_cgal)
+        -DCOMPONENTS=geom,geom_seeds,geom_cgal -DPROGRAMS=quickstart,seeds)
       list(APPEND names geom_cgal)
     endif()
   endif()
@@ -62,16 +67,19 @@ else()
 endif()
 if(BUILD_SHARED_LIBS AND HARDBODY_PYTHON)
   add_test(NAME package_exports COMMAND ${HARDBODY_PYTHON} ${CMAKE_CURRENT_SOURCE_DIR}/package/exports.py
-    ${package_dir}/shared_prefix ${CMAKE_NM})
+    ${package_dir}/prefix ${CMAKE_NM})
   set_tests_properties(package_exports PROPERTIES LABELS package TIMEOUT 60 FIXTURES_REQUIRED package_shared)
 endif()
 
-# How headers and libgeom compile with flags of others; nothing has to be built for that.
-find_package(Eigen3 3.4 REQUIRED NO_MODULE)
-get_target_property(eigen_dir Eigen3::Eigen INTERFACE_INCLUDE_DIRECTORIES)
-foreach(name eigen_macros no_exceptions)
-  hardbody_package_script(package_${name} ${name}.cmake -DSOURCE_DIR=${PROJECT_SOURCE_DIR} -DEIGEN_DIR=${eigen_dir})
-endforeach()
+# How headers and libgeom compile with flags of others; nothing has to be built for that, and shared libraries are made of
+# the same sources.
+if(NOT BUILD_SHARED_LIBS)
+  find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+  get_target_property(eigen_dir Eigen3::Eigen INTERFACE_INCLUDE_DIRECTORIES)
+  foreach(name eigen_macros no_exceptions)
+    hardbody_package_script(package_${name} ${name}.cmake -DSOURCE_DIR=${PROJECT_SOURCE_DIR} -DEIGEN_DIR=${eigen_dir})
+  endforeach()
+endif()
 
 find_program(HARDBODY_DPKG_DEB dpkg-deb)
 if(TARGET hardbody AND HARDBODY_DPKG_DEB AND NOT HARDBODY_SANITIZE AND NOT BUILD_SHARED_LIBS)

@@ -17,19 +17,10 @@ if(TARGET hardbody)
   hardbody_test(report_test report report/report_test.cpp)
   target_link_libraries(report_test PRIVATE hardbody_program nlohmann_json::nlohmann_json)
 
-  set(report_tests ${CMAKE_CURRENT_SOURCE_DIR}/report/test_report.py)
-  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${report_tests})
-  file(STRINGS ${report_tests} class_lines REGEX "^class ")
-  foreach(line IN LISTS class_lines)
-    string(REGEX MATCH "^class ([A-Za-z0-9_]+)" name "${line}")
-    set(name ${CMAKE_MATCH_1})
-    if(name MATCHES "^(Case)$")
-      continue()
-    endif()
-    add_test(NAME report_${name} COMMAND ${HARDBODY_PYTHON} ${report_tests} ${name})
-    set_tests_properties(report_${name} PROPERTIES LABELS report TIMEOUT 600 RESOURCE_LOCK browser
-      ENVIRONMENT "HARDBODY=$<TARGET_FILE:hardbody>;HARDBODY_STATIC=$<TARGET_FILE:hardbody_static_report>;HARDBODY_INTERACTIVE=$<BOOL:${HARDBODY_REPORT_IS_INTERACTIVE}>")
-  endforeach()
+  # One entry for all pages: they share runs, and a browser, which takes long to start.
+  add_test(NAME report_pages COMMAND ${HARDBODY_PYTHON} ${CMAKE_CURRENT_SOURCE_DIR}/report/test_report.py)
+  set_tests_properties(report_pages PROPERTIES LABELS report TIMEOUT 1800 COST 200
+    ENVIRONMENT "HARDBODY=$<TARGET_FILE:hardbody>;HARDBODY_STATIC=$<TARGET_FILE:hardbody_static_report>;HARDBODY_INTERACTIVE=$<BOOL:${HARDBODY_REPORT_IS_INTERACTIVE}>")
 else()
   list(APPEND unbuilt_tests report/report_test.cpp)
 endif()

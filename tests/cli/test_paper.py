@@ -325,9 +325,26 @@ class Tool(Here):
     def arguments(self):
         return ["--quick", "--out", self.here / "out", "--results", self.here / "results", "--points", *self.POINTS]
 
+    @classmethod
+    def setUpClass(cls):
+        """The study in one go, which tests copy and compare with."""
+        directory = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(directory.cleanup)
+        cls.whole = pathlib.Path(directory.name)
+        cls.result = tool("--quick", "--out", cls.whole / "out", "--results", cls.whole / "results", "--points", *cls.POINTS,
+                          "--jobs", 2)
+
+    def reference(self):
+        self.assertEqual(self.result.returncode, 0, self.result.stderr)
+        return self.rows(self.whole / "results" / "points.csv")
+
+    def rows(self, name):
+        return [{k: v for k, v in row.items() if k != "wall_seconds"} for row in read(name)]
+
     def test_points_are_merged_and_not_run_again(self):
-        result = tool(*self.arguments(), "--jobs", 2)
-        self.assertEqual(result.returncode, 0, result.stderr)
+        self.reference()
+        for name in os.listdir(self.whole):
+            shutil.copytree(self.whole / name, self.here / name)
         rows = read(self.here / "results" / "points.csv")
         self.assertEqual([(row["X0"], row["phi"]) for row in rows], [("0.5", "0.05"), ("2", "0.05"), ("3", "0.06")])
         self.assertEqual({row["production_time"] for row in rows}, {"60"})
@@ -353,8 +370,9 @@ class Tool(Here):
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertIn("607 of 607 points to run, 1 at a time", result.stdout)
         self.assertRegex(result.stdout, r"they cost about [78]\.\d h of one core, here about [78]\.\d h")
-        result = tool(*self.arguments())
-        self.assertRegex(result.stdout, r"X0_2_phi_0.05: D_trans .* s; 2 points left, ETA \d+ s")
+        self.assertRegex(self.result.stdout, r"X0_2_phi_0.05: D_trans .* s")
+        left = re.findall(r"X0_\S+: D_trans .* s; (\d+) points left, ETA \d+ s", self.result.stdout)
+        self.assertEqual(left, ["2", "1"])
 
     def test_help_says_how_to_begin_afresh(self):
         help_text = " ".join(tool("--help").stdout.split())
@@ -363,17 +381,13 @@ class Tool(Here):
 
     def test_slices(self):
         """Stopped after two seconds, again and again: in the end the same results as in one go."""
-        self.assertEqual(tool(*self.arguments()).returncode, 0)
-        reference = [{k: v for k, v in row.items() if k != "wall_seconds"} for row in read(self.here / "results" / "points.csv")]
-        shutil.rmtree(self.here / "results")
         for _ in range(100):
             result = tool(*self.arguments(), "--minutes", 0.04)
             self.assertEqual(result.returncode, 0, result.stderr)
             if "0 of 3 points are left" in result.stdout:
                 break
             self.assertIn("the same command continues", result.stdout)
-        rows = [{k: v for k, v in row.items() if k != "wall_seconds"} for row in read(self.here / "results" / "points.csv")]
-        self.assertEqual(rows, reference)
+        self.assertEqual(self.rows(self.here / "results" / "points.csv"), self.reference())
 
     def test_one_at_a_time_and_signals(self):
         command = [sys.executable, ROOT / "tools" / "reproduce_paper.py", "--hardbody", HARDBODY, *self.arguments()[:5],
@@ -394,9 +408,6 @@ class Tool(Here):
 
     def test_kill(self):
         """kill -9 of the tool: its runs save their state and end, and the next call goes on with them."""
-        self.assertEqual(tool(*self.arguments()).returncode, 0)
-        reference = [{k: v for k, v in row.items() if k != "wall_seconds"} for row in read(self.here / "results" / "points.csv")]
-        shutil.rmtree(self.here / "results")
         command = [sys.executable, ROOT / "tools" / "reproduce_paper.py", "--hardbody", HARDBODY, *self.arguments()]
         process = subprocess.Popen(list(map(str, command)), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         log = self.here / "out-quick" / "X0_0.5_phi_0.05" / "log.txt"
@@ -408,8 +419,7 @@ class Tool(Here):
         process.wait()
         result = tool(*self.arguments())
         self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
-        rows = [{k: v for k, v in row.items() if k != "wall_seconds"} for row in read(self.here / "results" / "points.csv")]
-        self.assertEqual(rows, reference)
+        self.assertEqual(self.rows(self.here / "results" / "points.csv"), self.reference())
 
 
 class Grid(unittest.TestCase):

@@ -16,7 +16,7 @@ import time
 import unittest
 import xml.dom.minidom
 
-from test_cli import HARDBODY, SMALL, Case
+from test_cli import CELLS, HARDBODY, SMALL, Case
 
 TIMING = ["wall_seconds", "collisions_per_second"]
 
@@ -28,7 +28,7 @@ system.packing_fraction = {from = 0.1, to = 0.2, step = 0.1}
 """
 
 # Twelve runs of half a second, with some tens of checkpoints.
-TWELVE = SMALL.replace("time = 1\n", "time = 20\n").replace("time = 5\n", "time = 200\n").replace(
+TWELVE = SMALL.replace("time = 1\n", "time = 20\n").replace("time = 5\n", "time = 120\n").replace(
     "events = 500", 'events = 500\ncheckpoint_every = "0.02s"'
 ) + """
 [grid]
@@ -114,13 +114,14 @@ class Grids(SweepCase):
         self.assertEqual((state["status"], state["message"], state["seed"]), ("done", "", 3))
 
     def test_kinds_of_axes(self):
-        text = SMALL + '[grid]\nshape.aspect_ratio = 1.5\nseed = {from = 1, to = 5, step = 2}\n'
+        base = SMALL + CELLS
+        text = base + '[grid]\nshape.aspect_ratio = 1.5\nseed = {from = 1, to = 5, step = 2}\n'
         self.assertEqual(self.names(text), [f"aspect_ratio=1.5_seed={k}" for k in [1, 3, 5]])
         text = SMALL + '[grid.shape]\naspect_ratio = {from = 0.25, to = 4, count = 3, spacing = "log"}\n'
         self.assertEqual(self.names(text), [f"aspect_ratio={x}" for x in ["0.25", "1", "4"]])
-        text = SMALL + '[grid]\nseed = [7, 8]\nsystem.number = [64, 100]\nzip = ["seed", "system.number"]\n'
+        text = base + '[grid]\nseed = [7, 8]\nsystem.number = [64, 100]\nzip = ["seed", "system.number"]\n'
         self.assertEqual(self.names(text), ["seed=7_number=64", "seed=8_number=100"])
-        text = SMALL.replace("aspect_ratio = 2\n", "") + '[grid]\nshape.semi_axes = [[1, 1, 2], [1, 1.5, 2]]\n'
+        text = base.replace("aspect_ratio = 2\n", "") + '[grid]\nshape.semi_axes = [[1, 1, 2], [1, 1.5, 2]]\n'
         self.assertEqual(self.names(text), ["semi_axes=1x1.5x2", "semi_axes=1x1x2"])
         text = SMALL + '[[grid]]\nseed = 1\ndynamics.neighbours = "cells"\n[[grid]]\nseed = [1, 2]\ndynamics.neighbours = "obp"\n'
         self.assertEqual(self.names(text), ["seed=1_neighbours=cells", "seed=1_neighbours=obp", "seed=2_neighbours=obp"])
@@ -142,7 +143,7 @@ class Grids(SweepCase):
         self.assertEqual(len(self.table()), 20)
 
     def test_workers_run_side_by_side(self):
-        process = self.start(TWELVE.replace("time = 200", "time = 100000"), "--jobs", "3")
+        process = self.start(TWELVE.replace("time = 120", "time = 100000"), "--jobs", "3")
         running = lambda: [n for n in os.listdir(self.path("out")) if os.path.exists(self.path(f"out/{n}/log.txt"))]
         self.wait_for(lambda: os.path.exists(self.path("out/sweep.csv")) and len(running()) == 3, "the third run")
         time.sleep(0.5)
@@ -163,7 +164,7 @@ class Resumed(SweepCase):
         kills = 0
         while kills < 3:
             process = self.start(TWELVE, "--jobs", "2", start_new_session=True)
-            time.sleep(moments.uniform(0.1, 0.4) * duration)
+            time.sleep(moments.uniform(0.1, 0.28) * duration)
             if process.poll() is not None:
                 shutil.rmtree(self.path("out"))
                 kills = 0
@@ -202,7 +203,7 @@ class Resumed(SweepCase):
     def test_signals_reach_the_runs(self):
         for number, status in [(signal.SIGTERM, 143), (signal.SIGINT, 130)]:
             with self.subTest(number):
-                process = self.start(TWELVE.replace("time = 200", "time = 100000"), "--jobs", "2", out=f"out{status}")
+                process = self.start(TWELVE.replace("time = 120", "time = 100000"), "--jobs", "2", out=f"out{status}")
                 first = f"out{status}/aspect_ratio=0.5_packing_fraction=0.1"
                 self.wait_for(lambda: os.path.exists(self.path(f"{first}/checkpoint.bin")), "a checkpoint")
                 process.send_signal(number)
@@ -213,7 +214,7 @@ class Resumed(SweepCase):
                 self.assertEqual(self.state("aspect_ratio=0.5_packing_fraction=0.1", f"out{status}")["status"], "stopped")
 
     def test_runs_end_with_their_sweep(self):
-        process = self.start(TWELVE.replace("time = 200", "time = 100000"), "--jobs", "1")
+        process = self.start(TWELVE.replace("time = 120", "time = 100000"), "--jobs", "1")
         checkpoint = self.path("out/aspect_ratio=0.5_packing_fraction=0.1/checkpoint.bin")
         self.wait_for(lambda: os.path.exists(checkpoint), "a checkpoint")
         process.kill()
@@ -474,7 +475,7 @@ class Failures(SweepCase):
 
     def test_full_disk(self):
         """Points whose checkpoint does not fit fail; those that were done stay; with room again all is as it should be."""
-        text = SMALL + "[grid]\nsystem.number = [64, 256, 65]\n"
+        text = SMALL + CELLS + "[grid]\nsystem.number = [64, 256, 65]\n"
         self.assertEqual(self.sweep(text, out="reference").returncode, 0)
         size = (os.stat(self.path("reference/number=65/checkpoint.bin")).st_size
                 + os.stat(self.path("reference/number=256/checkpoint.bin")).st_size) // 2
@@ -489,7 +490,7 @@ class Failures(SweepCase):
         self.assertEqual(self.without_timing(), self.without_timing("reference"))
 
     def test_table_that_does_not_fit(self):
-        text = SMALL + "[grid]\nseed = {from = 1, to = 8, step = 1}\n"
+        text = SMALL + CELLS + "[grid]\nseed = {from = 1, to = 8, step = 1}\n"
         process = self.start(text, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (1500, 1500)))
         self.assertEqual(process.wait(timeout=60), 1)
         result = self.sweep(text)
@@ -497,7 +498,7 @@ class Failures(SweepCase):
         self.assertEqual(self.statuses(), 8 * ["done"])
 
     def test_killed_run(self):
-        process = self.start(TWELVE.replace("time = 200", "time = 3000"), "--jobs", "1")
+        process = self.start(TWELVE.replace("time = 120", "time = 3000"), "--jobs", "1")
         first = "out/aspect_ratio=0.5_packing_fraction=0.1"
         self.wait_for(lambda: os.path.exists(self.path(f"{first}/checkpoint.bin")), "a checkpoint")
         with open(f"/proc/{process.pid}/task/{process.pid}/children") as file:
@@ -596,7 +597,7 @@ class Refused(SweepCase):
         self.assert_refused(self.sweep(SMALL + GRID, out="file/out"), "file/out: cannot be used")
 
     def test_two_sweeps_at_once(self):
-        text = TWELVE.replace("time = 200", "time = 100000")
+        text = TWELVE.replace("time = 120", "time = 100000")
         process = self.start(text, "--jobs", "1")
         self.wait_for(lambda: os.path.exists(self.path("out/sweep.csv")), "the first sweep")
         self.assert_refused(self.sweep(text), "out: another hardbody process is using it")
@@ -606,7 +607,7 @@ class Refused(SweepCase):
 
 class Shown(SweepCase):
     def test_line_on_a_terminal(self):
-        self.write("sweep.toml", TWELVE)
+        self.write("sweep.toml", TWELVE.replace("time = 120", "time = 20"))
         master, slave = pty.openpty()
         process = subprocess.Popen([HARDBODY, "sweep", "sweep.toml", "--out", "out", "--jobs", "2"], cwd=self.here,
                                    stdout=subprocess.DEVNULL, stderr=slave)

@@ -23,8 +23,6 @@ warnings.simplefilter("ignore")
 import gsd.fl
 import gsd.hoomd
 import gsd.pygsd
-import MDAnalysis
-from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 
 from test_cli import HARDBODY, SMALL, Case
 
@@ -185,6 +183,8 @@ class OtherPrograms(Trajectories):
         self.assertEqual(len(exact.species), 2 + 20)
 
     def test_other_readers_of_gsd(self):
+        import MDAnalysis  # takes longer than most tests
+
         self.run_with("out", MIXTURE)
         exact = Frames(self.path("out/trajectory.gsd"))
         with open(self.path("out/trajectory.gsd"), "rb") as file:  # without the C library
@@ -199,6 +199,8 @@ class OtherPrograms(Trajectories):
             numpy.testing.assert_allclose(step.dimensions, [exact.box] * 3 + [90] * 3, rtol=1e-6)
 
     def test_lammps(self):
+        import MDAnalysis
+
         for out, exact in self.families():
             path = self.path(f"{out}/trajectory.lammpstrj")
             universe = MDAnalysis.Universe(path, format="LAMMPSDUMP", topology_format="LAMMPSDUMP")
@@ -228,6 +230,8 @@ class OtherPrograms(Trajectories):
                 numpy.testing.assert_array_equal(rows[:, 14:], images[k])
 
     def test_vtk(self):
+        from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
+
         for out, exact in self.families():
             reader = vtkXMLPolyDataReader()
             reader.SetFileName(self.path(f"{out}/trajectory.vtp"))
@@ -305,7 +309,7 @@ class Killed(Trajectories):
         self.write("run.toml", config.replace("[output]\n", '[output]\ntrajectory = ["gsd"]\nframes = 5001\n'))
         draws = random.Random(1)
         frames = []
-        for k in range(50):
+        for k in range(50 if FULL else 20):
             out = f"out{k}"
             process = subprocess.Popen([HARDBODY, "run", "run.toml", "--out", out], cwd=self.here,
                                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)

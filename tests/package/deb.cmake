@@ -66,4 +66,5 @@ must_match(hardbody.1 "${page}" "\\.Dt HARDBODY 1\n")
 set(PREFIX ${root}/usr)
 set(COMPONENTS geom,ed)
 set(HIDDEN fcl,ccd,octomap,CGAL)
-build_consumer(${WORK_DIR}/build "${FLAGS}")
+# Whether libraries and all headers are there; what they answer is tested where they are installed (package.cmake).
+build_consumer(${WORK_DIR}/build "${FLAGS}" quickstart user_shapes ed)
