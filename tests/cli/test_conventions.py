@@ -162,7 +162,7 @@ lammps("an id that changes in frame 7", ["id", "type", X, *REST], absent=ALL, re
        override={"id": lambda k, i: 99 if k >= 7 and i == 2 else i + 1})
 lammps("a body that is lost in frame 7", [X, *REST], absent=ALL, reason="frame 7", refused=True,
        order=lambda k: range(walks.BODIES - (k >= 7)))
-lammps("types that swap in frame 7", ["id", "type", X, *REST], absent=ALL, reason="frame 7", refused=True,
+lammps("types that swap in frame 7", ["id", "type", X, *REST], absent=ALL, reason="frame 7: body 1 is of type 2", refused=True,
        override={"type": lambda k, i: 1 + (i + (k >= 7)) % 2})
 lammps("a size that changes in frame 7", [X, QUAT, VEL, "shapex", "shapey", "shapez"], absent=ALL, reason="frame 7: body 1",
        refused=True, override={n: (lambda k, i, x=x: x * (1 + (k >= 7))) for n, x in
@@ -245,7 +245,7 @@ hoomd("a tilted box", box=lambda k: [EDGE, EDGE, EDGE, 0.1, 0, 0], absent=ALL, r
 hoomd("no shapes", shapes=None)
 hoomd("two types", shapes=(ROD, ROD), more={
     "particles/typeid": lambda k: numpy.arange(walks.BODIES, dtype=numpy.uint32) % 2 if k == 0 else None})
-hoomd("types that swap in frame 7", shapes=(ROD, BALL), absent=ALL, reason="frame 7", refused=True, more={
+hoomd("types that swap in frame 7", shapes=(ROD, BALL), absent=ALL, reason="frame 7: body 0 is of type B", refused=True, more={
     "particles/typeid": lambda k: (numpy.arange(walks.BODIES, dtype=numpy.uint32) + (k >= 7)) % 2})
 hoomd("masses, diameters, charges, bodies", LONG, more={
     "particles/mass": lambda k: numpy.full(8, 2.5, numpy.float32), "particles/charge": lambda k: numpy.ones(8, numpy.float32),

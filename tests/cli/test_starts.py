@@ -190,7 +190,7 @@ class FilesOfStarts(StartCase):
     def test_boxes_and_orientations(self):
         columns = ["id", "type", "x y z", QUAT, SHAPE]
         dump(self.path("start"), RODS, columns, box=lambda k: ["-5 5", "-5 5", "-10 10"])
-        self.refused("start")
+        self.refused("its box has edges 10, 10, 20")
         dump(self.path("start"), RODS, columns, bounds="xy xz yz pp pp pp", tilt=" 0.5")
         self.refused("tilt")
         dump(self.path("start"), RODS, columns, bounds="xy xz yz pp pp pp", tilt=" 0")
@@ -199,7 +199,7 @@ class FilesOfStarts(StartCase):
         dump(self.path("start"), RODS, ["id", "type", "x y z", *names, SHAPE], override={n: lambda k, i: 0.5 for n in names})
         self.refused("c_orient")
         gsd_file(self.path("start"), RODS, box=lambda k: [EDGE, EDGE, 2 * EDGE, 0, 0, 0])
-        self.refused("start")
+        self.refused("its box has edges 10, 10, 20")
 
 
 class Temperatures(StartCase):
@@ -229,7 +229,7 @@ class Temperatures(StartCase):
                         self.check(file[0], masses)
 
     def test_summary(self):
-        """As the summary has it, after some time: of the whole, and of the species by their shares."""
+        """Temperature of all bodies in the summary, after some time."""
         config = MIXTURE.format(start="cubic", light=1e-3, heavy=1e3).replace("[production]\ntime = 0", "[production]\ntime = 1")
         self.run_small("out", config=config)
         self.assertAlmostEqual(self.summary("out")["observables"]["kT_trans"]["value"], 1, delta=0.2)

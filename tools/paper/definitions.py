@@ -1,6 +1,6 @@
 """Where the definitions of diffusion coefficients and fits hold in a row of points.csv.
 
-The program decides this itself, from mean square displacements at all lags (libed/src/curves.h). This module judges rows that older
+The program decides this itself, from mean square displacements at all lags (libed/src/observables/curves.h). This module judges rows that older
 programs wrote, from points.csv and curves.csv. It drops only what certainly does not hold, so that it never drops what the program
 prints today, except D_trans of states that froze.
 """
@@ -11,7 +11,7 @@ from typing import NamedTuple
 from . import grid
 from .decay_fit import stretched_exponential
 
-# Thresholds of libed/src/curves.h, under the names that they have there.
+# Thresholds of libed/src/observables/curves.h, under the names that they have there.
 FIT_FROM = 0.4  # diffusion is fitted from this share of the longest lag on
 LINEARITY = 0.2  # logarithmic slope there: 1 +- LINEARITY
 DISPLACED = 1  # MSD q^2 / 6 at the first of these lags, at least

@@ -29,6 +29,8 @@ struct Format {
   const char* advice;
 };
 
+constexpr const char* kOurOwn = "runs write one with trajectory = [\"gsd\"] or [\"lammps\"] under [output]";
+
 constexpr std::array kFormats = {
     Format{0, "\x1F\x8B"sv, "is compressed by gzip", "gunzip unpacks it"},
     Format{0, "\x28\xB5\x2F\xFD"sv, "is compressed by zstd", "unzstd unpacks it"},
@@ -40,6 +42,13 @@ constexpr std::array kFormats = {
     Format{0, "PK\x03\x04"sv, "is a zip archive", "unzip unpacks it"},
     Format{8, "DUMPATOM"sv, "is a binary LAMMPS dump", "LAMMPS's binary2txt converts it"},
     Format{8, "DUMPCUSTOM"sv, "is a binary LAMMPS dump", "LAMMPS's binary2txt converts it"},
+    Format{0, "<?xml"sv, "is an XML file, as VTK files are", kOurOwn},
+    Format{0, "<VTKFile"sv, "is a VTK file", kOurOwn},
+    Format{0, "# vtk "sv, "is a legacy VTK file", kOurOwn},
+    Format{0, "CRYST1"sv, "is a PDB file", "OVITO can export one"},
+    Format{0, "HEADER"sv, "is a PDB file", "OVITO can export one"},
+    Format{0, "\x00\x00\x07\xCB"sv, "is an XTC file", "OVITO can export one"},
+    Format{0, "\x00\x00\x07\xC9"sv, "is a TRR file", "OVITO can export one"},
     Format{0, "CDF"sv, "is a NetCDF file", "OVITO can export one"},
     Format{0, "\x89HDF"sv, "is an HDF5 file", "OVITO can export one"},
     Format{4, "CORD"sv, "is a DCD file", "OVITO can export one, with the topology beside it"},

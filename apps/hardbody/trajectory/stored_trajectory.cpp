@@ -77,6 +77,13 @@ std::optional<int> axis_of(const Frame& frame, const FrameBody& body) {
   return axis && frame.exact ? ed::symmetry_axis(frame.exact->species[body.type]) : axis;
 }
 
+/// Returns the body with this id; nullptr if there is none.
+const FrameBody* find_body(const Frame& frame, double id) {
+  const auto found =
+      std::find_if(frame.bodies.begin(), frame.bodies.end(), [&](const FrameBody& b) { return b.id == id; });
+  return found == frame.bodies.end() ? nullptr : &*found;
+}
+
 class Reading {
  public:
   Reading(const TrajectoryReader& reader, const ReadingOptions& options)
@@ -181,16 +188,24 @@ void Reading::check_body(const Frame& frame, std::uint64_t k, std::size_t n) con
   const std::string which = frame.ids ? fmt::format("body {:.17g}", body.id) : fmt::format("body {} of its type", n);
   const FrameType& type = frame.types[body.type];
   const FrameType& type_before = first_.types[before.type];
+  const auto type_changed = [&](const std::string& body_text, const FrameType& now, const FrameType& then) {
+    return bad(k,
+               fmt::format("{} is of type {}, in the first frame of {}", body_text, one_line(now.name, 40),
+                           one_line(then.name, 40)),
+               accepted);
+  };
   if (frame.ids && body.id != before.id) {
+    // Bodies are sorted by type first: one of another type than before stands elsewhere.
+    const FrameBody* now = find_body(frame, before.id);
+    const FrameBody* then = find_body(first_, body.id);
+    if (now != nullptr && now->group != before.group) {
+      throw type_changed(fmt::format("body {:.17g}", now->id), frame.types[now->type], type_before);
+    }
+    if (then != nullptr && then->group != body.group) throw type_changed(which, type, first_.types[then->type]);
     throw bad(k, fmt::format("has body {:.17g} where the first frame has {:.17g}", body.id, before.id),
               "the same bodies in every frame");
   }
-  if (body.group != before.group || type.name != type_before.name) {
-    throw bad(k,
-              fmt::format("{} is of type {}, in the first frame of {}", which, one_line(type.name, 40),
-                          one_line(type_before.name, 40)),
-              accepted);
-  }
+  if (body.group != before.group || type.name != type_before.name) throw type_changed(which, type, type_before);
   const std::optional<ed::BodyShape>& was = type_before.shape;
   if (type.shape.has_value() != was.has_value() || (was && !same_shape(*was, *type.shape, kSame, kSame))) {
     throw bad(k, fmt::format("{} has another shape or size than in the first frame", which), accepted);

@@ -112,7 +112,7 @@ struct BlockRow {
 ///
 /// If nothing changes the bodies' rotation, as for spheres, rotational diffusion and fits of C2 are meaningless, and
 /// the other rotational results have no error (NaN), because all blocks contain the same motion. The same holds for
-/// D_rot of all bodies if nothing changes the rotation of those of one group.
+/// the results of all bodies if nothing changes the rotation of those of one group.
 ///
 /// A decay time exists only if the correlation falls to 1/e. A fit exists only if its amplitude is at most 1.3, tau is
 /// no smaller than the first fitted lag, and beta is at least 0.3. If the correlation is above 1/4 at the longest lag,

@@ -101,16 +101,14 @@ bool CorrelationResults::some_unturned() const {
 
 /// Removes rotational diffusion and its fits where nothing turns the bodies, since they mean nothing then.
 /// Correlations, and the lag at which C2 is 1/e, are right, but no error of them is known. Where that holds for one
-/// group, D_rot of all bodies is removed: the mean of free rotation and diffusion is neither.
+/// group, it holds for the means over all bodies: the mean of free rotation and diffusion is neither, and blocks do not
+/// show the scatter of the free part, which is the same in all of them.
 void CorrelationResults::drop_meaningless(std::size_t group, Correlations& results) const {
-  const bool none_turns = unturned(group);
+  if (!unturned(group) && !(group == kAll && some_unturned())) return;
   const auto drop = [](const Gap& gap, Estimate& e) {
     if (!gap) e = Estimate::none({MissingReason::meaningless});
   };
-  if (none_turns || (group == kAll && some_unturned())) {
-    for (Estimate* e : {&results.D_rot, &results.D_rot_body}) drop(measured_.gaps.rotations, *e);
-  }
-  if (!none_turns) return;
+  for (Estimate* e : {&results.D_rot, &results.D_rot_body}) drop(measured_.gaps.rotations, *e);
   for (Estimate* e : {&results.tau_C2, &results.beta_C2}) drop(measured_.gaps.turning, *e);
   results.window_C2 = {};
   for (Estimate& e : results.D_rot_axis) {

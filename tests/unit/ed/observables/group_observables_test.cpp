@@ -220,6 +220,15 @@ TEST(ObservablesOfGroups, RotationOfAllIsMeaninglessWhereNothingTurnsSome) {
   EXPECT_TRUE(std::isnan(results.D_rot.value));
   EXPECT_EQ(results.D_rot.missing.reason, ed::MissingReason::meaningless);
   EXPECT_GT(results.D_trans.value, 0);
+  // Blocks share the motion of the spheres, so that their scatter would be too small an error of means over all.
+  EXPECT_EQ(results.tau_C2.missing.reason, ed::MissingReason::meaningless);
+  EXPECT_TRUE(std::isnan(results.t_C2_1overe.error));
+  EXPECT_TRUE(std::isnan(results.w2.error));
+  EXPECT_GT(results.groups[1].t_C2_1overe.error, 0);
+  for (const ed::LagRow& row : results.lags) {
+    EXPECT_TRUE(std::isnan(row.c2.error) && std::isnan(row.rot_msd.error) && std::isnan(row.wacf.error)) << row.lag;
+    EXPECT_TRUE(std::isfinite(row.c2.value)) << row.lag;
+  }
 }
 
 }  // namespace
