@@ -193,6 +193,11 @@ int analyze(const AnalyzeArguments& arguments) {
   const RunChoices run = choices_of_run(file.parent_path());
   stored.options.fit_from = arguments.fit_from ? arguments.fit_from : run.fit_from;
   stored.options.wave_numbers = run.wave_numbers;
+  const bool of_the_run = file.filename() == kGsdFile || file.filename() == kLammpsFile;
+  if (!of_the_run && !run.wave_numbers.empty()) {
+    stored.notices.push_back(
+        fmt::format("wave numbers of F_self are those of {}", (file.parent_path() / kSummaryFile).string()));
+  }
   const ed::StoredResults results = ed::analyze_frames(stored.frames, stored.options);
   write_files(out, reader.name(), stored, results);
   print_reading(reader, stored, results);
