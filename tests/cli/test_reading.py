@@ -362,6 +362,26 @@ class PartsOfFrames(FilesCase):
         self.refused("far.lammpstrj", "frame 0: its box has an edge of 10, its bodies have a mean radius of 1e-06",
                      "an edge below 1e+06 times this length")
 
+    def test_units_without_sizes(self):
+        """A file without sizes may have any unit of length: all results scale with it, and lose no peak."""
+        random = numpy.random.default_rng(5)
+        sites = numpy.array(list(numpy.ndindex(6, 6, 6))) + 0.5
+        frames = [sites + 0.1 * random.normal(size=sites.shape) for _ in range(12)]
+        found = {}
+        for scale in (0.1, 1, 30):
+            rows = [[[i + 1, 1, *(scale * x)] for i, x in enumerate(frame)] for frame in frames]
+            self.dump("scaled.lammpstrj", "id type xu yu zu", rows, bounds=(f"0 {6 * scale:.9g}",) * 3)
+            self.analyze("scaled.lammpstrj")
+            analysis = self.analysis()
+            peak = analysis["observables"]["q_peak"]["value"]
+            self.assertAlmostEqual(peak * scale, 2 * numpy.pi, delta=0.4)
+            self.assertAlmostEqual(analysis["wave_numbers"][0] * scale, 2 * numpy.pi, places=6)
+            pairs = self.rows("g_r")
+            found[scale] = peak * scale, pairs["r"] / scale, pairs["g"], self.rows("s_q")["S"]
+        for scale in (0.1, 30):
+            for here, there in zip(found[scale], found[1]):
+                numpy.testing.assert_allclose(here, there, rtol=1e-5, atol=1e-5)
+
     def test_bodies_that_change(self):
         first = [[1, 1, 0, 0, 0, 1, 1], [5, 2, 0, 3, 0, 1, 1]]
         for what, row, text in [("type", [5, 1, 0, 3, 0, 1, 1], "body 5 is of type 1, in the first frame of 2"),

@@ -170,14 +170,13 @@ void Reading::read_groups(std::uint64_t k) {
     if (!axis) options.groups.back().rotation_axes = 3;
   }
   options.length_known = shapes;
-  if (volume > 0) {
-    options.length = std::cbrt(volume / static_cast<double>(first_.bodies.size()) / (4 * std::numbers::pi / 3));
-  }
+  // Without the sizes of all bodies: as if they filled half of the box, so that the grids fit any unit of length.
+  if (!shapes) volume = 0.5 * options.box * options.box * options.box;
+  options.length = std::cbrt(volume / static_cast<double>(first_.bodies.size()) / (4 * std::numbers::pi / 3));
   if (options.length > kLeastLength * options.box) return;
-  throw bad(k,
-            fmt::format("its box has an edge of {:g}, its bodies have {} of {:g}", options.box,
-                        volume > 0 ? "a mean radius" : "no shapes and the default length", options.length),
-            fmt::format("an edge below {:g} times this length", 1 / kLeastLength));
+  throw bad(
+      k, fmt::format("its box has an edge of {:g}, its bodies have a mean radius of {:g}", options.box, options.length),
+      fmt::format("an edge below {:g} times this length", 1 / kLeastLength));
 }
 
 /// Checks that body n of the order is the same as in the first frame.

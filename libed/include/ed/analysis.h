@@ -27,6 +27,8 @@ enum class MissingReason {
   no_fit,                    ///< the best fit is not a stretched exponential: see fit_decay
   tau_unsteady,              ///< the correlation has decayed little, and tau depends on the fitted lags
   meaningless,               ///< the quantity has no meaning: nothing changes the bodies' rotation
+  meaningless_in_part,       ///< the quantity of all bodies has no meaning: nothing changes the rotation of one group
+  no_peak,                   ///< S(q) has no peak that stands out of its scatter
   no_such_axis,              ///< bodies of revolution have no third axis
   not_told,                  ///< the stored frames do not contain the data
   not_unwrapped,             ///< positions are wrapped, or may be, and bodies move far between frames

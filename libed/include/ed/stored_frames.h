@@ -26,7 +26,8 @@ struct StoredFrame {
 /// Settings of `analyze_frames` that the frames do not contain.
 struct StoredFramesOptions {
   double box = 0;  ///< edge length of the box, in all frames
-  /// Unit of distances and wave numbers: the radius of the sphere whose volume is the bodies' mean one.
+  /// Unit of distances and wave numbers: the radius of the sphere whose volume is the bodies' mean one. Where that is
+  /// unknown, a length of this order: the first peak of S(q) is looked for from 1.5 to 7 / length.
   double length = 1;
   /// False if the bodies' sizes are unknown and `length` is arbitrary. D_trans then requires motion by the bodies' mean
   /// distance instead of by the length of the first peak of S(q).
@@ -37,7 +38,8 @@ struct StoredFramesOptions {
   bool unwrapped = true;
   std::vector<BodyGroup> groups{};  ///< groups of bodies, whose numbers add up to that of the bodies
   std::vector<int> axis{};          ///< index (0, 1, 2) of the body axis that u is, for each body
-  /// Wave numbers of F_self, at most kMostWaveNumbers; empty: wave_numbers_about the first peak of S(q).
+  /// Wave numbers of F_self, at most kMostWaveNumbers; empty: wave_numbers_about the first
+  /// peak of S(q), by the rule of runs (see Correlations).
   std::vector<double> wave_numbers{};
   double longest_lag = 0;  ///< longest lag; 0: a quarter of the trajectory
   /// First lag of the fits of decays, where ballistic motion has ended: a run uses five mean collision intervals.

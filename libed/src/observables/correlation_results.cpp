@@ -104,9 +104,11 @@ bool CorrelationResults::some_unturned() const {
 /// group, it holds for the means over all bodies: the mean of free rotation and diffusion is neither, and blocks do not
 /// show the scatter of the free part, which is the same in all of them.
 void CorrelationResults::drop_meaningless(std::size_t group, Correlations& results) const {
-  if (!unturned(group) && !(group == kAll && some_unturned())) return;
-  const auto drop = [](const Gap& gap, Estimate& e) {
-    if (!gap) e = Estimate::none({MissingReason::meaningless});
+  const bool all_unturned = unturned(group);
+  if (!all_unturned && !(group == kAll && some_unturned())) return;
+  const MissingReason reason = all_unturned ? MissingReason::meaningless : MissingReason::meaningless_in_part;
+  const auto drop = [reason](const Gap& gap, Estimate& e) {
+    if (!gap) e = Estimate::none({reason});
   };
   for (Estimate* e : {&results.D_rot, &results.D_rot_body}) drop(measured_.gaps.rotations, *e);
   for (Estimate* e : {&results.tau_C2, &results.beta_C2}) drop(measured_.gaps.turning, *e);

@@ -191,6 +191,10 @@ std::string describe(const Missing& missing, std::string_view length_unit) {
       return reached("still ", "", " at the longest lag: tau depends on the lags that are fitted");
     case MissingReason::meaningless:
       return "meaningless: nothing turns these bodies";
+    case MissingReason::meaningless_in_part:
+      return "meaningless for all bodies: nothing turns those of one species";
+    case MissingReason::no_peak:
+      return "S(q) has no peak that stands out of its scatter";
     case MissingReason::no_such_axis:
       return "bodies of revolution have no such axis";
     case MissingReason::not_told:
@@ -233,6 +237,10 @@ const char* to_string(MissingReason reason) {
       return "tau_unsteady";
     case MissingReason::meaningless:
       return "meaningless";
+    case MissingReason::meaningless_in_part:
+      return "meaningless_in_part";
+    case MissingReason::no_peak:
+      return "no_peak";
     case MissingReason::no_such_axis:
       return "no_such_axis";
     case MissingReason::not_told:

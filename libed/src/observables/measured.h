@@ -135,7 +135,7 @@ WaveVectors wave_vectors_of(const StructureGrid& grid);
 /// kBallisticCollisions mean collision intervals.
 Results results_of(const Measured& measured, const Totals& totals, std::optional<double> fit_from = std::nullopt);
 
-/// Returns the wave number of the first peak of S(q) of all bodies.
-Estimate first_peak_of(const Measured& measured);
+/// Returns the first wave number of all bodies by the rule of runs (StructureResults); nullopt without structure.
+std::optional<double> first_wave_number_of(const Measured& measured);
 
 }  // namespace ed::internal

@@ -184,9 +184,9 @@ Results results_of(const Measured& measured, const Totals& totals, std::optional
   return ResultsOf(measured, totals, fit_from).results();
 }
 
-Estimate first_peak_of(const Measured& measured) {
+std::optional<double> first_wave_number_of(const Measured& measured) {
   const BlockAverages averages(measured);
-  return StructureResults(averages).first_peak_of_all();
+  return StructureResults(averages).first_wave_number_of_all();
 }
 
 }  // namespace ed::internal

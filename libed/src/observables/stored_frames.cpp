@@ -224,8 +224,8 @@ StoredResults Analysis::results() {
   internal::Totals totals;
   totals.time = step_ * static_cast<double>(count_ - 1);
   if (measured_.options.wave_numbers.empty()) {
-    const double q = internal::first_peak_of(measured_).value;
-    if (std::isfinite(q)) measured_.options.wave_numbers = wave_numbers_about(q);
+    const std::optional<double> q = internal::first_wave_number_of(measured_);
+    if (q && std::isfinite(*q)) measured_.options.wave_numbers = wave_numbers_about(*q);
   }
   add_lags();
   StoredResults results;

@@ -59,6 +59,7 @@ void StructureResults::add_pairs(std::size_t part, double number, Correlations& 
 
 Estimate StructureResults::peak(std::size_t part, double Peak::*member) const {
   const std::vector<double>& q = wave_vectors_->wave_numbers();
+  if (!clear_peak_of(part)) return Estimate::none({MissingReason::no_peak});
   return averages_.with_block_error(
       0, [&](const Block* one) { return first_peak(q, sum_of(part, one).S, measured_.grid.length).*member; });
 }
@@ -77,8 +78,15 @@ void StructureResults::add_to(Correlations& results, std::size_t group) const {
   results.S_peak = peak(part, &Peak::S);
 }
 
-Estimate StructureResults::first_peak_of_all() const {
-  return sums_.empty() ? Estimate{} : peak(0, &Peak::q);
+std::optional<double> StructureResults::first_wave_number_of_all() const {
+  return sums_.empty() ? std::nullopt : std::optional(first_wave_number());
+}
+
+/// Returns the wave number of the first peak of a part, if it stands out of its scatter. Frames of a block hold much
+/// the same configuration and count as one.
+std::optional<double> StructureResults::clear_peak_of(std::size_t part) const {
+  return clear_peak(*wave_vectors_, sum_of(part, nullptr).S, static_cast<double>(measured_.blocks.size()),
+                    measured_.grid.length);
 }
 
 // ---- The wave number that tells how far bodies have to move
@@ -97,8 +105,7 @@ double StructureResults::first_wave_number() const {
 double StructureResults::first_wave_number(std::size_t group) const {
   const double of_all = first_wave_number();
   if (group == kAll || measured_.ranges.size() == 1 || !measured_.length_known) return of_all;
-  const auto own = clear_peak(*wave_vectors_, sum_of(group + 1, nullptr).S,
-                              static_cast<double>(measured_.blocks.size()), measured_.grid.length);
+  const auto own = clear_peak_of(group + 1);
   return own ? std::min(of_all, *own) : of_all;
 }
 

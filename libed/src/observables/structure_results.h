@@ -18,8 +18,8 @@ class StructureResults {
   /// Adds g(r), g2(r), S(q) and its peak of a part to the results.
   void add_to(Correlations& results, std::size_t group) const;
 
-  /// Returns the wave number of the first peak of S(q) of all bodies, without a value if there is none.
-  Estimate first_peak_of_all() const;
+  /// Returns the first wave number of all bodies by the rule of runs; nullopt without structure.
+  std::optional<double> first_wave_number_of_all() const;
 
   /// Returns the first wave number for a group: that of all bodies. Where its own S(q) has a clear peak at a smaller
   /// wave number, as that of large bodies that cage each other, it is that one.
@@ -36,6 +36,7 @@ class StructureResults {
   std::size_t part_of(std::size_t group) const;
   const Sum& sum_of(std::size_t part, const Block* one) const;
   double first_wave_number() const;
+  std::optional<double> clear_peak_of(std::size_t part) const;
   void add_pairs(std::size_t part, double number, Correlations& results) const;
   Estimate peak(std::size_t part, double Peak::*member) const;
 

@@ -218,10 +218,10 @@ TEST(ObservablesOfGroups, RotationOfAllIsMeaninglessWhereNothingTurnsSome) {
   EXPECT_EQ(results.groups[0].D_rot.missing.reason, ed::MissingReason::meaningless);
   EXPECT_GT(results.groups[1].D_rot.value, 0);
   EXPECT_TRUE(std::isnan(results.D_rot.value));
-  EXPECT_EQ(results.D_rot.missing.reason, ed::MissingReason::meaningless);
+  EXPECT_EQ(results.D_rot.missing.reason, ed::MissingReason::meaningless_in_part);
   EXPECT_GT(results.D_trans.value, 0);
   // Blocks share the motion of the spheres, so that their scatter would be too small an error of means over all.
-  EXPECT_EQ(results.tau_C2.missing.reason, ed::MissingReason::meaningless);
+  EXPECT_EQ(results.tau_C2.missing.reason, ed::MissingReason::meaningless_in_part);
   EXPECT_TRUE(std::isnan(results.t_C2_1overe.error));
   EXPECT_TRUE(std::isnan(results.w2.error));
   EXPECT_GT(results.groups[1].t_C2_1overe.error, 0);

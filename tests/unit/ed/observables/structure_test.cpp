@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 #include <vector>
 
@@ -300,6 +301,19 @@ TEST(Structure, OfSpheresIsPercusAndYevicks) {
   }
   EXPECT_NEAR(results.S_peak.value, highest, 0.07 * highest);
   EXPECT_NEAR(ed::structure_peak(system), at, 0.5);
+}
+
+/// S(q) of a gas is 1 to within its scatter: its highest value is chance, at another wave number with every seed.
+TEST(StructurePeak, OfAGasIsMissing) {
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    const ed::System system = ed_test::start({1, 0.005, 64, Inertia::paper, seed});
+    const ed::Results gas = ed_test::observed(system, ed_test::options_of(system, 64, 1));
+    for (const ed::Estimate& peak : {gas.q_peak, gas.S_peak}) {
+      EXPECT_TRUE(std::isnan(peak.value)) << peak.value;
+      EXPECT_EQ(peak.missing.reason, ed::MissingReason::no_peak);
+    }
+    EXPECT_FALSE(gas.structure.empty());
+  }
 }
 
 TEST(Pairs, OfSpheresTouchAsOftenAsCarnahanAndStarlingSay) {
