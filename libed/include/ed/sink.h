@@ -3,6 +3,8 @@
 /// @file
 /// Receiver of bytes piece by piece, for writers of states and files.
 
+#include <ed/export.h>
+
 #include <functional>
 #include <string_view>
 
