@@ -31,7 +31,7 @@ constexpr std::size_t kMostBodiesOfPoints = 300'000;
 constexpr const char* kFirstResult = "equilibration_time";
 constexpr const char* kErrorSuffix = "_error";
 
-using Row = std::vector<std::string>;
+using TableRow = std::vector<std::string>;
 
 CsvTable read_table(const fs::path& path) {
   CsvTable table = read_csv(path);
@@ -40,7 +40,7 @@ CsvTable read_table(const fs::path& path) {
 }
 
 /// Returns a field of a row; empty if there is no such column.
-std::string field_of(const CsvTable& table, const Row& row, std::string_view column) {
+std::string field_of(const CsvTable& table, const TableRow& row, std::string_view column) {
   const std::optional<std::size_t> place = table.find(column);
   return place ? row[*place] : std::string();
 }
@@ -54,7 +54,7 @@ std::vector<std::size_t> key_columns(const CsvTable& table) {
   std::vector<std::size_t> columns;
   const std::size_t end = *table.find(kFirstResult);
   for (std::size_t k = 0; k < end; ++k) {
-    const auto same = [&](const Row& row) { return row[k] == table.rows[0][k]; };
+    const auto same = [&](const TableRow& row) { return row[k] == table.rows[0][k]; };
     if (table.header[k] == "seed" && std::all_of(table.rows.begin(), table.rows.end(), same)) continue;
     columns.push_back(k);
   }
@@ -106,7 +106,8 @@ std::map<std::string, std::string> directories_of(const fs::path& sweep) {
 }
 
 /// Returns the directory of a row, in which every column before the results may be a key.
-std::string directory_of(const CsvTable& table, const Row& row, const std::map<std::string, std::string>& directories) {
+std::string directory_of(const CsvTable& table, const TableRow& row,
+                         const std::map<std::string, std::string>& directories) {
   for (const bool with_seed : {true, false}) {
     std::map<std::string, std::string> sorted;
     for (std::size_t k = 0; k < *table.find(kFirstResult); ++k) {
@@ -171,7 +172,7 @@ SweepReport read_sweep_report(const fs::path& directory) {
   for (const std::size_t k : observables) sweep.observables.push_back(headline_named(table.header[k]));
   sweep.title = title_of(sweep.keys, table.rows.size());
   std::size_t bodies = 0;
-  for (const Row& row : table.rows) {
+  for (const TableRow& row : table.rows) {
     SweepPointReport point;
     for (const std::size_t k : keys) point.keys.push_back(row[k]);
     for (const std::size_t k : observables) {
