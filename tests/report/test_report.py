@@ -204,7 +204,7 @@ class Case(unittest.TestCase):
             Case.opened = path
         return self.browser()
 
-    def wait_for(self, browser, script, seconds=30):
+    def wait_for(self, browser, script, seconds=240):
         """Until the script returns something true, which is returned."""
         end = time.monotonic() + seconds
         while True:
