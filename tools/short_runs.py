@@ -9,6 +9,7 @@ KINDS = {
     "tau_C2": (None, None), "tau_F": (None, None),
 }
 PRODUCTIONS = (2, 3, 5, 8, 12, 20, 40, 100, 200)
+AUTO = "auto"
 
 
 def spheroids(X0):
@@ -103,11 +104,15 @@ class Tally:
     def __init__(self):
         self.right = self.lost = self.dropped = 0
         self.wrong = []
+        self.unjudged = []  # printed by a run that is longer than the long one, which has no value
+        self.lost_of_auto = []
 
-    def count(self, production, entry, reference, alone):
+    def count(self, production, entry, reference, alone, is_longer):
         value, error = entry["value"], entry["error"]
         if value is not None:
-            if reference["value"] is not None and agrees(value, error, reference["value"], reference["error"]):
+            if reference["value"] is None and is_longer:
+                self.unjudged.append(f"{value:.4g}")
+            elif reference["value"] is not None and agrees(value, error, reference["value"], reference["error"]):
                 self.right += 1
             else:
                 self.wrong.append(f"{value:.4g} at {production}")
@@ -116,6 +121,25 @@ class Tally:
             right = reference["value"] is not None and abs(alone - reference["value"]) <= 0.1 * reference["value"]
             self.lost += right
             self.dropped += not right
+            if right and production == AUTO:
+                self.lost_of_auto.append(f"{alone:.4g}")
+
+    def add(self, other):
+        """Adds the counts of another quantity or state."""
+        self.right += other.right
+        self.lost += other.lost
+        self.dropped += other.dropped
+        self.wrong += other.wrong
+        self.unjudged += other.unjudged
+        self.lost_of_auto += other.lost_of_auto
+
+    def cells(self, name):
+        """Cells of a row, and whether all is well: no wrong value, and no right one lost by a run with production "auto"."""
+        absent = [self.dropped, self.lost, ", ".join(self.lost_of_auto) or "0"]
+        if KINDS[name][0] is None:  # fits have no rule to compare with
+            absent = ["-", "-", "-"]
+        wrong, unjudged = (", ".join(values) or "0" for values in (self.wrong, self.unjudged))
+        return [self.right, *absent[:2], wrong, absent[2], unjudged], not self.wrong and not self.lost_of_auto
 
 
 def submit(runner, name, state):
@@ -130,6 +154,8 @@ def submit(runner, name, state):
         q = f"wave_numbers = [{long['wave_numbers'][0]}]"
         short = {p: runner.run(f"{base}-{p}", start=long["directory"] / "trajectory.gsd", bodies=bodies, equilibration=0,
                                production=f"{p}\n{q}") for p in PRODUCTIONS}
+        short[AUTO] = runner.run(f"{base}-auto", start=long["directory"] / "trajectory.gsd", bodies=bodies,
+                                 equilibration=f'"auto"\ncap = {cap}', production=f'"auto"\n{q}')
         return long, short
     return runner.pool.submit(runs)
 
@@ -138,8 +164,9 @@ def short(runner, table, _):
     """Each printed value within 5 % plus 4 combined standard errors of the long run's, or absent."""
     runs = {name: submit(runner, name, state) for name, state in STATES.items()}
     table.plain_heading(
-        f"Short runs against long ones: productions of {', '.join(map(str, PRODUCTIONS))} from the end of a long one",
-        "| state | quantity | long run | printed and right | absent, was wrong | absent, was right | printed and wrong | |")
+        f"Short runs against long ones: productions of {', '.join(map(str, PRODUCTIONS))} and \"auto\" from the end of a long one",
+        "| state | quantity | long run | printed and right | absent, was wrong | absent, was right | printed and wrong "
+        "| lost with \"auto\" | \"auto\" alone | |")
     totals = {name: Tally() for name in KINDS}
     for state, run in runs.items():
         long, shorts = run.result()
@@ -148,12 +175,13 @@ def short(runner, table, _):
             reference = long["observables"][name]
             tally = Tally()
             for production, result in shorts.items():
-                tally.count(production, result["observables"][name], reference, slope_alone(result, name, components))
+                tally.count(production, result["observables"][name], reference, slope_alone(result, name, components),
+                            result["time"]["production"] > long["time"]["production"])
             shown = "absent" if reference["value"] is None else f"{reference['value']:.4g} +- {reference['error'] or 0:.2g}"
-            table.plain_row([state, name, shown, tally.right, tally.dropped, tally.lost, ", ".join(tally.wrong) or "0"],
-                            not tally.wrong)
-            for member in ("right", "lost", "dropped"):
-                setattr(totals[name], member, getattr(totals[name], member) + getattr(tally, member))
-            totals[name].wrong += tally.wrong
+            cells, well = tally.cells(name)
+            table.plain_row([state, name, shown, *cells], well)
+            totals[name].add(tally)
     for name, tally in totals.items():
-        table.plain_row(["all", name, "", tally.right, tally.dropped, tally.lost, len(tally.wrong)], not tally.wrong)
+        cells, well = tally.cells(name)
+        cells[3], cells[5] = len(tally.wrong), len(tally.unjudged)
+        table.plain_row(["all", name, "", *cells], well)
