@@ -91,6 +91,14 @@ struct Mirror : AtPlanes {
   }
 };
 
+/// Events of this kind, which are wanted.
+template <class Kind>
+Kind wanted() {
+  Kind kind;
+  kind.wanted = true;
+  return kind;
+}
+
 /// Comes to one body again and again at the same time.
 struct Stuck {
   int stuck = -1;
@@ -156,7 +164,7 @@ std::string state_of(const Loop& loop) {
 
 template <class Bodies>
 void expect_crossings_counted(const ed::System& system) {
-  TestLoop<Bodies> loop(system, {}, {}, TestEvents({}, {true, {}, 0}, {}));
+  TestLoop<Bodies> loop(system, {}, {}, TestEvents({}, wanted<PlaneCrossing>(), {}));
   ed::Simulation plain(system);
   for (double time = 1; time <= 5; ++time) {  // several epochs
     ASSERT_TRUE(loop.run_until(time, kUnlimited, kUnlimited));
@@ -193,7 +201,7 @@ template <class Bodies>
 void expect_reflected(const ed::System& system) {
   ed::SimulationOptions options;
   options.prepare_from = 1;
-  TestLoop<Bodies> loop(system, options, {}, TestEvents({true, {}, 0}, {true, {}, 0}, {}));
+  TestLoop<Bodies> loop(system, options, {}, TestEvents(wanted<Mirror>(), wanted<PlaneCrossing>(), {}));
   const double energy = ed::kinetic_state(system).energy();
   ASSERT_TRUE(loop.run_until(2, kUnlimited, kUnlimited));
   const std::string state = state_of(loop);
