@@ -364,23 +364,43 @@ class PartsOfFrames(FilesCase):
 
     def test_units_without_sizes(self):
         """A file without sizes may have any unit of length: all results scale with it, and lose no peak."""
-        random = numpy.random.default_rng(5)
-        sites = numpy.array(list(numpy.ndindex(6, 6, 6))) + 0.5
-        frames = [sites + 0.1 * random.normal(size=sites.shape) for _ in range(12)]
+        self.write("fluid.toml", """seed = 1
+[system]
+number = 256
+packing_fraction = 0.45
+start = "fcc"
+[shape]
+aspect_ratio = 1
+[equilibration]
+time = 10
+[production]
+time = 80
+[output]
+trajectory = ["lammps"]
+frames = 41
+""")
+        result = self.hardbody("run", "fluid.toml", "--out", "fluid")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.analyze("fluid/trajectory.lammpstrj")
+        known = self.analysis()["observables"]["q_peak"]["value"]
+        text = self.read("fluid/trajectory.lammpstrj").split("ITEM: TIMESTEP\n")[1:]
+        edge = 2 * float(text[0].split("pp pp pp\n")[1].split()[1])
+        frames = [numpy.array([line.split() for line in frame.split("\n")[8:] if line], float) for frame in text]
+        frames = [rows[:, 2:5] + edge * rows[:, -3:] for rows in frames]
         found = {}
         for scale in (0.1, 1, 30):
             rows = [[[i + 1, 1, *(scale * x)] for i, x in enumerate(frame)] for frame in frames]
-            self.dump("scaled.lammpstrj", "id type xu yu zu", rows, bounds=(f"0 {6 * scale:.9g}",) * 3)
+            self.dump("scaled.lammpstrj", "id type xu yu zu", rows, bounds=(f"{-scale * edge / 2:.9g} {scale * edge / 2:.9g}",) * 3)
             self.analyze("scaled.lammpstrj")
             analysis = self.analysis()
-            peak = analysis["observables"]["q_peak"]["value"]
-            self.assertAlmostEqual(peak * scale, 2 * numpy.pi, delta=0.4)
-            self.assertAlmostEqual(analysis["wave_numbers"][0] * scale, 2 * numpy.pi, places=6)
+            peak = analysis["observables"]["q_peak"]["value"] * scale
+            self.assertAlmostEqual(peak, known, delta=0.05)
+            self.assertAlmostEqual(analysis["wave_numbers"][0] * scale, 2 * numpy.pi * 256 ** (1 / 3) / edge, places=6)
             pairs = self.rows("g_r")
-            found[scale] = peak * scale, pairs["r"] / scale, pairs["g"], self.rows("s_q")["S"]
+            found[scale] = peak, pairs["r"] / scale, pairs["g"], self.rows("s_q")["S"]
         for scale in (0.1, 30):
             for here, there in zip(found[scale], found[1]):
-                numpy.testing.assert_allclose(here, there, rtol=1e-5, atol=1e-5)
+                numpy.testing.assert_allclose(here, there, rtol=1e-4, atol=1e-4)
 
     def test_bodies_that_change(self):
         first = [[1, 1, 0, 0, 0, 1, 1], [5, 2, 0, 3, 0, 1, 1]]
