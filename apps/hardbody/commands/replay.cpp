@@ -68,7 +68,7 @@ double distance_rate(const Pair& pair, const geom::DistanceResult& d) {
 }
 
 std::string shape_text(const ed::BodyShape& shape) {
-  const std::string axes = "semi-axes " + text(ed::half_extents(shape));
+  std::string axes = "semi-axes " + text(ed::half_extents(shape));
   const auto [kind, a, e] = numbers_of(shape);
   if (!has_exponents(kind)) return axes;
   return fmt::format("{}, {}, exponents ({:.9g}, {:.9g})", to_string(kind), axes, e.x(), e.y());
