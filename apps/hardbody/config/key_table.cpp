@@ -32,10 +32,10 @@ constexpr double kLightest = 1e-6;      ///< the heaviest is the inverse
 
 /// Returns `rule`, which accepts nothing (but `accepted`) where `when` holds.
 Rule unless(bool (*when)(const Place&), const char* accepted, Rule rule) {
-  rule.take = [=, take = rule.take](const Value& value, const Target& to) {
+  auto take = [=, take = std::move(rule.take)](const Value& value, const Target& to) {
     return when(to) ? Refusal{accepted} : take(value, to);
   };
-  return rule;
+  return {std::move(take), std::move(rule.text), std::move(rule.same)};
 }
 
 // ---- [system] and [start]
