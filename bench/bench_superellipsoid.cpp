@@ -10,9 +10,9 @@
 
 #include "superellipsoid_seeds.h"
 
-#include "common/geom_manufactured.h"
-#include "common/geom_random.h"
-#include "common/geom_superellipsoid_sets.h"
+#include "common/geom/manufactured.h"
+#include "common/geom/random.h"
+#include "common/geom/superellipsoid_sets.h"
 
 #include <geom/geom.h>
 #ifdef HARDBODY_WITH_SEEDS

@@ -7,9 +7,9 @@
 /// machines differ more than those of two methods: the table at the end gives ratios within this run. They flatter the
 /// advancement, which ends a floor away from the contact and cannot tell one from a near miss.
 
-#include <common/finder_ensemble.h>
-#include <common/finder_gap.h>
-#include <common/finder_reference.h>
+#include <common/finder/ensemble.h>
+#include <common/finder/gap.h>
+#include <common/finder/reference.h>
 
 #include <ed/time_of_contact.h>
 

@@ -3,7 +3,7 @@
 #include "seeds_of.h"
 
 #include "common/forked.h"
-#include "common/geom_manufactured.h"
+#include "common/geom/manufactured.h"
 
 #include <geom/geom.h>
 #ifdef HARDBODY_WITH_SEEDS

@@ -2,9 +2,9 @@
 
 #include "seeds_of.h"
 
-#include "common/geom_manufactured.h"
-#include "common/geom_random.h"
-#include "common/geom_superellipsoid_sets.h"
+#include "common/geom/manufactured.h"
+#include "common/geom/random.h"
+#include "common/geom/superellipsoid_sets.h"
 
 #include <geom/geom.h>
 

@@ -24,9 +24,14 @@ hardbody_test(geom_unit_test unit
   unit/geom/user_shape_test.cpp)
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64)$")
   find_package(hwy 1.0 REQUIRED CONFIG)
-  target_sources(geom_unit_test PRIVATE unit/geom/batch/batch_roots.cpp unit/geom/batch/batch_roots_test.cpp)
+  target_sources(geom_unit_test PRIVATE unit/geom/batch/batch_roots_test.cpp unit/geom/batch/batch_roots_portable.cpp
+    unit/geom/batch/batch_roots_avx2.cpp unit/geom/batch/batch_roots_avx512.cpp)
   target_include_directories(geom_unit_test SYSTEM PRIVATE $<TARGET_PROPERTY:hwy::hwy,INTERFACE_INCLUDE_DIRECTORIES>)
-  set_source_files_properties(unit/geom/batch/batch_roots.cpp PROPERTIES COMPILE_OPTIONS "${hardbody_avx512}")
+  set_source_files_properties(unit/geom/batch/batch_roots_portable.cpp PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+  set_source_files_properties(unit/geom/batch/batch_roots_avx2.cpp PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON
+    COMPILE_OPTIONS "${hardbody_avx2}")
+  set_source_files_properties(unit/geom/batch/batch_roots_avx512.cpp PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON
+    COMPILE_OPTIONS "${hardbody_avx512}")
 else()
   list(APPEND unbuilt_tests unit/geom/batch/batch_roots_test.cpp)
 endif()

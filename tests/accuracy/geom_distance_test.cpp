@@ -2,8 +2,8 @@
 /// rests on. Every class is asserted, and the table is printed. HARDBODY_FULL=1: 10,000,000 pairs instead of 1,000,000.
 
 #include "common/full_form.h"
-#include "common/geom_long_double.h"
-#include "common/geom_manufactured.h"
+#include "common/geom/long_double.h"
+#include "common/geom/manufactured.h"
 
 #include <geom/geom.h>
 

@@ -2,8 +2,8 @@
 /// them. A table of docs/accuracy.md. HARDBODY_FULL=1: 12,000 pairs a row instead of 600.
 
 #include "common/full_form.h"
-#include "common/geom_manufactured.h"
-#include "common/geom_random.h"
+#include "common/geom/manufactured.h"
+#include "common/geom/random.h"
 
 #include <geom/geom.h>
 

@@ -5,9 +5,9 @@
 /// 1,000.
 
 #include "common/full_form.h"
-#include "common/geom_accuracy_rows.h"
-#include "common/geom_manufactured.h"
-#include "common/geom_random.h"
+#include "common/geom/accuracy_rows.h"
+#include "common/geom/manufactured.h"
+#include "common/geom/random.h"
 
 #include <geom/geom.h>
 

@@ -8,9 +8,9 @@
 // After a change that is meant to alter the arithmetic (another order of operations, another first guess), take the new
 // hashes from the failure messages and raise kArithmetic, by which checkpoints of the old arithmetic are refused.
 
-#include <common/ed_hash.h>
-#include <common/ed_states.h>
-#include <common/geom_batch.h>
+#include <common/ed/hash.h>
+#include <common/ed/states.h>
+#include <common/geom/batch.h>
 
 #include <ed/arithmetic.h>
 #include <ed/ed.h>

@@ -1,7 +1,7 @@
 /// Other libraries' closest points, and bad ones, as the seed of the paper's contact search: the same contacts.
 
-#include "common/ed_states.h"
-#include "common/finder_ensemble.h"
+#include "common/ed/states.h"
+#include "common/finder/ensemble.h"
 
 #include <ed/ed.h>
 #include <geom/seeds.h>

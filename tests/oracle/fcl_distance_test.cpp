@@ -1,8 +1,8 @@
 /// distance() against FCL: where they disagree by more than FCL's tolerance, a certificate says who is wrong.
 
-#include "common/finder_scale.h"
+#include "common/finder/scale.h"
 #include "common/forked.h"
-#include "common/geom_manufactured.h"
+#include "common/geom/manufactured.h"
 #include "oracle/fcl_raw.h"
 
 #include <geom/geom.h>

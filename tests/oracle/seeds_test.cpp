@@ -1,8 +1,8 @@
 /// The seeds from other libraries: never an abort, and what Newton's method makes of them.
 
-#include "common/finder_scale.h"
+#include "common/finder/scale.h"
 #include "common/forked.h"
-#include "common/geom_manufactured.h"
+#include "common/geom/manufactured.h"
 
 #include <geom/geom.h>
 #include <geom/seeds.h>

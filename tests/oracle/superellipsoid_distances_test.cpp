@@ -1,11 +1,11 @@
 /// Superellipsoids and mixed pairs: distances of FCL, libccd and CGAL, of tessellated bodies or with our support
 /// functions, against ours.
 
-#include "common/finder_scale.h"
+#include "common/finder/scale.h"
 #include "common/forked.h"
 #include "common/full_form.h"
-#include "common/geom_manufactured.h"
-#include "common/geom_superellipsoid_sets.h"
+#include "common/geom/manufactured.h"
+#include "common/geom/superellipsoid_sets.h"
 #include "oracle/fcl_raw.h"
 
 #include <geom/geom.h>

@@ -1,9 +1,9 @@
 /// Superellipsoids and mixed pairs: seeds of other libraries, and what Newton's method makes of them.
 
-#include "common/finder_scale.h"
+#include "common/finder/scale.h"
 #include "common/forked.h"
-#include "common/geom_manufactured.h"
-#include "common/geom_superellipsoid_sets.h"
+#include "common/geom/manufactured.h"
+#include "common/geom/superellipsoid_sets.h"
 
 #include <geom/geom.h>
 #include <geom/seeds.h>

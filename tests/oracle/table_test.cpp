@@ -2,9 +2,9 @@
 /// pairs of each. tools/accuracy writes it. HARDBODY_FULL=1: 1,000 pairs a row instead of 50, of CGAL a tenth.
 
 #include "common/full_form.h"
-#include "common/geom_accuracy_rows.h"
-#include "common/geom_manufactured.h"
-#include "common/geom_random.h"
+#include "common/geom/accuracy_rows.h"
+#include "common/geom/manufactured.h"
+#include "common/geom/random.h"
 
 #include <geom/geom.h>
 #include <geom/seeds.h>

@@ -1,8 +1,8 @@
 // Nothing allocates in the event loop in steady state: every call of operator new is counted.
 
 #include <common/counted_allocations.h>
-#include <common/ed_families.h>
-#include <common/ed_states.h>
+#include <common/ed/families.h>
+#include <common/ed/states.h>
 
 #include <ed/ed.h>
 

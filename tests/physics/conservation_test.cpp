@@ -1,7 +1,7 @@
 // No overlap ever, energy and momentum conserved: audits by geom::distance, which shares no code with the event loop,
 // during runs of hard ellipsoids from thin discs to needles.
 
-#include <common/ed_states.h>
+#include <common/ed/states.h>
 #include <common/full_form.h>
 
 #include <ed/ed.h>

@@ -1,8 +1,8 @@
 // Correlations of fluids where theory knows them, and whether the error bars are as large as they say.
 
-#include <common/ed_observed.h>
-#include <common/ed_reference.h>
-#include <common/ed_states.h>
+#include <common/ed/observed.h>
+#include <common/ed/reference.h>
+#include <common/ed/states.h>
 
 #include <ed/ed.h>
 

@@ -1,6 +1,6 @@
 // The work of the event loop, in counters: the same on every machine, so that a loss of speed shows without a clock.
 
-#include <common/ed_states.h>
+#include <common/ed/states.h>
 
 #include <ed/ed.h>
 

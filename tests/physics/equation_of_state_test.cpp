@@ -1,8 +1,8 @@
 // Pressure and collision rate where theory knows them: hard spheres at any density, spheroids at a low one.
 
-#include <common/ed_measure.h>
-#include <common/ed_reference.h>
-#include <common/ed_states.h>
+#include <common/ed/measure.h>
+#include <common/ed/reference.h>
+#include <common/ed/states.h>
 #include <common/full_form.h>
 
 #include <ed/ed.h>

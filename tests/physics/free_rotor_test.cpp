@@ -1,8 +1,8 @@
 // Bodies that never meet turn freely: C2(t) of free linear rotors (the paper's inertia: no spin) and of free spherical
 // tops, averaged over Maxwellian angular velocities, is known exactly (tests/reference/free_rotor_c2.csv).
 
-#include <common/ed_reference.h>
-#include <common/ed_states.h>
+#include <common/ed/reference.h>
+#include <common/ed/states.h>
 
 #include <ed/ed.h>
 

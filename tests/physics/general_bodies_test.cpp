@@ -2,11 +2,11 @@
 // same collisions; energy and momentum are kept; temperatures are equal; e = 1 is the ellipsoid; rates and pressures
 // are those of independent simulations and of theory.
 
-#include <common/ed_families.h>
-#include <common/ed_measure.h>
-#include <common/ed_reference.h>
-#include <common/ed_same_collisions.h>
-#include <common/ed_states.h>
+#include <common/ed/families.h>
+#include <common/ed/measure.h>
+#include <common/ed/reference.h>
+#include <common/ed/same_collisions.h>
+#include <common/ed/states.h>
 #include <common/full_form.h>
 
 #include <ed/ed.h>

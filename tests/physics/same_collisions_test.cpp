@@ -1,10 +1,10 @@
 // The physics does not depend on how the event loop is run: the finder, the kind of neighbour lists and the thickness
 // of their envelopes, where runs are cut into pieces, and when states are read.
 
-#include <common/ed_hash.h>
-#include <common/ed_same_collisions.h>
-#include <common/ed_states.h>
-#include <common/geom_batch.h>
+#include <common/ed/hash.h>
+#include <common/ed/same_collisions.h>
+#include <common/ed/states.h>
+#include <common/geom/batch.h>
 
 #include <ed/ed.h>
 

@@ -1,7 +1,7 @@
 // Nothing in a run depends on the units: bodies a power of two as large or as heavy make the same run to the last bit,
 // from the random start on, with lengths, times and moments in proportion.
 
-#include <common/ed_families.h>
+#include <common/ed/families.h>
 
 #include <ed/ed.h>
 

@@ -4,9 +4,9 @@
 // The reference runs are of the same system (N = 512, the paper's inertia). Their own errors are below 0.1 % for the
 // rate and Z, 0.8 % for the diffusion coefficients.
 
-#include <common/ed_measure.h>
-#include <common/ed_reference.h>
-#include <common/ed_states.h>
+#include <common/ed/measure.h>
+#include <common/ed/reference.h>
+#include <common/ed/states.h>
 
 #include <ed/ed.h>
 

@@ -5,8 +5,8 @@
 // return must be as good as an error of kRoundings roundings (of a coordinate, of the order of the box) times G allows;
 // the horizon keeps that far below the distance that the bodies have gone, so that a wrong collision cannot hide.
 
-#include <common/ed_families.h>
-#include <common/ed_states.h>
+#include <common/ed/families.h>
+#include <common/ed/states.h>
 
 #include <ed/ed.h>
 

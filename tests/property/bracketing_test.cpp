@@ -4,8 +4,8 @@
 // Two independent ways to every contact: they share the distance kernel and nothing else, and with newton8 and newton5
 // not even that.
 
-#include <common/ed_states.h>
-#include <common/finder_ensemble.h>
+#include <common/ed/states.h>
+#include <common/finder/ensemble.h>
 #include <common/full_form.h>
 
 #include <ed/ed.h>

@@ -1,9 +1,9 @@
 // The bound on which the finder's certificate rests: K(tau) >= h'' over the whole of [0, tau], for the support function
 // h of a turning body at a fixed direction. HARDBODY_FULL=1 draws ten times as many states.
 
-#include <common/finder_ensemble.h>
-#include <common/finder_gap.h>
-#include <common/finder_scale.h>
+#include <common/finder/ensemble.h>
+#include <common/finder/gap.h>
+#include <common/finder/scale.h>
 
 #include <contact/uniaxial_gap.h>
 

@@ -1,9 +1,9 @@
 /// distance_batch() against distance() and against manufactured answers, for every instruction set of the processor.
 /// HARDBODY_FULL=1: ten million pairs instead of a hundred thousand.
 
-#include "common/geom_batch.h"
-#include "common/finder_scale.h"
-#include "common/geom_manufactured.h"
+#include "common/finder/scale.h"
+#include "common/geom/batch.h"
+#include "common/geom/manufactured.h"
 
 #include <geom/geom.h>
 

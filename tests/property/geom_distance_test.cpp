@@ -1,8 +1,8 @@
 /// Properties of distance() over random pairs: manufactured answers, bounds, invariances.
 
-#include "common/geom_expect.h"
-#include "common/geom_manufactured.h"
-#include "common/geom_shapes.h"
+#include "common/geom/expect.h"
+#include "common/geom/manufactured.h"
+#include "common/geom/shapes.h"
 
 #include <geom/geom.h>
 #include <geom/kernel/perram_wertheim.h>

@@ -3,8 +3,8 @@
 // pairs.
 
 #include "common/full_form.h"
-#include "common/geom_manufactured.h"
-#include "common/geom_random.h"
+#include "common/geom/manufactured.h"
+#include "common/geom/random.h"
 
 #include <geom/geom.h>
 

@@ -6,9 +6,9 @@
 #include "property/superellipsoid_pairs.h"
 
 #include "common/full_form.h"
-#include "common/geom_manufactured.h"
-#include "common/geom_random.h"
-#include "common/geom_superellipsoid_sets.h"
+#include "common/geom/manufactured.h"
+#include "common/geom/random.h"
+#include "common/geom/superellipsoid_sets.h"
 
 #include <geom/geom.h>
 

@@ -1,10 +1,10 @@
 // Does the finder ever miss a contact? Pairs of near neighbours of a dense fluid, in every kind of motion that is hard
-// for it, against brute force (common/finder_reference.h). HARDBODY_FULL=1 runs ten times as many.
+// for it, against brute force (common/finder/reference.h). HARDBODY_FULL=1 runs ten times as many.
 
-#include <common/finder_ensemble.h>
-#include <common/finder_gap.h>
-#include <common/finder_reference.h>
-#include <common/finder_scale.h>
+#include <common/finder/ensemble.h>
+#include <common/finder/gap.h>
+#include <common/finder/reference.h>
+#include <common/finder/scale.h>
 #include <common/full_form.h>
 
 #include <gtest/gtest.h>

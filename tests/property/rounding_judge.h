@@ -2,8 +2,8 @@
 
 /// Judgement of certified steps in quadruple precision (rounding_test.cpp).
 
-#include <common/exact_bodies.h>
-#include <common/finder_ensemble.h>
+#include <common/finder/ensemble.h>
+#include <common/geom/exact_bodies.h>
 
 #include <contact/certified.h>
 
@@ -14,15 +14,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 
 namespace ed::internal {
 
 using Eigen::Vector3d;
 using finder_test::log_uniform;
-using quad::ExactPair;
-using quad::ExactPath;
 using quad::Quad;
 
 inline constexpr double kHorizon = 0.1;

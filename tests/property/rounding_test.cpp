@@ -4,10 +4,10 @@
 
 #include "property/rounding_judge.h"
 
-#include <common/exact_bodies.h>
-#include <common/finder_ensemble.h>
-#include <common/finder_scale.h>
-#include <common/geom_shapes.h>
+#include <common/finder/ensemble.h>
+#include <common/finder/scale.h>
+#include <common/geom/exact_bodies.h>
+#include <common/geom/shapes.h>
 
 #include <base/periodic.h>
 #include <contact/body_shapes.h>

@@ -2,18 +2,14 @@
 
 /// Sets of pairs of superellipsoids whose answer is known (geom_superellipsoid_distance_test.cpp).
 
-#include "common/full_form.h"
-#include "common/geom_manufactured.h"
-#include "common/geom_random.h"
-#include "common/geom_superellipsoid_sets.h"
+#include "common/geom/manufactured.h"
+#include "common/geom/random.h"
+#include "common/geom/superellipsoid_sets.h"
 
 #include <geom/geom.h>
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
-#include <cstdio>
 
 namespace geom {
 

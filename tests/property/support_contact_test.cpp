@@ -6,8 +6,8 @@
 #include "property/support_reference.h"
 
 #include "common/full_form.h"
-#include "common/geom_random.h"
-#include "common/geom_superellipsoid_sets.h"
+#include "common/geom/random.h"
+#include "common/geom/superellipsoid_sets.h"
 
 #include <contact/body_shapes.h>
 #include <contact/certified.h>
@@ -18,10 +18,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 
 namespace ed::internal {
 namespace {

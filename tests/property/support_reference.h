@@ -2,11 +2,9 @@
 
 /// Pairs of superellipsoids in motion, and the reference search for their contacts (support_contact_test.cpp).
 
-#include "common/full_form.h"
-#include "common/geom_random.h"
-#include "common/geom_superellipsoid_sets.h"
+#include "common/geom/random.h"
+#include "common/geom/superellipsoid_sets.h"
 
-#include <contact/body_shapes.h>
 #include <contact/certified.h>
 #include <contact/support_gap.h>
 
@@ -15,7 +13,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 namespace ed::internal {

@@ -7,9 +7,9 @@
 #include <ed/motion.h>
 #include <ed/system.h>
 
-#include <geom/any_shape.h>
 #include <geom/obb.h>
 #include <geom/pose.h>
+#include <geom/shape_variant.h>
 
 #include <Eigen/Core>
 

@@ -2,8 +2,8 @@
 
 #include <ed/export.h>
 
-#include <geom/any_shape.h>
 #include <geom/newton.h>
+#include <geom/shape_variant.h>
 
 #include <Eigen/Core>
 

@@ -5,10 +5,10 @@
 
 #include <ed/export.h>
 
-#include <geom/any_shape.h>
 #include <geom/distance.h>
 #include <geom/pose.h>
 #include <geom/shape.h>
+#include <geom/shape_variant.h>
 
 #include <Eigen/Core>
 
@@ -27,8 +27,8 @@ using BodyShape = geom::AnyShape<CustomShape>;
 
 /// Distance of a user's shape from another shape by the user's own method, a closed form for instance, in place of
 /// libgeom's search on support functions. A is the user's shape at X_WA, B is `other` at X_WB; nullopt: the method does
-/// not know this pair, and libgeom's answers. The options may be ignored, except that overlapping bodies need a local
-/// penetration only (geom::Penetration::local).
+/// not know this pair, and libgeom's answers. The options may be ignored; for overlapping bodies a local penetration
+/// (geom::Penetration::local) suffices.
 ///
 /// The answer must keep the contract of geom::DistanceResult: status, distance, unit normal from A to B, both points in
 /// the world's axes, and an error bound that is true: contacts are certified with it. It must depend on its arguments

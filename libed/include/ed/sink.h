@@ -3,7 +3,7 @@
 /// @file
 /// Receiver of bytes piece by piece, for writers of states and files.
 
-#include <ed/export.h>
+#include <ed/export.h>  // refuses Eigen with row-major matrices, as every header of the library does
 
 #include <functional>
 #include <string_view>

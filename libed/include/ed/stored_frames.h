@@ -38,8 +38,8 @@ struct StoredFramesOptions {
   bool unwrapped = true;
   std::vector<BodyGroup> groups{};  ///< groups of bodies, whose numbers add up to that of the bodies
   std::vector<int> axis{};          ///< index (0, 1, 2) of the body axis that u is, for each body
-  /// Wave numbers of F_self, at most kMostWaveNumbers; empty: wave_numbers_about the first
-  /// peak of S(q), by the rule of runs (see Correlations).
+  /// Wave numbers of F_self, at most kMostWaveNumbers; empty: wave_numbers_about the first peak of S(q), by
+  /// the rule of runs (see Correlations).
   std::vector<double> wave_numbers{};
   double longest_lag = 0;  ///< longest lag; 0: a quarter of the trajectory
   /// First lag of the fits of decays, where ballistic motion has ended: a run uses five mean collision intervals.

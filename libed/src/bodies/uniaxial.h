@@ -19,6 +19,7 @@
 #include <ed/snapshot.h>
 #include <ed/system.h>
 
+#include <geom/batch.h>
 #include <geom/kernel/uniaxial.h>
 
 #include <Eigen/Core>

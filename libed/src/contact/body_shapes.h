@@ -7,8 +7,8 @@
 #include <ed/contact_options.h>
 #include <ed/shape.h>
 
-#include <geom/any_shape.h>
 #include <geom/distance.h>
+#include <geom/shape_variant.h>
 
 #include <optional>
 

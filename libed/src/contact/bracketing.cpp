@@ -7,6 +7,7 @@
 
 #include <ed/tolerances.h>
 
+#include <geom/any_shape.h>
 #include <geom/distance.h>
 #include <geom/newton.h>
 

@@ -12,8 +12,8 @@
 
 #include <ed/contact_options.h>
 
-#include <geom/any_shape.h>
 #include <geom/ellipsoid.h>
+#include <geom/shape_variant.h>
 
 #include <Eigen/Core>
 

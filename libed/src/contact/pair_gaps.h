@@ -19,7 +19,7 @@
 
 #include <ed/shape.h>
 
-#include <geom/any_shape.h>
+#include <geom/shape_variant.h>
 
 #include <Eigen/Core>
 

@@ -59,7 +59,6 @@ void StructureResults::add_pairs(std::size_t part, double number, Correlations& 
 
 Estimate StructureResults::peak(std::size_t part, double Peak::*member) const {
   const std::vector<double>& q = wave_vectors_->wave_numbers();
-  if (!clear_peak_of(part)) return Estimate::none({MissingReason::no_peak});
   return averages_.with_block_error(
       0, [&](const Block* one) { return first_peak(q, sum_of(part, one).S, measured_.grid.length).*member; });
 }
@@ -74,8 +73,12 @@ void StructureResults::add_to(Correlations& results, std::size_t group) const {
     results.structure.push_back(
         {q[k], averages_.with_block_error(0, [&](const Block* one) { return sum_of(part, one).S[k]; })});
   }
-  results.q_peak = peak(part, &Peak::q);
-  results.S_peak = peak(part, &Peak::S);
+  if (clear_peak_of(part)) {
+    results.q_peak = peak(part, &Peak::q);
+    results.S_peak = peak(part, &Peak::S);
+  } else {
+    results.q_peak = results.S_peak = Estimate::none({MissingReason::no_peak});
+  }
 }
 
 std::optional<double> StructureResults::first_wave_number_of_all() const {

@@ -1,30 +1,21 @@
 #pragma once
 
 /// @file
-/// Shapes that are chosen at run time: a closed variant of those that libgeom brings.
+/// Functions of shapes that are chosen at run time.
 
 #include <geom/batch.h>
 #include <geom/distance.h>
-#include <geom/ellipsoid.h>
 #include <geom/export.h>
 #include <geom/newton.h>
 #include <geom/obb.h>
 #include <geom/pose.h>
-#include <geom/superellipsoid.h>
+#include <geom/shape_variant.h>
 
 #include <Eigen/Core>
 
 #include <span>
-#include <variant>
 
 namespace geom {
-
-/// Closed variant of the shapes that libgeom brings, and of others. This is their one list: a new shape is added here.
-template <class... Others>
-using AnyShape = std::variant<Ellipsoid, Superellipsoid, Others...>;
-
-/// Body whose kind is chosen at run time.
-using Shape = AnyShape<>;
 
 /// Returns `distance` of the shapes inside, with one dispatch a query.
 GEOM_EXPORT DistanceResult distance(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB,

@@ -15,5 +15,6 @@
 #include <geom/pose.h>
 #include <geom/queries.h>
 #include <geom/shape.h>
+#include <geom/shape_variant.h>
 #include <geom/superellipsoid.h>
 #include <geom/tolerances.h>

@@ -163,18 +163,27 @@ class Block {
   BatchOutput out_;
 };
 
+[[noreturn]] void refuse_instruction_set(InstructionSet wanted) {
+  std::ostringstream message;
+  message << "distance_batch: instruction_set is " << to_string(wanted)
+          << ", which this processor or this build does not have; accepted: best";
+  for (const InstructionSet set : {InstructionSet::portable, InstructionSet::avx2, InstructionSet::avx512}) {
+    if (is_available(set)) message << ", " << to_string(set);
+  }
+  kernel::refuse(message.str());
+}
+
 }  // namespace
 
 namespace kernel {
 
-[[noreturn]] void refuse_size(const char* name, std::size_t size, const char* other, std::size_t pairs) {
+void refuse_size(const char* name, std::size_t size, const char* other, std::size_t pairs) {
   std::ostringstream message;
   message << "distance_batch: " << name << " has " << size << " elements; accepted: " << other << ", or as many as"
           << " results, which has " << pairs;
   kernel::refuse(message.str());
 }
 
-/// Returns the options of the pairs that go to `distance`, without the start.
 DistanceOptions scalar_options(const BatchOptions& options) {
   DistanceOptions scalar;
   scalar.max_iterations = options.max_iterations;
@@ -186,16 +195,6 @@ void check_starts(const BatchOptions& options, std::size_t pairs) {
   if (!options.starts.empty() && options.starts.size() != pairs) {
     refuse_size("starts", options.starts.size(), "0", pairs);
   }
-}
-
-[[noreturn]] void refuse_instruction_set(InstructionSet wanted) {
-  std::ostringstream message;
-  message << "distance_batch: instruction_set is " << to_string(wanted)
-          << ", which this processor or this build does not have; accepted: best";
-  for (const InstructionSet set : {InstructionSet::portable, InstructionSet::avx2, InstructionSet::avx512}) {
-    if (is_available(set)) message << ", " << to_string(set);
-  }
-  kernel::refuse(message.str());
 }
 
 InstructionSet chosen(InstructionSet wanted) {

@@ -242,8 +242,8 @@ bool NormBodyPair::shares_a_point(const Answer& answer) const {
   };
   const LaneVector points = joined(answer.points, answer.at);
   if (holds_between(points.a(), r_ + points.b(), holds)) return true;
-  // The point t r between the centres with N_A(t r) = N_B((1 - t) r) is in both bodies if in any. No norm is beyond
-  // kMaxCoordinate / kMinSemiAxis, 1e150, by more than a small factor.
+  // If any point between the centres is in both bodies, so is the one, t r, with N_A(t r) = N_B((1 - t) r). No norm is
+  // beyond kMaxCoordinate / kMinSemiAxis, 1e150, by more than a small factor.
   const Lanes norms = bodies_.norms(LaneVector::of(r_, r_));
   return norms[0] * norms[1] <= norms[0] + norms[1];
 }

@@ -1,8 +1,8 @@
 // No query allocates, easy or hard: every call of operator new is counted.
 
 #include "common/counted_allocations.h"
-#include "common/geom_manufactured.h"
-#include "common/geom_random.h"
+#include "common/geom/manufactured.h"
+#include "common/geom/random.h"
 
 #include <geom/geom.h>
 

@@ -1,7 +1,7 @@
 // Newton's method by contact elements: that it converges, to what, and in how few steps.
 
-#include "common/geom_random.h"
-#include "common/geom_superellipsoid_sets.h"
+#include "common/geom/random.h"
+#include "common/geom/superellipsoid_sets.h"
 
 #include <geom/geom.h>
 #include <geom/kernel/norm_body_pair.h>

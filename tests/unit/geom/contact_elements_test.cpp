@@ -1,8 +1,8 @@
 // Contact elements: what they say of the surface, and how a step moves them.
 
 #include "norm/contact_elements.h"
-#include "common/geom_random.h"
-#include "common/geom_superellipsoid_sets.h"
+#include "common/geom/random.h"
+#include "common/geom/superellipsoid_sets.h"
 
 #include <geom/geom.h>
 #include <geom/kernel/norm_bodies.h>

@@ -1,7 +1,7 @@
 /// distance(): analytic cases, degenerate cases, starts, declined answers.
 
-#include "common/geom_expect.h"
-#include "common/geom_manufactured.h"
+#include "common/geom/expect.h"
+#include "common/geom/manufactured.h"
 #include "common/special_values.h"
 
 #include <geom/geom.h>

@@ -1,6 +1,6 @@
 /// The two kernels of the dual Newton method: one evaluation and one step, against each other and against theory.
 
-#include "common/geom_manufactured.h"
+#include "common/geom/manufactured.h"
 #include "common/special_values.h"
 
 #include <geom/geom.h>

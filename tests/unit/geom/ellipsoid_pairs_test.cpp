@@ -1,7 +1,7 @@
 /// The kernels of `distance` for two ellipsoids, of revolution and with three axes: one evaluation and one step,
 /// against the general kernel and against theory.
 
-#include "common/geom_manufactured.h"
+#include "common/geom/manufactured.h"
 #include "common/special_values.h"
 
 #include <dual/ellipsoid_pair.h>

@@ -1,6 +1,6 @@
 /// Ellipsoid: derivatives against finite differences, analytic identities, refusals.
 
-#include "common/geom_random.h"
+#include "common/geom/random.h"
 #include "common/message_of.h"
 #include "common/special_values.h"
 

@@ -1,8 +1,8 @@
 /// Input at the limits of libgeom and beyond: what is refused, by which message; what is declined; and that all the
 /// rest is answered right, in any unit of length and at any distance.
 
-#include "common/geom_expect.h"
-#include "common/geom_manufactured.h"
+#include "common/geom/expect.h"
+#include "common/geom/manufactured.h"
 #include "common/message_of.h"
 #include "common/special_values.h"
 

@@ -1,7 +1,7 @@
 // The ellipsoids that hold superellipsoids: the inequality that contact searches rest on.
 
 #include "common/full_form.h"
-#include "common/geom_random.h"
+#include "common/geom/random.h"
 
 #include <geom/kernel/norm_bodies.h>
 #include <geom/tolerances.h>

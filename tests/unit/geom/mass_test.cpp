@@ -1,5 +1,5 @@
 #include "common/full_form.h"
-#include "common/geom_shapes.h"
+#include "common/geom/shapes.h"
 
 #include <geom/geom.h>
 

@@ -1,8 +1,8 @@
 /// newton_distance(): the Jacobian, both systems, negative distances, statuses, seeds.
 
-#include "common/geom_expect.h"
-#include "common/geom_implicit.h"
-#include "common/geom_manufactured.h"
+#include "common/geom/expect.h"
+#include "common/geom/implicit.h"
+#include "common/geom/manufactured.h"
 #include "common/special_values.h"
 
 #include <geom/geom.h>

@@ -1,7 +1,7 @@
 /// The Perram-Wertheim contact function and the fallback of distance() that rests on it.
 
-#include "common/geom_expect.h"
-#include "common/geom_manufactured.h"
+#include "common/geom/expect.h"
+#include "common/geom/manufactured.h"
 
 #include <geom/kernel/perram_wertheim.h>
 

@@ -1,6 +1,6 @@
 /// Pose: what is refused, what is corrected, and the conventions.
 
-#include "common/geom_random.h"
+#include "common/geom/random.h"
 #include "common/special_values.h"
 
 #include <geom/geom.h>

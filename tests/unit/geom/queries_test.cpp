@@ -1,7 +1,7 @@
-#include "common/geom_expect.h"
-#include "common/geom_manufactured.h"
-#include "common/geom_query_shapes.h"
-#include "common/geom_random.h"
+#include "common/geom/expect.h"
+#include "common/geom/manufactured.h"
+#include "common/geom/query_shapes.h"
+#include "common/geom/random.h"
 
 #include <geom/geom.h>
 

@@ -1,5 +1,5 @@
-#include "common/geom_query_shapes.h"
-#include "common/geom_random.h"
+#include "common/geom/query_shapes.h"
+#include "common/geom/random.h"
 
 #include <geom/geom.h>
 

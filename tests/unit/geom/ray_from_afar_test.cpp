@@ -1,7 +1,7 @@
 /// ray_cast from far away: as exact at the body as from near by.
 
-#include "common/geom_random.h"
-#include "common/geom_shapes.h"
+#include "common/geom/random.h"
+#include "common/geom/shapes.h"
 
 #include <geom/geom.h>
 

@@ -1,6 +1,6 @@
 // Branch and bound over all normals: its bounds by points between points, and where all is ridges.
 
-#include "common/geom_random.h"
+#include "common/geom/random.h"
 
 #include <geom/kernel/sphere_search.h>
 

@@ -1,8 +1,8 @@
 // Superellipsoid: support function and norm form against each other and against finite differences, mass properties
 // against reference values, radii against sampling, refusals.
 
-#include "common/ed_reference.h"
-#include "common/geom_random.h"
+#include "common/ed/reference.h"
+#include "common/geom/random.h"
 #include "common/message_of.h"
 #include "common/special_values.h"
 

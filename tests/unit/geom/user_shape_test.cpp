@@ -1,9 +1,9 @@
 /// distance() of shapes that are not the library's: the template path, with and without a curvature bound.
 
-#include "common/geom_expect.h"
-#include "common/geom_implicit.h"
-#include "common/geom_manufactured.h"
-#include "common/geom_shapes.h"
+#include "common/geom/expect.h"
+#include "common/geom/implicit.h"
+#include "common/geom/manufactured.h"
+#include "common/geom/shapes.h"
 
 #include <geom/geom.h>
 

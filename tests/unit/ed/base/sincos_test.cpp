@@ -1,6 +1,6 @@
 #include <base/sincos.h>
 
-#include <common/finder_ensemble.h>
+#include <common/finder/ensemble.h>
 
 #include <ed/random.h>
 

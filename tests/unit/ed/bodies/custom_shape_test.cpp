@@ -1,8 +1,8 @@
 // A user's own shapes in motion: spherocylinders, whose distance is known exactly from their segments, and ellipsoids
 // of which the finder is told nothing but the support function.
 
-#include <common/ed_states.h>
-#include <common/geom_shapes.h>
+#include <common/ed/states.h>
+#include <common/geom/shapes.h>
 #include <common/message_of.h>
 
 #include <ed/ed.h>

@@ -1,9 +1,9 @@
 // A user's shape with its own distance, here spherocylinders by their segments: the same contacts and collisions as
 // from the support function alone, and libgeom's answer for pairs that the user's method does not know.
 
-#include <common/ed_same_collisions.h>
-#include <common/ed_states.h>
-#include <common/geom_shapes.h>
+#include <common/ed/same_collisions.h>
+#include <common/ed/states.h>
+#include <common/geom/shapes.h>
 
 #include <ed/ed.h>
 

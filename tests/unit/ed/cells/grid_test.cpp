@@ -1,7 +1,7 @@
 #include <base/periodic.h>
 #include <cells/grid.h>
 
-#include <common/geom_batch.h>
+#include <common/geom/batch.h>
 
 #include <ed/archive.h>
 #include <ed/random.h>

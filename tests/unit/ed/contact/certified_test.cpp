@@ -1,7 +1,7 @@
 // The certified search itself: its normals, and its budget.
 
-#include <common/finder_ensemble.h>
-#include <common/finder_gap.h>
+#include <common/finder/ensemble.h>
+#include <common/finder/gap.h>
 
 #include <contact/certified.h>
 #include <contact/uniaxial_gap.h>

@@ -4,7 +4,7 @@
 #include <contact/swept_hull.h>
 #include <motion/checks.h>
 
-#include <common/finder_ensemble.h>
+#include <common/finder/ensemble.h>
 #include <common/message_of.h>
 
 #include <ed/motion.h>

@@ -1,25 +1,20 @@
 // Input that time_of_contact refuses, rescues and names.
 
 #include <ed/motion.h>
-#include <ed/random.h>
 #include <ed/time_of_contact.h>
 
-#include <common/contact_scenes.h>
+#include <common/finder/contact_scenes.h>
 
 #include <geom/distance.h>
 #include <geom/ellipsoid.h>
 #include <geom/pose.h>
 
 #include <Eigen/Core>
-#include <Eigen/Geometry>
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <cstdint>
 #include <functional>
 #include <limits>
-#include <numbers>
 #include <stdexcept>
 #include <string>
 
@@ -31,7 +26,6 @@ using ed::ContactResult;
 using ed::ContactStatus;
 using ed::Motion;
 using ed::time_of_contact;
-using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using geom::Ellipsoid;
 

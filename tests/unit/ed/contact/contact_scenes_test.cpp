@@ -4,9 +4,9 @@
 #include <ed/random.h>
 #include <ed/time_of_contact.h>
 
-#include <common/contact_scenes.h>
-#include <common/finder_ensemble.h>
-#include <common/finder_reference.h>
+#include <common/finder/contact_scenes.h>
+#include <common/finder/ensemble.h>
+#include <common/finder/reference.h>
 
 #include <geom/distance.h>
 #include <geom/ellipsoid.h>
@@ -19,11 +19,6 @@
 
 #include <cmath>
 #include <cstdint>
-#include <functional>
-#include <limits>
-#include <numbers>
-#include <stdexcept>
-#include <string>
 
 namespace {
 

@@ -1,6 +1,6 @@
 // time_of_contact for superellipsoids and ellipsoids without an axis of revolution: contacts that are known beforehand.
 
-#include "common/geom_random.h"
+#include "common/geom/random.h"
 
 #include <ed/system.h>
 #include <ed/time_of_contact.h>

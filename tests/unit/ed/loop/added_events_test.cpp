@@ -1,7 +1,7 @@
 // Single-body events and collision laws that the library does not have: each kind is one class, here as in a program.
 
-#include <common/ed_families.h>
-#include <common/ed_states.h>
+#include <common/ed/families.h>
+#include <common/ed/states.h>
 
 #include "loop/event_loop_impl.h"
 #include "loop/stall_impl.h"

@@ -1,6 +1,6 @@
 // The event loop where its public face does not lead: states with overlaps, which Simulation refuses at the start.
 
-#include <common/ed_states.h>
+#include <common/ed/states.h>
 
 #include "bodies/uniaxial.h"
 #include "loop/event_loop.h"

@@ -1,6 +1,6 @@
 // The parts of the event loop, each by itself.
 
-#include <common/ed_states.h>
+#include <common/ed/states.h>
 
 #include "base/periodic.h"
 #include "bodies/uniaxial.h"

@@ -1,8 +1,8 @@
 // Events that are prepared ahead: the run is the same, bit for bit, whatever the bodies and the lists.
 
-#include <common/ed_families.h>
-#include <common/ed_states.h>
-#include <common/geom_shapes.h>
+#include <common/ed/families.h>
+#include <common/ed/states.h>
+#include <common/geom/shapes.h>
 
 #include <ed/ed.h>
 

@@ -3,9 +3,9 @@
 
 #include "bodies/body_events.h"
 
-#include <common/ed_families.h>
-#include <common/ed_states.h>
-#include <common/finder_scale.h>
+#include <common/ed/families.h>
+#include <common/ed/states.h>
+#include <common/finder/scale.h>
 #include <common/message_of.h>
 
 #include <ed/archive.h>

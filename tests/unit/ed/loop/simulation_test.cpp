@@ -1,28 +1,21 @@
 // The event loop on cases solved by hand, and what it refuses.
 
-#include <common/ed_hash.h>
-#include <common/ed_states.h>
-#include <common/message_of.h>
-#include "common/ed_two_bodies.h"
+#include <common/ed/hash.h>
+#include <common/ed/states.h>
+#include "common/ed/two_bodies.h"
 
 #include <ed/ed.h>
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <limits>
-#include <stdexcept>
 #include <string>
-#include <vector>
 
 namespace {
 
 using ed_test::Inertia;
 using Eigen::Vector3d;
-using testing::HasSubstr;
 using two_bodies::sphere;
 using two_bodies::two_bodies;
 

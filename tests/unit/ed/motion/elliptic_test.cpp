@@ -4,7 +4,7 @@
 #include <base/sincos.h>
 #include <motion/elliptic.h>
 
-#include <common/finder_ensemble.h>
+#include <common/finder/ensemble.h>
 
 #include <ed/random.h>
 

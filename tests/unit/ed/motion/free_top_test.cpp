@@ -1,15 +1,10 @@
 #include <motion/free_top.h>
 
-#include <common/finder_ensemble.h>
-#include <common/free_tops.h>
-#include <common/top_reference.h>
+#include <common/finder/ensemble.h>
+#include <common/finder/free_tops.h>
+#include <common/finder/top_reference.h>
 
 #include <ed/random.h>
-
-#include <boost/math/constants/constants.hpp>
-#include <boost/math/special_functions/ellint_1.hpp>
-#include <boost/math/special_functions/ellint_3.hpp>
-#include <boost/math/special_functions/jacobi_elliptic.hpp>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -17,14 +12,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
 #include <map>
 #include <ostream>
 #include <string>
-#include <utility>
 
 namespace {
 

@@ -1,7 +1,7 @@
 #include <ed/impulse.h>
 #include <ed/random.h>
 
-#include <common/finder_ensemble.h>
+#include <common/finder/ensemble.h>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>

@@ -1,7 +1,7 @@
 #include <motion/axis_motion.h>
 #include <motion/checks.h>
 
-#include <common/finder_reference.h>
+#include <common/finder/reference.h>
 
 #include <ed/motion.h>
 #include <ed/random.h>

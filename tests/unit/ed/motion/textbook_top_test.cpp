@@ -2,9 +2,9 @@
 
 #include <motion/free_top.h>
 
-#include <common/finder_ensemble.h>
-#include <common/free_tops.h>
-#include <common/top_reference.h>
+#include <common/finder/ensemble.h>
+#include <common/finder/free_tops.h>
+#include <common/finder/top_reference.h>
 
 #include <ed/random.h>
 
@@ -20,22 +20,14 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
-#include <cstdint>
-#include <map>
-#include <ostream>
-#include <string>
 #include <utility>
 
 namespace {
 
 using ed::internal::FreeTop;
 using ed::internal::TopState;
-using ed::internal::TurnedAngles;
-using Eigen::Matrix3d;
 using Eigen::Vector3d;
-using finder_test::IntegratedTop;
 using finder_test::log_uniform;
 using free_tops::condition;
 using free_tops::rate_scale;

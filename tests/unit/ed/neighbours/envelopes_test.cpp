@@ -1,15 +1,14 @@
 // Envelopes: a body never leaves its envelope before exit_time says so, and no pair that could touch is kept
 // out of the lists. Both are sampled against the definition; that the samples would see a wrong bound is tested too.
 
-#include "base/periodic.h"
-#include "common/moving_spheroids.h"
+#include "common/finder/moving_spheroids.h"
 #include "motion/axis_motion.h"
 #include "neighbours/cell.h"
 #include "neighbours/dilated.h"
 #include "neighbours/oriented.h"
 
-#include <common/ed_states.h>
-#include <common/finder_ensemble.h>
+#include <common/ed/states.h>
+#include <common/finder/ensemble.h>
 
 #include <ed/random.h>
 
@@ -17,20 +16,16 @@
 #include <geom/kernel/uniaxial.h>
 
 #include <gtest/gtest.h>
-#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <vector>
 
 namespace {
 
 using ed::internal::AxisMotion;
-using ed::internal::BodyFrame;
 using CellEnvelopes = ed::internal::CellEnvelopes<ed::internal::UniaxialBodies>;
 using ed::internal::DilatedEnvelopes;
-using ed::internal::OrientedEnvelopes;
 using ed::internal::UniaxialInertia;
 using Eigen::Vector3d;
 using finder_test::log_uniform;

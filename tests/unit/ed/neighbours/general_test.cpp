@@ -6,9 +6,9 @@
 #include "bodies/general.h"
 #include "neighbours/oriented_slack.h"
 
-#include <common/ed_families.h>
-#include <common/finder_ensemble.h>
-#include <common/geom_shapes.h>
+#include <common/ed/families.h>
+#include <common/finder/ensemble.h>
+#include <common/geom/shapes.h>
 #include <common/message_of.h>
 
 #include <ed/ed.h>

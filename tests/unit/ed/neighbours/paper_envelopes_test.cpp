@@ -2,14 +2,14 @@
 // touch is left out of the lists.
 
 #include "base/periodic.h"
-#include "common/moving_spheroids.h"
+#include "common/finder/moving_spheroids.h"
 #include "motion/axis_motion.h"
 #include "neighbours/cell.h"
 #include "neighbours/dilated.h"
 #include "neighbours/oriented.h"
 
-#include <common/ed_states.h>
-#include <common/finder_ensemble.h>
+#include <common/ed/states.h>
+#include <common/finder/ensemble.h>
 
 #include <ed/random.h>
 
@@ -22,16 +22,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <vector>
 
 namespace {
 
 using ed::internal::AxisMotion;
-using ed::internal::BodyFrame;
 using CellEnvelopes = ed::internal::CellEnvelopes<ed::internal::UniaxialBodies>;
-using ed::internal::DilatedEnvelopes;
 using ed::internal::OrientedEnvelopes;
-using ed::internal::UniaxialInertia;
 using Eigen::Vector3d;
 using finder_test::log_uniform;
 using moving_spheroids::axis_at;

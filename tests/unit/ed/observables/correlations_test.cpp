@@ -1,8 +1,8 @@
 // Time correlations and averages over frames where they are known exactly, and against a recomputation from stored
 // frames.
 
-#include <common/ed_observed.h>
-#include <common/ed_states.h>
+#include <common/ed/observed.h>
+#include <common/ed/states.h>
 
 #include <ed/ed.h>
 

@@ -1,7 +1,7 @@
 // When a run counts as equilibrated: motions with known relaxation.
 
-#include <common/ed_observed.h>
-#include <common/ed_states.h>
+#include <common/ed/observed.h>
+#include <common/ed/states.h>
 #include <common/message_of.h>
 
 #include <ed/ed.h>

@@ -1,7 +1,7 @@
 // Observables of groups of bodies.
 
-#include <common/ed_free_bodies.h>
-#include <common/ed_states.h>
+#include <common/ed/free_bodies.h>
+#include <common/ed/states.h>
 
 #include <ed/ed.h>
 

@@ -1,18 +1,15 @@
 // Observables on motion whose correlations are known exactly: bodies too far apart to meet. And what a run that is too
 // short, stopped or very long must give.
 
-#include <common/ed_free_bodies.h>
-#include <common/ed_states.h>
+#include <common/ed/free_bodies.h>
+#include <common/ed/states.h>
 
 #include <ed/ed.h>
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
-#include <stdexcept>
 #include <vector>
 
 namespace {

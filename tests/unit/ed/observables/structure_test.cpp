@@ -1,7 +1,7 @@
 // g(r), g2(r) and S(q) of states whose structure is known: ideal gases, lattices, pairs.
 
-#include <common/ed_observed.h>
-#include <common/ed_states.h>
+#include <common/ed/observed.h>
+#include <common/ed/states.h>
 
 #include <observables/structure.h>
 

@@ -1,13 +1,12 @@
 // Starts of many bodies: a compressed box that is repeated, where the species allow it, and the order of the bodies.
 
-#include <common/ed_start_checks.h>
-#include <common/ed_states.h>
+#include <common/ed/start_checks.h>
+#include <common/ed/states.h>
 
 #include <ed/ed.h>
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <vector>

@@ -1,9 +1,9 @@
 // Starts on a lattice: which numbers and packing fractions hold, orders, mixtures; and what is refused.
 
-#include <common/ed_hash.h>
-#include <common/ed_start_checks.h>
-#include <common/ed_states.h>
-#include <common/geom_shapes.h>
+#include <common/ed/hash.h>
+#include <common/ed/start_checks.h>
+#include <common/ed/states.h>
+#include <common/geom/shapes.h>
 #include <common/message_of.h>
 
 #include <ed/ed.h>

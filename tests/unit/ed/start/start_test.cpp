@@ -1,8 +1,8 @@
 // Starts: no overlap, exact packing fraction, temperatures and momentum; and what cannot be started is refused.
 
-#include <common/ed_hash.h>
-#include <common/ed_start_checks.h>
-#include <common/ed_states.h>
+#include <common/ed/hash.h>
+#include <common/ed/start_checks.h>
+#include <common/ed/states.h>
 #include <common/message_of.h>
 
 #include <ed/ed.h>
@@ -17,7 +17,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <ostream>
 #include <stdexcept>
 #include <string>
 #include <vector>

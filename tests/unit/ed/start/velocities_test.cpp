@@ -1,8 +1,8 @@
 // Velocities of starts: momentum zero, and each species at kT = 1 on its own degrees of freedom, whatever its masses.
 
-#include <common/ed_hash.h>
-#include <common/ed_start_checks.h>
-#include <common/ed_states.h>
+#include <common/ed/hash.h>
+#include <common/ed/start_checks.h>
+#include <common/ed/states.h>
 #include <common/message_of.h>
 
 #include <ed/ed.h>

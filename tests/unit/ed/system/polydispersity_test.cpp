@@ -1,6 +1,6 @@
 // Sizes: the moments that the header promises, what a seed does, bodies of the same density.
 
-#include <common/ed_states.h>
+#include <common/ed/states.h>
 
 #include <ed/polydispersity.h>
 

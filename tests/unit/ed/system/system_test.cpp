@@ -1,6 +1,6 @@
 // Species, boxes, kinetic energies, and the audit that every claim of "no overlap" rests on.
 
-#include <common/ed_states.h>
+#include <common/ed/states.h>
 #include <common/message_of.h>
 
 #include <ed/ed.h>

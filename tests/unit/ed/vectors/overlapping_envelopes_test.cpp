@@ -5,10 +5,10 @@
 #include "neighbours/dilated.h"
 #include "vectors/choose.h"
 
-#include <common/ed_states.h>
-#include <common/ed_uniaxial_bodies.h>
+#include <common/ed/states.h>
+#include <common/ed/uniaxial_bodies.h>
 #include <common/full_form.h>
-#include <common/geom_batch.h>
+#include <common/geom/batch.h>
 
 #include <ed/ed.h>
 

@@ -1,7 +1,7 @@
 /// distance_batch(): sizes of the spans, starts, instruction sets, and the cases that the kernels leave to distance().
 
-#include "common/geom_batch.h"
-#include "common/geom_manufactured.h"
+#include "common/geom/batch.h"
+#include "common/geom/manufactured.h"
 #include "common/message_of.h"
 #include "common/special_values.h"
 

@@ -1,6 +1,6 @@
 // Two bodies at once: the exponential and the logarithm, and support functions against those of one body.
 
-#include "common/geom_random.h"
+#include "common/geom/random.h"
 
 #include <geom/kernel/norm_bodies.h>
 

@@ -2,7 +2,7 @@
 
 /// Pairs of bodies whose distance is known by construction.
 
-#include "common/geom_random.h"
+#include "common/geom/random.h"
 
 #include <geom/geom.h>
 

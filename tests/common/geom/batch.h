@@ -2,7 +2,7 @@
 
 /// Common parts of the tests of distance_batch: the instruction sets to test, and the comparison with `distance`.
 
-#include "common/geom_expect.h"
+#include "common/geom/expect.h"
 
 #include <geom/geom.h>
 

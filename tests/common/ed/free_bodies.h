@@ -2,7 +2,7 @@
 
 /// Bodies in free flight, whose correlations are known, and their observables.
 
-#include <common/ed_states.h>
+#include <common/ed/states.h>
 
 #include <ed/ed.h>
 

@@ -2,7 +2,7 @@
 
 /// Run in the same phases as the program's: start, equilibration, production with observables.
 
-#include <common/ed_states.h>
+#include <common/ed/states.h>
 
 #include <ed/ed.h>
 

@@ -2,8 +2,8 @@
 
 /// User-defined body given by an equation, and pairs of such bodies whose distance is known by construction.
 
-#include "common/geom_manufactured.h"
-#include "common/geom_random.h"
+#include "common/geom/manufactured.h"
+#include "common/geom/random.h"
 
 #include <geom/geom.h>
 

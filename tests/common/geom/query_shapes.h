@@ -2,7 +2,7 @@
 
 /// Shapes that every query is tested with.
 
-#include "common/geom_shapes.h"
+#include "common/geom/shapes.h"
 
 #include <geom/geom.h>
 

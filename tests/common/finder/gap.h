@@ -2,7 +2,7 @@
 
 /// Adapter of the finder under test for a MovingPair.
 
-#include <common/finder_ensemble.h>
+#include <common/finder/ensemble.h>
 
 #include <contact/certified.h>
 #include <contact/uniaxial_gap.h>

@@ -2,7 +2,7 @@
 
 /// Ellipsoids of revolution in motion, for the tests of envelopes.
 
-#include <common/finder_ensemble.h>
+#include <common/finder/ensemble.h>
 
 #include <ed/random.h>
 

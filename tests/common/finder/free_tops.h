@@ -2,8 +2,8 @@
 
 /// Free bodies to start with, and comparison with their integrated equations of motion.
 
-#include <common/finder_ensemble.h>
-#include <common/top_reference.h>
+#include <common/finder/ensemble.h>
+#include <common/finder/top_reference.h>
 
 #include <ed/random.h>
 
@@ -13,7 +13,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace free_tops {
 

@@ -2,7 +2,7 @@
 
 /// Pairs of bodies in motion as they occur in a dense fluid, for tests of the contact finder.
 
-#include <common/finder_reference.h>
+#include <common/finder/reference.h>
 
 #include <ed/random.h>
 #include <ed/simulation.h>

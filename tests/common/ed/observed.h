@@ -2,7 +2,7 @@
 
 /// Runs with their observables, for the tests.
 
-#include <common/ed_states.h>
+#include <common/ed/states.h>
 
 #include <ed/ed.h>
 

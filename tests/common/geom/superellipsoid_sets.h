@@ -3,7 +3,7 @@
 /// Pairs of superellipsoids in five kinds of relative orientation, three of them where flat faces, edges and
 /// vertices make a distance hard.
 
-#include "common/geom_random.h"
+#include "common/geom/random.h"
 
 #include <geom/geom.h>
 

@@ -2,7 +2,7 @@
 
 /// Rows of the table of docs/accuracy.md: pairs of shapes, and gaps.
 
-#include "common/geom_random.h"
+#include "common/geom/random.h"
 
 #include <geom/geom.h>
 
