@@ -8,6 +8,22 @@
 namespace hardbody {
 namespace {
 
+struct KindProperties {
+  const char* name;
+  bool has_exponents;
+  bool has_equivalent_axes;
+};
+
+KindProperties properties_of(ShapeKind kind) {
+  switch (kind) {
+    case ShapeKind::ellipsoid:
+      return {"ellipsoid", false, true};
+    case ShapeKind::superellipsoid:
+      return {"superellipsoid", true, false};
+  }
+  throw std::logic_error("an unknown kind of shape");
+}
+
 ShapeNumbers numbers(const geom::Ellipsoid& shape) {
   return {ShapeKind::ellipsoid, shape.semi_axes()};
 }
@@ -23,7 +39,7 @@ ShapeNumbers numbers(const ed::CustomShape& /*shape*/) {
 }  // namespace
 
 const char* to_string(ShapeKind kind) {
-  return kind == ShapeKind::ellipsoid ? "ellipsoid" : "superellipsoid";
+  return properties_of(kind).name;
 }
 
 std::optional<ShapeKind> find_shape_kind(std::string_view name) {
@@ -32,13 +48,36 @@ std::optional<ShapeKind> find_shape_kind(std::string_view name) {
   return kind == kShapeKinds.end() ? std::nullopt : std::optional(*kind);
 }
 
+bool has_exponents(ShapeKind kind) {
+  return properties_of(kind).has_exponents;
+}
+
+bool has_equivalent_axes(ShapeKind kind) {
+  return properties_of(kind).has_equivalent_axes;
+}
+
 ShapeNumbers numbers_of(const ed::BodyShape& shape) {
   return std::visit([](const auto& s) { return numbers(s); }, shape);
 }
 
+Eigen::Vector2d superellipsoid_exponents(const ed::BodyShape& shape) {
+  const ShapeNumbers numbers = numbers_of(shape);
+  switch (numbers.kind) {
+    case ShapeKind::ellipsoid:
+    case ShapeKind::superellipsoid:
+      return numbers.exponents;
+  }
+  throw std::logic_error("a shape that is no superellipsoid");
+}
+
 geom::Shape make_shape(const ShapeNumbers& numbers) {
-  if (numbers.kind == ShapeKind::ellipsoid) return geom::Ellipsoid(numbers.semi_axes);
-  return geom::Superellipsoid(numbers.semi_axes, numbers.exponents.x(), numbers.exponents.y());
+  switch (numbers.kind) {
+    case ShapeKind::ellipsoid:
+      return geom::Ellipsoid(numbers.semi_axes);
+    case ShapeKind::superellipsoid:
+      return geom::Superellipsoid(numbers.semi_axes, numbers.exponents.x(), numbers.exponents.y());
+  }
+  throw std::logic_error("an unknown kind of shape");
 }
 
 ed::BodyShape make_body_shape(const ShapeNumbers& numbers) {

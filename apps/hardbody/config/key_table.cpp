@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -24,7 +25,7 @@ constexpr double kLongestTime = 1e9;               ///< time in ed::time_unit of
 constexpr double kLeastCap = 1;
 constexpr double kLargestWaveNumber = 1e6;
 constexpr double kLeastPacking = 1e-9;
-/// Packing fraction of a lattice or a start from a file; the number of bodies of a lattice may allow less.
+/// Largest packing fraction of a lattice or a start from a file; the number of bodies of a lattice may allow less.
 constexpr double kDensestLattice = 0.9999;
 constexpr double kThinnest = 1e-2;      ///< least ratio of two semi-axes; the largest is the inverse
 constexpr double kShortestAxis = 1e-3;  ///< semi-axis where semi-axes are taken literally; the longest is the inverse
@@ -133,11 +134,11 @@ Taken take_exponents(const Value& value, const Place&, Eigen::Vector2d& result) 
       fmt::format("two numbers [e1, e2], each from {:g} to {:g}", ed::kMinExponentInMotion, ed::kMaxExponentInMotion)};
 }
 
-constexpr auto is_ellipsoid = [](const Place& at) { return at.species->shape.kind == ShapeKind::ellipsoid; };
-constexpr auto has_exponents = [](const Place& at) { return !is_ellipsoid(at); };
+constexpr auto with_exponents = [](const Place& at) { return has_exponents(at.species->shape.kind); };
+constexpr auto without_exponents = [](const Place& at) { return !with_exponents(at); };
 
 Rule exponents_rule() {
-  return unless(is_ellipsoid, "no exponents of an ellipsoid, or kind = \"superellipsoid\"",
+  return unless(without_exponents, "no exponents of an ellipsoid, or kind = \"superellipsoid\"",
                 bound(&ShapeConfig::exponents, take_exponents));
 }
 
@@ -185,7 +186,7 @@ std::string inertia_comment(const Place& at) {
 
 std::string axes_comment(const Place& at) {
   const Eigen::Vector3d used = ed::half_extents(at.species->body.shape);
-  const bool last = is_ellipsoid(at) && at.species->shape.true_aspect_ratio();
+  const bool last = has_equivalent_axes(at.species->shape.kind) && at.species->shape.true_aspect_ratio();
   return fmt::format("in any unit: only their ratios count;\nin use, l = 1{}: {:.6g}, {:.6g}, {:.6g}",
                      last ? " and the axis of revolution last" : "", used.x(), used.y(), used.z());
 }
@@ -193,11 +194,11 @@ std::string axes_comment(const Place& at) {
 /// Returns the keys that [shape] and [[species]] share.
 std::vector<Key> form_keys(const std::string& section, const char* usual_kind, Comment ratio, Comment axes) {
   return {
-      {section + ".kind", usual_kind, choice(&ShapeConfig::kind, {ShapeKind::ellipsoid, ShapeKind::superellipsoid}),
+      {section + ".kind", usual_kind, choice(&ShapeConfig::kind, std::vector(kShapeKinds.begin(), kShapeKinds.end())),
        kKindComment},
       {section + ".aspect_ratio", "", number(&ShapeConfig::aspect_ratio, kRatios, kRatioMeaning), std::move(ratio)},
       {section + ".semi_axes", "", bound(&ShapeConfig::semi_axes, take_semi_axes), std::move(axes)},
-      {section + ".exponents", "", exponents_rule(), kExponentsComment, has_exponents},
+      {section + ".exponents", "", exponents_rule(), kExponentsComment, with_exponents},
   };
 }
 

@@ -23,7 +23,8 @@ constexpr double kFractionRounding = 1e-6;
 
 // ---- Shape
 
-/// Returns the index of the axis of revolution in [a, b, c] (of an ellipsoid); 2 for a sphere; -1: there is none.
+/// Returns the index of the axis of revolution in [a, b, c] (of a shape with equivalent axes); 2 for a sphere; -1:
+/// there is none.
 int axis_of_revolution(const Vector3d& axes) {
   if (axes.x() == axes.y()) return 2;
   if (axes.y() == axes.z()) return 0;
@@ -33,7 +34,7 @@ int axis_of_revolution(const Vector3d& axes) {
 /// Returns that index for the body that the user means.
 int axis_of_revolution(const ShapeConfig& shape) {
   if (!shape.semi_axes) return 2;
-  if (shape.kind == ShapeKind::superellipsoid) return shape.semi_axes->x() == shape.semi_axes->y() ? 2 : -1;
+  if (!has_equivalent_axes(shape.kind)) return shape.semi_axes->x() == shape.semi_axes->y() ? 2 : -1;
   return axis_of_revolution(*shape.semi_axes);
 }
 
@@ -61,7 +62,7 @@ void check_one_of_lengths(const TomlDocument& document, const std::string& secti
 
 /// Returns the index of the axis in `semi_axes` that becomes body z; -1: all stay as they are given.
 int axis_moved_last(const ShapeConfig& shape) {
-  return shape.kind == ShapeKind::ellipsoid ? axis_of_revolution(shape) : -1;
+  return has_equivalent_axes(shape.kind) ? axis_of_revolution(shape) : -1;
 }
 
 /// Returns the semi-axes in the program's units, an ellipsoid's axis of revolution last.
@@ -226,7 +227,8 @@ void read_one(const TomlDocument& document, const std::string& section, Config& 
   check_one_of_lengths(document, section, config.mixture);
   read_section(document, section, target);
   if (has_exponents(species.shape.kind) && document.find(section + ".exponents") == nullptr) {
-    throw missing(document.where_of(section), section + ".exponents", target, " of a superellipsoid");
+    throw missing(document.where_of(section), section + ".exponents", target,
+                  fmt::format(" of a {}", to_string(species.shape.kind)));
   }
   if (species.sizes && document.find(section + ".width") == nullptr) {
     throw missing(document.find(section + ".sizes")->where, section + ".width", target);

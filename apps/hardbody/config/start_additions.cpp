@@ -17,12 +17,9 @@
 #include <memory>
 #include <string_view>
 #include <utility>
-#include <variant>
 
 namespace hardbody {
 namespace {
-
-using Eigen::Vector3d;
 
 /// Species of a file that the config is given the sections of; bodies of more sizes than that are one species.
 constexpr std::size_t kMostSpecies = 64;

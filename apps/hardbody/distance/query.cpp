@@ -62,11 +62,11 @@ const SeedSource* find_seed(std::string_view name) {
   return find_by(sources, &SeedSource::name, name);
 }
 
-/// Returns the value of a key whose words `find` knows; the first value of its type without that key.
+/// Returns the value of a key whose words `find` knows; `usual` without that key.
 template <class Choice>
 Choice read_choice(const JsonMember& query, const char* key, std::optional<Choice> (*find)(std::string_view),
-                   const char* accepted) {
-  if (!query.has(key)) return Choice{};
+                   const char* accepted, Choice usual) {
+  if (!query.has(key)) return usual;
   const JsonMember member = query.at(key, accepted);
   const std::optional<Choice> choice = find(member.text(accepted));
   if (!choice) throw member.bad(accepted);
@@ -173,9 +173,10 @@ DistanceQuery parse_query(std::string_view line, std::string& id) {
   const JsonMember root{&document, ""};
   if (root.has("id")) id = document.at("id").dump();
   root.allow(kQueryKeys);
-  const Method method = read_choice(root, "method", find_method, kMethods);
+  const Method method = read_choice(root, "method", find_method, kMethods, Method::dual);
   const SeedSource& seed = read_seed(root);
-  const auto penetration = read_choice(root, "penetration", find_penetration, kPenetrations);
+  const geom::Penetration penetration =
+      read_choice(root, "penetration", find_penetration, kPenetrations, geom::Penetration::global);
   check_options(method, seed, root.has("penetration"));
   std::vector<std::string> notices;
   const Body a = read_body(root.at("a", "a body"), notices);

@@ -39,8 +39,7 @@ class StrictObjects {
   std::vector<std::set<std::string>> keys_;  ///< keys of the objects that are open
 };
 
-constexpr std::string_view kShapeKeys[] = {"kind", "semi_axes"};
-constexpr std::string_view kKeysWithExponents[] = {"kind", "semi_axes", "exponents"};
+constexpr std::string_view kShapeKeys[] = {"kind", "semi_axes", "exponents"};  ///< the last: has_exponents
 
 }  // namespace
 
@@ -132,11 +131,7 @@ geom::Shape read_shape(const JsonMember& shape) {
   const std::optional<ShapeKind> found =
       kind.json->is_string() ? find_shape_kind(kind.json->get_ref<const std::string&>()) : std::nullopt;
   if (!found) throw kind.bad(kAccepted);
-  if (has_exponents(*found)) {
-    shape.allow(kKeysWithExponents);
-  } else {
-    shape.allow(kShapeKeys);
-  }
+  shape.allow(std::span(kShapeKeys).first(has_exponents(*found) ? 3 : 2));
   return read_shape(shape, *found);
 }
 
@@ -155,7 +150,8 @@ geom::Pose read_orientation(const JsonMember& orientation, const Eigen::Vector3d
 }
 
 std::string normalized_text(std::string_view name, double length) {
-  const int digits = std::abs(length - 1) > kFrameRounding ? 6 : 9;
+  constexpr double kShownBySix = 1e-5;  // difference from 1 that six digits show
+  const int digits = std::abs(length - 1) > kShownBySix ? 6 : 9;
   return fmt::format("{} is a quaternion of length {:.{}g}: normalized", name, length, digits);
 }
 

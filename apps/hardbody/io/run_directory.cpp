@@ -134,6 +134,14 @@ void check_run_directory(const fs::path& directory, const char* kinds) {
                                kConfigFile, kinds));
 }
 
+void check_length(const fs::path& path, std::optional<std::uint64_t> at_checkpoint) {
+  std::error_code error;
+  const std::uintmax_t bytes = fs::file_size(path, error);
+  if (!error && at_checkpoint && bytes >= *at_checkpoint) return;
+  throw InputError(fmt::format("{}: has {} bytes, {} when the checkpoint was written; accepted: the file of the run",
+                               path.string(), error ? 0 : bytes, at_checkpoint.value_or(0)));
+}
+
 RunDirectory RunDirectory::open(const fs::path& path) {
   check_run_directory(path);
   return RunDirectory(path);

@@ -3,6 +3,7 @@
 #include "io/text_file.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <optional>
@@ -38,6 +39,9 @@ std::filesystem::path directory_for(const std::optional<std::string>& out, const
 
 /// Checks that the directory of a run is there, with its config; `kinds` ends the message. Throws InputError.
 void check_run_directory(const std::filesystem::path& directory, const char* kinds = "a run");
+
+/// Checks that a file of a run is at least as long as its checkpoint says; nullopt: it says nothing. Throws InputError.
+void check_length(const std::filesystem::path& path, std::optional<std::uint64_t> at_checkpoint);
 
 enum class Overwrite { refused, allowed };
 

@@ -199,14 +199,6 @@ void overwrite_at(const fs::path& path, std::uint64_t position, std::string_view
   if (!good) fail_to_write(path, errno);
 }
 
-void check_length(const fs::path& path, std::optional<std::uint64_t> at_checkpoint) {
-  std::error_code error;
-  const std::uintmax_t bytes = fs::file_size(path, error);
-  if (!error && at_checkpoint && bytes >= *at_checkpoint) return;
-  throw InputError(fmt::format("{}: has {} bytes, {} when the checkpoint was written; accepted: the file of the run",
-                               path.string(), error ? 0 : bytes, at_checkpoint.value_or(0)));
-}
-
 void flush_file(const fs::path& path) {
   overwrite_at(path, 0, "");
 }

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -59,9 +58,6 @@ void cut_off(const std::filesystem::path& path, std::uint64_t position);
 /// Replaces bytes within a file; content beyond its end extends it. Throws WriteError.
 void overwrite_at(const std::filesystem::path& path, std::uint64_t position, std::string_view content,
                   Flush flush = Flush::now);
-
-/// Checks that a file of a run is at least as long as its checkpoint says; nullopt: it says nothing. Throws InputError.
-void check_length(const std::filesystem::path& path, std::optional<std::uint64_t> at_checkpoint);
 
 /// Flushes to the disk what was written with Flush::later. Throws WriteError.
 void flush_file(const std::filesystem::path& path);

@@ -2,7 +2,6 @@
 
 #include "base/find.h"
 
-#include <algorithm>
 #include <array>
 #include <utility>
 

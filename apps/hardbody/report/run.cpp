@@ -11,11 +11,9 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <numeric>
 #include <utility>
-#include <variant>
 
 namespace hardbody {
 namespace {
@@ -175,24 +173,20 @@ Remark unfinished(const std::optional<Seen>& seen) {
                       seen->view.frames.back().time)};
 }
 
-/// Returns "superballs, p = 4".
-std::string with_exponents_text(const ShapeNumbers& shape) {
-  const auto& [kind, a, e] = shape;
-  if (a.x() == a.y() && a.y() == a.z() && e.x() == e.y()) return fmt::format("superballs, p = {:.4g}", 2 / e.x());
-  const double least = a.minCoeff();
-  return fmt::format("{}s {:.4g} : {:.4g} : {:.4g}, exponents {:g} and {:g}", to_string(kind), a.x() / least,
-                     a.y() / least, a.z() / least, e.x(), e.y());
-}
-
-/// Returns "ellipsoids, X0 = 3".
+/// Returns "ellipsoids, X0 = 3", "superballs, p = 4".
 std::string bodies_title(const SpeciesConfig& species) {
-  const ShapeNumbers numbers = numbers_of(species.body.shape);
-  if (has_exponents(numbers.kind)) return with_exponents_text(numbers);
-  const std::optional<double> ratio = species.shape.true_aspect_ratio();
-  if (ratio) return *ratio == 1 ? std::string("spheres") : fmt::format("ellipsoids, X₀ = {:.4g}", *ratio);
-  const Eigen::Vector3d& a = numbers.semi_axes;
+  const auto [kind, a, e] = numbers_of(species.body.shape);
+  const std::string name = fmt::format("{}s", to_string(kind));
   const double least = a.minCoeff();
-  return fmt::format("ellipsoids {:.4g} : {:.4g} : {:.4g}", a.x() / least, a.y() / least, a.z() / least);
+  const std::string ratios = fmt::format("{:.4g} : {:.4g} : {:.4g}", a.x() / least, a.y() / least, a.z() / least);
+  if (has_exponents(kind)) {
+    const bool superballs = a.x() == a.y() && a.y() == a.z() && e.x() == e.y();
+    return superballs ? fmt::format("superballs, p = {:.4g}", 2 / e.x())
+                      : fmt::format("{} {}, exponents {:g} and {:g}", name, ratios, e.x(), e.y());
+  }
+  const std::optional<double> ratio = species.shape.true_aspect_ratio();
+  if (!ratio) return fmt::format("{} {}", name, ratios);
+  return *ratio == 1 ? std::string("spheres") : fmt::format("{}, X₀ = {:.4g}", name, *ratio);
 }
 
 std::vector<SpeciesReport> species_of(const Config& config, const nlohmann::json& summary) {
@@ -216,7 +210,7 @@ const char* to_string(Remark::Kind kind) {
 const nlohmann::json& member(const nlohmann::json& json, const char* key) {
   static const nlohmann::json kNothing;
   const auto place = json.find(key);
-  return json.is_object() && place != json.end() ? *place : kNothing;
+  return place != json.end() ? *place : kNothing;
 }
 
 std::string name_of(const fs::path& directory) {

@@ -1,9 +1,8 @@
 #include "base/find.h"
+#include "base/version.h"
 #include "registry/curves.h"
 #include "report/page.h"
 #include "report/svg.h"
-
-#include "base/version.h"
 
 #include <fmt/format.h>
 
@@ -26,7 +25,7 @@ std::vector<std::string> columns_of(const CurvePlot& wanted, const Curves& curve
 /// Returns "q l = 7.05" for F_self at a wave number of the run; else the column's name.
 std::string series_label(const RunReport& run, const CurvePlot& plot, const std::string& column) {
   const nlohmann::json& numbers = member(run.summary, "wave_numbers");
-  for (std::size_t k = 0; k < numbers.size(); ++k) {
+  for (std::size_t k = 0; numbers.is_array() && k < numbers.size(); ++k) {
     if (!numbers[k].is_number() || column != fmt::format("{}_q{}", plot.lines[0].column, k + 1)) continue;
     return fmt::format("q l = {:.3g}", numbers[k].get<double>());
   }

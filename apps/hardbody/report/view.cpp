@@ -55,7 +55,7 @@ std::vector<std::size_t> frames_shown(std::size_t all, std::size_t most) {
 /// Returns the shape of a body; a type of unknown shape is shown as a sphere.
 ViewShape shape_of(const Frame& frame, std::size_t body) {
   const FrameType& type = frame.types.at(frame.bodies[body].type);
-  return type.shape ? ViewShape{ed::half_extents(*type.shape), numbers_of(*type.shape).exponents}
+  return type.shape ? ViewShape{ed::half_extents(*type.shape), superellipsoid_exponents(*type.shape)}
                     : ViewShape{{1, 1, 1}, {1, 1}};
 }
 

@@ -1,5 +1,7 @@
 #include "run/record.h"
 
+#include "registry/observables.h"
+
 #include <fmt/format.h>
 
 #include <cmath>

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "config/config.h"
-#include "registry/observables.h"
 
 #include <ed/equilibration.h>
 #include <ed/observables.h>
@@ -15,6 +14,8 @@
 #include <vector>
 
 namespace hardbody {
+
+struct Part;
 
 /// Results of the equilibration.
 struct Equilibration {

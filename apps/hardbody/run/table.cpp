@@ -2,6 +2,7 @@
 
 #include "base/shapes.h"
 #include "base/version.h"
+#include "registry/observables.h"
 #include "run/missing.h"
 
 #include <fmt/format.h>
@@ -10,7 +11,6 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <variant>
 
 namespace hardbody {
 namespace {
@@ -54,12 +54,13 @@ std::string axes_text(const ed::BodyShape& shape) {
 /// "hard ellipsoids, X0 = 3 (semi-axes ..)"
 std::string bodies_text(const SpeciesConfig& species) {
   const ed::BodyShape& shape = species.body.shape;
-  if (const auto [kind, a, e] = numbers_of(shape); has_exponents(kind)) {
+  const auto [kind, a, e] = numbers_of(shape);
+  if (has_exponents(kind)) {
     return fmt::format("hard {}s ({}, exponents {:g}, {:g})", to_string(kind), axes_text(shape), e.x(), e.y());
   }
   const std::optional<double> ratio = species.shape.true_aspect_ratio();
-  if (ratio) return fmt::format("hard ellipsoids, X0 = {:g} ({})", *ratio, axes_text(shape));
-  return fmt::format("hard ellipsoids ({})", axes_text(shape));
+  if (ratio) return fmt::format("hard {}s, X0 = {:g} ({})", to_string(kind), *ratio, axes_text(shape));
+  return fmt::format("hard {}s ({})", to_string(kind), axes_text(shape));
 }
 
 std::string species_text(const SpeciesConfig& species, std::size_t index) {

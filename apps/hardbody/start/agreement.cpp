@@ -1,7 +1,6 @@
 #include "start/agreement.h"
 
 #include "base/shapes.h"
-#include "trajectory/frame.h"
 
 #include <cmath>
 

@@ -26,15 +26,14 @@ constexpr double kMostMending = 1.1;
 /// Returns the orientation of the config's body axes (the axis of revolution last) in the file's body axes; nullopt if
 /// the two shapes are different.
 std::optional<Matrix3d> axes_in_file(const ed::BodyShape& file, const ed::BodyShape& config) {
-  const ShapeNumbers from = numbers_of(file);
-  const ShapeNumbers to = numbers_of(config);
-  if (!((from.exponents - to.exponents).cwiseAbs().maxCoeff() <= kSameLength)) return std::nullopt;
-  const Vector3d& wanted = to.semi_axes;
-  const bool free = to.kind == ShapeKind::ellipsoid;  // an ellipsoid's axes may be in any order
-  for (int shift = 0; shift < (free ? 3 : 1); ++shift) {
+  const Eigen::Vector2d apart = superellipsoid_exponents(file) - superellipsoid_exponents(config);
+  if (!(apart.cwiseAbs().maxCoeff() <= kSameLength)) return std::nullopt;
+  const auto [kind, wanted, exponents] = numbers_of(config);
+  const Vector3d given = numbers_of(file).semi_axes;
+  for (int shift = 0; shift < (has_equivalent_axes(kind) ? 3 : 1); ++shift) {
     Matrix3d axes;
     for (int k = 0; k < 3; ++k) axes.col(k) = Vector3d::Unit((k + shift) % 3);
-    const Vector3d turned = axes.transpose() * from.semi_axes;
+    const Vector3d turned = axes.transpose() * given;
     if (((turned - wanted).cwiseQuotient(wanted)).cwiseAbs().maxCoeff() <= kSameLength) return axes;
   }
   return std::nullopt;

@@ -1,6 +1,7 @@
 #include "trajectory/stored_trajectory.h"
 
 #include "base/errors.h"
+#include "base/find.h"
 #include "base/shapes.h"
 #include "io/text_file.h"
 #include "trajectory/unwrapping.h"
@@ -31,9 +32,8 @@ class Notices {
   void add(const std::vector<std::string>& lines, std::uint64_t frame) {
     for (const std::string& line : lines) {
       const std::string about = line.substr(0, line.find(':'));
-      const auto same = [&](const Notice& n) { return n.about == about; };
-      const auto found = std::find_if(list_.begin(), list_.end(), same);
-      if (found == list_.end()) {
+      Notice* found = find_by(list_, &Notice::about, about);
+      if (found == nullptr) {
         list_.push_back({about, line, frame, 1});
       } else {
         ++found->frames;
@@ -75,13 +75,6 @@ std::optional<int> axis_of(const Frame& frame, const FrameBody& body) {
   const std::optional<ed::BodyShape>& shape = frame.types[body.type].shape;
   const std::optional<int> axis = shape ? ed::symmetry_axis(*shape) : std::nullopt;
   return axis && frame.exact ? ed::symmetry_axis(frame.exact->species[body.type]) : axis;
-}
-
-/// Returns the body with this id; nullptr if there is none.
-const FrameBody* find_body(const Frame& frame, double id) {
-  const auto found =
-      std::find_if(frame.bodies.begin(), frame.bodies.end(), [&](const FrameBody& b) { return b.id == id; });
-  return found == frame.bodies.end() ? nullptr : &*found;
 }
 
 class Reading {
@@ -195,8 +188,8 @@ void Reading::check_body(const Frame& frame, std::uint64_t k, std::size_t n) con
   };
   if (frame.ids && body.id != before.id) {
     // Bodies are sorted by type first: one of another type than before stands elsewhere.
-    const FrameBody* now = find_body(frame, before.id);
-    const FrameBody* then = find_body(first_, body.id);
+    const FrameBody* now = find_by(frame.bodies, &FrameBody::id, before.id);
+    const FrameBody* then = find_by(first_.bodies, &FrameBody::id, body.id);
     if (now != nullptr && now->group != before.group) {
       throw type_changed(fmt::format("body {:.17g}", now->id), frame.types[now->type], type_before);
     }

@@ -159,8 +159,7 @@ void FrameReader::read_diameters(Frame& frame) const {
   if (diameter.empty()) return;
   if (file_.find(0, kNameTexts[kOrientation]) != nullptr || file_.stored_later(kNameTexts[kOrientation])) {
     frame.notices.emplace_back(
-        "particles/diameter: not used, because bodies with orientations are not spheres; shapes are read "
-        "from "
+        "particles/diameter: not used, because bodies with orientations are not spheres; shapes are read from "
         "particles/type_shapes");
     return;
   }

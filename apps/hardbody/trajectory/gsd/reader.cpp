@@ -50,7 +50,7 @@ void check_unedited(const Frame& frame, const ed::System& system, const std::str
         name, k, what));
   };
   if (!frame.tilt.isZero(0)) refuse("configuration/box, which is tilted,");
-  if (!((frame.box - Vector3d::Constant(system.box)).norm() <= 2 * kSingle * system.box)) refuse("configuration/box");
+  if (!((frame.box - Vector3d::Constant(system.box)).norm() <= 2 * kSingle * system.box)) refuse(kNameTexts[kBox]);
   for (std::size_t t = 0; t < system.species.size() && t < frame.types.size(); ++t) {
     const auto& shape = frame.types[t].shape;
     const bool same = !shape || same_shape(*shape, system.species[t].shape, kSingle, kSingle);

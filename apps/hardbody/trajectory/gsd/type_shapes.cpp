@@ -8,7 +8,6 @@
 
 #include <cmath>
 #include <numbers>
-#include <variant>
 #include <vector>
 
 namespace hardbody {
@@ -67,8 +66,13 @@ double positive(const JsonMember& shape, const char* key) {
 std::string type_shape_json(const std::optional<ed::BodyShape>& shape, std::size_t types) {
   if (!shape) return "{}";
   const ShapeNumbers numbers = numbers_of(*shape);
-  if (numbers.kind == ShapeKind::ellipsoid) return ellipsoid_json(numbers.semi_axes);
-  return polyhedron_json(numbers, types <= kFineTypes);
+  switch (numbers.kind) {
+    case ShapeKind::ellipsoid:
+      return ellipsoid_json(numbers.semi_axes);
+    case ShapeKind::superellipsoid:
+      return polyhedron_json(numbers, types <= kFineTypes);
+  }
+  return "{}";
 }
 
 std::optional<ed::BodyShape> read_type_shape(const std::string& text) {

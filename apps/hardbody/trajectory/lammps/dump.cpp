@@ -1,10 +1,10 @@
 #include "trajectory/lammps/dump.h"
-#include "base/shapes.h"
-#include "trajectory/lammps/frame.h"
 
 #include "base/errors.h"
 #include "base/number_text.h"
+#include "base/shapes.h"
 #include "io/text_file.h"
+#include "trajectory/lammps/frame.h"
 
 #include <fmt/format.h>
 
@@ -22,7 +22,7 @@ std::vector<std::string> shape_columns(const Frame& frame) {
   std::vector<std::string> columns;
   for (const FrameType& type : frame.types) {
     const Vector3d a = type.shape ? ed::half_extents(*type.shape) : Vector3d::Zero();
-    const Eigen::Vector2d e = type.shape ? numbers_of(*type.shape).exponents : Eigen::Vector2d(1, 1);
+    const Eigen::Vector2d e = type.shape ? superellipsoid_exponents(*type.shape) : Eigen::Vector2d(1, 1);
     columns.push_back(fmt::format("{} {} {} {} {}", 2 * a.x(), 2 * a.y(), 2 * a.z(), e.y(), e.x()));
   }
   return columns;
