@@ -20,9 +20,9 @@ function(hardbody_package_tests linkage)
   # All install from the same build tree.
   set_tests_properties(package_${linkage}_install PROPERTIES FIXTURES_SETUP package_${linkage} RESOURCE_LOCK install)
 
-  # Whoever asks for no seeds needs none of their packages. With the other flags, which give inline functions of the
-  # headers symbols, too, and of instructions that the library does not use, the answers must be the same. Every program is
-  # built in one of the tests with the usual flags, and those that are long to compile in no other.
+  # Whoever asks for no seeds needs none of their packages. The other flags take instructions that the library does not
+  # use, and give inline functions of the headers symbols: the answers must stay the same. Every program is built with the
+  # usual flags in one of the tests, and in several only where it compiles fast.
   set(hidden -DHIDDEN=fcl,ccd,octomap,CGAL)
   set(unneeded "-DUNNEEDED=lib(fcl|ccd|octomap|octomath|gmp|mpfr|hwy)")
   set(other_flags "-DOTHER_FLAGS=-march=native -fno-inline")

@@ -5,8 +5,8 @@ usage: links.py
 
 Documentation: relative links of every page lead to a file, and to a heading of it; a path between backticks that begins with a
 folder of this repository is a file, a folder or a pattern that matches one; a name of a source (`shapes/pose.cpp`, `pose.h`) is
-the end of the path of one; tools, tests and programs of tests and benchmarks exist, in commands too. Comments of sources: names of
-headers and sources likewise, and docs/*.md.
+the end of the path of one; tools, tests, and programs of tests and benchmarks exist, also those in blocks of code. Comments of
+sources: names of headers and sources likewise, and docs/*.md.
 """
 
 import fnmatch
@@ -21,6 +21,7 @@ WRITTEN_LATER = ("docs/api/",)  # by tools/docs
 SOURCE = r"[\w./*-]+\.(?:h|cpp|py|cmake|js)"
 # Names of sources of other projects, and of readers' own files.
 ELSEWHERE = {"mine.cpp", "uPlot.js", "three.js"}
+# Names of other programs that look like those of tests.
 OF_OTHERS = {"SuperquadricRoundness.Phi", "SuperquadricRoundness.Theta"}
 
 
@@ -96,15 +97,16 @@ def check_names(name, text, files):
 
 def programs(names):
     """Patterns of the programs of tests and benchmarks, and Suite.Test of all tests."""
-    texts = {name: (ROOT / name).read_text(encoding="utf-8") for name in names if re.match(r"(tests|bench)/.*(\.cpp|\.cmake|\.txt)$", name)}
-    called = r"(?:hardbody_test|hardbody_bench|add_executable)\(([\w${}]+)"
-    patterns = [re.sub(r"\$\{\w+\}", "*", found) for text in texts.values() for found in re.findall(called, text)]
-    tests = [".".join(found) for text in texts.values() for found in re.findall(r"^(?:TYPED_)?TEST(?:_[FP])?\((\w+),\s*(\w+)\)", text, re.MULTILINE)]
-    return [p for p in patterns if p.strip("*")], tests
+    places = re.compile(r"(tests|bench)/.*(\.cpp|\.cmake|\.txt)$")
+    text = "\n".join((ROOT / name).read_text(encoding="utf-8") for name in names if places.match(name))
+    called = re.findall(r"(?:hardbody_test|hardbody_bench|add_executable)\(([\w${}]+)", text)
+    patterns = [re.sub(r"\$\{\w+\}", "*", name) for name in called]
+    tests = re.findall(r"^(?:TYPED_)?TEST(?:_[FP])?\((\w+),\s*(\w+)\)", text, re.MULTILINE)
+    return [p for p in patterns if p.strip("*")], [".".join(test) for test in tests]
 
 
 def check_commands(name, text, files, patterns, tests):
-    """Messages about tools, programs and tests that a page names, in commands too."""
+    """Messages about tools, programs and tests that a page names, also in blocks of code."""
     for tool in set(re.findall(r"(?<![\w/.-])tools/[\w.-]*\w", text)):
         if not files.has_path(tool):
             yield f"{name}: {tool} is no file"

@@ -98,48 +98,37 @@ def agrees(value, error, reference, reference_error):
     return abs(value - reference) <= 0.05 * reference + 4 * math.hypot(error or 0, reference_error or 0)
 
 
-class Tally:
-    """What became of the values of one quantity."""
+# What may become of a value: in this order the columns of the table, the first three of which show numbers, the others values.
+KEPT = ("right", "dropped", "lost", "wrong", "lost with auto", "auto alone")
 
-    def __init__(self):
-        self.right = self.lost = self.dropped = 0
-        self.wrong = []
-        self.unjudged = []  # printed by a run that is longer than the long one, which has no value
-        self.lost_of_auto = []
 
-    def count(self, production, entry, reference, alone, is_longer):
-        value, error = entry["value"], entry["error"]
-        if value is not None:
-            if reference["value"] is None and is_longer:
-                self.unjudged.append(f"{value:.4g}")
-            elif reference["value"] is not None and agrees(value, error, reference["value"], reference["error"]):
-                self.right += 1
-            else:
-                self.wrong.append(f"{value:.4g} at {production}")
-        elif alone is not None:
-            # Without an error of its own a value counts as right within the tenth that its scatter may take.
-            right = reference["value"] is not None and abs(alone - reference["value"]) <= 0.1 * reference["value"]
-            self.lost += right
-            self.dropped += not right
-            if right and production == AUTO:
-                self.lost_of_auto.append(f"{alone:.4g}")
+def judge(kept, production, entry, reference, alone, is_longer):
+    """Adds a value of a short run to the list where it belongs; `is_longer`: than the long run."""
+    value, error = entry["value"], entry["error"]
+    if value is not None:
+        if reference["value"] is None and is_longer:
+            kept["auto alone"].append(f"{value:.4g}")
+        elif reference["value"] is not None and agrees(value, error, reference["value"], reference["error"]):
+            kept["right"].append(f"{value:.4g}")
+        else:
+            kept["wrong"].append(f"{value:.4g} at {production}")
+    elif alone is not None:
+        # Without an error of its own a value counts as right within the tenth that its scatter may take.
+        right = reference["value"] is not None and abs(alone - reference["value"]) <= 0.1 * reference["value"]
+        kept["lost" if right else "dropped"].append(f"{alone:.4g}")
+        if right and production == AUTO:
+            kept["lost with auto"].append(f"{alone:.4g}")
 
-    def add(self, other):
-        """Adds the counts of another quantity or state."""
-        self.right += other.right
-        self.lost += other.lost
-        self.dropped += other.dropped
-        self.wrong += other.wrong
-        self.unjudged += other.unjudged
-        self.lost_of_auto += other.lost_of_auto
 
-    def cells(self, name):
-        """Cells of a row, and whether all is well: no wrong value, and no right one lost by a run with production "auto"."""
-        absent = [self.dropped, self.lost, ", ".join(self.lost_of_auto) or "0"]
-        if KINDS[name][0] is None:  # fits have no rule to compare with
-            absent = ["-", "-", "-"]
-        wrong, unjudged = (", ".join(values) or "0" for values in (self.wrong, self.unjudged))
-        return [self.right, *absent[:2], wrong, absent[2], unjudged], not self.wrong and not self.lost_of_auto
+def row(table, state, name, long_run, kept):
+    """Writes a row of one state, or of all, which has numbers alone: ok without wrong values and right ones lost with "auto"."""
+    cells = {}
+    for column, values in kept.items():
+        is_number = column in KEPT[:3] or state == "all"
+        cells[column] = len(values) if is_number else ", ".join(values) or "0"
+    if KINDS[name][0] is None:  # fits have no rule to compare with
+        cells |= dict.fromkeys(("dropped", "lost", "lost with auto"), "-")
+    table.plain_row([state, name, long_run, *cells.values()], not kept["wrong"] and not kept["lost with auto"])
 
 
 def submit(runner, name, state):
@@ -167,21 +156,19 @@ def short(runner, table, _):
         f"Short runs against long ones: productions of {', '.join(map(str, PRODUCTIONS))} and \"auto\" from the end of a long one",
         "| state | quantity | long run | printed and right | absent, was wrong | absent, was right | printed and wrong "
         "| lost with \"auto\" | \"auto\" alone | |")
-    totals = {name: Tally() for name in KINDS}
+    totals = {name: {column: [] for column in KEPT} for name in KINDS}
     for state, run in runs.items():
         long, shorts = run.result()
         components = 3 if "uniform" in STATES[state][0] else 2
         for name in KINDS:
             reference = long["observables"][name]
-            tally = Tally()
+            kept = {column: [] for column in KEPT}
             for production, result in shorts.items():
-                tally.count(production, result["observables"][name], reference, slope_alone(result, name, components),
-                            result["time"]["production"] > long["time"]["production"])
+                judge(kept, production, result["observables"][name], reference, slope_alone(result, name, components),
+                      result["time"]["production"] > long["time"]["production"])
             shown = "absent" if reference["value"] is None else f"{reference['value']:.4g} +- {reference['error'] or 0:.2g}"
-            cells, well = tally.cells(name)
-            table.plain_row([state, name, shown, *cells], well)
-            totals[name].add(tally)
-    for name, tally in totals.items():
-        cells, well = tally.cells(name)
-        cells[3], cells[5] = len(tally.wrong), len(tally.unjudged)
-        table.plain_row(["all", name, "", *cells], well)
+            row(table, state, name, shown, kept)
+            for column, values in kept.items():
+                totals[name][column] += values
+    for name, kept in totals.items():
+        row(table, "all", name, "", kept)

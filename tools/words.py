@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Checks the words of comments in C++ files, and names file, line and comment where they break the rule.
 
-usage: words.py [--count] [FILE...]
+usage: words.py [FILE...]
 
 The rule (CONTRIBUTING.md): a doc comment is a sentence whose omitted subject is the declared thing. It begins with a
 verb for a function ("Returns ...") and with a noun for data ("Number of ..."), with "True ..." or "Whether ..." for a
@@ -10,8 +10,8 @@ condition follows what it limits. Some phrases are refused anywhere in a comment
 
 Comments are // and, for doc comments, ///, each with a space; /* */ names an argument (/*signed_distance=*/), no more.
 
-Without FILE all headers and sources (.h, .cpp) of the repository are read. Every fault is printed; --count prints the
-figure alone. Exit code 1: more than LIMIT of the comments break the rule.
+Without FILE all headers and sources (.h, .cpp) of the repository are read. Every fault is printed. Exit code 1: there are
+more faults, of all comments, than LIMIT times the number of doc comments.
 """
 
 import pathlib
@@ -64,7 +64,7 @@ WRONG_PHRASES = re.compile("|".join(rf"\b{phrase}" for phrase in PHRASES), re.IG
 
 
 def comments(text):
-    """Yields line number, text and whether it is a doc comment (None: of another style), of each comment of a C++ source."""
+    """Yields line number, lines and marker (//, ///, ///<; None: of another style) of each comment of a C++ source."""
     lines = text.split("\n")
     block = None  # marker, number of the first line, texts
     for number, line in enumerate([*lines, ""], 1):
@@ -74,14 +74,14 @@ def comments(text):
             block[2].append(whole[2] or "")
             continue
         if block:
-            yield block[1], block[2], block[0] != "//"
+            yield block[1], block[2], block[0]
         block = None
-        if not whole and not trailing and OTHER_STYLE.search(strip_strings(line)):
-            yield number, [OTHER_STYLE.search(strip_strings(line))[0]], None
         if whole:
             block = (whole[1], number, [whole[2] or ""])
         elif trailing:
             block = (trailing[1], number, [line[trailing.start(2):]])
+        elif other := OTHER_STYLE.search(strip_strings(line)):
+            yield number, [other[0]], None
 
 
 def strip_strings(line):
@@ -95,14 +95,14 @@ def wording(lines):
     return re.sub(r"\s*@(?:file|brief|\{|\})\s*", " ", text).strip()
 
 
-def fault(text, is_doc):
+def fault(text, marker):
     """What is wrong with a comment, or nothing."""
-    if is_doc is None:
+    if marker is None:
         return "is written in another way than // and ///"
     phrase = WRONG_PHRASES.search(text)
     if phrase:
         return f'says "{phrase[0]}"'
-    if not is_doc:
+    if marker == "//":
         return None
     beginning = WRONG_BEGINNINGS.match(text)
     if beginning:
@@ -120,27 +120,23 @@ def sources():
 
 
 def main():
-    names = [argument for argument in sys.argv[1:] if not argument.startswith("--")]
-    paths = [pathlib.Path(name).resolve() for name in names] or sources()
+    paths = [pathlib.Path(name).resolve() for name in sys.argv[1:]] or sources()
     number, messages = 0, []
     for path in paths:
-        for line, texts, is_doc in comments(path.read_text()):
+        for line, texts, marker in comments(path.read_text()):
             text = wording(texts)
             if not text:
                 continue
-            number += bool(is_doc)
-            wrong = fault(text, is_doc)
+            number += marker in ("///", "///<")
+            wrong = fault(text, marker)
             if wrong:
                 name = path.relative_to(ROOT) if path.is_relative_to(ROOT) else path
                 messages.append(f"{name}:{line}: {wrong}: {text[:100]}")
     share = len(messages) / max(1, number)
-    verdict = f"words: {len(messages)} of {number} comments break the rule, {100 * share:.1f} %"
-    if "--count" in sys.argv:
-        print(verdict)
-        return 0
     for message in messages:
         print(message, file=sys.stderr)
-    print(f"{verdict}; accepted: {100 * LIMIT:g} %", file=sys.stderr if share > LIMIT else sys.stdout)
+    print(f"words: {len(messages)} faults in comments, {number} doc comments: {100 * share:.1f} %; accepted: {100 * LIMIT:g} %",
+          file=sys.stderr if share > LIMIT else sys.stdout)
     return int(share > LIMIT)
 
 

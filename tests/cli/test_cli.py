@@ -6,6 +6,7 @@
 import atexit
 import contextlib
 import csv
+import functools
 import json
 import math
 import os
@@ -105,21 +106,16 @@ OBSERVABLES = [
 ]
 
 
-class Made:
-    """Runs that tests of this process have made, for others to copy: the same config, run under the same name, is the same
-    run, as tests of SameRun show."""
+# Runs that tests of this process have made, by name, arguments and config: the result, and the directory that keeps the
+# run. The same config, run under the same name, is the same run, as tests of SameRun show.
+MADE = {}
 
-    directory = None
-    runs = {}  # by name, arguments and config: the result, with the seconds that it took, and where it is kept
 
-    @classmethod
-    def keep(cls, key, path, result):
-        if cls.directory is None:
-            cls.directory = tempfile.mkdtemp()
-            atexit.register(shutil.rmtree, cls.directory, ignore_errors=True)
-        kept = os.path.join(cls.directory, str(len(cls.runs)))
-        shutil.copytree(path, kept)
-        cls.runs[key] = result, kept
+@functools.cache
+def directory_of_made():
+    directory = tempfile.mkdtemp()
+    atexit.register(shutil.rmtree, directory, ignore_errors=True)
+    return directory
 
 
 class Case(unittest.TestCase):
@@ -158,38 +154,25 @@ class Case(unittest.TestCase):
         return self.run_config("small.toml", out, *arguments)
 
     def run_config(self, name, out, *arguments):
-        """A run that ends well, `seconds` of its result; of one that needs no other file but its config a copy will do."""
-        key = (name, out, arguments, self.read(name))
-        others = re.search(r"\b(start_from|file) *=", "\n".join([*arguments, key[3]]))
-        alone = not os.path.exists(self.path(out)) and not others
-        if alone and key in Made.runs:
-            result, kept = Made.runs[key]
+        """Runs a config, which must end well; the result has the `seconds` that it took. A run that has been made before is
+        copied, unless it continues what is in `out` or reads further files."""
+        text = self.read(name)
+        key = (name, out, arguments, text)
+        reads_files = re.search(r"\b(start_from|file) *=", "\n".join([*arguments, text]))
+        may_copy = not reads_files and not os.path.exists(self.path(out))
+        if may_copy and key in MADE:
+            result, kept = MADE[key]
             shutil.copytree(kept, self.path(out))
             return result
         begin = time.monotonic()
         result = self.hardbody("run", name, "--out", out, *arguments)
         result.seconds = time.monotonic() - begin
         self.assertEqual(result.returncode, 0, result.stderr)
-        if alone:
-            Made.keep(key, self.path(out), result)
+        if may_copy:
+            kept = os.path.join(directory_of_made(), str(len(MADE)))
+            shutil.copytree(self.path(out), kept)
+            MADE[key] = result, kept
         return result
-
-    def assert_starts(self, name, *arguments):
-        """Runs until the start is there and envelopes are tuned, which takes longest, and no farther. What was said."""
-        process = subprocess.Popen([HARDBODY, "run", name, "--out", "started", *arguments], cwd=self.here, text=True,
-                                   stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
-        self.addCleanup(process.kill)
-        with process.stderr:
-            log = self.path("started/log.txt")
-            while process.poll() is None and not (os.path.exists(log) and "finder: " in self.read("started/log.txt")):
-                time.sleep(0.005)
-            process.send_signal(signal.SIGTERM)
-            said = process.stderr.read()
-            self.assertIn(process.wait(timeout=120), [0, 143], said)
-        logged = self.read("started/log.txt")
-        self.assertIn("start: done", logged)
-        shutil.rmtree(self.path("started"))
-        return said, logged
 
     def summary(self, out):
         def refuse(constant):
@@ -210,7 +193,7 @@ class Methods(Case):
     """Finders, distances and neighbour lists."""
 
     def test_every_finder_and_list_gives_the_same_collisions(self):
-        """Each distance with two of the lists at the least; HARDBODY_FULL=1: with every list."""
+        """HARDBODY_FULL=1: all combinations; otherwise newton8 and newton5 have two lists each."""
         left_out = [] if FULL else ["bracketing_obp_newton8", "bracketing_dilated_newton5"]
         config = SMALL.replace("time = 1\n", "time = 0\n").replace("time = 5", "time = 1")
         runs = {
@@ -471,8 +454,7 @@ class Run(Case):
     def test_demo_config_is_valid(self):
         with open(DEMO) as demo:
             config = self.write("short.toml", demo.read())
-        result = self.hardbody("run", config, "--set", "equilibration.time=0.1", "--set", "production.time=0.1",
-                               "dynamics.neighbours=cells")  # without tuning envelopes
+        result = self.hardbody("run", config, "--set", "equilibration.time=0.1", "--set", "production.time=0.1")
         self.assertEqual(result.returncode, 0, result.stderr)
         state = self.summary("out/short")["state"]
         self.assertEqual((state["number"], state["aspect_ratio"], state["packing_fraction"]), (512, 3, 0.4))
@@ -532,8 +514,7 @@ class Init(Case):
             with self.subTest(name):
                 self.assertEqual(self.hardbody("init", f"{name}.toml", "--template", name).returncode, 0)
                 result = self.hardbody(
-                    "run", f"{name}.toml", "--set", "equilibration.time=0.1", "production.time=0.1", "system.number=200",
-                    "dynamics.neighbours=cells",  # without tuning envelopes, as a test of the demo's config
+                    "run", f"{name}.toml", "--set", "equilibration.time=0.1", "production.time=0.1", "system.number=200"
                 )
                 self.assertEqual(result.returncode, 0, result.stderr)
                 self.assertEqual(self.summary(f"out/{name}")["state"]["kind"], kind)
@@ -738,8 +719,7 @@ class BadConfig(Case):
         message = self.refuse(SMALL.replace("number = 64", "number = 8"), "bad.toml:3: ", "box", "system.number")
         least = int(re.search(r"at least (\d+)", message)[1])
         self.refuse(SMALL.replace("number = 64", f"number = {least - 1}"), "box")
-        self.write("least.toml", SMALL.replace("number = 64", f"number = {least}"))
-        self.assert_starts("least.toml")
+        self.run_small("least", "--set", f"system.number={least}", "--set", "production.time=1")
 
     def test_the_number_named_is_accepted(self):
         sizes = '[[species]]\nsemi_axes = [1, 1, 2]\nsizes = "lognormal"\nwidth = 0.2\n'
@@ -763,7 +743,8 @@ class BadConfig(Case):
                     else:
                         more = re.sub("number = .*", f"number = {least}", dense)
                     self.write("more.toml", more)
-                    self.assert_starts("more.toml")
+                    result = self.hardbody("run", "more.toml", "--out", f"{name}{phi}", "--set", "production.time=0", "equilibration.time=0")
+                    self.assertEqual(result.returncode, 0, result.stderr)
         fcc = SMALL.replace("number = 64", 'number = 8\nstart = "fcc"')
         self.assertEqual(least_number(fcc, r"at least (\d+)\n") % 4, 0)
         one_among_many = several.replace("number = 5", "number = 1", 1).replace("number = 5", "number = 900000")
@@ -778,8 +759,7 @@ class BadConfig(Case):
         message = self.refuse(octahedra, "bad.toml:3: ", "system.number", '"obp" needs room for boxes that a body can turn in')
         least = int(re.search(r"at least (\d+)", message)[1])
         self.assertGreater(least, 64)
-        self.write("least.toml", octahedra.replace("number = 64", f"number = {least}"))
-        self.assert_starts("least.toml")
+        self.run_small("least", "--set", f"system.number={least}", "production.time=1", "equilibration.time=0", config=octahedra)
 
     def test_densest_packing_named_is_accepted(self):
         config = SMALL.replace("aspect_ratio = 2", "aspect_ratio = 1.05")
@@ -947,7 +927,7 @@ class BadSpecies(Case):
 
 
 BIAXIAL = SMALL.replace("aspect_ratio = 2", "semi_axes = [1, 1.5, 0.7]")
-# Where lists do not matter: cells need no tuning of envelopes, which takes longer than such a run.
+# For runs whose neighbour lists do not matter: cells need no tuning of envelopes, which takes longer than such a run.
 CELLS = '[dynamics]\nneighbours = "cells"\n'
 
 
@@ -1009,14 +989,15 @@ class Shapes(Case):
         self.assertRegex(self.hardbody("check", "out").stdout, r"rotational temperature +\S+ on 3N\n")
 
     def test_moments_across_the_axis_may_differ(self):
-        summary = self.run_shape("out", SMALL + CELLS + "inertia = [0.3, 0.4, 0.2]\n")
+        config = SMALL + "[dynamics]\ninertia = [0.3, 0.4, 0.2]\n"
+        summary = self.run_shape("out", config)
         self.assertEqual(summary["state"]["aspect_ratio"], 2)
         self.assertIn("kT_axes", summary["observables"])
 
     def test_of_revolution_about_z(self):
         # A superellipsoid, but with two rotation axes and a spin that stays.
         shape = 'kind = "superellipsoid"\naspect_ratio = 1.5\nexponents = [0.6, 1]'
-        summary = self.run_shape("out", SMALL.replace("aspect_ratio = 2", shape) + CELLS)
+        summary = self.run_shape("out", SMALL.replace("aspect_ratio = 2", shape))
         self.assertNotIn("kT_axes", summary["observables"])
         self.assertIn("two components", summary["units"]["D_rot"])
 
@@ -1138,12 +1119,10 @@ class Starts(Case):
 
     ROD = SMALL.replace("aspect_ratio = 2", "aspect_ratio = 3").replace("number = 64", "number = 288")
 
-    def run_start(self, out, config, *lines, said=False, neighbours="auto"):
-        """The summary, or what was said on the console. Of bodies that are no spheroids, tuning envelopes takes longest:
-        cells need none."""
+    def run_start(self, out, config, *lines, said=False):
+        """The summary, or what was said on the console."""
         config = config.replace("[system]\n", "[system]\n" + "".join(line + "\n" for line in lines))
-        result = self.run_small(out, "--set", "equilibration.time=0.2", "production.time=0.5",
-                                f"dynamics.neighbours={neighbours}", config=config)
+        result = self.run_small(out, "--set", "equilibration.time=0.2", "production.time=0.5", config=config)
         self.assertEqual(self.hardbody("check", out).returncode, 0)
         text = self.read(f"{out}/config.toml")
         for line in lines:
@@ -1173,8 +1152,7 @@ class Starts(Case):
 
     def test_superballs_on_cubic(self):
         shape = 'kind = "superellipsoid"\nsemi_axes = [1, 1, 1]\nexponents = [0.5, 0.5]'
-        self.run_start("out", SMALL.replace("aspect_ratio = 2", shape).replace("0.2", "0.6"), 'start = "cubic"',
-                       neighbours="cells")
+        self.run_start("out", SMALL.replace("aspect_ratio = 2", shape).replace("0.2", "0.6"), 'start = "cubic"')
 
     def test_nematic(self):
         said = self.run_start("compressed", self.ROD, "nematic_order = 0.8", said=True)
@@ -1197,17 +1175,16 @@ class Starts(Case):
         self.assert_refused(self.hardbody("run", "tight.toml"), "tight.toml:4: system.nematic_order is 0.5", "accepted: at least")
 
     def test_mixture(self):
-        self.run_start("out", MIXTURE.replace("number = 100", "number = 192"), 'start = "fcc"', neighbours="cells")
+        self.run_start("out", MIXTURE.replace("number = 100", "number = 192"), 'start = "fcc"')
 
     def test_very_unequal_sizes_are_said_to_be_slow(self):
         species = "".join(f"[[species]]\nsemi_axes = [{a}, {a}, {a}]\nfraction = {x}\n" for a, x in [(1, 0.003), (0.1, 0.997)])
         config = SMALL.replace("[shape]\naspect_ratio = 2\n", species).replace("64", "1200").replace("0.2", "0.25")
-        self.write("unequal.toml", config)
-        said, logged = self.assert_starts("unequal.toml")
+        result = self.run_small("out", "--set", "equilibration.time=0.01", "production.time=0.01", config=config)
         words = r"the largest bodies have 10 times the bounding radius of the smallest: neighbours are searched in cells .* hold \d+ bodies"
-        self.assertRegex(logged, words)
-        self.assertRegex(said, words)
-        self.assertIn("1200 of 1200 bodies are compressed together", said)
+        self.assertRegex(self.read("out/log.txt"), words)
+        self.assertRegex(result.stderr, words)
+        self.assertIn("1200 of 1200 bodies are compressed together", result.stderr)
         self.run_small("equal", "--set", "equilibration.time=0.1", "production.time=0.1")
         self.assertNotIn("bounding radius", self.read("equal/log.txt"))
 

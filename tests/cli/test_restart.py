@@ -16,9 +16,8 @@ import subprocess
 import time
 import unittest
 
-from test_cli import HARDBODY, MIXTURE, SMALL, Case
+from test_cli import FULL, HARDBODY, MIXTURE, SMALL, Case
 
-FULL = os.environ.get("HARDBODY_FULL") == "1"
 
 # Of about a second each, with some tens of checkpoints.
 OFTEN = 'events = 2000\ncheckpoint_every = "0.02s"'
@@ -574,7 +573,7 @@ class Faults(Restart):
         self.write("run.toml", text)
         process = self.start("run", "run.toml", "--out", "out")
         self.wait_for(lambda: os.path.exists(self.path("out/events.csv")), "events.csv")
-        # Of no checkpoint.
+        # Written without any checkpoint.
         self.wait_for(lambda: os.path.getsize(self.path("out/events.csv")) > 3e5, "events")
         self.assertFalse(os.path.exists(self.path("out/checkpoint.bin")))
         self.assertEqual(self.stop(process, signal.SIGTERM), 143)

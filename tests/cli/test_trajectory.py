@@ -2,7 +2,7 @@
 
     HARDBODY=build/release/apps/hardbody/hardbody /usr/bin/python3 tests/cli/test_trajectory.py [TestClass[.test]]
 
-Needs Debian's python3-gsd, python3-mdanalysis and python3-vtk9. HARDBODY_FULL=1: more kills.
+Needs Debian's python3-gsd, python3-mdanalysis and python3-vtk9. HARDBODY_FULL=1: 50 kills, not 20.
 """
 
 import csv
@@ -24,9 +24,8 @@ import gsd.fl
 import gsd.hoomd
 import gsd.pygsd
 
-from test_cli import HARDBODY, SMALL, Case
+from test_cli import FULL, HARDBODY, SMALL, Case
 
-FULL = os.environ.get("HARDBODY_FULL") == "1"
 
 ALL = '[output]\ntrajectory = ["gsd", "lammps", "vtk"]\nframes = 6\n'
 

@@ -143,13 +143,14 @@ def rows_of(path):
 class Case(unittest.TestCase):
     """Runs are made once and shared: none of the tests changes them."""
 
+    made = None  # directory of the runs and their configs
     runs = {}
     one_browser = None
     opened = None  # by page()
 
     @classmethod
     def setUpClass(cls):
-        if not Case.runs:
+        if Case.made is None:
             Case.made = pathlib.Path(tempfile.mkdtemp())
             unittest.addModuleCleanup(shutil.rmtree, Case.made)
         cls.root = tempfile.TemporaryDirectory()
@@ -198,7 +199,7 @@ class Case(unittest.TestCase):
         return browser
 
     def page(self, path):
-        """As open_low(), for tests that leave the page as it is: one may have opened it for all of them."""
+        """As open_low(), but a page that is open already stays as it is: for tests that do not mind what others did there."""
         if Case.opened != path:
             self.open_low(path)
             Case.opened = path
@@ -552,6 +553,7 @@ class OtherRuns(Case):
         browser = self.open_low(directory / "report.html")
         self.assertIn("unfinished", browser.run("return document.querySelector('.remarks').textContent"))
         self.assertEqual(browser.run("return window.hardbodyReport.views.length"), 1)
+        self.assert_draws_in_sight(browser)
         self.assert_silent(browser)
 
     def test_stopped(self):
@@ -605,8 +607,8 @@ class OtherRuns(Case):
                   select.selectedIndex = 1; select.dispatchEvent(new Event('change'));""")
                 self.assertIn("1 : 1 : 1.5", browser.run("return window.hardbodyReport.page.views[0].run.title"))
                 self.assert_fits(browser, width)
+                self.assert_draws_in_sight(browser)
                 self.assert_silent(browser)
-
 
     def test_several_mixtures_of_one_name(self):
         """Settings of each of the species, and directories that only their parents tell apart."""
@@ -621,6 +623,7 @@ class OtherRuns(Case):
         different = browser.run("return document.querySelector('#settings ~ .card').textContent")
         self.assertIn("species 1.semi_axes", different)
         self.assertNotIn("species 2", different)
+        self.assert_draws_in_sight(browser)
 
     def test_frames_cut_off_are_said(self):
         directory = self.here / "cut_off"
@@ -630,6 +633,7 @@ class OtherRuns(Case):
         self.report(directory)
         browser = self.open_low(directory / "report.html")
         self.assertIn("frames cut off", browser.run("return document.querySelector('.hero').textContent"))
+        self.assert_draws_in_sight(browser)
 
     def test_the_demo(self):
         """A short form of what tools/demo shows."""
@@ -698,7 +702,7 @@ class Sweep(Case):
                 const at = map.canvas.getBoundingClientRect();
                 map.canvas.dispatchEvent(new MouseEvent('click', {clientX: at.left + x + w / 2, clientY: at.top + y + h / 2, bubbles: true}));
                 document.querySelector('.stage').scrollIntoView({behavior: 'instant'});""",
-                k % 24,
+                k,
             )
             self.wait_for(browser, "return window.hardbodyReport.views[0].drawn > 0")
         self.assertGreater(self.colours(browser, ".stage canvas"), 40)
