@@ -844,6 +844,7 @@ class Analyze(Trajectories):
                     turned = (exact.rotation[lag:, :, :, axis] * exact.rotation[:-lag, :, :, axis]).sum(axis=2)
                     close(c2[f"c2_{letter}"][k], (1.5 * turned**2 - 0.5).mean())
         order = self.rows("out/analysis/order.csv")
+        self.assertEqual(self.read("out/analysis/order.csv").splitlines()[0], "t [l sqrt(m/kT)],S [1],energy [kT]")
         S = [numpy.linalg.eigvalsh(1.5 * v.T @ v / len(v) - 0.5 * numpy.eye(3))[-1] for v in u]
         numpy.testing.assert_allclose(order["S"], S, atol=1e-12)
         self.assertEqual(list(order["t"]), list(exact.time))

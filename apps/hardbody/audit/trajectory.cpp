@@ -118,8 +118,9 @@ std::vector<std::string> audit_frame(const Frame& frame, std::uint64_t k, const 
   return list;
 }
 
-/// Prints the results for the pairs.
-void print_pairs(const FramesAudit& all) {
+/// Prints the results for the pairs; only exact frames of the program are known to have the unit l.
+void print_pairs(const FramesAudit& all, bool exact) {
+  const char* unit = exact ? " l" : " (unit of the file)";
   if (all.not_tested.empty()) {
     report_row("overlaps", all.tolerance > 0 ? fmt::format("{}, more than the rounding of the numbers ({:.2g})",
                                                            all.overlaps, all.tolerance)
@@ -130,7 +131,7 @@ void print_pairs(const FramesAudit& all) {
   }
   report_row("distances not answered", fmt::format("{}", all.unanswered));
   report_row("minimum distance", std::isfinite(all.minimum_distance)
-                                     ? fmt::format("{:.6g} l, {}", all.minimum_distance, all.closest)
+                                     ? fmt::format("{:.6g}{}, {}", all.minimum_distance, unit, all.closest)
                                  : all.not_tested.empty() ? std::string("no two bounding spheres meet")
                                                           : std::string("not known"));
 }
@@ -147,7 +148,7 @@ void print_frames(const TrajectoryReader& reader, const Frame& first, const Fram
   report_row("bit-exact state", exact ? "yes" : gsd != nullptr ? "no, 32-bit numbers" : "no, rounded decimal numbers");
   if (exact) report_row("times", fmt::format("{:g} to {:g}", first.time, last.time));
   report_row("all numbers finite", "yes");
-  print_pairs(all);
+  print_pairs(all, exact);
   if (exact) {
     report_row("energy drift", fmt::format("{:.1e} (relative, from the first frame)", all.energy_drift));
   } else {

@@ -67,8 +67,9 @@ std::string cell(double x) {
   return std::isfinite(x) ? fmt::format("{}", x) : "";
 }
 
-std::string order_csv(const StoredTrajectory& stored) {
-  std::string text = "t [l sqrt(m/kT)],S [1],energy [kT]\n";
+std::string order_csv(const StoredTrajectory& stored, Units units) {
+  std::string text =
+      fmt::format("{},S [1],energy [{}]\n", abscissa_of(Rows::lags, units), unit_text("kT", units));
   for (std::size_t k = 0; k < stored.frames.size(); ++k) {
     const ed::StoredFrame& frame = stored.frames[k];
     std::vector<Vector3d> axes;
@@ -96,11 +97,12 @@ Json text_or_null(const std::string& text) {
   return text.empty() ? Json(nullptr) : Json(text);
 }
 
-std::string analysis_json(const std::string& name, const StoredTrajectory& stored, const ed::StoredResults& results) {
+std::string analysis_json(const std::string& name, const StoredTrajectory& stored, const ed::StoredResults& results,
+                          Units units) {
   Json json;
   json["version"] = version();
   json["source"] = name;
-  json["units"] = "those of the file; for files of hardbody kT = m = 1, lengths l, times l sqrt(m/kT)";
+  json["units"] = units == Units::of_runs ? "kT = m = 1, lengths l, times l sqrt(m/kT)" : "those of the file";
   const std::size_t last = results.first_frame + results.frames - 1;
   json["frames"] = {{"in_file", stored.in_file},
                     {"without_positions", stored.without_positions},
@@ -124,7 +126,7 @@ std::string analysis_json(const std::string& name, const StoredTrajectory& store
 }
 
 void write_files(const fs::path& out, const std::string& name, const StoredTrajectory& stored,
-                 const ed::StoredResults& results) {
+                 const ed::StoredResults& results, Units units) {
   try {
     fs::create_directories(out);
   } catch (const fs::filesystem_error& error) {
@@ -132,10 +134,10 @@ void write_files(const fs::path& out, const std::string& name, const StoredTraje
         fmt::format("{}: cannot be written to: {}; accepted: a directory", out.string(), error.code().message()));
   }
   for (const CurveFile& file : curve_files()) {
-    if (file.in_frames) write_file(out / (file.name + ".csv"), curve_csv(file, results));
+    if (file.in_frames) write_file(out / (file.name + ".csv"), curve_csv(file, results, units));
   }
-  write_file(out / kOrderFile, order_csv(stored));
-  write_file(out / kAnalysisFile, analysis_json(name, stored, results));
+  write_file(out / kOrderFile, order_csv(stored, units));
+  write_file(out / kAnalysisFile, analysis_json(name, stored, results, units));
 }
 
 std::string shown(const ed::Estimate& e) {
@@ -199,7 +201,8 @@ int analyze(const AnalyzeArguments& arguments) {
         fmt::format("wave numbers of F_self are those of {}", (file.parent_path() / kSummaryFile).string()));
   }
   const ed::StoredResults results = ed::analyze_frames(stored.frames, stored.options);
-  write_files(out, reader.name(), stored, results);
+  const bool known_units = stored.exact || (of_the_run && fs::exists(file.parent_path() / kSummaryFile));
+  write_files(out, reader.name(), stored, results, known_units ? Units::of_runs : Units::unknown);
   print_reading(reader, stored, results);
   for (const Observable& o : observables()) {
     if (!o.in_frames || o.label.empty()) continue;

@@ -104,11 +104,13 @@ std::string blocks_csv(const ed::Results& results) {
 
 }  // namespace
 
-std::string curve_csv(const CurveFile& file, const ed::Results& results) {
+std::string curve_csv(const CurveFile& file, const ed::Results& results, Units units) {
   if (file.rows == Rows::blocks) return blocks_csv(results);
   const std::vector<PartColumn> columns = columns_of(file, results);
-  std::string text = abscissa_of(file.rows);
-  for (const PartColumn& c : columns) text += fmt::format(",{0} [{1}],{0}_error [{1}]", c.name, c.column->unit);
+  std::string text = abscissa_of(file.rows, units);
+  for (const PartColumn& c : columns) {
+    text += fmt::format(",{0} [{1}],{0}_error [{1}]", c.name, unit_text(c.column->unit, units));
+  }
   text += '\n';
   const auto add = [&](double x, const auto& value_of) {
     std::vector<double> values = {x};
