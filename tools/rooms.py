@@ -48,6 +48,10 @@ LIBRARIES = {
         "order": "base < registry < io < trajectory < config < start < run < sweep, plot, audit < report, distance < commands",
         "public": ("hardbody", {}),
     },
+    "apps/python/src": {
+        "order": "base < geometry, runs",
+        "public": ("hardbody", {}),
+    },
 }
 ABOVE_ALL_ROOMS = ("main.cpp", "command_line.cpp", "command_line.h", "module.cpp")
 
