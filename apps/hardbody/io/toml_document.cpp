@@ -134,7 +134,7 @@ void lay_over(TomlDocument& document, const std::string& override_text) {
     throw InputError(fmt::format("{}: is not an assignment; accepted: section.key=value", where));
   }
   std::string key = one_line(override_text.substr(0, equals));
-  const std::string text = one_line(override_text.substr(equals + 1));
+  const std::string text = one_line(override_text.substr(equals + 1), override_text.size());
   if (text.empty()) throw InputError(fmt::format("{}: has no value; accepted: section.key=value", where));
   document.set({std::move(key), where, 0, parse_value(text)});
 }

@@ -16,6 +16,8 @@ from hardbody._arrays import (
     overlap_many,
     ray_cast_many,
 )
+from hardbody._commands import analyze, check, report, resume, run, sweep
+from hardbody._commands import map as map
 from hardbody._core import (
     ClosestPoint,
     ContactResult,
@@ -37,23 +39,41 @@ from hardbody._core import (
     ray_cast,
     time_of_contact,
 )
+from hardbody._errors import NumericalError
+from hardbody._pages import Map, Report
+from hardbody._results import Analysis, Run, Sweep
+from hardbody._run_errors import SweepError, UnsoundError
+from hardbody._tables import Curves, Table
 
+# "map" is no name for `from hardbody import *`, which would hide Python's own.
 __all__ = [
+    "Analysis",
     "ClosestPoint",
     "ClosestPoints",
     "ContactResult",
+    "Curves",
     "DistanceResult",
     "Distances",
     "Ellipsoid",
+    "Map",
     "MassProperties",
     "Motion",
+    "NumericalError",
     "Overlaps",
     "Pose",
     "RayHit",
     "RayHits",
+    "Report",
+    "Run",
     "Superellipsoid",
+    "Sweep",
+    "SweepError",
+    "Table",
     "UndecidedError",
+    "UnsoundError",
     "__version__",
+    "analyze",
+    "check",
     "closest_point",
     "closest_point_many",
     "contains",
@@ -66,5 +86,9 @@ __all__ = [
     "overlap_many",
     "ray_cast",
     "ray_cast_many",
+    "report",
+    "resume",
+    "run",
+    "sweep",
     "time_of_contact",
 ]

@@ -1,4 +1,5 @@
 #include "geometry/bind.h"
+#include "runs/bind.h"
 
 #include <base/version.h>
 
@@ -14,4 +15,7 @@ NB_MODULE(_core, module) {
   python::bind_queries(module);
   python::bind_distances(module);
   python::bind_body_queries(module);
+  python::bind_commands(module);
+  python::bind_program(module);
+  python::bind_plots(module);
 }
