@@ -9,6 +9,8 @@ NB_MODULE(_core, module) {
   namespace python = hardbody::python;
   module.doc() = "Compiled part of the package hardbody, which has its public names.";
   module.attr("__version__") = hardbody::version();
+  // Objects that global variables hold are alive at exit, and no leak.
+  nanobind::set_leak_warnings(false);
   python::bind_shapes(module);
   python::bind_poses(module);
   python::bind_motions(module);
