@@ -1,0 +1,17 @@
+#include "geometry/bind.h"
+
+#include <base/version.h>
+
+#include <nanobind/nanobind.h>
+
+NB_MODULE(_core, module) {
+  namespace python = hardbody::python;
+  module.doc() = "Compiled part of the package hardbody, which has its public names.";
+  module.attr("__version__") = hardbody::version();
+  python::bind_shapes(module);
+  python::bind_poses(module);
+  python::bind_motions(module);
+  python::bind_queries(module);
+  python::bind_distances(module);
+  python::bind_body_queries(module);
+}

@@ -1,0 +1,32 @@
+"""Small program whose types mypy --strict checks."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+import hardbody as hb
+
+
+def nearest_pair(result: hb.Distances) -> int:
+    distance: NDArray[np.float64] = result.distance
+    return int(np.argmin(distance))
+
+
+def main() -> None:
+    a = hb.Ellipsoid([1, 1, 3])
+    b = hb.Superellipsoid([1, 2, 3], 0.5, 0.5)
+    X: hb.Pose = hb.Pose([4, 0, 2.4], [1, 0, 0, 0]) @ hb.Pose()
+    r: hb.DistanceResult = hb.distance(a, hb.Pose(), b, X, penetration="local")
+    normal: NDArray[np.float64] = r.normal
+    print(f"{r.status} by {r.distance:.4g} along {normal}")
+
+    positions = np.array([[0.0, 0.0, 0.0], [4.0, 0.0, 2.4], [9.0, 0.0, 0.0]])
+    many = hb.distance_many([a, b], positions, None, [[0, 1], [0, 2]], shape_of=[0, 1, 0], threads=2)
+    print(nearest_pair(many), bool(hb.overlap(a, hb.Pose(), b, X)), many.status[0])
+
+    hit: hb.ContactResult = hb.time_of_contact(a, hb.Motion(), b, hb.Motion(X, velocity=[-1, 0, 0]), t_max=10)
+    mass: float = hb.mass_properties(b).mass
+    print(hit.status, hit.time, mass, hb.Ellipsoid.spheroid(3.0).volume)
+
+
+if __name__ == "__main__":
+    main()
