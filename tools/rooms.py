@@ -49,7 +49,7 @@ LIBRARIES = {
         "public": ("hardbody", {}),
     },
     "apps/python/src": {
-        "order": "base < geometry",
+        "order": "base < geometry < simulation",
         "public": ("hardbody", {}),
     },
 }
