@@ -162,12 +162,13 @@ class Growing(Spheroid):
 
 def test_overlaps_raise_with_the_failed_pairs():
     shape = Growing()
-    system = hb.System(20, shape, [[0, 0, -2.5], [0, 0, 2.5]], None, [[0, 0, 1], [0, 0, -1]])
+    velocities, turns = [[0, 0, 1], [0, 0, -1]], [[0.7, 0, 0], [-0.3, 0.4, 0]]
+    system = hb.System(20, shape, [[0, 0, -2.5], [0, 0, 2.5]], None, velocities, turns)
     simulation = hb.Simulation(system)
     simulation.run(time=0.1)
 
     def grow(simulation):
-        shape.size = 1.25
+        shape.size = 1.1
 
     with pytest.raises(hb.NumericalError, match="overlap") as caught:
         simulation.run(time=2, every=0.01, callback=grow)

@@ -5,6 +5,7 @@ import gc
 import json
 import os
 import pathlib
+import pickle
 import re
 import signal
 import struct
@@ -325,6 +326,7 @@ def test_stalls_raise():
         simulation.run(time=1000)
     error = caught.value
     assert isinstance(error, RuntimeError) and error.failures == []
+    assert str(pickle.loads(pickle.dumps(error))) == str(error)
     assert error.stall.time == simulation.stall.time == simulation.time and error.stall.events > 0
     assert error.counters.collisions == simulation.collisions > 0
     # The simulation is whole; after a restore it may go on.
