@@ -11,7 +11,7 @@ set(hardbody_avx512 ${hardbody_avx2} -mavx512f -mavx512vl -mavx512dq -mavx512bw)
 # Only headers of Highway are used: linking hwy::hwy, even privately, would make consumers of the static libraries look
 # for it.
 function(hardbody_kernels target kernel chooser)
-  find_package(hwy 1.0 REQUIRED CONFIG)
+  hardbody_find(hwy libhwy-dev 1.0 CONFIG)
   target_include_directories(${target} SYSTEM PRIVATE $<TARGET_PROPERTY:hwy::hwy,INTERFACE_INCLUDE_DIRECTORIES>)
   target_sources(${target} PRIVATE src/${kernel}_portable.cpp)
   set_source_files_properties(src/${kernel}_portable.cpp PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)

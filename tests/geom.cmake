@@ -1,6 +1,7 @@
 # Tests of this part; see hardbody_test in CMakeLists.txt.
 hardbody_test(geom_unit_test unit
   unit/geom/enumerator_names_test.cpp
+  unit/geom/batch/batch_pairs_test.cpp
   unit/geom/batch/batch_test.cpp
   unit/geom/by_elements_test.cpp
   unit/geom/contact_elements_test.cpp

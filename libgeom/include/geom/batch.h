@@ -68,4 +68,16 @@ GEOM_EXPORT BatchSummary distance_batch(std::span<const Ellipsoid> a, std::span<
                                         std::span<const Ellipsoid> b, std::span<const Pose> X_WB,
                                         std::span<DistanceResult> results, const BatchOptions& options = {});
 
+/// Pair of ellipsoids by reference: bodies in many pairs are stored once.
+struct EllipsoidPair {
+  const Ellipsoid* a;
+  const Pose* X_WA;
+  const Ellipsoid* b;
+  const Pose* X_WB;
+};
+
+/// Overload for pairs by reference. Throws std::invalid_argument unless there are as many pairs as results.
+GEOM_EXPORT BatchSummary distance_batch(std::span<const EllipsoidPair> pairs, std::span<DistanceResult> results,
+                                        const BatchOptions& options = {});
+
 }  // namespace geom

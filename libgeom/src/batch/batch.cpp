@@ -6,8 +6,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <optional>
 #include <sstream>
+#include <string>
 #include <utility>
 #include <variant>
 
@@ -38,32 +40,24 @@ BatchKernels find_kernels(InstructionSet set) {
   return {nullptr, nullptr};
 }
 
-/// Input of a batch, and the destination of its answers.
+/// Pair of bodies, and the index of their answer.
+struct Pair : EllipsoidPair {
+  std::size_t index;
+
+  double depth() const { return a->min_curvature_radius() + b->min_curvature_radius(); }
+};
+
+/// Warm starts and limits of a batch, and the destination of its answers.
 struct Query {
-  Input<Ellipsoid> a;
-  Input<Pose> X_WA;
-  Input<Ellipsoid> b;
-  Input<Pose> X_WB;
   std::span<const Eigen::Vector3d> starts;
   std::span<DistanceResult> results;
   DistanceOptions scalar;
 
-  DistanceResult by_distance(std::size_t pair) const {
+  DistanceResult by_distance(const Pair& pair) const {
     DistanceOptions options = scalar;
-    if (!starts.empty()) options.start = starts[pair];
-    return distance(a[pair], X_WA[pair], b[pair], X_WB[pair], options);
+    if (!starts.empty()) options.start = starts[pair.index];
+    return distance(*pair.a, *pair.X_WA, *pair.b, *pair.X_WB, options);
   }
-};
-
-/// Pair of bodies, and the destination of their answer.
-struct Pair {
-  const Ellipsoid* a;
-  const Pose* X_WA;
-  const Ellipsoid* b;
-  const Pose* X_WB;
-  std::size_t index;
-
-  double depth() const { return a->min_curvature_radius() + b->min_curvature_radius(); }
 };
 
 void put_shapes(const Pair& pair, GeneralInput& in, int lane) {
@@ -131,7 +125,7 @@ class Block {
       if (is_answered(lane)) [[likely]] {
         read_answer(out_, lane, result);
       } else {
-        result = query_.by_distance(pairs_[lane].index);
+        result = query_.by_distance(pairs_[lane]);
         ++redone_;
       }
     }
@@ -230,41 +224,56 @@ InstructionSet batch_instruction_set() {
   return InstructionSet::portable;
 }
 
-BatchSummary distance_batch(std::span<const Ellipsoid> a, std::span<const Pose> X_WA, std::span<const Ellipsoid> b,
-                            std::span<const Pose> X_WB, std::span<DistanceResult> results,
-                            const BatchOptions& options) {
-  const std::size_t pairs = results.size();
-  const Query query{checked("a", a, pairs),
-                    checked("X_WA", X_WA, pairs),
-                    checked("b", b, pairs),
-                    checked("X_WB", X_WB, pairs),
-                    options.starts,
-                    results,
-                    kernel::scalar_options(options)};
-  kernel::check_starts(options, pairs);
+namespace {
+
+/// Answers the pairs that next() returns, one a call, in the order of the results.
+template <class Next>
+BatchSummary answer(std::span<DistanceResult> results, const BatchOptions& options, Next next) {
+  kernel::check_starts(options, results.size());
   const InstructionSet set = kernel::chosen(options.instruction_set);
   const BatchKernels kernels = find_kernels(set);
-
+  const Query query{options.starts, results, kernel::scalar_options(options)};
   Block<UniaxialInput> uniaxial(query, kernels.uniaxial);
   Block<GeneralInput> general(query, kernels.general);
-  const Ellipsoid* shape_a = query.a.data;
-  const Pose* pose_a = query.X_WA.data;
-  const Ellipsoid* shape_b = query.b.data;
-  const Pose* pose_b = query.X_WB.data;
-  for (std::size_t pair = 0; pair < pairs; ++pair) {
-    if (shape_a->symmetry_axis() && shape_b->symmetry_axis()) {
-      uniaxial.add({shape_a, pose_a, shape_b, pose_b, pair});
+  for (std::size_t index = 0; index < results.size(); ++index) {
+    const EllipsoidPair pair = next();
+    if (pair.a->symmetry_axis() && pair.b->symmetry_axis()) {
+      uniaxial.add({pair, index});
     } else {
-      general.add({shape_a, pose_a, shape_b, pose_b, pair});
+      general.add({pair, index});
     }
-    shape_a += query.a.stride;
-    shape_b += query.b.stride;
-    pose_a += query.X_WA.stride;
-    pose_b += query.X_WB.stride;
   }
   uniaxial.flush();
   general.flush();
   return {set, uniaxial.redone() + general.redone()};
+}
+
+}  // namespace
+
+BatchSummary distance_batch(std::span<const Ellipsoid> a, std::span<const Pose> X_WA, std::span<const Ellipsoid> b,
+                            std::span<const Pose> X_WB, std::span<DistanceResult> results,
+                            const BatchOptions& options) {
+  const std::size_t pairs = results.size();
+  const Input<Ellipsoid> in_a = checked("a", a, pairs), in_b = checked("b", b, pairs);
+  const Input<Pose> in_X_WA = checked("X_WA", X_WA, pairs), in_X_WB = checked("X_WB", X_WB, pairs);
+  EllipsoidPair next{in_a.data, in_X_WA.data, in_b.data, in_X_WB.data};
+  return answer(results, options, [&] {
+    const EllipsoidPair pair = next;
+    next.a += in_a.stride;
+    next.X_WA += in_X_WA.stride;
+    next.b += in_b.stride;
+    next.X_WB += in_X_WB.stride;
+    return pair;
+  });
+}
+
+BatchSummary distance_batch(std::span<const EllipsoidPair> pairs, std::span<DistanceResult> results,
+                            const BatchOptions& options) {
+  if (pairs.size() != results.size()) {
+    kernel::refuse("distance_batch: pairs has " + std::to_string(pairs.size()) +
+                   " elements; accepted: as many as results, which has " + std::to_string(results.size()));
+  }
+  return answer(results, options, [next = pairs.data()]() mutable { return *next++; });
 }
 
 }  // namespace geom

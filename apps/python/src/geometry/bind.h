@@ -1,0 +1,17 @@
+#pragma once
+
+/// Functions that define this room's part of the extension.
+
+#include <nanobind/nanobind.h>
+
+namespace hardbody::python {
+
+void bind_shapes(nanobind::module_& module);
+void bind_poses(nanobind::module_& module);
+void bind_motions(nanobind::module_& module);
+void bind_queries(nanobind::module_& module);
+void bind_distances(nanobind::module_& module);
+void bind_body_queries(nanobind::module_& module);
+void bind_custom_shapes(nanobind::module_& module);
+
+}  // namespace hardbody::python

@@ -1,0 +1,123 @@
+#include "geometry/bodies.h"
+
+#include "base/arguments.h"
+#include "base/parallel.h"
+#include "geometry/shapes.h"
+
+#include <geom/tolerances.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace hardbody::python {
+namespace {
+
+constexpr std::size_t kMostShapes = std::numeric_limits<std::uint32_t>::max();
+
+std::optional<RealRows> optional_rows(nb::handle value, const std::string& name, std::size_t columns) {
+  if (value.is_none()) return std::nullopt;
+  return RealRows(value, name, columns);
+}
+
+std::string entry(const std::string& name, std::size_t row) {
+  return name + '[' + std::to_string(row) + ']';
+}
+
+bool is_sequence(nb::handle value) {
+  return nb::isinstance<nb::list>(value) || nb::isinstance<nb::tuple>(value);
+}
+
+}  // namespace
+
+Bodies::Bodies(nb::handle shapes, nb::handle positions, nb::handle quaternions, nb::handle shape_of)
+    : positions_(positions, "positions", 3), quaternions_(optional_rows(quaternions, "quaternions", 4)) {
+  if (quaternions_) check_rows("quaternions", quaternions_->size(), "positions", size());
+  read_shapes(shapes);
+  read_shape_of(shape_of);
+}
+
+void Bodies::read_shapes(nb::handle shapes) {
+  if (!is_sequence(shapes)) {
+    shapes_.push_back(python::shape(shapes, "shapes"));
+    return;
+  }
+  const std::size_t count = nb::len(shapes);
+  if (count > kMostShapes) refuse_value("number of shapes", std::to_string(count), "at most 4294967295");
+  shapes_.reserve(count);
+  for (std::size_t k = 0; k < count; ++k) shapes_.push_back(python::shape(shapes[k], entry("shapes", k)));
+}
+
+void Bodies::read_shape_of(nb::handle shape_of) {
+  if (!shape_of.is_none()) {
+    const IndexRows indices(shape_of, "shape_of", 1);
+    check_rows("shape_of", indices.size(), "positions", size());
+    shape_of_.resize(size());
+    for (std::size_t k = 0; k < size(); ++k)
+      shape_of_[k] = static_cast<std::uint32_t>(indices.at(k, 0, shapes_.size()));
+    return;
+  }
+  if (shapes_.size() == 1 || size() == 0) return;
+  if (shapes_.size() != size()) {
+    throw nb::value_error(("shapes has " + std::to_string(shapes_.size()) + " elements for " + std::to_string(size()) +
+                           " bodies; accepted: one, one a body, or any number with shape_of")
+                              .c_str());
+  }
+  shape_of_.resize(size());
+  for (std::size_t k = 0; k < size(); ++k) shape_of_[k] = static_cast<std::uint32_t>(k);
+}
+
+/// Returns the pose by Pose's own checks, which mostly throw.
+geom::Pose Bodies::refused_pose(std::size_t body) const {
+  std::string name = "positions";
+  try {
+    const auto position = geom::Pose::translation(Eigen::Vector3d::Map(positions_[body])).position();
+    if (!quaternions_) return geom::Pose::translation(position);
+    name = "quaternions";
+    const double* const q = (*quaternions_)[body];
+    return geom::Pose::from_quaternion(q[0], q[1], q[2], q[3], position);
+  } catch (const std::invalid_argument& error) {
+    throw nb::value_error((entry(name, body) + ": " + error.what()).c_str());
+  }
+}
+
+PairPoses::PairPoses(const Bodies& bodies, std::size_t pairs, int threads)
+    : bodies_(bodies), stored_(nullptr, Free{bodies.size()}) {
+  // Computing a pose takes about as long as writing it to new memory and reading it again.
+  if (bodies.size() > pairs) return;
+  stored_.reset(std::allocator<geom::Pose>().allocate(bodies.size()));
+  parallel(bodies.size(), range_length(bodies.size(), threads), threads, Work([&](std::size_t begin, std::size_t end) {
+             for (std::size_t k = begin; k < end; ++k) std::construct_at(&stored_[k], bodies.pose_or_nan(k));
+           }));
+}
+
+BodyOf::BodyOf(nb::handle body_of, const Bodies& bodies, std::size_t queries, const std::string& queries_name)
+    : bodies_(bodies.size()) {
+  if (!body_of.is_none()) {
+    indices_.emplace(body_of, "body_of", 1);
+    check_rows("body_of", indices_->size(), queries_name, queries);
+    return;
+  }
+  if (bodies_ == 1 || bodies_ == queries) return;
+  throw nb::value_error((queries_name + " has " + std::to_string(queries) + " rows for " + std::to_string(bodies_) +
+                         " bodies; accepted: any number for one body, one a body, or any number with body_of")
+                            .c_str());
+}
+
+int thread_count(nb::handle threads) {
+  return static_cast<int>(integer(threads, "threads", 1, kMostThreads));
+}
+
+void check_rows(const std::string& name, std::size_t rows, const std::string& other, std::size_t wanted) {
+  if (rows == wanted) return;
+  throw nb::value_error((name + " has " + std::to_string(rows) + " rows; accepted: as many as " + other +
+                         ", which has " + std::to_string(wanted))
+                            .c_str());
+}
+
+std::size_t range_length(std::size_t count, int threads) {
+  return std::clamp<std::size_t>(count / (8 * static_cast<std::size_t>(threads)), 16, 64);
+}
+
+}  // namespace hardbody::python

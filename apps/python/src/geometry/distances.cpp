@@ -1,0 +1,241 @@
+#include "base/arguments.h"
+#include "base/arrays.h"
+#include "base/parallel.h"
+#include "geometry/bind.h"
+#include "geometry/bodies.h"
+#include "geometry/options.h"
+
+#include <geom/any_shape.h>
+#include <geom/batch.h>
+#include <geom/queries.h>
+
+#include <nanobind/nanobind.h>
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <variant>
+#include <vector>
+
+namespace hardbody::python {
+namespace {
+
+using geom::DistanceResult;
+using geom::Ellipsoid;
+using geom::Pose;
+
+/// Returns the shape as an ellipsoid, for the kernels of distance_batch, if it is one.
+std::optional<Ellipsoid> as_ellipsoid(const geom::Shape& shape) {
+  const auto of = [](const auto& s) -> std::optional<Ellipsoid> {
+    if constexpr (std::same_as<decltype(s), const Ellipsoid&>) return s;
+    if constexpr (requires { s.is_ellipsoid(); }) {
+      if (s.is_ellipsoid()) return Ellipsoid(s.semi_axes());
+    }
+    return std::nullopt;
+  };
+  return std::visit(of, shape);
+}
+
+/// Arrays of the answers.
+struct Columns {
+  explicit Columns(std::size_t rows)
+      : distance(new_array<double>({rows})),
+        normal(new_array<double>({rows, 3})),
+        point_a(new_array<double>({rows, 3})),
+        point_b(new_array<double>({rows, 3})),
+        error_bound(new_array<double>({rows})),
+        residual(new_array<double>({rows})),
+        iterations(new_array<std::int32_t>({rows})),
+        status(new_array<std::uint8_t>({rows})) {}
+
+  void put(std::size_t row, const DistanceResult& r) const {
+    distance.data[row] = r.distance;
+    Eigen::Vector3d::Map(normal.data + 3 * row) = r.normal;
+    Eigen::Vector3d::Map(point_a.data + 3 * row) = r.point_a;
+    Eigen::Vector3d::Map(point_b.data + 3 * row) = r.point_b;
+    error_bound.data[row] = r.error_bound;
+    residual.data[row] = r.residual;
+    iterations.data[row] = r.iterations;
+    status.data[row] = static_cast<std::uint8_t>(r.status);
+  }
+
+  NewArray<double> distance, normal, point_a, point_b, error_bound, residual;
+  NewArray<std::int32_t> iterations;
+  NewArray<std::uint8_t> status;
+};
+
+/// Arguments of a call on pairs, checked.
+struct PairQuery {
+  PairQuery(nb::handle shapes, nb::handle positions, nb::handle quaternions, nb::handle pairs_argument,
+            nb::handle shape_of, nb::handle threads, nb::handle start)
+      : bodies(shapes, positions, quaternions, shape_of),
+        pairs(pairs_argument, "pairs", 2),
+        thread_number(thread_count(threads)),
+        poses(bodies, pairs.size(), thread_number) {
+    if (start.is_none()) return;
+    starts.emplace(start, "start", 3);
+    check_rows("start", starts->size(), "pairs", pairs.size());
+  }
+
+  /// Does the work on all pairs (see parallel).
+  template <class WorkOrMake>
+  void run(const WorkOrMake& work) const {
+    parallel(pairs.size(), range_length(pairs.size(), thread_number), thread_number, work);
+  }
+
+  std::size_t a(std::size_t row) const { return pairs.at(row, 0, bodies.size()); }
+  std::size_t b(std::size_t row) const { return pairs.at(row, 1, bodies.size()); }
+  /// Asks for the memory of a pair's poses, which is needed soon.
+  void prefetch(std::size_t row) const {
+    if (row >= pairs.size()) return;
+    for (const std::size_t body : {pairs.unchecked(row, 0), pairs.unchecked(row, 1)}) {
+      if (body < bodies.size()) poses.prefetch(body);
+    }
+  }
+
+  Eigen::Vector3d start(std::size_t row) const {
+    if (!starts) return Eigen::Vector3d::Zero();
+    return Eigen::Vector3d::Map((*starts)[row]);
+  }
+
+  Bodies bodies;
+  IndexRows pairs;
+  int thread_number;
+  PairPoses poses;
+  std::optional<RealRows> starts;
+};
+
+/// Pairs of a call, answered in blocks: ellipsoids by distance_batch, other pairs one by one.
+class Distances {
+ public:
+  Distances(const PairQuery& query, const geom::DistanceOptions& options, const Columns& out)
+      : query_(query), options_(options), out_(out) {
+    for (const geom::Shape& shape : query.bodies.shapes()) ellipsoids_.push_back(as_ellipsoid(shape));
+  }
+
+  /// Returns work on ranges of the pairs, with memory of its own.
+  Work work() {
+    return
+        [this, block = std::make_shared<Block>()](std::size_t begin, std::size_t end) { answer(begin, end, *block); };
+  }
+
+  /// Returns the number of pairs that the kernels did not answer.
+  std::size_t redone() const { return redone_; }
+
+ private:
+  /// Number of pairs whose numbers, poses and answers fit into the first-level cache.
+  static constexpr std::size_t kBlock = 64;
+  /// Number of pairs by which poses are asked for in advance.
+  static constexpr std::size_t kAhead = 32;
+
+  struct Block {
+    std::size_t count = 0;
+    std::array<std::size_t, kBlock> rows;
+    std::array<geom::EllipsoidPair, kBlock> pairs;
+    std::array<Eigen::Vector3d, kBlock> starts;
+    std::array<Pose, kBlock> slots_a;
+    std::array<Pose, kBlock> slots_b;
+    std::array<DistanceResult, kBlock> found;
+  };
+
+  void answer(std::size_t begin, std::size_t end, Block& block) {
+    block.count = 0;
+    std::size_t redone = 0;
+    for (std::size_t row = begin; row < end; ++row) {
+      query_.prefetch(row + kAhead);
+      const std::size_t a = query_.a(row), b = query_.b(row), k = block.count;
+      const auto& shape_a = ellipsoids_[query_.bodies.shape_index(a)];
+      const auto& shape_b = ellipsoids_[query_.bodies.shape_index(b)];
+      const Pose* const X_WA = query_.poses.get(a, block.slots_a[k]);
+      const Pose* const X_WB = query_.poses.get(b, block.slots_b[k]);
+      if (shape_a && shape_b) {
+        block.pairs[k] = {&*shape_a, X_WA, &*shape_b, X_WB};
+        block.rows[k] = row;
+        if (query_.starts) block.starts[k] = query_.start(row);
+        if (++block.count == kBlock) redone += flush(block);
+      } else {
+        geom::DistanceOptions options = options_;
+        options.start = query_.start(row);
+        out_.put(row, geom::distance(query_.bodies.shape(a), *X_WA, query_.bodies.shape(b), *X_WB, options));
+        ++redone;
+      }
+    }
+    redone_ += redone + flush(block);
+  }
+
+  std::size_t flush(Block& block) const {
+    if (block.count == 0) return 0;
+    geom::BatchOptions options{.max_iterations = options_.max_iterations, .penetration = options_.penetration};
+    if (query_.starts) options.starts = std::span(block.starts).first(block.count);
+    const geom::BatchSummary summary = geom::distance_batch(std::span(block.pairs).first(block.count),
+                                                            std::span(block.found).first(block.count), options);
+    for (std::size_t k = 0; k < block.count; ++k) out_.put(block.rows[k], block.found[k]);
+    block.count = 0;
+    return summary.redone;
+  }
+
+  const PairQuery& query_;
+  const geom::DistanceOptions& options_;
+  const Columns& out_;
+  std::vector<std::optional<Ellipsoid>> ellipsoids_;
+  std::atomic<std::size_t> redone_ = 0;
+};
+
+nb::tuple distance_many(nb::handle shapes, nb::handle positions, nb::handle quaternions, nb::handle pairs,
+                        nb::handle shape_of, nb::handle threads, nb::handle start, nb::handle max_iterations,
+                        nb::handle penetration) {
+  const geom::DistanceOptions options = distance_options(max_iterations, penetration);
+  const PairQuery query(shapes, positions, quaternions, pairs, shape_of, threads, start);
+  const Columns out(query.pairs.size());
+  Distances distances(query, options, out);
+  query.run(std::function<Work()>([&] { return distances.work(); }));
+  return nb::make_tuple(out.distance.array, out.normal.array, out.point_a.array, out.point_b.array,
+                        out.error_bound.array, out.residual.array, out.iterations.array, out.status.array,
+                        distances.redone(), to_string(geom::batch_instruction_set()));
+}
+
+nb::tuple overlap_many(nb::handle shapes, nb::handle positions, nb::handle quaternions, nb::handle pairs,
+                       nb::handle shape_of, nb::handle threads, nb::handle start) {
+  const PairQuery query(shapes, positions, quaternions, pairs, shape_of, threads, start);
+  const std::size_t rows = query.pairs.size();
+  const NewArray<bool> yes = new_array<bool>({rows}), unknown = new_array<bool>({rows});
+  query.run(Work([&](std::size_t begin, std::size_t end) {
+    Pose slot_a, slot_b;
+    for (std::size_t row = begin; row < end; ++row) {
+      const std::size_t a = query.a(row), b = query.b(row);
+      const geom::Answer answer = geom::overlap(query.bodies.shape(a), *query.poses.get(a, slot_a),
+                                                query.bodies.shape(b), *query.poses.get(b, slot_b), query.start(row));
+      yes.data[row] = answer == geom::Answer::yes;
+      unknown.data[row] = answer == geom::Answer::unknown;
+    }
+  }));
+  return nb::make_tuple(yes.array, unknown.array);
+}
+
+}  // namespace
+
+void bind_distances(nb::module_& module) {
+  const auto required = [](const char* name) { return nb::arg(name).none(); };
+  module.def("distance_many", &distance_many, required("shapes"), required("positions"), required("quaternions"),
+             required("pairs"), required("shape_of"), required("threads"), required("start"),
+             required("max_iterations"), required("penetration"),
+             nb::sig("def distance_many(shapes: typing.Any, positions: typing.Any, quaternions: typing.Any, "
+                     "pairs: typing.Any, shape_of: typing.Any, threads: typing.Any, start: typing.Any, "
+                     "max_iterations: typing.Any, penetration: typing.Any) -> tuple[typing.Any, ...]"));
+  module.def("overlap_many", &overlap_many, required("shapes"), required("positions"), required("quaternions"),
+             required("pairs"), required("shape_of"), required("threads"), required("start"),
+             nb::sig("def overlap_many(shapes: typing.Any, positions: typing.Any, quaternions: typing.Any, "
+                     "pairs: typing.Any, shape_of: typing.Any, threads: typing.Any, start: typing.Any) "
+                     "-> tuple[typing.Any, ...]"));
+}
+
+}  // namespace hardbody::python

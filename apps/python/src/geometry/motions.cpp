@@ -1,0 +1,174 @@
+#include "base/arguments.h"
+#include "base/arrays.h"
+#include "geometry/bind.h"
+#include "geometry/shapes.h"
+
+#include <ed/contact_options.h>
+#include <ed/motion.h>
+#include <ed/time_of_contact.h>
+
+#include <nanobind/nanobind.h>
+#include <nanobind/stl/string.h>
+
+#include <Eigen/Core>
+
+#include <array>
+#include <limits>
+#include <string>
+
+namespace hardbody::python {
+namespace {
+
+using ed::ContactResult;
+using ed::Motion;
+
+Motion motion_of(nb::handle pose, nb::handle velocity, nb::handle angular_velocity, nb::handle inertia,
+                 nb::handle time) {
+  Motion motion;
+  if (!pose.is_none()) motion.pose = instance<geom::Pose>(pose, "pose");
+  if (!velocity.is_none()) motion.velocity = finite_vector3(velocity, "velocity");
+  if (!angular_velocity.is_none()) motion.angular_velocity = finite_vector3(angular_velocity, "angular_velocity");
+  if (!inertia.is_none()) motion.inertia = finite_vector3(inertia, "inertia");
+  motion.time = number(time, "time");
+  static_cast<void>(ed::propagate(motion, motion.time));  // refuses what is no motion
+  return motion;
+}
+
+std::string text_of(const Motion& m) {
+  return "Motion(" + nb::cast<std::string>(nb::repr(nb::cast(m.pose))) + ", velocity=" + shown(m.velocity) +
+         ", angular_velocity=" + shown(m.angular_velocity) + ", inertia=" + shown(m.inertia) +
+         ", time=" + shown(m.time) + ')';
+}
+
+void bind_motion(nb::module_& module) {
+  const auto array = [](const char* signature) { return nb::for_getter(nb::sig(signature)); };
+  nb::class_<Motion>(module, "Motion", "Free motion of a rigid body, given by its state at one time.")
+      .def(
+          "__init__",
+          [](Motion* self, nb::handle pose, nb::handle velocity, nb::handle angular_velocity, nb::handle inertia,
+             nb::handle time) { new (self) Motion(motion_of(pose, velocity, angular_velocity, inertia, time)); },
+          nb::arg("pose") = nb::none(), nb::arg("velocity") = nb::none(), nb::arg("angular_velocity") = nb::none(),
+          nb::arg("inertia") = nb::none(), nb::arg("time").none() = 0.0,
+          nb::sig("def __init__(self, pose: Pose | None = None, velocity: numpy.typing.ArrayLike | None = None, "
+                  "angular_velocity: numpy.typing.ArrayLike | None = None, "
+                  "inertia: numpy.typing.ArrayLike | None = None, time: float = 0.0) -> None"),
+          "Constructs a motion from its state at `time`: the pose (default the identity); the velocity of the centre\n"
+          "of mass and the angular velocity, world frame, shape (3,) (default at rest); and the principal moments of\n"
+          "inertia about body x, y, z, shape (3,) (default 1, 1, 1). Raises ValueError unless all numbers are finite,\n"
+          "the moments positive and none larger than the sum of the other two.")
+      .def_prop_ro(
+          "pose", [](const Motion& m) { return m.pose; }, "Pose at `time`.")
+      .def_prop_ro(
+          "velocity", [](const Motion& m) { return array_of(m.velocity); },
+          array("def velocity(self) -> numpy.typing.NDArray[numpy.float64]"),
+          "Velocity of the centre of mass, world frame, shape (3,).")
+      .def_prop_ro(
+          "angular_velocity", [](const Motion& m) { return array_of(m.angular_velocity); },
+          array("def angular_velocity(self) -> numpy.typing.NDArray[numpy.float64]"),
+          "Angular velocity, world frame, shape (3,).")
+      .def_prop_ro(
+          "inertia", [](const Motion& m) { return array_of(m.inertia); },
+          array("def inertia(self) -> numpy.typing.NDArray[numpy.float64]"),
+          "Principal moments of inertia about body x, y, z, shape (3,).")
+      .def_prop_ro(
+          "time", [](const Motion& m) { return m.time; }, "Time of this state.")
+      .def(
+          "at", [](const Motion& m, nb::handle time) { return ed::propagate(m, number(time, "time")); },
+          nb::arg("time").none(), nb::sig("def at(self, time: float) -> Motion"),
+          "Returns the same motion with its state at another time, before or after, by closed forms. The error is\n"
+          "rounding, below 2e-15 (1 + |omega| |time - self.time|) radian.")
+      .def("__repr__", &text_of)
+      .def(
+          "__reduce__",
+          [](nb::handle self) {
+            const Motion& m = nb::cast<const Motion&>(self);
+            return nb::make_tuple(self.type(),
+                                  nb::make_tuple(m.pose, array_of(m.velocity), array_of(m.angular_velocity),
+                                                 array_of(m.inertia), m.time));
+          },
+          nb::sig("def __reduce__(self) -> tuple[typing.Any, ...]"));
+}
+
+void bind_contact_result(nb::module_& module) {
+  const auto array = [](const char* signature) { return nb::for_getter(nb::sig(signature)); };
+  nb::class_<ContactResult>(module, "ContactResult", "Answer of time_of_contact.")
+      .def_prop_ro(
+          "status", [](const ContactResult& r) { return to_string(r.status); },
+          array("def status(self) -> typing.Literal['hit', 'separated', 'overlapping', 'budget_exhausted', 'failed']"),
+          "Outcome. 'hit': the bodies touch at `time`, approaching, and not before. 'separated': no contact up to\n"
+          "`time` = t_max. 'overlapping': the bodies overlap at `time`. 'budget_exhausted': max_evaluations are used\n"
+          "up; `time` is a lower bound of the time of contact, from which the search may be continued. 'failed': no\n"
+          "method can decide whether the bodies overlap at `time`.")
+      .def_prop_ro(
+          "time", [](const ContactResult& r) { return r.time; }, "Time of the outcome.")
+      .def_prop_ro(
+          "point", [](const ContactResult& r) { return array_of(r.point); },
+          array("def point(self) -> numpy.typing.NDArray[numpy.float64]"),
+          "Contact point at `time`, world frame, shape (3,); NaN unless it is a hit.")
+      .def_prop_ro(
+          "normal", [](const ContactResult& r) { return array_of(r.normal); },
+          array("def normal(self) -> numpy.typing.NDArray[numpy.float64]"),
+          "Unit normal from A to B, world frame, shape (3,); NaN unless it is a hit.")
+      .def_prop_ro(
+          "evaluations", [](const ContactResult& r) { return r.evaluations; },
+          "Number of evaluations of the pair at points in time.")
+      .def_prop_ro(
+          "rescues", [](const ContactResult& r) { return r.rescues; },
+          "Number of distances that 'newton8' or 'newton5' declined and the dual method answered.")
+      .def("__repr__", [](const ContactResult& r) {
+        return "ContactResult(status='" + std::string(to_string(r.status)) + "', time=" + shown(r.time) +
+               ", point=" + shown(r.point) + ", normal=" + shown(r.normal) +
+               ", evaluations=" + std::to_string(r.evaluations) + ')';
+      });
+}
+
+ContactResult contact(nb::handle a, nb::handle motion_a, nb::handle b, nb::handle motion_b, nb::handle t_max,
+                      nb::handle finder, nb::handle max_evaluations, nb::handle eps_d, nb::handle distance,
+                      nb::handle root) {
+  const ed::BodyShape shape_a = body_shape(a, "a"), shape_b = body_shape(b, "b");
+  const Motion at_a = instance<Motion>(motion_a, "motion_a"), at_b = instance<Motion>(motion_b, "motion_b");
+  const double until = number(t_max, "t_max");
+  ed::ContactOptions options;
+  options.finder = choice(finder, "finder", std::array{ed::Finder::certified, ed::Finder::bracketing});
+  options.max_evaluations =
+      static_cast<int>(integer(max_evaluations, "max_evaluations", 1, std::numeric_limits<int>::max()));
+  options.eps_d = positive(eps_d, "eps_d");
+  options.distance =
+      choice(distance, "distance",
+             std::array{ed::DistanceMethod::dual, ed::DistanceMethod::newton8, ed::DistanceMethod::newton5});
+  options.root = choice(root, "root", std::array{ed::ContactRoot::newton, ed::ContactRoot::one_dimensional});
+  const nb::gil_scoped_release released;
+  return ed::time_of_contact(shape_a, at_a, shape_b, at_b, until, options);
+}
+
+void bind_time_of_contact(nb::module_& module) {
+  module.def(
+      "time_of_contact", &contact, nb::arg("a").none(), nb::arg("motion_a").none(), nb::arg("b").none(),
+      nb::arg("motion_b").none(), nb::arg("t_max").none(), nb::kw_only(), nb::arg("finder").none() = "certified",
+      nb::arg("max_evaluations").none() = 2000, nb::arg("eps_d").none() = 1e-6, nb::arg("distance").none() = "dual",
+      nb::arg("root").none() = "newton",
+      nb::sig("def time_of_contact(a: hardbody._typing.Shape, motion_a: Motion, b: hardbody._typing.Shape, "
+              "motion_b: Motion, t_max: float, *, finder: typing.Literal['certified', 'bracketing'] = 'certified', "
+              "max_evaluations: int = 2000, eps_d: float = 1e-6, "
+              "distance: typing.Literal['dual', 'newton8', 'newton5'] = 'dual', "
+              "root: typing.Literal['newton', 'one_dimensional'] = 'newton') -> ContactResult"),
+      "Returns the first time in [max of the motions' times, t_max] at which two freely moving bodies touch and\n"
+      "approach; t_max may be infinite. The search is certified: it never steps over a contact, however grazing.\n"
+      "Bodies are ellipsoids, superellipsoids with exponents from 0.25 to 1.6, and shapes of your own.\n"
+      "\n"
+      "max_evaluations limits the effort: at 0.3 to 2 microseconds each for ellipsoids of revolution, up to 50 for\n"
+      "others. finder='bracketing' is the method of De Michele (2010) instead, without a certificate, to which eps_d\n"
+      "(length), distance and root apply. The GIL is released.\n"
+      "\n"
+      "Raises ValueError for t_max before the motions' times, and for exponents out of range.");
+}
+
+}  // namespace
+
+void bind_motions(nb::module_& module) {
+  bind_motion(module);
+  bind_contact_result(module);
+  bind_time_of_contact(module);
+}
+
+}  // namespace hardbody::python

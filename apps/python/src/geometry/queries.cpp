@@ -1,0 +1,291 @@
+#include "base/arguments.h"
+#include "base/arrays.h"
+#include "geometry/bind.h"
+#include "geometry/custom_queries.h"
+#include "geometry/options.h"
+#include "geometry/shapes.h"
+
+#include <geom/any_shape.h>
+#include <geom/mass.h>
+#include <geom/queries.h>
+
+#include <nanobind/nanobind.h>
+#include <nanobind/stl/string.h>
+
+#include <Eigen/Core>
+
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <variant>
+
+namespace hardbody::python {
+namespace {
+
+using geom::ClosestPoint;
+using geom::DistanceResult;
+using geom::Pose;
+using geom::RayHit;
+
+const Pose& pose(nb::handle value, const char* name) {
+  return instance<Pose>(value, name);
+}
+
+/// Defines an attribute that is a vector.
+template <class Result>
+void bind_vector(nb::class_<Result>& type, const char* name, Eigen::Vector3d Result::*member, const char* doc) {
+  const std::string signature = std::string("def ") + name + "(self) -> numpy.typing.NDArray[numpy.float64]";
+  type.def_prop_ro(
+      name, [member](const Result& r) { return array_of(r.*member); }, nb::for_getter(nb::sig(signature.c_str())), doc);
+}
+
+constexpr const char* kDistanceStatus =
+    "def status(self) -> typing.Literal['separated', 'overlapping', 'not_converged', 'singular']";
+
+void bind_distance_result(nb::module_& module) {
+  nb::class_<DistanceResult> type(
+      module, "DistanceResult",
+      "Answer of distance, world frame. Every number is NaN if `status` is 'not_converged' or 'singular'.\n"
+      "\n"
+      "point_b - point_a = distance * normal to rounding.");
+  type.def_prop_ro(
+          "status", [](const DistanceResult& r) { return to_string(r.status); },
+          nb::for_getter(nb::sig(kDistanceStatus)),
+          "'separated' (or touching; certain if distance > 0), 'overlapping' (certain if distance + error_bound < 0),\n"
+          "'not_converged' or 'singular': no answer.")
+      .def_prop_ro(
+          "distance", [](const DistanceResult& r) { return r.distance; },
+          "Signed distance; below 0: minus the length of the shortest translation that separates the bodies.")
+      .def_prop_ro(
+          "error_bound", [](const DistanceResult& r) { return r.error_bound; },
+          "Certified: distance <= true distance <= distance + error_bound, apart from rounding (1e-15 of the size of\n"
+          "the pair). Infinite where nothing is certified: deep overlaps with penetration='local'.")
+      .def_prop_ro(
+          "residual", [](const DistanceResult& r) { return r.residual; },
+          "Deviation (length) of the points found, those on the surfaces, from being distance * normal apart.")
+      .def_prop_ro(
+          "iterations", [](const DistanceResult& r) { return r.iterations; }, "Number of evaluations.")
+      .def("__repr__", [](const DistanceResult& r) {
+        return "DistanceResult(status='" + std::string(to_string(r.status)) + "', distance=" + shown(r.distance) +
+               ", normal=" + shown(r.normal) + ", point_a=" + shown(r.point_a) + ", point_b=" + shown(r.point_b) +
+               ", error_bound=" + shown(r.error_bound) + ')';
+      });
+  bind_vector(type, "normal", &DistanceResult::normal, "Unit vector from A to B, shape (3,).");
+  bind_vector(type, "point_a", &DistanceResult::point_a, "Closest point of A, shape (3,).");
+  bind_vector(type, "point_b", &DistanceResult::point_b, "Closest point of B, shape (3,).");
+}
+
+void bind_distance(nb::module_& module) {
+  module.def(
+      "distance",
+      [](nb::handle a, nb::handle pose_a, nb::handle b, nb::handle pose_b, nb::handle start, nb::handle max_iterations,
+         nb::handle penetration) {
+        geom::DistanceOptions options = distance_options(max_iterations, penetration);
+        if (!start.is_none()) options.start = vector3(start, "start");
+        return any::distance(body_shape(a, "a"), pose(pose_a, "pose_a"), body_shape(b, "b"), pose(pose_b, "pose_b"),
+                             options);
+      },
+      nb::arg("a").none(), nb::arg("pose_a").none(), nb::arg("b").none(), nb::arg("pose_b").none(), nb::kw_only(),
+      nb::arg("start") = nb::none(), nb::arg("max_iterations").none() = geom::kMaxIterations,
+      nb::arg("penetration").none() = "global",
+      nb::sig("def distance(a: hardbody._typing.Shape, pose_a: Pose, b: hardbody._typing.Shape, pose_b: Pose, "
+              "*, start: numpy.typing.ArrayLike | None = None, max_iterations: int = 60, "
+              "penetration: typing.Literal['global', 'local'] = 'global') -> DistanceResult"),
+      "Returns the signed distance of two bodies, with closest points, normal and a certified error bound.\n"
+      "\n"
+      "start: a guess of the normal from A to B, shape (3,), for instance the last answer's. max_iterations: maximum\n"
+      "number of evaluations from each start, at least 1. penetration: 'global', the shortest of all translations "
+      "that\n"
+      "separate overlapping bodies; 'local', the nearest stationary one, which is faster at large depths.\n"
+      "\n"
+      "Accuracy for ellipsoids: 1e-13 of the size of the pair when apart, error_bound when deep in each other. A\n"
+      "query takes a fraction of a microsecond for ellipsoids, one to three for superellipsoids, 0.05 to 0.3\n"
+      "milliseconds in deep overlaps. distance_many answers many pairs, several times faster.");
+  module.def(
+      "distance_lower_bound",
+      [](nb::handle a, nb::handle pose_a, nb::handle b, nb::handle pose_b, nb::handle n) {
+        return any::distance_lower_bound(body_shape(a, "a"), pose(pose_a, "pose_a"), body_shape(b, "b"),
+                                         pose(pose_b, "pose_b"), direction3(n, "n"));
+      },
+      nb::arg("a").none(), nb::arg("pose_a").none(), nb::arg("b").none(), nb::arg("pose_b").none(), nb::arg("n").none(),
+      nb::sig("def distance_lower_bound(a: hardbody._typing.Shape, pose_a: Pose, b: hardbody._typing.Shape, "
+              "pose_b: Pose, n: numpy.typing.ArrayLike) -> float"),
+      "Returns a lower bound of the distance, certain for any direction n from A to B, world frame, shape (3,): the\n"
+      "gap between the tangent planes across n, less its rounding error. Negative if the bodies overlap in that\n"
+      "projection.");
+}
+
+/// Neither answer of a yes or no is certain.
+class Undecided : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+bool overlap(nb::handle a, nb::handle pose_a, nb::handle b, nb::handle pose_b, nb::handle start) {
+  const Eigen::Vector3d guess = start.is_none() ? Eigen::Vector3d::Zero() : vector3(start, "start");
+  const geom::Answer answer =
+      any::overlap(body_shape(a, "a"), pose(pose_a, "pose_a"), body_shape(b, "b"), pose(pose_b, "pose_b"), guess);
+  if (answer != geom::Answer::unknown) return answer == geom::Answer::yes;
+  throw Undecided("overlap: neither answer is certain, the bodies touch within the error bound; distance has bounds");
+}
+
+void bind_overlap(nb::module_& module) {
+  nb::exception<Undecided>(module, "UndecidedError", PyExc_ArithmeticError).attr("__doc__") =
+      "Raised by overlap where neither answer is certain.";
+  module.def(
+      "overlap", &overlap, nb::arg("a").none(), nb::arg("pose_a").none(), nb::arg("b").none(), nb::arg("pose_b").none(),
+      nb::kw_only(), nb::arg("start") = nb::none(),
+      nb::sig("def overlap(a: hardbody._typing.Shape, pose_a: Pose, b: hardbody._typing.Shape, pose_b: Pose, "
+              "*, start: numpy.typing.ArrayLike | None = None) -> bool"),
+      "Returns whether two bodies overlap; touching counts as overlap. Mostly decided by one evaluation, across\n"
+      "`start` (a guess of the normal from A to B, shape (3,)) or the line of centres.\n"
+      "\n"
+      "Raises UndecidedError if neither answer is certain: bodies that touch within the error bound, rare and only\n"
+      "with flat or long superellipsoids.");
+}
+
+void bind_closest_point(nb::module_& module) {
+  nb::class_<ClosestPoint> type(module, "ClosestPoint",
+                                "Answer of closest_point, world frame. Every number is NaN if there is no answer.");
+  type.def_prop_ro(
+          "status", [](const ClosestPoint& r) { return to_string(r.status); }, nb::for_getter(nb::sig(kDistanceStatus)),
+          "'separated': the given point is outside; 'overlapping': inside; 'not_converged', 'singular': no answer.")
+      .def_prop_ro(
+          "distance", [](const ClosestPoint& r) { return r.distance; },
+          "Signed distance; below 0: the given point is inside, at this depth.")
+      .def_prop_ro(
+          "error_bound", [](const ClosestPoint& r) { return r.error_bound; },
+          "Certified: distance <= true distance <= distance + error_bound, apart from rounding.")
+      .def("__repr__", [](const ClosestPoint& r) {
+        return "ClosestPoint(status='" + std::string(to_string(r.status)) + "', distance=" + shown(r.distance) +
+               ", point=" + shown(r.point) + ", normal=" + shown(r.normal) + ", error_bound=" + shown(r.error_bound) +
+               ')';
+      });
+  bind_vector(type, "point", &ClosestPoint::point, "Closest point of the surface, shape (3,).");
+  bind_vector(type, "normal", &ClosestPoint::normal,
+              "Unit outward normal, shape (3,): the given point is point + distance * normal.");
+  module.def(
+      "closest_point",
+      [](nb::handle s, nb::handle X, nb::handle point) {
+        return any::closest_point(body_shape(s, "shape"), pose(X, "pose"), finite_vector3(point, "point"));
+      },
+      nb::arg("shape").none(), nb::arg("pose").none(), nb::arg("point").none(),
+      nb::sig("def closest_point(shape: hardbody._typing.Shape, pose: Pose, point: numpy.typing.ArrayLike) "
+              "-> ClosestPoint"),
+      "Returns the point of a body's surface that is closest to a point, world frame, shape (3,), which may be "
+      "inside.\n"
+      "Accuracy and certificate are those of distance.");
+}
+
+void bind_contains(nb::module_& module) {
+  module.def(
+      "contains",
+      [](nb::handle s, nb::handle X, nb::handle point) {
+        const std::optional<bool> answer =
+            any::contains(body_shape(s, "shape"), pose(X, "pose"), finite_vector3(point, "point"));
+        if (answer) return *answer;
+        throw Undecided("contains: the point is on the surface within the error bound; closest_point has bounds");
+      },
+      nb::arg("shape").none(), nb::arg("pose").none(), nb::arg("point").none(),
+      nb::sig("def contains(shape: hardbody._typing.Shape, pose: Pose, point: numpy.typing.ArrayLike) -> bool"),
+      "Returns whether a point, world frame, shape (3,), is in the body or on its surface. Raises\n"
+      "UndecidedError for shapes of your own where neither answer is certain.");
+}
+
+void bind_ray_cast(nb::module_& module) {
+  nb::class_<RayHit> type(module, "RayHit", "Answer of ray_cast, world frame. Numbers are NaN unless the ray meets.");
+  type.def_prop_ro(
+          "status", [](const RayHit& r) { return to_string(r.status); },
+          nb::for_getter(nb::sig("def status(self) -> typing.Literal['hit', 'missed', 'inside', 'not_converged']")),
+          "'hit': the ray meets the body at `t`; 'missed': certified; 'inside': the ray starts inside, t = 0;\n"
+          "'not_converged': no answer.")
+      .def_prop_ro(
+          "t", [](const RayHit& r) { return r.t; }, "Ray parameter, in units of the direction's length.")
+      .def("__repr__", [](const RayHit& r) {
+        return "RayHit(status='" + std::string(to_string(r.status)) + "', t=" + shown(r.t) +
+               ", point=" + shown(r.point) + ", normal=" + shown(r.normal) + ')';
+      });
+  bind_vector(type, "point", &RayHit::point, "First point of the ray in the body, shape (3,).");
+  bind_vector(type, "normal", &RayHit::normal, "Unit outward normal there, shape (3,).");
+  module.def(
+      "ray_cast",
+      [](nb::handle s, nb::handle X, nb::handle origin, nb::handle direction) {
+        return any::ray_cast(body_shape(s, "shape"), pose(X, "pose"), finite_vector3(origin, "origin"),
+                             direction3(direction, "direction"));
+      },
+      nb::arg("shape").none(), nb::arg("pose").none(), nb::arg("origin").none(), nb::arg("direction").none(),
+      nb::sig("def ray_cast(shape: hardbody._typing.Shape, pose: Pose, origin: numpy.typing.ArrayLike, "
+              "direction: numpy.typing.ArrayLike) -> RayHit"),
+      "Returns the first point origin + t direction, t >= 0, in the body; both of shape (3,), world frame, the\n"
+      "direction of any length but 0. The point is within 1e-13 of the bounding radius of the surface.");
+}
+
+/// Volume and moments of a body of uniform density.
+struct Mass {
+  double density = 1;
+  geom::MassProperties unit;  ///< properties at density 1
+};
+
+Mass mass_properties(nb::handle value, nb::handle density, nb::handle quadrature_tolerance) {
+  const geom::Shape body = shape(value, "shape");
+  Mass mass{positive(density, "density"), {}};
+  if (!quadrature_tolerance.is_none()) {
+    const double tolerance = positive(quadrature_tolerance, "quadrature_tolerance");
+    const nb::gil_scoped_release released;
+    mass.unit =
+        std::visit([&](const auto& s) { return geom::mass_properties(s, s.bounding_radius(), tolerance); }, body);
+    return mass;
+  }
+  mass.unit.volume = geom::volume(body);
+  mass.unit.inertia = geom::inertia(body, mass.unit.volume).asDiagonal();
+  mass.unit.relative_error = 1e-12;
+  return mass;
+}
+
+void bind_mass_properties(nb::module_& module) {
+  const auto array = [](const char* signature) { return nb::for_getter(nb::sig(signature)); };
+  nb::class_<Mass>(module, "MassProperties", "Volume, mass and moments of a body of uniform density, body frame.")
+      .def_prop_ro(
+          "volume", [](const Mass& m) { return m.unit.volume; }, "Volume, length^3.")
+      .def_prop_ro(
+          "mass", [](const Mass& m) { return m.density * m.unit.volume; }, "Density times volume.")
+      .def_prop_ro(
+          "center_of_mass",
+          [](const Mass& m) { return array_of(Eigen::Vector3d(m.unit.first_moment / m.unit.volume)); },
+          array("def center_of_mass(self) -> numpy.typing.NDArray[numpy.float64]"), "Centre of mass, shape (3,).")
+      .def_prop_ro(
+          "inertia", [](const Mass& m) { return array_of(Eigen::Matrix3d(m.density * m.unit.inertia)); },
+          array("def inertia(self) -> numpy.typing.NDArray[numpy.float64]"),
+          "Moments of inertia about the origin, shape (3, 3): integral of density (|x|^2 I - x x^T).")
+      .def_prop_ro(
+          "relative_error", [](const Mass& m) { return m.unit.relative_error; },
+          "Bound (closed forms) or estimate (quadrature) of the relative error of volume and inertia.")
+      .def("__repr__", [](const Mass& m) {
+        const Eigen::Vector3d moments = m.density * m.unit.inertia.diagonal();
+        return "MassProperties(volume=" + shown(m.unit.volume) + ", mass=" + shown(m.density * m.unit.volume) +
+               ", inertia=diag(" + shown(moments) + "), relative_error=" + shown(m.unit.relative_error) + ')';
+      });
+  module.def(
+      "mass_properties", &mass_properties, nb::arg("shape").none(), nb::arg("density").none() = 1.0, nb::kw_only(),
+      nb::arg("quadrature_tolerance") = nb::none(),
+      nb::sig("def mass_properties(shape: Ellipsoid | Superellipsoid, density: float = 1.0, *, "
+              "quadrature_tolerance: float | None = None) -> MassProperties"),
+      "Returns volume, mass and moments of inertia of a body of uniform density, by closed forms.\n"
+      "\n"
+      "With quadrature_tolerance, a relative error, they are integrated over the surface instead, in milliseconds to\n"
+      "seconds (boxes with sharp edges); the GIL is released.");
+}
+
+}  // namespace
+
+void bind_queries(nb::module_& module) {
+  bind_distance_result(module);
+  bind_distance(module);
+  bind_overlap(module);
+  bind_closest_point(module);
+  bind_contains(module);
+  bind_ray_cast(module);
+  bind_mass_properties(module);
+}
+
+}  // namespace hardbody::python

@@ -1,0 +1,61 @@
+"""Random bodies and manufactured answers."""
+
+from __future__ import annotations
+
+import pathlib
+
+import numpy as np
+import pytest
+from hypothesis import settings
+
+REFERENCE = pathlib.Path(__file__).resolve().parents[1] / "reference"
+
+settings.register_profile("repeatable", derandomize=True, deadline=None, database=None)
+settings.load_profile("repeatable")
+
+
+@pytest.fixture
+def random() -> np.random.Generator:
+    return np.random.default_rng(20240601)
+
+
+def unit_rows(random: np.random.Generator, rows: int, columns: int) -> np.ndarray:
+    """Random unit vectors or quaternions."""
+    v = random.normal(size=(rows, columns))
+    return v / np.linalg.norm(v, axis=1, keepdims=True)
+
+
+def rotations(q: np.ndarray) -> np.ndarray:
+    """Rotation matrices of unit quaternions (w, x, y, z), by the product v -> q v q*."""
+    w, u = q[:, :1, None], q[:, 1:, None]
+    cross = np.zeros((len(q), 3, 3))
+    x, y, z = q[:, 1], q[:, 2], q[:, 3]
+    cross[:, 0, 1], cross[:, 0, 2], cross[:, 1, 2] = -z, y, -x
+    cross[:, 1, 0], cross[:, 2, 0], cross[:, 2, 1] = z, -y, x
+    return np.eye(3) * (w * w - (u * u).sum(axis=1, keepdims=True)) + 2 * u * u.transpose(0, 2, 1) + 2 * w * cross
+
+
+def support_points(axes: np.ndarray, R: np.ndarray, n: np.ndarray) -> np.ndarray:
+    """Support points of ellipsoids at the origin in the directions n, all in the world frame: D^2 n / |D n|."""
+    local = np.einsum("kji,kj->ki", R, n)
+    scaled = axes * local
+    return np.einsum("kij,kj->ki", R, axes * scaled / np.linalg.norm(scaled, axis=1, keepdims=True))
+
+
+class Pairs:
+    """Pairs of equal ellipsoids whose distance is known: support points in one direction, moved apart along it."""
+
+    def __init__(self, random: np.random.Generator, axes: tuple[float, float, float], number: int) -> None:
+        self.axes = np.array(axes)
+        self.quaternions = unit_rows(random, 2 * number, 4)
+        self.normal = unit_rows(random, number, 3)
+        self.gap = 10 ** random.uniform(-6, 1, number)
+        R = rotations(self.quaternions)
+        at_a = support_points(self.axes, R[0::2], self.normal)
+        at_b = support_points(self.axes, R[1::2], -self.normal)
+        self.positions = np.zeros((2 * number, 3))
+        self.positions[0::2] = random.uniform(-5, 5, (number, 3))
+        self.positions[1::2] = self.positions[0::2] + at_a + self.gap[:, None] * self.normal - at_b
+        self.point_a = self.positions[0::2] + at_a
+        self.point_b = self.positions[1::2] + at_b
+        self.pairs = np.arange(2 * number).reshape(number, 2)

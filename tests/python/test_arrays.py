@@ -1,0 +1,201 @@
+"""Array forms: right values, forms of arrays, threads, interrupts."""
+
+import signal
+import threading
+import time
+
+import numpy as np
+import pytest
+from conftest import Pairs, unit_rows
+
+import hardbody as hb
+
+
+@pytest.fixture(scope="module")
+def mixture():
+    """60 bodies of three shapes and 400 pairs of them, of which many overlap."""
+    random = np.random.default_rng(3)
+    shapes = [hb.Ellipsoid([1, 1, 3]), hb.Ellipsoid([1, 2, 3]), hb.Superellipsoid([1, 1.5, 2], 0.6, 0.7)]
+    return dict(
+        shapes=shapes,
+        positions=random.uniform(-6, 6, (60, 3)),
+        quaternions=unit_rows(random, 60, 4),
+        pairs=random.integers(0, 60, (400, 2)),
+        shape_of=random.integers(0, 3, 60),
+    )
+
+
+def one_by_one(m, function, **options):
+    def body(i):
+        return m["shapes"][m["shape_of"][i]], hb.Pose(m["positions"][i], m["quaternions"][i])
+
+    return [function(*body(i), *body(j), **options) for i, j in m["pairs"]]
+
+
+@pytest.mark.parametrize("axes", [(1.0, 1.0, 3.0), (1.0, 2.0, 3.0), (2.0, 2.0, 2.0)])
+def test_distances_of_manufactured_pairs(random, axes):
+    m = Pairs(random, axes, 1000)
+    R = hb.distance_many(hb.Ellipsoid(axes), m.positions, m.quaternions, m.pairs)
+    size = np.linalg.norm(m.positions[1::2] - m.positions[0::2], axis=1) + 2 * max(axes)
+    assert np.all(np.abs(R.distance - m.gap) <= 1e-13 * size)
+    np.testing.assert_allclose(R.normal, m.normal, atol=1e-6)
+    np.testing.assert_allclose(R.point_b - R.point_a, R.distance[:, None] * R.normal, atol=1e-13)
+    assert set(R.status) == {"separated"}
+    assert np.all(R.error_bound <= 1e-12)
+    assert np.all(R.iterations >= 1)
+    assert len(R) == 1000
+    assert repr(R) == "Distances(1000 rows: 1000 separated)"
+    assert R.instruction_set in ("portable", "avx2", "avx512")
+
+
+@pytest.mark.parametrize("penetration", ["global", "local"])
+def test_distances_agree_with_single_ones(mixture, penetration):
+    m = mixture
+    R = hb.distance_many(**m, penetration=penetration)
+    singles = one_by_one(m, hb.distance, penetration=penetration)
+    assert {s.status for s in singles} >= {"separated", "overlapping"}
+    for k, s in enumerate(singles):
+        i, j = m["pairs"][k]
+        if i == j:
+            continue
+        bound = 1e-12 if penetration == "local" else 1e-12 + s.error_bound + R.error_bound[k]
+        assert R.distance[k] == pytest.approx(s.distance, abs=bound)
+        assert R.status[k] == s.status
+
+
+def test_overlaps_agree_with_distances(mixture):
+    R, overlaps = hb.distance_many(**mixture), hb.overlap_many(**mixture)
+    assert not overlaps.unknown.any()
+    np.testing.assert_array_equal(overlaps.overlap, R.distance < 0)
+    np.testing.assert_array_equal(hb.overlap_many(**mixture, start=R.normal).overlap, overlaps.overlap)
+    assert repr(overlaps) == f"Overlaps(400 rows: {overlaps.overlap.sum()} overlap, 0 unknown)"
+
+
+def test_queries_about_bodies_agree_with_single_ones(mixture, random):
+    m = {k: mixture[k] for k in ("shapes", "positions", "quaternions", "shape_of")}
+    points, directions = random.uniform(-6, 6, (500, 3)), random.normal(size=(500, 3))
+    of = random.integers(0, 60, 500)
+    inside = hb.contains_many(**m, points=points, body_of=of)
+    closest = hb.closest_point_many(**m, points=points, body_of=of, threads=2)
+    rays = hb.ray_cast_many(**m, origins=points, directions=directions, body_of=of)
+    for k, i in enumerate(of):
+        body = m["shapes"][m["shape_of"][i]], hb.Pose(m["positions"][i], m["quaternions"][i])
+        assert inside[k] == hb.contains(*body, points[k])
+        c, r = hb.closest_point(*body, points[k]), hb.ray_cast(*body, points[k], directions[k])
+        assert (closest.status[k], rays.status[k]) == (c.status, r.status)
+        assert closest.distance[k] == pytest.approx(c.distance, abs=1e-11)
+        np.testing.assert_allclose(rays.t[k], r.t, rtol=1e-9)
+        np.testing.assert_allclose(rays.point[k], r.point, atol=1e-9)
+    assert inside.dtype == bool
+    assert {"hit", "missed"} <= set(rays.status)
+
+
+def test_one_body_or_one_a_query(random):
+    sphere = hb.Ellipsoid([1, 1, 1])
+    points = random.uniform(-2, 2, (50, 3))
+    expected = np.linalg.norm(points, axis=1)
+    np.testing.assert_array_equal(hb.contains_many(sphere, [[0, 0, 0]], None, points), expected <= 1)
+    one_each = hb.closest_point_many(sphere, points, None, np.zeros((50, 3)))
+    np.testing.assert_allclose(one_each.distance, expected - 1, atol=1e-13)
+
+
+def test_threads_change_no_bit(mixture):
+    one = hb.distance_many(**mixture)
+    for threads in (2, 5, 64):
+        many = hb.distance_many(**mixture, threads=threads)
+        for name in ("distance", "normal", "point_a", "point_b", "error_bound", "residual", "iterations"):
+            np.testing.assert_array_equal(getattr(many, name), getattr(one, name))
+
+
+def test_warm_starts_save_evaluations(random):
+    m = Pairs(random, (1.0, 1.0, 3.0), 200)
+    e = hb.Ellipsoid(m.axes)
+    cold = hb.distance_many(e, m.positions, m.quaternions, m.pairs)
+    warm = hb.distance_many(e, m.positions, m.quaternions, m.pairs, start=cold.normal)
+    assert warm.iterations.max() <= 2
+    np.testing.assert_allclose(warm.distance, cold.distance, atol=1e-13)
+
+
+def test_all_forms_of_arrays_give_the_same_bits(mixture):
+    m = mixture
+    expected = hb.distance_many(**m).distance
+    double = np.empty((120, 6))[::2, ::2]  # not contiguous
+    double[:] = m["positions"]
+    frozen = m["quaternions"].copy()
+    frozen.flags.writeable = False
+    forms = [
+        dict(positions=double),
+        dict(positions=np.asfortranarray(m["positions"])),
+        dict(positions=m["positions"].astype(">f8")),
+        dict(positions=m["positions"].tolist(), pairs=m["pairs"].tolist()),
+        dict(quaternions=frozen),
+        dict(shapes=tuple(m["shapes"])),
+        dict(shapes=[m["shapes"][k] for k in m["shape_of"]], shape_of=None),
+        *(dict(pairs=m["pairs"].astype(kind)) for kind in ("u1", "i2", ">i4", "u4", "u8")),
+        dict(pairs=np.asfortranarray(m["pairs"])),
+        dict(shape_of=m["shape_of"].astype(np.int8)[:, None][:, 0]),
+    ]
+    for form in forms:
+        np.testing.assert_array_equal(hb.distance_many(**{**m, **form}).distance, expected)
+    unaligned = np.frombuffer(b"x" + m["positions"].tobytes(), offset=1).reshape(60, 3)
+    np.testing.assert_array_equal(hb.distance_many(**{**m, "positions": unaligned}).distance, expected)
+    single = m["positions"].astype(np.float32)
+    np.testing.assert_array_equal(
+        hb.distance_many(**{**m, "positions": single}).distance,
+        hb.distance_many(**{**m, "positions": single.astype(float)}).distance,
+    )
+
+
+@pytest.mark.parametrize("empty", [[], np.zeros((0, 2), int), np.zeros((0, 2), np.uint8)])
+def test_no_pairs(empty):
+    R = hb.distance_many(hb.Ellipsoid([1, 1, 1]), np.zeros((0, 3)), np.zeros((0, 4)), empty)
+    assert (R.distance.shape, R.normal.shape, R.status.shape) == ((0,), (0, 3), (0,))
+    assert repr(R) == "Distances(0 rows)"
+    assert hb.contains_many([], [], None, []).shape == (0,)
+
+
+def test_results_outlive_their_input(random):
+    m = Pairs(random, (1.0, 1.0, 3.0), 300)
+    R = hb.distance_many([hb.Ellipsoid(m.axes)], m.positions, m.quaternions, m.pairs)
+    distance, gap = R.distance, m.gap
+    del R, m
+    np.testing.assert_allclose(distance, gap, atol=1e-12)
+    assert distance.flags.writeable
+
+
+def slow_call(threads=1):
+    """Deep overlaps of needles, a search over all normals each: minutes."""
+    needle = hb.Ellipsoid([1, 1, 1000])
+    positions = np.zeros((2, 3))
+    positions[1] = 0.3, 0, 0
+    turned = [[1, 0, 0, 0], [np.cos(1e-4), np.sin(1e-4), 0, 0]]
+    return hb.distance_many(needle, positions, turned, np.tile([0, 1], (100_000, 1)), threads=threads)
+
+
+@pytest.mark.parametrize("threads", [1, 2])
+def test_interrupts_end_a_call(threads):
+    timer = threading.Timer(0.3, signal.raise_signal, [signal.SIGINT])
+    begin = time.monotonic()
+    timer.start()
+    with pytest.raises(KeyboardInterrupt):
+        slow_call(threads)
+    assert time.monotonic() - begin < 20  # minutes without the interrupt
+
+
+def test_other_threads_run_meanwhile():
+    ticks = []
+    stop = threading.Event()
+
+    def tick():
+        while not stop.wait(0.005):
+            ticks.append(time.monotonic())
+
+    clock = threading.Thread(target=tick)
+    random = np.random.default_rng(5)
+    m = Pairs(random, (1.0, 1.0, 3.0), 200_000)
+    clock.start()
+    for _ in range(10):
+        hb.distance_many(hb.Ellipsoid(m.axes), m.positions, m.quaternions, m.pairs)
+    stop.set()
+    clock.join()
+    assert len(ticks) > 5
