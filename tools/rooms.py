@@ -49,7 +49,7 @@ LIBRARIES = {
         "public": ("hardbody", {}),
     },
     "apps/python/src": {
-        "order": "base < geometry, runs",
+        "order": "base < geometry < simulation, runs",
         "public": ("hardbody", {}),
     },
 }

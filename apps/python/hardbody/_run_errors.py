@@ -19,7 +19,8 @@ class UnsoundError(NumericalError):
     run: Run | None
 
     def __init__(self, message: str, run: Run | None = None) -> None:
-        RuntimeError.__init__(self, message, run)
+        super().__init__(message)
+        self.args = (message, run)  # of copies and pickles
         self.run = run
 
     def __str__(self) -> str:
