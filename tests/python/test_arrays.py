@@ -160,7 +160,6 @@ def test_results_outlive_their_input(random):
     distance, gap = R.distance, m.gap
     del R, m
     np.testing.assert_allclose(distance, gap, atol=1e-12)
-    assert distance.flags.owndata
     assert distance.flags.writeable
 
 
@@ -180,7 +179,7 @@ def test_interrupts_end_a_call(threads):
     timer.start()
     with pytest.raises(KeyboardInterrupt):
         slow_call(threads)
-    assert time.monotonic() - begin < 30  # minutes without the interrupt
+    assert time.monotonic() - begin < 20  # minutes without the interrupt
 
 
 def test_other_threads_run_meanwhile():

@@ -203,8 +203,8 @@ def test_bad_arguments_are_named(call):
 @pytest.mark.parametrize(
     ("function", "bad", "words"),
     [
-        ("distance_many", dict(pairs=[[0, 2]]), "pairs[0, 1] is 2; accepted: 0 to 1"),
-        ("distance_many", dict(pairs=[[0, 1], [-1, 0]]), "pairs[1, 0] is -1; accepted: 0 to 1"),
+        ("distance_many", dict(pairs=[[0, 2]], start=None), "pairs[0, 1] is 2; accepted: 0 to 1"),
+        ("distance_many", dict(pairs=[[0, 1], [-1, 0]], start=None), "pairs[1, 0] is -1; accepted: 0 to 1"),
         ("distance_many", dict(pairs=[0, 1]), "pairs has shape (2,); accepted: integers of shape (rows, 2)"),
         ("distance_many", dict(pairs=[[0.0, 1.0]]), "pairs has dtype float64; accepted: integers of shape (rows, 2)"),
         ("distance_many", dict(positions=[[0, 0], [1, 1]]), "positions has shape (2, 2)"),
@@ -243,6 +243,7 @@ def test_messages(function, bad, words):
 
 def test_first_bad_entry_is_named_whatever_the_number_of_threads():
     positions = np.zeros((100_000, 3))
+    positions[:, 0] = 10 * np.arange(100_000)
     positions[[40_000, 77_777, 99_999]] = np.nan
     pairs = np.stack([np.arange(99_999), np.arange(1, 100_000)], axis=1)
     for some in (pairs, np.tile(pairs, (2, 1))):  # poses computed at each pair, and in advance

@@ -150,6 +150,41 @@ def test_exceptions_in_a_run_are_raised_by_it():
     assert restored.collisions == 2
 
 
+class Growing(Spheroid):
+    """The same until it grows: bodies are then in each other."""
+
+    size = 1.0
+
+    def support(self, n):
+        height, point = super().support(n)
+        return self.size * height, self.size * point
+
+
+def test_overlaps_raise_with_the_failed_pairs():
+    shape = Growing()
+    velocities, turns = [[0, 0, 1], [0, 0, -1]], [[0.7, 0, 0], [-0.3, 0.4, 0]]
+    system = hb.System(20, shape, [[0, 0, -2.5], [0, 0, 2.5]], None, velocities, turns)
+    simulation = hb.Simulation(system)
+    simulation.run(time=0.1)
+
+    def grow(simulation):
+        shape.size = 1.1
+
+    with pytest.raises(hb.NumericalError, match="overlap") as caught:
+        simulation.run(time=2, every=0.01, callback=grow)
+    error = caught.value
+    assert error.counters.overlaps == simulation.counters.overlaps > 0
+    pair = error.failures[0]
+    assert {pair.i, pair.j} == {0, 1} and "overlap" in pair.reason
+    assert pair.shape_i.object is shape
+    r = hb.distance(pair.shape_i, pair.motion_i.at(pair.time).pose, pair.shape_j, pair.motion_j.at(pair.time).pose)
+    assert r.distance < 0
+    with pytest.raises(TypeError, match="JSON"):
+        pair.to_json()
+    # The simulation is whole.
+    assert simulation.positions.shape == (2, 3) and not simulation.audit().sound
+
+
 @pytest.mark.parametrize("call", [2, 60, 150, 400])
 def test_exceptions_in_starts_and_queries_are_raised_by_them(call):
     shape = Broken()

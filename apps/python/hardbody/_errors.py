@@ -15,7 +15,7 @@ class NumericalError(RuntimeError):
 
     failures: list[_core.FailedPair]
     """First pairs whose prediction failed, at most 16 for each reason."""
-    counters: _core.Counters
+    counters: _core.Counters | None
     """Counters of the simulation."""
     stall: _core.Stall | None
     """Stall of the run; None if it has not stalled."""
@@ -23,14 +23,15 @@ class NumericalError(RuntimeError):
     def __init__(
         self,
         message: str,
-        failures: list[_core.FailedPair],
-        counters: _core.Counters,
+        failures: list[_core.FailedPair] | None = None,
+        counters: _core.Counters | None = None,
         stall: _core.Stall | None = None,
     ) -> None:
-        super().__init__(message, failures, counters, stall)
-        self.failures = failures
+        super().__init__(message)
+        self.failures = failures or []
         self.counters = counters
         self.stall = stall
 
-    def __str__(self) -> str:
-        return str(self.args[0])
+    def __reduce__(self) -> tuple[type[NumericalError], tuple[str]]:
+        """Pickles keep the message alone."""
+        return type(self), (str(self),)

@@ -10,6 +10,9 @@ NB_MODULE(_core, module) {
   namespace python = hardbody::python;
   module.doc() = "Compiled part of the package hardbody, which has its public names.";
   module.attr("__version__") = hardbody::version();
+  // Objects that global variables hold are alive at exit, and no leak; shapes that are written in Python may refer to
+  // themselves through the module that defines them.
+  nanobind::set_leak_warnings(false);
   python::register_exceptions();
   python::bind_shapes(module);
   python::bind_poses(module);

@@ -87,7 +87,11 @@ long long integer(nb::handle value, const char* name, long long least, long long
   const std::string accepted = "an integer from " + std::to_string(least) + " to " + std::to_string(most);
   if (PyBool_Check(value.ptr()) || PyIndex_Check(value.ptr()) == 0) refuse_type(name, value, accepted);
   const nb::object index = nb::steal(PyNumber_Index(value.ptr()));
-  if (!index.is_valid()) throw nb::python_error();
+  if (!index.is_valid()) {
+    nb::python_error error;
+    if (!error.matches(PyExc_TypeError)) throw error;
+    refuse_type(name, value, accepted);  // an array
+  }
   int overflow = 0;
   const long long read = PyLong_AsLongLongAndOverflow(index.ptr(), &overflow);
   if (overflow != 0 || read < least || read > most) refuse_value(name, shown(index), accepted);

@@ -1,12 +1,14 @@
 #include "base/arrays.h"
 
 #include "base/arguments.h"
+#include "base/memory.h"
 
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/string.h>
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <string_view>
 #include <type_traits>
 
@@ -106,6 +108,17 @@ std::string wanted(const char* numbers, std::size_t columns) {
   return std::string(numbers) + " of shape (rows," + (columns == 1 ? ")" : ' ' + std::to_string(columns) + ')');
 }
 
+constexpr std::size_t kMostBytes = std::size_t{1} << 46;
+
+/// Returns an array in memory that is kept when it is dropped.
+template <class T>
+NewArray<T> kept_array(const std::vector<std::size_t>& shape, std::size_t size) {
+  auto memory = std::make_unique<KeptMemory>(size * sizeof(T));
+  T* const data = static_cast<T*>(memory->data());
+  const nb::capsule owner(memory.release(), [](void* dropped) noexcept { delete static_cast<KeptMemory*>(dropped); });
+  return {nb::cast(nb::ndarray<nb::numpy, T>(data, shape.size(), shape.data(), owner)), data};
+}
+
 }  // namespace
 
 void refuse_shape(const std::string& name, const std::vector<std::size_t>& shape, const std::string& accepted) {
@@ -145,6 +158,10 @@ void IndexRows::refuse(std::size_t row, std::size_t column, std::int64_t index, 
 
 template <class T>
 NewArray<T> new_array(const std::vector<std::size_t>& shape) {
+  std::size_t size = 1;
+  bool overflows = false;
+  for (const std::size_t extent : shape) overflows |= __builtin_mul_overflow(size, extent, &size);
+  if (!overflows && size >= kLeastKept / sizeof(T) && size <= kMostBytes / sizeof(T)) return kept_array<T>(shape, size);
   nb::list extents;
   for (const std::size_t extent : shape) extents.append(extent);
   nb::object array =

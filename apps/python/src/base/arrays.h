@@ -68,13 +68,17 @@ class IndexRows {
 
   std::size_t size() const { return rows_; }
 
+  /// Returns an index that may be out of range.
+  std::size_t unchecked(std::size_t row, std::size_t column) const {
+    return static_cast<std::size_t>(static_cast<const volatile std::int64_t*>(data_)[row * columns_ + column]);
+  }
+
   /// Returns an index below `count`. Throws ValueError, naming the entry, if it is not. Reads memory once, so that no
   /// other thread can change an index after its check.
   std::size_t at(std::size_t row, std::size_t column, std::size_t count) const {
-    const std::size_t entry = row * columns_ + column;
-    const std::int64_t index = static_cast<const volatile std::int64_t*>(data_)[entry];
-    if (static_cast<std::uint64_t>(index) >= count) refuse(row, column, index, count);
-    return static_cast<std::size_t>(index);
+    const std::size_t index = unchecked(row, column);
+    if (index >= count) refuse(row, column, static_cast<std::int64_t>(index), count);
+    return index;
   }
 
  private:
@@ -94,7 +98,8 @@ struct NewArray {
   T* data;
 };
 
-/// Returns a new, uninitialised array. T is one of double, std::int32_t, std::int64_t, std::uint8_t, bool. Throws
+/// Returns a new, uninitialised array. Memory of large arrays that have been dropped is used again (memory.h). T is one
+/// of double, std::int32_t, std::int64_t, std::uint8_t, bool. Throws
 /// MemoryError, naming the shape.
 template <class T>
 NewArray<T> new_array(const std::vector<std::size_t>& shape);

@@ -23,7 +23,7 @@ class Ranges {
   Ranges(std::size_t count, std::size_t chunk) : count_(count), chunk_(chunk) {}
 
   /// Works on the next range; false if there is none, or the work has been stopped.
-  bool work_on_next(const std::function<void(std::size_t, std::size_t)>& work) {
+  bool work_on_next(const Work& work) {
     const std::size_t begin = next_.fetch_add(chunk_, std::memory_order_relaxed);
     if (begin >= count_ || is_stopped_.load(std::memory_order_relaxed)) return false;
     try {
@@ -68,14 +68,18 @@ bool is_interrupted() {
 
 }  // namespace
 
-void parallel(std::size_t count, std::size_t chunk, int threads,
-              const std::function<void(std::size_t begin, std::size_t end)>& work) {
+void parallel(std::size_t count, std::size_t chunk, int threads, const Work& work) {
+  parallel(count, chunk, threads, std::function<Work()>([&] { return work; }));
+}
+
+void parallel(std::size_t count, std::size_t chunk, int threads, const std::function<Work()>& make) {
   Ranges ranges(count, chunk);
   bool interrupted = false;
   {
     const nb::gil_scoped_release released;
     const std::size_t helpers = std::min<std::size_t>(static_cast<std::size_t>(threads), (count + chunk - 1) / chunk);
     const auto work_on_all = [&] {
+      const Work work = make();
       while (ranges.work_on_next(work)) {
       }
     };
@@ -86,6 +90,7 @@ void parallel(std::size_t count, std::size_t chunk, int threads,
       ranges.stop();
       throw;
     }
+    const Work work = make();
     auto last = std::chrono::steady_clock::now();
     while (ranges.work_on_next(work)) {
       const auto now = std::chrono::steady_clock::now();

@@ -68,30 +68,6 @@ void Bodies::read_shape_of(nb::handle shape_of) {
   for (std::size_t k = 0; k < size(); ++k) shape_of_[k] = static_cast<std::uint32_t>(k);
 }
 
-geom::Pose Bodies::pose(std::size_t body) const {
-  const geom::Pose X = pose_or_nan(body);
-  return std::isnan(X.position().x()) ? refused_pose(body) : X;
-}
-
-geom::Pose Bodies::pose_or_nan(std::size_t body) const {
-  const Eigen::Vector3d p = Eigen::Vector3d::Map(positions_[body]);
-  Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
-  bool is_valid = p.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <= geom::kMaxCoordinate;
-  if (quaternions_) {
-    const double* const q = (*quaternions_)[body];
-    const double w = q[0], x = q[1], y = q[2], z = q[3];
-    const double norm2 = w * w + x * x + y * y + z * z;
-    // Twice the tolerance of the norm, less its rounding; what is close to it is left to Pose.
-    is_valid = is_valid && std::abs(norm2 - 1) <= 1.99 * geom::kPoseTolerance;
-    const double s = 2 / norm2;
-    R << 1 - s * (y * y + z * z), s * (x * y - w * z), s * (x * z + w * y),  //
-        s * (x * y + w * z), 1 - s * (x * x + z * z), s * (y * z - w * x),   //
-        s * (x * z - w * y), s * (y * z + w * x), 1 - s * (x * x + y * y);
-  }
-  if (is_valid) return geom::kernel::unchecked_pose(R, p);
-  return geom::kernel::unchecked_pose(R, Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN()));
-}
-
 /// Returns the pose by Pose's own checks, which mostly throw.
 geom::Pose Bodies::refused_pose(std::size_t body) const {
   std::string name = "positions";
@@ -111,9 +87,9 @@ PairPoses::PairPoses(const Bodies& bodies, std::size_t pairs, int threads)
   // Computing a pose takes about as long as writing it to new memory and reading it again.
   if (bodies.size() > pairs) return;
   stored_.reset(std::allocator<geom::Pose>().allocate(bodies.size()));
-  parallel(bodies.size(), range_length(bodies.size(), threads), threads, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) std::construct_at(&stored_[k], bodies.pose_or_nan(k));
-  });
+  parallel(bodies.size(), range_length(bodies.size(), threads), threads, Work([&](std::size_t begin, std::size_t end) {
+             for (std::size_t k = begin; k < end; ++k) std::construct_at(&stored_[k], bodies.pose_or_nan(k));
+           }));
 }
 
 BodyOf::BodyOf(nb::handle body_of, const Bodies& bodies, std::size_t queries, const std::string& queries_name)
@@ -141,7 +117,7 @@ void check_rows(const std::string& name, std::size_t rows, const std::string& ot
 }
 
 std::size_t range_length(std::size_t count, int threads) {
-  return std::clamp<std::size_t>(count / (8 * static_cast<std::size_t>(threads)), 16, 1024);
+  return std::clamp<std::size_t>(count / (8 * static_cast<std::size_t>(threads)), 16, 64);
 }
 
 }  // namespace hardbody::python

@@ -6,12 +6,16 @@
 
 #include <geom/pose.h>
 #include <geom/shape_variant.h>
+#include <geom/tolerances.h>
 
 #include <nanobind/nanobind.h>
+
+#include <Eigen/Core>
 
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -50,6 +54,41 @@ class Bodies {
   std::vector<std::uint32_t> shape_of_;  ///< empty: 0 for all
 };
 
+inline geom::Pose Bodies::pose_or_nan(std::size_t body) const {
+  const double* const p = positions_[body];
+  const double px = p[0], py = p[1], pz = p[2];
+  bool is_valid = std::abs(px) <= geom::kMaxCoordinate && std::abs(py) <= geom::kMaxCoordinate &&
+                  std::abs(pz) <= geom::kMaxCoordinate;
+  Eigen::Matrix3d R;
+  if (quaternions_) {
+    const double* const q = (*quaternions_)[body];
+    const double w = q[0], x = q[1], y = q[2], z = q[3];
+    const double norm2 = w * w + x * x + y * y + z * z;
+    // Twice the tolerance of the norm, less its rounding; what is close to it is left to Pose.
+    is_valid = is_valid && std::abs(norm2 - 1) <= 1.99 * geom::kPoseTolerance;
+    const double s = 2 / norm2;
+    const double sx = s * x, sy = s * y, sz = s * z;
+    const double xx = sx * x, yy = sy * y, zz = sz * z, xy = sx * y, xz = sx * z, yz = sy * z;
+    const double wx = sx * w, wy = sy * w, wz = sz * w;
+    // Column by column: Eigen's comma initialiser takes half as long again.
+    double* const r = R.data();
+    r[0] = 1 - (yy + zz), r[1] = xy + wz, r[2] = xz - wy;
+    r[3] = xy - wz, r[4] = 1 - (xx + zz), r[5] = yz + wx;
+    r[6] = xz + wy, r[7] = yz - wx, r[8] = 1 - (xx + yy);
+  } else {
+    R.setIdentity();
+  }
+  if (!is_valid) {
+    return geom::kernel::unchecked_pose(R, Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN()));
+  }
+  return geom::kernel::unchecked_pose(R, {px, py, pz});
+}
+
+inline geom::Pose Bodies::pose(std::size_t body) const {
+  const geom::Pose X = pose_or_nan(body);
+  return std::isnan(X.position().x()) ? refused_pose(body) : X;
+}
+
 /// Poses of bodies that are in pairs, computed in advance if most bodies are in several. Bodies in no pair are not
 /// checked.
 class PairPoses {
@@ -59,8 +98,17 @@ class PairPoses {
   /// Returns a body's pose, which is in `slot` unless it is stored. Throws as Bodies::pose.
   const geom::Pose* get(std::size_t body, geom::Pose& slot) const {
     if (stored_ && !std::isnan(stored_[body].position().x())) return &stored_[body];
-    slot = bodies_.pose(body);
+    slot = bodies_.pose_or_nan(body);
+    if (std::isnan(slot.position().x())) slot = bodies_.pose(body);
     return &slot;
+  }
+
+  /// Asks for the memory of a body's pose, which is needed soon.
+  void prefetch(std::size_t body) const {
+    if (!stored_) return;
+    const double* const first = stored_[body].rotation().data();
+    __builtin_prefetch(first);
+    __builtin_prefetch(first + 8);
   }
 
  private:
@@ -95,7 +143,7 @@ int thread_count(nb::handle threads);
 /// Throws ValueError unless an array has as many rows as another.
 void check_rows(const std::string& name, std::size_t rows, const std::string& other, std::size_t wanted);
 
-/// Returns a length of ranges (see parallel) that keeps all threads busy: at most 1024.
+/// Returns a length of ranges (see parallel) that keeps all threads busy and interrupts short: at most 64.
 std::size_t range_length(std::size_t count, int threads);
 
 }  // namespace hardbody::python

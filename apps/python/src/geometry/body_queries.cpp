@@ -30,12 +30,12 @@ struct Query {
   template <class Answer>
   void run(Answer answer) const {
     parallel(rows.size(), range_length(rows.size(), thread_number), thread_number,
-             [&](std::size_t begin, std::size_t end) {
+             Work([&](std::size_t begin, std::size_t end) {
                for (std::size_t row = begin; row < end; ++row) {
                  const std::size_t body = body_of[row];
                  answer(row, bodies.shape(body), bodies.pose(body));
                }
-             });
+             }));
   }
 
   Bodies bodies;

@@ -5,6 +5,7 @@
 #include "geometry/bind.h"
 
 #include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 
@@ -20,6 +21,7 @@ struct PythonShape::Held {
   nb::object object;
   nb::object support;
   nb::object hessian;  ///< None if the object has none
+  nb::object empty = nb::module_::import_("numpy").attr("empty");
   std::string name;
   double bounding_radius = 0;
   double inscribed_radius = 0;
@@ -28,6 +30,7 @@ struct PythonShape::Held {
 
   ~Held() {
     const nb::gil_scoped_acquire gil;
+    empty.reset();
     hessian.reset();
     support.reset();
     object.reset();
@@ -109,16 +112,39 @@ auto without_interrupts(bool* happened, Call call) {
   }
 }
 
-geom::Support asked_support(const nb::object& method, const std::string& shape, double R, const Vector3d& n) {
-  const nb::object answer = method(array_of(n));
-  const std::string name = shape + ".support(" + shown(n) + ')';
+/// Returns a direction as a new array.
+nb::object direction_array(const nb::object& empty, const Vector3d& n) {
+  nb::object array = empty(3);
+  Vector3d::Map(nb::cast<nb::ndarray<double, nb::shape<3>, nb::c_contig>>(array).data()) = n;
+  return array;
+}
+
+/// Reads a pair of a float and an array of three, as most shapes return them; false for anything else.
+bool plain_support(nb::handle answer, geom::Support& out) {
+  if (!PyTuple_Check(answer.ptr()) || PyTuple_Size(answer.ptr()) != 2) return false;
+  const nb::handle height = PyTuple_GetItem(answer.ptr(), 0);
+  if (!PyFloat_Check(height.ptr())) return false;
+  nb::ndarray<const double, nb::shape<3>, nb::c_contig, nb::device::cpu> point;
+  if (!nb::try_cast(nb::handle(PyTuple_GetItem(answer.ptr(), 1)), point, false)) return false;
+  out = {PyFloat_AsDouble(height.ptr()), Vector3d::Map(point.data())};
+  return true;
+}
+
+geom::Support read_support(nb::handle answer, const std::string& name) {
   if (!nb::isinstance<nb::tuple>(answer) || nb::len(answer) != 2) {
     refuse_type(name, answer, "a tuple of the height and the point");
   }
-  const geom::Support support{number(answer[0], (name + "[0]").c_str()), vector3(answer[1], (name + "[1]").c_str())};
+  return {number(answer[0], (name + "[0]").c_str()), vector3(answer[1], (name + "[1]").c_str())};
+}
+
+/// Returns an answer of support(n). Throws TypeError or ValueError if it is none.
+geom::Support checked_support(nb::handle answer, const std::string& shape, double R, const Vector3d& n) {
+  const auto name = [&] { return shape + ".support(" + shown(n) + ')'; };
+  geom::Support support{0, Vector3d::Zero()};
+  if (!plain_support(answer, support)) support = read_support(answer, name());
   const double height = n.dot(support.point);
   if (!(std::abs(height - support.height) <= kSameHeight * R * n.norm())) {
-    refuse_value(name, '(' + shown(support.height) + ", " + shown(support.point) + ')',
+    refuse_value(name(), '(' + shown(support.height) + ", " + shown(support.point) + ')',
                  "a finite height and a point of that height, here " + shown(height));
   }
   return support;
@@ -138,8 +164,10 @@ Matrix3d asked_hessian(const nb::object& method, const std::string& shape, const
 geom::Support PythonShape::support(const Vector3d& n) const {
   const nb::gil_scoped_acquire gil;
   bool* const happened = kept_interrupt == nullptr ? nullptr : &kept_interrupt->happened_;
-  return without_interrupts(happened,
-                            [&] { return asked_support(held_->support, held_->name, held_->bounding_radius, n); });
+  return without_interrupts(happened, [&] {
+    const nb::object answer = held_->support(direction_array(held_->empty, n));
+    return checked_support(answer, held_->name, held_->bounding_radius, n);
+  });
 }
 
 Matrix3d PythonShape::support_hessian(const Vector3d& n) const {

@@ -20,6 +20,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <variant>
@@ -85,13 +86,22 @@ struct PairQuery {
     check_rows("start", starts->size(), "pairs", pairs.size());
   }
 
-  /// Calls work(begin, end) for ranges of all pairs.
-  void run(const std::function<void(std::size_t, std::size_t)>& work) const {
+  /// Does the work on all pairs (see parallel).
+  template <class WorkOrMake>
+  void run(const WorkOrMake& work) const {
     parallel(pairs.size(), range_length(pairs.size(), thread_number), thread_number, work);
   }
 
   std::size_t a(std::size_t row) const { return pairs.at(row, 0, bodies.size()); }
   std::size_t b(std::size_t row) const { return pairs.at(row, 1, bodies.size()); }
+  /// Asks for the memory of a pair's poses, which is needed soon.
+  void prefetch(std::size_t row) const {
+    if (row >= pairs.size()) return;
+    for (const std::size_t body : {pairs.unchecked(row, 0), pairs.unchecked(row, 1)}) {
+      if (body < bodies.size()) poses.prefetch(body);
+    }
+  }
+
   Eigen::Vector3d start(std::size_t row) const {
     if (!starts) return Eigen::Vector3d::Zero();
     return Eigen::Vector3d::Map((*starts)[row]);
@@ -112,11 +122,36 @@ class Distances {
     for (const geom::Shape& shape : query.bodies.shapes()) ellipsoids_.push_back(as_ellipsoid(shape));
   }
 
-  /// Answers the pairs of a range.
-  void answer(std::size_t begin, std::size_t end) {
-    Block block;
+  /// Returns work on ranges of the pairs, with memory of its own.
+  Work work() {
+    return
+        [this, block = std::make_shared<Block>()](std::size_t begin, std::size_t end) { answer(begin, end, *block); };
+  }
+
+  /// Returns the number of pairs that the kernels did not answer.
+  std::size_t redone() const { return redone_; }
+
+ private:
+  /// Number of pairs whose numbers, poses and answers fit into the first-level cache.
+  static constexpr std::size_t kBlock = 64;
+  /// Number of pairs by which poses are asked for in advance.
+  static constexpr std::size_t kAhead = 32;
+
+  struct Block {
+    std::size_t count = 0;
+    std::array<std::size_t, kBlock> rows;
+    std::array<geom::EllipsoidPair, kBlock> pairs;
+    std::array<Eigen::Vector3d, kBlock> starts;
+    std::array<Pose, kBlock> slots_a;
+    std::array<Pose, kBlock> slots_b;
+    std::array<DistanceResult, kBlock> found;
+  };
+
+  void answer(std::size_t begin, std::size_t end, Block& block) {
+    block.count = 0;
     std::size_t redone = 0;
     for (std::size_t row = begin; row < end; ++row) {
+      query_.prefetch(row + kAhead);
       const std::size_t a = query_.a(row), b = query_.b(row), k = block.count;
       const auto& shape_a = ellipsoids_[query_.bodies.shape_index(a)];
       const auto& shape_b = ellipsoids_[query_.bodies.shape_index(b)];
@@ -137,24 +172,8 @@ class Distances {
     redone_ += redone + flush(block);
   }
 
-  /// Returns the number of pairs that the kernels did not answer.
-  std::size_t redone() const { return redone_; }
-
- private:
-  /// Number of pairs whose numbers, poses and answers fit into the first-level cache.
-  static constexpr std::size_t kBlock = 64;
-
-  struct Block {
-    std::size_t count = 0;
-    std::array<std::size_t, kBlock> rows;
-    std::array<geom::EllipsoidPair, kBlock> pairs;
-    std::array<Eigen::Vector3d, kBlock> starts;
-    std::array<Pose, kBlock> slots_a;
-    std::array<Pose, kBlock> slots_b;
-    std::array<DistanceResult, kBlock> found;
-  };
-
   std::size_t flush(Block& block) const {
+    if (block.count == 0) return 0;
     geom::BatchOptions options{.max_iterations = options_.max_iterations, .penetration = options_.penetration};
     if (query_.starts) options.starts = std::span(block.starts).first(block.count);
     const geom::BatchSummary summary = geom::distance_batch(std::span(block.pairs).first(block.count),
@@ -178,7 +197,7 @@ nb::tuple distance_many(nb::handle shapes, nb::handle positions, nb::handle quat
   const PairQuery query(shapes, positions, quaternions, pairs, shape_of, threads, start);
   const Columns out(query.pairs.size());
   Distances distances(query, options, out);
-  query.run([&](std::size_t begin, std::size_t end) { distances.answer(begin, end); });
+  query.run(std::function<Work()>([&] { return distances.work(); }));
   return nb::make_tuple(out.distance.array, out.normal.array, out.point_a.array, out.point_b.array,
                         out.error_bound.array, out.residual.array, out.iterations.array, out.status.array,
                         distances.redone(), to_string(geom::batch_instruction_set()));
@@ -189,7 +208,7 @@ nb::tuple overlap_many(nb::handle shapes, nb::handle positions, nb::handle quate
   const PairQuery query(shapes, positions, quaternions, pairs, shape_of, threads, start);
   const std::size_t rows = query.pairs.size();
   const NewArray<bool> yes = new_array<bool>({rows}), unknown = new_array<bool>({rows});
-  query.run([&](std::size_t begin, std::size_t end) {
+  query.run(Work([&](std::size_t begin, std::size_t end) {
     Pose slot_a, slot_b;
     for (std::size_t row = begin; row < end; ++row) {
       const std::size_t a = query.a(row), b = query.b(row);
@@ -198,7 +217,7 @@ nb::tuple overlap_many(nb::handle shapes, nb::handle positions, nb::handle quate
       yes.data[row] = answer == geom::Answer::yes;
       unknown.data[row] = answer == geom::Answer::unknown;
     }
-  });
+  }));
   return nb::make_tuple(yes.array, unknown.array);
 }
 

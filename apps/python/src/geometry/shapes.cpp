@@ -6,11 +6,13 @@
 
 #include <geom/ellipsoid.h>
 #include <geom/superellipsoid.h>
+#include <geom/tolerances.h>
 
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -110,6 +112,9 @@ void bind_ellipsoid(nb::module_& module) {
           "spheroid",
           [](nb::handle aspect_ratio) {
             const double ratio = positive(aspect_ratio, "aspect_ratio");
+            if (std::max(ratio, 1 / ratio) > geom::kMaxAspectRatio) {
+              refuse_value("aspect_ratio", shown(ratio), "0.0001 to 10000");
+            }
             const double across = 1 / std::cbrt(ratio);
             return Ellipsoid({across, across, ratio * across});
           },
