@@ -57,8 +57,8 @@ print(f"spheres against Carnahan and Starling: {', '.join(f'{100 * d:+.1f} %' fo
 assert abs(deviation).max() < 0.08
 
 # %% [markdown]
-# The map: lines of equal pressure over shape and density, as an SVG drawing (a notebook shows it) and as points. The same
-# from pandas with matplotlib:
+# The map: lines of equal pressure over shape and density, as an SVG drawing, which a notebook shows, and as points. Over
+# them, by matplotlib, the table itself:
 
 # %%
 contours = sweep.map("aspect_ratio", "packing_fraction", "Z", levels=[3, 5])
@@ -68,7 +68,7 @@ figure, axes = plt.subplots(layout="constrained")
 filled = axes.contourf(Z.columns, Z.index, Z, levels=12)
 for level in np.unique(contours.lines["level"]):
     line = contours.lines[contours.lines["level"] == level]
-    axes.plot(line["x"], line["y"], "k-o", label=f"Z = {level:g}")
+    axes.plot(line["shape.aspect_ratio"], line["system.packing_fraction"], "k-o", label=f"Z = {level:g}")
 figure.colorbar(filled, label="Z = P V / (N kT)")
 axes.set(xlabel="aspect ratio a/b", ylabel="packing fraction")
 axes.legend()
