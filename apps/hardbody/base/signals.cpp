@@ -5,6 +5,7 @@
 #include <atomic>
 #include <csignal>
 #include <mutex>
+#include <utility>
 
 #include <unistd.h>
 
@@ -71,8 +72,10 @@ void request_stop() {
   t_stop = true;
 }
 
-void clear_request() {
-  t_stop = false;
+StopScope::StopScope() : around_(std::exchange(t_stop, false)) {}
+
+StopScope::~StopScope() {
+  t_stop = around_;
 }
 
 int pending_signal() {

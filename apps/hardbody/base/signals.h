@@ -21,9 +21,20 @@ class SignalScope {
   SignalScope& operator=(const SignalScope&) = delete;
 };
 
-/// Makes pending_signal() return kCallerStops in this thread, until clear_request() or for good.
+/// Makes pending_signal() return kCallerStops in this thread, until the innermost StopScope of the thread ends.
 void request_stop();
-void clear_request();
+
+/// Part of a thread's work that request_stop() stops. When it ends, a request to the part around it is what it was.
+class StopScope {
+ public:
+  StopScope();
+  ~StopScope();
+  StopScope(const StopScope&) = delete;
+  StopScope& operator=(const StopScope&) = delete;
+
+ private:
+  bool around_;
+};
 
 /// Number in place of a signal's for commands that are stopped by their caller.
 inline constexpr int kCallerStops = 100;

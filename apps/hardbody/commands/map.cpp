@@ -200,6 +200,7 @@ std::string lines_csv(const Map& map) {
 }
 
 void check(const MapArguments& arguments) {
+  if (arguments.values.empty()) throw InputError("--value is not given; accepted: a column, or several");
   if (!arguments.levels.empty() && arguments.levels.size() != arguments.values.size()) {
     throw InputError(
         fmt::format("--levels is given {} times and --value {} times; accepted: levels for each value, or "

@@ -19,6 +19,9 @@ namespace {
 namespace fs = std::filesystem;
 
 fs::path output_path(const ReportArguments& arguments) {
+  if (arguments.directories.empty()) {
+    throw InputError("hardbody report: no directory; accepted: run directories, or that of a sweep");
+  }
   if (arguments.out) return *arguments.out;
   if (arguments.directories.size() == 1) return fs::path(arguments.directories[0]) / kReportFile;
   throw InputError("hardbody report: several directories, but no output file; accepted: -o FILE.html");

@@ -281,6 +281,10 @@ TomlDocument read_toml(std::string_view text, const std::string& name, const std
   document.lines = lines;
   const toml::table root = parse(text, name);
   for (const auto& [key, node] : root) {
+    if (key.str().find('.') != std::string_view::npos) {
+      throw InputError(fmt::format("{}: \"{}\" is one key with a dot in it; accepted: sections, or keys without quotes",
+                                   document.where(line_of(key.source())), one_line(key.str(), 60)));
+    }
     if (node.is_table() || node.is_array_of_tables()) {
       add_sections(document, key, node);
     } else {

@@ -7,6 +7,8 @@ import sys
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, TextIO
 
+import numpy as np
+
 from hardbody import _core
 from hardbody._tables import required
 from hardbody._toml import toml_text, value_text
@@ -103,12 +105,21 @@ def integer(value: Any, name: str, least: int, most: int) -> int:
     return number
 
 
+def flag(value: Any, name: str) -> bool:
+    """Returns a bool."""
+    if not isinstance(value, (bool, np.bool_)):
+        raise TypeError(f"{name} is {value!r}; accepted: True or False")
+    return bool(value)
+
+
 def texts(value: Any, name: str) -> list[str]:
     """Returns one or several strings as a list."""
     if isinstance(value, str):
         return [value]
     if not isinstance(value, Sequence) or not all(isinstance(v, str) for v in value):
         raise TypeError(f"{name} is {value!r}; accepted: a str, or a list of them")
+    if not value:
+        raise ValueError(f"{name} is empty; accepted: a str, or a list of them")
     return list(value)
 
 
@@ -178,12 +189,12 @@ def call(
 
     Raises KeyboardInterrupt if it was stopped by Ctrl-C, RuntimeError if by another signal, both with its last message.
     """
-    if progress not in (None, False, True) and not callable(progress):
+    if not (progress is None or isinstance(progress, bool) or callable(progress)):
         raise TypeError(
             f"progress is {progress!r}; accepted: None, True, or a function of a text and the fraction done"
         )
     bar = _Bar() if progress is True else None
-    printer = _Printer(bool(quiet), bar or (progress if callable(progress) else None))
+    printer = _Printer(flag(quiet, "quiet"), bar or (progress if callable(progress) else None))
     try:
         status, printed, said = command(printer.functions(), *arguments)
     finally:

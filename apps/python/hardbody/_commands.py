@@ -13,6 +13,7 @@ from hardbody._calls import (
     assignments,
     call,
     config_arguments,
+    flag,
     integer,
     optional_path,
     optional_real,
@@ -59,7 +60,7 @@ def run(
     handled as the process would have handled them.
     """
     name, text, directory = config_arguments(config, out)
-    arguments = (name, text, directory, assignments(overrides), bool(force))
+    arguments = (name, text, directory, assignments(overrides), flag(force, "force"))
     outcome = call(_core.run, *arguments, quiet=quiet, progress=progress)
     return _finished(directory or str(Path("out") / Path(name).stem), *outcome)
 
@@ -158,6 +159,10 @@ def report(paths: PathLike | Sequence[PathLike], out: PathLike | None = None, *,
     """
     given = [paths] if isinstance(paths, str) or not isinstance(paths, Sequence) else list(paths)
     directories = [path_text(path, "paths") for path in given]
+    if not directories:
+        raise ValueError("paths is empty; accepted: run directories, or that of a sweep")
+    if out is None and len(directories) > 1:
+        raise ValueError("out is None; accepted: the name of an HTML file, as there are several directories")
     page = optional_path(out, "out")
     call(_core.report, directories, page, quiet=quiet)
     return Report(page if page is not None else Path(directories[0]) / "report.html")
@@ -190,7 +195,7 @@ def map(
     svg = optional_path(out, "out") or f"{beside}.svg"
     lines = optional_path(csv, "csv") or f"{beside}.csv"
     arguments = (str(file), *texts([x, y], "x, y"), names, _level_texts(levels, names), _conditions(where))
-    call(_core.map, *arguments, bool(log_x), bool(log_y), svg, lines, quiet=quiet)
+    call(_core.map, *arguments, flag(log_x, "log_x"), flag(log_y, "log_y"), svg, lines, quiet=quiet)
     return Map(svg, lines)
 
 
@@ -203,14 +208,17 @@ def _level_texts(levels: Any, names: list[str]) -> list[str]:
         levels = {names[0]: levels}
     if set(levels) != set(names):
         raise ValueError(f"levels has the keys {list(levels)}; accepted: levels for each of {names}")
-    return [",".join(repr(_level(level, name)) for level in levels[name]) for name in names]
+    return [",".join(repr(level) for level in _levels(levels[name], name)) for name in names]
 
 
-def _level(value: Any, name: str) -> float:
+def _levels(values: Any, name: str) -> list[float]:
     try:
-        return float(value)
+        numbers = [float(value) for value in values]
     except (TypeError, ValueError):
-        raise TypeError(f"levels: {name} has {value!r}; accepted: numbers") from None
+        raise TypeError(f"levels: {name} has {values!r}; accepted: a list of numbers") from None
+    if not numbers:
+        raise ValueError(f"levels: {name} has none; accepted: a list of numbers")
+    return numbers
 
 
 def _conditions(where: Any) -> list[str]:

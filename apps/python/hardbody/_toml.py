@@ -24,6 +24,8 @@ def toml_text(config: Mapping[str, Any], name: str = "config") -> str:
     lines: list[str] = []
     sections: list[str] = []
     for key, value in _items(config, name, ""):
+        if "." in key:
+            raise ValueError(f"{name}: a key is {key!r}; accepted: a section with keys of its own, or overrides")
         if isinstance(value, Mapping):
             sections += [f"\n[{_key(key)}]", *_assignments(value, name, key)]
         elif _is_list_of_tables(value):

@@ -104,14 +104,24 @@ TEST(SignalScope, RestoresHandlersAndSendsTheSignalAgain) {
   std::signal(SIGINT, SIG_DFL);
 }
 
-TEST(RequestStop, IsOfOneThread) {
+TEST(StopScope, RequestsAreOfOneThreadAndOneScope) {
+  {
+    const StopScope inner;
+    request_stop();
+    EXPECT_EQ(pending_signal(), kCallerStops);
+  }
+  EXPECT_EQ(pending_signal(), 0) << "what is around an inner part goes on";
+  const StopScope outer;
   request_stop();
+  EXPECT_EQ(pending_signal(), kCallerStops);
+  {
+    const StopScope inner;
+    EXPECT_EQ(pending_signal(), 0);
+  }
   EXPECT_EQ(pending_signal(), kCallerStops);
   EXPECT_STREQ(signal_name(kCallerStops), "its caller");
   EXPECT_FALSE(stopped_by_signal(exit_status_of(kCallerStops))) << "no signal";
   std::thread([] { EXPECT_EQ(pending_signal(), 0); }).join();
-  clear_request();
-  EXPECT_EQ(pending_signal(), 0);
 }
 
 TEST(Workers, RunAnotherProgram) {

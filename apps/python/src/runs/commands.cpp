@@ -44,7 +44,7 @@ int status_of(CommandConsole& console, const std::function<int()>& command) {
   const nb::gil_scoped_release released;
   const SignalScope signals;
   const ConsoleScope scope(console);
-  clear_request();
+  const StopScope requests;
   try {
     return command();
   } catch (const InputError& error) {

@@ -79,6 +79,7 @@ class PythonSimulation {
   double next_measurement() const;
   void take_measurements(double time);
   void check_trouble();
+  void refuse_rest(const char* what);
   void refuse_with_observables(const char* what);
 
   ed::Simulation simulation_;
