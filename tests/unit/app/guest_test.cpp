@@ -124,6 +124,19 @@ TEST(Workers, RunAnotherProgram) {
   EXPECT_EQ(ends[0].last_line, "run a b");
 }
 
+TEST(Workers, EndWhereTheStatusIsLost) {
+  std::signal(SIGCHLD, SIG_IGN);
+  {
+    Workers workers({"/bin/sh", "-c", "echo \"$0\" >&2"});
+    workers.start(1, ".", {"a reason"});
+    std::vector<WorkerEnd> ends;
+    while (ends.empty()) ends = workers.ended(1000);
+    EXPECT_EQ(ends[0].status, 0);
+    EXPECT_EQ(ends[0].last_line, "a reason");
+  }
+  std::signal(SIGCHLD, SIG_DFL);
+}
+
 /// Returns the message of an InputError.
 template <class Call>
 std::string message_of(Call&& call) {
