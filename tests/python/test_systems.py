@@ -1,5 +1,7 @@
 """Species, states and starts: arrays in and out, groups, bad input."""
 
+import logging
+import pathlib
 import pickle
 
 import numpy as np
@@ -111,6 +113,35 @@ def test_groups_follow_the_species():
     assert hb.System(60, [ROD] * 4, positions).groups == [4]
 
 
+CASES = pathlib.Path(__file__).resolve().parents[1] / "reference/cases"
+
+
+def test_files_of_other_programs(caplog):
+    with caplog.at_level(logging.INFO, "hardbody"):
+        system = hb.from_gsd(CASES / "m2_velocity_of_frame_0.gsd", 1)
+    assert "velocities drawn" in caplog.text  # frame 1 stores none
+    assert len(system) == 2 and system.box == 10 and system.species[0].shape == hb.Ellipsoid([0.5, 0.5, 0.5])
+    assert system.kinetic().translational_kT == pytest.approx(1)
+    caplog.clear()
+    with caplog.at_level(logging.INFO, "hardbody"):
+        first = hb.from_gsd(str(CASES / "m2_velocity_of_frame_0.gsd"), -3)
+    assert "frame 0" in caplog.text and "translation rescaled" in caplog.text
+    assert not np.array_equal(first.positions, system.positions)
+    with pytest.raises(ValueError, match=r"accepted: components="):
+        hb.from_gsd(CASES / "m5_wrapped.lammpstrj")
+    ball = hb.Species(hb.Ellipsoid([0.5, 0.5, 0.5]), mass=2)
+    assert hb.from_gsd(CASES / "m8_velocities.lammpstrj", 0, [(ball, 2)]).species[0].mass == 2
+    with pytest.raises(ValueError, match="has no orientations"):
+        hb.from_gsd(CASES / "m3_orientation_of_frame_0.gsd")
+    with pytest.raises(ValueError, match="frame is 7, .* has 3 complete frames"):
+        hb.from_gsd(CASES / "m2_velocity_of_frame_0.gsd", 7)
+    with pytest.raises(ValueError, match="frame is -4; accepted: -3 to 2"):
+        hb.from_gsd(CASES / "m2_velocity_of_frame_0.gsd", -4)
+    with pytest.raises(ValueError, match="overlap.*mend=True"):
+        hb.from_gsd(CASES / "m10_diameter_overlap.gsd", components=[(ball, 2)])
+    assert hb.from_gsd(CASES / "m10_diameter_overlap.gsd", components=[(ball, 2)], mend=True).audit().overlaps == 0
+
+
 P = [[0, 0, 0], [5, 0, 0]]
 REFUSED = [
     (ValueError, "box", lambda: hb.System(0, ROD, P)),
@@ -169,7 +200,8 @@ def test_bad_input_is_named(kind, message, call):
 
 SYSTEM = hb.random_start(ROD, number=32, packing_fraction=0.1)
 REFUSED_BY_SIMULATIONS = [
-    (TypeError, "incompatible function arguments", lambda s: hb.Simulation(3)),
+    (TypeError, "system is 3; accepted: System", lambda s: hb.Simulation(3)),
+    (TypeError, "system is None", lambda s: hb.compressed(None, 0.5)),
     (ValueError, "overlap at the start", lambda s: hb.Simulation(hb.System(30, ROD, [[0, 0, 0], [0.1, 0, 0]]))),
     (ValueError, "number is 1", lambda s: hb.Simulation(hb.System(30, ROD, [[0, 0, 0]]))),
     (ValueError, "box", lambda s: hb.Simulation(hb.System(5, ROD, [[0, 0, 0], [2.5, 2.5, 0]]))),
@@ -190,6 +222,7 @@ REFUSED_BY_SIMULATIONS = [
     (TypeError, "every and callback", lambda s: s.run(1, every=0.1)),
     (TypeError, "callback", lambda s: s.run(1, every=0.1, callback=3)),
     (ValueError, "every", lambda s: s.run(1, every=0, callback=print)),
+    (ValueError, "every", lambda s: s.run(1, every=1e-17, callback=print)),
     (TypeError, "progress", lambda s: s.run(1, progress=3)),
     (ValueError, "target_box", lambda s: s.shrink_box(0)),
     (ValueError, "number", lambda s: s.record_collisions(-1)),

@@ -20,7 +20,6 @@ class UnsoundError(NumericalError):
 
     def __init__(self, message: str, run: Run | None = None) -> None:
         super().__init__(message)
-        self.args = (message, run)  # of copies and pickles
         self.run = run
 
     def __str__(self) -> str:

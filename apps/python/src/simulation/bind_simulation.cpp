@@ -71,7 +71,12 @@ void run(nb::handle self, nb::handle time, nb::handle collisions, nb::handle unt
   if (callback.is_none() != every.is_none()) {
     throw nb::type_error("every and callback belong together; accepted: both, or neither");
   }
-  if (!every.is_none()) plan.every = positive(every, "every");
+  if (!every.is_none()) {
+    plan.every = positive(every, "every");
+    const double latest = std::isfinite(plan.end) ? plan.end : now;
+    if (!(latest + plan.every > latest))
+      refuse_value("every", shown(plan.every), "a time that " + shown(latest) + " has digits for");
+  }
   plan.callback = callback;
   const nb::object shown_to = progress_function(progress);
   plan.progress = shown_to;
@@ -127,18 +132,21 @@ nb::object saved(const PythonSimulation& simulation, nb::handle path) {
 
 PythonSimulation restored(nb::handle state, nb::handle shapes) {
   std::vector<ed::CustomShape> own;
+  if (!nb::isinstance<nb::list>(shapes) && !nb::isinstance<nb::tuple>(shapes)) {
+    refuse_type("shapes", shapes, "a list of shapes of your own");
+  }
   for (const nb::handle shape : shapes) {
     if (!is_custom_shape(shape))
       refuse_type("shapes[" + std::to_string(own.size()) + ']', shape, "a shape of your own");
     own.push_back(custom_shape_of(shape));
   }
   std::string bytes;
-  if (PyObject_CheckBuffer(state.ptr()) != 0) {
+  if (PyBytes_Check(state.ptr()) || PyByteArray_Check(state.ptr()) || PyMemoryView_Check(state.ptr())) {
     const nb::object copy = nb::steal(PyBytes_FromObject(state.ptr()));
     if (!copy.is_valid()) throw nb::python_error();
     bytes.assign(PyBytes_AS_STRING(copy.ptr()), static_cast<std::size_t>(PyBytes_GET_SIZE(copy.ptr())));
   } else {
-    bytes = read_state(state);
+    bytes = read_state(state, "state");
   }
   return PythonSimulation::restore(bytes, own);
 }
@@ -170,14 +178,15 @@ constexpr const char* kConstructorDoc =
 void bind_constructor(Type& type) {
   type.def(
       "__init__",
-      [](PythonSimulation* self, const BodySystem& system, nb::handle envelope, nb::handle neighbours,
-         nb::handle finder, nb::handle distance, nb::handle root, nb::handle eps_d, nb::handle instruction_set,
-         nb::handle prepare_from, nb::handle least_progress) {
+      [](PythonSimulation* self, nb::handle system, nb::handle envelope, nb::handle neighbours, nb::handle finder,
+         nb::handle distance, nb::handle root, nb::handle eps_d, nb::handle instruction_set, nb::handle prepare_from,
+         nb::handle least_progress) {
         const OptionArguments given{envelope, neighbours,      finder,       distance,      root,
                                     eps_d,    instruction_set, prepare_from, least_progress};
-        new (self) PythonSimulation(system, simulation_options(given, system.system));
+        const auto& bodies = instance<BodySystem>(system, "system");
+        new (self) PythonSimulation(bodies, simulation_options(given, bodies.system));
       },
-      nb::arg("system"), nb::kw_only(), nb::arg("envelope") = nb::none(), nb::arg("neighbours") = nb::none(),
+      nb::arg("system").none(), nb::kw_only(), nb::arg("envelope") = nb::none(), nb::arg("neighbours") = nb::none(),
       nb::arg("finder").none() = "certified", nb::arg("distance").none() = "dual", nb::arg("root").none() = "newton",
       nb::arg("eps_d") = nb::none(), nb::arg("instruction_set").none() = "best",
       nb::arg("prepare_from").none() = ed::SimulationOptions{}.prepare_from,
@@ -367,8 +376,9 @@ void bind_state(Type& type) {
            "simulation\n"
            "goes on bit for bit. Files replace those of the same name only when they are complete. Raises OSError.")
       .def_static("restore", &restored, nb::arg("state").none(), nb::arg("shapes") = nb::tuple(),
-                  nb::sig("def restore(state: bytes | str | os.PathLike[str], "
-                          "shapes: collections.abc.Iterable[hardbody._typing.HasSupport] = ()) -> Simulation"),
+                  nb::sig("def restore(state: bytes | bytearray | memoryview | str | os.PathLike[str], "
+                          "shapes: list[hardbody._typing.HasSupport] | tuple[hardbody._typing.HasSupport, ...] = ()) "
+                          "-> Simulation"),
                   "Returns the simulation that was saved as these bytes or to this file. shapes: your own, which are "
                   "code, in the\n"
                   "order of their species.\n"

@@ -5,6 +5,7 @@
 #include "simulation/systems.h"
 #include "simulation/unlocked.h"
 
+#include <base/errors.h>
 #include <config/config.h>
 #include <config/start_additions.h>
 #include <io/toml_document.h>
@@ -17,11 +18,13 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -88,6 +91,31 @@ Config with_components(const StartFile& start, const std::vector<ComponentGroup>
   return config;
 }
 
+/// Returns a message of the program with Python's words for keys of a config.
+std::string in_python(std::string message) {
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 5> kWords = {{
+      {"[[species]] with sizes, width and size_seed in the config", "components with a Polydisperse"},
+      {"[shape] or [[species]] in the config", "components=[(species, number), ...]"},
+      {"[[species]] in the config", "components=[(species, number), ...]"},
+      {"start.mend = true", "mend=True"},
+      {"start.frame", "frame"},
+  }};
+  for (const auto& [key, word] : kWords) {
+    if (const std::size_t at = message.find(key); at != std::string::npos) message.replace(at, key.size(), word);
+  }
+  return message;
+}
+
+FileStart read_start(const StartFile& start, nb::handle components, std::uint64_t seed, std::vector<int>& numbers) {
+  const auto signed_seed = static_cast<std::int64_t>(seed);
+  std::optional<StartFrame> loaded;
+  const Config config = components.is_none()
+                            ? config_of(start, signed_seed, loaded)
+                            : with_components(start, components_of(components, nb::none(), seed), signed_seed, loaded);
+  numbers = config.numbers();
+  return unlocked([&] { return start_from_file(config, std::move(loaded)); });
+}
+
 BodySystem from_gsd(nb::handle path, nb::handle frame, nb::handle components, nb::handle seed, nb::handle mend,
                     nb::handle reverse) {
   StartFile start;
@@ -95,15 +123,14 @@ BodySystem from_gsd(nb::handle path, nb::handle frame, nb::handle components, nb
   start.frame = frame_number(frame, start.file);
   start.mend = flag(mend, "mend");
   start.reverse = flag(reverse, "reverse");
-  const std::uint64_t number = seed_of(seed, "seed");
-  const auto signed_seed = static_cast<std::int64_t>(number);
-  std::optional<StartFrame> loaded;
-  const Config config =
-      components.is_none() ? config_of(start, signed_seed, loaded)
-                           : with_components(start, components_of(components, nb::none(), number), signed_seed, loaded);
-  FileStart made = unlocked([&] { return start_from_file(config, std::move(loaded)); });
-  report(made);
-  return {std::move(made.system), config.numbers()};
+  std::vector<int> groups;
+  try {
+    FileStart made = read_start(start, components, seed_of(seed, "seed"), groups);
+    report(made);
+    return {std::move(made.system), std::move(groups)};
+  } catch (const InputError& error) {
+    throw nb::value_error(in_python(error.what()).c_str());
+  }
 }
 
 }  // namespace

@@ -111,7 +111,8 @@ BodySystem random_start(nb::handle components, nb::handle number, nb::handle pac
           options.groups};
 }
 
-BodySystem compressed(const BodySystem& bodies, nb::handle packing_fraction, nb::handle progress) {
+BodySystem compressed(nb::handle system, nb::handle packing_fraction, nb::handle progress) {
+  const auto& bodies = instance<BodySystem>(system, "system");
   const double target = number(packing_fraction, "packing_fraction");
   return {compress(progress,
                    [&](auto report, ed::Counters& counters, std::vector<ed::FailedPair>& failures) {
@@ -169,7 +170,7 @@ void bind_random_start(nb::module_& module) {
 
 void bind_compressed(nb::module_& module) {
   module.def(
-      "compressed", &compressed, nb::arg("system"), nb::arg("packing_fraction").none(), nb::kw_only(),
+      "compressed", &compressed, nb::arg("system").none(), nb::arg("packing_fraction").none(), nb::kw_only(),
       nb::arg("progress") = nb::none(),
       nb::sig("def compressed(system: System, packing_fraction: float, *, "
               "progress: collections.abc.Callable[[float], object] | None = None) -> System"),
