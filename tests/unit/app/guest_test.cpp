@@ -11,8 +11,10 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <csignal>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <vector>
 
@@ -92,13 +94,13 @@ TEST(SignalScope, RestoresHandlersAndSendsTheSignalAgain) {
         (void)std::raise(SIGINT);  // ignored
         EXPECT_EQ(pending_signal(), SIGINT);
       }
-      EXPECT_NE(handler_of(SIGINT), receive) << "another scope is open";
+      EXPECT_NE(handler_of(SIGINT), &receive) << "another scope is open";
       EXPECT_EQ(pending_signal(), SIGINT);
-      EXPECT_EQ(g_received, 0);
+      EXPECT_EQ(int{g_received}, 0);
     }
-    EXPECT_EQ(handler_of(SIGINT), receive);
+    EXPECT_EQ(handler_of(SIGINT), &receive);
     EXPECT_EQ(handler_of(SIGPIPE), SIG_DFL);
-    EXPECT_EQ(g_received, SIGINT);
+    EXPECT_EQ(int{g_received}, SIGINT);
     EXPECT_EQ(pending_signal(), 0);
   }
   std::signal(SIGINT, SIG_DFL);
