@@ -113,7 +113,11 @@ std::vector<WorkerEnd> Workers::ended(int milliseconds) {
   std::vector<WorkerEnd> ends;
   std::erase_if(workers_, [&](Worker& worker) {
     int status = 0;
-    if (::waitpid(worker.process, &status, WNOHANG) != worker.process) return false;
+    const ::pid_t ended = ::waitpid(worker.process, &status, WNOHANG);
+    // Other code of this process has waited for it, or SIGCHLD is ignored: it has ended with a status that
+    // nobody knows. Its results tell.
+    const bool lost = ended < 0 && errno == ECHILD;
+    if (ended != worker.process && !lost) return false;
     take_what_it_says(worker);
     ::close(worker.errors);
     ends.push_back({worker.id, exit_status(status), last_line(worker.said)});

@@ -11,8 +11,10 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <csignal>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <vector>
 
@@ -92,13 +94,13 @@ TEST(SignalScope, RestoresHandlersAndSendsTheSignalAgain) {
         (void)std::raise(SIGINT);  // ignored
         EXPECT_EQ(pending_signal(), SIGINT);
       }
-      EXPECT_NE(handler_of(SIGINT), receive) << "another scope is open";
+      EXPECT_NE(handler_of(SIGINT), &receive) << "another scope is open";
       EXPECT_EQ(pending_signal(), SIGINT);
-      EXPECT_EQ(g_received, 0);
+      EXPECT_EQ(int{g_received}, 0);
     }
-    EXPECT_EQ(handler_of(SIGINT), receive);
+    EXPECT_EQ(handler_of(SIGINT), &receive);
     EXPECT_EQ(handler_of(SIGPIPE), SIG_DFL);
-    EXPECT_EQ(g_received, SIGINT);
+    EXPECT_EQ(int{g_received}, SIGINT);
     EXPECT_EQ(pending_signal(), 0);
   }
   std::signal(SIGINT, SIG_DFL);
@@ -132,6 +134,19 @@ TEST(Workers, RunAnotherProgram) {
   EXPECT_EQ(ends[0].id, 7);
   EXPECT_EQ(ends[0].status, 3);
   EXPECT_EQ(ends[0].last_line, "run a b");
+}
+
+TEST(Workers, EndWhereTheStatusIsLost) {
+  std::signal(SIGCHLD, SIG_IGN);
+  {
+    Workers workers({"/bin/sh", "-c", "echo \"$0\" >&2"});
+    workers.start(1, ".", {"a reason"});
+    std::vector<WorkerEnd> ends;
+    while (ends.empty()) ends = workers.ended(1000);
+    EXPECT_EQ(ends[0].status, 0);
+    EXPECT_EQ(ends[0].last_line, "a reason");
+  }
+  std::signal(SIGCHLD, SIG_DFL);
 }
 
 /// Returns the message of an InputError.
