@@ -164,7 +164,7 @@ class SmallFiles(Analyses):
         numpy.testing.assert_allclose(frame.particles.velocity, [[1.5**0.5, 0, 0], [-(1.5**0.5), 0, 0]], atol=1e-6)
 
     def test_check_of_an_oblong_box(self):
-        self.not_sound("m9_oblong_overlap.gsd", r"^ *overlaps +1, more than", r"^ *minimum distance +-0.9 l, frame 0, bodies 0 and 1$")
+        self.not_sound("m9_oblong_overlap.gsd", r"^ *overlaps +1, more than", r"^ *minimum distance +-0.9 \(unit of the file\), frame 0, bodies 0 and 1$")
 
     def test_check_of_diameters(self):
         self.not_sound("m10_diameter_overlap.gsd", "^not tested: overlaps: bodies of type A have no shape in the file$")

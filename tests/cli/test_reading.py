@@ -76,6 +76,10 @@ class FilesCase(Case):
         names = [column.split(" [")[0] for column in lines[0]]
         return {n: numpy.array([float(x[k] or "nan") for x in lines[1:]]) for k, n in enumerate(names)}
 
+    def heads(self, name):
+        with open(self.path(f"analysis/{name}.csv")) as file:
+            return next(csv.reader(file))
+
     def msd(self):
         """Lags and values that there are."""
         rows = self.rows("msd")
@@ -393,6 +397,9 @@ frames = 41
             self.dump("scaled.lammpstrj", "id type xu yu zu", rows, bounds=(f"{-scale * edge / 2:.9g} {scale * edge / 2:.9g}",) * 3)
             self.analyze("scaled.lammpstrj")
             analysis = self.analysis()
+            self.assertEqual(analysis["units"], "those of the file")
+            self.assertEqual(self.heads("msd") + self.heads("g_r")[:1], ["t [time]", "msd [length^2]", "msd_error [length^2]", "r [length]"])
+            self.assertEqual(self.heads("order"), ["t [time]", "S [1]", "energy [energy]"])
             peak = analysis["observables"]["q_peak"]["value"] * scale
             self.assertAlmostEqual(peak, known, delta=0.05)
             self.assertAlmostEqual(analysis["wave_numbers"][0] * scale, 2 * numpy.pi * 256 ** (1 / 3) / edge, places=6)

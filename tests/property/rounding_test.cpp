@@ -32,6 +32,9 @@
 namespace ed::internal {
 namespace {
 
+using quad::ExactPair;
+using quad::ExactPath;
+
 // ---- States --------------------------------------------------------------------------------------------------------
 
 /// Time and place of bodies whose clocks, places and images have nothing to do with each other.

@@ -28,5 +28,37 @@ def main() -> None:
     print(hit.status, hit.time, mass, hb.Ellipsoid.spheroid(3.0).volume)
 
 
+class Ball:
+    """Shape written in Python."""
+
+    bounding_radius = inscribed_radius = min_curvature_radius = 1.0
+    volume = 4 / 3 * np.pi
+
+    def support(self, n: NDArray[np.float64]) -> tuple[float, NDArray[np.float64]]:
+        length = float(np.sqrt(n @ n))
+        return length, n / length
+
+
+def dynamics() -> None:
+    rods = hb.Species(hb.Ellipsoid.spheroid(3.0), mass=1.0, inertia="uniform")
+    start: hb.System = hb.random_start([(rods, 30), hb.Polydisperse(rods, 30, 0.1)], packing_fraction=0.05)
+    simulation = hb.Simulation(start, neighbours="dilated")
+    observables: hb.Observables = simulation.measure(duration=1, wave_numbers=[2.0])
+    times: list[float] = []
+    try:
+        simulation.run(time=1, every=0.5, callback=lambda s: times.append(s.time), progress=lambda done: None)
+    except hb.NumericalError as error:
+        print([pair.reason for pair in error.failures])
+    results: hb.Results = observables.results()
+    Z: hb.Estimate = results["Z"]
+    positions: NDArray[np.float64] = simulation.positions
+    state = simulation.save()
+    print(times, float(Z), positions.shape, simulation.counters.overlaps, state is not None)
+    if state is not None:
+        print(hb.Simulation.restore(state).recorded["time"])
+    print(hb.distance(Ball(), hb.Pose(), hb.CustomShape(Ball()), hb.Pose([3, 0, 0])).distance)
+
+
 if __name__ == "__main__":
+    dynamics()
     main()

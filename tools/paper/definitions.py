@@ -33,6 +33,7 @@ AMPLITUDE_SLACK = 0.005
 # The same of tau of the later lags: twice the share is certain, half of it may be too much.
 TAU_SLACK = 2
 FEWEST_LAGS = 4
+CLEAR_PEAK = 5  # standard errors by which a peak of S(q) has to be above 1
 FITS = {"C2": "C2", "F": "F_self"}  # suffixes of tau and beta, columns of curves.csv
 
 
@@ -167,8 +168,16 @@ def fits(row, curve):
             yield Doubt((f"tau_{fit}", f"beta_{fit}"), f"amplitude {A:.4g}, at most {MOST_AMPLITUDE:g} wanted", False)
 
 
+def peak(row):
+    """Doubts about q_peak and S_peak."""
+    errors = (number(row["S_peak"]) - 1) / number(row["S_peak_error"])
+    if errors <= CLEAR_PEAK:
+        yield Doubt(("q_peak", "S_peak"), f"S(q) is above 1 by {errors:.1f} of its standard errors at its highest, more than {CLEAR_PEAK:g} "
+                                          "wanted")
+
+
 def doubts(row, curve):
-    return [*translation(row, curve), *rotation(row, curve), *fits(row, curve)]
+    return [*translation(row, curve), *rotation(row, curve), *fits(row, curve), *peak(row)]
 
 
 def judged(row, curve):

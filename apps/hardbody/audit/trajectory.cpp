@@ -1,6 +1,7 @@
 #include "audit/trajectory.h"
 
 #include "audit/pairs.h"
+#include "base/console.h"
 #include "base/errors.h"
 #include "io/text_file.h"
 #include "run/record.h"
@@ -118,8 +119,9 @@ std::vector<std::string> audit_frame(const Frame& frame, std::uint64_t k, const 
   return list;
 }
 
-/// Prints the results for the pairs.
-void print_pairs(const FramesAudit& all) {
+/// Prints the results for the pairs; only exact frames of the program are known to have the unit l.
+void print_pairs(const FramesAudit& all, bool exact) {
+  const char* unit = exact ? " l" : " (unit of the file)";
   if (all.not_tested.empty()) {
     report_row("overlaps", all.tolerance > 0 ? fmt::format("{}, more than the rounding of the numbers ({:.2g})",
                                                            all.overlaps, all.tolerance)
@@ -130,7 +132,7 @@ void print_pairs(const FramesAudit& all) {
   }
   report_row("distances not answered", fmt::format("{}", all.unanswered));
   report_row("minimum distance", std::isfinite(all.minimum_distance)
-                                     ? fmt::format("{:.6g} l, {}", all.minimum_distance, all.closest)
+                                     ? fmt::format("{:.6g}{}, {}", all.minimum_distance, unit, all.closest)
                                  : all.not_tested.empty() ? std::string("no two bounding spheres meet")
                                                           : std::string("not known"));
 }
@@ -147,7 +149,7 @@ void print_frames(const TrajectoryReader& reader, const Frame& first, const Fram
   report_row("bit-exact state", exact ? "yes" : gsd != nullptr ? "no, 32-bit numbers" : "no, rounded decimal numbers");
   if (exact) report_row("times", fmt::format("{:g} to {:g}", first.time, last.time));
   report_row("all numbers finite", "yes");
-  print_pairs(all);
+  print_pairs(all, exact);
   if (exact) {
     report_row("energy drift", fmt::format("{:.1e} (relative, from the first frame)", all.energy_drift));
   } else {
@@ -159,7 +161,7 @@ void print_frames(const TrajectoryReader& reader, const Frame& first, const Fram
 }  // namespace
 
 void report_row(const char* name, const std::string& value) {
-  fmt::print("  {:<26} {}\n", name, value);
+  console().print(fmt::format("  {:<26} {}\n", name, value));
 }
 
 ed::Audit audited(const ed::System& system, const std::string& where) {
@@ -194,13 +196,13 @@ int check_trajectory(const TrajectoryReader& reader) {
     throw InputError(fmt::format("{}: has no complete frame with positions; accepted: a file with frames", name));
   }
   if (all.unsound > kMostShown) shown += fmt::format("  *** and {} more frames ***\n", all.unsound - kMostShown);
-  fmt::print("{}\n{}", name, shown);
+  console().print(fmt::format("{}\n{}", name, shown));
   print_frames(reader, first, last, all);
   const std::string reasons = fmt::format("{}", fmt::join(all.not_tested, "; "));
   if (all.unsound > 0) {
-    fmt::print("NOT SOUND\n");
+    console().print(fmt::format("NOT SOUND\n"));
   } else {
-    fmt::print("{}\n", reasons.empty() ? "sound" : fmt::format("not tested: overlaps: {}", reasons));
+    console().print(fmt::format("{}\n", reasons.empty() ? "sound" : fmt::format("not tested: overlaps: {}", reasons)));
   }
   return all.unsound == 0 && reasons.empty() ? 0 : 1;
 }

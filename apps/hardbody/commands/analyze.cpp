@@ -1,3 +1,4 @@
+#include "base/console.h"
 #include "base/errors.h"
 #include "base/version.h"
 #include "commands/commands.h"
@@ -67,8 +68,8 @@ std::string cell(double x) {
   return std::isfinite(x) ? fmt::format("{}", x) : "";
 }
 
-std::string order_csv(const StoredTrajectory& stored) {
-  std::string text = "t [l sqrt(m/kT)],S [1],energy [kT]\n";
+std::string order_csv(const StoredTrajectory& stored, Units units) {
+  std::string text = fmt::format("{},S [1],energy [{}]\n", abscissa_of(Rows::lags, units), unit_text("kT", units));
   for (std::size_t k = 0; k < stored.frames.size(); ++k) {
     const ed::StoredFrame& frame = stored.frames[k];
     std::vector<Vector3d> axes;
@@ -96,11 +97,12 @@ Json text_or_null(const std::string& text) {
   return text.empty() ? Json(nullptr) : Json(text);
 }
 
-std::string analysis_json(const std::string& name, const StoredTrajectory& stored, const ed::StoredResults& results) {
+std::string analysis_json(const std::string& name, const StoredTrajectory& stored, const ed::StoredResults& results,
+                          Units units) {
   Json json;
   json["version"] = version();
   json["source"] = name;
-  json["units"] = "those of the file; for files of hardbody kT = m = 1, lengths l, times l sqrt(m/kT)";
+  json["units"] = units == Units::of_runs ? "kT = m = 1, lengths l, times l sqrt(m/kT)" : "those of the file";
   const std::size_t last = results.first_frame + results.frames - 1;
   json["frames"] = {{"in_file", stored.in_file},
                     {"without_positions", stored.without_positions},
@@ -124,7 +126,7 @@ std::string analysis_json(const std::string& name, const StoredTrajectory& store
 }
 
 void write_files(const fs::path& out, const std::string& name, const StoredTrajectory& stored,
-                 const ed::StoredResults& results) {
+                 const ed::StoredResults& results, Units units) {
   try {
     fs::create_directories(out);
   } catch (const fs::filesystem_error& error) {
@@ -132,10 +134,10 @@ void write_files(const fs::path& out, const std::string& name, const StoredTraje
         fmt::format("{}: cannot be written to: {}; accepted: a directory", out.string(), error.code().message()));
   }
   for (const CurveFile& file : curve_files()) {
-    if (file.in_frames) write_file(out / (file.name + ".csv"), curve_csv(file, results));
+    if (file.in_frames) write_file(out / (file.name + ".csv"), curve_csv(file, results, units));
   }
-  write_file(out / kOrderFile, order_csv(stored));
-  write_file(out / kAnalysisFile, analysis_json(name, stored, results));
+  write_file(out / kOrderFile, order_csv(stored, units));
+  write_file(out / kAnalysisFile, analysis_json(name, stored, results, units));
 }
 
 std::string shown(const ed::Estimate& e) {
@@ -156,10 +158,10 @@ fs::path trajectory_in(const fs::path& directory) {
 
 /// Prints what was read, and which of it was not used.
 void print_reading(const TrajectoryReader& reader, const StoredTrajectory& stored, const ed::StoredResults& results) {
-  fmt::print("{}: {} {} of {} bodies{}\n", reader.name(), stored.frames.size(),
-             stored.frames.size() == 1 ? "frame" : "frames", stored.options.axis.size(),
-             reader.cut_off() ? kCutOff : "");
-  const auto note = [](const std::string& text) { fmt::print("  note: {}\n", text); };
+  console().print(fmt::format("{}: {} {} of {} bodies{}\n", reader.name(), stored.frames.size(),
+                              stored.frames.size() == 1 ? "frame" : "frames", stored.options.axis.size(),
+                              reader.cut_off() ? kCutOff : ""));
+  const auto note = [](const std::string& text) { console().print(fmt::format("  note: {}\n", text)); };
   if (stored.without_positions > 0) {
     note(fmt::format("frames without positions are left out: {} of {} in the file", stored.without_positions,
                      stored.in_file));
@@ -177,7 +179,7 @@ void print_reading(const TrajectoryReader& reader, const StoredTrajectory& store
   } else if (!stored.not_unwrapped.empty()) {
     note(fmt::format("no displacements, MSD and F_self: {}", stored.not_unwrapped));
   } else if (stored.frames.size() > 1) {
-    fmt::print("  positions unwrapped by {}\n", stored.unwrapped_by);
+    console().print(fmt::format("  positions unwrapped by {}\n", stored.unwrapped_by));
   }
 }
 
@@ -199,17 +201,18 @@ int analyze(const AnalyzeArguments& arguments) {
         fmt::format("wave numbers of F_self are those of {}", (file.parent_path() / kSummaryFile).string()));
   }
   const ed::StoredResults results = ed::analyze_frames(stored.frames, stored.options);
-  write_files(out, reader.name(), stored, results);
+  const bool known_units = stored.exact || (of_the_run && fs::exists(file.parent_path() / kSummaryFile));
+  write_files(out, reader.name(), stored, results, known_units ? Units::of_runs : Units::unknown);
   print_reading(reader, stored, results);
   for (const Observable& o : observables()) {
     if (!o.in_frames || o.label.empty()) continue;
     for (const ed::Estimate& value : numbers_of(o, {results, &results})) {
-      fmt::print("  {:<12} {}\n", o.label, shown(value));
+      console().print(fmt::format("  {:<12} {}\n", o.label, shown(value)));
     }
   }
   if (!stored.options.fit_from)
-    fmt::print("no fits of decays: --fit-from T sets the first lag, where ballistic motion has ended\n");
-  fmt::print("\nfiles: {0}/analysis.json, {0}/*.csv\n", out.string());
+    console().print("no fits of decays: --fit-from T sets the first lag, where ballistic motion has ended\n");
+  console().print(fmt::format("\nfiles: {0}/analysis.json, {0}/*.csv\n", out.string()));
   return 0;
 }
 

@@ -1,3 +1,4 @@
+#include "base/console.h"
 #include "base/errors.h"
 #include "commands/commands.h"
 #include "io/run_directory.h"
@@ -93,8 +94,9 @@ int report(const ReportArguments& arguments) {
   check_output(path);
   const std::string page = report_page(report);
   write_file(path, page);
-  fmt::print("{}: {}{}\n", path.string(), size_text(page.size()),
-             report_script().empty() ? ", static: this program was built without the interactive front end" : "");
+  console().print(
+      fmt::format("{}: {}{}\n", path.string(), size_text(page.size()),
+                  report_script().empty() ? ", static: this program was built without the interactive front end" : ""));
   return 0;
 }
 

@@ -3,6 +3,9 @@
 #include "base/find.h"
 
 #include <array>
+#include <functional>
+#include <map>
+#include <stdexcept>
 #include <utility>
 
 namespace hardbody {
@@ -173,18 +176,41 @@ const std::vector<BlockColumn>& block_columns() {
   return all;
 }
 
-std::string abscissa_of(Rows rows) {
+std::string unit_text(const std::string& unit, Units units) {
+  static const std::map<std::string, std::string, std::less<>> kDimensions = {
+      {"1", "1"},
+      {"rad^2", "rad^2"},
+      {"l", "length"},
+      {"l^2", "length^2"},
+      {"1/l", "1/length"},
+      {"l sqrt(m/kT)", "time"},
+      {"sqrt(kT/m)/l", "1/time"},
+      {"l sqrt(kT/m)", "length^2/time"},
+      {"kT/m", "length^2/time^2"},
+      {"kT/(m l^2)", "1/time^2"},
+      {"kT", "energy"},
+  };
+  if (units == Units::of_runs) return unit;
+  const auto found = kDimensions.find(unit);
+  if (found == kDimensions.end()) throw std::logic_error("a unit without dimensions: " + unit);
+  return found->second;
+}
+
+std::string abscissa_of(Rows rows, Units units) {
+  const auto head = [units](const char* name, const char* unit) {
+    return std::string(name) + " [" + unit_text(unit, units) + "]";
+  };
   switch (rows) {
     case Rows::lags:
-      return "t [l sqrt(m/kT)]";
+      return head("t", "l sqrt(m/kT)");
     case Rows::pairs:
-      return "r [l]";
+      return head("r", "l");
     case Rows::waves:
-      return "q [1/l]";
+      return head("q", "1/l");
     case Rows::blocks:
       break;
   }
-  return "end [l sqrt(m/kT)]";
+  return head("end", "l sqrt(m/kT)");
 }
 
 std::vector<std::string> required_columns(const CurveFile& file) {

@@ -18,6 +18,12 @@ enum class Rows { lags, pairs, waves, blocks };
 /// Splitting of a quantity into several columns: body axes (x, y, z) or wave numbers of F_self (q1, q2, ..).
 enum class Split { none, axes, wave_numbers };
 
+/// Units that a header names: those of runs (l, kT, m), or dimensions for a file whose units are unknown.
+enum class Units { of_runs, unknown };
+
+/// Returns a unit as headers have it: "l^2", or "length^2".
+std::string unit_text(const std::string& unit, Units units);
+
 /// A quantity, one column of values and one of errors for all bodies and for each species.
 struct Column {
   std::string name{};
@@ -55,7 +61,7 @@ const std::vector<BlockColumn>& block_columns();
 const CurveFile* find_curves(std::string_view name);
 
 /// Returns the header of the first column: "t [l sqrt(m/kT)]".
-std::string abscissa_of(Rows rows);
+std::string abscissa_of(Rows rows, Units units = Units::of_runs);
 
 /// Returns the columns without which a file of a run is refused; the first is the abscissa of plots.
 std::vector<std::string> required_columns(const CurveFile& file);

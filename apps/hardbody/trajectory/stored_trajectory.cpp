@@ -252,6 +252,7 @@ void Reading::keep(const Frame& frame, double time, std::uint64_t k) {
     if (frame.velocities) out.velocity.push_back(body.velocity);
   }
   result_.energy.push_back(frame.energy);
+  result_.exact = frame.exact.has_value() && (result_.exact || result_.frames.size() == 1);
   known_orientations_ += frame.orientations ? 1 : 0;
   known_velocities_ += frame.velocities ? 1 : 0;
   say_orientations_ = say_orientations_ || says_orientations(frame);

@@ -15,6 +15,7 @@ namespace hardbody {
 struct StoredTrajectory {
   std::vector<ed::StoredFrame> frames;
   ed::StoredFramesOptions options;
+  bool exact = false;                 ///< true if all frames hold exact states of this program
   std::vector<double> energy;         ///< energy of each frame; NaN: not known
   std::size_t in_file = 0;            ///< number of complete frames in the file
   std::size_t without_positions = 0;  ///< number of frames that were left out because they contain only logged values

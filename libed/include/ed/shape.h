@@ -73,6 +73,13 @@ class ED_EXPORT CustomShape {
   const std::string& description() const { return name(); }
   /// @}
 
+  /// Returns the user's shape if it is a T, else nullptr.
+  template <class T>
+  const T* target() const {
+    const auto* model = dynamic_cast<const Model<T>*>(shape_.get());
+    return model == nullptr ? nullptr : &model->shape;
+  }
+
  private:
   struct Concept {
     virtual ~Concept() = default;

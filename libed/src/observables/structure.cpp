@@ -250,15 +250,24 @@ std::vector<double> WaveVectors::structure_factor(const std::vector<Vector3d>& p
   return S;
 }
 
-Peak first_peak(const std::vector<double>& q, const std::vector<double>& S, double length) {
-  Peak peak{std::numeric_limits<double>::quiet_NaN(), -1};
-  std::size_t top = 0;
+std::size_t highest(const std::vector<double>& q, const std::vector<double>& S, double length) {
+  std::size_t top = S.size();
   for (std::size_t k = 0; k < q.size(); ++k) {
-    if (q[k] * length < kPeakFrom || q[k] * length > kPeakTo || S[k] <= peak.S) continue;
-    peak = {q[k], S[k]};
-    top = k;
+    if (q[k] * length < kPeakFrom || q[k] * length > kPeakTo || !(S[k] > 0)) continue;
+    if (top == S.size() || S[k] > S[top]) top = k;
   }
-  if (!(peak.S > 0)) return {peak.q, peak.q};
+  return top;
+}
+
+bool stands_out(double height, double error) {
+  return height - 1 > kClearPeak * error;
+}
+
+Peak first_peak(const std::vector<double>& q, const std::vector<double>& S, double length) {
+  constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
+  const std::size_t top = highest(q, S, length);
+  if (top == S.size()) return {kNothing, kNothing};
+  const Peak peak{q[top], S[top]};
   if (top < 1 || top + 1 >= q.size() || !(q[top - 1] > 0 && q[top + 1] > 0)) return peak;
   // Newton's divided differences about the top.
   const double left = q[top - 1] - q[top];
@@ -350,8 +359,7 @@ bool is_clear(const WaveVectors& vectors, double frames, const Peak& peak) {
   for (std::size_t k = 0; k < q.size(); ++k) {
     if (std::abs(q[k] - peak.q) < std::abs(q[nearest] - peak.q)) nearest = k;
   }
-  const double error = peak.S / std::sqrt(frames * static_cast<double>(vectors.number(nearest)));
-  return peak.S - 1 > kClearPeak * error;
+  return stands_out(peak.S, peak.S / std::sqrt(frames * static_cast<double>(vectors.number(nearest))));
 }
 
 }  // namespace

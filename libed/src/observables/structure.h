@@ -81,6 +81,12 @@ struct Peak {
   double S;
 };
 
+/// Returns the shell with the highest S(q) between 1.5 and 7 inverse lengths; S.size() without values.
+std::size_t highest(const std::vector<double>& q, const std::vector<double>& S, double length);
+
+/// Returns whether a height of S(q) is above 1 by more than five of its standard errors.
+bool stands_out(double height, double error);
+
 /// Returns the first peak: the highest value between 1.5 and 7 inverse lengths, where fluids have it, refined by the
 /// parabola through it and its neighbours. NaN without values.
 Peak first_peak(const std::vector<double>& q, const std::vector<double>& S, double length);

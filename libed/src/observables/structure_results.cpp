@@ -5,6 +5,14 @@
 
 namespace ed::internal {
 
+namespace {
+
+/// Number of blocks from which on their scatter gives an error that a peak is judged by: with fewer, the highest of
+/// some thirty shells stands out by chance in more than one gas of a hundred.
+constexpr std::size_t kManyBlocks = 12;
+
+}  // namespace
+
 StructureResults::StructureResults(const BlockAverages& averages)
     : averages_(averages), measured_(averages.measured()) {
   if (!measured_.grid.known()) return;
@@ -73,7 +81,7 @@ void StructureResults::add_to(Correlations& results, std::size_t group) const {
     results.structure.push_back(
         {q[k], averages_.with_block_error(0, [&](const Block* one) { return sum_of(part, one).S[k]; })});
   }
-  if (clear_peak_of(part)) {
+  if (has_peak(part)) {
     results.q_peak = peak(part, &Peak::q);
     results.S_peak = peak(part, &Peak::S);
   } else {
@@ -85,8 +93,20 @@ std::optional<double> StructureResults::first_wave_number_of_all() const {
   return sums_.empty() ? std::nullopt : std::optional(first_wave_number());
 }
 
-/// Returns the wave number of the first peak of a part, if it stands out of its scatter. Frames of a block hold much
-/// the same configuration and count as one.
+/// Returns whether the first peak of a part stands out of its scatter: that of independent frames or, with enough
+/// blocks, that which the blocks show.
+bool StructureResults::has_peak(std::size_t part) const {
+  if (clear_peak_of(part)) return true;
+  if (averages_.full_blocks().size() < kManyBlocks) return false;
+  const std::vector<double>& S = sum_of(part, nullptr).S;
+  const std::size_t top = highest(wave_vectors_->wave_numbers(), S, measured_.grid.length);
+  if (top == S.size()) return false;
+  const Estimate height = averages_.with_block_error(0, [&](const Block* one) { return sum_of(part, one).S[top]; });
+  return stands_out(height.value, height.error);
+}
+
+/// Returns the wave number of the first peak of a part, if it stands out of the scatter of independent frames. Frames
+/// of a block hold much the same configuration and count as one.
 std::optional<double> StructureResults::clear_peak_of(std::size_t part) const {
   return clear_peak(*wave_vectors_, sum_of(part, nullptr).S, static_cast<double>(measured_.blocks.size()),
                     measured_.grid.length);

@@ -37,6 +37,7 @@ class StructureResults {
   const Sum& sum_of(std::size_t part, const Block* one) const;
   double first_wave_number() const;
   std::optional<double> clear_peak_of(std::size_t part) const;
+  bool has_peak(std::size_t part) const;
   void add_pairs(std::size_t part, double number, Correlations& results) const;
   Estimate peak(std::size_t part, double Peak::*member) const;
 

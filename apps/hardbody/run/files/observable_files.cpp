@@ -89,39 +89,60 @@ std::vector<double> abscissae(Rows rows, const ed::Results& results) {
   return list;
 }
 
-std::string blocks_csv(const ed::Results& results) {
-  std::string text;
-  for (const BlockColumn& c : block_columns())
-    text += fmt::format("{}{} [{}]", text.empty() ? "" : ",", c.name, c.unit);
-  text += '\n';
-  for (const ed::BlockRow& row : results.blocks) {
-    std::vector<double> values;
-    for (const BlockColumn& c : block_columns()) values.push_back(c.value(row));
-    add_row(text, values);
+CurveTable blocks_table(const ed::Results& results) {
+  CurveTable table;
+  for (const BlockColumn& c : block_columns()) {
+    table.columns.push_back(c.name);
+    table.units.push_back(c.unit);
   }
-  return text;
+  for (const ed::BlockRow& row : results.blocks) {
+    std::vector<double>& values = table.rows.emplace_back();
+    for (const BlockColumn& c : block_columns()) values.push_back(c.value(row));
+  }
+  return table;
+}
+
+/// Names the first column: "t", "l sqrt(m/kT)".
+void name_abscissa(Rows rows, CurveTable& table) {
+  const std::string head = abscissa_of(rows);
+  const std::size_t blank = head.find(' ');
+  table.columns.push_back(head.substr(0, blank));
+  table.units.push_back(head.substr(blank + 2, head.size() - blank - 3));
 }
 
 }  // namespace
 
-std::string curve_csv(const CurveFile& file, const ed::Results& results) {
-  if (file.rows == Rows::blocks) return blocks_csv(results);
+CurveTable curve_table(const CurveFile& file, const ed::Results& results) {
+  if (file.rows == Rows::blocks) return blocks_table(results);
   const std::vector<PartColumn> columns = columns_of(file, results);
-  std::string text = abscissa_of(file.rows);
-  for (const PartColumn& c : columns) text += fmt::format(",{0} [{1}],{0}_error [{1}]", c.name, c.column->unit);
-  text += '\n';
+  CurveTable table;
+  name_abscissa(file.rows, table);
+  for (const PartColumn& c : columns) {
+    table.columns.insert(table.columns.end(), {c.name, c.name + "_error"});
+    table.units.insert(table.units.end(), {c.column->unit, c.column->unit});
+  }
   const auto add = [&](double x, const auto& value_of) {
-    std::vector<double> values = {x};
+    std::vector<double>& values = table.rows.emplace_back(std::vector{x});
     for (const PartColumn& c : columns) {
       const ed::Estimate estimate = value_of(c);
       values.insert(values.end(), {estimate.value, estimate.error});
     }
-    add_row(text, values);
   };
   const bool from_zero = !file.columns.empty() && file.columns[0].at_zero != nullptr;
   if (from_zero) add(0, [](const PartColumn& c) { return c.at_zero(); });
   const std::vector<double> x = abscissae(file.rows, results);
   for (std::size_t k = 0; k < x.size(); ++k) add(x[k], [k](const PartColumn& c) { return c.at(k); });
+  return table;
+}
+
+std::string curve_csv(const CurveFile& file, const ed::Results& results, Units units) {
+  const CurveTable table = curve_table(file, results);
+  std::string text;
+  for (std::size_t k = 0; k < table.columns.size(); ++k) {
+    text += fmt::format("{}{} [{}]", k == 0 ? "" : ",", table.columns[k], unit_text(table.units[k], units));
+  }
+  text += '\n';
+  for (const std::vector<double>& row : table.rows) add_row(text, row);
   return text;
 }
 

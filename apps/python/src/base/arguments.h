@@ -81,6 +81,9 @@ template <class... T>
 struct OneOf<std::variant<T...>> {
   using Variant = std::variant<T...>;
 
+  /// Returns whether the value is of one of the classes.
+  static bool holds(nb::handle value) { return (nb::isinstance<T>(value) || ...); }
+
   /// Returns a copy of the object inside. Throws TypeError if the value is of none of the classes.
   static Variant from(nb::handle value, const std::string& name) {
     std::optional<Variant> found;

@@ -12,5 +12,6 @@ void bind_motions(nanobind::module_& module);
 void bind_queries(nanobind::module_& module);
 void bind_distances(nanobind::module_& module);
 void bind_body_queries(nanobind::module_& module);
+void bind_custom_shapes(nanobind::module_& module);
 
 }  // namespace hardbody::python

@@ -147,14 +147,14 @@ void bind_time_of_contact(nb::module_& module) {
       nb::arg("motion_b").none(), nb::arg("t_max").none(), nb::kw_only(), nb::arg("finder").none() = "certified",
       nb::arg("max_evaluations").none() = 2000, nb::arg("eps_d").none() = 1e-6, nb::arg("distance").none() = "dual",
       nb::arg("root").none() = "newton",
-      nb::sig("def time_of_contact(a: Ellipsoid | Superellipsoid, motion_a: Motion, b: Ellipsoid | Superellipsoid, "
+      nb::sig("def time_of_contact(a: hardbody._typing.Shape, motion_a: Motion, b: hardbody._typing.Shape, "
               "motion_b: Motion, t_max: float, *, finder: typing.Literal['certified', 'bracketing'] = 'certified', "
               "max_evaluations: int = 2000, eps_d: float = 1e-6, "
               "distance: typing.Literal['dual', 'newton8', 'newton5'] = 'dual', "
               "root: typing.Literal['newton', 'one_dimensional'] = 'newton') -> ContactResult"),
       "Returns the first time in [max of the motions' times, t_max] at which two freely moving bodies touch and\n"
       "approach; t_max may be infinite. The search is certified: it never steps over a contact, however grazing.\n"
-      "Bodies are ellipsoids and superellipsoids with exponents from 0.25 to 1.6.\n"
+      "Bodies are ellipsoids, superellipsoids with exponents from 0.25 to 1.6, and shapes of your own.\n"
       "\n"
       "max_evaluations limits the effort: at 0.3 to 2 microseconds each for ellipsoids of revolution, up to 50 for\n"
       "others. finder='bracketing' is the method of De Michele (2010) instead, without a certificate, to which eps_d\n"

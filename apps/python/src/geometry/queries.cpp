@@ -1,6 +1,7 @@
 #include "base/arguments.h"
 #include "base/arrays.h"
 #include "geometry/bind.h"
+#include "geometry/custom_queries.h"
 #include "geometry/options.h"
 #include "geometry/shapes.h"
 
@@ -13,6 +14,7 @@
 
 #include <Eigen/Core>
 
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <variant>
@@ -80,12 +82,13 @@ void bind_distance(nb::module_& module) {
          nb::handle penetration) {
         geom::DistanceOptions options = distance_options(max_iterations, penetration);
         if (!start.is_none()) options.start = vector3(start, "start");
-        return geom::distance(shape(a, "a"), pose(pose_a, "pose_a"), shape(b, "b"), pose(pose_b, "pose_b"), options);
+        return any::distance(body_shape(a, "a"), pose(pose_a, "pose_a"), body_shape(b, "b"), pose(pose_b, "pose_b"),
+                             options);
       },
       nb::arg("a").none(), nb::arg("pose_a").none(), nb::arg("b").none(), nb::arg("pose_b").none(), nb::kw_only(),
       nb::arg("start") = nb::none(), nb::arg("max_iterations").none() = geom::kMaxIterations,
       nb::arg("penetration").none() = "global",
-      nb::sig("def distance(a: Ellipsoid | Superellipsoid, pose_a: Pose, b: Ellipsoid | Superellipsoid, pose_b: Pose, "
+      nb::sig("def distance(a: hardbody._typing.Shape, pose_a: Pose, b: hardbody._typing.Shape, pose_b: Pose, "
               "*, start: numpy.typing.ArrayLike | None = None, max_iterations: int = 60, "
               "penetration: typing.Literal['global', 'local'] = 'global') -> DistanceResult"),
       "Returns the signed distance of two bodies, with closest points, normal and a certified error bound.\n"
@@ -101,11 +104,11 @@ void bind_distance(nb::module_& module) {
   module.def(
       "distance_lower_bound",
       [](nb::handle a, nb::handle pose_a, nb::handle b, nb::handle pose_b, nb::handle n) {
-        return geom::distance_lower_bound(shape(a, "a"), pose(pose_a, "pose_a"), shape(b, "b"), pose(pose_b, "pose_b"),
-                                          direction3(n, "n"));
+        return any::distance_lower_bound(body_shape(a, "a"), pose(pose_a, "pose_a"), body_shape(b, "b"),
+                                         pose(pose_b, "pose_b"), direction3(n, "n"));
       },
       nb::arg("a").none(), nb::arg("pose_a").none(), nb::arg("b").none(), nb::arg("pose_b").none(), nb::arg("n").none(),
-      nb::sig("def distance_lower_bound(a: Ellipsoid | Superellipsoid, pose_a: Pose, b: Ellipsoid | Superellipsoid, "
+      nb::sig("def distance_lower_bound(a: hardbody._typing.Shape, pose_a: Pose, b: hardbody._typing.Shape, "
               "pose_b: Pose, n: numpy.typing.ArrayLike) -> float"),
       "Returns a lower bound of the distance, certain for any direction n from A to B, world frame, shape (3,): the\n"
       "gap between the tangent planes across n, less its rounding error. Negative if the bodies overlap in that\n"
@@ -121,7 +124,7 @@ class Undecided : public std::runtime_error {
 bool overlap(nb::handle a, nb::handle pose_a, nb::handle b, nb::handle pose_b, nb::handle start) {
   const Eigen::Vector3d guess = start.is_none() ? Eigen::Vector3d::Zero() : vector3(start, "start");
   const geom::Answer answer =
-      geom::overlap(shape(a, "a"), pose(pose_a, "pose_a"), shape(b, "b"), pose(pose_b, "pose_b"), guess);
+      any::overlap(body_shape(a, "a"), pose(pose_a, "pose_a"), body_shape(b, "b"), pose(pose_b, "pose_b"), guess);
   if (answer != geom::Answer::unknown) return answer == geom::Answer::yes;
   throw Undecided("overlap: neither answer is certain, the bodies touch within the error bound; distance has bounds");
 }
@@ -132,7 +135,7 @@ void bind_overlap(nb::module_& module) {
   module.def(
       "overlap", &overlap, nb::arg("a").none(), nb::arg("pose_a").none(), nb::arg("b").none(), nb::arg("pose_b").none(),
       nb::kw_only(), nb::arg("start") = nb::none(),
-      nb::sig("def overlap(a: Ellipsoid | Superellipsoid, pose_a: Pose, b: Ellipsoid | Superellipsoid, pose_b: Pose, "
+      nb::sig("def overlap(a: hardbody._typing.Shape, pose_a: Pose, b: hardbody._typing.Shape, pose_b: Pose, "
               "*, start: numpy.typing.ArrayLike | None = None) -> bool"),
       "Returns whether two bodies overlap; touching counts as overlap. Mostly decided by one evaluation, across\n"
       "`start` (a guess of the normal from A to B, shape (3,)) or the line of centres.\n"
@@ -164,10 +167,10 @@ void bind_closest_point(nb::module_& module) {
   module.def(
       "closest_point",
       [](nb::handle s, nb::handle X, nb::handle point) {
-        return geom::closest_point(shape(s, "shape"), pose(X, "pose"), finite_vector3(point, "point"));
+        return any::closest_point(body_shape(s, "shape"), pose(X, "pose"), finite_vector3(point, "point"));
       },
       nb::arg("shape").none(), nb::arg("pose").none(), nb::arg("point").none(),
-      nb::sig("def closest_point(shape: Ellipsoid | Superellipsoid, pose: Pose, point: numpy.typing.ArrayLike) "
+      nb::sig("def closest_point(shape: hardbody._typing.Shape, pose: Pose, point: numpy.typing.ArrayLike) "
               "-> ClosestPoint"),
       "Returns the point of a body's surface that is closest to a point, world frame, shape (3,), which may be "
       "inside.\n"
@@ -178,11 +181,15 @@ void bind_contains(nb::module_& module) {
   module.def(
       "contains",
       [](nb::handle s, nb::handle X, nb::handle point) {
-        return geom::contains(shape(s, "shape"), pose(X, "pose"), finite_vector3(point, "point"));
+        const std::optional<bool> answer =
+            any::contains(body_shape(s, "shape"), pose(X, "pose"), finite_vector3(point, "point"));
+        if (answer) return *answer;
+        throw Undecided("contains: the point is on the surface within the error bound; closest_point has bounds");
       },
       nb::arg("shape").none(), nb::arg("pose").none(), nb::arg("point").none(),
-      nb::sig("def contains(shape: Ellipsoid | Superellipsoid, pose: Pose, point: numpy.typing.ArrayLike) -> bool"),
-      "Returns whether a point, world frame, shape (3,), is in the body or on its surface.");
+      nb::sig("def contains(shape: hardbody._typing.Shape, pose: Pose, point: numpy.typing.ArrayLike) -> bool"),
+      "Returns whether a point, world frame, shape (3,), is in the body or on its surface. Raises\n"
+      "UndecidedError for shapes of your own where neither answer is certain.");
 }
 
 void bind_ray_cast(nb::module_& module) {
@@ -203,11 +210,11 @@ void bind_ray_cast(nb::module_& module) {
   module.def(
       "ray_cast",
       [](nb::handle s, nb::handle X, nb::handle origin, nb::handle direction) {
-        return geom::ray_cast(shape(s, "shape"), pose(X, "pose"), finite_vector3(origin, "origin"),
-                              direction3(direction, "direction"));
+        return any::ray_cast(body_shape(s, "shape"), pose(X, "pose"), finite_vector3(origin, "origin"),
+                             direction3(direction, "direction"));
       },
       nb::arg("shape").none(), nb::arg("pose").none(), nb::arg("origin").none(), nb::arg("direction").none(),
-      nb::sig("def ray_cast(shape: Ellipsoid | Superellipsoid, pose: Pose, origin: numpy.typing.ArrayLike, "
+      nb::sig("def ray_cast(shape: hardbody._typing.Shape, pose: Pose, origin: numpy.typing.ArrayLike, "
               "direction: numpy.typing.ArrayLike) -> RayHit"),
       "Returns the first point origin + t direction, t >= 0, in the body; both of shape (3,), world frame, the\n"
       "direction of any length but 0. The point is within 1e-13 of the bounding radius of the surface.");

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "base/arguments.h"
+#include "geometry/custom_shape.h"
 
 #include <ed/shape.h>
 #include <geom/shape_variant.h>
@@ -18,7 +19,8 @@ inline geom::Shape shape(nb::handle value, const std::string& name) {
 
 /// Returns the shape of a body in motion, a user's own included. Throws TypeError if the object is none.
 inline ed::BodyShape body_shape(nb::handle value, const std::string& name) {
-  return OneOf<ed::BodyShape>::from(value, name);
+  if (OneOf<ed::BodyShape>::holds(value) || !is_custom_shape(value)) return OneOf<ed::BodyShape>::from(value, name);
+  return custom_shape_of(value);
 }
 
 }  // namespace hardbody::python

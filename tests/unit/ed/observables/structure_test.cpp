@@ -316,6 +316,22 @@ TEST(StructurePeak, OfAGasIsMissing) {
   }
 }
 
+/// S(q) of a thin fluid rises to 1.18: less than scatter allows for in 32 configurations, but blocks of many frames
+/// scatter less.
+TEST(StructurePeak, OfAThinFluidIsThatOfPercusAndYevick) {
+  constexpr double kPhi = 0.15;
+  const ed::System system = ed_test::equilibrated({1, kPhi, 256, Inertia::paper, 9}, 5);
+  const ed::Results results = ed_test::observed(system, ed_test::options_of(system, 200, 1));
+  double highest = 0, at = 0;
+  for (double q = 2; q < 5; q += 0.01) {
+    if (percus_yevick(q, kPhi) > highest) highest = percus_yevick(at = q, kPhi);
+  }
+  ASSERT_LT(highest, 1.22);
+  EXPECT_NEAR(results.S_peak.value, highest, 0.02 + 4 * results.S_peak.error);
+  EXPECT_NEAR(results.q_peak.value, at, 4 * results.q_peak.error);
+  EXPECT_LT(results.q_peak.error, 0.3);
+}
+
 TEST(Pairs, OfSpheresTouchAsOftenAsCarnahanAndStarlingSay) {
   constexpr double kPhi = 0.3;
   const ed::System system = ed_test::equilibrated({1, kPhi, 500, Inertia::paper, 8}, 5);

@@ -1,0 +1,97 @@
+"""Results of measuring a simulation."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hardbody._typing import Reals
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """Measured value with its standard error over blocks of the run."""
+
+    value: float
+    """Value; NaN if it is missing."""
+    error: float
+    """Standard error; NaN if it is not known."""
+    missing: str | None = None
+    """Reason for which the value is missing, in words; None if there is one."""
+
+    def __float__(self) -> float:
+        return self.value
+
+    def __str__(self) -> str:
+        if self.missing is not None:
+            return f"missing: {self.missing}"
+        return f"{self.value:.6g} +- {self.error:.2g}"
+
+
+@dataclass(frozen=True, eq=False)
+class VectorEstimate:
+    """Measured direction: n and -n are equivalent."""
+
+    value: Reals
+    """Unit vector, shape (3,); NaN if it is missing."""
+    error: float
+    """Standard error, an angle in rad."""
+    missing: str | None = None
+    """Reason for which the value is missing; None if there is one."""
+
+
+@dataclass(frozen=True, eq=False)
+class TensorEstimate:
+    """Measured symmetric tensor."""
+
+    value: Reals
+    """Elements, shape (3, 3); NaN if they are missing."""
+    error: Reals
+    """Standard errors, shape (3, 3)."""
+    missing: str | None = None
+    """Reason for which the value is missing; None if there is one."""
+
+
+Value: TypeAlias = Estimate | tuple[Estimate, ...] | VectorEstimate | TensorEstimate
+
+
+class Results(Mapping[str, Any]):
+    """Results of a measurement by their names: those of summary.json and of the files in observables/ of a run.
+
+    Values such as ``results["D_trans"]`` are Estimate; body axes have three of them, ``results["director"]`` is a
+    VectorEstimate, ``results["pressure_tensor"]`` a TensorEstimate. Curves such as ``results["msd"]`` are structured
+    arrays with the columns of the CSV file: ``results["msd"]["t"]``, ``["msd"]``, ``["msd_error"]``; of several groups
+    also ``["msd_1"]`` and so on. docs/output.md lists them all, with units and definitions.
+    ``pandas.DataFrame(results["msd"])`` makes a table of one.
+    """
+
+    values_by_name: dict[str, Value]
+    """Values alone."""
+    curves: dict[str, NDArray[np.void]]
+    """Curves alone."""
+    groups: list[Results]
+    """Values of each group of bodies, where there are several."""
+
+    def __init__(self, values: dict[str, Value], curves: dict[str, NDArray[np.void]], groups: list[Results]) -> None:
+        self.values_by_name = values
+        self.curves = curves
+        self.groups = groups
+
+    def __getitem__(self, name: str) -> Any:
+        if name in self.values_by_name:
+            return self.values_by_name[name]
+        return self.curves[name]
+
+    def __iter__(self) -> Iterator[str]:
+        yield from self.values_by_name
+        yield from self.curves
+
+    def __len__(self) -> int:
+        return len(self.values_by_name) + len(self.curves)
+
+    def __repr__(self) -> str:
+        return f"Results({', '.join(self)})"

@@ -1,0 +1,48 @@
+#include "simulation/paths.h"
+
+#include "base/arguments.h"
+
+#include <io/text_file.h>
+
+#include <nanobind/stl/string.h>
+
+#include <cerrno>
+#include <filesystem>
+#include <system_error>
+
+namespace hardbody::python {
+namespace {
+
+constexpr const char* kPaths = "a str or an os.PathLike of one";
+constexpr std::size_t kLongestState = std::size_t{1} << 35;
+
+std::string path_text(nb::handle path, const char* name) {
+  if (!nb::isinstance<nb::str>(path) && !nb::hasattr(path, "__fspath__")) {
+    refuse_type(name, path, kPaths);
+  }
+  const nb::object text = nb::module_::import_("os").attr("fspath")(path);
+  if (!nb::isinstance<nb::str>(text)) refuse_type(name, path, kPaths);
+  return nb::cast<std::string>(text);
+}
+
+}  // namespace
+
+std::string existing_path(nb::handle path, const char* name) {
+  const std::string file = path_text(path, name);
+  if (std::error_code error; !std::filesystem::exists(file, error)) {
+    errno = ENOENT;
+    PyErr_SetFromErrnoWithFilename(PyExc_FileNotFoundError, file.c_str());
+    throw nb::python_error();
+  }
+  return absolute_path(file).string();
+}
+
+std::string read_state(nb::handle path, const char* name) {
+  return read_file(existing_path(path, name), kLongestState);
+}
+
+void write_state(nb::handle path, const std::function<void(const ed::archive::Sink&)>& make) {
+  write_file(path_text(path, "path"), make);
+}
+
+}  // namespace hardbody::python

@@ -1,0 +1,378 @@
+#include "simulation/systems.h"
+
+#include "base/arrays.h"
+#include "simulation/bind.h"
+#include "simulation/species.h"
+#include "simulation/unlocked.h"
+
+#include <ed/random.h>
+#include <ed/start.h>
+#include <geom/pose.h>
+#include <geom/tolerances.h>
+
+#include <nanobind/nanobind.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numeric>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace hardbody::python {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+using RowMajor3 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+
+std::string entry(const char* name, std::size_t row) {
+  return std::string(name) + '[' + std::to_string(row) + ']';
+}
+
+[[noreturn]] void refuse_rows(const char* name, std::size_t rows, std::size_t wanted) {
+  throw nb::value_error((std::string(name) + " has " + std::to_string(rows) +
+                         " rows; accepted: as many as positions, " + "which has " + std::to_string(wanted))
+                            .c_str());
+}
+
+/// Reads vectors into the bodies; None: as they are.
+void read_vectors(nb::handle value, const char* name, ed::System& system, Vector3d ed::Body::*member) {
+  if (value.is_none()) return;
+  const RealRows rows(value, name, 3);
+  if (rows.size() != system.bodies.size()) refuse_rows(name, rows.size(), system.bodies.size());
+  for (std::size_t k = 0; k < rows.size(); ++k) system.bodies[k].*member = rows.finite_vector(k);
+}
+
+/// Returns a rotation matrix with the bits given, if it is one to rounding, else the nearest rotation.
+Matrix3d rotation_of(const Matrix3d& given) {
+  const geom::Pose checked(given, Vector3d::Zero());
+  const bool is_exact = ((given.transpose() * given) - Matrix3d::Identity()).cwiseAbs().maxCoeff() <= 4e-15;
+  return is_exact ? given : checked.rotation();
+}
+
+/// Reads orientations, quaternions or matrices, into the bodies; None: not rotated.
+void read_orientations(nb::handle value, ed::System& system) {
+  constexpr const char* kName = "orientations";
+  constexpr const char* kAccepted = "quaternions (w, x, y, z) of shape (N, 4) or rotation matrices of shape (N, 3, 3)";
+  if (value.is_none()) return;
+  const RealArray array(value, kName, kAccepted);
+  const std::vector<std::size_t>& shape = array.shape();
+  const bool quaternions = shape.size() == 2 && shape[1] == 4;
+  const bool matrices = shape.size() == 3 && shape[1] == 3 && shape[2] == 3;
+  if (!quaternions && !matrices) refuse_shape(kName, shape, kAccepted);
+  if (shape[0] != system.bodies.size()) refuse_rows(kName, shape[0], system.bodies.size());
+  for (std::size_t k = 0; k < shape[0]; ++k) {
+    try {
+      const double* const x = array.data() + (quaternions ? 4 : 9) * k;
+      system.bodies[k].rotation =
+          quaternions ? geom::Pose::from_quaternion(x[0], x[1], x[2], x[3]).rotation() : rotation_of(RowMajor3::Map(x));
+    } catch (const std::invalid_argument& error) {
+      throw nb::value_error((entry(kName, k) + ": " + error.what()).c_str());
+    }
+  }
+}
+
+void read_species(nb::handle value, nb::handle species_of_body, ed::System& system) {
+  if (nb::isinstance<nb::list>(value) || nb::isinstance<nb::tuple>(value)) {
+    std::size_t k = 0;
+    for (const nb::handle one : value) system.species.push_back(species_of(one, entry("species", k++)));
+  } else {
+    system.species.push_back(species_of(value, "species"));
+  }
+  const std::size_t count = system.species.size();
+  if (species_of_body.is_none()) {
+    if (count == 1) return;
+    if (count != system.bodies.size()) {
+      throw nb::value_error(("species has " + std::to_string(count) + " elements for " +
+                             std::to_string(system.bodies.size()) +
+                             " bodies; accepted: one, one a body, or any number with species_of")
+                                .c_str());
+    }
+    for (std::size_t k = 0; k < count; ++k) system.bodies[k].species = static_cast<int>(k);
+    return;
+  }
+  const IndexRows indices(species_of_body, "species_of", 1);
+  if (indices.size() != system.bodies.size()) refuse_rows("species_of", indices.size(), system.bodies.size());
+  for (std::size_t k = 0; k < indices.size(); ++k) {
+    system.bodies[k].species = static_cast<int>(indices.at(k, 0, count));
+  }
+}
+
+std::vector<int> read_groups(nb::handle value, const ed::System& system) {
+  if (value.is_none()) return groups_of(system);
+  const IndexRows rows(value, "groups", 1);
+  std::vector<int> groups;
+  std::size_t sum = 0;
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const std::size_t number = rows.at(k, 0, system.bodies.size() + 1);
+    if (number == 0) refuse_value(entry("groups", k), "0", "at least 1");
+    sum += number;
+    groups.push_back(static_cast<int>(number));
+  }
+  if (sum == system.bodies.size()) return groups;
+  refuse_value("sum of groups", std::to_string(sum), std::to_string(system.bodies.size()) + ", the number of bodies");
+}
+
+BodySystem make_system(nb::handle box, nb::handle species, nb::handle positions, nb::handle orientations,
+                       nb::handle velocities, nb::handle angular_velocities, nb::handle species_of_body,
+                       nb::handle groups) {
+  BodySystem made;
+  ed::System& system = made.system;
+  system.box = positive(box, "box");
+  const RealRows rows(positions, "positions", 3);
+  if (rows.size() > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
+    refuse_value("number of bodies", std::to_string(rows.size()), "at most 2147483647");
+  }
+  system.bodies.resize(rows.size());
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const Vector3d position = rows.finite_vector(k);
+    // Wrapped as the trajectories are: images beyond would lose digits.
+    if (position.cwiseAbs().maxCoeff() > 1e9 * system.box) {
+      refuse_value(entry("positions", k), shown(position), "within 1e9 boxes of the origin");
+    }
+    system.bodies[k].position = position;
+  }
+  read_orientations(orientations, system);
+  read_vectors(velocities, "velocities", system, &ed::Body::velocity);
+  read_vectors(angular_velocities, "angular_velocities", system, &ed::Body::angular_velocity);
+  read_species(species, species_of_body, system);
+  made.groups = read_groups(groups, system);
+  return made;
+}
+
+/// Returns an array of shape (N, columns) whose rows `fill` writes.
+template <class Fill>
+nb::object rows_of(const ed::System& system, std::vector<std::size_t> row_shape, std::size_t columns, Fill fill) {
+  row_shape.insert(row_shape.begin(), system.bodies.size());
+  const NewArray<double> made = new_array<double>(row_shape);
+  for (std::size_t k = 0; k < system.bodies.size(); ++k) fill(system.bodies[k], made.data + columns * k);
+  return made.array;
+}
+
+nb::object vectors_of(const ed::System& system, Vector3d ed::Body::*member) {
+  return rows_of(system, {3}, 3, [member](const ed::Body& body, double* out) { Vector3d::Map(out) = body.*member; });
+}
+
+nb::object species_indices(const ed::System& system) {
+  const NewArray<std::int64_t> made = new_array<std::int64_t>({system.bodies.size()});
+  for (std::size_t k = 0; k < system.bodies.size(); ++k) made.data[k] = system.bodies[k].species;
+  return made.array;
+}
+
+/// Draws Maxwell's velocities, rescaled to kT = 1 exactly.
+BodySystem thermalized(const BodySystem& bodies, nb::handle seed) {
+  BodySystem made = bodies;
+  ed::System& system = made.system;
+  ed::Random random(seed_of(seed, "seed"));
+  for (int i = 0; i < system.size(); ++i) {
+    ed::Body& body = system.bodies[static_cast<std::size_t>(i)];
+    const ed::Species& species = system.species_of(i);
+    body.velocity = random.normal3() / std::sqrt(species.mass);
+    Vector3d omega = random.normal3().cwiseQuotient(species.inertia.cwiseSqrt());
+    if (const std::optional<int> axis = ed::symmetry_axis(species); axis && !species.spins) omega[*axis] = 0;
+    body.angular_velocity = body.rotation * omega;
+  }
+  ed::rescale_velocities(system, made.groups);
+  return made;
+}
+
+std::string text_of(const BodySystem& b) {
+  const std::size_t species = b.system.species.size();
+  return "System(" + std::to_string(b.system.size()) + " bodies of " + std::to_string(species) + " species, box " +
+         shown(b.system.box) + ", packing fraction " + shown(ed::packing_fraction(b.system)) + ')';
+}
+
+nb::tuple constructor_arguments(const BodySystem& b) {
+  nb::list species;
+  for (const ed::Species& s : b.system.species) species.append(s);
+  return nb::make_tuple(b.system.box, species, positions_of(b.system), rotations_of(b.system), velocities_of(b.system),
+                        angular_velocities_of(b.system), species_indices(b.system), b.groups);
+}
+
+constexpr const char* kReals = "-> numpy.typing.NDArray[numpy.float64]";
+
+/// Defines an attribute that is an array.
+template <class F>
+void bind_array(nb::class_<BodySystem>& type, const char* name, F get, const char* doc) {
+  const std::string signature = std::string("def ") + name + "(self) " + kReals;
+  type.def_prop_ro(
+      name, [get](const BodySystem& b) { return get(b.system); }, nb::for_getter(nb::sig(signature.c_str())), doc);
+}
+
+void bind_constructor(nb::class_<BodySystem>& type) {
+  type.def(
+      "__init__",
+      [](BodySystem* self, nb::handle box, nb::handle species, nb::handle positions, nb::handle orientations,
+         nb::handle velocities, nb::handle angular_velocities, nb::handle species_of_body, nb::handle groups) {
+        new (self) BodySystem(make_system(box, species, positions, orientations, velocities, angular_velocities,
+                                          species_of_body, groups));
+      },
+      nb::arg("box").none(), nb::arg("species").none(), nb::arg("positions").none(),
+      nb::arg("orientations") = nb::none(), nb::arg("velocities") = nb::none(),
+      nb::arg("angular_velocities") = nb::none(), nb::arg("species_of") = nb::none(), nb::arg("groups") = nb::none(),
+      nb::sig("def __init__(self, box: float, species: hardbody._typing.SpeciesLike | "
+              "collections.abc.Sequence[hardbody._typing.SpeciesLike], positions: numpy.typing.ArrayLike, "
+              "orientations: numpy.typing.ArrayLike | None = None, velocities: numpy.typing.ArrayLike | None = None, "
+              "angular_velocities: numpy.typing.ArrayLike | None = None, species_of: numpy.typing.ArrayLike | None = "
+              "None, groups: numpy.typing.ArrayLike | None = None) -> None"),
+      "Constructs a state of N bodies in a cubic box.\n"
+      "\n"
+      "box: edge length. species: a Species or a shape (then of mass 1), or a list of them. positions: centres of "
+      "mass,\n"
+      "shape (N, 3), anywhere: images are equivalent. orientations: unit quaternions (w, x, y, z), body to world,\n"
+      "shape (N, 4), or rotation matrices, shape (N, 3, 3); None: not rotated. velocities, angular_velocities: world\n"
+      "frame, shape (N, 3); None: at rest (see thermalized). species_of: index of each body's species, shape (N,);\n"
+      "None: there is one species, or one a body. groups: numbers of bodies of consecutive groups, whose\n"
+      "temperatures are set and whose observables are measured separately; None: the species.\n"
+      "\n"
+      "Raises ValueError for numbers that are not finite and orientations that are not unit within 1e-6. Overlaps are\n"
+      "not looked for here, but by audit and by Simulation.");
+}
+
+void bind_numbers(nb::class_<BodySystem>& type) {
+  type.def("__len__", [](const BodySystem& b) { return b.system.bodies.size(); })
+      .def_prop_ro(
+          "box", [](const BodySystem& b) { return b.system.box; }, "Edge length of the cubic box.")
+      .def_prop_ro(
+          "species", [](const BodySystem& b) { return b.system.species; },
+          nb::for_getter(nb::sig("def species(self) -> list[Species]")),
+          "Species of the bodies; in a polydisperse\n"
+          "system one a body.")
+      .def_prop_ro(
+          "species_of", [](const BodySystem& b) { return species_indices(b.system); },
+          nb::for_getter(nb::sig("def species_of(self) -> numpy.typing.NDArray[numpy.int64]")),
+          "Index of each body's species, shape (N,).")
+      .def_prop_ro(
+          "groups", [](const BodySystem& b) { return b.groups; },
+          nb::for_getter(nb::sig("def groups(self) -> list[int]")), "Numbers of bodies of consecutive groups.");
+  bind_array(type, "positions", positions_of, "Centres of mass, shape (N, 3), a new array at each access.");
+  bind_array(type, "orientations", orientations_of,
+             "Unit quaternions (w, x, y, z), body to world, w >= 0, shape (N, 4).");
+  bind_array(type, "rotations", rotations_of,
+             "Rotation matrices, body to world, shape (N, 3, 3): the state's own bits, which quaternions lose.");
+  bind_array(type, "velocities", velocities_of, "Velocities of the centres, shape (N, 3).");
+  bind_array(type, "angular_velocities", angular_velocities_of, "Angular velocities, world frame, shape (N, 3).");
+}
+
+void bind_functions(nb::class_<BodySystem>& type) {
+  type.def_prop_ro(
+          "packing_fraction", [](const BodySystem& b) { return ed::packing_fraction(b.system); },
+          "Volume of the bodies over that of the box.")
+      .def_prop_ro(
+          "nematic_order", [](const BodySystem& b) { return nematic_order_of(b.system); },
+          "Largest eigenvalue of Q = 3/2 <u u^T> - 1/2, u the bodies' axes of revolution or, without one, body z.")
+      .def_prop_ro(
+          "time_unit", [](const BodySystem& b) { return ed::time_unit(b.system); },
+          "Mean thermal time of the bodies, rounded to a power of two: 1 for masses 1 and volumes of the unit sphere.")
+      .def(
+          "audit",
+          [](const BodySystem& b) {
+            check_interrupts();
+            return unlocked([&] { return ed::audit(b.system); });
+          },
+          nb::sig("def audit(self) -> Audit"),
+          "Returns the smallest distance of all pairs, overlaps and the kinetic state, computed from scratch by "
+          "distance\n"
+          "alone. Distances are accurate to 1e-13 of the size of a pair. The GIL is released.")
+      .def(
+          "kinetic", [](const BodySystem& b) { return ed::kinetic_state(b.system); },
+          nb::sig("def kinetic(self) -> Kinetic"), "Returns kinetic energies and temperatures.")
+      .def(
+          "thermalized", &thermalized, nb::arg("seed").none() = 1,
+          nb::sig("def thermalized(self, seed: int = 1) -> System"),
+          "Returns the state with new velocities: drawn from Maxwell's distribution, then rescaled to kT = 1 exactly,\n"
+          "each group by itself, and to total momentum 0.")
+      .def("__repr__", &text_of)
+      .def(
+          "__reduce__",
+          [](nb::handle self) {
+            return nb::make_tuple(self.type(), constructor_arguments(nb::cast<const BodySystem&>(self)));
+          },
+          nb::sig("def __reduce__(self) -> tuple[typing.Any, ...]"));
+}
+
+}  // namespace
+
+std::vector<int> groups_of(const ed::System& system) {
+  std::vector<int> groups;
+  const std::size_t n = system.bodies.size();
+  bool one_each = n > 0 && system.species.size() == n;
+  for (std::size_t k = 0; k < n; ++k) {
+    const bool same = k > 0 && system.bodies[k].species == system.bodies[k - 1].species;
+    if (same) {
+      ++groups.back();
+    } else {
+      groups.push_back(1);
+    }
+  }
+  one_each = one_each && groups.size() == n;
+  const bool scattered = groups.size() > system.species.size();
+  if (one_each || scattered) return {static_cast<int>(n)};
+  return groups;
+}
+
+std::vector<ed::BodyGroup> body_groups(const BodySystem& bodies) {
+  std::vector<ed::BodyGroup> list;
+  int first = 0;
+  for (const int number : bodies.groups) {
+    const auto axes = [&](int i) { return ed::symmetry_axis(bodies.system.species_of(i)) ? 2 : 3; };
+    for (int i = first + 1; i < first + number; ++i) {
+      if (axes(i) == axes(first)) continue;
+      throw nb::value_error(("groups: bodies " + std::to_string(first) + " and " + std::to_string(i) +
+                             " are in one group, but one is of revolution and the other is not; accepted: groups of "
+                             "one kind, whose bodies follow each other")
+                                .c_str());
+    }
+    list.push_back({number, number > 0 ? axes(first) : 2});
+    first += number;
+  }
+  return list;
+}
+
+nb::object positions_of(const ed::System& system) {
+  return vectors_of(system, &ed::Body::position);
+}
+
+nb::object orientations_of(const ed::System& system) {
+  return rows_of(system, {4}, 4, [](const ed::Body& body, double* out) {
+    std::ranges::copy(geom::kernel::quaternion_of(body.rotation), out);
+  });
+}
+
+nb::object rotations_of(const ed::System& system) {
+  return rows_of(system, {3, 3}, 9, [](const ed::Body& body, double* out) { RowMajor3::Map(out) = body.rotation; });
+}
+
+nb::object velocities_of(const ed::System& system) {
+  return vectors_of(system, &ed::Body::velocity);
+}
+
+nb::object angular_velocities_of(const ed::System& system) {
+  return vectors_of(system, &ed::Body::angular_velocity);
+}
+
+double nematic_order_of(const ed::System& system) {
+  std::vector<Vector3d> axes;
+  axes.reserve(system.bodies.size());
+  for (int i = 0; i < system.size(); ++i) {
+    const int axis = ed::symmetry_axis(system.species_of(i)).value_or(2);
+    axes.emplace_back(system.bodies[static_cast<std::size_t>(i)].rotation.col(axis));
+  }
+  return ed::nematic_order(axes);
+}
+
+void bind_systems(nb::module_& module) {
+  nb::class_<BodySystem> type(module, "System",
+                              "State of bodies in a periodic cubic box. It does not change; arrays are copies.");
+  bind_constructor(type);
+  bind_numbers(type);
+  bind_functions(type);
+}
+
+}  // namespace hardbody::python

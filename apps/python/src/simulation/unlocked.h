@@ -1,0 +1,41 @@
+#pragma once
+
+/// Work without the GIL.
+
+#include <nanobind/nanobind.h>
+
+#include <chrono>
+
+namespace hardbody::python {
+
+namespace nb = nanobind;
+
+/// Returns work(), called without the GIL. What it throws is thrown with the GIL.
+template <class Work>
+auto unlocked(const Work& work) {
+  const nb::gil_scoped_release released;
+  return work();
+}
+
+/// Throws what Python's signal handlers raise, KeyboardInterrupt after Ctrl-C. The caller holds the GIL.
+inline void check_interrupts() {
+  if (PyErr_CheckSignals() != 0) throw nb::python_error();
+}
+
+/// Clock that tells when a tenth of a second has passed, for looks at signals and reports of progress.
+class Ticks {
+ public:
+  bool due() {
+    const Clock::time_point now = Clock::now();
+    if (now - last_ < kTick) return false;
+    last_ = now;
+    return true;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  static constexpr std::chrono::milliseconds kTick{100};
+  Clock::time_point last_ = Clock::now();
+};
+
+}  // namespace hardbody::python

@@ -1,0 +1,193 @@
+"""Bad input to dynamics: an exception that names the argument and what is accepted, never a crash.
+
+HARDBODY_PYTHON_CALLS is the number of generated calls, default 2000.
+"""
+
+import pathlib
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from test_bad_input import CALLS, E, S, junk
+from test_custom_shapes import Spheroid
+
+import hardbody as hb
+
+SYSTEM = hb.random_start(E, number=8, packing_fraction=0.01)
+SPECIES = hb.Species(S)
+STORED = pathlib.Path(__file__).resolve().parents[1] / "reference/cases/m2_velocity_of_frame_0.gsd"
+BALL = hb.Ellipsoid([0.5, 0.5, 0.5])
+QUATERNIONS = [[1, 0, 0, 0], [0, 1, 0, 0]]
+VECTORS = [[0, 0, 1.0], [1.0, 0, 0]]
+
+
+def simulation(**options):
+    return hb.Simulation(SYSTEM, **options)
+
+
+def stop(_):
+    return False
+
+
+def saved():
+    return simulation().save()
+
+
+# Functions and arguments that they accept. Junk may make runs of any length: they are ended when they call back.
+FUNCTIONS = {
+    "Species": (hb.Species, dict(shape=E, mass=2.0, inertia=[1, 1, 0.5], spins=True)),
+    "species.scaled": (SPECIES.scaled, dict(factor=2.0)),
+    "Polydisperse": (hb.Polydisperse, dict(species=E, number=5, width=0.1, sizes="uniform", seed=1)),
+    "System": (
+        hb.System,
+        dict(
+            box=20.0,
+            species=[SPECIES, E],
+            positions=[[0, 0, 0], [5, 0, 0]],
+            orientations=QUATERNIONS,
+            velocities=VECTORS,
+            angular_velocities=VECTORS,
+            species_of=[1, 0],
+            groups=[1, 1],
+        ),
+    ),
+    "thermalized": (SYSTEM.thermalized, dict(seed=1)),
+    "random_start": (
+        hb.random_start,
+        dict(
+            components=E,
+            number=8,
+            packing_fraction=0.02,
+            seed=1,
+            nematic_order=None,
+            most_compressed=100,
+            progress=stop,
+        ),
+    ),
+    "mixture": (hb.random_start, dict(components=[(E, 4), (SPECIES, 4)], packing_fraction=0.001, seed=1)),
+    "compressed": (hb.compressed, dict(system=SYSTEM, packing_fraction=0.02, progress=stop)),
+    "lattice_start": (
+        hb.lattice_start,
+        dict(components=E, number=32, packing_fraction=0.1, lattice="fcc", seed=1, axis=2, nematic_order=0.5),
+    ),
+    "from_gsd": (hb.from_gsd, dict(path=STORED, frame=1, components=[(BALL, 2)], seed=1, mend=False, reverse=False)),
+    "Simulation": (
+        hb.Simulation,
+        dict(
+            system=SYSTEM,
+            envelope=0.2,
+            neighbours="dilated",
+            finder="bracketing",
+            distance="newton5",
+            root="one_dimensional",
+            eps_d=1e-5,
+            instruction_set="portable",
+            prepare_from=64,
+            least_progress=1e-6,
+        ),
+    ),
+    "run": (
+        lambda **arguments: simulation().run(**arguments),
+        dict(time=0.1, every=0.05, callback=stop, progress=None),
+    ),
+    "run_collisions": (
+        lambda **arguments: simulation().run(**arguments),
+        dict(collisions=1, every=0.05, callback=stop, progress=False),
+    ),
+    "run_until": (lambda **arguments: simulation().run(**arguments), dict(until=0.1, every=0.05, callback=stop)),
+    "shrink_box": (
+        lambda **arguments: simulation(neighbours="dilated").shrink_box(**arguments),
+        dict(target_box=10.0, least_gain=0.0),
+    ),
+    "record_collisions": (lambda **arguments: simulation().record_collisions(**arguments), dict(number=5)),
+    "measure": (
+        lambda **arguments: simulation().measure(**arguments),
+        dict(duration=1.0, longest_lag=0.5, wave_numbers=[1.0, 2.0]),
+    ),
+    "restore": (lambda **arguments: hb.Simulation.restore(**arguments), dict(state=saved(), shapes=[])),
+    "CustomShape": (
+        hb.CustomShape,
+        dict(object=Spheroid(), name="mine", volume=4.1, symmetry_axis=2, centrally_symmetric=True),
+    ),
+}
+
+# Words that messages have in place of an argument's name.
+OTHER_NAMES = {
+    "shape": ("exponent", "inertia", "spin"),
+    "mass": ("inertia",),
+    "inertia": ("spin", "moment"),
+    "species": ("species_of", "groups"),
+    "positions": ("orientations", "species", "velocities"),
+    "species_of": ("groups", "species"),
+    "factor": ("semi-axis",),
+    "state": ("No such file", "shapes"),
+    "components": ("bodies of its types", "in the config", "number", "shape", "species", "axis", "box", "bodies"),
+    "number": ("components", "bodies"),
+    "packing_fraction": ("number", "shape", "box", "packing"),
+    "neighbours": ("envelope", "box", "periodic"),
+    "finder": ("distance",),
+    "system": ("number", "box"),
+    "path": ("file", "directory"),
+    "time": ("time, collisions and until", "every"),
+    "until": ("time, collisions and until", "every"),
+    "collisions": ("time, collisions and until",),
+    "every": ("callback",),
+    "callback": ("every", "position"),
+    "progress": ("position",),
+    "object": ("support", "radius", "volume"),
+    "duration": ("longest_lag",),
+}
+
+MANY_BODIES = range(1000, 10**6 + 1)
+
+
+@st.composite
+def bad_calls(draw):
+    name = draw(st.sampled_from(sorted(FUNCTIONS)))
+    function, arguments = FUNCTIONS[name]
+    changed = draw(st.lists(st.sampled_from(sorted(arguments)), min_size=1, max_size=2, unique=True))
+    bad = {key: draw(junk) for key in changed}
+    if isinstance(bad.get("number"), int) and bad["number"] in MANY_BODIES:
+        bad["number"] = 7
+    return name, function, {**arguments, **bad}, changed
+
+
+@pytest.mark.parametrize("name", sorted(FUNCTIONS))
+def test_right_arguments_are_accepted(name):
+    function, arguments = FUNCTIONS[name]
+    function(**arguments)
+
+
+@pytest.mark.filterwarnings("ignore:overflow encountered", "ignore:invalid value encountered")
+@pytest.mark.filterwarnings("ignore:nanobind.*uninitialized:RuntimeWarning")
+@settings(max_examples=CALLS)
+@given(bad_calls())
+def test_bad_arguments_are_named(call):
+    name, function, arguments, changed = call
+    try:
+        function(**arguments)
+    except (ValueError, TypeError, MemoryError, OSError) as error:
+        words = [word for key in changed for word in (key, *OTHER_NAMES.get(key, ()))]
+        assert any(word in str(error) for word in words), f"{name}, {changed}: {error}"
+    except RuntimeError as error:
+        assert "progress returned False" in str(error) or "compression" in str(error), f"{name}: {error}"
+    except ZeroDivisionError as error:
+        assert str(error) in ("no number", "no text")
+
+
+def test_uninitialised_objects_are_refused():
+    for kind in (hb.System, hb.Simulation, hb.Species, hb.CustomShape, hb.Observables, hb.Counters):
+        blank = kind.__new__(kind)
+        with pytest.raises(TypeError), pytest.warns(RuntimeWarning, match="uninitialized"):
+            repr(kind)
+            blank.__len__() if hasattr(kind, "__len__") else blank.__repr__()
+
+
+def test_arrays_may_be_of_any_layout():
+    positions = np.asfortranarray(np.arange(24.0).reshape(8, 3) * 4)
+    one = hb.System(200.0, E, positions)
+    np.testing.assert_array_equal(one.positions, positions)
+    np.testing.assert_array_equal(hb.System(200.0, E, positions[::-1]).positions, positions[::-1])
+    np.testing.assert_array_equal(hb.System(200.0, E, positions.astype("f4")).positions, positions)
+    assert len(hb.System(1.0, E, [])) == 0
