@@ -52,15 +52,16 @@ function(hardbody_target target)
   endif()
 endfunction()
 
+set(HARDBODY_UNITY_BATCH 8 CACHE STRING "Sources of the program and of the tests in a group, with HARDBODY_UNITY")
 set(HARDBODY_UNITY_LIBRARY_BATCH 8 CACHE STRING "Sources of the libraries in a group, with HARDBODY_UNITY=ALL")
 
 # hardbody_grouped(<target> [LIBRARY]): compiles its sources in groups, so that Eigen and the kernels are read and
-# instantiated once for all of a group; those of the program and of the tests, eight at a time, with HARDBODY_UNITY=ON,
+# instantiated once for all of a group; those of the program and of the tests with HARDBODY_UNITY=ON,
 # those of the libraries only with HARDBODY_UNITY=ALL (docs/decisions/031).
 function(hardbody_grouped target)
   cmake_parse_arguments(PARSE_ARGV 1 arg "LIBRARY" "" "")
   if(HARDBODY_UNITY STREQUAL "ALL" OR (HARDBODY_UNITY AND NOT arg_LIBRARY))
-    set(batch 8)
+    set(batch ${HARDBODY_UNITY_BATCH})
     if(arg_LIBRARY)
       set(batch ${HARDBODY_UNITY_LIBRARY_BATCH})
       # GCC takes the anonymous namespace of a source that is included for one of a header.
