@@ -1,4 +1,4 @@
-"""Sphinx' settings of the reference of the Python package, which tools/docs builds: pages of docs/reference, and the tutorials.
+"""Sphinx' settings of the reference of the Python package: pages of docs/reference, and the tutorials (tools/docs).
 
 Docstrings are plain text: paragraphs, and paragraphs that describe arguments, "name: ...".
 """
@@ -18,7 +18,12 @@ root_doc = "reference/index"
 include_patterns = ["reference/*.rst", "tutorials/*.py"]
 extensions = ["sphinx.ext.autodoc"]
 html_theme = "alabaster"
-html_theme_options = {"description": "Python package", "fixed_sidebar": True, "page_width": "1100px", "sidebar_width": "260px"}
+html_theme_options = {
+    "description": "Python package",
+    "fixed_sidebar": True,
+    "page_width": "1100px",
+    "sidebar_width": "260px",
+}
 html_show_sourcelink = html_show_copyright = False
 html_sidebars = {"**": ["about.html", "searchbox.html", "navigation.html"]}
 python_maximum_signature_line_length = 100
@@ -26,7 +31,9 @@ autodoc_member_order = "bysource"
 autodoc_default_options = {"members": True}
 autoclass_content = "both"
 smartquotes = False
-autodoc_type_aliases = {name: name for name in ("ArrayLike", "Curves", "PathLike", "Progress", "Shape", "Shapes", "Table")}
+autodoc_type_aliases = {
+    name: name for name in ("ArrayLike", "Curves", "PathLike", "Progress", "Shape", "Shapes", "Table")
+}
 
 ARGUMENTS = re.compile(r"(?:[a-z]\w*(?:, | and )?)+(?: \([^)]*\))?: ")
 
@@ -34,7 +41,9 @@ ARGUMENTS = re.compile(r"(?:[a-z]\w*(?:, | and )?)+(?: \([^)]*\))?: ")
 def escaped(text: str) -> str:
     """Plain text as reStructuredText; backticks, single or double, are about literals."""
     parts = re.split(r"(``.+?``|`[^`]+`)", text)
-    return "".join(f"``{part.strip('`')}``" if part.startswith("`") else re.sub(r"([\\*`|_])", r"\\\1", part) for part in parts)
+    return "".join(
+        f"``{part.strip('`')}``" if part.startswith("`") else re.sub(r"([\\*`|_])", r"\\\1", part) for part in parts
+    )
 
 
 def formatted(paragraph: list[str]) -> list[str]:
@@ -59,7 +68,9 @@ def format_docstring(app: Sphinx, what: str, name: str, obj: object, options: ob
         lines += [f"Type: ``{signature[0][0].partition(' -> ')[2]}``", ""]
 
 
-def shorten_signature(app: Sphinx, what: str, name: str, obj: object, options: object, signature: str | None, returned: str | None):
+def shorten_signature(
+    app: Sphinx, what: str, name: str, obj: object, options: object, signature: str | None, returned: str | None
+):
     def short(text: str | None) -> str | None:
         if text is None:
             return None
@@ -100,7 +111,9 @@ def to_rst(script: str) -> str:
         else:
             code = body
         if code.strip():
-            pages.append("\n".join([".. code-block:: python", "", *(f"   {line}" for line in code.strip("\n").split("\n"))]))
+            pages.append(
+                "\n".join([".. code-block:: python", "", *(f"   {line}" for line in code.strip("\n").split("\n"))])
+            )
     return "\n\n".join(pages) + "\n"
 
 
