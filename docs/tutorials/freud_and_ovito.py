@@ -73,7 +73,9 @@ figure.savefig("freud_and_ovito.png")
 pipeline = import_file(str(run.path / "trajectory.gsd"))
 data = pipeline.compute(pipeline.source.num_frames - 1)
 print("semi-axes", data.particles["Aspherical Shape"][0])
-assert np.allclose(data.particles["Aspherical Shape"][0], frames[0].particles.type_shapes[0]["c"] * np.array([1, 1, 3]) / 3)
+assert np.allclose(
+    data.particles["Aspherical Shape"][0], frames[0].particles.type_shapes[0]["c"] * np.array([1, 1, 3]) / 3
+)
 
 # %% [markdown]
 # It also edits: eight copies of the last frame make a box of 512 bodies.

@@ -47,5 +47,7 @@ class Ellipsoids:
         """Lengths of the translations along directions that separate a pair: its depth is the least of all."""
         heights = []
         for body, n in ((2 * pair, directions), (2 * pair + 1, -directions)):
-            heights.append(np.linalg.norm(self.axes[body] * (n @ self.rotations[body]), axis=1) + n @ self.positions[body])
+            heights.append(
+                np.linalg.norm(self.axes[body] * (n @ self.rotations[body]), axis=1) + n @ self.positions[body]
+            )
         return heights[0] + heights[1]

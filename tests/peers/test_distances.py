@@ -93,8 +93,8 @@ def test_separate_pairs(theirs: np.ndarray, bodies: Ellipsoids, found: hb.Distan
 
 
 def test_overlapping_pairs(theirs: np.ndarray, bodies: Ellipsoids, found: hb.Distances) -> None:
-    """Depths, the least over all directions. Theirs are larger where a search has ended at a local minimum; smaller ones
-    are wrong: no direction has such a depth."""
+    """Depths, the least over all directions: half of theirs agree within 1e-6, and none of 20,000 random directions has a
+    smaller depth than ours. That is a sample, no proof as for separate pairs."""
     overlapping = found.status == "overlapping"
     assert (theirs[overlapping] < 0).all()
     difference = theirs - found.distance

@@ -30,7 +30,9 @@ def rotations(q: np.ndarray) -> np.ndarray:
 def test_gsd(run: hb.Run, exact: list[dict[str, np.ndarray]]) -> None:
     frames = run.trajectory()
     assert len(frames) == 25
-    assert frames[0].particles.type_shapes[0] == pytest.approx({"type": "Ellipsoid"} | dict(zip("abc", AXES, strict=True)))
+    assert frames[0].particles.type_shapes[0] == pytest.approx(
+        {"type": "Ellipsoid"} | dict(zip("abc", AXES, strict=True))
+    )
     for frame, state in zip(frames, exact, strict=True):
         assert frame.configuration.box[0] == pytest.approx(state["box"], rel=1e-7)
         np.testing.assert_allclose(frame.particles.position, state["position"], atol=1e-6)
