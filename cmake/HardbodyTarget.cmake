@@ -2,7 +2,8 @@
 #
 # hardbody_target(<target> [BASELINE]) applies them; BASELINE leaves HARDBODY_ARCH out. None of them is exported: a
 # consumer compiles with its own flags, which is safe because no object that inline functions share depends on -march
-# (docs/decisions/017).
+# (docs/decisions/017). With HARDBODY_SANITIZE_FAST targets that are COMPILED_ONLY are not instrumented, and those that
+# are NUMERICAL are optimised (-O1).
 
 if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES AND PROJECT_IS_TOP_LEVEL)
   set(CMAKE_BUILD_TYPE Release CACHE STRING "Build type" FORCE)
@@ -19,7 +20,7 @@ if(BUILD_SHARED_LIBS AND NOT DEFINED CMAKE_INSTALL_RPATH)
 endif()
 
 function(hardbody_target target)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "BASELINE" "" "")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "BASELINE;COMPILED_ONLY;NUMERICAL" "" "")
   target_compile_features(${target} PUBLIC cxx_std_20)
   set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF CXX_VISIBILITY_PRESET hidden
     VISIBILITY_INLINES_HIDDEN ON POSITION_INDEPENDENT_CODE ON
@@ -38,22 +39,29 @@ function(hardbody_target target)
   if(HARDBODY_ARCH AND NOT arg_BASELINE)
     target_compile_options(${target} PRIVATE -march=${HARDBODY_ARCH})
   endif()
-  if(HARDBODY_SANITIZE)
+  if(HARDBODY_SANITIZE AND HARDBODY_SANITIZE_FAST AND arg_NUMERICAL)
+    target_compile_options(${target} PRIVATE -O1)
+  endif()
+  if(HARDBODY_SANITIZE AND HARDBODY_SANITIZE_FAST AND arg_COMPILED_ONLY)
+    target_compile_options(${target} PRIVATE -g0)
+    target_link_options(${target} PUBLIC -fsanitize=${HARDBODY_SANITIZE})
+  elseif(HARDBODY_SANITIZE)
     target_compile_options(${target} PRIVATE -fsanitize=${HARDBODY_SANITIZE} -fno-sanitize-recover=all
       -fno-omit-frame-pointer)
     target_link_options(${target} PUBLIC -fsanitize=${HARDBODY_SANITIZE})
   endif()
 endfunction()
 
+set(HARDBODY_UNITY_BATCH 8 CACHE STRING "Sources of the program and of the tests in a group, with HARDBODY_UNITY")
 set(HARDBODY_UNITY_LIBRARY_BATCH 8 CACHE STRING "Sources of the libraries in a group, with HARDBODY_UNITY=ALL")
 
 # hardbody_grouped(<target> [LIBRARY]): compiles its sources in groups, so that Eigen and the kernels are read and
-# instantiated once for all of a group; those of the program and of the tests, eight at a time, with HARDBODY_UNITY=ON,
+# instantiated once for all of a group; those of the program and of the tests with HARDBODY_UNITY=ON,
 # those of the libraries only with HARDBODY_UNITY=ALL (docs/decisions/031).
 function(hardbody_grouped target)
   cmake_parse_arguments(PARSE_ARGV 1 arg "LIBRARY" "" "")
   if(HARDBODY_UNITY STREQUAL "ALL" OR (HARDBODY_UNITY AND NOT arg_LIBRARY))
-    set(batch 8)
+    set(batch ${HARDBODY_UNITY_BATCH})
     if(arg_LIBRARY)
       set(batch ${HARDBODY_UNITY_LIBRARY_BATCH})
       # GCC takes the anonymous namespace of a source that is included for one of a header.

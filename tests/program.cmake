@@ -37,7 +37,7 @@ if(TARGET hardbody)
   add_test(NAME manual_test COMMAND ${HARDBODY_PYTHON} ${CMAKE_CURRENT_SOURCE_DIR}/cli/test_manual.py)
   set_tests_properties(manual_test PROPERTIES LABELS cli TIMEOUT 60 ENVIRONMENT "HARDBODY=$<TARGET_FILE:hardbody>")
 
-  hardbody_test(sweep_test unit unit/app/sweep_test.cpp unit/app/config_keys_test.cpp)
+  hardbody_test(sweep_test unit unit/app/sweep_test.cpp unit/app/config_keys_test.cpp unit/app/guest_test.cpp)
   target_link_libraries(sweep_test PRIVATE hardbody_program)
 
   hardbody_test(registry_test unit unit/app/registry_test.cpp)
@@ -55,5 +55,5 @@ if(TARGET hardbody)
   target_link_libraries(trajectory_test PRIVATE hardbody_program)
 else()
   list(APPEND unbuilt_tests cli/program_test.cpp cli/checkpoint_test.cpp cli/check_test.cpp cli/events_file_test.cpp
-    cli/trajectory_test.cpp unit/app/registry_test.cpp unit/app/sweep_test.cpp unit/app/config_keys_test.cpp)
+    cli/trajectory_test.cpp unit/app/registry_test.cpp unit/app/sweep_test.cpp unit/app/config_keys_test.cpp unit/app/guest_test.cpp)
 endif()

@@ -11,7 +11,7 @@ if(TARGET hardbody)
     DEPENDS ${report_source}/src/base.css ${report_source}/embed.cmake VERBATIM)
   add_executable(hardbody_static_report $<TARGET_OBJECTS:hardbody> ${no_front_end})
   hardbody_target(hardbody_static_report)
-  target_link_libraries(hardbody_static_report PRIVATE hardbody_program)
+  target_link_libraries(hardbody_static_report PRIVATE hardbody_command_line)
   hardbody_needed_by(report hardbody hardbody_static_report)
 
   hardbody_test(report_test report report/report_test.cpp)

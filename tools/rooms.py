@@ -49,11 +49,11 @@ LIBRARIES = {
         "public": ("hardbody", {}),
     },
     "apps/python/src": {
-        "order": "base < geometry < simulation",
+        "order": "base < geometry < simulation, runs",
         "public": ("hardbody", {}),
     },
 }
-ABOVE_ALL_ROOMS = ("main.cpp", "module.cpp")
+ABOVE_ALL_ROOMS = ("main.cpp", "command_line.cpp", "command_line.h", "module.cpp")
 
 
 def ranks(order):

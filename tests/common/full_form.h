@@ -34,7 +34,12 @@ constexpr bool slow_build() {
 #endif
 }
 
-/// Returns the number of draws: `count`, or a tenth of it in a slow build and in the quick form.
+/// Returns whether fewer cases are enough: in a slow build and in the quick form.
+inline bool short_form() {
+  return slow_build() || quick_form();
+}
+
+/// Returns the number of draws: `count`, or a tenth of it in the short form.
 inline int repetitions(int count) {
-  return slow_build() || quick_form() ? count / 10 : count;
+  return short_form() ? count / 10 : count;
 }

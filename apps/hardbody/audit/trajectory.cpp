@@ -1,6 +1,7 @@
 #include "audit/trajectory.h"
 
 #include "audit/pairs.h"
+#include "base/console.h"
 #include "base/errors.h"
 #include "io/text_file.h"
 #include "run/record.h"
@@ -160,7 +161,7 @@ void print_frames(const TrajectoryReader& reader, const Frame& first, const Fram
 }  // namespace
 
 void report_row(const char* name, const std::string& value) {
-  fmt::print("  {:<26} {}\n", name, value);
+  console().print(fmt::format("  {:<26} {}\n", name, value));
 }
 
 ed::Audit audited(const ed::System& system, const std::string& where) {
@@ -195,13 +196,13 @@ int check_trajectory(const TrajectoryReader& reader) {
     throw InputError(fmt::format("{}: has no complete frame with positions; accepted: a file with frames", name));
   }
   if (all.unsound > kMostShown) shown += fmt::format("  *** and {} more frames ***\n", all.unsound - kMostShown);
-  fmt::print("{}\n{}", name, shown);
+  console().print(fmt::format("{}\n{}", name, shown));
   print_frames(reader, first, last, all);
   const std::string reasons = fmt::format("{}", fmt::join(all.not_tested, "; "));
   if (all.unsound > 0) {
-    fmt::print("NOT SOUND\n");
+    console().print(fmt::format("NOT SOUND\n"));
   } else {
-    fmt::print("{}\n", reasons.empty() ? "sound" : fmt::format("not tested: overlaps: {}", reasons));
+    console().print(fmt::format("{}\n", reasons.empty() ? "sound" : fmt::format("not tested: overlaps: {}", reasons)));
   }
   return all.unsound == 0 && reasons.empty() ? 0 : 1;
 }

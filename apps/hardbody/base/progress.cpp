@@ -1,20 +1,12 @@
 #include "base/progress.h"
 
+#include "base/console.h"
+
 #include <fmt/format.h>
 
-#include <cstdio>
-
-#include <unistd.h>
-
 namespace hardbody {
-namespace {
 
-constexpr std::chrono::milliseconds kTerminalInterval{250};
-constexpr std::chrono::seconds kPlainInterval{10};
-
-}  // namespace
-
-Progress::Progress() : terminal_(::isatty(STDERR_FILENO) == 1), begun_(Clock::now()), last_(begun_) {}
+Progress::Progress() : begun_(Clock::now()), last_(begun_) {}
 
 Progress::~Progress() {
   clear();
@@ -25,32 +17,20 @@ void Progress::begin() {
 }
 
 bool Progress::due() const {
-  const auto since = Clock::now() - last_;
-  return terminal_ ? since >= kTerminalInterval : since >= kPlainInterval;
+  return Clock::now() - last_ >= console().interval();
 }
 
-void Progress::show(const std::string& text) {
+void Progress::show(const std::string& text, double done) {
   last_ = Clock::now();
-  if (terminal_) {
-    (void)std::fputs(("\r\x1b[K" + text).c_str(), stderr);
-    (void)std::fflush(stderr);
-    shown_ = true;
-  } else {
-    say(text);
-  }
+  console().show(text, done);
 }
 
 void Progress::say(const std::string& text) {
-  clear();
-  // fmt::print is not used, because it throws when the reader of a pipe has gone.
-  (void)std::fputs((text + '\n').c_str(), stderr);
+  console().say(text);
 }
 
 void Progress::clear() {
-  if (!shown_) return;
-  (void)std::fputs("\r\x1b[K", stderr);
-  (void)std::fflush(stderr);
-  shown_ = false;
+  console().clear();
 }
 
 double Progress::seconds() const {

@@ -3,11 +3,12 @@
 #include "base/log.h"
 
 #include <chrono>
+#include <limits>
 #include <string>
 
 namespace hardbody {
 
-/// Progress of a run on stderr: one line that is rewritten on a terminal, else a line every ten seconds.
+/// Progress of a command, shown on the console of this thread from time to time.
 class Progress {
  public:
   Progress();
@@ -20,7 +21,9 @@ class Progress {
 
   /// Returns whether an update is due; to be called before the text is composed.
   bool due() const;
-  void show(const std::string& text);
+
+  /// Shows how far the phase is; `done` is the fraction done, NaN if it is not known.
+  void show(const std::string& text, double done = std::numeric_limits<double>::quiet_NaN());
 
   /// Prints a line that is not overwritten.
   void say(const std::string& text);
@@ -33,8 +36,6 @@ class Progress {
 
  private:
   using Clock = std::chrono::steady_clock;
-  bool terminal_;
-  bool shown_ = false;
   Clock::time_point begun_;
   Clock::time_point last_;
 };

@@ -9,6 +9,36 @@ namespace hardbody {
 /// does not end the run.
 void install_signal_handlers();
 
+/// Restores, when the last of these objects in the process ends, the handlers that were there before the first one: for
+/// commands that a process calls beside other work. A signal that has stopped a command is then sent to this process
+/// again, for the handler that it would have had. Until then a second SIGINT is ignored. Objects may be of several
+/// threads; a signal stops the commands of all.
+class SignalScope {
+ public:
+  SignalScope();
+  ~SignalScope();
+  SignalScope(const SignalScope&) = delete;
+  SignalScope& operator=(const SignalScope&) = delete;
+};
+
+/// Makes pending_signal() return kCallerStops in this thread, until the innermost StopScope of the thread ends.
+void request_stop();
+
+/// Part of a thread's work that request_stop() stops. When it ends, a request to the part around it is what it was.
+class StopScope {
+ public:
+  StopScope();
+  ~StopScope();
+  StopScope(const StopScope&) = delete;
+  StopScope& operator=(const StopScope&) = delete;
+
+ private:
+  bool around_;
+};
+
+/// Number in place of a signal's for commands that are stopped by their caller.
+inline constexpr int kCallerStops = 100;
+
 /// Returns the first of these signals, or 0 if none has arrived.
 int pending_signal();
 

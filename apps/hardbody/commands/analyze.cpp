@@ -1,3 +1,4 @@
+#include "base/console.h"
 #include "base/errors.h"
 #include "base/version.h"
 #include "commands/commands.h"
@@ -68,8 +69,7 @@ std::string cell(double x) {
 }
 
 std::string order_csv(const StoredTrajectory& stored, Units units) {
-  std::string text =
-      fmt::format("{},S [1],energy [{}]\n", abscissa_of(Rows::lags, units), unit_text("kT", units));
+  std::string text = fmt::format("{},S [1],energy [{}]\n", abscissa_of(Rows::lags, units), unit_text("kT", units));
   for (std::size_t k = 0; k < stored.frames.size(); ++k) {
     const ed::StoredFrame& frame = stored.frames[k];
     std::vector<Vector3d> axes;
@@ -158,10 +158,10 @@ fs::path trajectory_in(const fs::path& directory) {
 
 /// Prints what was read, and which of it was not used.
 void print_reading(const TrajectoryReader& reader, const StoredTrajectory& stored, const ed::StoredResults& results) {
-  fmt::print("{}: {} {} of {} bodies{}\n", reader.name(), stored.frames.size(),
-             stored.frames.size() == 1 ? "frame" : "frames", stored.options.axis.size(),
-             reader.cut_off() ? kCutOff : "");
-  const auto note = [](const std::string& text) { fmt::print("  note: {}\n", text); };
+  console().print(fmt::format("{}: {} {} of {} bodies{}\n", reader.name(), stored.frames.size(),
+                              stored.frames.size() == 1 ? "frame" : "frames", stored.options.axis.size(),
+                              reader.cut_off() ? kCutOff : ""));
+  const auto note = [](const std::string& text) { console().print(fmt::format("  note: {}\n", text)); };
   if (stored.without_positions > 0) {
     note(fmt::format("frames without positions are left out: {} of {} in the file", stored.without_positions,
                      stored.in_file));
@@ -179,7 +179,7 @@ void print_reading(const TrajectoryReader& reader, const StoredTrajectory& store
   } else if (!stored.not_unwrapped.empty()) {
     note(fmt::format("no displacements, MSD and F_self: {}", stored.not_unwrapped));
   } else if (stored.frames.size() > 1) {
-    fmt::print("  positions unwrapped by {}\n", stored.unwrapped_by);
+    console().print(fmt::format("  positions unwrapped by {}\n", stored.unwrapped_by));
   }
 }
 
@@ -207,12 +207,12 @@ int analyze(const AnalyzeArguments& arguments) {
   for (const Observable& o : observables()) {
     if (!o.in_frames || o.label.empty()) continue;
     for (const ed::Estimate& value : numbers_of(o, {results, &results})) {
-      fmt::print("  {:<12} {}\n", o.label, shown(value));
+      console().print(fmt::format("  {:<12} {}\n", o.label, shown(value)));
     }
   }
   if (!stored.options.fit_from)
-    fmt::print("no fits of decays: --fit-from T sets the first lag, where ballistic motion has ended\n");
-  fmt::print("\nfiles: {0}/analysis.json, {0}/*.csv\n", out.string());
+    console().print("no fits of decays: --fit-from T sets the first lag, where ballistic motion has ended\n");
+  console().print(fmt::format("\nfiles: {0}/analysis.json, {0}/*.csv\n", out.string()));
   return 0;
 }
 

@@ -1,4 +1,5 @@
 #include "audit/trajectory.h"
+#include "base/console.h"
 #include "base/errors.h"
 #include "base/number_text.h"
 #include "commands/commands.h"
@@ -78,13 +79,13 @@ int check(const std::string& path) {
   const fs::path file = fs::path(path) / kCheckpointFile;
   const Checkpoint checkpoint = read_checkpoint(file);
   const ed::Audit result = audited(checkpoint.system, file.string());
-  fmt::print("{}\n", file.string());
+  console().print(fmt::format("{}\n", file.string()));
   print_state(checkpoint, result);
   std::vector<std::string> list = defects(result);
   for (std::string& defect : conservation_defects(result.kinetic, checkpoint.system)) list.push_back(std::move(defect));
   if (!print_config(checkpoint, file.string())) list.emplace_back("the state does not match its config");
-  for (const std::string& defect : list) fmt::print("  *** NOT SOUND: {} ***\n", defect);
-  fmt::print("{}\n", list.empty() ? "sound" : "NOT SOUND");
+  for (const std::string& defect : list) console().print(fmt::format("  *** NOT SOUND: {} ***\n", defect));
+  console().print(fmt::format("{}\n", list.empty() ? "sound" : "NOT SOUND"));
   return list.empty() ? 0 : 1;
 }
 

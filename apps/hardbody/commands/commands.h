@@ -11,6 +11,7 @@ namespace hardbody {
 
 struct RunArguments {
   std::string config;                  ///< path of the TOML file
+  std::optional<std::string> text;     ///< config as TOML, without a file; `config` is then its name in messages
   std::optional<std::string> out;      ///< run directory; by default out/<stem of the config>
   std::vector<std::string> overrides;  ///< section.key=value
   bool force = false;                  ///< overwrite an existing run
@@ -26,9 +27,11 @@ struct AnalyzeArguments {
 };
 
 struct SweepArguments {
-  std::string sweep;               ///< path of the TOML file
-  std::optional<std::string> out;  ///< directory of the sweep; by default out/<stem of the file>
-  std::optional<int> jobs;         ///< number of simultaneous runs; by default one for each processor
+  std::string sweep;                 ///< path of the TOML file
+  std::optional<std::string> text;   ///< sweep as TOML, without a file; `sweep` is then its name in messages
+  std::optional<std::string> out;    ///< directory of the sweep; by default out/<stem of the file>
+  std::optional<int> jobs;           ///< number of simultaneous runs; by default one for each processor
+  std::vector<std::string> program;  ///< command that the subcommands of a point are appended to; empty: this program
 };
 
 struct MapArguments {

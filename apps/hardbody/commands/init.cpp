@@ -1,3 +1,4 @@
+#include "base/console.h"
 #include "base/errors.h"
 #include "commands/commands.h"
 #include "config/text.h"
@@ -18,7 +19,7 @@ int init(const std::string& path, const std::string& name) {
   }
   const std::string& text = *found;
   if (path.empty()) {
-    (void)std::fputs(text.c_str(), stdout);
+    console().print(text);
     return 0;
   }
   // x: fails if the file exists.
@@ -32,7 +33,7 @@ int init(const std::string& path, const std::string& name) {
   if (std::fclose(file) != 0 || !written) {
     throw InputError(fmt::format("{}: cannot be written completely; accepted: a new file on a disk with room", path));
   }
-  fmt::print("{} written; next: hardbody {} {}\n", path, name == "sweep" ? "sweep" : "run", path);
+  console().print(fmt::format("{} written; next: hardbody {} {}\n", path, name == "sweep" ? "sweep" : "run", path));
   return 0;
 }
 

@@ -1,3 +1,4 @@
+#include "base/console.h"
 #include "base/errors.h"
 #include "base/number_text.h"
 #include "commands/commands.h"
@@ -199,6 +200,7 @@ std::string lines_csv(const Map& map) {
 }
 
 void check(const MapArguments& arguments) {
+  if (arguments.values.empty()) throw InputError("--value is not given; accepted: a column, or several");
   if (!arguments.levels.empty() && arguments.levels.size() != arguments.values.size()) {
     throw InputError(
         fmt::format("--levels is given {} times and --value {} times; accepted: levels for each value, or "
@@ -217,7 +219,8 @@ void print_levels(const Map& map) {
   for (const MapLevel& level : map.levels) {
     std::size_t points = 0;
     for (const ContourLine& line : level.lines) points += line.size();
-    fmt::print("  {} = {:g}: {} lines, {} points\n", level.value, level.level, level.lines.size(), points);
+    console().print(
+        fmt::format("  {} = {:g}: {} lines, {} points\n", level.value, level.level, level.lines.size(), points));
   }
 }
 
@@ -242,8 +245,8 @@ int map(const MapArguments& arguments) {
   check_replaceable(csv, kCsvBeginning);
   write_file(svg, map_svg(map));
   write_file(csv, lines_csv(map));
-  fmt::print("{}, {} written from {} points{}\n", svg.string(), csv.string(), map.marks.size(),
-             left_out > 0 ? fmt::format("; {} left out, whose status is not done", left_out) : "");
+  console().print(fmt::format("{}, {} written from {} points{}\n", svg.string(), csv.string(), map.marks.size(),
+                              left_out > 0 ? fmt::format("; {} left out, whose status is not done", left_out) : ""));
   print_levels(map);
   return 0;
 }

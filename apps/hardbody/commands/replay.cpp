@@ -1,3 +1,4 @@
+#include "base/console.h"
 #include "base/errors.h"
 #include "base/shapes.h"
 #include "commands/commands.h"
@@ -14,7 +15,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <stdexcept>
 #include <string>
 #include <variant>
@@ -211,7 +211,7 @@ std::string replayed(const Failure& failure) {
 int replay(const std::string& path) {
   const Failure failure = read_failure(path);
   try {
-    (void)std::fputs(replayed(failure).c_str(), stdout);
+    console().print(replayed(failure));
   } catch (const std::invalid_argument& error) {
     throw InputError(fmt::format("{}: {}", path, error.what()));
   }

@@ -1,3 +1,4 @@
+#include "base/console.h"
 #include "base/errors.h"
 #include "commands/commands.h"
 #include "io/run_directory.h"
@@ -18,6 +19,9 @@ namespace {
 namespace fs = std::filesystem;
 
 fs::path output_path(const ReportArguments& arguments) {
+  if (arguments.directories.empty()) {
+    throw InputError("hardbody report: no directory; accepted: run directories, or that of a sweep");
+  }
   if (arguments.out) return *arguments.out;
   if (arguments.directories.size() == 1) return fs::path(arguments.directories[0]) / kReportFile;
   throw InputError("hardbody report: several directories, but no output file; accepted: -o FILE.html");
@@ -93,8 +97,9 @@ int report(const ReportArguments& arguments) {
   check_output(path);
   const std::string page = report_page(report);
   write_file(path, page);
-  fmt::print("{}: {}{}\n", path.string(), size_text(page.size()),
-             report_script().empty() ? ", static: this program was built without the interactive front end" : "");
+  console().print(
+      fmt::format("{}: {}{}\n", path.string(), size_text(page.size()),
+                  report_script().empty() ? ", static: this program was built without the interactive front end" : ""));
   return 0;
 }
 

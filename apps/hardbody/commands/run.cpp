@@ -1,3 +1,4 @@
+#include "base/console.h"
 #include "base/errors.h"
 #include "base/log.h"
 #include "base/progress.h"
@@ -9,6 +10,7 @@
 #include "config/text.h"
 #include "io/run_directory.h"
 #include "io/text_file.h"
+#include "io/toml_document.h"
 #include "run/checkpoint.h"
 #include "run/files/failure_file.h"
 #include "run/files/observable_files.h"
@@ -25,7 +27,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <cstdio>
 #include <exception>
 #include <filesystem>
 #include <optional>
@@ -37,6 +38,12 @@
 
 namespace hardbody {
 namespace {
+
+Config read_config(const RunArguments& arguments, std::optional<StartFrame>& frame) {
+  if (!arguments.text) return load_config(arguments.config, arguments.overrides, &frame);
+  return hardbody::read_config(read_toml(*arguments.text, arguments.config, arguments.overrides, Lines::unnamed),
+                               &frame);
+}
 
 /// Returns the last state of the run that the config starts from. Throws InputError if there is none, or it is not one
 /// of the config's bodies at its packing fraction or below.
@@ -78,7 +85,8 @@ ed::System take_origin(const std::filesystem::path& directory, Config& config) {
 
 RunDirectory create_directory(const RunArguments& arguments, const Config& config) {
   const Overwrite overwrite = arguments.force ? Overwrite::allowed : Overwrite::refused;
-  std::vector<std::filesystem::path> inputs = {arguments.config};
+  std::vector<std::filesystem::path> inputs;
+  if (!arguments.text) inputs.emplace_back(arguments.config);
   if (config.start_file) inputs.emplace_back(config.start_file->file);
   return RunDirectory::create(directory_for(arguments.out, arguments.config), overwrite, inputs, resolved_text(config));
 }
@@ -182,8 +190,7 @@ int conclude(const RunDirectory& directory, RunRecord& record, Continuation& at,
   progress.clear();
   // The table is printed even if a full disk has kept the files from being written: it may be the result of hours of
   // work.
-  (void)std::fputs(results_table(record, written.list(directory, record.config)).c_str(), stdout);
-  (void)std::fflush(stdout);
+  console().print(results_table(record, written.list(directory, record.config)));
   if (failure) std::rethrow_exception(failure);
   const std::vector<std::string> list = defects(record);
   for (const std::string& defect : list) announce("NOT SOUND: " + defect, directory, progress, log);
@@ -307,7 +314,7 @@ bool has_final_results(const RunDirectory& directory) {
 
 /// Reports that the run is complete. Nothing is changed.
 int leave_alone(const RunDirectory& directory) {
-  fmt::print("{}: the run is finished: nothing to do\n", directory.path().string());
+  console().print(fmt::format("{}: the run is finished: nothing to do\n", directory.path().string()));
   return 0;
 }
 
@@ -325,7 +332,7 @@ int start_over(const RunDirectory& directory) {
 
 int run(const RunArguments& arguments) {
   std::optional<StartFrame> frame;
-  Config config = load_config(arguments.config, arguments.overrides, &frame);
+  Config config = read_config(arguments, frame);
   install_signal_handlers();
   // Errors of a state to start from are reported before anything is written.
   Continuation at;

@@ -1,3 +1,4 @@
+#include "base/console.h"
 #include "base/errors.h"
 #include "base/progress.h"
 #include "base/signals.h"
@@ -15,7 +16,7 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdio>
+#include <csignal>
 #include <deque>
 #include <filesystem>
 #include <map>
@@ -135,8 +136,8 @@ std::vector<PointRecord> planned(const SweepFile& sweep) {
 /// Runs the points of a sweep.
 class Sweep {
  public:
-  Sweep(fs::path directory, std::vector<PointRecord> records, std::size_t jobs)
-      : directory_(std::move(directory)), records_(std::move(records)), jobs_(jobs) {}
+  Sweep(fs::path directory, std::vector<PointRecord> records, std::size_t jobs, const std::vector<std::string>& program)
+      : directory_(std::move(directory)), records_(std::move(records)), jobs_(jobs), workers_(program) {}
 
   /// Runs all points and returns the exit status.
   int run();
@@ -157,6 +158,7 @@ class Sweep {
   void write_table();
   std::size_t count(PointStatus status) const;
   std::string text() const;
+  double fraction_done() const;
   int conclude(int signal);
 
   fs::path directory_;
@@ -183,6 +185,11 @@ std::string Sweep::text() const {
   const auto to_do = static_cast<double>(records_.size() - done_before_);
   return fmt::format("sweep: {} of {} points done, {} running, {} failed  {}", done, records_.size(),
                      workers_.running(), failed, eta(progress_.seconds(), over, to_do));
+}
+
+double Sweep::fraction_done() const {
+  return static_cast<double>(count(PointStatus::done) + count(PointStatus::failed)) /
+         static_cast<double>(records_.size());
 }
 
 /// Writes the table. If a file of the sweep itself cannot be written, completed points are kept; the table is written
@@ -328,7 +335,7 @@ void Sweep::end_point(const WorkerEnd& end) {
 
 /// Stops the workers, which save their states.
 void Sweep::stop() {
-  workers_.signal_all(pending_signal());
+  workers_.signal_all(pending_signal() == kCallerStops ? SIGTERM : pending_signal());
   while (workers_.running() > 0) {
     for (const WorkerEnd& end : workers_.ended(kSignalLook)) end_point(end);
   }
@@ -339,17 +346,13 @@ int Sweep::conclude(int signal) {
   progress_.clear();
   const std::size_t failed = count(PointStatus::failed);
   const std::size_t done = count(PointStatus::done);
-  (void)std::fputs(
-      fmt::format(
-          "{}: {} points: {} done, {} failed{}\n", directory_.string(), records_.size(), done, failed,
-          done + failed < records_.size() ? fmt::format(", {} to do", records_.size() - done - failed) : std::string())
-          .c_str(),
-      stdout);
+  console().print(fmt::format(
+      "{}: {} points: {} done, {} failed{}\n", directory_.string(), records_.size(), done, failed,
+      done + failed < records_.size() ? fmt::format(", {} to do", records_.size() - done - failed) : std::string()));
   for (const PointRecord& record : records_) {
     if (record.status != PointStatus::failed) continue;
-    (void)std::fputs(fmt::format("failed: {}: {}\n", record.point.name, record.message).c_str(), stdout);
+    console().print(fmt::format("failed: {}: {}\n", record.point.name, record.message));
   }
-  (void)std::fflush(stdout);
   if (signal != 0) {
     progress_.say(
         fmt::format("{}: stopped by {}: the same command continues", directory_.string(), signal_name(signal)));
@@ -365,7 +368,7 @@ int Sweep::run() {
   while (pending_signal() == 0 && (!waiting_.empty() || workers_.running() > 0)) {
     start_points();
     for (const WorkerEnd& end : workers_.ended(kSignalLook)) end_point(end);
-    if (progress_.due()) progress_.show(text());
+    if (progress_.due()) progress_.show(text(), fraction_done());
   }
   const int signal = pending_signal();
   if (signal != 0) stop();
@@ -377,11 +380,12 @@ int Sweep::run() {
 int sweep(const SweepArguments& arguments) {
   install_signal_handlers();
   const std::size_t jobs = static_cast<std::size_t>(jobs_for(arguments));
-  const SweepFile file = read_sweep(arguments.sweep);
+  const SweepFile file =
+      arguments.text ? parse_sweep(*arguments.text, arguments.sweep, "", Lines::unnamed) : read_sweep(arguments.sweep);
   std::vector<PointRecord> records = planned(file);
   const fs::path directory = directory_for(arguments.out, arguments.sweep);
   const DirectoryLock lock = take_directory(directory, file);
-  return Sweep(directory, std::move(records), jobs).run();
+  return Sweep(directory, std::move(records), jobs, arguments.program).run();
 }
 
 }  // namespace hardbody

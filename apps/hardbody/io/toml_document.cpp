@@ -82,11 +82,11 @@ Value value_of(const toml::node& node) {
 void add_entry(TomlDocument& document, std::string key, const toml::key& name, const toml::node& node) {
   // The line of the key, not of the value, which may span several lines.
   const int line = line_of(name.source());
-  document.entries.push_back({std::move(key), fmt::format("{}:{}", document.name, line), line, value_of(node)});
+  document.entries.push_back({std::move(key), document.where(line), line, value_of(node)});
 }
 
 void add_section(TomlDocument& document, const std::string& name, bool several, int line, const toml::table& section) {
-  document.sections.push_back({name, several, fmt::format("{}:{}", document.name, line), line});
+  document.sections.push_back({name, several, document.where(line), line});
   for (const auto& [key, node] : section) add_entry(document, fmt::format("{}.{}", name, key.str()), key, node);
 }
 
@@ -134,7 +134,7 @@ void lay_over(TomlDocument& document, const std::string& override_text) {
     throw InputError(fmt::format("{}: is not an assignment; accepted: section.key=value", where));
   }
   std::string key = one_line(override_text.substr(0, equals));
-  const std::string text = one_line(override_text.substr(equals + 1));
+  const std::string text = one_line(override_text.substr(equals + 1), override_text.size());
   if (text.empty()) throw InputError(fmt::format("{}: has no value; accepted: section.key=value", where));
   document.set({std::move(key), where, 0, parse_value(text)});
 }
@@ -265,16 +265,26 @@ const Entry* TomlDocument::find(std::string_view key) const {
   return find_by(entries, &Entry::key, key);
 }
 
-std::string TomlDocument::where_of(std::string_view section) const {
-  const Section* found = find_by(sections, &Section::name, section);
-  return found != nullptr ? found->where : name + ":1";
+std::string TomlDocument::where(int line) const {
+  return lines == Lines::named ? fmt::format("{}:{}", name, line) : name;
 }
 
-TomlDocument read_toml(std::string_view text, const std::string& name, const std::vector<std::string>& overrides) {
+std::string TomlDocument::where_of(std::string_view section) const {
+  const Section* found = find_by(sections, &Section::name, section);
+  return found != nullptr ? found->where : where(1);
+}
+
+TomlDocument read_toml(std::string_view text, const std::string& name, const std::vector<std::string>& overrides,
+                       Lines lines) {
   TomlDocument document;
   document.name = name;
+  document.lines = lines;
   const toml::table root = parse(text, name);
   for (const auto& [key, node] : root) {
+    if (key.str().find('.') != std::string_view::npos) {
+      throw InputError(fmt::format("{}: \"{}\" is one key with a dot in it; accepted: sections, or keys without quotes",
+                                   document.where(line_of(key.source())), one_line(key.str(), 60)));
+    }
     if (node.is_table() || node.is_array_of_tables()) {
       add_sections(document, key, node);
     } else {

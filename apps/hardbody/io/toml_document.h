@@ -61,19 +61,25 @@ struct Section {
   int line = 0;
 };
 
+/// Whether messages name the line of a value: not if the text was made from something that has no lines.
+enum class Lines { named, unnamed };
+
 /// Returns "file:line: key is what was got{why}; accepted: ..".
 InputError bad(const Entry& entry, std::string_view accepted, std::string_view why = "");
 
 /// TOML file of two levels (keys at the top, keys in sections, of which several may have one name), with values from
 /// the command line that replace those of the file.
 struct TomlDocument {
-  std::string name;               ///< name of the file
+  std::string name;  ///< name of the file
+  Lines lines = Lines::named;
   std::vector<Section> sections;  ///< sections in the order of the file
   std::vector<Entry> entries;     ///< entries in the order of the file, then of the command line; each key once
 
   const Entry* find(std::string_view key) const;
   /// Sets a key, replacing its value if there is one.
   void set(Entry entry);
+  /// Returns file:line, the beginning of messages.
+  std::string where(int line) const;
   /// Returns file:line of the section's head, or file:1.
   std::string where_of(std::string_view section) const;
 };
@@ -83,7 +89,8 @@ struct TomlDocument {
 ///
 /// The value of an override is read as TOML; if it is not TOML it is taken as a string, so that a shell needs no second
 /// quotes.
-TomlDocument read_toml(std::string_view text, const std::string& name, const std::vector<std::string>& overrides);
+TomlDocument read_toml(std::string_view text, const std::string& name, const std::vector<std::string>& overrides,
+                       Lines lines = Lines::named);
 
 /// Returns a document as TOML, without comments: reading it gives the same values.
 std::string document_text(const TomlDocument& document);

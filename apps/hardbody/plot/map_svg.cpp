@@ -75,6 +75,7 @@ class Scale {
   double high_;
 };
 
+/// Returns the scale of an axis; there is at least one mark.
 Scale scale_of(const Map& map, double MapMark::*coordinate, double from, double to, bool log) {
   const auto [low, high] =
       std::minmax_element(map.marks.begin(), map.marks.end(),

@@ -96,6 +96,7 @@ bool is_of_config(const Entry& entry) {
 TomlDocument config_part(const TomlDocument& document) {
   TomlDocument base;
   base.name = document.name;
+  base.lines = document.lines;
   std::copy_if(document.entries.begin(), document.entries.end(), std::back_inserter(base.entries), is_of_config);
   std::copy_if(document.sections.begin(), document.sections.end(), std::back_inserter(base.sections),
                [](const Section& s) { return !is_grid(s.name); });
@@ -198,8 +199,7 @@ std::vector<Entry> flattened(const TomlDocument& document, const Entry& entry) {
   if (entry.value.kind != Value::Kind::table || is_range(entry.value)) return {entry};
   std::vector<Entry> entries;
   for (const Member& member : entry.value.members) {
-    entries.push_back(
-        {entry.key + "." + member.key, fmt::format("{}:{}", document.name, member.line), member.line, member.value});
+    entries.push_back({entry.key + "." + member.key, document.where(member.line), member.line, member.value});
   }
   return entries;
 }
@@ -326,8 +326,8 @@ std::vector<Entry> all_keys(const TomlDocument& document) {
 
 }  // namespace
 
-SweepFile parse_sweep(std::string_view text, const std::string& name, const fs::path& directory) {
-  const TomlDocument document = read_toml(text, name, {});
+SweepFile parse_sweep(std::string_view text, const std::string& name, const fs::path& directory, Lines lines) {
+  const TomlDocument document = read_toml(text, name, {}, lines);
   check_own_names(document);
   SweepFile sweep;
   sweep.directory = directory;

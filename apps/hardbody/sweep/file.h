@@ -27,7 +27,8 @@ struct SweepFile {
 SweepFile read_sweep(const std::filesystem::path& path);
 
 /// Parses a sweep's text; `name` is used in messages, `directory` is where a base is searched for.
-SweepFile parse_sweep(std::string_view text, const std::string& name, const std::filesystem::path& directory);
+SweepFile parse_sweep(std::string_view text, const std::string& name, const std::filesystem::path& directory,
+                      Lines lines = Lines::named);
 
 /// Returns the document of a sweep in `from` for a file in `to`: relative names of files are changed so that they name
 /// the same files.

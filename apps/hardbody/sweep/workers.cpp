@@ -9,6 +9,7 @@
 #include <cstring>
 #include <stdexcept>
 #include <string_view>
+#include <utility>
 
 #include <fcntl.h>
 #include <poll.h>
@@ -29,7 +30,8 @@ std::runtime_error cannot_start(int error) {
 }
 
 /// Runs between fork and exec: only functions that are safe there are called.
-[[noreturn]] void become_worker(const char* directory, char* const* arguments, int errors, ::pid_t parent) {
+[[noreturn]] void become_worker(const char* directory, const char* program, char* const* arguments, int errors,
+                                ::pid_t parent) {
   (void)::setpgid(0, 0);
   (void)::prctl(PR_SET_PDEATHSIG, SIGTERM);
   const int nothing = ::open("/dev/null", O_RDWR);
@@ -37,7 +39,7 @@ std::runtime_error cannot_start(int error) {
   const bool ready = ::getppid() == parent && ::chdir(directory) == 0 && nothing >= 0 &&
                      ::dup2(nothing, STDIN_FILENO) >= 0 && ::dup2(nothing, STDOUT_FILENO) >= 0 &&
                      ::dup2(errors, STDERR_FILENO) >= 0;
-  if (ready) (void)::execv(kThisProgram, arguments);
+  if (ready) (void)::execv(program, arguments);
   ::_exit(kNotStarted);
 }
 
@@ -53,6 +55,8 @@ int exit_status(int status) {
 
 }  // namespace
 
+Workers::Workers(std::vector<std::string> program) : program_(std::move(program)) {}
+
 Workers::~Workers() {
   signal_all(SIGTERM);
   for (const Worker& worker : workers_) {
@@ -64,8 +68,9 @@ Workers::~Workers() {
 
 void Workers::start(int id, const std::filesystem::path& directory, const std::vector<std::string>& arguments) {
   // Made before the fork: nothing is allocated after it.
-  std::vector<std::string> words = arguments;
-  words.insert(words.begin(), "hardbody");
+  std::vector<std::string> words = program_.empty() ? std::vector<std::string>{"hardbody"} : program_;
+  const std::string program = program_.empty() ? kThisProgram : program_.front();
+  words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> pointers;
   pointers.reserve(words.size() + 1);
   for (std::string& word : words) pointers.push_back(word.data());
@@ -75,7 +80,7 @@ void Workers::start(int id, const std::filesystem::path& directory, const std::v
   (void)::fcntl(ends[0], F_SETFL, O_NONBLOCK);
   const ::pid_t parent = ::getpid();
   const ::pid_t process = ::fork();
-  if (process == 0) become_worker(directory.c_str(), pointers.data(), ends[1], parent);
+  if (process == 0) become_worker(directory.c_str(), program.c_str(), pointers.data(), ends[1], parent);
   const int error = errno;
   ::close(ends[1]);
   if (process < 0) {
@@ -108,7 +113,11 @@ std::vector<WorkerEnd> Workers::ended(int milliseconds) {
   std::vector<WorkerEnd> ends;
   std::erase_if(workers_, [&](Worker& worker) {
     int status = 0;
-    if (::waitpid(worker.process, &status, WNOHANG) != worker.process) return false;
+    const ::pid_t ended = ::waitpid(worker.process, &status, WNOHANG);
+    // Other code of this process has waited for it, or SIGCHLD is ignored: it has ended with a status that
+    // nobody knows. Its results tell.
+    const bool lost = ended < 0 && errno == ECHILD;
+    if (ended != worker.process && !lost) return false;
     take_what_it_says(worker);
     ::close(worker.errors);
     ends.push_back({worker.id, exit_status(status), last_line(worker.said)});

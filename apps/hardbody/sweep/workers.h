@@ -18,12 +18,13 @@ struct WorkerEnd {
   std::string last_line;  ///< last line on stderr, which gives the reason of a failure
 };
 
-/// Starts the program with other arguments and waits for its processes. Their stdout is discarded, the last line of
-/// stderr is kept. Each process is in a group of its own, so that Ctrl-C reaches it only through `signal_all`, and it
-/// gets SIGTERM if this process dies.
+/// Starts the program with arguments, several times, and waits for its processes. Their stdout is discarded, the last
+/// line of stderr is kept. Each process is in a group of its own, so that Ctrl-C reaches it only through `signal_all`,
+/// and it gets SIGTERM if this process dies.
 class Workers {
  public:
-  Workers() = default;
+  /// Names the program and its first arguments; by default it is the running program itself.
+  explicit Workers(std::vector<std::string> program = {});
   ~Workers();  ///< ends running processes by SIGTERM, and waits for them
   Workers(const Workers&) = delete;
   Workers& operator=(const Workers&) = delete;
@@ -49,6 +50,7 @@ class Workers {
   void listen(int milliseconds);
   static void take_what_it_says(Worker& worker);
 
+  std::vector<std::string> program_;
   std::vector<Worker> workers_;
 };
 

@@ -16,6 +16,8 @@ from hardbody._arrays import (
     overlap_many,
     ray_cast_many,
 )
+from hardbody._commands import analyze, check, report, resume, run, sweep
+from hardbody._commands import map as map
 from hardbody._core import (
     Audit,
     ClosestPoint,
@@ -54,13 +56,20 @@ from hardbody._core import (
 )
 from hardbody._errors import NumericalError
 from hardbody._observables import Estimate, Results, TensorEstimate, VectorEstimate
+from hardbody._pages import Map, Report
+from hardbody._results import Analysis, Run, Sweep
+from hardbody._run_errors import SweepError, UnsoundError
+from hardbody._tables import Curves, Table
 
+# "map" is no name for `from hardbody import *`, which would hide Python's own.
 __all__ = [
+    "Analysis",
     "Audit",
     "ClosestPoint",
     "ClosestPoints",
     "ContactResult",
     "Counters",
+    "Curves",
     "CustomShape",
     "DistanceResult",
     "Distances",
@@ -68,6 +77,7 @@ __all__ = [
     "Estimate",
     "FailedPair",
     "Kinetic",
+    "Map",
     "MassProperties",
     "Motion",
     "NumericalError",
@@ -77,16 +87,24 @@ __all__ = [
     "Pose",
     "RayHit",
     "RayHits",
+    "Report",
     "Results",
+    "Run",
     "Simulation",
     "Species",
     "Stall",
     "Superellipsoid",
+    "Sweep",
+    "SweepError",
     "System",
+    "Table",
     "TensorEstimate",
     "UndecidedError",
+    "UnsoundError",
     "VectorEstimate",
     "__version__",
+    "analyze",
+    "check",
     "closest_point",
     "closest_point_many",
     "compressed",
@@ -103,5 +121,9 @@ __all__ = [
     "random_start",
     "ray_cast",
     "ray_cast_many",
+    "report",
+    "resume",
+    "run",
+    "sweep",
     "time_of_contact",
 ]

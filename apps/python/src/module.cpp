@@ -1,5 +1,6 @@
 #include "base/exceptions.h"
 #include "geometry/bind.h"
+#include "runs/bind.h"
 #include "simulation/bind.h"
 
 #include <base/version.h>
@@ -27,4 +28,7 @@ NB_MODULE(_core, module) {
   python::bind_starts(module);
   python::bind_observables(module);
   python::bind_simulations(module);
+  python::bind_commands(module);
+  python::bind_program(module);
+  python::bind_plots(module);
 }

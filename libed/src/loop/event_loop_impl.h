@@ -101,6 +101,8 @@ bool EventLoop<Bodies, Law, Added>::run_until(double time, std::uint64_t max_col
         clock.advance(local_end);
         return true;
       }
+      // Epochs count as events: with all bodies at rest there is nothing else.
+      if (events_left-- == 0) return false;
       parts_.start_epoch();
       continue;
     }

@@ -287,7 +287,7 @@ TEST(Queries, BodiesApartDoNotOverlapHoweverFlatAndFromAnyStart) {
 
 TEST(Queries, OverlapsAreYesBySharedPoints) {
   Random random(32);
-  for (int k = 0; k < 2000; ++k) {
+  for (int k = 0; k < repetitions(2000); ++k) {
     const Superellipsoid a({1, random.uniform(0.5, 2), random.uniform(0.5, 2)}, random.uniform(0.3, 1.5),
                            random.uniform(0.3, 1.5));
     const double depth = random.log_uniform(1e-9, 1e-3);

@@ -41,7 +41,7 @@ bool Runner::run_to(double time, double planned_end) {
   while (pending_signal() == 0 && !simulation_.stall()) {
     const bool arrived = run_slice(time);
     if (keep_up_) keep_up_();
-    if (progress_.due()) progress_.show(text(planned_end));
+    if (progress_.due()) progress_.show(text(planned_end), (simulation_.time() - begin_) / (planned_end - begin_));
     if (saver_.due()) saver_.save(checkpoint_);
     if (arrived) return true;
   }

@@ -34,14 +34,7 @@ class Ranges {
     return true;
   }
 
-  void stop() { is_stopped_.store(true, std::memory_order_relaxed); }
-
-  /// Throws the exception of the first range that failed, if any; to be called when all threads are done.
-  void rethrow() const {
-    if (failure_) std::rethrow_exception(failure_);
-  }
-
- private:
+  /// Keeps the exception that is being handled, unless one of an earlier range is there, and stops the work.
   void fail(std::size_t begin) {
     const std::scoped_lock lock(mutex_);
     if (!failure_ || begin < failed_begin_) {
@@ -51,6 +44,14 @@ class Ranges {
     stop();
   }
 
+  void stop() { is_stopped_.store(true, std::memory_order_relaxed); }
+
+  /// Throws the exception of the first range that failed, if any; to be called when all threads are done.
+  void rethrow() const {
+    if (failure_) std::rethrow_exception(failure_);
+  }
+
+ private:
   const std::size_t count_;
   const std::size_t chunk_;
   std::atomic<std::size_t> next_ = 0;
@@ -79,8 +80,12 @@ void parallel(std::size_t count, std::size_t chunk, int threads, const std::func
     const nb::gil_scoped_release released;
     const std::size_t helpers = std::min<std::size_t>(static_cast<std::size_t>(threads), (count + chunk - 1) / chunk);
     const auto work_on_all = [&] {
-      const Work work = make();
-      while (ranges.work_on_next(work)) {
+      try {
+        const Work work = make();
+        while (ranges.work_on_next(work)) {
+        }
+      } catch (...) {  // of make(): an exception must not leave a thread
+        ranges.fail(count);
       }
     };
     std::vector<std::jthread> pool;  // joined before the GIL is acquired again

@@ -20,7 +20,7 @@ namespace hardbody::python {
 struct PythonShape::Held {
   nb::object object;
   nb::object support;
-  nb::object hessian;  ///< None if the object has none
+  nb::object hessian;  ///< method of the object; None if it has none
   nb::object empty = nb::module_::import_("numpy").attr("empty");
   std::string name;
   double bounding_radius = 0;

@@ -50,8 +50,8 @@ bool is_custom_shape(nb::handle value);
 /// Returns the shape of an object with `support(n)`.
 ed::CustomShape custom_shape_of(nb::handle object);
 
-/// While it lives, Ctrl-C in methods of shapes is not thrown by them but kept, in this thread: a function that must not
-/// be left at any place asks again at the next that it may be.
+/// Keeps Ctrl-C in methods of shapes, in this thread, during the object's lifetime, instead of throwing it there. A
+/// function that must not be left at any place asks again at the next where it may be.
 class KeptInterrupt {
  public:
   KeptInterrupt();

@@ -5,6 +5,7 @@
 #include "simulation/observables.h"
 #include "simulation/options.h"
 #include "simulation/paths.h"
+#include "simulation/recorded.h"
 #include "simulation/simulation.h"
 #include "simulation/unlocked.h"
 
@@ -75,25 +76,14 @@ void run(nb::handle self, nb::handle time, nb::handle collisions, nb::handle unt
     plan.every = positive(every, "every");
     const double latest = std::isfinite(plan.end) ? plan.end : now;
     if (!(latest + plan.every > latest))
-      refuse_value("every", shown(plan.every), "a time that " + shown(latest) + " has digits for");
+      refuse_value("every", shown(plan.every),
+                   "at least " + shown(2 * (std::nextafter(latest, HUGE_VAL) - latest)) + ", for doubles near time " +
+                       shown(latest));
   }
   plan.callback = callback;
   const nb::object shown_to = progress_function(progress);
   plan.progress = shown_to;
   simulation.run(self, plan);
-}
-
-/// Returns the recorded collisions as a structured array.
-nb::object recorded(const PythonSimulation& simulation) {
-  const std::vector<ed::Collision>& list = simulation.whole().collisions();
-  static_assert(sizeof(ed::Collision) == 16);
-  const NewArray<std::uint8_t> bytes = new_array<std::uint8_t>({sizeof(ed::Collision) * list.size()});
-  if (!list.empty()) std::memcpy(bytes.data, list.data(), sizeof(ed::Collision) * list.size());
-  nb::list fields;
-  fields.append(nb::make_tuple("time", "f8"));
-  fields.append(nb::make_tuple("i", "i4"));
-  fields.append(nb::make_tuple("j", "i4"));
-  return bytes.array.attr("view")(nb::module_::import_("numpy").attr("dtype")(fields));
 }
 
 double compressibility(const PythonSimulation& s) {

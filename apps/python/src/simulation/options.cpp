@@ -21,7 +21,7 @@ constexpr std::array kRoots = {ed::ContactRoot::newton, ed::ContactRoot::one_dim
 constexpr std::array kInstructionSets = {InstructionSet::best, InstructionSet::portable, InstructionSet::avx2,
                                          InstructionSet::avx512};
 
-constexpr double kUsualEpsD = 1e-6;  ///< in the mean radius of spheres of the bodies' volumes
+constexpr double kUsualEpsD = 1e-6;  ///< unit: mean radius of spheres of the bodies' volumes
 constexpr int kLeastPrepared = 64;
 
 /// Returns the neighbours that the program's "auto" chooses. Only ellipsoids of revolution of one size have been

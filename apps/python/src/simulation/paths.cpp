@@ -22,7 +22,14 @@ std::string path_text(nb::handle path, const char* name) {
   }
   const nb::object text = nb::module_::import_("os").attr("fspath")(path);
   if (!nb::isinstance<nb::str>(text)) refuse_type(name, path, kPaths);
-  return nb::cast<std::string>(text);
+  // Names that are no Unicode have the bytes of the file system.
+  const nb::object bytes = nb::module_::import_("os").attr("fsencode")(text);
+  const auto encoded = nb::cast<nb::bytes>(bytes);
+  std::string result(encoded.c_str(), encoded.size());
+  if (result.empty() || result.find('\0') != std::string::npos) {
+    refuse_value(name, nb::cast<std::string>(nb::repr(text)), "the name of a file");
+  }
+  return result;
 }
 
 }  // namespace

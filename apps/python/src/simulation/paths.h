@@ -13,7 +13,8 @@ namespace hardbody::python {
 
 namespace nb = nanobind;
 
-/// Returns the absolute name of a file that exists; `name`: that of the argument. Throws TypeError or FileNotFoundError.
+/// Returns the absolute name of a file that exists; `name`: that of the argument. Throws TypeError or
+/// FileNotFoundError.
 std::string existing_path(nb::handle path, const char* name = "path");
 
 /// Returns the content of a file. Throws FileNotFoundError or InputError.

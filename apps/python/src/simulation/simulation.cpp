@@ -95,6 +95,13 @@ class CallTimes {
   double count_ = 1;
 };
 
+/// Returns whether the answer of a callback is False, Python's or NumPy's; other answers have no meaning.
+bool ends_run(const nb::object& answer) {
+  if (answer.is(nb::handle(Py_False))) return true;
+  const nb::object type = nb::module_::import_("numpy").attr("bool_");
+  return PyObject_IsInstance(answer.ptr(), type.ptr()) == 1 && PyObject_IsTrue(answer.ptr()) == 0;
+}
+
 }  // namespace
 
 PythonSimulation::PythonSimulation(const BodySystem& bodies, const ed::SimulationOptions& options)
@@ -192,6 +199,7 @@ void PythonSimulation::check_trouble() {
 }
 
 void PythonSimulation::run(nb::handle self, const RunPlan& plan) {
+  if (!std::isfinite(plan.end)) refuse_rest("run to a number of collisions");
   idle();
   const Busy running(is_running_);
   run_to_end(self, plan);
@@ -213,7 +221,7 @@ void PythonSimulation::run_to_end(nb::handle self, const RunPlan& plan) {
     if (!arrived || stop != call) continue;
     check_trouble();
     calls.advance();
-    if (plan.callback(self).is(nb::handle(Py_False))) break;
+    if (ends_run(plan.callback(self))) break;
   }
   check_trouble();
   progress.end();
@@ -252,6 +260,7 @@ double PythonSimulation::shrink_box(double target_box, double least_gain) {
 
 void PythonSimulation::tune_envelopes() {
   refuse_with_observables("tune_envelopes");
+  refuse_rest("tune envelopes");
   Ticks ticks;
   std::exception_ptr interrupt;
   change([&] {
@@ -267,6 +276,14 @@ void PythonSimulation::tune_envelopes() {
     });
   });
   if (interrupt) std::rethrow_exception(interrupt);
+}
+
+/// Throws ValueError if no body moves: there will never be a collision.
+void PythonSimulation::refuse_rest(const char* what) {
+  if (idle().kinetic().energy() > 0) return;
+  throw nb::value_error(
+      (std::string("all bodies are at rest; accepted, to ") + what + ": bodies that move, as system.thermalized()")
+          .c_str());
 }
 
 void PythonSimulation::refuse_with_observables(const char* what) {

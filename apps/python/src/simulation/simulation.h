@@ -28,7 +28,7 @@ struct Measurement {
   ed::Observables observables;
 };
 
-/// Where a run ends, and what is called on the way.
+/// End of a run, and the functions that are called on the way.
 struct RunPlan {
   double end = std::numeric_limits<double>::infinity();
   std::uint64_t collisions = ~std::uint64_t{0};  ///< number of further collisions
@@ -79,6 +79,7 @@ class PythonSimulation {
   double next_measurement() const;
   void take_measurements(double time);
   void check_trouble();
+  void refuse_rest(const char* what);
   void refuse_with_observables(const char* what);
 
   ed::Simulation simulation_;
@@ -89,7 +90,7 @@ class PythonSimulation {
   double slice_;       ///< collisions of the next slice
   bool is_running_ = false;
   bool is_busy_ = false;    ///< the event loop runs, without the GIL
-  bool is_broken_ = false;  ///< it was left within an event
+  bool is_broken_ = false;  ///< true once an exception has left an event unfinished
 };
 
 }  // namespace hardbody::python

@@ -67,7 +67,7 @@ void check_options(Reader& reader, const ed::SimulationOptions& options) {
   expect(reader, !options.batches || *options.batches <= geom::InstructionSet::avx512, "the instruction set");
 }
 
-/// What has to be the same for the same bits.
+/// Throws std::invalid_argument unless a stored text is `here`: without that bits differ.
 void check_same(Reader& reader, const char* what, const std::string& here) {
   const auto there = reader.value<std::string>();
   if (there == here) return;

@@ -6,6 +6,7 @@
 #include <common/ed/families.h>
 #include <common/ed/states.h>
 #include <common/finder/scale.h>
+#include <common/full_form.h>
 #include <common/message_of.h>
 
 #include <ed/archive.h>
@@ -91,7 +92,7 @@ TEST(Restart, EveryBitIsThere) {
     for (const ed::SimulationOptions& options : all_options()) {
       // The paper's finder takes ten times as long as the other one.
       const bool paper = options.contact.finder == Finder::bracketing;
-      if (paper && slow_build() && &c != &cases().front()) continue;
+      if (paper && short_form() && &c != &cases().front()) continue;
       ed::Simulation undisturbed(c.system, options);
       undisturbed.record_collisions(300);
       ed::Simulation other(c.system, options);
@@ -273,7 +274,7 @@ ed::ObservablesOptions options_for(const Case& c, double duration) {
 }
 
 /// Duration of the measurements, long enough for blocks to be merged on the way.
-const double kDuration = slow_build() ? 0.3 : 1;
+const double kDuration = short_form() ? 0.3 : 1;
 
 /// Restored before every 61st measurement, or never.
 std::string measure(Measured run, const Case& c, bool restarted) {

@@ -1,0 +1,232 @@
+"""The program's commands as functions."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from hardbody import _core
+from hardbody._calls import (
+    PathLike,
+    Progress,
+    assignments,
+    call,
+    config_arguments,
+    flag,
+    integer,
+    optional_path,
+    optional_real,
+    path_text,
+    texts,
+    worker_program,
+)
+from hardbody._pages import Map, Report
+from hardbody._results import Analysis, Run, Sweep
+from hardbody._run_errors import SweepError, UnsoundError
+from hardbody._toml import value_text
+
+_MOST_JOBS = 1024
+_LARGEST_STRIDE = 1_000_000
+_UNSOUND = "NOT SOUND: "
+
+
+def run(
+    config: Mapping[str, Any] | PathLike,
+    out: PathLike | None = None,
+    *,
+    overrides: Mapping[str, Any] | None = None,
+    force: bool = False,
+    quiet: bool = True,
+    progress: Progress | bool | None = None,
+) -> Run:
+    """Runs one state point, as `hardbody run` does: start, equilibration, production. Returns the finished run.
+
+    config: a dict of the sections of a config (docs/configuration.md), {"system": {"packing_fraction": 0.4}, ...}, or
+        the path of a TOML file. Both give the same bytes.
+    out: run directory; a file has the default out/<name of the file>. Names of files are relative to the working
+        directory.
+    overrides: values that replace those of the config, {"system.number": 64}.
+    force: whether the files of an earlier run in the directory are removed.
+    quiet: whether nothing is printed; else messages go to sys.stderr and the table of results to sys.stdout.
+    progress: function that is called about four times a second with a text and the fraction done of the phase (None if
+        unknown); True: a bar of tqdm. An exception that it raises stops the run.
+
+    The GIL is released. Runs in several threads do not disturb each other; a signal stops them all.
+
+    Raises ValueError or TypeError for a bad config, with the key, its value and what is accepted; UnsoundError if the
+    results are not sound; RuntimeError for other failures, such as a full disk; KeyboardInterrupt after Ctrl-C. The
+    state is saved then: `resume` continues the run bit for bit. SIGTERM, SIGHUP and SIGXCPU stop it too, and are then
+    handled as the process would have handled them.
+    """
+    name, text, directory = config_arguments(config, out)
+    arguments = (name, text, directory, assignments(overrides), flag(force, "force"))
+    outcome = call(_core.run, *arguments, quiet=quiet, progress=progress)
+    return _finished(directory or str(Path("out") / Path(name).stem), *outcome)
+
+
+def resume(run: PathLike, *, quiet: bool = True, progress: Progress | bool | None = None) -> Run:
+    """Continues a run that was stopped or killed from its last checkpoint, bit for bit. A finished run is left alone.
+
+    run: a run directory, or a Run. Other arguments and exceptions are those of `run`.
+    """
+    directory = path_text(run, "run")
+    return _finished(directory, *call(_core.resume, directory, quiet=quiet, progress=progress))
+
+
+def _finished(directory: str, status: int, printed: str, said: list[str]) -> Run:
+    done = Run(directory)
+    if status == 0:
+        return done
+    defects = [line[line.index(_UNSOUND) :] for line in said if _UNSOUND in line]
+    raise UnsoundError(f"{directory}: {'; '.join(defects) or printed}", done)
+
+
+def sweep(
+    config: Mapping[str, Any] | PathLike,
+    out: PathLike | None = None,
+    *,
+    jobs: int | None = None,
+    quiet: bool = True,
+    progress: Progress | bool | None = None,
+) -> Sweep:
+    """Runs a grid of state points, several at a time, each in a process of its own. The same call continues a sweep.
+
+    config: a dict with "grid", or the path of a TOML file (docs/sweeps.md): {"system": ..., "grid":
+        {"shape.aspect_ratio": [2, 3], "system.packing_fraction": {"from": 0.2, "to": 0.4, "step": 0.1}}}.
+    out: directory of the sweep; a file has the default out/<name of the file>.
+    jobs: number of points that run at once; None: one for each processor.
+
+    Other arguments and exceptions are those of `run`. Raises SweepError, at the end, if points have failed.
+    """
+    name, text, directory = config_arguments(config, out)
+    number = None if jobs is None else integer(jobs, "jobs", 1, _MOST_JOBS)
+    arguments = (name, text, directory, number, worker_program())
+    status, printed, _ = call(_core.sweep, *arguments, quiet=quiet, progress=progress)
+    done = Sweep(directory or Path("out") / Path(name).stem)
+    if status != 0:
+        raise SweepError(printed.strip().replace("\n", "; "), done)
+    return done
+
+
+def check(path: PathLike, *, quiet: bool = True) -> str:
+    """Audits a run's last state, or all frames of a trajectory: overlaps, conservation, finite values.
+
+    path: a run directory, a GSD file or a LAMMPS text dump. Returns what the program prints, a line for each property.
+    Raises UnsoundError with these lines if something is wrong, or could not be tested.
+    """
+    status, printed, _ = call(_core.check, path_text(path, "path"), quiet=quiet)
+    if status != 0:
+        raise UnsoundError(printed.rstrip())
+    return printed
+
+
+def analyze(
+    path: PathLike,
+    out: PathLike | None = None,
+    *,
+    time_step: float | None = None,
+    longest_lag: float | None = None,
+    fit_from: float | None = None,
+    every: int = 1,
+    quiet: bool = True,
+) -> Analysis:
+    """Computes observables of a stored trajectory, from this or another program.
+
+    path: a run directory with a trajectory, a GSD file or a LAMMPS text dump. out: directory; default: analysis/ beside
+    the trajectory. time_step: time between two steps, instead of the stored times. longest_lag: default: a quarter of
+    the trajectory. fit_from: first lag of the fits of C2 and F_self; default: that of the run. every: use only each
+    `every`-th frame.
+    """
+    file = path_text(path, "path")
+    directory = optional_path(out, "out")
+    if directory is None:
+        directory = str((Path(file) if Path(file).is_dir() else Path(file).parent) / "analysis")
+    times = (
+        optional_real(time_step, "time_step"),
+        optional_real(longest_lag, "longest_lag"),
+        optional_real(fit_from, "fit_from"),
+    )
+    call(_core.analyze, file, directory, *times, integer(every, "every", 1, _LARGEST_STRIDE), quiet=quiet)
+    return Analysis(directory)
+
+
+def report(paths: PathLike | Sequence[PathLike], out: PathLike | None = None, *, quiet: bool = True) -> Report:
+    """Writes the results of runs, or of a sweep, as one HTML file that needs no network.
+
+    paths: a run directory, several of them to be shown side by side, or the directory of a sweep. out: HTML file;
+    default: report.html in the directory.
+    """
+    given = [paths] if isinstance(paths, str) or not isinstance(paths, Sequence) else list(paths)
+    directories = [path_text(path, "paths") for path in given]
+    if not directories:
+        raise ValueError("paths is empty; accepted: run directories, or that of a sweep")
+    if out is None and len(directories) > 1:
+        raise ValueError("out is None; accepted: the name of an HTML file, as there are several directories")
+    page = optional_path(out, "out")
+    call(_core.report, directories, page, quiet=quiet)
+    return Report(page if page is not None else Path(directories[0]) / "report.html")
+
+
+def map(
+    table: PathLike,
+    x: str,
+    y: str,
+    values: str | Sequence[str],
+    *,
+    levels: Sequence[float] | Mapping[str, Sequence[float]] | None = None,
+    where: Mapping[str, Any] | None = None,
+    log_x: bool = False,
+    log_y: bool = False,
+    out: PathLike | None = None,
+    csv: PathLike | None = None,
+    quiet: bool = True,
+) -> Map:
+    """Draws contour lines of observables over two keys of a sweep.
+
+    table: the directory of a sweep, or a table like its sweep.csv. x, y: columns along the axes, which may be named by
+    their last part: "aspect_ratio". values: the column, or columns, whose lines are drawn. levels: levels of the lines,
+    {value: levels} for several values; None: six are chosen for each. where: {column: value} of the rows that are used.
+    out, csv: files of the drawing and of the lines; default: map_<values>.svg and .csv beside the table.
+    """
+    names = texts(values, "values")
+    file = Path(path_text(table, "table"))
+    beside = (file if file.is_dir() else file.parent) / f"map_{'_'.join(names)}"
+    svg = optional_path(out, "out") or f"{beside}.svg"
+    lines = optional_path(csv, "csv") or f"{beside}.csv"
+    arguments = (str(file), *texts([x, y], "x, y"), names, _level_texts(levels, names), _conditions(where))
+    call(_core.map, *arguments, flag(log_x, "log_x"), flag(log_y, "log_y"), svg, lines, quiet=quiet)
+    return Map(svg, lines)
+
+
+def _level_texts(levels: Any, names: list[str]) -> list[str]:
+    if levels is None:
+        return []
+    if not isinstance(levels, Mapping):
+        if len(names) != 1:
+            raise ValueError(f"levels is {levels!r}; accepted with several values: a dict with levels for each of them")
+        levels = {names[0]: levels}
+    if set(levels) != set(names):
+        raise ValueError(f"levels has the keys {list(levels)}; accepted: levels for each of {names}")
+    return [",".join(repr(level) for level in _levels(levels[name], name)) for name in names]
+
+
+def _levels(values: Any, name: str) -> list[float]:
+    try:
+        numbers = [float(value) for value in values]
+    except (TypeError, ValueError):
+        raise TypeError(f"levels: {name} has {values!r}; accepted: a list of numbers") from None
+    if not numbers:
+        raise ValueError(f"levels: {name} has none; accepted: a list of numbers")
+    return numbers
+
+
+def _conditions(where: Any) -> list[str]:
+    if where is None:
+        return []
+    if not isinstance(where, Mapping):
+        raise TypeError(f"where is {where!r}; accepted: a dict, as {{'seed': 1}}")
+    return [
+        f"{column}={value if isinstance(value, str) else value_text(value, 'where', column)}"
+        for column, value in where.items()
+    ]

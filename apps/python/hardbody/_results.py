@@ -1,0 +1,229 @@
+"""Results of runs, sweeps and analyses, read from their directories."""
+
+from __future__ import annotations
+
+import csv
+import html
+import json
+import os
+import tomllib
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from hardbody._plots import plot_curves
+from hardbody._tables import Curves, Table, read_table, required
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from hardbody._calls import PathLike
+    from hardbody._pages import Map, Report
+
+
+class _Directory:
+    """Directory with results."""
+
+    _needed = ""
+    _kind = ""
+
+    def __init__(self, path: str | os.PathLike[str]) -> None:
+        self.path = Path(path)
+        if not (self.path / self._needed).is_file():
+            what = f"has no {self._needed}" if self.path.is_dir() else "is not there"
+            raise ValueError(f"{self.path}: {what}; accepted: the directory of {self._kind}")
+
+    def __fspath__(self) -> str:
+        return os.fspath(self.path)
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({os.fspath(self.path)!r})"
+
+    def __eq__(self, other: object) -> bool:
+        return type(self) is type(other) and isinstance(other, _Directory) and self.path == other.path
+
+    def __hash__(self) -> int:
+        return hash(self.path)
+
+    def _json(self, name: str) -> dict[str, Any]:
+        file = self.path / name
+        if not file.is_file():
+            raise FileNotFoundError(f"{file} is not there: the run is not finished; resume continues it")
+        value = json.loads(file.read_text(encoding="utf-8"))
+        if not isinstance(value, dict):
+            raise ValueError(f"{file}: is not a JSON object; accepted: the file of a run")
+        return value
+
+
+class Run(_Directory):
+    """Run directory (docs/output.md). Files are read when an attribute asks for them.
+
+    A Run can be used where a path of its directory is accepted. Raises ValueError if there is no run in the directory.
+    """
+
+    _needed = "config.toml"
+    _kind = "a run"
+
+    @property
+    def config(self) -> dict[str, Any]:
+        """Configuration, defaults filled in."""
+        return tomllib.loads((self.path / "config.toml").read_text(encoding="utf-8"))
+
+    @property
+    def is_finished(self) -> bool:
+        """Whether the run has been completed: it has results and was not interrupted."""
+        return (self.path / "summary.json").is_file() and not self.summary["interrupted"]
+
+    @property
+    def summary(self) -> dict[str, Any]:
+        """Results with standard errors, counters, performance, units: summary.json.
+
+        summary["observables"]["D_trans"] has "value", "error", and where there is no value "missing", the reason.
+        Raises FileNotFoundError if the run has not been completed.
+        """
+        return self._json("summary.json")
+
+    @property
+    def observables(self) -> Curves:
+        """Curves by name ("msd", "c2", "f_self", "g_r", ...): structured arrays with a field a column of the CSV file,
+        `units` and `to_pandas()`. Errors have the names of their columns with "_error"."""
+        return Curves(self.path / "observables")
+
+    @property
+    def events(self) -> Table:
+        """First collisions of production, if the config asks for them ([output] events): time, i, j."""
+        return read_table(self._file("events.csv", "events"))
+
+    @property
+    def failures(self) -> list[dict[str, Any]]:
+        """Pairs that could not be predicted, failures/*.json (docs/output.md); `hardbody replay` shows one."""
+        return [json.loads(path.read_text(encoding="utf-8")) for path in sorted(self.path.glob("failures/*.json"))]
+
+    def trajectory(self) -> Any:
+        """Opens the frames of production (trajectory.gsd) with gsd.hoomd.open. Needs the package gsd.
+
+        Raises ValueError if the run has none: [output] trajectory = ["gsd"].
+        """
+        file = self._file("trajectory.gsd", "trajectory")
+        return required("gsd.hoomd", "gsd", "Run.trajectory").open(file, "r")
+
+    def report(self, out: PathLike | None = None) -> Report:
+        """Writes the HTML report of the run, default: report.html in its directory."""
+        from hardbody._commands import report
+
+        return report(self, out)
+
+    def plot(self, *names: str) -> Any:
+        """Draws plots of the report, default: those of displacements, orientations, F_self and g(r). Needs matplotlib.
+
+        names: "msd", "rotational_msd", "c1", "c2", "f_self", "velocity", "alpha2", "g_r", "s_q", "pressure", "order".
+        Returns the matplotlib.figure.Figure.
+        """
+        return plot_curves(self.observables, names, os.fspath(self.path))
+
+    def _file(self, name: str, key: str) -> Path:
+        file = self.path / name
+        if not file.is_file():
+            raise ValueError(f"{file} is not there; accepted: a run with [output] {key} in its config")
+        return file
+
+    def _repr_html_(self) -> str:
+        name = html.escape(os.fspath(self.path))
+        if not (self.path / "summary.json").is_file():
+            return f"<p>Run {name}: not finished</p>"
+        summary = self.summary
+        rows = "".join(
+            f"<tr><th>{html.escape(key)}</th><td>{html.escape(_shown(value))}</td></tr>"
+            for key, value in summary["observables"].items()
+            if not isinstance(value, dict) or not isinstance(value.get("value"), list)
+        )
+        page = self.path / "report.html"
+        link = f', <a href="{html.escape(os.fspath(page))}">report</a>' if page.is_file() else ""
+        state = "" if summary["sound"] else ", <b>NOT SOUND</b>"
+        return f"<p>Run {name}{state}{link}</p><table>{rows}</table>"
+
+
+def _shown(estimate: Any) -> str:
+    if not isinstance(estimate, dict):
+        return str(estimate)
+    if estimate.get("value") is None:
+        return f"- ({estimate.get('missing', '')})"
+    value = f"{estimate['value']:.5g}"
+    return value if estimate.get("error") is None else f"{value} ± {estimate['error']:.2g}"
+
+
+class Analysis(_Directory):
+    """Directory that `analyze` has written. Files are read when an attribute asks for them."""
+
+    _needed = "analysis.json"
+    _kind = "an analysis"
+
+    @property
+    def summary(self) -> dict[str, Any]:
+        """Results with standard errors, and notices about what was not used: analysis.json."""
+        return self._json("analysis.json")
+
+    @property
+    def observables(self) -> Curves:
+        """Curves by name, as those of a Run, and "order": S and the energy of each frame."""
+        return Curves(self.path)
+
+    def plot(self, *names: str) -> Any:
+        """Draws plots of the curves, see Run.plot."""
+        return plot_curves(self.observables, names, os.fspath(self.path))
+
+
+class Sweep(_Directory):
+    """Directory of a sweep (docs/sweeps.md). Files are read when an attribute asks for them."""
+
+    _needed = "sweep.csv"
+    _kind = "a sweep"
+
+    @property
+    def table(self) -> Table:
+        """One row per point, in the order of the grid: keys, observables and their errors, status, message."""
+        return read_table(self.path / "sweep.csv")
+
+    @property
+    def runs(self) -> list[Run | None]:
+        """Runs of the points, in the order of the table; None for points that have not been begun."""
+        with open(self.path / "sweep.csv", newline="", encoding="utf-8") as file:
+            rows = list(csv.DictReader(file))
+        states = [json.loads(path.read_text(encoding="utf-8")) for path in sorted(self.path.glob("*/state.json"))]
+        return [self._run_of(row, states) for row in rows]
+
+    def map(self, x: str, y: str, values: str | Sequence[str], **options: Any) -> Map:
+        """Draws contour lines of observables over two keys, see hardbody.map."""
+        from hardbody import _commands
+
+        return _commands.map(self, x, y, values, **options)
+
+    def report(self, out: PathLike | None = None) -> Report:
+        """Writes the HTML report of the sweep, default: report.html in its directory."""
+        from hardbody._commands import report
+
+        return report(self, out)
+
+    def to_pandas(self) -> Any:
+        """Returns the table as a pandas.DataFrame."""
+        return self.table.to_pandas()
+
+    def _run_of(self, row: dict[str, str], states: list[dict[str, Any]]) -> Run | None:
+        for state in states:
+            keys = {**state["keys"], "seed": state["seed"]}
+            if all(_value(row[key]) == value for key, value in keys.items()):
+                directory = self.path / state["name"]
+                return Run(directory) if (directory / Run._needed).is_file() else None
+        return None
+
+    def _repr_html_(self) -> str:
+        table = self.table
+        done = int((table["status"] == "done").sum()) if len(table) else 0
+        return f"<p>Sweep {html.escape(os.fspath(self.path))}: {done} of {len(table)} points done</p>"
+
+
+def _value(cell: str) -> Any:
+    """Returns what a cell of a key holds: numbers, lists and bools as TOML has them, or text."""
+    try:
+        return tomllib.loads(f"x = {cell}")["x"]
+    except tomllib.TOMLDecodeError:
+        return cell

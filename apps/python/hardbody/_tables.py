@@ -1,0 +1,113 @@
+"""CSV files as arrays."""
+
+from __future__ import annotations
+
+import csv
+import importlib
+import os
+import re
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+_NAME_AND_UNIT = re.compile(r"(.*) \[(.*)\]")
+_INTEGER = re.compile(r"-?\d+")
+
+
+def required(module: str, package: str, purpose: str) -> Any:
+    """Imports a module of an optional package. Raises ImportError with the name of the package."""
+    try:
+        return importlib.import_module(module)
+    except ImportError as error:
+        raise ImportError(f"{purpose} needs the package {package}: pip install {package}") from error
+
+
+class Table(np.ndarray[Any, np.dtype[Any]]):
+    """Structured array of shape (rows,), with one field a column. Missing numbers are NaN.
+
+    units: unit of each column, "1" for numbers; empty for columns without one.
+    """
+
+    units: dict[str, str]
+
+    def __array_finalize__(self, obj: Any) -> None:
+        self.units = getattr(obj, "units", {})
+
+    def __getitem__(self, key: Any) -> Any:
+        """Column of a name (a plain array), rows, or one row."""
+        part = super().__getitem__(key)
+        return part.view(np.ndarray) if isinstance(key, str) else part
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the columns."""
+        return self.dtype.names or ()
+
+    def to_pandas(self) -> Any:
+        """Returns a pandas.DataFrame with the same columns; its `attrs["units"]` are the units."""
+        frame = required("pandas", "pandas", "Table.to_pandas").DataFrame({name: self[name] for name in self.names})
+        frame.attrs["units"] = dict(self.units)
+        return frame
+
+
+def read_table(path: str | os.PathLike[str], *, all_real: bool = False) -> Table:
+    """Reads a CSV file whose first line has names, and units in brackets. Raises ValueError for any other file.
+
+    all_real: every column is float64; else columns are of bools, integers, reals or text, whatever all their cells are.
+    """
+    with open(path, newline="", encoding="utf-8") as file:
+        rows = list(csv.reader(file))
+    if not rows or any(len(row) != len(rows[0]) for row in rows):
+        raise ValueError(f"{os.fspath(path)}: is not a table; accepted: comma-separated values with a line of names")
+    names, units = zip(*(_name_and_unit(head) for head in rows[0]), strict=True)
+    if len(set(names)) != len(names):
+        raise ValueError(f"{os.fspath(path)}: has two columns of one name; accepted: names that differ")
+    columns = [_column([row[k] for row in rows[1:]], all_real) for k in range(len(names))]
+    table = np.empty(len(rows) - 1, dtype=[(name, c.dtype) for name, c in zip(names, columns, strict=True)]).view(Table)
+    for name, column in zip(names, columns, strict=True):
+        table[name][:] = column
+    table.units = dict(zip(names, units, strict=True))
+    return table
+
+
+def _name_and_unit(head: str) -> tuple[str, str]:
+    found = _NAME_AND_UNIT.fullmatch(head)
+    return (found[1], found[2]) if found else (head, "")
+
+
+def _column(cells: list[str], all_real: bool) -> np.ndarray[Any, np.dtype[Any]]:
+    if not all_real and cells:
+        if all(cell in ("true", "false") for cell in cells):
+            return np.array([cell == "true" for cell in cells])
+        if all(_INTEGER.fullmatch(cell) for cell in cells):
+            return np.array([int(cell) for cell in cells])
+    try:
+        return np.array([float(cell) if cell else np.nan for cell in cells], dtype=np.float64)
+    except ValueError:
+        if all_real:
+            raise
+        return np.array(cells)
+
+
+class Curves(Mapping[str, Table]):
+    """Tables of a run, by name: read when they are asked for."""
+
+    def __init__(self, directory: Path, skipped: tuple[str, ...] = ()) -> None:
+        self._directory = directory
+        self._skipped = skipped
+
+    def __getitem__(self, name: str) -> Table:
+        if name not in list(self):
+            raise KeyError(f"{self._directory} has no {name}.csv; there are: {', '.join(self) or 'none'}")
+        return read_table(self._directory / f"{name}.csv", all_real=True)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(sorted(path.stem for path in self._directory.glob("*.csv") if path.stem not in self._skipped))
+
+    def __len__(self) -> int:
+        return len(list(iter(self)))
+
+    def __repr__(self) -> str:
+        return f"<curves of {self._directory}: {', '.join(self)}>"

@@ -1,0 +1,141 @@
+#include <base/errors.h>
+#include <base/signals.h>
+#include <commands/commands.h>
+#include <io/text_file.h>
+#include "runs/bind.h"
+#include "runs/command_console.h"
+
+#include <nanobind/nanobind.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
+#include <nanobind/stl/vector.h>
+
+#include <chrono>
+#include <csignal>
+#include <functional>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+namespace hardbody::python {
+namespace {
+
+using Strings = std::vector<std::string>;
+using Outcome = std::tuple<int, std::string, Strings>;
+using Functions = nb::typed<nb::tuple, nb::object, nb::object, nb::object, double>;
+
+/// Functions of Python that a command prints with, see CommandConsole.
+struct Printers {
+  nb::object print;
+  nb::object say;
+  nb::object show;
+  double interval;  ///< seconds between two calls of `show`
+};
+
+Printers printers(const Functions& given) {
+  return {given[0], given[1], given[2], nb::cast<double>(given[3])};
+}
+
+/// Runs a command without the GIL, with its own handlers of signals and the console of this call.
+int status_of(CommandConsole& console, const std::function<int()>& command) {
+  const nb::gil_scoped_release released;
+  const SignalScope signals;
+  const ConsoleScope scope(console);
+  const StopScope requests;
+  try {
+    return command();
+  } catch (const InputError& error) {
+    throw nb::value_error(one_line(error.what(), 2000).c_str());
+  }
+}
+
+/// Throws what Python's handlers raise for signals that have arrived. KeyboardInterrupt is left to the caller if the
+/// command was stopped by Ctrl-C, because it knows where.
+void look_after_signals(int status) {
+  if (PyErr_CheckSignals() == 0) return;
+  if (status == exit_status_of(SIGINT) && PyErr_ExceptionMatches(PyExc_KeyboardInterrupt) != 0) {
+    PyErr_Clear();
+    return;
+  }
+  throw nb::python_error();
+}
+
+Outcome outcome(const Functions& functions, const std::function<int()>& command) {
+  const Printers to = printers(functions);
+  const auto interval = std::chrono::milliseconds(static_cast<long long>(1000 * to.interval));
+  CommandConsole console(to.print, to.say, to.show, interval);
+  int status = 0;
+  try {
+    status = status_of(console, command);
+  } catch (...) {
+    console.rethrow();
+    throw;
+  }
+  console.rethrow();
+  look_after_signals(status);
+  return {status, console.printed(), console.said()};
+}
+
+}  // namespace
+
+void bind_commands(nb::module_& module) {
+  const auto text_or_none = nb::arg("text").none();
+  const auto out_or_none = nb::arg("out").none();
+  module.def(
+      "run",
+      [](const Functions& console, std::string config, std::optional<std::string> text, std::optional<std::string> out,
+         Strings overrides, bool force) {
+        const RunArguments arguments{std::move(config), std::move(text), std::move(out), std::move(overrides), force};
+        return outcome(console, [&] { return run(arguments); });
+      },
+      nb::arg("console"), nb::arg("config"), text_or_none, out_or_none, nb::arg("overrides"), nb::arg("force"),
+      "Command run. Returns exit status, what was printed, and messages.");
+  module.def(
+      "resume",
+      [](const Functions& console, const std::string& path) { return outcome(console, [&] { return resume(path); }); },
+      nb::arg("console"), nb::arg("path"), "Command resume.");
+  module.def(
+      "sweep",
+      [](const Functions& console, std::string config, std::optional<std::string> text, std::optional<std::string> out,
+         std::optional<int> jobs, Strings program) {
+        const SweepArguments arguments{std::move(config), std::move(text), std::move(out), jobs, std::move(program)};
+        return outcome(console, [&] { return sweep(arguments); });
+      },
+      nb::arg("console"), nb::arg("config"), text_or_none, out_or_none, nb::arg("jobs").none(), nb::arg("program"),
+      "Command sweep.");
+  module.def(
+      "check",
+      [](const Functions& console, const std::string& path) { return outcome(console, [&] { return check(path); }); },
+      nb::arg("console"), nb::arg("path"), "Command check.");
+  module.def(
+      "analyze",
+      [](const Functions& console, std::string path, std::optional<std::string> out, std::optional<double> time_step,
+         std::optional<double> longest_lag, std::optional<double> fit_from, int every) {
+        const AnalyzeArguments arguments{std::move(path), std::move(out), time_step, longest_lag, fit_from, every};
+        return outcome(console, [&] { return analyze(arguments); });
+      },
+      nb::arg("console"), nb::arg("path"), out_or_none, nb::arg("time_step").none(), nb::arg("longest_lag").none(),
+      nb::arg("fit_from").none(), nb::arg("every"), "Command analyze.");
+  module.def(
+      "report",
+      [](const Functions& console, Strings directories, std::optional<std::string> out) {
+        const ReportArguments arguments{std::move(directories), std::move(out)};
+        return outcome(console, [&] { return report(arguments); });
+      },
+      nb::arg("console"), nb::arg("directories"), out_or_none, "Command report.");
+  module.def(
+      "map",
+      [](const Functions& console, std::string table, std::string x, std::string y, Strings values, Strings levels,
+         Strings where, bool log_x, bool log_y, std::optional<std::string> out, std::optional<std::string> csv) {
+        const MapArguments arguments{std::move(table), std::move(x), std::move(y), std::move(values), std::move(levels),
+                                     std::move(where), log_x,        log_y,        std::move(out),    std::move(csv)};
+        return outcome(console, [&] { return map(arguments); });
+      },
+      nb::arg("console"), nb::arg("table"), nb::arg("x"), nb::arg("y"), nb::arg("values"), nb::arg("levels"),
+      nb::arg("where"), nb::arg("log_x"), nb::arg("log_y"), out_or_none, nb::arg("csv").none(), "Command map.");
+}
+
+}  // namespace hardbody::python

@@ -1,0 +1,321 @@
+"""Runs: the same as those of the program, errors, signals, threads."""
+
+from __future__ import annotations
+
+import concurrent.futures
+import os
+import pathlib
+import re
+import signal
+import subprocess
+import sys
+import textwrap
+import time
+
+import pytest
+from runs import CONFIG, ROOT, TEXT, call, program, results, with_values
+
+import hardbody as hb
+from hardbody import _commands, _core
+
+
+@pytest.fixture(scope="module")
+def done(tmp_path_factory):
+    """A finished run. Tests must not change it."""
+    return hb.run(CONFIG, tmp_path_factory.mktemp("runs") / "a")
+
+
+BUILT = os.environ.get("HARDBODY")
+COMMANDS = [
+    pytest.param(program(), id="python -m hardbody"),
+    pytest.param([BUILT], id="binary", marks=pytest.mark.skipif(not BUILT, reason="HARDBODY names no program")),
+]
+
+
+# ---- One code path
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_same_bytes_as_the_program(done, tmp_path, command):
+    (tmp_path / "config.toml").write_text(TEXT)
+    ended = call("run", "config.toml", "--out", "b", cwd=tmp_path, command=command)
+    assert ended.returncode == 0, ended.stderr
+    assert "kT_trans" in ended.stdout
+    files = results(done)
+    assert set(files) >= {"config.toml", "summary.json", "events.csv", "observables/msd.csv"}
+    assert set(files) >= {"trajectory.gsd", "trajectory.lammpstrj", "trajectory.vtp"}
+    assert files == results(tmp_path / "b")
+
+
+def test_files_and_overrides(done, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    pathlib.Path("mine.toml").write_text(TEXT.replace("seed = 3", "seed = 4").replace("48", "50"))
+    run = hb.run("mine.toml", overrides={"seed": 3, "system.number": 48})
+    assert os.fspath(run) == "out/mine"
+    assert results(run) == results(done)
+
+
+def test_config_of_a_run_runs_again(done, tmp_path):
+    assert results(hb.run(done.config, tmp_path / "b")) == results(done)
+
+
+def test_directories_are_kept(done, tmp_path):
+    directory = tmp_path / "b"
+    first = hb.run(with_values(CONFIG, production={"time": 1.0}), directory)
+    with pytest.raises(ValueError, match="already holds a run"):
+        hb.run(CONFIG, directory)
+    assert first.config["production"]["time"] == 1
+    assert results(hb.run(CONFIG, directory, force=True)) == results(done)
+
+
+def test_program_of_the_package(tmp_path):
+    ended = call("--version", cwd=tmp_path)
+    assert (ended.returncode, ended.stderr) == (0, "")
+    assert ended.stdout.startswith(f"hardbody {hb.__version__}\n")
+    ended = call("run", "none.toml", cwd=tmp_path)
+    assert ended.returncode == 2
+    assert ended.stderr.startswith("none.toml: cannot be read: No such file or directory")
+    assert call("run", cwd=tmp_path).returncode == 2
+
+
+# ---- Errors
+
+
+@pytest.mark.parametrize(
+    ("sections", "message"),
+    [
+        ({"system": {"packing_fraction": 1.5}}, r"^config: system\.packing_fraction is 1\.5; accepted: "),
+        ({"system": {"number": "many"}}, r'^config: system\.number is "many"; accepted: '),
+        ({"sytem": {"number": 3}}, r"^config: .*sytem.*did you mean"),
+        ({"shape": {"aspect_ratio": -1}}, r"^config: shape\.aspect_ratio is -1; accepted: "),
+    ],
+)
+def test_bad_configs(tmp_path, sections, message):
+    with pytest.raises(ValueError, match=message) as caught:
+        hb.run(with_values(CONFIG, **sections), tmp_path / "b")
+    assert "\n" not in str(caught.value)
+    assert not (tmp_path / "b").exists()
+
+
+def test_bad_arguments(tmp_path):
+    with pytest.raises(TypeError, match=r"^config: system\.number is None"):
+        hb.run({"system": {"number": None}}, tmp_path / "b")
+    with pytest.raises(ValueError, match="^out is None; accepted: the name of a directory"):
+        hb.run(CONFIG)
+    with pytest.raises(TypeError, match="^config is 3; accepted: a dict, or the path of a TOML file"):
+        hb.run(3, tmp_path / "b")
+    with pytest.raises(ValueError, match=r"^out is 'a\\x00b'"):
+        hb.run(CONFIG, "a\0b")
+    with pytest.raises(TypeError, match=r"^overrides is \['seed=1'\]; accepted: a dict"):
+        hb.run(CONFIG, tmp_path / "b", overrides=["seed=1"])
+    with pytest.raises(ValueError, match=r"^--set system\.number=-4: system\.number is -4; accepted"):
+        hb.run(CONFIG, tmp_path / "b", overrides={"system.number": -4})
+    with pytest.raises(TypeError, match="^progress is 3; accepted: None, True, or a function"):
+        hb.run(CONFIG, tmp_path / "b", progress=3)
+    with pytest.raises(ValueError, match="^none.toml: cannot be read"):
+        hb.run("none.toml", tmp_path / "b")
+    with pytest.raises(ValueError, match="nowhere: is not there; accepted: the directory of a run"):
+        hb.resume(tmp_path / "nowhere")
+    assert not (tmp_path / "b").exists()
+
+
+def test_failures_are_runtime_errors(tmp_path):
+    script = f"""
+        import resource, hardbody as hb
+        from runs import CONFIG
+        resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, 20_000))
+        try:
+            hb.run(CONFIG, {str(tmp_path / "b")!r})
+        except RuntimeError as error:
+            print(type(error).__name__, error)
+    """
+    said = python(script).communicate()[0]
+    assert re.match(r"RuntimeError .*: File too large; .*hardbody resume .*\n$", said), said
+
+
+def test_unsound_results_raise(done, monkeypatch):
+    outcome = (1, "the table", ["here: NOT SOUND: overlaps 3", "here: NOT SOUND: energy drift 1"])
+    monkeypatch.setattr(_core, "resume", lambda *_: outcome)
+    with pytest.raises(hb.NumericalError, match=r"NOT SOUND: overlaps 3; NOT SOUND: energy drift 1$") as caught:
+        _commands.resume(done)
+    assert isinstance(caught.value, hb.UnsoundError)
+    assert caught.value.run == done
+    assert done.failures == []
+
+
+# ---- Stopping
+
+
+def python(script: str, **options) -> subprocess.Popen[str]:
+    """Starts a Python process."""
+    return subprocess.Popen(
+        [sys.executable, "-c", textwrap.dedent(script)],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        cwd=pathlib.Path(__file__).parent,
+        **options,
+    )
+
+
+def wait_for(path: pathlib.Path, process: subprocess.Popen[str]) -> None:
+    """Waits until production has begun: its first frame is there."""
+    for _ in range(1200):
+        if path.exists() and path.stat().st_size > 0:
+            return
+        assert process.poll() is None, process.communicate()
+        time.sleep(0.05)
+    raise AssertionError(f"{path} is not written")
+
+
+@pytest.fixture(scope="module")
+def longer(tmp_path_factory):
+    """A run of a second or more, and its config."""
+    config = with_values(CONFIG, production={"time": 60.0})
+    return config, hb.run(config, tmp_path_factory.mktemp("runs") / "long")
+
+
+def test_ctrl_c_saves_and_raises(tmp_path, longer):
+    script = """
+        import signal, sys, hardbody as hb
+        from runs import CONFIG, with_values
+        before = signal.getsignal(signal.SIGINT)
+        try:
+            hb.run(with_values(CONFIG, production={"time": 60.0}), OUT)
+        except KeyboardInterrupt as error:
+            print(error)
+        assert signal.getsignal(signal.SIGINT) is before is signal.default_int_handler
+        print(hb.run(CONFIG, OUT + "2").is_finished)
+        try:
+            signal.raise_signal(signal.SIGINT)
+        except KeyboardInterrupt:
+            print("Python's handler is back")
+    """.replace("OUT", repr(str(tmp_path / "b")))
+    process = python(script)
+    wait_for(tmp_path / "b" / "trajectory.lammpstrj", process)
+    process.send_signal(signal.SIGINT)
+    process.send_signal(signal.SIGINT)  # no harm
+    said, errors = process.communicate()
+    assert process.returncode == 0, errors
+    lines = said.splitlines()
+    assert re.search(r"b: stopped by SIGINT during production at time .*: results so far are written", lines[0])
+    assert lines[1:] == ["True", "Python's handler is back"]
+
+    stopped = hb.Run(tmp_path / "b")
+    assert not stopped.is_finished
+    assert stopped.summary["interrupted"]
+    again = hb.resume(stopped)
+    assert again.is_finished
+    assert results(again) == results(longer[1])
+    assert hb.resume(again) == again  # nothing to do
+
+
+def test_sigterm_saves_and_ends_the_process(tmp_path):
+    script = f"""
+        import hardbody as hb
+        from runs import CONFIG, with_values
+        hb.run(with_values(CONFIG, production={{"time": 60.0}}), {str(tmp_path / "b")!r})
+    """
+    process = python(script)
+    wait_for(tmp_path / "b" / "trajectory.lammpstrj", process)
+    process.send_signal(signal.SIGTERM)
+    process.communicate()
+    assert process.returncode == -signal.SIGTERM
+    assert hb.Run(tmp_path / "b").summary["interrupted"]
+
+
+def test_sigterm_with_a_handler(tmp_path):
+    script = f"""
+        import signal, hardbody as hb
+        from runs import CONFIG, with_values
+        signal.signal(signal.SIGTERM, lambda *_: print("handled"))
+        try:
+            hb.run(with_values(CONFIG, production={{"time": 60.0}}), {str(tmp_path / "b")!r})
+        except RuntimeError as error:
+            print(error)
+    """
+    process = python(script)
+    wait_for(tmp_path / "b" / "trajectory.lammpstrj", process)
+    process.send_signal(signal.SIGTERM)
+    said, errors = process.communicate()
+    assert process.returncode == 0, errors
+    assert re.match(r"handled\n.*b: stopped by SIGTERM during production", said)
+
+
+# ---- Progress and output
+
+
+def test_progress(longer, tmp_path):
+    config, undisturbed = longer
+    calls: list[tuple[str, float | None]] = []
+
+    def stop_late(text: str, done: float | None) -> None:
+        calls.append((text, done))
+        if text.startswith("production") and done is not None and done > 0.1:
+            raise LookupError("enough")
+
+    with pytest.raises(LookupError, match="enough"):
+        hb.run(config, tmp_path / "b", progress=stop_late)
+    assert all(done is None or 0 <= done <= 1 for _, done in calls)
+    assert "stopped by its caller during production" in (tmp_path / "b" / "log.txt").read_text()
+    assert results(hb.resume(tmp_path / "b")) == results(undisturbed)
+
+
+def test_quiet(tmp_path, capfd):
+    hb.run(CONFIG, tmp_path / "a")
+    assert capfd.readouterr() == ("", "")
+
+
+def test_output_goes_to_the_streams_of_python(tmp_path, capsys):
+    config = with_values(CONFIG, system={"nematic_order": 0.9})  # of which the compression leaves less
+    hb.run(config, tmp_path / "a", quiet=False)
+    out, errors = capsys.readouterr()
+    assert out.startswith(f"hardbody {hb.__version__}: 48 hard ellipsoids")
+    assert "\nfiles: " in out
+    assert errors.startswith("start: S = ")
+
+
+def test_tqdm(tmp_path, capsys):
+    pytest.importorskip("tqdm")
+    hb.run(CONFIG, tmp_path / "a", progress=True)
+    assert "|" in capsys.readouterr().err
+
+
+def test_threads(done, tmp_path):
+    with concurrent.futures.ThreadPoolExecutor(2) as pool:
+        runs = list(pool.map(lambda name: hb.run(CONFIG, tmp_path / name), "abcd"))
+    assert [results(run) == results(done) for run in runs] == [True] * 4
+
+
+def test_ctrl_c_with_threads(tmp_path):
+    script = """
+        import concurrent.futures, time, hardbody as hb
+        from runs import CONFIG, with_values
+        config = with_values(CONFIG, production={"time": 4000.0})
+        pool = concurrent.futures.ThreadPoolExecutor(2)
+        runs = [pool.submit(hb.run, config, OUT + name) for name in "12"]
+        try:
+            concurrent.futures.wait(runs)
+            time.sleep(60)
+        except KeyboardInterrupt:
+            print("main")
+        print([type(run.exception()).__name__ for run in runs])
+    """.replace("OUT", repr(str(tmp_path / "b")))
+    process = python(script)
+    wait_for(tmp_path / "b1" / "trajectory.lammpstrj", process)
+    wait_for(tmp_path / "b2" / "trajectory.lammpstrj", process)
+    process.send_signal(signal.SIGINT)
+    said, errors = process.communicate()
+    assert process.returncode == 0, errors
+    assert said == "main\n['KeyboardInterrupt', 'KeyboardInterrupt']\n"
+
+
+def test_guide_runs(tmp_path, monkeypatch):
+    """The examples of docs/python-runs.md, in order, in one name space."""
+    monkeypatch.chdir(tmp_path)
+    blocks = re.findall(r"```python\n(.*?)```", (ROOT / "docs/python-runs.md").read_text(), re.DOTALL)
+    assert len(blocks) == 4
+    names: dict[str, object] = {}
+    for block in blocks:
+        exec(compile(block, "docs/python-runs.md", "exec"), names)
+    assert names["run"].is_finished

@@ -1,0 +1,178 @@
+"""Sweeps and maps."""
+
+from __future__ import annotations
+
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import time
+
+import numpy as np
+import pytest
+from runs import CONFIG, call, results, with_values
+
+import hardbody as hb
+
+GRID = {"shape.aspect_ratio": [1.5, 2.0], "system.packing_fraction": {"from": 0.2, "to": 0.3, "count": 2}}
+SWEEP = with_values(CONFIG, output={"trajectory": [], "events": 0}, production={"time": 2.0}) | {"grid": GRID}
+TEXT = """
+seed = 3
+[system]
+number = 48
+[equilibration]
+time = 1.0
+[production]
+time = 2.0
+[output]
+trajectory = []
+frames = 4
+events = 0
+[grid]
+shape.aspect_ratio = [1.5, 2.0]
+system.packing_fraction = [0.2, 0.3]
+"""
+
+
+def table_bytes(directory: os.PathLike[str] | str) -> list[str]:
+    """Rows of sweep.csv but the last two columns, which are times."""
+    return [line.rsplit(",", 2)[0] for line in (pathlib.Path(directory) / "sweep.csv").read_text().splitlines()]
+
+
+@pytest.fixture(scope="module")
+def sweep(tmp_path_factory):
+    return hb.sweep(SWEEP, tmp_path_factory.mktemp("sweeps") / "a", jobs=2)
+
+
+def test_table_and_runs(sweep):
+    table = sweep.table
+    assert list(table["status"]) == ["done"] * 4
+    np.testing.assert_array_equal(table["shape.aspect_ratio"], [1.5, 1.5, 2.0, 2.0])
+    np.testing.assert_array_equal(table["system.packing_fraction"], [0.2, 0.3, 0.2, 0.3])
+    assert (table["Z"][1::2] > table["Z"][0::2]).all()  # denser fluids have the higher pressure
+    for row, run in zip(table, sweep.runs, strict=True):
+        assert run is not None
+        assert run.config["shape"]["aspect_ratio"] == row["shape.aspect_ratio"]
+        assert run.config["system"]["packing_fraction"] == row["system.packing_fraction"]
+        assert run.summary["observables"]["Z"]["value"] == row["Z"]
+    assert "4 of 4 points done" in sweep._repr_html_()
+
+
+def test_pandas(sweep):
+    pytest.importorskip("pandas")
+    frame = sweep.to_pandas()
+    assert len(frame.groupby("shape.aspect_ratio")["Z"].mean()) == 2
+
+
+def test_points_are_runs(sweep, tmp_path):
+    config = {key: value for key, value in SWEEP.items() if key != "grid"}
+    config = with_values(config, shape={"aspect_ratio": 1.5}, system={"packing_fraction": 0.3})
+    assert results(hb.run(config, tmp_path / "b")) == {
+        name: content for name, content in results(sweep.runs[1]).items() if name != "state.json"
+    }
+
+
+def test_program_of_the_package_sweeps(sweep, tmp_path):
+    (tmp_path / "mine.toml").write_text(TEXT)
+    ended = call("sweep", "mine.toml", "--jobs", "2", cwd=tmp_path)
+    assert ended.returncode == 0, ended.stderr
+    assert ended.stdout == "out/mine: 4 points: 4 done, 0 failed\n"
+    assert table_bytes(tmp_path / "out" / "mine") == table_bytes(sweep)
+
+
+def test_workers_do_not_depend_on_the_path(sweep, tmp_path):
+    """The package may be found by a sys.path of this process alone."""
+    package = pathlib.Path(hb.__file__).resolve().parent
+    script = f"""
+import sys
+sys.path = {sys.path!r}
+import hardbody as hb
+from test_sweeps import SWEEP
+hb.sweep(SWEEP, {str(tmp_path / "a")!r}, jobs=2)
+"""
+    environment = {key: value for key, value in os.environ.items() if not key.startswith("PYTHON")}
+    subprocess.run([sys.executable, "-c", script], check=True, cwd=package, env=environment)
+    assert table_bytes(tmp_path / "a") == table_bytes(sweep)
+
+
+def test_failed_points(tmp_path):
+    grid = {"system.packing_fraction": [0.2, 0.99]}
+    with pytest.raises(hb.SweepError, match=r"2 points: 1 done, 1 failed; failed: .*0\.99.*accepted") as caught:
+        hb.sweep(SWEEP | {"grid": grid}, tmp_path / "a")
+    failed = caught.value.sweep
+    assert list(failed.table["status"]) == ["done", "failed"]
+    assert failed.runs[0] is not None
+    assert failed.runs[1] is None
+
+
+def test_errors(tmp_path):
+    with pytest.raises(ValueError, match=r"^config: has no \[grid\]"):
+        hb.sweep(CONFIG, tmp_path / "a")
+    with pytest.raises(ValueError, match=r"^config: system.number is \[\]; accepted: a list of values"):
+        hb.sweep(CONFIG | {"grid": {"system": {"number": []}}}, tmp_path / "a")
+    with pytest.raises(ValueError, match="^jobs is 0; accepted: an integer from 1 to 1024"):
+        hb.sweep(SWEEP, tmp_path / "a", jobs=0)
+    with pytest.raises(ValueError, match="out is None"):
+        hb.sweep(SWEEP)
+    assert not (tmp_path / "a").exists()
+
+
+def test_other_sweep_is_refused(sweep):
+    with pytest.raises(ValueError, match="seed is 4, but 3 in the sweep"):
+        hb.sweep(SWEEP | {"seed": 4}, sweep)
+    assert hb.sweep(SWEEP, sweep) == sweep  # nothing to do
+
+
+def test_ctrl_c_and_again(sweep, tmp_path):
+    script = """
+        import sys, hardbody as hb
+        from test_sweeps import SWEEP
+        try:
+            hb.sweep(SWEEP, sys.argv[1], jobs=1)
+        except KeyboardInterrupt as error:
+            print(error)
+    """.replace("\n        ", "\n")
+    process = subprocess.Popen(
+        [sys.executable, "-c", script, str(tmp_path / "a")],
+        stdout=subprocess.PIPE,
+        text=True,
+        cwd=pathlib.Path(__file__).parent,
+    )
+    for _ in range(600):
+        if list(tmp_path.glob("a/*/config.toml")):
+            break
+        time.sleep(0.05)
+    process.send_signal(signal.SIGINT)
+    said = process.communicate()[0]
+    assert said == f"{tmp_path / 'a'}: stopped by SIGINT: the same command continues\n"
+    calls: list[float | None] = []
+    again = hb.sweep(SWEEP, tmp_path / "a", jobs=2, progress=lambda text, done: calls.append(done))
+    assert table_bytes(again) == table_bytes(sweep)
+
+
+def test_map(sweep, tmp_path):
+    drawn = sweep.map("aspect_ratio", "packing_fraction", "Z", levels=[2.5], where={"seed": np.int64(3)})
+    assert drawn.path == sweep.path / "map_Z.svg"
+    assert drawn._repr_svg_().startswith("<svg ")
+    lines = drawn.lines
+    assert lines.names[:3] == ("value", "level", "line")
+    assert set(lines["level"]) == {2.5}
+    assert ((lines["system.packing_fraction"] > 0.2) & (lines["system.packing_fraction"] < 0.3)).all()
+    both = hb.map(
+        sweep, "aspect_ratio", "packing_fraction", ["Z", "collision_rate"],
+        levels={"Z": [2.5], "collision_rate": [4, 5]}, log_x=True, out=tmp_path / "a.svg", csv=tmp_path / "a.csv",
+    )  # fmt: skip
+    assert both.path == tmp_path / "a.svg"
+    with pytest.raises(ValueError, match="levels is .*; accepted with several values: a dict"):
+        hb.map(sweep, "aspect_ratio", "packing_fraction", ["Z", "S"], levels=[1])
+    with pytest.raises(TypeError, match="levels: Z has 'x'; accepted: numbers"):
+        hb.map(sweep, "aspect_ratio", "packing_fraction", "Z", levels=["x"])
+    with pytest.raises(ValueError, match="nothing"):
+        hb.map(sweep, "nothing", "packing_fraction", "Z")
+
+
+def test_report(sweep):
+    report = sweep.report()
+    assert report.path == sweep.path / "report.html"
+    assert "aspect_ratio" in report.html
