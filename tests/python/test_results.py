@@ -110,7 +110,7 @@ def test_report(run, tmp_path):
     both = hb.report([run, run.path], tmp_path / "both.html")
     assert os.fspath(both) == str(tmp_path / "both.html")
     assert both.is_interactive == report.is_interactive
-    with pytest.raises(ValueError, match="several directories, but no output file"):
+    with pytest.raises(ValueError, match="out is None; accepted: the name of an HTML file"):
         hb.report([run, run])
     both.path.write_text(" " * 3_000_000)
     assert re.fullmatch(r'<p>Report of 3.0 MB: <a href=".*both.html">.*both.html</a></p>', both._repr_html_())

@@ -281,6 +281,41 @@ def test_tqdm(tmp_path, capsys):
     assert "|" in capsys.readouterr().err
 
 
+def test_an_inner_run_that_fails_does_not_stop_the_outer_one(longer, tmp_path):
+    config, _ = longer
+    failed = []
+
+    def fail(text, done):
+        raise LookupError("inner")
+
+    def progress(text, done):
+        if not failed:
+            failed.append(True)
+            with pytest.raises(LookupError, match="inner"):
+                hb.run(config, tmp_path / "inner", progress=fail)
+
+    outer = hb.run(config, tmp_path / "outer", progress=progress)
+    assert failed and not outer.summary["interrupted"]
+
+
+@pytest.mark.parametrize("name", ["force", "quiet"])
+def test_flags_are_bools(tmp_path, name):
+    with pytest.raises(TypeError, match=f"{name} is 'no'; accepted: True or False"):
+        hb.run({"system": {"packing_fraction": 0.1}}, tmp_path / "run", **{name: "no"})
+
+
+def test_a_dotted_section_is_refused(tmp_path):
+    with pytest.raises(ValueError, match="a key is 'system.number'; accepted: a section with keys of its own, or overrides"):
+        hb.run({"system": {"number": 32}, "system.number": 40}, tmp_path / "run")
+
+
+def test_empty_lists_are_refused(tmp_path):
+    with pytest.raises(ValueError, match="paths is empty"):
+        hb.report([], tmp_path / "x.html")
+    with pytest.raises(ValueError, match="values is empty"):
+        hb.map(tmp_path, "x", "y", [])
+
+
 def test_threads(done, tmp_path):
     with concurrent.futures.ThreadPoolExecutor(2) as pool:
         runs = list(pool.map(lambda name: hb.run(CONFIG, tmp_path / name), "abcd"))

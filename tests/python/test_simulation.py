@@ -372,3 +372,29 @@ def test_a_thousand_simulations_leave_nothing_behind():
     before = resident_bytes()
     make(1000)
     assert resident_bytes() - before < 4e6
+
+
+def test_bodies_at_rest_never_collide():
+    rest = hb.System(20, hb.Ellipsoid([1, 1, 1]), [[0, 0, 0], [5, 0, 0]])
+    for call in (lambda s: s.run(collisions=1), lambda s: s.tune_envelopes()):
+        with pytest.raises(ValueError, match="all bodies are at rest; accepted.*thermalized"):
+            call(hb.Simulation(rest))
+    simulation = hb.Simulation(rest)
+    simulation.run(time=3)
+    assert simulation.time == 3 and simulation.collisions == 0
+
+
+def test_numpy_false_ends_a_run():
+    simulation = hb.Simulation(dimer())
+    simulation.run(time=2, every=0.5, callback=lambda s: np.float64(s.time) < 0.9)
+    assert simulation.time == 1
+
+
+def test_names_of_files(tmp_path):
+    simulation = hb.Simulation(dimer())
+    with pytest.raises(ValueError, match="path is .*; accepted: the name of a file"):
+        simulation.save(f"{tmp_path}/a\0b")
+    name = os.path.join(tmp_path, os.fsdecode(b"l\xe4"))
+    simulation.save(name)
+    assert hb.Simulation.restore(name).time == 0
+    assert os.listdir(os.fsencode(tmp_path)) == [b"l\xe4"]

@@ -166,7 +166,7 @@ def test_map(sweep, tmp_path):
     assert both.path == tmp_path / "a.svg"
     with pytest.raises(ValueError, match="levels is .*; accepted with several values: a dict"):
         hb.map(sweep, "aspect_ratio", "packing_fraction", ["Z", "S"], levels=[1])
-    with pytest.raises(TypeError, match="levels: Z has 'x'; accepted: numbers"):
+    with pytest.raises(TypeError, match=r"levels: Z has \['x'\]; accepted: a list of numbers"):
         hb.map(sweep, "aspect_ratio", "packing_fraction", "Z", levels=["x"])
     with pytest.raises(ValueError, match="nothing"):
         hb.map(sweep, "nothing", "packing_fraction", "Z")

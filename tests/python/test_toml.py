@@ -32,7 +32,7 @@ def bits(value: object) -> object:
     return (type(value), value.hex() if isinstance(value, float) else value)
 
 
-@given(st.dictionaries(keys, values, max_size=4))
+@given(st.dictionaries(keys.filter(lambda key: "." not in key), values, max_size=4))
 def test_round_trip(config):
     assert bits(tomllib.loads(toml_text(config))) == bits(config)
 
