@@ -1,8 +1,8 @@
 """Collisions per second of Simulation.run and of the program, from the same state, and of shapes written in Python.
 
-    .venv/bin/python bench/python_simulation.py build/release/apps/hardbody/hardbody [--rounds 5] [--time 20]
+    .venv/bin/python bench/python_simulation.py build/release/apps/hardbody/hardbody [--rounds 5] [--time 60]
 
-Both measure observables. They take turns; ratios are of the medians.
+Both measure observables. They take turns; the highest rates of all rounds are compared: other work of the machine disturbs single ones.
 """
 
 from __future__ import annotations
@@ -10,7 +10,6 @@ from __future__ import annotations
 import argparse
 import json
 import pathlib
-import statistics
 import subprocess
 import tempfile
 import time
@@ -84,9 +83,9 @@ def compare(program: str, state: dict, rounds: int, duration: float) -> None:
             rate, summary = program_rate(program, pathlib.Path(directory), CONFIG.format(**state, time=duration))
             there.append(rate)
             here.append(package_rate(start, summary, duration))
-    ratio = statistics.median(here) / statistics.median(there)
+    ratio = max(here) / max(there)
     name = ", ".join(f"{key} {value}" for key, value in state.items())
-    print(f"{name}: program {statistics.median(there):.0f}/s, Simulation.run {statistics.median(here):.0f}/s, ratio {ratio:.3f}")
+    print(f"{name}: program {max(there):.0f}/s, Simulation.run {max(here):.0f}/s, ratio {ratio:.3f}")
 
 
 def written_shape() -> None:
@@ -118,7 +117,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program")
     parser.add_argument("--rounds", type=int, default=5)
-    parser.add_argument("--time", type=float, default=20)
+    parser.add_argument("--time", type=float, default=60)
     arguments = parser.parse_args()
     for state in STATES:
         compare(str(pathlib.Path(arguments.program).resolve()), state, arguments.rounds, arguments.time)

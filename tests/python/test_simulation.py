@@ -225,6 +225,17 @@ def test_calls_of_any_length_give_the_same_bits():
     assert many.time == 3 and bits(one) == bits(many)
 
 
+@pytest.mark.parametrize("box", [1e5, 1e9, 1e20, 1e100])
+@pytest.mark.parametrize("neighbours", ["dilated", "obp", "cells"])
+def test_boxes_may_be_of_any_size(box, neighbours):
+    system = hb.System(box, hb.Ellipsoid([1, 1, 1]), [[-2, 0, 0], [2, 0, 0]], None, [[1, 0, 0], [-1, 0, 0]])
+    simulation = hb.Simulation(system, neighbours=neighbours)
+    simulation.run(time=3)
+    assert simulation.time == 3 and simulation.counters.overlaps == 0
+    with pytest.raises(ValueError, match=r"box is 1e\+101; accepted: at most 1e\+?100"):
+        hb.System(1e101, hb.Ellipsoid([1, 1, 1]), [[0, 0, 0]])
+
+
 def test_shrinking_and_tuning():
     simulation = hb.Simulation(fluid())
     envelope, box = simulation.envelope, simulation.box

@@ -5,6 +5,8 @@
 #include <ed/archive_simulation.h>
 #include <ed/simulation.h>
 
+#include <geom/tolerances.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -44,8 +46,10 @@ void check_start(const System& system) {
   if (system.size() < 2) {
     throw std::invalid_argument("number is " + std::to_string(system.size()) + "; accepted: at least 2");
   }
-  if (!(system.box > 0) || !std::isfinite(system.box)) {
-    throw std::invalid_argument("box is not positive; accepted: a positive number");
+  if (!(system.box > 0 && system.box <= geom::kMaxCoordinate)) {
+    std::ostringstream message;
+    message << "box is " << system.box << "; accepted: a positive number, at most " << geom::kMaxCoordinate;
+    throw std::invalid_argument(message.str());
   }
   check_species(system);
   const Audit state = audit(system);

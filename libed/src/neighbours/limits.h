@@ -2,6 +2,8 @@
 
 /// Limits of the thickness of envelopes and of the size of boxes, and of how long envelopes are kept.
 
+#include <algorithm>
+
 namespace ed::internal {
 
 /// Grid of cells of the paper's algorithm, and the number of them that a box must have.
@@ -10,8 +12,11 @@ class CellLayout {
   /// Returns the number of cells along an edge: they are at least 2 R wide, so that bodies that touch are in adjacent
   /// ones.
   static int cells_along(double box, double bounding_radius) {
-    return static_cast<int>(box / (2 * bounding_radius * (1 + 4 * kOvershoot)));
+    return static_cast<int>(std::min(kMostCells, box / (2 * bounding_radius * (1 + 4 * kOvershoot))));
   }
+  /// Largest number of cells along an edge: positions are rounded by 1e-16 of the box, which must be small beside
+  /// kOvershoot cells.
+  static constexpr double kMostCells = 16384;
   /// Least number of cells along an edge: with fewer a neighbouring cell is met on both sides.
   static constexpr int kLeastCells = 3;
   static double smallest_box(double bounding_radius) {

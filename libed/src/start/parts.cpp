@@ -3,6 +3,7 @@
 #include "neighbours/limits.h"
 
 #include <geom/queries.h>
+#include <geom/tolerances.h>
 
 #include <algorithm>
 #include <cmath>
@@ -60,6 +61,12 @@ void check_components(const std::vector<Component>& components) {
 
 void check_target(const std::vector<Component>& components, double box) {
   const double radius = largest_radius(components);
+  if (!(box <= geom::kMaxCoordinate)) {
+    std::ostringstream message;
+    message << "packing_fraction: a box of edge " << box << " has no coordinates; accepted: one of at most "
+            << geom::kMaxCoordinate;
+    throw std::invalid_argument(message.str());
+  }
   if (box >= smallest_image_box(radius) * (1 - 1e-12)) return;
   const double share = box / smallest_image_box(radius);
   std::ostringstream message;

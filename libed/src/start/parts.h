@@ -21,7 +21,8 @@ double largest_radius(const std::vector<Component>& components);
 /// Throws std::invalid_argument for no components, a component without bodies, or a species that is not sound.
 void check_components(const std::vector<Component>& components);
 
-/// Throws std::invalid_argument, naming the number, if a body could touch two images of another in this box.
+/// Throws std::invalid_argument, naming the number, if a body could touch two images of another in this box; naming the
+/// packing fraction, if the box is beyond geom::kMaxCoordinate.
 void check_target(const std::vector<Component>& components, double box);
 
 /// Returns the bodies of the components, in their order, without positions.

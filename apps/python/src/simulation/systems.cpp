@@ -125,6 +125,7 @@ BodySystem make_system(nb::handle box, nb::handle species, nb::handle positions,
   BodySystem made;
   ed::System& system = made.system;
   system.box = positive(box, "box");
+  if (system.box > geom::kMaxCoordinate) refuse_value("box", shown(system.box), "at most 1e100");
   const RealRows rows(positions, "positions", 3);
   if (rows.size() > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
     refuse_value("number of bodies", std::to_string(rows.size()), "at most 2147483647");

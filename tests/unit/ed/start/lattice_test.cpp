@@ -166,6 +166,9 @@ TEST(LatticeStart, RefusesImpossiblePackingFractions) {
     EXPECT_THAT(message_of([&] { (void)lattice(ed_test::species(3, Inertia::paper), 288, {.packing_fraction = phi}); }),
                 HasSubstr("packing_fraction is"));
   }
+  const std::string message =
+      message_of([] { (void)lattice(ed_test::species(3, Inertia::paper), 288, {.packing_fraction = 5e-324}); });
+  EXPECT_THAT(message, HasSubstr("packing_fraction: a box of edge inf"));
 }
 
 TEST(LatticeStart, NematicOrderIsThatOfTheStart) {
