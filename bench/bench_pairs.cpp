@@ -5,7 +5,7 @@
 ///
 /// The file has the numbers of bodies and pairs (int64), three semi-axes, positions, quaternions w x y z (double) and
 /// pairs of indices (int64). One line is printed: the least time of a pair in ns, with poses of each pair side by side
-/// (spans) and by reference, and the sum of all distances.
+/// (spans), by reference, and from the arrays of the file, poses included; and the sum of all distances.
 
 #include <geom/geom.h>
 
@@ -52,27 +52,40 @@ void run(const std::string& name, int repeats) {
   const auto indices = read<std::int64_t>(file, 2 * pairs);
 
   const geom::Ellipsoid shape({axes[0], axes[1], axes[2]});
-  std::vector<geom::Pose> poses;
-  for (std::size_t i = 0; i < bodies; ++i) {
-    const double* const q = &quaternions[4 * i];
-    poses.push_back(geom::Pose::from_quaternion(q[0], q[1], q[2], q[3], Eigen::Vector3d::Map(&positions[3 * i])));
-  }
+  std::vector<geom::Pose> poses(bodies);
+  const auto read_poses = [&] {
+    for (std::size_t i = 0; i < bodies; ++i) {
+      const double* const q = &quaternions[4 * i];
+      poses[i] = geom::Pose::from_quaternion(q[0], q[1], q[2], q[3], Eigen::Vector3d::Map(&positions[3 * i]));
+    }
+  };
+  read_poses();
   std::vector<geom::Pose> X_WA, X_WB;
-  std::vector<geom::EllipsoidPair> references;
-  for (std::size_t k = 0; k < pairs; ++k) {
-    const auto a = static_cast<std::size_t>(indices[2 * k]), b = static_cast<std::size_t>(indices[2 * k + 1]);
-    X_WA.push_back(poses[a]);
-    X_WB.push_back(poses[b]);
-    references.push_back({&shape, &poses[a], &shape, &poses[b]});
+  std::vector<geom::EllipsoidPair> references(pairs);
+  const auto read_pairs = [&] {
+    for (std::size_t k = 0; k < pairs; ++k) {
+      const auto a = static_cast<std::size_t>(indices[2 * k]), b = static_cast<std::size_t>(indices[2 * k + 1]);
+      references[k] = {&shape, &poses[a], &shape, &poses[b]};
+    }
+  };
+  read_pairs();
+  for (const geom::EllipsoidPair& pair : references) {
+    X_WA.push_back(*pair.X_WA);
+    X_WB.push_back(*pair.X_WB);
   }
   std::vector<geom::DistanceResult> results(pairs);
   const double of_spans = least_time(repeats, pairs, [&] {
     geom::distance_batch({&shape, 1}, X_WA, {&shape, 1}, X_WB, results);
   });
   const double of_references = least_time(repeats, pairs, [&] { geom::distance_batch(references, results); });
+  const double of_arrays = least_time(repeats, pairs, [&] {
+    read_poses();
+    read_pairs();
+    geom::distance_batch(references, results);
+  });
   double sum = 0;
   for (const geom::DistanceResult& r : results) sum += r.distance;
-  std::printf("%.3f %.3f %.17g\n", of_spans, of_references, sum);
+  std::printf("%.3f %.3f %.3f %.17g\n", of_spans, of_references, of_arrays, sum);
 }
 
 }  // namespace

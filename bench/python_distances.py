@@ -5,7 +5,8 @@ usage: python_distances.py BENCH_PAIRS [--pairs N] [--rounds N]
 
 BENCH_PAIRS is the program of bench/bench_pairs.cpp, built with the flags that the package was built with. Pairs are of
 spheroids, a/b = 3. "shared" has bodies in 40 pairs each, as in a fluid; "own" has two bodies for each pair, apart or in
-shallow overlap. Both methods take turns, and the least times of all rounds are compared.
+shallow overlap. C++ is given the poses, or computes them from the same arrays as Python ("arrays"). Both take turns, and
+the least times of all rounds are compared.
 """
 
 import argparse
@@ -59,17 +60,18 @@ def write(path, positions, quaternions, pairs):
 
 
 def least_times(bench, positions, quaternions, pairs, rounds):
-    """ns a pair: C++ with spans, C++ by reference, Python with one thread, with two."""
+    """ns a pair: C++ with spans, by reference and from the same arrays, Python with one thread, with two."""
     shape = hb.Ellipsoid(AXES)
-    times = {"C++ spans": [], "C++ references": [], 1: [], 2: []}
+    times = {"C++ spans": [], "C++ references": [], "C++ arrays": [], 1: [], 2: []}
     with tempfile.TemporaryDirectory() as folder:
         path = pathlib.Path(folder) / "pairs.bin"
         write(path, positions, quaternions, pairs)
         for _ in range(rounds):
             line = subprocess.run([bench, path, "3"], check=True, capture_output=True, text=True).stdout
-            spans, references, total = (float(word) for word in line.split())
+            spans, references, arrays, total = (float(word) for word in line.split())
             times["C++ spans"].append(spans)
             times["C++ references"].append(references)
+            times["C++ arrays"].append(arrays)
             for threads in (1, 2):
                 for _ in range(3):
                     begin = time.perf_counter()
@@ -93,11 +95,13 @@ def main():
         "shared": shared_bodies(random, options.pairs // 20, options.pairs),
         "own": own_bodies(random, options.pairs),
     }
-    print("ns a pair            |  C++ spans | C++ refs | Python 1 | Python 2 | C++ spans / Python 1 | Python 1 / Python 2")
+    print("ns a pair               C++ spans  C++ refs  C++ arrays  Python 1  Python 2 | Python 1 is .. of C++: spans  refs  arrays "
+          "| two threads")
     for name, data in cases.items():
         t, redone = least_times(options.bench, *data, options.rounds)
-        print(f"{name:8} {len(data[0]):>8} bodies | {t['C++ spans']:>9.1f} | {t['C++ references']:>8.1f} | {t[1]:>8.1f} "
-              f"| {t[2]:>8.1f} | {t['C++ spans'] / t[1]:>20.2f} | {t[1] / t[2]:>18.2f}   ({redone} redone)")
+        kinds = ("C++ spans", "C++ references", "C++ arrays")
+        print(f"{name:8}{len(data[0]):>8} bodies {t[kinds[0]]:>9.1f} {t[kinds[1]]:>9.1f} {t[kinds[2]]:>11.1f} {t[1]:>9.1f} {t[2]:>9.1f}"
+              f" | {t[kinds[0]] / t[1]:>27.2f} {t[kinds[1]] / t[1]:>5.2f} {t[kinds[2]] / t[1]:>7.2f} | {t[1] / t[2]:.2f} ({redone} redone)")
     return 0
 
 

@@ -117,7 +117,7 @@ void check_rows(const std::string& name, std::size_t rows, const std::string& ot
 }
 
 std::size_t range_length(std::size_t count, int threads) {
-  return std::clamp<std::size_t>(count / (8 * static_cast<std::size_t>(threads)), 16, 64);
+  return std::clamp<std::size_t>(count / (8 * static_cast<std::size_t>(threads)), 16, 512);
 }
 
 }  // namespace hardbody::python
