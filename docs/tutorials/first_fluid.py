@@ -25,7 +25,7 @@ print(start)
 
 # %%
 relaxing = hb.Simulation(start)
-order = []
+order: list[float] = []
 relaxing.run(time=5, every=0.5, callback=lambda simulation: order.append(simulation.system.nematic_order))
 print(f"{relaxing.collisions} collisions, S = {np.mean(order):.2f}")
 assert max(order) < 0.3

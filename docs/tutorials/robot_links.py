@@ -20,7 +20,7 @@ forearm = hb.Ellipsoid([0.30, 0.05, 0.05])
 hand = hb.Superellipsoid([0.10, 0.04, 0.02], 0.5, 0.5)
 pillar = hb.Superellipsoid([0.08, 0.08, 0.60], 0.2, 1.0)
 ball = hb.Ellipsoid([0.15, 0.15, 0.15])
-shapes = [upper_arm, forearm, hand, pillar, ball]
+shapes: list[hb.Ellipsoid | hb.Superellipsoid] = [upper_arm, forearm, hand, pillar, ball]
 names = ["upper arm", "forearm", "hand", "pillar", "ball"]
 
 # %% [markdown]

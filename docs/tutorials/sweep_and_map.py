@@ -75,9 +75,10 @@ axes.legend()
 figure.savefig("sweep_and_map.png")
 
 # %% [markdown]
-# Each point is a run of its own, with curves and a report.
+# Each point is a run of its own, with curves and a report; one that has not begun is None.
 
 # %%
 run = sweep.runs[-1]
+assert run is not None
 print(run.path, run.summary["counters"]["collisions"], "collisions")
 print(run.observables["c2"].to_pandas().head(3))

@@ -76,10 +76,10 @@ assert worst < 1e-6
 # (docs/user-shapes.md) the same shape is hundreds of times faster.
 
 # %%
-L, r = capsule.half_length, capsule.radius
-cylinder, caps = 2 * L / (2 * L + 4 * r / 3), 4 * r / 3 / (2 * L + 4 * r / 3)  # their shares of the mass, 1
-about_z = cylinder * r**2 / 2 + caps * 2 * r**2 / 5
-about_x = cylinder * (r**2 / 4 + L**2 / 3) + caps * (2 * r**2 / 5 + L**2 + 3 * L * r / 4)
+L, R = capsule.half_length, capsule.radius
+cylinder, caps = 2 * L / (2 * L + 4 * R / 3), 4 * R / 3 / (2 * L + 4 * R / 3)  # their shares of the mass, 1
+about_z = cylinder * R**2 / 2 + caps * 2 * R**2 / 5
+about_x = cylinder * (R**2 / 4 + L**2 / 3) + caps * (2 * R**2 / 5 + L**2 + 3 * L * R / 4)
 species = hb.Species(capsule, mass=1.0, inertia=[about_x, about_x, about_z])
 fluid = hb.Simulation(hb.random_start(species, number=12, packing_fraction=0.02, seed=1))
 energy = fluid.kinetic().energy

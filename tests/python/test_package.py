@@ -50,6 +50,14 @@ def test_types():
     assert done.returncode == 0, done.stdout + done.stderr
 
 
+@pytest.mark.skipif(not is_installed, reason="stubs are made for the installed package")
+def test_types_of_the_tutorials():
+    pytest.importorskip("mypy")
+    command = [sys.executable, "-m", "mypy", "--strict", "--no-error-summary", "docs/tutorials"]
+    done = subprocess.run(command, capture_output=True, text=True, cwd=ROOT, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
 def test_example_runs():
     done = subprocess.run(
         [sys.executable, str(pathlib.Path(__file__).with_name("typed_example.py"))],
