@@ -20,6 +20,7 @@
 
 #include <Eigen/Core>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -86,18 +87,29 @@ void run(nb::handle self, nb::handle time, nb::handle collisions, nb::handle unt
   simulation.run(self, plan);
 }
 
+/// Returns kT by all energy that collisions exchange, which is conserved: that of translation alone fluctuates by
+/// sqrt(2 / (3 N)). Spheres keep their rotation, and bodies of revolution their spin.
+double conserved_kT(const ed::System& system) {
+  ed::System turning = system;
+  std::erase_if(turning.bodies, [&](const ed::Body& body) {
+    return ed::is_sphere(system.species[static_cast<std::size_t>(body.species)].shape);
+  });
+  const ed::KineticState rotation = ed::kinetic_state(turning);
+  const double energy = ed::kinetic_state(system).translational_energy + rotation.rotational_energy;
+  return 2 * energy / std::max(1, 3 * system.size() - 3 + rotation.rotational_degrees_of_freedom);
+}
+
 double compressibility(const PythonSimulation& s) {
   const ed::Simulation& simulation = s.whole();
   if (!(simulation.time() > 0)) return std::numeric_limits<double>::quiet_NaN();
   const ed::System system = simulation.system();
-  const double kT = ed::kinetic_state(system).translational_kT;
-  return 1 + simulation.virial() / (3.0 * system.size() * kT * simulation.time());
+  return 1 + simulation.virial() / (3.0 * system.size() * conserved_kT(system) * simulation.time());
 }
 
 double pressure(const PythonSimulation& s) {
   const ed::System system = s.whole().system();
   const double volume = system.box * system.box * system.box;
-  return compressibility(s) * system.size() * ed::kinetic_state(system).translational_kT / volume;
+  return compressibility(s) * system.size() * conserved_kT(system) / volume;
 }
 
 /// Returns the vectors of a snapshot.
@@ -308,9 +320,10 @@ void bind_numbers(Type& type) {
                    (simulation.system().size() * simulation.time());
           },
           "Collisions that a body takes part in per time unit, since the start; NaN at time 0.")
-      .def_prop_ro("Z", &compressibility,
-                   "Compressibility factor P V / (N kT) = 1 + virial / (3 N kT time), kT the present translational\n"
-                   "temperature; NaN at time 0. Observables have it with its error.")
+      .def_prop_ro(
+          "Z", &compressibility,
+          "Compressibility factor P V / (N kT) = 1 + virial / (3 N kT time), kT by the conserved energy of all\n"
+          "motion that collisions exchange; NaN at time 0. Observables have it with its error.")
       .def_prop_ro("pressure", &pressure, "Pressure since the start, Z N kT / V; NaN at time 0.")
       .def_prop_ro(
           "virial", [](const PythonSimulation& s) { return s.whole().virial(); },
