@@ -66,8 +66,8 @@ class Distances(_Rows):
     point_b: Reals
     """Closest points of B, world frame, shape (M, 3)."""
     error_bound: Reals
-    """Certified: distance <= true distance <= distance + error_bound, shape (M,), apart from rounding: 1e-15 of the size
-    of the pair, its radii and distance of centres together."""
+    """Certified: distance <= true distance <= distance + error_bound, shape (M,), apart from rounding: 1e-15 of the
+    size of the pair, its radii and distance of centres together."""
     residual: Reals
     """Deviations (length) of the points found from being distance * normal apart, shape (M,)."""
     iterations: NDArray[np.int32]
@@ -111,8 +111,8 @@ class ClosestPoints(_Rows):
     normal: Reals
     """Unit outward normals there, world frame, shape (M, 3)."""
     error_bound: Reals
-    """Certified: distance <= true distance <= distance + error_bound, shape (M,), apart from rounding: 1e-15 of the size
-    of the pair, its radii and distance of centres together."""
+    """Certified: distance <= true distance <= distance + error_bound, shape (M,), apart from rounding: 1e-15 of the
+    size of the pair, its radii and distance of centres together."""
     _code: NDArray[np.uint8]
 
     @property
