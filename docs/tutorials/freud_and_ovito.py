@@ -99,7 +99,7 @@ assert len(large) == 512 and abs(large.box / same.box - 2) < 1e-5
 assert abs(large.packing_fraction - 0.35) < 1e-4 and abs(large.nematic_order - same.nematic_order) < 1e-4
 
 # %% [markdown]
-# The copies are thrown dice for the first moment only: with velocities of their own they soon differ.
+# Copies start with equal velocities: new ones are drawn.
 
 # %%
 simulation = hb.Simulation(large.thermalized(seed=2))

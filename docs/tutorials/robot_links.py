@@ -84,13 +84,16 @@ one = hb.distance(shapes[kinds[i]], X[i], shapes[kinds[j]], X[j])
 assert abs(one.distance - distance.min()) < 1e-12 and one.error_bound < 1e-9
 
 # %% [markdown]
-# And between the steps? No point of the arm moves further in a step than the arm's reach times the sum of the joints' turns.
-# That is less than the least clearance: the whole motion is free, not only the configurations that were looked at. (Half of
-# it would do for an obstacle that stands still; the upper arm and the hand both move.)
+# And between the steps? No point of the arm moves further in a step than the arm's reach times the sum of the joints'
+# paths, which are at most their largest rates |dq/ds| times the step. That is less than the least clearance: the whole
+# motion is free, not only the configurations that were computed. (Half of it would do for an obstacle that stands still;
+# the upper arm and the hand both move.)
 
 # %%
-reach = 0.36 + 0.35 + 0.65 + 0.21
-largest_move = reach * np.abs(np.diff(joints, axis=0)).sum(axis=1).max()
+reach = 0.75 + 0.65 + np.hypot(0.21, 0.05)  # from shoulder to elbow to wrist to the corners of the hand's far end
+rates = np.array([2.3, 0.3 * np.pi, 2.0 * np.pi, 0.8])
+assert (np.abs(np.diff(joints, axis=0)) <= rates * s[1] * (1 + 1e-9)).all()
+largest_move = reach * rates.sum() * s[1]
 print(f"no point moves more than {largest_move:.4f} m a step")
 assert distance.min() > largest_move
 

@@ -15,7 +15,11 @@ from hardbody._typing import Reals
 
 @dataclass(frozen=True)
 class Estimate:
-    """Measured value with its standard error over blocks of the run."""
+    """Measured value with its standard error over blocks of the run.
+
+    value: NaN if it is missing. error: standard error, NaN if it is not known. missing: the reason for which the value
+    is missing, in words, or None. float() gives the value; formats apply to value and error: f"{estimate:.3f}".
+    """
 
     value: float
     """Value; NaN if it is missing."""
@@ -41,7 +45,11 @@ class Estimate:
 
 @dataclass(frozen=True, eq=False)
 class VectorEstimate:
-    """Measured direction: n and -n are equivalent."""
+    """Measured direction: n and -n are equivalent.
+
+    value: unit vector, shape (3,); NaN if it is missing. error: standard error, an angle in rad. missing: the reason
+    for which the value is missing, or None.
+    """
 
     value: Reals
     """Unit vector, shape (3,); NaN if it is missing."""
@@ -53,7 +61,11 @@ class VectorEstimate:
 
 @dataclass(frozen=True, eq=False)
 class TensorEstimate:
-    """Measured symmetric tensor."""
+    """Measured symmetric tensor.
+
+    value: elements, shape (3, 3); NaN if they are missing. error: standard errors, shape (3, 3). missing: the reason
+    for which the value is missing, or None.
+    """
 
     value: Reals
     """Elements, shape (3, 3); NaN if they are missing."""
