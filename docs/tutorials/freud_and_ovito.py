@@ -1,8 +1,8 @@
 # %% [markdown]
 # # From hardbody to freud and OVITO, and back
 #
-# A run writes its frames to a GSD file, which freud and OVITO read: both analyse it here. OVITO then makes a larger system
-# of the last frame, which goes on in hardbody. Needs the packages gsd, freud-analysis, ovito and matplotlib.
+# A run writes its frames to a GSD file, which freud and OVITO read: both analyse it here. OVITO then makes a larger
+# system of the last frame, which goes on in hardbody. Needs the packages gsd, freud-analysis, ovito and matplotlib.
 
 # %%
 import freud
@@ -33,8 +33,8 @@ frames = run.trajectory()
 print(len(frames), "frames,", frames[0].particles.type_shapes)
 
 # %% [markdown]
-# **freud**: g(r) over all frames. `analyze` computes the same from the same file; with its bins, and freud's normalization for
-# a finite number of bodies, both agree to the single precision that freud computes in.
+# **freud**: g(r) over all frames. `analyze` computes the same from the same file; with its bins, and freud's
+# normalization for a finite number of bodies, both agree to the single precision that freud computes in.
 
 # %%
 ours = hb.analyze(run, longest_lag=4.0).observables["g_r"]
@@ -85,8 +85,8 @@ pipeline.modifiers.append(ReplicateModifier(num_x=2, num_y=2, num_z=2))
 export_file(pipeline, "replicated.gsd", "gsd/hoomd", frame=pipeline.source.num_frames - 1)
 
 # %% [markdown]
-# **And back.** Our own file is taken bit for bit. OVITO's has positions, orientations and velocities in single precision and no
-# shapes: these we say again, and `mend` repairs the overlaps that rounding may have made.
+# **And back.** Our own file is taken bit for bit. OVITO's has positions, orientations and velocities in single
+# precision and no shapes: these we say again, and `mend` repairs the overlaps that rounding may have made.
 
 # %%
 same = hb.from_gsd(run.path / "trajectory.gsd")

@@ -1,9 +1,9 @@
 # %% [markdown]
 # # Your shape
 #
-# Any convex body is known by its support function h(n): how far it reaches in the direction n, and the point where. A Python
-# object with that method and three radii can be used in all queries, and in simulations. Here: a capsule, all points within
-# `radius` of a segment along z.
+# Any convex body is known by its support function h(n): how far it reaches in the direction n, and the point where. A
+# Python object with that method and three radii can be used in all queries, and in simulations. Here: a capsule, all
+# points within `radius` of a segment along z.
 
 # %%
 import time
@@ -43,9 +43,9 @@ assert np.isclose(r.distance, 2, rtol=1e-12)
 
 # %% [markdown]
 # For two capsules there is a closed form: the distance of their segments less both radii. 50 random pairs show the
-# accuracy of the general method. Its answer is certified: the true distance is at most `error_bound` above it. Most answers
-# are exact to rounding. Where the normal is across an axis the support function has a kink: errors may be some 1e-6 of the
-# size there, and bounds 1e-2.
+# accuracy of the general method. Its answer is certified: the true distance is at most `error_bound` above it. Most
+# answers are exact to rounding. Where the normal is across an axis the support function has a kink: errors may be some
+# 1e-6 of the size there, and bounds 1e-2.
 
 
 # %%
@@ -75,10 +75,10 @@ print(f"{(time.perf_counter() - begin) / 50 * 1e3:.1f} ms a pair")
 assert np.median(errors) < 1e-12
 
 # %% [markdown]
-# A simulation also needs the moments of inertia. Those of a capsule are a cylinder's and two hemispheres', whose centres
-# are shifted. Every call of `support` is a call into Python, which is for trying a shape out: 64 ellipsoids written like
-# this make about 100 collisions a second against 160,000 of those in C++ (docs/user-shapes.md), and a distance takes
-# 0.8 ms against 1 us.
+# A simulation also needs the moments of inertia. Those of a capsule are a cylinder's and two hemispheres', whose
+# centres are shifted. Every call of `support` is a call into Python, which is for trying a shape out: 64 ellipsoids
+# written like this make about 100 collisions a second against 160,000 of those in C++ (docs/user-shapes.md), and a
+# distance takes 0.8 ms against 1 us.
 
 # %%
 L, R = capsule.half_length, capsule.radius
