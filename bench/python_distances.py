@@ -4,9 +4,9 @@
 usage: python_distances.py BENCH_PAIRS [--pairs N] [--rounds N]
 
 BENCH_PAIRS is the program of bench/bench_pairs.cpp, built with the flags that the package was built with. Pairs are of
-spheroids, a/b = 3. "shared" has bodies in 40 pairs each, as in a fluid; "own" has two bodies for each pair, apart or in
-shallow overlap. C++ is given the poses, or computes them from the same arrays as Python ("arrays"). Both take turns, and
-the least times of all rounds are compared.
+spheroids, a/b = 3. "shared" has bodies in 40 pairs each, as in a fluid; "own" has two bodies for each pair, apart or
+in shallow overlap. C++ is given the poses, or computes them from the same arrays as Python ("arrays"). Both take turns,
+and the least times of all rounds are compared.
 """
 
 import argparse
@@ -95,13 +95,18 @@ def main():
         "shared": shared_bodies(random, options.pairs // 20, options.pairs),
         "own": own_bodies(random, options.pairs),
     }
-    print("ns a pair               C++ spans  C++ refs  C++ arrays  Python 1  Python 2 | Python 1 is .. of C++: spans  refs  arrays "
-          "| two threads")
+    print(
+        "ns a pair               C++ spans  C++ refs  C++ arrays  Python 1  Python 2 "
+        "| Python 1 is .. of C++: spans  refs  arrays | two threads"
+    )
     for name, data in cases.items():
         t, redone = least_times(options.bench, *data, options.rounds)
-        kinds = ("C++ spans", "C++ references", "C++ arrays")
-        print(f"{name:8}{len(data[0]):>8} bodies {t[kinds[0]]:>9.1f} {t[kinds[1]]:>9.1f} {t[kinds[2]]:>11.1f} {t[1]:>9.1f} {t[2]:>9.1f}"
-              f" | {t[kinds[0]] / t[1]:>27.2f} {t[kinds[1]] / t[1]:>5.2f} {t[kinds[2]] / t[1]:>7.2f} | {t[1] / t[2]:.2f} ({redone} redone)")
+        spans, references, arrays = (t[kind] for kind in ("C++ spans", "C++ references", "C++ arrays"))
+        print(
+            f"{name:8}{len(data[0]):>8} bodies {spans:>9.1f} {references:>9.1f} {arrays:>11.1f} "
+            f"{t[1]:>9.1f} {t[2]:>9.1f} | {spans / t[1]:>27.2f} {references / t[1]:>5.2f} {arrays / t[1]:>7.2f}"
+            f" | {t[1] / t[2]:.2f} ({redone} redone)"
+        )
     return 0
 
 

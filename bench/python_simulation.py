@@ -2,7 +2,8 @@
 
     .venv/bin/python bench/python_simulation.py build/release/apps/hardbody/hardbody [--rounds 5] [--time 60]
 
-Both measure observables. They take turns; the highest rates of all rounds are compared: other work of the machine disturbs single ones.
+Both measure observables. They take turns; the highest rates of all rounds are compared: other work of the machine
+disturbs single ones.
 """
 
 from __future__ import annotations
@@ -29,7 +30,10 @@ time = 0
 [production]
 time = {time}
 """
-STATES = [dict(number=512, packing_fraction=0.4, aspect_ratio=3.0), dict(number=512, packing_fraction=0.3, aspect_ratio=0.5)]
+STATES = [
+    dict(number=512, packing_fraction=0.4, aspect_ratio=3.0),
+    dict(number=512, packing_fraction=0.3, aspect_ratio=0.5),
+]
 
 
 class Written:
@@ -55,7 +59,9 @@ class Written:
 
 def program_rate(program: str, directory: pathlib.Path, config: str) -> tuple[float, dict]:
     (directory / "run.toml").write_text(config)
-    subprocess.run([program, "run", "run.toml", "--out", "out", "--force"], cwd=directory, check=True, capture_output=True)
+    subprocess.run(
+        [program, "run", "run.toml", "--out", "out", "--force"], cwd=directory, check=True, capture_output=True
+    )
     summary = json.loads((directory / "out" / "summary.json").read_text())
     return summary["performance"]["collisions_per_second"], summary
 
@@ -91,7 +97,9 @@ def compare(program: str, state: dict, rounds: int, duration: float) -> None:
 def written_shape() -> None:
     axes = [0.7, 0.7, 2.0]
     for shape in (hb.Ellipsoid(axes), Written(axes)):
-        start = hb.random_start(hb.Species(hb.Ellipsoid(axes), inertia="uniform"), number=64, packing_fraction=0.3, seed=1)
+        start = hb.random_start(
+            hb.Species(hb.Ellipsoid(axes), inertia="uniform"), number=64, packing_fraction=0.3, seed=1
+        )
         own = hb.System(
             start.box,
             hb.Species(shape, inertia="uniform"),

@@ -1,8 +1,9 @@
 # %% [markdown]
 # # A first fluid
 #
-# 128 hard spheroids, three times as long as they are wide, at a packing fraction of 0.3: from a random start to pressure,
-# diffusion and orientational order. Run this file as a script, or cell by cell in an editor that knows `# %%`.
+# 128 hard spheroids, three times as long as they are wide, at a packing fraction of 0.3: from a random start to
+# pressure, diffusion and orientational order. Run this file as a script, or cell by cell in an editor that knows
+# `# %%`.
 
 # %%
 import matplotlib.pyplot as plt
@@ -11,17 +12,17 @@ import numpy as np
 import hardbody as hb
 
 # %% [markdown]
-# `Ellipsoid.spheroid(3.0)` has the volume of the unit sphere: the unit of length is the radius of that sphere. Masses and
-# kT are 1. `random_start` compresses a random gas until the packing fraction is reached, without a single overlap. The
-# seed makes the run repeatable to the last bit.
+# `Ellipsoid.spheroid(3.0)` has the volume of the unit sphere: the unit of length is the radius of that sphere. Masses
+# and kT are 1. `random_start` compresses a random gas until the packing fraction is reached, without a single overlap.
+# The seed makes the run repeatable to the last bit.
 
 # %%
 start = hb.random_start(hb.Ellipsoid.spheroid(3.0), number=128, packing_fraction=0.3, seed=1)
 print(start)
 
 # %% [markdown]
-# The start still remembers its compression. We let the fluid relax and watch the nematic order S every half time unit: it
-# stays near 1 / sqrt(N), so the fluid is isotropic.
+# The start still remembers its compression. We let the fluid relax and watch the nematic order S every half time unit:
+# it stays near 1 / sqrt(N), so the fluid is isotropic.
 
 # %%
 relaxing = hb.Simulation(start)
@@ -31,8 +32,8 @@ print(f"{relaxing.collisions} collisions, S = {np.mean(order):.2f}")
 assert max(order) < 0.3
 
 # %% [markdown]
-# Production is a new simulation of the relaxed state. `measure` samples observables on the way; every value comes with its
-# standard error, or with the reason for which it is missing.
+# Production is a new simulation of the relaxed state. `measure` samples observables on the way; every value comes with
+# its standard error, or with the reason for which it is missing.
 
 # %%
 fluid = hb.Simulation(relaxing.system)
@@ -43,8 +44,8 @@ for name in ("Z", "S", "D_trans", "D_rot", "t_C2_1overe"):
     print(f"{name:12} {results[name]}")
 
 # %% [markdown]
-# Curves are structured arrays with a column of errors beside each value. Short times are ballistic: <dr^2> = 3 t^2 in these
-# units, because <v^2> = 3.
+# Curves are structured arrays with a column of errors beside each value. Short times are ballistic: <dr^2> = 3 t^2 in
+# these units, because <v^2> = 3.
 
 # %%
 msd = results["msd"]
@@ -57,8 +58,8 @@ figure.savefig("first_fluid.png")
 assert np.isclose(msd["msd"][0], 3 * msd["t"][0] ** 2, rtol=0.05)
 
 # %% [markdown]
-# Is it right? Nothing was stepped over: an audit computes all distances from scratch. Energy is conserved to rounding. And
-# spheres have the pressure of Carnahan and Starling's equation of state.
+# Is it right? Nothing was stepped over: an audit computes all distances from scratch. Energy is conserved to rounding.
+# And spheres have the pressure of Carnahan and Starling's equation of state.
 
 # %%
 audit = fluid.system.audit()

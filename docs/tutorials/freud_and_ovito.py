@@ -1,8 +1,8 @@
 # %% [markdown]
 # # From hardbody to freud and OVITO, and back
 #
-# A run writes its frames to a GSD file, which freud and OVITO read: both analyse it here. OVITO then makes a larger system
-# of the last frame, which goes on in hardbody. Needs the packages gsd, freud-analysis, ovito and matplotlib.
+# A run writes its frames to a GSD file, which freud and OVITO read: both analyse it here. OVITO then makes a larger
+# system of the last frame, which goes on in hardbody. Needs the packages gsd, freud-analysis, ovito and matplotlib.
 
 # %%
 import freud
@@ -33,8 +33,8 @@ frames = run.trajectory()
 print(len(frames), "frames,", frames[0].particles.type_shapes)
 
 # %% [markdown]
-# **freud**: g(r) over all frames. `analyze` computes the same from the same file; with its bins, and freud's normalization for
-# a finite number of bodies, both agree to the single precision that freud computes in.
+# **freud**: g(r) over all frames. `analyze` computes the same from the same file; with its bins, and freud's
+# normalization for a finite number of bodies, both agree to the single precision that freud computes in.
 
 # %%
 ours = hb.analyze(run, longest_lag=4.0).observables["g_r"]
@@ -85,8 +85,8 @@ pipeline.modifiers.append(ReplicateModifier(num_x=2, num_y=2, num_z=2))
 export_file(pipeline, "replicated.gsd", "gsd/hoomd", frame=pipeline.source.num_frames - 1)
 
 # %% [markdown]
-# **And back.** Our own file is taken bit for bit. OVITO's has positions, orientations and velocities in single precision and no
-# shapes: these we say again, and `mend` repairs the overlaps that rounding may have made.
+# **And back.** Our own file is taken bit for bit. OVITO's has positions, orientations and velocities in single
+# precision and no shapes: these we say again, and `mend` repairs the overlaps that rounding may have made.
 
 # %%
 same = hb.from_gsd(run.path / "trajectory.gsd")
@@ -99,7 +99,7 @@ assert len(large) == 512 and abs(large.box / same.box - 2) < 1e-5
 assert abs(large.packing_fraction - 0.35) < 1e-4 and abs(large.nematic_order - same.nematic_order) < 1e-4
 
 # %% [markdown]
-# The copies are thrown dice for the first moment only: with velocities of their own they soon differ.
+# Copies start with equal velocities: new ones are drawn.
 
 # %%
 simulation = hb.Simulation(large.thermalized(seed=2))

@@ -1,8 +1,8 @@
 # %% [markdown]
 # # Distances of a robot's links
 #
-# An arm of three links reaches past two obstacles. How close does it come to them, and to itself? Links are rounded boxes
-# and ellipsoids; a motion of 2000 configurations is answered by one call.
+# An arm of three links reaches past two obstacles. How close does it come to them, and to itself? Links are rounded
+# boxes and ellipsoids; a motion of 2000 configurations is answered by one call.
 
 # %%
 import matplotlib.pyplot as plt
@@ -11,8 +11,8 @@ import numpy as np
 import hardbody as hb
 
 # %% [markdown]
-# The links, lengths in metres, each in its own frame: a superellipsoid with small exponents is a box with rounded edges, and
-# an ellipsoid fits a forearm. Two obstacles stand in the world: a pillar and a ball.
+# The links, lengths in metres, each in its own frame: a superellipsoid with small exponents is a box with rounded
+# edges, and an ellipsoid fits a forearm. Two obstacles stand in the world: a pillar and a ball.
 
 # %%
 upper_arm = hb.Superellipsoid([0.35, 0.06, 0.06], 0.3, 0.3)
@@ -24,8 +24,8 @@ shapes: list[hb.Ellipsoid | hb.Superellipsoid] = [upper_arm, forearm, hand, pill
 names = ["upper arm", "forearm", "hand", "pillar", "ball"]
 
 # %% [markdown]
-# Forward kinematics: `X_AB @ X_BC` is X_AC. Joints turn about z, in the shoulder also about y; the centre of a link is half
-# of its length from its joint.
+# Forward kinematics: `X_AB @ X_BC` is X_AC. Joints turn about z, in the shoulder also about y; the centre of a link is
+# half of its length from its joint.
 
 
 # %%
@@ -53,8 +53,8 @@ joints = np.stack([-0.9 + 2.3 * s, 0.3 * np.sin(np.pi * s), 2.0 * np.sin(np.pi *
 obstacles = [hb.Pose([1.2, 0.75, 0.0]), hb.Pose([0.25, -0.75, 0.05])]
 
 # %% [markdown]
-# Bodies: five a step. Pairs: each link with each obstacle, and the upper arm with the hand. Neighbouring links share a joint:
-# they are left out, as in any robot.
+# Bodies: five a step. Pairs: each link with each obstacle, and the upper arm with the hand. Neighbouring links share a
+# joint: they are left out, as in any robot.
 
 # %%
 X = [X for q in joints for X in [*poses(*q), *obstacles]]
@@ -84,13 +84,16 @@ one = hb.distance(shapes[kinds[i]], X[i], shapes[kinds[j]], X[j])
 assert abs(one.distance - distance.min()) < 1e-12 and one.error_bound < 1e-9
 
 # %% [markdown]
-# And between the steps? No point of the arm moves further in a step than the arm's reach times the sum of the joints' turns.
-# That is less than the least clearance: the whole motion is free, not only the configurations that were looked at. (Half of
-# it would do for an obstacle that stands still; the upper arm and the hand both move.)
+# And between the steps? No point of the arm moves further in a step than the arm's reach times the sum of the joints'
+# paths, which are at most their largest rates |dq/ds| times the step. That is less than the least clearance: the whole
+# motion is free, not only the configurations that were computed. (Half of it would do for an obstacle that stands
+# still; the upper arm and the hand both move.)
 
 # %%
-reach = 0.36 + 0.35 + 0.65 + 0.21
-largest_move = reach * np.abs(np.diff(joints, axis=0)).sum(axis=1).max()
+reach = 0.75 + 0.65 + np.hypot(0.21, 0.05)  # from shoulder to elbow to wrist to the corners of the hand's far end
+rates = np.array([2.3, 0.3 * np.pi, 2.0 * np.pi, 0.8])
+assert (np.abs(np.diff(joints, axis=0)) <= rates * s[1] * (1 + 1e-9)).all()
+largest_move = reach * rates.sum() * s[1]
 print(f"no point moves more than {largest_move:.4f} m a step")
 assert distance.min() > largest_move
 

@@ -1,8 +1,8 @@
 # %% [markdown]
 # # A sweep and its map
 #
-# How does the pressure depend on the shape of the bodies and on their density? A grid of nine state points, run two at a
-# time, read as a table of pandas, and drawn as a map of contour lines.
+# How does the pressure depend on the shape of the bodies and on their density? A grid of nine state points, run two at
+# a time, read as a table of pandas, and drawn as a map of contour lines.
 
 # %%
 import matplotlib.pyplot as plt
@@ -11,8 +11,8 @@ import numpy as np
 import hardbody as hb
 
 # %% [markdown]
-# A config has the sections and keys of the program's TOML files (docs/configuration.md); keys that are left out have their
-# defaults. Real runs are larger, and without times they last until they are equilibrated and precise enough.
+# A config has the sections and keys of the program's TOML files (docs/configuration.md); keys that are left out have
+# their defaults. Real runs are larger, and without times they last until they are equilibrated and precise enough.
 
 # %%
 config = {
@@ -28,8 +28,8 @@ config = {
 sweep = hb.sweep(config, out="out/sweep", jobs=2)
 
 # %% [markdown]
-# The table has one row a point: keys, observables with their errors, and the status. The same call again finds all points
-# done and runs nothing; after an interruption it continues.
+# The table has one row a point: keys, observables with their errors, and the status. The same call again finds all
+# points done and runs nothing; after an interruption it continues.
 
 # %%
 table = sweep.to_pandas()
@@ -46,8 +46,8 @@ print(Z.round(2))
 assert (Z.diff().dropna() > 0).all(axis=None) and (Z.diff(axis=1).iloc[:, 1:] > 0).all(axis=None)
 
 # %% [markdown]
-# Spheres have a known equation of state, that of Carnahan and Starling: a check of the whole chain. Sixty-four of them are a
-# small system, good to a few per cent.
+# Spheres have a known equation of state, that of Carnahan and Starling: a check of the whole chain. Sixty-four of them
+# are a small system, good to a few per cent.
 
 # %%
 phi = np.array(Z.index)
@@ -57,8 +57,8 @@ print(f"spheres against Carnahan and Starling: {', '.join(f'{100 * d:+.1f} %' fo
 assert abs(deviation).max() < 0.08
 
 # %% [markdown]
-# The map: lines of equal pressure over shape and density, as an SVG drawing, which a notebook shows, and as points. Over
-# them, by matplotlib, the table itself:
+# The map: lines of equal pressure over shape and density, as an SVG drawing, which a notebook shows, and as points.
+# Over them, by matplotlib, the table itself:
 
 # %%
 contours = sweep.map("aspect_ratio", "packing_fraction", "Z", levels=[3, 5])

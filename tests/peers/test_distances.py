@@ -1,5 +1,5 @@
-"""Other programs' distances of random pairs agree within the tolerances that they state. Where they do not, a proof of a
-few lines of NumPy (certificate.py) shows that the true distance is ours."""
+"""Other programs' distances of random pairs agree within the tolerances that they state. Where they do not, a proof of
+a few lines of NumPy (certificate.py) shows that the true distance is ours."""
 
 from __future__ import annotations
 
@@ -76,25 +76,37 @@ def test_the_proof_is_tight(bodies: Ellipsoids, found: hb.Distances) -> None:
     assert np.abs(found.distance - lower)[apart].max() < ROUNDING
 
 
-@pytest.fixture(scope="module", params=[of_coal, of_mujoco, of_fcl], ids=["coal", "mujoco", "fcl"])
-def theirs(request: pytest.FixtureRequest, bodies: Ellipsoids) -> np.ndarray:
-    return request.param(bodies)
+PROGRAMS = {"coal": of_coal, "mujoco": of_mujoco, "fcl": of_fcl}
+# Shares of separate pairs within 1e-6, and median errors. Coal and FCL stop by this tolerance, and are further off at
+# times; MuJoCo goes on beyond it.
+SHARES = {"coal": 0.4, "mujoco": 1.0, "fcl": 0.6}
+MEDIANS = {"coal": 2e-6, "mujoco": 1e-12, "fcl": 1e-6}
 
 
-def test_separate_pairs(theirs: np.ndarray, bodies: Ellipsoids, found: hb.Distances) -> None:
-    """All three state a tolerance of 1e-6. Coal and FCL stop by it, and their answers are further off at times."""
+@pytest.fixture(scope="module", params=PROGRAMS)
+def name(request: pytest.FixtureRequest) -> str:
+    return request.param
+
+
+@pytest.fixture(scope="module")
+def theirs(name: str, bodies: Ellipsoids) -> np.ndarray:
+    return PROGRAMS[name](bodies)
+
+
+def test_separate_pairs(name: str, theirs: np.ndarray, bodies: Ellipsoids, found: hb.Distances) -> None:
+    """All three state a tolerance of 1e-6."""
     apart = found.status == "separated"
     agrees = np.abs(theirs - found.distance) < 1e-6
-    assert agrees[apart].mean() > 0.4
-    assert np.median(np.abs(theirs - found.distance)[apart]) < 2e-6
+    assert agrees[apart].mean() >= SHARES[name]
+    assert np.median(np.abs(theirs - found.distance)[apart]) < MEDIANS[name]
     lower, upper = bodies.interval(found)
     for k in np.flatnonzero(apart & ~agrees):
         assert theirs[k] < lower[k] - 1e-7 or theirs[k] > upper[k] + 1e-7, "the true distance is ours"
 
 
 def test_overlapping_pairs(theirs: np.ndarray, bodies: Ellipsoids, found: hb.Distances) -> None:
-    """Depths, the least over all directions: half of theirs agree within 1e-6, and none of 20,000 random directions has a
-    smaller depth than ours. That is a sample, no proof as for separate pairs."""
+    """Depths, the least over all directions: half of theirs agree within 1e-6, and none of 20,000 random directions has
+    a smaller depth than ours. That is a sample, no proof as for separate pairs."""
     overlapping = found.status == "overlapping"
     assert (theirs[overlapping] < 0).all()
     difference = theirs - found.distance
@@ -108,8 +120,62 @@ def test_overlapping_pairs(theirs: np.ndarray, bodies: Ellipsoids, found: hb.Dis
         assert least > depth - ROUNDING
 
 
+class Capsule:
+    """All points within `radius` of a segment along z."""
+
+    def __init__(self, half_length: float, radius: float) -> None:
+        self.half_length, self.radius = half_length, radius
+        self.bounding_radius, self.inscribed_radius = half_length + radius, radius
+        self.min_curvature_radius = radius
+
+    def support(self, n: np.ndarray) -> tuple[float, np.ndarray]:
+        length = np.sqrt(n @ n)
+        end = np.array([0, 0, np.copysign(self.half_length, n[2])])
+        return self.half_length * abs(n[2]) + self.radius * length, end + self.radius / length * n
+
+
+def test_capsules_of_coal() -> None:
+    """A shape written in Python, whose support function has kinks, agrees within its own error bound."""
+    random = np.random.default_rng(4)
+    mine, theirs = hb.CustomShape(Capsule(1.0, 0.5)), coal.Capsule(0.5, 2.0)
+    apart = 0
+    for _ in range(100):
+        poses = [hb.Pose.normalized(p, random.normal(size=4)) for p in ([0, 0, 0], 3 * random.normal(size=3))]
+        transforms = [coal.Transform3s(eigenpy.Quaternion(*X.quaternion), X.position) for X in poses]
+        request, result = coal.DistanceRequest(), coal.DistanceResult()
+        expected = coal.distance(theirs, transforms[0], theirs, transforms[1], request, result)
+        found = hb.distance(mine, poses[0], mine, poses[1])
+        if expected > 0:  # below 0 coal's is that of the segments
+            assert found.distance - 1e-12 < expected < found.distance + found.error_bound + 1e-12
+            apart += 1
+    assert apart > 80
+
+
+def hull_of(shape: hb.Superellipsoid, normals: np.ndarray) -> tuple[trimesh.Trimesh, float]:
+    """A polyhedron of points of the surface, and how much smaller than the shape a copy is that lies in it."""
+    hull = trimesh.Trimesh([shape.support(n)[1] for n in normals]).convex_hull
+    heights = np.array([shape.support(n)[0] for n in hull.face_normals])
+    return hull, 1 - ((hull.triangles_center * hull.face_normals).sum(axis=1) / heights).min()
+
+
+def test_superellipsoids_as_meshes_of_trimesh() -> None:
+    """Inscribed polyhedra are further apart than the bodies, and nearer to each other than smaller copies in them."""
+    random = np.random.default_rng(6)
+    normals = trimesh.creation.icosphere(subdivisions=4).vertices
+    for _ in range(5):
+        shapes = [hb.Superellipsoid(random.uniform(0.5, 2, 3), *random.uniform(0.3, 1.5, 2)) for _ in range(2)]
+        poses = [hb.Pose.normalized(p, random.normal(size=4)) for p in ([0, 0, 0], random.uniform(3, 5, 3))]
+        (a, smaller_a), (b, smaller_b) = (hull_of(shape, normals) for shape in shapes)
+        manager = trimesh.collision.CollisionManager()
+        manager.add_object("a", a, transform=poses[0].matrix)
+        theirs = manager.min_distance_single(b, transform=poses[1].matrix)
+        ours = hb.distance(shapes[0], poses[0], shapes[1], poses[1]).distance
+        bound = smaller_a * shapes[0].bounding_radius + smaller_b * shapes[1].bounding_radius
+        assert ours > 0 and bound < 0.1 and -1e-9 < theirs - ours < bound
+
+
 def test_meshes_of_trimesh() -> None:
-    """Inscribed polyhedra are further apart than the ellipsoids, at most by the depth of their faces below the surface."""
+    """Inscribed polyhedra are further apart than the ellipsoids, at most by the depth of faces below the surface."""
     random = np.random.default_rng(2)
     ball = trimesh.creation.icosphere(subdivisions=4)
     depth = 1 - np.linalg.norm(ball.triangles_center, axis=1).min()

@@ -51,8 +51,8 @@ def test_nematic_order(run: hb.Run, analysis: hb.Analysis) -> None:
 class OneVector:
     """S(q) at one wave vector by freud, which averages over all vectors of a bin whose components are not negative.
 
-    Phases do not change in a box of edges L / n: there the vector is (1, 1, 1), or has components 0 along edges so short
-    that no other vector is near. The box is stretched until no other vector has about the same length.
+    Phases do not change in a box of edges L / n: there the vector is (1, 1, 1), or has components 0 along edges so
+    short that no other vector is near. The box is stretched until no other vector has about the same length.
     """
 
     _NARROW = 1e-4

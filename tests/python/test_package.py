@@ -6,10 +6,12 @@ import pathlib
 import re
 import subprocess
 import sys
+import tarfile
 
 import pytest
 
 import hardbody as hb
+from hardbody import _core
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PACKAGE = pathlib.Path(hb.__file__).parent
@@ -56,6 +58,61 @@ def test_types_of_the_tutorials():
     command = [sys.executable, "-m", "mypy", "--strict", "--no-error-summary", "docs/tutorials"]
     done = subprocess.run(command, capture_output=True, text=True, cwd=ROOT, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
+
+
+@pytest.mark.parametrize("command", ["check", "format --check"])
+def test_style(command):
+    """The files of [tool.ruff] in pyproject.toml."""
+    ruff = [sys.executable, "-m", "ruff", *command.split(), "--quiet", "--no-cache"]
+    done = subprocess.run(ruff, capture_output=True, text=True, cwd=ROOT, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_help_stands_by_itself():
+    said = " ".join(inspect.getdoc(hb.distance_many).split())
+    for words in ("shape (N, 3)", "shape (N, 4)", "shape (M, 2)", "world frame", "unit of the shapes", "Raises"):
+        assert words in said
+    for function in (hb.overlap_many, hb.contains_many, hb.closest_point_many, hb.ray_cast_many):
+        assert "distance_many" in inspect.getdoc(function)
+
+
+@pytest.mark.parametrize(
+    "kind",
+    [
+        *(hb.Distances, hb.Overlaps, hb.ClosestPoints, hb.RayHits),
+        *(hb.Estimate, hb.VectorEstimate, hb.TensorEstimate, hb.NumericalError),
+    ],
+)
+def test_help_of_classes_lists_their_fields(kind):
+    properties = [name for name, member in vars(kind).items() if isinstance(member, property)]
+    for name in (name for name in [*kind.__annotations__, *properties] if not name.startswith("_")):
+        assert re.search(rf"\b{name}\b[\w, ]*: ", inspect.getdoc(kind)), name
+
+
+@pytest.mark.skipif(not is_installed, reason="other extensions may have debug information")
+def test_size_of_the_extension():
+    assert pathlib.Path(_core.__file__).stat().st_size < 15_000_000
+
+
+def test_source_distribution(tmp_path):
+    """It has all files that the build reads, and nothing that was built."""
+    pytest.importorskip("build")
+    command = [sys.executable, "-m", "build", "--sdist", "--no-isolation", "--outdir", str(tmp_path), str(ROOT)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+    (archive,) = tmp_path.glob("hardbody-*.tar.gz")
+    with tarfile.open(archive) as file:
+        names = {name.partition("/")[2] for name in file.getnames()}
+    git = ["git", "ls-files", "CMakeLists.txt", "pyproject.toml", "LICENSE", "README.md", "CHANGELOG.md"]
+    git += ["apps", "cmake", "libed", "libgeom", "tools/setup"]
+    listed = subprocess.run(git, capture_output=True, text=True, cwd=ROOT, check=False)
+    if listed.returncode == 0:
+        assert set(listed.stdout.split("\n")) - {""} <= names
+    for name in (name for name in names if name.endswith(("CMakeLists.txt", ".cmake"))):
+        for read in re.findall(r"\$\{PROJECT_SOURCE_DIR\}/([\w/.-]+)", (ROOT / name).read_text()):
+            assert any(other == read or other.startswith(f"{read}/") for other in names), f"{name} reads {read}"
+    assert not [name for name in names if re.search(r"(^|/)(build|node_modules|__pycache__|\.git)/", name)]
+    assert archive.stat().st_size < 15_000_000
 
 
 def test_example_runs():

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import builtins
 import csv
+import fractions
 import importlib
 import json
 import os
 import re
+import shutil
 
 import numpy as np
 import pytest
@@ -165,6 +167,29 @@ def test_missing_packages_are_named(run, monkeypatch, package, what):
         what(run)
 
 
+def test_relative_paths_outlive_the_working_directory(run, tmp_path, monkeypatch):
+    shutil.copytree(run.path, tmp_path / "here" / "copy")
+    (tmp_path / "there").mkdir()
+    monkeypatch.chdir(tmp_path / "here")
+    copy, summary = hb.Run("copy"), run.summary
+    report = copy.report()
+    assert (os.fspath(copy), os.fspath(report)) == ("copy", "copy/report.html")
+    assert copy == hb.Run(tmp_path / "here" / "copy")
+    monkeypatch.chdir(tmp_path / "there")
+    assert os.fspath(copy.path) == "copy"
+    assert repr(copy) == "Run('copy')"
+    assert os.fspath(copy) == str(tmp_path / "here" / "copy")
+    assert copy.is_finished and copy.summary == summary and copy.config == run.config
+    assert len(copy.events) == 10 and len(copy.observables["msd"]) == len(run.observables["msd"])
+    assert hb.check(copy).endswith("sound\n")
+    assert hb.resume(copy) == copy
+    assert report.html.startswith("<!doctype html>")
+    assert "kT_trans" in copy._repr_html_()
+    shutil.rmtree(tmp_path / "here")
+    with pytest.raises(FileNotFoundError, match="here/copy is not there any more$"):
+        copy.summary  # noqa: B018
+
+
 def test_directories_without_a_run(tmp_path):
     with pytest.raises(ValueError, match=r"nothing: is not there; accepted: the directory of a run$"):
         hb.Run(tmp_path / "nothing")
@@ -218,6 +243,32 @@ def test_analyze(run, tmp_path):
         hb.analyze(run, every=1.5)
     with pytest.raises(ValueError, match="^time_step is -1; accepted: a positive finite number"):
         hb.analyze(run, time_step=-1)
+
+
+@pytest.mark.parametrize("value", [True, np.True_, "0.05", np.str_("0.05"), [0.5], np.array([0.5]), 1 + 0j, b"1"])
+@pytest.mark.parametrize("name", ["time_step", "longest_lag", "fit_from"])
+def test_times_are_numbers(run, name, value):
+    with pytest.raises(TypeError, match=f"^{name} is .*; accepted: a positive finite number$"):
+        hb.analyze(run, **{name: value})
+
+
+@pytest.mark.parametrize("value", [0, -1.0, np.nan, np.inf, 10**400, np.float32(-1)])
+def test_times_are_positive(run, value):
+    with pytest.raises(ValueError, match="^longest_lag is .*; accepted: a positive finite number$"):
+        hb.analyze(run, longest_lag=value)
+
+
+def test_times_may_be_of_any_real_type(run, tmp_path):
+    expected = hb.analyze(run, tmp_path / "a", longest_lag=1.5).observables["msd"]
+    for number, value in enumerate([np.float32(1.5), np.array(1.5), fractions.Fraction(3, 2)]):
+        found = hb.analyze(run, tmp_path / f"{number}", longest_lag=value).observables["msd"]
+        np.testing.assert_array_equal(found["msd"], expected["msd"])
+
+
+@pytest.mark.parametrize("value", [np.array(2.5), np.array([1, 2]), np.True_, "2"])
+def test_counts_are_integers(run, value):
+    with pytest.raises(TypeError, match="^every is .*; accepted: an integer from 1 to 1000000$"):
+        hb.analyze(run, every=value)
 
 
 def test_star_import_keeps_map():

@@ -204,8 +204,10 @@ def test_ctrl_c_saves_and_raises(tmp_path, longer):
     stopped = hb.Run(tmp_path / "b")
     assert not stopped.is_finished
     assert stopped.summary["interrupted"]
+    assert "interrupted: not finished" in stopped._repr_html_()
     again = hb.resume(stopped)
     assert again.is_finished
+    assert "not finished" not in again._repr_html_()
     assert results(again) == results(longer[1])
     assert hb.resume(again) == again  # nothing to do
 
@@ -305,7 +307,9 @@ def test_flags_are_bools(tmp_path, name):
 
 
 def test_a_dotted_section_is_refused(tmp_path):
-    with pytest.raises(ValueError, match="a key is 'system.number'; accepted: a section with keys of its own, or overrides"):
+    with pytest.raises(
+        ValueError, match="a key is 'system.number'; accepted: a section with keys of its own, or overrides"
+    ):
         hb.run({"system": {"number": 32}, "system.number": 40}, tmp_path / "run")
 
 

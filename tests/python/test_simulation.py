@@ -150,6 +150,22 @@ def test_collisions_are_those_of_the_program(tmp_path):
     np.testing.assert_array_equal(np.stack([here[n] for n in here.dtype.names], axis=1), there)
 
 
+def test_results_are_tables_and_estimates():
+    simulation = hb.Simulation(fluid(32, 0.1, seed=5))
+    observables = simulation.measure(duration=1)
+    simulation.run(time=1)
+    results = observables.results()
+    msd, Z = results["msd"], results["Z"]
+    assert isinstance(msd, hb.Table) and msd.names == ("t", "msd", "msd_error")
+    np.testing.assert_array_equal(msd.to_pandas().to_numpy(), np.stack([msd[name] for name in msd.names], axis=1))
+    assert isinstance(results.curves["g_r"], hb.Table)
+    assert f"{Z:.3f}" == f"{Z.value:.3f} +- {Z.error:.3f}"
+    assert f"{Z}" == str(Z) == f"{Z.value:.6g} +- {Z.error:.2g}"
+    assert f"{hb.Estimate(np.nan, np.nan, 'too short'):.3f}" == "missing: too short"
+    with pytest.raises(KeyError, match="there is no 'zed'; there are: .*Z.*msd"):
+        results["zed"]
+
+
 @pytest.mark.skipif(not PROGRAM, reason="needs HARDBODY, the path of the program")
 def test_mixtures_and_files_are_those_of_the_program(tmp_path):
     bodies = """[[species]]

@@ -168,6 +168,15 @@ def test_map(sweep, tmp_path):
         hb.map(sweep, "aspect_ratio", "packing_fraction", ["Z", "S"], levels=[1])
     with pytest.raises(TypeError, match=r"levels: Z has \['x'\]; accepted: a list of numbers"):
         hb.map(sweep, "aspect_ratio", "packing_fraction", "Z", levels=["x"])
+    for levels in ("25", [True], [np.str_("2")], [[1.0, 2.0]], 2.5):
+        with pytest.raises(TypeError, match="levels: Z has .*; accepted: a list of numbers"):
+            hb.map(sweep, "aspect_ratio", "packing_fraction", "Z", levels=levels)
+    for level in (np.nan, np.inf, 10**400):
+        with pytest.raises(ValueError, match=r"^levels: Z\[1\] is .*; accepted: a finite number$"):
+            hb.map(sweep, "aspect_ratio", "packing_fraction", "Z", levels=[2.5, level])
+    for column in (1, "seed=1"):
+        with pytest.raises(TypeError, match="^where: a column is .*; accepted: a str"):
+            hb.map(sweep, "aspect_ratio", "packing_fraction", "Z", where={column: 1})
     with pytest.raises(ValueError, match="nothing"):
         hb.map(sweep, "nothing", "packing_fraction", "Z")
 

@@ -2,7 +2,9 @@
 
 Lengths are in the caller's unit. Positions are arrays of shape (3,) or (n, 3), orientations unit quaternions
 (w, x, y, z) of shape (4,) or (n, 4), body to world, all float64. Bad input raises ValueError or TypeError with a
-message that names the argument and what is accepted. Numerical outcomes are statuses, never exceptions.
+message that names the argument and what is accepted. Numerical outcomes are statuses. Exceptions: overlap, and contains
+for shapes of your own, return a bool and raise UndecidedError where neither answer is certain; simulations raise
+NumericalError.
 """
 
 from hardbody._arrays import (

@@ -55,7 +55,15 @@ class _Rows:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Distances(_Rows):
-    """Answers of distance_many: arrays with one row a pair, named as the attributes of DistanceResult."""
+    """Answers of distance_many: arrays with one row a pair, named as the attributes of DistanceResult.
+
+    distance: signed distances, shape (M,), in the unit of the shapes; below 0: minus the penetration depth; NaN: no
+    answer. normal: unit vectors from A to B, world frame, shape (M, 3). point_a, point_b: closest points, world frame,
+    shape (M, 3). error_bound: distance <= true distance <= distance + error_bound, shape (M,). residual: deviations of
+    the points found from being distance * normal apart, shape (M,). iterations: numbers of evaluations, shape (M,).
+    status: "separated", "overlapping", "not_converged" or "singular", shape (M,). redone: number of pairs that the
+    vector kernels left to the method of single pairs. instruction_set: that of the vector kernels.
+    """
 
     distance: Reals
     """Signed distances, shape (M,); below 0: minus the penetration depth; NaN: no answer."""
@@ -66,8 +74,8 @@ class Distances(_Rows):
     point_b: Reals
     """Closest points of B, world frame, shape (M, 3)."""
     error_bound: Reals
-    """Certified: distance <= true distance <= distance + error_bound, shape (M,), apart from rounding: 1e-15 of the size
-    of the pair, its radii and distance of centres together."""
+    """Certified: distance <= true distance <= distance + error_bound, shape (M,), apart from rounding: 1e-15 of the
+    size of the pair, its radii and distance of centres together."""
     residual: Reals
     """Deviations (length) of the points found from being distance * normal apart, shape (M,)."""
     iterations: NDArray[np.int32]
@@ -86,7 +94,11 @@ class Distances(_Rows):
 
 @dataclass(frozen=True, eq=False)
 class Overlaps:
-    """Answers of overlap_many: arrays with one row a pair."""
+    """Answers of overlap_many: arrays with one row a pair.
+
+    overlap: whether the bodies overlap or touch, bools of shape (M,). unknown: where neither answer is certain, bools
+    of shape (M,); `overlap` is False there.
+    """
 
     overlap: Bools
     """Whether the bodies overlap or touch, shape (M,); False where `unknown`."""
@@ -102,7 +114,13 @@ class Overlaps:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class ClosestPoints(_Rows):
-    """Answers of closest_point_many: arrays with one row a point, named as the attributes of ClosestPoint."""
+    """Answers of closest_point_many: arrays with one row a point, named as the attributes of ClosestPoint.
+
+    distance: signed distances, shape (M,), in the unit of the shapes; below 0: the point is inside; NaN: no answer.
+    point: closest points of the surface, world frame, shape (M, 3). normal: unit outward normals there, world frame,
+    shape (M, 3). error_bound: distance <= true distance <= distance + error_bound, shape (M,). status: "separated",
+    "overlapping", "not_converged" or "singular", shape (M,).
+    """
 
     distance: Reals
     """Signed distances, shape (M,); below 0: the point is inside, at this depth."""
@@ -111,8 +129,8 @@ class ClosestPoints(_Rows):
     normal: Reals
     """Unit outward normals there, world frame, shape (M, 3)."""
     error_bound: Reals
-    """Certified: distance <= true distance <= distance + error_bound, shape (M,), apart from rounding: 1e-15 of the size
-    of the pair, its radii and distance of centres together."""
+    """Certified: distance <= true distance <= distance + error_bound, shape (M,), apart from rounding: 1e-15 of the
+    size of the pair, its radii and distance of centres together."""
     _code: NDArray[np.uint8]
 
     @property
@@ -123,7 +141,12 @@ class ClosestPoints(_Rows):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class RayHits(_Rows):
-    """Answers of ray_cast_many: arrays with one row a ray, named as the attributes of RayHit."""
+    """Answers of ray_cast_many: arrays with one row a ray, named as the attributes of RayHit.
+
+    t: ray parameters, in units of the directions' lengths, shape (M,); NaN: no hit. point: first points of the rays in
+    the bodies, world frame, shape (M, 3). normal: unit outward normals there, world frame, shape (M, 3). status: "hit",
+    "missed", "inside" or "not_converged", shape (M,).
+    """
 
     t: Reals
     """Ray parameters, in units of the directions' lengths, shape (M,); NaN: the ray misses."""
@@ -154,14 +177,27 @@ def distance_many(
     max_iterations: int = 60,
     penetration: Literal["global", "local"] = "global",
 ) -> Distances:
-    """Returns the signed distances of M pairs of bodies (module documentation: shapes, positions, quaternions,
-    shape_of, threads).
+    """Returns the signed distances of M pairs among N bodies, with closest points, normals and certified error bounds.
 
-    pairs: indices (a, b) of bodies, integers of shape (M, 2). start: guesses of the normals from A to B, shape (M, 3).
-    max_iterations, penetration: as for distance.
+    shapes: one Ellipsoid or Superellipsoid, or a list of them. positions: world frame, shape (N, 3), in the unit of the
+    shapes. quaternions: orientations, unit quaternions (w, x, y, z) body to world, shape (N, 4); None: bodies that are
+    not rotated. pairs: indices (a, b) of bodies, integers of shape (M, 2). shape_of: index of each body's shape,
+    integers of shape (N,); None: one shape serves all bodies, or there is one a body. threads: number of threads, 1 to
+    1024, which changes no bit of the answers. start: guesses of the normals from A to B, world frame, shape (M, 3).
+    max_iterations: maximum number of evaluations from each start, at least 1. penetration: 'global', the shortest of
+    all translations that separate overlapping bodies; 'local', the nearest stationary one, which is faster at large
+    depths.
 
-    Pairs of ellipsoids are answered several at a time in vector lanes: 40 to 60 ns a pair of bodies of revolution,
-    several times faster than one by one. Answers agree with those of distance within 1e-14 of the pair's size.
+    Arrays of other real types, and arrays that are not contiguous, are copied. The GIL is released.
+
+    Accuracy, of the size of a pair (its radii and distance of centres together): 1e-13 for ellipsoids that are apart,
+    1e-12 for superellipsoids; error_bound for overlapping bodies. Answers agree with those of distance within 1e-14 of
+    the size. Pairs of ellipsoids are answered several at a time in vector lanes: 40 to 60 ns a pair of bodies of
+    revolution.
+
+    Raises ValueError or TypeError that names the argument, the entry and what is accepted; MemoryError if there is no
+    memory for copies or answers; KeyboardInterrupt within about a tenth of a second of Ctrl-C. A pair without an answer
+    raises nothing: its status says so.
     """
     return Distances(
         *_core.distance_many(
@@ -180,7 +216,11 @@ def overlap_many(
     *,
     start: ArrayLike | None = None,
 ) -> Overlaps:
-    """Returns whether the bodies of M pairs overlap; arguments as for distance_many."""
+    """Returns whether the bodies of M pairs overlap; touching counts as overlap.
+
+    Arguments, frames, units and exceptions are those of distance_many. Where neither answer is certain, `unknown` of
+    the answer is True: overlap_many raises no UndecidedError.
+    """
     return Overlaps(*_core.overlap_many(shapes, positions, quaternions, pairs, shape_of, threads, start))
 
 
@@ -193,10 +233,12 @@ def contains_many(
     shape_of: ArrayLike | None = None,
     threads: int = 1,
 ) -> Bools:
-    """Returns whether points are in bodies, an array of shape (M,).
+    """Returns whether points are in bodies or on their surfaces, bools of shape (M,).
 
-    points: world frame, shape (M, 3). body_of: index of the body that each point is tested against, shape (M,);
-    None: there is one body, for all points, or one a point.
+    points: world frame, shape (M, 3). body_of: index of the body that each point is tested against, integers of shape
+    (M,); None: there is one body, for all points, or one a point.
+
+    Other arguments, units and exceptions are those of distance_many.
     """
     return _core.contains_many(shapes, positions, quaternions, points, body_of, shape_of, threads)
 
@@ -210,7 +252,10 @@ def closest_point_many(
     shape_of: ArrayLike | None = None,
     threads: int = 1,
 ) -> ClosestPoints:
-    """Returns the points of bodies' surfaces that are closest to M points; arguments as for contains_many."""
+    """Returns the points of bodies' surfaces that are closest to M points, which may be inside.
+
+    Arguments are those of contains_many; units, accuracy and exceptions are those of distance_many.
+    """
     return ClosestPoints(*_core.closest_point_many(shapes, positions, quaternions, points, body_of, shape_of, threads))
 
 
@@ -227,6 +272,8 @@ def ray_cast_many(
     """Returns the first points of M rays in bodies.
 
     origins, directions: world frame, shape (M, 3), the directions of any length but 0. body_of: as for contains_many.
+
+    Other arguments, units and exceptions are those of distance_many.
     """
     return RayHits(
         *_core.ray_cast_many(shapes, positions, quaternions, origins, directions, body_of, shape_of, threads)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+import operator
 import os
 import sys
 from collections.abc import Callable, Mapping, Sequence
@@ -79,13 +81,27 @@ def assignments(overrides: Mapping[str, Any] | None) -> list[str]:
     return [f"{key}={value_text(value, 'overrides', key)}" for key, value in overrides.items()]
 
 
+def finite(value: Any, name: str, accepted: str = "a finite number") -> float:
+    """Returns a finite number. Bools and texts are none, as for all other functions."""
+    scalar = value[()] if isinstance(value, np.ndarray) else value
+    is_number = hasattr(scalar, "__float__") or hasattr(scalar, "__index__")
+    if isinstance(scalar, (np.generic, np.ndarray)):
+        is_number = scalar.ndim == 0 and scalar.dtype.kind in "iuf"
+    if isinstance(scalar, (bool, str)) or not is_number:
+        raise TypeError(f"{name} is {value!r}; accepted: {accepted}")
+    try:
+        number = float(scalar)
+    except OverflowError:
+        number = math.inf
+    if not math.isfinite(number):
+        raise ValueError(f"{name} is {value!r}; accepted: {accepted}")
+    return number
+
+
 def real(value: Any, name: str) -> float:
     """Returns a positive finite number."""
-    try:
-        number = float(value)
-    except (TypeError, ValueError):
-        raise TypeError(f"{name} is {value!r}; accepted: a positive number") from None
-    if not 0 < number < float("inf"):
+    number = finite(value, name, "a positive finite number")
+    if number <= 0:
         raise ValueError(f"{name} is {value!r}; accepted: a positive finite number")
     return number
 
@@ -97,9 +113,12 @@ def optional_real(value: Any, name: str) -> float | None:
 
 def integer(value: Any, name: str, least: int, most: int) -> int:
     """Returns an integer from `least` to `most`."""
-    if isinstance(value, bool) or not hasattr(value, "__index__"):
-        raise TypeError(f"{name} is {value!r}; accepted: an integer from {least} to {most}")
-    number = int(value)
+    try:
+        if isinstance(value, bool):
+            raise TypeError
+        number = operator.index(value)
+    except TypeError:
+        raise TypeError(f"{name} is {value!r}; accepted: an integer from {least} to {most}") from None
     if not least <= number <= most:
         raise ValueError(f"{name} is {number}; accepted: an integer from {least} to {most}")
     return number

@@ -13,6 +13,7 @@ from hardbody._calls import (
     assignments,
     call,
     config_arguments,
+    finite,
     flag,
     integer,
     optional_path,
@@ -213,8 +214,8 @@ def _level_texts(levels: Any, names: list[str]) -> list[str]:
 
 def _levels(values: Any, name: str) -> list[float]:
     try:
-        numbers = [float(value) for value in values]
-    except (TypeError, ValueError):
+        numbers = [finite(value, f"levels: {name}[{k}]") for k, value in enumerate(values)]
+    except TypeError:
         raise TypeError(f"levels: {name} has {values!r}; accepted: a list of numbers") from None
     if not numbers:
         raise ValueError(f"levels: {name} has none; accepted: a list of numbers")
@@ -226,6 +227,9 @@ def _conditions(where: Any) -> list[str]:
         return []
     if not isinstance(where, Mapping):
         raise TypeError(f"where is {where!r}; accepted: a dict, as {{'seed': 1}}")
+    for column in where:
+        if not isinstance(column, str) or "=" in column:
+            raise TypeError(f"where: a column is {column!r}; accepted: a str, as {{'seed': 1}}")
     return [
         f"{column}={value if isinstance(value, str) else value_text(value, 'where', column)}"
         for column, value in where.items()

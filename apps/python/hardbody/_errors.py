@@ -6,11 +6,14 @@ from hardbody import _core
 
 
 class NumericalError(RuntimeError):
-    """Raised where the program would end with exit code 1: the results since then are worthless.
+    """Raised if bodies overlapped, no method could decide whether they do, bodies in contact did not approach, or the
+    run stalled. Results after that moment are wrong.
 
-    Reasons: bodies overlapped, no method could decide whether two bodies overlap, bodies in contact did not approach,
-    the run stalled. Raised when the event loop has returned, so that the simulation is whole: its state can be looked
-    at and saved.
+    Raised when the event loop has returned: the state of the simulation can be read and saved. The program also audits
+    the last state and its energy and momentum: call Simulation.audit and Simulation.kinetic.
+
+    failures: first pairs whose prediction failed. counters: those of the simulation. stall: the stall of the run, or
+    None.
     """
 
     failures: list[_core.FailedPair]

@@ -4,32 +4,23 @@ from __future__ import annotations
 
 import html
 import os
-from pathlib import Path
 
+from hardbody._paths import Located
 from hardbody._tables import Table, read_table
 
 _LONGEST_EMBEDDED = 2_000_000  # bytes of a page that a notebook takes up
 
 
-class Report:
+class Report(Located):
     """HTML page of one or several runs, or of a sweep: one file that needs no network.
 
     In a notebook the page is shown in a frame, and stored in it; of pages above 2 MB only a link is shown.
     """
 
-    def __init__(self, path: str | os.PathLike[str]) -> None:
-        self.path = Path(path)
-
-    def __fspath__(self) -> str:
-        return os.fspath(self.path)
-
-    def __repr__(self) -> str:
-        return f"Report({os.fspath(self.path)!r})"
-
     @property
     def html(self) -> str:
         """Text of the page."""
-        return self.path.read_text(encoding="utf-8")
+        return self._absolute.read_text(encoding="utf-8")
 
     @property
     def is_interactive(self) -> bool:
@@ -37,27 +28,25 @@ class Report:
         return '<div id="report">' in self.html
 
     def _repr_html_(self) -> str:
-        size = self.path.stat().st_size
+        size = self._absolute.stat().st_size
         if size > _LONGEST_EMBEDDED:
-            name = html.escape(os.fspath(self.path))
+            name = html.escape(os.fspath(self))
             return f'<p>Report of {size / 1e6:.1f} MB: <a href="{name}">{name}</a></p>'
         # The frame has no access to the notebook.
         page = html.escape(self.html)
         return f'<iframe sandbox="allow-scripts" srcdoc="{page}" style="width:100%;height:640px;border:0"></iframe>'
 
 
-class Map:
+class Map(Located):
     """Contour lines over two keys of a sweep.
 
     path: SVG file of the drawing. csv: file of the lines.
     """
 
     def __init__(self, path: str | os.PathLike[str], csv: str | os.PathLike[str]) -> None:
-        self.path = Path(path)
-        self.csv = Path(csv)
-
-    def __fspath__(self) -> str:
-        return os.fspath(self.path)
+        super().__init__(path)
+        self._csv = Located(csv, "csv")
+        self.csv = self._csv.path
 
     def __repr__(self) -> str:
         return f"Map({os.fspath(self.path)!r}, {os.fspath(self.csv)!r})"
@@ -65,12 +54,12 @@ class Map:
     @property
     def lines(self) -> Table:
         """Points of the lines: value, level, number of the line, x and y."""
-        return read_table(self.csv)
+        return read_table(self._csv)
 
     @property
     def svg(self) -> str:
         """Text of the drawing."""
-        return self.path.read_text(encoding="utf-8")
+        return self._absolute.read_text(encoding="utf-8")
 
     def _repr_svg_(self) -> str:
         return self.svg

@@ -20,8 +20,10 @@ def plot_curves(curves: Mapping[str, Table], names: Sequence[str], title: str) -
     plots = {plot["id"]: plot for plot in _core.curve_plots()}
     known = [name for name, plot in plots.items() if plot["file"] in curves]
     for name in names:
+        if not isinstance(name, str):
+            raise TypeError(f"names: {name!r} is no plot of {title}; accepted: {', '.join(known)}")
         if name not in known:
-            raise ValueError(f"{name!r} is no plot of {title}; accepted: {', '.join(known)}")
+            raise ValueError(f"names: {name!r} is no plot of {title}; accepted: {', '.join(known)}")
     chosen = [plots[name] for name in names or [name for name in _USUAL if name in known]]
     pyplot = required("matplotlib.pyplot", "matplotlib", "plot")
     columns = min(2, len(chosen)) or 1

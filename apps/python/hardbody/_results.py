@@ -10,6 +10,7 @@ import tomllib
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from hardbody._paths import Located
 from hardbody._plots import plot_curves
 from hardbody._tables import Curves, Table, read_table, required
 
@@ -20,32 +21,28 @@ if TYPE_CHECKING:
     from hardbody._pages import Map, Report
 
 
-class _Directory:
+class _Directory(Located):
     """Directory with results."""
 
     _needed = ""
     _kind = ""
 
     def __init__(self, path: str | os.PathLike[str]) -> None:
-        self.path = Path(path)
+        super().__init__(path)
         if not (self.path / self._needed).is_file():
             what = f"has no {self._needed}" if self.path.is_dir() else "is not there"
             raise ValueError(f"{self.path}: {what}; accepted: the directory of {self._kind}")
 
-    def __fspath__(self) -> str:
-        return os.fspath(self.path)
-
-    def __repr__(self) -> str:
-        return f"{type(self).__name__}({os.fspath(self.path)!r})"
-
     def __eq__(self, other: object) -> bool:
-        return type(self) is type(other) and isinstance(other, _Directory) and self.path == other.path
+        return type(self) is type(other) and isinstance(other, _Directory) and self._absolute == other._absolute
 
     def __hash__(self) -> int:
-        return hash(self.path)
+        return hash(self._absolute)
 
     def _json(self, name: str) -> dict[str, Any]:
-        file = self.path / name
+        file = self._absolute / name
+        if not self._absolute.is_dir():
+            raise FileNotFoundError(f"{self._absolute} is not there any more")
         if not file.is_file():
             raise FileNotFoundError(f"{file} is not there: the run is not finished; resume continues it")
         value = json.loads(file.read_text(encoding="utf-8"))
@@ -66,19 +63,20 @@ class Run(_Directory):
     @property
     def config(self) -> dict[str, Any]:
         """Configuration, defaults filled in."""
-        return tomllib.loads((self.path / "config.toml").read_text(encoding="utf-8"))
+        return tomllib.loads((self._absolute / "config.toml").read_text(encoding="utf-8"))
 
     @property
     def is_finished(self) -> bool:
         """Whether the run has been completed: it has results and was not interrupted."""
-        return (self.path / "summary.json").is_file() and not self.summary["interrupted"]
+        return (self._absolute / "summary.json").is_file() and not self.summary["interrupted"]
 
     @property
     def summary(self) -> dict[str, Any]:
         """Results with standard errors, counters, performance, units: summary.json.
 
         summary["observables"]["D_trans"] has "value", "error", and where there is no value "missing", the reason.
-        Raises FileNotFoundError if the run has not been completed.
+        Raises FileNotFoundError if the run has no results yet. Those of a run that was stopped have "interrupted" True:
+        they end where it was stopped.
         """
         return self._json("summary.json")
 
@@ -86,7 +84,7 @@ class Run(_Directory):
     def observables(self) -> Curves:
         """Curves by name ("msd", "c2", "f_self", "g_r", ...): structured arrays with a field a column of the CSV file,
         `units` and `to_pandas()`. Errors have the names of their columns with "_error"."""
-        return Curves(self.path / "observables")
+        return Curves(self._absolute / "observables")
 
     @property
     def events(self) -> Table:
@@ -96,7 +94,7 @@ class Run(_Directory):
     @property
     def failures(self) -> list[dict[str, Any]]:
         """Pairs that could not be predicted, failures/*.json (docs/output.md); `hardbody replay` shows one."""
-        return [json.loads(path.read_text(encoding="utf-8")) for path in sorted(self.path.glob("failures/*.json"))]
+        return [json.loads(path.read_text(encoding="utf-8")) for path in sorted(self._absolute.glob("failures/*.json"))]
 
     def trajectory(self) -> Any:
         """Opens the frames of production (trajectory.gsd) with gsd.hoomd.open. Needs the package gsd.
@@ -121,14 +119,14 @@ class Run(_Directory):
         return plot_curves(self.observables, names, os.fspath(self.path))
 
     def _file(self, name: str, key: str) -> Path:
-        file = self.path / name
+        file = self._absolute / name
         if not file.is_file():
             raise ValueError(f"{file} is not there; accepted: a run with [output] {key} in its config")
         return file
 
     def _repr_html_(self) -> str:
         name = html.escape(os.fspath(self.path))
-        if not (self.path / "summary.json").is_file():
+        if not (self._absolute / "summary.json").is_file():
             return f"<p>Run {name}: not finished</p>"
         summary = self.summary
         rows = "".join(
@@ -136,9 +134,10 @@ class Run(_Directory):
             for key, value in summary["observables"].items()
             if not isinstance(value, dict) or not isinstance(value.get("value"), list)
         )
-        page = self.path / "report.html"
-        link = f', <a href="{html.escape(os.fspath(page))}">report</a>' if page.is_file() else ""
-        state = "" if summary["sound"] else ", <b>NOT SOUND</b>"
+        page = html.escape(os.path.join(self, "report.html"))
+        link = f', <a href="{page}">report</a>' if (self._absolute / "report.html").is_file() else ""
+        state = ", <b>interrupted: not finished</b>" if summary["interrupted"] else ""
+        state += "" if summary["sound"] else ", <b>NOT SOUND</b>"
         return f"<p>Run {name}{state}{link}</p><table>{rows}</table>"
 
 
@@ -165,7 +164,7 @@ class Analysis(_Directory):
     @property
     def observables(self) -> Curves:
         """Curves by name, as those of a Run, and "order": S and the energy of each frame."""
-        return Curves(self.path)
+        return Curves(self._absolute)
 
     def plot(self, *names: str) -> Any:
         """Draws plots of the curves, see Run.plot."""
@@ -181,14 +180,14 @@ class Sweep(_Directory):
     @property
     def table(self) -> Table:
         """One row per point, in the order of the grid: keys, observables and their errors, status, message."""
-        return read_table(self.path / "sweep.csv")
+        return read_table(self._absolute / "sweep.csv")
 
     @property
     def runs(self) -> list[Run | None]:
         """Runs of the points, in the order of the table; None for points that have not been begun."""
-        with open(self.path / "sweep.csv", newline="", encoding="utf-8") as file:
+        with open(self._absolute / "sweep.csv", newline="", encoding="utf-8") as file:
             rows = list(csv.DictReader(file))
-        states = [json.loads(path.read_text(encoding="utf-8")) for path in sorted(self.path.glob("*/state.json"))]
+        states = [json.loads(path.read_text(encoding="utf-8")) for path in sorted(self._absolute.glob("*/state.json"))]
         return [self._run_of(row, states) for row in rows]
 
     def map(self, x: str, y: str, values: str | Sequence[str], **options: Any) -> Map:
@@ -211,7 +210,7 @@ class Sweep(_Directory):
         for state in states:
             keys = {**state["keys"], "seed": state["seed"]}
             if all(_value(row[key]) == value for key, value in keys.items()):
-                directory = self.path / state["name"]
+                directory = Path(self) / state["name"]
                 return Run(directory) if (directory / Run._needed).is_file() else None
         return None
 
