@@ -7,14 +7,18 @@ message that names the argument and what is accepted. Numerical outcomes are sta
 
 from hardbody._arrays import (
     ClosestPoints,
+    Contacts,
     Distances,
+    Masses,
     Overlaps,
     RayHits,
     closest_point_many,
     contains_many,
     distance_many,
+    mass_properties_many,
     overlap_many,
     ray_cast_many,
+    time_of_contact_many,
 )
 from hardbody._commands import analyze, check, report, resume, run, sweep
 from hardbody._commands import map as map
@@ -60,6 +64,7 @@ from hardbody._pages import Map, Report
 from hardbody._results import Analysis, Run, Sweep
 from hardbody._run_errors import SweepError, UnsoundError
 from hardbody._tables import Curves, Table
+from hardbody._typing import Shape, SupportShape
 
 # "map" is no name for `from hardbody import *`, which would hide Python's own.
 __all__ = [
@@ -68,6 +73,7 @@ __all__ = [
     "ClosestPoint",
     "ClosestPoints",
     "ContactResult",
+    "Contacts",
     "Counters",
     "Curves",
     "CustomShape",
@@ -79,6 +85,7 @@ __all__ = [
     "Kinetic",
     "Map",
     "MassProperties",
+    "Masses",
     "Motion",
     "NumericalError",
     "Observables",
@@ -90,10 +97,12 @@ __all__ = [
     "Report",
     "Results",
     "Run",
+    "Shape",
     "Simulation",
     "Species",
     "Stall",
     "Superellipsoid",
+    "SupportShape",
     "Sweep",
     "SweepError",
     "System",
@@ -116,6 +125,7 @@ __all__ = [
     "from_gsd",
     "lattice_start",
     "mass_properties",
+    "mass_properties_many",
     "overlap",
     "overlap_many",
     "random_start",
@@ -126,4 +136,5 @@ __all__ = [
     "run",
     "sweep",
     "time_of_contact",
+    "time_of_contact_many",
 ]
