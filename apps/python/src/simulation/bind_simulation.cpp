@@ -114,7 +114,7 @@ void bind_state(Type& type) {
            "goes on bit for bit. Files replace those of the same name only when they are complete. Raises OSError.")
       .def_static("restore", &restored, nb::arg("state").none(), nb::arg("shapes") = nb::tuple(),
                   nb::sig("def restore(state: bytes | bytearray | memoryview | str | os.PathLike[str], "
-                          "shapes: list[hardbody._typing.HasSupport] | tuple[hardbody._typing.HasSupport, ...] = ()) "
+                          "shapes: list[hardbody._typing.SupportShape] | tuple[hardbody._typing.SupportShape, ...] = ()) "
                           "-> Simulation"),
                   "Returns the simulation that was saved as these bytes or to this file. shapes: your own, which are "
                   "code, in the\n"
