@@ -58,8 +58,8 @@ def run(
 
     Raises ValueError or TypeError for a bad config, with the key, its value and what is accepted; UnsoundError if the
     results are not sound; RuntimeError for other failures, such as a full disk; KeyboardInterrupt after Ctrl-C. The
-    state is saved then: `resume` continues the run bit for bit. SIGTERM, SIGHUP and SIGXCPU stop it too, and are then
-    handled as the process would have handled them.
+    state is saved then: `resume` continues the run bit for bit. SIGTERM, SIGHUP and SIGXCPU stop it too, and
+    then have their usual effect on the process.
     """
     name, text, directory = config_arguments(config, out)
     arguments = (name, text, directory, assignments(overrides), flag(force, "force"))

@@ -37,7 +37,7 @@ def plot_curves(curves: Mapping[str, Table], names: Sequence[str], title: str) -
     for axis in axes.flat[len(chosen) :]:
         axis.remove()
     figure.suptitle(title)
-    pyplot.close(figure)  # the figure is shown by whom it is returned to
+    pyplot.close(figure)  # the caller shows the figure
     return figure
 
 
