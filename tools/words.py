@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Checks the words of comments in C++ files, and names file, line and comment where they break the rule.
+"""Checks the words of comments in C++ files and of the Python package, and names file, line and comment where they break
+the rule.
 
 usage: words.py [FILE...]
 
@@ -8,16 +9,20 @@ verb for a function ("Returns ...") and with a noun for data ("Number of ..."), 
 truth value. It never begins with a preposition, a pronoun, a conjunction or a stand-in for one ("The same ..."): a
 condition follows what it limits. Some phrases are refused anywhere in a comment, because they have to be read twice.
 
-Comments are // and, for doc comments, ///, each with a space; /* */ names an argument (/*signed_distance=*/), no more.
+Comments are // and, for doc comments, ///, each with a space; /* */ names an argument (/*signed_distance=*/), no more. Doc
+comments of Python are docstrings, and strings below a declaration.
 
-Without FILE all headers and sources (.h, .cpp) of the repository are read. Every fault is printed. Exit code 1: there are
+Without FILE all headers and sources (.h, .cpp) of the repository and the modules of the Python package are read. Every fault is printed. Exit code 1: there are
 more faults, of all comments, than LIMIT times the number of doc comments.
 """
 
+import ast
+import io
 import pathlib
 import re
 import subprocess
 import sys
+import tokenize
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 LIMIT = 0.01
@@ -84,6 +89,20 @@ def comments(text):
             yield number, [other[0]], None
 
 
+def python_comments(text):
+    """Yields the same of a Python module, with the markers of C++."""
+    for node in ast.walk(ast.parse(text)):
+        if not isinstance(node, (ast.Module, ast.ClassDef, ast.FunctionDef)):
+            continue
+        for before, one in zip([None, *node.body], node.body):
+            is_text = isinstance(one, ast.Expr) and isinstance(one.value, ast.Constant) and isinstance(one.value.value, str)
+            if is_text and (before is None or isinstance(before, (ast.Assign, ast.AnnAssign))):
+                yield one.lineno, one.value.value.split("\n"), "///"
+    for token in tokenize.generate_tokens(io.StringIO(text).readline):
+        if token.type == tokenize.COMMENT:
+            yield token.start[0], [token.string.lstrip("# ")], "//"
+
+
 def strip_strings(line):
     """A line with strings and characters blotted out."""
     return re.sub(r"""'(?:[^'\\]|\\.)'|"(?:[^"\\]|\\.)*\"""", lambda m: "'" * len(m[0]), line)
@@ -114,7 +133,7 @@ def fault(text, marker):
 
 
 def sources():
-    command = ["git", "ls-files", "*.h", "*.cpp"]
+    command = ["git", "ls-files", "*.h", "*.cpp", "apps/python/hardbody/*.py"]
     listed = subprocess.run(command, cwd=ROOT, check=True, capture_output=True, text=True).stdout
     return [ROOT / name for name in listed.split() if (ROOT / name).is_file()]
 
@@ -123,7 +142,8 @@ def main():
     paths = [pathlib.Path(name).resolve() for name in sys.argv[1:]] or sources()
     number, messages = 0, []
     for path in paths:
-        for line, texts, marker in comments(path.read_text()):
+        read = python_comments if path.suffix == ".py" else comments
+        for line, texts, marker in read(path.read_text()):
             text = wording(texts)
             if not text:
                 continue

@@ -58,7 +58,7 @@ figure.savefig("first_fluid.png")
 assert np.isclose(msd["msd"][0], 3 * msd["t"][0] ** 2, rtol=0.05)
 
 # %% [markdown]
-# Is it right? Nothing was stepped over: an audit computes all distances from scratch. Energy is conserved to rounding.
+# Is it right? No contact was missed: an audit computes all distances from scratch. Energy is conserved to rounding.
 # And spheres have the pressure of Carnahan and Starling's equation of state.
 
 # %%

@@ -85,8 +85,8 @@ pipeline.modifiers.append(ReplicateModifier(num_x=2, num_y=2, num_z=2))
 export_file(pipeline, "replicated.gsd", "gsd/hoomd", frame=pipeline.source.num_frames - 1)
 
 # %% [markdown]
-# **And back.** Our own file is taken bit for bit. OVITO's has positions, orientations and velocities in single
-# precision and no shapes: these we say again, and `mend` repairs the overlaps that rounding may have made.
+# **And back.** Files of hardbody are read bit for bit. OVITO's has positions, orientations and velocities in single
+# precision and no shapes: `components` gives the shapes, and `mend` removes overlaps due to rounding.
 
 # %%
 same = hb.from_gsd(run.path / "trajectory.gsd")

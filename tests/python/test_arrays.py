@@ -220,13 +220,13 @@ def test_results_outlive_their_input(random):
     assert distance.flags.writeable
 
 
-def slow_call(threads=1):
-    """Deep overlaps of needles, a search over all normals each: minutes."""
+def slow_call(threads=1, pairs=100_000):
+    """Deep overlaps of needles, a search over all normals each: minutes for 100,000."""
     needle = hb.Ellipsoid([1, 1, 1000])
     positions = np.zeros((2, 3))
     positions[1] = 0.3, 0, 0
     turned = [[1, 0, 0, 0], [np.cos(1e-4), np.sin(1e-4), 0, 0]]
-    return hb.distance_many(needle, positions, turned, np.tile([0, 1], (100_000, 1)), threads=threads)
+    return hb.distance_many(needle, positions, turned, np.tile([0, 1], (pairs, 1)), threads=threads)
 
 
 @pytest.mark.parametrize("threads", [1, 2])
@@ -240,6 +240,7 @@ def test_interrupts_end_a_call(threads):
 
 
 def test_other_threads_run_meanwhile():
+    """One call of at least 0.3 s, and what another thread does between its begin and its end."""
     ticks = []
     stop = threading.Event()
 
@@ -248,14 +249,18 @@ def test_other_threads_run_meanwhile():
             ticks.append(time.monotonic())
 
     clock = threading.Thread(target=tick)
-    random = np.random.default_rng(5)
-    m = Pairs(random, (1.0, 1.0, 3.0), 200_000)
     clock.start()
-    for _ in range(10):
-        hb.distance_many(hb.Ellipsoid(m.axes), m.positions, m.quaternions, m.pairs)
-    stop.set()
-    clock.join()
-    assert len(ticks) > 5
+    pairs, begin, end = 1, 0.0, 0.0
+    try:
+        while end - begin < 0.3:
+            pairs *= 2
+            begin = time.monotonic()
+            slow_call(pairs=pairs)
+            end = time.monotonic()
+    finally:
+        stop.set()
+        clock.join()
+    assert sum(begin < time < end for time in ticks) > 20
 
 
 LITTLE_MEMORY = """

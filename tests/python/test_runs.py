@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import concurrent.futures
+import json
 import os
 import pathlib
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -16,7 +18,6 @@ import pytest
 from runs import CONFIG, ROOT, TEXT, call, program, results, with_values
 
 import hardbody as hb
-from hardbody import _commands, _core
 
 
 @pytest.fixture(scope="module")
@@ -133,13 +134,33 @@ def test_failures_are_runtime_errors(tmp_path):
     assert re.match(r"RuntimeError .*: File too large; .*hardbody resume .*\n$", said), said
 
 
-def test_unsound_results_raise(done, monkeypatch):
-    outcome = (1, "the table", ["here: NOT SOUND: overlaps 3", "here: NOT SOUND: energy drift 1"])
-    monkeypatch.setattr(_core, "resume", lambda *_: outcome)
-    with pytest.raises(hb.NumericalError, match=r"NOT SOUND: overlaps 3; NOT SOUND: energy drift 1$") as caught:
-        _commands.resume(done)
-    assert isinstance(caught.value, hb.UnsoundError)
-    assert caught.value.run == done
+def test_unsound_results_raise(tmp_path):
+    """Spheres that are packed so closely that 2000 events a body take next to no time."""
+    config = {
+        "seed": 3,
+        "system": {"number": 108, "packing_fraction": 0.7404804896, "start": "fcc"},
+        "shape": {"aspect_ratio": 1},
+        "equilibration": {"time": 1.0},
+        "production": {"time": 1.0},
+    }
+    why = r"b: NOT SOUND: equilibration stalled at time \S+: 217000 events in "
+    for call_of in (lambda: hb.run(config, tmp_path / "b"), lambda: hb.resume(tmp_path / "b")):
+        with pytest.raises(hb.NumericalError, match=why) as caught:
+            call_of()
+        assert isinstance(caught.value, hb.UnsoundError)
+        unsound = caught.value.run
+        assert unsound == hb.Run(tmp_path / "b") and not unsound.is_finished
+        assert "stalled at time" in unsound.summary["stalled"] and not unsound.summary["sound"]
+        assert "<b>NOT SOUND</b>" in unsound._repr_html_()
+        assert unsound.failures == []  # a stall has no pairs
+
+
+def test_failures_are_those_of_the_files(done, tmp_path):
+    run = hb.Run(shutil.copytree(done.path, tmp_path / "b"))
+    (run.path / "failures").mkdir()
+    for number in (2, 1):
+        (run.path / "failures" / f"pair_{number:02}.json").write_text(json.dumps({"i": number}))
+    assert run.failures == [{"i": 1}, {"i": 2}]
     assert done.failures == []
 
 

@@ -104,7 +104,7 @@ class Overlaps:
     overlap: Bools
     """Whether the bodies overlap or touch, shape (M,); False where `unknown`."""
     unknown: Bools
-    """Where neither answer is certain, shape (M,): bodies that touch within the error bound."""
+    """Whether neither answer is certain, shape (M,): bodies that touch within the error bound."""
 
     def __len__(self) -> int:
         return len(self.overlap)

@@ -13,7 +13,7 @@ import numpy as np
 
 from hardbody import _core
 from hardbody._tables import required
-from hardbody._toml import toml_text, value_text
+from hardbody._toml import shown, toml_text, value_text
 
 Progress = Callable[[str, float | None], object]
 PathLike = str | os.PathLike[str]
@@ -41,15 +41,20 @@ def worker_program() -> list[str]:
     return [sys.executable, "-P", "-S", "-c", _WORKER, os.fspath(_core.__file__)]
 
 
+def is_unicode(text: str) -> bool:
+    """Returns whether a text can be encoded: it has no surrogates."""
+    return not any("\ud800" <= character <= "\udfff" for character in text)
+
+
 def path_text(value: Any, name: str) -> str:
     """Returns a path as text."""
     if not isinstance(value, (str, os.PathLike)):
-        raise TypeError(f"{name} is {value!r}; accepted: a str or path")
+        raise TypeError(f"{name} is {shown(value)}; accepted: a str or path")
     text = os.fspath(value)
     if not isinstance(text, str):
-        raise TypeError(f"{name} is {value!r}; accepted: a str or path")
-    if not text or "\0" in text:
-        raise ValueError(f"{name} is {text!r}; accepted: the name of a file or directory")
+        raise TypeError(f"{name} is {shown(value)}; accepted: a str or path")
+    if not text or "\0" in text or not is_unicode(text):
+        raise ValueError(f"{name} is {shown(text)}; accepted: the name of a file or directory")
     return text
 
 
@@ -65,7 +70,7 @@ def config_arguments(config: Any, out: Any) -> tuple[str, str | None, str | None
             raise ValueError("out is None; accepted: the name of a directory, as a dict has no name of its own")
         return "config", toml_text(config), path_text(out, "out")
     if not isinstance(config, (str, os.PathLike)):
-        raise TypeError(f"config is {config!r}; accepted: a dict, or the path of a TOML file")
+        raise TypeError(f"config is {shown(config)}; accepted: a dict, or the path of a TOML file")
     return path_text(config, "config"), None, optional_path(out, "out")
 
 
@@ -74,10 +79,10 @@ def assignments(overrides: Mapping[str, Any] | None) -> list[str]:
     if overrides is None:
         return []
     if not isinstance(overrides, Mapping):
-        raise TypeError(f"overrides is {overrides!r}; accepted: a dict, as {{'system.number': 64}}")
+        raise TypeError(f"overrides is {shown(overrides)}; accepted: a dict, as {{'system.number': 64}}")
     for key in overrides:
-        if not isinstance(key, str) or "=" in key or "\n" in key:
-            raise TypeError(f"overrides: a key is {key!r}; accepted: a str, section.key")
+        if not isinstance(key, str) or "=" in key or "\n" in key or not is_unicode(key):
+            raise TypeError(f"overrides: a key is {shown(key)}; accepted: a str, section.key")
     return [f"{key}={value_text(value, 'overrides', key)}" for key, value in overrides.items()]
 
 
@@ -88,13 +93,13 @@ def finite(value: Any, name: str, accepted: str = "a finite number") -> float:
     if isinstance(scalar, (np.generic, np.ndarray)):
         is_number = scalar.ndim == 0 and scalar.dtype.kind in "iuf"
     if isinstance(scalar, (bool, str)) or not is_number:
-        raise TypeError(f"{name} is {value!r}; accepted: {accepted}")
+        raise TypeError(f"{name} is {shown(value)}; accepted: {accepted}")
     try:
         number = float(scalar)
     except OverflowError:
         number = math.inf
     if not math.isfinite(number):
-        raise ValueError(f"{name} is {value!r}; accepted: {accepted}")
+        raise ValueError(f"{name} is {shown(value)}; accepted: {accepted}")
     return number
 
 
@@ -102,7 +107,7 @@ def real(value: Any, name: str) -> float:
     """Returns a positive finite number."""
     number = finite(value, name, "a positive finite number")
     if number <= 0:
-        raise ValueError(f"{name} is {value!r}; accepted: a positive finite number")
+        raise ValueError(f"{name} is {shown(value)}; accepted: a positive finite number")
     return number
 
 
@@ -118,7 +123,7 @@ def integer(value: Any, name: str, least: int, most: int) -> int:
             raise TypeError
         number = operator.index(value)
     except TypeError:
-        raise TypeError(f"{name} is {value!r}; accepted: an integer from {least} to {most}") from None
+        raise TypeError(f"{name} is {shown(value)}; accepted: an integer from {least} to {most}") from None
     if not least <= number <= most:
         raise ValueError(f"{name} is {number}; accepted: an integer from {least} to {most}")
     return number
@@ -127,18 +132,21 @@ def integer(value: Any, name: str, least: int, most: int) -> int:
 def flag(value: Any, name: str) -> bool:
     """Returns a bool."""
     if not isinstance(value, (bool, np.bool_)):
-        raise TypeError(f"{name} is {value!r}; accepted: True or False")
+        raise TypeError(f"{name} is {shown(value)}; accepted: True or False")
     return bool(value)
 
 
 def texts(value: Any, name: str) -> list[str]:
     """Returns one or several strings as a list."""
     if isinstance(value, str):
-        return [value]
+        value = [value]
     if not isinstance(value, Sequence) or not all(isinstance(v, str) for v in value):
-        raise TypeError(f"{name} is {value!r}; accepted: a str, or a list of them")
+        raise TypeError(f"{name} is {shown(value)}; accepted: a str, or a list of them")
     if not value:
         raise ValueError(f"{name} is empty; accepted: a str, or a list of them")
+    for text in value:
+        if not is_unicode(text):
+            raise ValueError(f"{name} has {shown(text)}, which is not Unicode; accepted: text")
     return list(value)
 
 
@@ -210,7 +218,7 @@ def call(
     """
     if not (progress is None or isinstance(progress, bool) or callable(progress)):
         raise TypeError(
-            f"progress is {progress!r}; accepted: None, True, or a function of a text and the fraction done"
+            f"progress is {shown(progress)}; accepted: None, True, or a function of a text and the fraction done"
         )
     bar = _Bar() if progress is True else None
     printer = _Printer(flag(quiet, "quiet"), bar or (progress if callable(progress) else None))

@@ -16,6 +16,7 @@ from hardbody._calls import (
     finite,
     flag,
     integer,
+    is_unicode,
     optional_path,
     optional_real,
     path_text,
@@ -25,7 +26,7 @@ from hardbody._calls import (
 from hardbody._pages import Map, Report
 from hardbody._results import Analysis, Run, Sweep
 from hardbody._run_errors import SweepError, UnsoundError
-from hardbody._toml import value_text
+from hardbody._toml import shown, value_text
 
 _MOST_JOBS = 1024
 _LARGEST_STRIDE = 1_000_000
@@ -57,8 +58,8 @@ def run(
 
     Raises ValueError or TypeError for a bad config, with the key, its value and what is accepted; UnsoundError if the
     results are not sound; RuntimeError for other failures, such as a full disk; KeyboardInterrupt after Ctrl-C. The
-    state is saved then: `resume` continues the run bit for bit. SIGTERM, SIGHUP and SIGXCPU stop it too, and are then
-    handled as the process would have handled them.
+    state is saved then: `resume` continues the run bit for bit. SIGTERM, SIGHUP and SIGXCPU stop it too, and
+    then have their usual effect on the process.
     """
     name, text, directory = config_arguments(config, out)
     arguments = (name, text, directory, assignments(overrides), flag(force, "force"))
@@ -205,7 +206,9 @@ def _level_texts(levels: Any, names: list[str]) -> list[str]:
         return []
     if not isinstance(levels, Mapping):
         if len(names) != 1:
-            raise ValueError(f"levels is {levels!r}; accepted with several values: a dict with levels for each of them")
+            raise ValueError(
+                f"levels is {shown(levels)}; accepted with several values: a dict with levels for each of them"
+            )
         levels = {names[0]: levels}
     if set(levels) != set(names):
         raise ValueError(f"levels has the keys {list(levels)}; accepted: levels for each of {names}")
@@ -216,7 +219,7 @@ def _levels(values: Any, name: str) -> list[float]:
     try:
         numbers = [finite(value, f"levels: {name}[{k}]") for k, value in enumerate(values)]
     except TypeError:
-        raise TypeError(f"levels: {name} has {values!r}; accepted: a list of numbers") from None
+        raise TypeError(f"levels: {name} has {shown(values)}; accepted: a list of numbers") from None
     if not numbers:
         raise ValueError(f"levels: {name} has none; accepted: a list of numbers")
     return numbers
@@ -226,11 +229,13 @@ def _conditions(where: Any) -> list[str]:
     if where is None:
         return []
     if not isinstance(where, Mapping):
-        raise TypeError(f"where is {where!r}; accepted: a dict, as {{'seed': 1}}")
+        raise TypeError(f"where is {shown(where)}; accepted: a dict, as {{'seed': 1}}")
     for column in where:
-        if not isinstance(column, str) or "=" in column:
-            raise TypeError(f"where: a column is {column!r}; accepted: a str, as {{'seed': 1}}")
-    return [
-        f"{column}={value if isinstance(value, str) else value_text(value, 'where', column)}"
-        for column, value in where.items()
-    ]
+        if not isinstance(column, str) or "=" in column or not is_unicode(column):
+            raise TypeError(f"where: a column is {shown(column)}; accepted: a str, as {{'seed': 1}}")
+    return [f"{column}={_condition(value, column)}" for column, value in where.items()]
+
+
+def _condition(value: Any, column: str) -> str:
+    text = value_text(value, "where", column)
+    return value if isinstance(value, str) else text

@@ -8,7 +8,7 @@ import os
 from hardbody._paths import Located
 from hardbody._tables import Table, read_table
 
-_LONGEST_EMBEDDED = 2_000_000  # bytes of a page that a notebook takes up
+_LONGEST_EMBEDDED = 2_000_000  # bytes of the largest page that is embedded in a notebook
 
 
 class Report(Located):

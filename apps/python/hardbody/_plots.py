@@ -11,6 +11,7 @@ import numpy as np
 
 from hardbody import _core
 from hardbody._tables import Table, required
+from hardbody._toml import shown
 
 _USUAL = ("msd", "c2", "f_self", "g_r")
 
@@ -21,9 +22,9 @@ def plot_curves(curves: Mapping[str, Table], names: Sequence[str], title: str) -
     known = [name for name, plot in plots.items() if plot["file"] in curves]
     for name in names:
         if not isinstance(name, str):
-            raise TypeError(f"names: {name!r} is no plot of {title}; accepted: {', '.join(known)}")
+            raise TypeError(f"names: {shown(name)} is no plot of {title}; accepted: {', '.join(known)}")
         if name not in known:
-            raise ValueError(f"names: {name!r} is no plot of {title}; accepted: {', '.join(known)}")
+            raise ValueError(f"names: {shown(name)} is no plot of {title}; accepted: {', '.join(known)}")
     chosen = [plots[name] for name in names or [name for name in _USUAL if name in known]]
     pyplot = required("matplotlib.pyplot", "matplotlib", "plot")
     columns = min(2, len(chosen)) or 1
@@ -36,7 +37,7 @@ def plot_curves(curves: Mapping[str, Table], names: Sequence[str], title: str) -
     for axis in axes.flat[len(chosen) :]:
         axis.remove()
     figure.suptitle(title)
-    pyplot.close(figure)  # the figure is shown by whom it is returned to
+    pyplot.close(figure)  # the caller shows the figure
     return figure
 
 

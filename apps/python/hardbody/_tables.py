@@ -55,7 +55,7 @@ class Table(np.ndarray[Any, np.dtype[Any]]):
 def read_table(path: str | os.PathLike[str], *, all_real: bool = False) -> Table:
     """Reads a CSV file whose first line has names, and units in brackets. Raises ValueError for any other file.
 
-    all_real: every column is float64; else columns are of bools, integers, reals or text, whatever all their cells are.
+    all_real: every column is float64; else each has the first of bool, integer, real and text that fits all its cells.
     """
     with open(path, newline="", encoding="utf-8") as file:
         rows = list(csv.reader(file))

@@ -109,6 +109,14 @@ def _escaped(character: str) -> str:
     return f"\\{character}" if character in '"\\' else f"\\u{ord(character):04X}"
 
 
+def shown(value: Any, longest: int = 200) -> str:
+    """Returns what messages say of a value: its repr, shortened; its type if it has none."""
+    try:
+        text = repr(value)
+    except Exception:  # of any kind: the message is about an argument
+        return f"of type {type(value).__name__}"
+    return text if len(text) <= longest else text[: longest - 3] + "..."
+
+
 def _shown(value: Any) -> str:
-    text = repr(value)
-    return f"{text if len(text) <= 60 else text[:57] + '...'} ({type(value).__name__})"
+    return f"{shown(value, 60)} ({type(value).__name__})"
