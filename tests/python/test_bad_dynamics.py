@@ -114,6 +114,7 @@ FUNCTIONS = {
 
 # What messages say in place of an argument's name.
 OTHER_WORDS = {
+    "box": r"^positions\[\d\] is .* boxes of the origin",
     "factor": r"semi-axis [xyz] is",
     "mass": r"^inertia is .* all mass at the bounding radius",
     "object": r"accepted: an object with a method support",

@@ -231,10 +231,10 @@ def distance_many(
     shapes. quaternions: orientations, unit quaternions (w, x, y, z) body to world, shape (N, 4); None: bodies that are
     not rotated. pairs: indices (a, b) of bodies, integers of shape (M, 2). shape_of: index of each body's shape,
     integers of shape (N,); None: one shape serves all bodies, or there is one a body. threads: number of threads, 1 to
-    1024, which changes no bit of the answers. start: guesses of the normals from A to B, world frame, finite,
-    shape (M, 3); 0 is none, for instance where the last answer is NaN: np.nan_to_num(last.normal). max_iterations: maximum number of evaluations from each start, at least 1. penetration: 'global', the shortest of
-    all translations that separate overlapping bodies; 'local', the nearest stationary one, which is faster at large
-    depths.
+    1024, which changes no bit of the answers. start: guesses of the normals from A to B, world frame, finite, shape (M,
+    3); 0 is none, for instance where the last answer is NaN: np.nan_to_num(last.normal). max_iterations: maximum number
+    of evaluations from each start, at least 1. penetration: 'global', the shortest of all translations that separate
+    overlapping bodies; 'local', the nearest stationary one, which is faster at large depths.
 
     Arrays of other real types, and arrays that are not contiguous, are copied. The GIL is released.
 
