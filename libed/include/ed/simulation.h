@@ -158,7 +158,8 @@ class ED_EXPORT Simulation {
   bool run_until(double time, std::uint64_t max_collisions = ~std::uint64_t{0},
                  std::uint64_t max_events = ~std::uint64_t{0});
 
-  /// Processes events until `number` more collisions have happened, or the run has stalled.
+  /// Processes events until `number` more collisions have happened, or the run has stalled. Throws
+  /// std::invalid_argument if number > 0 and all bodies are at rest: there will be no collision.
   void run_collisions(std::uint64_t number);
 
   /// Returns the stall once the run has stalled, else nullopt. The state is still valid and can be saved; after a
@@ -173,7 +174,8 @@ class ED_EXPORT Simulation {
 
   /// Chooses the envelope's thickness by the work that the counters show, never by a clock. Runs up to about 20
   /// collisions a body. `keep_going` is called after every hundred collisions, sooner if these take many events; if it
-  /// returns false, tuning stops with the best thickness so far.
+  /// returns false, tuning stops with the best thickness so far. Throws std::invalid_argument if all bodies are at
+  /// rest, except with `cells`, which have no envelopes.
   void tune_envelopes(const std::function<bool()>& keep_going = {});
   double envelope() const;  ///< current thickness, a length
 

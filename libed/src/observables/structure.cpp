@@ -50,7 +50,8 @@ Vector3i one_of_two(const Vector3i& n) {
 std::vector<Vector3i> draw_vectors(double from, double to, int most, Random& random) {
   std::vector<Vector3i> found;
   for (int k = 0; k < kTries * most && found.size() < static_cast<std::size_t>(most); ++k) {
-    const Vector3d aim = (from + (to - from) * random.uniform()) * random.direction();
+    const Vector3d direction = random.direction();
+    const Vector3d aim = (from + (to - from) * random.uniform()) * direction;
     const Vector3i n = one_of_two(aim.array().round().cast<int>());
     const double size = n.cast<double>().norm();
     if (size < from || size >= to || std::find(found.begin(), found.end(), n) != found.end()) continue;

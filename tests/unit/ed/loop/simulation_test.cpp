@@ -56,6 +56,17 @@ TEST(Simulation, BodiesMeetThroughTheFacesOfTheBox) {
   EXPECT_NEAR(simulation.collisions()[0].time, 2 - 2 / std::sqrt(3.0), kRunRounding);
 }
 
+TEST(Simulation, BodiesAtRestAreRefusedWhereCollisionsAreAwaited) {
+  ed::System system = two_bodies(sphere(), 12, {5, 5, 5});
+  for (ed::Body& body : system.bodies) body.velocity = body.angular_velocity = Vector3d::Zero();
+  ed::Simulation simulation(system);
+  simulation.run_collisions(0);
+  EXPECT_THROW(simulation.run_collisions(1), std::invalid_argument);
+  EXPECT_THROW(simulation.tune_envelopes(), std::invalid_argument);
+  EXPECT_TRUE(simulation.run_until(3));
+  EXPECT_EQ(simulation.time(), 3);
+}
+
 TEST(Simulation, CollisionsComeAtTheirTimesHoweverLongTheRun) {
   // Of two equal spheres in a row with their images one rests, and each collision hands the velocity on.
   ed::System system = two_bodies(sphere(), 10, {5, 0, 0});
