@@ -1,6 +1,8 @@
 """Array forms: right values, forms of arrays, threads, interrupts."""
 
 import signal
+import subprocess
+import sys
 import threading
 import time
 
@@ -88,6 +90,61 @@ def test_queries_about_bodies_agree_with_single_ones(mixture, random):
         np.testing.assert_allclose(rays.point[k], r.point, atol=1e-9)
     assert inside.dtype == bool
     assert {"hit", "missed"} <= set(rays.status)
+
+
+@pytest.mark.parametrize("finder", ["certified", "bracketing"])
+@pytest.mark.parametrize("moments", ["given", "ones"])
+def test_times_of_contact_are_those_of_single_pairs_bit_for_bit(mixture, random, finder, moments):
+    m = {**mixture, "positions": 2.5 * mixture["positions"]}
+    velocities, omegas = -0.5 * m["positions"] + random.normal(size=(60, 3)), random.normal(size=(60, 3))
+    inertias = np.array([m["shapes"][k].inertia() for k in m["shape_of"]]) if moments == "given" else None
+    motions = [
+        hb.Motion(hb.Pose(m["positions"][i], m["quaternions"][i]), velocities[i], omegas[i], inertia)
+        for i, inertia in enumerate([None] * 60 if inertias is None else inertias)
+    ]
+    options = dict(t_max=3.0, finder=finder, max_evaluations=500, eps_d=1e-3)
+    more = dict(velocities=velocities, angular_velocities=omegas, inertias=inertias, **options)
+    C = hb.time_of_contact_many(**m, **more)
+    for k, (i, j) in enumerate(m["pairs"]):
+        a, b = (m["shapes"][m["shape_of"][body]] for body in (i, j))
+        s = hb.time_of_contact(a, motions[i], b, motions[j], **options)
+        assert (C.status[k], C.evaluations[k], C.rescues[k]) == (s.status, s.evaluations, s.rescues)
+        np.testing.assert_array_equal(C.time[k], s.time)
+        np.testing.assert_array_equal(C.point[k], s.point)
+        np.testing.assert_array_equal(C.normal[k], s.normal)
+    assert {"hit", "separated", "overlapping"} <= set(C.status)
+    for threads in (2, 7):
+        for name in ("time", "point", "normal", "evaluations"):
+            again = hb.time_of_contact_many(**m, **more, threads=threads)
+            np.testing.assert_array_equal(getattr(again, name), getattr(C, name))
+
+
+def test_contacts_of_spheres():
+    centers, velocities = np.array([[0, 0, 0], [4, 0, 0], [0, 9, 0]]), [[0, 0, 0], [-1, 0, 0], [0, 1, 0]]
+    C = hb.time_of_contact_many(hb.Ellipsoid([1, 1, 1]), centers, None, velocities, None, [[0, 1], [2, 0]], np.inf)
+    assert list(C.status) == ["hit", "separated"]
+    np.testing.assert_allclose(C.time, [2, np.inf], rtol=1e-15)
+    np.testing.assert_allclose(C.point, [[1, 0, 0], [np.nan] * 3], atol=1e-15)
+    np.testing.assert_allclose(C.normal, [[1, 0, 0], [np.nan] * 3], atol=1e-15)
+    assert repr(C) == "Contacts(2 rows: 1 hit, 1 separated)"
+    at_rest = hb.time_of_contact_many(hb.Ellipsoid([1, 1, 1]), centers, None, None, None, [[0, 1]], 1.0)
+    assert (at_rest.status[0], at_rest.time[0]) == ("separated", 1.0)
+    assert len(hb.time_of_contact_many([], [], None, None, None, [], 1.0)) == 0
+
+
+def test_masses_are_those_of_single_shapes(mixture):
+    shapes = mixture["shapes"]
+    for density in (2.5, [1.0, 2.0, 0.5]):
+        many = hb.mass_properties_many(shapes, density)
+        assert (len(many), repr(many)) == (3, "Masses(3 rows)")
+        for k, shape in enumerate(shapes):
+            one = hb.mass_properties(shape, np.broadcast_to(density, 3)[k])
+            for name in ("volume", "mass", "center_of_mass", "inertia", "relative_error"):
+                np.testing.assert_array_equal(getattr(many, name)[k], getattr(one, name))
+    sphere = hb.mass_properties_many(hb.Ellipsoid([2, 2, 2]), 3.0)
+    np.testing.assert_allclose(sphere.mass, [32 * np.pi])
+    np.testing.assert_allclose(sphere.inertia, [0.4 * 32 * np.pi * 4 * np.eye(3)])
+    assert hb.mass_properties_many([]).inertia.shape == (0, 3, 3)
 
 
 def test_one_body_or_one_a_query(random):
@@ -204,3 +261,42 @@ def test_other_threads_run_meanwhile():
         stop.set()
         clock.join()
     assert sum(begin < time < end for time in ticks) > 20
+
+
+LITTLE_MEMORY = """
+import re
+import resource
+
+import numpy as np
+
+import hardbody as hb
+
+
+def distances(pairs):
+    return hb.distance_many(hb.Ellipsoid([1, 1, 1]), [[0, 0, 0], [3, 0, 0]], None, pairs)
+
+
+def allow(megabytes):
+    used = int(re.search("VmSize:\\s+([0-9]+)", open("/proc/self/status").read())[1]) << 10
+    resource.setrlimit(resource.RLIMIT_AS, (used + (megabytes << 20), resource.RLIM_INFINITY))
+
+
+some, more, many = (np.tile(np.array([0, 1], np.int64), (n, 1)) for n in (1_000_000, 1_400_000, 20_000_000))
+R = distances(some)
+print(R.distance.mean())
+del R  # 116 MB are kept
+allow(megabytes=120)
+print(distances(more).distance.mean())  # 162 MB: fit where those are given back
+try:
+    distances(many)
+except MemoryError as error:
+    print(error)
+print(distances(some).distance.mean())
+"""
+
+
+def test_results_that_do_not_fit_are_named():
+    done = subprocess.run([sys.executable, "-c", LITTLE_MEMORY], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    message = "a result of shape (20000000, 3) does not fit into memory"
+    assert done.stdout.splitlines() == ["1.0", "1.0", message, "1.0"]

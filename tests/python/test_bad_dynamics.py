@@ -19,7 +19,7 @@ SPECIES = hb.Species(S)
 STORED = pathlib.Path(__file__).resolve().parents[1] / "reference/cases/m2_velocity_of_frame_0.gsd"
 BALL = hb.Ellipsoid([0.5, 0.5, 0.5])
 QUATERNIONS = [[1, 0, 0, 0], [0, 1, 0, 0]]
-VECTORS = [[0, 0, 1.0], [1.0, 0, 0]]
+VECTORS = [[0, 1.0, 0], [1.0, 0, 0]]
 
 
 def simulation(**options):

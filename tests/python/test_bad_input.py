@@ -22,6 +22,18 @@ BODIES = dict(shapes=[E, S], positions=[[0, 0, 0], [4, 0, 2]], quaternions=[[1, 
 MANY = dict(**BODIES, pairs=[[0, 1], [1, 0], [0, 0]], shape_of=[1, 0], threads=2)
 POINTS = dict(**BODIES, points=[[0, 0, 1], [4, 0, 9]], body_of=[1, 0], shape_of=[0, 0], threads=1)
 RAYS = dict(**BODIES, origins=[[0, 0, 9], [4, 0, 9]], directions=[[0, 0, -1], [1, 0, 0]], body_of=[0, 1], threads=1)
+CONTACTS = dict(
+    **MANY,
+    velocities=[[0, 0, 0], [-1, 0, 0]],
+    angular_velocities=[[0, 1, 0], [0, 0, 1]],
+    t_max=3.0,
+    inertias=[[1, 1, 1], [1, 1.2, 1.5]],
+    finder="certified",
+    max_evaluations=100,
+    eps_d=1e-6,
+    distance="dual",
+    root="newton",
+)
 START = [[0, 0, 1], [1, 0, 0], [0, 1, 0]]
 
 FUNCTIONS = {
@@ -66,6 +78,8 @@ FUNCTIONS = {
     "contains_many": (hb.contains_many, POINTS),
     "closest_point_many": (hb.closest_point_many, POINTS),
     "ray_cast_many": (hb.ray_cast_many, RAYS),
+    "time_of_contact_many": (hb.time_of_contact_many, CONTACTS),
+    "mass_properties_many": (hb.mass_properties_many, dict(shapes=[E, S], density=[1.0, 2.0])),
 }
 
 # What messages say in place of an argument's name.
@@ -75,7 +89,7 @@ OTHER_WORDS = {
     "orientation": r"^Pose: (quaternion|rotation)",
     "matrix": r"^Pose: (position|rotation)",
     "time": r"propagate: t is",
-    "shapes": r"shape_of\[\d+\] is",
+    "shapes": r"shape_of\[\d+\] is|density",
     "positions": r"body_of\[\d+\] is .*; accepted: none, there are no bodies",
 }
 
@@ -226,7 +240,15 @@ def test_bad_arguments_are_named(call):
         ("distance_many", dict(shape_of=[0]), "shape_of has 1 rows; accepted: as many as positions, which has 2"),
         ("distance_many", dict(shapes=[E] * 3, shape_of=None), "shapes has 3 elements for 2 bodies"),
         ("distance_many", dict(shapes=[E, X]), "shapes[1] is of type Pose; accepted: Ellipsoid, Superellipsoid"),
-        ("distance_many", dict(shapes="E"), "shapes is 'E'; accepted: Ellipsoid, Superellipsoid"),
+        ("distance_many", dict(shapes="E"), "shapes is 'E'; accepted: Ellipsoid, Superellipsoid, or a list of them"),
+        ("distance_many", dict(shapes=np.array([E, S])), "shapes is of type ndarray; accepted: Ellipsoid, Superelli"),
+        ("contains_many", dict(shapes=(s for s in (E, S))), "shapes is of type generator; accepted: Ellipsoid, Superel"),
+        ("distance_many", dict(start=[START[0], [0, np.nan, 0], START[2]]), "start[1] is [0, nan, 0]; accepted: finite"),
+        ("overlap_many", dict(start=[START[0], START[1], [np.inf, 0, 0]]), "start[2] is [inf, 0, 0]; accepted: finite"),
+        ("distance", dict(start=[0, 0, np.nan]), "start is [0, 0, nan]; accepted: three finite numbers"),
+        ("overlap", dict(start=[0, 0, np.inf]), "start is [0, 0, inf]; accepted: three finite numbers"),
+        ("Motion", dict(time=np.inf), "time is inf; accepted: a finite number"),
+        ("at", dict(time=np.nan), "time is nan; accepted: a finite number"),
         ("distance_many", dict(threads=0), "threads is 0; accepted: an integer from 1 to 1024"),
         ("distance_many", dict(threads=True), "threads is True"),
         ("distance_many", dict(start=[[0, 0, 1]]), "start has 1 rows; accepted: as many as pairs, which has 3"),
@@ -238,6 +260,29 @@ def test_bad_arguments_are_named(call):
         ("contains_many", dict(body_of=[0, 5]), "body_of[1] is 5; accepted: 0 to 1"),
         ("ray_cast_many", dict(directions=[[0, 0, 0]] * 2), "directions[0] is zero"),
         ("ray_cast_many", dict(directions=[[0, 0, 1]]), "directions has 1 rows; accepted: as many as origins"),
+        ("time_of_contact_many", dict(velocities=[[0, 0, 0]]), "velocities has 1 rows; accepted: as many as positions"),
+        (
+            "time_of_contact_many",
+            dict(velocities=[[0, 0, 0], [0, 0, np.nan]]),
+            "velocities[1] is [0, 0, nan]; accepted: finite numbers",
+        ),
+        ("time_of_contact_many", dict(angular_velocities=[[np.inf, 0, 0], [0, 0, 0]]), "angular_velocities[0] is [inf,"),
+        ("time_of_contact_many", dict(inertias=[[1, 1, 1], [1, 1, 3]]), "inertias[1]: inertia is [1, 1, 3]; accepted"),
+        ("time_of_contact_many", dict(inertias=[1, 1, 1]), "inertias has shape (3,); accepted: real numbers of shape"),
+        ("time_of_contact_many", dict(t_max=-1), "t_max is -1; accepted: a number from 0, which may be infinite"),
+        ("time_of_contact_many", dict(t_max=np.nan), "t_max is nan"),
+        ("time_of_contact_many", dict(pairs=[[0, 2]]), "pairs[0, 1] is 2; accepted: 0 to 1"),
+        ("time_of_contact_many", dict(quaternions=[[1, 0, 0, 0], [1, 1, 0, 0]]), "quaternions[1]: Pose: quaternion"),
+        (
+            "time_of_contact_many",
+            dict(shapes=[E, hb.Superellipsoid([1, 1, 1], 0.2, 1)]),
+            "pairs[0]: exponent is 0.2; accepted of bodies in motion: 0.25 to 1.6",
+        ),
+        ("time_of_contact_many", dict(finder="bracketing", eps_d=2.0), "pairs[0]: "),
+        ("mass_properties_many", dict(density=[1, 2, 3]), "density has shape (3,); accepted: a number, or one a shape"),
+        ("mass_properties_many", dict(density=[1, 0]), "density[1] is 0; accepted: a finite number above 0"),
+        ("mass_properties_many", dict(density=np.nan), "density is nan; accepted: a finite number above 0"),
+        ("mass_properties_many", dict(shapes=[E, None]), "shapes[1] is None; accepted: Ellipsoid, Superellipsoid"),
     ],
 )
 def test_messages(function, bad, words):
@@ -256,3 +301,12 @@ def test_first_bad_entry_is_named_whatever_the_number_of_threads():
         for threads in (1, 2, 8):
             with pytest.raises(ValueError, match=r"positions\[40000\]"):
                 hb.distance_many(E, positions, None, some, threads=threads)
+
+
+def test_bodies_in_no_pair_are_not_looked_at():
+    positions, quaternions = np.array([[0, 0, 0], [4, 0, 0], [np.nan, 0, 0]]), np.array([[1.0, 0, 0, 0]] * 3)
+    quaternions[2] = 0
+    for pairs in ([[0, 1]], [[0, 1]] * 4):  # poses computed at each pair, and in advance
+        assert np.isfinite(hb.distance_many(E, positions, quaternions, pairs).distance).all()
+        contacts = hb.time_of_contact_many(E, positions, quaternions, -positions, None, pairs, 9.0)
+        assert set(contacts.status) == {"hit"}

@@ -233,6 +233,19 @@ def test_energy_and_momentum_are_conserved():
     assert audit.sound and audit.minimum_distance >= -1e-13 and audit.kinetic.energy == kinetic.energy
 
 
+def test_pressure_has_the_noise_of_collisions_alone():
+    """kT of 64 bodies' translation fluctuates by 10 %: Z by that would scatter by 0.3."""
+    simulation = hb.Simulation(fluid(packing_fraction=0.3))
+    simulation.run(time=30)
+    values = []
+    simulation.run(time=60, every=0.5, callback=lambda s: values.append((s.Z, s.pressure)))
+    Z, pressure = np.array(values).T
+    assert np.std(Z) < 0.05
+    kinetic = simulation.kinetic()
+    kT = 2 * kinetic.energy / (3 * 64 - 3 + 2 * 64)
+    np.testing.assert_allclose(pressure, Z * 64 * kT / simulation.box**3, rtol=1e-12)
+
+
 def test_calls_of_any_length_give_the_same_bits():
     one, many = hb.Simulation(fluid()), hb.Simulation(fluid())
     one.run(until=3)
@@ -321,6 +334,13 @@ def test_ctrl_c_ends_a_run_between_events():
     other.run(until=time_reached)
     other.run(until=time_reached + 1)
     assert bits(simulation) == bits(other)
+
+
+def test_numpys_false_ends_a_start():
+    calls = []
+    with pytest.raises(RuntimeError, match="progress returned False"):
+        fluid(progress=lambda packing_fraction: calls.append(packing_fraction) or np.bool_(False), number=512, packing_fraction=0.5)
+    assert len(calls) == 1
 
 
 def test_ctrl_c_ends_a_start():

@@ -19,7 +19,7 @@ def test_arrays_go_in_and_come_out(random):
     q[q[:, 0] < 0] *= -1
     p, v, w = random.uniform(-9, 9, (n, 3)), random.normal(size=(n, 3)), random.normal(size=(n, 3))
     kinds = random.integers(0, 2, n)
-    system = hb.System(50.0, [ROD, hb.Species(hb.Ellipsoid([1, 2, 3]), mass=2)], p, q, v, w, kinds)
+    system = hb.System(50.0, [hb.Species(ROD, spins=True), hb.Species(hb.Ellipsoid([1, 2, 3]), mass=2)], p, q, v, w, kinds)
     assert len(system) == n and system.box == 50
     np.testing.assert_array_equal(system.positions, p)
     np.testing.assert_allclose(system.orientations, q, atol=2e-15)
@@ -158,6 +158,11 @@ REFUSED = [
     (ValueError, r"orientations has shape", lambda: hb.System(9, ROD, P, np.ones((2, 5)))),
     (ValueError, r"orientations\[1\]", lambda: hb.System(9, ROD, P, [np.eye(3), -np.eye(3)])),
     (ValueError, "velocities has 1 rows", lambda: hb.System(9, ROD, P, velocities=[[0, 0, 0]])),
+    (
+        ValueError,
+        r"angular_velocities\[1\] is .* about its axis .* spins=True",
+        lambda: hb.System(9, ROD, P, angular_velocities=[[1, 0, 0], [1, 0, 1e-3]]),
+    ),
     (ValueError, r"angular_velocities\[0\]", lambda: hb.System(9, ROD, P, angular_velocities=[[np.nan, 0, 0]] * 2)),
     (ValueError, r"species_of\[1\] is 1", lambda: hb.System(9, ROD, P, species_of=[0, 1])),
     (TypeError, "species_of", lambda: hb.System(9, ROD, P, species_of=[0.0, 0.0])),

@@ -9,14 +9,18 @@ NumericalError.
 
 from hardbody._arrays import (
     ClosestPoints,
+    Contacts,
     Distances,
+    Masses,
     Overlaps,
     RayHits,
     closest_point_many,
     contains_many,
     distance_many,
+    mass_properties_many,
     overlap_many,
     ray_cast_many,
+    time_of_contact_many,
 )
 from hardbody._commands import analyze, check, report, resume, run, sweep
 from hardbody._commands import map as map
@@ -62,6 +66,7 @@ from hardbody._pages import Map, Report
 from hardbody._results import Analysis, Run, Sweep
 from hardbody._run_errors import SweepError, UnsoundError
 from hardbody._tables import Curves, Table
+from hardbody._typing import Shape, SupportShape
 
 # "map" is no name for `from hardbody import *`, which would hide Python's own.
 __all__ = [
@@ -70,6 +75,7 @@ __all__ = [
     "ClosestPoint",
     "ClosestPoints",
     "ContactResult",
+    "Contacts",
     "Counters",
     "Curves",
     "CustomShape",
@@ -81,6 +87,7 @@ __all__ = [
     "Kinetic",
     "Map",
     "MassProperties",
+    "Masses",
     "Motion",
     "NumericalError",
     "Observables",
@@ -92,10 +99,12 @@ __all__ = [
     "Report",
     "Results",
     "Run",
+    "Shape",
     "Simulation",
     "Species",
     "Stall",
     "Superellipsoid",
+    "SupportShape",
     "Sweep",
     "SweepError",
     "System",
@@ -118,6 +127,7 @@ __all__ = [
     "from_gsd",
     "lattice_start",
     "mass_properties",
+    "mass_properties_many",
     "overlap",
     "overlap_many",
     "random_start",
@@ -128,4 +138,5 @@ __all__ = [
     "run",
     "sweep",
     "time_of_contact",
+    "time_of_contact_many",
 ]

@@ -6,7 +6,8 @@ shapes
     One shape, or a list of shapes.
 positions, quaternions
     Positions of N bodies, shape (N, 3), and their orientations, unit quaternions (w, x, y, z) body to world, shape
-    (N, 4); None for bodies that are not rotated.
+    (N, 4); None for bodies that are not rotated. Only bodies that a pair, point or ray names are looked at: numbers of
+    others are not checked.
 shape_of
     Index of each body's shape, shape (N,). None: one shape serves all bodies, or there is one a body.
 threads
@@ -26,14 +27,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from hardbody import _core
-from hardbody._typing import Bools, Reals, Strings
+from hardbody._typing import Bools, Reals, Shape, Strings
 
-Shape: TypeAlias = _core.Ellipsoid | _core.Superellipsoid
 Shapes: TypeAlias = Shape | Sequence[Shape]
 
 # In the order of the C++ enumerators.
 _DISTANCE_STATUS = np.array(["separated", "overlapping", "not_converged", "singular"])
 _RAY_STATUS = np.array(["hit", "missed", "inside", "not_converged"])
+_CONTACT_STATUS = np.array(["hit", "separated", "overlapping", "budget_exhausted", "failed"])
 
 
 class _Rows:
@@ -153,7 +154,7 @@ class RayHits(_Rows):
     point: Reals
     """First points of the rays in the bodies, world frame, shape (M, 3)."""
     normal: Reals
-    """Unit outward normals there, world frame, shape (M, 3)."""
+    """Unit outward normals there, world frame, shape (M, 3); as of RayHit.normal for rays that start inside."""
     _code: NDArray[np.uint8]
 
     @property
@@ -163,6 +164,53 @@ class RayHits(_Rows):
 
     def _names(self) -> Strings:
         return _RAY_STATUS
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Contacts(_Rows):
+    """Answers of time_of_contact_many: arrays with one row a pair, named as the attributes of ContactResult."""
+
+    time: Reals
+    """Times of the outcomes, shape (M,)."""
+    point: Reals
+    """Contact points at these times, world frame, shape (M, 3); NaN unless it is a hit."""
+    normal: Reals
+    """Unit normals from A to B, world frame, shape (M, 3); NaN unless it is a hit."""
+    evaluations: NDArray[np.int32]
+    """Numbers of evaluations of the pairs at points in time, shape (M,)."""
+    rescues: NDArray[np.int32]
+    """Numbers of distances that 'newton8' or 'newton5' declined and the dual method answered, shape (M,)."""
+    _code: NDArray[np.uint8]
+
+    @property
+    def status(self) -> Strings:
+        """Outcomes, as of ContactResult.status, shape (M,); made at each access."""
+        return _CONTACT_STATUS[self._code]
+
+    def _names(self) -> Strings:
+        return _CONTACT_STATUS
+
+
+@dataclass(frozen=True, eq=False)
+class Masses:
+    """Answers of mass_properties_many: arrays with one row a shape, named as the attributes of MassProperties."""
+
+    volume: Reals
+    """Volumes, length^3, shape (K,)."""
+    mass: Reals
+    """Densities times volumes, shape (K,)."""
+    center_of_mass: Reals
+    """Centres of mass, body frame, shape (K, 3)."""
+    inertia: Reals
+    """Moments of inertia about the origin, body frame, shape (K, 3, 3): integral of density (|x|^2 I - x x^T)."""
+    relative_error: Reals
+    """Bounds of the relative errors of volume and inertia, shape (K,)."""
+
+    def __len__(self) -> int:
+        return len(self.volume)
+
+    def __repr__(self) -> str:
+        return f"Masses({len(self)} rows)"
 
 
 def distance_many(
@@ -183,8 +231,8 @@ def distance_many(
     shapes. quaternions: orientations, unit quaternions (w, x, y, z) body to world, shape (N, 4); None: bodies that are
     not rotated. pairs: indices (a, b) of bodies, integers of shape (M, 2). shape_of: index of each body's shape,
     integers of shape (N,); None: one shape serves all bodies, or there is one a body. threads: number of threads, 1 to
-    1024, which changes no bit of the answers. start: guesses of the normals from A to B, world frame, shape (M, 3).
-    max_iterations: maximum number of evaluations from each start, at least 1. penetration: 'global', the shortest of
+    1024, which changes no bit of the answers. start: guesses of the normals from A to B, world frame, finite,
+    shape (M, 3); 0 is none, for instance where the last answer is NaN: np.nan_to_num(last.normal). max_iterations: maximum number of evaluations from each start, at least 1. penetration: 'global', the shortest of
     all translations that separate overlapping bodies; 'local', the nearest stationary one, which is faster at large
     depths.
 
@@ -216,7 +264,7 @@ def overlap_many(
     *,
     start: ArrayLike | None = None,
 ) -> Overlaps:
-    """Returns whether the bodies of M pairs overlap; touching counts as overlap.
+    """Returns whether the bodies of M pairs overlap; touching counts as overlap. Usually one evaluation each.
 
     Arguments, frames, units and exceptions are those of distance_many. Where neither answer is certain, `unknown` of
     the answer is True: overlap_many raises no UndecidedError.
@@ -278,3 +326,61 @@ def ray_cast_many(
     return RayHits(
         *_core.ray_cast_many(shapes, positions, quaternions, origins, directions, body_of, shape_of, threads)
     )
+
+
+def time_of_contact_many(
+    shapes: Shapes,
+    positions: ArrayLike,
+    quaternions: ArrayLike | None,
+    velocities: ArrayLike | None,
+    angular_velocities: ArrayLike | None,
+    pairs: ArrayLike,
+    t_max: float,
+    shape_of: ArrayLike | None = None,
+    threads: int = 1,
+    *,
+    inertias: ArrayLike | None = None,
+    finder: Literal["certified", "bracketing"] = "certified",
+    max_evaluations: int = 2000,
+    eps_d: float = 1e-6,
+    distance: Literal["dual", "newton8", "newton5"] = "dual",
+    root: Literal["newton", "one_dimensional"] = "newton",
+) -> Contacts:
+    """Returns the first times in [0, t_max] at which the bodies of M pairs touch and approach.
+
+    positions, quaternions, velocities, angular_velocities: states of N freely moving bodies at time 0, as of Motion:
+    velocities of the centres and angular velocities, world frame, shape (N, 3); None: at rest, not turning. inertias:
+    principal moments of inertia about body x, y, z, shape (N, 3); None: 1, 1, 1, as for Motion, so that bodies turn
+    about fixed axes. Moments at uniform density are those of Ellipsoid.inertia. pairs: indices (a, b) of bodies,
+    integers of shape (M, 2). t_max: may be infinite. finder, max_evaluations, eps_d, distance, root: as for
+    time_of_contact.
+
+    Each pair is searched by itself: answers are those of time_of_contact, bit for bit.
+    """
+    return Contacts(
+        *_core.time_of_contact_many(
+            shapes,
+            positions,
+            quaternions,
+            velocities,
+            angular_velocities,
+            pairs,
+            t_max,
+            shape_of,
+            threads,
+            inertias,
+            finder,
+            max_evaluations,
+            eps_d,
+            distance,
+            root,
+        )
+    )
+
+
+def mass_properties_many(shapes: Shapes, density: ArrayLike = 1.0) -> Masses:
+    """Returns volumes, masses and moments of inertia of K shapes of uniform density, by closed forms.
+
+    shapes: one shape, or a list of K. density: one number, or one a shape, shape (K,).
+    """
+    return Masses(*_core.mass_properties_many(shapes, density))

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
+from typing import Any, Protocol, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
-if TYPE_CHECKING:
-    from hardbody import _core
+from hardbody import _core
 
 Reals = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -24,12 +23,14 @@ class Rotation(Protocol):
     def as_quat(self) -> Any: ...
 
 
-class HasSupport(Protocol):
-    """Convex body of a user's own (CustomShape)."""
+class SupportShape(Protocol):
+    """Object with a method `support`: a shape written in Python. CustomShape lists the other attributes it needs."""
 
-    def support(self, n: Any, /) -> Any: ...
+    def support(self, n: Any, /) -> Any:
+        """Returns (h, s) for a direction n, shape (3,): the height max n.x over the body, and the point s there."""
 
 
-Shape: TypeAlias = "_core.Ellipsoid | _core.Superellipsoid | _core.CustomShape | HasSupport"
-SpeciesLike: TypeAlias = "_core.Species | Shape"
-Components: TypeAlias = "SpeciesLike | _core.Polydisperse | Sequence[tuple[SpeciesLike, int] | _core.Polydisperse]"
+Shape: TypeAlias = _core.Ellipsoid | _core.Superellipsoid
+BodyShape: TypeAlias = Shape | _core.CustomShape | SupportShape
+SpeciesLike: TypeAlias = _core.Species | BodyShape
+Components: TypeAlias = SpeciesLike | _core.Polydisperse | Sequence[tuple[SpeciesLike, int] | _core.Polydisperse]

@@ -20,6 +20,7 @@ NB_MODULE(_core, module) {
   python::bind_motions(module);
   python::bind_queries(module);
   python::bind_distances(module);
+  python::bind_contacts(module);
   python::bind_body_queries(module);
   python::bind_custom_shapes(module);
   python::bind_species(module);

@@ -12,6 +12,13 @@ namespace ed {
 namespace internal {
 namespace {
 
+void require_finite(double value, const char* what) {
+  if (std::isfinite(value)) return;
+  std::ostringstream message;
+  message << what << " is " << value << "; accepted: a finite number";
+  throw std::invalid_argument(message.str());
+}
+
 void require_finite(const Eigen::Vector3d& v, const char* what) {
   if (v.allFinite()) return;
   std::ostringstream message;
@@ -35,7 +42,7 @@ void check_motion(const Motion& motion) {
   require_finite(motion.velocity, "velocity");
   require_finite(motion.angular_velocity, "angular velocity");
   check_inertia(motion.inertia);
-  require_finite(Eigen::Vector3d::Constant(motion.time), "time");
+  require_finite(motion.time, "time");
 }
 
 int symmetry_axis_of_inertia(const Eigen::Vector3d& I) {
@@ -66,7 +73,7 @@ TopMotion top_motion(const Motion& motion, int axis) {
 
 Motion propagate(const Motion& motion, double t) {
   internal::check_motion(motion);
-  if (!std::isfinite(t)) throw std::invalid_argument("propagate: t is not finite; accepted: finite numbers");
+  internal::require_finite(t, "propagate: t");
   const double tau = t - motion.time;
   const internal::FreeTop top(motion.inertia, motion.pose.rotation(), motion.angular_velocity);
   const internal::TopState there = top.at(tau);

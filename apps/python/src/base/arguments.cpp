@@ -77,6 +77,12 @@ double number(nb::handle value, const char* name) {
   return array.data()[0];
 }
 
+double finite_number(nb::handle value, const char* name) {
+  const double read = number(value, name);
+  if (!std::isfinite(read)) refuse_value(name, shown(read), "a finite number");
+  return read;
+}
+
 double positive(nb::handle value, const char* name) {
   const double read = number(value, name);
   if (!(read > 0) || !std::isfinite(read)) refuse_value(name, shown(read), "a finite number above 0");

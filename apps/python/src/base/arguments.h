@@ -37,6 +37,9 @@ std::string shown(const Eigen::Vector3d& vector);
 /// Returns a real number; it may be infinite or NaN.
 double number(nb::handle value, const char* name);
 
+/// Returns a finite real number.
+double finite_number(nb::handle value, const char* name);
+
 /// Returns a finite number above 0.
 double positive(nb::handle value, const char* name);
 
@@ -84,10 +87,11 @@ struct OneOf<std::variant<T...>> {
   /// Returns whether the value is of one of the classes.
   static bool holds(nb::handle value) { return (nb::isinstance<T>(value) || ...); }
 
-  /// Returns a copy of the object inside. Throws TypeError if the value is of none of the classes.
-  static Variant from(nb::handle value, const std::string& name) {
+  /// Returns a copy of the object inside. Throws TypeError if the value is of none of the classes; its message lists
+  /// them, and `others` after them.
+  static Variant from(nb::handle value, const std::string& name, const std::string& others = "") {
     std::optional<Variant> found;
-    if (!(put<T>(value, found) || ...)) refuse_type(name, value, accepted());
+    if (!(put<T>(value, found) || ...)) refuse_type(name, value, accepted() + others);
     return *std::move(found);
   }
 

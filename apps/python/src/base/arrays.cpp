@@ -9,8 +9,10 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <new>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 
 namespace hardbody::python {
 namespace {
@@ -110,10 +112,30 @@ std::string wanted(const char* numbers, std::size_t columns) {
 
 constexpr std::size_t kMostBytes = std::size_t{1} << 46;
 
-/// Returns an array in memory that is kept when it is dropped.
+/// Returns NumPy's uninitialised array. Throws MemoryError, naming what does not fit.
+nb::object empty_array(const nb::tuple& extents, const char* type, const std::string& what) {
+  try {
+    return nb::module_::import_("numpy").attr("empty")(extents, type);
+  } catch (nb::python_error& error) {
+    // NumPy's ValueError: more bytes than there are addresses.
+    if (!error.matches(PyExc_MemoryError) && !error.matches(PyExc_ValueError)) throw;
+    nb::raise_from(error, PyExc_MemoryError, "%s does not fit into memory", what.c_str());
+  }
+}
+
+/// Returns memory that is kept when it is dropped; null, after giving back all that is kept, if no more is available.
+std::unique_ptr<KeptMemory> kept_memory(std::size_t bytes) {
+  try {
+    return std::make_unique<KeptMemory>(bytes);
+  } catch (const std::bad_alloc&) {
+    release_kept_memory();
+    return nullptr;
+  }
+}
+
+/// Returns an array in such memory.
 template <class T>
-NewArray<T> kept_array(const std::vector<std::size_t>& shape, std::size_t size) {
-  auto memory = std::make_unique<KeptMemory>(size * sizeof(T));
+NewArray<T> kept_array(const std::vector<std::size_t>& shape, std::unique_ptr<KeptMemory> memory) {
   T* const data = static_cast<T*>(memory->data());
   const nb::capsule owner(memory.release(), [](void* dropped) noexcept { delete static_cast<KeptMemory*>(dropped); });
   return {nb::cast(nb::ndarray<nb::numpy, T>(data, shape.size(), shape.data(), owner)), data};
@@ -161,12 +183,12 @@ NewArray<T> new_array(const std::vector<std::size_t>& shape) {
   std::size_t size = 1;
   bool overflows = false;
   for (const std::size_t extent : shape) overflows |= __builtin_mul_overflow(size, extent, &size);
-  if (!overflows && size >= kLeastKept / sizeof(T) && size <= kMostBytes / sizeof(T)) return kept_array<T>(shape, size);
+  if (!overflows && size >= kLeastKept / sizeof(T) && size <= kMostBytes / sizeof(T)) {
+    if (auto memory = kept_memory(size * sizeof(T))) return kept_array<T>(shape, std::move(memory));
+  }
   nb::list extents;
   for (const std::size_t extent : shape) extents.append(extent);
-  nb::object array =
-      ask_numpy("result of shape " + shown(shape), "what fits into memory",
-                [&](const nb::module_& numpy) { return numpy.attr("empty")(nb::tuple(extents), dtype_name<T>()); });
+  nb::object array = empty_array(nb::tuple(extents), dtype_name<T>(), "a result of shape " + shown(shape));
   T* const data = nb::cast<nb::ndarray<T, nb::c_contig, nb::device::cpu>>(array).data();
   return {std::move(array), data};
 }

@@ -45,6 +45,14 @@ class FreeBlocks {
     return true;
   }
 
+  /// Frees all blocks.
+  void clear() {
+    const std::scoped_lock lock(mutex_);
+    for (const Block& block : blocks_) std::free(block.data);
+    blocks_.clear();
+    total_ = 0;
+  }
+
   FreeBlocks() { blocks_.reserve(kMostKept / kPage); }
 
  private:
@@ -74,6 +82,10 @@ KeptMemory::KeptMemory(std::size_t bytes) : size_((bytes + kPage - 1) / kPage * 
 
 KeptMemory::~KeptMemory() {
   if (!free_blocks().keep({data_, size_})) std::free(data_);
+}
+
+void release_kept_memory() {
+  free_blocks().clear();
 }
 
 }  // namespace hardbody::python

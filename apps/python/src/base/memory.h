@@ -27,4 +27,7 @@ class KeptMemory {
   std::size_t size_;
 };
 
+/// Gives back the memory that is kept.
+void release_kept_memory();
+
 }  // namespace hardbody::python

@@ -10,6 +10,7 @@ void bind_shapes(nanobind::module_& module);
 void bind_poses(nanobind::module_& module);
 void bind_motions(nanobind::module_& module);
 void bind_queries(nanobind::module_& module);
+void bind_contacts(nanobind::module_& module);
 void bind_distances(nanobind::module_& module);
 void bind_body_queries(nanobind::module_& module);
 void bind_custom_shapes(nanobind::module_& module);

@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <new>
 #include <stdexcept>
 
 namespace hardbody::python {
@@ -29,24 +31,22 @@ bool is_sequence(nb::handle value) {
   return nb::isinstance<nb::list>(value) || nb::isinstance<nb::tuple>(value);
 }
 
+/// Returns memory for poses; null if none is available.
+geom::Pose* allocated_poses(std::size_t count) {
+  try {
+    return std::allocator<geom::Pose>().allocate(count);
+  } catch (const std::bad_alloc&) {
+    return nullptr;
+  }
+}
+
 }  // namespace
 
 Bodies::Bodies(nb::handle shapes, nb::handle positions, nb::handle quaternions, nb::handle shape_of)
     : positions_(positions, "positions", 3), quaternions_(optional_rows(quaternions, "quaternions", 4)) {
   if (quaternions_) check_rows("quaternions", quaternions_->size(), "positions", size());
-  read_shapes(shapes);
+  shapes_ = read_shapes(shapes);
   read_shape_of(shape_of);
-}
-
-void Bodies::read_shapes(nb::handle shapes) {
-  if (!is_sequence(shapes)) {
-    shapes_.push_back(python::shape(shapes, "shapes"));
-    return;
-  }
-  const std::size_t count = nb::len(shapes);
-  if (count > kMostShapes) refuse_value("number of shapes", std::to_string(count), "at most 4294967295");
-  shapes_.reserve(count);
-  for (std::size_t k = 0; k < count; ++k) shapes_.push_back(python::shape(shapes[k], entry("shapes", k)));
 }
 
 void Bodies::read_shape_of(nb::handle shape_of) {
@@ -68,8 +68,7 @@ void Bodies::read_shape_of(nb::handle shape_of) {
   for (std::size_t k = 0; k < size(); ++k) shape_of_[k] = static_cast<std::uint32_t>(k);
 }
 
-/// Returns the pose by Pose's own checks, which mostly throw.
-geom::Pose Bodies::refused_pose(std::size_t body) const {
+geom::Pose Bodies::checked_pose(std::size_t body) const {
   std::string name = "positions";
   try {
     const auto position = geom::Pose::translation(Eigen::Vector3d::Map(positions_[body])).position();
@@ -86,7 +85,8 @@ PairPoses::PairPoses(const Bodies& bodies, std::size_t pairs, int threads)
     : bodies_(bodies), stored_(nullptr, Free{bodies.size()}) {
   // Computing a pose takes about as long as writing it to new memory and reading it again.
   if (bodies.size() > pairs) return;
-  stored_.reset(std::allocator<geom::Pose>().allocate(bodies.size()));
+  stored_.reset(allocated_poses(bodies.size()));
+  if (!stored_) return;
   parallel(bodies.size(), range_length(bodies.size(), threads), threads, Work([&](std::size_t begin, std::size_t end) {
              for (std::size_t k = begin; k < end; ++k) std::construct_at(&stored_[k], bodies.pose_or_nan(k));
            }));
@@ -103,6 +103,16 @@ BodyOf::BodyOf(nb::handle body_of, const Bodies& bodies, std::size_t queries, co
   throw nb::value_error((queries_name + " has " + std::to_string(queries) + " rows for " + std::to_string(bodies_) +
                          " bodies; accepted: any number for one body, one a body, or any number with body_of")
                             .c_str());
+}
+
+std::vector<geom::Shape> read_shapes(nb::handle shapes) {
+  if (!is_sequence(shapes)) return {OneOf<geom::Shape>::from(shapes, "shapes", ", or a list of them")};
+  const std::size_t count = nb::len(shapes);
+  if (count > kMostShapes) refuse_value("number of shapes", std::to_string(count), "at most 4294967295");
+  std::vector<geom::Shape> read;
+  read.reserve(count);
+  for (std::size_t k = 0; k < count; ++k) read.push_back(shape(shapes[k], entry("shapes", k)));
+  return read;
 }
 
 int thread_count(nb::handle threads) {

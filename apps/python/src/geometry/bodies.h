@@ -37,16 +37,18 @@ class Bodies {
   std::size_t shape_index(std::size_t body) const { return shape_of_.empty() ? 0 : shape_of_[body]; }
   const geom::Shape& shape(std::size_t body) const { return shapes_[shape_index(body)]; }
 
-  /// Returns a body's pose. Throws ValueError, naming the entry, if its numbers are none.
+  /// Returns a body's pose. Throws ValueError, naming the entry, if position or quaternion are refused.
   geom::Pose pose(std::size_t body) const;
 
-  /// Returns a body's pose, or one with NaN as position if that needs a closer look: pose(body) then decides.
+  /// Returns a body's pose by Pose's own functions, bit for bit. pose() is faster and differs by rounding. Throws as
+  /// pose().
+  geom::Pose checked_pose(std::size_t body) const;
+
+  /// Returns a body's pose; its position is NaN where the numbers may be refused, which pose(body) decides.
   geom::Pose pose_or_nan(std::size_t body) const;
 
  private:
-  void read_shapes(nb::handle shapes);
   void read_shape_of(nb::handle shape_of);
-  geom::Pose refused_pose(std::size_t body) const;
 
   std::vector<geom::Shape> shapes_;
   RealRows positions_;
@@ -86,11 +88,11 @@ inline geom::Pose Bodies::pose_or_nan(std::size_t body) const {
 
 inline geom::Pose Bodies::pose(std::size_t body) const {
   const geom::Pose X = pose_or_nan(body);
-  return std::isnan(X.position().x()) ? refused_pose(body) : X;
+  return std::isnan(X.position().x()) ? checked_pose(body) : X;
 }
 
-/// Poses of bodies that are in pairs, computed in advance if most bodies are in several. Bodies in no pair are not
-/// checked.
+/// Poses of bodies that are in pairs, computed in advance if most bodies are in several and there is memory for them.
+/// Bodies in no pair are not checked.
 class PairPoses {
  public:
   PairPoses(const Bodies& bodies, std::size_t pairs, int threads);
@@ -137,14 +139,17 @@ class BodyOf {
   std::optional<IndexRows> indices_;
 };
 
+/// Reads `shapes`, one shape or a list of them.
+std::vector<geom::Shape> read_shapes(nb::handle shapes);
+
 /// Returns the number of threads that a caller wants.
 int thread_count(nb::handle threads);
 
 /// Throws ValueError unless an array has as many rows as another.
 void check_rows(const std::string& name, std::size_t rows, const std::string& other, std::size_t wanted);
 
-/// Returns a length of ranges (see parallel) that keeps all threads busy and interrupts short: at most 512. Threads whose
-/// ranges of 64 alternate in memory slow each other down by a fifth.
+/// Returns a length of ranges (see parallel) that keeps all threads busy and interrupts short: at most 512. Threads
+/// whose ranges of 64 alternate in memory slow each other down by a fifth.
 std::size_t range_length(std::size_t count, int threads);
 
 }  // namespace hardbody::python

@@ -297,7 +297,7 @@ void bind_custom_shapes(nb::module_& module) {
           },
           nb::arg("object").none(), nb::kw_only(), nb::arg("name") = nb::none(), nb::arg("volume") = nb::none(),
           nb::arg("symmetry_axis") = nb::none(), nb::arg("centrally_symmetric") = nb::none(),
-          nb::sig("def __init__(self, object: hardbody._typing.HasSupport, *, name: str | None = None, "
+          nb::sig("def __init__(self, object: hardbody._typing.SupportShape, *, name: str | None = None, "
                   "volume: float | None = None, symmetry_axis: int | None = None, "
                   "centrally_symmetric: bool | None = None) -> None"),
           "Constructs a shape from an object with a support function. None: the attribute or method of that name of\n"

@@ -102,9 +102,10 @@ struct PairQuery {
     }
   }
 
+  /// Returns the guess of a pair's normal, 0 for none. Throws ValueError, naming the row, unless it is finite.
   Eigen::Vector3d start(std::size_t row) const {
     if (!starts) return Eigen::Vector3d::Zero();
-    return Eigen::Vector3d::Map((*starts)[row]);
+    return starts->finite_vector(row);
   }
 
   Bodies bodies;

@@ -1,6 +1,7 @@
 #include "base/arguments.h"
 #include "base/arrays.h"
 #include "geometry/bind.h"
+#include "geometry/bodies.h"
 #include "geometry/custom_queries.h"
 #include "geometry/options.h"
 #include "geometry/shapes.h"
@@ -14,10 +15,13 @@
 
 #include <Eigen/Core>
 
+#include <cmath>
+#include <cstddef>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <variant>
+#include <vector>
 
 namespace hardbody::python {
 namespace {
@@ -81,25 +85,31 @@ void bind_distance(nb::module_& module) {
       [](nb::handle a, nb::handle pose_a, nb::handle b, nb::handle pose_b, nb::handle start, nb::handle max_iterations,
          nb::handle penetration) {
         geom::DistanceOptions options = distance_options(max_iterations, penetration);
-        if (!start.is_none()) options.start = vector3(start, "start");
+        if (!start.is_none()) options.start = finite_vector3(start, "start");
         return any::distance(body_shape(a, "a"), pose(pose_a, "pose_a"), body_shape(b, "b"), pose(pose_b, "pose_b"),
                              options);
       },
       nb::arg("a").none(), nb::arg("pose_a").none(), nb::arg("b").none(), nb::arg("pose_b").none(), nb::kw_only(),
       nb::arg("start") = nb::none(), nb::arg("max_iterations").none() = geom::kMaxIterations,
       nb::arg("penetration").none() = "global",
-      nb::sig("def distance(a: hardbody._typing.Shape, pose_a: Pose, b: hardbody._typing.Shape, pose_b: Pose, "
+      nb::sig("def distance(a: hardbody._typing.BodyShape, pose_a: Pose, b: hardbody._typing.BodyShape, pose_b: Pose, "
               "*, start: numpy.typing.ArrayLike | None = None, max_iterations: int = 60, "
               "penetration: typing.Literal['global', 'local'] = 'global') -> DistanceResult"),
       "Returns the signed distance of two bodies, with closest points, normal and a certified error bound.\n"
       "\n"
-      "start: a guess of the normal from A to B, shape (3,), for instance the last answer's. max_iterations: maximum\n"
-      "number of evaluations from each start, at least 1. penetration: 'global', the shortest of all translations "
-      "that\n"
-      "separate overlapping bodies; 'local', the nearest stationary one, which is faster at large depths.\n"
+      "start: a guess of the normal from A to B, finite, shape (3,), for instance the last answer's; 0: none.\n"
+      "max_iterations: maximum number of evaluations from each start, at least 1. penetration: 'global', the\n"
+      "shortest of all translations that separate overlapping bodies; 'local', the nearest stationary one, which is\n"
+      "faster at large depths.\n"
       "\n"
-      "Accuracy for ellipsoids: 1e-13 of the size of the pair when apart, error_bound when deep in each other. A\n"
-      "query takes a fraction of a microsecond for ellipsoids, one to three for superellipsoids, 0.05 to 0.3\n"
+      "Errors are relative to the size of the pair: the distance of centres plus both bounding radii. Ellipsoids:\n"
+      "at most 1e-13, mostly 1e-16. Superellipsoids of aspect ratios up to 10: at most 1e-12 when apart; flatter and\n"
+      "longer ones 1e-9, or there is no answer. Overlaps deeper than the smallest radii of curvature: no other way\n"
+      "out is shorter by more than error_bound, mostly 1e-9, up to 1e-7 where faces meet, and more for long bodies\n"
+      "that are nearly parallel. Shapes of your own: as ellipsoids where they are smooth; where they have kinks\n"
+      "(faces, edges) up to some 1e-6, always within error_bound, which may be 1e-2.\n"
+      "\n"
+      "A query takes a fraction of a microsecond for ellipsoids, one to three for superellipsoids, 0.05 to 0.3\n"
       "milliseconds in deep overlaps. distance_many answers many pairs, several times faster.");
   module.def(
       "distance_lower_bound",
@@ -108,7 +118,7 @@ void bind_distance(nb::module_& module) {
                                          pose(pose_b, "pose_b"), direction3(n, "n"));
       },
       nb::arg("a").none(), nb::arg("pose_a").none(), nb::arg("b").none(), nb::arg("pose_b").none(), nb::arg("n").none(),
-      nb::sig("def distance_lower_bound(a: hardbody._typing.Shape, pose_a: Pose, b: hardbody._typing.Shape, "
+      nb::sig("def distance_lower_bound(a: hardbody._typing.BodyShape, pose_a: Pose, b: hardbody._typing.BodyShape, "
               "pose_b: Pose, n: numpy.typing.ArrayLike) -> float"),
       "Returns a lower bound of the distance, certain for any direction n from A to B, world frame, shape (3,): the\n"
       "gap between the tangent planes across n, less its rounding error. Negative if the bodies overlap in that\n"
@@ -122,7 +132,7 @@ class Undecided : public std::runtime_error {
 };
 
 bool overlap(nb::handle a, nb::handle pose_a, nb::handle b, nb::handle pose_b, nb::handle start) {
-  const Eigen::Vector3d guess = start.is_none() ? Eigen::Vector3d::Zero() : vector3(start, "start");
+  const Eigen::Vector3d guess = start.is_none() ? Eigen::Vector3d::Zero() : finite_vector3(start, "start");
   const geom::Answer answer =
       any::overlap(body_shape(a, "a"), pose(pose_a, "pose_a"), body_shape(b, "b"), pose(pose_b, "pose_b"), guess);
   if (answer != geom::Answer::unknown) return answer == geom::Answer::yes;
@@ -135,10 +145,11 @@ void bind_overlap(nb::module_& module) {
   module.def(
       "overlap", &overlap, nb::arg("a").none(), nb::arg("pose_a").none(), nb::arg("b").none(), nb::arg("pose_b").none(),
       nb::kw_only(), nb::arg("start") = nb::none(),
-      nb::sig("def overlap(a: hardbody._typing.Shape, pose_a: Pose, b: hardbody._typing.Shape, pose_b: Pose, "
+      nb::sig("def overlap(a: hardbody._typing.BodyShape, pose_a: Pose, b: hardbody._typing.BodyShape, pose_b: Pose, "
               "*, start: numpy.typing.ArrayLike | None = None) -> bool"),
-      "Returns whether two bodies overlap; touching counts as overlap. Mostly decided by one evaluation, across\n"
-      "`start` (a guess of the normal from A to B, shape (3,)) or the line of centres.\n"
+      "Returns whether two bodies overlap, usually after one evaluation; touching counts as overlap.\n"
+      "\n"
+      "start: a guess of the normal from A to B, finite, shape (3,); 0 or None: the line of centres.\n"
       "\n"
       "Raises UndecidedError if neither answer is certain: bodies that touch within the error bound, rare and only\n"
       "with flat or long superellipsoids.");
@@ -170,7 +181,7 @@ void bind_closest_point(nb::module_& module) {
         return any::closest_point(body_shape(s, "shape"), pose(X, "pose"), finite_vector3(point, "point"));
       },
       nb::arg("shape").none(), nb::arg("pose").none(), nb::arg("point").none(),
-      nb::sig("def closest_point(shape: hardbody._typing.Shape, pose: Pose, point: numpy.typing.ArrayLike) "
+      nb::sig("def closest_point(shape: hardbody._typing.BodyShape, pose: Pose, point: numpy.typing.ArrayLike) "
               "-> ClosestPoint"),
       "Returns the point of a body's surface that is closest to a point, world frame, shape (3,), which may be "
       "inside.\n"
@@ -187,7 +198,7 @@ void bind_contains(nb::module_& module) {
         throw Undecided("contains: the point is on the surface within the error bound; closest_point has bounds");
       },
       nb::arg("shape").none(), nb::arg("pose").none(), nb::arg("point").none(),
-      nb::sig("def contains(shape: hardbody._typing.Shape, pose: Pose, point: numpy.typing.ArrayLike) -> bool"),
+      nb::sig("def contains(shape: hardbody._typing.BodyShape, pose: Pose, point: numpy.typing.ArrayLike) -> bool"),
       "Returns whether a point, world frame, shape (3,), is in the body or on its surface. Raises\n"
       "UndecidedError for shapes of your own where neither answer is certain.");
 }
@@ -206,7 +217,10 @@ void bind_ray_cast(nb::module_& module) {
                ", point=" + shown(r.point) + ", normal=" + shown(r.normal) + ')';
       });
   bind_vector(type, "point", &RayHit::point, "First point of the ray in the body, shape (3,).");
-  bind_vector(type, "normal", &RayHit::normal, "Unit outward normal there, shape (3,).");
+  bind_vector(
+      type, "normal", &RayHit::normal,
+      "Unit outward normal there, shape (3,). For 'inside' it is that of the surface nearby or, in the centre,\n"
+      "the direction against the ray.");
   module.def(
       "ray_cast",
       [](nb::handle s, nb::handle X, nb::handle origin, nb::handle direction) {
@@ -214,7 +228,7 @@ void bind_ray_cast(nb::module_& module) {
                              direction3(direction, "direction"));
       },
       nb::arg("shape").none(), nb::arg("pose").none(), nb::arg("origin").none(), nb::arg("direction").none(),
-      nb::sig("def ray_cast(shape: hardbody._typing.Shape, pose: Pose, origin: numpy.typing.ArrayLike, "
+      nb::sig("def ray_cast(shape: hardbody._typing.BodyShape, pose: Pose, origin: numpy.typing.ArrayLike, "
               "direction: numpy.typing.ArrayLike) -> RayHit"),
       "Returns the first point origin + t direction, t >= 0, in the body; both of shape (3,), world frame, the\n"
       "direction of any length but 0. The point is within 1e-13 of the bounding radius of the surface.");
@@ -224,7 +238,19 @@ void bind_ray_cast(nb::module_& module) {
 struct Mass {
   double density = 1;
   geom::MassProperties unit;  ///< properties at density 1
+
+  double mass() const { return density * unit.volume; }
+  Eigen::Vector3d center_of_mass() const { return unit.first_moment / unit.volume; }
+  Eigen::Matrix3d inertia() const { return density * unit.inertia; }
 };
+
+geom::MassProperties by_closed_forms(const geom::Shape& shape) {
+  geom::MassProperties unit;
+  unit.volume = geom::volume(shape);
+  unit.inertia = geom::inertia(shape, unit.volume).asDiagonal();
+  unit.relative_error = 1e-12;
+  return unit;
+}
 
 Mass mass_properties(nb::handle value, nb::handle density, nb::handle quadrature_tolerance) {
   const geom::Shape body = shape(value, "shape");
@@ -236,10 +262,45 @@ Mass mass_properties(nb::handle value, nb::handle density, nb::handle quadrature
         std::visit([&](const auto& s) { return geom::mass_properties(s, s.bounding_radius(), tolerance); }, body);
     return mass;
   }
-  mass.unit.volume = geom::volume(body);
-  mass.unit.inertia = geom::inertia(body, mass.unit.volume).asDiagonal();
-  mass.unit.relative_error = 1e-12;
+  mass.unit = by_closed_forms(body);
   return mass;
+}
+
+/// Returns densities of as many shapes, from one number or one each.
+std::vector<double> densities(nb::handle value, std::size_t shapes) {
+  const RealArray array(value, "density", "a number, or one a shape");
+  const bool is_one = array.shape().empty();
+  if (!is_one && array.shape() != std::vector{shapes}) {
+    refuse_shape("density", array.shape(), "a number, or one a shape, shape (" + std::to_string(shapes) + ",)");
+  }
+  if (is_one) return std::vector<double>(shapes, positive(value, "density"));
+  std::vector<double> read(array.data(), array.data() + shapes);
+  for (std::size_t k = 0; k < shapes; ++k) {
+    if (read[k] > 0 && std::isfinite(read[k])) continue;
+    refuse_value("density[" + std::to_string(k) + ']', shown(read[k]), "a finite number above 0");
+  }
+  return read;
+}
+
+nb::tuple mass_properties_many(nb::handle shapes, nb::handle density) {
+  const std::vector<geom::Shape> bodies = read_shapes(shapes);
+  const std::size_t rows = bodies.size();
+  const std::vector<double> each = densities(density, rows);
+  const NewArray<double> volume = new_array<double>({rows}), mass = new_array<double>({rows});
+  const NewArray<double> center = new_array<double>({rows, 3}), inertia = new_array<double>({rows, 3, 3});
+  const NewArray<double> relative_error = new_array<double>({rows});
+  {
+    const nb::gil_scoped_release released;
+    for (std::size_t k = 0; k < rows; ++k) {
+      const Mass m{each[k], by_closed_forms(bodies[k])};
+      volume.data[k] = m.unit.volume;
+      mass.data[k] = m.mass();
+      Eigen::Vector3d::Map(center.data + 3 * k) = m.center_of_mass();
+      Eigen::Matrix3d::Map(inertia.data + 9 * k) = m.inertia();  // symmetric
+      relative_error.data[k] = m.unit.relative_error;
+    }
+  }
+  return nb::make_tuple(volume.array, mass.array, center.array, inertia.array, relative_error.array);
 }
 
 void bind_mass_properties(nb::module_& module) {
@@ -248,22 +309,21 @@ void bind_mass_properties(nb::module_& module) {
       .def_prop_ro(
           "volume", [](const Mass& m) { return m.unit.volume; }, "Volume, length^3.")
       .def_prop_ro(
-          "mass", [](const Mass& m) { return m.density * m.unit.volume; }, "Density times volume.")
+          "mass", [](const Mass& m) { return m.mass(); }, "Density times volume.")
       .def_prop_ro(
-          "center_of_mass",
-          [](const Mass& m) { return array_of(Eigen::Vector3d(m.unit.first_moment / m.unit.volume)); },
+          "center_of_mass", [](const Mass& m) { return array_of(m.center_of_mass()); },
           array("def center_of_mass(self) -> numpy.typing.NDArray[numpy.float64]"), "Centre of mass, shape (3,).")
       .def_prop_ro(
-          "inertia", [](const Mass& m) { return array_of(Eigen::Matrix3d(m.density * m.unit.inertia)); },
+          "inertia", [](const Mass& m) { return array_of(m.inertia()); },
           array("def inertia(self) -> numpy.typing.NDArray[numpy.float64]"),
           "Moments of inertia about the origin, shape (3, 3): integral of density (|x|^2 I - x x^T).")
       .def_prop_ro(
           "relative_error", [](const Mass& m) { return m.unit.relative_error; },
           "Bound (closed forms) or estimate (quadrature) of the relative error of volume and inertia.")
       .def("__repr__", [](const Mass& m) {
-        const Eigen::Vector3d moments = m.density * m.unit.inertia.diagonal();
-        return "MassProperties(volume=" + shown(m.unit.volume) + ", mass=" + shown(m.density * m.unit.volume) +
-               ", inertia=diag(" + shown(moments) + "), relative_error=" + shown(m.unit.relative_error) + ')';
+        const Eigen::Vector3d moments = m.inertia().diagonal();
+        return "MassProperties(volume=" + shown(m.unit.volume) + ", mass=" + shown(m.mass()) + ", inertia=diag(" +
+               shown(moments) + "), relative_error=" + shown(m.unit.relative_error) + ')';
       });
   module.def(
       "mass_properties", &mass_properties, nb::arg("shape").none(), nb::arg("density").none() = 1.0, nb::kw_only(),
@@ -274,6 +334,8 @@ void bind_mass_properties(nb::module_& module) {
       "\n"
       "With quadrature_tolerance, a relative error, they are integrated over the surface instead, in milliseconds to\n"
       "seconds (boxes with sharp edges); the GIL is released.");
+  module.def("mass_properties_many", &mass_properties_many, nb::arg("shapes").none(), nb::arg("density").none(),
+             nb::sig("def mass_properties_many(shapes: typing.Any, density: typing.Any) -> tuple[typing.Any, ...]"));
 }
 
 }  // namespace

@@ -14,4 +14,10 @@ void bind_outcomes(nanobind::module_& module);
 void bind_observables(nanobind::module_& module);
 void bind_simulations(nanobind::module_& module);
 
+class PythonSimulation;
+/// Defines run and what else changes a simulation.
+void bind_simulation_runs(nanobind::class_<PythonSimulation>& type);
+/// Defines arrays and numbers of a simulation's state.
+void bind_simulation_numbers(nanobind::class_<PythonSimulation>& type);
+
 }  // namespace hardbody::python

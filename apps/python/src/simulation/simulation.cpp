@@ -95,13 +95,6 @@ class CallTimes {
   double count_ = 1;
 };
 
-/// Returns whether the answer of a callback is False, Python's or NumPy's; other answers have no meaning.
-bool ends_run(const nb::object& answer) {
-  if (answer.is(nb::handle(Py_False))) return true;
-  const nb::object type = nb::module_::import_("numpy").attr("bool_");
-  return PyObject_IsInstance(answer.ptr(), type.ptr()) == 1 && PyObject_IsTrue(answer.ptr()) == 0;
-}
-
 }  // namespace
 
 PythonSimulation::PythonSimulation(const BodySystem& bodies, const ed::SimulationOptions& options)

@@ -194,7 +194,7 @@ void bind_species(nb::module_& module) {
           },
           nb::arg("shape").none(), nb::arg("mass").none() = 1.0, nb::arg("inertia") = nb::none(),
           nb::arg("spins") = nb::none(),
-          nb::sig("def __init__(self, shape: hardbody._typing.Shape, mass: float = 1.0, "
+          nb::sig("def __init__(self, shape: hardbody._typing.BodyShape, mass: float = 1.0, "
                   "inertia: typing.Literal['paper', 'uniform'] | numpy.typing.ArrayLike | None = None, "
                   "spins: bool | None = None) -> None"),
           "Constructs a species.\n"

@@ -47,8 +47,7 @@ class ProgressReport {
     try {
       check_interrupts();
       if (callable_.is_none()) return true;
-      const nb::object go_on = callable_(packing_fraction);
-      is_stopped_ = go_on.is(nb::handle(Py_False));
+      is_stopped_ = ends_run(callable_(packing_fraction));
       return !is_stopped_;
     } catch (...) {
       failure_ = std::current_exception();

@@ -104,6 +104,23 @@ void read_species(nb::handle value, nb::handle species_of_body, ed::System& syst
   }
 }
 
+/// Refuses rotation about the axis of a body that has none by its species: it would be dropped.
+void check_spins(const ed::System& system) {
+  for (std::size_t k = 0; k < system.bodies.size(); ++k) {
+    const ed::Body& body = system.bodies[k];
+    const ed::Species& species = system.species[static_cast<std::size_t>(body.species)];
+    const std::optional<int> axis = ed::symmetry_axis(species);
+    if (!axis || species.spins) continue;
+    const Vector3d& w = body.angular_velocity;
+    const double spin = w.stableNormalized().dot(body.rotation.col(*axis));
+    if (!(std::abs(spin) > 1e-9)) continue;
+    throw nb::value_error((entry("angular_velocities", k) + " is " + shown(w) + ", which turns body " +
+                           std::to_string(k) + " about its axis " + shown(body.rotation.col(*axis)) +
+                           "; accepted: across the axis, or Species(..., spins=True)")
+                              .c_str());
+  }
+}
+
 std::vector<int> read_groups(nb::handle value, const ed::System& system) {
   if (value.is_none()) return groups_of(system);
   const IndexRows rows(value, "groups", 1);
@@ -143,6 +160,7 @@ BodySystem make_system(nb::handle box, nb::handle species, nb::handle positions,
   read_vectors(velocities, "velocities", system, &ed::Body::velocity);
   read_vectors(angular_velocities, "angular_velocities", system, &ed::Body::angular_velocity);
   read_species(species, species_of_body, system);
+  check_spins(system);
   made.groups = read_groups(groups, system);
   return made;
 }
@@ -230,10 +248,12 @@ void bind_constructor(nb::class_<BodySystem>& type) {
       "shape (N, 4), or rotation matrices, shape (N, 3, 3); None: not rotated. velocities, angular_velocities: world\n"
       "frame, shape (N, 3); None: at rest (see thermalized). species_of: index of each body's species, shape (N,);\n"
       "None: there is one species, or one a body. groups: numbers of bodies of consecutive groups, whose\n"
-      "temperatures are set and whose observables are measured separately; None: the species.\n"
+      "temperatures are set and whose observables are measured separately; None: runs of bodies of one species, but\n"
+      "one group of all where species alternate or each body has its own.\n"
       "\n"
-      "Raises ValueError for numbers that are not finite and orientations that are not unit within 1e-6. Overlaps are\n"
-      "not looked for here, but by audit and by Simulation.");
+      "Raises ValueError for numbers that are not finite, orientations that are not unit within 1e-6, and rotation of\n"
+      "bodies of revolution about their axes unless they spin (Species). Overlaps are not looked for here, but by\n"
+      "audit and by Simulation.");
 }
 
 void bind_numbers(nb::class_<BodySystem>& type) {

@@ -22,6 +22,14 @@ inline void check_interrupts() {
   if (PyErr_CheckSignals() != 0) throw nb::python_error();
 }
 
+/// Returns whether the answer of a callback is False, Python's or NumPy's; other answers have no meaning. The caller
+/// holds the GIL.
+inline bool ends_run(nb::handle answer) {
+  if (answer.is(nb::handle(Py_False))) return true;
+  const nb::object type = nb::module_::import_("numpy").attr("bool_");
+  return PyObject_IsInstance(answer.ptr(), type.ptr()) == 1 && PyObject_IsTrue(answer.ptr()) == 0;
+}
+
 /// Clock that tells when a tenth of a second has passed, for looks at signals and reports of progress.
 class Ticks {
  public:

@@ -265,8 +265,8 @@ TEST(Propagate, RefusesWhatNoBodyCanHaveAndNamesIt) {
   };
   EXPECT_PRED2(has, refusal([&](Motion& m) { m.velocity.y() = nan; }), "velocity");
   EXPECT_PRED2(has, refusal([&](Motion& m) { m.angular_velocity.x() = inf; }), "angular velocity");
-  EXPECT_PRED2(has, refusal([&](Motion& m) { m.time = -inf; }), "time");
-  EXPECT_PRED2(has, refusal([](Motion&) {}, nan), "t is not finite");
+  EXPECT_PRED2(has, refusal([&](Motion& m) { m.time = -inf; }), "time is -inf;");
+  EXPECT_PRED2(has, refusal([](Motion&) {}, nan), "t is nan;");
   EXPECT_PRED2(has, refusal([&](Motion& m) { m.inertia.z() = nan; }), "inertia");
   EXPECT_PRED2(has, refusal([](Motion& m) { m.inertia = {1, 1, 0}; }), "inertia");
   EXPECT_PRED2(has, refusal([](Motion& m) { m.inertia = {1, -1, 1}; }), "inertia");
