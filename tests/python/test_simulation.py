@@ -339,7 +339,11 @@ def test_ctrl_c_ends_a_run_between_events():
 def test_numpys_false_ends_a_start():
     calls = []
     with pytest.raises(RuntimeError, match="progress returned False"):
-        fluid(progress=lambda packing_fraction: calls.append(packing_fraction) or np.bool_(False), number=512, packing_fraction=0.5)
+        fluid(
+            progress=lambda packing_fraction: calls.append(packing_fraction) or np.bool_(False),
+            number=512,
+            packing_fraction=0.5,
+        )
     assert len(calls) == 1
 
 

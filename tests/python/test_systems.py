@@ -19,7 +19,9 @@ def test_arrays_go_in_and_come_out(random):
     q[q[:, 0] < 0] *= -1
     p, v, w = random.uniform(-9, 9, (n, 3)), random.normal(size=(n, 3)), random.normal(size=(n, 3))
     kinds = random.integers(0, 2, n)
-    system = hb.System(50.0, [hb.Species(ROD, spins=True), hb.Species(hb.Ellipsoid([1, 2, 3]), mass=2)], p, q, v, w, kinds)
+    system = hb.System(
+        50.0, [hb.Species(ROD, spins=True), hb.Species(hb.Ellipsoid([1, 2, 3]), mass=2)], p, q, v, w, kinds
+    )
     assert len(system) == n and system.box == 50
     np.testing.assert_array_equal(system.positions, p)
     np.testing.assert_allclose(system.orientations, q, atol=2e-15)
