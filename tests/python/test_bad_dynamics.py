@@ -123,6 +123,7 @@ OTHER_WORDS = {
     "until": r"^every is .* for doubles near time",
     "callback": r"^position has dtype object",  # of Pose, which is called
     "progress": r"^position has dtype object",
+    "box": r"^positions\[\d+\] is .* boxes of the origin",
     "duration": r"^longest_lag is .* at most the duration",
     "path": r"No such file or directory: ",
     "state": r"No such file or directory: ",
