@@ -86,8 +86,8 @@ assert abs(one.distance - distance.min()) < 1e-12 and one.error_bound < 1e-9
 # %% [markdown]
 # And between the steps? No point of the arm moves further in a step than the arm's reach times the sum of the joints'
 # paths, which are at most their largest rates `|dq/ds|` times the step. That is less than the least clearance: the
-# whole motion is free, not only the configurations that were computed. (Half of it would do for an obstacle that stands
-# still; the upper arm and the hand both move.)
+# whole motion is free, not only the configurations that were computed. (Half of it would do for an obstacle that
+# stands still; the upper arm and the hand both move.)
 
 # %%
 reach = 0.75 + 0.65 + np.hypot(0.21, 0.05)  # from shoulder to elbow to wrist to the corners of the hand's far end

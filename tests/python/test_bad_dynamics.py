@@ -114,6 +114,7 @@ FUNCTIONS = {
 
 # What messages say in place of an argument's name.
 OTHER_WORDS = {
+    "box": r"^positions\[\d\] is .* boxes of the origin",
     "factor": r"semi-axis [xyz] is",
     "mass": r"^inertia is .* all mass at the bounding radius",
     "object": r"accepted: an object with a method support",
@@ -123,7 +124,6 @@ OTHER_WORDS = {
     "until": r"^every is .* for doubles near time",
     "callback": r"^position has dtype object",  # of Pose, which is called
     "progress": r"^position has dtype object",
-    "box": r"^positions\[\d+\] is .* boxes of the origin",
     "duration": r"^longest_lag is .* at most the duration",
     "path": r"No such file or directory: ",
     "state": r"No such file or directory: ",
