@@ -72,14 +72,20 @@ def test_help_stands_by_itself():
     said = " ".join(inspect.getdoc(hb.distance_many).split())
     for words in ("shape (N, 3)", "shape (N, 4)", "shape (M, 2)", "world frame", "unit of the shapes", "Raises"):
         assert words in said
-    for function in (hb.overlap_many, hb.contains_many, hb.closest_point_many, hb.ray_cast_many):
+    for function in (
+        hb.overlap_many,
+        hb.contains_many,
+        hb.closest_point_many,
+        hb.ray_cast_many,
+        hb.time_of_contact_many,
+    ):
         assert "distance_many" in inspect.getdoc(function)
 
 
 @pytest.mark.parametrize(
     "kind",
     [
-        *(hb.Distances, hb.Overlaps, hb.ClosestPoints, hb.RayHits),
+        *(hb.Distances, hb.Overlaps, hb.ClosestPoints, hb.RayHits, hb.Contacts, hb.Masses),
         *(hb.Estimate, hb.VectorEstimate, hb.TensorEstimate, hb.NumericalError),
     ],
 )

@@ -6,8 +6,7 @@ shapes
     One shape, or a list of shapes.
 positions, quaternions
     Positions of N bodies, shape (N, 3), and their orientations, unit quaternions (w, x, y, z) body to world, shape
-    (N, 4); None for bodies that are not rotated. Only bodies that a pair, point or ray names are looked at: numbers of
-    others are not checked.
+    (N, 4); None for bodies that are not rotated. Numbers of bodies that no pair, point or ray names are not checked.
 shape_of
     Index of each body's shape, shape (N,). None: one shape serves all bodies, or there is one a body.
 threads
@@ -168,7 +167,13 @@ class RayHits(_Rows):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Contacts(_Rows):
-    """Answers of time_of_contact_many: arrays with one row a pair, named as the attributes of ContactResult."""
+    """Answers of time_of_contact_many: arrays with one row a pair, named as the attributes of ContactResult.
+
+    time: times of the outcomes, shape (M,). point: contact points, world frame, shape (M, 3); NaN unless it is a hit.
+    normal: unit normals from A to B, world frame, shape (M, 3); NaN unless it is a hit. evaluations: numbers of
+    evaluations, shape (M,). rescues: numbers of distances that Newton's method declined, shape (M,). status: "hit",
+    "separated", "overlapping", "budget_exhausted" or "failed", shape (M,).
+    """
 
     time: Reals
     """Times of the outcomes, shape (M,)."""
@@ -193,7 +198,12 @@ class Contacts(_Rows):
 
 @dataclass(frozen=True, eq=False)
 class Masses:
-    """Answers of mass_properties_many: arrays with one row a shape, named as the attributes of MassProperties."""
+    """Answers of mass_properties_many: arrays with one row a shape, named as the attributes of MassProperties.
+
+    volume: volumes, length^3, shape (K,). mass: densities times volumes, shape (K,). center_of_mass: body frame, shape
+    (K, 3). inertia: moments of inertia about the origin, body frame, shape (K, 3, 3). relative_error: bounds of the
+    relative errors of volume and inertia, shape (K,).
+    """
 
     volume: Reals
     """Volumes, length^3, shape (K,)."""
@@ -231,10 +241,10 @@ def distance_many(
     shapes. quaternions: orientations, unit quaternions (w, x, y, z) body to world, shape (N, 4); None: bodies that are
     not rotated. pairs: indices (a, b) of bodies, integers of shape (M, 2). shape_of: index of each body's shape,
     integers of shape (N,); None: one shape serves all bodies, or there is one a body. threads: number of threads, 1 to
-    1024, which changes no bit of the answers. start: guesses of the normals from A to B, world frame, finite, shape (M,
-    3); 0 is none, for instance where the last answer is NaN: np.nan_to_num(last.normal). max_iterations: maximum number
-    of evaluations from each start, at least 1. penetration: 'global', the shortest of all translations that separate
-    overlapping bodies; 'local', the nearest stationary one, which is faster at large depths.
+    1024, which changes no bit of the answers. start: guesses of the normals from A to B, world frame, finite,
+    shape (M, 3); 0 is none, for instance where the last answer is NaN: np.nan_to_num(last.normal). max_iterations:
+    maximum number of evaluations from each start, at least 1. penetration: 'global', the shortest of all translations
+    that separate overlapping bodies; 'local', the nearest stationary one, which is faster at large depths.
 
     Arrays of other real types, and arrays that are not contiguous, are copied. The GIL is released.
 
@@ -355,7 +365,8 @@ def time_of_contact_many(
     integers of shape (M, 2). t_max: may be infinite. finder, max_evaluations, eps_d, distance, root: as for
     time_of_contact.
 
-    Each pair is searched by itself: answers are those of time_of_contact, bit for bit.
+    Each pair is searched by itself: answers are those of time_of_contact, bit for bit. Other arguments, units and
+    exceptions are those of distance_many.
     """
     return Contacts(
         *_core.time_of_contact_many(
@@ -381,6 +392,8 @@ def time_of_contact_many(
 def mass_properties_many(shapes: Shapes, density: ArrayLike = 1.0) -> Masses:
     """Returns volumes, masses and moments of inertia of K shapes of uniform density, by closed forms.
 
-    shapes: one shape, or a list of K. density: one number, or one a shape, shape (K,).
+    shapes: one Ellipsoid or Superellipsoid, or a list of K. density: one number, or one a shape, shape (K,).
+
+    Raises ValueError or TypeError that names the argument, the entry and what is accepted.
     """
     return Masses(*_core.mass_properties_many(shapes, density))
