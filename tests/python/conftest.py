@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import pathlib
+import signal
 
 import numpy as np
 import pytest
 from hypothesis import settings
 
 REFERENCE = pathlib.Path(__file__).resolve().parents[1] / "reference"
+
+# Where interrupts are ignored, as under nohup, tests that send them would never end.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 
 settings.register_profile("repeatable", derandomize=True, deadline=None, database=None)
 settings.load_profile("repeatable")

@@ -132,6 +132,30 @@ def test_contacts_of_spheres():
     assert len(hb.time_of_contact_many([], [], None, None, None, [], 1.0)) == 0
 
 
+@pytest.mark.parametrize("axes", [(1.0, 1.0, 3.0), (1.0, 2.0, 3.0)])
+def test_contacts_touch_where_they_say(random, axes):
+    """The distance at the time of contact is 0; normals and points agree with its own."""
+    e, n = hb.Ellipsoid(axes), 300
+    positions, velocities = np.zeros((2 * n, 3)), random.normal(size=(2 * n, 3))
+    positions[1::2] = 8 * unit_rows(random, n, 3)
+    velocities[1::2] = -0.5 * positions[1::2]
+    quaternions, omegas, inertia = unit_rows(random, 2 * n, 4), random.normal(size=(2 * n, 3)), e.inertia()
+    pairs = np.arange(2 * n).reshape(n, 2)
+    inertias = np.tile(inertia, (2 * n, 1))
+    C = hb.time_of_contact_many(e, positions, quaternions, velocities, omegas, pairs, 20.0, inertias=inertias)
+    hits = np.flatnonzero(C.status == "hit")
+    assert len(hits) > 100
+    for k in hits:
+        a, b = (
+            hb.Motion(hb.Pose(positions[i], quaternions[i]), velocities[i], omegas[i], inertia).at(C.time[k]).pose
+            for i in pairs[k]
+        )
+        r = hb.distance(e, a, e, b)
+        assert r.distance == pytest.approx(0, abs=1e-13)  # sizes are 12, times are rounded
+        np.testing.assert_allclose(C.normal[k], r.normal, atol=1e-11)
+        np.testing.assert_allclose(C.point[k], r.point_a, atol=1e-10)
+
+
 def test_masses_are_those_of_single_shapes(mixture):
     shapes = mixture["shapes"]
     for density in (2.5, [1.0, 2.0, 0.5]):

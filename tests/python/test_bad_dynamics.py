@@ -175,6 +175,22 @@ def test_uninitialised_objects_are_refused():
             blank.__len__() if hasattr(kind, "__len__") else blank.__repr__()
 
 
+def test_uninitialised_simulations_are_refused():
+    blank = hb.Simulation.__new__(hb.Simulation)
+    calls = (lambda: blank.run(time=1), lambda: blank.measure(1.0), lambda: blank.observables, lambda: blank.time)
+    for call in calls:
+        with pytest.raises(TypeError), pytest.warns(RuntimeWarning, match="uninitialized"):
+            call()
+
+
+@pytest.mark.parametrize("number", [2**63, 2**64 - 1, 2**100, -(2**63) - 1])
+def test_integers_beyond_64_bits_are_refused(number):
+    with pytest.raises(
+        ValueError, match="seed is an integer beyond 64 bits with a sign; accepted: an integer from 0 to"
+    ):
+        hb.random_start(E, number=8, packing_fraction=0.01, seed=number)
+
+
 def test_arrays_may_be_of_any_layout():
     positions = np.asfortranarray(np.arange(24.0).reshape(8, 3) * 4)
     one = hb.System(200.0, E, positions)

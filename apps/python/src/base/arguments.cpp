@@ -18,7 +18,7 @@ std::string shown(nb::handle value) {
   if (PyLong_Check(value.ptr())) {
     int overflow = 0;  // Python refuses to print very long integers
     PyLong_AsLongLongAndOverflow(value.ptr(), &overflow);
-    if (overflow != 0) return "an integer of more than 64 bits";
+    if (overflow != 0) return "an integer beyond 64 bits with a sign";
   }
   const auto type = nb::cast<std::string>(value.type().attr("__name__"));
   if (PyUnicode_Check(value.ptr()) || PyLong_Check(value.ptr()) || PyFloat_Check(value.ptr()) || value.is_none()) {

@@ -120,7 +120,7 @@ struct OneOf<std::variant<T...>> {
 
 /// Returns the object of a bound class. Throws TypeError if the value is of another class.
 template <class T>
-const T& instance(nb::handle value, const char* name) {
+T& instance(nb::handle value, const char* name) {
   T* found = nullptr;
   if (nb::try_cast(value, found, false) && found != nullptr) return *found;
   refuse_type(name, value, nb::cast<std::string>(nb::type<T>().attr("__name__")));

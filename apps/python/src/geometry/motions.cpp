@@ -158,7 +158,10 @@ void bind_time_of_contact(nb::module_& module) {
       "bounding radii) or the rounding error of the time itself, mostly also for bodies that are not of revolution. A\n"
       "head-on contact's time is accurate to that distance over the normal velocity, a grazing contact's to its "
       "square\n"
-      "root. NORMAL\n"
+      "root. Normals and points of random contacts are mostly accurate to 1e-15 (radian, sizes), at worst to 1e-12. "
+      "At\n"
+      "sharp tips, of exponents near 1.6, normals 1e-3 radian apart may fit equally well; where faces meet, points "
+      "do.\n"
       "\n"
       "Raises ValueError for t_max before the motions' times, and for exponents out of range.");
 }

@@ -107,7 +107,7 @@ void bind_distance(nb::module_& module) {
       "longer ones 1e-9, or there is no answer. Overlaps deeper than the smallest radii of curvature: no other way\n"
       "out is shorter by more than error_bound, mostly 1e-9, up to 1e-7 where faces meet, and more for long bodies\n"
       "that are nearly parallel. Shapes of your own: as ellipsoids where they are smooth; where they have kinks\n"
-      "(faces, edges) up to some 1e-6, always within error_bound, which may be 1e-2.\n"
+      "(faces, edges) mostly 1e-16 too, but up to some 1e-6, within error_bound, which may be 1e-2.\n"
       "\n"
       "A query takes a fraction of a microsecond for ellipsoids, one to three for superellipsoids, 0.05 to 0.3\n"
       "milliseconds in deep overlaps. distance_many answers many pairs, several times faster.");

@@ -112,17 +112,18 @@ void bind_state(Type& type) {
            "Saves the whole state, observables included: to a file, or as bytes that are returned. A restored "
            "simulation\n"
            "goes on bit for bit. Files replace those of the same name only when they are complete. Raises OSError.")
-      .def_static("restore", &restored, nb::arg("state").none(), nb::arg("shapes") = nb::tuple(),
-                  nb::sig("def restore(state: bytes | bytearray | memoryview | str | os.PathLike[str], "
-                          "shapes: list[hardbody._typing.SupportShape] | tuple[hardbody._typing.SupportShape, ...] = ()) "
-                          "-> Simulation"),
-                  "Returns the simulation that was saved as these bytes or to this file. shapes: your own, which are "
-                  "code, in the\n"
-                  "order of their species.\n"
-                  "\n"
-                  "Raises ValueError for bytes that are no state or damaged, and for states of another version, build "
-                  "or kind of\n"
-                  "processor, which would go on with other bits.");
+      .def_static(
+          "restore", &restored, nb::arg("state").none(), nb::arg("shapes") = nb::tuple(),
+          nb::sig("def restore(state: bytes | bytearray | memoryview | str | os.PathLike[str], "
+                  "shapes: list[hardbody._typing.SupportShape] | tuple[hardbody._typing.SupportShape, ...] = ()) "
+                  "-> Simulation"),
+          "Returns the simulation that was saved as these bytes or to this file. shapes: your own, which are "
+          "code, in the\n"
+          "order of their species.\n"
+          "\n"
+          "Raises ValueError for bytes that are no state or damaged, and for states of another version, build "
+          "or kind of\n"
+          "processor, which would go on with other bits.");
 }
 
 }  // namespace

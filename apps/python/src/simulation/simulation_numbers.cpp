@@ -152,7 +152,7 @@ void bind_outcome(Type& type) {
           "observables",
           [](nb::handle self) {
             nb::list list;
-            for (const auto& m : nb::cast<const PythonSimulation&>(self).measurements()) {
+            for (const auto& m : instance<PythonSimulation>(self, "self").measurements()) {
               list.append(PythonObservables{nb::borrow(self), m});
             }
             return list;

@@ -39,7 +39,7 @@ nb::object progress_function(nb::handle progress) {
 
 void run(nb::handle self, nb::handle time, nb::handle collisions, nb::handle until, nb::handle every,
          nb::handle callback, nb::handle progress) {
-  auto& simulation = nb::cast<PythonSimulation&>(self);
+  auto& simulation = instance<PythonSimulation>(self, "self");
   RunPlan plan;
   if (time.is_none() + collisions.is_none() + until.is_none() != 2) {
     throw nb::type_error(
@@ -129,7 +129,7 @@ void bind_measure(Type& type) {
   type.def(
       "measure",
       [](nb::handle self, nb::handle duration, nb::handle longest_lag, nb::handle wave_numbers) {
-        auto& s = nb::cast<PythonSimulation&>(self);
+        auto& s = instance<PythonSimulation>(self, "self");
         return PythonObservables{nb::borrow(self),
                                  s.measure(measuring_options(s.bodies(), duration, longest_lag, wave_numbers))};
       },
