@@ -114,6 +114,7 @@ FUNCTIONS = {
 
 # What messages say in place of an argument's name.
 OTHER_WORDS = {
+    "packing_fraction": r"^number: a box of edge .* at this packing fraction is too small",
     "box": r"^positions\[\d\] is .* boxes of the origin",
     "factor": r"semi-axis [xyz] is",
     "mass": r"^inertia is .* all mass at the bounding radius",
