@@ -23,7 +23,7 @@ def public_names():
 
 def documented_names():
     pages = "\n".join(page.read_text(encoding="utf-8") for page in sorted((ROOT / "docs/reference").glob("*.rst")))
-    return collections.Counter(re.findall(r"^\.\. auto(?:class|exception|function):: (\w+)$", pages, re.MULTILINE))
+    return collections.Counter(re.findall(r"^\.\. (?:auto(?:class|exception|function)|py:data):: (\w+)$", pages, re.MULTILINE))
 
 
 def main():
