@@ -99,9 +99,9 @@ std::size_t begin_of(std::string_view text, std::size_t at) {
 /// bytes if there are any.
 template <class F>
 void in_pieces(const StoredBytes& bytes, std::uint64_t begin, std::uint64_t end, std::uint64_t more, F&& f) {
-  constexpr std::uint64_t kPiece = std::uint64_t{1} << 20;
-  for (std::uint64_t at = begin; at < end; at += kPiece) {
-    const std::uint64_t size = std::min(kPiece, end - at);
+  constexpr std::uint64_t kReadSize = std::uint64_t{1} << 20;
+  for (std::uint64_t at = begin; at < end; at += kReadSize) {
+    const std::uint64_t size = std::min(kReadSize, end - at);
     f(at, size, bytes.read(at, std::min(size + more, bytes.size() - at)));
   }
 }
