@@ -12,8 +12,8 @@ condition follows what it limits. Some phrases are refused anywhere in a comment
 Comments are // and, for doc comments, ///, each with a space; /* */ names an argument (/*signed_distance=*/), no more. Doc
 comments of Python are docstrings, and strings below a declaration.
 
-Without FILE all headers and sources (.h, .cpp) of the repository and the modules of the Python package are read. Every fault is printed. Exit code 1: there are
-more faults, of all comments, than LIMIT times the number of doc comments.
+Without FILE all headers and sources (.h, .cpp) of the repository and the modules of the Python package are read. Every
+fault is printed. Exit code 1: there are more faults, of all comments, than LIMIT times the number of doc comments.
 """
 
 import ast

@@ -262,3 +262,12 @@ def test_ctrl_c_ends_a_run_between_events():
     other.run(collisions=collisions)
     other.run(collisions=3)
     assert bits(simulation) == bits(other)
+
+
+def test_texts_with_nul_are_refused():
+    with pytest.raises(ValueError, match=r"^name is 'a\\x00b'; accepted: a string without NUL$"):
+        hb.CustomShape(Spheroid(), name="a\0b")
+    with pytest.raises(ValueError, match=r"^penetration is 'local\\x00'; accepted: \"global\", \"local\"$"):
+        hb.distance(
+            hb.Ellipsoid([1, 1, 1]), hb.Pose(), hb.Ellipsoid([1, 1, 1]), hb.Pose([3, 0, 0]), penetration="local\0"
+        )

@@ -41,9 +41,9 @@ def worker_program() -> list[str]:
     return [sys.executable, "-P", "-S", "-c", _WORKER, os.fspath(_core.__file__)]
 
 
-def is_unicode(text: str) -> bool:
-    """Returns whether a text can be encoded: it has no surrogates."""
-    return not any("\ud800" <= character <= "\udfff" for character in text)
+def is_text(text: str) -> bool:
+    """Returns whether the program can take a text: it has neither NUL nor surrogates, which have no encoding."""
+    return not any(character == "\0" or "\ud800" <= character <= "\udfff" for character in text)
 
 
 def path_text(value: Any, name: str) -> str:
@@ -53,7 +53,7 @@ def path_text(value: Any, name: str) -> str:
     text = os.fspath(value)
     if not isinstance(text, str):
         raise TypeError(f"{name} is {shown(value)}; accepted: a str or path")
-    if not text or "\0" in text or not is_unicode(text):
+    if not text or not is_text(text):
         raise ValueError(f"{name} is {shown(text)}; accepted: the name of a file or directory")
     return text
 
@@ -81,7 +81,7 @@ def assignments(overrides: Mapping[str, Any] | None) -> list[str]:
     if not isinstance(overrides, Mapping):
         raise TypeError(f"overrides is {shown(overrides)}; accepted: a dict, as {{'system.number': 64}}")
     for key in overrides:
-        if not isinstance(key, str) or "=" in key or "\n" in key or not is_unicode(key):
+        if not isinstance(key, str) or "=" in key or "\n" in key or not is_text(key):
             raise TypeError(f"overrides: a key is {shown(key)}; accepted: a str, section.key")
     return [f"{key}={value_text(value, 'overrides', key)}" for key, value in overrides.items()]
 
@@ -145,8 +145,8 @@ def texts(value: Any, name: str) -> list[str]:
     if not value:
         raise ValueError(f"{name} is empty; accepted: a str, or a list of them")
     for text in value:
-        if not is_unicode(text):
-            raise ValueError(f"{name} has {shown(text)}, which is not Unicode; accepted: text")
+        if not is_text(text):
+            raise ValueError(f"{name} has {shown(text)}; accepted: Unicode without NUL")
     return list(value)
 
 

@@ -16,7 +16,7 @@ from hardbody._calls import (
     finite,
     flag,
     integer,
-    is_unicode,
+    is_text,
     optional_path,
     optional_real,
     path_text,
@@ -231,7 +231,7 @@ def _conditions(where: Any) -> list[str]:
     if not isinstance(where, Mapping):
         raise TypeError(f"where is {shown(where)}; accepted: a dict, as {{'seed': 1}}")
     for column in where:
-        if not isinstance(column, str) or "=" in column or not is_unicode(column):
+        if not isinstance(column, str) or "=" in column or not is_text(column):
             raise TypeError(f"where: a column is {shown(column)}; accepted: a str, as {{'seed': 1}}")
     return [f"{column}={_condition(value, column)}" for column, value in where.items()]
 

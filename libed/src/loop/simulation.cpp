@@ -30,7 +30,7 @@ class Simulation::Impl {
 namespace {
 
 /// Throws std::invalid_argument if all bodies are at rest, which they are not once they have collided.
-void check_motion(const Simulation& simulation, const std::string& function) {
+void check_moving(const Simulation& simulation, const std::string& function) {
   if (simulation.counters().collisions > 0 || simulation.kinetic().energy() > 0) return;
   throw std::invalid_argument(function +
                               ": all bodies are at rest: there will be no collision; accepted: bodies that move");
@@ -238,7 +238,7 @@ bool Simulation::run_until(double time, std::uint64_t max_collisions, std::uint6
 }
 
 void Simulation::run_collisions(std::uint64_t number) {
-  if (number > 0) check_motion(*this, "run_collisions");
+  if (number > 0) check_moving(*this, "run_collisions");
   (void)run_until(std::numeric_limits<double>::infinity(), number);
 }
 
@@ -251,7 +251,7 @@ double Simulation::shrink_box(double target_box, double least_gain) {
 
 void Simulation::tune_envelopes(const std::function<bool()>& keep_going) {
   if ((*impl_)->neighbours() == Neighbours::cells) return;
-  check_motion(*this, "tune_envelopes");
+  check_moving(*this, "tune_envelopes");
   constexpr std::uint64_t kSlice = 100;
   constexpr std::uint64_t kLeastStretch = 4096;  // collisions; of fewer, chance would decide between neighbouring steps
   constexpr std::uint64_t kSliceEvents = 100000;

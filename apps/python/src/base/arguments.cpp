@@ -18,9 +18,10 @@ std::string shown(nb::handle value) {
   if (PyLong_Check(value.ptr())) {
     int overflow = 0;  // Python refuses to print very long integers
     PyLong_AsLongLongAndOverflow(value.ptr(), &overflow);
-    if (overflow != 0) return "an integer beyond 64 bits with a sign";
+    if (overflow != 0) return "an integer outside -2^63 to 2^63 - 1";
   }
   const auto type = nb::cast<std::string>(value.type().attr("__name__"));
+  if (nb::inst_check(value) && !nb::inst_ready(value)) return "an uninitialised " + type;
   if (PyUnicode_Check(value.ptr()) || PyLong_Check(value.ptr()) || PyFloat_Check(value.ptr()) || value.is_none()) {
     const auto text = nb::cast<std::string>(nb::repr(value));
     if (text.size() <= kLongestText) return text;
@@ -142,6 +143,7 @@ Eigen::Vector3d direction3(nb::handle value, const char* name) {
 std::string_view text(nb::handle value, const char* name, const std::string& accepted) {
   std::string_view read;
   if (!nb::isinstance<nb::str>(value) || !nb::try_cast(value, read, false)) refuse_type(name, value, accepted);
+  if (read.find('\0') != std::string_view::npos) refuse_value(name, shown(value), accepted);  // messages end there
   return read;
 }
 

@@ -223,7 +223,7 @@ nb::object given_or_own(nb::handle given, nb::handle object, const char* name) {
 ed::CustomShape make_custom_shape(nb::handle object, nb::handle name, nb::handle volume, nb::handle symmetry_axis,
                                   nb::handle centrally_symmetric) {
   ed::CustomShape::Properties properties;
-  properties.name = name.is_none() ? class_name(object) : std::string(text(name, "name", "a string"));
+  properties.name = name.is_none() ? class_name(object) : std::string(text(name, "name", "a string without NUL"));
   const nb::object volume_value = given_or_own(volume, object, "volume");
   const nb::object axis = given_or_own(symmetry_axis, object, "symmetry_axis");
   if (!axis.is_none()) properties.symmetry_axis = static_cast<int>(integer(axis, "symmetry_axis", 0, 2));

@@ -1,6 +1,7 @@
 #include "simulation/options.h"
 
 #include "base/arguments.h"
+#include "geometry/contact_options.h"
 
 #include <geom/batch.h>
 
@@ -15,9 +16,6 @@ namespace {
 using geom::InstructionSet;
 
 constexpr std::array kNeighbours = {ed::Neighbours::dilated, ed::Neighbours::obp, ed::Neighbours::cells};
-constexpr std::array kFinders = {ed::Finder::certified, ed::Finder::bracketing};
-constexpr std::array kDistances = {ed::DistanceMethod::dual, ed::DistanceMethod::newton8, ed::DistanceMethod::newton5};
-constexpr std::array kRoots = {ed::ContactRoot::newton, ed::ContactRoot::one_dimensional};
 constexpr std::array kInstructionSets = {InstructionSet::best, InstructionSet::portable, InstructionSet::avx2,
                                          InstructionSet::avx512};
 

@@ -27,7 +27,7 @@ namespace {
 using Type = nb::class_<PythonSimulation>;
 
 /// Returns kT by all energy that collisions exchange, which is conserved: that of translation alone fluctuates by
-/// sqrt(2 / (3 N)). Spheres keep their rotation, and bodies of revolution their spin.
+/// about sqrt(2 / (3 N)). Spheres keep their rotation, and bodies of revolution their spin.
 double conserved_kT(const ed::System& system) {
   ed::System turning = system;
   std::erase_if(turning.bodies, [&](const ed::Body& body) {
@@ -38,18 +38,19 @@ double conserved_kT(const ed::System& system) {
   return 2 * energy / std::max(1, 3 * system.size() - 3 + rotation.rotational_degrees_of_freedom);
 }
 
-double compressibility(const PythonSimulation& s) {
-  const ed::Simulation& simulation = s.whole();
-  if (!(simulation.time() > 0)) return std::numeric_limits<double>::quiet_NaN();
-  const ed::System system = simulation.system();
-  return 1 + simulation.virial() / (3.0 * system.size() * conserved_kT(system) * simulation.time());
-}
+/// Compressibility factor and pressure since the start; NaN at time 0.
+struct EquationOfState {
+  explicit EquationOfState(const ed::Simulation& simulation) {
+    if (!(simulation.time() > 0)) return;
+    const ed::System system = simulation.system();
+    const double NkT = system.size() * conserved_kT(system);
+    Z = 1 + simulation.virial() / (3 * NkT * simulation.time());
+    pressure = Z * NkT / (system.box * system.box * system.box);
+  }
 
-double pressure(const PythonSimulation& s) {
-  const ed::System system = s.whole().system();
-  const double volume = system.box * system.box * system.box;
-  return compressibility(s) * system.size() * conserved_kT(system) / volume;
-}
+  double Z = std::numeric_limits<double>::quiet_NaN();
+  double pressure = std::numeric_limits<double>::quiet_NaN();
+};
 
 /// Returns the vectors of a snapshot.
 nb::object sampled(const PythonSimulation& s, std::vector<Eigen::Vector3d> ed::Snapshot::*member) {
@@ -111,10 +112,12 @@ void bind_numbers(Type& type) {
           },
           "Collisions that a body takes part in per time unit, since the start; NaN at time 0.")
       .def_prop_ro(
-          "Z", &compressibility,
+          "Z", [](const PythonSimulation& s) { return EquationOfState(s.whole()).Z; },
           "Compressibility factor P V / (N kT) = 1 + virial / (3 N kT time), kT by the conserved energy of all\n"
           "motion that collisions exchange; NaN at time 0. Observables have it with its error.")
-      .def_prop_ro("pressure", &pressure, "Pressure since the start, Z N kT / V; NaN at time 0.");
+      .def_prop_ro(
+          "pressure", [](const PythonSimulation& s) { return EquationOfState(s.whole()).pressure; },
+          "Pressure since the start, Z N kT / V; NaN at time 0.");
 }
 
 void bind_mechanics(Type& type) {

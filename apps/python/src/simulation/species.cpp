@@ -62,12 +62,13 @@ Species with_inertia(const ed::BodyShape& shape, double mass, nb::handle inertia
   refuse_value("inertia", '"' + std::string(word) + '"', kInertias);
 }
 
-Species make_species(nb::handle shape, nb::handle mass, nb::handle inertia, nb::handle spins) {
-  const ed::BodyShape body = body_shape(shape, "shape");
+/// Constructs a species; `name` is the shape's in messages.
+Species make_species(nb::handle shape, const std::string& name, nb::handle mass, nb::handle inertia, nb::handle spins) {
+  const ed::BodyShape body = body_shape(shape, name);
   const PythonShape* own = python_shape(body);
   if (own != nullptr && !own->has_volume()) {
     throw nb::type_error(
-        "shape.volume is missing; accepted: a volume above 0, here or in CustomShape(shape, volume=...)");
+        (name + ".volume is missing; accepted: a volume above 0, here or in CustomShape(shape, volume=...)").c_str());
   }
   Species species = with_inertia(body, positive(mass, "mass"), inertia);
   if (!spins.is_none()) {
@@ -153,7 +154,7 @@ Species species_of(nb::handle value, const std::string& name) {
   Species* found = nullptr;
   if (nb::try_cast(value, found, false) && found != nullptr) return *found;
   const nb::object none = nb::none();
-  if (is_custom_shape(value)) return make_species(value, nb::float_(1.0), none, none);
+  if (is_custom_shape(value)) return make_species(value, name, nb::float_(1.0), none, none);
   refuse_type(name, value, "a Species or a shape");
 }
 
@@ -190,7 +191,7 @@ void bind_species(nb::module_& module) {
       .def(
           "__init__",
           [](Species* self, nb::handle shape, nb::handle mass, nb::handle inertia, nb::handle spins) {
-            new (self) Species(make_species(shape, mass, inertia, spins));
+            new (self) Species(make_species(shape, "shape", mass, inertia, spins));
           },
           nb::arg("shape").none(), nb::arg("mass").none() = 1.0, nb::arg("inertia") = nb::none(),
           nb::arg("spins") = nb::none(),
