@@ -56,8 +56,8 @@ set(HARDBODY_UNITY_BATCH 8 CACHE STRING "Sources of the program and of the tests
 set(HARDBODY_UNITY_LIBRARY_BATCH 8 CACHE STRING "Sources of the libraries in a group, with HARDBODY_UNITY=ALL")
 
 # hardbody_grouped(<target> [LIBRARY]): compiles its sources in groups, so that Eigen and the kernels are read and
-# instantiated once for all of a group; those of the program and of the tests with HARDBODY_UNITY=ON,
-# those of the libraries only with HARDBODY_UNITY=ALL (docs/decisions/031).
+# instantiated once for all of a group; those of the program, of the extension and of the tests with
+# HARDBODY_UNITY=ON, those of the libraries only with HARDBODY_UNITY=ALL (docs/decisions/031).
 function(hardbody_grouped target)
   cmake_parse_arguments(PARSE_ARGV 1 arg "LIBRARY" "" "")
   if(HARDBODY_UNITY STREQUAL "ALL" OR (HARDBODY_UNITY AND NOT arg_LIBRARY))

@@ -7,6 +7,7 @@ hardbody_test(ed_unit_test unit
   unit/ed/loop/added_events_test.cpp
   unit/ed/loop/event_loop_test.cpp
   unit/ed/loop/loop_parts_test.cpp
+  unit/ed/loop/poll_test.cpp
   unit/ed/loop/prefetch_events_test.cpp
   unit/ed/neighbours/general_test.cpp
   unit/ed/start/lattice_test.cpp
@@ -20,11 +21,15 @@ hardbody_test(ed_unit_test unit
   unit/ed/start/velocities_test.cpp)
 hardbody_test(ed_observables_test unit
   unit/ed/observables/analysis_test.cpp
+  unit/ed/observables/replicas_test.cpp
   unit/ed/observables/correlations_test.cpp
   unit/ed/observables/curves_test.cpp
   unit/ed/observables/equilibration_test.cpp
   unit/ed/observables/group_observables_test.cpp
+  unit/ed/observables/mixtures_test.cpp
   unit/ed/observables/observables_test.cpp
+  unit/ed/observables/order_test.cpp
+  unit/ed/observables/ordered_states_test.cpp
   unit/ed/observables/snapshots_test.cpp
   unit/ed/observables/stored_frames_test.cpp
   unit/ed/observables/structure_test.cpp)

@@ -7,6 +7,7 @@ hardbody_test(finder_unit_test unit
   unit/ed/contact/contact_budget_test.cpp
   unit/ed/contact/contact_refusals_test.cpp
   unit/ed/contact/contact_scenes_test.cpp
+  unit/ed/motion/axis_motion_test.cpp
   unit/ed/motion/elliptic_test.cpp
   unit/ed/bodies/first_looks_test.cpp
   unit/ed/motion/free_top_test.cpp

@@ -12,15 +12,15 @@ if(TARGET hardbody)
     list(APPEND cli_environment "HARDBODY_CLOCK=$<TARGET_FILE:cli_clock>")
     hardbody_needed_by(cli cli_clock)
   endif()
-  foreach(file test_cli test_check test_checks test_restart test_trajectory test_reading test_cases test_conventions test_starts
-          test_mdanalysis test_sweep test_paper test_quickstart)
+  foreach(file test_cli test_check test_checks test_restart test_extend test_trajectory test_reading test_cases test_conventions
+          test_starts test_mdanalysis test_sweep test_replicas test_paper test_quickstart)
     set(cli_tests ${CMAKE_CURRENT_SOURCE_DIR}/cli/${file}.py)
     set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${cli_tests})
     file(STRINGS ${cli_tests} class_lines REGEX "^class ")
     foreach(line IN LISTS class_lines)
       string(REGEX MATCH "^class ([A-Za-z0-9_]+)" name "${line}")
       set(name ${CMAKE_MATCH_1})
-      if(name MATCHES "^(Case|Restart|Frames|Trajectories|FilesCase|Analyses|StartCase|Way|SweepCase|Here)$")
+      if(name MATCHES "^(Case|Restart|Extending|Frames|Trajectories|FilesCase|Analyses|StartCase|Way|SweepCase|Here)$")
         continue()
       endif()
       add_test(NAME cli_${name} COMMAND ${HARDBODY_PYTHON} ${cli_tests} ${name})
@@ -37,7 +37,8 @@ if(TARGET hardbody)
   add_test(NAME manual_test COMMAND ${HARDBODY_PYTHON} ${CMAKE_CURRENT_SOURCE_DIR}/cli/test_manual.py)
   set_tests_properties(manual_test PROPERTIES LABELS cli TIMEOUT 60 ENVIRONMENT "HARDBODY=$<TARGET_FILE:hardbody>")
 
-  hardbody_test(sweep_test unit unit/app/sweep_test.cpp unit/app/config_keys_test.cpp unit/app/guest_test.cpp)
+  hardbody_test(sweep_test unit unit/app/sweep_test.cpp unit/app/replicas_test.cpp unit/app/config_keys_test.cpp
+    unit/app/guest_test.cpp)
   target_link_libraries(sweep_test PRIVATE hardbody_program)
 
   hardbody_test(registry_test unit unit/app/registry_test.cpp)
@@ -55,5 +56,6 @@ if(TARGET hardbody)
   target_link_libraries(trajectory_test PRIVATE hardbody_program)
 else()
   list(APPEND unbuilt_tests cli/program_test.cpp cli/checkpoint_test.cpp cli/check_test.cpp cli/events_file_test.cpp
-    cli/trajectory_test.cpp unit/app/registry_test.cpp unit/app/sweep_test.cpp unit/app/config_keys_test.cpp unit/app/guest_test.cpp)
+    cli/trajectory_test.cpp unit/app/registry_test.cpp unit/app/sweep_test.cpp unit/app/replicas_test.cpp
+    unit/app/config_keys_test.cpp unit/app/guest_test.cpp)
 endif()

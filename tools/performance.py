@@ -42,6 +42,10 @@ def same_pairs(entry):
         yield name, "1", entry[name]
 
 
+def shares(entry):
+    yield "share", "%", entry["share %"]
+
+
 class Suite:
     """Benchmarks of one program: their names, what each measures, and the benchmark that each is compared with."""
 
@@ -68,6 +72,7 @@ SUITES = {
     "superellipsoid": Suite("bench_superellipsoid", "^superellipsoid/(cold|warm|fcl_gjk)/", superellipsoids,
                             lambda name: name.replace("/fcl_gjk/", "/cold/") if "/fcl_gjk/" in name else None),
     "overlaps": Suite("bench_superellipsoid", "^superellipsoid/overlap_", superellipsoids),
+    "observables": Suite("bench_observables", "^observables/", shares),
 }
 
 
@@ -159,6 +164,13 @@ SHOWN = [
     ("superellipsoids 1 : 1 : 2, e = 0.5", "superellipsoids 1:1:2 e=0.5", "collisions/s", 25000, True),
     ("ellipsoids 1 : 0.8 : 0.5, uniform density", "ellipsoids 1:0.8:0.5", "collisions/s", 25000, True),
     ("a user's spherocylinders", "a user's spherocylinders", "collisions/s", NONE, True),
+    ("Percent of a run of 60 time units that observables take, N = 512", None, None, NONE, True),
+    ("ellipsoids X0 = 3, 0.40", "observables/prolate X0=3 0.40", "share", 10, False),
+    ("ellipsoids X0 = 1/2, 0.45", "observables/oblate X0=1/2 0.45", "share", 10, False),
+    ("ellipsoids 0.7 : 1 : 1.6, 0.40", "observables/biaxial 0.7:1:1.6 0.40", "share", 10, False),
+    ("superballs p = 4, 0.40", "observables/superballs p=4 0.40", "share", 10, False),
+    ("mixture of X0 = 3 and 1/2, 0.40", "observables/prolate and oblate 0.40", "share", 10, False),
+    ("spheres, 0.40", "observables/spheres 0.40", "share", 10, False),
     ("Collisions per second, X0 = 2, 0.40, many bodies", None, None, NONE, True),
     ("1,000 bodies", "scale/1000", "collisions/s", NONE, True),
     ("10,000 bodies", "scale/10000", "collisions/s", NONE, True),

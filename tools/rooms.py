@@ -5,7 +5,7 @@ usage: rooms.py
 
 A room is a folder of a library or of the program. Its public headers count as part of the room that implements them.
 docs/architecture.md says what lives in each room. Rooms between the same two "<" do not see each other. Also checked: that
-no library includes from one above it, and the sizes of files and folders.
+no library includes from one above it, functions of public headers are exported, and the sizes of files and folders.
 """
 
 import pathlib
@@ -41,7 +41,7 @@ LIBRARIES = {
             "bodies": "snapshot",
             "loop": "archive_simulation simulation",
             "start": "start",
-            "observables": "analysis archive_observables equilibration observables stored_frames",
+            "observables": "analysis archive_observables equilibration observables replicas stored_frames",
         }),
     },
     "apps/hardbody": {
@@ -130,6 +130,25 @@ def check_audience():
                     yield f"{path.relative_to(ROOT)}: #include <{include}>; accepted: headers of libraries below"
 
 
+def declared_functions(text):
+    """Names of functions that a header declares and does not define, each with its line's first words."""
+    for match in re.finditer(r"^(?!using |friend |static_assert|return )(\w[\w:<>,*& ]*?)\b(\w+)\([^;{}]*\)[^;{}()]*;", text, re.MULTILINE):
+        words, name = match.groups()
+        template = text[: match.start()].rstrip().rsplit("\n", 1)[-1].startswith(("template", "  requires"))
+        defined_below = re.search(rf"^inline [^;]*?\b{name}\(", text, re.MULTILINE)
+        if not template and not defined_below:
+            yield name, words
+
+
+def check_exports():
+    """Messages about functions of public headers that shared libraries would hide."""
+    for folder in ("libgeom/include", "libed/include"):
+        for path in sources(ROOT / folder):
+            for name, words in declared_functions(path.read_text()):
+                if not re.search(r"_EXPORT\b|\binline\b|\bconstexpr\b", words):
+                    yield f"{path.relative_to(ROOT)}: {name} is not exported; accepted: GEOM_EXPORT or ED_EXPORT before it"
+
+
 def check_sizes():
     """Messages about folders of too many sources and files of too many lines."""
     for folder in (*LIBRARIES, "libgeom/include", "libed/include", "tests/unit", "tests/common"):
@@ -146,7 +165,7 @@ def check_sizes():
 
 def main():
     messages = [m for folder, library in LIBRARIES.items() for m in Library(folder, **library).check()]
-    messages += [*check_audience(), *check_sizes()]
+    messages += [*check_audience(), *check_exports(), *check_sizes()]
     for message in messages:
         print(message, file=sys.stderr)
     if messages:

@@ -4,12 +4,16 @@
 #include "base/number_text.h"
 #include "base/version.h"
 #include "commands/commands.h"
+#include "commands/sweep_tasks.h"
 #include "io/text_file.h"
+#include "sweep/replicas.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdio>
 #include <exception>
 #include <optional>
@@ -28,10 +32,13 @@ constexpr int kFailed = 1;
 struct Request {
   RunArguments run;
   SweepArguments sweep;
+  SweepTaskArguments tasks;
+  std::vector<std::string> sweep_words;
   MapArguments map;
   std::string init_file;
   std::string init_template = "ellipsoid";
-  std::string resume_path;
+  ResumeArguments resume;
+  ExtendArguments extend;
   std::string check_path;
   std::string replay_file;
   AnalyzeArguments analyze;
@@ -53,18 +60,50 @@ void add_run(CLI::App& app, Request& request) {
       ->allow_extra_args(false)
       ->type_name("KEY=VALUE");
   run->add_flag("--force", request.run.force, "Overwrite an existing run in the directory");
+  run->add_option("--replicas", request.run.replicas, "Number of runs with different seeds, pooled as those of a sweep")
+      ->check(CLI::Range(1, kMostReplicas));
 }
 
 void add_resume(CLI::App& app, Request& request) {
   CLI::App* resume = app.add_subcommand("resume", "Continue a run that was stopped or killed, bit for bit");
-  resume->add_option("DIR", request.resume_path, "Run directory")->required();
+  resume->add_option("DIR", request.resume.path, "Run directory")->required();
+  resume
+      ->add_option("--set", request.resume.overrides,
+                   "section.key=value: changes output.checkpoint_every; other keys are those of the run")
+      ->allow_extra_args(false)
+      ->type_name("KEY=VALUE");
+}
+
+/// Validator of positive numbers: CLI11's own names the largest double with all its digits.
+CLI::Validator positive_number() {
+  return {[](const std::string& text) -> std::string {
+            const std::optional<double> value =
+                finite_number(std::string_view(text).substr(text.starts_with('+') ? 1 : 0));
+            return value && *value > 0 ? "" : fmt::format("{} is not a positive finite number", text);
+          },
+          "POSITIVE"};
 }
 
 void add_sweep(CLI::App& app, Request& request) {
   CLI::App* sweep = app.add_subcommand("sweep", "Run a grid of state points, several at a time");
-  sweep->add_option("SWEEP", request.sweep.sweep, "Sweep file, see `hardbody init --template sweep`")->required();
+  sweep
+      ->add_option(
+          "SWEEP", request.sweep_words,
+          "Sweep file, see `hardbody init --template sweep`; or plan SWEEP, point SWEEP ID.., collect SWEEP: a\n"
+          "sweep as tasks of a cluster")
+      ->required();
+  sweep
+      ->add_option("--task-time", request.tasks.task_time,
+                   "Of plan: wished seconds of a task of several runs; default: 600")
+      ->check(positive_number());
   sweep->add_option("--out", request.sweep.out, "Directory of the sweep; default: out/<name of the file>");
   sweep->add_option("--jobs", request.sweep.jobs, "Number of simultaneous runs; default: one for each processor");
+  sweep
+      ->add_option("--set", request.sweep.overrides,
+                   "section.key=value: overrides the config of all points; grid.section.key=[..]: the grid; may be "
+                   "repeated")
+      ->allow_extra_args(false)
+      ->type_name("KEY=VALUE");
 }
 
 void add_map(CLI::App& app, Request& request) {
@@ -77,7 +116,7 @@ void add_map(CLI::App& app, Request& request) {
       ->required()
       ->allow_extra_args(false);
   map->add_option("--levels", wanted.levels,
-                  "Its levels, 0.5,0.2,0.1; once for each value, or not at all: six are chosen")
+                  "Its levels, 0.5,0.2,0.1; once for each value, or not at all: about six round ones are chosen")
       ->allow_extra_args(false);
   map->add_option("--where", wanted.where, "column=value: use only these rows; may be repeated")
       ->allow_extra_args(false);
@@ -100,14 +139,12 @@ void add_replay(CLI::App& app, Request& request) {
   replay->add_option("FILE", request.replay_file, "failures/*.json")->required();
 }
 
-/// Validator of positive numbers: CLI11's own names the largest double with all its digits.
-CLI::Validator positive_number() {
-  return {[](const std::string& text) -> std::string {
-            const std::optional<double> value =
-                finite_number(std::string_view(text).substr(text.starts_with('+') ? 1 : 0));
-            return value && *value > 0 ? "" : fmt::format("{} is not a positive finite number", text);
-          },
-          "POSITIVE"};
+void add_extend(CLI::App& app, Request& request) {
+  CLI::App* extend = app.add_subcommand("extend", "Continue a finished run to a longer production, bit for bit");
+  extend->add_option("DIR", request.extend.path, "Directory of a finished run")->required();
+  extend->add_option("--time", request.extend.time, "Length of the whole production, as production.time")
+      ->required()
+      ->check(positive_number());
 }
 
 void add_analyze(CLI::App& app, Request& request) {
@@ -121,12 +158,15 @@ void add_analyze(CLI::App& app, Request& request) {
       ->check(positive_number());
   analyze
       ->add_option("--longest-lag", request.analyze.longest_lag,
-                   "Longest lag of correlations; default: a quarter of the trajectory")
+                   "Longest lag of correlations, within the trajectory; default: a quarter of it")
       ->check(positive_number());
   analyze
       ->add_option("--fit-from", request.analyze.fit_from,
-                   "First lag of the fits of C2 and F_self; default: that of the run in the directory, if there is one")
+                   "First lag of the fits of C2 and F_self; default: that of the run in the directory, or the end of\n"
+                   "ballistic motion")
       ->check(positive_number());
+  analyze->add_flag("--collective", request.analyze.collective,
+                    "Compute F(q, t) / S(q) of all bodies, too, at the wave numbers of F_self");
   analyze->add_option("--every", request.analyze.every, "Use only every N-th frame; bodies are followed through all")
       ->check(CLI::Range(1, 1000000));
 }
@@ -147,11 +187,41 @@ void add_report(CLI::App& app, Request& request) {
   report->add_option("-o", request.report.out, "HTML file; default: DIR/report.html")->type_name("FILE");
 }
 
+/// Runs a sweep here, or the part of one that the first word names.
+int dispatch_sweep(const Request& request) {
+  const std::vector<std::string>& words = request.sweep_words;
+  const std::string& action = words.front();
+  const bool is_task = words.size() > 1 && (action == "plan" || action == "point" || action == "collect");
+  const std::size_t wanted = !is_task ? 1 : action == "point" ? std::max<std::size_t>(words.size(), 3) : 2;
+  if (words.size() != wanted) {
+    throw InputError(
+        fmt::format("command line: hardbody sweep {}; accepted: SWEEP, plan SWEEP, point SWEEP ID.., or "
+                    "collect SWEEP",
+                    one_line(fmt::format("{}", fmt::join(words, " ")))));
+  }
+  if (!is_task) {
+    SweepArguments sweep = request.sweep;
+    sweep.sweep = action;
+    return hardbody::sweep(sweep);
+  }
+  if (request.sweep.jobs)
+    throw InputError(fmt::format("command line: --jobs with {}; accepted: hardbody sweep SWEEP --jobs N", action));
+  SweepTaskArguments tasks = request.tasks;
+  tasks.sweep = words[1];
+  tasks.ids.assign(words.begin() + 2, words.end());
+  tasks.out = request.sweep.out;
+  tasks.overrides = request.sweep.overrides;
+  tasks.program = request.sweep.program;
+  if (action == "plan") return sweep_plan(tasks);
+  return action == "point" ? sweep_point(tasks) : sweep_collect(tasks);
+}
+
 int dispatch(const CLI::App& app, const Request& request) {
   if (app.got_subcommand("init")) return init(request.init_file, request.init_template);
   if (app.got_subcommand("run")) return run(request.run);
-  if (app.got_subcommand("resume")) return resume(request.resume_path);
-  if (app.got_subcommand("sweep")) return sweep(request.sweep);
+  if (app.got_subcommand("resume")) return resume(request.resume);
+  if (app.got_subcommand("extend")) return extend(request.extend);
+  if (app.got_subcommand("sweep")) return dispatch_sweep(request);
   if (app.got_subcommand("map")) return map(request.map);
   if (app.got_subcommand("check")) return check(request.check_path);
   if (app.got_subcommand("analyze")) return analyze(request.analyze);
@@ -187,6 +257,7 @@ int parsed(int argc, char** argv, std::vector<std::string> program) {
   add_init(app, request);
   add_run(app, request);
   add_resume(app, request);
+  add_extend(app, request);
   add_sweep(app, request);
   add_map(app, request);
   add_check(app, request);

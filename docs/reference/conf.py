@@ -31,9 +31,7 @@ autodoc_member_order = "bysource"
 autodoc_default_options = {"members": True}
 autoclass_content = "both"
 smartquotes = False
-autodoc_type_aliases = {
-    name: name for name in ("ArrayLike", "Curves", "PathLike", "Progress", "Shape", "Shapes", "Table")
-}
+autodoc_type_aliases = {name: name for name in ("ArrayLike", "Curves", "Progress", "Shape", "Shapes", "Table")}
 
 ARGUMENTS = re.compile(r"(?:[a-z]\w*(?:, | and )?)+(?: \([^)]*\))?: ")
 
@@ -75,7 +73,7 @@ def shorten_signature(
         if text is None:
             return None
         text = re.sub(r"TypeAliasForwardRef\('(\w+)'\)", r"\1", text).replace("(self, ", "(").replace("(self)", "()")
-        return re.sub(r"\b(?:numpy\.typing|hardbody\._\w+|collections\.abc|typing)\.", "", text)
+        return re.sub(r"\b(?:numpy\.typing|hardbody(?:\._\w+)?|os|collections\.abc|typing)\.", "", text)
 
     return short(signature), short(returned)
 

@@ -44,6 +44,9 @@ events = 500
 
 OBSERVABLE_FILES = {
     "msd.csv": ["t [l sqrt(m/kT)]", "msd [l^2]", "msd_error [l^2]"],
+    "msd_directions.csv": ["t [l sqrt(m/kT)]"]
+    + [f"msd_{d}{e} [l^2]" for d in ["parallel", "perp", "x", "y", "z"] for e in ["", "_error"]],
+    "bragg.csv": ["q [1/l]", "n_x [1]", "n_y [1]", "n_z [1]", "intensity [1]", "intensity_error [1]", "angle [rad]"],
     "rotational_msd.csv": [
         "t [l sqrt(m/kT)]",
         "rot_msd [rad^2]",
@@ -62,6 +65,8 @@ OBSERVABLE_FILES = {
     "c1.csv": ["t [l sqrt(m/kT)]", "c1 [1]", "c1_error [1]"],
     "c2.csv": ["t [l sqrt(m/kT)]", "c2 [1]", "c2_error [1]"],
     "f_self.csv": ["t [l sqrt(m/kT)]"] + [f"f_self_q{k}{e} [1]" for k in range(1, 5) for e in ["", "_error"]],
+    "overlap.csv": ["t [l sqrt(m/kT)]", "overlap [1]", "overlap_error [1]", "chi4 [1]", "chi4_error [1]"],
+    "van_hove.csv": ["r [l]"] + [f"G_s_t{k}{e} [1/l^3]" for k in range(1, 13) for e in ["", "_error"]],
     "g_r.csv": ["r [l]", "g [1]", "g_error [1]", "g2 [1]", "g2_error [1]"],
     "s_q.csv": ["q [1/l]", "S [1]", "S_error [1]"],
     "blocks.csv": [
@@ -88,10 +93,15 @@ OBSERVABLES = [
     "collision_rate",
     "Z",
     "D_trans",
+    "D_parallel",
+    "D_perp",
     "D_rot",
     "D_rot_body",
     "S",
     "director",
+    "bragg_peak",
+    "smectic_order",
+    "columnar_order",
     "pressure_tensor",
     "tau_C2",
     "beta_C2",
@@ -99,6 +109,9 @@ OBSERVABLES = [
     "tau_F",
     "beta_F",
     "t_F_1overe",
+    "msd_plateau",
+    "chi4_peak",
+    "t_chi4",
     "q_peak",
     "S_peak",
     "kT_trans",
@@ -271,7 +284,7 @@ class Run(Case):
             self.assertEqual(sorted(estimate), sorted(["error", "value"] + reason), key)
         # Far too short for the diffusion: null, not a number made up, and the reason.
         missing = summary["observables"]["D_trans"].get("missing", "")
-        self.assertRegex(missing, r"^displacements grow as t\^(1\.[2-9]|2)\d* up to the longest lag: still in part ballistic; a longer run helps$")
+        self.assertRegex(missing, r"^displacements grow as t\^(1\.[2-9]|2)\d* up to the longest lag: still in part ballistic; production\.longest_lag or a longer run helps$")
         self.assertEqual(summary["observables"]["D_trans"],
                          {"value": None, "error": None,
                           "missing": missing})
@@ -336,6 +349,7 @@ class Run(Case):
         self.assertEqual(equilibration, round(equilibration))
         self.assertEqual(summary["time"]["production"], max(30, 30 * equilibration))
         self.assertTrue(summary["equilibrated"])
+        self.assertEqual(summary["equilibrated_by"], "decay")
         how = summary["equilibration"]
         self.assertGreaterEqual(how["relaxations"], 2)
         self.assertGreaterEqual(equilibration, 4 * how["relaxations"])
@@ -352,7 +366,21 @@ class Run(Case):
         self.assertEqual(summary["equilibration"]["relaxations"], 0)
         self.assertIsNone(summary["equilibration"]["relaxation_time"])
         self.assertIn("not equilibrated after 3 time units", result.stderr)
-        self.assertIn("not equilibrated", result.stdout)
+        self.assertIn("\n  *** NOT EQUILIBRATED: ", result.stdout)
+        self.assertIsNone(summary["equilibrated_by"])
+
+    def test_a_crystal_is_judged_by_its_order(self):
+        config = SMALL.replace("time = 1\n", 'time = "auto"\ncap = 160\n').replace("aspect_ratio = 2", "aspect_ratio = 1")
+        config = config.replace("number = 64", "number = 108").replace("fraction = 0.2", 'fraction = 0.6\nstart = "fcc"')
+        result = self.run_small("out", config=config)
+        summary = self.summary("out")
+        self.assertTrue(summary["equilibrated"])
+        self.assertEqual(summary["equilibrated_by"], "stationarity")
+        self.assertEqual(summary["time"]["equilibration"] % 8, 0)
+        self.assertGreater(summary["equilibration"]["order"]["bragg"], 0.2)
+        self.assertGreater(summary["observables"]["bragg_peak"]["value"], 0.5)
+        self.assertIn("\n  Bragg peak ", result.stdout)
+        self.assertNotIn("NOT EQUILIBRATED", result.stdout)
 
     def test_production_until_the_error_asked_for(self):
         times = {}
@@ -390,11 +418,12 @@ class Run(Case):
         observables = self.summary("caged")["observables"]
         self.assertIsNone(observables["D_trans"]["value"])
         self.assertRegex(observables["D_trans"]["missing"],
-                         r"^bodies have moved 0\.\d+ l by lag 0\.\d+, where the fit begins: no diffusion yet; a longer run helps$")
+                         r"^bodies have moved 0\.\d+ l by lag 0\.\d+, where the fit begins: no diffusion yet; production\.longest_lag or a longer run helps$")
         self.assertRegex(result.stdout, r"  D_trans         - \(bodies have moved 0\.\d+ l by lag 0\.\d+, where the fit begins: no diffusion yet\)\n")
-        self.assertIn("  (longer lags: a longer run helps)\n", result.stdout)
+        self.assertIn("  (longer lags: production.longest_lag or a longer run helps)\n", result.stdout)
         for key in ["D_rot", "D_rot_body", "tau_C2", "beta_C2"]:
             self.assertEqual(observables[key], {"value": None, "error": None, "missing": "meaningless: nothing turns these bodies"})
+        self.assertNotRegex(result.stdout, r"\n  (S|director|D_rot|D_rot_body|.*_C2|t_C2.*|kT_rot) ")
         self.assertIsNotNone(observables["t_C2_1overe"]["value"])
         self.assertLessEqual(max(len(line) for line in result.stdout.splitlines()), 120)
         fluid = ["--set", "shape.aspect_ratio=3", "--set", "system.packing_fraction=0.4", "--set", "production.time=100"]
@@ -404,12 +433,47 @@ class Run(Case):
             self.assertEqual(sorted(estimate), ["error", "value"], key)
             self.assertGreater(estimate["value"], 0, key)
 
+    def test_longest_lag(self):
+        """By default a sixteenth of the production; one that is asked for is kept, and shorter runs do not cap it."""
+        self.run_small("long", "--set", "production.longest_lag=2.5")
+        self.assertEqual(self.summary("long")["fit_windows"]["D"], [0.4 * 2.5, 2.5])
+        self.assertEqual(float(self.read("long/observables/msd.csv").splitlines()[-1].split(",")[0]), 2.5)
+        self.run_small("all", "--set", "production.longest_lag=5")
+        missing = self.summary("all")["observables"]["D_trans"].get("missing", "a longer run helps")
+        self.assertRegex(missing, "(^|; )a longer run helps$")
+        self.run_small("uncapped", "--set", "production.time=800", "system.number=16")
+        self.assertEqual(self.summary("uncapped")["fit_windows"]["D"], [0.4 * 50, 50])
+
     def test_wave_numbers(self):
         self.run_small("out", "--set", "production.wave_numbers=[1.5, 3]")
         self.assertEqual(self.summary("out")["wave_numbers"], [1.5, 3])
         header = self.read("out/observables/f_self.csv").splitlines()[0]
         self.assertIn("f_self_q2", header)
         self.assertNotIn("f_self_q3", header)
+
+    def test_bond_order(self):
+        self.run_small("out", "--set", 'production.order=["steinhardt"]', "production.order_neighbours=8")
+        summary = self.summary("out")
+        self.assertEqual(summary["order_neighbours"], 8)
+        for key in ["q4", "q6"]:
+            self.assertTrue(0 < summary["observables"][key]["value"] < 1)
+        self.assertNotIn("psi6", summary["observables"])
+        self.run_small("plain")
+        self.assertFalse({"q6", "psi6"} & set(self.summary("plain")["observables"]))
+
+    def test_hexatic_order(self):
+        """Of a state with a director; of another one the reason is said."""
+        asked = ["--set", 'production.order=["hexatic"]', "--set", "equilibration.time=0"]
+        self.run_small("fluid", *asked)
+        summary = self.summary("fluid")
+        self.assertNotIn("order_neighbours", summary)
+        for key in ["psi6", "psi6_local"]:
+            self.assertRegex(summary["observables"][key]["missing"], "director")
+        crystal = ["--set", 'system.start="fcc"', "system.packing_fraction=0.6", "system.number=72"]
+        result = self.run_small("crystal", *asked, *crystal)
+        for key in ["psi6", "psi6_local"]:
+            self.assertTrue(0 < self.summary("crystal")["observables"][key]["value"] < 1)
+            self.assertIn(key.replace("_", " ") + " ", result.stdout)
 
     def test_a_gas_is_measured_until_its_velocities_are_forgotten(self):
         config = SMALL.replace("time = 1\n", 'time = "auto"\n').replace("time = 5", 'time = "auto"\ntarget_error = 0.03')
@@ -588,7 +652,19 @@ class BadConfig(Case):
             ("time = 5\n", 'target_error = 0.1\ntime = 5\n', "production.target_error"),
             ("time = 5\n", 'target_error = 0\n', "production.target_error"),
             ("time = 5\n", 'target_error = "small"\n', "production.target_error"),
+            ("time = 5\n", "longest_lag = 6\ntime = 5\n", "production.longest_lag", '"auto" or a number from 0.01 to production.time, 5'),
+            ("time = 5\n", "longest_lag = 1\ntime = 0\n", "production.longest_lag", "since production.time is 0"),
+            ("time = 5\n", "longest_lag = 5001\n", "production.longest_lag", "the longest production, 5000"),
+            ("time = 5\n", 'longest_lag = "long"\ntime = 5\n', "production.longest_lag"),
+            ("events = 500", 'frames_spacing = "linear"', "output.frames_spacing", '"even", "log"'),
+            ("events = 500", "frames_every = 0", "output.frames_every", "a number from 1e-09"),
+            ("events = 500", 'frames_every = 1\nframes_spacing = "log"', "output.frames_every", 'frames_spacing = "even"'),
+            ("events = 500", 'frames_every = 0.01\ntrajectory = ["gsd"]', "output.frames_every", "frames = 501 at least"),
+            ("events = 500", 'frames_spacing = "log"\ntrajectory = ["lammps"]', "output.frames_spacing", "have no times"),
             ("time = 5\n", "wave_numbers = 3\n", "production.wave_numbers", "a list of at most 8"),
+            ("time = 5\n", 'order = ["nematic"]\n', "production.order", '"steinhardt" and "hexatic", each at most once'),
+            ("time = 5\n", 'order = ["hexatic", "hexatic"]\n', "production.order"),
+            ("time = 5\n", "order_neighbours = 3\n", "production.order_neighbours", "an integer from 4 to 50"),
             ("time = 5\n", "wave_numbers = [1, 0]\n", "production.wave_numbers", "above 0"),
             ("time = 5\n", "wave_numbers = [nan]\n", "production.wave_numbers"),
             ("time = 5\n", 'wave_numbers = ["1"]\n', "production.wave_numbers"),
@@ -1200,7 +1276,7 @@ class Starts(Case):
         config = SMALL.replace("aspect_ratio = 2", shape).replace("number = 64", 'number = 999983\nstart = "cubic"')
         self.write("bad.toml", config)
         result = self.hardbody("run", "bad.toml", timeout=60)
-        self.assert_refused(result, "system.packing_fraction is 0.2: 999983 bodies in ", "accepted: at most", "or a number of 9999")
+        self.assert_refused(result, "system.packing_fraction is 0.2 and number is 999983: bodies in ", "accepted: at most", "or a number of 9999")
 
     def test_too_dense(self):
         config = self.ROD.replace("number = 288", 'number = 512\nstart = "fcc"').replace("0.2", "0.6")

@@ -527,7 +527,7 @@ class Faults(Restart):
                 shutil.rmtree(self.path("out"))
 
     def test_events_that_do_not_fit(self):
-        text = config(production=300).replace("events = 2000", "events = 1000000")
+        text = config(production=400).replace("events = 2000", "events = 1000000")
         self.undisturbed("reference", text)
         expected = self.results("reference")
         size = len(expected["events.csv"])

@@ -296,7 +296,7 @@ class Chains(SweepCase):
             file.truncate(1000)
         text = text.replace("0.75", "0.3")
         shutil.move(self.path("out/packing_fraction=0.2_aspect_ratio=2"), self.path("damaged"))
-        self.assert_refused(self.sweep(text), "grid.system.packing_fraction")
+        self.assert_refused(self.sweep(text), "lacks the point packing_fraction=0.75_aspect_ratio=2")
         self.assertEqual(self.sweep(text, out="new").returncode, 0)
         shutil.rmtree(self.path("new/packing_fraction=0.2_aspect_ratio=2"))
         shutil.rmtree(self.path("new/packing_fraction=0.3_aspect_ratio=2"))
@@ -518,7 +518,7 @@ class Refused(SweepCase):
 
     def test_grids(self):
         axis = "[grid]\nsystem.packing_fraction = "
-        self.refuse(SMALL, "sweep.toml: has no [grid]")
+        self.refuse(SMALL, "sweep.toml: has no [grid]: hardbody run takes the config of one run")
         self.refuse(SMALL + "[grid]\n", "sweep.toml:13: the grid has no keys")
         self.refuse(SMALL + axis + "[0.1, 0.2, 0.1]\n", "packing_fraction = 0.1 occurs twice")
         self.refuse(SMALL + axis + "[0.1, 0.1000000000000001]\n", "packing_fraction = 0.1000000000000001 occurs twice")
@@ -577,8 +577,8 @@ class Refused(SweepCase):
         table = self.read("out/sweep.csv")
         for old, new, key, was in [
             ("number = 64", "number = 65", "system.number is 65, but 64", "sweep.toml:3"),
-            ("[0.5, 2]", "[0.5, 2, 3]", "grid.shape.aspect_ratio is [0.5, 2, 3], but [0.5, 2]", "sweep.toml:15"),
-            ("step = 0.1", "step = 0.05", "grid.system.packing_fraction", "sweep.toml:16"),
+            ("[0.5, 2]", "[0.5, 3]", "lacks the point aspect_ratio=2_packing_fraction=0.1", "sweep.toml:14"),
+            ("[0.5, 2]", "[0.5, 2]\nseed = 3", "grid.seed is 3, but not there", "sweep.toml:16"),
             ("events = 500", "", "output.events is not there, but 500", "sweep.toml"),
             ("seed = 3", "seed = 3\n[dynamics]\nneighbours = 'obp'", 'dynamics.neighbours is "obp", but not there', "sweep.toml:3"),
         ]:
@@ -588,6 +588,69 @@ class Refused(SweepCase):
         # Comments, blanks, 2 for 2.0 and the order of sections are no change.
         same = (SMALL + GRID).replace("[0.5, 2]", "[0.50,   2.0] # two").replace("events = 500", "events = 500\n\n")
         self.assertEqual(self.sweep(same).returncode, 0)
+
+    def test_more_points(self):
+        self.assertEqual(self.sweep(SMALL + GRID).returncode, 0)
+        kept = self.state_of("out/aspect_ratio=2_packing_fraction=0.2")
+        times = os.stat(self.path("out/aspect_ratio=2_packing_fraction=0.2/summary.json")).st_mtime_ns
+        more = (SMALL + GRID).replace("[0.5, 2]", "[0.5, 1.5, 2]").replace("step = 0.1", "step = 0.05")
+        result = self.sweep(more, "--jobs", "2")
+        self.assertEqual((result.returncode, result.stdout), (0, "out: 9 points: 9 done, 0 failed\n"), result.stderr)
+        self.assertEqual(self.state_of("out/aspect_ratio=2_packing_fraction=0.2"), kept)
+        self.assertEqual(os.stat(self.path("out/aspect_ratio=2_packing_fraction=0.2/summary.json")).st_mtime_ns, times)
+        self.assertEqual(self.sweep(more, out="whole").returncode, 0)
+        self.assertEqual(self.without_timing("out"), self.without_timing("whole"))
+        self.assertEqual(self.read("out/sweep.toml"), self.read("whole/sweep.toml"))
+        # The directory holds the larger sweep now.
+        self.assert_refused(self.sweep(SMALL + GRID), "lacks the point", "another directory")
+
+    def test_more_points_of_chains(self):
+        chain = 'chain = "system.packing_fraction"\n' + SMALL + "[grid]\nsystem.packing_fraction = [0.1, 0.2]\n"
+        self.assertEqual(self.sweep(chain).returncode, 0)
+        self.assert_refused(self.sweep(chain.replace("0.1, 0.2", "0.1, 0.15, 0.2")),
+                            "packing_fraction=0.2 would start from packing_fraction=0.15", "upper end of chains")
+        denser = chain.replace("0.1, 0.2", "0.1, 0.2, 0.25")
+        self.assertEqual(self.sweep(denser).returncode, 0)
+        self.assertEqual(self.sweep(denser, out="whole").returncode, 0)
+        self.assertEqual(self.without_timing("out"), self.without_timing("whole"))
+
+    def test_overrides(self):
+        small = ["--set", "production.time=2", "--set", "grid.shape.aspect_ratio=[0.5, 3]", "--set", "grid.seed=[1,2]"]
+        self.write("run.toml", SMALL)
+        for name, text in [("inline", SMALL + GRID), ("apart", 'base = "run.toml"\n' + GRID)]:
+            result = self.sweep(text, *small, out=name)
+            self.assertEqual((result.returncode, result.stdout), (0, f"{name}: 8 points: 8 done, 0 failed\n"), result.stderr)
+            self.assertIn("aspect_ratio=3_packing_fraction=0.2_seed=2", os.listdir(self.path(name)))
+        changed = SMALL.replace("seed = 3\n", "").replace("time = 5", "time = 2") + GRID.replace("2]", "3]") + "seed = [1, 2]\n"
+        self.assertEqual(self.sweep(changed, out="written").returncode, 0)
+        self.assertEqual(self.without_timing("inline"), self.without_timing("written"))
+        self.assertEqual(self.without_timing("apart"), self.without_timing("written"))
+        # The same command continues it; without the options it is another sweep.
+        self.assertEqual(self.sweep(SMALL + GRID, *small, out="inline").returncode, 0)
+        self.assert_refused(self.sweep(SMALL + GRID, out="inline"), "in the sweep that inline holds")
+        # A run becomes a sweep.
+        result = self.sweep(SMALL, "--set", "grid.seed=[1,2]", out="seeds")
+        self.assertEqual(result.stdout, "seeds: 2 points: 2 done, 0 failed\n", result.stderr)
+
+    def test_overrides_that_are_refused(self):
+        for value, *parts in [
+            ("shape.aspect_ratio=3", "--set shape.aspect_ratio=3: shape.aspect_ratio is a key of the grid", "grid.shape.aspect_ratio"),
+            ("grid[2].seed=[1]", "there is no grid[2] in the file; accepted: grid"),
+            ("system.numbr=3", "--set system.numbr=3: ", "did you mean system.number?"),
+            ("grid.sed=[3]", "--set grid.sed=[3]: unknown key sed"),
+            ("sed=3", "unknown key sed, did you mean seed?"),
+            ("grid=3", "--set grid=3: grid is 3"),
+            ("seed", "--set seed: is not an assignment"),
+        ]:
+            with self.subTest(value):
+                self.refuse(SMALL + GRID, *parts, arguments=["--set", value])
+
+    def test_command_for_the_other_file(self):
+        self.write("sweep.toml", SMALL + GRID)
+        self.assert_refused(self.hardbody("run", "sweep.toml", "--out", "out"), "sweep.toml:14: [grid]", "hardbody sweep takes it")
+        self.write("sweep.toml", 'base = "run.toml"\n')
+        self.assert_refused(self.hardbody("run", "sweep.toml", "--out", "out"), "sweep.toml:1: base", "hardbody sweep")
+        self.assertFalse(os.path.exists(self.path("out")))
 
     def test_directories(self):
         self.run_small("out")
@@ -670,7 +733,8 @@ class Maps(SweepCase):
         result = self.map("--value", "D", "--where", "seed=2")
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertIn("map_D.svg, map_D.csv written from 106 points", result.stdout)
-        self.assertEqual(len({row["level"] for row in self.lines("map_D.csv")}), 6)
+        # Round numbers between 0.1 and 1.6.
+        self.assertEqual({row["level"] for row in self.lines("map_D.csv")}, {"0.15", "0.2", "0.3", "0.5", "0.7", "1", "1.5"})
 
     def test_points_that_are_not_done(self):
         """An unsound point has values in the table, which are no results; a failed one of no value is not counted."""

@@ -2,22 +2,27 @@
 
     HARDBODY=build/release/apps/hardbody/hardbody /usr/bin/python3 tests/cli/test_trajectory.py [TestClass[.test]]
 
-Needs Debian's python3-gsd, python3-mdanalysis and python3-vtk9. HARDBODY_FULL=1: 50 kills, not 20.
+Needs Debian's python3-gsd, python3-mdanalysis, python3-scipy and python3-vtk9. HARDBODY_FULL=1: 50 kills, not 20.
 """
 
 import csv
+import itertools
 import json
 import os
+import pathlib
 import random
 import re
 import shutil
 import signal
 import subprocess
+import sys
 import time
 import unittest
 import warnings
 
 import numpy
+import scipy.interpolate
+import scipy.optimize
 
 warnings.simplefilter("ignore")
 import gsd.fl
@@ -25,6 +30,9 @@ import gsd.hoomd
 import gsd.pygsd
 
 from test_cli import FULL, HARDBODY, SMALL, Case
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "tools"))
+import order_by_numpy
 
 
 ALL = '[output]\ntrajectory = ["gsd", "lammps", "vtk"]\nframes = 6\n'
@@ -286,6 +294,19 @@ class InARun(Trajectories):
         numpy.testing.assert_array_equal(times[:-1], [5000 * k / 1000 for k in range(len(times) - 1)])
         self.assertLessEqual(end - times[-2], 5)
 
+    def test_at_an_interval(self):
+        """Times are decimal multiples of the interval, the last one within production; no frame is added at the end."""
+        for every, production, times in [(0.1, 0.3, [0, 0.1, 0.2, 0.3]), (0.4, 1, [0, 0.4, 0.8]), (2, 1, [0])]:
+            output = f'[output]\ntrajectory = ["gsd"]\nframes = 9\nframes_every = {every}\n'
+            self.run_small("out", "--set", f"production.time={production}", config=SMALL.replace("[output]\n", output))
+            self.assertEqual(list(Frames(self.path("out/trajectory.gsd")).time), times)
+            shutil.rmtree(self.path("out"))
+        # With a target error, too: the run ends before the frames do.
+        output = '[output]\ntrajectory = ["gsd"]\nframes = 9\nframes_every = 1\n'
+        text = SMALL.replace("[output]\n", output).replace("time = 5\n", 'time = "auto"\ntarget_error = 0.5\n')
+        self.run_small("out", config=text)
+        self.assertEqual(list(Frames(self.path("out/trajectory.gsd")).time), list(range(9)))
+
     def test_of_an_earlier_run_are_removed(self):
         """And what hardbody analyze made of them; nothing else."""
         self.run_with("out", SMALL)
@@ -299,6 +320,35 @@ class InARun(Trajectories):
         for formats, file in [("gsd", "gsd"), ("lammps", "lammpstrj"), ("vtk", "vtp")]:
             self.run_with(formats, SMALL, f'[output]\ntrajectory = ["{formats}"]\nframes = 2\n')
             self.assertEqual([f for f in os.listdir(self.path(formats)) if "trajectory" in f], [f"trajectory.{file}"])
+
+
+class LogTimes(Trajectories):
+    def test_resumed(self):
+        """Frames at logarithmic times, and all that is measured: after a kill the bytes of the undisturbed run."""
+        output = '[output]\ntrajectory = ["gsd"]\nframes = 40\nframes_spacing = "log"\ncheckpoint_every = "0.1s"\n'
+        config = MIXTURE.replace("time = 2\n", "time = 300\ncollective = true\n").replace("[output]\n", output)
+        self.write("run.toml", config)
+        self.assertEqual(self.hardbody("run", "run.toml", "--out", "whole").returncode, 0)
+        process = subprocess.Popen([HARDBODY, "run", "run.toml", "--out", "killed"], cwd=self.here,
+                                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        path = self.path("killed/trajectory.gsd")
+        deadline = time.monotonic() + 60
+        while process.poll() is None and (not os.path.exists(path) or os.path.getsize(path) == 0):
+            self.assertLess(time.monotonic(), deadline)
+            time.sleep(0.01)
+        time.sleep(0.3)
+        process.send_signal(signal.SIGKILL)
+        process.wait()
+        self.assertFalse(os.path.exists(self.path("killed/summary.json")), "the run is too short to be killed")
+        resumed = self.hardbody("resume", "killed")
+        self.assertEqual(resumed.returncode, 0, resumed.stderr)
+        files = ["trajectory.gsd"] + sorted(
+            f"observables/{name}" for name in os.listdir(self.path("whole/observables")))
+        self.assertIn("observables/f_collective.csv", files)
+        self.assertIn("observables/species.csv", files)
+        for name in files:
+            with open(self.path(f"whole/{name}"), "rb") as whole, open(self.path(f"killed/{name}"), "rb") as killed:
+                self.assertTrue(whole.read() == killed.read(), name)
 
 
 class Killed(Trajectories):
@@ -652,7 +702,7 @@ class StartsFromFiles(Trajectories):
             (["start.mend=1"], "start.mend", "true or false"),
             (["start.reverse=1"], "start.reverse", "true or false"),
             (["system.start=fcc"], "system.start", "start.file"),
-            (["system.packing_fraction=0.3"], "its packing fraction is 0.2", "in the config 0.3"),
+            (["system.packing_fraction=0.1"], "its packing fraction is 0.2", "in the config 0.1"),
             (["shape.aspect_ratio=3"], "first/trajectory.gsd: body 0 is ellipsoid ", "in the config ellipsoid"),
             (["shape.aspect_ratio=2", "system.number=65"], "has 64 bodies of its types, the config 65"),
         ]:
@@ -811,7 +861,7 @@ class Analyze(Trajectories):
         for name in ["rods", "three axes", "mixture"]:
             with self.subTest(name):
                 self.run_with("out", FAMILIES[name], ALL.replace("6", "31"))
-                result = self.hardbody("analyze", "out")
+                result = self.hardbody("analyze", "out", "--collective")
                 self.assertEqual(result.returncode, 0, result.stderr)
                 self.compare(Frames(self.path("out/trajectory.gsd")), 2 if name == "three axes" else None)
                 shutil.rmtree(self.path("out"))
@@ -820,19 +870,28 @@ class Analyze(Trajectories):
         images = numpy.array([f.particles.image for f in exact.frames])
         schema = numpy.array([f.particles.position for f in exact.frames], dtype=float) + images * exact.box
         unwrapped = exact.position + exact.box * numpy.round((schema - exact.position) / exact.box)
-        u = exact.rotation[:, :, :, 2]
+        oriented = exact.group != 2  # the third species of the mixture is of spheres
+        u = exact.rotation[:, :, :, 2][:, oriented]
         wave = self.analysis("out/analysis")["wave_numbers"]
-        msd, c1, c2, f_self, alpha2, velocity = [
-            self.rows(f"out/analysis/{n}.csv") for n in ["msd", "c1", "c2", "f_self", "alpha2", "velocity"]
+        msd, c1, c2, f_self, alpha2, velocity, overlap, directions, bragg = [
+            self.rows(f"out/analysis/{n}.csv")
+            for n in ["msd", "c1", "c2", "f_self", "alpha2", "velocity", "overlap", "msd_directions", "bragg"]
         ]
+        near = 0.6 * self.analysis("out/analysis")["state"]["length"]
         step = exact.time[1]
         self.assertAlmostEqual(msd["t"][-1], 7 * step)  # a quarter of 30, rounded down
         close = lambda a, b: self.assertAlmostEqual(a, b, delta=1e-9 * max(1, abs(b)))
         for k, t in enumerate(msd["t"]):
             lag = round(t / step)
-            r2 = ((unwrapped[lag:] - unwrapped[:-lag]) ** 2).sum(axis=2)
+            squares = (unwrapped[lag:] - unwrapped[:-lag]) ** 2
+            r2 = squares.sum(axis=2)
             close(msd["msd"][k], r2.mean())
+            for axis, edge in enumerate("xyz"):
+                close(directions[f"msd_{edge}"][k], squares[:, :, axis].mean())
             close(alpha2["alpha2"][k], 3 * (r2**2).mean() / (5 * r2.mean() ** 2) - 1)
+            Q = (r2 < near**2).mean(axis=1)
+            close(overlap["overlap"][k], Q.mean())
+            close(overlap["chi4"][k], r2.shape[1] * Q.var())
             cosine = (u[lag:] * u[:-lag]).sum(axis=2)
             close(c1["c1"][k], cosine.mean())
             close(c2["c2"][k], (1.5 * cosine**2 - 0.5).mean())
@@ -843,15 +902,28 @@ class Analyze(Trajectories):
                 for axis, letter in enumerate("xyz"):
                     turned = (exact.rotation[lag:, :, :, axis] * exact.rotation[:-lag, :, :, axis]).sum(axis=2)
                     close(c2[f"c2_{letter}"][k], (1.5 * turned**2 - 0.5).mean())
+        self.assertEqual(list(bragg["intensity"]), sorted(bragg["intensity"], reverse=True))
+        for n_x, n_y, n_z, intensity in zip(*(bragg[name] for name in ["n_x", "n_y", "n_z", "intensity"])):
+            phase = 2j * numpy.pi / exact.box * (exact.position @ numpy.array([n_x, n_y, n_z]))
+            close(intensity, (abs(numpy.exp(phase).mean(axis=1)) ** 2).mean())
+        G = self.rows("out/analysis/van_hove.csv")
+        width = near / 6
+        for k, t in enumerate(self.analysis("out/analysis")["van_hove_lags"]):
+            lag = round(t / step)
+            d = numpy.sqrt(((unwrapped[lag:] - unwrapped[:-lag]) ** 2).sum(axis=2))
+            number, edges = numpy.histogram(d, bins=60, range=(0, 60 * width))
+            density = number / (d.size * 4 / 3 * numpy.pi * numpy.diff(edges**3))
+            numpy.testing.assert_allclose(G[f"G_s_t{k + 1}"], density, atol=1e-9, rtol=1e-9)
         order = self.rows("out/analysis/order.csv")
         self.assertEqual(self.read("out/analysis/order.csv").splitlines()[0], "t [l sqrt(m/kT)],S [1],energy [kT]")
         S = [numpy.linalg.eigvalsh(1.5 * v.T @ v / len(v) - 0.5 * numpy.eye(3))[-1] for v in u]
         numpy.testing.assert_allclose(order["S"], S, atol=1e-12)
         self.assertEqual(list(order["t"]), list(exact.time))
-        self.pairs(exact, u)
+        self.pairs(exact, exact.rotation[:, :, :, 2], oriented)
         self.structure(exact)
+        self.collective(exact, msd["t"], step, wave)
 
-    def pairs(self, exact, u):
+    def pairs(self, exact, u, oriented):
         rows = self.rows("out/analysis/g_r.csv")
         n = len(exact.group)
         width = rows["r"][1] - rows["r"][0]
@@ -859,20 +931,36 @@ class Analyze(Trajectories):
         upper = numpy.triu_indices(n, 1)
         count = numpy.zeros(len(rows["r"]))
         p2 = numpy.zeros(len(rows["r"]))
+        turned = numpy.zeros(len(rows["r"]))
         for x, v in zip(exact.position, u):
             d = x[:, None] - x[None]
             d -= exact.box * numpy.round(d / exact.box)
             r = numpy.sqrt((d**2).sum(axis=2))[upper]
             cosine = (v @ v.T)[upper]
             count += numpy.histogram(r, edges)[0]
-            p2 += numpy.histogram(r, edges, weights=1.5 * cosine**2 - 0.5)[0]
+            counted = (oriented[:, None] & oriented[None])[upper]
+            p2 += numpy.histogram(r[counted], edges, weights=(1.5 * cosine**2 - 0.5)[counted])[0]
+            turned += numpy.histogram(r[counted], edges)[0]
         volume = 4 * numpy.pi / 3 * (edges[1:] ** 3 - edges[:-1] ** 3)
         ideal = len(u) * n * (n - 1) / 2 / exact.box**3 * volume
         # A pair on the edge of a bin may be counted in the next one.
         self.assertLess(numpy.abs(rows["g"] - count / ideal).max() * ideal.min(), 2)
         self.assertLess(numpy.mean(numpy.abs(rows["g"] - count / ideal) > 1e-9), 0.05)
-        some = (count > 0) & (numpy.abs(rows["g"] - count / ideal) < 1e-9)
-        numpy.testing.assert_allclose(rows["g2"][some], (p2 / numpy.maximum(count, 1))[some], atol=1e-9)
+        some = (turned > 0) & (numpy.abs(rows["g"] - count / ideal) < 1e-9)
+        numpy.testing.assert_allclose(rows["g2"][some], (p2 / numpy.maximum(turned, 1))[some], atol=1e-9)
+        species = int(exact.group.max()) + 1
+        self.assertEqual("g_1_2" in rows, species > 1)
+        for a in range(species):
+            for b in range(a + 1, species):
+                self.assertEqual(f"g2_{a + 1}_{b + 1}" in rows, b < 2)
+                count[:] = 0
+                for x in exact.position:
+                    d = x[exact.group == a][:, None] - x[exact.group == b][None]
+                    d -= exact.box * numpy.round(d / exact.box)
+                    count += numpy.histogram(numpy.sqrt((d**2).sum(axis=2)), edges)[0]
+                pairs = (exact.group == a).sum() * (exact.group == b).sum()
+                wrong = rows[f"g_{a + 1}_{b + 1}"] - count / (len(u) * pairs / exact.box**3 * volume)
+                self.assertLess(numpy.mean(numpy.abs(wrong) > 1e-9), 0.05)
 
     def structure(self, exact):
         """The first shell of wave vectors has few enough to have all."""
@@ -883,6 +971,56 @@ class Analyze(Trajectories):
         self.assertAlmostEqual(rows["q"][0], unit * numpy.mean([numpy.linalg.norm(n) for n in half]), places=9)
         S = [numpy.abs(numpy.exp(1j * unit * x @ n).sum()) ** 2 / len(x) for x in exact.position for n in half]
         self.assertAlmostEqual(rows["S"][0], numpy.mean(S), places=9)
+        of = [exact.group == a for a in range(int(exact.group.max()) + 1)]
+        for a, b in itertools.combinations(range(len(of)), 2):
+            rho = [[numpy.exp(1j * unit * x[of[s]] @ n).sum() for x in exact.position for n in half] for s in (a, b)]
+            S = numpy.mean(numpy.real(rho[0] * numpy.conj(rho[1]))) / numpy.sqrt(of[a].sum() * of[b].sum())
+            self.assertAlmostEqual(rows[f"S_{a + 1}_{b + 1}"][0], S, places=9)
+
+    def collective(self, exact, lags, step, wave):
+        """F(q, t) / S(q) from all wave vectors of a shell, or every so many of the 48 that are taken."""
+        rows = self.rows("out/analysis/f_collective.csv")
+        unit = 2 * numpy.pi / exact.box
+        for j, q in enumerate(wave):
+            low, end = q / unit - 0.5, int(numpy.ceil(q / unit + 0.5))
+            grid = itertools.product(range(end + 1), range(-end, end + 1), range(-end, end + 1))
+            shell = [n for n in grid if low <= numpy.linalg.norm(n) < low + 1 and n > (0, 0, 0)]
+            shell = [shell[k * len(shell) // 48] for k in range(48)] if len(shell) > 48 else shell
+            rho = numpy.exp(1j * unit * exact.position @ numpy.array(shell).T).sum(axis=1)
+            for k, t in enumerate(lags):
+                lag = round(t / step)
+                wanted = numpy.real(rho[lag:] * numpy.conj(rho[:-lag])).sum() / (numpy.abs(rho[:-lag]) ** 2).sum()
+                self.assertAlmostEqual(rows[f"f_collective_q{j + 1}"][k], wanted, places=9)
+
+    def test_order_against_numpy(self):
+        """Bonds of a crystal of discs and of a nematic: tools/order_by_numpy.py on the same frames."""
+        asked = '[production]\norder = ["steinhardt", "hexatic"]'
+        for kind, state in {
+            "discs": ["shape.aspect_ratio=0.4", "system.packing_fraction=0.6"],
+            "rods": ["shape.aspect_ratio=3", "system.packing_fraction=0.55"],
+        }.items():
+            with self.subTest(kind):
+                config = SMALL.replace("[production]", asked).replace("[output]\n", ALL)
+                start = ["--set", 'system.start="fcc"', "system.number=128", "production.time=1", *state]
+                self.run_small("out", *start, config=config)
+                self.assertEqual(self.hardbody("analyze", "out").returncode, 0)
+                found = self.analysis("out/analysis")["observables"]
+                exact = Frames(self.path("out/trajectory.gsd"))
+                length = order_by_numpy.axial_length(exact.species[0])
+                self.assertEqual(length, 2 * exact.species[0][3])
+                Q = numpy.mean([order_by_numpy.tensor(R[:, :, 2]) for R in exact.rotation], axis=0)
+                self.assertAlmostEqual(abs(numpy.linalg.eigh(Q)[1][:, 2] @ found["director"]["value"]), 1, places=12)
+                bonds, across = [], []
+                for x, R in zip(exact.position, exact.rotation):
+                    director = numpy.linalg.eigh(order_by_numpy.tensor(R[:, :, 2]))[1][:, 2]
+                    bonds.append(order_by_numpy.steinhardt(x, exact.box, 12))
+                    across.append(order_by_numpy.hexatic(x, exact.box, director, 2 / 3 * length))
+                wanted = [*numpy.mean(bonds, axis=0), *numpy.mean(across, axis=0)]
+                for key, value in zip(["q4", "q6", "psi6", "psi6_local"], wanted):
+                    self.assertAlmostEqual(found[key]["value"], value, places=9, msg=key)
+                    # The run has seen other frames of the same state.
+                    self.assertLess(abs(self.summary("out")["observables"][key]["value"] - value), 0.1)
+                shutil.rmtree(self.path("out"))
 
     def test_the_same_frames_as_a_run(self):
         """Structure is measured in this run at times 0, 1, .. 256, where the frames are: the same numbers."""
@@ -982,12 +1120,40 @@ class Analyze(Trajectories):
         self.assertEqual(result.returncode, 0, result.stderr)
         nothing("points")
 
+    def test_logarithmic_times(self):
+        """Frames at 0 and at times that grow by a factor; each is correlated with the first, as numpy does it."""
+        text = '[output]\ntrajectory = ["gsd", "vtk"]\nframes_spacing = "log"\nframes = 22\n'
+        self.run_with("out", SMALL, text)
+        self.assertEqual(self.hardbody("check", "out").returncode, 0)
+        result = self.hardbody("analyze", "out")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("frames at logarithmic times", result.stdout)
+        times = numpy.concatenate([[0], 0.002 * 2500 ** (numpy.arange(21) / 20)])
+        msd = self.rows("out/analysis/msd.csv")
+        numpy.testing.assert_allclose(msd["t"], times[1:], rtol=1e-12)
+        exact = Frames(self.path("out/trajectory.gsd"))
+        numpy.testing.assert_allclose(exact.time, times, rtol=1e-12)
+        images = numpy.array([f.particles.image for f in exact.frames])
+        schema = numpy.array([f.particles.position for f in exact.frames], dtype=float) + images * exact.box
+        unwrapped = exact.position + exact.box * numpy.round((schema - exact.position) / exact.box)
+        expected = ((unwrapped[1:] - unwrapped[0]) ** 2).sum(axis=2).mean(axis=1)
+        numpy.testing.assert_allclose(msd["msd"], expected, rtol=1e-9)
+        self.assertTrue(numpy.isnan(msd["msd_error"]).all())
+        self.assertTrue(self.analysis("out/analysis")["log_times"])
+
+    def test_lags_within_the_trajectory(self):
+        self.run_with("out", SMALL)
+        result = self.hardbody("analyze", "out", "--longest-lag", "5.5")
+        self.assertEqual(result.returncode, 2)
+        self.assertRegex(result.stderr, "^--longest-lag is 5.5; accepted: at most the time between .* frame, 5\n$")
+
     def test_fits(self):
         """As the run has done it, from the same lag and at the same q; of a file alone from the lag that is asked for."""
         dense = SMALL.replace("fraction = 0.2", "fraction = 0.4").replace("ratio = 2", "ratio = 3")
         dense = dense.replace("time = 5\n", "time = 60\n")
         self.run_with("out", dense, ALL.replace("6", "1201"))
         self.assertEqual(self.hardbody("analyze", "out").returncode, 0)
+        self.numbers_of_curves("out")
         own, again = self.summary("out"), self.analysis("out/analysis")
         self.assertEqual(again["fit_from"], own["fit_windows"]["C2"][0])
         self.assertEqual(again["wave_numbers"], own["wave_numbers"])
@@ -996,14 +1162,53 @@ class Analyze(Trajectories):
             self.assertLess(abs(a["value"] - b["value"]), 5 * (a["error"] ** 2 + b["error"] ** 2) ** 0.5, name)
         shutil.copy(self.path("out/trajectory.gsd"), self.path("alone.gsd"))
         result = self.hardbody("analyze", "alone.gsd", "--out", "alone")
-        self.assertIn("no fits of decays: --fit-from", result.stdout)
-        self.assertIsNone(self.analysis("alone")["observables"]["tau_C2"]["value"])
+        self.assertIn(": the MSD grows as t^1.5 or more slowly there\n", result.stdout)
+        chosen = self.analysis("alone")
+        # Later than the run, which knows its collisions: so late that this fluid has decayed.
+        self.assertTrue(again["fit_from"] < chosen["fit_from"] < 1)
+        self.assertRegex(chosen["observables"]["tau_C2"]["missing"], "^decayed before motion is diffusive")
         result = self.hardbody("analyze", "alone.gsd", "--out", "alone", "--fit-from", repr(again["fit_from"]))
         self.assertNotIn("no fits", result.stdout)
         alone = self.analysis("alone")["observables"]
         for name in ["tau_C2", "beta_C2"]:
             self.assertEqual(alone[name], again["observables"][name])
         self.assertGreater(alone["tau_F"]["value"], 0)
+
+    def numbers_of_curves(self, out):
+        """Slopes, decay times, fits and peaks of a run from its own curves, by numpy and scipy."""
+        values, windows = self.summary(out)["observables"], self.summary(out)["fit_windows"]
+        curve = lambda name, column: (lambda rows: (rows["t"], rows[column]))(self.rows(f"{out}/observables/{name}.csv"))
+        near = lambda key, value, relative: self.assertAlmostEqual(values[key]["value"], value, delta=relative * abs(value), msg=key)
+        for key, file, column, divisor in [
+            ("D_trans", "msd", "msd", 6),
+            ("D_rot", "rotational_msd", "rot_msd", 4),
+            ("D_rot_body", "rotational_msd", "rot_msd_body", 4),
+        ]:
+            t, y = curve(file, column)
+            fitted = t >= 0.4 * t[-1] * (1 - 1e-9)
+            near(key, numpy.polyfit(t[fitted], y[fitted], 1)[0] / divisor, 1e-9)
+        for k, edge in enumerate("xyz"):
+            t, y = curve("msd_directions", f"msd_{edge}")
+            fitted = t >= 0.4 * t[-1] * (1 - 1e-9)
+            self.assertAlmostEqual(values["D_box"][k]["value"], numpy.polyfit(t[fitted], y[fitted], 1)[0] / 2, places=9)
+        for name, file, column in [("C2", "c2", "c2"), ("F", "f_self", "f_self_q1")]:
+            t, y = curve(file, column)
+            near(f"t_{name}_1overe", scipy.interpolate.PchipInterpolator(t, y - 1 / numpy.e).roots(extrapolate=False)[0], 1e-3)
+            fitted = (t >= windows[name][0]) & (t <= windows[name][1])
+            decay = lambda t, a, tau, beta: a * numpy.exp(-((t / tau) ** beta))
+            _, tau, beta = scipy.optimize.curve_fit(decay, t[fitted], y[fitted], (1, t[fitted][-1] / 3, 1), xtol=1e-12, ftol=1e-12)[0]
+            near(f"tau_{name}", tau, 1e-6)
+            near(f"beta_{name}", beta, 1e-6)
+        # Few bodies may have no clear peak.
+        near = lambda key, value, relative: self.assertAlmostEqual(values[key]["value"] or value, value, delta=relative * value, msg=key)
+        rows = self.rows(f"{out}/observables/s_q.csv")
+        top = numpy.where((rows["q"] >= 1.5) & (rows["q"] <= 7), rows["S"], 0).argmax()
+        a, b, c = numpy.polyfit(rows["q"][top - 1 : top + 2], rows["S"][top - 1 : top + 2], 2)
+        near("q_peak", -b / (2 * a), 1e-6)
+        near("S_peak", c - b * b / (4 * a), 1e-6)
+        rows = self.rows(f"{out}/observables/overlap.csv")
+        near("chi4_peak", numpy.nanmax(rows["chi4"]), 1e-12)
+        near("t_chi4", rows["t"][numpy.nanargmax(rows["chi4"])], 1e-12)
 
     def test_one_frame(self):
         self.run_with("out", SMALL.replace("time = 5\n", "time = 0\n"))

@@ -46,6 +46,43 @@ def analysis(run: hb.Run) -> hb.Analysis:
     return hb.analyze(run, longest_lag=3.0)
 
 
+@pytest.fixture(scope="session")
+def mixture(tmp_path_factory: pytest.TempPathFactory) -> hb.Run:
+    """Run of spheroids and larger spheres with a trajectory of 9 frames."""
+    config = {
+        "seed": 4,
+        "system": {"packing_fraction": 0.35},
+        "species": [
+            {"semi_axes": [0.8, 0.8, 1.6], "number": 60},
+            {"semi_axes": [1.1, 1.1, 1.1], "number": 40},
+        ],
+        "equilibration": {"time": 2.0},
+        "production": {"time": 8.0},
+        "output": {"trajectory": ["gsd"], "frames": 9},
+    }
+    return hb.run(config, out=tmp_path_factory.mktemp("peers") / "mixture")
+
+
+@pytest.fixture(scope="session")
+def mixed(mixture: hb.Run) -> hb.Analysis:
+    """Observables of all frames of that trajectory."""
+    return hb.analyze(mixture)
+
+
+@pytest.fixture(scope="session")
+def crystal(tmp_path_factory: pytest.TempPathFactory) -> hb.Run:
+    """Run of discs that begin as a crystal, with a trajectory of 4 frames."""
+    config = {
+        "seed": 5,
+        "system": {"number": 128, "packing_fraction": 0.6, "start": "fcc"},
+        "shape": {"aspect_ratio": 0.4},
+        "equilibration": {"time": 1.0},
+        "production": {"time": 3.0, "order": ["steinhardt", "hexatic"]},
+        "output": {"trajectory": ["gsd"], "frames": 4},
+    }
+    return hb.run(config, out=tmp_path_factory.mktemp("peers") / "crystal")
+
+
 @pytest.fixture
 def repository() -> pathlib.Path:
     return pathlib.Path(__file__).resolve().parents[2]

@@ -48,6 +48,12 @@ def test_nematic_order(run: hb.Run, analysis: hb.Analysis) -> None:
         assert abs(frame.log["hardbody/S"][0] - S) < 1e-12
 
 
+def species_of(frame: Any) -> list[Any]:
+    """Indices of the bodies of each species."""
+    group = frame.log["particles/hardbody/group"]
+    return [np.flatnonzero(group == g) for g in range(int(group.max()) + 1)]
+
+
 class OneVector:
     """S(q) at one wave vector by freud, which averages over all vectors of a bin whose components are not negative.
 
@@ -74,15 +80,23 @@ class OneVector:
         lengths = np.linalg.norm(others * self.unit, axis=1)
         return int((np.abs(lengths / self.length - 1) < 5 * self._NARROW).sum()) == 1
 
-    def mean(self, frames: list[Any], L: float) -> float:
-        """S(q) averaged over frames of a cubic box of edge L."""
+    def mean(self, frames: list[Any], L: float, of: tuple[Any, Any] | None = None) -> float:
+        """S(q) averaged over frames of a cubic box of edge L; `of`: of the bodies of one index array with another's.
+
+        freud then gives the sum over pairs of both over all bodies, which tends to 0.
+        """
         box = freud.box.Box(*(L / self.unit))
         k = 2 * np.pi / L * self.length
         factor = freud.diffraction.StaticStructureFactorDirect(
             bins=1, k_min=k * (1 - self._NARROW), k_max=k * (1 + self._NARROW), num_sampled_k_points=0
         )
         for frame in frames:
-            factor.compute((box, box.wrap(frame.particles.position * self.n / self.unit)), reset=False)
+            points = box.wrap(frame.particles.position * self.n / self.unit)
+            if of is None:
+                factor.compute((box, points), reset=False)
+            else:
+                a, b = (points[indices] for indices in of)
+                factor.compute((box, a), query_points=b, N_total=len(points), reset=False)
         return float(factor.S_k[0])
 
 
@@ -97,3 +111,75 @@ def test_structure_factor(run: hb.Run, tmp_path: Any) -> None:
     S = [np.mean([OneVector(n).mean(frames, L) for n in shell]) for shell in vectors]
     assert max(S) > 1.1 > 0.3 > min(S)
     np.testing.assert_allclose(S, ours["S"], rtol=1e-3)
+
+
+def test_radial_distribution_of_two_species(mixture: hb.Run, mixed: hb.Analysis) -> None:
+    ours = mixed.observables["g_r"]
+    bins, width = len(ours) - 1, ours["r"][1] - ours["r"][0]
+    rdf = freud.density.RDF(bins=bins, r_max=bins * width)
+    for frame in mixture.trajectory():
+        first, second = species_of(frame)
+        box, positions = frame.configuration.box, frame.particles.position
+        rdf.compute((box, positions[first]), query_points=positions[second], reset=False)
+    assert ours["g_1_2"].max() > 1.1
+    # A pair that 32 bits move to the next bin changes g there by 1 / its pairs.
+    wrong = abs(rdf.rdf - ours["g_1_2"][:bins])
+    assert np.mean(wrong > 1e-5 * np.maximum(1, rdf.rdf)) < 0.02
+
+
+def test_structure_factor_of_two_species(mixture: hb.Run, mixed: hb.Analysis) -> None:
+    """Ashcroft and Langreth's S_12 from freud's sum over pairs, in the shells with few vectors and at the peak."""
+    ours = mixed.observables["s_q"]
+    frames = mixture.trajectory()
+    L = float(frames[0].log["hardbody/box"][0])
+    first, second = species_of(frames[0])
+    scale = (len(first) + len(second)) / np.sqrt(len(first) * len(second))
+    vectors = shells(len(ours))
+    for shell in (0, 1, 2, int(np.argmax(np.abs(ours["S_1_2"])))):
+        S = scale * np.mean([OneVector(n).mean(frames, L, (first, second)) for n in vectors[shell]])
+        assert abs(S - ours["S_1_2"][shell]) < 1e-5
+    assert np.abs(ours["S_1_2"]).max() > 0.1
+
+
+def test_bond_order(crystal: hb.Run) -> None:
+    """Steinhardt's q_4, q_6 of twelve neighbours, and psi_6 of the bonds that NumPy finds in layers."""
+    found = hb.analyze(crystal).summary["observables"]
+    run = crystal.summary["observables"]
+    q = {4: [], 6: []}
+    hexatic = []
+    for frame in crystal.trajectory():
+        system = (frame.configuration.box, frame.particles.position)
+        for order, values in q.items():
+            steinhardt = freud.order.Steinhardt(l=order)
+            steinhardt.compute(system, neighbors={"num_neighbors": 12, "exclude_ii": True})
+            values.append(steinhardt.particle_order.mean())
+        hexatic.append(hexatic_order(frame))
+    psi = np.mean(hexatic, axis=0)
+    for key, value in {"q4": np.mean(q[4]), "q6": np.mean(q[6]), "psi6": psi[0], "psi6_local": psi[1]}.items():
+        assert abs(found[key]["value"] - value) < 1e-5, key
+        assert abs(run[key]["value"] - value) < 0.1, key  # of other frames
+    assert found["psi6_local"]["value"] > 0.2
+
+
+def hexatic_order(frame: Any) -> tuple[float, float]:
+    """|<psi_6>| and <|psi_6|>: freud's of a layer about each body, laid into a plane."""
+    L = float(frame.log["hardbody/box"][0])
+    positions = frame.log["particles/hardbody/position"]
+    axes = frame.log["particles/hardbody/rotation"].reshape(-1, 3, 3)[:, :, 2]
+    director = np.linalg.eigh(axes.T @ axes)[1][:, 2]
+    reach = 2 / 3 * 2 * frame.log["hardbody/species"][0][3]
+    across = np.linalg.svd(director[None])[2][1:]
+    plane = freud.box.Box.square(2 * L)
+    own = []
+    for k, centre in enumerate(positions):
+        r = np.delete(positions, k, axis=0) - centre
+        r -= L * np.round(r / L)
+        near = r[abs(r @ director) <= reach]
+        flat = np.column_stack([near @ across.T, np.zeros(len(near))])
+        psi = freud.order.Hexatic(k=6)
+        query = freud.locality.AABBQuery(plane, np.vstack([np.zeros((1, 3)), flat]))
+        neighbors = query.query(np.zeros((1, 3)), {"num_neighbors": 7}).toNeighborList()
+        neighbors.filter(neighbors.point_indices != 0)
+        psi.compute((plane, query.points), neighbors=neighbors)
+        own.append(psi.particle_order[0])
+    return abs(np.mean(own)), float(np.abs(own).mean())

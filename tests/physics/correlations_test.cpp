@@ -28,7 +28,7 @@ TEST(VelocityCorrelation, OfSpheresStartsWithEnskogsSlope) {
   // dilute gas exp(-2 Gamma t / 3) holds much longer, but for Sonine corrections of a percent.
   for (const double phi : {0.02, 0.3}) {
     const ed::System system = ed_test::equilibrated({1, phi, 512, Inertia::paper, 71}, 10);
-    const double duration = phi < 0.1 ? 400 : 40;
+    const double duration = phi < 0.1 ? 600 : 120;
     const ed::Results results = observed(system, options_of(system, duration, phi < 0.1 ? 10 : 1));
     const double rate = 2 * results.collision_rate.value / 3;
     int compared = 0;

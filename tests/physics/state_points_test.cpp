@@ -53,8 +53,8 @@ const Point kRods2{"X0Two", {2, 0.30, 512, Inertia::paper, 71}, {5, 150, 12}};
 const Point kRods3{"X0Three", {3, 0.40, 512, Inertia::paper, 72}, {10, 90, 6}};
 const Point kDiscsHalf{"X0Half", {0.5, 0.30, 512, Inertia::paper, 73}, {5, 120, 4}};
 const Point kDiscsThird{"X0Third", {1.0 / 3, 0.40, 512, Inertia::paper, 74}, {5, 60, 2}};
-const Point kSpinningRods{"SpinningX0Three", {3, 0.40, 256, Inertia::uniform, 75}, {5, 60, 4}};
-const Point kSpinningDiscs{"SpinningX0Half", {0.5, 0.40, 256, Inertia::uniform, 76}, {5, 60, 4}};
+const Point kSpinningRods{"SpinningX0Three", {3, 0.40, 256, Inertia::uniform, 75}, {5, 100, 4}};
+const Point kSpinningDiscs{"SpinningX0Half", {0.5, 0.40, 256, Inertia::uniform, 76}, {5, 100, 4}};
 
 const Measured& run_of(const Point& point) {
   static std::map<std::string, Measured> runs;

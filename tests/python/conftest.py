@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import pathlib
 import signal
+import threading
+import time
+from collections.abc import Callable
 
 import numpy as np
 import pytest
@@ -21,6 +24,25 @@ settings.load_profile("repeatable")
 @pytest.fixture
 def random() -> np.random.Generator:
     return np.random.default_rng(20240601)
+
+
+def work_after_interrupt(call: Callable[[], object], delay: float = 0.4) -> float:
+    """Processor seconds that a call goes on for after Ctrl-C: other work on the machine does not lengthen them."""
+    main = threading.main_thread().ident
+    assert main is not None
+    begins = []
+
+    def interrupt() -> None:
+        begins.append(time.process_time())
+        signal.pthread_kill(main, signal.SIGINT)
+
+    timer = threading.Timer(delay, interrupt)
+    with pytest.raises(KeyboardInterrupt):
+        timer.start()
+        call()
+        pytest.fail("the call has returned")
+    timer.join()
+    return time.process_time() - begins[0]
 
 
 def unit_rows(random: np.random.Generator, rows: int, columns: int) -> np.ndarray:

@@ -1,6 +1,6 @@
 """Array forms: right values, forms of arrays, threads, interrupts."""
 
-import signal
+import re
 import subprocess
 import sys
 import threading
@@ -8,7 +8,7 @@ import time
 
 import numpy as np
 import pytest
-from conftest import Pairs, unit_rows
+from conftest import Pairs, unit_rows, work_after_interrupt
 
 import hardbody as hb
 
@@ -63,6 +63,9 @@ def test_distances_agree_with_single_ones(mixture, penetration):
         bound = 1e-12 if penetration == "local" else 1e-12 + s.error_bound + R.error_bound[k]
         assert R.distance[k] == pytest.approx(s.distance, abs=bound)
         assert R.status[k] == s.status
+        # Of deep overlaps two directions may be equally good; at the nearest stationary one the distance is flat.
+        if s.status == "separated" or penetration == "local":
+            np.testing.assert_allclose(R.normal[k], s.normal, atol=1e-6)
 
 
 def test_overlaps_agree_with_distances(mixture):
@@ -102,7 +105,7 @@ def test_times_of_contact_are_those_of_single_pairs_bit_for_bit(mixture, random,
         hb.Motion(hb.Pose(m["positions"][i], m["quaternions"][i]), velocities[i], omegas[i], inertia)
         for i, inertia in enumerate([None] * 60 if inertias is None else inertias)
     ]
-    options = dict(t_max=3.0, finder=finder, max_evaluations=500, eps_d=1e-3)
+    options = dict(t_max=3.0, finder=finder, max_evaluations=500, eps_d=1e-3 if finder == "bracketing" else None)
     more = dict(velocities=velocities, angular_velocities=omegas, inertias=inertias, **options)
     C = hb.time_of_contact_many(**m, **more)
     for k, (i, j) in enumerate(m["pairs"]):
@@ -227,6 +230,26 @@ def test_all_forms_of_arrays_give_the_same_bits(mixture):
     )
 
 
+REFUSED = """
+import resource
+import numpy as np
+import hardbody as hb
+pairs = np.tile([0, 1], (40_000, 1))
+with open("/proc/self/statm") as file:
+    size = int(file.read().split()[0]) * resource.getpagesize()
+resource.setrlimit(resource.RLIMIT_AS, (size + 2**28, size + 2**28))  # of 8 MB a thread
+try:
+    hb.distance_many(hb.Ellipsoid([1, 1, 3]), [[0, 0, 0], [9, 0, 0]], None, pairs, threads=1024)
+except RuntimeError as error:
+    print(error)
+"""
+
+
+def test_threads_that_the_system_refuses_are_named():
+    done = subprocess.run([sys.executable, "-c", REFUSED], capture_output=True, text=True, check=True)
+    assert re.fullmatch(r"threads: the system refused thread \d+ of 1024: .+; accepted: .*\n", done.stdout), done.stdout
+
+
 @pytest.mark.parametrize("empty", [[], np.zeros((0, 2), int), np.zeros((0, 2), np.uint8)])
 def test_no_pairs(empty):
     R = hb.distance_many(hb.Ellipsoid([1, 1, 1]), np.zeros((0, 3)), np.zeros((0, 4)), empty)
@@ -255,12 +278,7 @@ def slow_call(threads=1, pairs=100_000):
 
 @pytest.mark.parametrize("threads", [1, 2])
 def test_interrupts_end_a_call(threads):
-    timer = threading.Timer(0.3, signal.raise_signal, [signal.SIGINT])
-    begin = time.monotonic()
-    timer.start()
-    with pytest.raises(KeyboardInterrupt):
-        slow_call(threads)
-    assert time.monotonic() - begin < 20  # minutes without the interrupt
+    assert work_after_interrupt(lambda: slow_call(threads)) < 2  # minutes without the interrupt
 
 
 def test_other_threads_run_meanwhile():
@@ -284,7 +302,7 @@ def test_other_threads_run_meanwhile():
     finally:
         stop.set()
         clock.join()
-    assert sum(begin < time < end for time in ticks) > 20
+    assert sum(begin < time < end for time in ticks) > 2  # with the GIL kept: one at the most
 
 
 LITTLE_MEMORY = """
@@ -317,6 +335,23 @@ except MemoryError as error:
     print(error)
 print(distances(some).distance.mean())
 """
+
+
+NO_MEMORY = (
+    LITTLE_MEMORY.split("some, more")[0]
+    + """
+allow(megabytes=60)
+try:
+    hb.lattice_start(hb.Ellipsoid([1, 1, 3]), number=4 * 60**3, packing_fraction=0.1)
+except MemoryError as error:
+    print(error)
+"""
+)
+
+
+def test_states_that_do_not_fit_are_refused():
+    done = subprocess.run([sys.executable, "-c", NO_MEMORY], capture_output=True, text=True, check=False)
+    assert done.stdout == "hardbody: what this call computes does not fit into memory\n", done.stderr
 
 
 def test_results_that_do_not_fit_are_named():

@@ -4,7 +4,9 @@ The commands themselves are replaced by functions
 that take what the extension takes, and raise Reached.
 """
 
+import json
 import pathlib
+import re
 import tempfile
 
 import pytest
@@ -40,12 +42,19 @@ CURVES = dict(
 FUNCTIONS = {
     "run": (hb.run, dict(config=CONFIG, out="out", overrides={"system.number": 40}, force=False, **CONSOLE)),
     "run of a file": (hb.run, dict(config="run.toml", overrides=None, force=True, **CONSOLE)),
-    "resume": (hb.resume, dict(run=RUN, **CONSOLE)),
-    "sweep": (hb.sweep, dict(config=CONFIG | {"grid": {"seed": [1, 2]}}, out=HERE, jobs=2, **CONSOLE)),
+    "resume": (hb.resume, dict(run=RUN, overrides={"output.checkpoint_every": "9s"}, **CONSOLE)),
+    "extend": (hb.extend, dict(run=RUN, time=20.0, **CONSOLE)),
+    "Run.extend": (RUN.extend, dict(time=20.0, **CONSOLE)),
+    "sweep": (
+        hb.sweep,
+        dict(config=CONFIG | {"grid": {"seed": [1, 2]}}, out=HERE, overrides={"grid.seed": [3]}, jobs=2, **CONSOLE),
+    ),
     "check": (hb.check, dict(path=RUN, quiet=True)),
     "analyze": (
         hb.analyze,
-        dict(path=RUN, out=HERE / "a", time_step=0.1, longest_lag=2, fit_from=1.5, every=2, quiet=True),
+        dict(
+            path=RUN, out=HERE / "a", time_step=0.1, longest_lag=2, fit_from=1.5, every=2, collective=True, quiet=True
+        ),
     ),
     "report": (hb.report, dict(paths=[RUN, "other"], out="report.html", quiet=True)),
     "map": (hb.map, dict(table=SWEEP, **CURVES)),
@@ -57,6 +66,51 @@ FUNCTIONS = {
     "Run.report": (RUN.report, dict(out="report.html")),
     "Sweep.report": (SWEEP.report, dict(out="report.html")),
 }
+
+# Options that messages name, where Python has refused the argument before.
+UNREACHABLE = ("--jobs is", "--out is empty", "--value is not given", "--levels", "--where {}: is not a condition")
+# Those of commands that Python does not have.
+UNREACHABLE += ("--template {}", "--force cannot be combined with --replicas")
+SOURCES = pathlib.Path(__file__).resolve().parents[2] / "apps"
+
+
+def test_messages_of_commands_name_arguments_of_python():
+    """All texts with options of the command line are among those that the extension translates."""
+    table = (SOURCES / "python/src/runs/words.cpp").read_text()
+    translated = [json.loads(f'"{text}"') for text in re.findall(r'\{"((?:[^"\\]|\\.)*)",\s', table)]
+    assert len(translated) > 8
+    for path in sorted((SOURCES / "hardbody").rglob("*.cpp")):
+        if path.name == "command_line.cpp":
+            continue
+        joined = re.sub(r'(?<!\\)"\s*\n\s*"', "", path.read_text())
+        for text in re.findall(r'"((?:[^"\\\n]|\\.)*)"', joined):
+            # An option alone is an argument of a process, or a part of a message that has it.
+            if re.search(r"(^|\s)(--[a-z]|-o )", text) and not re.fullmatch(r"--[a-z-]+", text):
+                known = any(phrase in text for phrase in translated) or text.startswith(UNREACHABLE)
+                known = known or any(f"; {text}".startswith(phrase) for phrase in translated)
+                assert known or "-o FILE" in text, f"{path}: {text}"
+
+
+def test_the_program_still_has_the_phrases_that_are_translated():
+    """The extension finds phrases by their text: a message that is worded anew must be so in its table, too."""
+    joined = "\n".join(
+        re.sub(r'(?<!\\)"\s*\n\s*"', "", path.read_text())
+        for folder in ("apps/hardbody", "libed/src")
+        for path in sorted((SOURCES.parent / folder).rglob("*.cpp"))
+    )
+    texts = re.findall(r'"((?:[^"\\\n]|\\.)*)"', joined)
+    table = (SOURCES / "python/src/runs/words.cpp").read_text()
+    table = re.sub(r'(?<!\\)"\s*\n\s*"', "", table)
+    for kind in ("kBeginnings", "kPhrases"):
+        rows = re.search(rf"{kind} = {{{{(.*?)}}}};", table, re.DOTALL)[1]
+        phrases = re.findall(r'\{"((?:[^"\\]|\\.)*)",', rows)
+        assert len(phrases) == int(re.search(rf"Words, (\d+)> {kind}", table)[1])
+        for phrase in phrases:
+            if kind == "kBeginnings":
+                assert any(text.startswith(phrase) for text in texts), phrase
+            else:  # a reason begins after what the command says of it
+                assert any(phrase in text or phrase in f"; {text}" for text in texts), phrase
+
 
 # What messages say in place of an argument's name.
 OTHER_WORDS = {
@@ -98,10 +152,11 @@ def count(value):
 # What the extension takes after the functions of the console.
 TAKEN = {
     "run": (utf8, text_or_none, text_or_none, texts, flag),
-    "resume": (utf8,),
-    "sweep": (utf8, text_or_none, text_or_none, lambda value: value is None or count(value), texts),
+    "resume": (utf8, texts),
+    "extend": (utf8, real_or_none),
+    "sweep": (utf8, text_or_none, text_or_none, lambda value: value is None or count(value), texts, texts),
     "check": (utf8,),
-    "analyze": (utf8, text_or_none, real_or_none, real_or_none, real_or_none, count),
+    "analyze": (utf8, text_or_none, real_or_none, real_or_none, real_or_none, count, flag),
     "report": (texts, text_or_none),
     "map": (utf8, utf8, utf8, texts, texts, texts, flag, flag, text_or_none, text_or_none),
 }

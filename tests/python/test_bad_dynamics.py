@@ -99,7 +99,14 @@ FUNCTIONS = {
     "record_collisions": (lambda **arguments: simulation().record_collisions(**arguments), dict(number=5)),
     "measure": (
         lambda **arguments: simulation().measure(**arguments),
-        dict(duration=1.0, longest_lag=0.5, wave_numbers=[1.0, 2.0]),
+        dict(
+            duration=1.0,
+            longest_lag=0.5,
+            wave_numbers=[1.0, 2.0],
+            collective=True,
+            order=["hexatic"],
+            order_neighbours=8,
+        ),
     ),
     "restore": (lambda **arguments: hb.Simulation.restore(**arguments), dict(state=saved(), shapes=[])),
     "CustomShape": (

@@ -18,7 +18,7 @@ CONTACTS = dict(
     angular_velocities=[[0, 1, 0], [0, 0, 1]],
     t_max=3.0,
     inertias=[[1, 1, 1], [1, 1.2, 1.5]],
-    finder="certified",
+    finder="bracketing",
     max_evaluations=100,
     eps_d=1e-6,
     distance="dual",
@@ -41,6 +41,7 @@ FUNCTIONS = {
     "apply_inverse": (X.apply_inverse, dict(points=[1, 2, 3])),
     "Motion": (hb.Motion, dict(pose=X, velocity=[1, 0, 0], angular_velocity=[0, 1, 0], inertia=[1, 1, 1], time=0.0)),
     "at": (hb.Motion().at, dict(time=1.0)),
+    "at far": (hb.Motion(velocity=[1e90, 0, 0]).at, dict(time=1.0)),
     "distance": (hb.distance, dict(**PAIR, start=[1, 0, 0], max_iterations=60, penetration="global")),
     "distance_lower_bound": (hb.distance_lower_bound, dict(**PAIR, n=[1, 0, 0])),
     "overlap": (hb.overlap, dict(**PAIR, start=[1, 0, 0])),
@@ -56,7 +57,7 @@ FUNCTIONS = {
             b=E,
             motion_b=hb.Motion(X, [-1, 0, 0]),
             t_max=3.0,
-            finder="certified",
+            finder="bracketing",
             max_evaluations=100,
             eps_d=1e-6,
             distance="dual",
@@ -171,6 +172,11 @@ def test_bad_arguments_are_named(call):
         ("time_of_contact_many", dict(inertias=[1, 1, 1]), "inertias has shape (3,); accepted: real numbers of shape"),
         ("time_of_contact_many", dict(t_max=-1), "t_max is -1; accepted: a number from 0, which may be infinite"),
         ("time_of_contact_many", dict(t_max=np.nan), "t_max is nan"),
+        (
+            "distance_many",
+            dict(pairs=np.array([[0, 2**64 - 1]], np.uint64), start=None),
+            "pairs[0, 1] is 18446744073709551615; accepted: 0 to 1",
+        ),
         ("time_of_contact_many", dict(pairs=[[0, 2]]), "pairs[0, 1] is 2; accepted: 0 to 1"),
         ("time_of_contact_many", dict(quaternions=[[1, 0, 0, 0], [1, 1, 0, 0]]), "quaternions[1]: Pose: quaternion"),
         (
@@ -179,6 +185,15 @@ def test_bad_arguments_are_named(call):
             "pairs[0]: exponent is 0.2; accepted of bodies in motion: 0.25 to 1.6",
         ),
         ("time_of_contact_many", dict(finder="bracketing", eps_d=2.0), "pairs[0]: "),
+        (
+            "time_of_contact_many",
+            dict(finder="certified"),
+            'root is given, but finder="certified" has no root; accepted',
+        ),
+        ("time_of_contact_many", dict(finder="certified", root=None), 'eps_d is given, but finder="certified" has no'),
+        ("time_of_contact", dict(finder="certified", distance="newton5"), 'distance is "newton5"; accepted: "dual"'),
+        ("time_of_contact", dict(finder="certified", eps_d=None), "root is given"),
+        ("at far", dict(time=1e80), "time is 1e+80: Pose: position is too far away"),
         ("mass_properties_many", dict(density=[1, 2, 3]), "density has shape (3,); accepted: a number, or one a shape"),
         ("mass_properties_many", dict(density=[1, 0]), "density[1] is 0; accepted: a finite number above 0"),
         ("mass_properties_many", dict(density=np.nan), "density is nan; accepted: a finite number above 0"),
@@ -190,6 +205,41 @@ def test_messages(function, bad, words):
     with pytest.raises((ValueError, TypeError, MemoryError)) as caught:
         call(**{**arguments, **bad})
     assert words in str(caught.value)
+
+
+@pytest.mark.parametrize("name", sorted(FUNCTIONS))
+def test_wrong_calls_are_explained_in_one_line(name):
+    function, arguments = FUNCTIONS[name]
+    with pytest.raises(TypeError, match=r"^nonsense is no argument of .*; accepted: \w+\(.*\)$|argument 'nonsense'$"):
+        function(**arguments, nonsense=1)
+    with pytest.raises(TypeError, match=r"^\w+ is called with \(.*\); accepted: \w+\(.*\)$|^\w+\(\) takes .* given$"):
+        function(*range(30))
+
+
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (
+            lambda: hb.Ellipsoid(1, 2, 3),
+            "Ellipsoid is called with (int, int, int); accepted: Ellipsoid(semi_axes: ArrayLike)",
+        ),
+        (lambda: hb.Ellipsoid(), "Ellipsoid is called with (); accepted: Ellipsoid(semi_axes: ArrayLike)"),
+        (
+            lambda: hb.Superellipsoid([1, 2, 3], e1=0.5),
+            "Superellipsoid is called with (list, e1: float); accepted: "
+            "Superellipsoid(semi_axes: ArrayLike, e1: float, e2: float)",
+        ),
+        (
+            lambda: hb.contains(E, X, [0, 0, 0], tolerance=1),
+            "tolerance is no argument of contains; accepted: contains(shape: BodyShape, pose: Pose, point: ArrayLike)",
+        ),
+        (lambda: X.apply(), "apply is called with (Pose); accepted: apply(self, points: ArrayLike)"),
+    ],
+)
+def test_messages_about_wrong_calls(call, words):
+    with pytest.raises(TypeError) as caught:
+        call()
+    assert str(caught.value) == words
 
 
 def test_first_bad_entry_is_named_whatever_the_number_of_threads():

@@ -2,7 +2,8 @@
 
 import numpy as np
 import pytest
-from test_simulation import bits, interrupted
+from conftest import work_after_interrupt
+from test_simulation import bits
 
 import hardbody as hb
 
@@ -229,7 +230,16 @@ REFUSED = [
     (ValueError, "volume", changed(volume=100.0)),
     (ValueError, "symmetry_axis", changed(symmetry_axis=0)),
     (ValueError, "symmetry_axis", changed(symmetry_axis=3)),
-    (TypeError, "centrally_symmetric", changed(centrally_symmetric=1)),
+    (TypeError, r"Changed\.volume is 'large'; accepted: a real number", changed(volume="large")),
+    (TypeError, r"Changed\.symmetry_axis is 1.5; accepted: an integer from 0 to 2", changed(symmetry_axis=1.5)),
+    (TypeError, r"Changed\.centrally_symmetric is 1; accepted: True, False, None", changed(centrally_symmetric=1)),
+    (
+        TypeError,
+        r"Changed\.min_curvature_radius has dtype <U1; accepted: a real number",
+        changed(min_curvature_radius=["a"]),
+    ),
+    (TypeError, r"Changed\.support_hessian is of type ndarray; accepted: a method", changed(support_hessian=np.eye(3))),
+    (TypeError, r"Changed\.inertia is of type list; accepted: a method, or None", changed(inertia=[1, 1, 1])),
     (TypeError, "support", changed(support=None)),
     (TypeError, "tuple", changed(support=lambda self, n: n)),
 ]
@@ -256,7 +266,7 @@ def test_dynamics_needs_volume_and_moments():
 
 def test_ctrl_c_ends_a_run_between_events():
     simulation, other = hb.Simulation(start(Exact())), hb.Simulation(start(Exact()))
-    assert interrupted(lambda: simulation.run(time=1e9)) < 3
+    assert work_after_interrupt(lambda: simulation.run(time=1e9)) < 3
     collisions = simulation.collisions
     simulation.run(collisions=3)
     other.run(collisions=collisions)

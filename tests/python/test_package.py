@@ -2,11 +2,13 @@
 
 import importlib.metadata
 import inspect
+import os
 import pathlib
 import re
 import subprocess
 import sys
 import tarfile
+import types
 
 import pytest
 
@@ -25,7 +27,11 @@ def test_version():
         assert importlib.metadata.version("hardbody") == version
 
 
-@pytest.mark.parametrize("name", [name for name in hb.__all__ if name != "__version__"])
+# Aliases of types, which have no docstrings of their own, are documented in docs/reference.
+DOCUMENTED = [n for n in hb.__all__ if n != "__version__" and not isinstance(getattr(hb, n), types.GenericAlias)]
+
+
+@pytest.mark.parametrize("name", DOCUMENTED)
 def test_every_public_name_is_documented(name):
     thing = getattr(hb, name)
     assert inspect.getdoc(thing)
@@ -33,6 +39,45 @@ def test_every_public_name_is_documented(name):
         for key, member in vars(thing).items():
             if not key.startswith("_") and (callable(member) or isinstance(member, (property, staticmethod))):
                 assert inspect.getdoc(getattr(thing, key)), f"{name}.{key}"
+
+
+def annotations(thing):
+    """Texts of the types in the signatures of a function, or of a class's members."""
+    yield from (text for text, *_ in getattr(thing, "__nb_signature__", ()))
+    yield from map(str, getattr(thing, "__annotations__", {}).values())
+    if inspect.isclass(thing):
+        for key, member in vars(thing).items():
+            if not key.startswith("_") or key in ("__init__", "__getitem__", "__call__"):
+                yield from annotations(member)
+                yield from annotations(getattr(member, "fget", None))
+
+
+@pytest.mark.parametrize("name", [name for name in dir(hb) if not name.startswith("_")])
+def test_types_in_signatures_are_public(name):
+    thing = getattr(hb, name)
+    if name in ("Reals", "Bools", "Strings") or not hasattr(thing, "__module__"):
+        return
+    module = sys.modules.get(thing.__module__)
+    for text in annotations(thing):
+        assert not re.search(r"hardbody\._(?!core\b)\w+\.", text), text
+        for word in re.findall(r"(?<![.\w'])[A-Z]\w+(?!['\w])", text):
+            kind = getattr(module, word, None)
+            if str(getattr(kind, "__module__", "")).startswith("hardbody") or is_union_of_ours(kind):
+                assert getattr(hb, word, None) is kind, f"{word} in {text}"
+
+
+def is_union_of_ours(kind):
+    """Whether a type is an alias of a union, tuple or function with classes of the package."""
+    return any(
+        str(getattr(part, "__module__", "")).startswith("hardbody") or is_union_of_ours(part)
+        for part in getattr(kind, "__args__", ())
+    )
+
+
+def test_sources_use_the_stable_abi_alone():
+    """Python 3.11 has no stable ABI that nanobind knows: its builds would also take the macros of the full API."""
+    for path in sorted((ROOT / "apps/python/src").rglob("*.*")):
+        assert not re.findall(r"\bPy[A-Z]\w*_[A-Z]+(?:_[A-Z]+)+\b", path.read_text()), path  # PyBytes_GET_SIZE
 
 
 def test_build_requirements_are_those_of_the_constraints():
@@ -58,6 +103,28 @@ def test_types_of_the_tutorials():
     command = [sys.executable, "-m", "mypy", "--strict", "--no-error-summary", "docs/tutorials"]
     done = subprocess.run(command, capture_output=True, text=True, cwd=ROOT, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
+
+
+@pytest.mark.skipif(not is_installed, reason="stubs are made for the installed package")
+def test_types_of_the_package():
+    pytest.importorskip("mypy")
+    command = [sys.executable, "-m", "mypy", "--strict", "--config-file=", "--no-error-summary", "-p", "hardbody"]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_stubs_are_made_beside_an_older_package(tmp_path):
+    nanobind = pytest.importorskip("nanobind")
+    older = tmp_path / "older/hardbody/__init__.py"
+    older.parent.mkdir(parents=True)
+    older.write_text("raise RuntimeError('the older package is imported')")
+    core = pathlib.Path(_core.__file__)
+    (tmp_path / core.name).symlink_to(core)
+    stubgen = pathlib.Path(nanobind.__file__).with_name("stubgen.py")
+    command = [sys.executable, "apps/python/make_stub.py", str(stubgen), str(tmp_path)]
+    environment = {**os.environ, "PYTHONPATH": str(older.parents[1])}
+    subprocess.run(command, check=True, cwd=ROOT, env=environment)
+    assert "class Simulation:" in (tmp_path / "_core.pyi").read_text()
 
 
 @pytest.mark.parametrize("command", ["check", "format --check"])
@@ -132,10 +199,11 @@ def test_example_runs():
     assert "separated by 2.049" in done.stdout
 
 
-def test_guide_runs():
-    """The examples of docs/python.md, in order, in one name space."""
-    blocks = re.findall(r"```python\n(.*?)```", (ROOT / "docs/python.md").read_text(), re.DOTALL)
+@pytest.mark.parametrize("page", ["python.md", "python-shapes.md"])
+def test_guide_runs(page):
+    """The examples of a page, in order, in one name space."""
+    blocks = re.findall(r"```python\n(.*?)```", (ROOT / "docs" / page).read_text(), re.DOTALL)
     assert blocks
     names: dict[str, object] = {}
     for block in blocks:
-        exec(compile(block, "docs/python.md", "exec"), names)
+        exec(compile(block, page, "exec"), names)

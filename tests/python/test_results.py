@@ -230,13 +230,27 @@ def test_check_of_an_overlap(tmp_path):
     assert str(caught.value).endswith("\nNOT SOUND")
 
 
-def test_analyze(run, tmp_path):
+def test_analyze(run, tmp_path, capsys):
     analysis = hb.analyze(run, tmp_path / "b", longest_lag=1.5)
     assert analysis.summary["frames"]["read"] == 4
     assert analysis.observables["order"].names == ("t", "S", "energy")
     assert analysis.observables["msd"]["t"][0] == pytest.approx(1)
     # The same displacements as those of the run where lags are the same.
     assert hb.analyze(run).path == run.path / "analysis"
+    capsys.readouterr()
+    (tmp_path / "a.lammpstrj").write_text(
+        "".join(
+            f"ITEM: TIMESTEP\n{step}\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS pp pp pp\n0 10\n0 10\n0 10\n"
+            f"ITEM: ATOMS id type xu yu zu radius\n1 1 1 1 {step} 1\n2 1 5 1 1 1\n"
+            for step in range(8)
+        )
+    )
+    with pytest.raises(ValueError, match="has no time; accepted: time_step, the time between two steps$"):
+        hb.analyze(tmp_path / "a.lammpstrj")
+    hb.analyze(tmp_path / "a.lammpstrj", time_step=0.5, quiet=False)
+    assert "\nno fits of decays: fit_from sets the first lag" in capsys.readouterr().out
+    with pytest.raises(ValueError, match="^longest_lag is 99; accepted: at most the time between"):
+        hb.analyze(run, longest_lag=99)
     with pytest.raises(ValueError, match="^every is 0; accepted: an integer from 1 to 1000000"):
         hb.analyze(run, every=0)
     with pytest.raises(TypeError, match="^every is 1.5; accepted: an integer"):

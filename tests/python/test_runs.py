@@ -63,8 +63,11 @@ def test_config_of_a_run_runs_again(done, tmp_path):
 def test_directories_are_kept(done, tmp_path):
     directory = tmp_path / "b"
     first = hb.run(with_values(CONFIG, production={"time": 1.0}), directory)
-    with pytest.raises(ValueError, match="already holds a run"):
+    advice = "another directory, hardbody.resume to continue it, or force=True to overwrite it"
+    with pytest.raises(ValueError, match=rf"already holds a run \(.*\); accepted: {advice}$"):
         hb.run(CONFIG, directory)
+    with pytest.raises(ValueError, match=r": force=True would delete .*config.toml, which is an input of this run"):
+        hb.run(directory / "config.toml", directory, force=True)
     assert first.config["production"]["time"] == 1
     assert results(hb.run(CONFIG, directory, force=True)) == results(done)
 
@@ -109,7 +112,7 @@ def test_bad_arguments(tmp_path):
         hb.run(CONFIG, "a\0b")
     with pytest.raises(TypeError, match=r"^overrides is \['seed=1'\]; accepted: a dict"):
         hb.run(CONFIG, tmp_path / "b", overrides=["seed=1"])
-    with pytest.raises(ValueError, match=r"^--set system\.number=-4: system\.number is -4; accepted"):
+    with pytest.raises(ValueError, match=r"^overrides: system\.number=-4: system\.number is -4; accepted"):
         hb.run(CONFIG, tmp_path / "b", overrides={"system.number": -4})
     with pytest.raises(TypeError, match="^progress is 3; accepted: None, True, or a function"):
         hb.run(CONFIG, tmp_path / "b", progress=3)
@@ -155,6 +158,28 @@ def test_unsound_results_raise(tmp_path):
         assert unsound.failures == []  # a stall has no pairs
 
 
+def test_runs_that_fail_have_their_pairs(tmp_path):
+    """Steps of half a body step over contacts."""
+    config = {
+        "seed": 1,
+        "system": {"number": 64, "packing_fraction": 0.5},
+        "shape": {"aspect_ratio": 1.5},
+        "dynamics": {"finder": "bracketing", "eps_d": 0.85, "neighbours": "cells"},
+        "equilibration": {"time": 0.0},
+        "production": {"time": 0.8},
+    }
+    with pytest.raises(hb.UnsoundError, match="b: NOT SOUND: .* overlaps were met during production") as caught:
+        hb.run(config, tmp_path / "b")
+    failures = caught.value.run.failures
+    assert 0 < len(failures) <= 16 and not caught.value.run.summary["sound"]
+    for pair in failures:
+        assert pair["reason"] == "the bodies overlap by more than rounding" and 0 < pair["time"] <= 0.8
+        bodies = [pair[name] for name in ("a", "b")]
+        shapes = [hb.Ellipsoid(body["shape"]["semi_axes"]) for body in bodies]
+        poses = [hb.Pose(body["position"], body["rotation"]) for body in bodies]
+        assert hb.distance(shapes[0], poses[0], shapes[1], poses[1]).distance < -1e-12
+
+
 def test_failures_are_those_of_the_files(done, tmp_path):
     run = hb.Run(shutil.copytree(done.path, tmp_path / "b"))
     (run.path / "failures").mkdir()
@@ -192,7 +217,7 @@ def wait_for(path: pathlib.Path, process: subprocess.Popen[str]) -> None:
 @pytest.fixture(scope="module")
 def longer(tmp_path_factory):
     """A run of a second or more, and its config."""
-    config = with_values(CONFIG, production={"time": 60.0})
+    config = with_values(CONFIG, production={"time": 240.0})
     return config, hb.run(config, tmp_path_factory.mktemp("runs") / "long")
 
 
@@ -202,7 +227,7 @@ def test_ctrl_c_saves_and_raises(tmp_path, longer):
         from runs import CONFIG, with_values
         before = signal.getsignal(signal.SIGINT)
         try:
-            hb.run(with_values(CONFIG, production={"time": 60.0}), OUT)
+            hb.run(with_values(CONFIG, production={"time": 240.0}), OUT)
         except KeyboardInterrupt as error:
             print(error)
         assert signal.getsignal(signal.SIGINT) is before is signal.default_int_handler
@@ -237,7 +262,7 @@ def test_sigterm_saves_and_ends_the_process(tmp_path):
     script = f"""
         import hardbody as hb
         from runs import CONFIG, with_values
-        hb.run(with_values(CONFIG, production={{"time": 60.0}}), {str(tmp_path / "b")!r})
+        hb.run(with_values(CONFIG, production={{"time": 240.0}}), {str(tmp_path / "b")!r})
     """
     process = python(script)
     wait_for(tmp_path / "b" / "trajectory.lammpstrj", process)
@@ -253,7 +278,7 @@ def test_sigterm_with_a_handler(tmp_path):
         from runs import CONFIG, with_values
         signal.signal(signal.SIGTERM, lambda *_: print("handled"))
         try:
-            hb.run(with_values(CONFIG, production={{"time": 60.0}}), {str(tmp_path / "b")!r})
+            hb.run(with_values(CONFIG, production={{"time": 240.0}}), {str(tmp_path / "b")!r})
         except RuntimeError as error:
             print(error)
     """

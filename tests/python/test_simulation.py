@@ -7,7 +7,6 @@ import os
 import pathlib
 import pickle
 import re
-import signal
 import struct
 import subprocess
 import threading
@@ -15,6 +14,7 @@ import time
 
 import numpy as np
 import pytest
+from conftest import work_after_interrupt
 
 import hardbody as hb
 
@@ -142,6 +142,16 @@ def test_collisions_are_those_of_the_program(tmp_path):
         if isinstance(here, hb.Estimate):
             assert here.value == there["value"] or (np.isnan(here.value) and there["value"] is None), key
             assert here.error == there["error"] or (np.isnan(here.error) and there["error"] is None), key
+    decays = summary["observables"]["t_F_1overe_q"]
+    assert len(decays) == len(summary["wave_numbers"])
+    np.testing.assert_equal(
+        [(e.value, e.error) for e in results["t_F_1overe_q"]],
+        [tuple(np.nan if e[name] is None else e[name] for name in ("value", "error")) for e in decays],
+    )
+    # Displacements of the shortest of these lags are all within reach.
+    G = results["van_hove"]
+    np.testing.assert_allclose((4 * np.pi * (G["r"] ** 2 + 0.1**2 / 12) * 0.1 * G["G_s_t1"]).sum(), 1, rtol=1e-6)
+    assert results["overlap"]["overlap"][0] == 1
     with open(tmp_path / "out/observables/msd.csv", newline="") as file:
         next(file)
         there = np.array([[float(x) if x else np.nan for x in line.split(",")] for line in file])
@@ -150,12 +160,85 @@ def test_collisions_are_those_of_the_program(tmp_path):
     np.testing.assert_array_equal(np.stack([here[n] for n in here.dtype.names], axis=1), there)
 
 
+def test_averages_over_time_origins_by_numpy():
+    """What frames of a file do not tell: rotational displacements, velocities, rates, pressure, temperatures."""
+    simulation = hb.Simulation(fluid(32, 0.15, seed=5))
+    observables = simulation.measure(duration=4, longest_lag=1)
+    kept = {name: [] for name in ("positions", "velocities", "angular_velocities", "angular_displacements")}
+    times = []
+    while np.isfinite(observables.next_time):
+        times.append(observables.next_time)
+        simulation.run(until=times[-1])
+        for name, values in kept.items():
+            values.append(getattr(simulation, name))
+    kept = {name: np.array(values) for name, values in kept.items()}
+    times = np.array(times)
+    results = observables.results()
+    lags = results["velocity"]["t"]
+    origins = [t for t in times if np.isclose(t * 4, round(t * 4), atol=1e-9)]  # four in a longest lag
+
+    def at(t):
+        return int(np.argmin(abs(times - t)))
+
+    for k, lag in enumerate(lags):
+        pairs = [(at(t), at(t + lag)) for t in origins if t + lag <= 4 * (1 + 1e-9)]
+        first, second = np.array(pairs).T
+        assert np.allclose(times[second] - times[first], lag, atol=1e-9)
+        for key, name in (("vacf", "velocities"), ("wacf", "angular_velocities")):
+            product = (kept[name][first] * kept[name][second]).sum(axis=2).mean()
+            np.testing.assert_allclose(results["velocity"][key][k], product, rtol=1e-10, atol=1e-12)
+        if lag > 0:
+            turned = kept["angular_displacements"][second] - kept["angular_displacements"][first]
+            row = np.flatnonzero(results["rotational_msd"]["t"] == lag)[0]
+            found = results["rotational_msd"]["rot_msd"][row]
+            np.testing.assert_allclose(found, (turned**2).sum(axis=2).mean(), rtol=1e-8)
+    n, duration = len(simulation), simulation.time
+    assert results["collision_rate"].value == pytest.approx(2 * simulation.collisions / (n * duration), rel=1e-12)
+    samples = [at(t) for t in origins]
+    v, w = kept["velocities"][samples], kept["angular_velocities"][samples]
+    mass, inertia = 1.0, simulation.system.species[0].inertia[0]
+    kT = (mass * v**2).sum(axis=(1, 2)).mean() / (3 * n - 3)
+    assert results["kT_trans"].value == pytest.approx(kT, rel=1e-10)
+    assert results["kT_rot"].value == pytest.approx((inertia * w**2).sum(axis=(1, 2)).mean() / (2 * n), rel=1e-10)
+    assert results["Z"].value == pytest.approx(1 + simulation.virial / (3 * n * kT * duration), rel=1e-10)
+    assert np.trace(results["pressure_tensor"].value) == pytest.approx(3 * results["Z"].value, rel=1e-10)
+
+
+def test_bond_order_where_asked_for():
+    crystal = hb.lattice_start(hb.Ellipsoid.spheroid(2.0), 72, packing_fraction=0.6, seed=5)
+    simulation = hb.Simulation(crystal)
+    observables = simulation.measure(duration=0.5, order=["steinhardt", "hexatic"], order_neighbours=8)
+    simulation.run(time=0.5)
+    results = observables.results()
+    for key in ("q4", "q6", "psi6", "psi6_local"):
+        assert 0 < results[key].value < 1, key
+    restored = hb.Simulation.restore(simulation.save()).observables[0].results()
+    assert restored["psi6"].value == results["psi6"].value
+    only = hb.Simulation(crystal).measure(duration=0.5, order=("hexatic",)).results()
+    assert "q6" not in only and "psi6" in only
+
+
+def test_collective_motion_where_asked_for():
+    simulation = hb.Simulation(fluid(32, 0.1, seed=5))
+    observables = simulation.measure(duration=1, wave_numbers=[3.0], collective=True)
+    simulation.run(time=1)
+    results = observables.results()
+    assert results["f_collective"].names == ("t", "f_collective_q1", "f_collective_q1_error")
+    assert results["f_collective"]["f_collective_q1"][0] == pytest.approx(1, abs=0.01)
+    assert len(results["t_F_collective_q"]) == 1
+    plain = hb.Simulation(simulation.system).measure(duration=1).results()
+    assert not {"f_collective", "species", "t_F_collective_q"} & set(plain)
+
+
 def test_results_are_tables_and_estimates():
     simulation = hb.Simulation(fluid(32, 0.1, seed=5))
     observables = simulation.measure(duration=1)
     simulation.run(time=1)
     results = observables.results()
     msd, Z = results["msd"], results["Z"]
+    assert msd.units == {"t": "time", "msd": "length^2", "msd_error": "length^2"}
+    assert all(set(curve.units) == set(curve.names) and all(curve.units.values()) for curve in results.curves.values())
+    assert pickle.loads(pickle.dumps(results))["msd"].units == msd.units
     assert isinstance(msd, hb.Table) and msd.names == ("t", "msd", "msd_error")
     np.testing.assert_array_equal(msd.to_pandas().to_numpy(), np.stack([msd[name] for name in msd.names], axis=1))
     assert isinstance(results.curves["g_r"], hb.Table)
@@ -313,21 +396,9 @@ def test_exceptions_of_callbacks_leave_a_whole_simulation():
         simulation.run(time=1, every=0.5, callback=nested)
 
 
-def interrupted(run):
-    """Seconds after Ctrl-C that a call took to end."""
-    main = threading.main_thread().ident
-    timer = threading.Timer(0.3, lambda: signal.pthread_kill(main, signal.SIGINT))
-    timer.start()
-    begin = time.monotonic()
-    with pytest.raises(KeyboardInterrupt):
-        run()
-    timer.join()
-    return time.monotonic() - begin - 0.3
-
-
 def test_ctrl_c_ends_a_run_between_events():
     simulation, other = hb.Simulation(fluid()), hb.Simulation(fluid())
-    assert interrupted(lambda: simulation.run(time=1e9)) < 2
+    assert work_after_interrupt(lambda: simulation.run(time=1e9)) < 2
     time_reached = simulation.time
     assert 0 < time_reached < 1e9
     simulation.run(until=time_reached + 1)
@@ -348,7 +419,7 @@ def test_numpys_false_ends_a_start():
 
 
 def test_ctrl_c_ends_a_start():
-    assert interrupted(lambda: fluid(2000, 0.55, most_compressed=2000)) < 5
+    assert work_after_interrupt(lambda: fluid(2000, 0.55, most_compressed=2000)) < 5
 
 
 def test_other_threads_are_refused_while_it_runs():

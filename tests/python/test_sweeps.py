@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import pathlib
 import signal
@@ -43,6 +44,18 @@ def table_bytes(directory: os.PathLike[str] | str) -> list[str]:
 @pytest.fixture(scope="module")
 def sweep(tmp_path_factory):
     return hb.sweep(SWEEP, tmp_path_factory.mktemp("sweeps") / "a", jobs=2)
+
+
+def test_overrides_and_larger_grids(tmp_path):
+    made = hb.sweep(SWEEP, tmp_path / "a", overrides={"system.number": 40, "grid.shape.aspect_ratio": [1.5]}, jobs=2)
+    assert list(made.table["status"]) == ["done"] * 2
+    assert all(run is not None and run.config["system"]["number"] == 40 for run in made.runs)
+    first = table_bytes(made)
+    larger = hb.sweep(SWEEP, tmp_path / "a", overrides={"system.number": 40}, jobs=2)
+    assert list(larger.table["shape.aspect_ratio"]) == [1.5, 1.5, 2.0, 2.0]
+    assert table_bytes(larger)[:3] == first
+    with pytest.raises(ValueError, match=r"^overrides: system\.number=-4: system\.number is -4; accepted"):
+        hb.sweep(SWEEP, tmp_path / "b", overrides={"system.number": -4})
 
 
 def test_table_and_runs(sweep):
@@ -96,6 +109,24 @@ hb.sweep(SWEEP, {str(tmp_path / "a")!r}, jobs=2)
     assert table_bytes(tmp_path / "a") == table_bytes(sweep)
 
 
+def test_replicas(sweep, tmp_path):
+    grid = {"shape.aspect_ratio": [1.5], "system.packing_fraction": [0.2]}
+    made = hb.sweep(SWEEP | {"replicas": 3, "grid": grid}, tmp_path / "a", jobs=2)
+    assert list(made.table["replicas"]) == [3]
+    assert [len(runs) for runs in made.replicas] == [3]
+    values = [run.summary["observables"]["Z"]["value"] for run in made.replicas[0]]
+    assert values[0] == sweep.table["Z"][0]  # replica 0 is the run of the sweep without replicas
+    assert len(set(values)) == 3
+    np.testing.assert_allclose(made.table["Z"], np.mean(values), rtol=1e-12)
+    row = made.agreement[made.agreement["observable"] == "Z"][0]
+    assert row["error"] == made.table["Z_error"][0] >= row["error_within"]
+    assert [[run is not None for run in runs] for runs in sweep.replicas] == [[True]] * 4
+    with pytest.raises(ValueError, match="agreement.csv is not there; accepted: a sweep with replicas"):
+        _ = sweep.agreement
+    single = {key: value for key, value in SWEEP.items() if key != "grid"} | {"replicas": 2}
+    assert hb.sweep(single, tmp_path / "b").table["replicas"][0] == 2
+
+
 def test_failed_points(tmp_path):
     grid = {"system.packing_fraction": [0.2, 0.99]}
     with pytest.raises(hb.SweepError, match=r"2 points: 1 done, 1 failed; failed: .*0\.99.*accepted") as caught:
@@ -107,7 +138,9 @@ def test_failed_points(tmp_path):
 
 
 def test_errors(tmp_path):
-    with pytest.raises(ValueError, match=r"^config: has no \[grid\]"):
+    with pytest.raises(
+        ValueError, match=r'^config: has no \[grid\]: hardbody\.run takes .*, with \{"grid": \{key: values\}\}$'
+    ):
         hb.sweep(CONFIG, tmp_path / "a")
     with pytest.raises(ValueError, match=r"^config: system.number is \[\]; accepted: a list of values"):
         hb.sweep(CONFIG | {"grid": {"system": {"number": []}}}, tmp_path / "a")
@@ -116,6 +149,28 @@ def test_errors(tmp_path):
     with pytest.raises(ValueError, match="out is None"):
         hb.sweep(SWEEP)
     assert not (tmp_path / "a").exists()
+
+
+def test_runs_of_several_grids(tmp_path):
+    """Points are found by their values, whatever their types; those of each grid have keys of their own."""
+    made = tmp_path / "a"
+    states = [
+        ({"shape.aspect_ratio": 2, "output.trajectory": ["gsd"]}, 1),
+        ({"shape.aspect_ratio": 2.5, "output.trajectory": []}, 1),
+        ({"system.number": 64}, 2),
+        ({"system.number": 64}, 3),
+    ]
+    for k, (keys, seed) in enumerate(states):
+        (made / f"point{k}").mkdir(parents=True)
+        (made / f"point{k}/state.json").write_text(json.dumps({"name": f"point{k}", "keys": keys, "seed": seed}))
+        (made / f"point{k}/config.toml").write_text("")
+    (made / "point3/config.toml").unlink()
+    (made / "sweep.csv").write_text(
+        "shape.aspect_ratio,output.trajectory,system.number,seed\n"
+        '2.5,[],32,1\n2.0,"[""gsd""]",32,1\n1.0,[],64,2\n1.0,[],64,3\n1.0,[],64,4\n'
+    )
+    names = [None if run is None else run.path.name for run in hb.Sweep(made).runs]
+    assert names == ["point1", "point0", "point2", None, None]
 
 
 def test_other_sweep_is_refused(sweep):
@@ -179,6 +234,8 @@ def test_map(sweep, tmp_path):
             hb.map(sweep, "aspect_ratio", "packing_fraction", "Z", where={column: 1})
     with pytest.raises(ValueError, match="nothing"):
         hb.map(sweep, "nothing", "packing_fraction", "Z")
+    with pytest.raises(ValueError, match=r"^where: seed=9: no row of .* has this value; accepted: a value of that"):
+        hb.map(sweep, "aspect_ratio", "packing_fraction", "Z", where={"seed": 9})
 
 
 def test_report(sweep):

@@ -132,6 +132,12 @@ def test_files_of_other_programs(caplog):
     with pytest.raises(ValueError, match=r"accepted: components="):
         hb.from_gsd(CASES / "m5_wrapped.lammpstrj")
     ball = hb.Species(hb.Ellipsoid([0.5, 0.5, 0.5]), mass=2)
+    alike = hb.from_gsd(CASES / "m8_velocities.lammpstrj", 0, ball)  # as many as the file has
+    assert len(alike) == 2 and alike == hb.from_gsd(CASES / "m8_velocities.lammpstrj", 0, [(ball, 2)])
+    with pytest.raises(ValueError, match="has 2 bodies of its types, components have 3; accepted: the same numbers"):
+        hb.from_gsd(CASES / "m8_velocities.lammpstrj", 0, [(ball, 3)])
+    with pytest.raises(ValueError, match="body 0 is .*, in components .*; accepted: the same, or no components"):
+        hb.from_gsd(CASES / "m2_velocity_of_frame_0.gsd", 1, hb.Ellipsoid([0.6, 0.6, 0.6]))
     assert hb.from_gsd(CASES / "m8_velocities.lammpstrj", 0, [(ball, 2)]).species[0].mass == 2
     with pytest.raises(ValueError, match="has no orientations"):
         hb.from_gsd(CASES / "m3_orientation_of_frame_0.gsd")
@@ -207,6 +213,8 @@ def test_bad_input_is_named(kind, message, call):
 
 
 SYSTEM = hb.random_start(ROD, number=32, packing_fraction=0.1)
+DILUTE = hb.random_start(ROD, number=64, packing_fraction=0.01)  # cells are the fastest neighbours
+CELLS, OBP = {"neighbours": "cells"}, {"neighbours": "obp"}
 REFUSED_BY_SIMULATIONS = [
     (TypeError, "system is 3; accepted: System", lambda s: hb.Simulation(3)),
     (TypeError, "system is None", lambda s: hb.compressed(None, 0.5)),
@@ -217,6 +225,18 @@ REFUSED_BY_SIMULATIONS = [
     (ValueError, "finder", lambda s: hb.Simulation(SYSTEM, finder="best")),
     (ValueError, "distance", lambda s: hb.Simulation(SYSTEM, distance="newton8")),
     (ValueError, "envelope", lambda s: hb.Simulation(SYSTEM, envelope=-1)),
+    (ValueError, "envelope is 1000; accepted: at most ", lambda s: hb.Simulation(SYSTEM, envelope=1000)),
+    (ValueError, "envelope is 1e-09; accepted: at least ", lambda s: hb.Simulation(SYSTEM, envelope=1e-9)),
+    (ValueError, "envelope is 1e.300; accepted: at most ", lambda s: hb.Simulation(SYSTEM, envelope=1e300, **OBP)),
+    (ValueError, "envelope is 0.3 with neighbours=None, where cells", lambda s: hb.Simulation(DILUTE, envelope=0.3)),
+    (
+        ValueError,
+        "envelope is 0.3 with neighbours=.cells.; accepted: None",
+        lambda s: hb.Simulation(DILUTE, envelope=0.3, **CELLS),
+    ),
+    (RuntimeError, "tune_envelopes needs .*cells", lambda s: hb.Simulation(DILUTE).tune_envelopes()),
+    (ValueError, "eps_d is given, but finder", lambda s: hb.Simulation(SYSTEM, eps_d=1e-6)),
+    (ValueError, "root is given, but finder", lambda s: hb.Simulation(SYSTEM, root="newton")),
     (ValueError, "eps_d", lambda s: hb.Simulation(SYSTEM, finder="bracketing", eps_d=100.0)),
     (ValueError, "instruction_set", lambda s: hb.Simulation(SYSTEM, instruction_set="sse")),
     (ValueError, "prepare_from", lambda s: hb.Simulation(SYSTEM, prepare_from=0)),
@@ -238,6 +258,10 @@ REFUSED_BY_SIMULATIONS = [
     (ValueError, "longest_lag", lambda s: s.measure(1, longest_lag=2)),
     (ValueError, "wave_numbers", lambda s: s.measure(1, wave_numbers=[-1.0])),
     (ValueError, "number of wave_numbers", lambda s: s.measure(1, wave_numbers=np.ones(9))),
+    (ValueError, 'order is "nematic"', lambda s: s.measure(1, order=["nematic"])),
+    (ValueError, "each at most once", lambda s: s.measure(1, order=["hexatic", "hexatic"])),
+    (TypeError, "order is 'hexatic'", lambda s: s.measure(1, order="hexatic")),
+    (ValueError, "order_neighbours is 3", lambda s: s.measure(1, order_neighbours=3)),
     (ValueError, "time is 1", lambda s: (s.run(1), s.measure(1))),
     (RuntimeError, "measured", lambda s: (s.measure(1), s.shrink_box(5))),
     (TypeError, r"shapes\[0\]", lambda s: hb.Simulation.restore(s.save(), shapes=[3])),

@@ -100,16 +100,20 @@ system.packing_fraction = [0.1, 0.2]
 # Of each plot over lags, distances or wave numbers: the file and what is shown of it, in this order.
 FILES = {
     "msd": ("msd.csv", ["msd"]),
+    "msd_directions": ("msd_directions.csv", ["msd_x", "msd_y", "msd_z"]),
     "rotational_msd": ("rotational_msd.csv", ["rot_msd", "rot_msd_body"]),
     "c2": ("c2.csv", ["c2"]),
     "c1": ("c1.csv", ["c1"]),
     "f_self": ("f_self.csv", ["f_self_q1", "f_self_q2", "f_self_q3", "f_self_q4"]),
+    "overlap": ("overlap.csv", ["overlap"]),
+    "chi4": ("overlap.csv", ["chi4"]),
     "velocity": ("velocity.csv", ["vacf", "wacf"]),  # over their values at t = 0
     "alpha2": ("alpha2.csv", ["alpha2"]),
     "g_r": ("g_r.csv", ["g", "g2"]),
     "s_q": ("s_q.csv", ["S"]),
+    "van_hove": ("van_hove.csv", [f"G_s_t{k}" for k in range(2, 13, 2)]),
 }
-PLOTS = ["msd", "rotational_msd", "c2", "c1", "f_self", "velocity", "alpha2", "g_r", "s_q", "pressure", "order", "energy"]
+PLOTS = [*FILES, "pressure", "order", "energy"]
 
 HOSTILE = '<img src=x onerror="window.hacked=1"><b>&amp;'
 HOSTILE_LINE = "# </script><script>window.hacked=1</script><!-- <script>\n"
@@ -298,6 +302,20 @@ class OneRun(Case):
         self.assertIn("6 D_trans t", series["msd"])
         self.assertIn("4 D_rot t", series["rotational_msd"])
         self.assertIn("A exp[−(t/τ)ᵝ]", series["c2"])
+
+    def test_error_bars_are_within_the_frame(self):
+        browser = self.page(self.file)
+        charts = {chart["id"]: chart for chart in browser.run("return window.hardbodyReport.charts")}
+        for name in ("alpha2", "g_r", "s_q"):  # linear axes
+            low, high = charts[name]["range"]
+            ends = []
+            for line in rows_of(self.run_directory / "observables" / FILES[name][0])[1:]:
+                row = [float(field) if field else math.nan for field in line.split(",")]
+                if row[0] > 0 or name != "alpha2":
+                    ends += [row[1] + sign * (row[2] if row[2] > 0 else 0) for sign in (-1, 1)]
+            ends = [end for end in ends if not math.isnan(end)]
+            self.assertLess(low, min(ends), name)
+            self.assertGreater(high, max(ends), name)
 
     def test_buttons_save(self):
         browser = self.open_low(self.file)
@@ -528,8 +546,44 @@ class OtherRuns(Case):
         self.assert_draws_in_sight(browser)
         view = browser.run("const v = window.hardbodyReport.page.views[0]; return [v.bodies, v.meshes.length, v.modes().map((m) => m.key)]")
         self.assertEqual(view, [80, 2, ["direction", "angle", "species", "plain"]])
-        msd = browser.run("return window.hardbodyReport.charts[0].series")
-        self.assertEqual(len([name for name in msd if "MSD" in name]), 3)
+        charts = browser.run("return window.hardbodyReport.charts")
+        self.assertEqual(len([name for name in charts[0]["series"] if "MSD" in name]), 3)
+        # One colour a species in all plots, that of its card; all bodies have the text's.
+        titles = browser.run("return window.hardbodyReport.page.views[0].run.species.map((s) => s.title)")
+        for chart in charts:
+            for label, colour in zip(chart["series"], chart["colours"]):
+                of = [k for k, title in enumerate(titles) if label.endswith(f", {title}") or f", {title}," in label]
+                of_pair = label.endswith("species 1 and 2")
+                self.assertEqual(colour, of[0] if of else len(titles) if of_pair else -1, label)
+        self.assert_silent(browser)
+
+    def test_nothing_rotational_of_spheres(self):
+        spheres = "[[species]]\nsemi_axes = [1, 1, 1]\n"
+        text = "[system]\nnumber = 60\npacking_fraction = 0.2\n{}[equilibration]\ntime = 1\n[production]\ntime = 4\n"
+        directory = self.run_of("spheres", text.format("[shape]\naspect_ratio = 1\n"))
+        self.report(directory)
+        browser = self.open_low(directory / "report.html")
+        charts = {chart["id"]: chart for chart in browser.run("return window.hardbodyReport.charts")}
+        self.assertEqual(list(charts), [name for name in PLOTS if name not in ("rotational_msd", "c2", "c1", "order")])
+        self.assertEqual(charts["g_r"]["series"], ["g"])
+        self.assertEqual((charts["g_r"]["yLabel"], charts["g_r"]["about"]), ("g(r)", "g of the centres."))
+        self.assertEqual(charts["velocity"]["series"], ["velocity"])
+        keys = browser.run("return [...document.querySelectorAll('.sheet [data-key]')].map((e) => e.dataset.key)")
+        self.assertIn("D_trans", keys)
+        self.assertEqual([key for key in keys if re.match("D_rot|S$|.*C2|kT_rot", key)], [])
+        self.report(directory, "-o", self.here / "static.html", program=STATIC)
+        static = (self.here / "static.html").read_text(encoding="utf-8")
+        self.assertIn("Mean square displacement", static)
+        self.assertNotIn("Orientation", static)
+        # Of a mixture the species of spheres has no curves of rotation.
+        discs = "fraction = 0.5\n[[species]]\nsemi_axes = [1, 1, 0.5]\nfraction = 0.5\n"
+        directory = self.run_of("spheres_and_discs", text.format(spheres + discs))
+        self.report(directory)
+        browser = self.open_low(directory / "report.html")
+        charts = {chart["id"]: chart for chart in browser.run("return window.hardbodyReport.charts")}
+        self.assertEqual(list(charts), PLOTS)
+        for name, species in [("msd", {0, 1}), ("c2", {1}), ("rotational_msd", {1})]:
+            self.assertEqual({colour for colour in charts[name]["colours"] if colour >= 0}, species, name)
         self.assert_silent(browser)
 
     def test_why_values_are_missing_is_said(self):
@@ -599,6 +653,9 @@ class OtherRuns(Case):
                 wave_numbers = [summary_of(run)["wave_numbers"][0] for run in runs]
                 for name, chart in charts.items():
                     for run, wave_number in zip(("run", "superballs"), wave_numbers):
+                        if name == "van_hove":  # the same number of lags from the longest on, whose times differ
+                            self.assertTrue([label for label in chart["series"] if label.startswith(f"{run}, t = ")])
+                            continue
                         label = f"{run}, q l = {wave_number:.3g}" if name == "f_self" else run
                         self.assertIn(label, chart["series"], name)
                 self.assertEqual(browser.run("""return document.querySelectorAll('.comparison [data-key="Z"] td .number').length"""), 2)
@@ -756,6 +813,86 @@ class Sweep(Case):
         self.assertRegex(reason, "(at|within|up to) the longest lag|where the fit begins")
         self.assert_silent(browser)
 
+    def table(self, name, keys, rows):
+        """Report of a sweep of which there is only the table; a row: keys, D_trans, Z, equilibrated."""
+        sweep = self.here / name
+        sweep.mkdir(exist_ok=True)
+        header = [*keys, "equilibration_time", "production_time", "D_trans", "D_trans_error", "Z", "Z_error", "equilibrated", "status", "message"]
+        with open(sweep / "sweep.csv", "w", newline="", encoding="utf-8") as file:
+            table = csv.writer(file, lineterminator="\n")
+            table.writerow(header)
+            for *values, d_trans, z, equilibrated in rows:
+                table.writerow([*values, 10, 60, d_trans, "0.01" if d_trans else "", z, "0.01", equilibrated, "done", ""])
+        self.report(sweep)
+        self.report(sweep, "-o", sweep / "static.html", program=STATIC)
+        return sweep
+
+    def test_one_key_and_seeds(self):
+        """The mean of the seeds against the key; no map. The quantity with most values is opened."""
+        rows = [(phi, seed, "0.1" if phi == 0.1 else "", 2 + 10 * phi + seed, "false" if phi == 0.3 else "true") for phi in (0.1, 0.2, 0.3) for seed in (1, 2)]
+        sweep = self.table("seeds", ["system.packing_fraction", "seed"], rows)
+        browser = self.open(sweep / "report.html")
+        cut = browser.run("return window.hardbodyReport.page.sweep.cut.plot")
+        self.assertEqual(cut["y"]["label"], "Compressibility factor")
+        self.assertEqual(cut["x"]["label"], "packing fraction φ")
+        for got, wanted in zip(cut["series"][0]["y"], [4.5, 5.5, 6.5]):
+            self.assertAlmostEqual(got, wanted)
+        self.assertEqual(cut["series"][0]["open"], [False, False, True])
+        # Pooled as replicas are; the values stand behind their mean.
+        self.assertEqual(cut["series"][0]["spread"][0], [4, 5])
+        self.assertAlmostEqual(cut["series"][0]["error"][0], 1.8373 * 0.5, places=4)
+        self.assertEqual(browser.run("return window.hardbodyReport.page.sweep.cut.spreads[0].length"), 6)
+        self.assertEqual(browser.run("return document.querySelectorAll('.map canvas').length"), 0)
+        self.assertIn("Along the sweep", browser.run("return document.querySelector('.map-card').textContent"))
+        self.assert_silent(browser)
+        static = (sweep / "static.html").read_text(encoding="utf-8")
+        self.assertLess(static.index("<figcaption>Z; open"), static.index("<figcaption>D_trans"))
+        self.assertEqual(static.count('<circle class="open"'), 1)
+        self.assertEqual(static.count("<circle"), 4)
+        self.assertEqual(static.count('<path class="spread"'), 2)
+
+    def test_replicas(self):
+        """Values of the replicas behind the pooled ones; the message says where they disagree."""
+        rows = [(phi, 7, "0.1", 2 + 10 * phi, "true") for phi in (0.1, 0.2)]
+        name = "replicas"
+        sweep = self.here / name
+        sweep.mkdir()
+        with open(sweep / "replicas.csv", "w", encoding="utf-8") as file:
+            file.write("system.packing_fraction,seed,replica,equilibration_time,Z,Z_error,status\n")
+            file.writelines(f"{phi},{7 + k},{k},10,{2 + 10 * phi + k - 1},0.01,done\n" for phi in (0.1, 0.2) for k in range(3))
+        sweep = self.table(name, ["system.packing_fraction", "seed"], rows)
+        browser = self.open(sweep / "report.html")
+        shown = browser.run("const {cut, sweep} = window.hardbodyReport.page.sweep; return [cut.plot.series[0].spread, sweep.points[0].values]")
+        z = 1 if shown[1][1][0] == 3 else 0
+        self.assertEqual(shown[1][z], [3, 0.01, "", [2, 3, 4]])
+        static = (sweep / "static.html").read_text(encoding="utf-8")
+        self.assertEqual(static.count('<path class="spread"'), 1)
+        self.assert_silent(browser)
+
+    def test_keys_that_go_together(self):
+        """There is no plane between zipped keys: no empty map."""
+        sweep = self.table("zipped", ["shape.aspect_ratio", "system.packing_fraction"], [(x, x / 10, "0.1", x, "true") for x in (1, 2, 3, 4)])
+        browser = self.open(sweep / "report.html")
+        self.assertEqual(browser.run("return document.querySelectorAll('.map canvas').length"), 0)
+        self.assertEqual(browser.run("return window.hardbodyReport.page.sweep.cut.plot.series[0].y"), [0.1] * 4)
+        self.assertEqual((sweep / "static.html").read_text(encoding="utf-8").count("<circle"), 8)
+        # Each aspect ratio may have packing fractions of its own: that is a plane.
+        rows = [(x, (x + k) / 10, "0.1", x + k, "true") for x in (1, 2, 3) for k in (0, 0.5)]
+        browser = self.open(self.table("ragged", ["shape.aspect_ratio", "system.packing_fraction"], rows) / "report.html")
+        self.assertEqual(browser.run("return window.hardbodyReport.map.known"), 6)
+
+    def test_open_points_of_a_map(self):
+        rows = [(x, phi, x * phi, 1 + x, "false" if x == 3 else "true") for x in (1, 2, 3) for phi in (0.1, 0.2)]
+        sweep = self.table("open", ["shape.aspect_ratio", "system.packing_fraction"], rows)
+        browser = self.open(sweep / "report.html")
+        seen = browser.run("""const page = window.hardbodyReport.page.sweep;
+          return [[1, 2, 3].map((x) => page.cell(x, 0.1).open), page.map.xLabel, page.map.yLabel];""")
+        self.assertEqual(seen, [[False, False, True], "aspect ratio X₀", "packing fraction φ"])
+        self.assertIn("not shown to be equilibrated", browser.run("return document.querySelector('.map-card').textContent"))
+        static = (sweep / "static.html").read_text(encoding="utf-8")
+        for text in ("aspect ratio X₀", "packing fraction φ", "not shown to be equilibrated"):
+            self.assertIn(text, static)
+
     def test_one_key(self):
         sweep = self.here / "line"
         synthetic.write_sweep(self.run_of("run", RUN), sweep, ratios=1, densities=6, failed=())
@@ -780,7 +917,7 @@ class Static(Case):
         for width, height in SIZES:
             with self.subTest(width=width):
                 browser = self.open(self.here / "static.html", width, height)
-                self.assertEqual(browser.run("return document.querySelectorAll('svg').length"), 11)
+                self.assertEqual(browser.run("return document.querySelectorAll('svg').length"), 15)
                 points = browser.run("return document.querySelectorAll('figure')[0].querySelectorAll('circle').length")
                 self.assertEqual(points, len(rows_of(directory / "observables" / "msd.csv")) - 1)
                 self.assertIn("npm", browser.run("return document.querySelector('.notice').textContent"))

@@ -52,7 +52,7 @@ def number(text):
 # ---- Quantities that are not stored
 
 def longest_lag(row, curve):
-    """Longest lag of a run, by the rules of the program (apps/hardbody/run/phases/production.cpp)."""
+    """Longest lag of a run, by the rules of the program (apps/hardbody/run/phases/production.cpp) and of study.production_text."""
     production, equilibration = number(row["production_time"]), number(row["equilibration_time"])
     if production == grid.fixed_time(grid.Point(number(row["X0"]), number(row["phi"]))):
         lag = 40

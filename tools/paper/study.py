@@ -33,12 +33,15 @@ cap = {cap:g}
 
 CAP = 500
 LATE_CAP = 60  # where C2 is not expected to decay, which would take hours for what is no fluid
+LONGEST_LAG = 40  # of productions of a fixed length
 QUICK_PRODUCTION = 60
 QUICK_CAP = 60
 
 
 def production_text(point, quick):
     time_units = QUICK_PRODUCTION if quick else grid.fixed_time(point)
+    if not quick and time_units:
+        return f"time = {time_units}\nlongest_lag = {min(LONGEST_LAG, time_units / 16):g}"
     return f"time = {time_units}" if time_units else f'time = "auto"\ntarget_error = {TARGET_ERROR:g}'
 
 

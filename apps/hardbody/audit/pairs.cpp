@@ -1,5 +1,6 @@
 #include "audit/pairs.h"
 
+#include "base/console.h"
 #include "io/text_file.h"
 
 #include <ed/shape.h>
@@ -188,6 +189,7 @@ PairAudit audit_pairs(const Frame& frame, double tolerance) {
     return audit;
   }
   for (std::size_t k = 0; k < cells.size(); ++k) {
+    if (k % 256 == 0) console().poll();
     const std::size_t i = cells.body(k);
     cells.neighbours(k, [&](std::size_t j, const Vector3d& r) {
       if (r.norm() > radii[frame.bodies[i].type] + radii[frame.bodies[j].type]) return;

@@ -166,7 +166,7 @@ void report_row(const char* name, const std::string& value) {
 
 ed::Audit audited(const ed::System& system, const std::string& where) {
   try {
-    return ed::audit(system);
+    return ed::audit(system, [] { console().poll(); });
   } catch (const std::invalid_argument& error) {
     throw InputError(fmt::format("{}: holds an impossible state: {}", where, error.what()));
   }
@@ -181,6 +181,7 @@ int check_trajectory(const TrajectoryReader& reader) {
   Frame last;
   FramesAudit all;
   for (std::uint64_t k = 0; k < reader.frame_count(); ++k) {
+    console().poll();
     if (!reader.has_positions(k)) {
       ++all.without_positions;
       continue;

@@ -22,6 +22,9 @@ class Console {
   /// Removes what show() has left.
   virtual void clear() = 0;
 
+  /// Called often by commands that have no progress to show and have not begun to write: may throw, which ends them.
+  virtual void poll() {}
+
   /// Returns the time between two calls of show().
   virtual std::chrono::milliseconds interval() const = 0;
 };

@@ -8,6 +8,7 @@
 #include "run/files/observable_files.h"
 #include "run/missing.h"
 #include "run/observables_json.h"
+#include "run/table.h"
 #include "trajectory/frame.h"
 #include "trajectory/reader.h"
 #include "trajectory/stored_trajectory.h"
@@ -24,6 +25,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 namespace hardbody {
@@ -35,8 +37,11 @@ using Json = nlohmann::ordered_json;
 
 /// Choices that a run has made for its own observables.
 struct RunChoices {
-  std::optional<double> fit_from;    ///< nullopt: no fits
+  std::optional<double> fit_from;    ///< nullopt: not known
+  std::string fit_from_by;           ///< source of it
   std::vector<double> wave_numbers;  ///< wave numbers of F_self
+  bool collective = false;           ///< whether the run measured F(q, t) / S(q)
+  int order_neighbours = 12;         ///< number of neighbours of bond order
 };
 
 /// Returns those of the run in this directory, if there is one.
@@ -48,13 +53,24 @@ RunChoices choices_of_run(const fs::path& directory) {
       fmt::format("{}: was not written by a run; accepted: a trajectory without such a file beside it", file.string()));
   try {
     const Json summary = Json::parse(read_file(file, kLongestSummary));
+    const Json& rate = summary.at("observables").at("collision_rate").at("value");
+    if (!rate.is_null() && rate.get<double>() > 0) {
+      choices.fit_from = ed::kBallisticCollisions / rate.get<double>();
+      choices.fit_from_by = "five mean collision intervals of the run";
+    }
     for (const char* decay : {"F", "C2"}) {
       const Json& window = summary.at("fit_windows").at(decay);
-      if (!window.is_null()) choices.fit_from = window.at(0).get<double>();
+      if (window.is_null()) continue;
+      choices.fit_from = window.at(0).get<double>();
+      choices.fit_from_by = "the first lag of the run's own fit";
     }
     choices.wave_numbers = summary.at("wave_numbers").get<std::vector<double>>();
+    choices.collective = summary.value("collective", false);
+    if (summary.contains("order_neighbours")) choices.order_neighbours = summary["order_neighbours"].get<int>();
     const auto positive = [](double q) { return q > 0 && std::isfinite(q); };
-    const bool valid = choices.wave_numbers.size() <= ed::kMostWaveNumbers && choices.fit_from.value_or(0) >= 0;
+    const bool valid = choices.wave_numbers.size() <= ed::kMostWaveNumbers &&
+                       choices.order_neighbours >= ed::kFewestNeighbours &&
+                       choices.order_neighbours <= ed::kMostNeighbours && choices.fit_from.value_or(0) >= 0;
     if (valid && std::all_of(choices.wave_numbers.begin(), choices.wave_numbers.end(), positive)) return choices;
   } catch (const Json::exception&) {
     throw foreign;
@@ -62,20 +78,33 @@ RunChoices choices_of_run(const fs::path& directory) {
   throw foreign;
 }
 
+constexpr const char* kByDisplacements = "the MSD grows as t^1.5 or more slowly there";
+
 // ---- Files
 
 std::string cell(double x) {
   return std::isfinite(x) ? fmt::format("{}", x) : "";
 }
 
+/// Axes of the bodies that have an orientation; of all, if none has.
+std::vector<Vector3d> axes_of(const ed::StoredFrame& frame, const ed::StoredFramesOptions& options) {
+  const bool some = std::any_of(options.groups.begin(), options.groups.end(), [](const auto& g) { return g.oriented; });
+  std::vector<Vector3d> axes;
+  std::size_t i = 0;
+  for (const ed::BodyGroup& group : options.groups) {
+    for (const std::size_t end = i + static_cast<std::size_t>(group.number); i < end; ++i) {
+      if (frame.rotation.empty() || (some && !group.oriented)) continue;
+      axes.emplace_back(frame.rotation[i].col(options.axis[i]));
+    }
+  }
+  return axes;
+}
+
 std::string order_csv(const StoredTrajectory& stored, Units units) {
   std::string text = fmt::format("{},S [1],energy [{}]\n", abscissa_of(Rows::lags, units), unit_text("kT", units));
   for (std::size_t k = 0; k < stored.frames.size(); ++k) {
     const ed::StoredFrame& frame = stored.frames[k];
-    std::vector<Vector3d> axes;
-    for (std::size_t i = 0; i < frame.rotation.size(); ++i) {
-      axes.emplace_back(frame.rotation[i].col(stored.options.axis[i]));
-    }
+    const std::vector<Vector3d> axes = axes_of(frame, stored.options);
     const double S = axes.empty() ? std::numeric_limits<double>::quiet_NaN() : ed::nematic_order(axes);
     text += fmt::format("{},{},{}\n", frame.time, cell(S), cell(stored.energy[k]));
   }
@@ -98,7 +127,7 @@ Json text_or_null(const std::string& text) {
 }
 
 std::string analysis_json(const std::string& name, const StoredTrajectory& stored, const ed::StoredResults& results,
-                          Units units) {
+                          const std::string& fit_from_by, Units units) {
   Json json;
   json["version"] = version();
   json["source"] = name;
@@ -109,6 +138,7 @@ std::string analysis_json(const std::string& name, const StoredTrajectory& store
                     {"read", stored.frames.size()},
                     {"used", results.frames},
                     {"first_used", results.first_frame}};
+  json["log_times"] = results.log_times;
   json["time"] = {{"first", stored.frames[results.first_frame].time}, {"last", stored.frames[last].time}};
   json["unwrapped"] = {{"by", text_or_null(stored.unwrapped_by)}, {"reason", text_or_null(stored.not_unwrapped)}};
   json["followed"] = {{"by", stored.not_followed.empty() ? Json("ids") : Json(nullptr)},
@@ -117,7 +147,9 @@ std::string analysis_json(const std::string& name, const StoredTrajectory& store
   json["state"] = {
       {"number", stored.options.axis.size()}, {"box", stored.options.box}, {"length", stored.options.length}};
   json["wave_numbers"] = results.wave_numbers;
-  json["fit_from"] = stored.options.fit_from ? Json(*stored.options.fit_from) : Json(nullptr);
+  json["van_hove_lags"] = results.displacement_lags;
+  json["fit_from"] = number_json(results.fit_from);
+  json["fit_from_by"] = text_or_null(fit_from_by);
   json["observables"] = frame_observables({results, &results});
   if (results.groups.size() > 1) {
     for (const ed::GroupResults& group : results.groups) json["species"].push_back(frame_observables({group}));
@@ -126,7 +158,7 @@ std::string analysis_json(const std::string& name, const StoredTrajectory& store
 }
 
 void write_files(const fs::path& out, const std::string& name, const StoredTrajectory& stored,
-                 const ed::StoredResults& results, Units units) {
+                 const ed::StoredResults& results, const std::string& fit_from_by, Units units) {
   try {
     fs::create_directories(out);
   } catch (const fs::filesystem_error& error) {
@@ -134,16 +166,25 @@ void write_files(const fs::path& out, const std::string& name, const StoredTraje
         fmt::format("{}: cannot be written to: {}; accepted: a directory", out.string(), error.code().message()));
   }
   for (const CurveFile& file : curve_files()) {
-    if (file.in_frames) write_file(out / (file.name + ".csv"), curve_csv(file, results, units));
+    if (file.in_frames && is_written(file, results))
+      write_file(out / (file.name + ".csv"), curve_csv(file, results, units));
   }
   write_file(out / kOrderFile, order_csv(stored, units));
-  write_file(out / kAnalysisFile, analysis_json(name, stored, results, units));
+  write_file(out / kAnalysisFile, analysis_json(name, stored, results, fit_from_by, units));
 }
 
 std::string shown(const ed::Estimate& e) {
   if (!std::isfinite(e.value)) return fmt::format("- ({})", missing_text(e.missing, kWords));
   if (!std::isfinite(e.error)) return fmt::format("{:.5g} (no error)", e.value);
   return fmt::format("{:.5g} +- {:.2g}", e.value, e.error);
+}
+
+/// Refuses a longest lag that no two frames have.
+void check_lag(const std::optional<double>& lag, const std::vector<ed::StoredFrame>& frames) {
+  const double span = frames.back().time - frames.front().time;
+  if (!lag || frames.size() < 2 || *lag <= span * (1 + 1e-9)) return;
+  throw InputError(fmt::format(
+      "--longest-lag is {:g}; accepted: at most the time between the first and the last frame, {:g}", *lag, span));
 }
 
 fs::path trajectory_in(const fs::path& directory) {
@@ -166,6 +207,9 @@ void print_reading(const TrajectoryReader& reader, const StoredTrajectory& store
     note(fmt::format("frames without positions are left out: {} of {} in the file", stored.without_positions,
                      stored.in_file));
   }
+  if (results.log_times) {
+    note("frames at logarithmic times: each is correlated with the first one, so that values have no errors");
+  }
   if (results.frames < stored.frames.size()) {
     note(fmt::format(
         "S, g(r) and S(q) are from all frames, correlations from the longest evenly spaced sequence, {} frames "
@@ -183,6 +227,22 @@ void print_reading(const TrajectoryReader& reader, const StoredTrajectory& store
   }
 }
 
+/// Prints the lines of an observable; none of directions where bodies move alike in all of them.
+void print_observable(const Observable& observable, const Part& part) {
+  const bool directed = observable.of_box || observable.key == "director";
+  if (directed && observable.remark(part).empty()) return;
+  if (const auto* director = std::get_if<ed::Director ed::GroupResults::*>(&observable.value)) {
+    console().print(fmt::format("  {:<12} {}\n", observable.label, format_director(part.results.**director)));
+  }
+  const std::vector<ed::Estimate> numbers = numbers_of(observable, part);
+  for (std::size_t k = 0; k < numbers.size(); ++k) {
+    const ed::MissingReason reason = numbers[k].missing.reason;
+    const bool no_order = reason == ed::MissingReason::no_director || reason == ed::MissingReason::no_bragg_peak;
+    if (is_absent(numbers[k]) || (!std::isfinite(numbers[k].value) && no_order)) continue;
+    console().print(fmt::format("  {:<12} {}\n", label_of(observable, k), shown(numbers[k])));
+  }
+}
+
 }  // namespace
 
 int analyze(const AnalyzeArguments& arguments) {
@@ -192,26 +252,34 @@ int analyze(const AnalyzeArguments& arguments) {
   const std::unique_ptr<TrajectoryReader> source = open_frames(file);
   const TrajectoryReader& reader = *source;
   StoredTrajectory stored = read_trajectory(reader, {arguments.every, arguments.time_step, arguments.longest_lag});
-  const RunChoices run = choices_of_run(file.parent_path());
-  stored.options.fit_from = arguments.fit_from ? arguments.fit_from : run.fit_from;
+  check_lag(arguments.longest_lag, stored.frames);
+  RunChoices run = choices_of_run(file.parent_path());
+  if (arguments.fit_from) {
+    run.fit_from = arguments.fit_from;
+    run.fit_from_by = "as asked for";
+  }
+  stored.options.fit_from = run.fit_from;
   stored.options.wave_numbers = run.wave_numbers;
+  stored.options.collective = arguments.collective || run.collective;
   const bool of_the_run = file.filename() == kGsdFile || file.filename() == kLammpsFile;
   if (!of_the_run && !run.wave_numbers.empty()) {
     stored.notices.push_back(
         fmt::format("wave numbers of F_self are those of {}", (file.parent_path() / kSummaryFile).string()));
   }
+  stored.options.bonds = {true, run.order_neighbours, true};
+  stored.options.poll = [] { console().poll(); };
   const ed::StoredResults results = ed::analyze_frames(stored.frames, stored.options);
+  if (!run.fit_from && std::isfinite(results.fit_from)) run.fit_from_by = kByDisplacements;
   const bool known_units = stored.exact || (of_the_run && fs::exists(file.parent_path() / kSummaryFile));
-  write_files(out, reader.name(), stored, results, known_units ? Units::of_runs : Units::unknown);
+  write_files(out, reader.name(), stored, results, run.fit_from_by, known_units ? Units::of_runs : Units::unknown);
   print_reading(reader, stored, results);
   for (const Observable& o : observables()) {
     if (!o.in_frames || o.label.empty()) continue;
-    for (const ed::Estimate& value : numbers_of(o, {results, &results})) {
-      console().print(fmt::format("  {:<12} {}\n", o.label, shown(value)));
-    }
+    print_observable(o, {results, &results});
   }
-  if (!stored.options.fit_from)
-    console().print("no fits of decays: --fit-from T sets the first lag, where ballistic motion has ended\n");
+  console().print(std::isfinite(results.fit_from)
+                      ? fmt::format("decays are fitted from lag {:.4g} on: {}\n", results.fit_from, run.fit_from_by)
+                      : "no fits of decays: --fit-from T sets the first lag, where ballistic motion has ended\n");
   console().print(fmt::format("\nfiles: {0}/analysis.json, {0}/*.csv\n", out.string()));
   return 0;
 }

@@ -15,6 +15,17 @@ struct RunArguments {
   std::optional<std::string> out;      ///< run directory; by default out/<stem of the config>
   std::vector<std::string> overrides;  ///< section.key=value
   bool force = false;                  ///< overwrite an existing run
+  int replicas = 1;                    ///< runs with different seeds; more than one: `out` is the directory of a sweep
+};
+
+struct ResumeArguments {
+  std::string path;                    ///< run directory
+  std::vector<std::string> overrides;  ///< section.key=value of keys that change no result
+};
+
+struct ExtendArguments {
+  std::string path;  ///< directory of a finished run
+  double time = 0;   ///< length of the whole production, as production.time
 };
 
 struct AnalyzeArguments {
@@ -22,16 +33,18 @@ struct AnalyzeArguments {
   std::optional<std::string> out;     ///< output directory; by default analysis/ beside the file
   std::optional<double> time_step;    ///< time between two steps; nullopt: the stored times
   std::optional<double> longest_lag;  ///< longest lag; nullopt: a quarter of the trajectory
-  std::optional<double> fit_from;     ///< lag from which decays are fitted; nullopt: as in the run itself
-  int every = 1;                      ///< stride: each `every`-th frame is read
+  std::optional<double> fit_from;  ///< lag from which decays are fitted; nullopt: as in the run itself, or by the MSD
+  int every = 1;                   ///< stride: each `every`-th frame is read
+  bool collective = false;         ///< whether F(q, t) / S(q) is computed, too; always if the run itself measured it
 };
 
 struct SweepArguments {
-  std::string sweep;                 ///< path of the TOML file
-  std::optional<std::string> text;   ///< sweep as TOML, without a file; `sweep` is then its name in messages
-  std::optional<std::string> out;    ///< directory of the sweep; by default out/<stem of the file>
-  std::optional<int> jobs;           ///< number of simultaneous runs; by default one for each processor
-  std::vector<std::string> program;  ///< command that the subcommands of a point are appended to; empty: this program
+  std::string sweep;                   ///< path of the TOML file
+  std::optional<std::string> text;     ///< sweep as TOML, without a file; `sweep` is then its name in messages
+  std::optional<std::string> out;      ///< directory of the sweep; by default out/<stem of the file>
+  std::optional<int> jobs;             ///< number of simultaneous runs; by default one for each processor
+  std::vector<std::string> overrides;  ///< section.key=value, or grid.section.key=list
+  std::vector<std::string> program;    ///< command that the subcommands of a point are appended to; empty: this program
 };
 
 struct MapArguments {
@@ -55,7 +68,8 @@ struct ReportArguments {
 /// Writes a template config; an empty path means standard output.
 int init(const std::string& path, const std::string& template_name);
 int run(const RunArguments& arguments);
-int resume(const std::string& path);
+int resume(const ResumeArguments& arguments);
+int extend(const ExtendArguments& arguments);
 int sweep(const SweepArguments& arguments);
 int map(const MapArguments& arguments);
 int check(const std::string& path);

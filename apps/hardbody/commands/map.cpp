@@ -8,6 +8,8 @@
 #include "plot/contours.h"
 #include "plot/levels.h"
 #include "plot/map_svg.h"
+#include "registry/key_names.h"
+#include "registry/observables.h"
 #include "sweep/results.h"
 
 #include <fmt/format.h>
@@ -184,10 +186,20 @@ std::vector<MapMark> marks_of(const CsvTable& table, const std::vector<std::size
   return marks;
 }
 
+/// Returns the symbol and unit of an observable; the column's name if it is none.
+std::string legend_of(const std::string& column) {
+  const Observable* known = find_observable(column);
+  if (known == nullptr) return column;
+  const std::string unit = report_unit(*known);
+  const std::string& symbol = known->symbol.empty() ? known->key : known->symbol;
+  return unit.empty() ? symbol : fmt::format("{}  [{}]", symbol, unit);
+}
+
 constexpr std::string_view kCsvBeginning = "value,level,line,";
 
-std::string lines_csv(const Map& map) {
-  std::string text = fmt::format("{}{},{}\n", kCsvBeginning, map.x_name, map.y_name);
+/// Returns the lines as CSV, with the names of the two columns of the table.
+std::string lines_csv(const Map& map, const std::string& x, const std::string& y) {
+  std::string text = fmt::format("{}{},{}\n", kCsvBeginning, x, y);
   for (const MapLevel& level : map.levels) {
     for (std::size_t k = 0; k < level.lines.size(); ++k) {
       for (const PlanePoint& p : level.lines[k]) {
@@ -234,8 +246,9 @@ int map(const MapArguments& arguments) {
   std::vector<std::size_t> rows = chosen_rows(table, arguments.where);
   const std::size_t left_out = leave_out_failures(table, rows, columns.values);
   Map map;
-  map.x_name = table.header[columns.x];
-  map.y_name = table.header[columns.y];
+  map.x_label = key_label(table.header[columns.x]);
+  map.y_label = key_label(table.header[columns.y]);
+  for (const std::size_t value : columns.values) map.legend.push_back(legend_of(table.header[value]));
   map.scales = {arguments.log_x, arguments.log_y};
   map.levels = all_levels(table, rows, columns, arguments);
   map.marks = marks_of(table, rows, columns);
@@ -244,7 +257,7 @@ int map(const MapArguments& arguments) {
   check_replaceable(svg, "<svg ");
   check_replaceable(csv, kCsvBeginning);
   write_file(svg, map_svg(map));
-  write_file(csv, lines_csv(map));
+  write_file(csv, lines_csv(map, table.header[columns.x], table.header[columns.y]));
   console().print(fmt::format("{}, {} written from {} points{}\n", svg.string(), csv.string(), map.marks.size(),
                               left_out > 0 ? fmt::format("; {} left out, whose status is not done", left_out) : ""));
   print_levels(map);

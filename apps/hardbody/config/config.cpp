@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 
 namespace hardbody {
@@ -49,6 +50,26 @@ void read_start(const TomlDocument& document, Config& config) {
   read_key(document, kOrderKey, {config});
   if (config.start_from && config.start) refuse_beside(document, "start_from", {kStartKey});
   if (config.start_from) refuse_beside(document, "start_from", {kOrderKey});
+}
+
+/// Refuses logarithmic times in a format whose frames have numbers and no times: readers take these for evenly spaced.
+void check_spacing(const TomlDocument& document, const Config& config) {
+  const auto& formats = config.trajectory;
+  const bool dumps = std::find(formats.begin(), formats.end(), TrajectoryFormat::lammps) != formats.end();
+  if (config.frames_spacing == FramesSpacing::even || !dumps) return;
+  throw bad(*document.find(kSpacingKey),
+            "\"even\" with trajectory = [\"lammps\"], whose frames have no times; or \"gsd\"");
+}
+
+/// Refuses frames at an interval that production has more of than there is room for.
+void check_frames(const TomlDocument& document, const Config& config) {
+  if (!config.frames_every || !config.production_time || config.trajectory.empty()) return;
+  const double wanted = std::floor(*config.production_time / *config.frames_every * (1 + 1e-12)) + 1;
+  if (wanted <= static_cast<double>(config.frames)) return;
+  const char* key = document.find(kFramesKey) != nullptr ? kFramesKey : kEveryKey;
+  throw bad(*document.find(key),
+            fmt::format("frames = {:.0f} at least, with frames_every = {} and production.time = {}", wanted,
+                        *config.frames_every, *config.production_time));
 }
 
 /// Returns the radius of the sphere of the bodies' volume: the mean, as a power of two.
@@ -91,6 +112,14 @@ const char* to_string(TrajectoryFormat format) {
   return std::array{"gsd", "lammps", "vtk"}[static_cast<std::size_t>(format)];
 }
 
+const char* to_string(BondOrder order) {
+  return std::array{"steinhardt", "hexatic"}[static_cast<std::size_t>(order)];
+}
+
+const char* to_string(FramesSpacing spacing) {
+  return std::array{"even", "log"}[static_cast<std::size_t>(spacing)];
+}
+
 std::vector<ed::Component> Config::components() const {
   std::vector<ed::Component> list;
   for (const SpeciesConfig& s : species) {
@@ -102,8 +131,13 @@ std::vector<ed::Component> Config::components() const {
 
 std::vector<ed::BodyGroup> Config::groups() const {
   std::vector<ed::BodyGroup> list;
-  for (const SpeciesConfig& s : species) list.push_back({s.number, s.rotation_axes()});
+  for (const SpeciesConfig& s : species) list.push_back({s.number, s.rotation_axes(), !is_sphere(s)});
   return list;
+}
+
+ed::BondOptions Config::bonds() const {
+  const auto asked = [this](BondOrder one) { return std::find(order.begin(), order.end(), one) != order.end(); };
+  return {asked(BondOrder::steinhardt), order_neighbours, asked(BondOrder::hexatic)};
 }
 
 std::vector<int> Config::numbers() const {
@@ -162,6 +196,8 @@ Config read_config(const TomlDocument& given, std::optional<StartFrame>* loaded)
   config.time_unit = ed::time_unit(config.components());
   config.equilibration_cap = kUsualCap * config.time_unit;
   for (const char* section : {"equilibration", "production", "output"}) read_section(document, section, {config});
+  check_spacing(document, config);
+  check_frames(document, config);
   read_dynamics(document, config);
   read_start(document, config);
   read_packing(document, config);

@@ -21,10 +21,14 @@ namespace hardbody {
 
 enum class Inertia { paper, uniform, moments };
 enum class TrajectoryFormat { gsd, lammps, vtk };
+enum class FramesSpacing { even, log };
+enum class BondOrder { steinhardt, hexatic };
 
 /// Return the words that a config has for them.
 const char* to_string(Inertia inertia);
 const char* to_string(TrajectoryFormat format);
+const char* to_string(FramesSpacing spacing);
+const char* to_string(BondOrder order);
 
 /// A shape as the user gave it.
 struct ShapeConfig {
@@ -116,14 +120,22 @@ struct Config {
   double equilibration_cap = 0;              ///< longest time of "auto"
   std::optional<double> production_time;
   std::optional<double> target_error;  ///< relative error of both diffusion coefficients at which "auto" ends
+  std::optional<double> longest_lag;   ///< longest lag of correlations; nullopt: "auto"
+  std::vector<BondOrder> order;        ///< orders of bonds that are measured, each once
+  int order_neighbours = 12;           ///< number of nearest neighbours that a body has bonds with
+  bool collective = false;             ///< whether F(q, t) / S(q) is measured, too
   std::vector<double> wave_numbers;  ///< wave numbers of F_self, 1/l; none: the first peak of S(q), and others about it
 
   // [output]
   std::int64_t events = 0;
   std::vector<TrajectoryFormat> trajectory;  ///< each once
   std::int64_t frames = 100;                 ///< frames of each trajectory
-  std::string checkpoint_every = "60s";      ///< a number and s, m or h
+  FramesSpacing frames_spacing = FramesSpacing::even;
+  std::optional<double> frames_every;    ///< time between two frames; nullopt: they are spread over all of production
+  std::string checkpoint_every = "60s";  ///< a number and s, m or h
 
+  /// Returns what is measured of bonds.
+  ed::BondOptions bonds() const;
   /// Returns the bodies in the order of their species; of a species with sizes one component a body.
   std::vector<ed::Component> components() const;
   /// Returns the species as the observables take them.

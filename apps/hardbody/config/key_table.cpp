@@ -1,10 +1,8 @@
 #include "config/keys.h"
 
-#include "base/number_text.h"
 #include "config/rules.h"
 #include "config/species.h"
 
-#include <ed/observables.h>
 #include <ed/polydispersity.h>
 #include <ed/shape.h>
 #include <ed/tolerances.h>
@@ -19,25 +17,12 @@
 namespace hardbody {
 namespace {
 
-constexpr std::int64_t kMostEvents = 100'000'000;  ///< rows of events.csv, 50 bytes each
-constexpr std::int64_t kMostFrames = 100'000;      ///< frames for all of which the files' heads have room
-constexpr double kLongestTime = 1e9;               ///< time in ed::time_unit of the bodies, as is kLeastCap
-constexpr double kLeastCap = 1;
-constexpr double kLargestWaveNumber = 1e6;
 constexpr double kLeastPacking = 1e-9;
 /// Largest packing fraction of a lattice or a start from a file; the number of bodies of a lattice may allow less.
 constexpr double kDensestLattice = 0.9999;
 constexpr double kThinnest = 1e-2;      ///< least ratio of two semi-axes; the largest is the inverse
 constexpr double kShortestAxis = 1e-3;  ///< semi-axis where semi-axes are taken literally; the longest is the inverse
 constexpr double kLightest = 1e-6;      ///< the heaviest is the inverse
-
-/// Returns `rule`, which accepts nothing (but `accepted`) where `when` holds.
-Rule unless(bool (*when)(const Place&), const char* accepted, Rule rule) {
-  auto take = [=, take = std::move(rule.take)](const Value& value, const Target& to) {
-    return when(to) ? Refusal{accepted} : take(value, to);
-  };
-  return {std::move(take), std::move(rule.text), std::move(rule.same)};
-}
 
 // ---- [system] and [start]
 
@@ -58,7 +43,6 @@ Taken take_packing(const Value& value, const Place& at, double& result) {
 }
 
 constexpr auto is_name = [](const std::string& text) { return !text.empty(); };
-constexpr auto is_duration = [](const std::string& text) { return duration_seconds(text).has_value(); };
 constexpr auto all_spheres = [](const Place& at) {
   return std::all_of(at.config.species.begin(), at.config.species.end(), is_sphere);
 };
@@ -96,14 +80,6 @@ std::vector<Key> system_keys() {
 }
 
 // ---- [shape] and [[species]]
-
-/// Takes a list of numbers above 0 that fills the vector. Returns whether the value is one.
-template <class Vector>
-bool take_positive(const Value& value, Vector& result) {
-  if (value.kind != Value::Kind::array || value.items.size() != static_cast<std::size_t>(result.size())) return false;
-  for (std::size_t k = 0; k < value.items.size(); ++k) result[static_cast<int>(k)] = value.items[k].real;
-  return std::all_of(value.items.begin(), value.items.end(), [](const Value& v) { return is_number(v) && v.real > 0; });
-}
 
 constexpr Range kRatios = {kThinnest, 1 / kThinnest};
 constexpr const char* kRatioMeaning = "X0 = a/b, a along the axis of revolution";
@@ -283,89 +259,6 @@ std::vector<Key> dynamics_keys() {
        choice(&Config::neighbours, {std::nullopt, ed::Neighbours::dilated, ed::Neighbours::obp, ed::Neighbours::cells},
               "auto"),
        "lists: \"auto\", \"dilated\", \"obp\" (the paper's) or \"cells\""},
-  };
-}
-
-// ---- [equilibration], [production] and [output]
-
-constexpr const char* kAuto = "\"auto\"";
-constexpr const char* kTimeUnit = "time unit l sqrt(m/kT)";
-
-Taken take_time(const Value& value, const Place& at, std::optional<double>& result) {
-  const double longest = kLongestTime * at.config.time_unit;
-  result = std::nullopt;
-  if (toml_text(value) == kAuto) return std::nullopt;
-  result = value.real;
-  return is_number(value) && value.real >= 0 && value.real <= longest
-             ? Taken()
-             : Refusal{fmt::format("{} or a number at least 0, at most {:g} ({})", kAuto, longest, kTimeUnit)};
-}
-
-Rule time_or_auto(std::optional<double> Config::*member) {
-  Rule rule = bound(member, take_time);
-  rule.text = [member](const Place& at) { return at.config.*member ? value_text(at.config.*member) : kAuto; };
-  return rule;
-}
-
-Taken take_cap(const Value& value, const Place& at, double& result) {
-  const double unit = at.config.time_unit;
-  return take_number(value, {kLeastCap * unit, kLongestTime * unit}, kTimeUnit, result);
-}
-
-Taken take_wave_numbers(const Value& value, const Place&, std::vector<double>& result) {
-  result.resize(value.items.size());
-  const bool good = take_positive(value, result) && result.size() <= ed::kMostWaveNumbers &&
-                    std::all_of(result.begin(), result.end(), [](double q) { return q <= kLargestWaveNumber; });
-  return good ? Taken()
-              : Refusal{fmt::format("a list of at most {} numbers above 0, at most {:g} (1/l)", ed::kMostWaveNumbers,
-                                    kLargestWaveNumber)};
-}
-
-Taken take_trajectory(const Value& value, const Place&, std::vector<TrajectoryFormat>& result) {
-  for (const Value& item : value.items) {
-    for (const auto format : {TrajectoryFormat::gsd, TrajectoryFormat::lammps, TrajectoryFormat::vtk}) {
-      const bool twice = std::find(result.begin(), result.end(), format) != result.end();
-      if (toml_text(item) == value_text(format) && !twice) result.push_back(format);
-    }
-  }
-  const bool all = value.kind == Value::Kind::array && result.size() == value.items.size();
-  return all ? Taken() : Refusal{"an array of \"gsd\", \"lammps\" and \"vtk\", each at most once"};
-}
-
-std::string production_comment(const Place& at) {
-  const double unit = at.config.time_unit;
-  return fmt::format(
-      "in l sqrt(m/kT); \"auto\": 30 times the equilibration, from {:g}\n"
-      "to {:g}; or until the relative errors of both diffusion coefficients are",
-      kLeastProduction * unit, kMostProduction * unit);
-}
-
-constexpr auto has_production_time = [](const Place& at) { return at.config.production_time.has_value(); };
-
-std::vector<Key> run_keys() {
-  return {
-      {"equilibration.time", "\"auto\"", time_or_auto(&Config::equilibration_time),
-       "in l sqrt(m/kT); \"auto\": until C2 and F_self have decayed below\n0.05 twice in a row, and Z and S do not "
-       "drift"},
-      {"equilibration.cap", "500 thermal times", bound(&Config::equilibration_cap, take_cap),
-       "of \"auto\": the state counts as not equilibrated then"},
-      {"production.time", "\"auto\"", time_or_auto(&Config::production_time), production_comment},
-      {"production.target_error", "",
-       unless(has_production_time, "no target_error, or production.time = \"auto\"",
-              number(&Config::target_error, {1e-4, 1}, "standard error over value, of both diffusion coefficients")),
-       "at most this", nullptr, "target_error = 0.02, if that is given"},
-      {"production.wave_numbers", "[]", bound(&Config::wave_numbers, take_wave_numbers),
-       "of F_self in 1/l, at most 8; the decay at the first is fitted.\n"
-       "[]: first peak of S(q), and a quarter, half and twice of it"},
-      {"output.events", "0", integer(&Config::events, 0, kMostEvents),
-       "number of production collisions to record in events.csv"},
-      {"output.trajectory", "[]", bound(&Config::trajectory, take_trajectory),
-       "of production: any of \"gsd\", \"lammps\" and \"vtk\""},
-      {"output.frames", "100", integer(&Config::frames, 2, kMostFrames), "of each, evenly from the begin to the end"},
-      {"output.checkpoint_every", "\"60s\"",
-       text(&Config::checkpoint_every, is_duration,
-            "a string of a positive number and a unit, as in \"60s\", \"5m\", \"1h\""),
-       "of checkpoint.bin: a number and s, m or h; it is also written at\nthe end, and when the run is stopped"},
   };
 }
 

@@ -78,6 +78,21 @@ void check_sections(const TomlDocument& document) {
   }
 }
 
+/// Refuses the file of a sweep where the config of one run is read.
+void check_no_sweep(const TomlDocument& document) {
+  for (const Section& section : document.sections) {
+    if (without_index(section.name) != "grid") continue;
+    throw InputError(fmt::format(
+        "{}: [grid] makes this a sweep: hardbody sweep takes it; accepted: the config of one run", section.where));
+  }
+  for (const char* key : {"base", "chain", "replicas"}) {
+    const Entry* entry = document.find(key);
+    if (entry == nullptr) continue;
+    throw InputError(fmt::format(
+        "{}: {} is a key of sweeps: hardbody sweep takes them; accepted: the config of one run", entry->where, key));
+  }
+}
+
 /// Returns "system.number, system.packing_fraction", the keys of the key's section; all keys for a key without a
 /// section.
 std::string keys_near(std::string_view key) {
@@ -122,6 +137,7 @@ std::string species_name(std::size_t index) {
 }
 
 void check_names(const TomlDocument& document) {
+  check_no_sweep(document);
   check_sections(document);
   const std::vector<std::string_view> known = key_names();
   for (const Entry& entry : document.entries) {
@@ -140,6 +156,19 @@ void check_names(const TomlDocument& document) {
     throw InputError(fmt::format("{}: unknown key {}{}; accepted: {}", entry.where, name,
                                  nearest ? fmt::format(", did you mean {}?", with_index(*nearest, index)) : "",
                                  keys_near(in_section ? key : nearest.value_or(""))));
+  }
+}
+
+void check_may_change(const std::vector<std::string>& overrides) {
+  std::vector<std::string_view> accepted;
+  for (const Key& key : keys()) {
+    if (key.may_change) accepted.push_back(key.name);
+  }
+  for (const std::string& assignment : overrides) {
+    const std::string name = assignment.substr(0, assignment.find_first_of(" ="));
+    if (std::find(accepted.begin(), accepted.end(), name) != accepted.end()) continue;
+    throw InputError(fmt::format("--set {}: a run that has begun keeps this key; accepted: {}",
+                                 one_line(assignment, 60), fmt::join(accepted, ", ")));
   }
 }
 
@@ -189,7 +218,7 @@ std::optional<Difference> difference(const Config& here, const Config& there) {
   const auto with_value = [&](const Config& config) {
     std::vector<PlacedKey> list;
     for (const PlacedKey& key : keys_of(config)) {
-      if (!text(key).empty()) list.push_back(key);
+      if (!key.key->may_change && !text(key).empty()) list.push_back(key);
     }
     return list;
   };

@@ -28,6 +28,9 @@ inline constexpr const char* kStartFrameKey = "start.frame";
 inline constexpr const char* kMendKey = "start.mend";
 inline constexpr const char* kInertiaKey = "dynamics.inertia";
 inline constexpr const char* kDistanceKey = "dynamics.distance";
+inline constexpr const char* kSpacingKey = "output.frames_spacing";
+inline constexpr const char* kFramesKey = "output.frames";
+inline constexpr const char* kEveryKey = "output.frames_every";
 
 inline constexpr std::int64_t kMostBodies = 1'000'000;
 
@@ -79,13 +82,20 @@ struct Key {
   Comment comment;
   bool (*written)(const Place&) = nullptr;  ///< whether it belongs into config.toml; nullptr: always
   const char* without = "";                 ///< comment in config.toml where the key has no value
+  bool may_change = false;                  ///< whether hardbody resume --set may change it, which changes no result
 };
 
 /// Returns the table, in the order of config.toml.
 const std::vector<Key>& keys();
 
+/// Returns the last part of the table: the keys of [equilibration], [production] and [output].
+std::vector<Key> run_keys();
+
 /// Refuses sections and keys that no config has, with the nearest known name. Throws InputError.
 void check_names(const TomlDocument& document);
+
+/// Refuses assignments, key=value, to keys that a run which has begun may not change. Throws InputError.
+void check_may_change(const std::vector<std::string>& overrides);
 
 /// Returns the section of a name: "species" of species.mass; empty for keys at the top.
 std::string_view section_of(std::string_view name);
@@ -126,7 +136,7 @@ struct Difference {
   std::string there;
 };
 
-/// Returns the first difference; nullopt if all keys have the same values.
+/// Returns the first difference that may change results; nullopt if all keys that may have the same values.
 std::optional<Difference> difference(const Config& here, const Config& there);
 
 }  // namespace hardbody

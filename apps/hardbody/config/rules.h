@@ -7,12 +7,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace hardbody {
@@ -150,6 +153,22 @@ Rule text(T C::*member, bool (*good)(const std::string&), const char* accepted) 
     result = value.text;
     return value.kind == Value::Kind::text && good(value.text) ? Taken() : Refusal{accepted};
   });
+}
+
+/// Returns `rule`, which accepts nothing (but `accepted`) where `when` holds.
+inline Rule unless(bool (*when)(const Place&), const char* accepted, Rule rule) {
+  auto take = [=, take = std::move(rule.take)](const Value& value, const Target& to) {
+    return when(to) ? Refusal{accepted} : take(value, to);
+  };
+  return {std::move(take), std::move(rule.text), std::move(rule.same)};
+}
+
+/// Takes a list of numbers above 0 that fills the vector. Returns whether the value is one.
+template <class Vector>
+bool take_positive(const Value& value, Vector& result) {
+  if (value.kind != Value::Kind::array || value.items.size() != static_cast<std::size_t>(result.size())) return false;
+  for (std::size_t k = 0; k < value.items.size(); ++k) result[static_cast<int>(k)] = value.items[k].real;
+  return std::all_of(value.items.begin(), value.items.end(), [](const Value& v) { return is_number(v) && v.real > 0; });
 }
 
 }  // namespace hardbody

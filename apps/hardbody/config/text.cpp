@@ -85,7 +85,8 @@ std::string sweep_template() {
              "# The config is that of hardbody run; the keys in [grid], at the end, take each of their values "
              "instead.\n"
              "# base = \"run.toml\", instead of all that is not in [grid], takes it from that file.\n"
-             "# chain = \"system.packing_fraction\": denser points start from the last state of the one before.\n") +
+             "# chain = \"system.packing_fraction\": denser points start from the last state of the one before.\n"
+             "# replicas = 8: every point eight times, with other seeds; the table has their means.\n") +
          "\n# Every combination of the values; those of the last key change fastest.\n"
          "[grid]\n" +
          "shape.aspect_ratio = [0.5, 1.0, 2.0, 3.0]                        # a list of values, or a single one\n"

@@ -25,7 +25,7 @@ std::vector<std::string> files_of_run() {
   std::vector<std::string> files = {kConfigFile, kSummaryFile, kCheckpointFile, kEventsFile,
                                     kGsdFile,    kLammpsFile,  kVtkFile,        kLogFile};
   for (const CurveFile& file : curve_files()) files.push_back(file.path());
-  files.emplace_back(kReportFile);
+  for (const char* name : {kReportFile, kNextConfigFile}) files.emplace_back(name);
   return files;
 }
 
@@ -84,9 +84,10 @@ fs::path directory_for(const std::optional<std::string>& out, const fs::path& co
   return out ? fs::path(*out) : "out" / config.stem();
 }
 
-DirectoryLock::DirectoryLock(const fs::path& directory)
+DirectoryLock::DirectoryLock(const fs::path& directory, Sharing sharing)
     : descriptor_(::open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
-  if (descriptor_ >= 0 && ::flock(descriptor_, LOCK_EX | LOCK_NB) == 0) return;
+  const int kind = sharing == Sharing::alone ? LOCK_EX : LOCK_SH;
+  if (descriptor_ >= 0 && ::flock(descriptor_, kind | LOCK_NB) == 0) return;
   const int error = errno;
   if (descriptor_ >= 0) ::close(descriptor_);
   if (error != EWOULDBLOCK) throw unusable(directory, fmt::format("it cannot be locked: {}", std::strerror(error)));

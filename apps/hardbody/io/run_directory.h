@@ -16,6 +16,7 @@ namespace hardbody {
 
 /// Names of files in a run directory.
 inline constexpr const char* kConfigFile = "config.toml";
+inline constexpr const char* kNextConfigFile = "config.next.toml";  ///< config of an extension that is being stored
 inline constexpr const char* kSummaryFile = "summary.json";
 inline constexpr std::size_t kLongestSummary = 16 << 20;  ///< limit in bytes
 inline constexpr const char* kCheckpointFile = "checkpoint.bin";
@@ -45,12 +46,15 @@ void check_length(const std::filesystem::path& path, std::optional<std::uint64_t
 
 enum class Overwrite { refused, allowed };
 
+/// Whether a lock excludes all other processes, or those only that want the directory alone.
+enum class Sharing { alone, shared };
+
 /// Lock of a directory against other processes, by flock on the directory itself: no file is left behind, and the
 /// system releases the lock when the process ends, in whatever way.
 class DirectoryLock {
  public:
   /// Locks the directory. Throws InputError if another process holds the lock, or the directory cannot be locked.
-  explicit DirectoryLock(const std::filesystem::path& directory);
+  explicit DirectoryLock(const std::filesystem::path& directory, Sharing sharing = Sharing::alone);
   ~DirectoryLock();
   DirectoryLock(DirectoryLock&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
   DirectoryLock& operator=(DirectoryLock&&) = delete;

@@ -251,8 +251,12 @@ std::string document_text(const TomlDocument& document) {
 }
 
 void TomlDocument::set(Entry entry) {
-  std::erase_if(entries, [&](const Entry& e) { return e.key == entry.key; });
-  entries.push_back(std::move(entry));
+  const auto same = std::find_if(entries.begin(), entries.end(), [&](const Entry& e) { return e.key == entry.key; });
+  if (same == entries.end()) {
+    entries.push_back(std::move(entry));
+  } else {
+    *same = std::move(entry);
+  }
 }
 
 std::string toml_real(double x) {

@@ -29,6 +29,17 @@ std::string svg_text(const std::string& text) {
   return escaped(text, kEscapes);
 }
 
+/// Returns the text with what follows an underscore, up to a space, below the line.
+std::string with_index(const std::string& text) {
+  const std::size_t cut = text.find('_');
+  if (cut == std::string::npos) return svg_text(text);
+  const std::size_t end = std::min(text.find(' ', cut), text.size());
+  std::string svg = svg_text(text.substr(0, cut)) + "<tspan dy=\"4\" font-size=\"10\">" +
+                    svg_text(text.substr(cut + 1, end - cut - 1)) + "</tspan>";
+  if (end < text.size()) svg += "<tspan dy=\"-4\">" + svg_text(text.substr(end)) + "</tspan>";
+  return svg;
+}
+
 /// Returns 1, 2 or 5 times a power of ten, about a sixth of the range.
 double tick_step(double range) {
   const double power = std::pow(10.0, std::floor(std::log10(range / 6)));
@@ -96,8 +107,7 @@ class Drawing {
         kWidth, kHeight);
     axes();
     for (const MapMark& mark : map_.marks) {
-      add("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"1.6\" fill=\"{}\" stroke=\"#999\" stroke-width=\"0.8\"/>\n",
-          x_.at(mark.x), y_.at(mark.y), mark.open ? "white" : "#999");
+      circle(x_.at(mark.x), y_.at(mark.y), mark.open);
     }
     for (const MapLevel& level : map_.levels) lines(level);
     legend();
@@ -124,9 +134,14 @@ class Drawing {
           kLeft, y_.at(tick), kLeft - 7, y_.at(tick) + 4.5, tick);
     }
     add("<text x=\"{}\" y=\"{}\" text-anchor=\"middle\" font-size=\"15\">{}</text>\n", (kLeft + kWidth - kRight) / 2,
-        kHeight - 18, svg_text(map_.x_name));
+        kHeight - 18, svg_text(map_.x_label));
     add("<text transform=\"translate(20 {}) rotate(-90)\" text-anchor=\"middle\" font-size=\"15\">{}</text>\n",
-        (kTop + kHeight - kBottom) / 2, svg_text(map_.y_name));
+        (kTop + kHeight - kBottom) / 2, svg_text(map_.y_label));
+  }
+
+  void circle(double x, double y, bool open) {
+    add("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\" fill=\"{}\" stroke=\"{}\"/>\n", x, y, open ? 2.8 : 1.8,
+        open ? "white" : "#888", open ? "#555" : "#888");
   }
 
   static const char* colour(std::size_t of) { return kColours[of % kColours.size()]; }
@@ -158,15 +173,15 @@ class Drawing {
 
   void legend() {
     double at = kLeft;
-    std::size_t next = 0;
-    for (const MapLevel& level : map_.levels) {
-      if (level.of < next) continue;
-      next = level.of + 1;
+    for (std::size_t of = 0; of < map_.legend.size(); ++of) {
       add("<path d=\"M{:.1f} 28h30\" stroke=\"{}\" stroke-width=\"1.6\" stroke-dasharray=\"{}\"/>"
           "<text x=\"{:.1f}\" y=\"32.5\">{}</text>\n",
-          at, colour(level.of), dashes(level.of), at + 36, svg_text(level.value));
-      at += 60 + 8 * static_cast<double>(level.value.size());
+          at, colour(of), dashes(of), at + 36, with_index(map_.legend[of]));
+      at += 60 + 8 * static_cast<double>(map_.legend[of].size());
     }
+    if (std::none_of(map_.marks.begin(), map_.marks.end(), [](const MapMark& mark) { return mark.open; })) return;
+    circle(at + 4, 28, true);
+    add("<text x=\"{:.1f}\" y=\"32.5\">not shown to be equilibrated</text>\n", at + 14);
   }
 
   const Map& map_;

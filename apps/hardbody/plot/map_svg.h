@@ -21,7 +21,7 @@ struct MapLevel {
   std::vector<ContourLine> lines;
 };
 
-/// Measured state point; open marks are less reliable.
+/// Measured state point; an open mark says that it was not shown to be equilibrated.
 struct MapMark {
   double x;
   double y;
@@ -30,11 +30,12 @@ struct MapMark {
 
 /// Content of a drawing.
 struct Map {
-  std::string x_name;
-  std::string y_name;
+  std::string x_label;
+  std::string y_label;
   MapScales scales;
   std::vector<MapMark> marks;
   std::vector<MapLevel> levels;
+  std::vector<std::string> legend;  ///< names of the observables; what follows an underscore is an index
 };
 
 /// Returns the drawing as SVG. Coordinates of lines and marks are those of the data, also with logarithmic axes.

@@ -5,6 +5,7 @@
 #include "base/version.h"
 #include "io/json_values.h"
 #include "registry/curves.h"
+#include "registry/key_names.h"
 #include "registry/observables.h"
 
 #include <fmt/format.h>
@@ -130,7 +131,8 @@ Json headlines_json(const std::vector<Headline>& headlines, Detail detail) {
 Json summary_json(const nlohmann::json& summary, Detail detail) {
   if (detail == Detail::full || !summary.is_object()) return summary;
   Json some = Json::object();
-  for (const char* key : {"version", "seed", "fit_windows", "wave_numbers", "counters", "performance", "audit"}) {
+  for (const char* key :
+       {"version", "seed", "fit_windows", "wave_numbers", "van_hove_lags", "counters", "performance", "audit"}) {
     if (summary.contains(key)) some[key] = summary[key];
   }
   return some;
@@ -156,7 +158,8 @@ Json run_json(const RunReport& run, Detail detail) {
   }
   Json species = Json::array();
   for (const SpeciesReport& s : run.species) {
-    species.push_back({{"title", s.title}, {"headlines", headlines_json(s.headlines, detail)}});
+    species.push_back(
+        {{"title", s.title}, {"oriented", s.oriented}, {"headlines", headlines_json(s.headlines, detail)}});
   }
   Json curves = Json::object();
   for (const Curves& c : run.curves) curves[c.name] = curves_json(c, detail);
@@ -166,6 +169,7 @@ Json run_json(const RunReport& run, Detail detail) {
           {"remarks", std::move(remarks)},
           {"headlines", headlines_json(run.headlines, detail)},
           {"species", std::move(species)},
+          {"oriented", run.oriented},
           {"rotational_freedoms", run.rotational_freedoms},
           {"number", run.config.number},
           {"summary", summary_json(run.summary, detail)},
@@ -175,26 +179,36 @@ Json run_json(const RunReport& run, Detail detail) {
           {"view", run.view ? view_json(*run.view) : Json(nullptr)}};
 }
 
-Json line_json(const CurveLine& line, const CurveFile* file) {
+Json line_json(const CurvePlot& plot, const CurveLine& line) {
+  const CurveFile* file = find_curves(plot.file);
   constexpr std::array kKinds = {"", "slope", "stretched", "mean"};
   Json json = {{"column", line.column}, {"label", line.label}};
-  const auto split = [&](const Column& c) { return c.name == line.column && c.split == Split::wave_numbers; };
-  if (file != nullptr && std::any_of(file->columns.begin(), file->columns.end(), split)) json["wave_numbers"] = true;
+  if (is_of_orientation(plot, line)) json["of_orientation"] = true;
+  if (!line.about.empty()) json["about"] = line.about;
+  if (!line.y_label.empty()) json["y_label"] = line.y_label;
+  const auto is_split = [&](Split split) {
+    const auto by = [&](const Column& c) { return c.name == line.column && c.split == split; };
+    return file != nullptr && std::any_of(file->columns.begin(), file->columns.end(), by);
+  };
+  if (is_split(Split::wave_numbers) || is_split(Split::collective)) json["wave_numbers"] = true;
+  if (is_split(Split::lags)) json["lags"] = true;
   if (line.fit.kind == Fit::Kind::none) return json;
   json["fit"] = {{"kind", kKinds[static_cast<std::size_t>(line.fit.kind)]},
                  {"keys", line.fit.keys},
                  {"window", line.fit.window},
                  {"factor", line.fit.factor},
-                 {"label", line.fit.label}};
+                 {"label", line.fit.label},
+                 {"about", line.fit.about}};
   return json;
 }
 
 /// Lists the plots that the front end draws.
-Json plots_json() {
+Json plots_json(const Report& report) {
   Json list = Json::array();
   for (const CurvePlot& plot : plots()) {
+    if (!is_shown(plot, report)) continue;
     Json lines = Json::array();
-    for (const CurveLine& line : plot.lines) lines.push_back(line_json(line, find_curves(plot.file)));
+    for (const CurveLine& line : plot.lines) lines.push_back(line_json(plot, line));
     list.push_back({{"id", plot.id},
                     {"title", plot.title},
                     {"about", plot.about},
@@ -221,33 +235,60 @@ Json field_json(const std::string& field) {
   return value ? Json(*value) : Json(field);
 }
 
+/// Returns value, error, the reason for which there is none, and the values that it is the mean of.
+Json measured_json(const Measured& m) {
+  return {number_json(m.value), number_json(m.error), m.missing, m.replicas};
+}
+
 Json point_json(const SweepPointReport& point, bool embedded) {
   Json keys = Json::array();
   for (const std::string& key : point.keys) keys.push_back(field_json(key));
   Json values = Json::array();
-  for (const Measured& m : point.values) values.push_back({number_json(m.value), number_json(m.error), m.missing});
-  return {{"keys", std::move(keys)},  {"values", std::move(values)},        {"status", point.status},
-          {"message", point.message}, {"equilibrated", point.equilibrated}, {"directory", point.directory},
-          {"embedded", embedded}};
+  for (const Measured& m : point.values) values.push_back(measured_json(m));
+  return {{"keys", std::move(keys)},
+          {"values", std::move(values)},
+          {"status", point.status},
+          {"message", point.message},
+          {"equilibrated", point.equilibrated},
+          {"directory", point.directory},
+          {"embedded", embedded},
+          {"group", point.group}};
 }
 
 Json sweep_json(const SweepReport& sweep, const std::vector<bool>& embedded) {
   Json points = Json::array();
+  Json names = Json::array();
+  for (const std::string& key : sweep.keys) names.push_back({{"label", key_label(key)}, {"symbol", key_symbol(key)}});
   for (std::size_t k = 0; k < sweep.points.size(); ++k) points.push_back(point_json(sweep.points[k], embedded[k]));
+  Json groups = Json::array();
+  for (const std::vector<Measured>& group : sweep.groups) {
+    Json values = Json::array();
+    for (const Measured& m : group) values.push_back(measured_json(m));
+    groups.push_back(std::move(values));
+  }
   return {{"name", sweep.name},
           {"path", sweep.path.string()},
           {"keys", sweep.keys},
+          {"key_names", std::move(names)},
           {"observables", headlines_json(sweep.observables, Detail::full)},
-          {"points", std::move(points)}};
+          {"points", std::move(points)},
+          {"groups", std::move(groups)}};
 }
 
 }  // namespace
+
+bool is_shown(const CurvePlot& plot, const Report& report) {
+  const auto has_file = [&](const RunReport& run) { return run.find(plot.file) != nullptr; };
+  if (!plot.optional || std::any_of(report.runs.begin(), report.runs.end(), has_file)) return true;
+  return report.sweep && std::any_of(report.sweep->points.begin(), report.sweep->points.end(),
+                                     [&](const SweepPointReport& point) { return point.run && has_file(*point.run); });
+}
 
 std::string report_data(const Report& report) {
   std::string scripts;
   Json data = {{"program", version()},
                {"title", report.title},
-               {"plots", plots_json()},
+               {"plots", plots_json(report)},
                {"card", keys_by(&Places::card)},
                {"opened", keys_by(&Places::opened)}};
   if (report.sweep) {

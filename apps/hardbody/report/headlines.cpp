@@ -1,11 +1,13 @@
 #include "registry/observables.h"
 #include "report/run.h"
+#include "run/observables_json.h"
 #include "run/table.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 namespace hardbody {
@@ -28,12 +30,27 @@ Headline headline(const Observable& observable, const nlohmann::json& estimate) 
           missing.is_string() ? missing.get<std::string>() : std::string()};
 }
 
-/// Bodies without an axis of revolution have a list of three.
-void add_axes(std::vector<Headline>& list, const nlohmann::json& observables_of_run) {
+ed::Estimate estimate_in(const nlohmann::json& estimate) {
+  return {number_in(estimate, "value"), number_in(estimate, "error")};
+}
+
+/// Whether the three numbers of a list tell directions apart: only some have a value, or two are apart.
+bool differ(const nlohmann::json& values) {
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    const ed::Estimate a = estimate_in(values[k]);
+    const ed::Estimate b = estimate_in(values[(k + 1) % values.size()]);
+    if (std::isfinite(a.value) != std::isfinite(b.value) || are_apart(a, b)) return true;
+  }
+  return false;
+}
+
+/// Bodies without an axis of revolution have a list of three, as have the edges of the box.
+void add_axes(std::vector<Headline>& list, const nlohmann::json& observables_of_run, bool oriented) {
   for (const Observable& observable : observables()) {
-    if (!is_per_axis(observable)) continue;
+    if (!is_per_axis(observable) || (observable.of_orientation && !oriented)) continue;
     const auto values = observables_of_run.find(observable.key);
     if (values == observables_of_run.end() || !values->is_array() || values->size() != kBodyAxes.size()) continue;
+    if (observable.of_box && !differ(*values)) continue;
     for (std::size_t k = 0; k < kBodyAxes.size(); ++k) {
       Headline line = headline(observable, (*values)[k]);
       line.key += fmt::format("_{}", kBodyAxes[k]);
@@ -44,18 +61,38 @@ void add_axes(std::vector<Headline>& list, const nlohmann::json& observables_of_
   }
 }
 
+/// The components of the director, where there is one.
+void add_director(std::vector<Headline>& list, const nlohmann::json& observables_of_run) {
+  const std::optional<ed::Director> director = director_in(observables_of_run);
+  const Observable* known = find_observable("director");
+  if (!director || known == nullptr) return;
+  for (std::size_t k = 0; k < kBodyAxes.size(); ++k) {
+    Headline line = headline(*known, nullptr);
+    const ed::Estimate component = component_of(*director, static_cast<int>(k));
+    line.key += fmt::format("_{}", kBodyAxes[k]);
+    line.symbol = fmt::format("n_{}", kBodyAxes[k]);
+    line.name += fmt::format(", {}", kBodyAxes[k]);
+    line.meaning = "eigenvector of the largest eigenvalue of Q, averaged over frames";
+    line.value = component.value;
+    line.error = component.error;
+    line.missing.clear();
+    list.push_back(std::move(line));
+  }
+}
+
 }  // namespace
 
-std::vector<Headline> headlines_of(const nlohmann::json& observables_of_run) {
+std::vector<Headline> headlines_of(const nlohmann::json& observables_of_run, bool oriented) {
   std::vector<Headline> list;
   if (!observables_of_run.is_object()) return list;
   for (const Observable* observable : observables_by(&Places::reading)) {
+    if (observable->of_orientation && !oriented) continue;
     const auto estimate = observables_of_run.find(observable->key);
-    if (is_number(*observable) && estimate != observables_of_run.end()) {
-      list.push_back(headline(*observable, *estimate));
-    }
+    if (!is_number(*observable) || estimate == observables_of_run.end() || lacks_order(*estimate)) continue;
+    list.push_back(headline(*observable, *estimate));
   }
-  add_axes(list, observables_of_run);
+  add_axes(list, observables_of_run, oriented);
+  if (oriented) add_director(list, observables_of_run);
   return list;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "registry/curves.h"
 #include "report/run.h"
 #include "report/sweep.h"
 
@@ -25,6 +26,9 @@ std::string report_page(const Report& report);
 inline constexpr std::string_view kReportBeginning =
     "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
     "<meta http-equiv=\"Content-Security-Policy\"";
+
+/// Returns whether a plot belongs into a report: an optional one only if some run has its file.
+bool is_shown(const CurvePlot& plot, const Report& report);
 
 /// Escapes text for HTML, also within quotes.
 std::string html_text(std::string_view text);

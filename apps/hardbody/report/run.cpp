@@ -93,11 +93,16 @@ std::vector<Remark> remarks_of(const nlohmann::json& summary) {
   if (says(member(summary, "equilibrated"), true)) {
     list.push_back(
         {Kind::good, "equilibrated",
-         fmt::format("C2 and F_self decayed below 0.05 twice in a row within {:g} time units.", equilibration)});
+         member(summary, "equilibrated_by") == "stationarity"
+             ? fmt::format("Order and pressure of this nematic or crystal were stationary over the last two "
+                           "thirds of {:g} time units.",
+                           equilibration)
+             : fmt::format("C2 and F_self decayed below 0.05 twice in a row within {:g} time units.", equilibration)});
   } else {
     list.push_back({Kind::warning, "not shown to be equilibrated",
-                    fmt::format("In {:g} time units C2 and F_self did not decay below 0.05 twice in a row: the "
-                                "configured time is too short, or the state is a nematic, a crystal or a glass.",
+                    fmt::format("In {:g} time units C2 and F_self did not decay below 0.05 twice in a row, nor was "
+                                "the order of a nematic or a crystal stationary: the time is too short, or the state "
+                                "is a glass or has domains.",
                                 equilibration)});
   }
   const nlohmann::json& target = member(summary, "target_error");
@@ -195,7 +200,10 @@ std::vector<SpeciesReport> species_of(const Config& config, const nlohmann::json
   for (std::size_t k = 0; config.mixture && k < config.species.size(); ++k) {
     SpeciesReport species;
     species.title = fmt::format("{} {}", config.species[k].number, bodies_title(config.species[k]));
-    if (all.is_array() && k < all.size()) species.headlines = headlines_of(member(all[k], "observables"));
+    species.oriented = !is_sphere(config.species[k]);
+    if (all.is_array() && k < all.size()) {
+      species.headlines = headlines_of(member(all[k], "observables"), species.oriented);
+    }
     list.push_back(std::move(species));
   }
   return list;
@@ -243,7 +251,8 @@ RunReport read_run_report(const fs::path& directory, WithView with_view) {
   run.log = read_log(directory / kLogFile);
   run.summary = read_summary(directory / kSummaryFile);
   run.curves = read_curves(directory);
-  run.headlines = headlines_of(member(run.summary, "observables"));
+  run.oriented = !std::all_of(run.config.species.begin(), run.config.species.end(), is_sphere);
+  run.headlines = headlines_of(member(run.summary, "observables"), run.oriented);
   run.species = species_of(run.config, run.summary);
   std::optional<Seen> seen;
   std::vector<Remark> unseen;

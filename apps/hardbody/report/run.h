@@ -40,6 +40,7 @@ const char* to_string(Remark::Kind kind);
 
 struct SpeciesReport {
   std::string title;
+  bool oriented = true;  ///< false: spheres, of which nothing about orientation or rotation is shown
   std::vector<Headline> headlines;
 };
 
@@ -56,6 +57,7 @@ struct RunReport {
   std::vector<SpeciesReport> species;  ///< species of a mixture
   std::vector<Curves> curves;
   std::optional<View> view;
+  bool oriented = true;          ///< false: all bodies are spheres
   long rotational_freedoms = 0;  ///< rotational degrees of freedom on which kT_rot is taken
 
   const Curves* find(std::string_view file) const;
@@ -78,8 +80,9 @@ std::string title_of(const Config& config);
 /// Returns the name, symbol, unit and meaning of a key of `observables`; for an unknown key the key itself.
 Headline headline_named(const std::string& key);
 
-/// Returns the headlines that the `observables` of a summary contain, in the order of interest.
-std::vector<Headline> headlines_of(const nlohmann::json& observables);
+/// Returns the headlines that the `observables` of a summary contain, in the order of interest; of bodies that are not
+/// `oriented` those that are not about orientation.
+std::vector<Headline> headlines_of(const nlohmann::json& observables, bool oriented);
 
 /// Returns "0.1729 +- 0.0033"; without a value, the reason.
 std::string headline_text(const Headline& headline);

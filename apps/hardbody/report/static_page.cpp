@@ -6,18 +6,25 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace hardbody {
 namespace {
 
 /// Columns of a plot that a run has: of one run all of all bodies, of several runs the first one.
-std::vector<std::string> columns_of(const CurvePlot& wanted, const Curves& curves, bool all) {
+std::vector<std::string> columns_of(const CurvePlot& wanted, const Curves& curves, bool all, bool oriented) {
   std::vector<std::string> columns;
   const auto add = [&](const std::string& name) {
     if (curves.find(name) != nullptr && (all || columns.empty())) columns.push_back(name);
   };
   for (const CurveLine& line : wanted.lines) {
+    if (!oriented && is_of_orientation(wanted, line)) continue;
     add(line.column);
     for (std::size_t k = 1; k <= ed::kMostWaveNumbers; ++k) add(fmt::format("{}_q{}", line.column, k));
+    // Every second lag of the van Hove function, from the longest on.
+    std::size_t lags = 0;
+    while (curves.find(fmt::format("{}_t{}", line.column, lags + 1)) != nullptr) ++lags;
+    for (std::size_t k = lags; k > 0; k = k > 2 ? k - 2 : 0) add(fmt::format("{}_t{}", line.column, k));
   }
   return columns;
 }
@@ -28,6 +35,11 @@ std::string series_label(const RunReport& run, const CurvePlot& plot, const std:
   for (std::size_t k = 0; numbers.is_array() && k < numbers.size(); ++k) {
     if (!numbers[k].is_number() || column != fmt::format("{}_q{}", plot.lines[0].column, k + 1)) continue;
     return fmt::format("q l = {:.3g}", numbers[k].get<double>());
+  }
+  const nlohmann::json& lags = member(run.summary, "van_hove_lags");
+  for (std::size_t k = 0; lags.is_array() && k < lags.size(); ++k) {
+    if (!lags[k].is_number() || column != fmt::format("{}_t{}", plot.lines[0].column, k + 1)) continue;
+    return fmt::format("t = {:.3g}", lags[k].get<double>());
   }
   return column;
 }
@@ -49,23 +61,26 @@ Plot plot_of(const CurvePlot& wanted, const CurveFile& file, const std::vector<R
     const Curves* curves = run.find(wanted.file);
     if (curves == nullptr) continue;
     const std::vector<double>* abscissa = curves->find(x);
-    const std::vector<std::string> columns = columns_of(wanted, *curves, runs.size() == 1);
+    const std::vector<std::string> columns = columns_of(wanted, *curves, runs.size() == 1, run.oriented);
     if (abscissa == nullptr || columns.empty()) continue;
     plot.x_label = label_of(*curves, x);
     plot.y_label = label_of(*curves, columns[0]);
     for (const std::string& column : columns) {
-      plot.series.push_back(
-          {runs.size() == 1 ? series_label(run, wanted, column) : run.name, *abscissa, *curves->find(column)});
+      const std::vector<double>* error = curves->find(column + "_error");
+      plot.series.push_back({runs.size() == 1 ? series_label(run, wanted, column) : run.name, *abscissa,
+                             *curves->find(column), error == nullptr ? std::vector<double>() : *error});
     }
   }
   return plot;
 }
 
-std::string plots_section(const std::vector<RunReport>& runs) {
+std::string plots_section(const Report& report) {
+  const std::vector<RunReport>& runs = report.runs;
   std::string html = "<section aria-label=\"Plots\" class=\"plots\">\n";
+  const bool any_oriented = std::any_of(runs.begin(), runs.end(), [](const RunReport& run) { return run.oriented; });
   for (const CurvePlot& wanted : plots()) {
     const CurveFile* file = find_curves(wanted.file);
-    if (file == nullptr) continue;
+    if (file == nullptr || !is_shown(wanted, report) || (is_of_orientation(wanted) && !any_oriented)) continue;
     const std::string svg = svg_plot(plot_of(wanted, *file, runs));
     html +=
         fmt::format("<figure class=\"card\"><figcaption>{}</figcaption>{}</figure>\n", html_text(wanted.title),
@@ -138,7 +153,7 @@ std::string static_body(const Report& report) {
   for (const RunReport& run : report.runs) {
     html += fmt::format("<p class=\"path\">{}</p>\n", html_text(run.path.string())) + remarks(run);
   }
-  html += headline_table(report.runs) + plots_section(report.runs);
+  html += headline_table(report.runs) + plots_section(report);
   for (const RunReport& run : report.runs) {
     html += fmt::format("<h2>{}</h2>\n", html_text(run.title)) + details(run);
   }

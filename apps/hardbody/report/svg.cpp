@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <utility>
 
 namespace hardbody {
 namespace {
@@ -31,6 +33,7 @@ class PlotAxis {
     low_ = std::min(low_, scale(x));
     high_ = std::max(high_, scale(x));
   }
+  bool is_logarithmic() const { return logarithmic_; }
   bool empty() const { return low_ > high_; }
 
   /// Extends the range around the data, so that a constant is a line in the middle.
@@ -93,10 +96,30 @@ std::string grid(const PlotAxis& x, const PlotAxis& y) {
   return svg;
 }
 
-/// Returns a line through the points, interrupted where one is missing, and the points.
+/// Largest part of a value by which a logarithmic axis is extended downwards for an error bar; longer bars end there.
+constexpr double kDeepestBar = 0.9;
+
+/// Returns the ends of the error bar of a point: low, high; nullopt if it has none.
+std::optional<std::pair<double, double>> bar_of(const PlotSeries& series, std::size_t k, const PlotAxis& y) {
+  if (k >= series.error.size() || !(series.error[k] > 0)) return std::nullopt;
+  const double value = series.y[k];
+  const double low = value - series.error[k];
+  return std::pair(y.is_logarithmic() ? std::max(low, (1 - kDeepestBar) * value) : low, value + series.error[k]);
+}
+
+/// Returns the values that point k is the mean of and that have a place on the axis.
+std::vector<double> spread_of(const PlotSeries& series, std::size_t k, const PlotAxis& y) {
+  std::vector<double> values = k < series.spread.size() ? series.spread[k] : std::vector<double>();
+  std::erase_if(values, [&](double value) { return !y.takes(value); });
+  return values.size() > 1 ? values : std::vector<double>();
+}
+
+/// Returns a line through the points, interrupted where one is missing, and the points with their error bars.
 std::string drawn(const PlotSeries& series, std::size_t index, const PlotAxis& x, const PlotAxis& y) {
   std::string line;
   std::string points;
+  std::string bars;
+  std::string spread;  // dots: lines of no length with round ends
   bool on = false;
   for (std::size_t k = 0; k < series.x.size() && k < series.y.size(); ++k) {
     if (!x.takes(series.x[k]) || !y.takes(series.y[k])) {
@@ -106,10 +129,21 @@ std::string drawn(const PlotSeries& series, std::size_t index, const PlotAxis& x
     const double px = x.place(series.x[k]);
     const double py = y.place(series.y[k]);
     line += fmt::format("{}{:.1f} {:.1f}", on ? "L" : "M", px, py);
-    points += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"1.8\"/>", px, py);
+    if (const auto bar = bar_of(series, k, y)) {
+      bars += fmt::format("M{:.1f} {:.1f}V{:.1f}", px, y.place(bar->first), y.place(bar->second));
+    }
+    for (const double value : spread_of(series, k, y)) {
+      spread += fmt::format("M{:.1f} {:.1f}h0", px, y.place(value));
+    }
+    const bool open = k < series.open.size() && series.open[k];
+    points += fmt::format("<circle{} cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\"/>", open ? " class=\"open\"" : "", px, py,
+                          open ? 3.2 : 1.8);
     on = true;
   }
-  return fmt::format("<g class=\"series c{}\"><path d=\"{}\"/>{}</g>", index % kPlotColours, line, points);
+  if (!bars.empty()) bars = fmt::format("<path class=\"bars\" d=\"{}\"/>", bars);
+  if (!spread.empty()) spread = fmt::format("<path class=\"spread\" d=\"{}\"/>", spread);
+  return fmt::format("<g class=\"series c{}\">{}<path d=\"{}\"/>{}{}</g>", index % kPlotColours, spread, line, bars,
+                     points);
 }
 
 std::string legend(const Plot& plot) {
@@ -131,6 +165,11 @@ std::string svg_plot(const Plot& plot) {
       if (!x.takes(s.x[k]) || !y.takes(s.y[k])) continue;
       x.include(s.x[k]);
       y.include(s.y[k]);
+      for (const double value : spread_of(s, k, y)) y.include(value);
+      const auto bar = bar_of(s, k, y);
+      if (!bar) continue;
+      y.include(bar->first);
+      y.include(bar->second);
     }
   }
   if (x.empty() || y.empty()) return "";

@@ -9,6 +9,9 @@ struct PlotSeries {
   std::string name;
   std::vector<double> x;
   std::vector<double> y;
+  std::vector<double> error{};                ///< standard errors; empty: none are drawn
+  std::vector<bool> open{};                   ///< points that are drawn open; empty: none
+  std::vector<std::vector<double>> spread{};  ///< values that each y is the mean of; empty: none are drawn
 };
 
 /// Plot of a static report. Points that are not finite, or not positive on a logarithmic axis, are left out.

@@ -1,5 +1,6 @@
 #include "report/sweep.h"
 
+#include "base/console.h"
 #include "base/errors.h"
 #include "base/find.h"
 #include "base/number_text.h"
@@ -7,10 +8,17 @@
 #include "io/json_member.h"
 #include "io/run_directory.h"
 #include "io/text_file.h"
+#include "registry/key_names.h"
+#include "registry/observables.h"
+#include "sweep/table.h"
+
+#include <ed/replicas.h>
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <limits>
 #include <map>
 #include <optional>
@@ -95,6 +103,7 @@ std::map<std::string, std::string> directories_of(const fs::path& sweep) {
     try {
       const nlohmann::json json = parse_json(read_file(state, kLongestState));
       if (!json.is_object() || !json.contains("keys") || !json["keys"].is_object()) throw JsonError("has no keys");
+      if (json.contains("replica") && json["replica"] != 0) continue;
       std::string signature;  // sorted, as the library keeps objects
       for (const auto& [key, value] : json["keys"].items()) signature += signature_part(key, comparable(value));
       directories[signature] = entry.path().filename().string();
@@ -122,9 +131,10 @@ std::string directory_of(const CsvTable& table, const TableRow& row,
 }
 
 /// Gives missing values the reason from the point's run. The message of a completed point contains nothing else.
-void add_reasons(SweepPointReport& point, const std::vector<Headline>& observables) {
+void add_reasons(SweepPointReport& point, const std::vector<Headline>& observables, bool pooled) {
   if (point.status != "done") return;
-  point.message.clear();
+  // Of replicas the message also says where they disagree.
+  if (!pooled) point.message.clear();
   for (std::size_t k = 0; k < observables.size(); ++k) {
     const Headline* own = find_by(point.run->headlines, &Headline::key, observables[k].key);
     if (own != nullptr) point.values[k].missing = own->missing;
@@ -143,18 +153,95 @@ void read_run(SweepPointReport& point, const fs::path& sweep, std::size_t& bodie
   }
 }
 
+/// Returns whether every point has a run, of spheres only.
+bool all_spheres(const SweepReport& sweep) {
+  return std::all_of(sweep.points.begin(), sweep.points.end(),
+                     [](const SweepPointReport& point) { return point.run && !point.run->oriented; });
+}
+
+void leave_out_orientation(SweepReport& sweep) {
+  for (std::size_t k = sweep.observables.size(); k-- > 0;) {
+    const Observable* known = find_observable(sweep.observables[k].key);
+    if (known == nullptr || !known->of_orientation) continue;
+    const auto at = static_cast<std::ptrdiff_t>(k);
+    sweep.observables.erase(sweep.observables.begin() + at);
+    for (SweepPointReport& point : sweep.points) point.values.erase(point.values.begin() + at);
+  }
+}
+
+/// Gives the points the values of their replicas.
+void add_replicas(SweepReport& sweep, const CsvTable& pooled, const std::vector<std::size_t>& observables) {
+  if (!fs::exists(sweep.path / kReplicasTableFile)) return;
+  const CsvTable table = read_csv(sweep.path / kReplicasTableFile);
+  if (table.rows.empty() || table.rows.size() % sweep.points.size() != 0) return;
+  const std::size_t each = table.rows.size() / sweep.points.size();
+  for (std::size_t o = 0; o < observables.size(); ++o) {
+    const std::optional<std::size_t> column = table.find(pooled.header[observables[o]]);
+    for (std::size_t k = 0; column && k < table.rows.size(); ++k) {
+      if (field_of(table, table.rows[k], "status") != "done") continue;
+      const double value = number_of(table.rows[k][*column]);
+      if (std::isfinite(value)) sweep.points[k / each].values[o].replicas.push_back(value);
+    }
+  }
+}
+
+/// Pools the points that differ in their seed alone.
+void add_groups(SweepReport& sweep) {
+  std::map<std::string, std::size_t> of_keys;
+  std::vector<std::vector<const SweepPointReport*>> members;
+  for (SweepPointReport& point : sweep.points) {
+    std::string signature;
+    for (std::size_t k = 0; k < sweep.keys.size(); ++k) {
+      if (sweep.keys[k] != "seed") signature += signature_part(sweep.keys[k], point.keys[k]);
+    }
+    const auto [found, is_new] = of_keys.try_emplace(signature, members.size());
+    if (is_new) members.emplace_back();
+    point.group = found->second;
+    members[point.group].push_back(&point);
+  }
+  for (const auto& points : members) {
+    std::vector<Measured>& values = sweep.groups.emplace_back();
+    for (std::size_t o = 0; o < sweep.observables.size(); ++o) values.push_back(pooled_over(points, o));
+  }
+}
+
 std::string title_of(const std::vector<std::string>& keys, std::size_t points) {
+  if (keys.empty() && points == 1) return "Replicas of one state point";
   std::string names;
   for (std::size_t k = 0; k < keys.size(); ++k) {
-    const std::string bare = keys[k].substr(keys[k].rfind('.') + 1);
-    std::string words = bare;
-    std::replace(words.begin(), words.end(), '_', ' ');
-    names += (k == 0 ? "" : k + 1 == keys.size() ? " and " : ", ") + words;
+    names += (k == 0 ? "" : k + 1 == keys.size() ? " and " : ", ") + key_words(keys[k]);
   }
   return fmt::format("Sweep of {}: {} state points", names.empty() ? "one point" : names, points);
 }
 
 }  // namespace
+
+double value_at(const SweepPointReport& point, std::size_t observable) {
+  return point.status == "failed" ? std::numeric_limits<double>::quiet_NaN() : point.values[observable].value;
+}
+
+Measured pooled_over(const std::vector<const SweepPointReport*>& points, std::size_t observable) {
+  std::vector<ed::Estimate> values;
+  Measured result{std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
+  bool all = true;  // points that are not done yet do not count
+  for (const SweepPointReport* point : points) {
+    const Measured& measured = point->values[observable];
+    if (result.missing.empty()) result.missing = measured.missing;
+    if (!std::isfinite(value_at(*point, observable))) {
+      all = all && point->status != "done";
+      continue;
+    }
+    values.push_back({measured.value, measured.error});
+    result.replicas.push_back(measured.value);
+  }
+  if (points.size() == 1) result.replicas = points.front()->values[observable].replicas;
+  if (values.empty() || !all) return result;
+  const ed::Pooled pooled = ed::pool(values);
+  result.value = pooled.mean.value;
+  result.error = pooled.mean.error;
+  result.missing.clear();
+  return result;
+}
 
 bool is_sweep(const fs::path& directory) {
   return fs::exists(directory / kSweepTableFile) && !fs::exists(directory / kConfigFile);
@@ -173,6 +260,7 @@ SweepReport read_sweep_report(const fs::path& directory) {
   sweep.title = title_of(sweep.keys, table.rows.size());
   std::size_t bodies = 0;
   for (const TableRow& row : table.rows) {
+    console().poll();
     SweepPointReport point;
     for (const std::size_t k : keys) point.keys.push_back(row[k]);
     for (const std::size_t k : observables) {
@@ -183,9 +271,12 @@ SweepReport read_sweep_report(const fs::path& directory) {
     point.equilibrated = field_of(table, row, "equilibrated");
     point.directory = directory_of(table, row, directories);
     read_run(point, directory, bodies);
-    if (point.run) add_reasons(point, sweep.observables);
+    if (point.run) add_reasons(point, sweep.observables, table.find("replicas").has_value());
     sweep.points.push_back(std::move(point));
   }
+  add_replicas(sweep, table, observables);
+  if (all_spheres(sweep)) leave_out_orientation(sweep);
+  add_groups(sweep);
   return sweep;
 }
 

@@ -2,6 +2,7 @@
 
 #include "report/run.h"
 
+#include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -13,7 +14,8 @@ namespace hardbody {
 struct Measured {
   double value;
   double error;
-  std::string missing{};  ///< reason for which there is none, if the point's run gives it
+  std::string missing{};           ///< reason for which there is none, if the point's run gives it
+  std::vector<double> replicas{};  ///< values that it is the mean of; empty for a single run
 };
 
 struct SweepPointReport {
@@ -23,7 +25,8 @@ struct SweepPointReport {
   std::string message;            ///< reason for which it failed or cannot be shown
   std::string equilibrated;       ///< "true", "false" or empty
   std::string directory;          ///< name of the directory; empty: none was found
-  std::optional<RunReport> run;   ///< run of a point that has results
+  std::optional<RunReport> run;   ///< run of a point that has results; of replicas the first one
+  std::size_t group = 0;          ///< index in SweepReport::groups
 };
 
 struct SweepReport {
@@ -33,7 +36,15 @@ struct SweepReport {
   std::vector<std::string> keys;      ///< swept keys: system.packing_fraction
   std::vector<Headline> observables;  ///< names of the observables; their values are those of the points
   std::vector<SweepPointReport> points;
+  std::vector<std::vector<Measured>> groups;  ///< values of points that differ in their seed alone, pooled
 };
+
+/// Returns the value of a point that counts; NaN if there is none. A failed point's values are no results.
+double value_at(const SweepPointReport& point, std::size_t observable);
+
+/// Pools an observable of several points, as the replicas of one; their values are its replicas. Missing, as that of
+/// replicas, if one of the points is done without a value: a mean over the others would be biased.
+Measured pooled_over(const std::vector<const SweepPointReport*>& points, std::size_t observable);
 
 /// Returns whether the directory holds a sweep.
 bool is_sweep(const std::filesystem::path& directory);

@@ -1,5 +1,6 @@
 #include "report/view.h"
 
+#include "base/console.h"
 #include "base/shapes.h"
 
 #include <fmt/format.h>
@@ -94,6 +95,7 @@ View view_of(const FrameSource& source) {
   const std::size_t most = std::max<std::size_t>(1, kMostBodyFrames / std::max<std::size_t>(1, bodies.size()));
   const std::vector<std::size_t> frames = frames_shown(source.count, most);
   for (const std::size_t k : frames) {
+    console().poll();
     view.frames.push_back(view_frame(k + 1 == source.count ? last : source.read(k), bodies));
   }
   if (bodies.size() < view.number) {

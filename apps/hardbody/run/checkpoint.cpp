@@ -34,7 +34,7 @@ void fields(Archive& archive, T& upkeep) {
 template <class Archive, Is<Equilibration> T>
 void fields(Archive& archive, T& e) {
   archive(e.kinetic_at_start, e.time, e.envelope, e.relaxation, e.counters_of_start, e.counters_of_tuning,
-          e.failures_of_start, e.counters, e.failures);
+          e.failures_of_start, e.counters, e.failures, e.packing_of_file);
 }
 
 template <class Archive, Is<Production> T>
@@ -106,7 +106,8 @@ Checkpoint take_checkpoint(std::uint32_t format, std::string_view payload) {
     reader(checkpoint.system);
   }
   if (format == kFormat) {
-    reader(checkpoint.counters_of_start, checkpoint.failures_of_start, checkpoint.run, checkpoint.upkeep);
+    reader(checkpoint.counters_of_start, checkpoint.failures_of_start, checkpoint.packing_of_file, checkpoint.run,
+           checkpoint.upkeep);
   }
   if (format >= kOtherRun && format < kFormat) (void)reader.raw(reader.left());
   reader.finish();
@@ -163,7 +164,7 @@ void put_payload(const Checkpoint& checkpoint, const Sink& sink) {
   Writer payload(sink);
   payload(checkpoint.program_version, checkpoint.config, checkpoint.cpu_features, checkpoint.arithmetic,
           checkpoint.phase, checkpoint.time, checkpoint.system, checkpoint.counters_of_start,
-          checkpoint.failures_of_start, checkpoint.run, checkpoint.upkeep);
+          checkpoint.failures_of_start, checkpoint.packing_of_file, checkpoint.run, checkpoint.upkeep);
   payload.flush();
 }
 

@@ -56,13 +56,13 @@ struct RunState {
   StoredState observables;  ///< bytes of ed::Observables::save; empty before production
 };
 
-inline constexpr std::uint32_t kCheckpointFormat = 10;
+inline constexpr std::uint32_t kCheckpointFormat = 11;
 
 /// checkpoint.bin: a state and what it belongs to.
 ///
 /// Layout: "HARDBODY", a mark of the byte order, the format's version, the length of the payload; the
 /// payload; the XXH3 checksum of everything before it. Versions 1 (one ellipsoid of revolution for all bodies) and 2
-/// contain no RunState, versions 3 to 9 another one, which is not read: these can be checked, but not resumed.
+/// contain no RunState, versions 3 to 10 another one, which is not read: these can be checked, but not resumed.
 struct Checkpoint {
   std::uint32_t format = kCheckpointFormat;  ///< format of the file that it was read from
   std::string program_version;
@@ -75,6 +75,7 @@ struct Checkpoint {
   // Only in a "start"; later they are in RunState::equilibration.
   ed::Counters counters_of_start;
   std::vector<ed::FailedPair> failures_of_start;
+  double packing_of_file = 0;
   std::optional<RunState> run;  ///< nullopt in a "start", which continues from the system
   Upkeep upkeep;                ///< stored last: the checkpoints of two equal runs differ in their last 48 bytes only
 };

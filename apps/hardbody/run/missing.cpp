@@ -9,11 +9,20 @@
 
 namespace hardbody {
 
+namespace {
+
+/// Share of production beyond which longer lags have too few origins to be worth asking for.
+constexpr double kMostOfProduction = 0.25;
+
+}  // namespace
+
 MissingWords missing_words(const RunRecord& record) {
   MissingWords words;
-  words.longer_lags = lags_are_longest(record.config, record.production)
-                          ? "hardbody analyze --longest-lag reads longer ones off a trajectory"
-                          : "a longer run helps";
+  const bool room = record.production.longest_lag < kMostOfProduction * record.production.planned;
+  const bool frames = room && !record.config.trajectory.empty();
+  words.longer_lags = frames ? "production.longest_lag, hardbody analyze --longest-lag or a longer run helps"
+                      : room ? "production.longest_lag or a longer run helps"
+                             : "a longer run helps";
   return words;
 }
 
@@ -29,12 +38,13 @@ std::string missing_text(const ed::Missing& missing, const MissingWords& words) 
   return text;
 }
 
-bool longer_lags_help(const ed::GroupResults& results) {
+bool longer_lags_help(const Part& part) {
   const auto help = [](const ed::Estimate& e) {
     return !std::isfinite(e.value) && ed::longer_lags_help(e.missing.reason);
   };
   return std::any_of(observables().begin(), observables().end(), [&](const Observable& o) {
-    const std::vector<ed::Estimate> numbers = numbers_of(o, {results});
+    if (!o.remark || o.remark(part).empty() || (part.spheres && o.of_orientation)) return false;
+    const std::vector<ed::Estimate> numbers = numbers_of(o, part);
     return std::any_of(numbers.begin(), numbers.end(), help);
   });
 }

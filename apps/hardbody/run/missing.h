@@ -9,6 +9,7 @@
 
 namespace hardbody {
 
+struct Part;
 struct RunRecord;
 
 /// Words that depend on the source of the values.
@@ -26,7 +27,7 @@ MissingWords missing_words(const RunRecord& record);
 /// Returns the reason, and what would help, in one sentence without a full stop.
 std::string missing_text(const ed::Missing& missing, const MissingWords& words);
 
-/// Returns whether longer lags may give one of the values of `results`.
-bool longer_lags_help(const ed::GroupResults& results);
+/// Returns whether longer lags may give one of the values of a part that tables show.
+bool longer_lags_help(const Part& part);
 
 }  // namespace hardbody

@@ -43,11 +43,14 @@ Json value_json(const Observable& observable, const Part& part, const MissingWor
   if (const auto* member = std::get_if<ed::TensorEstimate ed::Results::*>(&observable.value)) {
     return part.whole == nullptr ? Json(nullptr) : tensor_json(part.whole->**member, part.whole->Z, words);
   }
-  if (is_per_axis(observable) && !part.body_axes) return nullptr;
+  if (is_per_axis(observable) && !observable.of_box && !part.body_axes) return nullptr;
   Json list = Json::array();
-  for (const ed::Estimate& e : numbers_of(observable, part)) list.push_back(estimate_json(e, words));
+  for (const ed::Estimate& e : numbers_of(observable, part)) {
+    if (is_number(observable) && is_absent(e)) return nullptr;
+    list.push_back(estimate_json(e, words));
+  }
   if (list.empty()) return nullptr;
-  return is_per_axis(observable) ? list : list[0];
+  return is_list(observable) ? list : list[0];
 }
 
 }  // namespace

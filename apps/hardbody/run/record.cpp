@@ -35,24 +35,21 @@ std::uint64_t RunRecord::failures_left_out() const {
          equilibration.counters.unrecorded_failures + production.counters.unrecorded_failures;
 }
 
-bool lags_are_longest(const Config& config, const Production& production) {
-  return production.longest_lag >= kLongestLag * config.time_unit * (1 - 1e-9);
-}
-
 Part part_of_all(const RunRecord& record) {
   const Config& config = record.config;
-  const Production& production = record.production;
-  double rotation_axes = 0;
-  for (const SpeciesConfig& s : config.species) rotation_axes += s.rotation_axes() * s.number;
   const bool body_axes = !config.mixture && !config.all_of_revolution();
-  return {production.results, &production.results,    config.number, rotation_axes / config.number,
-          body_axes,          production.wave_numbers};
+  return whole_part(record.production.results, config.groups(), body_axes, record.production.wave_numbers);
 }
 
 Part part_of_species(const RunRecord& record, std::size_t species, const ed::GroupResults& results) {
   const SpeciesConfig& own = record.config.species[species];
   const int axes = own.rotation_axes();
-  return {results, nullptr, own.number, static_cast<double>(axes), axes == 3, record.production.wave_numbers};
+  return {.results = results,
+          .number = own.number,
+          .rotation_axes = static_cast<double>(axes),
+          .body_axes = axes == 3,
+          .spheres = !results.oriented,
+          .wave_numbers = record.production.wave_numbers};
 }
 
 void audit_record(RunRecord& record) {

@@ -28,6 +28,7 @@ struct Equilibration {
   ed::Counters counters_of_start;                 ///< counters of the compression before
   ed::Counters counters_of_tuning;                ///< counters of the trial runs that chose the envelope
   std::vector<ed::FailedPair> failures_of_start;  ///< failures of both
+  double packing_of_file = 0;                     ///< packing fraction of the start's file; 0: there is none
   ed::Counters counters;
   std::vector<ed::FailedPair> failures;
 
@@ -101,13 +102,6 @@ struct RunRecord {
   double last_time() const { return produced() ? production.time : equilibration.time; }
   const char* last_phase() const { return produced() ? "production" : "equilibration"; }
 };
-
-/// Cap of the longest lag, in units of Config::time_unit; production "auto" may go beyond, up to the equilibration
-/// time.
-inline constexpr double kLongestLag = 40;
-
-/// Returns whether a longer production would have no longer lags.
-bool lags_are_longest(const Config& config, const Production& production);
 
 /// Returns all bodies of a run, as the registry of observables takes them. The record must outlive the result.
 Part part_of_all(const RunRecord& record);

@@ -3,6 +3,8 @@
 #include "base/shapes.h"
 #include "base/version.h"
 #include "io/json_values.h"
+#include "io/text_file.h"
+#include "run/equilibrated.h"
 #include "run/observables_json.h"
 
 #include <nlohmann/json.hpp>
@@ -26,6 +28,7 @@ Json units(const Config& config, const Part& part) {
   for (const Observable* o : observables_by(&Places::units)) json[o->key] = o->convention(part);
   json["wave_numbers"] = "of F_self, 1/l; tau_F, beta_F, t_F_1overe are of the first";
   json["fit_windows"] = "from and to, l sqrt(m/kT)";
+  json["van_hove_lags"] = "of the columns of van_hove.csv, l sqrt(m/kT)";
   json["momentum_drift"] =
       config.mixture ? "|P_end - P_start| / (N sqrt(m kT)), m the mean mass" : "|P_end - P_start| / (N sqrt(m kT))";
   return json;
@@ -77,6 +80,17 @@ Json state(const Config& config) {
   return json;
 }
 
+/// Describes the file that the run started from; null for other starts.
+Json start(const RunRecord& record) {
+  const std::optional<StartFile>& file = record.config.start_file;
+  if (!file) return nullptr;
+  const double before = record.equilibration.packing_of_file;
+  return {{"file", file->file},
+          {"frame", file->frame ? Json(*file->frame) : Json(nullptr)},
+          {"packing_fraction", before},
+          {"compressed", before != record.config.packing_fraction}};
+}
+
 /// Describes the sizes that were drawn; null for bodies of one size.
 Json sizes(const SpeciesConfig& species) {
   if (species.factors.empty()) return nullptr;
@@ -112,7 +126,14 @@ Json equilibration(const ed::Relaxation& r) {
           {"F_self", number_json(r.f_self)},
           {"q", number_json(r.q)},
           {"Z_change", number_json(r.Z_change)},
-          {"S_change", number_json(r.S_change)}};
+          {"S_change", number_json(r.S_change)},
+          {"order",
+           {{"S", number_json(r.order.S)},
+            {"S_octants", number_json(r.order.S_octants)},
+            {"bragg", number_json(r.order.bragg)},
+            {"Z_change", number_json(r.order.Z_change)},
+            {"S_change", number_json(r.order.S_change)},
+            {"bragg_change", number_json(r.order.bragg_change)}}}};
 }
 
 Json performance(const RunRecord& record) {
@@ -135,6 +156,7 @@ std::string summary_json(const RunRecord& record) {
   json["version"] = version();
   json["seed"] = config.seed;
   json["state"] = state(config);
+  json["start"] = start(record);
   json["time"] = {{"equilibration", record.equilibration.time}, {"production", production.time}};
   json["counters"] = counters(production.counters);
   json["counters_of_start"] = counters(record.equilibration.counters_of_start);
@@ -147,8 +169,13 @@ std::string summary_json(const RunRecord& record) {
   json["observables"] = observables_json(whole, words, Source::run);
   json["fit_windows"] = fit_windows(production.results);
   json["wave_numbers"] = production.wave_numbers;
+  json["collective"] = config.collective;
+  json["van_hove_lags"] = production.results.displacement_lags;
+  if (config.bonds().steinhardt) json["order_neighbours"] = config.order_neighbours;
   if (config.mixture) json["species"] = species_list(record, words);
   json["equilibrated"] = record.equilibration.reached();
+  const ed::EquilibratedBy by = record.equilibration.relaxation.by;
+  json["equilibrated_by"] = by == ed::EquilibratedBy::nothing ? Json(nullptr) : Json(to_string(by));
   json["equilibration"] = equilibration(record.equilibration.relaxation);
   if (config.target_error) {
     json["target_error"] = {{"asked", *config.target_error}, {"reached", production.precise}};
@@ -165,6 +192,13 @@ std::string summary_json(const RunRecord& record) {
   json["cpu_features"] = cpu_features();
   json["units"] = units(config, whole);
   return json.dump(2) + "\n";
+}
+
+nlohmann::json stored_summary(const RunDirectory& directory) {
+  if (!directory.has(kSummaryFile)) return nullptr;
+  const std::string text = read_file(directory.file(kSummaryFile), kLongestSummary);
+  nlohmann::json summary = nlohmann::json::parse(text, nullptr, /*allow_exceptions=*/false);
+  return summary.is_object() ? summary : nlohmann::json(nullptr);
 }
 
 }  // namespace hardbody

@@ -3,6 +3,7 @@
 #include "base/shapes.h"
 #include "base/version.h"
 #include "registry/observables.h"
+#include "run/equilibrated.h"
 #include "run/missing.h"
 
 #include <fmt/format.h>
@@ -11,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <variant>
 
 namespace hardbody {
 namespace {
@@ -30,18 +32,18 @@ std::string number_line(const std::string& name, const ed::Estimate& value, cons
   return fmt::format("  {:<15} {:<22} {:<14} {}\n", name, format_estimate(value), unit, remark);
 }
 
-/// All observables of a part.
+/// All observables of a part; of spheres none that is about orientation.
 std::string observable_lines(const Part& part) {
-  const bool body_axes = part.body_axes && (part.whole == nullptr || !part.whole->groups.empty());
   std::string text;
   for (const Observable* o : observables_by(&Places::reading)) {
-    const bool axes = is_per_axis(*o);
     const std::string remark = o->remark ? o->remark(part) : "";
-    if (remark.empty() || (axes && !body_axes)) continue;
-    const std::vector<ed::Estimate> numbers = numbers_of(*o, part);
-    for (std::size_t k = 0; k < numbers.size(); ++k) {
-      text += number_line(axes ? fmt::format("{} {}", o->label, kBodyAxes[k]) : o->label, numbers[k], o->unit, remark);
+    if (remark.empty() || (part.spheres && o->of_orientation)) continue;
+    if (is_per_axis(*o) && !has_axes(*o, part)) continue;
+    if (const auto* director = std::get_if<ed::Director ed::GroupResults::*>(&o->value)) {
+      text += fmt::format("  {:<15} {:<37} {}\n", o->label, format_director(part.results.**director), remark);
     }
+    const std::vector<ed::Estimate> numbers = numbers_of(*o, part);
+    for (std::size_t k = 0; k < numbers.size(); ++k) text += number_line(label_of(*o, k), numbers[k], o->unit, remark);
   }
   return text;
 }
@@ -86,19 +88,17 @@ std::string state_text(const Config& config) {
 std::string head(const RunRecord& record) {
   const Config& config = record.config;
   std::string text = state_text(config);
-  text += fmt::format(
-      "time: equilibration {:g}{}, production {:g}{}\n", record.equilibration.time,
-      record.equilibration.reached() ? "" : " (not equilibrated: C2 and F_self below 0.05 twice in a row not reached)",
-      record.production.time, record.stopped() ? " (stopped early)" : "");
+  text += fmt::format("time: equilibration {:g}, production {:g}{}\n", record.equilibration.time,
+                      record.production.time, record.stopped() ? " (stopped early)" : "");
   return text + (config.mixture ? "units: kT = 1, lengths and masses as given in [[species]], time l sqrt(m/kT)\n"
                                 : "units: kT = m = 1, length l = (abc)^(1/3) of the semi-axes, time l sqrt(m/kT)\n");
 }
 
-/// The lines of each species of a mixture.
+/// The lines of each species, if there are several.
 std::string species_numbers(const RunRecord& record) {
   std::string text;
   const std::vector<ed::GroupResults>& groups = record.production.results.groups;
-  if (!record.config.mixture) return text;
+  if (groups.size() < 2) return text;
   for (std::size_t k = 0; k < groups.size(); ++k) {
     text += '\n';
     text += species_text(record.config.species[k], k) + observable_lines(part_of_species(record, k, groups[k]));
@@ -108,9 +108,11 @@ std::string species_numbers(const RunRecord& record) {
 
 /// Advice where values are missing because lags are too short; empty where none is.
 std::string longer_lags_line(const RunRecord& record) {
-  const ed::Results& r = record.production.results;
-  const bool help = longer_lags_help(r) || std::any_of(r.groups.begin(), r.groups.end(),
-                                                       [](const auto& group) { return longer_lags_help(group); });
+  const std::vector<ed::GroupResults>& groups = record.production.results.groups;
+  bool help = longer_lags_help(part_of_all(record));
+  for (std::size_t k = 0; k < groups.size(); ++k) {
+    help = help || longer_lags_help(part_of_species(record, k, groups[k]));
+  }
   return help ? fmt::format("  (longer lags: {})\n", missing_words(record).longer_lags) : "";
 }
 
@@ -165,8 +167,21 @@ std::string format_estimate(const ed::Estimate& estimate) {
   return fmt::format("{:.{}f} +- {:.{}f}", estimate.value, decimals, estimate.error, decimals);
 }
 
+std::string format_director(const ed::Director& director) {
+  const Eigen::Vector3d& n = director.axis;
+  const int decimals = director.error > 0 ? std::max(decimals_of(director.error), 3) : 4;
+  const std::string axis =
+      fmt::format("({:.{}f}, {:.{}f}, {:.{}f})", n.x(), decimals, n.y(), decimals, n.z(), decimals);
+  if (!std::isfinite(director.error)) return axis + " (no error)";
+  return axis + fmt::format(" +- {:.{}f}", director.error, decimals);
+}
+
 std::string results_table(const RunRecord& record, const std::vector<std::string>& files) {
   std::string text = head(record) + "\n" + numbers(record) + "\n" + audit_lines(record);
+  if (!record.equilibration.reached()) {
+    text += fmt::format("  *** NOT EQUILIBRATED: {}; averages may still drift ***\n",
+                        why_not_equilibrated(record.equilibration.relaxation));
+  }
   for (const std::string& defect : defects(record)) text += fmt::format("  *** NOT SOUND: {} ***\n", defect);
   if (!files.empty()) text += fmt::format("\nfiles: {}\n", fmt::join(files, ", "));
   return text;

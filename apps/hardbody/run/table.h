@@ -13,6 +13,9 @@ namespace hardbody {
 /// missing value.
 std::string format_estimate(const ed::Estimate& estimate);
 
+/// Returns a director as tables show it: "(0.013, 0.002, 1.000) +- 0.004".
+std::string format_director(const ed::Director& director);
+
 /// A run's headline numbers, with units and conventions, as shown on the terminal; `files`: where the rest was written.
 std::string results_table(const RunRecord& record, const std::vector<std::string>& files);
 

@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <stdexcept>
@@ -15,13 +17,20 @@
 namespace hardbody {
 namespace {
 
-namespace fs = std::filesystem;
-
 /// Bytes in memory that frames may take while no file takes them.
 constexpr std::size_t kMostWaiting = std::size_t{1} << 28;
 
+/// Time of frame 1 at logarithmic times, in Config::time_unit: the shortest lag at which runs measure.
+constexpr double kFirstLogTime = 2e-3;
+
 std::size_t memory_of(const Frame& frame) {
   return frame.bodies.size() * (sizeof(FrameBody) + sizeof(ed::Body)) + frame.types.size() * sizeof(ed::Species);
+}
+
+/// Returns k times an interval to 15 digits, which is the decimal number that a user expects: 0.1 three times is 0.3. A
+/// production of that length then has the frame, and so has a longer one.
+double whole_multiple(double interval, std::uint64_t k) {
+  return std::stod(fmt::format("{:.15g}", interval * static_cast<double>(k)));
 }
 
 std::unique_ptr<FrameFile> writer_of(TrajectoryFormat format, const RunDirectory& directory, std::uint64_t capacity) {
@@ -35,17 +44,30 @@ std::unique_ptr<FrameFile> writer_of(TrajectoryFormat format, const RunDirectory
 Trajectory::Trajectory(const RunDirectory& directory, const Config& config, double planned)
     : groups_(config.numbers()),
       planned_(planned),
+      every_(config.frames_every.value_or(0)),
       wanted_(config.trajectory.empty() ? 0
               : planned > 0             ? static_cast<std::uint64_t>(config.frames)
                                         : 1) {
+  if (config.frames_spacing == FramesSpacing::log && wanted_ > 2) {
+    // Many frames in a short production are as close together as evenly spaced ones at first.
+    first_ = std::min(kFirstLogTime * config.time_unit, planned / static_cast<double>(wanted_ - 1));
+  }
   for (const TrajectoryFormat format : config.trajectory) files_.push_back(writer_of(format, directory, wanted_));
 }
 
 double Trajectory::next_time() const {
   if (taken_ >= wanted_) return std::numeric_limits<double>::infinity();
   if (taken_ == 0) return 0;
+  if (every_ > 0) {
+    const double next = whole_multiple(every_, taken_);
+    return next <= planned_ ? next : std::numeric_limits<double>::infinity();
+  }
   // The end itself, not what rounding makes of it.
   if (taken_ + 1 == wanted_) return planned_;
+  if (first_ > 0) {
+    const double share = static_cast<double>(taken_ - 1) / static_cast<double>(wanted_ - 2);
+    return first_ * std::pow(planned_ / first_, share);
+  }
   return planned_ * static_cast<double>(taken_) / static_cast<double>(wanted_ - 1);
 }
 
@@ -72,7 +94,8 @@ void Trajectory::take(const ed::Simulation& simulation, Log& log) {
 }
 
 void Trajectory::take_last(const ed::Simulation& simulation, double time, Log& log) {
-  if (taken_ < wanted_ && last_time_ < time) add(frame_of(simulation, groups_, taken_), time, log);
+  if (taken_ < wanted_ && last_time_ < time && !(every_ > 0 && taken_ > 0))
+    add(frame_of(simulation, groups_, taken_), time, log);
 }
 
 void Trajectory::add(Frame frame, double time, Log& log) {

@@ -15,7 +15,8 @@
 namespace hardbody {
 
 /// The trajectories of a run: frames at fixed times of production, the first at its begin, the last at its planned end,
-/// appended to each of the files that were asked for. Taking one changes nothing in the run.
+/// appended to each of the files that were asked for. Times between are evenly spaced or grow by a factor; or frames
+/// are taken at an interval, whatever the planned end. Taking a frame changes nothing in the run.
 class Trajectory {
  public:
   /// Prepares the trajectories of a production of this length. Writes nothing yet.
@@ -38,7 +39,8 @@ class Trajectory {
   /// logged. Throws std::runtime_error when too many frames are waiting.
   void take(const ed::Simulation& simulation, Log& log);
 
-  /// Takes the state in which production ends before its planned end, unless it has just been taken.
+  /// Takes the state in which production ends before its planned end, unless it has just been taken, or frames have an
+  /// interval.
   void take_last(const ed::Simulation& simulation, double time, Log& log);
 
   /// Writes the frames that are waiting and flushes all files to the disk. Throws std::runtime_error.
@@ -53,7 +55,9 @@ class Trajectory {
 
   std::vector<int> groups_;
   double planned_;
-  std::uint64_t wanted_;  ///< frames; 0: no trajectory
+  double every_ = 0;      ///< interval of the frames; 0: they are spread over all of production
+  double first_ = 0;      ///< time of frame 1 at logarithmic times; 0: frames are evenly spaced
+  std::uint64_t wanted_;  ///< frames, of an interval the most; 0: no trajectory
   std::uint64_t taken_ = 0;
   double last_time_ = -1;  ///< time of the last frame
   std::vector<std::unique_ptr<FrameFile>> files_;

@@ -7,6 +7,8 @@
 #include "start/velocities.h"
 #include "trajectory/reader.h"
 
+#include <ed/start.h>
+
 #include <fmt/format.h>
 
 #include <cmath>
@@ -150,6 +152,21 @@ bool same_packing(double a, double b) {
   return std::abs(a / b - 1) <= kSamePacking;
 }
 
+/// Returns whether the config is denser than the state, which had the packing fraction `before` and has `after`,
+/// mended. Throws InputError if it is less dense, or too dense to be reached by compression.
+bool has_to_be_compressed(const Config& config, double before, double after) {
+  const double wanted = config.packing_fraction;
+  if (same_packing(before, wanted) || same_packing(after, wanted)) return false;
+  const double densest = ed::densest_start(config.components());
+  if (after < wanted && wanted <= densest) return true;
+  throw InputError(fmt::format(
+      "{}: its packing fraction is {:.8g}, in the config {:.8g}; accepted: {}, or no {}", config.start_file->file,
+      before, wanted,
+      after < densest ? fmt::format("the same, a larger one up to {:.4g}, to which it is compressed", densest)
+                      : std::string("the same"),
+      kPackingKey));
+}
+
 }  // namespace
 
 FileStart start_from_file(const Config& config, std::optional<StartFrame> loaded) {
@@ -183,11 +200,8 @@ FileStart start_from_file(const Config& config, std::optional<StartFrame> loaded
   for (const std::size_t i : order) ids.push_back(frame.bodies[i].id);
   const std::string mended = mend(result.system, start, ids);
   const double after = ed::packing_fraction(result.system);
-  if (!same_packing(before, config.packing_fraction) && !same_packing(after, config.packing_fraction)) {
-    throw InputError(
-        fmt::format("{}: its packing fraction is {:.8g}, in the config {:.8g}; accepted: the same, or no {}",
-                    start.file, before, config.packing_fraction, kPackingKey));
-  }
+  result.packing_fraction = after;
+  result.compress = has_to_be_compressed(config, before, after);
   result.report = fmt::format("start: {} bodies of frame {} of {} at packing fraction {:.8g}, {}{}{}", order.size(), k,
                               one_line(start.file), after, velocities, mended, cut_off ? kCutOff : "");
   return result;

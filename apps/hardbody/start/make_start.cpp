@@ -101,13 +101,14 @@ void report_order(double asked, const ed::System& start, Progress& progress, Log
       progress, log);
 }
 
-/// Compresses a random start or the last state of another run; nullopt if a signal came first.
+/// Compresses a random start, the last state of another run or the state of a file; nullopt if a signal came first.
 std::optional<Start> compressed_start(const Config& config, const std::optional<ed::System>& origin, Progress& progress,
                                       Log& log) {
-  log.line(config.start_from ? fmt::format("start: the last state of {}, compressed to packing fraction {:g}",
-                                           *config.start_from, config.packing_fraction)
-                             : fmt::format("start: {} bodies placed at random{}, compressed to packing fraction {:g}",
-                                           config.number, order_text(config), config.packing_fraction));
+  log.line(config.start_file   ? fmt::format("start: compressed to packing fraction {:g}", config.packing_fraction)
+           : config.start_from ? fmt::format("start: the last state of {}, compressed to packing fraction {:g}",
+                                             *config.start_from, config.packing_fraction)
+                               : fmt::format("start: {} bodies placed at random{}, compressed to packing fraction {:g}",
+                                             config.number, order_text(config), config.packing_fraction));
   progress.begin();
   const auto show = [&](double reached) {
     if (progress.due()) {
@@ -140,7 +141,10 @@ std::optional<Start> make_start(const Config& config, LoadedStates loaded, Progr
     FileStart start = loaded.file ? std::move(*loaded.file) : start_from_file(config);
     announce(start.report, progress, log);
     for (const std::string& notice : start.notices) announce(notice, progress, log);
-    return Start{std::move(start.system), {}, {}};
+    if (!start.compress) return Start{std::move(start.system), {}, {}, start.packing_fraction};
+    std::optional<Start> compressed = compressed_start(config, std::move(start.system), progress, log);
+    if (compressed) compressed->packing_of_file = start.packing_fraction;
+    return compressed;
   }
   for (const std::optional<std::string>& warning : {unequal_sizes(config), compressed_as_one(config)}) {
     if (warning) announce(*warning, progress, log);
@@ -149,7 +153,7 @@ std::optional<Start> make_start(const Config& config, LoadedStates loaded, Progr
   if (!lattice) return compressed_start(config, loaded.origin, progress, log);
   log.line(fmt::format("start: {} bodies on a lattice ({}) at packing fraction {:g}{}", config.number,
                        ed::to_string(*config.start), config.packing_fraction, order_text(config)));
-  Start start{ed::lattice_start(config.components(), *lattice), {}, {}};
+  Start start{ed::lattice_start(config.components(), *lattice), {}, {}, 0};
   log.line("start: done");
   return start;
 }

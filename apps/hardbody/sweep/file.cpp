@@ -2,16 +2,17 @@
 
 #include "base/errors.h"
 #include "base/find.h"
-#include "base/suggest.h"
 #include "config/keys.h"
 #include "io/text_file.h"
+#include "sweep/names.h"
+#include "sweep/overrides.h"
+#include "sweep/replicas.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <iterator>
 #include <utility>
 
@@ -25,67 +26,6 @@ constexpr const char* kChainKey = kPackingKey;
 constexpr const char* kZipKey = "zip";
 constexpr const char* kValues =
     "a list of values, {from, to, step}, {from, to, count} or {from, to, count, spacing = \"log\"}";
-
-// ---- Names
-
-bool is_grid(std::string_view section) {
-  return section == "grid" || section.starts_with("grid[");
-}
-
-bool in_grid(const Entry& entry) {
-  return is_grid(std::string_view(entry.key).substr(0, entry.key.find('.')));
-}
-
-bool is_own_key(const Entry& entry) {
-  return entry.key == "base" || entry.key == "chain" || entry.key == "grid";
-}
-
-/// Checks keys at the top and sections that only a sweep has; all others are checked by the config.
-void check_own_names(const TomlDocument& document) {
-  constexpr std::array<std::string_view, 4> kTop = {kSeedKey, "base", "chain", "grid"};
-  for (const Entry& entry : document.entries) {
-    const bool at_the_top = entry.key.find('.') == std::string::npos;
-    if (!at_the_top || std::find(kTop.begin(), kTop.end(), entry.key) != kTop.end()) continue;
-    const auto nearest = nearest_name(entry.key, kTop);
-    throw InputError(fmt::format("{}: unknown key {}{}; accepted at the top of a sweep: seed, base, chain", entry.where,
-                                 one_line(entry.key, 60), nearest ? fmt::format(", did you mean {}?", *nearest) : ""));
-  }
-  constexpr std::array<std::string_view, 1> kGrid = {"grid"};
-  for (const Section& section : document.sections) {
-    const std::string name = section.name.substr(0, section.name.find('['));
-    if (name == "grid" || !nearest_name(name, kGrid)) continue;
-    throw InputError(
-        fmt::format("{}: unknown section [{}], did you mean [grid]?; accepted: [grid] and the sections of "
-                    "a config",
-                    section.where, one_line(name, 40)));
-  }
-}
-
-// ---- Names of files
-
-using Renaming = std::function<fs::path(const fs::path&)>;
-
-/// Returns the key of the config that a key of a grid stands for: grid[2].start.file is start.file.
-std::string_view config_key(std::string_view key) {
-  const std::size_t dot = key.find('.');
-  return dot != std::string_view::npos && is_grid(key.substr(0, dot)) ? key.substr(dot + 1) : key;
-}
-
-/// Renames the files of all keys that name files, those of [grid.start] too.
-TomlDocument with_files(TomlDocument document, const Renaming& renamed) {
-  for (Entry& entry : document.entries) {
-    const std::string key(config_key(entry.key));
-    if (names_file(key)) entry.value = hardbody::with_files(std::move(entry.value), renamed);
-    bool changed = false;
-    for (Member& member : entry.value.members) {
-      if (!names_file(key + "." + member.key)) continue;
-      member.value = hardbody::with_files(std::move(member.value), renamed);
-      changed = true;
-    }
-    if (changed) entry.value.shown = toml_text(entry.value);
-  }
-  return document;
-}
 
 // ---- The base config
 
@@ -123,10 +63,6 @@ TomlDocument read_base(const TomlDocument& document, const fs::path& directory) 
 }
 
 // ---- The grids
-
-bool is_range(const Value& value) {
-  return value.kind == Value::Kind::table && value.find("from") != nullptr;
-}
 
 Value number_value(double x, bool integer) {
   Value value;
@@ -192,16 +128,6 @@ std::vector<Value> axis_values(const Entry& entry) {
   if (entry.value.kind != Value::Kind::array) return {entry.value};
   if (entry.value.items.empty()) throw bad(entry, kValues);
   return entry.value.items;
-}
-
-/// Returns the entries with full names: shape.aspect_ratio = .. and [grid.shape] with aspect_ratio = .. are the same.
-std::vector<Entry> flattened(const TomlDocument& document, const Entry& entry) {
-  if (entry.value.kind != Value::Kind::table || is_range(entry.value)) return {entry};
-  std::vector<Entry> entries;
-  for (const Member& member : entry.value.members) {
-    entries.push_back({entry.key + "." + member.key, document.where(member.line), member.line, member.value});
-  }
-  return entries;
 }
 
 std::vector<Entry> grid_entries(const TomlDocument& document, const std::string& section) {
@@ -270,16 +196,31 @@ Grid read_grid(const TomlDocument& document, const Section& section) {
   return grid;
 }
 
-std::vector<Grid> read_grids(const TomlDocument& document) {
+int read_replicas(const TomlDocument& document) {
+  const Entry* entry = document.find(kReplicasKey);
+  if (entry == nullptr) return 1;
+  const bool good =
+      entry->value.kind == Value::Kind::integer && entry->value.integer >= 1 && entry->value.integer <= kMostReplicas;
+  if (!good) throw bad(*entry, fmt::format("an integer from 1 to {}", kMostReplicas));
+  return static_cast<int>(entry->value.integer);
+}
+
+std::vector<Grid> read_grids(const TomlDocument& document, int replicas) {
   if (const Entry* entry = document.find("grid")) throw bad(*entry, "a section [grid] with keys");
   std::vector<Grid> grids;
   for (const Section& section : document.sections) {
     if (is_grid(section.name)) grids.push_back(read_grid(document, section));
   }
+  if (grids.empty() && replicas > 1) {
+    Grid point;
+    point.where = document.name;
+    point.single = true;
+    grids.push_back(std::move(point));
+  }
   if (grids.empty()) {
     throw InputError(
-        fmt::format("{}: has no [grid]; accepted: a sweep's config, as hardbody init --template sweep "
-                    "writes it",
+        fmt::format("{}: has no [grid]: hardbody run takes the config of one run; accepted: a sweep's config, as "
+                    "hardbody init --template sweep writes it",
                     document.name));
   }
   return grids;
@@ -307,7 +248,7 @@ std::optional<std::string> read_chain(const TomlDocument& document, const std::v
 TomlDocument merged(const TomlDocument& base, const TomlDocument& document) {
   TomlDocument whole = base;
   for (const Entry& entry : document.entries) {
-    if (in_grid(entry) || entry.key == "chain") whole.entries.push_back(entry);
+    if (in_grid(entry) || entry.key == "chain" || entry.key == kReplicasKey) whole.entries.push_back(entry);
   }
   for (const Section& section : document.sections) {
     if (is_grid(section.name)) whole.sections.push_back(section);
@@ -315,33 +256,29 @@ TomlDocument merged(const TomlDocument& base, const TomlDocument& document) {
   return whole;
 }
 
-/// Returns the keys by their full names, including those of sections in a grid, [grid] shape.aspect_ratio.
-std::vector<Entry> all_keys(const TomlDocument& document) {
-  std::vector<Entry> entries;
-  for (const Entry& entry : document.entries) {
-    for (Entry& one : flattened(document, entry)) entries.push_back(std::move(one));
-  }
-  return entries;
-}
-
 }  // namespace
 
-SweepFile parse_sweep(std::string_view text, const std::string& name, const fs::path& directory, Lines lines) {
-  const TomlDocument document = read_toml(text, name, {}, lines);
+SweepFile parse_sweep(std::string_view text, const std::string& name, const fs::path& directory,
+                      const std::vector<std::string>& overrides, Lines lines) {
+  TomlDocument document = read_toml(text, name, {}, lines);
   check_own_names(document);
+  auto [own, config] = read_overrides(overrides, name);
+  lay_over_own(document, std::move(own));
   SweepFile sweep;
   sweep.directory = directory;
-  sweep.grids = read_grids(document);
+  sweep.replicas = read_replicas(document);
+  sweep.grids = read_grids(document, sweep.replicas);
   for (Grid& grid : sweep.grids) grid.directory = directory;
-  const TomlDocument base = read_base(document, directory);
+  TomlDocument base = read_base(document, directory);
+  lay_over_config(base, std::move(config), sweep.grids);
   sweep.whole = merged(base, document);
   sweep.base = absolute_files(base, directory);
   sweep.chain = read_chain(document, sweep.grids);
   return sweep;
 }
 
-SweepFile read_sweep(const fs::path& path) {
-  return parse_sweep(read_file(path, kLongestSweepFile), path.string(), path.parent_path());
+SweepFile read_sweep(const fs::path& path, const std::vector<std::string>& overrides) {
+  return parse_sweep(read_file(path, kLongestSweepFile), path.string(), path.parent_path(), overrides);
 }
 
 TomlDocument moved(TomlDocument whole, const fs::path& from, const fs::path& to) {
@@ -361,24 +298,6 @@ TomlDocument document_of(const SweepFile& sweep, const SweepPoint& point) {
   TomlDocument document = sweep.base;
   for (const Setting& s : point.settings) document.set({s.key, s.where, 0, s.told});
   return document;
-}
-
-std::optional<ChangedKey> changed_key(const TomlDocument& before, const TomlDocument& now) {
-  constexpr const char* kMissing = "not there";
-  const std::vector<Entry> then = all_keys(before);
-  const std::vector<Entry> today = all_keys(now);
-  for (const Entry& entry : today) {
-    const Entry* other = find_by(then, &Entry::key, entry.key);
-    if (other == nullptr) return ChangedKey{entry.key, entry.where, kMissing, entry.value.shown};
-    if (!same_value(other->value, entry.value)) {
-      return ChangedKey{entry.key, entry.where, other->value.shown, entry.value.shown};
-    }
-  }
-  for (const Entry& entry : then) {
-    if (find_by(today, &Entry::key, entry.key) == nullptr)
-      return ChangedKey{entry.key, now.name, entry.value.shown, kMissing};
-  }
-  return std::nullopt;
 }
 
 }  // namespace hardbody

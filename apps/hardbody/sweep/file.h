@@ -20,15 +20,17 @@ struct SweepFile {
   TomlDocument base;                ///< config of all points except what the grids change; names of files are absolute
   std::vector<Grid> grids;
   std::optional<std::string> chain;  ///< key along which points start from their neighbours
+  int replicas = 1;                  ///< runs of each point, with different seeds
 };
 
-/// Reads a sweep's file, and its base config if it names one. Throws InputError; the names of the config's keys, also
-/// those in the grid, are checked by read_config.
-SweepFile read_sweep(const std::filesystem::path& path);
+/// Reads a sweep's file, and its base config if it names one, with `overrides` (section.key=value,
+/// grid.section.key=list) laid over it. Throws InputError; the names of the config's keys, also those in the grid, are
+/// checked by read_config.
+SweepFile read_sweep(const std::filesystem::path& path, const std::vector<std::string>& overrides = {});
 
 /// Parses a sweep's text; `name` is used in messages, `directory` is where a base is searched for.
 SweepFile parse_sweep(std::string_view text, const std::string& name, const std::filesystem::path& directory,
-                      Lines lines = Lines::named);
+                      const std::vector<std::string>& overrides = {}, Lines lines = Lines::named);
 
 /// Returns the document of a sweep in `from` for a file in `to`: relative names of files are changed so that they name
 /// the same files.
@@ -39,16 +41,5 @@ TomlDocument absolute_files(TomlDocument whole, const std::filesystem::path& dir
 
 /// Returns the config of a point, as far as it is known without running it.
 TomlDocument document_of(const SweepFile& sweep, const SweepPoint& point);
-
-/// Key whose value has changed; "not there" if it is missing.
-struct ChangedKey {
-  std::string key;
-  std::string where;  ///< file:line of the new value, or the file
-  std::string before;
-  std::string now;
-};
-
-/// Returns the first changed key; nullopt if all values are the same.
-std::optional<ChangedKey> changed_key(const TomlDocument& before, const TomlDocument& now);
 
 }  // namespace hardbody

@@ -87,8 +87,7 @@ std::string description(const SweepPoint& point) {
   return text;
 }
 
-/// Returns a text that distinguishes points. The last digits of a number are ignored as rounding; integers (seeds) have
-/// none.
+/// Overload for a value.
 std::string identity(const Value& value) {
   std::string number = fmt::format("{:.{}g}", value.real, kDigits);
   if (value.kind == Value::Kind::real || (is_numeric(value) && number == fmt::format("{}", value.integer)))
@@ -97,16 +96,6 @@ std::string identity(const Value& value) {
   std::string text = "[";
   for (const Value& item : value.items) text += identity(item) + ",";
   return text + "]";
-}
-/// Overload for a point; `without`: a key that is ignored.
-std::string identity(const SweepPoint& point, std::string_view without = {}) {
-  std::map<std::string, std::string> of_key;
-  for (const Setting& s : point.settings) {
-    if (s.key != without) of_key[s.key] = identity(s.told);
-  }
-  std::string text;
-  for (const auto& [key, value] : of_key) text += fmt::format("{}={}\n", key, value);
-  return text;
 }
 
 void check_lengths(const ZippedAxes& group) {
@@ -130,6 +119,7 @@ std::set<std::string> keys_of(const Grid& grid) {
 /// Throws for grids with different keys: their points could be equal without being noticed, and would not fit into one
 /// table.
 void check_keys(const std::vector<Grid>& grids) {
+  if (grids[0].single) return;
   const std::set<std::string> first = keys_of(grids[0]);
   for (const Grid& grid : grids) {
     const std::set<std::string> keys = keys_of(grid);
@@ -192,6 +182,16 @@ void name_points(std::vector<SweepPoint>& points) {
 }
 
 }  // namespace
+
+std::string identity(const SweepPoint& point, std::string_view without) {
+  std::map<std::string, std::string> of_key;
+  for (const Setting& s : point.settings) {
+    if (s.key != without) of_key[s.key] = identity(s.told);
+  }
+  std::string text;
+  for (const auto& [key, value] : of_key) text += fmt::format("{}={}\n", key, value);
+  return text;
+}
 
 std::string Setting::assignment() const {
   return fmt::format("{}={}", key, toml_text(told));

@@ -29,6 +29,7 @@ struct Grid {
   std::string where;  ///< file:line of the grid's head
   std::vector<ZippedAxes> groups;
   std::filesystem::path directory;  ///< directory to which names of files are relative
+  bool single = false;              ///< whether it stands for the single point of a sweep without a grid
 };
 
 /// Key with its value at a state point.
@@ -44,11 +45,15 @@ struct Setting {
 
 /// State point of a sweep.
 struct SweepPoint {
-  std::string name;  ///< name of its directory: the last parts of the keys and their values
+  std::string name;  ///< last parts of the keys and their values, for its directory; empty without a grid
   std::vector<Setting> settings;
 
   const Setting* find(std::string_view key) const;
 };
+
+/// Returns a text that distinguishes points. The last digits of a number are ignored as rounding; integers (seeds) have
+/// none. `without`: a key that is ignored.
+std::string identity(const SweepPoint& point, std::string_view without = {});
 
 /// Returns whether the key (of a config, not [grid]) names a file or directory that a run reads.
 bool names_file(std::string_view key);

@@ -1,6 +1,6 @@
 #pragma once
 
-/// Status and results of the points of a sweep, and the table of all.
+/// Status and results of the points of a sweep.
 
 #include "sweep/grid.h"
 
@@ -22,7 +22,10 @@ struct PrintedEstimate {
   std::string name;
   std::string value;
   std::string error;
-  std::string missing{};  ///< reason for which there is no value
+  std::string missing{};      ///< reason for which there is no value
+  bool of_direction = false;  ///< component of a director, which every run has for itself
+
+  bool operator==(const PrintedEstimate&) const = default;
 };
 
 /// Results of a completed run, from its summary.json.
@@ -30,20 +33,25 @@ struct PointResults {
   std::string equilibration_time;
   std::string production_time;
   std::vector<PrintedEstimate> observables;  ///< scalar observables
+  std::string wave_number;                   ///< first one of F_self, for tau_F, beta_F and t_F_1overe
   bool equilibrated = false;
   bool sound = false;  ///< whether no defect was found
   // Timing
   std::string wall_seconds;
   std::string collisions_per_second;
+  std::string peak_memory_bytes;
 };
 
-/// Point with its status.
+/// Point, or one of its replicas, with its status.
 struct PointRecord {
   SweepPoint point;
+  std::string directory;  ///< name of the run's directory
+  int replica = 0;        ///< number of the run among the replicas of its point
   std::int64_t seed = 1;
-  std::optional<std::size_t> starts_from;  ///< index of another point, whose last state it compresses
+  std::optional<std::size_t> starts_from;  ///< index of another record, whose last state it compresses
   PointStatus status = PointStatus::pending;
   std::string message;  ///< reason for the failure
+  std::string note{};   ///< disagreement of replicas, for a point that is done
   std::optional<PointResults> results;
 };
 
@@ -51,11 +59,7 @@ struct PointRecord {
 /// invalid.
 std::optional<PointResults> finished_results(const std::filesystem::path& directory);
 
-/// Returns the content of the point's state.json.
-std::string state_json(const PointRecord& record);
-
-/// Returns the table: one row a point, in the order of the grid; columns of timing last. The columns of observables are
-/// those of all points. The message of a completed point says which values are missing, and why.
-std::string sweep_csv(const std::vector<PointRecord>& records);
+/// Returns the content of the run's state.json; `replicas` is the number of runs of a point.
+std::string state_json(const PointRecord& record, int replicas);
 
 }  // namespace hardbody

@@ -34,6 +34,8 @@ std::runtime_error cannot_start(int error) {
                                 ::pid_t parent) {
   (void)::setpgid(0, 0);
   (void)::prctl(PR_SET_PDEATHSIG, SIGTERM);
+  // Schedulers send it to all processes of a task; whoever started this one decides.
+  (void)std::signal(SIGUSR1, SIG_IGN);
   const int nothing = ::open("/dev/null", O_RDWR);
   // The parent may have died before its death could be signalled.
   const bool ready = ::getppid() == parent && ::chdir(directory) == 0 && nothing >= 0 &&

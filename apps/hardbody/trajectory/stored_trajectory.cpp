@@ -1,5 +1,6 @@
 #include "trajectory/stored_trajectory.h"
 
+#include "base/console.h"
 #include "base/errors.h"
 #include "base/find.h"
 #include "base/shapes.h"
@@ -150,6 +151,8 @@ void Reading::set_order(const Frame& frame) {
 void Reading::read_groups(std::uint64_t k) {
   ed::StoredFramesOptions& options = result_.options;
   double volume = 0;
+  double length = 0;  // of all that have an orientation, along u
+  double oriented = 0;
   bool shapes = true;
   for (std::size_t n = 0; n < first_order_.size(); ++n) {
     const FrameBody& body = first_.bodies[first_order_[n]];
@@ -158,11 +161,17 @@ void Reading::read_groups(std::uint64_t k) {
     shapes = shapes && shape;
     const std::optional<int> axis = axis_of(first_, body);
     options.axis.push_back(axis.value_or(2));
-    if (n == 0 || first_.bodies[first_order_[n - 1]].group != body.group) options.groups.push_back({0, axis ? 2 : 3});
+    if (n == 0 || first_.bodies[first_order_[n - 1]].group != body.group)
+      options.groups.push_back({0, axis ? 2 : 3, false});
     ++options.groups.back().number;
     if (!axis) options.groups.back().rotation_axes = 3;
+    if (shape && ed::is_sphere(*shape)) continue;
+    options.groups.back().oriented = true;
+    if (shape) length += 2 * ed::half_extents(*shape)[axis.value_or(2)];
+    oriented += 1;
   }
   options.length_known = shapes;
+  options.axial_length = shapes && oriented > 0 ? length / oriented : 0;
   // Without the sizes of all bodies: as if they filled half of the box, so that the grids fit any unit of length.
   if (!shapes) volume = 0.5 * options.box * options.box * options.box;
   options.length = std::cbrt(volume / static_cast<double>(first_.bodies.size()) / (4 * std::numbers::pi / 3));
@@ -304,6 +313,7 @@ StoredTrajectory Reading::read() {
   read_groups(list[0]);
   const auto every = static_cast<std::size_t>(asked_.every);
   for (std::size_t n = 0; n < list.size(); ++n) {
+    console().poll();
     const std::uint64_t k = list[n];
     const Frame frame = reader_.read(k);
     set_order(frame);

@@ -22,7 +22,7 @@ from hardbody._arrays import (
     ray_cast_many,
     time_of_contact_many,
 )
-from hardbody._commands import analyze, check, report, resume, run, sweep
+from hardbody._commands import analyze, check, extend, report, resume, run, sweep
 from hardbody._commands import map as map
 from hardbody._core import (
     Audit,
@@ -61,19 +61,22 @@ from hardbody._core import (
     time_of_contact,
 )
 from hardbody._errors import NumericalError
-from hardbody._observables import Estimate, Results, TensorEstimate, VectorEstimate
+from hardbody._observables import AnyEstimate, Estimate, Results, TensorEstimate, VectorEstimate
 from hardbody._pages import Map, Report
 from hardbody._results import Analysis, Run, Sweep
 from hardbody._run_errors import SweepError, UnsoundError
 from hardbody._tables import Curves, Table
-from hardbody._typing import Shape, SupportShape
+from hardbody._typing import BodyShape, Components, Progress, RotationLike, Shape, Shapes, SpeciesLike, SupportShape
 
 # "map" is no name for `from hardbody import *`, which would hide Python's own.
 __all__ = [
     "Analysis",
+    "AnyEstimate",
     "Audit",
+    "BodyShape",
     "ClosestPoint",
     "ClosestPoints",
+    "Components",
     "ContactResult",
     "Contacts",
     "Counters",
@@ -94,14 +97,18 @@ __all__ = [
     "Overlaps",
     "Polydisperse",
     "Pose",
+    "Progress",
     "RayHit",
     "RayHits",
     "Report",
     "Results",
+    "RotationLike",
     "Run",
     "Shape",
+    "Shapes",
     "Simulation",
     "Species",
+    "SpeciesLike",
     "Stall",
     "Superellipsoid",
     "SupportShape",
@@ -124,6 +131,7 @@ __all__ = [
     "distance",
     "distance_lower_bound",
     "distance_many",
+    "extend",
     "from_gsd",
     "lattice_start",
     "mass_properties",

@@ -18,17 +18,15 @@ the entry and what is accepted. Ctrl-C ends a call within about a tenth of a sec
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Literal, TypeAlias
+from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from hardbody import _core
-from hardbody._typing import Bools, Reals, Shape, Strings
-
-Shapes: TypeAlias = Shape | Sequence[Shape]
+from hardbody._typing import Bools, Reals, Shapes, Strings
+from hardbody._values import Comparable
 
 # In the order of the C++ enumerators.
 _DISTANCE_STATUS = np.array(["separated", "overlapping", "not_converged", "singular"])
@@ -36,7 +34,7 @@ _RAY_STATUS = np.array(["hit", "missed", "inside", "not_converged"])
 _CONTACT_STATUS = np.array(["hit", "separated", "overlapping", "budget_exhausted", "failed"])
 
 
-class _Rows:
+class _Rows(Comparable):
     """Results with one row a query."""
 
     _code: NDArray[np.uint8]
@@ -58,33 +56,28 @@ class Distances(_Rows):
     """Answers of distance_many: arrays with one row a pair, named as the attributes of DistanceResult.
 
     distance: signed distances, shape (M,), in the unit of the shapes; below 0: minus the penetration depth; NaN: no
-    answer. normal: unit vectors from A to B, world frame, shape (M, 3). point_a, point_b: closest points, world frame,
-    shape (M, 3). error_bound: distance <= true distance <= distance + error_bound, shape (M,). residual: deviations of
-    the points found from being distance * normal apart, shape (M,). iterations: numbers of evaluations, shape (M,).
-    status: "separated", "overlapping", "not_converged" or "singular", shape (M,). redone: number of pairs that the
-    vector kernels left to the method of single pairs. instruction_set: that of the vector kernels.
+        answer.
+    normal: unit vectors from A to B, world frame, shape (M, 3).
+    point_a, point_b: closest points of A and B, world frame, shape (M, 3).
+    error_bound: certified, distance <= true distance <= distance + error_bound, shape (M,), apart from rounding, 1e-15
+        of the size of the pair, its radii and distance of centres together.
+    residual: deviations (length) of the points found from being distance * normal apart, shape (M,).
+    iterations: numbers of evaluations, shape (M,).
+    status: "separated", "overlapping", "not_converged" or "singular", shape (M,).
+    redone: number of pairs that the vector kernels left to the method of single pairs.
+    instruction_set: that of the vector kernels, "portable", "avx2" or "avx512". The last bits depend on it.
     """
 
     distance: Reals
-    """Signed distances, shape (M,); below 0: minus the penetration depth; NaN: no answer."""
     normal: Reals
-    """Unit vectors from A to B, world frame, shape (M, 3)."""
     point_a: Reals
-    """Closest points of A, world frame, shape (M, 3)."""
     point_b: Reals
-    """Closest points of B, world frame, shape (M, 3)."""
     error_bound: Reals
-    """Certified: distance <= true distance <= distance + error_bound, shape (M,), apart from rounding: 1e-15 of the
-    size of the pair, its radii and distance of centres together."""
     residual: Reals
-    """Deviations (length) of the points found from being distance * normal apart, shape (M,)."""
     iterations: NDArray[np.int32]
-    """Numbers of evaluations, shape (M,)."""
     _code: NDArray[np.uint8]
     redone: int
-    """Number of pairs that the vector kernels left to the method of single pairs."""
     instruction_set: str
-    """Instruction set of the vector kernels: 'portable', 'avx2' or 'avx512'. The last bits depend on it."""
 
     @property
     def status(self) -> Strings:
@@ -93,17 +86,15 @@ class Distances(_Rows):
 
 
 @dataclass(frozen=True, eq=False)
-class Overlaps:
+class Overlaps(Comparable):
     """Answers of overlap_many: arrays with one row a pair.
 
-    overlap: whether the bodies overlap or touch, bools of shape (M,). unknown: where neither answer is certain, bools
-    of shape (M,); `overlap` is False there.
+    overlap: whether the bodies overlap or touch, bools of shape (M,); False where `unknown`.
+    unknown: whether neither answer is certain, bools of shape (M,): bodies that touch within the error bound.
     """
 
     overlap: Bools
-    """Whether the bodies overlap or touch, shape (M,); False where `unknown`."""
     unknown: Bools
-    """Whether neither answer is certain, shape (M,): bodies that touch within the error bound."""
 
     def __len__(self) -> int:
         return len(self.overlap)
@@ -116,21 +107,19 @@ class Overlaps:
 class ClosestPoints(_Rows):
     """Answers of closest_point_many: arrays with one row a point, named as the attributes of ClosestPoint.
 
-    distance: signed distances, shape (M,), in the unit of the shapes; below 0: the point is inside; NaN: no answer.
-    point: closest points of the surface, world frame, shape (M, 3). normal: unit outward normals there, world frame,
-    shape (M, 3). error_bound: distance <= true distance <= distance + error_bound, shape (M,). status: "separated",
-    "overlapping", "not_converged" or "singular", shape (M,).
+    distance: signed distances, shape (M,), in the unit of the shapes; below 0: the point is inside, at this depth; NaN:
+        no answer.
+    point: closest points of the surface, world frame, shape (M, 3).
+    normal: unit outward normals there, world frame, shape (M, 3).
+    error_bound: certified, distance <= true distance <= distance + error_bound, shape (M,), apart from rounding, 1e-15
+        of the size of the body and the distance of its centre together.
+    status: "separated", "overlapping", "not_converged" or "singular", shape (M,).
     """
 
     distance: Reals
-    """Signed distances, shape (M,); below 0: the point is inside, at this depth."""
     point: Reals
-    """Closest points of the surface, world frame, shape (M, 3)."""
     normal: Reals
-    """Unit outward normals there, world frame, shape (M, 3)."""
     error_bound: Reals
-    """Certified: distance <= true distance <= distance + error_bound, shape (M,), apart from rounding: 1e-15 of the
-    size of the pair, its radii and distance of centres together."""
     _code: NDArray[np.uint8]
 
     @property
@@ -143,17 +132,15 @@ class ClosestPoints(_Rows):
 class RayHits(_Rows):
     """Answers of ray_cast_many: arrays with one row a ray, named as the attributes of RayHit.
 
-    t: ray parameters, in units of the directions' lengths, shape (M,); NaN: no hit. point: first points of the rays in
-    the bodies, world frame, shape (M, 3). normal: unit outward normals there, world frame, shape (M, 3). status: "hit",
-    "missed", "inside" or "not_converged", shape (M,).
+    t: ray parameters, in units of the directions' lengths, shape (M,); NaN: the ray misses.
+    point: first points of the rays in the bodies, world frame, shape (M, 3).
+    normal: unit outward normals there, world frame, shape (M, 3); as of RayHit.normal for rays that start inside.
+    status: "hit", "missed", "inside" or "not_converged", shape (M,).
     """
 
     t: Reals
-    """Ray parameters, in units of the directions' lengths, shape (M,); NaN: the ray misses."""
     point: Reals
-    """First points of the rays in the bodies, world frame, shape (M, 3)."""
     normal: Reals
-    """Unit outward normals there, world frame, shape (M, 3); as of RayHit.normal for rays that start inside."""
     _code: NDArray[np.uint8]
 
     @property
@@ -169,22 +156,19 @@ class RayHits(_Rows):
 class Contacts(_Rows):
     """Answers of time_of_contact_many: arrays with one row a pair, named as the attributes of ContactResult.
 
-    time: times of the outcomes, shape (M,). point: contact points, world frame, shape (M, 3); NaN unless it is a hit.
-    normal: unit normals from A to B, world frame, shape (M, 3); NaN unless it is a hit. evaluations: numbers of
-    evaluations, shape (M,). rescues: numbers of distances that Newton's method declined, shape (M,). status: "hit",
-    "separated", "overlapping", "budget_exhausted" or "failed", shape (M,).
+    time: times of the outcomes, shape (M,).
+    point: contact points at these times, world frame, shape (M, 3); NaN unless it is a hit.
+    normal: unit normals from A to B, world frame, shape (M, 3); NaN unless it is a hit.
+    evaluations: numbers of evaluations of the pairs at points in time, shape (M,).
+    rescues: numbers of distances that "newton8" or "newton5" declined and the dual method answered, shape (M,).
+    status: "hit", "separated", "overlapping", "budget_exhausted" or "failed", shape (M,).
     """
 
     time: Reals
-    """Times of the outcomes, shape (M,)."""
     point: Reals
-    """Contact points at these times, world frame, shape (M, 3); NaN unless it is a hit."""
     normal: Reals
-    """Unit normals from A to B, world frame, shape (M, 3); NaN unless it is a hit."""
     evaluations: NDArray[np.int32]
-    """Numbers of evaluations of the pairs at points in time, shape (M,)."""
     rescues: NDArray[np.int32]
-    """Numbers of distances that 'newton8' or 'newton5' declined and the dual method answered, shape (M,)."""
     _code: NDArray[np.uint8]
 
     @property
@@ -197,24 +181,21 @@ class Contacts(_Rows):
 
 
 @dataclass(frozen=True, eq=False)
-class Masses:
+class Masses(Comparable):
     """Answers of mass_properties_many: arrays with one row a shape, named as the attributes of MassProperties.
 
-    volume: volumes, length^3, shape (K,). mass: densities times volumes, shape (K,). center_of_mass: body frame, shape
-    (K, 3). inertia: moments of inertia about the origin, body frame, shape (K, 3, 3). relative_error: bounds of the
-    relative errors of volume and inertia, shape (K,).
+    volume: volumes, length^3, shape (K,).
+    mass: densities times volumes, shape (K,).
+    center_of_mass: centres of mass, body frame, shape (K, 3).
+    inertia: moments of inertia about the origin, body frame, shape (K, 3, 3): integral of density (|x|^2 I - x x^T).
+    relative_error: bounds of the relative errors of volume and inertia, shape (K,).
     """
 
     volume: Reals
-    """Volumes, length^3, shape (K,)."""
     mass: Reals
-    """Densities times volumes, shape (K,)."""
     center_of_mass: Reals
-    """Centres of mass, body frame, shape (K, 3)."""
     inertia: Reals
-    """Moments of inertia about the origin, body frame, shape (K, 3, 3): integral of density (|x|^2 I - x x^T)."""
     relative_error: Reals
-    """Bounds of the relative errors of volume and inertia, shape (K,)."""
 
     def __len__(self) -> int:
         return len(self.volume)
@@ -254,8 +235,8 @@ def distance_many(
     revolution.
 
     Raises ValueError or TypeError that names the argument, the entry and what is accepted; MemoryError if there is no
-    memory for copies or answers; KeyboardInterrupt within about a tenth of a second of Ctrl-C. A pair without an answer
-    raises nothing: its status says so.
+    memory for copies or answers; RuntimeError if the system refuses threads; KeyboardInterrupt within about a tenth of
+    a second of Ctrl-C. A pair without an answer raises nothing: its status says so.
     """
     return Distances(
         *_core.distance_many(
@@ -352,9 +333,9 @@ def time_of_contact_many(
     inertias: ArrayLike | None = None,
     finder: Literal["certified", "bracketing"] = "certified",
     max_evaluations: int = 2000,
-    eps_d: float = 1e-6,
+    eps_d: float | None = None,
     distance: Literal["dual", "newton8", "newton5"] = "dual",
-    root: Literal["newton", "one_dimensional"] = "newton",
+    root: Literal["newton", "one_dimensional"] | None = None,
 ) -> Contacts:
     """Returns the first times in [0, t_max] at which the bodies of M pairs touch and approach.
 

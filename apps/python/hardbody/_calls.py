@@ -14,9 +14,8 @@ import numpy as np
 from hardbody import _core
 from hardbody._tables import required
 from hardbody._toml import shown, toml_text, value_text
+from hardbody._typing import Progress
 
-Progress = Callable[[str, float | None], object]
-PathLike = str | os.PathLike[str]
 Outcome = tuple[int, str, list[str]]
 
 _INTERRUPTED = 128 + 2  # exit status of a command that SIGINT has stopped
@@ -46,14 +45,18 @@ def is_text(text: str) -> bool:
     return not any(character == "\0" or "\ud800" <= character <= "\udfff" for character in text)
 
 
-def path_text(value: Any, name: str) -> str:
-    """Returns a path as text."""
+def path_text(value: Any, name: str, *, only_unicode: bool = True) -> str:
+    """Returns a path as text. The extension calls it too.
+
+    only_unicode: whether names whose bytes are no Unicode are refused: those that configs and results tell.
+    """
     if not isinstance(value, (str, os.PathLike)):
         raise TypeError(f"{name} is {shown(value)}; accepted: a str or path")
     text = os.fspath(value)
     if not isinstance(text, str):
         raise TypeError(f"{name} is {shown(value)}; accepted: a str or path")
-    if not text or not is_text(text):
+    unreadable = not is_text(text) if only_unicode else "\0" in text
+    if not text or unreadable:
         raise ValueError(f"{name} is {shown(text)}; accepted: the name of a file or directory")
     return text
 

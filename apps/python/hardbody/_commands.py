@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from os import PathLike
 from pathlib import Path
 from typing import Any
 
 from hardbody import _core
 from hardbody._calls import (
-    PathLike,
-    Progress,
     assignments,
     call,
     config_arguments,
@@ -20,6 +19,7 @@ from hardbody._calls import (
     optional_path,
     optional_real,
     path_text,
+    real,
     texts,
     worker_program,
 )
@@ -27,6 +27,7 @@ from hardbody._pages import Map, Report
 from hardbody._results import Analysis, Run, Sweep
 from hardbody._run_errors import SweepError, UnsoundError
 from hardbody._toml import shown, value_text
+from hardbody._typing import Progress
 
 _MOST_JOBS = 1024
 _LARGEST_STRIDE = 1_000_000
@@ -34,8 +35,8 @@ _UNSOUND = "NOT SOUND: "
 
 
 def run(
-    config: Mapping[str, Any] | PathLike,
-    out: PathLike | None = None,
+    config: Mapping[str, Any] | str | PathLike[str],
+    out: str | PathLike[str] | None = None,
     *,
     overrides: Mapping[str, Any] | None = None,
     force: bool = False,
@@ -67,13 +68,39 @@ def run(
     return _finished(directory or str(Path("out") / Path(name).stem), *outcome)
 
 
-def resume(run: PathLike, *, quiet: bool = True, progress: Progress | bool | None = None) -> Run:
+def resume(
+    run: str | PathLike[str],
+    *,
+    overrides: Mapping[str, Any] | None = None,
+    quiet: bool = True,
+    progress: Progress | bool | None = None,
+) -> Run:
     """Continues a run that was stopped or killed from its last checkpoint, bit for bit. A finished run is left alone.
 
-    run: a run directory, or a Run. Other arguments and exceptions are those of `run`.
+    run: a run directory, or a Run.
+    overrides: values of keys that change no result, {"output.checkpoint_every": "10m"}; others are refused.
+
+    Other arguments and exceptions are those of `run`.
     """
     directory = path_text(run, "run")
-    return _finished(directory, *call(_core.resume, directory, quiet=quiet, progress=progress))
+    outcome = call(_core.resume, directory, assignments(overrides), quiet=quiet, progress=progress)
+    return _finished(directory, *outcome)
+
+
+def extend(
+    run: str | PathLike[str], *, time: float, quiet: bool = True, progress: Progress | bool | None = None
+) -> Run:
+    """Continues a finished run to a longer production, bit for bit what a run of that length would have been.
+
+    run: directory of a finished run, or a Run; a run with trajectories is refused, unless it has output.frames_every.
+    time: length of the whole production, as production.time. The longest lag of correlations stays that of the run:
+        the config then names it.
+
+    If it is stopped, `resume` continues. Other arguments and exceptions are those of `run`.
+    """
+    directory = path_text(run, "run")
+    length = real(time, "time")
+    return _finished(directory, *call(_core.extend, directory, length, quiet=quiet, progress=progress))
 
 
 def _finished(directory: str, status: int, printed: str, said: list[str]) -> Run:
@@ -85,25 +112,28 @@ def _finished(directory: str, status: int, printed: str, said: list[str]) -> Run
 
 
 def sweep(
-    config: Mapping[str, Any] | PathLike,
-    out: PathLike | None = None,
+    config: Mapping[str, Any] | str | PathLike[str],
+    out: str | PathLike[str] | None = None,
     *,
+    overrides: Mapping[str, Any] | None = None,
     jobs: int | None = None,
     quiet: bool = True,
     progress: Progress | bool | None = None,
 ) -> Sweep:
-    """Runs a grid of state points, several at a time, each in a process of its own. The same call continues a sweep.
+    """Runs a grid of state points, several at a time, each in a process of its own. The same call continues a sweep;
+    one with a larger grid adds the new points to it.
 
-    config: a dict with "grid", or the path of a TOML file (docs/sweeps.md): {"system": ..., "grid":
+    config: a dict with "grid", "replicas" or both, or the path of a TOML file (docs/sweeps.md): {"system": ..., "grid":
         {"shape.aspect_ratio": [2, 3], "system.packing_fraction": {"from": 0.2, "to": 0.4, "step": 0.1}}}.
     out: directory of the sweep; a file has the default out/<name of the file>.
+    overrides: values that replace those of all points, {"production.time": 50}, or of the grid, {"grid.seed": [1, 2]}.
     jobs: number of points that run at once; None: one for each processor.
 
     Other arguments and exceptions are those of `run`. Raises SweepError, at the end, if points have failed.
     """
     name, text, directory = config_arguments(config, out)
     number = None if jobs is None else integer(jobs, "jobs", 1, _MOST_JOBS)
-    arguments = (name, text, directory, number, worker_program())
+    arguments = (name, text, directory, number, assignments(overrides), worker_program())
     status, printed, _ = call(_core.sweep, *arguments, quiet=quiet, progress=progress)
     done = Sweep(directory or Path("out") / Path(name).stem)
     if status != 0:
@@ -111,7 +141,7 @@ def sweep(
     return done
 
 
-def check(path: PathLike, *, quiet: bool = True) -> str:
+def check(path: str | PathLike[str], *, quiet: bool = True) -> str:
     """Audits a run's last state, or all frames of a trajectory: overlaps, conservation, finite values.
 
     path: a run directory, a GSD file or a LAMMPS text dump. Returns what the program prints, a line for each property.
@@ -124,21 +154,22 @@ def check(path: PathLike, *, quiet: bool = True) -> str:
 
 
 def analyze(
-    path: PathLike,
-    out: PathLike | None = None,
+    path: str | PathLike[str],
+    out: str | PathLike[str] | None = None,
     *,
     time_step: float | None = None,
     longest_lag: float | None = None,
     fit_from: float | None = None,
     every: int = 1,
+    collective: bool = False,
     quiet: bool = True,
 ) -> Analysis:
     """Computes observables of a stored trajectory, from this or another program.
 
     path: a run directory with a trajectory, a GSD file or a LAMMPS text dump. out: directory; default: analysis/ beside
     the trajectory. time_step: time between two steps, instead of the stored times. longest_lag: default: a quarter of
-    the trajectory. fit_from: first lag of the fits of C2 and F_self; default: that of the run. every: use only each
-    `every`-th frame.
+    the trajectory. fit_from: first lag of the fits of C2 and F_self; default: that of the run, or the end of ballistic
+    motion. every: use only each `every`-th frame. collective: True to compute F(q, t) / S(q) of all bodies, too.
     """
     file = path_text(path, "path")
     directory = optional_path(out, "out")
@@ -149,11 +180,17 @@ def analyze(
         optional_real(longest_lag, "longest_lag"),
         optional_real(fit_from, "fit_from"),
     )
-    call(_core.analyze, file, directory, *times, integer(every, "every", 1, _LARGEST_STRIDE), quiet=quiet)
+    stride = integer(every, "every", 1, _LARGEST_STRIDE)
+    call(_core.analyze, file, directory, *times, stride, flag(collective, "collective"), quiet=quiet)
     return Analysis(directory)
 
 
-def report(paths: PathLike | Sequence[PathLike], out: PathLike | None = None, *, quiet: bool = True) -> Report:
+def report(
+    paths: str | PathLike[str] | Sequence[str | PathLike[str]],
+    out: str | PathLike[str] | None = None,
+    *,
+    quiet: bool = True,
+) -> Report:
     """Writes the results of runs, or of a sweep, as one HTML file that needs no network.
 
     paths: a run directory, several of them to be shown side by side, or the directory of a sweep. out: HTML file;
@@ -171,7 +208,7 @@ def report(paths: PathLike | Sequence[PathLike], out: PathLike | None = None, *,
 
 
 def map(
-    table: PathLike,
+    table: str | PathLike[str],
     x: str,
     y: str,
     values: str | Sequence[str],
@@ -180,16 +217,17 @@ def map(
     where: Mapping[str, Any] | None = None,
     log_x: bool = False,
     log_y: bool = False,
-    out: PathLike | None = None,
-    csv: PathLike | None = None,
+    out: str | PathLike[str] | None = None,
+    csv: str | PathLike[str] | None = None,
     quiet: bool = True,
 ) -> Map:
     """Draws contour lines of observables over two keys of a sweep.
 
     table: the directory of a sweep, or a table like its sweep.csv. x, y: columns along the axes, which may be named by
     their last part: "aspect_ratio". values: the column, or columns, whose lines are drawn. levels: levels of the lines,
-    {value: levels} for several values; None: six are chosen for each. where: {column: value} of the rows that are used.
-    out, csv: files of the drawing and of the lines; default: map_<values>.svg and .csv beside the table.
+    {value: levels} for several values; None: about six round ones are chosen for each. where: {column: value} of the
+    rows that are used. out, csv: files of the drawing and of the lines; default: map_<values>.svg and .csv beside the
+    table.
     """
     names = texts(values, "values")
     file = Path(path_text(table, "table"))

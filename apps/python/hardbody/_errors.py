@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from hardbody import _core
 
 
@@ -12,16 +14,14 @@ class NumericalError(RuntimeError):
     Raised when the event loop has returned: the state of the simulation can be read and saved. The program also audits
     the last state and its energy and momentum: call Simulation.audit and Simulation.kinetic.
 
-    failures: first pairs whose prediction failed. counters: those of the simulation. stall: the stall of the run, or
-    None.
+    failures: first pairs whose prediction failed, at most 16 for each reason.
+    counters: those of the simulation.
+    stall: stall of the run; None if it has not stalled.
     """
 
     failures: list[_core.FailedPair]
-    """First pairs whose prediction failed, at most 16 for each reason."""
     counters: _core.Counters | None
-    """Counters of the simulation."""
     stall: _core.Stall | None
-    """Stall of the run; None if it has not stalled."""
 
     def __init__(
         self,
@@ -35,6 +35,6 @@ class NumericalError(RuntimeError):
         self.counters = counters
         self.stall = stall
 
-    def __reduce__(self) -> tuple[type[NumericalError], tuple[str]]:
+    def __reduce__(self) -> tuple[Any, ...]:
         """Pickles keep the message alone."""
         return type(self), (str(self),)

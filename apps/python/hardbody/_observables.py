@@ -11,22 +11,23 @@ from numpy.typing import NDArray
 
 from hardbody._tables import Table
 from hardbody._typing import Reals
+from hardbody._values import Comparable, same
 
 
-@dataclass(frozen=True)
-class Estimate:
+@dataclass(frozen=True, eq=False)
+class Estimate(Comparable):
     """Measured value with its standard error over blocks of the run.
 
-    value: NaN if it is missing. error: standard error, NaN if it is not known. missing: the reason for which the value
-    is missing, in words, or None. float() gives the value; formats apply to value and error: f"{estimate:.3f}".
+    value: NaN if it is missing.
+    error: standard error; NaN if it is not known.
+    missing: reason for which the value is missing, in words; None if there is one.
+
+    float() gives the value; formats apply to value and error: f"{estimate:.3f}".
     """
 
     value: float
-    """Value; NaN if it is missing."""
     error: float
-    """Standard error; NaN if it is not known."""
     missing: str | None = None
-    """Reason for which the value is missing, in words; None if there is one."""
 
     def __float__(self) -> float:
         return self.value
@@ -44,38 +45,41 @@ class Estimate:
 
 
 @dataclass(frozen=True, eq=False)
-class VectorEstimate:
+class VectorEstimate(Comparable):
     """Measured direction: n and -n are equivalent.
 
-    value: unit vector, shape (3,); NaN if it is missing. error: standard error, an angle in rad. missing: the reason
-    for which the value is missing, or None.
+    value: unit vector, shape (3,); NaN if it is missing.
+    error: standard error, an angle in rad.
+    missing: reason for which the value is missing, in words; None if there is one.
     """
 
     value: Reals
-    """Unit vector, shape (3,); NaN if it is missing."""
     error: float
-    """Standard error, an angle in rad."""
     missing: str | None = None
-    """Reason for which the value is missing; None if there is one."""
 
 
 @dataclass(frozen=True, eq=False)
-class TensorEstimate:
+class TensorEstimate(Comparable):
     """Measured symmetric tensor.
 
-    value: elements, shape (3, 3); NaN if they are missing. error: standard errors, shape (3, 3). missing: the reason
-    for which the value is missing, or None.
+    value: elements, shape (3, 3); NaN if they are missing.
+    error: standard errors, shape (3, 3).
+    missing: reason for which the value is missing, in words; None if there is one.
     """
 
     value: Reals
-    """Elements, shape (3, 3); NaN if they are missing."""
     error: Reals
-    """Standard errors, shape (3, 3)."""
     missing: str | None = None
-    """Reason for which the value is missing; None if there is one."""
 
 
-Value: TypeAlias = Estimate | tuple[Estimate, ...] | VectorEstimate | TensorEstimate
+Curve: TypeAlias = tuple[NDArray[np.void], dict[str, str]]  # structured array, units of its columns
+AnyEstimate: TypeAlias = Estimate | tuple[Estimate, ...] | VectorEstimate | TensorEstimate
+
+
+def _table(array: NDArray[np.void], units: dict[str, str]) -> Table:
+    table = array.view(Table)
+    table.units = units
+    return table
 
 
 class Results(Mapping[str, Any]):
@@ -84,20 +88,21 @@ class Results(Mapping[str, Any]):
     Values such as ``results["D_trans"]`` are Estimate; body axes have three of them, ``results["director"]`` is a
     VectorEstimate, ``results["pressure_tensor"]`` a TensorEstimate. Curves such as ``results["msd"]`` are Table, with
     the columns of the CSV file: ``results["msd"]["t"]``, ``["msd"]``, ``["msd_error"]``; of several groups also
-    ``["msd_1"]`` and so on. docs/output.md lists them all, with dimensions and definitions; units are those of the
-    simulation's shapes and masses.
+    ``["msd_1"]`` and so on. docs/output.md lists them all, with definitions; units are those of the simulation's shapes
+    and masses, so that ``results["msd"].units`` has dimensions: "time", "length^2".
+
+    values_by_name: values alone.
+    curves: curves alone.
+    groups: results of each group of bodies, where there are several.
     """
 
-    values_by_name: dict[str, Value]
-    """Values alone."""
+    values_by_name: dict[str, AnyEstimate]
     curves: dict[str, Table]
-    """Curves alone."""
     groups: list[Results]
-    """Values of each group of bodies, where there are several."""
 
-    def __init__(self, values: dict[str, Value], curves: dict[str, NDArray[np.void]], groups: list[Results]) -> None:
+    def __init__(self, values: dict[str, AnyEstimate], curves: dict[str, Curve], groups: list[Results]) -> None:
         self.values_by_name = values
-        self.curves = {name: curve.view(Table) for name, curve in curves.items()}
+        self.curves = {name: _table(*curve) for name, curve in curves.items()}
         self.groups = groups
 
     def __getitem__(self, name: str) -> Any:
@@ -106,6 +111,13 @@ class Results(Mapping[str, Any]):
         if name in self.curves:
             return self.curves[name]
         raise KeyError(f"there is no {name!r}; there are: {', '.join(self)}")
+
+    def __eq__(self, other: object) -> bool:
+        """Whether all values and curves are the same; NaN is the same as NaN."""
+        if not isinstance(other, Results):
+            return NotImplemented
+        mine, others = ((r.values_by_name, r.curves, r.groups) for r in (self, other))
+        return same(mine, others)
 
     def __iter__(self) -> Iterator[str]:
         yield from self.values_by_name

@@ -48,6 +48,12 @@ class Map(Located):
         self._csv = Located(csv, "csv")
         self.csv = self._csv.path
 
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Map) and super().__eq__(other) and self._csv == other._csv
+
+    def __hash__(self) -> int:
+        return hash((self._absolute, self._csv))
+
     def __repr__(self) -> str:
         return f"Map({os.fspath(self.path)!r}, {os.fspath(self.csv)!r})"
 

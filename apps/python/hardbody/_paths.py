@@ -22,5 +22,11 @@ class Located:
         is_the_same = os.path.abspath(self.path) == os.fspath(self._absolute)
         return os.fspath(self.path if is_the_same else self._absolute)
 
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Located) and type(self) is type(other) and self._absolute == other._absolute
+
+    def __hash__(self) -> int:
+        return hash(self._absolute)
+
     def __repr__(self) -> str:
         return f"{type(self).__name__}({os.fspath(self.path)!r})"

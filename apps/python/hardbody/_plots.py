@@ -46,7 +46,7 @@ def _draw(axis: Any, plot: dict[str, Any], table: Table) -> None:
     x = table["end"] if plot["file"] == "blocks" else table[table.names[0]]
     for column, label in plot["lines"]:
         for name in table.names:
-            found = re.fullmatch(rf"{re.escape(column)}((_\d+)?(_q\d+|_[xyz])?)", name)
+            found = re.fullmatch(rf"{re.escape(column)}((?:_\d+){{0,2}}(?:_[qt]\d+|_[xyz])?)", name)
             if found is None:
                 continue
             y = np.asarray(table[name])

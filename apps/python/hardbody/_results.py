@@ -14,11 +14,13 @@ from hardbody._paths import Located
 from hardbody._plots import plot_curves
 from hardbody._tables import Curves, Table, read_table, required
 
+Keys = tuple[Any, ...]
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from hardbody._calls import PathLike
     from hardbody._pages import Map, Report
+    from hardbody._typing import Progress
 
 
 class _Directory(Located):
@@ -32,12 +34,6 @@ class _Directory(Located):
         if not (self.path / self._needed).is_file():
             what = f"has no {self._needed}" if self.path.is_dir() else "is not there"
             raise ValueError(f"{self.path}: {what}; accepted: the directory of {self._kind}")
-
-    def __eq__(self, other: object) -> bool:
-        return type(self) is type(other) and isinstance(other, _Directory) and self._absolute == other._absolute
-
-    def __hash__(self) -> int:
-        return hash(self._absolute)
 
     def _json(self, name: str) -> dict[str, Any]:
         file = self._absolute / name
@@ -104,7 +100,13 @@ class Run(_Directory):
         file = self._file("trajectory.gsd", "trajectory")
         return required("gsd.hoomd", "gsd", "Run.trajectory").open(file, "r")
 
-    def report(self, out: PathLike | None = None) -> Report:
+    def extend(self, time: float, *, quiet: bool = True, progress: Progress | bool | None = None) -> Run:
+        """Continues the finished run to a production of this length, see `hardbody.extend`."""
+        from hardbody._commands import extend
+
+        return extend(self, time=time, quiet=quiet, progress=progress)
+
+    def report(self, out: str | os.PathLike[str] | None = None) -> Report:
         """Writes the HTML report of the run, default: report.html in its directory."""
         from hardbody._commands import report
 
@@ -113,7 +115,8 @@ class Run(_Directory):
     def plot(self, *names: str) -> Any:
         """Draws plots of the report, default: those of displacements, orientations, F_self and g(r). Needs matplotlib.
 
-        names: "msd", "rotational_msd", "c1", "c2", "f_self", "velocity", "alpha2", "g_r", "s_q", "pressure", "order".
+        names: "msd", "msd_directions", "rotational_msd", "c1", "c2", "f_self", "f_collective", "overlap", "chi4",
+        "velocity", "alpha2", "g_r", "s_q", "van_hove", "pressure", "order".
         Returns the matplotlib.figure.Figure.
         """
         return plot_curves(self.observables, names, os.fspath(self.path))
@@ -142,6 +145,8 @@ class Run(_Directory):
 
 
 def _shown(estimate: Any) -> str:
+    if isinstance(estimate, list):
+        return ", ".join(_shown(each) for each in estimate)
     if not isinstance(estimate, dict):
         return str(estimate)
     if estimate.get("value") is None:
@@ -184,11 +189,33 @@ class Sweep(_Directory):
 
     @property
     def runs(self) -> list[Run | None]:
-        """Runs of the points, in the order of the table; None for points that have not been begun."""
-        with open(self._absolute / "sweep.csv", newline="", encoding="utf-8") as file:
+        """Runs of the points, in the order of the table; None for points that have not been begun. The first replica of
+        each."""
+        return self._runs_of("sweep.csv")
+
+    @property
+    def replicas(self) -> list[list[Run | None]]:
+        """Runs of each point, in the order of the table: its replicas, which differ in their seed."""
+        if not (self._absolute / "replicas.csv").is_file():
+            return [[run] for run in self.runs]
+        runs = self._runs_of("replicas.csv")
+        each = len(runs) // max(1, len(self.table))
+        return [runs[k : k + each] for k in range(0, len(runs), each)]
+
+    @property
+    def agreement(self) -> Table:
+        """One row per observable of each point: errors from within and between replicas, chi-square, outlier."""
+        file = self._absolute / "agreement.csv"
+        if not file.is_file():
+            raise ValueError(f"{file} is not there; accepted: a sweep with replicas")
+        return read_table(file)
+
+    def _runs_of(self, table: str) -> list[Run | None]:
+        with open(self._absolute / table, newline="", encoding="utf-8") as file:
             rows = list(csv.DictReader(file))
         states = [json.loads(path.read_text(encoding="utf-8")) for path in sorted(self._absolute.glob("*/state.json"))]
-        return [self._run_of(row, states) for row in rows]
+        names = _names_of_points(states)
+        return [self._run_of(row, names) for row in rows]
 
     def map(self, x: str, y: str, values: str | Sequence[str], **options: Any) -> Map:
         """Draws contour lines of observables over two keys, see hardbody.map."""
@@ -196,7 +223,7 @@ class Sweep(_Directory):
 
         return _commands.map(self, x, y, values, **options)
 
-    def report(self, out: PathLike | None = None) -> Report:
+    def report(self, out: str | os.PathLike[str] | None = None) -> Report:
         """Writes the HTML report of the sweep, default: report.html in its directory."""
         from hardbody._commands import report
 
@@ -206,11 +233,11 @@ class Sweep(_Directory):
         """Returns the table as a pandas.DataFrame."""
         return self.table.to_pandas()
 
-    def _run_of(self, row: dict[str, str], states: list[dict[str, Any]]) -> Run | None:
-        for state in states:
-            keys = {**state["keys"], "seed": state["seed"]}
-            if all(_value(row[key]) == value for key, value in keys.items()):
-                directory = Path(self) / state["name"]
+    def _run_of(self, row: dict[str, str], names: dict[Keys, dict[Keys, str]]) -> Run | None:
+        for keys, points in names.items():
+            name = points.get(tuple(_hashable(_value(row[key])) for key in keys))
+            if name is not None:
+                directory = Path(self) / name
                 return Run(directory) if (directory / Run._needed).is_file() else None
         return None
 
@@ -218,6 +245,20 @@ class Sweep(_Directory):
         table = self.table
         done = int((table["status"] == "done").sum()) if len(table) else 0
         return f"<p>Sweep {html.escape(os.fspath(self.path))}: {done} of {len(table)} points done</p>"
+
+
+def _names_of_points(states: list[dict[str, Any]]) -> dict[Keys, dict[Keys, str]]:
+    """Returns names of points by their values, for each of the lists of keys that they have: one a grid."""
+    names: dict[Keys, dict[Keys, str]] = {}
+    for state in states:
+        values = {**state["keys"], "seed": state["seed"]}
+        points = names.setdefault(tuple(values), {})
+        points.setdefault(tuple(_hashable(value) for value in values.values()), state["name"])
+    return names
+
+
+def _hashable(value: Any) -> Any:
+    return tuple(_hashable(v) for v in value) if isinstance(value, list) else value
 
 
 def _value(cell: str) -> Any:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from hardbody._errors import NumericalError
 
@@ -21,6 +21,10 @@ class UnsoundError(NumericalError):
     def __init__(self, message: str, run: Run | None = None) -> None:
         super().__init__(message)
         self.run = run
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickles keep the message and the run."""
+        return type(self), (str(self), self.run)
 
     def __str__(self) -> str:
         return str(self.args[0])

@@ -33,7 +33,17 @@ class Table(np.ndarray[Any, np.dtype[Any]]):
     units: dict[str, str]
 
     def __array_finalize__(self, obj: Any) -> None:
-        self.units = getattr(obj, "units", {})
+        self.units = dict(getattr(obj, "units", {}))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickles keep the units."""
+        reduced: Any = super().__reduce__()
+        constructor, arguments, state = reduced[:3]
+        return constructor, arguments, (state, self.units)
+
+    def __setstate__(self, state: Any) -> None:
+        array, self.units = state
+        super().__setstate__(array)
 
     def __getitem__(self, key: Any) -> Any:
         """Column of a name (a plain array), rows, or one row."""
@@ -102,6 +112,15 @@ class Curves(Mapping[str, Table]):
         if name not in list(self):
             raise KeyError(f"{self._directory} has no {name}.csv; there are: {', '.join(self) or 'none'}")
         return read_table(self._directory / f"{name}.csv", all_real=True)
+
+    def __eq__(self, other: object) -> bool:
+        """Whether they are read from the same files."""
+        if not isinstance(other, Curves):
+            return NotImplemented
+        return (self._directory, self._skipped) == (other._directory, other._skipped)
+
+    def __hash__(self) -> int:
+        return hash((self._directory, self._skipped))
 
     def __iter__(self) -> Iterator[str]:
         return iter(sorted(path.stem for path in self._directory.glob("*.csv") if path.stem not in self._skipped))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, Protocol, TypeAlias
 
 import numpy as np
@@ -15,12 +15,14 @@ Bools = NDArray[np.bool_]
 Strings = NDArray[np.str_]
 
 
-class Rotation(Protocol):
-    """One rotation of scipy.spatial.transform.Rotation."""
+class RotationLike(Protocol):
+    """One rotation, as of scipy.spatial.transform.Rotation."""
 
-    def as_matrix(self) -> Any: ...
+    def as_matrix(self) -> Any:
+        """Returns the rotation matrix, shape (3, 3)."""
 
-    def as_quat(self) -> Any: ...
+    def as_quat(self) -> Any:
+        """Returns the quaternion (x, y, z, w), shape (4,)."""
 
 
 class SupportShape(Protocol):
@@ -30,7 +32,9 @@ class SupportShape(Protocol):
         """Returns (h, s) for a direction n, shape (3,): the height max n.x over the body, and the point s there."""
 
 
+Progress: TypeAlias = Callable[[str, float | None], object]
 Shape: TypeAlias = _core.Ellipsoid | _core.Superellipsoid
+Shapes: TypeAlias = Shape | Sequence[Shape]
 BodyShape: TypeAlias = Shape | _core.CustomShape | SupportShape
 SpeciesLike: TypeAlias = _core.Species | BodyShape
 Components: TypeAlias = SpeciesLike | _core.Polydisperse | Sequence[tuple[SpeciesLike, int] | _core.Polydisperse]

@@ -1,4 +1,5 @@
 #include "base/exceptions.h"
+#include "base/gil.h"
 #include "geometry/bind.h"
 #include "runs/bind.h"
 #include "simulation/bind.h"
@@ -15,6 +16,7 @@ NB_MODULE(_core, module) {
   // themselves through the module that defines them.
   nanobind::set_leak_warnings(false);
   python::register_exceptions();
+  python::watch_end_of_interpreter();
   python::bind_shapes(module);
   python::bind_poses(module);
   python::bind_motions(module);

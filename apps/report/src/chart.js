@@ -1,13 +1,14 @@
 // A plot on a card: uPlot for the axes, a legend that is also the readout, buttons for the axes and for what is saved.
 import uPlot from 'uplot';
-import { cssColour, download, downloadText, fileName, h, rich, seriesColour, tool } from './dom.js';
+import { colourName, cssColour, download, downloadText, fileName, h, rich, seriesColour, tool } from './dom.js';
 import { short, superscript } from './format.js';
 import { onThemeChange } from './theme.js';
 
-/** All charts on the page, for whoever inspects it. */
+/** Charts on the page, for tests and for the console. */
 export const charts = [];
 
 const kHeight = 300;
+const kDeepestBar = 0.9; // share of a value by which a logarithmic axis goes down for an error bar
 const kFont = '12px -apple-system, "Segoe UI", Inter, Roboto, "Noto Sans", "Liberation Sans", Arial, system-ui, sans-serif';
 
 /** Marks of a logarithmic axis: decades, or 1, 2 and 5 where there are few of them. */
@@ -23,7 +24,7 @@ function logValues(u, splits) {
   });
 }
 
-/** Of many decades only their ends. */
+/** Keeps only the ends of decades where there are many. */
 function logGrid(u, splits) {
   const many = Math.log10(splits[splits.length - 1] / splits[0]) > 2.5;
   return splits.map((x) => (many && Math.abs(Math.log10(x) - Math.round(Math.log10(x))) > 1e-6 ? null : x));
@@ -39,6 +40,17 @@ function linearValues(u, splits) {
   return splits.map((x) => x.toFixed(decimals).replace('-', '−'));
 }
 
+/** The pattern of a dashed curve, for its key. */
+function dashes(pattern) {
+  let at = 0;
+  const stops = pattern.map((length, k) => {
+    const from = at;
+    at += length;
+    return `${k % 2 ? 'transparent' : 'var(--colour)'} ${from}px ${at}px`;
+  });
+  return `repeating-linear-gradient(90deg, ${stops.join(', ')})`;
+}
+
 /** uPlot wants one list of x for all. */
 function aligned(series, logX, logY) {
   const usable = (x, y) => y !== null && Number.isFinite(y) && (!logX || x > 0) && (!logY || y > 0);
@@ -52,7 +64,9 @@ function aligned(series, logX, logY) {
     const of = new Map(s.x.map((x, k) => [x, s.error?.[k] ?? null]));
     return data[0].map((x) => of.get(x) ?? null);
   });
-  return { data: data.map((column) => Array.from(column, (y) => y ?? null)), errors };
+  const spreads = series.map((s) => (s.spread ?? []).flatMap((ys, k) => (ys.length > 1 ? ys : [])
+    .filter((y) => usable(s.x[k], y)).map((y) => [s.x[k], y])));
+  return { data: data.map((column) => Array.from(column, (y) => y ?? null)), errors, spreads };
 }
 
 export class Chart {
@@ -88,7 +102,7 @@ export class Chart {
       tool(`Save "${this.plot.title}" as PNG`, 'PNG', () => this.savePicture()));
   }
 
-  /** Of several runs one curve of each is shown. */
+  /** Returns the choice of the curve that is shown of each of several runs. */
   chooser() {
     const { choices } = this.plot;
     if (!choices || choices.length < 2) return null;
@@ -110,8 +124,9 @@ export class Chart {
     this.buttons[0].setAttribute('aria-pressed', this.logX);
     this.buttons[1].setAttribute('aria-pressed', this.logY);
     const { series } = this.plot;
-    const { data, errors } = series.length ? aligned(series, this.logX, this.logY) : { data: [[]], errors: [] };
+    const { data, errors, spreads } = series.length ? aligned(series, this.logX, this.logY) : { data: [[]], errors: [], spreads: [] };
     this.errors = errors;
+    this.spreads = spreads;
     if (!data.slice(1).some((column) => column.some((y) => y !== null))) {
       const text = series.length ? 'No positive value to draw on this axis.' : 'No values: nothing, or too little, has been measured.';
       this.area.append(h('p', { class: 'none' }, text));
@@ -144,19 +159,35 @@ export class Chart {
       cursor: { points: { size: 7 }, drag: { x: true, y: false }, focus: { prox: 24 } },
       scales: {
         x: { time: false, distr: this.logX ? 3 : 1 },
-        y: { distr: this.logY ? 3 : 1, range: this.logY ? undefined : this.linearRange(data) },
+        y: { distr: this.logY ? 3 : 1, range: this.logY ? this.logRange(data) : this.linearRange(data) },
       },
       axes: [axis(this.logX, this.plot.x.label, 'x'), axis(this.logY, this.plot.y.label, 'y')],
       series: [{}, ...this.plot.series.map((s) => this.style(s, s.x.length))],
-      hooks: { draw: [(u) => this.drawErrors(u)], setCursor: [(u) => this.showLegend(u.cursor.idx)] },
+      hooks: { drawAxes: [(u) => this.drawSpread(u)], draw: [(u) => this.drawErrors(u)], setCursor: [(u) => this.showLegend(u.cursor.idx)] },
     };
   }
 
-  /** With some room; what hardly varies is not blown up, but for drifts, which are rounding by nature. */
+  /** Values with the ends of their error bars. */
+  extremes(data) {
+    let [low, high] = [Infinity, -Infinity];
+    data.slice(1).forEach((column, k) => column.forEach((y, i) => {
+      if (y === null) return;
+      const error = this.errors[k][i] > 0 && !this.plot.series[k].fit ? this.errors[k][i] : 0;
+      // On a logarithmic axis a bar that reaches further down ends at the frame.
+      low = Math.min(low, this.logY ? Math.max(y - error, (1 - kDeepestBar) * y) : y - error);
+      high = Math.max(high, y + error);
+    }));
+    this.spreads.flat().forEach(([, y]) => { [low, high] = [Math.min(low, y), Math.max(high, y)]; });
+    return [low, high];
+  }
+
+  logRange(data) {
+    return uPlot.rangeLog(...this.extremes(data), 10, false);
+  }
+
+  /** Returns the range with some room; what hardly varies is not blown up, but for drifts, which are rounding by nature. */
   linearRange(data) {
-    const all = data.slice(1).flat().filter((y) => y !== null);
-    const low = Math.min(...all);
-    const high = Math.max(...all);
+    const [low, high] = this.extremes(data);
     const room = 0.06 * (high - low) || 0.1 * Math.abs(high) || 1e-15;
     return [low - room, high + room];
   }
@@ -166,7 +197,7 @@ export class Chart {
     const colour = () => seriesColour(s.colour);
     if (s.fit) return { label: s.label, stroke: () => cssColour('--ink'), width: 1.6, dash: [6, 5], points: { show: false }, spanGaps: true, show: !hidden };
     const size = number > 120 ? 0 : 5;
-    return { label: s.label, stroke: colour, width: 1.4, spanGaps: true, show: !hidden,
+    return { label: s.label, stroke: colour, width: 1.4, dash: s.dash, spanGaps: true, show: !hidden,
       points: { show: size > 0, size, stroke: colour, fill: colour, width: 0 } };
   }
 
@@ -195,6 +226,45 @@ export class Chart {
       ctx.stroke();
     });
     ctx.restore();
+    this.drawOpen(u);
+  }
+
+  /** Draws the values that a point is the mean of, behind the curves. */
+  drawSpread(u) {
+    const { ctx } = u;
+    ctx.save();
+    ctx.globalAlpha = 0.35;
+    this.plot.series.forEach((s, k) => {
+      if (!u.series[k + 1].show) return;
+      ctx.fillStyle = seriesColour(s.colour);
+      for (const [x, y] of this.spreads[k]) {
+        ctx.beginPath();
+        ctx.arc(u.valToPos(x, 'x', true), u.valToPos(y, 'y', true), 2 * devicePixelRatio, 0, 2 * Math.PI);
+        ctx.fill();
+      }
+    });
+    ctx.restore();
+  }
+
+  /** Rings over the points that a series calls open. */
+  drawOpen(u) {
+    const { ctx } = u;
+    ctx.save();
+    ctx.fillStyle = cssColour('--card');
+    ctx.lineWidth = 1.6 * devicePixelRatio;
+    this.plot.series.forEach((s, k) => {
+      if (!s.open || !u.series[k + 1].show) return;
+      ctx.strokeStyle = seriesColour(s.colour);
+      const open = new Set(s.x.filter((x, i) => s.open[i]));
+      u.data[k + 1].forEach((y, i) => {
+        if (y === null || !open.has(u.data[0][i])) return;
+        ctx.beginPath();
+        ctx.arc(u.valToPos(u.data[0][i], 'x', true), u.valToPos(y, 'y', true), 3.6 * devicePixelRatio, 0, 2 * Math.PI);
+        ctx.fill();
+        ctx.stroke();
+      });
+    });
+    ctx.restore();
   }
 
   /** The names of the curves, with their values where the cursor is. */
@@ -221,7 +291,9 @@ export class Chart {
         button.setAttribute('aria-pressed', show);
         this.u.setSeries(k + 1, { show });
       } }, h('i', {}), h('span', {}, rich(s.label)), h('span', { class: 'value' }));
-    button.querySelector('i').style.setProperty('--colour', s.fit ? 'var(--ink)' : `var(--c${s.colour % 8})`);
+    const mark = button.querySelector('i');
+    mark.style.setProperty('--colour', `var(${s.fit ? '--ink' : colourName(s.colour)})`);
+    if (s.dash) mark.style.background = dashes(s.dash);
     return h('li', {}, button);
   }
 

@@ -1,6 +1,6 @@
 // Isolines of values on the knots of a grid, linear in between.
 
-/** Where a straight edge from (x0, y0, v0) to (x1, y1, v1) has the level. */
+/** Returns the point of a straight edge between two points with values that has the level. */
 function crossing(a, b, level) {
   const share = (level - a.v) / (b.v - a.v);
   return [a.x + share * (b.x - a.x), a.y + share * (b.y - a.y)];
@@ -78,7 +78,7 @@ export function isolines(xs, ys, value, level) {
   return chained(segments);
 }
 
-/** About `count` round levels strictly between low and high. */
+/** Returns about `count` round levels strictly between low and high. */
 export function levels(low, high, count, logarithmic) {
   if (!(high > low)) return [];
   if (logarithmic) {

@@ -31,9 +31,16 @@ export function cssColour(name) {
   return getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 }
 
-/** The colour of the k-th curve or run. */
+/** Colour of the curves of all bodies beside those of species. */
+export const kAllBodies = -1;
+
+/** Name of the colour of the k-th curve, species or run. */
+export function colourName(k) {
+  return k === kAllBodies ? '--ink' : `--c${k % 8}`;
+}
+
 export function seriesColour(k) {
-  return cssColour(`--c${k % 8}`);
+  return cssColour(colourName(k));
 }
 
 export function download(name, blob) {

@@ -8,7 +8,7 @@ import { onThemeChange } from './theme.js';
 const kMargin = { left: 68, right: 92, top: 14, bottom: 50 };
 const kFont = '12px -apple-system, "Segoe UI", Inter, Roboto, "Noto Sans", "Liberation Sans", Arial, system-ui, sans-serif';
 
-/** How unequal the steps are: 0 for an even ladder. */
+/** Returns a measure of how unequal the steps are: 0 for an even ladder. */
 function unevenness(places) {
   const steps = places.slice(1).map((p, k) => p - places[k]);
   const mean = steps.reduce((sum, s) => sum + s, 0) / steps.length;
@@ -35,7 +35,7 @@ function borders(places) {
 }
 
 export class SweepMap {
-  /** For whoever checks them. */
+  /** Function that draws the contour lines, for tests. */
   static isolines = isolines;
 
   /** `onChoose(i, j)`, of the axes' indices. */
@@ -132,7 +132,9 @@ export class SweepMap {
         ctx.fillStyle = drawn ? cssRgb(rampColour(this.share(value))) : cssColour('--well');
         // Overlapping by half a pixel: no seams.
         ctx.fillRect(left, top, width + 0.5, height + 0.5);
-        if (!drawn && cell) this.mark(ctx, left + width / 2, top + height / 2, cell.status === 'failed');
+        const at = [g.px(this.x.places[i]), g.py(this.y.places[j])];
+        if (!drawn && cell) this.mark(ctx, ...at, cell.status === 'failed');
+        if (drawn && cell.open) this.ring(ctx, ...at, this.share(value), Math.min(width, height));
       }
     }
   }
@@ -154,7 +156,16 @@ export class SweepMap {
     }
   }
 
-  /** Of logarithms where colours are. */
+  /** An open circle for what was not shown to be equilibrated. */
+  ring(ctx, x, y, share, room) {
+    ctx.strokeStyle = share > 0.55 ? 'rgb(20 30 40 / 85%)' : 'rgb(255 255 255 / 90%)';
+    ctx.lineWidth = 1.4;
+    ctx.beginPath();
+    ctx.arc(x, y, Math.min(4, 0.35 * room), 0, 2 * Math.PI);
+    ctx.stroke();
+  }
+
+  /** Draws contour lines, of logarithms where colours are. */
   drawLines(ctx, g) {
     const scale = (v) => (this.logarithmic ? Math.log(v) : v);
     const at = (i, j) => {
@@ -185,7 +196,7 @@ export class SweepMap {
     ctx.stroke();
   }
 
-  /** Along the line, in its middle, where there is room. */
+  /** Writes the level along the line, in its middle, where there is room. */
   label(ctx, points, level, placed) {
     const text = short(level, 3);
     const width = ctx.measureText(text).width;
@@ -287,7 +298,8 @@ export class SweepMap {
     const where = `${this.xLabel} ${this.x.text(this.x.values[i])}, ${this.yLabel} ${this.y.text(this.y.values[j])}`;
     if (!cell) return [where, 'no such point'];
     const text = estimate(cell.value, cell.error);
-    if (text) return [where, `${this.title}: ${text.value}${text.error ? ` ± ${text.error}` : ''}`];
+    const open = cell.open ? ', not shown to be equilibrated' : '';
+    if (text) return [where, `${this.title}: ${text.value}${text.error ? ` ± ${text.error}` : ''}${open}`];
     return [where, cell.status === 'done' ? cell.missing || 'no value' : `${cell.status}${cell.message ? `: ${cell.message}` : ''}`];
   }
 

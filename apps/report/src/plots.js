@@ -1,7 +1,12 @@
 // Which curves a plot shows. A plot: {id, title, about, x, y, series}; x, y: {label, log}; a series: {label, x, y, error,
-// fit, key}. Fits are drawn dashed and belong to the series before them. `key` is the same for what is the same curve of
-// another run, whatever the label says of this one.
+// fit, key, species, colour, dash}. Fits are drawn dashed and belong to the series before them. `key` is the same for what
+// is the same curve of another run, whatever the label says of this one. `species` counts from 0; curves of all bodies have
+// none. In a mixture a species has one colour in all plots, that of its card and of its bodies.
+import { kAllBodies } from './dom.js';
 import { short } from './format.js';
+
+/** Dashes of the curves that share a colour, in their order. */
+const kDashes = [undefined, [8, 4], [2, 3], [9, 3, 2, 3], [14, 4], [4, 4], [14, 3, 2, 3], [2, 6]];
 
 /** Column of a file of observables/, with its error and unit; null: there is none. */
 function curve(run, file, column) {
@@ -18,19 +23,29 @@ function series(run, file, column, label) {
   return found ? [{ label, ...found }] : [];
 }
 
-/** Those columns of a file that begin with `stem`, of all bodies first, then of species or body axes. */
-function family(run, file, stem, label) {
+/** Whether a curve about orientation may be shown: not of spheres. `species`: as in a series. */
+function oriented(run, species) {
+  return species === undefined ? run.oriented !== false : run.species[species]?.oriented !== false;
+}
+
+/** Returns the columns of a file that begin with a line's column, of all bodies first, then of species or body axes. */
+function family(run, file, line) {
   const table = run.curves[file];
   if (!table) return [];
-  const pattern = new RegExp(`^${stem}((?:_[0-9]+)?(?:_[xyz])?)$`);
+  const pattern = new RegExp(`^${line.column}((?:_[0-9]+){0,2}(?:_[xyz])?)$`);
   return table.columns.flatMap((c) => {
     const match = pattern.exec(c.name);
-    return match ? series(run, file, c.name, label + suffixText(run, match[1])) : [];
+    if (!match) return [];
+    const numbers = match[1].match(/[0-9]+/g)?.map((n) => Number(n) - 1) ?? [];
+    if (line.of_orientation && !(numbers.length ? numbers : [undefined]).every((species) => oriented(run, species))) return [];
+    const found = series(run, file, c.name, line.label + suffixText(run, match[1]));
+    return found.map((s) => (numbers.length > 1 ? { ...s, pair: numbers.join() } : { ...s, species: numbers[0] }));
   });
 }
 
 function suffixText(run, suffix) {
-  const [, species, axis] = /^(?:_([0-9]+))?(?:_([xyz]))?$/.exec(suffix);
+  const [, species, other, axis] = /^(?:_([0-9]+))?(?:_([0-9]+))?(?:_([xyz]))?$/.exec(suffix);
+  if (other) return `, species ${species} and ${other}`;
   const title = species ? run.species[Number(species) - 1]?.title ?? `species ${species}` : '';
   return (species ? `, ${title}` : '') + (axis ? `, body ${axis}` : '');
 }
@@ -101,14 +116,21 @@ function scattering(run, file, stem) {
   const all = [];
   for (let k = 1; k <= 16; k += 1) {
     const q = Number.isFinite(numbers[k - 1]) ? `q l = ${short(numbers[k - 1], 3)}` : `q${k}`;
-    const add = (column, rest) => all.push(...series(run, file, column, q + rest).map((s) => ({ ...s, key: `wave number ${k}${rest}` })));
+    const add = (column, rest, species) => all.push(...series(run, file, column, q + rest).map((s) => ({ ...s, species, key: `wave number ${k}${rest}` })));
     add(`${stem}_q${k}`, '');
-    for (let s = 1; s <= run.species.length; s += 1) add(`${stem}_${s}_q${k}`, `, species ${s}`);
+    for (let s = 1; s <= run.species.length; s += 1) add(`${stem}_${s}_q${k}`, `, ${run.species[s - 1].title}`, s - 1);
   }
   return all;
 }
 
-/** Over its value at t = 0, which the file has in its first row. */
+/** The van Hove function of all bodies at every second of its lags, from the longest on. */
+function displacements(run, file, stem) {
+  const lags = run.summary?.van_hove_lags ?? [];
+  return lags.map((t, k) => series(run, file, `${stem}_t${k + 1}`, `t = ${short(t, 3)}`).map((s) => ({ ...s, key: `lag ${k + 1}` })))
+    .filter((_, k) => (lags.length - 1 - k) % 2 === 0).flat();
+}
+
+/** Returns a column over its value at t = 0, which the file has in its first row. */
 function normalised(run, file, column, label) {
   return series(run, file, column, label).map((s) => {
     const first = s.y[0];
@@ -142,20 +164,22 @@ function energy(run) {
 function curvesOf(run, plot, line) {
   if (plot.file === 'blocks') return blocks(run, line.column, line.label);
   if (plot.normalised) return normalised(run, plot.file, line.column, line.label);
+  if (line.lags) return displacements(run, plot.file, line.column);
   if (line.wave_numbers) return scattering(run, plot.file, line.column);
-  return family(run, plot.file, line.column, line.label);
+  return family(run, plot.file, line);
 }
 
-/** Where there are fits, curves of all bodies with their fits come first, then those of species and body axes. */
+/** Returns the curves of a plot: where there are fits, those of all bodies with their fits first, then those of species and body axes. */
 function seriesOf(run, plot) {
   if (!plot.file) return energy(run);
-  const families = plot.lines.map((line) => curvesOf(run, plot, line));
-  if (!plot.lines.some((line) => line.fit)) return families.flat();
-  const heads = families.flatMap((all, k) => [...all.slice(0, 1), ...fitted(run, all[0], plot.lines[k].fit)]);
+  const { lines } = plot;
+  const families = lines.map((line) => curvesOf(run, plot, line));
+  if (!lines.some((line) => line.fit)) return families.flat();
+  const heads = families.flatMap((all, k) => [...all.slice(0, 1), ...fitted(run, all[0], lines[k].fit)]);
   return [...heads, ...families.flatMap((all) => all.slice(1))];
 }
 
-/** What is drawn: the program's registry of plots. */
+/** Plots that are drawn, of the program's registry. */
 let registry = [];
 
 export function setPlots(plots) {
@@ -166,16 +190,42 @@ function hasPoints(s) {
   return s.y.some((y) => y !== null && Number.isFinite(y));
 }
 
-/** Without series that have no value. */
+/** A plot of the registry with the lines that a run can have; null if there is none. */
+function plotFor(run, entry) {
+  if (!entry.lines.length) return entry;
+  const lines = entry.lines.filter((line) => !line.of_orientation || oriented(run));
+  if (!lines.length) return null;
+  const following = (key) => lines.map((line) => line[key] ?? '').join('');
+  return { ...entry, lines, about: entry.about + following('about'), y: { ...entry.y, label: entry.y.label + following('y_label') } };
+}
+
+/** Gives curves their colours: of a mixture those of the species and further ones of pairs of species, else one each. A fit takes the colour of its curve. */
+function colour(run, all) {
+  const mixture = run.species.length > 1;
+  const used = new Map();
+  const pairs = [];
+  all.forEach((s, k) => {
+    const base = s.fit ? all[k - 1] : null;
+    s.key = base ? base.key : s.key ?? s.label;
+    s.colour = base ? base.colour : k;
+    if (base || !mixture) return;
+    s.colour = s.species ?? kAllBodies;
+    if (s.pair) {
+      if (!pairs.includes(s.pair)) pairs.push(s.pair);
+      s.colour = run.species.length + pairs.indexOf(s.pair);
+    }
+    const before = used.get(s.colour) ?? 0;
+    used.set(s.colour, before + 1);
+    s.dash = kDashes[before % kDashes.length];
+  });
+}
+
+/** The plots of a run, without series that have no value. */
 export function plotsOf(run) {
-  return registry.map((entry) => {
+  return registry.map((entry) => plotFor(run, entry)).filter(Boolean).map((entry) => {
     const plot = { ...entry, series: seriesOf(run, entry).filter(hasPoints) };
-    // A fit takes the colour of its curve, and its key.
-    plot.series.forEach((s, k) => {
-      const base = s.fit ? plot.series[k - 1] : null;
-      s.colour = base ? base.colour : k;
-      s.key = base ? base.key : s.key ?? s.label;
-    });
+    if (plot.series.some((s) => s.fit)) plot.about += plot.lines.map((line) => line.fit?.about ?? '').join('');
+    colour(run, plot.series);
     return plot;
   });
 }
@@ -183,14 +233,14 @@ export function plotsOf(run) {
 /** The same plots of several runs: for each the curves that any of them has, one of which is shown at a time, with its
  * fits. */
 export function comparisonsOf(runs) {
-  const all = runs.map(plotsOf);
-  return all[0].map((plot, at) => {
-    const keys = [...new Set(all.flatMap((plots) => plots[at].series.map((s) => s.key)))];
+  const all = runs.map((run) => new Map(plotsOf(run).map((plot) => [plot.id, plot])));
+  return registry.filter(({ id }) => all.some((plots) => plots.has(id))).map(({ id }) => {
+    const keys = [...new Set(all.flatMap((plots) => (plots.get(id)?.series ?? []).map((s) => s.key)))];
     const choices = keys.map((key) => ({
       label: key,
-      series: all.flatMap((plots, r) => plots[at].series.filter((s) => s.key === key).map((s) => ({
-        ...s, label: s.label === key ? runs[r].name : `${runs[r].name}, ${s.label}`, colour: r }))),
+      series: all.flatMap((plots, r) => (plots.get(id)?.series ?? []).filter((s) => s.key === key).map((s) => ({
+        ...s, label: s.label === key ? runs[r].name : `${runs[r].name}, ${s.label}`, colour: r, dash: undefined }))),
     }));
-    return { ...plot, choices, series: choices[0]?.series ?? [] };
+    return { ...all.find((plots) => plots.has(id)).get(id), choices, series: choices[0]?.series ?? [] };
   });
 }

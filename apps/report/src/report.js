@@ -15,7 +15,7 @@ page.card = data.card;
 page.opened = data.opened;
 setPlots(data.plots);
 
-const kSections = data.sweep ? [['results', 'Map'], ['plots', 'Point'], ['settings', 'Table']]
+const kSections = data.sweep ? [['results', 'Sweep'], ['plots', 'Point'], ['settings', 'Table']]
   : [['results', 'Results'], ['bodies', 'Bodies'], ['plots', 'Plots'], ['settings', 'Settings']];
 
 function bar() {
@@ -32,9 +32,11 @@ function content() {
 document.getElementById('report').replaceChildren(bar(), h('main', {}, content().flat(2).filter(Boolean)),
   h('footer', { class: 'bottom' }, `Written by hardbody ${data.program}. This file holds all of its data and asks no network for anything.`));
 
-/** What the page shows, for tests and for the console. */
+/** Content of the page, for tests and for the console. */
 window.hardbodyReport = {
-  get charts() { return charts.map((chart) => ({ id: chart.plot.id, points: chart.points, series: chart.plot.series.map((s) => s.label) })); },
+  get charts() { return charts.map((chart) => ({ id: chart.plot.id, points: chart.points, series: chart.plot.series.map((s) => s.label),
+    colours: chart.plot.series.map((s) => s.colour), range: chart.u ? [chart.u.scales.y.min, chart.u.scales.y.max] : null,
+    yLabel: chart.plot.y.label, about: chart.plot.about })); },
   get views() { return page.views.map((view) => ({ bodies: view.bodies, frame: view.frame, frames: view.data.frames.length, drawn: view.drawn ?? 0, triangles: view.renderer?.info.render.triangles ?? 0, calls: view.renderer?.info.render.calls ?? 0 })); },
   get map() { const { sweep } = page; return sweep ? { points: sweep.sweep.points.length, known: sweep.map.known, segments: sweep.map.segments, shown: sweep.shown } : null; },
   page,

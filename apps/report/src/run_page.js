@@ -5,12 +5,12 @@ import { bytes, duration, estimate, grouped, short } from './format.js';
 import { comparisonsOf, plotsOf } from './plots.js';
 import { View3d } from './view3d.js';
 
-/** What the page holds, for whoever inspects it; `card`: keys of the results that are shown first. */
+/** Content of the page, for tests and for the console; `card`: keys of the results that are shown first. */
 export const page = { views: [], card: [] };
 
 // ---- Head ------------------------------------------------------------------------------------------------------------
 
-/** What is well is said shortly, what is not in full, unless only what is bad shall be. */
+/** Returns the list of remarks: good ones by their labels, others in full, or only bad ones in full. */
 export function remarks(run, brief = false) {
   return h('ul', { class: 'remarks' }, run.remarks.map((r) => h('li', { class: r.kind, title: r.text },
     h('b', {}, r.label), ' ', r.kind === 'good' || (brief && r.kind !== 'bad') ? null : rich(r.text))));
@@ -167,7 +167,7 @@ export function runPage(run) {
   ];
 }
 
-/** One row a quantity, one column a run. */
+/** Returns the table with one row a quantity, one column a run. */
 function comparison(runs) {
   const keys = [...new Map(runs.flatMap((run) => run.headlines).map((line) => [line.key, line])).values()];
   return h('div', { class: 'card scroll' }, h('table', { class: 'comparison' },

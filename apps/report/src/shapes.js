@@ -10,7 +10,7 @@ function norm([x, y, z], p1, p2) {
   return power(power(power(x, p2) + power(y, p2), p1 / p2) + power(z, p1), 1 / p1);
 }
 
-/** Its gradient, of any length. */
+/** Returns the direction of the gradient, of any length. */
 function gradient([x, y, z], p1, p2) {
   const section = power(x, p2) + power(y, p2);
   const inner = section > 0 ? section ** (p1 / p2 - 1) : 0;
@@ -52,8 +52,8 @@ function cubeSphere(divisions) {
   return { directions, triangles };
 }
 
-/** Half-way between the point that the direction looks at and the one whose normal it is: a grid that is fine where the
-    surface is curved, and nowhere empty. */
+/** Returns a point half-way between the one that the direction looks at and the one whose normal it is: a grid that is
+    fine where the surface is curved, and nowhere empty. */
 function surfacePoint(direction, p1, p2) {
   const q1 = p1 / (p1 - 1);
   const q2 = p2 / (p2 - 1);

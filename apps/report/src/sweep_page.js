@@ -6,14 +6,16 @@ import { makeAxis, SweepMap } from './map.js';
 import { plotsOf } from './plots.js';
 import { page, remarks, settingsCard, countersCard, sheet, number, viewCard } from './run_page.js';
 
-const kNames = {
-  'shape.aspect_ratio': 'aspect ratio X₀', 'system.packing_fraction': 'packing fraction φ', 'system.number': 'number of bodies',
-};
-const kSymbols = { 'shape.aspect_ratio': 'X₀', 'system.packing_fraction': 'φ', 'system.number': 'N' };
 const kMostCuts = 8;
+const kSeed = 'seed';
 
-function keyName(key) {
-  return kNames[key] ?? key.slice(key.lastIndexOf('.') + 1).replaceAll('_', ' ');
+/** Whether each value of a list has one value of the other, which it determines. */
+function determines(xs, ys) {
+  const partner = new Map();
+  return xs.every((x, k) => {
+    if (!partner.has(x)) partner.set(x, ys[k]);
+    return partner.get(x) === ys[k];
+  });
 }
 
 /** The run of a point, which waits as text in the page until somebody looks at it. */
@@ -33,9 +35,9 @@ class SweepPage {
     this.axes = sweep.keys.map((key, k) => makeAxis(sweep.points.map((p) => p.keys[k])));
     // Keys that do not vary are no axes.
     this.varied = this.axes.map((axis, k) => k).filter((k) => this.axes[k].values.length > 1);
-    const places = this.varied.filter((k) => sweep.keys[k] !== 'seed');
+    const places = this.varied.filter((k) => sweep.keys[k] !== kSeed);
     this.xKey = places[0] ?? this.varied[0] ?? 0;
-    this.yKey = places[1] ?? null;
+    this.yKey = places.find((k) => k !== this.xKey && !this.follows(k, this.xKey)) ?? null;
     this.fixed = new Map();
     this.observable = this.firstObservable();
     this.lines = true;
@@ -47,16 +49,32 @@ class SweepPage {
 
   // ---- Data ----------------------------------------------------------------------------------------------------------
 
-  values() {
-    return this.sweep.points.map((p) => p.values[this.observable]?.[0]).filter((v) => Number.isFinite(v));
+  /** Whether key b follows from key a: there is no plane between them. */
+  follows(b, a) {
+    const [xs, ys] = [a, b].map((k) => this.sweep.points.map((p) => p.keys[k]));
+    return determines(xs, ys);
   }
 
-  /** One that has values; of those that the program names to be opened, if it can be. */
+  keyName(k) {
+    return this.sweep.key_names[k].label;
+  }
+
+  /** The value and error of an observable at a point, which has them; null otherwise. A failed point's are no results. */
+  known(point, observable) {
+    const measured = point.values[observable];
+    return point.status !== 'failed' && Number.isFinite(measured?.[0]) ? measured : null;
+  }
+
+  values() {
+    return this.sweep.points.map((p) => this.known(p, this.observable)?.[0]).filter((v) => v !== undefined);
+  }
+
+  /** The one with most values; among equals those first that the program names to be opened. */
   firstObservable() {
     const { observables, points } = this.sweep;
-    const known = (k) => points.some((p) => Number.isFinite(p.values[k]?.[0]));
     const wanted = page.opened.map((key) => observables.findIndex((o) => o.key === key)).filter((k) => k >= 0);
-    return [...wanted, ...observables.keys()].find(known) ?? 0;
+    const count = (k) => points.filter((p) => this.known(p, k)).length;
+    return [...wanted, ...observables.keys()].reduce((best, k) => (count(k) > count(best) ? k : best), wanted[0] ?? 0);
   }
 
   spansDecades() {
@@ -66,17 +84,19 @@ class SweepPage {
   }
 
   others() {
-    return this.varied.filter((k) => k !== this.xKey && k !== this.yKey);
+    return this.varied.filter((k) => k !== this.xKey && k !== this.yKey
+      && !(this.sweep.keys[k] !== kSeed && (this.follows(k, this.xKey) || (this.yKey !== null && this.follows(k, this.yKey)))));
   }
 
   /** Points that have those values of the keys which are not axes; of seeds all, unless one was chosen. */
   matching(x, y) {
+    const others = this.others();
     return this.sweep.points.map((point, index) => ({ point, index })).filter(({ point }) => point.keys[this.xKey] === x
       && (this.yKey === null || point.keys[this.yKey] === y)
-      && this.others().every((k) => !this.fixed.has(k) || point.keys[k] === this.fixed.get(k)));
+      && others.every((k) => !this.fixed.has(k) || point.keys[k] === this.fixed.get(k)));
   }
 
-  /** The mean of several points, of seeds say. */
+  /** Returns a cell of the map: a point, or several that differ in their seed, which the program has pooled. */
   cell(x, y) {
     const key = `${x}|${y}`;
     if (!this.cells.has(key)) {
@@ -85,14 +105,13 @@ class SweepPage {
         this.cells.set(key, null);
         return null;
       }
-      const known = found.map(({ point }) => point.values[this.observable] ?? []).filter(([v]) => Number.isFinite(v));
-      const n = known.length;
-      const mean = n ? known.reduce((sum, [v]) => sum + v, 0) / n : null;
-      const errors = known.map(([, e]) => e);
-      const error = n && errors.every((e) => Number.isFinite(e)) ? Math.sqrt(errors.reduce((sum, e) => sum + e * e, 0)) / n : null;
+      const one = found[0].point;
+      const measured = found.length > 1 ? this.sweep.groups[one.group][this.observable] : this.known(one, this.observable);
+      const [value, error, , spread] = measured ?? [null, null, '', []];
       const worst = found.find(({ point }) => point.status !== 'done') ?? found[0];
       const missing = worst.point.values[this.observable]?.[2];
-      this.cells.set(key, { value: mean, error, missing, status: worst.point.status, message: worst.point.message, index: found[0].index });
+      const open = found.some(({ point }) => point.equilibrated === 'false');
+      this.cells.set(key, { value, error, spread, missing, open, status: worst.point.status, message: worst.point.message, index: found[0].index });
     }
     return this.cells.get(key);
   }
@@ -119,7 +138,7 @@ class SweepPage {
     return parts;
   }
 
-  /** In the middle of those that have something to show. */
+  /** Returns the point in the middle of those that have something to show. */
   firstPoint() {
     const all = this.sweep.points.map((p, k) => k).filter((k) => this.sweep.points[k].embedded);
     return all[Math.floor(all.length / 2)] ?? 0;
@@ -139,29 +158,33 @@ class SweepPage {
     });
     this.keyPlace = h('div', { class: 'keys' });
     this.mapPlace = h('div', { class: 'map-place' });
-    return h('article', { class: 'card map-card', id: 'bodies', 'aria-label': 'Map of the sweep' },
-      h('header', {}, h('div', {}, h('h3', {}, 'Map'), h('p', {}, 'A cell a state point; click one to open it.')),
-        h('div', { class: 'tools' }, this.lineButton, this.logButton, tool('Save the table as CSV', 'CSV', () => this.saveTable()),
-          tool('Save the map as PNG', 'PNG', () => this.map.savePicture(`${fileName(this.sweep.name)}-map.png`)))),
+    const plane = this.yKey !== null;
+    const open = this.sweep.points.some((p) => p.equilibrated === 'false') ? ' Open circles: not shown to be equilibrated.' : '';
+    const about = plane ? `One cell per state point; click one to open it.${open}` : `The table below opens a point.${open}`;
+    const saveMap = tool('Save the map as PNG', 'PNG', () => this.map.savePicture(`${fileName(this.sweep.name)}-map.png`));
+    return h('article', { class: 'card map-card', id: 'bodies', 'aria-label': plane ? 'Map of the sweep' : 'Along the sweep' },
+      h('header', {}, h('div', {}, h('h3', {}, plane ? 'Map' : 'Along the sweep'), h('p', {}, about)),
+        h('div', { class: 'tools' }, plane ? [this.lineButton, this.logButton] : null,
+          tool('Save the table as CSV', 'CSV', () => this.saveTable()), plane ? saveMap : null)),
       h('div', { class: 'controls top-controls' }, observables, this.keyPlace), this.mapPlace);
   }
 
-  /** Which keys are axes, and what the others are. */
+  /** Returns the choices of the keys that are axes, and of the values of the others. */
   keyControls() {
-    const names = this.varied.map((k) => keyName(this.sweep.keys[k]));
+    const names = this.varied.map((k) => this.keyName(k));
     if (this.varied.length < 2) return [];
     const chooser = (label, current, set) => {
       const element = h('select', { onchange: () => { set(this.varied[element.selectedIndex]); this.fixed.clear(); this.refresh(); } },
         names.map((name, k) => h('option', { selected: this.varied[k] === current }, name)));
       return h('label', {}, h('span', {}, label), element);
     };
-    const parts = this.varied.length > 2 ? [
+    const parts = this.yKey !== null && this.varied.length > 2 ? [
       chooser('x', this.xKey, (k) => { if (k === this.yKey) this.yKey = this.xKey; this.xKey = k; }),
       chooser('y', this.yKey ?? this.varied[1], (k) => { if (k === this.xKey) this.xKey = this.yKey; this.yKey = k; }),
     ] : [];
     for (const k of this.others()) {
       const axis = this.axes[k];
-      const seeds = this.sweep.keys[k] === 'seed';
+      const seeds = this.sweep.keys[k] === kSeed;
       if (!seeds && !this.fixed.has(k)) this.fixed.set(k, axis.values[0]);
       const element = h('select', { onchange: () => {
         const at = element.selectedIndex - (seeds ? 1 : 0);
@@ -170,7 +193,7 @@ class SweepPage {
         this.refresh();
       } }, [...(seeds ? ['mean of all'] : []), ...axis.values.map(axis.text)].map((text, at) => h('option',
         { selected: this.fixed.has(k) ? axis.values[at - (seeds ? 1 : 0)] === this.fixed.get(k) : at === 0 }, text)));
-      parts.push(h('label', {}, h('span', {}, keyName(this.sweep.keys[k])), element));
+      parts.push(h('label', {}, h('span', {}, this.keyName(k)), element));
     }
     return parts;
   }
@@ -187,7 +210,7 @@ class SweepPage {
   showMap() {
     const [x, y] = [this.axes[this.xKey], this.axes[this.yKey]];
     if (!this.map.element.isConnected) this.mapPlace.replaceChildren(this.map.element);
-    this.map.show({ x, y, xLabel: keyName(this.sweep.keys[this.xKey]), yLabel: keyName(this.sweep.keys[this.yKey]),
+    this.map.show({ x, y, xLabel: this.keyName(this.xKey), yLabel: this.keyName(this.yKey),
       cell: (i, j) => this.cell(x.values[i], y.values[j]), title: this.observableTitle, logarithmic: this.logarithmic, lines: this.lines });
   }
 
@@ -206,11 +229,11 @@ class SweepPage {
     const some = all.length <= kMostCuts ? all : Array.from({ length: kMostCuts }, (_, k) => all[Math.round(k * step)]);
     const series = some.map((value, k) => {
       const cells = axis.values.map((v) => (across ? this.cell(value, v) : this.cell(v, null)));
-      return { label: across ? `${kSymbols[this.sweep.keys[this.xKey]] ?? keyName(this.sweep.keys[this.xKey])} = ${across.text(value)}` : this.sweep.observables[this.observable].name,
-        x: axis.values, y: cells.map((c) => c?.value ?? null), error: cells.map((c) => c?.error ?? null), colour: k };
+      return { label: across ? `${this.sweep.key_names[this.xKey].symbol} = ${across.text(value)}` : this.sweep.observables[this.observable].name,
+        x: axis.values, y: cells.map((c) => c?.value ?? null), error: cells.map((c) => c?.error ?? null), spread: cells.map((c) => c?.spread ?? []), open: cells.map((c) => Boolean(c?.open)), colour: k };
     }).filter((s) => s.y.some((y) => y !== null));
-    this.cut = new Chart({ id: 'cuts', title: across ? 'Cuts through the map' : 'Along the sweep', about: this.observableTitle,
-      x: { label: keyName(this.sweep.keys[along]), log: axis.logarithmic }, y: { label: this.observableTitle, log: this.logarithmic }, series }, this.sweep.name);
+    this.cut = new Chart({ id: 'cuts', title: across ? 'Cuts through the map' : this.sweep.observables[this.observable].name, about: across ? this.observableTitle : 'The mean where a value of the key has several points or replicas; these are the pale dots.',
+      x: { label: this.keyName(along), log: axis.logarithmic }, y: { label: this.observableTitle, log: this.logarithmic }, series }, this.sweep.name);
     (this.yKey === null ? this.mapPlace : this.cutPlace).replaceChildren(this.cut.element);
   }
 
@@ -225,7 +248,7 @@ class SweepPage {
     const point = this.sweep.points[index];
     const run = point.embedded ? pointRun(index) : null;
     const headlines = this.sweep.observables.map((o, k) => ({ ...o, value: point.values[k]?.[0] ?? null, error: point.values[k]?.[1] ?? null, missing: point.values[k]?.[2] }));
-    const title = this.varied.map((k) => `${keyName(this.sweep.keys[k])} ${this.axes[k].text(point.keys[k])}`).join(', ');
+    const title = this.varied.map((k) => `${this.keyName(k)} ${this.axes[k].text(point.keys[k])}`).join(', ');
     const notes = [];
     if (point.status !== 'done' || point.message) notes.push(h('p', { class: 'notice' }, `${point.status}${point.message ? `: ${point.message}` : ''}`));
     if (point.equilibrated === 'false') notes.push(h('p', { class: 'notice' }, 'Not shown to be equilibrated.'));
@@ -272,7 +295,7 @@ class SweepPage {
       const cell = h('th', { scope: 'col', 'aria-sort': 'none' }, h('button', { type: 'button', onclick: () => this.sort(column, cell) }, content));
       return cell;
     };
-    const columns = [...this.varied.map((k) => head(keyName(sweep.keys[k]), (p) => p.keys[k])),
+    const columns = [...this.varied.map((k) => head(this.keyName(k), (p) => p.keys[k])),
       ...sweep.observables.map((o, k) => head(symbol(o.symbol), (p) => p.values[k]?.[0])), head('status', (p) => p.status)];
     this.order = sweep.points.map((p, k) => k);
     const element = h('div', { class: 'card scroll tall', tabindex: 0, role: 'region', 'aria-label': 'All points' },

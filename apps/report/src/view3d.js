@@ -143,7 +143,7 @@ export class View3d {
     this.show(this.frame);
   }
 
-  /** One for all shapes that differ in their semi-axes only. */
+  /** Makes one mesh for all shapes that differ in their semi-axes only. */
   makeMeshes() {
     const kinds = new Map();
     for (let i = 0; i < this.bodies; i += 1) {
@@ -282,7 +282,7 @@ export class View3d {
 
   // ---- Drawing -------------------------------------------------------------------------------------------------------
 
-  /** At the next frame of the browser, once. */
+  /** Draws at the next frame of the browser, once. */
   draw() {
     if (this.waiting || !this.renderer) return;
     this.stale = !this.seen;

@@ -29,10 +29,17 @@ enum class MissingReason {
   meaningless,               ///< the quantity has no meaning: nothing changes the bodies' rotation
   meaningless_in_part,       ///< the quantity of all bodies has no meaning: nothing changes the rotation of one group
   no_peak,                   ///< S(q) has no peak that stands out of its scatter
+  no_cage,                   ///< the MSD has no plateau: nothing holds bodies in cages
+  still_growing,             ///< the maximum is at the longest lag
   no_such_axis,              ///< bodies of revolution have no third axis
   not_told,                  ///< the stored frames do not contain the data
   not_unwrapped,             ///< positions are wrapped, or may be, and bodies move far between frames
   not_followed,              ///< frames do not identify the bodies
+  no_wave_vector,            ///< the box has no wave vector of this length
+  no_orientation,            ///< spheres have no orientation
+  no_bragg_peak,             ///< S(q) / N of no wave vector is that of a Bragg peak
+  not_asked,                 ///< the options do not ask for the quantity
+  no_director,               ///< the state is isotropic, or nothing changes the bodies' rotation
 };
 
 /// Returns the enumerator's name.
@@ -43,8 +50,8 @@ struct Missing {
   MissingReason reason = MissingReason::not_measured;
   /// Value reached, which depends on the reason. not_displaced: root of the MSD at the first lag of the fit;
   /// not_turned: root of the rotational MSD at the longest lag, in rad; not_decayed, tau_unsteady: the correlation at
-  /// the longest lag; ballistic, subdiffusive: the exponent of the power of time with which displacements grow. NaN for
-  /// other reasons.
+  /// the longest lag; ballistic, subdiffusive: the exponent of the power of time with which displacements grow;
+  /// no_cage: the least of these exponents. NaN for other reasons.
   double reached = std::numeric_limits<double>::quiet_NaN();
   /// Lag of `reached` for not_displaced and not_turned; NaN for other reasons.
   double lag = std::numeric_limits<double>::quiet_NaN();

@@ -13,6 +13,7 @@
 #include <ed/observables.h>
 #include <ed/polydispersity.h>
 #include <ed/random.h>
+#include <ed/replicas.h>
 #include <ed/shape.h>
 #include <ed/simulation.h>
 #include <ed/snapshot.h>

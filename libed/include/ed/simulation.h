@@ -124,6 +124,9 @@ struct SimulationOptions {
   /// Stall criterion: a run has stalled when 2000 events a body take less than this fraction of the time in which the
   /// fastest of them moves by the smallest inscribed radius. Sound runs take about 10 such times.
   double least_progress = 1e-6;
+  /// Called, unless empty, once every few hundred bodies while a simulation is constructed, never by a restore or a
+  /// run; an exception that it throws ends the construction. Ten million bodies take minutes.
+  std::function<void()> poll{};
 };
 
 /// Returns the kind of neighbour list that is the fastest according to bench_engine: cells for dilute bodies that are

@@ -70,6 +70,9 @@ struct LatticeOptions {
   /// Order parameter S = <P2(u_z)> of that axis in the start, 0 <= S < 1; nullopt: all bodies are aligned.
   std::optional<double> nematic_order = std::nullopt;
   std::vector<int> groups{};  ///< groups whose temperatures are set separately, see StartOptions
+  /// Called, unless empty, once every few hundred bodies that are placed or rotated; an exception that it throws ends
+  /// the start.
+  std::function<void()> poll{};
 };
 
 /// Returns the largest packing fraction for which a start from a random dilute configuration is accepted: 0.02 below

@@ -10,6 +10,8 @@
 #include <Eigen/Core>
 
 #include <cstddef>
+#include <functional>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -41,10 +43,17 @@ struct StoredFramesOptions {
   /// Wave numbers of F_self, at most kMostWaveNumbers; empty: wave_numbers_about the first peak of S(q), by
   /// the rule of runs (see Correlations).
   std::vector<double> wave_numbers{};
-  double longest_lag = 0;  ///< longest lag; 0: a quarter of the trajectory
+  bool collective = false;  ///< ObservablesOptions::collective: positions may be wrapped, and bodies unknown
+  BondOptions bonds{};
+  /// Mean length along u of the bodies that have an orientation, for hexatic order; 0: not known.
+  double axial_length = 0;
+  /// Longest lag; 0: a quarter of the trajectory, or all of it at logarithmic times.
+  double longest_lag = 0;
   /// First lag of the fits of decays, where ballistic motion has ended: a run uses five mean collision intervals.
-  /// nullopt: no fits.
+  /// nullopt: the first lag from which the MSD grows as a power of time of at most 1.5 (up to 1.5 times that lag).
   std::optional<double> fit_from{};
+  /// Called, unless empty, for each frame and each pair of frames; an exception that it throws ends the analysis.
+  std::function<void()> poll{};
 };
 
 /// Results of stored frames, and the frames used.
@@ -56,14 +65,18 @@ struct StoredResults : Results {
   std::size_t first_frame = 0;
   std::size_t frames = 0;
   /// @}
+  bool log_times = false;  ///< true if all frames were correlated with the first one, instead
+  double fit_from = std::numeric_limits<double>::quiet_NaN();  ///< first lag of the fits of decays; NaN: not known
 };
 
 /// Computes averages over frames, and correlations over all pairs of frames that are a lag apart, at about 20 lags a
-/// decade. Errors are standard errors over blocks as long as the longest lag (2 to 16 of them). Results that the frames
-/// do not determine are missing for the reason MissingReason::not_told: collisions, pressure, temperatures, rotational
-/// displacements, and if velocities or rotations are missing, all results from these. Without unwrapped positions
-/// displacements are missing for the reason not_unwrapped; if frames need not contain the same bodies, all correlations
-/// are missing for the reason not_followed.
+/// decade. Errors are standard errors over blocks as long as the longest lag (2 to 16 of them). At logarithmic times
+/// (from the second on, frames ever further apart in time, and no more than a quarter of them equally far) the first
+/// frame is correlated with each other one, and there are no errors. Results that the frames do not determine are
+/// missing for the reason MissingReason::not_told: collisions, pressure, temperatures, rotational displacements, and if
+/// velocities or rotations are missing, all results from these. Without unwrapped positions displacements are missing
+/// for the reason not_unwrapped; if frames need not contain the same bodies, all correlations are missing for the
+/// reason not_followed.
 ///
 /// Memory: about 200 bytes a body and frame in addition to the frames. Throws std::invalid_argument for no frames,
 /// numbers of bodies that differ, a box that is not positive, times that do not rise, a negative lag to fit from.

@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -146,7 +147,8 @@ ED_EXPORT KineticState kinetic_state(const System& system);
 
 /// Checks a state from scratch by `geom::distance`, independently of the event loop. Distances are exact to 1e-13 times
 /// the pair's size (for bodies with flat faces or edges see geom/distance.h). Throws std::invalid_argument for a matrix
-/// that is not a rotation; numbers that are not finite are reported, not thrown.
-ED_EXPORT Audit audit(const System& system);
+/// that is not a rotation; numbers that are not finite are reported, not thrown. Unless `poll` is empty it is called
+/// once every few hundred bodies; an exception that it throws ends the audit.
+ED_EXPORT Audit audit(const System& system, const std::function<void()>& poll = {});
 
 }  // namespace ed

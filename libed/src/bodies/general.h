@@ -73,6 +73,8 @@ class GeneralBodies {
   static constexpr bool kSamplesRotations = true;  ///< whether sample() sets Snapshot::rotation
   /// Sets the numbers of body i in a Snapshot, without its position.
   void sample(int i, double t, Snapshot& snapshot) const;
+  /// Returns the time at which the flight of body i has begun.
+  double flight_start(int i) const { return motions_[at(i)].time; }
 
   void move(int /*i*/, double /*t*/) {}
   void shift(int i, const Eigen::Vector3d& by) { motions_[at(i)].position += by; }

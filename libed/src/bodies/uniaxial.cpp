@@ -79,15 +79,13 @@ Motion UniaxialBodies::motion(int i, double t) const {
 }
 
 void UniaxialBodies::sample(int i, double t, Snapshot& snapshot) const {
-  const UniaxialKind& kind = kind_of(i);
-  AxisMotion m = entries_[at(i)].motion;
-  BodyFrame f = frames_[at(i)];
-  advance(kind.inertia, t, m, f);
-  snapshot.axis[at(i)] = m.axis();
-  snapshot.phi_lab[at(i)] = f.phi_lab;
-  snapshot.phi_body[at(i)] = {f.phi_body.x(), f.phi_body.y(), 0};
-  snapshot.velocity[at(i)] = m.velocity;
-  snapshot.angular_velocity[at(i)] = omega_across(m);
+  const AxisMotion& motion = entries_[at(i)].motion;
+  const SampledRotation rotation = sampled(kind_of(i).inertia, t, motion, frames_[at(i)]);
+  snapshot.axis[at(i)] = rotation.axis;
+  snapshot.phi_lab[at(i)] = rotation.phi_lab;
+  snapshot.phi_body[at(i)] = {rotation.phi_body.x(), rotation.phi_body.y(), 0};
+  snapshot.velocity[at(i)] = motion.velocity;
+  snapshot.angular_velocity[at(i)] = rotation.omega;
 }
 
 Finding UniaxialBodies::find_contact(int i, int j, const Vector3d& r, double now, double end, int max_evaluations,

@@ -73,6 +73,8 @@ class UniaxialBodies {
   static constexpr bool kSamplesRotations = false;  ///< whether sample() sets Snapshot::rotation
   /// Sets orientation and integrals of the angular velocity of body i in a Snapshot, without its position.
   void sample(int i, double t, Snapshot& snapshot) const;
+  /// Returns the time at which the flight of body i has begun.
+  double flight_start(int i) const { return entries_[at(i)].motion.time; }
 
   /// Moves body i to the time t, which is not before that of its state.
   void move(int i, double t) {

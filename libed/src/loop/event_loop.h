@@ -11,6 +11,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -58,6 +59,8 @@ class EventLoop final : public AnyEventLoop {
   template <class Archive, class Self>
   static void fields(Archive& archive, Self& self);
 
+  /// Makes envelopes of this thickness, lists and predictions. `poll`: see SimulationOptions.
+  void make_lists(double thickness, bool shrinking, const std::function<void()>& poll);
   void process_next();
   double fastest_speed() const;
   void look_for_stall(double end);

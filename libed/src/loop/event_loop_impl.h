@@ -21,7 +21,7 @@ template <class Bodies, CollisionLaw Law, class Added>
 EventLoop<Bodies, Law, Added>::EventLoop(const System& system, const SimulationOptions& options, Law law, Added added)
     : EventLoop(system, options, Unbuilt(), std::move(law), std::move(added)) {
   parts_.clock.set_epoch(epoch_of(system));
-  set_envelope(options.envelope);
+  make_lists(options.envelope, false, options.poll);
 }
 
 template <class Bodies, CollisionLaw Law, class Added>
@@ -36,11 +36,16 @@ EventLoop<Bodies, Law, Added>::EventLoop(const System& system, const SimulationO
 
 template <class Bodies, CollisionLaw Law, class Added>
 void EventLoop<Bodies, Law, Added>::set_envelope(double thickness, bool shrinking) {
+  make_lists(thickness, shrinking, {});
+}
+
+template <class Bodies, CollisionLaw Law, class Added>
+void EventLoop<Bodies, Law, Added>::make_lists(double thickness, bool shrinking, const std::function<void()>& poll) {
   // A share of the mean distance of neighbours: a first guess that is within a factor of two of the best.
   if (!(thickness > 0)) thickness = 0.22 * box() / std::cbrt(static_cast<double>(number()));
   const double exit_share = shrinking ? kShrinkingExit : 1.0;
   parts_.neighbourhood.set_envelopes(make_envelopes(parts_.bodies, parts_.options, thickness, exit_share, box()));
-  parts_.rebuild_all();
+  parts_.rebuild_all(poll);
 }
 
 template <class Bodies, CollisionLaw Law, class Added>

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/poll.h"
 #include "bodies/first_looks.h"
 #include "loop/collision_law.h"
 #include "loop/event_kinds.h"
@@ -18,6 +19,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -44,10 +46,10 @@ struct LoopParts {
   /// Gives a body a new envelope and a new list.
   void rebuild(int body);
 
-  /// Makes lists and predictions of all bodies.
-  void rebuild_all();
+  /// Makes lists and predictions of all bodies. `poll`: see SimulationOptions.
+  void rebuild_all(const std::function<void()>& poll);
   /// Predicts every pair, for its body i, and reschedules all bodies.
-  void predict_all();
+  void predict_all(const std::function<void()>& poll = {});
   /// Makes room, so that nothing allocates while events are processed unless a list becomes longer than any before.
   void reserve();
   void start_epoch();
@@ -107,6 +109,7 @@ LoopParts<Bodies, Law, Added>::LoopParts(const System& system, const SimulationO
       predictor({bodies, neighbourhood, box, clock, counters, failures}, options.contact,
                 make_first_looks(bodies, options)),
       collisions(system.size()) {
+  options.poll = nullptr;  // of the construction alone
   added.resize(number());
   if (number() >= std::max(options.prepare_from, EventsAhead<Bodies, Added>::kFewest)) {
     ahead.emplace(schedule.calendar());
@@ -149,17 +152,18 @@ void LoopParts<Bodies, Law, Added>::rebuild(int i) {
 }
 
 template <class Bodies, CollisionLaw Law, class Added>
-void LoopParts<Bodies, Law, Added>::rebuild_all() {
-  neighbourhood.make_all(now());
+void LoopParts<Bodies, Law, Added>::rebuild_all(const std::function<void()>& poll) {
+  neighbourhood.make_all(now(), poll);
   for (int i = 0; i < number(); ++i) added.predict(bodies, i, clock, box);
-  predict_all();
+  predict_all(poll);
   reserve();
 }
 
 template <class Bodies, CollisionLaw Law, class Added>
-void LoopParts<Bodies, Law, Added>::predict_all() {
+void LoopParts<Bodies, Law, Added>::predict_all(const std::function<void()>& poll) {
   const NeighbourLists& lists = neighbourhood.lists();
   for (int i = 0; i < number(); ++i) {
+    poll_at(i, poll);
     for (const std::int32_t index : lists.of(i)) {
       if (lists.pair(index).i == i) queue(index, i);
     }

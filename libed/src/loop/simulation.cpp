@@ -5,6 +5,7 @@
 #include <ed/archive_simulation.h>
 #include <ed/simulation.h>
 
+#include <geom/pose.h>
 #include <geom/tolerances.h>
 
 #include <algorithm>
@@ -14,6 +15,7 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace ed {
 
@@ -49,7 +51,7 @@ double work(const Counters& from, const Counters& to) {
          7 * difference(from.neighbour_rebuilds, to.neighbour_rebuilds);
 }
 
-void check_start(const System& system) {
+void check_start(const System& system, const std::function<void()>& poll) {
   if (system.size() < 2) {
     throw std::invalid_argument("number is " + std::to_string(system.size()) + "; accepted: at least 2");
   }
@@ -59,7 +61,7 @@ void check_start(const System& system) {
     throw std::invalid_argument(message.str());
   }
   check_species(system);
-  const Audit state = audit(system);
+  const Audit state = audit(system, poll);
   if (!state.finite) throw std::invalid_argument("a position, orientation or velocity is not finite");
   if (state.overlaps == 0 && state.unanswered == 0) return;
   std::ostringstream message;
@@ -72,6 +74,17 @@ void check_start(const System& system) {
   }
   message << "; accepted: none deeper than " << kAuditOverlap << " of their size";
   throw std::invalid_argument(message.str());
+}
+
+/// Returns whether the numbers of a state that has been read are finite. Throws std::invalid_argument for a matrix that
+/// is no rotation, and for a position that is not finite.
+bool is_finite(const internal::AnyEventLoop& loop) {
+  const System system = loop.system();
+  for (const Body& body : system.bodies) {
+    static_cast<void>(geom::Pose(body.rotation, body.position));
+    if (!body.velocity.allFinite() || !body.angular_velocity.allFinite()) return false;
+  }
+  return std::isfinite(loop.virial()) && loop.virial_tensor().allFinite();
 }
 
 /// Mean number of bodies in 27 cells below which cells are faster, by at least 5 % where the choice matters: measured
@@ -138,7 +151,7 @@ Neighbours fastest_neighbours(const BodyShape& shape, int number, double packing
 }
 
 Simulation::Simulation(const System& system, const SimulationOptions& options) {
-  check_start(system);
+  check_start(system, options.poll);
   impl_ = std::make_unique<Impl>(internal::make_event_loop(system, options));
 }
 
@@ -178,6 +191,7 @@ Simulation Simulation::restore(std::string_view state, const std::vector<Species
   internal::expect(reader, packing_fraction(system) < 1, "more bodies than the box has room for");
   auto loop = internal::load_event_loop(system, options, reader);
   reader.finish();
+  internal::expect(reader, is_finite(*loop), "a number is not finite");
   return Simulation(std::make_unique<Impl>(std::move(loop)));
 }
 

@@ -7,6 +7,7 @@
 
 #include <ed/archive_simulation.h>
 
+#include <cmath>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -43,6 +44,11 @@ EventLoop<Bodies, Law, Added>::EventLoop(const System& system, const SimulationO
   parts_.failures.load(reader);
   const bool sized = parts_.collisions.number() == at(number()) && parts_.clock.is_sound();
   expect(reader, sized && parts_.schedule.is_sound(), "the events do not fit the lists");
+  // Flights are not longer than the run: integrals of omega over longer ones would not end.
+  for (int i = 0; i < number(); ++i) {
+    const double flight = parts_.now() - parts_.bodies.flight_start(i);
+    expect(reader, std::abs(flight) <= parts_.clock.time() + parts_.clock.epoch(), "the start of a flight");
+  }
   parts_.reserve();
   parts_.collisions.reserve();
 }

@@ -54,8 +54,9 @@ constexpr std::array<std::array<double, 2>, 5> kTenNodes{{{0.1488743389816312108
 constexpr std::array<GaussRule, 4> kGaussRules{
     {{1.0 / 16, kFourNodes}, {0.28, kSixNodes}, {0.6, kEightNodes}, {1, kTenNodes}}};
 
-/// Returns the integral of f over [0, tau] by Gauss-Legendre rules on pieces of at most 1 / rate, the rate of the
-/// motion. The poles of a top's motion lie (pi/2) / rate or farther from the real axis: at u = i K', K' >= pi/2, and p
+/// Returns the integral of f, which is asked for two values at a time, over [0, tau] by Gauss-Legendre rules on pieces
+/// of at most 1 / rate, the rate of the motion. The poles of a top's motion lie (pi/2) / rate or farther from the real
+/// axis: at u = i K', K' >= pi/2, and p
 /// <= max |omega| because p^2 / w3^2 = (|I3 - I2| / I1) (|I3 - I1| / I2) at dn = 1, both below 1 for a body. So f is
 /// analytic in an ellipse about a piece of x / rate whose semi-axes sum to rho = pi / x + sqrt((pi / x)^2 + 1) times
 /// its half-length, and the relative error with n nodes is some rho^(-2n) (Trefethen, Approximation Theory and
@@ -71,8 +72,7 @@ TurnedAngles integral(double tau, double rate, const F& f) {
   for (std::int64_t k = 0; k < pieces; ++k) {
     const double middle = static_cast<double>(2 * k + 1) * half;
     for (const auto& [node, weight] : rule->nodes) {
-      for (const double t : {middle - half * node, middle + half * node}) {
-        const TurnedAngles at = f(t);
+      for (const TurnedAngles& at : f(middle - half * node, middle + half * node)) {
         sum.world += weight * at.world;
         sum.body += weight * at.body;
       }

@@ -1,6 +1,7 @@
 #include "motion/asymmetric_top.h"
 
 #include "base/exponential.h"
+#include "base/lanes.h"
 #include "motion/asymmetric_flight.h"
 #include "motion/elliptic.h"
 
@@ -38,7 +39,7 @@ ThetaAngle trigonometric_angle(bool lead_is_3, double chi, const Nome& nome, dou
     t.re = cosine_sum({1, 0.5 * a[1] * (1 + g[1]), 0.5 * a[2] * (1 + g[2]), 0.5 * a[3] * (1 + g[3])}, 1);
     const double b3 = a[3] * (1 - g[3]);
     t.im = scaled(-chi, {a[1] * (1 - g[1]) - b3, a[2] * (1 - g[2]), b3, 0});
-    t.slope = -2 * value(t.im, -2) / value(t.re, -2);
+    t.slope = -2 * value(t.im, -2.0) / value(t.re, -2.0);
   } else {
     // sum (-1)^n q^(n(n+1)) [sin (2n+1)x cosh (2n+1)eta + i chi cos (2n+1)x sinh (2n+1)eta].
     const Cubic a = times(alternating(nome.square), powers);
@@ -46,7 +47,7 @@ ThetaAngle trigonometric_angle(bool lead_is_3, double chi, const Nome& nome, dou
     t.re = odd_sum({a[0] * (1 + g[0]), a[1] * (1 + g[1]), a[2] * (1 + g[2]), a[3] * (1 + g[3])}, 1);
     t.im = odd_sum({a[0] * (1 - g[0]), a[1] * (1 - g[1]), a[2] * (1 - g[2]), a[3] * (1 - g[3])}, -1);
     t.im = scaled(chi, t.im);
-    t.slope = -value(t.im, -2) / value(t.re, -2);
+    t.slope = -value(t.im, -2.0) / value(t.re, -2.0);
   }
   return t;
 }
@@ -150,26 +151,41 @@ ThetaSeries theta_series(const Flight& f, const Moduli& m) {
   return s;
 }
 
-// ---- Evaluation
+// ---- Evaluation, at one time or, in lanes, at two
 
 /// Factors and argument of the polynomials, and the secular part of phi.
+template <class Real>
 struct Phase {
-  double f1, f2, f3;
-  double re, im;
-  double y;
-  double angle;
+  Real f1, f2, f3;
+  Real re, im;
+  Real y;
+  Real angle;
 };
 
-[[gnu::always_inline]] inline Phase trigonometric_phase(const ThetaSeries& s, double tau) {
-  const SinCos x = product(s.start, turn(s.rate * tau));
-  const double y = 2 * (x.cos - x.sin) * (x.cos + x.sin);
-  const double angle = s.secular * tau;
-  if (s.lead_is_3) return {x.cos, x.sin, 1, 1, 2 * x.sin * x.cos, y, angle};
-  return {x.cos, x.sin, 1, x.sin, x.cos, y, angle};
+using internal::turn;
+
+inline SinCosLanes turn(Lanes angle) {
+  if (std::abs(angle[0]) <= kLargestAngle && std::abs(angle[1]) <= kLargestAngle) [[likely]]
+    return sincos(angle);
+  const SinCos a = turn(angle[0]);
+  const SinCos b = turn(angle[1]);
+  return {Lanes{a.sin, b.sin}, Lanes{a.cos, b.cos}};
+}
+
+template <class Real>
+[[gnu::always_inline]] inline Phase<Real> trigonometric_phase(const ThetaSeries& s, Real tau) {
+  const auto turned = turn(s.rate * tau);
+  const Real sin = s.start.sin * turned.cos + s.start.cos * turned.sin;
+  const Real cos = s.start.cos * turned.cos - s.start.sin * turned.sin;
+  const Real one = Real{} + 1;
+  const Real y = 2 * (cos - sin) * (cos + sin);
+  const Real angle = s.secular * tau;
+  if (s.lead_is_3) return {cos, sin, one, one, 2 * sin * cos, y, angle};
+  return {cos, sin, one, sin, cos, y, angle};
 }
 
 /// Returns the phase with all factors divided by cosh v: no square overflows.
-[[gnu::always_inline]] inline Phase hyperbolic_phase(const ThetaSeries& s, double tau) {
+[[gnu::always_inline]] inline Phase<double> hyperbolic_phase(const ThetaSeries& s, double tau) {
   double v = s.rate * tau;
   double turns = std::nearbyint(v / s.half_period);
   if (std::abs(turns) > 1e6) [[unlikely]] {
@@ -197,48 +213,84 @@ struct Phase {
   return {sign * sech, sign * tanh, sech, 1, tanh, s.q * (e2 + 1 / e2), angle};
 }
 
-[[gnu::always_inline]] inline Phase phase(const ThetaSeries& s, double tau) {
+[[gnu::always_inline]] inline Phase<double> phase(const ThetaSeries& s, double tau) {
   return s.hyperbolic ? hyperbolic_phase(s, tau) : trigonometric_phase(s, tau);
 }
 
+[[gnu::always_inline]] inline Phase<Lanes> phase(const ThetaSeries& s, Lanes tau) {
+  if (!s.hyperbolic) return trigonometric_phase(s, tau);
+  const Phase<double> a = hyperbolic_phase(s, tau[0]);
+  const Phase<double> b = hyperbolic_phase(s, tau[1]);
+  const auto pair = [](double x, double y) { return Lanes{x, y}; };
+  return {pair(a.f1, b.f1), pair(a.f2, b.f2), pair(a.f3, b.f3),      pair(a.re, b.re),
+          pair(a.im, b.im), pair(a.y, b.y),   pair(a.angle, b.angle)};
+}
+
 /// Returns M up to length, in the order leading, next, last axis.
-[[gnu::always_inline]] inline std::array<double, 3> momentum(const ThetaSeries& s, const Phase& f) {
-  const double m1 = f.f1 * value(s.m1, f.y);
-  const double m2 = f.f2 * value(s.m2, f.y);
-  const double m3 = f.f3 * value(s.m3, f.y);
+template <class Real>
+[[gnu::always_inline]] inline std::array<Real, 3> momentum(const ThetaSeries& s, const Phase<Real>& f) {
+  const Real m1 = f.f1 * value(s.m1, f.y);
+  const Real m2 = f.f2 * value(s.m2, f.y);
+  const Real m3 = f.f3 * value(s.m3, f.y);
   return s.lead_is_3 ? std::array{m3, m1, m2} : std::array{m1, m2, m3};
 }
 
 /// Columns of the rotation from the body to the frame of L (l along z): those of the leading and the next axis, and the
 /// z component of the last.
+template <class Real>
 struct Columns {
-  Vector3d lead, next;
-  double last_z;
+  std::array<Real, 3> lead, next;
+  Real last_z;
 };
 
 /// Computes the columns. `orientation`: handedness of the leading, next and last axis in the body.
-[[gnu::always_inline]] inline Columns columns(const ThetaSeries& s, double orientation, double tau) {
-  const Phase f = phase(s, tau);
+template <class Real>
+[[gnu::always_inline]] inline Columns<Real> columns(const ThetaSeries& s, double orientation, Real tau) {
+  const Phase<Real> f = phase(s, tau);
   const auto [a, b, c] = momentum(s, f);
-  const double re = f.re * value(s.re, f.y);
-  const double im = f.im * value(s.im, f.y);
-  const SinCos sc = turn(f.angle);
+  const Real re = f.re * value(s.re, f.y);
+  const Real im = f.im * value(s.im, f.y);
+  const auto sc = turn(f.angle);
   // With M of length 1, rho^2 = M_b^2 + M_c^2 and z = exp(i phi), the first two columns across l are rho z and z (-M_a
   // M_b + i M_c) / rho.
-  const double rho2 = b * b + c * c;
-  const double inverse = 1 / std::sqrt(rho2 + a * a);
-  const double unit = 1 / std::sqrt(rho2 * (re * re + im * im));
-  const double zx = unit * (sc.cos * re - sc.sin * im);
-  const double zy = unit * (sc.sin * re + sc.cos * im);
-  const double lead = rho2 * inverse;
-  const double next = -a * b * inverse;
-  const double aside = orientation * c;
+  const Real rho2 = b * b + c * c;
+  const Real inverse = 1 / root(rho2 + a * a);
+  const Real unit = 1 / root(rho2 * (re * re + im * im));
+  const Real zx = unit * (sc.cos * re - sc.sin * im);
+  const Real zy = unit * (sc.sin * re + sc.cos * im);
+  const Real lead = rho2 * inverse;
+  const Real next = -a * b * inverse;
+  const Real aside = orientation * c;
   return {
       {lead * zx, lead * zy, a * inverse}, {next * zx - aside * zy, next * zy + aside * zx, b * inverse}, c * inverse};
 }
 
-[[gnu::always_inline]] inline TopAxes in_world(const Columns& b, const Matrix3d& world, double orientation) {
-  return polished(product(world, b.lead), product(world, b.next), orientation);
+/// Returns omega at the times of both lanes, in the frame of L and along the body's axes.
+[[gnu::always_inline]] inline std::array<TurnedAngles, 2> angular_velocities(const ThetaSeries& s, double orientation,
+                                                                             const std::array<double, 3>& rates,
+                                                                             Lanes tau) {
+  const auto [lead, next, last_z] = columns(s, orientation, tau);
+  const std::array<Lanes, 3> last = {orientation * (lead[1] * next[2] - lead[2] * next[1]),
+                                     orientation * (lead[2] * next[0] - lead[0] * next[2]),
+                                     orientation * (lead[0] * next[1] - lead[1] * next[0])};
+  const std::array<Lanes, 3> own = {rates[0] * lead[2], rates[1] * next[2], rates[2] * last_z};
+  std::array<TurnedAngles, 2> omega;
+  for (int i = 0; i < 3; ++i) {
+    const Lanes across = own[0] * lead[i] + own[1] * next[i] + own[2] * last[i];
+    for (int lane = 0; lane < 2; ++lane) {
+      omega[lane].world[i] = across[lane];
+      omega[lane].body[i] = own[i][lane];
+    }
+  }
+  return omega;
+}
+
+[[gnu::always_inline]] inline Vector3d vector(const std::array<double, 3>& column) {
+  return {column[0], column[1], column[2]};
+}
+
+[[gnu::always_inline]] inline TopAxes in_world(const Columns<double>& b, const Matrix3d& world, double orientation) {
+  return polished(product(world, vector(b.lead)), product(world, vector(b.next)), orientation);
 }
 
 }  // namespace
@@ -263,8 +315,8 @@ std::optional<AsymmetricTop> AsymmetricTop::make(const Vector3d& inertia, const 
     top.euler_[i] = f.orientation * (f.I[order[(i + 1) % 3]] - f.I[order[(i + 2) % 3]]) / I;
   }
   // The frame of L follows from the start.
-  const Columns b = columns(top.series_, f.orientation, 0);
-  const Matrix3d start = matrix(polished(b.lead, b.next, f.orientation), top.axes_);
+  const Columns b = columns(top.series_, f.orientation, 0.0);
+  const Matrix3d start = matrix(polished(vector(b.lead), vector(b.next), f.orientation), top.axes_);
   top.world_ = matrix(polished(product(R, start.row(2)), product(R, start.row(0)), 1), {2, 0, 1});
   return top;
 }
@@ -276,19 +328,16 @@ Matrix3d AsymmetricTop::rotation(double tau) const {
 TopState AsymmetricTop::at(double tau) const {
   const Columns b = columns(series_, orientation_, tau);
   const TopAxes a = in_world(b, world_, orientation_);
-  const double u = rates_[0] * b.lead.z();
-  const double v = rates_[1] * b.next.z();
+  const double u = rates_[0] * b.lead[2];
+  const double v = rates_[1] * b.next[2];
   const double w = rates_[2] * b.last_z;
   return {matrix(a, axes_), u * a.first + v * a.second + w * a.third,
           (euler_[0] * v * w) * a.first + (euler_[1] * w * u) * a.second + (euler_[2] * u * v) * a.third};
 }
 
 TurnedAngles AsymmetricTop::turned(double tau) const {
-  const TurnedAngles sum = integral(tau, std::max(bounds_.omega, series_.rate), [this](double t) {
-    const Columns b = columns(series_, orientation_, t);
-    const Vector3d last = orientation_ * b.lead.cross(b.next);
-    const Vector3d omega(rates_[0] * b.lead.z(), rates_[1] * b.next.z(), rates_[2] * b.last_z);
-    return TurnedAngles{omega.x() * b.lead + omega.y() * b.next + omega.z() * last, omega};
+  const TurnedAngles sum = integral(tau, std::max(bounds_.omega, series_.rate), [this](double before, double after) {
+    return angular_velocities(series_, orientation_, rates_, Lanes{before, after});
   });
   TurnedAngles turned{product(world_, {sum.world.x(), sum.world.y(), mean_rate_ * tau}), {}};
   for (int i = 0; i < 3; ++i) turned.body[axes_[i]] = sum.body[i];

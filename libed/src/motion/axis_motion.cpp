@@ -90,4 +90,23 @@ void advance(const UniaxialInertia& inertia, double t, AxisMotion& motion, BodyF
   motion.time = t;
 }
 
+SampledRotation sampled(const UniaxialInertia& inertia, double t, const AxisMotion& motion, const BodyFrame& frame) {
+  if (inertia.spins || t == motion.time) {
+    AxisMotion m = motion;
+    BodyFrame f = frame;
+    advance(inertia, t, m, f);
+    return {m.axis(), omega_across(m), f.phi_lab, f.phi_body};
+  }
+  const double dt = t - motion.time;
+  const Vector3d omega = omega_across(motion);
+  const Vector3d y_axis = motion.axis().cross(frame.x_axis);
+  const double angle = motion.rate * dt;
+  const SinCos sc = sincos(angle);
+  const Vector3d u = renormalized(motion.e0 + sc.cos * motion.e1 + sc.sin * motion.e2);
+  const Vector3d e2 = sc.cos * motion.e2 - sc.sin * motion.e1;
+  const Vector3d across = renormalized(e2 - u.dot(e2) * u);
+  return {u, motion.rate * u.cross(across), frame.phi_lab + angle * frame.momentum_dir,
+          frame.phi_body + dt * Vector2d(omega.dot(frame.x_axis), omega.dot(y_axis))};
+}
+
 }  // namespace ed::internal

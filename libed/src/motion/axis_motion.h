@@ -88,6 +88,18 @@ inline Eigen::Vector3d omega_across(const AxisMotion& m) {
 void set_rotation(const UniaxialInertia& inertia, const Eigen::Vector3d& u, const Eigen::Vector3d& omega,
                   AxisMotion& motion, BodyFrame& frame);
 
+/// A body's rotation as snapshots hold it.
+struct SampledRotation {
+  Eigen::Vector3d axis;
+  Eigen::Vector3d omega;  ///< angular velocity across the axis
+  Eigen::Vector3d phi_lab;
+  Eigen::Vector2d phi_body;
+};
+
+/// Returns the rotation that advance() leads to, with the same bits: for bodies without spin in less than half of its
+/// time, as no orientation about the axis is carried along.
+SampledRotation sampled(const UniaxialInertia& inertia, double t, const AxisMotion& motion, const BodyFrame& frame);
+
 /// Moves a body to time t, exactly, and updates the integrals of omega.
 void advance(const UniaxialInertia& inertia, double t, AxisMotion& motion, BodyFrame& frame);
 

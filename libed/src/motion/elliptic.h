@@ -15,7 +15,9 @@ namespace ed::internal {
 /// Coefficients of 1, y, y^2, y^3.
 using Cubic = std::array<double, 4>;
 
-inline double value(const Cubic& p, double y) {
+/// Returns the polynomial at a number, or at one in each lane of a vector.
+template <class Real>
+[[gnu::always_inline]] inline Real value(const Cubic& p, Real y) {
   return p[0] + y * (p[1] + y * (p[2] + y * p[3]));
 }
 

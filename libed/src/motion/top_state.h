@@ -30,6 +30,7 @@ struct TurnedAngles {
 template <class Archive, Is<TurnedAngles> T>
 void fields(Archive& archive, T& angles) {
   archive(angles.world, angles.body);
+  expect(archive, angles.world.allFinite() && angles.body.allFinite(), "an angle is not finite");
 }
 
 /// Upper bounds over all times.

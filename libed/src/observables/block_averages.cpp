@@ -23,15 +23,40 @@ double BlockAverages::shared_data_factor(double lag) const {
 
 LagSums BlockAverages::sums_at(std::size_t lag, std::size_t group, Selection selection) const {
   LagSums sums;
+  double overlap2 = 0;
   const std::size_t groups = measured_.ranges.size();
   for (const Block& block : measured_.blocks) {
     if (!selection.takes(block)) continue;
+    overlap2 += block.overlap2[lag];
     for (std::size_t g = 0; g < groups; ++g) {
       if (group != kAll && g != group) continue;
-      sums.add(block.lags[lag * groups + g], group == kAll ? measured_.weights[g] : 1);
+      if (group == kAll) {
+        sums.add(block.lags[lag * groups + g], measured_.weights[g], measured_.weights_of_rotations[g]);
+      } else {
+        sums.add(block.lags[lag * groups + g], 1);
+      }
     }
   }
+  // The mean over groups holds for everything but this square.
+  if (group == kAll) sums.overlap2 = overlap2;
+  if (group == kAll && measured_.options.collective) add_collective(lag, selection, sums);
   return sums;
+}
+
+/// Sets F / S at one lag, times the number of origins.
+void BlockAverages::add_collective(std::size_t lag, Selection selection, LagSums& sums) const {
+  const std::size_t numbers = measured_.options.wave_numbers.size();
+  for (std::size_t k = 0; k < numbers; ++k) {
+    double later = 0;
+    double at_once = 0;
+    for (const Block& block : measured_.blocks) {
+      if (!selection.takes(block) || block.collective.empty()) continue;
+      const double* own = &block.collective[kCollectiveSums * (lag * numbers + k)];
+      later += own[0];
+      at_once += own[1];
+    }
+    sums.f_collective[k] = at_once > 0 ? sums.count * later / at_once : kNothing;
+  }
 }
 
 }  // namespace ed::internal

@@ -71,7 +71,15 @@ class BlockAverages {
     if (std::none_of(full_.begin(), full_.end(), lacking)) {
       return with_block_error(lag, [&](const Block* block) { return of(Selection{block, nullptr}); });
     }
+    return with_jackknife_error(lag, of);
+  }
+
+  /// Returns the value from all data with the standard error of the jackknife, for a quantity that is no mean over
+  /// data, of which a single block gives another value.
+  template <class Of>
+  Estimate with_jackknife_error(double lag, const Of& of) const {
     Estimate all{of(Selection{}), kNothing};
+    if (!std::isfinite(all.value)) return {};
     if (full_.size() < 2) return all;
     std::vector<double> values;
     for (const Block* block : full_) values.push_back(of(Selection{nullptr, block}));
@@ -99,6 +107,7 @@ class BlockAverages {
 
  private:
   double shared_data_factor(double lag) const;
+  void add_collective(std::size_t lag, Selection selection, LagSums& sums) const;
 
   const Measured& measured_;
   std::vector<const Block*> full_;

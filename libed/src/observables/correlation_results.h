@@ -9,6 +9,8 @@
 
 namespace ed::internal {
 
+class DirectedResults;
+
 /// Results of the correlations of one group (kAll: of all bodies).
 class CorrelationResults {
  public:
@@ -18,6 +20,9 @@ class CorrelationResults {
 
   Correlations of_group(std::size_t group) const;
 
+  /// Returns whether collisions change the rotation of some bodies.
+  bool turned() const { return !unturned(kAll); }
+
  private:
   using Gap = Gaps::Gap;
 
@@ -26,16 +31,19 @@ class CorrelationResults {
   bool some_unturned() const;
   double mean_rotation_axes(std::size_t group) const;
 
-  LagRow lag_row(std::size_t lag, std::size_t group) const;
+  LagRow lag_row(std::size_t lag, std::size_t group, const DirectedResults& directed) const;
   void add_lags(std::size_t group, Correlations& results) const;
   void add_diffusion(std::size_t group, Correlations& results) const;
   void add_decays(std::size_t group, Correlations& results) const;
+  void add_collective_decays(std::size_t group, Correlations& results) const;
+  void add_cage(std::size_t group, Correlations& results) const;
+  void add_heterogeneity(std::size_t group, Correlations& results) const;
+  void add_displacements(std::size_t group, Correlations& results) const;
+  Estimate van_hove(std::size_t h, std::size_t bin, double volume, std::size_t group) const;
+  double chi4_of(std::size_t group, const LagSums& sums) const;
   void add_axes(std::size_t group, Correlations& results) const;
   void drop_meaningless(std::size_t group, Correlations& results) const;
 
-  template <class Value>
-  Estimate diffusion_estimate(const Gap& gap, std::size_t group, double divisor, const Reach& reach,
-                              const Value& value) const;
   template <class Value>
   Estimate decay_time_estimate(const Gap& gap, std::size_t group, const Value& value) const;
   template <class Value>

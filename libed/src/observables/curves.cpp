@@ -50,6 +50,18 @@ double exponent_of(const Curve& curve) {
   return slope(logarithms.t, logarithms.y).value_or(kNothing);
 }
 
+/// Moves `next` to the first lag at kSlopeSpan times lag k or beyond; false if there is none.
+bool next_of_span(const Curve& curve, std::size_t k, std::size_t& next) {
+  if (k >= curve.t.size()) return false;
+  while (next < curve.t.size() && curve.t[next] < kSlopeSpan * curve.t[k]) ++next;
+  return next < curve.t.size();
+}
+
+/// Slope of ln y against ln t between two lags; NaN if y is not positive.
+double exponent_between(const Curve& curve, std::size_t k, std::size_t next) {
+  return std::log(curve.y[next] / curve.y[k]) / std::log(curve.t[next] / curve.t[k]);
+}
+
 /// Lags that a decay is fitted to.
 Curve decay_window(const Curve& curve, double from) {
   Curve window;
@@ -78,8 +90,8 @@ std::size_t first_of_fit(const Curve& curve) {
   return static_cast<std::size_t>(std::find_if(curve.t.begin(), curve.t.end(), in_fit) - curve.t.begin());
 }
 
-Reach reach_of_translation(double first_wave_number, double non_gaussian) {
-  const double unit = 6 / (first_wave_number * first_wave_number);
+Reach reach_of_translation(double first_wave_number, double non_gaussian, int components) {
+  const double unit = 2 * components / (first_wave_number * first_wave_number);
   return {least_displacement(non_gaussian) * unit, 0, 0, MissingReason::not_displaced};
 }
 
@@ -111,6 +123,22 @@ double final_slope(const Curve& curve) {
 }
 
 // ---- Decays
+
+double end_of_ballistic(const Curve& msd) {
+  for (std::size_t k = 0, next = 0; next_of_span(msd, k, next); ++k) {
+    if (exponent_between(msd, k, next) <= kEndOfBallistic) return msd.t[k];
+  }
+  return kNothing;
+}
+
+Flattest flattest_of(const Curve& msd) {
+  Flattest flattest;
+  for (std::size_t k = 0, next = 0; next_of_span(msd, k, next); ++k) {
+    const double exponent = exponent_between(msd, k, next);
+    if (std::isnan(flattest.exponent) || exponent < flattest.exponent) flattest = {(k + next) / 2, exponent};
+  }
+  return flattest;
+}
 
 double decay_time(const Curve& curve) {
   return first_crossing(curve.t, curve.y, kDecayed).value_or(kNothing);
@@ -195,6 +223,10 @@ std::string describe(const Missing& missing, std::string_view length_unit) {
       return "meaningless for all bodies: nothing turns those of one species";
     case MissingReason::no_peak:
       return "S(q) has no peak that stands out of its scatter";
+    case MissingReason::no_cage:
+      return reached("displacements grow as t^", "", " and faster at all lags: no cage holds bodies");
+    case MissingReason::still_growing:
+      return "largest at the longest lag: the maximum may be beyond";
     case MissingReason::no_such_axis:
       return "bodies of revolution have no such axis";
     case MissingReason::not_told:
@@ -203,6 +235,16 @@ std::string describe(const Missing& missing, std::string_view length_unit) {
       return "positions are wrapped, or may be, and bodies move far between frames";
     case MissingReason::not_followed:
       return "the file does not tell which body is which from frame to frame";
+    case MissingReason::no_wave_vector:
+      return "the box has no wave vector of this length: a larger system has";
+    case MissingReason::no_orientation:
+      return "spheres have no orientation";
+    case MissingReason::no_bragg_peak:
+      return "no wave vector scatters enough: there is no Bragg peak";
+    case MissingReason::not_asked:
+      return "not asked for";
+    case MissingReason::no_director:
+      return "there is no director: S is not clearly above that of an isotropic state";
   }
   return "";
 }
@@ -241,6 +283,10 @@ const char* to_string(MissingReason reason) {
       return "meaningless_in_part";
     case MissingReason::no_peak:
       return "no_peak";
+    case MissingReason::no_cage:
+      return "no_cage";
+    case MissingReason::still_growing:
+      return "still_growing";
     case MissingReason::no_such_axis:
       return "no_such_axis";
     case MissingReason::not_told:
@@ -249,12 +295,23 @@ const char* to_string(MissingReason reason) {
       return "not_unwrapped";
     case MissingReason::not_followed:
       return "not_followed";
+    case MissingReason::no_wave_vector:
+      return "no_wave_vector";
+    case MissingReason::no_orientation:
+      return "no_orientation";
+    case MissingReason::no_director:
+      return "no_director";
+    case MissingReason::no_bragg_peak:
+      return "no_bragg_peak";
+    case MissingReason::not_asked:
+      return "not_asked";
   }
   return "unknown";
 }
 
 bool longer_lags_help(MissingReason reason) {
   switch (reason) {
+    case MissingReason::still_growing:
     case MissingReason::lags_too_short:
     case MissingReason::ballistic:
     case MissingReason::subdiffusive:

@@ -38,8 +38,11 @@ constexpr double kTurned = 1.0 / 3;
 /// d ln(displacement) / d ln t <= 1 + kFreeTurning is asked for, too.
 constexpr double kFreeTurning = 0.1;
 
-/// Decays are fitted from the lag of this many mean collision intervals on: before, motion is ballistic.
-constexpr double kBallisticCollisions = 5;
+/// Powers of time are read off the MSD between a lag t and the first one at kSlopeSpan t or beyond. Unknown collisions:
+/// decays are fitted from the first lag on where that power is at most kEndOfBallistic, halfway from ballistic motion
+/// (2) to diffusion (1).
+constexpr double kSlopeSpan = 1.5;
+constexpr double kEndOfBallistic = 1.5;
 /// Decays are fitted only if they fall to 1/e at t >= kLeastDecay times that lag.
 constexpr double kLeastDecay = 3;
 /// Decays are fitted while y > kNoise.
@@ -64,9 +67,9 @@ struct Reach {
   MissingReason short_of_it = MissingReason::not_displaced;  ///< reason to give if they have not
 };
 
-/// Returns the requirements of translational diffusion, for the wave number of the first peak of S(q) and the
-/// non-Gaussian parameter at the first lag of the fit.
-Reach reach_of_translation(double first_wave_number, double non_gaussian);
+/// Returns the requirements of translational diffusion in `components` directions, for the wave number of the first
+/// peak of S(q) and the non-Gaussian parameter at the first lag of the fit.
+Reach reach_of_translation(double first_wave_number, double non_gaussian, int components = 3);
 /// Returns the requirements of rotational diffusion with this number of components.
 Reach reach_of_rotation(double components);
 
@@ -79,6 +82,18 @@ std::optional<Missing> why_not_diffusive(const Curve& curve, const Reach& reach)
 /// Returns the slope over [kFitFrom, 1] of the last lag; NaN for fewer than two lags there.
 double final_slope(const Curve& curve);
 
+// ---- Cages
+
+/// Cages: the MSD grows as a power of time of at most kCaged from some lag t to kSlopeSpan t.
+constexpr double kCaged = 0.5;
+
+/// Flattest part of a mean square displacement: the lag in the middle of it, and the power of time there.
+struct Flattest {
+  std::size_t lag = 0;
+  double exponent = kNothing;  ///< NaN for too few lags
+};
+Flattest flattest_of(const Curve& msd);
+
 // ---- Decays
 
 /// Returns the lag at which the curve falls to 1/e; NaN if it does not.
@@ -86,6 +101,9 @@ double decay_time(const Curve& curve);
 
 /// Returns the reason for which the curve does not fall to 1/e; nullopt if it does.
 std::optional<Missing> why_no_decay_time(const Curve& curve);
+
+/// Returns the lag at which a mean square displacement is ballistic no more, by kSlopeSpan; NaN if it is to the end.
+double end_of_ballistic(const Curve& msd);
 
 /// A fit and the lags that went into it.
 struct DecayFit {

@@ -1,5 +1,6 @@
 #include "base/archive.h"
 #include "observables/frame_sums.h"
+#include "observables/order/stationarity.h"
 #include "observables/structure.h"
 
 #include <ed/analysis.h>
@@ -21,7 +22,7 @@ using internal::StructureGrid;
 using internal::WaveVectors;
 
 /// Raised by every change of what save() writes.
-constexpr std::uint32_t kEquilibrationFormat = 3;
+constexpr std::uint32_t kEquilibrationFormat = 4;
 
 constexpr double kDecayed = 0.05;
 constexpr std::size_t kLeastSamples = 4;  ///< least number of samples of a relaxation, one a time_unit
@@ -52,6 +53,7 @@ class EquilibrationMonitor::Impl {
       turns_.push_back(group.turns);
       first += group.number;
     }
+    stationarity_ = internal::Stationarity(turning_ranges());
   }
 
   void begin(const Simulation& simulation) {
@@ -65,6 +67,7 @@ class EquilibrationMonitor::Impl {
     structure_before_ = structure_;
     virial_ = simulation.virial();
     time_ = simulation.time();
+    stationarity_.begin(grid_.box, grid_.length);
     add_structure(origin_);
     q_ = state_.q;
   }
@@ -75,6 +78,8 @@ class EquilibrationMonitor::Impl {
     add_structure(now);
     add_sample(simulation, now);
     correlate(now);
+    if (!(state_.f_self >= kDecayed) && !decayed_after_) decayed_after_ = now.time - origin_.time;
+    judge_order(now);
     const bool over = state_.f_self < kDecayed && !(state_.c2 >= kDecayed) && S_.size() >= kLeastSamples;
     if (over) end_relaxation(now);
   }
@@ -85,7 +90,8 @@ class EquilibrationMonitor::Impl {
   static void fields(Archive& archive, Self& self) {
     archive(self.state_, self.origin_, self.q_, self.grid_, self.packing_fraction_, self.structure_, self.frames_,
             self.structure_before_, self.frames_before_, self.Z_, self.S_, self.Z_before_.value, self.Z_before_.error,
-            self.S_before_.value, self.S_before_.error, self.virial_, self.time_);
+            self.S_before_.value, self.S_before_.error, self.virial_, self.time_, self.decayed_after_,
+            self.stationarity_);
     expect(archive, self.fits(), "the equilibration does not fit together");
   }
 
@@ -135,6 +141,29 @@ class EquilibrationMonitor::Impl {
     }
   }
 
+  std::vector<BodyRange> turning_ranges() const {
+    std::vector<BodyRange> turning;
+    for (std::size_t g = 0; g < ranges_.size(); ++g) {
+      if (turns_[g]) turning.push_back(ranges_[g]);
+    }
+    return turning;
+  }
+
+  void reach(EquilibratedBy by) {
+    if (state_.reached) return;
+    state_.reached = true;
+    state_.by = by;
+  }
+
+  /// Judges order and pressure where that is due. Positions are forgotten if F_self has decayed and stayed so.
+  void judge_order(const Snapshot& now) {
+    stationarity_.add(now, Z_.back());
+    if (!stationarity_.due()) return;
+    const bool stayed = state_.f_self < kDecayed && decayed_after_ && now.time - origin_.time >= 2 * *decayed_after_;
+    state_.order = stationarity_.judge(state_.relaxations > 0 || stayed);
+    if (state_.order.stationary) reach(EquilibratedBy::stationarity);
+  }
+
   void end_relaxation(const Snapshot& now) {
     const Estimate Z = mean_of_blocks(Z_);
     const Estimate S = mean_of_blocks(S_);
@@ -144,13 +173,14 @@ class EquilibrationMonitor::Impl {
       state_.Z_change = Z.value / Z_before_.value - 1;
       state_.S_change = S.value - S_before_.value;
       const bool drifting = drifts(Z_before_, Z, kZDrift * Z.value) || drifts(S_before_, S, kSDrift);
-      state_.reached = state_.reached || !drifting;
+      if (!drifting) reach(EquilibratedBy::decay);
     }
     Z_before_ = Z;
     S_before_ = S;
     Z_.clear();
     S_.clear();
     origin_ = now;
+    decayed_after_.reset();
     q_ = state_.q;
     // The frame at which one ends and the next begins has been counted.
     structure_before_ = structure_;
@@ -175,6 +205,8 @@ class EquilibrationMonitor::Impl {
   Estimate Z_before_, S_before_;
   double virial_ = 0;
   double time_ = 0;
+  std::optional<double> decayed_after_;  ///< time from the relaxation's begin until F_self had decayed
+  internal::Stationarity stationarity_;
 };
 
 EquilibrationMonitor::EquilibrationMonitor(const Simulation& simulation, const std::vector<RelaxingGroup>& groups)
@@ -207,6 +239,18 @@ EquilibrationMonitor EquilibrationMonitor::restore(std::string_view state, const
   Impl::fields(reader, *impl);
   reader.finish();
   return EquilibrationMonitor(std::move(impl));
+}
+
+const char* to_string(EquilibratedBy by) {
+  switch (by) {
+    case EquilibratedBy::nothing:
+      return "nothing";
+    case EquilibratedBy::decay:
+      return "decay";
+    case EquilibratedBy::stationarity:
+      return "stationarity";
+  }
+  return "unknown";
 }
 
 }  // namespace ed

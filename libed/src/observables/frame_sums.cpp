@@ -90,6 +90,16 @@ Matrix3d order_tensor(const std::vector<Vector3d>& axes, std::size_t begin, std:
   return Q / static_cast<double>(end - begin) - 0.5 * Matrix3d::Identity();
 }
 
+Matrix3d order_tensor(const std::vector<Vector3d>& axes, const std::vector<BodyRange>& ranges) {
+  Matrix3d Q = Matrix3d::Zero();
+  double number = 0;
+  for (const BodyRange& range : ranges) {
+    Q += range.size() * order_tensor(axes, range.begin, range.end);
+    number += range.size();
+  }
+  return Q / number;
+}
+
 double largest_eigenvalue(const Matrix3d& Q) {
   return Eigen::SelfAdjointEigenSolver<Matrix3d>(Q, Eigen::EigenvaluesOnly).eigenvalues()[2];
 }
@@ -99,6 +109,10 @@ Vector3d director_of(const Matrix3d& Q) {
   int largest = 0;
   n.cwiseAbs().maxCoeff(&largest);
   return n[largest] < 0 ? Vector3d(-n) : n;
+}
+
+Vector3d director_of(const Snapshot& snapshot) {
+  return director_of(order_tensor(snapshot.axis, 0, snapshot.axis.size()));
 }
 
 }  // namespace ed::internal

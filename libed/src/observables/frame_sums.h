@@ -59,8 +59,12 @@ Eigen::Matrix3d kinetic_tensor(const System& system);
 
 /// Returns Q = 3/2 <u u^T> - 1/2.
 Eigen::Matrix3d order_tensor(const std::vector<Eigen::Vector3d>& axes, std::size_t begin, std::size_t end);
+/// Returns Q of the bodies of several ranges together.
+Eigen::Matrix3d order_tensor(const std::vector<Eigen::Vector3d>& axes, const std::vector<BodyRange>& ranges);
 double largest_eigenvalue(const Eigen::Matrix3d& Q);
 /// Returns the eigenvector of the largest eigenvalue, with the sign that makes its largest component positive.
 Eigen::Vector3d director_of(const Eigen::Matrix3d& Q);
+/// Returns the director of a frame, that of all bodies.
+Eigen::Vector3d director_of(const Snapshot& snapshot);
 
 }  // namespace ed::internal

@@ -1,11 +1,10 @@
 #include "observables/lag_sums.h"
 
+#include "base/lanes.h"
 #include "base/legendre.h"
 #include "base/sincos.h"
 
-#include <bit>
 #include <cmath>
-#include <cstdint>
 
 namespace ed::internal {
 namespace {
@@ -19,18 +18,9 @@ double sinc(double x) {
   return x < kSmall ? 1 - x * x / 6 : sincos(x).sin / x;
 }
 
-// Two numbers at a time: the vectors of every 64-bit processor.
-using Lanes = double __attribute__((vector_size(16)));
-using Bits = std::uint64_t __attribute__((vector_size(16)));
-
 /// Returns sinc() of both lanes with the same bits, for kSmall <= x <= kLargestAngle.
 Lanes sinc_of_both(Lanes x) {
-  const ReducedSinCos<Lanes> reduced = reduced_sincos(x);
-  const auto quadrant = std::bit_cast<Bits>(reduced.shifted);
-  const auto sin = std::bit_cast<Bits>(reduced.sin);
-  const auto cos = std::bit_cast<Bits>(reduced.cos);
-  const Bits exchange = (sin ^ cos) & -(quadrant & 1);
-  return std::bit_cast<Lanes>(sin ^ exchange ^ ((quadrant & 2) << 62)) / x;
+  return sincos(x).sin / x;
 }
 
 void add_scattering(double r, std::span<const double> wave_numbers, LagSums& sums) {
@@ -46,9 +36,11 @@ void add_scattering(double r, std::span<const double> wave_numbers, LagSums& sum
 }
 
 void add_displacements(const Snapshot& a, const Snapshot& b, BodyRange range, std::span<const double> wave_numbers,
-                       LagSums& sums) {
+                       double overlap_length, LagSums& sums) {
+  const double near = overlap_length * overlap_length;
   for (std::size_t i = range.begin; i < range.end; ++i) {
     const double r2 = (b.position[i] - a.position[i]).squaredNorm();
+    sums.overlap += r2 < near ? 1 : 0;
     sums.msd += r2;
     sums.r4 += r2 * r2;
     add_scattering(std::sqrt(r2), wave_numbers, sums);
@@ -86,31 +78,37 @@ void add_axes(const Snapshot& a, const Snapshot& b, BodyRange range, LagSums& su
 
 }  // namespace
 
-void LagSums::add(const LagSums& other, double weight) {
+void LagSums::add(const LagSums& other, double weight, double weight_of_rotations) {
   count += weight * other.count;
+  overlap += weight * other.overlap;
+  overlap2 += weight * other.overlap2;
   msd += weight * other.msd;
   r4 += weight * other.r4;
-  rot_msd += weight * other.rot_msd;
-  rot_msd_body += weight * other.rot_msd_body;
-  c1 += weight * other.c1;
-  c2 += weight * other.c2;
+  rot_msd += weight_of_rotations * other.rot_msd;
+  rot_msd_body += weight_of_rotations * other.rot_msd_body;
+  c1 += weight_of_rotations * other.c1;
+  c2 += weight_of_rotations * other.c2;
   vacf += weight * other.vacf;
-  wacf += weight * other.wacf;
-  rot_msd_axis += weight * other.rot_msd_axis;
-  c1_axis += weight * other.c1_axis;
-  c2_axis += weight * other.c2_axis;
+  wacf += weight_of_rotations * other.wacf;
+  rot_msd_axis += weight_of_rotations * other.rot_msd_axis;
+  c1_axis += weight_of_rotations * other.c1_axis;
+  c2_axis += weight_of_rotations * other.c2_axis;
   for (std::size_t k = 0; k < f_self.size(); ++k) f_self[k] += weight * other.f_self[k];
+  directed.add(other.directed, weight);
 }
 
-LagSums correlate(const Snapshot& a, const Snapshot& b, BodyRange range, std::span<const double> wave_numbers) {
+LagSums correlate(const Snapshot& a, const Snapshot& b, BodyRange range, std::span<const double> wave_numbers,
+                  double overlap_length, const Vector3d& director) {
   LagSums sums;
-  add_displacements(a, b, range, wave_numbers, sums);
+  sums.directed = directed_sums(a, b, range.begin, range.end, director);
+  add_displacements(a, b, range, wave_numbers, overlap_length, sums);
   add_rotations(a, b, range, sums);
   add_velocities(a, b, range, sums);
   if (range.three_axes) add_axes(a, b, range, sums);
   LagSums means;
   means.add(sums, 1 / range.size());
   means.count = 1;
+  means.overlap2 = means.overlap * means.overlap;
   return means;
 }
 

@@ -3,8 +3,10 @@
 /// Storage of a run's observables: blocks of sums, whose number never exceeds kMaxBlocks.
 
 #include "base/archive.h"
+#include "observables/collective.h"
 #include "observables/frame_sums.h"
 #include "observables/lag_sums.h"
+#include "observables/order/phase_sums.h"
 #include "observables/structure.h"
 
 #include <ed/archive_observables.h>
@@ -19,6 +21,12 @@
 namespace ed::internal {
 
 constexpr std::size_t kMaxBlocks = 32;
+/// Distance within which bodies overlap with where they were, in StructureGrid::length, a radius: 0.3 diameters, beyond
+/// what bodies move in their cages.
+constexpr double kOverlap = 0.6;
+/// Bins of displacements for the van Hove function, and their width in StructureGrid::length.
+constexpr std::size_t kHoveBins = 60;
+constexpr double kHoveWidth = 0.1;
 
 /// Totals at an instant, whose differences give block averages.
 struct Totals {
@@ -40,16 +48,20 @@ constexpr std::size_t kAll = static_cast<std::size_t>(-1);  ///< all bodies, ins
 
 /// Sums over the origins in one stretch of time.
 struct Block {
-  std::vector<LagSums> lags;                          ///< sums of group g at lag k: [k * groups + g]
-  std::vector<FrameSums> groups;                      ///< sums of each group
-  FrameSums all;                                      ///< sums of all bodies; axis_kT is left out
+  std::vector<LagSums> lags;       ///< sums of group g at lag k: [k * groups + g]
+  std::vector<double> overlap2;    ///< sums of Q^2 of all bodies at lag k
+  std::vector<double> displaced;   ///< number of bodies in bin b: [(h * groups + g) * kHoveBins + b], h of hove_lags
+  std::vector<double> collective;  ///< sums at lag k, wave number w: [(k * wave numbers + w) * kCollectiveSums ..]
+  std::vector<FrameSums> groups;   ///< sums of each group
+  FrameSums all;                   ///< sums of all bodies; axis_kT is left out
   Eigen::Matrix3d kinetic = Eigen::Matrix3d::Zero();  ///< kinetic_tensor, summed over frames
   Totals begin;
   Totals end;
   double frames = 0;
   int origins = 0;
-  std::vector<StructureSums> structure;  ///< structure of all bodies, then, if there are several groups, of each
-  double structure_frames = 0;           ///< number of frames in `structure`
+  std::vector<StructureSums> structure;  ///< structure of each of the StructureParts
+  double structure_frames = 0;           ///< number of frames in `structure` and `phase`
+  PhaseSums phase;
 
   /// Returns the sums over the bodies of a group (kAll: of all).
   const FrameSums& sums_of(std::size_t group) const { return group == kAll ? all : groups[group]; }
@@ -59,8 +71,8 @@ struct Block {
 
   template <class Archive, class Self>
   static void fields(Archive& archive, Self& self) {
-    archive(self.lags, self.groups, self.all, self.kinetic, self.begin, self.end, self.frames, self.origins,
-            self.structure, self.structure_frames);
+    archive(self.lags, self.overlap2, self.displaced, self.collective, self.groups, self.all, self.kinetic, self.begin,
+            self.end, self.frames, self.origins, self.structure, self.structure_frames, self.phase);
   }
 };
 
@@ -70,6 +82,7 @@ struct Gaps {
   using Gap = std::optional<MissingReason>;
   Gap collisions{};             ///< collisions, pressure, temperatures
   Gap displacements{};          ///< displacements and F_self
+  Gap overlap{};                ///< overlap and chi_4
   Gap orientations{};           ///< order and g2 of single frames
   Gap turning{};                ///< C1 and C2
   Gap rotations{};              ///< angular velocities and their integrals
@@ -83,21 +96,48 @@ struct Measured {
   explicit Measured(const ObservablesOptions& options);
 
   ObservablesOptions options;
-  std::vector<BodyRange> ranges;   ///< bodies of the groups
-  std::vector<double> weights;     ///< fractions of all bodies that the groups have
-  std::vector<double> lags;        ///< lags in rising order
-  double spacing = 0;              ///< interval between origins
-  int origins_per_block = 0;       ///< number of origins of a complete block
-  std::vector<Freedoms> freedoms;  ///< degrees of freedom of the groups; empty before the first frame
+  std::vector<BodyRange> ranges;  ///< bodies of the groups
+  std::vector<double> weights;    ///< fractions of all bodies that the groups have
+  /// Fractions of the bodies with an orientation, 0 for the others; equal to the weights if no group has one, or all.
+  std::vector<double> weights_of_rotations;
+  std::vector<double> lags;            ///< lags in rising order
+  std::vector<std::size_t> hove_lags;  ///< indices of the lags at which displacements are counted, rising
+  double spacing = 0;                  ///< interval between origins
+  int origins_per_block = 0;           ///< number of origins of a complete block
+  std::vector<Freedoms> freedoms;      ///< degrees of freedom of the groups; empty before the first frame
   std::vector<Block> blocks;
-  StructureGrid grid;        ///< grid of g(r) and S(q); not known() before the first frame
-  bool length_known = true;  ///< whether the grid's length is that of the bodies
-  int structure_every = 1;   ///< interval, in origins of a block from its first on, at which the structure is measured
+  double axial_length = 0;  ///< mean length along their axes of bodies that have an orientation; 0: not known
+  StructureGrid grid;       ///< grid of g(r) and S(q); not known() before the first frame
+  std::vector<Eigen::Vector3i> followed;  ///< wave vectors whose intensities are measured; empty before the first frame
+  bool length_known = true;               ///< whether the grid's length is that of the bodies
+  int structure_every = 1;  ///< interval, in origins of a block from its first on, at which the structure is measured
   Gaps gaps{};
 
   /// Adds a new origin with its frame, in the last block or a new one; true if blocks have been merged by pairs
   /// first.
   bool add_origin(const Simulation& simulation, const Snapshot& now);
+
+  /// Returns the director of a frame's bodies that have an orientation.
+  Eigen::Vector3d director(const Snapshot& now) const;
+
+  /// Correlates a frame with an earlier one, which has this director, at a lag, and adds that to a block.
+  void add_lag(const Snapshot& origin, const Eigen::Vector3d& director, const Snapshot& now, std::size_t lag,
+               Block& block) const;
+
+  /// Returns the amplitudes of a frame at the wave numbers, if they are wanted.
+  Amplitudes amplitudes_of(const Snapshot& frame);
+
+  /// Correlates the amplitudes of a frame with those of an earlier one, at a lag, and adds that to a block.
+  void add_collective_lag(const Amplitudes& origin, const Amplitudes& now, std::size_t lag, Block& block) const;
+
+  /// Chooses hove_lags among the lags.
+  void choose_hove_lags();
+
+  /// Makes room in a block for all that its sums hold.
+  void make_room(Block& block) const;
+
+  /// Returns the distance that bodies move by less than to overlap with where they were.
+  double overlap_length() const { return kOverlap * grid.length; }
 
   /// Adds the structure of a frame to a block.
   void add_structure(const Snapshot& now, Block& block);
@@ -105,7 +145,10 @@ struct Measured {
   /// Counts a frame in a block, and adds its order and speeds.
   void add_order(const Snapshot& now, Block& block) const;
 
-  std::size_t structure_parts() const { return ranges.size() > 1 ? ranges.size() + 1 : 1; }
+  StructureParts parts() const { return {ranges.size()}; }
+
+  /// Returns whether some groups have an orientation and others have none.
+  bool partly_oriented() const { return weights_of_rotations != weights; }
 
   /// Returns whether restored members are consistent with the options.
   bool fits(std::size_t number_of_lags) const;
@@ -114,18 +157,24 @@ struct Measured {
   template <class Archive, class Self>
   static void fields(Archive& archive, Self& self) {
     const std::size_t number_of_lags = self.lags.size();
-    archive(self.freedoms, self.lags, self.spacing, self.origins_per_block, self.grid, self.blocks);
+    archive(self.freedoms, self.lags, self.spacing, self.origins_per_block, self.axial_length, self.grid, self.followed,
+            self.blocks);
     expect(archive, self.fits(number_of_lags), "the observables do not fit together");
   }
 
  private:
   void make_groups();
+  void count_displacements(const Snapshot& origin, const Snapshot& now, std::size_t lag, Block& block) const;
   Block& open_block(const Simulation& simulation);
   void add_temperatures(const Simulation& simulation, Block& block);
+  std::vector<BodyRange> phase_parts() const;
+  PhaseSums phase(const Snapshot& now) const;
   void merge_blocks();
   bool structure_fits(const Block& block) const;
+  std::size_t collective_size() const { return kCollectiveSums * lags.size() * options.wave_numbers.size(); }
 
-  std::optional<WaveVectors> wave_vectors_;  ///< wave vectors of the grid; empty before their first use
+  std::optional<WaveVectors> wave_vectors_;     ///< wave vectors of the grid; empty before their first use
+  std::optional<WaveVectors> density_vectors_;  ///< wave vectors of the amplitudes; empty before their first use
 };
 
 /// Returns the wave vectors of S(q).

@@ -1,8 +1,11 @@
 #include "observables/block_averages.h"
 #include "observables/correlation_results.h"
 #include "observables/measured.h"
+#include "observables/order/directed_results.h"
+#include "observables/order/phase_results.h"
 #include "observables/structure_results.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace ed::internal {
@@ -36,6 +39,7 @@ class ResultsOf {
   void add_pressure(Results& results) const;
   void add_order(std::size_t group, GroupResults& results) const;
   void add_temperatures(std::size_t group, GroupResults& results) const;
+  void drop_orientation(GroupResults& results) const;
 
   const Measured& measured_;
   const Totals& totals_;
@@ -162,6 +166,17 @@ void ResultsOf::add_temperatures(std::size_t group, GroupResults& results) const
   }
 }
 
+/// Removes the order and relaxation of spheres, one species of several.
+void ResultsOf::drop_orientation(GroupResults& results) const {
+  const Estimate none = Estimate::none({MissingReason::no_orientation});
+  for (Estimate* e :
+       {&results.S, &results.t_C2_1overe, &results.tau_C2, &results.beta_C2, &results.D_rot, &results.D_rot_body}) {
+    *e = none;
+  }
+  results.director = {};
+  results.window_C2 = {};
+}
+
 Results ResultsOf::results() const {
   Results results;
   static_cast<Correlations&>(results) = correlations_.of_group(kAll);
@@ -173,7 +188,19 @@ Results ResultsOf::results() const {
     static_cast<Correlations&>(group) = single ? static_cast<const Correlations&>(results) : correlations_.of_group(g);
     add_order(g, group);
     add_temperatures(g, group);
+    group.oriented = measured_.ranges[g].oriented;
+    if (!single && !group.oriented) drop_orientation(group);
+    add_cubatic(averages_, single ? 0 : g + 1, measured_.ranges[g].three_axes, group);
   }
+  results.crosses = structure_.crosses();
+  const auto three = [](const BodyRange& r) { return r.three_axes; };
+  add_cubatic(averages_, 0, std::all_of(measured_.ranges.begin(), measured_.ranges.end(), three), results);
+  const bool nematic = !why_no_director(averages_, correlations_.turned());
+  results.director.exists = nematic && results.director.axis.allFinite();
+  for (GroupResults& group : results.groups) {
+    group.director.exists = results.director.exists && (single || group.oriented);
+  }
+  add_phase(averages_, results);
   if (single) results.axis_kT = results.groups[0].axis_kT;
   return results;
 }

@@ -1,9 +1,7 @@
 #include "observables/structure.h"
 
-#include "base/legendre.h"
-#include "base/periodic.h"
+#include "base/lanes.h"
 #include "base/sincos.h"
-#include "cells/grid.h"
 
 #include <ed/random.h>
 #include <ed/system.h>
@@ -33,18 +31,9 @@ constexpr double kLogScaleStep = 0.00995;  ///< ln kScaleStep
 constexpr double kScaleSpread = 0.08;      ///< spread of ln s from one shape of bodies to the next
 constexpr double kClearPeak = 5;           ///< standard errors by which that has to stand out
 constexpr int kTries = 12;                 ///< draws for each wave vector that is to be new
-constexpr int kFewBodies = 1000;           ///< number of bodies up to which all pairs are visited: quicker than cells
 
 constexpr std::size_t kAtATime = 512;  ///< bodies whose phases are tabulated at once
 constexpr int kLargestPower = 500;     ///< largest power of a phase that is tabulated
-
-/// Returns the one of n and -n that stands for both.
-Vector3i one_of_two(const Vector3i& n) {
-  for (int k = 0; k < 3; ++k) {
-    if (n[k] != 0) return n[k] < 0 ? Vector3i(-n) : n;
-  }
-  return n;
-}
 
 /// Vectors in a shell, in units of 2 pi / box.
 std::vector<Vector3i> draw_vectors(double from, double to, int most, Random& random) {
@@ -58,6 +47,30 @@ std::vector<Vector3i> draw_vectors(double from, double to, int most, Random& ran
     found.push_back(n);
   }
   return found;
+}
+
+/// Largest length, in 2 pi / box, up to which the vectors of a shell are listed and not drawn.
+constexpr double kListedTo = 40;
+
+/// Returns all vectors of a shell, in units of 2 pi / box; `most` of them, evenly taken from the list, if there are
+/// more.
+std::vector<Vector3i> list_vectors(double from, double to, int most) {
+  std::vector<Vector3i> all;
+  const int end = static_cast<int>(std::ceil(to));
+  for (int x = 0; x <= end; ++x) {
+    for (int y = -end; y <= end; ++y) {
+      for (int z = -end; z <= end; ++z) {
+        const Vector3i n(x, y, z);
+        const double size = n.cast<double>().norm();
+        if (size > 0 && size >= from && size < to && n == one_of_two(n)) all.push_back(n);
+      }
+    }
+  }
+  const auto wanted = static_cast<std::size_t>(most);
+  if (all.size() <= wanted) return all;
+  std::vector<Vector3i> some;
+  for (std::size_t k = 0; k < wanted; ++k) some.push_back(all[k * all.size() / wanted]);
+  return some;
 }
 
 /// exp(i k x) of all bodies for k = 0, 1, .. along one axis: real and imaginary parts, those of one k together.
@@ -78,12 +91,7 @@ struct Phases {
   }
 };
 
-/// A complex number.
-struct Amplitude {
-  double re = 0, im = 0;
-};
-
-/// Adds the sum of exp(i q.r) over the bodies.
+/// Adds the sum of exp(i q.r) over the bodies: those of even and of odd number apart.
 void add_amplitude(const Phases (&phases)[3], const Vector3i& n, std::size_t bodies, Amplitude& sum) {
   const auto at = [&](int axis) { return static_cast<std::size_t>(std::abs(n[axis])) * bodies; };
   const double* const xr = &phases[0].re[at(0)];
@@ -92,15 +100,27 @@ void add_amplitude(const Phases (&phases)[3], const Vector3i& n, std::size_t bod
   const double* const yi = &phases[1].im[at(1)];
   const double* const zr = &phases[2].re[at(2)];
   const double* const zi = &phases[2].im[at(2)];
-  const double sx = n.x() < 0 ? -1 : 1;
-  const double sy = n.y() < 0 ? -1 : 1;
+  const double sy = n.y() < 0 ? -1 : 1;  // n.x() is not below 0: one_of_two
   const double sz = n.z() < 0 ? -1 : 1;
-  for (std::size_t i = 0; i < bodies; ++i) {
-    const double pr = xr[i] * yr[i] - sx * sy * xi[i] * yi[i];
-    const double pi = sy * xr[i] * yi[i] + sx * xi[i] * yr[i];
-    sum.re += pr * zr[i] - sz * pi * zi[i];
-    sum.im += sz * pr * zi[i] + pi * zr[i];
+  Lanes re = {0, 0};
+  Lanes im = {0, 0};
+  std::size_t i = 0;
+  for (; i + 2 <= bodies; i += 2) {
+    const Lanes y = sy * both(yi + i);
+    const Lanes z = sz * both(zi + i);
+    const Lanes pr = both(xr + i) * both(yr + i) - both(xi + i) * y;
+    const Lanes pi = both(xr + i) * y + both(xi + i) * both(yr + i);
+    re += pr * both(zr + i) - pi * z;
+    im += pr * z + pi * both(zr + i);
   }
+  for (; i < bodies; ++i) {
+    const double pr = xr[i] * yr[i] - xi[i] * sy * yi[i];
+    const double pi = xr[i] * sy * yi[i] + xi[i] * yr[i];
+    re[0] += pr * zr[i] - pi * sz * zi[i];
+    im[0] += pr * sz * zi[i] + pi * zr[i];
+  }
+  sum.re += re[0] + re[1];
+  sum.im += im[0] + im[1];
 }
 
 /// Adds that sum body by body, without tabulated phases.
@@ -112,70 +132,14 @@ void add_amplitude(const std::vector<Vector3d>& positions, BodyRange range, cons
   }
 }
 
-/// Puts a pair where it belongs.
-class PairCounter {
- public:
-  PairCounter(const StructureGrid& grid, const Snapshot& snapshot, const std::vector<BodyRange>& ranges,
-              std::vector<StructureSums>& sums)
-      : snapshot_(snapshot), sums_(sums), bins_(grid.bins()), scale_(static_cast<double>(bins_) / grid.reach()) {
-    group_.resize(snapshot.position.size());
-    for (std::size_t g = 0; g < ranges.size(); ++g) {
-      std::fill(group_.begin() + static_cast<std::ptrdiff_t>(ranges[g].begin),
-                group_.begin() + static_cast<std::ptrdiff_t>(ranges[g].end), g);
-    }
-  }
-
-  void count(std::size_t i, std::size_t j, double squared_distance) {
-    const auto bin = static_cast<std::size_t>(std::sqrt(squared_distance) * scale_);
-    if (bin >= bins_) return;
-    const double value = p2(snapshot_.axis[i].dot(snapshot_.axis[j]));
-    add(sums_[0], bin, value);
-    if (sums_.size() > 1 && group_[i] == group_[j]) add(sums_[group_[i] + 1], bin, value);
-  }
-
- private:
-  static void add(StructureSums& sums, std::size_t bin, double value) {
-    sums.pairs[bin] += 1;
-    sums.p2[bin] += value;
-  }
-
-  const Snapshot& snapshot_;
-  std::vector<StructureSums>& sums_;
-  std::size_t bins_;
-  double scale_;
-  std::vector<std::size_t> group_;  ///< group of each body
-};
-
-void count_all(const StructureGrid& grid, const Snapshot& snapshot, PairCounter& counter) {
-  const double reach2 = grid.reach() * grid.reach();
-  std::vector<Vector3d> wrapped;
-  for (const Vector3d& r : snapshot.position) wrapped.push_back(nearest_image(r, grid.box));
-  const double half = 0.5 * grid.box;
-  const auto image = [&](double x) { return std::abs(x) > half ? std::abs(x) - grid.box : x; };
-  for (std::size_t i = 0; i < wrapped.size(); ++i) {
-    for (std::size_t j = i + 1; j < wrapped.size(); ++j) {
-      const Vector3d d = wrapped[j] - wrapped[i];
-      const double x = image(d.x()), y = image(d.y()), z = image(d.z());
-      const double r2 = x * x + y * y + z * z;
-      if (r2 < reach2) counter.count(i, j, r2);
-    }
-  }
-}
-
-void count_in_cells(const StructureGrid& grid, const Snapshot& snapshot, PairCounter& counter) {
-  const auto number = static_cast<int>(snapshot.position.size());
-  CellGrid cells(number, grid.box, grid.reach());
-  for (int i = 0; i < number; ++i) cells.place(i, snapshot.position[static_cast<std::size_t>(i)]);
-  std::vector<NearBody> buffer;
-  for (int i = 0; i < number; ++i) {
-    const auto at = static_cast<std::size_t>(i);
-    for (const NearBody& other : cells.collect(snapshot.position[at], grid.reach(), buffer)) {
-      if (other.body > i) counter.count(at, static_cast<std::size_t>(other.body), other.r.squaredNorm());
-    }
-  }
-}
-
 }  // namespace
+
+Vector3i one_of_two(const Vector3i& n) {
+  for (int k = 0; k < 3; ++k) {
+    if (n[k] != 0) return n[k] < 0 ? Vector3i(-n) : n;
+  }
+  return n;
+}
 
 // ---- Grid
 
@@ -221,9 +185,34 @@ WaveVectors::WaveVectors(const StructureGrid& grid, double from, double to, int 
   }
 }
 
-std::vector<double> WaveVectors::structure_factor(const std::vector<Vector3d>& positions, BodyRange range) const {
+WaveVectors::WaveVectors(double box, const std::vector<Vector3i>& each) : box_(box) {
+  for (const Vector3i& n : each) {
+    vectors_.push_back({one_of_two(n)});
+    wave_numbers_.push_back(2 * std::numbers::pi / box * n.cast<double>().norm());
+    largest_ = std::max(largest_, n.cwiseAbs().maxCoeff());
+  }
+}
+
+WaveVectors::WaveVectors(double box, const std::vector<double>& about, int most)
+    : box_(box), vectors_(about.size()), wave_numbers_(about.size(), 0) {
+  Random random(1);
   const double unit = 2 * std::numbers::pi / box_;
-  std::vector<std::vector<Amplitude>> sums;
+  for (std::size_t shell = 0; shell < about.size(); ++shell) {
+    const double centre = about[shell] / unit;
+    if (centre < 0.5) continue;
+    const double from = centre - 0.5;
+    const double to = centre + 0.5;
+    vectors_[shell] = to > kListedTo ? draw_vectors(from, to, most, random) : list_vectors(from, to, most);
+    for (const Vector3i& n : vectors_[shell]) {
+      largest_ = std::max(largest_, n.cwiseAbs().maxCoeff());
+      wave_numbers_[shell] += unit * n.cast<double>().norm() / static_cast<double>(vectors_[shell].size());
+    }
+  }
+}
+
+Amplitudes WaveVectors::amplitudes(const std::vector<Vector3d>& positions, BodyRange range) const {
+  const double unit = 2 * std::numbers::pi / box_;
+  Amplitudes sums;
   for (const std::vector<Vector3i>& shell : vectors_) sums.emplace_back(shell.size());
   for (std::size_t begin = range.begin; begin < range.end; begin += kAtATime) {
     const BodyRange some{begin, std::min(range.end, begin + kAtATime), false};
@@ -242,11 +231,24 @@ std::vector<double> WaveVectors::structure_factor(const std::vector<Vector3d>& p
       }
     }
   }
+  return sums;
+}
+
+std::vector<double> WaveVectors::structure_factor(const std::vector<Vector3d>& positions, BodyRange range) const {
+  const Amplitudes sums = amplitudes(positions, range);
+  return internal::structure_factor(sums, sums, range.size(), range.size());
+}
+
+std::vector<double> structure_factor(const Amplitudes& a, const Amplitudes& b, double n_a, double n_b) {
   std::vector<double> S;
-  for (const std::vector<Amplitude>& shell : sums) {
+  const double bodies = n_a == n_b ? n_a : std::sqrt(n_a * n_b);
+  for (std::size_t shell = 0; shell < a.size(); ++shell) {
+    const std::size_t vectors = a[shell].size();
     double sum = 0;
-    for (const Amplitude& a : shell) sum += a.re * a.re + a.im * a.im;
-    S.push_back(shell.empty() ? 0 : sum / (static_cast<double>(shell.size()) * range.size()));
+    for (std::size_t v = 0; v < vectors; ++v) {
+      sum += a[shell][v].re * b[shell][v].re + a[shell][v].im * b[shell][v].im;
+    }
+    S.push_back(vectors == 0 ? 0 : sum / (static_cast<double>(vectors) * bodies));
   }
   return S;
 }
@@ -265,9 +267,9 @@ bool stands_out(double height, double error) {
 }
 
 Peak first_peak(const std::vector<double>& q, const std::vector<double>& S, double length) {
-  constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
+  constexpr double kNoPeak = std::numeric_limits<double>::quiet_NaN();
   const std::size_t top = highest(q, S, length);
-  if (top == S.size()) return {kNothing, kNothing};
+  if (top == S.size()) return {kNoPeak, kNoPeak};
   const Peak peak{q[top], S[top]};
   if (top < 1 || top + 1 >= q.size() || !(q[top - 1] > 0 && q[top + 1] > 0)) return peak;
   // Newton's divided differences about the top.
@@ -376,24 +378,6 @@ double likely_peak(const WaveVectors& vectors, const std::vector<double>& S, dou
   if (const auto clear = clear_peak(vectors, S, frames, grid.length)) return *clear;
   return best_scale(vectors, S, frames, grid.length, packing_fraction) * percus_yevick_peak(packing_fraction) /
          grid.length;
-}
-
-// ---- Pairs
-
-std::vector<StructureSums> count_pairs(const StructureGrid& grid, const Snapshot& snapshot,
-                                       const std::vector<BodyRange>& ranges) {
-  std::vector<StructureSums> sums(ranges.size() > 1 ? ranges.size() + 1 : 1);
-  for (StructureSums& part : sums) {
-    part.pairs.assign(grid.bins(), 0);
-    part.p2.assign(grid.bins(), 0);
-  }
-  PairCounter counter(grid, snapshot, ranges, sums);
-  if (snapshot.position.size() <= kFewBodies) {
-    count_all(grid, snapshot, counter);
-  } else {
-    count_in_cells(grid, snapshot, counter);
-  }
-  return sums;
 }
 
 }  // namespace ed::internal

@@ -34,7 +34,22 @@ struct StructureGrid {
 
 StructureGrid structure_grid(const System& system);
 
-/// Sums over frames of the pairs of some bodies, and of their S(q).
+/// Parts whose structure is summed apart: all bodies; with several groups each group; with 2 to kMostCrossedSpecies
+/// also each two groups.
+struct StructureParts {
+  std::size_t groups;
+
+  bool crossed() const { return groups > 1 && groups <= kMostCrossedSpecies; }
+  std::size_t size() const { return groups < 2 ? 1 : 1 + groups + (crossed() ? groups * (groups - 1) / 2 : 0); }
+  std::size_t of_group(std::size_t group) const { return groups < 2 ? 0 : 1 + group; }
+  /// Returns the part of two groups, a < b, if crossed().
+  std::size_t of_pair(std::size_t a, std::size_t b) const {
+    return 1 + groups + a * (2 * groups - a - 1) / 2 + (b - a - 1);
+  }
+};
+
+/// Sums over frames of the pairs of some bodies, and of their S(q). Of two groups: of the pairs of a body of one and a
+/// body of the other.
 struct StructureSums {
   std::vector<double> pairs;  ///< number of pairs in each bin
   std::vector<double> p2;     ///< sum of P2(u_i.u_j) over them
@@ -48,6 +63,18 @@ struct StructureSums {
   }
 };
 
+/// Sum of exp(i q.r) over bodies: a complex number.
+struct Amplitude {
+  double re = 0;
+  double im = 0;
+};
+
+/// Amplitudes at the vectors of each shell.
+using Amplitudes = std::vector<std::vector<Amplitude>>;
+
+/// Returns the one of n and -n that stands for both: its first component that is not 0 is positive.
+Eigen::Vector3i one_of_two(const Eigen::Vector3i& n);
+
 /// Wave vectors of the box, some in each shell.
 class WaveVectors {
  public:
@@ -55,11 +82,20 @@ class WaveVectors {
   /// -q, which give the same, count as one.
   WaveVectors(const StructureGrid& grid, double from, double to, int most);
 
+  /// Takes a shell about each of these wave numbers: all vectors whose length differs from it by at most pi / box, or
+  /// `most` of them. Empty for wave numbers below pi / box.
+  WaveVectors(double box, const std::vector<double>& about, int most);
+  /// Takes these vectors, in units of 2 pi / box, one a shell.
+  WaveVectors(double box, const std::vector<Eigen::Vector3i>& each);
+
   /// Returns the mean wave number of each shell; 0 for an empty one.
   const std::vector<double>& wave_numbers() const { return wave_numbers_; }
 
   /// Returns the number of vectors in a shell.
   std::size_t number(std::size_t shell) const { return vectors_[shell].size(); }
+
+  /// Returns the sums of exp(i q.r) over the bodies of a range.
+  Amplitudes amplitudes(const std::vector<Eigen::Vector3d>& positions, BodyRange range) const;
 
   /// Returns S(q) = <|sum of exp(i q.r)|^2> / n over the vectors of each shell, n the bodies of the range.
   std::vector<double> structure_factor(const std::vector<Eigen::Vector3d>& positions, BodyRange range) const;
@@ -71,9 +107,18 @@ class WaveVectors {
   std::vector<double> wave_numbers_;
 };
 
-/// Returns the pairs of each range, and with more than one range first those of all bodies.
+/// Returns the real part of <a conj(b)> / sqrt(n_a n_b) over the vectors of each shell, 0 for an empty one: S(q) of the
+/// bodies of one group, or S_ab(q) of two by the definition of Ashcroft and Langreth (Phys. Rev. 156 (1967) 685).
+std::vector<double> structure_factor(const Amplitudes& a, const Amplitudes& b, double n_a, double n_b);
+
+/// Returns the pairs of each of the StructureParts of these ranges. P2 is summed over pairs of bodies that both have an
+/// orientation (over all, if no body has one).
 std::vector<StructureSums> count_pairs(const StructureGrid& grid, const Snapshot& snapshot,
                                        const std::vector<BodyRange>& ranges);
+
+/// Sets S of each of the StructureParts of these ranges.
+void add_structure_factors(const Snapshot& snapshot, const std::vector<BodyRange>& ranges, const WaveVectors& vectors,
+                           std::vector<StructureSums>& sums);
 
 /// A maximum of S(q).
 struct Peak {

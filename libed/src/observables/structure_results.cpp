@@ -18,7 +18,7 @@ StructureResults::StructureResults(const BlockAverages& averages)
   if (!measured_.grid.known()) return;
   wave_vectors_.emplace(wave_vectors_of(measured_.grid));
   if (measured_.blocks.empty()) return;
-  sums_.resize(measured_.structure_parts());
+  sums_.resize(measured_.parts().size());
   for (std::size_t part = 0; part < sums_.size(); ++part) {
     std::vector<Sum>& sums = sums_[part];
     sums.emplace_back();
@@ -35,7 +35,7 @@ StructureResults::StructureResults(const BlockAverages& averages)
 }
 
 std::size_t StructureResults::part_of(std::size_t group) const {
-  return group == kAll || measured_.ranges.size() == 1 ? 0 : group + 1;
+  return group == kAll ? 0 : measured_.parts().of_group(group);
 }
 
 /// Returns the sum over one block, or (nullptr) over all.
@@ -44,10 +44,30 @@ const StructureResults::Sum& StructureResults::sum_of(std::size_t part, const Bl
   return sums_[part][static_cast<std::size_t>(one - measured_.blocks.data()) + 1];
 }
 
-void StructureResults::add_pairs(std::size_t part, double number, Correlations& results) const {
+/// Returns <P2> of the pairs of a bin whose bodies both have an orientation; NaN if there are none.
+double StructureResults::mean_p2(std::size_t part, std::size_t bin, const Block* one) const {
+  double pairs = sum_of(part, one).sums.pairs[bin];
+  if (part == 0 && measured_.partly_oriented()) {
+    const StructureParts parts = measured_.parts();
+    if (!parts.crossed()) return kNothing;
+    pairs = 0;
+    for (std::size_t a = 0; a < parts.groups; ++a) {
+      if (!measured_.ranges[a].oriented) continue;
+      pairs += sum_of(parts.of_group(a), one).sums.pairs[bin];
+      for (std::size_t b = a + 1; b < parts.groups; ++b) {
+        if (measured_.ranges[b].oriented) pairs += sum_of(parts.of_pair(a, b), one).sums.pairs[bin];
+      }
+    }
+  }
+  return pairs > 0 ? sum_of(part, one).sums.p2[bin] / pairs : kNothing;
+}
+
+/// Returns g and g2 of a part with this number of pairs.
+std::vector<PairRow> StructureResults::pair_rows(std::size_t part, double pairs, bool oriented) const {
+  std::vector<PairRow> rows;
   const StructureGrid& grid = measured_.grid;
   const double width = grid.reach() / static_cast<double>(grid.bins());
-  const double density = 0.5 * number * (number - 1) / (grid.box * grid.box * grid.box);
+  const double density = pairs / (grid.box * grid.box * grid.box);
   for (std::size_t k = 0; k < grid.bins(); ++k) {
     const double inner = width * static_cast<double>(k);
     const double outer = inner + width;
@@ -56,13 +76,38 @@ void StructureResults::add_pairs(std::size_t part, double number, Correlations& 
       const Sum& sum = sum_of(part, one);
       return sum.sums.pairs[k] / (sum.frames * density * shell);
     });
-    Estimate g2 = averages_.with_block_error(0, [&](const Block* one) {
-      const StructureSums& sums = sum_of(part, one).sums;
-      return sums.pairs[k] > 0 ? sums.p2[k] / sums.pairs[k] : kNothing;
-    });
+    Estimate g2 = averages_.with_block_error(0, [&](const Block* one) { return mean_p2(part, k, one); });
+    if (!oriented) g2 = Estimate::none({MissingReason::no_orientation});
     if (const auto gap = measured_.gaps.orientations) g2 = Estimate::none({*gap});
-    results.pairs.push_back({0.5 * (inner + outer), g, g2});
+    rows.push_back({0.5 * (inner + outer), g, g2});
   }
+  return rows;
+}
+
+std::vector<WaveRow> StructureResults::wave_rows(std::size_t part) const {
+  std::vector<WaveRow> rows;
+  const std::vector<double>& q = wave_vectors_->wave_numbers();
+  for (std::size_t k = 0; k < q.size(); ++k) {
+    if (!(q[k] > 0)) continue;
+    rows.push_back({q[k], averages_.with_block_error(0, [&](const Block* one) { return sum_of(part, one).S[k]; })});
+  }
+  return rows;
+}
+
+std::vector<CrossStructure> StructureResults::crosses() const {
+  std::vector<CrossStructure> list;
+  const StructureParts parts = measured_.parts();
+  if (sums_.empty() || !parts.crossed()) return list;
+  for (std::size_t a = 0; a < parts.groups; ++a) {
+    for (std::size_t b = a + 1; b < parts.groups; ++b) {
+      const BodyRange& of_a = measured_.ranges[a];
+      const BodyRange& of_b = measured_.ranges[b];
+      const std::size_t part = parts.of_pair(a, b);
+      list.push_back({static_cast<int>(a), static_cast<int>(b),
+                      pair_rows(part, of_a.size() * of_b.size(), of_a.oriented && of_b.oriented), wave_rows(part)});
+    }
+  }
+  return list;
 }
 
 Estimate StructureResults::peak(std::size_t part, double Peak::*member) const {
@@ -74,13 +119,10 @@ Estimate StructureResults::peak(std::size_t part, double Peak::*member) const {
 void StructureResults::add_to(Correlations& results, std::size_t group) const {
   if (sums_.empty()) return;
   const std::size_t part = part_of(group);
-  add_pairs(part, group == kAll ? measured_.options.number : measured_.ranges[group].size(), results);
-  const std::vector<double>& q = wave_vectors_->wave_numbers();
-  for (std::size_t k = 0; k < q.size(); ++k) {
-    if (!(q[k] > 0)) continue;
-    results.structure.push_back(
-        {q[k], averages_.with_block_error(0, [&](const Block* one) { return sum_of(part, one).S[k]; })});
-  }
+  const double number = group == kAll ? measured_.options.number : measured_.ranges[group].size();
+  const bool oriented = group == kAll || measured_.ranges.size() == 1 || measured_.ranges[group].oriented;
+  results.pairs = pair_rows(part, 0.5 * number * (number - 1), oriented);
+  results.structure = wave_rows(part);
   if (has_peak(part)) {
     results.q_peak = peak(part, &Peak::q);
     results.S_peak = peak(part, &Peak::S);

@@ -10,13 +10,16 @@
 
 namespace ed::internal {
 
-/// Results of the static structure. Parts are all bodies, then, if there are several groups, each.
+/// Results of the static structure, of the StructureParts.
 class StructureResults {
  public:
   explicit StructureResults(const BlockAverages& averages);
 
   /// Adds g(r), g2(r), S(q) and its peak of a part to the results.
   void add_to(Correlations& results, std::size_t group) const;
+
+  /// Returns the structure of each two groups.
+  std::vector<CrossStructure> crosses() const;
 
   /// Returns the first wave number of all bodies by the rule of runs; nullopt without structure.
   std::optional<double> first_wave_number_of_all() const;
@@ -38,7 +41,9 @@ class StructureResults {
   double first_wave_number() const;
   std::optional<double> clear_peak_of(std::size_t part) const;
   bool has_peak(std::size_t part) const;
-  void add_pairs(std::size_t part, double number, Correlations& results) const;
+  std::vector<PairRow> pair_rows(std::size_t part, double pairs, bool oriented) const;
+  std::vector<WaveRow> wave_rows(std::size_t part) const;
+  double mean_p2(std::size_t part, std::size_t bin, const Block* one) const;
   Estimate peak(std::size_t part, double Peak::*member) const;
 
   const BlockAverages& averages_;

@@ -1,3 +1,4 @@
+#include "base/poll.h"
 #include "neighbours/limits.h"
 #include "start/lattice_cells.h"
 #include "start/nematic.h"
@@ -190,8 +191,8 @@ std::string numbers_of_mixture(const Request& request, double most) {
   const double unit = std::pow(10, std::floor(std::log10(exact)) - 3);
   const double most = std::floor(exact / unit) * unit;
   std::ostringstream message;
-  message << "packing_fraction is " << request.options.packing_fraction << ": " << request.number << " bodies in "
-          << cells.x() << " x " << cells.y() << " x " << cells.z() << " cells of the "
+  message << "packing_fraction is " << request.options.packing_fraction << " and number is " << request.number
+          << ": bodies in " << cells.x() << " x " << cells.y() << " x " << cells.z() << " cells of the "
           << to_string(request.options.lattice) << " lattice overlap; accepted: at most " << most;
   if (!request.body) {
     message << numbers_of_mixture(request, most);
@@ -243,7 +244,8 @@ void shuffle(std::vector<Vector3i>& sites, Random& random) {
 }
 
 /// Returns the smallest box, `box` or larger, in which no two of these bodies overlap.
-double free_box_of(const System& system, Lattice lattice, const Vector3i& cells, const std::vector<Vector3i>& sites) {
+double free_box_of(const System& system, const LatticeOptions& options, const Vector3i& cells,
+                   const std::vector<Vector3i>& sites) {
   const auto place = [&](Vector3i p) {
     for (int k = 0; k < 3; ++k) p[k] = (p[k] + 2 * cells[k]) % (2 * cells[k]);
     return (static_cast<std::size_t>(p.z()) * static_cast<std::size_t>(2 * cells.y()) +
@@ -258,8 +260,9 @@ double free_box_of(const System& system, Lattice lattice, const Vector3i& cells,
     bodies.push_back({&system.species_of(static_cast<int>(i)).shape, system.bodies[i].rotation});
   }
   double box = system.box;
-  for (const Vector3i& p : near_vectors(lattice, cells, reach_of(bodies) / box)) {
+  for (const Vector3i& p : near_vectors(options.lattice, cells, reach_of(bodies) / box)) {
     for (std::size_t i = 0; i < sites.size(); ++i) {
+      internal::poll_at(static_cast<int>(i), options.poll);
       box = free_box(box, bodies[i], bodies[body_at[place(sites[i] + p)]], in_box(p, cells));
     }
   }
@@ -292,6 +295,7 @@ System lattice_start(const std::vector<Component>& components, const LatticeOpti
   axes.reserve(components.size());
   for (const Component& component : components) axes.push_back(axis_of(component.species, options));
   for (std::size_t i = 0; i < sites.size(); ++i) {
+    internal::poll_at(static_cast<int>(i), options.poll);
     Body& body = system.bodies[i];
     // Shifted by a quarter of a cell: no body is on a face of the box.
     const Vector3d quarter = Vector3d(0.25, 0.25, 0.25).cwiseQuotient(cells.cast<double>());
@@ -299,12 +303,12 @@ System lattice_start(const std::vector<Component>& components, const LatticeOpti
     body.rotation = internal::aligned(axes[static_cast<std::size_t>(body.species)]);
   }
   if (!request.body) {
-    const double box = free_box_of(system, options.lattice, cells, sites);
+    const double box = free_box_of(system, options, cells, sites);
     if (box > request.box) refuse_packing(request, cells, box);
   }
   if (options.nematic_order) {
     const auto numbers = [&] { return filling(request, request.number) < kFits ? numbers_that_fit(request) : ""; };
-    internal::turn_to_order(system, axes, *options.nematic_order, random, numbers);
+    internal::turn_to_order(system, axes, *options.nematic_order, random, numbers, options.poll);
   }
   internal::number_along_curve(system);
   internal::draw_velocities(system, random);

@@ -1,5 +1,6 @@
 #include "start/nematic.h"
 
+#include "base/poll.h"
 #include "cells/grid.h"
 #include "start/parts.h"
 
@@ -85,9 +86,10 @@ constexpr double kMostTilt = 1;
 /// Bodies that rotate about their centres.
 class RotationMoves {
  public:
-  RotationMoves(System& system, const std::vector<int>& axes, double order)
+  RotationMoves(System& system, const std::vector<int>& axes, double order, const std::function<void()>& poll)
       : system_(system),
         axes_(axes),
+        poll_(poll),
         least_(order),
         most_tilt_(kMostTilt / std::sqrt(system.size())),
         cells_(system.size(), system.box, reach_of(system)) {
@@ -105,7 +107,10 @@ class RotationMoves {
 
   void sweep(Random& random) {
     int accepted = 0;
-    for (int i = 0; i < system_.size(); ++i) accepted += try_turn(i, random) ? 1 : 0;
+    for (int i = 0; i < system_.size(); ++i) {
+      poll_at(i, poll_);
+      accepted += try_turn(i, random) ? 1 : 0;
+    }
     // The step is adjusted to accept a third of the rotations, or limited to the largest meaningful one.
     step_ = std::min(1.0, step_ * (3 * accepted > system_.size() ? 1.1 : 0.9));
   }
@@ -157,6 +162,7 @@ class RotationMoves {
 
   System& system_;
   const std::vector<int>& axes_;
+  const std::function<void()>& poll_;
   double least_;
   double order_ = 0;
   Vector2d tilt_ = Vector2d::Zero();
@@ -196,9 +202,9 @@ std::string shown(double order) {
 }  // namespace
 
 void turn_to_order(System& system, const std::vector<int>& axes, double order, Random& random,
-                   const std::function<std::string()>& other_numbers) {
+                   const std::function<std::string()>& other_numbers, const std::function<void()>& poll) {
   check_order(order);
-  RotationMoves moves(system, axes, order);
+  RotationMoves moves(system, axes, order, poll);
   for (double before = 2; !moves.arrived();) {
     double mean = 0;
     for (int k = 0; k < kRound && !moves.arrived(); ++k) {

@@ -35,9 +35,9 @@ class NematicOrientations {
 /// Maier and Saupe's distribution for large numbers.
 ///
 /// `axes`: the ordered axis of each species. Throws std::invalid_argument if rotations do not reach the order, naming
-/// nematic_order and, if there are any, `other_numbers` of bodies that have more room.
+/// nematic_order and, if there are any, `other_numbers` of bodies that have more room. `poll`: see LatticeOptions.
 void turn_to_order(System& system, const std::vector<int>& axes, double order, Random& random,
-                   const std::function<std::string()>& other_numbers);
+                   const std::function<std::string()>& other_numbers, const std::function<void()>& poll);
 
 /// Returns the body axis that has the order: that of revolution, or body z.
 int ordered_axis(const Species& species);

@@ -1,3 +1,4 @@
+#include "base/poll.h"
 #include "cells/grid.h"
 #include "neighbours/limits.h"
 #include "start/nematic.h"
@@ -62,6 +63,13 @@ System empty_box(const std::vector<Component>& components, double packing_fracti
   return system;
 }
 
+/// Reports the packing fraction that is reached. Throws std::runtime_error if the start is to stop.
+void report(const StartOptions& options, double packing_fraction) {
+  if (options.progress && !options.progress(packing_fraction)) {
+    throw std::runtime_error("interrupted during the compression");
+  }
+}
+
 /// Inserts bodies by random sequential insertion into a box large enough for it.
 System insert_bodies(const std::vector<Component>& components, const StartOptions& options, Random& random) {
   System system = empty_box(components, options.packing_fraction);
@@ -71,7 +79,9 @@ System insert_bodies(const std::vector<Component>& components, const StartOption
   internal::CellGrid cells(system.size(), system.box, reach);
   std::vector<geom::Pose> poses;
   std::vector<internal::NearBody> near;
+  const double share = packing_fraction(system) / system.size();
   for (int i = 0; i < system.size(); ++i) {
+    internal::poll_at(i, [&] { report(options, i * share); });
     // Drawn once a body: if it were drawn again with each position, aligned bodies would be accepted more often.
     Matrix3d orientation;
     if (nematic) orientation = nematic->draw(internal::ordered_axis(system.species_of(i)), random);
@@ -136,7 +146,9 @@ void clear(const StartOptions& options) {
 System compress(const System& system, double target_box, const StartOptions& options) {
   const System light = with_unit_masses(system);
   const double longest_pause = time_unit(light);
-  Simulation simulation(light);
+  SimulationOptions methods;
+  methods.poll = [&] { report(options, packing_fraction(light)); };
+  Simulation simulation(light, methods);
   // The box shrinks at fixed times, not after a given number of collisions: right after a collision two bodies touch. A
   // pause of a few collisions moves the closest pair apart, which is all that the next step needs; its length follows
   // the collision rate.
@@ -148,11 +160,7 @@ System compress(const System& system, double target_box, const StartOptions& opt
   double usual_gain = 0;
   double checkpoint = simulation.box();
   const auto reached = [&] { return options.packing_fraction * std::pow(target_box / simulation.box(), 3); };
-  const auto look_up = [&] {
-    if (options.progress && !options.progress(reached())) {
-      throw std::runtime_error("interrupted during the compression");
-    }
-  };
+  const auto look_up = [&] { report(options, reached()); };
   for (int round = 1; simulation.box() > target_box; ++round) {
     const std::uint64_t before = simulation.counters().collisions;
     const double end = simulation.time() + pause;

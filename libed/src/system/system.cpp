@@ -1,3 +1,4 @@
+#include "base/poll.h"
 #include "base/power_of_two.h"
 #include "cells/grid.h"
 #include "contact/body_shapes.h"
@@ -12,6 +13,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <sstream>
@@ -225,7 +227,7 @@ KineticState kinetic_state(const System& system) {
   return state;
 }
 
-Audit audit(const System& system) {
+Audit audit(const System& system, const std::function<void()>& poll) {
   Audit result;
   result.minimum_distance = system.box;
   result.kinetic = kinetic_state(system);
@@ -249,6 +251,7 @@ Audit audit(const System& system) {
   }
   std::vector<internal::NearBody> near;
   for (int i = 0; i < n; ++i) {
+    internal::poll_at(i, poll);
     const geom::Pose& X_i = poses[static_cast<std::size_t>(i)];
     for (const auto& [j, r] : cells.collect(X_i.position(), reach, near)) {
       if (j <= i) continue;

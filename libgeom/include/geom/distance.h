@@ -91,9 +91,9 @@ struct [[nodiscard]] DistanceResult {
 /// `error_bound`, mostly 1e-9 of the size, 1e-3 at most, or the pair is declined. (The normal returned is a local
 /// maximum to second order, no saddle, where g has second derivatives; at edges and vertices it is the best one found,
 /// and the bound limits how much better another one could be.) The search takes 0.05 to 0.2 milliseconds for
-/// ellipsoids. For superellipsoids it takes 0.03 to 0.12 at a depth of 1e-6 of the size, 0.2 to 0.3 at 0.1
-/// (docs/accuracy.md, bench_superellipsoid), and 100 at its limit of kMostDepthSamples, for instance if a body sits in
-/// the centre of a round one. Penetration::local mostly avoids it.
+/// ellipsoids, 0.2 to 0.3 for superellipsoids at a depth of 0.1 of the size, 0.03 to 0.12 at 1e-6 for those with an
+/// exponent above 1, which have no curvature radius (docs/accuracy.md, bench_superellipsoid), and 100 at its limit of
+/// kMostDepthSamples, for instance if a body sits in the centre of a round one. Penetration::local mostly avoids it.
 ///
 /// Long bodies that overlap nearly parallel to each other are the exception: all normals across them are nearly as
 /// good, and the bounds are relative to the length, not to the thickness. Parallel needles take 0.4 milliseconds at an
@@ -121,15 +121,17 @@ GEOM_EXPORT DistanceResult distance(const Ellipsoid& a, const Pose& X_WA, const 
 /// (kernel/norm_body_pair.h).
 ///
 /// Answers are certified by two bounds, g(n) from below and the distance of two points from above, that differ by less
-/// than kBoundGap (1e-12) of the sum of both bounding radii; `error_bound` is their difference. Overlaps are searched
-/// as above. For bodies apart the normal is within sqrt(2 (error_bound + rounding, 1e-15 of the size) / distance) of
-/// the true one (radian), because g(n) <= distance times the cosine of that angle.
+/// than kBoundGap (1e-12) of the sum of both bounding radii; `error_bound` is their difference. Overlaps down to the
+/// sum of both `min_curvature_radius` are certified as closely, by the balls that roll inside the bodies, in 2 to 4
+/// microseconds; deeper ones are searched as above. For bodies apart the normal is within sqrt(2 (error_bound +
+/// rounding, 1e-15 of the size) / distance) of the true one (radian), because g(n) <= distance times the cosine of that
+/// angle.
 ///
-/// Accuracy for aspect ratios up to 10: within 1e-12 of the size of the pair for bodies apart; within `error_bound` for
-/// overlaps, which is 1e-9 of the size, and 1e-7 where faces meet (docs/accuracy.md). Some flatter and longer bodies,
-/// up to kMaxAspectRatio (1e4), need the slow last resort, up to a tenth of a second. If they are apart, or slightly
-/// overlapping, their distance is certified to kWidestGap (1e-9), or declined, and whether they overlap is certain only
-/// if |distance| is larger than `error_bound` (docs/accuracy.md counts such pairs).
+/// Accuracy for aspect ratios up to 10: within 1e-12 of the size of the pair for bodies apart and shallow overlaps;
+/// within `error_bound` for deeper ones, which is 1e-9 of the size, and 1e-7 where faces meet (docs/accuracy.md). Some
+/// flatter and longer bodies, up to kMaxAspectRatio (1e4), need the slow last resort, up to a tenth of a second. If
+/// they are apart, or slightly overlapping, their distance is certified to kWidestGap (1e-9), or declined, and whether
+/// they overlap is certain only if |distance| is larger than `error_bound` (docs/accuracy.md counts such pairs).
 /// @{
 GEOM_EXPORT DistanceResult distance(const Superellipsoid& a, const Pose& X_WA, const Superellipsoid& b,
                                     const Pose& X_WB, const DistanceOptions& options = {});

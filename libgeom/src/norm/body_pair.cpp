@@ -228,9 +228,23 @@ Vector3d NormBodyPair::cold_normal() const {
   return unit_or_x(Q.inverse() * r_);
 }
 
+Vector3d NormBodyPair::between_balls(const LaneVector& on_surface) const {
+  const LaneVector centres = on_surface - rolling_ * bodies_.normals(on_surface);
+  return r_ + centres.b() - centres.a();
+}
+
+/// Bounds the depth of an overlap by the balls that roll inside the bodies, at the points found.
+void NormBodyPair::bound_depth(Answer& answer) const {
+  const double rho = sum(rolling_);
+  if (!(answer.at.g + rho > 0)) return;
+  const double upper = between_balls(bodies_.on_surface(answer.points)).norm() - rho;
+  answer.gap = std::min(answer.gap, std::max(0.0, upper - answer.at.g));
+}
+
 /// Returns whether an answer of one of the methods ends the query.
-bool NormBodyPair::ends(const Answer& answer, Penetration penetration) const {
+bool NormBodyPair::ends(Answer& answer, Penetration penetration) const {
   if (!answer.converged) return false;
+  if (!(answer.at.g > 0)) bound_depth(answer);
   if (answer.at.g > 0 || answer.gap < kBoundGap * scale_) return true;
   return penetration == Penetration::local && shares_a_point(answer);
 }
@@ -249,8 +263,7 @@ bool NormBodyPair::shares_a_point(const Answer& answer) const {
 }
 
 /// Returns a local maximum of g uphill of n. If the support points still disagree there, on flat faces, it is found by
-/// contact elements, whose points bound g around it better than the support points can (kernel/sphere_search.h; rho is
-/// 0 here).
+/// contact elements, whose points bound g around it better than the support points can (kernel/sphere_search.h).
 Tangent NormBodyPair::climbed(const Vector3d& n, double rounding, int& iterations) const {
   const Answer by_n = dual(n, Patience::all, kMaxIterations, iterations);
   Tangent top = tangent(by_n.at.n);
@@ -259,8 +272,7 @@ Tangent NormBodyPair::climbed(const Vector3d& n, double rounding, int& iteration
   if (!by_both.converged) return top;
   Tangent other = tangent(by_both.at.n);
   if (!(other.g >= top.g - rounding)) return top;
-  const LaneVector on = bodies_.on_surface(by_both.points);
-  other.p = r_ + on.b() - on.a();
+  other.p = between_balls(bodies_.on_surface(by_both.points)) - sum(rolling_) * other.n;
   return other;
 }
 
@@ -274,7 +286,7 @@ NormBodyPair::Answer NormBodyPair::search(const Vector3d& start, int& iterations
   const auto climb = [&](const Vector3d& n) { return climbed(n, rounding, iterations); };
   const auto up = [&](const Vector3d& n) { return upward(sample(n), rounding); };
   const auto polish = [&](const Vector3d& n) { return climb_over_saddles(at, climb, up, n, rounding); };
-  SphereSearch<decltype(at), decltype(polish)> sphere(at, polish, 0, polish(start), rounding);
+  SphereSearch<decltype(at), decltype(polish)> sphere(at, polish, sum(rolling_), polish(start), rounding);
   sphere.run_to(kDepthGap * scale_, kMostDepthSamples);
   const bool apart = sphere.best().g > 0;
   if (apart) {

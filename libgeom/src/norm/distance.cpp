@@ -11,6 +11,7 @@ namespace {
 
 using Eigen::Vector3d;
 using kernel::DualSample;
+using kernel::Lanes;
 using kernel::NormBodies;
 using kernel::NormBodyPair;
 using Answer = NormBodyPair::Answer;
@@ -20,7 +21,8 @@ DistanceResult norm_body_distance(const A& a, const Pose& X_WA, const B& b, cons
                                   const DistanceOptions& options) {
   const Vector3d r = X_WB.position() - X_WA.position();
   const NormBodyPair pair(NormBodies(kernel::NormShape(a), X_WA.rotation(), kernel::NormShape(b), X_WB.rotation()), r,
-                          a.bounding_radius() + b.bounding_radius(), a.inscribed_radius() + b.inscribed_radius());
+                          a.bounding_radius() + b.bounding_radius(), a.inscribed_radius() + b.inscribed_radius(),
+                          Lanes{a.min_curvature_radius(), b.min_curvature_radius()});
   DistanceResult result;
   const Vector3d cold = pair.cold_normal();
   const Answer answer =

@@ -52,6 +52,47 @@ double largest(const Vector3d& k, double p1, double p2) {
   return std::sqrt(plane_norm(plane_norm(k.x(), k.y(), dual(p2)), k.z(), dual(p1)));
 }
 
+/// Returns a lower bound of all radii of curvature of a superellipsoid whose exponents are at most 1; `R`: its bounding
+/// radius, `section`: that of its section across z.
+///
+/// The radii at the normal n are the values of v.H v, H = hess h(n), for unit v across n. The support function is h(n)
+/// = M(u), u = (a n_x, b n_y, c n_z), with M the nested norm of exponents q1 = 2 / (2 - e1), q2 = 2 / (2 - e2), both
+/// within (1, 2].
+///
+/// Since H n = 0, v may be replaced by w = v + t n, which is no shorter, with t chosen so that grad h.w = 0. Then
+/// h w.H w = w.hess(h^2 / 2) w. Let W = (a w_x, b w_y, c w_z), m the norm of (u_x, u_y), and primes derivatives along
+/// w. For norms of powers
+///
+///     m m'' = (q2 - 1) (S - m'^2),   S = m^(2 - q2) (|u_x|^(q2 - 2) W_x^2 + |u_y|^(q2 - 2) W_y^2),
+///     w.hess(M^2 / 2) w = (2 - q1) M'^2 + (q1 - 1) M^(2 - q1) (m^(q1 - 2) m'^2 + |u_z|^(q1 - 2) W_z^2)
+///                         + M^(2 - q1) m^(q1 - 2) m m'',
+///
+/// S >= m'^2 by Cauchy and Schwarz, and M' = grad h.w = 0. With k = min(q1, q2) - 1 therefore
+///
+///     v.H v >= M^(1 - q1) (k m^(q1 - 2) S + (q1 - 1) |u_z|^(q1 - 2) W_z^2).                                       (1)
+///
+/// Here |u_x| <= a, |u_y| <= b, |u_z| <= c, M <= R, |u_x| and |u_y| <= m <= `section`. The coefficient of w_z^2 is at
+/// least `along`; that of w_x^2, k M^(1 - q1) m^(q1 - q2) |u_x|^(q2 - 2) a^2, is at least k a (a / R)^(q1 - 1) if q1 >=
+/// q2 (by m >= |u_x|), else as much times (a / section)^(q2 - q1); that of w_y^2 likewise: `across`, a now the smaller
+/// of a and b. Since |w| >= 1, the smallest of the three bounds v.H v.
+///
+/// A second bound uses that n and v are normal to each other. With k in place of q1 - 1, the sum (1) is w.D w with D n
+/// along grad h, hence D-normal to w: w.D w is at least 1 / (the largest v.D^-1 v of unit v across n). By the steps
+/// above, D^-1 has elements of at most |n_i|^(2 - Q) / d_i, Q = max(q1, q2), d_i >= d = min(k / (q1 - 1) along,
+/// across). The function x^(1 - Q / 2) is concave, and sum n_i^2 v_i^2 <= 1/2: with m = n x v it is at most sum (n_i^2
+/// + v_i^2)^2 / 4 = sum (1 - m_i^2)^2 / 4 = (1 + sum m_i^4) / 4. By Jensen's inequality, v.D^-1 v <= (1/2)^(1 - Q / 2)
+/// / d.
+double curvature_bound(const Vector3d& axes, double R, double section, double e1, double e2) {
+  const double q1 = 2 / (2 - e1);
+  const double q2 = 2 / (2 - e2);
+  const double k = std::min(q1, q2) - 1;
+  const double a = std::min(axes.x(), axes.y());
+  const double along = (q1 - 1) * axes.z() * std::pow(axes.z() / R, q1 - 1);
+  const double across = k * a * std::pow(a / R, q1 - 1) * std::pow(a / section, std::max(0.0, q2 - q1));
+  const double sharper = std::pow(2, 1 - 0.5 * std::max(q1, q2)) * std::min(k / (q1 - 1) * along, across);
+  return std::max(std::min(along, across), sharper);
+}
+
 }  // namespace
 
 Superellipsoid::Superellipsoid(const Vector3d& semi_axes, double e1, double e2)
@@ -63,13 +104,17 @@ Superellipsoid::Superellipsoid(const Vector3d& semi_axes, double e1, double e2)
   if (is_ellipsoid()) {
     bounding_radius_ = semi_axes.maxCoeff();
     inscribed_radius_ = semi_axes.minCoeff();
+    min_curvature_radius_ = inscribed_radius_ * (inscribed_radius_ / bounding_radius_);
     return;
   }
   // Scaled, so that squares neither underflow nor overflow. |n|^2 is largest, for given h(n), where h is smallest for
   // unit n.
   const double size = semi_axes.maxCoeff();
-  bounding_radius_ = size * largest((semi_axes / size).cwiseAbs2(), 2 / e1, 2 / e2);
-  inscribed_radius_ = size / largest((semi_axes / size).cwiseAbs2().cwiseInverse(), 2 / (2 - e1), 2 / (2 - e2));
+  const Vector3d squares = (semi_axes / size).cwiseAbs2();
+  bounding_radius_ = size * largest(squares, 2 / e1, 2 / e2);
+  inscribed_radius_ = size / largest(squares.cwiseInverse(), 2 / (2 - e1), 2 / (2 - e2));
+  const double section = size * largest({squares.x(), squares.y(), 0}, 2 / e1, 2 / e2);
+  min_curvature_radius_ = has_vertices() ? 0 : curvature_bound(semi_axes, bounding_radius_, section, e1, e2);
 }
 
 double Superellipsoid::norm(const Vector3d& x) const {

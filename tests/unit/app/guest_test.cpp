@@ -171,7 +171,7 @@ TEST(Lines, AreNotNamedOfATextWithoutAFile) {
       message_of([] { (void)read_config(read_toml("[shape]\naspect_ratio = 2\n", "config", {}, Lines::unnamed)); });
   EXPECT_TRUE(missing.starts_with("config: system.packing_fraction is missing")) << missing;
   const std::string grid = message_of([&] {
-    (void)parse_sweep("[grid]\nsystem.number = []\n[shape]\naspect_ratio = 2\n", "config", "", Lines::unnamed);
+    (void)parse_sweep("[grid]\nsystem.number = []\n[shape]\naspect_ratio = 2\n", "config", "", {}, Lines::unnamed);
   });
   EXPECT_TRUE(grid.starts_with("config: ")) << grid;
   EXPECT_TRUE(grid.find("config:") == grid.rfind("config:")) << grid;

@@ -96,7 +96,7 @@ TEST(Registry, AnEntryIsInTheTable) {
 TEST(Registry, AnEntryIsInReportsAndSweeps) {
   const RegisteredObservable entry(test_observable());
   const auto summary = nlohmann::json::parse(summary_json(record_of_a_run()));
-  const std::vector<Headline> headlines = headlines_of(summary["observables"]);
+  const std::vector<Headline> headlines = headlines_of(summary["observables"], true);
   EXPECT_EQ(headlines.back().name, "Ratio of the diffusions");
   EXPECT_EQ(headlines.back().value, 1.5);
   EXPECT_EQ(headline_named("anisotropy").symbol, "A_test");
@@ -135,7 +135,11 @@ TEST(Registry, PlotsDrawColumnsAndValuesThatThereAre) {
     EXPECT_EQ(file == nullptr, plot.file.empty()) << plot.id;
     for (const CurveLine& line : plot.lines) {
       std::set<std::string> names;
-      for (const Column& c : file->columns) names.insert(c.name);
+      for (const Column& c : file->columns) {
+        names.insert(c.name);
+        // A column of each edge of the box may be drawn by itself.
+        for (const char* edge : kBodyAxes) names.insert(c.split == Split::edges ? c.name + "_" + edge : c.name);
+      }
       for (const BlockColumn& c : block_columns()) names.insert(c.name);
       EXPECT_TRUE(names.contains(line.column)) << plot.id << ": " << line.column;
       for (const std::string& key : line.fit.keys) EXPECT_NE(find_observable(key), nullptr) << plot.id << ": " << key;

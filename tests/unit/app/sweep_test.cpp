@@ -3,6 +3,7 @@
 #include "base/errors.h"
 #include "io/csv_table.h"
 #include "plot/contours.h"
+#include "sweep/changes.h"
 #include "sweep/file.h"
 #include "sweep/grid.h"
 
@@ -174,25 +175,36 @@ TEST(SweepFiles, DocumentIsTheSameAgain) {
   const std::string text = document_text(sweep.whole);
   const hardbody::TomlDocument again = hardbody::read_toml(text, "again", {});
   EXPECT_EQ(document_text(again), text);
-  EXPECT_FALSE(changed_key(sweep.whole, again).has_value());
+  EXPECT_NO_THROW(hardbody::check_continues(hardbody::parse_sweep(text, "again", "."), sweep, "out"));
   EXPECT_THAT(document_text(sweep.base), testing::Not(HasSubstr("grid")));
+}
+
+/// Returns the message with which a sweep is refused to continue another one; "accepted" if it is not.
+std::string refusal_to_continue(const SweepFile& before, const SweepFile& now) {
+  try {
+    hardbody::check_continues(before, now, "out");
+  } catch (const hardbody::InputError& error) {
+    return error.what();
+  }
+  return "accepted";
 }
 
 TEST(SweepFiles, ChangedKeyIsNamed) {
   const std::string grid =
       "[grid]\nshape.aspect_ratio = [1, 2]\nsystem.packing_fraction = {from = 0.1, to = 0.2, step = 0.1}\n";
   const SweepFile before = sweep_of(grid);
-  EXPECT_FALSE(
-      changed_key(before.whole, sweep_of("[grid]\nsystem.packing_fraction = {from = 0.1, step = 0.1, to = 0.2}\n"
-                                         "shape.aspect_ratio = [1, 2.0]\n")
-                                    .whole)
-          .has_value());
-  const auto changed = changed_key(before.whole, sweep_of(grid + "seed = 7\n").whole);
-  ASSERT_TRUE(changed.has_value());
-  EXPECT_EQ(changed->key, "grid.seed");
-  EXPECT_EQ(changed->before, "not there");
-  EXPECT_EQ(changed->now, "7");
-  EXPECT_EQ(changed->where, "sweep.toml:10");
+  const SweepFile same =
+      sweep_of("[grid]\nsystem.packing_fraction = {from = 0.1, step = 0.1, to = 0.2}\nshape.aspect_ratio = [1, 2.0]\n");
+  EXPECT_EQ(refusal_to_continue(before, same), "accepted");
+  EXPECT_THAT(refusal_to_continue(before, sweep_of(grid + "seed = 7\n")),
+              HasSubstr("sweep.toml:10: grid.seed is 7, but not there in the sweep that out holds"));
+}
+
+TEST(SweepFiles, MorePointsContinue) {
+  const SweepFile before = sweep_of("[grid]\nshape.aspect_ratio = [1, 2]\n");
+  EXPECT_EQ(refusal_to_continue(before, sweep_of("[grid]\nshape.aspect_ratio = [0.5, 1, 1.5, 2]\n")), "accepted");
+  EXPECT_THAT(refusal_to_continue(before, sweep_of("[grid]\nshape.aspect_ratio = [1, 3]\n")),
+              HasSubstr("lacks the point aspect_ratio=2"));
 }
 
 TEST(SweepFiles, PointsHaveTheConfigOfTheirValues) {

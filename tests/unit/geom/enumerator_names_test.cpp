@@ -30,6 +30,7 @@ const std::map<std::string, ToString> kToString = {
     {"ContactStatus", name<ed::ContactStatus>},
     {"DistanceMethod", name<ed::DistanceMethod>},
     {"DistanceStatus", name<geom::DistanceStatus>},
+    {"EquilibratedBy", name<ed::EquilibratedBy>},
     {"EventKind", name<ed::EventKind>},
     {"FailureReason", name<ed::FailureReason>},
     {"Finder", name<ed::Finder>},

@@ -8,9 +8,12 @@
 
 #include <geom/geom.h>
 
+#include <Eigen/Eigenvalues>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -192,6 +195,42 @@ TEST(Superellipsoid, RadiiAreTight) {
     EXPECT_NEAR(furthest, shape.bounding_radius(), 1e-3 * shape.bounding_radius()) << shape.e1() << ' ' << shape.e2();
     EXPECT_NEAR(nearest, shape.inscribed_radius(), 2e-3 * shape.inscribed_radius()) << shape.e1() << ' ' << shape.e2();
   }
+}
+
+/// Returns the smallest radius of curvature among many normals, also near the planes of symmetry.
+double sampled_curvature_radius(const Superellipsoid& shape, Random& random) {
+  double least = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < 4000; ++k) {
+    Vector3d n = random.direction();
+    if (k % 2 == 0) {
+      for (int i = 0; i < 3; ++i) n[i] *= random.log_uniform(1e-3, 1);
+      n.normalize();
+    }
+    const Vector3d e = n.unitOrthogonal();
+    Eigen::Matrix<double, 3, 2> across;
+    across << e, n.cross(e);
+    const Eigen::Matrix2d H = across.transpose() * shape.support_hessian(n) * across;
+    least = std::min(least, Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(H, Eigen::EigenvaluesOnly).eigenvalues()[0]);
+  }
+  return least;
+}
+
+TEST(Superellipsoid, CurvatureRadiusIsALowerBoundOfUse) {
+  Random random(6);
+  for (const double e1 : {0.2, 0.35, 0.5, 0.8, 1.0}) {
+    for (const double e2 : {0.2, 0.4, 0.5, 0.9, 1.0}) {
+      for (const Vector3d& axes : {Vector3d(1, 1, 1), Vector3d(1, 2, 3), Vector3d(1, 1, 3), Vector3d(3, 3, 1),
+                                   Vector3d(1, 0.3, 2), Vector3d(2, 1, 0.1)}) {
+        const Superellipsoid shape(axes, e1, e2);
+        const double sampled = sampled_curvature_radius(shape, random);
+        ASSERT_LE(shape.min_curvature_radius(), sampled * (1 + 1e-9)) << shape.description();
+        const bool superball = e1 == e2 && axes == Vector3d(1, 1, 1);
+        EXPECT_GE(shape.min_curvature_radius(), (superball ? 0.95 : 0.14) * sampled) << shape.description();
+      }
+    }
+  }
+  EXPECT_EQ(Superellipsoid({1, 2, 3}, 0.5, 1.2).min_curvature_radius(), 0);
+  EXPECT_EQ(Superellipsoid({1, 2, 3}, 1.2, 0.5).min_curvature_radius(), 0);
 }
 
 TEST(Superellipsoid, RefusesBadInputByName) {

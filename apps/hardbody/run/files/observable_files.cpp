@@ -26,24 +26,29 @@ bool has_axes(const ed::Correlations& correlations) {
 }
 
 /// All bodies, then, where there are several species, each.
-std::vector<const ed::Correlations*> parts_of(const ed::Results& results) {
-  std::vector<const ed::Correlations*> parts = {&results};
+std::vector<const ed::GroupResults*> parts_of(const ed::Results& results) {
+  std::vector<const ed::GroupResults*> parts = {&results};
   if (results.groups.size() > 1) {
     for (const ed::GroupResults& group : results.groups) parts.push_back(&group);
   }
   return parts;
 }
 
-/// A column of the file: one of a registered column, of one part.
+/// A column of the file: one of a registered column, of one part or of two species.
 struct PartColumn {
   const Column* column;
   const ed::Correlations* part;
-  std::size_t k;  ///< axis or wave number
+  std::size_t k;  ///< axis, wave number or lag
   std::string name;
+  const ed::CrossStructure* cross = nullptr;
 
-  ed::Estimate at(std::size_t row) const { return column->value(*part, row, k); }
+  ed::Estimate at(std::size_t row) const {
+    return cross != nullptr ? column->cross(*cross, row) : column->value(*part, row, k);
+  }
   /// Returns the value at lag 0; none for displacements and orientations, which need none.
-  ed::Estimate at_zero() const { return column->at_zero != nullptr ? part->*column->at_zero : ed::Estimate{}; }
+  ed::Estimate at_zero() const {
+    return column->at_zero != nullptr && part != nullptr ? part->*column->at_zero : ed::Estimate{};
+  }
 };
 
 void add_columns(const Column& column, const ed::Correlations& part, const std::string& name,
@@ -57,9 +62,24 @@ void add_columns(const Column& column, const ed::Correlations& part, const std::
         list.push_back({&column, &part, k, fmt::format("{}_{}", name, kBodyAxes[k])});
       }
       return;
+    case Split::edges:
+      for (std::size_t k = 0; k < kBodyAxes.size(); ++k) {
+        list.push_back({&column, &part, k, fmt::format("{}_{}", name, kBodyAxes[k])});
+      }
+      return;
     case Split::wave_numbers:
       for (std::size_t k = 0; !part.lags.empty() && k < part.lags[0].f_self.size(); ++k) {
         list.push_back({&column, &part, k, fmt::format("{}_q{}", name, k + 1)});
+      }
+      return;
+    case Split::collective:
+      for (std::size_t k = 0; !part.lags.empty() && k < part.lags[0].f_collective.size(); ++k) {
+        list.push_back({&column, &part, k, fmt::format("{}_q{}", name, k + 1)});
+      }
+      return;
+    case Split::lags:
+      for (std::size_t k = 0; k < part.displacement_lags.size(); ++k) {
+        list.push_back({&column, &part, k, fmt::format("{}_t{}", name, k + 1)});
       }
       return;
   }
@@ -67,10 +87,18 @@ void add_columns(const Column& column, const ed::Correlations& part, const std::
 
 std::vector<PartColumn> columns_of(const CurveFile& file, const ed::Results& results) {
   std::vector<PartColumn> list;
-  const std::vector<const ed::Correlations*> parts = parts_of(results);
+  const std::vector<const ed::GroupResults*> parts = parts_of(results);
   for (std::size_t p = 0; p < parts.size(); ++p) {
     for (const Column& column : file.columns) {
+      if (p > 0 && column.of_orientation && !parts[p]->oriented) continue;
       add_columns(column, *parts[p], p == 0 ? column.name : fmt::format("{}_{}", column.name, p), list);
+    }
+  }
+  for (const ed::CrossStructure& cross : results.crosses) {
+    const auto is_oriented = [&](int group) { return results.groups[static_cast<std::size_t>(group)].oriented; };
+    for (const Column& column : file.columns) {
+      if (!column.cross || (column.of_orientation && !(is_oriented(cross.a) && is_oriented(cross.b)))) continue;
+      list.push_back({&column, nullptr, 0, fmt::format("{}_{}_{}", column.name, cross.a + 1, cross.b + 1), &cross});
     }
   }
   return list;
@@ -83,21 +111,44 @@ std::vector<double> abscissae(Rows rows, const ed::Results& results) {
     for (const ed::LagRow& row : results.lags) list.push_back(row.lag);
   } else if (rows == Rows::pairs) {
     for (const ed::PairRow& row : results.pairs) list.push_back(row.r);
+  } else if (rows == Rows::displacements) {
+    for (const ed::DisplacementRow& row : results.displacements) list.push_back(row.r);
   } else {
     for (const ed::WaveRow& row : results.structure) list.push_back(row.q);
   }
   return list;
 }
 
-CurveTable blocks_table(const ed::Results& results) {
+/// Returns the table of rows that are told by columns of their own: blocks of the run, Bragg peaks.
+template <class Column, class Row>
+CurveTable table_of(const std::vector<Column>& columns, const std::vector<Row>& rows) {
   CurveTable table;
-  for (const BlockColumn& c : block_columns()) {
+  for (const Column& c : columns) {
     table.columns.push_back(c.name);
     table.units.push_back(c.unit);
   }
-  for (const ed::BlockRow& row : results.blocks) {
+  for (const Row& row : rows) {
     std::vector<double>& values = table.rows.emplace_back();
-    for (const BlockColumn& c : block_columns()) values.push_back(c.value(row));
+    for (const Column& c : columns) values.push_back(c.value(row));
+  }
+  return table;
+}
+
+/// The numbers of summary.json: of all bodies, species 0, then of each.
+CurveTable species_table(const ed::Results& results) {
+  CurveTable table;
+  table.columns.emplace_back("species");
+  table.units.emplace_back("1");
+  const std::vector<const ed::GroupResults*> parts = parts_of(results);
+  for (std::size_t p = 0; p < parts.size(); ++p) table.rows.push_back({static_cast<double>(p)});
+  for (const Observable* o : observables_by(&Places::summary)) {
+    if (!is_number(*o) || numbers_of(*o, {results.groups[0]}).empty()) continue;
+    table.columns.insert(table.columns.end(), {o->key, o->key + "_error"});
+    table.units.insert(table.units.end(), {o->unit, o->unit});
+    for (std::size_t p = 0; p < parts.size(); ++p) {
+      const ed::Estimate e = numbers_of(*o, {*parts[p]})[0];
+      table.rows[p].insert(table.rows[p].end(), {e.value, e.error});
+    }
   }
   return table;
 }
@@ -113,7 +164,9 @@ void name_abscissa(Rows rows, CurveTable& table) {
 }  // namespace
 
 CurveTable curve_table(const CurveFile& file, const ed::Results& results) {
-  if (file.rows == Rows::blocks) return blocks_table(results);
+  if (file.rows == Rows::blocks) return table_of(block_columns(), results.blocks);
+  if (file.rows == Rows::species) return results.groups.empty() ? CurveTable{} : species_table(results);
+  if (file.rows == Rows::peaks) return table_of(peak_columns(), results.bragg);
   const std::vector<PartColumn> columns = columns_of(file, results);
   CurveTable table;
   name_abscissa(file.rows, table);

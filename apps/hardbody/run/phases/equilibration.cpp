@@ -1,6 +1,7 @@
 #include "run/phases/equilibration.h"
 
 #include "base/signals.h"
+#include "run/equilibrated.h"
 #include "run/phases/runner.h"
 
 #include <fmt/format.h>
@@ -65,6 +66,12 @@ std::string drift_text(const ed::Relaxation& relaxation) {
                      relaxation.Z_change, relaxation.S_change);
 }
 
+/// Returns the reason for which an ordered state does not count as equilibrated; empty for others.
+std::string ordered_text(const ed::Relaxation& relaxation) {
+  const bool ordered = relaxation.order.nematic || relaxation.order.crystal;
+  return ordered ? "; " + why_not_equilibrated(relaxation) : "";
+}
+
 /// Chosen on a copy of the state: every finder and every kind of neighbour list then goes on from the same start.
 void tune_envelope(const Config& config, const Start& start, Equilibration& result, Progress& progress, Saver& saver,
                    Log& log) {
@@ -89,6 +96,7 @@ Checkpoint checkpoint_of(const Start& start) {
   checkpoint.system = start.system;
   checkpoint.counters_of_start = start.counters;
   checkpoint.failures_of_start = start.failures;
+  checkpoint.packing_of_file = start.packing_of_file;
   return checkpoint;
 }
 
@@ -103,6 +111,7 @@ std::optional<EquilibrationRun> begin_equilibration(const Config& config, const 
   Equilibration result;
   result.counters_of_start = start.counters;
   result.failures_of_start = start.failures;
+  result.packing_of_file = start.packing_of_file;
   if (config.packing_fraction >= kTunedPacking && config.neighbour_search() != ed::Neighbours::cells) {
     tune_envelope(config, start, result, progress, saver, log);
     // The best of those that were tried would not be that of an undisturbed run.
@@ -148,11 +157,15 @@ Equilibration equilibrate(const Config& config, EquilibrationRun& run, Progress&
                        result.stopped ? "stopped" : "done", result.time, relaxation.relaxations,
                        decays_text(relaxation), relaxation.q,
                        config.species.size() > 1 ? " (of the slowest species)" : ""));
+  if (relaxation.by == ed::EquilibratedBy::stationarity) {
+    log.line("equilibration: order and Z are stationary: " + order_text(relaxation));
+  }
   if (!config.equilibration_time && !result.stopped && !result.reached()) {
-    announce(fmt::format("warning: not equilibrated after {:g} time units: {} (wanted below 0.05, twice in a row), {}; "
-                         "production goes on",
-                         result.time, decays_text(relaxation), drift_text(relaxation)),
-             progress, log);
+    announce(
+        fmt::format("warning: not equilibrated after {:g} time units: {} (wanted below 0.05, twice in a row), {}{}; "
+                    "production goes on",
+                    result.time, decays_text(relaxation), drift_text(relaxation), ordered_text(relaxation)),
+        progress, log);
   }
   return result;
 }

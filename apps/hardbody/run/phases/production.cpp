@@ -14,6 +14,9 @@ namespace {
 
 /// "auto": production in units of the equilibration time, and its limits. Times are in units of Config::time_unit.
 constexpr double kProductionFactor = 30;
+/// Longest lag of "auto" where production is long and the equilibration was shorter: the relaxation is over by then,
+/// and longer lags would only add to the errors of diffusion coefficients.
+constexpr double kLagOfAuto = 40;
 /// Least longest lag of "auto", in collisions of a body. Diffusion coefficients are fitted from 0.4 of it on, and a
 /// velocity is forgotten in about 1.5 collisions, so that exp(-7) of it is left there.
 constexpr double kLagCollisions = 25;
@@ -34,22 +37,32 @@ double usual_length(const Config& config, const Equilibration& equilibration) {
   return std::clamp(kProductionFactor * equilibration.time, kLeastProduction * unit, kMostProduction * unit);
 }
 
+/// Returns the longest lag of a production "auto".
+double lag_of_auto(const Config& config, const Equilibration& equilibration) {
+  const double share = usual_length(config, equilibration) / kLags;
+  // A state that was slow to equilibrate decays as slowly.
+  const double lag = std::min(share, std::max(kLagOfAuto * config.time_unit, equilibration.time));
+  return std::max(lag, std::min(dilute_lag(config, equilibration), kMostProduction * config.time_unit / kLags));
+}
+
+/// Returns the time of the first test of a target error.
+double first_look(const Production& plan) {
+  return std::min(kLags * plan.longest_lag, plan.planned);
+}
+
 /// Plans the length of production and what is measured in it.
 Production planned_production(const Config& config, const Equilibration& equilibration) {
   Production plan;
   const double length = usual_length(config, equilibration);
-  const double longest_lag = kLongestLag * config.time_unit;
   const double most = kMostProduction * config.time_unit;
   if (config.production_time) {
     plan.planned = *config.production_time;
-    plan.longest_lag = std::min(plan.planned / kLags, longest_lag);
+    plan.longest_lag = config.longest_lag.value_or(plan.planned / kLags);
   } else {
-    // A state that was slow to equilibrate decays as slowly.
-    plan.longest_lag = std::min(length / kLags, std::max(longest_lag, equilibration.time));
-    plan.longest_lag = std::max(plan.longest_lag, std::min(dilute_lag(config, equilibration), most / kLags));
-    plan.planned = config.target_error ? most : std::max(length, kLags * plan.longest_lag);
+    plan.longest_lag = config.longest_lag.value_or(lag_of_auto(config, equilibration));
+    plan.planned = config.target_error ? most : std::clamp(kLags * plan.longest_lag, length, most);
   }
-  plan.next_look = kLags * plan.longest_lag;
+  plan.next_look = first_look(plan);
   const double q = equilibration.relaxation.q;
   plan.wave_numbers = config.wave_numbers;
   if (plan.wave_numbers.empty()) plan.wave_numbers = ed::wave_numbers_about(q);
@@ -82,6 +95,8 @@ ed::ObservablesOptions observables_options(const Config& config, const Productio
   options.longest_lag = production.longest_lag;
   options.wave_numbers = production.wave_numbers;
   options.groups = config.groups();
+  options.collective = config.collective;
+  options.bonds = config.bonds();
   return options;
 }
 
@@ -157,6 +172,21 @@ ProductionRun resumed_production(const Config& config, Checkpoint& checkpoint, c
   run.events.check(state.files.events);
   run.trajectory.check(state.files.trajectory);
   return run;
+}
+
+Production extended_production(const Config& longer, const Production& production) {
+  Production result = production;
+  result.planned = *longer.production_time;
+  result.next_look = first_look(result);
+  result.precise = false;
+  return result;
+}
+
+std::string extended_observables(const Config& config, const Config& longer, const RunState& state) {
+  ed::Observables observables =
+      ed::Observables::restore(state.observables.bytes(), observables_options(config, state.production));
+  observables.extend(*longer.production_time);
+  return observables.save();
 }
 
 Checkpoint checkpoint_of(ProductionRun& run) {

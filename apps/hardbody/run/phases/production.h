@@ -39,6 +39,11 @@ ProductionRun begin_production(const Config& config, Equilibration equilibration
 ProductionRun resumed_production(const Config& config, Checkpoint& checkpoint, const RunDirectory& directory,
                                  const std::string& name);
 
+/// Returns the plan of a production that goes on to the time that `longer` names, as a new run would have it.
+Production extended_production(const Config& longer, const Production& production);
+/// Returns the stored observables of `state` for a longer production. Throws std::invalid_argument if they do not fit.
+std::string extended_observables(const Config& config, const Config& longer, const RunState& state);
+
 /// Appends the collisions so far to events.csv and what is waiting to the trajectories, which throws if they cannot be
 /// written.
 Checkpoint checkpoint_of(ProductionRun& run);

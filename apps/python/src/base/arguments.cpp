@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t kLongestText = 60;
 
 /// Returns a value as messages show it: its repr if that is short, else its type.
-std::string shown(nb::handle value) {
+std::string value_text(nb::handle value) {
   if (PyLong_Check(value.ptr())) {
     int overflow = 0;  // Python refuses to print very long integers
     PyLong_AsLongLongAndOverflow(value.ptr(), &overflow);
@@ -47,7 +47,7 @@ bool read_plain(nb::handle value, double& out) {
 }  // namespace
 
 void refuse_type(const std::string& name, nb::handle value, const std::string& accepted) {
-  throw nb::type_error((name + " is " + shown(value) + "; accepted: " + accepted).c_str());
+  throw nb::type_error((name + " is " + value_text(value) + "; accepted: " + accepted).c_str());
 }
 
 void refuse_value(const std::string& name, const std::string& value, const std::string& accepted) {
@@ -101,7 +101,7 @@ long long integer(nb::handle value, const char* name, long long least, long long
   }
   int overflow = 0;
   const long long read = PyLong_AsLongLongAndOverflow(index.ptr(), &overflow);
-  if (overflow != 0 || read < least || read > most) refuse_value(name, shown(index), accepted);
+  if (overflow != 0 || read < least || read > most) refuse_value(name, value_text(index), accepted);
   return read;
 }
 
@@ -140,10 +140,16 @@ Eigen::Vector3d direction3(nb::handle value, const char* name) {
   return vector;
 }
 
+bool truth(nb::handle value, const std::string& name, const std::string& accepted) {
+  const bool is_bool = PyBool_Check(value.ptr()) || nb::isinstance(value, nb::module_::import_("numpy").attr("bool_"));
+  if (!is_bool) refuse_type(name, value, accepted);
+  return PyObject_IsTrue(value.ptr()) == 1;
+}
+
 std::string_view text(nb::handle value, const char* name, const std::string& accepted) {
   std::string_view read;
   if (!nb::isinstance<nb::str>(value) || !nb::try_cast(value, read, false)) refuse_type(name, value, accepted);
-  if (read.find('\0') != std::string_view::npos) refuse_value(name, shown(value), accepted);  // messages end there
+  if (read.find('\0') != std::string_view::npos) refuse_value(name, value_text(value), accepted);  // messages end there
   return read;
 }
 

@@ -61,6 +61,9 @@ Eigen::Vector3d finite_vector3(nb::handle value, const char* name);
 /// Returns a finite vector that is not zero.
 Eigen::Vector3d direction3(nb::handle value, const char* name);
 
+/// Returns a bool, Python's or NumPy's.
+bool truth(nb::handle value, const std::string& name, const std::string& accepted = "True or False");
+
 /// Returns the text of a string.
 std::string_view text(nb::handle value, const char* name, const std::string& accepted);
 

@@ -17,7 +17,7 @@
 namespace hardbody::python {
 namespace {
 
-std::string shown(const std::vector<std::size_t>& shape) {
+std::string shape_text(const std::vector<std::size_t>& shape) {
   std::string text = "(";
   for (std::size_t k = 0; k < shape.size(); ++k) text += (k == 0 ? "" : ", ") + std::to_string(shape[k]);
   return text + (shape.size() == 1 ? ",)" : ")");
@@ -144,7 +144,18 @@ NewArray<T> kept_array(const std::vector<std::size_t>& shape, std::unique_ptr<Ke
 }  // namespace
 
 void refuse_shape(const std::string& name, const std::vector<std::size_t>& shape, const std::string& accepted) {
-  throw nb::value_error((name + " has shape " + shown(shape) + "; accepted: " + accepted).c_str());
+  throw nb::value_error((name + " has shape " + shape_text(shape) + "; accepted: " + accepted).c_str());
+}
+
+std::string entry(const std::string& name, std::size_t row) {
+  return name + '[' + std::to_string(row) + ']';
+}
+
+void check_rows(const std::string& name, std::size_t rows, const std::string& other, std::size_t wanted) {
+  if (rows == wanted) return;
+  throw nb::value_error((name + " has " + std::to_string(rows) + " rows; accepted: as many as " + other +
+                         ", which has " + std::to_string(wanted))
+                            .c_str());
 }
 
 RealArray::RealArray(nb::handle value, const std::string& name, const std::string& accepted)
@@ -160,7 +171,7 @@ RealRows::RealRows(nb::handle value, const std::string& name, std::size_t column
 Eigen::Vector3d RealRows::finite_vector(std::size_t row) const {
   const Eigen::Vector3d vector = Eigen::Vector3d::Map((*this)[row]);
   if (!vector.allFinite()) {
-    refuse_value(name_ + '[' + std::to_string(row) + ']', python::shown(vector), "finite numbers");
+    refuse_value(entry(name_, row), python::shown(vector), "finite numbers");
   }
   return vector;
 }
@@ -169,13 +180,15 @@ IndexRows::IndexRows(nb::handle value, const std::string& name, std::size_t colu
   const std::string accepted = wanted("integers", columns);
   owner_ = as_array(value, name, "iu", accepted);
   rows_ = rows_of(shape_of(owner_), columns, name, accepted);
+  is_unsigned_ = nb::cast<std::string>(owner_.attr("dtype").attr("kind")) == "u";
   data_ = make_contiguous<std::int64_t>(owner_, name, accepted);
 }
 
-void IndexRows::refuse(std::size_t row, std::size_t column, std::int64_t index, std::size_t count) const {
+void IndexRows::refuse(std::size_t row, std::size_t column, std::size_t index, std::size_t count) const {
   const std::string entry = columns_ == 1 ? std::to_string(row) : std::to_string(row) + ", " + std::to_string(column);
   const std::string accepted = count == 0 ? "none, there are no bodies" : "0 to " + std::to_string(count - 1);
-  refuse_value(name_ + '[' + entry + ']', std::to_string(index), accepted);
+  const std::string value = is_unsigned_ ? std::to_string(index) : std::to_string(static_cast<std::int64_t>(index));
+  refuse_value(name_ + '[' + entry + ']', value, accepted);
 }
 
 template <class T>
@@ -188,7 +201,7 @@ NewArray<T> new_array(const std::vector<std::size_t>& shape) {
   }
   nb::list extents;
   for (const std::size_t extent : shape) extents.append(extent);
-  nb::object array = empty_array(nb::tuple(extents), dtype_name<T>(), "a result of shape " + shown(shape));
+  nb::object array = empty_array(nb::tuple(extents), dtype_name<T>(), "a result of shape " + shape_text(shape));
   T* const data = nb::cast<nb::ndarray<T, nb::c_contig, nb::device::cpu>>(array).data();
   return {std::move(array), data};
 }

@@ -20,6 +20,12 @@ namespace nb = nanobind;
 [[noreturn]] void refuse_shape(const std::string& name, const std::vector<std::size_t>& shape,
                                const std::string& accepted);
 
+/// Returns an entry as messages name it: "positions[3]".
+std::string entry(const std::string& name, std::size_t row);
+
+/// Throws ValueError, naming both, unless an argument has as many rows as the argument `other`.
+void check_rows(const std::string& name, std::size_t rows, const std::string& other, std::size_t wanted);
+
 /// Array of real numbers of any shape, contiguous, kept alive: the argument's own memory if it is of that form, else a
 /// copy. Other threads may change the numbers while they are read, never their count.
 class RealArray {
@@ -77,15 +83,16 @@ class IndexRows {
   /// other thread can change an index after its check.
   std::size_t at(std::size_t row, std::size_t column, std::size_t count) const {
     const std::size_t index = unchecked(row, column);
-    if (index >= count) refuse(row, column, static_cast<std::int64_t>(index), count);
+    if (index >= count) refuse(row, column, index, count);
     return index;
   }
 
  private:
-  [[noreturn]] void refuse(std::size_t row, std::size_t column, std::int64_t index, std::size_t count) const;
+  [[noreturn]] void refuse(std::size_t row, std::size_t column, std::size_t index, std::size_t count) const;
 
   std::string name_;
   nb::object owner_;
+  bool is_unsigned_;  ///< whether the integers were, so that those from 2^63 on are not negative
   std::size_t columns_;
   std::size_t rows_;
   const std::int64_t* data_;

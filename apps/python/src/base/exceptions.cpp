@@ -5,18 +5,36 @@
 
 #include <nanobind/nanobind.h>
 
+#include <cstring>
 #include <exception>
+#include <new>
+#include <stdexcept>
 
 namespace hardbody::python {
+namespace {
+
+/// Sets an exception. Bytes of files and their names that are no Unicode are replaced in its message.
+void set_error(PyObject* type, const char* message) {
+  PyObject* const text = PyUnicode_DecodeUTF8(message, static_cast<Py_ssize_t>(std::strlen(message)), "replace");
+  if (text == nullptr) return;
+  PyErr_SetObject(type, text);
+  Py_DECREF(text);
+}
+
+}  // namespace
 
 void register_exceptions() {
   nanobind::register_exception_translator([](const std::exception_ptr& error, void* /*payload*/) {
     try {
       std::rethrow_exception(error);
     } catch (const InputError& e) {
-      PyErr_SetString(PyExc_ValueError, e.what());
+      set_error(PyExc_ValueError, e.what());
     } catch (const WriteError& e) {
-      PyErr_SetString(PyExc_OSError, e.what());
+      set_error(PyExc_OSError, e.what());
+    } catch (const std::invalid_argument& e) {
+      set_error(PyExc_ValueError, e.what());
+    } catch (const std::bad_alloc&) {
+      PyErr_SetString(PyExc_MemoryError, "hardbody: what this call computes does not fit into memory");
     }
   });
 }

@@ -1,5 +1,7 @@
 #include "base/parallel.h"
 
+#include "base/gil.h"
+
 #include <nanobind/nanobind.h>
 
 #include <algorithm>
@@ -7,6 +9,9 @@
 #include <chrono>
 #include <exception>
 #include <mutex>
+#include <stdexcept>
+#include <string>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -15,24 +20,38 @@ namespace {
 
 namespace nb = nanobind;
 
+using Clock = std::chrono::steady_clock;
+
 constexpr std::chrono::milliseconds kSignalInterval{50};
+/// Length of a thread's first range, and the times below and above which its next one is twice or half as long: slow
+/// queries must not keep an interrupt waiting.
+constexpr std::size_t kFirstLength = 4;
+constexpr std::chrono::milliseconds kShort{10};
+constexpr std::chrono::milliseconds kLong{40};
 
 /// Ranges that threads take in order, and the exception of the first of them that failed.
 class Ranges {
  public:
   Ranges(std::size_t count, std::size_t chunk) : count_(count), chunk_(chunk) {}
 
-  /// Works on the next range; false if there is none, or the work has been stopped.
-  bool work_on_next(const Work& work) {
-    const std::size_t begin = next_.fetch_add(chunk_, std::memory_order_relaxed);
+  /// Works on the next range; false if there is none, or the work has been stopped. `length`: that of this thread's
+  /// ranges, which is adapted.
+  bool work_on_next(const Work& work, std::size_t& length) {
+    const std::size_t begin = next_.fetch_add(length, std::memory_order_relaxed);
     if (begin >= count_ || is_stopped_.load(std::memory_order_relaxed)) return false;
+    const Clock::time_point start = Clock::now();
     try {
-      work(begin, std::min(begin + chunk_, count_));
+      work(begin, std::min(begin + length, count_));
     } catch (...) {
       fail(begin);
     }
+    const Clock::duration taken = Clock::now() - start;
+    if (taken < kShort) length = std::min(2 * length, chunk_);
+    if (taken > kLong) length = std::max<std::size_t>(length / 2, 1);
     return true;
   }
+
+  std::size_t first_length() const { return std::min(kFirstLength, chunk_); }
 
   /// Keeps the exception that is being handled, unless one of an earlier range is there, and stops the work.
   void fail(std::size_t begin) {
@@ -63,7 +82,7 @@ class Ranges {
 
 /// Returns whether a Python signal handler has raised; the exception is then set.
 bool is_interrupted() {
-  const nb::gil_scoped_acquire gil;
+  const GilAcquired gil;
   return PyErr_CheckSignals() != 0;
 }
 
@@ -77,12 +96,12 @@ void parallel(std::size_t count, std::size_t chunk, int threads, const std::func
   Ranges ranges(count, chunk);
   bool interrupted = false;
   {
-    const nb::gil_scoped_release released;
+    const GilReleased released;
     const std::size_t helpers = std::min<std::size_t>(static_cast<std::size_t>(threads), (count + chunk - 1) / chunk);
     const auto work_on_all = [&] {
       try {
         const Work work = make();
-        while (ranges.work_on_next(work)) {
+        for (std::size_t length = ranges.first_length(); ranges.work_on_next(work, length);) {
         }
       } catch (...) {  // of make(): an exception must not leave a thread
         ranges.fail(count);
@@ -91,14 +110,19 @@ void parallel(std::size_t count, std::size_t chunk, int threads, const std::func
     std::vector<std::jthread> pool;  // joined before the GIL is acquired again
     try {
       for (std::size_t k = 1; k < helpers; ++k) pool.emplace_back(work_on_all);
+    } catch (const std::system_error& error) {
+      ranges.stop();
+      throw std::runtime_error("threads: the system refused thread " + std::to_string(pool.size() + 2) + " of " +
+                               std::to_string(helpers) + ": " + error.code().message() +
+                               "; accepted: as many as it grants");
     } catch (...) {
       ranges.stop();
       throw;
     }
     const Work work = make();
-    auto last = std::chrono::steady_clock::now();
-    while (ranges.work_on_next(work)) {
-      const auto now = std::chrono::steady_clock::now();
+    auto last = Clock::now();
+    for (std::size_t length = ranges.first_length(); ranges.work_on_next(work, length);) {
+      const auto now = Clock::now();
       if (now - last < kSignalInterval) continue;
       last = now;
       interrupted = is_interrupted();

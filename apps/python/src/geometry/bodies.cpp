@@ -23,10 +23,6 @@ std::optional<RealRows> optional_rows(nb::handle value, const std::string& name,
   return RealRows(value, name, columns);
 }
 
-std::string entry(const std::string& name, std::size_t row) {
-  return name + '[' + std::to_string(row) + ']';
-}
-
 bool is_sequence(nb::handle value) {
   return nb::isinstance<nb::list>(value) || nb::isinstance<nb::tuple>(value);
 }
@@ -117,13 +113,6 @@ std::vector<geom::Shape> read_shapes(nb::handle shapes) {
 
 int thread_count(nb::handle threads) {
   return static_cast<int>(integer(threads, "threads", 1, kMostThreads));
-}
-
-void check_rows(const std::string& name, std::size_t rows, const std::string& other, std::size_t wanted) {
-  if (rows == wanted) return;
-  throw nb::value_error((name + " has " + std::to_string(rows) + " rows; accepted: as many as " + other +
-                         ", which has " + std::to_string(wanted))
-                            .c_str());
 }
 
 std::size_t range_length(std::size_t count, int threads) {

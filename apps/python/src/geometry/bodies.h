@@ -145,9 +145,6 @@ std::vector<geom::Shape> read_shapes(nb::handle shapes);
 /// Returns the number of threads that a caller wants.
 int thread_count(nb::handle threads);
 
-/// Throws ValueError unless an array has as many rows as another.
-void check_rows(const std::string& name, std::size_t rows, const std::string& other, std::size_t wanted);
-
 /// Returns a length of ranges (see parallel) that keeps all threads busy and interrupts short: at most 512. Threads
 /// whose ranges of 64 alternate in memory slow each other down by a fifth.
 std::size_t range_length(std::size_t count, int threads);

@@ -83,7 +83,7 @@ nb::tuple ray_cast_many(nb::handle shapes, nb::handle positions, nb::handle quat
   const NewArray<std::uint8_t> status = new_array<std::uint8_t>({rows});
   query.run([&](std::size_t row, const geom::Shape& shape, const geom::Pose& pose) {
     const Eigen::Vector3d direction = towards.finite_vector(row);
-    if (direction.isZero(0)) refuse_value("directions[" + std::to_string(row) + ']', "zero", "vectors other than 0");
+    if (direction.isZero(0)) refuse_value(entry("directions", row), "zero", "vectors other than 0");
     const geom::RayHit r = geom::ray_cast(shape, pose, query.rows.finite_vector(row), direction);
     t.data[row] = r.t;
     Eigen::Vector3d::Map(point.data + 3 * row) = r.point;

@@ -71,7 +71,7 @@ class MovingBodies {
 
 /// Throws ValueError with a message of the library, and the entry that it is about in front.
 [[noreturn]] void refuse_entry(const char* name, std::size_t row, const std::invalid_argument& error) {
-  throw nb::value_error((std::string(name) + '[' + std::to_string(row) + "]: " + error.what()).c_str());
+  throw nb::value_error((entry(name, row) + ": " + error.what()).c_str());
 }
 
 /// Throws ValueError, naming the entry, if a body's moments are such that no body has them.

@@ -2,6 +2,8 @@
 
 #include "base/arguments.h"
 #include "base/arrays.h"
+#include "base/gil.h"
+#include "base/values.h"
 #include "geometry/bind.h"
 
 #include <nanobind/nanobind.h>
@@ -29,7 +31,7 @@ struct PythonShape::Held {
   bool has_volume = false;
 
   ~Held() {
-    const nb::gil_scoped_acquire gil;
+    const GilAcquired gil;
     empty.reset();
     hessian.reset();
     support.reset();
@@ -67,6 +69,14 @@ double radius(nb::handle object, const std::string& shape, const char* name) {
   return number(value, full.c_str());
 }
 
+/// Returns a method; None if the object has none. Throws TypeError for another attribute of that name.
+nb::object optional_method(nb::handle object, const std::string& shape, const char* name) {
+  nb::object value = nb::getattr(object, name, nb::none());
+  if (!value.is_none() && PyCallable_Check(value.ptr()) == 0)
+    refuse_type(shape + '.' + name, value, "a method, or None");
+  return value;
+}
+
 std::string class_name(nb::handle object) {
   return nb::cast<std::string>(object.type().attr("__name__"));
 }
@@ -85,7 +95,8 @@ PythonShape::PythonShape(nb::object object, std::string name, bool has_volume) {
   if (PyCallable_Check(held->support.ptr()) == 0) {
     refuse_type(name, object, "an object with a method support(n)");
   }
-  held->hessian = nb::getattr(object, "support_hessian", nb::none());
+  held->hessian = optional_method(object, name, "support_hessian");
+  static_cast<void>(optional_method(object, name, "inertia"));
   held->bounding_radius = radius(object, name, "bounding_radius");
   held->inscribed_radius = radius(object, name, "inscribed_radius");
   if (nb::hasattr(object, "min_curvature_radius")) {
@@ -162,7 +173,7 @@ Matrix3d asked_hessian(const nb::object& method, const std::string& shape, const
 }  // namespace
 
 geom::Support PythonShape::support(const Vector3d& n) const {
-  const nb::gil_scoped_acquire gil;
+  const GilAcquired gil;
   bool* const happened = kept_interrupt == nullptr ? nullptr : &kept_interrupt->happened_;
   return without_interrupts(happened, [&] {
     const nb::object answer = held_->support(direction_array(held_->empty, n));
@@ -171,7 +182,7 @@ geom::Support PythonShape::support(const Vector3d& n) const {
 }
 
 Matrix3d PythonShape::support_hessian(const Vector3d& n) const {
-  const nb::gil_scoped_acquire gil;
+  const GilAcquired gil;
   if (!held_->hessian.is_none()) {
     bool* const happened = kept_interrupt == nullptr ? nullptr : &kept_interrupt->happened_;
     return without_interrupts(happened, [&] { return asked_hessian(held_->hessian, held_->name, n); });
@@ -224,19 +235,27 @@ ed::CustomShape make_custom_shape(nb::handle object, nb::handle name, nb::handle
                                   nb::handle centrally_symmetric) {
   ed::CustomShape::Properties properties;
   properties.name = name.is_none() ? class_name(object) : std::string(text(name, "name", "a string without NUL"));
+  const auto full_name = [&](nb::handle given, const char* own) {
+    return given.is_none() ? properties.name + '.' + own : own;
+  };
   const nb::object volume_value = given_or_own(volume, object, "volume");
   const nb::object axis = given_or_own(symmetry_axis, object, "symmetry_axis");
-  if (!axis.is_none()) properties.symmetry_axis = static_cast<int>(integer(axis, "symmetry_axis", 0, 2));
+  if (!axis.is_none()) {
+    const std::string of = full_name(symmetry_axis, "symmetry_axis");
+    properties.symmetry_axis = static_cast<int>(integer(axis, of.c_str(), 0, 2));
+  }
   const nb::object central = given_or_own(centrally_symmetric, object, "centrally_symmetric");
   if (!central.is_none()) {
-    if (!PyBool_Check(central.ptr())) refuse_type("centrally_symmetric", central, "True, False, None");
+    const std::string of = full_name(centrally_symmetric, "centrally_symmetric");
+    if (!PyBool_Check(central.ptr())) refuse_type(of, central, "True, False, None");
     properties.centrally_symmetric = nb::cast<bool>(central);
   }
   const bool has_volume = !volume_value.is_none();
   PythonShape shape(nb::borrow(object), properties.name, has_volume);
   // Without a volume one that the radii allow: nobody is shown it.
   const double r = shape.inscribed_radius();
-  properties.volume = has_volume ? positive(volume_value, "volume") : 4 * std::numbers::pi / 3 * r * r * r;
+  properties.volume =
+      has_volume ? positive(volume_value, full_name(volume, "volume").c_str()) : 4 * std::numbers::pi / 3 * r * r * r;
   return {std::move(shape), std::move(properties)};
 }
 
@@ -244,7 +263,24 @@ const PythonShape& target_of(const ed::CustomShape& shape) {
   return *shape.target<PythonShape>();  // there are no others in Python
 }
 
-constexpr const char* kDoc =
+/// Returns what the constructor is told beside the object.
+nb::dict properties_of(const ed::CustomShape& shape) {
+  nb::dict made;
+  made["name"] = shape.name();
+  made["volume"] = target_of(shape).has_volume() ? std::optional(shape.volume()) : std::optional<double>();
+  made["symmetry_axis"] = shape.symmetry_axis();
+  made["centrally_symmetric"] = shape.centrally_symmetric();
+  return made;
+}
+
+/// Returns what pickles and copies are made of: the user's object has to be one that can be pickled.
+nb::tuple reduced(nb::handle self) {
+  const auto& shape = nb::cast<const ed::CustomShape&>(self);
+  const nb::object constructor = nb::module_::import_("functools").attr("partial")(self.type(), **properties_of(shape));
+  return nb::make_tuple(constructor, nb::make_tuple(target_of(shape).object()));
+}
+
+constexpr const char* kShapeDoc =
     "Convex body of your own: an object with a support function.\n"
     "\n"
     "Queries, Species and lists of shapes also take the object itself. It has, in the body's frame, whose origin is\n"
@@ -288,8 +324,8 @@ ed::CustomShape custom_shape_of(nb::handle object) {
 
 void bind_custom_shapes(nb::module_& module) {
   using ed::CustomShape;
-  nb::class_<CustomShape>(module, "CustomShape", kDoc)
-      .def(
+  nb::class_<CustomShape> type(module, "CustomShape", kShapeDoc);
+  type.def(
           "__init__",
           [](CustomShape* self, nb::handle object, nb::handle name, nb::handle volume, nb::handle symmetry_axis,
              nb::handle centrally_symmetric) {
@@ -297,7 +333,7 @@ void bind_custom_shapes(nb::module_& module) {
           },
           nb::arg("object").none(), nb::kw_only(), nb::arg("name") = nb::none(), nb::arg("volume") = nb::none(),
           nb::arg("symmetry_axis") = nb::none(), nb::arg("centrally_symmetric") = nb::none(),
-          nb::sig("def __init__(self, object: hardbody._typing.SupportShape, *, name: str | None = None, "
+          nb::sig("def __init__(self, object: hardbody.SupportShape, *, name: str | None = None, "
                   "volume: float | None = None, symmetry_axis: int | None = None, "
                   "centrally_symmetric: bool | None = None) -> None"),
           "Constructs a shape from an object with a support function. None: the attribute or method of that name of\n"
@@ -338,7 +374,11 @@ void bind_custom_shapes(nb::module_& module) {
           nb::arg("n").none(),
           nb::sig("def support(self, n: numpy.typing.ArrayLike) -> tuple[float, numpy.typing.NDArray[numpy.float64]]"),
           "Returns the object's (h, s) for a direction n, shape (3,), checked.")
-      .def("__repr__", [](const CustomShape& s) { return "CustomShape(" + s.name() + ')'; });
+      .def("__repr__", [](const CustomShape& s) { return "CustomShape(" + s.name() + ')'; })
+      .def("__reduce__", &reduced, nb::sig("def __reduce__(self) -> tuple[typing.Any, ...]"));
+  bind_equality(type, [](const CustomShape& a, const CustomShape& b) {
+    return target_of(a).object().equal(target_of(b).object()) && properties_of(a).equal(properties_of(b));
+  });
 }
 
 }  // namespace hardbody::python

@@ -1,5 +1,7 @@
 #include "base/arguments.h"
 #include "base/arrays.h"
+#include "base/gil.h"
+#include "base/values.h"
 #include "geometry/bind.h"
 #include "geometry/contact_options.h"
 #include "geometry/shapes.h"
@@ -13,6 +15,7 @@
 
 #include <Eigen/Core>
 
+#include <stdexcept>
 #include <string>
 
 namespace hardbody::python {
@@ -33,16 +36,26 @@ Motion motion_of(nb::handle pose, nb::handle velocity, nb::handle angular_veloci
   return motion;
 }
 
-std::string text_of(const Motion& m) {
+std::string motion_text(const Motion& m) {
   return "Motion(" + nb::cast<std::string>(nb::repr(nb::cast(m.pose))) + ", velocity=" + shown(m.velocity) +
          ", angular_velocity=" + shown(m.angular_velocity) + ", inertia=" + shown(m.inertia) +
          ", time=" + shown(m.time) + ')';
 }
 
+/// Returns the motion at another time. Throws ValueError, naming the time, if bodies are not in the world then.
+Motion motion_at(const Motion& motion, nb::handle time) {
+  const double until = finite_number(time, "time");
+  try {
+    return ed::propagate(motion, until);
+  } catch (const std::invalid_argument& error) {
+    throw nb::value_error(("time is " + shown(until) + ": " + error.what()).c_str());
+  }
+}
+
 void bind_motion(nb::module_& module) {
   const auto array = [](const char* signature) { return nb::for_getter(nb::sig(signature)); };
-  nb::class_<Motion>(module, "Motion", "Free motion of a rigid body, given by its state at one time.")
-      .def(
+  nb::class_<Motion> type(module, "Motion", "Free motion of a rigid body, given by its state at one time.");
+  type.def(
           "__init__",
           [](Motion* self, nb::handle pose, nb::handle velocity, nb::handle angular_velocity, nb::handle inertia,
              nb::handle time) { new (self) Motion(motion_of(pose, velocity, angular_velocity, inertia, time)); },
@@ -71,12 +84,10 @@ void bind_motion(nb::module_& module) {
           "Principal moments of inertia about body x, y, z, shape (3,).")
       .def_prop_ro(
           "time", [](const Motion& m) { return m.time; }, "Time of this state.")
-      .def(
-          "at", [](const Motion& m, nb::handle time) { return ed::propagate(m, finite_number(time, "time")); },
-          nb::arg("time").none(), nb::sig("def at(self, time: float) -> Motion"),
-          "Returns the same motion with its state at another time, before or after, by closed forms. The error is\n"
-          "rounding, below 2e-15 (1 + |omega| |time - self.time|) radian.")
-      .def("__repr__", &text_of)
+      .def("at", &motion_at, nb::arg("time").none(), nb::sig("def at(self, time: float) -> Motion"),
+           "Returns the same motion with its state at another time, before or after, by closed forms. The error is\n"
+           "rounding, below 2e-15 (1 + |omega| |time - self.time|) radian.")
+      .def("__repr__", &motion_text)
       .def(
           "__reduce__",
           [](nb::handle self) {
@@ -86,12 +97,16 @@ void bind_motion(nb::module_& module) {
                                                  array_of(m.inertia), m.time));
           },
           nb::sig("def __reduce__(self) -> tuple[typing.Any, ...]"));
+  bind_equality(type, [](const Motion& a, const Motion& b) {
+    return same(a.pose, b.pose) && a.velocity == b.velocity && a.angular_velocity == b.angular_velocity &&
+           a.inertia == b.inertia && a.time == b.time;
+  });
 }
 
 void bind_contact_result(nb::module_& module) {
   const auto array = [](const char* signature) { return nb::for_getter(nb::sig(signature)); };
-  nb::class_<ContactResult>(module, "ContactResult", "Answer of time_of_contact.")
-      .def_prop_ro(
+  nb::class_<ContactResult> type(module, "ContactResult", "Answer of time_of_contact.");
+  type.def_prop_ro(
           "status", [](const ContactResult& r) { return to_string(r.status); },
           array("def status(self) -> typing.Literal['hit', 'separated', 'overlapping', 'budget_exhausted', 'failed']"),
           "Outcome. 'hit': the bodies touch at `time`, approaching, and not before. 'separated': no contact up to\n"
@@ -119,6 +134,8 @@ void bind_contact_result(nb::module_& module) {
                ", point=" + shown(r.point) + ", normal=" + shown(r.normal) +
                ", evaluations=" + std::to_string(r.evaluations) + ')';
       });
+  bind_value(type, &ContactResult::status, &ContactResult::time, &ContactResult::point, &ContactResult::normal,
+             &ContactResult::evaluations, &ContactResult::rescues);
 }
 
 ContactResult contact(nb::handle a, nb::handle motion_a, nb::handle b, nb::handle motion_b, nb::handle t_max,
@@ -128,7 +145,7 @@ ContactResult contact(nb::handle a, nb::handle motion_a, nb::handle b, nb::handl
   const Motion at_a = instance<Motion>(motion_a, "motion_a"), at_b = instance<Motion>(motion_b, "motion_b");
   const double until = number(t_max, "t_max");
   const ed::ContactOptions options = contact_options(finder, max_evaluations, eps_d, distance, root);
-  const nb::gil_scoped_release released;
+  const GilReleased released;
   return ed::time_of_contact(shape_a, at_a, shape_b, at_b, until, options);
 }
 
@@ -136,20 +153,22 @@ void bind_time_of_contact(nb::module_& module) {
   module.def(
       "time_of_contact", &contact, nb::arg("a").none(), nb::arg("motion_a").none(), nb::arg("b").none(),
       nb::arg("motion_b").none(), nb::arg("t_max").none(), nb::kw_only(), nb::arg("finder").none() = "certified",
-      nb::arg("max_evaluations").none() = 2000, nb::arg("eps_d").none() = 1e-6, nb::arg("distance").none() = "dual",
-      nb::arg("root").none() = "newton",
-      nb::sig("def time_of_contact(a: hardbody._typing.BodyShape, motion_a: Motion, b: hardbody._typing.BodyShape, "
+      nb::arg("max_evaluations").none() = 2000, nb::arg("eps_d") = nb::none(), nb::arg("distance").none() = "dual",
+      nb::arg("root") = nb::none(),
+      nb::sig("def time_of_contact(a: hardbody.BodyShape, motion_a: Motion, b: hardbody.BodyShape, "
               "motion_b: Motion, t_max: float, *, finder: typing.Literal['certified', 'bracketing'] = 'certified', "
-              "max_evaluations: int = 2000, eps_d: float = 1e-6, "
+              "max_evaluations: int = 2000, eps_d: float | None = None, "
               "distance: typing.Literal['dual', 'newton8', 'newton5'] = 'dual', "
-              "root: typing.Literal['newton', 'one_dimensional'] = 'newton') -> ContactResult"),
+              "root: typing.Literal['newton', 'one_dimensional'] | None = None) -> ContactResult"),
       "Returns the first time in [max of the motions' times, t_max] at which two freely moving bodies touch and\n"
       "approach; t_max may be infinite. The search is certified: it never steps over a contact, however grazing.\n"
       "Bodies are ellipsoids, superellipsoids with exponents from 0.25 to 1.6, and shapes of your own.\n"
       "\n"
       "max_evaluations limits the effort: at 0.3 to 2 microseconds each for ellipsoids of revolution, up to 50 for\n"
-      "others. finder='bracketing' is the method of De Michele (2010) instead, without a certificate, to which eps_d,\n"
-      "distance and root apply. eps_d is a length, below the smallest semi-axis: steps are at least as long as it "
+      "others. finder='bracketing' is the method of De Michele (2010) instead, without a certificate, to which eps_d\n"
+      "(None: 1e-6), distance and root (None: 'newton') apply; beside 'certified' they are refused. eps_d is a "
+      "length,\n"
+      "below the smallest semi-axis: steps are at least as long as it "
       "takes\n"
       "the bodies to get nearer by eps_d, so that contacts shallower than about that can be missed. The GIL is "
       "released.\n"

@@ -91,12 +91,12 @@ nb::object mapped(nb::handle points, Map map) {
   return made.array;
 }
 
-std::string text_of(const Pose& pose) {
+std::string pose_text(const Pose& pose) {
   return "Pose(" + shown(pose.position()) + ", " + shown(quaternion_of(pose).data(), 4) + ')';
 }
 
 /// Restores the same bits. Throws ValueError unless they are a pose's.
-Pose restored(nb::handle position, nb::handle rotation) {
+Pose restored_pose(nb::handle position, nb::handle rotation) {
   const Eigen::Matrix3d R = matrix<RowMajor3>(rotation, "rotation");
   const Pose checked(R, vector3(position, "position"));
   return geom::kernel::unchecked_pose(R, checked.position());
@@ -110,7 +110,7 @@ void bind_constructors(nb::class_<Pose>& type) {
           },
           nb::arg("position") = nb::none(), nb::arg("orientation") = nb::none(),
           nb::sig("def __init__(self, position: numpy.typing.ArrayLike | None = None, "
-                  "orientation: numpy.typing.ArrayLike | hardbody._typing.Rotation | None = None) -> None"),
+                  "orientation: numpy.typing.ArrayLike | hardbody.RotationLike | None = None) -> None"),
           "Constructs a pose from a position, shape (3,), default the origin, and an orientation, default none: a\n"
           "unit quaternion (w, x, y, z), shape (4,); a rotation matrix, shape (3, 3), whose columns are the body's\n"
           "axes in the world; or one rotation of scipy.spatial.transform.Rotation.\n"
@@ -190,7 +190,7 @@ void bind_operations(nb::class_<Pose>& type) {
           nb::arg("points").none(),
           nb::sig("def apply_inverse(self, points: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64]"),
           "Transforms points, shape (3,) or (n, 3), from world to body coordinates.")
-      .def("__repr__", &text_of)
+      .def("__repr__", &pose_text)
       .def(
           "__eq__",
           [](const Pose& X, nb::handle other) {
@@ -198,12 +198,12 @@ void bind_operations(nb::class_<Pose>& type) {
             return nb::try_cast(other, found, false) && found != nullptr && X.rotation() == found->rotation() &&
                    X.position() == found->position();
           },
-          nb::arg("other").none(), nb::sig("def __eq__(self, other: object, /) -> bool"))
+          nb::arg("other").none(), nb::sig("def __eq__(self, other: typing.Any, /) -> bool"))
       .def(
           "__getstate__", [](const Pose& X) { return nb::make_tuple(array_of(X.position()), array_of(X.rotation())); },
           nb::sig("def __getstate__(self) -> tuple[typing.Any, ...]"))
       .def(
-          "__setstate__", [](Pose& X, const nb::tuple& state) { new (&X) Pose(restored(state[0], state[1])); },
+          "__setstate__", [](Pose& X, const nb::tuple& state) { new (&X) Pose(restored_pose(state[0], state[1])); },
           nb::sig("def __setstate__(self, state: tuple[typing.Any, ...], /) -> None"));
 }
 

@@ -1,5 +1,7 @@
 #include "base/arguments.h"
 #include "base/arrays.h"
+#include "base/gil.h"
+#include "base/values.h"
 #include "geometry/bind.h"
 #include "geometry/bodies.h"
 #include "geometry/custom_queries.h"
@@ -77,6 +79,9 @@ void bind_distance_result(nb::module_& module) {
   bind_vector(type, "normal", &DistanceResult::normal, "Unit vector from A to B, shape (3,).");
   bind_vector(type, "point_a", &DistanceResult::point_a, "Closest point of A, shape (3,).");
   bind_vector(type, "point_b", &DistanceResult::point_b, "Closest point of B, shape (3,).");
+  bind_value(type, &DistanceResult::distance, &DistanceResult::point_a, &DistanceResult::point_b,
+             &DistanceResult::normal, &DistanceResult::status, &DistanceResult::iterations, &DistanceResult::residual,
+             &DistanceResult::error_bound);
 }
 
 void bind_distance(nb::module_& module) {
@@ -92,7 +97,7 @@ void bind_distance(nb::module_& module) {
       nb::arg("a").none(), nb::arg("pose_a").none(), nb::arg("b").none(), nb::arg("pose_b").none(), nb::kw_only(),
       nb::arg("start") = nb::none(), nb::arg("max_iterations").none() = geom::kMaxIterations,
       nb::arg("penetration").none() = "global",
-      nb::sig("def distance(a: hardbody._typing.BodyShape, pose_a: Pose, b: hardbody._typing.BodyShape, pose_b: Pose, "
+      nb::sig("def distance(a: hardbody.BodyShape, pose_a: Pose, b: hardbody.BodyShape, pose_b: Pose, "
               "*, start: numpy.typing.ArrayLike | None = None, max_iterations: int = 60, "
               "penetration: typing.Literal['global', 'local'] = 'global') -> DistanceResult"),
       "Returns the signed distance of two bodies, with closest points, normal and a certified error bound.\n"
@@ -118,7 +123,7 @@ void bind_distance(nb::module_& module) {
                                          pose(pose_b, "pose_b"), direction3(n, "n"));
       },
       nb::arg("a").none(), nb::arg("pose_a").none(), nb::arg("b").none(), nb::arg("pose_b").none(), nb::arg("n").none(),
-      nb::sig("def distance_lower_bound(a: hardbody._typing.BodyShape, pose_a: Pose, b: hardbody._typing.BodyShape, "
+      nb::sig("def distance_lower_bound(a: hardbody.BodyShape, pose_a: Pose, b: hardbody.BodyShape, "
               "pose_b: Pose, n: numpy.typing.ArrayLike) -> float"),
       "Returns a lower bound of the distance, certain for any direction n from A to B, world frame, shape (3,): the\n"
       "gap between the tangent planes across n, less its rounding error. Negative if the bodies overlap in that\n"
@@ -141,11 +146,11 @@ bool overlap(nb::handle a, nb::handle pose_a, nb::handle b, nb::handle pose_b, n
 
 void bind_overlap(nb::module_& module) {
   nb::exception<Undecided>(module, "UndecidedError", PyExc_ArithmeticError).attr("__doc__") =
-      "Raised by overlap where neither answer is certain.";
+      "Raised by overlap, and by contains for shapes of your own, where neither answer is certain.";
   module.def(
       "overlap", &overlap, nb::arg("a").none(), nb::arg("pose_a").none(), nb::arg("b").none(), nb::arg("pose_b").none(),
       nb::kw_only(), nb::arg("start") = nb::none(),
-      nb::sig("def overlap(a: hardbody._typing.BodyShape, pose_a: Pose, b: hardbody._typing.BodyShape, pose_b: Pose, "
+      nb::sig("def overlap(a: hardbody.BodyShape, pose_a: Pose, b: hardbody.BodyShape, pose_b: Pose, "
               "*, start: numpy.typing.ArrayLike | None = None) -> bool"),
       "Returns whether two bodies overlap, usually after one evaluation; touching counts as overlap.\n"
       "\n"
@@ -175,13 +180,15 @@ void bind_closest_point(nb::module_& module) {
   bind_vector(type, "point", &ClosestPoint::point, "Closest point of the surface, shape (3,).");
   bind_vector(type, "normal", &ClosestPoint::normal,
               "Unit outward normal, shape (3,): the given point is point + distance * normal.");
+  bind_value(type, &ClosestPoint::distance, &ClosestPoint::point, &ClosestPoint::normal, &ClosestPoint::status,
+             &ClosestPoint::error_bound);
   module.def(
       "closest_point",
       [](nb::handle s, nb::handle X, nb::handle point) {
         return any::closest_point(body_shape(s, "shape"), pose(X, "pose"), finite_vector3(point, "point"));
       },
       nb::arg("shape").none(), nb::arg("pose").none(), nb::arg("point").none(),
-      nb::sig("def closest_point(shape: hardbody._typing.BodyShape, pose: Pose, point: numpy.typing.ArrayLike) "
+      nb::sig("def closest_point(shape: hardbody.BodyShape, pose: Pose, point: numpy.typing.ArrayLike) "
               "-> ClosestPoint"),
       "Returns the point of a body's surface that is closest to a point, world frame, shape (3,), which may be "
       "inside.\n"
@@ -198,7 +205,7 @@ void bind_contains(nb::module_& module) {
         throw Undecided("contains: the point is on the surface within the error bound; closest_point has bounds");
       },
       nb::arg("shape").none(), nb::arg("pose").none(), nb::arg("point").none(),
-      nb::sig("def contains(shape: hardbody._typing.BodyShape, pose: Pose, point: numpy.typing.ArrayLike) -> bool"),
+      nb::sig("def contains(shape: hardbody.BodyShape, pose: Pose, point: numpy.typing.ArrayLike) -> bool"),
       "Returns whether a point, world frame, shape (3,), is in the body or on its surface. Raises\n"
       "UndecidedError for shapes of your own where neither answer is certain.");
 }
@@ -221,6 +228,7 @@ void bind_ray_cast(nb::module_& module) {
       type, "normal", &RayHit::normal,
       "Unit outward normal there, shape (3,). For 'inside' it is that of the surface nearby or, in the centre,\n"
       "the direction against the ray.");
+  bind_value(type, &RayHit::status, &RayHit::t, &RayHit::point, &RayHit::normal);
   module.def(
       "ray_cast",
       [](nb::handle s, nb::handle X, nb::handle origin, nb::handle direction) {
@@ -228,7 +236,7 @@ void bind_ray_cast(nb::module_& module) {
                              direction3(direction, "direction"));
       },
       nb::arg("shape").none(), nb::arg("pose").none(), nb::arg("origin").none(), nb::arg("direction").none(),
-      nb::sig("def ray_cast(shape: hardbody._typing.BodyShape, pose: Pose, origin: numpy.typing.ArrayLike, "
+      nb::sig("def ray_cast(shape: hardbody.BodyShape, pose: Pose, origin: numpy.typing.ArrayLike, "
               "direction: numpy.typing.ArrayLike) -> RayHit"),
       "Returns the first point origin + t direction, t >= 0, in the body; both of shape (3,), world frame, the\n"
       "direction of any length but 0. The point is within 1e-13 of the bounding radius of the surface.");
@@ -257,7 +265,7 @@ Mass mass_properties(nb::handle value, nb::handle density, nb::handle quadrature
   Mass mass{positive(density, "density"), {}};
   if (!quadrature_tolerance.is_none()) {
     const double tolerance = positive(quadrature_tolerance, "quadrature_tolerance");
-    const nb::gil_scoped_release released;
+    const GilReleased released;
     mass.unit =
         std::visit([&](const auto& s) { return geom::mass_properties(s, s.bounding_radius(), tolerance); }, body);
     return mass;
@@ -290,7 +298,7 @@ nb::tuple mass_properties_many(nb::handle shapes, nb::handle density) {
   const NewArray<double> center = new_array<double>({rows, 3}), inertia = new_array<double>({rows, 3, 3});
   const NewArray<double> relative_error = new_array<double>({rows});
   {
-    const nb::gil_scoped_release released;
+    const GilReleased released;
     for (std::size_t k = 0; k < rows; ++k) {
       const Mass m{each[k], by_closed_forms(bodies[k])};
       volume.data[k] = m.unit.volume;
@@ -305,8 +313,8 @@ nb::tuple mass_properties_many(nb::handle shapes, nb::handle density) {
 
 void bind_mass_properties(nb::module_& module) {
   const auto array = [](const char* signature) { return nb::for_getter(nb::sig(signature)); };
-  nb::class_<Mass>(module, "MassProperties", "Volume, mass and moments of a body of uniform density, body frame.")
-      .def_prop_ro(
+  nb::class_<Mass> type(module, "MassProperties", "Volume, mass and moments of a body of uniform density, body frame.");
+  type.def_prop_ro(
           "volume", [](const Mass& m) { return m.unit.volume; }, "Volume, length^3.")
       .def_prop_ro(
           "mass", [](const Mass& m) { return m.mass(); }, "Density times volume.")
@@ -325,6 +333,10 @@ void bind_mass_properties(nb::module_& module) {
         return "MassProperties(volume=" + shown(m.unit.volume) + ", mass=" + shown(m.mass()) + ", inertia=diag(" +
                shown(moments) + "), relative_error=" + shown(m.unit.relative_error) + ')';
       });
+  bind_value(
+      type, &Mass::density, [](auto& m) -> auto& { return m.unit.volume; },
+      [](auto& m) -> auto& { return m.unit.first_moment; }, [](auto& m) -> auto& { return m.unit.inertia; },
+      [](auto& m) -> auto& { return m.unit.relative_error; });
   module.def(
       "mass_properties", &mass_properties, nb::arg("shape").none(), nb::arg("density").none() = 1.0, nb::kw_only(),
       nb::arg("quadrature_tolerance") = nb::none(),

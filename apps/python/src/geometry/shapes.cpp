@@ -91,7 +91,7 @@ void bind_common(nb::class_<Shape>& type) {
             Shape* found = nullptr;
             return nb::try_cast(other, found, false) && found != nullptr && equal(s, *found);
           },
-          nb::arg("other").none(), nb::sig("def __eq__(self, other: object, /) -> bool"))
+          nb::arg("other").none(), nb::sig("def __eq__(self, other: typing.Any, /) -> bool"))
       .def("__hash__", [](const Shape& s) { return nb::hash(nb::str(constructor_text(s).c_str())); })
       .def(
           "__reduce__",

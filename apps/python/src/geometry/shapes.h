@@ -9,6 +9,7 @@
 #include <nanobind/nanobind.h>
 
 #include <string>
+#include <variant>
 
 namespace hardbody::python {
 
@@ -21,6 +22,11 @@ inline geom::Shape shape(nb::handle value, const std::string& name) {
 inline ed::BodyShape body_shape(nb::handle value, const std::string& name) {
   if (OneOf<ed::BodyShape>::holds(value) || !is_custom_shape(value)) return OneOf<ed::BodyShape>::from(value, name);
   return custom_shape_of(value);
+}
+
+/// Returns a shape as Python has it: a user's own as a CustomShape.
+inline nb::object shape_object(const ed::BodyShape& shape) {
+  return std::visit([](const auto& s) { return nb::cast(s); }, shape);
 }
 
 }  // namespace hardbody::python

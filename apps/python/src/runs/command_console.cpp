@@ -1,5 +1,8 @@
 #include "runs/command_console.h"
 
+#include "base/gil.h"
+#include "runs/words.h"
+
 #include <base/signals.h>
 
 #include <nanobind/stl/optional.h>
@@ -16,7 +19,7 @@ CommandConsole::CommandConsole(nb::object print, nb::object say, nb::object show
 template <class... Values>
 void CommandConsole::call(const nb::object& function, Values... values) {
   if (function.is_none() || failure_) return;
-  const nb::gil_scoped_acquire gil;
+  const GilAcquired gil;
   try {
     function(std::move(values)...);
   } catch (nb::python_error& error) {
@@ -26,13 +29,14 @@ void CommandConsole::call(const nb::object& function, Values... values) {
 }
 
 void CommandConsole::print(std::string_view text) {
-  printed_ += text;
-  call(print_, std::string(text));
+  const std::string words = in_python(std::string(text));
+  printed_ += words;
+  call(print_, words);
 }
 
 void CommandConsole::say(std::string_view line) {
-  said_.emplace_back(line);
-  call(say_, std::string(line));
+  said_.push_back(in_python(std::string(line)));
+  call(say_, said_.back());
 }
 
 void CommandConsole::show(std::string_view text, double done) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "base/unlocked.h"
+
 #include <base/console.h>
 
 #include <nanobind/nanobind.h>
@@ -26,6 +28,8 @@ class CommandConsole : public Console {
   void say(std::string_view line) override;
   void show(std::string_view text, double done) override;
   void clear() override {}
+  /// Throws what Python's signal handlers raise, KeyboardInterrupt after Ctrl-C.
+  void poll() override { poll_(); }
   std::chrono::milliseconds interval() const override { return interval_; }
 
   const std::string& printed() const { return printed_; }
@@ -42,6 +46,7 @@ class CommandConsole : public Console {
   nb::object say_;
   nb::object show_;
   std::chrono::milliseconds interval_;
+  InterruptPoll poll_;
   std::string printed_;
   std::vector<std::string> said_;
   std::optional<nb::python_error> failure_;

@@ -2,8 +2,10 @@
 #include <base/signals.h>
 #include <commands/commands.h>
 #include <io/text_file.h>
+#include "base/gil.h"
 #include "runs/bind.h"
 #include "runs/command_console.h"
+#include "runs/words.h"
 
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/optional.h>
@@ -15,6 +17,7 @@
 #include <csignal>
 #include <functional>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -41,14 +44,14 @@ Printers printers(const Functions& given) {
 
 /// Runs a command without the GIL, with its own handlers of signals and the console of this call.
 int status_of(CommandConsole& console, const std::function<int()>& command) {
-  const nb::gil_scoped_release released;
+  const GilReleased released;
   const SignalScope signals;
   const ConsoleScope scope(console);
   const StopScope requests;
   try {
     return command();
   } catch (const InputError& error) {
-    throw nb::value_error(one_line(error.what(), 2000).c_str());
+    throw std::invalid_argument(in_python(one_line(error.what(), 2000)));
   }
 }
 
@@ -95,17 +98,28 @@ void bind_commands(nb::module_& module) {
       "Command run. Returns exit status, what was printed, and messages.");
   module.def(
       "resume",
-      [](const Functions& console, const std::string& path) { return outcome(console, [&] { return resume(path); }); },
-      nb::arg("console"), nb::arg("path"), "Command resume.");
+      [](const Functions& console, std::string path, Strings overrides) {
+        const ResumeArguments arguments{std::move(path), std::move(overrides)};
+        return outcome(console, [&] { return resume(arguments); });
+      },
+      nb::arg("console"), nb::arg("path"), nb::arg("overrides"), "Command resume.");
+  module.def(
+      "extend",
+      [](const Functions& console, std::string path, double time) {
+        const ExtendArguments arguments{std::move(path), time};
+        return outcome(console, [&] { return extend(arguments); });
+      },
+      nb::arg("console"), nb::arg("path"), nb::arg("time"), "Command extend.");
   module.def(
       "sweep",
       [](const Functions& console, std::string config, std::optional<std::string> text, std::optional<std::string> out,
-         std::optional<int> jobs, Strings program) {
-        const SweepArguments arguments{std::move(config), std::move(text), std::move(out), jobs, std::move(program)};
+         std::optional<int> jobs, Strings overrides, Strings program) {
+        const SweepArguments arguments{std::move(config),    std::move(text),   std::move(out), jobs,
+                                       std::move(overrides), std::move(program)};
         return outcome(console, [&] { return sweep(arguments); });
       },
-      nb::arg("console"), nb::arg("config"), text_or_none, out_or_none, nb::arg("jobs").none(), nb::arg("program"),
-      "Command sweep.");
+      nb::arg("console"), nb::arg("config"), text_or_none, out_or_none, nb::arg("jobs").none(), nb::arg("overrides"),
+      nb::arg("program"), "Command sweep.");
   module.def(
       "check",
       [](const Functions& console, const std::string& path) { return outcome(console, [&] { return check(path); }); },
@@ -113,12 +127,13 @@ void bind_commands(nb::module_& module) {
   module.def(
       "analyze",
       [](const Functions& console, std::string path, std::optional<std::string> out, std::optional<double> time_step,
-         std::optional<double> longest_lag, std::optional<double> fit_from, int every) {
-        const AnalyzeArguments arguments{std::move(path), std::move(out), time_step, longest_lag, fit_from, every};
+         std::optional<double> longest_lag, std::optional<double> fit_from, int every, bool collective) {
+        const AnalyzeArguments arguments{std::move(path), std::move(out), time_step, longest_lag,
+                                         fit_from,        every,          collective};
         return outcome(console, [&] { return analyze(arguments); });
       },
       nb::arg("console"), nb::arg("path"), out_or_none, nb::arg("time_step").none(), nb::arg("longest_lag").none(),
-      nb::arg("fit_from").none(), nb::arg("every"), "Command analyze.");
+      nb::arg("fit_from").none(), nb::arg("every"), nb::arg("collective"), "Command analyze.");
   module.def(
       "report",
       [](const Functions& console, Strings directories, std::optional<std::string> out) {

@@ -9,7 +9,7 @@ namespace {
 
 namespace nb = nanobind;
 
-nb::object text(const std::string& utf8) {
+nb::object unicode(const std::string& utf8) {
   return nb::str(utf8.c_str(), utf8.size());
 }
 
@@ -19,16 +19,16 @@ nb::list curve_plots() {
   for (const CurvePlot& plot : plots()) {
     if (plot.file.empty()) continue;
     nb::dict one;
-    one["id"] = text(plot.id);
-    one["title"] = text(plot.title);
-    one["file"] = text(plot.file);
-    one["x_label"] = text(plot.x_label);
-    one["y_label"] = text(plot.y_label);
+    one["id"] = unicode(plot.id);
+    one["title"] = unicode(plot.title);
+    one["file"] = unicode(plot.file);
+    one["x_label"] = unicode(plot.x_label);
+    one["y_label"] = unicode(plot.y_label);
     one["log_x"] = plot.log_x;
     one["log_y"] = plot.log_y;
     one["normalised"] = plot.normalised;
     nb::list lines;
-    for (const CurveLine& line : plot.lines) lines.append(nb::make_tuple(text(line.column), text(line.label)));
+    for (const CurveLine& line : plot.lines) lines.append(nb::make_tuple(unicode(line.column), unicode(line.label)));
     one["lines"] = lines;
     list.append(one);
   }

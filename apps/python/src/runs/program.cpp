@@ -1,4 +1,5 @@
 #include <command_line.h>
+#include "base/gil.h"
 #include "runs/bind.h"
 
 #include <nanobind/nanobind.h>
@@ -31,7 +32,7 @@ int run_program(const std::vector<nb::bytes>& arguments, std::vector<std::string
   pointers.reserve(words.size() + 1);
   for (std::string& word : words) pointers.push_back(word.data());
   pointers.push_back(nullptr);
-  const nb::gil_scoped_release released;
+  const GilReleased released;
   restore_default_signals();
   const int status = run_command_line(static_cast<int>(words.size()), pointers.data(), std::move(program));
   (void)std::fflush(stdout);

@@ -1,5 +1,6 @@
 #include "base/arguments.h"
 #include "base/arrays.h"
+#include "base/values.h"
 #include "geometry/custom_shape.h"
 #include "simulation/bind.h"
 #include "simulation/options.h"
@@ -41,22 +42,21 @@ PythonSimulation restored(nb::handle state, nb::handle shapes) {
     refuse_type("shapes", shapes, "a list of shapes of your own");
   }
   for (const nb::handle shape : shapes) {
-    if (!is_custom_shape(shape))
-      refuse_type("shapes[" + std::to_string(own.size()) + ']', shape, "a shape of your own");
+    if (!is_custom_shape(shape)) refuse_type(entry("shapes", own.size()), shape, "a shape of your own");
     own.push_back(custom_shape_of(shape));
   }
   std::string bytes;
   if (PyBytes_Check(state.ptr()) || PyByteArray_Check(state.ptr()) || PyMemoryView_Check(state.ptr())) {
     const nb::object copy = nb::steal(PyBytes_FromObject(state.ptr()));
     if (!copy.is_valid()) throw nb::python_error();
-    bytes.assign(PyBytes_AS_STRING(copy.ptr()), static_cast<std::size_t>(PyBytes_GET_SIZE(copy.ptr())));
+    bytes.assign(PyBytes_AsString(copy.ptr()), static_cast<std::size_t>(PyBytes_Size(copy.ptr())));
   } else {
     bytes = read_state(state, "state");
   }
   return PythonSimulation::restore(bytes, own);
 }
 
-constexpr const char* kDoc =
+constexpr const char* kSimulationDoc =
     "Event-driven dynamics of hard convex bodies in a periodic cubic box: collisions are found one by one and "
     "computed\n"
     "to rounding; no contact is missed.\n"
@@ -71,14 +71,16 @@ constexpr const char* kConstructorDoc =
     "Constructs a simulation that starts from a state, at time 0.\n"
     "\n"
     "envelope: thickness of the neighbour lists' envelopes, a length; None: a guess, which tune_envelopes improves.\n"
-    "neighbours: 'dilated', 'obp' (the paper's) or 'cells'; None: the fastest. finder: 'certified', which never steps\n"
-    "over a contact, or 'bracketing', the paper's, with its eps_d (a length; None: 1e-6 of the bodies' size), "
-    "distance\n"
-    "('dual', 'newton8', 'newton5') and root ('newton', 'one_dimensional'). instruction_set: of the vector kernels,\n"
-    "which give the same bits; None: no vectors. prepare_from: number of bodies from which on memory is prefetched.\n"
+    "neighbours: 'dilated', 'obp' (the paper's) or 'cells', which have no envelopes; None: the fastest. finder:\n"
+    "'certified', which never steps over a contact, or 'bracketing', the paper's, with its eps_d (a length; None: "
+    "1e-6\n"
+    "of the bodies' size), distance ('dual', 'newton8', 'newton5') and root ('newton', 'one_dimensional'; None:\n"
+    "'newton'). instruction_set: of the vector kernels, which give the same bits; None: no vectors. prepare_from:\n"
+    "number of bodies from which on memory is prefetched, for the same bits.\n"
     "least_progress: criterion of a stall (ed::SimulationOptions).\n"
     "\n"
-    "Raises ValueError if bodies overlap, numbers are not finite, or the box is too small for nearest images.";
+    "Raises ValueError if bodies overlap, numbers are not finite, the box is too small for nearest images or for the\n"
+    "envelope, or an option has no effect with the others.";
 
 void bind_constructor(Type& type) {
   type.def(
@@ -92,7 +94,7 @@ void bind_constructor(Type& type) {
         new (self) PythonSimulation(bodies, simulation_options(given, bodies.system));
       },
       nb::arg("system").none(), nb::kw_only(), nb::arg("envelope") = nb::none(), nb::arg("neighbours") = nb::none(),
-      nb::arg("finder").none() = "certified", nb::arg("distance").none() = "dual", nb::arg("root").none() = "newton",
+      nb::arg("finder").none() = "certified", nb::arg("distance").none() = "dual", nb::arg("root") = nb::none(),
       nb::arg("eps_d") = nb::none(), nb::arg("instruction_set").none() = "best",
       nb::arg("prepare_from").none() = ed::SimulationOptions{}.prepare_from,
       nb::arg("least_progress").none() = ed::SimulationOptions{}.least_progress,
@@ -100,7 +102,7 @@ void bind_constructor(Type& type) {
               "neighbours: typing.Literal['dilated', 'obp', 'cells'] | None = None, "
               "finder: typing.Literal['certified', 'bracketing'] = 'certified', "
               "distance: typing.Literal['dual', 'newton8', 'newton5'] = 'dual', "
-              "root: typing.Literal['newton', 'one_dimensional'] = 'newton', eps_d: float | None = None, "
+              "root: typing.Literal['newton', 'one_dimensional'] | None = None, eps_d: float | None = None, "
               "instruction_set: typing.Literal['best', 'portable', 'avx2', 'avx512'] | None = 'best', "
               "prepare_from: int = 15000, least_progress: float = 1e-06) -> None"),
       kConstructorDoc);
@@ -112,28 +114,28 @@ void bind_state(Type& type) {
            "Saves the whole state, observables included: to a file, or as bytes that are returned. A restored "
            "simulation\n"
            "goes on bit for bit. Files replace those of the same name only when they are complete. Raises OSError.")
-      .def_static(
-          "restore", &restored, nb::arg("state").none(), nb::arg("shapes") = nb::tuple(),
-          nb::sig("def restore(state: bytes | bytearray | memoryview | str | os.PathLike[str], "
-                  "shapes: list[hardbody._typing.SupportShape] | tuple[hardbody._typing.SupportShape, ...] = ()) "
-                  "-> Simulation"),
-          "Returns the simulation that was saved as these bytes or to this file. shapes: your own, which are "
-          "code, in the\n"
-          "order of their species.\n"
-          "\n"
-          "Raises ValueError for bytes that are no state or damaged, and for states of another version, build "
-          "or kind of\n"
-          "processor, which would go on with other bits.");
+      .def_static("restore", &restored, nb::arg("state").none(), nb::arg("shapes") = nb::tuple(),
+                  nb::sig("def restore(state: bytes | bytearray | memoryview | str | os.PathLike[str], "
+                          "shapes: list[hardbody.SupportShape] | tuple[hardbody.SupportShape, ...] = ()) "
+                          "-> Simulation"),
+                  "Returns the simulation that was saved as these bytes or to this file. shapes: your own, which are "
+                  "code, in the\n"
+                  "order of their species.\n"
+                  "\n"
+                  "Raises ValueError for bytes that are no state or damaged, and for states of another version, build "
+                  "or kind of\n"
+                  "processor, which would go on with other bits.");
 }
 
 }  // namespace
 
 void bind_simulations(nb::module_& module) {
-  Type type(module, "Simulation", kDoc);
+  Type type(module, "Simulation", kSimulationDoc);
   bind_constructor(type);
   bind_simulation_runs(type);
   bind_simulation_numbers(type);
   bind_state(type);
+  refuse_pickling(type, "a Simulation", "the bytes of save(), of which Simulation.restore makes a simulation");
 }
 
 }  // namespace hardbody::python

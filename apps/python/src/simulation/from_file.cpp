@@ -1,9 +1,9 @@
 #include "base/arguments.h"
+#include "base/unlocked.h"
 #include "simulation/bind.h"
 #include "simulation/paths.h"
 #include "simulation/species.h"
 #include "simulation/systems.h"
-#include "simulation/unlocked.h"
 
 #include <base/errors.h>
 #include <config/config.h>
@@ -23,6 +23,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -55,11 +56,6 @@ Config config_of(const StartFile& start, std::int64_t seed, std::optional<StartF
   return read_config(read_toml(text, kConfigName, {}), &frame);
 }
 
-bool flag(nb::handle value, const char* name) {
-  if (!PyBool_Check(value.ptr())) refuse_type(name, value, "True or False");
-  return nb::cast<bool>(value);
-}
-
 /// Hands the program's remarks to Python: what the file does not say as warnings, the rest to the log.
 void report(const FileStart& start) {
   for (const std::string& notice : start.notices) {
@@ -70,7 +66,7 @@ void report(const FileStart& start) {
 
 /// Returns the program's config of a start of these bodies from this file.
 Config with_components(const StartFile& start, const std::vector<ComponentGroup>& groups, std::int64_t seed,
-                       std::optional<StartFrame>& frame) {
+                       const Frame& frame) {
   Config config;
   config.seed = seed;
   config.start_file = start;
@@ -86,17 +82,19 @@ Config with_components(const StartFile& start, const std::vector<ComponentGroup>
     species.factors = g.factors;
   }
   for (const ed::Component& c : config.components()) volume += c.number * ed::volume(c.species.shape);
-  frame = read_start_frame(start);
-  config.packing_fraction = volume / std::pow(box_of(frame->frame, start.file), 3);
+  config.packing_fraction = volume / std::pow(box_of(frame, start.file), 3);
   return config;
 }
 
 /// Returns a message of the program with Python's words for keys of a config.
-std::string in_python(std::string message) {
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 5> kWords = {{
+std::string in_words_of_python(std::string message) {
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 8> kWords = {{
       {"[[species]] with sizes, width and size_seed in the config", "components with a Polydisperse"},
       {"[shape] or [[species]] in the config", "components=[(species, number), ...]"},
       {"[[species]] in the config", "components=[(species, number), ...]"},
+      {" bodies of its types, the config ", " bodies of its types, components have "},
+      {"or no shape in the config", "or no components"},
+      {", in the config ", ", in components "},
       {"start.mend = true", "mend=True"},
       {"start.frame", "frame"},
   }};
@@ -109,9 +107,14 @@ std::string in_python(std::string message) {
 FileStart read_start(const StartFile& start, nb::handle components, std::uint64_t seed, std::vector<int>& numbers) {
   const auto signed_seed = static_cast<std::int64_t>(seed);
   std::optional<StartFrame> loaded;
-  const Config config = components.is_none()
-                            ? config_of(start, signed_seed, loaded)
-                            : with_components(start, components_of(components, nb::none(), seed), signed_seed, loaded);
+  Config config;
+  if (components.is_none()) {
+    config = config_of(start, signed_seed, loaded);
+  } else {
+    loaded = read_start_frame(start);
+    const auto number = static_cast<int>(loaded->frame.bodies.size());
+    config = with_components(start, components_of(components, nb::none(), seed, number), signed_seed, loaded->frame);
+  }
   numbers = config.numbers();
   return unlocked([&] { return start_from_file(config, std::move(loaded)); });
 }
@@ -121,15 +124,15 @@ BodySystem from_gsd(nb::handle path, nb::handle frame, nb::handle components, nb
   StartFile start;
   start.file = existing_path(path);
   start.frame = frame_number(frame, start.file);
-  start.mend = flag(mend, "mend");
-  start.reverse = flag(reverse, "reverse");
+  start.mend = truth(mend, "mend");
+  start.reverse = truth(reverse, "reverse");
   std::vector<int> groups;
   try {
     FileStart made = read_start(start, components, seed_of(seed, "seed"), groups);
     report(made);
     return {std::move(made.system), std::move(groups)};
   } catch (const InputError& error) {
-    throw nb::value_error(in_python(error.what()).c_str());
+    throw std::invalid_argument(in_words_of_python(error.what()));
   }
 }
 
@@ -140,13 +143,14 @@ void bind_files(nb::module_& module) {
       "from_gsd", &from_gsd, nb::arg("path").none(), nb::arg("frame").none() = -1, nb::arg("components") = nb::none(),
       nb::kw_only(), nb::arg("seed").none() = 1, nb::arg("mend").none() = false, nb::arg("reverse").none() = false,
       nb::sig("def from_gsd(path: str | os.PathLike[str], frame: int = -1, "
-              "components: hardbody._typing.Components | None = None, *, seed: int = 1, mend: bool = False, "
+              "components: hardbody.Components | None = None, *, seed: int = 1, mend: bool = False, "
               "reverse: bool = False) -> System"),
       "Returns a state from a trajectory: a GSD file of this or another program, or a LAMMPS text dump.\n"
       "\n"
       "frame: from 0; negative numbers count from the end, -1 is the last frame with positions. components: bodies in\n"
       "the order of the file's types, as for random_start, where the file does not give shapes, masses or moments, or\n"
-      "others are wanted. mend: overlaps are removed by scaling box and positions; otherwise they are refused. "
+      "others are wanted; a single species or shape is that of all bodies of the file. mend: overlaps are removed by "
+      "scaling box and positions; otherwise they are refused. "
       "reverse:\n"
       "all velocities are negated.\n"
       "\n"

@@ -2,9 +2,11 @@
 
 #include "base/arguments.h"
 #include "base/arrays.h"
+#include "base/unlocked.h"
+#include "base/values.h"
 #include "simulation/bind.h"
-#include "simulation/unlocked.h"
 
+#include <config/config.h>
 #include <registry/curves.h>
 #include <registry/observables.h>
 #include <run/files/observable_files.h>
@@ -17,6 +19,7 @@
 #include <nanobind/stl/vector.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -78,11 +81,14 @@ nb::object value_of(const Observable& observable, const Part& part, const Values
   if (const auto* member = std::get_if<ed::TensorEstimate ed::Results::*>(&observable.value)) {
     return part.whole == nullptr ? nb::object() : values.tensor(part.whole->**member, part.whole->Z);
   }
-  if (is_per_axis(observable) && !part.body_axes) return {};
+  if (is_per_axis(observable) && !observable.of_box && !part.body_axes) return {};
   nb::list list;
-  for (const ed::Estimate& e : numbers_of(observable, part)) list.append(values.estimate(e));
+  for (const ed::Estimate& e : numbers_of(observable, part)) {
+    if (is_number(observable) && is_absent(e)) return {};
+    list.append(values.estimate(e));
+  }
   if (nb::len(list) == 0) return {};
-  return is_per_axis(observable) ? nb::object(nb::tuple(list)) : nb::object(list[0]);
+  return is_list(observable) ? nb::object(nb::tuple(list)) : nb::object(list[0]);
 }
 
 nb::dict numbers_of(const Part& part, const Values& values) {
@@ -94,8 +100,9 @@ nb::dict numbers_of(const Part& part, const Values& values) {
   return made;
 }
 
-/// Returns a table as a structured array.
-nb::object structured(const CurveTable& table) {
+/// Returns a table as a structured array, and the units of its columns: dimensions, as the caller's units are not
+/// known.
+nb::tuple structured(const CurveTable& table) {
   const std::size_t columns = table.columns.size();
   const NewArray<double> numbers = new_array<double>({table.rows.size(), columns});
   double* out = numbers.data;
@@ -103,12 +110,18 @@ nb::object structured(const CurveTable& table) {
   nb::list fields;
   for (const std::string& name : table.columns) fields.append(nb::make_tuple(name, "f8"));
   const nb::object type = nb::module_::import_("numpy").attr("dtype")(fields);
-  return numbers.array.attr("view")(type).attr("reshape")(-1);
+  nb::dict units;
+  for (std::size_t k = 0; k < columns; ++k) {
+    units[table.columns[k].c_str()] = unit_text(table.units[k], Units::unknown);
+  }
+  return nb::make_tuple(numbers.array.attr("view")(type).attr("reshape")(-1), units);
 }
 
 nb::dict curves_of(const ed::Results& results) {
   nb::dict made;
-  for (const CurveFile& file : curve_files()) made[file.name.c_str()] = structured(curve_table(file, results));
+  for (const CurveFile& file : curve_files()) {
+    if (is_written(file, results)) made[file.name.c_str()] = structured(curve_table(file, results));
+  }
   return made;
 }
 
@@ -118,26 +131,47 @@ nb::object results_of(const PythonObservables& self) {
   const ed::Simulation& running = simulation.whole();
   const ed::Results results = self.measurement->observables.results(running);
   const Values values;
-  double rotation_axes = 0;
-  for (const ed::BodyGroup& g : options.groups) rotation_axes += g.rotation_axes * g.number;
   const bool single = options.groups.size() == 1;
   const bool body_axes = single && options.groups[0].rotation_axes == 3;
-  const Part all{results, &results, options.number, rotation_axes / options.number, body_axes, options.wave_numbers};
+  const Part all = whole_part(results, options.groups, body_axes, options.wave_numbers);
   nb::list groups;
   for (std::size_t k = 0; !single && k < results.groups.size(); ++k) {
     const ed::BodyGroup& g = options.groups[k];
-    const Part part{results.groups[k],   nullptr, g.number, static_cast<double>(g.rotation_axes), g.rotation_axes == 3,
-                    options.wave_numbers};
+    const Part part{.results = results.groups[k],
+                    .number = g.number,
+                    .rotation_axes = static_cast<double>(g.rotation_axes),
+                    .body_axes = g.rotation_axes == 3,
+                    .spheres = !g.oriented,
+                    .wave_numbers = options.wave_numbers};
     groups.append(values.results(numbers_of(part, values), nb::dict(), nb::list()));
   }
   return values.results(numbers_of(all, values), curves_of(results), groups);
 }
 
+/// Returns what the list `order` asks for, each word at most once.
+ed::BondOptions bond_options(nb::handle order, nb::handle neighbours) {
+  ed::BondOptions bonds{};
+  bonds.neighbours =
+      static_cast<int>(integer(neighbours, "order_neighbours", ed::kFewestNeighbours, ed::kMostNeighbours));
+  const std::string accepted = "a list of \"steinhardt\" and \"hexatic\", each at most once";
+  if (!nb::isinstance<nb::list>(order) && !nb::isinstance<nb::tuple>(order)) refuse_type("order", order, accepted);
+  for (const nb::handle item : order) {
+    const BondOrder one = choice(item, "order", std::array{BondOrder::steinhardt, BondOrder::hexatic});
+    bool& asked = one == BondOrder::steinhardt ? bonds.steinhardt : bonds.hexatic;
+    if (asked) refuse_value("order", std::string(nb::repr(order).c_str()), accepted);
+    asked = true;
+  }
+  return bonds;
+}
+
 }  // namespace
 
 ed::ObservablesOptions measuring_options(const BodySystem& bodies, nb::handle duration, nb::handle longest_lag,
-                                         nb::handle wave_numbers) {
+                                         nb::handle wave_numbers, nb::handle collective, nb::handle order,
+                                         nb::handle order_neighbours) {
   ed::ObservablesOptions options{};
+  options.collective = truth(collective, "collective");
+  options.bonds = bond_options(order, order_neighbours);
   options.number = bodies.system.size();
   options.duration = positive(duration, "duration");
   options.time_unit = ed::time_unit(bodies.system);
@@ -164,11 +198,11 @@ ed::ObservablesOptions measuring_options(const BodySystem& bodies, nb::handle du
 }
 
 void bind_observables(nb::module_& module) {
-  nb::class_<PythonObservables>(
+  nb::class_<PythonObservables> type(
       module, "Observables",
       "Observables of a simulation, measured while it runs, in memory that does not grow with\n"
-      "the run's length. Made by Simulation.measure.")
-      .def_prop_ro(
+      "the run's length. Made by Simulation.measure.");
+  type.def_prop_ro(
           "duration", [](const PythonObservables& o) { return o.measurement->options.duration; },
           "Planned duration; later motion is not measured.")
       .def_prop_ro(
@@ -178,12 +212,13 @@ void bind_observables(nb::module_& module) {
       .def_prop_ro(
           "next_time", [](const PythonObservables& o) { return o.measurement->observables.next_time(); },
           "Time of the next measurement; infinite when the duration is covered.")
-      .def("results", &results_of, nb::sig("def results(self) -> hardbody._observables.Results"),
+      .def("results", &results_of, nb::sig("def results(self) -> hardbody.Results"),
            "Returns all results so far: values with errors, and curves as structured arrays.")
       .def("__repr__", [](const PythonObservables& o) {
         return "Observables(duration=" + shown(o.measurement->options.duration) +
                ", next_time=" + shown(o.measurement->observables.next_time()) + ')';
       });
+  refuse_pickling(type, "Observables", "results(), or the bytes of save() of their simulation");
 }
 
 }  // namespace hardbody::python

@@ -16,6 +16,7 @@ struct PythonObservables {
 
 /// Returns the options of measuring a state, with defaults for what is None. Throws ValueError.
 ed::ObservablesOptions measuring_options(const BodySystem& bodies, nb::handle duration, nb::handle longest_lag,
-                                         nb::handle wave_numbers);
+                                         nb::handle wave_numbers, nb::handle collective, nb::handle order,
+                                         nb::handle order_neighbours);
 
 }  // namespace hardbody::python

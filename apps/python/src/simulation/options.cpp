@@ -43,17 +43,19 @@ double usual_eps_d(ed::System system) {
 ed::SimulationOptions simulation_options(const OptionArguments& given, const ed::System& system) {
   ed::SimulationOptions options;
   ed::ContactOptions& contact = options.contact;
-  contact.finder = choice(given.finder, "finder", kFinders);
-  contact.distance = choice(given.distance, "distance", kDistances);
-  contact.root = choice(given.root, "root", kRoots);
-  if (contact.finder == ed::Finder::certified && contact.distance != ed::DistanceMethod::dual) {
-    refuse_value("distance", '"' + std::string(to_string(contact.distance)) + '"',
-                 "\"dual\" with finder=\"certified\"; others with \"bracketing\"");
-  }
-  contact.eps_d = given.eps_d.is_none() ? usual_eps_d(system) : positive(given.eps_d, "eps_d");
-  if (!given.envelope.is_none()) options.envelope = positive(given.envelope, "envelope");
+  contact.eps_d = usual_eps_d(system);
+  read_method(contact, given.finder, given.eps_d, given.distance, given.root);
   options.neighbours = given.neighbours.is_none() ? usual_neighbours(system, contact.finder)
                                                   : choice(given.neighbours, "neighbours", kNeighbours);
+  if (!given.envelope.is_none()) {
+    options.envelope = positive(given.envelope, "envelope");
+    if (options.neighbours == ed::Neighbours::cells) {
+      const bool chosen = given.neighbours.is_none();
+      const char* const with =
+          chosen ? " with neighbours=None, where cells are the fastest" : " with neighbours=\"cells\"";
+      refuse_value("envelope", shown(options.envelope) + with, "None, as cells have none; or neighbours=\"dilated\"");
+    }
+  }
   options.batches.reset();
   if (!given.instruction_set.is_none()) {
     options.batches = choice(given.instruction_set, "instruction_set", kInstructionSets);

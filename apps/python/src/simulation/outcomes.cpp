@@ -2,6 +2,8 @@
 
 #include "base/arguments.h"
 #include "base/arrays.h"
+#include "base/values.h"
+#include "geometry/shapes.h"
 #include "simulation/bind.h"
 
 #include <run/files/failure_file.h>
@@ -74,13 +76,14 @@ void bind_counters(nb::module_& module) {
         }
         return "Counters(" + text + ')';
       });
+  std::apply([&](const auto&... c) { bind_value(type, c.member...); }, kCounters);
 }
 
 void bind_kinetic(nb::module_& module) {
   using ed::KineticState;
   const auto array = [](const char* signature) { return nb::for_getter(nb::sig(signature)); };
-  nb::class_<KineticState>(module, "Kinetic", "Kinetic energies of a state, and the temperatures that follow.")
-      .def_prop_ro(
+  nb::class_<KineticState> type(module, "Kinetic", "Kinetic energies of a state, and the temperatures that follow.");
+  type.def_prop_ro(
           "energy", [](const KineticState& k) { return k.energy(); }, "Sum of the three energies.")
       .def_ro("translational_energy", &KineticState::translational_energy, "Energy of translation.")
       .def_ro("rotational_energy", &KineticState::rotational_energy,
@@ -101,12 +104,16 @@ void bind_kinetic(nb::module_& module) {
         return "Kinetic(energy=" + shown(k.energy()) + ", translational_kT=" + shown(k.translational_kT) +
                ", rotational_kT=" + shown(k.rotational_kT) + ')';
       });
+  using K = KineticState;
+  bind_value(type, &K::translational_energy, &K::rotational_energy, &K::spin_energy, &K::translational_kT,
+             &K::rotational_kT, &K::rotational_degrees_of_freedom, &K::spin_degrees_of_freedom, &K::axis_energy,
+             &K::momentum);
 }
 
 void bind_audit(nb::module_& module) {
   using ed::Audit;
-  nb::class_<Audit>(module, "Audit", "Distances of all pairs of a state, computed from scratch.")
-      .def_ro("minimum_distance", &Audit::minimum_distance,
+  nb::class_<Audit> type(module, "Audit", "Distances of all pairs of a state, computed from scratch.");
+  type.def_ro("minimum_distance", &Audit::minimum_distance,
               "Smallest distance of all pairs, below 0 for an overlap; the box if no bodies are near each other.")
       .def_prop_ro(
           "closest_pair",
@@ -127,13 +134,15 @@ void bind_audit(nb::module_& module) {
         return "Audit(minimum_distance=" + shown(a.minimum_distance) + ", overlaps=" + std::to_string(a.overlaps) +
                ", unanswered=" + std::to_string(a.unanswered) + ", finite=" + (a.finite ? "True" : "False") + ')';
       });
+  bind_value(type, &Audit::minimum_distance, &Audit::closest_i, &Audit::closest_j, &Audit::overlaps, &Audit::unanswered,
+             &Audit::finite, &Audit::kinetic);
 }
 
 void bind_stall(nb::module_& module) {
   using ed::Stall;
-  nb::class_<Stall>(module, "Stall",
-                    "Stall of a run: many events within almost no simulated time, so that it would never end.")
-      .def_ro("time", &Stall::time, "Simulated time.")
+  nb::class_<Stall> type(module, "Stall",
+                         "Stall of a run: many events within almost no simulated time, so that it would never end.");
+  type.def_ro("time", &Stall::time, "Simulated time.")
       .def_ro("events", &Stall::events, "Number of events.")
       .def_ro("span", &Stall::span, "Simulated time that these events have taken.")
       .def_prop_ro(
@@ -142,10 +151,7 @@ void bind_stall(nb::module_& module) {
       .def_ro("j", &Stall::j, "Second body; -1 for an event of one body.")
       .def_ro("share", &Stall::share, "Fraction of that event among the events since.")
       .def("__repr__", [](const Stall& s) { return "Stall(" + ed::describe(s) + ')'; });
-}
-
-nb::object shape_object(const ed::BodyShape& shape) {
-  return std::visit([](const auto& s) { return nb::cast(s); }, shape);
+  bind_value(type, &Stall::time, &Stall::events, &Stall::span, &Stall::kind, &Stall::i, &Stall::j, &Stall::share);
 }
 
 std::string json_of(const FailedPair& pair) {
@@ -159,9 +165,9 @@ std::string json_of(const FailedPair& pair) {
 
 void bind_failed_pair(nb::module_& module) {
   const auto shape = [](const char* signature) { return nb::for_getter(nb::sig(signature)); };
-  nb::class_<FailedPair>(module, "FailedPair",
-                         "Pair of bodies whose prediction failed, at that moment, with all that reproduces it.")
-      .def_prop_ro(
+  nb::class_<FailedPair> type(module, "FailedPair",
+                              "Pair of bodies whose prediction failed, at that moment, with all that reproduces it.");
+  type.def_prop_ro(
           "reason", [](const FailedPair& p) { return to_string(p.reason); }, "Reason in words.")
       .def_ro("time", &FailedPair::time, "Simulated time.")
       .def_ro("i", &FailedPair::i, "First body.")
@@ -183,6 +189,7 @@ void bind_failed_pair(nb::module_& module) {
         return "FailedPair(bodies " + std::to_string(p.i) + " and " + std::to_string(p.j) + " at time " +
                shown(p.time) + ": " + to_string(p.reason) + ')';
       });
+  refuse_pickling(type, "a FailedPair", "the text that to_json() returns");
 }
 
 std::string times(std::uint64_t number) {

@@ -1,7 +1,5 @@
 #include "simulation/paths.h"
 
-#include "base/arguments.h"
-
 #include <io/text_file.h>
 
 #include <nanobind/stl/string.h>
@@ -13,23 +11,14 @@
 namespace hardbody::python {
 namespace {
 
-constexpr const char* kPaths = "a str or an os.PathLike of one";
 constexpr std::size_t kLongestState = std::size_t{1} << 35;
 
 std::string path_text(nb::handle path, const char* name) {
-  if (!nb::isinstance<nb::str>(path) && !nb::hasattr(path, "__fspath__")) {
-    refuse_type(name, path, kPaths);
-  }
-  const nb::object text = nb::module_::import_("os").attr("fspath")(path);
-  if (!nb::isinstance<nb::str>(text)) refuse_type(name, path, kPaths);
+  const nb::object text =
+      nb::module_::import_("hardbody._calls").attr("path_text")(path, name, nb::arg("only_unicode") = false);
   // Names that are no Unicode have the bytes of the file system.
-  const nb::object bytes = nb::module_::import_("os").attr("fsencode")(text);
-  const auto encoded = nb::cast<nb::bytes>(bytes);
-  std::string result(encoded.c_str(), encoded.size());
-  if (result.empty() || result.find('\0') != std::string::npos) {
-    refuse_value(name, nb::cast<std::string>(nb::repr(text)), "the name of a file");
-  }
-  return result;
+  const auto encoded = nb::cast<nb::bytes>(nb::module_::import_("os").attr("fsencode")(text));
+  return {encoded.c_str(), encoded.size()};
 }
 
 }  // namespace

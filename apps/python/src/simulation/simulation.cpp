@@ -1,9 +1,10 @@
 #include "simulation/simulation.h"
 
 #include "base/arguments.h"
+#include "base/gil.h"
+#include "base/unlocked.h"
 #include "geometry/custom_shape.h"
 #include "simulation/outcomes.h"
-#include "simulation/unlocked.h"
 
 #include <nanobind/nanobind.h>
 
@@ -95,10 +96,22 @@ class CallTimes {
   double count_ = 1;
 };
 
+/// Returns the simulation, constructed without the GIL. Ctrl-C ends that.
+ed::Simulation constructed(const ed::System& system, ed::SimulationOptions options) {
+  check_interrupts();
+  options.poll = InterruptPoll();
+  return unlocked([&] { return ed::Simulation(system, options); });
+}
+
 }  // namespace
 
 PythonSimulation::PythonSimulation(const BodySystem& bodies, const ed::SimulationOptions& options)
-    : PythonSimulation(unlocked([&] { return ed::Simulation(bodies.system, options); }), options, bodies.groups) {}
+    : PythonSimulation(constructed(bodies.system, options), options, bodies.groups) {
+  const double used = simulation_.envelope();
+  if (options.envelope == 0 || used == options.envelope) return;
+  refuse_value("envelope", shown(options.envelope),
+               (used < options.envelope ? "at most " : "at least ") + shown(used) + " in this box");
+}
 
 PythonSimulation::PythonSimulation(ed::Simulation simulation, const ed::SimulationOptions& options,
                                    std::vector<int> groups)
@@ -199,6 +212,7 @@ void PythonSimulation::run(nb::handle self, const RunPlan& plan) {
 }
 
 void PythonSimulation::run_to_end(nb::handle self, const RunPlan& plan) {
+  const GilAcquired calling;
   const std::uint64_t collisions = simulation_.counters().collisions;
   const std::uint64_t last = collisions + std::min(plan.collisions, ~std::uint64_t{0} - collisions);
   ProgressCalls progress(plan, simulation_);
@@ -253,13 +267,16 @@ double PythonSimulation::shrink_box(double target_box, double least_gain) {
 
 void PythonSimulation::tune_envelopes() {
   refuse_with_observables("tune_envelopes");
+  if (options_.neighbours == ed::Neighbours::cells) {
+    throw std::runtime_error("tune_envelopes needs neighbours=\"dilated\" or \"obp\"; this simulation has \"cells\"");
+  }
   refuse_rest("tune envelopes");
   Ticks ticks;
   std::exception_ptr interrupt;
   change([&] {
     simulation_.tune_envelopes([&] {
       if (!ticks.due()) return true;
-      const nb::gil_scoped_acquire gil;
+      const GilAcquired gil;
       try {
         check_interrupts();
       } catch (...) {

@@ -70,6 +70,7 @@ class PythonSimulation {
 
  private:
   PythonSimulation(ed::Simulation simulation, const ed::SimulationOptions& options, std::vector<int> groups);
+  static PythonSimulation restore_checked(std::string_view bytes, const std::vector<ed::CustomShape>& shapes);
 
   bool advance(double time, std::uint64_t last_collision, const std::function<void()>& report);
   bool run_slice(double time, std::uint64_t most_collisions);

@@ -1,10 +1,9 @@
 #include "base/arguments.h"
 #include "base/arrays.h"
+#include "base/unlocked.h"
 #include "simulation/bind.h"
 #include "simulation/observables.h"
-#include "simulation/recorded.h"
 #include "simulation/simulation.h"
-#include "simulation/unlocked.h"
 
 #include <ed/simulation.h>
 
@@ -17,6 +16,8 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
+#include <cstring>
 #include <limits>
 #include <string>
 #include <vector>
@@ -60,6 +61,19 @@ nb::object sampled(const PythonSimulation& s, std::vector<Eigen::Vector3d> ed::S
   const NewArray<double> made = new_array<double>({list.size(), 3});
   for (std::size_t k = 0; k < list.size(); ++k) Eigen::Vector3d::Map(made.data + 3 * k) = list[k];
   return made.array;
+}
+
+/// Returns the recorded collisions as a structured array.
+nb::object recorded(const PythonSimulation& simulation) {
+  const std::vector<ed::Collision>& list = simulation.whole().collisions();
+  static_assert(sizeof(ed::Collision) == 16);
+  const NewArray<std::uint8_t> bytes = new_array<std::uint8_t>({sizeof(ed::Collision) * list.size()});
+  if (!list.empty()) std::memcpy(bytes.data, list.data(), sizeof(ed::Collision) * list.size());
+  nb::list fields;
+  fields.append(nb::make_tuple("time", "f8"));
+  fields.append(nb::make_tuple("i", "i4"));
+  fields.append(nb::make_tuple("j", "i4"));
+  return bytes.array.attr("view")(nb::module_::import_("numpy").attr("dtype")(fields));
 }
 
 void bind_arrays(Type& type) {
@@ -131,7 +145,7 @@ void bind_mechanics(Type& type) {
           "audit",
           [](const PythonSimulation& s) {
             const ed::System system = s.whole().system();
-            return unlocked([&] { return ed::audit(system); });
+            return unlocked([&] { return ed::audit(system, InterruptPoll()); });
           },
           nb::sig("def audit(self) -> Audit"),
           "Returns the smallest distance of all pairs and overlaps, computed from scratch, as System.audit.");

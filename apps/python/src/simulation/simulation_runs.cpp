@@ -114,7 +114,7 @@ void bind_changes(Type& type) {
       .def("tune_envelopes", &PythonSimulation::tune_envelopes, nb::sig("def tune_envelopes(self) -> None"),
            "Chooses the thickness of the neighbour lists' envelopes by the work that the counters show. Runs up to "
            "about\n"
-           "20 collisions a body.")
+           "20 collisions a body. Raises RuntimeError with neighbours='cells', which have no envelopes.")
       .def(
           "record_collisions",
           [](PythonSimulation& s, nb::handle number) {
@@ -128,22 +128,29 @@ void bind_changes(Type& type) {
 void bind_measure(Type& type) {
   type.def(
       "measure",
-      [](nb::handle self, nb::handle duration, nb::handle longest_lag, nb::handle wave_numbers) {
+      [](nb::handle self, nb::handle duration, nb::handle longest_lag, nb::handle wave_numbers, nb::handle collective,
+         nb::handle order, nb::handle order_neighbours) {
         auto& s = instance<PythonSimulation>(self, "self");
-        return PythonObservables{nb::borrow(self),
-                                 s.measure(measuring_options(s.bodies(), duration, longest_lag, wave_numbers))};
+        return PythonObservables{
+            nb::borrow(self), s.measure(measuring_options(s.bodies(), duration, longest_lag, wave_numbers, collective,
+                                                          order, order_neighbours))};
       },
       nb::arg("duration").none(), nb::arg("longest_lag") = nb::none(), nb::arg("wave_numbers") = nb::none(),
+      nb::arg("collective") = false, nb::arg("order").none() = nb::tuple(), nb::arg("order_neighbours").none() = 12,
       nb::sig("def measure(self, duration: float, longest_lag: float | None = None, "
-              "wave_numbers: numpy.typing.ArrayLike | None = None) -> Observables"),
+              "wave_numbers: numpy.typing.ArrayLike | None = None, collective: bool = False, "
+              "order: collections.abc.Sequence[typing.Literal['steinhardt', 'hexatic']] = (), "
+              "order_neighbours: int = 12) -> Observables"),
       "Measures observables from now, time 0, on: run then samples the motion where that is due. A simulation "
       "that\n"
       "has run goes on as Simulation(simulation.system), whose counters start at 0.\n"
       "\n"
-      "duration: planned time; the run may end earlier. longest_lag: of correlations in time; None: duration / 16, "
-      "at\n"
-      "most 40 time units of the bodies. wave_numbers: of F_self, at most 8; None: the first peak of S(q) in this\n"
-      "state, a quarter, half and twice of it.");
+      "duration: planned time; the run may end earlier. longest_lag: of correlations in time; None: duration / 16.\n"
+      "wave_numbers: of F_self, at most 8; None: the first peak of S(q) in this state, a quarter, half and twice of "
+      "it.\n"
+      "collective: True to measure F(q, t) / S(q) of all bodies, too, at these wave numbers (\"f_collective\").\n"
+      "order: of bonds: any of \"steinhardt\" (\"q4\" and \"q6\") and \"hexatic\" (\"psi6\" and \"psi6_local\").\n"
+      "order_neighbours: number of nearest neighbours that a body has bonds with, 4 to 50, for q4 and q6.");
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "simulation/species.h"
 
 #include "base/arrays.h"
+#include "base/values.h"
 #include "geometry/custom_shape.h"
 #include "geometry/shapes.h"
 #include "simulation/bind.h"
@@ -28,7 +29,6 @@ using Eigen::Vector3d;
 constexpr const char* kInertias = "\"paper\", \"uniform\", three moments";
 constexpr const char* kComponents =
     "a Species, a shape, a Polydisperse, or a list of these, species and shapes with their number: (species, number)";
-constexpr int kDefaultNumber = 512;
 
 /// Returns the moments of uniform density of a shape that is written in Python: it has to know them.
 Vector3d own_moments(const PythonShape& shape, double mass) {
@@ -71,22 +71,19 @@ Species make_species(nb::handle shape, const std::string& name, nb::handle mass,
         (name + ".volume is missing; accepted: a volume above 0, here or in CustomShape(shape, volume=...)").c_str());
   }
   Species species = with_inertia(body, positive(mass, "mass"), inertia);
-  if (!spins.is_none()) {
-    if (!PyBool_Check(spins.ptr())) refuse_type("spins", spins, "True, False, None");
-    species.spins = nb::cast<bool>(spins);
-  }
+  if (!spins.is_none()) species.spins = truth(spins, "spins", "True, False, None");
   ed::check_species(species);
   return species;
 }
 
-/// Returns the shape as Python has it: a user's own as it was given.
-nb::object shape_object(const ed::BodyShape& shape) {
-  return std::visit([](const auto& s) { return nb::cast(s); }, shape);
-}
-
-std::string text_of(const Species& s) {
+std::string species_text(const Species& s) {
   return "Species(" + nb::cast<std::string>(nb::repr(shape_object(s.shape))) + ", mass=" + shown(s.mass) +
          ", inertia=" + shown(s.inertia) + ", spins=" + (s.spins ? "True" : "False") + ')';
+}
+
+bool same_species(const Species& a, const Species& b) {
+  return shape_object(a.shape).equal(shape_object(b.shape)) && a.mass == b.mass && a.inertia == b.inertia &&
+         a.spins == b.spins;
 }
 
 int body_count(nb::handle value, const char* name) {
@@ -121,12 +118,12 @@ void add(Groups& groups, const Polydisperse& bodies, std::uint64_t seed) {
   groups.push_back({bodies.species, bodies.number, std::move(factors)});
 }
 
-void add_entry(Groups& groups, nb::handle entry, const std::string& name, std::uint64_t seed) {
+void add_entry(Groups& groups, nb::handle one, const std::string& name, std::uint64_t seed) {
   Polydisperse* bodies = nullptr;
-  if (nb::try_cast(entry, bodies, false) && bodies != nullptr) return add(groups, *bodies, seed);
-  const bool is_pair = (nb::isinstance<nb::tuple>(entry) || nb::isinstance<nb::list>(entry)) && nb::len(entry) == 2;
-  if (!is_pair) refuse_type(name, entry, "(species, number) or a Polydisperse");
-  groups.push_back({species_of(entry[0], name + "[0]"), body_count(entry[1], (name + "[1]").c_str()), {}});
+  if (nb::try_cast(one, bodies, false) && bodies != nullptr) return add(groups, *bodies, seed);
+  const bool is_pair = (nb::isinstance<nb::tuple>(one) || nb::isinstance<nb::list>(one)) && nb::len(one) == 2;
+  if (!is_pair) refuse_type(name, one, "(species, number) or a Polydisperse");
+  groups.push_back({species_of(one[0], entry(name, 0)), body_count(one[1], entry(name, 1).c_str()), {}});
 }
 
 void refuse_number(nb::handle number) {
@@ -158,18 +155,18 @@ Species species_of(nb::handle value, const std::string& name) {
   refuse_type(name, value, "a Species or a shape");
 }
 
-std::vector<ComponentGroup> components_of(nb::handle value, nb::handle number, std::uint64_t seed) {
+std::vector<ComponentGroup> components_of(nb::handle value, nb::handle number, std::uint64_t seed, int usual_number) {
   Groups groups;
   Polydisperse* bodies = nullptr;
   if (nb::isinstance<nb::list>(value) || nb::isinstance<nb::tuple>(value)) {
     refuse_number(number);
     std::size_t k = 0;
-    for (const nb::handle entry : value) add_entry(groups, entry, "components[" + std::to_string(k++) + ']', seed);
+    for (const nb::handle one : value) add_entry(groups, one, entry("components", k++), seed);
   } else if (nb::try_cast(value, bodies, false) && bodies != nullptr) {
     refuse_number(number);
     add(groups, *bodies, seed);
   } else if (nb::isinstance<Species>(value) || is_custom_shape(value)) {
-    const int count = number.is_none() ? kDefaultNumber : body_count(number, "number");
+    const int count = number.is_none() ? usual_number : body_count(number, "number");
     groups.push_back({species_of(value, "components"), count, {}});
   } else {
     refuse_type("components", value, kComponents);
@@ -186,16 +183,18 @@ std::uint64_t seed_of(nb::handle value, const char* name) {
   return static_cast<std::uint64_t>(integer(value, name, 0, std::numeric_limits<std::int64_t>::max()));
 }
 
-void bind_species(nb::module_& module) {
-  nb::class_<Species>(module, "Species", "Shape, mass and moments of inertia of bodies of one kind.")
-      .def(
+namespace {
+
+void bind_one_species(nb::module_& module) {
+  nb::class_<Species> type(module, "Species", "Shape, mass and moments of inertia of bodies of one kind.");
+  type.def(
           "__init__",
           [](Species* self, nb::handle shape, nb::handle mass, nb::handle inertia, nb::handle spins) {
             new (self) Species(make_species(shape, "shape", mass, inertia, spins));
           },
           nb::arg("shape").none(), nb::arg("mass").none() = 1.0, nb::arg("inertia") = nb::none(),
           nb::arg("spins") = nb::none(),
-          nb::sig("def __init__(self, shape: hardbody._typing.BodyShape, mass: float = 1.0, "
+          nb::sig("def __init__(self, shape: hardbody.BodyShape, mass: float = 1.0, "
                   "inertia: typing.Literal['paper', 'uniform'] | numpy.typing.ArrayLike | None = None, "
                   "spins: bool | None = None) -> None"),
           "Constructs a species.\n"
@@ -227,7 +226,7 @@ void bind_species(nb::module_& module) {
           "scaled", [](const Species& s, nb::handle factor) { return ed::scaled(s, positive(factor, "factor")); },
           nb::arg("factor").none(), nb::sig("def scaled(self, factor: float) -> Species"),
           "Returns a species of `factor` times the size and the same density. Built-in shapes only.")
-      .def("__repr__", &text_of)
+      .def("__repr__", &species_text)
       .def(
           "__reduce__",
           [](nb::handle self) {
@@ -236,8 +235,12 @@ void bind_species(nb::module_& module) {
                                   nb::make_tuple(shape_object(s.shape), s.mass, array_of(s.inertia), s.spins));
           },
           nb::sig("def __reduce__(self) -> tuple[typing.Any, ...]"));
-  nb::class_<Polydisperse>(module, "Polydisperse", "Bodies of one species whose sizes are distributed.")
-      .def(
+  bind_equality(type, same_species);
+}
+
+void bind_polydisperse(nb::module_& module) {
+  nb::class_<Polydisperse> type(module, "Polydisperse", "Bodies of one species whose sizes are distributed.");
+  type.def(
           "__init__",
           [](Polydisperse* self, nb::handle species, nb::handle number, nb::handle width, nb::handle sizes,
              nb::handle seed) { new (self) Polydisperse(make_polydisperse(species, number, width, sizes, seed)); },
@@ -257,10 +260,30 @@ void bind_species(nb::module_& module) {
           "sizes", [](const Polydisperse& p) { return to_string(p.sizes); }, "Name of the distribution.")
       .def_prop_ro(
           "seed", [](const Polydisperse& p) { return p.seed; }, "Seed of the sizes; None: that of the start.")
-      .def("__repr__", [](const Polydisperse& p) {
-        return "Polydisperse(" + text_of(p.species) + ", number=" + std::to_string(p.number) +
-               ", width=" + shown(p.width) + ", sizes='" + to_string(p.sizes) + "')";
-      });
+      .def("__repr__",
+           [](const Polydisperse& p) {
+             return "Polydisperse(" + species_text(p.species) + ", number=" + std::to_string(p.number) +
+                    ", width=" + shown(p.width) + ", sizes='" + to_string(p.sizes) + "')";
+           })
+      .def(
+          "__reduce__",
+          [](nb::handle self) {
+            const auto& p = nb::cast<const Polydisperse&>(self);
+            return nb::make_tuple(self.type(),
+                                  nb::make_tuple(p.species, p.number, p.width, to_string(p.sizes), p.seed));
+          },
+          nb::sig("def __reduce__(self) -> tuple[typing.Any, ...]"));
+  bind_equality(type, [](const Polydisperse& a, const Polydisperse& b) {
+    return same_species(a.species, b.species) && a.number == b.number && a.width == b.width && a.sizes == b.sizes &&
+           a.seed == b.seed;
+  });
+}
+
+}  // namespace
+
+void bind_species(nb::module_& module) {
+  bind_one_species(module);
+  bind_polydisperse(module);
 }
 
 }  // namespace hardbody::python

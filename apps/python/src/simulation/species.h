@@ -42,9 +42,14 @@ std::vector<int> numbers_of(const std::vector<ComponentGroup>& groups);
 /// Returns the species of a Species or of a shape, then of mass 1. Throws TypeError if the value is neither.
 ed::Species species_of(nb::handle value, const std::string& name);
 
+/// Number of bodies of a start whose components are a single species without a number.
+inline constexpr int kDefaultNumber = 512;
+
 /// Returns the bodies of a Species, a shape or a Polydisperse, or of a list of those with their numbers. `number`: that
-/// of a single species, None if it has one of its own. Sizes are those that the program draws with the same seed.
-std::vector<ComponentGroup> components_of(nb::handle value, nb::handle number, std::uint64_t seed);
+/// of a single species, None for `usual_number` or if it has one of its own. Sizes are those that the program draws
+/// with the same seed.
+std::vector<ComponentGroup> components_of(nb::handle value, nb::handle number, std::uint64_t seed,
+                                          int usual_number = kDefaultNumber);
 
 /// Returns the random seed of an argument.
 std::uint64_t seed_of(nb::handle value, const char* name);

@@ -1,10 +1,11 @@
 #include "base/arguments.h"
+#include "base/gil.h"
+#include "base/unlocked.h"
 #include "geometry/custom_shape.h"
 #include "simulation/bind.h"
 #include "simulation/outcomes.h"
 #include "simulation/species.h"
 #include "simulation/systems.h"
-#include "simulation/unlocked.h"
 
 #include <ed/simulation.h>
 #include <ed/start.h>
@@ -43,7 +44,7 @@ class ProgressReport {
   /// Called without the GIL; false ends the compression.
   bool operator()(double packing_fraction) {
     if (!ticks_.due()) return true;
-    const nb::gil_scoped_acquire gil;
+    const GilAcquired gil;
     try {
       check_interrupts();
       if (callable_.is_none()) return true;
@@ -131,11 +132,12 @@ BodySystem lattice_start(nb::handle components, nb::handle number, nb::handle pa
   const std::vector<ComponentGroup> groups = components_of(components, number, options.seed);
   const std::vector<ed::Component> list = component_list(groups);
   options.groups = numbers_of(groups);
+  options.poll = InterruptPoll();
   check_interrupts();
   return {unlocked([&] { return ed::lattice_start(list, options); }), options.groups};
 }
 
-#define HARDBODY_COMPONENTS "components: hardbody._typing.Components, number: int | None = None, *, "
+#define HARDBODY_COMPONENTS "components: hardbody.Components, number: int | None = None, *, "
 
 constexpr const char* kComponentsDoc =
     "components: a Species or a shape, of which there are `number` (default 512); a Polydisperse; or a list of\n"

@@ -5,11 +5,14 @@
 #include "simulation/simulation.h"
 
 #include <base/version.h>
+#include <io/text_file.h>
 
 #include <ed/archive_observables.h>
 #include <ed/archive_simulation.h>
 #include <geom/batch.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <numeric>
@@ -31,7 +34,7 @@ using ed::archive::Reader;
 using ed::archive::Writer;
 
 constexpr std::string_view kMagic = "HBSIMULATION";
-constexpr std::uint32_t kFormat = 1;
+constexpr std::uint32_t kFormat = 2;
 constexpr std::size_t kTail = 8;
 
 /// Checksum of bytes that come in pieces.
@@ -64,6 +67,9 @@ void check_options(Reader& reader, const ed::SimulationOptions& options) {
   expect(reader, contact.finder <= ed::Finder::bracketing, "the finder");
   expect(reader, contact.distance <= ed::DistanceMethod::newton5, "the method of distances");
   expect(reader, contact.root <= ed::ContactRoot::one_dimensional, "the method of roots");
+  expect(reader, options.envelope >= 0 && std::isfinite(options.envelope), "the thickness of envelopes");
+  expect(reader, options.prepare_from >= 0, "the number of bodies from which on memory is prefetched");
+  expect(reader, options.least_progress > 0 && std::isfinite(options.least_progress), "the criterion of a stall");
   expect(reader, !options.batches || *options.batches <= geom::InstructionSet::avx512, "the instruction set");
 }
 
@@ -148,6 +154,15 @@ void PythonSimulation::save(const std::function<void(std::string_view)>& sink) c
 }
 
 PythonSimulation PythonSimulation::restore(std::string_view bytes, const std::vector<ed::CustomShape>& shapes) {
+  try {
+    return restore_checked(bytes, shapes);
+  } catch (const std::invalid_argument& error) {
+    const std::string message = one_line(error.what());
+    throw std::invalid_argument(message.starts_with("state: ") ? message : "state: " + message);
+  }
+}
+
+PythonSimulation PythonSimulation::restore_checked(std::string_view bytes, const std::vector<ed::CustomShape>& shapes) {
   Reader reader(checked_bytes(bytes));
   ed::archive::check_format(reader, kFormat);
   check_same(reader, "by hardbody", version());
@@ -169,7 +184,11 @@ PythonSimulation PythonSimulation::restore(std::string_view bytes, const std::ve
   }
   const std::int64_t bodies = std::accumulate(groups.begin(), groups.end(), std::int64_t{0});
   ed::Simulation simulation = ed::Simulation::restore(reader.raw(reader.left()), species, options);
-  ed::archive::expect(reader, bodies == simulation.system().size(), "the groups of bodies");
+  const bool filled = std::ranges::all_of(groups, [](int number) { return number > 0; });
+  ed::archive::expect(reader, filled && bodies == simulation.system().size(), "the groups of bodies");
+  for (const auto& m : measurements) {
+    ed::archive::expect(reader, m->options.number == bodies, "the number of bodies that are measured");
+  }
   PythonSimulation made(std::move(simulation), options, groups);
   made.seen_ = seen;
   made.measurements_ = std::move(measurements);

@@ -1,14 +1,15 @@
 #include "simulation/systems.h"
 
 #include "base/arrays.h"
+#include "base/unlocked.h"
+#include "base/values.h"
 #include "simulation/bind.h"
+#include "simulation/read_system.h"
 #include "simulation/species.h"
-#include "simulation/unlocked.h"
 
 #include <ed/random.h>
 #include <ed/start.h>
 #include <geom/pose.h>
-#include <geom/tolerances.h>
 
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/string.h>
@@ -17,153 +18,15 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <limits>
-#include <numeric>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <utility>
 
 namespace hardbody::python {
 namespace {
 
-using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using RowMajor3 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
-
-std::string entry(const char* name, std::size_t row) {
-  return std::string(name) + '[' + std::to_string(row) + ']';
-}
-
-[[noreturn]] void refuse_rows(const char* name, std::size_t rows, std::size_t wanted) {
-  throw nb::value_error((std::string(name) + " has " + std::to_string(rows) +
-                         " rows; accepted: as many as positions, " + "which has " + std::to_string(wanted))
-                            .c_str());
-}
-
-/// Reads vectors into the bodies; None: as they are.
-void read_vectors(nb::handle value, const char* name, ed::System& system, Vector3d ed::Body::*member) {
-  if (value.is_none()) return;
-  const RealRows rows(value, name, 3);
-  if (rows.size() != system.bodies.size()) refuse_rows(name, rows.size(), system.bodies.size());
-  for (std::size_t k = 0; k < rows.size(); ++k) system.bodies[k].*member = rows.finite_vector(k);
-}
-
-/// Returns a rotation matrix with the bits given, if it is one to rounding, else the nearest rotation.
-Matrix3d rotation_of(const Matrix3d& given) {
-  const geom::Pose checked(given, Vector3d::Zero());
-  const bool is_exact = ((given.transpose() * given) - Matrix3d::Identity()).cwiseAbs().maxCoeff() <= 4e-15;
-  return is_exact ? given : checked.rotation();
-}
-
-/// Reads orientations, quaternions or matrices, into the bodies; None: not rotated.
-void read_orientations(nb::handle value, ed::System& system) {
-  constexpr const char* kName = "orientations";
-  constexpr const char* kAccepted = "quaternions (w, x, y, z) of shape (N, 4) or rotation matrices of shape (N, 3, 3)";
-  if (value.is_none()) return;
-  const RealArray array(value, kName, kAccepted);
-  const std::vector<std::size_t>& shape = array.shape();
-  const bool quaternions = shape.size() == 2 && shape[1] == 4;
-  const bool matrices = shape.size() == 3 && shape[1] == 3 && shape[2] == 3;
-  if (!quaternions && !matrices) refuse_shape(kName, shape, kAccepted);
-  if (shape[0] != system.bodies.size()) refuse_rows(kName, shape[0], system.bodies.size());
-  for (std::size_t k = 0; k < shape[0]; ++k) {
-    try {
-      const double* const x = array.data() + (quaternions ? 4 : 9) * k;
-      system.bodies[k].rotation =
-          quaternions ? geom::Pose::from_quaternion(x[0], x[1], x[2], x[3]).rotation() : rotation_of(RowMajor3::Map(x));
-    } catch (const std::invalid_argument& error) {
-      throw nb::value_error((entry(kName, k) + ": " + error.what()).c_str());
-    }
-  }
-}
-
-void read_species(nb::handle value, nb::handle species_of_body, ed::System& system) {
-  if (nb::isinstance<nb::list>(value) || nb::isinstance<nb::tuple>(value)) {
-    std::size_t k = 0;
-    for (const nb::handle one : value) system.species.push_back(species_of(one, entry("species", k++)));
-  } else {
-    system.species.push_back(species_of(value, "species"));
-  }
-  const std::size_t count = system.species.size();
-  if (species_of_body.is_none()) {
-    if (count == 1) return;
-    if (count != system.bodies.size()) {
-      throw nb::value_error(("species has " + std::to_string(count) + " elements for " +
-                             std::to_string(system.bodies.size()) +
-                             " bodies; accepted: one, one a body, or any number with species_of")
-                                .c_str());
-    }
-    for (std::size_t k = 0; k < count; ++k) system.bodies[k].species = static_cast<int>(k);
-    return;
-  }
-  const IndexRows indices(species_of_body, "species_of", 1);
-  if (indices.size() != system.bodies.size()) refuse_rows("species_of", indices.size(), system.bodies.size());
-  for (std::size_t k = 0; k < indices.size(); ++k) {
-    system.bodies[k].species = static_cast<int>(indices.at(k, 0, count));
-  }
-}
-
-/// Refuses rotation about the axis of a body that has none by its species: it would be dropped.
-void check_spins(const ed::System& system) {
-  for (std::size_t k = 0; k < system.bodies.size(); ++k) {
-    const ed::Body& body = system.bodies[k];
-    const ed::Species& species = system.species[static_cast<std::size_t>(body.species)];
-    const std::optional<int> axis = ed::symmetry_axis(species);
-    if (!axis || species.spins) continue;
-    const Vector3d& w = body.angular_velocity;
-    const double spin = w.stableNormalized().dot(body.rotation.col(*axis));
-    if (!(std::abs(spin) > 1e-9)) continue;
-    throw nb::value_error((entry("angular_velocities", k) + " is " + shown(w) + ", which turns body " +
-                           std::to_string(k) + " about its axis " + shown(body.rotation.col(*axis)) +
-                           "; accepted: across the axis, or Species(..., spins=True)")
-                              .c_str());
-  }
-}
-
-std::vector<int> read_groups(nb::handle value, const ed::System& system) {
-  if (value.is_none()) return groups_of(system);
-  const IndexRows rows(value, "groups", 1);
-  std::vector<int> groups;
-  std::size_t sum = 0;
-  for (std::size_t k = 0; k < rows.size(); ++k) {
-    const std::size_t number = rows.at(k, 0, system.bodies.size() + 1);
-    if (number == 0) refuse_value(entry("groups", k), "0", "at least 1");
-    sum += number;
-    groups.push_back(static_cast<int>(number));
-  }
-  if (sum == system.bodies.size()) return groups;
-  refuse_value("sum of groups", std::to_string(sum), std::to_string(system.bodies.size()) + ", the number of bodies");
-}
-
-BodySystem make_system(nb::handle box, nb::handle species, nb::handle positions, nb::handle orientations,
-                       nb::handle velocities, nb::handle angular_velocities, nb::handle species_of_body,
-                       nb::handle groups) {
-  BodySystem made;
-  ed::System& system = made.system;
-  system.box = positive(box, "box");
-  if (system.box > geom::kMaxCoordinate) refuse_value("box", shown(system.box), "at most 1e100");
-  const RealRows rows(positions, "positions", 3);
-  if (rows.size() > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
-    refuse_value("number of bodies", std::to_string(rows.size()), "at most 2147483647");
-  }
-  system.bodies.resize(rows.size());
-  for (std::size_t k = 0; k < rows.size(); ++k) {
-    const Vector3d position = rows.finite_vector(k);
-    // Wrapped as the trajectories are: images beyond would lose digits.
-    if (position.cwiseAbs().maxCoeff() > 1e9 * system.box) {
-      refuse_value(entry("positions", k), shown(position), "within 1e9 boxes of the origin");
-    }
-    system.bodies[k].position = position;
-  }
-  read_orientations(orientations, system);
-  read_vectors(velocities, "velocities", system, &ed::Body::velocity);
-  read_vectors(angular_velocities, "angular_velocities", system, &ed::Body::angular_velocity);
-  read_species(species, species_of_body, system);
-  check_spins(system);
-  made.groups = read_groups(groups, system);
-  return made;
-}
 
 /// Returns an array of shape (N, columns) whose rows `fill` writes.
 template <class Fill>
@@ -201,7 +64,7 @@ BodySystem thermalized(const BodySystem& bodies, nb::handle seed) {
   return made;
 }
 
-std::string text_of(const BodySystem& b) {
+std::string system_text(const BodySystem& b) {
   const std::size_t species = b.system.species.size();
   return "System(" + std::to_string(b.system.size()) + " bodies of " + std::to_string(species) + " species, box " +
          shown(b.system.box) + ", packing fraction " + shown(ed::packing_fraction(b.system)) + ')';
@@ -212,6 +75,18 @@ nb::tuple constructor_arguments(const BodySystem& b) {
   for (const ed::Species& s : b.system.species) species.append(s);
   return nb::make_tuple(b.system.box, species, positions_of(b.system), rotations_of(b.system), velocities_of(b.system),
                         angular_velocities_of(b.system), species_indices(b.system), b.groups);
+}
+
+bool same_body(const ed::Body& a, const ed::Body& b) {
+  return a.position == b.position && a.rotation == b.rotation && a.velocity == b.velocity &&
+         a.angular_velocity == b.angular_velocity && a.species == b.species;
+}
+
+bool same_system(const BodySystem& a, const BodySystem& b) {
+  const auto same_species = [](const ed::Species& s, const ed::Species& t) { return nb::cast(s).equal(nb::cast(t)); };
+  return a.system.box == b.system.box && a.groups == b.groups &&
+         std::ranges::equal(a.system.bodies, b.system.bodies, same_body) &&
+         std::ranges::equal(a.system.species, b.system.species, same_species);
 }
 
 constexpr const char* kReals = "-> numpy.typing.NDArray[numpy.float64]";
@@ -229,14 +104,14 @@ void bind_constructor(nb::class_<BodySystem>& type) {
       "__init__",
       [](BodySystem* self, nb::handle box, nb::handle species, nb::handle positions, nb::handle orientations,
          nb::handle velocities, nb::handle angular_velocities, nb::handle species_of_body, nb::handle groups) {
-        new (self) BodySystem(make_system(box, species, positions, orientations, velocities, angular_velocities,
-                                          species_of_body, groups));
+        new (self) BodySystem(make_system(
+            {box, species, positions, orientations, velocities, angular_velocities, species_of_body, groups}));
       },
       nb::arg("box").none(), nb::arg("species").none(), nb::arg("positions").none(),
       nb::arg("orientations") = nb::none(), nb::arg("velocities") = nb::none(),
       nb::arg("angular_velocities") = nb::none(), nb::arg("species_of") = nb::none(), nb::arg("groups") = nb::none(),
-      nb::sig("def __init__(self, box: float, species: hardbody._typing.SpeciesLike | "
-              "collections.abc.Sequence[hardbody._typing.SpeciesLike], positions: numpy.typing.ArrayLike, "
+      nb::sig("def __init__(self, box: float, species: hardbody.SpeciesLike | "
+              "collections.abc.Sequence[hardbody.SpeciesLike], positions: numpy.typing.ArrayLike, "
               "orientations: numpy.typing.ArrayLike | None = None, velocities: numpy.typing.ArrayLike | None = None, "
               "angular_velocities: numpy.typing.ArrayLike | None = None, species_of: numpy.typing.ArrayLike | None = "
               "None, groups: numpy.typing.ArrayLike | None = None) -> None"),
@@ -295,7 +170,7 @@ void bind_functions(nb::class_<BodySystem>& type) {
           "audit",
           [](const BodySystem& b) {
             check_interrupts();
-            return unlocked([&] { return ed::audit(b.system); });
+            return unlocked([&] { return ed::audit(b.system, InterruptPoll()); });
           },
           nb::sig("def audit(self) -> Audit"),
           "Returns the smallest distance of all pairs, overlaps and the kinetic state, computed from scratch by "
@@ -309,7 +184,7 @@ void bind_functions(nb::class_<BodySystem>& type) {
           nb::sig("def thermalized(self, seed: int = 1) -> System"),
           "Returns the state with new velocities: drawn from Maxwell's distribution, then rescaled to kT = 1 exactly,\n"
           "each group by itself, and to total momentum 0.")
-      .def("__repr__", &text_of)
+      .def("__repr__", &system_text)
       .def(
           "__reduce__",
           [](nb::handle self) {
@@ -350,7 +225,11 @@ std::vector<ed::BodyGroup> body_groups(const BodySystem& bodies) {
                              "one kind, whose bodies follow each other")
                                 .c_str());
     }
-    list.push_back({number, number > 0 ? axes(first) : 2});
+    bool oriented = false;
+    for (int i = first; i < first + number; ++i) {
+      oriented = oriented || !ed::is_sphere(bodies.system.species_of(i).shape);
+    }
+    list.push_back({number, number > 0 ? axes(first) : 2, oriented});
     first += number;
   }
   return list;
@@ -394,6 +273,7 @@ void bind_systems(nb::module_& module) {
   bind_constructor(type);
   bind_numbers(type);
   bind_functions(type);
+  bind_equality(type, same_system);
 }
 
 }  // namespace hardbody::python

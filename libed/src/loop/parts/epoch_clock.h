@@ -29,7 +29,9 @@ class EpochClock {
   }
 
   /// Whether its numbers can be those of a run.
-  bool is_sound() const { return std::isfinite(now_ + epochs_) && epoch_ > 0 && std::isfinite(epoch_); }
+  bool is_sound() const {
+    return std::isfinite(epochs_) && epoch_ > 0 && std::isfinite(epoch_) && now_ >= 0 && now_ <= epoch_;
+  }
 
   template <class Archive, class Self>
   static void fields(Archive& archive, Self& self) {

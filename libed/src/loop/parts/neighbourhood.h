@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/poll.h"
 #include "bodies/pair.h"
 #include "cells/grid.h"
 #include "loop/parts/periodic_box.h"
@@ -13,6 +14,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <tuple>
@@ -76,17 +78,22 @@ class Neighbourhood {
   /// Makes the list of body i, which has none.
   void find_list(int i, double now) { counters_.candidate_tests += add_pairs(i, now, 0); }
 
-  /// Makes envelopes, cells, exits and lists of all bodies. The pairs are to be predicted.
-  void make_all(double now) {
+  /// Makes envelopes, cells, exits and lists of all bodies. The pairs are to be predicted. `poll`: see
+  /// SimulationOptions.
+  void make_all(double now, const std::function<void()>& poll = {}) {
     lists_ = NeighbourLists(bodies_.number());
     // The cells shrink with the box between two calls of this, but what they must cover does not.
     make_cells(envelopes_->reach() / envelopes_->least_scale());
     list_scale_ = 1;
     for (int i = 0; i < bodies_.number(); ++i) {
+      poll_at(i, poll);
       place(i, now);
       renew_exit(i, now);
     }
-    for (int i = 0; i < bodies_.number(); ++i) (void)add_pairs(i, now, i + 1);
+    for (int i = 0; i < bodies_.number(); ++i) {
+      poll_at(i, poll);
+      (void)add_pairs(i, now, i + 1);
+    }
   }
 
   /// Makes room, so that nothing allocates while events are processed unless a list becomes longer than any before.

@@ -17,7 +17,10 @@
 ///    whatever bounds it has at its limit of evaluations.
 ///
 /// Certificates: g(n) is a lower bound of the distance for every n, and |r + xB - xA| an upper one for every two points
-/// of the bodies.
+/// of the bodies. Overlaps: if balls of radii rho_A, rho_B, no larger than the smallest radii of curvature, lie in the
+/// bodies about c_A, c_B (Blaschke: about x - rho n for each point x of a surface with the normal n), then g(m) <=
+/// m.(r + c_B - c_A) - rho_A - rho_B for every m, so that |r + c_B - c_A| - rho_A - rho_B is an upper bound. At the
+/// nearest stationary normal of depth -g < rho_A + rho_B it is g again: no search is needed.
 
 #include <geom/distance.h>
 #include <geom/export.h>
@@ -52,10 +55,12 @@ struct DualSample {
 class GEOM_EXPORT NormBodyPair {
  public:
   /// Constructs the pair with B's centre at r from A's. `scale`: the sum of both bounding radii; `least`: that of both
-  /// inscribed ones.
-  NormBodyPair(const NormBodies& bodies, const Eigen::Vector3d& r, double scale, double least)
+  /// inscribed ones; `rolling`: lower bounds of both bodies' smallest radii of curvature, which shorten queries of
+  /// overlaps.
+  NormBodyPair(const NormBodies& bodies, const Eigen::Vector3d& r, double scale, double least, Lanes rolling = both(0))
       : bodies_(bodies),
         r_(r),
+        rolling_(rolling),
         scale_(scale),
         floor_(kFloor * least),
         flat_(any(low_exponents(bodies))),
@@ -157,7 +162,11 @@ class GEOM_EXPORT NormBodyPair {
   /// Runs all methods except branch and bound; `first` applies to the elements that go first.
   Answer newton(const Eigen::Vector3d& start, FirstElements first, int limit, int& iterations) const;
   void place_points(const Step& step, Answer& answer) const;
-  bool ends(const Answer& answer, Penetration penetration) const;
+  /// Returns the vector from A to B between the centres of the balls that roll inside them, at two points (as always
+  /// from the bodies' centres) of their surfaces.
+  Eigen::Vector3d between_balls(const LaneVector& on_surface) const;
+  void bound_depth(Answer& answer) const;
+  bool ends(Answer& answer, Penetration penetration) const;
   /// Returns whether a point inside both bodies is found, between the witness points or the centres.
   bool shares_a_point(const Answer& answer) const;
   Tangent tangent(const Eigen::Vector3d& n) const;
@@ -171,6 +180,7 @@ class GEOM_EXPORT NormBodyPair {
 
   NormBodies bodies_;
   Eigen::Vector3d r_;
+  Lanes rolling_;  ///< radii of balls that roll freely inside the bodies
   double scale_;
   double floor_;    ///< smallest eigenvalue of Newton's matrix
   bool flat_;       ///< a body may be flat somewhere, a disc too: retractions save steps

@@ -33,8 +33,8 @@
 
 namespace geom::kernel {
 
-/// Value of g at a unit normal, and the point of the Minkowski difference that bounds it elsewhere: p(n), or with rho =
-/// 0 any.
+/// Value of g at a unit normal, and the point p that bounds it elsewhere: p(n), or any other for which the ball of
+/// radius rho about p + rho n is in the Minkowski difference.
 struct Tangent {
   Eigen::Vector3d n;
   Eigen::Vector3d p;
@@ -220,8 +220,9 @@ void SphereSearch<Sample, Polish>::polish_best() {
   const Tangent polished = polish_(best_.n);
   if (polished.g > best_.g) {
     best_ = polished;
-  } else if (rho_ == 0 && polished.g >= best_.g - rounding_) {
-    best_.p = polished.p;  // bounds g around a maximum on a face, where p(n) is lost to rounding
+  } else if (polished.g >= best_.g - rounding_) {
+    // The same ball bounds g around a maximum on a face, where p(n) is lost to rounding.
+    best_.p = polished.p + rho_ * (polished.n - best_.n);
   }
   polished_ = true;
 }

@@ -127,6 +127,7 @@ TEST(Correlations, WaveNumbersHaveToBeUsable) {
   for (const std::vector<double>& q : {std::vector<double>{0.0}, {-1.0}, {std::nan("")}, std::vector<double>(9, 1.0)}) {
     EXPECT_THROW(ed::Observables(options_of(system, 20, 1, q)), std::invalid_argument);
   }
+  EXPECT_THROW(ed::Observables(options_of(system, 20, 21, {1.0})), std::invalid_argument);  // lags beyond the run
 }
 
 TEST(Director, OfAlignedAxesIsTheirs) {
@@ -233,9 +234,10 @@ TEST(Streaming, IsWhatStoredFramesGive) {
   constexpr double kLongest = 0.05;  // more blocks than are kept
   constexpr double q = 4;
   std::vector<ed::Snapshot> frames;
+  ed::ObservablesOptions options = options_of(system, 2.5, kLongest, {q});
+  options.time_unit = kLongest / 16;  // origins are as far apart
   const ed::Results results =
-      observed(system, options_of(system, 2.5, kLongest, {q}),
-               [&](const ed::Simulation& simulation) { simulation.sample(frames.emplace_back()); });
+      observed(system, options, [&](const ed::Simulation& simulation) { simulation.sample(frames.emplace_back()); });
   EXPECT_LT(results.blocks.size(), 32U);
   ASSERT_GT(results.lags.size(), 60U);
   for (std::size_t k = 0; k < results.lags.size(); k += 6) {

@@ -58,6 +58,39 @@ TEST(Diffusion, IsNotWhatPassesSlopeOneOnItsWayToACage) {
   EXPECT_EQ(ed::describe(*missing, ""), "bodies have moved 0.26 by lag 0.19, where the fit begins: no diffusion yet");
 }
 
+/// Free motion that is forgotten after a time of 1, and diffusion.
+double brownian(double t) {
+  return t - 1 + std::exp(-t);
+}
+
+TEST(Ballistic, EndsHalfwayToDiffusion) {
+  // The power of time from t to the first lag at 1.5 t or beyond, 4 of 20 of a decade later, falls to 1.5 between
+  // these.
+  const double end = ed::internal::end_of_ballistic(curve_of(100, brownian));
+  const auto power = [](double t) {
+    const double next = t * std::pow(10.0, 0.2);
+    return std::log(brownian(next) / brownian(t)) / std::log(next / t);
+  };
+  EXPECT_LE(power(end), 1.5);
+  EXPECT_GT(power(end * std::pow(10.0, -0.05)), 1.5);
+  EXPECT_TRUE(std::isnan(ed::internal::end_of_ballistic(curve_of(10, [](double t) { return 3 * t * t; }))));
+  EXPECT_TRUE(std::isnan(ed::internal::end_of_ballistic({})));
+  // From the first lag on, if motion is diffusive there.
+  EXPECT_DOUBLE_EQ(ed::internal::end_of_ballistic(curve_of(1, [](double t) { return t; })), 1e-3);
+}
+
+TEST(Cage, IsWhereTheMsdIsFlattest) {
+  // t^2 at first, a plateau of 0.2 about t = 1, diffusion with 6 D = 0.02 behind.
+  const Curve curve = curve_of(100, [](double t) { return caged(t) + 0.02 * t; });
+  const ed::internal::Flattest flattest = ed::internal::flattest_of(curve);
+  EXPECT_LT(flattest.exponent, 0.3);
+  EXPECT_GT(curve.t[flattest.lag], 0.5);
+  EXPECT_LT(curve.t[flattest.lag], 3);
+  EXPECT_NEAR(curve.y[flattest.lag], 0.2, 0.05);
+  EXPECT_NEAR(ed::internal::flattest_of(curve_of(100, brownian)).exponent, 1, 0.02);
+  EXPECT_TRUE(std::isnan(ed::internal::flattest_of({{1}, {1}}).exponent));
+}
+
 TEST(Diffusion, IsNotACageNorBallisticMotion) {
   EXPECT_EQ(reason_of(ed::internal::why_not_diffusive(curve_of(10, caged), kFluid)), MissingReason::not_displaced);
   EXPECT_EQ(reason_of(ed::internal::why_not_diffusive(curve_of(10, [](double t) { return 3 * t * t; }), kFluid)),
@@ -212,7 +245,7 @@ TEST(DecayFit, IsNoneOfPlateausAndOfWhatHasDecayedBefore) {
 }
 
 TEST(Missing, EveryReasonIsDescribed) {
-  for (int k = 0; k <= static_cast<int>(MissingReason::not_followed); ++k) {
+  for (int k = 0; k <= static_cast<int>(MissingReason::no_director); ++k) {
     const std::string text = ed::describe({static_cast<MissingReason>(k), 0.19, 16});
     EXPECT_FALSE(text.empty()) << k;
     EXPECT_LE(text.size(), 75U) << text;

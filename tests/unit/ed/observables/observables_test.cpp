@@ -10,6 +10,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
 #include <vector>
 
 namespace {
@@ -219,20 +222,36 @@ TEST(Observables, OfNoRunAreNull) {
   }
 }
 
-TEST(Observables, WantNothingMoreWhenTheDurationIsCovered) {
+/// Measures free bodies over a duration; returns the number of frames over the number of lags.
+double frames_per_lag(double duration, double longest_lag) {
   const ed::System system = free_bodies(3, Inertia::paper, 9);
   ed::Simulation simulation(system);
-  ed::Observables observables({system.size(), 3});
-  int samples = 0;
+  ed::Observables observables({system.size(), duration, longest_lag});
+  int frames = 0;
   while (std::isfinite(observables.next_time())) {
-    ASSERT_LE(observables.next_time(), 3);
+    EXPECT_LE(observables.next_time(), duration);
     simulation.run_until(observables.next_time());
     observables.measure(simulation);
-    ASSERT_LT(++samples, 1000000);
+    if (++frames > 1000000) break;
   }
-  // 16 origins a longest lag (a sixteenth of the duration), 61 lags each, some at the same times.
-  EXPECT_GT(samples, 1000);
-  EXPECT_LE(samples, 257 * 62);
+  return frames / static_cast<double>(observables.results(simulation).lags.size());
+}
+
+TEST(Observables, WantNothingMoreWhenTheDurationIsCovered) {
+  // Lags are some at the same times as others, and the last origins have few.
+  const double origins = frames_per_lag(3, 3.0 / 16);
+  EXPECT_GT(origins, 40);
+  EXPECT_LE(origins, 66);
+}
+
+TEST(Observables, HaveOriginsATimeUnitApart) {
+  // At least 4, at most 16 a longest lag.
+  const double unit_apart = frames_per_lag(128, 8);
+  EXPECT_GT(unit_apart, 90);
+  EXPECT_LE(unit_apart, 130);
+  const double most = frames_per_lag(640, 40);
+  EXPECT_GT(most, 180);
+  EXPECT_LE(most, 258);
 }
 
 TEST(Observables, OfCagedSpheresHaveNoDiffusionYet) {
@@ -277,7 +296,7 @@ TEST(Observables, AgreeWithADirectEvaluation) {
   const auto collisions = static_cast<double>(simulation.counters().collisions);
   EXPECT_NEAR(results.collision_rate.value, 2 * collisions / (40 * 32), kRounding);
   EXPECT_NEAR(results.Z.value, 1 + simulation.virial() / (3 * 40 * 32 * results.translational_kT.value), kRounding);
-  // The 15 disjoint stretches are a subset of the 16 x 15 overlapping ones: both estimate the same mean.
+  // The 15 disjoint stretches are a subset of the 4 x 15 overlapping ones: both estimate the same mean.
   std::vector<double> msd;
   std::vector<double> c2;
   for (std::size_t k = 1; k < origins.size(); ++k) {
@@ -300,6 +319,66 @@ TEST(Observables, AgreeWithADirectEvaluation) {
   EXPECT_NEAR(results.D_trans.value, ed::slope(t, y).value_or(0) / 6, kRounding);
   EXPECT_GT(results.D_trans.value, 0);
   EXPECT_GT(results.t_C2_1overe.value, 0);
+}
+
+/// Measures the observables of a run until their planned duration is covered.
+void run_to_the_end(ed::Simulation& simulation, ed::Observables& observables) {
+  while (std::isfinite(observables.next_time())) {
+    simulation.run_until(observables.next_time());
+    observables.measure(simulation);
+  }
+}
+
+TEST(Observables, ExtendedOnesAreThoseOfTheLongerRun) {
+  ed::StartOptions start;
+  start.number = 40;
+  start.packing_fraction = 0.1;
+  const ed::System system = ed::random_start(ed::uniform_species(geom::Ellipsoid({1, 1, 2})), start);
+  int undone = 0;
+  for (const double duration : {1.6, 3.3, std::nextafter(20 * (0.7 / 4), 0.0), 4.9}) {
+    ed::ObservablesOptions options{};
+    options.number = system.size();
+    options.duration = duration;
+    options.longest_lag = 0.7;
+    if (duration == 1.6) options.longest_lag = 0;  // its default would follow the duration
+    ed::ObservablesOptions longer = options;
+    longer.duration = 2.3 * duration;
+    if (duration == 1.6) longer.longest_lag = duration / 16;
+    ed::Simulation simulation(system, {});
+    ed::Observables observables(options);
+    run_to_the_end(simulation, observables);
+    simulation.run_until(duration);
+    // The state at the end of the first run may be saved, and the results asked for.
+    (void)observables.results(simulation);
+    const std::string end = observables.save();
+    ed::Observables restored = ed::Observables::restore(end, options);
+    EXPECT_TRUE(restored.save() == end);
+    restored.extend(longer.duration);
+    // A sample at the end, taken a rounding error early, is undone.
+    undone += restored.save().size() < end.size() ? 1 : 0;
+    run_to_the_end(simulation, restored);
+    ed::Simulation straight(system, {});
+    ed::Observables expected(longer);
+    run_to_the_end(straight, expected);
+    EXPECT_TRUE(restored.save() == expected.save()) << duration;
+  }
+  EXPECT_GT(undone, 0);
+}
+
+TEST(Observables, AreExtendedBeyondWhatWasMeasuredOnly) {
+  ed::ObservablesOptions options{};
+  options.number = 40;
+  options.duration = 2;
+  ed::Observables observables(options);
+  ed::StartOptions start;
+  start.number = options.number;
+  start.packing_fraction = 0.1;
+  ed::Simulation simulation(ed::random_start(ed::uniform_species(geom::Ellipsoid({1, 1, 2})), start), {});
+  run_to_the_end(simulation, observables);
+  for (const double duration : {1.9, 1.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
+    EXPECT_THROW(observables.extend(duration), std::invalid_argument) << duration;
+  }
+  EXPECT_NO_THROW(observables.extend(2.5));
 }
 
 }  // namespace

@@ -259,13 +259,53 @@ TEST(StoredFrames, WalksOfIndependentStepsHaveTheirCoefficients) {
   EXPECT_NEAR(results.beta_C2.value, 1, 4 * results.beta_C2.error);
   EXPECT_NEAR(results.t_C2_1overe.value, tau, 4 * results.t_C2_1overe.error);
 
+  // Nothing is ballistic: the window that is chosen begins with the first lag.
   options.fit_from.reset();
-  const ed::StoredResults without = ed::analyze_frames(stored, options);
-  EXPECT_TRUE(std::isnan(without.tau_C2.value));
-  EXPECT_TRUE(std::isnan(without.tau_F.value));
-  EXPECT_EQ(without.tau_F.missing.reason, ed::MissingReason::end_of_ballistic_unknown);
-  EXPECT_EQ(without.D_rot.missing.reason, ed::MissingReason::not_told);
-  EXPECT_EQ(without.t_C2_1overe.value, results.t_C2_1overe.value);
+  const ed::StoredResults chosen = ed::analyze_frames(stored, options);
+  EXPECT_EQ(chosen.fit_from, chosen.lags.front().lag);
+  EXPECT_EQ(chosen.tau_C2.value, results.tau_C2.value);
+  EXPECT_EQ(chosen.tau_C2.error, results.tau_C2.error);
+  EXPECT_EQ(chosen.D_rot.missing.reason, ed::MissingReason::not_told);
+
+  options.unwrapped = false;
+  const ed::StoredResults wrapped = ed::analyze_frames(stored, options);
+  EXPECT_TRUE(std::isnan(wrapped.fit_from));
+  EXPECT_TRUE(std::isnan(wrapped.tau_C2.value));
+  EXPECT_EQ(wrapped.tau_C2.missing.reason, ed::MissingReason::end_of_ballistic_unknown);
+  EXPECT_EQ(wrapped.t_C2_1overe.value, results.t_C2_1overe.value);
+}
+
+TEST(StoredFrames, FreeFlightsAreBallisticToTheEnd) {
+  const Flight flight(40);
+  const ed::StoredResults results = ed::analyze_frames(flight.stored, options_of(kBodies));
+  EXPECT_TRUE(std::isnan(results.fit_from));
+}
+
+TEST(StoredFrames, FramesAtLogarithmicTimesAreCorrelatedWithTheFirst) {
+  Flight flight(13);
+  const std::vector<StoredFrame> even = flight.stored;
+  const auto at = [&](std::size_t k) { return k == 0 ? 0 : 0.01 * std::pow(1.5, static_cast<double>(k)); };
+  for (std::size_t k = 0; k < flight.stored.size(); ++k) {
+    flight.stored[k].time = 7 + at(k);
+    for (std::size_t i = 0; i < kBodies; ++i) {
+      flight.stored[k].position[i] = even[0].position[i] + at(k) * even[0].velocity[i];
+    }
+  }
+  const ed::StoredResults results = ed::analyze_frames(flight.stored, options_of(kBodies));
+  EXPECT_TRUE(results.log_times);
+  EXPECT_EQ(results.frames, 13U);
+  ASSERT_EQ(results.lags.size(), 12U);
+  for (std::size_t k = 0; k < 12; ++k) {
+    const double lag = at(k + 1);
+    EXPECT_NEAR(results.lags[k].lag, lag, kFrameRounding);
+    EXPECT_NEAR(results.lags[k].msd.value,
+                flight.mean([&](std::size_t i) { return std::pow(flight.speed(i) * lag, 2); }), kFrameRounding);
+    EXPECT_TRUE(std::isnan(results.lags[k].msd.error));
+  }
+  // Intervals that do not only grow, and evenly spaced frames, are none of these.
+  flight.stored[12].time = flight.stored[11].time + 0.1;
+  EXPECT_FALSE(ed::analyze_frames(flight.stored, options_of(kBodies)).log_times);
+  EXPECT_FALSE(ed::analyze_frames(even, options_of(kBodies)).log_times);
 }
 
 TEST(StoredFrames, BlocksThatFallShortCountInTheError) {

@@ -67,8 +67,8 @@ TEST(Pairs, AreThoseOfADirectCount) {
     const auto half = static_cast<std::size_t>(number / 2);
     const BodyRange first{0, half, false}, second{half, snapshot.position.size(), false};
     const std::vector<StructureSums> sums = ed::internal::count_pairs(grid, snapshot, {first, second});
-    ASSERT_EQ(sums.size(), 3U);
-    std::vector<double> direct[3];
+    ASSERT_EQ(sums.size(), 4U);
+    std::vector<double> direct[4];
     for (auto& d : direct) d.assign(grid.bins(), 0);
     std::vector<double> p2(grid.bins(), 0);
     for (std::size_t i = 0; i < snapshot.position.size(); ++i) {
@@ -78,11 +78,11 @@ TEST(Pairs, AreThoseOfADirectCount) {
         const auto bin = static_cast<std::size_t>(d.norm() / grid.reach() * static_cast<double>(grid.bins()));
         if (bin >= grid.bins()) continue;
         direct[0][bin] += 1;
-        if ((i < half) == (j < half)) direct[i < half ? 1 : 2][bin] += 1;
+        direct[(i < half) != (j < half) ? 3 : i < half ? 1 : 2][bin] += 1;
         p2[bin] += 1.5 * std::pow(snapshot.axis[i].dot(snapshot.axis[j]), 2) - 0.5;
       }
     }
-    for (std::size_t p = 0; p < 3; ++p) EXPECT_EQ(sums[p].pairs, direct[p]) << number << ", part " << p;
+    for (std::size_t p = 0; p < 4; ++p) EXPECT_EQ(sums[p].pairs, direct[p]) << number << ", part " << p;
     for (std::size_t k = 0; k < grid.bins(); ++k) EXPECT_NEAR(sums[0].p2[k], p2[k], 1e-10) << number;
   }
 }

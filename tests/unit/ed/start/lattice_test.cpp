@@ -147,7 +147,7 @@ TEST(LatticeStart, RefusesLargeAwkwardNumbersAtOnce) {
   const ed::Species superball = ed::uniform_species(geom::Superellipsoid({1, 1, 1}, 0.5, 0.5));
   const ed::LatticeOptions cubic{.lattice = ed::Lattice::simple_cubic, .packing_fraction = 0.3};
   const std::string message = message_of([&] { (void)lattice(superball, 999983, cubic); });
-  EXPECT_THAT(message, HasSubstr("999983 bodies in "));
+  EXPECT_THAT(message, HasSubstr("number is 999983: bodies in "));
   EXPECT_EQ(numbers_after(message, ", or a number of ").size(), 2U) << message;
 }
 

@@ -2,6 +2,8 @@
 
 /// Work without the GIL.
 
+#include "base/gil.h"
+
 #include <nanobind/nanobind.h>
 
 #include <chrono>
@@ -13,7 +15,7 @@ namespace nb = nanobind;
 /// Returns work(), called without the GIL. What it throws is thrown with the GIL.
 template <class Work>
 auto unlocked(const Work& work) {
-  const nb::gil_scoped_release released;
+  const GilReleased released;
   return work();
 }
 
@@ -44,6 +46,19 @@ class Ticks {
   using Clock = std::chrono::steady_clock;
   static constexpr std::chrono::milliseconds kTick{100};
   Clock::time_point last_ = Clock::now();
+};
+
+/// Function for long work without the GIL: throws what Python's signal handlers raise, about ten times a second.
+class InterruptPoll {
+ public:
+  void operator()() {
+    if (!ticks_.due()) return;
+    const GilAcquired gil;
+    check_interrupts();
+  }
+
+ private:
+  Ticks ticks_;
 };
 
 }  // namespace hardbody::python

@@ -1,0 +1,117 @@
+#include "sweep/plan.h"
+
+#include "base/errors.h"
+#include "config/config.h"
+#include "config/keys.h"
+#include "io/run_directory.h"
+#include "io/text_file.h"
+#include "sweep/directory.h"
+#include "sweep/grid.h"
+#include "sweep/replicas.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <exception>
+#include <optional>
+#include <utility>
+
+namespace hardbody {
+namespace {
+
+void check_number(const SweepFile& sweep, std::size_t points) {
+  if (points * static_cast<std::size_t>(sweep.replicas) <= kMostPoints) return;
+  throw InputError(fmt::format("{}: makes more than {} runs, {} points of {} replicas; accepted: fewer",
+                               sweep.grids.front().where, kMostPoints, points, sweep.replicas));
+}
+
+/// Returns the message of a config that cannot be run; empty for one that can.
+std::string refusal_of(const TomlDocument& document) {
+  try {
+    (void)read_config(document);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+}  // namespace
+
+std::vector<PointRecord> planned(const SweepFile& sweep) {
+  const std::vector<SweepPoint> points = expand(sweep.grids);
+  check_number(sweep, points.size());
+  const auto replicas = static_cast<std::size_t>(sweep.replicas);
+  std::vector<std::optional<std::size_t>> before(points.size());
+  if (sweep.chain) before = predecessors(points, *sweep.chain);
+  std::vector<PointRecord> records;
+  std::string first_refusal;
+  bool any = false;
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const TomlDocument document = document_of(sweep, points[k]);
+    const Entry* seed = document.find(kSeedKey);
+    PointRecord record;
+    record.point = points[k];
+    record.message = refusal_of(document);
+    if (!record.message.empty()) record.status = PointStatus::failed;
+    any = any || record.message.empty();
+    if (first_refusal.empty()) first_refusal = record.message;
+    const std::int64_t own_seed = seed != nullptr ? seed->value.integer : record.seed;
+    for (std::size_t r = 0; r < replicas; ++r) {
+      record.replica = static_cast<int>(r);
+      record.seed = ed::replica_seed(own_seed, record.replica);
+      record.directory = sweep.replicas > 1 ? replica_directory(points[k].name, record.replica) : points[k].name;
+      if (before[k]) record.starts_from = *before[k] * replicas + r;
+      records.push_back(record);
+    }
+  }
+  // No point can be run: an error of the sweep, not of its points.
+  if (!any) throw InputError(first_refusal);
+  return records;
+}
+
+void take_up(PointRecord& record, const std::filesystem::path& directory) {
+  if (record.status == PointStatus::failed) return;
+  try {
+    record.results = finished_results(directory / record.directory);
+  } catch (const std::exception& error) {
+    record.status = PointStatus::failed;
+    record.message = error.what();
+    return;
+  }
+  if (!record.results) return;
+  record.status = record.results->sound ? PointStatus::done : PointStatus::failed;
+  record.message = record.results->sound ? "" : "NOT SOUND, see log.txt";
+}
+
+void take_up_state(PointRecord& record, const std::filesystem::path& directory) {
+  constexpr std::size_t kLongestState = std::size_t{1} << 20;
+  const std::filesystem::path file = directory / record.directory / kPointStateFile;
+  if (!std::filesystem::exists(file)) return;
+  const nlohmann::json state = nlohmann::json::parse(read_file(file, kLongestState), nullptr, false);
+  if (!state.is_object()) return;
+  for (const PointStatus status : {PointStatus::running, PointStatus::stopped, PointStatus::failed}) {
+    if (state.value("status", "") != to_string(status)) continue;
+    record.status = status;
+    record.message = state.value("message", "");
+  }
+}
+
+std::vector<std::string> arguments_of(const std::vector<PointRecord>& records, std::size_t k,
+                                      const std::filesystem::path& directory) {
+  const PointRecord& record = records[k];
+  if (std::filesystem::exists(directory / record.directory / kConfigFile)) return {"resume", record.directory};
+  std::vector<std::string> arguments = {"run", kBaseFile, "--out", record.directory};
+  const auto set = [&](const std::string& assignment) {
+    arguments.emplace_back("--set");
+    arguments.push_back(assignment);
+  };
+  for (const Setting& s : record.point.settings) {
+    if (record.replica == 0 || s.key != kSeedKey) set(s.assignment());
+  }
+  if (record.replica > 0) set(fmt::format("{}={}", kSeedKey, record.seed));
+  if (record.starts_from) set(std::string(kStartFromKey) + "=" + records[*record.starts_from].directory);
+  return arguments;
+}
+
+}  // namespace hardbody

@@ -1,0 +1,113 @@
+#include "sweep/tasks/cost.h"
+
+#include "base/number_text.h"
+#include "config/keys.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <string>
+#include <utility>
+
+namespace hardbody {
+namespace {
+
+/// Number of finished runs that a prediction is made of.
+constexpr std::size_t kNearest = 6;
+/// Distance within which runs count the same.
+constexpr double kNear = 0.02;
+
+std::optional<double> seconds_of(const PointRecord& record) {
+  const std::optional<double> seconds = record.results ? finite_number(record.results->wall_seconds) : std::nullopt;
+  return seconds && *seconds > 0 ? seconds : std::nullopt;
+}
+
+double memory_of(const PointRecord& record) {
+  return finite_number(record.results->peak_memory_bytes).value_or(0);
+}
+
+}  // namespace
+
+Costs::Costs(const std::vector<PointRecord>& records) : records_(records) {
+  const std::size_t keys = records.empty() ? 0 : records.front().point.settings.size();
+  places_.assign(records.size(), std::vector<double>(keys, std::numeric_limits<double>::quiet_NaN()));
+  for (std::size_t j = 0; j < keys; ++j) {
+    const std::string& key = records.front().point.settings[j].key;
+    double low = std::numeric_limits<double>::infinity();
+    double high = -low;
+    for (const PointRecord& record : records) {
+      const Value& value = record.point.find(key)->value;
+      if (!is_number(value)) continue;
+      low = std::min(low, value.real);
+      high = std::max(high, value.real);
+    }
+    for (std::size_t k = 0; k < records.size(); ++k) {
+      const Value& value = records[k].point.find(key)->value;
+      // A seed changes no cost.
+      if (key == kSeedKey)
+        places_[k][j] = 0;
+      else if (is_number(value))
+        places_[k][j] = high > low ? (value.real - low) / (high - low) : 0;
+    }
+  }
+  for (std::size_t k = 0; k < records.size(); ++k) {
+    if (records[k].status == PointStatus::done && seconds_of(records[k])) finished_.push_back(k);
+  }
+}
+
+double Costs::distance(std::size_t a, std::size_t b) const {
+  double squares = 0;
+  for (std::size_t j = 0; j < places_[a].size(); ++j) {
+    const double apart = places_[a][j] - places_[b][j];
+    if (std::isfinite(apart)) {
+      squares += apart * apart;
+    } else {
+      const std::string& key = records_.front().point.settings[j].key;
+      squares += same_value(records_[a].point.find(key)->value, records_[b].point.find(key)->value) ? 0 : 1;
+    }
+  }
+  return std::sqrt(squares);
+}
+
+std::optional<Cost> Costs::predicted(std::size_t k, bool by_other_points) const {
+  std::vector<std::pair<double, std::size_t>> near;
+  for (const std::size_t f : finished_) {
+    if (by_other_points && records_[f].point.name == records_[k].point.name) continue;
+    near.emplace_back(distance(k, f), f);
+  }
+  if (near.empty()) return std::nullopt;
+  const std::size_t number = std::min(kNearest, near.size());
+  std::partial_sort(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(number), near.end());
+  double weights = 0;
+  double logarithms = 0;
+  double memory = 0;
+  for (std::size_t n = 0; n < number; ++n) {
+    const auto [apart, f] = near[n];
+    const double weight = 1 / (apart * apart + kNear * kNear);
+    weights += weight;
+    logarithms += weight * std::log(*seconds_of(records_[f]));
+    memory = std::max(memory, memory_of(records_[f]));
+  }
+  return Cost{std::exp(logarithms / weights), memory};
+}
+
+std::optional<Cost> Costs::of(std::size_t k) const {
+  return predicted(k, false);
+}
+
+std::optional<double> Costs::error() const {
+  std::set<std::string> points;
+  double squares = 0;
+  for (const std::size_t f : finished_) {
+    points.insert(records_[f].point.name);
+    const std::optional<Cost> others = predicted(f, true);
+    if (!others) continue;
+    const double off = std::log(others->seconds / *seconds_of(records_[f]));
+    squares += off * off;
+  }
+  if (points.size() < 3) return std::nullopt;
+  return std::exp(std::sqrt(squares / static_cast<double>(finished_.size())));
+}
+
+}  // namespace hardbody

@@ -1,0 +1,33 @@
+#include "observables/order/directed.h"
+
+namespace ed::internal {
+
+using Eigen::Vector3d;
+
+void DirectedSums::add(const DirectedSums& other, double weight) {
+  along2 += weight * other.along2;
+  along4 += weight * other.along4;
+  across4 += weight * other.across4;
+  edge2 += weight * other.edge2;
+  edge4 += weight * other.edge4;
+}
+
+DirectedSums directed_sums(const Snapshot& a, const Snapshot& b, std::size_t begin, std::size_t end,
+                           const Vector3d& director) {
+  DirectedSums sums;
+  for (std::size_t i = begin; i < end; ++i) {
+    const Vector3d moved = b.position[i] - a.position[i];
+    const Vector3d squares = moved.cwiseAbs2();
+    const double along = moved.dot(director);
+    const double along2 = along * along;
+    const double across2 = squares.sum() - along2;
+    sums.along2 += along2;
+    sums.along4 += along2 * along2;
+    sums.across4 += across2 * across2;
+    sums.edge2 += squares;
+    sums.edge4 += squares.cwiseAbs2();
+  }
+  return sums;
+}
+
+}  // namespace ed::internal

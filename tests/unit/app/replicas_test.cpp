@@ -1,0 +1,187 @@
+/// Rows of pooled replicas, costs and bundles of runs.
+
+#include "sweep/replicas.h"
+#include "report/sweep.h"
+#include "sweep/table.h"
+#include "sweep/tasks/bundles.h"
+#include "sweep/tasks/cost.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace {
+
+using hardbody::PointRecord;
+using hardbody::PointStatus;
+using hardbody::PooledPoint;
+using hardbody::PrintedEstimate;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+/// Replicas that are done, with these values of Z.
+std::vector<PointRecord> replicas_of(const std::vector<double>& values, double error = 0.1) {
+  std::vector<PointRecord> list;
+  for (const double value : values) {
+    PointRecord record;
+    record.replica = static_cast<int>(list.size());
+    record.directory = hardbody::replica_directory("a=1", record.replica);
+    record.status = PointStatus::done;
+    record.results.emplace();
+    record.results->production_time = "10";
+    record.results->wall_seconds = "1";
+    record.results->observables = {{"Z", fmt::format("{}", value), fmt::format("{}", error)}};
+    list.push_back(record);
+  }
+  return list;
+}
+
+TEST(PooledPoints, DirectoriesAreNamed) {
+  EXPECT_EQ(hardbody::replica_directory("a=1", 0), "a=1");
+  EXPECT_EQ(hardbody::replica_directory("a=1", 2), "a=1_replica=2");
+  EXPECT_EQ(hardbody::replica_directory("", 0), "replica=0");
+}
+
+TEST(PooledPoints, ValueIsMissingIfOneReplicaHasNone) {
+  std::vector<PointRecord> runs = replicas_of({1, 2, 3});
+  for (PointRecord& run : runs) run.results->observables.push_back({"D", "0.5", "0.01"});
+  runs[1].results->observables.back() = {"D", "", "", "bodies have not moved"};
+  const PooledPoint point = hardbody::pooled_point(runs);
+  ASSERT_EQ(point.record.results->observables.size(), 2u);
+  EXPECT_EQ(point.record.results->observables[0].value, "2");
+  EXPECT_EQ(point.record.results->observables[1].value, "");
+  EXPECT_EQ(point.record.results->observables[1].missing, "1 of 3 replicas: bodies have not moved");
+  EXPECT_EQ(point.agreement.size(), 1u);
+  EXPECT_EQ(point.record.results->wall_seconds, "3");
+}
+
+TEST(PooledPoints, DirectorsAreNotPooled) {
+  std::vector<PointRecord> runs = replicas_of({1, 2});
+  for (PointRecord& run : runs) run.results->observables.push_back({"director_x", "0.5", "0.01", "", true});
+  EXPECT_EQ(hardbody::pooled_point(runs).record.results->observables[1].value, "");
+}
+
+TEST(PooledPoints, DecaysAtOtherWaveNumbersAreNotPooled) {
+  std::vector<PointRecord> runs = replicas_of({1, 2});
+  for (PointRecord& run : runs) run.results->observables.push_back({"t_F_1overe", "0.5", "0.01"});
+  EXPECT_EQ(hardbody::pooled_point(runs).record.results->observables[1].value, "0.5");
+  runs[1].results->wave_number = "2.9";
+  const PooledPoint point = hardbody::pooled_point(runs);
+  EXPECT_EQ(point.record.results->observables[1].value, "");
+  EXPECT_THAT(point.record.results->observables[1].missing, HasSubstr("production.wave_numbers sets them"));
+  EXPECT_EQ(point.record.results->observables[0].value, "1.5");
+}
+
+TEST(PooledPoints, StatusIsThatOfTheWorst) {
+  std::vector<PointRecord> runs = replicas_of({1, 2, 3});
+  EXPECT_EQ(hardbody::pooled_point(runs).record.status, PointStatus::done);
+  runs[2].status = PointStatus::running;
+  PooledPoint point = hardbody::pooled_point(runs);
+  EXPECT_EQ(point.record.status, PointStatus::running);
+  EXPECT_EQ(point.number, 2u);
+  runs[1].status = PointStatus::failed;
+  runs[1].message = "jammed";
+  point = hardbody::pooled_point(runs);
+  EXPECT_EQ(point.record.status, PointStatus::failed);
+  EXPECT_EQ(point.record.message, "replica 1: jammed");
+}
+
+TEST(PooledPoints, TheSameRunTwiceIsRefused) {
+  const PooledPoint point = hardbody::pooled_point(replicas_of({1, 2, 1}));
+  EXPECT_EQ(point.record.status, PointStatus::failed);
+  EXPECT_THAT(point.record.message, HasSubstr("replicas 0 and 2 are the same run"));
+}
+
+TEST(PooledPoints, SeedsOfAReportFollowTheSameRule) {
+  hardbody::SweepPointReport first;
+  first.status = "done";
+  first.values = {{2, 0.25}};
+  hardbody::SweepPointReport second = first;
+  second.values = {{4, 0.25}};
+  EXPECT_EQ(hardbody::pooled_over({&first, &second}, 0).value, 3);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  second.values = {{nan, nan, "no diffusion yet"}};
+  const hardbody::Measured missing = hardbody::pooled_over({&first, &second}, 0);
+  EXPECT_TRUE(std::isnan(missing.value));
+  EXPECT_EQ(missing.missing, "no diffusion yet");
+  second.status = "pending";
+  EXPECT_EQ(hardbody::pooled_over({&first, &second}, 0).value, 2);
+}
+
+TEST(PooledPoints, OutlierIsNamedByItsReplica) {
+  std::vector<PointRecord> runs = replicas_of({1, 1.05, 0.98, 3, 1.01});
+  const PooledPoint point = hardbody::pooled_point(runs);
+  EXPECT_THAT(point.record.note, HasSubstr("Z: replica 3 is "));
+  EXPECT_THAT(hardbody::agreement_csv({point}), HasSubstr(",3,17.8\n"));
+  // With one still to come the number is that of the replica, not of the row.
+  runs[0].status = PointStatus::running;
+  EXPECT_THAT(hardbody::pooled_point(runs).record.note, HasSubstr("Z: replica 3 is "));
+}
+
+/// Points along a key whose cost grows by a factor of ten.
+std::vector<PointRecord> points_along(const std::vector<double>& values, std::size_t done) {
+  std::vector<PointRecord> list;
+  for (const double x : values) {
+    PointRecord record;
+    hardbody::Value value;
+    value.kind = hardbody::Value::Kind::real;
+    value.real = x;
+    record.point.name = record.directory = fmt::format("x={}", x);
+    record.point.settings = {{"x", "", value, value}};
+    if (list.size() < done) {
+      record.status = PointStatus::done;
+      record.results.emplace();
+      record.results->wall_seconds = fmt::format("{}", 10 * std::pow(10, x));
+      record.results->peak_memory_bytes = "1000";
+    }
+    list.push_back(record);
+  }
+  return list;
+}
+
+TEST(TaskCosts, AreBetweenThoseOfTheNeighbours) {
+  const std::vector<PointRecord> points = points_along({0, 0.4, 0.8, 1, 0.6, 0.2}, 4);
+  const hardbody::Costs costs(points);
+  const std::optional<hardbody::Cost> cost = costs.of(4);
+  ASSERT_TRUE(cost);
+  EXPECT_GT(cost->seconds, 10 * std::pow(10, 0.4));
+  EXPECT_LT(cost->seconds, 10 * std::pow(10, 0.8));
+  EXPECT_EQ(cost->memory, 1000);
+  ASSERT_TRUE(costs.error());
+  EXPECT_GT(*costs.error(), 1);
+  EXPECT_LT(*costs.error(), 3);
+  EXPECT_FALSE(hardbody::Costs(points_along({0, 1}, 0)).of(0));
+  EXPECT_FALSE(hardbody::Costs(points_along({0, 1}, 2)).error());
+}
+
+TEST(TaskBundles, AreAsLongAsWished) {
+  std::vector<PointRecord> points = points_along({0, 0.1, 0.2, 0.3, 0.4}, 1);
+  const hardbody::Cost ten{10, 100};
+  const std::vector<std::optional<hardbody::Cost>> costs = {ten, ten, ten, ten, std::nullopt};
+  std::vector<hardbody::Bundle> bundles = hardbody::bundles_of(points, costs, 25);
+  ASSERT_EQ(bundles.size(), 3u);
+  EXPECT_THAT(bundles[0].runs, ElementsAre(1, 2));
+  EXPECT_EQ(bundles[0].seconds, 20);
+  EXPECT_THAT(bundles[1].runs, ElementsAre(3));
+  EXPECT_THAT(bundles[2].runs, ElementsAre(4));
+  EXPECT_FALSE(bundles[2].seconds);
+  // A chain against the order of the records, its first run done: 0 <- 4 <- 2, and 1, 3 by themselves.
+  points[4].starts_from = 0;
+  points[2].starts_from = 4;
+  bundles = hardbody::bundles_of(points, costs, 25);
+  ASSERT_EQ(bundles.size(), 3u);
+  EXPECT_THAT(bundles[0].runs, ElementsAre(1, 3));
+  EXPECT_THAT(bundles[1].runs, ElementsAre(4));
+  EXPECT_FALSE(bundles[1].after);
+  EXPECT_THAT(bundles[2].runs, ElementsAre(2));
+  EXPECT_EQ(bundles[2].after, bundles[1].id);
+}
+
+}  // namespace
