@@ -5,7 +5,8 @@ usage: rooms.py
 
 A room is a folder of a library or of the program. Its public headers count as part of the room that implements them.
 docs/architecture.md says what lives in each room. Rooms between the same two "<" do not see each other. Also checked: that
-no library includes from one above it, functions of public headers are exported, and the sizes of files and folders.
+no library includes from one above it, functions of public headers are exported, constants of headers have names of their
+own, and the sizes of files and folders.
 """
 
 import pathlib
@@ -149,6 +150,21 @@ def check_exports():
                     yield f"{path.relative_to(ROOT)}: {name} is not exported; accepted: GEOM_EXPORT or ED_EXPORT before it"
 
 
+def check_constants():
+    """Messages about constants of headers that another source of the library declares again.
+
+    In another namespace, that one would silently stand for the header's wherever sources are compiled in groups.
+    """
+    for folders in (("libgeom",), ("libed",), ("apps/hardbody",), ("apps/python/src", "apps/hardbody")):
+        places = {}
+        for path in (p for folder in folders for p in sources(ROOT / folder)):
+            for name in re.findall(r"^(?:inline |static )?(?:constexpr|const) [^=({;\n]*?\b(k[A-Z]\w*)(?=[\s\[{=])", path.read_text(), re.MULTILINE):
+                places.setdefault(name, set()).add(path)
+        for name, paths in places.items():
+            if len(paths) > 1 and any(p.suffix == ".h" for p in paths):
+                yield f"{', '.join(str(p.relative_to(ROOT)) for p in sorted(paths))}: all declare {name}; accepted: one name, one constant"
+
+
 def check_sizes():
     """Messages about folders of too many sources and files of too many lines."""
     for folder in (*LIBRARIES, "libgeom/include", "libed/include", "tests/unit", "tests/common"):
@@ -165,7 +181,7 @@ def check_sizes():
 
 def main():
     messages = [m for folder, library in LIBRARIES.items() for m in Library(folder, **library).check()]
-    messages += [*check_audience(), *check_exports(), *check_sizes()]
+    messages += [*check_audience(), *check_exports(), *check_constants(), *check_sizes()]
     for message in messages:
         print(message, file=sys.stderr)
     if messages:

@@ -24,7 +24,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 /// Squares below this, relative to the largest moment and component of omega, are treated as zero.
-constexpr double kNothing = 1e-270;
+constexpr double kVanishing = 1e-270;
 
 /// The part of the terms of D2 that is below their rounding.
 constexpr double kBelowRounding = 0x1p-56;
@@ -193,7 +193,7 @@ std::optional<Flight> labelled(const Vector3d& inertia, const Vector3d& omega_bo
   f.D1 = I2 * f.I21 * f.w[1] * f.w[1] + I3 * f.I31 * f.w[2] * f.w[2];
   f.D2 = std::max(term3 - term1, kBelowRounding * (term3 + term1));
   f.D3 = I1 * f.I31 * f.w[0] * f.w[0] + I2 * f.I32 * f.w[1] * f.w[1];
-  if (f.D3 < kNothing || term3 + term1 < kNothing) return std::nullopt;
+  if (f.D3 < kVanishing || term3 + term1 < kNothing) return std::nullopt;
   return f;
 }
 

@@ -23,7 +23,7 @@ namespace ed::internal {
 constexpr std::size_t kMaxBlocks = 32;
 /// Distance within which bodies overlap with where they were, in StructureGrid::length, a radius: 0.3 diameters, beyond
 /// what bodies move in their cages.
-constexpr double kOverlap = 0.6;
+constexpr double kOverlapReach = 0.6;
 /// Bins of displacements for the van Hove function, and their width in StructureGrid::length.
 constexpr std::size_t kHoveBins = 60;
 constexpr double kHoveWidth = 0.1;
@@ -137,7 +137,7 @@ struct Measured {
   void make_room(Block& block) const;
 
   /// Returns the distance that bodies move by less than to overlap with where they were.
-  double overlap_length() const { return kOverlap * grid.length; }
+  double overlap_length() const { return kOverlapReach * grid.length; }
 
   /// Adds the structure of a frame to a block.
   void add_structure(const Snapshot& now, Block& block);

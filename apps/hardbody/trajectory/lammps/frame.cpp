@@ -23,7 +23,7 @@ namespace {
 using Eigen::Vector3d;
 using Words = std::vector<std::string_view>;
 
-constexpr std::uint64_t kMostBodies = 100'000'000;
+constexpr std::uint64_t kMostBodiesOfFrame = 100'000'000;
 /// Accepted deviation, in edges, of a stored unwrapped position from the wrapped one plus a whole number of edges, in
 /// addition to the rounding of six digits.
 constexpr double kWholeEdges = 1e-3;
@@ -372,8 +372,8 @@ Frame DumpFrame::read() {
   read_head();
   (void)line("its number of bodies");
   const double count = number(line("its number of bodies"), "the number of bodies");
-  if (!(count >= 1 && count <= kMostBodies && count == std::floor(count))) {
-    throw bad(fmt::format("has {:g} bodies", count), fmt::format("1 to {}", kMostBodies));
+  if (!(count >= 1 && count <= kMostBodiesOfFrame && count == std::floor(count))) {
+    throw bad(fmt::format("has {:g} bodies", count), fmt::format("1 to {}", kMostBodiesOfFrame));
   }
   read_bounds();
   read_columns(line("its bodies"));
