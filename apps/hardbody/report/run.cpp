@@ -194,12 +194,21 @@ std::string bodies_title(const SpeciesConfig& species) {
   return *ratio == 1 ? std::string("spheres") : fmt::format("{}, X₀ = {:.4g}", name, *ratio);
 }
 
+/// Returns the title of a species with the spread of its sizes.
+std::string sized_title(const SpeciesConfig& species) {
+  const std::string title = bodies_title(species);
+  if (!species.sizes) return title;
+  return fmt::format("{}, {} sizes of width {:.3g}", title, ed::to_string(*species.sizes), species.width);
+}
+
+/// Returns the numbers of each species, if there are several: those of a single one are the run's.
 std::vector<SpeciesReport> species_of(const Config& config, const nlohmann::json& summary) {
   std::vector<SpeciesReport> list;
   const nlohmann::json& all = member(summary, "species");
-  for (std::size_t k = 0; config.mixture && k < config.species.size(); ++k) {
+  if (config.species.size() < 2) return list;
+  for (std::size_t k = 0; k < config.species.size(); ++k) {
     SpeciesReport species;
-    species.title = fmt::format("{} {}", config.species[k].number, bodies_title(config.species[k]));
+    species.title = fmt::format("{} {}", config.species[k].number, sized_title(config.species[k]));
     species.oriented = !is_sphere(config.species[k]);
     if (all.is_array() && k < all.size()) {
       species.headlines = headlines_of(member(all[k], "observables"), species.oriented);
@@ -231,8 +240,8 @@ const Curves* RunReport::find(std::string_view file) const {
 }
 
 std::string title_of(const Config& config) {
-  const std::string bodies =
-      config.mixture ? fmt::format("bodies of {} species", config.species.size()) : bodies_title(config.species[0]);
+  const std::string bodies = config.species.size() > 1 ? fmt::format("bodies of {} species", config.species.size())
+                                                       : sized_title(config.species[0]);
   return fmt::format("{} hard {}, packing fraction {:.4g}", config.number, bodies, config.packing_fraction);
 }
 

@@ -13,6 +13,8 @@
 
 #include <Eigen/Core>
 
+#include <emmintrin.h>
+
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -45,10 +47,26 @@ std::optional<Ellipsoid> as_ellipsoid(const geom::Shape& shape) {
   return std::visit(of, shape);
 }
 
+/// Number of pairs whose numbers, poses and answers fit into the first-level cache.
+constexpr std::size_t kBlock = 64;
+
+/// Number of rows whose answers no cache near the processor holds.
+constexpr std::size_t kManyRows = std::size_t{1} << 15;
+
+/// Copies numbers; `past_caches`: by stores that bypass the caches, where both are aligned.
+void copy(const double* from, double* to, std::size_t count, bool past_caches) {
+  std::size_t k = 0;
+  if (past_caches && reinterpret_cast<std::uintptr_t>(to) % 16 == 0) {
+    for (; k + 2 <= count; k += 2) _mm_stream_pd(to + k, _mm_load_pd(from + k));
+  }
+  for (; k < count; ++k) to[k] = from[k];
+}
+
 /// Arrays of the answers.
 struct Columns {
   explicit Columns(std::size_t rows)
-      : distance(new_array<double>({rows})),
+      : many(rows >= kManyRows),
+        distance(new_array<double>({rows})),
         normal(new_array<double>({rows, 3})),
         point_a(new_array<double>({rows, 3})),
         point_b(new_array<double>({rows, 3})),
@@ -68,9 +86,42 @@ struct Columns {
     status.data[row] = static_cast<std::uint8_t>(r.status);
   }
 
+  /// Puts answers of successive rows, column by column.
+  void put(std::size_t row, std::span<const DistanceResult> results) const {
+    put_column(distance, row, results, [](const DistanceResult& r) { return r.distance; });
+    put_column(normal, row, results, [](const DistanceResult& r) { return r.normal; });
+    put_column(point_a, row, results, [](const DistanceResult& r) { return r.point_a; });
+    put_column(point_b, row, results, [](const DistanceResult& r) { return r.point_b; });
+    put_column(error_bound, row, results, [](const DistanceResult& r) { return r.error_bound; });
+    put_column(residual, row, results, [](const DistanceResult& r) { return r.residual; });
+    for (std::size_t k = 0; k < results.size(); ++k) {
+      iterations.data[row + k] = results[k].iterations;
+      status.data[row + k] = static_cast<std::uint8_t>(results[k].status);
+    }
+  }
+
+  bool many;  ///< whether the caller reads the first answers long after they were written
   NewArray<double> distance, normal, point_a, point_b, error_bound, residual;
   NewArray<std::int32_t> iterations;
   NewArray<std::uint8_t> status;
+
+ private:
+  /// Puts one member of answers. Where they are many, their lines need not be fetched before.
+  template <class Member>
+  void put_column(const NewArray<double>& column, std::size_t row, std::span<const DistanceResult> results,
+                  const Member& member) const {
+    using Value = decltype(member(results[0]));
+    constexpr std::size_t kWidth = sizeof(Value) / sizeof(double);
+    alignas(16) std::array<double, kWidth * kBlock> values;
+    for (std::size_t k = 0; k < results.size(); ++k) {
+      if constexpr (kWidth == 1) {
+        values[k] = member(results[k]);
+      } else {
+        Eigen::Vector3d::Map(&values[kWidth * k]) = member(results[k]);
+      }
+    }
+    copy(values.data(), column.data + kWidth * row, kWidth * results.size(), many);
+  }
 };
 
 /// Arguments of a call on pairs, checked.
@@ -133,8 +184,6 @@ class Distances {
   std::size_t redone() const { return redone_; }
 
  private:
-  /// Number of pairs whose numbers, poses and answers fit into the first-level cache.
-  static constexpr std::size_t kBlock = 64;
   /// Number of pairs by which poses are asked for in advance.
   static constexpr std::size_t kAhead = 32;
 
@@ -171,6 +220,7 @@ class Distances {
       }
     }
     redone_ += redone + flush(block);
+    _mm_sfence();  // other threads see what was streamed once this one has ended its work
   }
 
   std::size_t flush(Block& block) const {
@@ -179,7 +229,11 @@ class Distances {
     if (query_.starts) options.starts = std::span(block.starts).first(block.count);
     const geom::BatchSummary summary = geom::distance_batch(std::span(block.pairs).first(block.count),
                                                             std::span(block.found).first(block.count), options);
-    for (std::size_t k = 0; k < block.count; ++k) out_.put(block.rows[k], block.found[k]);
+    if (block.rows[block.count - 1] - block.rows[0] == block.count - 1) {
+      out_.put(block.rows[0], std::span(block.found).first(block.count));
+    } else {
+      for (std::size_t k = 0; k < block.count; ++k) out_.put(block.rows[k], block.found[k]);
+    }
     block.count = 0;
     return summary.redone;
   }
