@@ -1,7 +1,7 @@
 #include "observables/structure.h"
 
-#include "base/lanes.h"
 #include "base/sincos.h"
+#include "vectors/products.h"
 
 #include <ed/random.h>
 #include <ed/system.h>
@@ -73,6 +73,15 @@ std::vector<Vector3i> list_vectors(double from, double to, int most) {
   return some;
 }
 
+/// Multiplies complex numbers.
+void multiply(const double* a_re, const double* a_im, const double* b_re, const double* b_im, std::size_t number,
+              double* __restrict re, double* __restrict im) {
+  for (std::size_t i = 0; i < number; ++i) {
+    re[i] = a_re[i] * b_re[i] - a_im[i] * b_im[i];
+    im[i] = a_re[i] * b_im[i] + a_im[i] * b_re[i];
+  }
+}
+
 /// exp(i k x) of all bodies for k = 0, 1, .. along one axis: real and imaginary parts, those of one k together.
 struct Phases {
   std::vector<double> re, im;
@@ -81,46 +90,43 @@ struct Phases {
     const std::size_t n = range.end - range.begin;
     re.assign(n * (static_cast<std::size_t>(largest) + 1), 1);
     im.assign(re.size(), 0);
+    if (largest < 1) return;
     for (std::size_t i = 0; i < n; ++i) {
       const SinCos one = sincos(unit * positions[range.begin + i][axis]);
-      for (std::size_t k = n + i; k < re.size(); k += n) {
-        re[k] = re[k - n] * one.cos - im[k - n] * one.sin;
-        im[k] = re[k - n] * one.sin + im[k - n] * one.cos;
-      }
+      re[n + i] = one.cos;
+      im[n + i] = one.sin;
     }
+    // All bodies of one power: a body's powers are far apart in memory.
+    for (std::size_t k = 2 * n; k < re.size(); k += n)
+      multiply(&re[k - n], &im[k - n], &re[n], &im[n], n, &re[k], &im[k]);
   }
 };
 
 /// Adds the sum of exp(i q.r) over the bodies: those of even and of odd number apart.
-void add_amplitude(const Phases (&phases)[3], const Vector3i& n, std::size_t bodies, Amplitude& sum) {
-  const auto at = [&](int axis) { return static_cast<std::size_t>(std::abs(n[axis])) * bodies; };
-  const double* const xr = &phases[0].re[at(0)];
-  const double* const xi = &phases[0].im[at(0)];
-  const double* const yr = &phases[1].re[at(1)];
-  const double* const yi = &phases[1].im[at(1)];
-  const double* const zr = &phases[2].re[at(2)];
-  const double* const zi = &phases[2].im[at(2)];
-  const double sy = n.y() < 0 ? -1 : 1;  // n.x() is not below 0: one_of_two
-  const double sz = n.z() < 0 ? -1 : 1;
-  Lanes re = {0, 0};
-  Lanes im = {0, 0};
-  std::size_t i = 0;
-  for (; i + 2 <= bodies; i += 2) {
-    const Lanes y = sy * both(yi + i);
-    const Lanes z = sz * both(zi + i);
-    const Lanes pr = both(xr + i) * both(yr + i) - both(xi + i) * y;
-    const Lanes pi = both(xr + i) * y + both(xi + i) * both(yr + i);
-    re += pr * both(zr + i) - pi * z;
-    im += pr * z + pi * both(zr + i);
+void add_amplitude(const Phases (&phases)[3], const Vector3i& n, std::size_t bodies, ProductKernel& products,
+                   Amplitude& sum) {
+  PhaseRows rows;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto at = static_cast<std::size_t>(std::abs(n[axis])) * bodies;
+    rows.re[axis] = &phases[axis].re[at];
+    rows.im[axis] = &phases[axis].im[at];
+    rows.sign[axis] = n[axis] < 0 ? -1 : 1;
   }
-  for (; i < bodies; ++i) {
-    const double pr = xr[i] * yr[i] - xi[i] * sy * yi[i];
-    const double pi = xr[i] * sy * yi[i] + xi[i] * yr[i];
-    re[0] += pr * zr[i] - pi * sz * zi[i];
-    im[0] += pr * sz * zi[i] + pi * zr[i];
+  ProductSums sums{};
+  const std::size_t fours = bodies / 4 * 4;
+  products(rows, static_cast<int>(fours), sums);
+  for (std::size_t i = fours; i < bodies; ++i) {
+    const std::size_t parity = i % 2;
+    const double xr = rows.re[0][i], xi = rows.sign[0] * rows.im[0][i];
+    const double yr = rows.re[1][i], yi = rows.sign[1] * rows.im[1][i];
+    const double zr = rows.re[2][i], zi = rows.sign[2] * rows.im[2][i];
+    const double pr = xr * yr - xi * yi;
+    const double pi = xr * yi + xi * yr;
+    sums.re[parity] += pr * zr - pi * zi;
+    sums.im[parity] += pr * zi + pi * zr;
   }
-  sum.re += re[0] + re[1];
-  sum.im += im[0] + im[1];
+  sum.re += sums.re[0] + sums.re[1];
+  sum.im += sums.im[0] + sums.im[1];
 }
 
 /// Adds that sum body by body, without tabulated phases.
@@ -212,6 +218,7 @@ WaveVectors::WaveVectors(double box, const std::vector<double>& about, int most)
 
 Amplitudes WaveVectors::amplitudes(const std::vector<Vector3d>& positions, BodyRange range) const {
   const double unit = 2 * std::numbers::pi / box_;
+  ProductKernel& products = *find_product_kernel();
   Amplitudes sums;
   for (const std::vector<Vector3i>& shell : vectors_) sums.emplace_back(shell.size());
   for (std::size_t begin = range.begin; begin < range.end; begin += kAtATime) {
@@ -224,7 +231,7 @@ Amplitudes WaveVectors::amplitudes(const std::vector<Vector3d>& positions, BodyR
       for (std::size_t v = 0; v < vectors_[s].size(); ++v) {
         const Vector3i& n = vectors_[s][v];
         if (largest == largest_) {
-          add_amplitude(phases, n, some.end - some.begin, sums[s][v]);
+          add_amplitude(phases, n, some.end - some.begin, products, sums[s][v]);
         } else {
           add_amplitude(positions, some, unit * n.cast<double>(), sums[s][v]);
         }
