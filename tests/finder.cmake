@@ -16,6 +16,7 @@ hardbody_test(finder_unit_test unit
   unit/ed/contact/general_contact_test.cpp
   unit/ed/motion/impulse_test.cpp
   unit/ed/vectors/overlapping_envelopes_test.cpp
+  unit/ed/vectors/products_test.cpp
   unit/ed/motion/motion_test.cpp
   unit/ed/neighbours/lists_test.cpp
   unit/ed/base/random_test.cpp
