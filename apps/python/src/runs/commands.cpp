@@ -114,8 +114,13 @@ void bind_commands(nb::module_& module) {
       "sweep",
       [](const Functions& console, std::string config, std::optional<std::string> text, std::optional<std::string> out,
          std::optional<int> jobs, Strings overrides, Strings program) {
-        const SweepArguments arguments{std::move(config),    std::move(text),   std::move(out), jobs,
-                                       std::move(overrides), std::move(program)};
+        SweepArguments arguments;
+        arguments.sweep = std::move(config);
+        arguments.text = std::move(text);
+        arguments.out = std::move(out);
+        arguments.jobs = jobs;
+        arguments.overrides = std::move(overrides);
+        arguments.program = std::move(program);
         return outcome(console, [&] { return sweep(arguments); });
       },
       nb::arg("console"), nb::arg("config"), text_or_none, out_or_none, nb::arg("jobs").none(), nb::arg("overrides"),
