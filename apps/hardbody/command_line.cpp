@@ -259,6 +259,7 @@ std::vector<std::string> expand_overrides(int argc, char** argv) {
 
 int parsed(int argc, char** argv, std::vector<std::string> program) {
   Request request;
+  request.run.program = program;
   request.sweep.program = std::move(program);
   CLI::App app("Event-driven molecular dynamics of hard ellipsoids and superellipsoids", "hardbody");
   app.set_version_flag("--version", version_text());

@@ -13,6 +13,8 @@ import socket
 import subprocess
 import time
 
+# Where srun looks within jobs: the executor of Snakemake clears SLURM_CONF for it.
+SYSTEM_CONF = pathlib.Path("/etc/slurm/slurm.conf")
 PROGRAMS = ["munged", "slurmctld", "slurmd", "sbatch", "scontrol", "squeue"]
 NODES = ["n1", "n2"]
 
@@ -76,6 +78,7 @@ class Cluster:
         self.env["PATH"] = os.pathsep.join([self.env.get("PATH", ""), "/usr/sbin", "/sbin"])
         self.cpus = cpus
         self.daemons = {}
+        self.linked = False
 
     def __enter__(self):
         lacking = missing_programs()
@@ -83,6 +86,7 @@ class Cluster:
             raise RuntimeError(f"Slurm cannot start: {', '.join(lacking)} not installed; tools/setup installs them")
         try:
             self._write()
+            self._link()
             self._start_munge()
             self._start("slurmctld", ["slurmctld", "-D"])
             for node in NODES:
@@ -96,6 +100,17 @@ class Cluster:
     def __exit__(self, *_):
         for name in [*NODES, "slurmctld", "munged"]:
             self._end(name)
+        if self.linked:
+            SYSTEM_CONF.unlink(missing_ok=True)
+
+    def _link(self):
+        """Makes its configuration that of this machine, which must have no other Slurm."""
+        if SYSTEM_CONF.exists():
+            raise RuntimeError(f"Slurm cannot start: {SYSTEM_CONF} is there: this machine has a Slurm of its own, or another test runs")
+        SYSTEM_CONF.parent.mkdir(parents=True, exist_ok=True)
+        SYSTEM_CONF.unlink(missing_ok=True)  # of a test that was killed
+        SYSTEM_CONF.symlink_to(self.here / "slurm.conf")
+        self.linked = True
 
     def _write(self):
         for name in ["state", "spool/n1", "spool/n2"]:

@@ -205,7 +205,7 @@ class Study:
 
 def undisturbed(study, expected):
     begin = time.monotonic()
-    study.finish(study.sweep(SWEEP, "plain", "--on", str(study.profile("plain", pause=2, minutes=10)), "--task-time", "12"), "plain")
+    study.finish(study.sweep(SWEEP, "plain", "--on", str(study.profile("plain", pause=2, minutes=10)), "--task-time", "1.5"), "plain")
     assert table(study.here / "plain") == expected, "plain: another table than locally"
     study.check_runs("plain")
     print(f"undisturbed: the same table as locally, {study.attempts('plain')} jobs, {time.monotonic() - begin:.0f} s", flush=True)
@@ -213,7 +213,7 @@ def undisturbed(study, expected):
 
 def stopped(study):
     """SIGTERM: jobs are cancelled, states saved; the same command continues."""
-    options = ["--on", str(study.profile("plain", pause=2, minutes=10)), "--task-time", "12"]
+    options = ["--on", str(study.profile("plain", pause=2, minutes=10)), "--task-time", "1.5"]
     process = study.sweep(SWEEP, "stopped", *options)
     end = time.monotonic() + 120
     while not processes(study.here / "stopped") and time.monotonic() < end:
@@ -243,7 +243,7 @@ def disturbed(study, number, expected):
     name = f"round{number}"
     begin = time.monotonic()
     # The time limit is that of the task itself here: a job's own is a minute at least.
-    options = ["--on", str(study.profile(name, pause=2, minutes=10, seconds=5)), "--task-time", "12"]
+    options = ["--on", str(study.profile(name, pause=2, minutes=10, seconds=5)), "--task-time", "1.5"]
     file = study.here / f"{name}.toml"
     file.write_text(SWEEP)
     subprocess.run([HARDBODY, "sweep", "plan", str(file), "--out", str(study.here / name)], check=True, capture_output=True)
@@ -270,7 +270,12 @@ def disturbed(study, number, expected):
     shutil.rmtree(study.here / name)
 
 
+def interrupted(*_):
+    raise KeyboardInterrupt
+
+
 def main():
+    signal.signal(signal.SIGTERM, interrupted)  # daemons are ended, disks given back
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--rounds", type=int, default=1)
     parser.add_argument("--limit", action="store_true", help="also a run longer than the time limit of a job")

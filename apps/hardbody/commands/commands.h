@@ -16,6 +16,7 @@ struct RunArguments {
   std::vector<std::string> overrides;  ///< section.key=value
   bool force = false;                  ///< overwrite an existing run
   int replicas = 1;                    ///< runs with different seeds; more than one: `out` is the directory of a sweep
+  std::vector<std::string> program;    ///< command that runs replicas, as in SweepArguments
 };
 
 struct ResumeArguments {

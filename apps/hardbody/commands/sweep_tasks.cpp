@@ -54,6 +54,7 @@ void install_task_handlers() {
 }
 
 SweepFile file_of(const SweepTaskArguments& arguments) {
+  if (arguments.text) return parse_sweep(*arguments.text, arguments.sweep, "", arguments.overrides, Lines::unnamed);
   return read_sweep(arguments.sweep, arguments.overrides);
 }
 

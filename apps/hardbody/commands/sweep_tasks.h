@@ -13,6 +13,7 @@ inline constexpr int kTryAgain = 75;
 
 struct SweepTaskArguments {
   std::string sweep;                   ///< path of the TOML file
+  std::optional<std::string> text;     ///< sweep as TOML, without a file; `sweep` is then its name in messages
   std::vector<std::string> ids;        ///< names of runs, or numbers of tasks of the plan
   std::optional<std::string> out;      ///< directory of the sweep; by default out/<stem of the file>
   double task_time = 600;              ///< wished length of a task of several runs, in seconds

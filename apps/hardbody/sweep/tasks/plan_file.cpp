@@ -95,7 +95,7 @@ class TaskFinder : public nlohmann::json_sax<Json> {
   }
 
   int number_;
-  int depth_ = 0;  ///< of objects
+  int depth_ = 0;  ///< number of open objects
   std::string key_;
   bool in_tasks_ = false;
   bool in_runs_ = false;
