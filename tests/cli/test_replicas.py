@@ -172,7 +172,7 @@ class Tasks(SweepCase):
 
     def test_signals_and_locks(self):
         text = LONG + ONE_KEY
-        self.plan(text)
+        self.plan(text, "--task-time", "1e-9")
         first = "aspect_ratio=0.5"
         process = self.begin(first)
         self.wait_for(lambda: os.path.exists(self.path(f"out/{first}/checkpoint.bin")), "a checkpoint")
@@ -230,10 +230,11 @@ class Tasks(SweepCase):
         self.assertFalse(os.path.exists(self.path("out/aspect_ratio=2")))
 
     def test_failed_along_a_chain(self):
-        # The first is too dense for a fluid of its size; the others start from it, each in a task of its own.
-        text = 'chain = "system.number"\n' + SMALL.replace("[system]\n", "[system]\nstart = \"fcc\"\n") + "[grid]\nsystem.number = [107, 108, 109]\n"
-        self.plan(text, "--task-time", "1e-9")
-        for name in ["number=108", "number=109"]:
+        # The first cannot be run, and no task of the plan is for it; the others start from each other, each in a task of its own.
+        text = 'chain = "system.packing_fraction"\n' + SMALL + "[grid]\nsystem.packing_fraction = [-0.1, 0.1, 0.2]\n"
+        plan = self.plan(text, "--task-time", "1e-9")
+        self.assertEqual([task["runs"] for task in plan["tasks"]], [["packing_fraction=0.1"], ["packing_fraction=0.2"]])
+        for name in ["packing_fraction=0.1", "packing_fraction=0.2"]:
             result = self.task("point", name)
             self.assertEqual(result.returncode, 1, result.stderr)
             self.assertIn("which failed", result.stderr)
@@ -266,13 +267,17 @@ class Tasks(SweepCase):
 
 # Stands in for Snakemake: runs the tasks of tasks.json one after the other, as the rules of the workflow do.
 ENGINE = """#!/usr/bin/python3
-import json, pathlib, subprocess, sys, time
+import json, pathlib, signal, subprocess, sys
+stopped = []
+signal.signal(signal.SIGINT, lambda *_: stopped.append(True))  # as Snakemake, it waits for what runs
 if sys.argv[1:] == ["--version"]:
     print("{version}")
     sys.exit()
 config = json.load(open(sys.argv[sys.argv.index("--configfile") + 1]))
 {body}
 for task in json.load(open(config["tasks"])):
+    if stopped:
+        break
     mark = pathlib.Path("tasks") / str(task["id"])
     mark.with_suffix(".begun").touch()
     command = [*config["program"], "sweep", "point", config["sweep"], "--out", config["directory"], str(task["id"])]

@@ -160,8 +160,8 @@ def sweep(
     out: directory of the sweep; a file has the default out/<name of the file>.
     overrides: values that replace those of all points, {"production.time": 50}, or of the grid, {"grid.seed": [1, 2]}.
     jobs: number of points that run at once; None: one for each processor.
-    client: a dask.distributed.Client, whose workers run the points as tasks (docs/cluster.md): each has this package and
-        sees the directory under the same name. A worker that is lost loses nothing: its tasks continue on another one.
+    client: a dask.distributed.Client, whose workers run the points as tasks (docs/cluster.md): each has this package,
+        and sees the directory under the same name. Tasks of a worker that is lost continue on another one.
     task_time: with `client`: wished seconds of a task of several runs.
 
     Other arguments and exceptions are those of `run`. Raises SweepError, at the end, if points have failed.

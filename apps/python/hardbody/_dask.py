@@ -24,7 +24,7 @@ class TaskStopped(RuntimeError):
 
 
 def run_task(directory: str, task: int, *_after: int) -> int:
-    """Runs a task of the plan in the directory of a sweep, in a process of its own. Returns 0, or 1 if a run has failed.
+    """Runs a task of a sweep's plan in a process of its own. Returns 0, or 1 if a run has failed.
 
     It is called by workers, on which hardbody is installed and which see the directory under the same name.
     """
@@ -47,7 +47,9 @@ def run_tasks(client: Any, directory: str, plan: str, progress: Progress | None)
     for task in tasks:
         after = [futures[k] for k in task["after"]]
         key = f"hardbody-{Path(directory).name}-{task['id']}-{time.time_ns()}"
-        futures[task["id"]] = client.submit(run_task, directory, task["id"], *after, key=key, pure=False, retries=_RETRIES)
+        futures[task["id"]] = client.submit(
+            run_task, directory, task["id"], *after, key=key, pure=False, retries=_RETRIES
+        )
     try:
         _watch(list(futures.values()), progress)
     except BaseException:
