@@ -45,5 +45,7 @@ install(FILES ${CMAKE_CURRENT_BINARY_DIR}/hardbody-config.cmake
 if(TARGET hardbody)
   install(TARGETS hardbody RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
   install(FILES docs/man/hardbody.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT program)
+  install(DIRECTORY apps/workflow/ DESTINATION ${CMAKE_INSTALL_DATADIR}/hardbody/workflow COMPONENT program
+    PATTERN CMakeLists.txt EXCLUDE)
 endif()
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})

@@ -6,9 +6,10 @@ if(TARGET hardbody)
   file(WRITE ${empty} "")
   set(report_source ${PROJECT_SOURCE_DIR}/apps/report)
   add_custom_command(OUTPUT ${no_front_end}
-    COMMAND ${CMAKE_COMMAND} -DOUTPUT=${no_front_end} -Dreport_script=${empty} -Dreport_style=${empty}
-      -Dreport_static_style=${report_source}/src/base.css -P ${report_source}/embed.cmake
-    DEPENDS ${report_source}/src/base.css ${report_source}/embed.cmake VERBATIM)
+    COMMAND ${CMAKE_COMMAND} -DOUTPUT=${no_front_end} -DHEADER=report/assets.h
+      -DNAMES=report_script,report_style,report_static_style -Dreport_script=${empty} -Dreport_style=${empty}
+      -Dreport_static_style=${report_source}/src/base.css -P ${PROJECT_SOURCE_DIR}/cmake/embed.cmake
+    DEPENDS ${report_source}/src/base.css ${PROJECT_SOURCE_DIR}/cmake/embed.cmake VERBATIM)
   add_executable(hardbody_static_report $<TARGET_OBJECTS:hardbody> ${no_front_end})
   hardbody_target(hardbody_static_report)
   target_link_libraries(hardbody_static_report PRIVATE hardbody_command_line)

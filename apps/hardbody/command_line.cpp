@@ -92,12 +92,19 @@ void add_sweep(CLI::App& app, Request& request) {
           "Sweep file, see `hardbody init --template sweep`; or plan SWEEP, point SWEEP ID.., collect SWEEP: a\n"
           "sweep as tasks of a cluster")
       ->required();
+  sweep->add_option("--on", request.sweep.on,
+                    "Run it as tasks of a cluster: slurm, local, or the directory of a Snakemake profile");
   sweep
       ->add_option("--task-time", request.tasks.task_time,
-                   "Of plan: wished seconds of a task of several runs; default: 600")
+                   "Of plan and --on: wished seconds of a task of several runs; default: 600")
+      ->check(positive_number());
+  sweep
+      ->add_option("--time-limit", request.tasks.time_limit,
+                   "Of point: seconds after which it saves its state and ends with 138")
       ->check(positive_number());
   sweep->add_option("--out", request.sweep.out, "Directory of the sweep; default: out/<name of the file>");
-  sweep->add_option("--jobs", request.sweep.jobs, "Number of simultaneous runs; default: one for each processor");
+  sweep->add_option("--jobs", request.sweep.jobs,
+                    "Number of simultaneous runs; default: one for each processor; with --on: of jobs");
   sweep
       ->add_option("--set", request.sweep.overrides,
                    "section.key=value: overrides the config of all points; grid.section.key=[..]: the grid; may be "
@@ -202,10 +209,16 @@ int dispatch_sweep(const Request& request) {
   if (!is_task) {
     SweepArguments sweep = request.sweep;
     sweep.sweep = action;
-    return hardbody::sweep(sweep);
+    sweep.task_time = request.tasks.task_time;
+    if (request.tasks.time_limit) throw InputError("command line: --time-limit; accepted: with hardbody sweep point");
+    return sweep.on ? sweep_on(sweep) : hardbody::sweep(sweep);
   }
   if (request.sweep.jobs)
     throw InputError(fmt::format("command line: --jobs with {}; accepted: hardbody sweep SWEEP --jobs N", action));
+  if (request.sweep.on)
+    throw InputError(fmt::format("command line: --on with {}; accepted: hardbody sweep SWEEP --on NAME", action));
+  if (request.tasks.time_limit && action != "point")
+    throw InputError(fmt::format("command line: --time-limit with {}; accepted: with hardbody sweep point", action));
   SweepTaskArguments tasks = request.tasks;
   tasks.sweep = words[1];
   tasks.ids.assign(words.begin() + 2, words.end());
@@ -246,6 +259,7 @@ std::vector<std::string> expand_overrides(int argc, char** argv) {
 
 int parsed(int argc, char** argv, std::vector<std::string> program) {
   Request request;
+  request.run.program = program;
   request.sweep.program = std::move(program);
   CLI::App app("Event-driven molecular dynamics of hard ellipsoids and superellipsoids", "hardbody");
   app.set_version_flag("--version", version_text());

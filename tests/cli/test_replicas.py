@@ -122,10 +122,17 @@ class Tasks(SweepCase):
         text = "replicas = 2\n" + SMALL + GRID
         self.assertEqual(self.sweep(text, out="whole").returncode, 0)
         plan = self.plan(text)
+        self.assertEqual([task["runs"] for task in plan["tasks"]], [[run["id"] for run in plan["runs"]]])
+        plan = self.plan(text, "--task-time", "1e-9")
         self.assertEqual([task["runs"] for task in plan["tasks"]], [[run["id"]] for run in plan["runs"]])
         self.assertEqual([task["id"] for task in plan["tasks"]], list(range(1, 9)))
         self.assertEqual(plan["runs"][3]["id"], "aspect_ratio=0.5_packing_fraction=0.2_replica=1")
-        self.assertIsNone(plan["tasks"][0]["expected_seconds"])
+        # By the configs alone: denser runs take longer, replicas as long as each other.
+        costs = [run["expected_seconds"] for run in plan["runs"]]
+        self.assertEqual(costs[::2], costs[1::2])
+        self.assertGreater(costs[2], costs[0])
+        self.assertTrue(all(0.01 < cost < 10 for cost in costs), costs)
+        self.assertEqual(plan["expected_within_factor"], 1.25)
         self.assertEqual(self.task("collect").returncode, 75)
         # By number and by name, several at once, one of them twice.
         ids = ["8", "1", "2", "3", "1", plan["runs"][3]["id"], "5", "6", "7"]
@@ -155,7 +162,8 @@ class Tasks(SweepCase):
         self.assertGreaterEqual(plan["expected_within_factor"], 1)
         self.assertEqual(len(self.plan(larger, "--task-time", "1e-9")["tasks"]), 3)
         chain = 'chain = "system.packing_fraction"\n' + SMALL + "[grid]\nsystem.packing_fraction = [0.1, 0.2]\n"
-        plan = self.plan(chain, out="chain")
+        self.assertEqual([task["after"] for task in self.plan(chain, out="chain")["tasks"]], [[]])
+        plan = self.plan(chain, "--task-time", "1e-9", out="chain")
         self.assertEqual([task["after"] for task in plan["tasks"]], [[], [1]])
         result = self.task("point", "2", out="chain")
         self.assertEqual(result.returncode, 75)
@@ -164,7 +172,7 @@ class Tasks(SweepCase):
 
     def test_signals_and_locks(self):
         text = LONG + ONE_KEY
-        self.plan(text)
+        self.plan(text, "--task-time", "1e-9")
         first = "aspect_ratio=0.5"
         process = self.begin(first)
         self.wait_for(lambda: os.path.exists(self.path(f"out/{first}/checkpoint.bin")), "a checkpoint")
@@ -212,6 +220,25 @@ class Tasks(SweepCase):
         self.assertEqual(self.task("point", "aspect_ratio=2").returncode, 0)
         self.assertFalse(os.path.exists(lock))
 
+    def test_time_limit(self):
+        self.plan(LONG + ONE_KEY)
+        begin = time.monotonic()
+        result = self.task("point", "1", "--time-limit", "0.5")
+        self.assertEqual((result.returncode, result.stderr), (138, "aspect_ratio=0.5: stopped, its state is saved\n"))
+        self.assertLess(time.monotonic() - begin, 60)
+        self.assertTrue(self.summary("out/aspect_ratio=0.5")["interrupted"])
+        self.assertFalse(os.path.exists(self.path("out/aspect_ratio=2")))
+
+    def test_failed_along_a_chain(self):
+        # The first cannot be run, and no task of the plan is for it; the others start from each other, each in a task of its own.
+        text = 'chain = "system.packing_fraction"\n' + SMALL + "[grid]\nsystem.packing_fraction = [-0.1, 0.1, 0.2]\n"
+        plan = self.plan(text, "--task-time", "1e-9")
+        self.assertEqual([task["runs"] for task in plan["tasks"]], [["packing_fraction=0.1"], ["packing_fraction=0.2"]])
+        for name in ["packing_fraction=0.1", "packing_fraction=0.2"]:
+            result = self.task("point", name)
+            self.assertEqual(result.returncode, 1, result.stderr)
+            self.assertIn("which failed", result.stderr)
+
     def test_failed_for_good(self):
         self.plan(SMALL + "[grid]\nsystem.packing_fraction = [0.2, 0.99]\n")
         result = self.task("point", "packing_fraction=0.99", "packing_fraction=0.2")
@@ -230,10 +257,87 @@ class Tasks(SweepCase):
         self.assert_refused(self.task("point", "aspect_ratio=9"), "aspect_ratio=9: no run or task", "accepted: an id in out/plan.json")
         self.assert_refused(self.task("point"), "hardbody sweep point sweep.toml; accepted: SWEEP, plan SWEEP, point SWEEP ID.., or collect SWEEP")
         self.assert_refused(self.task("plan", "1"), "accepted: SWEEP, plan SWEEP")
+        self.assert_refused(self.task("plan", "--time-limit", "2"), "--time-limit with plan; accepted: with hardbody sweep point")
+        self.assert_refused(self.task("plan", "--on", "slurm"), "--on with plan; accepted: hardbody sweep SWEEP --on NAME")
         self.assert_refused(self.task("plan", "--jobs", "2"), "--jobs with plan; accepted: hardbody sweep SWEEP --jobs N")
         self.assert_refused(self.hardbody("sweep", "plan", "sweep.toml", "--task-time", "0"), "--task-time")
         self.assert_refused(self.hardbody("sweep", "collect", "sweep.toml", "--out", "out", "--set", "grid.shape.aspect_ratio=[0.5, 2, 3]"),
                             "out: holds this sweep with fewer points or replicas")
+
+
+# Stands in for Snakemake: runs the tasks of tasks.json one after the other, as the rules of the workflow do.
+ENGINE = """#!/usr/bin/python3
+import json, pathlib, signal, subprocess, sys
+stopped = []
+signal.signal(signal.SIGINT, lambda *_: stopped.append(True))  # as Snakemake, it waits for what runs
+if sys.argv[1:] == ["--version"]:
+    print("{version}")
+    sys.exit()
+config = json.load(open(sys.argv[sys.argv.index("--configfile") + 1]))
+{body}
+for task in json.load(open(config["tasks"])):
+    if stopped:
+        break
+    mark = pathlib.Path("tasks") / str(task["id"])
+    mark.with_suffix(".begun").touch()
+    command = [*config["program"], "sweep", "point", config["sweep"], "--out", config["directory"], str(task["id"])]
+    status = subprocess.run(command).returncode
+    if status in (0, 1):
+        mark.with_suffix(".done").write_text(str(status))
+"""
+
+
+class Workflow(SweepCase):
+    def engine(self, version="9.27.1", body=""):
+        os.makedirs(self.path("bin"), exist_ok=True)
+        self.write("bin/snakemake", ENGINE.format(version=version, body=body))
+        os.chmod(self.path("bin/snakemake"), 0o755)
+        return {**os.environ, "PATH": self.path("bin")}
+
+    def on(self, name, text, *options, env):
+        self.write("sweep.toml", text)
+        return subprocess.run([HARDBODY, "sweep", "sweep.toml", "--out", "out", "--on", name, *options], cwd=self.here, env=env,
+                              capture_output=True, text=True, timeout=120, stdin=subprocess.DEVNULL)
+
+    def test_the_same_table(self):
+        text = "replicas = 2\n" + SMALL + GRID
+        self.assertEqual(self.sweep(text, out="whole").returncode, 0)
+        result = self.on("local", text, "--task-time", "0.2", env=self.engine())
+        self.assertEqual((result.returncode, result.stdout), (0, "out: 4 points of 2 replicas: 4 done, 0 failed\n"), result.stderr)
+        self.assertEqual(self.without_timing(), self.without_timing("whole"))
+        self.assertGreater(len(glob.glob(self.path("out/workflow/tasks/*.done"))), 1)
+        # There is nothing left to do, and nothing is started for it.
+        result = self.on("local", text, env=self.engine(body="sys.exit(1)"))
+        self.assertEqual(result.returncode, 0, result.stderr)
+
+    def test_stopped(self):
+        env = self.engine()
+        process = self.start(LONG + ONE_KEY, "--on", "local", "--task-time", "1e-9", env=env)
+        self.wait_for(lambda: os.path.exists(self.path("out/aspect_ratio=0.5/checkpoint.bin")), "a checkpoint")
+        # Neither a sweep here nor a second workflow may use the directory.
+        self.assert_refused(self.sweep(LONG + ONE_KEY), "out: another hardbody process is using it")
+        self.assert_refused(self.on("local", LONG + ONE_KEY, env=env), "out: another hardbody process is using it")
+        process.send_signal(signal.SIGTERM)
+        _, said = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 143, said)
+        self.assertIn("out: stopped by SIGTERM: the same command continues", said)
+        self.assertTrue(self.summary("out/aspect_ratio=0.5")["interrupted"])
+        self.assertEqual(glob.glob(self.path("out/*/task.lock")), [])
+
+    def test_tasks_that_do_not_begin(self):
+        text = SMALL + ONE_KEY
+        result = self.on("local", text, env=self.engine(body='print("WorkflowError: no queue"); sys.exit(1)'))
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("out: no task has begun: WorkflowError: no queue; see out/workflow/log.txt; machines that run tasks must see", result.stderr)
+
+    def test_refused(self):
+        text = SMALL + ONE_KEY
+        self.assert_refused(self.on("slurm", text, env={**os.environ, "PATH": self.path("nowhere")}),
+                            "--on slurm: snakemake is not installed; accepted: Snakemake 8 or newer: pip install snakemake")
+        self.assert_refused(self.on("local", text, env=self.engine("7.32.4")), "snakemake --version prints 7.32.4; accepted: Snakemake 8")
+        self.assert_refused(self.on("slurm", text, env=self.engine()), "--on slurm: sbatch is not installed; accepted: a machine from which")
+        self.assert_refused(self.on("cloud", text, env=self.engine()), "--on cloud; accepted: slurm, local, or the directory of a Snakemake profile")
+        self.assertFalse(os.path.exists(self.path("out")))
 
 
 if __name__ == "__main__":

@@ -127,6 +127,41 @@ def test_replicas(sweep, tmp_path):
     assert hb.sweep(single, tmp_path / "b").table["replicas"][0] == 2
 
 
+def test_one_state_point_with_replicas(tmp_path):
+    config = with_values(CONFIG, output={"trajectory": [], "events": 0}, production={"time": 2.0})
+    made = hb.run(config, tmp_path / "a", replicas=2)
+    assert isinstance(made, hb.Sweep)
+    assert list(made.table["replicas"]) == [2] and len(made.replicas[0]) == 2
+    with pytest.raises(ValueError, match=r"^replicas is 0; accepted: an integer from 1 to 1000"):
+        hb.run(config, tmp_path / "b", replicas=0)
+
+
+def test_dask(sweep, tmp_path):
+    """Workers of a cluster run the same tasks; one of them is killed on the way."""
+    import distributed
+
+    longer = SWEEP | {"production": {"time": 60.0}}
+    here = hb.sweep(longer, tmp_path / "here")
+    shown = []
+    with distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster:
+        with distributed.Client(cluster) as client:
+            workers = list(client.run(os.getpid).values())
+
+            def progress(text: str, done: float | None) -> None:
+                if not shown:
+                    os.kill(workers[0], signal.SIGKILL)
+                shown.append((text, done))
+
+            made = hb.sweep(longer, tmp_path / "a", client=client, task_time=1e-3, progress=progress)
+            again = hb.sweep(longer, tmp_path / "a", client=client)
+    assert table_bytes(made) == table_bytes(here) == table_bytes(again)
+    assert shown[0][0] == "sweep on Dask: 0 of 4 tasks done" and shown[-1] == ("sweep on Dask: 4 of 4 tasks done", 1.0)
+    with pytest.raises(TypeError, match=r"^client is 3; accepted: None, or a dask\.distributed\.Client"):
+        hb.sweep(SWEEP, tmp_path / "b", client=3)
+    with pytest.raises(ValueError, match=r"^jobs is 2 with a client"):
+        hb.sweep(SWEEP, tmp_path / "b", client=client, jobs=2)
+
+
 def test_failed_points(tmp_path):
     grid = {"system.packing_fraction": [0.2, 0.99]}
     with pytest.raises(hb.SweepError, match=r"2 points: 1 done, 1 failed; failed: .*0\.99.*accepted") as caught:

@@ -16,6 +16,7 @@ struct RunArguments {
   std::vector<std::string> overrides;  ///< section.key=value
   bool force = false;                  ///< overwrite an existing run
   int replicas = 1;                    ///< runs with different seeds; more than one: `out` is the directory of a sweep
+  std::vector<std::string> program;    ///< command that runs replicas, as in SweepArguments
 };
 
 struct ResumeArguments {
@@ -43,6 +44,8 @@ struct SweepArguments {
   std::optional<std::string> text;     ///< sweep as TOML, without a file; `sweep` is then its name in messages
   std::optional<std::string> out;      ///< directory of the sweep; by default out/<stem of the file>
   std::optional<int> jobs;             ///< number of simultaneous runs; by default one for each processor
+  std::optional<std::string> on;       ///< engine that runs it as tasks: slurm, local, or a profile of Snakemake
+  double task_time = 600;              ///< wished length of such a task of several runs, in seconds
   std::vector<std::string> overrides;  ///< section.key=value, or grid.section.key=list
   std::vector<std::string> program;    ///< command that the subcommands of a point are appended to; empty: this program
 };
@@ -71,6 +74,8 @@ int run(const RunArguments& arguments);
 int resume(const ResumeArguments& arguments);
 int extend(const ExtendArguments& arguments);
 int sweep(const SweepArguments& arguments);
+/// Runs a sweep as tasks by Snakemake, on the engine that `on` names. Returns 75 if some are to do at the end.
+int sweep_on(const SweepArguments& arguments);
 int map(const MapArguments& arguments);
 int check(const std::string& path);
 int replay(const std::string& path);

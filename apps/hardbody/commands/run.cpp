@@ -59,6 +59,7 @@ int run_replicas(const RunArguments& arguments) {
   replicas.sweep = arguments.config;
   replicas.text = arguments.text;
   replicas.out = arguments.out;
+  replicas.program = arguments.program;
   replicas.overrides = arguments.overrides;
   replicas.overrides.push_back(fmt::format("{}={}", kReplicasKey, arguments.replicas));
   const SweepFile file = arguments.text

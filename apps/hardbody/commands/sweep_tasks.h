@@ -8,11 +8,16 @@
 
 namespace hardbody {
 
+/// Exit status of work that another attempt may complete (EX_TEMPFAIL).
+inline constexpr int kTryAgain = 75;
+
 struct SweepTaskArguments {
   std::string sweep;                   ///< path of the TOML file
+  std::optional<std::string> text;     ///< sweep as TOML, without a file; `sweep` is then its name in messages
   std::vector<std::string> ids;        ///< names of runs, or numbers of tasks of the plan
   std::optional<std::string> out;      ///< directory of the sweep; by default out/<stem of the file>
   double task_time = 600;              ///< wished length of a task of several runs, in seconds
+  std::optional<double> time_limit;    ///< seconds after which a task saves its state and ends
   std::vector<std::string> overrides;  ///< section.key=value, or grid.section.key=list
   std::vector<std::string> program;    ///< command that the subcommands of a run are appended to; empty: this program
 };

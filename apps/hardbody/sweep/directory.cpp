@@ -80,10 +80,10 @@ DirectoryLock share_directory(const fs::path& directory, const SweepFile& sweep)
   };
   if (!fs::exists(directory / kSweepFile)) throw plan_first("holds no sweep");
   DirectoryLock lock(directory, Sharing::shared);
-  check_same_sweep(directory, sweep);
   const std::string stored = read_file(directory / kSweepFile, kLongestStoredSweep);
-  if (stored != stored_text(sweep, directory)) throw plan_first("holds this sweep with fewer points or replicas");
-  return lock;
+  if (stored == stored_text(sweep, directory)) return lock;
+  check_same_sweep(directory, sweep);
+  throw plan_first("holds this sweep with fewer points or replicas");
 }
 
 }  // namespace hardbody

@@ -26,47 +26,62 @@ void check_number(const SweepFile& sweep, std::size_t points) {
                                sweep.grids.front().where, kMostPoints, points, sweep.replicas));
 }
 
-/// Returns the message of a config that cannot be run; empty for one that can.
-std::string refusal_of(const TomlDocument& document) {
-  try {
-    (void)read_config(document);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
+/// Returns the seed of a point, of which its replicas have their own.
+std::int64_t seed_of(const SweepFile& sweep, const SweepPoint& point) {
+  if (const Setting* setting = point.find(kSeedKey)) return setting->value.integer;
+  const Entry* entry = sweep.base.find(kSeedKey);
+  return entry != nullptr ? entry->value.integer : PointRecord{}.seed;
 }
 
 }  // namespace
 
-std::vector<PointRecord> planned(const SweepFile& sweep) {
-  const std::vector<SweepPoint> points = expand(sweep.grids);
+std::vector<PointRecord> listed(const SweepFile& sweep) {
+  std::vector<SweepPoint> points = expand(sweep.grids);
   check_number(sweep, points.size());
   const auto replicas = static_cast<std::size_t>(sweep.replicas);
   std::vector<std::optional<std::size_t>> before(points.size());
   if (sweep.chain) before = predecessors(points, *sweep.chain);
   std::vector<PointRecord> records;
-  std::string first_refusal;
-  bool any = false;
+  records.reserve(points.size() * replicas);
   for (std::size_t k = 0; k < points.size(); ++k) {
-    const TomlDocument document = document_of(sweep, points[k]);
-    const Entry* seed = document.find(kSeedKey);
-    PointRecord record;
-    record.point = points[k];
-    record.message = refusal_of(document);
-    if (!record.message.empty()) record.status = PointStatus::failed;
-    any = any || record.message.empty();
-    if (first_refusal.empty()) first_refusal = record.message;
-    const std::int64_t own_seed = seed != nullptr ? seed->value.integer : record.seed;
+    const std::int64_t own_seed = seed_of(sweep, points[k]);
     for (std::size_t r = 0; r < replicas; ++r) {
+      PointRecord& record = records.emplace_back();
       record.replica = static_cast<int>(r);
       record.seed = ed::replica_seed(own_seed, record.replica);
       record.directory = sweep.replicas > 1 ? replica_directory(points[k].name, record.replica) : points[k].name;
       if (before[k]) record.starts_from = *before[k] * replicas + r;
-      records.push_back(record);
+      record.point = r + 1 < replicas ? points[k] : std::move(points[k]);
     }
   }
+  return records;
+}
+
+void judge(const SweepFile& sweep, PointRecord& record) {
+  try {
+    record.cost = cost_by_config(read_config(document_of(sweep, record.point)));
+  } catch (const InputError& error) {
+    record.message = error.what();
+    record.status = PointStatus::failed;
+  }
+}
+
+std::vector<PointRecord> planned(const SweepFile& sweep) {
+  std::vector<PointRecord> records = listed(sweep);
+  const auto replicas = static_cast<std::size_t>(sweep.replicas);
+  for (std::size_t k = 0; k < records.size(); ++k) {
+    PointRecord& first = records[k - k % replicas];
+    if (k % replicas == 0) {
+      judge(sweep, first);
+      continue;
+    }
+    records[k].cost = first.cost;
+    records[k].message = first.message;
+    records[k].status = first.status;
+  }
+  const auto failed = [](const PointRecord& record) { return record.status == PointStatus::failed; };
   // No point can be run: an error of the sweep, not of its points.
-  if (!any) throw InputError(first_refusal);
+  if (std::all_of(records.begin(), records.end(), failed)) throw InputError(records.front().message);
   return records;
 }
 

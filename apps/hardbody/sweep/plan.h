@@ -16,6 +16,12 @@ namespace hardbody {
 /// Throws InputError if no point can be run.
 std::vector<PointRecord> planned(const SweepFile& sweep);
 
+/// Returns all runs without a look at their configs, which takes long for 10^5 points.
+std::vector<PointRecord> listed(const SweepFile& sweep);
+
+/// Reads the config of a run: sets its cost, or marks it as failed.
+void judge(const SweepFile& sweep, PointRecord& record);
+
 /// Takes over what the directory of the sweep holds of a run: it is done or failed if it is complete, otherwise it
 /// keeps its status.
 void take_up(PointRecord& record, const std::filesystem::path& directory);

@@ -3,6 +3,7 @@
 /// Status and results of the points of a sweep.
 
 #include "sweep/grid.h"
+#include "sweep/tasks/cost_model.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -53,6 +54,7 @@ struct PointRecord {
   std::string message;  ///< reason for the failure
   std::string note{};   ///< disagreement of replicas, for a point that is done
   std::optional<PointResults> results;
+  std::optional<Cost> cost{};  ///< cost by the config; nullopt if that is invalid
 };
 
 /// Returns the results of the run in `directory` if it is complete. Throws std::runtime_error if its summary is

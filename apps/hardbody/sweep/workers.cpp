@@ -132,4 +132,8 @@ void Workers::signal_all(int signal) const {
   for (const Worker& worker : workers_) (void)::kill(worker.process, signal);
 }
 
+void Workers::signal_groups(int signal) const {
+  for (const Worker& worker : workers_) (void)::kill(-worker.process, signal);
+}
+
 }  // namespace hardbody

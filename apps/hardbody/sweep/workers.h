@@ -36,6 +36,8 @@ class Workers {
   std::vector<WorkerEnd> ended(int milliseconds);
 
   void signal_all(int signal) const;
+  /// Signals the processes with those that they have started.
+  void signal_groups(int signal) const;
 
   std::size_t running() const { return workers_.size(); }
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from os import PathLike
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal, overload
 
 from hardbody import _core
 from hardbody._calls import (
@@ -23,6 +23,7 @@ from hardbody._calls import (
     texts,
     worker_program,
 )
+from hardbody._dask import run_tasks
 from hardbody._pages import Map, Report
 from hardbody._results import Analysis, Run, Sweep
 from hardbody._run_errors import SweepError, UnsoundError
@@ -30,19 +31,43 @@ from hardbody._toml import shown, value_text
 from hardbody._typing import Progress
 
 _MOST_JOBS = 1024
+_MOST_REPLICAS = 1000
 _LARGEST_STRIDE = 1_000_000
 _UNSOUND = "NOT SOUND: "
 
 
+@overload
 def run(
     config: Mapping[str, Any] | str | PathLike[str],
     out: str | PathLike[str] | None = None,
     *,
     overrides: Mapping[str, Any] | None = None,
     force: bool = False,
+    replicas: Literal[1] = 1,
     quiet: bool = True,
     progress: Progress | bool | None = None,
-) -> Run:
+) -> Run: ...
+@overload
+def run(
+    config: Mapping[str, Any] | str | PathLike[str],
+    out: str | PathLike[str] | None = None,
+    *,
+    overrides: Mapping[str, Any] | None = None,
+    force: bool = False,
+    replicas: int,
+    quiet: bool = True,
+    progress: Progress | bool | None = None,
+) -> Run | Sweep: ...
+def run(
+    config: Mapping[str, Any] | str | PathLike[str],
+    out: str | PathLike[str] | None = None,
+    *,
+    overrides: Mapping[str, Any] | None = None,
+    force: bool = False,
+    replicas: int = 1,
+    quiet: bool = True,
+    progress: Progress | bool | None = None,
+) -> Run | Sweep:
     """Runs one state point, as `hardbody run` does: start, equilibration, production. Returns the finished run.
 
     config: a dict of the sections of a config (docs/configuration.md), {"system": {"packing_fraction": 0.4}, ...}, or
@@ -51,6 +76,8 @@ def run(
         directory.
     overrides: values that replace those of the config, {"system.number": 64}.
     force: whether the files of an earlier run in the directory are removed.
+    replicas: number of runs with different seeds; for more than one the result is a Sweep of one point, with pooled
+        values, and `out` is its directory. The same call continues it; SweepError is raised as by `sweep`.
     quiet: whether nothing is printed; else messages go to sys.stderr and the table of results to sys.stdout.
     progress: function that is called about four times a second with a text and the fraction done of the phase (None if
         unknown); True: a bar of tqdm. An exception that it raises stops the run.
@@ -63,8 +90,11 @@ def run(
     then have their usual effect on the process.
     """
     name, text, directory = config_arguments(config, out)
-    arguments = (name, text, directory, assignments(overrides), flag(force, "force"))
+    number = integer(replicas, "replicas", 1, _MOST_REPLICAS)
+    arguments = (name, text, directory, assignments(overrides), flag(force, "force"), number, worker_program())
     outcome = call(_core.run, *arguments, quiet=quiet, progress=progress)
+    if number > 1:
+        return _swept(Path(directory or Path("out") / Path(name).stem), *outcome[:2])
     return _finished(directory or str(Path("out") / Path(name).stem), *outcome)
 
 
@@ -117,6 +147,8 @@ def sweep(
     *,
     overrides: Mapping[str, Any] | None = None,
     jobs: int | None = None,
+    client: Any = None,
+    task_time: float = 600.0,
     quiet: bool = True,
     progress: Progress | bool | None = None,
 ) -> Sweep:
@@ -128,14 +160,33 @@ def sweep(
     out: directory of the sweep; a file has the default out/<name of the file>.
     overrides: values that replace those of all points, {"production.time": 50}, or of the grid, {"grid.seed": [1, 2]}.
     jobs: number of points that run at once; None: one for each processor.
+    client: a dask.distributed.Client, whose workers run the points as tasks (docs/cluster.md): each has this package,
+        and sees the directory under the same name. Tasks of a worker that is lost continue on another one.
+    task_time: with `client`: wished seconds of a task of several runs.
 
     Other arguments and exceptions are those of `run`. Raises SweepError, at the end, if points have failed.
     """
     name, text, directory = config_arguments(config, out)
     number = None if jobs is None else integer(jobs, "jobs", 1, _MOST_JOBS)
+    place = Path(directory or Path("out") / Path(name).stem)
+    if client is not None:
+        if number is not None:
+            raise ValueError(f"jobs is {number} with a client; accepted: None, as the client has its workers")
+        if not callable(getattr(client, "submit", None)):
+            raise TypeError(f"client is {shown(client)}; accepted: None, or a dask.distributed.Client")
+        if isinstance(progress, bool):
+            raise ValueError("progress is a bool with a client; accepted: None, or a function")
+        arguments = (name, text, directory, assignments(overrides), real(task_time, "task_time"))
+        _, plan, _ = call(_core.sweep_plan, *arguments, quiet=True)
+        lost = run_tasks(client, str(place.resolve()), plan, progress)
+        status, printed, _ = call(_core.sweep_collect, str(place), quiet=quiet)
+        return _swept(place, status, "; ".join([printed.strip(), *lost]))
     arguments = (name, text, directory, number, assignments(overrides), worker_program())
-    status, printed, _ = call(_core.sweep, *arguments, quiet=quiet, progress=progress)
-    done = Sweep(directory or Path("out") / Path(name).stem)
+    return _swept(place, *call(_core.sweep, *arguments, quiet=quiet, progress=progress)[:2])
+
+
+def _swept(directory: Path, status: int, printed: str) -> Sweep:
+    done = Sweep(directory)
     if status != 0:
         raise SweepError(printed.strip().replace("\n", "; "), done)
     return done

@@ -52,7 +52,8 @@ Costs::Costs(const std::vector<PointRecord>& records) : records_(records) {
     }
   }
   for (std::size_t k = 0; k < records.size(); ++k) {
-    if (records[k].status == PointStatus::done && seconds_of(records[k])) finished_.push_back(k);
+    const bool finished = records[k].status == PointStatus::done && records[k].cost && seconds_of(records[k]);
+    if (finished) finished_.push_back(k);
   }
 }
 
@@ -70,13 +71,14 @@ double Costs::distance(std::size_t a, std::size_t b) const {
   return std::sqrt(squares);
 }
 
-std::optional<Cost> Costs::predicted(std::size_t k, bool by_other_points) const {
+Cost Costs::predicted(std::size_t k, bool by_other_points) const {
+  const Cost by_config = *records_[k].cost;
   std::vector<std::pair<double, std::size_t>> near;
   for (const std::size_t f : finished_) {
     if (by_other_points && records_[f].point.name == records_[k].point.name) continue;
     near.emplace_back(distance(k, f), f);
   }
-  if (near.empty()) return std::nullopt;
+  if (near.empty()) return by_config;
   const std::size_t number = std::min(kNearest, near.size());
   std::partial_sort(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(number), near.end());
   double weights = 0;
@@ -86,27 +88,26 @@ std::optional<Cost> Costs::predicted(std::size_t k, bool by_other_points) const 
     const auto [apart, f] = near[n];
     const double weight = 1 / (apart * apart + kNear * kNear);
     weights += weight;
-    logarithms += weight * std::log(*seconds_of(records_[f]));
-    memory = std::max(memory, memory_of(records_[f]));
+    logarithms += weight * std::log(*seconds_of(records_[f]) / records_[f].cost->seconds);
+    memory = std::max(memory, memory_of(records_[f]) / records_[f].cost->memory);
   }
-  return Cost{std::exp(logarithms / weights), memory};
+  return {by_config.seconds * std::exp(logarithms / weights),
+          memory > 0 ? memory * by_config.memory : by_config.memory};
 }
 
 std::optional<Cost> Costs::of(std::size_t k) const {
-  return predicted(k, false);
+  return records_[k].cost ? std::optional(predicted(k, false)) : std::nullopt;
 }
 
-std::optional<double> Costs::error() const {
+double Costs::error() const {
   std::set<std::string> points;
   double squares = 0;
   for (const std::size_t f : finished_) {
     points.insert(records_[f].point.name);
-    const std::optional<Cost> others = predicted(f, true);
-    if (!others) continue;
-    const double off = std::log(others->seconds / *seconds_of(records_[f]));
+    const double off = std::log(predicted(f, true).seconds / *seconds_of(records_[f]));
     squares += off * off;
   }
-  if (points.size() < 3) return std::nullopt;
+  if (points.size() < 3) return kCostModelFactor;
   return std::exp(std::sqrt(squares / static_cast<double>(finished_.size())));
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-/// Expected costs of the runs of a sweep, by those that are done.
+/// Expected costs of the runs of a sweep, by their configs and by those that are done.
 
 #include "sweep/results.h"
 
@@ -10,28 +10,23 @@
 
 namespace hardbody {
 
-/// Expected cost of a run.
-struct Cost {
-  double seconds;  ///< time on the processors of the runs that are done
-  double memory;   ///< bytes
-};
-
-/// Interpolates costs over the keys of a sweep: means of the logarithms of the costs of finished runs, weighted by
-/// 1 / distance^2 to the nearest of them. Keys that are numbers are scaled to the unit interval, others are equal or
-/// not.
+/// Costs by configs, times a factor that is interpolated over the keys of a sweep: means of the logarithms of true
+/// cost / cost by config of finished runs, weighted by 1 / distance^2 to the nearest of them. Keys that are numbers are
+/// scaled to the unit interval, others are equal or not.
 class Costs {
  public:
   explicit Costs(const std::vector<PointRecord>& records);
 
-  /// Returns the cost of a run; nullopt if no run is done.
+  /// Returns the cost of a run; nullopt if its config is invalid.
   std::optional<Cost> of(std::size_t k) const;
 
   /// Returns the factor by which a predicted time is typically off, at least 1: root mean square of the logarithms of
-  /// predicted / true time of finished points, each predicted by the others. nullopt for fewer than three points.
-  std::optional<double> error() const;
+  /// predicted / true time of finished points, each predicted by the others; that of configs for fewer than three
+  /// points.
+  double error() const;
 
  private:
-  std::optional<Cost> predicted(std::size_t k, bool by_other_points) const;
+  Cost predicted(std::size_t k, bool by_other_points) const;
   double distance(std::size_t a, std::size_t b) const;
 
   const std::vector<PointRecord>& records_;

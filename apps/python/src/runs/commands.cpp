@@ -1,6 +1,7 @@
 #include <base/errors.h>
 #include <base/signals.h>
 #include <commands/commands.h>
+#include <commands/sweep_tasks.h>
 #include <io/text_file.h>
 #include "base/gil.h"
 #include "runs/bind.h"
@@ -90,12 +91,13 @@ void bind_commands(nb::module_& module) {
   module.def(
       "run",
       [](const Functions& console, std::string config, std::optional<std::string> text, std::optional<std::string> out,
-         Strings overrides, bool force) {
-        const RunArguments arguments{std::move(config), std::move(text), std::move(out), std::move(overrides), force};
+         Strings overrides, bool force, int replicas, Strings program) {
+        const RunArguments arguments{std::move(config), std::move(text),   std::move(out), std::move(overrides), force,
+                                     replicas,          std::move(program)};
         return outcome(console, [&] { return run(arguments); });
       },
       nb::arg("console"), nb::arg("config"), text_or_none, out_or_none, nb::arg("overrides"), nb::arg("force"),
-      "Command run. Returns exit status, what was printed, and messages.");
+      nb::arg("replicas"), nb::arg("program"), "Command run. Returns exit status, what was printed, and messages.");
   module.def(
       "resume",
       [](const Functions& console, std::string path, Strings overrides) {
@@ -114,12 +116,40 @@ void bind_commands(nb::module_& module) {
       "sweep",
       [](const Functions& console, std::string config, std::optional<std::string> text, std::optional<std::string> out,
          std::optional<int> jobs, Strings overrides, Strings program) {
-        const SweepArguments arguments{std::move(config),    std::move(text),   std::move(out), jobs,
-                                       std::move(overrides), std::move(program)};
+        SweepArguments arguments;
+        arguments.sweep = std::move(config);
+        arguments.text = std::move(text);
+        arguments.out = std::move(out);
+        arguments.jobs = jobs;
+        arguments.overrides = std::move(overrides);
+        arguments.program = std::move(program);
         return outcome(console, [&] { return sweep(arguments); });
       },
       nb::arg("console"), nb::arg("config"), text_or_none, out_or_none, nb::arg("jobs").none(), nb::arg("overrides"),
       nb::arg("program"), "Command sweep.");
+  module.def(
+      "sweep_plan",
+      [](const Functions& console, std::string config, std::optional<std::string> text, std::optional<std::string> out,
+         Strings overrides, double task_time) {
+        SweepTaskArguments arguments;
+        arguments.sweep = std::move(config);
+        arguments.text = std::move(text);
+        arguments.out = std::move(out);
+        arguments.overrides = std::move(overrides);
+        arguments.task_time = task_time;
+        return outcome(console, [&] { return sweep_plan(arguments); });
+      },
+      nb::arg("console"), nb::arg("config"), text_or_none, out_or_none, nb::arg("overrides"), nb::arg("task_time"),
+      "Command sweep plan.");
+  module.def(
+      "sweep_collect",
+      [](const Functions& console, const std::string& directory) {
+        SweepTaskArguments arguments;
+        arguments.sweep = directory + "/sweep.toml";
+        arguments.out = directory;
+        return outcome(console, [&] { return sweep_collect(arguments); });
+      },
+      nb::arg("console"), nb::arg("directory"), "Command sweep collect, of the sweep that a directory holds.");
   module.def(
       "check",
       [](const Functions& console, const std::string& path) { return outcome(console, [&] { return check(path); }); },

@@ -1,7 +1,8 @@
-# Writes C++ functions that return the bytes of files: cmake -DOUTPUT=x.cpp -Dname=file... -P embed.cmake, for the names
-# that report/assets.h declares.
-set(text "#include \"report/assets.h\"\n\nnamespace hardbody {\n")
-foreach(name report_script report_style report_static_style)
+# Writes C++ functions that return the bytes of files:
+# cmake -DOUTPUT=x.cpp -DHEADER=header -DNAMES=name,.. -Dname=file.. -P embed.cmake, for the names that the header declares.
+set(text "#include \"${HEADER}\"\n\nnamespace hardbody {\n")
+string(REPLACE "," ";" NAMES "${NAMES}")
+foreach(name IN LISTS NAMES)
   file(READ ${${name}} bytes HEX)
   string(LENGTH "${bytes}" digits)
   math(EXPR size "${digits} / 2")
