@@ -1,10 +1,11 @@
-/// Time of one cold distance query of spheres, capsules, boxes and polyhedra, beside FCL's own primitives at its default
-/// tolerance (if it is built in), on the same pairs: a table of medians of ns, their ratio, and the largest errors.
+/// Time of one cold distance query of spheres, capsules, boxes and polyhedra, beside FCL's own primitives at its
+/// default tolerance (if it is built in), on the same pairs: a table of medians of ns, their ratio, and the largest
+/// errors.
 ///
 /// usage: bench_cores [GAP]
 ///
-/// Distances are known by construction (tests/common/geom/core_pairs.h), GAP apart (0.3). A failure is an answer that is
-/// declined, or wrong by more than 1e-13 of the pair's size; it is counted, not hidden.
+/// Distances are known by construction (tests/common/geom/core_pairs.h), GAP apart (0.3). A failure is an answer that
+/// is declined, or wrong by more than 1e-13 of the pair's size; it is counted, not hidden.
 
 #include "common/geom/core_pairs.h"
 
@@ -47,10 +48,12 @@ void row(const char* name, const A& a, const B& b, double gap) {
   Random random(1);
   std::vector<geom_test::ManufacturedPair> pairs;
   for (std::size_t k = 0; k < kPairs; ++k) {
-    pairs.push_back(geom_test::manufacture_features(a, static_cast<int>(k % 3), b, static_cast<int>(k / 3 % 3), gap, random));
+    pairs.push_back(
+        geom_test::manufacture_features(a, static_cast<int>(k % 3), b, static_cast<int>(k / 3 % 3), gap, random));
   }
   double sum = 0;
-  const double ours = median_time(kPairs, [&](std::size_t k) { sum += geom::distance(a, pairs[k].X_WA, b, pairs[k].X_WB).distance; });
+  const double ours =
+      median_time(kPairs, [&](std::size_t k) { sum += geom::distance(a, pairs[k].X_WA, b, pairs[k].X_WB).distance; });
   double error = 0;
   int failures = 0;
   for (const auto& pair : pairs) {
@@ -79,7 +82,9 @@ void row(const char* name, const A& a, const B& b, double gap) {
 int main(int argc, char** argv) {
   const double gap = argc > 1 ? std::atof(argv[1]) : 0.3;
   std::printf("gap %g, 512 pairs a row, features of all kinds; FCL's columns only where it is built in\n", gap);
-  std::printf("| pair | ns | largest error | failures | FCL, ns | FCL, largest error | ratio |\n|---|---|---|---|---|---|---|\n");
+  std::printf(
+      "| pair | ns | largest error | failures | FCL, ns | FCL, largest error | ratio "
+      "|\n|---|---|---|---|---|---|---|\n");
   const geom::Sphere sphere(0.7);
   const geom::Capsule capsule(1, 0.5);
   const geom::Box box({0.5, 0.8, 1.1});

@@ -2,8 +2,8 @@
 /// rounded and smooth bodies. tools/accuracy writes it.
 ///
 /// Known answers: features of both bodies (vertices, edges, faces; edges parallel in half of the pairs) are put into
-/// parallel planes, apart by a gap that is log-uniform from 1e-10 to 10. HARDBODY_FULL=1: 1,000,000 pairs a row instead of
-/// 2,000.
+/// parallel planes, apart by a gap that is log-uniform from 1e-10 to 10. HARDBODY_FULL=1: 1,000,000 pairs a row instead
+/// of 2,000.
 
 #include "common/full_form.h"
 #include "common/geom/accuracy_rows.h"
@@ -80,7 +80,8 @@ void cores_row(const BodiesOfAKind<A>& kind_a, const BodiesOfAKind<B>& kind_b) {
     const A& a = kind_a.next(random);
     const B& b = kind_b.next(random);
     const double gap = random.log_uniform(1e-10, 10);
-    const auto pair = geom_test::manufacture_features(a, static_cast<int>(k % 3), b, static_cast<int>(k / 3 % 3), gap, random);
+    const auto pair =
+        geom_test::manufacture_features(a, static_cast<int>(k % 3), b, static_cast<int>(k / 3 % 3), gap, random);
     const DistanceResult r = distance(a, pair.X_WA, b, pair.X_WB);
     evaluations += r.iterations;
     // The position of B is rounded to the size of the coordinates, the world's origin included.

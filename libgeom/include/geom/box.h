@@ -32,10 +32,10 @@ class GEOM_EXPORT Box {
   /// Returns zero, the Hessian wherever no n_k is 0.
   Eigen::Matrix3d support_hessian(const Eigen::Vector3d& /*n*/) const { return Eigen::Matrix3d::Zero(); }
 
-  double bounding_radius() const { return bounding_radius_; }               ///< half the diagonal
-  double inscribed_radius() const { return half_extents_.minCoeff(); }      ///< the smallest half extent
-  double min_curvature_radius() const { return 0; }                         ///< 0: edges are sharp
-  double volume() const { return 8 * half_extents_.prod(); }                ///< product of the edges
+  double bounding_radius() const { return bounding_radius_; }           ///< half the diagonal
+  double inscribed_radius() const { return half_extents_.minCoeff(); }  ///< the smallest half extent
+  double min_curvature_radius() const { return 0; }                     ///< 0: edges are sharp
+  double volume() const { return 8 * half_extents_.prod(); }            ///< product of the edges
   /// Returns the principal moments of inertia about body x, y, z at uniform density: m (b^2 + c^2) / 3, ...
   Eigen::Vector3d inertia(double mass) const;
 

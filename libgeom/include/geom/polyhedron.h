@@ -28,8 +28,8 @@ class GEOM_EXPORT ConvexPolyhedron {
   /// given, becomes the pose of that frame in the points' own. Throws as the constructor does, wherever the origin is.
   static ConvexPolyhedron in_principal_frame(std::span<const Eigen::Vector3d> points, Pose* X_BP = nullptr);
 
-  int vertex_count() const { return static_cast<int>(hull_->vertices.rows()); }        ///< number of vertices
-  Eigen::Vector3d vertex(int k) const { return hull_->vertices.row(k).transpose(); }   ///< vertex k, body frame
+  int vertex_count() const { return static_cast<int>(hull_->vertices.rows()); }       ///< number of vertices
+  Eigen::Vector3d vertex(int k) const { return hull_->vertices.row(k).transpose(); }  ///< vertex k, body frame
   const std::vector<std::vector<int>>& faces() const { return hull_->faces; }  ///< vertices of faces, anticlockwise
   int edge_count() const { return static_cast<int>(hull_->edges.size()); }     ///< number of edges
 

@@ -132,9 +132,9 @@ GEOM_EXPORT RayHit ray_cast(const ConvexPolyhedron& shape, const Pose& X_WB, con
                             const Eigen::Vector3d& direction);
 /// @}
 
-/// Returns the last point of origin + t direction, t >= 0, in the body, with the status `hit`, wherever the origin is: the
-/// first point of the ray that comes from beyond the body in the opposite direction. `missed` if no point of the ray is
-/// in the body. Accuracy and limits are those of `ray_cast`.
+/// Returns the last point of origin + t direction, t >= 0, in the body, with the status `hit`, wherever the origin is:
+/// the first point of the ray that comes from beyond the body in the opposite direction. `missed` if no point of the
+/// ray is in the body. Accuracy and limits are those of `ray_cast`.
 template <class Shape>
 RayHit ray_exit(const Shape& shape, const Pose& X_WB, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction);
 

@@ -34,9 +34,7 @@ class Rounded {
   }
 
   /// Returns whether a point is in the body or on its surface, to the rounding of its distance from the shape inside.
-  bool contains(const Eigen::Vector3d& x) const
-    requires CoreShape<Inner>
-  {
+  bool contains(const Eigen::Vector3d& x) const requires CoreShape<Inner> {
     return kernel::core_distance({}, Pose::translation(x), core(), Pose(), {}).distance <= 0;
   }
 
@@ -46,9 +44,7 @@ class Rounded {
   double min_curvature_radius() const { return kernel::min_curvature_radius_or_zero(inner_) + radius_; }
 
   /// Returns the core of the shape that is rounded, with both balls.
-  kernel::CoreView core() const
-    requires CoreShape<Inner>
-  {
+  kernel::CoreView core() const requires CoreShape<Inner> {
     kernel::CoreView core = inner_.core();
     core.radius += radius_;
     return core;

@@ -30,7 +30,7 @@ class GEOM_EXPORT Sphere {
   /// Returns f(x) = |x / radius|^2 - 1: negative inside.
   double value(const Eigen::Vector3d& x) const { return (x / radius_).squaredNorm() - 1; }
   Eigen::Vector3d gradient(const Eigen::Vector3d& x) const { return 2 / radius_ * (x / radius_); }  ///< gradient of f
-  Eigen::Matrix3d hessian(const Eigen::Vector3d& /*x*/) const {  ///< Hessian of f
+  Eigen::Matrix3d hessian(const Eigen::Vector3d& /*x*/) const {                                     ///< Hessian of f
     return 2 / radius_ / radius_ * Eigen::Matrix3d::Identity();
   }
 

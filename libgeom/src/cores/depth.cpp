@@ -19,7 +19,9 @@ using Eigen::Vector3d;
 /// is as thin as that, and its neighbours are candidates too.
 class GapSearch {
  public:
-  GapSearch(const PlacedCore& a, const PlacedCore& b) : a_(a), b_(b) { best_.gap = -std::numeric_limits<double>::infinity(); }
+  GapSearch(const PlacedCore& a, const PlacedCore& b) : a_(a), b_(b) {
+    best_.gap = -std::numeric_limits<double>::infinity();
+  }
 
   WidestGap run() {
     faces(a_, 1);
@@ -113,11 +115,10 @@ class GapSearch {
         const Vector3d q = b_.point(edge_b.from);
         const Vector3d v = b_.point(edge_b.to) - q;
         if (left_a.dot(v) * right_a.dot(v) > kSlack * v.squaredNorm()) continue;
-        const Vector3d side_a = left_a + right_a;
-        if (!(side_a.dot(left_b + right_b) > -kSlack)) continue;
+        // Both great circles cross twice; an arc lies within a quarter turn of its middle.
         Vector3d n = across(u, v);
-        if (n.dot(side_a) < 0) n = -n;
-        if (n.dot(q - p) > best_.gap && !n.isZero(0)) consider(n);
+        if (n.dot(left_a + right_a) < 0) n = -n;
+        if (n.dot(left_b + right_b) > -kSlack && n.dot(q - p) > best_.gap && !n.isZero(0)) consider(n);
       }
     }
   }

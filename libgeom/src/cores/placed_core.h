@@ -43,11 +43,13 @@ class PlacedCore {
     return v;
   }
 
-  std::size_t generators() const { return count_; }                                   ///< 0, 1 or 3
-  Eigen::Vector3d generator(std::size_t k) const { return generator_[k]; }            ///< half an edge
-  const Hull* hull() const { return core_.hull; }                                     ///< null unless a hull
-  Eigen::Vector3d turned(const Eigen::Vector3d& v) const { return R_ * v; }           ///< direction in the world
-  Eigen::Vector3d point(int k) const { return t_ + R_ * core_.hull->vertices.row(k).transpose(); }  ///< vertex of a hull
+  std::size_t generators() const { return count_; }                          ///< 0, 1 or 3
+  Eigen::Vector3d generator(std::size_t k) const { return generator_[k]; }   ///< half an edge
+  const Hull* hull() const { return core_.hull; }                            ///< null unless a hull
+  Eigen::Vector3d turned(const Eigen::Vector3d& v) const { return R_ * v; }  ///< direction in the world
+  Eigen::Vector3d point(int k) const {
+    return t_ + R_ * core_.hull->vertices.row(k).transpose();
+  }                                                                                   ///< vertex of a hull
   const Eigen::Vector3d& centre() const { return t_; }                                ///< the core's origin
   PlacedCore moved(const Eigen::Vector3d& by) const { return {core_, R_, t_ + by}; }  ///< translated copy
 

@@ -14,9 +14,7 @@ struct Segments {
   const Vector3d& r;
 
   /// Returns the gap between the tangent planes across n.
-  double gap(const Vector3d& n) const {
-    return n.dot(r) - (half_a * std::abs(n.dot(u)) + half_b * std::abs(n.dot(v)));
-  }
+  double gap(const Vector3d& n) const { return n.dot(r) - (half_a * std::abs(n.dot(u)) + half_b * std::abs(n.dot(v))); }
   double size() const { return r.norm() + half_a + half_b; }
 };
 

@@ -254,8 +254,7 @@ HullMoments moments(const Hull& hull) {
       const Vector3d sum = a + b + c;
       result.volume += six_volumes / 6;
       first += six_volumes / 24 * sum;
-      second += six_volumes / 120 *
-                (sum * sum.transpose() + a * a.transpose() + b * b.transpose() + c * c.transpose());
+      second += six_volumes / 120 * (sum * sum.transpose() + a * a.transpose() + b * b.transpose() + c * c.transpose());
     }
   }
   result.centre = first / result.volume;

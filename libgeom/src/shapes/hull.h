@@ -9,8 +9,8 @@
 namespace geom::kernel {
 
 /// Returns the convex hull of points, with faces of any number of edges; no decision depends on rounding. Throws
-/// std::invalid_argument if there are fewer than four points, one of them is not finite or too large, or all of them lie
-/// in a plane.
+/// std::invalid_argument if there are fewer than four points, one of them is not finite or too large, or all of them
+/// lie in a plane.
 Hull convex_hull(std::span<const Eigen::Vector3d> points);
 
 /// Computes normals and offsets of the faces from the vertices.

@@ -25,8 +25,9 @@ ConvexPolyhedron::ConvexPolyhedron(kernel::Hull hull) {
   bounding_radius_ = hull.vertices.rowwise().norm().maxCoeff();
   inscribed_radius_ = *std::min_element(hull.offsets.begin(), hull.offsets.end());
   if (!(inscribed_radius_ > 0)) {
-    kernel::refuse("ConvexPolyhedron: the origin is not inside the hull of the points; accepted: points around it "
-                   "(in_principal_frame moves them)");
+    kernel::refuse(
+        "ConvexPolyhedron: the origin is not inside the hull of the points; accepted: points around it "
+        "(in_principal_frame moves them)");
   }
   if (!(bounding_radius_ <= kMaxAspectRatio * inscribed_radius_) || !(inscribed_radius_ >= kMinSemiAxis)) {
     kernel::refuse("ConvexPolyhedron: the hull reaches from " + kernel::shown(inscribed_radius_) + " to " +

@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <stdexcept>
@@ -65,7 +66,8 @@ inline std::vector<Eigen::Vector3d> furthest_vertices(const geom::kernel::CoreVi
   const double height = geom::kernel::core_support(core, n).height;
   std::vector<Eigen::Vector3d> result;
   for (const Eigen::Vector3d& v : all) {
-    if (n.dot(v) >= height - 1e-14 * core.bounding_radius) result.push_back(v);
+    const bool is_new = std::find(result.begin(), result.end(), v) == result.end();
+    if (is_new && n.dot(v) >= height - 1e-14 * core.bounding_radius) result.push_back(v);
   }
   return result;
 }

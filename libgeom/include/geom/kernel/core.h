@@ -1,6 +1,7 @@
 #pragma once
 
-/// Shapes that are a polytope, the core, with a ball swept over it: spheres, capsules, boxes, polyhedra and rounded ones.
+/// Shapes that are a polytope, the core, with a ball swept over it: spheres, capsules, boxes, polyhedra and rounded
+/// ones.
 
 #include <geom/export.h>
 #include <geom/shape.h>
@@ -25,8 +26,8 @@ struct HullEdge {
 struct Hull {
   Eigen::Matrix<double, Eigen::Dynamic, 3> vertices;  ///< one a row
   std::vector<Eigen::Vector3d> normals;               ///< unit outward normal of each face
-  std::vector<double> offsets;                        ///< distance of each face from the origin: its normal times the furthest vertex
-  std::vector<std::vector<int>> faces;                ///< vertices of each face, anticlockwise seen from outside
+  std::vector<double> offsets;          ///< distance of each face from the origin: its normal times the furthest vertex
+  std::vector<std::vector<int>> faces;  ///< vertices of each face, anticlockwise seen from outside
   std::vector<HullEdge> edges;
 };
 

@@ -355,8 +355,7 @@ DistanceResult general_distance(const ShapeA& a, const Pose& X_WA, const ShapeB&
   // Shapes with flat faces or edges have rho = 0; a small fraction of the inscribed radii keeps the step bounded.
   const double least =
       kLeastEigenvalue * std::max(rho, kLeastCurvature * (a.inscribed_radius() + b.inscribed_radius()));
-  const GeneralPair pair(WorldSupport<ShapeA>{a, X_WA.rotation()}, WorldSupport<ShapeB>{b, X_WB.rotation()}, r,
-                                 least);
+  const GeneralPair pair(WorldSupport<ShapeA>{a, X_WA.rotation()}, WorldSupport<ShapeB>{b, X_WB.rotation()}, r, least);
   const auto cold = [&r] { return unit_or_x(r); };
   const PairScale scale{r.norm() + a.bounding_radius() + b.bounding_radius(), rho};
   const auto shares = [&](const Eigen::Vector3d& point_a, const Eigen::Vector3d& point_b) {

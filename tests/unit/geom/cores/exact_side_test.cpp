@@ -1,6 +1,6 @@
+#include "shapes/exact_side.h"
 #include "common/geom/random.h"
 #include "common/quad.h"
-#include "shapes/exact_side.h"
 
 #include <gtest/gtest.h>
 

@@ -61,7 +61,7 @@ TEST(ConvexPolyhedron, OfCornersIsTheBox) {
   EXPECT_LE((p.inertia(2) - Box(half).inertia(2)).norm(), 1e-14);
   EXPECT_LE(p.centre_of_mass().norm(), 1e-15);
   EXPECT_EQ(p.inscribed_radius(), 1);
-  EXPECT_EQ(p.bounding_radius(), Box(half).bounding_radius());
+  EXPECT_DOUBLE_EQ(p.bounding_radius(), Box(half).bounding_radius());
   EXPECT_EQ(p.description(), "polyhedron of 8 vertices and 6 faces");
   check_hull(p, points);
   EXPECT_NEAR(p.scaled(2).volume(), 8 * 48, 1e-12);
@@ -180,7 +180,9 @@ TEST(ConvexPolyhedron, InItsPrincipalFrameIsCentredAndDiagonal) {
 }
 
 TEST(ConvexPolyhedron, RefusesDegeneratePointsWithOneMessage) {
-  const auto hull = [](const std::vector<Vector3d>& points) { return message_of([&] { return ConvexPolyhedron(points); }); };
+  const auto hull = [](const std::vector<Vector3d>& points) {
+    return message_of([&] { return ConvexPolyhedron(points); });
+  };
   EXPECT_EQ(hull({{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}), "ConvexPolyhedron: 3 points; accepted: at least 4");
   EXPECT_EQ(hull({{1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}, {0.5, 0.5, 0}}),
             "ConvexPolyhedron: the 5 points lie in a plane; accepted: points that span a volume");
