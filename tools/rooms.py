@@ -24,8 +24,8 @@ LIBRARIES = {
             "shapes": "box capsule ellipsoid export mass obb polyhedron pose shape shape_variant sphere superellipsoid tolerances "
                       "kernel/core kernel/eigen_layout kernel/hessian_sum kernel/lane_norms kernel/lanes kernel/mass_impl kernel/nested_norm kernel/norm_bodies kernel/refuse "
                       "kernel/small_solve",
-            "dual": "distance kernel/capsule_impl kernel/distance_impl kernel/dual_newton kernel/perram_wertheim kernel/simplex_descent "
-                    "kernel/sphere_search kernel/uniaxial kernel/uniaxial_pair",
+            "dual": "distance kernel/distance_impl kernel/dual_newton kernel/perram_wertheim kernel/simplex_descent "
+                    "kernel/sphere_search kernel/swept_impl kernel/uniaxial kernel/uniaxial_pair",
             "norm": "kernel/norm_body_pair",
             "cores": "rounded",
             "paper": "newton kernel/newton_equations kernel/newton_impl",

@@ -50,7 +50,7 @@ class GEOM_EXPORT ConvexPolyhedron {
   double inscribed_radius() const { return inscribed_radius_; }  ///< distance of the nearest face from the origin
   double min_curvature_radius() const { return 0; }              ///< 0: edges are sharp
   double volume() const { return volume_; }                      ///< volume
-  const Eigen::Vector3d& centre_of_mass() const { return centre_; }  ///< at uniform density, body frame
+  const Eigen::Vector3d& centre_of_mass() const { return centre_; }  ///< centre of mass, body frame
   /// Returns the inertia tensor about the origin at uniform density.
   Eigen::Matrix3d inertia_tensor(double mass) const;
   /// Returns the diagonal of the inertia tensor about the origin: the principal moments if the body's frame is that of

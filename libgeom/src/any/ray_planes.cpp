@@ -16,7 +16,7 @@ struct Plane {
 /// Ray clipped by planes, one after the other.
 struct ClippedRay {
   double enter = -std::numeric_limits<double>::infinity();
-  double enter_near = enter;  ///< where it comes within `touching` of the last plane
+  double enter_near = enter;  ///< way to where it comes within `touching` of the last plane
   double exit_near = std::numeric_limits<double>::infinity();
   double highest = enter;  ///< largest height of the origin above a plane
   Vector3d normal = Vector3d::Zero();

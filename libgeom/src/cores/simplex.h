@@ -13,7 +13,8 @@
 
 namespace geom::kernel {
 
-/// Up to four points of the difference, and after reduce_to_closest() the weights of the closest point of their hull.
+/// Hull of up to four points of the difference, and after reduce_to_closest() the weights of the closest point of their
+/// hull.
 struct CoreSimplex {
   std::array<DifferenceVertex, 4> vertex;
   std::array<double, 4> weight{};

@@ -3,9 +3,9 @@
 /// Conversion of a converged normal of the dual Newton into a DistanceResult; used by every shape.
 
 #include <geom/distance.h>
-#include <geom/kernel/capsule_impl.h>
 #include <geom/kernel/simplex_descent.h>
 #include <geom/kernel/sphere_search.h>
+#include <geom/kernel/swept_impl.h>
 
 #include <Eigen/Geometry>
 
@@ -326,24 +326,6 @@ template <class Pair>
   DistanceResult declined;
   declined.iterations = result.iterations;
   return declined;
-}
-
-/// Returns the distance of two cores with their balls.
-GEOM_EXPORT DistanceResult core_distance(const CoreView& a, const Pose& X_WA, const CoreView& b, const Pose& X_WB,
-                                         const DistanceOptions& options);
-
-/// Whether a type is geom::Rounded of some shape, which rounded.h says.
-template <class T>
-inline constexpr bool kIsRounded = false;
-
-/// Returns the answer for bodies that are larger by a ball of radius `skin_a` or `skin_b`.
-inline DistanceResult with_skins(DistanceResult r, double skin_a, double skin_b) {
-  if (r.status != DistanceStatus::separated && r.status != DistanceStatus::overlapping) return r;
-  r.distance = (r.distance - skin_a) - skin_b;
-  r.point_a += skin_a * r.normal;
-  r.point_b = r.point_a + r.distance * r.normal;
-  r.status = r.distance >= 0 ? DistanceStatus::separated : DistanceStatus::overlapping;
-  return r;
 }
 
 /// Returns the distance of any two bodies: by Newton's method, by growing polytopes, or by a search of all normals.

@@ -1,6 +1,7 @@
 #pragma once
 
-/// Distance of a capsule and a smooth body, by that of a ball on the capsule's axis.
+/// Distances of bodies that a ball is swept over: by those of the bodies inside; of a capsule and a smooth body, by
+/// that of a ball on the capsule's axis.
 
 #include <geom/capsule.h>
 #include <geom/distance.h>
@@ -12,6 +13,24 @@
 #include <utility>
 
 namespace geom::kernel {
+
+/// Returns the distance of two cores with their balls.
+GEOM_EXPORT DistanceResult core_distance(const CoreView& a, const Pose& X_WA, const CoreView& b, const Pose& X_WB,
+                                         const DistanceOptions& options);
+
+/// Whether a type is geom::Rounded of some shape, which rounded.h says.
+template <class T>
+inline constexpr bool kIsRounded = false;
+
+/// Returns the answer for bodies that are larger by a ball of radius `skin_a` or `skin_b`.
+inline DistanceResult with_skins(DistanceResult r, double skin_a, double skin_b) {
+  if (r.status != DistanceStatus::separated && r.status != DistanceStatus::overlapping) return r;
+  r.distance = (r.distance - skin_a) - skin_b;
+  r.point_a += skin_a * r.normal;
+  r.point_b = r.point_a + r.distance * r.normal;
+  r.status = r.distance >= 0 ? DistanceStatus::separated : DistanceStatus::overlapping;
+  return r;
+}
 
 /// Place of the ball on the axis, in [low, high], where the ball is closest to a convex body.
 ///
