@@ -15,19 +15,25 @@
 namespace geom::kernel {
 
 /// Closest points of two cores, in the world's directions, relative to A's centre. Two bounds enclose the distance:
-/// `lower`, the gap between the tangent planes across n, and `upper`, the distance of the points.
+/// `lower`, the gap between the tangent planes across n, and the distance of the points.
 struct CoreContact {
   Eigen::Vector3d a = Eigen::Vector3d::Zero();
   Eigen::Vector3d b = Eigen::Vector3d::Zero();
   Eigen::Vector3d n = Eigen::Vector3d::UnitX();  ///< unit normal from A to B
   double lower = -std::numeric_limits<double>::infinity();
-  double upper = std::numeric_limits<double>::infinity();
   int evaluations = 1;
 };
 
+/// Returns how much larger the distance of the points is than the lower bound; of overlapping bodies, how far the
+/// points are from being apart along the normal by it.
+inline double bound_of(const CoreContact& c) {
+  const Eigen::Vector3d gap = c.b - c.a;
+  return c.lower > 0 ? std::max(0.0, gap.norm() - c.lower) : (gap - c.lower * c.n).norm();
+}
+
 /// Returns the contact with A and B exchanged, for r = p_AB of the first order.
 inline CoreContact exchanged(const CoreContact& c, const Eigen::Vector3d& r) {
-  return {c.b + r, c.a + r, -c.n, c.lower, c.upper, c.evaluations};
+  return {c.b + r, c.a + r, -c.n, c.lower, c.evaluations};
 }
 
 /// Returns the vectors' product with an error of few ulps of each coordinate, also if they are nearly parallel: each

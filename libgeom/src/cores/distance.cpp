@@ -31,7 +31,7 @@ DistanceResult core_distance(const CoreView& a, const Pose& X_WA, const CoreView
   DistanceResult result;
   result.iterations = c.evaluations;
   const double size = r.norm() + a.bounding_radius + b.bounding_radius;
-  const double bound = std::max(0.0, c.upper - c.lower);
+  const double bound = bound_of(c);
   if (!(bound <= kBoundGap * size)) return result;
   result.distance = (c.lower - a.radius) - b.radius;
   result.normal = c.n;

@@ -28,7 +28,6 @@ class PolytopeDescent {
       if (best_.squared < std::numeric_limits<double>::infinity() && closed()) return true;
       if (simplex.has(v)) break;
       simplex.vertex[simplex.count++] = v;
-      last_ = simplex;
       reduce_to_closest(simplex);
       if (simplex.inside) return false;
       if (!(simplex.squared < best_.squared)) break;
@@ -40,29 +39,11 @@ class PolytopeDescent {
     return true;
   }
 
-  /// Tries the normals of all faces of the last simplex, where rounding has made a wrong choice among them.
-  void improve() {
-    for (std::size_t i = 0; i < last_.count; ++i) {
-      for (std::size_t j = i + 1; j < last_.count; ++j) {
-        const Vector3d e = last_.vertex[j].p - last_.vertex[i].p;
-        const Vector3d x = best_.closest - best_.closest.dot(e) / e.squaredNorm() * e;
-        if (x.norm() > 0) (void)evaluate(x / x.norm());
-        for (std::size_t k = j + 1; k < last_.count; ++k) {
-          const Vector3d c = e.cross(last_.vertex[k].p - last_.vertex[i].p);
-          const double length = c.norm();
-          if (length > 0) (void)evaluate((c.dot(last_.vertex[i].p) < 0 ? -1 : 1) / length * c);
-        }
-      }
-    }
-  }
-
   bool closed() const { return std::sqrt(best_.squared) - contact_.lower <= tolerance_; }
-  double upper() const { return std::sqrt(best_.squared); }
 
   /// Returns the answer, with the closest points of the simplex.
   CoreContact contact() const {
     CoreContact result = contact_;
-    result.upper = upper();
     for (std::size_t k = 0; k < best_.count; ++k) {
       result.a += best_.weight[k] * best_.vertex[k].a;
       result.b += best_.weight[k] * best_.vertex[k].b;
@@ -89,40 +70,52 @@ class PolytopeDescent {
   const PlacedCore& b_;
   double tolerance_;
   CoreSimplex best_;
-  CoreSimplex last_;
   CoreContact contact_;
   int evaluations_ = 0;
 };
 
-/// Returns the closest points of polytopes that are apart, by as many descents as the bounds need to meet.
-bool apart(const PlacedCore& a, const PlacedCore& b, double size, const Vector3d& start, CoreContact& contact) {
-  constexpr int kMostDescents = 3;
-  PolytopeDescent descent(a, b, size);
-  Vector3d n = start;
-  bool found = false;
-  for (int k = 0; k < kMostDescents; ++k) {
-    found = descent.run(n);
-    if (!found || descent.closed()) break;
-    descent.improve();
-    if (descent.closed()) break;
-    n = descent.contact().n;
+double gap_across(const PlacedCore& a, const PlacedCore& b, const Vector3d& n) {
+  return n.dot(difference_vertex(a, b, n).p);
+}
+
+/// Brings the bounds of a contact together where the bodies are so close that rounding has spoilt the normal, and finds
+/// the closest points of bodies that overlap.
+///
+/// Moved apart along the normal by about their size, the bodies have the same closest features, and the direction of
+/// their closest points is accurate to rounding: the normal of a face or across an edge, whatever error the normal had
+/// along it. The points are moved back. This is the proximal point method for the largest gap between tangent planes.
+void refine(const PlacedCore& a, const PlacedCore& b, double size, CoreContact& contact) {
+  constexpr int kMostMoves = 8;
+  double bound = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < kMostMoves; ++k) {
+    const Vector3d way = (0.5 * size - contact.lower) * contact.n;
+    const PlacedCore moved = b.moved(way);
+    PolytopeDescent descent(a, moved, 2 * size);
+    if (!descent.run(contact.n)) break;
+    CoreContact next = descent.contact();
+    next.b -= way;
+    next.lower = gap_across(a, b, next.n);
+    next.evaluations += contact.evaluations + 1;
+    if (!(next.lower > contact.lower)) {
+      next.n = contact.n;
+      next.lower = contact.lower;
+    }
+    const double next_bound = bound_of(next);
+    if (!(next_bound < bound)) break;
+    contact = next;
+    bound = next_bound;
+    if (bound <= kCoreRounding * size) break;
   }
-  contact = descent.contact();
-  return found;
 }
 
 /// Returns the contact of polytopes that overlap or nearly touch.
 CoreContact overlapping(const PlacedCore& a, const PlacedCore& b, double size, int evaluations) {
   const WidestGap widest = widest_gap(a, b);
-  // Moved apart along the normal, the bodies are closest where they leave each other.
-  const double way = 0.5 * size - widest.gap;
   CoreContact contact;
-  (void)apart(a, b.moved(way * widest.n), 2 * size, widest.n, contact);
-  contact.b -= way * widest.n;
-  contact.upper = std::max(widest.gap, contact.upper - way);
   contact.n = widest.n;
   contact.lower = widest.gap;
-  contact.evaluations += widest.evaluations + evaluations;
+  contact.evaluations = widest.evaluations + evaluations;
+  refine(a, b, size, contact);
   return contact;
 }
 
@@ -133,9 +126,12 @@ CoreContact polytope_contact(const CoreView& a, const Eigen::Matrix3d& R_WA, con
   const PlacedCore placed_a(a, R_WA, Vector3d::Zero());
   const PlacedCore placed_b(b, R_WB, r);
   const double size = r.norm() + a.bounding_radius + b.bounding_radius;
-  CoreContact contact;
-  if (apart(placed_a, placed_b, size, start, contact) && contact.lower > 0) return contact;
-  return overlapping(placed_a, placed_b, size, contact.evaluations);
+  PolytopeDescent descent(placed_a, placed_b, size);
+  const bool apart = descent.run(start);
+  CoreContact contact = descent.contact();
+  if (!apart || !(contact.lower > 0)) return overlapping(placed_a, placed_b, size, contact.evaluations);
+  if (!descent.closed()) refine(placed_a, placed_b, size, contact);
+  return contact;
 }
 
 }  // namespace geom::kernel

@@ -101,15 +101,11 @@ CoreContact segment_contact(const Vector3d& axis_a, double half_a, const Vector3
   contact.a = at.s * axis_a;
   contact.b = r + at.t * axis_b;
   const Vector3d y = contact.b - contact.a;
-  contact.upper = y.norm();
-  if (contact.upper > 0) {
-    contact.n = y / contact.upper;
-    contact.lower = p.gap(contact.n);
-  } else {
-    contact.lower = p.gap(contact.n);
-  }
+  const double upper = y.norm();
+  if (upper > 0) contact.n = y / upper;
+  contact.lower = p.gap(contact.n);
   constexpr double kClosed = 4e-16;
-  if (contact.upper - contact.lower > kClosed * p.size()) improve(p, c, contact);
+  if (upper - contact.lower > kClosed * p.size()) improve(p, c, contact);
   return contact;
 }
 
@@ -131,7 +127,6 @@ CoreContact box_point_contact(const Eigen::Matrix3d& axes, const Vector3d& half,
   }
   contact.n = axes * n;
   contact.a = axes * Vector3d(p - contact.lower * n);
-  contact.upper = contact.lower;
   return contact;
 }
 
