@@ -193,7 +193,7 @@ std::optional<Flight> labelled(const Vector3d& inertia, const Vector3d& omega_bo
   f.D1 = I2 * f.I21 * f.w[1] * f.w[1] + I3 * f.I31 * f.w[2] * f.w[2];
   f.D2 = std::max(term3 - term1, kBelowRounding * (term3 + term1));
   f.D3 = I1 * f.I31 * f.w[0] * f.w[0] + I2 * f.I32 * f.w[1] * f.w[1];
-  if (f.D3 < kVanishing || term3 + term1 < kNothing) return std::nullopt;
+  if (f.D3 < kVanishing || term3 + term1 < kVanishing) return std::nullopt;
   return f;
 }
 
