@@ -83,10 +83,10 @@ double gap_across(const PlacedCore& a, const PlacedCore& b, const Vector3d& n) {
 ///
 /// Moved apart along the normal by about their size, the bodies have the same closest features, and the direction of
 /// their closest points is accurate to rounding: the normal of a face or across an edge, whatever error the normal had
-/// along it. The points are moved back. This is the proximal point method for the largest gap between tangent planes.
-void refine(const PlacedCore& a, const PlacedCore& b, double size, CoreContact& contact) {
+/// along it. The points are moved back, and kept if they lower `bound`, that of the contact. This is the proximal point
+/// method for the largest gap between tangent planes.
+void refine(const PlacedCore& a, const PlacedCore& b, double size, double bound, CoreContact& contact) {
   constexpr int kMostMoves = 8;
-  double bound = std::numeric_limits<double>::infinity();
   for (int k = 0; k < kMostMoves; ++k) {
     const Vector3d way = (0.5 * size - contact.lower) * contact.n;
     const PlacedCore moved = b.moved(way);
@@ -115,7 +115,7 @@ CoreContact overlapping(const PlacedCore& a, const PlacedCore& b, double size, i
   contact.n = widest.n;
   contact.lower = widest.gap;
   contact.evaluations = widest.evaluations + evaluations;
-  refine(a, b, size, contact);
+  refine(a, b, size, std::numeric_limits<double>::infinity(), contact);
   return contact;
 }
 
@@ -130,7 +130,7 @@ CoreContact polytope_contact(const CoreView& a, const Eigen::Matrix3d& R_WA, con
   const bool apart = descent.run(start);
   CoreContact contact = descent.contact();
   if (!apart || !(contact.lower > 0)) return overlapping(placed_a, placed_b, size, contact.evaluations);
-  if (!descent.closed()) refine(placed_a, placed_b, size, contact);
+  if (!descent.closed()) refine(placed_a, placed_b, size, bound_of(contact), contact);
   return contact;
 }
 
