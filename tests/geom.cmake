@@ -4,6 +4,12 @@ hardbody_test(geom_unit_test unit
   unit/geom/batch/batch_pairs_test.cpp
   unit/geom/batch/batch_test.cpp
   unit/geom/by_elements_test.cpp
+  unit/geom/cores/core_distance_test.cpp
+  unit/geom/cores/core_queries_test.cpp
+  unit/geom/cores/core_shapes_test.cpp
+  unit/geom/cores/exact_side_test.cpp
+  unit/geom/cores/half_space_test.cpp
+  unit/geom/cores/polyhedron_test.cpp
   unit/geom/contact_elements_test.cpp
   unit/geom/distance_test.cpp
   unit/geom/dual_newton_test.cpp
@@ -42,7 +48,7 @@ hardbody_test(geom_property_test property property/geom_distance_test.cpp
   property/geom_penetration_test.cpp
   property/geom_superellipsoid_depth_test.cpp
   property/geom_superellipsoid_distance_test.cpp)
-hardbody_test(geom_accuracy_test accuracy accuracy/geom_distance_test.cpp accuracy/geom_extreme_test.cpp
+hardbody_test(geom_accuracy_test accuracy accuracy/geom_cores_table_test.cpp accuracy/geom_distance_test.cpp accuracy/geom_extreme_test.cpp
   accuracy/geom_table_test.cpp)
 
 hardbody_kernel_symbols_test(geom_kernel_symbols hardbody_geom batch/kernel _ZN4geom6kernel[0-9]+batch_kernels_)

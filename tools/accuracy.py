@@ -70,6 +70,8 @@ TABLES = {
                   "pair aspect_ratio pairs declined largest_error bound_over_depth_median bound_over_depth_largest ms_median ms_largest"),
     "pairs": Table("geom_accuracy_test", "AccuracyTable.*",
                    "pair gap pairs failures median_error largest_error largest_error_bound evaluations"),
+    "cores": Table("geom_accuracy_test", "CoresTable.*",
+                   "pair pairs failures median_error largest_error largest_error_bound evaluations"),
     "libraries": Table("oracle_table_test", "AccuracyTable.*",
                        "pair gap ours_largest fcl_median fcl_largest fcl_declined libccd_median libccd_largest libccd_declined "
                        "cgal_median cgal_largest cgal_declined"),

@@ -1,7 +1,10 @@
 #include "oracle/fcl_raw.h"
 
+#include <fcl/geometry/shape/box.h>
+#include <fcl/geometry/shape/capsule.h>
 #include <fcl/geometry/shape/convex.h>
 #include <fcl/geometry/shape/ellipsoid.h>
+#include <fcl/geometry/shape/sphere.h>
 #include <fcl/narrowphase/detail/convexity_based_algorithm/gjk_libccd.h>
 #include <fcl/narrowphase/distance.h>
 
@@ -68,6 +71,41 @@ FclDistance FclPair::distance(bool signed_distance) const {
 FclDistance fcl_distance(const geom::Ellipsoid& a, const geom::Pose& X_WA, const geom::Ellipsoid& b,
                          const geom::Pose& X_WB, bool signed_distance) {
   return ask(to_fcl(a, X_WA), to_fcl(b, X_WB), signed_distance);
+}
+
+namespace {
+
+/// Makes FCL's primitive of a core with a ball: of a sphere, a capsule, a box or a hull, not of rounded ones.
+fcl::CollisionObjectd primitive(const geom::kernel::CoreView& core, const geom::Pose& X) {
+  using geom::kernel::CoreKind;
+  if (core.kind == CoreKind::point) return placed(std::make_shared<fcl::Sphered>(core.radius), X);
+  if (core.kind == CoreKind::segment) {
+    return placed(std::make_shared<fcl::Capsuled>(core.radius, 2 * core.half.z()), X);
+  }
+  if (core.kind == CoreKind::box) return placed(std::make_shared<fcl::Boxd>(2 * core.half), X);
+  const auto points = std::make_shared<std::vector<fcl::Vector3d>>();
+  for (Eigen::Index k = 0; k < core.hull->vertices.rows(); ++k) points->emplace_back(core.hull->vertices.row(k));
+  const auto faces = std::make_shared<std::vector<int>>();
+  for (const std::vector<int>& face : core.hull->faces) {
+    faces->push_back(static_cast<int>(face.size()));
+    faces->insert(faces->end(), face.begin(), face.end());
+  }
+  return placed(std::make_shared<fcl::Convexd>(points, static_cast<int>(core.hull->faces.size()), faces), X);
+}
+
+}  // namespace
+
+struct FclPrimitives::Objects {
+  fcl::CollisionObjectd a;
+  fcl::CollisionObjectd b;
+};
+
+FclPrimitives::FclPrimitives(const geom::kernel::CoreView& a, const geom::Pose& X_WA, const geom::kernel::CoreView& b,
+                             const geom::Pose& X_WB)
+    : objects_(std::make_shared<const Objects>(Objects{primitive(a, X_WA), primitive(b, X_WB)})) {}
+
+FclDistance FclPrimitives::distance() const {
+  return ask(objects_->a, objects_->b, /*signed_distance=*/false);
 }
 
 FclDistance fcl_distance(const std::vector<Eigen::Vector3d>& a, const geom::Pose& X_WA,

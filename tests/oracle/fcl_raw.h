@@ -40,6 +40,21 @@ class FclPair {
 FclDistance fcl_distance(const std::vector<Eigen::Vector3d>& a, const geom::Pose& X_WA,
                          const std::vector<Eigen::Vector3d>& b, const geom::Pose& X_WB);
 
+/// Pair of FCL's own primitives, made once for many queries. Boxes and capsules by their extents (capsule: half-length
+/// along z and radius), hulls by their points and faces.
+class FclPrimitives {
+ public:
+  FclPrimitives(const geom::kernel::CoreView& a, const geom::Pose& X_WA, const geom::kernel::CoreView& b,
+                const geom::Pose& X_WB);
+
+  /// Returns the distance at FCL's defaults, with nearest points; -1 if it finds an overlap.
+  FclDistance distance() const;
+
+ private:
+  struct Objects;
+  std::shared_ptr<const Objects> objects_;
+};
+
 /// Support function: returns the point of the body furthest along `direction` (any length except 0), both in world
 /// axes.
 using SupportFunction = Eigen::Vector3d (*)(const void* body, const Eigen::Vector3d& direction);

@@ -1,10 +1,13 @@
 #pragma once
 
+#include <geom/capsule.h>
 #include <geom/ellipsoid.h>
 #include <geom/export.h>
+#include <geom/kernel/core.h>
 #include <geom/kernel/dual_newton.h>
 #include <geom/pose.h>
 #include <geom/shape.h>
+#include <geom/sphere.h>
 #include <geom/superellipsoid.h>
 #include <geom/tolerances.h>
 
@@ -106,6 +109,22 @@ struct [[nodiscard]] DistanceResult {
 /// tests/accuracy. Accuracy for other shapes: the same where Newton's method converges. Where support points jump (flat
 /// faces, edges), the answer comes from the closest points of two polytopes that grow inside the bodies; it is
 /// certified to 1e-9 of the size (kWidestGap), or declined. Never throws, never allocates.
+///
+/// Polytopes with balls swept over them (CoreShape: spheres, capsules, boxes, polyhedra, rounded ones) need no search:
+/// the distance is that of the cores less both radii, at any depth, as support functions are additive. Points and
+/// segments, and a box and a point, have closed forms. Other cores that are apart are left to the algorithm of Gilbert,
+/// Johnson and Keerthi (IEEE J. Robotics Autom. 4 (1988) 193), which ends with the closest vertices, edges or faces.
+/// Cores that overlap have the depth of the nearest face of their Minkowski difference: faces of either and pairs of
+/// edges, all of which are tried. Answers are certified by two bounds as for superellipsoids: g(normal) from below, the
+/// distance of two points of the cores from above. A pair where they differ by more than kBoundGap (1e-12) of the size
+/// is declined; the tests assert 1e-13. Where faces, or edges, are parallel, one of many pairs of closest points is
+/// returned. `max_iterations` and `penetration` do not count: the iteration is finite, and the depth is always the
+/// smallest one.
+///
+/// A rounded shape (rounded.h) has the distance of the shape inside, less the radius, with the certificate of that. A
+/// sphere beside a smooth body is an ellipsoid with three equal semi-axes; a capsule has the distance of the ball on
+/// its axis that is closest, found from the balls' normals, or where the body reaches the axis that of the general
+/// method.
 template <SupportShape ShapeA, SupportShape ShapeB>
 DistanceResult distance(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const Pose& X_WB,
                         const DistanceOptions& options = {});

@@ -7,14 +7,20 @@
 
 #include <geom/any_shape.h>
 #include <geom/batch.h>
+#include <geom/box.h>
+#include <geom/capsule.h>
 #include <geom/distance.h>
 #include <geom/ellipsoid.h>
+#include <geom/half_space.h>
 #include <geom/mass.h>
 #include <geom/newton.h>
 #include <geom/obb.h>
+#include <geom/polyhedron.h>
 #include <geom/pose.h>
 #include <geom/queries.h>
+#include <geom/rounded.h>
 #include <geom/shape.h>
 #include <geom/shape_variant.h>
+#include <geom/sphere.h>
 #include <geom/superellipsoid.h>
 #include <geom/tolerances.h>

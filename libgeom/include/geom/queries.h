@@ -5,11 +5,14 @@
 /// ray cast. None of them throws or allocates.
 
 #include <geom/any_shape.h>
+#include <geom/box.h>
 #include <geom/distance.h>
 #include <geom/ellipsoid.h>
 #include <geom/export.h>
+#include <geom/polyhedron.h>
 #include <geom/pose.h>
 #include <geom/shape.h>
+#include <geom/sphere.h>
 #include <geom/superellipsoid.h>
 #include <geom/tolerances.h>
 
@@ -72,6 +75,9 @@ GEOM_EXPORT ClosestPoint closest_point(const Superellipsoid& shape, const Pose& 
 /// Returns whether a point (world frame) is in the body or on its surface; false for every point beyond kMaxCoordinate.
 template <ImplicitSurface Shape>
 bool contains(const Shape& shape, const Pose& X_WB, const Eigen::Vector3d& p_W);
+/// Overload for shapes that tell it themselves.
+template <PointSet Shape>
+bool contains(const Shape& shape, const Pose& X_WB, const Eigen::Vector3d& p_W);
 
 /// Outcome of a ray cast.
 enum class RayStatus {
@@ -112,6 +118,25 @@ RayHit ray_cast(const Shape& shape, const Pose& X_WB, const Eigen::Vector3d& ori
 /// Overload in closed form, with the same tolerance and accuracy.
 GEOM_EXPORT RayHit ray_cast(const Ellipsoid& shape, const Pose& X_WB, const Eigen::Vector3d& origin,
                             const Eigen::Vector3d& direction);
+/// Overload that casts the ray on the ellipsoid with three equal semi-axes.
+inline RayHit ray_cast(const Sphere& shape, const Pose& X_WB, const Eigen::Vector3d& origin,
+                       const Eigen::Vector3d& direction) {
+  return ray_cast(shape.ellipsoid(), X_WB, origin, direction);
+}
+/// Overload in closed form: the ray is clipped by the planes of the faces. It meets the body if it stays within kRayGap
+/// times the lengths involved of all of them, which at a sharp edge is a little further from the body.
+/// @{
+GEOM_EXPORT RayHit ray_cast(const Box& shape, const Pose& X_WB, const Eigen::Vector3d& origin,
+                            const Eigen::Vector3d& direction);
+GEOM_EXPORT RayHit ray_cast(const ConvexPolyhedron& shape, const Pose& X_WB, const Eigen::Vector3d& origin,
+                            const Eigen::Vector3d& direction);
+/// @}
+
+/// Returns the last point of origin + t direction, t >= 0, in the body, with the status `hit`, wherever the origin is:
+/// the first point of the ray that comes from beyond the body in the opposite direction. `missed` if no point of the
+/// ray is in the body. Accuracy and limits are those of `ray_cast`.
+template <class Shape>
+RayHit ray_exit(const Shape& shape, const Pose& X_WB, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction);
 
 /// Overload for shapes chosen at run time.
 /// @{

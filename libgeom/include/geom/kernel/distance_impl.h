@@ -5,11 +5,13 @@
 #include <geom/distance.h>
 #include <geom/kernel/simplex_descent.h>
 #include <geom/kernel/sphere_search.h>
+#include <geom/kernel/swept_impl.h>
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
+#include <concepts>
 #include <limits>
 #include <utility>
 
@@ -228,15 +230,23 @@ bool holds_between(const Eigen::Vector3d& point_a, const Eigen::Vector3d& point_
   return false;
 }
 
+/// Returns whether a point (body frame) is in a body; false for shapes that cannot tell.
+template <class Shape>
+bool holds_point(const Shape& shape, const Eigen::Vector3d& p_B) {
+  if constexpr (PointSet<Shape>) {
+    return shape.contains(p_B);
+  } else if constexpr (ImplicitSurface<Shape>) {
+    return shape.value(p_B) <= 0;
+  } else {
+    return false;
+  }
+}
+
 /// Returns whether a point (world frame) is in both bodies; false for shapes without an equation, for which it is
 /// unknown.
 template <class ShapeA, class ShapeB>
 bool both_contain(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const Pose& X_WB, const Eigen::Vector3d& p_W) {
-  if constexpr (ImplicitSurface<ShapeA> && ImplicitSurface<ShapeB>) {
-    return a.value(X_WA.to_body(p_W)) <= 0 && b.value(X_WB.to_body(p_W)) <= 0;
-  } else {
-    return false;
-  }
+  return holds_point(a, X_WA.to_body(p_W)) && holds_point(b, X_WB.to_body(p_W));
 }
 
 /// Returns whether both bodies contain the point between their centres that deeply overlapping bodies are likely to
@@ -318,6 +328,35 @@ template <class Pair>
   return declined;
 }
 
+/// Returns the distance of any two bodies: by Newton's method, by growing polytopes, or by a search of all normals.
+template <SupportShape ShapeA, SupportShape ShapeB>
+DistanceResult general_distance(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const Pose& X_WB,
+                                const DistanceOptions& options) {
+  const Eigen::Vector3d r = X_WB.position() - X_WA.position();
+  const double rho = min_curvature_radius_or_zero(a) + min_curvature_radius_or_zero(b);
+  // Shapes with flat faces or edges have rho = 0; a small fraction of the inscribed radii keeps the step bounded.
+  const double least =
+      kLeastEigenvalue * std::max(rho, kLeastCurvature * (a.inscribed_radius() + b.inscribed_radius()));
+  const GeneralPair pair(WorldSupport<ShapeA>{a, X_WA.rotation()}, WorldSupport<ShapeB>{b, X_WB.rotation()}, r, least);
+  const auto cold = [&r] { return unit_or_x(r); };
+  const PairScale scale{r.norm() + a.bounding_radius() + b.bounding_radius(), rho};
+  const auto shares = [&](const Eigen::Vector3d& point_a, const Eigen::Vector3d& point_b) {
+    return share_a_point(a, X_WA, b, X_WB, point_a, point_b);
+  };
+  DistanceResult result = solve_dual(pair, cold, scale, X_WA.position(), options, shares);
+  if (result.status != DistanceStatus::not_converged) return result;
+  const CorePair cores{pair, min_curvature_radius_or_zero(a), min_curvature_radius_or_zero(b)};
+  result = descend_cores(cores, scale.size, cold(), X_WA.position(), result.iterations);
+  if (result.status != DistanceStatus::not_converged) {
+    if (!needs_polish(scale, result)) return result;
+    // Newton's method has a second chance from there, and is more accurate if it converges.
+    DistanceResult polished = solve_dual(pair, cold, scale, X_WA.position(), {.start = result.normal}, shares);
+    polished.iterations += result.iterations;
+    return polished.error_bound < result.error_bound ? polished : result;
+  }
+  return search_sphere(pair, scale, cold(), X_WA.position(), result.iterations);
+}
+
 }  // namespace geom::kernel
 
 namespace geom {
@@ -325,31 +364,26 @@ namespace geom {
 template <SupportShape ShapeA, SupportShape ShapeB>
 DistanceResult distance(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const Pose& X_WB,
                         const DistanceOptions& options) {
-  using kernel::WorldSupport;
-  const Eigen::Vector3d r = X_WB.position() - X_WA.position();
-  const double rho = kernel::min_curvature_radius_or_zero(a) + kernel::min_curvature_radius_or_zero(b);
-  // Shapes with flat faces or edges have rho = 0; a small fraction of the inscribed radii keeps the step bounded.
-  const double least =
-      kLeastEigenvalue * std::max(rho, kLeastCurvature * (a.inscribed_radius() + b.inscribed_radius()));
-  const kernel::GeneralPair pair(WorldSupport<ShapeA>{a, X_WA.rotation()}, WorldSupport<ShapeB>{b, X_WB.rotation()}, r,
-                                 least);
-  const auto cold = [&r] { return kernel::unit_or_x(r); };
-  const kernel::PairScale scale{r.norm() + a.bounding_radius() + b.bounding_radius(), rho};
-  const auto shares = [&](const Eigen::Vector3d& point_a, const Eigen::Vector3d& point_b) {
-    return kernel::share_a_point(a, X_WA, b, X_WB, point_a, point_b);
-  };
-  DistanceResult result = kernel::solve_dual(pair, cold, scale, X_WA.position(), options, shares);
-  if (result.status != DistanceStatus::not_converged) return result;
-  const kernel::CorePair cores{pair, kernel::min_curvature_radius_or_zero(a), kernel::min_curvature_radius_or_zero(b)};
-  result = kernel::descend_cores(cores, scale.size, cold(), X_WA.position(), result.iterations);
-  if (result.status != DistanceStatus::not_converged) {
-    if (!kernel::needs_polish(scale, result)) return result;
-    // Newton's method has a second chance from there, and is more accurate if it converges.
-    DistanceResult polished = kernel::solve_dual(pair, cold, scale, X_WA.position(), {.start = result.normal}, shares);
-    polished.iterations += result.iterations;
-    return polished.error_bound < result.error_bound ? polished : result;
+  if constexpr (CoreShape<ShapeA> && CoreShape<ShapeB>) {
+    return kernel::core_distance(a.core(), X_WA, b.core(), X_WB, options);
+  } else if constexpr (kernel::kIsRounded<ShapeA>) {
+    return kernel::with_skins(distance(a.inner(), X_WA, b, X_WB, options), a.radius(), 0);
+  } else if constexpr (kernel::kIsRounded<ShapeB>) {
+    return kernel::with_skins(distance(a, X_WA, b.inner(), X_WB, options), 0, b.radius());
+  } else if constexpr (std::same_as<ShapeA, Capsule>) {
+    const DistanceResult r = kernel::capsule_distance(a, X_WA, b, X_WB, options);
+    return r.status != DistanceStatus::not_converged ? r : kernel::general_distance(a, X_WA, b, X_WB, options);
+  } else if constexpr (std::same_as<ShapeB, Capsule>) {
+    DistanceOptions turned = options;
+    turned.start = -options.start;
+    return kernel::exchanged(distance(b, X_WB, a, X_WA, turned));
+  } else if constexpr (std::same_as<ShapeA, Sphere>) {
+    return distance(a.ellipsoid(), X_WA, b, X_WB, options);
+  } else if constexpr (std::same_as<ShapeB, Sphere>) {
+    return distance(a, X_WA, b.ellipsoid(), X_WB, options);
+  } else {
+    return kernel::general_distance(a, X_WA, b, X_WB, options);
   }
-  return kernel::search_sphere(pair, scale, cold(), X_WA.position(), result.iterations);
 }
 
 }  // namespace geom

@@ -12,6 +12,7 @@ struct Point {
   double bounding_radius() const { return 0; }
   double inscribed_radius() const { return 0; }
   double min_curvature_radius() const { return 0; }
+  CoreView core() const { return {}; }
 };
 
 /// Returns v / |v|, also if |v|^2 under- or overflows; NaN if v is zero or not finite.
@@ -55,6 +56,16 @@ inline NearRay near_ray(const Eigen::Vector3d& centre, double radius, const Eige
     ray.t += std::ldexp(t, -exponent);
   }
   return ray;
+}
+
+/// Returns the bounding radius of a shape of either form.
+template <class Shape>
+double bounding_radius_of(const Shape& shape) {
+  if constexpr (requires { shape.bounding_radius(); }) {
+    return shape.bounding_radius();
+  } else {
+    return bounding_radius(shape);
+  }
 }
 
 /// Returns whether a point's coordinates are finite and as small as those of a Pose.
@@ -106,6 +117,11 @@ bool contains(const Shape& shape, const Pose& X_WB, const Eigen::Vector3d& p_W) 
   return kernel::is_within_reach(p_W) && shape.value(X_WB.to_body(p_W)) <= 0;
 }
 
+template <PointSet Shape>
+bool contains(const Shape& shape, const Pose& X_WB, const Eigen::Vector3d& p_W) {
+  return kernel::is_within_reach(p_W) && shape.contains(X_WB.to_body(p_W));
+}
+
 template <SupportShape ShapeA, SupportShape ShapeB>
 Answer overlap(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const Pose& X_WB, const Eigen::Vector3d& start) {
   const Eigen::Vector3d r = X_WB.position() - X_WA.position();
@@ -154,6 +170,34 @@ RayHit ray_cast(const Shape& shape, const Pose& X_WB, const Eigen::Vector3d& ori
     way += closest.distance / approach;
   }
   return hit;
+}
+
+template <class Shape>
+RayHit ray_exit(const Shape& shape, const Pose& X_WB, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) {
+  RayHit exit;
+  const Eigen::Vector3d u = kernel::unit_vector(direction);
+  const double speed = direction.dot(u);
+  if (!kernel::is_within_reach(origin) || !std::isfinite(speed)) return exit;
+  const double ahead = (X_WB.position() - origin).dot(u);
+  const double beyond = ahead + 2 * kernel::bounding_radius_of(shape);
+  if (!(beyond > 0)) {
+    exit.status = RayStatus::missed;
+    return exit;
+  }
+  const RayHit back = ray_cast(shape, X_WB, Eigen::Vector3d(origin + beyond * u), Eigen::Vector3d(-u));
+  if (back.status != RayStatus::hit) {
+    exit.status = back.status;
+    return exit;
+  }
+  const double touching = kRayGap * (kernel::bounding_radius_of(shape) + std::abs(ahead));
+  const double way = beyond - back.t;
+  if (way < -touching) {
+    exit.status = RayStatus::missed;  // the body is behind the origin
+    return exit;
+  }
+  const double t = std::max(way, 0.0) / speed;
+  if (!std::isfinite(t)) return exit;
+  return {RayStatus::hit, t, back.point, back.normal};
 }
 
 }  // namespace geom

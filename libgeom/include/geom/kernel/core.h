@@ -1,0 +1,85 @@
+#pragma once
+
+/// Shapes that are a polytope, the core, with a ball swept over it: spheres, capsules, boxes, polyhedra and rounded
+/// ones.
+
+#include <geom/export.h>
+#include <geom/shape.h>
+
+#include <Eigen/Core>
+
+#include <concepts>
+#include <vector>
+
+namespace geom::kernel {
+
+/// Kind of a core: a point, a segment along z, a box along the axes, or the convex hull of points.
+enum class CoreKind { point, segment, box, hull };
+
+/// Edge of a hull: its vertices, and the faces on both sides.
+struct HullEdge {
+  int from, to;
+  int left, right;
+};
+
+/// Convex polyhedron with all faces, edges and vertices, none of them degenerate.
+struct Hull {
+  Eigen::Matrix<double, Eigen::Dynamic, 3> vertices;  ///< one a row
+  std::vector<Eigen::Vector3d> normals;               ///< unit outward normal of each face
+  std::vector<double> offsets;          ///< distance of each face from the origin: its normal times the furthest vertex
+  std::vector<std::vector<int>> faces;  ///< vertices of each face, anticlockwise seen from outside
+  std::vector<HullEdge> edges;
+};
+
+/// Core of a shape, and the radius of the ball swept over it. Refers to the shape, which must outlive it.
+struct CoreView {
+  CoreKind kind = CoreKind::point;
+  Eigen::Vector3d half = Eigen::Vector3d::Zero();  ///< half extents along the body's axes; (0, 0, l) of a segment
+  const Hull* hull = nullptr;                      ///< the polyhedron of CoreKind::hull, else null
+  double radius = 0;                               ///< radius of the swept ball
+  double bounding_radius = 0;                      ///< distance of the furthest point of the core from the origin
+};
+
+/// Returns the vertex (row) of a hull that is furthest along n.
+GEOM_EXPORT int support_vertex(const Hull& hull, const Eigen::Vector3d& n);
+
+/// Returns the support of a core, without the ball.
+GEOM_EXPORT Support core_support(const CoreView& core, const Eigen::Vector3d& n);
+
+/// Returns the support of a core with its ball; n != 0.
+inline Support swept_support(const CoreView& core, const Eigen::Vector3d& n) {
+  Support s = core_support(core, n);
+  if (core.radius == 0) return s;
+  const double length = n.norm();
+  s.height += core.radius * length;
+  s.point += core.radius / length * n;
+  return s;
+}
+
+/// Returns the radius of a rounding. Throws std::invalid_argument unless it is within [0, kMaxSemiAxis].
+GEOM_EXPORT double checked_rounding(double radius);
+
+/// Returns the Hessian of the support function of a ball; cores add none where they have one.
+inline Eigen::Matrix3d ball_hessian(double radius, const Eigen::Vector3d& n) {
+  const double length = n.norm();
+  const Eigen::Vector3d unit = n / length;
+  return radius / length * (Eigen::Matrix3d::Identity() - unit * unit.transpose());
+}
+
+}  // namespace geom::kernel
+
+namespace geom {
+
+/// SupportShape that is a polytope with a ball swept over it, and says so. Pairs of them have an exact `distance`.
+template <class T>
+concept CoreShape = SupportShape<T> && requires(const T& shape) {
+  { shape.core() } -> std::same_as<kernel::CoreView>;
+};
+
+/// Shape that tells whether a point of its frame is in it or on its surface.
+template <class T>
+concept PointSet = requires(const T& shape, const Eigen::Vector3d& x) {
+  { shape.contains(x) } -> std::same_as<bool>;
+};
+
+}  // namespace geom

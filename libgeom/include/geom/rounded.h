@@ -1,0 +1,61 @@
+#pragma once
+
+#include <geom/distance.h>
+#include <geom/kernel/core.h>
+#include <geom/pose.h>
+#include <geom/shape.h>
+
+#include <Eigen/Core>
+
+#include <utility>
+
+namespace geom {
+/// Minkowski sum of a shape with a ball: all points within `radius` of it. Its distances are those of the shape inside,
+/// less the radius; overlaps no deeper than the radii are as fast as bodies apart.
+template <SupportShape Inner>
+class Rounded {
+ public:
+  /// Throws std::invalid_argument unless the radius is within [0, kMaxSemiAxis].
+  Rounded(Inner inner, double radius) : inner_(std::move(inner)), radius_(kernel::checked_rounding(radius)) {}
+
+  const Inner& inner() const { return inner_; }  ///< shape that is rounded
+  double radius() const { return radius_; }      ///< radius of the ball
+
+  /// Returns h(n) + radius |n| and the support point; n != 0, any length.
+  Support support(const Eigen::Vector3d& n) const {
+    Support s = inner_.support(n);
+    const double length = n.norm();
+    s.height += radius_ * length;
+    s.point += radius_ / length * n;
+    return s;
+  }
+  Eigen::Matrix3d support_hessian(const Eigen::Vector3d& n) const {  ///< sum of both Hessians
+    return inner_.support_hessian(n) + kernel::ball_hessian(radius_, n);
+  }
+
+  /// Returns whether a point is in the body or on its surface, to the rounding of its distance from the shape inside.
+  bool contains(const Eigen::Vector3d& x) const requires CoreShape<Inner> {
+    return kernel::core_distance({}, Pose::translation(x), core(), Pose(), {}).distance <= 0;
+  }
+
+  double bounding_radius() const { return inner_.bounding_radius() + radius_; }    ///< sum of both
+  double inscribed_radius() const { return inner_.inscribed_radius() + radius_; }  ///< sum of both
+  /// Returns the sum of both smallest radii of curvature, at least `radius`.
+  double min_curvature_radius() const { return kernel::min_curvature_radius_or_zero(inner_) + radius_; }
+
+  /// Returns the core of the shape that is rounded, with both balls.
+  kernel::CoreView core() const requires CoreShape<Inner> {
+    kernel::CoreView core = inner_.core();
+    core.radius += radius_;
+    return core;
+  }
+
+ private:
+  Inner inner_;
+  double radius_;
+};
+
+template <class Inner>
+inline constexpr bool kernel::kIsRounded<Rounded<Inner>> = true;
+
+}  // namespace geom

@@ -1,0 +1,48 @@
+#include "cores/contact.h"
+
+namespace geom::kernel {
+namespace {
+
+using Eigen::Vector3d;
+
+bool is_line(const CoreView& core) {
+  return core.kind == CoreKind::point || core.kind == CoreKind::segment;
+}
+
+CoreContact contact_of(const CoreView& a, const Eigen::Matrix3d& R_WA, const CoreView& b, const Eigen::Matrix3d& R_WB,
+                       const Vector3d& r, const Vector3d& start) {
+  if (is_line(a) && is_line(b)) {
+    return segment_contact(R_WA.col(2), a.half.z(), R_WB.col(2), b.half.z(), r);
+  }
+  if (a.kind == CoreKind::box && b.kind == CoreKind::point) return box_point_contact(R_WA, a.half, r);
+  if (a.kind == CoreKind::point && b.kind == CoreKind::box) {
+    return exchanged(box_point_contact(R_WB, b.half, -r), r);
+  }
+  return polytope_contact(a, R_WA, b, R_WB, r, start);
+}
+
+}  // namespace
+
+DistanceResult core_distance(const CoreView& a, const Pose& X_WA, const CoreView& b, const Pose& X_WB,
+                             const DistanceOptions& options) {
+  const Vector3d r = X_WB.position() - X_WA.position();
+  const Vector3d start = is_warm(options.start) ? Vector3d(options.start / options.start.norm()) : unit_or_x(r);
+  const CoreContact c = contact_of(a, X_WA.rotation(), b, X_WB.rotation(), r, start);
+  DistanceResult result;
+  result.iterations = c.evaluations;
+  const double size = r.norm() + a.bounding_radius + b.bounding_radius;
+  const double bound = bound_of(c);
+  if (!(bound <= kBoundGap * size)) return result;
+  result.distance = (c.lower - a.radius) - b.radius;
+  result.normal = c.n;
+  const Vector3d gap = c.b - c.a;
+  const Vector3d y = gap - gap.dot(c.n) * c.n;
+  result.point_a = X_WA.position() + (c.a + a.radius * c.n + 0.5 * y);
+  result.point_b = result.point_a + result.distance * c.n;
+  result.residual = y.norm();
+  result.error_bound = bound;
+  result.status = result.distance >= 0 ? DistanceStatus::separated : DistanceStatus::overlapping;
+  return result;
+}
+
+}  // namespace geom::kernel

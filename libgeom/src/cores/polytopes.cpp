@@ -1,0 +1,137 @@
+#include "cores/contact.h"
+#include "cores/depth.h"
+#include "cores/placed_core.h"
+#include "cores/simplex.h"
+
+namespace geom::kernel {
+namespace {
+
+using Eigen::Vector3d;
+
+/// Bounds of polytopes' distances that differ by no more than this times the size are as good as equal.
+constexpr double kCoreRounding = 5e-16;
+
+/// The algorithm of Gilbert, Johnson and Keerthi for two polytopes that are apart: closest points of a growing simplex
+/// of the difference B - A. The vertices are finitely many, so that it ends with the closest features; the gap between
+/// the tangent planes across each normal is a lower bound, the closest point an upper one.
+class PolytopeDescent {
+ public:
+  PolytopeDescent(const PlacedCore& a, const PlacedCore& b, double size)
+      : a_(a), b_(b), tolerance_(kCoreRounding * size) {}
+
+  /// Runs from a normal; returns false if the polytopes overlap, or are too close to tell.
+  bool run(const Vector3d& start) {
+    Vector3d n = start;
+    CoreSimplex simplex;
+    for (int step = 0; step < kMostSteps; ++step) {
+      const DifferenceVertex v = evaluate(n);
+      if (best_.squared < std::numeric_limits<double>::infinity() && closed()) return true;
+      if (simplex.has(v)) break;
+      simplex.vertex[simplex.count++] = v;
+      reduce_to_closest(simplex);
+      if (simplex.inside) return false;
+      if (!(simplex.squared < best_.squared)) break;
+      best_ = simplex;
+      const double length = std::sqrt(simplex.squared);
+      if (!(length > tolerance_)) return false;
+      n = simplex.closest / length;
+    }
+    return true;
+  }
+
+  bool closed() const { return std::sqrt(best_.squared) - contact_.lower <= tolerance_; }
+
+  /// Returns the answer, with the closest points of the simplex.
+  CoreContact contact() const {
+    CoreContact result = contact_;
+    for (std::size_t k = 0; k < best_.count; ++k) {
+      result.a += best_.weight[k] * best_.vertex[k].a;
+      result.b += best_.weight[k] * best_.vertex[k].b;
+    }
+    result.evaluations = evaluations_;
+    return result;
+  }
+
+ private:
+  static constexpr int kMostSteps = 200;
+
+  DifferenceVertex evaluate(const Vector3d& n) {
+    ++evaluations_;
+    const DifferenceVertex v = difference_vertex(a_, b_, n);
+    const double gap = n.dot(v.p);
+    if (gap > contact_.lower) {
+      contact_.lower = gap;
+      contact_.n = n;
+    }
+    return v;
+  }
+
+  const PlacedCore& a_;
+  const PlacedCore& b_;
+  double tolerance_;
+  CoreSimplex best_;
+  CoreContact contact_;
+  int evaluations_ = 0;
+};
+
+double gap_across(const PlacedCore& a, const PlacedCore& b, const Vector3d& n) {
+  return n.dot(difference_vertex(a, b, n).p);
+}
+
+/// Brings the bounds of a contact together where the bodies are so close that rounding has spoilt the normal, and finds
+/// the closest points of bodies that overlap.
+///
+/// Moved apart along the normal by about their size, the bodies have the same closest features, and the direction of
+/// their closest points is accurate to rounding: the normal of a face or across an edge, whatever error the normal had
+/// along it. The points are moved back, and kept if they lower `bound`, that of the contact. This is the proximal point
+/// method for the largest gap between tangent planes.
+void refine(const PlacedCore& a, const PlacedCore& b, double size, double bound, CoreContact& contact) {
+  constexpr int kMostMoves = 8;
+  for (int k = 0; k < kMostMoves; ++k) {
+    const Vector3d way = (0.5 * size - contact.lower) * contact.n;
+    const PlacedCore moved = b.moved(way);
+    PolytopeDescent descent(a, moved, 2 * size);
+    if (!descent.run(contact.n)) break;
+    CoreContact next = descent.contact();
+    next.b -= way;
+    next.lower = gap_across(a, b, next.n);
+    next.evaluations += contact.evaluations + 1;
+    if (!(next.lower > contact.lower)) {
+      next.n = contact.n;
+      next.lower = contact.lower;
+    }
+    const double next_bound = bound_of(next);
+    if (!(next_bound < bound)) break;
+    contact = next;
+    bound = next_bound;
+    if (bound <= kCoreRounding * size) break;
+  }
+}
+
+/// Returns the contact of polytopes that overlap or nearly touch.
+CoreContact overlapping(const PlacedCore& a, const PlacedCore& b, double size, int evaluations) {
+  const WidestGap widest = widest_gap(a, b);
+  CoreContact contact;
+  contact.n = widest.n;
+  contact.lower = widest.gap;
+  contact.evaluations = widest.evaluations + evaluations;
+  refine(a, b, size, std::numeric_limits<double>::infinity(), contact);
+  return contact;
+}
+
+}  // namespace
+
+CoreContact polytope_contact(const CoreView& a, const Eigen::Matrix3d& R_WA, const CoreView& b,
+                             const Eigen::Matrix3d& R_WB, const Vector3d& r, const Vector3d& start) {
+  const PlacedCore placed_a(a, R_WA, Vector3d::Zero());
+  const PlacedCore placed_b(b, R_WB, r);
+  const double size = r.norm() + a.bounding_radius + b.bounding_radius;
+  PolytopeDescent descent(placed_a, placed_b, size);
+  const bool apart = descent.run(start);
+  CoreContact contact = descent.contact();
+  if (!apart || !(contact.lower > 0)) return overlapping(placed_a, placed_b, size, contact.evaluations);
+  if (!descent.closed()) refine(placed_a, placed_b, size, bound_of(contact), contact);
+  return contact;
+}
+
+}  // namespace geom::kernel
