@@ -257,6 +257,16 @@ std::vector<std::string> expand_overrides(int argc, char** argv) {
   return arguments;
 }
 
+/// Returns "hardbody sweep plan" of the command that was named, as far as it was understood.
+std::string command_named(const CLI::App& app) {
+  std::string name = app.get_name();
+  for (const CLI::App* at = &app; !at->get_subcommands().empty();) {
+    at = at->get_subcommands().front();
+    name += ' ' + at->get_name();
+  }
+  return name;
+}
+
 int parsed(int argc, char** argv, std::vector<std::string> program) {
   Request request;
   request.run.program = program;
@@ -287,7 +297,8 @@ int parsed(int argc, char** argv, std::vector<std::string> program) {
   } catch (const CLI::Success& wanted) {  // --help, --version
     return app.exit(wanted);
   } catch (const CLI::ParseError& error) {
-    throw InputError(fmt::format("command line: {}; accepted: see hardbody --help", one_line(error.what())));
+    throw InputError(
+        fmt::format("command line: {}; accepted: see {} --help", one_line(error.what()), command_named(app)));
   }
   return dispatch(app, request);
 }

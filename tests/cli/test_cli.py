@@ -1385,9 +1385,12 @@ class CommandLine(Case):
             self.assertIn("Usage", result.stdout)
 
     def test_bad_command_lines(self):
-        for arguments in [[], ["runn"], ["run"], ["run", "a.toml", "--frce"], ["run", "a", "b"], ["check"], ["replay"]]:
+        for arguments in [[], ["runn"]]:
             with self.subTest(arguments):
                 self.assert_refused(self.hardbody(*arguments), "hardbody --help")
+        for arguments in [["run"], ["run", "a.toml", "--frce"], ["run", "a", "b"], ["check"], ["replay"], ["report", "a", "--out", "b"]]:
+            with self.subTest(arguments):
+                self.assert_refused(self.hardbody(*arguments), f"hardbody {arguments[0]} --help")
         for option in ["--fit-from", "--longest-lag", "--time-step"]:
             for value in ["inf", "nan", "0", "-1", "1e999", "x"]:
                 refusal = self.hardbody("analyze", "out", f"{option}={value}")
@@ -2062,7 +2065,7 @@ class Distance(Case):
         self.assert_refused(self.hardbody("distance", "."), "directory", "accepted")
         closed = subprocess.run(f"{HARDBODY} distance <&-", shell=True, capture_output=True, text=True, timeout=60)
         self.assert_refused(closed, "standard input")
-        self.assert_refused(self.hardbody("distance", "one", "two"), "hardbody --help")
+        self.assert_refused(self.hardbody("distance", "one", "two"), "hardbody distance --help")
 
     @contextlib.contextmanager
     def started(self, stdout=subprocess.PIPE, **more):

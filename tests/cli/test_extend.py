@@ -154,7 +154,7 @@ class Extended(Extending):
         for length in ["0", "-3", "nan", "x"]:
             self.assert_refused(self.hardbody("extend", "out", "--time", length), "--time")
         self.assert_refused(self.hardbody("extend", "none", "--time", "9"), "none: is not there")
-        self.assert_refused(self.hardbody("extend", "out"), "hardbody --help")
+        self.assert_refused(self.hardbody("extend", "out"), "hardbody extend --help")
         os.makedirs(self.path("sweep"))
         self.write("sweep/sweep.csv", "")
         refused("sweep", "is the directory of a sweep")

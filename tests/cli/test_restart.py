@@ -402,7 +402,7 @@ class Refusals(Restart):
         self.assert_refused(self.hardbody("resume", "file"), "file: is not a directory")
         os.makedirs(self.path("empty"))
         self.assert_refused(self.hardbody("resume", "empty"), "empty: holds no run: config.toml is missing")
-        self.assert_refused(self.hardbody("resume"), "hardbody --help")
+        self.assert_refused(self.hardbody("resume"), "hardbody resume --help")
 
     def test_pipes(self):
         """Nobody writes them: a program that opens one waits for ever."""
