@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Checks the words of comments in C++ files and of the Python package, and names file, line and comment where they break
-the rule.
+"""Checks the words of comments in C++ files, of the Python package and of the report's scripts, and names file, line and
+comment where they break the rule.
 
 usage: words.py [FILE...]
 
@@ -10,10 +10,10 @@ truth value. It never begins with a preposition, a pronoun, a conjunction or a s
 condition follows what it limits. Some phrases are refused anywhere in a comment, because they have to be read twice.
 
 Comments are // and, for doc comments, ///, each with a space; /* */ names an argument (/*signed_distance=*/), no more. Doc
-comments of Python are docstrings, and strings below a declaration.
+comments of Python are docstrings, and strings below a declaration; those of JavaScript are /** */.
 
-Without FILE all headers and sources (.h, .cpp) of the repository and the modules of the Python package are read. Every
-fault is printed. Exit code 1: there are more faults, of all comments, than LIMIT times the number of doc comments.
+Without FILE all headers and sources (.h, .cpp) of the repository, the modules of the Python package and those of the
+report are read. Every fault is printed. Exit code 1: there are more faults, of all comments, than LIMIT times the number of doc comments.
 """
 
 import ast
@@ -103,6 +103,14 @@ def python_comments(text):
             yield token.start[0], [token.string.lstrip("# ")], "//"
 
 
+def script_comments(text):
+    """Yields the same of a JavaScript module, whose doc comments are /** */."""
+    for match in re.finditer(r"/\*\*(?P<doc>.*?)\*/|(?:^|\s)//\s(?P<line>[^\n]*)", text, re.DOTALL):
+        doc = match["doc"]
+        lines = [re.sub(r"^\s*\*\s?", "", line) for line in doc.split("\n")] if doc is not None else [match["line"]]
+        yield text.count("\n", 0, match.start()) + 1, lines, "//" if doc is None else "///"
+
+
 def strip_strings(line):
     """A line with strings and characters blotted out."""
     return re.sub(r"""'(?:[^'\\]|\\.)'|"(?:[^"\\]|\\.)*\"""", lambda m: "'" * len(m[0]), line)
@@ -133,7 +141,7 @@ def fault(text, marker):
 
 
 def sources():
-    command = ["git", "ls-files", "*.h", "*.cpp", "apps/python/hardbody/*.py"]
+    command = ["git", "ls-files", "*.h", "*.cpp", "apps/python/hardbody/*.py", "apps/report/src/*.js"]
     listed = subprocess.run(command, cwd=ROOT, check=True, capture_output=True, text=True).stdout
     return [ROOT / name for name in listed.split() if (ROOT / name).is_file()]
 
@@ -142,7 +150,7 @@ def main():
     paths = [pathlib.Path(name).resolve() for name in sys.argv[1:]] or sources()
     number, messages = 0, []
     for path in paths:
-        read = python_comments if path.suffix == ".py" else comments
+        read = {".py": python_comments, ".js": script_comments}.get(path.suffix, comments)
         for line, texts, marker in read(path.read_text()):
             text = wording(texts)
             if not text:

@@ -147,7 +147,7 @@ function blocks(run, column, label) {
   return [{ label, x: found.x.map((begin, k) => (begin + end[k]) / 2), y: found.y, error: null }];
 }
 
-/** Kinetic energy, which is all that there is, against its first value: it is conserved to rounding. */
+/** Kinetic energy over its first value: hard bodies have no other energy, and conserve it to rounding. */
 function energy(run) {
   const translation = blocks(run, 'kT_trans', 'E')[0];
   const rotation = blocks(run, 'kT_rot', 'E')[0];
@@ -230,7 +230,7 @@ export function plotsOf(run) {
   });
 }
 
-/** The same plots of several runs: for each the curves that any of them has, one of which is shown at a time, with its
+/** Returns the plots of several runs together: for each plot the curves that any run has. One is shown at a time, with its
  * fits. */
 export function comparisonsOf(runs) {
   const all = runs.map((run) => new Map(plotsOf(run).map((plot) => [plot.id, plot])));
