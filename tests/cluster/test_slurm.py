@@ -77,7 +77,7 @@ def processes(directory):
             words = pathlib.Path(path).read_bytes().split(b"\0")
         except OSError:
             continue
-        if b"point" in words and os.fsencode(directory) in words and words[0].endswith(b"hardbody"):
+        if b"point" in words and os.fsencode(directory) in words and os.fsencode(HARDBODY) == words[0]:
             found.append(int(path.split("/")[2]))
     return found
 
@@ -245,7 +245,7 @@ def disturbed(study, number, expected):
     name = f"round{number}"
     begin = time.monotonic()
     # The time limit is that of the task itself here: a job's own is a minute at least.
-    options = ["--on", str(study.profile(name, pause=2, minutes=10, seconds=5)), "--task-time", "2.5"]
+    options = ["--on", str(study.profile(name, pause=2, minutes=10, seconds=8)), "--task-time", "2.5"]
     file = study.here / f"{name}.toml"
     file.write_text(SWEEP)
     subprocess.run([HARDBODY, "sweep", "plan", str(file), "--out", str(study.here / name)], check=True, capture_output=True)
@@ -268,6 +268,7 @@ def disturbed(study, number, expected):
             study.cluster.set_node(node, "resume")
     assert table(study.here / name) == expected, f"{name}: another table than locally"
     study.check_runs(name)
+    assert faults.done, f"{name}: no fault has happened"
     print(f"round {number}: {study.attempts(name)} jobs, {time.monotonic() - begin:.0f} s; {', '.join(faults.done)}", flush=True)
     shutil.rmtree(study.here / name)
 

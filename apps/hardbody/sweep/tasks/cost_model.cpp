@@ -20,16 +20,17 @@ constexpr double kPreciseProduction = 300;
 constexpr double kReferenceError = 0.03;
 constexpr double kReferenceNumber = 512;
 
-// Durations in seconds, measured on one core.
-constexpr double kCollision = 4.3e-6;         ///< collision of ellipsoids of revolution
-constexpr double kCollisionOfOthers = 20e-6;  ///< collision of other shapes
-constexpr double kThermalTime = 2e-6;         ///< measurements and envelopes of a body in a thermal time
-constexpr double kBody = 3e-4;                ///< start of a body
-constexpr double kProcess = 0.05;             ///< start of a process, files
+// Durations in seconds on one core, fitted to 28 runs of 108 to 4000 ellipsoids of revolution.
+constexpr double kCollision = 3.1e-6;
+constexpr double kOtherShapes = 11;        ///< factor of collisions of other shapes; two runs
+constexpr double kThermalTime = 8e-6;      ///< measurements of a body in a thermal time
+constexpr double kBody = 5e-4;             ///< start and results of a body
+constexpr double kStartCollisions = 5e-5;  ///< start of a body, for each collision that it has in a thermal time
+constexpr double kProcess = 0.03;          ///< start of a process, files
 
 // Bytes.
-constexpr double kProgramMemory = 2.5e7;
-constexpr double kBodyMemory = 2e4;
+constexpr double kProgramMemory = 1.5e7;
+constexpr double kBodyMemory = 1.2e4;
 
 /// Logarithm of the largest over the smallest semi-axis.
 double elongation(const SpeciesConfig& species) {
@@ -79,8 +80,9 @@ Cost cost_by_config(const Config& config) {
   const double rate = mean_rate(config);
   const double times = (equilibration(config) + production(config, rate)) / config.time_unit;
   const double collisions = number / 2 * rate * times;
-  const double each = config.all_of_revolution() ? kCollision : kCollisionOfOthers;
-  return {collisions * each + number * times * kThermalTime + number * kBody + kProcess,
+  const double harder = config.all_of_revolution() ? 1 : kOtherShapes;
+  const double start = number * (kBody + harder * rate * kStartCollisions);
+  return {kProcess + start + number * times * kThermalTime + harder * collisions * kCollision,
           kProgramMemory + number * kBodyMemory};
 }
 

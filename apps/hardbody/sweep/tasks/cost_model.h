@@ -14,7 +14,7 @@ struct Cost {
 
 /// Typical factor between the seconds of cost_by_config() and true ones, for times that the config gives, on a
 /// processor like the one that it was measured on (docs/cluster.md).
-inline constexpr double kCostModelFactor = 1.25;
+inline constexpr double kCostModelFactor = 1.3;
 
 /// Returns the cost of a run: collisions, by a fit of the collision rates of hard ellipsoids, and measurements, each
 /// times its measured duration, and the start. Times "auto" are taken as of a simple fluid: such a run, or one of
