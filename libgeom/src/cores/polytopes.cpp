@@ -163,7 +163,9 @@ CoreContact polytope_contact(const CoreView& a, const Eigen::Matrix3d& R_WA, con
   const bool apart = descent.run(start);
   CoreContact contact = descent.contact();
   if (!apart || !(contact.lower > 0)) return overlapping(placed_a, placed_b, size, contact.evaluations);
-  if (!descent.closed()) refine(placed_a, placed_b, size, bound_of(contact), contact);
+  // The points may be further apart than the simplex says, where rounding has spoilt their weights.
+  const double bound = bound_of(contact);
+  if (!descent.closed() || bound > 4 * kCoreRounding * size) refine(placed_a, placed_b, size, bound, contact);
   return contact;
 }
 
