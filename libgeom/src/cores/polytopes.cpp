@@ -28,6 +28,7 @@ class PolytopeDescent {
       if (best_.squared < std::numeric_limits<double>::infinity() && closed()) return true;
       if (simplex.has(v)) break;
       simplex.vertex[simplex.count++] = v;
+      last_ = simplex;
       reduce_to_closest(simplex);
       if (simplex.inside) return false;
       if (!(simplex.squared < best_.squared)) break;
@@ -37,6 +38,29 @@ class PolytopeDescent {
       n = simplex.closest / length;
     }
     return true;
+  }
+
+  /// Tries the normals of all edges and triangles of the last simplex: rounding may have made a wrong choice among
+  /// them.
+  void try_all_faces() {
+    const SimplexFaces faces(last_);
+    const auto across = [](const Vector3d& x, const Vector3d& e) {
+      return Vector3d(x - x.dot(e) / e.squaredNorm() * e);
+    };
+    const auto consider = [this](const Vector3d& x) {
+      const double length = x.norm();
+      if (length > tolerance_) (void)evaluate(x / length);
+    };
+    for (std::size_t i = 0; i < last_.count; ++i) {
+      for (std::size_t j = i + 1; j < last_.count; ++j) {
+        const Vector3d e = last_.vertex[j].p - last_.vertex[i].p;
+        consider(across(across(last_.vertex[i].p, e), e));
+        for (std::size_t k = j + 1; k < last_.count; ++k) {
+          const Vector3d n = e.cross(last_.vertex[k].p - last_.vertex[i].p);
+          if (n.squaredNorm() > 0) consider(faces.foot_on_plane(i, j, k, n, n.squaredNorm()));
+        }
+      }
+    }
   }
 
   bool closed() const { return std::sqrt(best_.squared) - contact_.lower <= tolerance_; }
@@ -70,6 +94,7 @@ class PolytopeDescent {
   const PlacedCore& b_;
   double tolerance_;
   CoreSimplex best_;
+  CoreSimplex last_;  // before it was reduced
   CoreContact contact_;
   int evaluations_ = 0;
 };
@@ -92,19 +117,27 @@ void refine(const PlacedCore& a, const PlacedCore& b, double size, double bound,
     const PlacedCore moved = b.moved(way);
     PolytopeDescent descent(a, moved, 2 * size);
     if (!descent.run(contact.n)) break;
-    CoreContact next = descent.contact();
-    next.b -= way;
-    next.lower = gap_across(a, b, next.n);
-    next.evaluations += contact.evaluations + 1;
-    if (!(next.lower > contact.lower)) {
-      next.n = contact.n;
-      next.lower = contact.lower;
+    if (!descent.closed()) descent.try_all_faces();
+    const CoreContact far = descent.contact();
+    const double lower = gap_across(a, b, far.n);
+    contact.evaluations += far.evaluations + 1;
+    bool improved = false;
+    if (lower > contact.lower) {
+      // The points may have to be found once more, along this normal.
+      contact.n = far.n;
+      contact.lower = lower;
+      if (std::isfinite(bound)) bound = bound_of(contact);
+      improved = true;
     }
-    const double next_bound = bound_of(next);
-    if (!(next_bound < bound)) break;
-    contact = next;
-    bound = next_bound;
-    if (bound <= kCoreRounding * size) break;
+    CoreContact next = contact;
+    next.a = far.a;
+    next.b = far.b - way;
+    if (const double next_bound = bound_of(next); next_bound < bound) {
+      contact = next;
+      bound = next_bound;
+      improved = true;
+    }
+    if (!improved || bound <= kCoreRounding * size) break;
   }
 }
 
@@ -130,7 +163,9 @@ CoreContact polytope_contact(const CoreView& a, const Eigen::Matrix3d& R_WA, con
   const bool apart = descent.run(start);
   CoreContact contact = descent.contact();
   if (!apart || !(contact.lower > 0)) return overlapping(placed_a, placed_b, size, contact.evaluations);
-  if (!descent.closed()) refine(placed_a, placed_b, size, bound_of(contact), contact);
+  // The points may be further apart than the simplex says, where rounding has spoilt their weights.
+  const double bound = bound_of(contact);
+  if (!descent.closed() || bound > 4 * kCoreRounding * size) refine(placed_a, placed_b, size, bound, contact);
   return contact;
 }
 

@@ -104,9 +104,6 @@ class SimplexFaces {
     }
   }
 
- private:
-  const Eigen::Vector3d& p(std::size_t k) const { return all_.vertex[k].p; }
-
   /// Returns the point of a triangle's plane closest to the origin, by the more accurate of two ways.
   ///
   /// The normal n has a direction error of e L / t, e an ulp, L the longest edge and t the height above it. The point
@@ -137,6 +134,9 @@ class SimplexFaces {
     const Eigen::Vector3d x = across(from);
     return x - x.dot(height) / height.squaredNorm() * height;
   }
+
+ private:
+  const Eigen::Vector3d& p(std::size_t k) const { return all_.vertex[k].p; }
 
   void edges(std::size_t i, std::size_t j, std::size_t k) {
     edge(i, j);
