@@ -5,6 +5,7 @@
 #include "sweep/table.h"
 #include "sweep/tasks/bundles.h"
 #include "sweep/tasks/cost.h"
+#include "sweep/tasks/cost_model.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -135,6 +136,7 @@ std::vector<PointRecord> points_along(const std::vector<double>& values, std::si
     value.real = x;
     record.point.name = record.directory = fmt::format("x={}", x);
     record.point.settings = {{"x", "", value, value}};
+    record.cost = hardbody::Cost{5, 500};
     if (list.size() < done) {
       record.status = PointStatus::done;
       record.results.emplace();
@@ -154,11 +156,18 @@ TEST(TaskCosts, AreBetweenThoseOfTheNeighbours) {
   EXPECT_GT(cost->seconds, 10 * std::pow(10, 0.4));
   EXPECT_LT(cost->seconds, 10 * std::pow(10, 0.8));
   EXPECT_EQ(cost->memory, 1000);
-  ASSERT_TRUE(costs.error());
-  EXPECT_GT(*costs.error(), 1);
-  EXPECT_LT(*costs.error(), 3);
-  EXPECT_FALSE(hardbody::Costs(points_along({0, 1}, 0)).of(0));
-  EXPECT_FALSE(hardbody::Costs(points_along({0, 1}, 2)).error());
+  EXPECT_GT(costs.error(), 1);
+  EXPECT_LT(costs.error(), 3);
+}
+
+TEST(TaskCosts, AreThoseOfConfigsWhereNothingIsDone) {
+  std::vector<PointRecord> points = points_along({0, 1}, 0);
+  const hardbody::Costs costs(points);
+  ASSERT_TRUE(costs.of(0));
+  EXPECT_EQ(costs.of(0)->seconds, 5);
+  EXPECT_EQ(costs.error(), hardbody::kCostModelFactor);
+  points[1].cost.reset();  // an invalid config
+  EXPECT_FALSE(costs.of(1));
 }
 
 TEST(TaskBundles, AreAsLongAsWished) {
