@@ -228,6 +228,11 @@ class Tasks(SweepCase):
         self.assertLess(time.monotonic() - begin, 60)
         self.assertTrue(self.summary("out/aspect_ratio=0.5")["interrupted"])
         self.assertFalse(os.path.exists(self.path("out/aspect_ratio=2")))
+        # A report shows the sweep as it is, without a table that was made before.
+        self.assertFalse(os.path.exists(self.path("out/sweep.csv")))
+        result = self.hardbody("report", "out")
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        self.assertEqual(self.statuses(), ["stopped", "pending"])
 
     def test_failed_along_a_chain(self):
         # The first cannot be run, and no task of the plan is for it; the others start from each other, each in a task of its own.

@@ -5,6 +5,11 @@
 #include "io/text_file.h"
 #include "report/assets.h"
 #include "report/page.h"
+#include "sweep/directory.h"
+#include "sweep/file.h"
+#include "sweep/plan.h"
+#include "sweep/state.h"
+#include "sweep/tasks/plan_file.h"
 
 #include <fmt/format.h>
 
@@ -71,8 +76,24 @@ std::string several_title(const std::vector<RunReport>& runs) {
   return fmt::format("{} runs: {}", runs.size(), title);
 }
 
+/// Brings the tables of a sweep up to date whose runs are tasks. Nobody else does while they run; a table that
+/// cannot be written is shown as it is.
+void collect_tasks(const fs::path& directory) {
+  if (!fs::exists(directory / kPlanFile) || !fs::exists(directory / kSweepFile)) return;
+  const SweepFile sweep = read_sweep(directory / kSweepFile);
+  try {
+    const DirectoryLock lock = share_directory(directory, sweep);
+    SweepState(directory, taken_up(directory, planned(sweep)), sweep.replicas).write_tables();
+  } catch (const InputError&) {
+    return;  // hardbody sweep is at work here, which writes them itself
+  } catch (const WriteError& error) {
+    console().say(error.what());
+  }
+}
+
 Report read_report(const std::vector<std::string>& directories) {
   Report report;
+  if (directories.size() == 1) collect_tasks(directories[0]);
   if (directories.size() == 1 && is_sweep(directories[0])) {
     report.sweep = read_sweep_report(directories[0]);
     report.title = report.sweep->title;
