@@ -40,7 +40,10 @@ CURVES = dict(
 
 # Functions and arguments that they accept.
 FUNCTIONS = {
-    "run": (hb.run, dict(config=CONFIG, out="out", overrides={"system.number": 40}, force=False, **CONSOLE)),
+    "run": (
+        hb.run,
+        dict(config=CONFIG, out="out", overrides={"system.number": 40}, force=False, replicas=2, **CONSOLE),
+    ),
     "run of a file": (hb.run, dict(config="run.toml", overrides=None, force=True, **CONSOLE)),
     "resume": (hb.resume, dict(run=RUN, overrides={"output.checkpoint_every": "9s"}, **CONSOLE)),
     "extend": (hb.extend, dict(run=RUN, time=20.0, **CONSOLE)),

@@ -168,6 +168,7 @@ def sweep(
     """
     name, text, directory = config_arguments(config, out)
     number = None if jobs is None else integer(jobs, "jobs", 1, _MOST_JOBS)
+    wished = real(task_time, "task_time")
     place = Path(directory or Path("out") / Path(name).stem)
     if client is not None:
         if number is not None:
@@ -176,7 +177,7 @@ def sweep(
             raise TypeError(f"client is {shown(client)}; accepted: None, or a dask.distributed.Client")
         if isinstance(progress, bool):
             raise ValueError("progress is a bool with a client; accepted: None, or a function")
-        arguments = (name, text, directory, assignments(overrides), real(task_time, "task_time"))
+        arguments = (name, text, directory, assignments(overrides), wished)
         _, plan, _ = call(_core.sweep_plan, *arguments, quiet=True)
         lost = run_tasks(client, str(place.resolve()), plan, progress)
         status, printed, _ = call(_core.sweep_collect, str(place), quiet=quiet)
