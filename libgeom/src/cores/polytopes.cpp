@@ -81,7 +81,7 @@ class PolytopeDescent {
 
   DifferenceVertex evaluate(const Vector3d& n) {
     ++evaluations_;
-    const DifferenceVertex v = difference_vertex(a_, b_, n);
+    DifferenceVertex v = difference_vertex(a_, b_, n);
     const double gap = n.dot(v.p);
     if (gap > contact_.lower) {
       contact_.lower = gap;

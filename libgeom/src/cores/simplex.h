@@ -111,7 +111,7 @@ class SimplexFaces {
   /// of that over its length: less for thin triangles that are not too near.
   Eigen::Vector3d foot_on_plane(std::size_t i, std::size_t j, std::size_t k, const Eigen::Vector3d& n,
                                 double n2) const {
-    const Eigen::Vector3d by_normal = n.dot(p(i)) / n2 * n;
+    Eigen::Vector3d by_normal = n.dot(p(i)) / n2 * n;
     const std::array<std::size_t, 3> corner{i, j, k};
     std::size_t opposite = 0;
     double longest2 = 0;
