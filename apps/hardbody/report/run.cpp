@@ -196,7 +196,7 @@ std::string bodies_title(const SpeciesConfig& species) {
 
 /// Returns the title of a species with the spread of its sizes.
 std::string sized_title(const SpeciesConfig& species) {
-  const std::string title = bodies_title(species);
+  std::string title = bodies_title(species);
   if (!species.sizes) return title;
   return fmt::format("{}, {} sizes of width {:.3g}", title, ed::to_string(*species.sizes), species.width);
 }
