@@ -73,7 +73,12 @@ FUNCTIONS = {
 # Options that messages name, where Python has refused the argument before.
 UNREACHABLE = ("--jobs is", "--out is empty", "--value is not given", "--levels", "--where {}: is not a condition")
 # Those of commands that Python does not have.
-UNREACHABLE += ("--template {}", "--force cannot be combined with --replicas")
+UNREACHABLE += (
+    "--template {}",
+    "--force cannot be combined with --replicas",
+    "command line: --on",
+    "snakemake --version",
+)
 SOURCES = pathlib.Path(__file__).resolve().parents[2] / "apps"
 
 
@@ -154,7 +159,7 @@ def count(value):
 
 # What the extension takes after the functions of the console.
 TAKEN = {
-    "run": (utf8, text_or_none, text_or_none, texts, flag),
+    "run": (utf8, text_or_none, text_or_none, texts, flag, count, texts),
     "resume": (utf8, texts),
     "extend": (utf8, real_or_none),
     "sweep": (utf8, text_or_none, text_or_none, lambda value: value is None or count(value), texts, texts),

@@ -177,8 +177,7 @@ def sweep(
             raise TypeError(f"client is {shown(client)}; accepted: None, or a dask.distributed.Client")
         if isinstance(progress, bool):
             raise ValueError("progress is a bool with a client; accepted: None, or a function")
-        arguments = (name, text, directory, assignments(overrides), wished)
-        _, plan, _ = call(_core.sweep_plan, *arguments, quiet=True)
+        _, plan, _ = call(_core.sweep_plan, name, text, directory, assignments(overrides), wished, quiet=True)
         lost = run_tasks(client, str(place.resolve()), plan, progress)
         status, printed, _ = call(_core.sweep_collect, str(place), quiet=quiet)
         return _swept(place, status, "; ".join([printed.strip(), *lost]))

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import json
 import subprocess
+import sys
 import time
 from pathlib import Path
 from typing import Any
 
-from hardbody._calls import worker_program
 from hardbody._typing import Progress
 
 _DONE = 0
@@ -29,7 +29,7 @@ def run_task(directory: str, task: int, *_after: int) -> int:
     It is called by workers, on which hardbody is installed and which see the directory under the same name.
     """
     file = str(Path(directory) / "sweep.toml")
-    command = [*worker_program(), "sweep", "point", file, str(task), "--out", directory]
+    command = [sys.executable, "-m", "hardbody", "sweep", "point", file, str(task), "--out", directory]
     for _ in range(_ATTEMPTS):
         done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False)
         if done.returncode in (_DONE, _FAILED):
