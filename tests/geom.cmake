@@ -52,3 +52,6 @@ hardbody_test(geom_accuracy_test accuracy accuracy/geom_cores_table_test.cpp acc
   accuracy/geom_table_test.cpp)
 
 hardbody_kernel_symbols_test(geom_kernel_symbols hardbody_geom batch/kernel _ZN4geom6kernel[0-9]+batch_kernels_)
+# Signs are judged in quadruple precision: double is promoted everywhere, on purpose.
+set_source_files_properties(unit/geom/cores/exact_side_test.cpp PROPERTIES
+  COMPILE_OPTIONS -Wno-double-promotion SKIP_UNITY_BUILD_INCLUSION ON)

@@ -30,7 +30,7 @@ class PlacedCore {
 
   /// Returns the vertex furthest along n. One vertex always has the same coordinates.
   CoreVertex vertex(const Eigen::Vector3d& n) const {
-    if (core_.kind == CoreKind::hull) {
+    if (core_.hull != nullptr) {
       const int k = support_vertex(*core_.hull, R_.transpose() * n);
       return {t_ + R_ * core_.hull->vertices.row(k).transpose(), k};
     }

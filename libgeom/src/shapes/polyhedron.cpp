@@ -60,6 +60,7 @@ ConvexPolyhedron ConvexPolyhedron::in_principal_frame(std::span<const Vector3d> 
   if (axes.determinant() < 0) axes.col(0) *= -1;
   const Vector3d centre = middle + unit * m.centre;
   std::vector<Vector3d> moved;
+  moved.reserve(static_cast<std::size_t>(hull.vertices.rows()));
   for (Eigen::Index k = 0; k < hull.vertices.rows(); ++k) {
     moved.emplace_back(axes.transpose() * (hull.vertices.row(k).transpose() - centre));
   }
@@ -69,6 +70,7 @@ ConvexPolyhedron ConvexPolyhedron::in_principal_frame(std::span<const Vector3d> 
 
 ConvexPolyhedron ConvexPolyhedron::scaled(double factor) const {
   std::vector<Vector3d> points;
+  points.reserve(static_cast<std::size_t>(vertex_count()));
   for (int k = 0; k < vertex_count(); ++k) points.emplace_back(factor * vertex(k));
   return ConvexPolyhedron(points);
 }
