@@ -30,12 +30,14 @@ class GEOM_EXPORT Sphere {
   /// Returns f(x) = |x / radius|^2 - 1: negative inside.
   double value(const Eigen::Vector3d& x) const { return (x / radius_).squaredNorm() - 1; }
   Eigen::Vector3d gradient(const Eigen::Vector3d& x) const { return 2 / radius_ * (x / radius_); }  ///< gradient of f
-  Eigen::Matrix3d hessian(const Eigen::Vector3d& /*x*/) const {                                     ///< Hessian of f
+  /// Returns the Hessian of f.
+  Eigen::Matrix3d hessian(const Eigen::Vector3d& /*x*/) const {
     return 2 / radius_ / radius_ * Eigen::Matrix3d::Identity();
   }
 
   /// Returns h(n) = radius |n| and the support point radius n / |n|; n != 0, any length.
   Support support(const Eigen::Vector3d& n) const { return kernel::swept_support(core(), n); }
+  /// Returns hess h.
   Eigen::Matrix3d support_hessian(const Eigen::Vector3d& n) const { return kernel::ball_hessian(radius_, n); }
 
   double bounding_radius() const { return radius_; }       ///< the radius
