@@ -55,7 +55,9 @@ class Rounded {
   double radius_;
 };
 
+namespace kernel {
 template <class Inner>
-inline constexpr bool kernel::kIsRounded<Rounded<Inner>> = true;
+inline constexpr bool kIsRounded<Rounded<Inner>> = true;
+}  // namespace kernel
 
 }  // namespace geom
