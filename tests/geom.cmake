@@ -7,6 +7,7 @@ hardbody_test(geom_unit_test unit
   unit/geom/cores/core_distance_test.cpp
   unit/geom/cores/core_queries_test.cpp
   unit/geom/cores/core_shapes_test.cpp
+  unit/geom/cores/capsule_smooth_test.cpp
   unit/geom/cores/exact_side_test.cpp
   unit/geom/cores/half_space_test.cpp
   unit/geom/cores/polyhedron_test.cpp

@@ -32,7 +32,7 @@ std::string number_line(const std::string& name, const ed::Estimate& value, cons
   return fmt::format("  {:<15} {:<22} {:<14} {}\n", name, format_estimate(value), unit, remark);
 }
 
-/// All observables of a part; of spheres none that is about orientation.
+/// Lines of all observables of a part; of spheres none that is about orientation.
 std::string observable_lines(const Part& part) {
   std::string text;
   for (const Observable* o : observables_by(&Places::reading)) {

@@ -204,7 +204,7 @@ class Sweep(_Directory):
 
     @property
     def agreement(self) -> Table:
-        """One row per observable of each point: errors from within and between replicas, chi-square, outlier."""
+        """Rows of each observable of each point: errors from within and between replicas, chi-square, outlier."""
         file = self._absolute / "agreement.csv"
         if not file.is_file():
             raise ValueError(f"{file} is not there; accepted: a sweep with replicas")

@@ -16,7 +16,7 @@ Strings = NDArray[np.str_]
 
 
 class RotationLike(Protocol):
-    """One rotation, as of scipy.spatial.transform.Rotation."""
+    """Rotation, as of scipy.spatial.transform.Rotation."""
 
     def as_matrix(self) -> Any:
         """Returns the rotation matrix, shape (3, 3)."""

@@ -3,16 +3,8 @@
 /// Included once by each cells/kernels_*.cpp, which sets HARDBODY_CELL_KERNEL, the function's name, and is compiled for
 /// its own instruction set. All give the bits of nearest_image (periodic.h).
 
-// Instructions that the kernel does not need are not required of the processor.
-#define HWY_DISABLE_PCLMUL_AES
-#define HWY_DISABLE_F16C
-// Highway's checks would call its library.
-#undef HWY_IS_DEBUG_BUILD
-#define HWY_IS_DEBUG_BUILD 0
-
+#include "base/highway-inl.h"
 #include "cells/kernels.h"
-
-#include <hwy/highway.h>
 
 #include <cstddef>
 #include <cstdint>

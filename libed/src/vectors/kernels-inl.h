@@ -6,13 +6,7 @@
 /// A lane gives the bits that the code for one pair gives: the same formulas in the same order, without fused
 /// multiply-add. What a lane computes does not depend on its neighbours.
 
-// Processor features that the kernels do not use are not required.
-#define HWY_DISABLE_PCLMUL_AES
-#define HWY_DISABLE_F16C
-// Highway's checks would call its library.
-#undef HWY_IS_DEBUG_BUILD
-#define HWY_IS_DEBUG_BUILD 0
-
+#include "base/highway-inl.h"
 #include "vectors/kernels.h"
 
 #include "vectors/look_kernel-inl.h"

@@ -1,15 +1,8 @@
 /// The kernel of sums of products of phases, four bodies at a time. Included by vectors/products_avx2.cpp and
 /// products_avx512.cpp, which set HARDBODY_PRODUCT_KERNEL, the function's name (vectors/kernels-inl.h says why).
 
-#define HWY_DISABLE_PCLMUL_AES
-#define HWY_DISABLE_F16C
-// Highway's checks would call its library.
-#undef HWY_IS_DEBUG_BUILD
-#define HWY_IS_DEBUG_BUILD 0
-
+#include "base/highway-inl.h"
 #include "vectors/products.h"
-
-#include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace ed::internal {

@@ -20,7 +20,7 @@ class GEOM_EXPORT Sphere {
 
   double radius() const { return radius_; }  ///< radius of the ball
 
-  std::optional<int> symmetry_axis() const { return 2; }  ///< any axis is one of revolution; z
+  std::optional<int> symmetry_axis() const { return 2; }  ///< axis of revolution: z, as every axis is one
   bool has_vertices() const { return false; }  ///< whether the second derivatives of f are unbounded on the surface
   /// Returns the sphere of `factor` times the size. Throws as the constructor does.
   Sphere scaled(double factor) const { return Sphere(factor * radius_); }

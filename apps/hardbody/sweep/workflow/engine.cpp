@@ -26,8 +26,7 @@ namespace fs = std::filesystem;
 constexpr int kOldestSnakemake = 8;
 constexpr const char* kInstall =
     "Snakemake 8 or newer: pip install snakemake snakemake-executor-plugin-slurm, in a virtual environment whose bin "
-    "is "
-    "in PATH";
+    "is in PATH";
 
 bool is_in_path(const char* program) {
   const char* path = std::getenv("PATH");

@@ -75,17 +75,6 @@ struct Columns {
         iterations(new_array<std::int32_t>({rows})),
         status(new_array<std::uint8_t>({rows})) {}
 
-  void put(std::size_t row, const DistanceResult& r) const {
-    distance.data[row] = r.distance;
-    Eigen::Vector3d::Map(normal.data + 3 * row) = r.normal;
-    Eigen::Vector3d::Map(point_a.data + 3 * row) = r.point_a;
-    Eigen::Vector3d::Map(point_b.data + 3 * row) = r.point_b;
-    error_bound.data[row] = r.error_bound;
-    residual.data[row] = r.residual;
-    iterations.data[row] = r.iterations;
-    status.data[row] = static_cast<std::uint8_t>(r.status);
-  }
-
   /// Puts answers of successive rows, column by column.
   void put(std::size_t row, std::span<const DistanceResult> results) const {
     put_column(distance, row, results, [](const DistanceResult& r) { return r.distance; });
@@ -215,7 +204,9 @@ class Distances {
       } else {
         geom::DistanceOptions options = options_;
         options.start = query_.start(row);
-        out_.put(row, geom::distance(query_.bodies.shape(a), *X_WA, query_.bodies.shape(b), *X_WB, options));
+        const DistanceResult found =
+            geom::distance(query_.bodies.shape(a), *X_WA, query_.bodies.shape(b), *X_WB, options);
+        out_.put(row, std::span(&found, 1));
         ++redone;
       }
     }
@@ -232,7 +223,7 @@ class Distances {
     if (block.rows[block.count - 1] - block.rows[0] == block.count - 1) {
       out_.put(block.rows[0], std::span(block.found).first(block.count));
     } else {
-      for (std::size_t k = 0; k < block.count; ++k) out_.put(block.rows[k], block.found[k]);
+      for (std::size_t k = 0; k < block.count; ++k) out_.put(block.rows[k], std::span(&block.found[k], 1));
     }
     block.count = 0;
     return summary.redone;

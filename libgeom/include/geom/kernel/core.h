@@ -24,7 +24,7 @@ struct HullEdge {
 
 /// Convex polyhedron with all faces, edges and vertices, none of them degenerate.
 struct Hull {
-  Eigen::Matrix<double, Eigen::Dynamic, 3> vertices;  ///< one a row
+  Eigen::Matrix<double, Eigen::Dynamic, 3> vertices;  ///< rows with the coordinates of one vertex each
   std::vector<Eigen::Vector3d> normals;               ///< unit outward normal of each face
   std::vector<double> offsets;          ///< distance of each face from the origin: its normal times the furthest vertex
   std::vector<std::vector<int>> faces;  ///< vertices of each face, anticlockwise seen from outside
