@@ -46,7 +46,7 @@ ed::ObservablesOptions options_for(const ed::System& system, const std::vector<e
   options.time_unit = ed::time_unit(system);
   options.wave_numbers = ed::wave_numbers_about(ed::structure_peak(system));
   for (const ed::Component& c : components) {
-    options.groups.push_back({c.number, ed::symmetry_axis(c.species) ? 2 : 3});
+    options.groups.push_back({c.number, ed::symmetry_axis(c.species) ? 2 : 3, !ed::is_sphere(c.species.shape)});
   }
   return options;
 }

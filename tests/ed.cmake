@@ -6,6 +6,7 @@ hardbody_test(ed_unit_test unit
   unit/ed/neighbours/paper_envelopes_test.cpp
   unit/ed/loop/added_events_test.cpp
   unit/ed/loop/event_loop_test.cpp
+  unit/ed/loop/kernel_trial_test.cpp
   unit/ed/loop/loop_parts_test.cpp
   unit/ed/loop/poll_test.cpp
   unit/ed/loop/prefetch_events_test.cpp

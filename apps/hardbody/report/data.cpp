@@ -108,6 +108,12 @@ Json view_json(const View& view) {
           {"note", view.note}};
 }
 
+/// Returns whether a value is one of the orientation, which spheres do not have.
+bool is_of_orientation(const std::string& key) {
+  const Observable* known = find_observable(key);
+  return known != nullptr && known->of_orientation;
+}
+
 Json headlines_json(const std::vector<Headline>& headlines, Detail detail) {
   Json list = Json::array();
   for (const Headline& h : headlines) {
@@ -120,6 +126,7 @@ Json headlines_json(const std::vector<Headline>& headlines, Detail detail) {
                     {"name", h.name},
                     {"unit", h.unit},
                     {"meaning", h.meaning},
+                    {"of_orientation", is_of_orientation(h.key)},
                     {"value", number_json(h.value)},
                     {"error", number_json(h.error)},
                     {"missing", h.missing}});
@@ -252,6 +259,7 @@ Json point_json(const SweepPointReport& point, bool embedded) {
           {"equilibrated", point.equilibrated},
           {"directory", point.directory},
           {"embedded", embedded},
+          {"oriented", !point.run || point.run->oriented},
           {"group", point.group}};
 }
 

@@ -100,6 +100,7 @@ export class SweepMap {
   draw() {
     if (!this.x || !this.element.clientWidth) return;
     const g = this.geometry();
+    if (g.width <= g.margin.left + g.margin.right) return;
     this.g = g;
     const ratio = window.devicePixelRatio;
     this.canvas.width = Math.round(g.width * ratio);

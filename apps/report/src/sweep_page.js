@@ -247,7 +247,9 @@ class SweepPage {
   showPoint(index) {
     const point = this.sweep.points[index];
     const run = point.embedded ? pointRun(index) : null;
-    const headlines = this.sweep.observables.map((o, k) => ({ ...o, value: point.values[k]?.[0] ?? null, error: point.values[k]?.[1] ?? null, missing: point.values[k]?.[2] }));
+    const headlines = this.sweep.observables
+      .map((o, k) => ({ ...o, value: point.values[k]?.[0] ?? null, error: point.values[k]?.[1] ?? null, missing: point.values[k]?.[2] }))
+      .filter((o) => point.oriented || !o.of_orientation);
     const title = this.varied.map((k) => `${this.keyName(k)} ${this.axes[k].text(point.keys[k])}`).join(', ');
     const notes = [];
     if (point.status !== 'done' || point.message) notes.push(h('p', { class: 'notice' }, `${point.status}${point.message ? `: ${point.message}` : ''}`));

@@ -26,7 +26,7 @@ struct BodyGroup {
   /// their Species; spin excluded), 3 for others.
   int rotation_axes = 2;
   /// False for spheres: they have no orientation, and averages over all bodies of what depends on one are over the
-  /// other groups (over all, if no group has one).
+  /// other groups; missing, if no group has one.
   bool oriented = true;
 };
 

@@ -205,6 +205,10 @@ class ED_EXPORT Simulation {
   /// Fills `snapshot` with all bodies at time().
   void sample(Snapshot& snapshot) const;
 
+  /// Fills `snapshot` with positions and velocities alone, in a fraction of the time: what belongs to orientations and
+  /// rotations is zero.
+  void sample_translations(Snapshot& snapshot) const;
+
   /// Starts recording: collisions() will hold the next `number` collisions.
   void record_collisions(std::size_t number);
   const std::vector<Collision>& collisions() const;  ///< collisions recorded so far

@@ -5,6 +5,8 @@
 #include "bodies/pair.h"
 #include "contact/certified.h"
 
+#include <geom/batch.h>
+
 #include <span>
 
 namespace ed::internal {
@@ -26,6 +28,9 @@ class FirstLooks {
   /// Searches where it can, sets finding and normal, and counts, all as certified_contact with one evaluation does, bit
   /// for bit. The other looks stay unanswered. Pairs are in the nearest image.
   virtual void take(const Bodies& bodies, double now, double box, std::span<PairLook> looks, FinderCounters& count) = 0;
+
+  /// Uses the kernels of an instruction set from now on.
+  virtual void use(const Bodies& bodies, geom::InstructionSet set) = 0;
 };
 
 }  // namespace ed::internal

@@ -45,9 +45,13 @@ const double* numbers(const AxisMotion& motion) {
 }  // namespace
 
 UniaxialLooks::UniaxialLooks(const UniaxialBodies& bodies, const UniaxialKernels& kernels)
-    : kernel_(bodies.spins() ? kernels.look_spinning : kernels.look_across), one_kind_(bodies.kinds().size() == 1) {
+    : kernel_(kernel_of(bodies, kernels)), one_kind_(bodies.kinds().size() == 1) {
   if (!one_kind_) return;
   for (int lane = 0; lane < kBlockLooks; ++lane) internal::put(bodies.kinds()[0], bodies.kinds()[0], in_, lane);
+}
+
+void UniaxialLooks::use(const UniaxialBodies& bodies, geom::InstructionSet set) {
+  kernel_ = kernel_of(bodies, bodies.kernels(set));
 }
 
 void UniaxialLooks::put(const UniaxialBodies& bodies, const PairLook& look, int lane) {

@@ -17,8 +17,12 @@ class UniaxialLooks final : public FirstLooks<UniaxialBodies> {
 
   void take(const UniaxialBodies& bodies, double now, double box, std::span<PairLook> looks,
             FinderCounters& count) override;
+  void use(const UniaxialBodies& bodies, geom::InstructionSet set) override;
 
  private:
+  static LookKernel* kernel_of(const UniaxialBodies& bodies, const UniaxialKernels& kernels) {
+    return bodies.spins() ? kernels.look_spinning : kernels.look_across;
+  }
   void put(const UniaxialBodies& bodies, const PairLook& look, int lane);
   void read(int lane, PairLook& look, FinderCounters& count) const;
 

@@ -9,9 +9,9 @@ using geom::InstructionSet;
 
 namespace {
 
-/// Returns the fastest instruction set of the event loop. On one of Intel's processors AVX2 made 6 % more collisions a
-/// second than AVX-512 in eight runs, and 3 % fewer in a ninth (`bench_engine --benchmark_filter=vectors/`): the loop
-/// around the kernels is slower after instructions of 512 bits. On one of AMD's AVX2 makes 3 % fewer.
+/// Returns the instruction set that is usually the fastest of the event loop; KernelTrial tries the others. On one of
+/// Intel's processors AVX2 made 6 % more collisions a second than AVX-512 in eight runs, and 3 % fewer in a ninth
+/// (`bench_engine --benchmark_filter=vectors/`). On one of AMD's AVX2 makes 3 % fewer.
 InstructionSet best_in_the_loop() {
   const InstructionSet set = geom::batch_instruction_set();
 #ifdef HARDBODY_X86_KERNELS

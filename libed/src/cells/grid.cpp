@@ -38,6 +38,10 @@ CellGrid::CellGrid(int number, double box, double reach, const std::optional<geo
 }
 
 /// Returns the number along an edge for which the fewest blocks are tested.
+void CellGrid::use(geom::InstructionSet set) {
+  kernel_ = find_cell_kernel(set);
+}
+
 int CellGrid::choose_cells(int number, double box, double reach) {
   const double most = std::min(most_cells(at(number)), kNarrowest * box / reach);
   int best = 1;

@@ -29,6 +29,9 @@ class CellGrid {
   CellGrid(int number, double box, double reach,
            const std::optional<geom::InstructionSet>& batches = geom::InstructionSet::best);
 
+  /// Uses the kernel of an instruction set from now on.
+  void use(geom::InstructionSet set);
+
   /// Puts body i (whether placed before or not) at `position`; any image.
   void place(int i, const Eigen::Vector3d& position);
 

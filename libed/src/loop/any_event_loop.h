@@ -4,6 +4,8 @@
 
 #include <ed/simulation.h>
 
+#include <geom/batch.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -34,10 +36,16 @@ class AnyEventLoop {
   virtual Eigen::Matrix3d virial_tensor() const = 0;
   virtual System system() const = 0;
   virtual void sample(Snapshot& snapshot) const = 0;
+  virtual void sample_translations(Snapshot& snapshot) const = 0;
   virtual void record_collisions(std::size_t number) = 0;
   virtual const std::vector<Collision>& collisions() const = 0;
   virtual const std::vector<FailedPair>& failures() const = 0;
   virtual const std::optional<Stall>& stall() const = 0;
+
+  /// Returns whether kernels of several instruction sets can take the pairs.
+  virtual bool has_kernels() const = 0;
+  /// Uses the kernels of an instruction set from now on, which changes no bits; only with has_kernels().
+  virtual void use(geom::InstructionSet set) = 0;
 
   /// Writes the whole state between two events, except for what the constructor makes of species and options.
   virtual void save(Writer& writer) const = 0;

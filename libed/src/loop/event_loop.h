@@ -44,10 +44,13 @@ class EventLoop final : public AnyEventLoop {
   Eigen::Matrix3d virial_tensor() const override { return parts_.collisions.virial_tensor(); }
   System system() const override;
   void sample(Snapshot& snapshot) const override;
+  void sample_translations(Snapshot& snapshot) const override;
   void record_collisions(std::size_t number) override { parts_.collisions.start_record(number); }
   const std::vector<Collision>& collisions() const override { return parts_.collisions.recorded(); }
   const std::vector<FailedPair>& failures() const override { return parts_.failures.pairs(); }
   const std::optional<Stall>& stall() const override { return watch_.stall(); }
+  bool has_kernels() const override { return parts_.predictor.has_first_looks(); }
+  void use(geom::InstructionSet set) override { parts_.use(set); }
   void save(Writer& writer) const override;
 
   const Law& law() const { return parts_.law; }

@@ -90,6 +90,21 @@ void EventLoop<Bodies, Law, Added>::sample(Snapshot& snapshot) const {
   }
 }
 
+template <class Bodies, CollisionLaw Law, class Added>
+void EventLoop<Bodies, Law, Added>::sample_translations(Snapshot& snapshot) const {
+  snapshot.time = time();
+  snapshot.position.resize(at(number()));
+  snapshot.velocity.resize(at(number()));
+  for (auto* zero : {&snapshot.axis, &snapshot.phi_lab, &snapshot.phi_body, &snapshot.angular_velocity}) {
+    zero->assign(at(number()), Eigen::Vector3d::Zero());
+  }
+  snapshot.rotation.assign(Bodies::kSamplesRotations ? at(number()) : 0, Eigen::Matrix3d::Zero());
+  for (int i = 0; i < number(); ++i) {
+    snapshot.position[at(i)] = parts_.box.unwrapped(i, parts_.bodies.position_at(i, parts_.now()));
+    snapshot.velocity[at(i)] = parts_.bodies.velocity(i);
+  }
+}
+
 // ---- Run -----------------------------------------------------------------------------------------------------------
 
 template <class Bodies, CollisionLaw Law, class Added>

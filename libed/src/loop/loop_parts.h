@@ -53,6 +53,8 @@ struct LoopParts {
   /// Makes room, so that nothing allocates while events are processed unless a list becomes longer than any before.
   void reserve();
   void start_epoch();
+  /// Uses the kernels of an instruction set from now on; there must be first looks.
+  void use(geom::InstructionSet set);
 
   // Prefetching, in large systems only (see `ahead`).
   EventSources<Bodies> sources() const {
@@ -199,6 +201,13 @@ void LoopParts<Bodies, Law, Added>::start_epoch() {
   added.start_epoch(clock.epoch());
   clock.start_epoch();
   schedule.reschedule_all();
+}
+
+template <class Bodies, CollisionLaw Law, class Added>
+void LoopParts<Bodies, Law, Added>::use(geom::InstructionSet set) {
+  options.batches = set;
+  predictor.use(set);
+  neighbourhood.use(set);
 }
 
 }  // namespace ed::internal

@@ -1,5 +1,7 @@
 #include "base/archive.h"
+#include "cells/choose.h"
 #include "loop/any_event_loop.h"
+#include "loop/parts/kernel_trial.h"
 #include "neighbours/cell.h"
 
 #include <ed/archive_simulation.h>
@@ -9,8 +11,12 @@
 #include <geom/tolerances.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <memory>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -21,13 +27,42 @@ namespace ed {
 
 class Simulation::Impl {
  public:
-  explicit Impl(std::unique_ptr<internal::AnyEventLoop> loop) : loop_(std::move(loop)) {}
+  Impl(std::unique_ptr<internal::AnyEventLoop> loop, const SimulationOptions& options) : loop_(std::move(loop)) {
+    using geom::InstructionSet;
+    if (options.batches != InstructionSet::best || !loop_->has_kernels()) return;
+    const InstructionSet usual = internal::chosen_in_the_loop(InstructionSet::best);
+    for (const InstructionSet other : {InstructionSet::avx2, InstructionSet::avx512}) {
+      if (usual > InstructionSet::portable && other != usual && geom::is_available(other)) trial_.emplace(usual, other);
+    }
+  }
   internal::AnyEventLoop* operator->() { return loop_.get(); }
   const internal::AnyEventLoop* operator->() const { return loop_.get(); }
 
+  bool run_until(double time, std::uint64_t max_collisions, std::uint64_t max_events);
+
  private:
   std::unique_ptr<internal::AnyEventLoop> loop_;
+  std::optional<internal::KernelTrial> trial_;  ///< until it is over
 };
+
+bool Simulation::Impl::run_until(double time, std::uint64_t max_collisions, std::uint64_t max_events) {
+  // Slices do not know how many events they process.
+  while (trial_ && max_events == ~std::uint64_t{0} && max_collisions > 0) {
+    const std::uint64_t before = loop_->counters().collisions;
+    const std::uint64_t slice = std::min(max_collisions, trial_->left());
+    const auto begin = std::chrono::steady_clock::now();
+    const bool reached = loop_->run_until(time, slice, max_events);
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
+    const std::uint64_t done = loop_->counters().collisions - before;
+    const geom::InstructionSet used = trial_->current();
+    trial_->add(done, seconds.count());
+    if (trial_->current() != used) loop_->use(trial_->current());
+    if (trial_->over()) trial_.reset();
+    max_collisions -= done;
+    if (done < slice) return reached;
+  }
+  return loop_->run_until(time, max_collisions, max_events);
+}
 
 namespace {
 
@@ -152,7 +187,7 @@ Neighbours fastest_neighbours(const BodyShape& shape, int number, double packing
 
 Simulation::Simulation(const System& system, const SimulationOptions& options) {
   check_start(system, options.poll);
-  impl_ = std::make_unique<Impl>(internal::make_event_loop(system, options));
+  impl_ = std::make_unique<Impl>(internal::make_event_loop(system, options), options);
 }
 
 Simulation::Simulation(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -192,7 +227,7 @@ Simulation Simulation::restore(std::string_view state, const std::vector<Species
   auto loop = internal::load_event_loop(system, options, reader);
   reader.finish();
   internal::expect(reader, is_finite(*loop), "a number is not finite");
-  return Simulation(std::make_unique<Impl>(std::move(loop)));
+  return Simulation(std::make_unique<Impl>(std::move(loop), options));
 }
 
 Simulation::~Simulation() = default;
@@ -229,6 +264,9 @@ System Simulation::system() const {
 void Simulation::sample(Snapshot& snapshot) const {
   (*impl_)->sample(snapshot);
 }
+void Simulation::sample_translations(Snapshot& snapshot) const {
+  (*impl_)->sample_translations(snapshot);
+}
 void Simulation::record_collisions(std::size_t number) {
   (*impl_)->record_collisions(number);
 }
@@ -248,7 +286,7 @@ Counters Simulation::counters() const {
 
 bool Simulation::run_until(double time, std::uint64_t max_collisions, std::uint64_t max_events) {
   if (std::isnan(time)) throw std::invalid_argument("run_until: time is not a number");
-  return (*impl_)->run_until(time, max_collisions, max_events);
+  return impl_->run_until(time, max_collisions, max_events);
 }
 
 void Simulation::run_collisions(std::uint64_t number) {

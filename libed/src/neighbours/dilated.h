@@ -147,6 +147,8 @@ class DilatedEnvelopes final : public Envelopes<UniaxialBodies> {
     }
   }
 
+  void use(const UniaxialBodies& bodies, geom::InstructionSet set) override { kernel_ = bodies.kernels(set).overlap; }
+
   void save(Writer& writer) const override { fields(writer, *this); }
   void load(Reader& reader) override { fields(reader, *this); }
 

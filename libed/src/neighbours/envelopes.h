@@ -10,6 +10,8 @@
 #include "base/periodic.h"
 #include "cells/near_body.h"
 
+#include <geom/batch.h>
+
 #include <Eigen/Core>
 
 #include <span>
@@ -72,6 +74,9 @@ class Envelopes {
   virtual Eigen::Vector3d image(int /*i*/, int /*k*/, const Eigen::Vector3d& d, double box) const {
     return nearest_image(d, box);
   }
+
+  /// Uses the kernels of an instruction set from now on, if it uses any.
+  virtual void use(const Bodies& /*bodies*/, geom::InstructionSet /*set*/) {}
 
   /// Writes and reads places and sizes; to be read by envelopes of the same bodies and kind.
   virtual void save(Writer& writer) const = 0;

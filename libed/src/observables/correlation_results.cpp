@@ -69,9 +69,7 @@ double CorrelationResults::mean_rotation_axes(std::size_t group) const {
 /// and the same motion, and their scatter, which is rounding, is no error. Rounding grows with time: of spheres it need
 /// not be asked.
 bool CorrelationResults::unturned(std::size_t group) const {
-  const auto is_oriented = [](const BodyRange& range) { return range.oriented; };
-  const std::vector<BodyRange>& ranges = measured_.ranges;
-  if (group == kAll ? std::none_of(ranges.begin(), ranges.end(), is_oriented) : !ranges[group].oriented) return true;
+  if (group == kAll ? !measured_.any_oriented() : !measured_.ranges[group].oriented) return true;
   std::vector<double> c2;
   for (const Block* block : averages_.full_blocks()) {
     const Curve all = averages_.curve(group, {block, nullptr}, [](const LagSums& s) { return s.c2; });
@@ -317,6 +315,10 @@ void CorrelationResults::add_heterogeneity(std::size_t group, Correlations& resu
     }
     return at < curve.t.size() ? curve.t[at] : kNothing;
   });
+  // The maximum lies anywhere between the middles of the neighbouring intervals.
+  const double before = highest == results.lags.data() ? highest->lag : highest[-1].lag;
+  const double width = 0.5 * (highest[1].lag - before);
+  results.t_chi4.error = std::hypot(results.t_chi4.error, width / std::sqrt(12.0));
 }
 
 void CorrelationResults::add_axes(std::size_t group, Correlations& results) const {

@@ -60,8 +60,11 @@ void add_rotations(const Snapshot& a, const Snapshot& b, BodyRange range, LagSum
 }
 
 void add_velocities(const Snapshot& a, const Snapshot& b, BodyRange range, LagSums& sums) {
+  for (std::size_t i = range.begin; i < range.end; ++i) sums.vacf += a.velocity[i].dot(b.velocity[i]);
+}
+
+void add_angular_velocities(const Snapshot& a, const Snapshot& b, BodyRange range, LagSums& sums) {
   for (std::size_t i = range.begin; i < range.end; ++i) {
-    sums.vacf += a.velocity[i].dot(b.velocity[i]);
     sums.wacf += a.angular_velocity[i].dot(b.angular_velocity[i]);
   }
 }
@@ -102,9 +105,12 @@ LagSums correlate(const Snapshot& a, const Snapshot& b, BodyRange range, std::sp
   LagSums sums;
   sums.directed = directed_sums(a, b, range.begin, range.end, director);
   add_displacements(a, b, range, wave_numbers, overlap_length, sums);
-  add_rotations(a, b, range, sums);
   add_velocities(a, b, range, sums);
-  if (range.three_axes) add_axes(a, b, range, sums);
+  if (range.oriented) {
+    add_rotations(a, b, range, sums);
+    add_angular_velocities(a, b, range, sums);
+    if (range.three_axes) add_axes(a, b, range, sums);
+  }
   LagSums means;
   means.add(sums, 1 / range.size());
   means.count = 1;

@@ -61,9 +61,9 @@ void fields(Archive& archive, T& s) {
           s.rot_msd_axis, s.c1_axis, s.c2_axis, s.f_self, s.directed);
 }
 
-/// Returns averages over the bodies of a range, with c1_axis and c2_axis if it has three axes: rotations are read only
-/// then. Bodies overlap with where they were if they have moved by less than `overlap_length`. `director` is that of
-/// the earlier frame.
+/// Returns averages over the bodies of a range: what depends on orientations or rotations if it is oriented, with
+/// c1_axis and c2_axis if it has three axes (rotations are read only then). Bodies overlap with where they were if they
+/// have moved by less than `overlap_length`. `director` is that of the earlier frame.
 ///
 /// F_self is averaged over all directions of q: sin(q r) / (q r), r the displacement, which a box does not confine.
 LagSums correlate(const Snapshot& a, const Snapshot& b, BodyRange range, std::span<const double> wave_numbers,

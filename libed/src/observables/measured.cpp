@@ -123,6 +123,7 @@ void Measured::make_groups() {
   }
   double oriented = 0;
   for (const BodyGroup& group : options.groups) oriented += group.oriented ? group.number : 0;
+  if (!any_oriented()) gaps.without_orientations();
   weights_of_rotations = weights;
   for (std::size_t g = 0; g < ranges.size() && oriented > 0 && oriented < options.number; ++g) {
     weights_of_rotations[g] = ranges[g].oriented ? ranges[g].size() / oriented : 0;

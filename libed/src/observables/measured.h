@@ -14,6 +14,7 @@
 
 #include <Eigen/Core>
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -88,6 +89,9 @@ struct Gaps {
   Gap rotations{};              ///< angular velocities and their integrals
   Gap velocities{};             ///< velocities in single frames
   Gap velocity_correlations{};  ///< the VACF
+
+  /// Says that no body has an orientation.
+  void without_orientations() { orientations = turning = rotations = MissingReason::no_orientation; }
 };
 
 /// Blocks, and the lags, groups and grids that their sums refer to.
@@ -146,6 +150,10 @@ struct Measured {
   void add_order(const Snapshot& now, Block& block) const;
 
   StructureParts parts() const { return {ranges.size()}; }
+
+  bool any_oriented() const {
+    return std::any_of(ranges.begin(), ranges.end(), [](const BodyRange& range) { return range.oriented; });
+  }
 
   /// Returns whether some groups have an orientation and others have none.
   bool partly_oriented() const { return weights_of_rotations != weights; }

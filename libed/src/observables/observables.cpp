@@ -190,7 +190,7 @@ class Observables::Impl {
   }
 
   void take_frame(const Simulation& simulation) {
-    simulation.sample(now_);
+    measured_.any_oriented() ? simulation.sample(now_) : simulation.sample_translations(now_);
     amplitudes_now_.clear();
     if (!three_axes()) {
       now_.rotation.clear();

@@ -31,12 +31,11 @@ class PairCounter {
                 group_.begin() + static_cast<std::ptrdiff_t>(ranges[g].end), g);
     }
     const StructureParts parts{groups_};
-    const bool spheres = std::none_of(ranges.begin(), ranges.end(), [](const BodyRange& r) { return r.oriented; });
     kinds_.resize(groups_ * groups_);
     for (std::size_t a = 0; a < groups_; ++a) {
       for (std::size_t b = 0; b < groups_; ++b) {
         PairKind& kind = kinds_[a * groups_ + b];
-        kind.oriented = spheres || (ranges[a].oriented && ranges[b].oriented) ? 1 : 0;
+        kind.oriented = ranges[a].oriented && ranges[b].oriented ? 1 : 0;
         if (a == b) kind.part = parts.of_group(a);
         if (a != b && parts.crossed()) kind.part = parts.of_pair(std::min(a, b), std::max(a, b));
       }

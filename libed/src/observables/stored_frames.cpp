@@ -155,6 +155,7 @@ class Analysis {
         step_(count_ > 1 ? frames[stretch_.first + 1].time - frames[stretch_.first].time : 1),
         measured_(plan(frames)) {
     measured_.gaps = gaps_of(frames, options);
+    if (!measured_.any_oriented()) measured_.gaps.without_orientations();
     const auto three = [](const BodyRange& r) { return r.three_axes; };
     const bool rotations = std::any_of(measured_.ranges.begin(), measured_.ranges.end(), three);
     for (const StoredFrame& frame : frames) {

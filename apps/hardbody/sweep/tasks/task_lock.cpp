@@ -43,6 +43,13 @@ std::string boot_id() {
   return first_line("/proc/sys/kernel/random/boot_id");
 }
 
+/// Returns the namespace of process numbers: containers of one host may have their own.
+std::string process_namespace() {
+  char name[64] = {};
+  (void)!::readlink("/proc/self/ns/pid", name, sizeof name - 1);
+  return name;
+}
+
 /// Returns the time at which a process began, in ticks since boot; empty if there is none. Numbers of processes are
 /// used again.
 std::string start_of(long process) {
@@ -61,6 +68,7 @@ std::string unique_number() {
 std::string own_content() {
   const nlohmann::json json = {{"host", host_name()},
                                {"boot", boot_id()},
+                               {"namespace", process_namespace()},
                                {"process", ::getpid()},
                                {"start", start_of(::getpid())},
                                {"number", unique_number()}};
@@ -106,6 +114,7 @@ double age_of(const fs::path& file) {
 bool has_ended(const nlohmann::json& lock) {
   if (lock.value("host", "") != host_name()) return false;
   if (lock.value("boot", "") != boot_id()) return true;
+  if (lock.value("namespace", "") != process_namespace()) return false;
   const long process = lock.value("process", 0L);
   return (::kill(static_cast<::pid_t>(process), 0) != 0 && errno == ESRCH) ||
          start_of(process) != lock.value("start", "");

@@ -43,6 +43,13 @@ class Neighbourhood {
   /// Makes cells in which bodies within this reach are found.
   void make_cells(double reach) { cells_.emplace(bodies_.number(), box_.edge(), reach, batches_); }
 
+  /// Uses the kernels of an instruction set from now on.
+  void use(geom::InstructionSet set) {
+    batches_ = set;
+    envelopes_->use(bodies_, set);
+    cells_->use(set);
+  }
+
   /// Returns the vector from the centre of i to that of j, in the image in which they can touch.
   Eigen::Vector3d between(const Pair& pair, double now) const {
     const Eigen::Vector3d d = bodies_.position_at(pair.j, now) - bodies_.position_at(pair.i, now);

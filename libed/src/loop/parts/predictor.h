@@ -65,6 +65,10 @@ class Predictor {
     pair.time = t + kPartingLook * parting_time(pair);
   }
 
+  bool has_first_looks() const { return first_looks_ != nullptr; }
+  /// Uses the kernels of an instruction set from now on; there must be first looks.
+  void use(geom::InstructionSet set) { first_looks_->use(from_.bodies, set); }
+
   const FinderCounters& count() const { return count_; }
   void reserve(std::size_t pairs) { queue_.reserve(pairs); }
 

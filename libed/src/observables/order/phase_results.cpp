@@ -68,11 +68,9 @@ void add_peaks(const BlockAverages& averages, Results& results) {
 
 void add_hexatic(const BlockAverages& averages, Results& results) {
   const Measured& measured = averages.measured();
-  const bool oriented =
-      std::any_of(measured.ranges.begin(), measured.ranges.end(), [](const BodyRange& r) { return r.oriented; });
   const auto estimate = [&](double HexaticOrder::*member) {
     if (!measured.options.bonds.hexatic) return Estimate::none({MissingReason::not_asked});
-    if (!results.director.exists || !oriented) return Estimate::none({MissingReason::no_director});
+    if (!results.director.exists || !measured.any_oriented()) return Estimate::none({MissingReason::no_director});
     if (!(measured.axial_length > 0)) return Estimate::none({MissingReason::not_told});
     return structure_mean(averages, [member](const Block& b) { return b.phase.hexatic.*member; });
   };
