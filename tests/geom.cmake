@@ -1,6 +1,7 @@
 # Tests of this part; see hardbody_test in CMakeLists.txt.
 hardbody_test(geom_unit_test unit
   unit/geom/any_shape_test.cpp
+  unit/geom/check_support_test.cpp
   unit/geom/enumerator_names_test.cpp
   unit/geom/batch/batch_pairs_test.cpp
   unit/geom/batch/batch_test.cpp

@@ -85,6 +85,9 @@ geom::Shape read_polyhedron(const JsonMember& shape) {
     throw shape.bad("a polyhedron with \"vertices\": [[x,y,z],..] or with \"solid\": \"cube\"");
   }
   const bool is_solid = shape.has("solid");
+  if (!is_solid && shape.has("circumradius")) {
+    throw shape.at("circumradius", "").bad("beside \"solid\" only");
+  }
   const JsonMember source = shape.at(is_solid ? "solid" : "vertices", "");
   const std::vector<Vector3d> points = is_solid ? read_solid(shape) : read_vertices(source);
   return rounded(source.checked([&] { return geom::ConvexPolyhedron(points); }), shape);

@@ -74,7 +74,17 @@ from hardbody._pages import Map, Report
 from hardbody._results import Analysis, Run, Sweep
 from hardbody._run_errors import SweepError, UnsoundError
 from hardbody._tables import Curves, Table
-from hardbody._typing import AnyBody, BodyShape, Components, Progress, RotationLike, Shape, Shapes, SpeciesLike, SupportShape
+from hardbody._typing import (
+    AnyBody,
+    BodyShape,
+    Components,
+    Progress,
+    RotationLike,
+    Shape,
+    Shapes,
+    SpeciesLike,
+    SupportShape,
+)
 
 # "map" is no name for `from hardbody import *`, which would hide Python's own.
 __all__ = [

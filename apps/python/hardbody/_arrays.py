@@ -218,7 +218,7 @@ def distance_many(
 ) -> Distances:
     """Returns the signed distances of M pairs among N bodies, with closest points, normals and certified error bounds.
 
-    shapes: one built-in shape, or a list of them, of any kinds. positions: world frame, shape (N, 3), in the unit of the
+    shapes: one built-in shape, or a list of them, of any kind. positions: world frame, shape (N, 3), in the unit of the
     shapes. quaternions: orientations, unit quaternions (w, x, y, z) body to world, shape (N, 4); None: bodies that are
     not rotated. pairs: indices (a, b) of bodies, integers of shape (M, 2). shape_of: index of each body's shape,
     integers of shape (N,); None: one shape serves all bodies, or there is one a body. threads: number of threads, 1 to

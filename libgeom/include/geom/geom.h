@@ -9,6 +9,7 @@
 #include <geom/batch.h>
 #include <geom/box.h>
 #include <geom/capsule.h>
+#include <geom/check_support.h>
 #include <geom/distance.h>
 #include <geom/ellipsoid.h>
 #include <geom/half_space.h>

@@ -13,8 +13,9 @@
 
 namespace hardbody::python {
 
-/// Defines what every shape has. A shape needs constructor_text(), equal() and constructor_arguments().
-template <class Shape>
+/// Defines what every shape has. `Calls` has static functions of a shape: text, the call of its constructor; same(a,
+/// b); arguments, those of its constructor.
+template <class Calls, class Shape>
 void bind_common(nb::class_<Shape>& type) {
   type.def_prop_ro(
           "bounding_radius", [](const Shape& s) { return s.bounding_radius(); },
@@ -51,20 +52,18 @@ void bind_common(nb::class_<Shape>& type) {
           nb::sig("def support(self, n: numpy.typing.ArrayLike) -> tuple[float, numpy.typing.NDArray[numpy.float64]]"),
           "Returns (h, s) for a direction n, shape (3,), of any length but 0: h(n) = max of n.x over the body, and\n"
           "the point s where that maximum is reached. Body frame.")
-      .def("__repr__", [](const Shape& s) { return constructor_text(s); })
+      .def("__repr__", [](const Shape& s) { return Calls::text(s); })
       .def(
           "__eq__",
           [](const Shape& s, nb::handle other) {
             Shape* found = nullptr;
-            return nb::try_cast(other, found, false) && found != nullptr && equal(s, *found);
+            return nb::try_cast(other, found, false) && found != nullptr && Calls::same(s, *found);
           },
           nb::arg("other").none(), nb::sig("def __eq__(self, other: typing.Any, /) -> bool"))
-      .def("__hash__", [](const Shape& s) { return nb::hash(nb::str(constructor_text(s).c_str())); })
+      .def("__hash__", [](const Shape& s) { return nb::hash(nb::str(Calls::text(s).c_str())); })
       .def(
           "__reduce__",
-          [](nb::handle self) {
-            return nb::make_tuple(self.type(), constructor_arguments(nb::cast<const Shape&>(self)));
-          },
+          [](nb::handle self) { return nb::make_tuple(self.type(), Calls::arguments(nb::cast<const Shape&>(self))); },
           nb::sig("def __reduce__(self) -> tuple[typing.Any, ...]"));
 }
 
