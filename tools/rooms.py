@@ -27,7 +27,7 @@ LIBRARIES = {
             "dual": "distance kernel/distance_impl kernel/dual_newton kernel/perram_wertheim kernel/simplex_descent "
                     "kernel/sphere_search kernel/swept_impl kernel/uniaxial kernel/uniaxial_pair",
             "norm": "kernel/norm_body_pair",
-            "cores": "rounded",
+            "cores": "rounded kernel/core_simplex",
             "paper": "newton kernel/newton_equations kernel/newton_impl",
             "batch": "batch kernel/records-inl",
             "any": "any_shape half_space queries kernel/queries_impl",

@@ -6,49 +6,27 @@
 #include <geom/pose.h>
 #include <geom/tolerances.h>
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
-#include <variant>
 
 namespace ed::internal {
 namespace {
 
 using Eigen::Vector3d;
 
-/// A step is shortened this often, by this factor, until its chord certifies it.
-constexpr int kTrials = 30;
-constexpr double kShorter = 0.5;
-
 /// Newton's method of the normal takes no more from a warm start; where it does, at a kink of the support function, it
 /// does not converge at all, and the closest points are found otherwise.
 constexpr int kNewtonSteps = 10;
 
-double curvature_radius(const BodyShape& shape) {
-  const auto of = [](const auto& s) -> double {
-    if constexpr (requires { s.min_curvature_radius(); }) return s.min_curvature_radius();
-    return 0;
-  };
-  return std::visit(of, shape);
-}
-
-/// Returns the support point along n in the world's axes.
-geom::Support world_support(const BodyShape& shape, const geom::Pose& pose, const Vector3d& n) {
-  const geom::Support s = support(shape, transposed_product(pose.rotation(), n));
-  return {s.height, pose.rotation() * s.point};
-}
-
-/// Returns the least of (1 - x) g0 + x g1 - K T^2 x (1 - x) / 2 over x in [0, 1].
-double lowest(double g0, double g1, double KT2) {
-  const double slope = g1 - g0 - 0.5 * KT2;
-  if (slope >= 0) return g0;
-  if (slope <= -KT2) return g1;
-  return g0 - 0.5 * slope * slope / KT2;
-}
+constexpr double kNoBound = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
-ConvexGap::ConvexGap(const BodyShape& A, const RigidMotion& a, const BodyShape& B, const RigidMotion& b,
+ConvexGap::ConvexGap(const ConvexBody& A, const RigidMotion& a, const ConvexBody& B, const RigidMotion& b,
                      const Vector3d& r_now, double now)
     : A_(A),
       B_(B),
@@ -57,42 +35,58 @@ ConvexGap::ConvexGap(const BodyShape& A, const RigidMotion& a, const BodyShape& 
       r_now_(r_now),
       v_(b.velocity - a.velocity),
       now_(now),
-      reach_a_(bounding_radius(A)),
-      reach_b_(bounding_radius(B)),
-      depth_(curvature_radius(A) + curvature_radius(B)),
-      surface_speed_(turning_lever(A) * a.top.max_omega() + turning_lever(B) * b.top.max_omega()),
-      speed_(v_.norm() + reach_a_ * a.top.max_omega() + reach_b_ * b.top.max_omega()),
-      scales_(GeneralScales::of(reach_a_, a, reach_b_, b, now)) {}
+      balls_(A.ball + B.ball),
+      surface_speed_(A.lever * a.top.max_omega() + B.lever * b.top.max_omega()),
+      speed_(v_.norm() + A.bounding_radius * a.top.max_omega() + B.bounding_radius * b.top.max_omega()),
+      scales_(GeneralScales::of(A.bounding_radius, a, B.bounding_radius, b, now)) {}
 
 ConvexGap::State ConvexGap::at(double t) const {
-  const TopState a = a_.top.at(t - a_.time);
-  const TopState b = b_.top.at(t - b_.time);
-  return {t,
-          geom::kernel::unchecked_pose(a.R, Vector3d::Zero()),
-          geom::kernel::unchecked_pose(b.R, r_now_ + (t - now_) * v_),
-          a.omega,
-          b.omega,
-          scales_.rounding(t)};
+  return {t, a_.top.at(t - a_.time), b_.top.at(t - b_.time), r_now_ + (t - now_) * v_, scales_.rounding(t)};
 }
 
 ConvexGap::Sample ConvexGap::sample(const State& s, const Vector3d& n) const {
-  const geom::Support a = world_support(A_, s.a, n);
-  const geom::Support b = world_support(B_, s.b, -n);
-  return {n.dot(s.b.position()) - (a.height + b.height), a.point, b.point};
+  const geom::Support a = A_.core_support(s.a.R, n);
+  const geom::Support b = B_.core_support(s.b.R, -n);
+  return {(n.dot(s.r) - (a.height + b.height)) - balls_, a.point, b.point};
 }
 
 ConvexGap::Evaluation ConvexGap::complete(const State& /*s*/, const Sample& sample, const Vector3d& /*n*/) const {
   Evaluation e;
   e.g = sample.g;
-  e.decrement = std::numeric_limits<double>::infinity();
-  e.step2 = std::numeric_limits<double>::infinity();
+  e.decrement = kNoBound;
+  e.step2 = kNoBound;
   e.step.setZero();
   e.point_a = sample.point_a;
   e.point_b = sample.point_b;
   return e;
 }
 
-/// n and e of an answer; false if it is none.
+bool ConvexGap::clears(const State& s, const Sample& e, const Vector3d& n, double horizon) const {
+  const double least_g = e.g - s.rounding.gap;
+  if (!(least_g > 0)) return false;
+  if (least_g + horizon * (n.dot(v_) - surface_speed_ - s.rounding.rate) > 0) return true;
+  if (!(horizon <= size() / speed_)) return false;
+  const Turn fixed = turn(s, n, Vector3d::Zero(), 1);
+  return fixed.end(horizon) - s.rounding.gap > 0.5 * horizon * horizon * larger(0.0, fixed.curvature(horizon));
+}
+
+/// Takes n and e of the closest features; returns false if there are none.
+bool ConvexGap::take_features(const State& /*s*/, const ClosestFeatures& closest, Vector3d& n, Evaluation& e) const {
+  if (closest.end == ClosestFeatures::End::inside || closest.features.count == 0) return false;
+  if (!(closest.lower > -kNoBound)) return false;  // of a support function that is not a number
+  const bool closed = closest.end == ClosestFeatures::End::closed;
+  n = closest.n;
+  e.g = closest.lower - balls_;
+  e.decrement = closed ? 0 : closest.upper - closest.lower;
+  e.step2 = closed ? 0 : kNoBound;
+  e.step.setZero();
+  e.features = closest.features;
+  e.point_a = e.features.point_a();
+  e.point_b = e.features.point_b();
+  return true;
+}
+
+/// Takes n and e of a distance; returns false if it is none.
 bool ConvexGap::take(const State& s, const geom::DistanceResult& d, Vector3d& n, Evaluation& e) const {
   if (!is_answer(d)) return false;
   n = d.normal;
@@ -102,104 +96,214 @@ bool ConvexGap::take(const State& s, const geom::DistanceResult& d, Vector3d& n,
   e.decrement = 0;
   e.step2 = 0;
   e.step.setZero();
-  e.point_a = d.point_a;
-  e.point_b = d.point_b - s.b.position();
+  e.point_a = d.point_a - A_.ball * n;
+  e.point_b = (d.point_b - s.r) + B_.ball * n;
+  e.features.count = 1;
+  e.features.weight[0] = 1;
+  e.features.a[0] = e.point_a;
+  e.features.b[0] = e.point_b;
   return true;
 }
 
-/// n and e of the distance itself, from n on; false if the query declines.
+geom::DistanceResult ConvexGap::ask(const State& s, const geom::DistanceOptions& options) const {
+  return distance(A_.shape, geom::kernel::unchecked_pose(s.a.R, Vector3d::Zero()), B_.shape,
+                  geom::kernel::unchecked_pose(s.b.R, s.r), options);
+}
+
+/// Finds n and e of cores that touch, from a normal that is nearly right, where rounding hides the direction of their
+/// closest points: moved apart along it by about their size they have the same closest features. False if the bounds
+/// of the gap are not made equal by that.
+bool ConvexGap::solve_by_features(const State& s, Vector3d& n, Evaluation& e) const {
+  constexpr double kEqual = 1e-14;
+  if (A_.own_distance || B_.own_distance) return false;
+  Vector3d normal = n;
+  for (int move = 0; move < 3; ++move) {
+    const double lower = sample(s, normal).g + balls_;
+    const Vector3d way = (0.5 * size() - lower) * normal;
+    const ClosestFeatures far = descend(s, s.r + way, normal, [](double, double) { return false; });
+    if (far.end != ClosestFeatures::End::closed) return false;
+    normal = far.n;
+    const double gap = sample(s, normal).g + balls_;
+    if (!(gap >= -kOverlap * size())) return false;
+    const Vector3d between = s.r + far.features.point_b() - far.features.point_a();
+    if ((between - gap * normal).norm() > kEqual * size()) continue;
+    ClosestFeatures near = far;
+    near.lower = gap;
+    near.upper = gap;
+    return take_features(s, near, n, e);
+  }
+  return false;
+}
+
+/// Finds n and e of the distance itself, from n on; false if the query declines.
 bool ConvexGap::solve(const State& s, Vector3d& n, Evaluation& e) const {
-  return take(
-      s,
-      distance(A_, s.a, B_, s.b, {.start = n, .max_iterations = kNewtonSteps, .penetration = geom::Penetration::local}),
-      n, e);
+  if (solve_by_features(s, n, e)) return true;
+  return take(s, ask(s, {.start = n, .max_iterations = kNewtonSteps, .penetration = geom::Penetration::local}), n, e);
 }
 
 geom::DistanceResult ConvexGap::last_resort(const State& s) const {
-  return distance(A_, s.a, B_, s.b, {.start = cold_normal(s)});
+  return ask(s, {.start = cold_normal(s)});
 }
 
 ContactPoints ConvexGap::contact_points(const State& s, const Vector3d& n) const {
   Vector3d normal = n;
   Evaluation e = evaluate(s, n);
+  int budget = geom::kMaxIterations;
+  const auto done = [&](const Evaluation& trial) { return settled(trial); };
   // The search has had its answer by one of the two.
-  if (!solve(s, normal, e)) take(s, last_resort(s), normal, e);
-  return {e.point_a, e.point_b};
+  if (ascend(s, done, budget, normal, e) != geom::kernel::Ascent::converged) take(s, last_resort(s), normal, e);
+  return {e.point_a + A_.ball * normal, e.point_b - B_.ball * normal};
 }
 
-double ConvexGap::chord_curvature(double T, const Vector3d& n0, const Vector3d& n1, double distance) const {
-  const double chord = 0.5 * (n1 - n0).norm();
-  const double angular_speed = 2 * std::asin(std::min(1.0, chord)) / T;
-  const auto bend = [angular_speed](const FreeTop& top) {
-    const double w = angular_speed + top.max_omega();
-    return w * w + top.max_alpha();
+ConvexGap::Turn ConvexGap::turn(const State& s, const Vector3d& n, const Vector3d& across, double direction) const {
+  // Backwards in time all velocities change their signs, and accelerations do not.
+  const Vector3d omega_a = direction * s.a.omega;
+  const Vector3d omega_b = direction * s.b.omega;
+  const Vector3d W = direction * across;
+  // Of Omega = W + spin n, mu2's part across n is spin W - w (2 W - omega_t) - alpha x n, w = omega.n and omega_t the
+  // part of omega across n.
+  const auto wanted = [&](const Vector3d& omega, const Vector3d& alpha) {
+    const double w = omega.dot(n);
+    return Vector3d(w * (2 * W - (omega - w * n)) + alpha.cross(n));
   };
-  const double centres = angular_speed * (angular_speed * (distance + v_.norm() * T) + 2 * v_.norm());
-  return kBoundMargin * (reach_a_ * bend(a_.top) + reach_b_ * bend(b_.top) + centres);
+  const Vector3d wanted_a = wanted(omega_a, s.a.alpha);
+  const Vector3d wanted_b = wanted(omega_b, s.b.alpha);
+  const double weight = (A_.core_reach + B_.core_reach) * W.squaredNorm();
+  const double spin =
+      weight > 0 ? W.dot(A_.core_reach * wanted_a + B_.core_reach * wanted_b) / weight : 0.0;
+  const Vector3d Omega = W + spin * n;
+  const Vector3d v = direction * v_;
+  const Vector3d turned = Omega.cross(n);
+  const auto body = [&](const ConvexBody& shape, const FreeTop& top, const Vector3d& omega, const Vector3d& lateral,
+                        double side) {
+    const Vector3d slip = Omega - omega;
+    const Vector3d mu = slip.cross(side * n);
+    return Turn::Body{shape, top, mu, mu.norm(), slip.norm(), (spin * W - lateral).norm()};
+  };
+  return {.gap = *this,
+          .s = s,
+          .n = n,
+          .v = v,
+          .turned = turned,
+          .angular_speed = Omega.norm(),
+          .distance = s.r.norm(),
+          .bend = -Omega.cross(turned).dot(s.r) - 2 * turned.dot(v),
+          .centre_rate = turned.dot(s.r) + n.dot(v),
+          .a = body(A_, a_.top, omega_a, wanted_a, 1),
+          .b = body(B_, b_.top, omega_b, wanted_b, -1)};
 }
 
-/// Returns whether no contact comes up to s.t + T, for a gap that is certainly g >= 0 along n now; `end`: the distance
-/// there. What rounding may hide is subtracted, except for bodies that are taken to touch.
-bool ConvexGap::chord_clears(const State& s, const Vector3d& n, double g, bool touching, double T, double& end) const {
-  const State later = at(s.t + T);
-  const double hidden = touching ? 0 : s.rounding.gap + scales_.later(T);
-  Vector3d n1 = n;
-  Evaluation e = evaluate(later, n);
-  const double fixed = e.g - hidden;
-  const bool solved = solve(later, n1, e);
-  end = e.g - hidden;
-  // Tries another normal at the end first, then the same one.
-  for (const bool moving : {true, false}) {
-    if (moving && !solved) continue;
-    const double g1 = moving ? end : fixed;
-    if (!(g1 >= 0)) continue;
-    const double K = chord_curvature(T, n, moving ? n1 : n, s.b.position().norm());
-    if (lowest(g, g1, K * T * T) >= 0) return true;
+double ConvexGap::Turn::body_curvature(const Body& body, double tau) const {
+  const double both = angular_speed + body.top.max_omega();
+  const double alpha = body.top.max_alpha();
+  const double slip = smaller(body.slip + alpha * tau, both);
+  const double crude = body.shape.core_reach * (slip * both + alpha);
+  const double mu2 = body.mu_length * body.mu_length;
+  if (!(mu2 * tau * tau <= 2)) return crude;
+  const double M3 = slip * both * both + 3 * alpha * both + body.top.max_jerk();
+  return smaller(crude, body.shape.core_reach * (body.lateral + (mu2 * body.mu_length + M3 / 3) * tau) -
+                            body.shape.core_inner * mu2);
+}
+
+double ConvexGap::Turn::curvature(double tau) const {
+  const double speed = v.norm();
+  const double crude = angular_speed * (angular_speed * (distance + speed * tau) + 2 * speed);
+  const double third = angular_speed * turned.norm() * (angular_speed * (distance + speed * tau) + 3 * speed);
+  const double centres = smaller(crude, bend + third * tau / 3);
+  const auto unresolved = [&](const Body& body) {
+    const double both = angular_speed + body.top.max_omega();
+    return body.shape.core_reach * (both * both + body.top.max_alpha());
+  };
+  const double hidden = s.rounding.direction * (unresolved(a) + unresolved(b) + crude);
+  return gap.curvature_share_ * (body_curvature(a, tau) + body_curvature(b, tau) + centres) + hidden;
+}
+
+/// Directions at the end are known to `direction` of their length and of their changes, and heights along them as well
+/// as along unit vectors, relative to their length.
+double ConvexGap::Turn::hidden(double tau) const {
+  const double rates = 2 * angular_speed + a.top.max_omega() + b.top.max_omega();
+  const double moved = angular_speed * distance + v.norm() + gap.scales_.surface_speed + angular_speed * gap.size();
+  return gap.scales_.later(tau) + tau * (rates * s.rounding.gap + s.rounding.direction * moved);
+}
+
+double ConvexGap::Turn::end(double tau) const {
+  const double height_a = a.shape.core_support(s.a.R, n + tau * a.mu).height;
+  const double height_b = b.shape.core_support(s.b.R, tau * b.mu - n).height;
+  return (n.dot(s.r) + tau * centre_rate - (height_a + height_b)) - gap.balls_ - hidden(tau);
+}
+
+/// Returns the longest step of one choice for a gap that is certainly g and changes at about the rate gp.
+///
+/// Tilted ends too far away tell little. What the chord to one sags below the tangent, and K, tell how far away a better
+/// one is.
+double ConvexGap::longest_step(const Turn& turn, double g, double gp, double horizon) const {
+  constexpr int kTrials = 5;
+  const double gap = turn.s.rounding.gap;
+  double tau = 0;
+  double reach = smaller(horizon, size() / speed_);
+  for (int trial = 0; trial < kTrials; ++trial) {
+    const double slope = (turn.end(reach) - gap - g) / reach;
+    const double K = turn.curvature(reach);
+    tau = larger(tau, smaller(reach, first_root(g, slope, K)));
+    if (tau >= reach) break;
+    const double likely = first_root(g, gp, larger(0.0, K + 2 * (gp - slope) / reach));
+    const double next = smaller(0.7 * reach, 1.3 * likely);
+    if (!(next > tau)) break;
+    reach = next;
+  }
+  return tau;
+}
+
+Vector3d ConvexGap::turning_of_best_normal(const State& s, const Evaluation& e, const Vector3d& n) const {
+  return turning_of_normal(e.features, n, e.g + balls_, v_, s.a.omega, s.b.omega);
+}
+
+double ConvexGap::certified_step(const State& s, const Evaluation& e, const Vector3d& n, double computed_g,
+                                 double gp, double horizon) const {
+  const double g = larger(0.0, computed_g - s.rounding.gap);
+  double tau = smaller(horizon, g / speed_);  // nothing moves faster
+  for (const Vector3d& across : {turning_of_best_normal(s, e, n), Vector3d(Vector3d::Zero())}) {
+    if (tau >= horizon) break;
+    tau = larger(tau, longest_step(turn(s, n, across, 1), g, gp, horizon));
+  }
+  return tau;
+}
+
+double ConvexGap::least_step(const State& s, const Evaluation& e, const Vector3d& n, bool touching, double tau) const {
+  const double unit = size() / speed_;
+  if (tau > kShortStep * unit) return tau;
+  const auto across = [&](const Vector3d& omega) { return Vector3d(omega - omega.dot(n) * n); };
+  const std::array<Turn, 4> turns{turn(s, n, Vector3d::Zero(), 1), turn(s, n, turning_of_best_normal(s, e, n), 1),
+                                  turn(s, n, across(s.a.omega), 1), turn(s, n, across(s.b.omega), 1)};
+  return longest_clear_step(touching ? kTouching * unit : tau, unit, [&](double trial) {
+    return std::any_of(turns.begin(), turns.end(), [&](const Turn& choice) {
+      // g of bodies that touch is not known: it may fall by what rounding hides.
+      const double least = touching ? -choice.hidden(trial) : s.rounding.gap;
+      return choice.end(trial) - least > 0.5 * trial * trial * larger(0.0, choice.curvature(trial));
+    });
+  });
+}
+
+/// Backwards in time from a contact the same certificate holds, with g = 0 there. Its rate does not show over times as
+/// short as the span may be: longer ones include it.
+bool ConvexGap::falls_since(const State& s, const Evaluation& e, const Vector3d& n, double rate, double span) const {
+  if (!(rate < -kResting * speed_)) return false;
+  if (!(span > 0)) return true;
+  const auto across = [&](const Vector3d& omega) { return Vector3d(omega - omega.dot(n) * n); };
+  const std::array<Turn, 4> turns{turn(s, n, turning_of_best_normal(s, e, n), -1), turn(s, n, Vector3d::Zero(), -1),
+                                  turn(s, n, across(s.a.omega), -1), turn(s, n, across(s.b.omega), -1)};
+  const double unit = size() / speed_;
+  for (const double longer : {0.0, 1e-9, 1e-6, 1e-4}) {
+    const double reach = larger(span, longer * unit);
+    for (const Turn& choice : turns) {
+      if (choice.end(reach) - s.rounding.gap > 0.5 * reach * reach * larger(0.0, choice.curvature(reach))) return true;
+    }
   }
   return false;
 }
 
-double ConvexGap::certified_step(const State& s, const Evaluation& /*e*/, const Vector3d& n, double computed_g,
-                                 double gp, double horizon) const {
-  const double g = std::max(0.0, computed_g - s.rounding.gap);
-  // The first trial goes to the end of the tangent or, for bodies that part or hardly approach, as far as the sag of a
-  // chord allows.
-  const double K = chord_curvature(1, n, n, 0);
-  double T = std::min(horizon, std::max(gp < 0 ? -g / gp : 0.0, std::sqrt(2 * g / K)));
-  for (int trial = 0; trial < kTrials && T * speed_ > g; ++trial) {
-    double end = 0;
-    if (chord_clears(s, n, g, false, T, end)) return T;
-    // The secant's root if the bodies overlap there, a little short of it.
-    const double share = end < 0 ? 0.999 * g / (g - end) : kShorter;
-    T *= std::min(share, trial % 2 == 0 ? 0.9999 : kShorter);
-  }
-  return std::min(horizon, g / speed_);  // nothing moves faster
-}
-
-double ConvexGap::least_step(const State& s, const Evaluation& /*e*/, const Vector3d& n, bool touching,
-                             double tau) const {
-  const double unit = size() / speed_;
-  if (!touching || tau > kShortStep * unit) return tau;
-  // g of bodies that touch is not known: it may fall by what rounding hides.
-  double end = 0;
-  return longest_clear_step(kTouching * unit, unit,
-                            [&](double trial) { return chord_clears(s, n, 0, true, trial, end); });
-}
-
-bool ConvexGap::falls_since(const State& s, const Evaluation& /*e*/, const Vector3d& n, double rate,
-                            double span) const {
-  if (!(rate < -kResting * speed_)) return false;
-  if (!(span > 0)) return true;
-  const State before = at(s.t - span);
-  Vector3d n0 = n;
-  Evaluation e = evaluate(before, n);
-  if (!solve(before, n0, e)) return false;
-  return e.g >= before.rounding.gap + 0.5 * chord_curvature(span, n0, n, before.b.position().norm()) * span * span;
-}
-
 Vector3d ConvexGap::cold_normal(const State& s) const {
-  const Vector3d& r = s.b.position();
-  return r.squaredNorm() > 0 ? Vector3d(r.stableNormalized()) : Vector3d::UnitX();
+  return s.r.squaredNorm() > 0 ? Vector3d(s.r.stableNormalized()) : Vector3d::UnitX();
 }
 
 Separation ConvexGap::separating_normal(const State& s, Vector3d& n) const {

@@ -1,25 +1,42 @@
 #pragma once
 
-/// The pair gap of two convex bodies of which nothing is known but their support functions and radii: a user's own
-/// shapes (uniaxial_gap.h defines pair gaps), and the steps it certifies. Every evaluation is a whole distance
-/// query.
+/// The pair gap of two convex bodies of which nothing is known but their support functions and radii: shapes with edges
+/// and faces, and a user's own (uniaxial_gap.h defines pair gaps), and the steps it certifies.
 ///
-/// Chords. Let the normal turn uniformly from n0 now to n1 at T, by an angle a, so that Omega = a / T. Seen from a body
-/// that turns at omega(t), |omega| <= w, |d omega/dt| <= w', its direction u(tau) has |u''| <= B = (Omega + w)^2 + w'.
-/// Between two of its values it is within B tau (T - tau) / 2 of the straight line, a support function is convex and
-/// changes by at most the bounding radius R times the change of its argument: so
+/// Tilted ends. Let n turn at a constant Omega from now on, and let a body turn at omega(t). In axes that turn with the
+/// body (and agree with the world's now) the direction is u(tau), |u| = 1, with u(0) = n and, Delta = Omega - omega,
 ///
-///     h(tau) <= (1 - tau/T) h(0) + (tau/T) h(T) + R B tau (T - tau) / 2.
+///     u' = mu = Delta x n,   u'' = mu2 = Delta x (Omega x n) - omega x mu - alpha x n,   |u'''| <= M3,
 ///
-/// For the centres' part f = n.(r + v tau), |f''| <= Omega^2 max |r + v tau| + 2 Omega |v|. With the gaps g0 and g1
-/// along n0 and n1 at both ends, all tau in [0, T] and K the sum of both bodies' R B and of that,
+/// M3 as in support_gap.h. |u''| <= X2 = |Delta| (|Omega| + |omega|) + |alpha|, all at their largest in [0, tau]. A
+/// support function is convex and changes by no more than the bounding radius R times the change of its argument. With
+/// m = n + tau mu, the direction at the end to first order, and theta = tau'/tau, for all tau' <= tau
 ///
-///     distance(tau) >= g(tau) >= (1 - tau/T) g0 + (tau/T) g1 - K tau (T - tau) / 2,
+///     h(tau') <= (1 - theta) h(n) + theta h(m) + X2 R tau'^2/2.
 ///
-/// which is positive between the ends if it falls all the way (g0 - g1 >= K T^2 / 2), or its lowest value is. The ends
-/// may be the distances themselves, so that the step up to a contact is certified by Newton's method of d(t), however
-/// edged or flat the bodies are: the curvature of their surfaces does not enter.
+/// The part of mu2 along n is -|mu|^2 and makes the direction shorter, not longer. Let w = 1 - |mu|^2 tau'^2/2 >= 0:
+/// then u = w (n + tau' mu) + (mu2 + |mu|^2 n) tau'^2/2 + rest, |rest| <= (|mu|^3 + M3/3) tau'^3/2, and as h(n + tau'
+/// mu) is at least the inscribed radius R0 (its argument is no shorter than 1),
+///
+///     h(tau') <= (1 - theta) h(n) + theta h(m) + [R |mu2 + |mu|^2 n| + R (|mu|^3 + M3/3) tau - R0 |mu|^2] tau'^2/2.
+///
+/// The smaller bracket is K of the body. The ball that is swept over a core has the same h for all unit vectors: h, R
+/// and R0 are those of the core alone. The centres' part f = n.(r + v tau) has f'' as in support_gap.h. In all, with g1
+/// made of f(0) + f'(0) tau and of h(m),
+///
+///     distance(tau') >= g(tau') >= (1 - theta) g(0) + theta g1 - K tau'^2/2,   K = K_A + K_B + K_centres,
+///
+/// so that two support evaluations of each body certify a whole step: to the end, if g1 >= K tau^2/2 (the bound is a
+/// concave function, or a convex one that falls no lower than its first root), else up to its first root. To second
+/// order along smooth surfaces, edges and faces alike, if n turns as the contact does (convex_features.h); Omega = 0 is
+/// the other candidate, and the longer step wins. The component of Omega along n is free: it is chosen so that |mu2 +
+/// |mu|^2 n| of both bodies is small.
+///
+/// Newton's method on d(t) ends the search, with the closest points of the closest features. That the contact is the
+/// first one is proved by the same bound backwards in time, from g = 0 on.
 
+#include "contact/convex_body.h"
+#include "contact/convex_features.h"
 #include "contact/curvature_steps.h"
 #include "contact/rounding.h"
 #include "contact/separation.h"
@@ -40,45 +57,44 @@ class ConvexGap {
  public:
   struct State {
     double t;
-    geom::Pose a, b;  ///< poses relative to A's centre
-    Eigen::Vector3d omega_a, omega_b;
+    TopState a, b;
+    Eigen::Vector3d r;  ///< from A's centre to B's
     GeneralRounding rounding;
   };
   struct Sample {
     double g;
-    Eigen::Vector3d point_a, point_b;  ///< support points, from the bodies' centres
+    Eigen::Vector3d point_a, point_b;  ///< support points of the cores, from the bodies' centres
   };
   struct Evaluation : geom::kernel::Evaluation {
-    Eigen::Vector3d point_a, point_b;  ///< closest points, or support points, from the bodies' centres
+    Eigen::Vector3d point_a, point_b;  ///< closest points, or support points, of the cores, from the bodies' centres
+    ConvexFeatures features;           ///< closest features, if known
   };
 
   /// `r_now`: the vector from A's centre to B's at `now`, in the image that is meant.
-  ConvexGap(const BodyShape& A, const RigidMotion& a, const BodyShape& B, const RigidMotion& b,
+  ConvexGap(const ConvexBody& A, const RigidMotion& a, const ConvexBody& B, const RigidMotion& b,
             const Eigen::Vector3d& r_now, double now);
 
   State at(double t) const;
   Sample sample(const State& s, const Eigen::Vector3d& n) const;
-  /// No Newton step: `ascend` asks for the distance.
+  /// No Newton step: `ascend` searches for the closest features.
   Evaluation complete(const State& s, const Sample& sample, const Eigen::Vector3d& n) const;
   Evaluation evaluate(const State& s, const Eigen::Vector3d& n) const { return complete(s, sample(s, n), n); }
 
   /// dd/dt: the closest points move with their bodies.
   double rate(const State& s, const Evaluation& e, const Eigen::Vector3d& n) const {
-    return n.dot(v_ + s.omega_b.cross(e.point_b) - s.omega_a.cross(e.point_a));
+    return n.dot(v_ + s.b.omega.cross(e.point_b) - s.a.omega.cross(e.point_a));
   }
   double contact_rate(const State& s, const Evaluation& e, const Eigen::Vector3d& n) const { return rate(s, e, n); }
 
-  template <class SampleOrEvaluation>
-  bool clears(const State& s, const SampleOrEvaluation& e, const Eigen::Vector3d& n, double horizon) const {
+  bool clears(const State& s, const Evaluation& e, const Eigen::Vector3d& n, double horizon) const {
     const double least_g = e.g - s.rounding.gap;
     return least_g > 0 && least_g + horizon * (n.dot(v_) - surface_speed_ - s.rounding.rate) > 0;
   }
+  /// Returns whether n certifies the whole horizon: by what is known anyway, or at a tilted end.
+  bool clears(const State& s, const Sample& e, const Eigen::Vector3d& n, double horizon) const;
+
   template <class Done>
-  geom::kernel::Ascent ascend(const State& s, const Done& done, int& budget, Eigen::Vector3d& n, Evaluation& e) const {
-    if (done(e)) return geom::kernel::Ascent::converged;
-    --budget;
-    return solve(s, n, e) ? geom::kernel::Ascent::converged : geom::kernel::Ascent::stalled;
-  }
+  geom::kernel::Ascent ascend(const State& s, const Done& done, int& budget, Eigen::Vector3d& n, Evaluation& e) const;
 
   bool settled(const Evaluation& e) const { return e.step2 == 0; }
 
@@ -91,33 +107,100 @@ class ConvexGap {
   Eigen::Vector3d cold_normal(const State& s) const;
   Separation separating_normal(const State& s, Eigen::Vector3d& n) const;
   Window window(double t_begin, double t_end) const { return sphere_window(r_now_, v_, size(), now_, t_begin, t_end); }
-  double size() const { return reach_a_ + reach_b_; }
-  double certified_depth() const { return depth_; }
+  double size() const { return A_.bounding_radius + B_.bounding_radius; }
+  double certified_depth() const { return balls_; }
   double speed() const { return speed_; }
 
   /// The closest points.
   ContactPoints contact_points(const State& s, const Eigen::Vector3d& n) const;
 
+ protected:
+  double curvature_share_ = 1;  ///< tests take less, to see that contacts are missed then
+
  private:
-  /// K of a chord over T along which the normal turns from n0 to n1.
-  double chord_curvature(double T, const Eigen::Vector3d& n0, const Eigen::Vector3d& n1, double distance) const;
+  /// A choice of Omega, forwards in time or backwards.
+  struct Turn {
+    const ConvexGap& gap;
+    const State& s;
+    const Eigen::Vector3d& n;
+    Eigen::Vector3d v;       ///< relative velocity
+    Eigen::Vector3d turned;  ///< Omega x n
+    double angular_speed;    ///< |Omega|
+    double distance;         ///< |r|
+    double bend;             ///< -f''
+    double centre_rate;      ///< f'
+    struct Body {
+      const ConvexBody& shape;
+      const FreeTop& top;
+      Eigen::Vector3d mu;
+      double mu_length;
+      double slip;     ///< |Delta|
+      double lateral;  ///< |mu2 + |mu|^2 n|
+    };
+    Body a, b;
+
+    /// K over [0, tau], what rounding may hide included.
+    double curvature(double tau) const;
+    double body_curvature(const Body& body, double tau) const;
+    /// g1 less what rounding may hide beyond s.rounding.gap.
+    double end(double tau) const;
+    double hidden(double tau) const;
+  };
+
+  /// `direction`: 1 forwards in time, -1 backwards. `across`: Omega's part across n.
+  Turn turn(const State& s, const Eigen::Vector3d& n, const Eigen::Vector3d& across, double direction) const;
+  double longest_step(const Turn& turn, double g, double gp, double horizon) const;
+  Eigen::Vector3d turning_of_best_normal(const State& s, const Evaluation& e, const Eigen::Vector3d& n) const;
+  PlacedPair placed(const State& s, const Eigen::Vector3d& r) const {
+    return {A_, B_, s.a.R, s.b.R, r, size()};
+  }
+  template <class Enough>
+  ClosestFeatures descend(const State& s, const Eigen::Vector3d& r, const Eigen::Vector3d& n,
+                          const Enough& enough) const {
+    return closest_features(placed(s, r), n, enough);
+  }
+  bool take_features(const State& s, const ClosestFeatures& features, Eigen::Vector3d& n, Evaluation& e) const;
   bool solve(const State& s, Eigen::Vector3d& n, Evaluation& e) const;
+  bool solve_by_features(const State& s, Eigen::Vector3d& n, Evaluation& e) const;
+  geom::DistanceResult ask(const State& s, const geom::DistanceOptions& options) const;
   geom::DistanceResult last_resort(const State& s) const;
   bool take(const State& s, const geom::DistanceResult& d, Eigen::Vector3d& n, Evaluation& e) const;
-  bool chord_clears(const State& s, const Eigen::Vector3d& n, double g, bool touching, double T, double& end) const;
 
-  const BodyShape& A_;
-  const BodyShape& B_;
+  const ConvexBody& A_;
+  const ConvexBody& B_;
   const RigidMotion& a_;
   const RigidMotion& b_;
   Eigen::Vector3d r_now_;
   Eigen::Vector3d v_;
   double now_;
-  double reach_a_, reach_b_;  ///< bounding radii
-  double depth_;
+  double balls_;          ///< sum of both balls' radii
   double surface_speed_;  ///< the fastest that turning can move the surfaces along a normal
   double speed_;          ///< a bound of |dd/dt|
   GeneralScales scales_;
 };
+
+template <class Done>
+geom::kernel::Ascent ConvexGap::ascend(const State& s, const Done& done, int& budget, Eigen::Vector3d& n,
+                                       Evaluation& e) const {
+  using geom::kernel::Ascent;
+  if (e.step2 == 0 && done(e)) return Ascent::converged;
+  if (!A_.own_distance && !B_.own_distance) {
+    const auto loosely = [&](double lower, double upper) {
+      const double g = lower - balls_;
+      return g > s.rounding.gap && upper - lower <= kLooseDecrement * g;
+    };
+    const auto never = [](double, double) { return false; };
+    ClosestFeatures closest = descend(s, s.r, n, loosely);
+    budget -= closest.evaluations;
+    if (take_features(s, closest, n, e) && done(e)) return Ascent::converged;
+    if (closest.end == ClosestFeatures::End::enough) {
+      closest = descend(s, s.r, n, never);
+      budget -= closest.evaluations;
+      if (take_features(s, closest, n, e) && done(e)) return Ascent::converged;
+    }
+  }
+  --budget;
+  return solve(s, n, e) ? Ascent::converged : Ascent::stalled;
+}
 
 }  // namespace ed::internal

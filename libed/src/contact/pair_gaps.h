@@ -30,9 +30,9 @@ namespace ed::internal {
 
 /// Shape with what the pair gaps take of it.
 struct GapShape {
-  explicit GapShape(const BodyShape& body) : shape(body), norm(norm_body(body)), implicit(geom_shape(body)) {}
+  explicit GapShape(const BodyShape& body) : convex(body), norm(norm_body(body)), implicit(geom_shape(body)) {}
 
-  BodyShape shape;
+  ConvexBody convex;                    ///< shape as ConvexGap takes it
   std::optional<NormBodyShape> norm;    ///< shape as SupportGap takes it
   std::optional<geom::Shape> implicit;  ///< shape as Finder::bracketing takes it
 };
@@ -43,7 +43,7 @@ template <class F>
 decltype(auto) with_pair_gap(const GapShape& A, const RigidMotion& a, const GapShape& B, const RigidMotion& b,
                              const Eigen::Vector3d& r, double now, F&& f) {
   if (A.norm && B.norm) return std::forward<F>(f)(SupportGap(*A.norm, a, *B.norm, b, r, now));
-  return std::forward<F>(f)(ConvexGap(A.shape, a, B.shape, b, r, now));
+  return std::forward<F>(f)(ConvexGap(A.convex, a, B.convex, b, r, now));
 }
 
 }  // namespace ed::internal

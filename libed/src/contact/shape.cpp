@@ -1,4 +1,5 @@
 #include "contact/body_shapes.h"
+#include "contact/convex_body.h"
 
 #include <ed/shape.h>
 #include <ed/tolerances.h>
@@ -152,6 +153,9 @@ geom::DistanceResult distance(const BodyShape& a, const geom::Pose& X_WA, const 
   geom::DistanceOptions from_b = options;
   from_b.start = -options.start;
   if (const auto own = own_distance(b, X_WB, a, X_WA, from_b)) return reversed(*own);
+  const auto core_a = internal::core_of(a);
+  const auto core_b = core_a ? internal::core_of(b) : std::nullopt;
+  if (core_b) return geom::kernel::core_distance(*core_a, X_WA, *core_b, X_WB, options);
   return std::visit([&](const auto& A, const auto& B) { return geom::distance(A, X_WA, B, X_WB, options); }, a, b);
 }
 
@@ -176,6 +180,26 @@ double lever(const geom::Ellipsoid& shape) {
 }
 
 }  // namespace
+
+std::optional<geom::kernel::CoreView> core_of(const BodyShape& shape) {
+  return with(shape, [](const auto& s) -> std::optional<geom::kernel::CoreView> {
+    if constexpr (requires { s.core(); }) return s.core();
+    return std::nullopt;
+  });
+}
+
+ConvexBody::ConvexBody(const BodyShape& body)
+    : shape(body),
+      core(core_of(shape)),
+      own_distance(false),
+      bounding_radius(ed::bounding_radius(shape)),
+      lever(turning_lever(shape)),
+      ball(core ? core->radius : with(shape, [](const auto& s) { return s.min_curvature_radius(); })),
+      core_reach(core ? core->bounding_radius : bounding_radius - ball),
+      core_inner(std::max(0.0, inscribed_radius(shape) - ball)) {
+  const auto* custom = std::get_if<CustomShape>(&shape);
+  own_distance = custom != nullptr && custom->pair_distance();
+}
 
 double turning_lever(const geom::Ellipsoid& shape) {
   return lever(shape);
