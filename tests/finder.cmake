@@ -5,6 +5,7 @@ hardbody_test(finder_unit_test unit
   unit/ed/cells/grid_test.cpp
   unit/ed/contact/certified_test.cpp
   unit/ed/contact/contact_budget_test.cpp
+  unit/ed/contact/core_kinds_test.cpp
   unit/ed/contact/contact_refusals_test.cpp
   unit/ed/contact/contact_scenes_test.cpp
   unit/ed/motion/axis_motion_test.cpp

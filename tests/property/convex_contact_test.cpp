@@ -8,7 +8,7 @@
 #include "common/geom/shapes.h"
 
 #include <contact/certified.h>
-#include <contact/convex_gap.h>
+#include <contact/convex/gap.h>
 
 #include <geom/geom.h>
 
@@ -261,9 +261,6 @@ void judge(const Flight& f, Tally& tally, FinderCounters& count) {
   // Where a smooth body meets an edge or a face, libgeom's search certifies distances to no more than its error bound.
   const geom::DistanceResult at = f.distance_result(found.time);
   if (!(std::abs(at.distance) <= 1e-12 * f.size() + at.error_bound)) ++tally.wrong;
-if (!(std::abs(at.distance) <= 1e-12 * f.size() + at.error_bound)) { std::printf("wrong %s %s d %g err %g t %g wanted %g size %g\n", f.shape_a.kind.c_str(),f.shape_b.kind.c_str(),at.distance,at.error_bound,found.time,wanted,f.size());
- const auto st=gap.at(found.time); auto e=gap.evaluate(st,n); std::printf("g %g along n; normal diff %g; inscribed %g %g\n",e.g,(n-at.normal).norm(),f.shape_a.body.core_inner,f.shape_b.body.core_inner);
- auto c=closest_features(PlacedPair{f.shape_a.body,f.shape_b.body,st.a.R,st.b.R,st.r,f.size()},n,[](double,double){return false;}); std::printf("own end %d lower %g upper %g\n",(int)c.end,c.lower,c.upper);}
   constexpr double h = 1e-5;
   const double rate = (f.distance(found.time + h) - f.distance(found.time - h)) / (2 * h);
   if (std::abs(rate) < kGrazing * (f.b.velocity - f.a.velocity).norm()) ++tally.grazing;

@@ -12,7 +12,7 @@
 #include <base/periodic.h>
 #include <contact/body_shapes.h>
 #include <contact/certified.h>
-#include <contact/convex_gap.h>
+#include <contact/convex/gap.h>
 #include <contact/support_gap.h>
 #include <contact/uniaxial_gap.h>
 

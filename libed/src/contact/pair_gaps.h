@@ -4,16 +4,17 @@
 /// here. Ellipsoids of revolution whose inertia shares their axis have a state of their own (bodies/uniaxial.h), with
 /// UniaxialGap.
 ///
-/// | A              | B              | distance (ed::distance)                  | pair gap   | bracketing finder |
-/// |----------------|----------------|------------------------------------------|------------|-------------------|
-/// | libgeom's      | libgeom's      | geom::distance of the two kinds          | SupportGap | yes               |
-/// | a user's       | any            | PairDistance of A, of B, geom::distance  | ConvexGap  | refused           |
+/// | A                    | B          | distance (ed::distance)                 | pair gap   | bracketing |
+/// |----------------------|------------|-----------------------------------------|------------|------------|
+/// | (super)ellipsoids    | the same   | geom::distance of the two kinds         | SupportGap | yes        |
+/// | polytopes with balls | libgeom's  | geom::distance of the two kinds         | ConvexGap  | refused    |
+/// | a user's             | any        | PairDistance of A, of B, geom::distance | ConvexGap  | refused    |
 ///
-/// A shape of libgeom's variant for which there is no NormShape has ConvexGap, too, and the bracketing finder if it has
-/// an implicit function.
+/// Polytopes with balls: capsules, boxes, polyhedra, rounded ones; spheres too, for which the bracketing finder has
+/// equations.
 
 #include "contact/body_shapes.h"
-#include "contact/convex_gap.h"
+#include "contact/convex/gap.h"
 #include "contact/support_gap.h"
 #include "motion/rigid_motion.h"
 
@@ -30,7 +31,8 @@ namespace ed::internal {
 
 /// Shape with what the pair gaps take of it.
 struct GapShape {
-  explicit GapShape(const BodyShape& body) : convex(body), norm(norm_body(body)), implicit(geom_shape(body)) {}
+  explicit GapShape(const BodyShape& body)
+      : convex(body), norm(norm_body(body)), implicit(shape_with_equations(body)) {}
 
   ConvexBody convex;                    ///< shape as ConvexGap takes it
   std::optional<NormBodyShape> norm;    ///< shape as SupportGap takes it

@@ -1,8 +1,11 @@
 #include "contact/body_shapes.h"
-#include "contact/convex_body.h"
+#include "contact/convex/body.h"
 
 #include <ed/shape.h>
 #include <ed/tolerances.h>
+
+#include <geom/any_shape.h>
+#include <geom/kernel/any_body.h>
 
 #include <Eigen/Geometry>
 
@@ -127,7 +130,7 @@ double volume(const BodyShape& shape) {
 }
 
 geom::Support support(const BodyShape& shape, const Vector3d& n) {
-  return with(shape, [&n](const auto& s) { return geom::Support(s.support(n)); });
+  return geom::kernel::with_body(shape, [&n](const auto& s) { return geom::Support(s.support(n)); });
 }
 
 std::optional<int> symmetry_axis(const BodyShape& shape) {
@@ -156,7 +159,8 @@ geom::DistanceResult distance(const BodyShape& a, const geom::Pose& X_WA, const 
   const auto core_a = internal::core_of(a);
   const auto core_b = core_a ? internal::core_of(b) : std::nullopt;
   if (core_b) return geom::kernel::core_distance(*core_a, X_WA, *core_b, X_WB, options);
-  return std::visit([&](const auto& A, const auto& B) { return geom::distance(A, X_WA, B, X_WB, options); }, a, b);
+  return geom::kernel::with_bodies(
+      a, b, [&](const auto& A, const auto& B) { return geom::distance(A, X_WA, B, X_WB, options); });
 }
 
 std::string describe(const BodyShape& shape) {
@@ -206,11 +210,11 @@ double turning_lever(const geom::Ellipsoid& shape) {
 }
 
 double turning_lever(const geom::Shape& shape) {
-  return std::visit([](const auto& s) { return lever(s); }, shape);
+  return geom::kernel::with_body(shape, [](const auto& s) { return lever(s); });
 }
 
 double turning_lever(const BodyShape& shape) {
-  return std::visit([](const auto& s) { return lever(s); }, shape);
+  return geom::kernel::with_body(shape, [](const auto& s) { return lever(s); });
 }
 
 void check_exponents(const BodyShape& shape) {
@@ -229,17 +233,20 @@ void check_exponents(const BodyShape& shape) {
   });
 }
 
-std::optional<geom::Shape> geom_shape(const BodyShape& shape) {
-  return with(shape, [](const auto& s) -> std::optional<geom::Shape> {
+std::optional<geom::Shape> shape_with_equations(const BodyShape& shape) {
+  std::optional<geom::Shape> found = with(shape, [](const auto& s) -> std::optional<geom::Shape> {
     if constexpr (std::constructible_from<geom::Shape, decltype(s)>) return s;
     return std::nullopt;
   });
+  return found && geom::has_equations(*found) ? found : std::nullopt;
 }
 
 void check_finder(const ContactOptions& options, const BodyShape& shape) {
-  if (options.finder == Finder::certified || geom_shape(shape)) return;
-  throw std::invalid_argument("finder \"bracketing\" solves equations of implicit surfaces, and shape " +
-                              describe(shape) + " is a support function; accepted: \"certified\"");
+  if (options.finder == Finder::certified || shape_with_equations(shape)) return;
+  const bool own = std::holds_alternative<CustomShape>(shape);
+  throw std::invalid_argument("finder \"bracketing\" solves equations of smooth implicit surfaces, and shape " +
+                              describe(shape) + (own ? " is a support function" : " has none") +
+                              "; accepted: \"certified\"");
 }
 
 std::optional<NormBodyShape> norm_body(const BodyShape& shape) {

@@ -21,6 +21,7 @@
 #include <geom/rounded.h>
 #include <geom/shape.h>
 #include <geom/shape_variant.h>
+#include <geom/solids.h>
 #include <geom/sphere.h>
 #include <geom/superellipsoid.h>
 #include <geom/tolerances.h>

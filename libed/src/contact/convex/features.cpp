@@ -1,4 +1,4 @@
-#include "contact/convex_features.h"
+#include "contact/convex/features.h"
 
 #include <Eigen/Geometry>
 

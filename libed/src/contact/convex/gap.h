@@ -28,15 +28,15 @@
 ///
 /// so that two support evaluations of each body certify a whole step: to the end, if g1 >= K tau^2/2 (the bound is a
 /// concave function, or a convex one that falls no lower than its first root), else up to its first root. To second
-/// order along smooth surfaces, edges and faces alike, if n turns as the contact does (convex_features.h); Omega = 0 is
+/// order along smooth surfaces, edges and faces alike, if n turns as the contact does (convex/features.h); Omega = 0 is
 /// the other candidate, and the longer step wins. The component of Omega along n is free: it is chosen so that |mu2 +
 /// |mu|^2 n| of both bodies is small.
 ///
 /// Newton's method on d(t) ends the search, with the closest points of the closest features. That the contact is the
 /// first one is proved by the same bound backwards in time, from g = 0 on.
 
-#include "contact/convex_body.h"
-#include "contact/convex_features.h"
+#include "contact/convex/body.h"
+#include "contact/convex/features.h"
 #include "contact/curvature_steps.h"
 #include "contact/rounding.h"
 #include "contact/separation.h"

@@ -2,7 +2,7 @@
 
 /// Closest features of two cores that are apart, and how their normal turns.
 
-#include "contact/convex_body.h"
+#include "contact/convex/body.h"
 
 #include <geom/kernel/core_simplex.h>
 

@@ -1,4 +1,4 @@
-#include "contact/convex_gap.h"
+#include "contact/convex/gap.h"
 
 #include "contact/body_shapes.h"
 #include "contact/least_step.h"
