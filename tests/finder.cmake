@@ -5,6 +5,7 @@ hardbody_test(finder_unit_test unit
   unit/ed/cells/grid_test.cpp
   unit/ed/contact/certified_test.cpp
   unit/ed/contact/contact_budget_test.cpp
+  unit/ed/contact/core_kinds_test.cpp
   unit/ed/contact/contact_refusals_test.cpp
   unit/ed/contact/contact_scenes_test.cpp
   unit/ed/motion/axis_motion_test.cpp
@@ -28,4 +29,5 @@ hardbody_test(finder_rounding_test property property/rounding_test.cpp)
 # It judges in quadruple precision: double is promoted everywhere, on purpose.
 set_source_files_properties(property/rounding_test.cpp PROPERTIES COMPILE_OPTIONS -Wno-double-promotion)
 hardbody_test(finder_bracketing_test property property/bracketing_test.cpp)
+hardbody_test(finder_convex_contact_test property property/convex_contact_test.cpp)
 hardbody_test(finder_support_contact_test property property/support_contact_test.cpp)

@@ -1,5 +1,7 @@
 # Tests of this part; see hardbody_test in CMakeLists.txt.
 hardbody_test(geom_unit_test unit
+  unit/geom/any_shape_test.cpp
+  unit/geom/check_support_test.cpp
   unit/geom/enumerator_names_test.cpp
   unit/geom/batch/batch_pairs_test.cpp
   unit/geom/batch/batch_test.cpp
@@ -10,6 +12,7 @@ hardbody_test(geom_unit_test unit
   unit/geom/cores/capsule_smooth_test.cpp
   unit/geom/cores/exact_side_test.cpp
   unit/geom/cores/half_space_test.cpp
+  unit/geom/cores/swept_mass_test.cpp
   unit/geom/cores/polyhedron_test.cpp
   unit/geom/contact_elements_test.cpp
   unit/geom/distance_test.cpp
@@ -27,6 +30,7 @@ hardbody_test(geom_unit_test unit
   unit/geom/queries_test.cpp
   unit/geom/ray_cast_test.cpp
   unit/geom/ray_from_afar_test.cpp
+  unit/geom/solids_test.cpp
   unit/geom/sphere_search_test.cpp
   unit/geom/superellipsoid_test.cpp
   unit/geom/user_shape_test.cpp)

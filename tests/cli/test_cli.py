@@ -1964,7 +1964,7 @@ class Distance(Case):
             (self.bad(a={"orientation": [1, 0, 0]}), "a.orientation is [1,0,0]", "unit quaternion"),
             (self.bad(a={"shape": "sphere"}).replace("}}", "}"), "not valid JSON"),
             (json.dumps({"a": {"shape": "sphere", "position": [0, 0, 0]}}), 'a.shape is "sphere"', '"ellipsoid"'),
-            (self.bad(shape={"kind": "sphere"}), 'a.shape.kind is "sphere"', '"ellipsoid"'),
+            (self.bad(shape={"kind": "pyramid"}), 'a.shape.kind is "pyramid"', '"ellipsoid"'),
             (self.bad(shape={"kind": "superellipsoid"}), "a.shape.exponents is missing", "two numbers [e1, e2]"),
             (self.bad(shape={"kind": "superellipsoid", "exponents": [1]}), "a.shape.exponents is [1]", "two numbers"),
             (self.bad(shape={"kind": "superellipsoid", "exponents": [1, 0.1]}), "a.shape.exponents is [1,0.1]", "0.2 to 1.6"),

@@ -6,6 +6,7 @@
 #include "fuzz/fuzz_input.h"
 
 #include <geom/geom.h>
+#include <geom/kernel/any_body.h>
 
 #include <algorithm>
 #include <array>
@@ -37,8 +38,9 @@ void print(const Shape& shape, const Pose& X) {
   const auto list = [](const auto& values) {
     for (int k = 0; k < values.size(); ++k) std::fprintf(stderr, "%s%.17g", k == 0 ? "" : ", ", values.reshaped()[k]);
   };
-  std::visit([&](const auto& s) { list(s.semi_axes()); }, shape);
+  if (const auto* ellipsoid = std::get_if<geom::Ellipsoid>(&shape)) list(ellipsoid->semi_axes());
   if (const auto* barr = std::get_if<geom::Superellipsoid>(&shape)) {
+    list(barr->semi_axes());
     std::fprintf(stderr, "; exponents %.17g, %.17g", barr->e1(), barr->e2());
   }
   std::fprintf(stderr, "; rotation by columns ");
@@ -134,16 +136,13 @@ void ask_newton(const Pair& pair, Input& input) {
   const int kind = input.byte() % 3;
   const Vector3d u = input.vector();
   const Vector3d v = input.vector();
-  std::visit(
-      [&](const auto& a, const auto& b) {
-        const geom::WitnessPair any{u, v, geom::SeedStatus::usable};
-        const geom::WitnessPair seed = kind == 0   ? any
-                                       : kind == 1 ? geom::normal_seed(a, pair.X_WA, b, pair.X_WB, u)
-                                                   : geom::centre_seed(a, pair.X_WA, b, pair.X_WB);
-        const auto good = geom::checked_seed(a, pair.X_WA, b, pair.X_WB, seed);
-        check(pair, geom::newton_distance(a, pair.X_WA, b, pair.X_WB, system, good));
-      },
-      pair.a, pair.b);
+  const geom::WitnessPair any{u, v, geom::SeedStatus::usable};
+  const auto along_u = [&](const auto& a, const auto& b) { return geom::normal_seed(a, pair.X_WA, b, pair.X_WB, u); };
+  const geom::WitnessPair seed = kind == 0   ? any
+                                 : kind == 1 ? geom::kernel::with_bodies(pair.a, pair.b, along_u)
+                                             : geom::centre_seed(pair.a, pair.X_WA, pair.b, pair.X_WB);
+  const auto good = geom::checked_seed(pair.a, pair.X_WA, pair.b, pair.X_WB, seed);
+  check(pair, geom::newton_distance(pair.a, pair.X_WA, pair.b, pair.X_WB, system, good));
 }
 
 /// True if the point is inside, or so far away that the body is lost in its rounding.

@@ -9,6 +9,7 @@
 #include "oracle/fcl_raw.h"
 
 #include <geom/geom.h>
+#include <geom/kernel/any_body.h>
 #include <geom/seeds.h>
 #if HARDBODY_WITH_CGAL
 #include <geom/cgal.h>
@@ -290,11 +291,11 @@ void try_libraries(bool ellipsoids, std::size_t i, Errors& errors) {
   };
   const Shape a = shape();
   const Shape b = shape();
-  const ManufacturedPair pair = std::visit(
-      [&](const auto& s, const auto& t) { return geom_test::manufacture(s, t, random.log_uniform(1e-3, 10), random); },
-      a, b);
-  const double wanted = std::visit(
-      [&](const auto& s, const auto& t) { return lower_bound(s, pair.X_WA, t, pair.X_WB, pair.normal); }, a, b);
+  const ManufacturedPair pair = kernel::with_bodies(a, b, [&](const auto& s, const auto& t) {
+    return geom_test::manufacture(s, t, random.log_uniform(1e-3, 10), random);
+  });
+  const double wanted = kernel::with_bodies(
+      a, b, [&](const auto& s, const auto& t) { return lower_bound(s, pair.X_WA, t, pair.X_WB, pair.normal); });
   const auto error = [&](double distance) { return std::abs(distance - wanted) / pair.size; };
   for (auto& method : errors.of) method[i] = HUGE_VAL;  // what remains of the pair if the process ends
   errors.of[0][i] = error(distance(a, pair.X_WA, b, pair.X_WB).distance);

@@ -6,6 +6,7 @@
 #include "common/geom/superellipsoid_sets.h"
 
 #include <geom/geom.h>
+#include <geom/kernel/any_body.h>
 #include <geom/seeds.h>
 #if HARDBODY_WITH_CGAL
 #include <geom/cgal.h>
@@ -68,8 +69,8 @@ Pair hostile_pair(int i) {
     case 2:
       return {a, b, random.pose(size), random.pose(size)};
     default: {
-      const ManufacturedPair pair =
-          std::visit([&](const auto& s, const auto& t) { return geom_test::manufacture(s, t, gap, random); }, a, b);
+      const ManufacturedPair pair = kernel::with_bodies(
+          a, b, [&](const auto& s, const auto& t) { return geom_test::manufacture(s, t, gap, random); });
       return {a, b, pair.X_WA, pair.X_WB};
     }
   }
@@ -96,30 +97,35 @@ bool is_wrong(const A& a, const Pose& X_WA, const B& b, const Pose& X_WB, const 
          (is_answer(ours) && !(std::abs(ours.distance - r.distance) <= 1e-12 * size + ours.error_bound));
 }
 
+/// Returns f(a, b) with the ellipsoids or superellipsoids inside.
+template <class F>
+auto with_surfaces(const Shape& a, const Shape& b, const F& f) {
+  return kernel::with_equations(
+      "a", a, [&](const auto& s) { return kernel::with_equations("b", b, [&](const auto& t) { return f(s, t); }); });
+}
+
 template <class Seed>
 void expect_no_abort(const char* name, int pairs, const Seed& seed_of) {
   SeedCounts counts;
   const int aborts = geom_test::run_forked(pairs, counts, [&](int i, SeedCounts& record) {
     const Pair p = hostile_pair(i);
-    std::visit(
-        [&](const auto& a, const auto& b) {
-          const WitnessPair seed = seed_of(a, p.X_WA, b, p.X_WB);
-          ++(seed.status == SeedStatus::usable        ? record.usable
-             : seed.status == SeedStatus::overlapping ? record.overlapping
-                                                      : record.declined);
-          if (seed.status != SeedStatus::usable && !std::isnan(seed.point_a.x())) ++record.broken;
-          try {
-            check_seed(a, p.X_WA, b, p.X_WB, seed);
-          } catch (const std::invalid_argument&) {
-            ++record.broken;
-            return;
-          }
-          for (const NewtonSystem system : {NewtonSystem::eight, NewtonSystem::five}) {
-            const DistanceResult r = newton_distance(a, p.X_WA, b, p.X_WB, system, seed);
-            if (is_answer(r) && is_wrong(a, p.X_WA, b, p.X_WB, r)) ++record.wrong;
-          }
-        },
-        p.a, p.b);
+    with_surfaces(p.a, p.b, [&](const auto& a, const auto& b) {
+      const WitnessPair seed = seed_of(a, p.X_WA, b, p.X_WB);
+      ++(seed.status == SeedStatus::usable        ? record.usable
+         : seed.status == SeedStatus::overlapping ? record.overlapping
+                                                  : record.declined);
+      if (seed.status != SeedStatus::usable && !std::isnan(seed.point_a.x())) ++record.broken;
+      try {
+        check_seed(a, p.X_WA, b, p.X_WB, seed);
+      } catch (const std::invalid_argument&) {
+        ++record.broken;
+        return;
+      }
+      for (const NewtonSystem system : {NewtonSystem::eight, NewtonSystem::five}) {
+        const DistanceResult r = newton_distance(a, p.X_WA, b, p.X_WB, system, seed);
+        if (is_answer(r) && is_wrong(a, p.X_WA, b, p.X_WB, r)) ++record.wrong;
+      }
+    });
   });
   std::printf("%s, hostile pairs: %d usable, %d overlapping, %d declined, %d broken, %d wrong answers, %d aborts\n",
               name, counts.usable, counts.overlapping, counts.declined, counts.broken, counts.wrong, aborts);
@@ -145,7 +151,7 @@ void expect_alike(const Seed& seed_of) {
     const Pair p = hostile_pair(i);
     const WitnessPair seed = seed_of(p.a, p.X_WA, p.b, p.X_WB);
     const WitnessPair inside =
-        std::visit([&](const auto& a, const auto& b) { return seed_of(a, p.X_WA, b, p.X_WB); }, p.a, p.b);
+        with_surfaces(p.a, p.b, [&](const auto& a, const auto& b) { return seed_of(a, p.X_WA, b, p.X_WB); });
     ASSERT_EQ(seed.status, inside.status) << i;
     if (seed.status != SeedStatus::usable) continue;
     EXPECT_EQ(seed.point_a, inside.point_a) << i;

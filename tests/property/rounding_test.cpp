@@ -12,7 +12,7 @@
 #include <base/periodic.h>
 #include <contact/body_shapes.h>
 #include <contact/certified.h>
-#include <contact/convex_gap.h>
+#include <contact/convex/gap.h>
 #include <contact/support_gap.h>
 #include <contact/uniaxial_gap.h>
 
@@ -253,7 +253,7 @@ void try_superellipsoids(Random& random, const DrawTop& draw_top, bool search, T
 void try_spherocylinders(Random& random, bool search, Tally& tally) {
   const geom_test::Spherocylinder rod{log_uniform(random, 0.1, 3), log_uniform(random, 0.1, 1)};
   const double volume = std::numbers::pi * rod.radius * rod.radius * (2 * rod.half_length + 4 * rod.radius / 3);
-  const BodyShape shape = CustomShape(rod, {"spherocylinder", volume, 2, true});
+  const ConvexBody shape(CustomShape(rod, {"spherocylinder", volume, 2, true}));
   const double reach = 2 * rod.bounding_radius();
   Flights flights(random, reach, Top::symmetric);
   Scene& scene = flights.scene;
@@ -263,7 +263,7 @@ void try_spherocylinders(Random& random, bool search, Tally& tally) {
   const Vector3d n = random.direction();
   const auto points = [&](const auto& pair_gap, const auto& state) {
     const auto gap = pair_gap.sample(state, n);
-    return std::pair<Vector3d, Vector3d>(gap.point_a, gap.point_b);
+    return std::pair<Vector3d, Vector3d>(gap.point_a + rod.radius * n, gap.point_b - rod.radius * n);
   };
   arrange(random, scene, n, reach * log_uniform(random, 1e-14, 1e-12), a, b, gap_of, points);
   const Image image(a, b, scene);

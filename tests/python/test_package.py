@@ -199,7 +199,7 @@ def test_example_runs():
     assert "separated by 2.049" in done.stdout
 
 
-@pytest.mark.parametrize("page", ["python.md", "python-shapes.md"])
+@pytest.mark.parametrize("page", ["python.md", "python-shapes.md", "shapes.md"])
 def test_guide_runs(page):
     """The examples of a page, in order, in one name space."""
     blocks = re.findall(r"```python\n(.*?)```", (ROOT / "docs" / page).read_text(), re.DOTALL)

@@ -94,7 +94,10 @@ def test_quadrature_agrees_with_closed_forms():
         (lambda: hb.Superellipsoid([1, 1, 1], 1, "1"), "e2 is '1'"),
         (lambda: hb.Ellipsoid.spheroid(0), "aspect_ratio is 0"),
         (lambda: hb.Ellipsoid([1, 1, 1]).inertia(-1), "mass is -1"),
-        (lambda: hb.mass_properties(hb.Pose()), "shape is of type Pose; accepted: Ellipsoid, Superellipsoid"),
+        (
+            lambda: hb.mass_properties(hb.Pose()),
+            "shape is of type Pose; accepted: Ellipsoid, Superellipsoid, Sphere, Capsule,",
+        ),
         (lambda: hb.mass_properties(hb.Ellipsoid([1, 1, 1]), np.inf), "density is inf"),
     ],
 )

@@ -32,8 +32,9 @@ ShapeNumbers numbers(const geom::Superellipsoid& shape) {
   return {ShapeKind::superellipsoid, shape.semi_axes(), {shape.e1(), shape.e2()}};
 }
 
-ShapeNumbers numbers(const ed::CustomShape& /*shape*/) {
-  throw std::logic_error("a user's own shape in a config or file");
+template <class Shape>
+ShapeNumbers numbers(const Shape& /*shape*/) {
+  throw std::logic_error("a shape that no config or file names");
 }
 
 }  // namespace

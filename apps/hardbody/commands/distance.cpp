@@ -44,9 +44,17 @@ std::string distance_help() {
   {{"a":{{"shape":{{"kind":"ellipsoid","semi_axes":[1,1,3]}},"position":[0,0,0],"orientation":[1,0,0,0]}},"b":{{..}}}}
   shape        or {{"kind":"superellipsoid","semi_axes":[a,b,c],"exponents":[e1,e2]}}, exponents {} to {}:
                (|x/a|^(2/e2) + |y/b|^(2/e2))^(e2/e1) + |z/c|^(2/e1) <= 1
+               or {{"kind":"sphere","radius":r}}
+               or {{"kind":"capsule","half_length":l,"radius":r}}, along z
+               or {{"kind":"box","half_extents":[a,b,c]}}
+               or {{"kind":"polyhedron","vertices":[[x,y,z],..]}}, their hull, the origin inside
+               or {{"kind":"polyhedron","solid":"cube"}}, any Platonic or Archimedean solid, of circumradius 1 or
+               "circumradius":R; boxes and polyhedra may have "rounding":r, a ball swept over them
+               or {{"kind":"half_space","normal":[x,y,z],"offset":d}}, by default z <= 0; one of the two bodies
   orientation  unit quaternion w, x, y, z from body to world; default: no rotation. A quaternion whose length differs
                from 1 by at most {:g} is normalized, with a notice in the answer if by more than {:g}
-  method       "dual" (the default), or the paper's equations: "newton8", "newton5"
+  method       "dual" (the default), or the paper's equations: "newton8", "newton5", for ellipsoids, superellipsoids and
+               spheres
   seed         starting points of these two methods: {} (the default is the first)
   penetration  answer of the dual method for deep overlaps: "global" (the default), the shortest of all translations
                that separate the bodies, or "local", a stationary one, mostly found 10 to 75 times faster

@@ -17,7 +17,6 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
-#include <variant>
 
 namespace hardbody {
 namespace {
@@ -114,10 +113,8 @@ std::string failed_call(const ed::FailedPair& failed) {
   const ed::FailedDistance& call = *failed.distance;
   const bool eight = call.method == ed::DistanceMethod::newton8;
   const auto system = eight ? geom::NewtonSystem::eight : geom::NewtonSystem::five;
-  const auto solve = [&](const auto& a, const auto& b) {
-    return geom::kernel::newton_distance_unchecked(a, call.X_WA, b, call.X_WB, system, call.seed);
-  };
-  const geom::DistanceResult d = std::visit(solve, call.shape_a, call.shape_b);
+  const geom::DistanceResult d =
+      geom::kernel::newton_distance_unchecked(call.shape_a, call.X_WA, call.shape_b, call.X_WB, system, call.seed);
   const std::string points = call.seed.status == geom::SeedStatus::usable
                                  ? fmt::format("{} and {}", text(call.seed.point_a), text(call.seed.point_b))
                                  : "no points";
@@ -140,8 +137,7 @@ std::string newton_now(const Pair& pair) {
                        geom::to_string(d.status), d.iterations);
   };
   const auto both = [&](const char* seed_name, const geom::WitnessPair& found) {
-    const geom::WitnessPair seed =
-        std::visit([&](const auto& A, const auto& B) { return geom::checked_seed(A, X_WA, B, X_WB, found); }, a, b);
+    const geom::WitnessPair seed = geom::checked_seed(a, X_WA, b, X_WB, found);
     line("newton8", geom::NewtonSystem::eight, seed_name, seed);
     line("newton5", geom::NewtonSystem::five, seed_name, seed);
   };

@@ -5,6 +5,7 @@
 #include "base/shapes.h"
 #include "distance/scanner.h"
 #include "io/json_member.h"
+#include "io/json_shape.h"
 #include "io/orientation.h"
 #include "io/text_file.h"
 
@@ -30,13 +31,15 @@ constexpr const char* kMethods = "\"dual\", \"newton8\", \"newton5\"";
 constexpr const char* kPenetrations = "\"global\", \"local\"";
 
 struct Body {
-  geom::Shape shape;
+  QueryShape shape;
   geom::Pose pose;
 };
 
 Body read_body(const JsonMember& body, std::vector<std::string>& notices) {
   body.allow(kBodyKeys);
-  const geom::Shape shape = read_shape(body.at("shape", "{\"kind\":\"ellipsoid\",\"semi_axes\":[a,b,c]}"));
+  const JsonMember member = body.at("shape", "{\"kind\":\"ellipsoid\",\"semi_axes\":[a,b,c]}");
+  const QueryShape shape =
+      is_half_space(member) ? QueryShape(read_half_space(member)) : QueryShape(read_shape(member, ", \"half_space\""));
   const Vector3d position = read_position(body);
   if (!body.has("orientation")) return {shape, geom::Pose::translation(position)};
   return {shape, read_orientation(body.at("orientation", ""), position, notices)};
@@ -95,6 +98,22 @@ void check_options(Method method, const SeedSource& seed, bool has_penetration) 
   }
 }
 
+/// Throws for bodies whose distance is not defined, or not by the method.
+void check_shapes(const QueryShape& a, const QueryShape& b, Method method) {
+  if (std::holds_alternative<geom::HalfSpace>(a) && std::holds_alternative<geom::HalfSpace>(b)) {
+    throw InputError("a.shape and b.shape are half-spaces; accepted: one at the most");
+  }
+  if (method == Method::dual) return;
+  for (const auto& [name, shape] : {std::pair("a", &a), std::pair("b", &b)}) {
+    const auto* finite = std::get_if<geom::Shape>(shape);
+    if (finite != nullptr && geom::has_equations(*finite)) continue;
+    throw InputError(fmt::format(
+        "{}.shape is a {}, for which there are no equations; accepted: with \"newton8\" and \"newton5\" ellipsoids, "
+        "superellipsoids and spheres",
+        name, finite == nullptr ? "half-space" : geom::description(*finite)));
+  }
+}
+
 nlohmann::json parse_line(std::string_view line) {
   try {
     return parse_json(line);
@@ -139,6 +158,18 @@ std::optional<DistanceQuery> scanned_query(std::string_view line, std::string& i
                        *method,  seed->function, *penetration, fmt::format("{}", fmt::join(notices, "; "))};
 }
 
+geom::DistanceResult dual_distance(const DistanceQuery& query) {
+  const auto* a = std::get_if<geom::Shape>(&query.a);
+  const auto* b = std::get_if<geom::Shape>(&query.b);
+  const geom::DistanceOptions options{.penetration = query.penetration};
+  if (a == nullptr) return geom::distance(std::get<geom::HalfSpace>(query.a), query.X_WA, *b, query.X_WB, options);
+  if (b == nullptr) {
+    return geom::kernel::exchanged(
+        geom::distance(std::get<geom::HalfSpace>(query.b), query.X_WB, *a, query.X_WA, options));
+  }
+  return geom::distance(*a, query.X_WA, *b, query.X_WB, options);
+}
+
 /// Appends a number, or `null` if there is none: in a declined answer, and for infinity.
 void append_number(std::string& text, double value) {
   if (!std::isfinite(value)) {
@@ -181,6 +212,7 @@ DistanceQuery parse_query(std::string_view line, std::string& id) {
   std::vector<std::string> notices;
   const Body a = read_body(root.at("a", "a body"), notices);
   const Body b = read_body(root.at("b", "a body"), notices);
+  check_shapes(a.shape, b.shape, method);
   return {a.shape, b.shape,       a.pose,      b.pose,
           method,  seed.function, penetration, fmt::format("{}", fmt::join(notices, "; "))};
 }
@@ -188,18 +220,14 @@ DistanceQuery parse_query(std::string_view line, std::string& id) {
 DistanceAnswer answer(const DistanceQuery& query) {
   const geom::Pose& X_WA = query.X_WA;
   const geom::Pose& X_WB = query.X_WB;
-  if (query.method == Method::dual) {
-    return {geom::distance(query.a, X_WA, query.b, X_WB, {.penetration = query.penetration}), {}};
-  }
+  if (query.method == Method::dual) return {dual_distance(query), {}};
+  const auto& a = std::get<geom::Shape>(query.a);
+  const auto& b = std::get<geom::Shape>(query.b);
   const auto system = query.method == Method::newton8 ? geom::NewtonSystem::eight : geom::NewtonSystem::five;
-  const geom::WitnessPair guess = query.seed(query.a, X_WA, query.b, X_WB);
-  return std::visit(
-      [&](const auto& a, const auto& b) -> DistanceAnswer {
-        const geom::WitnessPair seed = geom::checked_seed(a, X_WA, b, X_WB, guess);
-        if (seed.status != geom::SeedStatus::usable) return {{}, seed.status};
-        return {geom::newton_distance(a, X_WA, b, X_WB, system, seed), {}};
-      },
-      query.a, query.b);
+  const geom::WitnessPair guess = query.seed(a, X_WA, b, X_WB);
+  const geom::WitnessPair seed = geom::checked_seed(a, X_WA, b, X_WB, guess);
+  if (seed.status != geom::SeedStatus::usable) return {{}, seed.status};
+  return {geom::newton_distance(a, X_WA, b, X_WB, system, seed), {}};
 }
 
 std::string answer_json(const std::string& id, const DistanceAnswer& answer, const std::string& notice) {

@@ -4,12 +4,14 @@
 
 #include <geom/any_shape.h>
 #include <geom/distance.h>
+#include <geom/half_space.h>
 #include <geom/newton.h>
 #include <geom/pose.h>
 
 #include <optional>
 #include <string>
 #include <string_view>
+#include <variant>
 
 namespace hardbody {
 
@@ -19,9 +21,12 @@ enum class Method {
   newton5,
 };
 
+/// Shape of a body in a query.
+using QueryShape = std::variant<geom::Shape, geom::HalfSpace>;
+
 /// Query in one line of `hardbody distance`.
 struct DistanceQuery {
-  geom::Shape a, b;
+  QueryShape a, b;  ///< one half-space at the most
   geom::Pose X_WA, X_WB;
   Method method;
   SeedFunction seed;              ///< seed of the paper's equations

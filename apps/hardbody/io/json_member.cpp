@@ -39,8 +39,6 @@ class StrictObjects {
   std::vector<std::set<std::string>> keys_;  ///< keys of the objects that are open
 };
 
-constexpr std::string_view kShapeKeys[] = {"kind", "semi_axes", "exponents"};  ///< the last: has_exponents
-
 }  // namespace
 
 nlohmann::json parse_json(std::string_view text) {
@@ -110,29 +108,6 @@ std::vector<double> JsonMember::numbers(std::size_t size, const char* accepted) 
 Eigen::Vector3d JsonMember::vector() const {
   const std::vector<double> v = numbers(3, "three finite numbers");
   return {v[0], v[1], v[2]};
-}
-
-geom::Shape read_shape(const JsonMember& shape, ShapeKind kind) {
-  const JsonMember axes = shape.at("semi_axes", "three positive numbers");
-  ShapeNumbers numbers{kind, axes.vector()};
-  if (!has_exponents(kind)) return axes.checked([&] { return make_shape(numbers); });
-  const JsonMember exponents = shape.at("exponents", "two numbers [e1, e2]");
-  const std::vector<double> e = exponents.numbers(2, "two numbers [e1, e2]");
-  // The axes are checked first, so that the right member is named if the library refuses them.
-  axes.checked([&] { return make_shape(numbers); });
-  numbers.exponents = {e[0], e[1]};
-  return exponents.checked([&] { return make_shape(numbers); });
-}
-
-geom::Shape read_shape(const JsonMember& shape) {
-  constexpr const char* kAccepted = "\"ellipsoid\", \"superellipsoid\"";
-  if (!shape.json->is_object()) throw shape.bad("{\"kind\":\"ellipsoid\",\"semi_axes\":[a,b,c]}");
-  const JsonMember kind = shape.at("kind", kAccepted);
-  const std::optional<ShapeKind> found =
-      kind.json->is_string() ? find_shape_kind(kind.json->get_ref<const std::string&>()) : std::nullopt;
-  if (!found) throw kind.bad(kAccepted);
-  shape.allow(std::span(kShapeKeys).first(has_exponents(*found) ? 3 : 2));
-  return read_shape(shape, *found);
 }
 
 Eigen::Vector3d read_position(const JsonMember& body) {

@@ -4,9 +4,7 @@
 /// JSON, because it includes the parser.
 
 #include "base/errors.h"
-#include "base/shapes.h"
 
-#include <geom/any_shape.h>
 #include <geom/pose.h>
 
 #include <Eigen/Core>
@@ -68,11 +66,6 @@ struct JsonMember {
   InputError refused(std::string_view why) const;
 };
 
-/// Reads the numbers of a shape of a known kind.
-geom::Shape read_shape(const JsonMember& shape, ShapeKind kind);
-/// Reads {"kind": "ellipsoid" or "superellipsoid", "semi_axes": [a, b, c], "exponents": [e1, e2]}, the last for a
-/// superellipsoid only; no other keys.
-geom::Shape read_shape(const JsonMember& shape);
 /// Reads {"position": [x, y, z]}, within the range of a pose.
 Eigen::Vector3d read_position(const JsonMember& body);
 /// Reads [w, x, y, z]. A quaternion whose length differs from 1 by at most kQuaternionTolerance is normalised; if the

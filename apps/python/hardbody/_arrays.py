@@ -218,7 +218,7 @@ def distance_many(
 ) -> Distances:
     """Returns the signed distances of M pairs among N bodies, with closest points, normals and certified error bounds.
 
-    shapes: one Ellipsoid or Superellipsoid, or a list of them. positions: world frame, shape (N, 3), in the unit of the
+    shapes: one built-in shape, or a list of them, of any kind. positions: world frame, shape (N, 3), in the unit of the
     shapes. quaternions: orientations, unit quaternions (w, x, y, z) body to world, shape (N, 4); None: bodies that are
     not rotated. pairs: indices (a, b) of bodies, integers of shape (M, 2). shape_of: index of each body's shape,
     integers of shape (N,); None: one shape serves all bodies, or there is one a body. threads: number of threads, 1 to
@@ -373,7 +373,7 @@ def time_of_contact_many(
 def mass_properties_many(shapes: Shapes, density: ArrayLike = 1.0) -> Masses:
     """Returns volumes, masses and moments of inertia of K shapes of uniform density, by closed forms.
 
-    shapes: one Ellipsoid or Superellipsoid, or a list of K. density: one number, or one a shape, shape (K,).
+    shapes: one built-in shape, or a list of K. density: one number, or one a shape, shape (K,).
 
     Raises ValueError or TypeError that names the argument, the entry and what is accepted.
     """

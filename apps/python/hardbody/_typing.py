@@ -33,8 +33,18 @@ class SupportShape(Protocol):
 
 
 Progress: TypeAlias = Callable[[str, float | None], object]
-Shape: TypeAlias = _core.Ellipsoid | _core.Superellipsoid
+Shape: TypeAlias = (
+    _core.Ellipsoid
+    | _core.Superellipsoid
+    | _core.Sphere
+    | _core.Capsule
+    | _core.Box
+    | _core.ConvexPolyhedron
+    | _core.RoundedBox
+    | _core.RoundedPolyhedron
+)
 Shapes: TypeAlias = Shape | Sequence[Shape]
 BodyShape: TypeAlias = Shape | _core.CustomShape | SupportShape
+AnyBody: TypeAlias = BodyShape | _core.HalfSpace
 SpeciesLike: TypeAlias = _core.Species | BodyShape
 Components: TypeAlias = SpeciesLike | _core.Polydisperse | Sequence[tuple[SpeciesLike, int] | _core.Polydisperse]

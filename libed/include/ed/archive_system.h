@@ -13,7 +13,11 @@
 
 #include <Eigen/Core>
 
+#include <array>
+#include <cstdint>
 #include <stdexcept>
+#include <utility>
+#include <vector>
 
 namespace ed::archive {
 
@@ -30,6 +34,38 @@ template <>
 struct Blank<geom::Superellipsoid> {
   /// Makes the object.
   static geom::Superellipsoid make() { return {Eigen::Vector3d::Ones(), 1, 1}; }
+};
+/// Makes a unit sphere to be overwritten.
+template <>
+struct Blank<geom::Sphere> {
+  /// Makes the object.
+  static geom::Sphere make() { return geom::Sphere(1); }
+};
+/// Makes a capsule to be overwritten.
+template <>
+struct Blank<geom::Capsule> {
+  /// Makes the object.
+  static geom::Capsule make() { return {1, 1}; }
+};
+/// Makes a cube to be overwritten.
+template <>
+struct Blank<geom::Box> {
+  /// Makes the object.
+  static geom::Box make() { return geom::Box(Eigen::Vector3d::Ones()); }
+};
+/// Makes a tetrahedron to be overwritten.
+template <>
+struct Blank<geom::ConvexPolyhedron> {
+  /// Makes the object.
+  static geom::ConvexPolyhedron make() {
+    return geom::ConvexPolyhedron(std::array<Eigen::Vector3d, 4>{{{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}}});
+  }
+};
+/// Makes a rounded shape to be overwritten.
+template <class Inner>
+struct Blank<geom::Rounded<Inner>> {
+  /// Makes the object.
+  static geom::Rounded<Inner> make() { return {Blank<Inner>::make(), 0}; }
 };
 /// Stands for a user's shape, which is code and cannot be restored: the bytes only distinguish it from other shapes.
 template <>
@@ -57,6 +93,58 @@ inline void fields(Reader& archive, geom::Superellipsoid& shape) {
   const auto e1 = archive.value<double>();
   const auto e2 = archive.value<double>();
   shape = geom::Superellipsoid(semi_axes, e1, e2);
+}
+
+/// Writes a shape.
+inline void fields(Writer& archive, const geom::Sphere& shape) {
+  archive(shape.radius());
+}
+/// Reads a shape.
+inline void fields(Reader& archive, geom::Sphere& shape) {
+  shape = geom::Sphere(archive.value<double>());
+}
+
+/// Writes a shape.
+inline void fields(Writer& archive, const geom::Capsule& shape) {
+  archive(shape.half_length(), shape.radius());
+}
+/// Reads a shape.
+inline void fields(Reader& archive, geom::Capsule& shape) {
+  const auto half_length = archive.value<double>();
+  shape = geom::Capsule(half_length, archive.value<double>());
+}
+
+/// Writes a shape.
+inline void fields(Writer& archive, const geom::Box& shape) {
+  archive(shape.half_extents());
+}
+/// Reads a shape.
+inline void fields(Reader& archive, geom::Box& shape) {
+  shape = geom::Box(archive.value<Eigen::Vector3d>());
+}
+
+/// Writes a shape: its vertices, of which the hull is made again.
+inline void fields(Writer& archive, const geom::ConvexPolyhedron& shape) {
+  archive(std::int64_t{shape.vertex_count()});
+  for (int k = 0; k < shape.vertex_count(); ++k) archive(shape.vertex(k));
+}
+/// Reads a shape; its hull has the same order of vertices, faces and edges, which depends on the vertices alone.
+inline void fields(Reader& archive, geom::ConvexPolyhedron& shape) {
+  std::vector<Eigen::Vector3d> vertices;
+  for (auto k = archive.value<std::int64_t>(); k > 0; --k) vertices.push_back(archive.value<Eigen::Vector3d>());
+  shape = geom::ConvexPolyhedron(vertices);
+}
+
+/// Writes a shape.
+template <class Inner>
+void fields(Writer& archive, const geom::Rounded<Inner>& shape) {
+  archive(shape.inner(), shape.radius());
+}
+/// Reads a shape.
+template <class Inner>
+void fields(Reader& archive, geom::Rounded<Inner>& shape) {
+  auto inner = archive.value<Inner>();
+  shape = geom::Rounded<Inner>(std::move(inner), archive.value<double>());
 }
 
 /// Writes the properties by which a user's shape is recognised.

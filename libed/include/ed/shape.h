@@ -6,6 +6,7 @@
 #include <ed/export.h>
 
 #include <geom/distance.h>
+#include <geom/kernel/core.h>
 #include <geom/pose.h>
 #include <geom/shape.h>
 #include <geom/shape_variant.h>
@@ -73,6 +74,9 @@ class ED_EXPORT CustomShape {
   const std::string& description() const { return name(); }
   /// @}
 
+  /// Returns the core of the user's shape if that is a geom::CoreShape, which this must outlive.
+  std::optional<geom::kernel::CoreView> core() const { return shape_->core(); }
+
   /// Returns the user's shape if it is a T, else nullptr.
   template <class T>
   const T* target() const {
@@ -88,6 +92,7 @@ class ED_EXPORT CustomShape {
     virtual double bounding_radius() const = 0;
     virtual double inscribed_radius() const = 0;
     virtual double min_curvature_radius() const = 0;
+    virtual std::optional<geom::kernel::CoreView> core() const = 0;
   };
   template <class T>
   struct Model final : Concept {
@@ -99,6 +104,10 @@ class ED_EXPORT CustomShape {
     double min_curvature_radius() const override {
       if constexpr (requires { shape.min_curvature_radius(); }) return shape.min_curvature_radius();
       return 0;
+    }
+    std::optional<geom::kernel::CoreView> core() const override {
+      if constexpr (geom::CoreShape<T>) return shape.core();
+      return std::nullopt;
     }
     T shape;
   };

@@ -17,8 +17,8 @@ namespace ed::internal {
 /// Throws std::invalid_argument for exponents beyond those tested in motion.
 void check_exponents(const BodyShape& shape);
 
-/// Returns the shape as libgeom's own variant; nullopt for a user's.
-std::optional<geom::Shape> geom_shape(const BodyShape& shape);
+/// Returns the shape as the paper's equations take it (geom::has_equations); nullopt if they cannot.
+std::optional<geom::Shape> shape_with_equations(const BodyShape& shape);
 
 /// Throws std::invalid_argument if the options ask for the paper's search, which needs implicit surfaces, of a body
 /// that has none.

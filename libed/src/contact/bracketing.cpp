@@ -9,6 +9,7 @@
 
 #include <geom/any_shape.h>
 #include <geom/distance.h>
+#include <geom/kernel/any_body.h>
 #include <geom/newton.h>
 
 #include <Eigen/Geometry>
@@ -20,7 +21,6 @@
 #include <optional>
 #include <type_traits>
 #include <utility>
-#include <variant>
 
 namespace ed::internal {
 namespace {
@@ -44,7 +44,7 @@ decltype(auto) with(const geom::Ellipsoid& shape, F&& f) {
 }
 template <class F>
 decltype(auto) with(const geom::Shape& shape, F&& f) {
-  return std::visit(std::forward<F>(f), shape);
+  return geom::kernel::with_equations("finder \"bracketing\"", shape, std::forward<F>(f));
 }
 template <class Shape, class F>
 decltype(auto) with_both(const Shape& a, const Shape& b, F&& f) {

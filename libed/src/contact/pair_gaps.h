@@ -4,16 +4,17 @@
 /// here. Ellipsoids of revolution whose inertia shares their axis have a state of their own (bodies/uniaxial.h), with
 /// UniaxialGap.
 ///
-/// | A              | B              | distance (ed::distance)                  | pair gap   | bracketing finder |
-/// |----------------|----------------|------------------------------------------|------------|-------------------|
-/// | libgeom's      | libgeom's      | geom::distance of the two kinds          | SupportGap | yes               |
-/// | a user's       | any            | PairDistance of A, of B, geom::distance  | ConvexGap  | refused           |
+/// | A                    | B          | distance (ed::distance)                 | pair gap   | bracketing |
+/// |----------------------|------------|-----------------------------------------|------------|------------|
+/// | (super)ellipsoids    | the same   | geom::distance of the two kinds         | SupportGap | yes        |
+/// | polytopes with balls | libgeom's  | geom::distance of the two kinds         | ConvexGap  | refused    |
+/// | a user's             | any        | PairDistance of A, of B, geom::distance | ConvexGap  | refused    |
 ///
-/// A shape of libgeom's variant for which there is no NormShape has ConvexGap, too, and the bracketing finder if it has
-/// an implicit function.
+/// Polytopes with balls: capsules, boxes, polyhedra, rounded ones; spheres too, for which the bracketing finder has
+/// equations.
 
 #include "contact/body_shapes.h"
-#include "contact/convex_gap.h"
+#include "contact/convex/gap.h"
 #include "contact/support_gap.h"
 #include "motion/rigid_motion.h"
 
@@ -30,9 +31,10 @@ namespace ed::internal {
 
 /// Shape with what the pair gaps take of it.
 struct GapShape {
-  explicit GapShape(const BodyShape& body) : shape(body), norm(norm_body(body)), implicit(geom_shape(body)) {}
+  explicit GapShape(const BodyShape& body)
+      : convex(body), norm(norm_body(body)), implicit(shape_with_equations(body)) {}
 
-  BodyShape shape;
+  ConvexBody convex;                    ///< shape as ConvexGap takes it
   std::optional<NormBodyShape> norm;    ///< shape as SupportGap takes it
   std::optional<geom::Shape> implicit;  ///< shape as Finder::bracketing takes it
 };
@@ -43,7 +45,7 @@ template <class F>
 decltype(auto) with_pair_gap(const GapShape& A, const RigidMotion& a, const GapShape& B, const RigidMotion& b,
                              const Eigen::Vector3d& r, double now, F&& f) {
   if (A.norm && B.norm) return std::forward<F>(f)(SupportGap(*A.norm, a, *B.norm, b, r, now));
-  return std::forward<F>(f)(ConvexGap(A.shape, a, B.shape, b, r, now));
+  return std::forward<F>(f)(ConvexGap(A.convex, a, B.convex, b, r, now));
 }
 
 }  // namespace ed::internal

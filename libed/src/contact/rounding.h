@@ -9,7 +9,7 @@
 ///     g >= g_c - gap,    g' >= g'_c - rate,    K <= K_c + curvature,
 ///
 /// with what the root of the parabola and t + tau are rounded by included. The step is made of the numbers on the right
-/// (curvature_steps.h, support_gap.cpp, convex_gap.cpp). Bodies with g_c <= gap cannot be told from touching ones.
+/// (curvature_steps.h, support_gap.cpp, convex/gap.cpp). Bodies with g_c <= gap cannot be told from touching ones.
 ///
 /// Derivation for bodies of revolution. u = 2^-53 is the unit roundoff, gamma_n = n u / (1 - n u), and sums and
 /// products are bounded as by Higham, Accuracy and Stability of Numerical Algorithms (2nd ed., 2002), ch. 2 and 3;

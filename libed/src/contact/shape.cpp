@@ -1,7 +1,11 @@
 #include "contact/body_shapes.h"
+#include "contact/convex/body.h"
 
 #include <ed/shape.h>
 #include <ed/tolerances.h>
+
+#include <geom/any_shape.h>
+#include <geom/kernel/any_body.h>
 
 #include <Eigen/Geometry>
 
@@ -126,7 +130,7 @@ double volume(const BodyShape& shape) {
 }
 
 geom::Support support(const BodyShape& shape, const Vector3d& n) {
-  return with(shape, [&n](const auto& s) { return geom::Support(s.support(n)); });
+  return geom::kernel::with_body(shape, [&n](const auto& s) { return geom::Support(s.support(n)); });
 }
 
 std::optional<int> symmetry_axis(const BodyShape& shape) {
@@ -152,7 +156,11 @@ geom::DistanceResult distance(const BodyShape& a, const geom::Pose& X_WA, const 
   geom::DistanceOptions from_b = options;
   from_b.start = -options.start;
   if (const auto own = own_distance(b, X_WB, a, X_WA, from_b)) return reversed(*own);
-  return std::visit([&](const auto& A, const auto& B) { return geom::distance(A, X_WA, B, X_WB, options); }, a, b);
+  const auto core_a = internal::core_of(a);
+  const auto core_b = core_a ? internal::core_of(b) : std::nullopt;
+  if (core_b) return geom::kernel::core_distance(*core_a, X_WA, *core_b, X_WB, options);
+  return geom::kernel::with_bodies(
+      a, b, [&](const auto& A, const auto& B) { return geom::distance(A, X_WA, B, X_WB, options); });
 }
 
 std::string describe(const BodyShape& shape) {
@@ -177,16 +185,36 @@ double lever(const geom::Ellipsoid& shape) {
 
 }  // namespace
 
+std::optional<geom::kernel::CoreView> core_of(const BodyShape& shape) {
+  return with(shape, [](const auto& s) -> std::optional<geom::kernel::CoreView> {
+    if constexpr (requires { s.core(); }) return s.core();
+    return std::nullopt;
+  });
+}
+
+ConvexBody::ConvexBody(const BodyShape& body)
+    : shape(body),
+      core(core_of(shape)),
+      own_distance(false),
+      bounding_radius(ed::bounding_radius(shape)),
+      lever(turning_lever(shape)),
+      ball(core ? core->radius : with(shape, [](const auto& s) { return s.min_curvature_radius(); })),
+      core_reach(core ? core->bounding_radius : bounding_radius - ball),
+      core_inner(std::max(0.0, inscribed_radius(shape) - ball)) {
+  const auto* custom = std::get_if<CustomShape>(&shape);
+  own_distance = custom != nullptr && custom->pair_distance();
+}
+
 double turning_lever(const geom::Ellipsoid& shape) {
   return lever(shape);
 }
 
 double turning_lever(const geom::Shape& shape) {
-  return std::visit([](const auto& s) { return lever(s); }, shape);
+  return geom::kernel::with_body(shape, [](const auto& s) { return lever(s); });
 }
 
 double turning_lever(const BodyShape& shape) {
-  return std::visit([](const auto& s) { return lever(s); }, shape);
+  return geom::kernel::with_body(shape, [](const auto& s) { return lever(s); });
 }
 
 void check_exponents(const BodyShape& shape) {
@@ -205,17 +233,20 @@ void check_exponents(const BodyShape& shape) {
   });
 }
 
-std::optional<geom::Shape> geom_shape(const BodyShape& shape) {
-  return with(shape, [](const auto& s) -> std::optional<geom::Shape> {
+std::optional<geom::Shape> shape_with_equations(const BodyShape& shape) {
+  std::optional<geom::Shape> found = with(shape, [](const auto& s) -> std::optional<geom::Shape> {
     if constexpr (std::constructible_from<geom::Shape, decltype(s)>) return s;
     return std::nullopt;
   });
+  return found && geom::has_equations(*found) ? found : std::nullopt;
 }
 
 void check_finder(const ContactOptions& options, const BodyShape& shape) {
-  if (options.finder == Finder::certified || geom_shape(shape)) return;
-  throw std::invalid_argument("finder \"bracketing\" solves equations of implicit surfaces, and shape " +
-                              describe(shape) + " is a support function; accepted: \"certified\"");
+  if (options.finder == Finder::certified || shape_with_equations(shape)) return;
+  const bool own = std::holds_alternative<CustomShape>(shape);
+  throw std::invalid_argument("finder \"bracketing\" solves equations of smooth implicit surfaces, and shape " +
+                              describe(shape) + (own ? " is a support function" : " has none") +
+                              "; accepted: \"certified\"");
 }
 
 std::optional<NormBodyShape> norm_body(const BodyShape& shape) {

@@ -209,8 +209,8 @@ ContactResult search(const GeneralBody& a, const GeneralBody& b, double reach, d
                      const ContactOptions& options) {
   const Eigen::Vector3d r = b.position_at(0) - a.position_at(0);
   const auto hulls = [&] {
-    return internal::SweptPair{internal::SweptHull(a.body.shape, a.motion, a.inertia),
-                               internal::SweptHull(b.body.shape, b.motion, b.inertia), r, b.velocity() - a.velocity(),
+    return internal::SweptPair{internal::SweptHull(a.body.convex.shape, a.motion, a.inertia),
+                               internal::SweptHull(b.body.convex.shape, b.motion, b.inertia), r, b.velocity() - a.velocity(),
                                reach};
   };
   const auto certified = [&](const auto& gap) {

@@ -123,7 +123,7 @@ bool GeneralDilatedEnvelopes::may_overlap(int i, int k, const Vector3d& r, Vecto
   const Matrix3d& R_b = places_[slot(k)].rotation;
   const std::optional<NormBodyShape>& norm_a = a.body.norm;
   const std::optional<NormBodyShape>& norm_b = b.body.norm;
-  if (!norm_a || !norm_b) return any_within(a.body.shape, R_a, b.body.shape, R_b, r, limit, normal);
+  if (!norm_a || !norm_b) return any_within(a.body.convex.shape, R_a, b.body.convex.shape, R_b, r, limit, normal);
   const NormBodyPair pair(NormBodies(norm_a->norm, R_a, norm_b->norm, R_b), r, size,
                           a.inscribed_radius + b.inscribed_radius);
   const auto elongated = [](const NormBodyShape& shape) {
@@ -135,7 +135,7 @@ bool GeneralDilatedEnvelopes::may_overlap(int i, int k, const Vector3d& r, Vecto
 
 double thickest_oriented_envelope(const GeneralBodies& bodies, double box) {
   std::vector<BodyShape> shapes;
-  for (const GeneralKind& kind : bodies.kinds()) shapes.push_back(kind.body.shape);
+  for (const GeneralKind& kind : bodies.kinds()) shapes.push_back(kind.body.convex.shape);
   double low = kThinnestOriented * bodies.inscribed_radius();
   const double least = smallest_oriented_box(shapes, low);
   if (box < least * (1 - 1e-12)) {
@@ -158,7 +158,7 @@ GeneralOrientedEnvelopes::GeneralOrientedEnvelopes(const GeneralBodies& bodies, 
   for (const GeneralKind& kind : bodies.kinds()) {
     const double diagonal = (kind.half_extents.array() + thickness).matrix().norm();
     reach_ =
-        std::max(reach_, 2 * std::min(diagonal, kind.bounding_radius + oriented_slack(kind.body.shape, thickness)));
+        std::max(reach_, 2 * std::min(diagonal, kind.bounding_radius + oriented_slack(kind.body.convex.shape, thickness)));
   }
 }
 
@@ -174,7 +174,7 @@ void GeneralOrientedEnvelopes::scale(double factor) {
 /// Returns when the surface, at its highest speed along each normal, would have crossed one of the six planes.
 double GeneralOrientedEnvelopes::exit_time(int i, const GeneralBodies& bodies, double now, double box) const {
   const geom::OrientedBox& envelope = boxes_[slot(i)];
-  const BodyShape& shape = bodies.kind_of(i).body.shape;
+  const BodyShape& shape = bodies.kind_of(i).body.convex.shape;
   const Vector3d d = nearest_image(bodies.position_at(i, now) - envelope.centre, box);
   const Matrix3d R = bodies.rotation_at(i, now);
   const double w = surface_speed(bodies, i);

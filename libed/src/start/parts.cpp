@@ -2,6 +2,7 @@
 
 #include "neighbours/limits.h"
 
+#include <geom/kernel/any_body.h>
 #include <geom/queries.h>
 #include <geom/tolerances.h>
 
@@ -12,7 +13,6 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
-#include <variant>
 
 namespace ed {
 namespace {
@@ -39,8 +39,8 @@ std::uint64_t place_on_curve(const Vector3d& position, double box) {
 namespace internal {
 
 bool overlaps(const BodyShape& a, const geom::Pose& X_a, const BodyShape& b, const geom::Pose& X_b) {
-  return std::visit([&](const auto& A, const auto& B) { return geom::overlap(A, X_a, B, X_b) != geom::Answer::no; }, a,
-                    b);
+  return geom::kernel::with_bodies(
+      a, b, [&](const auto& A, const auto& B) { return geom::overlap(A, X_a, B, X_b) != geom::Answer::no; });
 }
 
 double largest_radius(const std::vector<Component>& components) {

@@ -55,8 +55,7 @@ double cut_normal(Random& random) {
 BodyShape scaled_shape(const BodyShape& shape, double factor) {
   const auto scaled = [&](const auto& s) -> BodyShape {
     if constexpr (requires { s.scaled(factor); }) return s.scaled(factor);
-    throw std::invalid_argument("scaled: shape " + describe(shape) +
-                                " cannot be scaled; accepted: ellipsoids and superellipsoids");
+    throw std::invalid_argument("scaled: shape " + describe(shape) + " cannot be scaled; accepted: libgeom's shapes");
   };
   return std::visit(scaled, shape);
 }

@@ -134,6 +134,13 @@ Species paper_species(const geom::Ellipsoid& shape, double mass) {
 
 Species uniform_species(const BodyShape& shape, double mass) {
   const auto inertia = [&](const auto& s) -> Vector3d {
+    if constexpr (requires { s.is_in_principal_frame(); }) {
+      if (!s.is_in_principal_frame()) {
+        throw std::invalid_argument("uniform_species: the frame of shape " + describe(shape) +
+                                    " is not that of its principal axes, from its centre of mass; accepted: the points "
+                                    "of geom::ConvexPolyhedron::in_principal_frame");
+      }
+    }
     if constexpr (requires { s.inertia(mass); }) return s.inertia(mass);
     throw std::invalid_argument("uniform_species: the moments of inertia of shape " + describe(shape) +
                                 " are not known; accepted: a Species with its own");

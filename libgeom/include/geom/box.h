@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 
+#include <optional>
 #include <string>
 
 namespace geom {
@@ -19,6 +20,7 @@ class GEOM_EXPORT Box {
 
   const Eigen::Vector3d& half_extents() const { return half_extents_; }  ///< half the edges along body x, y, z
 
+  std::optional<int> symmetry_axis() const { return std::nullopt; }  ///< axis of revolution: none
   /// Returns the box of `factor` times the size. Throws as the constructor does.
   Box scaled(double factor) const { return Box(factor * half_extents_); }
   /// Returns "box of half extents 1 x 2 x 3", for messages.

@@ -9,6 +9,7 @@
 #include <geom/batch.h>
 #include <geom/box.h>
 #include <geom/capsule.h>
+#include <geom/check_support.h>
 #include <geom/distance.h>
 #include <geom/ellipsoid.h>
 #include <geom/half_space.h>
@@ -21,6 +22,7 @@
 #include <geom/rounded.h>
 #include <geom/shape.h>
 #include <geom/shape_variant.h>
+#include <geom/solids.h>
 #include <geom/sphere.h>
 #include <geom/superellipsoid.h>
 #include <geom/tolerances.h>

@@ -57,6 +57,10 @@ DistanceResult distance(const Shape& a, const Pose& X_WA, const HalfSpace& b, co
   return r;
 }
 
+/// Overload for shapes chosen at run time.
+GEOM_EXPORT DistanceResult distance(const HalfSpace& a, const Pose& X_WA, const Shape& b, const Pose& X_WB,
+                                    const DistanceOptions& options = {});
+
 /// Returns whether a half-space and a body overlap (touching counts as overlap).
 /// @{
 template <SupportShape Shape>

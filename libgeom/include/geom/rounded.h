@@ -7,6 +7,9 @@
 
 #include <Eigen/Core>
 
+#include <optional>
+#include <sstream>
+#include <string>
 #include <utility>
 
 namespace geom {
@@ -21,6 +24,23 @@ class Rounded {
   const Inner& inner() const { return inner_; }  ///< shape that is rounded
   double radius() const { return radius_; }      ///< radius of the ball
 
+  /// Returns the axis of revolution of the shape inside.
+  std::optional<int> symmetry_axis() const requires requires(const Inner& s) { s.symmetry_axis(); }
+  { return inner_.symmetry_axis(); }
+  /// Returns whether -x is in the body for every x in it.
+  bool centrally_symmetric() const requires requires(const Inner& s) { s.centrally_symmetric(); }
+  { return inner_.centrally_symmetric(); }
+  /// Returns the shape of `factor` times the size. Throws as the constructors do.
+  Rounded scaled(double factor) const requires requires(const Inner& s) { s.scaled(1.0); }
+  { return {inner_.scaled(factor), factor * radius_}; }
+  /// Returns "box of half extents 1 x 2 x 3, rounded by 0.2", for messages.
+  std::string description() const requires requires(const Inner& s) { s.description(); }
+  {
+    std::ostringstream text;
+    text << inner_.description() << ", rounded by " << radius_;
+    return text.str();
+  }
+
   /// Returns h(n) + radius |n| and the support point; n != 0, any length.
   Support support(const Eigen::Vector3d& n) const {
     Support s = inner_.support(n);
@@ -34,14 +54,27 @@ class Rounded {
   }
 
   /// Returns whether a point is in the body or on its surface, to the rounding of its distance from the shape inside.
-  bool contains(const Eigen::Vector3d& x) const requires CoreShape<Inner> {
-    return kernel::core_distance({}, Pose::translation(x), core(), Pose(), {}).distance <= 0;
-  }
+  bool contains(const Eigen::Vector3d& x) const requires CoreShape<Inner> { return kernel::core_contains(core(), x); }
 
   double bounding_radius() const { return inner_.bounding_radius() + radius_; }    ///< sum of both
   double inscribed_radius() const { return inner_.inscribed_radius() + radius_; }  ///< sum of both
   /// Returns the sum of both smallest radii of curvature, at least `radius`.
   double min_curvature_radius() const { return kernel::min_curvature_radius_or_zero(inner_) + radius_; }
+
+  /// Returns the volume, by Steiner's formula.
+  double volume() const requires CoreShape<Inner> { return kernel::swept_mass(core()).volume; }
+  /// Returns the centre of mass, body frame.
+  Eigen::Vector3d centre_of_mass() const requires CoreShape<Inner> { return kernel::swept_mass(core()).centre(); }
+  /// Returns the inertia tensor about the origin at uniform density.
+  Eigen::Matrix3d inertia_tensor(double mass) const requires CoreShape<Inner> {
+    return kernel::swept_mass(core()).inertia(mass);
+  }
+  /// Returns the diagonal of the inertia tensor: the principal moments if is_in_principal_frame().
+  Eigen::Vector3d inertia(double mass) const requires CoreShape<Inner> { return inertia_tensor(mass).diagonal(); }
+  /// Returns whether the body's frame is that of the principal axes, to 1e-9 of the size.
+  bool is_in_principal_frame() const requires CoreShape<Inner> {
+    return kernel::swept_mass(core()).is_principal(bounding_radius());
+  }
 
   /// Returns the core of the shape that is rounded, with both balls.
   kernel::CoreView core() const requires CoreShape<Inner> {

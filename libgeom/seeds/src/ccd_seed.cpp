@@ -1,3 +1,4 @@
+#include <geom/kernel/any_body.h>
 #include <geom/seeds.h>
 
 #include <ccd/ccd.h>
@@ -6,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <variant>
 
 namespace geom {
 namespace kernel {
@@ -117,7 +117,7 @@ WitnessPair ccd_seed(const SupportBody& a, const SupportBody& b) {
 }  // namespace kernel
 
 WitnessPair ccd_seed(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB) {
-  return std::visit([&](const auto& s, const auto& t) { return ccd_seed(s, X_WA, t, X_WB); }, a, b);
+  return kernel::with_bodies(a, b, [&](const auto& s, const auto& t) { return ccd_seed(s, X_WA, t, X_WB); });
 }
 
 }  // namespace geom

@@ -1,6 +1,7 @@
 #include "tessellation.h"
 
 #include <geom/cgal.h>
+#include <geom/kernel/any_body.h>
 
 #include <CGAL/Gmpzf.h>
 #include <CGAL/Polytope_distance_d.h>
@@ -10,7 +11,6 @@
 #include <Eigen/Core>
 
 #include <algorithm>
-#include <variant>
 #include <vector>
 
 namespace geom {
@@ -66,7 +66,7 @@ WitnessPair cgal_seed(const SupportBody& a, const SupportBody& b) {
 }  // namespace kernel
 
 WitnessPair cgal_seed(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB) {
-  return std::visit([&](const auto& s, const auto& t) { return cgal_seed(s, X_WA, t, X_WB); }, a, b);
+  return kernel::with_bodies(a, b, [&](const auto& s, const auto& t) { return cgal_seed(s, X_WA, t, X_WB); });
 }
 
 }  // namespace geom

@@ -3,6 +3,7 @@
 #include <geom/seeds.h>
 
 #include <geom/distance.h>
+#include <geom/kernel/any_body.h>
 
 #include <fcl/geometry/shape/convex.h>
 #include <fcl/geometry/shape/ellipsoid.h>
@@ -13,7 +14,6 @@
 #include <algorithm>
 #include <exception>
 #include <memory>
-#include <variant>
 #include <vector>
 
 namespace geom {
@@ -95,7 +95,7 @@ WitnessPair fcl_seed(const Ellipsoid& a, const Pose& X_WA, const Ellipsoid& b, c
 }
 
 WitnessPair fcl_seed(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB) {
-  return std::visit([&](const auto& s, const auto& t) { return fcl_seed(s, X_WA, t, X_WB); }, a, b);
+  return kernel::with_bodies(a, b, [&](const auto& s, const auto& t) { return fcl_seed(s, X_WA, t, X_WB); });
 }
 
 }  // namespace geom

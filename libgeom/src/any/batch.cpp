@@ -6,7 +6,6 @@
 #include <Eigen/Core>
 
 #include <array>
-#include <concepts>
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -20,14 +19,10 @@ using kernel::checked;
 using kernel::Input;
 
 std::optional<Ellipsoid> as_ellipsoid(const Shape& shape) {
-  const auto of = [](const auto& s) -> std::optional<Ellipsoid> {
-    if constexpr (std::same_as<decltype(s), const Ellipsoid&>) return s;
-    if constexpr (requires { s.is_ellipsoid(); }) {
-      if (s.is_ellipsoid()) return Ellipsoid(s.semi_axes());
-    }
-    return std::nullopt;
-  };
-  return std::visit(of, shape);
+  if (const auto* ellipsoid = std::get_if<Ellipsoid>(&shape)) return *ellipsoid;
+  const auto* superellipsoid = std::get_if<Superellipsoid>(&shape);
+  if (superellipsoid != nullptr && superellipsoid->is_ellipsoid()) return Ellipsoid(superellipsoid->semi_axes());
+  return std::nullopt;
 }
 
 /// Pairs of ellipsoids among other shapes, copied side by side for the kernels.

@@ -1,4 +1,5 @@
 #include <geom/half_space.h>
+#include <geom/kernel/any_body.h>
 #include <geom/kernel/refuse.h>
 
 #include "shapes/format.h"
@@ -18,6 +19,11 @@ HalfSpace::HalfSpace(const Vector3d& normal, double offset) : normal_(kernel::un
     kernel::refuse("HalfSpace: offset is " + kernel::shown(offset) + "; accepted: magnitudes up to " +
                    kernel::shown(kMaxCoordinate));
   }
+}
+
+DistanceResult distance(const HalfSpace& a, const Pose& X_WA, const Shape& b, const Pose& X_WB,
+                        const DistanceOptions& options) {
+  return kernel::with_body(b, [&](const auto& s) { return distance(a, X_WA, s, X_WB, options); });
 }
 
 ClosestPoint closest_point(const HalfSpace& shape, const Pose& X_WB, const Vector3d& p_W) {

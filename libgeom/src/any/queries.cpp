@@ -1,4 +1,9 @@
+#include <geom/kernel/any_body.h>
 #include <geom/queries.h>
+
+#include <concepts>
+#include <type_traits>
+#include <variant>
 
 namespace geom {
 
@@ -103,16 +108,26 @@ RayHit ray_cast(const Ellipsoid& shape, const Pose& X_WB, const Vector3d& origin
   return hit;
 }
 
+namespace {
+
+/// Shape whose ray_cast is not the general one of a CoreBody.
+template <class T>
+concept HasOwnRayCast =
+    kernel::SmoothShape<T> || std::same_as<T, Sphere> || std::same_as<T, Box> || std::same_as<T, ConvexPolyhedron>;
+
+}  // namespace
+
 double distance_lower_bound(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB, const Vector3d& n) {
-  return std::visit([&](const auto& s, const auto& t) { return distance_lower_bound(s, X_WA, t, X_WB, n); }, a, b);
+  return kernel::with_bodies(a, b,
+                             [&](const auto& s, const auto& t) { return distance_lower_bound(s, X_WA, t, X_WB, n); });
 }
 
 Answer overlap(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB, const Vector3d& start) {
-  return std::visit([&](const auto& s, const auto& t) { return overlap(s, X_WA, t, X_WB, start); }, a, b);
+  return kernel::with_bodies(a, b, [&](const auto& s, const auto& t) { return overlap(s, X_WA, t, X_WB, start); });
 }
 
 ClosestPoint closest_point(const Shape& shape, const Pose& X_WB, const Vector3d& p_W) {
-  return std::visit([&](const auto& s) { return closest_point(s, X_WB, p_W); }, shape);
+  return kernel::with_body(shape, [&](const auto& s) { return closest_point(s, X_WB, p_W); });
 }
 
 bool contains(const Shape& shape, const Pose& X_WB, const Vector3d& p_W) {
@@ -120,7 +135,15 @@ bool contains(const Shape& shape, const Pose& X_WB, const Vector3d& p_W) {
 }
 
 RayHit ray_cast(const Shape& shape, const Pose& X_WB, const Vector3d& origin, const Vector3d& direction) {
-  return std::visit([&](const auto& s) { return ray_cast(s, X_WB, origin, direction); }, shape);
+  return std::visit(
+      [&](const auto& s) {
+        if constexpr (HasOwnRayCast<std::decay_t<decltype(s)>>) {
+          return ray_cast(s, X_WB, origin, direction);
+        } else {
+          return ray_cast(kernel::CoreBody(s), X_WB, origin, direction);
+        }
+      },
+      shape);
 }
 
 }  // namespace geom

@@ -1,5 +1,7 @@
 #include "cores/contact.h"
 
+#include <cstddef>
+
 namespace geom::kernel {
 namespace {
 
@@ -43,6 +45,18 @@ DistanceResult core_distance(const CoreView& a, const Pose& X_WA, const CoreView
   result.error_bound = bound;
   result.status = result.distance >= 0 ? DistanceStatus::separated : DistanceStatus::overlapping;
   return result;
+}
+
+bool core_contains(const CoreView& core, const Vector3d& x) {
+  if (core.radius == 0 && core.kind == CoreKind::box) return (x.cwiseAbs().array() <= core.half.array()).all();
+  if (core.radius == 0 && core.kind == CoreKind::hull) {
+    const Hull& hull = *core.hull;
+    for (std::size_t f = 0; f < hull.normals.size(); ++f) {
+      if (!(hull.normals[f].dot(x) <= hull.offsets[f])) return false;
+    }
+    return true;
+  }
+  return core_distance({}, Pose::translation(x), core, Pose(), {}).distance <= 0;
 }
 
 }  // namespace geom::kernel

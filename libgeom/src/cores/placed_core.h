@@ -3,6 +3,7 @@
 /// A core in the world's directions, as the set of vertices that the polytope methods need.
 
 #include <geom/kernel/core.h>
+#include <geom/kernel/core_simplex.h>
 
 #include <Eigen/Core>
 
@@ -59,12 +60,6 @@ class PlacedCore {
   Eigen::Vector3d t_;
   std::array<Eigen::Vector3d, 3> generator_;
   std::size_t count_ = 0;
-};
-
-/// Point of the difference B - A, and the vertices that it comes from.
-struct DifferenceVertex {
-  Eigen::Vector3d p, a, b;
-  int id_a = 0, id_b = 0;
 };
 
 /// Returns the point of B - A that is nearest along n: n.p is the gap between the tangent planes.

@@ -1,7 +1,8 @@
 #include "cores/contact.h"
 #include "cores/depth.h"
 #include "cores/placed_core.h"
-#include "cores/simplex.h"
+
+#include <geom/kernel/core_simplex.h>
 
 namespace geom::kernel {
 namespace {
@@ -23,7 +24,9 @@ class PolytopeDescent {
   bool run(const Vector3d& start) {
     Vector3d n = start;
     CoreSimplex simplex;
-    for (int step = 0; step < kMostSteps; ++step) {
+    int idle = 0;
+    for (int step = 0; step < kMostSteps && idle < kPatience; ++step) {
+      const double lower = contact_.lower;
       const DifferenceVertex v = evaluate(n);
       if (best_.squared < std::numeric_limits<double>::infinity() && closed()) return true;
       if (simplex.has(v)) break;
@@ -31,7 +34,10 @@ class PolytopeDescent {
       last_ = simplex;
       reduce_to_closest(simplex);
       if (simplex.inside) return false;
-      if (!(simplex.squared < best_.squared)) break;
+      // A better normal changes the length by the square of its change only: below rounding where the cores are much
+      // nearer than they are large, while the gap across it still grows.
+      if (!(simplex.squared <= kSameSquare * best_.squared)) break;
+      idle = simplex.squared < best_.squared || contact_.lower > lower ? 0 : idle + 1;
       best_ = simplex;
       const double length = std::sqrt(simplex.squared);
       if (!(length > tolerance_)) return false;
@@ -78,6 +84,8 @@ class PolytopeDescent {
 
  private:
   static constexpr int kMostSteps = 200;
+  static constexpr int kPatience = 4;
+  static constexpr double kSameSquare = 1 + 1e-14;
 
   DifferenceVertex evaluate(const Vector3d& n) {
     ++evaluations_;

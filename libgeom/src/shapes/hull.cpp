@@ -191,6 +191,15 @@ class Faces {
   std::map<DirectedEdge, int> owner_;  // triangle on the left of each edge
 };
 
+/// Puts faces into an order that the vertices alone determine: a hull that is made of the vertices of another one is
+/// the same to the last bit.
+void put_in_order(std::vector<std::vector<int>>& faces) {
+  for (std::vector<int>& outline : faces) {
+    std::rotate(outline.begin(), std::min_element(outline.begin(), outline.end()), outline.end());
+  }
+  std::sort(faces.begin(), faces.end());
+}
+
 void set_edges(Hull& hull) {
   std::map<DirectedEdge, int> left;
   for (int f = 0; f < static_cast<int>(hull.faces.size()); ++f) {
@@ -235,6 +244,7 @@ Hull convex_hull(std::span<const Vector3d> points) {
     number[vertices[at(k)]] = k;
   }
   hull.faces = faces.outlines(number);
+  put_in_order(hull.faces);
   set_edges(hull);
   set_planes(hull);
   return hull;

@@ -19,6 +19,19 @@ namespace geom {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
+namespace {
+
+/// Returns whether the vertices, which reach to 1 from the origin, come in opposite pairs, to rounding.
+bool is_centrally_symmetric(const Eigen::Matrix<double, Eigen::Dynamic, 3>& vertices) {
+  constexpr double kOpposite2 = 1e-28;
+  for (Eigen::Index k = 0; k < vertices.rows(); ++k) {
+    if (!((vertices.rowwise() + vertices.row(k)).rowwise().squaredNorm().minCoeff() <= kOpposite2)) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
 ConvexPolyhedron::ConvexPolyhedron(std::span<const Vector3d> points) : ConvexPolyhedron(kernel::convex_hull(points)) {}
 
 ConvexPolyhedron::ConvexPolyhedron(kernel::Hull hull) {
@@ -41,24 +54,28 @@ ConvexPolyhedron::ConvexPolyhedron(kernel::Hull hull) {
   volume_ = m.volume * bounding_radius_ * bounding_radius_ * bounding_radius_;
   centre_ = m.centre * bounding_radius_;
   second_moment_ = m.second_moment * bounding_radius_ * bounding_radius_;
+  centrally_symmetric_ = is_centrally_symmetric(unit.vertices);
   hull_ = std::make_shared<const kernel::Hull>(std::move(hull));
 }
 
-ConvexPolyhedron ConvexPolyhedron::in_principal_frame(std::span<const Vector3d> points, Pose* X_BP) {
+ConvexPolyhedron ConvexPolyhedron::in_principal_frame(std::span<const Vector3d> points, Pose* X_BP, double rounding) {
+  kernel::checked_rounding(rounding);
   const kernel::Hull hull = kernel::convex_hull(points);
   // Moments are taken about a point inside, of lengths of about 1.
   const Vector3d middle = hull.vertices.colwise().mean().transpose();
   kernel::Hull near = hull;
   near.vertices.rowwise() -= middle.transpose();
-  const double unit = near.vertices.rowwise().norm().maxCoeff();
+  const double unit = near.vertices.rowwise().norm().maxCoeff() + rounding;
   near.vertices /= unit;
-  const kernel::HullMoments m = kernel::moments(near);
-  const Matrix3d covariance = m.second_moment - m.centre * m.centre.transpose();
+  kernel::set_planes(near);
+  const kernel::SweptMass m =
+      kernel::swept_mass({.kind = kernel::CoreKind::hull, .hull = &near, .radius = rounding / unit});
+  const Matrix3d covariance = m.second_moment / m.volume - m.centre() * m.centre().transpose();
   Eigen::SelfAdjointEigenSolver<Matrix3d> solver(covariance);
   Matrix3d axes = solver.eigenvectors();
   if (covariance.isDiagonal(1e-14)) axes = Matrix3d::Identity();  // symmetric bodies keep their own axes
   if (axes.determinant() < 0) axes.col(0) *= -1;
-  const Vector3d centre = middle + unit * m.centre;
+  const Vector3d centre = middle + unit * m.centre();
   std::vector<Vector3d> moved;
   moved.reserve(static_cast<std::size_t>(hull.vertices.rows()));
   for (Eigen::Index k = 0; k < hull.vertices.rows(); ++k) {
@@ -85,6 +102,10 @@ bool ConvexPolyhedron::contains(const Vector3d& x) const {
     if (!(hull_->normals[f].dot(x) <= hull_->offsets[f])) return false;
   }
   return true;
+}
+
+bool ConvexPolyhedron::is_in_principal_frame() const {
+  return kernel::SweptMass{1, centre_, second_moment_}.is_principal(bounding_radius_);
 }
 
 Matrix3d ConvexPolyhedron::inertia_tensor(double mass) const {

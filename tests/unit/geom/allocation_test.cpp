@@ -5,6 +5,7 @@
 #include "common/geom/random.h"
 
 #include <geom/geom.h>
+#include <geom/kernel/any_body.h>
 
 #include <gtest/gtest.h>
 
@@ -40,8 +41,8 @@ Pairs all_pairs() {
   for (const Shape& a : shapes()) {
     for (const Shape& b : shapes()) {
       for (const double gap : {1.0, 1e-6, -1e-6, -0.3}) {
-        const auto pair =
-            std::visit([&](const auto& s, const auto& t) { return geom_test::manufacture(s, t, gap, random); }, a, b);
+        const auto pair = kernel::with_bodies(
+            a, b, [&](const auto& s, const auto& t) { return geom_test::manufacture(s, t, gap, random); });
         pairs.a.push_back(a);
         pairs.b.push_back(b);
         pairs.X_WA.push_back(pair.X_WA);

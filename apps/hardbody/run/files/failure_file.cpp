@@ -3,6 +3,7 @@
 #include "base/errors.h"
 #include "base/shapes.h"
 #include "io/json_member.h"
+#include "io/json_shape.h"
 #include "io/json_values.h"
 #include "io/text_file.h"
 
@@ -25,13 +26,6 @@ using Json = nlohmann::ordered_json;
 constexpr const char* kPairFormat = "hardbody pair";
 constexpr std::size_t kLongestPair = 1 << 20;
 constexpr const char* kNewtonMethods = "\"newton8\" or \"newton5\"";
-
-Json shape_json(const ed::BodyShape& shape) {
-  const auto [kind, semi_axes, e] = numbers_of(shape);
-  Json json = {{"kind", to_string(kind)}, {"semi_axes", list_json(semi_axes)}};
-  if (has_exponents(kind)) json["exponents"] = {e.x(), e.y()};
-  return json;
-}
 
 Json placed_json(const ed::BodyShape& shape, const geom::Pose& pose) {
   const Matrix3d& R = pose.rotation();

@@ -7,6 +7,7 @@
 namespace hardbody::python {
 
 void bind_shapes(nanobind::module_& module);
+void bind_core_shapes(nanobind::module_& module);
 void bind_poses(nanobind::module_& module);
 void bind_motions(nanobind::module_& module);
 void bind_queries(nanobind::module_& module);

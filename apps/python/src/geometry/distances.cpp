@@ -37,14 +37,10 @@ using geom::Pose;
 
 /// Returns the shape as an ellipsoid, for the kernels of distance_batch, if it is one.
 std::optional<Ellipsoid> as_ellipsoid(const geom::Shape& shape) {
-  const auto of = [](const auto& s) -> std::optional<Ellipsoid> {
-    if constexpr (std::same_as<decltype(s), const Ellipsoid&>) return s;
-    if constexpr (requires { s.is_ellipsoid(); }) {
-      if (s.is_ellipsoid()) return Ellipsoid(s.semi_axes());
-    }
-    return std::nullopt;
-  };
-  return std::visit(of, shape);
+  if (const auto* ellipsoid = std::get_if<Ellipsoid>(&shape)) return *ellipsoid;
+  const auto* superellipsoid = std::get_if<geom::Superellipsoid>(&shape);
+  if (superellipsoid != nullptr && superellipsoid->is_ellipsoid()) return Ellipsoid(superellipsoid->semi_axes());
+  return std::nullopt;
 }
 
 /// Number of pairs whose numbers, poses and answers fit into the first-level cache.

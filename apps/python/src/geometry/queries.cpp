@@ -5,6 +5,7 @@
 #include "geometry/bind.h"
 #include "geometry/bodies.h"
 #include "geometry/custom_queries.h"
+#include "geometry/half_space.h"
 #include "geometry/options.h"
 #include "geometry/shapes.h"
 
@@ -22,6 +23,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 #include <variant>
 #include <vector>
 
@@ -91,13 +93,14 @@ void bind_distance(nb::module_& module) {
          nb::handle penetration) {
         geom::DistanceOptions options = distance_options(max_iterations, penetration);
         if (!start.is_none()) options.start = finite_vector3(start, "start");
+        if (const auto found = half_space_distance(a, pose(pose_a, "pose_a"), b, pose(pose_b, "pose_b"))) return *found;
         return any::distance(body_shape(a, "a"), pose(pose_a, "pose_a"), body_shape(b, "b"), pose(pose_b, "pose_b"),
                              options);
       },
       nb::arg("a").none(), nb::arg("pose_a").none(), nb::arg("b").none(), nb::arg("pose_b").none(), nb::kw_only(),
       nb::arg("start") = nb::none(), nb::arg("max_iterations").none() = geom::kMaxIterations,
       nb::arg("penetration").none() = "global",
-      nb::sig("def distance(a: hardbody.BodyShape, pose_a: Pose, b: hardbody.BodyShape, pose_b: Pose, "
+      nb::sig("def distance(a: hardbody.AnyBody, pose_a: Pose, b: hardbody.AnyBody, pose_b: Pose, "
               "*, start: numpy.typing.ArrayLike | None = None, max_iterations: int = 60, "
               "penetration: typing.Literal['global', 'local'] = 'global') -> DistanceResult"),
       "Returns the signed distance of two bodies, with closest points, normal and a certified error bound.\n"
@@ -111,7 +114,10 @@ void bind_distance(nb::module_& module) {
       "at most 1e-13, mostly 1e-16. Superellipsoids of aspect ratios up to 10: at most 1e-12 when apart; flatter and\n"
       "longer ones 1e-9, or there is no answer. Overlaps deeper than the smallest radii of curvature: no other way\n"
       "out is shorter by more than error_bound, mostly 1e-9, up to 1e-7 where faces meet, and more for long bodies\n"
-      "that are nearly parallel. Shapes of your own: as ellipsoids where they are smooth; where they have kinks\n"
+      "that are nearly parallel. Spheres, capsules, boxes, polyhedra and rounded ones beside each other: at most "
+      "1e-13\n"
+      "apart and at any depth; half-spaces beside any: rounding. Shapes of your own: as ellipsoids where they are "
+      "smooth; where they have kinks\n"
       "(faces, edges) mostly 1e-16 too, but up to some 1e-6, within error_bound, which may be 1e-2.\n"
       "\n"
       "A query takes a fraction of a microsecond for ellipsoids, one to three for superellipsoids, 0.05 to 0.3\n"
@@ -138,6 +144,9 @@ class Undecided : public std::runtime_error {
 
 bool overlap(nb::handle a, nb::handle pose_a, nb::handle b, nb::handle pose_b, nb::handle start) {
   const Eigen::Vector3d guess = start.is_none() ? Eigen::Vector3d::Zero() : finite_vector3(start, "start");
+  if (const auto found = half_space_distance(a, pose(pose_a, "pose_a"), b, pose(pose_b, "pose_b"))) {
+    return found->distance <= 0;
+  }
   const geom::Answer answer =
       any::overlap(body_shape(a, "a"), pose(pose_a, "pose_a"), body_shape(b, "b"), pose(pose_b, "pose_b"), guess);
   if (answer != geom::Answer::unknown) return answer == geom::Answer::yes;
@@ -150,7 +159,7 @@ void bind_overlap(nb::module_& module) {
   module.def(
       "overlap", &overlap, nb::arg("a").none(), nb::arg("pose_a").none(), nb::arg("b").none(), nb::arg("pose_b").none(),
       nb::kw_only(), nb::arg("start") = nb::none(),
-      nb::sig("def overlap(a: hardbody.BodyShape, pose_a: Pose, b: hardbody.BodyShape, pose_b: Pose, "
+      nb::sig("def overlap(a: hardbody.AnyBody, pose_a: Pose, b: hardbody.AnyBody, pose_b: Pose, "
               "*, start: numpy.typing.ArrayLike | None = None) -> bool"),
       "Returns whether two bodies overlap, usually after one evaluation; touching counts as overlap.\n"
       "\n"
@@ -185,10 +194,13 @@ void bind_closest_point(nb::module_& module) {
   module.def(
       "closest_point",
       [](nb::handle s, nb::handle X, nb::handle point) {
+        if (const auto* floor = half_space(s)) {
+          return geom::closest_point(*floor, pose(X, "pose"), finite_vector3(point, "point"));
+        }
         return any::closest_point(body_shape(s, "shape"), pose(X, "pose"), finite_vector3(point, "point"));
       },
       nb::arg("shape").none(), nb::arg("pose").none(), nb::arg("point").none(),
-      nb::sig("def closest_point(shape: hardbody.BodyShape, pose: Pose, point: numpy.typing.ArrayLike) "
+      nb::sig("def closest_point(shape: hardbody.AnyBody, pose: Pose, point: numpy.typing.ArrayLike) "
               "-> ClosestPoint"),
       "Returns the point of a body's surface that is closest to a point, world frame, shape (3,), which may be "
       "inside.\n"
@@ -199,13 +211,16 @@ void bind_contains(nb::module_& module) {
   module.def(
       "contains",
       [](nb::handle s, nb::handle X, nb::handle point) {
+        if (const auto* floor = half_space(s)) {
+          return geom::contains(*floor, pose(X, "pose"), finite_vector3(point, "point"));
+        }
         const std::optional<bool> answer =
             any::contains(body_shape(s, "shape"), pose(X, "pose"), finite_vector3(point, "point"));
         if (answer) return *answer;
         throw Undecided("contains: the point is on the surface within the error bound; closest_point has bounds");
       },
       nb::arg("shape").none(), nb::arg("pose").none(), nb::arg("point").none(),
-      nb::sig("def contains(shape: hardbody.BodyShape, pose: Pose, point: numpy.typing.ArrayLike) -> bool"),
+      nb::sig("def contains(shape: hardbody.AnyBody, pose: Pose, point: numpy.typing.ArrayLike) -> bool"),
       "Returns whether a point, world frame, shape (3,), is in the body or on its surface. Raises\n"
       "UndecidedError for shapes of your own where neither answer is certain.");
 }
@@ -232,11 +247,15 @@ void bind_ray_cast(nb::module_& module) {
   module.def(
       "ray_cast",
       [](nb::handle s, nb::handle X, nb::handle origin, nb::handle direction) {
+        if (const auto* floor = half_space(s)) {
+          return geom::ray_cast(*floor, pose(X, "pose"), finite_vector3(origin, "origin"),
+                                direction3(direction, "direction"));
+        }
         return any::ray_cast(body_shape(s, "shape"), pose(X, "pose"), finite_vector3(origin, "origin"),
                              direction3(direction, "direction"));
       },
       nb::arg("shape").none(), nb::arg("pose").none(), nb::arg("origin").none(), nb::arg("direction").none(),
-      nb::sig("def ray_cast(shape: hardbody.BodyShape, pose: Pose, origin: numpy.typing.ArrayLike, "
+      nb::sig("def ray_cast(shape: hardbody.AnyBody, pose: Pose, origin: numpy.typing.ArrayLike, "
               "direction: numpy.typing.ArrayLike) -> RayHit"),
       "Returns the first point origin + t direction, t >= 0, in the body; both of shape (3,), world frame, the\n"
       "direction of any length but 0. The point is within 1e-13 of the bounding radius of the surface.");
@@ -252,12 +271,16 @@ struct Mass {
   Eigen::Matrix3d inertia() const { return density * unit.inertia; }
 };
 
-geom::MassProperties by_closed_forms(const geom::Shape& shape) {
-  geom::MassProperties unit;
-  unit.volume = geom::volume(shape);
-  unit.inertia = geom::inertia(shape, unit.volume).asDiagonal();
-  unit.relative_error = 1e-12;
-  return unit;
+/// Integrates over directions. Throws ValueError for shapes without a surface f(x) = 0.
+geom::MassProperties by_quadrature(const geom::Shape& shape, double tolerance) {
+  const auto of = [&](const auto& s) {
+    if constexpr (geom::ImplicitSurface<std::decay_t<decltype(s)>>) {
+      return geom::mass_properties(s, s.bounding_radius(), tolerance);
+    } else {
+      return geom::MassProperties{};
+    }
+  };
+  return std::visit(of, shape);
 }
 
 Mass mass_properties(nb::handle value, nb::handle density, nb::handle quadrature_tolerance) {
@@ -265,12 +288,14 @@ Mass mass_properties(nb::handle value, nb::handle density, nb::handle quadrature
   Mass mass{positive(density, "density"), {}};
   if (!quadrature_tolerance.is_none()) {
     const double tolerance = positive(quadrature_tolerance, "quadrature_tolerance");
-    const GilReleased released;
-    mass.unit =
-        std::visit([&](const auto& s) { return geom::mass_properties(s, s.bounding_radius(), tolerance); }, body);
-    return mass;
+    {
+      const GilReleased released;
+      mass.unit = by_quadrature(body, tolerance);
+    }
+    if (mass.unit.volume > 0) return mass;
+    refuse_value("quadrature_tolerance", shown(tolerance), "None for a " + geom::description(body));
   }
-  mass.unit = by_closed_forms(body);
+  mass.unit = geom::mass_properties(body);
   return mass;
 }
 
@@ -300,7 +325,7 @@ nb::tuple mass_properties_many(nb::handle shapes, nb::handle density) {
   {
     const GilReleased released;
     for (std::size_t k = 0; k < rows; ++k) {
-      const Mass m{each[k], by_closed_forms(bodies[k])};
+      const Mass m{each[k], geom::mass_properties(bodies[k])};
       volume.data[k] = m.unit.volume;
       mass.data[k] = m.mass();
       Eigen::Vector3d::Map(center.data + 3 * k) = m.center_of_mass();
@@ -340,7 +365,7 @@ void bind_mass_properties(nb::module_& module) {
   module.def(
       "mass_properties", &mass_properties, nb::arg("shape").none(), nb::arg("density").none() = 1.0, nb::kw_only(),
       nb::arg("quadrature_tolerance") = nb::none(),
-      nb::sig("def mass_properties(shape: Ellipsoid | Superellipsoid, density: float = 1.0, *, "
+      nb::sig("def mass_properties(shape: hardbody.Shape, density: float = 1.0, *, "
               "quadrature_tolerance: float | None = None) -> MassProperties"),
       "Returns volume, mass and moments of inertia of a body of uniform density, by closed forms.\n"
       "\n"

@@ -3,6 +3,7 @@
 #include "base/arguments.h"
 #include "base/arrays.h"
 #include "geometry/bind.h"
+#include "geometry/bind_shape.h"
 
 #include <geom/ellipsoid.h>
 #include <geom/superellipsoid.h>
@@ -46,60 +47,21 @@ nb::tuple constructor_arguments(const Superellipsoid& shape) {
   return nb::make_tuple(array_of(shape.semi_axes()), shape.e1(), shape.e2());
 }
 
-/// Defines what every shape has. A shape needs the functions above.
-template <class Shape>
-void bind_common(nb::class_<Shape>& type) {
-  type.def_prop_ro(
-          "bounding_radius", [](const Shape& s) { return s.bounding_radius(); },
-          "Radius of the smallest sphere about the origin that contains the body.")
-      .def_prop_ro(
-          "inscribed_radius", [](const Shape& s) { return s.inscribed_radius(); },
-          "Radius of the largest sphere about the origin that the body contains.")
-      .def_prop_ro(
-          "min_curvature_radius", [](const Shape& s) { return s.min_curvature_radius(); },
-          "Lower bound of the smallest radius of curvature of the surface: overlaps down to the sum of both\n"
-          "bodies' values are answered without a search.")
-      .def_prop_ro(
-          "volume", [](const Shape& s) { return s.volume(); }, "Volume, in units of length^3.")
-      .def_prop_ro(
-          "symmetry_axis", [](const Shape& s) { return s.symmetry_axis(); },
-          "Index (0, 1, 2) of the body's axis of revolution, 2 if all are; None if it has none.")
-      .def(
-          "inertia", [](const Shape& s, nb::handle mass) { return array_of(s.inertia(positive(mass, "mass"))); },
-          nb::arg("mass").none() = 1.0,
-          nb::sig("def inertia(self, mass: float = 1.0) -> numpy.typing.NDArray[numpy.float64]"),
-          "Returns the principal moments of inertia about body x, y, z at uniform density, shape (3,), in units of\n"
-          "mass times length^2.")
-      .def(
-          "scaled", [](const Shape& s, nb::handle factor) { return s.scaled(positive(factor, "factor")); },
-          nb::arg("factor").none(), nb::sig("def scaled(self, factor: float) -> typing.Self"),
-          "Returns the shape of `factor` times the size.")
-      .def(
-          "support",
-          [](const Shape& s, nb::handle n) {
-            const geom::Support support = s.support(direction3(n, "n"));
-            return nb::make_tuple(support.height, array_of(support.point));
-          },
-          nb::arg("n").none(),
-          nb::sig("def support(self, n: numpy.typing.ArrayLike) -> tuple[float, numpy.typing.NDArray[numpy.float64]]"),
-          "Returns (h, s) for a direction n, shape (3,), of any length but 0: h(n) = max of n.x over the body, and\n"
-          "the point s where that maximum is reached. Body frame.")
-      .def("__repr__", [](const Shape& s) { return constructor_text(s); })
-      .def(
-          "__eq__",
-          [](const Shape& s, nb::handle other) {
-            Shape* found = nullptr;
-            return nb::try_cast(other, found, false) && found != nullptr && equal(s, *found);
-          },
-          nb::arg("other").none(), nb::sig("def __eq__(self, other: typing.Any, /) -> bool"))
-      .def("__hash__", [](const Shape& s) { return nb::hash(nb::str(constructor_text(s).c_str())); })
-      .def(
-          "__reduce__",
-          [](nb::handle self) {
-            return nb::make_tuple(self.type(), constructor_arguments(nb::cast<const Shape&>(self)));
-          },
-          nb::sig("def __reduce__(self) -> tuple[typing.Any, ...]"));
-}
+/// Functions above, for bind_common().
+struct SmoothCalls {
+  template <class Shape>
+  static std::string text(const Shape& s) {
+    return constructor_text(s);
+  }
+  template <class Shape>
+  static bool same(const Shape& a, const Shape& b) {
+    return equal(a, b);
+  }
+  template <class Shape>
+  static nb::tuple arguments(const Shape& s) {
+    return constructor_arguments(s);
+  }
+};
 
 void bind_ellipsoid(nb::module_& module) {
   nb::class_<Ellipsoid> type(module, "Ellipsoid", "Ellipsoid (x/a)^2 + (y/b)^2 + (z/c)^2 <= 1 in the body's frame.");
@@ -125,7 +87,7 @@ void bind_ellipsoid(nb::module_& module) {
           "semi_axes", [](const Ellipsoid& s) { return array_of(s.semi_axes()); },
           nb::for_getter(nb::sig("def semi_axes(self) -> numpy.typing.NDArray[numpy.float64]")),
           "Semi-axes along body x, y, z, shape (3,).");
-  bind_common(type);
+  bind_common<SmoothCalls>(type);
 }
 
 void bind_superellipsoid(nb::module_& module) {
@@ -150,7 +112,7 @@ void bind_superellipsoid(nb::module_& module) {
           "Semi-axes along body x, y, z, shape (3,).")
       .def_prop_ro("e1", &Superellipsoid::e1, "Exponent of the profile along z.")
       .def_prop_ro("e2", &Superellipsoid::e2, "Exponent of the section across z.");
-  bind_common(type);
+  bind_common<SmoothCalls>(type);
 }
 
 }  // namespace
@@ -158,6 +120,7 @@ void bind_superellipsoid(nb::module_& module) {
 void bind_shapes(nb::module_& module) {
   bind_ellipsoid(module);
   bind_superellipsoid(module);
+  bind_core_shapes(module);
 }
 
 }  // namespace hardbody::python

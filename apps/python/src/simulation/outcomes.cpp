@@ -174,10 +174,10 @@ void bind_failed_pair(nb::module_& module) {
       .def_ro("j", &FailedPair::j, "Second body.")
       .def_prop_ro(
           "shape_i", [](const FailedPair& p) { return shape_object(p.shape_i); },
-          shape("def shape_i(self) -> Ellipsoid | Superellipsoid | CustomShape"), "Shape of the first body.")
+          shape("def shape_i(self) -> hardbody.Shape | CustomShape"), "Shape of the first body.")
       .def_prop_ro(
           "shape_j", [](const FailedPair& p) { return shape_object(p.shape_j); },
-          shape("def shape_j(self) -> Ellipsoid | Superellipsoid | CustomShape"), "Shape of the second body.")
+          shape("def shape_j(self) -> hardbody.Shape | CustomShape"), "Shape of the second body.")
       .def_prop_ro(
           "motion_i", [](const FailedPair& p) { return p.motion_i; }, "Motion of the first body.")
       .def_prop_ro(

@@ -209,7 +209,7 @@ void bind_one_species(nb::module_& module) {
           "1.6.")
       .def_prop_ro(
           "shape", [](const Species& s) { return shape_object(s.shape); },
-          nb::for_getter(nb::sig("def shape(self) -> Ellipsoid | Superellipsoid | CustomShape")),
+          nb::for_getter(nb::sig("def shape(self) -> hardbody.Shape | CustomShape")),
           "Shape of the bodies.")
       .def_prop_ro(
           "mass", [](const Species& s) { return s.mass; }, "Mass of a body.")
@@ -246,7 +246,7 @@ void bind_polydisperse(nb::module_& module) {
              nb::handle seed) { new (self) Polydisperse(make_polydisperse(species, number, width, sizes, seed)); },
           nb::arg("species").none(), nb::arg("number").none(), nb::arg("width").none(),
           nb::arg("sizes").none() = "gaussian", nb::arg("seed") = nb::none(),
-          nb::sig("def __init__(self, species: Species | Ellipsoid | Superellipsoid, number: int, width: float, "
+          nb::sig("def __init__(self, species: Species | hardbody.Shape, number: int, width: float, "
                   "sizes: typing.Literal['uniform', 'gaussian', 'lognormal'] = 'gaussian', seed: int | None = None) "
                   "-> None"),
           "Constructs `number` bodies whose sizes, relative to the species, have mean 1 and standard deviation "

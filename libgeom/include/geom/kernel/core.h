@@ -56,6 +56,24 @@ inline Support swept_support(const CoreView& core, const Eigen::Vector3d& n) {
   return s;
 }
 
+/// Integrals over a body of uniform density, about the origin.
+struct SweptMass {
+  double volume = 0;
+  Eigen::Vector3d first_moment = Eigen::Vector3d::Zero();   ///< integral of x
+  Eigen::Matrix3d second_moment = Eigen::Matrix3d::Zero();  ///< integral of x x^T
+
+  Eigen::Vector3d centre() const { return first_moment / volume; }
+  /// Returns the inertia tensor about the origin.
+  Eigen::Matrix3d inertia(double mass) const {
+    return mass / volume * (second_moment.trace() * Eigen::Matrix3d::Identity() - second_moment);
+  }
+  /// Returns whether the origin is the centre of mass and the axes are the principal ones, to 1e-9 of a length.
+  GEOM_EXPORT bool is_principal(double length) const;
+};
+
+/// Returns volume and moments of a core with its ball, in closed form.
+GEOM_EXPORT SweptMass swept_mass(const CoreView& core);
+
 /// Returns the radius of a rounding. Throws std::invalid_argument unless it is within [0, kMaxSemiAxis].
 GEOM_EXPORT double checked_rounding(double radius);
 

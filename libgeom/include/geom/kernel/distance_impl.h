@@ -366,21 +366,18 @@ DistanceResult distance(const ShapeA& a, const Pose& X_WA, const ShapeB& b, cons
                         const DistanceOptions& options) {
   if constexpr (CoreShape<ShapeA> && CoreShape<ShapeB>) {
     return kernel::core_distance(a.core(), X_WA, b.core(), X_WB, options);
-  } else if constexpr (kernel::kIsRounded<ShapeA>) {
+  } else if constexpr (kernel::kIsRoundedBody<ShapeA>) {
     return kernel::with_skins(distance(a.inner(), X_WA, b, X_WB, options), a.radius(), 0);
-  } else if constexpr (kernel::kIsRounded<ShapeB>) {
+  } else if constexpr (kernel::kIsRoundedBody<ShapeB>) {
     return kernel::with_skins(distance(a, X_WA, b.inner(), X_WB, options), 0, b.radius());
-  } else if constexpr (std::same_as<ShapeA, Capsule>) {
-    const DistanceResult r = kernel::capsule_distance(a, X_WA, b, X_WB, options);
-    return r.status != DistanceStatus::not_converged ? r : kernel::general_distance(a, X_WA, b, X_WB, options);
-  } else if constexpr (std::same_as<ShapeB, Capsule>) {
+  } else if constexpr (kernel::kHasBall<ShapeA> && kernel::SmoothShape<ShapeB>) {
+    return kernel::core_to_smooth(kernel::CoreBody(a), X_WA, b, X_WB, options);
+  } else if constexpr (kernel::kHasBall<ShapeA>) {
+    return kernel::core_to_body(kernel::CoreBody(a), X_WA, b, X_WB, options);
+  } else if constexpr (kernel::kHasBall<ShapeB>) {
     DistanceOptions turned = options;
     turned.start = -options.start;
     return kernel::exchanged(distance(b, X_WB, a, X_WA, turned));
-  } else if constexpr (std::same_as<ShapeA, Sphere>) {
-    return distance(a.ellipsoid(), X_WA, b, X_WB, options);
-  } else if constexpr (std::same_as<ShapeB, Sphere>) {
-    return distance(a, X_WA, b.ellipsoid(), X_WB, options);
   } else {
     return kernel::general_distance(a, X_WA, b, X_WB, options);
   }

@@ -5,16 +5,6 @@
 namespace geom {
 namespace kernel {
 
-/// Body that consists of one point.
-struct Point {
-  Support support(const Eigen::Vector3d& /*n*/) const { return {0, Eigen::Vector3d::Zero()}; }
-  Eigen::Matrix3d support_hessian(const Eigen::Vector3d& /*n*/) const { return Eigen::Matrix3d::Zero(); }
-  double bounding_radius() const { return 0; }
-  double inscribed_radius() const { return 0; }
-  double min_curvature_radius() const { return 0; }
-  CoreView core() const { return {}; }
-};
-
 /// Returns v / |v|, also if |v|^2 under- or overflows; NaN if v is zero or not finite.
 inline Eigen::Vector3d unit_vector(const Eigen::Vector3d& v) {
   const double v2 = v.squaredNorm();

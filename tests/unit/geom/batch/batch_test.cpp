@@ -6,6 +6,7 @@
 #include "common/special_values.h"
 
 #include <geom/geom.h>
+#include <geom/kernel/any_body.h>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -362,9 +363,9 @@ TEST(DistanceBatch, OfShapesAnswersAsDistance) {
     superellipsoids += round ? 0 : 1;
     a.push_back(shape(true));
     b.push_back(shape(round));
-    const ManufacturedPair pair = std::visit(
-        [&](const auto& s, const auto& t) { return geom_test::manufacture(s, t, random.log_uniform(1e-3, 1), random); },
-        a.back(), b.back());
+    const ManufacturedPair pair = kernel::with_bodies(a.back(), b.back(), [&](const auto& s, const auto& t) {
+      return geom_test::manufacture(s, t, random.log_uniform(1e-3, 1), random);
+    });
     X_WA.push_back(pair.X_WA);
     X_WB.push_back(pair.X_WB);
     starts.emplace_back(pair.normal + 0.1 * random.direction());

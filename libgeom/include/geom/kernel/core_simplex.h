@@ -2,8 +2,6 @@
 
 /// Point of a simplex that is closest to the origin, with a direction that is exact where the point is.
 
-#include "cores/placed_core.h"
-
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
@@ -13,6 +11,12 @@
 #include <limits>
 
 namespace geom::kernel {
+
+/// Point of the difference B - A, and the vertices that it comes from.
+struct DifferenceVertex {
+  Eigen::Vector3d p, a, b;
+  int id_a = 0, id_b = 0;
+};
 
 /// Hull of up to four points of the difference, and after reduce_to_closest() the weights of the closest point of their
 /// hull.

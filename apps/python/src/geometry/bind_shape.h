@@ -1,0 +1,70 @@
+#pragma once
+
+/// Attributes and methods that every class of shapes has in Python.
+
+#include "base/arguments.h"
+#include "base/arrays.h"
+
+#include <geom/shape.h>
+
+#include <nanobind/nanobind.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+
+namespace hardbody::python {
+
+/// Defines what every shape has. `Calls` has static functions of a shape: text, the call of its constructor; same(a,
+/// b); arguments, those of its constructor.
+template <class Calls, class Shape>
+void bind_common(nb::class_<Shape>& type) {
+  type.def_prop_ro(
+          "bounding_radius", [](const Shape& s) { return s.bounding_radius(); },
+          "Radius of the smallest sphere about the origin that contains the body.")
+      .def_prop_ro(
+          "inscribed_radius", [](const Shape& s) { return s.inscribed_radius(); },
+          "Radius of the largest sphere about the origin that the body contains.")
+      .def_prop_ro(
+          "min_curvature_radius", [](const Shape& s) { return s.min_curvature_radius(); },
+          "Lower bound of the smallest radius of curvature of the surface: overlaps down to the sum of both\n"
+          "bodies' values are answered without a search.")
+      .def_prop_ro(
+          "volume", [](const Shape& s) { return s.volume(); }, "Volume, in units of length^3.")
+      .def_prop_ro(
+          "symmetry_axis", [](const Shape& s) { return s.symmetry_axis(); },
+          "Index (0, 1, 2) of the body's axis of revolution, 2 if all are; None if it has none.")
+      .def(
+          "inertia", [](const Shape& s, nb::handle mass) { return array_of(s.inertia(positive(mass, "mass"))); },
+          nb::arg("mass").none() = 1.0,
+          nb::sig("def inertia(self, mass: float = 1.0) -> numpy.typing.NDArray[numpy.float64]"),
+          "Returns the principal moments of inertia about body x, y, z at uniform density, shape (3,), in units of\n"
+          "mass times length^2.")
+      .def(
+          "scaled", [](const Shape& s, nb::handle factor) { return s.scaled(positive(factor, "factor")); },
+          nb::arg("factor").none(), nb::sig("def scaled(self, factor: float) -> typing.Self"),
+          "Returns the shape of `factor` times the size.")
+      .def(
+          "support",
+          [](const Shape& s, nb::handle n) {
+            const geom::Support support = s.support(direction3(n, "n"));
+            return nb::make_tuple(support.height, array_of(support.point));
+          },
+          nb::arg("n").none(),
+          nb::sig("def support(self, n: numpy.typing.ArrayLike) -> tuple[float, numpy.typing.NDArray[numpy.float64]]"),
+          "Returns (h, s) for a direction n, shape (3,), of any length but 0: h(n) = max of n.x over the body, and\n"
+          "the point s where that maximum is reached. Body frame.")
+      .def("__repr__", [](const Shape& s) { return Calls::text(s); })
+      .def(
+          "__eq__",
+          [](const Shape& s, nb::handle other) {
+            Shape* found = nullptr;
+            return nb::try_cast(other, found, false) && found != nullptr && Calls::same(s, *found);
+          },
+          nb::arg("other").none(), nb::sig("def __eq__(self, other: typing.Any, /) -> bool"))
+      .def("__hash__", [](const Shape& s) { return nb::hash(nb::str(Calls::text(s).c_str())); })
+      .def(
+          "__reduce__",
+          [](nb::handle self) { return nb::make_tuple(self.type(), Calls::arguments(nb::cast<const Shape&>(self))); },
+          nb::sig("def __reduce__(self) -> tuple[typing.Any, ...]"));
+}
+
+}  // namespace hardbody::python

@@ -1,0 +1,326 @@
+// Contact times of spheres, capsules, boxes, polyhedra, rounded ones and users' shapes against conservative
+// advancement, which shares with the finder nothing but libgeom's distance and the free motion: its steps are the
+// distance over a bound of its rate. Pairs of one kind and of two; faces on faces, edges on edges and vertices on faces
+// included; half of them graze. HARDBODY_FULL=1: 100,000 pairs of each kind.
+
+#include "common/full_form.h"
+#include "common/geom/random.h"
+#include "common/geom/shapes.h"
+
+#include <contact/certified.h>
+#include <contact/convex/gap.h>
+
+#include <geom/geom.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <limits>
+#include <numbers>
+#include <string>
+#include <vector>
+
+namespace ed::internal {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+using geom_test::Random;
+
+constexpr double kEnd = 3;
+constexpr double kSeen = 1e-12;     // overlaps below this, in units of the size, are rounding
+constexpr double kShortest = 1e-5;  // the least step of the reference, in units of size over the largest rate
+constexpr double kGrazing = 1e-2;   // normal velocity below this share of the relative one
+
+/// A shape with moments of inertia and some directions to its faces, edges or vertices.
+struct TestBody {
+  std::string kind;
+  ConvexBody body;
+  ConvexBody exact;  ///< as the reference knows it
+  Vector3d inertia;
+  std::vector<Vector3d> directions;
+};
+
+template <class Shape>
+TestBody test_body(const std::string& kind, const Shape& shape, double volume, const Vector3d& inertia,
+                   std::vector<Vector3d> directions) {
+  CustomShape::Properties properties;
+  properties.name = kind;
+  properties.volume = volume;
+  const ConvexBody body{CustomShape(shape, properties)};
+  return {kind, body, body, inertia, std::move(directions)};
+}
+
+std::vector<Vector3d> box_directions() {
+  return {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0}, {0, 1, 1}, {1, 1, 1}};
+}
+
+std::vector<Vector3d> icosahedron() {
+  const double g = std::numbers::phi;
+  std::vector<Vector3d> points;
+  for (const double s : {-1.0, 1.0}) {
+    for (const double t : {-g, g}) {
+      points.emplace_back(0, s, t);
+      points.emplace_back(s, t, 0);
+      points.emplace_back(t, 0, s);
+    }
+  }
+  return points;
+}
+
+geom::ConvexPolyhedron random_hull(Random& random) {
+  while (true) {
+    std::vector<Vector3d> points;
+    const int count = 6 + static_cast<int>(random.uniform() * 10);
+    for (int k = 0; k < count; ++k) points.push_back(random.direction());
+    try {
+      return geom::ConvexPolyhedron::in_principal_frame(points);
+    } catch (const std::invalid_argument&) {
+      continue;
+    }
+  }
+}
+
+TestBody sphere(Random& random) {
+  const geom::Sphere s(random.uniform(0.2, 1));
+  return test_body("sphere", s, s.volume(), s.inertia(1), {Vector3d::UnitZ()});
+}
+
+TestBody capsule(Random& random) {
+  const geom::Capsule s(random.log_uniform(0.1, 3), random.uniform(0.2, 1));
+  return test_body("capsule", s, s.volume(), s.inertia(1), {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}});
+}
+
+TestBody spherocylinder(Random& random) {
+  const geom::Capsule s(random.log_uniform(0.1, 3), random.uniform(0.2, 1));
+  TestBody body = test_body("spherocylinder", geom_test::Spherocylinder{s.half_length(), s.radius()}, s.volume(),
+                            s.inertia(1), {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}});
+  CustomShape::Properties properties;
+  properties.volume = s.volume();
+  body.exact = ConvexBody(CustomShape(s, properties));
+  return body;
+}
+
+TestBody box(Random& random) {
+  const geom::Box s({random.uniform(0.3, 1), random.uniform(0.3, 1), random.uniform(0.3, 1)});
+  return test_body("box", s, s.volume(), s.inertia(1), box_directions());
+}
+
+TestBody cube(Random& /*random*/) {
+  const geom::Box s({0.5, 0.5, 0.5});
+  return test_body("cube", s, s.volume(), s.inertia(1), box_directions());
+}
+
+TestBody rounded_cube(Random& random) {
+  const double r = random.log_uniform(0.01, 0.5);
+  const geom::Rounded<geom::Box> s(geom::Box({0.5, 0.5, 0.5}), r);
+  const double volume = 1 + 6 * r + std::numbers::pi * r * r * (3 + 4 * r / 3);
+  return test_body("rounded cube", s, volume, s.inner().inertia(1), box_directions());
+}
+
+TestBody polyhedron(Random& random) {
+  const auto s = random.coin() ? random_hull(random) : geom::ConvexPolyhedron::in_principal_frame(icosahedron());
+  std::vector<Vector3d> directions;
+  for (const auto& face : s.faces()) {
+    const Vector3d a = s.vertex(face[0]), b = s.vertex(face[1]), c = s.vertex(face[2]);
+    directions.emplace_back((b - a).cross(c - a).normalized());
+  }
+  return test_body("polyhedron", s, s.volume(), s.inertia(1), directions);
+}
+
+TestBody ellipsoid(Random& random) {
+  const geom::Ellipsoid s({random.uniform(0.4, 1), random.uniform(0.4, 1), random.uniform(0.4, 1)});
+  return test_body("ellipsoid", geom_test::WrappedEllipsoid{s}, s.volume(), s.inertia(1), {{1, 0, 0}, {0, 0, 1}});
+}
+
+/// Two bodies in flight.
+struct Flight {
+  TestBody shape_a, shape_b;
+  RigidMotion a, b;
+
+  double size() const { return shape_a.body.bounding_radius + shape_b.body.bounding_radius; }
+  geom::DistanceResult distance_result(double t) const {
+    const geom::Pose X_WA(a.top.at(t).R, a.position_at(t));
+    const geom::Pose X_WB(b.top.at(t).R, b.position_at(t));
+    return ed::distance(shape_a.exact.shape, X_WA, shape_b.exact.shape, X_WB);
+  }
+  double distance(double t) const {
+    const double d = distance_result(t).distance;
+    EXPECT_FALSE(std::isnan(d)) << "declined: " << shape_a.kind << ", " << shape_b.kind;
+    return std::isnan(d) ? 0 : d;
+  }
+  double rate() const {
+    return (b.velocity - a.velocity).norm() + shape_a.body.bounding_radius * a.top.max_omega() +
+           shape_b.body.bounding_radius * b.top.max_omega();
+  }
+};
+
+/// Returns a rotation that takes the unit vector u to n.
+Matrix3d turned_to(const Vector3d& u, const Vector3d& n, Random& random) {
+  const Matrix3d to = Eigen::Quaterniond::FromTwoVectors(u, n).toRotationMatrix();
+  const double angle = random.coin() ? 0 : random.uniform(0, 6);
+  return Eigen::AngleAxisd(angle, n).toRotationMatrix() * to;
+}
+
+Matrix3d orientation(const TestBody& body, const Vector3d& n, Random& random) {
+  if (random.uniform() < 0.4) return random.pose(0).rotation();
+  const auto k = static_cast<std::size_t>(random.uniform() * static_cast<double>(body.directions.size()));
+  const Matrix3d R = turned_to(body.directions[k].normalized(), n, random);
+  if (random.coin()) return R;
+  return Eigen::AngleAxisd(random.log_uniform(1e-8, 0.3), random.direction()).toRotationMatrix() * R;
+}
+
+/// Draws bodies near each other; half of them have a small relative velocity along the normal.
+Flight random_flight(Random& random, const TestBody& A, const TestBody& B) {
+  const Vector3d n = random.direction();
+  Flight f{A, B, {}, {}};
+  const Matrix3d R_a = orientation(A, n, random);
+  const Matrix3d R_b = orientation(B, -n, random);
+  const bool grazes = random.uniform() < 0.6;
+  const double gap = (grazes ? random.log_uniform(1e-9, 1e-2) : random.log_uniform(1e-6, 1)) * f.size();
+  const geom::Support s_a = support(A.body.shape, R_a.transpose() * n);
+  const geom::Support s_b = support(B.body.shape, R_b.transpose() * -n);
+  // Support points opposite each other, or centres, or anything between.
+  const double share = random.coin() ? 1 : random.uniform();
+  Vector3d r = share * (R_a * s_a.point - R_b * s_b.point);
+  r += (s_a.height + s_b.height + gap - n.dot(r)) * n;
+  const double turning = random.coin() ? 1.0 : random.log_uniform(1e-3, 1);
+  const auto spin = [&](const Matrix3d& R, const Vector3d& inertia) {
+    const Vector3d w = random.uniform(0.2, 2) * random.direction().cwiseQuotient(inertia.cwiseSqrt());
+    return Vector3d(turning * (R * w));
+  };
+  f.a.top = FreeTop(A.inertia, R_a, spin(R_a, A.inertia));
+  f.b.top = FreeTop(B.inertia, R_b, spin(R_b, B.inertia));
+  f.b.position = r;
+  Vector3d v = random.uniform(0.2, 3) * random.direction();
+  if (grazes) {
+    const Vector3d relative =
+        v + f.b.top.at(0).omega.cross(R_b * s_b.point) - f.a.top.at(0).omega.cross(R_a * s_a.point);
+    v += (random.log_uniform(1e-6, 1e-1) * (random.coin() ? 1 : -1) - relative.dot(n)) * n;
+  }
+  f.b.velocity = v;
+  return f;
+}
+
+/// Returns a time at which the bodies overlap by more than kSeen, or infinity: steps of the distance over its largest
+/// rate, no shorter than kShortest, and where three of those show a minimum, golden sections of it.
+double reference(const Flight& f) {
+  const double rate = f.rate();
+  const double overlap = -kSeen * f.size();
+  const double shortest = kShortest * f.size() / rate;
+  std::array<double, 3> t{0, 0, 0}, d{0, 0, f.distance(0)};
+  int steps = 0;
+  while (t[2] < kEnd) {
+    t = {t[1], t[2], t[2] + std::max(0.999 * d[2] / rate, shortest)};
+    d = {d[1], d[2], f.distance(t[2])};
+    if (d[2] < overlap) return t[2];
+    if (++steps < 2 || !(d[1] <= d[0] && d[1] <= d[2] && d[1] < 4 * rate * shortest)) continue;
+    double low = t[0], high = t[2];
+    for (int k = 0; k < 40; ++k) {
+      const double m = low + 0.381966 * (high - low), p = high - 0.381966 * (high - low);
+      if (f.distance(m) < f.distance(p)) {
+        high = p;
+      } else {
+        low = m;
+      }
+    }
+    if (f.distance(low) < overlap) return low;
+  }
+  return std::numeric_limits<double>::infinity();
+}
+
+struct Tally {
+  long pairs = 0, contacts = 0, grazing = 0, missed = 0, late = 0, wrong = 0, early = 0, unanswered = 0;
+};
+
+class HalvedGap : public ConvexGap {
+ public:
+  template <class... Arguments>
+  explicit HalvedGap(const Arguments&... arguments) : ConvexGap(arguments...) {
+    curvature_share_ = 0.5;
+  }
+};
+
+template <class PairGap>
+void judge(const Flight& f, Tally& tally, FinderCounters& count) {
+  const PairGap gap(f.shape_a.body, f.a, f.shape_b.body, f.b, Vector3d(f.b.position - f.a.position), 0.0);
+  Vector3d n = Vector3d::Zero();
+  const Finding found = certified_contact(gap, 0, kEnd, 100000, n, count);
+  const double wanted = reference(f);
+  ++tally.pairs;
+  if (found.outcome == Outcome::bound || found.outcome == Outcome::declined) ++tally.unanswered;
+  if (found.outcome == Outcome::overlapping) ++tally.missed;
+  if (found.outcome == Outcome::clear && wanted < kEnd) ++tally.missed;
+  if (found.outcome != Outcome::contact) return;
+  ++tally.contacts;
+  if (wanted < found.time - 1e-12) ++tally.late;
+  // Where a smooth body meets an edge or a face, libgeom's search certifies distances to no more than its error bound.
+  const geom::DistanceResult at = f.distance_result(found.time);
+  if (!(std::abs(at.distance) <= 1e-12 * f.size() + at.error_bound)) ++tally.wrong;
+  constexpr double h = 1e-5;
+  const double rate = (f.distance(found.time + h) - f.distance(found.time - h)) / (2 * h);
+  if (std::abs(rate) < kGrazing * (f.b.velocity - f.a.velocity).norm()) ++tally.grazing;
+  // A touch that is too shallow for the reference counts, if the distance says so.
+  if (!(wanted < kEnd) && found.time < 0.9 * kEnd) ++tally.early;
+}
+
+using Draw = std::function<TestBody(Random&)>;
+
+template <class PairGap = ConvexGap>
+Tally search(const char* name, const Draw& a, const Draw& b, int divisor = 1) {
+  Random random(1);
+  Tally tally;
+  FinderCounters count;
+  const long pairs = (full_form() ? 100000 : 1000) / divisor;
+  while (tally.pairs < pairs) judge<PairGap>(random_flight(random, a(random), b(random)), tally, count);
+  std::printf(
+      "%s: %ld pairs, %ld contacts, %ld grazing: %ld missed, %ld late, %ld wrong, %ld unanswered; %ld shallower than "
+      "the reference sees; %.2f points in time and %.2f of Newton's method a search, %llu rescues\n",
+      name, tally.pairs, tally.contacts, tally.grazing, tally.missed, tally.late, tally.wrong, tally.unanswered,
+      tally.early, static_cast<double>(count.evaluations) / static_cast<double>(count.predictions),
+      static_cast<double>(count.newton_evaluations) / static_cast<double>(count.predictions),
+      static_cast<unsigned long long>(count.rescues));
+  return tally;
+}
+
+void expect_none_missed(const Tally& tally) {
+  EXPECT_EQ(tally.missed, 0);
+  EXPECT_EQ(tally.late, 0);
+  EXPECT_EQ(tally.wrong, 0);
+  EXPECT_EQ(tally.unanswered, 0);
+  EXPECT_GT(tally.contacts * 5, tally.pairs);
+  EXPECT_GT(tally.grazing * 10, tally.contacts);
+  EXPECT_LE(tally.early * 50, tally.contacts);
+}
+
+TEST(ConvexContact, Spheres) { expect_none_missed(search("spheres", sphere, sphere)); }
+TEST(ConvexContact, Capsules) { expect_none_missed(search("capsules", capsule, capsule)); }
+TEST(ConvexContact, Boxes) { expect_none_missed(search("boxes", box, box)); }
+TEST(ConvexContact, Cubes) { expect_none_missed(search("cubes", cube, cube)); }
+TEST(ConvexContact, RoundedCubes) { expect_none_missed(search("rounded cubes", rounded_cube, rounded_cube)); }
+TEST(ConvexContact, Polyhedra) { expect_none_missed(search("polyhedra", polyhedron, polyhedron)); }
+TEST(ConvexContact, UsersSpherocylinders) {
+  expect_none_missed(search("users' spherocylinders", spherocylinder, spherocylinder));
+}
+TEST(ConvexContact, UsersEllipsoids) { expect_none_missed(search("users' ellipsoids", ellipsoid, ellipsoid)); }
+
+TEST(ConvexContact, MixedKinds) {
+  const std::array<Draw, 8> draws{sphere, capsule, spherocylinder, box, cube, rounded_cube, polyhedron, ellipsoid};
+  const auto any = [&](Random& random) {
+    return draws[static_cast<std::size_t>(random.uniform() * draws.size())](random);
+  };
+  expect_none_missed(search("mixed kinds", any, any));
+}
+
+TEST(ConvexContact, IsMissedWithHalfTheCurvature) {
+  const auto any = [](Random& random) { return random.coin() ? cube(random) : capsule(random); };
+  const Tally tally = search<HalvedGap>("half the curvature", any, any);
+  EXPECT_GT(tally.missed + tally.late, 0);
+}
+
+}  // namespace
+}  // namespace ed::internal

@@ -1,0 +1,151 @@
+/// Volume and moments of polytopes that a ball is swept over.
+
+#include "common/geom/core_pairs.h"
+
+#include <geom/geom.h>
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+namespace geom {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+using geom_test::Random;
+
+std::vector<Vector3d> corners(const Vector3d& half, const Vector3d& centre = Vector3d::Zero()) {
+  std::vector<Vector3d> all;
+  for (unsigned k = 0; k < 8; ++k) {
+    const Vector3d sign((k & 1U) != 0 ? 1 : -1, (k & 2U) != 0 ? 1 : -1, (k & 4U) != 0 ? 1 : -1);
+    all.emplace_back(centre + half.cwiseProduct(sign));
+  }
+  return all;
+}
+
+/// Distance of a point from a core, as a surface f(x) = distance^2 - radius^2 for the quadrature of mass.h.
+struct SweptSurface {
+  kernel::CoreView core;
+
+  double value(const Vector3d& x) const {
+    const double d = distance_at(x).distance;
+    return d * std::abs(d) - core.radius * core.radius;
+  }
+  Vector3d gradient(const Vector3d& x) const {
+    const DistanceResult r = distance_at(x);
+    return -2 * std::abs(r.distance) * r.normal;
+  }
+  Matrix3d hessian(const Vector3d& /*x*/) const { return Matrix3d::Zero(); }
+
+ private:
+  DistanceResult distance_at(const Vector3d& x) const {
+    kernel::CoreView bare = core;
+    bare.radius = 0;
+    return kernel::core_distance({}, Pose::translation(x), bare, Pose(), {});
+  }
+};
+
+TEST(SweptMass, OfSpheresAndCapsulesIsTheirs) {
+  const Sphere sphere(0.7);
+  const kernel::SweptMass ball = kernel::swept_mass(sphere.core());
+  EXPECT_NEAR(ball.volume, sphere.volume(), 1e-15);
+  EXPECT_LE((ball.inertia(2).diagonal() - sphere.inertia(2)).norm(), 1e-15);
+  const Capsule capsule(2, 0.5);
+  const kernel::SweptMass rod = kernel::swept_mass(capsule.core());
+  EXPECT_NEAR(rod.volume, capsule.volume(), 1e-14);
+  EXPECT_LE((rod.inertia(2).diagonal() - capsule.inertia(2)).norm(), 1e-14);
+}
+
+/// Two closed forms: that of boxes, and the sum over faces, edges and vertices.
+TEST(SweptMass, OfBoxesIsThatOfTheirHulls) {
+  Random random(1);
+  for (int i = 0; i < 50; ++i) {
+    const Vector3d half(random.log_uniform(0.1, 10), random.log_uniform(0.1, 10), random.log_uniform(0.1, 10));
+    const double radius = i % 5 == 0 ? 0 : random.log_uniform(1e-3, 10);
+    const Rounded<Box> box(Box(half), radius);
+    const Rounded<ConvexPolyhedron> hull(ConvexPolyhedron(corners(half)), radius);
+    EXPECT_NEAR(box.volume(), hull.volume(), 1e-14 * box.volume());
+    EXPECT_LE((box.inertia_tensor(1) - hull.inertia_tensor(1)).norm(), 1e-14 * box.inertia_tensor(1).norm());
+    EXPECT_LE(hull.centre_of_mass().norm(), 1e-14 * hull.bounding_radius());
+    EXPECT_TRUE(box.is_in_principal_frame());
+  }
+}
+
+TEST(SweptMass, OfASharpBoxIsTheBoxs) {
+  const Box box({1, 2, 3});
+  const Rounded<Box> sharp(box, 0);
+  EXPECT_NEAR(sharp.volume(), box.volume(), 1e-13);
+  EXPECT_LE((sharp.inertia(1) - box.inertia(1)).norm(), 1e-14);
+}
+
+/// The moments of a body about another point follow from those about its centre.
+TEST(SweptMass, MovesWithTheBody) {
+  const Vector3d half(1, 0.7, 0.5);
+  const Vector3d by(0.3, -0.2, 0.1);
+  const kernel::SweptMass here = kernel::swept_mass(Rounded<Box>(Box(half), 0.4).core());
+  const Rounded<ConvexPolyhedron> moved(ConvexPolyhedron(corners(half, by)), 0.4);
+  const kernel::SweptMass there = kernel::swept_mass(moved.core());
+  EXPECT_NEAR(there.volume, here.volume, 1e-13);
+  EXPECT_LE((there.centre() - by).norm(), 1e-14);
+  const Matrix3d shifted = here.second_moment + here.volume * by * by.transpose();
+  EXPECT_LE((there.second_moment - shifted).norm(), 1e-13);
+  EXPECT_FALSE(moved.is_in_principal_frame());
+}
+
+TEST(SweptMass, OfAnyHullAgreesWithQuadrature) {
+  Random random(2);
+  for (int i = 0; i < 3; ++i) {
+    const Rounded<ConvexPolyhedron> body(geom_test::random_polyhedron(6 + 4 * i, random), 0.5);
+    const kernel::SweptMass mass = kernel::swept_mass(body.core());
+    const MassProperties wanted = mass_properties(SweptSurface{body.core()}, body.bounding_radius(), 1e-4);
+    EXPECT_NEAR(mass.volume, wanted.volume, 1e-4 * wanted.volume);
+    EXPECT_LE((mass.first_moment - wanted.first_moment).norm(), 1e-4 * wanted.volume);
+    EXPECT_LE((mass.inertia(mass.volume) - wanted.inertia).norm(), 2e-4 * wanted.inertia.norm());
+  }
+}
+
+TEST(SweptMass, PrincipalFramesAreThoseOfTheRoundedBody) {
+  Random random(3);
+  for (int i = 0; i < 20; ++i) {
+    std::vector<Vector3d> points;
+    for (int k = 0; k < 9; ++k) points.emplace_back(random.uniform(0.7, 1) * random.direction() + Vector3d(5, 0, 0));
+    Pose X_BP;
+    const ConvexPolyhedron sharp = ConvexPolyhedron::in_principal_frame(points);
+    const ConvexPolyhedron inner = ConvexPolyhedron::in_principal_frame(points, &X_BP, 0.4);
+    EXPECT_TRUE(sharp.is_in_principal_frame());
+    EXPECT_FALSE(inner.is_in_principal_frame());
+    EXPECT_FALSE(Rounded<ConvexPolyhedron>(sharp, 0.4).is_in_principal_frame());
+    EXPECT_TRUE(Rounded<ConvexPolyhedron>(inner, 0.4).is_in_principal_frame());
+    EXPECT_LE((X_BP.to_world(inner.vertex(0)) - points[0]).norm(), 1e-13);
+  }
+}
+
+/// A hull that is made of another one's vertices is the same to the last bit, so that saved shapes are restored.
+TEST(SweptMass, HullsOfHullsAreTheSame) {
+  Random random(4);
+  for (int i = 0; i < 20; ++i) {
+    std::vector<Vector3d> points = corners({1, 1, 1});  // faces with many edges, and points inside and on them
+    for (int k = 0; k < 10; ++k) points.emplace_back(random.uniform(0.5, 1.5) * random.direction());
+    points.emplace_back(1, 0.25, 0.5);
+    const ConvexPolyhedron hull(points);
+    std::vector<Vector3d> vertices;
+    for (int k = 0; k < hull.vertex_count(); ++k) vertices.push_back(hull.vertex(k));
+    const ConvexPolyhedron again(vertices);
+    ASSERT_EQ(again.vertex_count(), hull.vertex_count());
+    for (int k = 0; k < hull.vertex_count(); ++k) ASSERT_EQ(again.vertex(k), hull.vertex(k));
+    ASSERT_EQ(again.faces(), hull.faces());
+    const kernel::Hull& a = *hull.core().hull;
+    const kernel::Hull& b = *again.core().hull;
+    ASSERT_EQ(a.normals, b.normals);
+    ASSERT_EQ(a.offsets, b.offsets);
+    ASSERT_EQ(again.volume(), hull.volume());
+  }
+}
+
+}  // namespace
+}  // namespace geom
