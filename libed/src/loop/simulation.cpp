@@ -42,7 +42,7 @@ class Simulation::Impl {
 
  private:
   std::unique_ptr<internal::AnyEventLoop> loop_;
-  std::optional<internal::KernelTrial> trial_;  ///< until it is over
+  std::optional<internal::KernelTrial> trial_;  ///< trial that is not over yet
 };
 
 bool Simulation::Impl::run_until(double time, std::uint64_t max_collisions, std::uint64_t max_events) {

@@ -56,6 +56,18 @@ TEST(Simulation, BodiesMeetThroughTheFacesOfTheBox) {
   EXPECT_NEAR(simulation.collisions()[0].time, 2 - 2 / std::sqrt(3.0), kRunRounding);
 }
 
+TEST(Simulation, SamplesTranslationsAlone) {
+  const ed::Simulation simulation(ed_test::start({.aspect_ratio = 2, .number = 64}));
+  ed::Snapshot whole, translations;
+  simulation.sample(whole);
+  simulation.sample_translations(translations);
+  EXPECT_EQ(translations.position, whole.position);
+  EXPECT_EQ(translations.velocity, whole.velocity);
+  ASSERT_EQ(translations.axis.size(), whole.axis.size());
+  EXPECT_EQ(translations.axis[0], Eigen::Vector3d::Zero().eval());
+  EXPECT_EQ(translations.angular_velocity[0], Eigen::Vector3d::Zero().eval());
+}
+
 TEST(Simulation, BodiesAtRestAreRefusedWhereCollisionsAreAwaited) {
   ed::System system = two_bodies(sphere(), 12, {5, 5, 5});
   for (ed::Body& body : system.bodies) body.velocity = body.angular_velocity = Vector3d::Zero();

@@ -104,20 +104,7 @@ TEST(Observables, OfBodiesWithoutOrientationHaveNoneOfItsNumbers) {
   const ed::Results with = measured(system, {system.size(), 20, 1}, 20);
   EXPECT_EQ(results.lags.back().msd.value, with.lags.back().msd.value);
   EXPECT_EQ(results.lags.back().vacf.value, with.lags.back().vacf.value);
-  EXPECT_EQ(results.v2.value, with.v2.value);
   EXPECT_EQ(results.pairs.back().g.value, with.pairs.back().g.value);
-}
-
-TEST(Simulation, SamplesTranslationsAlone) {
-  const ed::Simulation simulation(free_bodies(2, Inertia::uniform, 6, 4));
-  ed::Snapshot whole, translations;
-  simulation.sample(whole);
-  simulation.sample_translations(translations);
-  EXPECT_EQ(translations.position, whole.position);
-  EXPECT_EQ(translations.velocity, whole.velocity);
-  ASSERT_EQ(translations.axis.size(), whole.axis.size());
-  EXPECT_EQ(translations.axis[0], Eigen::Vector3d::Zero().eval());
-  EXPECT_EQ(translations.angular_velocity[0], Eigen::Vector3d::Zero().eval());
 }
 
 TEST(Observables, OfSpheresThatMeetHaveNoRotationalErrorsEither) {
