@@ -28,7 +28,7 @@ class KernelTrial {
   std::uint64_t left() const { return kSlice - collisions_; }
   bool over() const { return taken_[1] == kSlices; }
 
-  /// Counts collisions that the current set has made, at most left(), in so many seconds.
+  /// Counts collisions of the current set, at most left(), and the seconds that they took.
   void add(std::uint64_t collisions, double seconds) {
     collisions_ += collisions;
     seconds_ += seconds;

@@ -90,23 +90,6 @@ TEST(Observables, OfBodiesThatNothingTurnsHaveNoRotationalErrors) {
   }
 }
 
-TEST(Observables, OfBodiesWithoutOrientationHaveNoneOfItsNumbers) {
-  const ed::System system = free_bodies(1, Inertia::uniform, 6);
-  const ed::Results results = measured(system, {system.size(), 20, 1, {{system.size(), 2, false}}}, 20);
-  for (const ed::Estimate& e : {results.S, results.D_rot, results.D_rot_body, results.tau_C2, results.t_C2_1overe,
-                                results.w2, results.groups[0].S, results.pairs.back().g2, results.lags.back().c2,
-                                results.lags.back().rot_msd, results.lags.back().wacf}) {
-    EXPECT_TRUE(std::isnan(e.value));
-    EXPECT_EQ(e.missing.reason, ed::MissingReason::no_orientation);
-  }
-  EXPECT_TRUE(std::isnan(results.blocks.back().S));
-  // Everything else is as with orientations.
-  const ed::Results with = measured(system, {system.size(), 20, 1}, 20);
-  EXPECT_EQ(results.lags.back().msd.value, with.lags.back().msd.value);
-  EXPECT_EQ(results.lags.back().vacf.value, with.lags.back().vacf.value);
-  EXPECT_EQ(results.pairs.back().g.value, with.pairs.back().g.value);
-}
-
 TEST(Observables, OfSpheresThatMeetHaveNoRotationalErrorsEither) {
   const auto results_of = [](double aspect_ratio) {
     ed::Simulation simulation(free_bodies(aspect_ratio, Inertia::uniform, 6, 4));
