@@ -47,7 +47,7 @@ system.packing_fraction = {from = 0.15, to = 0.4, count = 6}
 """
 # One run of somewhat more than a minute, which is the shortest time limit of a job, beside short ones.
 LONG = SWEEP.replace("replicas = 2\n", "").replace("[0.5, 0.75, 1.25, 2]", "[2, 2.1]").replace("count = 6", "count = 2").replace(
-    "time = 60\n", "time = {time}\n")
+    "time = 60\n", "time = 3000\n")
 
 PROFILE = """executor: slurm
 jobs: 100
@@ -232,10 +232,9 @@ def stopped(study):
 
 def time_limit(study):
     """A run that takes longer than the time limit of its job."""
-    text = LONG.format(time=3000)
     begin = time.monotonic()
     options = ["--on", str(study.profile("limit", pause=2, minutes=1, seconds=600)), "--task-time", "1"]
-    process = study.sweep(text, "limit", *options)
+    process = study.sweep(LONG, "limit", *options)
     study.finish(process, "limit")
     study.check_runs("limit")
     print(f"time limit of a minute: {study.attempts('limit')} jobs for 4 runs, {time.monotonic() - begin:.0f} s", flush=True)
