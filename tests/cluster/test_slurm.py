@@ -47,7 +47,7 @@ system.packing_fraction = {from = 0.15, to = 0.4, count = 6}
 """
 # One run of somewhat more than a minute, which is the shortest time limit of a job, beside short ones.
 LONG = SWEEP.replace("replicas = 2\n", "").replace("[0.5, 0.75, 1.25, 2]", "[2, 2.1]").replace("count = 6", "count = 2").replace(
-    "time = 60\n", "time = 3000\n")
+    "time = 60\n", "time = 12000\n")
 
 PROFILE = """executor: slurm
 jobs: 100
@@ -237,6 +237,7 @@ def time_limit(study):
     process = study.sweep(LONG, "limit", *options)
     study.finish(process, "limit")
     study.check_runs("limit")
+    assert study.attempts("limit") > 4, "limit: no run took longer than a minute"
     print(f"time limit of a minute: {study.attempts('limit')} jobs for 4 runs, {time.monotonic() - begin:.0f} s", flush=True)
 
 
