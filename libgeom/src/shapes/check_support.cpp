@@ -146,8 +146,10 @@ class FaultSearch {
     constexpr double kStep = 1e-5;
     const Vector3d after = (shape_.support(n + kStep * u).point - s.point) / kStep;
     const Vector3d before = (s.point - shape_.support(n - kStep * u).point) / kStep;
+    const Vector3d nearer = (shape_.support(n + kStep / 4 * u).point - s.point) / (kStep / 4);
     const double least = kHessianTolerance * std::max(shape_.bounding_radius, after.norm());
-    if ((after - before).norm() > least) return {};
+    // Kinks, and curvature that is unbounded or changes within the step, are left out.
+    if ((after - before).norm() > least || (after - nearer).norm() > least) return {};
     const Vector3d computed = H * u;
     if ((computed - after).norm() > 2 * least) {
       return sentence("support_hessian", n, " times ", u, " is ", computed, ", but the support point moves by ", after);

@@ -43,7 +43,7 @@ constexpr SolidNumbers kKnown[] = {
     {"icosidodecahedron", 30, 60, 32, 13.835525936249404},
     {"truncated dodecahedron", 60, 90, 32, 85.039664559371116},
     {"truncated icosahedron", 60, 90, 32, 55.287730758122739},
-    {"rhombicosidodecahedron", 60, 120, 62, 41.615323782495627},
+    {"rhombicosidodecahedron", 60, 120, 62, 41.615323782497967},
     {"truncated icosidodecahedron", 120, 180, 62, 206.80339887498948},
     {"snub dodecahedron", 60, 150, 92, 37.616649962733362},
 };

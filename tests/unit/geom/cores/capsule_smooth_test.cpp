@@ -45,7 +45,7 @@ void expect_known_distances(const Smooth& smooth, double least_gap, Random& rand
     ASSERT_NEAR(back.distance, gap, 2e-12 * size) << "pair " << i;
     ASSERT_LE(std::abs(r.distance - gap), r.error_bound + 1e-14 * size) << "pair " << i;
     ASSERT_NEAR((back.normal + r.normal).norm(), 0, 1e-6) << "pair " << i;
-    const DistanceResult by_ball = kernel::capsule_distance(rod, X_WA, smooth, X_WB, {});
+    const DistanceResult by_ball = kernel::capsule_distance(rod.half_length(), rod.radius(), X_WA, smooth, X_WB, {});
     iterated += by_ball.status != DistanceStatus::not_converged ? 1 : 0;
   }
   // The ball on the axis answers nearly all, or this tests the general method.

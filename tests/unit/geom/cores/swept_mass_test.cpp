@@ -19,7 +19,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using geom_test::Random;
 
-std::vector<Vector3d> corners(const Vector3d& half, const Vector3d& centre = Vector3d::Zero()) {
+std::vector<Vector3d> box_corners(const Vector3d& half, const Vector3d& centre = Vector3d::Zero()) {
   std::vector<Vector3d> all;
   for (unsigned k = 0; k < 8; ++k) {
     const Vector3d sign((k & 1U) != 0 ? 1 : -1, (k & 2U) != 0 ? 1 : -1, (k & 4U) != 0 ? 1 : -1);
@@ -68,7 +68,7 @@ TEST(SweptMass, OfBoxesIsThatOfTheirHulls) {
     const Vector3d half(random.log_uniform(0.1, 10), random.log_uniform(0.1, 10), random.log_uniform(0.1, 10));
     const double radius = i % 5 == 0 ? 0 : random.log_uniform(1e-3, 10);
     const Rounded<Box> box(Box(half), radius);
-    const Rounded<ConvexPolyhedron> hull(ConvexPolyhedron(corners(half)), radius);
+    const Rounded<ConvexPolyhedron> hull(ConvexPolyhedron(box_corners(half)), radius);
     EXPECT_NEAR(box.volume(), hull.volume(), 1e-14 * box.volume());
     EXPECT_LE((box.inertia_tensor(1) - hull.inertia_tensor(1)).norm(), 1e-14 * box.inertia_tensor(1).norm());
     EXPECT_LE(hull.centre_of_mass().norm(), 1e-14 * hull.bounding_radius());
@@ -88,7 +88,7 @@ TEST(SweptMass, MovesWithTheBody) {
   const Vector3d half(1, 0.7, 0.5);
   const Vector3d by(0.3, -0.2, 0.1);
   const kernel::SweptMass here = kernel::swept_mass(Rounded<Box>(Box(half), 0.4).core());
-  const Rounded<ConvexPolyhedron> moved(ConvexPolyhedron(corners(half, by)), 0.4);
+  const Rounded<ConvexPolyhedron> moved(ConvexPolyhedron(box_corners(half, by)), 0.4);
   const kernel::SweptMass there = kernel::swept_mass(moved.core());
   EXPECT_NEAR(there.volume, here.volume, 1e-13);
   EXPECT_LE((there.centre() - by).norm(), 1e-14);
@@ -99,8 +99,8 @@ TEST(SweptMass, MovesWithTheBody) {
 
 TEST(SweptMass, OfAnyHullAgreesWithQuadrature) {
   Random random(2);
-  for (int i = 0; i < 3; ++i) {
-    const Rounded<ConvexPolyhedron> body(geom_test::random_polyhedron(6 + 4 * i, random), 0.5);
+  for (const int points : {6, 8}) {
+    const Rounded<ConvexPolyhedron> body(geom_test::random_polyhedron(points, random), 0.5);
     const kernel::SweptMass mass = kernel::swept_mass(body.core());
     const MassProperties wanted = mass_properties(SweptSurface{body.core()}, body.bounding_radius(), 1e-4);
     EXPECT_NEAR(mass.volume, wanted.volume, 1e-4 * wanted.volume);
@@ -129,7 +129,7 @@ TEST(SweptMass, PrincipalFramesAreThoseOfTheRoundedBody) {
 TEST(SweptMass, HullsOfHullsAreTheSame) {
   Random random(4);
   for (int i = 0; i < 20; ++i) {
-    std::vector<Vector3d> points = corners({1, 1, 1});  // faces with many edges, and points inside and on them
+    std::vector<Vector3d> points = box_corners({1, 1, 1});  // faces with many edges, and points inside and on them
     for (int k = 0; k < 10; ++k) points.emplace_back(random.uniform(0.5, 1.5) * random.direction());
     points.emplace_back(1, 0.25, 0.5);
     const ConvexPolyhedron hull(points);
