@@ -15,6 +15,7 @@ import pytest
 from runs import CONFIG, call, results, with_values
 
 import hardbody as hb
+from hardbody import _calls
 
 GRID = {"shape.aspect_ratio": [1.5, 2.0], "system.packing_fraction": {"from": 0.2, "to": 0.3, "count": 2}}
 SWEEP = with_values(CONFIG, output={"trajectory": [], "events": 0}, production={"time": 2.0}) | {"grid": GRID}
@@ -107,6 +108,18 @@ hb.sweep(SWEEP, {str(tmp_path / "a")!r}, jobs=2)
     environment = {key: value for key, value in os.environ.items() if not key.startswith("PYTHON")}
     subprocess.run([sys.executable, "-c", script], check=True, cwd=package, env=environment)
     assert table_bytes(tmp_path / "a") == table_bytes(sweep)
+
+
+def test_workers_start_tasks(sweep, tmp_path):
+    """A cluster starts its tasks by the command of workers, which in turn start the runs."""
+    (tmp_path / "mine.toml").write_text(TEXT)
+    planned = call("sweep", "plan", "mine.toml", "--task-time", "1000", cwd=tmp_path)
+    assert planned.returncode == 0, planned.stderr
+    task = [*_calls.worker_program(), "sweep", "point", "mine.toml", "1"]
+    ended = subprocess.run(task, capture_output=True, text=True, cwd=tmp_path, check=False)
+    assert ended.returncode == 0, ended.stderr
+    assert call("sweep", "collect", "mine.toml", cwd=tmp_path).returncode == 0
+    assert table_bytes(tmp_path / "out" / "mine") == table_bytes(sweep)
 
 
 def test_replicas(sweep, tmp_path):

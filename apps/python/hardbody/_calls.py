@@ -22,14 +22,15 @@ _INTERRUPTED = 128 + 2  # exit status of a command that SIGINT has stopped
 _LONG_INTERVAL = 10.0  # seconds between two lines about progress
 _SHORT_INTERVAL = 0.25  # the same where they replace each other
 
-# Code of a process that runs a point of a sweep: the extension alone, without NumPy. Arguments: its file, and the
-# program's.
+# Code of a process that runs points of a sweep: the extension alone, without NumPy. Arguments: its file, and the
+# program's. Tasks of a cluster start processes of their own, by the same command.
 _WORKER = """
 import importlib.util, os, sys
 spec = importlib.util.spec_from_file_location("_core", sys.argv[1])
 core = importlib.util.module_from_spec(spec)
 spec.loader.exec_module(core)
-sys.exit(core.main([os.fsencode(a) for a in sys.argv[2:]], []))
+program = [sys.executable, *sys.orig_argv[1 : len(sys.orig_argv) - len(sys.argv[2:])]]
+sys.exit(core.main([os.fsencode(a) for a in sys.argv[2:]], program))
 """
 
 
