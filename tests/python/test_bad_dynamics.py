@@ -123,7 +123,8 @@ OTHER_WORDS = {
     "mass": r"^inertia is .* all mass at the bounding radius",
     # Radii are the object's.
     "object": r"accepted: an object with a method support|^shape mine: volume is .* bounding sphere$",
-    "components": r"number of bodies is|and body \d+ is ellipsoid of semi-axes|number is \d+|bodies of its types, the config|accepted: .* components",
+    "components": r"number of bodies is|and body \d+ is ellipsoid of semi-axes|number is \d+|"
+    r"bodies of its types, the config|accepted: .* components",
     "species": r"^species_of\[\d+\] is",
     "time": r"^every is .* for doubles near time",
     "until": r"^every is .* for doubles near time",
