@@ -1,6 +1,7 @@
 #include "bodies/general.h"
 
 #include "contact/body_shapes.h"
+#include "contact/sphere_contact.h"
 #include "motion/checks.h"
 
 #include <geom/tolerances.h>
@@ -29,6 +30,7 @@ GeneralKind general_kind(const Species& species) {
           .inertia = inertia,
           .symmetry_axis = axis,
           .spins = species.spins,
+          .sphere = std::holds_alternative<geom::Sphere>(species.shape),
           .axis = axis < 0 ? 2 : axis};
 }
 
@@ -115,6 +117,10 @@ Finding GeneralBodies::find_contact(int i, int j, const Vector3d& r, double now,
     return bracketing_contact(
         {*kind_of(i).body.implicit, *kind_of(j).body.implicit, motions_[at(i)], motions_[at(j)], r, now}, now, end,
         options, n, count, unsolved);
+  }
+  if (kind_of(i).sphere && kind_of(j).sphere) {
+    const Vector3d v = velocity(j) - velocity(i);
+    return sphere_contact(r, v, kind_of(i).bounding_radius + kind_of(j).bounding_radius, now, end, n, count);
   }
   return with_gap(i, j, r, now,
                   [&](const auto& gap) { return certified_contact(gap, now, end, max_evaluations, n, count); });

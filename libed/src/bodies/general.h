@@ -40,7 +40,8 @@ struct GeneralKind {
   /// Symmetry axis of shape and inertia, about which contacts have no moment; -1: none.
   int symmetry_axis;
   bool spins;
-  int axis;  ///< body axis that is reported as the body's: symmetry_axis, or z
+  bool sphere;  ///< geom::Sphere: pairs of them meet in closed form
+  int axis;     ///< body axis that is reported as the body's: symmetry_axis, or z
 };
 
 class GeneralBodies {

@@ -21,7 +21,8 @@ using geom::kernel::support_point;
 using geom::kernel::UniaxialEvaluation;
 
 UniaxialKind uniaxial_kind(const Species& species) {
-  const auto& shape = std::get<geom::Ellipsoid>(species.shape);
+  const auto* sphere = std::get_if<geom::Sphere>(&species.shape);
+  const geom::Ellipsoid shape = sphere != nullptr ? sphere->ellipsoid() : std::get<geom::Ellipsoid>(species.shape);
   const int axis = *symmetry_axis(species);
   const Vector3d& a = shape.semi_axes();
   const double b = a[(axis + 1) % 3];

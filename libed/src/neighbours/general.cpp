@@ -1,6 +1,7 @@
 #include "neighbours/general.h"
 
 #include "base/periodic.h"
+#include "contact/convex/features.h"
 #include "neighbours/limits.h"
 #include "neighbours/oriented_slack.h"
 
@@ -65,16 +66,13 @@ bool within(const NormBodyPair& pair, double inscribed, bool elongated, double l
 }
 
 /// Returns the same as within(), for any shapes.
-bool any_within(const BodyShape& a, const Matrix3d& R_a, const BodyShape& b, const Matrix3d& R_b, const Vector3d& r,
-                double limit, Vector3d& normal) {
-  const double h_a = support(a, transposed_product(R_a, normal)).height;
-  const double h_b = support(b, -transposed_product(R_b, normal)).height;
-  if (normal.dot(r) - h_a - h_b > limit) return false;
-  const geom::DistanceResult d =
-      distance(a, geom::kernel::unchecked_pose(R_a, Vector3d::Zero()), b, geom::kernel::unchecked_pose(R_b, r));
-  if (d.status != geom::DistanceStatus::separated) return true;
-  normal = d.normal;
-  return d.distance <= limit;
+bool any_within(const PlacedPair& pair, double limit, Vector3d& normal) {
+  const double cores = limit + pair.a.ball + pair.b.ball;
+  const ClosestFeatures closest =
+      closest_features(pair, normal, [&](double lower, double upper) { return lower > cores || upper <= cores; });
+  if (closest.end == ClosestFeatures::End::inside || !(closest.n.squaredNorm() > 0)) return true;
+  normal = closest.n;
+  return !(closest.lower > cores);
 }
 
 }  // namespace
@@ -123,7 +121,7 @@ bool GeneralDilatedEnvelopes::may_overlap(int i, int k, const Vector3d& r, Vecto
   const Matrix3d& R_b = places_[slot(k)].rotation;
   const std::optional<NormBodyShape>& norm_a = a.body.norm;
   const std::optional<NormBodyShape>& norm_b = b.body.norm;
-  if (!norm_a || !norm_b) return any_within(a.body.convex.shape, R_a, b.body.convex.shape, R_b, r, limit, normal);
+  if (!norm_a || !norm_b) return any_within({a.body.convex, b.body.convex, R_a, R_b, r, size}, limit, normal);
   const NormBodyPair pair(NormBodies(norm_a->norm, R_a, norm_b->norm, R_b), r, size,
                           a.inscribed_radius + b.inscribed_radius);
   const auto elongated = [](const NormBodyShape& shape) {
@@ -157,8 +155,8 @@ GeneralOrientedEnvelopes::GeneralOrientedEnvelopes(const GeneralBodies& bodies, 
     : thickness_(thickness), reach_(0), boxes_(slot(bodies.number())) {
   for (const GeneralKind& kind : bodies.kinds()) {
     const double diagonal = (kind.half_extents.array() + thickness).matrix().norm();
-    reach_ =
-        std::max(reach_, 2 * std::min(diagonal, kind.bounding_radius + oriented_slack(kind.body.convex.shape, thickness)));
+    reach_ = std::max(reach_,
+                      2 * std::min(diagonal, kind.bounding_radius + oriented_slack(kind.body.convex.shape, thickness)));
   }
 }
 

@@ -200,7 +200,8 @@ const char* to_string(Neighbours neighbours) {
 }
 
 bool internal::is_uniaxial(const Species& species) {
-  return is_spheroid(species.shape) && symmetry_axis(species);
+  const bool round = is_spheroid(species.shape) || std::holds_alternative<geom::Sphere>(species.shape);
+  return round && symmetry_axis(species);
 }
 
 KineticState kinetic_state(const System& system) {

@@ -36,6 +36,11 @@ struct ConvexBody {
     return {s.height - ball * length, product(R, s.point) - ball / length * m};
   }
 
+  /// Returns whether the core is a point or a segment along z.
+  bool line() const {
+    return core && (core->kind == geom::kernel::CoreKind::point || core->kind == geom::kernel::CoreKind::segment);
+  }
+
   BodyShape shape;
   std::optional<geom::kernel::CoreView> core;  ///< polytope, if the shape is one with a ball
   bool own_distance;                           ///< a user's PairDistance is to be asked

@@ -44,6 +44,8 @@ struct PlacedPair {
 
   /// Returns whether both cores are polytopes for certain, so that every search ends.
   bool finite() const { return a.core && b.core; }
+  /// Returns whether both cores are points or segments.
+  bool lines() const { return a.line() && b.line(); }
   /// Returns the point of B - A that is nearest along n; `gap`: between the tangent planes.
   geom::kernel::DifferenceVertex difference(const Eigen::Vector3d& n, double& gap) const {
     const geom::Support s_a = a.core_support(R_a, n);
@@ -73,7 +75,8 @@ struct ClosestFeatures {
   int evaluations = 0;
 };
 
-/// The algorithm of Gilbert, Johnson and Keerthi from a normal, until enough(lower, upper) or the bounds agree. For polytopes it ends after finitely many steps, with the closest features.
+/// The algorithm of Gilbert, Johnson and Keerthi from a normal, until enough(lower, upper) or the bounds agree. For
+/// polytopes it ends after finitely many steps, with the closest features.
 template <class Enough>
 ClosestFeatures closest_features(const PlacedPair& pair, const Eigen::Vector3d& start, const Enough& enough) {
   using End = ClosestFeatures::End;
@@ -91,7 +94,9 @@ ClosestFeatures closest_features(const PlacedPair& pair, const Eigen::Vector3d& 
     double gap = 0;
     const geom::kernel::DifferenceVertex v = pair.difference(n, gap);
     ++answer.evaluations;
-    if (gap > answer.lower) {
+    // Of normals that differ in the gap by less than rounding that of the features is right: the start may be off by
+    // the square root of it.
+    if (gap > answer.lower - 0.25 * resolved) {
       answer.lower = gap;
       answer.n = n;
     }
@@ -102,7 +107,7 @@ ClosestFeatures closest_features(const PlacedPair& pair, const Eigen::Vector3d& 
     // Bounds of smooth bodies agree long before the normal is right.
     if ((known || pair.finite()) && answer.upper - answer.lower <= resolved) {
       answer.end = End::closed;
-    } else if (step > 0 && enough(answer.lower, answer.upper)) {
+    } else if (enough(answer.lower, answer.upper)) {
       answer.end = End::enough;
     }
     if (answer.end != End::open || known) break;
@@ -129,6 +134,11 @@ ClosestFeatures closest_features(const PlacedPair& pair, const Eigen::Vector3d& 
   }
   return answer;
 }
+
+/// Returns the closest features of points and segments in closed form: the closest points of the lines, brought back
+/// into the segments one after the other. ClosestFeatures::End::open if they are nearly parallel, or the bounds do not
+/// agree.
+ClosestFeatures line_features(const PlacedPair& pair);
 
 /// Returns the part across n of the angular velocity with which the normal of these features turns, if they stay the
 /// closest ones: that of a face with its body, that of two edges with both.

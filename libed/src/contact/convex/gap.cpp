@@ -169,16 +169,18 @@ ConvexGap::Turn ConvexGap::turn(const State& s, const Vector3d& n, const Vector3
   const Vector3d wanted_a = wanted(omega_a, s.a.alpha);
   const Vector3d wanted_b = wanted(omega_b, s.b.alpha);
   const double weight = (A_.core_reach + B_.core_reach) * W.squaredNorm();
-  const double spin =
-      weight > 0 ? W.dot(A_.core_reach * wanted_a + B_.core_reach * wanted_b) / weight : 0.0;
+  const double spin = weight > 0 ? W.dot(A_.core_reach * wanted_a + B_.core_reach * wanted_b) / weight : 0.0;
   const Vector3d Omega = W + spin * n;
   const Vector3d v = direction * v_;
   const Vector3d turned = Omega.cross(n);
-  const auto body = [&](const ConvexBody& shape, const FreeTop& top, const Vector3d& omega, const Vector3d& lateral,
-                        double side) {
+  const auto body = [&](const ConvexBody& shape, const FreeTop& top, const TopState& at, const Vector3d& omega,
+                        const Vector3d& lateral, double side) {
     const Vector3d slip = Omega - omega;
     const Vector3d mu = slip.cross(side * n);
-    return Turn::Body{shape, top, mu, mu.norm(), slip.norm(), (spin * W - lateral).norm()};
+    const double mu2 = mu.squaredNorm();
+    const Vector3d bent = spin * W - lateral;
+    const double bend = shape.line() ? std::abs((bent - mu2 * n).dot(at.R.col(2))) : bent.norm();
+    return Turn::Body{shape, top, mu, std::sqrt(mu2), slip.norm(), bend};
   };
   return {.gap = *this,
           .s = s,
@@ -189,8 +191,8 @@ ConvexGap::Turn ConvexGap::turn(const State& s, const Vector3d& n, const Vector3
           .distance = s.r.norm(),
           .bend = -Omega.cross(turned).dot(s.r) - 2 * turned.dot(v),
           .centre_rate = turned.dot(s.r) + n.dot(v),
-          .a = body(A_, a_.top, omega_a, wanted_a, 1),
-          .b = body(B_, b_.top, omega_b, wanted_b, -1)};
+          .a = body(A_, a_.top, s.a, omega_a, wanted_a, 1),
+          .b = body(B_, b_.top, s.b, omega_b, wanted_b, -1)};
 }
 
 double ConvexGap::Turn::body_curvature(const Body& body, double tau) const {
@@ -199,10 +201,11 @@ double ConvexGap::Turn::body_curvature(const Body& body, double tau) const {
   const double slip = smaller(body.slip + alpha * tau, both);
   const double crude = body.shape.core_reach * (slip * both + alpha);
   const double mu2 = body.mu_length * body.mu_length;
-  if (!(mu2 * tau * tau <= 2)) return crude;
+  const double reach = body.shape.core_reach;
+  if (!body.shape.line() && !(mu2 * tau * tau <= 2)) return crude;
   const double M3 = slip * both * both + 3 * alpha * both + body.top.max_jerk();
-  return smaller(crude, body.shape.core_reach * (body.lateral + (mu2 * body.mu_length + M3 / 3) * tau) -
-                            body.shape.core_inner * mu2);
+  if (body.shape.line()) return smaller(crude, reach * (body.lateral + M3 / 3 * tau));
+  return smaller(crude, reach * (body.lateral + (mu2 * body.mu_length + M3 / 3) * tau) - body.shape.core_inner * mu2);
 }
 
 double ConvexGap::Turn::curvature(double tau) const {
@@ -234,8 +237,8 @@ double ConvexGap::Turn::end(double tau) const {
 
 /// Returns the longest step of one choice for a gap that is certainly g and changes at about the rate gp.
 ///
-/// Tilted ends too far away tell little. What the chord to one sags below the tangent, and K, tell how far away a better
-/// one is.
+/// Tilted ends too far away tell little. What the chord to one sags below the tangent, and K, tell how far away a
+/// better one is.
 double ConvexGap::longest_step(const Turn& turn, double g, double gp, double horizon) const {
   constexpr int kTrials = 5;
   const double gap = turn.s.rounding.gap;
@@ -258,8 +261,8 @@ Vector3d ConvexGap::turning_of_best_normal(const State& s, const Evaluation& e, 
   return turning_of_normal(e.features, n, e.g + balls_, v_, s.a.omega, s.b.omega);
 }
 
-double ConvexGap::certified_step(const State& s, const Evaluation& e, const Vector3d& n, double computed_g,
-                                 double gp, double horizon) const {
+double ConvexGap::certified_step(const State& s, const Evaluation& e, const Vector3d& n, double computed_g, double gp,
+                                 double horizon) const {
   const double g = larger(0.0, computed_g - s.rounding.gap);
   double tau = smaller(horizon, g / speed_);  // nothing moves faster
   for (const Vector3d& across : {turning_of_best_normal(s, e, n), Vector3d(Vector3d::Zero())}) {

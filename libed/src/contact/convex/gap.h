@@ -20,7 +20,8 @@
 ///
 ///     h(tau') <= (1 - theta) h(n) + theta h(m) + [R |mu2 + |mu|^2 n| + R (|mu|^3 + M3/3) tau - R0 |mu|^2] tau'^2/2.
 ///
-/// The smaller bracket is K of the body. The ball that is swept over a core has the same h for all unit vectors: h, R
+/// The smaller bracket is K of the body. A segment of half-length l along u has h = l |x|, x = m.u, and x'' is mu2.u
+/// now: its K is l (|mu2.u| + M3 tau/3). The ball that is swept over a core has the same h for all unit vectors: h, R
 /// and R0 are those of the core alone. The centres' part f = n.(r + v tau) has f'' as in support_gap.h. In all, with g1
 /// made of f(0) + f'(0) tau and of h(m),
 ///
@@ -135,7 +136,7 @@ class ConvexGap {
       Eigen::Vector3d mu;
       double mu_length;
       double slip;     ///< |Delta|
-      double lateral;  ///< |mu2 + |mu|^2 n|
+      double lateral;  ///< |mu2 + |mu|^2 n|; |mu2.u| of a segment along u
     };
     Body a, b;
 
@@ -151,13 +152,16 @@ class ConvexGap {
   Turn turn(const State& s, const Eigen::Vector3d& n, const Eigen::Vector3d& across, double direction) const;
   double longest_step(const Turn& turn, double g, double gp, double horizon) const;
   Eigen::Vector3d turning_of_best_normal(const State& s, const Evaluation& e, const Eigen::Vector3d& n) const;
-  PlacedPair placed(const State& s, const Eigen::Vector3d& r) const {
-    return {A_, B_, s.a.R, s.b.R, r, size()};
-  }
+  PlacedPair placed(const State& s, const Eigen::Vector3d& r) const { return {A_, B_, s.a.R, s.b.R, r, size()}; }
   template <class Enough>
   ClosestFeatures descend(const State& s, const Eigen::Vector3d& r, const Eigen::Vector3d& n,
                           const Enough& enough) const {
-    return closest_features(placed(s, r), n, enough);
+    const PlacedPair pair = placed(s, r);
+    if (pair.lines()) {
+      const ClosestFeatures closest = line_features(pair);
+      if (closest.end == ClosestFeatures::End::closed) return closest;
+    }
+    return closest_features(pair, n, enough);
   }
   bool take_features(const State& s, const ClosestFeatures& features, Eigen::Vector3d& n, Evaluation& e) const;
   bool solve(const State& s, Eigen::Vector3d& n, Evaluation& e) const;

@@ -1,0 +1,134 @@
+// Spheres, capsules, boxes, polyhedra and rounded ones in the event loop, alone and mixed: no overlap, energy and
+// momentum are kept, every kind of neighbour list gives the same collisions, and a restored run is the undisturbed one.
+// HARDBODY_FULL=1: 100,000 collisions of each.
+
+#include <common/ed/same_collisions.h>
+#include <common/full_form.h>
+
+#include <ed/ed.h>
+
+#include <geom/geom.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace {
+
+using Eigen::Vector3d;
+
+struct Fluid {
+  std::string name;
+  std::vector<ed::Component> components;
+};
+
+geom::ConvexPolyhedron solid(const char* name) {
+  return geom::ConvexPolyhedron::in_principal_frame(geom::solid_vertices(name));
+}
+
+/// Returns fluids of 48 bodies, or of several times as many.
+std::vector<Fluid> fluids(int copies = 1) {
+  const geom::Box cube({0.5, 0.5, 0.5});
+  const auto alone = [copies](const std::string& name, const ed::BodyShape& shape) {
+    return Fluid{name, {{ed::uniform_species(shape), 48 * copies}}};
+  };
+  return {
+      alone("spheres", geom::Sphere(0.6)),
+      alone("capsules", geom::Capsule(0.8, 0.4)),
+      alone("cubes", cube),
+      alone("dodecahedra", solid("dodecahedron")),
+      alone("rounded boxes", geom::Rounded<geom::Box>(geom::Box({0.6, 0.5, 0.3}), 0.05)),
+      alone("rounded octahedra", geom::Rounded<geom::ConvexPolyhedron>(solid("octahedron"), 0.1)),
+      {"spheres of two sizes",
+       {{ed::uniform_species(geom::Sphere(0.6)), 24 * copies}, {ed::uniform_species(geom::Sphere(0.4)), 24 * copies}}},
+      {"spheres, capsules and cubes",
+       {{ed::uniform_species(geom::Sphere(0.5)), 16 * copies},
+        {ed::uniform_species(geom::Capsule(0.6, 0.4)), 16 * copies},
+        {ed::uniform_species(cube), 16 * copies}}},
+      {"capsules and ellipsoids",
+       {{ed::uniform_species(geom::Capsule(0.6, 0.4)), 24 * copies},
+        {ed::uniform_species(geom::Ellipsoid({0.4, 0.6, 0.8})), 24 * copies}}}};
+}
+
+ed::System start(const Fluid& fluid) {
+  ed::StartOptions options;
+  options.packing_fraction = 0.3;
+  return ed::random_start(fluid.components, options);
+}
+
+/// Returns the least distance of all pairs, by geom::distance.
+double least_distance(const ed::System& system) {
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < system.size(); ++i) {
+    for (int j = i + 1; j < system.size(); ++j) {
+      const ed::Body& a = system.bodies[static_cast<std::size_t>(i)];
+      const ed::Body& b = system.bodies[static_cast<std::size_t>(j)];
+      Vector3d r = b.position - a.position;
+      for (int k = 0; k < 3; ++k) r[k] -= system.box * std::round(r[k] / system.box);
+      const geom::DistanceResult d = ed::distance(
+          system.species[static_cast<std::size_t>(a.species)].shape, geom::Pose(a.rotation, Vector3d(Vector3d::Zero())),
+          system.species[static_cast<std::size_t>(b.species)].shape, geom::Pose(b.rotation, r));
+      if (d.status == geom::DistanceStatus::not_converged) continue;
+      least = std::min(least, d.distance + d.error_bound);
+    }
+  }
+  return least;
+}
+
+TEST(CoreBodies, KeepEnergyAndDoNotOverlap) {
+  const int collisions = full_form() ? 100000 : 5000;
+  for (const Fluid& fluid : fluids()) {
+    ed::Simulation simulation(start(fluid));
+    const ed::KineticState before = simulation.kinetic();
+    double least = std::numeric_limits<double>::infinity();
+    for (int k = 0; k < 10; ++k) {
+      simulation.run_collisions(static_cast<std::uint64_t>(collisions) / 10);
+      least = std::min(least, least_distance(simulation.system()));
+    }
+    const ed::KineticState after = simulation.kinetic();
+    const double drift = std::abs(after.energy() / before.energy() - 1);
+    const double momentum = (after.momentum - before.momentum).norm();
+    std::printf("%s: least distance %.1e, energy %.1e, momentum %.1e\n", fluid.name.c_str(), least, drift, momentum);
+    EXPECT_EQ(simulation.counters().overlaps, 0U) << fluid.name;
+    EXPECT_EQ(simulation.counters().declined, 0U) << fluid.name;
+    EXPECT_GE(least, -1e-12) << fluid.name;
+    EXPECT_LE(drift, 1e-11) << fluid.name;
+    EXPECT_LE(momentum, 1e-10) << fluid.name;
+  }
+}
+
+/// The lists change the order in which pairs are searched, and how far: not the collisions.
+TEST(CoreBodies, CollideTheSameWithEveryList) {
+  constexpr std::size_t kCollisions = 500;  // some five a body
+  for (const Fluid& fluid : fluids(4)) {
+    const ed::System system = start(fluid);
+    const auto reference = ed_test::first_collisions(system, {}, kCollisions);
+    for (const auto neighbours : {ed::Neighbours::obp, ed::Neighbours::cells}) {
+      ed::SimulationOptions options;
+      options.neighbours = neighbours;
+      ed_test::expect_same(reference, ed_test::first_collisions(system, options, kCollisions),
+                           fluid.name + ", " + ed::to_string(neighbours));
+    }
+  }
+}
+
+TEST(CoreBodies, AreRestoredToTheSameBytes) {
+  for (const Fluid& fluid : fluids()) {
+    const ed::System system = start(fluid);
+    ed::Simulation undisturbed(system);
+    ed::Simulation again(system);
+    undisturbed.run_collisions(500);
+    again.run_collisions(500);
+    again = ed::Simulation::restore(again.save(), system.species);
+    undisturbed.run_collisions(500);
+    again.run_collisions(500);
+    EXPECT_EQ(again.save(), undisturbed.save()) << fluid.name;
+  }
+}
+
+}  // namespace
