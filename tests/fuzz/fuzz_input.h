@@ -9,9 +9,10 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <limits>
 #include <optional>
 #include <stdexcept>
@@ -137,11 +138,12 @@ class Input {
   template <class T>
   T read() {
     static_assert(std::is_trivially_copyable_v<T>);
-    std::array<std::uint8_t, sizeof(T)> bytes;
-    for (std::uint8_t& b : bytes) b = byte();
-    T value;
-    std::memcpy(&value, bytes.data(), sizeof value);
-    return value;
+    const std::size_t there = std::min(size_, sizeof(T));
+    std::array<std::uint8_t, sizeof(T)> bytes{};
+    std::copy_n(data_, there, bytes.begin());
+    data_ += there;
+    size_ -= there;
+    return std::bit_cast<T>(bytes);
   }
 
   template <class Draw>
