@@ -44,7 +44,7 @@ TEST(CoreKinds, AreSavedAndRestored) {
   for (const BodyShape& shape : kinds()) {
     const std::string bytes = archive::bytes_of(shape);
     archive::Reader reader(bytes);
-    BodyShape restored = geom::Ellipsoid({1, 1, 1});
+    BodyShape restored = geom::Sphere(1);
     reader(restored);
     reader.finish();
     EXPECT_EQ(describe(restored), describe(shape));
