@@ -40,7 +40,7 @@ constexpr double kGrazing = 1e-2;   // normal velocity below this share of the r
 struct TestBody {
   std::string kind;
   ConvexBody body;
-  ConvexBody exact;  ///< as the reference knows it
+  ConvexBody exact;  ///< body whose distances the reference asks for
   Vector3d inertia;
   std::vector<Vector3d> directions;
 };

@@ -195,6 +195,7 @@ std::optional<geom::kernel::CoreView> core_of(const BodyShape& shape) {
 ConvexBody::ConvexBody(const BodyShape& body)
     : shape(body),
       core(core_of(shape)),
+      smooth(std::holds_alternative<geom::Ellipsoid>(shape) || std::holds_alternative<geom::Superellipsoid>(shape)),
       own_distance(false),
       bounding_radius(ed::bounding_radius(shape)),
       lever(turning_lever(shape)),

@@ -209,8 +209,7 @@ void bind_one_species(nb::module_& module) {
           "1.6.")
       .def_prop_ro(
           "shape", [](const Species& s) { return shape_object(s.shape); },
-          nb::for_getter(nb::sig("def shape(self) -> hardbody.Shape | CustomShape")),
-          "Shape of the bodies.")
+          nb::for_getter(nb::sig("def shape(self) -> hardbody.Shape | CustomShape")), "Shape of the bodies.")
       .def_prop_ro(
           "mass", [](const Species& s) { return s.mass; }, "Mass of a body.")
       .def_prop_ro(

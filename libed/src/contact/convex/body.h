@@ -43,6 +43,7 @@ struct ConvexBody {
 
   BodyShape shape;
   std::optional<geom::kernel::CoreView> core;  ///< polytope, if the shape is one with a ball
+  bool smooth;                                 ///< an ellipsoid or superellipsoid
   bool own_distance;                           ///< a user's PairDistance is to be asked
   double bounding_radius;
   double lever;       ///< turning_lever (body_shapes.h)

@@ -44,6 +44,8 @@ struct PlacedPair {
 
   /// Returns whether both cores are polytopes for certain, so that every search ends.
   bool finite() const { return a.core && b.core; }
+  /// Returns whether neither is one of libgeom's smooth bodies, whose normals near flat faces only Newton's method knows.
+  bool may_close() const { return !a.smooth && !b.smooth; }
   /// Returns whether both cores are points or segments.
   bool lines() const { return a.line() && b.line(); }
   /// Returns the point of B - A that is nearest along n; `gap`: between the tangent planes.
@@ -85,7 +87,8 @@ ClosestFeatures closest_features(const PlacedPair& pair, const Eigen::Vector3d& 
   constexpr int kPatience = 4;
   constexpr double kSameLength = 1 + 1e-14;
   constexpr double kClosed = 1e-15;
-  const double resolved = kClosed * pair.size;
+  constexpr double kClosedUnknown = 4e-15;  // the cores of users' shapes are differences
+  const double resolved = (pair.finite() ? kClosed : kClosedUnknown) * pair.size;
   ClosestFeatures answer;
   int idle = 0;
   geom::kernel::CoreSimplex simplex, best;
@@ -105,7 +108,7 @@ ClosestFeatures closest_features(const PlacedPair& pair, const Eigen::Vector3d& 
       known = known || (simplex.vertex[k].p - v.p).squaredNorm() <= resolved * resolved;
     }
     // Bounds of smooth bodies agree long before the normal is right.
-    if ((known || pair.finite()) && answer.upper - answer.lower <= resolved) {
+    if ((pair.finite() || (known && pair.may_close())) && answer.upper - answer.lower <= resolved) {
       answer.end = End::closed;
     } else if (enough(answer.lower, answer.upper)) {
       answer.end = End::enough;

@@ -59,7 +59,7 @@ class ConvexGap {
   struct State {
     double t;
     TopState a, b;
-    Eigen::Vector3d r;  ///< from A's centre to B's
+    Eigen::Vector3d r;  ///< vector from A's centre to B's
     GeneralRounding rounding;
   };
   struct Sample {
