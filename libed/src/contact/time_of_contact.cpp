@@ -210,8 +210,8 @@ ContactResult search(const GeneralBody& a, const GeneralBody& b, double reach, d
   const Eigen::Vector3d r = b.position_at(0) - a.position_at(0);
   const auto hulls = [&] {
     return internal::SweptPair{internal::SweptHull(a.body.convex.shape, a.motion, a.inertia),
-                               internal::SweptHull(b.body.convex.shape, b.motion, b.inertia), r, b.velocity() - a.velocity(),
-                               reach};
+                               internal::SweptHull(b.body.convex.shape, b.motion, b.inertia), r,
+                               b.velocity() - a.velocity(), reach};
   };
   const auto certified = [&](const auto& gap) {
     return general_search(gap, a, [&](Eigen::Vector3d& n, internal::FinderCounters& count) {

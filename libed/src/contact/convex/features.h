@@ -44,7 +44,8 @@ struct PlacedPair {
 
   /// Returns whether both cores are polytopes for certain, so that every search ends.
   bool finite() const { return a.core && b.core; }
-  /// Returns whether neither is one of libgeom's smooth bodies, whose normals near flat faces only Newton's method knows.
+  /// Returns whether neither is one of libgeom's smooth bodies, whose normals near flat faces only Newton's method
+  /// knows.
   bool may_close() const { return !a.smooth && !b.smooth; }
   /// Returns whether both cores are points or segments.
   bool lines() const { return a.line() && b.line(); }
