@@ -151,9 +151,11 @@ struct Flight {
   }
   /// Returns the distance; 0 where libgeom declines.
   double distance(double t) const {
-    const double d = distance_result(t).distance;
+    const geom::DistanceResult result = distance_result(t);
+    const double d = result.distance;
     if (std::isnan(d)) ++declined;
-    return std::isnan(d) ? 0 : d;
+    // Only a certain overlap is one: where a smooth body meets an edge, the bound may be 1e-9 of the size.
+    return std::isnan(d) ? 0 : d < 0 && result.error_bound < 1 ? std::min(0.0, d + result.error_bound) : d;
   }
   double rate() const {
     return (b.velocity - a.velocity).norm() + shape_a.body.bounding_radius * a.top.max_omega() +
