@@ -22,6 +22,9 @@ using Eigen::Vector3d;
 /// does not converge at all, and the closest points are found otherwise.
 constexpr int kNewtonSteps = 10;
 
+/// Error bound of a distance, in units of the size, above which another search is made.
+constexpr double kCoarse = 1e-14;
+
 constexpr double kNoBound = std::numeric_limits<double>::infinity();
 
 }  // namespace
@@ -138,7 +141,15 @@ bool ConvexGap::solve_by_features(const State& s, Vector3d& n, Evaluation& e) co
 /// Finds n and e of the distance itself, from n on; false if the query declines.
 bool ConvexGap::solve(const State& s, Vector3d& n, Evaluation& e) const {
   if (solve_by_features(s, n, e)) return true;
-  return take(s, ask(s, {.start = n, .max_iterations = kNewtonSteps, .penetration = geom::Penetration::local}), n, e);
+  geom::DistanceOptions options{.start = n, .max_iterations = kNewtonSteps, .penetration = geom::Penetration::local};
+  geom::DistanceResult d = ask(s, options);
+  if (!is_answer(d) || d.error_bound > kCoarse * size()) {
+    // Near kinks of one body beside a smooth one a search from another start may do better.
+    options = {.penetration = geom::Penetration::local};
+    const geom::DistanceResult cold = ask(s, options);
+    if (is_answer(cold) && !(is_answer(d) && d.error_bound <= cold.error_bound)) d = cold;
+  }
+  return d.error_bound <= geom::kWidestGap * size() && take(s, d, n, e);
 }
 
 geom::DistanceResult ConvexGap::last_resort(const State& s) const {
