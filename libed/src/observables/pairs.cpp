@@ -152,6 +152,7 @@ void add_structure_factors(const Snapshot& snapshot, const std::vector<BodyRange
     return;
   }
   std::vector<Amplitudes> of;
+  of.reserve(ranges.size());
   for (const BodyRange& range : ranges) of.push_back(vectors.amplitudes(snapshot.position, range));
   Amplitudes all = of[0];
   for (std::size_t g = 0; g < ranges.size(); ++g) {

@@ -158,7 +158,7 @@ class ConvexGap {
                           const Enough& enough) const {
     const PlacedPair pair = placed(s, r);
     if (pair.lines()) {
-      const ClosestFeatures closest = line_features(pair);
+      ClosestFeatures closest = line_features(pair);
       if (closest.end == ClosestFeatures::End::closed) return closest;
     }
     return closest_features(pair, n, enough);
