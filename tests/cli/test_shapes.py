@@ -109,7 +109,7 @@ class ShapeLines(unittest.TestCase):
             self.assertTrue(7.5 <= answer["distance"] <= 8.2, answer)
 
     def test_the_papers_equations(self):
-        """They take spheres, and no shape with edges."""
+        """Spheres have equations, and no shape with edges has."""
         pair = {"a": body(SPHERE), "b": body(BALL, [3, 0, 0])}
         for method in ["newton8", "newton5"]:
             self.assertAlmostEqual(self.answers({**pair, "method": method})[0]["distance"], 1.5, 13)

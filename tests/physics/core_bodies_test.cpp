@@ -2,6 +2,7 @@
 // momentum are kept, every kind of neighbour list gives the same collisions, and a restored run is the undisturbed one.
 // HARDBODY_FULL=1: 100,000 collisions of each.
 
+#include <common/ed/all_pairs.h>
 #include <common/ed/same_collisions.h>
 #include <common/full_form.h>
 
@@ -61,22 +62,18 @@ ed::System start(const Fluid& fluid) {
   return ed::random_start(fluid.components, options);
 }
 
-/// Returns the least distance of all pairs, by geom::distance.
+/// Returns the least distance of all pairs, by geom::distance, which answers them all.
 double least_distance(const ed::System& system) {
   double least = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < system.size(); ++i) {
-    for (int j = i + 1; j < system.size(); ++j) {
-      const ed::Body& a = system.bodies[static_cast<std::size_t>(i)];
-      const ed::Body& b = system.bodies[static_cast<std::size_t>(j)];
-      Vector3d r = b.position - a.position;
-      for (int k = 0; k < 3; ++k) r[k] -= system.box * std::round(r[k] / system.box);
-      const geom::DistanceResult d = ed::distance(
-          system.species[static_cast<std::size_t>(a.species)].shape, geom::Pose(a.rotation, Vector3d(Vector3d::Zero())),
-          system.species[static_cast<std::size_t>(b.species)].shape, geom::Pose(b.rotation, r));
-      if (d.status == geom::DistanceStatus::not_converged) continue;
-      least = std::min(least, d.distance + d.error_bound);
-    }
-  }
+  ed_test::for_each_pair(system, [&](const ed::Body& a, const ed::Body& b, const Vector3d& r) {
+    const auto shape = [&](const ed::Body& body) {
+      return system.species[static_cast<std::size_t>(body.species)].shape;
+    };
+    const geom::DistanceResult d =
+        ed::distance(shape(a), geom::Pose(a.rotation, Vector3d(Vector3d::Zero())), shape(b), geom::Pose(b.rotation, r));
+    EXPECT_NE(d.status, geom::DistanceStatus::not_converged);
+    least = std::min(least, d.distance + d.error_bound);
+  });
   return least;
 }
 
@@ -102,7 +99,7 @@ TEST(CoreBodies, KeepEnergyAndDoNotOverlap) {
   }
 }
 
-/// The lists change the order in which pairs are searched, and how far: not the collisions.
+// Lists change the order in which pairs are searched, and how far: not the collisions.
 TEST(CoreBodies, CollideTheSameWithEveryList) {
   constexpr std::size_t kCollisions = 500;  // some five a body
   for (const Fluid& fluid : fluids(4)) {

@@ -4,6 +4,7 @@
 // Two independent ways to every contact: they share the distance kernel and nothing else, and with newton8 and newton5
 // not even that.
 
+#include <common/ed/all_pairs.h>
 #include <common/ed/states.h>
 #include <common/finder/ensemble.h>
 #include <common/full_form.h>
@@ -33,8 +34,7 @@ struct MovingPair {
   ed::Motion a, b;
 };
 
-ed::Motion motion_of(const ed::System& system, int i, const Vector3d& position) {
-  const ed::Body& body = system.bodies[static_cast<std::size_t>(i)];
+ed::Motion motion_of(const ed::System& system, const ed::Body& body, const Vector3d& position) {
   return {geom::Pose(body.rotation, position), body.velocity, body.angular_velocity, system.species[0].inertia, 0};
 }
 
@@ -42,14 +42,9 @@ ed::Motion motion_of(const ed::System& system, int i, const Vector3d& position) 
 std::vector<MovingPair> neighbours(const ed::System& system) {
   std::vector<MovingPair> pairs;
   const double reach = 2 * ed_test::ellipsoid_of(system).bounding_radius() + 0.3;
-  for (int i = 0; i < system.size(); ++i) {
-    for (int j = i + 1; j < system.size(); ++j) {
-      const Vector3d r_i = system.bodies[static_cast<std::size_t>(i)].position;
-      Vector3d r = system.bodies[static_cast<std::size_t>(j)].position - r_i;
-      for (int k = 0; k < 3; ++k) r[k] -= system.box * std::round(r[k] / system.box);
-      if (r.norm() < reach) pairs.push_back({motion_of(system, i, Vector3d::Zero()), motion_of(system, j, r)});
-    }
-  }
+  ed_test::for_each_pair(system, [&](const ed::Body& a, const ed::Body& b, const Vector3d& r) {
+    if (r.norm() < reach) pairs.push_back({motion_of(system, a, Vector3d::Zero()), motion_of(system, b, r)});
+  });
   return pairs;
 }
 

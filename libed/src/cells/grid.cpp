@@ -37,11 +37,11 @@ CellGrid::CellGrid(int number, double box, double reach, const std::optional<geo
   clear();
 }
 
-/// Returns the number along an edge for which the fewest blocks are tested.
 void CellGrid::use(geom::InstructionSet set) {
   kernel_ = find_cell_kernel(set);
 }
 
+/// Returns the number along an edge for which the fewest blocks are tested.
 int CellGrid::choose_cells(int number, double box, double reach) {
   const double most = std::min(most_cells(at(number)), kNarrowest * box / reach);
   int best = 1;

@@ -40,6 +40,7 @@
 
 #include "base/select.h"
 #include "contact/curvature_steps.h"
+#include "contact/pair_gap_base.h"
 #include "contact/rounding.h"
 #include "contact/separation.h"
 #include "contact/sphere_window.h"
@@ -72,7 +73,7 @@ struct NormBodyShape {
 /// were taken for contacts (decision 020).
 inline constexpr double kVertexStep2 = 1e-18;
 
-class SupportGap {
+class SupportGap : private PairGapBase<NormBodyShape, RigidMotion> {
  public:
   using DualSample = geom::kernel::DualSample;
   using LaneVector = geom::kernel::LaneVector;
@@ -97,20 +98,14 @@ class SupportGap {
   /// `r_now`: the vector from A's centre to B's at `now`, in the image that is meant.
   SupportGap(const NormBodyShape& A, const RigidMotion& a, const NormBodyShape& B, const RigidMotion& b,
              const Eigen::Vector3d& r_now, double now)
-      : A_(A),
-        B_(B),
-        a_(a),
-        b_(b),
-        r_now_(r_now),
-        v_(b.velocity - a.velocity),
-        now_(now),
+      : PairGapBase(A, a, B, b, r_now, now),
         scales_(GeneralScales::of(A.bounding_radius, a, B.bounding_radius, b, now)),
         settled_step2_(A.has_vertices || B.has_vertices ? kVertexStep2 : geom::kNormalTolerance2) {}
 
   State at(double t) const {
     const TopState top_a = a_.top.at(t - a_.time);
     const TopState top_b = b_.top.at(t - b_.time);
-    return {NormBodyPair(NormBodies(A_.norm, top_a.R, B_.norm, top_b.R), r_now_ + (t - now_) * v_, size(),
+    return {NormBodyPair(NormBodies(A_.norm, top_a.R, B_.norm, top_b.R), r_at(t), size(),
                          A_.inscribed_radius + B_.inscribed_radius),
             LaneVector::of(top_a.omega, top_b.omega), LaneVector::of(top_a.alpha, top_b.alpha), scales_.rounding(t)};
   }
@@ -215,13 +210,6 @@ class SupportGap {
   bool tilted_end_clears(const State& s, const Eigen::Vector3d& n, const Eigen::Vector3d& Omega, double least,
                          double tau) const;
 
-  const NormBodyShape& A_;
-  const NormBodyShape& B_;
-  const RigidMotion& a_;
-  const RigidMotion& b_;
-  Eigen::Vector3d r_now_;
-  Eigen::Vector3d v_;
-  double now_;
   GeneralScales scales_;
   double settled_step2_;  ///< |delta|^2 of a normal that is right
 };

@@ -16,6 +16,7 @@
 ///   double size(), certified_depth(), speed(), and window(t_begin, t_end)
 
 #include "base/select.h"
+#include "contact/pair_gap_base.h"
 #include "contact/rounding.h"
 #include "contact/separation.h"
 #include "contact/sphere_window.h"
@@ -72,7 +73,7 @@ inline PairScalesOf<double> pair_scales(const Spheroid& A, const AxisMotion& a, 
 }
 
 template <bool kSpin>
-class UniaxialGap {
+class UniaxialGap : private PairGapBase<geom::kernel::Spheroid, AxisMotion> {
  public:
   struct State {
     Eigen::Vector3d r, u_a, u_b, du_a, du_b;
@@ -91,18 +92,11 @@ class UniaxialGap {
   /// radii.
   UniaxialGap(const Spheroid& A, const AxisMotion& a, const Spheroid& B, const AxisMotion& b,
               const Eigen::Vector3d& r_now, double now, double reach)
-      : A_(A),
-        B_(B),
-        a_(a),
-        b_(b),
-        r_now_(r_now),
-        v_(b.velocity - a.velocity),
-        now_(now),
-        scales_(pair_scales(A, a, B, b, now, reach)) {}
+      : PairGapBase(A, a, B, b, r_now, now), scales_(pair_scales(A, a, B, b, now, reach)) {}
 
   State at(double t) const {
     State s;
-    s.r = r_now_ + (t - now_) * v_;
+    s.r = r_at(t);
     turn<kSpin>(a_, t, s.u_a, s.du_a);
     turn<kSpin>(b_, t, s.u_b, s.du_b);
     s.rounding = scales_.rounding(t);
@@ -158,13 +152,6 @@ class UniaxialGap {
     return S.b2 * Eigen::Matrix3d::Identity() + S.c * u * u.transpose();
   }
 
-  const Spheroid& A_;
-  const Spheroid& B_;
-  const AxisMotion& a_;
-  const AxisMotion& b_;
-  Eigen::Vector3d r_now_;
-  Eigen::Vector3d v_;
-  double now_;
   PairScalesOf<double> scales_;
 };
 

@@ -48,7 +48,7 @@ int smallest_number(const BodyShape& shape, double packing_fraction, Neighbours 
     message << "packing_fraction is " << packing_fraction << "; accepted: above 0";
     throw std::invalid_argument(message.str());
   }
-  const double box = smallest_box_of({shape}, is_spheroid(shape) || is_sphere(shape), neighbours);
+  const double box = smallest_box_of({shape}, internal::has_uniaxial_shape(shape), neighbours);
   const double number = std::ceil(packing_fraction * box * box * box / volume(shape));
   return static_cast<int>(std::clamp(number, 2.0, double{std::numeric_limits<int>::max()}));
 }

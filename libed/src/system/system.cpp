@@ -199,9 +199,12 @@ const char* to_string(Neighbours neighbours) {
   return "unknown";
 }
 
+bool internal::has_uniaxial_shape(const BodyShape& shape) {
+  return is_spheroid(shape) || std::holds_alternative<geom::Sphere>(shape);
+}
+
 bool internal::is_uniaxial(const Species& species) {
-  const bool round = is_spheroid(species.shape) || std::holds_alternative<geom::Sphere>(species.shape);
-  return round && symmetry_axis(species);
+  return has_uniaxial_shape(species.shape) && symmetry_axis(species);
 }
 
 KineticState kinetic_state(const System& system) {

@@ -28,7 +28,13 @@ class PolytopeDescent {
     for (int step = 0; step < kMostSteps && idle < kPatience; ++step) {
       const double lower = contact_.lower;
       const DifferenceVertex v = evaluate(n);
-      if (best_.squared < std::numeric_limits<double>::infinity() && closed()) return true;
+      // The gap is that across the closest point of the simplex: another normal whose gap is the same to rounding may
+      // be off by the square root of that.
+      if (const double gap = n.dot(v.p); step > 0 && std::sqrt(best_.squared) - gap <= tolerance_) {
+        contact_.lower = gap;
+        contact_.n = n;
+        return true;
+      }
       if (simplex.has(v)) break;
       simplex.vertex[simplex.count++] = v;
       last_ = simplex;
@@ -138,6 +144,11 @@ void refine(const PlacedCore& a, const PlacedCore& b, double size, double bound,
       improved = true;
     }
     CoreContact next = contact;
+    // Of normals whose gaps differ by rounding that of the closest points is right.
+    if (lower > contact.lower - kCoreRounding * size) {
+      next.n = far.n;
+      next.lower = lower;
+    }
     next.a = far.a;
     next.b = far.b - way;
     if (const double next_bound = bound_of(next); next_bound < bound) {

@@ -12,6 +12,7 @@
 #include <algorithm>
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
 #include <cmath>
 
@@ -296,6 +297,34 @@ TEST(UserShape, OverlappingSuperquadricsHaveTheirDepth) {
     widest = std::max(widest, d.error_bound / pair.size);
   }
   EXPECT_LE(widest, kDepthGap);
+}
+
+/// Ellipsoids on the faces, edges and corners of boxes: the support points of a box jump there, and Newton's step may
+/// lead to one far away.
+TEST(UserShape, OnFacesAndCornersHasACertifiedDistance) {
+  Random random(31);
+  for (int k = 0; k < repetitions(5000); ++k) {
+    const Box box({random.uniform(0.3, 1), random.uniform(0.3, 1), random.uniform(0.3, 1)});
+    const WrappedEllipsoid body{Ellipsoid({random.uniform(0.4, 1), random.uniform(0.4, 1), random.uniform(0.4, 1)})};
+    Eigen::Matrix3d R = random.coin() ? random.pose(0).rotation()
+                                      : Eigen::AngleAxisd(random.uniform(0, 6), Vector3d::UnitZ()).toRotationMatrix();
+    if (random.coin()) {
+      R = Eigen::AngleAxisd(random.log_uniform(1e-8, 0.3), random.direction()).toRotationMatrix() * R;
+    }
+    const double gap = (random.coin() ? 1 : -1) * random.log_uniform(1e-12, 1e-3);
+    const double share = random.coin() ? 1 : random.uniform();  // from the middle of the face to a corner
+    const Vector3d half = box.half_extents();
+    const Vector3d lowest = R * body.support(-R.transpose().col(2)).point;
+    const Pose X_WA = random.pose(1);
+    const Pose X_WB = X_WA * Pose(R, Vector3d(share * half.x(), share * half.y(), half.z() + gap) - lowest);
+    const double size = (X_WB.position() - X_WA.position()).norm() + box.bounding_radius() + body.bounding_radius();
+    for (const Penetration penetration : {Penetration::global, Penetration::local}) {
+      const DistanceResult r = distance(box, X_WA, body, X_WB, {.penetration = penetration});
+      ASSERT_NE(r.status, DistanceStatus::not_converged) << k;
+      ASSERT_LE(r.error_bound, (r.distance > 0 ? kWidestGap : kWidestDepthGap) * size) << k << ", gap " << gap;
+      ASSERT_NEAR(r.distance, gap, 1e-12 * size + r.error_bound) << k;
+    }
+  }
 }
 
 }  // namespace

@@ -13,10 +13,17 @@
 
 namespace hardbody::python {
 
-/// Defines what every shape has. `Calls` has static functions of a shape: text, the call of its constructor; same(a,
-/// b); arguments, those of its constructor.
-template <class Calls, class Shape>
-void bind_common(nb::class_<Shape>& type) {
+/// Functions of a kind of shape that its class is made of.
+template <class Shape>
+struct ShapeCalls {
+  std::string (*text)(const Shape&);          ///< call of the constructor that makes the shape
+  bool (*equal)(const Shape&, const Shape&);  ///< comparison of all numbers
+  nb::tuple (*arguments)(const Shape&);       ///< arguments of that call
+};
+
+/// Defines what every shape has.
+template <class Shape>
+void bind_common(nb::class_<Shape>& type, const ShapeCalls<Shape>& calls) {
   type.def_prop_ro(
           "bounding_radius", [](const Shape& s) { return s.bounding_radius(); },
           "Radius of the smallest sphere about the origin that contains the body.")
@@ -52,18 +59,20 @@ void bind_common(nb::class_<Shape>& type) {
           nb::sig("def support(self, n: numpy.typing.ArrayLike) -> tuple[float, numpy.typing.NDArray[numpy.float64]]"),
           "Returns (h, s) for a direction n, shape (3,), of any length but 0: h(n) = max of n.x over the body, and\n"
           "the point s where that maximum is reached. Body frame.")
-      .def("__repr__", [](const Shape& s) { return Calls::text(s); })
+      .def("__repr__", calls.text)
       .def(
           "__eq__",
-          [](const Shape& s, nb::handle other) {
+          [equal = calls.equal](const Shape& s, nb::handle other) {
             Shape* found = nullptr;
-            return nb::try_cast(other, found, false) && found != nullptr && Calls::same(s, *found);
+            return nb::try_cast(other, found, false) && found != nullptr && equal(s, *found);
           },
           nb::arg("other").none(), nb::sig("def __eq__(self, other: typing.Any, /) -> bool"))
-      .def("__hash__", [](const Shape& s) { return nb::hash(nb::str(Calls::text(s).c_str())); })
+      .def("__hash__", [text = calls.text](const Shape& s) { return nb::hash(nb::str(text(s).c_str())); })
       .def(
           "__reduce__",
-          [](nb::handle self) { return nb::make_tuple(self.type(), Calls::arguments(nb::cast<const Shape&>(self))); },
+          [arguments = calls.arguments](nb::handle self) {
+            return nb::make_tuple(self.type(), arguments(nb::cast<const Shape&>(self)));
+          },
           nb::sig("def __reduce__(self) -> tuple[typing.Any, ...]"));
 }
 

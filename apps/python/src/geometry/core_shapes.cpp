@@ -105,22 +105,6 @@ nb::tuple constructor_arguments(const Rounded<Inner>& s) {
   return nb::make_tuple(s.inner(), s.radius());
 }
 
-/// Functions above, for bind_common().
-struct CoreCalls {
-  template <class Shape>
-  static std::string text(const Shape& s) {
-    return constructor_text(s);
-  }
-  template <class Shape>
-  static bool same(const Shape& a, const Shape& b) {
-    return equal(a, b);
-  }
-  template <class Shape>
-  static nb::tuple arguments(const Shape& s) {
-    return constructor_arguments(s);
-  }
-};
-
 // ---- Classes
 
 /// Returns the points of an array of shape (n, 3), all finite.
@@ -138,7 +122,7 @@ void bind_sphere(nb::module_& module) {
           nb::arg("radius").none(), nb::sig("def __init__(self, radius: float) -> None"),
           "Constructs a ball; the radius is from 1e-50 to 1e50.")
       .def_prop_ro("radius", &Sphere::radius, "Radius of the ball.");
-  bind_common<CoreCalls>(type);
+  bind_common(type, {constructor_text, equal, constructor_arguments});
 }
 
 void bind_capsule(nb::module_& module) {
@@ -155,7 +139,7 @@ void bind_capsule(nb::module_& module) {
           "Constructs a capsule; the half-length, of at least 0, plus the radius is at most 1e4 times the radius.")
       .def_prop_ro("half_length", &Capsule::half_length, "Half the distance of the centres of the caps.")
       .def_prop_ro("radius", &Capsule::radius, "Radius of the caps and of the cylinder between them.");
-  bind_common<CoreCalls>(type);
+  bind_common(type, {constructor_text, equal, constructor_arguments});
 }
 
 void bind_box(nb::module_& module) {
@@ -168,7 +152,7 @@ void bind_box(nb::module_& module) {
       .def_prop_ro(
           "half_extents", [](const Box& s) { return array_of(s.half_extents()); },
           nb::for_getter(nb::sig(getter("half_extents").c_str())), "Half the edges along body x, y, z, shape (3,).");
-  bind_common<CoreCalls>(type);
+  bind_common(type, {constructor_text, equal, constructor_arguments});
 }
 
 /// Defines what polyhedra, rounded or not, have beside bind_common().
@@ -220,7 +204,7 @@ void bind_polyhedron(nb::module_& module) {
                    "Vertices in the body's frame, shape (n, 3).")
       .def_prop_ro("faces", &ConvexPolyhedron::faces,
                    "Faces, each a list of indices of vertices, anticlockwise seen from outside.");
-  bind_common<CoreCalls>(type);
+  bind_common(type, {constructor_text, equal, constructor_arguments});
   bind_moments(type);
 }
 
@@ -246,7 +230,7 @@ void bind_rounded(nb::module_& module, const char* name, const char* inner, cons
           "shape", [](const Rounded<Inner>& s) { return s.inner(); }, nb::for_getter(nb::sig(of.c_str())),
           "Shape that is rounded.")
       .def_prop_ro("radius", &Rounded<Inner>::radius, "Radius of the ball.");
-  bind_common<CoreCalls>(type);
+  bind_common(type, {constructor_text, equal, constructor_arguments});
   bind_moments(type);
 }
 

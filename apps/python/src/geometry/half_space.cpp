@@ -34,9 +34,10 @@ std::optional<geom::DistanceResult> half_space_distance(nb::handle a, const geom
 }
 
 void bind_half_space(nb::module_& module) {
-  nb::class_<HalfSpace>(module, "HalfSpace",
-                        "Half-space normal.x <= offset in the body's frame, such as a floor: for distance, overlap,\n"
-                        "distance_lower_bound, closest_point, contains and ray_cast, beside any built-in shape.")
+  nb::class_<HalfSpace>(
+      module, "HalfSpace",
+      "Half-space normal.x <= offset in the body's frame, such as a floor: for distance, overlap, closest_point,\n"
+      "contains and ray_cast, beside any built-in shape.")
       .def(
           "__init__",
           [](HalfSpace* self, nb::handle normal, nb::handle offset) {

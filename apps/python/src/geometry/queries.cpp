@@ -93,9 +93,10 @@ void bind_distance(nb::module_& module) {
          nb::handle penetration) {
         geom::DistanceOptions options = distance_options(max_iterations, penetration);
         if (!start.is_none()) options.start = finite_vector3(start, "start");
-        if (const auto found = half_space_distance(a, pose(pose_a, "pose_a"), b, pose(pose_b, "pose_b"))) return *found;
-        return any::distance(body_shape(a, "a"), pose(pose_a, "pose_a"), body_shape(b, "b"), pose(pose_b, "pose_b"),
-                             options);
+        const geom::Pose& X_WA = pose(pose_a, "pose_a");
+        const geom::Pose& X_WB = pose(pose_b, "pose_b");
+        if (const auto found = half_space_distance(a, X_WA, b, X_WB)) return *found;
+        return any::distance(body_shape(a, "a"), X_WA, body_shape(b, "b"), X_WB, options);
       },
       nb::arg("a").none(), nb::arg("pose_a").none(), nb::arg("b").none(), nb::arg("pose_b").none(), nb::kw_only(),
       nb::arg("start") = nb::none(), nb::arg("max_iterations").none() = geom::kMaxIterations,
@@ -114,11 +115,10 @@ void bind_distance(nb::module_& module) {
       "at most 1e-13, mostly 1e-16. Superellipsoids of aspect ratios up to 10: at most 1e-12 when apart; flatter and\n"
       "longer ones 1e-9, or there is no answer. Overlaps deeper than the smallest radii of curvature: no other way\n"
       "out is shorter by more than error_bound, mostly 1e-9, up to 1e-7 where faces meet, and more for long bodies\n"
-      "that are nearly parallel. Spheres, capsules, boxes, polyhedra and rounded ones beside each other: at most "
-      "1e-13\n"
-      "apart and at any depth; half-spaces beside any: rounding. Shapes of your own: as ellipsoids where they are "
-      "smooth; where they have kinks\n"
-      "(faces, edges) mostly 1e-16 too, but up to some 1e-6, within error_bound, which may be 1e-2.\n"
+      "that are nearly parallel. Spheres, capsules, boxes, polyhedra and rounded ones beside each other: at most\n"
+      "1e-13 apart and at any depth; half-spaces beside any: rounding. Shapes of your own: as ellipsoids where they\n"
+      "are smooth; where they have kinks (faces, edges) mostly 1e-16 too, and at most 1e-9 apart, or there is no\n"
+      "answer.\n"
       "\n"
       "A query takes a fraction of a microsecond for ellipsoids, one to three for superellipsoids, 0.05 to 0.3\n"
       "milliseconds in deep overlaps. distance_many answers many pairs, several times faster.");
@@ -144,11 +144,10 @@ class Undecided : public std::runtime_error {
 
 bool overlap(nb::handle a, nb::handle pose_a, nb::handle b, nb::handle pose_b, nb::handle start) {
   const Eigen::Vector3d guess = start.is_none() ? Eigen::Vector3d::Zero() : finite_vector3(start, "start");
-  if (const auto found = half_space_distance(a, pose(pose_a, "pose_a"), b, pose(pose_b, "pose_b"))) {
-    return found->distance <= 0;
-  }
-  const geom::Answer answer =
-      any::overlap(body_shape(a, "a"), pose(pose_a, "pose_a"), body_shape(b, "b"), pose(pose_b, "pose_b"), guess);
+  const geom::Pose& X_WA = pose(pose_a, "pose_a");
+  const geom::Pose& X_WB = pose(pose_b, "pose_b");
+  if (const auto found = half_space_distance(a, X_WA, b, X_WB)) return found->distance <= 0;
+  const geom::Answer answer = any::overlap(body_shape(a, "a"), X_WA, body_shape(b, "b"), X_WB, guess);
   if (answer != geom::Answer::unknown) return answer == geom::Answer::yes;
   throw Undecided("overlap: neither answer is certain, the bodies touch within the error bound; distance has bounds");
 }
@@ -271,7 +270,7 @@ struct Mass {
   Eigen::Matrix3d inertia() const { return density * unit.inertia; }
 };
 
-/// Integrates over directions. Throws ValueError for shapes without a surface f(x) = 0.
+/// Returns what an integration over directions gives; a volume of 0 for shapes without a surface f(x) = 0.
 geom::MassProperties by_quadrature(const geom::Shape& shape, double tolerance) {
   const auto of = [&](const auto& s) {
     if constexpr (geom::ImplicitSurface<std::decay_t<decltype(s)>>) {

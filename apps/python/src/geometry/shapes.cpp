@@ -47,22 +47,6 @@ nb::tuple constructor_arguments(const Superellipsoid& shape) {
   return nb::make_tuple(array_of(shape.semi_axes()), shape.e1(), shape.e2());
 }
 
-/// Functions above, for bind_common().
-struct SmoothCalls {
-  template <class Shape>
-  static std::string text(const Shape& s) {
-    return constructor_text(s);
-  }
-  template <class Shape>
-  static bool same(const Shape& a, const Shape& b) {
-    return equal(a, b);
-  }
-  template <class Shape>
-  static nb::tuple arguments(const Shape& s) {
-    return constructor_arguments(s);
-  }
-};
-
 void bind_ellipsoid(nb::module_& module) {
   nb::class_<Ellipsoid> type(module, "Ellipsoid", "Ellipsoid (x/a)^2 + (y/b)^2 + (z/c)^2 <= 1 in the body's frame.");
   type.def(
@@ -87,7 +71,7 @@ void bind_ellipsoid(nb::module_& module) {
           "semi_axes", [](const Ellipsoid& s) { return array_of(s.semi_axes()); },
           nb::for_getter(nb::sig("def semi_axes(self) -> numpy.typing.NDArray[numpy.float64]")),
           "Semi-axes along body x, y, z, shape (3,).");
-  bind_common<SmoothCalls>(type);
+  bind_common(type, {constructor_text, equal, constructor_arguments});
 }
 
 void bind_superellipsoid(nb::module_& module) {
@@ -112,7 +96,7 @@ void bind_superellipsoid(nb::module_& module) {
           "Semi-axes along body x, y, z, shape (3,).")
       .def_prop_ro("e1", &Superellipsoid::e1, "Exponent of the profile along z.")
       .def_prop_ro("e2", &Superellipsoid::e2, "Exponent of the section across z.");
-  bind_common<SmoothCalls>(type);
+  bind_common(type, {constructor_text, equal, constructor_arguments});
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ namespace ed::internal {
 /// the shape, of which a copy must live on.
 std::optional<geom::kernel::CoreView> core_of(const BodyShape& shape);
 
-/// A shape, and its support function less that of the largest ball that is known to roll inside its surface: what is
+/// Shape, and its support function less that of the largest ball that is known to roll inside its surface: what is
 /// left is the support function of a convex body too, the core.
 struct ConvexBody {
   explicit ConvexBody(const BodyShape& body);
@@ -43,8 +43,8 @@ struct ConvexBody {
 
   BodyShape shape;
   std::optional<geom::kernel::CoreView> core;  ///< polytope, if the shape is one with a ball
-  bool smooth;                                 ///< an ellipsoid or superellipsoid
-  bool own_distance;                           ///< a user's PairDistance is to be asked
+  bool smooth;                                 ///< whether it is an ellipsoid or superellipsoid
+  bool own_distance;                           ///< whether a user's PairDistance is to be asked
   double bounding_radius;
   double lever;       ///< turning_lever (body_shapes.h)
   double ball;        ///< radius of the ball, a lower bound of the radii of curvature

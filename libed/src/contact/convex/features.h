@@ -65,10 +65,10 @@ struct PlacedPair {
 /// Gap of two cores: the bounds that enclose it, the normal of the lower one, and the features of the upper one.
 struct ClosestFeatures {
   enum class End {
-    enough,  ///< the caller's condition
-    closed,  ///< both bounds agree to rounding, and n is the normal of the features
-    open,    ///< neither improves any more
-    inside,  ///< the cores overlap, or are too near each other to tell
+    enough,  ///< condition of the caller
+    closed,  ///< bounds that agree to rounding; n is the normal of the features
+    open,    ///< bounds that improve no more
+    inside,  ///< overlap of the cores, or cores too near each other to tell
   };
   End end = End::open;
   Eigen::Vector3d n = Eigen::Vector3d::Zero();
@@ -78,8 +78,8 @@ struct ClosestFeatures {
   int evaluations = 0;
 };
 
-/// The algorithm of Gilbert, Johnson and Keerthi from a normal, until enough(lower, upper) or the bounds agree. For
-/// polytopes it ends after finitely many steps, with the closest features.
+/// Searches for the closest features by the algorithm of Gilbert, Johnson and Keerthi from a normal on, until
+/// enough(lower, upper) or the bounds agree. For polytopes it ends after finitely many steps, with these features.
 template <class Enough>
 ClosestFeatures closest_features(const PlacedPair& pair, const Eigen::Vector3d& start, const Enough& enough) {
   using End = ClosestFeatures::End;
@@ -98,9 +98,7 @@ ClosestFeatures closest_features(const PlacedPair& pair, const Eigen::Vector3d& 
     double gap = 0;
     const geom::kernel::DifferenceVertex v = pair.difference(n, gap);
     ++answer.evaluations;
-    // Of normals that differ in the gap by less than rounding that of the features is right: the start may be off by
-    // the square root of it.
-    if (gap > answer.lower - 0.25 * resolved) {
+    if (gap > answer.lower) {
       answer.lower = gap;
       answer.n = n;
     }
@@ -109,7 +107,11 @@ ClosestFeatures closest_features(const PlacedPair& pair, const Eigen::Vector3d& 
       known = known || (simplex.vertex[k].p - v.p).squaredNorm() <= resolved * resolved;
     }
     // Bounds of smooth bodies agree long before the normal is right.
-    if ((pair.finite() || (known && pair.may_close())) && answer.upper - answer.lower <= resolved) {
+    if (step > 0 && (pair.finite() || (known && pair.may_close())) && answer.upper - gap <= resolved) {
+      // The gap across the closest point of the simplex: another normal whose gap is the same to rounding, as that at
+      // the start, may be off by the square root of that.
+      answer.lower = gap;
+      answer.n = n;
       answer.end = End::closed;
     } else if (enough(answer.lower, answer.upper)) {
       answer.end = End::enough;

@@ -18,33 +18,20 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Newton's method of the normal takes no more from a warm start; where it does, at a kink of the support function, it
-/// does not converge at all, and the closest points are found otherwise.
-constexpr int kNewtonSteps = 10;
-
-/// Error bound of a distance, in units of the size, above which another search is made.
-constexpr double kCoarse = 1e-14;
-
 constexpr double kNoBound = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
 ConvexGap::ConvexGap(const ConvexBody& A, const RigidMotion& a, const ConvexBody& B, const RigidMotion& b,
                      const Vector3d& r_now, double now)
-    : A_(A),
-      B_(B),
-      a_(a),
-      b_(b),
-      r_now_(r_now),
-      v_(b.velocity - a.velocity),
-      now_(now),
+    : PairGapBase(A, a, B, b, r_now, now),
       balls_(A.ball + B.ball),
       surface_speed_(A.lever * a.top.max_omega() + B.lever * b.top.max_omega()),
       speed_(v_.norm() + A.bounding_radius * a.top.max_omega() + B.bounding_radius * b.top.max_omega()),
       scales_(GeneralScales::of(A.bounding_radius, a, B.bounding_radius, b, now)) {}
 
 ConvexGap::State ConvexGap::at(double t) const {
-  return {t, a_.top.at(t - a_.time), b_.top.at(t - b_.time), r_now_ + (t - now_) * v_, scales_.rounding(t)};
+  return {t, a_.top.at(t - a_.time), b_.top.at(t - b_.time), r_at(t), scales_.rounding(t)};
 }
 
 ConvexGap::Sample ConvexGap::sample(const State& s, const Vector3d& n) const {
@@ -141,14 +128,7 @@ bool ConvexGap::solve_by_features(const State& s, Vector3d& n, Evaluation& e) co
 /// Finds n and e of the distance itself, from n on; false if the query declines.
 bool ConvexGap::solve(const State& s, Vector3d& n, Evaluation& e) const {
   if (solve_by_features(s, n, e)) return true;
-  geom::DistanceOptions options{.start = n, .max_iterations = kNewtonSteps, .penetration = geom::Penetration::local};
-  geom::DistanceResult d = ask(s, options);
-  if (!is_answer(d) || d.error_bound > kCoarse * size()) {
-    // Near kinks of one body beside a smooth one a search from another start may do better.
-    options = {.penetration = geom::Penetration::local};
-    const geom::DistanceResult cold = ask(s, options);
-    if (is_answer(cold) && !(is_answer(d) && d.error_bound <= cold.error_bound)) d = cold;
-  }
+  const geom::DistanceResult d = ask(s, {.start = n, .penetration = geom::Penetration::local});
   return d.error_bound <= geom::kWidestGap * size() && take(s, d, n, e);
 }
 
@@ -298,8 +278,8 @@ double ConvexGap::least_step(const State& s, const Evaluation& e, const Vector3d
   });
 }
 
-/// Backwards in time from a contact the same certificate holds, with g = 0 there. Its rate does not show over times as
-/// short as the span may be: longer ones include it.
+// The same certificate holds backwards in time from a contact, with g = 0 there. Its rate does not show over times as
+// short as the span may be: longer ones include it.
 bool ConvexGap::falls_since(const State& s, const Evaluation& e, const Vector3d& n, double rate, double span) const {
   if (!(rate < -kResting * speed_)) return false;
   if (!(span > 0)) return true;

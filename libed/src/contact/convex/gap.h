@@ -39,6 +39,7 @@
 #include "contact/convex/body.h"
 #include "contact/convex/features.h"
 #include "contact/curvature_steps.h"
+#include "contact/pair_gap_base.h"
 #include "contact/rounding.h"
 #include "contact/separation.h"
 #include "contact/sphere_window.h"
@@ -54,7 +55,7 @@
 
 namespace ed::internal {
 
-class ConvexGap {
+class ConvexGap : private PairGapBase<ConvexBody, RigidMotion> {
  public:
   struct State {
     double t;
@@ -77,11 +78,11 @@ class ConvexGap {
 
   State at(double t) const;
   Sample sample(const State& s, const Eigen::Vector3d& n) const;
-  /// No Newton step: `ascend` searches for the closest features.
+  /// Returns what a sample tells, without a Newton step: `ascend` searches for the closest features.
   Evaluation complete(const State& s, const Sample& sample, const Eigen::Vector3d& n) const;
   Evaluation evaluate(const State& s, const Eigen::Vector3d& n) const { return complete(s, sample(s, n), n); }
 
-  /// dd/dt: the closest points move with their bodies.
+  /// Returns dd/dt: the closest points move with their bodies.
   double rate(const State& s, const Evaluation& e, const Eigen::Vector3d& n) const {
     return n.dot(v_ + s.b.omega.cross(e.point_b) - s.a.omega.cross(e.point_a));
   }
@@ -112,14 +113,14 @@ class ConvexGap {
   double certified_depth() const { return balls_; }
   double speed() const { return speed_; }
 
-  /// The closest points.
+  /// Returns the closest points.
   ContactPoints contact_points(const State& s, const Eigen::Vector3d& n) const;
 
  protected:
   double curvature_share_ = 1;  ///< tests take less, to see that contacts are missed then
 
  private:
-  /// A choice of Omega, forwards in time or backwards.
+  /// Choice of Omega, forwards in time or backwards.
   struct Turn {
     const ConvexGap& gap;
     const State& s;
@@ -140,15 +141,15 @@ class ConvexGap {
     };
     Body a, b;
 
-    /// K over [0, tau], what rounding may hide included.
+    /// Returns K over [0, tau], what rounding may hide included.
     double curvature(double tau) const;
     double body_curvature(const Body& body, double tau) const;
-    /// g1 less what rounding may hide beyond s.rounding.gap.
+    /// Returns g1 less what rounding may hide beyond s.rounding.gap.
     double end(double tau) const;
     double hidden(double tau) const;
   };
 
-  /// `direction`: 1 forwards in time, -1 backwards. `across`: Omega's part across n.
+  /// Returns the choice with this part of Omega across n. `direction`: 1 forwards in time, -1 backwards.
   Turn turn(const State& s, const Eigen::Vector3d& n, const Eigen::Vector3d& across, double direction) const;
   double longest_step(const Turn& turn, double g, double gp, double horizon) const;
   Eigen::Vector3d turning_of_best_normal(const State& s, const Evaluation& e, const Eigen::Vector3d& n) const;
@@ -170,13 +171,6 @@ class ConvexGap {
   geom::DistanceResult last_resort(const State& s) const;
   bool take(const State& s, const geom::DistanceResult& d, Eigen::Vector3d& n, Evaluation& e) const;
 
-  const ConvexBody& A_;
-  const ConvexBody& B_;
-  const RigidMotion& a_;
-  const RigidMotion& b_;
-  Eigen::Vector3d r_now_;
-  Eigen::Vector3d v_;
-  double now_;
   double balls_;          ///< sum of both balls' radii
   double surface_speed_;  ///< the fastest that turning can move the surfaces along a normal
   double speed_;          ///< a bound of |dd/dt|

@@ -193,8 +193,11 @@ DistanceResult solve_dual(const Pair& pair, const Cold& cold, const PairScale& s
       return result;
     }
     result.error_bound = newton_error_bound(scale, result);
-    if (needs_polish(scale, result)) [[unlikely]]
+    if (needs_polish(scale, result)) [[unlikely]] {
       polish(pair, scale, p_WA, result);
+      // The step to the optimum may lead across a kink, to a support point far away.
+      if (!(result.error_bound <= kWidestGap * scale.size)) continue;
+    }
     return result;
   }
   DistanceResult declined;

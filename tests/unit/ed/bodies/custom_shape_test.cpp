@@ -1,6 +1,7 @@
 // A user's own shapes in motion: spherocylinders, whose distance is known exactly from their segments, and ellipsoids
 // of which the finder is told nothing but the support function.
 
+#include <common/ed/all_pairs.h>
 #include <common/ed/states.h>
 #include <common/geom/shapes.h>
 #include <common/message_of.h>
@@ -123,20 +124,13 @@ TEST(CustomShape, RodsMeetWhenTheirSegmentsSaySo) {
   EXPECT_GT(hits, 50);
 }
 
-/// The least distance of all pairs, by their segments.
+/// Returns the least distance of all pairs, by their segments.
 double least_distance(const ed::System& system) {
   double least = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < system.size(); ++i) {
-    for (int j = i + 1; j < system.size(); ++j) {
-      const ed::Body& a = system.bodies[static_cast<std::size_t>(i)];
-      const ed::Body& b = system.bodies[static_cast<std::size_t>(j)];
-      Vector3d r = b.position - a.position;
-      for (int k = 0; k < 3; ++k) r[k] -= system.box * std::round(r[k] / system.box);
-      const double d =
-          segment_distance(Vector3d::Zero(), a.rotation.col(2), r, b.rotation.col(2), kRodLength) - 2 * kRodRadius;
-      least = std::min(least, d);
-    }
-  }
+  ed_test::for_each_pair(system, [&](const ed::Body& a, const ed::Body& b, const Vector3d& r) {
+    const double d = segment_distance(Vector3d::Zero(), a.rotation.col(2), r, b.rotation.col(2), kRodLength);
+    least = std::min(least, d - 2 * kRodRadius);
+  });
   return least;
 }
 
