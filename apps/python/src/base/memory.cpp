@@ -2,7 +2,7 @@
 
 #include <sys/mman.h>
 
-#include <cstdlib>
+#include <cstdint>
 #include <mutex>
 #include <new>
 #include <optional>
@@ -18,6 +18,22 @@ struct Block {
   void* data;
   std::size_t size;
 };
+
+/// Returns pages of the system's, aligned to huge ones. The heap may keep what it is given back. Throws std::bad_alloc.
+Block map_block(std::size_t size) {
+  void* const mapped = mmap(nullptr, size + kPage, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (mapped == MAP_FAILED) throw std::bad_alloc();
+  char* const begin = static_cast<char*>(mapped);
+  const std::size_t before = (kPage - reinterpret_cast<std::uintptr_t>(mapped) % kPage) % kPage;
+  if (before > 0) munmap(begin, before);
+  munmap(begin + before + size, kPage - before);
+  madvise(begin + before, size, MADV_HUGEPAGE);  // fewer page faults, where the system has such pages
+  return {begin + before, size};
+}
+
+void unmap(const Block& block) {
+  munmap(block.data, block.size);
+}
 
 /// Blocks that no array has.
 class FreeBlocks {
@@ -48,7 +64,7 @@ class FreeBlocks {
   /// Frees all blocks.
   void clear() {
     const std::scoped_lock lock(mutex_);
-    for (const Block& block : blocks_) std::free(block.data);
+    for (const Block& block : blocks_) unmap(block);
     blocks_.clear();
     total_ = 0;
   }
@@ -69,19 +85,16 @@ FreeBlocks& free_blocks() {
 
 }  // namespace
 
-KeptMemory::KeptMemory(std::size_t bytes) : size_((bytes + kPage - 1) / kPage * kPage) {
-  if (const std::optional<Block> block = free_blocks().take(size_)) {
-    data_ = block->data;
-    size_ = block->size;
-    return;
-  }
-  data_ = std::aligned_alloc(kPage, size_);
-  if (data_ == nullptr) throw std::bad_alloc();
-  madvise(data_, size_, MADV_HUGEPAGE);  // fewer page faults, where the system has such pages
+KeptMemory::KeptMemory(std::size_t bytes) {
+  const std::size_t size = (bytes + kPage - 1) / kPage * kPage;
+  const std::optional<Block> kept = free_blocks().take(size);
+  const Block block = kept ? *kept : map_block(size);
+  data_ = block.data;
+  size_ = block.size;
 }
 
 KeptMemory::~KeptMemory() {
-  if (!free_blocks().keep({data_, size_})) std::free(data_);
+  if (!free_blocks().keep({data_, size_})) unmap({data_, size_});
 }
 
 void release_kept_memory() {
