@@ -7,8 +7,7 @@
 #include <ed/simulation.h>
 #include <ed/start.h>
 
-#include <geom/ellipsoid.h>
-#include <geom/superellipsoid.h>
+#include <geom/geom.h>
 
 #include <benchmark/benchmark.h>
 
@@ -56,13 +55,19 @@ std::vector<Bodies> all_bodies() {
   };
   const double volume = std::numbers::pi * 0.25 * (2 + 2.0 / 3);
   const ed::CustomShape rod(Spherocylinder{1, 0.5}, {"rod", volume, 2, true});
-  return {{kReference, uniform(geom::Ellipsoid({1, 1, 3}))},
-          {"ellipsoids 1:0.8:0.5", uniform(geom::Ellipsoid({1, 0.8, 0.5}))},
-          {"superballs p=2.5", superellipsoid({1, 1, 1}, 0.8)},
-          {"superballs p=4", superellipsoid({1, 1, 1}, 0.5)},
-          {"superellipsoids 1:1:2 e=0.5", superellipsoid({1, 1, 2}, 0.5)},
-          {"superellipsoids 1:1:3 e=1", superellipsoid({1, 1, 3}, 1)},
-          {"a user's spherocylinders", {rod, 1, {0.7, 0.7, 0.12}, true}, 1000}};
+  return {
+      {kReference, uniform(geom::Ellipsoid({1, 1, 3}))},
+      {"ellipsoids 1:0.8:0.5", uniform(geom::Ellipsoid({1, 0.8, 0.5}))},
+      {"superballs p=2.5", superellipsoid({1, 1, 1}, 0.8)},
+      {"superballs p=4", superellipsoid({1, 1, 1}, 0.5)},
+      {"superellipsoids 1:1:2 e=0.5", superellipsoid({1, 1, 2}, 0.5)},
+      {"superellipsoids 1:1:3 e=1", superellipsoid({1, 1, 3}, 1)},
+      {"capsules L/D=2", uniform(geom::Capsule(1, 0.5))},
+      {"capsules L/D=5", uniform(geom::Capsule(2.5, 0.5))},
+      {"rounded boxes 0.05", uniform(geom::Rounded<geom::Box>(geom::Box({0.5, 0.5, 0.5}), 0.05)), 4000},
+      {"cubes", uniform(geom::Box({0.5, 0.5, 0.5})), 4000},
+      {"dodecahedra", uniform(geom::ConvexPolyhedron::in_principal_frame(geom::solid_vertices("dodecahedron"))), 2000},
+      {"a user's spherocylinders", {rod, 1, {0.7, 0.7, 0.12}, true}, 1000}};
 }
 
 void engine(benchmark::State& timing, const Bodies& bodies) {

@@ -9,6 +9,8 @@
 
 #include <contact/certified.h>
 #include <contact/convex/gap.h>
+#include <contact/rods/gap.h>
+#include <motion/checks.h>
 
 #include <geom/geom.h>
 
@@ -43,6 +45,7 @@ struct TestBody {
   ConvexBody exact;  ///< body whose distances the reference asks for
   Vector3d inertia;
   std::vector<Vector3d> directions;
+  bool spins = true;  ///< whether it may turn about z
 };
 
 template <class Shape>
@@ -93,6 +96,20 @@ TestBody sphere(Random& random) {
 TestBody capsule(Random& random) {
   const geom::Capsule s(random.log_uniform(0.1, 3), random.uniform(0.2, 1));
   return test_body("capsule", s, s.volume(), s.inertia(1), {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}});
+}
+
+/// A sphere, or a capsule, some of them long.
+TestBody rod(Random& random) {
+  if (random.uniform() < 0.2) return sphere(random);
+  const double radius = random.uniform(0.2, 1);
+  const geom::Capsule s(radius * random.log_uniform(0.1, 30), radius);
+  return test_body("rod", s, s.volume(), s.inertia(1), {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}});
+}
+
+TestBody spinless_rod(Random& random) {
+  TestBody body = rod(random);
+  body.spins = false;
+  return body;
 }
 
 TestBody spherocylinder(Random& random) {
@@ -194,12 +211,13 @@ Flight random_flight(Random& random, const TestBody& A, const TestBody& B) {
   Vector3d r = share * (R_a * s_a.point - R_b * s_b.point);
   r += (s_a.height + s_b.height + gap - n.dot(r)) * n;
   const double turning = random.coin() ? 1.0 : random.log_uniform(1e-3, 1);
-  const auto spin = [&](const Matrix3d& R, const Vector3d& inertia) {
-    const Vector3d w = random.uniform(0.2, 2) * random.direction().cwiseQuotient(inertia.cwiseSqrt());
+  const auto spin = [&](const Matrix3d& R, const TestBody& body) {
+    Vector3d w = random.uniform(0.2, 2) * random.direction().cwiseQuotient(body.inertia.cwiseSqrt());
+    if (!body.spins) w.z() = 0;
     return Vector3d(turning * (R * w));
   };
-  f.a.top = FreeTop(A.inertia, R_a, spin(R_a, A.inertia));
-  f.b.top = FreeTop(B.inertia, R_b, spin(R_b, B.inertia));
+  f.a.top = FreeTop(A.inertia, R_a, spin(R_a, A));
+  f.b.top = FreeTop(B.inertia, R_b, spin(R_b, B));
   f.b.position = r;
   Vector3d v = random.uniform(0.2, 3) * random.direction();
   if (grazes) {
@@ -242,17 +260,48 @@ struct Tally {
   long pairs = 0, contacts = 0, grazing = 0, missed = 0, late = 0, wrong = 0, early = 0, unanswered = 0, declined = 0;
 };
 
-class HalvedGap : public ConvexGap {
+class FlightGap : public ConvexGap {
  public:
-  template <class... Arguments>
-  explicit HalvedGap(const Arguments&... arguments) : ConvexGap(arguments...) {
-    curvature_share_ = 0.5;
+  explicit FlightGap(const Flight& f)
+      : ConvexGap(f.shape_a.body, f.a, f.shape_b.body, f.b, f.b.position - f.a.position, 0) {}
+};
+
+class HalvedGap : public FlightGap {
+ public:
+  explicit HalvedGap(const Flight& f) : FlightGap(f) { curvature_share_ = 0.5; }
+};
+
+/// Two rods and their motions.
+struct RodParts {
+  explicit RodParts(const Flight& f)
+      : rod_a(rod_of(f.shape_a.body)),
+        rod_b(rod_of(f.shape_b.body)),
+        motion_a(motion_of(f.shape_a, f.a)),
+        motion_b(motion_of(f.shape_b, f.b)) {}
+
+  static Rod rod_of(const ConvexBody& body) { return {body.bounding_radius - body.ball, body.ball}; }
+  static AxisMotion motion_of(const TestBody& body, const RigidMotion& motion) {
+    const TopState now = motion.top.at(0);
+    return top_motion({geom::Pose(now.R, motion.position), motion.velocity, now.omega, body.inertia, 0}, 2).axis;
+  }
+
+  Rod rod_a, rod_b;
+  AxisMotion motion_a, motion_b;
+};
+
+/// The pair gap of an event loop of rods.
+template <bool kSpin, bool kHalved = false>
+class TestRodGap : private RodParts, public RodGap<kSpin> {
+ public:
+  explicit TestRodGap(const Flight& f)
+      : RodParts(f), RodGap<kSpin>(rod_a, motion_a, rod_b, motion_b, f.b.position - f.a.position, 0) {
+    if (kHalved) this->curvature_share_ = 0.5;
   }
 };
 
 template <class PairGap>
 void judge(const Flight& f, Tally& tally, FinderCounters& count) {
-  const PairGap gap(f.shape_a.body, f.a, f.shape_b.body, f.b, Vector3d(f.b.position - f.a.position), 0.0);
+  const PairGap gap(f);
   Vector3d n = Vector3d::Zero();
   const Finding found = certified_contact(gap, 0, kEnd, 100000, n, count);
   const double wanted = reference(f);
@@ -280,7 +329,7 @@ void judge(const Flight& f, Tally& tally, FinderCounters& count) {
 
 using Draw = std::function<TestBody(Random&)>;
 
-template <class PairGap = ConvexGap>
+template <class PairGap = FlightGap>
 Tally search(const char* name, const Draw& a, const Draw& b, int divisor = 1) {
   Random random(1);
   Tally tally;
@@ -314,6 +363,16 @@ TEST(ConvexContact, Spheres) {
 }
 TEST(ConvexContact, Capsules) {
   expect_none_missed(search("capsules", capsule, capsule));
+}
+TEST(ConvexContact, Rods) {
+  expect_none_missed(search<TestRodGap<true>>("rods", rod, rod));
+}
+TEST(ConvexContact, RodsWithoutSpin) {
+  expect_none_missed(search<TestRodGap<false>>("rods without spin", spinless_rod, spinless_rod));
+}
+TEST(ConvexContact, RodsAreMissedWithHalfTheCurvature) {
+  const Tally tally = search<TestRodGap<true, true>>("rods, half the curvature", rod, rod);
+  EXPECT_GT(tally.missed + tally.late, 0);
 }
 TEST(ConvexContact, Boxes) {
   expect_none_missed(search("boxes", box, box));

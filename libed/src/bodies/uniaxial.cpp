@@ -1,5 +1,6 @@
 #include "bodies/uniaxial.h"
 
+#include "contact/rods/gap.h"
 #include "contact/uniaxial_gap.h"
 #include "motion/checks.h"
 #include "system/uniaxial.h"
@@ -20,13 +21,46 @@ using geom::kernel::evaluate_uniaxial;
 using geom::kernel::support_point;
 using geom::kernel::UniaxialEvaluation;
 
-UniaxialKind uniaxial_kind(const Species& species) {
+UniaxialKind rod_kind(const Species& species) {
+  const auto* const capsule = std::get_if<geom::Capsule>(&species.shape);
+  const int axis = *symmetry_axis(species);
+  UniaxialKind kind;
+  kind.rod = capsule != nullptr ? Rod{capsule->half_length(), capsule->radius()}
+                                : Rod{0, std::get<geom::Sphere>(species.shape).radius()};
+  kind.axis = axis;
+  kind.inertia = {species.mass, species.inertia[(axis + 1) % 3], species.inertia[axis], species.spins};
+  kind.bounding_radius = bounding_radius(species.shape);
+  kind.inscribed_radius = inscribed_radius(species.shape);
+  return kind;
+}
+
+/// Returns what contact_scale does, of two rods: the bound by the best normal of the rods moved to where it says.
+double rod_contact_scale(const Rod& A, const Rod& B, const Vector3d& r, const Vector3d& u_a, const Vector3d& u_b,
+                         double enough) {
+  constexpr int kSteps = 20;
+  constexpr double kLeastGain = 1e-6;
+  double best = 1;
+  for (int step = 0; step < kSteps && best > enough; ++step) {
+    const Vector3d moved = best * r;
+    const RodPointsOf<double> at = closest_on_rods(A.half_length, B.half_length, moved, u_a, u_b);
+    const Vector3d n = (moved + at.t * u_b - at.s * u_a).normalized();
+    if (!(n.dot(r) > 0)) break;
+    const double heights = A.half_length * std::abs(n.dot(u_a)) + B.half_length * std::abs(n.dot(u_b));
+    const double scale = (heights + A.radius + B.radius) / n.dot(r);
+    if (!(scale < best * (1 - kLeastGain))) break;
+    best = scale;
+  }
+  return best;
+}
+
+UniaxialKind spheroid_kind(const Species& species) {
   const auto* sphere = std::get_if<geom::Sphere>(&species.shape);
   const geom::Ellipsoid shape = sphere != nullptr ? sphere->ellipsoid() : std::get<geom::Ellipsoid>(species.shape);
   const int axis = *symmetry_axis(species);
   const Vector3d& a = shape.semi_axes();
   const double b = a[(axis + 1) % 3];
   return {.shape = geom::kernel::Spheroid(a[axis], b),
+          .rod = {},
           .upright = geom::Ellipsoid({b, a[(axis + 2) % 3], a[axis]}),
           .axis = axis,
           .inertia = {species.mass, species.inertia[(axis + 1) % 3], species.inertia[axis], species.spins},
@@ -37,12 +71,13 @@ UniaxialKind uniaxial_kind(const Species& species) {
 }  // namespace
 
 bool UniaxialBodies::can_hold(const System& system) {
-  return std::all_of(system.species.begin(), system.species.end(), is_uniaxial);
+  return are_uniaxial(system.species);
 }
 
-UniaxialBodies::UniaxialBodies(const System& system) : entries_(at(system.size())), frames_(at(system.size())) {
+UniaxialBodies::UniaxialBodies(const System& system)
+    : entries_(at(system.size())), frames_(at(system.size())), rods_(has_rods(system.species)) {
   for (const Species& species : system.species) {
-    kinds_.push_back(uniaxial_kind(species));
+    kinds_.push_back(rods_ ? rod_kind(species) : spheroid_kind(species));
     bounding_radius_ = std::max(bounding_radius_, kinds_.back().bounding_radius);
     inscribed_radius_ = std::min(inscribed_radius_, kinds_.back().inscribed_radius);
     spins_ = spins_ || species.spins;
@@ -89,40 +124,56 @@ void UniaxialBodies::sample(int i, double t, Snapshot& snapshot) const {
   snapshot.angular_velocity[at(i)] = rotation.omega;
 }
 
+template <bool kSpin>
 Finding UniaxialBodies::find_contact(int i, int j, const Vector3d& r, double now, double end, int max_evaluations,
-                                     const ContactOptions& options, Vector3d& n, FinderCounters& count,
-                                     std::optional<Unsolved>& unsolved) const {
+                                     Vector3d& n, FinderCounters& count) const {
   const UniaxialKind& A = kind_of(i);
   const UniaxialKind& B = kind_of(j);
   const AxisMotion& a = entries_[at(i)].motion;
   const AxisMotion& b = entries_[at(j)].motion;
-  if (options.finder == Finder::bracketing) {
-    return bracketing_contact({A.upright, B.upright, a, b, r, now}, now, end, options, n, count, unsolved);
-  }
-  const double reach = A.bounding_radius + B.bounding_radius;
-  if (spins_) {
-    const UniaxialGap<true> gap(A.shape, a, B.shape, b, r, now, reach);
+  if (rods_) {
+    const RodGap<kSpin> gap(A.rod, a, B.rod, b, r, now);
     return certified_contact(gap, now, end, max_evaluations, n, count);
   }
-  const UniaxialGap<false> gap(A.shape, a, B.shape, b, r, now, reach);
+  const UniaxialGap<kSpin> gap(A.shape, a, B.shape, b, r, now, A.bounding_radius + B.bounding_radius);
   return certified_contact(gap, now, end, max_evaluations, n, count);
+}
+
+Finding UniaxialBodies::find_contact(int i, int j, const Vector3d& r, double now, double end, int max_evaluations,
+                                     const ContactOptions& options, Vector3d& n, FinderCounters& count,
+                                     std::optional<Unsolved>& unsolved) const {
+  if (options.finder == Finder::bracketing) {
+    return bracketing_contact(
+        {*kind_of(i).upright, *kind_of(j).upright, entries_[at(i)].motion, entries_[at(j)].motion, r, now}, now, end,
+        options, n, count, unsolved);
+  }
+  return spins_ ? find_contact<true>(i, j, r, now, end, max_evaluations, n, count)
+                : find_contact<false>(i, j, r, now, end, max_evaluations, n, count);
 }
 
 /// Least share of the square of a rate that a collision must leave for its rounding errors to be corrected: below, they
 /// would be scaled up.
 constexpr double kLeastLeft = 1e-4;
 
-UniaxialBodies::Contact UniaxialBodies::contact(int i, int j, const Vector3d& /*r*/, const Vector3d& n,
+UniaxialBodies::Contact UniaxialBodies::contact(int i, int j, const Vector3d& r, const Vector3d& n,
                                                 double /*now*/) const {
-  const auto contact_body = [this](int body, const Vector3d& outward) -> ContactBody {
+  RodPointsOf<double> points{0, 0};
+  if (rods_) {
+    points = closest_on_rods(kind_of(i).rod.half_length, kind_of(j).rod.half_length, r, entries_[at(i)].motion.axis(),
+                             entries_[at(j)].motion.axis());
+  }
+  const auto contact_body = [&](int body, const Vector3d& outward, double along) -> ContactBody {
     const AxisMotion& m = entries_[at(body)].motion;
     const UniaxialKind& kind = kind_of(body);
+    const Vector3d u = m.axis();
+    const Vector3d point =
+        rods_ ? Vector3d(along * u + kind.rod.radius * outward) : support_point(kind.shape, u, outward);
     // The impulse of a body of revolution has no moment along the axis: any multiple of the identity with 1/I_perp
     // does.
-    return {1 / kind.inertia.mass, Eigen::Matrix3d::Identity() / kind.inertia.perpendicular,
-            support_point(kind.shape, m.axis(), outward), m.velocity, omega_across(m)};
+    return {1 / kind.inertia.mass, Eigen::Matrix3d::Identity() / kind.inertia.perpendicular, point, m.velocity,
+            omega_across(m)};
   };
-  return {contact_body(i, n), contact_body(j, -n)};
+  return {contact_body(i, n, points.s), contact_body(j, -n, points.t)};
 }
 
 void UniaxialBodies::leave(int i, int j, const Contact& contact, double /*now*/) {
@@ -150,6 +201,7 @@ double UniaxialBodies::contact_scale(int i, int j, const Vector3d& r, const Vect
   const UniaxialKind& B = kind_of(j);
   const Vector3d u_a = entries_[at(i)].motion.axis_at(now);
   const Vector3d u_b = entries_[at(j)].motion.axis_at(now);
+  if (rods_) return rod_contact_scale(A.rod, B.rod, r, u_a, u_b, enough);
   Vector3d n = start.isZero(0) ? geom::kernel::cold_normal(A.shape, B.shape, r, u_a, u_b) : start;
   double best = 1;
   const auto evaluate = [&](const Vector3d& m) { return evaluate_uniaxial(A.shape, B.shape, r, u_a, u_b, m); };
@@ -164,13 +216,14 @@ double UniaxialBodies::contact_scale(int i, int j, const Vector3d& r, const Vect
   return best;
 }
 
-UniaxialKernels UniaxialBodies::kernels(const std::optional<geom::InstructionSet>& batches) const {
+FamilyKernels UniaxialBodies::kernels(const std::optional<geom::InstructionSet>& batches) const {
   // Most pairs of near spheres are told apart by their bounding spheres, without what the kernels are good at
   // (bench_engine, vectors/).
   constexpr double kNearSphere = 0.9;
   const UniaxialKernels found = find_uniaxial_kernels(batches);
+  if (rods_) return found.rods;
   const bool near_spheres = inscribed_radius_ > kNearSphere * bounding_radius_;
-  return near_spheres && batches == geom::InstructionSet::best ? UniaxialKernels() : found;
+  return near_spheres && batches == geom::InstructionSet::best ? FamilyKernels() : found.spheroids;
 }
 
 }  // namespace ed::internal

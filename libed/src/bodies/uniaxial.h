@@ -1,6 +1,7 @@
 #pragma once
 
-/// State of ellipsoids of revolution of one or several species: the fast case of an event loop.
+/// State of bodies of revolution of one or several species: the fast case of an event loop. They are of one family:
+/// ellipsoids and spheres, or rods, which are capsules and spheres.
 ///
 /// The public interface is what an event loop needs of its bodies; GeneralBodies has the same.
 
@@ -10,6 +11,7 @@
 #include "bodies/pair.h"
 #include "contact/bracketing.h"
 #include "contact/certified.h"
+#include "contact/rods/rod.h"
 #include "motion/axis_motion.h"
 #include "vectors/kernels.h"
 
@@ -32,9 +34,10 @@ namespace ed::internal {
 
 /// Constants of the bodies of one species.
 struct UniaxialKind {
-  geom::kernel::Spheroid shape;
-  geom::Ellipsoid upright;  ///< the shape with its axis of revolution along body z
-  int axis;                 ///< axis of revolution, in the user's body frame
+  geom::kernel::Spheroid shape;            ///< shape of an ellipsoid
+  Rod rod;                                 ///< shape of a rod
+  std::optional<geom::Ellipsoid> upright;  ///< ellipsoid with its axis of revolution along body z; nullopt: a rod
+  int axis;                                ///< axis of revolution, in the user's body frame
   UniaxialInertia inertia;
   double bounding_radius;
   double inscribed_radius;
@@ -42,7 +45,7 @@ struct UniaxialKind {
 
 class UniaxialBodies {
  public:
-  /// Returns whether all species are ellipsoids of revolution about an axis that their inertia shares.
+  /// Returns whether all species are of one family, about axes that their inertia shares.
   static bool can_hold(const System& system);
 
   explicit UniaxialBodies(const System& system);
@@ -114,11 +117,12 @@ class UniaxialBodies {
                        double enough) const;
 
   /// Returns the vector kernels for these bodies; none where one pair at a time is faster.
-  UniaxialKernels kernels(const std::optional<geom::InstructionSet>& batches) const;
+  FamilyKernels kernels(const std::optional<geom::InstructionSet>& batches) const;
 
   const std::vector<UniaxialKind>& kinds() const { return kinds_; }
   const UniaxialKind& kind_of(int i) const { return kinds_[at(kind_[at(i)])]; }
   bool spins() const { return spins_; }  ///< whether some body may spin
+  bool rods() const { return rods_; }    ///< whether the family is that of rods
   int kind_index(int i) const { return kind_[at(i)]; }
   /// The states; read into bodies of the same kinds.
   template <class Archive, class Self>
@@ -132,6 +136,10 @@ class UniaxialBodies {
   const BodyFrame& frame(int i) const { return frames_[at(i)]; }
 
  private:
+  template <bool kSpin>
+  Finding find_contact(int i, int j, const Eigen::Vector3d& r, double now, double end, int max_evaluations,
+                       Eigen::Vector3d& n, FinderCounters& count) const;
+
   /// Events and motion of a body. Of a neighbour without spin two cache lines are read, all but AxisMotion::e0: in
   /// large systems the cost of a collision is the number of lines that it reads.
   struct alignas(64) Entry {
@@ -154,6 +162,7 @@ class UniaxialBodies {
   double bounding_radius_ = 0;
   double inscribed_radius_ = kNever;
   bool spins_ = false;
+  bool rods_;
 };
 
 }  // namespace ed::internal

@@ -23,12 +23,22 @@ void put(const geom::kernel::Spheroid& shape, LookRow* rows, int lane) {
   rows[ShapeRows::rho][lane] = shape.rho;
 }
 
-void put(const UniaxialKind& a, const UniaxialKind& b, LookInput& in, int lane) {
+void put(const Rod& rod, LookRow* rows, int lane) {
+  rows[RodRows::half_length][lane] = rod.half_length;
+  rows[RodRows::radius][lane] = rod.radius;
+}
+
+void put(const UniaxialKind& a, const UniaxialKind& b, bool rods, LookInput& in, int lane) {
+  in.rows[LookInput::reach][lane] = a.bounding_radius + b.bounding_radius;
+  if (rods) {
+    put(a.rod, in.rows + LookInput::shape_a, lane);
+    put(b.rod, in.rows + LookInput::shape_b, lane);
+    return;
+  }
   put(a.shape, in.rows + LookInput::shape_a, lane);
   put(b.shape, in.rows + LookInput::shape_b, lane);
   in.rows[LookInput::turning_limit_a][lane] = a.shape.turning_limit;
   in.rows[LookInput::turning_limit_b][lane] = b.shape.turning_limit;
-  in.rows[LookInput::reach][lane] = a.bounding_radius + b.bounding_radius;
 }
 
 /// The numbers of LookBody.
@@ -44,10 +54,11 @@ const double* numbers(const AxisMotion& motion) {
 
 }  // namespace
 
-UniaxialLooks::UniaxialLooks(const UniaxialBodies& bodies, const UniaxialKernels& kernels)
+UniaxialLooks::UniaxialLooks(const UniaxialBodies& bodies, const FamilyKernels& kernels)
     : kernel_(kernel_of(bodies, kernels)), one_kind_(bodies.kinds().size() == 1) {
   if (!one_kind_) return;
-  for (int lane = 0; lane < kBlockLooks; ++lane) internal::put(bodies.kinds()[0], bodies.kinds()[0], in_, lane);
+  const UniaxialKind& kind = bodies.kinds()[0];
+  for (int lane = 0; lane < kBlockLooks; ++lane) internal::put(kind, kind, bodies.rods(), in_, lane);
 }
 
 void UniaxialLooks::use(const UniaxialBodies& bodies, geom::InstructionSet set) {
@@ -56,7 +67,7 @@ void UniaxialLooks::use(const UniaxialBodies& bodies, geom::InstructionSet set) 
 
 void UniaxialLooks::put(const UniaxialBodies& bodies, const PairLook& look, int lane) {
   const Pair& pair = *look.pair;
-  if (!one_kind_) internal::put(bodies.kind_of(pair.i), bodies.kind_of(pair.j), in_, lane);
+  if (!one_kind_) internal::put(bodies.kind_of(pair.i), bodies.kind_of(pair.j), bodies.rods(), in_, lane);
   in_.body_a[lane] = numbers(bodies.axis_motion(pair.i));
   in_.body_b[lane] = numbers(bodies.axis_motion(pair.j));
   in_.normal[lane] = pair.normal.data();

@@ -1,6 +1,6 @@
 #pragma once
 
-/// First looks at ellipsoids of revolution, in vectors. They take most of an event loop's time
+/// First looks at bodies of revolution, in vectors. They take most of an event loop's time
 /// (docs/decisions/014-first-looks.md).
 
 #include "bodies/first_looks.h"
@@ -13,14 +13,14 @@ namespace ed::internal {
 
 class UniaxialLooks final : public FirstLooks<UniaxialBodies> {
  public:
-  UniaxialLooks(const UniaxialBodies& bodies, const UniaxialKernels& kernels);
+  UniaxialLooks(const UniaxialBodies& bodies, const FamilyKernels& kernels);
 
   void take(const UniaxialBodies& bodies, double now, double box, std::span<PairLook> looks,
             FinderCounters& count) override;
   void use(const UniaxialBodies& bodies, geom::InstructionSet set) override;
 
  private:
-  static LookKernel* kernel_of(const UniaxialBodies& bodies, const UniaxialKernels& kernels) {
+  static LookKernel* kernel_of(const UniaxialBodies& bodies, const FamilyKernels& kernels) {
     return bodies.spins() ? kernels.look_spinning : kernels.look_across;
   }
   void put(const UniaxialBodies& bodies, const PairLook& look, int lane);

@@ -1,8 +1,8 @@
 #pragma once
 
 /// Table of the pair gaps: which one belongs to two bodies in flight. Every search for a contact of general bodies asks
-/// here. Ellipsoids of revolution whose inertia shares their axis have a state of their own (bodies/uniaxial.h), with
-/// UniaxialGap.
+/// here. Ellipsoids of revolution and capsules whose inertia shares their axis have a state of their own
+/// (bodies/uniaxial.h), with UniaxialGap and RodGap.
 ///
 /// | A                    | B          | distance (ed::distance)                 | pair gap   | bracketing |
 /// |----------------------|------------|-----------------------------------------|------------|------------|

@@ -21,15 +21,10 @@ template <class Real>
   return (g > hidden.gap) & ((g - hidden.gap) + horizon * (least_rate - worst_turn) > 0);
 }
 
-/// A time, at most `horizon`, up to which there is certainly no contact, for a gap g >= 0 that changes at rate gp, both
-/// as computed. `curvature(reach)` bounds the curvature up to then, also as computed; a short reach may have a better
-/// bound.
-template <class Real, class Curvature>
-[[gnu::always_inline]] inline Real step_by_parabola(Real g, Real gp, const RoundingOf<Real>& hidden, Real horizon,
-                                                    const Curvature& curvature) {
-  const Real least_g = larger(Real(0.0), g - hidden.gap);
-  const Real least_gp = gp - hidden.rate;
-  const auto root = [&](Real reach) { return first_root(least_g, least_gp, curvature(reach) + hidden.curvature); };
+/// The longest of some steps, at most `horizon`, that root(reach) certifies: a step up to `reach`. A short reach may
+/// have a better one.
+template <class Real, class Root>
+[[gnu::always_inline]] inline Real longest_step(Real horizon, const Root& root) {
   Real tau = smaller(horizon, root(horizon));
   for (int attempt = 0; attempt < 2; ++attempt) {
     const auto shorter = tau < horizon;
@@ -38,6 +33,18 @@ template <class Real, class Curvature>
     tau = select(shorter, larger(tau, smaller(reach, root(reach))), tau);
   }
   return tau;
+}
+
+/// A time, at most `horizon`, up to which there is certainly no contact, for a gap g >= 0 that changes at rate gp, both
+/// as computed. `curvature(reach)` bounds the curvature up to then, also as computed; a short reach may have a better
+/// bound.
+template <class Real, class Curvature>
+[[gnu::always_inline]] inline Real step_by_parabola(Real g, Real gp, const RoundingOf<Real>& hidden, Real horizon,
+                                                    const Curvature& curvature) {
+  const Real least_g = larger(Real(0.0), g - hidden.gap);
+  const Real least_gp = gp - hidden.rate;
+  return longest_step(horizon,
+                      [&](Real reach) { return first_root(least_g, least_gp, curvature(reach) + hidden.curvature); });
 }
 
 /// Whether Newton's method on d(t) is likely to be certified at a contact `spread` or so behind a certified bound.

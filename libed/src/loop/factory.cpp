@@ -41,7 +41,7 @@ std::unique_ptr<FirstLooks<UniaxialBodies>> make_first_looks(const UniaxialBodie
                                                              const SimulationOptions& options) {
   // Cells have images of their own.
   if (options.contact.finder != Finder::certified || options.neighbours == Neighbours::cells) return nullptr;
-  const UniaxialKernels found = bodies.kernels(options.batches);
+  const FamilyKernels found = bodies.kernels(options.batches);
   if (found.look_across == nullptr) return nullptr;
   return std::make_unique<UniaxialLooks>(bodies, found);
 }

@@ -35,11 +35,14 @@ class DilatedEnvelopes final : public Envelopes<UniaxialBodies> {
   DilatedEnvelopes(const UniaxialBodies& bodies, double thickness, double exit_thickness,
                    OverlapKernel* kernel = nullptr)
       : kernel_(kernel),
+        rods_(bodies.rods()),
         bounding_radius_(bodies.bounding_radius()),
         thickness_(thickness),
         exit_thickness_(exit_thickness) {
     for (const UniaxialKind& kind : bodies.kinds()) {
       add_kind(kind.shape, kind.bounding_radius - kind.inscribed_radius);
+      kinds_.back().rod = kind.rod;
+      if (bodies.rods()) shapes_.back() = {{kind.rod.half_length, kind.rod.radius, 0, 0}};
     }
     for (int i = 0; i < bodies.number(); ++i) envelopes_.push_back({{}, bodies.kind_index(i), 0, {}});
   }
@@ -105,6 +108,7 @@ class DilatedEnvelopes final : public Envelopes<UniaxialBodies> {
   }
 
   bool may_overlap(int i, int k, const Eigen::Vector3d& r, Eigen::Vector3d& normal) const override {
+    if (rods_) return rods_may_overlap(i, k, r, normal);
     const geom::kernel::Spheroid& shape_i = kind_of(i).shape;
     const geom::kernel::Spheroid& shape_k = kind_of(k).shape;
     const Eigen::Vector3d u_i = axis_of(i);
@@ -155,6 +159,7 @@ class DilatedEnvelopes final : public Envelopes<UniaxialBodies> {
  private:
   struct Kind {
     geom::kernel::Spheroid shape;
+    Rod rod;
     double axis_difference;  ///< |a - b|
   };
 
@@ -173,7 +178,7 @@ class DilatedEnvelopes final : public Envelopes<UniaxialBodies> {
   }
 
   void add_kind(const geom::kernel::Spheroid& shape, double axis_difference) {
-    kinds_.push_back({shape, axis_difference});
+    kinds_.push_back({shape, {}, axis_difference});
     shapes_.push_back({{shape.a2, shape.b2, shape.c, shape.rho}});
   }
   const DilatedEnvelope& envelope(int i) const { return envelopes_[static_cast<std::size_t>(i)]; }
@@ -183,7 +188,19 @@ class DilatedEnvelopes final : public Envelopes<UniaxialBodies> {
     return kind_of(i).axis_difference * motion.rate * motion.e2.norm();
   }
 
+  bool rods_may_overlap(int i, int k, const Eigen::Vector3d& r, Eigen::Vector3d& normal) const {
+    const Rod& a = kind_of(i).rod;
+    const Rod& b = kind_of(k).rod;
+    const RodEnvelopesOf<double, Eigen::Vector3d> pair{a.half_length, b.half_length, a.radius + b.radius, r,
+                                                       axis_of(i),    axis_of(k)};
+    if (pair.apart_along_centres(2 * thickness_)) return false;
+    double gap = 0;
+    normal = pair.normal(gap);
+    return !(gap > 2 * thickness_);
+  }
+
   OverlapKernel* kernel_ = nullptr;
+  bool rods_ = false;
   std::vector<Kind> kinds_;
   std::vector<ShapeNumbers> shapes_;  ///< shapes of the kinds, for the kernel
   double bounding_radius_;

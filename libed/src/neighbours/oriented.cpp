@@ -2,6 +2,7 @@
 
 #include "base/periodic.h"
 #include "contact/certified.h"
+#include "contact/first_root.h"
 #include "contact/plane_gap.h"
 #include "neighbours/limits.h"
 
@@ -42,9 +43,29 @@ Vector3d slack(const Spheroid& shape, double thickness) {
   return result;
 }
 
+Vector3d half_extents(const Rod& rod, double thickness) {
+  const double across = rod.radius + thickness;
+  return {across, across, across + rod.half_length};
+}
+
+/// Returns the same of a rod: the squares of the three heights of its axis, |u_k| times the half-length, add up to that
+/// of the half-length.
+Vector3d slack(const Rod& rod, double thickness) {
+  const Vector3d extents = half_extents(rod, thickness);
+  const Vector3d heights = extents.array() - rod.radius;
+  const double length2 = rod.half_length * rod.half_length;
+  Vector3d result;
+  for (int k = 0; k < 3; ++k) {
+    const double others = heights.squaredNorm() - heights[k] * heights[k];
+    result[k] = heights[k] - std::sqrt(std::max(0.0, length2 - others));
+  }
+  return result;
+}
+
 }  // namespace
 
-double thickest_oriented_envelope(const Spheroid& shape, double bounding_radius, double box) {
+template <class Shape>
+static double thickest_envelope_of(const Shape& shape, double bounding_radius, double box) {
   // Bodies that touch while both are in their boxes have centres within 2 R; each centre moves by at most 2 |slack|
   // inside its box, so that before and after they are within 2 R + 4 |slack|, which must be below half the periodic
   // box.
@@ -58,17 +79,29 @@ double thickest_oriented_envelope(const Spheroid& shape, double bounding_radius,
   return low;
 }
 
+double thickest_oriented_envelope(const Spheroid& shape, double bounding_radius, double box) {
+  return thickest_envelope_of(shape, bounding_radius, box);
+}
+
 double thickest_oriented_envelope(const UniaxialBodies& bodies, double box) {
   double thickest = box;
   for (const UniaxialKind& kind : bodies.kinds()) {
-    thickest = std::min(thickest, thickest_oriented_envelope(kind.shape, bodies.bounding_radius(), box));
+    const double radius = bodies.bounding_radius();
+    thickest = std::min(thickest, bodies.rods() ? thickest_envelope_of(kind.rod, radius, box)
+                                                : thickest_envelope_of(kind.shape, radius, box));
   }
   return thickest;
 }
 
 OrientedEnvelopes::OrientedEnvelopes(const UniaxialBodies& bodies, double thickness)
-    : thickness_(thickness), boxes_(static_cast<std::size_t>(bodies.number())) {
-  for (const UniaxialKind& kind : bodies.kinds()) add_kind(kind.shape, kind.bounding_radius, kind.inertia.spins);
+    : thickness_(thickness), rods_(bodies.rods()), boxes_(static_cast<std::size_t>(bodies.number())) {
+  for (const UniaxialKind& kind : bodies.kinds()) {
+    if (rods_) {
+      add_rod(kind.rod, kind.bounding_radius);
+    } else {
+      add_kind(kind.shape, kind.bounding_radius, kind.inertia.spins);
+    }
+  }
   for (int i = 0; i < bodies.number(); ++i) kind_.push_back(bodies.kind_index(i));
 }
 
@@ -79,9 +112,18 @@ OrientedEnvelopes::OrientedEnvelopes(int number, const Spheroid& shape, double b
 }
 
 void OrientedEnvelopes::add_kind(const Spheroid& shape, double bounding_radius, bool spins) {
-  kinds_.push_back({shape, bounding_radius, spins, half_extents(shape, thickness_)});
-  reach_ = std::max(
-      reach_, 2 * std::min(half_extents(shape, thickness_).norm(), bounding_radius + slack(shape, thickness_).norm()));
+  const double axis_difference = std::abs(std::sqrt(shape.a2) - std::sqrt(shape.b2));
+  kinds_.push_back({shape, {}, bounding_radius, axis_difference, spins, half_extents(shape, thickness_)});
+  add_reach(half_extents(shape, thickness_), slack(shape, thickness_), bounding_radius);
+}
+
+void OrientedEnvelopes::add_rod(const Rod& rod, double bounding_radius) {
+  kinds_.push_back({{}, rod, bounding_radius, rod.half_length, true, half_extents(rod, thickness_)});
+  add_reach(half_extents(rod, thickness_), slack(rod, thickness_), bounding_radius);
+}
+
+void OrientedEnvelopes::add_reach(const Vector3d& half_extents, const Vector3d& slack, double bounding_radius) {
+  reach_ = std::max(reach_, 2 * std::min(half_extents.norm(), bounding_radius + slack.norm()));
 }
 
 void OrientedEnvelopes::place(int i, const UniaxialBodies& bodies, double now) {
@@ -121,6 +163,32 @@ double OrientedEnvelopes::exit(int i, const AxisMotion& motion, const Vector3d& 
   return earliest;
 }
 
+/// Returns a lower bound of the time when a rod leaves: the balls at its ends, at p = r +- l u, whose distances from a
+/// plane have no second derivative above l Omega^2.
+double OrientedEnvelopes::rod_exit(int i, const AxisMotion& motion, const Vector3d& position, double now) const {
+  const geom::OrientedBox& box = boxes_[static_cast<std::size_t>(i)];
+  const Rod& rod = kind_of(i).rod;
+  const double rate = motion.axis_rate();
+  const double K = rod.half_length * (rate * rate);
+  Vector3d u, du;
+  turn<true>(motion, now, u, du);
+  const Vector3d from_centre = position - box.centre;
+  double earliest = kHorizon * crossing_time(kind_of(i), motion);
+  for (int k = 0; k < 3; ++k) {
+    const double room = box.half_extents[k] - rod.radius;
+    for (const double end : {rod.half_length, -rod.half_length}) {
+      const double at = box.axes.col(k).dot(from_centre + end * u);
+      const double speed = box.axes.col(k).dot(motion.velocity + end * du);
+      for (const double side : {1.0, -1.0}) {
+        const double left = room - side * at;
+        if (!(left > 0)) return now;
+        earliest = std::min(earliest, first_root(left, -side * speed, K));
+      }
+    }
+  }
+  return now + earliest;
+}
+
 double OrientedEnvelopes::exit_time(int i, const UniaxialBodies& bodies, double now, double box) const {
   const AxisMotion& motion = bodies.axis_motion(i);
   return exit_time(i, motion, motion.position_at(now), now, box);
@@ -130,11 +198,12 @@ double OrientedEnvelopes::exit_time(int i, const AxisMotion& motion, const Vecto
                                     double box) const {
   const geom::OrientedBox& envelope = boxes_[static_cast<std::size_t>(i)];
   const Vector3d here = envelope.centre + nearest_image(position - envelope.centre, box);
+  if (rods_) return rod_exit(i, motion, here, now);
   return kind_of(i).spins ? exit<true>(i, motion, here, now) : exit<false>(i, motion, here, now);
 }
 
 double OrientedEnvelopes::crossing_time(const Kind& kind, const AxisMotion& motion) const {
-  const double surface_speed = std::abs(std::sqrt(kind.shape.a2) - std::sqrt(kind.shape.b2)) * motion.rate;
+  const double surface_speed = kind.axis_difference * motion.rate;
   return thickness_ / (motion.velocity.norm() + surface_speed + 1e-300);
 }
 
@@ -147,6 +216,10 @@ bool OrientedEnvelopes::may_overlap(int i, int k, const Vector3d& r, Vector3d& n
   geom::OrientedBox b = boxes_[static_cast<std::size_t>(k)];
   b.centre = a.centre + r;
   if (!geom::boxes_meet(a, b)) return false;
+  if (rods_) {
+    normal = r.squaredNorm() > 0 ? Vector3d(r.normalized()) : Vector3d(a.axes.col(2));
+    return true;
+  }
   normal = geom::kernel::cold_normal(kind_of(i).shape, kind_of(k).shape, r, a.axes.col(2), b.axes.col(2));
   return true;
 }

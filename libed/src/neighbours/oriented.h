@@ -31,7 +31,7 @@ double thickest_oriented_envelope(const UniaxialBodies& bodies, double box);
 class OrientedEnvelopes final : public Envelopes<UniaxialBodies> {
  public:
   OrientedEnvelopes(const UniaxialBodies& bodies, double thickness);
-  /// Bodies of one kind.
+  /// Ellipsoids of one kind.
   OrientedEnvelopes(int number, const geom::kernel::Spheroid& shape, double bounding_radius, double thickness,
                     bool spins);
 
@@ -63,21 +63,27 @@ class OrientedEnvelopes final : public Envelopes<UniaxialBodies> {
 
   struct Kind {
     geom::kernel::Spheroid shape;
+    Rod rod;
     double bounding_radius;
+    double axis_difference;
     bool spins;
     Eigen::Vector3d half_extents;
   };
 
   void add_kind(const geom::kernel::Spheroid& shape, double bounding_radius, bool spins);
+  void add_rod(const Rod& rod, double bounding_radius);
+  void add_reach(const Eigen::Vector3d& half_extents, const Eigen::Vector3d& slack, double bounding_radius);
   const Kind& kind_of(int i) const { return kinds_[static_cast<std::size_t>(kind_[static_cast<std::size_t>(i)])]; }
   template <bool kSpin>
   double exit(int i, const AxisMotion& motion, const Eigen::Vector3d& position, double now) const;
+  double rod_exit(int i, const AxisMotion& motion, const Eigen::Vector3d& position, double now) const;
 
   /// The time in which the surface can cross the thickness; of bodies at rest 1e9, so that times stay finite.
   double crossing_time(const Kind& kind, const AxisMotion& motion) const;
 
   double thickness_;
   double reach_ = 0;
+  bool rods_ = false;
   std::vector<Kind> kinds_;
   std::vector<int> kind_;
   std::vector<geom::OrientedBox> boxes_;  ///< axes: body x, body y, the axis of revolution

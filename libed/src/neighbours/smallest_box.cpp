@@ -34,12 +34,12 @@ double smallest_box_of(const std::vector<BodyShape>& shapes, bool of_revolution,
 
 double smallest_box(const std::vector<Component>& components, Neighbours neighbours) {
   std::vector<BodyShape> shapes;
-  bool of_revolution = true;
+  std::vector<Species> species;
   for (const Component& component : components) {
     shapes.push_back(component.species.shape);
-    of_revolution = of_revolution && internal::is_uniaxial(component.species);
+    species.push_back(component.species);
   }
-  return smallest_box_of(shapes, of_revolution, neighbours);
+  return smallest_box_of(shapes, internal::are_uniaxial(species), neighbours);
 }
 
 int smallest_number(const BodyShape& shape, double packing_fraction, Neighbours neighbours) {

@@ -200,11 +200,21 @@ const char* to_string(Neighbours neighbours) {
 }
 
 bool internal::has_uniaxial_shape(const BodyShape& shape) {
-  return is_spheroid(shape) || std::holds_alternative<geom::Sphere>(shape);
+  return is_spheroid(shape) || std::holds_alternative<geom::Sphere>(shape) ||
+         std::holds_alternative<geom::Capsule>(shape);
 }
 
-bool internal::is_uniaxial(const Species& species) {
-  return has_uniaxial_shape(species.shape) && symmetry_axis(species);
+bool internal::has_rods(const std::vector<Species>& species) {
+  return std::any_of(species.begin(), species.end(),
+                     [](const Species& one) { return std::holds_alternative<geom::Capsule>(one.shape); });
+}
+
+bool internal::are_uniaxial(const std::vector<Species>& species) {
+  const bool rods = has_rods(species);
+  return std::all_of(species.begin(), species.end(), [&](const Species& one) {
+    const bool of_family = rods ? !std::holds_alternative<geom::Ellipsoid>(one.shape) : true;
+    return of_family && has_uniaxial_shape(one.shape) && symmetry_axis(one);
+  });
 }
 
 KineticState kinetic_state(const System& system) {

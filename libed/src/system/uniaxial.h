@@ -2,13 +2,18 @@
 
 #include <ed/system.h>
 
+#include <vector>
+
 namespace ed::internal {
 
-/// Returns whether the shape is an ellipsoid of revolution or a sphere.
-bool has_uniaxial_shape(const BodyShape& shape);
+/// Returns whether UniaxialBodies can hold the species together: all are ellipsoids of revolution or spheres, or all
+/// are capsules or spheres, about axes that their inertia shares.
+bool are_uniaxial(const std::vector<Species>& species);
 
-/// Returns whether the species is an ellipsoid of revolution or a sphere, about an axis that its inertia shares
-/// (UniaxialBodies).
-bool is_uniaxial(const Species& species);
+/// Returns whether there is a capsule.
+bool has_rods(const std::vector<Species>& species);
+
+/// Returns whether the shape is an ellipsoid of revolution, a sphere or a capsule.
+bool has_uniaxial_shape(const BodyShape& shape);
 
 }  // namespace ed::internal

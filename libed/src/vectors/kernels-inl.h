@@ -1,4 +1,4 @@
-/// The kernels of ellipsoids of revolution.
+/// The kernels of bodies of revolution.
 ///
 /// Included once by each vectors/kernels_*.cpp, which sets HARDBODY_UNIAXIAL_KERNELS, the function's name, and is
 /// compiled for its own instruction set. All else here has internal linkage (vectors/kernels.h says why).
@@ -11,11 +11,13 @@
 
 #include "vectors/look_kernel-inl.h"
 #include "vectors/overlap_kernel-inl.h"
+#include "vectors/rod_looks-inl.h"
 
 namespace ed::internal {
 
 UniaxialKernels HARDBODY_UNIAXIAL_KERNELS() {
-  return {look<false>, look<true>, overlap};
+  return {.spheroids = {look<Pairs<false>>, look<Pairs<true>>, overlap<false>},
+          .rods = {look<RodPairs<false>>, look<RodPairs<true>>, overlap<true>}};
 }
 
 }  // namespace ed::internal

@@ -1,6 +1,6 @@
 #pragma once
 
-/// The kernels of ellipsoids of revolution, compiled once for each instruction set (vectors/kernels-inl.h).
+/// The kernels of bodies of revolution, compiled once for each instruction set (vectors/kernels-inl.h).
 ///
 /// Plain arrays only, neither Eigen nor containers: what a translation unit compiled for AVX-512 instantiates of them
 /// could be linked into code for processors without it.
@@ -15,6 +15,11 @@ constexpr int kLongestVector = 8;
 /// Rows of a shape, as in Spheroid.
 struct ShapeRows {
   enum Row { a2 = 0, b2 = 1, c = 2, rho = 3, count = 4 };
+};
+
+/// Rows of a capsule or a sphere, as in Rod.
+struct RodRows {
+  enum Row { half_length = 0, radius = 1 };
 };
 
 /// A shape, in the order of its rows.
@@ -47,7 +52,7 @@ struct LookInput {
   enum Row {
     shape_a = 0,
     shape_b = ShapeRows::count,
-    turning_limit_a = 2 * ShapeRows::count,  ///< turning limits, as in Spheroid
+    turning_limit_a = 2 * ShapeRows::count,  ///< turning limits, as in Spheroid; not read of rods
     turning_limit_b,
     reach,  ///< the sum of both bounding radii
     end,    ///< end of the search
@@ -121,11 +126,17 @@ using OverlapKernel = void(const OverlapInput& in, OverlapOutput& out);
 
 // ---------------------------------------------------------------------------------------------------------------------
 
-/// Kernels of one instruction set; null if pairs are to be answered one by one.
-struct UniaxialKernels {
+/// Kernels of one instruction set for bodies of one family; null if pairs are to be answered one by one.
+struct FamilyKernels {
   LookKernel* look_across = nullptr;    ///< kernel for bodies that turn about axes across their own (e0 = 0)
   LookKernel* look_spinning = nullptr;  ///< kernel for bodies that spin
   OverlapKernel* overlap = nullptr;
+};
+
+/// Kernels of one instruction set.
+struct UniaxialKernels {
+  FamilyKernels spheroids;
+  FamilyKernels rods;
 };
 
 /// Return the kernels of one instruction set each.

@@ -51,13 +51,18 @@ struct SpinAxis {
 template <>
 struct SpinAxis<false> {};
 
-/// One body at the time of the look.
+/// Axis of a body at the time of the look.
 template <bool kSpin>
-struct Body : SpinAxis<kSpin> {
-  Shape shape;
+struct Axis : SpinAxis<kSpin> {
   Real3 u, du;  ///< axis and its rate of change
   Real rate;
   Real axis_rate;  ///< AxisMotion::axis_rate
+};
+
+/// One body at the time of the look.
+template <bool kSpin>
+struct Body : Axis<kSpin> {
+  Shape shape;
 };
 
 /// An AxisMotion in each lane.
@@ -89,7 +94,7 @@ HWY_INLINE Course<kSpin> load_course(const double* const* bodies) {
 /// Axis and its rate of change, as `turn` in uniaxial_gap.h. Returns the lanes whose angle is within the range of
 /// sincos.
 template <bool kSpin>
-HWY_INLINE Lanes turn(const Course<kSpin>& course, Real t, Body<kSpin>& body) {
+HWY_INLINE Lanes turn(const Course<kSpin>& course, Real t, Axis<kSpin>& body) {
   const Real3& e1 = course.e1;
   const Real3& e2 = course.e2;
   const Real dt = t - course.time;
@@ -119,7 +124,64 @@ HWY_INLINE Real nearest_image(Real d, Real box, Real inverse) {
   return d - box * nearest_integer(d * inverse);
 }
 
-/// Pairs at the time of the look.
+/// Two bodies in flight, and when their bounding spheres meet.
+template <bool kSpin>
+struct Approach {
+  Course<kSpin> a, b;
+  Real3 r, v, n;  ///< vector between the centres at t, its rate of change, and the normal that the pair came with
+  Real reach;
+  Real t, end;  ///< window
+  Lanes meet;   ///< pairs whose window is not empty
+
+  HWY_INLINE Approach(const LookInput& in, int lane)
+      : a(load_course<kSpin>(in.body_a + lane)), b(load_course<kSpin>(in.body_b + lane)) {
+    const Real now = in.now;
+    const Real box = in.box;
+    const Real inverse = 1 / in.box;
+    const auto position = [&](const Course<kSpin>& course) {
+      return course.position + (now - course.time) * course.velocity;
+    };
+    const Real3 d = position(b) - position(a);
+    const Real3 r_now(nearest_image(d.x(), box, inverse), nearest_image(d.y(), box, inverse),
+                      nearest_image(d.z(), box, inverse));
+    v = b.velocity - a.velocity;
+    reach = load(in.rows[LookInput::reach], lane);
+    n = load_three(in.normal + lane, 0);
+    const WindowOf<Real> window = sphere_window(r_now, v, reach, now, now, load(in.rows[LookInput::end], lane));
+    meet = window.begin < window.end;
+    t = window.begin;
+    end = window.end;
+    r = r_now + (t - now) * v;
+  }
+  HWY_INLINE Real places() const { return sum_of_magnitudes(a.position) + sum_of_magnitudes(b.position); }
+  HWY_INLINE Real speed() const { return sum_of_magnitudes(a.velocity) + sum_of_magnitudes(b.velocity); }
+  HWY_INLINE Real origin(double now) const { return larger(abs(Real(now)), larger(abs(a.time), abs(b.time))); }
+};
+
+/// Writes what a first pass has found: those of `meet` that are not clear stay open.
+HWY_INLINE void store_first(Lanes clear, Lanes meet, LookOutput& out, int lane) {
+  store(select(clear | !meet, LookOutput::clear, LookOutput::open), out.rows[LookOutput::verdict], lane);
+  store(select(meet, 1, 0), out.rows[LookOutput::kernel_calls], lane);
+}
+
+/// Results of a second pass.
+struct SecondLook {
+  Lanes clear;
+  Lanes bound;
+  Real until;  ///< end of the certified step
+  Real kernel_calls;
+  Real3 n;
+
+  HWY_INLINE void store_in(LookOutput& out, int lane) const {
+    store(select(clear, LookOutput::clear, select(bound, LookOutput::bound, LookOutput::open)),
+          out.rows[LookOutput::verdict], lane);
+    store(until, out.rows[LookOutput::time], lane);
+    store(kernel_calls, out.rows[LookOutput::kernel_calls], lane);
+    store3(n, out.rows + LookOutput::normal, lane);
+  }
+};
+
+/// Ellipsoids of revolution at the time of the look.
 template <bool kSpin>
 struct Pairs {
   Body<kSpin> a, b;
@@ -141,52 +203,39 @@ struct Pairs {
 
 /// Returns the scales as `pair_scales` in uniaxial_gap.h does.
 template <bool kSpin>
-HWY_INLINE PairScalesOf<Real> pair_scales(const LookInput& in, int lane, const Pairs<kSpin>& p, const Course<kSpin>& a,
-                                          const Course<kSpin>& b) {
+HWY_INLINE PairScalesOf<Real> pair_scales(const LookInput& in, int lane, const Pairs<kSpin>& p,
+                                          const Approach<kSpin>& approach) {
   return {.size = p.reach,
-          .places = sum_of_magnitudes(a.position) + sum_of_magnitudes(b.position),
-          .speed = sum_of_magnitudes(a.velocity) + sum_of_magnitudes(b.velocity),
+          .places = approach.places(),
+          .speed = approach.speed(),
           .surface_speed = p.surface_speed,
           .bending = load(in.rows[LookInput::turning_limit_a], lane) * p.a.axis_rate +
                      load(in.rows[LookInput::turning_limit_b], lane) * p.b.axis_rate,
           .limit = p.limit,
-          .origin = larger(abs(Real(in.now)), larger(abs(a.time), abs(b.time)))};
+          .origin = approach.origin(in.now)};
 }
 
 /// Makes the pairs, and evaluates the gap at the normals that they came with, which settles most. `open`: those that
 /// count; then those among them that a second pass may settle.
 template <bool kSpin>
 HWY_INLINE void first_pass(const LookInput& in, int lane, LookOutput& out, Pairs<kSpin>& p, Lanes& open) {
-  const Real now = in.now;
-  const Real box = in.box;
-  const Real inverse = 1 / in.box;
-  const Course<kSpin> course_a = load_course<kSpin>(in.body_a + lane);
-  const Course<kSpin> course_b = load_course<kSpin>(in.body_b + lane);
-  const auto position = [&](const Course<kSpin>& course) {
-    return course.position + (now - course.time) * course.velocity;
-  };
-  const Real3 d = position(course_b) - position(course_a);
-  const Real3 r(nearest_image(d.x(), box, inverse), nearest_image(d.y(), box, inverse),
-                nearest_image(d.z(), box, inverse));
-  p.v = course_b.velocity - course_a.velocity;
-  p.reach = load(in.rows[LookInput::reach], lane);
-  p.n = load_three(in.normal + lane, 0);
-  const WindowOf<Real> window = sphere_window(r, p.v, p.reach, now, now, load(in.rows[LookInput::end], lane));
-  const Lanes meet = window.begin < window.end;
-  p.t = window.begin;
-  p.end = window.end;
-  p.r = r + (p.t - now) * p.v;
+  const Approach<kSpin> approach(in, lane);
+  p.v = approach.v;
+  p.reach = approach.reach;
+  p.n = approach.n;
+  p.t = approach.t;
+  p.end = approach.end;
+  p.r = approach.r;
   p.a.shape = load_shape(in.rows + LookInput::shape_a, lane);
   p.b.shape = load_shape(in.rows + LookInput::shape_b, lane);
-  const Lanes in_range = turn(course_a, p.t, p.a) & turn(course_b, p.t, p.b);
+  const Lanes in_range = turn(approach.a, p.t, p.a) & turn(approach.b, p.t, p.b);
   p.surface_speed = p.reach * (p.a.axis_rate + p.b.axis_rate);
   p.limit = load(in.rows[LookInput::turning_limit_a], lane) * (p.a.axis_rate * p.a.axis_rate) +
             load(in.rows[LookInput::turning_limit_b], lane) * (p.b.axis_rate * p.b.axis_rate);
-  p.hidden = pair_scales(in, lane, p, course_a, course_b).rounding(p.t);
-  const Lanes clear = meet & in_range & p.clear(p.gap());
-  open = open & meet & in_range & !clear;
-  store(select(clear | !meet, LookOutput::clear, LookOutput::open), out.rows[LookOutput::verdict], lane);
-  store(select(meet, 1, 0), out.rows[LookOutput::kernel_calls], lane);
+  p.hidden = pair_scales(in, lane, p, approach).rounding(p.t);
+  const Lanes clear = approach.meet & in_range & p.clear(p.gap());
+  open = open & approach.meet & in_range & !clear;
+  store_first(clear, approach.meet, out, lane);
 }
 
 /// Returns the step as certified_step in curvature_steps.h does.
@@ -244,11 +293,7 @@ HWY_INLINE void second_pass(Pairs<kSpin>& p, int pairs, LookOutput& out, int lan
   const Real until = p.t + tau;
   const Lanes bound = usable & !to_the_end & !worth_refining & (until > p.t);
   clear = clear | to_the_end | (bound & !(until < p.end));
-  store(select(clear, LookOutput::clear, select(bound, LookOutput::bound, LookOutput::open)),
-        out.rows[LookOutput::verdict], lane);
-  store(until, out.rows[LookOutput::time], lane);
-  store(kernel_calls, out.rows[LookOutput::kernel_calls], lane);
-  store3(p.n, out.rows + LookOutput::normal, lane);
+  SecondLook{clear, bound, until, kernel_calls, p.n}.store_in(out, lane);
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -257,12 +302,12 @@ HWY_INLINE void second_pass(Pairs<kSpin>& p, int pairs, LookOutput& out, int lan
 /// Fewer pairs than this are not worth a vector's second pass.
 constexpr int kFewest = kLanes / 4 + 1;
 
-/// The pairs of a block, and which of them are open.
-template <bool kSpin>
+/// The pairs of a block, and which of them are open. `P`: Pairs or RodPairs.
+template <class P>
 class Block {
  public:
   /// A vector of pairs, those from `lane` on.
-  HWY_INLINE Pairs<kSpin>& from(int lane) { return pairs_[lane / kLanes]; }
+  HWY_INLINE P& from(int lane) { return pairs_[lane / kLanes]; }
 
   HWY_INLINE void add_open(Lanes open, int lane) {
     alignas(8) std::uint8_t bits[8] = {};
@@ -273,7 +318,7 @@ class Block {
   HWY_INLINE int lane_of(int k) const { return home_[k]; }
 
   /// Some open pairs, `together` of them from the k-th on, in one vector; its other lanes hold valid numbers.
-  HWY_INLINE Pairs<kSpin> gather(int k, int together) const {
+  HWY_INLINE P gather(int k, int together) const {
     alignas(64) Index lanes[kLanes] = {};
     alignas(64) Index vectors[kLanes];
     const int last = home_[k + together - 1] / kLanes;
@@ -287,7 +332,7 @@ class Block {
     const auto in_lanes = [&](const double* numbers) {
       return hn::TableLookupLanes(hn::Load(Tag(), numbers), lane_in);
     };
-    Pairs<kSpin> gathered;
+    P gathered;
     move(pairs_[last], gathered, [&](const double* from, const double* /*to*/) { return in_lanes(from); });
     for (int vector = static_cast<int>(vectors[0]); vector < last; ++vector) {
       const auto of_it = hn::RebindMask(Tag(), hn::Eq(vector_in, hn::Set(IndexTag(), Index{vector})));
@@ -304,33 +349,33 @@ class Block {
 
   /// Every number of `to`, from the same of `source`. Pairs are vectors and nothing else.
   template <class Move>
-  static HWY_INLINE void move(const Pairs<kSpin>& source, Pairs<kSpin>& to, const Move& moved) {
-    constexpr unsigned kNumbers = sizeof(Pairs<kSpin>) / sizeof(double);
-    static_assert(sizeof(Pairs<kSpin>) % sizeof(Real) == 0);
+  static HWY_INLINE void move(const P& source, P& to, const Move& moved) {
+    constexpr unsigned kNumbers = sizeof(P) / sizeof(double);
+    static_assert(sizeof(P) % sizeof(Real) == 0);
     const auto* const from = reinterpret_cast<const double*>(&source);
     auto* const numbers = reinterpret_cast<double*>(&to);
     for (unsigned k = 0; k < kNumbers; k += kLanes) hn::Store(moved(from + k, numbers + k), Tag(), numbers + k);
   }
 
-  Pairs<kSpin> pairs_[kBlockLooks / kLanes];
+  P pairs_[kBlockLooks / kLanes];
   int home_[kBlockLooks];
   int count_ = 0;
 };
 
-template <bool kSpin>
+template <class P>
 void look(const LookInput& in, int pairs, LookOutput& out) {
-  Block<kSpin> block;
+  Block<P> block;
   for (int lane = 0; lane < pairs; lane += kLanes) {
     Lanes open{hn::FirstN(Tag(), static_cast<std::size_t>(pairs - lane))};
-    first_pass<kSpin>(in, lane, out, block.from(lane), open);
+    first_pass(in, lane, out, block.from(lane), open);
     block.add_open(open, lane);
   }
   // Few pairs need the second pass.
   for (int k = 0; block.open() - k >= kFewest; k += kLanes) {
     const int together = block.open() - k < kLanes ? block.open() - k : kLanes;
     LookOutput late;
-    Pairs<kSpin> gathered = block.gather(k, together);
-    second_pass<kSpin>(gathered, together, late, 0);
+    P gathered = block.gather(k, together);
+    second_pass(gathered, together, late, 0);
     for (int lane = 0; lane < together; ++lane) {
       for (int row = 0; row < LookOutput::count; ++row) out.rows[row][block.lane_of(k + lane)] = late.rows[row][lane];
     }

@@ -65,6 +65,13 @@ HWY_INLINE Other load_other(const OverlapInput& in, const Envelope& one, const C
   return other;
 }
 
+/// Returns the rods of a body and others, whose numbers stand where those of ellipsoids do.
+HWY_INLINE RodEnvelopesOf<Real, Real3> rods_of(const Envelope& a, const Other& other) {
+  static_assert(int{RodRows::half_length} == int{ShapeRows::a2} && int{RodRows::radius} == int{ShapeRows::b2});
+  const Envelope& b = other.envelope;
+  return {a.shape.a2, b.shape.a2, a.shape.b2 + b.shape.b2, other.r, a.axis, b.axis};
+}
+
 /// The Newton step with its length capped, as set_step in geom/kernel/dual_newton.h. `definite`: where it is one.
 HWY_INLINE Step capped_step(const Envelope& a, const Envelope& b, const Real3& r, const Real3& n, const Gap& gap,
                             Lanes& definite) {
@@ -77,7 +84,15 @@ HWY_INLINE Step capped_step(const Envelope& a, const Envelope& b, const Real3& r
 }
 
 /// Bodies whose gap along the line of centres does not tell them apart.
+template <bool kRods>
 HWY_INLINE void overlap_closely(const Envelope& a, const Other& other, Real limit, OverlapOutput& out, int lane) {
+  if constexpr (kRods) {
+    Real gap;
+    store3(rods_of(a, other).normal(gap), out.rows + OverlapOutput::normal, lane);
+    store(select(gap > limit, OverlapOutput::apart, OverlapOutput::overlapping), out.rows[OverlapOutput::verdict],
+          lane);
+    return;
+  }
   const Envelope& b = other.envelope;
   const Real3& r = other.r;
   const Real3 cold = geom::kernel::cold_direction(a.shape, b.shape, r, a.axis, b.axis);
@@ -104,19 +119,25 @@ HWY_INLINE void overlap_closely(const Envelope& a, const Other& other, Real limi
 }
 
 /// Lanes of bodies that count and are not told apart by the gap along the line of centres, a bit each.
+template <bool kRods>
 HWY_INLINE unsigned close_lanes(const OverlapInput& in, const Envelope& a, const Other& other) {
   const hn::RebindToSigned<Tag> places;
   const auto body = hn::And(hn::BitCast(places, other.name.v), hn::Set(places, std::int64_t{0xFFFFFFFF}));
   const auto none = hn::Or(hn::Eq(body, hn::Set(places, std::int64_t{in.one})),
                            hn::Lt(body, hn::Set(places, std::int64_t{in.first})));
   const Envelope& b = other.envelope;
-  const Lanes apart = apart_along_centres(a.shape, b.shape, a.axis, b.axis, other.r, Real(in.limit));
+  Lanes apart;
+  if constexpr (kRods) {
+    apart = rods_of(a, other).apart_along_centres(Real(in.limit));
+  } else {
+    apart = apart_along_centres(a.shape, b.shape, a.axis, b.axis, other.r, Real(in.limit));
+  }
   alignas(8) std::uint8_t bits[8] = {};
   hn::StoreMaskBits(Tag(), hn::Not(hn::Or(apart.mask, hn::RebindMask(Tag(), none))), bits);
   return bits[0];
 }
 
-template <bool kOneKind>
+template <bool kOneKind, bool kRods>
 HWY_INLINE void overlap_all(const OverlapInput& in, OverlapOutput& out) {
   const DilatedEnvelope& one = in.envelopes[in.one];
   const double* const shape = in.shapes[one.kind].numbers;
@@ -133,7 +154,7 @@ HWY_INLINE void overlap_all(const OverlapInput& in, OverlapOutput& out) {
   candidates.fill_up(in.count);
   int count = 0;
   for (int lane = 0; lane < in.count; lane += kLanes) {
-    const unsigned close = close_lanes(in, a, load_other<kOneKind>(in, a, candidates, lane));
+    const unsigned close = close_lanes<kRods>(in, a, load_other<kOneKind>(in, a, candidates, lane));
     // Few are left: they are moved together. Moved always and kept if it counts: no branch on what cannot be predicted.
     const int end = HWY_MIN(in.count, lane + kLanes);
     for (int k = lane; k < end; ++k) {
@@ -146,12 +167,13 @@ HWY_INLINE void overlap_all(const OverlapInput& in, OverlapOutput& out) {
   if (count == 0) return;
   candidates.fill_up(count);
   for (int lane = 0; lane < count; lane += kLanes) {
-    overlap_closely(a, load_other<kOneKind>(in, a, candidates, lane), in.limit, out, lane);
+    overlap_closely<kRods>(a, load_other<kOneKind>(in, a, candidates, lane), in.limit, out, lane);
   }
 }
 
+template <bool kRods>
 void overlap(const OverlapInput& in, OverlapOutput& out) {
-  in.one_kind ? overlap_all<true>(in, out) : overlap_all<false>(in, out);
+  in.one_kind ? overlap_all<true, kRods>(in, out) : overlap_all<false, kRods>(in, out);
 }
 
 }  // namespace

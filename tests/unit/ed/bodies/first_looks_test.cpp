@@ -147,6 +147,28 @@ TEST(FirstLooks, OfMixturesAreThoseOfOnePair) {
   expect_same_looks({uniform(2), paper(0.4), uniform(0.2), uniform(1)});
 }
 
+Species capsule(double aspect_ratio, double radius = 0.5) {
+  return uniform_species(geom::Capsule(radius * aspect_ratio, radius));
+}
+Species without_spin(Species species) {
+  species.spins = false;
+  return species;
+}
+
+TEST(FirstLooks, OfCapsulesAreThoseOfOnePair) {
+  expect_same_looks({without_spin(capsule(2))});
+  expect_same_looks({without_spin(capsule(10))});
+}
+
+TEST(FirstLooks, OfSpinningCapsulesAreThoseOfOnePair) {
+  expect_same_looks({capsule(2)});
+}
+
+TEST(FirstLooks, OfCapsulesAndSpheresAreThoseOfOnePair) {
+  expect_same_looks({without_spin(capsule(3)), without_spin(capsule(1, 0.7)), uniform_species(geom::Sphere(0.6))});
+  expect_same_looks({capsule(0.3), without_spin(capsule(5)), uniform_species(geom::Sphere(0.2))});
+}
+
 TEST(FirstLooks, AreTakenOneByOneWherePairsNeedMore) {
   System system;
   system.box = 20;

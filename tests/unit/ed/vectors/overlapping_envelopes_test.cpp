@@ -39,6 +39,11 @@ struct Tally {
   std::size_t meetings = 0;
 };
 
+OverlapKernel* kernel_of(const UniaxialBodies& bodies, geom::InstructionSet set) {
+  const UniaxialKernels found = find_uniaxial_kernels(set);
+  return bodies.rods() ? found.rods.overlap : found.spheroids.overlap;
+}
+
 void expect_same_overlaps(const std::vector<Species>& species, geom::InstructionSet set, std::uint64_t seed,
                           Tally& tally) {
   SCOPED_TRACE(std::string(geom::to_string(set)) + ", seed " + std::to_string(seed));
@@ -48,7 +53,7 @@ void expect_same_overlaps(const std::vector<Species>& species, geom::Instruction
   const UniaxialBodies bodies = ed_test::random_bodies(species, kNumber, box, random);
   const double thickness = random.uniform();
   DilatedEnvelopes one_by_one(bodies, thickness, thickness);
-  DilatedEnvelopes in_vectors(bodies, thickness, thickness, find_uniaxial_kernels(set).overlap);
+  DilatedEnvelopes in_vectors(bodies, thickness, thickness, kernel_of(bodies, set));
   for (int i = 0; i < kNumber; ++i) {
     one_by_one.place(i, bodies, 0);
     in_vectors.place(i, bodies, 0);
@@ -91,6 +96,12 @@ TEST(Meetings, OfFlatDiscsAreThoseOfOnePair) {
 TEST(Meetings, OfMixturesAreThoseOfOnePair) {
   expect_same_overlaps({uniform_species(ed_test::spheroid(8)), uniform_species(ed_test::spheroid(0.4)),
                         uniform_species(ed_test::spheroid(1))});
+}
+
+TEST(Meetings, OfCapsulesAndSpheresAreThoseOfOnePair) {
+  expect_same_overlaps({uniform_species(geom::Capsule(2, 0.5))});
+  expect_same_overlaps({uniform_species(geom::Capsule(2, 0.5)), uniform_species(geom::Capsule(0.1, 1)),
+                        uniform_species(geom::Sphere(0.4))});
 }
 
 }  // namespace
