@@ -62,6 +62,7 @@ std::vector<Bodies> all_bodies() {
       {"superballs p=4", superellipsoid({1, 1, 1}, 0.5)},
       {"superellipsoids 1:1:2 e=0.5", superellipsoid({1, 1, 2}, 0.5)},
       {"superellipsoids 1:1:3 e=1", superellipsoid({1, 1, 3}, 1)},
+      {"spheres", uniform(geom::Sphere(0.5)), 100000},
       {"capsules L/D=2", uniform(geom::Capsule(1, 0.5))},
       {"capsules L/D=5", uniform(geom::Capsule(2.5, 0.5))},
       {"rounded boxes 0.05", uniform(geom::Rounded<geom::Box>(geom::Box({0.5, 0.5, 0.5}), 0.05)), 4000},

@@ -1,6 +1,7 @@
 #include "bodies/uniaxial.h"
 
 #include "contact/rods/gap.h"
+#include "contact/sphere_contact.h"
 #include "contact/uniaxial_gap.h"
 #include "motion/checks.h"
 #include "system/uniaxial.h"
@@ -31,6 +32,7 @@ UniaxialKind rod_kind(const Species& species) {
   kind.inertia = {species.mass, species.inertia[(axis + 1) % 3], species.inertia[axis], species.spins};
   kind.bounding_radius = bounding_radius(species.shape);
   kind.inscribed_radius = inscribed_radius(species.shape);
+  kind.sphere = kind.rod.half_length == 0;
   return kind;
 }
 
@@ -101,7 +103,7 @@ UniaxialBodies::UniaxialBodies(const System& system)
 
 Motion UniaxialBodies::motion(int i, double t) const {
   const UniaxialKind& kind = kind_of(i);
-  AxisMotion m = entries_[at(i)].motion;
+  AxisMotion m = rotation_of(i);
   BodyFrame f = frames_[at(i)];
   advance(kind.inertia, t, m, f);
   const Vector3d u = m.axis();
@@ -111,17 +113,28 @@ Motion UniaxialBodies::motion(int i, double t) const {
   R.col((kind.axis + 2) % 3) = u.cross(f.x_axis);
   Vector3d inertia = Vector3d::Constant(kind.inertia.perpendicular);
   inertia[kind.axis] = kind.inertia.axial;
-  return {geom::Pose(R, m.position), m.velocity, omega_across(m) + f.spin * u, inertia, t};
+  const Vector3d position = kind.sphere ? position_at(i, t) : m.position;
+  return {geom::Pose(R, position), m.velocity, omega_across(m) + f.spin * u, inertia, t};
 }
 
 void UniaxialBodies::sample(int i, double t, Snapshot& snapshot) const {
-  const AxisMotion& motion = entries_[at(i)].motion;
+  const AxisMotion motion = rotation_of(i);
   const SampledRotation rotation = sampled(kind_of(i).inertia, t, motion, frames_[at(i)]);
   snapshot.axis[at(i)] = rotation.axis;
   snapshot.phi_lab[at(i)] = rotation.phi_lab;
   snapshot.phi_body[at(i)] = {rotation.phi_body.x(), rotation.phi_body.y(), 0};
   snapshot.velocity[at(i)] = motion.velocity;
   snapshot.angular_velocity[at(i)] = rotation.omega;
+}
+
+void UniaxialBodies::rotate_sphere(int i, double t) {
+  AxisMotion& m = entries_[at(i)].motion;
+  AxisMotion turned = rotation_of(i);
+  advance(kind_of(i).inertia, t, turned, frames_[at(i)]);
+  m.e0 = turned.e0;
+  m.e1 = turned.e1;
+  m.e2 = turned.e2;
+  m.rate = turned.rate;
 }
 
 template <bool kSpin>
@@ -146,6 +159,10 @@ Finding UniaxialBodies::find_contact(int i, int j, const Vector3d& r, double now
     return bracketing_contact(
         {*kind_of(i).upright, *kind_of(j).upright, entries_[at(i)].motion, entries_[at(j)].motion, r, now}, now, end,
         options, n, count, unsolved);
+  }
+  if (are_spheres(i, j)) {
+    const double reach = kind_of(i).rod.radius + kind_of(j).rod.radius;
+    return sphere_contact(r, velocity(j) - velocity(i), reach, now, end, n, count);
   }
   return spins_ ? find_contact<true>(i, j, r, now, end, max_evaluations, n, count)
                 : find_contact<false>(i, j, r, now, end, max_evaluations, n, count);
@@ -180,6 +197,7 @@ void UniaxialBodies::leave(int i, int j, const Contact& contact, double /*now*/)
   for (const auto& [body, state] : {std::pair<int, const ContactBody&>{i, contact.a}, {j, contact.b}}) {
     AxisMotion& m = entries_[at(body)].motion;
     m.velocity = state.velocity;
+    if (kind_of(body).sphere) continue;
     const Vector3d u = m.axis();
     const Vector3d before = omega_across(m);
     const double rate2 = m.rate * m.rate;
@@ -221,7 +239,11 @@ FamilyKernels UniaxialBodies::kernels(const std::optional<geom::InstructionSet>&
   // (bench_engine, vectors/).
   constexpr double kNearSphere = 0.9;
   const UniaxialKernels found = find_uniaxial_kernels(batches);
-  if (rods_) return found.rods;
+  if (rods_) {
+    const bool all_spheres =
+        std::all_of(kinds_.begin(), kinds_.end(), [](const UniaxialKind& kind) { return kind.sphere; });
+    return all_spheres ? FamilyKernels{nullptr, nullptr, found.rods.overlap} : found.rods;
+  }
   const bool near_spheres = inscribed_radius_ > kNearSphere * bounding_radius_;
   return near_spheres && batches == geom::InstructionSet::best ? FamilyKernels() : found.spheroids;
 }

@@ -41,6 +41,8 @@ struct UniaxialKind {
   UniaxialInertia inertia;
   double bounding_radius;
   double inscribed_radius;
+  /// Whether it is a sphere among rods. Contacts never turn it: its rotation is kept as it was when the clock showed 0.
+  bool sphere = false;
 };
 
 class UniaxialBodies {
@@ -82,11 +84,18 @@ class UniaxialBodies {
   /// Moves body i to the time t, which is not before that of its state.
   void move(int i, double t) {
     AxisMotion& m = entries_[at(i)].motion;
-    advance(kind_of(i).inertia, t, m, frames_[at(i)]);
+    const UniaxialKind& kind = kind_of(i);
+    if (!kind.sphere) return advance(kind.inertia, t, m, frames_[at(i)]);
+    m.position = m.position_at(t);
+    m.time = t;
   }
   void shift(int i, const Eigen::Vector3d& by) { entries_[at(i)].motion.position += by; }
   /// Shifts the clock of body i so that it shows 0 at t; after move(i, t).
-  void restart_clock(int i, double /*t*/) { entries_[at(i)].motion.time = 0; }
+  void restart_clock(int i, double t) {
+    AxisMotion& m = entries_[at(i)].motion;
+    if (kind_of(i).sphere) rotate_sphere(i, t);
+    m.time = 0;
+  }
   void scale_positions(double factor, double /*now*/) {
     for (Entry& entry : entries_) entry.motion.position *= factor;
   }
@@ -123,6 +132,8 @@ class UniaxialBodies {
   const UniaxialKind& kind_of(int i) const { return kinds_[at(kind_[at(i)])]; }
   bool spins() const { return spins_; }  ///< whether some body may spin
   bool rods() const { return rods_; }    ///< whether the family is that of rods
+  /// Returns whether i and j are spheres among rods, which meet in closed form.
+  bool are_spheres(int i, int j) const { return kind_of(i).sphere && kind_of(j).sphere; }
   int kind_index(int i) const { return kind_[at(i)]; }
   /// The states; read into bodies of the same kinds.
   template <class Archive, class Self>
@@ -132,10 +143,25 @@ class UniaxialBodies {
            "the number of bodies");
   }
 
+  /// Returns the motion of body i. Of spheres among rods the axis means nothing.
   const AxisMotion& axis_motion(int i) const { return entries_[at(i)].motion; }
+  /// Returns the axis at time t; across the x_axis of frame(i) if t is that of the state.
+  Eigen::Vector3d axis_at(int i, double t) const {
+    const AxisMotion& m = entries_[at(i)].motion;
+    return kind_of(i).sphere ? m.axis() : m.axis_at(t);
+  }
   const BodyFrame& frame(int i) const { return frames_[at(i)]; }
 
  private:
+  /// Returns the motion that a body's rotation is computed from.
+  AxisMotion rotation_of(int i) const {
+    AxisMotion m = entries_[at(i)].motion;
+    if (kind_of(i).sphere) m.time = 0;
+    return m;
+  }
+  /// Turns a sphere as it turns until the clock shows t.
+  void rotate_sphere(int i, double t);
+
   template <bool kSpin>
   Finding find_contact(int i, int j, const Eigen::Vector3d& r, double now, double end, int max_evaluations,
                        Eigen::Vector3d& n, FinderCounters& count) const;

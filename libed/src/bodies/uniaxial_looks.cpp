@@ -98,7 +98,8 @@ void UniaxialLooks::take(const UniaxialBodies& bodies, double now, double box, s
   for (std::size_t next = 0; next < looks.size();) {
     int lanes = 0;
     for (; next < looks.size() && lanes < kBlockLooks; ++next) {
-      if (looks[next].pair->normal.isZero(0)) continue;
+      const Pair& pair = *looks[next].pair;
+      if (pair.normal.isZero(0) || bodies.are_spheres(pair.i, pair.j)) continue;
       look_of[static_cast<std::size_t>(lanes++)] = &looks[next];
     }
     if (lanes < kFewestLooks) return;

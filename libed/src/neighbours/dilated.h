@@ -68,7 +68,7 @@ class DilatedEnvelopes final : public Envelopes<UniaxialBodies> {
   Eigen::Vector3d centre(int i) const { return Eigen::Vector3d(envelope(i).centre); }
 
   void place(int i, const UniaxialBodies& bodies, double now) override {
-    place(i, bodies.position_at(i, now), bodies.axis_motion(i).axis_at(now));
+    place(i, bodies.position_at(i, now), bodies.axis_at(i, now));
   }
   void place(int i, const Eigen::Vector3d& position, const Eigen::Vector3d& axis) {
     DilatedEnvelope& envelope = envelopes_[static_cast<std::size_t>(i)];
@@ -84,7 +84,9 @@ class DilatedEnvelopes final : public Envelopes<UniaxialBodies> {
 
   double exit_time(int i, const UniaxialBodies& bodies, double now, double box) const override {
     const AxisMotion& motion = bodies.axis_motion(i);
-    return exit_time(i, motion, motion.position_at(now), motion.axis_at(now), now, box);
+    // The axis of a sphere moves nothing.
+    const bool turns = kind_of(i).axis_difference > 0;
+    return exit_time(i, motion, motion.position_at(now), turns ? motion.axis_at(now) : axis_of(i), now, box);
   }
   double exit_time(int i, const AxisMotion& motion, const Eigen::Vector3d& position, const Eigen::Vector3d& axis,
                    double now, double box) const {

@@ -127,8 +127,7 @@ void OrientedEnvelopes::add_reach(const Vector3d& half_extents, const Vector3d& 
 }
 
 void OrientedEnvelopes::place(int i, const UniaxialBodies& bodies, double now) {
-  const AxisMotion& motion = bodies.axis_motion(i);
-  place(i, motion.position_at(now), motion.axis_at(now), bodies.frame(i).x_axis);
+  place(i, bodies.position_at(i, now), bodies.axis_at(i, now), bodies.frame(i).x_axis);
 }
 
 void OrientedEnvelopes::place(int i, const Vector3d& position, const Vector3d& axis, const Vector3d& x_axis) {

@@ -205,8 +205,10 @@ bool internal::has_uniaxial_shape(const BodyShape& shape) {
 }
 
 bool internal::has_rods(const std::vector<Species>& species) {
-  return std::any_of(species.begin(), species.end(),
-                     [](const Species& one) { return std::holds_alternative<geom::Capsule>(one.shape); });
+  const auto is_capsule = [](const Species& one) { return std::holds_alternative<geom::Capsule>(one.shape); };
+  const auto is_sphere = [](const Species& one) { return std::holds_alternative<geom::Sphere>(one.shape); };
+  return std::any_of(species.begin(), species.end(), is_capsule) ||
+         std::all_of(species.begin(), species.end(), is_sphere);
 }
 
 bool internal::are_uniaxial(const std::vector<Species>& species) {

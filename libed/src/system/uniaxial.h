@@ -10,7 +10,7 @@ namespace ed::internal {
 /// are capsules or spheres, about axes that their inertia shares.
 bool are_uniaxial(const std::vector<Species>& species);
 
-/// Returns whether there is a capsule.
+/// Returns whether UniaxialBodies takes its bodies as rods: there is a capsule, or all are spheres.
 bool has_rods(const std::vector<Species>& species);
 
 /// Returns whether the shape is an ellipsoid of revolution, a sphere or a capsule.
