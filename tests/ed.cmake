@@ -34,7 +34,7 @@ hardbody_test(ed_observables_test unit
   unit/ed/observables/snapshots_test.cpp
   unit/ed/observables/stored_frames_test.cpp
   unit/ed/observables/structure_test.cpp)
-foreach(name conservation correlations counters equation_of_state free_rotor general_bodies core_bodies same_collisions scale
+foreach(name conservation correlations counters equation_of_state free_rotor general_bodies core_bodies monte_carlo same_collisions scale
     time_reversal)
   hardbody_test(physics_${name}_test physics physics/${name}_test.cpp)
 endforeach()
