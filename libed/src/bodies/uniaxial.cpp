@@ -234,16 +234,17 @@ double UniaxialBodies::contact_scale(int i, int j, const Vector3d& r, const Vect
   return best;
 }
 
+bool UniaxialBodies::all_spheres() const {
+  return std::all_of(kinds_.begin(), kinds_.end(), [](const UniaxialKind& kind) { return kind.sphere; });
+}
+
 FamilyKernels UniaxialBodies::kernels(const std::optional<geom::InstructionSet>& batches) const {
   // Most pairs of near spheres are told apart by their bounding spheres, without what the kernels are good at
   // (bench_engine, vectors/).
   constexpr double kNearSphere = 0.9;
   const UniaxialKernels found = find_uniaxial_kernels(batches);
-  if (rods_) {
-    const bool all_spheres =
-        std::all_of(kinds_.begin(), kinds_.end(), [](const UniaxialKind& kind) { return kind.sphere; });
-    return all_spheres ? FamilyKernels{nullptr, nullptr, found.rods.overlap} : found.rods;
-  }
+  if (all_spheres()) return found.spheres;
+  if (rods_) return found.rods;
   const bool near_spheres = inscribed_radius_ > kNearSphere * bounding_radius_;
   return near_spheres && batches == geom::InstructionSet::best ? FamilyKernels() : found.spheroids;
 }

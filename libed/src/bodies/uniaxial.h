@@ -134,6 +134,7 @@ class UniaxialBodies {
   bool rods() const { return rods_; }    ///< whether the family is that of rods
   /// Returns whether i and j are spheres among rods, which meet in closed form.
   bool are_spheres(int i, int j) const { return kind_of(i).sphere && kind_of(j).sphere; }
+  bool all_spheres() const;  ///< whether all are such spheres
   int kind_index(int i) const { return kind_[at(i)]; }
   /// The states; read into bodies of the same kinds.
   template <class Archive, class Self>

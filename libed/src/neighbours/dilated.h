@@ -84,24 +84,15 @@ class DilatedEnvelopes final : public Envelopes<UniaxialBodies> {
 
   double exit_time(int i, const UniaxialBodies& bodies, double now, double box) const override {
     const AxisMotion& motion = bodies.axis_motion(i);
+    const Eigen::Vector3d position = motion.position_at(now);
     // The axis of a sphere moves nothing.
-    const bool turns = kind_of(i).axis_difference > 0;
-    return exit_time(i, motion, motion.position_at(now), turns ? motion.axis_at(now) : axis_of(i), now, box);
+    if (kind_of(i).axis_difference == 0) return exit_time(i, motion, position, exit_thickness_, 0, now, box);
+    return exit_time(i, motion, position, motion.axis_at(now), now, box);
   }
   double exit_time(int i, const AxisMotion& motion, const Eigen::Vector3d& position, const Eigen::Vector3d& axis,
                    double now, double box) const {
-    const double axis_difference = kind_of(i).axis_difference;
-    const Eigen::Vector3d d = nearest_image(position - centre(i), box);
-    const double left = exit_thickness_ - axis_difference * angle_bound((axis - axis_of(i)).norm());
-    const double d2 = d.squaredNorm();
-    if (!(left > 0) || d2 >= left * left) return now;
-    // First root of |d + v s| + w s = left, w the fastest that turning can move the surface.
-    const double w = surface_speed(i, motion);
-    const double A = motion.velocity.squaredNorm() - w * w;
-    const double B = d.dot(motion.velocity) + left * w;
-    const double C = d2 - left * left;
-    const double denominator = B + std::sqrt(std::max(0.0, B * B - A * C));
-    return denominator > 0 ? now - C / denominator : kNever;
+    const double left = exit_thickness_ - kind_of(i).axis_difference * angle_bound((axis - axis_of(i)).norm());
+    return exit_time(i, motion, position, left, surface_speed(i, motion), now, box);
   }
 
   double worthwhile(int i, const UniaxialBodies& bodies) const override { return worthwhile(i, bodies.axis_motion(i)); }
@@ -188,6 +179,20 @@ class DilatedEnvelopes final : public Envelopes<UniaxialBodies> {
   const Kind& kind_of(int i) const { return kinds_[static_cast<std::size_t>(envelope(i).kind)]; }
   double surface_speed(int i, const AxisMotion& motion) const {
     return kind_of(i).axis_difference * motion.rate * motion.e2.norm();
+  }
+
+  /// Returns the first root of |d + v s| + w s = left, d the way from the envelope's centre and w the fastest that
+  /// turning can move the surface, as a time.
+  double exit_time(int i, const AxisMotion& motion, const Eigen::Vector3d& position, double left, double w, double now,
+                   double box) const {
+    const Eigen::Vector3d d = nearest_image(position - centre(i), box);
+    const double d2 = d.squaredNorm();
+    if (!(left > 0) || d2 >= left * left) return now;
+    const double A = motion.velocity.squaredNorm() - w * w;
+    const double B = d.dot(motion.velocity) + left * w;
+    const double C = d2 - left * left;
+    const double denominator = B + std::sqrt(std::max(0.0, B * B - A * C));
+    return denominator > 0 ? now - C / denominator : kNever;
   }
 
   bool rods_may_overlap(int i, int k, const Eigen::Vector3d& r, Eigen::Vector3d& normal) const {

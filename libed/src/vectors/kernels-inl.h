@@ -17,7 +17,8 @@ namespace ed::internal {
 
 UniaxialKernels HARDBODY_UNIAXIAL_KERNELS() {
   return {.spheroids = {look<Pairs<false>>, look<Pairs<true>>, overlap<false>},
-          .rods = {look<RodPairs<false>>, look<RodPairs<true>>, overlap<true>}};
+          .rods = {look<RodPairs<false>>, look<RodPairs<true>>, overlap<true>},
+          .spheres = {look_spheres, look_spheres, overlap<true>}};
 }
 
 }  // namespace ed::internal

@@ -137,6 +137,7 @@ struct FamilyKernels {
 struct UniaxialKernels {
   FamilyKernels spheroids;
   FamilyKernels rods;
+  FamilyKernels spheres;  ///< kernels for rods that are all spheres
 };
 
 /// Return the kernels of one instruction set each.

@@ -5,6 +5,7 @@
 
 #include "contact/least_step.h"
 #include "contact/rods/pair.h"
+#include "contact/spheres.h"
 #include "vectors/look_kernel-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -21,6 +22,21 @@ struct RodPairs {
   RoundingOf<Real> hidden;
   Real t;
   Real end;  ///< end of the window
+};
+
+/// Centres of bodies at the time of the look.
+struct SphereCourse {
+  Real3 position, velocity;
+
+  HWY_INLINE SphereCourse(const double* const* bodies, Real now) {
+    using Number = LookBody::Number;
+    static_assert(Number::velocity == 3 && Number::time == Number::rate + 1);
+    Real x[6], rate, time;
+    for (int k = 0; k < 6; k += 2) load_two(bodies, k, x[k], x[k + 1]);
+    load_two(bodies, Number::rate, rate, time);
+    velocity = {x[3], x[4], x[5]};
+    position = Real3(x[0], x[1], x[2]) + (now - time) * velocity;
+  }
 };
 
 template <bool kSpin>
@@ -85,6 +101,24 @@ HWY_INLINE void second_pass(RodPairs<kSpin>& p, int pairs, LookOutput& out, int 
   const Lanes bound = usable & !to_the_end & !worth_refining & !too_short & (until > p.t);
   const Lanes clear = clear_at_once | to_the_end | (bound & !(until < p.end));
   SecondLook{clear, bound, until, 2, p.n}.store_in(out, lane);
+}
+
+/// Looks at spheres: all but contacts are answered, as sphere_contact does.
+void look_spheres(const LookInput& in, int pairs, LookOutput& out) {
+  const Real now = in.now;
+  const Real box = in.box;
+  const Real inverse = 1 / in.box;
+  for (int lane = 0; lane < pairs; lane += kLanes) {
+    const SphereCourse a(in.body_a + lane, now);
+    const SphereCourse b(in.body_b + lane, now);
+    const Real3 d = b.position - a.position;
+    const Real3 r(nearest_image(d.x(), box, inverse), nearest_image(d.y(), box, inverse),
+                  nearest_image(d.z(), box, inverse));
+    const SpheresOf<Real> spheres(r, b.velocity - a.velocity, load(in.rows[LookInput::reach], lane));
+    const Lanes clear = spheres.clear(now, load(in.rows[LookInput::end], lane));
+    store(select(clear, LookOutput::clear, LookOutput::open), out.rows[LookOutput::verdict], lane);
+    store(1, out.rows[LookOutput::kernel_calls], lane);
+  }
 }
 
 }  // namespace

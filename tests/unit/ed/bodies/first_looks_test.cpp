@@ -169,6 +169,11 @@ TEST(FirstLooks, OfCapsulesAndSpheresAreThoseOfOnePair) {
   expect_same_looks({capsule(0.3), without_spin(capsule(5)), uniform_species(geom::Sphere(0.2))});
 }
 
+TEST(FirstLooks, OfSpheresInClosedFormAreThoseOfOnePair) {
+  expect_same_looks({uniform_species(geom::Sphere(0.6))});
+  expect_same_looks({uniform_species(geom::Sphere(1)), uniform_species(geom::Sphere(0.3))});
+}
+
 TEST(FirstLooks, AreTakenOneByOneWherePairsNeedMore) {
   System system;
   system.box = 20;
