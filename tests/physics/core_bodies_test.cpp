@@ -167,6 +167,18 @@ TEST(CoreBodies, CapsulesCollideAsUsersSpherocylindersDo) {
   }
 }
 
+TEST(CoreBodies, SpheresCollideTheSameWithEveryFinder) {
+  for (const Fluid& fluid : fluids()) {
+    if (fluid.name.find("spheres") != 0 || fluid.name.find("capsules") != std::string::npos) continue;
+    const ed::System system = start(fluid);
+    ed::SimulationOptions options;
+    options.contact.finder = ed::Finder::bracketing;
+    constexpr std::size_t kCollisions = 300;
+    ed_test::expect_same(ed_test::first_collisions(system, {}, kCollisions),
+                         ed_test::first_collisions(system, options, kCollisions), fluid.name + ", bracketing");
+  }
+}
+
 TEST(CoreBodies, AreRestoredToTheSameBytes) {
   for (const Fluid& fluid : fluids()) {
     const ed::System system = start(fluid);

@@ -61,11 +61,12 @@ struct [[nodiscard]] ContactResult {
 /// a fixed axis; a body without two equal moments of inertia that wobbles is assumed to sweep its bounding sphere.
 /// Bodies that rotate many times within each other's reach, like meshing wheels, exhaust the budget.
 ///
-/// Bodies: ellipsoids and superellipsoids whose exponents are within [kMinExponentInMotion, kMaxExponentInMotion], and
-/// a user's own (CustomShape), with any moments of inertia that a body can have. Ellipsoids of revolution about an axis
-/// that their moments share are the fast case: about 0.3 microseconds an evaluation instead of one. The bounds of
-/// rounding errors hold for superellipsoids with semi-axes from 1/1000 to 1000 units of length. Throws
-/// std::invalid_argument for values that are not finite, exponents out of range and inertia that no body can have.
+/// Bodies: ellipsoids, superellipsoids whose exponents are within [kMinExponentInMotion, kMaxExponentInMotion],
+/// spheres, capsules, boxes, polyhedra, rounded ones, and a user's own (CustomShape), with any moments of inertia that
+/// a body can have. Ellipsoids of revolution about an axis that their moments share are the fast case: about 0.3
+/// microseconds an evaluation instead of one. The bounds of rounding errors hold for superellipsoids with semi-axes
+/// from 1/1000 to 1000 units of length. Throws std::invalid_argument for values that are not finite, exponents out of
+/// range and inertia that no body can have.
 ///
 /// `options.finder = Finder::bracketing` searches as the paper does instead, without a certificate; its budget of a
 /// million distances is not an option.

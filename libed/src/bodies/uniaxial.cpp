@@ -26,8 +26,13 @@ UniaxialKind rod_kind(const Species& species) {
   const auto* const capsule = std::get_if<geom::Capsule>(&species.shape);
   const int axis = *symmetry_axis(species);
   UniaxialKind kind;
-  kind.rod = capsule != nullptr ? Rod{capsule->half_length(), capsule->radius()}
-                                : Rod{0, std::get<geom::Sphere>(species.shape).radius()};
+  if (capsule != nullptr) {
+    kind.rod = {capsule->half_length(), capsule->radius()};
+  } else {
+    const auto& sphere = std::get<geom::Sphere>(species.shape);
+    kind.rod = {0, sphere.radius()};
+    kind.upright = sphere.ellipsoid();
+  }
   kind.axis = axis;
   kind.inertia = {species.mass, species.inertia[(axis + 1) % 3], species.inertia[axis], species.spins};
   kind.bounding_radius = bounding_radius(species.shape);

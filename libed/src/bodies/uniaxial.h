@@ -36,7 +36,7 @@ namespace ed::internal {
 struct UniaxialKind {
   geom::kernel::Spheroid shape;            ///< shape of an ellipsoid
   Rod rod;                                 ///< shape of a rod
-  std::optional<geom::Ellipsoid> upright;  ///< ellipsoid with its axis of revolution along body z; nullopt: a rod
+  std::optional<geom::Ellipsoid> upright;  ///< ellipsoid or sphere with its axis along body z; nullopt: a capsule
   int axis;                                ///< axis of revolution, in the user's body frame
   UniaxialInertia inertia;
   double bounding_radius;
