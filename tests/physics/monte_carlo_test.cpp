@@ -147,7 +147,7 @@ TEST(Capsules, HaveTheSecondVirialCoefficient) {
     Eigen::VectorXd values(points);
     for (Eigen::Index k = 0; k < points; ++k) {
       const double phi = fractions[static_cast<std::size_t>(k)];
-      const ed::Estimate Z = run(solid, number, phi, (full_form() ? 120 : 6) / phi).results.Z;
+      const ed::Estimate Z = run(solid, number, phi, (full_form() ? 600 : 6) / phi).results.Z;
       const double error = Z.error / phi;
       matrix.row(k) = Eigen::RowVector3d(1, phi, phi * phi) / error;
       values[k] = (Z.value - 1) / phi * number / (number - 1) / error;
@@ -167,7 +167,7 @@ TEST(Capsules, AreNematicWhenDense) {
   for (const double phi : full_form() ? std::vector{0.38, 0.44} : std::vector{0.44}) {
     ed::LatticeOptions options;
     options.packing_fraction = phi;
-    const int number = full_form() ? 500 : 256;
+    const int number = full_form() ? 504 : 256;
     ed::System system = ed::lattice_start({{species(solid), number}}, options);
     const double duration = full_form() ? 2000 : 60;
     ed::Simulation simulation(system);
