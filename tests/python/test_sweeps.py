@@ -175,6 +175,81 @@ def test_dask(sweep, tmp_path):
         hb.sweep(SWEEP, tmp_path / "b", client=client, jobs=2)
 
 
+LONG = with_values(SWEEP, production={"time": 1e6}, output={"checkpoint_every": "0.1s"})
+
+
+def tasks_of(directory: pathlib.Path) -> list[int]:
+    """Processes of tasks of a sweep, and of their runs."""
+    found = []
+    for entry in pathlib.Path("/proc").glob("[0-9]*"):
+        try:
+            words = (entry / "cmdline").read_bytes().split(b"\0")
+            here = (entry / "cwd").readlink()
+        except OSError:
+            continue
+        if (b"point" in words and os.fsencode(directory) in words) or (b"base.toml" in words and here == directory):
+            found.append(int(entry.name))
+    return found
+
+
+def test_dask_is_stopped(tmp_path):
+    """An exception ends the tasks, which save their states; the tasks are one for each thread of the workers."""
+    import distributed
+
+    directory = tmp_path / "a"
+
+    def stop(text: str, done: float | None) -> None:
+        shown.append(text)
+        if len(list(directory.glob("*/checkpoint.bin"))) == 2:
+            raise InterruptedError
+
+    with distributed.LocalCluster(n_workers=1, threads_per_worker=2, dashboard_address=None) as cluster:
+        with distributed.Client(cluster) as client:
+            for _ in range(2):
+                shown: list[str] = []
+                begin = time.monotonic()
+                with pytest.raises(InterruptedError):
+                    hb.sweep(LONG, directory, client=client, progress=stop)
+                assert time.monotonic() - begin < 60
+                assert shown[0] == "sweep on Dask: 0 of 2 tasks done"
+                assert tasks_of(directory) == []
+                assert list(hb.Sweep(directory).table["status"]).count("stopped") == 2
+                assert not list(directory.glob("dask.*")) and not list(directory.glob("*/task.lock"))
+
+
+def test_dask_worker_ends_with_its_tasks(tmp_path):
+    """A task whose worker is killed saves its state and ends, so that it can continue elsewhere at once."""
+    import distributed
+
+    directory = tmp_path / "a"
+    killed: list[int] = []
+
+    def kill(text: str, done: float | None) -> None:
+        running = tasks_of(directory)
+        if not killed and list(directory.glob("*/checkpoint.bin")):
+            os.kill(worker, signal.SIGKILL)
+            killed.extend(running)
+        # The worker is started again, and the task with it.
+        elif killed and running and not set(killed) & set(running):
+            raise InterruptedError
+
+    with distributed.LocalCluster(n_workers=1, threads_per_worker=1, dashboard_address=None) as cluster:
+        with distributed.Client(cluster) as client:
+            worker = next(iter(client.run(os.getpid).values()))
+            begin = time.monotonic()
+            with pytest.raises(InterruptedError):
+                hb.sweep(LONG, directory, client=client, progress=kill)
+            assert time.monotonic() - begin < 60
+    assert tasks_of(directory) == []
+
+
+def test_dask_without_a_shared_directory(tmp_path):
+    from hardbody import _dask
+
+    with pytest.raises(_dask.TaskStopped, match=r"sweep\.toml is not there on .*; accepted: a directory that all workers"):
+        _dask.run_task(str(tmp_path / "a"), 1, "dask.1")
+
+
 def test_failed_points(tmp_path):
     grid = {"system.packing_fraction": [0.2, 0.99]}
     with pytest.raises(hb.SweepError, match=r"2 points: 1 done, 1 failed; failed: .*0\.99.*accepted") as caught:

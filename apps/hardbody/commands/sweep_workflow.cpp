@@ -1,4 +1,5 @@
 #include "base/console.h"
+#include "base/errors.h"
 #include "base/progress.h"
 #include "base/signals.h"
 #include "commands/commands.h"
@@ -11,6 +12,7 @@
 #include "sweep/state.h"
 #include "sweep/tasks/plan_file.h"
 #include "sweep/tasks/task_lock.h"
+#include "sweep/workers.h"
 #include "sweep/workflow/engine.h"
 #include "sweep/workflow/files.h"
 
@@ -33,6 +35,15 @@ namespace fs = std::filesystem;
 constexpr int kLook = 200;  ///< milliseconds between two checks for signals
 /// Time for which runs of a workflow that was stopped are waited for: Slurm kills jobs 30 seconds after SIGTERM.
 constexpr std::chrono::seconds kStopPatience{60};
+constexpr int kMostClusterJobs = 100'000;
+
+/// Returns the number of tasks that run at once, where it is known before they are planned: on this machine. Throws
+/// InputError for a number of jobs that is none.
+std::optional<int> known_jobs(const SweepArguments& arguments) {
+  if (arguments.on == "local") return jobs_on_this_machine(arguments.jobs);
+  if (!arguments.jobs || (*arguments.jobs >= 1 && *arguments.jobs <= kMostClusterJobs)) return std::nullopt;
+  throw InputError(fmt::format("--jobs is {}; accepted: an integer from 1 to {}", *arguments.jobs, kMostClusterJobs));
+}
 
 /// A sweep whose tasks Snakemake runs.
 class WorkflowSweep {
@@ -70,7 +81,8 @@ DirectoryLock WorkflowSweep::prepare() {
   fs::create_directories(directory_ / kWorkflowDirectory);
   DirectoryLock workflow(directory_ / kWorkflowDirectory);
   records = taken_up(directory_, std::move(records));
-  Plan plan = plan_of(records, directory_, (directory_ / kSweepFile).string(), arguments_.task_time);
+  Plan plan =
+      plan_of(records, directory_, (directory_ / kSweepFile).string(), arguments_.task_time, known_jobs(arguments_));
   write_file(directory_ / kPlanFile, plan.json);
   std::vector<std::string> program = arguments_.program;
   if (program.empty()) program = {fs::read_symlink("/proc/self/exe").string()};
@@ -125,8 +137,7 @@ int WorkflowSweep::conclude(int signal, const std::string& failure) {
         fmt::format("{}: stopped by {}: the same command continues", directory_.string(), signal_name(signal)));
     return exit_status_of(signal);
   }
-  const std::size_t over = state.count(PointStatus::done) + state.count(PointStatus::failed);
-  if (over < state.records().size() / static_cast<std::size_t>(file_.replicas)) {
+  if (!state.is_over()) {
     const std::string log = (directory_ / kWorkflowDirectory / kWorkflowLogFile).string();
     const bool none = tasks_at_work(directory_).begun.empty();
     progress_.say(
@@ -171,6 +182,7 @@ int WorkflowSweep::run() {
 
 int sweep_on(const SweepArguments& arguments) {
   install_signal_handlers();
+  (void)known_jobs(arguments);
   check_profile(*arguments.on);
   check_engine(*arguments.on);
   return WorkflowSweep(arguments).run();

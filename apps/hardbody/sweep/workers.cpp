@@ -1,5 +1,7 @@
 #include "sweep/workers.h"
 
+#include "base/errors.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,6 +11,7 @@
 #include <cstring>
 #include <stdexcept>
 #include <string_view>
+#include <thread>
 #include <utility>
 
 #include <fcntl.h>
@@ -22,6 +25,7 @@ namespace {
 
 /// Path of the running program itself, even if another one has been installed under its name since.
 constexpr const char* kThisProgram = "/proc/self/exe";
+constexpr int kMostJobs = 1024;
 constexpr int kNotStarted = 127;
 constexpr std::size_t kMostSaid = 4096;  ///< bytes of stderr that are kept
 
@@ -56,6 +60,12 @@ int exit_status(int status) {
 }
 
 }  // namespace
+
+int jobs_on_this_machine(const std::optional<int>& jobs) {
+  const int number = jobs.value_or(std::max(1, static_cast<int>(std::thread::hardware_concurrency())));
+  if (number >= 1 && number <= kMostJobs) return number;
+  throw InputError(fmt::format("--jobs is {}; accepted: an integer from 1 to {}", number, kMostJobs));
+}
 
 Workers::Workers(std::vector<std::string> program) : program_(std::move(program)) {}
 
