@@ -31,10 +31,14 @@ namespace hardbody {
 namespace {
 
 namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
 
 constexpr int kLook = 200;  ///< milliseconds between two checks for signals
 /// Time for which runs of a workflow that was stopped are waited for: Slurm kills jobs 30 seconds after SIGTERM.
 constexpr std::chrono::seconds kStopPatience{60};
+/// Time for which Snakemake may go on once all tasks are settled: it never learns how jobs have ended where a profile
+/// has it ask Slurm for accounts that are not kept.
+constexpr std::chrono::seconds kEnginePatience{120};
 constexpr int kMostClusterJobs = 100'000;
 
 /// Returns the number of tasks that run at once, where it is known before they are planned: on this machine. Throws
@@ -115,12 +119,12 @@ double WorkflowSweep::done(const TasksAtWork& now) const {
 
 /// Waits until no task of this workflow holds the lock of a run, so that all states are saved when the command ends.
 void WorkflowSweep::wait_for_tasks() const {
-  const auto end = std::chrono::steady_clock::now() + kStopPatience;
+  const auto end = Clock::now() + kStopPatience;
   const std::vector<PointRecord> records = planned(file_);
   const TasksAtWork now = tasks_at_work(directory_);
   for (const int id : now.begun) {
     for (const std::size_t k : tasks_.at(static_cast<std::size_t>(id - 1)).runs) {
-      while (has_task(directory_ / records[k].directory) && std::chrono::steady_clock::now() < end) {
+      while (has_task(directory_ / records[k].directory) && Clock::now() < end) {
         std::this_thread::sleep_for(std::chrono::milliseconds(kLook));
       }
     }
@@ -156,16 +160,19 @@ int WorkflowSweep::conclude(int signal, const std::string& failure) {
 int WorkflowSweep::run_tasks() {
   progress_.begin();
   Engine engine(directory_, *arguments_.on, arguments_.jobs);
+  std::optional<Clock::time_point> settled;  // when the last task was found to be
   bool told = false;
   for (;;) {
     if (const std::optional<int> status = engine.ended(kLook)) {
       if (pending_signal() != 0) wait_for_tasks();
       return conclude(pending_signal(), *status == 0 ? "" : engine.failure());
     }
-    if (pending_signal() != 0 && !told) engine.stop();
-    told = pending_signal() != 0;
+    const bool needless = settled && Clock::now() - *settled > kEnginePatience;
+    if ((pending_signal() != 0 || needless) && !told) engine.stop();
+    told = told || pending_signal() != 0 || needless;
     if (!progress_.due()) continue;
     const TasksAtWork now = tasks_at_work(directory_);
+    if (now.settled.size() == tasks_.size() && !settled) settled = Clock::now();
     progress_.show(text(now), done(now));
   }
 }

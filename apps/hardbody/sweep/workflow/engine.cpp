@@ -48,6 +48,11 @@ std::string snakemake_version() {
   return text;
 }
 
+/// Returns whether Slurm keeps accounts. Without them the executor asks sacct in vain how jobs have ended, for ever.
+bool has_accounting() {
+  return is_in_path("sacct") && std::system("sacct --noheader --allocations --jobs=1 >/dev/null 2>&1") == 0;
+}
+
 /// Returns the words of a shell that runs the command behind it with its output in the log.
 std::vector<std::string> logged(const fs::path& log) {
   return {"/bin/sh", "-c", "exec \"$@\" >>\"$0\" 2>&1", log.string(), "snakemake"};
@@ -88,6 +93,9 @@ Engine::Engine(const fs::path& sweep_directory, const std::string& profile, cons
   if (jobs) {
     arguments.emplace_back(profile == "local" ? "--cores" : "--jobs");
     arguments.push_back(fmt::format("{}", *jobs));
+  }
+  if (profile == "slurm" && !has_accounting()) {
+    arguments.insert(arguments.end(), {"--slurm-status-command", "squeue"});
   }
   process_.start(0, directory, arguments);
 }
