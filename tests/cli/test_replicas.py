@@ -362,6 +362,16 @@ class Workflow(SweepCase):
         self.assertTrue(self.summary("out/aspect_ratio=0.5")["interrupted"])
         self.assertEqual(glob.glob(self.path("out/*/task.lock")), [])
 
+    def test_slurm_without_accounts(self):
+        env = self.engine(body='open("arguments", "w").write(" ".join(sys.argv)); sys.exit(1)')
+        for name in ["sbatch", "squeue", "scancel", "sacct"]:
+            self.write(f"bin/{name}", "#!/bin/sh\nexit ${accounts:-0}\n")
+            os.chmod(self.path(f"bin/{name}"), 0o755)
+        for accounts, told in [("0", False), ("1", True)]:
+            with self.subTest(accounts):
+                self.on("slurm", SMALL + ONE_KEY, env={**env, "accounts": accounts})
+                self.assertEqual("--slurm-status-command squeue" in self.read("out/workflow/arguments"), told)
+
     def test_tasks_that_do_not_begin(self):
         text = SMALL + ONE_KEY
         result = self.on("local", text, env=self.engine(body='print("WorkflowError: no queue"); sys.exit(1)'))

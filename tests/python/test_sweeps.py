@@ -246,9 +246,7 @@ def test_dask_worker_ends_with_its_tasks(tmp_path):
 def test_dask_without_a_shared_directory(tmp_path):
     from hardbody import _dask
 
-    with pytest.raises(
-        _dask.TaskStopped, match=r"is not there on .*; accepted: a directory"
-    ):
+    with pytest.raises(_dask.TaskStopped, match=r"is not there on .*; accepted: a directory"):
         _dask.run_task(str(tmp_path / "a"), 1, "dask.1")
 
 

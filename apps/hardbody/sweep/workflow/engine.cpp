@@ -48,7 +48,7 @@ std::string snakemake_version() {
   return text;
 }
 
-/// Returns whether Slurm keeps accounts. Without them the executor asks sacct in vain how jobs have ended, for ever.
+/// Returns whether Slurm keeps accounts. Without them the executor never learns from sacct how jobs have ended.
 bool has_accounting() {
   return is_in_path("sacct") && std::system("sacct --noheader --allocations --jobs=1 >/dev/null 2>&1") == 0;
 }
