@@ -166,13 +166,16 @@ def test_dask(sweep, tmp_path):
                 shown.append((text, done))
 
             made = hb.sweep(longer, tmp_path / "a", client=client, task_time=1e-3, progress=progress)
-            again = hb.sweep(longer, tmp_path / "a", client=client)
+            again = hb.sweep(longer, tmp_path / "a", client=client, progress=True)
+            with pytest.raises(TypeError, match=r"^progress is 3; accepted: None, True, or a function"):
+                hb.sweep(longer, tmp_path / "c", client=client, progress=3)  # type: ignore[arg-type]
     assert table_bytes(made) == table_bytes(here) == table_bytes(again)
     assert shown[0][0] == "sweep on Dask: 0 of 4 tasks done" and shown[-1] == ("sweep on Dask: 4 of 4 tasks done", 1.0)
     with pytest.raises(TypeError, match=r"^client is 3; accepted: None, or a dask\.distributed\.Client"):
         hb.sweep(SWEEP, tmp_path / "b", client=3)
     with pytest.raises(ValueError, match=r"^jobs is 2 with a client"):
         hb.sweep(SWEEP, tmp_path / "b", client=client, jobs=2)
+    assert not (tmp_path / "b").exists() and not (tmp_path / "c").exists()
 
 
 LONG = with_values(SWEEP, production={"time": 1e6}, output={"checkpoint_every": "0.1s"})

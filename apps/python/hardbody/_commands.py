@@ -19,6 +19,7 @@ from hardbody._calls import (
     optional_path,
     optional_real,
     path_text,
+    progress_function,
     real,
     texts,
     worker_program,
@@ -176,14 +177,13 @@ def sweep(
             raise ValueError(f"jobs is {number} with a client; accepted: None, as the client has its workers")
         if not callable(getattr(client, "submit", None)):
             raise TypeError(f"client is {shown(client)}; accepted: None, or a dask.distributed.Client")
-        if isinstance(progress, bool):
-            raise ValueError("progress is a bool with a client; accepted: None, or a function")
         settings = (name, text, directory, assignments(overrides), wished, known_workers(client))
-        _, plan, _ = call(_core.sweep_plan, *settings, quiet=True)
-        try:
-            lost = run_tasks(client, str(place.resolve()), plan, progress)
-        finally:
-            status, printed, _ = call(_core.sweep_collect, str(place), quiet=quiet)
+        with progress_function(progress) as shows:
+            _, plan, _ = call(_core.sweep_plan, *settings, quiet=True)
+            try:
+                lost = run_tasks(client, str(place.resolve()), plan, shows)
+            finally:
+                status, printed, _ = call(_core.sweep_collect, str(place), quiet=quiet)
         return _swept(place, status, "; ".join([printed.strip(), *lost]))
     arguments = (name, text, directory, number, assignments(overrides), worker_program())
     return _swept(place, *call(_core.sweep, *arguments, quiet=quiet, progress=progress)[:2])

@@ -50,7 +50,7 @@ std::string snakemake_version() {
 
 /// Returns whether Slurm keeps accounts. Without them the executor never learns from sacct how jobs have ended.
 bool has_accounting() {
-  return is_in_path("sacct") && std::system("sacct --noheader --allocations --jobs=1 >/dev/null 2>&1") == 0;
+  return is_in_path("sacct") && std::system("sacct -n -X -j 1 >/dev/null 2>&1") == 0;
 }
 
 /// Returns the words of a shell that runs the command behind it with its output in the log.
