@@ -378,6 +378,21 @@ class Workflow(SweepCase):
         self.assertEqual(result.returncode, 1)
         self.assertIn("out: no task has begun: WorkflowError: no queue; see out/workflow/log.txt; machines that run tasks must see", result.stderr)
 
+    def test_tasks_that_fail_before_they_begin(self):
+        """As Snakemake where the program is not found by jobs; it would try 20 times. Stopped, it ends."""
+        body = """print("Error in rule task:", "    log: /somewhere/1.log (check log file(s) for error details)", sep="\\n", flush=True)
+import time
+for _ in range(600):
+    print("Error in rule task:", flush=True)
+    time.sleep(0.1)
+    if stopped:
+        print("WorkflowError: stopped", flush=True)
+        sys.exit(1)"""
+        result = self.on("local", SMALL + ONE_KEY, "--task-time", "1e-9", env=self.engine(body=body))
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("out: no task has begun: WorkflowError: stopped; a job's log is /somewhere/1.log; see out/workflow/log.txt; machines that",
+                      result.stderr)
+
     def test_refused(self):
         text = SMALL + ONE_KEY
         self.assert_refused(self.on("slurm", text, env={**os.environ, "PATH": self.path("nowhere")}),

@@ -39,6 +39,10 @@ constexpr std::chrono::seconds kStopPatience{60};
 /// Time for which Snakemake may go on once all tasks are settled: it never learns how jobs have ended where a profile
 /// has it ask Slurm for accounts that are not kept.
 constexpr std::chrono::seconds kEnginePatience{120};
+/// Failed attempts, of each task and of all, after which the sweep ends if no task has begun: something is wrong for
+/// all.
+constexpr std::size_t kVainAttemptsOfATask = 3;
+constexpr std::size_t kVainAttempts = 30;
 constexpr int kMostClusterJobs = 100'000;
 
 /// Returns the number of tasks that run at once, where it is known before they are planned: on this machine. Throws
@@ -161,18 +165,21 @@ int WorkflowSweep::run_tasks() {
   progress_.begin();
   Engine engine(directory_, *arguments_.on, arguments_.jobs);
   std::optional<Clock::time_point> settled;  // when the last task was found to be
+  bool in_vain = false;
   bool told = false;
   for (;;) {
     if (const std::optional<int> status = engine.ended(kLook)) {
       if (pending_signal() != 0) wait_for_tasks();
       return conclude(pending_signal(), *status == 0 ? "" : engine.failure());
     }
-    const bool needless = settled && Clock::now() - *settled > kEnginePatience;
-    if ((pending_signal() != 0 || needless) && !told) engine.stop();
-    told = told || pending_signal() != 0 || needless;
+    const bool stops = pending_signal() != 0 || in_vain || (settled && Clock::now() - *settled > kEnginePatience);
+    if (stops && !told) engine.stop();
+    told = told || stops;
     if (!progress_.due()) continue;
     const TasksAtWork now = tasks_at_work(directory_);
     if (now.settled.size() == tasks_.size() && !settled) settled = Clock::now();
+    in_vain = now.begun.empty() && static_cast<std::size_t>(engine.failed_attempts()) >=
+                                       std::min(kVainAttempts, kVainAttemptsOfATask * tasks_.size());
     progress_.show(text(now), done(now));
   }
 }
