@@ -386,7 +386,7 @@ for _ in range(600):
     print("Error in rule task:", flush=True)
     time.sleep(0.1)
     if stopped:
-        print("WorkflowError: stopped", flush=True)
+        print("WorkflowError:", "stopped", sep="\\n", flush=True)
         sys.exit(1)"""
         result = self.on("local", SMALL + ONE_KEY, "--task-time", "1e-9", env=self.engine(body=body))
         self.assertEqual(result.returncode, 1)

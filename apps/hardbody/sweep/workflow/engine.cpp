@@ -132,7 +132,10 @@ std::string Engine::failure() const {
       return "Snakemake has no executor slurm: pip install snakemake-executor-plugin-slurm";
     }
     const bool names_error = line.find("rror") != std::string::npos && !line.starts_with(kFailedAttempt);
-    if (names_error && end == std::string::npos) last = line;
+    if (!names_error || end != std::string::npos) continue;
+    last = line;
+    // The text of a WorkflowError is on the next line.
+    if (line.ends_with(':') && std::getline(log, line)) last += ' ' + line;
   }
   return one_line(last, 300) + one_line(job, 300);
 }
