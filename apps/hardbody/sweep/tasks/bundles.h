@@ -23,9 +23,9 @@ struct Bundle {
 /// it is one run. Runs of unknown cost are bundles of their own. A run and the one that it starts from are in one
 /// bundle, in this order, or in two, one after the other.
 ///
-/// `jobs`: number of bundles that run at once, if it is known. Runs outside chains are then in at least `jobs` bundles of
-/// about the same time, or each in its own if there are fewer. A chain is one bundle if that is short enough, since its
-/// runs wait for each other anyway.
+/// `jobs`: number of bundles that run at once, if it is known. Runs outside chains are then in at least `jobs` bundles
+/// of about the same time, or each in its own if there are fewer. A chain is one bundle if that is short enough, since
+/// its runs wait for each other anyway.
 std::vector<Bundle> bundles_of(const std::vector<PointRecord>& records, const std::vector<std::optional<Cost>>& costs,
                                double task_seconds, const std::optional<int>& jobs = std::nullopt);
 
