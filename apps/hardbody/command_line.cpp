@@ -34,6 +34,7 @@ struct Request {
   SweepArguments sweep;
   SweepTaskArguments tasks;
   std::vector<std::string> sweep_words;
+  std::optional<double> task_time;
   MapArguments map;
   std::string init_file;
   std::string init_template = "ellipsoid";
@@ -95,7 +96,7 @@ void add_sweep(CLI::App& app, Request& request) {
   sweep->add_option("--on", request.sweep.on,
                     "Run it as tasks of a cluster: slurm, local, or the directory of a Snakemake profile");
   sweep
-      ->add_option("--task-time", request.tasks.task_time,
+      ->add_option("--task-time", request.task_time,
                    "Of plan and --on: wished seconds of a task of several runs; default: 600")
       ->check(positive_number());
   sweep
@@ -194,6 +195,18 @@ void add_report(CLI::App& app, Request& request) {
   report->add_option("-o", request.report.out, "HTML file; default: DIR/report.html")->type_name("FILE");
 }
 
+/// Refuses options of other forms of the command with plan, point or collect.
+void check_task_options(const Request& request, const std::string& action) {
+  const auto refuse = [&](bool given, const char* option, const char* accepted) {
+    if (!given) return;
+    throw InputError(fmt::format("command line: {} with {}; accepted: {}", option, action, accepted));
+  };
+  refuse(request.sweep.jobs.has_value(), "--jobs", "hardbody sweep SWEEP --jobs N");
+  refuse(request.sweep.on.has_value(), "--on", "hardbody sweep SWEEP --on NAME");
+  refuse(request.tasks.time_limit && action != "point", "--time-limit", "with hardbody sweep point");
+  refuse(request.task_time && action != "plan", "--task-time", "with hardbody sweep plan, or --on");
+}
+
 /// Runs a sweep here, or the part of one that the first word names.
 int dispatch_sweep(const Request& request) {
   const std::vector<std::string>& words = request.sweep_words;
@@ -209,17 +222,15 @@ int dispatch_sweep(const Request& request) {
   if (!is_task) {
     SweepArguments sweep = request.sweep;
     sweep.sweep = action;
-    sweep.task_time = request.tasks.task_time;
+    sweep.task_time = request.task_time.value_or(sweep.task_time);
+    if (request.task_time && !sweep.on)
+      throw InputError("command line: --task-time; accepted: with hardbody sweep plan, or --on");
     if (request.tasks.time_limit) throw InputError("command line: --time-limit; accepted: with hardbody sweep point");
     return sweep.on ? sweep_on(sweep) : hardbody::sweep(sweep);
   }
-  if (request.sweep.jobs)
-    throw InputError(fmt::format("command line: --jobs with {}; accepted: hardbody sweep SWEEP --jobs N", action));
-  if (request.sweep.on)
-    throw InputError(fmt::format("command line: --on with {}; accepted: hardbody sweep SWEEP --on NAME", action));
-  if (request.tasks.time_limit && action != "point")
-    throw InputError(fmt::format("command line: --time-limit with {}; accepted: with hardbody sweep point", action));
+  check_task_options(request, action);
   SweepTaskArguments tasks = request.tasks;
+  tasks.task_time = request.task_time.value_or(tasks.task_time);
   tasks.sweep = words[1];
   tasks.ids.assign(words.begin() + 2, words.end());
   tasks.out = request.sweep.out;

@@ -254,6 +254,21 @@ class Tasks(SweepCase):
         self.assertEqual(result.returncode, 1)
         self.assertIn("2 points: 1 done, 1 failed", result.stdout)
 
+    def test_failed_and_to_do(self):
+        # What another attempt may complete counts more than a failure, for the table as for tasks.
+        self.plan(SMALL + "[grid]\nsystem.packing_fraction = [0.2, 0.99]\n")
+        self.assertEqual(self.task("point", "packing_fraction=0.99").returncode, 1)
+        result = self.task("collect")
+        self.assertEqual((result.returncode, result.stdout.splitlines()[0]), (75, "out: 2 points: 0 done, 1 failed, 1 to do"))
+        # A point has failed with its first replica; the second one is to do.
+        os.makedirs(self.path("two/replica=0"))
+        self.write("sweep.toml", "replicas = 2\n" + SMALL)
+        self.write("two/sweep.toml", "replicas = 2\n" + SMALL)
+        self.assertEqual(self.task("plan", out="two").returncode, 0)
+        self.write("two/replica=0/summary.json", "{}\n")
+        result = self.task("collect", out="two")
+        self.assertEqual((result.returncode, result.stdout.splitlines()[0]), (75, "two: 1 points of 2 replicas: 0 done, 1 failed"))
+
     def test_refused(self):
         self.write("sweep.toml", SMALL + ONE_KEY)
         self.assert_refused(self.task("point", "1"), "out: holds no sweep; accepted: the directory of a sweep after hardbody sweep plan")
@@ -266,6 +281,8 @@ class Tasks(SweepCase):
         self.assert_refused(self.task("plan", "--on", "slurm"), "--on with plan; accepted: hardbody sweep SWEEP --on NAME")
         self.assert_refused(self.task("plan", "--jobs", "2"), "--jobs with plan; accepted: hardbody sweep SWEEP --jobs N")
         self.assert_refused(self.hardbody("sweep", "plan", "sweep.toml", "--task-time", "0"), "--task-time")
+        self.assert_refused(self.task("collect", "--task-time", "5"), "--task-time with collect; accepted: with hardbody sweep plan, or --on")
+        self.assert_refused(self.hardbody("sweep", "sweep.toml", "--task-time", "5"), "--task-time; accepted: with hardbody sweep plan, or --on")
         self.assert_refused(self.hardbody("sweep", "collect", "sweep.toml", "--out", "out", "--set", "grid.shape.aspect_ratio=[0.5, 2, 3]"),
                             "out: holds this sweep with fewer points or replicas")
 
@@ -315,6 +332,22 @@ class Workflow(SweepCase):
         result = self.on("local", text, env=self.engine(body="sys.exit(1)"))
         self.assertEqual(result.returncode, 0, result.stderr)
 
+    def test_a_task_for_each_job(self):
+        """On this machine it is known how many tasks run at once: short sweeps are not one task."""
+        text = SMALL + GRID
+        for options, jobs in [([], len(os.sched_getaffinity(0))), (["--jobs", "3"], 3), (["--jobs", "64"], 64)]:
+            with self.subTest(options):
+                result = self.on("local", text, *options, env=self.engine(body="sys.exit(1)"))
+                self.assertEqual(result.returncode, 1, result.stderr)
+                plan = json.loads(self.read("out/plan.json"))
+                self.assertEqual((plan["jobs"], len(plan["tasks"])), (jobs, min(jobs, 4)))
+        # Elsewhere it is not.
+        os.makedirs(self.path("profile"))
+        self.write("profile/config.yaml", "executor: local\n")
+        self.on("profile", text, "--jobs", "3", env=self.engine(body="sys.exit(1)"))
+        plan = json.loads(self.read("out/plan.json"))
+        self.assertEqual((plan["jobs"], len(plan["tasks"])), (None, 1))
+
     def test_stopped(self):
         env = self.engine()
         process = self.start(LONG + ONE_KEY, "--on", "local", "--task-time", "1e-9", env=env)
@@ -329,11 +362,36 @@ class Workflow(SweepCase):
         self.assertTrue(self.summary("out/aspect_ratio=0.5")["interrupted"])
         self.assertEqual(glob.glob(self.path("out/*/task.lock")), [])
 
+    def test_slurm_without_accounts(self):
+        env = self.engine(body='open("arguments", "w").write(" ".join(sys.argv)); sys.exit(1)')
+        for name in ["sbatch", "squeue", "scancel", "sacct"]:
+            self.write(f"bin/{name}", "#!/bin/sh\nexit ${accounts:-0}\n")
+            os.chmod(self.path(f"bin/{name}"), 0o755)
+        for accounts, told in [("0", False), ("1", True)]:
+            with self.subTest(accounts):
+                self.on("slurm", SMALL + ONE_KEY, env={**env, "accounts": accounts})
+                self.assertEqual("--slurm-status-command squeue" in self.read("out/workflow/arguments"), told)
+
     def test_tasks_that_do_not_begin(self):
         text = SMALL + ONE_KEY
         result = self.on("local", text, env=self.engine(body='print("WorkflowError: no queue"); sys.exit(1)'))
         self.assertEqual(result.returncode, 1)
         self.assertIn("out: no task has begun: WorkflowError: no queue; see out/workflow/log.txt; machines that run tasks must see", result.stderr)
+
+    def test_tasks_that_fail_before_they_begin(self):
+        """As Snakemake where the program is not found by jobs; it would try 20 times. Stopped, it ends."""
+        body = """print("Error in rule task:", "    log: /somewhere/1.log (check log file(s) for error details)", sep="\\n", flush=True)
+import time
+for _ in range(600):
+    print("Error in rule task:", flush=True)
+    time.sleep(0.1)
+    if stopped:
+        print("WorkflowError:", "stopped", sep="\\n", flush=True)
+        sys.exit(1)"""
+        result = self.on("local", SMALL + ONE_KEY, "--task-time", "1e-9", env=self.engine(body=body))
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("out: no task has begun: WorkflowError: stopped; a job's log is /somewhere/1.log; see out/workflow/log.txt; machines that",
+                      result.stderr)
 
     def test_refused(self):
         text = SMALL + ONE_KEY
@@ -341,6 +399,9 @@ class Workflow(SweepCase):
                             "--on slurm: snakemake is not installed; accepted: Snakemake 8 or newer: pip install snakemake")
         self.assert_refused(self.on("local", text, env=self.engine("7.32.4")), "snakemake --version prints 7.32.4; accepted: Snakemake 8")
         self.assert_refused(self.on("slurm", text, env=self.engine()), "--on slurm: sbatch is not installed; accepted: a machine from which")
+        for jobs in ["0", "-2", "1025"]:
+            self.assert_refused(self.on("local", text, "--jobs", jobs, env=self.engine()), f"--jobs is {jobs}; accepted: an integer from 1 to 1024")
+        self.assert_refused(self.on("slurm", text, "--jobs", "0", env=self.engine()), "--jobs is 0; accepted: an integer from 1 to 100000")
         self.assert_refused(self.on("cloud", text, env=self.engine()), "--on cloud; accepted: slurm, local, or the directory of a Snakemake profile")
         self.assertFalse(os.path.exists(self.path("out")))
 

@@ -166,13 +166,91 @@ def test_dask(sweep, tmp_path):
                 shown.append((text, done))
 
             made = hb.sweep(longer, tmp_path / "a", client=client, task_time=1e-3, progress=progress)
-            again = hb.sweep(longer, tmp_path / "a", client=client)
+            again = hb.sweep(longer, tmp_path / "a", client=client, progress=True)
+            with pytest.raises(TypeError, match=r"^progress is 3; accepted: None, True, or a function"):
+                hb.sweep(longer, tmp_path / "c", client=client, progress=3)  # type: ignore[arg-type]
     assert table_bytes(made) == table_bytes(here) == table_bytes(again)
     assert shown[0][0] == "sweep on Dask: 0 of 4 tasks done" and shown[-1] == ("sweep on Dask: 4 of 4 tasks done", 1.0)
     with pytest.raises(TypeError, match=r"^client is 3; accepted: None, or a dask\.distributed\.Client"):
         hb.sweep(SWEEP, tmp_path / "b", client=3)
     with pytest.raises(ValueError, match=r"^jobs is 2 with a client"):
         hb.sweep(SWEEP, tmp_path / "b", client=client, jobs=2)
+    assert not (tmp_path / "b").exists() and not (tmp_path / "c").exists()
+
+
+LONG = with_values(SWEEP, production={"time": 1e6}, output={"checkpoint_every": "0.1s"})
+
+
+def tasks_of(directory: pathlib.Path) -> list[int]:
+    """Processes of tasks of a sweep, and of their runs."""
+    found = []
+    for entry in pathlib.Path("/proc").glob("[0-9]*"):
+        try:
+            words = (entry / "cmdline").read_bytes().split(b"\0")
+            here = (entry / "cwd").readlink()
+        except OSError:
+            continue
+        if (b"point" in words and os.fsencode(directory) in words) or (b"base.toml" in words and here == directory):
+            found.append(int(entry.name))
+    return found
+
+
+def test_dask_is_stopped(tmp_path):
+    """An exception ends the tasks, which save their states; the tasks are one for each thread of the workers."""
+    import distributed
+
+    directory = tmp_path / "a"
+
+    def stop(text: str, done: float | None) -> None:
+        shown.append(text)
+        if len(list(directory.glob("*/checkpoint.bin"))) == 2:
+            raise InterruptedError
+
+    with distributed.LocalCluster(n_workers=1, threads_per_worker=2, dashboard_address=None) as cluster:
+        with distributed.Client(cluster) as client:
+            for _ in range(2):
+                shown: list[str] = []
+                begin = time.monotonic()
+                with pytest.raises(InterruptedError):
+                    hb.sweep(LONG, directory, client=client, task_time=1e9, progress=stop)
+                assert time.monotonic() - begin < 60
+                assert shown[0] == "sweep on Dask: 0 of 2 tasks done"
+                assert tasks_of(directory) == []
+                assert list(hb.Sweep(directory).table["status"]).count("stopped") == 2
+                assert not list(directory.glob("dask.*")) and not list(directory.glob("*/task.lock"))
+
+
+def test_dask_worker_ends_with_its_tasks(tmp_path):
+    """A task whose worker is killed saves its state and ends, so that it can continue elsewhere at once."""
+    import distributed
+
+    directory = tmp_path / "a"
+    killed: list[int] = []
+
+    def kill(text: str, done: float | None) -> None:
+        running = tasks_of(directory)
+        if not killed and list(directory.glob("*/checkpoint.bin")):
+            os.kill(worker, signal.SIGKILL)
+            killed.extend(running)
+        # The worker is started again, and the task with it.
+        elif killed and running and not set(killed) & set(running):
+            raise InterruptedError
+
+    with distributed.LocalCluster(n_workers=1, threads_per_worker=1, dashboard_address=None) as cluster:
+        with distributed.Client(cluster) as client:
+            worker = next(iter(client.run(os.getpid).values()))
+            begin = time.monotonic()
+            with pytest.raises(InterruptedError):
+                hb.sweep(LONG, directory, client=client, progress=kill)
+            assert time.monotonic() - begin < 60
+    assert tasks_of(directory) == []
+
+
+def test_dask_without_a_shared_directory(tmp_path):
+    from hardbody import _dask
+
+    with pytest.raises(_dask.TaskStopped, match=r"is not there on .*; accepted: a directory"):
+        _dask.run_task(str(tmp_path / "a"), 1, "dask.1")
 
 
 def test_failed_points(tmp_path):

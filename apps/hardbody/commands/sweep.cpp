@@ -22,7 +22,6 @@
 #include <map>
 #include <stdexcept>
 #include <string>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -31,17 +30,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kMostJobs = 1024;
 constexpr int kSignalLook = 100;  ///< milliseconds between two checks for signals
 
 /// Time to wait for a worker of a killed sweep, which saves its state before it ends: its point is locked until then.
 constexpr std::chrono::seconds kPatience{60};
-
-int jobs_for(const SweepArguments& arguments) {
-  const int jobs = arguments.jobs.value_or(std::max(1, static_cast<int>(std::thread::hardware_concurrency())));
-  if (jobs >= 1 && jobs <= kMostJobs) return jobs;
-  throw InputError(fmt::format("--jobs is {}; accepted: an integer from 1 to {}", jobs, kMostJobs));
-}
 
 /// Runs the points of a sweep.
 class Sweep {
@@ -247,7 +239,7 @@ int Sweep::run() {
 
 int sweep(const SweepArguments& arguments) {
   install_signal_handlers();
-  const std::size_t jobs = static_cast<std::size_t>(jobs_for(arguments));
+  const std::size_t jobs = static_cast<std::size_t>(jobs_on_this_machine(arguments.jobs));
   const SweepFile file = arguments.text
                              ? parse_sweep(*arguments.text, arguments.sweep, "", arguments.overrides, Lines::unnamed)
                              : read_sweep(arguments.sweep, arguments.overrides);

@@ -198,7 +198,8 @@ int sweep_plan(const SweepTaskArguments& arguments) {
   std::vector<PointRecord> records = planned(file);
   const fs::path directory = directory_for(arguments.out, arguments.sweep);
   const DirectoryLock lock = take_directory(directory, file);
-  const Plan plan = plan_of(taken_up(directory, std::move(records)), directory, arguments.sweep, arguments.task_time);
+  const Plan plan =
+      plan_of(taken_up(directory, std::move(records)), directory, arguments.sweep, arguments.task_time, arguments.jobs);
   write_file(directory / kPlanFile, plan.json);
   console().print(plan.json);
   return 0;
@@ -236,9 +237,8 @@ int sweep_collect(const SweepTaskArguments& arguments) {
   SweepState state(directory, taken_up(directory, planned(file)), file.replicas);
   state.write_tables();
   console().print(state.account());
-  if (state.count(PointStatus::failed) > 0) return kFailedForGood;
-  return state.count(PointStatus::done) == state.records().size() / static_cast<std::size_t>(file.replicas) ? 0
-                                                                                                            : kTryAgain;
+  if (!state.is_over()) return kTryAgain;
+  return state.count(PointStatus::failed) > 0 ? kFailedForGood : 0;
 }
 
 }  // namespace hardbody

@@ -17,6 +17,7 @@ struct SweepTaskArguments {
   std::vector<std::string> ids;        ///< names of runs, or numbers of tasks of the plan
   std::optional<std::string> out;      ///< directory of the sweep; by default out/<stem of the file>
   double task_time = 600;              ///< wished length of a task of several runs, in seconds
+  std::optional<int> jobs;             ///< number of tasks that run at once, if it is known
   std::optional<double> time_limit;    ///< seconds after which a task saves its state and ends
   std::vector<std::string> overrides;  ///< section.key=value, or grid.section.key=list
   std::vector<std::string> program;    ///< command that the subcommands of a run are appended to; empty: this program
@@ -27,7 +28,7 @@ int sweep_plan(const SweepTaskArguments& arguments);
 /// Runs what the ids name, or continues it. Returns 0 if all is done, 1 if something has failed for good, 75 if another
 /// attempt may succeed, 128 + signal if a signal has stopped it.
 int sweep_point(const SweepTaskArguments& arguments);
-/// Makes the tables of what is there. Returns 0 if all points are done, 1 if some have failed, 75 if some are to do.
+/// Makes the tables of what is there. Returns 0 if all runs are done, 75 if some are to do, else 1: some have failed.
 int sweep_collect(const SweepTaskArguments& arguments);
 
 }  // namespace hardbody

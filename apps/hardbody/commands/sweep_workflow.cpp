@@ -1,4 +1,5 @@
 #include "base/console.h"
+#include "base/errors.h"
 #include "base/progress.h"
 #include "base/signals.h"
 #include "commands/commands.h"
@@ -11,6 +12,7 @@
 #include "sweep/state.h"
 #include "sweep/tasks/plan_file.h"
 #include "sweep/tasks/task_lock.h"
+#include "sweep/workers.h"
 #include "sweep/workflow/engine.h"
 #include "sweep/workflow/files.h"
 
@@ -29,10 +31,27 @@ namespace hardbody {
 namespace {
 
 namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
 
 constexpr int kLook = 200;  ///< milliseconds between two checks for signals
 /// Time for which runs of a workflow that was stopped are waited for: Slurm kills jobs 30 seconds after SIGTERM.
 constexpr std::chrono::seconds kStopPatience{60};
+/// Time for which Snakemake may go on once all tasks are settled: it never learns how jobs have ended where a profile
+/// has it ask Slurm for accounts that are not kept.
+constexpr std::chrono::seconds kEnginePatience{120};
+/// Failed attempts, of each task and of all, after which the sweep ends if no task has begun: something is wrong for
+/// all.
+constexpr std::size_t kVainAttemptsOfATask = 3;
+constexpr std::size_t kVainAttempts = 30;
+constexpr int kMostClusterJobs = 100'000;
+
+/// Returns the number of tasks that run at once, where it is known before they are planned: on this machine. Throws
+/// InputError for a number of jobs that is none.
+std::optional<int> known_jobs(const SweepArguments& arguments) {
+  if (arguments.on == "local") return jobs_on_this_machine(arguments.jobs);
+  if (!arguments.jobs || (*arguments.jobs >= 1 && *arguments.jobs <= kMostClusterJobs)) return std::nullopt;
+  throw InputError(fmt::format("--jobs is {}; accepted: an integer from 1 to {}", *arguments.jobs, kMostClusterJobs));
+}
 
 /// A sweep whose tasks Snakemake runs.
 class WorkflowSweep {
@@ -70,7 +89,8 @@ DirectoryLock WorkflowSweep::prepare() {
   fs::create_directories(directory_ / kWorkflowDirectory);
   DirectoryLock workflow(directory_ / kWorkflowDirectory);
   records = taken_up(directory_, std::move(records));
-  Plan plan = plan_of(records, directory_, (directory_ / kSweepFile).string(), arguments_.task_time);
+  Plan plan =
+      plan_of(records, directory_, (directory_ / kSweepFile).string(), arguments_.task_time, known_jobs(arguments_));
   write_file(directory_ / kPlanFile, plan.json);
   std::vector<std::string> program = arguments_.program;
   if (program.empty()) program = {fs::read_symlink("/proc/self/exe").string()};
@@ -103,12 +123,12 @@ double WorkflowSweep::done(const TasksAtWork& now) const {
 
 /// Waits until no task of this workflow holds the lock of a run, so that all states are saved when the command ends.
 void WorkflowSweep::wait_for_tasks() const {
-  const auto end = std::chrono::steady_clock::now() + kStopPatience;
+  const auto end = Clock::now() + kStopPatience;
   const std::vector<PointRecord> records = planned(file_);
   const TasksAtWork now = tasks_at_work(directory_);
   for (const int id : now.begun) {
     for (const std::size_t k : tasks_.at(static_cast<std::size_t>(id - 1)).runs) {
-      while (has_task(directory_ / records[k].directory) && std::chrono::steady_clock::now() < end) {
+      while (has_task(directory_ / records[k].directory) && Clock::now() < end) {
         std::this_thread::sleep_for(std::chrono::milliseconds(kLook));
       }
     }
@@ -125,8 +145,7 @@ int WorkflowSweep::conclude(int signal, const std::string& failure) {
         fmt::format("{}: stopped by {}: the same command continues", directory_.string(), signal_name(signal)));
     return exit_status_of(signal);
   }
-  const std::size_t over = state.count(PointStatus::done) + state.count(PointStatus::failed);
-  if (over < state.records().size() / static_cast<std::size_t>(file_.replicas)) {
+  if (!state.is_over()) {
     const std::string log = (directory_ / kWorkflowDirectory / kWorkflowLogFile).string();
     const bool none = tasks_at_work(directory_).begun.empty();
     progress_.say(
@@ -145,16 +164,22 @@ int WorkflowSweep::conclude(int signal, const std::string& failure) {
 int WorkflowSweep::run_tasks() {
   progress_.begin();
   Engine engine(directory_, *arguments_.on, arguments_.jobs);
+  std::optional<Clock::time_point> settled;  // when the last task was found to be
+  bool in_vain = false;
   bool told = false;
   for (;;) {
     if (const std::optional<int> status = engine.ended(kLook)) {
       if (pending_signal() != 0) wait_for_tasks();
       return conclude(pending_signal(), *status == 0 ? "" : engine.failure());
     }
-    if (pending_signal() != 0 && !told) engine.stop();
-    told = pending_signal() != 0;
+    const bool stops = pending_signal() != 0 || in_vain || (settled && Clock::now() - *settled > kEnginePatience);
+    if (stops && !told) engine.stop();
+    told = told || stops;
     if (!progress_.due()) continue;
     const TasksAtWork now = tasks_at_work(directory_);
+    if (now.settled.size() == tasks_.size() && !settled) settled = Clock::now();
+    in_vain = now.begun.empty() && static_cast<std::size_t>(engine.failed_attempts()) >=
+                                       std::min(kVainAttempts, kVainAttemptsOfATask * tasks_.size());
     progress_.show(text(now), done(now));
   }
 }
@@ -171,6 +196,7 @@ int WorkflowSweep::run() {
 
 int sweep_on(const SweepArguments& arguments) {
   install_signal_handlers();
+  (void)known_jobs(arguments);
   check_profile(*arguments.on);
   check_engine(*arguments.on);
   return WorkflowSweep(arguments).run();

@@ -76,6 +76,12 @@ std::size_t SweepState::count(PointStatus status) {
       std::count_if(list.begin(), list.end(), [&](const PooledPoint& p) { return p.record.status == status; }));
 }
 
+bool SweepState::is_over() const {
+  return std::all_of(records_.begin(), records_.end(), [](const PointRecord& r) {
+    return r.status == PointStatus::done || r.status == PointStatus::failed;
+  });
+}
+
 std::string SweepState::account() {
   const std::size_t failed = count(PointStatus::failed);
   const std::size_t done = count(PointStatus::done);

@@ -34,6 +34,8 @@ class SweepState {
 
   /// Returns the number of points with this status.
   std::size_t count(PointStatus status);
+  /// Returns whether all runs are done or failed. A point with a failed replica has failed though others may be to do.
+  bool is_over() const;
   /// Returns how many points are done, and a line for each that has failed.
   std::string account();
 

@@ -1,5 +1,7 @@
 #include "sweep/workers.h"
 
+#include "base/errors.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,6 +11,7 @@
 #include <cstring>
 #include <stdexcept>
 #include <string_view>
+#include <thread>
 #include <utility>
 
 #include <fcntl.h>
@@ -22,7 +25,10 @@ namespace {
 
 /// Path of the running program itself, even if another one has been installed under its name since.
 constexpr const char* kThisProgram = "/proc/self/exe";
+constexpr int kMostJobs = 1024;
 constexpr int kNotStarted = 127;
+constexpr int kClosed = -1;              ///< descriptor that poll() ignores
+constexpr int kSilentLook = 10;          ///< milliseconds between two looks at processes that have closed their stderr
 constexpr std::size_t kMostSaid = 4096;  ///< bytes of stderr that are kept
 
 std::runtime_error cannot_start(int error) {
@@ -57,12 +63,18 @@ int exit_status(int status) {
 
 }  // namespace
 
+int jobs_on_this_machine(const std::optional<int>& jobs) {
+  const int number = jobs.value_or(std::max(1, static_cast<int>(std::thread::hardware_concurrency())));
+  if (number >= 1 && number <= kMostJobs) return number;
+  throw InputError(fmt::format("--jobs is {}; accepted: an integer from 1 to {}", number, kMostJobs));
+}
+
 Workers::Workers(std::vector<std::string> program) : program_(std::move(program)) {}
 
 Workers::~Workers() {
   signal_all(SIGTERM);
   for (const Worker& worker : workers_) {
-    ::close(worker.errors);
+    if (worker.errors != kClosed) ::close(worker.errors);
     while (::waitpid(worker.process, nullptr, 0) < 0 && errno == EINTR) {
     }
   }
@@ -93,9 +105,15 @@ void Workers::start(int id, const std::filesystem::path& directory, const std::v
 }
 
 void Workers::take_what_it_says(Worker& worker) {
+  if (worker.errors == kClosed) return;
   char buffer[1024];
   for (;;) {
     const ::ssize_t read = ::read(worker.errors, buffer, sizeof buffer);
+    if (read == 0) {
+      // It has ended, or goes on without stderr: poll() would report the closed pipe at once, again and again.
+      ::close(worker.errors);
+      worker.errors = kClosed;
+    }
     if (read <= 0) return;
     worker.said.append(buffer, static_cast<std::size_t>(read));
     if (worker.said.size() > 2 * kMostSaid) worker.said.erase(0, worker.said.size() - kMostSaid);
@@ -104,7 +122,10 @@ void Workers::take_what_it_says(Worker& worker) {
 
 void Workers::listen(int milliseconds) {
   std::vector<::pollfd> waiting;
-  for (const Worker& worker : workers_) waiting.push_back({worker.errors, POLLIN, 0});
+  for (const Worker& worker : workers_) {
+    waiting.push_back({worker.errors, POLLIN, 0});
+    if (worker.errors == kClosed) milliseconds = std::min(milliseconds, kSilentLook);
+  }
   // A signal ends the wait early.
   (void)::poll(waiting.data(), waiting.size(), milliseconds);
   for (Worker& worker : workers_) take_what_it_says(worker);
@@ -121,7 +142,7 @@ std::vector<WorkerEnd> Workers::ended(int milliseconds) {
     const bool lost = ended < 0 && errno == ECHILD;
     if (ended != worker.process && !lost) return false;
     take_what_it_says(worker);
-    ::close(worker.errors);
+    if (worker.errors != kClosed) ::close(worker.errors);
     ends.push_back({worker.id, exit_status(status), last_line(worker.said)});
     return true;
   });

@@ -4,12 +4,17 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <sys/types.h>
 
 namespace hardbody {
+
+/// Returns the number of processes that run at once on this machine: that of `--jobs`, by default one for each
+/// processor. Throws InputError.
+int jobs_on_this_machine(const std::optional<int>& jobs);
 
 /// End of a process.
 struct WorkerEnd {

@@ -6,7 +6,8 @@ import math
 import operator
 import os
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from typing import Any, TextIO
 
 import numpy as np
@@ -213,6 +214,23 @@ class _Printer:
         self._shown = True
 
 
+@contextmanager
+def progress_function(progress: Progress | bool | None) -> Iterator[Progress | None]:
+    """Gives the function that is told about progress: for True a bar of tqdm, which is closed at the end."""
+    if not (progress is None or isinstance(progress, bool) or callable(progress)):
+        raise TypeError(
+            f"progress is {shown(progress)}; accepted: None, True, or a function of a text and the fraction done"
+        )
+    if progress is not True:
+        yield progress if callable(progress) else None
+        return
+    bar = _Bar()
+    try:
+        yield bar
+    finally:
+        bar.close()
+
+
 def call(
     command: Callable[..., Outcome], *arguments: Any, quiet: bool = True, progress: Progress | bool | None = None
 ) -> Outcome:
@@ -220,18 +238,12 @@ def call(
 
     Raises KeyboardInterrupt if it was stopped by Ctrl-C, RuntimeError if by another signal, both with its last message.
     """
-    if not (progress is None or isinstance(progress, bool) or callable(progress)):
-        raise TypeError(
-            f"progress is {shown(progress)}; accepted: None, True, or a function of a text and the fraction done"
-        )
-    bar = _Bar() if progress is True else None
-    printer = _Printer(flag(quiet, "quiet"), bar or (progress if callable(progress) else None))
-    try:
-        status, printed, said = command(printer.functions(), *arguments)
-    finally:
-        printer.clear()
-        if bar is not None:
-            bar.close()
+    with progress_function(progress) as shows:
+        printer = _Printer(flag(quiet, "quiet"), shows)
+        try:
+            status, printed, said = command(printer.functions(), *arguments)
+        finally:
+            printer.clear()
     if status == _INTERRUPTED:
         raise KeyboardInterrupt(said[-1] if said else "stopped by SIGINT")
     if status > 128:

@@ -19,11 +19,12 @@ from hardbody._calls import (
     optional_path,
     optional_real,
     path_text,
+    progress_function,
     real,
     texts,
     worker_program,
 )
-from hardbody._dask import run_tasks
+from hardbody._dask import known_workers, run_tasks
 from hardbody._pages import Map, Report
 from hardbody._results import Analysis, Run, Sweep
 from hardbody._run_errors import SweepError, UnsoundError
@@ -162,7 +163,8 @@ def sweep(
     jobs: number of points that run at once; None: one for each processor.
     client: a dask.distributed.Client, whose workers run the points as tasks (docs/cluster.md): each has this package,
         and sees the directory under the same name. Tasks of a worker that is lost continue on another one.
-    task_time: with `client`: wished seconds of a task of several runs.
+    task_time: with `client`: wished seconds of a task of several runs. Tasks are shorter where there would be fewer of
+        them than the workers have threads.
 
     Other arguments and exceptions are those of `run`. Raises SweepError, at the end, if points have failed.
     """
@@ -175,11 +177,13 @@ def sweep(
             raise ValueError(f"jobs is {number} with a client; accepted: None, as the client has its workers")
         if not callable(getattr(client, "submit", None)):
             raise TypeError(f"client is {shown(client)}; accepted: None, or a dask.distributed.Client")
-        if isinstance(progress, bool):
-            raise ValueError("progress is a bool with a client; accepted: None, or a function")
-        _, plan, _ = call(_core.sweep_plan, name, text, directory, assignments(overrides), wished, quiet=True)
-        lost = run_tasks(client, str(place.resolve()), plan, progress)
-        status, printed, _ = call(_core.sweep_collect, str(place), quiet=quiet)
+        settings = (name, text, directory, assignments(overrides), wished, known_workers(client))
+        with progress_function(progress) as shows:
+            _, plan, _ = call(_core.sweep_plan, *settings, quiet=True)
+            try:
+                lost = run_tasks(client, str(place.resolve()), plan, shows)
+            finally:
+                status, printed, _ = call(_core.sweep_collect, str(place), quiet=quiet)
         return _swept(place, status, "; ".join([printed.strip(), *lost]))
     arguments = (name, text, directory, number, assignments(overrides), worker_program())
     return _swept(place, *call(_core.sweep, *arguments, quiet=quiet, progress=progress)[:2])

@@ -136,6 +136,17 @@ TEST(Workers, RunAnotherProgram) {
   EXPECT_EQ(ends[0].last_line, "run a b");
 }
 
+TEST(Workers, AreWaitedForWithoutTheirStderr) {
+  Workers workers({"/bin/sh", "-c", "exec 2>&-; sleep 1; exit 3"});
+  workers.start(7, ".", {});
+  int calls = 0;
+  std::vector<WorkerEnd> ends;
+  for (; ends.empty(); ++calls) ends = workers.ended(1000);
+  EXPECT_EQ(ends[0].status, 3);
+  // A hundred: without a wait in each there would be hundreds of thousands.
+  EXPECT_LT(calls, 2000);
+}
+
 TEST(Workers, EndWhereTheStatusIsLost) {
   std::signal(SIGCHLD, SIG_IGN);
   {

@@ -193,4 +193,43 @@ TEST(TaskBundles, AreAsLongAsWished) {
   EXPECT_EQ(bundles[2].after, bundles[1].id);
 }
 
+TEST(TaskBundles, AreAtLeastAsManyAsJobs) {
+  std::vector<PointRecord> points = points_along({0, 0.1, 0.2, 0.3, 0.4, 0.5}, 1);
+  const auto cost = [](double seconds) { return std::optional(hardbody::Cost{seconds, 100}); };
+  const std::vector<std::optional<hardbody::Cost>> costs = {cost(9), cost(2), cost(7), cost(4), cost(3), cost(5)};
+  // 21 seconds for 3 jobs: 7, 5 + 2, 4 + 3.
+  std::vector<hardbody::Bundle> bundles = hardbody::bundles_of(points, costs, 600, 3);
+  ASSERT_EQ(bundles.size(), 3u);
+  EXPECT_THAT(bundles[0].runs, ElementsAre(2));
+  EXPECT_THAT(bundles[1].runs, ElementsAre(1, 5));
+  EXPECT_THAT(bundles[2].runs, ElementsAre(3, 4));
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_EQ(bundles[k].id, static_cast<int>(k) + 1);
+    EXPECT_EQ(bundles[k].seconds, 7);
+    EXPECT_EQ(bundles[k].memory, 100);
+  }
+  // More jobs than runs: one run each. Longer sweeps: no longer than wished, as for any number of jobs.
+  EXPECT_EQ(hardbody::bundles_of(points, costs, 600, 64).size(), 5u);
+  bundles = hardbody::bundles_of(points, costs, 6, 2);
+  std::size_t runs = 0;
+  for (const hardbody::Bundle& bundle : bundles) {
+    runs += bundle.runs.size();
+    EXPECT_TRUE(*bundle.seconds <= 6 || bundle.runs.size() == 1);
+  }
+  EXPECT_EQ(runs, 5u);
+}
+
+TEST(TaskBundles, OfChainsStayInOrderForAnyNumberOfJobs) {
+  std::vector<PointRecord> points = points_along({0, 0.1, 0.2, 0.3, 0.4, 0.5}, 0);
+  const std::vector<std::optional<hardbody::Cost>> costs(6, hardbody::Cost{10, 100});
+  points[1].starts_from = 0;
+  points[2].starts_from = 1;
+  points[4].starts_from = 3;
+  const std::vector<hardbody::Bundle> bundles = hardbody::bundles_of(points, costs, 600, 8);
+  ASSERT_EQ(bundles.size(), 3u);
+  EXPECT_THAT(bundles[0].runs, ElementsAre(5));
+  EXPECT_THAT(bundles[1].runs, ElementsAre(0, 1, 2));
+  EXPECT_THAT(bundles[2].runs, ElementsAre(3, 4));
+}
+
 }  // namespace

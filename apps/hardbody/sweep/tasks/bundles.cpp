@@ -1,7 +1,10 @@
 #include "sweep/tasks/bundles.h"
 
 #include <algorithm>
+#include <iterator>
 #include <map>
+#include <queue>
+#include <utility>
 
 namespace hardbody {
 namespace {
@@ -44,30 +47,73 @@ void add(Bundle& bundle, std::size_t k, const std::optional<Cost>& cost) {
   bundle.memory = std::max(first ? 0 : *bundle.memory, cost->memory);
 }
 
+/// Returns the runs that are to do, the longest first.
+std::vector<std::size_t> longest_first(const std::vector<std::size_t>& runs, const std::vector<PointRecord>& records,
+                                       const std::vector<std::optional<Cost>>& costs) {
+  std::vector<std::size_t> left;
+  std::copy_if(runs.begin(), runs.end(), std::back_inserter(left), [&](std::size_t k) { return !is_over(records[k]); });
+  const auto seconds = [&](std::size_t k) { return costs[k] ? costs[k]->seconds : 0; };
+  std::stable_sort(left.begin(), left.end(), [&](std::size_t a, std::size_t b) { return seconds(a) > seconds(b); });
+  return left;
+}
+
+/// Bundles single runs for a number of jobs: each goes to the shortest bundle, the longest run first, so that the
+/// bundles take about the same time; there are more of them where they would be longer than wished.
+std::vector<Bundle> even_bundles(const std::vector<std::size_t>& runs, const std::vector<std::optional<Cost>>& costs,
+                                 double task_seconds, std::size_t jobs) {
+  std::vector<Bundle> bundles;
+  const auto longer = [&](std::size_t a, std::size_t b) {
+    return std::pair(bundles[a].seconds, a) > std::pair(bundles[b].seconds, b);
+  };
+  std::priority_queue<std::size_t, std::vector<std::size_t>, decltype(longer)> shortest(longer);
+  for (const std::size_t k : runs) {
+    const bool fits =
+        !shortest.empty() && bundles.size() >= jobs && has_room(bundles[shortest.top()], costs[k], task_seconds);
+    const std::size_t at = fits ? shortest.top() : bundles.size();
+    if (fits) {
+      shortest.pop();
+    } else {
+      bundles.emplace_back();
+    }
+    add(bundles[at], k, costs[k]);
+    if (bundles[at].seconds) shortest.push(at);
+  }
+  for (Bundle& bundle : bundles) std::sort(bundle.runs.begin(), bundle.runs.end());
+  return bundles;
+}
+
+/// Cuts a chain, or single runs in their order, into bundles as long as wished.
+std::vector<Bundle> bundles_in_order(const std::vector<std::size_t>& runs, const std::vector<PointRecord>& records,
+                                     const std::vector<std::optional<Cost>>& costs, double task_seconds) {
+  std::vector<Bundle> bundles;
+  for (const std::size_t k : runs) {
+    if (is_over(records[k])) continue;
+    if (bundles.empty() || !has_room(bundles.back(), costs[k], task_seconds)) bundles.emplace_back();
+    add(bundles.back(), k, costs[k]);
+  }
+  return bundles;
+}
+
 }  // namespace
 
 std::vector<Bundle> bundles_of(const std::vector<PointRecord>& records, const std::vector<std::optional<Cost>>& costs,
-                               double task_seconds) {
-  std::vector<Bundle> bundles;
-  for (const std::vector<std::size_t>& chain : chains_of(records)) {
-    Bundle bundle;
+                               double task_seconds, const std::optional<int>& jobs) {
+  const std::vector<std::vector<std::size_t>> chains = chains_of(records);
+  std::vector<Bundle> all;
+  for (std::size_t c = 0; c < chains.size(); ++c) {
+    const bool single = c == 0;  // runs that wait for no other
+    std::vector<Bundle> bundles = single && jobs ? even_bundles(longest_first(chains[c], records, costs), costs,
+                                                                task_seconds, static_cast<std::size_t>(*jobs))
+                                                 : bundles_in_order(chains[c], records, costs, task_seconds);
     std::optional<int> before;  // last bundle of the chain
-    const auto close = [&] {
-      if (bundle.runs.empty()) return;
-      bundle.id = static_cast<int>(bundles.size()) + 1;
+    for (Bundle& bundle : bundles) {
+      bundle.id = static_cast<int>(all.size()) + 1;
       if (records[bundle.runs.front()].starts_from) bundle.after = before;
       before = bundle.id;
-      bundles.push_back(bundle);
-      bundle = {};
-    };
-    for (const std::size_t k : chain) {
-      if (is_over(records[k])) continue;
-      if (!has_room(bundle, costs[k], task_seconds)) close();
-      add(bundle, k, costs[k]);
+      all.push_back(std::move(bundle));
     }
-    close();
   }
-  return bundles;
+  return all;
 }
 
 }  // namespace hardbody

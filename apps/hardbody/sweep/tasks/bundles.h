@@ -22,7 +22,11 @@ struct Bundle {
 /// Bundles the runs that are neither done nor failed, so that a bundle takes about `task_seconds`: at most that, unless
 /// it is one run. Runs of unknown cost are bundles of their own. A run and the one that it starts from are in one
 /// bundle, in this order, or in two, one after the other.
+///
+/// `jobs`: number of bundles that run at once, if it is known. Runs outside chains are then in at least `jobs` bundles
+/// of about the same time, or each in its own if there are fewer. A chain is one bundle if that is short enough, since
+/// its runs wait for each other anyway.
 std::vector<Bundle> bundles_of(const std::vector<PointRecord>& records, const std::vector<std::optional<Cost>>& costs,
-                               double task_seconds);
+                               double task_seconds, const std::optional<int>& jobs = std::nullopt);
 
 }  // namespace hardbody

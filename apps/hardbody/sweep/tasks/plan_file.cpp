@@ -124,11 +124,11 @@ std::vector<PointRecord> taken_up(const fs::path& directory, std::vector<PointRe
 }
 
 Plan plan_of(const std::vector<PointRecord>& records, const fs::path& directory, const std::string& sweep,
-             double task_seconds) {
+             double task_seconds, const std::optional<int>& jobs) {
   const Costs costs(records);
   std::vector<std::optional<Cost>> expected;
   for (std::size_t k = 0; k < records.size(); ++k) expected.push_back(costs.of(k));
-  Plan plan{bundles_of(records, expected, task_seconds), ""};
+  Plan plan{bundles_of(records, expected, task_seconds, jobs), ""};
   Json tasks = Json::array();
   for (const Bundle& bundle : plan.tasks) tasks.push_back(task_json(bundle, records));
   Json runs = Json::array();
@@ -137,6 +137,7 @@ Plan plan_of(const std::vector<PointRecord>& records, const fs::path& directory,
                      {"sweep", absolute_path(sweep).string()},
                      {"directory", absolute_path(directory).string()},
                      {"task_seconds", task_seconds},
+                     {"jobs", jobs ? Json(*jobs) : Json(nullptr)},
                      {"expected_within_factor", number_json(costs.error())},
                      {"tasks", std::move(tasks)},
                      {"runs", std::move(runs)}};

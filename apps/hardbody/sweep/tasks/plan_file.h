@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,9 +24,9 @@ struct Plan {
 };
 
 /// Plans the runs that are neither done nor failed. `sweep` is the path of the sweep's file; a task of several runs
-/// takes at most `task_seconds`.
+/// takes at most `task_seconds`. `jobs`: number of tasks that run at once, if it is known, see bundles_of().
 Plan plan_of(const std::vector<PointRecord>& records, const std::filesystem::path& directory, const std::string& sweep,
-             double task_seconds);
+             double task_seconds, const std::optional<int>& jobs);
 
 /// Returns the indices of the runs that an ID names: a run's directory, or the number of a task of the stored plan.
 /// Throws InputError.

@@ -98,13 +98,18 @@ bool create(const fs::path& file, const std::string& content) {
   throw WriteError(file, error);
 }
 
-/// Returns the seconds since the file was touched, by the clock of the file system.
+/// Returns the seconds since the file was touched, by the clock of the file system; 0 if that cannot be asked, because
+/// its disk is full or may only be read.
 double age_of(const fs::path& file) {
   fs::path probe = file;
   probe += fmt::format(".{}", unique_number());
   struct stat now = {};
   struct stat then = {};
-  if (!create(probe, "\n")) return 0;
+  try {
+    if (!create(probe, "\n")) return 0;
+  } catch (const WriteError&) {
+    return 0;
+  }
   const bool known = ::stat(probe.c_str(), &now) == 0 && ::stat(file.c_str(), &then) == 0;
   (void)::unlink(probe.c_str());
   return known ? static_cast<double>(now.st_mtim.tv_sec - then.st_mtim.tv_sec) : 0;

@@ -48,6 +48,13 @@ std::string snakemake_version() {
   return text;
 }
 
+/// Returns whether Slurm keeps accounts. Without them the executor never learns from sacct how jobs have ended.
+bool has_accounting() {
+  return is_in_path("sacct") && std::system("sacct -n -X -j 1 >/dev/null 2>&1") == 0;
+}
+
+constexpr std::string_view kFailedAttempt = "Error in rule task";
+
 /// Returns the words of a shell that runs the command behind it with its output in the log.
 std::vector<std::string> logged(const fs::path& log) {
   return {"/bin/sh", "-c", "exec \"$@\" >>\"$0\" 2>&1", log.string(), "snakemake"};
@@ -89,6 +96,9 @@ Engine::Engine(const fs::path& sweep_directory, const std::string& profile, cons
     arguments.emplace_back(profile == "local" ? "--cores" : "--jobs");
     arguments.push_back(fmt::format("{}", *jobs));
   }
+  if (profile == "slurm" && !has_accounting()) {
+    arguments.insert(arguments.end(), {"--slurm-status-command", "squeue"});
+  }
   process_.start(0, directory, arguments);
 }
 
@@ -101,17 +111,33 @@ void Engine::stop() {
   process_.signal_groups(SIGINT);
 }
 
+int Engine::failed_attempts() const {
+  std::ifstream log(log_);
+  int number = 0;
+  for (std::string line; std::getline(log, line);) number += line.starts_with(kFailedAttempt) ? 1 : 0;
+  return number;
+}
+
 std::string Engine::failure() const {
+  constexpr std::string_view kJobLog = "    log: ";
   std::ifstream log(log_);
   std::string last;
+  std::string job;
   for (std::string line; std::getline(log, line);) {
+    const std::size_t end = line.find(" (check log file");
+    if (line.starts_with(kJobLog) && end != std::string::npos) {
+      job = "; a job's log is " + line.substr(kJobLog.size(), end - kJobLog.size());
+    }
     if (line.find("invalid choice: 'slurm'") != std::string::npos) {
       return "Snakemake has no executor slurm: pip install snakemake-executor-plugin-slurm";
     }
-    const bool names_error = line.find("rror") != std::string::npos && line.find("Error in rule") == std::string::npos;
-    if (names_error) last = line;
+    const bool names_error = line.find("rror") != std::string::npos && !line.starts_with(kFailedAttempt);
+    if (!names_error || end != std::string::npos) continue;
+    last = line;
+    // The text of a WorkflowError is on the next line.
+    if (line.ends_with(':') && std::getline(log, line)) last += ' ' + line;
   }
-  return one_line(last, 300);
+  return one_line(last, 300) + one_line(job, 300);
 }
 
 }  // namespace hardbody

@@ -26,6 +26,9 @@ class Engine {
   /// Stops it, its tasks on this machine, and jobs that it has submitted.
   void stop();
 
+  /// Returns the number of attempts of tasks that have failed: what its log says.
+  int failed_attempts() const;
+
   /// Returns the reason of its failure, in one line: what its log says.
   std::string failure() const;
 

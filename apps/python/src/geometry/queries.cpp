@@ -96,7 +96,7 @@ void bind_distance(nb::module_& module) {
         const geom::Pose& X_WA = pose(pose_a, "pose_a");
         const geom::Pose& X_WB = pose(pose_b, "pose_b");
         if (const auto found = half_space_distance(a, X_WA, b, X_WB)) return *found;
-        return any::distance(body_shape(a, "a"), X_WA, body_shape(b, "b"), X_WB, options);
+        return any::distance(query_shape(a, "a"), X_WA, query_shape(b, "b"), X_WB, options);
       },
       nb::arg("a").none(), nb::arg("pose_a").none(), nb::arg("b").none(), nb::arg("pose_b").none(), nb::kw_only(),
       nb::arg("start") = nb::none(), nb::arg("max_iterations").none() = geom::kMaxIterations,
@@ -147,7 +147,7 @@ bool overlap(nb::handle a, nb::handle pose_a, nb::handle b, nb::handle pose_b, n
   const geom::Pose& X_WA = pose(pose_a, "pose_a");
   const geom::Pose& X_WB = pose(pose_b, "pose_b");
   if (const auto found = half_space_distance(a, X_WA, b, X_WB)) return found->distance <= 0;
-  const geom::Answer answer = any::overlap(body_shape(a, "a"), X_WA, body_shape(b, "b"), X_WB, guess);
+  const geom::Answer answer = any::overlap(query_shape(a, "a"), X_WA, query_shape(b, "b"), X_WB, guess);
   if (answer != geom::Answer::unknown) return answer == geom::Answer::yes;
   throw Undecided("overlap: neither answer is certain, the bodies touch within the error bound; distance has bounds");
 }
@@ -196,7 +196,7 @@ void bind_closest_point(nb::module_& module) {
         if (const auto* floor = half_space(s)) {
           return geom::closest_point(*floor, pose(X, "pose"), finite_vector3(point, "point"));
         }
-        return any::closest_point(body_shape(s, "shape"), pose(X, "pose"), finite_vector3(point, "point"));
+        return any::closest_point(query_shape(s, "shape"), pose(X, "pose"), finite_vector3(point, "point"));
       },
       nb::arg("shape").none(), nb::arg("pose").none(), nb::arg("point").none(),
       nb::sig("def closest_point(shape: hardbody.AnyBody, pose: Pose, point: numpy.typing.ArrayLike) "
@@ -214,7 +214,7 @@ void bind_contains(nb::module_& module) {
           return geom::contains(*floor, pose(X, "pose"), finite_vector3(point, "point"));
         }
         const std::optional<bool> answer =
-            any::contains(body_shape(s, "shape"), pose(X, "pose"), finite_vector3(point, "point"));
+            any::contains(query_shape(s, "shape"), pose(X, "pose"), finite_vector3(point, "point"));
         if (answer) return *answer;
         throw Undecided("contains: the point is on the surface within the error bound; closest_point has bounds");
       },
@@ -250,7 +250,7 @@ void bind_ray_cast(nb::module_& module) {
           return geom::ray_cast(*floor, pose(X, "pose"), finite_vector3(origin, "origin"),
                                 direction3(direction, "direction"));
         }
-        return any::ray_cast(body_shape(s, "shape"), pose(X, "pose"), finite_vector3(origin, "origin"),
+        return any::ray_cast(query_shape(s, "shape"), pose(X, "pose"), finite_vector3(origin, "origin"),
                              direction3(direction, "direction"));
       },
       nb::arg("shape").none(), nb::arg("pose").none(), nb::arg("origin").none(), nb::arg("direction").none(),

@@ -18,10 +18,18 @@ inline geom::Shape shape(nb::handle value, const std::string& name) {
   return OneOf<geom::Shape>::from(value, name);
 }
 
-/// Returns the shape of a body in motion, a user's own included. Throws TypeError if the object is none.
-inline ed::BodyShape body_shape(nb::handle value, const std::string& name) {
-  if (OneOf<ed::BodyShape>::holds(value) || !is_custom_shape(value)) return OneOf<ed::BodyShape>::from(value, name);
+/// Returns the shape of a body in motion, a user's own included. Throws TypeError if the object is none; its message
+/// lists the classes, and `others` after them.
+inline ed::BodyShape body_shape(nb::handle value, const std::string& name, const std::string& others = "") {
+  if (OneOf<ed::BodyShape>::holds(value) || !is_custom_shape(value)) {
+    return OneOf<ed::BodyShape>::from(value, name, others);
+  }
   return custom_shape_of(value);
+}
+
+/// Returns the shape of a body in a query that takes half-spaces, too, which are looked for before.
+inline ed::BodyShape query_shape(nb::handle value, const std::string& name) {
+  return body_shape(value, name, ", HalfSpace");
 }
 
 /// Returns a shape as Python has it: a user's own as a CustomShape.

@@ -130,17 +130,18 @@ void bind_commands(nb::module_& module) {
   module.def(
       "sweep_plan",
       [](const Functions& console, std::string config, std::optional<std::string> text, std::optional<std::string> out,
-         Strings overrides, double task_time) {
+         Strings overrides, double task_time, std::optional<int> jobs) {
         SweepTaskArguments arguments;
         arguments.sweep = std::move(config);
         arguments.text = std::move(text);
         arguments.out = std::move(out);
         arguments.overrides = std::move(overrides);
         arguments.task_time = task_time;
+        arguments.jobs = jobs;
         return outcome(console, [&] { return sweep_plan(arguments); });
       },
       nb::arg("console"), nb::arg("config"), text_or_none, out_or_none, nb::arg("overrides"), nb::arg("task_time"),
-      "Command sweep plan.");
+      nb::arg("jobs").none(), "Command sweep plan.");
   module.def(
       "sweep_collect",
       [](const Functions& console, const std::string& directory) {
