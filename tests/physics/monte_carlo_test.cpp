@@ -93,20 +93,20 @@ void expect_monte_carlo_pressure(const Solid& solid, double packing_fraction) {
 
   ed_test::MonteCarlo monte_carlo(start(solid, number, packing_fraction), solid.shape, pressure, 1);
   monte_carlo.equilibrate(sweeps / 5);
-  std::vector<double> volumes;
+  std::vector<double> densities;  // the mean pressure at the densities is that of the ensemble
   for (int k = 0; k < sweeps; ++k) {
     monte_carlo.sweep();
-    volumes.push_back(monte_carlo.volume());
+    densities.push_back(number / monte_carlo.volume());
   }
-  const Mean volume = mean_of_blocks(volumes);
-  const double found = number * body / volume.value;
+  const Mean density = mean_of_blocks(densities);
+  const double found = density.value * body;
   const double Z = pressure * body / found;
 
   const Measured measured = run(solid, number, found, duration);
   const ed::Estimate mine = measured.results.Z;
-  // The Monte Carlo's error of V changes the pressure by d(rho Z)/d(rho), which the fluctuations of V tell.
-  const double stiffness = volume.value * volume.value / (number * volume.variance);
-  const double error = std::hypot(mine.error, stiffness * volume.error / volume.value);
+  // The Monte Carlo's error of rho changes the pressure by d(rho Z)/d(rho), which the fluctuations of rho tell.
+  const double stiffness = density.value * density.value / (number * density.variance);
+  const double error = std::hypot(mine.error, stiffness * density.error / density.value);
   std::printf("%s, phi = %.4f: Z %.4f +- %.4f, Monte Carlo %.4f, together +- %.4f (%+.2f %%)\n", solid.name.c_str(),
               found, mine.value, mine.error, Z, error, 100 * (mine.value / Z - 1));
   EXPECT_EQ(measured.overlaps, 0U);
