@@ -47,11 +47,13 @@ class MonteCarlo {
   void equilibrate(int sweeps) {
     constexpr int kStretch = 20;
     for (int k = 0; k < sweeps; k += kStretch) {
-      moved_ = 0;
-      scaled_ = 0;
+      moved_ = {};
+      turned_ = {};
+      scaled_ = {};
       for (int sweep_in = 0; sweep_in < kStretch; ++sweep_in) sweep();
-      adjust(step_, moved_ / (static_cast<double>(bodies_.size()) * kStretch));
-      adjust(box_step_, scaled_ / double{kStretch * kBoxMoves});
+      adjust(step_, moved_);
+      adjust(turn_step_, turned_);
+      adjust(box_step_, scaled_);
     }
   }
 
@@ -70,8 +72,13 @@ class MonteCarlo {
     Eigen::Quaterniond rotation;
   };
 
+  /// Numbers of moves.
+  struct Tries {
+    int all = 0, accepted = 0;
+  };
+
   /// Makes a length of moves larger or smaller.
-  static void adjust(double& step, double accepted) { step *= accepted > 1.0 / 3 ? 1.1 : 0.9; }
+  static void adjust(double& step, const Tries& tries) { step *= 3 * tries.accepted > tries.all ? 1.1 : 0.9; }
 
   bool overlap(const Place& a, const Place& b) const {
     Eigen::Vector3d r = b.position - a.position;
@@ -96,16 +103,22 @@ class MonteCarlo {
   void try_body() {
     const auto k = static_cast<std::size_t>(random_.uniform() * static_cast<double>(bodies_.size()));
     Place trial = bodies_[k];
-    trial.position += step_ * inner_ * in_cube();
-    const Eigen::AngleAxisd turn(step_ * random_.uniform(-1, 1), random_.direction());
-    trial.rotation = (turn * trial.rotation).normalized();
+    Tries& tries = random_.coin() ? moved_ : turned_;
+    if (&tries == &moved_) {
+      trial.position += step_ * in_cube();
+    } else {
+      const Eigen::AngleAxisd turn(turn_step_ * random_.uniform(-1, 1), random_.direction());
+      trial.rotation = (turn * trial.rotation).normalized();
+    }
+    ++tries.all;
     if (overlaps(k, trial)) return;
     bodies_[k] = trial;
-    ++moved_;
+    ++tries.accepted;
   }
 
   /// Changes ln V by a random amount; acceptance min(1, exp[(N + 1) d ln V - P dV]).
   void try_box() {
+    ++scaled_.all;
     const double change = box_step_ * random_.uniform(-1, 1);
     const double before = volume();
     const double exponent = static_cast<double>(bodies_.size() + 1) * change - pressure_ * before * std::expm1(change);
@@ -115,7 +128,7 @@ class MonteCarlo {
     if (change < 0 && any_overlap()) {
       scale(1 / factor);
     } else {
-      ++scaled_;
+      ++scaled_.accepted;
     }
   }
 
@@ -137,8 +150,8 @@ class MonteCarlo {
   double reach_, inner_;
   double pressure_;
   double box_;
-  double step_ = 0.1, box_step_ = 0.02;
-  int moved_ = 0, scaled_ = 0;
+  double step_ = 0.1, turn_step_ = 0.1, box_step_ = 0.02;
+  Tries moved_, turned_, scaled_;
   std::vector<Place> bodies_;
   geom_test::Random random_;
 };
