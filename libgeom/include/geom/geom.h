@@ -10,6 +10,8 @@
 #include <geom/box.h>
 #include <geom/capsule.h>
 #include <geom/check_support.h>
+#include <geom/cone.h>
+#include <geom/cylinder.h>
 #include <geom/distance.h>
 #include <geom/ellipsoid.h>
 #include <geom/half_space.h>

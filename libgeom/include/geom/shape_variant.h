@@ -5,6 +5,8 @@
 
 #include <geom/box.h>
 #include <geom/capsule.h>
+#include <geom/cone.h>
+#include <geom/cylinder.h>
 #include <geom/ellipsoid.h>
 #include <geom/polyhedron.h>
 #include <geom/rounded.h>
@@ -19,7 +21,7 @@ namespace geom {
 /// behind the others, as files store the index.
 template <class... Others>
 using AnyShape = std::variant<Ellipsoid, Superellipsoid, Sphere, Capsule, Box, ConvexPolyhedron, Rounded<Box>,
-                              Rounded<ConvexPolyhedron>, Others...>;
+                              Rounded<ConvexPolyhedron>, Cylinder, Cone, Rounded<Cylinder>, Rounded<Cone>, Others...>;
 
 /// Body whose kind is chosen at run time (any_shape.h has its functions). A half-space is none (half_space.h).
 using Shape = AnyShape<>;

@@ -1,20 +1,28 @@
 #pragma once
 
-/// Shapes that are a polytope, the core, with a ball swept over it: spheres, capsules, boxes, polyhedra and rounded
-/// ones.
+/// Shapes that are a polytope or the hull of two discs, the core, with a ball swept over it: spheres, capsules, boxes,
+/// polyhedra, cylinders, cones and rounded ones.
 
 #include <geom/export.h>
 #include <geom/shape.h>
 
 #include <Eigen/Core>
 
+#include <array>
 #include <concepts>
 #include <vector>
 
 namespace geom::kernel {
 
-/// Kind of a core: a point, a segment along z, a box along the axes, or the convex hull of points.
-enum class CoreKind { point, segment, box, hull };
+/// Kind of a core: a point, a segment along z, a box along the axes, the convex hull of points, or the convex hull of
+/// two discs about z.
+enum class CoreKind { point, segment, box, hull, frustum };
+
+/// Disc about the z axis, one end of a frustum; radius 0: a point, the apex of a cone.
+struct CoreDisc {
+  double z = 0;
+  double radius = 0;
+};
 
 /// Edge of a hull: its vertices, and the faces on both sides.
 struct HullEdge {
@@ -36,6 +44,7 @@ struct CoreView {
   CoreKind kind = CoreKind::point;
   Eigen::Vector3d half = Eigen::Vector3d::Zero();  ///< half extents along the body's axes; (0, 0, l) of a segment
   const Hull* hull = nullptr;                      ///< the polyhedron of CoreKind::hull, else null
+  std::array<CoreDisc, 2> disc = {};               ///< lower and upper end of CoreKind::frustum, the lower no smaller
   double radius = 0;                               ///< radius of the swept ball
   double bounding_radius = 0;                      ///< distance of the furthest point of the core from the origin
 };
@@ -46,6 +55,9 @@ GEOM_EXPORT int support_vertex(const Hull& hull, const Eigen::Vector3d& n);
 /// Returns the support of a core, without the ball.
 GEOM_EXPORT Support core_support(const CoreView& core, const Eigen::Vector3d& n);
 
+/// Returns the Hessian of the support function of a frustum: that of the rim that is furthest along n, zero along z.
+GEOM_EXPORT Eigen::Matrix3d rim_hessian(const CoreView& core, const Eigen::Vector3d& n);
+
 /// Returns the support of a core with its ball; n != 0.
 inline Support swept_support(const CoreView& core, const Eigen::Vector3d& n) {
   Support s = core_support(core, n);
@@ -55,6 +67,9 @@ inline Support swept_support(const CoreView& core, const Eigen::Vector3d& n) {
   s.point += core.radius / length * n;
   return s;
 }
+
+/// Returns whether a point is in a frustum without a ball, or on its surface.
+GEOM_EXPORT bool frustum_contains(const CoreView& core, const Eigen::Vector3d& x);
 
 /// Integrals over a body of uniform density, about the origin.
 struct SweptMass {
@@ -77,7 +92,7 @@ GEOM_EXPORT SweptMass swept_mass(const CoreView& core);
 /// Returns the radius of a rounding. Throws std::invalid_argument unless it is within [0, kMaxSemiAxis].
 GEOM_EXPORT double checked_rounding(double radius);
 
-/// Returns the Hessian of the support function of a ball; cores add none where they have one.
+/// Returns the Hessian of the support function of a ball; polytopes add none where they have one.
 inline Eigen::Matrix3d ball_hessian(double radius, const Eigen::Vector3d& n) {
   const double length = n.norm();
   const Eigen::Vector3d unit = n / length;
@@ -88,7 +103,8 @@ inline Eigen::Matrix3d ball_hessian(double radius, const Eigen::Vector3d& n) {
 
 namespace geom {
 
-/// SupportShape that is a polytope with a ball swept over it, and says so. Pairs of them have an exact `distance`.
+/// SupportShape that is a polytope or the hull of two discs, with a ball swept over it, and says so. Pairs of them have
+/// an exact `distance`.
 template <class T>
 concept CoreShape = SupportShape<T> && requires(const T& shape) {
   { shape.core() } -> std::same_as<kernel::CoreView>;
