@@ -5,10 +5,9 @@
 
 #include <geom/box.h>
 #include <geom/capsule.h>
-#include <geom/cone.h>
-#include <geom/cylinder.h>
 #include <geom/ellipsoid.h>
 #include <geom/polyhedron.h>
+#include <geom/round_shapes.h>
 #include <geom/rounded.h>
 #include <geom/sphere.h>
 #include <geom/superellipsoid.h>

@@ -151,6 +151,11 @@ double mismatch_of(const CoreContact& c) {
 /// Mismatch, in units of the size, that is rounding.
 constexpr double kAgreement = 4e-15;
 
+/// Returns whether the bodies are apart or touch to rounding: the distance is between the gap and that of the points.
+bool apart_or_touching(const CoreContact& c, double size) {
+  return c.lower > -2 * kRoundRounding * size;
+}
+
 /// Returns the contact where the vertices of bodies that were moved apart by `way` slide to when they are moved back;
 /// `far` if that is not found. Newton's method converges to curved features of bodies that overlap, too.
 CoreContact slid_back(const RoundCore& a, const RoundCore& b, double size, CoreSimplex simplex, const Vector3d& way,
@@ -207,7 +212,7 @@ void improve(const RoundCore& a, const RoundCore& b, double size, double bound, 
     }
     bool better = take(far);
     better = take(slid_back(a, b, size, descent.simplex(), way, far)) || better;
-    if (contact.lower > 0 && bound <= kAgreement * size) return;
+    if (apart_or_touching(contact, size) && bound <= kAgreement * size) return;
     if (lower > 0) {
       RoundDescent again(a, b, size);
       if (again.run(n) && again.contact().lower > 0) (void)take(again.contact());
@@ -269,15 +274,14 @@ CoreContact overlapping(const CoreView& core_a, const RoundCore& a, const Matrix
   contact.lower = found.normal.dot(difference_vertex(a, b, found.normal).p);
   const double most = found.distance + found.error_bound;
   improve(a, b, size, std::numeric_limits<double>::infinity(), contact);
-  if (contact.lower > 0 && bound_of(contact) <= kBoundGap * size) return contact;
+  if (apart_or_touching(contact, size) && bound_of(contact) <= kBoundGap * size) return contact;
   contact.depth_error = std::max(most - contact.lower, kRoundRounding * size);
   return contact;
 }
 
 }  // namespace
 
-/// In the half-plane of the axis and the point, with the coordinates (s, z), the frustum is the area below the lower
-/// and the upper face and the side between them.
+/// The frustum is an area in the half-plane of the axis and the point, whose coordinates are s and z.
 CoreContact frustum_point_contact(const CoreView& frustum, const Matrix3d& R, const Vector3d& r) {
   const Vector3d p = R.transpose() * r;
   const double s = std::hypot(p.x(), p.y());
@@ -352,7 +356,7 @@ CoreContact round_contact(const CoreView& a, const Matrix3d& R_WA, const CoreVie
   CoreContact contact = descent.contact();
   const double bound = apart && contact.lower > 0 ? mismatch_of(contact) : std::numeric_limits<double>::infinity();
   if (!descent.closed() || !(bound <= kAgreement * size)) improve(placed_a, placed_b, size, bound, contact);
-  if (contact.lower > 0 && bound_of(contact) <= kBoundGap * size) return contact;
+  if (apart_or_touching(contact, size) && bound_of(contact) <= kBoundGap * size) return contact;
   return overlapping(a, placed_a, R_WA, b, placed_b, R_WB, size, contact.evaluations);
 }
 

@@ -1,9 +1,8 @@
 #include "shapes/format.h"
 #include "shapes/lengths.h"
 
-#include <geom/cone.h>
-#include <geom/cylinder.h>
 #include <geom/kernel/refuse.h>
+#include <geom/round_shapes.h>
 #include <geom/tolerances.h>
 
 #include <algorithm>

@@ -6,9 +6,8 @@
 
 #include <geom/box.h>
 #include <geom/capsule.h>
-#include <geom/cone.h>
-#include <geom/cylinder.h>
 #include <geom/polyhedron.h>
+#include <geom/round_shapes.h>
 #include <geom/rounded.h>
 #include <geom/solids.h>
 #include <geom/sphere.h>

@@ -1,9 +1,10 @@
 #pragma once
 
 /// Shapes that are a polytope or the hull of two discs, the core, with a ball swept over it: spheres, capsules, boxes,
-/// polyhedra, cylinders, cones and rounded ones.
+/// polyhedra, cylinders, cones and rounded ones; and points that two bodies have in common, which prove an overlap.
 
 #include <geom/export.h>
+#include <geom/pose.h>
 #include <geom/shape.h>
 
 #include <Eigen/Core>
@@ -116,4 +117,57 @@ concept PointSet = requires(const T& shape, const Eigen::Vector3d& x) {
   { shape.contains(x) } -> std::same_as<bool>;
 };
 
+namespace kernel {
+
+/// Returns whether holds(p) is true for a point p between the witness points of bodies that overlap.
+///
+/// Each body contains a part of the segment, which begins at its own witness point. Mostly each contains half of it; if
+/// a small or thin body is inside a larger one, the larger contains nearly all.
+template <class Holds>
+bool holds_between(const Eigen::Vector3d& point_a, const Eigen::Vector3d& point_b, const Holds& holds) {
+  // The ends are left out: rounding decides on which side of the surface they are.
+  for (const double share : {0.5, 0.02, 0.98, 0.25, 0.75}) {
+    if (holds(Eigen::Vector3d(point_a + share * (point_b - point_a)))) return true;
+  }
+  return false;
+}
+
+/// Returns whether a point (body frame) is in a body; false for shapes that cannot tell.
+template <class Shape>
+bool holds_point(const Shape& shape, const Eigen::Vector3d& p_B) {
+  if constexpr (PointSet<Shape>) {
+    return shape.contains(p_B);
+  } else if constexpr (ImplicitSurface<Shape>) {
+    return shape.value(p_B) <= 0;
+  } else {
+    return false;
+  }
+}
+
+/// Returns whether a point (world frame) is in both bodies; false for shapes without an equation, for which it is
+/// unknown.
+template <class ShapeA, class ShapeB>
+bool both_contain(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const Pose& X_WB, const Eigen::Vector3d& p_W) {
+  return holds_point(a, X_WA.to_body(p_W)) && holds_point(b, X_WB.to_body(p_W));
+}
+
+/// Returns whether both bodies contain the point between their centres that deeply overlapping bodies are likely to
+/// share.
+template <class ShapeA, class ShapeB>
+bool share_the_middle(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const Pose& X_WB) {
+  const double r_a = a.inscribed_radius();
+  const double r_b = b.inscribed_radius();
+  return both_contain(a, X_WA, b, X_WB, Eigen::Vector3d((r_b * X_WA.position() + r_a * X_WB.position()) / (r_a + r_b)));
+}
+
+/// Returns whether a point inside both bodies is found, between the witness points of an answer or between the centres.
+/// True is certain, false is not.
+template <class ShapeA, class ShapeB>
+bool share_a_point(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const Pose& X_WB, const Eigen::Vector3d& point_a,
+                   const Eigen::Vector3d& point_b) {
+  const auto holds = [&](const Eigen::Vector3d& p_W) { return both_contain(a, X_WA, b, X_WB, p_W); };
+  return holds_between(point_a, point_b, holds) || share_the_middle(a, X_WA, b, X_WB);
+}
+
+}  // namespace kernel
 }  // namespace geom
