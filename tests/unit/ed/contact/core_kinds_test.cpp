@@ -77,7 +77,8 @@ TEST(CoreKinds, HaveMomentsAndSizes) {
   EXPECT_EQ(
       refused,
       "uniform_species: the frame of shape polyhedron of 4 vertices and 4 faces is not that of its principal axes, "
-      "from its centre of mass; accepted: the points of geom::ConvexPolyhedron::in_principal_frame");
+      "from its centre of mass; accepted: the points of geom::ConvexPolyhedron::in_principal_frame, or "
+      "geom::Cone::in_principal_frame");
 }
 
 /// Cylinders fall flat on a face, and a cone's apex meets it.
