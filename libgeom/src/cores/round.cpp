@@ -40,18 +40,20 @@ class RoundDescent {
       last_ = simplex;
       reduce_to_closest(simplex);
       if (simplex.inside) return false;
-      if (!(simplex.squared <= kSameSquare * best_.squared)) break;
-      idle = simplex.squared < best_.squared || contact_.lower > lower ? 0 : idle + 1;
-      best_ = simplex;
+      // Rounding of the points, not of their distance, decides where the bodies nearly touch: sliding tells more.
+      const bool longer = !(simplex.squared <= kSameSquare * best_.squared);
       const double length = std::sqrt(simplex.squared);
+      if (longer && !(length <= std::sqrt(best_.squared) + kUnresolved * size_)) break;
+      if (!longer) {
+        idle = simplex.squared < best_.squared || contact_.lower > lower ? 0 : idle + 1;
+        best_ = simplex;
+      }
       if (!(length > tolerance_)) return false;
       const Vector3d closest = simplex.closest / length;
       // The normal that the vertices belong to is right where the bodies nearly touch, the other one far away.
-      if (!take_slid(simplex, closest, n)) {
-        Vector3d m = closest;
-        (void)take_slid(simplex, closest, m);
-        n = m;
-      }
+      if (take_slid(simplex, closest, n)) continue;
+      n = closest;
+      if (!take_slid(simplex, closest, n) && longer) break;
     }
     return true;
   }
@@ -94,6 +96,7 @@ class RoundDescent {
   static constexpr int kMostSteps = 200;
   static constexpr int kPatience = 4;
   static constexpr double kSameSquare = 1 + 1e-14;
+  static constexpr double kUnresolved = 1e-12;
 
   /// Returns whether a vertex is in the simplex, to rounding.
   bool known(const CoreSimplex& simplex, const DifferenceVertex& v) const {
