@@ -12,6 +12,7 @@ hardbody_test(geom_unit_test unit
   unit/geom/cores/capsule_smooth_test.cpp
   unit/geom/cores/exact_side_test.cpp
   unit/geom/cores/half_space_test.cpp
+  unit/geom/cores/round_distance_test.cpp
   unit/geom/cores/swept_mass_test.cpp
   unit/geom/cores/polyhedron_test.cpp
   unit/geom/contact_elements_test.cpp
@@ -26,6 +27,7 @@ hardbody_test(geom_unit_test unit
   unit/geom/newton_test.cpp
   unit/geom/obb_test.cpp
   unit/geom/perram_wertheim_test.cpp
+  unit/geom/any/placed_test.cpp
   unit/geom/pose_test.cpp
   unit/geom/queries_test.cpp
   unit/geom/ray_cast_test.cpp
@@ -33,7 +35,8 @@ hardbody_test(geom_unit_test unit
   unit/geom/solids_test.cpp
   unit/geom/sphere_search_test.cpp
   unit/geom/superellipsoid_test.cpp
-  unit/geom/user_shape_test.cpp)
+  unit/geom/user_shape_test.cpp
+  unit/geom/cores/warm_starts_test.cpp)
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64)$")
   find_package(hwy 1.0 REQUIRED CONFIG)
   target_sources(geom_unit_test PRIVATE unit/geom/batch/batch_roots_test.cpp unit/geom/batch/batch_roots_portable.cpp

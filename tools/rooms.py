@@ -21,7 +21,7 @@ LIBRARIES = {
     "libgeom/src": {
         "order": "shapes < dual < norm, cores < paper, batch < any",
         "public": ("geom", {
-            "shapes": "box capsule check_support ellipsoid export mass obb polyhedron pose shape solids sphere superellipsoid tolerances "
+            "shapes": "box capsule check_support ellipsoid export mass obb polyhedron pose round_shapes shape solids sphere superellipsoid tolerances "
                       "kernel/core kernel/eigen_layout kernel/hessian_sum kernel/lane_norms kernel/lanes kernel/mass_impl kernel/nested_norm kernel/norm_bodies kernel/refuse "
                       "kernel/small_solve",
             "dual": "distance kernel/distance_impl kernel/dual_newton kernel/perram_wertheim kernel/simplex_descent "
@@ -30,7 +30,7 @@ LIBRARIES = {
             "cores": "rounded shape_variant kernel/core_simplex",
             "paper": "newton kernel/newton_equations kernel/newton_impl",
             "batch": "batch kernel/records-inl",
-            "any": "any_shape half_space kernel/any_body queries kernel/queries_impl",
+            "any": "any_convex any_shape half_space kernel/any_body queries kernel/queries_impl",
         }),
     },
     "libed/src": {

@@ -1,5 +1,5 @@
 /// The table data/accuracy/cores.csv: errors of distance() by pair of kinds, for spheres, capsules, boxes, polyhedra,
-/// rounded and smooth bodies. tools/accuracy writes it.
+/// cylinders, cones and rounded ones. tools/accuracy writes it.
 ///
 /// Known answers: features of both bodies (vertices, edges, faces; edges parallel in half of the pairs) are put into
 /// parallel planes, apart by a gap that is log-uniform from 1e-10 to 10. HARDBODY_FULL=1: 1,000,000 pairs a row instead
@@ -52,6 +52,8 @@ double drawn_length(Random& random) {
 auto all_kinds() {
   const auto box = [](Random& r) { return Box({drawn_length(r), drawn_length(r), drawn_length(r)}); };
   const auto hull = [](Random& r) { return geom_test::random_polyhedron(r.coin() ? 8 : 32, r); };
+  const auto cylinder = [](Random& r) { return Cylinder(drawn_length(r), drawn_length(r)); };
+  const auto cone = [](Random& r) { return Cone(drawn_length(r), drawn_length(r)); };
   return std::tuple{
       kind("sphere", geom_test::kEllipsoidAccuracy, [](Random& r) { return Sphere(drawn_length(r)); }),
       kind("capsule", geom_test::kEllipsoidAccuracy,
@@ -65,6 +67,12 @@ auto all_kinds() {
            [&](Random& r) { return Rounded<Box>(box(r), r.log_uniform(1e-3, 1)); }),
       kind("rounded polyhedron", geom_test::kEllipsoidAccuracy,
            [&](Random& r) { return Rounded<ConvexPolyhedron>(hull(r), r.log_uniform(1e-3, 1)); }),
+      kind("cylinder", geom_test::kEllipsoidAccuracy, cylinder),
+      kind("cone", geom_test::kEllipsoidAccuracy, cone),
+      kind("rounded cylinder", geom_test::kEllipsoidAccuracy,
+           [&](Random& r) { return Rounded<Cylinder>(cylinder(r), r.log_uniform(1e-3, 1)); }),
+      kind("rounded cone", geom_test::kEllipsoidAccuracy,
+           [&](Random& r) { return Rounded<Cone>(cone(r), r.log_uniform(1e-3, 1)); }),
   };
 }
 

@@ -19,10 +19,24 @@ CAPSULE = {"kind": "capsule", "half_length": 2, "radius": 0.5}
 BOX = {"kind": "box", "half_extents": [1, 2, 3]}
 HULL = {"kind": "polyhedron", "vertices": CORNERS}
 CUBE = {"kind": "polyhedron", "solid": "cube", "circumradius": math.sqrt(3)}
+CYLINDER = {"kind": "cylinder", "half_length": 2, "radius": 0.5}
+CONE = {"kind": "cone", "height": 2, "radius": 0.8}
 FLOOR = {"kind": "half_space"}
 BALL = {"kind": "ellipsoid", "semi_axes": [1, 1, 1]}
 BARREL = {"kind": "superellipsoid", "semi_axes": [1, 1, 1], "exponents": [1, 1]}
-ALL = [SPHERE, CAPSULE, BOX, {**BOX, "rounding": 0.25}, HULL, {**HULL, "rounding": 0.25}, CUBE, BALL, BARREL]
+ALL = [
+    SPHERE,
+    CAPSULE,
+    BOX,
+    {**BOX, "rounding": 0.25},
+    HULL,
+    {**HULL, "rounding": 0.25},
+    CUBE,
+    CYLINDER,
+    {**CYLINDER, "rounding": 0.25},
+    BALL,
+    BARREL,
+]
 
 
 def body(shape, position=(0, 0, 0), **more):
@@ -33,6 +47,7 @@ def reach(shape, axis):
     """Extent along body x, y or z."""
     size = {
         "sphere": lambda s: s["radius"],
+        "cylinder": lambda s: s["half_length"] if axis == 2 else s["radius"],
         "capsule": lambda s: s["radius"] + (s["half_length"] if axis == 2 else 0),
         "box": lambda s: s["half_extents"][axis],
         "polyhedron": lambda s: max(v[axis] for v in s["vertices"]) if "vertices" in s else 1,
@@ -77,6 +92,10 @@ class ShapeLines(unittest.TestCase):
             (3 - 1 - R2, {"a": body(cube, orientation=turned), "b": body(cube, [3, 0, 0])}),
             (2 * R2 - 1, {"a": body(CAPSULE, [2, 2, 2]), "b": body({**CAPSULE, "half_length": 0})}),
             (1.5, {"a": body({"kind": "polyhedron", "solid": "octahedron"}), "b": body(SPHERE, [3, 0, 0])}),
+            (2.5, {"a": body(CONE), "b": body(CYLINDER, [0.25, 0, 6])}),
+            (0.25, {"a": body({**CONE, "base": -1.25, "rounding": 0.25}), "b": body(SPHERE, [0, 0, 1.75])}),
+            (5 - 2 - 0.8, {"a": body(CONE), "b": body(CYLINDER, [5, 0, -0.5], orientation=[R2 / 2, 0, R2 / 2, 0])}),
+            (R2, {"a": body(CYLINDER), "b": body(CYLINDER, [2, 0, 5])}),
             (
                 3 - 1 / math.sqrt(3) - 0.5,
                 {"a": body({"kind": "polyhedron", "solid": "octahedron"}), "b": body(SPHERE, [3 / math.sqrt(3)] * 3)},
@@ -129,7 +148,7 @@ class ShapeLines(unittest.TestCase):
 
     def test_bad_shapes(self):
         for shape, *words in [
-            ({"kind": "ball"}, 'a.shape.kind is "ball"', '"sphere", "capsule", "box", "polyhedron", "half_space"'),
+            ({"kind": "ball"}, 'a.shape.kind is "ball"', '"box", "polyhedron", "cylinder", "cone", "half_space"'),
             ({"kind": 3}, "a.shape.kind is 3"),
             ({"kind": "sphere"}, "a.shape.radius is missing; accepted: a positive number"),
             ({"kind": "sphere", "radius": 0}, "a.shape.radius is 0 (Sphere: radius is 0)"),
@@ -147,6 +166,14 @@ class ShapeLines(unittest.TestCase):
             ({**BOX, "rounding": -0.5}, "a.shape.rounding is -0.5; accepted: a number of at least 0"),
             ({**BOX, "rounding": 1e60}, "a.shape.rounding is 1e+60"),
             ({**BOX, "half_extent": 1}, "unknown key a.shape.half_extent, did you mean a.shape.half_extents?"),
+            ({"kind": "cylinder", "radius": 1}, "a.shape.half_length is missing; accepted: a positive number"),
+            ({**CYLINDER, "half_length": 0}, "a.shape is", "Cylinder: half-length is 0"),
+            ({**CYLINDER, "radius": 1e5}, "a.shape is", "ratio of radius to half-length"),
+            ({**CYLINDER, "rounding": -1}, "a.shape.rounding is -1; accepted: a number of at least 0"),
+            ({**CYLINDER, "height": 1}, "unknown key a.shape.height", "kind, half_length, radius, rounding"),
+            ({"kind": "cone", "radius": 1}, "a.shape.height is missing"),
+            ({**CONE, "height": -1}, "a.shape is", "Cone: height is -1"),
+            ({**CONE, "base": 0.5}, "a.shape is", "Cone: base is 0.5", "accepted: more than -2, less than 0"),
             ({"kind": "polyhedron"}, "a.shape is", '"vertices"', '"solid"'),
             ({**HULL, "solid": "cube"}, "a.shape is", '"vertices"', '"solid"'),
             ({"kind": "polyhedron", "vertices": 3}, "a.shape.vertices is 3", "four points"),

@@ -149,6 +149,17 @@ TestBody polyhedron(Random& random) {
   return test_body("polyhedron", s, s.volume(), s.inertia(1), directions);
 }
 
+TestBody cylinder(Random& random) {
+  const geom::Cylinder s(random.log_uniform(0.1, 2), random.uniform(0.2, 1));
+  return test_body("cylinder", s, s.volume(), s.inertia(1), {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}});
+}
+
+TestBody cone(Random& random) {
+  const geom::Cone s(random.log_uniform(0.3, 2), random.uniform(0.2, 1));
+  const Vector3d side = Vector3d(s.height(), 0, s.radius()).normalized();
+  return test_body("cone", s, s.volume(), s.inertia(1), {{0, 0, 1}, {0, 0, -1}, {1, 0, 0}, side});
+}
+
 TestBody ellipsoid(Random& random) {
   const geom::Ellipsoid s({random.uniform(0.4, 1), random.uniform(0.4, 1), random.uniform(0.4, 1)});
   return test_body("ellipsoid", geom_test::WrappedEllipsoid{s}, s.volume(), s.inertia(1), {{1, 0, 0}, {0, 0, 1}});
@@ -386,6 +397,18 @@ TEST(ConvexContact, RoundedCubes) {
 TEST(ConvexContact, Polyhedra) {
   expect_none_missed(search("polyhedra", polyhedron, polyhedron));
 }
+/// Returns by how much fewer pairs with rims are drawn in the default form: the reference asks for 10,000 distances a
+/// pair.
+int divisor_of_rims() {
+  return full_form() ? 1 : 5;
+}
+
+TEST(ConvexContact, Cylinders) {
+  expect_none_missed(search("cylinders", cylinder, cylinder, divisor_of_rims()));
+}
+TEST(ConvexContact, Cones) {
+  expect_none_missed(search("cones", cone, cone, divisor_of_rims()));
+}
 TEST(ConvexContact, UsersSpherocylinders) {
   expect_none_missed(search("users' spherocylinders", spherocylinder, spherocylinder));
 }
@@ -394,7 +417,8 @@ TEST(ConvexContact, UsersEllipsoids) {
 }
 
 TEST(ConvexContact, MixedKinds) {
-  const std::array<Draw, 8> draws{sphere, capsule, spherocylinder, box, cube, rounded_cube, polyhedron, ellipsoid};
+  const std::array<Draw, 10> draws{sphere,       capsule,    spherocylinder, box,  cube,
+                                   rounded_cube, polyhedron, cylinder,       cone, ellipsoid};
   const auto any = [&](Random& random) {
     return draws[static_cast<std::size_t>(random.uniform() * draws.size())](random);
   };

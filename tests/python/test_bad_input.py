@@ -129,7 +129,7 @@ def test_bad_arguments_are_named(call):
         ("distance_many", dict(shape_of=[0]), "shape_of has 1 rows; accepted: as many as positions, which has 2"),
         ("distance_many", dict(shapes=[E] * 3, shape_of=None), "shapes has 3 elements for 2 bodies"),
         ("distance_many", dict(shapes=[E, X]), "shapes[1] is of type Pose; accepted: Ellipsoid, Superellipsoid"),
-        ("distance_many", dict(shapes="E"), "RoundedBox, RoundedPolyhedron, or a list of them"),
+        ("distance_many", dict(shapes="E"), "RoundedCylinder, RoundedCone, or a list of them"),
         ("distance_many", dict(shapes=np.array([E, S])), "shapes is of type ndarray; accepted: Ellipsoid, Superelli"),
         (
             "contains_many",

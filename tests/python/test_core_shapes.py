@@ -1,4 +1,4 @@
-"""Spheres, capsules, boxes, polyhedra, rounded shapes and half-spaces: known answers, copies, bad input."""
+"""Shapes with faces, edges, rims and caps, and half-spaces: known answers, copies, bad input."""
 
 import math
 import pickle
@@ -20,10 +20,12 @@ KINDS = [
     HULL,
     hb.Rounded(BOX, 0.3),
     hb.Rounded(HULL, 0.3),
+    hb.Cylinder(2, 0.5),
+    hb.Rounded(hb.Cylinder(0.5, 2), 0.3),
     hb.Ellipsoid([1, 2, 3]),
     hb.Superellipsoid([1, 2, 3], 0.5, 0.7),
 ]
-CORES = KINDS[:6]
+CORES = KINDS[:8]
 FAR = hb.Pose([9, 0, 0])
 
 
@@ -40,6 +42,29 @@ def test_attributes():
     assert (rounded.shape, rounded.radius, rounded.min_curvature_radius) == (BOX, 0.3, 0.3)
     steiner = 8 + 0.3 * 28 + math.pi * 0.09 * 7 + 4 / 3 * math.pi * 0.027
     assert rounded.volume == pytest.approx(steiner, rel=1e-14)
+
+
+def test_cylinders_and_cones():
+    cylinder = hb.Cylinder(2, 3)
+    assert (cylinder.half_length, cylinder.radius, cylinder.inscribed_radius, cylinder.symmetry_axis) == (2, 3, 2, 2)
+    assert cylinder.volume == pytest.approx(36 * math.pi, rel=1e-15)
+    np.testing.assert_allclose(cylinder.inertia(12), [43, 43, 54], rtol=1e-15)
+    cone = hb.Cone(4, 3)
+    assert (cone.height, cone.radius, cone.base, cone.is_in_principal_frame) == (4, 3, -1, True)
+    assert hb.Cone(4, 3, -2).base == -2
+    np.testing.assert_array_equal(hb.Cone(4, 3, -2).center_of_mass, [0, 0, -1])
+    inner = hb.Cone.in_principal_frame(4, 3, rounding=0.5)
+    rounded = hb.Rounded(inner, 0.5)
+    assert (type(rounded), rounded.shape, rounded.is_in_principal_frame) == (hb.RoundedCone, inner, True)
+    assert not hb.Rounded(cone, 0.5).is_in_principal_frame
+    for shape in (cylinder, cone, rounded, hb.Rounded(cylinder, 0.5)):
+        assert pickle.loads(pickle.dumps(shape)) == shape
+        assert eval(repr(shape), {"hb": hb, **vars(hb)}) == shape
+    # A cone stands on a cylinder, its base parallel to the face, and lies 1 above it.
+    assert hb.distance(cylinder, hb.Pose(), cone, hb.Pose([0.5, 0.25, 4])).distance == 1
+    assert hb.distance(cone, hb.Pose(), hb.Sphere(1), hb.Pose([0, 0, 7])).distance == 3
+    hit = hb.time_of_contact(cylinder, hb.Motion(), cone, hb.Motion(hb.Pose([0, 0, 7]), velocity=[0, 0, -2]), 10)
+    assert hit.time == pytest.approx(2, abs=1e-12)
 
 
 def test_polyhedra_have_vertices_and_faces():
@@ -216,7 +241,12 @@ def test_times_of_contact(a):
         (lambda: hb.ConvexPolyhedron.solid(3), "name is 3"),
         (lambda: hb.ConvexPolyhedron.solid("cube", -1), "circumradius is -1"),
         (lambda: hb.ConvexPolyhedron.in_principal_frame(CORNERS, rounding=-1), "radius is -1"),
-        (lambda: hb.Rounded(hb.Sphere(1), 0.5), "shape is of type Sphere; accepted: Box, ConvexPolyhedron"),
+        (lambda: hb.Rounded(hb.Sphere(1), 0.5), "shape is of type Sphere; accepted: Box, ConvexPolyhedron, Cylinder, Cone"),
+        (lambda: hb.Cylinder(0, 1), "half_length is 0"),
+        (lambda: hb.Cylinder(1, 1e5), "ratio of radius to half-length"),
+        (lambda: hb.Cone(1, math.nan), "radius is nan"),
+        (lambda: hb.Cone(1, 1, 0.5), "base is 0.5; accepted: more than -1, less than 0"),
+        (lambda: hb.Cone.in_principal_frame(1, 1, -1), "Rounded: radius is -1"),
         (lambda: hb.Rounded(BOX, -0.5), "Rounded: radius is -0.5"),
         (lambda: hb.RoundedBox(HULL, 0.5), "shape is"),
         (lambda: hb.HalfSpace([0, 0, 0]), "normal is"),

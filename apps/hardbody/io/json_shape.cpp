@@ -93,6 +93,19 @@ geom::Shape read_polyhedron(const JsonMember& shape) {
   return rounded(source.checked([&] { return geom::ConvexPolyhedron(points); }), shape);
 }
 
+geom::Shape read_cylinder(const JsonMember& shape) {
+  const double half_length = length(shape, "half_length");
+  const double radius = length(shape, "radius");
+  return rounded(shape.checked([&] { return geom::Cylinder(half_length, radius); }), shape);
+}
+
+geom::Shape read_cone(const JsonMember& shape) {
+  const double height = length(shape, "height");
+  const double radius = length(shape, "radius");
+  const double base = shape.has("base") ? shape.at("base", "a negative number").number() : -0.25 * height;
+  return rounded(shape.checked([&] { return geom::Cone(height, radius, base); }), shape);
+}
+
 template <ShapeKind kind>
 geom::Shape read_smooth(const JsonMember& shape) {
   return read_shape(shape, kind);
@@ -112,6 +125,8 @@ constexpr JsonKind kJsonKinds[] = {
     {"capsule", read_capsule, {"kind", "half_length", "radius"}},
     {"box", read_box, {"kind", "half_extents", "rounding"}},
     {"polyhedron", read_polyhedron, {"kind", "vertices", "solid", "circumradius", "rounding"}},
+    {"cylinder", read_cylinder, {"kind", "half_length", "radius", "rounding"}},
+    {"cone", read_cone, {"kind", "height", "radius", "base", "rounding"}},
 };
 
 std::string kind_names(const char* also) {
@@ -143,6 +158,12 @@ Json json_of(const geom::ConvexPolyhedron& s) {
   Json vertices = Json::array();
   for (int k = 0; k < s.vertex_count(); ++k) vertices.push_back(to_json(s.vertex(k)));
   return {{"kind", "polyhedron"}, {"vertices", std::move(vertices)}};
+}
+Json json_of(const geom::Cylinder& s) {
+  return {{"kind", "cylinder"}, {"half_length", s.half_length()}, {"radius", s.radius()}};
+}
+Json json_of(const geom::Cone& s) {
+  return {{"kind", "cone"}, {"height", s.height()}, {"radius", s.radius()}, {"base", s.base()}};
 }
 template <class Inner>
 Json json_of(const geom::Rounded<Inner>& s) {

@@ -42,6 +42,10 @@ Shape: TypeAlias = (
     | _core.ConvexPolyhedron
     | _core.RoundedBox
     | _core.RoundedPolyhedron
+    | _core.Cylinder
+    | _core.Cone
+    | _core.RoundedCylinder
+    | _core.RoundedCone
 )
 Shapes: TypeAlias = Shape | Sequence[Shape]
 BodyShape: TypeAlias = Shape | _core.CustomShape | SupportShape

@@ -61,6 +61,18 @@ struct Blank<geom::ConvexPolyhedron> {
     return geom::ConvexPolyhedron(std::array<Eigen::Vector3d, 4>{{{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}}});
   }
 };
+/// Makes a cylinder to be overwritten.
+template <>
+struct Blank<geom::Cylinder> {
+  /// Makes the object.
+  static geom::Cylinder make() { return {1, 1}; }
+};
+/// Makes a cone to be overwritten.
+template <>
+struct Blank<geom::Cone> {
+  /// Makes the object.
+  static geom::Cone make() { return {1, 1}; }
+};
 /// Makes a rounded shape to be overwritten.
 template <class Inner>
 struct Blank<geom::Rounded<Inner>> {
@@ -133,6 +145,27 @@ inline void fields(Reader& archive, geom::ConvexPolyhedron& shape) {
   std::vector<Eigen::Vector3d> vertices;
   for (auto k = archive.value<std::int64_t>(); k > 0; --k) vertices.push_back(archive.value<Eigen::Vector3d>());
   shape = geom::ConvexPolyhedron(vertices);
+}
+
+/// Writes a shape.
+inline void fields(Writer& archive, const geom::Cylinder& shape) {
+  archive(shape.half_length(), shape.radius());
+}
+/// Reads a shape.
+inline void fields(Reader& archive, geom::Cylinder& shape) {
+  const auto half_length = archive.value<double>();
+  shape = geom::Cylinder(half_length, archive.value<double>());
+}
+
+/// Writes a shape.
+inline void fields(Writer& archive, const geom::Cone& shape) {
+  archive(shape.height(), shape.radius(), shape.base());
+}
+/// Reads a shape.
+inline void fields(Reader& archive, geom::Cone& shape) {
+  const auto height = archive.value<double>();
+  const auto radius = archive.value<double>();
+  shape = geom::Cone(height, radius, archive.value<double>());
 }
 
 /// Writes a shape.

@@ -138,7 +138,7 @@ Species uniform_species(const BodyShape& shape, double mass) {
       if (!s.is_in_principal_frame()) {
         throw std::invalid_argument("uniform_species: the frame of shape " + describe(shape) +
                                     " is not that of its principal axes, from its centre of mass; accepted: the points "
-                                    "of geom::ConvexPolyhedron::in_principal_frame");
+                                    "of geom::ConvexPolyhedron::in_principal_frame, or geom::Cone::in_principal_frame");
       }
     }
     if constexpr (requires { s.inertia(mass); }) return s.inertia(mass);

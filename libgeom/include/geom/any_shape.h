@@ -19,7 +19,7 @@
 
 namespace geom {
 
-/// Returns `distance` of the shapes inside, with one dispatch a query: one case for all polytopes with balls.
+/// Returns `distance` of the shapes inside, with one dispatch a query: one case for all CoreShapes.
 GEOM_EXPORT DistanceResult distance(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB,
                                     const DistanceOptions& options = {});
 
@@ -46,8 +46,8 @@ GEOM_EXPORT MassProperties mass_properties(const Shape& shape);
 GEOM_EXPORT std::string description(const Shape& shape);
 
 /// Returns whether the paper's equations are those of the shape: of ellipsoids (spheres too) and superellipsoids. They
-/// need f(x) = 0 with second derivatives, which polytopes do not have, and which jump where the caps of a capsule
-/// begin.
+/// need f(x) = 0 with second derivatives, which bodies with edges do not have, and which jump where the caps of a
+/// capsule begin.
 GEOM_EXPORT bool has_equations(const Shape& shape);
 
 /// Returns the smallest box along the body's own axes (obb.h).

@@ -5,6 +5,7 @@
 
 /// @namespace geom libgeom: distances of smooth convex bodies, and seeds from other libraries.
 
+#include <geom/any_convex.h>
 #include <geom/any_shape.h>
 #include <geom/batch.h>
 #include <geom/box.h>
@@ -19,6 +20,7 @@
 #include <geom/polyhedron.h>
 #include <geom/pose.h>
 #include <geom/queries.h>
+#include <geom/round_shapes.h>
 #include <geom/rounded.h>
 #include <geom/shape.h>
 #include <geom/shape_variant.h>

@@ -7,6 +7,7 @@
 #include <geom/capsule.h>
 #include <geom/ellipsoid.h>
 #include <geom/polyhedron.h>
+#include <geom/round_shapes.h>
 #include <geom/rounded.h>
 #include <geom/sphere.h>
 #include <geom/superellipsoid.h>
@@ -19,7 +20,7 @@ namespace geom {
 /// behind the others, as files store the index.
 template <class... Others>
 using AnyShape = std::variant<Ellipsoid, Superellipsoid, Sphere, Capsule, Box, ConvexPolyhedron, Rounded<Box>,
-                              Rounded<ConvexPolyhedron>, Others...>;
+                              Rounded<ConvexPolyhedron>, Cylinder, Cone, Rounded<Cylinder>, Rounded<Cone>, Others...>;
 
 /// Body whose kind is chosen at run time (any_shape.h has its functions). A half-space is none (half_space.h).
 using Shape = AnyShape<>;

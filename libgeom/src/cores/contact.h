@@ -22,6 +22,8 @@ struct CoreContact {
   Eigen::Vector3d n = Eigen::Vector3d::UnitX();  ///< unit normal from A to B
   double lower = -std::numeric_limits<double>::infinity();
   int evaluations = 1;
+  /// Bound of how much larger the gap of overlapping bodies across another normal is; 0: the depth is exact.
+  double depth_error = 0;
 };
 
 /// Returns how much larger the distance of the points is than the lower bound; of overlapping bodies, how far the
@@ -33,7 +35,7 @@ inline double bound_of(const CoreContact& c) {
 
 /// Returns the contact with A and B exchanged, for r = p_AB of the first order.
 inline CoreContact exchanged(const CoreContact& c, const Eigen::Vector3d& r) {
-  return {c.b + r, c.a + r, -c.n, c.lower, c.evaluations};
+  return {c.b + r, c.a + r, -c.n, c.lower, c.evaluations, c.depth_error};
 }
 
 /// Returns the vectors' product with an error of few ulps of each coordinate, also if they are nearly parallel: each
@@ -61,8 +63,15 @@ CoreContact segment_contact(const Eigen::Vector3d& axis_a, double half_a, const 
 /// Returns the closest points of a box, as A, and a point at r from its centre.
 CoreContact box_point_contact(const Eigen::Matrix3d& axes, const Eigen::Vector3d& half, const Eigen::Vector3d& r);
 
-/// Returns the closest points of any two cores that are not both points or segments.
+/// Returns the closest points of any two polytopes that are not both points or segments.
 CoreContact polytope_contact(const CoreView& a, const Eigen::Matrix3d& R_WA, const CoreView& b,
                              const Eigen::Matrix3d& R_WB, const Eigen::Vector3d& r, const Eigen::Vector3d& start);
+
+/// Returns the closest points of a frustum, as A, and a point at r from its origin, in closed form.
+CoreContact frustum_point_contact(const CoreView& frustum, const Eigen::Matrix3d& R, const Eigen::Vector3d& r);
+
+/// Returns the closest points of two cores of which at least one is a frustum, and none is a point.
+CoreContact round_contact(const CoreView& a, const Eigen::Matrix3d& R_WA, const CoreView& b,
+                          const Eigen::Matrix3d& R_WB, const Eigen::Vector3d& r, const Eigen::Vector3d& start);
 
 }  // namespace geom::kernel

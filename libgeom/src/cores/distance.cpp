@@ -20,6 +20,11 @@ CoreContact contact_of(const CoreView& a, const Eigen::Matrix3d& R_WA, const Cor
   if (a.kind == CoreKind::point && b.kind == CoreKind::box) {
     return exchanged(box_point_contact(R_WB, b.half, -r), r);
   }
+  if (a.kind == CoreKind::frustum || b.kind == CoreKind::frustum) {
+    if (b.kind == CoreKind::point) return frustum_point_contact(a, R_WA, r);
+    if (a.kind == CoreKind::point) return exchanged(frustum_point_contact(b, R_WB, -r), r);
+    return round_contact(a, R_WA, b, R_WB, r, start);
+  }
   return polytope_contact(a, R_WA, b, R_WB, r, start);
 }
 
@@ -34,7 +39,10 @@ DistanceResult core_distance(const CoreView& a, const Pose& X_WA, const CoreView
   result.iterations = c.evaluations;
   const double size = r.norm() + a.bounding_radius + b.bounding_radius;
   const double bound = bound_of(c);
-  if (!(bound <= kBoundGap * size)) return result;
+  // Where the depth is known by a search, the points that belong to it may be off by more.
+  if (!(bound <= (c.depth_error > 0 ? kWidestGap : kBoundGap) * size) || !(c.depth_error <= kWidestDepthGap * size)) {
+    return result;
+  }
   result.distance = (c.lower - a.radius) - b.radius;
   result.normal = c.n;
   const Vector3d gap = c.b - c.a;
@@ -42,7 +50,7 @@ DistanceResult core_distance(const CoreView& a, const Pose& X_WA, const CoreView
   result.point_a = X_WA.position() + (c.a + a.radius * c.n + 0.5 * y);
   result.point_b = result.point_a + result.distance * c.n;
   result.residual = y.norm();
-  result.error_bound = bound;
+  result.error_bound = c.depth_error > 0 ? c.depth_error : bound;
   result.status = result.distance >= 0 ? DistanceStatus::separated : DistanceStatus::overlapping;
   return result;
 }
@@ -56,6 +64,7 @@ bool core_contains(const CoreView& core, const Vector3d& x) {
     }
     return true;
   }
+  if (core.radius == 0 && core.kind == CoreKind::frustum) return frustum_contains(core, x);
   return core_distance({}, Pose::translation(x), core, Pose(), {}).distance <= 0;
 }
 

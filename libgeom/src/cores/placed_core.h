@@ -63,7 +63,8 @@ class PlacedCore {
 };
 
 /// Returns the point of B - A that is nearest along n: n.p is the gap between the tangent planes.
-inline DifferenceVertex difference_vertex(const PlacedCore& a, const PlacedCore& b, const Eigen::Vector3d& n) {
+template <class Placed>
+DifferenceVertex difference_vertex(const Placed& a, const Placed& b, const Eigen::Vector3d& n) {
   const CoreVertex va = a.vertex(n);
   const CoreVertex vb = b.vertex(-n);
   return {vb.x - va.x, va.x, vb.x, va.id, vb.id};

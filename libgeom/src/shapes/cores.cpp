@@ -1,4 +1,5 @@
 #include "shapes/format.h"
+#include "shapes/lengths.h"
 
 #include <geom/box.h>
 #include <geom/capsule.h>
@@ -18,18 +19,6 @@ namespace geom {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-namespace {
-
-/// Throws std::invalid_argument unless a length is within [least, kMaxSemiAxis].
-void check_length(const char* what, double x, double least) {
-  if (!(x >= least && x <= kMaxSemiAxis)) {
-    kernel::refuse(std::string(what) + " is " + kernel::shown(x) + "; accepted: " + kernel::shown(least) + " to " +
-                   kernel::shown(kMaxSemiAxis));
-  }
-}
-
-}  // namespace
-
 int kernel::support_vertex(const Hull& hull, const Vector3d& n) {
   const Eigen::Index count = hull.vertices.rows();
   const double* x = hull.vertices.data();
@@ -47,6 +36,24 @@ int kernel::support_vertex(const Hull& hull, const Vector3d& n) {
   return best;
 }
 
+namespace {
+
+/// Returns the disc of a frustum that reaches furthest along n, `across` the part of n across the axis.
+const kernel::CoreDisc& furthest_disc(const kernel::CoreView& core, const Vector3d& n, double across) {
+  const auto& [low, high] = core.disc;
+  const double rise = (high.z - low.z) * n.z() + (high.radius - low.radius) * across;
+  return std::signbit(rise) ? low : high;
+}
+
+}  // namespace
+
+Matrix3d kernel::rim_hessian(const CoreView& core, const Vector3d& n) {
+  const double across = std::hypot(n.x(), n.y());
+  if (!(across > 0)) return Matrix3d::Zero();
+  const Vector3d along(-n.y() / across, n.x() / across, 0);
+  return furthest_disc(core, n, across).radius / across * along * along.transpose();
+}
+
 Support kernel::core_support(const CoreView& core, const Vector3d& n) {
   switch (core.kind) {
     case CoreKind::point:
@@ -62,12 +69,18 @@ Support kernel::core_support(const CoreView& core, const Vector3d& n) {
       const Vector3d vertex = core.hull->vertices.row(support_vertex(*core.hull, n)).transpose();
       return {n.dot(vertex), vertex};
     }
+    case CoreKind::frustum: {
+      const double across = std::hypot(n.x(), n.y());
+      const CoreDisc& disc = furthest_disc(core, n, across);
+      const double share = across > 0 ? disc.radius / across : 0;  // along the axis: the middle of the face
+      return {disc.z * n.z() + disc.radius * across, {share * n.x(), share * n.y(), disc.z}};
+    }
   }
   return {0, Vector3d::Zero()};
 }
 
 Sphere::Sphere(double radius) : radius_(radius) {
-  check_length("Sphere: radius", radius, kMinSemiAxis);
+  kernel::check_length("Sphere: radius", radius, kMinSemiAxis);
 }
 
 double Sphere::volume() const {
@@ -85,9 +98,9 @@ std::string Sphere::description() const {
 }
 
 Capsule::Capsule(double half_length, double radius) : half_length_(half_length), radius_(radius) {
-  check_length("Capsule: radius", radius, kMinSemiAxis);
-  check_length("Capsule: half-length", half_length, 0);
-  check_length("Capsule: half-length + radius", half_length + radius, kMinSemiAxis);
+  kernel::check_length("Capsule: radius", radius, kMinSemiAxis);
+  kernel::check_length("Capsule: half-length", half_length, 0);
+  kernel::check_length("Capsule: half-length + radius", half_length + radius, kMinSemiAxis);
   if (!(half_length + radius <= kMaxAspectRatio * radius)) {
     kernel::refuse("Capsule: ratio of half-length + radius to the radius is " +
                    kernel::shown((half_length + radius) / radius) + "; accepted: at most " +
@@ -130,7 +143,7 @@ std::string Capsule::description() const {
 Box::Box(const Vector3d& half_extents) : half_extents_(half_extents), bounding_radius_(half_extents.stableNorm()) {
   for (int k = 0; k < 3; ++k) {
     const std::string what = std::string("Box: half extent ") + "xyz"[k];
-    check_length(what.c_str(), half_extents[k], kMinSemiAxis);
+    kernel::check_length(what.c_str(), half_extents[k], kMinSemiAxis);
   }
   const double ratio = half_extents.maxCoeff() / half_extents.minCoeff();
   if (!(ratio <= kMaxAspectRatio)) {
@@ -151,7 +164,7 @@ std::string Box::description() const {
 }
 
 double kernel::checked_rounding(double radius) {
-  check_length("Rounded: radius", radius, 0);
+  kernel::check_length("Rounded: radius", radius, 0);
   return radius;
 }
 

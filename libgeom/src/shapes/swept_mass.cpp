@@ -1,4 +1,5 @@
 #include "shapes/hull.h"
+#include "shapes/swept_frustum.h"
 
 #include <geom/kernel/core.h>
 
@@ -177,6 +178,8 @@ SweptMass swept_mass(const CoreView& core) {
       return swept_box(core.half, core.radius);
     case CoreKind::hull:
       return SweptHull(*core.hull, core.radius).sum();
+    case CoreKind::frustum:
+      return swept_frustum(core);
   }
   return ball(core.radius);
 }

@@ -31,6 +31,12 @@ inline Eigen::Vector3d feature_normal(const geom::kernel::CoreView& core, int ki
   const Eigen::Vector3d any = random.direction();
   if (kind == 0 || core.kind == CoreKind::point) return any;
   if (core.kind == CoreKind::segment) return Eigen::Vector3d(any.x(), any.y(), 0).normalized();
+  if (core.kind == CoreKind::frustum) {
+    const auto& [low, high] = core.disc;
+    if (kind == 2) return (high.radius > 0 && random.coin() ? 1 : -1) * Eigen::Vector3d::UnitZ();
+    const Eigen::Vector3d e = Eigen::Vector3d(any.x(), any.y(), 0).normalized();
+    return ((high.z - low.z) * e + (low.radius - high.radius) * Eigen::Vector3d::UnitZ()).normalized();
+  }
   if (core.kind == CoreKind::box) {
     Eigen::Vector3d n = any;
     const int k = static_cast<int>(3 * random.uniform());
@@ -57,6 +63,16 @@ inline std::vector<Eigen::Vector3d> furthest_vertices(const geom::kernel::CoreVi
   std::vector<Eigen::Vector3d> all;
   if (core.kind == CoreKind::hull) {
     for (Eigen::Index k = 0; k < core.hull->vertices.rows(); ++k) all.emplace_back(core.hull->vertices.row(k));
+  } else if (core.kind == CoreKind::frustum) {
+    const bool face = n.head<2>().isZero(0);
+    for (const geom::kernel::CoreDisc& disc : core.disc) {
+      for (int corner = 0; corner < (face ? 4 : 1); ++corner) {
+        const Eigen::Vector3d e = face ? Eigen::Vector3d((corner & 1 ? 1 : -1) * (corner & 2 ? 0 : 1),
+                                                         (corner & 1 ? 1 : -1) * (corner & 2 ? 1 : 0), 0)
+                                       : Eigen::Vector3d(n.x(), n.y(), 0).normalized();
+        all.push_back(disc.radius * e + disc.z * Eigen::Vector3d::UnitZ());
+      }
+    }
   } else {
     for (int corner = 0; corner < 8; ++corner) {
       all.emplace_back((corner & 1 ? 1 : -1) * core.half.x(), (corner & 2 ? 1 : -1) * core.half.y(),

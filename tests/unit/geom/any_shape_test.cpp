@@ -27,8 +27,18 @@ using test_common::message_of;
 std::vector<Shape> one_of_each_kind(Random& random) {
   const ConvexPolyhedron hull = geom_test::random_polyhedron(12, random);
   const Box box({1, 2, 0.5});
-  return {Ellipsoid({1, 2, 3}),   Superellipsoid({1, 2, 3}, 0.5, 0.7), Sphere(0.7), Capsule(2, 0.5), box, hull,
-          Rounded<Box>(box, 0.3), Rounded<ConvexPolyhedron>(hull, 0.3)};
+  return {Ellipsoid({1, 2, 3}),
+          Superellipsoid({1, 2, 3}, 0.5, 0.7),
+          Sphere(0.7),
+          Capsule(2, 0.5),
+          box,
+          hull,
+          Rounded<Box>(box, 0.3),
+          Rounded<ConvexPolyhedron>(hull, 0.3),
+          Cylinder(2, 0.5),
+          Cone(2, 0.8),
+          Rounded<Cylinder>(Cylinder(1, 0.5), 0.3),
+          Rounded<Cone>(Cone(2, 0.8), 0.3)};
 }
 
 /// Two answers of `distance` for one pair, from functions that may take its bodies in another order.

@@ -7,6 +7,7 @@
 #include <geom/box.h>
 #include <geom/capsule.h>
 #include <geom/polyhedron.h>
+#include <geom/round_shapes.h>
 #include <geom/rounded.h>
 #include <geom/solids.h>
 #include <geom/sphere.h>
@@ -26,7 +27,9 @@ namespace {
 using Eigen::Vector3d;
 using geom::Box;
 using geom::Capsule;
+using geom::Cone;
 using geom::ConvexPolyhedron;
+using geom::Cylinder;
 using geom::Rounded;
 using geom::Sphere;
 
@@ -52,11 +55,24 @@ std::string constructor_text(const ConvexPolyhedron& s) {
   for (int k = 0; k < s.vertex_count(); ++k) points += (k == 0 ? "" : ", ") + shown(s.vertex(k));
   return "ConvexPolyhedron([" + points + "])";
 }
+std::string constructor_text(const Cylinder& s) {
+  return "Cylinder(" + shown(s.half_length()) + ", " + shown(s.radius()) + ")";
+}
+std::string constructor_text(const Cone& s) {
+  return "Cone(" + shown(s.height()) + ", " + shown(s.radius()) + ", " + shown(s.base()) + ")";
+}
 std::string constructor_text(const Rounded<Box>& s) {
   return "RoundedBox(" + constructor_text(s.inner()) + ", " + shown(s.radius()) + ")";
 }
 std::string constructor_text(const Rounded<ConvexPolyhedron>& s) {
   return "RoundedPolyhedron(" + constructor_text(s.inner()) + ", " + shown(s.radius()) + ")";
+}
+
+std::string constructor_text(const Rounded<Cylinder>& s) {
+  return "RoundedCylinder(" + constructor_text(s.inner()) + ", " + shown(s.radius()) + ")";
+}
+std::string constructor_text(const Rounded<Cone>& s) {
+  return "RoundedCone(" + constructor_text(s.inner()) + ", " + shown(s.radius()) + ")";
 }
 
 bool equal(const Sphere& a, const Sphere& b) {
@@ -74,6 +90,12 @@ bool equal(const ConvexPolyhedron& a, const ConvexPolyhedron& b) {
     if (a.vertex(k) != b.vertex(k)) return false;
   }
   return true;
+}
+bool equal(const Cylinder& a, const Cylinder& b) {
+  return a.half_length() == b.half_length() && a.radius() == b.radius();
+}
+bool equal(const Cone& a, const Cone& b) {
+  return a.height() == b.height() && a.radius() == b.radius() && a.base() == b.base();
 }
 template <class Inner>
 bool equal(const Rounded<Inner>& a, const Rounded<Inner>& b) {
@@ -99,6 +121,12 @@ nb::tuple constructor_arguments(const Box& s) {
 }
 nb::tuple constructor_arguments(const ConvexPolyhedron& s) {
   return nb::make_tuple(vertices(s));
+}
+nb::tuple constructor_arguments(const Cylinder& s) {
+  return nb::make_tuple(s.half_length(), s.radius());
+}
+nb::tuple constructor_arguments(const Cone& s) {
+  return nb::make_tuple(s.height(), s.radius(), s.base());
 }
 template <class Inner>
 nb::tuple constructor_arguments(const Rounded<Inner>& s) {
@@ -164,7 +192,7 @@ void bind_moments(nb::class_<Shape>& type) {
       .def_prop_ro(
           "is_in_principal_frame", &Shape::is_in_principal_frame,
           "Whether the centre of mass is the origin and the axes are the principal ones, to 1e-9 of the size.\n"
-          "A species of uniform density needs it; ConvexPolyhedron.in_principal_frame moves points there.");
+          "A species of uniform density needs it; in_principal_frame of ConvexPolyhedron and Cone moves shapes there.");
 }
 
 nb::tuple in_principal_frame(nb::handle points, nb::handle rounding) {
@@ -208,6 +236,54 @@ void bind_polyhedron(nb::module_& module) {
   bind_moments(type);
 }
 
+void bind_cylinder(nb::module_& module) {
+  nb::class_<Cylinder> type(module, "Cylinder",
+                            "Circular cylinder about z, from -half_length to half_length, with sharp rims.");
+  type.def(
+          "__init__",
+          [](Cylinder* self, nb::handle half_length, nb::handle radius) {
+            new (self) Cylinder(positive(half_length, "half_length"), positive(radius, "radius"));
+          },
+          nb::arg("half_length").none(), nb::arg("radius").none(),
+          nb::sig("def __init__(self, half_length: float, radius: float) -> None"),
+          "Constructs a cylinder; neither length is more than 1e4 times the other.")
+      .def_prop_ro("half_length", &Cylinder::half_length, "Half the distance of the faces.")
+      .def_prop_ro("radius", &Cylinder::radius, "Radius of the faces.");
+  bind_common(type, {constructor_text, equal, constructor_arguments});
+}
+
+Cone make_cone(nb::handle height, nb::handle radius, nb::handle base) {
+  const double h = positive(height, "height");
+  const double r = positive(radius, "radius");
+  return base.is_none() ? Cone(h, r) : Cone(h, r, finite_number(base, "base"));
+}
+
+Cone cone_in_principal_frame(nb::handle height, nb::handle radius, nb::handle rounding) {
+  return Cone::in_principal_frame(positive(height, "height"), positive(radius, "radius"),
+                                  finite_number(rounding, "rounding"));
+}
+
+void bind_cone(nb::module_& module) {
+  nb::class_<Cone> type(module, "Cone", "Circular cone about z, its apex above its base, with a sharp rim.");
+  type.def(
+          "__init__",
+          [](Cone* self, nb::handle height, nb::handle radius, nb::handle base) {
+            new (self) Cone(make_cone(height, radius, base));
+          },
+          nb::arg("height").none(), nb::arg("radius").none(), nb::arg("base").none() = nb::none(),
+          nb::sig("def __init__(self, height: float, radius: float, base: float | None = None) -> None"),
+          "Constructs a cone with its base at z = base, below the origin; None: its centre of mass is the origin.")
+      .def_static("in_principal_frame", &cone_in_principal_frame, nb::arg("height").none(), nb::arg("radius").none(),
+                  nb::arg("rounding").none(),
+                  nb::sig("def in_principal_frame(height: float, radius: float, rounding: float) -> Cone"),
+                  "Returns the cone whose origin is the centre of mass of the cone rounded by `rounding`.")
+      .def_prop_ro("height", &Cone::height, "Distance of the apex from the base.")
+      .def_prop_ro("radius", &Cone::radius, "Radius of the base.")
+      .def_prop_ro("base", &Cone::base, "z of the base, body frame.");
+  bind_common(type, {constructor_text, equal, constructor_arguments});
+  bind_moments(type);
+}
+
 /// Returns the argument `shape` of a rounded shape of this kind.
 template <class Inner>
 const Inner& inner_of(nb::handle value) {
@@ -240,7 +316,9 @@ nb::object rounded(nb::handle shape, nb::handle radius) {
   if (nb::isinstance<ConvexPolyhedron>(shape)) {
     return nb::cast(Rounded<ConvexPolyhedron>(inner_of<ConvexPolyhedron>(shape), r));
   }
-  refuse_type("shape", shape, "Box, ConvexPolyhedron");
+  if (nb::isinstance<Cylinder>(shape)) return nb::cast(Rounded<Cylinder>(inner_of<Cylinder>(shape), r));
+  if (nb::isinstance<Cone>(shape)) return nb::cast(Rounded<Cone>(inner_of<Cone>(shape), r));
+  refuse_type("shape", shape, "Box, ConvexPolyhedron, Cylinder, Cone");
 }
 
 }  // namespace
@@ -250,13 +328,19 @@ void bind_core_shapes(nb::module_& module) {
   bind_capsule(module);
   bind_box(module);
   bind_polyhedron(module);
+  bind_cylinder(module);
+  bind_cone(module);
   bind_rounded<Box>(module, "RoundedBox", "Box", "Box with a ball swept over it: what Rounded returns for a Box.");
   bind_rounded<ConvexPolyhedron>(module, "RoundedPolyhedron", "ConvexPolyhedron",
                                  "Polyhedron with a ball swept over it: what Rounded returns for a ConvexPolyhedron.");
+  bind_rounded<Cylinder>(module, "RoundedCylinder", "Cylinder",
+                         "Cylinder with a ball swept over it: what Rounded returns for a Cylinder.");
+  bind_rounded<Cone>(module, "RoundedCone", "Cone", "Cone with a ball swept over it: what Rounded returns for a Cone.");
   module.def("Rounded", &rounded, nb::arg("shape").none(), nb::arg("radius").none(),
-             nb::sig("def Rounded(shape: Box | ConvexPolyhedron, radius: float) -> RoundedBox | RoundedPolyhedron"),
-             "Returns all points within `radius`, of at least 0, of a box or polyhedron. Overlaps no deeper than the\n"
-             "radii have distances as exact and fast as bodies apart.");
+             nb::sig("def Rounded(shape: Box | ConvexPolyhedron | Cylinder | Cone, radius: float) "
+                     "-> RoundedBox | RoundedPolyhedron | RoundedCylinder | RoundedCone"),
+             "Returns all points within `radius`, of at least 0, of a box, polyhedron, cylinder or cone. Overlaps no\n"
+             "deeper than the radii have distances as exact and fast as bodies apart.");
   bind_half_space(module);
 }
 

@@ -14,7 +14,7 @@
 
 namespace ed::internal {
 
-/// Returns the core of a shape that is a polytope with a ball swept over it; nullopt for any other. A hull is that of
+/// Returns the core of a shape that is a geom::CoreShape; nullopt for any other. A hull is that of
 /// the shape, of which a copy must live on.
 std::optional<geom::kernel::CoreView> core_of(const BodyShape& shape);
 
@@ -41,8 +41,11 @@ struct ConvexBody {
     return core && (core->kind == geom::kernel::CoreKind::point || core->kind == geom::kernel::CoreKind::segment);
   }
 
+  /// Returns whether the core is known to be a polytope.
+  bool polytope() const { return core && core->kind != geom::kernel::CoreKind::frustum; }
+
   BodyShape shape;
-  std::optional<geom::kernel::CoreView> core;  ///< polytope, if the shape is one with a ball
+  std::optional<geom::kernel::CoreView> core;  ///< core that the ball is swept over, if the shape has one
   bool smooth;                                 ///< whether it is an ellipsoid or superellipsoid
   bool own_distance;                           ///< whether a user's PairDistance is to be asked
   double bounding_radius;

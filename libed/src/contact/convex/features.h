@@ -43,7 +43,7 @@ struct PlacedPair {
   double size;
 
   /// Returns whether both cores are polytopes for certain, so that every search ends.
-  bool finite() const { return a.core && b.core; }
+  bool finite() const { return a.polytope() && b.polytope(); }
   /// Returns whether neither is one of libgeom's smooth bodies, whose normals near flat faces only Newton's method
   /// knows.
   bool may_close() const { return !a.smooth && !b.smooth; }

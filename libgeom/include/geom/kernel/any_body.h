@@ -1,6 +1,6 @@
 #pragma once
 
-/// Dispatch over AnyShape with few cases: all polytopes with balls are one, a CoreBody.
+/// Dispatch over AnyShape with few cases: all CoreShapes are one, a CoreBody.
 
 #include <geom/distance.h>
 #include <geom/kernel/refuse.h>

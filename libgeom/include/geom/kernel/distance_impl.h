@@ -164,20 +164,25 @@ template <class Pair>
   }
 }
 
+/// Starts of solve_dual().
+enum class Starts { warm_and_cold, warm_only };
+
 /// Ascends from `start`, then from cold() if that led to a stationary point without a certificate.
 ///
 /// A stationary point with g < 0 is no proof of overlap: flat bodies that are apart have some. With Penetration::local,
 /// one beyond the certified depth counts only if shares(point_a, point_b), called with its witness points, confirms
-/// that both bodies contain a common point. `cold` is called only when it is needed. Returns a result whose status
-/// declines when neither start gives a certified answer; `iterations` is then the number of evaluations spent.
+/// that both bodies contain a common point. `cold` is called only when it is needed, and never if `starts` says that a
+/// warm start is the only one. Returns a result whose status declines when neither start gives a certified answer;
+/// `iterations` is then the number of evaluations spent.
 template <class Pair, class Cold, class Shares>
 DistanceResult solve_dual(const Pair& pair, const Cold& cold, const PairScale& scale, const Eigen::Vector3d& p_WA,
-                          const DistanceOptions& options, const Shares& shares) {
+                          const DistanceOptions& options, const Shares& shares, Starts starts = Starts::warm_and_cold) {
   const double rounding = kRoundingFactor * scale.size;
+  const int attempts = starts == Starts::warm_only ? 1 : 2;
   const bool warm = is_warm(options.start);
   const int limit = std::max(1, options.max_iterations);
   int spent = 0;
-  for (int attempt = warm ? 0 : 1; attempt < 2; ++attempt) {
+  for (int attempt = warm ? 0 : 1; attempt < attempts; ++attempt) {
     Eigen::Vector3d n = attempt == 0 ? Eigen::Vector3d(options.start / options.start.norm()) : cold();
     decltype(pair(n)) e;
     int budget = limit;
@@ -219,56 +224,6 @@ struct CorePair {
 };
 template <class Pair>
 CorePair(const Pair&, double, double) -> CorePair<Pair>;
-
-/// Returns whether holds(p) is true for a point p between the witness points of bodies that overlap.
-///
-/// Each body contains a part of the segment, which begins at its own witness point. Mostly each contains half of it; if
-/// a small or thin body is inside a larger one, the larger contains nearly all.
-template <class Holds>
-bool holds_between(const Eigen::Vector3d& point_a, const Eigen::Vector3d& point_b, const Holds& holds) {
-  // The ends are left out: rounding decides on which side of the surface they are.
-  for (const double share : {0.5, 0.02, 0.98, 0.25, 0.75}) {
-    if (holds(Eigen::Vector3d(point_a + share * (point_b - point_a)))) return true;
-  }
-  return false;
-}
-
-/// Returns whether a point (body frame) is in a body; false for shapes that cannot tell.
-template <class Shape>
-bool holds_point(const Shape& shape, const Eigen::Vector3d& p_B) {
-  if constexpr (PointSet<Shape>) {
-    return shape.contains(p_B);
-  } else if constexpr (ImplicitSurface<Shape>) {
-    return shape.value(p_B) <= 0;
-  } else {
-    return false;
-  }
-}
-
-/// Returns whether a point (world frame) is in both bodies; false for shapes without an equation, for which it is
-/// unknown.
-template <class ShapeA, class ShapeB>
-bool both_contain(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const Pose& X_WB, const Eigen::Vector3d& p_W) {
-  return holds_point(a, X_WA.to_body(p_W)) && holds_point(b, X_WB.to_body(p_W));
-}
-
-/// Returns whether both bodies contain the point between their centres that deeply overlapping bodies are likely to
-/// share.
-template <class ShapeA, class ShapeB>
-bool share_the_middle(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const Pose& X_WB) {
-  const double r_a = a.inscribed_radius();
-  const double r_b = b.inscribed_radius();
-  return both_contain(a, X_WA, b, X_WB, Eigen::Vector3d((r_b * X_WA.position() + r_a * X_WB.position()) / (r_a + r_b)));
-}
-
-/// Returns whether a point inside both bodies is found, between the witness points of an answer or between the centres.
-/// True is certain, false is not.
-template <class ShapeA, class ShapeB>
-bool share_a_point(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const Pose& X_WB, const Eigen::Vector3d& point_a,
-                   const Eigen::Vector3d& point_b) {
-  const auto holds = [&](const Eigen::Vector3d& p_W) { return both_contain(a, X_WA, b, X_WB, p_W); };
-  return holds_between(point_a, point_b, holds) || share_the_middle(a, X_WA, b, X_WB);
-}
 
 /// Finds the closest points of the cores; used where Newton's method does not converge because support points jump.
 template <class Pair>
@@ -346,16 +301,33 @@ DistanceResult general_distance(const ShapeA& a, const Pose& X_WA, const ShapeB&
   const auto shares = [&](const Eigen::Vector3d& point_a, const Eigen::Vector3d& point_b) {
     return share_a_point(a, X_WA, b, X_WB, point_a, point_b);
   };
-  DistanceResult result = solve_dual(pair, cold, scale, X_WA.position(), options, shares);
+  // Where the normal jumps Newton's method does not converge from any start: a warm one has fewer evaluations, and a
+  // cold one follows the descent, with those that are left.
+  const bool warm = is_warm(options.start);
+  DistanceOptions first = options;
+  if (warm) first.max_iterations = std::min(options.max_iterations, kWarmIterations);
+  DistanceResult result =
+      solve_dual(pair, cold, scale, X_WA.position(), first, shares, warm ? Starts::warm_only : Starts::warm_and_cold);
   if (result.status != DistanceStatus::not_converged) return result;
+  const int spent = result.iterations;
   const CorePair cores{pair, min_curvature_radius_or_zero(a), min_curvature_radius_or_zero(b)};
-  result = descend_cores(cores, scale.size, cold(), X_WA.position(), result.iterations);
+  const Eigen::Vector3d start = warm ? Eigen::Vector3d(options.start / options.start.norm()) : cold();
+  result = descend_cores(cores, scale.size, start, X_WA.position(), spent);
   if (result.status != DistanceStatus::not_converged) {
     if (!needs_polish(scale, result)) return result;
     // Newton's method has a second chance from there, and is more accurate if it converges.
-    DistanceResult polished = solve_dual(pair, cold, scale, X_WA.position(), {.start = result.normal}, shares);
+    DistanceResult polished =
+        solve_dual(pair, cold, scale, X_WA.position(), {.start = result.normal}, shares, Starts::warm_only);
     polished.iterations += result.iterations;
     return polished.error_bound < result.error_bound ? polished : result;
+  }
+  if (warm && options.max_iterations > spent) {
+    first.start.setZero();
+    first.max_iterations = options.max_iterations - spent;
+    DistanceResult again = solve_dual(pair, cold, scale, X_WA.position(), first, shares);
+    again.iterations += result.iterations;
+    if (again.status != DistanceStatus::not_converged) return again;
+    result = again;
   }
   return search_sphere(pair, scale, cold(), X_WA.position(), result.iterations);
 }

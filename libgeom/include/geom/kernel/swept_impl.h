@@ -42,7 +42,10 @@ class CoreBody {
   CoreBody(const CoreView& core, double inscribed_radius) : core_(core), inscribed_radius_(inscribed_radius) {}
 
   Support support(const Eigen::Vector3d& n) const { return swept_support(core_, n); }
-  Eigen::Matrix3d support_hessian(const Eigen::Vector3d& n) const { return ball_hessian(core_.radius, n); }
+  Eigen::Matrix3d support_hessian(const Eigen::Vector3d& n) const {
+    const Eigen::Matrix3d of_ball = ball_hessian(core_.radius, n);
+    return core_.kind == CoreKind::frustum ? Eigen::Matrix3d(of_ball + rim_hessian(core_, n)) : of_ball;
+  }
   double bounding_radius() const { return core_.bounding_radius + core_.radius; }
   double inscribed_radius() const { return inscribed_radius_; }
   double min_curvature_radius() const { return core_.radius; }

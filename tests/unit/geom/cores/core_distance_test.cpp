@@ -1,4 +1,5 @@
-/// distance() of spheres, capsules, boxes, polyhedra and rounded ones: known answers, apart and overlapping.
+/// distance() of spheres, capsules, boxes, polyhedra, cylinders, cones and rounded ones: known answers, apart and
+/// overlapping.
 
 #include "common/geom/core_pairs.h"
 #include "common/geom/expect.h"
@@ -31,8 +32,12 @@ static_assert(CoreShape<Sphere> && CoreShape<Capsule> && CoreShape<Box> && CoreS
 static_assert(CoreShape<Rounded<Box>> && !CoreShape<Rounded<Ellipsoid>> && SupportShape<Rounded<Ellipsoid>>);
 static_assert(ImplicitSurface<Sphere> && ImplicitSurface<Capsule> && PointSet<Box> && PointSet<ConvexPolyhedron>);
 
-using AnyCore = std::variant<Sphere, Capsule, Box, ConvexPolyhedron, Rounded<Box>, Rounded<ConvexPolyhedron>>;
+static_assert(CoreShape<Cylinder> && CoreShape<Rounded<Cone>> && PointSet<Cylinder> && PointSet<Cone>);
+
+using AnyCore = std::variant<Sphere, Capsule, Box, ConvexPolyhedron, Rounded<Box>, Rounded<ConvexPolyhedron>, Cylinder,
+                             Cone, Rounded<Cylinder>, Rounded<Cone>>;
 constexpr std::size_t kCoreKinds = std::variant_size_v<AnyCore>;
+constexpr std::size_t kPolytopes = 6;  // of these kinds, the first
 
 AnyCore random_core(std::size_t kind, Random& random) {
   const auto length = [&] { return random.log_uniform(0.1, 3); };
@@ -47,8 +52,16 @@ AnyCore random_core(std::size_t kind, Random& random) {
       return random_polyhedron(random.coin() ? 8 : 30, random);
     case 4:
       return Rounded<Box>(Box({length(), length(), length()}), random.log_uniform(1e-3, 1));
-    default:
+    case 5:
       return Rounded<ConvexPolyhedron>(random_polyhedron(8, random), random.log_uniform(1e-3, 1));
+    case 6:
+      return Cylinder(length(), length());
+    case 7:
+      return Cone(length(), length());
+    case 8:
+      return Rounded<Cylinder>(Cylinder(length(), length()), random.log_uniform(1e-3, 1));
+    default:
+      return Rounded<Cone>(Cone(length(), length()), random.log_uniform(1e-3, 1));
   }
 }
 
@@ -99,8 +112,8 @@ TEST(CoreDistance, OfFeaturesApartIsKnown) {
 TEST(CoreDistance, OfRoundedBodiesIsKnownDownToTheirRadii) {
   Random random(41);
   const int pairs = repetitions(300);
-  for (const std::size_t kind_a : {0, 1, 4, 5}) {
-    for (const std::size_t kind_b : {0, 1, 4, 5}) {
+  for (const std::size_t kind_a : {0, 1, 4, 5, 8, 9}) {
+    for (const std::size_t kind_b : {0, 1, 4, 5, 8, 9}) {
       for (int i = 0; i < pairs; ++i) {
         const AnyCore a = random_core(kind_a, random), b = random_core(kind_b, random);
         std::visit(
@@ -141,8 +154,8 @@ TEST(CoreDistance, OfOverlappingPolytopesIsTheNearestFaceOfTheirDifference) {
   Random random(42);
   const int pairs = repetitions(40);
   int deep = 0;
-  for (std::size_t kind_a = 0; kind_a < kCoreKinds; ++kind_a) {
-    for (std::size_t kind_b = 2; kind_b < kCoreKinds; ++kind_b) {
+  for (std::size_t kind_a = 0; kind_a < kPolytopes; ++kind_a) {
+    for (std::size_t kind_b = 2; kind_b < kPolytopes; ++kind_b) {
       for (int i = 0; i < pairs; ++i) {
         const AnyCore a = random_core(kind_a, random), b = random_core(kind_b, random);
         std::visit(

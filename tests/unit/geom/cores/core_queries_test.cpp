@@ -1,4 +1,5 @@
-/// Closest points, points inside, rays and oriented boxes of spheres, capsules, boxes, polyhedra and rounded ones.
+/// Closest points, points inside, rays and oriented boxes of spheres, capsules, boxes, polyhedra, cylinders, cones and
+/// rounded ones.
 
 #include "common/geom/core_pairs.h"
 
@@ -29,6 +30,12 @@ void for_all_shapes(Random& random, const Check& check) {
   check(random_polyhedron(12, random));
   check(Rounded<Box>(Box({1, 2, 0.5}), 0.3));
   check(Rounded<ConvexPolyhedron>(random_polyhedron(12, random), 0.3));
+  check(Cylinder(2, 0.5));
+  check(Cylinder(0.5, 2));
+  check(Cone(2, 0.5));
+  check(Cone(0.5, 2));
+  check(Rounded<Cylinder>(Cylinder(1, 0.5), 0.3));
+  check(Rounded<Cone>(Cone(2, 0.5), 0.3));
 }
 
 /// Points at a known height above a known tangent plane's point, and the point inside that is closest to that one.
@@ -77,6 +84,9 @@ TEST(CoreQueries, TheMiddleOfABodyHasADepth) {
   EXPECT_EQ(closest_point(Sphere(2), Pose(), Vector3d::Zero()).distance, -2);
   EXPECT_EQ(closest_point(Capsule(2, 0.5), Pose(), Vector3d(0, 0, 1)).distance, -0.5);
   EXPECT_EQ(closest_point(Box({1, 2, 3}), Pose(), Vector3d::Zero()).distance, -1);
+  EXPECT_EQ(closest_point(Cylinder(2, 0.5), Pose(), Vector3d(0, 0, 1)).distance, -0.5);
+  EXPECT_EQ(closest_point(Cylinder(2, 0.5), Pose(), Vector3d(0, 0, 1.75)).distance, -0.25);
+  EXPECT_EQ(closest_point(Cone(4, 3), Pose(), Vector3d::Zero()).distance, -1);
 }
 
 /// Rays aimed at a point of the surface from outside enter there, and leave at a point of the surface.
@@ -163,6 +173,8 @@ TEST(CoreQueries, OrientedBoxesTouchTheBody) {
   const Pose X = random.pose(3.0);
   EXPECT_EQ(oriented_box(Sphere(2), X).half_extents, Vector3d(2, 2, 2));
   EXPECT_EQ(oriented_box(Capsule(2, 0.5), X).half_extents, Vector3d(0.5, 0.5, 2.5));
+  EXPECT_EQ(oriented_box(Cylinder(2, 0.5), X).half_extents, Vector3d(0.5, 0.5, 2));
+  EXPECT_EQ(oriented_box(Cone(4, 0.5), X).half_extents, Vector3d(0.5, 0.5, 2));
   EXPECT_EQ(oriented_box(Box({1, 2, 3}), X).half_extents, Vector3d(1, 2, 3));
   EXPECT_EQ(oriented_box(Box({1, 2, 3}), X).centre, X.position());
   EXPECT_EQ(oriented_box(Rounded<Box>(Box({1, 2, 3}), 0.5), X).half_extents, Vector3d(1.5, 2.5, 3.5));

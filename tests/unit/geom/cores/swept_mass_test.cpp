@@ -1,4 +1,4 @@
-/// Volume and moments of polytopes that a ball is swept over.
+/// Volume and moments of polytopes, cylinders and cones that a ball is swept over.
 
 #include "common/geom/core_pairs.h"
 
@@ -59,6 +59,57 @@ TEST(SweptMass, OfSpheresAndCapsulesIsTheirs) {
   const kernel::SweptMass rod = kernel::swept_mass(capsule.core());
   EXPECT_NEAR(rod.volume, capsule.volume(), 1e-14);
   EXPECT_LE((rod.inertia(2).diagonal() - capsule.inertia(2)).norm(), 1e-14);
+}
+
+TEST(SweptMass, OfCylindersAndConesIsTheirs) {
+  const Cylinder cylinder(2, 0.5);
+  const kernel::SweptMass rod = kernel::swept_mass(cylinder.core());
+  EXPECT_NEAR(rod.volume, cylinder.volume(), 1e-14);
+  EXPECT_LE((rod.inertia(2).diagonal() - cylinder.inertia(2)).norm(), 1e-14);
+  for (const double base : {-0.5, -1.3}) {
+    const Cone cone(2, 0.7, base);
+    const kernel::SweptMass mass = kernel::swept_mass(cone.core());
+    EXPECT_NEAR(mass.volume, cone.volume(), 1e-14);
+    EXPECT_LE((mass.centre() - cone.centre_of_mass()).norm(), 1e-14);
+    EXPECT_LE((mass.inertia(2).diagonal() - cone.inertia(2)).norm(), 1e-14);
+  }
+}
+
+/// Steiner's formula of the volume: surface and mean width of the cylinder, of the cone in all of its angles.
+TEST(SweptMass, OfRoundedCylindersAndConesIsSteiners) {
+  const double pi = std::numbers::pi;
+  const double l = 2, r = 0.5;
+  for (const double ball : {1e-3, 0.3, 4.0}) {
+    const double tube = Rounded<Cylinder>(Cylinder(l, r), ball).volume();
+    const double balls = 4.0 / 3 * pi * ball * ball * ball;
+    const double surface = 2 * pi * r * (2 * l + r);
+    const double mean_curvature = 2 * pi * l + pi * pi * r;
+    EXPECT_NEAR(tube, 2 * pi * r * r * l + surface * ball + mean_curvature * ball * ball + balls, 1e-13 * tube);
+    const double height = 3;
+    const double slant = std::hypot(height, r);
+    const double cone = Rounded<Cone>(Cone(height, r), ball).volume();
+    const double tip = std::asin(r / slant);  // between the axis and the side
+    const double of_rim = pi * r * (0.5 * pi + tip);
+    const double of_side = pi * slant * std::cos(tip);
+    const double of_cone = pi * r * (slant + r);
+    EXPECT_NEAR(cone, pi / 3 * r * r * height + of_cone * ball + (of_rim + of_side) * ball * ball + balls,
+                1e-13 * cone);
+  }
+}
+
+/// Moments by quadrature of the distance, and the frame of the centre of mass.
+TEST(SweptMass, OfRoundedConesHasAFrameOfItsCentre) {
+  for (const double height : {0.4, 3.0}) {
+    const Cone cone = Cone::in_principal_frame(height, 0.8, 0.3);
+    const Rounded<Cone> body(cone, 0.3);
+    EXPECT_TRUE(body.is_in_principal_frame());
+    EXPECT_FALSE(Rounded<Cone>(Cone(height, 0.8), 0.3).is_in_principal_frame());
+    EXPECT_LE(body.centre_of_mass().norm(), 1e-15);
+    const MassProperties mass = mass_properties(SweptSurface{body.core()}, body.bounding_radius(), 1e-4);
+    EXPECT_NEAR(body.volume(), mass.volume, 2e-4 * mass.volume);
+    EXPECT_LE((body.inertia_tensor(mass.volume) - mass.inertia).norm(), 2e-4 * mass.inertia.norm());
+    EXPECT_LE(mass.first_moment.norm(), 2e-4 * mass.volume);
+  }
 }
 
 /// Two closed forms: that of boxes, and the sum over faces, edges and vertices.

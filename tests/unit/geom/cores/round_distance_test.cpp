@@ -1,0 +1,151 @@
+/// distance() of cylinders and cones where decisions are ties or nearly so: coaxial and parallel bodies, rims on rims,
+/// sides on faces, turned by angles down to rounding; and overlaps.
+
+#include "common/geom/core_pairs.h"
+#include "common/geom/expect.h"
+
+#include <geom/geom.h>
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <variant>
+
+namespace geom {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+using geom_test::lower_bound;
+using geom_test::Random;
+using geom_test::repetitions;
+
+using RoundPartner = std::variant<Cylinder, Cone, Capsule, Box, ConvexPolyhedron>;
+
+RoundPartner random_partner(std::size_t kind, Random& random) {
+  const auto length = [&] { return random.log_uniform(0.1, 10); };
+  switch (kind) {
+    case 0:
+      return Cylinder(length(), length());
+    case 1:
+      return Cone(length(), length());
+    case 2:
+      return Capsule(length(), random.log_uniform(1e-2, 1));
+    case 3:
+      return Box({length(), length(), length()});
+    default:
+      return geom_test::random_polyhedron(random.coin() ? 8 : 30, random);
+  }
+}
+
+double distance_at(const RoundPartner& a, const RoundPartner& b, const Vector3d& p, const Matrix3d& R) {
+  return std::visit([&](const auto& s, const auto& t) { return distance(s, Pose(), t, Pose(R, p)).distance; }, a, b);
+}
+
+TEST(RoundDistance, OfAlignedBodiesIsThatOfTheirFacesAndSides) {
+  const Matrix3d I = Matrix3d::Identity();
+  const Matrix3d lying = Eigen::AngleAxisd(0.5 * std::numbers::pi, Vector3d::UnitX()).toRotationMatrix();
+  const Matrix3d upside_down = Vector3d(1, -1, -1).asDiagonal();
+  const RoundPartner rod = Cylinder(2, 0.5), disc = Cylinder(0.25, 2), cone = Cone(4, 3), box = Box({1, 2, 3});
+  EXPECT_EQ(distance_at(rod, rod, {0, 0, 5}, I), 1);                       // coaxial
+  EXPECT_EQ(distance_at(rod, disc, {0, 0, 3.25}, I), 1);                   // coaxial, of two radii
+  EXPECT_EQ(distance_at(rod, rod, {0.75, 0, 5}, I), 1);                    // faces overlap in part
+  EXPECT_NEAR(distance_at(rod, rod, {4, 0, 7}, I), std::sqrt(18), 1e-14);  // rims
+  EXPECT_EQ(distance_at(rod, rod, {3, 0, 1}, I), 2);                       // side by side
+  EXPECT_EQ(distance_at(rod, rod, {3, 0, 4}, I), 2);                       // side by side, a rim each
+  EXPECT_NEAR(distance_at(rod, rod, {0.25, 1, 3.5}, lying), 1, 1e-15);     // a side on a face
+  EXPECT_NEAR(distance_at(rod, rod, {3, 1, 1}, lying), 2, 1e-15);          // sides crossing
+  EXPECT_EQ(distance_at(cone, cone, {0, 0, 5}, I), 1);                     // a base above an apex
+  EXPECT_EQ(distance_at(cone, cone, {1, 0, 7}, upside_down), distance_at(cone, cone, {-1, 0, 7}, upside_down));
+  EXPECT_EQ(distance_at(cone, cone, {0, 0, -3}, upside_down), 1);               // base on base
+  EXPECT_EQ(distance_at(box, cone, {0.5, -1, 6}, I), 2);                        // a base on a face
+  EXPECT_EQ(distance_at(box, rod, {3, 1, 1}, I), 1.5);                          // a side along a face
+  EXPECT_NEAR(distance_at(box, rod, {3, 4, 0}, I), std::sqrt(8) - 0.5, 1e-14);  // a side along an edge
+}
+
+/// Bodies nearly parallel or across each other, side by side or on top of each other: both bounds certify the answer.
+TEST(RoundDistance, OfNearlyAlignedBodiesIsCertified) {
+  Random random(1);
+  long pairs = 0;
+  long wide = 0;
+  for (int i = 0; i < repetitions(10000); ++i) {
+    const RoundPartner a = random_partner(static_cast<std::size_t>(i % 2), random);
+    const RoundPartner b = random_partner(static_cast<std::size_t>(i / 2 % 5), random);
+    const Pose X_WA = random.pose(1.0);
+    const double angle = random.log_uniform(1e-17, 1e-1);
+    const double quarters = std::floor(3 * random.uniform());
+    const Matrix3d aligned =
+        X_WA.rotation() * Eigen::AngleAxisd(0.5 * quarters * std::numbers::pi, Vector3d::UnitX()).toRotationMatrix();
+    const Matrix3d R = Eigen::AngleAxisd(angle, random.direction()) * aligned;
+    const Vector3d axis = X_WA.rotation().col(2);
+    const double side = std::floor(3 * random.uniform());
+    const Vector3d way = side == 0   ? Vector3d(random.coin() ? axis : -axis)
+                         : side == 1 ? Vector3d(axis.cross(random.direction()).normalized())
+                                     : random.direction();
+    std::visit(
+        [&](const auto& s, const auto& t) {
+          const double radii = s.bounding_radius() + t.bounding_radius();
+          const Vector3d aside =
+              random.coin() ? Vector3d(Vector3d::Zero())
+                            : Vector3d(random.uniform(0, 1.2) * radii * way.cross(random.direction()).normalized());
+          const double gap = random.log_uniform(1e-10, 10);
+          const double touching =
+              s.support(X_WA.rotation().transpose() * way).height + t.support(R.transpose() * -way).height;
+          const Pose X_WB(R, X_WA.position() + (touching + gap) * way + aside);
+          const DistanceResult r = distance(s, X_WA, t, X_WB);
+          const double size = (X_WB.position() - X_WA.position()).norm() + radii;
+          ASSERT_EQ(r.status, DistanceStatus::separated) << i << " angle " << angle;
+          ASSERT_GE(r.distance, gap - 1e-14 * size) << i << " angle " << angle;
+          ASSERT_NEAR(lower_bound(s, X_WA, t, X_WB, r.normal), r.distance, 4e-15 * size) << i << " angle " << angle;
+          ASSERT_LE(r.error_bound, kBoundGap * size) << i << " angle " << angle;
+          ASSERT_NEAR(closest_point(s, X_WA, r.point_a).distance, 0, 1e-11 * size) << i << " angle " << angle;
+          ASSERT_NEAR(closest_point(t, X_WB, r.point_b).distance, 0, 1e-11 * size) << i << " angle " << angle;
+          ++pairs;
+          wide += r.error_bound > 1e-13 * size ? 1 : 0;
+        },
+        a, b);
+    if (HasFatalFailure()) return;
+  }
+  std::printf("%ld of %ld error bounds are above 1e-13 of the size\n", wide, pairs);
+  EXPECT_LE(wide * 1000, pairs);
+}
+
+/// No normal has a gap that the error bound excludes, and the points are those of the translation.
+TEST(RoundDistance, OfOverlapsIsBounded) {
+  Random random(2);
+  int answers = 0;
+  for (int i = 0; i < repetitions(300); ++i) {
+    const RoundPartner a = random_partner(static_cast<std::size_t>(i % 2), random);
+    const RoundPartner b = random_partner(static_cast<std::size_t>(i / 2 % 5), random);
+    std::visit(
+        [&](const auto& s, const auto& t) {
+          const Pose X_WA = random.pose(1.0);
+          const double reach = s.inscribed_radius() + t.inscribed_radius();
+          const Pose X_WB = random.pose(Vector3d(X_WA.position() + random.uniform(0, 1) * reach * random.direction()));
+          const DistanceResult r = distance(s, X_WA, t, X_WB);
+          if (r.status == DistanceStatus::not_converged) return;
+          ++answers;
+          const double size = reach + s.bounding_radius() + t.bounding_radius();
+          ASSERT_EQ(r.status, DistanceStatus::overlapping) << i;
+          ASSERT_LE(r.error_bound, kWidestDepthGap * size) << i;
+          ASSERT_NEAR(lower_bound(s, X_WA, t, X_WB, r.normal), r.distance, 1e-14 * size) << i;
+          for (int k = 0; k < 200; ++k) {
+            const double gap = lower_bound(s, X_WA, t, X_WB, random.direction());
+            ASSERT_LE(gap, r.distance + r.error_bound + 1e-14 * size) << i;
+          }
+          ASSERT_NEAR(closest_point(s, X_WA, r.point_a).distance, 0, r.residual + 1e-13 * size) << i;
+          ASSERT_NEAR(closest_point(t, X_WB, r.point_b).distance, 0, r.residual + 1e-13 * size) << i;
+        },
+        a, b);
+    if (HasFatalFailure()) return;
+  }
+  EXPECT_GE(answers * 50, repetitions(300) * 49);  // others are declined
+}
+
+}  // namespace
+}  // namespace geom
