@@ -1,6 +1,7 @@
 #pragma once
 
 #include "base/errors.h"
+#include "base/shapes.h"
 #include "trajectory/frame.h"
 #include "trajectory/gsd/container.h"
 #include "trajectory/gsd/schema.h"
@@ -67,6 +68,8 @@ class FrameReader {
   void read_motion(Frame& frame) const;
   void read_orientations(Frame& frame) const;
   void read_diameters(Frame& frame) const;
+  void move_to_shapes(Frame& frame) const;
+  ShapeNumbers shape_numbers(const double* row, std::uint32_t columns) const;
   std::vector<ed::Species> read_species() const;
 
   const GsdFile& file_;

@@ -19,8 +19,9 @@ namespace hardbody {
 ///
 ///     log/hardbody/time (last array of every frame: one without it is incomplete), energy, Z, S
 ///     log/hardbody/box
-///     log/hardbody/species             a row a type: kind (0 ellipsoid, 1 superellipsoid), semi-axes, e1, e2, mass,
-///                                      moments, spins (0 or 1)
+///     log/hardbody/species             a row a type: kind (ShapeKind), lengths (ShapeNumbers), e1 and e2 or rounding
+///                                      and number of vertices, mass, moments, spins (0 or 1); x, y, z of each vertex
+///                                      where a type is a polyhedron, filled up with 0
 ///     log/particles/hardbody/group     the species of the config
 ///     log/particles/hardbody/position, rotation (a row after the other), velocity, angular_velocity
 ///
