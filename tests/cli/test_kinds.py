@@ -193,6 +193,20 @@ class KindsRun(KindsCase):
         u_z = 1 - 2 * (q[:, 1] ** 2 + q[:, 2] ** 2)
         self.assertAlmostEqual(1.5 * (u_z**2).mean() - 0.5, 0.8, delta=0.01)
 
+    def test_pressure_of_capsules(self):
+        """Nezbeda's equation of state of hard convex bodies, Chem. Phys. Lett. 41 (1976) 55, within 1 % and 4 errors."""
+        for length, phi in [(1, 0.2), (2, 0.3)]:
+            shape = f'kind = "capsule"\nlength = {length}\ndiameter = 1\n'
+            self.write("run.toml", config(shape, time=12))
+            self.run_config("run.toml", "out", "--force", "--set", f"system.packing_fraction={phi}", "system.number=216",
+                            "equilibration.time=4")
+            g = length + 1
+            a = g * (g + 1) / (3 * g - 1)  # non-sphericity R S / (3 V)
+            wanted = (1 + (3 * a - 2) * phi + (a * a + a - 1) * phi**2 - a * (5 * a - 4) * phi**3) / (1 - phi) ** 3
+            z = self.summary("out")["observables"]["Z"]
+            self.assertAlmostEqual(z["value"], wanted, delta=0.01 * wanted + 4 * z["error"])
+            shutil.rmtree(self.path("out"))
+
     def test_sweep(self):
         text = config(SHAPES["capsule"], time=0.5) + "[grid]\nshape.length = [0, 1, 2]\n"
         self.write("sweep.toml", text)

@@ -108,6 +108,13 @@ void FrameReader::read_box(Frame& frame) const {
   frame.tilt = {box[3] * box[1], box[4] * box[2], box[5] * box[2]};  // the file contains ratios
 }
 
+std::optional<ed::BodyShape> FrameReader::own_shape(const std::string& row, const ed::BodyShape& known) const {
+  if (!swept_polytope(known)) return read_own_type_shape(row, known);
+  const auto found = shapes_.own_rows.find(row);
+  if (found != shapes_.own_rows.end()) return found->second;
+  return shapes_.own_rows.emplace(row, read_own_type_shape(row, known)).first->second;
+}
+
 void FrameReader::read_types(Frame& frame) const {
   std::vector<std::string> names = texts(kTypes);
   if (names.empty()) names = {"A"};
@@ -119,10 +126,14 @@ void FrameReader::read_types(Frame& frame) const {
     if (k >= shapes.size()) continue;
     try {
       if (k < known.size()) {
-        frame.types[k].shape = read_own_type_shape(shapes[k], known[k].shape);
-      } else if (std::optional<TypeShape> read = read_type_shape(shapes[k])) {
-        frame.types[k].shape = std::move(read->shape);
-        frame.types[k].X_BS = read->X_BS;
+        frame.types[k].shape = own_shape(shapes[k], known[k].shape);
+        continue;
+      }
+      auto found = shapes_.rows.find(shapes[k]);
+      if (found == shapes_.rows.end()) found = shapes_.rows.emplace(shapes[k], read_type_shape(shapes[k])).first;
+      if (found->second) {
+        frame.types[k].shape = found->second->shape;
+        frame.types[k].X_BS = found->second->X_BS;
       }
     } catch (const InputError& error) {
       throw InputError(fmt::format("{}: frame {}: the shape of type {}: {}", file_.name(), k_, k, error.what()));
@@ -322,6 +333,8 @@ ShapeNumbers FrameReader::shape_numbers(const double* row, std::uint32_t columns
 
 std::vector<ed::Species> FrameReader::read_species() const {
   const GsdChunk* chunk = file_.find(k_, kNameTexts[kExactSpecies]);
+  const bool constant = chunk == nullptr || k_ == 0;
+  if (constant && shapes_.species) return *shapes_.species;
   if (chunk == nullptr) chunk = file_.find(0, kNameTexts[kExactSpecies]);
   const std::uint64_t rows = chunk == nullptr ? 0 : chunk->rows;
   if (rows == 0 || rows > kMostTypes) throw bad(fmt::format("has {} species", rows), "1 to 10^6");
@@ -341,6 +354,7 @@ std::vector<ed::Species> FrameReader::read_species() const {
       throw bad(fmt::format("species {}: {}", k, one_line(error.what())), "a species of hardbody");
     }
   }
+  if (constant) shapes_.species = list;
   return list;
 }
 

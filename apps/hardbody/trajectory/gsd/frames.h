@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <utility>
 
@@ -27,11 +28,14 @@ namespace hardbody {
 ///
 /// Constant quantities are in frame 0 only, as the schema prescribes.
 
+struct ShapesOfFile;
+
 /// Reads any file of this schema, written by this program or another. Throws InputError, `name: what; accepted: ..`.
 class GsdReader final : public TrajectoryReader {
  public:
   explicit GsdReader(const std::filesystem::path& path);
   GsdReader(std::unique_ptr<StoredBytes> bytes, std::string name);
+  ~GsdReader() override;
 
   const std::string& name() const override { return file_.name(); }
   const std::string& application() const { return file_.application(); }
@@ -52,6 +56,7 @@ class GsdReader final : public TrajectoryReader {
  private:
   GsdFile file_;
   bool exact_;
+  std::unique_ptr<ShapesOfFile> shapes_;
 };
 
 /// Writes frames so that each becomes visible to readers only once it is complete.
