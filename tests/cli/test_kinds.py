@@ -255,6 +255,18 @@ class KindsContinue(KindsCase, Restart):
         self.run_config("long.toml", "long")
         self.assertEqual(self.summary("short")["counters"], self.summary("long")["counters"])
 
+    def test_replay(self):
+        """A pair of a capsule and a cube that meet face on; the paper has no equations for them."""
+        turn = [[1, 0, 0], [0, 1, 0], [0, 0, 1]]
+        capsule = {"kind": "capsule", "half_length": 1, "radius": 0.5}
+        cube = {"kind": "box", "half_extents": [0.5, 0.5, 0.5]}
+        pair = {"format": "hardbody pair", "a": {"shape": capsule, "position": [0, 0, 0], "rotation": turn},
+                "b": {"shape": cube, "position": [3, 0.2, 0], "rotation": turn, "velocity": [-1, 0, 0]}}
+        result = self.hardbody("replay", self.write("pair.json", json.dumps(pair)))
+        self.assertEqual(result.returncode, 0, result.stderr)
+        for text in ["a: capsule of half-length 1 and radius 0.5", "they touch after 2\n", "no equations of a capsule"]:
+            self.assertIn(text, result.stdout)
+
     def test_start_from_a_run(self):
         self.write("run.toml", config(SHAPES["capsule"], time=0.5))
         self.run_config("run.toml", "first")
