@@ -1133,7 +1133,7 @@ class Shapes(Case):
         self.assertEqual(self.read("shape/events.csv"), self.read("species/events.csv"))
         self.assertEqual(self.read("shape/observables/c2.csv"), self.read("species/observables/c2.csv"))
         table = self.read("species/summary.json")
-        self.assertIn("semi-axes are taken as they are given", table)
+        self.assertIn("lengths are taken as they are given", table)
 
     def test_numbers_and_fractions_are_the_same(self):
         mixture = MIXTURE + CELLS

@@ -97,6 +97,33 @@ Frame frame_with(std::size_t number, double time) {
   return frame;
 }
 
+/// Bodies of one form and several sizes share a mesh.
+TEST(ReportView, HasTheFormsOfCapsulesAndBoxes) {
+  const auto read = [](std::size_t /*k*/) {
+    Frame frame = frame_with(5, 0);
+    frame.types = {{"A", geom::Capsule(1, 0.5)},
+                   {"B", geom::Capsule(3, 1.5)},
+                   {"C", geom::Rounded<geom::Box>(geom::Box({1, 1, 1}), 0.5)},
+                   {"D", geom::Box({2, 2, 2})},
+                   {"E", geom::Sphere(2)}};
+    for (std::size_t k = 0; k < 5; ++k) frame.bodies[k].type = static_cast<std::uint32_t>(k);
+    return frame;
+  };
+  const View view = view_of({1, read});
+  ASSERT_EQ(view.shapes.size(), 5U);
+  ASSERT_EQ(view.polytopes.size(), 3U);
+  EXPECT_EQ(view.shapes[0].polytope, 0U);
+  EXPECT_EQ(view.shapes[1].polytope, 0U);
+  EXPECT_EQ(view.shapes[1].semi_axes, Eigen::Vector3d::Constant(4.5));
+  EXPECT_EQ(view.shapes[4].semi_axes, Eigen::Vector3d::Constant(2));
+  EXPECT_FALSE(view.shapes[4].polytope);
+  EXPECT_EQ(view.polytopes[0].vertices.size(), 2U);
+  EXPECT_DOUBLE_EQ(view.polytopes[0].rounding, 1 / 3.0);
+  EXPECT_EQ(view.polytopes[1].faces.size(), 6U);
+  EXPECT_GT(view.polytopes[1].rounding, 0);
+  EXPECT_EQ(view.polytopes[2].rounding, 0);
+}
+
 TEST(ReportView, HasEveryBodyOfEveryFrame) {
   const View view = view_of({3, [](std::size_t k) { return frame_with(10, static_cast<double>(k)); }});
   EXPECT_EQ(view.number, 10U);

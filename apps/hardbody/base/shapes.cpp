@@ -1,40 +1,135 @@
 #include "base/shapes.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <stdexcept>
+#include <type_traits>
 #include <utility>
 #include <variant>
 
 namespace hardbody {
 namespace {
 
+using Eigen::Vector3d;
+
+/// Returns the shape, or the rounded one.
+template <class Sharp>
+geom::Shape rounded(Sharp sharp, double radius) {
+  if (radius == 0) return sharp;
+  return geom::Rounded<Sharp>(std::move(sharp), radius);
+}
+
+geom::Shape make_ellipsoid(const ShapeNumbers& n) {
+  return geom::Ellipsoid(n.lengths);
+}
+geom::Shape make_superellipsoid(const ShapeNumbers& n) {
+  return geom::Superellipsoid(n.lengths, n.exponents.x(), n.exponents.y());
+}
+geom::Shape make_sphere(const ShapeNumbers& n) {
+  return geom::Sphere(n.lengths.x());
+}
+geom::Shape make_capsule(const ShapeNumbers& n) {
+  return geom::Capsule(n.lengths.z(), n.lengths.x());
+}
+geom::Shape make_box(const ShapeNumbers& n) {
+  return rounded(geom::Box(n.lengths), n.rounding);
+}
+geom::Shape make_polyhedron(const ShapeNumbers& n) {
+  return rounded(geom::ConvexPolyhedron(n.vertices), n.rounding);
+}
+
+/// Form of the semi-axes of a kind.
+enum class Axes { none, in_order, in_any_order };
+
 struct KindProperties {
   const char* name;
+  const char* plural;
+  Axes axes;
   bool has_exponents;
-  bool has_equivalent_axes;
+  geom::Shape (*make)(const ShapeNumbers& numbers);
 };
 
-KindProperties properties_of(ShapeKind kind) {
-  switch (kind) {
-    case ShapeKind::ellipsoid:
-      return {"ellipsoid", false, true};
-    case ShapeKind::superellipsoid:
-      return {"superellipsoid", true, false};
-  }
-  throw std::logic_error("an unknown kind of shape");
+/// Kinds in the order of their numbers.
+constexpr std::array<KindProperties, kShapeKinds.size()> kProperties = {{
+    {"ellipsoid", "ellipsoids", Axes::in_any_order, false, make_ellipsoid},
+    {"superellipsoid", "superellipsoids", Axes::in_order, true, make_superellipsoid},
+    {"sphere", "spheres", Axes::none, false, make_sphere},
+    {"capsule", "capsules", Axes::none, false, make_capsule},
+    {"box", "boxes", Axes::none, false, make_box},
+    {"polyhedron", "polyhedra", Axes::none, false, make_polyhedron},
+}};
+
+const KindProperties& properties_of(ShapeKind kind) {
+  return kProperties.at(static_cast<std::size_t>(kind));
 }
 
 ShapeNumbers numbers(const geom::Ellipsoid& shape) {
   return {ShapeKind::ellipsoid, shape.semi_axes()};
 }
-
 ShapeNumbers numbers(const geom::Superellipsoid& shape) {
   return {ShapeKind::superellipsoid, shape.semi_axes(), {shape.e1(), shape.e2()}};
 }
-
-template <class Shape>
-ShapeNumbers numbers(const Shape& /*shape*/) {
+ShapeNumbers numbers(const geom::Sphere& shape) {
+  return {ShapeKind::sphere, Vector3d::Constant(shape.radius())};
+}
+ShapeNumbers numbers(const geom::Capsule& shape) {
+  return {ShapeKind::capsule, {shape.radius(), shape.radius(), shape.half_length()}};
+}
+ShapeNumbers numbers(const geom::Box& shape) {
+  return {ShapeKind::box, shape.half_extents()};
+}
+ShapeNumbers numbers(const geom::ConvexPolyhedron& shape) {
+  ShapeNumbers result{ShapeKind::polyhedron, Vector3d::Zero()};
+  for (int k = 0; k < shape.vertex_count(); ++k) result.vertices.push_back(shape.vertex(k));
+  return result;
+}
+template <class Other>
+ShapeNumbers numbers(const Other& /*shape*/) {
   throw std::logic_error("a shape that no config or file names");
+}
+template <class Inner>
+ShapeNumbers numbers(const geom::Rounded<Inner>& shape) {
+  ShapeNumbers result = numbers(shape.inner());
+  result.rounding = shape.radius();
+  return result;
+}
+
+SweptPolytope polytope(const geom::ConvexPolyhedron& shape) {
+  return {numbers(shape).vertices, shape.faces()};
+}
+SweptPolytope polytope(const geom::Box& shape) {
+  std::vector<Vector3d> corners;
+  for (int k = 0; k < 8; ++k) {
+    const Vector3d side((k & 1) != 0 ? 1 : -1, (k & 2) != 0 ? 1 : -1, (k & 4) != 0 ? 1 : -1);
+    corners.emplace_back(side.cwiseProduct(shape.half_extents()));
+  }
+  return polytope(geom::ConvexPolyhedron(corners));
+}
+SweptPolytope polytope(const geom::Capsule& shape) {
+  const Vector3d end = shape.half_length() * Vector3d::UnitZ();
+  return {{-end, end}, {}, shape.radius()};
+}
+template <class Inner>
+auto polytope(const geom::Rounded<Inner>& shape) -> decltype(polytope(shape.inner())) {
+  SweptPolytope result = polytope(shape.inner());
+  result.rounding = shape.radius();
+  return result;
+}
+
+/// Returns whether each vertex has one of the others within `apart`.
+bool same_vertices(const std::vector<Vector3d>& a, const std::vector<Vector3d>& b, double apart) {
+  if (a.size() != b.size()) return false;
+  return std::all_of(a.begin(), a.end(), [&](const Vector3d& x) {
+    return std::any_of(b.begin(), b.end(), [&](const Vector3d& y) { return (x - y).norm() <= apart; });
+  });
+}
+
+/// Returns the numbers, those of a sphere as an ellipsoid.
+ShapeNumbers comparable(const ed::BodyShape& shape) {
+  ShapeNumbers result = numbers_of(shape);
+  if (result.kind == ShapeKind::sphere) result.kind = ShapeKind::ellipsoid;
+  return result;
 }
 
 }  // namespace
@@ -49,47 +144,70 @@ std::optional<ShapeKind> find_shape_kind(std::string_view name) {
   return kind == kShapeKinds.end() ? std::nullopt : std::optional(*kind);
 }
 
+const char* plural(ShapeKind kind) {
+  return properties_of(kind).plural;
+}
+
+bool has_semi_axes(ShapeKind kind) {
+  return properties_of(kind).axes != Axes::none;
+}
+
 bool has_exponents(ShapeKind kind) {
   return properties_of(kind).has_exponents;
 }
 
 bool has_equivalent_axes(ShapeKind kind) {
-  return properties_of(kind).has_equivalent_axes;
+  return properties_of(kind).axes == Axes::in_any_order;
 }
 
 ShapeNumbers numbers_of(const ed::BodyShape& shape) {
   return std::visit([](const auto& s) { return numbers(s); }, shape);
 }
 
-Eigen::Vector2d superellipsoid_exponents(const ed::BodyShape& shape) {
-  const ShapeNumbers numbers = numbers_of(shape);
-  switch (numbers.kind) {
-    case ShapeKind::ellipsoid:
-    case ShapeKind::superellipsoid:
-      return numbers.exponents;
-  }
-  throw std::logic_error("a shape that is no superellipsoid");
-}
-
 geom::Shape make_shape(const ShapeNumbers& numbers) {
-  switch (numbers.kind) {
-    case ShapeKind::ellipsoid:
-      return geom::Ellipsoid(numbers.semi_axes);
-    case ShapeKind::superellipsoid:
-      return geom::Superellipsoid(numbers.semi_axes, numbers.exponents.x(), numbers.exponents.y());
-  }
-  throw std::logic_error("an unknown kind of shape");
+  return properties_of(numbers.kind).make(numbers);
 }
 
 ed::BodyShape make_body_shape(const ShapeNumbers& numbers) {
-  return std::visit([](auto shape) { return ed::BodyShape(std::move(shape)); }, make_shape(numbers));
+  return body_shape(make_shape(numbers));
+}
+
+ed::BodyShape body_shape(const geom::Shape& shape) {
+  return std::visit([](const auto& s) { return ed::BodyShape(s); }, shape);
+}
+
+geom::Shape geom_shape(const ed::BodyShape& shape) {
+  return std::visit(
+      [](const auto& s) -> geom::Shape {
+        if constexpr (std::is_same_v<std::remove_cvref_t<decltype(s)>, ed::CustomShape>) {
+          throw std::logic_error("a user's own shape in a file");
+        } else {
+          return s;
+        }
+      },
+      shape);
+}
+
+std::optional<SweptPolytope> swept_polytope(const ed::BodyShape& shape) {
+  return std::visit(
+      [](const auto& s) -> std::optional<SweptPolytope> {
+        if constexpr (requires { polytope(s); }) return polytope(s);
+        return std::nullopt;
+      },
+      shape);
 }
 
 bool same_shape(const ed::BodyShape& a, const ed::BodyShape& b, double lengths, double exponents) {
-  const ShapeNumbers p = numbers_of(a);
-  const ShapeNumbers q = numbers_of(b);
+  const std::optional<SweptPolytope> s = swept_polytope(a);
+  const std::optional<SweptPolytope> t = swept_polytope(b);
+  if (s.has_value() != t.has_value()) return false;
+  const double apart = lengths * ed::bounding_radius(b);
+  if (s) return same_vertices(s->vertices, t->vertices, apart) && std::abs(s->rounding - t->rounding) <= apart;
+  const ShapeNumbers p = comparable(a);
+  const ShapeNumbers q = comparable(b);
   return p.kind == q.kind && (p.exponents - q.exponents).cwiseAbs().maxCoeff() <= exponents &&
-         (p.semi_axes - q.semi_axes).norm() <= lengths * q.semi_axes.norm();
+         (p.lengths - q.lengths).norm() <= lengths * q.lengths.norm() &&
+         std::abs(p.rounding - q.rounding) <= lengths * q.lengths.norm();
 }
 
 }  // namespace hardbody

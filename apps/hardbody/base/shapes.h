@@ -12,13 +12,16 @@
 #include <array>
 #include <optional>
 #include <string_view>
+#include <vector>
 
 namespace hardbody {
 
 /// Kind of shape; GSD files of this program store the values.
-enum class ShapeKind { ellipsoid = 0, superellipsoid = 1 };
+enum class ShapeKind { ellipsoid = 0, superellipsoid = 1, sphere = 2, capsule = 3, box = 4, polyhedron = 5 };
 
-inline constexpr std::array kShapeKinds = {ShapeKind::ellipsoid, ShapeKind::superellipsoid};
+inline constexpr std::array kShapeKinds = {ShapeKind::ellipsoid, ShapeKind::superellipsoid,
+                                           ShapeKind::sphere,    ShapeKind::capsule,
+                                           ShapeKind::box,       ShapeKind::polyhedron};
 
 /// Returns the word that configs and files have for a kind.
 const char* to_string(ShapeKind kind);
@@ -26,33 +29,55 @@ const char* to_string(ShapeKind kind);
 /// Returns the kind of this name; nullopt if there is none.
 std::optional<ShapeKind> find_shape_kind(std::string_view name);
 
+/// Returns the kind in the plural, as texts have it: "boxes".
+const char* plural(ShapeKind kind);
+
+/// Returns whether shapes of a kind are defined by semi-axes.
+bool has_semi_axes(ShapeKind kind);
+
 /// Returns whether shapes of a kind are defined by exponents, too.
 bool has_exponents(ShapeKind kind);
 
 /// Returns whether semi-axes (a, b, c) and (b, c, a) are one body of a kind, rotated.
 bool has_equivalent_axes(ShapeKind kind);
 
-/// Numbers that define a shape in configs and files.
+/// Numbers that define a shape in files, to the last bit.
 struct ShapeNumbers {
   ShapeKind kind = ShapeKind::ellipsoid;
-  Eigen::Vector3d semi_axes{1, 1, 1};
-  Eigen::Vector2d exponents{1, 1};  ///< e1, e2; 1, 1 for kinds without exponents
+  /// Semi-axes; half extents of a box; of a sphere its radius three times; of a capsule radius, radius, half-length.
+  Eigen::Vector3d lengths{1, 1, 1};
+  Eigen::Vector2d exponents{1, 1};             ///< e1, e2; 1, 1 for kinds without exponents
+  double rounding = 0;                         ///< radius of a ball that is swept over the shape
+  std::vector<Eigen::Vector3d> vertices = {};  ///< vertices of a polyhedron
 };
 
 /// Returns the numbers of a shape. Throws std::logic_error for a user's shape, which no config or file can name.
 ShapeNumbers numbers_of(const ed::BodyShape& shape);
-
-/// Returns the exponents of the superellipsoid that a shape is; those of an ellipsoid are 1, 1. Throws std::logic_error
-/// for shapes that are none.
-Eigen::Vector2d superellipsoid_exponents(const ed::BodyShape& shape);
 
 /// Returns the shape of these numbers. Throws std::invalid_argument if libgeom refuses them.
 geom::Shape make_shape(const ShapeNumbers& numbers);
 /// Returns the same shape for a body in motion. Throws std::invalid_argument if libgeom refuses the numbers.
 ed::BodyShape make_body_shape(const ShapeNumbers& numbers);
 
-/// Returns whether two shapes are of one kind and agree: their semi-axes within `lengths`, relative to those of `b`,
-/// and their exponents within `exponents`.
+/// Returns the same shape for a body in motion.
+ed::BodyShape body_shape(const geom::Shape& shape);
+/// Returns the shape of a body in motion. Throws std::logic_error for a user's shape.
+geom::Shape geom_shape(const ed::BodyShape& shape);
+
+/// Polytope with a ball swept over it.
+struct SweptPolytope {
+  std::vector<Eigen::Vector3d> vertices;
+  std::vector<std::vector<int>> faces;  ///< vertices of each face, anticlockwise; none of a segment
+  double rounding = 0;                  ///< radius of the ball
+};
+
+/// Returns a shape as a polytope with a ball, as which files and pictures have capsules (two vertices), boxes and
+/// polyhedra; nullopt for smooth shapes, spheres among them.
+std::optional<SweptPolytope> swept_polytope(const ed::BodyShape& shape);
+
+/// Returns whether two shapes are the same: numbers of one kind whose lengths agree within `lengths`, relative to those
+/// of `b`, and whose exponents agree within `exponents`. A sphere is the ellipsoid with equal semi-axes, and a box the
+/// polyhedron of its corners.
 bool same_shape(const ed::BodyShape& a, const ed::BodyShape& b, double lengths, double exponents);
 
 }  // namespace hardbody

@@ -67,15 +67,12 @@ double distance_rate(const Pair& pair, const geom::DistanceResult& d) {
 }
 
 std::string shape_text(const ed::BodyShape& shape) {
-  std::string axes = "semi-axes " + text(ed::half_extents(shape));
-  const auto [kind, a, e] = numbers_of(shape);
-  if (!has_exponents(kind)) return axes;
-  return fmt::format("{}, {}, exponents ({:.9g}, {:.9g})", to_string(kind), axes, e.x(), e.y());
-}
-
-/// Returns the shape, which is one of libgeom's: a file can contain no other.
-geom::Shape geom_shape(const ed::BodyShape& shape) {
-  return make_shape(numbers_of(shape));
+  const ShapeNumbers numbers = numbers_of(shape);
+  if (!has_semi_axes(numbers.kind)) return ed::describe(shape);
+  const Eigen::Vector2d& e = numbers.exponents;
+  const std::string axes = "semi-axes " + text(ed::half_extents(shape));
+  if (!has_exponents(numbers.kind)) return axes;
+  return fmt::format("{}, {}, exponents ({:.9g}, {:.9g})", to_string(numbers.kind), axes, e.x(), e.y());
 }
 
 std::string bodies(const Failure& failure, const Pair& pair) {
@@ -128,6 +125,11 @@ std::string newton_now(const Pair& pair) {
   std::string out;
   const geom::Shape a = geom_shape(pair.a);
   const geom::Shape b = geom_shape(pair.b);
+  for (const geom::Shape& shape : {a, b}) {
+    if (geom::has_equations(shape)) continue;
+    return fmt::format("   newton8, newton5: not tried, the paper has no equations of a {}\n",
+                       geom::description(shape));
+  }
   const geom::Pose& X_WA = pair.motion_a.pose;
   const geom::Pose& X_WB = pair.motion_b.pose;
   const auto line = [&](const char* name, geom::NewtonSystem system, const char* seed_name,

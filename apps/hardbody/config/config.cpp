@@ -78,12 +78,23 @@ double mean_length(std::vector<ed::Component> components) {
   return ed::time_unit(components);
 }
 
+/// Refuses the paper's finder for shapes without equations.
+void check_finder(const TomlDocument& document, const Config& config) {
+  if (config.finder == ed::Finder::certified) return;
+  for (const SpeciesConfig& species : config.species) {
+    if (geom::has_equations(geom_shape(species.body.shape))) continue;
+    throw bad(*document.find(kFinderKey), "\"certified\"",
+              fmt::format(", which solves equations that {} have not", plural(species.shape.kind)));
+  }
+}
+
 void read_dynamics(const TomlDocument& document, Config& config) {
   config.eps_d = kUsualEpsD * mean_length(config.components());
   read_section(document, "dynamics", {config});
   if (config.finder == ed::Finder::certified && config.distance != ed::DistanceMethod::dual) {
     throw bad(*document.find(kDistanceKey), "\"dual\" with finder = \"certified\"; others with \"bracketing\"");
   }
+  check_finder(document, config);
   config.neighbours_chosen = !config.neighbours;
 }
 

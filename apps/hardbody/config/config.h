@@ -30,16 +30,23 @@ const char* to_string(TrajectoryFormat format);
 const char* to_string(FramesSpacing spacing);
 const char* to_string(BondOrder order);
 
-/// A shape as the user gave it.
+/// A shape as the user gave it: the keys of its kind (config/shape_forms.h) have values.
 struct ShapeConfig {
   ShapeKind kind = ShapeKind::ellipsoid;
   // Exactly one of the two.
   std::optional<double> aspect_ratio;
   std::optional<Eigen::Vector3d> semi_axes;
   Eigen::Vector2d exponents{1, 1};  ///< e1, e2 of a superellipsoid
+  std::optional<double> length;     ///< distance of the centres of a capsule's caps
+  std::optional<double> diameter;
+  std::optional<Eigen::Vector3d> edges;  ///< edges of a box along body x, y, z
+  // Exactly one of the two.
+  std::optional<std::vector<Eigen::Vector3d>> vertices;  ///< corners of a polyhedron, in any frame
+  std::optional<std::string> solid;                      ///< Platonic or Archimedean solid of circumradius 1
+  double rounding = 0;                                   ///< radius of a ball that is swept over a box or polyhedron
 
-  /// Returns a/b, a along the axis of revolution (of superellipsoids: body z) and b the two equal semi-axes across it;
-  /// nullopt for shapes with three different semi-axes.
+  /// Returns a/b, a along the axis of revolution (of superellipsoids: body z) and b the two equal semi-axes across it,
+  /// 1 for spheres; nullopt for shapes with three different semi-axes and shapes without semi-axes.
   std::optional<double> true_aspect_ratio() const;
 };
 

@@ -20,9 +20,7 @@ namespace {
 constexpr double kLeastPacking = 1e-9;
 /// Largest packing fraction of a lattice or a start from a file; the number of bodies of a lattice may allow less.
 constexpr double kDensestLattice = 0.9999;
-constexpr double kThinnest = 1e-2;      ///< least ratio of two semi-axes; the largest is the inverse
-constexpr double kShortestAxis = 1e-3;  ///< semi-axis where semi-axes are taken literally; the longest is the inverse
-constexpr double kLightest = 1e-6;      ///< the heaviest is the inverse
+constexpr double kLightest = 1e-6;  ///< the heaviest is the inverse
 
 // ---- [system] and [start]
 
@@ -81,43 +79,6 @@ std::vector<Key> system_keys() {
 
 // ---- [shape] and [[species]]
 
-constexpr Range kRatios = {kThinnest, 1 / kThinnest};
-constexpr const char* kRatioMeaning = "X0 = a/b, a along the axis of revolution";
-constexpr const char* kKindComment = "\"ellipsoid\", or \"superellipsoid\" with exponents";
-constexpr const char* kExponentsComment =
-    "[e1, e2], of the profile along z and of the section across it: 1 an\n"
-    "ellipsoid, towards 0.25 a box, towards 1.6 an octahedron. The superball\n"
-    "|x|^p + |y|^p + |z|^p = a^p has a = b = c and e1 = e2 = 2/p";
-
-Taken take_semi_axes(const Value& value, const Place& at, std::optional<Eigen::Vector3d>& result) {
-  Eigen::Vector3d& axes = result.emplace();
-  if (!take_positive(value, axes)) return Refusal{"three positive finite numbers [a, b, c]"};
-  if (!(axes.minCoeff() >= kThinnest * axes.maxCoeff())) {
-    return Refusal{fmt::format("semi-axes of which none is more than {:g} times another", 1 / kThinnest)};
-  }
-  if (at.config.mixture && !(axes.minCoeff() >= kShortestAxis && axes.maxCoeff() <= 1 / kShortestAxis)) {
-    return Refusal{fmt::format("semi-axes from {:g} to {:g}", kShortestAxis, 1 / kShortestAxis)};
-  }
-  return std::nullopt;
-}
-
-Taken take_exponents(const Value& value, const Place&, Eigen::Vector2d& result) {
-  if (take_positive(value, result) && result.minCoeff() >= ed::kMinExponentInMotion &&
-      result.maxCoeff() <= ed::kMaxExponentInMotion) {
-    return std::nullopt;
-  }
-  return Refusal{
-      fmt::format("two numbers [e1, e2], each from {:g} to {:g}", ed::kMinExponentInMotion, ed::kMaxExponentInMotion)};
-}
-
-constexpr auto with_exponents = [](const Place& at) { return has_exponents(at.species->shape.kind); };
-constexpr auto without_exponents = [](const Place& at) { return !with_exponents(at); };
-
-Rule exponents_rule() {
-  return unless(without_exponents, "no exponents of an ellipsoid, or kind = \"superellipsoid\"",
-                bound(&ShapeConfig::exponents, take_exponents));
-}
-
 Taken take_inertia(const Value& value, const Place& at, Inertia& result, Eigen::Vector3d& moments) {
   const bool paper = ed::is_spheroid(body_shape(at.species->shape, at.config.mixture));
   if (value.kind == Value::Kind::text && (value.text == "uniform" || (value.text == "paper" && paper))) {
@@ -152,37 +113,14 @@ Rule inertia_rule() {
 }
 
 std::string inertia_comment(const Place& at) {
-  constexpr const char* kMoments = "\nabout the axes as semi_axes names them, in m l^2, with spin";
+  const char* const moments = has_semi_axes(at.species->shape.kind)
+                                  ? "\nabout the axes as semi_axes names them, in m l^2, with spin"
+                                  : "\nabout the body's axes, in m l^2, with spin";
   constexpr const char* kPaper =
       "\"paper\": 2/5 m min(a,b)^2, no spin about the axis of revolution;\n"
       "\"uniform\": uniform density, with spin; or moments [I1, I2, I3]";
   constexpr const char* kUniform = "\"uniform\": uniform density; or moments [I1, I2, I3]";
-  return std::string(ed::is_spheroid(at.species->body.shape) ? kPaper : kUniform) + kMoments;
-}
-
-std::string axes_comment(const Place& at) {
-  const Eigen::Vector3d used = ed::half_extents(at.species->body.shape);
-  const bool last = has_equivalent_axes(at.species->shape.kind) && at.species->shape.true_aspect_ratio();
-  return fmt::format("in any unit: only their ratios count;\nin use, l = 1{}: {:.6g}, {:.6g}, {:.6g}",
-                     last ? " and the axis of revolution last" : "", used.x(), used.y(), used.z());
-}
-
-/// Returns the keys that [shape] and [[species]] share.
-std::vector<Key> form_keys(const std::string& section, const char* usual_kind, Comment ratio, Comment axes) {
-  return {
-      {section + ".kind", usual_kind, choice(&ShapeConfig::kind, std::vector(kShapeKinds.begin(), kShapeKinds.end())),
-       kKindComment},
-      {section + ".aspect_ratio", "", number(&ShapeConfig::aspect_ratio, kRatios, kRatioMeaning), std::move(ratio)},
-      {section + ".semi_axes", "", bound(&ShapeConfig::semi_axes, take_semi_axes), std::move(axes)},
-      {section + ".exponents", "", exponents_rule(), kExponentsComment, with_exponents},
-  };
-}
-
-std::vector<Key> shape_keys() {
-  return form_keys("shape", "\"ellipsoid\"",
-                   "X0 = a/b, a along the axis of revolution, from 0.01 to 100;\n"
-                   "or semi_axes = [a, b, c], in any unit: only their ratios count",
-                   axes_comment);
+  return std::string(ed::is_spheroid(at.species->body.shape) ? kPaper : kUniform) + moments;
 }
 
 using Sizes = ed::SizeDistribution;
@@ -209,11 +147,12 @@ constexpr auto fraction_comment = [](const Place& at) -> std::string {
   return fmt::format("of the bodies, {} of them; or number", at.species->number);
 };
 
+std::vector<Key> shape_keys() {
+  return form_keys("shape");
+}
+
 std::vector<Key> species_keys() {
-  std::vector<Key> keys = form_keys("species", "",
-                                    "X0 = a/b, a along the axis of revolution, from 0.01 to 100;\n"
-                                    "or semi_axes; (a b c)^(1/3) = 1 then",
-                                    "[a, b, c], as they are");
+  std::vector<Key> keys = form_keys("species");
   const std::vector<Key> others = {
       {"species.fraction", "1 for a single species",
        number(&SpeciesConfig::fraction, {0, 1, false}, "of the number of bodies"), fraction_comment},
@@ -223,7 +162,7 @@ std::vector<Key> species_keys() {
       {"species.inertia", "that of [dynamics]", inertia_rule(), inertia_comment},
       {"species.sizes", "\"equal\"",
        choice(&SpeciesConfig::sizes, {std::nullopt, Sizes::uniform, Sizes::gaussian, Sizes::lognormal}, "equal"),
-       "of the bodies: \"equal\", or of mean 1 (the semi-axes above)\n"
+       "of the bodies: \"equal\", or of mean 1 (the lengths above)\n"
        "and \"uniform\", \"gaussian\" or \"lognormal\" with a width"},
       {"species.width", "required with sizes",
        unless(without_sizes, kNoSizes, bound(&SpeciesConfig::width, take_width)), width_comment, has_sizes},
@@ -248,7 +187,7 @@ Taken take_eps_d(const Value& value, const Place& at, double& result) {
 std::vector<Key> dynamics_keys() {
   return {
       {kInertiaKey, "see inertia", inertia_rule(), inertia_comment, [](const Place& at) { return !at.config.mixture; }},
-      {"dynamics.finder", "\"certified\"", choice(&Config::finder, {ed::Finder::certified, ed::Finder::bracketing}),
+      {kFinderKey, "\"certified\"", choice(&Config::finder, {ed::Finder::certified, ed::Finder::bracketing}),
        "of contact times: \"certified\", or \"bracketing\" (the paper's)"},
       {"dynamics.eps_d", "1e-6 of the bodies' mean size", bound(&Config::eps_d, take_eps_d),
        "in l, for \"bracketing\": shallower contacts may be missed"},

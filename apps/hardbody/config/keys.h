@@ -27,6 +27,7 @@ inline constexpr const char* kStartFileKey = "start.file";
 inline constexpr const char* kStartFrameKey = "start.frame";
 inline constexpr const char* kMendKey = "start.mend";
 inline constexpr const char* kInertiaKey = "dynamics.inertia";
+inline constexpr const char* kFinderKey = "dynamics.finder";
 inline constexpr const char* kDistanceKey = "dynamics.distance";
 inline constexpr const char* kSpacingKey = "output.frames_spacing";
 inline constexpr const char* kFramesKey = "output.frames";
@@ -87,6 +88,9 @@ struct Key {
 
 /// Returns the table, in the order of config.toml.
 const std::vector<Key>& keys();
+
+/// Returns the keys of the shape in a section, "shape" or "species".
+std::vector<Key> form_keys(const std::string& section);
 
 /// Returns the last part of the table: the keys of [equilibration], [production] and [output].
 std::vector<Key> run_keys();

@@ -2,12 +2,15 @@
 
 #include "base/find.h"
 #include "base/shapes.h"
+#include "base/suggest.h"
 #include "config/keys.h"
+#include "config/shape_forms.h"
 
 #include <ed/polydispersity.h>
 #include <ed/random.h>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -23,57 +26,56 @@ constexpr double kFractionRounding = 1e-6;
 
 // ---- Shape
 
-/// Returns the index of the axis of revolution in [a, b, c] (of a shape with equivalent axes); 2 for a sphere; -1:
-/// there is none.
-int axis_of_revolution(const Vector3d& axes) {
-  if (axes.x() == axes.y()) return 2;
-  if (axes.y() == axes.z()) return 0;
-  return axes.x() == axes.z() ? 1 : -1;
-}
-
-/// Returns that index for the body that the user means.
-int axis_of_revolution(const ShapeConfig& shape) {
-  if (!shape.semi_axes) return 2;
-  if (!has_equivalent_axes(shape.kind)) return shape.semi_axes->x() == shape.semi_axes->y() ? 2 : -1;
-  return axis_of_revolution(*shape.semi_axes);
-}
-
-/// Returns the values about body x, y, z after the permutation that makes `axis` the z axis.
-Vector3d axis_last(const Vector3d& v, int axis) {
-  return axis < 0 ? v : Vector3d(v[(axis + 1) % 3], v[(axis + 2) % 3], v[axis]);
-}
-
-/// Refuses a shape with both an aspect ratio and semi-axes, or neither.
-void check_one_of_lengths(const TomlDocument& document, const std::string& section, bool literal) {
-  const std::string ratio_key = section + ".aspect_ratio";
-  const std::string axes_key = section + ".semi_axes";
-  const Entry* ratio = document.find(ratio_key);
-  const Entry* axes = document.find(axes_key);
-  if (ratio != nullptr && axes != nullptr) {
-    const Entry& later = ratio->line != 0 && (axes->line == 0 || axes->line > ratio->line) ? *axes : *ratio;
-    throw InputError(fmt::format("{}: {} is {} and {} is {}; accepted: only one of them", later.where, ratio->key,
-                                 ratio->value.shown, axes->key, axes->value.shown));
-  }
-  if (ratio == nullptr && axes == nullptr) {
-    throw InputError(fmt::format("{}: the section {} needs {} or {} and has none; accepted: one of them",
-                                 document.where_of(section), literal ? section : "[shape]", ratio_key, axes_key));
+/// Refuses keys of other kinds of shapes.
+void check_keys_of_kind(const TomlDocument& document, const std::string& section, const ShapeForm& form) {
+  for (const Entry& entry : document.entries) {
+    if (section_of(entry.key) != section) continue;
+    const std::string_view key = last_part(entry.key);
+    const std::string kinds = kinds_with(key);
+    if (kinds.empty() || form.has(key)) continue;
+    throw bad(entry, fmt::format("no {} of {}, or kind = {}", key, with_article(form.kind), kinds));
   }
 }
 
-/// Returns the index of the axis in `semi_axes` that becomes body z; -1: all stay as they are given.
-int axis_moved_last(const ShapeConfig& shape) {
-  return has_equivalent_axes(shape.kind) ? axis_of_revolution(shape) : -1;
+/// Refuses a shape with both of two keys of which one is needed, or neither.
+void check_one_of(const TomlDocument& document, const std::string& section, const std::vector<std::string_view>& keys,
+                  const Target& target) {
+  std::vector<std::string> names;
+  std::vector<const Entry*> found;
+  for (const std::string_view key : keys) {
+    names.push_back(fmt::format("{}.{}", section, key));
+    if (const Entry* entry = document.find(names.back())) found.push_back(entry);
+  }
+  if (found.size() == 1) return;
+  if (found.size() > 1) {
+    const Entry& a = *found[0];
+    const Entry& b = *found[1];
+    const Entry& later = a.line != 0 && (b.line == 0 || b.line > a.line) ? b : a;
+    throw InputError(fmt::format("{}: {} is {} and {} is {}; accepted: only one of them", later.where, a.key,
+                                 a.value.shown, b.key, b.value.shown));
+  }
+  if (keys.size() == 1) {
+    throw missing(document.where_of(section), names[0], target,
+                  fmt::format(" of {}", with_article(target.species->shape.kind)));
+  }
+  throw InputError(fmt::format("{}: the section {} needs {} and has none; accepted: one of them",
+                               document.where_of(section), target.config.mixture ? section : "[shape]",
+                               fmt::join(names, " or ")));
 }
 
-/// Returns the semi-axes in the program's units, an ellipsoid's axis of revolution last.
-Vector3d semi_axes_in_use(const ShapeConfig& shape, bool literal) {
-  const std::optional<double> ratio = shape.true_aspect_ratio();
-  if (!shape.semi_axes || (ratio && !literal)) {
-    const double b = 1 / std::cbrt(*ratio);
-    return {b, b, *ratio * b};
+/// Reads the shape of a section, whose other keys are read with it.
+void read_shape_and_others(const TomlDocument& document, const std::string& section, const Target& target) {
+  ShapeConfig& shape = target.species->shape;
+  if (const Entry* kind = document.find(section + ".kind")) {
+    read_entry(*kind, without_index(section) + ".kind", target);
   }
-  const Vector3d axes = axis_last(*shape.semi_axes, axis_moved_last(shape));
-  return literal ? axes : Vector3d(axes / std::cbrt(axes.prod()));
+  const ShapeForm& form = form_of(shape.kind);
+  check_keys_of_kind(document, section, form);
+  for (const auto& keys : form.needed) check_one_of(document, section, keys, target);
+  read_section(document, section, target);
+  if (form.check == nullptr) return;
+  const std::optional<ShapeRefusal> refusal = form.check(shape);
+  if (refusal) throw bad(*document.find(fmt::format("{}.{}", section, refusal->key)), refusal->accepted, refusal->why);
 }
 
 // ---- Inertia
@@ -112,7 +114,7 @@ ed::Species as_named(const SpeciesConfig& species) {
   if (axis < 0) return body;
   const int back = (4 - axis) % 3;
   ShapeNumbers numbers = numbers_of(body.shape);
-  numbers.semi_axes = axis_last(numbers.semi_axes, back);
+  numbers.lengths = axis_last(numbers.lengths, back);
   body.inertia = axis_last(body.inertia, back);
   body.shape = make_body_shape(numbers);
   return body;
@@ -224,12 +226,7 @@ void draw_all_sizes(Config& config) {
 void read_one(const TomlDocument& document, const std::string& section, Config& config) {
   SpeciesConfig& species = config.species.emplace_back();
   const Target target{config, &species};
-  check_one_of_lengths(document, section, config.mixture);
-  read_section(document, section, target);
-  if (has_exponents(species.shape.kind) && document.find(section + ".exponents") == nullptr) {
-    throw missing(document.where_of(section), section + ".exponents", target,
-                  fmt::format(" of a {}", to_string(species.shape.kind)));
-  }
+  read_shape_and_others(document, section, target);
   if (species.sizes && document.find(section + ".width") == nullptr) {
     throw missing(document.find(section + ".sizes")->where, section + ".width", target);
   }
@@ -270,8 +267,7 @@ void refuse_unused_inertia(const TomlDocument& document, std::size_t number) {
 }  // namespace
 
 ed::BodyShape body_shape(const ShapeConfig& shape, bool literal) {
-  const Vector3d axes = semi_axes_in_use(shape, literal);
-  return make_body_shape({shape.kind, axes, shape.exponents});
+  return body_shape(form_of(shape.kind).make(shape, literal));
 }
 
 SizeStatistics statistics_of(const std::vector<double>& sizes) {
@@ -281,14 +277,6 @@ SizeStatistics statistics_of(const std::vector<double>& sizes) {
   double squares = 0;
   for (const double size : sizes) squares += (size - mean) * (size - mean);
   return {mean, std::sqrt(squares / std::max(1.0, n - 1)), *smallest, *largest};
-}
-
-std::optional<double> ShapeConfig::true_aspect_ratio() const {
-  if (aspect_ratio) return *aspect_ratio;
-  // From the axes as given: the rescaled ones would turn 3 into 2.9999999999999996.
-  const int axis = axis_of_revolution(*this);
-  if (axis < 0) return std::nullopt;
-  return (*semi_axes)[axis] / (*semi_axes)[(axis + 1) % 3];
 }
 
 int SpeciesConfig::rotation_axes() const {

@@ -2,8 +2,10 @@
 
 #include "base/errors.h"
 #include "base/shapes.h"
+#include "base/suggest.h"
 #include "config/keys.h"
 #include "config/rules.h"
+#include "config/shape_forms.h"
 #include "io/text_file.h"
 #include "trajectory/reader.h"
 
@@ -17,6 +19,7 @@
 #include <memory>
 #include <string_view>
 #include <utility>
+#include <variant>
 
 namespace hardbody {
 namespace {
@@ -54,12 +57,9 @@ std::string species_section(const Frame& frame, const std::vector<std::size_t>& 
                     file, one_line(type, 40)));
   }
   const ShapeNumbers numbers = numbers_of(*shape);
-  std::string text = fmt::format("\n[[species]]\nnumber = {}\nmass = {}\nsemi_axes = {}\n", bodies.size(),
-                                 toml_real(first.mass), value_text(ed::half_extents(*shape)));
-  if (has_exponents(numbers.kind)) {
-    text += fmt::format("kind = \"{}\"\nexponents = [{}, {}]\n", to_string(numbers.kind),
-                        toml_real(numbers.exponents.x()), toml_real(numbers.exponents.y()));
-  }
+  const std::string text =
+      fmt::format("\n[[species]]\nnumber = {}\nmass = {}\nkind = \"{}\"\n{}", bodies.size(), toml_real(first.mass),
+                  to_string(numbers.kind), form_of(numbers.kind).toml(numbers));
   return with_inertia ? text + inertia_line(frame, first) : text;
 }
 
@@ -89,10 +89,17 @@ bool has_numbers(const TomlDocument& document) {
 /// Returns the volume of the bodies whose shapes the frame says over that of the box. Where the config says the shapes,
 /// it is put right when the state is there.
 double packing_of(const Frame& frame, const TomlDocument& document, const std::string& file) {
+  // The polyhedra that files have of superellipsoids are smaller than these.
+  const bool inscribed = std::any_of(document.entries.begin(), document.entries.end(), [](const Entry& e) {
+    return last_part(e.key) == "kind" && e.value.text == to_string(ShapeKind::superellipsoid);
+  });
+  const auto unknown = [inscribed](const FrameType& type) {
+    return !type.shape || (inscribed && std::holds_alternative<geom::ConvexPolyhedron>(*type.shape));
+  };
   double volume = 0;
   for (const FrameBody& body : frame.bodies) {
-    const std::optional<ed::BodyShape>& shape = frame.types[body.type].shape;
-    volume += shape ? ed::volume(*shape) : 0;
+    const FrameType& type = frame.types[body.type];
+    volume += unknown(type) ? 0 : ed::volume(*type.shape);
   }
   if (volume == 0) {
     throw InputError(fmt::format("{}: {} is missing, and {} has no shapes to compute it from; accepted: a number",

@@ -16,6 +16,8 @@ namespace {
 constexpr const char* kUnits =
     "# Units: kT = m = 1 and length l = (a b c)^(1/3) = 1, a, b, c the semi-axes; time in l sqrt(m/kT).\n"
     "# In these units a sphere has radius 1.\n";
+constexpr const char* kVolumeUnits =
+    "# Units: kT = m = 1 and length l = 1, the radius of the sphere of the body's volume; time in l sqrt(m/kT).\n";
 constexpr const char* kMixtureUnits =
     "# Units: kT = 1; lengths and masses as the species give them: l and m are those units; time in l sqrt(m/kT).\n";
 
@@ -52,6 +54,10 @@ constexpr Template kTemplates[] = {
     {"superball", "hard superballs, |x|^4 + |y|^4 + |z|^4 = a^4",
      "[system]\npacking_fraction = 0.4\n[shape]\nkind = \"superellipsoid\"\nsemi_axes = [1, 1, 1]\n"
      "exponents = [0.5, 0.5]\n"},
+    {"capsule", "hard capsules (spherocylinders), twice as long between the caps as thick",
+     "[system]\npacking_fraction = 0.3\n[shape]\nkind = \"capsule\"\nlength = 2\ndiameter = 1\n"},
+    {"polyhedron", "hard dodecahedra, or other polyhedra",
+     "[system]\npacking_fraction = 0.3\n[shape]\nkind = \"polyhedron\"\nsolid = \"dodecahedron\"\n"},
     {"mixture", "a mixture: rods, and spheres of several sizes",
      "[system]\npacking_fraction = 0.3\n"
      "[[species]]\nsemi_axes = [0.5, 0.5, 1.5]\nfraction = 0.75\n"
@@ -61,7 +67,8 @@ constexpr Template kTemplates[] = {
 }  // namespace
 
 std::string config_text(const Config& config, const std::string& header) {
-  std::string text = header + (config.mixture ? kMixtureUnits : kUnits) + "\n";
+  const bool axes = has_semi_axes(config.species[0].shape.kind);
+  std::string text = header + (config.mixture ? kMixtureUnits : axes ? kUnits : kVolumeUnits) + "\n";
   std::string section;
   for (const PlacedKey& key : keys_of(config)) {
     const std::string_view now = section_of(key.name);

@@ -138,7 +138,7 @@ bool scan_shape(Scanner& in, ScannedBody& body) {
   });
   const std::optional<ShapeKind> found = find_shape_kind(kind);
   body.kind = found.value_or(ShapeKind::ellipsoid);
-  return good && axes && found && exponents == has_exponents(*found);
+  return good && axes && found && has_semi_axes(*found) && exponents == has_exponents(*found);
 }
 
 bool scan_body(Scanner& in, ScannedBody& body) {

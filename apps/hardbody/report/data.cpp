@@ -86,11 +86,23 @@ Json curves_json(const Curves& curves, Detail detail) {
   return {{"columns", std::move(columns)}, {"data", std::move(data)}};
 }
 
+Json polytopes_json(const View& view) {
+  Json list = Json::array();
+  for (const SweptPolytope& form : view.polytopes) {
+    Json vertices = Json::array();
+    for (const Eigen::Vector3d& x : form.vertices) vertices.push_back({rounded(x.x()), rounded(x.y()), rounded(x.z())});
+    list.push_back({{"vertices", std::move(vertices)}, {"faces", form.faces}, {"rounding", rounded(form.rounding)}});
+  }
+  return list;
+}
+
 Json view_json(const View& view) {
   Json shapes = Json::array();
   for (const ViewShape& s : view.shapes) {
-    shapes.push_back({{"semi_axes", {rounded(s.semi_axes.x()), rounded(s.semi_axes.y()), rounded(s.semi_axes.z())}},
-                      {"exponents", {s.exponents.x(), s.exponents.y()}}});
+    Json shape = {{"semi_axes", {rounded(s.semi_axes.x()), rounded(s.semi_axes.y()), rounded(s.semi_axes.z())}},
+                  {"exponents", {s.exponents.x(), s.exponents.y()}}};
+    if (s.polytope) shape["polytope"] = *s.polytope;
+    shapes.push_back(std::move(shape));
   }
   Json frames = Json::array();
   for (const ViewFrame& frame : view.frames) {
@@ -102,6 +114,7 @@ Json view_json(const View& view) {
           {"number", view.number},
           {"shown", view.shape_of.size()},
           {"shapes", std::move(shapes)},
+          {"polytopes", polytopes_json(view)},
           {"shape_of", packed(view.shape_of)},
           {"species_of", packed(view.species_of)},
           {"frames", std::move(frames)},

@@ -3,6 +3,7 @@
 #include "base/errors.h"
 #include "base/find.h"
 #include "base/shapes.h"
+#include "config/shape_forms.h"
 #include "io/json_member.h"
 #include "io/run_directory.h"
 #include "io/text_file.h"
@@ -180,8 +181,13 @@ Remark unfinished(const std::optional<Seen>& seen) {
 
 /// Returns "ellipsoids, X0 = 3", "superballs, p = 4".
 std::string bodies_title(const SpeciesConfig& species) {
-  const auto [kind, a, e] = numbers_of(species.body.shape);
-  const std::string name = fmt::format("{}s", to_string(kind));
+  const ShapeForm& form = form_of(species.shape.kind);
+  if (form.title != nullptr) return form.title(species.shape);
+  const ShapeNumbers numbers = numbers_of(species.body.shape);
+  const Eigen::Vector3d& a = numbers.lengths;
+  const Eigen::Vector2d& e = numbers.exponents;
+  const ShapeKind kind = numbers.kind;
+  const std::string name = plural(kind);
   const double least = a.minCoeff();
   const std::string ratios = fmt::format("{:.4g} : {:.4g} : {:.4g}", a.x() / least, a.y() / least, a.z() / least);
   if (has_exponents(kind)) {

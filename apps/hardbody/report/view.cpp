@@ -11,14 +11,33 @@
 #include <limits>
 #include <map>
 #include <tuple>
+#include <utility>
 
 namespace hardbody {
 namespace {
 
-using ShapeKey = std::tuple<double, double, double, double, double>;
+using ShapeKey = std::tuple<double, double, double, double, double, std::size_t>;
 
 ShapeKey key_of(const ViewShape& s) {
-  return {s.semi_axes.x(), s.semi_axes.y(), s.semi_axes.z(), s.exponents.x(), s.exponents.y()};
+  return {s.semi_axes.x(), s.semi_axes.y(), s.semi_axes.z(),
+          s.exponents.x(), s.exponents.y(), s.polytope ? 1 + *s.polytope : 0};
+}
+
+/// Returns whether two polytopes look alike: bodies of different sizes are the same form, to rounding.
+bool alike(const SweptPolytope& a, const SweptPolytope& b) {
+  constexpr double kAlike = 1e-6;
+  if (a.vertices.size() != b.vertices.size() || a.faces != b.faces) return false;
+  if (std::abs(a.rounding - b.rounding) > kAlike) return false;
+  return std::equal(a.vertices.begin(), a.vertices.end(), b.vertices.begin(),
+                    [](const Eigen::Vector3d& x, const Eigen::Vector3d& y) { return (x - y).norm() <= kAlike; });
+}
+
+/// Returns the index of a form among `known`, to which it is added if it is new.
+std::size_t index_of(SweptPolytope form, std::vector<SweptPolytope>& known) {
+  const auto found = std::find_if(known.begin(), known.end(), [&](const SweptPolytope& k) { return alike(k, form); });
+  const auto index = static_cast<std::size_t>(found - known.begin());
+  if (found == known.end()) known.push_back(std::move(form));
+  return index;
 }
 
 /// Returns the coordinate of the image in the box about the origin.
@@ -53,20 +72,30 @@ std::vector<std::size_t> frames_shown(std::size_t all, std::size_t most) {
   return list;
 }
 
-/// Returns the shape of a body; a type of unknown shape is shown as a sphere.
-ViewShape shape_of(const Frame& frame, std::size_t body) {
-  const FrameType& type = frame.types.at(frame.bodies[body].type);
-  return type.shape ? ViewShape{ed::half_extents(*type.shape), superellipsoid_exponents(*type.shape)}
-                    : ViewShape{{1, 1, 1}, {1, 1}};
+/// Returns the shape of a type; an unknown one is shown as a sphere.
+ViewShape shape_of(const FrameType& type, std::vector<SweptPolytope>& forms) {
+  if (!type.shape) return {{1, 1, 1}};
+  const ShapeNumbers numbers = numbers_of(*type.shape);
+  std::optional<SweptPolytope> form = swept_polytope(*type.shape);
+  if (!form) return {numbers.lengths, numbers.exponents};
+  const double radius = ed::bounding_radius(*type.shape);
+  for (Eigen::Vector3d& x : form->vertices) x /= radius;
+  form->rounding /= radius;
+  return {Eigen::Vector3d::Constant(radius), {1, 1}, index_of(std::move(*form), forms)};
 }
 
 void set_bodies(View& view, const Frame& frame, const std::vector<std::size_t>& bodies) {
   std::map<ShapeKey, std::uint32_t> known;
+  std::map<std::uint32_t, std::uint32_t> shape_of_type;
   for (const std::size_t body : bodies) {
-    const ViewShape shape = shape_of(frame, body);
-    const auto [place, is_new] = known.emplace(key_of(shape), static_cast<std::uint32_t>(view.shapes.size()));
-    if (is_new) view.shapes.push_back(shape);
-    view.shape_of.push_back(place->second);
+    const std::uint32_t type = frame.bodies[body].type;
+    if (!shape_of_type.contains(type)) {
+      const ViewShape shape = shape_of(frame.types.at(type), view.polytopes);
+      const auto [place, is_new] = known.emplace(key_of(shape), static_cast<std::uint32_t>(view.shapes.size()));
+      if (is_new) view.shapes.push_back(shape);
+      shape_of_type[type] = place->second;
+    }
+    view.shape_of.push_back(shape_of_type[type]);
     view.species_of.push_back(frame.bodies[body].group);
   }
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/shapes.h"
 #include "trajectory/frame.h"
 
 #include <Eigen/Core>
@@ -7,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,8 +17,9 @@ namespace hardbody {
 
 /// Shape as which the report draws a body.
 struct ViewShape {
-  Eigen::Vector3d semi_axes;
-  Eigen::Vector2d exponents;  ///< 1, 1: an ellipsoid
+  Eigen::Vector3d semi_axes;                 ///< semi-axes; bounding radius of a polytope, three times
+  Eigen::Vector2d exponents{1, 1};           ///< 1, 1: an ellipsoid
+  std::optional<std::size_t> polytope = {};  ///< index into View::polytopes
 };
 
 /// Positions and orientations of the bodies at one time, in single precision.
@@ -31,6 +34,7 @@ struct View {
   double box = 0;
   std::size_t number = 0;  ///< number of bodies in the system; fewer may be shown
   std::vector<ViewShape> shapes;
+  std::vector<SweptPolytope> polytopes;   ///< forms of capsules, boxes and polyhedra, of bounding radius 1
   std::vector<std::uint32_t> shape_of;    ///< index of the shape of each body shown
   std::vector<std::uint32_t> species_of;  ///< species of each body shown, from 0
   std::vector<ViewFrame> frames;

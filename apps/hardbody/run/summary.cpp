@@ -2,6 +2,7 @@
 
 #include "base/shapes.h"
 #include "base/version.h"
+#include "io/json_shape.h"
 #include "io/json_values.h"
 #include "io/text_file.h"
 #include "run/equilibrated.h"
@@ -19,9 +20,14 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+const char* unit_of_length(const Config& config) {
+  if (config.mixture) return "l = 1: lengths are taken as they are given";
+  return has_semi_axes(config.species[0].shape.kind) ? "l = (a b c)^(1/3) of the semi-axes = 1"
+                                                     : "l = radius of the sphere of the body's volume = 1";
+}
+
 Json units(const Config& config, const Part& part) {
-  Json json = {{"length", config.mixture ? "l = 1: semi-axes are taken as they are given"
-                                         : "l = (a b c)^(1/3) of the semi-axes = 1"},
+  Json json = {{"length", unit_of_length(config)},
                {"mass", config.mixture ? "m = 1: masses are taken as they are given" : "m = 1"},
                {"energy", "kT = 1"},
                {"time", "l sqrt(m/kT)"}};
@@ -59,14 +65,17 @@ Json fit_windows(const ed::Correlations& r) {
   return {{"D", window(r.window_D)}, {"C2", window(r.window_C2)}, {"F", window(r.window_F)}};
 }
 
-/// kind, aspect_ratio, semi_axes, exponents of a body of nominal size.
+/// Adds kind, aspect_ratio, semi_axes, exponents of a body of nominal size, and the shape where these do not tell it.
 void add_shape(Json& json, const SpeciesConfig& species) {
   const std::optional<double> ratio = species.shape.true_aspect_ratio();
   json["kind"] = to_string(species.shape.kind);
   json["aspect_ratio"] = ratio ? Json(*ratio) : Json(nullptr);
-  const auto [kind, semi_axes, e] = numbers_of(species.body.shape);
-  json["semi_axes"] = list_json(semi_axes);
-  json["exponents"] = has_exponents(kind) ? Json{e.x(), e.y()} : Json(nullptr);
+  const ShapeNumbers numbers = numbers_of(species.body.shape);
+  const Eigen::Vector2d& e = numbers.exponents;
+  const bool axes = has_semi_axes(numbers.kind) || numbers.kind == ShapeKind::sphere;
+  json["semi_axes"] = axes ? list_json(numbers.lengths) : Json(nullptr);
+  json["exponents"] = has_exponents(numbers.kind) ? Json{e.x(), e.y()} : Json(nullptr);
+  if (!has_semi_axes(numbers.kind)) json["shape"] = shape_json(species.body.shape);
 }
 
 Json state(const Config& config) {

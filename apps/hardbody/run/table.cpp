@@ -2,6 +2,7 @@
 
 #include "base/shapes.h"
 #include "base/version.h"
+#include "config/shape_forms.h"
 #include "registry/observables.h"
 #include "run/equilibrated.h"
 #include "run/missing.h"
@@ -56,8 +57,11 @@ std::string axes_text(const ed::BodyShape& shape) {
 /// "hard ellipsoids, X0 = 3 (semi-axes ..)"
 std::string bodies_text(const SpeciesConfig& species) {
   const ed::BodyShape& shape = species.body.shape;
-  const auto [kind, a, e] = numbers_of(shape);
+  const ShapeKind kind = species.shape.kind;
+  const ShapeForm& form = form_of(kind);
+  if (form.title != nullptr) return fmt::format("hard {} ({})", form.title(species.shape), form.lengths(shape));
   if (has_exponents(kind)) {
+    const Eigen::Vector2d& e = species.shape.exponents;
     return fmt::format("hard {}s ({}, exponents {:g}, {:g})", to_string(kind), axes_text(shape), e.x(), e.y());
   }
   const std::optional<double> ratio = species.shape.true_aspect_ratio();
@@ -90,8 +94,12 @@ std::string head(const RunRecord& record) {
   std::string text = state_text(config);
   text += fmt::format("time: equilibration {:g}, production {:g}{}\n", record.equilibration.time,
                       record.production.time, record.stopped() ? " (stopped early)" : "");
-  return text + (config.mixture ? "units: kT = 1, lengths and masses as given in [[species]], time l sqrt(m/kT)\n"
-                                : "units: kT = m = 1, length l = (abc)^(1/3) of the semi-axes, time l sqrt(m/kT)\n");
+  if (config.mixture) {
+    return text + "units: kT = 1, lengths and masses as given in [[species]], time l sqrt(m/kT)\n";
+  }
+  const char* length = has_semi_axes(config.species[0].shape.kind) ? "(abc)^(1/3) of the semi-axes"
+                                                                   : "radius of the sphere of the body's volume";
+  return text + fmt::format("units: kT = m = 1, length l = {}, time l sqrt(m/kT)\n", length);
 }
 
 /// The lines of each species, if there are several.

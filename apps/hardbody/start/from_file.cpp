@@ -13,6 +13,7 @@
 
 #include <cmath>
 #include <utility>
+#include <variant>
 
 namespace hardbody {
 namespace {
@@ -25,14 +26,37 @@ constexpr double kSamePacking = 1e-4;
 /// Largest factor by which overlapping bodies are moved apart.
 constexpr double kMostMending = 1.1;
 
+/// Returns whether a polyhedron at X_BS is what files have of a superellipsoid: corners on its surface.
+bool has_corners_on(const ed::BodyShape& surface, const ed::BodyShape& polyhedron, const geom::Pose& X_BS) {
+  constexpr double kOnSurface = 1e-4;  // coordinates are rounded to 7 digits, and powers of them up to 8 are taken
+  const auto* barr = std::get_if<geom::Superellipsoid>(&surface);
+  const auto* corners = std::get_if<geom::ConvexPolyhedron>(&polyhedron);
+  if (barr == nullptr || corners == nullptr) return false;
+  for (int k = 0; k < corners->vertex_count(); ++k) {
+    const Vector3d x = X_BS.rotation() * corners->vertex(k) + X_BS.position();
+    if (!(std::abs(barr->value(x)) <= kOnSurface)) return false;
+  }
+  return X_BS.position().norm() <= kSameLength * barr->bounding_radius();
+}
+
 /// Returns the orientation of the config's body axes (the axis of revolution last) in the file's body axes; nullopt if
 /// the two shapes are different.
-std::optional<Matrix3d> axes_in_file(const ed::BodyShape& file, const ed::BodyShape& config) {
-  const Eigen::Vector2d apart = superellipsoid_exponents(file) - superellipsoid_exponents(config);
+std::optional<Matrix3d> axes_in_file(const FrameType& type, const ed::BodyShape& config) {
+  const ed::BodyShape& file = *type.shape;
+  const ShapeNumbers in_config = numbers_of(config);
+  const ShapeNumbers in_file = numbers_of(file);
+  if (!has_semi_axes(in_config.kind)) {
+    return same_shape(file, config, kSameLength, kSameLength) ? std::optional<Matrix3d>(Matrix3d::Identity())
+                                                              : std::nullopt;
+  }
+  const geom::Pose X_BS = type.X_BS.value_or(geom::Pose());
+  if (has_corners_on(config, file, X_BS)) return X_BS.rotation().transpose();
+  if (!has_semi_axes(in_file.kind) && in_file.kind != ShapeKind::sphere) return std::nullopt;
+  const Eigen::Vector2d apart = in_file.exponents - in_config.exponents;
   if (!(apart.cwiseAbs().maxCoeff() <= kSameLength)) return std::nullopt;
-  const auto [kind, wanted, exponents] = numbers_of(config);
-  const Vector3d given = numbers_of(file).semi_axes;
-  for (int shift = 0; shift < (has_equivalent_axes(kind) ? 3 : 1); ++shift) {
+  const Vector3d& wanted = in_config.lengths;
+  const Vector3d& given = in_file.lengths;
+  for (int shift = 0; shift < (has_equivalent_axes(in_config.kind) ? 3 : 1); ++shift) {
     Matrix3d axes;
     for (int k = 0; k < 3; ++k) axes.col(k) = Vector3d::Unit((k + shift) % 3);
     const Vector3d turned = axes.transpose() * given;
@@ -72,7 +96,7 @@ ed::System placed(const Config& config, const Frame& frame, const std::vector<st
       }
       const std::optional<ed::BodyShape>& shape = frame.types[from.type].shape;
       if (!shape) continue;
-      const std::optional<Matrix3d> axes = axes_in_file(*shape, component.species.shape);
+      const std::optional<Matrix3d> axes = axes_in_file(frame.types[from.type], component.species.shape);
       if (!axes) {
         throw InputError(
             fmt::format("{}: body {:.17g} is {}, in the config {}; accepted: the same, or no shape in the config", file,

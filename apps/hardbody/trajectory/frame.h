@@ -3,6 +3,8 @@
 #include <ed/simulation.h>
 #include <ed/system.h>
 
+#include <geom/pose.h>
+
 #include <Eigen/Core>
 
 #include <cstdint>
@@ -20,6 +22,8 @@ struct FrameType {
   std::string name;
   std::optional<ed::BodyShape> shape;  ///< nullopt: not given, or a shape that is not supported
   bool shape_given = false;  ///< whether the file gives a shape that is not supported; only if `shape` is not set
+  /// Frame of the shape in the frame that bodies have in the file, where these differ; bodies have been moved to it.
+  std::optional<geom::Pose> X_BS = std::nullopt;
 };
 
 /// Types of a file that gives each body a radius: every radius of a type makes a type of its own.

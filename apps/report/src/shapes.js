@@ -76,3 +76,135 @@ export function superellipsoidGeometry([e1, e2], divisions) {
   geometry.setIndex(triangles);
   return geometry;
 }
+
+// ---- Polytopes with a ball swept over them -------------------------------------------------------------------------
+
+const minus = (a, b) => a.map((x, k) => x - b[k]);
+const plus = (a, b, s = 1) => a.map((x, k) => x + s * b[k]);
+const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+
+/** Corners with normals, and the triangles between them. */
+class Surface {
+  constructor() {
+    this.points = [];
+    this.normals = [];
+    this.triangles = [];
+  }
+
+  corner(point, normal) {
+    this.points.push(point);
+    this.normals.push(normal);
+    return this.points.length - 1;
+  }
+
+  /** Adds a triangle whose front is on the side of its corners' normals. */
+  triangle(a, b, c) {
+    const [p, q, r] = [this.points[a], this.points[b], this.points[c]];
+    const outward = plus(plus(this.normals[a], this.normals[b]), this.normals[c]);
+    const front = dot(cross(minus(q, p), minus(r, p)), outward) >= 0;
+    this.triangles.push(a, front ? b : c, front ? c : b);
+  }
+
+  /** Adds the quadrilaterals between two rows of corners of the same length. */
+  strip(first, second) {
+    for (let k = 0; k + 1 < first.length; k += 1) {
+      this.triangle(first[k], first[k + 1], second[k]);
+      this.triangle(second[k], first[k + 1], second[k + 1]);
+    }
+  }
+
+  geometry() {
+    const geometry = new BufferGeometry();
+    geometry.setAttribute('position', new BufferAttribute(new Float32Array(this.points.flat()), 3));
+    geometry.setAttribute('normal', new BufferAttribute(new Float32Array(this.normals.flat()), 3));
+    geometry.setIndex(this.triangles);
+    return geometry;
+  }
+}
+
+/** Returns the normals from m to n in equal parts of their chord. */
+function fan(m, n, parts) {
+  return Array.from({ length: parts + 1 }, (_, k) => unit(plus(m.map((x) => x * (1 - k / parts)), n, k / parts)));
+}
+
+/** Adds the ball swept along a segment: rings about it, half of them about each end. */
+function addCapsule(surface, [from, to], rounding, divisions) {
+  const axis = unit(minus(to, from));
+  const across = unit(cross(axis, Math.abs(axis[0]) < 0.9 ? [1, 0, 0] : [0, 1, 0]));
+  const third = cross(axis, across);
+  const around = 4 * divisions;
+  let before = null;
+  for (const [end, side] of [[from, -1], [to, 1]]) {
+    for (let i = 0; i <= divisions; i += 1) {
+      const height = (side * (Math.PI / 2) * (side < 0 ? divisions - i : i)) / divisions;
+      const ring = Array.from({ length: around + 1 }, (_, k) => {
+        const turn = (2 * Math.PI * k) / around;
+        const flat = plus(across.map((x) => x * Math.cos(turn)), third, Math.sin(turn));
+        const normal = plus(flat.map((x) => x * Math.cos(height)), axis, Math.sin(height));
+        return surface.corner(plus(end, normal, rounding), normal);
+      });
+      if (before) surface.strip(before, ring);
+      before = ring;
+    }
+  }
+}
+
+/** Adds the part of the ball about a corner between the normals of its faces. */
+function addCorner(surface, vertex, normals, rounding, parts) {
+  const middle = unit(normals.reduce((sum, n) => plus(sum, n)));
+  const across = unit(cross(middle, normals[0]));
+  const third = cross(middle, across);
+  const angle = (n) => Math.atan2(dot(n, third), dot(n, across));
+  const ordered = [...normals].sort((m, n) => angle(m) - angle(n));
+  ordered.forEach((m, k) => {
+    const n = ordered[(k + 1) % ordered.length];
+    let before = null;
+    for (let i = 0; i <= parts; i += 1) {
+      const share = i / parts;
+      const begin = unit(plus(middle.map((x) => x * (1 - share)), m, share));
+      const end = unit(plus(middle.map((x) => x * (1 - share)), n, share));
+      const row = (i === 0 ? [middle] : fan(begin, end, i)).map((x) => surface.corner(plus(vertex, x, rounding), x));
+      if (before) {
+        for (let j = 0; j < i; j += 1) {
+          surface.triangle(before[j], row[j], row[j + 1]);
+          if (j + 1 < i) surface.triangle(before[j], row[j + 1], before[j + 1]);
+        }
+      }
+      before = row;
+    }
+  });
+}
+
+/** Returns the mesh of a polytope with a ball swept over it: flat faces, with rounded edges and corners if there is a
+    ball; of two vertices a capsule. */
+export function polytopeGeometry({ vertices, faces, rounding }, divisions) {
+  const surface = new Surface();
+  if (vertices.length === 2) {
+    addCapsule(surface, vertices, rounding, divisions);
+    return surface.geometry();
+  }
+  const parts = Math.max(2, Math.ceil(divisions / 3));
+  const edges = new Map();
+  const corners = vertices.map(() => []);
+  for (const face of faces) {
+    const [a, b, c] = face.map((k) => vertices[k]);
+    const normal = unit(cross(minus(b, a), minus(c, a)));
+    const flat = face.map((k) => surface.corner(plus(vertices[k], normal, rounding), normal));
+    for (let k = 1; k + 1 < flat.length; k += 1) surface.triangle(flat[0], flat[k], flat[k + 1]);
+    face.forEach((k, place) => {
+      corners[k].push(normal);
+      const next = face[(place + 1) % face.length];
+      const key = `${Math.min(k, next)},${Math.max(k, next)}`;
+      edges.set(key, [...(edges.get(key) ?? []), normal]);
+    });
+  }
+  if (rounding > 0) {
+    for (const [key, [m, n]] of edges) {
+      const rows = key.split(',').map((k) => fan(m, n, parts).map((x) => surface.corner(plus(vertices[k], x, rounding), x)));
+      surface.strip(rows[0], rows[1]);
+    }
+    corners.forEach((normals, k) => addCorner(surface, vertices[k], normals, rounding, parts));
+  }
+  return surface.geometry();
+}

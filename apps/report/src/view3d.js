@@ -9,7 +9,7 @@ import { cssRgb, directionBall, directionColour, linearToSrgb, rampColour, rampG
 import { cssColour, download, fileName, h, tool } from './dom.js';
 import { grouped, short } from './format.js';
 import { nematicOrder } from './nematic.js';
-import { superellipsoidGeometry } from './shapes.js';
+import { polytopeGeometry, superellipsoidGeometry } from './shapes.js';
 import { onThemeChange } from './theme.js';
 
 const kLegendSize = 84;
@@ -25,7 +25,7 @@ function divisionsFor(bodies) {
 
 function isSphere(shape) {
   const [a, b, c] = shape.semi_axes;
-  return a === b && b === c && shape.exponents.every((e) => e === 1);
+  return shape.polytope === undefined && a === b && b === c && shape.exponents.every((e) => e === 1);
 }
 
 /** Insides of bodies that are cut open are drawn in one flat, darker tone: the cut looks solid. */
@@ -143,18 +143,21 @@ export class View3d {
     this.show(this.frame);
   }
 
-  /** Makes one mesh for all shapes that differ in their semi-axes only. */
+  /** Makes one mesh for all shapes that differ in their semi-axes or size only. */
   makeMeshes() {
     const kinds = new Map();
     for (let i = 0; i < this.bodies; i += 1) {
-      const key = this.data.shapes[this.shapeOf[i]].exponents.join(',');
+      const { polytope, exponents } = this.data.shapes[this.shapeOf[i]];
+      const key = polytope === undefined ? exponents.join(',') : `polytope ${polytope}`;
       if (!kinds.has(key)) kinds.set(key, []);
       kinds.get(key).push(i);
     }
     const divisions = divisionsFor(this.bodies);
     this.material = bodyMaterial();
     this.meshes = [...kinds.values()].map((members) => {
-      const geometry = superellipsoid(this.data.shapes[this.shapeOf[members[0]]].exponents, divisions);
+      const { polytope, exponents } = this.data.shapes[this.shapeOf[members[0]]];
+      const geometry = polytope === undefined
+        ? superellipsoid(exponents, divisions) : polytopeGeometry(this.data.polytopes[polytope], divisions);
       const mesh = new InstancedMesh(geometry, this.material, members.length);
       mesh.frustumCulled = false;
       this.scene.add(mesh);

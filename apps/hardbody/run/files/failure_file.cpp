@@ -14,7 +14,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
-#include <variant>
 
 namespace hardbody {
 namespace {
@@ -41,10 +40,6 @@ Json body_json(const ed::BodyShape& shape, const ed::Motion& motion) {
   json["inertia"] = list_json(motion.inertia);
   json["time"] = motion.time;
   return json;
-}
-
-ed::BodyShape body_shape(const geom::Shape& shape) {
-  return std::visit([](const auto& s) -> ed::BodyShape { return s; }, shape);
 }
 
 Json newton_json(const ed::FailedDistance& call) {

@@ -32,9 +32,12 @@ constexpr double kProcess = 0.03;          ///< start of a process, files
 constexpr double kProgramMemory = 1.5e7;
 constexpr double kBodyMemory = 1.2e4;
 
-/// Logarithm of the largest over the smallest semi-axis.
+/// Logarithm of the largest over the smallest semi-axis; of other shapes of their radii.
 double elongation(const SpeciesConfig& species) {
   const ShapeConfig& shape = species.shape;
+  if (!has_semi_axes(shape.kind)) {
+    return std::log(ed::bounding_radius(species.body.shape) / ed::inscribed_radius(species.body.shape));
+  }
   if (shape.semi_axes) return std::log(shape.semi_axes->maxCoeff() / shape.semi_axes->minCoeff());
   return std::abs(std::log(shape.aspect_ratio.value_or(1)));
 }

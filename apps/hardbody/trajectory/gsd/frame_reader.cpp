@@ -108,16 +108,33 @@ void FrameReader::read_box(Frame& frame) const {
   frame.tilt = {box[3] * box[1], box[4] * box[2], box[5] * box[2]};  // the file contains ratios
 }
 
+std::optional<ed::BodyShape> FrameReader::own_shape(const std::string& row, const ed::BodyShape& known) const {
+  if (!swept_polytope(known)) return read_own_type_shape(row, known);
+  const auto found = shapes_.own_rows.find(row);
+  if (found != shapes_.own_rows.end()) return found->second;
+  return shapes_.own_rows.emplace(row, read_own_type_shape(row, known)).first->second;
+}
+
 void FrameReader::read_types(Frame& frame) const {
   std::vector<std::string> names = texts(kTypes);
   if (names.empty()) names = {"A"};
   const std::vector<std::string> shapes = texts(kTypeShapes);
+  const std::vector<ed::Species> known = exact_ ? read_species() : std::vector<ed::Species>();
   std::string others;
   for (std::size_t k = 0; k < names.size(); ++k) {
     frame.types.push_back({names[k], std::nullopt, k < shapes.size() && shapes[k] != "{}" && !shapes[k].empty()});
     if (k >= shapes.size()) continue;
     try {
-      frame.types.back().shape = read_type_shape(shapes[k]);
+      if (k < known.size()) {
+        frame.types[k].shape = own_shape(shapes[k], known[k].shape);
+        continue;
+      }
+      auto found = shapes_.rows.find(shapes[k]);
+      if (found == shapes_.rows.end()) found = shapes_.rows.emplace(shapes[k], read_type_shape(shapes[k])).first;
+      if (found->second) {
+        frame.types[k].shape = found->second->shape;
+        frame.types[k].X_BS = found->second->X_BS;
+      }
     } catch (const InputError& error) {
       throw InputError(fmt::format("{}: frame {}: the shape of type {}: {}", file_.name(), k_, k, error.what()));
     }
@@ -126,11 +143,43 @@ void FrameReader::read_types(Frame& frame) const {
     }
   }
   if (!others.empty() && !exact_) {
-    frame.notices.push_back(
-        fmt::format("shapes: those of types{} are not used; spheres and ellipsoids are, {{\"type\": \"Sphere\", "
-                    "\"diameter\": ..}}, {{\"type\": \"Ellipsoid\", \"a\": .., \"b\": .., \"c\": ..}}",
-                    others));
+    frame.notices.push_back(fmt::format(
+        "shapes: those of types{} are not used; spheres, ellipsoids and convex polyhedra are, {{\"type\": \"Sphere\", "
+        "\"diameter\": ..}}, {{\"type\": \"Ellipsoid\", \"a\": .., \"b\": .., \"c\": ..}}, {{\"type\": "
+        "\"ConvexPolyhedron\", \"rounding_radius\": .., \"vertices\": [..]}}",
+        others));
   }
+}
+
+/// Moves bodies to the frames of their shapes: the centre of mass and the principal axes of a polyhedron.
+void FrameReader::move_to_shapes(Frame& frame) const {
+  std::string moved;
+  for (FrameType& type : frame.types) {
+    if (!type.X_BS) continue;
+    if (!frame.orientations) type.shape.reset();
+    if (moved.size() < kShownLength) moved += fmt::format(" {}", one_line(type.name, 20));
+  }
+  if (moved.empty()) return;
+  if (!frame.orientations) {
+    frame.notices.push_back(fmt::format(
+        "shapes: those of types{} are not used: their frames are not that of the principal axes, and orientations are "
+        "not known",
+        moved));
+    return;
+  }
+  for (FrameBody& body : frame.bodies) {
+    const std::optional<geom::Pose>& X_BS = frame.types[body.type].X_BS;
+    if (!X_BS) continue;
+    const Vector3d arm = body.rotation * X_BS->position();
+    body.position += arm;
+    body.unwrapped += arm;
+    body.velocity += body.angular_velocity.cross(arm);
+    body.rotation = body.rotation * X_BS->rotation();
+    body.inertia.setZero();  // those of the file are about other axes
+    if (frame.tilt.isZero(0)) (void)wrap(body.position, frame.box);
+  }
+  frame.notices.push_back(fmt::format(
+      "shapes: bodies of types{} are moved to the centres of mass and principal axes of their polyhedra", moved));
 }
 
 void FrameReader::read_orientations(Frame& frame) const {
@@ -253,6 +302,7 @@ Frame FrameReader::read() {
   read_orientations(frame);
   read_motion(frame);
   read_diameters(frame);
+  move_to_shapes(frame);
   return frame;
 }
 
@@ -262,21 +312,40 @@ std::vector<double> FrameReader::exact(Name name, std::uint64_t rows, std::uint3
   return result;
 }
 
+ShapeNumbers FrameReader::shape_numbers(const double* row, std::uint32_t columns) const {
+  const auto is_kind = [&](ShapeKind kind) { return row[0] == static_cast<double>(kind); };
+  const auto* kind = std::find_if(kShapeKinds.begin(), kShapeKinds.end(), is_kind);
+  if (kind == kShapeKinds.end()) throw std::invalid_argument("an unknown kind of shape");
+  ShapeNumbers numbers{*kind, {row[1], row[2], row[3]}};
+  if (has_semi_axes(*kind)) {
+    numbers.exponents = {row[4], row[5]};
+    return numbers;
+  }
+  numbers.rounding = row[4];
+  const double most = (columns - kSpeciesColumns) / 3;
+  if (!(row[5] >= 0 && row[5] <= most)) throw std::invalid_argument("more vertices than there are columns for");
+  for (std::uint32_t v = 0; v < static_cast<std::uint32_t>(row[5]); ++v) {
+    const double* x = row + kSpeciesColumns + 3 * v;
+    numbers.vertices.emplace_back(x[0], x[1], x[2]);
+  }
+  return numbers;
+}
+
 std::vector<ed::Species> FrameReader::read_species() const {
   const GsdChunk* chunk = file_.find(k_, kNameTexts[kExactSpecies]);
+  const bool constant = chunk == nullptr || k_ == 0;
+  if (constant && shapes_.species) return *shapes_.species;
   if (chunk == nullptr) chunk = file_.find(0, kNameTexts[kExactSpecies]);
   const std::uint64_t rows = chunk == nullptr ? 0 : chunk->rows;
   if (rows == 0 || rows > kMostTypes) throw bad(fmt::format("has {} species", rows), "1 to 10^6");
-  const std::vector<double> numbers = exact(kExactSpecies, rows, kSpeciesColumns);
+  const std::uint32_t columns = std::max(kSpeciesColumns, chunk->columns);
+  const std::vector<double> numbers = exact(kExactSpecies, rows, columns);
   std::vector<ed::Species> list;
   for (std::size_t k = 0; k < rows; ++k) {
-    const double* row = numbers.data() + k * kSpeciesColumns;
+    const double* row = numbers.data() + k * columns;
     ed::Species& species = list.emplace_back();
     try {
-      const auto is_kind = [&](ShapeKind kind) { return row[0] == static_cast<double>(kind); };
-      const auto* kind = std::find_if(kShapeKinds.begin(), kShapeKinds.end(), is_kind);
-      if (kind == kShapeKinds.end()) throw std::invalid_argument("an unknown kind of shape");
-      species.shape = make_body_shape({*kind, {row[1], row[2], row[3]}, {row[4], row[5]}});
+      species.shape = make_body_shape(shape_numbers(row, columns));
       species.mass = row[6];
       species.inertia = {row[7], row[8], row[9]};
       species.spins = row[10] != 0;
@@ -285,6 +354,7 @@ std::vector<ed::Species> FrameReader::read_species() const {
       throw bad(fmt::format("species {}: {}", k, one_line(error.what())), "a species of hardbody");
     }
   }
+  if (constant) shapes_.species = list;
   return list;
 }
 

@@ -1,9 +1,11 @@
 #pragma once
 
 #include "base/errors.h"
+#include "base/shapes.h"
 #include "trajectory/frame.h"
 #include "trajectory/gsd/container.h"
 #include "trajectory/gsd/schema.h"
+#include "trajectory/gsd/type_shapes.h"
 
 #include <ed/system.h>
 
@@ -11,6 +13,8 @@
 
 #include <cstdint>
 #include <limits>
+#include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,10 +28,18 @@ struct ArrayName {
   const char* text;
 };
 
+/// Shapes that a file's frames have shown, as hulls of many points take their time.
+struct ShapesOfFile {
+  std::map<std::string, std::optional<TypeShape>> rows;          ///< shapes by rows of particles/type_shapes
+  std::map<std::string, std::optional<ed::BodyShape>> own_rows;  ///< shapes by rows of this program's polytopes
+  std::optional<std::vector<ed::Species>> species;               ///< species of frame 0
+};
+
 /// Reader of one frame of a file.
 class FrameReader {
  public:
-  FrameReader(const GsdFile& file, std::uint64_t k, bool exact) : file_(file), k_(k), exact_(exact) {}
+  FrameReader(const GsdFile& file, std::uint64_t k, bool exact, ShapesOfFile& shapes)
+      : file_(file), k_(k), exact_(exact), shapes_(shapes) {}
 
   /// Reads a frame without its exact state.
   Frame read();
@@ -67,11 +79,15 @@ class FrameReader {
   void read_motion(Frame& frame) const;
   void read_orientations(Frame& frame) const;
   void read_diameters(Frame& frame) const;
+  void move_to_shapes(Frame& frame) const;
+  ShapeNumbers shape_numbers(const double* row, std::uint32_t columns) const;
+  std::optional<ed::BodyShape> own_shape(const std::string& row, const ed::BodyShape& known) const;
   std::vector<ed::Species> read_species() const;
 
   const GsdFile& file_;
   std::uint64_t k_;
   bool exact_;  ///< whether frames contain their state in doubles
+  ShapesOfFile& shapes_;
 };
 
 }  // namespace hardbody

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <utility>
 
@@ -19,18 +20,22 @@ namespace hardbody {
 ///
 ///     log/hardbody/time (last array of every frame: one without it is incomplete), energy, Z, S
 ///     log/hardbody/box
-///     log/hardbody/species             a row a type: kind (0 ellipsoid, 1 superellipsoid), semi-axes, e1, e2, mass,
-///                                      moments, spins (0 or 1)
+///     log/hardbody/species             a row a type: kind (ShapeKind), lengths (ShapeNumbers), e1 and e2 or rounding
+///                                      and number of vertices, mass, moments, spins (0 or 1); x, y, z of each vertex
+///                                      where a type is a polyhedron, filled up with 0
 ///     log/particles/hardbody/group     the species of the config
 ///     log/particles/hardbody/position, rotation (a row after the other), velocity, angular_velocity
 ///
 /// Constant quantities are in frame 0 only, as the schema prescribes.
+
+struct ShapesOfFile;
 
 /// Reads any file of this schema, written by this program or another. Throws InputError, `name: what; accepted: ..`.
 class GsdReader final : public TrajectoryReader {
  public:
   explicit GsdReader(const std::filesystem::path& path);
   GsdReader(std::unique_ptr<StoredBytes> bytes, std::string name);
+  ~GsdReader() override;
 
   const std::string& name() const override { return file_.name(); }
   const std::string& application() const { return file_.application(); }
@@ -51,6 +56,7 @@ class GsdReader final : public TrajectoryReader {
  private:
   GsdFile file_;
   bool exact_;
+  std::unique_ptr<ShapesOfFile> shapes_;
 };
 
 /// Writes frames so that each becomes visible to readers only once it is complete.

@@ -92,7 +92,9 @@ void sharpen(Frame& frame, const ed::System& system) {
 GsdReader::GsdReader(const std::filesystem::path& path) : GsdReader(open_stored_bytes(path), path.string()) {}
 
 GsdReader::GsdReader(std::unique_ptr<StoredBytes> bytes, std::string name)
-    : file_(std::move(bytes), std::move(name)), exact_(file_.has_name(kNameTexts[kTime])) {
+    : file_(std::move(bytes), std::move(name)),
+      exact_(file_.has_name(kNameTexts[kTime])),
+      shapes_(std::make_unique<ShapesOfFile>()) {
   if (file_.schema() != "hoomd") {
     throw InputError(
         fmt::format("{}: is of schema \"{}\"; accepted: \"hoomd\"", file_.name(), one_line(file_.schema(), 64)));
@@ -101,6 +103,8 @@ GsdReader::GsdReader(std::unique_ptr<StoredBytes> bytes, std::string name)
   while (exact_ && whole > 0 && file_.find(whole - 1, kNameTexts[kTime]) == nullptr) --whole;
   file_.keep_frames(whole);
 }
+
+GsdReader::~GsdReader() = default;
 
 bool GsdReader::has_positions(std::uint64_t k) const {
   if (exact_ || file_.find(k, kNameTexts[kPosition]) != nullptr) return true;
@@ -118,7 +122,7 @@ Frame GsdReader::read(std::uint64_t k) const {
     throw InputError(
         fmt::format("{}: frame {}: has no positions; accepted: a frame with particles/position", file_.name(), k));
   }
-  FrameReader reader(file_, k, exact_);
+  FrameReader reader(file_, k, exact_, *shapes_);
   Frame frame = reader.read();
   if (!exact_) return frame;
   frame.exact = reader.read_exact();

@@ -66,7 +66,7 @@ inline constexpr std::array<const char*, kNames> kNameTexts = {
     "log/hardbody/time",
 };
 
-/// Number of columns in a row of log/hardbody/species.
+/// Number of columns in a row of log/hardbody/species, without the vertices of polyhedra.
 inline constexpr std::uint32_t kSpeciesColumns = 11;
 
 template <class T>

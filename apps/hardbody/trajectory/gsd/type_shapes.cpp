@@ -3,6 +3,7 @@
 #include "base/errors.h"
 #include "base/shapes.h"
 #include "io/json_member.h"
+#include "trajectory/frame.h"
 
 #include <fmt/format.h>
 
@@ -26,7 +27,7 @@ double signed_power(double x, double e) {
 /// Returns points of Barr's parametrisation, which are dense where the surface is strongly curved for exponents below
 /// 1: both poles, and rings.
 std::vector<Vector3d> surface_points(const ShapeNumbers& shape, int rings, int per_ring) {
-  const Vector3d& a = shape.semi_axes;
+  const Vector3d& a = shape.lengths;
   const double e1 = shape.exponents.x();
   const double e2 = shape.exponents.y();
   std::vector<Vector3d> points = {{0, 0, -a.z()}, {0, 0, a.z()}};
@@ -42,12 +43,14 @@ std::vector<Vector3d> surface_points(const ShapeNumbers& shape, int rings, int p
   return points;
 }
 
-std::string polyhedron_json(const ShapeNumbers& shape, bool fine) {
-  std::string vertices;
-  for (const Vector3d& p : surface_points(shape, fine ? 11 : 5, fine ? 24 : 8)) {
-    vertices += fmt::format("{}[{:.7g}, {:.7g}, {:.7g}]", vertices.empty() ? "" : ", ", p.x(), p.y(), p.z());
+std::string polyhedron_json(const std::vector<Vector3d>& vertices, double rounding, bool fine) {
+  std::string text;
+  for (const Vector3d& p : vertices) {
+    // Few types have room for all digits.
+    text += fmt::format(fmt::runtime(fine ? "{}[{}, {}, {}]" : "{}[{:.7g}, {:.7g}, {:.7g}]"), text.empty() ? "" : ", ",
+                        p.x(), p.y(), p.z());
   }
-  return fmt::format(R"({{"type": "ConvexPolyhedron", "rounding_radius": 0, "vertices": [{}]}})", vertices);
+  return fmt::format(R"({{"type": "ConvexPolyhedron", "rounding_radius": {}, "vertices": [{}]}})", rounding, text);
 }
 
 std::string ellipsoid_json(const Vector3d& a) {
@@ -61,30 +64,74 @@ double positive(const JsonMember& shape, const char* key) {
   return member.number();
 }
 
-}  // namespace
+constexpr const char* kPoints = "a list of points [x, y, z]";
 
-std::string type_shape_json(const std::optional<ed::BodyShape>& shape, std::size_t types) {
-  if (!shape) return "{}";
-  const ShapeNumbers numbers = numbers_of(*shape);
-  switch (numbers.kind) {
-    case ShapeKind::ellipsoid:
-      return ellipsoid_json(numbers.semi_axes);
-    case ShapeKind::superellipsoid:
-      return polyhedron_json(numbers, types <= kFineTypes);
+std::vector<Vector3d> read_vertices(const JsonMember& shape) {
+  const JsonMember vertices = shape.at("vertices", kPoints);
+  if (!vertices.json->is_array()) throw vertices.bad(kPoints);
+  std::vector<Vector3d> points;
+  for (std::size_t k = 0; k < vertices.json->size(); ++k) {
+    points.push_back(JsonMember{&vertices.json->at(k), fmt::format("vertices[{}]", k)}.vector());
   }
-  return "{}";
+  return points;
 }
 
-std::optional<ed::BodyShape> read_type_shape(const std::string& text) {
-  nlohmann::json json;
+/// Polyhedron of a row, as it is written.
+struct Written {
+  std::vector<Vector3d> vertices;
+  double rounding = 0;
+};
+
+Written read_polyhedron(const JsonMember& shape) {
+  Written written{read_vertices(shape)};
+  if (!shape.has("rounding_radius")) return written;
+  const JsonMember rounding = shape.at("rounding_radius", "a number of at least 0");
+  written.rounding = rounding.number();
+  if (!(written.rounding >= 0)) throw rounding.bad("a number of at least 0");
+  return written;
+}
+
+/// Returns the ball that is swept along two points; nullopt if that is no body of revolution about their z axis.
+std::optional<ed::BodyShape> capsule_of(const Written& written) {
+  const Vector3d half = 0.5 * (written.vertices[1] - written.vertices[0]);
+  const Vector3d middle = 0.5 * (written.vertices[1] + written.vertices[0]);
+  const double apart = kSameLength * (half.norm() + written.rounding);
+  if (!(written.rounding > 0) || middle.norm() > apart || half.head<2>().norm() > apart) return std::nullopt;
+  return geom::Capsule(half.norm(), written.rounding);
+}
+
+/// Returns a hull of points in the frame of its principal axes.
+TypeShape moved_polyhedron(const Written& written) {
+  geom::Pose X_BS;
+  const auto hull = geom::ConvexPolyhedron::in_principal_frame(written.vertices, &X_BS, written.rounding);
+  const double apart = kSameLength * hull.bounding_radius();
+  if (X_BS.position().norm() <= apart) {
+    const geom::Rounded<geom::ConvexPolyhedron> own(geom::ConvexPolyhedron(written.vertices), written.rounding);
+    if (own.is_in_principal_frame()) {
+      return {written.rounding > 0 ? ed::BodyShape(own) : ed::BodyShape(own.inner())};
+    }
+  }
+  if (written.rounding == 0) return {hull, X_BS};
+  return {geom::Rounded<geom::ConvexPolyhedron>(hull, written.rounding), X_BS};
+}
+
+/// Reads a row as JSON.
+nlohmann::json parsed(const std::string& text) {
   try {
-    json = parse_json(text);
+    return parse_json(text);
   } catch (const JsonError& error) {
     throw InputError(fmt::format("{}; accepted: a JSON object", error.what()));
   }
-  const JsonMember shape{&json, ""};
-  if (!json.is_object() || !shape.has("type")) return std::nullopt;
-  const std::string type = shape.at("type", "a name").text("a name");
+}
+
+/// Returns the word of a row; empty if there is none.
+std::string type_of(const JsonMember& shape) {
+  if (!shape.json->is_object() || !shape.has("type")) return "";
+  return shape.at("type", "a name").text("a name");
+}
+
+/// Reads an ellipsoid or a sphere.
+std::optional<ed::BodyShape> read_ellipsoid(const JsonMember& shape, const std::string& type) {
   Vector3d axes;
   if (type == "Ellipsoid") {
     axes = {positive(shape, "a"), positive(shape, "b"), positive(shape, "c")};
@@ -94,6 +141,51 @@ std::optional<ed::BodyShape> read_type_shape(const std::string& text) {
     return std::nullopt;
   }
   return shape.checked([&] { return make_body_shape({ShapeKind::ellipsoid, axes}); });
+}
+
+}  // namespace
+
+std::string type_shape_json(const std::optional<ed::BodyShape>& shape, std::size_t types) {
+  if (!shape) return "{}";
+  const bool fine = types <= kFineTypes;
+  if (const std::optional<SweptPolytope> polytope = swept_polytope(*shape)) {
+    return polyhedron_json(polytope->vertices, polytope->rounding, fine);
+  }
+  const ShapeNumbers numbers = numbers_of(*shape);
+  if (has_exponents(numbers.kind)) {
+    return polyhedron_json(surface_points(numbers, fine ? 11 : 5, fine ? 24 : 8), 0, false);
+  }
+  return ellipsoid_json(numbers.lengths);
+}
+
+std::optional<TypeShape> read_type_shape(const std::string& text) {
+  const nlohmann::json json = parsed(text);
+  const JsonMember shape{&json, ""};
+  const std::string type = type_of(shape);
+  if (type != "ConvexPolyhedron") {
+    std::optional<ed::BodyShape> read = read_ellipsoid(shape, type);
+    return read ? std::optional(TypeShape{std::move(*read)}) : std::nullopt;
+  }
+  const Written written = read_polyhedron(shape);
+  if (written.vertices.size() == 2) {
+    std::optional<ed::BodyShape> capsule = shape.checked([&] { return capsule_of(written); });
+    return capsule ? std::optional(TypeShape{std::move(*capsule)}) : std::nullopt;
+  }
+  if (written.vertices.size() < 4) return std::nullopt;
+  return shape.checked([&] { return moved_polyhedron(written); });
+}
+
+std::optional<ed::BodyShape> read_own_type_shape(const std::string& text, const ed::BodyShape& known) {
+  const nlohmann::json json = parsed(text);
+  const JsonMember shape{&json, ""};
+  const std::string type = type_of(shape);
+  if (type != "ConvexPolyhedron") return read_ellipsoid(shape, type);
+  if (!swept_polytope(known)) return std::nullopt;
+  const Written written = read_polyhedron(shape);
+  if (written.vertices.size() == 2) return capsule_of(written);
+  return shape.checked([&] {
+    return make_body_shape({ShapeKind::polyhedron, Vector3d::Zero(), {1, 1}, written.rounding, written.vertices});
+  });
 }
 
 }  // namespace hardbody

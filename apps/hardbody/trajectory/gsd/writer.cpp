@@ -89,13 +89,24 @@ std::array<double, 4> angular_momentum(const FrameBody& body) {
 }
 
 GsdArray species_array(const ed::System& system) {
-  std::vector<double> rows;
+  std::vector<ShapeNumbers> shapes;
+  std::size_t most_vertices = 0;
   for (const ed::Species& s : system.species) {
-    const auto [kind, a, e] = numbers_of(s.shape);
-    rows.insert(rows.end(), {static_cast<double>(kind), a.x(), a.y(), a.z(), e.x(), e.y(), s.mass, s.inertia.x(),
-                             s.inertia.y(), s.inertia.z(), s.spins ? 1.0 : 0.0});
+    shapes.push_back(numbers_of(s.shape));
+    most_vertices = std::max(most_vertices, shapes.back().vertices.size());
   }
-  return array_of(kExactSpecies, rows, kSpeciesColumns);
+  std::vector<double> rows;
+  for (std::size_t k = 0; k < shapes.size(); ++k) {
+    const ed::Species& s = system.species[k];
+    const auto& [kind, a, e, rounding, vertices] = shapes[k];
+    const bool axes = has_semi_axes(kind);
+    rows.insert(rows.end(), {static_cast<double>(kind), a.x(), a.y(), a.z(), axes ? e.x() : rounding,
+                             axes ? e.y() : static_cast<double>(vertices.size()), s.mass, s.inertia.x(), s.inertia.y(),
+                             s.inertia.z(), s.spins ? 1.0 : 0.0});
+    for (const Vector3d& x : vertices) rows.insert(rows.end(), {x.x(), x.y(), x.z()});
+    rows.insert(rows.end(), 3 * (most_vertices - vertices.size()), 0.0);
+  }
+  return array_of(kExactSpecies, rows, kSpeciesColumns + 3 * static_cast<std::uint32_t>(most_vertices));
 }
 
 std::vector<GsdArray> constant_arrays(const Frame& frame) {

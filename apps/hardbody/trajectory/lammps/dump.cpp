@@ -17,12 +17,15 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Returns "shapex shapey shapez Phi Theta" of each type.
+/// Returns "shapex shapey shapez Phi Theta" of each type; diameters of 0, as of points, for shapes that these columns
+/// do not tell.
 std::vector<std::string> shape_columns(const Frame& frame) {
   std::vector<std::string> columns;
   for (const FrameType& type : frame.types) {
-    const Vector3d a = type.shape ? ed::half_extents(*type.shape) : Vector3d::Zero();
-    const Eigen::Vector2d e = type.shape ? superellipsoid_exponents(*type.shape) : Eigen::Vector2d(1, 1);
+    const ShapeNumbers numbers = type.shape ? numbers_of(*type.shape) : ShapeNumbers();
+    const bool told = type.shape && (has_semi_axes(numbers.kind) || numbers.kind == ShapeKind::sphere);
+    const Vector3d a = told ? numbers.lengths : Vector3d::Zero();
+    const Eigen::Vector2d& e = numbers.exponents;
     columns.push_back(fmt::format("{} {} {} {} {}", 2 * a.x(), 2 * a.y(), 2 * a.z(), e.y(), e.x()));
   }
   return columns;
