@@ -5,12 +5,15 @@
 #include <common/ed/all_pairs.h>
 #include <common/ed/same_collisions.h>
 #include <common/full_form.h>
+#include <common/geom/shapes.h>
 
 #include <ed/ed.h>
 
 #include <geom/geom.h>
 
 #include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
@@ -45,19 +48,15 @@ std::vector<Fluid> fluids(int copies = 1) {
       alone("dodecahedra", solid("dodecahedron")),
       alone("rounded boxes", geom::Rounded<geom::Box>(geom::Box({0.6, 0.5, 0.3}), 0.05)),
       alone("rounded octahedra", geom::Rounded<geom::ConvexPolyhedron>(solid("octahedron"), 0.1)),
-      alone("cylinders", geom::Cylinder(0.6, 0.4)),
-      alone("rounded discs", geom::Rounded<geom::Cylinder>(geom::Cylinder(0.1, 0.6), 0.05)),
-      alone("cones", geom::Cone(1.2, 0.5)),
-      {"cylinders, cones and cubes",
-       {{ed::uniform_species(geom::Cylinder(0.5, 0.4)), 16 * copies},
-        {ed::uniform_species(geom::Cone(1, 0.5)), 16 * copies},
-        {ed::uniform_species(cube), 16 * copies}}},
       {"spheres of two sizes",
        {{ed::uniform_species(geom::Sphere(0.6)), 24 * copies}, {ed::uniform_species(geom::Sphere(0.4)), 24 * copies}}},
       {"spheres, capsules and cubes",
        {{ed::uniform_species(geom::Sphere(0.5)), 16 * copies},
         {ed::uniform_species(geom::Capsule(0.6, 0.4)), 16 * copies},
         {ed::uniform_species(cube), 16 * copies}}},
+      {"capsules and spheres",
+       {{ed::uniform_species(geom::Capsule(0.6, 0.4)), 24 * copies},
+        {ed::uniform_species(geom::Sphere(0.3)), 24 * copies}}},
       {"capsules and ellipsoids",
        {{ed::uniform_species(geom::Capsule(0.6, 0.4)), 24 * copies},
         {ed::uniform_species(geom::Ellipsoid({0.4, 0.6, 0.8})), 24 * copies}}}};
@@ -118,6 +117,65 @@ TEST(CoreBodies, CollideTheSameWithEveryList) {
       ed_test::expect_same(reference, ed_test::first_collisions(system, options, kCollisions),
                            fluid.name + ", " + ed::to_string(neighbours));
     }
+  }
+}
+
+// Contacts never turn a sphere: after any number of collisions, and of epochs of the clock, it is where free rotation
+// has brought it, beside capsules too.
+TEST(CoreBodies, SpheresTurnFreely) {
+  for (const bool alone : {true, false}) {
+    std::vector<ed::Component> components{{ed::uniform_species(geom::Sphere(0.5)), 40}};
+    if (!alone) components.push_back({ed::uniform_species(geom::Capsule(0.6, 0.4)), 40});
+    ed::StartOptions options;
+    options.packing_fraction = 0.3;
+    const ed::System before = ed::random_start(components, options);
+    ed::Simulation simulation(before);
+    simulation.run_collisions(2000);
+    simulation = ed::Simulation::restore(simulation.save(), before.species);
+    simulation.run_until(simulation.time() + 40);
+    const ed::System after = simulation.system();
+    for (std::size_t k = 0; k < 40; ++k) {
+      const Vector3d& omega = before.bodies[k].angular_velocity;
+      const Eigen::AngleAxisd turned(omega.norm() * simulation.time(), omega.normalized());
+      EXPECT_LE((after.bodies[k].rotation - turned * before.bodies[k].rotation).norm(), 1e-11) << k;
+      EXPECT_LE((after.bodies[k].angular_velocity - omega).norm(), 1e-13 * omega.norm()) << k;
+    }
+    ed::Snapshot snapshot;
+    simulation.sample(snapshot);
+    for (std::size_t k = 0; k < 40; ++k) {
+      EXPECT_LE((snapshot.axis[k] - after.bodies[k].rotation.col(2)).norm(), 1e-12) << k;
+    }
+  }
+}
+
+// The same capsules by their support function alone, in the engine of bodies of any shape.
+TEST(CoreBodies, CapsulesCollideAsUsersSpherocylindersDo) {
+  const geom::Capsule capsule(0.8, 0.4);
+  for (const bool spins : {true, false}) {
+    ed::Species species = ed::uniform_species(capsule);
+    species.spins = spins;
+    ed::StartOptions options;
+    options.number = 64;
+    options.packing_fraction = 0.3;
+    const ed::System system = ed::random_start(species, options);
+    ed::System users = system;
+    const geom_test::Spherocylinder shape{capsule.half_length(), capsule.radius()};
+    users.species[0].shape = ed::CustomShape(shape, {"spherocylinder", capsule.volume(), 2, true});
+    constexpr std::size_t kCollisions = 300;
+    ed_test::expect_same(ed_test::first_collisions(system, {}, kCollisions),
+                         ed_test::first_collisions(users, {}, kCollisions), spins ? "spinning" : "without spin");
+  }
+}
+
+TEST(CoreBodies, SpheresCollideTheSameWithEveryFinder) {
+  for (const Fluid& fluid : fluids()) {
+    if (fluid.name.find("spheres") != 0 || fluid.name.find("capsules") != std::string::npos) continue;
+    const ed::System system = start(fluid);
+    ed::SimulationOptions options;
+    options.contact.finder = ed::Finder::bracketing;
+    constexpr std::size_t kCollisions = 300;
+    ed_test::expect_same(ed_test::first_collisions(system, {}, kCollisions),
+                         ed_test::first_collisions(system, options, kCollisions), fluid.name + ", bracketing");
   }
 }
 
