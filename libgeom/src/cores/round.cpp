@@ -261,22 +261,28 @@ bool face_contact(const RoundCore& a, const RoundCore& b, double size, CoreConta
   return true;
 }
 
-/// Returns the contact of cores that overlap or nearly touch, by a search of all normals.
+/// Returns the contact of cores that overlap or nearly touch, by a search of all normals. `near`: a contact that may be
+/// the answer, as it mostly is of shallow overlaps; the search then only bounds the gaps of other normals.
 CoreContact overlapping(const CoreView& core_a, const RoundCore& a, const Matrix3d& R_WA, const CoreView& core_b,
-                        const RoundCore& b, const Matrix3d& R_WB, double size, int evaluations) {
+                        const RoundCore& b, const Matrix3d& R_WB, double size, const CoreContact& near) {
   const CoreBody body_a = CoreBody(core_a, 0).bare();
   const CoreBody body_b = CoreBody(core_b, 0).bare();
   const Vector3d r = b.origin() - a.origin();
   const GeneralPair pair(WorldSupport<CoreBody>{body_a, R_WA}, WorldSupport<CoreBody>{body_b, R_WB}, r,
                          kLeastEigenvalue * kLeastCurvature * size);
-  const DistanceResult found = search_sphere(pair, {size, 0}, unit_or_x(r), Vector3d::Zero(), evaluations);
+  const DistanceResult found = search_sphere(pair, {size, 0}, unit_or_x(r), Vector3d::Zero(), near.evaluations);
   CoreContact contact;
   contact.evaluations = found.iterations;
   if (found.status == DistanceStatus::not_converged) return contact;
   contact.n = found.normal;
   contact.lower = found.normal.dot(difference_vertex(a, b, found.normal).p);
   const double most = found.distance + found.error_bound;
-  improve(a, b, size, std::numeric_limits<double>::infinity(), contact);
+  if (mismatch_of(near) <= kAgreement * size && near.lower >= contact.lower - kRoundRounding * size) {
+    contact = near;
+    contact.evaluations = found.iterations;
+  } else {
+    improve(a, b, size, std::numeric_limits<double>::infinity(), contact);
+  }
   if (apart_or_touching(contact, size) && bound_of(contact) <= kBoundGap * size) return contact;
   contact.depth_error = std::max(most - contact.lower, kRoundRounding * size);
   return contact;
@@ -360,7 +366,7 @@ CoreContact round_contact(const CoreView& a, const Matrix3d& R_WA, const CoreVie
   const double bound = apart && contact.lower > 0 ? mismatch_of(contact) : std::numeric_limits<double>::infinity();
   if (!descent.closed() || !(bound <= kAgreement * size)) improve(placed_a, placed_b, size, bound, contact);
   if (apart_or_touching(contact, size) && bound_of(contact) <= kBoundGap * size) return contact;
-  return overlapping(a, placed_a, R_WA, b, placed_b, R_WB, size, contact.evaluations);
+  return overlapping(a, placed_a, R_WA, b, placed_b, R_WB, size, contact);
 }
 
 }  // namespace geom::kernel
