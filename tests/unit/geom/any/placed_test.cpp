@@ -169,7 +169,9 @@ TEST(AnyConvex, HasTheQueriesOfItsShape) {
       EXPECT_EQ(c.status, own.status);
       EXPECT_NEAR(c.distance, own.distance, 1e-12 * 5 + own.error_bound + c.error_bound);
       EXPECT_NEAR(closest_point(shape, X, c.point).distance, 0, 1e-8);
-      if (std::abs(own.distance) > 1e-6) EXPECT_EQ(contains(any, X, p), own.distance < 0);
+      if (std::abs(own.distance) > 1e-6) {
+        EXPECT_EQ(contains(any, X, p), own.distance < 0);
+      }
       const Vector3d origin = X.position() + 4 * random.direction(), to = X.position() - origin;
       const RayHit hit = ray_cast(any, X, origin, to);
       EXPECT_EQ(hit.status, ray_cast(shape, X, origin, to).status);
