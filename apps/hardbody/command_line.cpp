@@ -50,7 +50,8 @@ struct Request {
 void add_init(CLI::App& app, Request& request) {
   CLI::App* init = app.add_subcommand("init", "Write a commented config to start from");
   init->add_option("FILE", request.init_file, "New file; default: standard output");
-  init->add_option("--template", request.init_template, "Template: ellipsoid (the default), superball, mixture, sweep");
+  init->add_option("--template", request.init_template,
+                   "Template: ellipsoid (the default), superball, capsule, polyhedron, mixture, sweep");
 }
 
 void add_run(CLI::App& app, Request& request) {

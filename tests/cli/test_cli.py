@@ -583,7 +583,7 @@ class Init(Case):
                 self.assertEqual(self.summary(f"out/{name}")["state"]["kind"], kind)
         self.assertEqual(self.read("ellipsoid.toml"), self.hardbody("init").stdout)
         result = self.hardbody("init", "x.toml", "--template", "cube")
-        self.assert_refused(result, "--template cube", "accepted: ellipsoid, superball, mixture, sweep")
+        self.assert_refused(result, "--template cube", "accepted: ellipsoid, superball, capsule, polyhedron, mixture, sweep")
         self.assertFalse(os.path.exists(self.path("x.toml")))
 
     def test_never_overwrites(self):

@@ -93,7 +93,7 @@ Taken take_vertices(const Value& value, const Place& at, std::optional<std::vect
   for (std::size_t k = 0; k < value.items.size(); ++k) {
     const Value& item = value.items[k];
     const bool good = item.kind == Value::Kind::array && item.items.size() == 3 &&
-                      std::all_of(item.items.begin(), item.items.end(), is_number);
+                      std::all_of(item.items.begin(), item.items.end(), [](const Value& x) { return is_number(x); });
     if (!good) return Refusal{accepted, fmt::format(", whose point {} is {}", k + 1, item.shown)};
     points.emplace_back(item.items[0].real, item.items[1].real, item.items[2].real);
     if (points.back().cwiseAbs().maxCoeff() <= furthest) continue;

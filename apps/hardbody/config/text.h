@@ -14,7 +14,7 @@ std::string config_text(const Config& config, const std::string& header);
 
 /// Returns what `hardbody init --template NAME` writes; nullopt if there is no such template.
 std::optional<std::string> template_text(std::string_view name);
-/// Returns "ellipsoid, superball, mixture, sweep"; the first is the default.
+/// Returns "ellipsoid, superball, capsule, polyhedron, mixture, sweep"; the first is the default.
 std::string template_names();
 
 /// Returns the config.toml of a run directory: the defaults filled in.
