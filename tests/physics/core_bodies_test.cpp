@@ -167,6 +167,18 @@ TEST(CoreBodies, CapsulesCollideAsUsersSpherocylindersDo) {
   }
 }
 
+TEST(CoreBodies, ThinCapsulesDoNotSeemToOverlap) {
+  for (const double aspect_ratio : {1000.0, 9000.0}) {
+    ed::StartOptions options;
+    options.number = 100;
+    options.packing_fraction = 4.5 / (aspect_ratio * aspect_ratio);
+    ed::Simulation simulation(ed::random_start(ed::uniform_species(geom::Capsule(aspect_ratio, 1)), options));
+    simulation.run_collisions(3000);
+    EXPECT_EQ(simulation.counters().overlaps, 0U) << aspect_ratio;
+    EXPECT_EQ(simulation.counters().declined, 0U) << aspect_ratio;
+  }
+}
+
 TEST(CoreBodies, SpheresCollideTheSameWithEveryFinder) {
   for (const Fluid& fluid : fluids()) {
     if (fluid.name.find("spheres") != 0 || fluid.name.find("capsules") != std::string::npos) continue;

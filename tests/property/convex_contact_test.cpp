@@ -102,7 +102,8 @@ TestBody capsule(Random& random) {
 TestBody rod(Random& random) {
   if (random.uniform() < 0.2) return sphere(random);
   const double radius = random.uniform(0.2, 1);
-  const geom::Capsule s(radius * random.log_uniform(0.1, 30), radius);
+  const double aspect = random.uniform() < 0.1 ? random.log_uniform(30, 5000) : random.log_uniform(0.1, 30);
+  const geom::Capsule s(radius * aspect, radius);
   return test_body("rod", s, s.volume(), s.inertia(1), {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}});
 }
 

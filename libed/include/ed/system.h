@@ -101,7 +101,7 @@ ED_EXPORT const char* to_string(Neighbours neighbours);
 
 /// Returns the smallest box in which only one image of every pair of these bodies matters: box / 2 > 2 R + 4 delta_min,
 /// with R the largest bounding radius and delta_min the thinnest neighbour-list envelope in use; for cells, box > 6 R,
-/// three cells; for obp of bodies that are not ellipsoids of revolution, box / 2 > 2 R + 4 s, with s the distance that
+/// three cells; for obp of bodies beyond the fast case of Simulation, box / 2 > 2 R + 4 s, with s the distance that
 /// a centre can move while its body stays in the thinnest box around it, in which octahedra and cubes can rotate.
 ED_EXPORT double smallest_box(const std::vector<Component>& components, Neighbours neighbours = Neighbours::dilated);
 

@@ -30,7 +30,7 @@ struct SpheresOf {
     constexpr double kShare = (1 - kOverlap) * (1 - kOverlap);
     return distance2 < kShare * reach2;
   }
-  [[gnu::always_inline]] auto part() const { return !(approach < 0); }
+  [[gnu::always_inline]] auto parting() const { return !(approach < 0); }
   [[gnu::always_inline]] auto touch() const { return !(excess > 0); }
   /// Returns the time to the contact of spheres that are apart, approach and do not miss each other.
   [[gnu::always_inline]] Real time() const {
@@ -40,9 +40,9 @@ struct SpheresOf {
   /// Returns whether there is no contact in [now, end].
   [[gnu::always_inline]] auto clear(Real now, Real end) const {
     const auto apart = !overlap();
-    const auto meet = !touch();
+    const auto distant = !touch();
     const auto late = !(now + time() <= end);
-    return apart & (part() | (meet & ((discriminant < 0) | late)));
+    return apart & (parting() | (distant & ((discriminant < 0) | late)));
   }
 };
 

@@ -172,6 +172,7 @@ double OrientedEnvelopes::rod_exit(int i, const AxisMotion& motion, const Vector
   Vector3d u, du;
   turn<true>(motion, now, u, du);
   const Vector3d from_centre = position - box.centre;
+  const double hidden = 64 * kRoundoff * (sum_of_magnitudes(position) + box.half_extents.sum());
   double earliest = kHorizon * crossing_time(kind_of(i), motion);
   for (int k = 0; k < 3; ++k) {
     const double room = box.half_extents[k] - rod.radius;
@@ -179,7 +180,7 @@ double OrientedEnvelopes::rod_exit(int i, const AxisMotion& motion, const Vector
       const double at = box.axes.col(k).dot(from_centre + end * u);
       const double speed = box.axes.col(k).dot(motion.velocity + end * du);
       for (const double side : {1.0, -1.0}) {
-        const double left = room - side * at;
+        const double left = (room - side * at) - hidden;
         if (!(left > 0)) return now;
         earliest = std::min(earliest, first_root(left, -side * speed, K));
       }

@@ -82,7 +82,7 @@ HWY_INLINE void second_pass(RodPairs<kSpin>& p, int pairs, LookOutput& out, int 
   const Real3 between = rods.between(points);
   const Real distance = sqrt(between.squaredNorm());
   const Lanes solved = looked_at & (distance > kLeastRodDistance * rods.balls);
-  p.n = (1 / distance) * between;
+  p.n = rods.normal(points, between, distance);
   const RodSampleOf<Real> sample = rods.sample(p.n);
   const Real horizon = p.end - p.t;
   const Lanes clear_at_once = solved & rods.clears(sample, p.n, p.hidden, horizon);

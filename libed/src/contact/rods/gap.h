@@ -103,10 +103,12 @@ class RodGap : private PairGapBase<Rod, AxisMotion> {
     const Vector between = s.between(points);
     const double distance = std::sqrt(between.squaredNorm());
     if (!(distance > kLeastRodDistance * s.balls)) return false;
-    n = (1 / distance) * between;
+    n = s.normal(points, between, distance);
     e.sample = s.sample(n);
-    e.g = e.sample.g;
-    e.decrement = 2 * larger(0.0, (distance - s.balls) - e.g);
+    // What lies between both bounds is rounding: rods that may only touch do not overlap.
+    const double upper = distance - s.balls;
+    e.g = e.sample.g < 0 ? smaller(0.0, larger(e.sample.g, upper)) : e.sample.g;
+    e.decrement = 2 * larger(0.0, upper - e.g);
     e.step2 = 0;
     e.step.setZero();
     e.points = points;
@@ -125,8 +127,8 @@ class RodGap : private PairGapBase<Rod, AxisMotion> {
 
   double certified_step(const State& s, const Evaluation& e, const Vector& n, double g, double /*gp*/,
                         double horizon) const {
-    return rod_step<double, Vector, kSpin>(s, e.points, e.distance, n, g, g - e.g, s.rounding, size(), speed_, horizon,
-                                           curvature_share_);
+    return rod_step<double, Vector, kSpin>(s, e.points, e.distance, n, g, lift(s, e, g), s.rounding, size(), speed_,
+                                           horizon, curvature_share_);
   }
 
   double least_step(const State& s, const Evaluation& e, const Vector& n, bool touching, double tau) const {
@@ -169,6 +171,11 @@ class RodGap : private PairGapBase<Rod, AxisMotion> {
   double curvature_share_ = 1;  ///< RodTurnOf::share
 
  private:
+  /// Returns by how much the parabolas of rods that touch begin above the sample, which rounding has made negative.
+  static double lift(const State& s, const Evaluation& e, double g) {
+    return smaller(2 * s.rounding.gap, g - e.sample.g);
+  }
+
   /// Returns whether some choice of a turning normal has the property: with the closest points, fixed, or with a rod.
   template <class Property>
   bool any_choice(const State& s, const Evaluation& e, const Vector& n, double direction, const Property& has) const {

@@ -47,7 +47,7 @@ struct RodPointsOf {
 };
 
 /// Returns the closest points of two rods' axes: those of the lines, brought back into the rods one after the other. Of
-/// lines that are parallel to rounding those nearest to B's centre. `a` and `b`: half-lengths.
+/// lines that are parallel to rounding those in the middle of where both are. `a` and `b`: half-lengths.
 template <class Real, class Vector>
 [[gnu::always_inline]] inline RodPointsOf<Real> closest_on_rods(Real a, Real b, const Vector& r, const Vector& u_a,
                                                                 const Vector& u_b) {
@@ -61,7 +61,8 @@ template <class Real, class Vector>
   const auto skew = (sine2 > kParallel) & (b > 0);
   const Real r_a = r.dot(u_a);
   const Real r_b = r.dot(u_b);
-  const Real first = clamped(select(skew, r.dot(across) / select(skew, sine2, 1.0), r_a), a);
+  const Real middle = 0.5 * (larger(-a, r_a - b) + smaller(a, r_a + b));
+  const Real first = clamped(select(skew, r.dot(across) / select(skew, sine2, 1.0), middle), a);
   const Real t = clamped(c * first - r_b, b);
   return {clamped(r_a + c * t, a), t};
 }
@@ -109,7 +110,7 @@ struct RodPairOf : RodSpin<Vector, kSpin> {
     return {(along - (a * abs(x_a) + b * abs(x_b))) - balls, along, x_a, x_b};
   }
 
-  /// Returns whether the fixed normal n excludes a contact within the horizon, with the bound W^2 of
+  /// Returns whether the fixed normal n excludes a contact within the horizon, with the bound w^2 of
   /// every x''. A concave function that is positive at both ends has no root between.
   [[gnu::always_inline]] auto clears(const RodSampleOf<Real>& at, const Vector& n, const RoundingOf<Real>& hidden,
                                      Real horizon) const {
@@ -130,26 +131,56 @@ struct RodPairOf : RodSpin<Vector, kSpin> {
     return v + (at.t * du_b - at.s * du_a);
   }
 
+  /// Returns u_A and u_B times numbers, such that together they have the products p and q with the axes of those rods
+  /// whose inner points are closest. Of nearly parallel rods only one is meant.
+  [[gnu::always_inline]] Vector with_products(const RodPointsOf<Real>& at, Real p, Real q, Real p_else,
+                                              Real q_else) const {
+    const auto crossed = are_crossed(at);
+    const Real c = u_a.dot(u_b);
+    const Vector across = u_a - c * u_b;
+    const Real inverse = 1 / select(crossed, across.squaredNorm(), 1.0);
+    const Real of_a = select(is_inner_a(at), p_else, 0.0);
+    const Real of_b = select(is_inner_a(at), 0.0, select(is_inner_b(at), q_else, 0.0));
+    return select(crossed, (p - c * q) * inverse, of_a) * u_a + select(crossed, (q - c * p) * inverse, of_b) * u_b;
+  }
+
+  /// Returns the unit vector along `between`, of this length. Where inner points are closest it is across the axis;
+  /// what rounding leaves along it, the longer the thinner the rods, is taken off.
+  [[gnu::always_inline]] Vector normal(const RodPointsOf<Real>& at, const Vector& between, Real distance) const {
+    const Vector n = (1 / distance) * between;
+    const Real p = n.dot(u_a);
+    const Real q = n.dot(u_b);
+    return n - with_products(at, p, q, p, q);
+  }
+
   /// Returns the rate at which n, the unit vector between the closest points, `distance` apart, turns with them: across
   /// the axis of a rod whose inner points are closest it follows the axis, else the points.
   [[gnu::always_inline]] Vector turning(const RodPointsOf<Real>& at, Real distance, const Vector& n) const {
-    using std::abs;
-    constexpr double kParallel = 1e-12;  // with a smaller squared sine only one rod's axis is followed
-    const auto inner_a = abs(at.s) < a;
-    const auto inner_b = abs(at.t) < b;
-    const Real c = u_a.dot(u_b);
-    const Vector across = u_a - c * u_b;
-    const Real sine2 = across.squaredNorm();
-    const auto crossed = inner_a & inner_b & (sine2 > kParallel);
-    const Real inverse = 1 / select(crossed, sine2, 1.0);
     const Vector of_points = (1 / distance) * between_rate(at);
     const Real p = -n.dot(du_a);
     const Real q = -n.dot(du_b);
-    const Real of_a = select(inner_a, p - of_points.dot(u_a), 0.0);
-    const Real of_b = select(inner_a, 0.0, select(inner_b, q - of_points.dot(u_b), 0.0));
-    const Vector rate = select(crossed, 0.0, 1.0) * of_points + (select(crossed, (p - c * q) * inverse, of_a) * u_a +
-                                                                 select(crossed, (q - c * p) * inverse, of_b) * u_b);
-    return rate - rate.dot(n) * n;
+    const Real points_share = select(are_crossed(at), 0.0, 1.0);
+    const Vector rate =
+        points_share * of_points + with_products(at, p, q, p - of_points.dot(u_a), q - of_points.dot(u_b));
+    // Twice: where the rate is nearly along n, what is left across it is made of rounding errors.
+    const Vector once = rate - rate.dot(n) * n;
+    return once - once.dot(n) * n;
+  }
+
+ private:
+  [[gnu::always_inline]] auto is_inner_a(const RodPointsOf<Real>& at) const {
+    using std::abs;
+    return abs(at.s) < a;
+  }
+  [[gnu::always_inline]] auto is_inner_b(const RodPointsOf<Real>& at) const {
+    using std::abs;
+    return abs(at.t) < b;
+  }
+  [[gnu::always_inline]] auto are_crossed(const RodPointsOf<Real>& at) const {
+    constexpr double kParallel = 1e-12;  // with a smaller squared sine only one rod's axis is followed
+    const Real c = u_a.dot(u_b);
+    const Vector across = u_a - c * u_b;
+    return is_inner_a(at) & is_inner_b(at) & (across.squaredNorm() > kParallel);
   }
 };
 
