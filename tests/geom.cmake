@@ -35,8 +35,7 @@ hardbody_test(geom_unit_test unit
   unit/geom/solids_test.cpp
   unit/geom/sphere_search_test.cpp
   unit/geom/superellipsoid_test.cpp
-  unit/geom/user_shape_test.cpp
-  unit/geom/cores/warm_starts_test.cpp)
+  unit/geom/user_shape_test.cpp)
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64)$")
   find_package(hwy 1.0 REQUIRED CONFIG)
   target_sources(geom_unit_test PRIVATE unit/geom/batch/batch_roots_test.cpp unit/geom/batch/batch_roots_portable.cpp

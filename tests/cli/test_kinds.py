@@ -140,17 +140,6 @@ class KindsRun(KindsCase):
                 shutil.rmtree(self.path(str(k)))
             self.assertEqual(*states)
 
-    def test_a_sphere_is_the_ellipsoid(self):
-        """Same starts, same collisions, if both may spin."""
-        events = []
-        for name, shape in [("a", SHAPES["sphere"]), ("b", 'semi_axes = [1, 1, 1]\n')]:
-            text = config(shape).replace("[output]", '[dynamics]\ninertia = "uniform"\n[output]\nevents = 200')
-            self.write("run.toml", text)
-            self.run_config("run.toml", name)
-            rows = [line.split(",") for line in self.read(f"{name}/events.csv").splitlines()[1:]]
-            events.append([(row[1], row[2]) for row in rows])
-        self.assertEqual(*events)
-
     def test_inertia(self):
         """Uniform density by default; of a pyramid about its centre of mass, along its principal axes."""
         self.write("run.toml", config("\n[[species]]\n" + SHAPES["pyramid"], time=0, trajectory='["gsd"]'))

@@ -134,10 +134,6 @@ inline constexpr double kBacktrack = 0.35;
 /// distance: maximum number of evaluations of g before the fallback.
 inline constexpr int kMaxIterations = 60;
 
-/// distance of users' shapes: maximum number of evaluations of g from a warm start, before the closest points of the
-/// cores are searched from there.
-inline constexpr int kWarmIterations = 20;
-
 /// newton_distance: maximum number of evaluations of the equations in each of two attempts.
 inline constexpr int kMaxNewtonIterations = 100;
 

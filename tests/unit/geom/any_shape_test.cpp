@@ -53,6 +53,11 @@ double reach(const Shape& shape) {
   return bounding_radius(shape);
 }
 
+/// Returns whether the shape is a cylinder or cone. The depth of its overlaps is declined now and then.
+bool has_rims(const Shape& shape) {
+  return shape.index() >= 8;
+}
+
 TEST(AnyShape, ListsEveryKindOnce) {
   Random random(1);
   EXPECT_EQ(one_of_each_kind(random).size(), std::variant_size_v<Shape>);
@@ -61,12 +66,19 @@ TEST(AnyShape, ListsEveryKindOnce) {
 TEST(AnyShape, DistancesAreThoseOfTheShapesInside) {
   Random random(2);
   const std::vector<Shape> shapes = one_of_each_kind(random);
+  int pairs = 0, declined = 0;
   for (const Shape& a : shapes) {
     for (const Shape& b : shapes) {
       for (int i = 0; i < repetitions(30); ++i) {
+        ++pairs;
         const Pose X_WA = random.pose(2.0);
         const Pose X_WB = random.pose(i % 3 == 0 ? 1.0 : 5.0);
         const DistanceResult r = distance(a, X_WA, b, X_WB);
+        if (r.status == DistanceStatus::not_converged) {
+          EXPECT_TRUE(has_rims(a) || has_rims(b)) << description(a) << ", " << description(b);
+          ++declined;
+          continue;
+        }
         const auto direct = [&](const auto& s, const auto& t) { return distance(s, X_WA, t, X_WB); };
         const DistanceResult d = std::visit(direct, a, b);
         const double size = reach(a) + reach(b) + (X_WB.position() - X_WA.position()).norm();
@@ -81,6 +93,7 @@ TEST(AnyShape, DistancesAreThoseOfTheShapesInside) {
       }
     }
   }
+  EXPECT_LE(declined * 1000, pairs);
 }
 
 TEST(AnyShape, QueriesOfOneBodyAreThoseOfTheShapeInside) {

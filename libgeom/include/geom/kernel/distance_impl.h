@@ -164,25 +164,20 @@ template <class Pair>
   }
 }
 
-/// Starts of solve_dual().
-enum class Starts { warm_and_cold, warm_only };
-
 /// Ascends from `start`, then from cold() if that led to a stationary point without a certificate.
 ///
 /// A stationary point with g < 0 is no proof of overlap: flat bodies that are apart have some. With Penetration::local,
 /// one beyond the certified depth counts only if shares(point_a, point_b), called with its witness points, confirms
-/// that both bodies contain a common point. `cold` is called only when it is needed, and never if `starts` says that a
-/// warm start is the only one. Returns a result whose status declines when neither start gives a certified answer;
-/// `iterations` is then the number of evaluations spent.
+/// that both bodies contain a common point. `cold` is called only when it is needed. Returns a result whose status
+/// declines when neither start gives a certified answer; `iterations` is then the number of evaluations spent.
 template <class Pair, class Cold, class Shares>
 DistanceResult solve_dual(const Pair& pair, const Cold& cold, const PairScale& scale, const Eigen::Vector3d& p_WA,
-                          const DistanceOptions& options, const Shares& shares, Starts starts = Starts::warm_and_cold) {
+                          const DistanceOptions& options, const Shares& shares) {
   const double rounding = kRoundingFactor * scale.size;
-  const int attempts = starts == Starts::warm_only ? 1 : 2;
   const bool warm = is_warm(options.start);
   const int limit = std::max(1, options.max_iterations);
   int spent = 0;
-  for (int attempt = warm ? 0 : 1; attempt < attempts; ++attempt) {
+  for (int attempt = warm ? 0 : 1; attempt < 2; ++attempt) {
     Eigen::Vector3d n = attempt == 0 ? Eigen::Vector3d(options.start / options.start.norm()) : cold();
     decltype(pair(n)) e;
     int budget = limit;
@@ -301,33 +296,16 @@ DistanceResult general_distance(const ShapeA& a, const Pose& X_WA, const ShapeB&
   const auto shares = [&](const Eigen::Vector3d& point_a, const Eigen::Vector3d& point_b) {
     return share_a_point(a, X_WA, b, X_WB, point_a, point_b);
   };
-  // Where the normal jumps Newton's method does not converge from any start: a warm one has fewer evaluations, and a
-  // cold one follows the descent, with those that are left.
-  const bool warm = is_warm(options.start);
-  DistanceOptions first = options;
-  if (warm) first.max_iterations = std::min(options.max_iterations, kWarmIterations);
-  DistanceResult result =
-      solve_dual(pair, cold, scale, X_WA.position(), first, shares, warm ? Starts::warm_only : Starts::warm_and_cold);
+  DistanceResult result = solve_dual(pair, cold, scale, X_WA.position(), options, shares);
   if (result.status != DistanceStatus::not_converged) return result;
-  const int spent = result.iterations;
   const CorePair cores{pair, min_curvature_radius_or_zero(a), min_curvature_radius_or_zero(b)};
-  const Eigen::Vector3d start = warm ? Eigen::Vector3d(options.start / options.start.norm()) : cold();
-  result = descend_cores(cores, scale.size, start, X_WA.position(), spent);
+  result = descend_cores(cores, scale.size, cold(), X_WA.position(), result.iterations);
   if (result.status != DistanceStatus::not_converged) {
     if (!needs_polish(scale, result)) return result;
     // Newton's method has a second chance from there, and is more accurate if it converges.
-    DistanceResult polished =
-        solve_dual(pair, cold, scale, X_WA.position(), {.start = result.normal}, shares, Starts::warm_only);
+    DistanceResult polished = solve_dual(pair, cold, scale, X_WA.position(), {.start = result.normal}, shares);
     polished.iterations += result.iterations;
     return polished.error_bound < result.error_bound ? polished : result;
-  }
-  if (warm && options.max_iterations > spent) {
-    first.start.setZero();
-    first.max_iterations = options.max_iterations - spent;
-    DistanceResult again = solve_dual(pair, cold, scale, X_WA.position(), first, shares);
-    again.iterations += result.iterations;
-    if (again.status != DistanceStatus::not_converged) return again;
-    result = again;
   }
   return search_sphere(pair, scale, cold(), X_WA.position(), result.iterations);
 }
