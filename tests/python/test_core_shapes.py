@@ -241,7 +241,10 @@ def test_times_of_contact(a):
         (lambda: hb.ConvexPolyhedron.solid(3), "name is 3"),
         (lambda: hb.ConvexPolyhedron.solid("cube", -1), "circumradius is -1"),
         (lambda: hb.ConvexPolyhedron.in_principal_frame(CORNERS, rounding=-1), "radius is -1"),
-        (lambda: hb.Rounded(hb.Sphere(1), 0.5), "shape is of type Sphere; accepted: Box, ConvexPolyhedron, Cylinder, Cone"),
+        (
+            lambda: hb.Rounded(hb.Sphere(1), 0.5),
+            "shape is of type Sphere; accepted: Box, ConvexPolyhedron, Cylinder, Cone",
+        ),
         (lambda: hb.Cylinder(0, 1), "half_length is 0"),
         (lambda: hb.Cylinder(1, 1e5), "ratio of radius to half-length"),
         (lambda: hb.Cone(1, math.nan), "radius is nan"),

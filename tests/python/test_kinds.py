@@ -37,5 +37,5 @@ def test_bad_shapes_are_refused(tmp_path):
     config = {"system": {"number": 48, "packing_fraction": 0.15}, "shape": {"kind": "capsule", "length": 1}, **TIMES}
     with pytest.raises(ValueError, match="shape.diameter of a capsule is missing"):
         hb.run(config, tmp_path / "run")
-    with pytest.raises(ValueError, match="did you mean \"cube\""):
+    with pytest.raises(ValueError, match='did you mean "cube"'):
         hb.run(config | {"shape": {"kind": "polyhedron", "solid": "cubes"}}, tmp_path / "run")

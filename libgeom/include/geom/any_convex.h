@@ -189,15 +189,15 @@ class GEOM_EXPORT AnyConvex {
   /// Interface that hides the shape's type.
   struct Concept {
     virtual ~Concept() = default;
-    virtual Support support(const Eigen::Vector3d& n) const = 0;
-    virtual Eigen::Matrix3d support_hessian(const Eigen::Vector3d& n) const = 0;
-    virtual double bounding_radius() const = 0;
-    virtual double inscribed_radius() const = 0;
-    virtual double min_curvature_radius() const = 0;
+    virtual Support support(const Eigen::Vector3d& n) const = 0;                  ///< support of the shape
+    virtual Eigen::Matrix3d support_hessian(const Eigen::Vector3d& n) const = 0;  ///< Hessian of the support function
+    virtual double bounding_radius() const = 0;                                   ///< bounding radius
+    virtual double inscribed_radius() const = 0;                                  ///< inscribed radius
+    virtual double min_curvature_radius() const = 0;                              ///< 0 if the shape does not tell
     virtual bool contains(const Eigen::Vector3d& x) const = 0;  ///< false also if the shape cannot tell
-    virtual std::optional<kernel::CoreView> core() const = 0;
-    virtual const Ellipsoid* ellipsoid() const = 0;
-    virtual const Superellipsoid* superellipsoid() const = 0;
+    virtual std::optional<kernel::CoreView> core() const = 0;   ///< nullopt: none
+    virtual const Ellipsoid* ellipsoid() const = 0;             ///< null: another kind
+    virtual const Superellipsoid* superellipsoid() const = 0;   ///< null: another kind
   };
   /// Shape at a pose in the body's frame, less the ball that is swept over it.
   struct Part {
