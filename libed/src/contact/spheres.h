@@ -40,9 +40,10 @@ struct SpheresOf {
   /// Returns whether there is no contact in [now, end].
   [[gnu::always_inline]] auto clear(Real now, Real end) const {
     const auto apart = !overlap();
+    const auto part = parting();
     const auto distant = !touch();
     const auto late = !(now + time() <= end);
-    return apart & (parting() | (distant & ((discriminant < 0) | late)));
+    return apart & (part | (distant & ((discriminant < 0) | late)));
   }
 };
 

@@ -62,7 +62,9 @@ class Outline {
 
 /// The outline consists of the arcs about both rims and the line between them; the faces have dz = 0.
 SweptMass swept_frustum(const CoreView& core) {
-  const auto& [low, high] = core.disc;
+  // No structured binding: clang 14 captures none.
+  const auto& low = core.disc[0];
+  const auto& high = core.disc[1];
   const double r = core.radius;
   const double height = high.z - low.z;
   const double tilt = std::atan2(low.radius - high.radius, height);

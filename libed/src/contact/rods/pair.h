@@ -180,7 +180,10 @@ struct RodPairOf : RodSpin<Vector, kSpin> {
     constexpr double kParallel = 1e-12;  // with a smaller squared sine only one rod's axis is followed
     const Real c = u_a.dot(u_b);
     const Vector across = u_a - c * u_b;
-    return is_inner_a(at) & is_inner_b(at) & (across.squaredNorm() > kParallel);
+    const auto inner_a = is_inner_a(at);
+    const auto inner_b = is_inner_b(at);
+    const auto skew = across.squaredNorm() > kParallel;
+    return inner_a & inner_b & skew;
   }
 };
 
