@@ -142,11 +142,13 @@ int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
   for (const Kind& kind : all_kinds()) {
-    for (const auto& [method, run] : std::map<std::string, Method>{{"/certified", search}, {"/advancement", advance}}) {
-      benchmark::RegisterBenchmark((kind.name + method).c_str(), [kind, run](benchmark::State& timing) {
-        predictions(timing, kind.species, run);
+    const auto add = [&kind](const char* name, Method method) {
+      benchmark::RegisterBenchmark((kind.name + name).c_str(), [kind, method](benchmark::State& timing) {
+        predictions(timing, kind.species, method);
       })->Unit(benchmark::kMillisecond);
-    }
+    };
+    add("/certified", search);
+    add("/advancement", advance);
   }
   KeepTimes times;
   benchmark::RunSpecifiedBenchmarks(&times);
