@@ -11,7 +11,7 @@ SHAPES = [
     pytest.param({"kind": "sphere", "diameter": 3}, hb.Sphere, id="sphere"),
     pytest.param({"kind": "capsule", "length": 2, "diameter": 1}, hb.Capsule, id="capsule"),
     pytest.param({"kind": "box", "edges": (1, 2, 3)}, hb.Box, id="box"),
-    pytest.param({"kind": "box", "edges": np.ones(3), "rounding": 0.1}, hb.Rounded, id="rounded"),
+    pytest.param({"kind": "box", "edges": np.ones(3), "rounding": 0.1}, hb.RoundedBox, id="rounded"),
     pytest.param({"kind": "polyhedron", "solid": "octahedron"}, hb.ConvexPolyhedron, id="octahedron"),
     pytest.param({"kind": "polyhedron", "vertices": PYRAMID}, hb.ConvexPolyhedron, id="pyramid"),
 ]

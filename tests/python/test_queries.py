@@ -147,11 +147,11 @@ def test_motion_agrees_with_the_reference():
     [
         (lambda e, X: hb.distance(1, X, e, X), "a is 1; accepted: Ellipsoid, Superellipsoid"),
         # Half-spaces take part in queries, not in motion.
-        (lambda e, X: hb.distance(e, X, None, X), "RoundedPolyhedron, CustomShape, HalfSpace"),
-        (lambda e, X: hb.overlap(None, X, e, X), "RoundedPolyhedron, CustomShape, HalfSpace"),
-        (lambda e, X: hb.closest_point(3, X, [0, 0, 0]), "RoundedPolyhedron, CustomShape, HalfSpace"),
-        (lambda e, X: hb.contains("a", X, [0, 0, 0]), "RoundedPolyhedron, CustomShape, HalfSpace"),
-        (lambda e, X: hb.ray_cast([], X, [0, 0, 9], [0, 0, 1]), "RoundedPolyhedron, CustomShape, HalfSpace"),
+        (lambda e, X: hb.distance(e, X, None, X), "RoundedCone, CustomShape, HalfSpace"),
+        (lambda e, X: hb.overlap(None, X, e, X), "RoundedCone, CustomShape, HalfSpace"),
+        (lambda e, X: hb.closest_point(3, X, [0, 0, 0]), "RoundedCone, CustomShape, HalfSpace"),
+        (lambda e, X: hb.contains("a", X, [0, 0, 0]), "RoundedCone, CustomShape, HalfSpace"),
+        (lambda e, X: hb.ray_cast([], X, [0, 0, 9], [0, 0, 1]), "RoundedCone, CustomShape, HalfSpace"),
         (lambda e, X: hb.distance(e, [0, 0, 0], e, X), "pose_a is of type list; accepted: Pose"),
         (
             lambda e, X: hb.distance(e, X, e, X, penetration="deep"),
