@@ -322,10 +322,11 @@ ShapeNumbers FrameReader::shape_numbers(const double* row, std::uint32_t columns
     return numbers;
   }
   numbers.rounding = row[4];
-  const double most = (columns - kSpeciesColumns) / 3;
-  if (!(row[5] >= 0 && row[5] <= most)) throw std::invalid_argument("more vertices than there are columns for");
+  const std::uint32_t most = (columns - kSpeciesColumns) / 3;
+  if (!(row[5] >= 0 && row[5] <= static_cast<double>(most)))
+    throw std::invalid_argument("more vertices than there are columns for");
   for (std::uint32_t v = 0; v < static_cast<std::uint32_t>(row[5]); ++v) {
-    const double* x = row + kSpeciesColumns + 3 * v;
+    const double* x = row + kSpeciesColumns + std::size_t{3} * v;
     numbers.vertices.emplace_back(x[0], x[1], x[2]);
   }
   return numbers;
