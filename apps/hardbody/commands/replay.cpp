@@ -70,7 +70,7 @@ std::string shape_text(const ed::BodyShape& shape) {
   const ShapeNumbers numbers = numbers_of(shape);
   if (!has_semi_axes(numbers.kind)) return ed::describe(shape);
   const Eigen::Vector2d& e = numbers.exponents;
-  const std::string axes = "semi-axes " + text(ed::half_extents(shape));
+  std::string axes = "semi-axes " + text(ed::half_extents(shape));
   if (!has_exponents(numbers.kind)) return axes;
   return fmt::format("{}, {}, exponents ({:.9g}, {:.9g})", to_string(numbers.kind), axes, e.x(), e.y());
 }
