@@ -146,7 +146,7 @@ std::string box_keys(const ShapeNumbers& numbers) {
 
 std::string box_title(const ShapeConfig& shape) {
   const Vector3d ratios = *shape.edges / shape.edges->minCoeff();
-  const std::string name = ratios == Vector3d::Ones()
+  std::string name = ratios == Vector3d::Ones()
                                ? std::string("cubes")
                                : fmt::format("boxes {:.4g} : {:.4g} : {:.4g}", ratios.x(), ratios.y(), ratios.z());
   if (shape.rounding == 0) return name;
@@ -218,7 +218,7 @@ std::optional<ShapeRefusal> check_polyhedron(const ShapeConfig& shape) {
           *k + 1, x.x(), x.y(), x.z()));
     }
     const ed::BodyShape body = body_shape(polyhedron_of(points, shape.rounding / longest));
-    if (const auto refused = check_rounding(shape, longest)) return refused;
+    if (auto refused = check_rounding(shape, longest)) return refused;
     const double ratio = ed::bounding_radius(body) / ed::inscribed_radius(body);
     if (ratio <= kThinnestForm) return std::nullopt;
     return ShapeRefusal{key, fmt::format("at most {:g}", kThinnestForm),
@@ -244,7 +244,7 @@ std::string polyhedron_keys(const ShapeNumbers& numbers) {
 }
 
 std::string polyhedron_title(const ShapeConfig& shape) {
-  const std::string name = shape.solid ? fmt::format("polyhedra ({})", *shape.solid)
+  std::string name = shape.solid ? fmt::format("polyhedra ({})", *shape.solid)
                                        : fmt::format("polyhedra of {} vertices", shape.vertices->size());
   if (shape.rounding == 0) return name;
   return shape.solid ? fmt::format("{}, rounded by {:.4g} of the circumradius", name, shape.rounding)
