@@ -147,8 +147,8 @@ std::string box_keys(const ShapeNumbers& numbers) {
 std::string box_title(const ShapeConfig& shape) {
   const Vector3d ratios = *shape.edges / shape.edges->minCoeff();
   std::string name = ratios == Vector3d::Ones()
-                               ? std::string("cubes")
-                               : fmt::format("boxes {:.4g} : {:.4g} : {:.4g}", ratios.x(), ratios.y(), ratios.z());
+                         ? std::string("cubes")
+                         : fmt::format("boxes {:.4g} : {:.4g} : {:.4g}", ratios.x(), ratios.y(), ratios.z());
   if (shape.rounding == 0) return name;
   return fmt::format("{}, rounded by {:.4g} of the shortest edge", name, shape.rounding / shape.edges->minCoeff());
 }
@@ -245,7 +245,7 @@ std::string polyhedron_keys(const ShapeNumbers& numbers) {
 
 std::string polyhedron_title(const ShapeConfig& shape) {
   std::string name = shape.solid ? fmt::format("polyhedra ({})", *shape.solid)
-                                       : fmt::format("polyhedra of {} vertices", shape.vertices->size());
+                                 : fmt::format("polyhedra of {} vertices", shape.vertices->size());
   if (shape.rounding == 0) return name;
   return shape.solid ? fmt::format("{}, rounded by {:.4g} of the circumradius", name, shape.rounding)
                      : name + ", rounded";
