@@ -29,5 +29,5 @@ hardbody_test(finder_rounding_test property property/rounding_test.cpp)
 # It judges in quadruple precision: double is promoted everywhere, on purpose.
 set_source_files_properties(property/rounding_test.cpp PROPERTIES COMPILE_OPTIONS -Wno-double-promotion)
 hardbody_test(finder_bracketing_test property property/bracketing_test.cpp)
-hardbody_test(finder_convex_contact_test property property/convex_contact_test.cpp)
+hardbody_test(finder_convex_contact_test property property/convex_contact_test.cpp property/rod_contact_test.cpp)
 hardbody_test(finder_support_contact_test property property/support_contact_test.cpp)

@@ -188,6 +188,16 @@ geom::Shape geom_shape(const ed::BodyShape& shape) {
       shape);
 }
 
+FramedPolyhedron framed_polyhedron(const std::vector<Vector3d>& points, double rounding, double apart) {
+  geom::Pose X_PB;
+  geom::ConvexPolyhedron moved = geom::ConvexPolyhedron::in_principal_frame(points, &X_PB, rounding);
+  if (X_PB.position().norm() <= apart * moved.bounding_radius()) {
+    geom::Rounded<geom::ConvexPolyhedron> own(geom::ConvexPolyhedron(points), rounding);
+    if (own.is_in_principal_frame()) return {rounded(own.inner(), rounding)};
+  }
+  return {rounded(std::move(moved), rounding), X_PB};
+}
+
 std::optional<SweptPolytope> swept_polytope(const ed::BodyShape& shape) {
   return std::visit(
       [](const auto& s) -> std::optional<SweptPolytope> {

@@ -6,6 +6,7 @@
 #include <ed/shape.h>
 
 #include <geom/any_shape.h>
+#include <geom/pose.h>
 
 #include <Eigen/Core>
 
@@ -63,6 +64,16 @@ ed::BodyShape make_body_shape(const ShapeNumbers& numbers);
 ed::BodyShape body_shape(const geom::Shape& shape);
 /// Returns the shape of a body in motion. Throws std::logic_error for a user's shape.
 geom::Shape geom_shape(const ed::BodyShape& shape);
+
+/// Polyhedron in a frame that a body may have.
+struct FramedPolyhedron {
+  geom::Shape shape;
+  std::optional<geom::Pose> X_PB = std::nullopt;  ///< pose of the frame in that of the points, if it is another one
+};
+
+/// Returns the hull of points, with a ball swept over it, in the frame of its principal axes; in the points' own, to
+/// the bit, where that is one within `apart`, relative to the size. Throws std::invalid_argument if libgeom refuses it.
+FramedPolyhedron framed_polyhedron(const std::vector<Eigen::Vector3d>& points, double rounding, double apart);
 
 /// Polytope with a ball swept over it.
 struct SweptPolytope {

@@ -171,16 +171,9 @@ double longest_of(const std::vector<Vector3d>& points) {
   return longest;
 }
 
-/// Returns the polyhedron in the frame of its principal axes; in its own frame, to the bit, where it is in that.
+/// Returns the polyhedron in a frame that a body may have.
 geom::Shape polyhedron_of(const std::vector<Vector3d>& points, double rounding) {
-  geom::Pose X_BP;
-  const geom::ConvexPolyhedron moved = geom::ConvexPolyhedron::in_principal_frame(points, &X_BP, rounding);
-  if (X_BP.position().norm() <= kSamePoint * moved.bounding_radius()) {
-    const geom::Rounded<geom::ConvexPolyhedron> own(geom::ConvexPolyhedron(points), rounding);
-    if (own.is_in_principal_frame()) return rounding > 0 ? geom::Shape(own) : geom::Shape(own.inner());
-  }
-  if (rounding == 0) return moved;
-  return geom::Rounded<geom::ConvexPolyhedron>(moved, rounding);
+  return framed_polyhedron(points, rounding, kSamePoint).shape;
 }
 
 /// Returns the first point that is no corner of the hull of all; nullopt if there is none.

@@ -165,7 +165,7 @@ Finding UniaxialBodies::find_contact(int i, int j, const Vector3d& r, double now
         {*kind_of(i).upright, *kind_of(j).upright, entries_[at(i)].motion, entries_[at(j)].motion, r, now}, now, end,
         options, n, count, unsolved);
   }
-  if (are_spheres(i, j)) {
+  if (rods_ && are_spheres(i, j)) {
     const double reach = kind_of(i).rod.radius + kind_of(j).rod.radius;
     return sphere_contact(r, velocity(j) - velocity(i), reach, now, end, n, count);
   }
@@ -179,7 +179,7 @@ constexpr double kLeastLeft = 1e-4;
 
 UniaxialBodies::Contact UniaxialBodies::contact(int i, int j, const Vector3d& r, const Vector3d& n,
                                                 double /*now*/) const {
-  RodPointsOf<double> points{0, 0};
+  RodPointsOf<double> points{};
   if (rods_) {
     points = closest_on_rods(kind_of(i).rod.half_length, kind_of(j).rod.half_length, r, entries_[at(i)].motion.axis(),
                              entries_[at(j)].motion.axis());

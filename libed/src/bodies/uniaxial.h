@@ -41,8 +41,7 @@ struct UniaxialKind {
   UniaxialInertia inertia;
   double bounding_radius;
   double inscribed_radius;
-  /// Whether it is a sphere among rods. Contacts never turn it: its rotation is kept as it was when the clock showed 0.
-  bool sphere = false;
+  bool sphere = false;  ///< a sphere among rods: contacts never turn it, and its rotation is that at 0 of the clock
 };
 
 class UniaxialBodies {
@@ -132,9 +131,9 @@ class UniaxialBodies {
   const UniaxialKind& kind_of(int i) const { return kinds_[at(kind_[at(i)])]; }
   bool spins() const { return spins_; }  ///< whether some body may spin
   bool rods() const { return rods_; }    ///< whether the family is that of rods
-  /// Returns whether i and j are spheres among rods, which meet in closed form.
+  /// Returns whether i and j, of rods, are spheres, which meet in closed form.
   bool are_spheres(int i, int j) const { return kind_of(i).sphere && kind_of(j).sphere; }
-  bool all_spheres() const;  ///< whether all are such spheres
+  bool all_spheres() const;  ///< whether all are spheres among rods
   int kind_index(int i) const { return kind_[at(i)]; }
   /// The states; read into bodies of the same kinds.
   template <class Archive, class Self>

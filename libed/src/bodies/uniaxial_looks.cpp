@@ -55,7 +55,9 @@ const double* numbers(const AxisMotion& motion) {
 }  // namespace
 
 UniaxialLooks::UniaxialLooks(const UniaxialBodies& bodies, const FamilyKernels& kernels)
-    : kernel_(kernel_of(bodies, kernels)), all_spheres_(bodies.all_spheres()), one_kind_(bodies.kinds().size() == 1) {
+    : kernel_(kernel_of(bodies, kernels)),
+      closed_forms_(bodies.rods() && !bodies.all_spheres()),
+      one_kind_(bodies.kinds().size() == 1) {
   if (!one_kind_) return;
   const UniaxialKind& kind = bodies.kinds()[0];
   for (int lane = 0; lane < kBlockLooks; ++lane) internal::put(kind, kind, bodies.rods(), in_, lane);
@@ -99,8 +101,7 @@ void UniaxialLooks::take(const UniaxialBodies& bodies, double now, double box, s
     int lanes = 0;
     for (; next < looks.size() && lanes < kBlockLooks; ++next) {
       const Pair& pair = *looks[next].pair;
-      // Spheres among rods have no kernel, as they have no search.
-      if (!all_spheres_ && (pair.normal.isZero(0) || bodies.are_spheres(pair.i, pair.j))) continue;
+      if (pair.normal.isZero(0) || (closed_forms_ && bodies.are_spheres(pair.i, pair.j))) continue;
       look_of[static_cast<std::size_t>(lanes++)] = &looks[next];
     }
     if (lanes < kFewestLooks) return;

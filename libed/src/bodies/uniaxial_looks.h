@@ -27,8 +27,8 @@ class UniaxialLooks final : public FirstLooks<UniaxialBodies> {
   void read(int lane, PairLook& look, FinderCounters& count) const;
 
   LookKernel* kernel_;
-  bool all_spheres_;
-  bool one_kind_;  ///< rows of the only kind are in all lanes
+  bool closed_forms_;  ///< rods, among which spheres are that meet in closed form
+  bool one_kind_;      ///< rows of the only kind are in all lanes
   LookInput in_;
   LookOutput out_;
 };

@@ -40,9 +40,11 @@ class DilatedEnvelopes final : public Envelopes<UniaxialBodies> {
         thickness_(thickness),
         exit_thickness_(exit_thickness) {
     for (const UniaxialKind& kind : bodies.kinds()) {
-      add_kind(kind.shape, kind.bounding_radius - kind.inscribed_radius);
-      kinds_.back().rod = kind.rod;
-      if (bodies.rods()) shapes_.back() = {{kind.rod.half_length, kind.rod.radius, 0, 0}};
+      if (rods_) {
+        add_rod(kind.rod);
+      } else {
+        add_kind(kind.shape, kind.bounding_radius - kind.inscribed_radius);
+      }
     }
     for (int i = 0; i < bodies.number(); ++i) envelopes_.push_back({{}, bodies.kind_index(i), 0, {}});
   }
@@ -173,6 +175,10 @@ class DilatedEnvelopes final : public Envelopes<UniaxialBodies> {
   void add_kind(const geom::kernel::Spheroid& shape, double axis_difference) {
     kinds_.push_back({shape, {}, axis_difference});
     shapes_.push_back({{shape.a2, shape.b2, shape.c, shape.rho}});
+  }
+  void add_rod(const Rod& rod) {
+    kinds_.push_back({{}, rod, rod.half_length});
+    shapes_.push_back({{rod.half_length, rod.radius, 0, 0}});
   }
   const DilatedEnvelope& envelope(int i) const { return envelopes_[static_cast<std::size_t>(i)]; }
   Eigen::Vector3d axis_of(int i) const { return Eigen::Vector3d(envelope(i).axis); }

@@ -59,7 +59,7 @@ struct Axis : SpinAxis<kSpin> {
   Real axis_rate;  ///< AxisMotion::axis_rate
 };
 
-/// One body at the time of the look.
+/// Body at the time of the look.
 template <bool kSpin>
 struct Body : Axis<kSpin> {
   Shape shape;
@@ -119,31 +119,38 @@ HWY_INLINE Lanes turn(const Course<kSpin>& course, Real t, Axis<kSpin>& body) {
   return abs(angle) <= kLargestAngle;
 }
 
-/// Returns the nearest image as periodic.h does.
+/// Returns the nearest image of a coordinate as periodic.h does.
 HWY_INLINE Real nearest_image(Real d, Real box, Real inverse) {
   return d - box * nearest_integer(d * inverse);
 }
 
+/// Returns the nearest image of a vector.
+HWY_INLINE Real3 nearest_image(const Real3& d, double box) {
+  const Real inverse = 1 / box;
+  return {nearest_image(d.x(), box, inverse), nearest_image(d.y(), box, inverse), nearest_image(d.z(), box, inverse)};
+}
+
+/// Numbers of pairs that both passes need, whatever the shapes.
+struct Look {
+  Real3 n;      ///< normal
+  Real reach;   ///< sum of both bounding radii
+  Real t, end;  ///< time of the look, end of the window
+};
+
 /// Two bodies in flight, and when their bounding spheres meet.
 template <bool kSpin>
-struct Approach {
+struct Approach : Look {
   Course<kSpin> a, b;
-  Real3 r, v, n;  ///< vector between the centres at t, its rate of change, and the normal that the pair came with
-  Real reach;
-  Real t, end;  ///< window
-  Lanes meet;   ///< pairs whose window is not empty
+  Real3 r, v;  ///< vector between the centres at t, and its rate of change
+  Lanes meet;  ///< pairs whose window is not empty
 
   HWY_INLINE Approach(const LookInput& in, int lane)
       : a(load_course<kSpin>(in.body_a + lane)), b(load_course<kSpin>(in.body_b + lane)) {
     const Real now = in.now;
-    const Real box = in.box;
-    const Real inverse = 1 / in.box;
     const auto position = [&](const Course<kSpin>& course) {
       return course.position + (now - course.time) * course.velocity;
     };
-    const Real3 d = position(b) - position(a);
-    const Real3 r_now(nearest_image(d.x(), box, inverse), nearest_image(d.y(), box, inverse),
-                      nearest_image(d.z(), box, inverse));
+    const Real3 r_now = nearest_image(position(b) - position(a), in.box);
     v = b.velocity - a.velocity;
     reach = load(in.rows[LookInput::reach], lane);
     n = load_three(in.normal + lane, 0);
@@ -183,15 +190,12 @@ struct SecondLook {
 
 /// Ellipsoids of revolution at the time of the look.
 template <bool kSpin>
-struct Pairs {
+struct Pairs : Look {
   Body<kSpin> a, b;
-  Real3 r, v, n;
-  Real reach;
+  Real3 r, v;
   Real surface_speed;  ///< reach times both rates of the axes
   Real limit;          ///< UniaxialSample::curvature_limit
   RoundingOf<Real> hidden;
-  Real t;
-  Real end;  ///< end of the window
 
   HWY_INLINE Gap gap() const { return geom::kernel::uniaxial_gap_of<Both>(a.shape, b.shape, r, a.u, b.u, n); }
   HWY_INLINE Real rate(const Gap& gap) const { return gap_rate(v, a.du, b.du, gap.lever, n); }
@@ -220,12 +224,9 @@ HWY_INLINE PairScalesOf<Real> pair_scales(const LookInput& in, int lane, const P
 template <bool kSpin>
 HWY_INLINE void first_pass(const LookInput& in, int lane, LookOutput& out, Pairs<kSpin>& p, Lanes& open) {
   const Approach<kSpin> approach(in, lane);
-  p.v = approach.v;
-  p.reach = approach.reach;
-  p.n = approach.n;
-  p.t = approach.t;
-  p.end = approach.end;
+  static_cast<Look&>(p) = approach;
   p.r = approach.r;
+  p.v = approach.v;
   p.a.shape = load_shape(in.rows + LookInput::shape_a, lane);
   p.b.shape = load_shape(in.rows + LookInput::shape_b, lane);
   const Lanes in_range = turn(approach.a, p.t, p.a) & turn(approach.b, p.t, p.b);

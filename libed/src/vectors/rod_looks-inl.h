@@ -14,14 +14,10 @@ namespace {
 
 /// Rods at the time of the look.
 template <bool kSpin>
-struct RodPairs {
+struct RodPairs : Look {
   RodPairOf<Real, Real3, kSpin> rods;
-  Real3 n;
-  Real reach;
   Real bending;  ///< the fastest that turning moves the surfaces
   RoundingOf<Real> hidden;
-  Real t;
-  Real end;  ///< end of the window
 };
 
 /// Centres of bodies at the time of the look.
@@ -43,12 +39,9 @@ template <bool kSpin>
 HWY_INLINE void first_pass(const LookInput& in, int lane, LookOutput& out, RodPairs<kSpin>& p, Lanes& open) {
   const Approach<kSpin> approach(in, lane);
   RodPairOf<Real, Real3, kSpin>& rods = p.rods;
+  static_cast<Look&>(p) = approach;
   rods.r = approach.r;
   rods.v = approach.v;
-  p.n = approach.n;
-  p.reach = approach.reach;
-  p.t = approach.t;
-  p.end = approach.end;
   const auto number = [&](int shape, int row) { return load(in.rows[shape + row], lane); };
   rods.a = number(LookInput::shape_a, RodRows::half_length);
   rods.b = number(LookInput::shape_b, RodRows::half_length);
@@ -106,14 +99,10 @@ HWY_INLINE void second_pass(RodPairs<kSpin>& p, int pairs, LookOutput& out, int 
 /// Looks at spheres: all but contacts are answered, as sphere_contact does.
 void look_spheres(const LookInput& in, int pairs, LookOutput& out) {
   const Real now = in.now;
-  const Real box = in.box;
-  const Real inverse = 1 / in.box;
   for (int lane = 0; lane < pairs; lane += kLanes) {
     const SphereCourse a(in.body_a + lane, now);
     const SphereCourse b(in.body_b + lane, now);
-    const Real3 d = b.position - a.position;
-    const Real3 r(nearest_image(d.x(), box, inverse), nearest_image(d.y(), box, inverse),
-                  nearest_image(d.z(), box, inverse));
+    const Real3 r = nearest_image(b.position - a.position, in.box);
     const SpheresOf<Real> spheres(r, b.velocity - a.velocity, load(in.rows[LookInput::reach], lane));
     const Lanes clear = spheres.clear(now, load(in.rows[LookInput::end], lane));
     store(select(clear, LookOutput::clear, LookOutput::open), out.rows[LookOutput::verdict], lane);

@@ -1,5 +1,6 @@
 #include "cores/contact.h"
 #include "cores/depth.h"
+#include "cores/descent.h"
 #include "cores/placed_core.h"
 
 #include <geom/kernel/core_simplex.h>
@@ -9,16 +10,12 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Bounds of polytopes' distances that differ by no more than this times the size are as good as equal.
-constexpr double kCoreRounding = 5e-16;
-
 /// The algorithm of Gilbert, Johnson and Keerthi for two polytopes that are apart: closest points of a growing simplex
 /// of the difference B - A. The vertices are finitely many, so that it ends with the closest features; the gap between
 /// the tangent planes across each normal is a lower bound, the closest point an upper one.
-class PolytopeDescent {
+class PolytopeDescent : public CoreDescent<PlacedCore> {
  public:
-  PolytopeDescent(const PlacedCore& a, const PlacedCore& b, double size)
-      : a_(a), b_(b), tolerance_(kCoreRounding * size) {}
+  PolytopeDescent(const PlacedCore& a, const PlacedCore& b, double size) : CoreDescent(a, b, size) {}
 
   /// Runs from a normal; returns false if the polytopes overlap, or are too close to tell.
   bool run(const Vector3d& start) {
@@ -28,13 +25,7 @@ class PolytopeDescent {
     for (int step = 0; step < kMostSteps && idle < kPatience; ++step) {
       const double lower = contact_.lower;
       const DifferenceVertex v = evaluate(n);
-      // The gap is that across the closest point of the simplex: another normal whose gap is the same to rounding may
-      // be off by the square root of that.
-      if (const double gap = n.dot(v.p); step > 0 && std::sqrt(best_.squared) - gap <= tolerance_) {
-        contact_.lower = gap;
-        contact_.n = n;
-        return true;
-      }
+      if (step > 0 && closes(n, n.dot(v.p))) return true;
       if (simplex.has(v)) break;
       simplex.vertex[simplex.count++] = v;
       last_ = simplex;
@@ -51,66 +42,6 @@ class PolytopeDescent {
     }
     return true;
   }
-
-  /// Tries the normals of all edges and triangles of the last simplex: rounding may have made a wrong choice among
-  /// them.
-  void try_all_faces() {
-    const SimplexFaces faces(last_);
-    const auto across = [](const Vector3d& x, const Vector3d& e) {
-      return Vector3d(x - x.dot(e) / e.squaredNorm() * e);
-    };
-    const auto consider = [this](const Vector3d& x) {
-      const double length = x.norm();
-      if (length > tolerance_) (void)evaluate(x / length);
-    };
-    for (std::size_t i = 0; i < last_.count; ++i) {
-      for (std::size_t j = i + 1; j < last_.count; ++j) {
-        const Vector3d e = last_.vertex[j].p - last_.vertex[i].p;
-        consider(across(across(last_.vertex[i].p, e), e));
-        for (std::size_t k = j + 1; k < last_.count; ++k) {
-          const Vector3d n = e.cross(last_.vertex[k].p - last_.vertex[i].p);
-          if (n.squaredNorm() > 0) consider(faces.foot_on_plane(i, j, k, n, n.squaredNorm()));
-        }
-      }
-    }
-  }
-
-  bool closed() const { return std::sqrt(best_.squared) - contact_.lower <= tolerance_; }
-
-  /// Returns the answer, with the closest points of the simplex.
-  CoreContact contact() const {
-    CoreContact result = contact_;
-    for (std::size_t k = 0; k < best_.count; ++k) {
-      result.a += best_.weight[k] * best_.vertex[k].a;
-      result.b += best_.weight[k] * best_.vertex[k].b;
-    }
-    result.evaluations = evaluations_;
-    return result;
-  }
-
- private:
-  static constexpr int kMostSteps = 200;
-  static constexpr int kPatience = 4;
-  static constexpr double kSameSquare = 1 + 1e-14;
-
-  DifferenceVertex evaluate(const Vector3d& n) {
-    ++evaluations_;
-    DifferenceVertex v = difference_vertex(a_, b_, n);
-    const double gap = n.dot(v.p);
-    if (gap > contact_.lower) {
-      contact_.lower = gap;
-      contact_.n = n;
-    }
-    return v;
-  }
-
-  const PlacedCore& a_;
-  const PlacedCore& b_;
-  double tolerance_;
-  CoreSimplex best_;
-  CoreSimplex last_;  // before it was reduced
-  CoreContact contact_;
-  int evaluations_ = 0;
 };
 
 double gap_across(const PlacedCore& a, const PlacedCore& b, const Vector3d& n) {

@@ -1,4 +1,5 @@
 #include "cores/contact.h"
+#include "cores/descent.h"
 #include "cores/rims.h"
 
 #include <geom/distance.h>
@@ -11,15 +12,11 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// Bounds of cores' distances that differ by no more than this times the size are as good as equal.
-constexpr double kRoundRounding = 5e-16;
-
 /// The algorithm of Gilbert, Johnson and Keerthi for two cores that are apart, with vertices that slide along their
 /// rims (rims.h): a simplex is the hull of up to three discs, of which there are finitely many.
-class RoundDescent {
+class RoundDescent : public CoreDescent<RoundCore> {
  public:
-  RoundDescent(const RoundCore& a, const RoundCore& b, double size)
-      : a_(a), b_(b), size_(size), tolerance_(kRoundRounding * size) {}
+  RoundDescent(const RoundCore& a, const RoundCore& b, double size) : CoreDescent(a, b, size), size_(size) {}
 
   /// Runs from a normal; returns false if the cores overlap, or are too close to tell.
   bool run(const Vector3d& start) {
@@ -29,11 +26,7 @@ class RoundDescent {
     for (int step = 0; step < kMostSteps && idle < kPatience; ++step) {
       const double lower = contact_.lower;
       const DifferenceVertex v = evaluate(n);
-      if (const double gap = n.dot(v.p); step > 0 && std::sqrt(best_.squared) - gap <= tolerance_) {
-        contact_.lower = gap;
-        contact_.n = n;
-        return true;
-      }
+      if (step > 0 && closes(n, n.dot(v.p))) return true;
       if (rival_ && closed()) return true;
       if (known(simplex, v)) break;
       simplex.vertex[simplex.count++] = v;
@@ -58,44 +51,9 @@ class RoundDescent {
     return true;
   }
 
-  /// Tries the normals of all edges and triangles of the last simplex: rounding may have made a wrong choice.
-  void try_all_faces() {
-    const SimplexFaces faces(last_);
-    const auto consider = [this](const Vector3d& x) {
-      const double length = x.norm();
-      if (length > tolerance_) (void)evaluate(x / length);
-    };
-    for (std::size_t i = 0; i < last_.count; ++i) {
-      for (std::size_t j = i + 1; j < last_.count; ++j) {
-        const Vector3d e = last_.vertex[j].p - last_.vertex[i].p;
-        const Vector3d once = last_.vertex[i].p - last_.vertex[i].p.dot(e) / e.squaredNorm() * e;
-        consider(once - once.dot(e) / e.squaredNorm() * e);
-        for (std::size_t k = j + 1; k < last_.count; ++k) {
-          const Vector3d n = e.cross(last_.vertex[k].p - last_.vertex[i].p);
-          if (n.squaredNorm() > 0) consider(faces.foot_on_plane(i, j, k, n, n.squaredNorm()));
-        }
-      }
-    }
-  }
-
-  bool closed() const { return std::sqrt(best_.squared) - contact_.lower <= tolerance_; }
-
-  /// Returns the answer, with the closest points of the simplex.
-  CoreContact contact() const {
-    CoreContact result = contact_;
-    for (std::size_t k = 0; k < best_.count; ++k) {
-      result.a += best_.weight[k] * best_.vertex[k].a;
-      result.b += best_.weight[k] * best_.vertex[k].b;
-    }
-    result.evaluations = evaluations_;
-    return result;
-  }
   const CoreSimplex& simplex() const { return best_; }
 
  private:
-  static constexpr int kMostSteps = 200;
-  static constexpr int kPatience = 4;
-  static constexpr double kSameSquare = 1 + 1e-14;
   static constexpr double kUnresolved = 1e-12;
 
   /// Returns whether a vertex is in the simplex, to rounding.
@@ -123,25 +81,7 @@ class RoundDescent {
     return true;
   }
 
-  DifferenceVertex evaluate(const Vector3d& n) {
-    ++evaluations_;
-    DifferenceVertex v = difference_vertex(a_, b_, n);
-    const double gap = n.dot(v.p);
-    if (gap > contact_.lower) {
-      contact_.lower = gap;
-      contact_.n = n;
-    }
-    return v;
-  }
-
-  const RoundCore& a_;
-  const RoundCore& b_;
   double size_;
-  double tolerance_;
-  CoreSimplex best_;
-  CoreSimplex last_;  // before it was reduced
-  CoreContact contact_;
-  int evaluations_ = 0;
   bool rival_ = false;  // whether the last slide left out a vertex that may belong to the answer
 };
 
@@ -156,7 +96,7 @@ constexpr double kAgreement = 4e-15;
 
 /// Returns whether the bodies are apart or touch to rounding: the distance is between the gap and that of the points.
 bool apart_or_touching(const CoreContact& c, double size) {
-  return c.lower > -2 * kRoundRounding * size;
+  return c.lower > -2 * kCoreRounding * size;
 }
 
 /// Returns the contact where the vertices of bodies that were moved apart by `way` slide to when they are moved back;
@@ -192,8 +132,8 @@ void improve(const RoundCore& a, const RoundCore& b, double size, double bound, 
   const auto take = [&](CoreContact next) {
     const double mismatch = mismatch_of(next);
     contact.evaluations += next.evaluations;
-    if (next.lower < contact.lower - kRoundRounding * size) return false;
-    if (!(mismatch < bound) && !(next.lower > contact.lower + kRoundRounding * size)) return false;
+    if (next.lower < contact.lower - kCoreRounding * size) return false;
+    if (!(mismatch < bound) && !(next.lower > contact.lower + kCoreRounding * size)) return false;
     next.evaluations = contact.evaluations;
     contact = next;
     bound = mismatch;
@@ -208,8 +148,8 @@ void improve(const RoundCore& a, const RoundCore& b, double size, double bound, 
     CoreContact far = descent.contact();
     far.b -= way;
     far.lower = far.n.dot(difference_vertex(a, b, far.n).p);
-    const bool turned = (far.n - n).squaredNorm() > kRoundRounding * kRoundRounding;
-    if (far.lower >= lower - kRoundRounding * size) {
+    const bool turned = (far.n - n).squaredNorm() > kCoreRounding * kCoreRounding;
+    if (far.lower >= lower - kCoreRounding * size) {
       n = far.n;
       lower = far.lower;
     }
@@ -236,7 +176,7 @@ bool face_contact(const RoundCore& a, const RoundCore& b, double size, CoreConta
   if (!(radius > 0)) return false;
   const CoreVertex v = b.vertex(-n);
   const double gap = n.dot(v.x - middle);
-  if (!(gap > kRoundRounding * size)) return false;
+  if (!(gap > kCoreRounding * size)) return false;
   Vector3d point = v.x;
   if (b.round()) {
     // Faces that are parallel, and a side parallel to the face.
@@ -253,7 +193,7 @@ bool face_contact(const RoundCore& a, const RoundCore& b, double size, CoreConta
   }
   const Vector3d from = point - middle;
   const Vector3d across = from - from.dot(n) * n;
-  if (!(across.norm() <= (1 + 2 * kRoundRounding) * radius)) return false;
+  if (!(across.norm() <= (1 + 2 * kCoreRounding) * radius)) return false;
   contact.n = n;
   contact.lower = gap;
   contact.a = middle + across;
@@ -277,14 +217,14 @@ CoreContact overlapping(const CoreView& core_a, const RoundCore& a, const Matrix
   contact.n = found.normal;
   contact.lower = found.normal.dot(difference_vertex(a, b, found.normal).p);
   const double most = found.distance + found.error_bound;
-  if (mismatch_of(near) <= kAgreement * size && near.lower >= contact.lower - kRoundRounding * size) {
+  if (mismatch_of(near) <= kAgreement * size && near.lower >= contact.lower - kCoreRounding * size) {
     contact = near;
     contact.evaluations = found.iterations;
   } else {
     improve(a, b, size, std::numeric_limits<double>::infinity(), contact);
   }
   if (apart_or_touching(contact, size) && bound_of(contact) <= kBoundGap * size) return contact;
-  contact.depth_error = std::max(most - contact.lower, kRoundRounding * size);
+  contact.depth_error = std::max(most - contact.lower, kCoreRounding * size);
   return contact;
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-/// All pairs of bodies of a system, each in its nearest image.
+/// Pairs of bodies of a system, each in its nearest image.
 
 #include <ed/system.h>
 

@@ -100,19 +100,10 @@ std::optional<ed::BodyShape> capsule_of(const Written& written) {
   return geom::Capsule(half.norm(), written.rounding);
 }
 
-/// Returns a hull of points in the frame of its principal axes.
+/// Returns a hull of points in a frame that a body may have.
 TypeShape moved_polyhedron(const Written& written) {
-  geom::Pose X_BS;
-  const auto hull = geom::ConvexPolyhedron::in_principal_frame(written.vertices, &X_BS, written.rounding);
-  const double apart = kSameLength * hull.bounding_radius();
-  if (X_BS.position().norm() <= apart) {
-    const geom::Rounded<geom::ConvexPolyhedron> own(geom::ConvexPolyhedron(written.vertices), written.rounding);
-    if (own.is_in_principal_frame()) {
-      return {written.rounding > 0 ? ed::BodyShape(own) : ed::BodyShape(own.inner())};
-    }
-  }
-  if (written.rounding == 0) return {hull, X_BS};
-  return {geom::Rounded<geom::ConvexPolyhedron>(hull, written.rounding), X_BS};
+  FramedPolyhedron framed = framed_polyhedron(written.vertices, written.rounding, kSameLength);
+  return {body_shape(framed.shape), framed.X_PB};
 }
 
 /// Reads a row as JSON.

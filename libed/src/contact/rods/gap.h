@@ -80,7 +80,8 @@ class RodGap : private PairGapBase<Rod, AxisMotion> {
     e.step2 = e.decrement;
     e.step.setZero();
     e.sample = sample;
-    e.points = {std::copysign(s.a, sample.x_a), -std::copysign(s.b, sample.x_b)};
+    e.points = {std::copysign(s.a, sample.x_a), -std::copysign(s.b, sample.x_b), 0,
+                0};  // ends: the angle does not matter
     e.distance = s.between(e.points).norm();
     return e;
   }
@@ -160,7 +161,7 @@ class RodGap : private PairGapBase<Rod, AxisMotion> {
   Vector cold_normal(const State& s) const {
     return s.r.squaredNorm() > 0 ? Vector(s.r.stableNormalized()) : Vector::UnitX();
   }
-  /// Asked only where the axes meet: rods whose closest points tell no direction.
+  /// Returns the only answer for rods whose closest points tell no direction: their axes meet.
   Separation separating_normal(const State& /*s*/, Vector& /*n*/) const { return Separation::overlapping; }
   Window window(double t_begin, double t_end) const { return sphere_window(r_now_, v_, size(), now_, t_begin, t_end); }
   double size() const { return (A_.half_length + A_.radius) + (B_.half_length + B_.radius); }

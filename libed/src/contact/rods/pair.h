@@ -13,8 +13,8 @@
 ///
 ///     f' = dn.r + n.v,    f'' = -W^2 n.r + 2 dn.v,    |f'''| <= W^2 (W |r + v tau| + 3 |v|).
 ///
-/// As -|y| is the smaller of y and -y, the gap is the least of four smooth functions, one for each choice of the ends s
-/// and t (+1 or -1) of both rods: f - R - s a x_A - t b x_B. Each of them is bounded from below over [0, tau] by the
+/// The gap is the least of four smooth functions, as -|y| is the smaller of y and -y: one for each choice of the ends s
+/// and t (+1 or -1) of both rods, f - R - s a x_A - t b x_B. Each of them is bounded from below over [0, tau] by the
 /// parabola of its value and rate now and
 ///
 ///     K = -(f'' - s a x_A'' - t b x_B'') + (f''' + a x_A''' + b x_B''') tau / 3   (bounds of the third derivatives),
@@ -44,6 +44,7 @@ struct RodSampleOf {
 template <class Real>
 struct RodPointsOf {
   Real s, t;
+  Real c, sine2;  ///< cosine of the angle of the axes, and the square of its sine
 };
 
 /// Returns the closest points of two rods' axes: those of the lines, brought back into the rods one after the other. Of
@@ -64,7 +65,7 @@ template <class Real, class Vector>
   const Real middle = 0.5 * (larger(-a, r_a - b) + smaller(a, r_a + b));
   const Real first = clamped(select(skew, r.dot(across) / select(skew, sine2, 1.0), middle), a);
   const Real t = clamped(c * first - r_b, b);
-  return {clamped(r_a + c * t, a), t};
+  return {clamped(r_a + c * t, a), t, c, sine2};
 }
 
 /// Returns the scales of rounding as for ellipsoids of revolution (rounding.h). With x = n.u known to 21 + 2 Omega T
@@ -110,8 +111,8 @@ struct RodPairOf : RodSpin<Vector, kSpin> {
     return {(along - (a * abs(x_a) + b * abs(x_b))) - balls, along, x_a, x_b};
   }
 
-  /// Returns whether the fixed normal n excludes a contact within the horizon, with the bound w^2 of
-  /// every x''. A concave function that is positive at both ends has no root between.
+  /// Returns whether the fixed normal n excludes a contact within the horizon, with the bound w^2 of every x''. A
+  /// concave function that is positive at both ends has no root between.
   [[gnu::always_inline]] auto clears(const RodSampleOf<Real>& at, const Vector& n, const RoundingOf<Real>& hidden,
                                      Real horizon) const {
     using std::abs;
@@ -136,12 +137,11 @@ struct RodPairOf : RodSpin<Vector, kSpin> {
   [[gnu::always_inline]] Vector with_products(const RodPointsOf<Real>& at, Real p, Real q, Real p_else,
                                               Real q_else) const {
     const auto crossed = are_crossed(at);
-    const Real c = u_a.dot(u_b);
-    const Vector across = u_a - c * u_b;
-    const Real inverse = 1 / select(crossed, across.squaredNorm(), 1.0);
+    const Real inverse = 1 / select(crossed, at.sine2, 1.0);
     const Real of_a = select(is_inner_a(at), p_else, 0.0);
     const Real of_b = select(is_inner_a(at), 0.0, select(is_inner_b(at), q_else, 0.0));
-    return select(crossed, (p - c * q) * inverse, of_a) * u_a + select(crossed, (q - c * p) * inverse, of_b) * u_b;
+    return select(crossed, (p - at.c * q) * inverse, of_a) * u_a +
+           select(crossed, (q - at.c * p) * inverse, of_b) * u_b;
   }
 
   /// Returns the unit vector along `between`, of this length. Where inner points are closest it is across the axis;
@@ -178,12 +178,9 @@ struct RodPairOf : RodSpin<Vector, kSpin> {
   }
   [[gnu::always_inline]] auto are_crossed(const RodPointsOf<Real>& at) const {
     constexpr double kParallel = 1e-12;  // with a smaller squared sine only one rod's axis is followed
-    const Real c = u_a.dot(u_b);
-    const Vector across = u_a - c * u_b;
     const auto inner_a = is_inner_a(at);
     const auto inner_b = is_inner_b(at);
-    const auto skew = across.squaredNorm() > kParallel;
-    return inner_a & inner_b & skew;
+    return inner_a & inner_b & (at.sine2 > kParallel);
   }
 };
 

@@ -115,7 +115,7 @@ TEST(RoundDistance, OfNearlyAlignedBodiesIsCertified) {
   EXPECT_LE(wide * 1000, pairs);
 }
 
-/// No normal has a gap that the error bound excludes, and the points are those of the translation.
+/// Expects no normal with a gap that the error bound excludes, and points that are those of the translation.
 TEST(RoundDistance, OfOverlapsIsBounded) {
   Random random(2);
   int answers = 0;
