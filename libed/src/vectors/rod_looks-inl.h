@@ -84,7 +84,9 @@ HWY_INLINE void second_pass(RodPairs<kSpin>& p, int pairs, LookOutput& out, int 
   const Real speed = sqrt(rods.v.squaredNorm()) + p.bending;
   const Real unit = p.reach / speed;
   const Real gp = rods.between_rate(points).dot(p.n);
-  const Real tau = rod_step(rods, points, distance, p.n, sample.g, Real(0.0), p.hidden, p.reach, speed, horizon);
+  const auto enough = [&](Real step) { return step >= horizon; };
+  const Real tau =
+      rod_step(rods, points, distance, p.n, sample.g, Real(0.0), p.hidden, p.reach, speed, horizon, enough);
   const Lanes to_the_end = usable & (tau >= horizon);
   // Worth refining, or a step that may have to be made longer: left open.
   const Lanes approach = gp < 0;

@@ -1,6 +1,6 @@
 #pragma once
 
-/// What descents to the closest features of two cores share: their bounds, and their last simplex.
+/// Base of the descents to the closest features of two cores: bounds, and the last simplex.
 
 #include "cores/contact.h"
 #include "cores/placed_core.h"

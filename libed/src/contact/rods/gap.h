@@ -126,10 +126,12 @@ class RodGap : private PairGapBase<Rod, AxisMotion> {
   }
   bool settled(const Evaluation& e) const { return e.step2 == 0; }
 
-  double certified_step(const State& s, const Evaluation& e, const Vector& n, double g, double /*gp*/,
+  double certified_step(const State& s, const Evaluation& e, const Vector& n, double g, double gp,
                         double horizon) const {
-    return rod_step<double, Vector, kSpin>(s, e.points, e.distance, n, g, lift(s, e, g), s.rounding, size(), speed_,
-                                           horizon, curvature_share_);
+    // A step after which Newton's method is tried is long enough.
+    const auto enough = [&](double tau) { return tau >= horizon || (gp < 0 && worth_refining(gp, -g / gp - tau)); };
+    return rod_step(static_cast<const Pair&>(s), e.points, e.distance, n, g, lift(s, e, g), s.rounding, size(), speed_,
+                    horizon, enough, curvature_share_);
   }
 
   double least_step(const State& s, const Evaluation& e, const Vector& n, bool touching, double tau) const {
@@ -138,7 +140,7 @@ class RodGap : private PairGapBase<Rod, AxisMotion> {
     return longest_clear_step(touching ? kTouching * unit : tau, unit, [&](double trial) {
       return any_choice(s, e, n, 1, [&](const Turn& choice) {
         // g of bodies that touch is not known: it may fall by what rounding hides.
-        const double hidden = s.rounding.gap + trial * choice.hidden_rate;
+        const double hidden = s.rounding.gap + trial * choice.hidden_rate();
         return choice.stays_above(touching ? -hidden : s.rounding.gap, trial);
       });
     });

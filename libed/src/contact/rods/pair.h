@@ -186,74 +186,65 @@ struct RodPairOf : RodSpin<Vector, kSpin> {
 
 /// The four parabolas for a normal n that turns at the rate dn.
 template <class Real, class Vector, bool kSpin>
-struct RodTurnOf {
-  const RodPairOf<Real, Vector, kSpin>& pair;
-  Real hidden_gap, hidden_rate;  ///< bounds of what rounding hides of each
-  Real along, x_a, x_b;          ///< n.r and n.u of both axes
-  Real rate, dx_a, dx_b;         ///< f' and x'
-  Real bend, ddx_a, ddx_b;       ///< f'' and x''
-  Real W;
-  Real distance, speed;  ///< |r| and |v|
-  double share;          ///< share of K that is taken; tests take less than 1, to see that contacts are missed then
-
+class RodTurnOf {
+ public:
   /// `direction`: 1, or -1 backwards in time, where velocities change their signs and accelerations do not. `size`:
-  /// sum of the bounding radii.
+  /// sum of the bounding radii. `share`: share of K that is taken; tests take less than 1, to see that contacts are
+  /// missed then.
   [[gnu::always_inline]] RodTurnOf(const RodPairOf<Real, Vector, kSpin>& rods, const Vector& n, const Vector& dn,
-                                   const RoundingOf<Real>& rounding, Real size, double direction = 1,
-                                   double share_of_K = 1)
-      : pair(rods), along(n.dot(rods.r)), x_a(n.dot(rods.u_a)), x_b(n.dot(rods.u_b)), share(share_of_K) {
+                                   const RoundingOf<Real>& rounding, Real size, double direction = 1, double share = 1)
+      : share_(share), hidden_gap_(rounding.gap) {
     using std::sqrt;
     const Real W2 = dn.squaredNorm();
-    W = sqrt(W2);
-    distance = sqrt(rods.r.squaredNorm());
-    speed = sqrt(rods.v.squaredNorm());
-    hidden_gap = rounding.gap;
+    W_ = sqrt(W2);
+    speed_ = sqrt(rods.v.squaredNorm());
+    distance_ = sqrt(rods.r.squaredNorm());
     // dn is a choice, made across n but for rounding; r and the axes are known as they are for the gap.
-    hidden_rate = rounding.rate + W * (rounding.gap + (64 * kRoundoff) * size);
-    rate = direction * (dn.dot(rods.r) + n.dot(rods.v));
-    dx_a = direction * (dn.dot(rods.u_a) + n.dot(rods.du_a));
-    dx_b = direction * (dn.dot(rods.u_b) + n.dot(rods.du_b));
+    hidden_rate_ = rounding.rate + W_ * (rounding.gap + (64 * kRoundoff) * size);
+    const Real both_a = W_ + rods.rate_a;
+    const Real both_b = W_ + rods.rate_b;
+    const Real second_a = rods.a * (both_a * both_a);
+    const Real second_b = rods.b * (both_b * both_b);
+    second_ = second_a + second_b;
+    third_ = second_a * both_a + second_b * both_b;
+
+    const Real along = n.dot(rods.r);
+    const Real x_a = n.dot(rods.u_a);
+    const Real x_b = n.dot(rods.u_b);
+    const Real rate = direction * (dn.dot(rods.r) + n.dot(rods.v));
+    const Real dx_a = direction * (dn.dot(rods.u_a) + n.dot(rods.du_a));
+    const Real dx_b = direction * (dn.dot(rods.u_b) + n.dot(rods.du_b));
     Real swing_a = x_a;
     Real swing_b = x_b;
     if constexpr (kSpin) {
       swing_a = x_a - n.dot(rods.e0_a);
       swing_b = x_b - n.dot(rods.e0_b);
     }
-    bend = 2 * dn.dot(rods.v) - W2 * along;
-    ddx_a = 2 * dn.dot(rods.du_a) - (W2 * x_a + (rods.rate_a * rods.rate_a) * swing_a);
-    ddx_b = 2 * dn.dot(rods.du_b) - (W2 * x_b + (rods.rate_b * rods.rate_b) * swing_b);
-  }
-
-  /// Calls f(value, rate, K) for each parabola over [0, reach].
-  template <class F>
-  [[gnu::always_inline]] void each(Real reach, const F& f) const {
-    const Real far = W * (distance + speed * reach);
-    const Real both_a = W + pair.rate_a;
-    const Real both_b = W + pair.rate_b;
-    const Real second_a = pair.a * (both_a * both_a);
-    const Real second_b = pair.b * (both_b * both_b);
-    const Real third = W * (W * (far + 3 * speed)) + (second_a * both_a + second_b * both_b);
-    const Real crude = W * (far + 2 * speed) + (second_a + second_b);
-    const Real ahead = third * ((1.0 / 3) * reach);
-    const Real more = kCurvatureRounding * crude;
+    const Real bend = 2 * dn.dot(rods.v) - W2 * along;
+    const Real ddx_a = 2 * dn.dot(rods.du_a) - (W2 * x_a + (rods.rate_a * rods.rate_a) * swing_a);
+    const Real ddx_b = 2 * dn.dot(rods.du_b) - (W2 * x_b + (rods.rate_b * rods.rate_b) * swing_b);
+    int k = 0;
     for (const double s : {1.0, -1.0}) {
       for (const double t : {1.0, -1.0}) {
-        const Real a = s * pair.a;
-        const Real b = t * pair.b;
-        const Real value = (along - (a * x_a + b * x_b)) - pair.balls;
-        const Real K = smaller(crude, ((a * ddx_a + b * ddx_b) - bend) + ahead);
-        f(value, rate - (a * dx_a + b * dx_b), share * (K + more));
+        const Real a = s * rods.a;
+        const Real b = t * rods.b;
+        value_[k] = (along - (a * x_a + b * x_b)) - rods.balls;
+        slope_[k] = rate - (a * dx_a + b * dx_b);
+        bend_[k] = (a * ddx_a + b * ddx_b) - bend;
+        ++k;
       }
     }
   }
+
+  Real hidden_rate() const { return hidden_rate_; }  ///< bound of what rounding hides of the rate
 
   /// Returns a time, at most `reach`, up to which there is certainly no contact. `lift`: what is added to g, which may
   /// be below 0 by rounding if the bodies touch.
   [[gnu::always_inline]] Real step(Real reach, Real lift) const {
     Real tau = reach;
     each(reach, [&](Real value, Real slope, Real K) {
-      const Real least = larger(Real(0.0), (value + lift) - hidden_gap);
-      const Real least_slope = slope - hidden_rate;
+      const Real least = larger(Real(0.0), (value + lift) - hidden_gap_);
+      const Real least_slope = slope - hidden_rate_;
       // A concave function that is positive at both ends has no root between.
       const auto stays = least + reach * (least_slope - 0.5 * larger(Real(0.0), K) * reach) > 0;
       if (!all(stays)) tau = select(stays, tau, smaller(tau, first_root(least, least_slope, K)));
@@ -266,26 +257,46 @@ struct RodTurnOf {
   [[gnu::always_inline]] bool stays_above(Real least, Real tau) const {
     bool above = true;
     each(tau, [&](Real value, Real slope, Real K) {
-      above = above && value + tau * (slope - hidden_rate) - (0.5 * tau * tau) * larger(Real(0.0), K) > least;
+      above = above && value + tau * (slope - hidden_rate_) - (0.5 * tau * tau) * larger(Real(0.0), K) > least;
     });
     return above;
   }
+
+ private:
+  /// Calls f(value, rate, K) for each parabola over [0, reach].
+  template <class F>
+  [[gnu::always_inline]] void each(Real reach, const F& f) const {
+    const Real far = W_ * (distance_ + speed_ * reach);
+    const Real third = W_ * (W_ * (far + 3 * speed_)) + third_;
+    const Real crude = W_ * (far + 2 * speed_) + second_;
+    const Real ahead = third * ((1.0 / 3) * reach);
+    const Real more = kCurvatureRounding * crude;
+    for (int k = 0; k < 4; ++k) f(value_[k], slope_[k], share_ * (smaller(crude, bend_[k] + ahead) + more));
+  }
+
+  double share_;
+  Real hidden_gap_, hidden_rate_;
+  Real W_;
+  Real distance_, speed_;               ///< |r| and |v|
+  Real second_, third_;                 ///< bounds of the second and third derivatives of both rods' heights
+  Real value_[4], slope_[4], bend_[4];  ///< g, g' and -g'' of each choice of ends
 };
 
 /// Returns a time, at most `horizon`, up to which there is certainly no contact of rods with the closest points `at`,
-/// `distance` apart along n, whose gap is g and which move at `speed` at most.
-template <class Real, class Vector, bool kSpin>
+/// `distance` apart along n, whose gap is g and which move at `speed` at most. A step
+/// that is enough(step) is not made longer.
+template <class Real, class Vector, bool kSpin, class Enough>
 [[gnu::always_inline]] inline Real rod_step(const RodPairOf<Real, Vector, kSpin>& pair, const RodPointsOf<Real>& at,
                                             Real distance, const Vector& n, Real g, Real lift,
                                             const RoundingOf<Real>& hidden, Real size, Real speed, Real horizon,
-                                            double share = 1) {
+                                            const Enough& enough, double share = 1) {
   const auto step_of = [&](const Vector& dn) {
     const RodTurnOf<Real, Vector, kSpin> turn(pair, n, dn, hidden, size, 1, share);
     return longest_step(horizon, [&](Real reach) { return turn.step(reach, lift); });
   };
   const Real certain = smaller(horizon, larger(Real(0.0), g - hidden.gap) / speed);
   const Real with_points = larger(certain, step_of(pair.turning(at, distance, n)));
-  if (all(with_points >= horizon)) return with_points;
+  if (all(enough(with_points))) return with_points;
   return larger(with_points, step_of(Real(0.0) * n));
 }
 
