@@ -84,16 +84,18 @@ HWY_INLINE void second_pass(RodPairs<kSpin>& p, int pairs, LookOutput& out, int 
   const Real speed = sqrt(rods.v.squaredNorm()) + p.bending;
   const Real unit = p.reach / speed;
   const Real gp = rods.between_rate(points).dot(p.n);
-  const auto enough = [&](Real step) { return step >= horizon; };
+  const Lanes approach = gp < 0;
+  const auto worth_refining = [&](Real step) {
+    return approach & ((-sample.g / gp - step) <= kTangentAgreement * unit);
+  };
+  const auto enough = [&](Real step) { return (step >= horizon) | worth_refining(step); };
   const Real tau =
       rod_step(rods, points, distance, p.n, sample.g, Real(0.0), p.hidden, p.reach, speed, horizon, enough);
   const Lanes to_the_end = usable & (tau >= horizon);
   // Worth refining, or a step that may have to be made longer: left open.
-  const Lanes approach = gp < 0;
-  const Lanes worth_refining = approach & ((-sample.g / gp - tau) <= kTangentAgreement * unit);
   const Lanes too_short = !approach & (tau <= kShortStep * unit);
   const Real until = p.t + tau;
-  const Lanes bound = usable & !to_the_end & !worth_refining & !too_short & (until > p.t);
+  const Lanes bound = usable & !to_the_end & !worth_refining(tau) & !too_short & (until > p.t);
   const Lanes clear = clear_at_once | to_the_end | (bound & !(until < p.end));
   SecondLook{clear, bound, until, 2, p.n}.store_in(out, lane);
 }

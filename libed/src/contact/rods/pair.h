@@ -296,8 +296,9 @@ template <class Real, class Vector, bool kSpin, class Enough>
   };
   const Real certain = smaller(horizon, larger(Real(0.0), g - hidden.gap) / speed);
   const Real with_points = larger(certain, step_of(pair.turning(at, distance, n)));
-  if (all(enough(with_points))) return with_points;
-  return larger(with_points, step_of(Real(0.0) * n));
+  const auto satisfied = enough(with_points);
+  if (all(satisfied)) return with_points;
+  return select(satisfied, with_points, larger(with_points, step_of(Real(0.0) * n)));
 }
 
 }  // namespace ed::internal
