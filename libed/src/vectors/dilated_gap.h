@@ -50,7 +50,7 @@ struct RodEnvelopesOf {
     const Real length2 = between.squaredNorm();
     const auto apart = length2 > 0;
     const Real inverse = select(apart, 1 / sqrt(select(apart, length2, 1.0)), 0.0);
-    const Vector n = inverse * between + select(apart, 0.0, 1.0) * u_a;
+    Vector n = inverse * between + select(apart, 0.0, 1.0) * u_a;
     gap = (n.dot(r) - (a * abs(n.dot(u_a)) + b * abs(n.dot(u_b)))) - balls;
     return n;
   }
