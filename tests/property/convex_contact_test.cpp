@@ -92,6 +92,28 @@ TestBody ellipsoid(Random& random) {
   return test_body("ellipsoid", geom_test::WrappedEllipsoid{s}, s.volume(), s.inertia(1), {{1, 0, 0}, {0, 0, 1}});
 }
 
+std::vector<Vector3d> rim_directions() {
+  return {{0, 0, 1}, {0, 0, -1}, {1, 0, 0}, {1, 0, 1}};
+}
+
+TestBody cylinder(Random& random) {
+  const geom::Cylinder s(random.log_uniform(0.1, 2), random.uniform(0.2, 1));
+  return test_body("cylinder", s, s.volume(), s.inertia(1), rim_directions());
+}
+
+TestBody cone(Random& random) {
+  const geom::Cone s(random.log_uniform(0.3, 3), random.uniform(0.3, 1));
+  std::vector<Vector3d> directions = rim_directions();
+  directions.emplace_back(s.height(), 0, s.radius());  // across the side
+  return test_body("cone", s, s.volume(), s.inertia(1), directions);
+}
+
+TestBody rounded_cylinder(Random& random) {
+  const geom::Cylinder inner(random.log_uniform(0.1, 2), random.uniform(0.2, 1));
+  const geom::Rounded<geom::Cylinder> s(inner, random.log_uniform(0.01, 0.5));
+  return test_body("rounded cylinder", s, s.volume(), s.inertia(1), rim_directions());
+}
+
 TEST(ConvexContact, Spheres) {
   expect_none_missed(search("spheres", sphere, sphere));
 }
@@ -110,6 +132,15 @@ TEST(ConvexContact, RoundedCubes) {
 TEST(ConvexContact, Polyhedra) {
   expect_none_missed(search("polyhedra", polyhedron, polyhedron));
 }
+TEST(ConvexContact, Cylinders) {
+  expect_none_missed(search("cylinders", cylinder, cylinder));
+}
+TEST(ConvexContact, Cones) {
+  expect_none_missed(search("cones", cone, cone));
+}
+TEST(ConvexContact, RoundedCylinders) {
+  expect_none_missed(search("rounded cylinders", rounded_cylinder, rounded_cylinder));
+}
 TEST(ConvexContact, UsersSpherocylinders) {
   expect_none_missed(search("users' spherocylinders", spherocylinder, spherocylinder));
 }
@@ -118,7 +149,8 @@ TEST(ConvexContact, UsersEllipsoids) {
 }
 
 TEST(ConvexContact, MixedKinds) {
-  const std::array<Draw, 8> draws{sphere, capsule, spherocylinder, box, cube, rounded_cube, polyhedron, ellipsoid};
+  const std::array<Draw, 11> draws{sphere,   capsule, spherocylinder,   box,      cube, rounded_cube, polyhedron,
+                                   cylinder, cone,    rounded_cylinder, ellipsoid};
   const auto any = [&](Random& random) {
     return draws[static_cast<std::size_t>(random.uniform() * draws.size())](random);
   };

@@ -83,7 +83,9 @@ std::string missing_text(const std::vector<PrintedEstimate>& observables) {
     }
   }
   std::string text;
-  for (const auto& [names, reason] : reasons) text += (text.empty() ? "" : "; ") + names + ": " + reason;
+  for (const auto& [names, reason] : reasons) {
+    text += fmt::format("{}{}: {}", text.empty() ? "" : "; ", names, reason);
+  }
   return text;
 }
 
@@ -157,6 +159,7 @@ std::string replicas_csv(const std::vector<PointRecord>& records) {
 
 std::string agreement_csv(const std::vector<PooledPoint>& points) {
   std::vector<PointRecord> records;
+  records.reserve(points.size());
   for (const PooledPoint& point : points) records.push_back(point.record);
   const std::vector<std::string> keys = keys_of(records);
   std::string text;

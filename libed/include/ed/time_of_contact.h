@@ -62,11 +62,11 @@ struct [[nodiscard]] ContactResult {
 /// Bodies that rotate many times within each other's reach, like meshing wheels, exhaust the budget.
 ///
 /// Bodies: ellipsoids, superellipsoids whose exponents are within [kMinExponentInMotion, kMaxExponentInMotion],
-/// spheres, capsules, boxes, polyhedra, rounded ones, and a user's own (CustomShape), with any moments of inertia that
-/// a body can have; cylinders and cones too, whose contacts may be 1e-9 of the size deep. Ellipsoids of revolution
-/// about an axis that their moments share are the fast case: about 0.3 microseconds an evaluation instead of one. The
-/// bounds of rounding errors hold for superellipsoids with semi-axes from 1/1000 to 1000 units of length. Throws
-/// std::invalid_argument for values that are not finite, exponents out of range and inertia that no body can have.
+/// spheres, capsules, boxes, polyhedra, cylinders, cones, rounded ones, and a user's own (CustomShape), with any
+/// moments of inertia that a body can have. Ellipsoids of revolution about an axis that their moments share are the
+/// fast case: about 0.3 microseconds an evaluation instead of one. The bounds of rounding errors hold for
+/// superellipsoids with semi-axes from 1/1000 to 1000 units of length. Throws std::invalid_argument for values that are
+/// not finite, exponents out of range and inertia that no body can have.
 ///
 /// `options.finder = Finder::bracketing` searches as the paper does instead, without a certificate; its budget of a
 /// million distances is not an option.

@@ -42,22 +42,6 @@ bool is_of_revolution(const BodyShape& shape, int axis) {
   throw std::invalid_argument(message.str());
 }
 
-/// Throws for cylinders and cones. Their overlaps are certified to 1e-9 of the size only, so that contacts may be
-/// accepted that deep (docs/time-of-contact.md).
-void check_rims(const BodyShape& shape) {
-  const bool rims = std::visit(
-      [](const auto& s) {
-        using Shape = std::decay_t<decltype(s)>;
-        return std::is_same_v<Shape, geom::Cylinder> || std::is_same_v<Shape, geom::Cone> ||
-               std::is_same_v<Shape, geom::Rounded<geom::Cylinder>> || std::is_same_v<Shape, geom::Rounded<geom::Cone>>;
-      },
-      shape);
-  if (!rims) return;
-  throw std::invalid_argument("shape is a " + describe(shape) +
-                              "; accepted in simulations: all shapes but cylinders and cones, whose contacts in "
-                              "motion are certified to 1e-9 of their size only");
-}
-
 /// Returns "I2 + I3 - I1 at most 0.5".
 std::string bound_of_sum(int axis, double most) {
   constexpr std::array<const char*, 3> kSums = {"I2 + I3 - I1", "I3 + I1 - I2", "I1 + I2 - I3"};
@@ -108,7 +92,6 @@ std::optional<int> symmetry_axis(const Species& species) {
 
 void check_species(const Species& species) {
   internal::check_exponents(species.shape);
-  check_rims(species.shape);
   if (!(species.mass > 0) || !std::isfinite(species.mass)) {
     throw std::invalid_argument("mass is not positive; accepted: a positive number");
   }

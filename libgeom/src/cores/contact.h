@@ -33,6 +33,12 @@ inline double bound_of(const CoreContact& c) {
   return c.lower > 0 ? std::max(0.0, gap.norm() - c.lower) : (gap - c.lower * c.n).norm();
 }
 
+/// Returns how far the points of a contact are from being apart along the normal by the gap: more than the bounds tell
+/// where the bodies are far from each other.
+inline double mismatch_of(const CoreContact& c) {
+  return (c.b - c.a - c.lower * c.n).norm();
+}
+
 /// Returns the contact with A and B exchanged, for r = p_AB of the first order.
 inline CoreContact exchanged(const CoreContact& c, const Eigen::Vector3d& r) {
   return {c.b + r, c.a + r, -c.n, c.lower, c.evaluations, c.depth_error};

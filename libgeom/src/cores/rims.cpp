@@ -1,5 +1,7 @@
 #include "cores/rims.h"
 
+#include <geom/distance.h>
+
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -280,13 +282,53 @@ class Slide {
   bool frozen_ = false;  // whether the angles stay
 };
 
+/// Returns the point at the same height, in the direction that the outward normal n has across the axis; the same
+/// point if it is not on the round side of a frustum, or n is too nearly along the axis to tell the direction.
+Vector3d settled(const RoundCore& core, const Vector3d& x, const Vector3d& n) {
+  constexpr double kAcross = 1e-3;
+  constexpr double kNear = 1e-3;
+  if (!core.round()) return x;
+  const Vector3d axis = core.axis();
+  if (!((n - n.dot(axis) * axis).norm() > kAcross)) return x;
+  const Vector3d side = core.middle(1) - core.middle(0) + (core.radius(1) - core.radius(0)) * core.across(n);
+  const CoreVertex rim = core.vertex(n);
+  // Where the side is not across n, the point is on the rim that is furthest along n.
+  if (std::abs(side.dot(n)) > kNear * side.norm()) return (rim.x - x).norm() <= kNear * side.norm() ? rim.x : x;
+  const double height = (x - core.middle(0)).dot(axis);
+  const double share = height / (core.middle(1) - core.middle(0)).dot(axis);
+  const double radius = (1 - share) * core.radius(0) + share * core.radius(1);
+  const Vector3d point = core.middle(0) + height * axis + radius * core.across(n);
+  return (point - x).norm() <= kNear * radius ? point : x;
+}
+
 }  // namespace
+
+double RoundCore::beyond(const Vector3d& x) const {
+  CoreView bare = core_;
+  bare.radius = 0;
+  const Pose X_WP = Pose::translation(x - t_);
+  return core_distance(bare, unchecked_pose(R_, Vector3d::Zero()), {}, X_WP, {}).distance;
+}
 
 bool slide(const RoundCore& a, const RoundCore& b, double size, CoreSimplex& simplex, Vector3d& n, Vector3d& rival) {
   Slide search(a, b, size, simplex, n);
   if (!search.slides() || !search.run(rival)) return false;
   search.take(simplex, n);
   return true;
+}
+
+void settle_points(const RoundCore& a, const RoundCore& b, double size, CoreContact& contact) {
+  constexpr double kStays = 1e-15;
+  const double most = std::max(mismatch_of(contact), kStays * size);
+  const Vector3d point_a = settled(a, contact.a, contact.n);
+  const Vector3d point_b = settled(b, contact.b, -contact.n);
+  const bool moves_a = (point_a - contact.a).norm() > kStays * size;
+  const bool moves_b = (point_b - contact.b).norm() > kStays * size;
+  CoreContact moved = contact;
+  moved.a = moves_b && !moves_a ? Vector3d(point_b - contact.lower * contact.n) : point_a;
+  moved.b = moves_a && !moves_b ? Vector3d(point_a + contact.lower * contact.n) : point_b;
+  if (!moves_a && !moves_b) return;
+  if (mismatch_of(moved) <= most && a.beyond(moved.a) <= most && b.beyond(moved.b) <= most) contact = moved;
 }
 
 }  // namespace geom::kernel

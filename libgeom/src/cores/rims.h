@@ -2,6 +2,7 @@
 
 /// Frusta and polytopes in the world's directions, and the closest points of features that slide along rims.
 
+#include "cores/contact.h"
 #include "cores/placed_core.h"
 
 #include <geom/kernel/core.h>
@@ -48,6 +49,8 @@ class RoundCore {
     const double length = std::hypot(x, y);
     return length > 0 ? Eigen::Vector3d((x * R_.col(0) + y * R_.col(1)) / length) : Eigen::Vector3d(R_.col(0));
   }
+  /// Returns how far a point is beyond the surface, negative inside.
+  double beyond(const Eigen::Vector3d& x) const;
   /// Returns a translated copy.
   RoundCore moved(const Eigen::Vector3d& by) const { return {core_, R_, t_ + by}; }
 
@@ -72,5 +75,12 @@ class RoundCore {
 /// the normal with that vertex.
 bool slide(const RoundCore& a, const RoundCore& b, double size, CoreSimplex& simplex, Eigen::Vector3d& n,
            Eigen::Vector3d& rival);
+
+/// Moves points on rims and round sides to where the normal has them.
+///
+/// The bounds of a contact hardly change while a point slides along a rim whose tangent is across the normal: they
+/// leave an error of the square root of rounding in it, but the normal, which is known to rounding, tells where it is.
+/// The other body's point follows it if it is free to.
+void settle_points(const RoundCore& a, const RoundCore& b, double size, CoreContact& contact);
 
 }  // namespace geom::kernel

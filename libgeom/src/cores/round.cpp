@@ -1,10 +1,21 @@
 #include "cores/contact.h"
 #include "cores/descent.h"
 #include "cores/rims.h"
+#include "cores/shallow.h"
 
 #include <geom/distance.h>
 #include <geom/kernel/core_simplex.h>
 #include <geom/kernel/distance_impl.h>
+#include <geom/tolerances.h>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <utility>
 
 namespace geom::kernel {
 namespace {
@@ -85,12 +96,6 @@ class RoundDescent : public CoreDescent<RoundCore> {
   bool rival_ = false;  // whether the last slide left out a vertex that may belong to the answer
 };
 
-/// Returns how far the points of a contact are from being apart along the normal by the gap: more than the bounds tell
-/// where the bodies are far from each other.
-double mismatch_of(const CoreContact& c) {
-  return (c.b - c.a - c.lower * c.n).norm();
-}
-
 /// Mismatch, in units of the size, that is rounding.
 constexpr double kAgreement = 4e-15;
 
@@ -126,13 +131,20 @@ CoreContact slid_back(const RoundCore& a, const RoundCore& b, double size, CoreS
 /// their closest points is accurate to rounding (the proximal point method for the largest gap between tangent planes).
 /// Of curved features the normals converge slowly, but lead to one from where a descent finds the answer.
 void improve(const RoundCore& a, const RoundCore& b, double size, double bound, CoreContact& contact) {
-  constexpr int kMostMoves = 12;
+  constexpr int kMostMoves = 24;
+  constexpr double kSlow = 0.7;
+  constexpr double kLoss = 1e-5;
+  constexpr double kNear = 1e-8;
   Vector3d n = contact.n;
   double lower = contact.lower;
+  double distance = 0.5 * size;
+  double last = std::numeric_limits<double>::infinity();
   const auto take = [&](CoreContact next) {
     const double mismatch = mismatch_of(next);
     contact.evaluations += next.evaluations;
-    if (next.lower < contact.lower - kCoreRounding * size) return false;
+    // Points that match much better are worth a little of the gap.
+    const double loss = std::max(kCoreRounding * size, std::isfinite(bound) ? kLoss * (bound - mismatch) : 0.0);
+    if (next.lower < contact.lower - loss) return false;
     if (!(mismatch < bound) && !(next.lower > contact.lower + kCoreRounding * size)) return false;
     next.evaluations = contact.evaluations;
     contact = next;
@@ -140,7 +152,7 @@ void improve(const RoundCore& a, const RoundCore& b, double size, double bound, 
     return true;
   };
   for (int move = 0; move < kMostMoves; ++move) {
-    const Vector3d way = (0.5 * size - lower) * n;
+    const Vector3d way = (distance - lower) * n;
     const RoundCore moved = b.moved(way);
     RoundDescent descent(a, moved, 2 * size);
     if (!descent.run(n)) return;
@@ -148,6 +160,10 @@ void improve(const RoundCore& a, const RoundCore& b, double size, double bound, 
     CoreContact far = descent.contact();
     far.b -= way;
     far.lower = far.n.dot(difference_vertex(a, b, far.n).p);
+    const double missing = mismatch_of(far);
+    const bool slow = missing > kSlow * last && missing > kAgreement * size;
+    if (slow) distance = std::max({0.1 * distance, 10 * -lower, kNear * size});
+    last = missing;
     const bool turned = (far.n - n).squaredNorm() > kCoreRounding * kCoreRounding;
     if (far.lower >= lower - kCoreRounding * size) {
       n = far.n;
@@ -155,13 +171,14 @@ void improve(const RoundCore& a, const RoundCore& b, double size, double bound, 
     }
     bool better = take(far);
     better = take(slid_back(a, b, size, descent.simplex(), way, far)) || better;
-    if (apart_or_touching(contact, size) && bound <= kAgreement * size) return;
+    const bool best = apart_or_touching(contact, size) || !(lower > contact.lower + kCoreRounding * size);
+    if (best && bound <= kAgreement * size) return;
     if (lower > 0) {
       RoundDescent again(a, b, size);
       if (again.run(n) && again.contact().lower > 0) (void)take(again.contact());
       if (bound <= kAgreement * size) return;
     }
-    if (!better && !turned) return;
+    if (!better && !turned && !slow) return;
   }
 }
 
@@ -205,6 +222,14 @@ bool face_contact(const RoundCore& a, const RoundCore& b, double size, CoreConta
 /// the answer, as it mostly is of shallow overlaps; the search then only bounds the gaps of other normals.
 CoreContact overlapping(const CoreView& core_a, const RoundCore& a, const Matrix3d& R_WA, const CoreView& core_b,
                         const RoundCore& b, const Matrix3d& R_WB, double size, const CoreContact& near) {
+  const bool matches = near.lower < 0 && mismatch_of(near) <= kBoundGap * size;
+  const double certain = matches ? certain_depth(a, b, size, near) : 0;
+  // So shallow that no other normal tells more than the search could.
+  if (matches && -near.lower - certain <= kDepthGap * size) {
+    CoreContact contact = near;
+    contact.depth_error = std::max(-near.lower - certain, kCoreRounding * size);
+    return contact;
+  }
   const CoreBody body_a = CoreBody(core_a, 0).bare();
   const CoreBody body_b = CoreBody(core_b, 0).bare();
   const Vector3d r = b.origin() - a.origin();
@@ -216,9 +241,10 @@ CoreContact overlapping(const CoreView& core_a, const RoundCore& a, const Matrix
   if (found.status == DistanceStatus::not_converged) return contact;
   contact.n = found.normal;
   contact.lower = found.normal.dot(difference_vertex(a, b, found.normal).p);
-  const double most = found.distance + found.error_bound;
+  double most = found.distance + found.error_bound;
   if (mismatch_of(near) <= kAgreement * size && near.lower >= contact.lower - kCoreRounding * size) {
     contact = near;
+    if (matches) most = std::min(most, -certain);
     contact.evaluations = found.iterations;
   } else {
     improve(a, b, size, std::numeric_limits<double>::infinity(), contact);
@@ -305,8 +331,11 @@ CoreContact round_contact(const CoreView& a, const Matrix3d& R_WA, const CoreVie
   CoreContact contact = descent.contact();
   const double bound = apart && contact.lower > 0 ? mismatch_of(contact) : std::numeric_limits<double>::infinity();
   if (!descent.closed() || !(bound <= kAgreement * size)) improve(placed_a, placed_b, size, bound, contact);
-  if (apart_or_touching(contact, size) && bound_of(contact) <= kBoundGap * size) return contact;
-  return overlapping(a, placed_a, R_WA, b, placed_b, R_WB, size, contact);
+  if (!apart_or_touching(contact, size) || !(bound_of(contact) <= kBoundGap * size)) {
+    contact = overlapping(a, placed_a, R_WA, b, placed_b, R_WB, size, contact);
+  }
+  settle_points(placed_a, placed_b, size, contact);
+  return contact;
 }
 
 }  // namespace geom::kernel

@@ -41,8 +41,10 @@ struct ConvexBody {
     return core && (core->kind == geom::kernel::CoreKind::point || core->kind == geom::kernel::CoreKind::segment);
   }
 
+  /// Returns whether the core is a cylinder or cone.
+  bool rims() const { return core && core->kind == geom::kernel::CoreKind::frustum; }
   /// Returns whether the core is known to be a polytope.
-  bool polytope() const { return core && core->kind != geom::kernel::CoreKind::frustum; }
+  bool polytope() const { return core && !rims(); }
 
   BodyShape shape;
   std::optional<geom::kernel::CoreView> core;  ///< core that the ball is swept over, if the shape has one

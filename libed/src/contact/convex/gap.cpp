@@ -19,6 +19,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kNoBound = std::numeric_limits<double>::infinity();
+constexpr double kEqual = 1e-14;  // bounds of the gap, or points and the gap, differ by rounding, in units of the size
 
 }  // namespace
 
@@ -81,8 +82,11 @@ bool ConvexGap::take(const State& s, const geom::DistanceResult& d, Vector3d& n,
   if (!is_answer(d)) return false;
   n = d.normal;
   e.g = sample(s, n).g;
-  // The distance is between g and g + error_bound: bodies that may only touch do not overlap.
-  if (e.g < 0) e.g = std::min(0.0, e.g + d.error_bound);
+  // The distance is between g and g + error_bound: bodies that may only touch do not overlap. If the points belong to
+  // the normal, the bound only says that another normal may have a larger gap; Newton's method is led by this one.
+  const double rounding = std::max(d.residual, kEqual * size());
+  const double hidden = d.residual <= kOverlap * size() ? std::min(d.error_bound, rounding) : d.error_bound;
+  if (e.g < 0) e.g = std::min(0.0, e.g + hidden);
   e.decrement = 0;
   e.step2 = 0;
   e.step.setZero();
@@ -104,7 +108,6 @@ geom::DistanceResult ConvexGap::ask(const State& s, const geom::DistanceOptions&
 /// closest points: moved apart along it by about their size they have the same closest features. False if the bounds
 /// of the gap are not made equal by that.
 bool ConvexGap::solve_by_features(const State& s, Vector3d& n, Evaluation& e) const {
-  constexpr double kEqual = 1e-14;
   if (A_.own_distance || B_.own_distance) return false;
   Vector3d normal = n;
   for (int move = 0; move < 3; ++move) {

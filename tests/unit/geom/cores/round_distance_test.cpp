@@ -11,6 +11,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <numbers>
@@ -145,6 +146,81 @@ TEST(RoundDistance, OfOverlapsIsBounded) {
     if (HasFatalFailure()) return;
   }
   EXPECT_GE(answers * 50, repetitions(300) * 49);  // others are declined
+}
+
+/// Faces that meet a rim, and sides across each other, at gaps down to rounding: bounds alone would leave the point
+/// where they touch an error of the square root of rounding.
+TEST(RoundDistance, PointsOnRimsAreKnownToRounding) {
+  Random random(4);
+  double worst = 0;
+  for (int i = 0; i < repetitions(2000); ++i) {
+    const Cylinder base(random.uniform(0.2, 1), random.uniform(0.5, 1));
+    const RoundPartner top = random_partner(static_cast<std::size_t>(i % 2), random);
+    std::visit(
+        [&](const auto& s) {
+          if constexpr (requires {
+                          s.radius();
+                          s.volume();
+                        }) {
+            // The point of `top` that is furthest down is above the face of `base`.
+            const double tilt = random.uniform(0.1, 1.4);
+            const Matrix3d R = Eigen::AngleAxisd(random.uniform(0, 6), Vector3d::UnitZ()).toRotationMatrix() *
+                               Eigen::AngleAxisd(tilt, Vector3d::UnitX()).toRotationMatrix();
+            const Vector3d down = -Vector3d::UnitZ();
+            const Vector3d lowest = R * s.support(R.transpose() * down).point;
+            const double gap = random.coin() ? random.uniform(-1e-15, 1e-15) : random.log_uniform(1e-15, 1e-9);
+            const Vector3d above(0.3 * base.radius(), 0, base.half_length() + gap);
+            const Vector3d start = Vector3d::UnitZ() + random.log_uniform(1e-16, 1e-2) * random.direction();
+            const Pose X_WA = random.pose(1.0);
+            const Pose X_WB(X_WA.rotation() * R, X_WA.position() + X_WA.rotation() * (above - lowest));
+            const DistanceResult r = distance(base, X_WA, s, X_WB, {.start = X_WA.rotation() * start});
+            ASSERT_NE(r.status, DistanceStatus::not_converged) << i;
+            const double size = lowest.norm() + base.bounding_radius() + s.bounding_radius();
+            worst = std::max(worst, (X_WA.to_body(r.point_b) - above).norm() / size);
+          }
+        },
+        top);
+    if (HasFatalFailure()) return;
+  }
+  std::printf("points are off by %.1e of the size at most\n", worst);
+  EXPECT_LE(worst, 1e-12);
+}
+
+/// Bodies that touch at one of the aligned or drawn contacts, moved into each other along its normal: the overlap is
+/// proved, however shallow, and no other normal has a gap that the bound excludes.
+TEST(RoundDistance, OfShallowOverlapsIsProved) {
+  Random random(3);
+  long pairs = 0, unproved = 0;
+  for (int i = 0; i < repetitions(3000); ++i) {
+    const RoundPartner a = random_partner(static_cast<std::size_t>(i % 2), random);
+    const RoundPartner b = random_partner(static_cast<std::size_t>(i / 2 % 5), random);
+    std::visit(
+        [&](const auto& s, const auto& t) {
+          const Pose X_WA = random.pose(1.0);
+          const double radii = s.bounding_radius() + t.bounding_radius();
+          const Pose far = random.pose(Vector3d(X_WA.position() + 1.5 * radii * random.direction()));
+          const DistanceResult apart = distance(s, X_WA, t, far);
+          ASSERT_EQ(apart.status, DistanceStatus::separated) << i;
+          const double depth = radii * random.log_uniform(1e-11, 1e-7);
+          const Pose X_WB(far.rotation(), far.position() - (apart.distance + depth) * apart.normal);
+          const DistanceResult r = distance(s, X_WA, t, X_WB);
+          const double size = (X_WB.position() - X_WA.position()).norm() + radii;
+          if (r.status == DistanceStatus::separated) return;  // sharp features have gaps along other normals
+          ASSERT_EQ(r.status, DistanceStatus::overlapping) << i;
+          ASSERT_GE(r.distance, -depth - 1e-14 * size) << i;
+          ASSERT_LE(r.error_bound, 1e-9 * size) << i;
+          ++pairs;
+          unproved += r.distance + r.error_bound < -1e-4 * depth ? 0 : 1;
+          for (int k = 0; k < 100; ++k) {
+            const double gap = lower_bound(s, X_WA, t, X_WB, random.direction());
+            ASSERT_LE(gap, r.distance + r.error_bound + 1e-14 * size) << i;
+          }
+        },
+        a, b);
+    if (HasFatalFailure()) return;
+  }
+  std::printf("%ld of %ld overlaps are not proved\n", unproved, pairs);
+  EXPECT_LE(unproved * 20, pairs);
 }
 
 }  // namespace
