@@ -30,6 +30,10 @@ SHAPES = {
     "dodecahedron": 'kind = "polyhedron"\nsolid = "dodecahedron"\n',
     "pyramid": f'kind = "polyhedron"\nvertices = {CORNERS}\n',
     "rounded octahedron": 'kind = "polyhedron"\nsolid = "octahedron"\nrounding = 0.2\n',
+    "cylinder": 'kind = "cylinder"\nlength = 2\ndiameter = 1\n',
+    "rounded disc": 'kind = "cylinder"\nlength = 0.5\ndiameter = 1\nrounding = 0.125\n',
+    "cone": 'kind = "cone"\nlength = 1\ndiameter = 1\n',
+    "rounded cone": 'kind = "cone"\nlength = 1\ndiameter = 1\nrounding = 0.25\n',
 }
 
 RUN = """seed = 3
@@ -113,16 +117,20 @@ class KindsRun(KindsCase):
             "sphere": lambda s: 4 / 3 * math.pi * s["radius"] ** 3,
             "capsule": lambda s: math.pi * s["radius"] ** 2 * (2 * s["half_length"] + 4 / 3 * s["radius"]),
             "box": lambda s: 8 * math.prod(s["half_extents"]),
+            "cylinder": lambda s: 2 * math.pi * s["radius"] ** 2 * s["half_length"],
+            "cone": lambda s: math.pi / 3 * s["radius"] ** 2 * s["height"],
         }
-        for name in ["sphere", "capsule", "box"]:
+        for name in ["sphere", "capsule", "box", "cylinder", "cone"]:
             self.write("run.toml", config(SHAPES[name], time=0))
             self.run_config("run.toml", name)
             shape = self.summary(name)["state"]["shape"]
             self.assertAlmostEqual(volume[name](shape), 4 / 3 * math.pi, 12)
-            self.assertAlmostEqual({"sphere": 1, "capsule": 2 * 0.5, "box": 3}[name], {
+            self.assertAlmostEqual({"sphere": 1, "capsule": 2 * 0.5, "box": 3, "cylinder": 2, "cone": 2}[name], {
                 "sphere": lambda s: s["radius"],
                 "capsule": lambda s: s["half_length"] / 2 / s["radius"],
                 "box": lambda s: s["half_extents"][2] / s["half_extents"][0],
+                "cylinder": lambda s: s["half_length"] / s["radius"],
+                "cone": lambda s: s["height"] / s["radius"],
             }[name](shape), 12)
 
     def test_only_ratios_count(self):
@@ -165,6 +173,7 @@ class KindsRun(KindsCase):
     def test_lattices(self):
         """Aligned cubes fill space, and capsules stand on fcc."""
         for name, shape, lattice, number, phi in [
+            ("cylinders", SHAPES["cylinder"], "fcc", 108, 0.3),
             ("cubes", 'kind = "box"\nedges = [1, 1, 1]\n', "cubic", 64, 0.9),
             ("capsules", SHAPES["capsule"], "fcc", 108, 0.3),
         ]:
@@ -217,7 +226,7 @@ class KindsRun(KindsCase):
 class KindsContinue(KindsCase, Restart):
     def test_killed_and_resumed(self):
         """The bytes of an undisturbed run, files of frames too."""
-        shapes = [(SHAPES["capsule"], 20), (SHAPES["pyramid"], 4), (MIXTURE, 4)]
+        shapes = [(SHAPES["capsule"], 20), (SHAPES["pyramid"], 4), (SHAPES["cone"], 1), (MIXTURE, 4)]
         for shape, time_of_production in shapes:
             text = config(shape, time_of_production, '["gsd", "lammps", "vtk"]').replace("[output]\n", f"[output]\n{OFTEN}\n")
             seconds = self.undisturbed("reference", text)
@@ -293,6 +302,14 @@ class KindsFiles(KindsCase):
         self.assertAlmostEqual(box["rounding_radius"] / box["vertices"][-1][0], 0.2, 12)
         pyramid = shape("pyramid")
         self.assertEqual((len(pyramid["vertices"]), pyramid["rounding_radius"]), (5, 0))
+        # Cylinders and cones nearly: with vertices on their rims.
+        disc = shape("rounded disc")
+        self.assertEqual((disc["type"], len(disc["vertices"])), ("ConvexPolyhedron", 96))
+        radii = numpy.linalg.norm(numpy.array(disc["vertices"])[:, :2], axis=1)
+        numpy.testing.assert_allclose(disc["rounding_radius"] / radii, 0.25, rtol=1e-12)
+        cone = numpy.array(shape("cone")["vertices"])
+        self.assertEqual(len(cone), 49)
+        self.assertAlmostEqual(cone[-1, 2] / cone[0, 2], -3, 12)
 
     def test_own_files_are_read_to_the_bit(self):
         for k, (name, shape) in enumerate(list(SHAPES.items()) + [("mixture", MIXTURE)]):
@@ -316,7 +333,9 @@ class KindsFiles(KindsCase):
                     numpy.testing.assert_array_equal(a[-1].log["hardbody/species"], b[0].log["hardbody/species"])
 
     def test_check_and_analyze(self):
-        for k, (name, shape) in enumerate([("capsule", SHAPES["capsule"]), ("pyramid", SHAPES["pyramid"]), ("mixture", MIXTURE)]):
+        for k, (name, shape) in enumerate([
+            ("capsule", SHAPES["capsule"]), ("pyramid", SHAPES["pyramid"]), ("cone", SHAPES["rounded cone"]), ("mixture", MIXTURE)
+        ]):
             with self.subTest(name):
                 self.make(shape, f"out{k}")
                 result = self.hardbody("check", f"out{k}/trajectory.gsd")
@@ -468,17 +487,19 @@ class KindsRefused(KindsCase):
         capsule = 'kind = "capsule"\n'
         box = 'kind = "box"\n'
         hull = 'kind = "polyhedron"\n'
+        cylinder = 'kind = "cylinder"\n'
+        cone = 'kind = "cone"\n'
         square = "[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]"
         tetrahedron = "[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]"
         for shape, *words in [
-            ('kind = "ball"\n', "shape.kind is \"ball\"", '"sphere", "capsule", "box", "polyhedron"'),
+            ('kind = "ball"\n', "shape.kind is \"ball\"", '"capsule", "box", "polyhedron", "cylinder", "cone"'),
             ('kind = "sphere"\n', "shape.diameter of a sphere is missing", "a number"),
             ('kind = "sphere"\ndiameter = 0\n', "shape.diameter is 0"),
             ('kind = "sphere"\ndiameter = nan\n', "shape.diameter is nan"),
             ('kind = "sphere"\ndiameter = 1\nrounding = 0.1\n', "shape.rounding is 0.1; accepted: no rounding of a sphere, "
-             'or kind = "box" or "polyhedron"'),
+             'or kind = "box" or "polyhedron" or "cylinder" or "cone"'),
             ("aspect_ratio = 2\nrounding = 0.1\n", "accepted: no rounding of an ellipsoid"),
-            ("length = 2\ndiameter = 1\n", 'shape.length is 2; accepted: no length of an ellipsoid, or kind = "capsule"'),
+            ("length = 2\ndiameter = 1\n", 'shape.length is 2; accepted: no length of an ellipsoid, or kind = "capsule" or "cylinder" or "cone"'),
             (capsule + "length = 2\n", "shape.diameter of a capsule is missing"),
             (capsule + "diameter = 2\n", "shape.length of a capsule is missing", "between the centres of the caps"),
             (capsule + "diameter = 1\nlength = -1\n", "shape.length is -1"),
@@ -488,6 +509,16 @@ class KindsRefused(KindsCase):
             (capsule + "aspect_ratio = 3\n", "shape.aspect_ratio is 3; accepted: no aspect_ratio of a capsule, or kind = "
              '"ellipsoid" or "superellipsoid"'),
             (capsule + "diameter = 1\nlenght = 1\n", "unknown key shape.lenght, did you mean shape.length?"),
+            (cylinder + "length = 2\n", "shape.diameter of a cylinder is missing"),
+            (cylinder + "diameter = 2\n", "shape.length of a cylinder is missing", "a number"),
+            (cylinder + "diameter = 2\nlength = 0\n", "shape.length is 0", "0.02 to 200, 1/100 to 100 diameters"),
+            (cylinder + "diameter = 1\nlength = 101\n", "shape.length is 101", "0.01 to 100"),
+            (cylinder + "diameter = 1\nlength = 1\nrounding = -1\n", "shape.rounding is -1"),
+            (cylinder + "diameter = 1\nlength = 1\nrounding = 101\n", "shape.rounding is 101", "100 times the size"),
+            (cylinder + 'solid = "cube"\n', 'shape.solid is "cube"; accepted: no solid of a cylinder'),
+            (cone + "length = 1\n", "shape.diameter of a cone is missing"),
+            (cone + "diameter = 1\nlength = nan\n", "shape.length is nan"),
+            (cone + "diameter = 1\nlength = 60\n", "shape.length is 60", "1/50 to 50 diameters"),
             (box, "shape.edges of a box is missing", "three positive finite numbers"),
             (box + "edges = [1, 1]\n", "shape.edges is"),
             (box + "edges = [1, 1, 0]\n", "shape.edges is", "three positive finite numbers"),
@@ -515,7 +546,7 @@ class KindsRefused(KindsCase):
             self.refusal(shape, *words)
 
     def test_the_papers_finder(self):
-        for name in ["capsule", "box", "pyramid"]:
+        for name in ["capsule", "box", "pyramid", "cylinder"]:
             self.refusal(SHAPES[name], 'dynamics.finder is "bracketing"', 'accepted: "certified"',
                          settings=["dynamics.finder=bracketing"])
         self.refusal(SHAPES["capsule"], 'dynamics.inertia is "paper"', settings=["dynamics.inertia=paper"])

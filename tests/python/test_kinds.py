@@ -13,6 +13,8 @@ SHAPES = [
     pytest.param({"kind": "box", "edges": (1, 2, 3)}, hb.Box, id="box"),
     pytest.param({"kind": "box", "edges": np.ones(3), "rounding": 0.1}, hb.RoundedBox, id="rounded"),
     pytest.param({"kind": "polyhedron", "solid": "octahedron"}, hb.ConvexPolyhedron, id="octahedron"),
+    pytest.param({"kind": "cylinder", "length": 2, "diameter": 1}, hb.Cylinder, id="cylinder"),
+    pytest.param({"kind": "cone", "length": 1, "diameter": 1, "rounding": 0.1}, hb.RoundedCone, id="rounded cone"),
     pytest.param({"kind": "polyhedron", "vertices": PYRAMID}, hb.ConvexPolyhedron, id="pyramid"),
 ]
 

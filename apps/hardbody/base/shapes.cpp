@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 #include <stdexcept>
 #include <type_traits>
 #include <utility>
@@ -39,6 +40,13 @@ geom::Shape make_polyhedron(const ShapeNumbers& n) {
   return rounded(geom::ConvexPolyhedron(n.vertices), n.rounding);
 }
 
+geom::Shape make_cylinder(const ShapeNumbers& n) {
+  return rounded(geom::Cylinder(n.lengths.z(), n.lengths.x()), n.rounding);
+}
+geom::Shape make_cone(const ShapeNumbers& n) {
+  return rounded(geom::Cone(n.lengths.z(), n.lengths.x(), -n.lengths.y()), n.rounding);
+}
+
 /// Form of the semi-axes of a kind.
 enum class Axes { none, in_order, in_any_order };
 
@@ -58,6 +66,8 @@ constexpr std::array<KindProperties, kShapeKinds.size()> kProperties = {{
     {"capsule", "capsules", Axes::none, false, make_capsule},
     {"box", "boxes", Axes::none, false, make_box},
     {"polyhedron", "polyhedra", Axes::none, false, make_polyhedron},
+    {"cylinder", "cylinders", Axes::none, false, make_cylinder},
+    {"cone", "cones", Axes::none, false, make_cone},
 }};
 
 const KindProperties& properties_of(ShapeKind kind) {
@@ -84,6 +94,12 @@ ShapeNumbers numbers(const geom::ConvexPolyhedron& shape) {
   for (int k = 0; k < shape.vertex_count(); ++k) result.vertices.push_back(shape.vertex(k));
   return result;
 }
+ShapeNumbers numbers(const geom::Cylinder& shape) {
+  return {ShapeKind::cylinder, {shape.radius(), shape.radius(), shape.half_length()}};
+}
+ShapeNumbers numbers(const geom::Cone& shape) {
+  return {ShapeKind::cone, {shape.radius(), -shape.base(), shape.height()}};
+}
 template <class Other>
 ShapeNumbers numbers(const Other& /*shape*/) {
   throw std::logic_error("a shape that no config or file names");
@@ -109,6 +125,38 @@ SweptPolytope polytope(const geom::Box& shape) {
 SweptPolytope polytope(const geom::Capsule& shape) {
   const Vector3d end = shape.half_length() * Vector3d::UnitZ();
   return {{-end, end}, {}, shape.radius()};
+}
+/// Returns the hull of a lower rim and an upper one, or an apex.
+SweptPolytope polytope_of_rims(const std::array<geom::kernel::CoreDisc, 2>& discs) {
+  SweptPolytope result;
+  std::array<std::vector<int>, 2> rims;
+  for (std::size_t side = 0; side < 2; ++side) {
+    const int count = discs[side].radius > 0 ? kRimVertices : 1;
+    for (int k = 0; k < count; ++k) {
+      const double angle = 2 * std::numbers::pi * k / count;
+      rims[side].push_back(static_cast<int>(result.vertices.size()));
+      result.vertices.emplace_back(discs[side].radius * std::cos(angle), discs[side].radius * std::sin(angle),
+                                   discs[side].z);
+    }
+  }
+  const auto& [low, high] = rims;
+  for (std::size_t k = 0; k < low.size(); ++k) {
+    const std::size_t next = (k + 1) % low.size();
+    if (high.size() == 1) {
+      result.faces.push_back({low[k], low[next], high[0]});
+    } else {
+      result.faces.push_back({low[k], low[next], high[next], high[k]});
+    }
+  }
+  result.faces.emplace_back(low.rbegin(), low.rend());
+  if (high.size() > 1) result.faces.push_back(high);
+  return result;
+}
+SweptPolytope polytope(const geom::Cylinder& shape) {
+  return polytope_of_rims(shape.core().disc);
+}
+SweptPolytope polytope(const geom::Cone& shape) {
+  return polytope_of_rims(shape.core().disc);
 }
 template <class Inner>
 auto polytope(const geom::Rounded<Inner>& shape) -> decltype(polytope(shape.inner())) {

@@ -18,11 +18,20 @@
 namespace hardbody {
 
 /// Kind of shape; GSD files of this program store the values.
-enum class ShapeKind { ellipsoid = 0, superellipsoid = 1, sphere = 2, capsule = 3, box = 4, polyhedron = 5 };
+enum class ShapeKind {
+  ellipsoid = 0,
+  superellipsoid = 1,
+  sphere = 2,
+  capsule = 3,
+  box = 4,
+  polyhedron = 5,
+  cylinder = 6,
+  cone = 7
+};
 
-inline constexpr std::array kShapeKinds = {ShapeKind::ellipsoid, ShapeKind::superellipsoid,
-                                           ShapeKind::sphere,    ShapeKind::capsule,
-                                           ShapeKind::box,       ShapeKind::polyhedron};
+inline constexpr std::array kShapeKinds = {
+    ShapeKind::ellipsoid, ShapeKind::superellipsoid, ShapeKind::sphere,   ShapeKind::capsule,
+    ShapeKind::box,       ShapeKind::polyhedron,     ShapeKind::cylinder, ShapeKind::cone};
 
 /// Returns the word that configs and files have for a kind.
 const char* to_string(ShapeKind kind);
@@ -45,7 +54,8 @@ bool has_equivalent_axes(ShapeKind kind);
 /// Numbers that define a shape in files, to the last bit.
 struct ShapeNumbers {
   ShapeKind kind = ShapeKind::ellipsoid;
-  /// Semi-axes; half extents of a box; of a sphere its radius three times; of a capsule radius, radius, half-length.
+  /// Semi-axes; half extents of a box; of a sphere its radius three times; of a capsule or cylinder radius, radius,
+  /// half-length; of a cone radius, depth of the base below the origin, height.
   Eigen::Vector3d lengths{1, 1, 1};
   Eigen::Vector2d exponents{1, 1};             ///< e1, e2; 1, 1 for kinds without exponents
   double rounding = 0;                         ///< radius of a ball that is swept over the shape
@@ -75,6 +85,9 @@ struct FramedPolyhedron {
 /// the bit, where that is one within `apart`, relative to the size. Throws std::invalid_argument if libgeom refuses it.
 FramedPolyhedron framed_polyhedron(const std::vector<Eigen::Vector3d>& points, double rounding, double apart);
 
+/// Number of vertices on a rim where a cylinder or cone is drawn as a polytope.
+inline constexpr int kRimVertices = 48;
+
 /// Polytope with a ball swept over it.
 struct SweptPolytope {
   std::vector<Eigen::Vector3d> vertices;
@@ -83,7 +96,7 @@ struct SweptPolytope {
 };
 
 /// Returns a shape as a polytope with a ball, as which files and pictures have capsules (two vertices), boxes and
-/// polyhedra; nullopt for smooth shapes, spheres among them.
+/// polyhedra, and nearly cylinders and cones (kRimVertices on each rim); nullopt for smooth shapes, spheres among them.
 std::optional<SweptPolytope> swept_polytope(const ed::BodyShape& shape);
 
 /// Returns whether two shapes are the same: numbers of one kind whose lengths agree within `lengths`, relative to those

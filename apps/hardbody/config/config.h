@@ -37,13 +37,13 @@ struct ShapeConfig {
   std::optional<double> aspect_ratio;
   std::optional<Eigen::Vector3d> semi_axes;
   Eigen::Vector2d exponents{1, 1};  ///< e1, e2 of a superellipsoid
-  std::optional<double> length;     ///< distance of the centres of a capsule's caps
+  std::optional<double> length;     ///< length of a cylinder or cone; distance of the centres of a capsule's caps
   std::optional<double> diameter;
   std::optional<Eigen::Vector3d> edges;  ///< edges of a box along body x, y, z
   // Exactly one of the two.
   std::optional<std::vector<Eigen::Vector3d>> vertices;  ///< corners of a polyhedron, in any frame
   std::optional<std::string> solid;                      ///< Platonic or Archimedean solid of circumradius 1
-  double rounding = 0;                                   ///< radius of a ball that is swept over a box or polyhedron
+  double rounding = 0;                                   ///< radius of a ball that is swept over a shape with edges
 
   /// Returns a/b, a along the axis of revolution (of superellipsoids: body z) and b the two equal semi-axes across it,
   /// 1 for spheres; nullopt for shapes with three different semi-axes and shapes without semi-axes.

@@ -130,6 +130,57 @@ std::string capsule_lengths(const ed::BodyShape& shape) {
   return fmt::format("length {:.5g}, diameter {:.5g}", 2 * lengths.z(), 2 * lengths.x());
 }
 
+/// Returns the cylinder, or the cone in the frame of its centre of mass, in lengths times a factor.
+geom::Shape round_shape(const ShapeConfig& shape, double factor) {
+  const double length = factor * *shape.length;
+  const double radius = 0.5 * factor * *shape.diameter;
+  const double rounding = factor * shape.rounding;
+  if (shape.kind == ShapeKind::cylinder) {
+    return make_shape({shape.kind, {radius, radius, 0.5 * length}, {1, 1}, rounding});
+  }
+  const double base = geom::Cone::in_principal_frame(length, radius, rounding).base();
+  return make_shape({shape.kind, {radius, -base, length}, {1, 1}, rounding});
+}
+
+std::optional<ShapeRefusal> check_round(const ShapeConfig& shape) {
+  const double longest = std::max(*shape.length, *shape.diameter);
+  // A cone is half as thick about its centre of mass.
+  const double thinnest = shape.kind == ShapeKind::cone ? 0.5 * kThinnestForm : kThinnestForm;
+  const double least = *shape.diameter / thinnest;
+  const double most = *shape.diameter * thinnest;
+  if (!(*shape.length >= least && *shape.length <= most)) {
+    return ShapeRefusal{"length", fmt::format("{:g} to {:g}, 1/{:g} to {:g} diameters", least, most, thinnest, thinnest)};
+  }
+  return check_rounding(shape, longest);
+}
+
+geom::Shape make_round_form(const ShapeConfig& shape, bool literal) {
+  return in_unit(round_shape(shape, first_factor(std::max(*shape.length, *shape.diameter), literal)), literal);
+}
+
+/// Returns the length of a cylinder or cone.
+double length_of(const ShapeNumbers& numbers) {
+  return (numbers.kind == ShapeKind::cylinder ? 2 : 1) * numbers.lengths.z();
+}
+
+std::string round_keys(const ShapeNumbers& numbers) {
+  return fmt::format("length = {}\ndiameter = {}\n", value_text(length_of(numbers)),
+                     value_text(2 * numbers.lengths.x())) +
+         rounding_keys(numbers.rounding);
+}
+
+std::string round_title(const ShapeConfig& shape) {
+  std::string name =
+      fmt::format("{}, length / diameter = {:.4g}", plural(shape.kind), *shape.length / *shape.diameter);
+  if (shape.rounding == 0) return name;
+  return fmt::format("{}, rounded by {:.4g} of the diameter", name, shape.rounding / *shape.diameter);
+}
+
+std::string round_lengths(const ed::BodyShape& shape) {
+  const ShapeNumbers n = numbers_of(shape);
+  return fmt::format("length {:.5g}, diameter {:.5g}", length_of(n), 2 * n.lengths.x()) + rounding_text(n.rounding);
+}
+
 std::optional<ShapeRefusal> check_box_form(const ShapeConfig& shape) {
   return check_rounding(shape, shape.edges->maxCoeff());
 }
@@ -281,6 +332,22 @@ const std::vector<ShapeForm>& forms() {
        polyhedron_keys,
        polyhedron_title,
        polyhedron_lengths},
+      {Kind::cylinder,
+       {{"length"}, {"diameter"}},
+       {"rounding"},
+       check_round,
+       make_round_form,
+       round_keys,
+       round_title,
+       round_lengths},
+      {Kind::cone,
+       {{"length"}, {"diameter"}},
+       {"rounding"},
+       check_round,
+       make_round_form,
+       round_keys,
+       round_title,
+       round_lengths},
   };
   return table;
 }

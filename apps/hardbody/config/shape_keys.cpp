@@ -76,7 +76,9 @@ Taken take_diameter(const Value& value, const Place& at, std::optional<double>& 
 }
 
 Taken take_length(const Value& value, const Place& at, std::optional<double>& result) {
-  return take_number(value, {0, lengths_of(at).most}, "between the centres of the caps", result.emplace());
+  const bool caps = at.species->shape.kind == ShapeKind::capsule;
+  return take_number(value, {0, lengths_of(at).most}, caps ? "between the centres of the caps" : "of the body",
+                     result.emplace());
 }
 
 Taken take_rounding(const Value& value, const Place& at, double& result) {
@@ -143,6 +145,10 @@ std::string ratio_comment(const Place& at) {
          (at.config.mixture ? "; (a b c)^(1/3) = 1 then" : " = [a, b, c], in any unit: only their ratios count");
 }
 
+std::string length_comment(const Place& at) {
+  return at.species->shape.kind == ShapeKind::capsule ? "between the centres of the caps" : "of the body, along z";
+}
+
 /// Returns the comment of a key that gives lengths of other kinds; `first`: what the key is.
 Comment lengths_comment(const char* first) {
   return [first](const Place& at) -> std::string {
@@ -163,8 +169,8 @@ std::vector<Key> form_keys(const std::string& section) {
       {name("aspect_ratio"), "", number(&ShapeConfig::aspect_ratio, kRatios, kRatioMeaning), ratio_comment},
       {name("semi_axes"), "", bound(&ShapeConfig::semi_axes, take_semi_axes), axes_comment},
       {name("exponents"), "", bound(&ShapeConfig::exponents, take_exponents), kExponentsComment, with_exponents},
-      {name("length"), "", bound(&ShapeConfig::length, take_length), "between the centres of the caps"},
-      {name("diameter"), "", bound(&ShapeConfig::diameter, take_diameter), lengths_comment("of the body")},
+      {name("length"), "", bound(&ShapeConfig::length, take_length), length_comment},
+      {name("diameter"), "", bound(&ShapeConfig::diameter, take_diameter), lengths_comment("of the body; of a cone, of its base")},
       {name("edges"), "", bound(&ShapeConfig::edges, take_edges), lengths_comment("[a, b, c] along body x, y, z")},
       {name("vertices"), "", bound(&ShapeConfig::vertices, take_vertices), lengths_comment("corners, in any frame")},
       {name("solid"), "", bound(&ShapeConfig::solid, take_solid),
