@@ -68,6 +68,8 @@ std::vector<Bodies> all_bodies() {
       {"rounded boxes 0.05", uniform(geom::Rounded<geom::Box>(geom::Box({0.5, 0.5, 0.5}), 0.05)), 4000},
       {"cubes", uniform(geom::Box({0.5, 0.5, 0.5})), 4000},
       {"dodecahedra", uniform(geom::ConvexPolyhedron::in_principal_frame(geom::solid_vertices("dodecahedron"))), 2000},
+      {"cylinders L/D=2", uniform(geom::Cylinder(1, 0.5)), 2000},
+      {"cones L/D=1", uniform(geom::Cone(1, 0.5)), 2000},
       {"a user's spherocylinders", {rod, 1, {0.7, 0.7, 0.12}, true}, 1000}};
 }
 

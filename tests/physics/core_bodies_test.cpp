@@ -1,6 +1,6 @@
 // Spheres, capsules, boxes, polyhedra, cylinders, cones and rounded ones in the event loop, alone and mixed: no
 // overlap, energy and momentum are kept, every kind of neighbour list gives the same collisions, and a restored run is
-// the undisturbed one. HARDBODY_FULL=1: 100,000 collisions of each.
+// the undisturbed one. HARDBODY_FULL=1: 1,000,000 collisions of each.
 
 #include <common/ed/all_pairs.h>
 #include <common/ed/same_collisions.h>
@@ -93,7 +93,7 @@ double least_distance(const ed::System& system) {
 }
 
 TEST(CoreBodies, KeepEnergyAndDoNotOverlap) {
-  const int collisions = full_form() ? 100000 : 5000;
+  const int collisions = full_form() ? 1000000 : 5000;
   for (const Fluid& fluid : fluids()) {
     ed::Simulation simulation(start(fluid));
     const ed::KineticState before = simulation.kinetic();

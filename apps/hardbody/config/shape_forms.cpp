@@ -149,7 +149,8 @@ std::optional<ShapeRefusal> check_round(const ShapeConfig& shape) {
   const double least = *shape.diameter / thinnest;
   const double most = *shape.diameter * thinnest;
   if (!(*shape.length >= least && *shape.length <= most)) {
-    return ShapeRefusal{"length", fmt::format("{:g} to {:g}, 1/{:g} to {:g} diameters", least, most, thinnest, thinnest)};
+    return ShapeRefusal{"length",
+                        fmt::format("{:g} to {:g}, 1/{:g} to {:g} diameters", least, most, thinnest, thinnest)};
   }
   return check_rounding(shape, longest);
 }
@@ -170,8 +171,7 @@ std::string round_keys(const ShapeNumbers& numbers) {
 }
 
 std::string round_title(const ShapeConfig& shape) {
-  std::string name =
-      fmt::format("{}, length / diameter = {:.4g}", plural(shape.kind), *shape.length / *shape.diameter);
+  std::string name = fmt::format("{}, length / diameter = {:.4g}", plural(shape.kind), *shape.length / *shape.diameter);
   if (shape.rounding == 0) return name;
   return fmt::format("{}, rounded by {:.4g} of the diameter", name, shape.rounding / *shape.diameter);
 }

@@ -3,10 +3,13 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 
 namespace ed::internal {
 
+using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 namespace {
@@ -106,6 +109,147 @@ Vector3d turning_of_normal(const ConvexFeatures& features, const Vector3d& n, do
     }
   }
   return n.cross(rate);
+}
+
+namespace {
+
+/// Returns the Hessian of the support function of a body's rims at the outward normal m, in the world's axes.
+Matrix3d hessian_of_rims(const ConvexBody& body, const Matrix3d& R, const Vector3d& m) {
+  if (!body.rims()) return Matrix3d::Zero();
+  return R * geom::kernel::rim_hessian(*body.core, R.transpose() * m) * R.transpose();
+}
+
+/// Returns whether the points of two vertices of one body are the same, or on the same rim not far from each other.
+bool rolls_to(const ConvexBody& body, const Matrix3d& R, const Vector3d& p, const Vector3d& q) {
+  constexpr double kNear = 0.5;  // chord, in units of the radius
+  if (p == q) return true;
+  if (!body.rims()) return false;
+  const auto& [low, high] = body.core->disc;
+  const double middle = 0.5 * (low.z + high.z);
+  const double z_p = R.col(2).dot(p);
+  const double z_q = R.col(2).dot(q);
+  if ((z_p > middle) != (z_q > middle)) return false;
+  return (p - q).norm() <= kNear * (z_p > middle ? high.radius : low.radius);
+}
+
+/// Directions in which two bodies are flat where they touch a plane across n, and how the normal's parts along them
+/// change.
+class FlatDirections {
+ public:
+  explicit FlatDirections(const Vector3d& n) : n_(n) {}
+
+  /// Adds an edge that changes at the rate e', unless it is along those that are there.
+  void add(const Vector3d& edge, const Vector3d& rate) {
+    constexpr double kSame = 1e-3;
+    const double length = edge.norm();
+    if (count_ == 2 || !(length > 0)) return;
+    const Vector3d e = edge / length;
+    if (count_ == 1 && !(e.cross(edge_[0]).norm() > kSame)) return;
+    edge_[count_] = e;
+    change_[count_++] = -n_.dot(rate) / length;
+  }
+
+  /// Adds what a body's core, turned by R at omega, has: edges and faces across the outward normal m.
+  void add(const ConvexBody& body, const Matrix3d& R, const Vector3d& m, const Vector3d& omega) {
+    constexpr double kAcross = 1e-9;
+    if (!body.core) return;
+    const auto add_if_across = [&](const Vector3d& e) {
+      if (std::abs(m.dot(e)) <= kAcross * e.norm()) add(e, omega.cross(e));
+    };
+    switch (body.core->kind) {
+      case geom::kernel::CoreKind::point:
+        break;
+      case geom::kernel::CoreKind::segment:
+        add_if_across(R.col(2));
+        break;
+      case geom::kernel::CoreKind::box:
+        for (int k = 0; k < 3; ++k) add_if_across(R.col(k));
+        break;
+      case geom::kernel::CoreKind::hull: {
+        const auto& vertices = body.core->hull->vertices;
+        const Eigen::VectorXd heights = vertices * (R.transpose() * m);
+        Eigen::Index top = 0;
+        const double highest = heights.maxCoeff(&top);
+        for (Eigen::Index k = 0; k < heights.size(); ++k) {
+          if (k != top && highest - heights[k] <= kAcross * body.core_reach) {
+            add_if_across(R * (vertices.row(k) - vertices.row(top)).transpose());
+          }
+        }
+        break;
+      }
+      case geom::kernel::CoreKind::frustum: {
+        const Vector3d axis = R.col(2);
+        const Vector3d across = m - m.dot(axis) * axis;
+        if (across.norm() <= kAcross) {
+          add(R.col(0), omega.cross(R.col(0)));
+          add(R.col(1), omega.cross(R.col(1)));
+        } else {
+          const auto& [low, high] = body.core->disc;
+          add_if_across((high.z - low.z) * axis + (high.radius - low.radius) * across.normalized());
+        }
+        break;
+      }
+    }
+  }
+
+  int count() const { return static_cast<int>(count_); }
+  const Vector3d& edge(std::size_t k) const { return edge_[k]; }
+
+  /// Returns the part of n' in the span of the directions.
+  Vector3d rate() const {
+    if (count_ == 0) return Vector3d::Zero();
+    if (count_ == 1) return change_[0] * edge_[0];
+    const Vector3d c = edge_[0].cross(edge_[1]);
+    return (change_[0] * edge_[1].cross(c) + change_[1] * c.cross(edge_[0])) / c.squaredNorm();
+  }
+
+ private:
+  Vector3d n_;
+  std::size_t count_ = 0;
+  std::array<Vector3d, 2> edge_;
+  std::array<double, 2> change_{};
+};
+
+}  // namespace
+
+Vector3d turning_with_rims(const PlacedPair& pair, const ConvexFeatures& features, const Vector3d& n, double distance,
+                           const PairVelocity& velocity) {
+  const auto& [v, omega_a, omega_b] = velocity;
+  if (features.count == 0) return Vector3d::Zero();
+  FlatDirections flat(n);
+  for (std::size_t k = 1; k < static_cast<std::size_t>(features.count); ++k) {
+    const Vector3d e_a = features.a[k] - features.a[0];
+    const Vector3d e_b = features.b[k] - features.b[0];
+    const bool rolls = rolls_to(pair.a, pair.R_a, features.a[k], features.a[0]) &&
+                       rolls_to(pair.b, pair.R_b, features.b[k], features.b[0]);
+    if (!rolls) flat.add(e_b - e_a, omega_b.cross(e_b) - omega_a.cross(e_a));
+  }
+  flat.add(pair.a, pair.R_a, n, omega_a);
+  flat.add(pair.b, pair.R_b, -n, omega_b);
+  const Vector3d fixed = flat.rate();
+  if (flat.count() == 2) return n.cross(fixed);
+  const Matrix3d H_a = hessian_of_rims(pair.a, pair.R_a, n);
+  const Matrix3d H_b = hessian_of_rims(pair.b, pair.R_b, -n);
+  const Matrix3d H = H_a + H_b + std::max(0.0, distance) * Matrix3d::Identity();
+  const Vector3d x = v + omega_b.cross(features.point_b()) - omega_a.cross(features.point_a()) +
+                     H_a * omega_a.cross(n) + H_b * omega_b.cross(n);
+  // What is left is in the plane across n, and across the edge if there is one.
+  const Vector3d rest = x - H * fixed;
+  if (flat.count() == 1) {
+    const Vector3d b = n.cross(flat.edge(0)).normalized();
+    const double bend = b.dot(H * b);
+    return bend > 0 ? n.cross(fixed + b.dot(rest) / bend * b) : n.cross(fixed);
+  }
+  const Vector3d p = n.unitOrthogonal();
+  const Vector3d q = n.cross(p);
+  const double pp = p.dot(H * p);
+  const double pq = p.dot(H * q);
+  const double qq = q.dot(H * q);
+  const double determinant = pp * qq - pq * pq;
+  if (!(determinant > 0)) return Vector3d::Zero();
+  const double along_p = (qq * p.dot(rest) - pq * q.dot(rest)) / determinant;
+  const double along_q = (pp * q.dot(rest) - pq * p.dot(rest)) / determinant;
+  return n.cross(along_p * p + along_q * q);
 }
 
 }  // namespace ed::internal

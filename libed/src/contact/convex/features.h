@@ -156,4 +156,17 @@ Eigen::Vector3d turning_of_normal(const ConvexFeatures& features, const Eigen::V
                                   const Eigen::Vector3d& v, const Eigen::Vector3d& omega_a,
                                   const Eigen::Vector3d& omega_b);
 
+/// Velocities of a placed pair: that of the centres, and both angular ones.
+struct PairVelocity {
+  Eigen::Vector3d v, omega_a, omega_b;
+};
+
+/// Returns the same where a body has rims, along which its points roll when the normal turns.
+///
+/// The support point of a body that turns with omega moves by H (n' - omega x n) in addition, H the Hessian of the
+/// support function: along directions that no edge fixes, (d + H_A + H_B) n' = x' + H_A (omega_A x n) + H_B (omega_B x
+/// n), x' of the points as if they were fixed to their bodies.
+Eigen::Vector3d turning_with_rims(const PlacedPair& pair, const ConvexFeatures& features, const Eigen::Vector3d& n,
+                                  double distance, const PairVelocity& velocity);
+
 }  // namespace ed::internal

@@ -252,6 +252,9 @@ double ConvexGap::longest_step(const Turn& turn, double g, double gp, double hor
 }
 
 Vector3d ConvexGap::turning_of_best_normal(const State& s, const Evaluation& e, const Vector3d& n) const {
+  if (A_.rims() || B_.rims()) {
+    return turning_with_rims(placed(s, s.r), e.features, n, e.g + balls_, {v_, s.a.omega, s.b.omega});
+  }
   return turning_of_normal(e.features, n, e.g + balls_, v_, s.a.omega, s.b.omega);
 }
 
