@@ -44,18 +44,14 @@ std::optional<Ellipsoid> as_ellipsoid(const geom::Shape& shape) {
 }
 
 /// Number of pairs whose numbers, poses and answers fit into the first-level cache.
-constexpr std::size_t kBlock = 64;
+constexpr std::size_t kBlock = 32;
 
 /// Number of rows whose answers no cache near the processor holds.
 constexpr std::size_t kManyRows = std::size_t{1} << 15;
 
-/// Copies numbers; `past_caches`: by stores that bypass the caches, where both are aligned.
-void copy(const double* from, double* to, std::size_t count, bool past_caches) {
-  std::size_t k = 0;
-  if (past_caches && reinterpret_cast<std::uintptr_t>(to) % 16 == 0) {
-    for (; k + 2 <= count; k += 2) _mm_stream_pd(to + k, _mm_load_pd(from + k));
-  }
-  for (; k < count; ++k) to[k] = from[k];
+/// Stores two numbers past the caches; `to` is aligned.
+void stream(double* to, const double& first, const double& second) {
+  _mm_stream_pd(to, _mm_loadh_pd(_mm_load_sd(&first), &second));
 }
 
 /// Arrays of the answers.
@@ -73,12 +69,12 @@ struct Columns {
 
   /// Puts answers of successive rows, column by column.
   void put(std::size_t row, std::span<const DistanceResult> results) const {
-    put_column(distance, row, results, [](const DistanceResult& r) { return r.distance; });
-    put_column(normal, row, results, [](const DistanceResult& r) { return r.normal; });
-    put_column(point_a, row, results, [](const DistanceResult& r) { return r.point_a; });
-    put_column(point_b, row, results, [](const DistanceResult& r) { return r.point_b; });
-    put_column(error_bound, row, results, [](const DistanceResult& r) { return r.error_bound; });
-    put_column(residual, row, results, [](const DistanceResult& r) { return r.residual; });
+    put_column(distance, row, results, &DistanceResult::distance);
+    put_column(normal, row, results, &DistanceResult::normal);
+    put_column(point_a, row, results, &DistanceResult::point_a);
+    put_column(point_b, row, results, &DistanceResult::point_b);
+    put_column(error_bound, row, results, &DistanceResult::error_bound);
+    put_column(residual, row, results, &DistanceResult::residual);
     for (std::size_t k = 0; k < results.size(); ++k) {
       iterations.data[row + k] = results[k].iterations;
       status.data[row + k] = static_cast<std::uint8_t>(results[k].status);
@@ -92,21 +88,31 @@ struct Columns {
 
  private:
   /// Puts one member of answers. Where they are many, their lines need not be fetched before.
-  template <class Member>
   void put_column(const NewArray<double>& column, std::size_t row, std::span<const DistanceResult> results,
-                  const Member& member) const {
-    using Value = decltype(member(results[0]));
-    constexpr std::size_t kWidth = sizeof(Value) / sizeof(double);
-    alignas(16) std::array<double, kWidth * kBlock> values;
-    for (std::size_t k = 0; k < results.size(); ++k) {
-      if constexpr (kWidth == 1) {
-        values[k] = member(results[k]);
-      } else {
-        Eigen::Vector3d::Map(&values[kWidth * k]) = member(results[k]);
+                  double DistanceResult::*member) const {
+    double* const to = column.data + row;
+    std::size_t k = 0;
+    if (past_caches(to)) {
+      for (; k + 2 <= results.size(); k += 2) stream(to + k, results[k].*member, results[k + 1].*member);
+    }
+    for (; k < results.size(); ++k) to[k] = results[k].*member;
+  }
+  void put_column(const NewArray<double>& column, std::size_t row, std::span<const DistanceResult> results,
+                  Eigen::Vector3d DistanceResult::*member) const {
+    double* const to = column.data + 3 * row;
+    std::size_t k = 0;
+    if (past_caches(to)) {
+      for (; k + 2 <= results.size(); k += 2) {
+        const Eigen::Vector3d& u = results[k].*member;
+        const Eigen::Vector3d& v = results[k + 1].*member;
+        stream(to + 3 * k, u.x(), u.y());
+        stream(to + 3 * k + 2, u.z(), v.x());
+        stream(to + 3 * k + 4, v.y(), v.z());
       }
     }
-    copy(values.data(), column.data + kWidth * row, kWidth * results.size(), many);
+    for (; k < results.size(); ++k) Eigen::Vector3d::Map(to + 3 * k) = results[k].*member;
   }
+  bool past_caches(const double* to) const { return many && reinterpret_cast<std::uintptr_t>(to) % 16 == 0; }
 };
 
 /// Arguments of a call on pairs, checked.
@@ -130,13 +136,6 @@ struct PairQuery {
 
   std::size_t a(std::size_t row) const { return pairs.at(row, 0, bodies.size()); }
   std::size_t b(std::size_t row) const { return pairs.at(row, 1, bodies.size()); }
-  /// Asks for the memory of a pair's poses, which is needed soon.
-  void prefetch(std::size_t row) const {
-    if (row >= pairs.size()) return;
-    for (const std::size_t body : {pairs.unchecked(row, 0), pairs.unchecked(row, 1)}) {
-      if (body < bodies.size()) poses.prefetch(body);
-    }
-  }
 
   /// Returns the guess of a pair's normal, 0 for none. Throws ValueError, naming the row, unless it is finite.
   Eigen::Vector3d start(std::size_t row) const {
@@ -156,25 +155,37 @@ class Distances {
  public:
   Distances(const PairQuery& query, const geom::DistanceOptions& options, const Columns& out)
       : query_(query), options_(options), out_(out) {
-    for (const geom::Shape& shape : query.bodies.shapes()) ellipsoids_.push_back(as_ellipsoid(shape));
+    for (const geom::Shape& shape : query.bodies.shapes()) {
+      ellipsoids_.push_back(as_ellipsoid(shape));
+      only_ellipsoids_ = only_ellipsoids_ && ellipsoids_.back();
+    }
   }
 
   /// Returns work on ranges of the pairs, with memory of its own.
   Work work() {
-    return
-        [this, block = std::make_shared<Block>()](std::size_t begin, std::size_t end) { answer(begin, end, *block); };
+    return [this, block = std::make_shared<Block>()](std::size_t begin, std::size_t end) {
+      if (only_ellipsoids_) {
+        answer_ellipsoids(begin, end, *block);
+      } else {
+        answer(begin, end, *block);
+      }
+      _mm_sfence();  // other threads see what was streamed once this one has ended its work
+    };
   }
 
   /// Returns the number of pairs that the kernels did not answer.
   std::size_t redone() const { return redone_; }
 
  private:
-  /// Number of pairs by which poses are asked for in advance.
-  static constexpr std::size_t kAhead = 32;
+  /// Bodies of successive pairs.
+  struct Indices {
+    std::array<std::size_t, kBlock> a, b;
+  };
 
   struct Block {
     std::size_t count = 0;
     std::array<std::size_t, kBlock> rows;
+    std::array<Indices, 2> indices;
     std::array<geom::EllipsoidPair, kBlock> pairs;
     std::array<Eigen::Vector3d, kBlock> starts;
     std::array<Pose, kBlock> slots_a;
@@ -182,11 +193,45 @@ class Distances {
     std::array<DistanceResult, kBlock> found;
   };
 
+  /// Reads the bodies of pairs, and asks for the memory of their poses.
+  void read(std::size_t begin, std::size_t end, Indices& indices) const {
+    for (std::size_t row = begin; row < end; ++row) {
+      const std::size_t a = query_.a(row), b = query_.b(row);
+      query_.poses.prefetch(a);
+      query_.poses.prefetch(b);
+      indices.a[row - begin] = a;
+      indices.b[row - begin] = b;
+    }
+  }
+
+  /// Answers pairs of which all bodies are ellipsoids. The next block is read before one is answered.
+  void answer_ellipsoids(std::size_t begin, std::size_t end, Block& block) {
+    const auto end_of = [end](std::size_t first) { return std::min(end, first + kBlock); };
+    std::size_t redone = 0;
+    std::size_t turn = 0;
+    read(begin, end_of(begin), block.indices[0]);
+    for (std::size_t first = begin; first < end; first = end_of(first), turn = 1 - turn) {
+      const Indices& now = block.indices[turn];
+      const std::size_t count = end_of(first) - first;
+      read(first + count, end_of(first + count), block.indices[1 - turn]);
+      for (std::size_t k = 0; k < count; ++k) {
+        const auto& shape_a = ellipsoids_[query_.bodies.shape_index(now.a[k])];
+        const auto& shape_b = ellipsoids_[query_.bodies.shape_index(now.b[k])];
+        block.pairs[k] = {&*shape_a, query_.poses.get(now.a[k], block.slots_a[k]), &*shape_b,
+                          query_.poses.get(now.b[k], block.slots_b[k])};
+        if (query_.starts) block.starts[k] = query_.start(first + k);
+      }
+      redone += run_kernels(block, count);
+      out_.put(first, std::span(block.found).first(count));
+    }
+    redone_ += redone;
+  }
+
+  /// Answers pairs of any bodies.
   void answer(std::size_t begin, std::size_t end, Block& block) {
     block.count = 0;
     std::size_t redone = 0;
     for (std::size_t row = begin; row < end; ++row) {
-      query_.prefetch(row + kAhead);
       const std::size_t a = query_.a(row), b = query_.b(row), k = block.count;
       const auto& shape_a = ellipsoids_[query_.bodies.shape_index(a)];
       const auto& shape_b = ellipsoids_[query_.bodies.shape_index(b)];
@@ -207,28 +252,28 @@ class Distances {
       }
     }
     redone_ += redone + flush(block);
-    _mm_sfence();  // other threads see what was streamed once this one has ended its work
+  }
+
+  /// Answers the first pairs of a block; returns the number that the kernels left to distance().
+  std::size_t run_kernels(Block& block, std::size_t count) const {
+    geom::BatchOptions options{.max_iterations = options_.max_iterations, .penetration = options_.penetration};
+    if (query_.starts) options.starts = std::span(block.starts).first(count);
+    return geom::distance_batch(std::span(block.pairs).first(count), std::span(block.found).first(count), options)
+        .redone;
   }
 
   std::size_t flush(Block& block) const {
-    if (block.count == 0) return 0;
-    geom::BatchOptions options{.max_iterations = options_.max_iterations, .penetration = options_.penetration};
-    if (query_.starts) options.starts = std::span(block.starts).first(block.count);
-    const geom::BatchSummary summary = geom::distance_batch(std::span(block.pairs).first(block.count),
-                                                            std::span(block.found).first(block.count), options);
-    if (block.rows[block.count - 1] - block.rows[0] == block.count - 1) {
-      out_.put(block.rows[0], std::span(block.found).first(block.count));
-    } else {
-      for (std::size_t k = 0; k < block.count; ++k) out_.put(block.rows[k], std::span(&block.found[k], 1));
-    }
+    const std::size_t redone = block.count > 0 ? run_kernels(block, block.count) : 0;
+    for (std::size_t k = 0; k < block.count; ++k) out_.put(block.rows[k], std::span(&block.found[k], 1));
     block.count = 0;
-    return summary.redone;
+    return redone;
   }
 
   const PairQuery& query_;
   const geom::DistanceOptions& options_;
   const Columns& out_;
   std::vector<std::optional<Ellipsoid>> ellipsoids_;
+  bool only_ellipsoids_ = true;
   std::atomic<std::size_t> redone_ = 0;
 };
 
