@@ -30,7 +30,7 @@ class RoundCore {
     if (!round()) return polytope_.vertex(n);
     const double x = n.dot(R_.col(0));
     const double y = n.dot(R_.col(1));
-    const double across = std::hypot(x, y);
+    const double across = length_of(x, y);
     const auto& [low, high] = core_.disc;
     const double rise = (high.z - low.z) * n.dot(R_.col(2)) + (high.radius - low.radius) * across;
     const int id = std::signbit(rise) ? 0 : 1;
@@ -46,7 +46,7 @@ class RoundCore {
   Eigen::Vector3d across(const Eigen::Vector3d& e) const {
     const double x = e.dot(R_.col(0));
     const double y = e.dot(R_.col(1));
-    const double length = std::hypot(x, y);
+    const double length = length_of(x, y);
     return length > 0 ? Eigen::Vector3d((x * R_.col(0) + y * R_.col(1)) / length) : Eigen::Vector3d(R_.col(0));
   }
   /// Returns how far a point is beyond the surface, negative inside.

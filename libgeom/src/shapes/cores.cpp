@@ -48,7 +48,7 @@ const kernel::CoreDisc& furthest_disc(const kernel::CoreView& core, const Vector
 }  // namespace
 
 Matrix3d kernel::rim_hessian(const CoreView& core, const Vector3d& n) {
-  const double across = std::hypot(n.x(), n.y());
+  const double across = length_of(n.x(), n.y());
   if (!(across > 0)) return Matrix3d::Zero();
   const Vector3d along(-n.y() / across, n.x() / across, 0);
   return furthest_disc(core, n, across).radius / across * along * along.transpose();
@@ -70,7 +70,7 @@ Support kernel::core_support(const CoreView& core, const Vector3d& n) {
       return {n.dot(vertex), vertex};
     }
     case CoreKind::frustum: {
-      const double across = std::hypot(n.x(), n.y());
+      const double across = length_of(n.x(), n.y());
       const CoreDisc& disc = furthest_disc(core, n, across);
       const double share = across > 0 ? disc.radius / across : 0;  // along the axis: the middle of the face
       return {disc.z * n.z() + disc.radius * across, {share * n.x(), share * n.y(), disc.z}};
