@@ -82,10 +82,13 @@ struct Flight {
   mutable long declined = 0;
 
   double size() const { return shape_a.body.bounding_radius + shape_b.body.bounding_radius; }
-  geom::DistanceResult distance_result(double t) const {
+  geom::DistanceResult distance_result(double t) const { return distance_of(shape_a.exact, shape_b.exact, t); }
+  /// Returns the answer that a contact finder has, of users' shapes by their support functions.
+  geom::DistanceResult finders_result(double t) const { return distance_of(shape_a.body, shape_b.body, t); }
+  geom::DistanceResult distance_of(const ConvexBody& A, const ConvexBody& B, double t) const {
     const geom::Pose X_WA(a.top.at(t).R, a.position_at(t));
     const geom::Pose X_WB(b.top.at(t).R, b.position_at(t));
-    return ed::distance(shape_a.exact.shape, X_WA, shape_b.exact.shape, X_WB);
+    return ed::distance(A.shape, X_WA, B.shape, X_WB);
   }
   /// Returns the distance; 0 where libgeom declines.
   double distance(double t) const {
@@ -200,12 +203,15 @@ void judge(const Flight& f, Tally& tally, FinderCounters& count) {
   if (found.outcome != Outcome::contact) return;
   ++tally.contacts;
   if (wanted < found.time - 1e-12) ++tally.late;
-  // Where a smooth body meets an edge or a face, libgeom's search certifies distances to no more than its error bound.
+  // Where a smooth body meets an edge or a face, or a user's shape a rim, libgeom certifies distances to no more than
+  // its error bound.
   const geom::DistanceResult at = f.distance_result(found.time);
   // Of polyhedra that touch to the last bit, libgeom declines some: judged a little before.
   const double declined = std::isnan(at.distance) ? 1e-10 / f.rate() : 0;
   const double distance = declined > 0 ? f.distance(found.time - declined) : at.distance;
-  const double allowed = 1e-12 * f.size() + (declined > 0 ? 1e-10 : at.error_bound);
+  const double of_finder = f.finders_result(found.time).error_bound;
+  const double bound = std::isnan(of_finder) ? at.error_bound : std::max(at.error_bound, of_finder);
+  const double allowed = 1e-12 * f.size() + (declined > 0 ? 1e-10 : bound);
   if (!(std::abs(distance) <= allowed)) ++tally.wrong;
   constexpr double h = 1e-5;
   const double rate = (f.distance(found.time + h) - f.distance(found.time - h)) / (2 * h);

@@ -44,9 +44,9 @@ struct PlacedPair {
 
   /// Returns whether both cores are polytopes for certain, so that every search ends.
   bool finite() const { return a.polytope() && b.polytope(); }
-  /// Returns whether neither is one of libgeom's smooth bodies, or has rims: bounds that agree leave an error of the
-  /// square root of rounding in the normals of curved features, which Newton's method knows better.
-  bool may_close() const { return !a.smooth && !b.smooth && !a.rims() && !b.rims(); }
+  /// Returns whether bounds that agree are an answer. They leave an error of the square root of rounding in the normals
+  /// of curved features; libgeom's distance knows better those of its smooth bodies, and of rims beside its own cores.
+  bool may_close() const { return !a.smooth && !b.smooth && !(a.core && b.core && (a.rims() || b.rims())); }
   /// Returns whether both cores are points or segments.
   bool lines() const { return a.line() && b.line(); }
   /// Returns the point of B - A that is nearest along n; `gap`: between the tangent planes.
