@@ -1,6 +1,6 @@
-/// Time of one cold distance query of spheres, capsules, boxes and polyhedra, beside FCL's own primitives at its
-/// default tolerance (if it is built in), on the same pairs: a table of medians of ns, their ratio, and the largest
-/// errors.
+/// Time of one cold distance query of spheres, capsules, boxes, polyhedra, cylinders and cones, beside the primitives
+/// of FCL and Coal at their default tolerances (where they are built in), on the same pairs: a table of medians of ns,
+/// their ratios, and the largest errors.
 ///
 /// usage: bench_cores [GAP]
 ///
@@ -13,6 +13,9 @@
 
 #ifdef HARDBODY_WITH_SEEDS
 #include "oracle/fcl_raw.h"
+#endif
+#ifdef HARDBODY_WITH_COAL
+#include "oracle/coal_raw.h"
 #endif
 
 #include <algorithm>
@@ -43,6 +46,21 @@ double median_time(std::size_t calls, const Call& call) {
   return times[kRounds / 2];
 }
 
+/// Prints another library's time, error, and our time over its.
+template <class Primitives, class A, class B, class Distance>
+void beside(const A& a, const B& b, const std::vector<geom_test::ManufacturedPair>& pairs, double gap, double ours,
+            const Distance& distance) {
+  std::vector<Primitives> theirs;
+  for (const auto& pair : pairs) theirs.emplace_back(a.core(), pair.X_WA, b.core(), pair.X_WB);
+  double error = 0;
+  double sum = 0;
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    error = std::max(error, std::abs(distance(theirs[k]) - gap) / geom_test::extent_of(pairs[k]));
+  }
+  const double time = median_time(pairs.size() / 8, [&](std::size_t k) { sum += distance(theirs[k]); });
+  std::printf(" %.0f | %.1e | %.2f |%s", time, error, ours / time, std::isnan(sum) ? " (declined)" : "");
+}
+
 template <class A, class B>
 void row(const char* name, const A& a, const B& b, double gap) {
   Random random(1);
@@ -64,14 +82,10 @@ void row(const char* name, const A& a, const B& b, double gap) {
   }
   std::printf("| %s | %.0f | %.1e | %d |", name, ours, error, failures);
 #ifdef HARDBODY_WITH_SEEDS
-  std::vector<geom_test::FclPrimitives> theirs;
-  for (const auto& pair : pairs) theirs.emplace_back(a.core(), pair.X_WA, b.core(), pair.X_WB);
-  double fcl_error = 0;
-  for (std::size_t k = 0; k < kPairs; ++k) {
-    fcl_error = std::max(fcl_error, std::abs(theirs[k].distance().distance - gap) / geom_test::extent_of(pairs[k]));
-  }
-  const double fcl = median_time(kPairs / 8, [&](std::size_t k) { sum += theirs[k].distance().distance; });
-  std::printf(" %.0f | %.1e | %.2f |", fcl, fcl_error, ours / fcl);
+  beside<geom_test::FclPrimitives>(a, b, pairs, gap, ours, [](const auto& p) { return p.distance().distance; });
+#endif
+#ifdef HARDBODY_WITH_COAL
+  beside<geom_test::CoalPrimitives>(a, b, pairs, gap, ours, [](const auto& p) { return p.distance(); });
 #endif
   std::printf("%s\n", std::isnan(sum) ? " (declined)" : "");
   std::fflush(stdout);
@@ -81,10 +95,10 @@ void row(const char* name, const A& a, const B& b, double gap) {
 
 int main(int argc, char** argv) {
   const double gap = argc > 1 ? std::atof(argv[1]) : 0.3;
-  std::printf("gap %g, 512 pairs a row, features of all kinds; FCL's columns only where it is built in\n", gap);
   std::printf(
-      "| pair | ns | largest error | failures | FCL, ns | FCL, largest error | ratio "
-      "|\n|---|---|---|---|---|---|---|\n");
+      "gap %g, 512 pairs a row, features of all kinds; then, where they are built in, FCL and Coal: ns, largest error, "
+      "our time over theirs\n",
+      gap);
   const geom::Sphere sphere(0.7);
   const geom::Capsule capsule(1, 0.5);
   const geom::Box box({0.5, 0.8, 1.1});
@@ -94,6 +108,15 @@ int main(int argc, char** argv) {
   row("sphere, box", sphere, box, gap);
   row("capsule, box", capsule, box, gap);
   row("box, box", box, box, gap);
+  const geom::Cylinder cylinder(1, 0.5);
+  const geom::Cone cone(1.5, 0.8);
+  row("cylinder, cylinder", cylinder, cylinder, gap);
+  row("sphere, cylinder", sphere, cylinder, gap);
+  row("capsule, cylinder", capsule, cylinder, gap);
+  row("box, cylinder", box, cylinder, gap);
+  row("cone, cone", cone, cone, gap);
+  row("sphere, cone", sphere, cone, gap);
+  row("box, cone", box, cone, gap);
   Random random(3);
   for (const int points : {8, 32, 100}) {
     const geom::ConvexPolyhedron hull = geom_test::random_polyhedron(points, random);

@@ -517,6 +517,7 @@ class KindsRefused(KindsCase):
             (cylinder + "diameter = 1\nlength = 1\nrounding = 101\n", "shape.rounding is 101", "100 times the size"),
             (cylinder + 'solid = "cube"\n', 'shape.solid is "cube"; accepted: no solid of a cylinder'),
             (cone + "length = 1\n", "shape.diameter of a cone is missing"),
+            (cone + "length = 0.02\ndiameter = 1\nrounding = 10\n", "shape.rounding is 10", "centre of mass is well inside"),
             (cone + "diameter = 1\nlength = nan\n", "shape.length is nan"),
             (cone + "diameter = 1\nlength = 60\n", "shape.length is 60", "1/50 to 50 diameters"),
             (box, "shape.edges of a box is missing", "three positive finite numbers"),

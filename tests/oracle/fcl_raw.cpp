@@ -2,7 +2,9 @@
 
 #include <fcl/geometry/shape/box.h>
 #include <fcl/geometry/shape/capsule.h>
+#include <fcl/geometry/shape/cone.h>
 #include <fcl/geometry/shape/convex.h>
+#include <fcl/geometry/shape/cylinder.h>
 #include <fcl/geometry/shape/ellipsoid.h>
 #include <fcl/geometry/shape/sphere.h>
 #include <fcl/narrowphase/detail/convexity_based_algorithm/gjk_libccd.h>
@@ -75,7 +77,17 @@ FclDistance fcl_distance(const geom::Ellipsoid& a, const geom::Pose& X_WA, const
 
 namespace {
 
-/// Makes FCL's primitive of a core with a ball: of a sphere, a capsule, a box or a hull, not of rounded ones.
+/// Makes FCL's cylinder or cone, which is symmetric about the origin in height.
+fcl::CollisionObjectd round_primitive(const geom::kernel::CoreView& core, const geom::Pose& X) {
+  const auto& [low, high] = core.disc;
+  const double length = high.z - low.z;
+  const geom::Pose middle(X.rotation(), X.position() + 0.5 * (low.z + high.z) * X.rotation().col(2));
+  if (high.radius == low.radius) return placed(std::make_shared<fcl::Cylinderd>(low.radius, length), middle);
+  return placed(std::make_shared<fcl::Coned>(low.radius, length), middle);
+}
+
+/// Makes FCL's primitive of a core with a ball: of a sphere, a capsule, a box, a hull, a cylinder or a cone, not of
+/// rounded ones.
 fcl::CollisionObjectd primitive(const geom::kernel::CoreView& core, const geom::Pose& X) {
   using geom::kernel::CoreKind;
   if (core.kind == CoreKind::point) return placed(std::make_shared<fcl::Sphered>(core.radius), X);
@@ -83,6 +95,7 @@ fcl::CollisionObjectd primitive(const geom::kernel::CoreView& core, const geom::
     return placed(std::make_shared<fcl::Capsuled>(core.radius, 2 * core.half.z()), X);
   }
   if (core.kind == CoreKind::box) return placed(std::make_shared<fcl::Boxd>(2 * core.half), X);
+  if (core.kind == CoreKind::frustum) return round_primitive(core, X);
   const auto points = std::make_shared<std::vector<fcl::Vector3d>>();
   for (Eigen::Index k = 0; k < core.hull->vertices.rows(); ++k) points->emplace_back(core.hull->vertices.row(k));
   const auto faces = std::make_shared<std::vector<int>>();

@@ -87,7 +87,8 @@ double least_distance(const ed::System& system) {
     const geom::DistanceResult d =
         ed::distance(shape(a), geom::Pose(a.rotation, Vector3d(Vector3d::Zero())), shape(b), geom::Pose(b.rotation, r));
     EXPECT_NE(d.status, geom::DistanceStatus::not_converged);
-    least = std::min(least, d.distance + d.error_bound);
+    // Where the points match, another normal at most has a larger gap; deeper overlaps are certified to 1e-9.
+    least = std::min(least, d.residual < 1e-13 ? d.distance : d.distance + d.error_bound);
   });
   return least;
 }

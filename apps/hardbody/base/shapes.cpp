@@ -256,13 +256,17 @@ std::optional<SweptPolytope> swept_polytope(const ed::BodyShape& shape) {
 }
 
 bool same_shape(const ed::BodyShape& a, const ed::BodyShape& b, double lengths, double exponents) {
-  const std::optional<SweptPolytope> s = swept_polytope(a);
-  const std::optional<SweptPolytope> t = swept_polytope(b);
+  const ShapeNumbers p = comparable(a);
+  const ShapeNumbers q = comparable(b);
+  const auto has_rims = [](const ShapeNumbers& n) {
+    return n.kind == ShapeKind::cylinder || n.kind == ShapeKind::cone;
+  };
+  const bool by_numbers = has_rims(p) && has_rims(q);
+  const std::optional<SweptPolytope> s = by_numbers ? std::nullopt : swept_polytope(a);
+  const std::optional<SweptPolytope> t = by_numbers ? std::nullopt : swept_polytope(b);
   if (s.has_value() != t.has_value()) return false;
   const double apart = lengths * ed::bounding_radius(b);
   if (s) return same_vertices(s->vertices, t->vertices, apart) && std::abs(s->rounding - t->rounding) <= apart;
-  const ShapeNumbers p = comparable(a);
-  const ShapeNumbers q = comparable(b);
   return p.kind == q.kind && (p.exponents - q.exponents).cwiseAbs().maxCoeff() <= exponents &&
          (p.lengths - q.lengths).norm() <= lengths * q.lengths.norm() &&
          std::abs(p.rounding - q.rounding) <= lengths * q.lengths.norm();

@@ -100,8 +100,8 @@ struct SweptPolytope {
 std::optional<SweptPolytope> swept_polytope(const ed::BodyShape& shape);
 
 /// Returns whether two shapes are the same: numbers of one kind whose lengths agree within `lengths`, relative to those
-/// of `b`, and whose exponents agree within `exponents`. A sphere is the ellipsoid with equal semi-axes, and a box the
-/// polyhedron of its corners.
+/// of `b`, and whose exponents agree within `exponents`. A sphere is the ellipsoid with equal semi-axes, a box the
+/// polyhedron of its corners, and a cylinder or cone that as which it is drawn.
 bool same_shape(const ed::BodyShape& a, const ed::BodyShape& b, double lengths, double exponents);
 
 }  // namespace hardbody

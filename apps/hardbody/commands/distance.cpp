@@ -49,7 +49,10 @@ std::string distance_help() {
                or {{"kind":"box","half_extents":[a,b,c]}}
                or {{"kind":"polyhedron","vertices":[[x,y,z],..]}}, their hull, the origin inside
                or {{"kind":"polyhedron","solid":"cube"}}, any Platonic or Archimedean solid, of circumradius 1 or
-               "circumradius":R; boxes and polyhedra may have "rounding":r, a ball swept over them
+               "circumradius":R
+               or {{"kind":"cylinder","half_length":l,"radius":r}}, along z
+               or {{"kind":"cone","height":h,"radius":r}}, along z, the base at "base":z, by default -h/4
+               Kinds with edges may have "rounding":r, a ball swept over them
                or {{"kind":"half_space","normal":[x,y,z],"offset":d}}, by default z <= 0; one of the two bodies
   orientation  unit quaternion w, x, y, z from body to world; default: no rotation. A quaternion whose length differs
                from 1 by at most {:g} is normalized, with a notice in the answer if by more than {:g}

@@ -152,16 +152,31 @@ std::optional<ShapeRefusal> check_round(const ShapeConfig& shape) {
     return ShapeRefusal{"length",
                         fmt::format("{:g} to {:g}, 1/{:g} to {:g} diameters", least, most, thinnest, thinnest)};
   }
-  return check_rounding(shape, longest);
-}
-
-geom::Shape make_round_form(const ShapeConfig& shape, bool literal) {
-  return in_unit(round_shape(shape, first_factor(std::max(*shape.length, *shape.diameter), literal)), literal);
+  if (auto refused = check_rounding(shape, longest)) return refused;
+  try {
+    (void)round_shape(shape, first_factor(longest, false));
+    return std::nullopt;
+  } catch (const std::invalid_argument& error) {
+    return ShapeRefusal{"rounding", "a radius with which the centre of mass is well inside the cone",
+                        fmt::format(" ({})", error.what())};
+  }
 }
 
 /// Returns the length of a cylinder or cone.
 double length_of(const ShapeNumbers& numbers) {
   return (numbers.kind == ShapeKind::cylinder ? 2 : 1) * numbers.lengths.z();
+}
+
+geom::Shape make_round_form(const ShapeConfig& shape, bool literal) {
+  const double factor = first_factor(std::max(*shape.length, *shape.diameter), literal);
+  const ShapeNumbers numbers = numbers_of(body_shape(in_unit(round_shape(shape, factor), literal)));
+  // From the lengths in use, as a config that has these makes it.
+  ShapeConfig used;
+  used.kind = shape.kind;
+  used.length = length_of(numbers);
+  used.diameter = 2 * numbers.lengths.x();
+  used.rounding = numbers.rounding;
+  return round_shape(used, 1);
 }
 
 std::string round_keys(const ShapeNumbers& numbers) {

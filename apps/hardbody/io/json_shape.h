@@ -24,6 +24,8 @@ geom::Shape read_shape(const JsonMember& shape, ShapeKind kind);
 ///     "box"             "half_extents": [a, b, c], "rounding": r
 ///     "polyhedron"      "vertices": [[x, y, z], ..], "rounding": r
 ///     "polyhedron"      "solid": name (geom::solid_vertices), "circumradius": R, "rounding": r
+///     "cylinder"        "half_length": l, "radius": r, "rounding": r
+///     "cone"            "height": h, "radius": r, "base": z, "rounding": r
 ///
 /// Without "rounding" edges are sharp; "circumradius" is 1 by default. `also`: what else is accepted as a kind, in
 /// messages.

@@ -34,7 +34,7 @@ struct View {
   double box = 0;
   std::size_t number = 0;  ///< number of bodies in the system; fewer may be shown
   std::vector<ViewShape> shapes;
-  std::vector<SweptPolytope> polytopes;   ///< forms of capsules, boxes and polyhedra, of bounding radius 1
+  std::vector<SweptPolytope> polytopes;   ///< forms of capsules and of kinds with edges, of bounding radius 1
   std::vector<std::uint32_t> shape_of;    ///< index of the shape of each body shown
   std::vector<std::uint32_t> species_of;  ///< species of each body shown, from 0
   std::vector<ViewFrame> frames;

@@ -124,9 +124,9 @@ struct [[nodiscard]] DistanceResult {
 /// Cylinders, cones and rounded ones are CoreShapes, too: hulls of two discs. A point has a closed form, as has a face
 /// flat on the other body; other pairs that are apart take that algorithm with points that slide along the rims, by
 /// Newton's method, and end with the same two bounds. Of cores that overlap by less than 1e-9 of the size,
-/// `error_bound` is at most the depth, and mostly less: then the overlap is certain, however shallow. Deeper ones are
-/// searched over all normals: their depth is certified to `error_bound`, 1e-9 of the size, and takes a tenth of a
-/// millisecond to some milliseconds.
+/// `error_bound` is mostly less than the depth: then the overlap is certain, however shallow; else it is twice the
+/// depth. Deeper ones are searched over all normals: their depth is certified to `error_bound`, 1e-9 of the size, and
+/// takes a tenth of a millisecond to some milliseconds.
 ///
 /// A rounded shape (rounded.h) has the distance of the shape inside, less the radius, with the certificate of that. A
 /// sphere beside a smooth body is an ellipsoid with three equal semi-axes; a capsule has the distance of the ball on

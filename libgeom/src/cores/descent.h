@@ -77,9 +77,9 @@ class CoreDescent {
     return v;
   }
 
-  /// Takes n and the gap `gap` across it as the answer's, if both bounds agree with that gap: true then. n is that of
-  /// the closest point of the simplex: another normal whose gap is the same to rounding may be off by the square root
-  /// of that.
+  /// Returns whether the bounds agree with the gap across n; if so, takes both as the answer's. n is that of the
+  /// closest point of the simplex: another normal whose gap is the same to rounding may be off by the square root of
+  /// that.
   bool closes(const Eigen::Vector3d& n, double gap) {
     if (!(std::sqrt(best_.squared) - gap <= tolerance_)) return false;
     contact_.lower = gap;

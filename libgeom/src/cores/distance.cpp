@@ -49,7 +49,7 @@ DistanceResult core_distance(const CoreView& a, const Pose& X_WA, const CoreView
   const Vector3d y = gap - gap.dot(c.n) * c.n;
   result.point_a = X_WA.position() + (c.a + a.radius * c.n + 0.5 * y);
   result.point_b = result.point_a + result.distance * c.n;
-  result.residual = y.norm();
+  result.residual = c.depth_error > 0 ? bound : y.norm();
   result.error_bound = c.depth_error > 0 ? c.depth_error : bound;
   result.status = result.distance >= 0 ? DistanceStatus::separated : DistanceStatus::overlapping;
   return result;

@@ -319,7 +319,7 @@ bool slide(const RoundCore& a, const RoundCore& b, double size, CoreSimplex& sim
 
 void settle_points(const RoundCore& a, const RoundCore& b, double size, CoreContact& contact) {
   constexpr double kStays = 1e-15;
-  const double most = std::max(mismatch_of(contact), kStays * size);
+  constexpr double kOnSurface = 4e-15;
   const Vector3d point_a = settled(a, contact.a, contact.n);
   const Vector3d point_b = settled(b, contact.b, -contact.n);
   const bool moves_a = (point_a - contact.a).norm() > kStays * size;
@@ -328,7 +328,9 @@ void settle_points(const RoundCore& a, const RoundCore& b, double size, CoreCont
   moved.a = moves_b && !moves_a ? Vector3d(point_b - contact.lower * contact.n) : point_a;
   moved.b = moves_a && !moves_b ? Vector3d(point_a + contact.lower * contact.n) : point_b;
   if (!moves_a && !moves_b) return;
-  if (mismatch_of(moved) <= most && a.beyond(moved.a) <= most && b.beyond(moved.b) <= most) contact = moved;
+  const bool as_good = bound_of(moved) <= std::max(bound_of(contact), kStays * size) &&
+                       mismatch_of(moved) <= std::max(mismatch_of(contact), kStays * size);
+  if (as_good && a.beyond(moved.a) <= kOnSurface * size && b.beyond(moved.b) <= kOnSurface * size) contact = moved;
 }
 
 }  // namespace geom::kernel

@@ -162,7 +162,7 @@ void improve(const RoundCore& a, const RoundCore& b, double size, double bound, 
     far.lower = far.n.dot(difference_vertex(a, b, far.n).p);
     const double missing = mismatch_of(far);
     const bool slow = missing > kSlow * last && missing > kAgreement * size;
-    if (slow) distance = std::max({0.1 * distance, 10 * -lower, kNear * size});
+    if (slow) distance = std::min(distance, std::max({0.1 * distance, 10 * -lower, kNear * size}));
     last = missing;
     const bool turned = (far.n - n).squaredNorm() > kCoreRounding * kCoreRounding;
     if (far.lower >= lower - kCoreRounding * size) {
@@ -224,10 +224,12 @@ CoreContact overlapping(const CoreView& core_a, const RoundCore& a, const Matrix
                         const RoundCore& b, const Matrix3d& R_WB, double size, const CoreContact& near) {
   const bool matches = near.lower < 0 && mismatch_of(near) <= kBoundGap * size;
   const double certain = matches ? certain_depth(a, b, size, near) : 0;
-  // So shallow that no other normal tells more than the search could.
-  if (matches && -near.lower - certain <= kDepthGap * size) {
+  // Without a proof of an overlap the bodies are no further apart than the points are.
+  const double most_near = certain > 0 ? -certain : (near.b - near.a).norm();
+  // The proof is as tight as the search would be.
+  if (matches && most_near - near.lower <= kDepthGap * size) {
     CoreContact contact = near;
-    contact.depth_error = std::max(-near.lower - certain, kCoreRounding * size);
+    contact.depth_error = std::max(most_near - near.lower, kCoreRounding * size);
     return contact;
   }
   const CoreBody body_a = CoreBody(core_a, 0).bare();
@@ -244,7 +246,7 @@ CoreContact overlapping(const CoreView& core_a, const RoundCore& a, const Matrix
   double most = found.distance + found.error_bound;
   if (mismatch_of(near) <= kAgreement * size && near.lower >= contact.lower - kCoreRounding * size) {
     contact = near;
-    if (matches) most = std::min(most, -certain);
+    if (matches) most = std::min(most, most_near);
     contact.evaluations = found.iterations;
   } else {
     improve(a, b, size, std::numeric_limits<double>::infinity(), contact);

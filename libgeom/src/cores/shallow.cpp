@@ -35,6 +35,7 @@ class ShallowOverlap {
     missing_ = mismatch_of(contact) + 8 * kCoreRounding * size;
   }
 
+  /// Returns the certain depth; 0 if the origin is not found to be inside.
   double depth() {
     if (!(least_height_ > 0)) return 0;
     for (std::size_t k = 0; k < 3; ++k) {

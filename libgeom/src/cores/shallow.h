@@ -1,5 +1,7 @@
 #pragma once
 
+/// Proof that cores overlap, however little.
+
 #include "cores/contact.h"
 #include "cores/rims.h"
 

@@ -12,8 +12,9 @@ namespace hardbody {
 
 /// Returns a row of particles/type_shapes: {"type": "Ellipsoid", "a": .., "b": .., "c": ..}, semi-axes; for spheres
 /// {"type": "Sphere", "diameter": ..}; for capsules, boxes and polyhedra {"type": "ConvexPolyhedron",
-/// "rounding_radius": .., "vertices": [..]}, two vertices for a capsule; for superellipsoids such a polyhedron with
-/// vertices on the surface (fewer if there are many types); for users' own shapes {}.
+/// "rounding_radius": .., "vertices": [..]}, two vertices for a capsule; for cylinders and cones one with
+/// kRimVertices on each rim; for superellipsoids one with vertices on the surface (fewer if there are many types); for
+/// users' own shapes {}.
 std::string type_shape_json(const std::optional<ed::BodyShape>& shape, std::size_t types);
 
 /// Shape of a type.

@@ -87,6 +87,12 @@ class IndexRows {
     return index;
   }
 
+  /// Throws ValueError, naming the entry, unless both indices of a row, which have been read, are below `count`.
+  void check(std::size_t row, std::size_t first, std::size_t second, std::size_t count) const {
+    if (first >= count) refuse(row, 0, first, count);
+    if (second >= count) refuse(row, 1, second, count);
+  }
+
  private:
   [[noreturn]] void refuse(std::size_t row, std::size_t column, std::size_t index, std::size_t count) const;
 

@@ -193,14 +193,15 @@ class Distances {
     std::array<DistanceResult, kBlock> found;
   };
 
-  /// Reads the bodies of pairs, and asks for the memory of their poses.
+  /// Reads the bodies of pairs, unchecked, and asks for the memory of their poses.
   void read(std::size_t begin, std::size_t end, Indices& indices) const {
+    const auto take = [&](std::size_t row, std::size_t column, std::size_t& index) {
+      index = query_.pairs.unchecked(row, column);
+      if (index < query_.bodies.size()) query_.poses.prefetch(index);
+    };
     for (std::size_t row = begin; row < end; ++row) {
-      const std::size_t a = query_.a(row), b = query_.b(row);
-      query_.poses.prefetch(a);
-      query_.poses.prefetch(b);
-      indices.a[row - begin] = a;
-      indices.b[row - begin] = b;
+      take(row, 0, indices.a[row - begin]);
+      take(row, 1, indices.b[row - begin]);
     }
   }
 
@@ -215,6 +216,7 @@ class Distances {
       const std::size_t count = end_of(first) - first;
       read(first + count, end_of(first + count), block.indices[1 - turn]);
       for (std::size_t k = 0; k < count; ++k) {
+        query_.pairs.check(first + k, now.a[k], now.b[k], query_.bodies.size());
         const auto& shape_a = ellipsoids_[query_.bodies.shape_index(now.a[k])];
         const auto& shape_b = ellipsoids_[query_.bodies.shape_index(now.b[k])];
         block.pairs[k] = {&*shape_a, query_.poses.get(now.a[k], block.slots_a[k]), &*shape_b,
@@ -264,7 +266,11 @@ class Distances {
 
   std::size_t flush(Block& block) const {
     const std::size_t redone = block.count > 0 ? run_kernels(block, block.count) : 0;
-    for (std::size_t k = 0; k < block.count; ++k) out_.put(block.rows[k], std::span(&block.found[k], 1));
+    if (block.count > 0 && block.rows[block.count - 1] - block.rows[0] == block.count - 1) {
+      out_.put(block.rows[0], std::span(block.found).first(block.count));
+    } else {
+      for (std::size_t k = 0; k < block.count; ++k) out_.put(block.rows[k], std::span(&block.found[k], 1));
+    }
     block.count = 0;
     return redone;
   }

@@ -167,13 +167,11 @@ class FlatDirections {
         break;
       case geom::kernel::CoreKind::hull: {
         const auto& vertices = body.core->hull->vertices;
-        const Eigen::VectorXd heights = vertices * (R.transpose() * m);
-        Eigen::Index top = 0;
-        const double highest = heights.maxCoeff(&top);
-        for (Eigen::Index k = 0; k < heights.size(); ++k) {
-          if (k != top && highest - heights[k] <= kAcross * body.core_reach) {
-            add_if_across(R * (vertices.row(k) - vertices.row(top)).transpose());
-          }
+        const Vector3d seen = R.transpose() * m;
+        const Vector3d top = vertices.row(geom::kernel::support_vertex(*body.core->hull, seen)).transpose();
+        for (Eigen::Index k = 0; k < vertices.rows(); ++k) {
+          const Vector3d edge = vertices.row(k).transpose() - top;
+          if (std::abs(edge.dot(seen)) <= kAcross * body.core_reach) add_if_across(R * edge);
         }
         break;
       }
@@ -214,6 +212,7 @@ class FlatDirections {
 
 Vector3d turning_with_rims(const PlacedPair& pair, const ConvexFeatures& features, const Vector3d& n, double distance,
                            const PairVelocity& velocity) {
+  constexpr double kFlat = 1e-12;  // radius of curvature, in units of the bodies' reach, that is a kink
   const auto& [v, omega_a, omega_b] = velocity;
   if (features.count == 0) return Vector3d::Zero();
   FlatDirections flat(n);
@@ -231,6 +230,7 @@ Vector3d turning_with_rims(const PlacedPair& pair, const ConvexFeatures& feature
   const Matrix3d H_a = hessian_of_rims(pair.a, pair.R_a, n);
   const Matrix3d H_b = hessian_of_rims(pair.b, pair.R_b, -n);
   const Matrix3d H = H_a + H_b + std::max(0.0, distance) * Matrix3d::Identity();
+  const double least = kFlat * (pair.a.core_reach + pair.b.core_reach);
   const Vector3d x = v + omega_b.cross(features.point_b()) - omega_a.cross(features.point_a()) +
                      H_a * omega_a.cross(n) + H_b * omega_b.cross(n);
   // What is left is in the plane across n, and across the edge if there is one.
@@ -238,7 +238,7 @@ Vector3d turning_with_rims(const PlacedPair& pair, const ConvexFeatures& feature
   if (flat.count() == 1) {
     const Vector3d b = n.cross(flat.edge(0)).normalized();
     const double bend = b.dot(H * b);
-    return bend > 0 ? n.cross(fixed + b.dot(rest) / bend * b) : n.cross(fixed);
+    return bend > least ? n.cross(fixed + b.dot(rest) / bend * b) : n.cross(fixed);
   }
   const Vector3d p = n.unitOrthogonal();
   const Vector3d q = n.cross(p);
@@ -246,7 +246,7 @@ Vector3d turning_with_rims(const PlacedPair& pair, const ConvexFeatures& feature
   const double pq = p.dot(H * q);
   const double qq = q.dot(H * q);
   const double determinant = pp * qq - pq * pq;
-  if (!(determinant > 0)) return Vector3d::Zero();
+  if (!(determinant > least * (pp + qq))) return Vector3d::Zero();
   const double along_p = (qq * p.dot(rest) - pq * q.dot(rest)) / determinant;
   const double along_q = (pp * q.dot(rest) - pq * p.dot(rest)) / determinant;
   return n.cross(along_p * p + along_q * q);

@@ -161,7 +161,8 @@ struct PairVelocity {
   Eigen::Vector3d v, omega_a, omega_b;
 };
 
-/// Returns the same where a body has rims, along which its points roll when the normal turns.
+/// Returns the angular velocity across n of the normal of two bodies of which one has rims: points roll along rims as
+/// the normal turns.
 ///
 /// The support point of a body that turns with omega moves by H (n' - omega x n) in addition, H the Hessian of the
 /// support function: along directions that no edge fixes, (d + H_A + H_B) n' = x' + H_A (omega_A x n) + H_B (omega_B x

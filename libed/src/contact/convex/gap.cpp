@@ -109,6 +109,8 @@ geom::DistanceResult ConvexGap::ask(const State& s, const geom::DistanceOptions&
 /// of the gap are not made equal by that.
 bool ConvexGap::solve_by_features(const State& s, Vector3d& n, Evaluation& e) const {
   if (A_.own_distance || B_.own_distance) return false;
+  const PlacedPair pair = placed(s, s.r);
+  if (!pair.finite() && !pair.may_close()) return false;
   Vector3d normal = n;
   for (int move = 0; move < 3; ++move) {
     const double lower = sample(s, normal).g + balls_;

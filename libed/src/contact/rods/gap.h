@@ -80,8 +80,7 @@ class RodGap : private PairGapBase<Rod, AxisMotion> {
     e.step2 = e.decrement;
     e.step.setZero();
     e.sample = sample;
-    e.points = {std::copysign(s.a, sample.x_a), -std::copysign(s.b, sample.x_b), 0,
-                0};  // ends: the angle does not matter
+    e.points = {std::copysign(s.a, sample.x_a), -std::copysign(s.b, sample.x_b), 0, 0};  // ends need no angle
     e.distance = s.between(e.points).norm();
     return e;
   }

@@ -283,8 +283,8 @@ class RodTurnOf {
 };
 
 /// Returns a time, at most `horizon`, up to which there is certainly no contact of rods with the closest points `at`,
-/// `distance` apart along n, whose gap is g and which move at `speed` at most. A step
-/// that is enough(step) is not made longer.
+/// `distance` apart along n, whose gap is g and which move at `speed` at most. A step that is
+/// enough(step) is not made longer.
 template <class Real, class Vector, bool kSpin, class Enough>
 [[gnu::always_inline]] inline Real rod_step(const RodPairOf<Real, Vector, kSpin>& pair, const RodPointsOf<Real>& at,
                                             Real distance, const Vector& n, Real g, Real lift,
