@@ -251,6 +251,31 @@ def test_first_bad_entry_is_named_whatever_the_number_of_threads():
         for threads in (1, 2, 8):
             with pytest.raises(ValueError, match=r"positions\[40000\]"):
                 hb.distance_many(E, positions, None, some, threads=threads)
+            # A bad index behind a bad position is not named, one before it is.
+            bad = some.copy()
+            bad[40_033, 1] = 100_000
+            with pytest.raises(ValueError, match=r"positions\[40000\]"):
+                hb.distance_many(E, positions, None, bad, threads=threads)
+            bad[39_990, 0] = -1
+            with pytest.raises(ValueError, match=r"pairs\[39990, 0\] is -1"):
+                hb.distance_many(E, positions, None, bad, threads=threads)
+
+
+@pytest.mark.parametrize("threads", [1, 3])
+def test_many_answers_are_those_of_few(threads):
+    """Large results are stored past the caches, two numbers at once, from blocks that are read ahead."""
+    random = np.random.default_rng(2)
+    positions = 4 * np.arange(300)[:, None] * np.array([1.0, 0, 0]) + random.uniform(-1, 1, (300, 3))
+    quaternions = random.normal(size=(300, 4))
+    quaternions /= np.linalg.norm(quaternions, axis=1, keepdims=True)
+    pairs = np.stack([np.arange(299), np.arange(1, 300)], axis=1)
+    few = hb.distance_many(hb.Ellipsoid([1, 1, 2]), positions, quaternions, pairs)
+    rows = 40_001
+    which = np.resize(np.arange(299), rows)
+    many = hb.distance_many(hb.Ellipsoid([1, 1, 2]), positions, quaternions, pairs[which], threads=threads)
+    for name in ("distance", "normal", "point_a", "point_b", "error_bound", "residual", "iterations"):
+        np.testing.assert_array_equal(getattr(many, name), getattr(few, name)[which])
+    assert (np.asarray(many.status) == np.asarray(few.status)[which]).all()
 
 
 def test_bodies_in_no_pair_are_not_looked_at():

@@ -149,8 +149,7 @@ std::optional<ShapeRefusal> check_round(const ShapeConfig& shape) {
   const double least = *shape.diameter / thinnest;
   const double most = *shape.diameter * thinnest;
   if (!(*shape.length >= least && *shape.length <= most)) {
-    return ShapeRefusal{"length",
-                        fmt::format("{:g} to {:g}, 1/{:g} to {:g} diameters", least, most, thinnest, thinnest)};
+    return ShapeRefusal{"length", fmt::format("{0:g} to {1:g}, 1/{2:g} to {2:g} diameters", least, most, thinnest)};
   }
   if (auto refused = check_rounding(shape, longest)) return refused;
   try {
@@ -180,9 +179,8 @@ geom::Shape make_round_form(const ShapeConfig& shape, bool literal) {
 }
 
 std::string round_keys(const ShapeNumbers& numbers) {
-  return fmt::format("length = {}\ndiameter = {}\n", value_text(length_of(numbers)),
-                     value_text(2 * numbers.lengths.x())) +
-         rounding_keys(numbers.rounding);
+  return fmt::format("length = {}\ndiameter = {}\n{}", value_text(length_of(numbers)),
+                     value_text(2 * numbers.lengths.x()), rounding_keys(numbers.rounding));
 }
 
 std::string round_title(const ShapeConfig& shape) {
@@ -194,6 +192,11 @@ std::string round_title(const ShapeConfig& shape) {
 std::string round_lengths(const ed::BodyShape& shape) {
   const ShapeNumbers n = numbers_of(shape);
   return fmt::format("length {:.5g}, diameter {:.5g}", length_of(n), 2 * n.lengths.x()) + rounding_text(n.rounding);
+}
+
+ShapeForm round_form(ShapeKind kind) {
+  return {kind,         {{"length"}, {"diameter"}}, {"rounding"}, check_round, make_round_form, round_keys, round_title,
+          round_lengths};
 }
 
 std::optional<ShapeRefusal> check_box_form(const ShapeConfig& shape) {
@@ -347,22 +350,8 @@ const std::vector<ShapeForm>& forms() {
        polyhedron_keys,
        polyhedron_title,
        polyhedron_lengths},
-      {Kind::cylinder,
-       {{"length"}, {"diameter"}},
-       {"rounding"},
-       check_round,
-       make_round_form,
-       round_keys,
-       round_title,
-       round_lengths},
-      {Kind::cone,
-       {{"length"}, {"diameter"}},
-       {"rounding"},
-       check_round,
-       make_round_form,
-       round_keys,
-       round_title,
-       round_lengths},
+      round_form(Kind::cylinder),
+      round_form(Kind::cone),
   };
   return table;
 }
