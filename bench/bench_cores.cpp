@@ -95,10 +95,22 @@ void row(const char* name, const A& a, const B& b, double gap) {
 
 int main(int argc, char** argv) {
   const double gap = argc > 1 ? std::atof(argv[1]) : 0.3;
-  std::printf(
-      "gap %g, 512 pairs a row, features of all kinds; then, where they are built in, FCL and Coal: ns, largest error, "
-      "our time over theirs\n",
-      gap);
+  std::printf("gap %g, 512 pairs a row, features of all kinds; ratios are our time over theirs\n", gap);
+  const char* const libraries[] = {
+#ifdef HARDBODY_WITH_SEEDS
+      "FCL",
+#endif
+#ifdef HARDBODY_WITH_COAL
+      "Coal",
+#endif
+      nullptr};
+  std::printf("| pair | ns | largest error | failures |");
+  for (const char* const* name = libraries; *name != nullptr; ++name) {
+    std::printf(" %s, ns | %s, largest error | ratio |", *name, *name);
+  }
+  std::printf("\n|---|---|---|---|");
+  for (const char* const* name = libraries; *name != nullptr; ++name) std::printf("---|---|---|");
+  std::printf("\n");
   const geom::Sphere sphere(0.7);
   const geom::Capsule capsule(1, 0.5);
   const geom::Box box({0.5, 0.8, 1.1});

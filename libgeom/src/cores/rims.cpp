@@ -285,8 +285,8 @@ class Slide {
 /// Returns the point at the same height, in the direction that the outward normal n has across the axis; the same
 /// point if it is not on the round side of a frustum, or n is too nearly along the axis to tell the direction.
 Vector3d settled(const RoundCore& core, const Vector3d& x, const Vector3d& n) {
-  constexpr double kAcross = 1e-3;
-  constexpr double kNear = 1e-3;
+  constexpr double kAcross = 1e-3;  // least part of n across the axis
+  constexpr double kNear = 1e-3;    // farthest move, in units of the body
   if (!core.round()) return x;
   const Vector3d axis = core.axis();
   if (!((n - n.dot(axis) * axis).norm() > kAcross)) return x;

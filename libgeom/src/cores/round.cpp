@@ -132,9 +132,9 @@ CoreContact slid_back(const RoundCore& a, const RoundCore& b, double size, CoreS
 /// Of curved features the normals converge slowly, but lead to one from where a descent finds the answer.
 void improve(const RoundCore& a, const RoundCore& b, double size, double bound, CoreContact& contact) {
   constexpr int kMostMoves = 24;
-  constexpr double kSlow = 0.7;
-  constexpr double kLoss = 1e-5;
-  constexpr double kNear = 1e-8;
+  constexpr double kSlow = 0.7;   // share of the mismatch that is left by a move: then the next ones are shorter
+  constexpr double kLoss = 1e-5;  // of the mismatch that is gained, in the gap
+  constexpr double kNear = 1e-8;  // least distance, in units of the size
   Vector3d n = contact.n;
   double lower = contact.lower;
   double distance = 0.5 * size;
