@@ -227,15 +227,19 @@ def summary():
     machines = list(dict.fromkeys(row["machine"] for row in rows))
     yield "| | wanted | " + " | ".join(f"{machine} | " for machine in machines)
     yield "|---|---|" + "---|---|" * len(machines)
+    section = ""
     for text, benchmark, quantity, wanted, more in SHOWN:
         if benchmark is None:
-            yield f"| **{text}** | |" + " | |" * len(machines)
+            section = f"| **{text}** | |" + " | |" * len(machines)
             continue
         cells = []
         for machine in machines:
             row = next((r for r in rows if (r["benchmark"], r["quantity"], r["machine"]) == (benchmark, quantity, machine)), None)
             cells += [cell(row), verdict(row, wanted, more)] if row else ["", ""]
         if any(cells):
+            if section:
+                yield section
+                section = ""
             yield f"| {text} | {'' if wanted != wanted else shown(wanted)} | {' | '.join(cells)} |"
 
 

@@ -4,6 +4,7 @@
 
 #include "cores/contact.h"
 #include "cores/placed_core.h"
+#include "shapes/length_of.h"
 
 #include <geom/kernel/core.h>
 #include <geom/kernel/core_simplex.h>

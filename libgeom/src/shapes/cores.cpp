@@ -1,4 +1,5 @@
 #include "shapes/format.h"
+#include "shapes/length_of.h"
 #include "shapes/lengths.h"
 
 #include <geom/box.h>

@@ -10,7 +10,6 @@
 #include <Eigen/Core>
 
 #include <array>
-#include <cmath>
 #include <concepts>
 #include <vector>
 
@@ -50,12 +49,6 @@ struct CoreView {
   double radius = 0;                               ///< radius of the swept ball
   double bounding_radius = 0;                      ///< distance of the furthest point of the core from the origin
 };
-
-/// Returns the length of (x, y): std::hypot, which is slow, only where squares might leave the range of doubles.
-inline double length_of(double x, double y) {
-  const double square = x * x + y * y;
-  return square > 1e-200 && square < 1e200 ? std::sqrt(square) : std::hypot(x, y);
-}
 
 /// Returns the vertex (row) of a hull that is furthest along n.
 GEOM_EXPORT int support_vertex(const Hull& hull, const Eigen::Vector3d& n);
