@@ -155,22 +155,13 @@ class Distances {
  public:
   Distances(const PairQuery& query, const geom::DistanceOptions& options, const Columns& out)
       : query_(query), options_(options), out_(out) {
-    for (const geom::Shape& shape : query.bodies.shapes()) {
-      ellipsoids_.push_back(as_ellipsoid(shape));
-      only_ellipsoids_ = only_ellipsoids_ && ellipsoids_.back();
-    }
+    for (const geom::Shape& shape : query.bodies.shapes()) ellipsoids_.push_back(as_ellipsoid(shape));
   }
 
   /// Returns work on ranges of the pairs, with memory of its own.
   Work work() {
-    return [this, block = std::make_shared<Block>()](std::size_t begin, std::size_t end) {
-      if (only_ellipsoids_) {
-        answer_ellipsoids(begin, end, *block);
-      } else {
-        answer(begin, end, *block);
-      }
-      _mm_sfence();  // other threads see what was streamed once this one has ended its work
-    };
+    return
+        [this, block = std::make_shared<Block>()](std::size_t begin, std::size_t end) { answer(begin, end, *block); };
   }
 
   /// Returns the number of pairs that the kernels did not answer.
@@ -183,8 +174,7 @@ class Distances {
   };
 
   struct Block {
-    std::size_t count = 0;
-    std::array<std::size_t, kBlock> rows;
+    std::array<std::size_t, kBlock> rows;  ///< row of each pair of ellipsoids
     std::array<Indices, 2> indices;
     std::array<geom::EllipsoidPair, kBlock> pairs;
     std::array<Eigen::Vector3d, kBlock> starts;
@@ -205,81 +195,65 @@ class Distances {
     }
   }
 
-  /// Answers pairs of which all bodies are ellipsoids. The next block is read before one is answered.
-  void answer_ellipsoids(std::size_t begin, std::size_t end, Block& block) {
+  /// Answers pairs in blocks; the next block is read before one is answered.
+  void answer(std::size_t begin, std::size_t end, Block& block) {
     const auto end_of = [end](std::size_t first) { return std::min(end, first + kBlock); };
     std::size_t redone = 0;
     std::size_t turn = 0;
     read(begin, end_of(begin), block.indices[0]);
     for (std::size_t first = begin; first < end; first = end_of(first), turn = 1 - turn) {
-      const Indices& now = block.indices[turn];
       const std::size_t count = end_of(first) - first;
       read(first + count, end_of(first + count), block.indices[1 - turn]);
-      for (std::size_t k = 0; k < count; ++k) {
-        query_.pairs.check(first + k, now.a[k], now.b[k], query_.bodies.size());
-        const auto& shape_a = ellipsoids_[query_.bodies.shape_index(now.a[k])];
-        const auto& shape_b = ellipsoids_[query_.bodies.shape_index(now.b[k])];
-        block.pairs[k] = {&*shape_a, query_.poses.get(now.a[k], block.slots_a[k]), &*shape_b,
-                          query_.poses.get(now.b[k], block.slots_b[k])};
-        if (query_.starts) block.starts[k] = query_.start(first + k);
-      }
-      redone += run_kernels(block, count);
-      out_.put(first, std::span(block.found).first(count));
+      redone += answer_block(first, count, block.indices[turn], block);
     }
     redone_ += redone;
+    _mm_sfence();  // other threads see what was streamed once this one has ended its work
   }
 
-  /// Answers pairs of any bodies.
-  void answer(std::size_t begin, std::size_t end, Block& block) {
-    block.count = 0;
-    std::size_t redone = 0;
-    for (std::size_t row = begin; row < end; ++row) {
-      const std::size_t a = query_.a(row), b = query_.b(row), k = block.count;
+  /// Answers a block; returns the number of pairs that the kernels did not answer.
+  std::size_t answer_block(std::size_t first, std::size_t count, const Indices& bodies, Block& block) const {
+    std::size_t ellipsoids = 0;
+    for (std::size_t k = 0; k < count; ++k) {
+      const std::size_t a = bodies.a[k], b = bodies.b[k];
+      query_.pairs.check(first + k, a, b, query_.bodies.size());
       const auto& shape_a = ellipsoids_[query_.bodies.shape_index(a)];
       const auto& shape_b = ellipsoids_[query_.bodies.shape_index(b)];
       const Pose* const X_WA = query_.poses.get(a, block.slots_a[k]);
       const Pose* const X_WB = query_.poses.get(b, block.slots_b[k]);
-      if (shape_a && shape_b) {
-        block.pairs[k] = {&*shape_a, X_WA, &*shape_b, X_WB};
-        block.rows[k] = row;
-        if (query_.starts) block.starts[k] = query_.start(row);
-        if (++block.count == kBlock) redone += flush(block);
-      } else {
-        geom::DistanceOptions options = options_;
-        options.start = query_.start(row);
-        const DistanceResult found =
-            geom::distance(query_.bodies.shape(a), *X_WA, query_.bodies.shape(b), *X_WB, options);
-        out_.put(row, std::span(&found, 1));
-        ++redone;
+      if (!shape_a || !shape_b) {
+        put_one(first + k, a, *X_WA, b, *X_WB);
+        continue;
       }
+      block.pairs[ellipsoids] = {&*shape_a, X_WA, &*shape_b, X_WB};
+      block.rows[ellipsoids] = first + k;
+      if (query_.starts) block.starts[ellipsoids] = query_.start(first + k);
+      ++ellipsoids;
     }
-    redone_ += redone + flush(block);
-  }
-
-  /// Answers the first pairs of a block; returns the number that the kernels left to distance().
-  std::size_t run_kernels(Block& block, std::size_t count) const {
+    if (ellipsoids == 0) return count;
     geom::BatchOptions options{.max_iterations = options_.max_iterations, .penetration = options_.penetration};
-    if (query_.starts) options.starts = std::span(block.starts).first(count);
-    return geom::distance_batch(std::span(block.pairs).first(count), std::span(block.found).first(count), options)
-        .redone;
+    if (query_.starts) options.starts = std::span(block.starts).first(ellipsoids);
+    const std::span found = std::span(block.found).first(ellipsoids);
+    const std::size_t redone = geom::distance_batch(std::span(block.pairs).first(ellipsoids), found, options).redone;
+    if (ellipsoids == count) {
+      out_.put(first, found);
+    } else {
+      for (std::size_t k = 0; k < ellipsoids; ++k) out_.put(block.rows[k], found.subspan(k, 1));
+    }
+    return redone + (count - ellipsoids);
   }
 
-  std::size_t flush(Block& block) const {
-    const std::size_t redone = block.count > 0 ? run_kernels(block, block.count) : 0;
-    if (block.count > 0 && block.rows[block.count - 1] - block.rows[0] == block.count - 1) {
-      out_.put(block.rows[0], std::span(block.found).first(block.count));
-    } else {
-      for (std::size_t k = 0; k < block.count; ++k) out_.put(block.rows[k], std::span(&block.found[k], 1));
-    }
-    block.count = 0;
-    return redone;
+  /// Answers a pair of other bodies.
+  void put_one(std::size_t row, std::size_t a, const Pose& X_WA, std::size_t b, const Pose& X_WB) const {
+    geom::DistanceOptions options = options_;
+    options.start = query_.start(row);
+    const DistanceResult found = geom::distance(query_.bodies.shape(a), X_WA, query_.bodies.shape(b), X_WB, options);
+    out_.put(row, std::span(&found, 1));
   }
 
   const PairQuery& query_;
   const geom::DistanceOptions& options_;
   const Columns& out_;
   std::vector<std::optional<Ellipsoid>> ellipsoids_;
-  bool only_ellipsoids_ = true;
   std::atomic<std::size_t> redone_ = 0;
 };
 
