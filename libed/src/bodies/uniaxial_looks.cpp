@@ -80,10 +80,13 @@ void UniaxialLooks::read(int lane, PairLook& look, FinderCounters& count) const 
   const double verdict = out_.rows[LookOutput::verdict][lane];
   if (verdict == LookOutput::open) return;
   const double kernel_calls = out_.rows[LookOutput::kernel_calls][lane];
+  const bool contact = verdict == LookOutput::contact;
   look.answered = true;
-  look.finding = verdict == LookOutput::clear ? Finding{Outcome::clear, look.end}
-                                              : Finding{Outcome::bound, out_.rows[LookOutput::time][lane]};
-  if (kernel_calls > 1) {
+  look.finding = {Outcome::clear, look.end};
+  if (verdict != LookOutput::clear) {
+    look.finding = {contact ? Outcome::contact : Outcome::bound, out_.rows[LookOutput::time][lane]};
+  }
+  if (contact || kernel_calls > 1) {
     for (int k = 0; k < 3; ++k) look.pair->normal[k] = out_.rows[LookOutput::normal + k][lane];
   }
   ++count.predictions;

@@ -27,13 +27,6 @@ std::int32_t NeighbourLists::add(std::int32_t i, std::int32_t j, const Eigen::Ve
   return index;
 }
 
-void NeighbourLists::remove(std::int32_t index) {
-  const Pair p = pair(index);
-  unlink(p.i, p.slot_i);
-  unlink(p.j, p.slot_j);
-  free_.push_back(index);
-}
-
 std::size_t NeighbourLists::reserve() {
   std::size_t longest = 0;
   for (const std::uint32_t length : lengths_) longest = std::max(longest, std::size_t{length});

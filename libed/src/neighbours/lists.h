@@ -39,7 +39,18 @@ class NeighbourLists {
 
   /// Adds a pair of neighbours, owned by i, and returns its index.
   std::int32_t add(std::int32_t i, std::int32_t j, const Eigen::Vector3d& normal);
-  void remove(std::int32_t index);
+  /// Removes all pairs of a body, in the order of its list, each after `removing(index, partner)`.
+  template <class Removing>
+  void drop(std::int32_t body, const Removing& removing) {
+    for (const std::int32_t index : of(body)) {
+      const Pair& p = pair(index);
+      const std::int32_t partner = p.partner(body);
+      removing(index, partner);
+      unlink(partner, p.i == partner ? p.slot_i : p.slot_j);
+      free_.push_back(index);
+    }
+    lengths_[static_cast<std::size_t>(body)] = 0;
+  }
 
   /// Makes room for lists to become twice as long as the longest is now, so that none has to grow while a run goes on.
   /// Returns that length.

@@ -16,9 +16,9 @@
 namespace ed::internal {
 
 UniaxialKernels HARDBODY_UNIAXIAL_KERNELS() {
-  return {.spheroids = {look<Pairs<false>>, look<Pairs<true>>, overlap<false>},
-          .rods = {look<RodPairs<false>>, look<RodPairs<true>>, overlap<true>},
-          .spheres = {look_spheres, look_spheres, overlap<true>}};
+  return {.spheroids = {look<Pairs<false>>, look<Pairs<true>>, overlap<Family::spheroids>},
+          .rods = {look<RodPairs<false>>, look<RodPairs<true>>, overlap<Family::rods>},
+          .spheres = {look_spheres, look_spheres, overlap<Family::spheres>}};
 }
 
 }  // namespace ed::internal

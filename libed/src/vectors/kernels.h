@@ -70,8 +70,8 @@ struct LookInput {
 struct LookOutput {
   enum Row {
     verdict = 0,
-    time = 1,          ///< time of a bound
-    kernel_calls = 2,  ///< 0: the bounding spheres do not meet; 1: the normal is as it was
+    time = 1,          ///< time of a bound or a contact
+    kernel_calls = 2,  ///< 0: the bounding spheres do not meet; 1: the normal is as it was, but for a contact
     normal = 3,
     count = 6,
   };
@@ -79,6 +79,7 @@ struct LookOutput {
   static constexpr double open = 0;  ///< unanswered: the other rows mean nothing
   static constexpr double clear = 1;
   static constexpr double bound = 2;
+  static constexpr double contact = 3;
   alignas(64) LookRow rows[count];
 };
 

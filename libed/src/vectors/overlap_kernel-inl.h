@@ -14,6 +14,9 @@ HWY_BEFORE_NAMESPACE();
 namespace ed::internal {
 namespace {
 
+/// Families of bodies; spheres are rods without a length.
+enum class Family { spheroids, rods, spheres };
+
 struct Envelope {
   Shape shape;
   Real3 axis;
@@ -72,6 +75,27 @@ HWY_INLINE RodEnvelopesOf<Real, Real3> rods_of(const Envelope& a, const Other& o
   return {a.shape.a2, b.shape.a2, a.shape.b2 + b.shape.b2, other.r, a.axis, b.axis};
 }
 
+/// Two spheres in dilated envelopes, as RodEnvelopesOf does rods of no length.
+struct SphereEnvelopes {
+  Real balls;  ///< sum of the radii
+  Real3 r;
+
+  HWY_INLINE Lanes apart_along_centres(Real limit) const {
+    const Real r2 = r.squaredNorm();
+    return r2 > (balls + limit) * sqrt(r2);
+  }
+  /// Returns the direction of r, that of A's axis where the centres coincide, and sets the gap along it.
+  HWY_INLINE Real3 normal(const Real3& axis, Real& gap) const {
+    const Real length2 = r.squaredNorm();
+    const Real3 n = select(length2 > 0, (1 / sqrt(length2)) * r, axis);
+    gap = n.dot(r) - balls;
+    return n;
+  }
+};
+HWY_INLINE SphereEnvelopes spheres_of(const Envelope& a, const Other& other) {
+  return {a.shape.b2 + other.envelope.shape.b2, other.r};
+}
+
 /// The Newton step with its length capped, as set_step in geom/kernel/dual_newton.h. `definite`: where it is one.
 HWY_INLINE Step capped_step(const Envelope& a, const Envelope& b, const Real3& r, const Real3& n, const Gap& gap,
                             Lanes& definite) {
@@ -84,11 +108,17 @@ HWY_INLINE Step capped_step(const Envelope& a, const Envelope& b, const Real3& r
 }
 
 /// Bodies whose gap along the line of centres does not tell them apart.
-template <bool kRods>
+template <Family kFamily>
 HWY_INLINE void overlap_closely(const Envelope& a, const Other& other, Real limit, OverlapOutput& out, int lane) {
-  if constexpr (kRods) {
+  if constexpr (kFamily != Family::spheroids) {
     Real gap;
-    store3(rods_of(a, other).normal(gap), out.rows + OverlapOutput::normal, lane);
+    Real3 n;
+    if constexpr (kFamily == Family::rods) {
+      n = rods_of(a, other).normal(gap);
+    } else {
+      n = spheres_of(a, other).normal(a.axis, gap);
+    }
+    store3(n, out.rows + OverlapOutput::normal, lane);
     store(select(gap > limit, OverlapOutput::apart, OverlapOutput::overlapping), out.rows[OverlapOutput::verdict],
           lane);
     return;
@@ -119,7 +149,7 @@ HWY_INLINE void overlap_closely(const Envelope& a, const Other& other, Real limi
 }
 
 /// Lanes of bodies that count and are not told apart by the gap along the line of centres, a bit each.
-template <bool kRods>
+template <Family kFamily>
 HWY_INLINE unsigned close_lanes(const OverlapInput& in, const Envelope& a, const Other& other) {
   const hn::RebindToSigned<Tag> places;
   const auto body = hn::And(hn::BitCast(places, other.name.v), hn::Set(places, std::int64_t{0xFFFFFFFF}));
@@ -127,8 +157,10 @@ HWY_INLINE unsigned close_lanes(const OverlapInput& in, const Envelope& a, const
                            hn::Lt(body, hn::Set(places, std::int64_t{in.first})));
   const Envelope& b = other.envelope;
   Lanes apart;
-  if constexpr (kRods) {
+  if constexpr (kFamily == Family::rods) {
     apart = rods_of(a, other).apart_along_centres(Real(in.limit));
+  } else if constexpr (kFamily == Family::spheres) {
+    apart = spheres_of(a, other).apart_along_centres(in.limit);
   } else {
     apart = apart_along_centres(a.shape, b.shape, a.axis, b.axis, other.r, Real(in.limit));
   }
@@ -137,7 +169,7 @@ HWY_INLINE unsigned close_lanes(const OverlapInput& in, const Envelope& a, const
   return bits[0];
 }
 
-template <bool kOneKind, bool kRods>
+template <bool kOneKind, Family kFamily>
 HWY_INLINE void overlap_all(const OverlapInput& in, OverlapOutput& out) {
   const DilatedEnvelope& one = in.envelopes[in.one];
   const double* const shape = in.shapes[one.kind].numbers;
@@ -154,7 +186,7 @@ HWY_INLINE void overlap_all(const OverlapInput& in, OverlapOutput& out) {
   candidates.fill_up(in.count);
   int count = 0;
   for (int lane = 0; lane < in.count; lane += kLanes) {
-    const unsigned close = close_lanes<kRods>(in, a, load_other<kOneKind>(in, a, candidates, lane));
+    const unsigned close = close_lanes<kFamily>(in, a, load_other<kOneKind>(in, a, candidates, lane));
     // Few are left: they are moved together. Moved always and kept if it counts: no branch on what cannot be predicted.
     const int end = HWY_MIN(in.count, lane + kLanes);
     for (int k = lane; k < end; ++k) {
@@ -167,13 +199,13 @@ HWY_INLINE void overlap_all(const OverlapInput& in, OverlapOutput& out) {
   if (count == 0) return;
   candidates.fill_up(count);
   for (int lane = 0; lane < count; lane += kLanes) {
-    overlap_closely<kRods>(a, load_other<kOneKind>(in, a, candidates, lane), in.limit, out, lane);
+    overlap_closely<kFamily>(a, load_other<kOneKind>(in, a, candidates, lane), in.limit, out, lane);
   }
 }
 
-template <bool kRods>
+template <Family kFamily>
 void overlap(const OverlapInput& in, OverlapOutput& out) {
-  in.one_kind ? overlap_all<true, kRods>(in, out) : overlap_all<false, kRods>(in, out);
+  in.one_kind ? overlap_all<true, kFamily>(in, out) : overlap_all<false, kFamily>(in, out);
 }
 
 }  // namespace

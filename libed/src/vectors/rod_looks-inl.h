@@ -100,17 +100,26 @@ HWY_INLINE void second_pass(RodPairs<kSpin>& p, int pairs, LookOutput& out, int 
   SecondLook{clear, bound, until, 2, p.n}.store_in(out, lane);
 }
 
-/// Looks at spheres: all but contacts are answered, as sphere_contact does.
+/// Looks at spheres as sphere_contact does; those that overlap are left open.
 void look_spheres(const LookInput& in, int pairs, LookOutput& out) {
   const Real now = in.now;
   for (int lane = 0; lane < pairs; lane += kLanes) {
     const SphereCourse a(in.body_a + lane, now);
     const SphereCourse b(in.body_b + lane, now);
     const Real3 r = nearest_image(b.position - a.position, in.box);
-    const SpheresOf<Real> spheres(r, b.velocity - a.velocity, load(in.rows[LookInput::reach], lane));
+    const Real3 v = b.velocity - a.velocity;
+    const SpheresOf<Real> spheres(r, v, load(in.rows[LookInput::reach], lane));
     const Lanes clear = spheres.clear(now, load(in.rows[LookInput::end], lane));
-    store(select(clear, LookOutput::clear, LookOutput::open), out.rows[LookOutput::verdict], lane);
+    const Real tau = select(spheres.touch(), 0.0, spheres.time());
+    const Real3 between = r + tau * v;
+    const Real distance = sqrt(between.squaredNorm());
+    const Lanes contact = (distance > 0) & !(clear | spheres.overlap());
+    const Real found = select(contact, LookOutput::contact, LookOutput::open);
+    store(select(clear, LookOutput::clear, found), out.rows[LookOutput::verdict], lane);
+    store(now + tau, out.rows[LookOutput::time], lane);
     store(1, out.rows[LookOutput::kernel_calls], lane);
+    store3({between.x() / distance, between.y() / distance, between.z() / distance}, out.rows + LookOutput::normal,
+           lane);
   }
 }
 

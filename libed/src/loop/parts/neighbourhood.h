@@ -76,11 +76,7 @@ class Neighbourhood {
   /// Removes all pairs of body i, after `removing(index, partner)`.
   template <class Removing>
   void drop_list(int i, const Removing& removing) {
-    old_pairs_.assign(lists_.of(i).begin(), lists_.of(i).end());
-    for (const std::int32_t index : old_pairs_) {
-      removing(index, lists_.pair(index).partner(i));
-      lists_.remove(index);
-    }
+    lists_.drop(i, removing);
   }
   /// Makes the list of body i, which has none.
   void find_list(int i, double now) { counters_.candidate_tests += add_pairs(i, now, 0); }
@@ -107,7 +103,6 @@ class Neighbourhood {
   /// Returns the length of lists that have room.
   std::size_t reserve() {
     const std::size_t longest = lists_.reserve();
-    old_pairs_.reserve(longest);
     overlapping_.reserve(longest);
     // Candidates are two to three times as many as neighbours.
     near_.resize(std::max(near_.size(), 2 * longest + kCandidatesReserved));
@@ -163,7 +158,6 @@ class Neighbourhood {
   // Room for the list of one body.
   std::vector<NearBody> near_;
   std::vector<OverlappingEnvelope> overlapping_;
-  std::vector<std::int32_t> old_pairs_;
 };
 
 }  // namespace ed::internal

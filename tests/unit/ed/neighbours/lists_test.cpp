@@ -52,6 +52,20 @@ void expect_consistent(const NeighbourLists& lists, const std::map<std::int32_t,
   }
 }
 
+/// Drops the list of a body from both, and tests what it says to the callback.
+void drop(NeighbourLists& lists, int body, std::map<std::int32_t, std::pair<int, int>>& model) {
+  const std::vector<std::int32_t> list(lists.of(body).begin(), lists.of(body).end());
+  std::vector<std::int32_t> removed;
+  lists.drop(body, [&](std::int32_t index, std::int32_t partner) {
+    const auto [i, j] = model.at(index);
+    EXPECT_EQ(partner, i == body ? j : i);
+    EXPECT_EQ(lists.pair(index).partner(body), partner) << "the pair is removed afterwards";
+    removed.push_back(index);
+    model.erase(index);
+  });
+  EXPECT_EQ(removed, list) << "in the order of the list";
+}
+
 TEST(NeighbourLists, AgreesWithASetOfPairsThroughRandomChanges) {
   constexpr int kNumber = 12;
   ed::Random random(21);
@@ -60,7 +74,7 @@ TEST(NeighbourLists, AgreesWithASetOfPairsThroughRandomChanges) {
   std::set<std::pair<int, int>> present;
   for (int change = 0; change < 3000; ++change) {
     // Between nearly empty and nearly full.
-    const bool adding = random.uniform() < (change / 500 % 2 == 0 ? 0.7 : 0.3);
+    const bool adding = random.uniform() < (change / 500 % 2 == 0 ? 0.95 : 0.7);
     if (adding) {
       const int i = static_cast<int>(random.uniform() * kNumber);
       const int j = static_cast<int>(random.uniform() * kNumber);
@@ -71,12 +85,10 @@ TEST(NeighbourLists, AgreesWithASetOfPairsThroughRandomChanges) {
       EXPECT_EQ(lists.pair(index).normal, normal);
       model[index] = {i, j};
       present.insert(std::minmax(i, j));
-    } else if (!model.empty()) {
-      const auto skip = static_cast<std::ptrdiff_t>(random.uniform() * static_cast<double>(model.size()));
-      const auto victim = std::next(model.begin(), skip);
-      lists.remove(victim->first);
-      present.erase(std::minmax(victim->second.first, victim->second.second));
-      model.erase(victim);
+    } else {
+      const int body = static_cast<int>(random.uniform() * kNumber);
+      drop(lists, body, model);
+      std::erase_if(present, [body](const auto& pair) { return pair.first == body || pair.second == body; });
     }
     ASSERT_NO_FATAL_FAILURE(expect_consistent(lists, model));
   }
@@ -88,7 +100,7 @@ TEST(NeighbourLists, ANewPairKnowsNothingEvenWhereAnOldOneStood) {
   lists.pair(first).time = 3;
   lists.pair(first).event = PairEvent::contact;
   lists.pair(first).owner = 1;
-  lists.remove(first);
+  lists.drop(0, [](std::int32_t, std::int32_t) {});
   const std::int32_t second = lists.add(2, 1, Vector3d::UnitY());
   EXPECT_EQ(second, first) << "the place of a removed pair is used again: the pool does not grow for ever";
   EXPECT_EQ(lists.pair(second).time, kNever);
@@ -118,8 +130,7 @@ TEST(NeighbourLists, HoldOneThatIsMuchLongerThanTheOthers) {
     while (static_cast<int>(read.of(0).size()) > few) {
       const auto list = read.of(0);
       const std::int32_t index = list[random.bits() % list.size()];
-      read.remove(index);
-      model.erase(index);
+      drop(read, read.pair(index).partner(0), model);
       if (read.of(0).size() % 16 == 0) {
         ASSERT_NO_FATAL_FAILURE(expect_consistent(read, model));
       }
@@ -131,6 +142,10 @@ TEST(NeighbourLists, HoldOneThatIsMuchLongerThanTheOthers) {
     }
     ASSERT_NO_FATAL_FAILURE(expect_consistent(read, model));
   }
+  drop(read, 0, model);
+  ASSERT_NO_FATAL_FAILURE(expect_consistent(read, model));
+  for (int j = 1; j < kNumber; ++j) model[read.add(0, j, Vector3d::UnitX())] = {0, j};
+  ASSERT_NO_FATAL_FAILURE(expect_consistent(read, model));
 }
 
 /// A list that claims more than there are pairs costs no memory before it is refused.

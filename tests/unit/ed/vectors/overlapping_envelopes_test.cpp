@@ -41,6 +41,7 @@ struct Tally {
 
 OverlapKernel* kernel_of(const UniaxialBodies& bodies, geom::InstructionSet set) {
   const UniaxialKernels found = find_uniaxial_kernels(set);
+  if (bodies.all_spheres()) return found.spheres.overlap;
   return bodies.rods() ? found.rods.overlap : found.spheroids.overlap;
 }
 
@@ -102,6 +103,11 @@ TEST(Meetings, OfCapsulesAndSpheresAreThoseOfOnePair) {
   expect_same_overlaps({uniform_species(geom::Capsule(2, 0.5))});
   expect_same_overlaps({uniform_species(geom::Capsule(2, 0.5)), uniform_species(geom::Capsule(0.1, 1)),
                         uniform_species(geom::Sphere(0.4))});
+}
+
+TEST(Meetings, OfSpheresAreThoseOfOnePair) {
+  expect_same_overlaps({uniform_species(geom::Sphere(1))});
+  expect_same_overlaps({uniform_species(geom::Sphere(1.5)), uniform_species(geom::Sphere(0.4))});
 }
 
 }  // namespace
