@@ -106,9 +106,25 @@ def is_named(message, arguments, other_words):
     )
 
 
+class Call:
+    """Function by name, its arguments, and the names of those that are bad. Its text is there whatever theirs raises."""
+
+    def __init__(self, name, function, arguments, changed):
+        self.name, self.function, self.arguments, self.changed = name, function, arguments, changed
+
+    def __repr__(self):
+        def text(value):
+            try:
+                return repr(value)
+            except Exception as error:
+                return f"<{type(value).__name__} whose repr raises {type(error).__name__}>"
+
+        return f"{self.name}({', '.join(f'{key}={text(self.arguments[key])}' for key in self.changed)})"
+
+
 @st.composite
 def bad_calls(draw, functions, values=lambda name: junk, alone=()):
-    """One of these functions with its arguments, of which one or two are bad, and their names.
+    """Call of one of these functions with its arguments, of which one or two are bad.
 
     values: strategy of an argument's bad values. alone: arguments beside which no other is changed.
     """
@@ -116,15 +132,14 @@ def bad_calls(draw, functions, values=lambda name: junk, alone=()):
     function, arguments = functions[name]
     changed = draw(st.lists(st.sampled_from(sorted(arguments)), min_size=1, max_size=2, unique=True))
     changed = [key for key in changed if key in alone] or changed
-    return name, function, {**arguments, **{key: draw(values(key)) for key in changed}}, changed
+    return Call(name, function, {**arguments, **{key: draw(values(key)) for key in changed}}, changed)
 
 
 def check_refusal(call, other_words, errors):
     """Makes a call, which may succeed. An exception of these kinds has to name an argument that was changed."""
-    name, function, arguments, changed = call
     try:
-        function(**arguments)
+        call.function(**call.arguments)
     except ZeroDivisionError as error:
         assert str(error) in ("no number", "no text")
     except errors as error:
-        assert is_named(str(error), changed, other_words), f"{name}, {changed}: {error}"
+        assert is_named(str(error), call.changed, other_words), f"{call.name}, {call.changed}: {error}"

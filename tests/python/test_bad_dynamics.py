@@ -121,8 +121,9 @@ OTHER_WORDS = {
     "box": r"^positions\[\d\] is .* boxes of the origin",
     "factor": r"semi-axis [xyz] is",
     "mass": r"^inertia is .* all mass at the bounding radius",
-    # Radii are the object's.
-    "object": r"accepted: an object with a method support|^shape mine: volume is .* bounding sphere$",
+    # Radii and symmetries are the object's, which its name stands for.
+    "object": r"accepted: an object with a method support|^mine\.\w+ is missing"
+    r"|^shape mine: (volume is .* bounding sphere$|symmetry_axis is .* changes the support height)",
     "components": r"number of bodies is|and body \d+ is ellipsoid of semi-axes|number is \d+|"
     r"bodies of its types, the config|accepted: .* components",
     "species": r"^species_of\[\d+\] is",
@@ -160,7 +161,7 @@ def test_bad_arguments_are_named(call):
     try:
         check_refusal(call, OTHER_WORDS, (ValueError, TypeError, MemoryError, OSError))
     except RuntimeError as error:
-        assert "progress returned False" in str(error) or "compression" in str(error), f"{call[0]}: {error}"
+        assert "progress returned False" in str(error) or "compression" in str(error), f"{call.name}: {error}"
 
 
 def test_uninitialised_objects_are_refused():
