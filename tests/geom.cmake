@@ -13,6 +13,7 @@ hardbody_test(geom_unit_test unit
   unit/geom/cores/exact_side_test.cpp
   unit/geom/cores/half_space_test.cpp
   unit/geom/cores/round_distance_test.cpp
+  unit/geom/cores/special_positions_test.cpp
   unit/geom/cores/swept_mass_test.cpp
   unit/geom/cores/polyhedron_test.cpp
   unit/geom/contact_elements_test.cpp

@@ -22,9 +22,9 @@ LIBRARIES = {
         "order": "shapes < dual < norm, cores < paper, batch < any",
         "public": ("geom", {
             "shapes": "box capsule check_support ellipsoid export mass obb polyhedron pose round_shapes shape solids sphere superellipsoid tolerances "
-                      "kernel/core kernel/eigen_layout kernel/hessian_sum kernel/lane_norms kernel/lanes kernel/mass_impl kernel/nested_norm kernel/norm_bodies kernel/refuse "
+                      "kernel/core kernel/eigen_layout kernel/lane_norms kernel/lanes kernel/mass_impl kernel/nested_norm kernel/norm_bodies kernel/refuse "
                       "kernel/small_solve",
-            "dual": "distance kernel/distance_impl kernel/dual_newton kernel/perram_wertheim kernel/simplex_descent "
+            "dual": "distance kernel/distance_impl kernel/dual_newton kernel/meridian_search kernel/perram_wertheim kernel/simplex_descent "
                     "kernel/sphere_search kernel/swept_impl kernel/uniaxial kernel/uniaxial_pair",
             "norm": "kernel/norm_body_pair",
             "cores": "rounded shape_variant kernel/core_simplex",

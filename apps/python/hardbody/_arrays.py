@@ -230,8 +230,8 @@ def distance_many(
     Arrays of other real types, and arrays that are not contiguous, are copied. The GIL is released.
 
     Accuracy, of the size of a pair (its radii and distance of centres together): 1e-13 for ellipsoids that are apart,
-    1e-12 for superellipsoids; error_bound for overlapping bodies. Answers agree with those of distance within 1e-14 of
-    the size. Pairs of ellipsoids are answered several at a time in vector lanes: 50 to 70 ns a pair of bodies of
+    1e-12 for superellipsoids; error_bound for overlapping bodies. Answers agree with those of distance within their
+    error bounds, and within 1e-14 of the size where both bodies are smooth or both are sharp, and apart. Pairs of ellipsoids are answered several at a time in vector lanes: 50 to 70 ns a pair of bodies of
     revolution.
 
     Raises ValueError or TypeError that names the argument, the entry and what is accepted; MemoryError if there is no

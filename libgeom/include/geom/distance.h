@@ -95,8 +95,11 @@ struct [[nodiscard]] DistanceResult {
 /// maximum to second order, no saddle, where g has second derivatives; at edges and vertices it is the best one found,
 /// and the bound limits how much better another one could be.) The search takes 0.05 to 0.2 milliseconds for
 /// ellipsoids, 0.2 to 0.3 for superellipsoids at a depth of 0.1 of the size, 0.03 to 0.12 at 1e-6 for those with an
-/// exponent above 1, which have no curvature radius (docs/accuracy.md, bench_superellipsoid), and 100 at its limit of
-/// kMostDepthSamples, for instance if a body sits in the centre of a round one. Penetration::local mostly avoids it.
+/// exponent above 1, which have no curvature radius (docs/accuracy.md, bench_superellipsoid), and 10 to 100 at its
+/// limit of kMostDepthSamples, for instance if a superellipsoid sits in the centre of a round body. Penetration::local
+/// mostly avoids it. Bodies of revolution whose axes are parallel are searched along a half-circle
+/// (kernel/meridian_search.h), in tens of microseconds. Of axes parallel to 1e-9 to 1e-3 only, the best normals nearly
+/// form a circle: the bound is then up to 1e-7 of the size for smooth bodies, 1e-5 for cylinders and cones.
 ///
 /// Long bodies that overlap nearly parallel to each other are the exception: all normals across them are nearly as
 /// good, and the bounds are relative to the length, not to the thickness. Parallel needles take 0.4 milliseconds at an
@@ -125,8 +128,8 @@ struct [[nodiscard]] DistanceResult {
 /// flat on the other body; other pairs that are apart take that algorithm with points that slide along the rims, by
 /// Newton's method, and end with the same two bounds. Of cores that overlap by less than 1e-9 of the size,
 /// `error_bound` is mostly less than the depth: then the overlap is certain, however shallow; else it is twice the
-/// depth. Deeper ones are searched over all normals: their depth is certified to `error_bound`, 1e-9 of the size, and
-/// takes a tenth of a millisecond to some milliseconds.
+/// depth. Deeper ones are searched over all normals, as above: their depth is certified to `error_bound`, 1e-9 of the
+/// size but for nearly parallel axes, and takes a tenth of a millisecond, 20 at the limit.
 ///
 /// A rounded shape (rounded.h) has the distance of the shape inside, less the radius, with the certificate of that. A
 /// sphere beside a smooth body is an ellipsoid with three equal semi-axes; a capsule has the distance of the ball on

@@ -94,6 +94,10 @@ inline constexpr double kWidestGap = 1e-9;
 inline constexpr double kDepthGap = 1e-9;
 inline constexpr double kWidestDepthGap = 1e-3;
 inline constexpr int kMostDepthSamples = 100000;
+/// Bodies of revolution with nearly parallel axes: after kFewDepthSamples a bound of kRingDepthGap is enough, because
+/// many samples more would not halve it where the best normals nearly form a circle.
+inline constexpr double kRingDepthGap = 1e-7;
+inline constexpr int kFewDepthSamples = 4000;
 /// @}
 
 /// distance_lower_bound: lowered by kLowerBoundRounding * (|r| + RA + RB), r the difference of the positions, R the

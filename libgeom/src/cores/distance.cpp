@@ -1,17 +1,19 @@
 #include "cores/contact.h"
 
 #include <cstddef>
+#include <limits>
 
 namespace geom::kernel {
 namespace {
 
+using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 bool is_line(const CoreView& core) {
   return core.kind == CoreKind::point || core.kind == CoreKind::segment;
 }
 
-CoreContact contact_of(const CoreView& a, const Eigen::Matrix3d& R_WA, const CoreView& b, const Eigen::Matrix3d& R_WB,
+CoreContact contact_of(const CoreView& a, const Matrix3d& R_WA, const CoreView& b, const Matrix3d& R_WB,
                        const Vector3d& r, const Vector3d& start) {
   if (is_line(a) && is_line(b)) {
     return segment_contact(R_WA.col(2), a.half.z(), R_WB.col(2), b.half.z(), r);
@@ -28,17 +30,52 @@ CoreContact contact_of(const CoreView& a, const Eigen::Matrix3d& R_WA, const Cor
   return polytope_contact(a, R_WA, b, R_WB, r, start);
 }
 
+/// Returns the point of a core, without its ball, that is closest to x.
+Vector3d closest_point(CoreView core, const Matrix3d& R, const Vector3d& centre, const Vector3d& x) {
+  core.radius = 0;
+  const CoreContact c = contact_of(core, R, {}, Matrix3d::Identity(), x - centre, unit_or_x(x - centre));
+  return c.lower > 0 ? Vector3d(centre + c.a) : x;
+}
+
+/// Lets the points of overlapping cores that do not match approach each other, on the faces and edges that the normal
+/// belongs to.
+///
+/// Moved apart along the normal by the depth, the bodies touch. Each point in turn becomes that of its body closest to
+/// the other point; the two converge to a common one (alternating projections on convex sets).
+void match_points(const CoreView& a, const Matrix3d& R_WA, const CoreView& b, const Matrix3d& R_WB, const Vector3d& r,
+                  double size, CoreContact& c) {
+  constexpr int kMostSteps = 100;
+  constexpr double kAgreement = 1e-15;
+  constexpr double kSlow = 0.95;
+  const Vector3d way = c.lower * c.n;
+  double last = std::numeric_limits<double>::infinity();
+  for (int step = 0; step < kMostSteps; ++step) {
+    CoreContact next = c;
+    next.a = closest_point(a, R_WA, Vector3d::Zero(), c.b - way);
+    next.b = closest_point(b, R_WB, r, next.a + way);
+    const double mismatch = mismatch_of(next);
+    if (!(mismatch < kSlow * last)) return;
+    if (mismatch < mismatch_of(c)) c = next;
+    if (mismatch <= kAgreement * size) return;
+    last = mismatch;
+  }
+}
+
 }  // namespace
 
 DistanceResult core_distance(const CoreView& a, const Pose& X_WA, const CoreView& b, const Pose& X_WB,
                              const DistanceOptions& options) {
   const Vector3d r = X_WB.position() - X_WA.position();
   const Vector3d start = is_warm(options.start) ? Vector3d(options.start / options.start.norm()) : unit_or_x(r);
-  const CoreContact c = contact_of(a, X_WA.rotation(), b, X_WB.rotation(), r, start);
+  CoreContact c = contact_of(a, X_WA.rotation(), b, X_WB.rotation(), r, start);
   DistanceResult result;
   result.iterations = c.evaluations;
   const double size = r.norm() + a.bounding_radius + b.bounding_radius;
-  const double bound = bound_of(c);
+  double bound = bound_of(c);
+  if (bound > kBoundGap * size && c.lower <= 0) [[unlikely]] {
+    match_points(a, X_WA.rotation(), b, X_WB.rotation(), r, size, c);
+    bound = bound_of(c);
+  }
   // Where the depth is known by a search, the points that belong to it may be off by more.
   if (!(bound <= (c.depth_error > 0 ? kWidestGap : kBoundGap) * size) || !(c.depth_error <= kWidestDepthGap * size)) {
     return result;

@@ -134,7 +134,8 @@ void improve(const RoundCore& a, const RoundCore& b, double size, double bound, 
   constexpr int kMostMoves = 24;
   constexpr double kSlow = 0.7;   // share of the mismatch that is left by a move: then the next ones are shorter
   constexpr double kLoss = 1e-5;  // of the mismatch that is gained, in the gap
-  constexpr double kNear = 1e-8;  // least distance, in units of the size
+  constexpr double kFirstLoss = 8 * kCoreRounding;  // for points at all
+  constexpr double kNear = 1e-8;                    // least distance, in units of the size
   Vector3d n = contact.n;
   double lower = contact.lower;
   double distance = 0.5 * size;
@@ -143,7 +144,8 @@ void improve(const RoundCore& a, const RoundCore& b, double size, double bound, 
     const double mismatch = mismatch_of(next);
     contact.evaluations += next.evaluations;
     // Points that match much better are worth a little of the gap.
-    const double loss = std::max(kCoreRounding * size, std::isfinite(bound) ? kLoss * (bound - mismatch) : 0.0);
+    const double loss =
+        std::max(kCoreRounding * size, std::isfinite(bound) ? kLoss * (bound - mismatch) : kFirstLoss * size);
     if (next.lower < contact.lower - loss) return false;
     if (!(mismatch < bound) && !(next.lower > contact.lower + kCoreRounding * size)) return false;
     next.evaluations = contact.evaluations;
@@ -237,7 +239,8 @@ CoreContact overlapping(const CoreView& core_a, const RoundCore& a, const Matrix
   const Vector3d r = b.origin() - a.origin();
   const GeneralPair pair(WorldSupport<CoreBody>{body_a, R_WA}, WorldSupport<CoreBody>{body_b, R_WB}, r,
                          kLeastEigenvalue * kLeastCurvature * size);
-  const DistanceResult found = search_sphere(pair, {size, 0}, unit_or_x(r), Vector3d::Zero(), near.evaluations);
+  const DistanceResult found = search_sphere(pair, {size, 0}, unit_or_x(r), Vector3d::Zero(), near.evaluations,
+                                             common_axis(body_a, R_WA, body_b, R_WB));
   CoreContact contact;
   contact.evaluations = found.iterations;
   if (found.status == DistanceStatus::not_converged) return contact;

@@ -76,7 +76,7 @@ DistanceResult armijo_ascent(const EllipsoidPair& pair, Eigen::Vector3d n, const
 DistanceResult deep_distance(const Ellipsoid& a, const Pose& X_WA, const Ellipsoid& b, const Pose& X_WB,
                              const Eigen::Vector3d& r, const PairScale& scale, const DistanceResult& declined) {
   return kernel::search_sphere(EllipsoidPair(a, X_WA, b, X_WB, r), scale, kernel::unit_or_x(r), X_WA.position(),
-                               declined.iterations);
+                               declined.iterations, kernel::common_axis(a, X_WA.rotation(), b, X_WB.rotation()));
 }
 
 }  // namespace

@@ -116,13 +116,16 @@ void bind_distance(nb::module_& module) {
       "longer ones 1e-9, or there is no answer. Overlaps deeper than the smallest radii of curvature: no other way\n"
       "out is shorter by more than error_bound, mostly 1e-9, up to 1e-7 where faces meet, and more for long bodies\n"
       "that are nearly parallel. Spheres, capsules, boxes, polyhedra, cylinders, cones and rounded ones beside\n"
-      "each other: at most 1e-13 apart and at any depth, but 1e-9 in overlaps of cylinders and cones; half-spaces "
-      "beside any: rounding. Shapes of your own: as ellipsoids where they\n"
+      "each other: at most 1e-13 apart and at any depth, but error_bound in overlaps of cylinders and cones, 1e-9,\n"
+      "up to 1e-5 where their axes are parallel to 1e-9 to 1e-3 only; half-spaces beside any: rounding. Shapes of your "
+      "own: as ellipsoids where they\n"
       "are smooth; where they have kinks (faces, edges) mostly 1e-16 too, and at most 1e-9 apart, or there is no\n"
       "answer.\n"
       "\n"
       "A query takes a fraction of a microsecond for ellipsoids, one to three for superellipsoids, 0.05 to 0.3\n"
-      "milliseconds in deep overlaps. distance_many answers many pairs, several times faster.");
+      "milliseconds in deep overlaps, 20 milliseconds where axes of bodies of revolution are nearly but not quite\n"
+      "parallel, or a superellipsoid is in the centre of a round body. distance_many answers many pairs, several times "
+      "faster.");
   module.def(
       "distance_lower_bound",
       [](nb::handle a, nb::handle pose_a, nb::handle b, nb::handle pose_b, nb::handle n) {

@@ -3,6 +3,7 @@
 /// Conversion of a converged normal of the dual Newton into a DistanceResult; used by every shape.
 
 #include <geom/distance.h>
+#include <geom/kernel/meridian_search.h>
 #include <geom/kernel/simplex_descent.h>
 #include <geom/kernel/sphere_search.h>
 #include <geom/kernel/swept_impl.h>
@@ -13,6 +14,7 @@
 #include <cmath>
 #include <concepts>
 #include <limits>
+#include <optional>
 #include <utility>
 
 namespace geom::kernel {
@@ -68,7 +70,8 @@ class GeneralPair {
     }
     const double y_e = y.dot(e);
     const double y_f = y.dot(f);
-    const double inv_det = 1 / (m.ee * m.ff - m.ef * m.ef);
+    // Beside the axis of a round face a curvature is so large that nothing but rounding is left of the difference.
+    const double inv_det = 1 / std::max(m.ee * m.ff - m.ef * m.ef, 0.5 * least_ * (m.ee + m.ff));
     const double d_e = (m.ff * y_e - m.ef * y_f) * inv_det;
     const double d_f = (m.ee * y_f - m.ef * y_e) * inv_det;
     out.decrement = d_e * y_e + d_f * y_f;
@@ -242,11 +245,12 @@ template <class Pair>
 }
 
 /// Searches all normals by branch and bound (sphere_search.h), the last resort. It finds the shortest translation that
-/// separates deeply overlapping bodies, and the distance of bodies for which Newton's method did not converge.
+/// separates deeply overlapping bodies, and the distance of bodies for which Newton's method did not converge. `axis`:
+/// see common_axis().
 template <class Pair>
 [[gnu::noinline, gnu::cold]] DistanceResult search_sphere(const Pair& pair, const PairScale& scale,
                                                           const Eigen::Vector3d& start, const Eigen::Vector3d& p_WA,
-                                                          int iterations) {
+                                                          int iterations, const std::optional<CommonAxis>& axis) {
   const auto sample = [&](const Eigen::Vector3d& n) {
     ++iterations;
     const SupportPair s = pair.support_pair(n);
@@ -268,13 +272,28 @@ template <class Pair>
   const auto polish = [&](const Eigen::Vector3d& n) {
     return climb_over_saddles(sample, ascend_from, upward, n, rounding);
   };
-  SphereSearch<decltype(sample), decltype(polish)> sphere(sample, polish, scale.certified_depth, polish(start),
+  double upper = std::numeric_limits<double>::infinity();
+  Eigen::Vector3d first = start;
+  if (axis) {
+    const MeridianSearch meridian(sample, axis->u, pair.r(), scale.certified_depth, 0.5 * kDepthGap * scale.size,
+                                  kFewDepthSamples);
+    upper = meridian.upper() + 2 * axis->slack;
+    first = meridian.best().n;
+  }
+  SphereSearch<decltype(sample), decltype(polish)> sphere(sample, polish, scale.certified_depth, polish(first),
                                                           rounding);
-  sphere.run_to(kDepthGap * scale.size, kMostDepthSamples);
+  const auto search = [&](double enough, int budget) {
+    if (upper <= sphere.best().g + enough * scale.size) return;
+    sphere.run_to(kDepthGap * scale.size, budget);
+    upper = std::min(upper, sphere.upper());
+  };
+  if (axis) search(kDepthGap, kFewDepthSamples);
+  search(axis ? kRingDepthGap : kDepthGap, kMostDepthSamples);
   // g is concave there, so it remains to approach its single maximum.
   if (sphere.best().g > 0) sphere.run_to(kBoundGap * scale.size, kMostDepthSamples);
   DistanceResult result = witness_result(pair, p_WA, sphere.best().n, iterations);
-  result.error_bound = std::min(newton_error_bound(scale, result), std::max(0.0, sphere.upper() - sphere.best().g));
+  result.error_bound =
+      std::min(newton_error_bound(scale, result), std::max(0.0, std::min(upper, sphere.upper()) - sphere.best().g));
   if (result.error_bound < (result.distance > 0 ? kWidestGap : kWidestDepthGap) * scale.size) return result;
   DistanceResult declined;
   declined.iterations = result.iterations;
@@ -307,7 +326,8 @@ DistanceResult general_distance(const ShapeA& a, const Pose& X_WA, const ShapeB&
     polished.iterations += result.iterations;
     return polished.error_bound < result.error_bound ? polished : result;
   }
-  return search_sphere(pair, scale, cold(), X_WA.position(), result.iterations);
+  return search_sphere(pair, scale, cold(), X_WA.position(), result.iterations,
+                       common_axis(a, X_WA.rotation(), b, X_WB.rotation()));
 }
 
 }  // namespace geom::kernel

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <concepts>
+#include <optional>
 #include <utility>
 
 namespace geom::kernel {
@@ -49,6 +50,11 @@ class CoreBody {
   double bounding_radius() const { return core_.bounding_radius + core_.radius; }
   double inscribed_radius() const { return inscribed_radius_; }
   double min_curvature_radius() const { return core_.radius; }
+  /// Returns the axis of revolution: z but for boxes and polyhedra.
+  std::optional<int> symmetry_axis() const {
+    const bool flat = core_.kind == CoreKind::box || core_.kind == CoreKind::hull;
+    return flat ? std::nullopt : std::optional<int>(2);
+  }
   CoreView core() const { return core_; }
   bool contains(const Eigen::Vector3d& x) const { return core_contains(core_, x); }
   /// Returns the core without its ball.
