@@ -77,14 +77,38 @@ TestBody rounded_cube(Random& random) {
   return test_body("rounded cube", s, volume, s.inner().inertia(1), box_directions());
 }
 
-TestBody polyhedron(Random& random) {
-  const auto s = random.coin() ? random_hull(random) : geom::ConvexPolyhedron::in_principal_frame(icosahedron());
+std::vector<Vector3d> face_directions(const geom::ConvexPolyhedron& s) {
   std::vector<Vector3d> directions;
   for (const auto& face : s.faces()) {
     const Vector3d a = s.vertex(face[0]), b = s.vertex(face[1]), c = s.vertex(face[2]);
     directions.emplace_back((b - a).cross(c - a).normalized());
   }
-  return test_body("polyhedron", s, s.volume(), s.inertia(1), directions);
+  return directions;
+}
+
+TestBody polyhedron(Random& random) {
+  const auto s = random.coin() ? random_hull(random) : geom::ConvexPolyhedron::in_principal_frame(icosahedron());
+  return test_body("polyhedron", s, s.volume(), s.inertia(1), face_directions(s));
+}
+
+/// Returns a polytope of which a user tells the support function alone.
+template <class Polytope>
+TestBody users(const Polytope& s, const std::vector<Vector3d>& directions) {
+  TestBody body = test_body("user's", geom_test::PlainPolytope<Polytope>{s}, s.volume(), s.inertia(1), directions);
+  CustomShape::Properties properties;
+  properties.volume = s.volume();
+  body.exact = ConvexBody(CustomShape(s, properties));
+  return body;
+}
+
+TestBody users_box(Random& random) {
+  const geom::Box s({random.uniform(0.3, 1), random.uniform(0.3, 1), random.uniform(0.3, 1)});
+  return users(s, box_directions());
+}
+
+TestBody users_polyhedron(Random& random) {
+  const auto s = random_hull(random);
+  return users(s, face_directions(s));
 }
 
 TestBody ellipsoid(Random& random) {
@@ -148,9 +172,17 @@ TEST(ConvexContact, UsersEllipsoids) {
   expect_none_missed(search("users' ellipsoids", ellipsoid, ellipsoid));
 }
 
+TEST(ConvexContact, UsersBoxes) {
+  expect_none_missed(search("users' boxes", users_box, users_box));
+}
+TEST(ConvexContact, UsersPolyhedra) {
+  expect_none_missed(search("users' polyhedra", users_polyhedron, users_polyhedron));
+}
+
 TEST(ConvexContact, MixedKinds) {
-  const std::array<Draw, 11> draws{sphere,   capsule, spherocylinder,   box,      cube, rounded_cube, polyhedron,
-                                   cylinder, cone,    rounded_cylinder, ellipsoid};
+  const std::array<Draw, 13> draws{sphere,       capsule,    spherocylinder,  box,  cube,
+                                   rounded_cube, polyhedron, cylinder,        cone, rounded_cylinder,
+                                   ellipsoid,    users_box,  users_polyhedron};
   const auto any = [&](Random& random) {
     return draws[static_cast<std::size_t>(random.uniform() * draws.size())](random);
   };

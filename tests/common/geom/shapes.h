@@ -24,6 +24,17 @@ struct PlainBall {
   double inscribed_radius() const { return radius; }
 };
 
+/// Polytope that tells its support function and radii only: support points jump from vertex to vertex.
+template <class Polytope>
+struct PlainPolytope {
+  Polytope polytope;
+
+  geom::Support support(const Eigen::Vector3d& n) const { return polytope.support(n); }
+  Eigen::Matrix3d support_hessian(const Eigen::Vector3d& /*n*/) const { return Eigen::Matrix3d::Zero(); }
+  double bounding_radius() const { return polytope.bounding_radius(); }
+  double inscribed_radius() const { return polytope.inscribed_radius(); }
+};
+
 /// Ellipsoid that `distance` cannot recognise as one.
 struct WrappedEllipsoid {
   geom::Ellipsoid ellipsoid;

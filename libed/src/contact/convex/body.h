@@ -46,6 +46,9 @@ struct ConvexBody {
   /// Returns whether the core is known to be a polytope.
   bool polytope() const { return core && !rims(); }
 
+  /// Returns whether it is a user's shape that says nothing about its curvature.
+  bool may_be_sharp() const { return !core && !smooth && ball == 0; }
+
   BodyShape shape;
   std::optional<geom::kernel::CoreView> core;  ///< core that the ball is swept over, if the shape has one
   bool smooth;                                 ///< whether it is an ellipsoid or superellipsoid

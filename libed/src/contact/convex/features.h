@@ -78,13 +78,17 @@ struct ClosestFeatures {
   int evaluations = 0;
 };
 
+/// Steps after which the search is given up where smooth bodies, which are for Newton's method, may take many.
+inline constexpr int kMostUnknownSteps = 12;
+
 /// Searches for the closest features by the algorithm of Gilbert, Johnson and Keerthi from a normal on, until
 /// enough(lower, upper) or the bounds agree. For polytopes it ends after finitely many steps, with these features.
+/// `most_unknown`: number of steps where one of the bodies is no polytope for certain.
 template <class Enough>
-ClosestFeatures closest_features(const PlacedPair& pair, const Eigen::Vector3d& start, const Enough& enough) {
+ClosestFeatures closest_features(const PlacedPair& pair, const Eigen::Vector3d& start, const Enough& enough,
+                                 int most_unknown = kMostUnknownSteps) {
   using End = ClosestFeatures::End;
   constexpr int kMostSteps = 64;
-  constexpr int kMostUnknownSteps = 12;  // smooth bodies are for Newton's method
   constexpr int kPatience = 4;
   constexpr double kSameLength = 1 + 1e-14;
   constexpr double kClosed = 1e-15;
@@ -94,7 +98,7 @@ ClosestFeatures closest_features(const PlacedPair& pair, const Eigen::Vector3d& 
   int idle = 0;
   geom::kernel::CoreSimplex simplex, best;
   Eigen::Vector3d n = start;
-  for (int step = 0; step < (pair.finite() ? kMostSteps : kMostUnknownSteps) && idle < kPatience; ++step) {
+  for (int step = 0; step < (pair.finite() ? kMostSteps : most_unknown) && idle < kPatience; ++step) {
     double gap = 0;
     const geom::kernel::DifferenceVertex v = pair.difference(n, gap);
     ++answer.evaluations;

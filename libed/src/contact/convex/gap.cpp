@@ -77,9 +77,11 @@ bool ConvexGap::take_features(const State& /*s*/, const ClosestFeatures& closest
   return true;
 }
 
-/// Takes n and e of a distance; returns false if it is none.
+/// Takes n and e of a distance; returns false if it is none, or its points are not those of its normal: an impulse at
+/// them would be wrong.
 bool ConvexGap::take(const State& s, const geom::DistanceResult& d, Vector3d& n, Evaluation& e) const {
-  if (!is_answer(d)) return false;
+  constexpr double kMatching = 1e-6;  // in units of the size
+  if (!is_answer(d) || !(d.residual <= kMatching * size())) return false;
   n = d.normal;
   e.g = sample(s, n).g;
   // The distance is between g and g + error_bound: bodies that may only touch do not overlap. If the points belong to
@@ -111,6 +113,7 @@ bool ConvexGap::solve_by_features(const State& s, Vector3d& n, Evaluation& e) co
   if (A_.own_distance || B_.own_distance) return false;
   const PlacedPair pair = placed(s, s.r);
   if (!pair.finite() && !pair.may_close()) return false;
+  if (A_.may_be_sharp() || B_.may_be_sharp()) return solve_by_moves(s, n, e);
   Vector3d normal = n;
   for (int move = 0; move < 3; ++move) {
     const double lower = sample(s, normal).g + balls_;
@@ -122,12 +125,55 @@ bool ConvexGap::solve_by_features(const State& s, Vector3d& n, Evaluation& e) co
     if (!(gap >= -kOverlap * size())) return false;
     const Vector3d between = s.r + far.features.point_b() - far.features.point_a();
     if ((between - gap * normal).norm() > kEqual * size()) continue;
-    ClosestFeatures near = far;
-    near.lower = gap;
-    near.upper = gap;
-    return take_features(s, near, n, e);
+    return take_moved(s, far, normal, gap, n, e);
   }
   return false;
+}
+
+/// Finds n and e as solve_by_features does, of cores of which nothing but the support function is known, overlapping
+/// ones too (the proximal point method for the largest gap).
+///
+/// Bounds that agree to rounding leave an error of its square root in the points, the less the nearer the bodies are,
+/// and in the normal, the less the further apart they are.
+bool ConvexGap::solve_by_moves(const State& s, Vector3d& n, Evaluation& e) const {
+  constexpr int kMostMoves = 10;
+  constexpr int kMostSteps = 64;
+  constexpr double kAgree = 1e-14;  // bounds, in units of the size
+  constexpr double kNearer = 1e-2;
+  constexpr double kSlow = 0.1;
+  Vector3d normal = n;
+  double lower = sample(s, normal).g + balls_;
+  double distance = 0.5 * size();
+  double last = kNoBound;
+  for (int move = 0; move < kMostMoves; ++move) {
+    const Vector3d moved = s.r + (distance - lower) * normal;
+    const ClosestFeatures far = closest_features(
+        placed(s, moved), normal, [](double, double) { return false; }, kMostSteps);
+    if (far.end == ClosestFeatures::End::inside || !(far.upper - far.lower <= kAgree * size())) return false;
+    const double gap = sample(s, far.n).g + balls_;
+    if (gap >= lower - kEqual * size()) {
+      normal = far.n;
+      lower = gap;
+    }
+    const Vector3d between = s.r + far.features.point_b() - far.features.point_a();
+    const double mismatch = (between - lower * normal).norm();
+    const double enough = distance < 0.5 * size() ? geom::kWidestGap : kEqual;
+    if (mismatch <= enough * size()) return take_moved(s, far, normal, lower, n, e);
+    if (!(mismatch < kSlow * last)) distance *= kNearer;
+    last = mismatch;
+  }
+  return false;
+}
+
+/// Takes n and e of features that bodies have that were moved apart.
+bool ConvexGap::take_moved(const State& s, const ClosestFeatures& far, const Vector3d& normal, double gap, Vector3d& n,
+                           Evaluation& e) const {
+  ClosestFeatures near = far;
+  near.end = ClosestFeatures::End::closed;
+  near.n = normal;
+  near.lower = gap;
+  near.upper = gap;
+  return take_features(s, near, n, e);
 }
 
 /// Finds n and e of the distance itself, from n on; false if the query declines.

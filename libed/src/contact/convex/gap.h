@@ -167,6 +167,9 @@ class ConvexGap : private PairGapBase<ConvexBody, RigidMotion> {
   bool take_features(const State& s, const ClosestFeatures& features, Eigen::Vector3d& n, Evaluation& e) const;
   bool solve(const State& s, Eigen::Vector3d& n, Evaluation& e) const;
   bool solve_by_features(const State& s, Eigen::Vector3d& n, Evaluation& e) const;
+  bool solve_by_moves(const State& s, Eigen::Vector3d& n, Evaluation& e) const;
+  bool take_moved(const State& s, const ClosestFeatures& far, const Eigen::Vector3d& normal, double gap,
+                  Eigen::Vector3d& n, Evaluation& e) const;
   geom::DistanceResult ask(const State& s, const geom::DistanceOptions& options) const;
   geom::DistanceResult last_resort(const State& s) const;
   bool take(const State& s, const geom::DistanceResult& d, Eigen::Vector3d& n, Evaluation& e) const;
