@@ -93,13 +93,15 @@ struct [[nodiscard]] DistanceResult {
 /// largest, at any depth, concentric bodies included: no translation is shorter than the one returned by more than
 /// `error_bound`, mostly 1e-9 of the size, 1e-3 at most, or the pair is declined. (The normal returned is a local
 /// maximum to second order, no saddle, where g has second derivatives; at edges and vertices it is the best one found,
-/// and the bound limits how much better another one could be.) The search takes 0.05 to 0.2 milliseconds for
-/// ellipsoids, 0.2 to 0.3 for superellipsoids at a depth of 0.1 of the size, 0.03 to 0.12 at 1e-6 for those with an
-/// exponent above 1, which have no curvature radius (docs/accuracy.md, bench_superellipsoid), and 10 to 100 at its
-/// limit of kMostDepthSamples, for instance if a superellipsoid sits in the centre of a round body. Penetration::local
-/// mostly avoids it. Bodies of revolution whose axes are parallel are searched along a half-circle
-/// (kernel/meridian_search.h), in tens of microseconds. Of axes parallel to 1e-9 to 1e-3 only, the best normals nearly
-/// form a circle: the bound is then up to 1e-7 of the size for smooth bodies, 1e-5 for cylinders and cones.
+/// and the bound limits how much better another one could be. Where support points jump, as on faces, the closest
+/// features of the bodies moved apart have its points, to some 1e-7 of the size, which `residual` tells.) The search
+/// takes 0.05 to 0.2 milliseconds for ellipsoids, 0.2 to 0.3 for superellipsoids at a depth of 0.1 of the size, 0.03 to
+/// 0.12 at 1e-6 for those with an exponent above 1, which have no curvature radius (docs/accuracy.md,
+/// bench_superellipsoid), and 10 to 100 at its limit of kMostDepthSamples, for instance if a superellipsoid sits in the
+/// centre of a round body. Penetration::local mostly avoids it. Bodies of revolution whose axes are parallel are
+/// searched along a half-circle (kernel/meridian_search.h), in tens of microseconds. Of axes parallel to 1e-9 to 1e-3
+/// only, the best normals nearly form a circle: the bound is then up to 1e-7 of the size for smooth bodies, 1e-5 for
+/// cylinders and cones.
 ///
 /// Long bodies that overlap nearly parallel to each other are the exception: all normals across them are nearly as
 /// good, and the bounds are relative to the length, not to the thickness. Parallel needles take 0.4 milliseconds at an

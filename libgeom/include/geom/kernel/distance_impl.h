@@ -244,6 +244,23 @@ template <class Pair>
   return result;
 }
 
+/// Gives an overlap the points that belong to its normal, where those of the support functions do not: where support
+/// points jump, as on faces.
+template <class Pair>
+[[gnu::noinline, gnu::cold]] void take_matching_points(const Pair& pair, const PairScale& scale,
+                                                       const Eigen::Vector3d& p_WA, DistanceResult& result) {
+  constexpr double kLoss = 1e-13;  // of the gap, in units of the size
+  const MatchingPoints found = match_points(pair, scale.size, result.normal, result.iterations);
+  if (!(found.mismatch < result.residual) || !(found.gap >= result.distance - kLoss * scale.size)) return;
+  result.error_bound = std::max(0.0, result.distance + result.error_bound - found.gap);
+  result.distance = found.gap;
+  result.normal = found.n;
+  const Eigen::Vector3d y = found.at.p() - found.gap * found.n;
+  result.point_a = p_WA + found.at.a + 0.5 * y;
+  result.point_b = result.point_a + result.distance * result.normal;
+  result.residual = found.mismatch;
+}
+
 /// Searches all normals by branch and bound (sphere_search.h), the last resort. It finds the shortest translation that
 /// separates deeply overlapping bodies, and the distance of bodies for which Newton's method did not converge. `axis`:
 /// see common_axis().
@@ -294,6 +311,7 @@ template <class Pair>
   DistanceResult result = witness_result(pair, p_WA, sphere.best().n, iterations);
   result.error_bound =
       std::min(newton_error_bound(scale, result), std::max(0.0, std::min(upper, sphere.upper()) - sphere.best().g));
+  if (result.distance < 0 && result.residual > kWidestGap * scale.size) take_matching_points(pair, scale, p_WA, result);
   if (result.error_bound < (result.distance > 0 ? kWidestGap : kWidestDepthGap) * scale.size) return result;
   DistanceResult declined;
   declined.iterations = result.iterations;

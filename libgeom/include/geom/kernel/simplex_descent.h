@@ -133,4 +133,65 @@ SimplexAnswer descend(const Pair& pair, const Eigen::Vector3d& start, double tol
   return answer;
 }
 
+/// Pair whose body B is somewhere else.
+template <class Pair>
+struct MovedPair {
+  const Pair& pair;
+  Eigen::Vector3d moved;
+
+  SupportPair support_pair(const Eigen::Vector3d& n) const { return pair.support_pair(n); }
+  const Eigen::Vector3d& r() const { return moved; }
+};
+
+/// Normal of overlapping bodies, the gap across it, and points that belong to it, to a mismatch.
+struct MatchingPoints {
+  Eigen::Vector3d n;
+  double gap;
+  DifferencePoint at;
+  double mismatch = std::numeric_limits<double>::infinity();
+};
+
+/// Returns the points of overlapping bodies, where support points jump, that are apart along the normal by the gap.
+/// `n`: a normal that is nearly the best one.
+///
+/// Moved apart along the normal, the bodies have the same closest features (the proximal point method for the largest
+/// gap). Bounds that agree to rounding leave an error of its square root in the points, the less the nearer the bodies
+/// are, and in the normal, the less the further apart they are.
+template <class Pair>
+MatchingPoints match_points(const Pair& pair, double size, const Eigen::Vector3d& n, int& iterations) {
+  constexpr int kMostMoves = 12;
+  constexpr double kNearer = 1e-2;
+  constexpr double kSlow = 0.1;
+  constexpr double kRounding = 1e-15;
+  const auto gap_across = [&](const Eigen::Vector3d& m) {
+    const SupportPair s = pair.support_pair(m);
+    ++iterations;
+    return (m.dot(pair.r()) - s.h_a) - s.h_b;
+  };
+  MatchingPoints best{n, gap_across(n), {}};
+  Eigen::Vector3d normal = n;
+  double gap = best.gap;
+  double distance = 0.5 * size;
+  double last = best.mismatch;
+  for (int move = 0; move < kMostMoves && distance > kRounding * size; ++move) {
+    const Eigen::Vector3d way = (distance - gap) * normal;
+    const SimplexAnswer far = descend(MovedPair<Pair>{pair, pair.r() + way}, normal, kRounding * size);
+    iterations += far.iterations;
+    const double length = far.closest.p().norm();
+    if (!(length > 0)) break;
+    const Eigen::Vector3d turned = far.closest.p() / length;
+    const double across = gap_across(turned);
+    if (across >= gap - kRounding * size) {
+      normal = turned;
+      gap = across;
+    }
+    const double mismatch = (far.closest.p() - way - gap * normal).norm();
+    if (mismatch < best.mismatch) best = {normal, gap, {far.closest.a, far.closest.b - way}, mismatch};
+    if (mismatch <= kRounding * size) break;
+    if (!(mismatch < kSlow * last)) distance *= kNearer;
+    last = mismatch;
+  }
+  return best;
+}
+
 }  // namespace geom::kernel

@@ -150,6 +150,36 @@ TEST(SpecialPositions, BoundTheDepthOfNearlyCommonAxes) {
   }
 }
 
+/// Deep overlaps in any positions: the points are on both surfaces, not only their gap is that of the normal.
+template <class A, class B>
+void expect_points_on_surfaces(const A& a, const B& b) {
+  constexpr double kOnSurface = 2e-6;
+  Random random(6);
+  for (int k = 0; k < 40; ++k) {
+    const Pose X_WA = random.pose(1);
+    const double depth = random.uniform() * 0.5 * (a.inscribed_radius() + b.inscribed_radius());
+    const Pose X_WB(random.pose(0).rotation(), Vector3d(X_WA.position() + depth * random.direction()));
+    const DistanceResult found = distance(a, X_WA, b, X_WB);
+    ASSERT_EQ(found.status, DistanceStatus::overlapping) << k;
+    const double size = a.bounding_radius() + b.bounding_radius();
+    EXPECT_LE(found.residual, 1e-6 * size) << k;
+    EXPECT_LE((closest_point(a, X_WA, found.point_a).point - found.point_a).norm(), kOnSurface * size) << k;
+    EXPECT_LE((closest_point(b, X_WB, found.point_b).point - found.point_b).norm(), kOnSurface * size) << k;
+  }
+}
+
+TEST(DeepOverlaps, HavePointsThatBelongToTheNormal) {
+  const auto octahedron = ConvexPolyhedron::in_principal_frame(solid_vertices("octahedron"));
+  const auto with_all = [&](const auto& smooth) {
+    expect_points_on_surfaces(smooth, Box({1, 0.7, 0.4}));
+    expect_points_on_surfaces(smooth, Cylinder(1, 0.8));
+    expect_points_on_surfaces(octahedron, smooth);
+    expect_points_on_surfaces(smooth, Capsule(1, 0.5));
+  };
+  with_all(Ellipsoid({1, 0.8, 0.6}));
+  with_all(Superellipsoid({1, 0.8, 0.6}, 0.5, 0.5));
+}
+
 /// g of two bodies, as the searches sample it.
 struct SampleOfTwo {
   const Cone& a;
