@@ -7,6 +7,7 @@ import pickle
 import numpy as np
 import pytest
 from conftest import rotations, unit_rows
+from scipy.spatial.transform import Rotation
 
 import hardbody as hb
 
@@ -34,6 +35,8 @@ def test_arrays_go_in_and_come_out(random):
     assert system.packing_fraction == pytest.approx(volume / 50**3)
     again = hb.System(50.0, system.species, p, system.rotations, v, w, kinds)
     np.testing.assert_array_equal(again.rotations, system.rotations)
+    scipy = hb.System(50.0, system.species, p, Rotation.from_quat(q, scalar_first=True), v, w, kinds)
+    np.testing.assert_allclose(scipy.rotations, system.rotations, atol=2e-15)
     copy = pickle.loads(pickle.dumps(system))
     np.testing.assert_array_equal(copy.rotations, system.rotations)
     assert copy.groups == system.groups

@@ -1,5 +1,6 @@
 #include "base/arguments.h"
 #include "base/arrays.h"
+#include "base/orientations.h"
 #include "geometry/bind.h"
 
 #include <geom/pose.h>
@@ -25,10 +26,6 @@ using RowMajor4 = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
 
 constexpr const char* kOrientations =
     "a quaternion (w, x, y, z), a rotation matrix of shape (3, 3), or one rotation of scipy.spatial.transform.Rotation";
-
-bool is_scipy_rotation(nb::handle value) {
-  return nb::hasattr(value, "as_matrix") && nb::hasattr(value, "as_quat");
-}
 
 /// Reads a matrix of shape (n, n).
 template <class Matrix>
