@@ -58,10 +58,8 @@ def dynamics() -> None:
     results: hb.Results = observables.results()
     Z: hb.Estimate = results["Z"]
     positions: NDArray[np.float64] = simulation.positions
-    state = simulation.save()
-    print(times, float(Z), positions.shape, simulation.counters.overlaps, state is not None)
-    if state is not None:
-        print(hb.Simulation.restore(state).recorded["time"])
+    print(times, float(Z), positions.shape, simulation.counters.overlaps)
+    print(hb.Simulation.restore(simulation.save()).recorded["time"])
     ball: hb.SupportShape = Ball()
     print(hb.distance(ball, hb.Pose(), hb.CustomShape(Ball()), hb.Pose([3, 0, 0])).distance)
 
