@@ -236,8 +236,7 @@ def distance_many(
 
     Accuracy, of the size of a pair (its radii and distance of centres together): 1e-13 for ellipsoids that are apart,
     1e-12 for superellipsoids; error_bound for overlapping bodies. Answers agree with those of distance within 1e-14 of
-    the size. Pairs of ellipsoids are answered several at a time in vector lanes: 50 to 70 ns a pair of bodies of
-    revolution.
+    the size. Pairs of ellipsoids are answered several at a time in vector lanes; docs/python.md has times.
 
     Raises ValueError or TypeError that names the argument, the entry and what is accepted; MemoryError if there is no
     memory for copies or answers; RuntimeError if the system refuses threads; KeyboardInterrupt within about a tenth of
