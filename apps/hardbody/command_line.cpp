@@ -279,6 +279,18 @@ std::string command_named(const CLI::App& app) {
   return name;
 }
 
+/// Throws InputError, which lists the commands, if the first argument is no option and none of them, or there is none.
+void check_command(const CLI::App& app, const std::vector<std::string>& arguments) {
+  if (!arguments.empty() && arguments.front().starts_with("-")) return;
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+    names.push_back(command->get_name());
+    if (!arguments.empty() && arguments.front() == names.back()) return;
+  }
+  const std::string what = arguments.empty() ? "no command" : '"' + one_line(arguments.front()) + "\" is no command";
+  throw InputError(fmt::format("command line: {}; accepted: {}", what, fmt::join(names, ", ")));
+}
+
 int parsed(int argc, char** argv, std::vector<std::string> program) {
   Request request;
   request.run.program = program;
@@ -302,6 +314,7 @@ int parsed(int argc, char** argv, std::vector<std::string> program) {
   add_report(app, request);
   add_distance(app, request);
   std::vector<std::string> arguments = expand_overrides(argc, argv);
+  check_command(app, arguments);
   // CLI11 takes arguments from the back.
   std::reverse(arguments.begin(), arguments.end());
   try {

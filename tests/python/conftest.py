@@ -12,6 +12,8 @@ import numpy as np
 import pytest
 from hypothesis import settings
 
+import hardbody as hb
+
 REFERENCE = pathlib.Path(__file__).resolve().parents[1] / "reference"
 
 # Where interrupts are ignored, as under nohup, tests that send them would never end.
@@ -85,3 +87,17 @@ class Pairs:
         self.point_a = self.positions[0::2] + at_a
         self.point_b = self.positions[1::2] + at_b
         self.pairs = np.arange(2 * number).reshape(number, 2)
+
+
+@pytest.fixture(scope="module")
+def mixture():
+    """60 bodies of three shapes and 400 pairs of them, of which many overlap."""
+    random = np.random.default_rng(3)
+    shapes = [hb.Ellipsoid([1, 1, 3]), hb.Ellipsoid([1, 2, 3]), hb.Superellipsoid([1, 1.5, 2], 0.6, 0.7)]
+    return dict(
+        shapes=shapes,
+        positions=random.uniform(-6, 6, (60, 3)),
+        quaternions=unit_rows(random, 60, 4),
+        pairs=random.integers(0, 60, (400, 2)),
+        shape_of=random.integers(0, 3, 60),
+    )

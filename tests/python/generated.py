@@ -107,7 +107,7 @@ def is_named(message, arguments, other_words):
 
 
 class Call:
-    """Function by name, its arguments, and the names of those that are bad. Its text is there whatever theirs raises."""
+    """Function by name, its arguments, and the names of those that are bad. It has a text whatever theirs raise."""
 
     def __init__(self, name, function, arguments, changed):
         self.name, self.function, self.arguments, self.changed = name, function, arguments, changed

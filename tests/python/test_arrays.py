@@ -13,20 +13,6 @@ from conftest import Pairs, unit_rows, work_after_interrupt
 import hardbody as hb
 
 
-@pytest.fixture(scope="module")
-def mixture():
-    """60 bodies of three shapes and 400 pairs of them, of which many overlap."""
-    random = np.random.default_rng(3)
-    shapes = [hb.Ellipsoid([1, 1, 3]), hb.Ellipsoid([1, 2, 3]), hb.Superellipsoid([1, 1.5, 2], 0.6, 0.7)]
-    return dict(
-        shapes=shapes,
-        positions=random.uniform(-6, 6, (60, 3)),
-        quaternions=unit_rows(random, 60, 4),
-        pairs=random.integers(0, 60, (400, 2)),
-        shape_of=random.integers(0, 3, 60),
-    )
-
-
 def one_by_one(m, function, **options):
     def body(i):
         return m["shapes"][m["shape_of"][i]], hb.Pose(m["positions"][i], m["quaternions"][i])

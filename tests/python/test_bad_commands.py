@@ -75,7 +75,6 @@ UNREACHABLE = ("--jobs is", "--out is empty", "--value is not given", "--levels"
 # Those of commands that Python does not have.
 UNREACHABLE += (
     "--template {}",
-    "--force cannot be combined with --replicas",
     "command line: --on",
     "snakemake --version",
 )

@@ -59,6 +59,30 @@ class Broken(Spheroid):
 BUILT_IN = hb.Ellipsoid(AXES)
 
 
+class HugeHessian(Spheroid):
+    """With second derivatives that overflow."""
+
+    def support_hessian(self, n):
+        return np.eye(3) * 1e300
+
+
+def test_directions_that_have_overflowed_are_not_asked():
+    shape = HugeHessian()
+    for place in ([3, 4, 5], [0.3, 0.4, 0.5]):
+        r = hb.distance(shape, hb.Pose(), shape, hb.Pose(place))
+        assert r.status in ("not_converged", "singular") or np.isfinite(r.distance)
+    b = hb.Motion(hb.Pose([3, 4, 5]), velocity=[-1, -1, -1])
+    assert hb.time_of_contact(shape, hb.Motion(), shape, b, 9).status in ("hit", "budget_exhausted", "failed")
+
+
+def test_a_bounding_radius_that_is_too_small_is_told_by_the_heights():
+    class Small(Spheroid):
+        bounding_radius = inscribed_radius = 0.7
+
+    with pytest.raises(ValueError, match=r"^shape Small: the support height along \(0, 0, 1\) is 2; accepted: between"):
+        hb.CustomShape(Small())
+
+
 def start(shape, number=8):
     return hb.random_start(hb.Species(shape, inertia="uniform"), number=number, packing_fraction=0.02, seed=3)
 

@@ -197,13 +197,3 @@ def test_example_runs():
     )
     assert done.returncode == 0, done.stderr
     assert "separated by 2.049" in done.stdout
-
-
-@pytest.mark.parametrize("page", ["python.md", "python-shapes.md", "shapes.md"])
-def test_guide_runs(page):
-    """The examples of a page, in order, in one name space."""
-    blocks = re.findall(r"```python\n(.*?)```", (ROOT / "docs" / page).read_text(), re.DOTALL)
-    assert blocks
-    names: dict[str, object] = {}
-    for block in blocks:
-        exec(compile(block, page, "exec"), names)

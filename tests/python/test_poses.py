@@ -98,6 +98,22 @@ def test_rotations_of_scipy_must_be_single(random):
         hb.Pose([0, 0, 0], Rotation.random(2))
 
 
+@pytest.mark.parametrize("array", [np.ones(3), np.eye(4)])
+def test_arrays_are_no_operands(array):
+    X = hb.Pose()
+    for call in (lambda: X @ array, lambda: array @ X, lambda: X * array, lambda: array * X):
+        with pytest.raises(TypeError, match=r"^other is of type ndarray; accepted: a Pose; Pose.apply transforms"):
+            call()
+    with pytest.raises(TypeError, match="unsupported operand"):
+        X @ 3
+
+    class Frame:
+        def __rmatmul__(self, other):
+            return "mine"
+
+    assert X @ Frame() == "mine"
+
+
 def test_matrices_must_be_homogeneous():
     with pytest.raises(ValueError, match=r"matrix\[3\] is \[0, 0, 1, 1\]"):
         hb.Pose.from_matrix([[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 1, 1]])

@@ -48,6 +48,16 @@ def test_same_bytes_as_the_program(done, tmp_path, command):
     assert files == results(tmp_path / "b")
 
 
+@pytest.mark.parametrize("command", COMMANDS)
+@pytest.mark.parametrize(
+    ("word", "what"), [("nope", '"nope" is no command'), (None, "no command"), ("", '"" is no command')]
+)
+def test_unknown_commands_are_named(tmp_path, command, word, what):
+    ended = call(*([] if word is None else [word]), cwd=tmp_path, command=command)
+    assert ended.returncode == 2 and not ended.stdout
+    assert re.match(f"command line: {what}; accepted: init, run, resume, extend, .*distance\\n$", ended.stderr)
+
+
 def test_files_and_overrides(done, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     pathlib.Path("mine.toml").write_text(TEXT.replace("seed = 3", "seed = 4").replace("48", "50"))
@@ -244,7 +254,10 @@ def test_ctrl_c_saves_and_raises(tmp_path, longer):
     said, errors = process.communicate()
     assert process.returncode == 0, errors
     lines = said.splitlines()
-    assert re.search(r"b: stopped by SIGINT during production at time .*: results so far are written", lines[0])
+    assert re.search(
+        r"b: stopped by SIGINT during production at time .*: results so far are written, hardbody.resume\(...\)",
+        lines[0],
+    )
     assert lines[1:] == ["True", "Python's handler is back"]
 
     stopped = hb.Run(tmp_path / "b")
@@ -326,7 +339,25 @@ def test_output_goes_to_the_streams_of_python(tmp_path, capsys):
 def test_tqdm(tmp_path, capsys):
     pytest.importorskip("tqdm")
     hb.run(CONFIG, tmp_path / "a", progress=True)
-    assert "|" in capsys.readouterr().err
+    assert re.search(r"done: 100%\|[^|\r\n]*\|\s*$", capsys.readouterr().err)
+
+
+def test_messages_and_the_bar_have_lines_of_their_own(tmp_path):
+    pytest.importorskip("tqdm")
+    config = with_values(CONFIG, system={"nematic_order": 0.9})
+    # In a process of its own, whose two streams are one, as on a terminal.
+    script = f"""
+        import sys, hardbody as hb
+        sys.stdout = sys.stderr
+        hb.run({config!r}, {str(tmp_path / "a")!r}, quiet=False, progress=True)
+    """
+    process = python(script)
+    said, errors = process.communicate()
+    assert process.returncode == 0, errors
+    shown = [re.sub(r".*\r", "", line) for line in errors.split("\n")]  # what later characters leave of each line
+    assert any(line.startswith("start: S = ") for line in shown)
+    assert f"files: {tmp_path / 'a'}" in errors
+    assert all(line.rstrip().endswith("|") for line in shown if "%|" in line), shown
 
 
 def test_an_inner_run_that_fails_does_not_stop_the_outer_one(longer, tmp_path):

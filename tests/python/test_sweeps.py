@@ -147,6 +147,8 @@ def test_one_state_point_with_replicas(tmp_path):
     assert list(made.table["replicas"]) == [2] and len(made.replicas[0]) == 2
     with pytest.raises(ValueError, match=r"^replicas is 0; accepted: an integer from 1 to 1000"):
         hb.run(config, tmp_path / "b", replicas=0)
+    with pytest.raises(ValueError, match=r"^force=True cannot be combined with replicas; accepted: another directory"):
+        hb.run(config, tmp_path / "a", replicas=2, force=True)
 
 
 def test_dask(sweep, tmp_path):

@@ -7,6 +7,7 @@ import pickle
 import numpy as np
 import pytest
 from conftest import rotations, unit_rows
+from scipy.spatial.transform import Rotation
 
 import hardbody as hb
 
@@ -34,6 +35,8 @@ def test_arrays_go_in_and_come_out(random):
     assert system.packing_fraction == pytest.approx(volume / 50**3)
     again = hb.System(50.0, system.species, p, system.rotations, v, w, kinds)
     np.testing.assert_array_equal(again.rotations, system.rotations)
+    scipy = hb.System(50.0, system.species, p, Rotation.from_quat(q, scalar_first=True), v, w, kinds)
+    np.testing.assert_allclose(scipy.rotations, system.rotations, atol=2e-15)
     copy = pickle.loads(pickle.dumps(system))
     np.testing.assert_array_equal(copy.rotations, system.rotations)
     assert copy.groups == system.groups
@@ -151,6 +154,49 @@ def test_files_of_other_programs(caplog):
         hb.from_gsd(CASES / "m10_diameter_overlap.gsd", components=[(ball, 2)], mend=True)
 
 
+def test_one_species_is_that_of_all_types_of_a_file(tmp_path):
+    shape = {"kind": "sphere", "diameter": 1.0}
+    config = {
+        "seed": 4,
+        "system": {"packing_fraction": 0.1},
+        "species": [{"number": 8} | shape, {"number": 24, "mass": 2.0} | shape],
+        "equilibration": {"time": 0.0},
+        "production": {"time": 0.1},
+        "output": {"trajectory": ["gsd"], "frames": 2},
+    }
+    run = hb.run(config, tmp_path / "a")
+    system = hb.from_gsd(run.path / "trajectory.gsd", components=hb.Species(hb.Sphere(0.5), mass=3))
+    assert system.groups == [8, 24]
+    assert {s.mass for s in system.species} == {3.0}
+    assert system.kinetic().translational_kT == pytest.approx(1)
+
+
+def test_sizes_of_a_polydisperse_run_are_drawn_again(tmp_path):
+    config = {
+        "seed": 4,
+        "system": {"number": 32, "packing_fraction": 0.1},
+        "species": [{"aspect_ratio": 2.0, "sizes": "gaussian", "width": 0.1}],
+        "equilibration": {"time": 0.0},
+        "production": {"time": 0.1},
+        "output": {"trajectory": ["gsd"], "frames": 2},
+    }
+    file = hb.run(config, tmp_path / "a").path / "trajectory.gsd"
+    with pytest.raises(ValueError, match="components with a Polydisperse"):
+        hb.from_gsd(file)
+    rods = hb.Species(hb.Ellipsoid.spheroid(2.0))
+    system = hb.from_gsd(file, components=hb.Polydisperse(rods, 32, 0.1), seed=4)
+    assert len({s.shape.volume for s in system.species}) == 32
+    assert system.packing_fraction == pytest.approx(0.1, rel=1e-12)
+    with pytest.raises(ValueError, match=f"{file}: "):
+        hb.from_gsd(file, components=hb.Polydisperse(rods, 32, 0.1), seed=5)
+
+
+def test_lattices_have_numbers_that_fill_them():
+    for lattice, number in (("fcc", 500), ("cubic", 512)):
+        assert len(hb.lattice_start(hb.Sphere(1), packing_fraction=0.5, lattice=lattice)) == number
+    assert len(hb.lattice_start(hb.Sphere(1), packing_fraction=0.55)) == 500
+
+
 P = [[0, 0, 0], [5, 0, 0]]
 REFUSED = [
     (ValueError, "box", lambda: hb.System(0, ROD, P)),
@@ -193,7 +239,19 @@ REFUSED = [
     (ValueError, "packing", lambda: hb.random_start(ROD, packing_fraction=0.9)),
     (ValueError, "packing_fraction", lambda: hb.random_start(ROD, packing_fraction=np.nan)),
     (ValueError, "number", lambda: hb.random_start(ROD, number=4, packing_fraction=0.4)),
+    (ValueError, "number is 0; accepted: an integer from 2", lambda: hb.random_start(ROD, 0, packing_fraction=0.1)),
+    (ValueError, "number is 1; accepted: an integer from 2", lambda: hb.random_start(ROD, 1, packing_fraction=0.1)),
     (ValueError, "seed", lambda: hb.random_start(ROD, packing_fraction=0.1, seed=-1)),
+    (
+        ValueError,
+        r"^the frame of shape cone .*; accepted: a shape of in_principal_frame",
+        lambda: hb.Species(hb.Cone(2, 1, base=-1)),
+    ),
+    (
+        ValueError,
+        r"^the frame of shape cone .*, rounded by 0.1 is not",
+        lambda: hb.Species(hb.Rounded(hb.Cone(2, 1), 0.1)),
+    ),
     (TypeError, "seed", lambda: hb.random_start(ROD, packing_fraction=0.1, seed=1.5)),
     (ValueError, "nematic", lambda: hb.random_start(ROD, packing_fraction=0.1, nematic_order=1.5)),
     (TypeError, "progress", lambda: hb.random_start(ROD, packing_fraction=0.1, progress=3)),

@@ -25,13 +25,14 @@ def main() -> None:
 
     hit: hb.ContactResult = hb.time_of_contact(a, hb.Motion(), b, hb.Motion(X, velocity=[-1, 0, 0]), t_max=10)
     mass: float = hb.mass_properties(b).mass
+    larger: hb.Ellipsoid = a.scaled(2)
     shapes: list[hb.Shape] = [a, b]
     contacts: hb.Contacts = hb.time_of_contact_many(
         shapes, positions[:2], None, [[0, 0, 0], [-1, 0, 0]], None, [[0, 1]], t_max=10
     )
     masses: hb.Masses = hb.mass_properties_many(shapes, density=[1, 2])
     print(contacts.time[0] == hit.time, contacts.status[0], masses.inertia.shape)
-    print(hit.status, hit.time, mass, hb.Ellipsoid.spheroid(3.0).volume)
+    print(hit.status, hit.time, mass, larger, hb.Ellipsoid.spheroid(3.0).volume)
 
 
 class Ball:
@@ -58,10 +59,8 @@ def dynamics() -> None:
     results: hb.Results = observables.results()
     Z: hb.Estimate = results["Z"]
     positions: NDArray[np.float64] = simulation.positions
-    state = simulation.save()
-    print(times, float(Z), positions.shape, simulation.counters.overlaps, state is not None)
-    if state is not None:
-        print(hb.Simulation.restore(state).recorded["time"])
+    print(times, float(Z), positions.shape, simulation.counters.overlaps)
+    print(hb.Simulation.restore(simulation.save()).recorded["time"])
     ball: hb.SupportShape = Ball()
     print(hb.distance(ball, hb.Pose(), hb.CustomShape(Ball()), hb.Pose([3, 0, 0])).distance)
 

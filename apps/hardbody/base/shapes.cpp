@@ -1,5 +1,7 @@
 #include "base/shapes.h"
 
+#include <geom/solids.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -112,7 +114,7 @@ ShapeNumbers numbers(const geom::Rounded<Inner>& shape) {
 }
 
 SweptPolytope polytope(const geom::ConvexPolyhedron& shape) {
-  return {numbers(shape).vertices, shape.faces()};
+  return {numbers(shape).vertices, geom::merged_faces(shape)};
 }
 SweptPolytope polytope(const geom::Box& shape) {
   std::vector<Vector3d> corners;

@@ -4,16 +4,20 @@ All of them take bodies in the same form:
 
 shapes
     One shape, or a list of shapes.
-positions, quaternions
-    Positions of N bodies, shape (N, 3), and their orientations, unit quaternions (w, x, y, z) body to world, shape
-    (N, 4); None for bodies that are not rotated. Numbers of bodies that no pair, point or ray names are not checked.
+positions
+    Positions of N bodies, world frame, shape (N, 3).
+quaternions
+    Orientations of the bodies, body to world: unit quaternions (w, x, y, z), shape (N, 4), rotation matrices, shape
+    (N, 3, 3), or an array of N rotations of scipy.spatial.transform.Rotation; None: bodies that are not rotated. SciPy
+    stores w last: pass the rotations themselves, or as_quat(scalar_first=True).
 shape_of
     Index of each body's shape, shape (N,). None: one shape serves all bodies, or there is one a body.
 threads
     Number of threads, from 1 to 1024. Answers do not depend on it, not even in their last bit.
 
-Arrays of other real types, and arrays that are not contiguous, are copied. ValueError or TypeError names the argument,
-the entry and what is accepted. Ctrl-C ends a call within about a tenth of a second.
+Numbers of bodies that no pair, point or ray names are not checked. Arrays of other real types, and arrays that are not
+contiguous, are copied. ValueError or TypeError names the argument, the entry and what is accepted. Ctrl-C ends a call
+within about a tenth of a second.
 """
 
 from __future__ import annotations
@@ -25,7 +29,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from hardbody import _core
-from hardbody._typing import Bools, Reals, Shapes, Strings
+from hardbody._typing import Bools, Reals, RotationLike, Shapes, Strings
 from hardbody._values import Comparable
 
 # In the order of the C++ enumerators.
@@ -207,7 +211,7 @@ class Masses(Comparable):
 def distance_many(
     shapes: Shapes,
     positions: ArrayLike,
-    quaternions: ArrayLike | None,
+    quaternions: ArrayLike | RotationLike | None,
     pairs: ArrayLike,
     shape_of: ArrayLike | None = None,
     threads: int = 1,
@@ -219,7 +223,8 @@ def distance_many(
     """Returns the signed distances of M pairs among N bodies, with closest points, normals and certified error bounds.
 
     shapes: one built-in shape, or a list of them, of any kind. positions: world frame, shape (N, 3), in the unit of the
-    shapes. quaternions: orientations, unit quaternions (w, x, y, z) body to world, shape (N, 4); None: bodies that are
+    shapes. quaternions: orientations body to world, unit quaternions (w, x, y, z), shape (N, 4), of SciPy's rotations
+    as_quat(scalar_first=True) or the rotations themselves, or rotation matrices, shape (N, 3, 3); None: bodies that are
     not rotated. pairs: indices (a, b) of bodies, integers of shape (M, 2). shape_of: index of each body's shape,
     integers of shape (N,); None: one shape serves all bodies, or there is one a body. threads: number of threads, 1 to
     1024, which changes no bit of the answers. start: guesses of the normals from A to B, world frame, finite,
@@ -231,8 +236,8 @@ def distance_many(
 
     Accuracy, of the size of a pair (its radii and distance of centres together): 1e-13 for ellipsoids that are apart,
     1e-12 for superellipsoids; error_bound for overlapping bodies. Answers agree with those of distance within their
-    error bounds, and within 1e-14 of the size where both bodies are smooth or both are sharp, and apart. Pairs of ellipsoids are answered several at a time in vector lanes: 50 to 70 ns a pair of bodies of
-    revolution.
+    error bounds, and within 1e-14 of the size where both bodies are smooth or both are sharp, and apart. Pairs of
+    ellipsoids are answered several at a time in vector lanes; docs/python.md has times.
 
     Raises ValueError or TypeError that names the argument, the entry and what is accepted; MemoryError if there is no
     memory for copies or answers; RuntimeError if the system refuses threads; KeyboardInterrupt within about a tenth of
@@ -248,7 +253,7 @@ def distance_many(
 def overlap_many(
     shapes: Shapes,
     positions: ArrayLike,
-    quaternions: ArrayLike | None,
+    quaternions: ArrayLike | RotationLike | None,
     pairs: ArrayLike,
     shape_of: ArrayLike | None = None,
     threads: int = 1,
@@ -266,7 +271,7 @@ def overlap_many(
 def contains_many(
     shapes: Shapes,
     positions: ArrayLike,
-    quaternions: ArrayLike | None,
+    quaternions: ArrayLike | RotationLike | None,
     points: ArrayLike,
     body_of: ArrayLike | None = None,
     shape_of: ArrayLike | None = None,
@@ -285,7 +290,7 @@ def contains_many(
 def closest_point_many(
     shapes: Shapes,
     positions: ArrayLike,
-    quaternions: ArrayLike | None,
+    quaternions: ArrayLike | RotationLike | None,
     points: ArrayLike,
     body_of: ArrayLike | None = None,
     shape_of: ArrayLike | None = None,
@@ -301,7 +306,7 @@ def closest_point_many(
 def ray_cast_many(
     shapes: Shapes,
     positions: ArrayLike,
-    quaternions: ArrayLike | None,
+    quaternions: ArrayLike | RotationLike | None,
     origins: ArrayLike,
     directions: ArrayLike,
     body_of: ArrayLike | None = None,
@@ -322,7 +327,7 @@ def ray_cast_many(
 def time_of_contact_many(
     shapes: Shapes,
     positions: ArrayLike,
-    quaternions: ArrayLike | None,
+    quaternions: ArrayLike | RotationLike | None,
     velocities: ArrayLike | None,
     angular_velocities: ArrayLike | None,
     pairs: ArrayLike,

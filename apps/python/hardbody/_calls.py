@@ -7,7 +7,7 @@ import operator
 import os
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from typing import Any, TextIO
 
 import numpy as np
@@ -167,6 +167,19 @@ class _Bar:
             self._bar.n = min(max(done, 0.0), 1.0)
         self._bar.refresh()
 
+    @contextmanager
+    def moved_aside(self) -> Iterator[None]:
+        """Clears the bar while something else is printed, and draws it again below."""
+        self._bar.clear()
+        yield
+        self._bar.refresh()
+
+    def finish(self) -> None:
+        """Shows that all is done, which the last of the calls, some time before the end, did not know."""
+        self._bar.set_description_str("done", refresh=False)
+        self._bar.n = 1.0
+        self._bar.refresh()
+
     def close(self) -> None:
         self._bar.close()
 
@@ -198,13 +211,16 @@ class _Printer:
             _write(sys.stderr, "\r\x1b[K")
         self._shown = False
 
-    def _print(self, text: str) -> None:
+    def _write(self, stream: TextIO | None, text: str) -> None:
         self.clear()
-        _write(sys.stdout, text)
+        with self._progress.moved_aside() if isinstance(self._progress, _Bar) else nullcontext():
+            _write(stream, text)
+
+    def _print(self, text: str) -> None:
+        self._write(sys.stdout, text)
 
     def _say(self, line: str) -> None:
-        self.clear()
-        _write(sys.stderr, line + "\n")
+        self._write(sys.stderr, line + "\n")
 
     def _show(self, text: str, _done: float | None) -> None:
         if not self._terminal:
@@ -212,6 +228,12 @@ class _Printer:
             return
         _write(sys.stderr, "\r\x1b[K" + text)
         self._shown = True
+
+
+def show_end(progress: Progress | None) -> None:
+    """Shows at the end of a command, if it has succeeded, that all is done: on a bar of ours."""
+    if isinstance(progress, _Bar):
+        progress.finish()
 
 
 @contextmanager
@@ -244,6 +266,8 @@ def call(
             status, printed, said = command(printer.functions(), *arguments)
         finally:
             printer.clear()
+        if status == 0:
+            show_end(shows)
     if status == _INTERRUPTED:
         raise KeyboardInterrupt(said[-1] if said else "stopped by SIGINT")
     if status > 128:

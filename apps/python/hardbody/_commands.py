@@ -21,6 +21,7 @@ from hardbody._calls import (
     path_text,
     progress_function,
     real,
+    show_end,
     texts,
     worker_program,
 )
@@ -184,6 +185,8 @@ def sweep(
                 lost = run_tasks(client, str(place.resolve()), plan, shows)
             finally:
                 status, printed, _ = call(_core.sweep_collect, str(place), quiet=quiet)
+            if status == 0 and not lost:
+                show_end(shows)
         return _swept(place, status, "; ".join([printed.strip(), *lost]))
     arguments = (name, text, directory, number, assignments(overrides), worker_program())
     return _swept(place, *call(_core.sweep, *arguments, quiet=quiet, progress=progress)[:2])

@@ -16,13 +16,13 @@ Strings = NDArray[np.str_]
 
 
 class RotationLike(Protocol):
-    """Rotation, as of scipy.spatial.transform.Rotation."""
+    """Rotation, or an array of N of them, as of scipy.spatial.transform.Rotation."""
 
     def as_matrix(self) -> Any:
-        """Returns the rotation matrix, shape (3, 3)."""
+        """Returns the rotation matrix, shape (3, 3), or the matrices, shape (N, 3, 3)."""
 
     def as_quat(self) -> Any:
-        """Returns the quaternion (x, y, z, w), shape (4,)."""
+        """Returns the quaternion (x, y, z, w), shape (4,), or the quaternions, shape (N, 4)."""
 
 
 class SupportShape(Protocol):

@@ -21,6 +21,7 @@ NB_MODULE(_core, module) {
   python::bind_poses(module);
   python::bind_motions(module);
   python::bind_queries(module);
+  python::bind_masses(module);
   python::bind_distances(module);
   python::bind_contacts(module);
   python::bind_body_queries(module);

@@ -204,7 +204,10 @@ export function polytopeGeometry({ vertices, faces, rounding }, divisions) {
       const rows = key.split(',').map((k) => fan(m, n, parts).map((x) => surface.corner(plus(vertices[k], x, rounding), x)));
       surface.strip(rows[0], rows[1]);
     }
-    corners.forEach((normals, k) => addCorner(surface, vertices[k], normals, rounding, parts));
+    // Vertices that are within a face or an edge, to rounding, are corners of no face.
+    corners.forEach((normals, k) => {
+      if (normals.length > 0) addCorner(surface, vertices[k], normals, rounding, parts);
+    });
   }
   return surface.geometry();
 }

@@ -90,9 +90,6 @@ void CustomShape::check() {
   if (!(min_curvature_radius_ >= 0 && min_curvature_radius_ <= r * (1 + kRounding))) {
     refuse(name(), "min_curvature_radius()", min_curvature_radius_, "0 to the inscribed radius");
   }
-  if (!(volume() >= kBall * r * r * r * (1 - kRounding) && volume() <= kBall * R * R * R * (1 + kRounding))) {
-    refuse(name(), "volume", volume(), "between those of the inscribed and the bounding sphere");
-  }
   if (symmetry_axis() && (*symmetry_axis() < 0 || *symmetry_axis() > 2)) {
     refuse(name(), "symmetry_axis", *symmetry_axis(), "0, 1 or 2");
   }
@@ -110,6 +107,10 @@ void CustomShape::check() {
     if (differs(Eigen::AngleAxisd(kAnyAngle, axis) * n)) {
       refuse(name(), "symmetry_axis", *symmetry_axis(), "none: a turn about it changes the support height" + along(n));
     }
+  }
+  // Behind the heights, which tell of radii that are wrong: they would make a right volume impossible.
+  if (!(volume() >= kBall * r * r * r * (1 - kRounding) && volume() <= kBall * R * R * R * (1 + kRounding))) {
+    refuse(name(), "volume", volume(), "between those of the inscribed and the bounding sphere");
   }
 }
 

@@ -137,13 +137,13 @@ Species uniform_species(const BodyShape& shape, double mass) {
   const auto inertia = [&](const auto& s) -> Vector3d {
     if constexpr (requires { s.is_in_principal_frame(); }) {
       if (!s.is_in_principal_frame()) {
-        throw std::invalid_argument("uniform_species: the frame of shape " + describe(shape) +
-                                    " is not that of its principal axes, from its centre of mass; accepted: the points "
-                                    "of geom::ConvexPolyhedron::in_principal_frame, or geom::Cone::in_principal_frame");
+        throw std::invalid_argument("the frame of shape " + describe(shape) +
+                                    " is not that of its principal axes, from its centre of mass; accepted: a shape "
+                                    "of in_principal_frame (of a polyhedron or cone)");
       }
     }
     if constexpr (requires { s.inertia(mass); }) return s.inertia(mass);
-    throw std::invalid_argument("uniform_species: the moments of inertia of shape " + describe(shape) +
+    throw std::invalid_argument("the moments of inertia of shape " + describe(shape) +
                                 " are not known; accepted: a Species with its own");
   };
   return {shape, mass, std::visit(inertia, shape), true};

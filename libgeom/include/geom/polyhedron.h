@@ -15,7 +15,7 @@
 
 namespace geom {
 
-/// Convex hull of points, with sharp edges. Copies share their data.
+/// Convex hull of points, with sharp edges. Copies share their data. Faces are exact: see merged_faces().
 class GEOM_EXPORT ConvexPolyhedron {
  public:
   /// Constructs the convex hull of points of the body's frame. All decisions are exact (signs of determinants of the

@@ -3,6 +3,7 @@
 
 #include <geom/kernel/refuse.h>
 #include <geom/polyhedron.h>
+#include <geom/solids.h>
 #include <geom/tolerances.h>
 
 #include <Eigen/Eigenvalues>
@@ -93,8 +94,8 @@ ConvexPolyhedron ConvexPolyhedron::scaled(double factor) const {
 }
 
 std::string ConvexPolyhedron::description() const {
-  return "polyhedron of " + std::to_string(vertex_count()) + " vertices and " + std::to_string(faces().size()) +
-         " faces";
+  return "polyhedron of " + std::to_string(vertex_count()) + " vertices and " +
+         std::to_string(merged_faces(*this).size()) + " faces";
 }
 
 bool ConvexPolyhedron::contains(const Vector3d& x) const {

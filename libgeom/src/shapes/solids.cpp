@@ -194,7 +194,7 @@ std::vector<Vector3d> solid_vertices(std::string_view name) {
   if (solid == kSolids.end()) {
     std::string accepted;
     for (const std::string_view known : kSolidNames) accepted += (accepted.empty() ? "" : ", ") + std::string(known);
-    kernel::refuse("solid_vertices: the name is \"" + std::string(name) + "\"; accepted: " + accepted);
+    kernel::refuse("the name of a solid is \"" + std::string(name) + "\"; accepted: " + accepted);
   }
   std::vector<Vector3d> points;
   for (const Vertices& vertices : solid->vertices()) add(vertices.orbit, vertices.point, points);

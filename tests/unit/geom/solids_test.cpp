@@ -1,5 +1,7 @@
 /// Platonic and Archimedean solids: their numbers of vertices, edges and faces, edges of one length, one circumradius.
+/// Faces that are in a plane to rounding.
 
+#include "common/geom/random.h"
 #include "common/message_of.h"
 
 #include <geom/geom.h>
@@ -9,9 +11,12 @@
 #include <Eigen/Core>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace geom {
@@ -89,6 +94,77 @@ TEST(Solids, HaveTheirFeatures) {
   }
 }
 
+/// Returns the number of edges of faces after checking that each edge has two faces, in opposite directions.
+std::size_t count_edges(const std::vector<std::vector<int>>& faces) {
+  std::set<std::pair<int, int>> edges;
+  for (const std::vector<int>& face : faces) {
+    for (std::size_t k = 0; k < face.size(); ++k) edges.insert({face[k], face[(k + 1) % face.size()]});
+  }
+  for (const auto& [from, to] : edges) EXPECT_TRUE(edges.contains({to, from}));
+  return edges.size() / 2;
+}
+
+/// Returns the points turned and scaled.
+std::vector<Vector3d> moved(const std::vector<Vector3d>& points, geom_test::Random& random) {
+  const Eigen::Matrix3d R = random.pose(0.0).rotation();
+  const double scale = std::exp(random.uniform(-20, 20));
+  std::vector<Vector3d> result;
+  for (const Vector3d& x : points) result.emplace_back(scale * (R * x));
+  return result;
+}
+
+TEST(Solids, HaveTheirFacesInAnyOrientation) {
+  geom_test::Random random(7);
+  for (const SolidNumbers& known : kKnown) {
+    for (int i = 0; i < 20; ++i) {
+      const std::vector<Vector3d> points = solid_vertices(known.name);
+      const ConvexPolyhedron solid(i == 0 ? points : moved(points, random));
+      const std::vector<std::vector<int>> faces = merged_faces(solid);
+      ASSERT_EQ(faces.size(), static_cast<std::size_t>(known.faces)) << known.name;
+      ASSERT_EQ(count_edges(faces), static_cast<std::size_t>(known.edges)) << known.name;
+      const std::string numbers = std::to_string(known.vertices) + " vertices and " + std::to_string(known.faces);
+      ASSERT_EQ(solid.description(), "polyhedron of " + numbers + " faces");
+    }
+  }
+}
+
+TEST(MergedFaces, AreThoseOfTheHullUnlessInAPlane) {
+  geom_test::Random random(8);
+  for (int i = 0; i < 50; ++i) {
+    std::vector<Vector3d> points;
+    for (int k = 0; k < 40; ++k) points.push_back(random.direction());
+    const ConvexPolyhedron hull(points);
+    ASSERT_EQ(merged_faces(hull), hull.faces());
+  }
+}
+
+/// Corners of a cube, and points on its surface that are outside by less than the tolerance.
+std::vector<Vector3d> bumpy_cube(geom_test::Random& random) {
+  std::vector<Vector3d> points;
+  for (const double x : {-1.0, -0.25, 0.5, 1.0}) {
+    for (const double y : {-1.0, 0.125, 1.0}) {
+      for (const double z : {-1.0, -0.5, 0.75, 1.0}) {
+        const Vector3d p(x, y, z);
+        if (p.cwiseAbs().maxCoeff() < 1) continue;
+        points.push_back(p.cwiseAbs().minCoeff() == 1 ? p : (1 + random.uniform(1e-14, 1e-13)) * p);
+      }
+    }
+  }
+  return points;
+}
+
+TEST(MergedFaces, LeaveOutVerticesWithinFacesAndEdges) {
+  geom_test::Random random(9);
+  for (int i = 0; i < 100; ++i) {
+    const ConvexPolyhedron cube(moved(bumpy_cube(random), random));
+    EXPECT_GT(cube.faces().size(), 20U);
+    const std::vector<std::vector<int>> faces = merged_faces(cube);
+    ASSERT_EQ(faces.size(), 6U) << i;
+    ASSERT_EQ(count_edges(faces), 12U) << i;
+    for (const std::vector<int>& face : faces) ASSERT_EQ(face.size(), 4U) << i;
+  }
+}
+
 TEST(Solids, NamesMayHaveOtherSeparators) {
   EXPECT_EQ(solid_vertices("truncated_cube"), solid_vertices("truncated cube"));
   EXPECT_EQ(solid_vertices("snub-cube"), solid_vertices("snub cube"));
@@ -96,7 +172,7 @@ TEST(Solids, NamesMayHaveOtherSeparators) {
 
 TEST(Solids, RefuseOtherNames) {
   const std::string message = message_of([] { return solid_vertices("cubes"); });
-  EXPECT_EQ(message.rfind("solid_vertices: the name is \"cubes\"; accepted: tetrahedron, cube, octahedron, ", 0), 0U);
+  EXPECT_EQ(message.rfind("the name of a solid is \"cubes\"; accepted: tetrahedron, cube, octahedron, ", 0), 0U);
   EXPECT_NE(message.find("snub dodecahedron"), std::string::npos);
 }
 

@@ -11,6 +11,7 @@ void bind_core_shapes(nanobind::module_& module);
 void bind_poses(nanobind::module_& module);
 void bind_motions(nanobind::module_& module);
 void bind_queries(nanobind::module_& module);
+void bind_masses(nanobind::module_& module);
 void bind_contacts(nanobind::module_& module);
 void bind_distances(nanobind::module_& module);
 void bind_body_queries(nanobind::module_& module);

@@ -24,6 +24,8 @@ struct ShapeCalls {
 /// Defines what every shape has.
 template <class Shape>
 void bind_common(nb::class_<Shape>& type, const ShapeCalls<Shape>& calls) {
+  // Of a subclass, too, the shape made is of the class itself.
+  const std::string scaled = "def scaled(self, factor: float) -> " + nb::cast<std::string>(type.attr("__name__"));
   type.def_prop_ro(
           "bounding_radius", [](const Shape& s) { return s.bounding_radius(); },
           "Radius of the smallest sphere about the origin that contains the body.")
@@ -47,8 +49,7 @@ void bind_common(nb::class_<Shape>& type, const ShapeCalls<Shape>& calls) {
           "mass times length^2.")
       .def(
           "scaled", [](const Shape& s, nb::handle factor) { return s.scaled(positive(factor, "factor")); },
-          nb::arg("factor").none(), nb::sig("def scaled(self, factor: float) -> typing.Self"),
-          "Returns the shape of `factor` times the size.")
+          nb::arg("factor").none(), nb::sig(scaled.c_str()), "Returns the shape of `factor` times the size.")
       .def(
           "support",
           [](const Shape& s, nb::handle n) {

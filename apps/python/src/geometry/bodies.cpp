@@ -18,9 +18,11 @@ namespace {
 
 constexpr std::size_t kMostShapes = std::numeric_limits<std::uint32_t>::max();
 
-std::optional<RealRows> optional_rows(nb::handle value, const std::string& name, std::size_t columns) {
+constexpr const char* kOrientations = "quaternions";
+
+std::optional<Orientations> optional_orientations(nb::handle value) {
   if (value.is_none()) return std::nullopt;
-  return RealRows(value, name, columns);
+  return Orientations(value, kOrientations);
 }
 
 bool is_sequence(nb::handle value) {
@@ -39,8 +41,8 @@ geom::Pose* allocated_poses(std::size_t count) {
 }  // namespace
 
 Bodies::Bodies(nb::handle shapes, nb::handle positions, nb::handle quaternions, nb::handle shape_of)
-    : positions_(positions, "positions", 3), quaternions_(optional_rows(quaternions, "quaternions", 4)) {
-  if (quaternions_) check_rows("quaternions", quaternions_->size(), "positions", size());
+    : positions_(positions, "positions", 3), orientations_(optional_orientations(quaternions)) {
+  if (orientations_) check_rows(kOrientations, orientations_->size(), "positions", size());
   shapes_ = read_shapes(shapes);
   read_shape_of(shape_of);
 }
@@ -68,12 +70,20 @@ geom::Pose Bodies::checked_pose(std::size_t body) const {
   std::string name = "positions";
   try {
     const auto position = geom::Pose::translation(Eigen::Vector3d::Map(positions_[body])).position();
-    if (!quaternions_) return geom::Pose::translation(position);
-    name = "quaternions";
-    const double* const q = (*quaternions_)[body];
-    return geom::Pose::from_quaternion(q[0], q[1], q[2], q[3], position);
+    if (!orientations_) return geom::Pose::translation(position);
+    name = kOrientations;
+    return orientations_->pose(body, position);
   } catch (const std::invalid_argument& error) {
     throw nb::value_error((entry(name, body) + ": " + error.what()).c_str());
+  }
+}
+
+geom::Pose Bodies::pose_of_matrix(std::size_t body) const {
+  try {
+    return orientations_->pose(body, Eigen::Vector3d::Map(positions_[body]));
+  } catch (const std::invalid_argument&) {
+    return geom::kernel::unchecked_pose(Eigen::Matrix3d::Identity(),
+                                        Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN()));
   }
 }
 

@@ -3,6 +3,7 @@
 /// Bodies and threads of queries on arrays.
 
 #include "base/arrays.h"
+#include "base/orientations.h"
 
 #include <geom/pose.h>
 #include <geom/shape_variant.h>
@@ -26,8 +27,9 @@ namespace hardbody::python {
 /// Bodies given by arrays: a list of shapes, and a position, an orientation and the index of a shape each.
 class Bodies {
  public:
-  /// Reads the arguments of these names. `quaternions` may be None: bodies are not rotated. `shape_of` may be None:
-  /// `shapes` has one element, for all bodies, or one a body. `shapes` may be a single shape.
+  /// Reads the arguments of these names. `quaternions` may be None: bodies are not rotated; rotation matrices and
+  /// SciPy's rotations may take their place. `shape_of` may be None: `shapes` has one element, for all bodies, or one a
+  /// body. `shapes` may be a single shape.
   Bodies(nb::handle shapes, nb::handle positions, nb::handle quaternions, nb::handle shape_of);
 
   std::size_t size() const { return positions_.size(); }
@@ -49,10 +51,11 @@ class Bodies {
 
  private:
   void read_shape_of(nb::handle shape_of);
+  geom::Pose pose_of_matrix(std::size_t body) const;
 
   std::vector<geom::Shape> shapes_;
   RealRows positions_;
-  std::optional<RealRows> quaternions_;
+  std::optional<Orientations> orientations_;
   std::vector<std::uint32_t> shape_of_;  ///< empty: 0 for all
 };
 
@@ -62,8 +65,9 @@ inline geom::Pose Bodies::pose_or_nan(std::size_t body) const {
   bool is_valid = std::abs(px) <= geom::kMaxCoordinate && std::abs(py) <= geom::kMaxCoordinate &&
                   std::abs(pz) <= geom::kMaxCoordinate;
   Eigen::Matrix3d R;
-  if (quaternions_) {
-    const double* const q = (*quaternions_)[body];
+  if (orientations_) {
+    if (orientations_->are_matrices()) return pose_of_matrix(body);
+    const double* const q = (*orientations_)[body];
     const double w = q[0], x = q[1], y = q[2], z = q[3];
     const double norm2 = w * w + x * x + y * y + z * z;
     // Twice the tolerance of the norm, less its rounding; what is close to it is left to Pose.

@@ -11,6 +11,7 @@
 #include <geom/rounded.h>
 #include <geom/solids.h>
 #include <geom/sphere.h>
+#include <geom/tolerances.h>
 
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/string.h>
@@ -135,6 +136,13 @@ nb::tuple constructor_arguments(const Rounded<Inner>& s) {
 
 // ---- Classes
 
+/// Returns a length of a shape, at least kMinSemiAxis.
+double length(nb::handle value, const char* name) {
+  const double given = number(value, name);
+  if (given >= geom::kMinSemiAxis && given <= geom::kMaxSemiAxis) return given;
+  refuse_value(name, shown(given), shown(geom::kMinSemiAxis) + " to " + shown(geom::kMaxSemiAxis));
+}
+
 /// Returns the points of an array of shape (n, 3), all finite.
 std::vector<Vector3d> points_of(nb::handle value) {
   const RealRows rows(value, "points", 3);
@@ -146,7 +154,7 @@ std::vector<Vector3d> points_of(nb::handle value) {
 void bind_sphere(nb::module_& module) {
   nb::class_<Sphere> type(module, "Sphere", "Ball |x| <= radius.");
   type.def(
-          "__init__", [](Sphere* self, nb::handle radius) { new (self) Sphere(positive(radius, "radius")); },
+          "__init__", [](Sphere* self, nb::handle radius) { new (self) Sphere(length(radius, "radius")); },
           nb::arg("radius").none(), nb::sig("def __init__(self, radius: float) -> None"),
           "Constructs a ball; the radius is from 1e-50 to 1e50.")
       .def_prop_ro("radius", &Sphere::radius, "Radius of the ball.");
@@ -160,7 +168,7 @@ void bind_capsule(nb::module_& module) {
   type.def(
           "__init__",
           [](Capsule* self, nb::handle half_length, nb::handle radius) {
-            new (self) Capsule(finite_number(half_length, "half_length"), positive(radius, "radius"));
+            new (self) Capsule(number(half_length, "half_length"), length(radius, "radius"));
           },
           nb::arg("half_length").none(), nb::arg("radius").none(),
           nb::sig("def __init__(self, half_length: float, radius: float) -> None"),
@@ -197,7 +205,7 @@ void bind_moments(nb::class_<Shape>& type) {
 
 nb::tuple in_principal_frame(nb::handle points, nb::handle rounding) {
   geom::Pose X_BP;
-  const double radius = finite_number(rounding, "rounding");
+  const double radius = number(rounding, "rounding");
   const ConvexPolyhedron shape = ConvexPolyhedron::in_principal_frame(points_of(points), &X_BP, radius);
   return nb::make_tuple(shape, X_BP);
 }
@@ -205,7 +213,7 @@ nb::tuple in_principal_frame(nb::handle points, nb::handle rounding) {
 ConvexPolyhedron solid(nb::handle name, nb::handle circumradius) {
   std::string names;
   for (const std::string_view known : geom::solid_names()) names += (names.empty() ? "" : ", ") + std::string(known);
-  const double radius = positive(circumradius, "circumradius");
+  const double radius = length(circumradius, "circumradius");
   std::vector<Vector3d> points = geom::solid_vertices(text(name, "name", names));
   for (Vector3d& x : points) x *= radius;
   return ConvexPolyhedron(points);
@@ -230,8 +238,9 @@ void bind_polyhedron(nb::module_& module) {
           "centre of mass, and that frame's pose in the points' own. With `rounding`, those of the rounded hull.")
       .def_prop_ro("vertices", &vertices, nb::for_getter(nb::sig(getter("vertices").c_str())),
                    "Vertices in the body's frame, shape (n, 3).")
-      .def_prop_ro("faces", &ConvexPolyhedron::faces,
-                   "Faces, each a list of indices of vertices, anticlockwise seen from outside.");
+      .def_prop_ro("faces", &geom::merged_faces,
+                   "Faces, each a list of indices of vertices, anticlockwise seen from outside. Faces in a plane to\n"
+                   "rounding, 1e-12 of the bounding radius, are merged; made at each access.");
   bind_common(type, {constructor_text, equal, constructor_arguments});
   bind_moments(type);
 }
@@ -242,7 +251,7 @@ void bind_cylinder(nb::module_& module) {
   type.def(
           "__init__",
           [](Cylinder* self, nb::handle half_length, nb::handle radius) {
-            new (self) Cylinder(positive(half_length, "half_length"), positive(radius, "radius"));
+            new (self) Cylinder(length(half_length, "half_length"), length(radius, "radius"));
           },
           nb::arg("half_length").none(), nb::arg("radius").none(),
           nb::sig("def __init__(self, half_length: float, radius: float) -> None"),
@@ -253,14 +262,13 @@ void bind_cylinder(nb::module_& module) {
 }
 
 Cone make_cone(nb::handle height, nb::handle radius, nb::handle base) {
-  const double h = positive(height, "height");
-  const double r = positive(radius, "radius");
-  return base.is_none() ? Cone(h, r) : Cone(h, r, finite_number(base, "base"));
+  const double h = length(height, "height");
+  const double r = length(radius, "radius");
+  return base.is_none() ? Cone(h, r) : Cone(h, r, number(base, "base"));
 }
 
 Cone cone_in_principal_frame(nb::handle height, nb::handle radius, nb::handle rounding) {
-  return Cone::in_principal_frame(positive(height, "height"), positive(radius, "radius"),
-                                  finite_number(rounding, "rounding"));
+  return Cone::in_principal_frame(length(height, "height"), length(radius, "radius"), number(rounding, "rounding"));
 }
 
 void bind_cone(nb::module_& module) {
@@ -298,7 +306,7 @@ void bind_rounded(nb::module_& module, const char* name, const char* inner, cons
   type.def(
           "__init__",
           [](Rounded<Inner>* self, nb::handle shape, nb::handle radius) {
-            new (self) Rounded<Inner>(inner_of<Inner>(shape), finite_number(radius, "radius"));
+            new (self) Rounded<Inner>(inner_of<Inner>(shape), number(radius, "radius"));
           },
           nb::arg("shape").none(), nb::arg("radius").none(), nb::sig(init.c_str()),
           "Constructs all points within `radius`, of at least 0, of a shape.")
@@ -311,7 +319,7 @@ void bind_rounded(nb::module_& module, const char* name, const char* inner, cons
 }
 
 nb::object rounded(nb::handle shape, nb::handle radius) {
-  const double r = finite_number(radius, "radius");
+  const double r = number(radius, "radius");
   if (nb::isinstance<Box>(shape)) return nb::cast(Rounded<Box>(inner_of<Box>(shape), r));
   if (nb::isinstance<ConvexPolyhedron>(shape)) {
     return nb::cast(Rounded<ConvexPolyhedron>(inner_of<ConvexPolyhedron>(shape), r));

@@ -12,6 +12,7 @@
 #include <nanobind/stl/string.h>
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <utility>
@@ -173,6 +174,9 @@ Matrix3d asked_hessian(const nb::object& method, const std::string& shape, const
 }  // namespace
 
 geom::Support PythonShape::support(const Vector3d& n) const {
+  // Such a direction comes from numbers that have overflowed, as from a wrong Hessian: there will be no answer.
+  if (!n.allFinite())
+    return {std::numeric_limits<double>::quiet_NaN(), Vector3d::Constant(std::numeric_limits<double>::quiet_NaN())};
   const GilAcquired gil;
   bool* const happened = kept_interrupt == nullptr ? nullptr : &kept_interrupt->happened_;
   return without_interrupts(happened, [&] {
@@ -182,6 +186,7 @@ geom::Support PythonShape::support(const Vector3d& n) const {
 }
 
 Matrix3d PythonShape::support_hessian(const Vector3d& n) const {
+  if (!n.allFinite()) return Matrix3d::Constant(std::numeric_limits<double>::quiet_NaN());
   const GilAcquired gil;
   if (!held_->hessian.is_none()) {
     bool* const happened = kept_interrupt == nullptr ? nullptr : &kept_interrupt->happened_;
@@ -309,9 +314,9 @@ constexpr const char* kShapeDoc =
     "\n"
     "Exceptions of these methods end the call in which they happen and are raised by it.\n"
     "\n"
-    "Speed: a call from C++ into Python and back takes a few microseconds, and each distance some ten of them. A\n"
-    "simulation of ellipsoids written in Python makes a hundred collisions a second, against 160,000 of the\n"
-    "built-in ones (docs/python.md). Write such bodies in C++ for anything long.";
+    "Speed: a call from C++ into Python and back takes a few microseconds, and each distance some tens of them: a\n"
+    "simulation is some hundred times as slow as one of built-in shapes (docs/python-shapes.md). Write such bodies in\n"
+    "C++ for anything long.";
 
 }  // namespace
 

@@ -162,7 +162,9 @@ void bind_time_of_contact(nb::module_& module) {
               "root: typing.Literal['newton', 'one_dimensional'] | None = None) -> ContactResult"),
       "Returns the first time in [max of the motions' times, t_max] at which two freely moving bodies touch and\n"
       "approach; t_max may be infinite. The search is certified: it never steps over a contact, however grazing.\n"
-      "Bodies are ellipsoids, superellipsoids with exponents from 0.25 to 1.6, and shapes of your own.\n"
+      "Bodies are built-in shapes of any kind but HalfSpace, superellipsoids with exponents from 0.25 to 1.6, and "
+      "shapes\n"
+      "of your own.\n"
       "\n"
       "max_evaluations limits the effort: at 0.3 to 2 microseconds each for ellipsoids of revolution, up to 50 for\n"
       "others. finder='bracketing' is the method of De Michele (2010) instead, without a certificate, to which eps_d\n"

@@ -1,12 +1,12 @@
 #include "base/arguments.h"
 #include "base/arrays.h"
+#include "base/orientations.h"
 #include "geometry/bind.h"
 
 #include <geom/pose.h>
 #include <geom/tolerances.h>
 
 #include <nanobind/nanobind.h>
-#include <nanobind/operators.h>
 
 #include <Eigen/Core>
 
@@ -25,10 +25,6 @@ using RowMajor4 = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
 
 constexpr const char* kOrientations =
     "a quaternion (w, x, y, z), a rotation matrix of shape (3, 3), or one rotation of scipy.spatial.transform.Rotation";
-
-bool is_scipy_rotation(nb::handle value) {
-  return nb::hasattr(value, "as_matrix") && nb::hasattr(value, "as_quat");
-}
 
 /// Reads a matrix of shape (n, n).
 template <class Matrix>
@@ -167,13 +163,34 @@ void bind_numbers(nb::class_<Pose>& type) {
           "Homogeneous matrix [[R, p], [0, 1]], body to world, shape (4, 4).");
 }
 
+/// Refuses arrays as operands, which would treat a pose as a number; lets Python try the operators of others.
+nb::object refuse_array(const Pose& /*pose*/, nb::handle other) {
+  if (nb::hasattr(other, "__array_interface__")) {
+    refuse_type("other", other, "a Pose; Pose.apply transforms points, and Pose.matrix is an array");
+  }
+  return nb::borrow(nb::handle(Py_NotImplemented));
+}
+
+nb::object product(const Pose& X, nb::handle other) {
+  Pose* found = nullptr;
+  if (nb::try_cast(other, found, false) && found != nullptr) return nb::cast(X * *found);
+  return refuse_array(X, other);
+}
+
+void bind_products(nb::class_<Pose>& type) {
+  type.attr("__array_ufunc__") = nb::none();  // NumPy's operators then leave arrays times poses to those below
+  type.def("__mul__", &product, nb::arg("other").none(), nb::sig("def __mul__(self, other: Pose, /) -> Pose"),
+           "Composes X_WB * X_BC = X_WC: (X_WB * X_BC).apply(p) = X_WB.apply(X_BC.apply(p)).")
+      .def("__matmul__", &product, nb::arg("other").none(), nb::sig("def __matmul__(self, other: Pose, /) -> Pose"),
+           "Composes, as * does.")
+      .def("__rmul__", &refuse_array, nb::arg("other").none(),
+           nb::sig("def __rmul__(self, other: typing.Never, /) -> typing.NoReturn"))
+      .def("__rmatmul__", &refuse_array, nb::arg("other").none(),
+           nb::sig("def __rmatmul__(self, other: typing.Never, /) -> typing.NoReturn"));
+}
+
 void bind_operations(nb::class_<Pose>& type) {
   type.def("inverse", &Pose::inverse, "Returns the pose of the world seen from the body.")
-      .def(nb::self * nb::self, nb::sig("def __mul__(self, other: Pose, /) -> Pose"),
-           "Composes X_WB * X_BC = X_WC: (X_WB * X_BC).apply(p) = X_WB.apply(X_BC.apply(p)).")
-      .def(
-          "__matmul__", [](const Pose& a, const Pose& b) { return a * b; }, nb::is_operator(),
-          nb::sig("def __matmul__(self, other: Pose, /) -> Pose"), "Composes, as * does.")
       .def(
           "apply",
           [](const Pose& X, nb::handle points) {
@@ -215,6 +232,7 @@ void bind_poses(nb::module_& module) {
   bind_constructors(type);
   bind_numbers(type);
   bind_operations(type);
+  bind_products(type);
   type.attr("__hash__") = nb::none();  // equal poses may differ in the sign of a zero
 }
 

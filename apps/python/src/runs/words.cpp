@@ -11,18 +11,22 @@ namespace {
 using Words = std::pair<std::string_view, std::string_view>;
 
 /// Beginnings of messages about an option's value.
-constexpr std::array<Words, 4> kBeginnings = {{
+constexpr std::array<Words, 5> kBeginnings = {{
     {"--set ", "overrides: "},
     {"--where ", "where: "},
+    {"--force cannot be combined with --replicas", "force=True cannot be combined with replicas"},
     {"--time ", "time "},
     {"--longest-lag ", "longest_lag "},
 }};
 
 /// Phrases within messages: longer than an option, so that no file's name has one.
-constexpr std::array<Words, 13> kPhrases = {{
+constexpr std::array<Words, 15> kPhrases = {{
     {"hardbody resume to continue it, or --force to overwrite it",
      "hardbody.resume to continue it, or force=True to overwrite it"},
     {"[grid] makes this a sweep: hardbody sweep takes it", "[grid] makes this a sweep: hardbody.sweep takes it"},
+    {": results so far are written, hardbody resume continues",
+     ": results so far are written, hardbody.resume(...) continues"},
+    {"the start is not saved: hardbody resume begins", "the start is not saved: hardbody.resume(...) begins"},
     {" is a key of sweeps: hardbody sweep takes them", " is a key of sweeps: hardbody.sweep takes them"},
     {"a finished run: hardbody resume ", "a finished run: hardbody.resume "},
     {": --force would delete ", ": force=True would delete "},

@@ -26,11 +26,11 @@ namespace {
 
 using Type = nb::class_<PythonSimulation>;
 
-nb::object saved(const PythonSimulation& simulation, nb::handle path) {
-  if (!path.is_none()) {
-    write_state(path, [&](const auto& sink) { simulation.save(sink); });
-    return nb::none();
-  }
+void save_to_file(const PythonSimulation& simulation, nb::handle path) {
+  write_state(path, [&](const auto& sink) { simulation.save(sink); });
+}
+
+nb::bytes saved_bytes(const PythonSimulation& simulation, nb::handle) {
   std::string bytes;
   simulation.save([&bytes](std::string_view piece) { bytes += piece; });
   return nb::bytes(bytes.data(), bytes.size());
@@ -109,11 +109,13 @@ void bind_constructor(Type& type) {
 }
 
 void bind_state(Type& type) {
-  type.def("save", &saved, nb::arg("path") = nb::none(),
-           nb::sig("def save(self, path: str | os.PathLike[str] | None = None) -> bytes | None"),
-           "Saves the whole state, observables included: to a file, or as bytes that are returned. A restored "
-           "simulation\n"
-           "goes on bit for bit. Files replace those of the same name only when they are complete. Raises OSError.")
+  // Two overloads, so that type checkers know what is returned. The first takes anything but None.
+  type.def("save", &save_to_file, nb::arg("path"), nb::sig("def save(self, path: str | os.PathLike[str]) -> None"),
+           "Saves the whole state, observables included, to a file, which replaces one of the same name only when it "
+           "is\n"
+           "complete. A restored simulation goes on bit for bit. Raises OSError.")
+      .def("save", &saved_bytes, nb::arg("path") = nb::none(), nb::sig("def save(self, path: None = None) -> bytes"),
+           "Returns the whole state, observables included, as bytes.")
       .def_static("restore", &restored, nb::arg("state").none(), nb::arg("shapes") = nb::tuple(),
                   nb::sig("def restore(state: bytes | bytearray | memoryview | str | os.PathLike[str], "
                           "shapes: list[hardbody.SupportShape] | tuple[hardbody.SupportShape, ...] = ()) "

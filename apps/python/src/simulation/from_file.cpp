@@ -21,6 +21,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -104,6 +105,20 @@ std::string in_words_of_python(std::string message) {
   return message;
 }
 
+/// Returns bodies of one species in groups as those of the frame.
+std::vector<ComponentGroup> in_groups_of(const Frame& frame, const ed::Species& species) {
+  std::map<std::uint32_t, int> numbers;
+  for (const FrameBody& body : frame.bodies) ++numbers[body.group];
+  std::vector<ComponentGroup> groups;
+  for (const auto& [group, number] : numbers) groups.push_back({species, number, {}});
+  return groups;
+}
+
+std::vector<ComponentGroup> components_for(const Frame& frame, nb::handle components, std::uint64_t seed) {
+  if (is_species(components)) return in_groups_of(frame, species_of(components, "components"));
+  return components_of(components, nb::none(), seed);
+}
+
 FileStart read_start(const StartFile& start, nb::handle components, std::uint64_t seed, std::vector<int>& numbers) {
   const auto signed_seed = static_cast<std::int64_t>(seed);
   std::optional<StartFrame> loaded;
@@ -112,8 +127,7 @@ FileStart read_start(const StartFile& start, nb::handle components, std::uint64_
     config = config_of(start, signed_seed, loaded);
   } else {
     loaded = read_start_frame(start);
-    const auto number = static_cast<int>(loaded->frame.bodies.size());
-    config = with_components(start, components_of(components, nb::none(), seed, number), signed_seed, loaded->frame);
+    config = with_components(start, components_for(loaded->frame, components, seed), signed_seed, loaded->frame);
   }
   numbers = config.numbers();
   return unlocked([&] { return start_from_file(config, std::move(loaded)); });
@@ -149,10 +163,10 @@ void bind_files(nb::module_& module) {
       "\n"
       "frame: from 0; negative numbers count from the end, -1 is the last frame with positions. components: bodies in\n"
       "the order of the file's types, as for random_start, where the file does not give shapes, masses or moments, or\n"
-      "others are wanted; a single species or shape is that of all bodies of the file. mend: overlaps are removed by "
-      "scaling box and positions; otherwise they are refused. "
-      "reverse:\n"
-      "all velocities are negated.\n"
+      "others are wanted; a single species or shape is that of all bodies of the file, whose types are a group each;\n"
+      "bodies with distributed sizes need their Polydisperse, with the seed of their run. mend: overlaps are removed "
+      "by\n"
+      "scaling box and positions; otherwise they are refused. reverse: all velocities are negated.\n"
       "\n"
       "Rules are those of [start] file (docs/configuration.md): states of this program are taken bit for bit; what a\n"
       "file does not contain is never guessed; velocities that it lacks are drawn with the seed, others are rescaled\n"

@@ -1,6 +1,7 @@
 #include "simulation/read_system.h"
 
 #include "base/arrays.h"
+#include "base/orientations.h"
 #include "simulation/species.h"
 
 #include <geom/pose.h>
@@ -19,7 +20,6 @@ namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-using RowMajor3 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
 /// Reads vectors into the bodies; None: as they are.
 void read_vectors(nb::handle value, const char* name, ed::System& system, Vector3d ed::Body::*member) {
@@ -36,22 +36,15 @@ Matrix3d rotation_of(const Matrix3d& given) {
   return is_exact ? given : checked.rotation();
 }
 
-/// Reads orientations, quaternions or matrices, into the bodies; None: not rotated.
+/// Reads orientations into the bodies; None: not rotated.
 void read_orientations(nb::handle value, ed::System& system) {
   constexpr const char* kName = "orientations";
-  constexpr const char* kAccepted = "quaternions (w, x, y, z) of shape (N, 4) or rotation matrices of shape (N, 3, 3)";
   if (value.is_none()) return;
-  const RealArray array(value, kName, kAccepted);
-  const std::vector<std::size_t>& shape = array.shape();
-  const bool quaternions = shape.size() == 2 && shape[1] == 4;
-  const bool matrices = shape.size() == 3 && shape[1] == 3 && shape[2] == 3;
-  if (!quaternions && !matrices) refuse_shape(kName, shape, kAccepted);
-  check_rows(kName, shape[0], "positions", system.bodies.size());
-  for (std::size_t k = 0; k < shape[0]; ++k) {
+  const Orientations given(value, kName);
+  check_rows(kName, given.size(), "positions", system.bodies.size());
+  for (std::size_t k = 0; k < given.size(); ++k) {
     try {
-      const double* const x = array.data() + (quaternions ? 4 : 9) * k;
-      system.bodies[k].rotation =
-          quaternions ? geom::Pose::from_quaternion(x[0], x[1], x[2], x[3]).rotation() : rotation_of(RowMajor3::Map(x));
+      system.bodies[k].rotation = given.are_matrices() ? rotation_of(given.matrix(k)) : given.pose(k).rotation();
     } catch (const std::invalid_argument& error) {
       throw nb::value_error((entry(kName, k) + ": " + error.what()).c_str());
     }

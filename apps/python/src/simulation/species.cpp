@@ -155,6 +155,10 @@ Species species_of(nb::handle value, const std::string& name) {
   refuse_type(name, value, "a Species or a shape");
 }
 
+bool is_species(nb::handle value) {
+  return nb::isinstance<Species>(value) || is_custom_shape(value);
+}
+
 std::vector<ComponentGroup> components_of(nb::handle value, nb::handle number, std::uint64_t seed, int usual_number) {
   Groups groups;
   Polydisperse* bodies = nullptr;
@@ -165,8 +169,8 @@ std::vector<ComponentGroup> components_of(nb::handle value, nb::handle number, s
   } else if (nb::try_cast(value, bodies, false) && bodies != nullptr) {
     refuse_number(number);
     add(groups, *bodies, seed);
-  } else if (nb::isinstance<Species>(value) || is_custom_shape(value)) {
-    const int count = number.is_none() ? usual_number : body_count(number, "number");
+  } else if (is_species(value)) {
+    const int count = number.is_none() ? usual_number : static_cast<int>(integer(number, "number", 2, kMostBodies));
     groups.push_back({species_of(value, "components"), count, {}});
   } else {
     refuse_type("components", value, kComponents);

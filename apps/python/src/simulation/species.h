@@ -42,6 +42,9 @@ std::vector<int> numbers_of(const std::vector<ComponentGroup>& groups);
 /// Returns the species of a Species or of a shape, then of mass 1. Throws TypeError if the value is neither.
 ed::Species species_of(nb::handle value, const std::string& name);
 
+/// Returns whether a value is a Species or a shape.
+bool is_species(nb::handle value);
+
 /// Number of bodies of a start whose components are a single species without a number.
 inline constexpr int kDefaultNumber = 512;
 

@@ -121,6 +121,10 @@ BodySystem compressed(nb::handle system, nb::handle packing_fraction, nb::handle
           bodies.groups};
 }
 
+/// Number of bodies of a face-centred cubic lattice if none is given: 5 x 5 x 5 cells, which bodies as long as wide
+/// fill.
+constexpr int kDefaultFccNumber = 500;
+
 BodySystem lattice_start(nb::handle components, nb::handle number, nb::handle packing_fraction, nb::handle lattice,
                          nb::handle seed, nb::handle axis, nb::handle nematic_order) {
   ed::LatticeOptions options;
@@ -128,8 +132,9 @@ BodySystem lattice_start(nb::handle components, nb::handle number, nb::handle pa
   options.packing_fraction = python::number(packing_fraction, "packing_fraction");
   options.lattice = choice(lattice, "lattice", kLattices);
   if (!axis.is_none()) options.axis = static_cast<int>(integer(axis, "axis", 0, 2));
+  const int usual_number = options.lattice == ed::Lattice::fcc ? kDefaultFccNumber : kDefaultNumber;
   options.nematic_order = optional_number(nematic_order, "nematic_order");
-  const std::vector<ComponentGroup> groups = components_of(components, number, options.seed);
+  const std::vector<ComponentGroup> groups = components_of(components, number, options.seed, usual_number);
   const std::vector<ed::Component> list = component_list(groups);
   options.groups = numbers_of(groups);
   options.poll = InterruptPoll();
@@ -140,8 +145,9 @@ BodySystem lattice_start(nb::handle components, nb::handle number, nb::handle pa
 #define HARDBODY_COMPONENTS "components: hardbody.Components, number: int | None = None, *, "
 
 constexpr const char* kComponentsDoc =
-    "components: a Species or a shape, of which there are `number` (default 512); a Polydisperse; or a list of\n"
-    "(species or shape, number) and Polydisperse, whose bodies follow each other and are a group each.\n";
+    "components: a Species or a shape, of which there are `number`; a Polydisperse; or a list of (species or shape,\n"
+    "number) and Polydisperse, whose bodies follow each other and are a group each. number: default 512, on an fcc\n"
+    "lattice 500.\n";
 
 void bind_random_start(nb::module_& module) {
   static const std::string doc =

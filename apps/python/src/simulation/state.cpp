@@ -114,19 +114,23 @@ std::vector<ed::Species> get_species(Reader& reader, const std::vector<ed::Custo
     reader(species.mass, species.inertia, species.spins);
   }
   if (used < shapes.size()) {
-    throw std::invalid_argument("state: needs " + std::to_string(used) + " shapes of your own, shapes has " +
-                                std::to_string(shapes.size()));
+    throw std::invalid_argument("shapes has " + std::to_string(shapes.size()) + " shapes; accepted: " +
+                                std::to_string(used) + ", as many of your own as the state has");
   }
   return list;
 }
 
+[[noreturn]] void refuse_bytes(const char* what) {
+  throw std::invalid_argument(std::string("state: ") + what + "; accepted: what Simulation.save has made");
+}
+
 /// Returns the bytes between head and checksum. Throws std::invalid_argument if they are damaged.
 std::string_view checked_bytes(std::string_view bytes) {
-  if (!bytes.starts_with(kMagic)) throw std::invalid_argument("state: is not that of a simulation");
-  if (bytes.size() < kMagic.size() + kTail) throw std::invalid_argument("state: is cut off");
+  if (!bytes.starts_with(kMagic)) refuse_bytes("is not that of a simulation");
+  if (bytes.size() < kMagic.size() + kTail) refuse_bytes("is cut off");
   const std::string_view content = bytes.substr(0, bytes.size() - kTail);
   if (Reader(bytes.substr(content.size())).value<std::uint64_t>() != XXH3_64bits(content.data(), content.size())) {
-    throw std::invalid_argument("state: is damaged, its checksum does not fit");
+    refuse_bytes("is damaged, its checksum does not fit");
   }
   return content.substr(kMagic.size());
 }
@@ -158,7 +162,8 @@ PythonSimulation PythonSimulation::restore(std::string_view bytes, const std::ve
     return restore_checked(bytes, shapes);
   } catch (const std::invalid_argument& error) {
     const std::string message = one_line(error.what());
-    throw std::invalid_argument(message.starts_with("state: ") ? message : "state: " + message);
+    throw std::invalid_argument(message.starts_with("state: ") || message.starts_with("shapes ") ? message
+                                                                                                 : "state: " + message);
   }
 }
 
