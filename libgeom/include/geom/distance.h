@@ -131,7 +131,7 @@ struct [[nodiscard]] DistanceResult {
 /// Newton's method, and end with the same two bounds. Of cores that overlap by less than 1e-9 of the size,
 /// `error_bound` is mostly less than the depth: then the overlap is certain, however shallow; else it is twice the
 /// depth. Deeper ones are searched over all normals, as above: their depth is certified to `error_bound`, 1e-9 of the
-/// size but for nearly parallel axes, and takes a tenth of a millisecond, 20 at the limit.
+/// size but for nearly parallel axes, and takes a tenth of a millisecond, 20 to 50 at the limit.
 ///
 /// A rounded shape (rounded.h) has the distance of the shape inside, less the radius, with the certificate of that. A
 /// sphere beside a smooth body is an ellipsoid with three equal semi-axes; a capsule has the distance of the ball on

@@ -37,27 +37,37 @@ Vector3d closest_point(CoreView core, const Matrix3d& R, const Vector3d& centre,
   return c.lower > 0 ? Vector3d(centre + c.a) : x;
 }
 
+/// Returns the point of a core, without its ball, that is furthest along n.
+Vector3d furthest_point(const CoreView& core, const Matrix3d& R, const Vector3d& centre, const Vector3d& n) {
+  return centre + R * core_support(core, R.transpose() * n).point;
+}
+
 /// Lets the points of overlapping cores that do not match approach each other, on the faces and edges that the normal
 /// belongs to.
 ///
 /// Moved apart along the normal by the depth, the bodies touch. Each point in turn becomes that of its body closest to
-/// the other point; the two converge to a common one (alternating projections on convex sets).
+/// the other point; the two converge to a common one (alternating projections on convex sets). On round sides they
+/// hardly move: then B's point furthest against the normal is the better start.
 void match_points(const CoreView& a, const Matrix3d& R_WA, const CoreView& b, const Matrix3d& R_WB, const Vector3d& r,
                   double size, CoreContact& c) {
   constexpr int kMostSteps = 100;
   constexpr double kAgreement = 1e-15;
   constexpr double kSlow = 0.95;
   const Vector3d way = c.lower * c.n;
-  double last = std::numeric_limits<double>::infinity();
-  for (int step = 0; step < kMostSteps; ++step) {
+  for (const Vector3d& start : {c.b, furthest_point(b, R_WB, r, -c.n)}) {
     CoreContact next = c;
-    next.a = closest_point(a, R_WA, Vector3d::Zero(), c.b - way);
-    next.b = closest_point(b, R_WB, r, next.a + way);
-    const double mismatch = mismatch_of(next);
-    if (!(mismatch < kSlow * last)) return;
-    if (mismatch < mismatch_of(c)) c = next;
-    if (mismatch <= kAgreement * size) return;
-    last = mismatch;
+    next.b = start;
+    double last = std::numeric_limits<double>::infinity();
+    for (int step = 0; step < kMostSteps; ++step) {
+      next.a = closest_point(a, R_WA, Vector3d::Zero(), next.b - way);
+      next.b = closest_point(b, R_WB, r, next.a + way);
+      const double mismatch = mismatch_of(next);
+      if (mismatch < mismatch_of(c)) c = next;
+      if (mismatch <= kAgreement * size) return;
+      if (!(mismatch < kSlow * last)) break;
+      last = mismatch;
+    }
+    if (mismatch_of(c) <= kBoundGap * size) return;
   }
 }
 

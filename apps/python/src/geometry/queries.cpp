@@ -114,7 +114,8 @@ void bind_distance(nb::module_& module) {
       "answer.\n"
       "\n"
       "A query takes a fraction of a microsecond for ellipsoids, one to three for superellipsoids, 0.05 to 0.3\n"
-      "milliseconds in deep overlaps, 20 milliseconds where axes of bodies of revolution are nearly but not quite\n"
+      "milliseconds in deep overlaps, 20 to 50 milliseconds where axes of bodies of revolution are nearly but not "
+      "quite\n"
       "parallel, or a superellipsoid is in the centre of a round body. distance_many answers many pairs, several times "
       "faster.");
   module.def(

@@ -77,11 +77,9 @@ bool ConvexGap::take_features(const State& /*s*/, const ClosestFeatures& closest
   return true;
 }
 
-/// Takes n and e of a distance; returns false if it is none, or its points are not those of its normal: an impulse at
-/// them would be wrong.
+/// Takes n and e of a distance; returns false if it is none.
 bool ConvexGap::take(const State& s, const geom::DistanceResult& d, Vector3d& n, Evaluation& e) const {
-  constexpr double kMatching = 1e-6;  // in units of the size
-  if (!is_answer(d) || !(d.residual <= kMatching * size())) return false;
+  if (!is_answer(d)) return false;
   n = d.normal;
   e.g = sample(s, n).g;
   // The distance is between g and g + error_bound: bodies that may only touch do not overlap. If the points belong to

@@ -244,8 +244,8 @@ template <class Pair>
   return result;
 }
 
-/// Gives an overlap the points that belong to its normal, where those of the support functions do not: where support
-/// points jump, as on faces.
+/// Gives bodies that overlap or touch the points that belong to the normal, where those of the support functions do
+/// not: where support points jump, as on faces.
 template <class Pair>
 [[gnu::noinline, gnu::cold]] void take_matching_points(const Pair& pair, const PairScale& scale,
                                                        const Eigen::Vector3d& p_WA, DistanceResult& result) {
@@ -259,6 +259,7 @@ template <class Pair>
   result.point_a = p_WA + found.at.a + 0.5 * y;
   result.point_b = result.point_a + result.distance * result.normal;
   result.residual = found.mismatch;
+  result.status = result.distance >= 0 ? DistanceStatus::separated : DistanceStatus::overlapping;
 }
 
 /// Searches all normals by branch and bound (sphere_search.h), the last resort. It finds the shortest translation that
@@ -311,7 +312,7 @@ template <class Pair>
   DistanceResult result = witness_result(pair, p_WA, sphere.best().n, iterations);
   result.error_bound =
       std::min(newton_error_bound(scale, result), std::max(0.0, std::min(upper, sphere.upper()) - sphere.best().g));
-  if (result.distance < 0 && result.residual > kWidestGap * scale.size) take_matching_points(pair, scale, p_WA, result);
+  if (result.residual > kWidestGap * scale.size) take_matching_points(pair, scale, p_WA, result);
   if (result.error_bound < (result.distance > 0 ? kWidestGap : kWidestDepthGap) * scale.size) return result;
   DistanceResult declined;
   declined.iterations = result.iterations;

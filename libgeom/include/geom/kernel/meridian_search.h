@@ -20,6 +20,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <concepts>
 #include <cstddef>
 #include <limits>
 #include <optional>
@@ -32,17 +33,26 @@ struct CommonAxis {
   double slack;       ///< bound of the change of g when one body is turned until its axis is along u
 };
 
-/// Returns the axis of two bodies of revolution whose axes are parallel or nearly so, else nullopt.
+/// Shape that tells its axis of revolution: a number of its frame's axes, or that it has none.
+template <class Shape>
+concept TellsAxis = requires(const Shape& shape) {
+  { shape.symmetry_axis() } -> std::same_as<std::optional<int>>;
+};
+
+/// Returns the axis of two bodies of revolution whose axes are parallel or nearly so, else nullopt. Every axis of a
+/// ball is one.
 template <class ShapeA, class ShapeB>
 std::optional<CommonAxis> common_axis(const ShapeA& a, const Eigen::Matrix3d& R_WA, const ShapeB& b,
                                       const Eigen::Matrix3d& R_WB) {
-  if constexpr (requires { a.symmetry_axis(), b.symmetry_axis(); }) {
+  if constexpr (TellsAxis<ShapeA> && TellsAxis<ShapeB>) {
     constexpr double kNearlyParallel = 1e-3;
     const std::optional<int> axis_a = a.symmetry_axis();
     const std::optional<int> axis_b = b.symmetry_axis();
     if (!axis_a || !axis_b) return std::nullopt;
     const Eigen::Vector3d u_a = R_WA.col(*axis_a);
     const Eigen::Vector3d u_b = R_WB.col(*axis_b);
+    if (a.inscribed_radius() == a.bounding_radius()) return CommonAxis{u_b, 0};
+    if (b.inscribed_radius() == b.bounding_radius()) return CommonAxis{u_a, 0};
     const double sine = u_a.cross(u_b).norm();
     if (sine > kNearlyParallel) return std::nullopt;
     const bool a_is_larger = a.bounding_radius() > b.bounding_radius();

@@ -60,7 +60,6 @@ DistanceResult of_segments(const Points& axes, double radius_a, double radius_b)
   result.point_a = axes.first + radius_a * result.normal;
   result.point_b = axes.second - radius_b * result.normal;
   result.status = result.distance > 0 ? geom::DistanceStatus::separated : geom::DistanceStatus::overlapping;
-  result.residual = 0;
   result.error_bound = 0;
   return result;
 }

@@ -2,6 +2,7 @@
 // normals are then many, or form a circle.
 
 #include "common/geom/random.h"
+#include "common/geom/shapes.h"
 
 #include <geom/geom.h>
 #include <geom/kernel/meridian_search.h>
@@ -134,6 +135,35 @@ TEST(SpecialPositions, HaveTheDepthOfCoaxialCylinders) {
   }
 }
 
+// Round sides that touch all around: points that were off n in azimuth hardly moved to each other.
+TEST(SpecialPositions, AreAnsweredForCylindersInCones) {
+  Random random(7);
+  for (int k = 0; k < 1000; ++k) {
+    const Cylinder a(random.log_uniform(0.05, 3), random.log_uniform(0.05, 3));
+    const Cone b(random.log_uniform(0.05, 3), random.log_uniform(0.05, 3));
+    const Pose X_WA = random.pose(1);
+    const Matrix3d R = (AngleAxisd(random.log_uniform(1e-16, 1e-9), random.direction()) *
+                        AngleAxisd(random.uniform(0, 2 * std::numbers::pi), Vector3d::UnitZ()))
+                           .toRotationMatrix();
+    const Pose X_WB(Matrix3d(X_WA.rotation() * R),
+                    Vector3d(X_WA.position() + X_WA.rotation() * Vector3d(0, 0, random.uniform(-0.5, 0.5))));
+    ASSERT_NE(distance(a, X_WA, b, X_WB).status, DistanceStatus::not_converged) << k;
+  }
+}
+
+// A ball is of revolution about every axis, whichever its own is said to be.
+TEST(SpecialPositions, HaveBallsOnTheAxis) {
+  Random random(8);
+  for (int k = 0; k < 20; ++k) {
+    const Pose X_WA = random.pose(1);
+    const Pose X_WB(random.pose(0).rotation(), X_WA.to_world({0, 0, random.uniform(0, 0.1)}));
+    const DistanceResult found = distance(Cylinder(1, 0.8), X_WA, Ellipsoid({0.5, 0.5, 0.5}), X_WB);
+    ASSERT_EQ(found.status, DistanceStatus::overlapping);
+    EXPECT_NEAR(found.distance, -1.3, kDepthGap * 2);
+    EXPECT_LT(found.iterations, kFewDepthSamples);
+  }
+}
+
 // Nearly parallel axes: the slack of a small tilt is in the bound.
 TEST(SpecialPositions, BoundTheDepthOfNearlyCommonAxes) {
   const Cylinder a(1, 0.8);
@@ -178,6 +208,24 @@ TEST(DeepOverlaps, HavePointsThatBelongToTheNormal) {
   };
   with_all(Ellipsoid({1, 0.8, 0.6}));
   with_all(Superellipsoid({1, 0.8, 0.6}, 0.5, 0.5));
+}
+
+// Polytopes of which nothing but the support function is known: whether they overlap is what the distance says, and the
+// points are no corners of the faces that touch.
+TEST(DeepOverlaps, SayWhetherBoxesThatNearlyTouchDo) {
+  const geom_test::PlainPolytope<Box> a{Box({1, 0.7, 0.4})};
+  Random random(9);
+  for (int k = 0; k < 200; ++k) {
+    const double gap = (random.coin() ? 1 : -1) * random.log_uniform(1e-14, 1e-8);
+    const Pose X_WA = random.pose(1);
+    const Matrix3d R = AngleAxisd(random.uniform(0, 2 * std::numbers::pi), Vector3d::UnitX()).toRotationMatrix();
+    const Pose X_WB(Matrix3d(X_WA.rotation() * R), X_WA.to_world({2 + gap, 0.3 * random.uniform(), 0}));
+    const DistanceResult found = distance(a, X_WA, a, X_WB);
+    ASSERT_NE(found.status, DistanceStatus::not_converged) << k;
+    EXPECT_EQ(found.status == DistanceStatus::separated, found.distance >= 0) << k;
+    EXPECT_NEAR(found.distance, gap, found.error_bound + 4e-15) << k;
+    EXPECT_LE(found.residual, 1e-6) << k;
+  }
 }
 
 /// g of two bodies, as the searches sample it.
