@@ -122,7 +122,7 @@ class MeridianSearch {
 
   Tangent take(const Eigen::Vector3d& n) {
     ++samples_;
-    const Tangent t = sample_(n);
+    Tangent t = sample_(n);
     if (t.g > best_.g) best_ = t;
     return t;
   }
