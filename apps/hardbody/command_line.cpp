@@ -288,7 +288,8 @@ void check_command(const CLI::App& app, const std::vector<std::string>& argument
     if (!arguments.empty() && arguments.front() == names.back()) return;
   }
   const std::string what = arguments.empty() ? "no command" : '"' + one_line(arguments.front()) + "\" is no command";
-  throw InputError(fmt::format("command line: {}; accepted: {}", what, fmt::join(names, ", ")));
+  throw InputError(
+      fmt::format("command line: {}; accepted: {}; hardbody --help explains them", what, fmt::join(names, ", ")));
 }
 
 int parsed(int argc, char** argv, std::vector<std::string> program) {

@@ -55,7 +55,10 @@ def test_same_bytes_as_the_program(done, tmp_path, command):
 def test_unknown_commands_are_named(tmp_path, command, word, what):
     ended = call(*([] if word is None else [word]), cwd=tmp_path, command=command)
     assert ended.returncode == 2 and not ended.stdout
-    assert re.match(f"command line: {what}; accepted: init, run, resume, extend, .*distance\\n$", ended.stderr)
+    assert re.match(
+        f"command line: {what}; accepted: init, run, resume, extend, .*distance; hardbody --help explains them\\n$",
+        ended.stderr,
+    )
 
 
 def test_files_and_overrides(done, tmp_path, monkeypatch):
