@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <numbers>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 namespace finder_test {
@@ -50,14 +51,20 @@ geom::ConvexPolyhedron random_hull(Random& random) {
   }
 }
 
+/// Returns a body that a user tells of; `exact`: libgeom's shape, which the reference asks.
+template <class Told, class Exact>
+TestBody users(const std::string& kind, const Told& told, const Exact& exact, const std::vector<Vector3d>& directions) {
+  TestBody body = test_body(kind, told, exact.volume(), exact.inertia(1), directions);
+  CustomShape::Properties properties;
+  properties.volume = exact.volume();
+  body.exact = ConvexBody(CustomShape(exact, properties));
+  return body;
+}
+
 TestBody spherocylinder(Random& random) {
   const geom::Capsule s(random.log_uniform(0.1, 3), random.uniform(0.2, 1));
-  TestBody body = test_body("spherocylinder", geom_test::Spherocylinder{s.half_length(), s.radius()}, s.volume(),
-                            s.inertia(1), {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}});
-  CustomShape::Properties properties;
-  properties.volume = s.volume();
-  body.exact = ConvexBody(CustomShape(s, properties));
-  return body;
+  return users("spherocylinder", geom_test::Spherocylinder{s.half_length(), s.radius()}, s,
+               {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}});
 }
 
 TestBody box(Random& random) {
@@ -91,24 +98,14 @@ TestBody polyhedron(Random& random) {
   return test_body("polyhedron", s, s.volume(), s.inertia(1), face_directions(s));
 }
 
-/// Returns a polytope of which a user tells the support function alone.
-template <class Polytope>
-TestBody users(const Polytope& s, const std::vector<Vector3d>& directions) {
-  TestBody body = test_body("user's", geom_test::PlainPolytope<Polytope>{s}, s.volume(), s.inertia(1), directions);
-  CustomShape::Properties properties;
-  properties.volume = s.volume();
-  body.exact = ConvexBody(CustomShape(s, properties));
-  return body;
-}
-
 TestBody users_box(Random& random) {
   const geom::Box s({random.uniform(0.3, 1), random.uniform(0.3, 1), random.uniform(0.3, 1)});
-  return users(s, box_directions());
+  return users("user's box", geom_test::PlainPolytope<geom::Box>{s}, s, box_directions());
 }
 
 TestBody users_polyhedron(Random& random) {
   const auto s = random_hull(random);
-  return users(s, face_directions(s));
+  return users("user's polyhedron", geom_test::PlainPolytope<geom::ConvexPolyhedron>{s}, s, face_directions(s));
 }
 
 TestBody ellipsoid(Random& random) {

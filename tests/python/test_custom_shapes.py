@@ -60,7 +60,7 @@ BUILT_IN = hb.Ellipsoid(AXES)
 
 
 class HugeHessian(Spheroid):
-    """With second derivatives that overflow."""
+    """Shape whose second derivatives overflow."""
 
     def support_hessian(self, n):
         return np.eye(3) * 1e300

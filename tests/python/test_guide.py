@@ -22,7 +22,7 @@ def blocks_of(page):
 
 @pytest.mark.parametrize("page", ["python.md", "python-shapes.md", "shapes.md"])
 def test_examples_run(page):
-    """Those of runs are in test_runs."""
+    """Examples of runs are in test_runs."""
     names: dict[str, object] = {}
     for block in blocks_of(f"docs/{page}"):
         exec(compile(block, page, "exec"), names)

@@ -108,7 +108,7 @@ void CustomShape::check() {
       refuse(name(), "symmetry_axis", *symmetry_axis(), "none: a turn about it changes the support height" + along(n));
     }
   }
-  // Behind the heights, which tell of radii that are wrong: they would make a right volume impossible.
+  // Checked last: wrong radii, of which the heights tell, would make a right volume impossible.
   if (!(volume() >= kBall * r * r * r * (1 - kRounding) && volume() <= kBall * R * R * R * (1 + kRounding))) {
     refuse(name(), "volume", volume(), "between those of the inscribed and the bounding sphere");
   }

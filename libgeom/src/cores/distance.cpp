@@ -48,8 +48,8 @@ Vector3d furthest_point(const CoreView& core, const Matrix3d& R, const Vector3d&
 /// Moved apart along the normal by the depth, the bodies touch. Each point in turn becomes that of its body closest to
 /// the other point; the two converge to a common one (alternating projections on convex sets). On round sides they
 /// hardly move: then B's point furthest against the normal is the better start.
-void match_points(const CoreView& a, const Matrix3d& R_WA, const CoreView& b, const Matrix3d& R_WB, const Vector3d& r,
-                  double size, CoreContact& c) {
+void project_points(const CoreView& a, const Matrix3d& R_WA, const CoreView& b, const Matrix3d& R_WB, const Vector3d& r,
+                    double size, CoreContact& c) {
   constexpr int kMostSteps = 100;
   constexpr double kAgreement = 1e-15;
   constexpr double kSlow = 0.95;
@@ -83,7 +83,7 @@ DistanceResult core_distance(const CoreView& a, const Pose& X_WA, const CoreView
   const double size = r.norm() + a.bounding_radius + b.bounding_radius;
   double bound = bound_of(c);
   if (bound > kBoundGap * size && c.lower <= 0) [[unlikely]] {
-    match_points(a, X_WA.rotation(), b, X_WB.rotation(), r, size, c);
+    project_points(a, X_WA.rotation(), b, X_WB.rotation(), r, size, c);
     bound = bound_of(c);
   }
   // Where the depth is known by a search, the points that belong to it may be off by more.

@@ -217,9 +217,7 @@ void judge(const Flight& f, Tally& tally, FinderCounters& count) {
   const double bound = cores                   ? at.residual
                        : std::isnan(of_finder) ? at.error_bound
                                                : std::max(at.error_bound, of_finder);
-  // Of a user's sharp bodies that are apart by less the direction is lost in the rounding of the points.
-  const bool sharp = f.shape_a.body.may_be_sharp() || f.shape_b.body.may_be_sharp();
-  const double allowed = (sharp ? 1e-10 : 1e-12) * f.size() + (declined > 0 ? 1e-10 : bound);
+  const double allowed = 1e-12 * f.size() + (declined > 0 ? 1e-10 : bound);
   if (!(std::abs(distance) <= allowed)) ++tally.wrong;
   constexpr double h = 1e-5;
   const double rate = (f.distance(found.time + h) - f.distance(found.time - h)) / (2 * h);

@@ -3,7 +3,7 @@
 /// Bounds of the largest g of two bodies of revolution whose axes are parallel or nearly so (sphere_search.h defines
 /// g).
 ///
-/// With parallel axes the support heights only depend on the angle between n and the axis. Of the normals with one
+/// Support heights only depend on the angle between n and the axis where axes are parallel. Of the normals with one
 /// angle n.r is largest for that in the half-plane of the axis that B's centre is in: the search is one along a
 /// half-circle, a meridian. On a common axis the best normals form a circle, which SphereSearch would have to cover
 /// with tiny triangles.
