@@ -15,6 +15,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,7 +29,8 @@ const char* const kReference = "ellipsoids 1:1:3";
 struct Bodies {
   std::string name;
   ed::Species species;
-  std::uint64_t collisions = 20000;  ///< collisions of a stretch
+  std::uint64_t collisions = 20000;                  ///< collisions of a stretch
+  std::optional<ed::Species> beside = std::nullopt;  ///< species of half of the bodies
 };
 
 /// A user's shape, as that of docs/user-shapes.md.
@@ -48,6 +50,9 @@ struct Spherocylinder {
   double min_curvature_radius() const { return radius; }
 };
 
+/// Semi-axis of ellipsoids 1:1:3 with the volume of capsules with L/D = 2, D = 1.
+const double kSameVolume = std::cbrt((2 + 2.0 / 3) / 16);
+
 std::vector<Bodies> all_bodies() {
   const auto uniform = [](const auto& shape) { return ed::uniform_species(shape); };
   const auto superellipsoid = [&](const Eigen::Vector3d& axes, double e) {
@@ -65,6 +70,8 @@ std::vector<Bodies> all_bodies() {
       {"spheres", uniform(geom::Sphere(0.5)), 100000},
       {"capsules L/D=2", uniform(geom::Capsule(1, 0.5))},
       {"capsules L/D=5", uniform(geom::Capsule(2.5, 0.5))},
+      {"capsules L/D=2 and ellipsoids 1:1:3", uniform(geom::Capsule(1, 0.5)), 20000,
+       uniform(geom::Ellipsoid(kSameVolume * Eigen::Vector3d(1, 1, 3)))},
       {"rounded boxes 0.05", uniform(geom::Rounded<geom::Box>(geom::Box({0.5, 0.5, 0.5}), 0.05)), 4000},
       {"cubes", uniform(geom::Box({0.5, 0.5, 0.5})), 4000},
       {"dodecahedra", uniform(geom::ConvexPolyhedron::in_principal_frame(geom::solid_vertices("dodecahedron"))), 2000},
@@ -75,9 +82,10 @@ std::vector<Bodies> all_bodies() {
 
 void engine(benchmark::State& timing, const Bodies& bodies) {
   ed::StartOptions options;
-  options.number = kNumber;
   options.packing_fraction = kPacking;
-  ed::Simulation simulation(ed::random_start(bodies.species, options));
+  std::vector<ed::Component> components{{bodies.species, kNumber}};
+  if (bodies.beside) components = {{bodies.species, kNumber / 2}, {*bodies.beside, kNumber / 2}};
+  ed::Simulation simulation(ed::random_start(components, options));
   simulation.run_collisions(bodies.collisions);
   simulation.tune_envelopes();
   const ed::Counters before = simulation.counters();

@@ -1,6 +1,7 @@
 # Tests of this part; see hardbody_test in CMakeLists.txt. HARDBODY_FULL=1 in the environment raises the lengths.
 hardbody_test(ed_unit_test unit
   unit/ed/bodies/custom_shape_test.cpp
+  unit/ed/bodies/mixed_bodies_test.cpp
   unit/ed/bodies/pair_distance_test.cpp
   unit/ed/neighbours/envelopes_test.cpp
   unit/ed/neighbours/paper_envelopes_test.cpp

@@ -15,6 +15,9 @@ hardbody_test(finder_unit_test unit
   unit/ed/motion/free_top_limits_test.cpp
   unit/ed/motion/textbook_top_test.cpp
   unit/ed/contact/general_contact_test.cpp
+  unit/ed/contact/given_contact_test.cpp
+  unit/ed/contact/scene_contact_test.cpp
+  unit/ed/motion/given_motion_test.cpp
   unit/ed/motion/impulse_test.cpp
   unit/ed/vectors/overlapping_envelopes_test.cpp
   unit/ed/vectors/products_test.cpp
@@ -29,5 +32,7 @@ hardbody_test(finder_rounding_test property property/rounding_test.cpp)
 # It judges in quadruple precision: double is promoted everywhere, on purpose.
 set_source_files_properties(property/rounding_test.cpp PROPERTIES COMPILE_OPTIONS -Wno-double-promotion)
 hardbody_test(finder_bracketing_test property property/bracketing_test.cpp)
-hardbody_test(finder_convex_contact_test property property/convex_contact_test.cpp property/rod_contact_test.cpp)
+hardbody_test(finder_convex_contact_test property property/convex_contact_test.cpp property/mixed_contact_test.cpp
+  property/rod_contact_test.cpp)
+hardbody_test(finder_given_contact_test property property/given_contact_test.cpp)
 hardbody_test(finder_support_contact_test property property/support_contact_test.cpp)

@@ -5,6 +5,7 @@
 #     python3 tests/fuzz/make_corpus.py corpus
 #     build/fuzz/tests/line_fuzz -entropic=0 -dict=tests/fuzz/line.dict -max_len=1024 -runs=10000000 corpus/line
 #     build/fuzz/tests/geom_fuzz -entropic=0 -max_len=192 -runs=10000000 corpus/geom
+#     build/fuzz/tests/scene_fuzz -entropic=0 -max_len=256 -runs=10000000 corpus/scene
 #     build/fuzz/tests/checkpoint_fuzz -max_len=512 -runs=1000000 corpus/checkpoint
 #     build/fuzz/tests/gsd_fuzz -max_len=2048 -runs=1000000 corpus/gsd
 #     build/fuzz/tests/lammps_fuzz -max_len=2048 -runs=1000000 corpus/lammps
@@ -39,6 +40,7 @@ add_test(NAME fuzz_corpus COMMAND ${HARDBODY_PYTHON} ${CMAKE_CURRENT_SOURCE_DIR}
 set_tests_properties(fuzz_corpus PROPERTIES LABELS unit FIXTURES_SETUP fuzz_corpus)
 
 hardbody_fuzzer(geom)
+hardbody_fuzzer(scene hardbody::ed)
 if(TARGET hardbody_program)
   hardbody_fuzzer(line hardbody_program nlohmann_json::nlohmann_json)
   hardbody_fuzzer(checkpoint hardbody_program)

@@ -10,13 +10,16 @@ hardbody_test(geom_unit_test unit
   unit/geom/cores/core_queries_test.cpp
   unit/geom/cores/core_shapes_test.cpp
   unit/geom/cores/capsule_smooth_test.cpp
+  unit/geom/cores/polytope_smooth_test.cpp
   unit/geom/cores/exact_side_test.cpp
   unit/geom/cores/half_space_test.cpp
   unit/geom/cores/round_distance_test.cpp
+  unit/geom/cores/rotated_hulls_test.cpp
   unit/geom/cores/special_positions_test.cpp
   unit/geom/cores/swept_mass_test.cpp
   unit/geom/cores/polyhedron_test.cpp
   unit/geom/contact_elements_test.cpp
+  unit/geom/derivatives/derivatives_test.cpp
   unit/geom/distance_test.cpp
   unit/geom/dual_newton_test.cpp
   unit/geom/ellipsoid_pairs_test.cpp
@@ -33,10 +36,14 @@ hardbody_test(geom_unit_test unit
   unit/geom/queries_test.cpp
   unit/geom/ray_cast_test.cpp
   unit/geom/ray_from_afar_test.cpp
+  unit/geom/patch/contact_patch_test.cpp
+  unit/geom/scene/scene_queries_test.cpp
+  unit/geom/scene/scene_pairs_test.cpp
   unit/geom/solids_test.cpp
   unit/geom/sphere_search_test.cpp
   unit/geom/superellipsoid_test.cpp
-  unit/geom/user_shape_test.cpp)
+  unit/geom/user_shape_test.cpp
+  unit/geom/warm_start_test.cpp)
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64)$")
   find_package(hwy 1.0 REQUIRED CONFIG)
   target_sources(geom_unit_test PRIVATE unit/geom/batch/batch_roots_test.cpp unit/geom/batch/batch_roots_portable.cpp
@@ -52,6 +59,7 @@ else()
 endif()
 hardbody_test(geom_allocation_test unit unit/geom/allocation_test.cpp)
 hardbody_test(geom_batch_test property property/geom_batch_test.cpp)
+hardbody_test(geom_resting_pile_test property property/resting_pile_test.cpp)
 hardbody_test(geom_property_test property property/geom_distance_test.cpp
   property/geom_penetration_test.cpp
   property/geom_superellipsoid_depth_test.cpp

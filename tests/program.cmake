@@ -12,7 +12,7 @@ if(TARGET hardbody)
     list(APPEND cli_environment "HARDBODY_CLOCK=$<TARGET_FILE:cli_clock>")
     hardbody_needed_by(cli cli_clock)
   endif()
-  foreach(file test_cli test_check test_checks test_restart test_extend test_trajectory test_reading test_cases test_conventions test_shapes test_kinds
+  foreach(file test_cli test_check test_checks test_restart test_extend test_trajectory test_reading test_cases test_conventions test_shapes test_kinds test_queries
           test_starts test_mdanalysis test_sweep test_replicas test_paper test_quickstart)
     set(cli_tests ${CMAKE_CURRENT_SOURCE_DIR}/cli/${file}.py)
     set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${cli_tests})

@@ -19,9 +19,9 @@ MOST_LINES = 400  # of one file of the libraries, the program and the unit tests
 
 LIBRARIES = {
     "libgeom/src": {
-        "order": "shapes < dual < norm, cores < paper, batch < any",
+        "order": "shapes < dual < norm, cores < paper, batch < any < derivatives, patch, scene",
         "public": ("geom", {
-            "shapes": "box capsule check_support ellipsoid export mass obb polyhedron pose round_shapes shape solids sphere superellipsoid tolerances "
+            "shapes": "check_support ellipsoid export mass obb polyhedron pose round_shapes shape superellipsoid tolerances "
                       "kernel/core kernel/eigen_layout kernel/lane_norms kernel/lanes kernel/mass_impl kernel/nested_norm kernel/norm_bodies kernel/refuse "
                       "kernel/small_solve",
             "dual": "distance kernel/distance_impl kernel/dual_newton kernel/meridian_search kernel/perram_wertheim kernel/simplex_descent "
@@ -31,14 +31,17 @@ LIBRARIES = {
             "paper": "newton kernel/newton_equations kernel/newton_impl",
             "batch": "batch kernel/records-inl",
             "any": "any_convex any_shape half_space kernel/any_body queries kernel/queries_impl",
+            "scene": "scene",
+            "patch": "contact_patch",
+            "derivatives": "derivatives",
         }),
     },
     "libed/src": {
         "order": "base < cells < motion < contact < vectors < system < bodies < neighbours < loop < start, observables",
         "public": ("ed", {
             "base": "archive arithmetic export random sink tolerances",
-            "motion": "impulse motion",
-            "contact": "contact_options shape time_of_contact",
+            "motion": "given/motion impulse motion",
+            "contact": "contact_options given/contact given/scene shape time_of_contact",
             "system": "archive_system polydispersity system",
             "bodies": "snapshot",
             "loop": "archive_simulation simulation",
@@ -51,7 +54,7 @@ LIBRARIES = {
         "public": ("hardbody", {}),
     },
     "apps/python/src": {
-        "order": "base < geometry < simulation, runs",
+        "order": "base < geometry < scene, simulation, runs",
         "public": ("hardbody", {}),
     },
 }

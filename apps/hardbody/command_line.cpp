@@ -6,6 +6,7 @@
 #include "commands/commands.h"
 #include "commands/sweep_tasks.h"
 #include "io/text_file.h"
+#include "report/assets.h"
 #include "sweep/replicas.h"
 
 #include <fmt/format.h>
@@ -181,10 +182,13 @@ void add_analyze(CLI::App& app, Request& request) {
 }
 
 void add_distance(CLI::App& app, Request& request) {
-  CLI::App* distance =
-      app.add_subcommand("distance", "Compute distances of pairs of bodies: JSON lines in, JSON lines out");
-  distance->add_option("FILE", request.distance_file, "File with one pair a line; default, or -: standard input");
-  distance->footer(distance_help());
+  for (const auto& [name, what] :
+       {std::pair("distance", "Compute distances of pairs of bodies: JSON lines in, JSON lines out"),
+        std::pair("query", "Answer queries about bodies, distances among them: JSON lines in, JSON lines out")}) {
+    CLI::App* command = app.add_subcommand(name, what);
+    command->add_option("FILE", request.distance_file, "File with one query a line; default, or -: standard input");
+    command->footer(distance_help());
+  }
 }
 
 void add_report(CLI::App& app, Request& request) {
@@ -250,7 +254,7 @@ int dispatch(const CLI::App& app, const Request& request) {
   if (app.got_subcommand("map")) return map(request.map);
   if (app.got_subcommand("check")) return check(request.check_path);
   if (app.got_subcommand("analyze")) return analyze(request.analyze);
-  if (app.got_subcommand("distance")) return distance(request.distance_file);
+  if (app.got_subcommand("distance") || app.got_subcommand("query")) return distance(request.distance_file);
   if (app.got_subcommand("report")) return report(request.report);
   return replay(request.replay_file);
 }
@@ -292,12 +296,17 @@ void check_command(const CLI::App& app, const std::vector<std::string>& argument
       fmt::format("command line: {}; accepted: {}; hardbody --help explains them", what, fmt::join(names, ", ")));
 }
 
+/// Returns the line of `hardbody --version` about reports.
+std::string report_text() {
+  return report_script().empty() ? "reports: static, built without npm\n" : "reports: interactive\n";
+}
+
 int parsed(int argc, char** argv, std::vector<std::string> program) {
   Request request;
   request.run.program = program;
   request.sweep.program = std::move(program);
-  CLI::App app("Event-driven molecular dynamics of hard ellipsoids and superellipsoids", "hardbody");
-  app.set_version_flag("--version", version_text());
+  CLI::App app("Event-driven molecular dynamics of hard convex bodies", "hardbody");
+  app.set_version_flag("--version", version_text() + report_text());
   app.require_subcommand(1);
   app.footer(
       "Exit status: 0 success, 1 failure, 2 invalid input; 130, 143, 129 and 152: stopped by SIGINT, SIGTERM, SIGHUP "

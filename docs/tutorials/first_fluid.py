@@ -13,8 +13,10 @@ import hardbody as hb
 
 # %% [markdown]
 # `Ellipsoid.spheroid(3.0)` has the volume of the unit sphere: the unit of length is the radius of that sphere. Masses
-# and kT are 1. `random_start` compresses a random gas until the packing fraction is reached, without a single overlap.
-# The seed makes the run repeatable to the last bit.
+# and kT are 1. By default the moments of inertia of ellipsoids of revolution are those of De Michele (2010), 2/5 of the
+# square of the smaller semi-axis, without spin about the axis; `hb.Species(shape, inertia="uniform")` has those of
+# uniform density. `random_start` compresses a random gas until the packing fraction is reached, without a single
+# overlap. The seed makes the run repeatable to the last bit.
 
 # %%
 start = hb.random_start(hb.Ellipsoid.spheroid(3.0), number=128, packing_fraction=0.3, seed=1)

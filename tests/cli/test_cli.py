@@ -1375,6 +1375,7 @@ class CommandLine(Case):
         self.assertEqual(result.returncode, 0)
         for part in ["hardbody 0.", "BSD-3-Clause", "Eigen", "MPL-2.0", "built with", "FCL", "libccd", "CGAL"]:
             self.assertIn(part, result.stdout)
+        self.assertRegex(result.stdout, "\nreports: (interactive|static, built without npm)\n")
         # A binary with CGAL in it says so where it names its licence.
         licence = re.search("^licence: (.*)$", result.stdout, re.M)[1]
         self.assertEqual("GPL-3.0-or-later" in licence, "CGAL is not built in" not in result.stdout, result.stdout)

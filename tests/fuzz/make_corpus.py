@@ -1,5 +1,5 @@
-"""Writes the inputs that the fuzzers start from: `make_corpus.py DIR` fills DIR/line, DIR/geom, DIR/checkpoint,
-DIR/gsd and DIR/lammps.
+"""Writes the inputs that the fuzzers start from: `make_corpus.py DIR` fills DIR/line, DIR/geom, DIR/scene,
+DIR/checkpoint, DIR/gsd and DIR/lammps.
 
 The same files every time: the draws are seeded.
 """
@@ -124,8 +124,9 @@ def main(directory):
     geom = [bytes(draws.randrange(256) for _ in range(160)) for _ in range(64)]
     # A byte that says of what, then changes of three bytes each, or a payload.
     checkpoint = [bytes([k % 5]) + bytes(draws.randrange(256) for _ in range(3 * (k % 40))) for k in range(120)]
+    scene = [bytes(draws.randrange(256) for _ in range(256)) for _ in range(64)]
     line = [line.encode() for line in lines()]
-    for name, inputs in [("line", line), ("geom", geom), ("checkpoint", checkpoint), ("gsd", list(gsd_files())),
+    for name, inputs in [("line", line), ("geom", geom), ("scene", scene), ("checkpoint", checkpoint), ("gsd", list(gsd_files())),
                          ("lammps", [text.encode() for text in dumps()])]:
         os.makedirs(os.path.join(directory, name), exist_ok=True)
         for k, data in enumerate(inputs):

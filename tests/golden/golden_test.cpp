@@ -32,7 +32,7 @@ using ed_test::State;
 constexpr std::uint64_t kCollisions = 10000;
 
 /// Version of the arithmetic of the hashes below.
-static_assert(ed::kArithmetic == 17);
+static_assert(ed::kArithmetic == 18);
 
 std::string fingerprint() {
 #if !defined(__x86_64__)
@@ -104,6 +104,18 @@ ed::System thermal_grid(const geom::Ellipsoid& shape, const Eigen::Vector3d& ine
 TEST(Golden, StateOfBiaxialEllipsoids) {
   expect_hash("biaxial ellipsoids", thermal_grid(geom::Ellipsoid({1, 0.8, 0.5}), {0.2, 0.3, 0.35}),
               {{"x86-64", "0x83f8f69f63f3c576"}});
+}
+
+/// Capsules, ellipsoids of revolution and spheres in turn.
+TEST(Golden, StateOfCapsulesEllipsoidsAndSpheres) {
+  ed::System system = thermal_grid(geom::Ellipsoid({0.4, 0.4, 1}), {0.2, 0.2, 0.1});
+  const ed::Species ellipsoid = system.species[0];
+  system.species = {ellipsoid, ellipsoid, ellipsoid};
+  system.species[1].shape = geom::Capsule(0.6, 0.4);
+  system.species[2].shape = geom::Sphere(0.7);
+  system.species[2].inertia.setConstant(0.2);
+  for (std::size_t i = 0; i < system.bodies.size(); ++i) system.bodies[i].species = static_cast<int>(i % 3);
+  expect_hash("capsules, ellipsoids and spheres", system, {{"x86-64", "0xaecc30f983d422bc"}});
 }
 
 TEST(Golden, StateOfRods) {

@@ -1,5 +1,6 @@
 #include "oracle/fcl_raw.h"
 
+#include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
 #include <fcl/geometry/shape/box.h>
 #include <fcl/geometry/shape/capsule.h>
 #include <fcl/geometry/shape/cone.h>
@@ -10,8 +11,14 @@
 #include <fcl/narrowphase/detail/convexity_based_algorithm/gjk_libccd.h>
 #include <fcl/narrowphase/distance.h>
 
+#include <geom/kernel/any_body.h>
+
+#include <cmath>
+#include <deque>
 #include <exception>
 #include <memory>
+#include <numbers>
+#include <type_traits>
 
 namespace geom_test {
 namespace {
@@ -119,6 +126,75 @@ FclPrimitives::FclPrimitives(const geom::kernel::CoreView& a, const geom::Pose& 
 
 FclDistance FclPrimitives::distance() const {
   return ask(objects_->a, objects_->b, /*signed_distance=*/false);
+}
+
+struct FclScene::Objects {
+  std::deque<fcl::CollisionObjectd> all;
+  fcl::DynamicAABBTreeCollisionManagerd tree;
+};
+
+FclScene::FclScene() : objects_(std::make_shared<Objects>()) {}
+
+void FclScene::add(const geom::Shape& shape, const geom::Pose& X_WB) {
+  objects_->all.push_back(geom::kernel::with_body(shape, [&](const auto& body) -> fcl::CollisionObjectd {
+    using Body = std::decay_t<decltype(body)>;
+    if constexpr (geom::CoreShape<Body>) {
+      return primitive(body.core(), X_WB);
+    } else if constexpr (std::is_same_v<Body, geom::Ellipsoid>) {
+      return to_fcl(body, X_WB);
+    } else {
+      std::vector<Eigen::Vector3d> points;
+      constexpr int kRings = 8;
+      for (int ring = 0; ring <= kRings; ++ring) {
+        const double polar = std::numbers::pi * ring / kRings;
+        for (int k = 0; k < 2 * kRings; ++k) {
+          const double angle = std::numbers::pi * k / kRings;
+          const Eigen::Vector3d n(std::sin(polar) * std::cos(angle), std::sin(polar) * std::sin(angle),
+                                  std::cos(polar));
+          points.push_back(geom::Support(body.support(n)).point);
+          if (ring == 0 || ring == kRings) break;
+        }
+      }
+      return primitive(geom::ConvexPolyhedron(points).core(), X_WB);
+    }
+  }));
+}
+
+void FclScene::build() {
+  std::vector<fcl::CollisionObjectd*> pointers;
+  for (fcl::CollisionObjectd& object : objects_->all) {
+    object.computeAABB();
+    pointers.push_back(&object);
+  }
+  objects_->tree.registerObjects(pointers);
+  objects_->tree.setup();
+}
+
+void FclScene::move(const std::vector<geom::Pose>& X_WB) {
+  for (std::size_t k = 0; k < X_WB.size(); ++k) {
+    fcl::CollisionObjectd& object = objects_->all[k];
+    object.setRotation(X_WB[k].rotation());
+    object.setTranslation(X_WB[k].position());
+    object.computeAABB();
+  }
+  objects_->tree.update();
+}
+
+std::vector<double> FclScene::pairs_within(double cutoff) const {
+  struct Found {
+    double cutoff;
+    std::vector<double> distances;
+  } found{cutoff, {}};
+  // `limit`: distance of boxes from which on the tree leaves pairs out.
+  const auto visit = [](fcl::CollisionObjectd* a, fcl::CollisionObjectd* b, void* data, double& limit) {
+    auto& all = *static_cast<Found*>(data);
+    const FclDistance d = ask(*a, *b, /*signed_distance=*/false);
+    if (d.distance <= all.cutoff) all.distances.push_back(d.distance);
+    limit = all.cutoff;
+    return false;
+  };
+  objects_->tree.distance(&found, visit);
+  return found.distances;
 }
 
 FclDistance fcl_distance(const std::vector<Eigen::Vector3d>& a, const geom::Pose& X_WA,

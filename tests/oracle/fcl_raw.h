@@ -55,6 +55,26 @@ class FclPrimitives {
   std::shared_ptr<const Objects> objects_;
 };
 
+/// Many bodies in FCL's dynamic tree of axis-aligned boxes. Superellipsoids, which FCL does not know, are hulls of
+/// points of their surfaces.
+class FclScene {
+ public:
+  FclScene();
+
+  void add(const geom::Shape& shape, const geom::Pose& X_WB);
+  /// Builds the tree, after the last body.
+  void build();
+  /// Moves all bodies and brings the tree up to date.
+  void move(const std::vector<geom::Pose>& X_WB);
+
+  /// Returns the distances, at FCL's defaults, of all pairs whose distance is at most `cutoff`; -1 of overlaps.
+  std::vector<double> pairs_within(double cutoff) const;
+
+ private:
+  struct Objects;
+  std::shared_ptr<Objects> objects_;
+};
+
 /// Support function: returns the point of the body furthest along `direction` (any length except 0), both in world
 /// axes.
 using SupportFunction = Eigen::Vector3d (*)(const void* body, const Eigen::Vector3d& direction);

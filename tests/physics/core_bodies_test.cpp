@@ -66,6 +66,11 @@ std::vector<Fluid> fluids(int copies = 1) {
       {"capsules and spheres",
        {{ed::uniform_species(geom::Capsule(0.6, 0.4)), 24 * copies},
         {ed::uniform_species(geom::Sphere(0.3)), 24 * copies}}},
+      {"capsules, prolate and oblate ellipsoids of revolution, and spheres",
+       {{ed::uniform_species(geom::Capsule(0.6, 0.4)), 16 * copies},
+        {ed::uniform_species(geom::Ellipsoid({0.4, 0.4, 0.9})), 12 * copies},
+        {ed::uniform_species(geom::Ellipsoid({0.7, 0.7, 0.4})), 12 * copies},
+        {ed::uniform_species(geom::Sphere(0.5)), 8 * copies}}},
       {"capsules and ellipsoids",
        {{ed::uniform_species(geom::Capsule(0.6, 0.4)), 24 * copies},
         {ed::uniform_species(geom::Ellipsoid({0.4, 0.6, 0.8})), 24 * copies}}}};

@@ -121,7 +121,7 @@ def test_the_program_still_has_the_phrases_that_are_translated():
 
 # What messages say in place of an argument's name.
 OTHER_WORDS = {
-    "path": r": (is not there|has no \S+); accepted: the directory of (a run|a sweep|an analysis)$",
+    "path": r": (is not there|is not a directory|has no \S+); accepted: the directory of (a run|a sweep|an analysis)$",
     "config": r"^out is None; accepted: the name of a directory, as a dict has no name",
     "values": r"^levels",
     "paths": r"^out is None; accepted: the name of an HTML file, as there are several directories",

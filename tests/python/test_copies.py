@@ -2,7 +2,9 @@
 
 import copy
 import dataclasses
+import gc
 import pickle
+import weakref
 
 import numpy as np
 import pytest
@@ -38,6 +40,15 @@ def measured(seed=1):
 
 
 POSITIONS = np.array([[0.0, 0, 0], [0, 0, 8.0]])
+
+
+def scene():
+    """Two rods."""
+    rods = hb.Scene()
+    rods.add_many(ROD, POSITIONS)
+    return rods
+
+
 VALUES = {
     "Pose": APART,
     "Motion": hb.Motion(APART, [1, 0, 0], [0, 1, 0], [1, 2, 2.5], 0.5),
@@ -63,6 +74,19 @@ VALUES = {
     "ClosestPoints": hb.closest_point_many(ROD, POSITIONS, None, POSITIONS + 5),
     "RayHits": hb.ray_cast_many(ROD, POSITIONS, None, POSITIONS + 5, -POSITIONS - 5),
     "Masses": hb.mass_properties_many([ROD, ROD]),
+    "Derivatives": hb.distance_derivatives(ROD, HERE, ROD, APART),
+    "DerivativesMany": hb.distance_derivatives_many(ROD, POSITIONS, None, [[0, 1]]),
+    "ContactPatch": hb.contact_patch(ROD, HERE, ROD, hb.Pose([0, 0, 6]), 0.1),
+    "ContactPatches": hb.contact_patch_many(ROD, POSITIONS, None, [[0, 1]], 3.0),
+    "ScenePairs": scene().pairs_within(9.0),
+    "SceneOverlaps": scene().overlapping_pairs(),
+    "SceneBodies": scene().overlapping(ROD, HERE),
+    "ScenePair": scene().distance(0, 1),
+    "SceneNearest": scene().nearest_to(0),
+    "ScenePoint": scene().closest_point([9, 9, 9]),
+    "ScenePoints": scene().closest_point_many(POSITIONS + 5),
+    "SceneRayHit": scene().ray_cast([0, 0, 9], [0, 0, -1]),
+    "SceneRayHits": scene().ray_cast_many(POSITIONS + 5, -POSITIONS - 5),
     "Results": measured(),
     "Estimate that is missing": hb.Estimate(float("nan"), float("nan"), "too short"),
 }
@@ -115,6 +139,31 @@ def test_members_survive(random):
         assert len(members) > 4
         for member in members:
             np.testing.assert_equal(getattr(again, member), getattr(value, member))
+
+
+@pytest.mark.parametrize("protocol", range(pickle.HIGHEST_PROTOCOL + 1))
+def test_every_protocol(protocol):
+    for name, value in VALUES.items():
+        assert pickle.loads(pickle.dumps(value, protocol)) == value, name
+
+
+@pytest.mark.parametrize("kind", sorted({type(v) for v in VALUES.values()} | {hb.Simulation}, key=lambda k: k.__name__))
+def test_weak_references(kind):
+    value = simulation() if kind is hb.Simulation else next(v for v in VALUES.values() if type(v) is kind)
+    assert weakref.ref(value)() is value
+
+
+def test_a_shape_that_refers_weakly_to_its_species_is_freed():
+    class Owner(Sized):
+        species: weakref.ref[hb.Species]
+
+    shape = Owner(1.0)
+    species = hb.Species(shape, inertia=[0.4, 0.4, 0.4])
+    shape.species = weakref.ref(species)
+    found = weakref.ref(shape)
+    del shape, species
+    gc.collect()
+    assert found() is None
 
 
 @pytest.mark.parametrize("state", [(), (1.0,), ("a",) * 8, (1.0, 2, 3, 4, 5, 6, 7, 8), tuple(range(14)), (-1,) * 14])

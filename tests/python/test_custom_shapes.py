@@ -1,5 +1,7 @@
 """Shapes that are written in Python: the same answers as built-in ones, and no crash whatever they do."""
 
+import pickle
+
 import numpy as np
 import pytest
 from conftest import work_after_interrupt
@@ -206,7 +208,22 @@ def test_overlaps_raise_with_the_failed_pairs():
     assert r.distance < 0
     with pytest.raises(TypeError, match="JSON"):
         pair.to_json()
+    assert pickle.loads(pickle.dumps(error)).failures == []  # a shape that contradicts its radii cannot be made again
+    shape.size = 1.0
+    again = pickle.loads(pickle.dumps(error))
+    assert (str(again), again.counters, again.stall) == (str(error), error.counters, error.stall)
+    assert [(p.i, p.j, p.time) for p in again.failures] == [(p.i, p.j, p.time) for p in error.failures]
+    shape.local = lambda: None  # cannot be pickled
+    assert pickle.loads(pickle.dumps(error)).failures == []
+    state = list(pair.__getstate__())
+    state[1] = state[2] = hb.Ellipsoid([1, 1, 3])
+    built_in = hb.FailedPair.__new__(hb.FailedPair)
+    built_in.__setstate__(tuple(state))
+    for protocol in range(pickle.HIGHEST_PROTOCOL + 1):
+        kept = pickle.loads(pickle.dumps(hb.NumericalError("x", [pair, built_in], error.counters), protocol))
+        assert kept.failures == [built_in] and kept.failures[0].to_json() == built_in.to_json()
     # The simulation is whole.
+    shape.size = 1.1
     assert simulation.positions.shape == (2, 3) and not simulation.audit().sound
 
 
@@ -275,6 +292,13 @@ def test_contradictions_are_refused(kind, message, shape):
         hb.CustomShape(shape)
     with pytest.raises(kind, match=message):
         hb.Species(shape)
+
+
+def test_a_class_is_no_shape():
+    with pytest.raises(
+        TypeError, match=r"^object is the class Spheroid; accepted: an object of it, Spheroid\(\.\.\.\)$"
+    ):
+        hb.CustomShape(Spheroid)
 
 
 def test_dynamics_needs_volume_and_moments():

@@ -20,7 +20,9 @@ def blocks_of(page):
     return blocks
 
 
-@pytest.mark.parametrize("page", ["python.md", "python-shapes.md", "shapes.md"])
+@pytest.mark.parametrize(
+    "page", ["python.md", "python-shapes.md", "shapes.md", "scenes.md", "derivatives.md", "contact-patches.md"]
+)
 def test_examples_run(page):
     """Examples of runs are in test_runs."""
     names: dict[str, object] = {}
@@ -28,10 +30,18 @@ def test_examples_run(page):
         exec(compile(block, page, "exec"), names)
 
 
+def test_the_first_example_of_the_readme_runs():
+    """The second is a whole run, of a minute; its types are checked below."""
+    names: dict[str, object] = {}
+    exec(compile(blocks_of("README.md")[0], "README.md", "exec"), names)
+    assert isinstance(names["r"], hb.DistanceResult) and names["r"].status == "separated"
+
+
 @pytest.mark.skipif(not is_installed, reason="stubs are made for the installed package")
 def test_types_of_the_examples(tmp_path):
     pytest.importorskip("mypy")
-    pages = ["README.md", *(f"docs/{page}.md" for page in ("python", "python-runs", "python-shapes", "shapes"))]
+    names = ("python", "python-runs", "python-shapes", "shapes", "scenes", "derivatives", "contact-patches")
+    pages = ["README.md", *(f"docs/{name}.md" for name in names)]
     for page in pages:
         (tmp_path / page.replace("/", "_").replace("-", "_").replace(".md", ".py")).write_text(
             "\n".join(blocks_of(page))

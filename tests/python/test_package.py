@@ -1,5 +1,6 @@
 """What the package contains, its types, and versions."""
 
+import dataclasses
 import importlib.metadata
 import inspect
 import os
@@ -145,6 +146,9 @@ def test_help_stands_by_itself():
         hb.closest_point_many,
         hb.ray_cast_many,
         hb.time_of_contact_many,
+        hb.distance_derivatives_many,
+        hb.contact_patch_many,
+        hb.Scene.add_many,
     ):
         assert "distance_many" in inspect.getdoc(function)
 
@@ -153,12 +157,24 @@ def test_help_stands_by_itself():
     "kind",
     [
         *(hb.Distances, hb.Overlaps, hb.ClosestPoints, hb.RayHits, hb.Contacts, hb.Masses),
+        *(
+            hb.Derivatives,
+            hb.DerivativesMany,
+            hb.ContactPatch,
+            hb.ContactPatches,
+            hb.ScenePairs,
+            hb.SceneOverlaps,
+            hb.SceneBodies,
+            hb.ScenePair,
+        ),
+        *(hb.SceneContact, hb.SceneNearest, hb.ScenePoint, hb.SceneRayHit, hb.ScenePoints, hb.SceneRayHits),
         *(hb.Estimate, hb.VectorEstimate, hb.TensorEstimate, hb.NumericalError),
     ],
 )
 def test_help_of_classes_lists_their_fields(kind):
-    properties = [name for name, member in vars(kind).items() if isinstance(member, property)]
-    for name in (name for name in [*kind.__annotations__, *properties] if not name.startswith("_")):
+    properties = [name for name in dir(kind) if isinstance(getattr(kind, name), property)]
+    fields = [field.name for field in dataclasses.fields(kind)] if dataclasses.is_dataclass(kind) else []
+    for name in (name for name in [*fields, *kind.__annotations__, *properties] if not name.startswith("_")):
         assert re.search(rf"\b{name}\b[\w, ]*: ", inspect.getdoc(kind)), name
 
 

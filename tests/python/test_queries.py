@@ -125,6 +125,36 @@ def test_time_of_contact_of_translating_bodies(random):
         assert (miss.status, miss.time) == ("separated", np.inf)
 
 
+@pytest.mark.parametrize("speed", [1e50, 1e49, 1e-49, 1e-50])
+@pytest.mark.parametrize("way", [3.0, 1e6])
+def test_time_of_contact_at_every_speed(speed, way):
+    """Squares of the speeds, and of their products with the largest coordinate, neither overflow nor underflow."""
+    e = hb.Ellipsoid([1, 1, 3])
+    moving = hb.Motion(hb.Pose([way + 2, 0, 0]), velocity=[-speed, 0, 0])
+    hit = hb.time_of_contact(e, hb.Motion(), e, moving, np.inf)
+    assert hit.status == "hit"
+    assert hit.time == pytest.approx(way / speed, rel=1e-14)
+    early = hb.time_of_contact(e, hb.Motion(), e, moving, 0.5 * way / speed)
+    assert (early.status, early.time) == ("separated", 0.5 * way / speed)
+    turning = hb.Motion(hb.Pose([3.5, 0, 0]), angular_velocity=[0, speed, 0])
+    assert hb.time_of_contact(e, hb.Motion(), e, turning, 100 / speed).status == "hit"
+    assert hb.time_of_contact(e, hb.Motion(), e, turning, 0.1 / speed).status == "separated"
+
+
+def test_speeds_whose_squares_overflow_or_underflow_are_refused():
+    for speed in (1.1e50, 1e155, 1e300, 0.9e-50, 1e-200, 5e-324):
+        for name in ("velocity", "angular_velocity"):
+            with pytest.raises(ValueError, match=rf"^{name} is \[.*; accepted: 0, or a length from 1e-50 to 1e\+50$"):
+                hb.Motion(**{name: [0, speed, 0]})
+    assert hb.Motion(velocity=[1e-200, 1, 0]).velocity[0] == 1e-200
+    late = hb.Motion(velocity=[1e50, 0, 0])
+    e = hb.Ellipsoid([1, 1, 3])
+    with pytest.raises(
+        ValueError, match="position at time 1e.60, the later of both motions' times, is .* beyond .*1e.100"
+    ):
+        hb.time_of_contact(e, late, e, hb.Motion(time=1e60), np.inf)
+
+
 def test_motion_agrees_with_the_reference():
     with open(REFERENCE / "free_top.csv", newline="") as file:
         rows = list(csv.DictReader(line for line in file if not line.startswith(('"#', "#"))))

@@ -31,8 +31,29 @@ def test_summary_and_config(run):
     assert run.config["system"]["number"] == 48
     assert run.config["production"]["time"] == 3.0
     assert os.fspath(run) == str(run.path)
-    assert repr(run) == f"Run({str(run.path)!r})"
+    assert repr(run) == f"Run({str(run.path)!r})  # not shown to be equilibrated"
     assert eval(repr(run), {"Run": hb.Run}) == run
+
+
+def test_runs_say_what_limits_them(run, tmp_path):
+    assert not run.summary["equilibrated"]
+    assert "<b>not shown to be equilibrated</b>" in run._repr_html_()
+    copy = shutil.copytree(run.path, tmp_path / "copy")
+    summary = run.summary | {"equilibrated": True}
+    (copy / "summary.json").write_text(json.dumps(summary))
+    assert repr(hb.Run(copy)) == f"Run({str(copy)!r})"
+    assert "equilibrated" not in hb.Run(copy)._repr_html_().split("<table>")[0]
+    (copy / "summary.json").write_text(json.dumps(summary | {"sound": False, "interrupted": True}))
+    assert repr(hb.Run(copy)).endswith("  # interrupted: not finished, NOT SOUND")
+    (copy / "summary.json").write_text("{")
+    assert repr(hb.Run(copy)) == f"Run({str(copy)!r})"
+    (copy / "summary.json").unlink()
+    assert repr(hb.Run(copy)).endswith("  # not finished")
+
+
+def test_a_file_is_no_directory_of_a_run(run):
+    with pytest.raises(ValueError, match=r"summary.json: is not a directory; accepted: the directory of a run$"):
+        hb.Run(run.path / "summary.json")
 
 
 def test_curves_are_those_of_the_files(run):
@@ -177,7 +198,7 @@ def test_relative_paths_outlive_the_working_directory(run, tmp_path, monkeypatch
     assert copy == hb.Run(tmp_path / "here" / "copy")
     monkeypatch.chdir(tmp_path / "there")
     assert os.fspath(copy.path) == "copy"
-    assert repr(copy) == "Run('copy')"
+    assert repr(copy).startswith("Run('copy')")
     assert os.fspath(copy) == str(tmp_path / "here" / "copy")
     assert copy.is_finished and copy.summary == summary and copy.config == run.config
     assert len(copy.events) == 10 and len(copy.observables["msd"]) == len(run.observables["msd"])

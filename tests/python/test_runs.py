@@ -56,7 +56,8 @@ def test_unknown_commands_are_named(tmp_path, command, word, what):
     ended = call(*([] if word is None else [word]), cwd=tmp_path, command=command)
     assert ended.returncode == 2 and not ended.stdout
     assert re.match(
-        f"command line: {what}; accepted: init, run, resume, extend, .*distance; hardbody --help explains them\\n$",
+        f"command line: {what}; accepted: init, run, resume, extend, .*distance, query; "
+        "hardbody --help explains them\\n$",
         ended.stderr,
     )
 
@@ -134,6 +135,14 @@ def test_bad_arguments(tmp_path):
     with pytest.raises(ValueError, match="nowhere: is not there; accepted: the directory of a run"):
         hb.resume(tmp_path / "nowhere")
     assert not (tmp_path / "b").exists()
+
+
+def test_runs_that_are_not_equilibrated_warn(tmp_path):
+    with pytest.warns(hb.NotEquilibratedWarning, match="a: not shown to be equilibrated: ") as caught:
+        run = hb.run(CONFIG, tmp_path / "a")
+    assert caught[0].filename == __file__
+    with pytest.warns(hb.NotEquilibratedWarning):
+        hb.resume(run)
 
 
 def test_failures_are_runtime_errors(tmp_path):

@@ -433,6 +433,7 @@ def test_other_threads_are_refused_while_it_runs():
         except RuntimeError as error:
             assert "within an event" in str(error)
             refused += 1
+            assert repr(simulation).startswith(("Simulation(running)", "Simulation(512 bodies, "))
         time.sleep(0.001)
     thread.join()
     assert refused > 0 and simulation.collisions == 3000

@@ -1,5 +1,6 @@
 """Saved states: the same bits, observables included; damaged ones are refused."""
 
+import errno
 import pathlib
 import signal
 import struct
@@ -62,9 +63,29 @@ def test_damaged_states_are_refused(tmp_path):
         hb.Simulation.restore(tmp_path / "nowhere")
     with pytest.raises(TypeError, match="accepted: "):
         hb.Simulation.restore(3)
-    with pytest.raises(OSError):
-        simulation.save(tmp_path / "no" / "such" / "directory")
+    with pytest.raises(
+        TypeError, match=r"^state is of type ndarray; accepted: bytes, a bytearray or a memoryview; or a s"
+    ):
+        hb.Simulation.restore(np.zeros(9, np.uint8))
     assert list(pathlib.Path(tmp_path).iterdir()) == []
+
+
+def test_errors_of_files_have_number_and_name(tmp_path):
+    simulation = hb.Simulation(fluid(8, 0.05))
+    nowhere = tmp_path / "no" / "such" / "file"
+    cases = [
+        (FileNotFoundError, errno.ENOENT, nowhere, simulation.save),
+        (IsADirectoryError, errno.EISDIR, tmp_path, simulation.save),
+        (OSError, errno.EINVAL, "/dev/full", simulation.save),
+        (FileNotFoundError, errno.ENOENT, nowhere, hb.Simulation.restore),
+        (IsADirectoryError, errno.EISDIR, tmp_path, hb.Simulation.restore),
+        (FileNotFoundError, errno.ENOENT, nowhere, hb.from_gsd),
+    ]
+    for kind, number, path, function in cases:
+        with pytest.raises(kind) as caught:
+            function(path)
+        assert (caught.value.errno, caught.value.filename) == (number, str(path))
+        assert str(path) in str(caught.value)
 
 
 def sealed(content):

@@ -270,6 +270,32 @@ def test_bad_input_is_named(kind, message, call):
         call()
 
 
+def moving(speed, z=8.0):
+    """Two rods, of which one moves."""
+    return hb.Simulation(hb.System(30, ROD, [[0, 0, 0], [0, 0, z]], None, [[0, 0, 0], [0, speed, 0]]))
+
+
+def test_the_number_of_bodies_that_is_accepted_is_the_smallest():
+    with pytest.raises(ValueError, match=r"^number: .*; accepted: at least \d+ bodies$") as caught:
+        hb.random_start(ROD, number=2, packing_fraction=0.3)
+    least = int(str(caught.value).split()[-2])
+    assert len(hb.random_start(ROD, number=least, packing_fraction=0.3)) == least
+    with pytest.raises(ValueError, match=f"at least {least} bodies"):
+        hb.random_start(ROD, number=least - 1, packing_fraction=0.3)
+
+
+def test_states_in_single_precision(random):
+    """Angular velocities across the axis of exact orientations; orientations are then rounded."""
+    start = hb.random_start(ROD, number=64, packing_fraction=0.1, seed=5)
+    arguments = (start.positions, start.orientations, start.velocities, start.angular_velocities)
+    rounded = hb.System(start.box, ROD, *(a.astype("f4") for a in arguments))
+    np.testing.assert_allclose(rounded.orientations, start.orientations, atol=1e-6)
+    exact = hb.System(start.box, ROD, arguments[0], arguments[1].astype("f4"), *arguments[2:])
+    hb.Simulation(exact).run(collisions=50)
+    with pytest.raises(ValueError, match=r"angular_velocities\[0\] is .*, which turns body 0 about its axis"):
+        hb.System(9, ROD, [[0, 0, 0]], None, None, [[1, 0, 1e-4]])
+
+
 SYSTEM = hb.random_start(ROD, number=32, packing_fraction=0.1)
 DILUTE = hb.random_start(ROD, number=64, packing_fraction=0.01)  # cells are the fastest neighbours
 CELLS, OBP = {"neighbours": "cells"}, {"neighbours": "obp"}
@@ -277,6 +303,9 @@ REFUSED_BY_SIMULATIONS = [
     (TypeError, "system is 3; accepted: System", lambda s: hb.Simulation(3)),
     (TypeError, "system is None", lambda s: hb.compressed(None, 0.5)),
     (ValueError, "overlap at the start", lambda s: hb.Simulation(hb.System(30, ROD, [[0, 0, 0], [0.1, 0, 0]]))),
+    (ValueError, r"^velocity of the fastest body, 1, is \[0, 1e.51, 0\]; accepted: 0, or a", lambda s: moving(1e51)),
+    (ValueError, "^velocity of the fastest body, 1, is .*; accepted: 0, or a", lambda s: moving(1e-200)),
+    (ValueError, "^1 pairs of bodies overlap at the start, the deepest by 1.38627 ", lambda s: moving(1.0, z=0.1)),
     (ValueError, "number is 1", lambda s: hb.Simulation(hb.System(30, ROD, [[0, 0, 0]]))),
     (ValueError, "box", lambda s: hb.Simulation(hb.System(5, ROD, [[0, 0, 0], [2.5, 2.5, 0]]))),
     (ValueError, "neighbours", lambda s: hb.Simulation(SYSTEM, neighbours="all")),

@@ -10,7 +10,14 @@ import sys
 import pytest
 
 TUTORIALS = pathlib.Path(__file__).resolve().parents[2] / "docs" / "tutorials"
-FIGURES = {"first_fluid": True, "your_shape": False, "sweep_and_map": True, "robot_links": True}
+FIGURES = {
+    "first_fluid": True,
+    "your_shape": False,
+    "sweep_and_map": True,
+    "robot_links": True,
+    "path_among_bodies": True,
+    "grains": True,
+}
 
 
 @pytest.mark.parametrize("name", FIGURES)

@@ -1,6 +1,6 @@
 #include "base/shapes.h"
 
-#include <geom/solids.h>
+#include <geom/polyhedron.h>
 
 #include <algorithm>
 #include <cmath>

@@ -62,6 +62,19 @@ std::string distance_help() {
   penetration  answer of the dual method for deep overlaps: "global" (the default), the shortest of all translations
                that separate the bodies, or "local", a stationary one, mostly found 10 to 75 times faster
   id           any JSON, returned with the answer
+  query        "distance" (the default), or one of these, with other members than method, seed and penetration:
+    "gradient"         a, b: adds gradient and hessian of the distance by x = (dp_a, dtheta_a, dp_b, dtheta_b), small
+                       moves and rotations in the world frame, normal_gradient, point_a_gradient, point_b_gradient
+                       (three rows of 12), stiffness, and derivatives: "twice"; "once", "by_position", "none": those that do
+                       not exist are null
+    "overlap"          a, b: {{"overlap":"yes"}}, "no" or "unknown"
+    "closest_point"    a, "point":[x,y,z]: distance (negative inside), point, normal, status, error_bound
+    "contains"         a, point: {{"contains":true}}
+    "ray"              a, "origin":[x,y,z], "direction":[x,y,z]: status "hit", "missed", "inside" or "not_converged"; t in
+                       units of the direction, point, normal. "exit":true: the last point in the body
+    "time_of_contact"  a, b, "t_max":t, "motion_a" and "motion_b":{{"velocity":[..],"angular_velocity":[..],"inertia":[..]}},
+                       by default at rest, moments 1: status "hit", "separated", "overlapping", "budget_exhausted" or
+                       "failed"; time, point, normal
 A line out:
   {{"distance":..,"point_a":[..],"point_b":[..],"normal":[..],"status":"separated","iterations":..,"error_bound":..}}
   normal       unit, from a to b; point_b - point_a = distance * normal

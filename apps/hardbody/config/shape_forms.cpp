@@ -2,7 +2,7 @@
 
 #include "config/rules.h"
 
-#include <geom/solids.h>
+#include <geom/polyhedron.h>
 
 #include <Eigen/Geometry>
 

@@ -9,7 +9,7 @@
 #include <ed/shape.h>
 #include <ed/tolerances.h>
 
-#include <geom/solids.h>
+#include <geom/polyhedron.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

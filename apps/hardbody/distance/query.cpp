@@ -3,9 +3,11 @@
 #include "base/errors.h"
 #include "base/find.h"
 #include "base/shapes.h"
+#include "distance/bodies.h"
+#include "distance/json_text.h"
+#include "distance/queries.h"
 #include "distance/scanner.h"
 #include "io/json_member.h"
-#include "io/json_shape.h"
 #include "io/orientation.h"
 #include "io/text_file.h"
 
@@ -24,26 +26,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::string_view kQueryKeys[] = {"a", "b", "method", "seed", "penetration", "id"};
-constexpr std::string_view kBodyKeys[] = {"shape", "position", "orientation"};
+constexpr std::string_view kQueryKeys[] = {"a", "b", "method", "seed", "penetration", "id", "query"};
 
 constexpr const char* kMethods = "\"dual\", \"newton8\", \"newton5\"";
 constexpr const char* kPenetrations = "\"global\", \"local\"";
-
-struct Body {
-  QueryShape shape;
-  geom::Pose pose;
-};
-
-Body read_body(const JsonMember& body, std::vector<std::string>& notices) {
-  body.allow(kBodyKeys);
-  const JsonMember member = body.at("shape", "{\"kind\":\"ellipsoid\",\"semi_axes\":[a,b,c]}");
-  const QueryShape shape =
-      is_half_space(member) ? QueryShape(read_half_space(member)) : QueryShape(read_shape(member, ", \"half_space\""));
-  const Vector3d position = read_position(body);
-  if (!body.has("orientation")) return {shape, geom::Pose::translation(position)};
-  return {shape, read_orientation(body.at("orientation", ""), position, notices)};
-}
 
 /// Returns the method of this name; nullopt if there is none.
 std::optional<Method> find_method(std::string_view name) {
@@ -125,14 +111,14 @@ nlohmann::json parse_line(std::string_view line) {
 }
 
 /// Converts a body found by scan_query; nullopt if it has an error.
-std::optional<Body> scanned_body(const ScannedBody& body, const char* name, std::vector<std::string>& notices) {
+std::optional<QueryBody> scanned_body(const ScannedBody& body, const char* name, std::vector<std::string>& notices) {
   const Vector3d axes(body.semi_axes.data());
   const Vector3d position(body.position.data());
   try {
     const JsonOrientation read = body.orientation ? read_quaternion(*body.orientation, position)
                                                   : JsonOrientation{geom::Pose::translation(position)};
     if (read.normalized) notices.push_back(normalized_text(fmt::format("{}.orientation", name), read.length));
-    return Body{make_shape({body.kind, axes, Eigen::Vector2d(body.exponents.data())}), read.pose};
+    return QueryBody{make_shape({body.kind, axes, Eigen::Vector2d(body.exponents.data())}), read.pose};
   } catch (const std::invalid_argument&) {
     return {};
   }
@@ -149,8 +135,8 @@ std::optional<DistanceQuery> scanned_query(std::string_view line, std::string& i
   const SeedSource* seed = find_seed(or_else(scanned->seed, seed_sources().front().name));
   if (!method || !penetration || seed == nullptr || seed->function == nullptr) return {};
   std::vector<std::string> notices;
-  const std::optional<Body> a = scanned_body(scanned->a, "a", notices);
-  const std::optional<Body> b = scanned_body(scanned->b, "b", notices);
+  const std::optional<QueryBody> a = scanned_body(scanned->a, "a", notices);
+  const std::optional<QueryBody> b = scanned_body(scanned->b, "b", notices);
   if (!a || !b) return {};
   id = scanned->id;
   check_options(*method, *seed, !scanned->penetration.empty());
@@ -170,39 +156,14 @@ geom::DistanceResult dual_distance(const DistanceQuery& query) {
   return geom::distance(*a, query.X_WA, *b, query.X_WB, options);
 }
 
-/// Appends a number, or `null` if there is none: in a declined answer, and for infinity.
-void append_number(std::string& text, double value) {
-  if (!std::isfinite(value)) {
-    text += "null";
-  } else {
-    fmt::format_to(std::back_inserter(text), "{:.17g}", value);
-  }
-}
-
-void append_member(std::string& text, std::string_view name, bool answered, const Vector3d& v) {
-  text += name;
-  if (!answered) {
-    text += "null";
-    return;
-  }
-  for (int k = 0; k < 3; ++k) {
-    text += k == 0 ? '[' : ',';
-    append_number(text, v[k]);
-  }
-  text += ']';
-}
-
-std::string id_json(const std::string& id) {
-  return id.empty() ? "" : fmt::format("\"id\":{},", id);
-}
-
-}  // namespace
-
-DistanceQuery parse_query(std::string_view line, std::string& id) {
-  if (std::optional<DistanceQuery> query = scanned_query(line, id)) return *std::move(query);
-  const nlohmann::json document = parse_line(line);
-  const JsonMember root{&document, ""};
+/// Returns the document's root; the JSON text of "id" is stored in `id`.
+JsonMember root_of(const nlohmann::json& document, std::string& id) {
+  JsonMember root{&document, ""};
   if (root.has("id")) id = document.at("id").dump();
+  return root;
+}
+
+DistanceQuery read_query(const JsonMember& root) {
   root.allow(kQueryKeys);
   const Method method = read_choice(root, "method", find_method, kMethods, Method::dual);
   const SeedSource& seed = read_seed(root);
@@ -210,11 +171,32 @@ DistanceQuery parse_query(std::string_view line, std::string& id) {
       read_choice(root, "penetration", find_penetration, kPenetrations, geom::Penetration::global);
   check_options(method, seed, root.has("penetration"));
   std::vector<std::string> notices;
-  const Body a = read_body(root.at("a", "a body"), notices);
-  const Body b = read_body(root.at("b", "a body"), notices);
+  const QueryBody a = read_body(root.at("a", "a body"), notices);
+  const QueryBody b = read_body(root.at("b", "a body"), notices);
   check_shapes(a.shape, b.shape, method);
   return {a.shape, b.shape,       a.pose,      b.pose,
           method,  seed.function, penetration, fmt::format("{}", fmt::join(notices, "; "))};
+}
+
+/// Returns the line that answers a query.
+std::string reply_text(std::string_view line, std::string& id) {
+  if (const std::optional<DistanceQuery> query = scanned_query(line, id)) {
+    return answer_json(id, answer(*query), query->notice);
+  }
+  const nlohmann::json document = parse_line(line);
+  const JsonMember root = root_of(document, id);
+  const std::string name = query_name(root);
+  if (name != "distance") return query_answer(name, root, id);
+  const DistanceQuery query = read_query(root);
+  return answer_json(id, answer(query), query.notice);
+}
+
+}  // namespace
+
+DistanceQuery parse_query(std::string_view line, std::string& id) {
+  if (std::optional<DistanceQuery> query = scanned_query(line, id)) return *std::move(query);
+  const nlohmann::json document = parse_line(line);
+  return read_query(root_of(document, id));
 }
 
 DistanceAnswer answer(const DistanceQuery& query) {
@@ -231,20 +213,11 @@ DistanceAnswer answer(const DistanceQuery& query) {
 }
 
 std::string answer_json(const std::string& id, const DistanceAnswer& answer, const std::string& notice) {
-  const geom::DistanceResult& r = answer.result;
-  const bool answered = r.status == geom::DistanceStatus::separated || r.status == geom::DistanceStatus::overlapping;
   std::string text;
   text.reserve(400 + id.size());
   text += '{';
   text += id_json(id);
-  text += "\"distance\":";
-  append_number(text, r.distance);
-  append_member(text, ",\"point_a\":", answered, r.point_a);
-  append_member(text, ",\"point_b\":", answered, r.point_b);
-  append_member(text, ",\"normal\":", answered, r.normal);
-  fmt::format_to(std::back_inserter(text),
-                 ",\"status\":\"{}\",\"iterations\":{},\"error_bound\":", geom::to_string(r.status), r.iterations);
-  append_number(text, r.error_bound);
+  append_distance(text, answer.result);
   if (answer.seed_status) text += fmt::format(",\"seed_status\":\"{}\"", geom::to_string(*answer.seed_status));
   if (!notice.empty()) text += fmt::format(",\"notice\":{}", nlohmann::json(notice).dump());
   return text + '}';
@@ -259,8 +232,7 @@ std::string error_json(const std::string& id, const std::string& message) {
 Reply reply_to(std::string_view line, long number) {
   std::string id;
   try {
-    const DistanceQuery query = parse_query(line, id);
-    return {answer_json(id, answer(query), query.notice), true};
+    return {reply_text(line, id), true};
   } catch (const InputError& error) {
     return {error_json(id, fmt::format("line {}: {}", number, error.what())), false};
   }

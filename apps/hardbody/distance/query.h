@@ -39,9 +39,10 @@ struct DistanceAnswer {
   std::optional<geom::SeedStatus> seed_status;  ///< status of the seed if it had no starting points
 };
 
-/// Parses one line, `{"a":{"shape":{..},"position":[..],"orientation":[..]},"b":{..},"method":..,"seed":..,"id":..}`:
-/// see distance_help(). The JSON text of "id" is stored in `id` even if the rest of the line is invalid. Throws
-/// InputError, with a message that does not contain the line number.
+/// Parses one line with the query "distance",
+/// `{"a":{"shape":{..},"position":[..],"orientation":[..]},"b":{..},"method":..,"seed":..,"id":..}`: see
+/// distance_help(). The JSON text of "id" is stored in `id` even if the rest of the line is invalid. Throws InputError,
+/// with a message that does not contain the line number.
 ///
 /// There are two readers: scan_query for lines of the usual form, and a JSON library for all others. Both give the same
 /// result for lines that both can read.

@@ -87,6 +87,11 @@ InputError JsonMember::refused(std::string_view why) const {
   return InputError(fmt::format("{} is {} ({}){}", name, shown(*json), one_line(why.substr(0, cut)), why.substr(cut)));
 }
 
+bool JsonMember::boolean() const {
+  if (!json->is_boolean()) throw bad("true, false");
+  return json->get<bool>();
+}
+
 double JsonMember::number() const {
   if (!json->is_number() || !std::isfinite(json->get<double>())) throw bad("a finite number");
   return json->get<double>();

@@ -46,6 +46,7 @@ struct JsonMember {
 
   InputError bad(std::string_view accepted) const;
 
+  bool boolean() const;
   double number() const;
   std::string text(std::string_view accepted) const;
   std::vector<double> numbers(std::size_t size, const char* accepted) const;

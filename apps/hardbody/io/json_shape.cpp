@@ -1,6 +1,6 @@
 #include "io/json_shape.h"
 
-#include <geom/solids.h>
+#include <geom/polyhedron.h>
 
 #include <fmt/format.h>
 

@@ -81,7 +81,7 @@ fs::path behind_links(const fs::path& path) {
                ? fs::weakly_canonical(path.parent_path() / fs::read_symlink(path))
                : path;
   if (!fs::is_regular_file(status) && !fs::is_directory(status)) {
-    throw std::runtime_error(fmt::format("{}: cannot be written: it is not a file", path.string()));
+    throw WriteError(path, EINVAL, "it is not a file");
   }
   return fs::is_symlink(fs::symlink_status(path, ignored)) ? fs::canonical(path, ignored) : path;
 }
@@ -110,8 +110,12 @@ fs::path absolute_path(const fs::path& path) {
   return result;
 }
 
-WriteError::WriteError(const fs::path& path, int error)
-    : std::runtime_error(fmt::format("{}: cannot be written: {}", path.string(), std::strerror(error))),
+WriteError::WriteError(const fs::path& path, int error, const std::string& why)
+    : std::runtime_error(
+          fmt::format("{}: cannot be written: {}", path.string(), why.empty() ? std::strerror(error) : why.c_str())),
+      path_(path.string()),
+      number_(error),
+      reason_(std::string(what()).substr(path_.size() + 2)),
       no_room_(error == ENOSPC || error == EDQUOT || error == EFBIG) {}
 
 std::string read_file(const fs::path& path, std::size_t limit) {

@@ -14,12 +14,22 @@ namespace hardbody {
 /// Error when a file cannot be written, caused by the disk or the system, which the user can resolve.
 class WriteError : public std::runtime_error {
  public:
-  WriteError(const std::filesystem::path& path, int error);
+  /// Message: "<path>: cannot be written: <why>", by default the system's words for the error.
+  WriteError(const std::filesystem::path& path, int error, const std::string& why = "");
 
+  /// Returns the file's name.
+  const std::string& path() const { return path_; }
+  /// Returns the error's number, of errno.
+  int number() const { return number_; }
+  /// Returns the message without the file's name.
+  const std::string& reason() const { return reason_; }
   /// Returns whether there was no room: on the disk, of a quota, or below the limit of a file's size.
   bool no_room() const { return no_room_; }
 
  private:
+  std::string path_;
+  int number_;
+  std::string reason_;
   bool no_room_;
 };
 

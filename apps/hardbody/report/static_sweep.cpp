@@ -22,7 +22,7 @@ constexpr std::size_t kLeastOfMap = 3;
 constexpr const char* kSeed = "seed";
 
 /// Returns the values of a swept key at the points; NaN if it is not a number.
-std::vector<double> numbers_of(const SweepReport& sweep, std::size_t key) {
+std::vector<double> key_numbers(const SweepReport& sweep, std::size_t key) {
   std::vector<double> numbers;
   for (const SweepPointReport& point : sweep.points) {
     numbers.push_back(finite_number(point.keys[key]).value_or(std::numeric_limits<double>::quiet_NaN()));
@@ -49,7 +49,7 @@ bool are_zipped(const SweptAxis& a, const SweptAxis& b) {
 std::vector<SweptAxis> axes_of(const SweepReport& sweep) {
   std::vector<SweptAxis> axes;
   for (std::size_t k = 0; k < sweep.keys.size(); ++k) {
-    SweptAxis axis{sweep.keys[k], numbers_of(sweep, k), false};
+    SweptAxis axis{sweep.keys[k], key_numbers(sweep, k), false};
     if (!std::all_of(axis.x.begin(), axis.x.end(), [](double x) { return std::isfinite(x); })) continue;
     const auto [low, high] = std::minmax_element(axis.x.begin(), axis.x.end());
     if (!(*low < *high)) continue;

@@ -38,6 +38,7 @@ from hardbody._core import (
     DistanceResult,
     Ellipsoid,
     FailedPair,
+    GivenMotion,
     HalfSpace,
     Kinetic,
     MassProperties,
@@ -72,11 +73,26 @@ from hardbody._core import (
     ray_cast,
     time_of_contact,
 )
+from hardbody._derivatives import Derivatives, DerivativesMany, distance_derivatives, distance_derivatives_many
 from hardbody._errors import NumericalError
 from hardbody._observables import AnyEstimate, Estimate, Results, TensorEstimate, VectorEstimate
 from hardbody._pages import Map, Report
+from hardbody._patches import ContactPatch, ContactPatches, contact_patch, contact_patch_many
 from hardbody._results import Analysis, Run, Sweep
-from hardbody._run_errors import SweepError, UnsoundError
+from hardbody._run_errors import NotEquilibratedWarning, SweepError, UnsoundError
+from hardbody._scene import (
+    Scene,
+    SceneBodies,
+    SceneContact,
+    SceneNearest,
+    SceneOverlaps,
+    ScenePair,
+    ScenePairs,
+    ScenePoint,
+    ScenePoints,
+    SceneRayHit,
+    SceneRayHits,
+)
 from hardbody._tables import Curves, Table
 from hardbody._typing import (
     AnyBody,
@@ -103,6 +119,8 @@ __all__ = [
     "ClosestPoints",
     "Components",
     "Cone",
+    "ContactPatch",
+    "ContactPatches",
     "ContactResult",
     "Contacts",
     "ConvexPolyhedron",
@@ -110,6 +128,8 @@ __all__ = [
     "Curves",
     "CustomShape",
     "Cylinder",
+    "Derivatives",
+    "DerivativesMany",
     "DistanceResult",
     "Distances",
     "Ellipsoid",
@@ -120,7 +140,9 @@ __all__ = [
     "Map",
     "MassProperties",
     "Masses",
+    "GivenMotion",
     "Motion",
+    "NotEquilibratedWarning",
     "NumericalError",
     "Observables",
     "Overlaps",
@@ -138,6 +160,17 @@ __all__ = [
     "RoundedCylinder",
     "RoundedPolyhedron",
     "Run",
+    "Scene",
+    "SceneBodies",
+    "SceneContact",
+    "SceneNearest",
+    "SceneOverlaps",
+    "ScenePair",
+    "ScenePairs",
+    "ScenePoint",
+    "ScenePoints",
+    "SceneRayHit",
+    "SceneRayHits",
     "Shape",
     "Shapes",
     "Simulation",
@@ -161,9 +194,13 @@ __all__ = [
     "closest_point",
     "closest_point_many",
     "compressed",
+    "contact_patch",
+    "contact_patch_many",
     "contains",
     "contains_many",
     "distance",
+    "distance_derivatives",
+    "distance_derivatives_many",
     "distance_lower_bound",
     "distance_many",
     "extend",

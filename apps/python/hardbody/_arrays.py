@@ -23,7 +23,7 @@ within about a tenth of a second.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -39,24 +39,34 @@ _CONTACT_STATUS = np.array(["hit", "separated", "overlapping", "budget_exhausted
 
 
 class _Rows(Comparable):
-    """Results with one row a query."""
+    """Results with one row a query, each with a code that stands for a name."""
 
+    _names: ClassVar[Strings]  # in the order of the C++ enumerators
     _code: NDArray[np.uint8]
 
     def __len__(self) -> int:
         return len(self._code)
 
     def __repr__(self) -> str:
-        names, counts = np.unique(self._names()[self._code], return_counts=True)
-        what = ", ".join(f"{count} {name}" for name, count in zip(names, counts, strict=True))
-        return f"{type(self).__name__}({len(self)} rows{': ' if what else ''}{what})"
+        return f"{type(self).__name__}({self._summary()})"
 
-    def _names(self) -> Strings:
-        return _DISTANCE_STATUS
+    def _summary(self) -> str:
+        names, counts = np.unique(self._names[self._code], return_counts=True)
+        what = ", ".join(f"{count} {name}" for name, count in zip(names, counts, strict=True))
+        return f"{len(self)} rows{': ' if what else ''}{what}"
+
+
+class _Outcomes(_Rows):
+    """Results with a status a row."""
+
+    @property
+    def status(self) -> Strings:
+        """Outcomes, one a row, shape (M,); made at each access."""
+        return self._names[self._code]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Distances(_Rows):
+class Distances(_Outcomes):
     """Answers of distance_many: arrays with one row a pair, named as the attributes of DistanceResult.
 
     distance: signed distances, shape (M,), in the unit of the shapes; below 0: minus the penetration depth; NaN: no
@@ -72,6 +82,8 @@ class Distances(_Rows):
     instruction_set: that of the vector kernels, "portable", "avx2" or "avx512". The last bits depend on it.
     """
 
+    _names = _DISTANCE_STATUS
+
     distance: Reals
     normal: Reals
     point_a: Reals
@@ -82,11 +94,6 @@ class Distances(_Rows):
     _code: NDArray[np.uint8]
     redone: int
     instruction_set: str
-
-    @property
-    def status(self) -> Strings:
-        """Outcomes, as of DistanceResult.status, shape (M,); made at each access."""
-        return _DISTANCE_STATUS[self._code]
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,7 +115,7 @@ class Overlaps(Comparable):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class ClosestPoints(_Rows):
+class ClosestPoints(_Outcomes):
     """Answers of closest_point_many: arrays with one row a point, named as the attributes of ClosestPoint.
 
     distance: signed distances, shape (M,), in the unit of the shapes; below 0: the point is inside, at this depth; NaN:
@@ -120,20 +127,17 @@ class ClosestPoints(_Rows):
     status: "separated", "overlapping", "not_converged" or "singular", shape (M,).
     """
 
+    _names = _DISTANCE_STATUS
+
     distance: Reals
     point: Reals
     normal: Reals
     error_bound: Reals
     _code: NDArray[np.uint8]
 
-    @property
-    def status(self) -> Strings:
-        """Outcomes, as of ClosestPoint.status, shape (M,); made at each access."""
-        return _DISTANCE_STATUS[self._code]
-
 
 @dataclass(frozen=True, eq=False, repr=False)
-class RayHits(_Rows):
+class RayHits(_Outcomes):
     """Answers of ray_cast_many: arrays with one row a ray, named as the attributes of RayHit.
 
     t: ray parameters, in units of the directions' lengths, shape (M,); NaN: the ray misses.
@@ -142,22 +146,16 @@ class RayHits(_Rows):
     status: "hit", "missed", "inside" or "not_converged", shape (M,).
     """
 
+    _names = _RAY_STATUS
+
     t: Reals
     point: Reals
     normal: Reals
     _code: NDArray[np.uint8]
 
-    @property
-    def status(self) -> Strings:
-        """Outcomes, as of RayHit.status, shape (M,); made at each access."""
-        return _RAY_STATUS[self._code]
-
-    def _names(self) -> Strings:
-        return _RAY_STATUS
-
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Contacts(_Rows):
+class Contacts(_Outcomes):
     """Answers of time_of_contact_many: arrays with one row a pair, named as the attributes of ContactResult.
 
     time: times of the outcomes, shape (M,).
@@ -168,20 +166,14 @@ class Contacts(_Rows):
     status: "hit", "separated", "overlapping", "budget_exhausted" or "failed", shape (M,).
     """
 
+    _names = _CONTACT_STATUS
+
     time: Reals
     point: Reals
     normal: Reals
     evaluations: NDArray[np.int32]
     rescues: NDArray[np.int32]
     _code: NDArray[np.uint8]
-
-    @property
-    def status(self) -> Strings:
-        """Outcomes, as of ContactResult.status, shape (M,); made at each access."""
-        return _CONTACT_STATUS[self._code]
-
-    def _names(self) -> Strings:
-        return _CONTACT_STATUS
 
 
 @dataclass(frozen=True, eq=False)

@@ -171,8 +171,10 @@ class _Bar:
     def moved_aside(self) -> Iterator[None]:
         """Clears the bar while something else is printed, and draws it again below."""
         self._bar.clear()
-        yield
-        self._bar.refresh()
+        try:
+            yield
+        finally:
+            self._bar.refresh()
 
     def finish(self) -> None:
         """Shows that all is done, which the last of the calls, some time before the end, did not know."""

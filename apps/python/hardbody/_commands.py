@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Mapping, Sequence
 from os import PathLike
 from pathlib import Path
@@ -28,7 +29,7 @@ from hardbody._calls import (
 from hardbody._dask import known_workers, run_tasks
 from hardbody._pages import Map, Report
 from hardbody._results import Analysis, Run, Sweep
-from hardbody._run_errors import SweepError, UnsoundError
+from hardbody._run_errors import NotEquilibratedWarning, SweepError, UnsoundError
 from hardbody._toml import shown, value_text
 from hardbody._typing import Progress
 
@@ -86,6 +87,8 @@ def run(
 
     The GIL is released. Runs in several threads do not disturb each other; a signal stops them all.
 
+    Warns, by NotEquilibratedWarning, of a run that is not shown to be equilibrated.
+
     Raises ValueError or TypeError for a bad config, with the key, its value and what is accepted; UnsoundError if the
     results are not sound; RuntimeError for other failures, such as a full disk; KeyboardInterrupt after Ctrl-C. The
     state is saved then: `resume` continues the run bit for bit. SIGTERM, SIGHUP and SIGXCPU stop it too, and
@@ -138,9 +141,20 @@ def extend(
 def _finished(directory: str, status: int, printed: str, said: list[str]) -> Run:
     done = Run(directory)
     if status == 0:
+        _warn_unless_equilibrated(done)
         return done
     defects = [line[line.index(_UNSOUND) :] for line in said if _UNSOUND in line]
     raise UnsoundError(f"{directory}: {'; '.join(defects) or printed}", done)
+
+
+def _warn_unless_equilibrated(run: Run) -> None:
+    if run.summary["equilibrated"]:
+        return
+    text = (
+        f"{run.path}: not shown to be equilibrated: neither correlations have decayed nor are order and Z stationary "
+        'when production begins (summary["equilibration"])'
+    )
+    warnings.warn(text, NotEquilibratedWarning, stacklevel=4)
 
 
 def sweep(

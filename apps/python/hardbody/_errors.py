@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from typing import Any
 
 from hardbody import _core
@@ -36,5 +37,14 @@ class NumericalError(RuntimeError):
         self.stall = stall
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Pickles keep the message alone."""
-        return type(self), (str(self),)
+        """Pickles keep everything but failed pairs that cannot be pickled, as a shape written in Python cannot."""
+        failures = [pair for pair in self.failures if _can_be_pickled(pair)]
+        return type(self), (str(self), failures, self.counters, self.stall)
+
+
+def _can_be_pickled(pair: _core.FailedPair) -> bool:
+    try:
+        pickle.loads(pickle.dumps(pair))
+    except Exception:  # of any kind: from the shape's own __reduce__, or from what checks the shape that it makes
+        return False
+    return True

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import csv
 import html
 import json
@@ -32,7 +33,8 @@ class _Directory(Located):
     def __init__(self, path: str | os.PathLike[str]) -> None:
         super().__init__(path)
         if not (self.path / self._needed).is_file():
-            what = f"has no {self._needed}" if self.path.is_dir() else "is not there"
+            absent = "is not a directory" if self.path.exists() else "is not there"
+            what = f"has no {self._needed}" if self.path.is_dir() else absent
             raise ValueError(f"{self.path}: {what}; accepted: the directory of {self._kind}")
 
     def _json(self, name: str) -> dict[str, Any]:
@@ -127,6 +129,16 @@ class Run(_Directory):
             raise ValueError(f"{file} is not there; accepted: a run with [output] {key} in its config")
         return file
 
+    def __repr__(self) -> str:
+        """Constructor call; a comment behind it says if the run is not finished, not sound or not equilibrated."""
+        states = []
+        with contextlib.suppress(OSError, ValueError, KeyError, TypeError):  # a repr does not raise
+            if not (self._absolute / "summary.json").is_file():
+                states.append("not finished")
+            else:
+                states += _states(self.summary)
+        return f"Run({os.fspath(self.path)!r})" + (f"  # {', '.join(states)}" if states else "")
+
     def _repr_html_(self) -> str:
         name = html.escape(os.fspath(self.path))
         if not (self._absolute / "summary.json").is_file():
@@ -139,9 +151,15 @@ class Run(_Directory):
         )
         page = html.escape(os.path.join(self, "report.html"))
         link = f', <a href="{page}">report</a>' if (self._absolute / "report.html").is_file() else ""
-        state = ", <b>interrupted: not finished</b>" if summary["interrupted"] else ""
-        state += "" if summary["sound"] else ", <b>NOT SOUND</b>"
+        state = "".join(f", <b>{state}</b>" for state in _states(summary))
         return f"<p>Run {name}{state}{link}</p><table>{rows}</table>"
+
+
+def _states(summary: dict[str, Any]) -> list[str]:
+    """Returns what has to be known about results before they are used; empty for those without reservations."""
+    states = ["interrupted: not finished"] if summary["interrupted"] else []
+    states += [] if summary["sound"] else ["NOT SOUND"]
+    return states + ([] if summary["equilibrated"] else ["not shown to be equilibrated"])
 
 
 def _shown(estimate: Any) -> str:

@@ -30,6 +30,11 @@ class UnsoundError(NumericalError):
         return str(self.args[0])
 
 
+class NotEquilibratedWarning(UserWarning):
+    """Warning of run, resume and extend about a run that is not shown to be equilibrated: summary["equilibrated"] is
+    False, by the criterion of docs/configuration.md, also where the time of equilibration was given."""
+
+
 class SweepError(RuntimeError):
     """Raised when points of a sweep have failed. The other points are done.
 

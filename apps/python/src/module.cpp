@@ -2,6 +2,7 @@
 #include "base/gil.h"
 #include "geometry/bind.h"
 #include "runs/bind.h"
+#include "scene/bind.h"
 #include "simulation/bind.h"
 
 #include <base/version.h>
@@ -23,9 +24,12 @@ NB_MODULE(_core, module) {
   python::bind_queries(module);
   python::bind_masses(module);
   python::bind_distances(module);
+  python::bind_derivatives(module);
+  python::bind_patches(module);
   python::bind_contacts(module);
   python::bind_body_queries(module);
   python::bind_custom_shapes(module);
+  python::bind_scenes(module);
   python::bind_species(module);
   python::bind_outcomes(module);
   python::bind_systems(module);

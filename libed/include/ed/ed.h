@@ -8,6 +8,9 @@
 #include <ed/analysis.h>
 #include <ed/contact_options.h>
 #include <ed/equilibration.h>
+#include <ed/given/contact.h>
+#include <ed/given/motion.h>
+#include <ed/given/scene.h>
 #include <ed/impulse.h>
 #include <ed/motion.h>
 #include <ed/observables.h>

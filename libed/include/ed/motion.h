@@ -8,7 +8,9 @@
 
 namespace ed {
 
-/// Free motion of a rigid body, given by its state at `time`. World frame unless a name says otherwise.
+/// Free motion of a rigid body, given by its state at `time`. World frame unless a name says otherwise. Functions
+/// refuse velocities and angular velocities longer than kMaxSpeed, and others than 0 that are shorter than kMinSpeed
+/// (ed/tolerances.h): their squares would overflow or underflow.
 struct Motion {
   geom::Pose pose;                                             ///< body to world at `time`
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();          ///< velocity of the centre of mass
@@ -26,7 +28,8 @@ struct Motion {
 /// omega. Close to rotation about the axis of the middle moment, which is unstable, and to the motions that lead there,
 /// the motion itself magnifies small differences: the result is then as accurate as omega, which is known to rounding.
 ///
-/// Throws std::invalid_argument for values that are not finite or moments that no body can have.
+/// Throws std::invalid_argument for values that are not finite, speeds that Motion does not allow, moments that no body
+/// can have, and a time at which the body is beyond geom::kMaxCoordinate.
 ED_EXPORT Motion propagate(const Motion& motion, double t);
 
 }  // namespace ed

@@ -113,9 +113,10 @@ struct SimulationOptions {
   Neighbours neighbours = Neighbours::dilated;
   ContactOptions contact{};
   /// Instruction set of two kernels. One evaluates ellipsoids of revolution, capsules and spheres in vectors, all
-  /// neighbours of a body at once (Finder::certified, neighbours other than cells); nullopt evaluates one pair at a
-  /// time, and so does `best` if that is faster: ellipsoids near spheres, no vectors. The other finds bodies of any
-  /// shape in the cells around a body; nullopt uses that of the whole library. The results are the same, bit for bit.
+  /// neighbours of a body at once (Finder::certified, neighbours other than cells), but for capsules beside ellipsoids,
+  /// which are evaluated one pair at a time; nullopt evaluates all so, and so does `best` if that is faster: ellipsoids
+  /// near spheres, no vectors. The other finds bodies of any shape in the cells around a body; nullopt uses that of the
+  /// whole library. The results are the same, bit for bit.
   std::optional<geom::InstructionSet> batches = geom::InstructionSet::best;
   /// Smallest number of bodies for which upcoming events are prefetched (>= 64). A body takes a kilobyte, with lists
   /// and pairs: from this number on that is more than the caches of a processor hold. The results are the same, bit for
@@ -135,8 +136,8 @@ ED_EXPORT Neighbours fastest_neighbours(const BodyShape& shape, int number, doub
                                         Finder finder = Finder::certified);
 
 /// Event-driven dynamics of hard convex bodies in a periodic cubic box: ellipsoids, superellipsoids, spheres, capsules,
-/// boxes, polyhedra, a user's own shapes, and mixtures of them. Systems of ellipsoids of revolution and spheres alone,
-/// or of capsules and spheres alone (of any sizes), are the fast case.
+/// boxes, polyhedra, a user's own shapes, and mixtures of them. Systems of ellipsoids of revolution, capsules and
+/// spheres (of any sizes) are the fast case.
 ///
 /// The dynamics is asynchronous: each body carries its own time. Neighbour lists use dilated envelopes; the calendar
 /// has one entry a body. A pair is evaluated once after a collision, and its certified lower bound is put into the

@@ -66,7 +66,8 @@ struct [[nodiscard]] ContactResult {
 /// moments of inertia that a body can have. Ellipsoids of revolution about an axis that their moments share are the
 /// fast case: about 0.3 microseconds an evaluation instead of one. The bounds of rounding errors hold for
 /// superellipsoids with semi-axes from 1/1000 to 1000 units of length. Throws std::invalid_argument for values that are
-/// not finite, exponents out of range and inertia that no body can have.
+/// not finite, exponents out of range, inertia that no body can have, speeds that Motion does not allow, and bodies
+/// that are beyond geom::kMaxCoordinate when the search begins.
 ///
 /// `options.finder = Finder::bracketing` searches as the paper does instead, without a certificate; its budget of a
 /// million distances is not an option.

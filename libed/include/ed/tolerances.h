@@ -43,4 +43,12 @@ inline constexpr double kMinExponentInMotion = 0.25;
 inline constexpr double kMaxExponentInMotion = 1.6;
 /// @}
 
+/// Motion: |velocity| and |angular velocity| are 0 or within [kMinSpeed, kMaxSpeed]; System: the largest of each is 0
+/// or at least kMinSpeed, none is above kMaxSpeed. Length per time and radian per time, in the user's units. Squares of
+/// such speeds, and of their products with positions up to geom::kMaxCoordinate, neither underflow nor overflow.
+/// @{
+inline constexpr double kMinSpeed = 1e-50;
+inline constexpr double kMaxSpeed = 1e50;
+/// @}
+
 }  // namespace ed

@@ -1,6 +1,7 @@
 #include "bodies/uniaxial.h"
 
 #include "contact/rods/gap.h"
+#include "contact/rods/spheroid_gap.h"
 #include "contact/sphere_contact.h"
 #include "contact/uniaxial_gap.h"
 #include "motion/checks.h"
@@ -37,7 +38,9 @@ UniaxialKind rod_kind(const Species& species) {
   kind.inertia = {species.mass, species.inertia[(axis + 1) % 3], species.inertia[axis], species.spins};
   kind.bounding_radius = bounding_radius(species.shape);
   kind.inscribed_radius = inscribed_radius(species.shape);
+  kind.is_rod = true;
   kind.sphere = kind.rod.half_length == 0;
+  if (kind.sphere) kind.shape = geom::kernel::Spheroid(kind.rod.radius, kind.rod.radius);
   return kind;
 }
 
@@ -75,6 +78,17 @@ UniaxialKind spheroid_kind(const Species& species) {
           .inscribed_radius = shape.inscribed_radius()};
 }
 
+UniaxialFamily family_of_all(const std::vector<Species>& species) {
+  if (!has_rods(species)) return UniaxialFamily::spheroids;
+  const auto is_ellipsoid = [](const Species& one) { return std::holds_alternative<geom::Ellipsoid>(one.shape); };
+  return std::any_of(species.begin(), species.end(), is_ellipsoid) ? UniaxialFamily::mixed : UniaxialFamily::rods;
+}
+
+UniaxialKind kind_of_family(const Species& species, UniaxialFamily family) {
+  const bool is_rod = family != UniaxialFamily::spheroids && !std::holds_alternative<geom::Ellipsoid>(species.shape);
+  return is_rod ? rod_kind(species) : spheroid_kind(species);
+}
+
 }  // namespace
 
 bool UniaxialBodies::can_hold(const System& system) {
@@ -82,9 +96,9 @@ bool UniaxialBodies::can_hold(const System& system) {
 }
 
 UniaxialBodies::UniaxialBodies(const System& system)
-    : entries_(at(system.size())), frames_(at(system.size())), rods_(has_rods(system.species)) {
+    : entries_(at(system.size())), frames_(at(system.size())), family_(family_of_all(system.species)) {
   for (const Species& species : system.species) {
-    kinds_.push_back(rods_ ? rod_kind(species) : spheroid_kind(species));
+    kinds_.push_back(kind_of_family(species, family_));
     bounding_radius_ = std::max(bounding_radius_, kinds_.back().bounding_radius);
     inscribed_radius_ = std::min(inscribed_radius_, kinds_.back().inscribed_radius);
     spins_ = spins_ || species.spins;
@@ -143,15 +157,32 @@ void UniaxialBodies::rotate_sphere(int i, double t) {
 }
 
 template <bool kSpin>
+Finding UniaxialBodies::find_mixed_contact(int i, int j, const Vector3d& r, double now, double end, int max_evaluations,
+                                           Vector3d& n, FinderCounters& count) const {
+  const UniaxialKind& A = kind_of(i);
+  const MixedGap<kSpin> gap({A.shape, A.bounding_radius, A.inscribed_radius}, entries_[at(i)].motion, kind_of(j).rod,
+                            entries_[at(j)].motion, r, now);
+  return certified_contact(gap, now, end, max_evaluations, n, count);
+}
+
+template <bool kSpin>
 Finding UniaxialBodies::find_contact(int i, int j, const Vector3d& r, double now, double end, int max_evaluations,
                                      Vector3d& n, FinderCounters& count) const {
   const UniaxialKind& A = kind_of(i);
   const UniaxialKind& B = kind_of(j);
   const AxisMotion& a = entries_[at(i)].motion;
   const AxisMotion& b = entries_[at(j)].motion;
-  if (rods_) {
+  const UniaxialFamily pairs = family_of(i, j);
+  if (pairs == UniaxialFamily::rods) {
     const RodGap<kSpin> gap(A.rod, a, B.rod, b, r, now);
     return certified_contact(gap, now, end, max_evaluations, n, count);
+  }
+  if (pairs == UniaxialFamily::mixed) [[unlikely]] {
+    if (!A.is_rod) return find_mixed_contact<kSpin>(i, j, r, now, end, max_evaluations, n, count);
+    n = -n;
+    const Finding finding = find_mixed_contact<kSpin>(j, i, -r, now, end, max_evaluations, n, count);
+    n = -n;
+    return finding;
   }
   const UniaxialGap<kSpin> gap(A.shape, a, B.shape, b, r, now, A.bounding_radius + B.bounding_radius);
   return certified_contact(gap, now, end, max_evaluations, n, count);
@@ -165,7 +196,7 @@ Finding UniaxialBodies::find_contact(int i, int j, const Vector3d& r, double now
         {*kind_of(i).upright, *kind_of(j).upright, entries_[at(i)].motion, entries_[at(j)].motion, r, now}, now, end,
         options, n, count, unsolved);
   }
-  if (rods_ && are_spheres(i, j)) {
+  if (family_ != UniaxialFamily::spheroids && are_spheres(i, j)) {
     const double reach = kind_of(i).rod.radius + kind_of(j).rod.radius;
     return sphere_contact(r, velocity(j) - velocity(i), reach, now, end, n, count);
   }
@@ -177,19 +208,31 @@ Finding UniaxialBodies::find_contact(int i, int j, const Vector3d& r, double now
 /// would be scaled up.
 constexpr double kLeastLeft = 1e-4;
 
+double UniaxialBodies::point_beside_spheroid(int rod, int spheroid, const Vector3d& r, const Vector3d& n) const {
+  const Rod& shape = kind_of(rod).rod;
+  const Vector3d point = support_point(kind_of(spheroid).shape, entries_[at(spheroid)].motion.axis(), n);
+  const double along = (point + shape.radius * n - r).dot(entries_[at(rod)].motion.axis());
+  return smaller(shape.half_length, larger(-shape.half_length, along));
+}
+
 UniaxialBodies::Contact UniaxialBodies::contact(int i, int j, const Vector3d& r, const Vector3d& n,
                                                 double /*now*/) const {
   RodPointsOf<double> points{};
-  if (rods_) {
+  const UniaxialFamily pairs = family_of(i, j);
+  if (pairs == UniaxialFamily::rods) {
     points = closest_on_rods(kind_of(i).rod.half_length, kind_of(j).rod.half_length, r, entries_[at(i)].motion.axis(),
                              entries_[at(j)].motion.axis());
+  } else if (pairs == UniaxialFamily::mixed) {
+    const bool first = kind_of(i).is_rod;
+    (first ? points.s : points.t) = first ? point_beside_spheroid(i, j, -r, -n) : point_beside_spheroid(j, i, r, n);
   }
   const auto contact_body = [&](int body, const Vector3d& outward, double along) -> ContactBody {
     const AxisMotion& m = entries_[at(body)].motion;
     const UniaxialKind& kind = kind_of(body);
     const Vector3d u = m.axis();
-    const Vector3d point =
-        rods_ ? Vector3d(along * u + kind.rod.radius * outward) : support_point(kind.shape, u, outward);
+    const Vector3d point = kind.is_rod && pairs != UniaxialFamily::spheroids
+                               ? Vector3d(along * u + kind.rod.radius * outward)
+                               : support_point(kind.shape, u, outward);
     // The impulse of a body of revolution has no moment along the axis: any multiple of the identity with 1/I_perp
     // does.
     return {1 / kind.inertia.mass, Eigen::Matrix3d::Identity() / kind.inertia.perpendicular, point, m.velocity,
@@ -224,7 +267,15 @@ double UniaxialBodies::contact_scale(int i, int j, const Vector3d& r, const Vect
   const UniaxialKind& B = kind_of(j);
   const Vector3d u_a = entries_[at(i)].motion.axis_at(now);
   const Vector3d u_b = entries_[at(j)].motion.axis_at(now);
-  if (rods_) return rod_contact_scale(A.rod, B.rod, r, u_a, u_b, enough);
+  switch (family_of(i, j)) {
+    case UniaxialFamily::rods:
+      return rod_contact_scale(A.rod, B.rod, r, u_a, u_b, enough);
+    case UniaxialFamily::mixed:
+      return A.is_rod ? mixed_contact_scale(j, i, -r, -start, now, enough)
+                      : mixed_contact_scale(i, j, r, start, now, enough);
+    case UniaxialFamily::spheroids:
+      break;
+  }
   Vector3d n = start.isZero(0) ? geom::kernel::cold_normal(A.shape, B.shape, r, u_a, u_b) : start;
   double best = 1;
   const auto evaluate = [&](const Vector3d& m) { return evaluate_uniaxial(A.shape, B.shape, r, u_a, u_b, m); };
@@ -239,17 +290,43 @@ double UniaxialBodies::contact_scale(int i, int j, const Vector3d& r, const Vect
   return best;
 }
 
+double UniaxialBodies::mixed_contact_scale(int i, int j, const Vector3d& r, const Vector3d& start, double now,
+                                           double enough) const {
+  const UniaxialKind& A = kind_of(i);
+  const Rod& B = kind_of(j).rod;
+  MixedGap<true>::Pair pair{};
+  pair.shape = A.shape;
+  pair.l = B.half_length;
+  pair.radius = B.radius;
+  pair.r = r;
+  pair.u_a = entries_[at(i)].motion.axis_at(now);
+  pair.u_b = entries_[at(j)].motion.axis_at(now);
+  Vector3d n = start.isZero(0) ? mixed_cold_normal(pair) : start;
+  double best = 1;
+  const auto evaluate = [&](const Vector3d& m) { return complete_mixed(pair, pair.sample(m), m); };
+  const auto done = [&](const MixedEvaluation& e) {
+    if (n.dot(r) > 0) best = std::min(best, 1 - e.g / n.dot(r));
+    return best <= enough || e.step2 < geom::kNormalTolerance2;
+  };
+  MixedEvaluation e = evaluate(n);
+  int budget = geom::kMaxIterations;
+  const double scale = geom::kRoundingFactor * (A.bounding_radius + B.half_length + B.radius);
+  (void)geom::kernel::ascend(evaluate, scale, done, budget, n, e);
+  return best;
+}
+
 bool UniaxialBodies::all_spheres() const {
   return std::all_of(kinds_.begin(), kinds_.end(), [](const UniaxialKind& kind) { return kind.sphere; });
 }
 
-FamilyKernels UniaxialBodies::kernels(const std::optional<geom::InstructionSet>& batches) const {
+FamilyKernels UniaxialBodies::kernels(const std::optional<geom::InstructionSet>& batches, UniaxialFamily pairs) const {
   // Most pairs of near spheres are told apart by their bounding spheres, without what the kernels are good at
   // (bench_engine, vectors/).
   constexpr double kNearSphere = 0.9;
   const UniaxialKernels found = find_uniaxial_kernels(batches);
   if (all_spheres()) return found.spheres;
-  if (rods_) return found.rods;
+  if (pairs == UniaxialFamily::rods) return found.rods;
+  if (pairs == UniaxialFamily::mixed) return {};
   const bool near_spheres = inscribed_radius_ > kNearSphere * bounding_radius_;
   return near_spheres && batches == geom::InstructionSet::best ? FamilyKernels() : found.spheroids;
 }

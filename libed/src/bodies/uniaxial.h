@@ -1,7 +1,7 @@
 #pragma once
 
 /// State of bodies of revolution of one or several species: the fast case of an event loop. They are of one family:
-/// ellipsoids and spheres, or rods, which are capsules and spheres.
+/// ellipsoids and spheres; or rods, which are capsules and spheres; or a mixture of ellipsoids and rods.
 ///
 /// The public interface is what an event loop needs of its bodies; GeneralBodies has the same.
 
@@ -32,21 +32,35 @@
 
 namespace ed::internal {
 
+/// Pairs of bodies of revolution, by their pair gap: UniaxialGap, RodGap, MixedGap. Of all bodies of a system: the
+/// pairs that there may be, `mixed` all three.
+enum class UniaxialFamily { spheroids, rods, mixed };
+
 /// Constants of the bodies of one species.
 struct UniaxialKind {
-  geom::kernel::Spheroid shape;            ///< shape of an ellipsoid
+  geom::kernel::Spheroid shape;            ///< shape of an ellipsoid, and of a sphere in a mixture
   Rod rod;                                 ///< shape of a rod
   std::optional<geom::Ellipsoid> upright;  ///< ellipsoid or sphere with its axis along body z; nullopt: a capsule
   int axis;                                ///< axis of revolution, in the user's body frame
   UniaxialInertia inertia;
   double bounding_radius;
   double inscribed_radius;
+  bool is_rod = false;  ///< whether it is a rod, among spheres or other rods
   bool sphere = false;  ///< a sphere among rods: contacts never turn it, and its rotation is that at 0 of the clock
 };
 
+/// Returns the family of a pair. A sphere is a rod beside rods and an ellipsoid beside ellipsoids.
+template <class Kind>
+UniaxialFamily family_of(const Kind& a, const Kind& b) {
+  if (a.is_rod && b.is_rod) return UniaxialFamily::rods;
+  const bool capsule = (a.is_rod && !a.sphere) || (b.is_rod && !b.sphere);
+  return capsule ? UniaxialFamily::mixed : UniaxialFamily::spheroids;
+}
+
 class UniaxialBodies {
  public:
-  /// Returns whether all species are of one family, about axes that their inertia shares.
+  /// Returns whether all species are ellipsoids of revolution, capsules or spheres, about axes that their inertia
+  /// shares.
   static bool can_hold(const System& system);
 
   explicit UniaxialBodies(const System& system);
@@ -124,13 +138,19 @@ class UniaxialBodies {
   double contact_scale(int i, int j, const Eigen::Vector3d& r, const Eigen::Vector3d& n, double now,
                        double enough) const;
 
-  /// Returns the vector kernels for these bodies; none where one pair at a time is faster.
-  FamilyKernels kernels(const std::optional<geom::InstructionSet>& batches) const;
+  /// Returns the vector kernels for the pairs of one family of these bodies; none where one pair at a time is faster.
+  FamilyKernels kernels(const std::optional<geom::InstructionSet>& batches, UniaxialFamily pairs) const;
+  FamilyKernels kernels(const std::optional<geom::InstructionSet>& batches) const { return kernels(batches, family_); }
 
   const std::vector<UniaxialKind>& kinds() const { return kinds_; }
   const UniaxialKind& kind_of(int i) const { return kinds_[at(kind_[at(i)])]; }
   bool spins() const { return spins_; }  ///< whether some body may spin
-  bool rods() const { return rods_; }    ///< whether the family is that of rods
+  UniaxialFamily family() const { return family_; }
+  bool rods() const { return family_ == UniaxialFamily::rods; }  ///< whether all are rods
+  /// Returns the family of the pair.
+  UniaxialFamily family_of(int i, int j) const {
+    return family_ == UniaxialFamily::mixed ? internal::family_of(kind_of(i), kind_of(j)) : family_;
+  }
   /// Returns whether i and j, of rods, are spheres, which meet in closed form.
   bool are_spheres(int i, int j) const { return kind_of(i).sphere && kind_of(j).sphere; }
   bool all_spheres() const;  ///< whether all are spheres among rods
@@ -165,6 +185,16 @@ class UniaxialBodies {
   template <bool kSpin>
   Finding find_contact(int i, int j, const Eigen::Vector3d& r, double now, double end, int max_evaluations,
                        Eigen::Vector3d& n, FinderCounters& count) const;
+  /// Searches for a contact of an ellipsoid i and a rod j.
+  template <bool kSpin>
+  Finding find_mixed_contact(int i, int j, const Eigen::Vector3d& r, double now, double end, int max_evaluations,
+                             Eigen::Vector3d& n, FinderCounters& count) const;
+  /// Returns the point of a rod's axis that is nearest an ellipsoid, as a multiple of the axis, r from the ellipsoid's
+  /// centre, with the normal n from the ellipsoid to the rod.
+  double point_beside_spheroid(int rod, int spheroid, const Eigen::Vector3d& r, const Eigen::Vector3d& n) const;
+  /// Returns what contact_scale does, of an ellipsoid i and a rod j.
+  double mixed_contact_scale(int i, int j, const Eigen::Vector3d& r, const Eigen::Vector3d& start, double now,
+                             double enough) const;
 
   /// Events and motion of a body. Of a neighbour without spin two cache lines are read, all but AxisMotion::e0: in
   /// large systems the cost of a collision is the number of lines that it reads.
@@ -188,7 +218,7 @@ class UniaxialBodies {
   double bounding_radius_ = 0;
   double inscribed_radius_ = kNever;
   bool spins_ = false;
-  bool rods_;
+  UniaxialFamily family_;
 };
 
 }  // namespace ed::internal

@@ -9,6 +9,9 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
 
 namespace ed::internal {
 namespace {
@@ -28,9 +31,9 @@ void put(const Rod& rod, LookRow* rows, int lane) {
   rows[RodRows::radius][lane] = rod.radius;
 }
 
-void put(const UniaxialKind& a, const UniaxialKind& b, bool rods, LookInput& in, int lane) {
+void put(const UniaxialKind& a, const UniaxialKind& b, UniaxialFamily pairs, LookInput& in, int lane) {
   in.rows[LookInput::reach][lane] = a.bounding_radius + b.bounding_radius;
-  if (rods) {
+  if (pairs == UniaxialFamily::rods) {
     put(a.rod, in.rows + LookInput::shape_a, lane);
     put(b.rod, in.rows + LookInput::shape_b, lane);
     return;
@@ -52,28 +55,53 @@ const double* numbers(const AxisMotion& motion) {
   return reinterpret_cast<const double*>(&motion);
 }
 
+/// Returns the families of pairs that there may be.
+std::vector<UniaxialFamily> families_of(const UniaxialBodies& bodies) {
+  if (bodies.family() != UniaxialFamily::mixed) return {bodies.family()};
+  return {UniaxialFamily::spheroids, UniaxialFamily::rods, UniaxialFamily::mixed};
+}
+
 }  // namespace
 
-UniaxialLooks::UniaxialLooks(const UniaxialBodies& bodies, const FamilyKernels& kernels)
-    : kernel_(kernel_of(bodies, kernels)),
-      closed_forms_(bodies.rods() && !bodies.all_spheres()),
-      one_kind_(bodies.kinds().size() == 1) {
+LookKernel* UniaxialLooks::kernel_of(const UniaxialBodies& bodies, const std::optional<geom::InstructionSet>& batches,
+                                     UniaxialFamily pairs) {
+  const FamilyKernels kernels = bodies.kernels(batches, pairs);
+  return bodies.spins() ? kernels.look_spinning : kernels.look_across;
+}
+
+bool UniaxialLooks::serve(const UniaxialBodies& bodies, const std::optional<geom::InstructionSet>& batches) {
+  const std::vector<UniaxialFamily> families = families_of(bodies);
+  return std::any_of(families.begin(), families.end(),
+                     [&](UniaxialFamily pairs) { return kernel_of(bodies, batches, pairs) != nullptr; });
+}
+
+UniaxialLooks::UniaxialLooks(const UniaxialBodies& bodies, const std::optional<geom::InstructionSet>& batches)
+    : closed_forms_(bodies.family() != UniaxialFamily::spheroids && !bodies.all_spheres()),
+      one_kind_(bodies.kinds().size() == 1),
+      mixed_(bodies.family() == UniaxialFamily::mixed) {
+  for (const UniaxialFamily pairs : families_of(bodies)) {
+    LookKernel* const kernel = kernel_of(bodies, batches, pairs);
+    if (kernel != nullptr) families_.push_back({pairs, kernel, {}});
+  }
   if (!one_kind_) return;
   const UniaxialKind& kind = bodies.kinds()[0];
-  for (int lane = 0; lane < kBlockLooks; ++lane) internal::put(kind, kind, bodies.rods(), in_, lane);
+  for (Family& family : families_) {
+    for (int lane = 0; lane < kBlockLooks; ++lane) internal::put(kind, kind, family.pairs, family.in, lane);
+  }
 }
 
 void UniaxialLooks::use(const UniaxialBodies& bodies, geom::InstructionSet set) {
-  kernel_ = kernel_of(bodies, bodies.kernels(set));
+  for (Family& family : families_) family.kernel = kernel_of(bodies, set, family.pairs);
 }
 
-void UniaxialLooks::put(const UniaxialBodies& bodies, const PairLook& look, int lane) {
+void UniaxialLooks::put(const UniaxialBodies& bodies, Family& family, const PairLook& look, int lane) {
   const Pair& pair = *look.pair;
-  if (!one_kind_) internal::put(bodies.kind_of(pair.i), bodies.kind_of(pair.j), bodies.rods(), in_, lane);
-  in_.body_a[lane] = numbers(bodies.axis_motion(pair.i));
-  in_.body_b[lane] = numbers(bodies.axis_motion(pair.j));
-  in_.normal[lane] = pair.normal.data();
-  in_.rows[LookInput::end][lane] = look.end;
+  LookInput& in = family.in;
+  if (!one_kind_) internal::put(bodies.kind_of(pair.i), bodies.kind_of(pair.j), family.pairs, in, lane);
+  in.body_a[lane] = numbers(bodies.axis_motion(pair.i));
+  in.body_b[lane] = numbers(bodies.axis_motion(pair.j));
+  in.normal[lane] = pair.normal.data();
+  in.rows[LookInput::end][lane] = look.end;
 }
 
 void UniaxialLooks::read(int lane, PairLook& look, FinderCounters& count) const {
@@ -96,8 +124,15 @@ void UniaxialLooks::read(int lane, PairLook& look, FinderCounters& count) const 
 
 void UniaxialLooks::take(const UniaxialBodies& bodies, double now, double box, std::span<PairLook> looks,
                          FinderCounters& count) {
-  in_.now = now;
-  in_.box = box;
+  for (Family& family : families_) {
+    family.in.now = now;
+    family.in.box = box;
+    take(bodies, family, looks, count);
+  }
+}
+
+void UniaxialLooks::take(const UniaxialBodies& bodies, Family& family, std::span<PairLook> looks,
+                         FinderCounters& count) {
   std::array<PairLook*, kBlockLooks> look_of;
   const auto look_in = [&](int lane) -> PairLook& { return *look_of[static_cast<std::size_t>(lane)]; };
   for (std::size_t next = 0; next < looks.size();) {
@@ -105,13 +140,14 @@ void UniaxialLooks::take(const UniaxialBodies& bodies, double now, double box, s
     for (; next < looks.size() && lanes < kBlockLooks; ++next) {
       const Pair& pair = *looks[next].pair;
       if (pair.normal.isZero(0) || (closed_forms_ && bodies.are_spheres(pair.i, pair.j))) continue;
+      if (mixed_ && bodies.family_of(pair.i, pair.j) != family.pairs) continue;
       look_of[static_cast<std::size_t>(lanes++)] = &looks[next];
     }
     if (lanes < kFewestLooks) return;
     const int last = lanes - 1;
     const int filled = (lanes + kLongestVector - 1) / kLongestVector * kLongestVector;
-    for (int lane = 0; lane < filled; ++lane) put(bodies, look_in(std::min(lane, last)), lane);
-    kernel_(in_, lanes, out_);
+    for (int lane = 0; lane < filled; ++lane) put(bodies, family, look_in(std::min(lane, last)), lane);
+    family.kernel(family.in, lanes, out_);
     for (int lane = 0; lane < lanes; ++lane) read(lane, look_in(lane), count);
   }
 }

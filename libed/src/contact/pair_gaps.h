@@ -2,7 +2,7 @@
 
 /// Table of the pair gaps: which one belongs to two bodies in flight. Every search for a contact of general bodies asks
 /// here. Ellipsoids of revolution and capsules whose inertia shares their axis have a state of their own
-/// (bodies/uniaxial.h), with UniaxialGap and RodGap.
+/// (bodies/uniaxial.h), with UniaxialGap, RodGap and MixedGap.
 ///
 /// | A                    | B          | distance (ed::distance)                 | pair gap   | bracketing |
 /// |----------------------|------------|-----------------------------------------|------------|------------|

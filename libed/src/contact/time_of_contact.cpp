@@ -10,6 +10,8 @@
 #include <ed/time_of_contact.h>
 #include <ed/tolerances.h>
 
+#include <geom/tolerances.h>
+
 #include <algorithm>
 #include <optional>
 #include <sstream>
@@ -246,11 +248,23 @@ ContactResult search_from(double now, Body a, Body b, double reach, double t_max
   return result;
 }
 
+/// Throws std::invalid_argument if the body is too far away at the time when the search begins.
+void check_position(const Motion& motion, double now) {
+  const Eigen::Vector3d p = motion.pose.position() + (now - motion.time) * motion.velocity;
+  if (p.cwiseAbs().maxCoeff() <= geom::kMaxCoordinate) return;
+  std::ostringstream message;
+  message << "time_of_contact: the position at time " << now << ", the later of both motions' times, is ("
+          << p.transpose() << "); accepted: none beyond +-" << geom::kMaxCoordinate;
+  throw std::invalid_argument(message.str());
+}
+
 /// Returns the later of both motions' times.
 double checked_begin(const Motion& motion_a, const Motion& motion_b, double t_max) {
   internal::check_motion(motion_a);
   internal::check_motion(motion_b);
   const double now = std::max(motion_a.time, motion_b.time);
+  check_position(motion_a, now);
+  check_position(motion_b, now);
   if (t_max >= now) return now;
   std::ostringstream message;
   message << "time_of_contact: t_max is " << t_max << "; accepted: at least the later of both motions' times";

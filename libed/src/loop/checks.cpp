@@ -1,14 +1,17 @@
 #include "loop/checks.h"
 
 #include "base/power_of_two.h"
+#include "motion/checks.h"
 #include "neighbours/cell.h"
 #include "neighbours/limits.h"
 
 #include <ed/simulation.h>
+#include <ed/tolerances.h>
 
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
+#include <string>
 
 namespace ed::internal {
 
@@ -42,6 +45,24 @@ double epoch_of(const System& system) {
   double rates = 0;
   for (int i = 0; i < system.size(); ++i) rates += 1 / thermal_time(system.species_of(i));
   return nearest_power_of_two(system.size() / (rates * std::sqrt(kT)));
+}
+
+void check_speeds(const System& system) {
+  const auto check = [&](Eigen::Vector3d Body::*member, const std::string& what) {
+    const Body* fastest = nullptr;
+    double largest = 0;
+    for (const Body& body : system.bodies) {
+      const double speed = (body.*member).stableNorm();
+      if (!(speed > largest) || !std::isfinite(speed)) continue;
+      largest = speed;
+      fastest = &body;
+    }
+    if (fastest == nullptr || (largest >= kMinSpeed && largest <= kMaxSpeed)) return;
+    const std::string number = std::to_string(fastest - system.bodies.data());
+    refuse_speed(fastest->*member, what + " of the fastest body, " + number + ',');
+  };
+  check(&Body::velocity, "velocity");
+  check(&Body::angular_velocity, "angular velocity");
 }
 
 }  // namespace ed::internal

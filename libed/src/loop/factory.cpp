@@ -41,9 +41,8 @@ std::unique_ptr<FirstLooks<UniaxialBodies>> make_first_looks(const UniaxialBodie
                                                              const SimulationOptions& options) {
   // Cells have images of their own.
   if (options.contact.finder != Finder::certified || options.neighbours == Neighbours::cells) return nullptr;
-  const FamilyKernels found = bodies.kernels(options.batches);
-  if (found.look_across == nullptr) return nullptr;
-  return std::make_unique<UniaxialLooks>(bodies, found);
+  if (!UniaxialLooks::serve(bodies, options.batches)) return nullptr;
+  return std::make_unique<UniaxialLooks>(bodies, options.batches);
 }
 
 std::unique_ptr<Envelopes<GeneralBodies>> make_envelopes(const GeneralBodies& bodies, const SimulationOptions& options,

@@ -1,6 +1,7 @@
 #include "base/archive.h"
 #include "cells/choose.h"
 #include "loop/any_event_loop.h"
+#include "loop/checks.h"
 #include "loop/parts/kernel_trial.h"
 #include "neighbours/cell.h"
 
@@ -74,7 +75,7 @@ void check_moving(const Simulation& simulation, const std::string& function) {
 }
 
 /// Raised by every change of what save() writes.
-constexpr std::uint32_t kSimulationFormat = 6;
+constexpr std::uint32_t kSimulationFormat = 7;
 
 /// Work of a stretch of the run in units of 50 ns, from counters alone so that it is the same on every machine. The
 /// weights are fitted to the times of runs of three states, X0 = 1/3, 2 and 3, with envelopes from 0.6 to 2 times as
@@ -96,13 +97,14 @@ void check_start(const System& system, const std::function<void()>& poll) {
     throw std::invalid_argument(message.str());
   }
   check_species(system);
+  internal::check_speeds(system);
   const Audit state = audit(system, poll);
   if (!state.finite) throw std::invalid_argument("a position, orientation or velocity is not finite");
   if (state.overlaps == 0 && state.unanswered == 0) return;
   std::ostringstream message;
   message << state.overlaps + state.unanswered << " pairs of bodies overlap at the start";
   if (state.overlaps > 0) {
-    message << ", the worst answered by " << -state.minimum_distance << " (bodies " << state.closest_i << " and "
+    message << ", the deepest by " << -state.minimum_distance << " (bodies " << state.closest_i << " and "
             << state.closest_j << ")";
   } else {
     message << ", too deeply to say how much";

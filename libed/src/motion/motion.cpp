@@ -3,10 +3,12 @@
 #include "motion/free_top.h"
 
 #include <ed/motion.h>
+#include <ed/tolerances.h>
 
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
+#include <string>
 
 namespace ed {
 namespace internal {
@@ -26,7 +28,20 @@ void require_finite(const Eigen::Vector3d& v, const char* what) {
   throw std::invalid_argument(message.str());
 }
 
+void check_speed(const Eigen::Vector3d& v, const char* what) {
+  require_finite(v, what);
+  const double speed = v.stableNorm();
+  if (speed != 0 && !(speed >= kMinSpeed && speed <= kMaxSpeed)) refuse_speed(v, what);
+}
+
 }  // namespace
+
+void refuse_speed(const Eigen::Vector3d& velocity, const std::string& what) {
+  std::ostringstream message;
+  message << what << " is [" << velocity.x() << ", " << velocity.y() << ", " << velocity.z()
+          << "]; accepted: 0, or a length from " << kMinSpeed << " to " << kMaxSpeed;
+  throw std::invalid_argument(message.str());
+}
 
 void check_inertia(const Eigen::Vector3d& inertia) {
   const double largest = inertia.maxCoeff();
@@ -39,8 +54,8 @@ void check_inertia(const Eigen::Vector3d& inertia) {
 }
 
 void check_motion(const Motion& motion) {
-  require_finite(motion.velocity, "velocity");
-  require_finite(motion.angular_velocity, "angular velocity");
+  check_speed(motion.velocity, "velocity");
+  check_speed(motion.angular_velocity, "angular velocity");
   check_inertia(motion.inertia);
   require_finite(motion.time, "time");
 }

@@ -11,6 +11,7 @@
 #include "base/prefetch.h"
 #include "bodies/pair.h"
 #include "bodies/uniaxial.h"
+#include "contact/rods/spheroid_gap.h"
 #include "neighbours/envelopes.h"
 #include "neighbours/limits.h"
 #include "vectors/dilated_gap.h"
@@ -35,17 +36,11 @@ class DilatedEnvelopes final : public Envelopes<UniaxialBodies> {
   DilatedEnvelopes(const UniaxialBodies& bodies, double thickness, double exit_thickness,
                    OverlapKernel* kernel = nullptr)
       : kernel_(kernel),
-        rods_(bodies.rods()),
         bounding_radius_(bodies.bounding_radius()),
         thickness_(thickness),
         exit_thickness_(exit_thickness) {
-    for (const UniaxialKind& kind : bodies.kinds()) {
-      if (rods_) {
-        add_rod(kind.rod);
-      } else {
-        add_kind(kind.shape, kind.bounding_radius - kind.inscribed_radius);
-      }
-    }
+    family_ = bodies.family();
+    for (const UniaxialKind& kind : bodies.kinds()) add_kind(kind);
     for (int i = 0; i < bodies.number(); ++i) envelopes_.push_back({{}, bodies.kind_index(i), 0, {}});
   }
   /// Bodies of one kind.
@@ -103,7 +98,14 @@ class DilatedEnvelopes final : public Envelopes<UniaxialBodies> {
   }
 
   bool may_overlap(int i, int k, const Eigen::Vector3d& r, Eigen::Vector3d& normal) const override {
-    if (rods_) return rods_may_overlap(i, k, r, normal);
+    switch (family_of(i, k)) {
+      case UniaxialFamily::rods:
+        return rods_may_overlap(i, k, r, normal);
+      case UniaxialFamily::mixed:
+        return mixed_may_overlap(i, k, r, normal);
+      case UniaxialFamily::spheroids:
+        break;
+    }
     const geom::kernel::Spheroid& shape_i = kind_of(i).shape;
     const geom::kernel::Spheroid& shape_k = kind_of(k).shape;
     const Eigen::Vector3d u_i = axis_of(i);
@@ -156,6 +158,8 @@ class DilatedEnvelopes final : public Envelopes<UniaxialBodies> {
     geom::kernel::Spheroid shape;
     Rod rod;
     double axis_difference;  ///< |a - b|
+    bool is_rod = false;
+    bool sphere = false;
   };
 
   template <class Archive, class Self>
@@ -173,12 +177,17 @@ class DilatedEnvelopes final : public Envelopes<UniaxialBodies> {
   }
 
   void add_kind(const geom::kernel::Spheroid& shape, double axis_difference) {
-    kinds_.push_back({shape, {}, axis_difference});
+    kinds_.push_back({shape, {}, axis_difference, false, false});
     shapes_.push_back({{shape.a2, shape.b2, shape.c, shape.rho}});
   }
-  void add_rod(const Rod& rod) {
-    kinds_.push_back({{}, rod, rod.half_length});
-    shapes_.push_back({{rod.half_length, rod.radius, 0, 0}});
+  void add_kind(const UniaxialKind& kind) {
+    if (!kind.is_rod) return add_kind(kind.shape, kind.bounding_radius - kind.inscribed_radius);
+    kinds_.push_back({kind.shape, kind.rod, kind.rod.half_length, true, kind.sphere});
+    shapes_.push_back({{kind.rod.half_length, kind.rod.radius, 0, 0}});
+  }
+  UniaxialFamily family_of(int i, int k) const {
+    if (family_ != UniaxialFamily::mixed) return family_;
+    return internal::family_of(kind_of(i), kind_of(k));
   }
   const DilatedEnvelope& envelope(int i) const { return envelopes_[static_cast<std::size_t>(i)]; }
   Eigen::Vector3d axis_of(int i) const { return Eigen::Vector3d(envelope(i).axis); }
@@ -212,8 +221,35 @@ class DilatedEnvelopes final : public Envelopes<UniaxialBodies> {
     return !(gap > 2 * thickness_);
   }
 
+  bool mixed_may_overlap(int i, int k, const Eigen::Vector3d& r, Eigen::Vector3d& normal) const {
+    if (kind_of(i).is_rod) {
+      const bool may = mixed_may_overlap(k, i, -r, normal);
+      normal = -normal;
+      return may;
+    }
+    MixedPairOf<double, Eigen::Vector3d, geom::kernel::Spheroid, false> pair{};
+    pair.shape = kind_of(i).shape;
+    pair.l = kind_of(k).rod.half_length;
+    pair.radius = kind_of(k).rod.radius;
+    pair.r = r;
+    pair.u_a = axis_of(i);
+    pair.u_b = axis_of(k);
+    const double limit = 2 * thickness_;
+    normal = geom::kernel::unit_or(r, pair.u_a);
+    if (pair.sample(normal).g > limit) return false;
+    normal = mixed_cold_normal(pair);
+    MixedEvaluation e = complete_mixed(pair, pair.sample(normal), normal);
+    for (int step = 0; step < kOverlapSteps && !(e.g > limit) && e.g + e.decrement > limit; ++step) {
+      normal = geom::kernel::step_on_sphere(normal, e.step);
+      e = complete_mixed(pair, pair.sample(normal), normal);
+    }
+    if (e.g > limit) return false;
+    normal = geom::kernel::step_on_sphere(normal, e.step);
+    return true;
+  }
+
   OverlapKernel* kernel_ = nullptr;
-  bool rods_ = false;
+  UniaxialFamily family_ = UniaxialFamily::spheroids;
   std::vector<Kind> kinds_;
   std::vector<ShapeNumbers> shapes_;  ///< shapes of the kinds, for the kernel
   double bounding_radius_;

@@ -87,17 +87,17 @@ double thickest_oriented_envelope(const UniaxialBodies& bodies, double box) {
   double thickest = box;
   for (const UniaxialKind& kind : bodies.kinds()) {
     const double radius = bodies.bounding_radius();
-    thickest = std::min(thickest, bodies.rods() ? thickest_envelope_of(kind.rod, radius, box)
-                                                : thickest_envelope_of(kind.shape, radius, box));
+    thickest = std::min(thickest, kind.is_rod ? thickest_envelope_of(kind.rod, radius, box)
+                                              : thickest_envelope_of(kind.shape, radius, box));
   }
   return thickest;
 }
 
 OrientedEnvelopes::OrientedEnvelopes(const UniaxialBodies& bodies, double thickness)
-    : thickness_(thickness), rods_(bodies.rods()), boxes_(static_cast<std::size_t>(bodies.number())) {
+    : thickness_(thickness), boxes_(static_cast<std::size_t>(bodies.number())) {
   for (const UniaxialKind& kind : bodies.kinds()) {
-    if (rods_) {
-      add_rod(kind.rod, kind.bounding_radius);
+    if (kind.is_rod) {
+      add_rod(kind);
     } else {
       add_kind(kind.shape, kind.bounding_radius, kind.inertia.spins);
     }
@@ -113,13 +113,14 @@ OrientedEnvelopes::OrientedEnvelopes(int number, const Spheroid& shape, double b
 
 void OrientedEnvelopes::add_kind(const Spheroid& shape, double bounding_radius, bool spins) {
   const double axis_difference = std::abs(std::sqrt(shape.a2) - std::sqrt(shape.b2));
-  kinds_.push_back({shape, {}, bounding_radius, axis_difference, spins, half_extents(shape, thickness_)});
+  kinds_.push_back({shape, {}, bounding_radius, axis_difference, false, spins, half_extents(shape, thickness_)});
   add_reach(half_extents(shape, thickness_), slack(shape, thickness_), bounding_radius);
 }
 
-void OrientedEnvelopes::add_rod(const Rod& rod, double bounding_radius) {
-  kinds_.push_back({{}, rod, bounding_radius, rod.half_length, true, half_extents(rod, thickness_)});
-  add_reach(half_extents(rod, thickness_), slack(rod, thickness_), bounding_radius);
+void OrientedEnvelopes::add_rod(const UniaxialKind& kind) {
+  const Rod& rod = kind.rod;
+  kinds_.push_back({kind.shape, rod, kind.bounding_radius, rod.half_length, true, true, half_extents(rod, thickness_)});
+  add_reach(half_extents(rod, thickness_), slack(rod, thickness_), kind.bounding_radius);
 }
 
 void OrientedEnvelopes::add_reach(const Vector3d& half_extents, const Vector3d& slack, double bounding_radius) {
@@ -198,7 +199,7 @@ double OrientedEnvelopes::exit_time(int i, const AxisMotion& motion, const Vecto
                                     double box) const {
   const geom::OrientedBox& envelope = boxes_[static_cast<std::size_t>(i)];
   const Vector3d here = envelope.centre + nearest_image(position - envelope.centre, box);
-  if (rods_) return rod_exit(i, motion, here, now);
+  if (kind_of(i).is_rod) return rod_exit(i, motion, here, now);
   return kind_of(i).spins ? exit<true>(i, motion, here, now) : exit<false>(i, motion, here, now);
 }
 
@@ -216,7 +217,7 @@ bool OrientedEnvelopes::may_overlap(int i, int k, const Vector3d& r, Vector3d& n
   geom::OrientedBox b = boxes_[static_cast<std::size_t>(k)];
   b.centre = a.centre + r;
   if (!geom::boxes_meet(a, b)) return false;
-  if (rods_) {
+  if (kind_of(i).is_rod || kind_of(k).is_rod) {
     normal = r.squaredNorm() > 0 ? Vector3d(r.normalized()) : Vector3d(a.axes.col(2));
     return true;
   }

@@ -66,12 +66,13 @@ class OrientedEnvelopes final : public Envelopes<UniaxialBodies> {
     Rod rod;
     double bounding_radius;
     double axis_difference;
+    bool is_rod;
     bool spins;
     Eigen::Vector3d half_extents;
   };
 
   void add_kind(const geom::kernel::Spheroid& shape, double bounding_radius, bool spins);
-  void add_rod(const Rod& rod, double bounding_radius);
+  void add_rod(const UniaxialKind& rod);
   void add_reach(const Eigen::Vector3d& half_extents, const Eigen::Vector3d& slack, double bounding_radius);
   const Kind& kind_of(int i) const { return kinds_[static_cast<std::size_t>(kind_[static_cast<std::size_t>(i)])]; }
   template <bool kSpin>
@@ -83,7 +84,6 @@ class OrientedEnvelopes final : public Envelopes<UniaxialBodies> {
 
   double thickness_;
   double reach_ = 0;
-  bool rods_ = false;
   std::vector<Kind> kinds_;
   std::vector<int> kind_;
   std::vector<geom::OrientedBox> boxes_;  ///< axes: body x, body y, the axis of revolution

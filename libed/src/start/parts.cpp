@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <iomanip>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -69,10 +70,12 @@ void check_target(const std::vector<Component>& components, double box) {
   }
   if (box >= smallest_image_box(radius) * (1 - 1e-12)) return;
   const double share = box / smallest_image_box(radius);
+  double number = 0;
+  for (const Component& component : components) number += component.number;
   std::ostringstream message;
   message << "number: a box of edge " << box << " at this packing fraction is too small for bodies of bounding radius "
-          << radius << " (a body could meet two images of another); accepted: at least " << 1 / (share * share * share)
-          << " times as many bodies";
+          << radius << " (a body could meet two images of another); accepted: at least " << std::fixed
+          << std::setprecision(0) << std::ceil(number / (share * share * share) * (1 - 1e-12)) << " bodies";
   throw std::invalid_argument(message.str());
 }
 

@@ -213,11 +213,8 @@ bool internal::has_rods(const std::vector<Species>& species) {
 }
 
 bool internal::are_uniaxial(const std::vector<Species>& species) {
-  const bool rods = has_rods(species);
-  return std::all_of(species.begin(), species.end(), [&](const Species& one) {
-    const bool of_family = rods ? !std::holds_alternative<geom::Ellipsoid>(one.shape) : true;
-    return of_family && has_uniaxial_shape(one.shape) && symmetry_axis(one);
-  });
+  return std::all_of(species.begin(), species.end(),
+                     [](const Species& one) { return has_uniaxial_shape(one.shape) && symmetry_axis(one); });
 }
 
 KineticState kinetic_state(const System& system) {

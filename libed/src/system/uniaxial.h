@@ -6,11 +6,11 @@
 
 namespace ed::internal {
 
-/// Returns whether UniaxialBodies can hold the species together: all are ellipsoids of revolution or spheres, or all
-/// are capsules or spheres, about axes that their inertia shares.
+/// Returns whether UniaxialBodies can hold the species together: all are ellipsoids of revolution, capsules or spheres,
+/// about axes that their inertia shares.
 bool are_uniaxial(const std::vector<Species>& species);
 
-/// Returns whether UniaxialBodies takes its bodies as rods: there is a capsule, or all are spheres.
+/// Returns whether UniaxialBodies takes capsules and spheres as rods: there is a capsule, or all are spheres.
 bool has_rods(const std::vector<Species>& species);
 
 /// Returns whether the shape is an ellipsoid of revolution, a sphere or a capsule.

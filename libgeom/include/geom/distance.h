@@ -1,13 +1,12 @@
 #pragma once
 
-#include <geom/capsule.h>
 #include <geom/ellipsoid.h>
 #include <geom/export.h>
 #include <geom/kernel/core.h>
 #include <geom/kernel/dual_newton.h>
 #include <geom/pose.h>
+#include <geom/round_shapes.h>
 #include <geom/shape.h>
-#include <geom/sphere.h>
 #include <geom/superellipsoid.h>
 #include <geom/tolerances.h>
 
@@ -112,8 +111,9 @@ struct [[nodiscard]] DistanceResult {
 /// Accuracy for ellipsoids: |error of d| <= 1e-13 times the size of the pair (|p_AB| + both bounding radii) when apart
 /// and down to a depth of rho, `error_bound` deeper; normals 1e-7 worst, 1e-12 typically. Both are asserted by
 /// tests/accuracy. Accuracy for other shapes: the same where Newton's method converges. Where support points jump (flat
-/// faces, edges), the answer comes from the closest points of two polytopes that grow inside the bodies; it is
-/// certified to 1e-9 of the size (kWidestGap), or declined. Never throws, never allocates.
+/// faces, edges), the answer comes from the closest points of two polytopes that grow inside the bodies, from the
+/// normal on that Newton's method has reached; it is certified to 1e-9 of the size (kWidestGap), or declined. Never
+/// throws, never allocates.
 ///
 /// Polytopes with balls swept over them (CoreShape: spheres, capsules, boxes, polyhedra, rounded ones) need no search:
 /// the distance is that of the cores less both radii, at any depth, as support functions are additive. Points and
@@ -136,7 +136,8 @@ struct [[nodiscard]] DistanceResult {
 /// A rounded shape (rounded.h) has the distance of the shape inside, less the radius, with the certificate of that. A
 /// sphere beside a smooth body is an ellipsoid with three equal semi-axes; a capsule has the distance of the ball on
 /// its axis that is closest, found from the balls' normals, or where the body reaches the axis that of the general
-/// method.
+/// method. A box or a polyhedron apart from a smooth body has the distance of its closest vertex, edge or face, with
+/// the certificate of superellipsoids; overlaps, and other shapes beside smooth bodies, are left to the general method.
 template <SupportShape ShapeA, SupportShape ShapeB>
 DistanceResult distance(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const Pose& X_WB,
                         const DistanceOptions& options = {});

@@ -8,9 +8,9 @@
 #include <geom/any_convex.h>
 #include <geom/any_shape.h>
 #include <geom/batch.h>
-#include <geom/box.h>
-#include <geom/capsule.h>
 #include <geom/check_support.h>
+#include <geom/contact_patch.h>
+#include <geom/derivatives.h>
 #include <geom/distance.h>
 #include <geom/ellipsoid.h>
 #include <geom/half_space.h>
@@ -22,9 +22,8 @@
 #include <geom/queries.h>
 #include <geom/round_shapes.h>
 #include <geom/rounded.h>
+#include <geom/scene.h>
 #include <geom/shape.h>
 #include <geom/shape_variant.h>
-#include <geom/solids.h>
-#include <geom/sphere.h>
 #include <geom/superellipsoid.h>
 #include <geom/tolerances.h>

@@ -5,14 +5,13 @@
 /// ray cast. None of them throws or allocates.
 
 #include <geom/any_shape.h>
-#include <geom/box.h>
 #include <geom/distance.h>
 #include <geom/ellipsoid.h>
 #include <geom/export.h>
 #include <geom/polyhedron.h>
 #include <geom/pose.h>
+#include <geom/round_shapes.h>
 #include <geom/shape.h>
-#include <geom/sphere.h>
 #include <geom/superellipsoid.h>
 #include <geom/tolerances.h>
 
@@ -117,6 +116,9 @@ template <SupportShape Shape>
 RayHit ray_cast(const Shape& shape, const Pose& X_WB, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction);
 /// Overload in closed form, with the same tolerance and accuracy.
 GEOM_EXPORT RayHit ray_cast(const Ellipsoid& shape, const Pose& X_WB, const Eigen::Vector3d& origin,
+                            const Eigen::Vector3d& direction);
+/// Overload by Newton's method on the norm whose unit ball the body is, with the same tolerance and accuracy.
+GEOM_EXPORT RayHit ray_cast(const Superellipsoid& shape, const Pose& X_WB, const Eigen::Vector3d& origin,
                             const Eigen::Vector3d& direction);
 /// Overload that casts the ray on the ellipsoid with three equal semi-axes.
 inline RayHit ray_cast(const Sphere& shape, const Pose& X_WB, const Eigen::Vector3d& origin,

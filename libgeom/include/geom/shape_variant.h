@@ -3,13 +3,10 @@
 /// @file
 /// List of the shapes that libgeom brings.
 
-#include <geom/box.h>
-#include <geom/capsule.h>
 #include <geom/ellipsoid.h>
 #include <geom/polyhedron.h>
 #include <geom/round_shapes.h>
 #include <geom/rounded.h>
-#include <geom/sphere.h>
 #include <geom/superellipsoid.h>
 
 #include <variant>

@@ -162,6 +162,14 @@ inline constexpr double kNewtonResidual = 1e-13;
 /// newton_distance: ... and the normals are antiparallel, |nA + nB| <= kNewtonAngle, whose square enters the error.
 inline constexpr double kNewtonAngle = 1e-8;
 
+/// distance_derivatives: no derivatives unless `stiffness` > kLeastStiffness times the sum of both bounding radii.
+/// Dimensionless.
+inline constexpr double kLeastStiffness = 1e-9;
+
+/// distance_derivatives: normal and points belong to a feature (vertex, edge, face, rim, side) if they are within its
+/// range by more than kFeatureMargin times the sum of both bounding radii. Dimensionless.
+inline constexpr double kFeatureMargin = 1e-9;
+
 /// check_seed: f >= -kMaxSeedDepth |f_x| |x|, x from the body's centre: a seed's point may lie inside its body by this
 /// fraction of its distance from the centre. Dimensionless.
 inline constexpr double kMaxSeedDepth = 0.1;

@@ -14,7 +14,7 @@ using kernel::DualSample;
 using kernel::Lanes;
 using kernel::NormBodies;
 using kernel::NormBodyPair;
-using Answer = NormBodyPair::Answer;
+using PairAnswer = NormBodyPair::Answer;
 
 template <class A, class B>
 DistanceResult norm_body_distance(const A& a, const Pose& X_WA, const B& b, const Pose& X_WB,
@@ -25,7 +25,7 @@ DistanceResult norm_body_distance(const A& a, const Pose& X_WA, const B& b, cons
                           Lanes{a.min_curvature_radius(), b.min_curvature_radius()});
   DistanceResult result;
   const Vector3d cold = pair.cold_normal();
-  const Answer answer =
+  const PairAnswer answer =
       pair.solve(kernel::is_warm(options.start) ? Vector3d(options.start / options.start.norm()) : cold, cold,
                  options.penetration, options.max_iterations, result.iterations);
   if (!answer.converged) return result;

@@ -2,11 +2,10 @@
 #include "shapes/length_of.h"
 #include "shapes/lengths.h"
 
-#include <geom/box.h>
-#include <geom/capsule.h>
 #include <geom/kernel/core.h>
 #include <geom/kernel/refuse.h>
-#include <geom/sphere.h>
+#include <geom/polyhedron.h>
+#include <geom/round_shapes.h>
 #include <geom/tolerances.h>
 
 #include <algorithm>

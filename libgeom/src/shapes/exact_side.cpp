@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
 namespace geom::kernel {
 namespace {
@@ -24,7 +25,14 @@ class ExactSum {
     part_[count_++] = carried;
   }
 
-  /// Adds a b c: each product of two doubles is a sum of two, by a fused multiply-add.
+  /// Adds a b: a product of two doubles is a sum of two, by a fused multiply-add.
+  void add_product(double a, double b) {
+    const double ab = a * b;
+    add(std::fma(a, b, -ab));
+    add(ab);
+  }
+
+  /// Adds a b c.
   void add_product(double a, double b, double c) {
     const double ab = a * b;
     const double rest = std::fma(a, b, -ab);
@@ -34,6 +42,13 @@ class ExactSum {
     add(low);
     add(std::fma(ab, c, -high));
     add(high);
+  }
+
+  /// Returns the sum, accurate to rounding.
+  double value() const {
+    double sum = 0;
+    for (std::size_t k = 0; k < count_; ++k) sum += part_[k];
+    return sum;
   }
 
   int sign() const {
@@ -85,6 +100,21 @@ int exact_side(const Vector3d& a, const Vector3d& b, const Vector3d& c, const Ve
   constexpr double kRoundings = 16 * 0x1p-53;
   if (std::abs(determinant) > kRoundings * permanent) return determinant > 0 ? 1 : -1;
   return side_of_sums(a, b, c, p);
+}
+
+Vector3d accurate_normal(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
+  Vector3d normal;
+  for (int i = 0; i < 3; ++i) {
+    const int j = (i + 1) % 3;
+    const int k = (i + 2) % 3;
+    ExactSum sum;
+    for (const auto& [p, q] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)}) {
+      sum.add_product(p[j], q[k]);
+      sum.add_product(-p[k], q[j]);
+    }
+    normal[i] = sum.value();
+  }
+  return normal;
 }
 
 }  // namespace geom::kernel

@@ -30,7 +30,15 @@ std::size_t at(int k) {
   return static_cast<std::size_t>(k);
 }
 
-/// Returns the points scaled by a power of two to coordinates of at most 1, for exact_side. Throws for bad ones.
+/// Multiplies a point by 2^-exponent, for exact_side.
+void scale_down(Vector3d& p, int exponent) {
+  for (double& x : p) {
+    x = std::ldexp(x, -exponent);
+    if (std::abs(x) < 0x1p-200) x = 0;
+  }
+}
+
+/// Returns the points scaled by a power of two to coordinates of at most 1. Throws for bad ones.
 std::vector<Vector3d> scaled_points(std::span<const Vector3d> points) {
   if (points.size() < 4) {
     refuse("ConvexPolyhedron: " + std::to_string(points.size()) + " points; accepted: at least 4");
@@ -49,12 +57,7 @@ std::vector<Vector3d> scaled_points(std::span<const Vector3d> points) {
   int exponent = 0;
   std::frexp(largest, &exponent);
   std::vector<Vector3d> scaled(points.begin(), points.end());
-  for (Vector3d& p : scaled) {
-    for (double& x : p) {
-      x = std::ldexp(x, -exponent);
-      if (std::abs(x) < 0x1p-200) x = 0;
-    }
-  }
+  for (Vector3d& p : scaled) scale_down(p, exponent);
   return scaled;
 }
 
@@ -213,18 +216,57 @@ void set_edges(Hull& hull) {
   }
 }
 
+Vector3d vertex(const Hull& hull, int k) {
+  return hull.vertices.row(k).transpose();
+}
+
+/// Twice the area of a face, along its normal.
+struct FaceArea {
+  Vector3d sum = Vector3d::Zero();
+  double scale = 0;  ///< sum of the products of lengths that rounding errors of the sum are relative to
+
+  FaceArea(const Hull& hull, const std::vector<int>& outline) {
+    const Vector3d origin = vertex(hull, outline[0]);
+    for (std::size_t i = 1; i + 1 < outline.size(); ++i) {
+      const Vector3d u = vertex(hull, outline[i]) - origin;
+      const Vector3d v = vertex(hull, outline[i + 1]) - origin;
+      sum += u.cross(v);
+      scale += u.stableNorm() * v.stableNorm();
+    }
+  }
+  /// Returns whether rounding may turn the normal by more than some 1e-15.
+  bool is_narrow() const { return !(sum.stableNorm() > kNarrow * scale); }
+
+ private:
+  static constexpr double kNarrow = 0.25;
+};
+
+/// Returns the same area in other units, accurate to rounding. Points that are in a line but for rounding are the
+/// corners of faces, too.
+Vector3d accurate_area(const Hull& hull, const std::vector<int>& outline) {
+  int exponent = 0;
+  std::frexp(hull.vertices.cwiseAbs().maxCoeff(), &exponent);
+  const auto corner = [&](std::size_t i) {
+    Vector3d p = vertex(hull, outline[i]);
+    scale_down(p, exponent);
+    return p;
+  };
+  Vector3d sum = Vector3d::Zero();
+  for (std::size_t i = 1; i + 1 < outline.size(); ++i) sum += accurate_normal(corner(0), corner(i), corner(i + 1));
+  return sum;
+}
+
 }  // namespace
 
-void set_planes(Hull& hull) {
+void set_planes(Hull& hull, const Hull* exact) {
   hull.normals.clear();
   hull.offsets.clear();
-  const auto vertex = [&hull](int k) { return Vector3d(hull.vertices.row(k).transpose()); };
-  for (const std::vector<int>& outline : hull.faces) {
-    const Vector3d origin = vertex(outline[0]);
-    Vector3d normal = Vector3d::Zero();
-    for (std::size_t i = 1; i + 1 < outline.size(); ++i) {
-      normal += (vertex(outline[i]) - origin).cross(vertex(outline[i + 1]) - origin);
-    }
+  for (std::size_t f = 0; f < hull.faces.size(); ++f) {
+    const FaceArea area(hull, hull.faces[f]);
+    const bool narrow = area.is_narrow();
+    const Vector3d normal = !narrow            ? area.sum
+                            : exact != nullptr ? exact->normals[f]
+                                               : accurate_area(hull, hull.faces[f]);
     hull.normals.push_back(normal.stableNormalized());
     hull.offsets.push_back((hull.vertices * hull.normals.back()).maxCoeff());
   }

@@ -13,8 +13,9 @@ namespace geom::kernel {
 /// lie in a plane.
 Hull convex_hull(std::span<const Eigen::Vector3d> points);
 
-/// Computes normals and offsets of the faces from the vertices.
-void set_planes(Hull& hull);
+/// Computes normals and offsets of the faces from the vertices. `exact`, if given, is the hull that this one has been
+/// moved or scaled from: normals of narrow faces, which rounding of the vertices turns, remain those of it.
+void set_planes(Hull& hull, const Hull* exact = nullptr);
 
 /// Volume and moments of a hull, wherever the origin is.
 struct HullMoments {

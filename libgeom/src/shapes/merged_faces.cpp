@@ -1,5 +1,5 @@
 #include <geom/kernel/core.h>
-#include <geom/solids.h>
+#include <geom/polyhedron.h>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>

@@ -3,7 +3,6 @@
 
 #include <geom/kernel/refuse.h>
 #include <geom/polyhedron.h>
-#include <geom/solids.h>
 #include <geom/tolerances.h>
 
 #include <Eigen/Eigenvalues>
@@ -68,7 +67,7 @@ ConvexPolyhedron ConvexPolyhedron::in_principal_frame(std::span<const Vector3d> 
   near.vertices.rowwise() -= middle.transpose();
   const double unit = near.vertices.rowwise().norm().maxCoeff() + rounding;
   near.vertices /= unit;
-  kernel::set_planes(near);
+  kernel::set_planes(near, &hull);
   const kernel::SweptMass m =
       kernel::swept_mass({.kind = kernel::CoreKind::hull, .hull = &near, .radius = rounding / unit});
   const Matrix3d covariance = m.second_moment / m.volume - m.centre() * m.centre().transpose();

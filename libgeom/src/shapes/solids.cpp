@@ -1,5 +1,5 @@
 #include <geom/kernel/refuse.h>
-#include <geom/solids.h>
+#include <geom/polyhedron.h>
 
 #include <algorithm>
 #include <array>

@@ -28,6 +28,7 @@ const std::map<std::string, ToString> kToString = {
     {"Answer", name<geom::Answer>},
     {"ContactRoot", name<ed::ContactRoot>},
     {"ContactStatus", name<ed::ContactStatus>},
+    {"DerivativeStatus", name<geom::DerivativeStatus>},
     {"DistanceMethod", name<ed::DistanceMethod>},
     {"DistanceStatus", name<geom::DistanceStatus>},
     {"EquilibratedBy", name<ed::EquilibratedBy>},
@@ -39,6 +40,7 @@ const std::map<std::string, ToString> kToString = {
     {"MissingReason", name<ed::MissingReason>},
     {"Neighbours", name<ed::Neighbours>},
     {"NewtonSystem", name<geom::NewtonSystem>},
+    {"PatchKind", name<geom::PatchKind>},
     {"Penetration", name<geom::Penetration>},
     {"RayStatus", name<geom::RayStatus>},
     {"SeedStatus", name<geom::SeedStatus>},
@@ -48,10 +50,10 @@ const std::map<std::string, ToString> kToString = {
 /// Enumerations whose to_string says more than the name, or less.
 const std::set<std::string> kInOtherWords = {"FailureReason", "Lattice"};
 
-/// The enumerators of each `enum class` in the public headers, in their order.
+/// The enumerators of each `enum class` in the public headers, in their order; handles have none.
 std::map<std::string, std::vector<std::string>> declared() {
   const std::filesystem::path root = std::filesystem::path(HARDBODY_REFERENCE_DIR).parent_path().parent_path();
-  const std::regex enumeration(R"(enum class (\w+)[^{;]*\{([^}]*)\})");
+  const std::regex enumeration(R"(enum class (\w+)[^{;]*\{([^}]+)\})");
   std::map<std::string, std::vector<std::string>> found;
   for (const char* directory : {"libgeom/include/geom", "libed/include/ed"}) {
     for (const auto& file : std::filesystem::directory_iterator(root / directory)) {

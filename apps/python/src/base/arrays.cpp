@@ -64,11 +64,16 @@ nb::object check_kind(nb::object array, const std::string& name, std::string_vie
   return array;
 }
 
+/// Returns whether any element of a masked array is masked.
+bool is_masked(nb::handle array) {
+  return PyObject_IsTrue(nb::module_::import_("numpy").attr("any")(array.attr("mask")).ptr()) == 1;
+}
+
 /// Returns the argument as a NumPy array of numbers of a kind in `kinds`, NumPy's letters.
 nb::object as_array(nb::handle value, const std::string& name, std::string_view kinds, const std::string& accepted) {
   if (is_plain_array(value)) return check_kind(nb::borrow(value), name, kinds, accepted);
   if (value.is_none() || PyUnicode_Check(value.ptr())) refuse_type(name, value, accepted);
-  if (nb::hasattr(value, "mask") && nb::hasattr(value, "filled")) {
+  if (nb::hasattr(value, "mask") && nb::hasattr(value, "filled") && is_masked(value)) {
     throw nb::type_error((name + " is a masked array; accepted: " + accepted + ", none of them masked").c_str());
   }
   return check_kind(ask_numpy(name, accepted, [&](const nb::module_& numpy) { return numpy.attr("asarray")(value); }),
@@ -184,9 +189,11 @@ IndexRows::IndexRows(nb::handle value, const std::string& name, std::size_t colu
   data_ = make_contiguous<std::int64_t>(owner_, name, accepted);
 }
 
-void IndexRows::refuse(std::size_t row, std::size_t column, std::size_t index, std::size_t count) const {
+void IndexRows::refuse(std::size_t row, std::size_t column, std::size_t index, std::size_t count,
+                       const char* indexed) const {
   const std::string entry = columns_ == 1 ? std::to_string(row) : std::to_string(row) + ", " + std::to_string(column);
-  const std::string accepted = count == 0 ? "none, there are no bodies" : "0 to " + std::to_string(count - 1);
+  const std::string accepted =
+      count == 0 ? std::string("none, there are no ") + indexed : "0 to " + std::to_string(count - 1);
   const std::string value = is_unsigned_ ? std::to_string(index) : std::to_string(static_cast<std::int64_t>(index));
   refuse_value(name_ + '[' + entry + ']', value, accepted);
 }

@@ -79,11 +79,11 @@ class IndexRows {
     return static_cast<std::size_t>(static_cast<const volatile std::int64_t*>(data_)[row * columns_ + column]);
   }
 
-  /// Returns an index below `count`. Throws ValueError, naming the entry, if it is not. Reads memory once, so that no
-  /// other thread can change an index after its check.
-  std::size_t at(std::size_t row, std::size_t column, std::size_t count) const {
+  /// Returns an index below `count`, of what `indexed` names. Throws ValueError, naming the entry, if it is not. Reads
+  /// memory once, so that no other thread can change an index after its check.
+  std::size_t at(std::size_t row, std::size_t column, std::size_t count, const char* indexed = "bodies") const {
     const std::size_t index = unchecked(row, column);
-    if (index >= count) refuse(row, column, index, count);
+    if (index >= count) refuse(row, column, index, count, indexed);
     return index;
   }
 
@@ -94,7 +94,8 @@ class IndexRows {
   }
 
  private:
-  [[noreturn]] void refuse(std::size_t row, std::size_t column, std::size_t index, std::size_t count) const;
+  [[noreturn]] void refuse(std::size_t row, std::size_t column, std::size_t index, std::size_t count,
+                           const char* indexed = "bodies") const;
 
   std::string name_;
   nb::object owner_;

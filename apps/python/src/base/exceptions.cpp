@@ -21,6 +21,20 @@ void set_error(PyObject* type, const char* message) {
   Py_DECREF(text);
 }
 
+/// Sets an OSError with errno, text and file name; Python chooses its class, such as FileNotFoundError.
+void set_os_error(const WriteError& error) {
+  PyObject* const reason =
+      PyUnicode_DecodeUTF8(error.reason().data(), static_cast<Py_ssize_t>(error.reason().size()), "replace");
+  PyObject* const path =
+      PyUnicode_DecodeFSDefaultAndSize(error.path().data(), static_cast<Py_ssize_t>(error.path().size()));
+  PyObject* const arguments =
+      reason == nullptr || path == nullptr ? nullptr : Py_BuildValue("(iOO)", error.number(), reason, path);
+  if (arguments != nullptr) PyErr_SetObject(PyExc_OSError, arguments);
+  Py_XDECREF(arguments);
+  Py_XDECREF(path);
+  Py_XDECREF(reason);
+}
+
 }  // namespace
 
 void register_exceptions() {
@@ -30,7 +44,7 @@ void register_exceptions() {
     } catch (const InputError& e) {
       set_error(PyExc_ValueError, e.what());
     } catch (const WriteError& e) {
-      set_error(PyExc_OSError, e.what());
+      set_os_error(e);
     } catch (const std::invalid_argument& e) {
       set_error(PyExc_ValueError, e.what());
     } catch (const std::bad_alloc&) {

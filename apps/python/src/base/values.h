@@ -90,6 +90,18 @@ void bind_equality(nb::class_<T>& type, Equal equal) {
   type.attr("__hash__") = nb::none();
 }
 
+/// Defines pickling by __getstate__ and __setstate__, of every protocol: Python's own way knows no protocol below 2.
+template <class T>
+void bind_reduce(nb::class_<T>& type) {
+  type.def(
+      "__reduce__",
+      [](nb::handle self) {
+        const nb::object construct = nb::module_::import_("copyreg").attr("__newobj__");
+        return nb::make_tuple(construct, nb::make_tuple(self.type()), self.attr("__getstate__")());
+      },
+      nb::sig("def __reduce__(self) -> tuple[typing.Any, ...]"));
+}
+
 /// Defines pickling, copying and == of a class whose value is that of these members: pointers to them, or functions
 /// that return references to them.
 template <class T, class... Member>
@@ -113,6 +125,7 @@ void bind_value(nb::class_<T>& type, Member... members) {
             new (&self) T(std::move(value));
           },
           nb::sig("def __setstate__(self, state: tuple[typing.Any, ...], /) -> None"));
+  bind_reduce(type);
   bind_equality(type, [all](const T& a, const T& b) {
     return std::apply([&](auto... m) { return (same(std::invoke(m, a), std::invoke(m, b)) && ...); }, all);
   });

@@ -14,6 +14,8 @@ void bind_queries(nanobind::module_& module);
 void bind_masses(nanobind::module_& module);
 void bind_contacts(nanobind::module_& module);
 void bind_distances(nanobind::module_& module);
+void bind_derivatives(nanobind::module_& module);
+void bind_patches(nanobind::module_& module);
 void bind_body_queries(nanobind::module_& module);
 void bind_custom_shapes(nanobind::module_& module);
 

@@ -53,7 +53,7 @@ void Bodies::read_shape_of(nb::handle shape_of) {
     check_rows("shape_of", indices.size(), "positions", size());
     shape_of_.resize(size());
     for (std::size_t k = 0; k < size(); ++k)
-      shape_of_[k] = static_cast<std::uint32_t>(indices.at(k, 0, shapes_.size()));
+      shape_of_[k] = static_cast<std::uint32_t>(indices.at(k, 0, shapes_.size(), "shapes"));
     return;
   }
   if (shapes_.size() == 1 || size() == 0) return;

@@ -4,6 +4,7 @@
 
 #include "base/arrays.h"
 #include "base/orientations.h"
+#include "base/parallel.h"
 
 #include <geom/pose.h>
 #include <geom/shape_variant.h>
@@ -152,5 +153,53 @@ int thread_count(nb::handle threads);
 /// Returns a length of ranges (see parallel) that keeps all threads busy and interrupts short: at most 512. Threads
 /// whose ranges of 64 alternate in memory slow each other down by a fifth.
 std::size_t range_length(std::size_t count, int threads);
+
+/// Arguments of a call on pairs, checked.
+struct PairQuery {
+  PairQuery(nb::handle shapes, nb::handle positions, nb::handle quaternions, nb::handle pairs_argument,
+            nb::handle shape_of, nb::handle threads, nb::handle start)
+      : bodies(shapes, positions, quaternions, shape_of),
+        pairs(pairs_argument, "pairs", 2),
+        thread_number(thread_count(threads)),
+        poses(bodies, pairs.size(), thread_number) {
+    if (start.is_none()) return;
+    starts.emplace(start, "start", 3);
+    check_rows("start", starts->size(), "pairs", pairs.size());
+  }
+
+  /// Does the work on all pairs (see parallel).
+  template <class WorkOrMake>
+  void run(const WorkOrMake& work) const {
+    parallel(pairs.size(), range_length(pairs.size(), thread_number), thread_number, work);
+  }
+
+  /// Calls f(row, a, X_WA, b, X_WB), a and b the indices of bodies, for all pairs (see parallel).
+  template <class F>
+  void for_each(const F& f) const {
+    run(Work([&](std::size_t begin, std::size_t end) {
+      geom::Pose slot_a, slot_b;
+      for (std::size_t row = begin; row < end; ++row) {
+        const std::size_t first = a(row), second = b(row);
+        const geom::Pose* const X_WA = poses.get(first, slot_a);
+        f(row, first, *X_WA, second, *poses.get(second, slot_b));
+      }
+    }));
+  }
+
+  std::size_t a(std::size_t row) const { return pairs.at(row, 0, bodies.size()); }
+  std::size_t b(std::size_t row) const { return pairs.at(row, 1, bodies.size()); }
+
+  /// Returns the guess of a pair's normal, 0 for none. Throws ValueError, naming the row, unless it is finite.
+  Eigen::Vector3d start(std::size_t row) const {
+    if (!starts) return Eigen::Vector3d::Zero();
+    return starts->finite_vector(row);
+  }
+
+  Bodies bodies;
+  IndexRows pairs;
+  int thread_number;
+  PairPoses poses;
+  std::optional<RealRows> starts;
+};
 
 }  // namespace hardbody::python

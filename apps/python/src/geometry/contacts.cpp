@@ -4,6 +4,7 @@
 #include "geometry/bind.h"
 #include "geometry/bodies.h"
 #include "geometry/contact_options.h"
+#include "geometry/speeds.h"
 
 #include <ed/motion.h>
 #include <ed/shape.h>
@@ -47,17 +48,23 @@ class MovingBodies {
   std::size_t size() const { return bodies_.size(); }
   const ed::BodyShape& shape(std::size_t body) const { return shapes_[bodies_.shape_index(body)]; }
 
-  /// Returns a body's motion. Throws ValueError, naming the entry, if numbers are not finite; moments are not checked.
+  /// Returns a body's motion. Throws ValueError, naming the entry, if numbers are not finite or speeds out of range;
+  /// moments are not checked.
   ed::Motion motion(std::size_t body) const {
     ed::Motion motion;
     motion.pose = bodies_.checked_pose(body);
-    if (velocities_) motion.velocity = velocities_->finite_vector(body);
-    if (angular_velocities_) motion.angular_velocity = angular_velocities_->finite_vector(body);
+    if (velocities_) motion.velocity = speed_of(*velocities_, "velocities", body);
+    if (angular_velocities_) motion.angular_velocity = speed_of(*angular_velocities_, "angular_velocities", body);
     if (inertias_) motion.inertia = inertias_->finite_vector(body);
     return motion;
   }
 
  private:
+  /// Returns a velocity, checked.
+  static Eigen::Vector3d speed_of(const RealRows& rows, const char* name, std::size_t body) {
+    return checked_speed(rows.finite_vector(body), entry(name, body));
+  }
+
   void read(std::optional<RealRows>& rows, nb::handle value, const char* name) const {
     if (value.is_none()) return;
     rows.emplace(value, name, 3);

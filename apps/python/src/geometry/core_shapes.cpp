@@ -4,13 +4,9 @@
 #include "geometry/bind_shape.h"
 #include "geometry/half_space.h"
 
-#include <geom/box.h>
-#include <geom/capsule.h>
 #include <geom/polyhedron.h>
 #include <geom/round_shapes.h>
 #include <geom/rounded.h>
-#include <geom/solids.h>
-#include <geom/sphere.h>
 #include <geom/tolerances.h>
 
 #include <nanobind/nanobind.h>
@@ -152,7 +148,7 @@ std::vector<Vector3d> points_of(nb::handle value) {
 }
 
 void bind_sphere(nb::module_& module) {
-  nb::class_<Sphere> type(module, "Sphere", "Ball |x| <= radius.");
+  nb::class_<Sphere> type(module, "Sphere", nb::is_weak_referenceable(), "Ball |x| <= radius.");
   type.def(
           "__init__", [](Sphere* self, nb::handle radius) { new (self) Sphere(length(radius, "radius")); },
           nb::arg("radius").none(), nb::sig("def __init__(self, radius: float) -> None"),
@@ -163,7 +159,7 @@ void bind_sphere(nb::module_& module) {
 
 void bind_capsule(nb::module_& module) {
   nb::class_<Capsule> type(
-      module, "Capsule",
+      module, "Capsule", nb::is_weak_referenceable(),
       "Capsule (spherocylinder): all points within `radius` of the segment from -half_length to half_length along z.");
   type.def(
           "__init__",
@@ -179,7 +175,8 @@ void bind_capsule(nb::module_& module) {
 }
 
 void bind_box(nb::module_& module) {
-  nb::class_<Box> type(module, "Box", "Box |x_k| <= half_extents_k in the body's frame, with sharp edges.");
+  nb::class_<Box> type(module, "Box", nb::is_weak_referenceable(),
+                       "Box |x_k| <= half_extents_k in the body's frame, with sharp edges.");
   type.def(
           "__init__", [](Box* self, nb::handle half) { new (self) Box(vector3(half, "half_extents")); },
           nb::arg("half_extents").none(), nb::sig("def __init__(self, half_extents: numpy.typing.ArrayLike) -> None"),
@@ -220,7 +217,8 @@ ConvexPolyhedron solid(nb::handle name, nb::handle circumradius) {
 }
 
 void bind_polyhedron(nb::module_& module) {
-  nb::class_<ConvexPolyhedron> type(module, "ConvexPolyhedron", "Convex hull of points, with sharp edges.");
+  nb::class_<ConvexPolyhedron> type(module, "ConvexPolyhedron", nb::is_weak_referenceable(),
+                                    "Convex hull of points, with sharp edges.");
   type.def(
           "__init__", [](ConvexPolyhedron* self, nb::handle points) { new (self) ConvexPolyhedron(points_of(points)); },
           nb::arg("points").none(), nb::sig("def __init__(self, points: numpy.typing.ArrayLike) -> None"),
@@ -246,7 +244,7 @@ void bind_polyhedron(nb::module_& module) {
 }
 
 void bind_cylinder(nb::module_& module) {
-  nb::class_<Cylinder> type(module, "Cylinder",
+  nb::class_<Cylinder> type(module, "Cylinder", nb::is_weak_referenceable(),
                             "Circular cylinder about z, from -half_length to half_length, with sharp rims.");
   type.def(
           "__init__",
@@ -272,7 +270,8 @@ Cone cone_in_principal_frame(nb::handle height, nb::handle radius, nb::handle ro
 }
 
 void bind_cone(nb::module_& module) {
-  nb::class_<Cone> type(module, "Cone", "Circular cone about z, its apex above its base, with a sharp rim.");
+  nb::class_<Cone> type(module, "Cone", nb::is_weak_referenceable(),
+                        "Circular cone about z, its apex above its base, with a sharp rim.");
   type.def(
           "__init__",
           [](Cone* self, nb::handle height, nb::handle radius, nb::handle base) {
@@ -300,7 +299,7 @@ const Inner& inner_of(nb::handle value) {
 
 template <class Inner>
 void bind_rounded(nb::module_& module, const char* name, const char* inner, const char* doc) {
-  nb::class_<Rounded<Inner>> type(module, name, doc);
+  nb::class_<Rounded<Inner>> type(module, name, nb::is_weak_referenceable(), doc);
   const std::string init = std::string("def __init__(self, shape: ") + inner + ", radius: float) -> None";
   const std::string of = std::string("def shape(self) -> ") + inner;
   type.def(

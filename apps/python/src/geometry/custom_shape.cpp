@@ -238,6 +238,10 @@ nb::object given_or_own(nb::handle given, nb::handle object, const char* name) {
 
 ed::CustomShape make_custom_shape(nb::handle object, nb::handle name, nb::handle volume, nb::handle symmetry_axis,
                                   nb::handle centrally_symmetric) {
+  if (PyType_Check(object.ptr())) {
+    const auto type = nb::cast<std::string>(object.attr("__name__"));
+    throw nb::type_error(("object is the class " + type + "; accepted: an object of it, " + type + "(...)").c_str());
+  }
   ed::CustomShape::Properties properties;
   properties.name = name.is_none() ? class_name(object) : std::string(text(name, "name", "a string without NUL"));
   const auto full_name = [&](nb::handle given, const char* own) {
@@ -329,7 +333,7 @@ ed::CustomShape custom_shape_of(nb::handle object) {
 
 void bind_custom_shapes(nb::module_& module) {
   using ed::CustomShape;
-  nb::class_<CustomShape> type(module, "CustomShape", kShapeDoc);
+  nb::class_<CustomShape> type(module, "CustomShape", nb::is_weak_referenceable(), kShapeDoc);
   type.def(
           "__init__",
           [](CustomShape* self, nb::handle object, nb::handle name, nb::handle volume, nb::handle symmetry_axis,

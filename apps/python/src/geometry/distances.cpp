@@ -115,41 +115,6 @@ struct Columns {
   bool past_caches(const double* to) const { return many && reinterpret_cast<std::uintptr_t>(to) % 16 == 0; }
 };
 
-/// Arguments of a call on pairs, checked.
-struct PairQuery {
-  PairQuery(nb::handle shapes, nb::handle positions, nb::handle quaternions, nb::handle pairs_argument,
-            nb::handle shape_of, nb::handle threads, nb::handle start)
-      : bodies(shapes, positions, quaternions, shape_of),
-        pairs(pairs_argument, "pairs", 2),
-        thread_number(thread_count(threads)),
-        poses(bodies, pairs.size(), thread_number) {
-    if (start.is_none()) return;
-    starts.emplace(start, "start", 3);
-    check_rows("start", starts->size(), "pairs", pairs.size());
-  }
-
-  /// Does the work on all pairs (see parallel).
-  template <class WorkOrMake>
-  void run(const WorkOrMake& work) const {
-    parallel(pairs.size(), range_length(pairs.size(), thread_number), thread_number, work);
-  }
-
-  std::size_t a(std::size_t row) const { return pairs.at(row, 0, bodies.size()); }
-  std::size_t b(std::size_t row) const { return pairs.at(row, 1, bodies.size()); }
-
-  /// Returns the guess of a pair's normal, 0 for none. Throws ValueError, naming the row, unless it is finite.
-  Eigen::Vector3d start(std::size_t row) const {
-    if (!starts) return Eigen::Vector3d::Zero();
-    return starts->finite_vector(row);
-  }
-
-  Bodies bodies;
-  IndexRows pairs;
-  int thread_number;
-  PairPoses poses;
-  std::optional<RealRows> starts;
-};
-
 /// Pairs of a call, answered in blocks: ellipsoids by distance_batch, other pairs one by one.
 class Distances {
  public:
@@ -275,16 +240,12 @@ nb::tuple overlap_many(nb::handle shapes, nb::handle positions, nb::handle quate
   const PairQuery query(shapes, positions, quaternions, pairs, shape_of, threads, start);
   const std::size_t rows = query.pairs.size();
   const NewArray<bool> yes = new_array<bool>({rows}), unknown = new_array<bool>({rows});
-  query.run(Work([&](std::size_t begin, std::size_t end) {
-    Pose slot_a, slot_b;
-    for (std::size_t row = begin; row < end; ++row) {
-      const std::size_t a = query.a(row), b = query.b(row);
-      const geom::Answer answer = geom::overlap(query.bodies.shape(a), *query.poses.get(a, slot_a),
-                                                query.bodies.shape(b), *query.poses.get(b, slot_b), query.start(row));
-      yes.data[row] = answer == geom::Answer::yes;
-      unknown.data[row] = answer == geom::Answer::unknown;
-    }
-  }));
+  query.for_each([&](std::size_t row, std::size_t a, const Pose& X_WA, std::size_t b, const Pose& X_WB) {
+    const geom::Answer answer =
+        geom::overlap(query.bodies.shape(a), X_WA, query.bodies.shape(b), X_WB, query.start(row));
+    yes.data[row] = answer == geom::Answer::yes;
+    unknown.data[row] = answer == geom::Answer::unknown;
+  });
   return nb::make_tuple(yes.array, unknown.array);
 }
 

@@ -23,19 +23,28 @@ const HalfSpace* half_space(nb::handle value) {
   return nb::try_cast(value, found, false) ? found : nullptr;
 }
 
+void refuse_two_half_spaces(nb::handle a, nb::handle b) {
+  if (half_space(a) != nullptr && half_space(b) != nullptr) refuse_type("b", b, "a body, as a is a HalfSpace");
+}
+
 std::optional<geom::DistanceResult> half_space_distance(nb::handle a, const geom::Pose& X_WA, nb::handle b,
                                                         const geom::Pose& X_WB) {
   const HalfSpace* below_a = half_space(a);
   const HalfSpace* below_b = half_space(b);
-  if (below_a != nullptr && below_b != nullptr) refuse_type("b", b, "a body, as a is a HalfSpace");
+  refuse_two_half_spaces(a, b);
   if (below_a != nullptr) return geom::distance(*below_a, X_WA, shape(b, "b"), X_WB);
   if (below_b != nullptr) return geom::kernel::exchanged(geom::distance(*below_b, X_WB, shape(a, "a"), X_WA));
   return std::nullopt;
 }
 
+QueryBody query_body(nb::handle value, const char* name) {
+  if (const HalfSpace* const plane = half_space(value)) return *plane;
+  return std::visit([](const auto& s) -> QueryBody { return s; }, geom_shape(query_shape(value, name)));
+}
+
 void bind_half_space(nb::module_& module) {
   nb::class_<HalfSpace>(
-      module, "HalfSpace",
+      module, "HalfSpace", nb::is_weak_referenceable(),
       "Half-space normal.x <= offset in the body's frame, such as a floor: for distance, overlap, closest_point,\n"
       "contains and ray_cast, beside any built-in shape.")
       .def(

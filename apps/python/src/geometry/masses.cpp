@@ -113,7 +113,8 @@ nb::tuple mass_properties_many(nb::handle shapes, nb::handle density) {
 
 void bind_masses(nb::module_& module) {
   const auto array = [](const char* signature) { return nb::for_getter(nb::sig(signature)); };
-  nb::class_<Mass> type(module, "MassProperties", "Volume, mass and moments of a body of uniform density, body frame.");
+  nb::class_<Mass> type(module, "MassProperties", nb::is_weak_referenceable(),
+                        "Volume, mass and moments of a body of uniform density, body frame.");
   type.def_prop_ro(
           "volume", [](const Mass& m) { return m.unit.volume; }, "Volume, length^3.")
       .def_prop_ro(

@@ -1,3 +1,4 @@
+#include "geometry/given/motions.h"
 #include "base/arguments.h"
 #include "base/arrays.h"
 #include "base/gil.h"
@@ -5,6 +6,7 @@
 #include "geometry/bind.h"
 #include "geometry/contact_options.h"
 #include "geometry/shapes.h"
+#include "geometry/speeds.h"
 
 #include <ed/contact_options.h>
 #include <ed/motion.h>
@@ -28,8 +30,10 @@ Motion motion_of(nb::handle pose, nb::handle velocity, nb::handle angular_veloci
                  nb::handle time) {
   Motion motion;
   if (!pose.is_none()) motion.pose = instance<geom::Pose>(pose, "pose");
-  if (!velocity.is_none()) motion.velocity = finite_vector3(velocity, "velocity");
-  if (!angular_velocity.is_none()) motion.angular_velocity = finite_vector3(angular_velocity, "angular_velocity");
+  if (!velocity.is_none()) motion.velocity = checked_speed(finite_vector3(velocity, "velocity"), "velocity");
+  if (!angular_velocity.is_none()) {
+    motion.angular_velocity = checked_speed(finite_vector3(angular_velocity, "angular_velocity"), "angular_velocity");
+  }
   if (!inertia.is_none()) motion.inertia = finite_vector3(inertia, "inertia");
   motion.time = finite_number(time, "time");
   static_cast<void>(ed::propagate(motion, motion.time));  // refuses what is no motion
@@ -54,7 +58,8 @@ Motion motion_at(const Motion& motion, nb::handle time) {
 
 void bind_motion(nb::module_& module) {
   const auto array = [](const char* signature) { return nb::for_getter(nb::sig(signature)); };
-  nb::class_<Motion> type(module, "Motion", "Free motion of a rigid body, given by its state at one time.");
+  nb::class_<Motion> type(module, "Motion", nb::is_weak_referenceable(),
+                          "Free motion of a rigid body, given by its state at one time.");
   type.def(
           "__init__",
           [](Motion* self, nb::handle pose, nb::handle velocity, nb::handle angular_velocity, nb::handle inertia,
@@ -67,7 +72,8 @@ void bind_motion(nb::module_& module) {
           "Constructs a motion from its state at `time`: the pose (default the identity); the velocity of the centre\n"
           "of mass and the angular velocity, world frame, shape (3,) (default at rest); and the principal moments of\n"
           "inertia about body x, y, z, shape (3,) (default 1, 1, 1). Raises ValueError unless all numbers are finite,\n"
-          "the moments positive and none larger than the sum of the other two.")
+          "the moments positive and none larger than the sum of the other two, and the length of each velocity 0 or\n"
+          "from 1e-50 to 1e50: squares of others overflow or underflow.")
       .def_prop_ro(
           "pose", [](const Motion& m) { return m.pose; }, "Pose at `time`.")
       .def_prop_ro(
@@ -105,7 +111,7 @@ void bind_motion(nb::module_& module) {
 
 void bind_contact_result(nb::module_& module) {
   const auto array = [](const char* signature) { return nb::for_getter(nb::sig(signature)); };
-  nb::class_<ContactResult> type(module, "ContactResult", "Answer of time_of_contact.");
+  nb::class_<ContactResult> type(module, "ContactResult", nb::is_weak_referenceable(), "Answer of time_of_contact.");
   type.def_prop_ro(
           "status", [](const ContactResult& r) { return to_string(r.status); },
           array("def status(self) -> typing.Literal['hit', 'separated', 'overlapping', 'budget_exhausted', 'failed']"),
@@ -138,13 +144,43 @@ void bind_contact_result(nb::module_& module) {
              &ContactResult::evaluations, &ContactResult::rescues);
 }
 
+/// Throws ValueError for an option of given motions beside two Motions, where it would have no effect.
+void refuse_beside_flights(const char* name, nb::handle value) {
+  if (value.is_none()) return;
+  throw nb::value_error(
+      (std::string(name) + " is given, but both motions are a Motion; accepted: None, or a GivenMotion").c_str());
+}
+
+/// Throws ValueError for a method that searches on given motions do not have.
+void refuse_method(nb::handle finder, nb::handle eps_d, nb::handle distance, nb::handle root) {
+  const ed::ContactOptions options = contact_options(finder, nb::int_(1), eps_d, distance, root);
+  if (options.finder == ed::Finder::certified) return;
+  refuse_value("finder", "\"bracketing\"", "\"certified\" beside a GivenMotion");
+}
+
+ContactResult contact_of_given(const ed::BodyShape& a, nb::handle motion_a, const ed::BodyShape& b, nb::handle motion_b,
+                               nb::handle t_min, nb::handle t_max, const ed::GivenContactOptions& options) {
+  const ed::GivenMotion at_a = given_motion(motion_a, "motion_a"), at_b = given_motion(motion_b, "motion_b");
+  const double from = t_min.is_none() ? 0 : finite_number(t_min, "t_min"), until = finite_number(t_max, "t_max");
+  const GilReleased released;
+  return ed::time_of_contact(a, at_a, b, at_b, from, until, options);
+}
+
 ContactResult contact(nb::handle a, nb::handle motion_a, nb::handle b, nb::handle motion_b, nb::handle t_max,
                       nb::handle finder, nb::handle max_evaluations, nb::handle eps_d, nb::handle distance,
-                      nb::handle root) {
+                      nb::handle root, nb::handle t_min, nb::handle tolerance) {
   const ed::BodyShape shape_a = body_shape(a, "a"), shape_b = body_shape(b, "b");
+  if (is_given_motion(motion_a) || is_given_motion(motion_b)) {
+    refuse_method(finder, eps_d, distance, root);
+    return contact_of_given(shape_a, motion_a, shape_b, motion_b, t_min, t_max,
+                            given_options(max_evaluations, tolerance));
+  }
+  refuse_beside_flights("t_min", t_min);
+  refuse_beside_flights("tolerance", tolerance);
   const Motion at_a = instance<Motion>(motion_a, "motion_a"), at_b = instance<Motion>(motion_b, "motion_b");
   const double until = number(t_max, "t_max");
-  const ed::ContactOptions options = contact_options(finder, max_evaluations, eps_d, distance, root);
+  const ed::ContactOptions options = contact_options(
+      finder, max_evaluations.is_none() ? nb::int_(2000) : nb::borrow(max_evaluations), eps_d, distance, root);
   const GilReleased released;
   return ed::time_of_contact(shape_a, at_a, shape_b, at_b, until, options);
 }
@@ -153,20 +189,31 @@ void bind_time_of_contact(nb::module_& module) {
   module.def(
       "time_of_contact", &contact, nb::arg("a").none(), nb::arg("motion_a").none(), nb::arg("b").none(),
       nb::arg("motion_b").none(), nb::arg("t_max").none(), nb::kw_only(), nb::arg("finder").none() = "certified",
-      nb::arg("max_evaluations").none() = 2000, nb::arg("eps_d") = nb::none(), nb::arg("distance").none() = "dual",
-      nb::arg("root") = nb::none(),
-      nb::sig("def time_of_contact(a: hardbody.BodyShape, motion_a: Motion, b: hardbody.BodyShape, "
-              "motion_b: Motion, t_max: float, *, finder: typing.Literal['certified', 'bracketing'] = 'certified', "
-              "max_evaluations: int = 2000, eps_d: float | None = None, "
+      nb::arg("max_evaluations") = nb::none(), nb::arg("eps_d") = nb::none(), nb::arg("distance").none() = "dual",
+      nb::arg("root") = nb::none(), nb::arg("t_min") = nb::none(), nb::arg("tolerance") = nb::none(),
+      nb::sig("def time_of_contact(a: hardbody.BodyShape, motion_a: Motion | GivenMotion, b: hardbody.BodyShape, "
+              "motion_b: Motion | GivenMotion, t_max: float, *, finder: typing.Literal['certified', 'bracketing'] = "
+              "'certified', "
+              "max_evaluations: int | None = None, eps_d: float | None = None, "
               "distance: typing.Literal['dual', 'newton8', 'newton5'] = 'dual', "
-              "root: typing.Literal['newton', 'one_dimensional'] | None = None) -> ContactResult"),
+              "root: typing.Literal['newton', 'one_dimensional'] | None = None, t_min: float | None = None, "
+              "tolerance: float | None = None) -> ContactResult"),
       "Returns the first time in [max of the motions' times, t_max] at which two freely moving bodies touch and\n"
       "approach; t_max may be infinite. The search is certified: it never steps over a contact, however grazing.\n"
       "Bodies are built-in shapes of any kind but HalfSpace, superellipsoids with exponents from 0.25 to 1.6, and "
       "shapes\n"
       "of your own.\n"
       "\n"
-      "max_evaluations limits the effort: at 0.3 to 2 microseconds each for ellipsoids of revolution, up to 50 for\n"
+      "Motions may be a GivenMotion instead, of one body or both; a Motion beside is then one, too. The search is "
+      "from\n"
+      "t_min (None: 0) to a finite t_max, and certified by the bounds of the motions. It is a hit if the distance is "
+      "at\n"
+      "most `tolerance` (None: 1e-13) of the sum of the bounding radii and it is not certain that the bodies move\n"
+      "apart. Superellipsoids may have any exponents, max_evaluations (None: 10000) counts poses, and a bound that is\n"
+      "seen to be broken raises ValueError, in words.\n"
+      "\n"
+      "max_evaluations (None: 2000) limits the effort: at 0.3 to 2 microseconds each for ellipsoids of revolution, up "
+      "to 50 for\n"
       "others. finder='bracketing' is the method of De Michele (2010) instead, without a certificate, to which eps_d\n"
       "(None: 1e-6), distance and root (None: 'newton') apply; beside 'certified' they are refused. eps_d is a "
       "length,\n"
@@ -184,13 +231,16 @@ void bind_time_of_contact(nb::module_& module) {
       "sharp tips, of exponents near 1.6, normals 1e-3 radian apart may fit equally well; where faces meet, points "
       "do.\n"
       "\n"
-      "Raises ValueError for t_max before the motions' times, and for exponents out of range.");
+      "Raises ValueError for t_max before the motions' times, exponents out of range, and bodies that are beyond "
+      "1e100\n"
+      "when the search begins.");
 }
 
 }  // namespace
 
 void bind_motions(nb::module_& module) {
   bind_motion(module);
+  bind_given_motion(module);
   bind_contact_result(module);
   bind_time_of_contact(module);
 }

@@ -1,6 +1,7 @@
 #include "base/arguments.h"
 #include "base/arrays.h"
 #include "base/orientations.h"
+#include "base/values.h"
 #include "geometry/bind.h"
 
 #include <geom/pose.h>
@@ -227,12 +228,13 @@ void bind_operations(nb::class_<Pose>& type) {
 }  // namespace
 
 void bind_poses(nb::module_& module) {
-  nb::class_<Pose> type(module, "Pose",
+  nb::class_<Pose> type(module, "Pose", nb::is_weak_referenceable(),
                         "Position and orientation of a body in the world: p_world = rotation @ p_body + position.");
   bind_constructors(type);
   bind_numbers(type);
   bind_operations(type);
   bind_products(type);
+  bind_reduce(type);
   type.attr("__hash__") = nb::none();  // equal poses may differ in the sign of a zero
 }
 

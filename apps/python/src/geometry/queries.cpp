@@ -43,7 +43,7 @@ constexpr const char* kDistanceStatus =
 
 void bind_distance_result(nb::module_& module) {
   nb::class_<DistanceResult> type(
-      module, "DistanceResult",
+      module, "DistanceResult", nb::is_weak_referenceable(),
       "Answer of distance, world frame. Every number is NaN if `status` is 'not_converged' or 'singular'.\n"
       "\n"
       "point_b - point_a = distance * normal to rounding.");
@@ -165,7 +165,7 @@ void bind_overlap(nb::module_& module) {
 }
 
 void bind_closest_point(nb::module_& module) {
-  nb::class_<ClosestPoint> type(module, "ClosestPoint",
+  nb::class_<ClosestPoint> type(module, "ClosestPoint", nb::is_weak_referenceable(),
                                 "Answer of closest_point, world frame. Every number is NaN if there is no answer.");
   type.def_prop_ro(
           "status", [](const ClosestPoint& r) { return to_string(r.status); }, nb::for_getter(nb::sig(kDistanceStatus)),
@@ -221,7 +221,8 @@ void bind_contains(nb::module_& module) {
 }
 
 void bind_ray_cast(nb::module_& module) {
-  nb::class_<RayHit> type(module, "RayHit", "Answer of ray_cast, world frame. Numbers are NaN unless the ray meets.");
+  nb::class_<RayHit> type(module, "RayHit", nb::is_weak_referenceable(),
+                          "Answer of ray_cast, world frame. Numbers are NaN unless the ray meets.");
   type.def_prop_ro(
           "status", [](const RayHit& r) { return to_string(r.status); },
           nb::for_getter(nb::sig("def status(self) -> typing.Literal['hit', 'missed', 'inside', 'not_converged']")),

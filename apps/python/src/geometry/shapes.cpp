@@ -48,7 +48,8 @@ nb::tuple constructor_arguments(const Superellipsoid& shape) {
 }
 
 void bind_ellipsoid(nb::module_& module) {
-  nb::class_<Ellipsoid> type(module, "Ellipsoid", "Ellipsoid (x/a)^2 + (y/b)^2 + (z/c)^2 <= 1 in the body's frame.");
+  nb::class_<Ellipsoid> type(module, "Ellipsoid", nb::is_weak_referenceable(),
+                             "Ellipsoid (x/a)^2 + (y/b)^2 + (z/c)^2 <= 1 in the body's frame.");
   type.def(
           "__init__", [](Ellipsoid* self, nb::handle axes) { new (self) Ellipsoid(vector3(axes, "semi_axes")); },
           nb::arg("semi_axes").none(), nb::sig("def __init__(self, semi_axes: numpy.typing.ArrayLike) -> None"),
@@ -76,7 +77,7 @@ void bind_ellipsoid(nb::module_& module) {
 
 void bind_superellipsoid(nb::module_& module) {
   nb::class_<Superellipsoid> type(
-      module, "Superellipsoid",
+      module, "Superellipsoid", nb::is_weak_referenceable(),
       "Barr's superellipsoid (|x/a|^(2/e2) + |y/b|^(2/e2))^(e2/e1) + |z/c|^(2/e1) <= 1 in the body's frame.\n"
       "\n"
       "Exponents below 1 give flat faces and rounded edges (a box towards 0), 1 the ellipsoid, above 1 edges\n"

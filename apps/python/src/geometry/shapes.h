@@ -4,6 +4,7 @@
 #include "geometry/custom_shape.h"
 
 #include <ed/shape.h>
+#include <geom/any_convex.h>
 #include <geom/shape_variant.h>
 
 #include <nanobind/nanobind.h>
@@ -30,6 +31,19 @@ inline ed::BodyShape body_shape(nb::handle value, const std::string& name, const
 /// Returns the shape of a body in a query that takes half-spaces, too, which are looked for before.
 inline ed::BodyShape query_shape(nb::handle value, const std::string& name) {
   return body_shape(value, name, ", HalfSpace");
+}
+
+/// Returns the shape of a body as libgeom has it: a user's own, which is none of its kinds, is type-erased.
+inline std::variant<geom::Shape, geom::AnyConvex> geom_shape(const ed::BodyShape& shape) {
+  return std::visit(
+      [](const auto& s) -> std::variant<geom::Shape, geom::AnyConvex> {
+        if constexpr (requires { geom::Shape(s); }) {
+          return geom::Shape(s);
+        } else {
+          return geom::AnyConvex(s);
+        }
+      },
+      shape);
 }
 
 /// Returns a shape as Python has it: a user's own as a CustomShape.

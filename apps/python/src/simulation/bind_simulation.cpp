@@ -51,6 +51,9 @@ PythonSimulation restored(nb::handle state, nb::handle shapes) {
     if (!copy.is_valid()) throw nb::python_error();
     bytes.assign(PyBytes_AsString(copy.ptr()), static_cast<std::size_t>(PyBytes_Size(copy.ptr())));
   } else {
+    if (!PyUnicode_Check(state.ptr()) && !nb::hasattr(state, "__fspath__")) {
+      refuse_type("state", state, "bytes, a bytearray or a memoryview; or a str or path of a file");
+    }
     bytes = read_state(state, "state");
   }
   return PythonSimulation::restore(bytes, own);
@@ -132,7 +135,7 @@ void bind_state(Type& type) {
 }  // namespace
 
 void bind_simulations(nb::module_& module) {
-  Type type(module, "Simulation", kSimulationDoc);
+  Type type(module, "Simulation", nb::is_weak_referenceable(), kSimulationDoc);
   bind_constructor(type);
   bind_simulation_runs(type);
   bind_simulation_numbers(type);

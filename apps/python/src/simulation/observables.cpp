@@ -199,7 +199,7 @@ ed::ObservablesOptions measuring_options(const BodySystem& bodies, nb::handle du
 
 void bind_observables(nb::module_& module) {
   nb::class_<PythonObservables> type(
-      module, "Observables",
+      module, "Observables", nb::is_weak_referenceable(),
       "Observables of a simulation, measured while it runs, in memory that does not grow with\n"
       "the run's length. Made by Simulation.measure.");
   type.def_prop_ro(

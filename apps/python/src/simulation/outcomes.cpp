@@ -62,7 +62,8 @@ nb::dict dictionary(const Counters& counters) {
 }
 
 void bind_counters(nb::module_& module) {
-  nb::class_<Counters> type(module, "Counters", "Counters of a simulation's events since its construction.");
+  nb::class_<Counters> type(module, "Counters", nb::is_weak_referenceable(),
+                            "Counters of a simulation's events since its construction.");
   for (const Counter& c : kCounters) {
     type.def_prop_ro(
         c.name, [member = c.member](const Counters& counters) { return counters.*member; },
@@ -82,7 +83,8 @@ void bind_counters(nb::module_& module) {
 void bind_kinetic(nb::module_& module) {
   using ed::KineticState;
   const auto array = [](const char* signature) { return nb::for_getter(nb::sig(signature)); };
-  nb::class_<KineticState> type(module, "Kinetic", "Kinetic energies of a state, and the temperatures that follow.");
+  nb::class_<KineticState> type(module, "Kinetic", nb::is_weak_referenceable(),
+                                "Kinetic energies of a state, and the temperatures that follow.");
   type.def_prop_ro(
           "energy", [](const KineticState& k) { return k.energy(); }, "Sum of the three energies.")
       .def_ro("translational_energy", &KineticState::translational_energy, "Energy of translation.")
@@ -112,7 +114,8 @@ void bind_kinetic(nb::module_& module) {
 
 void bind_audit(nb::module_& module) {
   using ed::Audit;
-  nb::class_<Audit> type(module, "Audit", "Distances of all pairs of a state, computed from scratch.");
+  nb::class_<Audit> type(module, "Audit", nb::is_weak_referenceable(),
+                         "Distances of all pairs of a state, computed from scratch.");
   type.def_ro("minimum_distance", &Audit::minimum_distance,
               "Smallest distance of all pairs, below 0 for an overlap; the box if no bodies are near each other.")
       .def_prop_ro(
@@ -140,7 +143,7 @@ void bind_audit(nb::module_& module) {
 
 void bind_stall(nb::module_& module) {
   using ed::Stall;
-  nb::class_<Stall> type(module, "Stall",
+  nb::class_<Stall> type(module, "Stall", nb::is_weak_referenceable(),
                          "Stall of a run: many events within almost no simulated time, so that it would never end.");
   type.def_ro("time", &Stall::time, "Simulated time.")
       .def_ro("events", &Stall::events, "Number of events.")
@@ -163,9 +166,71 @@ std::string json_of(const FailedPair& pair) {
   return failure_json({to_string(pair.reason), pair, {}});
 }
 
+/// Returns the call of a distance that gave no answer, as pickles have it.
+nb::object distance_state(const std::optional<ed::FailedDistance>& call) {
+  if (!call) return nb::none();
+  const auto object = [](const geom::Shape& shape) {
+    return std::visit([](const auto& s) { return nb::cast(s); }, shape);
+  };
+  return nb::make_tuple(to_state(call->method), to_state(call->status), object(call->shape_a), object(call->shape_b),
+                        call->X_WA, call->X_WB, to_state(call->seed.point_a), to_state(call->seed.point_b),
+                        to_state(call->seed.status));
+}
+
+std::optional<ed::FailedDistance> distance_of(nb::handle state) {
+  if (state.is_none()) return std::nullopt;
+  ed::FailedDistance call;
+  from_state(state[0], call.method);
+  from_state(state[1], call.status);
+  call.shape_a = shape(state[2], "state");
+  call.shape_b = shape(state[3], "state");
+  from_state(state[4], call.X_WA);
+  from_state(state[5], call.X_WB);
+  from_state(state[6], call.seed.point_a);
+  from_state(state[7], call.seed.point_b);
+  from_state(state[8], call.seed.status);
+  return call;
+}
+
+nb::tuple failed_state(const FailedPair& p) {
+  return nb::make_tuple(to_state(p.reason), shape_object(p.shape_i), shape_object(p.shape_j), p.motion_i, p.motion_j,
+                        p.time, p.i, p.j, to_state(p.finder), p.eps_d, distance_state(p.distance));
+}
+
+FailedPair failed_pair_of(const nb::tuple& state) {
+  constexpr std::size_t kMembers = 11;
+  if (state.size() != kMembers) {
+    refuse_value("size of the state", std::to_string(state.size()), std::to_string(kMembers));
+  }
+  FailedPair pair;
+  from_state(state[0], pair.reason);
+  pair.shape_i = body_shape(state[1], "state");
+  pair.shape_j = body_shape(state[2], "state");
+  from_state(state[3], pair.motion_i);
+  from_state(state[4], pair.motion_j);
+  from_state(state[5], pair.time);
+  from_state(state[6], pair.i);
+  from_state(state[7], pair.j);
+  from_state(state[8], pair.finder);
+  from_state(state[9], pair.eps_d);
+  pair.distance = distance_of(state[10]);
+  return pair;
+}
+
+/// Defines pickling and == of failed pairs; pairs of shapes of the user's own can be pickled if these can.
+void bind_failed_state(nb::class_<FailedPair>& type) {
+  type.def("__getstate__", &failed_state, nb::sig("def __getstate__(self) -> tuple[typing.Any, ...]"))
+      .def(
+          "__setstate__",
+          [](FailedPair& self, const nb::tuple& state) { new (&self) FailedPair(failed_pair_of(state)); },
+          nb::sig("def __setstate__(self, state: tuple[typing.Any, ...], /) -> None"));
+  bind_reduce(type);
+  bind_equality(type, [](const FailedPair& a, const FailedPair& b) { return failed_state(a).equal(failed_state(b)); });
+}
+
 void bind_failed_pair(nb::module_& module) {
   const auto shape = [](const char* signature) { return nb::for_getter(nb::sig(signature)); };
-  nb::class_<FailedPair> type(module, "FailedPair",
+  nb::class_<FailedPair> type(module, "FailedPair", nb::is_weak_referenceable(),
                               "Pair of bodies whose prediction failed, at that moment, with all that reproduces it.");
   type.def_prop_ro(
           "reason", [](const FailedPair& p) { return to_string(p.reason); }, "Reason in words.")
@@ -189,7 +254,7 @@ void bind_failed_pair(nb::module_& module) {
         return "FailedPair(bodies " + std::to_string(p.i) + " and " + std::to_string(p.j) + " at time " +
                shown(p.time) + ": " + to_string(p.reason) + ')';
       });
-  refuse_pickling(type, "a FailedPair", "the text that to_json() returns");
+  bind_failed_state(type);
 }
 
 std::string times(std::uint64_t number) {

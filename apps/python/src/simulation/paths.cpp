@@ -6,7 +6,8 @@
 
 #include <cerrno>
 #include <filesystem>
-#include <system_error>
+
+#include <unistd.h>
 
 namespace hardbody::python {
 namespace {
@@ -21,20 +22,27 @@ std::string path_text(nb::handle path, const char* name) {
   return {encoded.c_str(), encoded.size()};
 }
 
+/// Throws OSError, or the class of it that errno has in Python, with the file's name.
+[[noreturn]] void raise_errno(const std::string& file) {
+  PyErr_SetFromErrnoWithFilename(PyExc_OSError, file.c_str());
+  throw nb::python_error();
+}
+
 }  // namespace
 
 std::string existing_path(nb::handle path, const char* name) {
   const std::string file = path_text(path, name);
-  if (std::error_code error; !std::filesystem::exists(file, error)) {
-    errno = ENOENT;
-    PyErr_SetFromErrnoWithFilename(PyExc_FileNotFoundError, file.c_str());
-    throw nb::python_error();
-  }
+  if (::access(file.c_str(), R_OK) != 0) raise_errno(file);
   return absolute_path(file).string();
 }
 
 std::string read_state(nb::handle path, const char* name) {
-  return read_file(existing_path(path, name), kLongestState);
+  const std::string file = existing_path(path, name);
+  if (std::filesystem::is_directory(file)) {
+    errno = EISDIR;
+    raise_errno(file);
+  }
+  return read_file(file, kLongestState);
 }
 
 void write_state(nb::handle path, const std::function<void(const ed::archive::Sink&)>& make) {

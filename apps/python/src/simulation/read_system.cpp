@@ -73,9 +73,14 @@ void read_species(nb::handle value, nb::handle species_of_body, ed::System& syst
   const IndexRows indices(species_of_body, "species_of", 1);
   check_rows("species_of", indices.size(), "positions", system.bodies.size());
   for (std::size_t k = 0; k < indices.size(); ++k) {
-    system.bodies[k].species = static_cast<int>(indices.at(k, 0, count));
+    system.bodies[k].species = static_cast<int>(indices.at(k, 0, count, "species"));
   }
 }
+
+/// Largest share of an angular velocity that may be about the axis of a body without spin. The axis is that of an
+/// orientation accepted within geom::kPoseTolerance, and rounded as the angular velocity is, to single precision
+/// perhaps.
+constexpr double kLargestSpin = 4 * geom::kPoseTolerance;
 
 /// Refuses rotation about the axis of a body that has none by its species: it would be dropped.
 void check_spins(const ed::System& system) {
@@ -86,7 +91,7 @@ void check_spins(const ed::System& system) {
     if (!axis || species.spins) continue;
     const Vector3d& w = body.angular_velocity;
     const double spin = w.stableNormalized().dot(body.rotation.col(*axis));
-    if (!(std::abs(spin) > 1e-9)) continue;
+    if (!(std::abs(spin) > kLargestSpin)) continue;
     throw nb::value_error((entry("angular_velocities", k) + " is " + shown(w) + ", which turns body " +
                            std::to_string(k) + " about its axis " + shown(body.rotation.col(*axis)) +
                            "; accepted: across the axis, or Species(..., spins=True)")

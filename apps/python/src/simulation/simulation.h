@@ -45,6 +45,8 @@ class PythonSimulation {
 
   /// Returns the simulation between two events. Throws RuntimeError within one, and after an exception there.
   const ed::Simulation& whole() const;
+  /// Returns why whole() throws, in a few words; empty if it does not.
+  const char* trouble() const { return is_busy_ ? "running" : is_broken_ ? "left within an event" : ""; }
   /// Returns the simulation, to be changed. Throws RuntimeError while it runs, also between events.
   ed::Simulation& idle();
 

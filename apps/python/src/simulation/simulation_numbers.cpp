@@ -178,6 +178,7 @@ void bind_outcome(Type& type) {
           "Observables that measure has begun, restored ones too.")
       .def("__len__", [](const PythonSimulation& s) { return s.whole().system().size(); })
       .def("__repr__", [](const PythonSimulation& s) {
+        if (const std::string trouble = s.trouble(); !trouble.empty()) return "Simulation(" + trouble + ')';
         const ed::Simulation& simulation = s.whole();
         return "Simulation(" + std::to_string(simulation.system().size()) + " bodies, box " + shown(simulation.box()) +
                ", time " + shown(simulation.time()) + ", " + std::to_string(simulation.counters().collisions) +

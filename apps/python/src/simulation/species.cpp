@@ -190,7 +190,8 @@ std::uint64_t seed_of(nb::handle value, const char* name) {
 namespace {
 
 void bind_one_species(nb::module_& module) {
-  nb::class_<Species> type(module, "Species", "Shape, mass and moments of inertia of bodies of one kind.");
+  nb::class_<Species> type(module, "Species", nb::is_weak_referenceable(),
+                           "Shape, mass and moments of inertia of bodies of one kind.");
   type.def(
           "__init__",
           [](Species* self, nb::handle shape, nb::handle mass, nb::handle inertia, nb::handle spins) {
@@ -242,7 +243,8 @@ void bind_one_species(nb::module_& module) {
 }
 
 void bind_polydisperse(nb::module_& module) {
-  nb::class_<Polydisperse> type(module, "Polydisperse", "Bodies of one species whose sizes are distributed.");
+  nb::class_<Polydisperse> type(module, "Polydisperse", nb::is_weak_referenceable(),
+                                "Bodies of one species whose sizes are distributed.");
   type.def(
           "__init__",
           [](Polydisperse* self, nb::handle species, nb::handle number, nb::handle width, nb::handle sizes,

@@ -270,7 +270,7 @@ double nematic_order_of(const ed::System& system) {
 }
 
 void bind_systems(nb::module_& module) {
-  nb::class_<BodySystem> type(module, "System",
+  nb::class_<BodySystem> type(module, "System", nb::is_weak_referenceable(),
                               "State of bodies in a periodic cubic box. It does not change; arrays are copies.");
   bind_constructor(type);
   bind_numbers(type);

@@ -129,7 +129,7 @@ bool ConvexGap::solve_by_features(const State& s, Vector3d& n, Evaluation& e) co
 }
 
 /// Finds n and e as solve_by_features does, of cores of which nothing but the support function is known, overlapping
-/// ones too (the proximal point method for the largest gap).
+/// ones too (the proximal point method for the largest gap). Goes on while points and normal fit each other better.
 ///
 /// Bounds that agree to rounding leave an error of its square root in the points, the less the nearer the bodies are,
 /// and in the normal, the less the further apart they are.
@@ -143,11 +143,17 @@ bool ConvexGap::solve_by_moves(const State& s, Vector3d& n, Evaluation& e) const
   double lower = sample(s, normal).g + balls_;
   double distance = 0.5 * size();
   double last = kNoBound;
-  for (int move = 0; move < kMostMoves; ++move) {
+  struct {
+    ClosestFeatures features;
+    Vector3d normal;
+    double gap = 0;
+    double mismatch = kNoBound;
+  } best;
+  for (int move = 0; move < kMostMoves && !(best.mismatch <= kEqual * size()); ++move) {
     const Vector3d moved = s.r + (distance - lower) * normal;
     const ClosestFeatures far = closest_features(
         placed(s, moved), normal, [](double, double) { return false; }, kMostSteps);
-    if (far.end == ClosestFeatures::End::inside || !(far.upper - far.lower <= kAgree * size())) return false;
+    if (far.end == ClosestFeatures::End::inside || !(far.upper - far.lower <= kAgree * size())) break;
     const double gap = sample(s, far.n).g + balls_;
     if (gap >= lower - kEqual * size()) {
       normal = far.n;
@@ -155,12 +161,15 @@ bool ConvexGap::solve_by_moves(const State& s, Vector3d& n, Evaluation& e) const
     }
     const Vector3d between = s.r + far.features.point_b() - far.features.point_a();
     const double mismatch = (between - lower * normal).norm();
-    const double enough = distance < 0.5 * size() ? geom::kWidestGap : kEqual;
-    if (mismatch <= enough * size()) return take_moved(s, far, normal, lower, n, e);
+    if (mismatch < best.mismatch) {
+      best = {far, normal, lower, mismatch};
+    } else if (best.mismatch <= geom::kWidestGap * size()) {
+      break;
+    }
     if (!(mismatch < kSlow * last)) distance *= kNearer;
     last = mismatch;
   }
-  return false;
+  return best.mismatch <= geom::kWidestGap * size() && take_moved(s, best.features, best.normal, best.gap, n, e);
 }
 
 /// Takes n and e of features that bodies have that were moved apart.

@@ -12,19 +12,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <concepts>
 #include <limits>
 #include <optional>
 #include <utility>
 
 namespace geom::kernel {
-
-/// Support height, point and Hessian in the world frame at once.
-struct CurvedSupport {
-  double height;
-  Eigen::Vector3d point;
-  Eigen::Matrix3d hessian;
-};
 
 /// A SupportShape turned into the world frame (about its own centre).
 template <SupportShape Shape>
@@ -41,66 +33,6 @@ struct WorldSupport {
     const Support s = shape.support(n_body);
     return {s.height, R * s.point, R * Eigen::Matrix3d(shape.support_hessian(n_body)) * R.transpose()};
   }
-};
-
-/// Evaluates g and its Newton step for two bodies given by their world-frame supports, with B's centre at r from A's.
-template <class SupportA, class SupportB>
-class GeneralPair {
- public:
-  /// Constructs the pair. `least` (length) is a lower limit of Newton's matrix: smaller eigenvalues are raised to it.
-  GeneralPair(SupportA a, SupportB b, const Eigen::Vector3d& r, double least)
-      : a_(std::move(a)), b_(std::move(b)), r_(r), least_(least) {}
-
-  Evaluation operator()(const Eigen::Vector3d& n) const {
-    const CurvedSupport s_a = a_(n);
-    const CurvedSupport s_b = b_(-n);
-    Evaluation out;
-    out.g = r_.dot(n) - s_a.height - s_b.height;
-    const Eigen::Vector3d y = r_ - s_a.point + s_b.point - out.g * n;
-    const TangentBasis basis(n);
-    const auto& [e, f] = basis;
-    TangentForm m = TangentForm::of(s_a.hessian + s_b.hessian, out.g, basis);
-    const double smallest = m.smallest_eigenvalue();
-    // Only a matrix that is not definite is raised, and no more than needed: with a raised one Newton converges
-    // linearly.
-    if (smallest < least_) [[unlikely]] {
-      const double lift = std::max(least_, -smallest) - smallest;
-      m.ee += lift;
-      m.ff += lift;
-    }
-    const double y_e = y.dot(e);
-    const double y_f = y.dot(f);
-    // Beside the axis of a round face a curvature is so large that nothing but rounding is left of the difference.
-    const double inv_det = 1 / std::max(m.ee * m.ff - m.ef * m.ef, 0.5 * least_ * (m.ee + m.ff));
-    const double d_e = (m.ff * y_e - m.ef * y_f) * inv_det;
-    const double d_f = (m.ee * y_f - m.ef * y_e) * inv_det;
-    out.decrement = d_e * y_e + d_f * y_f;
-    set_step(out, d_e * e + d_f * f, d_e * d_e + d_f * d_f);
-    return out;
-  }
-
-  SupportPair support_pair(const Eigen::Vector3d& n) const {
-    const Support a = a_.support(n);
-    const Support b = b_.support(-n);
-    return {a.height, b.height, a.point, b.point};
-  }
-  const Eigen::Vector3d& r() const { return r_; }
-
-  /// Returns a unit vector across n along which g curves upwards by more than `rounding` / rad^2; zero if there is
-  /// none.
-  Eigen::Vector3d upward(const Eigen::Vector3d& n, double rounding) const {
-    const CurvedSupport s_a = a_(n);
-    const CurvedSupport s_b = b_(-n);
-    const TangentBasis basis(n);
-    const double g = r_.dot(n) - s_a.height - s_b.height;
-    return TangentForm::of(s_a.hessian + s_b.hessian, g, basis).direction_below(-rounding, basis);
-  }
-
- private:
-  SupportA a_;
-  SupportB b_;
-  Eigen::Vector3d r_;
-  double least_;
 };
 
 /// Lengths that the certificates and tolerances of one query need.
@@ -167,41 +99,57 @@ template <class Pair>
   }
 }
 
-/// Ascends from `start`, then from cold() if that led to a stationary point without a certificate.
+/// Ascends from n by `climb_from(rounding, budget, n, e)`; returns whether `result` is an answer. Adds the evaluations
+/// to `spent`.
 ///
 /// A stationary point with g < 0 is no proof of overlap: flat bodies that are apart have some. With Penetration::local,
 /// one beyond the certified depth counts only if shares(point_a, point_b), called with its witness points, confirms
-/// that both bodies contain a common point. `cold` is called only when it is needed. Returns a result whose status
-/// declines when neither start gives a certified answer; `iterations` is then the number of evaluations spent.
+/// that both bodies contain a common point.
+template <class Pair, class Climb, class Shares>
+[[gnu::always_inline]] inline bool answer_from(const Pair& pair, const Climb& climb_from, const PairScale& scale,
+                                               const Eigen::Vector3d& p_WA, const DistanceOptions& options,
+                                               const Shares& shares, Eigen::Vector3d n, int limit, int& spent,
+                                               DistanceResult& result) {
+  const double rounding = kRoundingFactor * scale.size;
+  decltype(pair(n)) e;
+  int budget = limit;
+  const Ascent ascent = climb_from(rounding, budget, n, e);
+  spent += limit - budget;
+  if (ascent != Ascent::converged) return false;
+  const bool certified = e.g >= -scale.certified_depth - rounding;
+  if (!certified && options.penetration == Penetration::global) return false;
+  DistanceResult found = witness_result(pair, p_WA, step_on_sphere(n, e.step), spent);
+  if (!certified) {
+    if (!shares(found.point_a, found.point_b)) return false;
+    found.error_bound = std::numeric_limits<double>::infinity();
+  } else {
+    found.error_bound = newton_error_bound(scale, found);
+    if (needs_polish(scale, found)) [[unlikely]] {
+      polish(pair, scale, p_WA, found);
+      // The step to the optimum may lead across a kink, to a support point far away.
+      if (!(found.error_bound <= kWidestGap * scale.size)) return false;
+    }
+  }
+  result = found;
+  return true;
+}
+
+/// Ascends from `start`, then from cold() if that led to a stationary point without a certificate; see answer_from().
+///
+/// `cold` is called only when it is needed. Returns a result whose status declines when neither start gives a certified
+/// answer; `iterations` is then the number of evaluations spent.
 template <class Pair, class Cold, class Shares>
 DistanceResult solve_dual(const Pair& pair, const Cold& cold, const PairScale& scale, const Eigen::Vector3d& p_WA,
                           const DistanceOptions& options, const Shares& shares) {
-  const double rounding = kRoundingFactor * scale.size;
-  const bool warm = is_warm(options.start);
+  const auto climb_from = [&pair](double rounding, int& budget, Eigen::Vector3d& n, auto& e) {
+    return climb(pair, rounding, budget, n, e);
+  };
   const int limit = std::max(1, options.max_iterations);
   int spent = 0;
-  for (int attempt = warm ? 0 : 1; attempt < 2; ++attempt) {
-    Eigen::Vector3d n = attempt == 0 ? Eigen::Vector3d(options.start / options.start.norm()) : cold();
-    decltype(pair(n)) e;
-    int budget = limit;
-    const Ascent ascent = climb(pair, rounding, budget, n, e);
-    spent += limit - budget;
-    if (ascent != Ascent::converged) continue;
-    const bool certified = e.g >= -scale.certified_depth - rounding;
-    if (!certified && options.penetration == Penetration::global) continue;
-    DistanceResult result = witness_result(pair, p_WA, step_on_sphere(n, e.step), spent);
-    if (!certified) {
-      if (!shares(result.point_a, result.point_b)) continue;
-      result.error_bound = std::numeric_limits<double>::infinity();
-      return result;
-    }
-    result.error_bound = newton_error_bound(scale, result);
-    if (needs_polish(scale, result)) [[unlikely]] {
-      polish(pair, scale, p_WA, result);
-      // The step to the optimum may lead across a kink, to a support point far away.
-      if (!(result.error_bound <= kWidestGap * scale.size)) continue;
-    }
-    return result;
+  for (int attempt = is_warm(options.start) ? 0 : 1; attempt < 2; ++attempt) {
+    const Eigen::Vector3d n = attempt == 0 ? Eigen::Vector3d(options.start / options.start.norm()) : cold();
+    DistanceResult result;
+    if (answer_from(pair, climb_from, scale, p_WA, options, shares, n, limit, spent, result)) return result;
   }
   DistanceResult declined;
   declined.iterations = spent;
@@ -223,14 +171,12 @@ struct CorePair {
 template <class Pair>
 CorePair(const Pair&, double, double) -> CorePair<Pair>;
 
-/// Finds the closest points of the cores; used where Newton's method does not converge because support points jump.
+/// Returns the answer of the closest points of the cores; declines where their bounds are too far apart.
 template <class Pair>
-[[gnu::noinline, gnu::cold]] DistanceResult descend_cores(const CorePair<Pair>& cores, double size,
-                                                          const Eigen::Vector3d& start, const Eigen::Vector3d& p_WA,
-                                                          int iterations) {
-  const SimplexAnswer found = descend(cores, start, kBoundGap * size);
+DistanceResult cores_result(const CorePair<Pair>& cores, double size, const SimplexAnswer& found,
+                            const Eigen::Vector3d& p_WA, int iterations) {
   DistanceResult result;
-  result.iterations = iterations + found.iterations;
+  result.iterations = iterations;
   const double bound = std::max(0.0, found.upper - found.lower);
   if (!(found.lower > 0) || !(bound < kWidestGap * size)) return result;
   result.distance = found.lower - cores.rho_a - cores.rho_b;
@@ -319,33 +265,98 @@ template <class Pair>
   return declined;
 }
 
+/// Newton's method of a pair whose g may have kinks, and growing polytopes where it ends at one.
+///
+/// The polytopes start at the normal that Newton's method has reached: at a warm start that is nearly right, a few
+/// steps close them.
+template <class Pair, class Shares>
+struct KinkedQuery {
+  const Pair& pair;
+  CorePair<Pair> cores;
+  PairScale scale;
+  const Eigen::Vector3d& p_WA;
+  const DistanceOptions& options;
+  const Shares& shares;
+  DistanceResult result = {};
+  int spent = 0;       ///< number of evaluations
+  bool apart = false;  ///< whether a plane between the bodies has been found by their closest points
+
+  bool answered() const { return result.status != DistanceStatus::not_converged; }
+
+  /// Runs Newton's method from a unit vector; lowers `budget`. Returns the normal that it had reached if it ended at a
+  /// kink.
+  std::optional<Eigen::Vector3d> newton(const Eigen::Vector3d& start, const DistanceOptions& how, int falls,
+                                        int& budget) {
+    std::optional<Eigen::Vector3d> kink;
+    const auto climb_from = [&](double rounding, int& left, Eigen::Vector3d& n, auto& e) {
+      KinkWatch watch(pair, rounding, falls, left);
+      const Ascent ascent = climb([&watch](const Eigen::Vector3d& m) { return watch(m); }, rounding, left, n, e);
+      if (watch.at_kink()) kink = watch.best();
+      left = budget - watch.evaluations();
+      return ascent;
+    };
+    const int before = spent;
+    answer_from(pair, climb_from, scale, p_WA, how, shares, start, budget, spent, result);
+    budget -= spent - before;
+    return kink;
+  }
+
+  /// Finds the closest points of bodies apart, from a unit vector: where Newton's method does not converge because
+  /// support points jump. It has a second chance from their normal, and is more accurate if it converges.
+  [[gnu::noinline, gnu::cold]] void descend_from(const Eigen::Vector3d& start) {
+    const SimplexAnswer closest = descend(cores, start, kBoundGap * scale.size, kFine * scale.size);
+    spent += closest.iterations;
+    apart = closest.lower > 0;
+    const DistanceResult found = cores_result(cores, scale.size, closest, p_WA, spent);
+    if (found.status == DistanceStatus::not_converged) return;
+    int budget = kMaxIterations;
+    if (needs_polish(scale, found)) newton(found.normal, {}, kMostFalls, budget);
+    if (!(result.error_bound < found.error_bound)) result = found;
+  }
+
+  /// Runs all this from the warm start, if there is one, and from `cold`.
+  void solve(const Eigen::Vector3d& cold) {
+    bool descended = false;
+    for (int attempt = is_warm(options.start) ? 0 : 1; attempt < 2; ++attempt) {
+      const Eigen::Vector3d start = attempt == 0 ? Eigen::Vector3d(options.start / options.start.norm()) : cold;
+      int budget = std::max(1, options.max_iterations);
+      const std::optional<Eigen::Vector3d> kink = newton(start, options, kMostFalls, budget);
+      if (kink && !std::exchange(descended, true)) descend_from(*kink);
+      if (answered()) return;
+      // Overlapping bodies, mostly.
+      if (kink) newton(*kink, options, kNoLimit, budget);
+      if (answered()) return;
+    }
+    if (!descended || apart) descend_from(cold);
+  }
+
+  static constexpr int kNoLimit = std::numeric_limits<int>::max();
+  static constexpr int kMostFalls = 4;  ///< number of times that g may fall before Newton's method gives way
+  static constexpr double kFine = 0.5 * kResidualTolerance;  ///< see descend(); in units of the size
+};
+
 /// Returns the distance of any two bodies: by Newton's method, by growing polytopes, or by a search of all normals.
 template <SupportShape ShapeA, SupportShape ShapeB>
 DistanceResult general_distance(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const Pose& X_WB,
                                 const DistanceOptions& options) {
   const Eigen::Vector3d r = X_WB.position() - X_WA.position();
-  const double rho = min_curvature_radius_or_zero(a) + min_curvature_radius_or_zero(b);
+  const double rho_a = min_curvature_radius_or_zero(a);
+  const double rho_b = min_curvature_radius_or_zero(b);
+  const double rho = rho_a + rho_b;
   // Shapes with flat faces or edges have rho = 0; a small fraction of the inscribed radii keeps the step bounded.
   const double least =
       kLeastEigenvalue * std::max(rho, kLeastCurvature * (a.inscribed_radius() + b.inscribed_radius()));
   const GeneralPair pair(WorldSupport<ShapeA>{a, X_WA.rotation()}, WorldSupport<ShapeB>{b, X_WB.rotation()}, r, least);
-  const auto cold = [&r] { return unit_or_x(r); };
   const PairScale scale{r.norm() + a.bounding_radius() + b.bounding_radius(), rho};
   const auto shares = [&](const Eigen::Vector3d& point_a, const Eigen::Vector3d& point_b) {
     return share_a_point(a, X_WA, b, X_WB, point_a, point_b);
   };
-  DistanceResult result = solve_dual(pair, cold, scale, X_WA.position(), options, shares);
-  if (result.status != DistanceStatus::not_converged) return result;
-  const CorePair cores{pair, min_curvature_radius_or_zero(a), min_curvature_radius_or_zero(b)};
-  result = descend_cores(cores, scale.size, cold(), X_WA.position(), result.iterations);
-  if (result.status != DistanceStatus::not_converged) {
-    if (!needs_polish(scale, result)) return result;
-    // Newton's method has a second chance from there, and is more accurate if it converges.
-    DistanceResult polished = solve_dual(pair, cold, scale, X_WA.position(), {.start = result.normal}, shares);
-    polished.iterations += result.iterations;
-    return polished.error_bound < result.error_bound ? polished : result;
-  }
-  return search_sphere(pair, scale, cold(), X_WA.position(), result.iterations,
+  using Query = KinkedQuery<std::remove_const_t<decltype(pair)>, decltype(shares)>;
+  const Eigen::Vector3d cold = unit_or_x(r);
+  Query query{pair, {pair, rho_a, rho_b}, scale, X_WA.position(), options, shares};
+  query.solve(cold);
+  if (query.answered()) return query.result;
+  return search_sphere(pair, scale, cold, X_WA.position(), query.spent,
                        common_axis(a, X_WA.rotation(), b, X_WB.rotation()));
 }
 

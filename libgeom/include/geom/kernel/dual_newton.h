@@ -13,6 +13,7 @@
 /// kNormalTolerance2 would not bound the error. The step length is capped, and shortened (kBacktrack) when g falls.
 
 #include <geom/kernel/uniaxial_pair.h>
+#include <geom/shape.h>
 #include <geom/tolerances.h>
 
 #include <Eigen/Core>
@@ -20,6 +21,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace geom::kernel {
 
@@ -243,5 +245,110 @@ template <class Evaluate, class E>
     n = step_on_sphere(n, e.step);
   }
 }
+
+/// Support height, point and Hessian in the world frame at once.
+struct CurvedSupport {
+  double height;
+  Eigen::Vector3d point;
+  Eigen::Matrix3d hessian;
+};
+
+/// Evaluates g and its Newton step for two bodies given by their world-frame supports, with B's centre at r from A's.
+template <class SupportA, class SupportB>
+class GeneralPair {
+ public:
+  /// Constructs the pair. `least` (length) is a lower limit of Newton's matrix: smaller eigenvalues are raised to it.
+  GeneralPair(SupportA a, SupportB b, const Eigen::Vector3d& r, double least)
+      : a_(std::move(a)), b_(std::move(b)), r_(r), least_(least) {}
+
+  Evaluation operator()(const Eigen::Vector3d& n) const {
+    const CurvedSupport s_a = a_(n);
+    const CurvedSupport s_b = b_(-n);
+    Evaluation out;
+    out.g = r_.dot(n) - s_a.height - s_b.height;
+    const Eigen::Vector3d y = r_ - s_a.point + s_b.point - out.g * n;
+    const TangentBasis basis(n);
+    const auto& [e, f] = basis;
+    TangentForm m = TangentForm::of(s_a.hessian + s_b.hessian, out.g, basis);
+    const double smallest = m.smallest_eigenvalue();
+    // Only a matrix that is not definite is raised, and no more than needed: with a raised one Newton converges
+    // linearly.
+    if (smallest < least_) [[unlikely]] {
+      const double lift = std::max(least_, -smallest) - smallest;
+      m.ee += lift;
+      m.ff += lift;
+    }
+    const double y_e = y.dot(e);
+    const double y_f = y.dot(f);
+    // Beside the axis of a round face a curvature is so large that nothing but rounding is left of the difference.
+    const double inv_det = 1 / std::max(m.ee * m.ff - m.ef * m.ef, 0.5 * least_ * (m.ee + m.ff));
+    const double d_e = (m.ff * y_e - m.ef * y_f) * inv_det;
+    const double d_f = (m.ee * y_f - m.ef * y_e) * inv_det;
+    out.decrement = d_e * y_e + d_f * y_f;
+    set_step(out, d_e * e + d_f * f, d_e * d_e + d_f * d_f);
+    return out;
+  }
+
+  SupportPair support_pair(const Eigen::Vector3d& n) const {
+    const Support a = a_.support(n);
+    const Support b = b_.support(-n);
+    return {a.height, b.height, a.point, b.point};
+  }
+  const Eigen::Vector3d& r() const { return r_; }
+
+  /// Returns a unit vector across n along which g curves upwards by more than `rounding` / rad^2; zero if there is
+  /// none.
+  Eigen::Vector3d upward(const Eigen::Vector3d& n, double rounding) const {
+    const CurvedSupport s_a = a_(n);
+    const CurvedSupport s_b = b_(-n);
+    const TangentBasis basis(n);
+    const double g = r_.dot(n) - s_a.height - s_b.height;
+    return TangentForm::of(s_a.hessian + s_b.hessian, g, basis).direction_below(-rounding, basis);
+  }
+
+ private:
+  SupportA a_;
+  SupportB b_;
+  Eigen::Vector3d r_;
+  double least_;
+};
+
+/// Pair that ends Newton's iteration at a kink of g.
+///
+/// A short step along a direction of ascent raises a smooth g. At a kink, where the best normals of bodies with edges
+/// and faces mostly are, g falls however short the step is, and the iteration zigzags across the kink to its limit.
+template <class Pair>
+class KinkWatch {
+ public:
+  /// Constructs the watch: `budget` is set to zero when g has fallen more than `most_falls` times.
+  KinkWatch(const Pair& pair, double rounding, int most_falls, int& budget)
+      : pair_(pair), rounding_(rounding), most_falls_(most_falls), budget_(budget) {}
+
+  auto operator()(const Eigen::Vector3d& n) {
+    auto e = pair_(n);
+    ++evaluations_;
+    if (!(e.g < g_ - rounding_)) {
+      g_ = e.g;
+      best_ = n;
+    } else if (++falls_ > most_falls_) {
+      budget_ = 0;
+    }
+    return e;
+  }
+  bool at_kink() const { return falls_ > most_falls_; }
+  int evaluations() const { return evaluations_; }
+  /// Returns the normal that the iteration had reached.
+  const Eigen::Vector3d& best() const { return best_; }
+
+ private:
+  const Pair& pair_;
+  double rounding_;
+  int most_falls_;
+  int& budget_;
+  double g_ = -std::numeric_limits<double>::infinity();
+  Eigen::Vector3d best_ = Eigen::Vector3d::UnitX();
+  int falls_ = 0;
+  int evaluations_ = 0;
+};
 
 }  // namespace geom::kernel

@@ -4,9 +4,10 @@
 /// Compile-time check that Eigen is configured to lay out vectors and matrices as the libraries were compiled for.
 /// Every public header of libgeom and libed that uses Eigen includes this one.
 ///
-/// The libraries exchange only `Vector3d` and `Matrix3d` with a program. No value of -march, EIGEN_MAX_ALIGN_BYTES,
-/// EIGEN_MAX_STATIC_ALIGN_BYTES or EIGEN_DONT_ALIGN changes those, since their sizes are not multiples of 16 bytes;
-/// EIGEN_DEFAULT_TO_ROW_MAJOR transposes every matrix, and plugins can add members.
+/// The libraries exchange only `Vector3d`, `Matrix3d` and matrices with Eigen::DontAlign with a program. No value of
+/// -march, EIGEN_MAX_ALIGN_BYTES, EIGEN_MAX_STATIC_ALIGN_BYTES or EIGEN_DONT_ALIGN changes those, since the sizes of
+/// the first two are not multiples of 16 bytes; EIGEN_DEFAULT_TO_ROW_MAJOR transposes every matrix, and plugins can add
+/// members.
 
 #include <Eigen/Core>
 

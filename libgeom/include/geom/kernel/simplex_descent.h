@@ -99,15 +99,18 @@ struct SimplexAnswer {
 };
 
 /// Runs the algorithm; `pair.support_pair(n)` and `pair.r()` are as for solve_dual. Ends when the bounds are
-/// `tolerance` apart or improve no more; upper = 0: the bodies overlap.
+/// `tolerance` apart or improve no more; upper = 0: the bodies overlap. Where each step brings the bounds ten times
+/// closer, as on flat faces, it goes on to `fine` <= tolerance.
 template <class Pair>
-SimplexAnswer descend(const Pair& pair, const Eigen::Vector3d& start, double tolerance) {
+SimplexAnswer descend(const Pair& pair, const Eigen::Vector3d& start, double tolerance, double fine) {
   constexpr int kMostSteps = 300;
   constexpr int kPatience = 8;
+  constexpr double kFast = 0.1;
   SimplexAnswer answer;
   Simplex simplex;
   Eigen::Vector3d n = start;
   int idle = 0;
+  double last = std::numeric_limits<double>::infinity();
   while (answer.iterations < kMostSteps && idle < kPatience) {
     ++answer.iterations;
     ++idle;
@@ -127,7 +130,9 @@ SimplexAnswer descend(const Pair& pair, const Eigen::Vector3d& start, double tol
       answer.closest = closest;
       idle = 0;
     }
-    if (!(length > 0) || answer.upper - answer.lower <= tolerance) break;
+    const double open = answer.upper - answer.lower;
+    if (!(length > 0) || open <= fine || (open <= tolerance && !(open <= kFast * last))) break;
+    last = open;
     n = closest.p() / length;
   }
   return answer;
@@ -175,7 +180,8 @@ MatchingPoints match_points(const Pair& pair, double size, const Eigen::Vector3d
   double last = best.mismatch;
   for (int move = 0; move < kMostMoves && distance > kRounding * size; ++move) {
     const Eigen::Vector3d way = (distance - gap) * normal;
-    const SimplexAnswer far = descend(MovedPair<Pair>{pair, pair.r() + way}, normal, kRounding * size);
+    const SimplexAnswer far =
+        descend(MovedPair<Pair>{pair, pair.r() + way}, normal, kRounding * size, kRounding * size);
     iterations += far.iterations;
     const double length = far.closest.p().norm();
     if (!(length > 0)) break;

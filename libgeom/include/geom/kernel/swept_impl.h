@@ -192,7 +192,8 @@ DistanceResult core_to_body(const CoreBody& a, const Pose& X_WA, const Shape& b,
   return with_skins(general_distance(a.bare(), X_WA, b, X_WB, options), core.radius, 0);
 }
 
-/// Returns core_to_body(), compiled into the library.
+/// Returns core_to_body(), compiled into the library; of boxes and hulls that are apart, the distance of their closest
+/// features.
 /// @{
 GEOM_EXPORT DistanceResult core_to_smooth(const CoreBody& a, const Pose& X_WA, const Ellipsoid& b, const Pose& X_WB,
                                           const DistanceOptions& options);

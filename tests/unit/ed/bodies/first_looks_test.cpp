@@ -107,7 +107,7 @@ Answers expect_same_looks(const std::vector<Species>& species, geom::Instruction
 }
 
 /// Returns the number of contacts among the answers, of all instruction sets together.
-int expect_same_looks(const std::vector<Species>& species) {
+int expect_same_looks(const std::vector<Species>& species, double least_share = 0.5) {
   const int repetitions = full_form() ? 200 : 20;
   int contacts = 0;
   for (const geom::InstructionSet set : geom_test::instruction_sets()) {
@@ -118,7 +118,7 @@ int expect_same_looks(const std::vector<Species>& species) {
       contacts += found.contacts;
     }
     std::printf("%s: %.3f of the looks answered\n", geom::to_string(set), answered);
-    EXPECT_GT(answered, 0.5);
+    EXPECT_GT(answered, least_share);
   }
   return contacts;
 }
@@ -179,6 +179,13 @@ TEST(FirstLooks, OfSpinningCapsulesAreThoseOfOnePair) {
 TEST(FirstLooks, OfCapsulesAndSpheresAreThoseOfOnePair) {
   expect_same_looks({without_spin(capsule(3)), without_spin(capsule(1, 0.7)), uniform_species(geom::Sphere(0.6))});
   expect_same_looks({capsule(0.3), without_spin(capsule(5)), uniform_species(geom::Sphere(0.2))});
+}
+
+// Only pairs of one family have kernels: a capsule beside an ellipsoid stays unanswered.
+TEST(FirstLooks, OfCapsulesAndEllipsoidsAreThoseOfOnePair) {
+  const Species ball = uniform_species(geom::Sphere(0.6));
+  expect_same_looks({without_spin(capsule(2)), paper(3), ball}, 0.4);
+  expect_same_looks({capsule(2), uniform(0.3), ball, uniform(3)}, 0.4);
 }
 
 TEST(FirstLooks, OfSpheresInClosedFormAreThoseOfOnePair) {

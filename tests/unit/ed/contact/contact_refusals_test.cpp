@@ -2,6 +2,7 @@
 
 #include <ed/motion.h>
 #include <ed/time_of_contact.h>
+#include <ed/tolerances.h>
 
 #include <common/finder/contact_scenes.h>
 
@@ -48,6 +49,36 @@ std::string refusal(const std::function<void(Query&)>& spoil) {
     return error.what();
   }
   return "accepted";
+}
+
+TEST(TimeOfContact, RefusesSpeedsWhoseSquaresOverflowOrUnderflow) {
+  for (const double speed : {1e155, 1.1 * ed::kMaxSpeed, 0.9 * ed::kMinSpeed, 1e-200, 5e-324}) {
+    const std::string velocity = refusal([&](Query& q) { q.m_b.velocity = {-speed, 0, 0}; });
+    EXPECT_EQ(velocity.find("velocity is ["), 0U) << velocity;
+    EXPECT_NE(velocity.find("; accepted: 0, or a length from 1e-50 to 1e+50"), std::string::npos) << velocity;
+    const std::string turns = refusal([&](Query& q) { q.m_a.angular_velocity = {0, speed, 0}; });
+    EXPECT_EQ(turns.find("angular velocity is [0, "), 0U) << turns;
+  }
+  const std::string far = refusal([](Query& q) {
+    q.m_a.velocity = {1e50, 0, 0};
+    q.m_b.time = 1e60;
+    q.t_max = kEndless;
+  });
+  EXPECT_EQ(far.find("time_of_contact: the position at time 1e+60"), 0U) << far;
+}
+
+TEST(TimeOfContact, IsRightAtEverySpeedThatIsAccepted) {
+  for (const double speed : {ed::kMaxSpeed, 1e20, 1.0, 1e-20, ed::kMinSpeed}) {
+    for (const double way : {3.0, 1e6}) {
+      Query q;
+      q.m_b = at({way + 2, 0, 0}, {-speed, 0, 0});
+      const ContactResult hit = time_of_contact(q.a, q.m_a, q.b, q.m_b, kEndless);
+      EXPECT_EQ(hit.status, ContactStatus::hit) << speed;
+      EXPECT_NEAR(hit.time * speed / way, 1, 1e-14) << speed;
+      const double early = 0.5 * way / speed;
+      EXPECT_EQ(time_of_contact(q.a, q.m_a, q.b, q.m_b, early).status, ContactStatus::separated) << speed;
+    }
+  }
 }
 
 TEST(TimeOfContact, RefusesBadInputAndNamesIt) {

@@ -188,8 +188,8 @@ TEST(Restart, OtherSpeciesAndOptionsAreRefused) {
               same ? "no std::invalid_argument" : "state: was made with another finder or other neighbours");
   }
   std::string later = state;
-  later[0] = 7;
-  EXPECT_EQ(refusal(later, c.system.species), "state: has format 7, known is 6");
+  later[0] = 8;
+  EXPECT_EQ(refusal(later, c.system.species), "state: has format 8, known is 7");
   EXPECT_EQ(refusal(state + "x", c.system.species), "state: is longer than it should be");
 }
 

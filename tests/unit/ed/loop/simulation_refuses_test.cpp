@@ -40,6 +40,21 @@ TEST(SimulationRefuses, BodiesThatOverlapAtTheStart) {
   }
 }
 
+TEST(SimulationRefuses, SpeedsWhoseSquaresOverflowOrUnderflow) {
+  const ed::Species rod = ed::paper_species(geom::Ellipsoid({1, 1, 3}));
+  const auto message = [&](double fast, double slow) {
+    ed::System system = two_bodies(rod, 20, {5, 0, 0});
+    system.bodies[0].velocity = {0, slow, 0};
+    system.bodies[1].velocity = {0, fast, 0};
+    return message_of(system);
+  };
+  for (const double speed : {1e155, 1.1 * ed::kMaxSpeed, 0.9 * ed::kMinSpeed, 1e-200}) {
+    EXPECT_THAT(message(speed, 0), HasSubstr("velocity of the fastest body, 1, is [0, ")) << speed;
+  }
+  EXPECT_EQ(message(1, 1e-200), "no std::invalid_argument");
+  EXPECT_EQ(message(ed::kMaxSpeed, 0), "no std::invalid_argument");
+}
+
 TEST(SimulationRefuses, ABoxTooSmallForNearestImages) {
   const ed::Species rod = ed::paper_species(geom::Ellipsoid({1, 1, 3}));
   for (const double box : {6.1, 9.0, 12.0}) {

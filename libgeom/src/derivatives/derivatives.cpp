@@ -1,0 +1,216 @@
+#include "derivatives/stationary.h"
+
+#include <geom/derivatives.h>
+#include <geom/kernel/dual_newton.h>
+#include <geom/tolerances.h>
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace geom {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+const char* to_string(DerivativeStatus status) {
+  switch (status) {
+    case DerivativeStatus::twice:
+      return "twice";
+    case DerivativeStatus::once:
+      return "once";
+    case DerivativeStatus::by_position:
+      return "by_position";
+    case DerivativeStatus::none:
+      return "none";
+    case DerivativeStatus::no_distance:
+      return "no_distance";
+  }
+  return "?";
+}
+
+namespace kernel {
+namespace {
+
+/// Rows across the normal and columns of x.
+using Rows = Eigen::Matrix<double, 2, 12>;
+
+constexpr int kTurnA = 3, kMoveB = 6, kTurnB = 9;  // columns of x where a block begins
+
+Matrix3d cross_matrix(const Vector3d& v) {
+  return (Matrix3d() << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0).finished();
+}
+
+double size_of(const ContactBody& a, const ContactBody& b) {
+  return a.bounding_radius + b.bounding_radius;
+}
+
+bool answered(const DistanceResult& at) {
+  return at.status == DistanceStatus::separated || at.status == DistanceStatus::overlapping;
+}
+
+void set_gradient(DistanceDerivatives& out, const Vector3d& n, const Vector3d& s_a, const Vector3d& s_b) {
+  out.gradient << -n, n.cross(s_a), n, s_b.cross(n);
+}
+
+/// Second derivatives of the distance at its optimum, and how normal and points move.
+///
+/// With w the turn of the normal in the plane across it, u = theta x n the turns of the bodies there, and y the
+/// relative motion of the points that are fixed in the bodies, the distance is to second order the stationary value of
+///
+///     w'y - (w - u_A)'H_A (w - u_A) / 2 - (w - u_B)'H_B (w - u_B) / 2 - d w'w / 2 + q(theta_A, theta_B)
+///
+/// subject to g'(w - u) = 0 for each direction g in which a body's point is free. The form q is of the points fixed in
+/// the bodies alone. The unknown is v = w - u of the body with more free directions, or else with more curvature
+/// radius, the first body: its large Hessian then multiplies v only, which is small, so that flat bodies lose no
+/// digits. Evaluating this form at the solution makes its error second order in that of v.
+class SecondDerivatives {
+ public:
+  explicit SecondDerivatives(const StationaryPair& pair) : p_(pair), T_(pair.tangent()) {}
+
+  void write(DistanceDerivatives& out) {
+    set_motions();
+    set_turn();
+    set_slides();
+    const Vector3d& n = p_.n;
+    const Rows rest_a = w_ - u_a_;
+    const Rows rest_b = w_ - u_b_;
+    const Rows half = y_ - 0.5 * p_.distance * w_;
+    PoseHessian H = w_.transpose() * half + half.transpose() * w_;
+    H -= rest_a.transpose() * p_.H_a * rest_a + rest_b.transpose() * p_.H_b * rest_b;
+    H.block<3, 3>(kTurnA, kTurnA) -= of_fixed_point(n, p_.a.x);
+    H.block<3, 3>(kTurnB, kTurnB) += of_fixed_point(n, p_.b.x);
+    out.hessian = 0.5 * (H + H.transpose());
+    out.normal = T_ * w_;
+    out.point_a = point_jacobian(0, p_.a.x, slide_a_);
+    out.point_b = point_jacobian(kMoveB, p_.b.x, slide_b_);
+  }
+
+ private:
+  /// Returns the second derivative of n.exp(theta) s.
+  static Matrix3d of_fixed_point(const Vector3d& n, const Vector3d& s) {
+    return 0.5 * (s * n.transpose() + n * s.transpose()) - s.dot(n) * Matrix3d::Identity();
+  }
+
+  void set_motions() {
+    const Eigen::Matrix<double, 2, 3> Tt = T_.transpose();
+    const Eigen::Matrix<double, 2, 3> turn = -Tt * cross_matrix(p_.n);
+    y_ << -Tt, Tt * cross_matrix(p_.a.x), Tt, -Tt * cross_matrix(p_.b.x);
+    u_a_.setZero();
+    u_b_.setZero();
+    u_a_.middleCols<3>(kTurnA) = turn;
+    u_b_.middleCols<3>(kTurnB) = turn;
+  }
+
+  void set_turn() {
+    const bool first_is_a = p_.first_is_a();
+    const Rows& u = first_is_a ? u_a_ : u_b_;
+    const Rows delta = (first_is_a ? u_b_ : u_a_) - u;
+    const Eigen::Matrix2d& H_other = first_is_a ? p_.H_b : p_.H_a;
+    Eigen::Matrix<double, 2, 12> slides = Rows::Zero();
+    const std::size_t other = first_is_a ? 1 : 0;
+    for (std::size_t k = 0; k < p_.count; ++k) {
+      if (p_.owner[k] == other)
+        slides.row(static_cast<Eigen::Index>(k)) = p_.G.col(static_cast<Eigen::Index>(k)).transpose() * delta;
+    }
+    w_ = u + p_.turn<12>(y_ + H_other * delta - p_.distance * u, slides);
+  }
+
+  /// Sets how the points move across the normal, seen from their bodies: by turns of the normal, and along free
+  /// directions so that the points stay opposite to each other.
+  void set_slides() {
+    slide_a_ = p_.H_a * (w_ - u_a_);
+    slide_b_ = -p_.H_b * (w_ - u_b_);
+    const Rows apart = y_ - p_.distance * w_;
+    if (p_.count == 2 && p_.owner[0] != p_.owner[1]) {
+      const Rows t = p_.G.inverse() * (apart + slide_b_ - slide_a_);
+      slide_a_ += p_.G.col(0) * t.row(0);
+      slide_b_ -= p_.G.col(1) * t.row(1);
+    } else if (p_.first_is_a()) {
+      slide_a_ = apart + slide_b_;
+    } else {
+      slide_b_ = slide_a_ - apart;
+    }
+  }
+
+  PoseJacobian point_jacobian(int column, const Vector3d& s, const Rows& slide) const {
+    PoseJacobian J = T_ * slide;
+    J.middleCols<3>(column) += Matrix3d::Identity();
+    J.middleCols<3>(column + 3) -= cross_matrix(s);
+    return J;
+  }
+
+  const StationaryPair& p_;
+  Eigen::Matrix<double, 3, 2> T_;
+  Rows y_, u_a_, u_b_, w_, slide_a_, slide_b_;
+};
+
+/// Returns what is left where second derivatives do not exist, or are not certain to.
+DistanceDerivatives without_features(const ContactBody& a, const ContactBody& b, const DistanceResult& at,
+                                     const ContactPoints& points, bool single) {
+  DistanceDerivatives out;
+  out.status = DerivativeStatus::none;
+  const double size = size_of(a, b);
+  const bool apart = at.distance > -(a.curvature_radius + b.curvature_radius) + kLeastStiffness * size;
+  if (!apart && !single) return out;
+  set_gradient(out, at.normal, points.a, points.b);
+  out.status = DerivativeStatus::once;
+  if (apart && points_are_single(a, b, at.normal, points, size)) return out;
+  out.status = DerivativeStatus::by_position;
+  out.gradient.segment<3>(kTurnA).setConstant(std::numeric_limits<double>::quiet_NaN());
+  out.gradient.segment<3>(kTurnB).setConstant(std::numeric_limits<double>::quiet_NaN());
+  return out;
+}
+
+}  // namespace
+
+RivalTrial rival_trial(const ContactBody& a, const ContactBody& b, const DistanceResult& at) {
+  const double size = size_of(a, b);
+  RivalTrial trial;
+  const bool deep = at.distance <= -(a.curvature_radius + b.curvature_radius) + kLeastStiffness * size;
+  if (!answered(at) || !deep || !std::isfinite(at.error_bound)) return trial;
+  constexpr double kLeastTrial = 1e-7;  // of the size
+  constexpr double kTrialErrors = 100;
+  trial.needed = true;
+  trial.length = std::max(kLeastTrial * size, kTrialErrors * at.error_bound);
+  trial.by = -trial.length * at.normal;
+  return trial;
+}
+
+bool confirms(const RivalTrial& trial, const DistanceResult& at, const DistanceResult& moved) {
+  // A normal as good, at an angle phi to this one, would lose the length times cos(phi) only.
+  constexpr double kLoss = 0.05;
+  const double more = moved.distance - (at.distance - trial.length);
+  return answered(moved) && more + moved.error_bound <= kLoss * trial.length;
+}
+
+DistanceDerivatives contact_derivatives(const ContactBody& a, const ContactBody& b, const DistanceResult& at,
+                                        bool single) {
+  DistanceDerivatives out;
+  if (!answered(at)) return out;
+  const ContactPoints points{at.point_a - a.centre, at.point_b - b.centre};
+  const std::optional<StationaryPair> pair = stationary_pair(a, b, at, points);
+  if (!pair) return without_features(a, b, at, points, single);
+  out.stiffness = pair->stiffness;
+  if (!single || !(pair->stiffness > kLeastStiffness * size_of(a, b))) {
+    out.status = DerivativeStatus::none;
+    return out;
+  }
+  set_gradient(out, pair->n, pair->a.x, pair->b.x);
+  SecondDerivatives(*pair).write(out);
+  out.status = DerivativeStatus::twice;
+  if (out.hessian.allFinite() && pair->curved) return out;
+  out.status = DerivativeStatus::once;
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  out.hessian.setConstant(nan);
+  out.normal.setConstant(nan);
+  out.point_a.setConstant(nan);
+  out.point_b.setConstant(nan);
+  return out;
+}
+
+}  // namespace kernel
+}  // namespace geom

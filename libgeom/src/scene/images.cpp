@@ -1,0 +1,67 @@
+#include "scene/images.h"
+
+#include <geom/kernel/refuse.h>
+
+#include <Eigen/Dense>
+
+#include <algorithm>
+#include <string>
+
+namespace geom::scene {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+Images::Images(const Lattice& lattice) {
+  for (int k = 0; k < 3; ++k) {
+    const Vector3d& v = lattice.vectors[static_cast<std::size_t>(k)];
+    if (!v.allFinite()) kernel::refuse("Lattice: vector " + std::to_string(k) + " is not finite");
+    vectors_.col(k) = v;
+    if (v.isZero(0)) continue;
+    ++directions_;
+    shortest_ = std::min(shortest_, v.norm());
+    longest_ = std::max(longest_, v.norm());
+  }
+  // Directions without a lattice vector get one across the others, so that the inverse exists; it is not used.
+  Matrix3d all = vectors_;
+  for (int k = 0; k < 3; ++k) {
+    if (!vectors_.col(k).isZero(0)) {
+      all.col(k).normalize();
+      continue;
+    }
+    const Matrix3d known = all;
+    const Eigen::JacobiSVD<Matrix3d> svd(known * known.transpose(), Eigen::ComputeFullU);
+    all.col(k) = svd.matrixU().col(2);
+  }
+  constexpr double kPlane = 1e-6;  // smallest volume spanned by the unit vectors along the lattice
+  if (!(std::abs(all.determinant()) >= kPlane)) {
+    kernel::refuse(
+        "Lattice: vectors are nearly in one plane, or two of them nearly parallel; accepted: vectors whose "
+        "directions span a volume of at least 1e-6");
+  }
+  inverse_ = all.inverse();
+  for (int k = 0; k < 3; ++k) {
+    const double length = vectors_.col(k).norm();
+    inverse_.row(k) *= length > 0 ? 1 / length : 0;
+  }
+}
+
+void Images::check_count(double count) {
+  constexpr double kMost = 1e8;
+  if (count <= kMost) return;
+  kernel::refuse("Scene: the query reaches over more than 1e8 lattice vectors; accepted: shorter distances");
+}
+
+Vector3d Images::cell(const Vector3d& point, const char* what) const {
+  constexpr double kFurthest = 1e9;
+  Vector3d cell = Vector3d::Zero();
+  if (!periodic()) return cell;
+  const Vector3d coordinates = inverse_ * point;
+  for (int k = 0; k < 3; ++k) cell[k] = std::floor(coordinates[k] + 0.5);
+  if (!(cell.cwiseAbs().maxCoeff() <= kFurthest)) {
+    kernel::refuse(std::string(what) + ": the position is more than 1e9 lattice vectors away from the origin");
+  }
+  return cell;
+}
+
+}  // namespace geom::scene

@@ -1,0 +1,81 @@
+#pragma once
+
+/// Lattice of a periodic scene: which cell a point is in, and which images of boxes are near.
+
+#include "scene/box.h"
+
+#include <geom/scene.h>
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace geom::scene {
+
+class Images {
+ public:
+  /// Throws std::invalid_argument for vectors that are not finite or nearly in one plane.
+  explicit Images(const Lattice& lattice);
+
+  bool periodic() const { return directions_ > 0; }
+
+  /// Returns the cell of a point: its coordinates along the lattice vectors, rounded; 0 along those that are none.
+  /// Throws std::invalid_argument, naming `what`, for cells that are too far away for exact numbers.
+  Eigen::Vector3d cell(const Eigen::Vector3d& point, const char* what) const;
+
+  /// Returns the lattice vector with these numbers, whole ones.
+  Eigen::Vector3d vector(const Eigen::Vector3d& cell) const { return vectors_ * cell; }
+
+  double shortest() const { return shortest_; }  ///< smallest length of a lattice vector; infinite without any
+  double longest() const { return longest_; }    ///< largest length of a lattice vector
+
+  /// Calls visit(cell) for cells such that the box moved there may be within `reach` of the other one along every axis.
+  /// Open space has one cell. Periodic: throws std::invalid_argument for more than 1e8 cells.
+  /// `visit` returns false to stop. Returns whether it went on to the end.
+  template <class Visit>
+  bool for_each_near(const Box3& moved, const Box3& other, double reach, const Visit& visit) const;
+
+ private:
+  /// Throws std::invalid_argument for too many cells, NaN included.
+  static void check_count(double count);
+
+  Eigen::Matrix3d vectors_;
+  Eigen::Matrix3d inverse_;  ///< rows: coordinates along the lattice vectors; 0 for those that are none
+  int directions_ = 0;
+  double shortest_ = std::numeric_limits<double>::infinity();
+  double longest_ = 0;
+};
+
+template <class Visit>
+bool Images::for_each_near(const Box3& moved, const Box3& other, double reach, const Visit& visit) const {
+  if (moved.empty() || other.empty()) return true;
+  if (!periodic()) return visit(Eigen::Vector3d::Zero().eval());
+  // Lattice vectors in [low, high] bring the box within reach.
+  const Eigen::Vector3d low = (other.low - moved.high).array() - reach;
+  const Eigen::Vector3d high = (other.high - moved.low).array() + reach;
+  const Eigen::Vector3d middle = inverse_ * (0.5 * (low + high));
+  const Eigen::Vector3d spread = inverse_.cwiseAbs() * (0.5 * (high - low));
+  constexpr double kRounding = 1e-9;
+  Eigen::Vector3d first, last;
+  double count = 1;
+  for (int k = 0; k < 3; ++k) {
+    first[k] = std::ceil(middle[k] - spread[k] - kRounding);
+    last[k] = std::floor(middle[k] + spread[k] + kRounding);
+    count *= std::max(0.0, last[k] - first[k] + 1);
+  }
+  check_count(count);
+  Eigen::Vector3d cell;
+  for (cell[0] = first[0]; cell[0] <= last[0]; ++cell[0]) {
+    for (cell[1] = first[1]; cell[1] <= last[1]; ++cell[1]) {
+      for (cell[2] = first[2]; cell[2] <= last[2]; ++cell[2]) {
+        const Eigen::Array3d by = vector(cell).array();
+        if ((by >= low.array()).all() && (by <= high.array()).all() && !visit(cell)) return false;
+      }
+    }
+  }
+  return true;
+}
+
+}  // namespace geom::scene
