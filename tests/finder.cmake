@@ -3,6 +3,7 @@
 hardbody_test(finder_unit_test unit
   unit/ed/loop/calendar_test.cpp
   unit/ed/cells/grid_test.cpp
+  unit/ed/cells/levels_test.cpp
   unit/ed/contact/certified_test.cpp
   unit/ed/contact/contact_budget_test.cpp
   unit/ed/contact/core_kinds_test.cpp

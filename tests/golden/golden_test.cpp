@@ -32,7 +32,7 @@ using ed_test::State;
 constexpr std::uint64_t kCollisions = 10000;
 
 /// Version of the arithmetic of the hashes below.
-static_assert(ed::kArithmetic == 18);
+static_assert(ed::kArithmetic == 19);
 
 std::string fingerprint() {
 #if !defined(__x86_64__)

@@ -11,7 +11,6 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
-#include <limits>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -34,30 +33,6 @@ ed::StartOptions start_options(const Config& config, const std::function<bool(do
   options.counters = &start.counters;
   options.failures = &start.failures;
   return options;
-}
-
-/// Number of bodies in a cell as wide as the largest one from which on a run is reported as slow: neighbours are
-/// searched in cells.
-constexpr double kCrowdedCell = 100;
-
-/// Describes the cost of very different sizes; nullopt if they are similar.
-std::optional<std::string> unequal_sizes(const Config& config) {
-  const std::vector<ed::Component> components = config.components();
-  double largest = 0;
-  double smallest = std::numeric_limits<double>::infinity();
-  for (const ed::Component& component : components) {
-    const double radius = ed::bounding_radius(component.species.shape);
-    largest = std::max(largest, radius);
-    smallest = std::min(smallest, radius);
-  }
-  const double box = ed::box_for(components, config.packing_fraction);
-  const double in_a_cell = config.number * std::pow(2 * largest / box, 3);
-  if (in_a_cell < kCrowdedCell || largest < 2 * smallest) return std::nullopt;
-  return fmt::format(
-      "start: the largest bodies have {:.3g} times the bounding radius of the smallest: neighbours are searched in "
-      "cells "
-      "as wide as the largest body, which hold {:.0f} bodies; expect a slow start and run",
-      largest / smallest, std::min(in_a_cell, static_cast<double>(config.number)));
 }
 
 /// Describes the cost of a start that cannot be repeated; nullopt if it is small.
@@ -146,9 +121,7 @@ std::optional<Start> make_start(const Config& config, LoadedStates loaded, Progr
     if (compressed) compressed->packing_of_file = start.packing_fraction;
     return compressed;
   }
-  for (const std::optional<std::string>& warning : {unequal_sizes(config), compressed_as_one(config)}) {
-    if (warning) announce(*warning, progress, log);
-  }
+  if (const std::optional<std::string> cost = compressed_as_one(config)) announce(*cost, progress, log);
   const std::optional<ed::LatticeOptions> lattice = config.lattice();
   if (!lattice) return compressed_start(config, loaded.origin, progress, log);
   log.line(fmt::format("start: {} bodies on a lattice ({}) at packing fraction {:g}{}", config.number,

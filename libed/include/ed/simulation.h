@@ -46,6 +46,9 @@ struct Counters {
   /// Contacts at which the bodies did not approach: no impulse, not counted as collisions. Always 0 in a sound run.
   std::uint64_t parting_contacts = 0;
   std::uint64_t unrecorded_failures = 0;  ///< failed pairs that did not fit into failures()
+
+  /// Adds the counts of another stretch of a run, or of another run.
+  ED_EXPORT Counters& operator+=(const Counters& other);
 };
 
 /// Collision of two bodies.

@@ -28,10 +28,11 @@ double most_cells(std::size_t number) {
 
 }  // namespace
 
-CellGrid::CellGrid(int number, double box, double reach, const std::optional<geom::InstructionSet>& batches)
-    : box_(box),
+CellGrid::CellGrid(int number, double box, double reach, const std::optional<geom::InstructionSet>& batches, int placed)
+    : placed_(at(placed)),
+      box_(box),
       reach_(reach),
-      cells_(choose_cells(number, box, reach)),
+      cells_(choose_cells(placed, box, reach)),
       kernel_(find_cell_kernel(batches)),
       cell_of_body_(at(number), kNone) {
   clear();
@@ -64,7 +65,7 @@ int CellGrid::choose_cells(int number, double box, double reach) {
 /// Removes all bodies, and reserves memory for all of them wherever they are.
 void CellGrid::clear() {
   const std::size_t own = at(cells_) * at(cells_) * at(cells_);
-  const std::size_t full = cell_of_body_.size() / kCellBlock;
+  const std::size_t full = placed_ / kCellBlock;
   blocks_.clear();
   next_.clear();
   free_.clear();
@@ -260,8 +261,8 @@ std::span<const NearBody> CellGrid::collect(const Eigen::Vector3d& position, dou
 
 CellGrid::Content CellGrid::content() const {
   Content result{box_, cells_, {count_.begin(), count_.end()}, {}, {}};
-  result.bodies.reserve(cell_of_body_.size());
-  result.positions.reserve(cell_of_body_.size());
+  result.bodies.reserve(placed_);
+  result.positions.reserve(placed_);
   std::vector<int> chain;
   for (std::size_t cell = 0; cell < count_.size(); ++cell) {
     chain.clear();
@@ -281,8 +282,8 @@ CellGrid::Content CellGrid::content() const {
 bool CellGrid::assign(const Content& content) {
   const std::size_t number = cell_of_body_.size();
   if (content.box != box_) return false;
-  if (content.cells < 1 || (content.cells > 1 && content.cells > most_cells(number))) return false;
-  if (content.bodies.size() != number || content.positions.size() != number) return false;
+  if (content.cells < 1 || (content.cells > 1 && content.cells > most_cells(placed_))) return false;
+  if (content.bodies.size() != placed_ || content.positions.size() != placed_) return false;
   cells_ = content.cells;
   if (!cover(reach_)) return false;
   clear();
@@ -291,14 +292,14 @@ bool CellGrid::assign(const Content& content) {
   for (std::size_t cell = 0; cell < content.count.size(); ++cell) {
     if (content.count[cell] < 0) return false;
     for (int k = 0; k < content.count[cell]; ++k, ++next) {
-      if (next == number) return false;
+      if (next == placed_) return false;
       const int body = content.bodies[next];
       const bool fits = body >= 0 && at(body) < number && cell_of_body_[at(body)] == kNone;
       if (!fits || !content.positions[next].allFinite()) return false;
       insert(body, static_cast<int>(cell), content.positions[next]);
     }
   }
-  return next == number;
+  return next == placed_;
 }
 
 }  // namespace ed::internal

@@ -24,16 +24,23 @@ namespace ed::internal {
 /// blocks, the newest first.
 class CellGrid {
  public:
-  /// Constructs an empty grid. `batches` is SimulationOptions::batches, which affects only the speed. Throws
-  /// std::invalid_argument if the processor or the build does not have the instruction set.
+  /// Constructs an empty grid for bodies 0 to number - 1. `batches` is SimulationOptions::batches, which affects only
+  /// the speed. `placed`: how many of them it will hold. Throws std::invalid_argument if the processor or the build
+  /// does not have the instruction set.
+  CellGrid(int number, double box, double reach, const std::optional<geom::InstructionSet>& batches, int placed);
+  /// Constructs a grid that will hold all of them.
   CellGrid(int number, double box, double reach,
-           const std::optional<geom::InstructionSet>& batches = geom::InstructionSet::best);
+           const std::optional<geom::InstructionSet>& batches = geom::InstructionSet::best)
+      : CellGrid(number, box, reach, batches, number) {}
 
   /// Uses the kernel of an instruction set from now on.
   void use(geom::InstructionSet set);
 
   /// Puts body i (whether placed before or not) at `position`; any image.
   void place(int i, const Eigen::Vector3d& position);
+
+  /// Returns whether body i has been placed.
+  bool holds(int i) const { return cell_of_body_[static_cast<std::size_t>(i)] != kNone; }
 
   /// Returns whether bodies within this reach are found.
   bool cover(double reach) const;
@@ -49,7 +56,7 @@ class CellGrid {
   /// bodies.
   void fetch(const Eigen::Vector3d& position, double reach) const;
 
-  /// Archives the cells and the order of the bodies in each; they are read into a grid of the same number of bodies.
+  /// Archives the cells and the order of the bodies in each; they are read into a grid for the same bodies.
   template <class Archive, class Self>
   static void fields(Archive& archive, Self& self) {
     if constexpr (Archive::kReads) {
@@ -105,6 +112,7 @@ class CellGrid {
   void remove(int i);
   void put(BlockLane where, int i, const Eigen::Vector3d& position);
 
+  std::size_t placed_;  ///< number of bodies when all have been placed
   double box_;
   double reach_;  ///< largest reach that can be requested
   int cells_;     ///< number of cells along an edge

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "base/prefetch.h"
-#include "cells/grid.h"
+#include "cells/levels.h"
 #include "loop/event_kinds.h"
 #include "loop/parts/calendar.h"
 #include "neighbours/envelopes.h"
@@ -20,7 +20,7 @@ struct EventSources {
   const Bodies& bodies;
   const NeighbourLists& lists;
   const Envelopes<Bodies>& envelopes;
-  const CellGrid& cells;
+  const CellLevels& cells;
 
   /// Prefetches the pairs of a body, whose list has been read or prefetched before, and where its time stands.
   void fetch_pairs(int body) const {
@@ -40,7 +40,7 @@ struct EventSources {
     for (const std::int32_t index : lists.of(body)) lists.fetch(lists.pair(index).partner(body));
   }
   /// Prefetches the bodies around it, of which its new list is made.
-  void fetch_cells(int body, double now) const { cells.fetch(bodies.position_at(body, now), envelopes.reach()); }
+  void fetch_cells(int body, double now) const { cells.fetch(body, bodies.position_at(body, now)); }
   /// Prefetches the last pair in each partner's list: it takes the place of a pair that leaves the list.
   void fetch_last_pairs_of_partners(int body) const {
     for (const std::int32_t index : lists.of(body)) {

@@ -75,7 +75,7 @@ void check_moving(const Simulation& simulation, const std::string& function) {
 }
 
 /// Raised by every change of what save() writes.
-constexpr std::uint32_t kSimulationFormat = 7;
+constexpr std::uint32_t kSimulationFormat = 8;
 
 /// Work of a stretch of the run in units of 50 ns, from counters alone so that it is the same on every machine. The
 /// weights are fitted to the times of runs of three states, X0 = 1/3, 2 and 3, with envelopes from 0.6 to 2 times as
@@ -130,6 +130,17 @@ constexpr double kFewInCells = 33;
 constexpr double kFewInCellsBracketing = 12;
 
 }  // namespace
+
+Counters& Counters::operator+=(const Counters& other) {
+  for (const auto count :
+       {&Counters::collisions, &Counters::predictions, &Counters::evaluations, &Counters::kernel_calls,
+        &Counters::refinements, &Counters::cold_restarts, &Counters::rescues, &Counters::neighbour_rebuilds,
+        &Counters::envelope_checks, &Counters::candidate_tests, &Counters::overlaps, &Counters::declined,
+        &Counters::parting_contacts, &Counters::unrecorded_failures}) {
+    this->*count += other.*count;
+  }
+  return *this;
+}
 
 const char* to_string(FailureReason reason) {
   switch (reason) {

@@ -38,7 +38,7 @@ EventLoop<Bodies, Law, Added>::EventLoop(const System& system, const SimulationO
   const Envelopes<Bodies>& envelopes = neighbourhood.envelopes();
   const bool fits = envelopes.reach() >= R && envelopes.reach() <= 2 * box();
   expect(reader, envelopes.thickness() == thickness && fits, "the size of the envelopes");
-  neighbourhood.make_cells(envelopes.reach());
+  neighbourhood.make_cells();
   fields(reader, *this);
   expect(reader, neighbourhood.is_sound(), "the cells");
   parts_.failures.load(reader);

@@ -56,6 +56,7 @@ class DilatedEnvelopes final : public Envelopes<UniaxialBodies> {
   double thickness() const override { return thickness_; }
   double exit_thickness() const { return exit_thickness_; }
   double reach() const override { return 2 * (bounding_radius_ + thickness_); }
+  double extent(double bounding_radius) const override { return bounding_radius + thickness_; }
   /// See Envelopes.
   ///
   /// Pairs outside the lists had a gap above 2 delta when the lists were made. Shrinking by s brings a pair of gap G

@@ -37,6 +37,10 @@ class Envelopes {
   /// Largest distance of neighbours, between their positions when their envelopes were made.
   virtual double reach() const = 0;
 
+  /// Returns how far from its position, when it was made, the envelope of a body of this bounding radius extends: two
+  /// are neighbours within the sum of both.
+  virtual double extent(double /*bounding_radius*/) const { return 0.5 * reach(); }
+
   /// Least factor by which the box may shrink in all before the lists must be made anew; 1: none.
   virtual double least_scale() const { return 1; }
 

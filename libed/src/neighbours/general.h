@@ -29,6 +29,7 @@ class GeneralDilatedEnvelopes final : public Envelopes<GeneralBodies> {
 
   double thickness() const override { return thickness_; }
   double reach() const override { return 2 * (bodies_->bounding_radius() + thickness_); }
+  double extent(double bounding_radius) const override { return bounding_radius + thickness_; }
   double least_scale() const override { return 1 - 2 * (thickness_ - exit_thickness_) / reach(); }
   void place(int i, const GeneralBodies& bodies, double now) override;
   void scale(double factor) override;

@@ -1,8 +1,9 @@
 #include "start/nematic.h"
 
 #include "base/poll.h"
-#include "cells/grid.h"
+#include "cells/levels.h"
 #include "start/parts.h"
+#include "system/bounding_radii.h"
 
 #include <Eigen/Geometry>
 
@@ -10,6 +11,7 @@
 #include <cmath>
 #include <functional>
 #include <iomanip>
+#include <span>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -92,8 +94,7 @@ class RotationMoves {
         poll_(poll),
         least_(order),
         most_tilt_(kMostTilt / std::sqrt(system.size())),
-        cells_(system.size(), system.box, reach_of(system)) {
-    reach_ = reach_of(system);
+        cells_(bounding_radii(system), system.box) {
     for (int i = 0; i < system.size(); ++i) {
       const Body& body = system.bodies[static_cast<std::size_t>(i)];
       cells_.place(i, body.position);
@@ -116,11 +117,6 @@ class RotationMoves {
   }
 
  private:
-  static double reach_of(const System& system) {
-    double largest = 0;
-    for (const Species& species : system.species) largest = std::max(largest, bounding_radius(species.shape));
-    return 2 * largest;
-  }
   /// Returns elements xz and yz of the order tensor.
   static Vector2d tilt_of(const Matrix3d& rotation, int axis) {
     return 1.5 * rotation(2, axis) * rotation.col(axis).head<2>();
@@ -151,13 +147,16 @@ class RotationMoves {
 
   bool blocked(int i, const Matrix3d& rotation) {
     const geom::Pose pose(rotation, system_.bodies[static_cast<std::size_t>(i)].position);
-    const auto others = cells_.collect(pose.position(), reach_, near_);
-    return std::any_of(others.begin(), others.end(), [&](const NearBody& other) {
-      if (other.body == i) return false;
-      const Matrix3d& R = system_.bodies[static_cast<std::size_t>(other.body)].rotation;
-      return overlaps(system_.species_of(i).shape, pose, system_.species_of(other.body).shape,
-                      geom::Pose(R, pose.position() + other.r));
+    bool blocked = false;
+    cells_.search(i, pose.position(), near_, [&](std::span<const NearBody> others) {
+      blocked = blocked || std::any_of(others.begin(), others.end(), [&](const NearBody& other) {
+                  if (other.body == i) return false;
+                  const Matrix3d& R = system_.bodies[static_cast<std::size_t>(other.body)].rotation;
+                  return overlaps(system_.species_of(i).shape, pose, system_.species_of(other.body).shape,
+                                  geom::Pose(R, pose.position() + other.r));
+                });
     });
+    return blocked;
   }
 
   System& system_;
@@ -169,8 +168,7 @@ class RotationMoves {
   double most_tilt_;
   bool arrived_ = false;
   double step_ = 0.1;
-  double reach_ = 0;
-  CellGrid cells_;
+  CellLevels cells_;
   std::vector<Quaternion> turns_;  ///< unit quaternions: products of rotation matrices would drift
   std::vector<NearBody> near_;
 };

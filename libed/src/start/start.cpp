@@ -1,7 +1,4 @@
-#include "base/poll.h"
-#include "cells/grid.h"
-#include "neighbours/limits.h"
-#include "start/nematic.h"
+#include "start/insertion.h"
 #include "start/parts.h"
 #include "start/tiles.h"
 
@@ -14,36 +11,26 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
+#include <limits>
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace ed {
 namespace {
 
-using Eigen::Matrix3d;
-using Eigen::Vector3d;
-using internal::NematicOrientations;
-
-/// Packing fraction of the random insertion up to an aspect ratio of 10, where the excluded volume is 13 times a
-/// body's. Beyond, it falls as the excluded volume grows, so that a position is found within a few tries.
-constexpr double kDilute = 0.04;
-
-double dilute_packing(const std::vector<Component>& components) {
-  double least = 1;
-  for (const auto& [species, number] : components) {
-    least = std::min(least, 10 * inscribed_radius(species.shape) / bounding_radius(species.shape));
-  }
-  return kDilute * least;
-}
-
-/// Maximum number of tries to insert one body.
-constexpr int kInsertions = 100000;
+using internal::dilute_packing;
+using internal::has_size_classes;
+using internal::report;
 
 /// Collisions a body between two shrinkings of the box.
 constexpr double kPauseCollisions = 0.03;
+
+/// New envelopes a body between two shrinkings, at the most, where sizes differ by factors: there the closest pair, one
+/// of a large body, decides about the step, and is another one long before so many have collided.
+constexpr double kPauseRebuilds = 0.1;
 
 /// The compression is stuck when the packing fraction grows by less than this over kStuckRounds rounds.
 constexpr double kStuckGrowth = 1e-5;
@@ -51,65 +38,6 @@ constexpr int kStuckRounds = 2000;
 
 /// Maximum number of events between two calls of StartOptions::progress.
 constexpr std::uint64_t kLookEvents = 1000000;
-
-/// Returns a dilute box whose bodies are not placed yet.
-System empty_box(const std::vector<Component>& components, double packing_fraction) {
-  System system = internal::bodies_of(components);
-  const double dilute = dilute_packing(components);
-  system.box = std::max(box_for(components, std::min(packing_fraction, dilute)),
-                        1.05 * internal::smallest_image_box(internal::largest_radius(components)));
-  // A box at the wanted packing fraction is used unchanged, so that nothing is left to compress.
-  if (packing_fraction <= dilute) system.box = box_for(components, packing_fraction);
-  return system;
-}
-
-/// Reports the packing fraction that is reached. Throws std::runtime_error if the start is to stop.
-void report(const StartOptions& options, double packing_fraction) {
-  if (options.progress && !options.progress(packing_fraction)) {
-    throw std::runtime_error("interrupted during the compression");
-  }
-}
-
-/// Inserts bodies by random sequential insertion into a box large enough for it.
-System insert_bodies(const std::vector<Component>& components, const StartOptions& options, Random& random) {
-  System system = empty_box(components, options.packing_fraction);
-  std::optional<NematicOrientations> nematic;
-  if (options.nematic_order) nematic.emplace(*options.nematic_order);
-  const double reach = 2 * internal::largest_radius(components);
-  internal::CellGrid cells(system.size(), system.box, reach);
-  std::vector<geom::Pose> poses;
-  std::vector<internal::NearBody> near;
-  const double share = packing_fraction(system) / system.size();
-  for (int i = 0; i < system.size(); ++i) {
-    internal::poll_at(i, [&] { report(options, i * share); });
-    // Drawn once a body: if it were drawn again with each position, aligned bodies would be accepted more often.
-    Matrix3d orientation;
-    if (nematic) orientation = nematic->draw(internal::ordered_axis(system.species_of(i)), random);
-    for (int attempt = 0;; ++attempt) {
-      if (attempt == kInsertions) throw std::runtime_error("random start: no place found for a body");
-      const double x = random.uniform() - 0.5;
-      const double y = random.uniform() - 0.5;
-      const double z = random.uniform() - 0.5;
-      const geom::Pose pose(nematic ? orientation : random.rotation(), system.box * Vector3d(x, y, z));
-      const auto others = cells.collect(pose.position(), reach, near);
-      const bool blocked = std::any_of(others.begin(), others.end(), [&](const internal::NearBody& other) {
-        const geom::Pose& X = poses[static_cast<std::size_t>(other.body)];
-        return internal::overlaps(system.species_of(i).shape, pose, system.species_of(other.body).shape,
-                                  geom::Pose(X.rotation(), pose.position() + other.r));
-      });
-      if (blocked) continue;
-      poses.push_back(pose);
-      cells.place(i, pose.position());
-      break;
-    }
-  }
-  for (int i = 0; i < system.size(); ++i) {
-    Body& body = system.bodies[static_cast<std::size_t>(i)];
-    body.position = poses[static_cast<std::size_t>(i)].position();
-    body.rotation = poses[static_cast<std::size_t>(i)].rotation();
-  }
-  return system;
-}
 
 /// Returns the system with masses of 1 and velocities scaled by sqrt(m), which keeps the temperature. The accessible
 /// configurations do not depend on masses, and with equal masses no bodies are slower than others.
@@ -143,6 +71,13 @@ void clear(const StartOptions& options) {
   if (options.failures != nullptr) options.failures->clear();
 }
 
+/// Adds the counts and failures of a compression.
+void add(const Counters& counters, const std::vector<FailedPair>& failures, const StartOptions& options) {
+  if (options.counters != nullptr) *options.counters += counters;
+  if (options.failures == nullptr) return;
+  options.failures->insert(options.failures->end(), failures.begin(), failures.end());
+}
+
 System compress(const System& system, double target_box, const StartOptions& options) {
   const System light = with_unit_masses(system);
   const double longest_pause = time_unit(light);
@@ -153,20 +88,26 @@ System compress(const System& system, double target_box, const StartOptions& opt
   // pause of a few collisions moves the closest pair apart, which is all that the next step needs; its length follows
   // the collision rate.
   const double wanted = system.size() * kPauseCollisions;
+  const double most_rebuilds =
+      has_size_classes(system) ? system.size() * kPauseRebuilds : std::numeric_limits<double>::infinity();
   double pause = 0.1 * longest_pause;
   // Bodies that roll on each other in small hops leave almost no room for a while: a gain far below the usual one is
   // not worth the work, and would force them into smaller hops. The threshold is lowered only if no better gain occurs
   // for long.
   double usual_gain = 0;
   double checkpoint = simulation.box();
-  const auto reached = [&] { return options.packing_fraction * std::pow(target_box / simulation.box(), 3); };
+  const double bodies = packing_fraction(light) * std::pow(light.box, 3);
+  const auto reached = [&] { return bodies / std::pow(simulation.box(), 3); };
   const auto look_up = [&] { report(options, reached()); };
   for (int round = 1; simulation.box() > target_box; ++round) {
-    const std::uint64_t before = simulation.counters().collisions;
+    const Counters before = simulation.counters();
     const double end = simulation.time() + pause;
     while (!simulation.run_until(end, ~std::uint64_t{0}, kLookEvents) && !simulation.stall()) look_up();
     if (simulation.stall()) throw std::runtime_error("the compression " + describe(*simulation.stall()));
-    pause *= static_cast<double>(simulation.counters().collisions - before) > wanted ? 0.8 : 1.25;
+    const Counters after = simulation.counters();
+    const bool long_enough = static_cast<double>(after.collisions - before.collisions) > wanted ||
+                             static_cast<double>(after.neighbour_rebuilds - before.neighbour_rebuilds) > most_rebuilds;
+    pause *= long_enough ? 0.8 : 1.25;
     pause = std::min(pause, longest_pause);
     const double old_box = simulation.box();
     const double gain = 1 - simulation.shrink_box(target_box, 0.3 * usual_gain) / old_box;
@@ -175,23 +116,41 @@ System compress(const System& system, double target_box, const StartOptions& opt
     if (round % kStuckRounds == 0) {
       if (simulation.box() > checkpoint * (1 - kStuckGrowth)) {
         std::ostringstream message;
-        message << "packing_fraction: the compression got stuck at " << reached() << " of " << options.packing_fraction
+        message << "packing_fraction: the compression got stuck at " << reached() << " of "
+                << bodies / std::pow(target_box, 3)
                 << "; a lower value is needed for this shape, or another seed, or more bodies";
         throw std::runtime_error(message.str());
       }
       checkpoint = simulation.box();
     }
   }
-  if (options.counters != nullptr) *options.counters = simulation.counters();
-  if (options.failures != nullptr) *options.failures = simulation.failures();
+  add(simulation.counters(), simulation.failures(), options);
   System result = with_masses(simulation.system(), system.species);
   result.box = target_box;
   return result;
 }
 
+/// Compresses the bodies that have been inserted so far.
+void compress(internal::Insertion& insertion, double target, const StartOptions& options, Random& random) {
+  System inserted = insertion.inserted();
+  if (!(inserted.box > target)) return;
+  if (inserted.size() == 1) {
+    inserted.bodies[0].position *= target / inserted.box;
+    inserted.box = target;
+    insertion.set_inserted(inserted);
+    return;
+  }
+  internal::draw_velocities(inserted, random);
+  internal::rescale_together(inserted);
+  insertion.set_inserted(compress(inserted, target, options));
+}
+
 System compressed_start(const std::vector<Component>& components, const StartOptions& options, Random& random) {
   const double target = box_for(components, options.packing_fraction);
-  System system = insert_bodies(components, options, random);
+  internal::Insertion insertion(components, options);
+  // Where sizes differ by factors, the largest bodies are compressed before smaller ones are inserted between them.
+  while (insertion.insert_class(random)) compress(insertion, insertion.next_box(target), options, random);
+  System system = insertion.inserted();
   internal::draw_velocities(system, random);
   internal::rescale_together(system);
   return system.box > target ? compress(system, target, options) : system;
@@ -246,12 +205,10 @@ System random_start(const Species& species, const StartOptions& options) {
 
 int compressed_together(const std::vector<Component>& components, const StartOptions& options) {
   if (options.packing_fraction <= dilute_packing(components)) return 0;
-  int number = 0;
-  for (const Component& component :
-       internal::tiling_of(components, options.packing_fraction, options.most_compressed).tile) {
-    number += component.number;
-  }
-  return number;
+  const internal::Tiling tiling = internal::tiling_of(components, options.packing_fraction, options.most_compressed);
+  StartOptions of_tile = options;
+  of_tile.packing_fraction = tiling.packing_fraction;
+  return internal::Insertion(tiling.tile, of_tile).most_compressed(box_for(tiling.tile, tiling.packing_fraction));
 }
 
 System random_start(const std::vector<Component>& components, const StartOptions& options) {

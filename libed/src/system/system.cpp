@@ -1,8 +1,9 @@
 #include "base/poll.h"
 #include "base/power_of_two.h"
-#include "cells/grid.h"
+#include "cells/levels.h"
 #include "contact/body_shapes.h"
 #include "motion/checks.h"
+#include "system/bounding_radii.h"
 #include "system/uniaxial.h"
 
 #include <ed/system.h>
@@ -16,6 +17,7 @@
 #include <functional>
 #include <limits>
 #include <optional>
+#include <span>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -256,10 +258,11 @@ Audit audit(const System& system, const std::function<void()>& poll) {
   std::vector<geom::Pose> poses(static_cast<std::size_t>(n));
   // Pairs whose bounding spheres overlap, or are within a mean distance of that, so that a closest pair can be named in
   // a dilute system too.
-  double largest = 0;
-  for (const Species& species : system.species) largest = std::max(largest, bounding_radius(species.shape));
-  const double reach = std::min(2 * largest + system.box / std::cbrt(n), 0.5 * system.box);
-  internal::CellGrid cells(n, system.box, reach);
+  const double margin = 0.5 * system.box / std::cbrt(n);
+  const std::vector<double> sizes = internal::bounding_radii(system);
+  std::vector<double> extents;
+  for (const double size : sizes) extents.push_back(std::min(size + margin, 0.25 * system.box));
+  internal::CellLevels cells(extents, system.box);
   for (int i = 0; i < n; ++i) {
     const Body& body = system.bodies[static_cast<std::size_t>(i)];
     if (!body.position.allFinite() || !body.rotation.allFinite() || !body.velocity.allFinite() ||
@@ -274,22 +277,24 @@ Audit audit(const System& system, const std::function<void()>& poll) {
   for (int i = 0; i < n; ++i) {
     internal::poll_at(i, poll);
     const geom::Pose& X_i = poses[static_cast<std::size_t>(i)];
-    for (const auto& [j, r] : cells.collect(X_i.position(), reach, near)) {
-      if (j <= i) continue;
-      const geom::Pose X_image(poses[static_cast<std::size_t>(j)].rotation(), X_i.position() + r);
-      const geom::DistanceResult d = distance(system.species_of(i).shape, X_i, system.species_of(j).shape, X_image);
-      if (!(d.status == geom::DistanceStatus::separated || d.status == geom::DistanceStatus::overlapping)) {
-        ++result.unanswered;
-        continue;
+    cells.search(i, X_i.position(), near, [&](std::span<const internal::NearBody> others) {
+      for (const auto& [j, r] : others) {
+        if (j <= i) continue;
+        const geom::Pose X_image(poses[static_cast<std::size_t>(j)].rotation(), X_i.position() + r);
+        const geom::DistanceResult d = distance(system.species_of(i).shape, X_i, system.species_of(j).shape, X_image);
+        if (!(d.status == geom::DistanceStatus::separated || d.status == geom::DistanceStatus::overlapping)) {
+          ++result.unanswered;
+          continue;
+        }
+        const double size = sizes[static_cast<std::size_t>(i)] + sizes[static_cast<std::size_t>(j)];
+        if (d.distance < -kAuditOverlap * size) ++result.overlaps;
+        if (d.distance < result.minimum_distance) {
+          result.minimum_distance = d.distance;
+          result.closest_i = i;
+          result.closest_j = j;
+        }
       }
-      const double size = bounding_radius(system.species_of(i).shape) + bounding_radius(system.species_of(j).shape);
-      if (d.distance < -kAuditOverlap * size) ++result.overlaps;
-      if (d.distance < result.minimum_distance) {
-        result.minimum_distance = d.distance;
-        result.closest_i = i;
-        result.closest_j = j;
-      }
-    }
+    });
   }
   return result;
 }

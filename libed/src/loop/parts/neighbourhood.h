@@ -2,7 +2,7 @@
 
 #include "base/poll.h"
 #include "bodies/pair.h"
-#include "cells/grid.h"
+#include "cells/levels.h"
 #include "loop/parts/periodic_box.h"
 #include "neighbours/envelopes.h"
 #include "neighbours/lists.h"
@@ -17,6 +17,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -35,13 +36,17 @@ class Neighbourhood {
   NeighbourLists& lists() { return lists_; }
   const NeighbourLists& lists() const { return lists_; }
   const Envelopes<Bodies>& envelopes() const { return *envelopes_; }
-  const CellGrid& cells() const { return *cells_; }
+  const CellLevels& cells() const { return *cells_; }
 
   void set_envelopes(std::unique_ptr<Envelopes<Bodies>> envelopes) { envelopes_ = std::move(envelopes); }
   /// Reads what these envelopes hold.
   void load_envelopes(Reader& reader) { envelopes_->load(reader); }
-  /// Makes cells in which bodies within this reach are found.
-  void make_cells(double reach) { cells_.emplace(bodies_.number(), box_.edge(), reach, batches_); }
+  /// Makes cells in which bodies are found whose envelopes may overlap, until the box has shrunk by `least_scale`.
+  void make_cells(double least_scale = 1) {
+    std::vector<double> extents;
+    for (int i = 0; i < bodies_.number(); ++i) extents.push_back(envelopes_->extent(bodies_.bounding_radius(i)));
+    cells_.emplace(extents, box_.edge(), least_scale, batches_);
+  }
 
   /// Uses the kernels of an instruction set from now on.
   void use(geom::InstructionSet set) {
@@ -86,7 +91,7 @@ class Neighbourhood {
   void make_all(double now, const std::function<void()>& poll = {}) {
     lists_ = NeighbourLists(bodies_.number());
     // The cells shrink with the box between two calls of this, but what they must cover does not.
-    make_cells(envelopes_->reach() / envelopes_->least_scale());
+    make_cells(envelopes_->least_scale());
     list_scale_ = 1;
     for (int i = 0; i < bodies_.number(); ++i) {
       poll_at(i, poll);
@@ -126,7 +131,7 @@ class Neighbourhood {
     // Otherwise cells would be too narrow for the reach of a search, now or after the box has shrunk further.
     const double least = envelopes_->least_scale();
     const bool shrinks = list_scale_ > 0 && list_scale_ <= 1 && list_scale_ >= least * (1 - 1e-9);
-    return least > 0 && shrinks && cells_->cover(envelopes_->reach() * (list_scale_ / least));
+    return least > 0 && shrinks && cells_->cover(list_scale_ / least);
   }
 
   /// Cells, lists, scale of the box since all lists were made; states hold them apart.
@@ -141,10 +146,13 @@ class Neighbourhood {
 
   /// Adds the pairs of body i with bodies from number `first` on. Returns the number of candidates.
   std::size_t add_pairs(int i, double now, int first) {
-    const auto candidates = cells_->collect(bodies_.position_at(i, now), envelopes_->reach(), near_);
-    envelopes_->find_overlapping(i, candidates, first, overlapping_);
-    for (const auto& [k, normal] : overlapping_) lists_.add(i, k, normal);
-    return candidates.size();
+    std::size_t number = 0;
+    cells_->search(i, bodies_.position_at(i, now), near_, [&](std::span<const NearBody> candidates) {
+      envelopes_->find_overlapping(i, candidates, first, overlapping_);
+      for (const auto& [k, normal] : overlapping_) lists_.add(i, k, normal);
+      number += candidates.size();
+    });
+    return number;
   }
 
   Bodies& bodies_;
@@ -152,7 +160,7 @@ class Neighbourhood {
   Counters& counters_;
   std::optional<geom::InstructionSet> batches_;
   std::unique_ptr<Envelopes<Bodies>> envelopes_;
-  std::optional<CellGrid> cells_;
+  std::optional<CellLevels> cells_;
   NeighbourLists lists_;
   double list_scale_ = 1;  ///< factor by which the box has shrunk since all lists were made
   // Room for the list of one body.

@@ -39,10 +39,19 @@ ed::System mixture_of_revolution() {
   return ed::random_start(components, options);
 }
 
+/// Two large bodies among small ones: cells of two classes.
+ed::System few_large() {
+  const ed::Species small = ed::paper_species(ed_test::spheroid(0.9));
+  ed::StartOptions options;
+  options.packing_fraction = 0.02;
+  return ed::random_start({{small, 126}, {ed::scaled(small, 8), 2}}, options);
+}
+
 std::vector<Case> make_cases() {
   std::vector<Case> all = {{"rods", ed_test::start({2, 0.3, 128, Inertia::paper, 7})},
                            {"spinning discs", ed_test::start({0.5, 0.3, 128, Inertia::uniform, 7})},
-                           {"a mixture of revolution", mixture_of_revolution()}};
+                           {"a mixture of revolution", mixture_of_revolution()},
+                           {"few large ones", few_large()}};
   for (const ed_test::Family& family : ed_test::families(128)) {
     all.push_back({family.name, ed_test::start(family, 0.25)});
   }
@@ -188,8 +197,8 @@ TEST(Restart, OtherSpeciesAndOptionsAreRefused) {
               same ? "no std::invalid_argument" : "state: was made with another finder or other neighbours");
   }
   std::string later = state;
-  later[0] = 8;
-  EXPECT_EQ(refusal(later, c.system.species), "state: has format 8, known is 7");
+  later[0] = 9;
+  EXPECT_EQ(refusal(later, c.system.species), "state: has format 9, known is 8");
   EXPECT_EQ(refusal(state + "x", c.system.species), "state: is longer than it should be");
 }
 

@@ -110,13 +110,36 @@ TEST(RandomStart, FewLargeAmongManySmallAreNotRepeated) {
   const ed::Species small = ed::paper_species(ed_test::spheroid(0.9));
   const std::vector<ed::Component> components = {{ed::scaled(small, 5), 2}, {small, 1000}};
   ed::StartOptions options;
-  options.packing_fraction = 0.1;
+  options.packing_fraction = 0.2;
   options.most_compressed = 200;
   EXPECT_EQ(ed::compressed_together(components, options), 1002);
   const std::vector<ed::Component> equal = {{small, 1002}};
   EXPECT_EQ(ed::compressed_together(equal, options), 126);
+  // The small ones are inserted between the large ones, where these are already.
+  options.packing_fraction = 0.1;
+  EXPECT_EQ(ed::compressed_together(components, options), 0);
+  EXPECT_EQ(ed::compressed_together({{ed::scaled(small, 5), 50}, {small, 1000}}, options), 50);
   options.packing_fraction = 0.01;
   EXPECT_EQ(ed::compressed_together(equal, options), 0);
+}
+
+/// Sizes of 1 to 20: the large bodies find their places first, though they are the last species, and the pairs of small
+/// ones are found without looking at all bodies within reach of a large one.
+TEST(RandomStart, SizesMayDifferByFactors) {
+  const ed::Species small = ed::paper_species(ed_test::spheroid(0.9));
+  const std::vector<ed::Component> components = {{small, 2500}, {ed::scaled(small, 4.5), 20}, {ed::scaled(small, 20), 3}};
+  ed::StartOptions options;
+  options.packing_fraction = 0.15;
+  const ed::System system = ed::random_start(components, options);
+  ASSERT_EQ(system.size(), 2523);
+  for (int i = 0; i < system.size(); ++i) {
+    EXPECT_EQ(system.bodies[static_cast<std::size_t>(i)].species, i < 2500 ? 0 : (i < 2520 ? 1 : 2)) << i;
+  }
+  expect_sound(system, 0.15);
+  ed::Simulation simulation(system);
+  simulation.run_collisions(5000);
+  const ed::Counters counters = simulation.counters();
+  EXPECT_LT(counters.candidate_tests, 100 * counters.neighbour_rebuilds);
 }
 
 /// Mean distance of bodies of one species whose numbers follow each other, in mean distances of neighbours.
