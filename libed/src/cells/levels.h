@@ -75,8 +75,8 @@ class CellLevels {
 
   struct Class {
     double extent;                         ///< largest of its bodies
-    CellGrid alone;                        ///< its own bodies
-    std::optional<CellGrid> with_smaller;  ///< and those of all classes before it; none: there are none
+    CellGrid alone;                        ///< bodies of the class
+    std::optional<CellGrid> with_smaller;  ///< these and those of all classes before it, if there are any
   };
 
   /// Returns whether each grid holds the bodies of its classes, where it holds all that it should.
@@ -93,7 +93,7 @@ class CellLevels {
   }
 
   std::vector<Class> classes_;           ///< the smallest bodies first
-  std::vector<unsigned char> class_of_;  ///< of each body; empty: there is one class
+  std::vector<unsigned char> class_of_;  ///< class of each body; empty: there is one class
 };
 
 }  // namespace ed::internal

@@ -64,7 +64,7 @@ class Insertion {
   System system_;
   std::vector<int> class_of_;        ///< class of each body; that of the smallest ones is 0
   int next_class_;                   ///< the class that is inserted next; those after it are in the box
-  std::vector<double> roomy_boxes_;  ///< for each class: edge of a box into which it can be inserted
+  std::vector<double> roomy_boxes_;  ///< edge of a box into which it can be inserted, for each class
   std::optional<NematicOrientations> nematic_;
   std::vector<NearBody> near_;
 };

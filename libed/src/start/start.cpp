@@ -29,7 +29,7 @@ using internal::report;
 constexpr double kPauseCollisions = 0.03;
 
 /// New envelopes a body between two shrinkings, at the most, where sizes differ by factors: there the closest pair, one
-/// of a large body, decides about the step, and is another one long before so many have collided.
+/// of a large body, decides about the step, and is soon another one.
 constexpr double kPauseRebuilds = 0.1;
 
 /// The compression is stuck when the packing fraction grows by less than this over kStuckRounds rounds.

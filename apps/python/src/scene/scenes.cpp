@@ -206,7 +206,7 @@ class PythonScene {
     // Functions of motions let other threads run: bodies are then on their way, and queries are refused.
     const Reading reading(readers_), moving_bodies(movers_);
     const ed::SceneContact found = ed::first_contact(scene, moving, from, until, options);
-    if (found.contact.status == ed::ContactStatus::separated) {
+    if (found.i == found.j) {
       return nb::make_tuple(nb::none(), nb::none(), nb::none(), found.contact);
     }
     return nb::make_tuple(static_cast<std::int64_t>(found.i), static_cast<std::int64_t>(found.j), array_of(found.image),

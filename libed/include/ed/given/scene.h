@@ -24,7 +24,7 @@ struct MovingBody {
 
 /// First contact in a scene.
 struct [[nodiscard]] SceneContact {
-  /// Two bodies, i < j; of no meaning if the status is `separated`.
+  /// Two bodies, i < j. i = j = 0: no pair's contact; `separated`, or `budget_exhausted` by intervals (first_contact).
   geom::BodyId i{}, j{};
   /// Lattice vector to be added to the position of j; 0 in open space.
   Eigen::Vector3d image = Eigen::Vector3d::Zero();
@@ -39,7 +39,8 @@ struct [[nodiscard]] SceneContact {
 /// Each pair is searched by time_of_contact, with its certificate. Pairs are taken from the scene's boxes, over
 /// intervals that are so short that most bodies reach few others. The outcome of the earliest pair is returned: if that
 /// is no hit (two bodies overlap, a budget is exhausted), contacts after its time are not known. Of pairs at the same
-/// time the one with the smallest handles.
+/// time the one with the smallest handles. The budget is that of each pair, and of the number of intervals: fast bodies
+/// that meet nobody for as many intervals exhaust it.
 ///
 /// Bodies of `moving` are moved: they end at their poses at the time returned, also if they were elsewhere before. If
 /// an exception is thrown they are where they were. Throws as time_of_contact; std::invalid_argument, too, for handles

@@ -104,7 +104,12 @@ class SceneSearch {
     SceneContact first;
     double t = t_min, duration = t_max - t_min;
     move(t);
-    for (;;) {
+    for (int intervals = 0;; ++intervals) {
+      if (intervals == options_.max_evaluations) {
+        first.contact.status = ContactStatus::budget_exhausted;
+        first.contact.time = t;
+        break;
+      }
       duration = short_enough(t, std::min(duration, t_max - t));
       std::vector<Candidate> candidates = candidates_until(t, duration);
       while (candidates.size() > kManyCandidates * moving_.size()) {

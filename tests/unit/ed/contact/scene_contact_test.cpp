@@ -170,6 +170,19 @@ TEST(SceneContact, OverLongTimes) {
   EXPECT_NEAR(found.contact.time, 1e5 - 2, 1e-9);
 }
 
+TEST(SceneContact, OfBodiesThatAreFastForTheirSizeEndsWithTheBudget) {
+  geom::Scene scene;
+  const BodyId body = scene.add(geom::Sphere(1e-6));
+  scene.add(geom::Sphere(1), Pose::translation({0, 3, 0}));
+  const std::vector<MovingBody> moving{{body, along_x(1)}};
+  const SceneContact found = ed::first_contact(scene, moving, 0, 1000, {.max_evaluations = 50});
+  EXPECT_EQ(found.contact.status, ContactStatus::budget_exhausted);
+  EXPECT_EQ(found.i, found.j);
+  EXPECT_GT(found.contact.time, 0);
+  EXPECT_LT(found.contact.time, 1);
+  EXPECT_EQ(scene.pose(body).position().x(), found.contact.time);
+}
+
 TEST(SceneContact, OfFiltersAndOverlaps) {
   geom::Scene scene;
   const BodyId ball = scene.add(geom::Sphere(1), Pose(), {.group = 1, .meets = 2});
