@@ -186,7 +186,11 @@ void ask_scene(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_W
   const double reach = geom::bounding_radius(a) + geom::bounding_radius(b);
   geom::Scene scene(scene_options(input, reach));
   std::vector<geom::BodyId> bodies{scene.add(a, X_WA), scene.add(b, X_WB)};
-  if (input.byte() % 2 == 0) bodies.push_back(scene.add(a, input.pose(place(input, X_WB.position(), reach))));
+  if (input.byte() % 2 == 0) {
+    const Pose X_W3 = input.pose(place(input, X_WB.position(), reach));
+    const bool slow = are_slow(a, X_W3, a, X_WA, input) || are_slow(a, X_W3, b, X_WB, input);
+    if (!slow) bodies.push_back(scene.add(a, X_W3));
+  }
   switch (input.byte() % 6) {
     case 0: {
       std::vector<geom::ScenePair> pairs;

@@ -141,15 +141,16 @@ TEST(Capsules, HaveTheSecondVirialCoefficient) {
     const Solid solid = capsule(L);
     const double pi = std::numbers::pi;
     const double wanted = (2 * pi / 3 + pi * L + pi / 4 * L * L) / geom::volume(solid.shape);
-    const std::vector<double> fractions =
-        full_form() ? std::vector{0.02, 0.04, 0.06, 0.09, 0.12, 0.15} : std::vector{0.03, 0.08, 0.14};
+    // Multiples of phi B2 / v0, which tells how much the next virial coefficients matter.
+    const std::vector<double> shares =
+        full_form() ? std::vector{0.1, 0.2, 0.3, 0.45, 0.6, 0.75} : std::vector{0.2, 0.6, 1.0};
     const int number = 256;
-    const auto points = static_cast<Eigen::Index>(fractions.size());
+    const auto points = static_cast<Eigen::Index>(shares.size());
     Eigen::MatrixXd matrix(points, 3);
     Eigen::VectorXd values(points);
     for (Eigen::Index k = 0; k < points; ++k) {
-      const double phi = fractions[static_cast<std::size_t>(k)];
-      const ed::Estimate Z = run(solid, number, phi, (full_form() ? 600 : 6) / phi).results.Z;
+      const double phi = shares[static_cast<std::size_t>(k)] / wanted;
+      const ed::Estimate Z = run(solid, number, phi, (full_form() ? 4000 : 6) / phi).results.Z;
       const double error = Z.error / phi;
       matrix.row(k) = Eigen::RowVector3d(1, phi, phi * phi) / error;
       values[k] = (Z.value - 1) / phi * number / (number - 1) / error;

@@ -31,10 +31,10 @@ CellLevels::CellLevels(std::span<const double> extents, double box, double least
   }
   const int number = static_cast<int>(extents.size());
   int smaller = 0;
-  std::map<int, unsigned char> index;
+  std::map<int, int> index;
   for (const auto& [level, m] : members) {
     const double reach = 2 * m.extent / least_scale;
-    index[level] = static_cast<unsigned char>(classes_.size());
+    index[level] = static_cast<int>(classes_.size());
     classes_.push_back({m.extent, CellGrid(number, box, reach, batches, m.number), std::nullopt});
     smaller += m.number;
     if (smaller > m.number) classes_.back().with_smaller.emplace(number, box, reach, batches, smaller);
@@ -75,9 +75,10 @@ bool CellLevels::cover(double factor) const {
 bool CellLevels::is_sorted() const {
   for (std::size_t i = 0; i < class_of_.size(); ++i) {
     const int body = static_cast<int>(i);
+    const auto own = static_cast<std::size_t>(class_of_[i]);
     for (std::size_t k = 0; k < classes_.size(); ++k) {
-      if (classes_[k].alone.holds(body) != (k == class_of_[i])) return false;
-      if (classes_[k].with_smaller && classes_[k].with_smaller->holds(body) != (k >= class_of_[i])) return false;
+      if (classes_[k].alone.holds(body) != (k == own)) return false;
+      if (classes_[k].with_smaller && classes_[k].with_smaller->holds(body) != (k >= own)) return false;
     }
   }
   return true;

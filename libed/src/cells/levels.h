@@ -92,8 +92,8 @@ class CellLevels {
     }
   }
 
-  std::vector<Class> classes_;           ///< the smallest bodies first
-  std::vector<unsigned char> class_of_;  ///< class of each body; empty: there is one class
+  std::vector<Class> classes_;  ///< the smallest bodies first
+  std::vector<int> class_of_;   ///< class of each body; empty: there is one class
 };
 
 }  // namespace ed::internal
