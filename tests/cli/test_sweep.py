@@ -4,6 +4,7 @@
 """
 
 import csv
+import fcntl
 import json
 import os
 import pty
@@ -666,6 +667,16 @@ class Refused(SweepCase):
         self.assert_refused(self.sweep(text), "out: another hardbody process is using it")
         process.send_signal(signal.SIGTERM)
         self.assertEqual(process.wait(timeout=60), 143)
+
+    def test_a_process_that_is_just_ending_is_waited_for(self):
+        os.mkdir(self.path("out"))
+        held = os.open(self.path("out"), os.O_RDONLY)
+        fcntl.flock(held, fcntl.LOCK_EX)
+        process = self.start(SMALL + GRID)
+        time.sleep(0.3)
+        self.assertIsNone(process.poll())
+        os.close(held)
+        self.assertEqual(process.wait(timeout=60), 0)
 
 
 class Shown(SweepCase):

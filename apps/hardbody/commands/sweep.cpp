@@ -162,7 +162,7 @@ bool Sweep::try_to_start(std::size_t k) {
   }
   if (fs::is_directory(path_of(record))) {
     try {
-      const DirectoryLock free(path_of(record));
+      const DirectoryLock free(path_of(record), Sharing::alone, std::chrono::milliseconds(0));
     } catch (const InputError& error) {
       const auto [since, is_new] = locked_.try_emplace(k, Clock::now());
       if (Clock::now() - since->second < kPatience) return false;

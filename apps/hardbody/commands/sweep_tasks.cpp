@@ -129,7 +129,7 @@ TaskEnd Task::run(std::size_t k) {
     }
     if (const auto end = origin_of(k)) return *end;
     try {
-      const DirectoryLock free(path);
+      const DirectoryLock free(path, Sharing::alone, std::chrono::milliseconds(0));
     } catch (const InputError& error) {
       return {kTryAgain, error.what()};
     }

@@ -7,9 +7,11 @@
 #include <fmt/format.h>
 
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <stdexcept>
 #include <system_error>
+#include <thread>
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -77,6 +79,16 @@ void remove_run(const fs::path& directory) {
   }
 }
 
+/// Locks as flock() does, as soon as no other process holds the lock; returns false if one still does after `patience`.
+bool lock_soon(int descriptor, int kind, std::chrono::milliseconds patience) {
+  constexpr std::chrono::milliseconds kPause(20);
+  for (; ::flock(descriptor, kind | LOCK_NB) != 0; patience -= kPause) {
+    if (errno != EWOULDBLOCK || patience <= kPause) return false;
+    std::this_thread::sleep_for(kPause);
+  }
+  return true;
+}
+
 }  // namespace
 
 fs::path directory_for(const std::optional<std::string>& out, const fs::path& config) {
@@ -84,10 +96,10 @@ fs::path directory_for(const std::optional<std::string>& out, const fs::path& co
   return out ? fs::path(*out) : "out" / config.stem();
 }
 
-DirectoryLock::DirectoryLock(const fs::path& directory, Sharing sharing)
+DirectoryLock::DirectoryLock(const fs::path& directory, Sharing sharing, std::chrono::milliseconds patience)
     : descriptor_(::open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
   const int kind = sharing == Sharing::alone ? LOCK_EX : LOCK_SH;
-  if (descriptor_ >= 0 && ::flock(descriptor_, kind | LOCK_NB) == 0) return;
+  if (descriptor_ >= 0 && lock_soon(descriptor_, kind, patience)) return;
   const int error = errno;
   if (descriptor_ >= 0) ::close(descriptor_);
   if (error != EWOULDBLOCK) throw unusable(directory, fmt::format("it cannot be locked: {}", std::strerror(error)));

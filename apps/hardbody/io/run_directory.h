@@ -2,6 +2,7 @@
 
 #include "io/text_file.h"
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -53,8 +54,11 @@ enum class Sharing { alone, shared };
 /// system releases the lock when the process ends, in whatever way.
 class DirectoryLock {
  public:
-  /// Locks the directory. Throws InputError if another process holds the lock, or the directory cannot be locked.
-  explicit DirectoryLock(const std::filesystem::path& directory, Sharing sharing = Sharing::alone);
+  /// Locks the directory. Throws InputError if the directory cannot be locked, or another process still holds the lock
+  /// after `patience`: one that was killed on a busy machine, or a child that it was about to start, holds it for some
+  /// milliseconds yet.
+  explicit DirectoryLock(const std::filesystem::path& directory, Sharing sharing = Sharing::alone,
+                         std::chrono::milliseconds patience = std::chrono::seconds(1));
   ~DirectoryLock();
   DirectoryLock(DirectoryLock&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
   DirectoryLock& operator=(DirectoryLock&&) = delete;
