@@ -12,15 +12,7 @@ namespace geom {
 
 DistanceDerivatives distance_derivatives(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB,
                                          const DistanceResult& at) {
-  const kernel::ContactBody in_a = kernel::contact_body(a, X_WA);
-  const kernel::ContactBody in_b = kernel::contact_body(b, X_WB);
-  const kernel::RivalTrial trial = kernel::rival_trial(in_a, in_b, at);
-  bool single = true;
-  if (trial.needed) {
-    const Pose moved = kernel::unchecked_pose(X_WB.rotation(), X_WB.position() + trial.by);
-    single = kernel::confirms(trial, at, distance(a, X_WA, b, moved));
-  }
-  return kernel::contact_derivatives(in_a, in_b, at, single);
+  return kernel::derivatives_at(a, X_WA, b, X_WB, at);
 }
 
 DistanceDerivatives distance_derivatives(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB,

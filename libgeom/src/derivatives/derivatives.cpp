@@ -52,6 +52,33 @@ bool answered(const DistanceResult& at) {
   return at.status == DistanceStatus::separated || at.status == DistanceStatus::overlapping;
 }
 
+/// Returns the support of a body along a unit vector, above its centre; a half-space has one along its normal only.
+double height(const ContactBody& body, const Vector3d& n) {
+  const Vector3d n_S = body.X_WS.rotation().transpose() * n;
+  const double offset = n.dot(body.X_WS.position() - body.centre);
+  if (body.plane != nullptr) {
+    const bool along = (n_S - body.plane->normal()).norm() <= kPoseTolerance;
+    return along ? body.plane->offset() + offset : std::numeric_limits<double>::infinity();
+  }
+  const double inner =
+      body.core ? swept_support(*body.core, n_S).height : static_cast<double>(body.support(body.shape, n_S).height);
+  return inner + body.skin + offset;
+}
+
+/// Returns whether an answer may be one for these bodies: along its normal they are as far apart as it says, and so are
+/// its points.
+bool is_of_pair(const ContactBody& a, const ContactBody& b, const DistanceResult& at) {
+  constexpr double kLoose = 1e-6;  // of the size, and of coordinates: answers of lower accuracy do no harm
+  const Vector3d& n = at.normal;
+  if (!answered(at) || !(std::abs(n.norm() - 1) <= kPoseTolerance)) return false;
+  const double reach = std::max(at.point_a.cwiseAbs().maxCoeff(), at.point_b.cwiseAbs().maxCoeff());
+  const double loose = kLoose * size_of(a, b) + 1e-14 * reach;
+  const double bound = std::isfinite(at.error_bound) ? 2 * at.error_bound : 0;
+  const double between = n.dot(b.centre - a.centre) - height(a, n) - height(b, -n);
+  return (at.point_b - at.point_a - at.distance * n).norm() <= loose + bound &&
+         std::abs(between - at.distance) <= loose + bound;
+}
+
 void set_gradient(DistanceDerivatives& out, const Vector3d& n, const Vector3d& s_a, const Vector3d& s_b) {
   out.gradient << -n, n.cross(s_a), n, s_b.cross(n);
 }
@@ -172,25 +199,30 @@ RivalTrial rival_trial(const ContactBody& a, const ContactBody& b, const Distanc
   RivalTrial trial;
   const bool deep = at.distance <= -(a.curvature_radius + b.curvature_radius) + kLeastStiffness * size;
   if (!answered(at) || !deep || !std::isfinite(at.error_bound)) return trial;
-  constexpr double kLeastTrial = 1e-7;  // of the size
-  constexpr double kTrialErrors = 100;
+  constexpr double kLeastTrial = 1e-6;  // of the size
+  constexpr double kTrialErrors = 1e4;
   trial.needed = true;
   trial.length = std::max(kLeastTrial * size, kTrialErrors * at.error_bound);
   trial.by = -trial.length * at.normal;
+  // Moved bodies are at coordinates that are rounded.
+  const double reach = a.centre.cwiseAbs().maxCoeff() + b.centre.cwiseAbs().maxCoeff() + size;
+  trial.rounding = 8 * std::numeric_limits<double>::epsilon() * reach;
   return trial;
 }
 
 bool confirms(const RivalTrial& trial, const DistanceResult& at, const DistanceResult& moved) {
-  // A normal as good, at an angle phi to this one, would lose the length times cos(phi) only.
-  constexpr double kLoss = 0.05;
+  // A normal as good, at an angle phi to this one, would lose the length times cos(phi) only: more is left by
+  // length phi^2 / 2. Errors below that of 0.03 radian are small enough to tell.
+  constexpr double kMostErrors = 5e-4;
+  const double errors = at.error_bound + moved.error_bound + trial.rounding;
   const double more = moved.distance - (at.distance - trial.length);
-  return answered(moved) && more + moved.error_bound <= kLoss * trial.length;
+  return answered(moved) && errors <= kMostErrors * trial.length && more <= errors;
 }
 
 DistanceDerivatives contact_derivatives(const ContactBody& a, const ContactBody& b, const DistanceResult& at,
                                         bool single) {
   DistanceDerivatives out;
-  if (!answered(at)) return out;
+  if (!is_of_pair(a, b, at)) return out;
   const ContactPoints points{at.point_a - a.centre, at.point_b - b.centre};
   const std::optional<StationaryPair> pair = stationary_pair(a, b, at, points);
   if (!pair) return without_features(a, b, at, points, single);

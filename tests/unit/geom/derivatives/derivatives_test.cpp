@@ -16,6 +16,7 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -251,7 +252,46 @@ TEST(Derivatives, AreDeclinedForAnswersOfOtherPairs) {
   const DistanceDerivatives none = distance_derivatives(Sphere(1), Pose(), Sphere(1), Pose(), DistanceResult());
   EXPECT_EQ(none.status, DerivativeStatus::no_distance);
   EXPECT_FALSE(none.gradient.allFinite());
-  EXPECT_FALSE(distance_derivatives(Sphere(1), Pose(), Sphere(1), Pose::translation({5, 0, 0}), at).twice());
+  const auto refused = [](const auto& a, const auto& b, const Pose& X_WB, const DistanceResult& answer) {
+    const DistanceDerivatives d = distance_derivatives(a, Pose(), b, X_WB, answer);
+    return d.status == DerivativeStatus::no_distance && !d.gradient.allFinite();
+  };
+  EXPECT_TRUE(refused(Sphere(1), Sphere(1), Pose::translation({5, 0, 0}), at));
+  EXPECT_TRUE(refused(Ellipsoid({1.1, 2, 3}), Ellipsoid({1.1, 2, 3}), Pose::translation({3, 0, 0}), at));
+  EXPECT_TRUE(refused(Box({1, 1, 1}), Sphere(1), Pose::translation({0, 4, 0}), at));
+  EXPECT_TRUE(refused(HalfSpace(), Sphere(1), Pose::translation({3, 0, 0}), at));
+  const Pose X_WB = Pose::translation({3, 0.2, 0.1});
+  const DistanceResult sound = distance(Box({1, 1, 1}), Pose(), Sphere(0.5), X_WB);
+  EXPECT_FALSE(refused(Box({1, 1, 1}), Sphere(0.5), X_WB, sound));
+  for (const double factor : {0.0, 2.0, std::numeric_limits<double>::quiet_NaN()}) {
+    DistanceResult bad = sound;
+    bad.normal *= factor;
+    EXPECT_TRUE(refused(Box({1, 1, 1}), Sphere(0.5), X_WB, bad)) << factor;
+  }
+  DistanceResult bad = sound;
+  bad.distance = 77;
+  EXPECT_TRUE(refused(Box({1, 1, 1}), Sphere(0.5), X_WB, bad));
+  bad = sound;
+  bad.point_b.y() += 0.1;
+  EXPECT_TRUE(refused(Box({1, 1, 1}), Sphere(0.5), X_WB, bad));
+}
+
+/// A ball deep under the ridge of a roof: both sides are as near, however flat the roof is.
+TEST(Derivatives, AreDeclinedUnderARidge) {
+  for (const double degrees : {0.1, 0.5, 2.0, 10.0, 16.0, 25.0}) {
+    const double fall = std::tan(degrees * 3.14159265358979 / 360);
+    std::vector<Vector3d> points;
+    for (const double y : {-1.0, 1.0}) {
+      for (const double x : {-1.0, 0.0, 1.0}) points.emplace_back(x, y, 1 - fall * std::abs(x));
+      for (const double x : {-1.0, 1.0}) points.emplace_back(x, y, -2);
+    }
+    const Shape roof = ConvexPolyhedron(points);
+    const auto status = [&](double x) {
+      return distance_derivatives(roof, Pose(), Shape(Sphere(0.05)), Pose::translation({x, 0, 0.7})).status;
+    };
+    EXPECT_EQ(status(0), DerivativeStatus::none) << degrees;
+    EXPECT_EQ(status(0.01), DerivativeStatus::twice) << degrees;
+  }
 }
 
 TEST(Derivatives, OfManyPairsAreThoseOfEach) {
