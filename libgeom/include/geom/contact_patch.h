@@ -29,14 +29,17 @@ struct PatchOptions {
   double within = 0;
   /// Accuracy of the outlines of curved surfaces, of the patch's diameter, within [1e-4, 0.5].
   double tolerance = 0.01;
-  /// Largest number of points, >= 3. Of more corners those are left out whose triangles are smallest;
-  /// corners within 1e-6 of the size of each other are one.
+  /// Largest number of points, >= 3. Of more corners those are left out whose triangles are smallest; corners within
+  /// 1e-6 of the extent of both shadows' common part of each other are one.
   int max_points = 8;
 };
 
 /// Dimension of a contact patch.
 enum class PatchKind {
-  empty,    ///< the surfaces are further apart than `within` everywhere, there is no distance, or no ray met them
+  /// The surfaces are further apart than `within` everywhere, or there is no distance. Along another normal than that
+  /// of
+  /// the distance also: no ray met a curved surface.
+  empty,
   point,    ///< a single point
   segment,  ///< a line between two points
   polygon,  ///< an area, its corners anticlockwise about the normal
@@ -51,7 +54,8 @@ struct PatchPoint {
   double depth = 0;  ///< height of A's surface above that of B along the normal; negative where they are apart
   /// Identity of the corner: the two features of the bodies, faces mostly, that bound the patch there; of curved
   /// surfaces the corner's direction from the middle in A's frame, in 32 sectors. The same from call to call while
-  /// bodies move a little. Different within a patch.
+  /// bodies move a little, unless a corner enters another sector or another face of a body becomes the flattest one.
+  /// Different within a patch.
   std::uint64_t id = 0;
 };
 
@@ -148,10 +152,10 @@ GEOM_EXPORT ContactPatch contact_patch(const PatchBody& a, const PatchBody& b, c
 /// A face that is tilted by a small angle is the whole patch as soon as `within` spans it, so that resting bodies do
 /// not rock.
 ///
-/// Polygons narrower than 1e-9 of the size, for curved surfaces than three times the tolerance, are segments, and
-/// shorter segments points. Empty if `at` has no answer. Throws std::invalid_argument if `within` is negative or not
-/// finite, another option is out of range, the normal of an answer is not of length 1, or that of a half-space points
-/// along its plane.
+/// Polygons narrower than 1e-9 of the extent of what both bodies' shadows have in common, for curved surfaces than
+/// three times the tolerance of their length, are segments; segments shorter than 1e-9 of it, 1e-6 for curved ones,
+/// points. Empty if `at` has no answer. Throws std::invalid_argument if `within` is negative or not finite, another
+/// option is out of range, the normal of an answer is not of length 1, or that of a half-space points along its plane.
 template <class A, class B>
 ContactPatch contact_patch(const A& a, const Pose& X_WA, const B& b, const Pose& X_WB, const DistanceResult& at,
                            const PatchOptions& options) {

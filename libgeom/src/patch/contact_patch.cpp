@@ -9,6 +9,7 @@
 #include <geom/kernel/refuse.h>
 #include <geom/tolerances.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -24,10 +25,13 @@ namespace {
 
 /// Rounding of places, of the size of the pair.
 constexpr double kPlaceRounding = 1e-14;
-/// Widths and lengths, of the size, below which polygons are segments and segments points.
+/// Widths and lengths, of the extent of the shadows' common part, below which polygons are segments and segments
+/// points.
 constexpr double kNarrowExact = 1e-9, kShortSmooth = 1e-6;
-/// Distance, of the size, up to which corners count as one.
+/// Distance, of that extent, up to which corners count as one.
 constexpr double kSameCorner = 1e-6;
+/// Distance, of the size, of witness points from a line along the normal up to which the answer's points are used.
+constexpr double kOnNormal = 1e-9;
 constexpr int kSectors = 32;
 
 /// Returns the place on the line from x along a unit vector, up to `reach` to both sides, where the gap is least.
@@ -59,9 +63,10 @@ Vector2d least_gap(const Outline& outline, const Vector2d& x, const Vector2d& al
 /// Result under construction.
 class Maker {
  public:
-  Maker(const Outline& outline, const Frame& frame, const Pose& reference, const PatchOptions& options, double size,
+  /// `rounding`: distance (length) that is rounding.
+  Maker(const Outline& outline, const Frame& frame, const Pose& reference, const PatchOptions& options, double rounding,
         ContactPatch& patch)
-      : outline_(outline), frame_(frame), options_(options), size_(size), patch_(patch) {
+      : outline_(outline), frame_(frame), options_(options), rounding_(rounding), patch_(patch) {
     // The direction from which sectors are counted: an axis of the body that is not along the normal.
     const Eigen::Matrix3d axes = frame.axes.transpose() * reference.rotation();
     start_ = (std::abs(axes(2, 0)) < 0.8 ? axes.col(0) : axes.col(1)).head<2>();
@@ -73,11 +78,12 @@ class Maker {
     const double length = way.norm();
     middle_ = centroid(polygon);
     patch_.error = outline_.error();
-    if (length <= (outline_.is_exact() ? kNarrowExact : kShortSmooth) * size_) {
+    const double narrow = std::max(kNarrowExact * outline_.extent(), 10 * rounding_);
+    if (length <= (outline_.is_exact() ? narrow : std::max(kShortSmooth * outline_.extent(), narrow))) {
       patch_.kind = PatchKind::point;
       add(middle_, 0);
     } else if (width_across(polygon, way / length) <=
-               (outline_.is_exact() ? kNarrowExact * size_ : 3 * options_.tolerance * length)) {
+               (outline_.is_exact() ? narrow : std::max(3 * options_.tolerance * length, narrow))) {
       patch_.kind = PatchKind::segment;
       add_ends(polygon, i, j, way / length);
     } else {
@@ -85,7 +91,7 @@ class Maker {
       patch_.area = area(polygon);
       // A tilted side of a body leaves sides as short as the tilt beside its edges, which come and go.
       Polygon merged = polygon;
-      if (merge(merged, kSameCorner * size_) >= 3) polygon = std::move(merged);
+      if (merge(merged, kSameCorner * outline_.extent()) >= 3) polygon = std::move(merged);
       reduce(polygon, static_cast<std::size_t>(options_.max_points));
       for (std::size_t k = 0; k < polygon.size(); ++k) add(polygon[k].place, identity(polygon, k));
     }
@@ -115,7 +121,11 @@ class Maker {
   }
 
   std::uint64_t identity(const Polygon& polygon, std::size_t k) const {
-    if (outline_.is_exact()) return polygon[(k + polygon.size() - 1) % polygon.size()].side << 32 | polygon[k].side;
+    if (outline_.is_exact()) {
+      // A mixture of both sides: multiples of an odd number, with the upper half of the bits in the lower one.
+      const std::uint64_t before = polygon[(k + polygon.size() - 1) % polygon.size()].side * 0xbf58476d1ce4e5b9;
+      return (before ^ before >> 32) + polygon[k].side;
+    }
     const Vector2d way = polygon[k].place - middle_;
     const double turn =
         std::atan2(start_.x() * way.y() - start_.y() * way.x(), start_.dot(way)) / (2 * std::numbers::pi);
@@ -137,11 +147,22 @@ class Maker {
   const Outline& outline_;
   const Frame& frame_;
   const PatchOptions& options_;
-  double size_;
+  double rounding_;
   ContactPatch& patch_;
   Vector2d start_, middle_ = Vector2d::Zero();
   std::set<std::uint64_t> known_;
 };
+
+/// Makes a patch of the witness points, if they are near enough: where rays have found no surface, which curved ones
+/// nearly along the normal can hide.
+void take_witness_points(const DistanceResult& at, double within, double size, ContactPatch& patch) {
+  const Eigen::Vector3d way = at.point_b - at.point_a - at.distance * patch.normal;
+  if (!(at.distance <= within) || !(way.norm() <= kOnNormal * size)) return;
+  patch.kind = PatchKind::point;
+  patch.points = {{at.point_a, at.point_b, -at.distance, 0}};
+  patch.centre = 0.5 * (at.point_a + at.point_b);
+  patch.error = kPlaceRounding * size;
+}
 
 void check(const DistanceResult& at, const PatchOptions& options) {
   if (!(options.within >= 0 && options.within <= kMaxCoordinate)) {
@@ -199,10 +220,13 @@ ContactPatch kernel::contact_patch(const PatchBody& a, const PatchBody& b, const
   if (polygon.empty()) {
     // Bodies that touch in one point, to rounding.
     const auto heights = outline.heights(patch::Vector2d::Zero(), patch::Vector2d::Zero());
-    if (!heights || heights->gap() > options.within + rounding) return result;
-    polygon.push_back({});
+    if (heights && heights->gap() <= options.within + rounding) polygon.push_back({});
   }
-  patch::Maker(outline, frame, a.plane != nullptr ? b.X_WS : a.X_WS, options, size, result).make(std::move(polygon));
+  if (!polygon.empty()) {
+    patch::Maker(outline, frame, a.plane != nullptr ? b.X_WS : a.X_WS, options, rounding, result)
+        .make(std::move(polygon));
+  }
+  if (result.kind == PatchKind::empty) patch::take_witness_points(at, options.within + rounding, size, result);
   return result;
 }
 

@@ -11,10 +11,14 @@
 namespace geom::patch {
 namespace {
 
-/// Largest number of cuts: a safeguard, as each one leaves out a part of the plane for good.
-constexpr int kMostCuts = 2000;
-/// Uncertainty of the end of the patch on the way to a corner, of its distance from the corner.
-constexpr double kGoodEnd = 0.2;
+/// Largest number of cuts, and of those for each face and side of a polytope: a safeguard, as each one leaves out a
+/// part of the plane for good.
+constexpr std::size_t kMostCuts = 2000, kMostCutsOfEach = 8;
+/// Uncertainties of the end of the patch on the way to a corner, of its distance from the corner: a smaller one is
+/// tried where a larger one does not tell how to cut the corner off.
+constexpr double kGoodEnds[] = {0.2, 0.02, 1e-3, 1e-5};
+/// Largest number of times that corners are judged anew.
+constexpr int kMostRounds = 20;
 /// Largest number of steps to the end of the patch on a way.
 constexpr int kMostSteps = 60;
 
@@ -25,18 +29,21 @@ double diameter_of(const Polygon& polygon) {
 }
 
 std::uint64_t side_of(std::uint64_t kind, std::uint64_t feature_a, std::uint64_t feature_b) {
-  return kind << 30 | (feature_a & 0x7fff) << 15 | (feature_b & 0x7fff);
+  return kind << 62 | (feature_a & 0x7fffffff) << 31 | (feature_b & 0x7fffffff);
 }
 
 }  // namespace
 
 Polygon Outline::find() {
   Polygon polygon = box();
+  extent_ = diameter_of(polygon);
+  const std::size_t most = kMostCuts + kMostCutsOfEach * (a_.features() + b_.features());
   double diameter = 0;
-  for (int cuts = 0;;) {
+  int rounds = 0;
+  for (std::size_t cuts = 0;;) {
     const auto open = std::find_if(polygon.begin(), polygon.end(), [](const Corner& c) { return !c.is_done; });
     if (open != polygon.end()) {
-      if (cuts == kMostCuts) {
+      if (cuts == most) {
         error_ = diameter_of(polygon);
         break;
       }
@@ -45,17 +52,34 @@ Polygon Outline::find() {
       ++cuts;
       continue;
     }
+    if (is_exact_) break;
     // Corners were judged by the diameter that the polygon had then.
     const double now = diameter_of(polygon);
-    if (is_exact_ || now > 0.9 * diameter || now <= rounding_) break;
+    judge(polygon, options_.tolerance * now);
+    if (error_ <= options_.tolerance * now || now <= rounding_ || ++rounds == kMostRounds) break;
     diameter = now;
-    error_ = 0;
-    for (Corner& corner : polygon) {
-      corner.is_done = corner.outside <= options_.tolerance * now;
-      if (corner.is_done) error_ = std::max(error_, corner.outside);
-    }
+    for (Corner& corner : polygon) corner.is_done = corner.outside <= options_.tolerance * now;
+    find_middle();
   }
   return polygon;
+}
+
+void Outline::judge(Polygon& polygon, double tolerance) {
+  if (inner_) {
+    const auto angle = [&](const Vector2d& x) { return std::atan2(x.y() - inner_->y(), x.x() - inner_->x()); };
+    std::sort(inside_.begin(), inside_.end(),
+              [&](const Vector2d& x, const Vector2d& y) { return angle(x) < angle(y); });
+  }
+  error_ = 0;
+  for (Corner& corner : polygon) {
+    if (corner.outside > tolerance) {
+      for (std::size_t k = 0; k < inside_.size(); ++k) {
+        const Vector2d& next = inside_[(k + 1) % inside_.size()];
+        corner.outside = std::min(corner.outside, (closest_on(inside_[k], next, corner.place) - corner.place).norm());
+      }
+    }
+    error_ = std::max(error_, corner.outside);
+  }
 }
 
 std::optional<Outline::Heights> Outline::heights_at(const Vector2d& place) const {
@@ -130,6 +154,17 @@ bool Outline::find_inner(const Polygon& polygon) {
   return false;
 }
 
+void Outline::find_middle() {
+  if (inside_.empty()) return;
+  Vector2d sum = Vector2d::Zero();
+  for (const Vector2d& x : inside_) sum += x;
+  const Vector2d middle = sum / static_cast<double>(inside_.size());
+  const double excess = excess_at(middle).value;
+  if (!(excess <= 0)) return;
+  inner_ = middle;
+  inner_excess_ = excess;
+}
+
 /// Place of a corner on the way from a place of the patch (0) to it (1), between two bounds.
 struct Outline::Ending {
   double low = 0, high = 1;
@@ -137,14 +172,14 @@ struct Outline::Ending {
   Excess excess;                      ///< excess there
 };
 
-Outline::Ending Outline::ending(const Vector2d& x, const Excess& at_corner, double tolerance) const {
+Outline::Ending Outline::ending(const Vector2d& x, const Excess& at_corner, double tolerance, double good) const {
   const Vector2d way = x - *inner_;
   const double share = tolerance / way.norm();
   Ending end{0, 1, x, at_corner};
   double from = 0, excess_from = inner_excess_, beyond = 1;
   for (int step = 0; step < kMostSteps; ++step) {
     // A corner that is near needs no better end, one that is far away only a good one.
-    if (1 - end.low <= share || end.high - end.low <= std::max(0.1 * share, kGoodEnd * (1 - end.high))) break;
+    if (1 - end.low <= share || end.high - end.low <= std::max(0.1 * share, good * (1 - end.high))) break;
     const double t = 0.5 * (end.low + end.high);
     const Vector2d place = *inner_ + t * way;
     const Excess excess = excess_at(place);
@@ -166,30 +201,41 @@ Outline::Ending Outline::ending(const Vector2d& x, const Excess& at_corner, doub
   return end;
 }
 
+std::optional<Line> Outline::tangent_at(const Ending& end) const {
+  if (std::isfinite(end.excess.value)) {
+    const double steepness = end.excess.slope.norm();
+    if (!(steepness > 0)) return std::nullopt;
+    const Vector2d normal = end.excess.slope / steepness;
+    return Line{normal, normal.dot(end.place) - end.excess.value / steepness, 0, false};
+  }
+  const std::optional<Line> of_a = a_.beyond(end.place);
+  return of_a ? of_a : b_.beyond(end.place);
+}
+
 bool Outline::treat_smooth(Polygon& polygon, std::size_t k, double tolerance, const Excess& at_corner) {
   const Vector2d x = polygon[k].place;
   polygon[k].is_done = true;
   if (at_corner.value <= rounding_) return true;
-  const Ending end = ending(x, at_corner, tolerance);
-  const double outside = (1 - end.low) * (x - *inner_).norm();
-  if (outside > tolerance) {
-    if (std::isfinite(end.excess.value)) {
-      const Vector2d& gradient = end.excess.slope;
-      const double steepness = gradient.norm();
-      const double reach = gradient.dot(end.place) - end.excess.value;
-      if (gradient.dot(x) > reach + rounding_ * steepness) {
-        return cut(polygon, gradient / steepness, reach / steepness, 0, rounding_);
-      }
-    } else {
-      const std::optional<Line> of_a = a_.beyond(end.place);
-      const std::optional<Line> line = of_a ? of_a : b_.beyond(end.place);
-      if (line && line->normal.dot(x) > line->reach + rounding_) {
-        return cut(polygon, line->normal, line->reach, 0, rounding_);
-      }
+  double outside = 0;
+  for (const double good : kGoodEnds) {
+    const Ending end = ending(x, at_corner, tolerance, good);
+    outside = (1 - end.low) * (x - *inner_).norm();
+    inside_.push_back(*inner_ + end.low * (x - *inner_));
+    if (outside <= tolerance) break;
+    const std::optional<Line> line = tangent_at(end);
+    if (line && line->normal.dot(x) > line->reach + rounding_) {
+      return cut(polygon, line->normal, line->reach, 0, rounding_);
+    }
+    // The way may be nearly along the outline: the patch is then nearer than its end on the way.
+    const auto is_near = [&](const std::optional<Line>& l) {
+      return l && excess_at(x - tolerance * l->normal).value <= 0;
+    };
+    if (is_near(line) || is_near(a_.beyond(x)) || is_near(b_.beyond(x))) {
+      outside = tolerance;
+      break;
     }
   }
   polygon[k].outside = outside;
-  error_ = std::max(error_, outside);
   return true;
 }
 

@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <vector>
 
 namespace geom::patch {
 
@@ -23,6 +24,8 @@ class Outline {
 
   /// Returns whether both surfaces are polytopes or planes, so that the corners are those of the patch.
   bool is_exact() const { return is_exact_; }
+  /// Returns the diameter of the part of the plane that both shadows can have in common, after find().
+  double extent() const { return extent_; }
   /// Returns how far a corner may be outside.
   double error() const { return error_ > rounding_ ? error_ : rounding_; }
 
@@ -51,12 +54,20 @@ class Outline {
   /// Looks for a place of the patch: that of the witness points, or the middle of the polygon. Returns whether one is
   /// known.
   bool find_inner(const Polygon& polygon);
+  /// Replaces the known place of the patch by one that is further inside: from a place at the outline, ways may be
+  /// along that.
+  void find_middle();
   struct Ending;
   /// Returns where the patch ends on the way from a place in it to a corner, as well as a cut needs.
-  Ending ending(const Vector2d& x, const Excess& at_corner, double tolerance) const;
+  Ending ending(const Vector2d& x, const Excess& at_corner, double tolerance, double good) const;
+  /// Returns the tangent of the patch near its end, or the line that bounds a shadow there.
+  std::optional<Line> tangent_at(const Ending& end) const;
   /// Cuts along the tangent at the end of the patch on the way from a place in it to a corner, unless the corner is
   /// near that.
   bool treat_smooth(Polygon& polygon, std::size_t k, double tolerance, const Excess& at_corner);
+  /// Sets the error to the greatest distance of a corner from the patch. Where one is more than `tolerance` (length)
+  /// outside along the way inwards, what is between known places of the patch may be nearer.
+  void judge(Polygon& polygon, double tolerance);
   /// Cuts along the tangent over a corner that is in both shadows.
   bool treat_gap(Polygon& polygon, std::size_t k, double diameter);
   std::optional<Heights> heights_at(const Vector2d& place) const;
@@ -67,8 +78,10 @@ class Outline {
   double rounding_;
   bool is_exact_;
   double error_ = 0;
+  double extent_ = 0;
   std::optional<Vector2d> inner_;  ///< place of the patch
   double inner_excess_ = 0;
+  std::vector<Vector2d> inside_;  ///< places of the patch near its outline
 };
 
 }  // namespace geom::patch

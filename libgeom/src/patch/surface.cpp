@@ -20,14 +20,6 @@ constexpr int kShadowSteps = 60;
 /// Component of a half-space's normal along the direction that is too little.
 constexpr double kAlongPlane = 1e-6;
 
-/// Returns the point of the segment from a to b that is closest to x.
-Vector2d closest_on(const Vector2d& a, const Vector2d& b, const Vector2d& x) {
-  const Vector2d along = b - a;
-  const double length2 = along.squaredNorm();
-  if (length2 == 0) return a;
-  return a + std::clamp(along.dot(x - a) / length2, 0.0, 1.0) * along;
-}
-
 /// Returns the indices of the corners of the convex hull of points, anticlockwise. Points that are closer to each other
 /// than the tolerance count once, the highest of them; so do those that close to an edge.
 std::vector<std::size_t> plane_hull(const std::vector<Vector3d>& points, double tolerance) {
@@ -62,6 +54,20 @@ std::vector<std::size_t> plane_hull(const std::vector<Vector3d>& points, double 
   }
   hull.pop_back();
   return hull;
+}
+
+/// Returns the normal that is steepest along z by a clear margin. Where two are about as steep, a body that turns a
+/// little would go from one to the other.
+std::optional<std::size_t> flattest_of(const std::vector<Vector3d>& normals) {
+  constexpr double kMargin = 0.01;
+  std::size_t flattest = 0;
+  double second = -1;
+  for (std::size_t f = 1; f < normals.size(); ++f) {
+    const double z = normals[f].z(), most = normals[flattest].z();
+    second = std::max(second, std::min(z, most));
+    if (z > most) flattest = f;
+  }
+  return normals[flattest].z() > second + kMargin ? std::optional(flattest) : std::nullopt;
 }
 
 }  // namespace
@@ -137,12 +143,11 @@ void Surface::read_polytope(std::vector<Vector3d> corners, std::vector<Vector3d>
     top_ = std::max(top_, corner.z());
     bottom_ = std::min(bottom_, corner.z());
   }
-  std::size_t flattest = 0;
   for (std::size_t f = 0; f < normals.size(); ++f) {
     normals[f] = local(body_.X_WS.rotation() * normals[f]);
     offsets[f] += normals[f].dot(origin);
-    if (normals[f].z() > normals[flattest].z()) flattest = f;
   }
+  const std::optional<std::size_t> flattest = flattest_of(normals);
   for (std::size_t f = 0; f < normals.size(); ++f) {
     if (!(normals[f].z() > std::numeric_limits<double>::epsilon())) continue;
     const Vector2d slope = -normals[f].head<2>() / normals[f].z();

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -18,6 +19,14 @@ using Eigen::Vector3d;
 /// Returns the component of the cross product across the plane.
 inline double cross(const Vector2d& u, const Vector2d& v) {
   return u.x() * v.y() - u.y() * v.x();
+}
+
+/// Returns the point of the segment from a to b that is closest to x.
+inline Vector2d closest_on(const Vector2d& a, const Vector2d& b, const Vector2d& x) {
+  const Vector2d along = b - a;
+  const double length2 = along.squaredNorm();
+  if (length2 == 0) return a;
+  return a + std::clamp(along.dot(x - a) / length2, 0.0, 1.0) * along;
 }
 
 /// Place of the plane across the normal, and axes: x and y in the plane, z along the normal from A to B.
@@ -54,6 +63,8 @@ class Surface {
 
   /// Returns whether tangents and lines are sides of the surface, of which there are finitely many.
   bool exact() const { return plane_.has_value() || !facets_.empty(); }
+  /// Returns the number of faces and sides of a polytope; 0 of other bodies.
+  std::size_t features() const { return facets_.size() + outline_.size(); }
 
   /// Returns whether the shadow has an end.
   bool bounded() const { return !plane_.has_value(); }
