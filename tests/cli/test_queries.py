@@ -66,6 +66,12 @@ class Queries(Case):
         for point in patch["points"]:
             self.assert_close(point["a"], point["b"])
             self.assertAlmostEqual(point["depth"], 0, delta=1e-14)
+        disc = {"shape": {"kind": "cylinder", "half_length": 1, "radius": 1}, "position": [0, 0, 1]}
+        few = self.answer(query="patch", a=FLOOR, b=disc, max_points=5)["patch"]
+        many = self.answer(query="patch", a=FLOOR, b=disc, tolerance=1e-4, max_points=200, penetration="local")["patch"]
+        self.assertEqual(len(few["points"]), 5)
+        self.assertGreater(len(many["points"]), 50)
+        self.assertLess(many["error"], few["error"])
         apart = self.answer(query="patch", a=FLOOR, b=ball([0, 0, 3]), within=1)
         self.assertEqual((apart["distance"], apart["patch"]["kind"], apart["patch"]["points"]), (2, "empty", []))
         self.assertIsNone(apart["patch"]["centre"])
@@ -128,7 +134,10 @@ class Queries(Case):
             ({"query": "patches", "a": a, "b": b}, '"gradient", "patch", "overlap"'),
             ({"query": "patch", "a": a, "b": b, "within": -1}, "a length, 0 to 1e100"),
             ({"query": "patch", "a": a, "b": b, "within": 1e300}, "a length, 0 to 1e100"),
-            ({"query": "patch", "a": a, "b": b, "tolerance": 0.1}, "unknown key tolerance"),
+            ({"query": "patch", "a": a, "b": b, "tolerance": 0.9}, "tolerance is 0.9; accepted: 1e-4 to 0.5"),
+            ({"query": "patch", "a": a, "b": b, "max_points": 3.5}, "max_points is 3.5; accepted: a whole number, 3 to 10000"),
+            ({"query": "patch", "a": a, "b": b, "penetration": "none"}, 'penetration is "none"'),
+            ({"query": "overlap", "a": a, "b": b, "penetration": "local"}, "unknown key penetration"),
             ({"query": 3, "a": a, "b": b}, "query is 3"),
             ({"query": "overlap", "a": a}, "b is missing"),
             ({"query": "overlap", "a": FLOOR, "b": FLOOR}, "half-spaces"),

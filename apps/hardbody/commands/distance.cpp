@@ -62,11 +62,14 @@ std::string distance_help() {
   penetration  answer of the dual method for deep overlaps: "global" (the default), the shortest of all translations
                that separate the bodies, or "local", a stationary one, mostly found 10 to 75 times faster
   id           any JSON, returned with the answer
-  query        "distance" (the default), or one of these, with other members than method, seed and penetration:
+  query        "distance" (the default), or one of these, without method and seed; "gradient" and "patch" take penetration:
     "gradient"         a, b: adds gradient and hessian of the distance by x = (dp_a, dtheta_a, dp_b, dtheta_b), small
                        moves and rotations in the world frame, normal_gradient, point_a_gradient, point_b_gradient
                        (three rows of 12), stiffness, and derivatives: "twice"; "once", "by_position", "none": those that do
                        not exist are null
+    "patch"            a, b, "within":w (default 0), "tolerance":t (0.01), "max_points":n (8): adds the contact patch,
+                       all points at which the bodies are within w of touching: kind "polygon", "segment", "point" or
+                       "empty", area, centre, error, points with a, b, depth, id
     "overlap"          a, b: {{"overlap":"yes"}}, "no" or "unknown"
     "closest_point"    a, "point":[x,y,z]: distance (negative inside), point, normal, status, error_bound
     "contains"         a, point: {{"contains":true}}

@@ -170,7 +170,11 @@ TaskEnd Task::judged(std::size_t k, const WorkerEnd& end) {
   if (stopped || end.status > 128) {
     state_.settle(k, PointStatus::stopped, "");
     state_.write_state(k);
-    if (stopped && signal() != 0) return {exit_status_of(signal()), "stopped, its state is saved"};
+    if (stopped && signal() != 0) {
+      // A start that has not ended has no state.
+      const bool saved = fs::exists(directory_ / state_.records()[k].directory / kCheckpointFile);
+      return {exit_status_of(signal()), saved ? "stopped, its state is saved" : "stopped during its start"};
+    }
     return {kTryAgain, fmt::format("ended by signal {}", end.status - 128)};
   }
   state_.end(k, end);

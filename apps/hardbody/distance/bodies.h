@@ -1,6 +1,6 @@
 #pragma once
 
-/// Bodies of a query as JSON. Private to the sources that read JSON, because it includes the parser.
+/// Bodies and options of a query as JSON. Private to the sources that read JSON, because it includes the parser.
 
 #include "distance/query.h"
 #include "io/json_member.h"
@@ -19,5 +19,8 @@ struct QueryBody {
 
 /// Reads {"shape": .., "position": [..], "orientation": [..]}. Changes made to numbers are added to `notices`.
 QueryBody read_body(const JsonMember& body, std::vector<std::string>& notices);
+
+/// Reads "penetration" of a query; global if it is absent.
+geom::Penetration read_penetration(const JsonMember& query);
 
 }  // namespace hardbody

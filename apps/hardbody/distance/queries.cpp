@@ -91,12 +91,14 @@ void append_numbers(std::string& text, std::string_view name, const Eigen::Ref<c
 }
 
 std::string gradient(Line& line) {
-  allow(line.root(), {"query", "a", "b", "id"});
+  allow(line.root(), {"query", "a", "b", "penetration", "id"});
   const QueryBody a = line.body("a");
   const QueryBody b = line.body("b");
+  const geom::DistanceOptions options{.penetration = read_penetration(line.root())};
   geom::DistanceResult at;
-  const geom::DistanceDerivatives d = with_pair(
-      a, b, [&](const auto& s, const auto& t) { return geom::distance_derivatives(s, a.pose, t, b.pose, {}, &at); });
+  const geom::DistanceDerivatives d = with_pair(a, b, [&](const auto& s, const auto& t) {
+    return geom::distance_derivatives(s, a.pose, t, b.pose, options, &at);
+  });
   std::string& text = line.answer();
   append_distance(text, at);
   // The gradient has numbers where the rest has none, and may have some itself.
@@ -116,18 +118,33 @@ std::string gradient(Line& line) {
   return line.ended();
 }
 
+geom::PatchOptions patch_options(const JsonMember& query) {
+  geom::PatchOptions options;
+  const auto read = [&](const char* key, double usual, double least, double most, const char* accepted) {
+    if (!query.has(key)) return usual;
+    const JsonMember member = query.at(key, accepted);
+    const double value = member.number();
+    if (!(value >= least && value <= most)) throw member.bad(accepted);
+    return value;
+  };
+  options.within = read("within", options.within, 0, geom::kMaxCoordinate, "a length, 0 to 1e100");
+  options.tolerance = read("tolerance", options.tolerance, 1e-4, 0.5, "1e-4 to 0.5");
+  constexpr const char* kPoints = "a whole number, 3 to 10000";
+  const double points = read("max_points", options.max_points, 3, 10000, kPoints);
+  if (points != std::floor(points)) throw query.at("max_points", kPoints).bad(kPoints);
+  options.max_points = static_cast<int>(points);
+  return options;
+}
+
 std::string patch(Line& line) {
-  allow(line.root(), {"query", "a", "b", "within", "id"});
+  allow(line.root(), {"query", "a", "b", "within", "tolerance", "max_points", "penetration", "id"});
   const QueryBody a = line.body("a");
   const QueryBody b = line.body("b");
-  geom::PatchOptions options;
-  if (line.root().has("within")) options.within = line.root().at("within", "").number();
-  if (!(options.within >= 0 && options.within <= geom::kMaxCoordinate)) {
-    throw line.root().at("within", "").bad("a length, 0 to 1e100");
-  }
+  const geom::PatchOptions options = patch_options(line.root());
+  const geom::Penetration penetration = read_penetration(line.root());
   geom::DistanceResult at;
   const geom::ContactPatch found = with_pair(a, b, [&](const auto& s, const auto& t) {
-    at = distance(s, a.pose, t, b.pose);
+    at = distance(s, a.pose, t, b.pose, {.penetration = penetration});
     return geom::contact_patch(s, a.pose, t, b.pose, at, options);
   });
   std::string& text = line.answer();

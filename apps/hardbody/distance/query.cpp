@@ -167,8 +167,7 @@ DistanceQuery read_query(const JsonMember& root) {
   root.allow(kQueryKeys);
   const Method method = read_choice(root, "method", find_method, kMethods, Method::dual);
   const SeedSource& seed = read_seed(root);
-  const geom::Penetration penetration =
-      read_choice(root, "penetration", find_penetration, kPenetrations, geom::Penetration::global);
+  const geom::Penetration penetration = read_penetration(root);
   check_options(method, seed, root.has("penetration"));
   std::vector<std::string> notices;
   const QueryBody a = read_body(root.at("a", "a body"), notices);
@@ -192,6 +191,10 @@ std::string reply_text(std::string_view line, std::string& id) {
 }
 
 }  // namespace
+
+geom::Penetration read_penetration(const JsonMember& query) {
+  return read_choice(query, "penetration", find_penetration, kPenetrations, geom::Penetration::global);
+}
 
 DistanceQuery parse_query(std::string_view line, std::string& id) {
   if (std::optional<DistanceQuery> query = scanned_query(line, id)) return *std::move(query);

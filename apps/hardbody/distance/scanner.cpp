@@ -156,7 +156,7 @@ bool scan_body(Scanner& in, ScannedBody& body) {
 }  // namespace
 
 std::optional<ScannedQuery> scan_query(std::string_view line) {
-  static constexpr std::array<std::string_view, 6> kKeys{"a", "b", "id", "method", "seed", "penetration"};
+  static constexpr std::array<std::string_view, 7> kKeys{"a", "b", "id", "method", "seed", "query", "penetration"};
   Scanner in(line);
   ScannedQuery query;
   bool a = false;
@@ -173,6 +173,8 @@ std::optional<ScannedQuery> scan_query(std::string_view line) {
         return in.string(query.method) && !query.method.empty();
       case 4:
         return in.string(query.seed) && !query.seed.empty();
+      case 5:
+        return in.string(query.query) && query.query == "distance";
       default:
         return in.string(query.penetration) && !query.penetration.empty();
     }

@@ -19,8 +19,8 @@ struct ScannedBody {
 
 struct ScannedQuery {
   ScannedBody a, b;
-  std::string_view method, seed, penetration;  ///< empty: absent
-  std::string_view id;                         ///< JSON text; empty: absent
+  std::string_view method, seed, penetration, query;  ///< empty: absent
+  std::string_view id;                                ///< JSON text; empty: absent
 };
 
 /// Reads a line of the usual form: an object with known keys, each once, in any order; every value of the expected

@@ -68,7 +68,7 @@ struct [[nodiscard]] ContactPatch {
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< unit vector from A to B
   double area = 0;                                   ///< area of the patch, along the normal; 0 unless a polygon
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< centroid, halfway between the surfaces
-  double error = 0;                ///< greatest distance of a corner from the patch, before corners are left out
+  double error = 0;  ///< bound of the distance of a corner from the patch (length), before corners are left out
   std::vector<PatchPoint> points;  ///< 0, 1, 2, or at least 3 for a polygon
 };
 
@@ -148,9 +148,10 @@ GEOM_EXPORT ContactPatch contact_patch(const PatchBody& a, const PatchBody& b, c
 ///
 /// Boxes, polyhedra and half-spaces, beside each other: exact, the outline to 1e-13 of the size, and 1e-13 of it
 /// divided by the sine of the angle between two faces where they cut each other. All others: the polygon contains the
-/// patch, and its corners are not further outside than `tolerance` times its diameter; `error` has the distance itself.
-/// A face that is tilted by a small angle is the whole patch as soon as `within` spans it, so that resting bodies do
-/// not rock.
+/// patch, and its corners are not further outside than `tolerance` times its diameter; `error` is a bound of the
+/// distance itself, which is larger in a few of a thousand patches, where rays along steep surfaces find nothing. A
+/// face that is tilted by a small angle is the whole patch as soon as `within` spans it, so that resting bodies do not
+/// rock.
 ///
 /// Polygons narrower than 1e-9 of the extent of what both bodies' shadows have in common, for curved surfaces than
 /// three times the tolerance of their length, are segments; segments shorter than 1e-9 of it, 1e-6 for curved ones,

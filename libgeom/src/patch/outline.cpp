@@ -139,16 +139,18 @@ Outline::Excess Outline::excess_at(const Vector2d& x) const {
   const std::optional<Tangent> s = a_.over(x);
   const std::optional<Tangent> t = s ? b_.over(x) : std::nullopt;
   if (!t) return {std::numeric_limits<double>::infinity(), Vector2d::Zero()};
-  return {-(s->height + t->height) - options_.within, -(s->slope + t->slope)};
+  // Rounding puts no place outside.
+  const double excess = -(s->height + t->height) - options_.within;
+  return {excess <= rounding_ ? std::min(excess, 0.0) : excess, -(s->slope + t->slope)};
 }
 
 bool Outline::find_inner(const Polygon& polygon) {
   if (inner_) return true;
   for (const Vector2d& x : {Vector2d(Vector2d::Zero()), centroid(polygon)}) {
     const double excess = excess_at(x).value;
-    if (excess > rounding_) continue;
+    if (excess > 0) continue;
     inner_ = x;
-    inner_excess_ = std::min(excess, 0.0);
+    inner_excess_ = excess;
     return true;
   }
   return false;
@@ -215,7 +217,7 @@ std::optional<Line> Outline::tangent_at(const Ending& end) const {
 bool Outline::treat_smooth(Polygon& polygon, std::size_t k, double tolerance, const Excess& at_corner) {
   const Vector2d x = polygon[k].place;
   polygon[k].is_done = true;
-  if (at_corner.value <= rounding_) return true;
+  if (at_corner.value <= 0) return true;
   double outside = 0;
   for (const double good : kGoodEnds) {
     const Ending end = ending(x, at_corner, tolerance, good);

@@ -204,6 +204,11 @@ TEST(ContactPatch, OfCylinders) {
   EXPECT_LE(standing.area, kPi * 1.02);
   EXPECT_LE(standing.error, 0.01 * 2.1);
   EXPECT_LE((standing.centre - Vector3d(3, 2, 0)).norm(), 0.02);
+  // Touching exactly: the gap is rounding everywhere.
+  const ContactPatch touching = contact_patch(floor, Pose(), cylinder, Pose::translation({3, 2, 0.5}), PatchOptions{});
+  ASSERT_EQ(touching.kind, PatchKind::polygon);
+  EXPECT_NEAR(touching.area, standing.area, 0.02);
+  EXPECT_LE(touching.error, 0.01 * 2.1);
   const Pose lying = turned({0, 0, 1}, kPi / 2, Vector3d::UnitX());
   const ContactPatch line = contact_patch(floor, Pose(), cylinder, lying, {.within = 1e-15});
   check_form(line);
