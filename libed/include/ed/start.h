@@ -39,8 +39,8 @@ struct StartOptions {
   /// species with few bodies each; few large among many small), or boxes would be too small for nearest images, starts
   /// are repeated less often or not at all: compressed_together returns how many bodies are compressed.
   ///
-  /// Where sizes differ by more than a factor of 4, the largest bodies are inserted and compressed first, and smaller ones
-  /// are inserted between them.
+  /// Where sizes differ by more than a factor of 2.5, the largest bodies are inserted and compressed first, and smaller
+  /// ones are inserted between them.
   int most_compressed = 1000;
   /// Numbers of bodies in consecutive groups whose temperatures are set separately; empty: the groups of the species,
   /// see rescale_velocities.

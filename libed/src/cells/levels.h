@@ -19,7 +19,7 @@ namespace ed::internal {
 /// within reach.
 ///
 /// The extent of a body is how far it reaches: two bodies may have to know about each other while they are within the
-/// sum of their extents. A class holds the bodies from 1/4 of an extent to that extent. A grid of each class has its
+/// sum of their extents. A class holds the bodies from 0.4 of an extent to that extent. A grid of each class has its
 /// bodies alone, a second grid those of the classes before it too. A body looks for its own class and smaller ones in
 /// the second grid of its class, and for larger ones in the first grid of each larger class, so that no search reaches
 /// farther than the larger of two bodies makes necessary. Where all are of one class there is one grid.
@@ -71,7 +71,7 @@ class CellLevels {
 
  private:
   /// Ratio of the largest to the least extent of a class.
-  static constexpr double kRatio = 4;
+  static constexpr double kRatio = 2.5;
 
   struct Class {
     double extent;                         ///< largest of its bodies

@@ -172,7 +172,7 @@ TEST(SceneContact, OverLongTimes) {
 
 TEST(SceneContact, OfBodiesThatAreFastForTheirSizeEndsWithTheBudget) {
   geom::Scene scene;
-  const BodyId body = scene.add(geom::Sphere(1e-6));
+  const BodyId body = scene.add(geom::Sphere(1e-6), Pose());
   scene.add(geom::Sphere(1), Pose::translation({0, 3, 0}));
   const std::vector<MovingBody> moving{{body, along_x(1)}};
   const SceneContact found = ed::first_contact(scene, moving, 0, 1000, {.max_evaluations = 50});
