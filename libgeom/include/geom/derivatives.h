@@ -9,6 +9,7 @@
 #include <geom/export.h>
 #include <geom/half_space.h>
 #include <geom/kernel/core.h>
+#include <geom/kernel/moved.h>
 #include <geom/pose.h>
 #include <geom/rounded.h>
 #include <geom/shape.h>
@@ -238,7 +239,7 @@ distance_derivatives(const ShapeA& a, const Pose& X_WA, const ShapeB& b, const P
   const kernel::RivalTrial trial = kernel::rival_trial(in_a, in_b, at);
   bool single = true;
   if (trial.needed) {
-    const Pose moved = kernel::unchecked_pose(X_WB.rotation(), X_WB.position() + trial.by);
+    const Pose moved = kernel::moved(X_WB, trial.by);
     single = kernel::confirms(trial, at, distance(a, X_WA, b, moved));
   }
   return kernel::contact_derivatives(in_a, in_b, at, single);

@@ -2,6 +2,7 @@
 
 #include <geom/derivatives.h>
 #include <geom/kernel/any_body.h>
+#include <geom/kernel/moved.h>
 #include <geom/kernel/refuse.h>
 
 #include <cstddef>
@@ -17,7 +18,7 @@ DistanceDerivatives distance_derivatives(const Shape& a, const Pose& X_WA, const
   const kernel::RivalTrial trial = kernel::rival_trial(in_a, in_b, at);
   bool single = true;
   if (trial.needed) {
-    const Pose moved = kernel::unchecked_pose(X_WB.rotation(), X_WB.position() + trial.by);
+    const Pose moved = kernel::moved(X_WB, trial.by);
     single = kernel::confirms(trial, at, distance(a, X_WA, b, moved));
   }
   return kernel::contact_derivatives(in_a, in_b, at, single);
