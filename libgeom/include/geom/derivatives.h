@@ -9,7 +9,6 @@
 #include <geom/export.h>
 #include <geom/half_space.h>
 #include <geom/kernel/core.h>
-#include <geom/kernel/moved.h>
 #include <geom/pose.h>
 #include <geom/rounded.h>
 #include <geom/shape.h>

@@ -2,7 +2,6 @@
 
 #include <geom/derivatives.h>
 #include <geom/kernel/any_body.h>
-#include <geom/kernel/moved.h>
 #include <geom/kernel/refuse.h>
 
 #include <cstddef>

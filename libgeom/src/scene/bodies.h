@@ -26,7 +26,7 @@ struct Body {
   Eigen::Vector3d shift = Eigen::Vector3d::Zero();  ///< minus that lattice vector
 };
 
-/// Where a body is, and what follows from it.
+/// Pose of a body, and what follows from it.
 struct Placement {
   Pose X_WB;
   Eigen::Vector3d cell, shift;  ///< members of Body

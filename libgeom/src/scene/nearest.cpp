@@ -1,7 +1,6 @@
 #include "scene/best.h"
 #include "scene/bodies.h"
 
-#include <geom/kernel/moved.h>
 #include <geom/kernel/refuse.h>
 
 #include <algorithm>

@@ -2,7 +2,6 @@
 #include "scene/parallel.h"
 
 #include <geom/batch.h>
-#include <geom/kernel/moved.h>
 #include <geom/kernel/refuse.h>
 
 #include <algorithm>

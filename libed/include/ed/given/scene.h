@@ -39,8 +39,8 @@ struct [[nodiscard]] SceneContact {
 /// Each pair is searched by time_of_contact, with its certificate. Pairs are taken from the scene's boxes, over
 /// intervals as long as bodies reach few others, images included. The outcome of the earliest pair is returned: if that
 /// is no hit (two bodies overlap, a budget is exhausted), contacts after its time are not known. Of pairs at the same
-/// time the one with the smallest handles. The budget is that of each pair, and of the number of intervals: a body that
-/// meets nobody and passes so many others, or images of them, exhausts it.
+/// time the one with the smallest handles. The budget is that of each pair, and of the number of intervals: it is
+/// exhausted by a body that meets nobody but passes others, or images of them, all the time.
 ///
 /// Bodies of `moving` are moved: they end at their poses at the time returned, also if they were elsewhere before. If
 /// an exception is thrown, by a motion or a user's shape too, they are where they were. Throws as time_of_contact;

@@ -4,7 +4,6 @@
 #include <ed/given/scene.h>
 
 #include <geom/any_convex.h>
-#include <geom/kernel/moved.h>
 #include <geom/round_shapes.h>
 
 #include <Eigen/Core>
@@ -39,11 +38,11 @@ using geom::kernel::moved;
 
 /// Largest number of pairs in reach, for each body that moves, for which an interval is not made shorter.
 constexpr std::size_t kManyPairs = 32;
-/// Largest number of pairs that are looked at for one that may be in reach.
-constexpr std::size_t kLooks = 8;
-/// Largest number of images of all bodies that are looked at for a body that moves.
+/// Largest ratio of the number of pairs that are compared to that of pairs in reach.
+constexpr std::size_t kComparisons = 8;
+/// Largest number of images of all bodies in the box around what a body reaches.
 constexpr double kManyImages = 1e6;
-/// Longest way that is looked at; a ball of this radius is a valid shape. Length.
+/// Longest way in an interval; a ball of this radius is a valid shape. Length.
 constexpr double kLongestWay = 1e30;
 /// Ratio of the numbers of pairs of an interval and of half of it, above which shorter ones would not help.
 constexpr double kStill = 0.8;
@@ -52,7 +51,7 @@ constexpr double kShortWay = 4;
 /// Largest number of times that an interval is made shorter for one body's way.
 constexpr int kMostShortenings = 64;
 /// Ratio of bodies to those that may ask for their neighbours one by one.
-constexpr std::size_t kFew = 8;
+constexpr std::size_t kShareOfFew = 8;
 /// Ratio of reaches from which on a body asks for its neighbours by itself.
 constexpr double kMuchFurther = 2;
 
@@ -218,7 +217,7 @@ class SceneSearch {
     }
   }
 
-  /// Returns whether a body that moves reaches over so many images of bodies that they should not be looked at.
+  /// Returns whether a body that moves reaches over too many images of bodies to compare them with it.
   bool reaches_many_images() const {
     if (!(most_ <= kLongestWay)) return true;
     const Vector3d cells = (1 + 2 * (most_ + second_) * coordinates_.rowwise().norm().array()).matrix();
@@ -226,8 +225,8 @@ class SceneSearch {
     return images > 1 && images * static_cast<double>(scene_.size()) > kManyImages;
   }
 
-  /// Returns the pairs that may touch within a duration; nullopt if they are more than `many`, or if more would have to
-  /// be looked at than is worth it.
+  /// Returns the pairs that may touch within a duration; nullopt if they are more than `many`, or if too many others
+  /// would have to be compared.
   std::optional<std::vector<PairInReach>> few_pairs_in_reach(double t, double duration, std::size_t many) {
     reach_until(t, duration);
     if (reaches_many_images()) return std::nullopt;
@@ -235,13 +234,13 @@ class SceneSearch {
   }
   std::vector<PairInReach> pairs_in_reach(double t, double duration) {
     reach_until(t, duration);
-    return *pairs_found(std::numeric_limits<std::size_t>::max() / kLooks);
+    return *pairs_found(std::numeric_limits<std::size_t>::max() / kComparisons);
   }
 
   /// Returns the reach up to which neighbours of all bodies are looked for at once; -1: those that move are few. Few
   /// bodies, much faster than others, may get further.
   double common_reach() const {
-    const std::size_t few = scene_.size() / kFew;
+    const std::size_t few = scene_.size() / kShareOfFew;
     if (moving_.size() <= few) return -1;
     std::vector<double> sorted = reach_;
     const auto nth = sorted.begin() + static_cast<std::ptrdiff_t>(few);
@@ -252,10 +251,10 @@ class SceneSearch {
   /// Returns the pairs that may touch, in the order of handles; nullopt: many.
   std::optional<std::vector<PairInReach>> pairs_found(std::size_t many) {
     std::vector<PairInReach> found;
-    std::size_t looks = 0;
-    const auto go_on = [&] { return found.size() <= many && looks <= kLooks * many; };
+    std::size_t compared = 0;
+    const auto go_on = [&] { return found.size() <= many && compared <= kComparisons * many; };
     const auto visit = [&](BodyId i, BodyId j, const Vector3d& image) {
-      ++looks;
+      ++compared;
       if (!index_of_.contains(i) && !index_of_.contains(j)) return go_on();
       const Vector3d way = scene_.pose(j).position() + image - scene_.pose(i).position();
       const double reach = shape_of(i).bounding_radius() + shape_of(j).bounding_radius() + reach_of(i) + reach_of(j);
