@@ -191,8 +191,7 @@ DistanceDerivatives derivatives_at(const A& a, const Pose& X_WA, const B& b, con
   const RivalTrial trial = rival_trial(in_a, in_b, at);
   bool single = true;
   if (trial.needed) {
-    const Pose moved = unchecked_pose(X_WB.rotation(), X_WB.position() + trial.by);
-    single = confirms(trial, at, distance(a, X_WA, b, moved));
+    single = confirms(trial, at, distance(a, X_WA, b, moved(X_WB, trial.by)));
   }
   return contact_derivatives(in_a, in_b, at, single);
 }

@@ -15,6 +15,9 @@ namespace kernel {
 /// Constructs a Pose without checks, for inner loops: the rotation must be orthonormal to rounding, the numbers finite.
 Pose unchecked_pose(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& position);
 
+/// Returns a pose with its position moved by a vector, without checks.
+Pose moved(const Pose& X_WB, const Eigen::Vector3d& by);
+
 /// Returns the unit quaternion (w, x, y, z) of an orthonormal matrix, w >= 0, as an array. Its alignment depends on no
 /// compiler flag, unlike that of Eigen's quaternions (docs/decisions/017).
 GEOM_EXPORT std::array<double, 4> quaternion_of(const Eigen::Matrix3d& rotation);
@@ -135,6 +138,10 @@ inline Pose kernel::unchecked_pose(const Eigen::Matrix3d& rotation, const Eigen:
   pose.rotation_ = rotation;
   pose.position_ = position;
   return pose;
+}
+
+inline Pose kernel::moved(const Pose& X_WB, const Eigen::Vector3d& by) {
+  return unchecked_pose(X_WB.rotation(), X_WB.position() + by);
 }
 
 }  // namespace geom

@@ -155,10 +155,19 @@ class GEOM_EXPORT Scene {
   /// Removes a body.
   void remove(BodyId body);
 
-  /// Moves bodies to new poses. Throws std::invalid_argument unless there are as many poses as bodies.
+  /// Moves bodies to new poses, all of them or, if an exception is thrown, by a user's shape for instance, none. Throws
+  /// std::invalid_argument unless there are as many poses as bodies.
   void move(std::span<const BodyId> bodies, std::span<const Pose> X_WB);
   /// Overload for one body.
   void move(BodyId body, const Pose& X_WB);
+
+  /// Poses of bodies, and the boxes there.
+  struct Places;
+  /// Returns where bodies are, for `put_back`.
+  std::shared_ptr<const Places> places(std::span<const BodyId> bodies) const;
+  /// Moves bodies to where they were when this scene returned `places`; those that were removed since then stay away.
+  /// Asks nothing of shapes, and does not throw.
+  void put_back(const Places& places) noexcept;
 
   /// Changes which bodies a body is paired with.
   void set_filter(BodyId body, Filter filter);
@@ -173,9 +182,10 @@ class GEOM_EXPORT Scene {
   const SceneOptions& options() const;  ///< options that the scene was constructed with
 
   /// Finds every pair of bodies, images included, whose distance is at most `cutoff`, and every pair that may be and
-  /// whose distance was declined (`result.status`). `out` is overwritten. Uses `threads` threads, >= 1, for the
-  /// distances. Distances are those of `distance`, those of ellipsoids of `distance_batch`. Throws
-  /// std::invalid_argument if the cut-off is negative or not finite.
+  /// whose distance was declined (`result.status`). `out` is overwritten. Uses `threads` threads, >= 1, but no more
+  /// than a few for each processor, for the distances. Distances agree to rounding with those of Scene::distance, and
+  /// whether they are within the cut-off does exactly: those of ellipsoids are of `distance_batch`, unless they are
+  /// near the cut-off. Throws std::invalid_argument if the cut-off is negative or not finite.
   void pairs_within(double cutoff, std::vector<ScenePair>& out, const DistanceOptions& options = {},
                     int threads = 1) const;
 
@@ -212,8 +222,8 @@ class GEOM_EXPORT Scene {
 
   /// Returns the first body that origin + t direction, 0 <= t <= t_max, meets, with `ray_cast`. If a body that may be
   /// the first declines, that body is returned, with that status. Throws std::invalid_argument if a number is not
-  /// finite, the direction is zero, t_max is negative, or a periodic ray is longer than 1e9
-  /// lattice vectors.
+  /// finite, the direction is zero, t_max is negative, or a periodic ray is longer than 1e6 times the shortest lattice
+  /// vector; what is beyond all bodies along directions in which the scene does not repeat does not count.
   SceneRayHit ray_cast(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
                        double t_max = std::numeric_limits<double>::infinity()) const;
 

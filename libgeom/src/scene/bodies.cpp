@@ -112,30 +112,24 @@ std::int32_t Scene::Bodies::item(BodyId body) const {
   return item_of[k];
 }
 
-scene::Box3 Scene::Bodies::box(const Body& body) const {
-  const double cell_size = images.periodic() ? body.shift.cwiseAbs().maxCoeff() + images.longest() : 0;
-  return scene::box_around(body.shape, body.X_WB, cell_size).moved(body.shift);
-}
-
-void Scene::Bodies::place(Body& body, const Pose& X_WB) {
-  body.cell = images.cell(X_WB.position(), "Scene");
-  body.shift = -images.vector(body.cell);
-  body.X_WB = X_WB;
+scene::Placement Scene::Bodies::placement(const scene::AnyBody& shape, const Pose& X_WB, const char* what) const {
+  const Vector3d cell = images.cell(X_WB.position(), what);
+  const Vector3d shift = -images.vector(cell);
+  const double cell_size = images.periodic() ? shift.cwiseAbs().maxCoeff() + images.longest() : 0;
+  return {X_WB, cell, shift, scene::box_around(shape, X_WB, cell_size).moved(shift)};
 }
 
 BodyId Scene::Bodies::add(scene::AnyBody shape, const Pose& X_WB, Filter filter) {
   constexpr std::size_t kMost = std::size_t{1} << 31;
   if (item_of.size() + 1 >= kMost) kernel::refuse("Scene: more than 2^31 bodies were added");
-  Body body{std::move(shape), X_WB, filter, static_cast<BodyId>(item_of.size())};
-  place(body, X_WB);
-  const scene::Box3 around = box(body);
-  // What may throw comes first; a handle without a body is one that is gone. The lowest free item is at most `count`.
+  const scene::Placement at = placement(shape, X_WB, "Scene");
+  const auto id = static_cast<BodyId>(item_of.size());
+  // What may throw comes first. The lowest free item is at most `count`.
   if (all.size() <= count) all.resize(count + 1);
-  item_of.push_back(-1);
-  const std::int32_t item = broad.add(around);
-  const BodyId id = body.id;
-  all[static_cast<std::size_t>(item)] = std::move(body);
-  item_of.back() = item;
+  scene::make_room(item_of, item_of.size() + 1);
+  const std::int32_t item = broad.add(at.box);
+  all[static_cast<std::size_t>(item)] = Body{std::move(shape), X_WB, filter, id, at.cell, at.shift};
+  item_of.push_back(item);
   ++count;
   return id;
 }
@@ -148,10 +142,12 @@ void Scene::Bodies::remove(BodyId body) {
   --count;
 }
 
-void Scene::Bodies::move(std::int32_t k, const Pose& X_WB) {
+void Scene::Bodies::move(std::int32_t k, const scene::Placement& to) noexcept {
   Body& body = at(k);
-  place(body, X_WB);
-  broad.move(k, box(body));
+  body.X_WB = to.X_WB;
+  body.cell = to.cell;
+  body.shift = to.shift;
+  broad.move(k, to.box);
 }
 
 std::vector<scene::Candidate> Scene::Bodies::candidates(double cutoff) const {

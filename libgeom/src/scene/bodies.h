@@ -26,6 +26,13 @@ struct Body {
   Eigen::Vector3d shift = Eigen::Vector3d::Zero();  ///< minus that lattice vector
 };
 
+/// Pose of a body, and what follows from it.
+struct Placement {
+  Pose X_WB;
+  Eigen::Vector3d cell, shift;  ///< members of Body
+  Box3 box;                     ///< box around the body, moved by `shift`
+};
+
 /// Two bodies, i < j, and the lattice numbers of the image of j.
 struct Candidate {
   std::int32_t i, j;
@@ -42,11 +49,6 @@ DistanceResult distance(const AnyBody& a, const Pose& X_WA, const AnyBody& b, co
 double lower_bound(const AnyBody& a, const Pose& X_WA, const AnyBody& b, const Pose& X_WB);
 Answer overlap(const AnyBody& a, const Pose& X_WA, const AnyBody& b, const Pose& X_WB);
 /// @}
-
-/// Returns the pose moved by a lattice vector.
-inline Pose moved(const Pose& X_WB, const Eigen::Vector3d& image) {
-  return kernel::unchecked_pose(X_WB.rotation(), X_WB.position() + image);
-}
 
 /// Returns whether lattice numbers a come before b, in the order of answers.
 inline bool cell_before(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
@@ -70,10 +72,10 @@ struct Scene::Bodies {
 
   BodyId add(scene::AnyBody shape, const Pose& X_WB, Filter filter);
   void remove(BodyId body);
-  /// Puts the body's box where its pose is.
-  void place(scene::Body& body, const Pose& X_WB);
-  void move(std::int32_t item, const Pose& X_WB);
-  scene::Box3 box(const scene::Body& body) const;
+  /// Returns where a body of this shape is at a pose. Throws std::invalid_argument, naming `what`, for one that is too
+  /// far away, and what the shape's functions throw.
+  scene::Placement placement(const scene::AnyBody& shape, const Pose& X_WB, const char* what) const;
+  void move(std::int32_t item, const scene::Placement& to) noexcept;
 
   /// Calls visit(i, j, cell) for pairs, i < j by handle, whose boxes are within the cut-off. `visit` returns false to
   /// stop.

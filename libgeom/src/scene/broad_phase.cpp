@@ -14,7 +14,7 @@ constexpr double kWorseTree = 1.5;        ///< growth of the cost from which on 
 
 }  // namespace
 
-void BroadPhase::set_box(std::int32_t item, const Box3& tight) {
+void BroadPhase::set_box(std::int32_t item, const Box3& tight) noexcept {
   const auto k = static_cast<std::size_t>(item);
   tight_[k] = tight;
   if (boxes_[k].contains(tight)) return;
@@ -22,13 +22,19 @@ void BroadPhase::set_box(std::int32_t item, const Box3& tight) {
   if (tree_.has(item)) mark_changed(item);
 }
 
-void BroadPhase::mark_changed(std::int32_t item) {
-  // More of them than boxes mean the same as as many.
+void BroadPhase::mark_changed(std::int32_t item) noexcept {
+  // More of them than boxes mean the same as as many. `add` has made room.
   if (changed_.size() <= boxes_.size()) changed_.push_back(item);
   current_ = false;
 }
 
 std::int32_t BroadPhase::add(const Box3& tight) {
+  const std::size_t items = boxes_.size() + 1;
+  make_room(tight_, items);
+  make_room(boxes_, items);
+  make_room(free_, items);
+  make_room(changed_, items + 1);
+  make_room(loose_, items);
   std::int32_t item = 0;
   if (free_.empty()) {
     item = static_cast<std::int32_t>(boxes_.size());
@@ -47,7 +53,7 @@ std::int32_t BroadPhase::add(const Box3& tight) {
   return item;
 }
 
-void BroadPhase::remove(std::int32_t item) {
+void BroadPhase::remove(std::int32_t item) noexcept {
   const auto k = static_cast<std::size_t>(item);
   tight_[k] = {};
   boxes_[k] = {};
@@ -60,7 +66,7 @@ void BroadPhase::remove(std::int32_t item) {
   std::push_heap(free_.begin(), free_.end(), std::greater<>());
 }
 
-void BroadPhase::move(std::int32_t item, const Box3& tight) {
+void BroadPhase::move(std::int32_t item, const Box3& tight) noexcept {
   set_box(item, tight);
 }
 

@@ -4,6 +4,7 @@
 
 #include "scene/tree.h"
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <cstddef>
@@ -13,15 +14,21 @@
 
 namespace geom::scene {
 
+/// Makes room for a number of elements, so that adding them does not throw.
+template <class T>
+void make_room(std::vector<T>& elements, std::size_t size) {
+  if (elements.capacity() < size) elements.reserve(std::max(size, 2 * elements.capacity()));
+}
+
 class BroadPhase {
  public:
   /// `margin`: length by which boxes are larger than asked for, so that small moves change nothing.
   explicit BroadPhase(double margin) : margin_(margin) {}
 
-  /// Adds a box and returns its item, the lowest that is free.
+  /// Adds a box and returns its item, the lowest that is free. Changes nothing if there is no memory.
   std::int32_t add(const Box3& tight);
-  void remove(std::int32_t item);
-  void move(std::int32_t item, const Box3& tight);
+  void remove(std::int32_t item) noexcept;
+  void move(std::int32_t item, const Box3& tight) noexcept;
 
   const Box3& tight(std::int32_t item) const { return tight_[static_cast<std::size_t>(item)]; }
   /// Returns a box around all.
@@ -40,8 +47,8 @@ class BroadPhase {
  private:
   const BoxTree& tree() const;
   void bring_up_to_date() const;
-  void set_box(std::int32_t item, const Box3& tight);
-  void mark_changed(std::int32_t item);
+  void set_box(std::int32_t item, const Box3& tight) noexcept;
+  void mark_changed(std::int32_t item) noexcept;
   const Box3& box(std::int32_t item) const { return boxes_[static_cast<std::size_t>(item)]; }
 
   double margin_;

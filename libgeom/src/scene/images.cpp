@@ -5,12 +5,29 @@
 #include <Eigen/Dense>
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
 #include <string>
 
 namespace geom::scene {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
+
+namespace {
+
+/// Returns a unit vector across all columns but those that are 0, of which there is at least one.
+Vector3d across(const Matrix3d& columns) {
+  std::array<Vector3d, 2> known;
+  std::size_t count = 0;
+  for (int k = 0; k < 3; ++k) {
+    if (!columns.col(k).isZero(0)) known[count++] = columns.col(k);
+  }
+  if (count == 0) return Vector3d::UnitX();
+  return count == 1 ? known[0].unitOrthogonal() : known[0].cross(known[1]).normalized();
+}
+
+}  // namespace
 
 Images::Images(const Lattice& lattice) {
   for (int k = 0; k < 3; ++k) {
@@ -24,14 +41,9 @@ Images::Images(const Lattice& lattice) {
   }
   // Directions without a lattice vector get one across the others, so that the inverse exists; it is not used.
   Matrix3d all = vectors_;
+  for (int k = 0; k < 3; ++k) all.col(k).normalize();
   for (int k = 0; k < 3; ++k) {
-    if (!vectors_.col(k).isZero(0)) {
-      all.col(k).normalize();
-      continue;
-    }
-    const Matrix3d known = all;
-    const Eigen::JacobiSVD<Matrix3d> svd(known * known.transpose(), Eigen::ComputeFullU);
-    all.col(k) = svd.matrixU().col(2);
+    if (all.col(k).isZero(0)) all.col(k) = open_[open_count_++] = across(all);
   }
   constexpr double kPlane = 1e-6;  // smallest volume spanned by the unit vectors along the lattice
   if (!(std::abs(all.determinant()) >= kPlane)) {

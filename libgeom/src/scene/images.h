@@ -9,10 +9,16 @@
 #include <Eigen/Core>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <limits>
+#include <span>
 
 namespace geom::scene {
+
+/// Largest error of unit vectors across two lattice vectors, whose directions span an area of at least 1e-6.
+inline constexpr double kOpenRounding = 1e-9;
 
 class Images {
  public:
@@ -27,6 +33,9 @@ class Images {
 
   /// Returns the lattice vector with these numbers, whole ones.
   Eigen::Vector3d vector(const Eigen::Vector3d& cell) const { return vectors_ * cell; }
+
+  /// Returns unit vectors across all lattice vectors and across each other, accurate to kOpenRounding.
+  std::span<const Eigen::Vector3d> open() const { return std::span(open_).first(open_count_); }
 
   double shortest() const { return shortest_; }  ///< smallest length of a lattice vector; infinite without any
   double longest() const { return longest_; }    ///< largest length of a lattice vector
@@ -43,6 +52,8 @@ class Images {
 
   Eigen::Matrix3d vectors_;
   Eigen::Matrix3d inverse_;  ///< rows: coordinates along the lattice vectors; 0 for those that are none
+  std::array<Eigen::Vector3d, 3> open_;
+  std::size_t open_count_ = 0;
   int directions_ = 0;
   double shortest_ = std::numeric_limits<double>::infinity();
   double longest_ = 0;

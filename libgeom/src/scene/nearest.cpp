@@ -87,7 +87,7 @@ SceneNearest Scene::Bodies::nearest(const AnyBody& shape, const Pose& X_WS, cons
     const Body& body = at(item);
     if (self != nullptr && (body.id == self->id || !meet(body.filter, self->filter))) return;
     const Vector3d cell = first_cell - body.cell;
-    const Pose there = scene::moved(body.X_WB, images.vector(cell));
+    const Pose there = kernel::moved(body.X_WB, images.vector(cell));
     const double bound = scene::lower_bound(shape, X_WS, body.shape, there);
     if (bound > best.limit()) return;
     const DistanceResult result = scene::distance(shape, X_WS, body.shape, there, global);
@@ -127,7 +127,7 @@ ScenePair Scene::distance(BodyId i, BodyId j, const DistanceOptions& options) co
     const Vector3d cell = first_cell - b.cell;
     const double bound = scene::signed_distance(box.moved(images.vector(first_cell)), around);
     if (bound > best.limit()) return true;
-    const Pose there = scene::moved(b.X_WB, images.vector(cell));
+    const Pose there = kernel::moved(b.X_WB, images.vector(cell));
     const DistanceResult result = scene::distance(a.shape, a.X_WB, b.shape, there, global);
     if (std::isnan(result.distance)) {
       best.decline(j, cell, bound, result);
@@ -152,7 +152,7 @@ void Scene::Bodies::overlapping(const AnyBody& shape, const Pose& X_WS, std::vec
   std::vector<std::pair<BodyId, Vector3d>> found;
   for_each_near(around, 0, [&](std::int32_t item, const Vector3d& cell) {
     const Body& body = at(item);
-    const Pose there = scene::moved(body.X_WB, images.vector(cell));
+    const Pose there = kernel::moved(body.X_WB, images.vector(cell));
     if (scene::overlap(shape, X_WS, body.shape, there) != Answer::no) found.emplace_back(body.id, cell);
   });
   std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) {
@@ -174,7 +174,7 @@ ScenePoint Scene::closest_point(const Vector3d& p_W, double within) const {
   search(bodies_->broad, images, {p_W, p_W}, within, best, [&](std::int32_t item, const Vector3d& first_cell) {
     const Body& body = bodies_->at(item);
     const Vector3d cell = first_cell - body.cell;
-    const Pose there = scene::moved(body.X_WB, images.vector(cell));
+    const Pose there = kernel::moved(body.X_WB, images.vector(cell));
     const ClosestPoint closest =
         std::visit([&](const auto& shape) { return geom::closest_point(shape, there, p_W); }, body.shape);
     if (std::isnan(closest.distance)) {

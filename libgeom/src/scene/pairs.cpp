@@ -48,7 +48,7 @@ class BlockOfPairs {
       const Body& i = body_of(pairs[k].i);
       const Body& j = body_of(pairs[k].j);
       const Vector3d image = images_.vector(pairs[k].cell);
-      poses_[k] = scene::moved(j.X_WB, image);
+      poses_[k] = kernel::moved(j.X_WB, image);
       out[k] = {i.id, j.id, image, {}};
       const Ellipsoid* a = ellipsoid(i);
       const Ellipsoid* b = ellipsoid(j);
@@ -66,10 +66,23 @@ class BlockOfPairs {
       }
     }
     distance_batch(std::span(batch_pairs_).first(ellipsoids), std::span(found_).first(ellipsoids), batch_);
-    for (std::size_t k = 0; k < ellipsoids; ++k) out[place_[k]].result = found_[k];
+    for (std::size_t k = 0; k < ellipsoids; ++k) {
+      const EllipsoidPair& pair = batch_pairs_[k];
+      out[place_[k]].result = near_cutoff(pair, found_[k].distance)
+                                  ? geom::distance(*pair.a, *pair.X_WA, *pair.b, *pair.X_WB, options_)
+                                  : found_[k];
+    }
   }
 
  private:
+  /// Returns whether the rounding of `distance_batch` may decide whether a pair is within the cut-off.
+  bool near_cutoff(const EllipsoidPair& pair, double distance) const {
+    // Both distances agree within 1e-14 of this size.
+    const double size =
+        (pair.X_WB->position() - pair.X_WA->position()).norm() + pair.a->bounding_radius() + pair.b->bounding_radius();
+    return std::abs(distance - cutoff_) <= 1e-13 * size;
+  }
+
   const scene::Images& images_;
   double cutoff_;
   DistanceOptions options_;
@@ -111,7 +124,7 @@ void Scene::overlapping_pairs(std::vector<SceneOverlap>& out, int threads) const
       const Body& i = bodies_->at(pairs[k].i);
       const Body& j = bodies_->at(pairs[k].j);
       const Vector3d image = bodies_->images.vector(pairs[k].cell);
-      found[k] = {i.id, j.id, image, scene::overlap(i.shape, i.X_WB, j.shape, scene::moved(j.X_WB, image))};
+      found[k] = {i.id, j.id, image, scene::overlap(i.shape, i.X_WB, j.shape, kernel::moved(j.X_WB, image))};
     }
   });
   std::erase_if(found, [](const SceneOverlap& pair) { return pair.answer == Answer::no; });

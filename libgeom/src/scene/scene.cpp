@@ -4,9 +4,13 @@
 
 #include <geom/kernel/refuse.h>
 
+#include <cstddef>
+#include <cstdint>
+#include <memory>
 #include <string>
 #include <utility>
 #include <variant>
+#include <vector>
 
 namespace geom {
 
@@ -28,16 +32,39 @@ void Scene::move(std::span<const BodyId> bodies, std::span<const Pose> X_WB) {
     kernel::refuse("Scene::move: " + std::to_string(bodies.size()) + " bodies and " + std::to_string(X_WB.size()) +
                    " poses; accepted: as many of both");
   }
-  // All are checked before the first one moves.
+  // What may throw comes before the first one moves.
+  std::vector<std::pair<std::int32_t, scene::Placement>> moves;
+  moves.reserve(bodies.size());
   for (std::size_t k = 0; k < bodies.size(); ++k) {
-    bodies_->item(bodies[k]);
-    bodies_->images.cell(X_WB[k].position(), "Scene::move");
+    const std::int32_t item = bodies_->item(bodies[k]);
+    moves.emplace_back(item, bodies_->placement(bodies_->at(item).shape, X_WB[k], "Scene::move"));
   }
-  for (std::size_t k = 0; k < bodies.size(); ++k) bodies_->move(bodies_->item(bodies[k]), X_WB[k]);
+  for (const auto& [item, to] : moves) bodies_->move(item, to);
 }
 
 void Scene::move(BodyId body, const Pose& X_WB) {
   move(std::span(&body, 1), std::span(&X_WB, 1));
+}
+
+struct Scene::Places {
+  std::vector<std::pair<BodyId, scene::Placement>> of_bodies;
+};
+
+std::shared_ptr<const Scene::Places> Scene::places(std::span<const BodyId> bodies) const {
+  auto places = std::make_shared<Places>();
+  places->of_bodies.reserve(bodies.size());
+  for (const BodyId id : bodies) {
+    const std::int32_t item = bodies_->item(id);
+    const scene::Body& body = bodies_->at(item);
+    places->of_bodies.push_back({id, {body.X_WB, body.cell, body.shift, bodies_->broad.tight(item)}});
+  }
+  return places;
+}
+
+void Scene::put_back(const Places& places) noexcept {
+  for (const auto& [id, place] : places.of_bodies) {
+    if (has(id)) bodies_->move(bodies_->item_of[static_cast<std::size_t>(id)], place);
+  }
 }
 
 void Scene::set_filter(BodyId body, Filter filter) {

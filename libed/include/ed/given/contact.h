@@ -41,7 +41,8 @@ struct GivenContactOptions {
 /// A hit: the distance at `time` is at most options.tolerance of the size, or the rounding of poses if that is more,
 /// plus what geom::distance is uncertain by, 1e-12 of the size at most; and it is not certain that the bodies move
 /// apart from there. Bodies that touch and move apart, as after a collision, are no hit if the bounds of accelerations
-/// tell. Other outcomes are those of ContactStatus.
+/// tell; where these are infinite, if the bodies part nearly as fast as the bounds of their speeds allow. Other
+/// outcomes are those of ContactStatus.
 ///
 /// Exceptions: std::invalid_argument if an option or a time is out of range, or if a motion breaks its bounds at the
 /// times that the search looks at: speeds in all builds, accelerations where NDEBUG is not defined. Those of the

@@ -71,7 +71,7 @@ class ED_EXPORT GivenMotion {
   ///
   /// Positions are cubic in time, with the velocity (p_{k+1} - p_{k-1}) / (t_{k+1} - t_{k-1}) at way point k; so are
   /// quaternions, scaled to length 1. Velocities have no jumps. Throws std::invalid_argument unless there are at least
-  /// two times, ascending and as many as poses, and no rotation between two of them is larger
+  /// two times, ascending, over a finite duration, and as many as poses, and no rotation between two of them is larger
   /// than 120 degrees, or less where neighbouring intervals differ much.
   static GivenMotion spline(std::vector<double> times, const std::vector<geom::Pose>& X_WB);
 
@@ -96,7 +96,7 @@ class ED_EXPORT GivenMotion {
 
 /// Samples a motion at equal steps of [from, to], at least 2 of them, and returns the first bound that it breaks, in
 /// words; empty if none. Finding none is no proof, but a broken bound makes searches step over contacts without notice.
-/// Throws std::invalid_argument unless from <= to are finite.
+/// Throws std::invalid_argument unless from <= to and to - from are finite.
 ED_EXPORT std::string check_given_motion(const GivenMotion& motion, double from, double to, int samples = 1000);
 
 }  // namespace ed

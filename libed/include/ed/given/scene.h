@@ -37,14 +37,14 @@ struct [[nodiscard]] SceneContact {
 /// not, that its filter pairs it with. Bodies that are not in `moving` stay where they are.
 ///
 /// Each pair is searched by time_of_contact, with its certificate. Pairs are taken from the scene's boxes, over
-/// intervals that are so short that most bodies reach few others. The outcome of the earliest pair is returned: if that
+/// intervals as long as bodies reach few others, images included. The outcome of the earliest pair is returned: if that
 /// is no hit (two bodies overlap, a budget is exhausted), contacts after its time are not known. Of pairs at the same
-/// time the one with the smallest handles. The budget is that of each pair, and of the number of intervals: fast bodies
-/// that meet nobody for as many intervals exhaust it.
+/// time the one with the smallest handles. The budget is that of each pair, and of the number of intervals: it is
+/// exhausted by a body that meets nobody but passes others, or images of them, all the time.
 ///
 /// Bodies of `moving` are moved: they end at their poses at the time returned, also if they were elsewhere before. If
-/// an exception is thrown they are where they were. Throws as time_of_contact; std::invalid_argument, too, for handles
-/// that no body has or that are given twice.
+/// an exception is thrown, by a motion or a user's shape too, they are where they were. Throws as time_of_contact;
+/// std::invalid_argument, too, for handles that no body has or that are given twice.
 ED_EXPORT SceneContact first_contact(geom::Scene& scene, std::span<const MovingBody> moving, double t_min, double t_max,
                                      const GivenContactOptions& options = {});
 

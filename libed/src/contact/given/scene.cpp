@@ -7,13 +7,16 @@
 #include <geom/round_shapes.h>
 
 #include <Eigen/Core>
+#include <Eigen/QR>
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <map>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -25,38 +28,36 @@
 namespace ed {
 namespace {
 
+using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using geom::AnyConvex;
 using geom::BodyId;
 using geom::Pose;
 using geom::Scene;
+using geom::kernel::moved;
 
-/// Largest number of candidates, for each body that moves, for which an interval is not made shorter.
-constexpr std::size_t kManyCandidates = 32;
-/// Ratio of the numbers of candidates of an interval and of half of it, above which shorter ones would not help.
+/// Largest number of pairs in reach, for each body that moves, for which an interval is not made shorter.
+constexpr std::size_t kManyPairs = 32;
+/// Largest ratio of the number of pairs that are compared to that of pairs in reach.
+constexpr std::size_t kComparisons = 8;
+/// Largest number of images of all bodies in the box around what a body reaches.
+constexpr double kManyImages = 1e6;
+/// Longest way in an interval; a ball of this radius is a valid shape. Length.
+constexpr double kLongestWay = 1e30;
+/// Ratio of the numbers of pairs of an interval and of half of it, above which shorter ones would not help.
 constexpr double kStill = 0.8;
-/// Longest way of a body's points in an interval, in bounding radii.
-constexpr double kFarthest = 4;
-/// Largest number of times that an interval is made shorter for a body.
-constexpr int kMostIntervals = 64;
-/// Ratio of bodies to bodies in motion from which on those in motion ask for their neighbours one by one.
-constexpr std::size_t kFewMove = 8;
+/// Way of a body's points, in bounding radii, up to which an interval may be taken with any number of pairs.
+constexpr double kShortWay = 4;
+/// Largest number of times that an interval is made shorter for one body's way.
+constexpr int kMostShortenings = 64;
+/// Ratio of bodies to those that may ask for their neighbours one by one.
+constexpr std::size_t kShareOfFew = 8;
+/// Ratio of reaches from which on a body asks for its neighbours by itself.
+constexpr double kMuchFurther = 2;
 
-internal::GivenPair pair_of(const AnyConvex& a, const AnyConvex& b) {
-  return {[&](const Pose& X_WA, const Pose& X_WB, const geom::DistanceOptions& options) {
-            return geom::distance(a, X_WA, b, X_WB, options);
-          },
-          [&](const Vector3d& n) { return a.support(n).height; },
-          [&](const Vector3d& n) { return b.support(n).height; }, a.bounding_radius(), b.bounding_radius()};
-}
-
-Pose shifted(const Pose& X, const Vector3d& by) {
-  return geom::kernel::unchecked_pose(X.rotation(), X.position() + by);
-}
-
-GivenMotion shifted(const GivenMotion& motion, const Vector3d& by) {
+GivenMotion moved(const GivenMotion& motion, const Vector3d& by) {
   if (by.isZero(0)) return motion;
-  return {[motion, by](double t) { return shifted(motion.pose(t), by); },
+  return {[motion, by](double t) { return moved(motion.pose(t), by); },
           [motion](double from, double to) { return motion.bounds(from, to); }, motion.scales()};
 }
 
@@ -64,19 +65,32 @@ std::int64_t number_of(BodyId body) {
   return static_cast<std::int64_t>(body);
 }
 
-/// Pair of bodies that may touch, i < j.
-struct Candidate {
+/// Returns the matrix of coordinates along lattice vectors, a row each; 0 where the scene does not repeat.
+Matrix3d coordinates_along(const geom::Lattice& lattice) {
+  Matrix3d directions;
+  Vector3d inverse_lengths;
+  for (int k = 0; k < 3; ++k) {
+    const Vector3d& v = lattice.vectors[static_cast<std::size_t>(k)];
+    const double length = v.norm();
+    directions.col(k) = length > 0 ? Vector3d(v / length) : Vector3d::Zero();
+    inverse_lengths[k] = length > 0 ? 1 / length : 0;
+  }
+  return inverse_lengths.asDiagonal() * directions.completeOrthogonalDecomposition().pseudoInverse();
+}
+
+/// Pair of bodies that may touch within an interval, i < j.
+struct PairInReach {
   BodyId i{}, j{};
   Vector3d image;
 
-  /// Returns what candidates are ordered by.
+  /// Returns what pairs are ordered by.
   auto key() const { return std::tuple(i, j, image.x(), image.y(), image.z()); }
 };
 
 class SceneSearch {
  public:
   SceneSearch(Scene& scene, std::span<const MovingBody> moving, const GivenContactOptions& options)
-      : scene_(scene), moving_(moving), options_(options) {
+      : scene_(scene), moving_(moving), options_(options), coordinates_(coordinates_along(scene.options().lattice)) {
     for (std::size_t k = 0; k < moving.size(); ++k) {
       const BodyId body = moving[k].body;
       poses_.push_back(scene.pose(body));  // throws for a handle that no body has
@@ -87,14 +101,14 @@ class SceneSearch {
       }
       shape_of(body);
     }
-    before_ = poses_;
   }
 
   SceneContact find(double t_min, double t_max) {
+    const auto before = scene_.places(bodies_);
     try {
       return search(t_min, t_max);
     } catch (...) {
-      scene_.move(bodies_, before_);
+      scene_.put_back(*before);
       throw;
     }
   }
@@ -110,17 +124,11 @@ class SceneSearch {
         first.contact.time = t;
         break;
       }
-      duration = short_enough(t, std::min(duration, t_max - t));
-      std::vector<Candidate> candidates = candidates_until(t, duration);
-      while (candidates.size() > kManyCandidates * moving_.size()) {
-        std::vector<Candidate> fewer = candidates_until(t, 0.5 * duration);
-        if (static_cast<double>(fewer.size()) > kStill * static_cast<double>(candidates.size())) break;
-        candidates = std::move(fewer);
-        duration *= 0.5;
-      }
+      duration = std::min(duration, t_max - t);
+      const std::vector<PairInReach> pairs = pairs_of_an_interval(t, duration);
       double until = t + duration < t_max ? t + duration : t_max;
       if (!(until > t)) until = std::min(t_max, std::nextafter(t, t_max));  // the clock is coarse
-      search_pairs(candidates, t, until, first);
+      search_pairs(pairs, t, until, first);
       if (first.contact.status != ContactStatus::separated || until == t_max) break;
       t = until;
       duration *= 2;
@@ -131,17 +139,36 @@ class SceneSearch {
     return first;
   }
 
-  /// Returns an interval, at most `duration`, in which no point of a body moves further than a few sizes: others would
-  /// have too many candidates, and reach over too many images of a lattice.
-  double short_enough(double t, double duration) {
+  /// Makes the duration of an interval shorter until few pairs are in reach, and returns these. Intervals in which
+  /// bodies move by no more than a few sizes are as short as half of them would not have fewer.
+  std::vector<PairInReach> pairs_of_an_interval(double t, double& duration) {
+    const std::size_t many = kManyPairs * moving_.size();
+    if (auto few = few_pairs_in_reach(t, duration, many)) return *std::move(few);
+    const double short_duration = duration_of_short_ways(t, duration);
+    while (duration > short_duration) {
+      duration = std::max(short_duration, 0.5 * duration);
+      if (auto few = few_pairs_in_reach(t, duration, many)) return *std::move(few);
+    }
+    std::vector<PairInReach> pairs = pairs_in_reach(t, duration);
+    while (pairs.size() > many) {
+      std::vector<PairInReach> fewer = pairs_in_reach(t, 0.5 * duration);
+      if (static_cast<double>(fewer.size()) > kStill * static_cast<double>(pairs.size())) break;
+      pairs = std::move(fewer);
+      duration *= 0.5;
+    }
+    return pairs;
+  }
+
+  /// Returns a duration, not longer than the given one, in which no point of a body moves further than a few sizes.
+  double duration_of_short_ways(double t, double duration) {
     double shortest = duration;
     for (const MovingBody& moving : moving_) {
       const double radius = shape_of(moving.body).bounding_radius();
-      for (int k = 0; k < kMostIntervals; ++k) {
+      for (int k = 0; k < kMostShortenings; ++k) {
         const double way = speed_of(moving, t, shortest) * shortest;
-        if (way <= kFarthest * radius) break;
+        if (way <= kShortWay * radius) break;
         // Over shorter intervals the speed may be less.
-        shortest *= std::max(1.0 / 1024, kFarthest * radius / way);
+        shortest *= std::max(1.0 / 1024, kShortWay * radius / way);
       }
     }
     return shortest;
@@ -169,8 +196,8 @@ class SceneSearch {
 
   GivenMotion motion_of(BodyId body, const Vector3d& image) const {
     const auto found = index_of_.find(body);
-    if (found == index_of_.end()) return GivenMotion::resting(shifted(scene_.pose(body), image));
-    return shifted(moving_[found->second].motion, image);
+    if (found == index_of_.end()) return GivenMotion::resting(moved(scene_.pose(body), image));
+    return moved(moving_[found->second].motion, image);
   }
 
   double reach_of(BodyId body) const {
@@ -178,31 +205,70 @@ class SceneSearch {
     return found == index_of_.end() ? 0 : reach_[found->second];
   }
 
-  /// Returns the pairs that may touch within a duration, in the order of handles.
-  std::vector<Candidate> candidates_until(double t, double duration) {
+  /// Sets how far bodies get within a duration.
+  void reach_until(double t, double duration) {
     reach_.clear();
-    double most = 0, second = 0;  // the largest and the second largest
+    most_ = second_ = 0;
     for (const MovingBody& moving : moving_) {
       const double slack = options_.tolerance * shape_of(moving.body).bounding_radius();
       reach_.push_back(speed_of(moving, t, duration) * duration + slack);
-      second = std::max(second, std::min(most, reach_.back()));
-      most = std::max(most, reach_.back());
+      second_ = std::max(second_, std::min(most_, reach_.back()));
+      most_ = std::max(most_, reach_.back());
     }
-    std::vector<Candidate> found;
+  }
+
+  /// Returns whether a body that moves reaches over too many images of bodies to compare them with it.
+  bool reaches_many_images() const {
+    if (!(most_ <= kLongestWay)) return true;
+    const Vector3d cells = (1 + 2 * (most_ + second_) * coordinates_.rowwise().norm().array()).matrix();
+    const double images = cells.prod();
+    return images > 1 && images * static_cast<double>(scene_.size()) > kManyImages;
+  }
+
+  /// Returns the pairs that may touch within a duration; nullopt if they are more than `many`, or if too many others
+  /// would have to be compared.
+  std::optional<std::vector<PairInReach>> few_pairs_in_reach(double t, double duration, std::size_t many) {
+    reach_until(t, duration);
+    if (reaches_many_images()) return std::nullopt;
+    return pairs_found(many);
+  }
+  std::vector<PairInReach> pairs_in_reach(double t, double duration) {
+    reach_until(t, duration);
+    return *pairs_found(std::numeric_limits<std::size_t>::max() / kComparisons);
+  }
+
+  /// Returns the reach up to which neighbours of all bodies are looked for at once; -1: those that move are few. Few
+  /// bodies, much faster than others, may get further.
+  double common_reach() const {
+    const std::size_t few = scene_.size() / kShareOfFew;
+    if (moving_.size() <= few) return -1;
+    std::vector<double> sorted = reach_;
+    const auto nth = sorted.begin() + static_cast<std::ptrdiff_t>(few);
+    std::nth_element(sorted.begin(), nth, sorted.end(), std::greater<>());
+    return kMuchFurther * *nth;
+  }
+
+  /// Returns the pairs that may touch, in the order of handles; nullopt: many.
+  std::optional<std::vector<PairInReach>> pairs_found(std::size_t many) {
+    std::vector<PairInReach> found;
+    std::size_t compared = 0;
+    const auto go_on = [&] { return found.size() <= many && compared <= kComparisons * many; };
     const auto visit = [&](BodyId i, BodyId j, const Vector3d& image) {
-      if (!index_of_.contains(i) && !index_of_.contains(j)) return true;
+      ++compared;
+      if (!index_of_.contains(i) && !index_of_.contains(j)) return go_on();
       const Vector3d way = scene_.pose(j).position() + image - scene_.pose(i).position();
       const double reach = shape_of(i).bounding_radius() + shape_of(j).bounding_radius() + reach_of(i) + reach_of(j);
       if (way.norm() <= reach * (1 + 1e-12)) found.push_back({i, j, image});
-      return true;
+      return go_on();
     };
-    if (kFewMove * moving_.size() > scene_.size()) {
-      scene_.candidates(most + second, visit);
-    } else {
-      for (std::size_t k = 0; k < moving_.size(); ++k) visit_near(k, reach_[k] < most ? most : second, visit);
+    const double common = common_reach();
+    if (common >= 0) scene_.candidates(std::min(most_ + second_, 2 * common), visit);
+    for (std::size_t k = 0; k < moving_.size() && go_on(); ++k) {
+      if (reach_[k] > common) visit_near(k, reach_[k] < most_ ? most_ : second_, visit);
     }
-    std::sort(found.begin(), found.end(), [](const Candidate& a, const Candidate& b) { return a.key() < b.key(); });
-    const auto same = [](const Candidate& a, const Candidate& b) { return a.key() == b.key(); };
+    if (!go_on()) return std::nullopt;
+    std::sort(found.begin(), found.end(), [](const PairInReach& a, const PairInReach& b) { return a.key() < b.key(); });
+    const auto same = [](const PairInReach& a, const PairInReach& b) { return a.key() == b.key(); };
     found.erase(std::unique(found.begin(), found.end(), same), found.end());
     return found;
   }
@@ -218,21 +284,19 @@ class SceneSearch {
     for (const geom::SceneImage& other : near) {
       if (other.body == body) continue;
       if (!geom::meet(filter, scene_.filter(other.body))) continue;
-      if (body < other.body) {
-        visit(body, other.body, other.image);
-      } else {
-        visit(other.body, body, Vector3d(Vector3d::Zero() - other.image));  // without -0
-      }
+      const bool before = body < other.body;
+      const Vector3d image = before ? other.image : Vector3d(Vector3d::Zero() - other.image);  // without -0
+      if (!visit(before ? body : other.body, before ? other.body : body, image)) return;
     }
   }
 
   /// Searches pairs, each up to the earliest outcome so far.
-  void search_pairs(const std::vector<Candidate>& candidates, double from, double until, SceneContact& first) {
+  void search_pairs(const std::vector<PairInReach>& pairs, double from, double until, SceneContact& first) {
     first.contact.status = ContactStatus::separated;
     first.contact.time = until;
-    for (const Candidate& pair : candidates) {
+    for (const PairInReach& pair : pairs) {
       const GivenMotion a = motion_of(pair.i, Vector3d::Zero()), b = motion_of(pair.j, pair.image);
-      const ContactResult found = internal::given_contact(pair_of(shape_of(pair.i), shape_of(pair.j)), a, b,
+      const ContactResult found = internal::given_contact(internal::pair_of(shape_of(pair.i), shape_of(pair.j)), a, b,
                                                           {"first_contact", number_of(pair.i), number_of(pair.j)}, from,
                                                           first.contact.time, options_);
       evaluations_ += found.evaluations;
@@ -246,8 +310,10 @@ class SceneSearch {
   std::span<const MovingBody> moving_;
   const GivenContactOptions& options_;
   std::vector<BodyId> bodies_;
-  std::vector<Pose> poses_, before_;
-  std::vector<double> reach_;  ///< largest way of the points of each moving body
+  Matrix3d coordinates_;
+  std::vector<Pose> poses_;
+  std::vector<double> reach_;     ///< largest way of the points of each moving body
+  double most_ = 0, second_ = 0;  ///< the largest of them and the second largest
   std::map<BodyId, std::size_t> index_of_;
   std::map<BodyId, AnyConvex> shapes_;
   std::int64_t evaluations_ = 0;

@@ -308,6 +308,8 @@ void check_given(const char* function, const GivenContactOptions& options, doubl
     message << "tolerance is " << options.tolerance << "; accepted: 1e-14 to 1e-3";
   } else if (!std::isfinite(t_min) || !std::isfinite(t_max) || t_max < t_min) {
     message << "t_min is " << t_min << " and t_max " << t_max << "; accepted: finite times, t_max no earlier";
+  } else if (!std::isfinite(t_max - t_min)) {
+    message << "t_min is " << t_min << " and t_max " << t_max << "; accepted: a finite duration";
   } else {
     return;
   }

@@ -5,6 +5,7 @@
 
 #include <geom/distance.h>
 #include <geom/pose.h>
+#include <geom/shape.h>
 
 #include <Eigen/Core>
 
@@ -21,6 +22,30 @@ struct GivenPair {
   std::function<double(const Eigen::Vector3d&n)> height_a, height_b;  ///< support heights, body frame
   double radius_a, radius_b;                                          ///< bounding radii
 };
+
+/// Returns the pair of two shapes, which it refers to.
+template <class S>
+GivenPair pair_of(const S& a, const S& b) {
+  const auto height = [](const S& shape, const Eigen::Vector3d& n) {
+    if constexpr (geom::SupportShape<S>) {
+      return geom::Support(shape.support(n)).height;
+    } else {
+      return support(shape, n).height;
+    }
+  };
+  const auto radius = [](const S& shape) {
+    if constexpr (geom::SupportShape<S>) {
+      return shape.bounding_radius();
+    } else {
+      return bounding_radius(shape);
+    }
+  };
+  return {[&](const geom::Pose& X_WA, const geom::Pose& X_WB, const geom::DistanceOptions& options) {
+            return distance(a, X_WA, b, X_WB, options);
+          },
+          [&, height](const Eigen::Vector3d& n) { return height(a, n); },
+          [&, height](const Eigen::Vector3d& n) { return height(b, n); }, radius(a), radius(b)};
+}
 
 /// Function and bodies that messages name; -1: the bodies are A and B.
 struct GivenNames {

@@ -145,6 +145,11 @@ GivenMotion GivenMotion::on(const GivenMotion& parent) const {
 
 std::string check_given_motion(const GivenMotion& motion, double from, double to, int samples) {
   check_interval(": check_given_motion", from, to);
+  if (!std::isfinite(to - from)) {
+    std::ostringstream message;
+    message << ": check_given_motion: from time " << from << " to " << to << "; accepted: a finite duration";
+    refuse_motion(message.str());
+  }
   const int steps = std::max(samples, 2);
   const MotionScales& scales = motion.scales();
   Pose last = motion.pose(from);

@@ -135,6 +135,12 @@ void check_times(const std::vector<double>& times, std::size_t poses) {
     message << "GivenMotion::spline: time " << k << " is " << times[k] << "; accepted: finite times in ascending order";
     throw std::invalid_argument(message.str());
   }
+  if (!std::isfinite(times.back() - times.front())) {
+    std::ostringstream message;
+    message << "GivenMotion::spline: times are from " << times.front() << " to " << times.back()
+            << "; accepted: a finite duration";
+    throw std::invalid_argument(message.str());
+  }
 }
 
 }  // namespace

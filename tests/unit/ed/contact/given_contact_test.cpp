@@ -80,6 +80,18 @@ TEST(GivenContact, OfBodiesThatMoveApartIsNone) {
   const ContactResult back = time_of_contact(kBall, at(0), kBall, along_x(thrown, 8, 2), 0, 5);
   ASSERT_EQ(back.status, ContactStatus::hit);
   EXPECT_NEAR(back.time, 2, 1e-12);
+  // Without accelerations, those that part about as fast as their bound allows are known to; slow ones are not.
+  const double infinite = std::numeric_limits<double>::infinity();
+  const auto part = [](double t) { return 2 + t; };
+  for (const double bound : {1.0, 1.1}) {
+    const ContactResult fast = time_of_contact(kBall, at(0), kBall, along_x(part, bound, infinite), 0, 5);
+    EXPECT_EQ(fast.status, ContactStatus::separated) << bound;
+  }
+  for (const double bound : {4.0, 10.0}) {
+    const ContactResult slow = time_of_contact(kBall, at(0), kBall, along_x(part, bound, infinite), 0, 5);
+    EXPECT_EQ(slow.status, ContactStatus::hit) << bound;
+    EXPECT_EQ(slow.time, 0) << bound;
+  }
   // Towards each other from touch.
   const auto towards = [](double t) { return 2 - 0.1 * t; };
   EXPECT_EQ(time_of_contact(kBall, at(0), kBall, along_x(towards, 0.1, 0), 0, 5).time, 0);
@@ -169,6 +181,7 @@ TEST(GivenContact, RefusesBrokenBoundsAndBadOptions) {
   EXPECT_NE(with(0, 1, {.max_evaluations = 0}).find("max_evaluations is 0"), std::string::npos);
   EXPECT_NE(with(0, 1, {.tolerance = 0}).find("tolerance is 0"), std::string::npos);
   EXPECT_NE(with(1, 0, {}).find("t_min is 1 and t_max 0"), std::string::npos);
+  EXPECT_NE(with(-1.7e308, 1.7e308, {}).find("accepted: a finite duration"), std::string::npos);
   EXPECT_NE(with(0, std::numeric_limits<double>::infinity(), {}).find("t_max inf"), std::string::npos);
 }
 

@@ -14,6 +14,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <memory>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -170,16 +171,39 @@ TEST(SceneContact, OverLongTimes) {
   EXPECT_NEAR(found.contact.time, 1e5 - 2, 1e-9);
 }
 
-TEST(SceneContact, OfBodiesThatAreFastForTheirSizeEndsWithTheBudget) {
+TEST(SceneContact, OfASmallFastBodyFarFromOthersIsThatOfThePair) {
+  const geom::Sphere ball(0.01);
+  ed::Screw along_y;
+  along_y.axis = Vector3d::UnitY();
+  along_y.speed = 1;
+  const GivenMotion motion = GivenMotion::screw(along_y);
   geom::Scene scene;
+  const BodyId body = scene.add(ball, Pose());
+  scene.add(ball, Pose::translation({5, 0, 0}));
+  const std::vector<MovingBody> moving{{body, motion}};
+  const SceneContact found = ed::first_contact(scene, moving, 0, 1e4);
+  EXPECT_EQ(found.contact.status, ContactStatus::separated);
+  EXPECT_LE(found.contact.evaluations, 10);
+  // Resting bodies whose number is more than a few for one that moves.
+  for (int k = 0; k < 500; ++k) scene.add(ball, Pose::translation({5 + 0.1 * (k % 20), 0.1 * (k / 20), 0}));
+  EXPECT_EQ(ed::first_contact(scene, moving, 0, 1e4).contact.status, ContactStatus::separated);
+  scene.add(ball, Pose::translation({0, 9e3, 0}));
+  const SceneContact hit = ed::first_contact(scene, moving, 0, 1e4);
+  EXPECT_EQ(hit.contact.status, ContactStatus::hit);
+  EXPECT_NEAR(hit.contact.time, 9e3 - 0.02, 1e-9);
+}
+
+TEST(SceneContact, OfASmallFastBodyInAPeriodicBoxEndsWithTheBudget) {
+  // It passes images of the other one all the time.
+  geom::Scene scene({.lattice = geom::Lattice::cube(1)});
   const BodyId body = scene.add(geom::Sphere(1e-6), Pose());
-  scene.add(geom::Sphere(1), Pose::translation({0, 3, 0}));
+  scene.add(geom::Sphere(0.1), Pose::translation({0, 0.5, 0.5}));
   const std::vector<MovingBody> moving{{body, along_x(1)}};
-  const SceneContact found = ed::first_contact(scene, moving, 0, 1000, {.max_evaluations = 50});
+  const SceneContact found = ed::first_contact(scene, moving, 0, 1e5, {.max_evaluations = 50});
   EXPECT_EQ(found.contact.status, ContactStatus::budget_exhausted);
   EXPECT_EQ(found.i, found.j);
-  EXPECT_GT(found.contact.time, 0);
-  EXPECT_LT(found.contact.time, 1);
+  EXPECT_GT(found.contact.time, 10);
+  EXPECT_LT(found.contact.time, 1000);
   EXPECT_EQ(scene.pose(body).position().x(), found.contact.time);
 }
 
@@ -233,6 +257,45 @@ TEST(SceneContact, ThatFailsLeavesTheScene) {
                            });
   EXPECT_EQ(message({{ball, throws}}), "too late");
   EXPECT_EQ(scene.pose(ball).position(), Vector3d(0, 0, 0));
+}
+
+/// A ball whose support function throws when it is told to.
+struct MoodyBall {
+  std::shared_ptr<bool> throws = std::make_shared<bool>(false);
+  geom::Support support(const Vector3d& n) const {
+    if (*throws) throw std::runtime_error("no support");
+    return {n.norm(), n.normalized()};
+  }
+  Eigen::Matrix3d support_hessian(const Vector3d& n) const {
+    const Vector3d m = n.normalized();
+    return (Eigen::Matrix3d::Identity() - m * m.transpose()) / n.norm();
+  }
+  double bounding_radius() const { return 1; }
+  double inscribed_radius() const { return 1; }
+  double min_curvature_radius() const { return 1; }
+};
+
+// Bodies are put back even if their shapes still throw.
+TEST(SceneContact, ThatAShapeThrowsOutOfLeavesTheScene) {
+  geom::Scene scene;
+  const MoodyBall ball;
+  const BodyId first = scene.add(geom::Sphere(1), Pose::translation({0, 9, 0}));
+  const BodyId second = scene.add(ball, Pose());
+  scene.add(geom::Sphere(1), Pose::translation({50, 0, 0}));
+  const GivenMotion motion(
+      [throws = ball.throws](double t) {
+        return *throws = t > 2, Pose::translation({3 + t, 0, 0});
+      },
+      [](double, double) {
+        return ed::MotionBounds{1, 0, 0, 0};
+      });
+  const std::vector<MovingBody> moving{{first, GivenMotion::resting(Pose::translation({3, 9, 0}))}, {second, motion}};
+  EXPECT_THROW((void)ed::first_contact(scene, moving, 0, 100), std::runtime_error);
+  *ball.throws = false;
+  EXPECT_EQ(scene.pose(first).position(), Vector3d(0, 9, 0));
+  EXPECT_EQ(scene.pose(second).position(), Vector3d(0, 0, 0));
+  EXPECT_NEAR(scene.closest_point({0, 9, 3}).closest.distance, 2, 1e-12);
+  EXPECT_NEAR(scene.closest_point({0, 0, 3}).closest.distance, 2, 1e-12);
 }
 
 }  // namespace

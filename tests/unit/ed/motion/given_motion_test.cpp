@@ -160,6 +160,12 @@ TEST(GivenMotion, RefusesBadInput) {
                 turned(AngleAxisd(3, Vector3d::UnitX()).toRotationMatrix(), {0, 0, 0});
   EXPECT_NE(message_of([&] { return GivenMotion::spline({0}, {X}); }).find("1 times and 1 poses"), std::string::npos);
   EXPECT_NE(message_of([&] { return GivenMotion::spline({0, 0}, {X, Y}); }).find("time 1 is 0"), std::string::npos);
+  EXPECT_EQ(message_of([&] {
+              return GivenMotion::spline({-1.7e308, 1.7e308}, {X, Y});
+            }),
+            "GivenMotion::spline: times are from -1.7e+308 to 1.7e+308; accepted: a finite duration");
+  EXPECT_EQ(message_of([&] { return check_given_motion(GivenMotion::resting(X), -1.7e308, 1.7e308); }),
+            "GivenMotion: check_given_motion: from time -1.7e+308 to 1.7e+308; accepted: a finite duration");
   EXPECT_NE(message_of([&] { return GivenMotion::spline({0, 1}, {X, turned}); }).find("too large"), std::string::npos);
   EXPECT_NE(message_of([&] { return check_given_motion(GivenMotion::resting(X), 1, 0); }).find("times in order"),
             std::string::npos);

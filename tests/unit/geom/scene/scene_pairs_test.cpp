@@ -1,6 +1,7 @@
 /// Pairs of scenes against all pairs, one by one.
 
 #include "common/geom/scene_bodies.h"
+#include "scene/parallel.h"
 
 #include <geom/geom.h>
 
@@ -17,6 +18,7 @@
 #include <random>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -224,6 +226,76 @@ TEST(Scene, PassesOnWhatUsersShapesThrow) {
   *ball.mode = 2;
   EXPECT_THROW(scene.add(ball, Pose()), std::invalid_argument);
   EXPECT_EQ(scene.size(), 41U);
+}
+
+// A move that fails at a body in the middle moves none, and queries find all where they were.
+TEST(Scene, MovesAllOrNone) {
+  for (const int mode : {1, 2}) {
+    Scene scene({.lattice = {{Vector3d(300, 0, 0), Vector3d::Zero(), Vector3d::Zero()}}});
+    FaultyBall ball;
+    ball.radius = 1;
+    const std::vector<BodyId> bodies{scene.add(geom::Sphere(1), Pose()), scene.add(ball, Pose::translation({10, 0, 0})),
+                                     scene.add(geom::Sphere(1), Pose::translation({20, 0, 0}))};
+    const std::vector<Pose> poses{Pose::translation({100, 0, 0}), Pose::translation({50, 0, 0}),
+                                  Pose::translation({-400, 0, 0})};
+    *ball.mode = mode;
+    EXPECT_ANY_THROW(scene.move(bodies, poses));
+    EXPECT_ANY_THROW(scene.add(ball, Pose()));
+    *ball.mode = 0;
+    EXPECT_EQ(scene.size(), 3U);
+    for (std::size_t k = 0; k < 3; ++k) {
+      EXPECT_EQ(scene.pose(bodies[k]).position().x(), 10.0 * static_cast<double>(k));
+      EXPECT_NEAR(scene.closest_point({10.0 * static_cast<double>(k), 0, 3}).closest.distance, 2, 1e-12);
+    }
+    scene.move(bodies, poses);
+    EXPECT_NEAR(scene.closest_point({50, 0, 3}).closest.distance, 2, 1e-12);
+    EXPECT_EQ(scene.closest_point({200, 0, 3}).body->body, bodies[2]);
+  }
+}
+
+TEST(Scene, PutsBodiesBackWithoutAskingShapes) {
+  Scene scene;
+  FaultyBall ball;
+  ball.radius = 1;
+  const std::vector<BodyId> bodies{scene.add(ball, Pose::translation({5, 0, 0})), scene.add(geom::Sphere(1), Pose())};
+  const auto places = scene.places(bodies);
+  EXPECT_THROW((void)scene.places(std::vector{BodyId(7)}), std::invalid_argument);
+  scene.move(bodies, std::vector{Pose::translation({-70, 0, 0}), Pose::translation({70, 0, 0})});
+  EXPECT_NEAR(scene.closest_point({70, 0, 3}).closest.distance, 2, 1e-12);
+  *ball.mode = 1;
+  scene.remove(bodies[1]);
+  scene.put_back(*places);
+  *ball.mode = 0;
+  EXPECT_EQ(scene.pose(bodies[0]).position(), Vector3d(5, 0, 0));
+  EXPECT_NEAR(scene.closest_point({5, 0, 3}).closest.distance, 2, 1e-12);
+  EXPECT_FALSE(scene.has(bodies[1]));
+}
+
+// Distances side by side differ from those of one pair by rounding; which pairs are within the cut-off does not.
+TEST(Scene, AgreesAboutPairsAtTheCutoff) {
+  std::mt19937_64 random(9);
+  for (int k = 0; k < 2000; ++k) {
+    Scene scene;
+    const geom::Ellipsoid a(uniform3(random, 0.1, 0.4)), b(uniform3(random, 0.1, 0.4));
+    const BodyId i = scene.add(a, any_pose(random, 1)), j = scene.add(b, any_pose(random, 1));
+    const double distance = geom::distance(a, scene.pose(i), b, scene.pose(j)).distance;
+    ASSERT_EQ(scene.distance(i, j).result.distance, distance);
+    if (!(distance > 0)) continue;
+    std::vector<geom::ScenePair> pairs;
+    scene.pairs_within(distance, pairs);
+    EXPECT_EQ(pairs.size(), 1U) << k;
+    EXPECT_TRUE(scene.nearest(i, distance).body) << k;
+    scene.pairs_within(std::nextafter(distance, 0), pairs);
+    EXPECT_TRUE(pairs.empty()) << k;
+  }
+}
+
+TEST(Scene, StartsNoMoreThreadsThanProcessorsCanUse) {
+  const auto processors = std::max(1U, std::thread::hardware_concurrency());
+  EXPECT_LE(geom::scene::number_of_threads(std::numeric_limits<int>::max(), 1000000), 16 * processors);
+  EXPECT_EQ(geom::scene::number_of_threads(1, 1000000), 1U);
+  EXPECT_EQ(geom::scene::number_of_threads(2, 1000000), 2U);
+  EXPECT_EQ(geom::scene::number_of_threads(2, 1), 1U);
 }
 
 TEST(Scene, IsEmptyWithoutBodies) {

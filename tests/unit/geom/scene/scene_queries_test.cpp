@@ -14,6 +14,7 @@
 #include <limits>
 #include <numbers>
 #include <random>
+#include <stdexcept>
 #include <vector>
 
 namespace {
@@ -167,6 +168,73 @@ TEST(Scene, CastsRaysOnTheFirstBody) {
     }
   }
   EXPECT_GE(hits, 20);
+}
+
+// The answers are those of ray_cast, which declines directions whose squares or inverses it cannot have.
+TEST(Scene, CastsRaysOfAnyLength) {
+  const geom::Box box({1, 1, 1});
+  const Pose there = Pose::translation({3, 0.2, 0.1});
+  Scene open, periodic({.lattice = geom::Lattice::cube(10)});
+  open.add(box, there);
+  periodic.add(box, there);
+  for (const double length : {1e-310, 1e-308, 1e-307, 1e-300, 1.0, 1e300, 1e307, 1e308}) {
+    const Vector3d direction(length, 0, 0);
+    const geom::RayHit wanted = geom::ray_cast(box, there, Vector3d::Zero(), direction);
+    const geom::SceneRayHit found = open.ray_cast(Vector3d::Zero(), direction);
+    EXPECT_EQ(found.hit.status, wanted.status) << length;
+    EXPECT_TRUE(found.body) << length;
+    const geom::SceneRayHit beyond = open.ray_cast({20, 0, 0}, direction);
+    EXPECT_FALSE(beyond.body) << length;
+    if (wanted.status != geom::RayStatus::hit) continue;
+    EXPECT_EQ(found.hit.t, wanted.t) << length;
+    EXPECT_EQ(periodic.ray_cast(Vector3d::Zero(), direction, 2 * wanted.t).hit.t, wanted.t) << length;
+  }
+}
+
+TEST(Scene, CastsRaysThroughManyCellsAndNoMore) {
+  Scene tiny({.lattice = geom::Lattice::cube(1e-20)});
+  tiny.add(geom::Sphere(1e-21), Pose());
+  EXPECT_FALSE(tiny.ray_cast({3e-21, 3e-21, 3e-21}, {1e308, 0, 0}, 0).body);
+  Scene cube({.lattice = geom::Lattice::cube(1)});
+  const BodyId ball = cube.add(geom::Sphere(0.1), Pose());
+  EXPECT_FALSE(cube.ray_cast({0, 0.5, 0.5}, {1, 0, 0}, 1e4).body);
+  EXPECT_THROW((void)cube.ray_cast({0, 0.5, 0.5}, {1, 0, 0}, 1e7), std::invalid_argument);
+  const geom::SceneRayHit far = cube.ray_cast({0.5, 0.5, 0}, {1, 1e-4, 0}, 1e4);
+  ASSERT_TRUE(far.body);
+  EXPECT_EQ(far.body->body, ball);
+  EXPECT_GT(far.hit.t, 3000);
+}
+
+// Along directions in which the scene does not repeat, rays end where the bodies do.
+TEST(Scene, CastsLongRaysAcrossRowsAndLayers) {
+  const Vector3d x(1, 0.2, 0.1), y(0.3, 1, -0.2), none = Vector3d::Zero();
+  for (const geom::Lattice& lattice : {geom::Lattice{{x, none, none}}, geom::Lattice{{x, none, y}}}) {
+    Scene scene({.lattice = lattice});
+    scene.add(geom::Sphere(0.3), Pose());
+    scene.add(geom::Sphere(0.3), Pose::translation({0.4, 0.3, 2}));
+    const double infinity = std::numeric_limits<double>::infinity();
+    const geom::SceneRayHit from_afar = scene.ray_cast({0.4, 0.3, -1e7}, {0, 0, 1});
+    ASSERT_TRUE(from_afar.body);
+    EXPECT_FALSE(scene.ray_cast({0.4, 0.3, 1e7}, {0, 0, 1}).body);
+    EXPECT_FALSE(scene.ray_cast({0, 0, 50}, x, 1e9).body);
+    EXPECT_THROW((void)scene.ray_cast({0, 0, 1}, x, infinity), std::invalid_argument);
+    std::mt19937_64 random(10);
+    for (int k = 0; k < 50; ++k) {
+      const Vector3d origin = uniform3(random, -3, 3), direction = uniform3(random, -1, 1);
+      double first = infinity;
+      for (const BodyId body : scene.bodies()) {
+        for (const Vector3d& v : lattice_vectors(lattice, 60)) {
+          const geom::RayHit hit = geom::ray_cast(geom::Sphere(0.3), moved(scene.pose(body), v), origin, direction);
+          if (hit.status != geom::RayStatus::missed && hit.t <= 20) first = std::min(first, hit.t);
+        }
+      }
+      const geom::SceneRayHit found = scene.ray_cast(origin, direction, 20);
+      EXPECT_EQ(found.body.has_value(), first < infinity) << k;
+      if (found.body) {
+        EXPECT_NEAR(found.hit.t, first, 1e-9) << k;
+      }
+    }
+  }
 }
 
 }  // namespace
