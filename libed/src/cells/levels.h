@@ -76,7 +76,7 @@ class CellLevels {
   struct Class {
     double extent;                         ///< largest of its bodies
     CellGrid alone;                        ///< bodies of the class
-    std::optional<CellGrid> with_smaller;  ///< these and those of all classes before it, if there are any
+    std::optional<CellGrid> with_smaller;  ///< bodies of the class and of all before it, if there are any
   };
 
   /// Returns whether each grid holds the bodies of its classes, where it holds all that it should.

@@ -18,7 +18,7 @@ constexpr std::size_t kMostCuts = 2000, kMostCutsOfEach = 8;
 /// tried where a larger one does not tell how to cut the corner off.
 constexpr double kGoodEnds[] = {0.2, 0.02, 1e-3, 1e-5};
 /// Largest number of times that corners are judged anew.
-constexpr int kMostRounds = 20;
+constexpr int kMostJudgements = 20;
 /// Largest number of steps to the end of the patch on a way.
 constexpr int kMostSteps = 60;
 
@@ -56,7 +56,7 @@ Polygon Outline::find() {
     // Corners were judged by the diameter that the polygon had then.
     const double now = diameter_of(polygon);
     judge(polygon, options_.tolerance * now);
-    if (error_ <= options_.tolerance * now || now <= rounding_ || ++rounds == kMostRounds) break;
+    if (error_ <= options_.tolerance * now || now <= rounding_ || ++rounds == kMostJudgements) break;
     diameter = now;
     for (Corner& corner : polygon) corner.is_done = corner.outside <= options_.tolerance * now;
     find_middle();
