@@ -189,7 +189,7 @@ class GEOM_EXPORT Scene {
   void pairs_within(double cutoff, std::vector<ScenePair>& out, const DistanceOptions& options = {},
                     int threads = 1) const;
 
-  /// Finds every pair that overlaps, images included, and every pair for which `overlap` tells neither. `out` is
+  /// Finds every pair that overlaps, images included, and every pair for which `overlap` answers `unknown`. `out` is
   /// overwritten.
   void overlapping_pairs(std::vector<SceneOverlap>& out, int threads = 1) const;
 
