@@ -67,7 +67,7 @@ class BlockOfPairs {
     }
     distance_batch(std::span(batch_pairs_).first(ellipsoids), std::span(found_).first(ellipsoids), batch_);
     for (std::size_t k = 0; k < ellipsoids; ++k) {
-      const EllipsoidPair& pair = batch_pairs_[k];
+      const geom::EllipsoidPair& pair = batch_pairs_[k];
       out[place_[k]].result = near_cutoff(pair, found_[k].distance)
                                   ? geom::distance(*pair.a, *pair.X_WA, *pair.b, *pair.X_WB, options_)
                                   : found_[k];
@@ -76,7 +76,7 @@ class BlockOfPairs {
 
  private:
   /// Returns whether the rounding of `distance_batch` may decide whether a pair is within the cut-off.
-  bool near_cutoff(const EllipsoidPair& pair, double distance) const {
+  bool near_cutoff(const geom::EllipsoidPair& pair, double distance) const {
     // Both distances agree within 1e-14 of this size.
     const double size =
         (pair.X_WB->position() - pair.X_WA->position()).norm() + pair.a->bounding_radius() + pair.b->bounding_radius();
