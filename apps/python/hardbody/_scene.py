@@ -312,7 +312,8 @@ class Scene:
         of the answer; if an exception is raised they are where they were. Each pair is searched by time_of_contact,
         with its certificate; max_evaluations, for each pair, and tolerance: as there. max_evaluations is also the
         largest number of intervals that the time is cut into: a body that meets nobody but passes others, or images of
-        them, all the time ends with 'budget_exhausted' and no bodies (None), at a time before which there is no contact.
+        them, all the time ends with 'budget_exhausted' and no bodies (None), at a time before which there is no
+        contact.
 
         The outcome of the earliest pair is returned: where it is no hit, later contacts are not known. The GIL is held;
         where functions of motions let other threads run, queries of this scene raise RuntimeError. Raises as

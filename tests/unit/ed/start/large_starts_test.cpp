@@ -127,7 +127,8 @@ TEST(RandomStart, FewLargeAmongManySmallAreNotRepeated) {
 /// ones are found without looking at all bodies within reach of a large one.
 TEST(RandomStart, SizesMayDifferByFactors) {
   const ed::Species small = ed::paper_species(ed_test::spheroid(0.9));
-  const std::vector<ed::Component> components = {{small, 2500}, {ed::scaled(small, 4.5), 20}, {ed::scaled(small, 20), 3}};
+  const std::vector<ed::Component> components = {
+      {small, 2500}, {ed::scaled(small, 4.5), 20}, {ed::scaled(small, 20), 3}};
   ed::StartOptions options;
   options.packing_fraction = 0.15;
   const ed::System system = ed::random_start(components, options);
