@@ -70,7 +70,8 @@ def declared(header):
         statement = re.sub(r"^((public|private|protected)\s*:\s*)+", "", statement)
         if re.match(r"(template|using|friend|typedef|static_assert|inline constexpr)\b", statement):
             continue
-        if re.search(r"=\s*(default|delete|0)\s*;$", statement):
+        # A pointer to a function is no function.
+        if re.search(r"=\s*(default|delete|0)\s*;$", statement) or re.match(r"[^(]*\(\*\w+\)\(", statement):
             continue
         statement = without_nested(statement, "<>")
         head = statement.split("(")[0]
