@@ -40,6 +40,7 @@ CellLevels::CellLevels(std::span<const double> extents, double box, double least
     if (smaller > m.number) classes_.back().with_smaller.emplace(number, box, reach, batches, smaller);
   }
   if (classes_.size() == 1) return;
+  class_of_.reserve(extents.size());
   for (const double extent : extents) class_of_.push_back(index[below_largest(extent)]);
 }
 

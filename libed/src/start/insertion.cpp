@@ -45,6 +45,7 @@ System empty_box(const std::vector<Component>& components, double packing_fracti
 std::vector<int> size_classes(const std::vector<double>& radii) {
   const CellLevels levels(radii, 1);
   std::vector<int> classes;
+  classes.reserve(radii.size());
   for (int i = 0; i < static_cast<int>(radii.size()); ++i) classes.push_back(levels.class_of(i));
   return classes;
 }
@@ -102,6 +103,7 @@ std::vector<double> Insertion::roomy_boxes(const std::vector<Component>& compone
   }
   const double dilute = dilute_packing(components);
   std::vector<double> boxes;
+  boxes.reserve(own.size());
   for (std::size_t c = 0; c < own.size(); ++c) {
     const double density = c + 1 < own.size() ? kBetween * dilute : dilute;
     boxes.push_back(std::cbrt(own[c] / density + taken[c]));
@@ -154,7 +156,9 @@ System Insertion::inserted() const {
   System system;
   system.box = system_.box;
   system.species = system_.species;
-  for (const int i : bodies_inserted()) system.bodies.push_back(system_.bodies[at(i)]);
+  const std::vector<int> bodies = bodies_inserted();
+  system.bodies.reserve(bodies.size());
+  for (const int i : bodies) system.bodies.push_back(system_.bodies[at(i)]);
   return system;
 }
 

@@ -261,6 +261,7 @@ Audit audit(const System& system, const std::function<void()>& poll) {
   const double margin = 0.5 * system.box / std::cbrt(n);
   const std::vector<double> sizes = internal::bounding_radii(system);
   std::vector<double> extents;
+  extents.reserve(sizes.size());
   for (const double size : sizes) extents.push_back(std::min(size + margin, 0.25 * system.box));
   internal::CellLevels cells(extents, system.box);
   for (int i = 0; i < n; ++i) {

@@ -44,6 +44,7 @@ class Neighbourhood {
   /// Makes cells in which bodies are found whose envelopes may overlap, until the box has shrunk by `least_scale`.
   void make_cells(double least_scale = 1) {
     std::vector<double> extents;
+    extents.reserve(static_cast<std::size_t>(bodies_.number()));
     for (int i = 0; i < bodies_.number(); ++i) extents.push_back(envelopes_->extent(bodies_.bounding_radius(i)));
     cells_.emplace(extents, box_.edge(), least_scale, batches_);
   }
